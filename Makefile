@@ -1,0 +1,42 @@
+# `make` lists the targets. Each one sets up what it needs: nothing but Python >= 3.11 and a C compiler is assumed.
+
+PYTHON ?= python3
+BIN := .venv/bin
+STAMP := .venv/.installed
+
+.DEFAULT_GOAL := help
+.PHONY: help setup demo test lint format bench clean
+
+help:  ## list the targets
+	@grep -hE '^[a-z]+:.*##' $(MAKEFILE_LIST) | sed -E 's/^([a-z]+):.*## ?/  make \1\t/' | expand -t 18
+
+setup: $(STAMP)  ## own virtual environment with everything in it
+
+$(STAMP): pyproject.toml constraints.txt
+	test -x $(BIN)/python || $(PYTHON) -m venv .venv
+	$(BIN)/python -m pip install --quiet --disable-pip-version-check -c constraints.txt pip
+	$(BIN)/python -m pip install --quiet --disable-pip-version-check -c constraints.txt --group dev --editable .
+	touch $@
+
+demo: $(STAMP)  ## the paper's whole study: figures, data and report in build/demo
+	rm -rf build/demo
+	$(BIN)/flexapod replicate --out build/demo
+
+test: lint  ## lint, then all tests
+	$(BIN)/python -m pytest -n 2
+
+lint: $(STAMP)  ## style, types and import layers
+	$(BIN)/ruff check .
+	$(BIN)/ruff format --check .
+	$(BIN)/pyright src
+	$(BIN)/lint-imports
+
+format: $(STAMP)  ## rewrite the code in the project's style
+	$(BIN)/ruff check --fix .
+	$(BIN)/ruff format .
+
+bench: $(STAMP)  ## measured speed, printed
+	$(BIN)/python -m benchmarks
+
+clean:  ## remove what the targets made
+	rm -rf build .venv .pytest_cache .ruff_cache

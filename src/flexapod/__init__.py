@@ -1,0 +1,64 @@
+"""flexapod: how far a payload misses its path because the legs bend, stretch and vibrate, and why.
+
+Public names load on first use, so that ``import flexapod`` stays fast.
+"""
+
+from __future__ import annotations
+
+from importlib import import_module
+from typing import TYPE_CHECKING
+
+if TYPE_CHECKING:
+    from flexapod.citations import cite
+    from flexapod.errors import ComputationError, FlexapodError, InputError
+    from flexapod.model import ActuatorStudy, Study, load, loads, open_values, preset
+
+__version__ = "0.1.0"
+
+_HOMES = {
+    "flexapod.errors": ("ComputationError", "FlexapodError", "InputError"),
+    "flexapod.citations": ("cite",),
+    "flexapod.model": ("ActuatorStudy", "Study", "load", "loads", "open_values", "preset"),
+    "flexapod.study": (
+        "forward_kinematics",
+        "inverse_dynamics",
+        "inverse_kinematics",
+        "modes",
+        "replicate",
+        "run",
+        "simulate",
+        "simulate_actuator",
+        "stiffness",
+    ),
+}
+_NAMES = {name: module for module, names in _HOMES.items() for name in names}
+_PACKAGES = ("model", "plot", "rigid", "study")
+
+__all__ = [
+    "ActuatorStudy",
+    "ComputationError",
+    "FlexapodError",
+    "InputError",
+    "Study",
+    "__version__",
+    "cite",
+    "load",
+    "loads",
+    "open_values",
+    "preset",
+]
+
+
+def __getattr__(name: str) -> object:
+    if name in _NAMES:
+        value = getattr(import_module(_NAMES[name]), name)
+    elif name in _PACKAGES:
+        value = import_module(f"flexapod.{name}")
+    else:
+        raise AttributeError(f"module 'flexapod' has no attribute {name!r}")
+    globals()[name] = value
+    return value
+
+
+def __dir__() -> list[str]:
+    return sorted({*globals(), *_NAMES, *_PACKAGES})

@@ -1,0 +1,52 @@
+"""Polynomial shapes of the ``tip-load`` basis: the static shape under a tip force and modes with the tip held."""
+
+from dataclasses import dataclass
+
+import numpy as np
+from numpy.polynomial import Legendre
+from numpy.typing import NDArray
+from scipy.linalg import eigh, null_space
+
+from flexapod.bases.beam_functions import gauss_unit
+
+Array = NDArray[np.float64]
+
+
+@dataclass(frozen=True, kw_only=True)
+class PolynomialShape:
+    """Shape phi(zeta) as a Legendre series on [0, 1]."""
+
+    series: Legendre
+
+    def __call__(self, zeta: Array, derivative: int = 0) -> Array:
+        """Value (or ``derivative``-th derivative in zeta) at ``zeta`` (any shape), dimensionless."""
+        series = self.series.deriv(derivative) if derivative else self.series
+        return np.asarray(series(np.asarray(zeta, dtype=float)))
+
+
+def tip_load_shapes(count: int) -> list[PolynomialShape]:
+    """Static tip-load shape (3 zeta^2 - zeta^3)/2 first, then ``count - 1`` modes with the tip held, Eq. (T1.5).
+
+    The held modes are the Ritz eigenfunctions of the clamped-pinned beam in the polynomials of degree count + 2 without
+    tip moment. Together they span every such polynomial, which converges exponentially for pinned and rotating beams,
+    and the shapes stay well conditioned (their mass block is the identity, the stiffness matrix is diagonal).
+    """
+    static = Legendre(np.polynomial.Polynomial([0.0, 0.0, 1.5, -0.5]).convert(kind=Legendre, domain=[0, 1]).coef, [0, 1])
+    return [PolynomialShape(series=static), *_held_modes(count)][:count]
+
+
+def _held_modes(count: int) -> list[PolynomialShape]:
+    if count < 2:
+        return []
+    legendre = [Legendre.basis(j, domain=[0, 1]) for j in range(count + 3)]
+    conditions = np.array(
+        [[p(0.0), p.deriv(1)(0.0), p(1.0), p.deriv(2)(1.0)] for p in legendre]
+    ).T  # clamp at 0, held and free of moment at 1
+    space = null_space(conditions / np.linalg.norm(conditions, axis=1, keepdims=True))
+    zeta, weight = gauss_unit()
+    value = space.T @ np.array([p(zeta) for p in legendre])
+    curvature = space.T @ np.array([p.deriv(2)(zeta) if p.degree() > 1 else 0.0 * zeta for p in legendre])
+    vectors = eigh((curvature * weight) @ curvature.T, (value * weight) @ value.T)[1]
+    coefficients = (space @ vectors).T
+    shapes = [Legendre(c, domain=[0, 1]) for c in coefficients]
+    return [PolynomialShape(series=p * np.sign(p.deriv(2)(0.0))) for p in shapes]

@@ -1,0 +1,135 @@
+"""Errors of flexapod: what happened, where, the value, what is allowed, what to do next."""
+
+from __future__ import annotations
+
+import difflib
+from collections.abc import Iterable
+from pathlib import Path
+
+__all__ = ["ComputationError", "FlexapodError", "InputError", "closest"]
+
+
+class FlexapodError(Exception):
+    """Base of every error that flexapod raises on purpose; `exit_code` is what a command returns."""
+
+    exit_code = 1
+
+
+class ComputationError(FlexapodError):
+    """A computation on valid input did not succeed (exit code 1).
+
+    Parameters
+    ----------
+    what : str
+        What failed, where and when, in the user's words.
+    next_step : str, optional
+        What the user can do about it.
+    """
+
+    exit_code = 1
+
+    def __init__(self, what: str, *, next_step: str | None = None) -> None:
+        self.what, self.next_step = what, next_step
+        super().__init__(_sentences(what, next_step))
+
+    def __reduce__(self) -> tuple[object, ...]:
+        return _rebuild_computation, (self.what, self.next_step)
+
+
+class InputError(FlexapodError):
+    """Input that is refused before anything is computed (exit code 2).
+
+    Parameters
+    ----------
+    what : str
+        What is wrong, without file, key and value.
+    file : str or Path, optional
+        The file that was read.
+    key : str, optional
+        Key path in that file, or keyword of a Python call, e.g. ``leg.piston.diameter``.
+    value : object, optional
+        The value found there.
+    allowed : str, optional
+        What is allowed.
+    next_step : str, optional
+        What the user can do.
+    """
+
+    exit_code = 2
+
+    def __init__(
+        self,
+        what: str,
+        *,
+        file: str | Path | None = None,
+        key: str | None = None,
+        value: object = None,
+        allowed: str | None = None,
+        next_step: str | None = None,
+    ) -> None:
+        self.what, self.key, self.value, self.allowed, self.next_step = what, key, value, allowed, next_step
+        self.file = None if file is None else str(file)
+        super().__init__(self._message())
+
+    def _message(self) -> str:
+        place = ": ".join(str(part) for part in (self.file, self._key_and_value()) if part)
+        head = f"{place}: {self.what}" if place else self.what
+        return _sentences(head, f"Allowed: {self.allowed}" if self.allowed else None, self.next_step)
+
+    def _key_and_value(self) -> str | None:
+        if self.key is None:
+            return None
+        return self.key if self.value is None else f"{self.key} = {_short(self.value)}"
+
+    def located(self, *, file: str | Path | None = None, prefix: str = "") -> InputError:
+        """The same error with its file and the path of the section that holds the key."""
+        key = ".".join(part for part in (prefix, self.key) if part) or None
+        return InputError(
+            self.what,
+            file=self.file or file,
+            key=key,
+            value=self.value,
+            allowed=self.allowed,
+            next_step=self.next_step,
+        )
+
+    def as_dict(self) -> dict[str, str | None]:
+        """The parts of the message, for machine-readable output."""
+        value = None if self.value is None else str(self.value)
+        return {
+            "what": self.what,
+            "file": self.file,
+            "key": self.key,
+            "value": value,
+            "allowed": self.allowed,
+            "next_step": self.next_step,
+        }
+
+    def __reduce__(self) -> tuple[object, ...]:
+        return _rebuild_input, (self.what, self.file, self.key, self.value, self.allowed, self.next_step)
+
+
+def closest(word: str, allowed: Iterable[str]) -> str | None:
+    """The allowed word that a mistyped one most resembles, as a question, or None."""
+    found = difflib.get_close_matches(word, list(allowed), n=1, cutoff=0.6)
+    return f"Did you mean {found[0]!r}?" if found else None
+
+
+def _rebuild_computation(what: str, next_step: str | None) -> ComputationError:
+    return ComputationError(what, next_step=next_step)
+
+
+def _rebuild_input(
+    what: str, file: str | None, key: str | None, value: object, allowed: str | None, next_step: str | None
+) -> InputError:
+    return InputError(what, file=file, key=key, value=value, allowed=allowed, next_step=next_step)
+
+
+def _short(value: object) -> str:
+    text = repr(value)
+    return text if len(text) <= 80 else text[:77] + "..."
+
+
+def _sentences(*parts: str | None) -> str:
+    kept = [part.rstrip() for part in parts if part]
+    return " ".join(part if part.endswith((".", "?", "!")) else part + "." for part in kept)

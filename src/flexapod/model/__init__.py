@@ -1,0 +1,94 @@
+"""WHAT is analysed: frozen descriptions in SI units, read from text files with units."""
+
+from flexapod.model.actuator import Actuator, ActuatorInitial, ActuatorLoad, ActuatorMotion
+from flexapod.model.drive import Drive, Feedback, ForceDrive, PrescribedDrive, ServoDrive
+from flexapod.model.files import PRESETS, OpenValue, load, loads, open_values, preset, preset_text
+from flexapod.model.laws import (
+    ConstantLaw,
+    CsvLaw,
+    LoadLaw,
+    MotionLaw,
+    ProfileLaw,
+    RateLaw,
+    SineLaw,
+    SpinUpLaw,
+    StepLaw,
+)
+from flexapod.model.leg import Cylinder, Leg, Piston, Stroke
+from flexapod.model.load import ConstantWrench, CsvWrench, Load, SineWrench, StepWrench, Wrench
+from flexapod.model.material import MATERIALS, Material, Rectangle, Tube
+from flexapod.model.motion import (
+    AXES,
+    PROFILES,
+    AxisMotion,
+    CombinedMotion,
+    CsvMotion,
+    Motion,
+    Waypoint,
+    WaypointMotion,
+)
+from flexapod.model.robot import Payload, Robot, base_circle, platform_circle
+from flexapod.model.simulation import DEFAULT_TOLERANCE, FIDELITIES, LATER_FIDELITIES, Initial, Simulation
+from flexapod.model.study import ActuatorStudy, Study, override
+
+__all__ = [
+    "AXES",
+    "DEFAULT_TOLERANCE",
+    "FIDELITIES",
+    "LATER_FIDELITIES",
+    "MATERIALS",
+    "PRESETS",
+    "PROFILES",
+    "Actuator",
+    "ActuatorInitial",
+    "ActuatorLoad",
+    "ActuatorMotion",
+    "ActuatorStudy",
+    "AxisMotion",
+    "CombinedMotion",
+    "ConstantLaw",
+    "ConstantWrench",
+    "CsvLaw",
+    "CsvMotion",
+    "CsvWrench",
+    "Cylinder",
+    "Drive",
+    "Feedback",
+    "ForceDrive",
+    "Initial",
+    "Leg",
+    "Load",
+    "LoadLaw",
+    "Material",
+    "Motion",
+    "MotionLaw",
+    "OpenValue",
+    "Payload",
+    "Piston",
+    "PrescribedDrive",
+    "ProfileLaw",
+    "RateLaw",
+    "Rectangle",
+    "Robot",
+    "ServoDrive",
+    "Simulation",
+    "SineLaw",
+    "SineWrench",
+    "SpinUpLaw",
+    "StepLaw",
+    "StepWrench",
+    "Stroke",
+    "Study",
+    "Tube",
+    "Waypoint",
+    "WaypointMotion",
+    "Wrench",
+    "base_circle",
+    "load",
+    "loads",
+    "open_values",
+    "override",
+    "platform_circle",
+    "preset",
+    "preset_text",
+]

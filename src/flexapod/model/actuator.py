@@ -1,0 +1,98 @@
+"""The paper's planar actuator: a beam that slides out of a rotating hub."""
+
+from __future__ import annotations
+
+from pydantic import Field, model_validator
+
+from flexapod.errors import InputError
+from flexapod.model.base import Frozen, NonNegative, Number, Positive
+from flexapod.model.laws import LoadLaw, MotionLaw, RateLaw
+from flexapod.model.material import Material, Rectangle, Tube
+
+__all__ = ["Actuator", "ActuatorInitial", "ActuatorLoad", "ActuatorMotion"]
+
+
+class Actuator(Frozen):
+    """A uniform beam in a hub, moving in a plane.
+
+    `length` [m], whole beam; `rhoA` [kg/m]; `EI` [N m^2]; `free_length` [m], outside the hub at t = 0; `tip_mass` [kg];
+    `tip_inertia`, `hub_inertia` [kg m^2]; `hub_radius` [m], from the pivot to the clamp; `angle` [rad] from the
+    horizontal at t = 0; `gravity` [m/s^2], along -Y in the plane; `damping`, modal damping ratio. Where the section is
+    known: `EA` [N], `depth` [m] in the direction of bending, `E` [Pa], `yield_stress` [Pa].
+    """
+
+    length: Positive
+    rhoA: Positive
+    EI: Positive
+    free_length: Positive
+    tip_mass: NonNegative = 0.0
+    tip_inertia: NonNegative = 0.0
+    hub_inertia: NonNegative = 0.0
+    hub_radius: NonNegative = 0.0
+    angle: Number = 0.0
+    gravity: Number = 0.0
+    damping: float = Field(default=0.0, strict=True, ge=0, lt=1)
+    EA: Positive | None = None
+    depth: Positive | None = None
+    E: Positive | None = None
+    yield_stress: Positive | None = None
+
+    @model_validator(mode="after")
+    def _fits(self) -> Actuator:
+        if self.free_length > self.length:
+            raise InputError(
+                "is longer than the whole beam",
+                key="free_length",
+                value=self.free_length,
+                allowed=f"above 0, at most length = {self.length:g} m",
+            )
+        if self.depth is not None and self.depth >= self.length:
+            raise InputError(
+                "makes the beam thicker than long", key="section", value=self.depth, allowed=f"below {self.length:g} m"
+            )
+        return self
+
+    @classmethod
+    def from_section(cls, *, section: Tube | Rectangle, material: Material, **fields: float) -> Actuator:
+        """An actuator whose rhoA, EI and EA follow from section and material; `fields` are the others."""
+        return cls(
+            rhoA=material.density * section.area,
+            EI=material.E * section.second_moment,
+            EA=material.E * section.area,
+            depth=section.depth,
+            E=material.E,
+            yield_stress=material.yield_stress,
+            **fields,
+        )
+
+
+class ActuatorMotion(Frozen):
+    """Prescribed `rotation` [rad] and `extension` [m] since t = 0; None: that coordinate is free."""
+
+    rotation: MotionLaw | None = RateLaw(rate=0.0)
+    extension: MotionLaw | None = RateLaw(rate=0.0)
+
+    @property
+    def end_time(self) -> float | None:
+        """When the last law with an end has reached it [s]; None where a constant rate never ends."""
+        ends = []
+        for law in (self.rotation, self.extension):
+            if law is None or law.law in ("rate", "spin-up"):
+                if law is None or law.rate != 0:  # type: ignore[union-attr]
+                    return None
+            else:
+                ends.append(float(law.time[-1]) if law.law == "csv" else law.duration)  # type: ignore[union-attr]
+        return max(ends, default=None)
+
+
+class ActuatorLoad(Frozen):
+    """Driving `torque` [N m] on the hub and axial `force` [N] on the beam; each frees its coordinate."""
+
+    torque: LoadLaw | None = None
+    force: LoadLaw | None = None
+
+
+class ActuatorInitial(Frozen):
+    """State at t = 0: `tip_displacement` [m] of the static shape under a tip force, modal velocities zero."""
+
+    tip_displacement: Number = 0.0

@@ -1,0 +1,132 @@
+"""What all model classes share: frozen, SI floats, read-only arrays, errors in the user's words."""
+
+from __future__ import annotations
+
+import re
+from collections.abc import Callable
+from typing import Annotated, Any, Self
+
+import numpy as np
+from pydantic import BaseModel, ConfigDict, Field, PlainSerializer, PlainValidator, ValidationError
+
+from flexapod.errors import InputError, closest
+from flexapod.typing import Array
+
+__all__ = [
+    "Frozen",
+    "Joints",
+    "Matrix3",
+    "NonNegative",
+    "Number",
+    "Positive",
+    "Series",
+    "Series6",
+    "Vec3",
+    "Vec6",
+    "array_of",
+]
+
+Number = Annotated[float, Field(strict=True, allow_inf_nan=False)]
+Positive = Annotated[float, Field(strict=True, gt=0, allow_inf_nan=False)]
+NonNegative = Annotated[float, Field(strict=True, ge=0, allow_inf_nan=False)]
+
+_LIMIT_WORDS = {
+    "greater_than": ("gt", "above"),
+    "greater_than_equal": ("ge", "at least"),
+    "less_than": ("lt", "below"),
+    "less_than_equal": ("le", "at most"),
+}
+
+
+def array_of(shape: tuple[int | None, ...]) -> Callable[[object], Array]:
+    """A converter to a finite, read-only float array of `shape` (None: any length)."""
+    words = " x ".join("n" if n is None else str(n) for n in shape)
+
+    def convert(value: object) -> Array:
+        try:
+            array = np.array(value, dtype=np.float64)
+        except (TypeError, ValueError):
+            raise ValueError(f"must be {words} numbers") from None
+        if array.ndim != len(shape) or any(n not in (None, m) for n, m in zip(shape, array.shape, strict=True)):
+            raise ValueError(f"must be {words} numbers, got {' x '.join(map(str, array.shape)) or 'a single one'}")
+        if not np.all(np.isfinite(array)):
+            raise ValueError("must be finite numbers (no nan, no inf)")
+        array.flags.writeable = False
+        return array
+
+    return convert
+
+
+def _as_list(array: Array) -> list[Any]:
+    return array.tolist()
+
+
+Vec3 = Annotated[Array, PlainValidator(array_of((3,))), PlainSerializer(_as_list)]
+Vec6 = Annotated[Array, PlainValidator(array_of((6,))), PlainSerializer(_as_list)]
+Matrix3 = Annotated[Array, PlainValidator(array_of((3, 3))), PlainSerializer(_as_list)]
+Joints = Annotated[Array, PlainValidator(array_of((6, 3))), PlainSerializer(_as_list)]
+Series = Annotated[Array, PlainValidator(array_of((None,))), PlainSerializer(_as_list)]
+Series6 = Annotated[Array, PlainValidator(array_of((None, 6))), PlainSerializer(_as_list)]
+
+
+class Frozen(BaseModel):
+    """Base of the model: immutable, SI, unknown fields refused, `InputError` on bad values."""
+
+    model_config = ConfigDict(frozen=True, extra="forbid", arbitrary_types_allowed=True, hide_input_in_errors=True)
+
+    def __init__(self, **fields: Any) -> None:
+        try:
+            super().__init__(**fields)
+        except ValidationError as error:
+            raise _input_error(error, type(self)) from None
+
+    def replace(self, **changes: Any) -> Self:
+        """A copy with some fields changed, validated again.
+
+        Raises
+        ------
+        InputError
+            If a field does not exist or the new value is not allowed.
+        """
+        fields = {name: getattr(self, name) for name in type(self).model_fields}
+        return type(self)(**(fields | changes))
+
+    def _content(self) -> tuple[object, ...]:
+        return tuple(_comparable(getattr(self, name)) for name in type(self).model_fields)
+
+    def __eq__(self, other: object) -> bool:
+        return isinstance(other, Frozen) and type(self) is type(other) and self._content() == other._content()
+
+    def __hash__(self) -> int:
+        return hash((type(self).__name__, self._content()))
+
+
+def _comparable(value: object) -> object:
+    if isinstance(value, np.ndarray):
+        return (value.shape, value.tobytes())
+    if isinstance(value, dict):
+        return tuple(sorted(value.items()))
+    return value
+
+
+def _input_error(error: ValidationError, model: type[Frozen]) -> InputError:
+    first = error.errors(include_url=False)[0]
+    key = ".".join(str(part) for part in first["loc"]) or None
+    kind, context = first["type"], first.get("ctx", {})
+    value = first.get("input")
+    if kind == "extra_forbidden":
+        names = list(model.model_fields)
+        return InputError(
+            "unknown key", key=key, allowed=", ".join(names), next_step=closest(str(first["loc"][-1]), names)
+        )
+    if kind == "missing":
+        return InputError("is missing", key=key, next_step=f"Add {key}")
+    if kind in _LIMIT_WORDS:
+        name, words = _LIMIT_WORDS[kind]
+        return InputError("is out of range", key=key, value=value, allowed=f"{words} {context[name]:g}")
+    if kind == "literal_error":
+        names = re.findall(r"'([^']*)'", str(context["expected"]))
+        hint = closest(value, names) if isinstance(value, str) else None
+        return InputError("is not known", key=key, value=value, allowed=", ".join(names), next_step=hint)
+    message = first["msg"].removeprefix("Value error, ").replace("Input should be", "must be")
+    return InputError(message, key=key, value=value)

@@ -1,0 +1,62 @@
+"""What moves a piston: prescribed stroke, servo, force."""
+
+from __future__ import annotations
+
+from typing import Annotated, Literal
+
+from pydantic import Field, model_validator
+
+from flexapod.errors import InputError
+from flexapod.model.base import Frozen, NonNegative, Positive, Series
+
+__all__ = ["Drive", "Feedback", "ForceDrive", "PrescribedDrive", "ServoDrive"]
+
+
+class PrescribedDrive(Frozen):
+    """The stroke follows the command exactly; its force is a result."""
+
+    type: Literal["prescribed"] = "prescribed"
+
+
+class ServoDrive(Frozen):
+    """A spring [N/m] and a damper [N s/m] between the commanded and the real stroke."""
+
+    type: Literal["servo"] = "servo"
+    stiffness: Positive
+    damping: NonNegative = 0.0
+
+
+class Feedback(Frozen):
+    """Correction of a force drive: gain on stroke [N/m] and on stroke rate [N s/m]."""
+
+    stiffness: NonNegative
+    damping: NonNegative = 0.0
+
+
+class ForceDrive(Frozen):
+    """A force along the leg; the stroke is a result.
+
+    ``law = "rigid"`` replays the force that the rigid robot needs; ``law = "csv"`` takes `force` [N] at the
+    instants `time` [s], read from `file`.
+    """
+
+    type: Literal["force"] = "force"
+    law: Literal["rigid", "csv"] = "rigid"
+    file: str | None = None
+    time: Series | None = None
+    force: Series | None = None
+    feedback: Feedback | None = None
+
+    @model_validator(mode="after")
+    def _complete(self) -> ForceDrive:
+        given = [name for name in ("file", "time", "force") if getattr(self, name) is not None]
+        if self.law == "rigid" and given:
+            raise InputError("is not used by law 'rigid'", key=given[0], next_step='Remove it, or set law = "csv"')
+        if self.law == "csv" and (self.time is None or self.force is None):
+            raise InputError("is missing", key="file", next_step='Add file = "forces.csv" to the drive')
+        if self.time is not None and self.force is not None and self.time.shape != self.force.shape:
+            raise InputError("has another length than time", key="force", value=self.force.shape)
+        return self
+
+
+Drive = Annotated[PrescribedDrive | ServoDrive | ForceDrive, Field(discriminator="type")]

@@ -1,0 +1,153 @@
+"""Study files and presets: text to model."""
+
+from __future__ import annotations
+
+import re
+import tomllib
+from dataclasses import dataclass
+from importlib.resources import files
+from pathlib import Path
+
+from flexapod.errors import InputError, closest
+from flexapod.model.read_actuator import read_actuator, read_drives, read_tip
+from flexapod.model.read_motion import read_initial, read_load, read_motion, read_simulation, unused_settings
+from flexapod.model.read_robot import read_robot
+from flexapod.model.section import Section
+from flexapod.model.study import ActuatorStudy, Study
+
+__all__ = ["PRESETS", "OpenValue", "load", "loads", "open_values", "preset", "preset_text"]
+
+PRESETS = ("paper-robot", "paper-robot-radii", "paper-actuator")
+_COMMON = ("motion", "load", "initial", "simulation")
+
+
+@dataclass(frozen=True, kw_only=True)
+class OpenValue:
+    """A value of a preset that the paper leaves open: key path, value as written, why this one."""
+
+    key: str
+    value: str
+    reason: str
+
+
+def load(path: str | Path) -> Study | ActuatorStudy:
+    """Read a study file (TOML).
+
+    Parameters
+    ----------
+    path : str or Path
+        The file. Tables it names are found relative to its folder.
+
+    Returns
+    -------
+    Study or ActuatorStudy
+        SI values, frozen. Nothing is computed yet.
+
+    Raises
+    ------
+    InputError
+        With file, key path, value, what is allowed, and the next step.
+    """
+    path = Path(path)
+    try:
+        text = path.read_text(encoding="utf-8-sig")
+    except (OSError, UnicodeDecodeError) as error:
+        reason = error.strerror if isinstance(error, OSError) else "it is no UTF-8 text"
+        raise InputError(
+            f"cannot be read: {reason}", file=path, next_step="`flexapod new NAME.toml` writes one to start from"
+        ) from None
+    return loads(text, path=path)
+
+
+def loads(text: str, *, path: str | Path | None = None) -> Study | ActuatorStudy:
+    """Read a study from its text; `path` is for messages and for the tables it names."""
+    file = None if path is None else str(path)
+    try:
+        data = tomllib.loads(text)
+    except tomllib.TOMLDecodeError as error:
+        raise InputError(f"is not valid TOML: {error}", file=file or "study text") from None
+    top = Section(data, "", file, Path(path).parent if path else Path())
+    if ("robot" in top) == ("actuator" in top):
+        found = "both [robot] and [actuator]" if "robot" in top else "neither [robot] nor [actuator]"
+        raise InputError(f"has {found}", file=file or "study text", allowed="one of the two")
+    return _actuator_study(top, text) if "actuator" in top else _study(top, text)
+
+
+def preset(name: str) -> Study | ActuatorStudy:
+    """A study that comes with flexapod, by name (see `PRESETS`)."""
+    return loads(preset_text(name), path=f"{name}.toml")
+
+
+def preset_text(name: str) -> str:
+    """The commented TOML text of a preset."""
+    if name not in PRESETS:
+        raise InputError(
+            "is not known", key="preset", value=name, allowed=", ".join(PRESETS), next_step=closest(name, PRESETS)
+        )
+    return files("flexapod.model").joinpath("presets", f"{name}.toml").read_text(encoding="utf-8")
+
+
+_SECTION = re.compile(r"^\s*\[([\w.-]+)\]")
+_KEY = re.compile(r"^\s*([\w-]+)\s*=")
+_OURS = re.compile(r"#\s*ours(?:\s+([\w.-]+))?:\s*(.+?)\s*$")
+
+
+def open_values(name: str) -> tuple[OpenValue, ...]:
+    """The values of a preset that the paper leaves open, each with the reason for ours.
+
+    A preset marks them with a comment: ``# ours: reason`` at the end of the key's line, or, for a key inside a table
+    in braces, ``# ours leg.cylinder.mass: reason`` on a line of its own.
+    """
+    text = preset_text(name)
+    data, found, section = tomllib.loads(text), [], ""
+    for line in text.splitlines():
+        if match := _SECTION.match(line):
+            section = match[1]
+        key, ours = _KEY.match(line), _OURS.search(line)
+        if ours is not None and (ours[1] or key):
+            path = ours[1] or f"{section}.{key[1] if key else ''}"
+            found.append(OpenValue(key=path, value=_lookup(data, path), reason=ours[2]))
+    return tuple(found)
+
+
+def _lookup(data: object, path: str) -> str:
+    for name in path.split("."):
+        data = data[name] if isinstance(data, dict) else data
+    return str(data)
+
+
+def _study(top: Section, text: str) -> Study:
+    top.only("robot", "payload", "leg", *_COMMON)
+    top.need("robot", "payload", "leg", "motion")
+    settings = top.section("simulation")
+    simulation = read_simulation(settings, basis="tip-load", bases=("tip-load", "clamped-free"))
+    return top.build(
+        Study,
+        robot=read_robot(top),
+        motion=read_motion(top.child(top.data["motion"], "motion")),
+        load=read_load(top.section("load")),
+        initial=read_initial(top.section("initial")),
+        simulation=simulation,
+        source_text=text,
+        path=top.file,
+        notes=unused_settings(settings, simulation),
+    )
+
+
+def _actuator_study(top: Section, text: str) -> ActuatorStudy:
+    top.only("actuator", *_COMMON)
+    settings = top.section("simulation")
+    bases = ("clamped-free", "tip-load", "tip-mass")
+    simulation = read_simulation(settings, basis="clamped-free", bases=bases)
+    motion, load = read_drives(top)
+    return top.build(
+        ActuatorStudy,
+        actuator=read_actuator(top.child(top.data["actuator"], "actuator")),
+        motion=motion,
+        load=load,
+        initial=read_tip(top.section("initial")),
+        simulation=simulation,
+        source_text=text,
+        path=top.file,
+        notes=unused_settings(settings, simulation),
+    )

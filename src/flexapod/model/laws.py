@@ -1,0 +1,77 @@
+"""Laws of one scalar over time, for the single actuator. Data only: evaluation is elsewhere."""
+
+from __future__ import annotations
+
+from typing import Annotated, Literal
+
+from pydantic import Field, model_validator
+
+from flexapod.model.base import Frozen, NonNegative, Number, Positive, Series
+from flexapod.model.motion import Profile, check_times
+
+__all__ = ["ConstantLaw", "CsvLaw", "LoadLaw", "MotionLaw", "ProfileLaw", "RateLaw", "SineLaw", "SpinUpLaw", "StepLaw"]
+
+
+class RateLaw(Frozen):
+    """Constant `rate` [rad/s or m/s] from t = 0 on."""
+
+    law: Literal["rate"] = "rate"
+    rate: Number
+
+
+class ProfileLaw(Frozen):
+    """From 0 to `amplitude` [rad, m, N m or N] in `duration` [s], then constant."""
+
+    law: Profile
+    amplitude: Number
+    duration: Positive
+
+
+class SpinUpLaw(Frozen):
+    """From rest to `rate` [rad/s or m/s] in `duration` [s] with a smooth acceleration, then constant rate."""
+
+    law: Literal["spin-up"] = "spin-up"
+    rate: Number
+    duration: Positive
+
+
+class CsvLaw(Frozen):
+    """A table: `value` (n,) [rad, m, N m or N] at `time` (n,) [s], from 0, read from `file`."""
+
+    law: Literal["csv"] = "csv"
+    file: str | None = None
+    time: Series
+    value: Series
+
+    @model_validator(mode="after")
+    def _table(self) -> CsvLaw:
+        check_times(self.time, len(self.value))
+        return self
+
+
+class ConstantLaw(Frozen):
+    """A constant `value` [N m or N]."""
+
+    law: Literal["constant"] = "constant"
+    value: Number
+
+
+class SineLaw(Frozen):
+    """amplitude [N m or N] times sin(2 pi frequency t + phase); frequency [Hz], phase [rad]."""
+
+    law: Literal["sine"] = "sine"
+    amplitude: Number
+    frequency: Positive
+    phase: Number = 0.0
+
+
+class StepLaw(Frozen):
+    """Zero before `time` [s], `amplitude` [N m or N] from then on."""
+
+    law: Literal["step"] = "step"
+    amplitude: Number
+    time: NonNegative = 0.0
+
+
+MotionLaw = Annotated[RateLaw | ProfileLaw | SpinUpLaw | CsvLaw, Field(discriminator="law")]
+LoadLaw = Annotated[ConstantLaw | ProfileLaw | SineLaw | StepLaw | CsvLaw, Field(discriminator="law")]

@@ -1,0 +1,139 @@
+"""One leg: cylinder, piston, stroke, drive."""
+
+from __future__ import annotations
+
+from pydantic import Field, model_validator
+
+from flexapod.errors import InputError
+from flexapod.model.base import Frozen, NonNegative, Number, Positive, Vec3
+from flexapod.model.drive import Drive, PrescribedDrive
+from flexapod.model.material import Material, Tube
+
+__all__ = ["Cylinder", "Leg", "Piston", "Stroke"]
+
+
+class Cylinder(Frozen):
+    """The lower, rigid part of a leg.
+
+    `mass` [kg]; `com` [m], centre of mass from the universal joint along the axis; `inertia` [kg m^2], transverse,
+    about that centre; `mouth` [m], where the piston comes out, from the universal joint; `axial_inertia` [kg m^2].
+    """
+
+    mass: NonNegative
+    com: Number = 0.0
+    inertia: NonNegative = 0.0
+    mouth: NonNegative
+    axial_inertia: NonNegative = 0.0
+
+    @model_validator(mode="after")
+    def _real_body(self) -> Cylinder:
+        _check_axial(self.axial_inertia, self.inertia, "inertia")
+        return self
+
+
+class Piston(Frozen):
+    """The upper, flexible part of a leg: a uniform Euler-Bernoulli beam.
+
+    `length` [m], whole piston; `EA` [N]; `EI` [N m^2]; `rhoA` [kg/m]; `diameter`, `inner_diameter` [m], `E` [Pa],
+    `density` [kg/m^3] and `yield_stress` [Pa] where known; `axial_inertia` [kg m^2].
+    """
+
+    length: Positive
+    EA: Positive
+    EI: Positive
+    rhoA: Positive
+    diameter: Positive | None = None
+    inner_diameter: Positive | None = None
+    E: Positive | None = None
+    density: Positive | None = None
+    yield_stress: Positive | None = None
+    axial_inertia: NonNegative = 0.0
+
+    @model_validator(mode="after")
+    def _sensible(self) -> Piston:
+        if self.inner_diameter is not None and self.diameter is None:
+            raise InputError("needs the outer diameter too", key="diameter", next_step="Add diameter")
+        if self.diameter is not None:
+            Tube(diameter=self.diameter, inner_diameter=self.inner_diameter)
+            if self.diameter >= self.length:
+                raise InputError(
+                    "makes the piston wider than long: it is no beam",
+                    key="diameter",
+                    value=self.diameter,
+                    allowed=f"below a tenth of the length of {self.length:g} m for an accurate beam",
+                )
+        _check_axial(self.axial_inertia, self.rhoA * self.length**3 / 12, "transverse inertia, rhoA length^3 / 12,")
+        return self
+
+    @classmethod
+    def round(cls, *, length: float, section: Tube, material: Material, axial_inertia: float = 0.0) -> Piston:
+        """A piston of round section: EA, EI and rhoA follow from section and material."""
+        return cls(
+            length=length,
+            EA=material.E * section.area,
+            EI=material.E * section.second_moment,
+            rhoA=material.density * section.area,
+            diameter=section.diameter,
+            inner_diameter=section.inner_diameter,
+            E=material.E,
+            density=material.density,
+            yield_stress=material.yield_stress,
+            axial_inertia=axial_inertia,
+        )
+
+    @property
+    def mass(self) -> float:
+        """Mass of the whole piston [kg]."""
+        return self.rhoA * self.length
+
+
+class Stroke(Frozen):
+    """Allowed joint-to-joint length [m]."""
+
+    min: NonNegative
+    max: Positive
+
+    @model_validator(mode="after")
+    def _ordered(self) -> Stroke:
+        if self.min >= self.max:
+            raise InputError(
+                "is not above the shortest length",
+                key="max",
+                value=self.max,
+                allowed=f"above min = {self.min:g} m",
+                next_step="min and max are joint-to-joint lengths of the leg",
+            )
+        return self
+
+
+class Leg(Frozen):
+    """A leg between a universal joint on the base and a spherical joint on the platform.
+
+    `damping`: modal damping ratio of the piston; `axial_modes`: number of axial shapes, the static one first;
+    `u_axis`: direction of the universal joint's base-fixed axis (world axes), default Z x leg.
+    """
+
+    cylinder: Cylinder
+    piston: Piston
+    stroke: Stroke | None = None
+    damping: float = Field(default=0.0, strict=True, ge=0, lt=1)
+    drive: Drive = PrescribedDrive()
+    axial_modes: int = Field(default=2, strict=True, ge=0, le=4)
+    u_axis: Vec3 | None = None
+
+    @model_validator(mode="after")
+    def _axis_has_a_direction(self) -> Leg:
+        if self.u_axis is not None and not self.u_axis.any():
+            raise InputError("has no direction", key="u_axis", value=self.u_axis.tolist(), allowed="a non-zero vector")
+        return self
+
+
+def _check_axial(axial: float, transverse: float, name: str) -> None:
+    # Principal moments of a body of revolution (I, I, Ia): Ia <= 2 I, equal for a flat disc.
+    if axial > 2 * transverse * (1 + 1e-9):
+        raise InputError(
+            "belongs to no body",
+            key="axial_inertia",
+            value=axial,
+            allowed=f"at most twice the {name} of {transverse:g} kg m^2",
+        )

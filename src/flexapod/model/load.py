@@ -1,0 +1,59 @@
+"""Forces and moments on the tool: constant, sine, step, table."""
+
+from __future__ import annotations
+
+from typing import Annotated, Literal
+
+from pydantic import Field, model_validator
+
+from flexapod.model.base import Frozen, NonNegative, Number, Positive, Series, Series6, Vec6
+from flexapod.model.motion import check_times
+
+__all__ = ["ConstantWrench", "CsvWrench", "Load", "SineWrench", "StepWrench", "Wrench"]
+
+
+class ConstantWrench(Frozen):
+    """`value` (6,): Fx Fy Fz [N], Mx My Mz [N m], at the tool, world axes, at all times."""
+
+    law: Literal["constant"] = "constant"
+    value: Vec6
+
+
+class SineWrench(Frozen):
+    """amplitude (6,) [N, N m] times sin(2 pi frequency t + phase); frequency [Hz], phase [rad]."""
+
+    law: Literal["sine"] = "sine"
+    amplitude: Vec6
+    frequency: Positive
+    phase: Number = 0.0
+
+
+class StepWrench(Frozen):
+    """Zero before `time` [s], `amplitude` (6,) [N, N m] from then on."""
+
+    law: Literal["step"] = "step"
+    amplitude: Vec6
+    time: NonNegative = 0.0
+
+
+class CsvWrench(Frozen):
+    """A table: `time` (n,) [s], from 0, and `wrench` (n, 6) [N, N m], read from `file`."""
+
+    law: Literal["csv"] = "csv"
+    file: str | None = None
+    time: Series
+    wrench: Series6
+
+    @model_validator(mode="after")
+    def _table(self) -> CsvWrench:
+        check_times(self.time, len(self.wrench))
+        return self
+
+
+Wrench = Annotated[ConstantWrench | SineWrench | StepWrench | CsvWrench, Field(discriminator="law")]
+
+
+class Load(Frozen):
+    """External load of a robot: `wrench` at the tool, world axes, or none."""
+
+    wrench: Wrench | None = None

@@ -1,0 +1,90 @@
+"""Materials and beam sections."""
+
+from __future__ import annotations
+
+import math
+from types import MappingProxyType
+
+from pydantic import model_validator
+
+from flexapod.errors import InputError
+from flexapod.model.base import Frozen, Positive
+
+__all__ = ["MATERIALS", "Material", "Rectangle", "Tube"]
+
+
+class Material(Frozen):
+    """Elastic modulus E [Pa], density [kg/m^3] and yield stress [Pa] of a beam's material."""
+
+    name: str
+    E: Positive
+    density: Positive
+    yield_stress: Positive | None = None
+
+
+# E and density of steel: Table 3 of the paper. The others are handbook values at room temperature
+# (aluminium: 6061-T6; titanium: Ti-6Al-4V annealed; cfrp: standard-modulus tube, fibres mostly along the axis, its
+# "yield" being the compressive strength); the yield stress of steel is that of a quenched and tempered shaft (42CrMo4).
+_TABLE = (
+    Material(name="steel", E=200e9, density=7800.0, yield_stress=650e6),
+    Material(name="aluminium", E=68.9e9, density=2700.0, yield_stress=276e6),
+    Material(name="titanium", E=113.8e9, density=4430.0, yield_stress=880e6),
+    Material(name="cfrp", E=120e9, density=1600.0, yield_stress=600e6),
+)
+MATERIALS = MappingProxyType({material.name: material for material in _TABLE})
+
+
+class Tube(Frozen):
+    """Round section, full or hollow: outer and inner diameter [m]."""
+
+    diameter: Positive
+    inner_diameter: Positive | None = None
+
+    @model_validator(mode="after")
+    def _hollow_inside(self) -> Tube:
+        if self.inner_diameter is not None and self.inner_diameter >= self.diameter:
+            raise InputError(
+                "leaves no wall",
+                key="inner_diameter",
+                value=self.inner_diameter,
+                allowed=f"below the outer diameter of {self.diameter:g} m",
+                next_step="Leave inner_diameter out for a full section",
+            )
+        return self
+
+    @property
+    def area(self) -> float:
+        """Cross-section area [m^2]."""
+        return math.pi / 4 * (self.diameter**2 - (self.inner_diameter or 0.0) ** 2)
+
+    @property
+    def second_moment(self) -> float:
+        """Second moment of area about a diameter [m^4]."""
+        return math.pi / 64 * (self.diameter**4 - (self.inner_diameter or 0.0) ** 4)
+
+    @property
+    def depth(self) -> float:
+        """Size in the direction of bending [m]."""
+        return self.diameter
+
+
+class Rectangle(Frozen):
+    """Rectangular section: width across and height along the direction of bending [m]."""
+
+    width: Positive
+    height: Positive
+
+    @property
+    def area(self) -> float:
+        """Cross-section area [m^2]."""
+        return self.width * self.height
+
+    @property
+    def second_moment(self) -> float:
+        """Second moment of area for bending along the height [m^4]."""
+        return self.width * self.height**3 / 12
+
+    @property
+    def depth(self) -> float:
+        """Size in the direction of bending [m]."""
+        return self.height

@@ -1,0 +1,205 @@
+"""Motions of the platform: one axis, several axes, waypoints, table."""
+
+from __future__ import annotations
+
+import math
+from typing import Annotated, Literal, get_args
+
+import numpy as np
+from pydantic import Field, model_validator
+
+from flexapod.errors import InputError
+from flexapod.model.base import Frozen, NonNegative, Number, Positive, Series, Series6, Vec3
+from flexapod.typing import Array
+
+__all__ = ["AXES", "PROFILES", "AxisMotion", "CombinedMotion", "CsvMotion", "Motion", "Waypoint", "WaypointMotion"]
+
+Axis = Literal["surge", "sway", "heave", "roll", "pitch", "yaw"]
+Profile = Literal["quintic", "cycloidal", "s-curve", "trapezoid", "smooth"]
+AXES: tuple[Axis, ...] = get_args(Axis)
+PROFILES: tuple[Profile, ...] = get_args(Profile)
+_ORIGIN = (0.0, 0.0, 0.0)
+
+
+class AxisMotion(Frozen):
+    """From home to `amplitude` [m or rad] along or about one world axis, in `duration` [s], then `hold` [s].
+
+    Turns are about `pivot` (3,) [m], a point given in the platform frame.
+    """
+
+    type: Axis
+    amplitude: Number
+    duration: Positive
+    hold: NonNegative = 0.0
+    profile: Profile = "quintic"
+    pivot: Vec3 = Field(default=_ORIGIN, validate_default=True)
+
+    @model_validator(mode="after")
+    def _angle(self) -> AxisMotion:
+        _check_pose({self.type: self.amplitude}, "amplitude")
+        return self
+
+    @property
+    def target(self) -> Array:
+        """Pose reached: surge, sway, heave [m], roll, pitch, yaw [rad] relative to home, (6,)."""
+        return _pose({self.type: self.amplitude})
+
+    @property
+    def end_time(self) -> float:
+        """End of the motion with its hold [s]."""
+        return self.duration + self.hold
+
+
+class CombinedMotion(Frozen):
+    """Several axes at once with one profile: `amplitudes` by axis name [m or rad]."""
+
+    type: Literal["combined"] = "combined"
+    amplitudes: dict[Axis, Number]
+    duration: Positive
+    hold: NonNegative = 0.0
+    profile: Profile = "quintic"
+    pivot: Vec3 = Field(default=_ORIGIN, validate_default=True)
+
+    @model_validator(mode="after")
+    def _angles(self) -> CombinedMotion:
+        if not self.amplitudes:
+            raise InputError("names no axis", key="amplitudes", allowed=", ".join(AXES))
+        _check_pose(dict(self.amplitudes), "amplitudes")
+        return self
+
+    @property
+    def target(self) -> Array:
+        """Pose reached: surge, sway, heave [m], roll, pitch, yaw [rad] relative to home, (6,)."""
+        return _pose(dict(self.amplitudes))
+
+    @property
+    def end_time(self) -> float:
+        """End of the motion with its hold [s]."""
+        return self.duration + self.hold
+
+
+class Waypoint(Frozen):
+    """A pose relative to home at `time` [s]: surge, sway, heave [m], roll, pitch, yaw [rad]."""
+
+    time: NonNegative
+    surge: Number = 0.0
+    sway: Number = 0.0
+    heave: Number = 0.0
+    roll: Number = 0.0
+    pitch: Number = 0.0
+    yaw: Number = 0.0
+
+    @model_validator(mode="after")
+    def _angles(self) -> Waypoint:
+        for axis in AXES:
+            _check_pose({axis: getattr(self, axis)}, axis)
+        return self
+
+    @property
+    def pose(self) -> Array:
+        """Surge, sway, heave [m], roll, pitch, yaw [rad] relative to home, (6,)."""
+        return np.array([getattr(self, axis) for axis in AXES])
+
+
+class WaypointMotion(Frozen):
+    """From point to point, at rest at each; from home at t = 0 if the first point is later."""
+
+    type: Literal["waypoints"] = "waypoints"
+    points: tuple[Waypoint, ...]
+    hold: NonNegative = 0.0
+    profile: Profile = "quintic"
+    pivot: Vec3 = Field(default=_ORIGIN, validate_default=True)
+
+    @model_validator(mode="after")
+    def _in_order(self) -> WaypointMotion:
+        if len(self.times) < 2:
+            raise InputError("has no point after t = 0", key="points", next_step="Add a point with a later time")
+        for i, (before, after) in enumerate(zip(self.points, self.points[1:], strict=False), start=2):
+            if after.time <= before.time:
+                raise InputError(
+                    "is not later than the point before it",
+                    key=f"points[{i}].time",
+                    value=after.time,
+                    allowed=f"above {before.time:g} s",
+                )
+        return self
+
+    @property
+    def times(self) -> Array:
+        """Instants of the points, starting at 0, (n,) [s]."""
+        later = [point.time for point in self.points]
+        return np.array(later if later and later[0] == 0 else [0.0, *later])
+
+    @property
+    def poses(self) -> Array:
+        """Poses at `times`, (n, 6): surge, sway, heave [m], roll, pitch, yaw [rad] relative to home."""
+        given = [point.pose for point in self.points]
+        return np.array(given if self.points[0].time == 0 else [np.zeros(6), *given])
+
+    @property
+    def end_time(self) -> float:
+        """End of the motion with its hold [s]."""
+        return self.points[-1].time + self.hold
+
+
+class CsvMotion(Frozen):
+    """A table of poses: `time` (n,) [s], from 0, and `pose` (n, 6) relative to home, read from `file`.
+
+    Columns of `pose`: surge, sway, heave [m], roll, pitch, yaw [rad].
+    """
+
+    type: Literal["csv"] = "csv"
+    file: str | None = None
+    time: Series
+    pose: Series6
+    hold: NonNegative = 0.0
+    pivot: Vec3 = Field(default=_ORIGIN, validate_default=True)
+
+    @model_validator(mode="after")
+    def _table(self) -> CsvMotion:
+        check_times(self.time, len(self.pose))
+        return self
+
+    @property
+    def end_time(self) -> float:
+        """End of the table with its hold [s]."""
+        return float(self.time[-1]) + self.hold
+
+
+Motion = Annotated[AxisMotion | CombinedMotion | WaypointMotion | CsvMotion, Field(discriminator="type")]
+
+
+def check_times(time: Array, rows: int) -> None:
+    """Refuse a time column that does not start at 0, does not increase, or has another length than the data."""
+    if len(time) != rows:
+        raise InputError(f"has {len(time)} instants for {rows} rows of values", key="time")
+    if len(time) < 2:
+        raise InputError("has fewer than two rows", key="time", next_step="A table needs two instants at least")
+    if time[0] != 0:
+        raise InputError(
+            "does not start at 0", key="time", value=float(time[0]), next_step="Subtract the first instant"
+        )
+    if np.any(np.diff(time) <= 0):
+        row = int(np.argmax(np.diff(time) <= 0)) + 1
+        raise InputError(
+            f"does not increase at row {row + 1}",
+            key="time",
+            value=float(time[row]),
+            allowed=f"above {time[row - 1]:g} s",
+        )
+
+
+def _pose(amplitudes: dict[Axis, float]) -> Array:
+    return np.array([amplitudes.get(axis, 0.0) for axis in AXES])
+
+
+def _check_pose(amplitudes: dict[Axis, float], key: str) -> None:
+    for axis, value in amplitudes.items():
+        if axis in ("roll", "pitch", "yaw") and abs(value) > math.pi:
+            raise InputError(
+                f"turns the platform ({axis}) by more than half a turn",
+                key=key,
+                value=value,
+                allowed="between -pi and pi rad",
+                next_step='A number without a unit is in rad; write degrees as "26.6 deg"',
+            )

@@ -1,0 +1,56 @@
+"""Plausibility remarks: what is legal but strains the theory, in words."""
+
+from __future__ import annotations
+
+from flexapod.model.actuator import Actuator
+from flexapod.model.leg import Leg
+from flexapod.model.robot import Robot
+
+__all__ = ["actuator_remarks", "robot_remarks"]
+
+_SLENDER = 0.1
+
+
+def robot_remarks(robot: Robot) -> tuple[str, ...]:
+    """Remarks on a robot's legs; the same remark for several legs is made once."""
+    numbers: dict[str, list[int]] = {}
+    for i, leg in enumerate(robot.legs, start=1):
+        for remark in _leg_remarks(leg):
+            numbers.setdefault(remark, []).append(i)
+    return tuple(f"{_legs(which)}: {remark}" for remark, which in numbers.items())
+
+
+def actuator_remarks(actuator: Actuator) -> tuple[str, ...]:
+    """Remarks on a single actuator's beam."""
+    depth = actuator.depth
+    if depth is not None and depth > _SLENDER * actuator.free_length:
+        return (f"the beam is {depth:g} m deep, {_fat(depth, actuator.free_length, 'free length at t = 0')}",)
+    return ()
+
+
+def _leg_remarks(leg: Leg) -> list[str]:
+    piston, cylinder = leg.piston, leg.cylinder
+    remarks = []
+    if piston.diameter is not None and piston.diameter > _SLENDER * piston.length:
+        remarks.append(f"the piston is {piston.diameter:g} m wide, {_fat(piston.diameter, piston.length, 'length')}")
+    if cylinder.mass > 0 and cylinder.mouth > 0 and not 0 <= cylinder.com <= cylinder.mouth:
+        remarks.append(
+            f"the cylinder's centre of mass ({cylinder.com:g} m) lies outside the cylinder "
+            f"(0 to its mouth at {cylinder.mouth:g} m)"
+        )
+    if cylinder.mass == 0 and cylinder.inertia > 0:
+        remarks.append(f"the cylinder has inertia ({cylinder.inertia:g} kg m^2) but no mass")
+    return remarks
+
+
+def _fat(depth: float, length: float, name: str) -> str:
+    return (
+        f"{depth / length:.0%} of its {name} of {length:g} m: above 10 % an Euler-Bernoulli beam is strained "
+        "(shear and rotary inertia are left out)"
+    )
+
+
+def _legs(numbers: list[int]) -> str:
+    if len(numbers) == 6:
+        return "all legs"
+    return ("leg " if len(numbers) == 1 else "legs ") + ", ".join(map(str, numbers))

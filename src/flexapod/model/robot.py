@@ -1,0 +1,156 @@
+"""The parallel robot: payload, joints, legs."""
+
+from __future__ import annotations
+
+from typing import Literal
+
+import numpy as np
+from pydantic import field_validator, model_validator
+
+from flexapod.errors import InputError
+from flexapod.model.base import Frozen, Joints, Matrix3, Number, Positive, Vec3
+from flexapod.model.leg import Leg
+from flexapod.typing import Array
+
+__all__ = ["Payload", "Robot", "base_circle", "platform_circle"]
+
+_LOWER = ((0, -1), (0, 1), (120, -1), (120, 1), (240, -1), (240, 1))
+_UPPER = ((-60, 1), (60, -1), (60, 1), (180, -1), (180, 1), (300, -1))
+
+
+class Payload(Frozen):
+    """Platform and everything on it, as one rigid body.
+
+    `mass` [kg]; `inertia` (3, 3) [kg m^2] about the centre of mass in platform axes, products with tensor sign;
+    `com` and `tool` (3,) [m] from the platform frame's origin in platform axes (`tool` defaults to `com`).
+    """
+
+    mass: Positive
+    inertia: Matrix3
+    com: Vec3
+    tool: Vec3
+
+    def __init__(self, **fields: object) -> None:
+        if fields.get("tool") is None and "com" in fields:
+            fields = fields | {"tool": fields["com"]}
+        super().__init__(**fields)
+
+    @field_validator("inertia", mode="before")
+    @classmethod
+    def _from_principal(cls, value: object) -> object:
+        if np.shape(value) == (3,):  # type: ignore[arg-type]
+            return np.diag(np.asarray(value, dtype=np.float64))
+        return value
+
+    @model_validator(mode="after")
+    def _real_body(self) -> Payload:
+        inertia = self.inertia
+        if not np.allclose(inertia, inertia.T, rtol=0, atol=1e-9 * np.abs(inertia).max()):
+            raise _no_body(inertia, "a symmetric tensor: Ixy = Iyx, Ixz = Izx, Iyz = Izy")
+        small, middle, large = np.linalg.eigvalsh(inertia)
+        if small <= 1e-12 * abs(large):
+            raise _no_body(inertia, f"principal moments above 0 (the smallest is {small:.6g} kg m^2)")
+        if large > (small + middle) * (1 + 1e-9):
+            raise _no_body(
+                inertia,
+                "no principal moment above the sum of the other two "
+                f"(these are {small:.6g}, {middle:.6g}, {large:.6g} kg m^2)",
+            )
+        return self
+
+
+class Robot(Frozen):
+    """A 6-UPS robot.
+
+    `base_joints` (6, 3) [m] in world axes; `platform_joints` (6, 3) [m] in the platform frame, which is at
+    [0, 0, home_height] and parallel to the world at home; `gravity` (3,) [m/s^2] in world axes.
+    """
+
+    type: Literal["6-UPS"] = "6-UPS"
+    base_joints: Joints
+    platform_joints: Joints
+    home_height: Number
+    gravity: Vec3
+    payload: Payload
+    legs: tuple[Leg, Leg, Leg, Leg, Leg, Leg]
+
+    @model_validator(mode="after")
+    def _legs_fit(self) -> Robot:
+        for i, (leg, length) in enumerate(zip(self.legs, self.home_lengths, strict=True), start=1):
+            _check_home(i, leg, float(length))
+        return self
+
+    @property
+    def home_vectors(self) -> Array:
+        """From base to platform joint of every leg at home, (6, 3) [m], world axes."""
+        return self.platform_joints + np.array([0.0, 0.0, self.home_height]) - self.base_joints
+
+    @property
+    def home_lengths(self) -> Array:
+        """Joint-to-joint lengths at home, (6,) [m]."""
+        return np.linalg.norm(self.home_vectors, axis=1)
+
+
+def base_circle(radius: float, half_angle: float) -> Array:
+    """Base joints of legs 1 to 6 on a circle: pairs centred at 0, 120 and 240 deg, z = 0.
+
+    Parameters
+    ----------
+    radius : float
+        Radius of the circle [m].
+    half_angle : float
+        Half the angle between the two joints of a pair [rad].
+
+    Returns
+    -------
+    Array
+        (6, 3) [m], world axes.
+    """
+    return _circle(radius, half_angle, _LOWER)
+
+
+def platform_circle(radius: float, half_angle: float) -> Array:
+    """Platform joints of legs 1 to 6 on a circle: pairs centred at 60, 180 and 300 deg.
+
+    Parameters and result as for `base_circle`, in the platform frame.
+    """
+    return _circle(radius, half_angle, _UPPER)
+
+
+def _circle(radius: float, half_angle: float, places: tuple[tuple[int, int], ...]) -> Array:
+    angles = np.array([np.deg2rad(centre) + side * half_angle for centre, side in places])
+    return radius * np.column_stack([np.cos(angles), np.sin(angles), np.zeros(6)])
+
+
+def _check_home(number: int, leg: Leg, length: float) -> None:
+    where = f"leg {number}"
+    if length < 1e-9:
+        raise InputError(
+            f"{where}: base and platform joint coincide at home",
+            key="robot.home_height",
+            next_step="Check the joints of this leg and home_height",
+        )
+    if leg.cylinder.mouth >= length:
+        raise InputError(
+            f"{where}: no piston is left outside the cylinder at home, where the leg is {length:.6g} m long",
+            key="leg.cylinder.mouth",
+            value=leg.cylinder.mouth,
+            allowed=f"below {length:.6g} m",
+        )
+    if abs(leg.cylinder.com) > length:
+        raise InputError(
+            f"{where}: the cylinder's centre of mass lies beyond the leg's ends at home",
+            key="leg.cylinder.com",
+            value=leg.cylinder.com,
+            allowed=f"between the universal joint (0) and the mouth ({leg.cylinder.mouth:.6g} m)",
+        )
+
+
+def _no_body(inertia: Array, allowed: str) -> InputError:
+    return InputError(
+        "is an inertia that no body can have",
+        key="inertia",
+        value=inertia.tolist(),
+        allowed=allowed,
+        next_step="It is about the centre of mass, in platform axes, products of inertia with tensor sign",
+    )

@@ -1,0 +1,156 @@
+"""A study: what is analysed and how, one file."""
+
+from __future__ import annotations
+
+from typing import Self
+
+from pydantic import model_validator
+
+from flexapod.errors import InputError
+from flexapod.model.actuator import Actuator, ActuatorInitial, ActuatorLoad, ActuatorMotion
+from flexapod.model.base import Frozen
+from flexapod.model.load import Load
+from flexapod.model.motion import Motion
+from flexapod.model.remarks import actuator_remarks, robot_remarks
+from flexapod.model.robot import Robot
+from flexapod.model.simulation import Initial, Simulation
+
+__all__ = ["ActuatorStudy", "Study", "override"]
+
+
+class Study(Frozen):
+    """A robot, its motion, load, start and simulation settings.
+
+    `source_text`: the file as it was read; `path`: where from; `notes`: remarks made on reading it.
+    """
+
+    robot: Robot
+    motion: Motion
+    load: Load = Load()
+    initial: Initial = Initial()
+    simulation: Simulation = Simulation()
+    source_text: str = ""
+    path: str | None = None
+    notes: tuple[str, ...] = ()
+
+    @model_validator(mode="after")
+    def _basis(self) -> Self:
+        if self.simulation.basis == "tip-mass":
+            raise InputError(
+                "belongs to the single actuator: a robot's legs carry no mass of their own at the tip",
+                key="simulation.basis",
+                value="tip-mass",
+                allowed="tip-load, clamped-free",
+            )
+        return self
+
+    @property
+    def duration(self) -> float:
+        """Simulated time [s]: `simulation.duration`, else the motion with its hold."""
+        return self.simulation.duration or self.motion.end_time
+
+    @property
+    def warnings(self) -> tuple[str, ...]:
+        """What is legal but doubtful, in words."""
+        return (*robot_remarks(self.robot), *self.notes)
+
+
+class ActuatorStudy(Frozen):
+    """A single actuator, its motion or load, start and simulation settings."""
+
+    actuator: Actuator
+    motion: ActuatorMotion = ActuatorMotion()
+    load: ActuatorLoad = ActuatorLoad()
+    initial: ActuatorInitial = ActuatorInitial()
+    simulation: Simulation = Simulation(basis="clamped-free")
+    source_text: str = ""
+    path: str | None = None
+    notes: tuple[str, ...] = ()
+
+    @model_validator(mode="after")
+    def _consistent(self) -> Self:
+        for law, load in (("rotation", "torque"), ("extension", "force")):
+            if (getattr(self.motion, law) is None) == (getattr(self.load, load) is None):
+                raise InputError(f"and motion.{law}: exactly one of the two drives this coordinate", key=f"load.{load}")
+        if self.simulation.fidelity == "lumped":
+            raise InputError(
+                "has no meaning for the single actuator, whose beam bends but does not stretch",
+                key="simulation.fidelity",
+                value="lumped",
+                allowed="assumed-modes, rigid",
+            )
+        if self.simulation.duration is None and self.motion.end_time is None:
+            raise InputError(
+                "is missing: this motion has no end of its own",
+                key="simulation.duration",
+                next_step='Add duration = "10 s" to [simulation]',
+            )
+        return self
+
+    @property
+    def duration(self) -> float:
+        """Simulated time [s]: `simulation.duration`, else when the last law has reached its end."""
+        return self.simulation.duration or self.motion.end_time or 0.0
+
+    @property
+    def warnings(self) -> tuple[str, ...]:
+        """What is legal but doubtful, in words."""
+        return (*actuator_remarks(self.actuator), *self.notes)
+
+
+def override(
+    study: Study | ActuatorStudy,
+    *,
+    fidelity: str | None = None,
+    modes: int | None = None,
+    axial_modes: int | None = None,
+    basis: str | None = None,
+    tolerance: float | None = None,
+    step: float | None = None,
+    duration: float | None = None,
+    output_step: float | None = None,
+    rho_inf: float | None = None,
+) -> Study | ActuatorStudy:
+    """The study with settings of a Python call in place of those of the file; None keeps the file's.
+
+    Raises
+    ------
+    InputError
+        If a setting is not allowed, or has no effect together with the chosen fidelity.
+    """
+    given = {
+        "fidelity": fidelity,
+        "basis": basis,
+        "modes": modes,
+        "duration": duration,
+        "tolerance": tolerance,
+        "step": step,
+        "output_step": output_step,
+        "rho_inf": rho_inf,
+    }
+    changes = {name: value for name, value in given.items() if value is not None}
+    _refuse_unused(fidelity or study.simulation.fidelity, changes, axial_modes)
+    if "step" in changes and "tolerance" not in changes:
+        changes["tolerance"] = None
+    if "tolerance" in changes and "step" not in changes:
+        changes["step"] = None
+    simulation = study.simulation.replace(**changes)
+    if axial_modes is None:
+        return study.replace(simulation=simulation)
+    if isinstance(study, ActuatorStudy):
+        raise InputError("has no meaning for the single actuator, whose beam does not stretch", key="axial_modes")
+    legs = tuple(leg.replace(axial_modes=axial_modes) for leg in study.robot.legs)
+    return study.replace(simulation=simulation, robot=study.robot.replace(legs=legs))
+
+
+def _refuse_unused(fidelity: str, changes: dict[str, object], axial_modes: int | None) -> None:
+    if fidelity == "assumed-modes":
+        return
+    given = [name for name in ("modes", "basis") if name in changes] + ["axial_modes"] * (axial_modes is not None)
+    if given and fidelity in ("rigid", "lumped"):
+        raise InputError(
+            f"has no effect with fidelity {fidelity!r}",
+            key=given[0],
+            value=changes.get(given[0], axial_modes),
+            next_step=f"Leave {given[0]} out, or choose fidelity='assumed-modes'",
+        )

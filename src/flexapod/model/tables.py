@@ -1,0 +1,152 @@
+"""CSV tables with units in the header. Data only: interpolation belongs to those who use it."""
+
+from __future__ import annotations
+
+import csv
+import math
+import re
+from collections.abc import Mapping
+from pathlib import Path
+
+import numpy as np
+
+from flexapod.errors import InputError, closest
+from flexapod.typing import Array
+from flexapod.units import DIMENSIONS, to_si
+
+__all__ = ["FORCES", "POSE", "WRENCH", "read_table"]
+
+POSE = {"surge": "length", "sway": "length", "heave": "length", "roll": "angle", "pitch": "angle", "yaw": "angle"}
+WRENCH = {"Fx": "force", "Fy": "force", "Fz": "force", "Mx": "torque", "My": "torque", "Mz": "torque"}
+FORCES = {f"leg {i}": "force" for i in range(1, 7)}
+
+_HEADER = re.compile(r"^\s*(.+?)\s*\[\s*(.+?)\s*\]\s*$")
+
+
+def read_table(path: Path, columns: Mapping[str, str], *, needed: bool = False) -> dict[str, Array]:
+    """Columns of a CSV file in SI units, by name.
+
+    The header names each column with its unit, ``time [s], roll [deg]``. Lines that start with # are comments.
+
+    Parameters
+    ----------
+    path : Path
+        The file.
+    columns : Mapping
+        Allowed columns besides ``time`` and their dimension (see `flexapod.units`).
+    needed : bool
+        Whether all of them must be there; otherwise at least one.
+
+    Returns
+    -------
+    dict
+        ``time`` and the columns found, each (n,), SI.
+
+    Raises
+    ------
+    InputError
+        If the file cannot be read, a column is unknown or missing, a cell is empty or no finite number, or the
+        instants do not start at 0 and increase; with the line number.
+    """
+    lines = _lines(path)
+    if not lines:
+        raise InputError("is empty", file=path, next_step=f"First line: {_example(columns)}")
+    number, cells = lines[0]
+    factors = _header(path, number, cells, {"time": "time", **columns})
+    missing = [name for name in ("time", *columns) if name not in factors]
+    if "time" in missing or (needed and missing) or len(missing) == len(columns):
+        raise InputError(f"has no column {missing[0]!r}", file=path, key=f"line {number}", allowed=_example(columns))
+    values = np.array([_row(path, n, row, list(factors)) for n, row in lines[1:]]).reshape(-1, len(factors))
+    table = {name: values[:, i] * factor for i, (name, factor) in enumerate(factors.items())}
+    _check_times(path, table["time"], [n for n, _ in lines[1:]])
+    return table
+
+
+def _lines(path: Path) -> list[tuple[int, list[str]]]:
+    try:
+        with path.open(newline="", encoding="utf-8-sig") as stream:
+            rows = list(enumerate(csv.reader(stream), start=1))
+    except (OSError, UnicodeDecodeError, csv.Error) as error:
+        reason = error.strerror if isinstance(error, OSError) else "it is no text table"
+        raise InputError(
+            f"cannot be read: {reason}", file=path, next_step="Give its place relative to the study file"
+        ) from None
+    return [(n, row) for n, row in rows if any(cell.strip() for cell in row) and not row[0].lstrip().startswith("#")]
+
+
+def _header(path: Path, line: int, cells: list[str], dimensions: Mapping[str, str]) -> dict[str, float]:
+    factors: dict[str, float] = {}
+    for cell in cells:
+        match = _HEADER.match(cell)
+        if match is None:
+            raise InputError(
+                "has no unit in the header",
+                file=path,
+                key=f"line {line}, column {cell.strip()!r}",
+                allowed="name [unit]",
+            )
+        name, unit = match[1], match[2]
+        if name not in dimensions:
+            raise InputError(
+                f"has an unknown column {name!r}",
+                file=path,
+                key=f"line {line}",
+                allowed=", ".join(dimensions),
+                next_step=closest(name, dimensions),
+            )
+        if name in factors:
+            raise InputError(f"has the column {name!r} twice", file=path, key=f"line {line}")
+        try:
+            factors[name] = to_si(f"1 {unit}", dimensions[name], key=f"line {line}, column {name!r}")
+        except InputError as error:
+            raise error.located(file=path) from None
+    return factors
+
+
+def _row(path: Path, line: int, cells: list[str], names: list[str]) -> list[float]:
+    if len(cells) != len(names):
+        raise InputError(f"has {len(cells)} cells for {len(names)} columns", file=path, key=f"line {line}")
+    row = []
+    for name, cell in zip(names, cells, strict=True):
+        try:
+            value = float(cell)
+        except ValueError:
+            value = math.nan
+        if not math.isfinite(value):
+            raise InputError(
+                "is empty or no finite number",
+                file=path,
+                key=f"line {line}, column {name!r}",
+                value=cell,
+                next_step="Fill the gap or remove the line",
+            )
+        row.append(value)
+    return row
+
+
+def _check_times(path: Path, time: Array, lines: list[int]) -> None:
+    if len(time) < 2:
+        raise InputError("has fewer than two rows of numbers", file=path)
+    if time[0] != 0:
+        raise InputError(
+            "does not start at 0",
+            file=path,
+            key=f"line {lines[0]}, column 'time'",
+            value=float(time[0]),
+            next_step="Subtract the first instant from all",
+        )
+    for line, before, now in zip(lines[1:], time, time[1:], strict=False):
+        if now <= before:
+            what = "repeats the instant before" if now == before else "goes back in time"
+            raise InputError(
+                what,
+                file=path,
+                key=f"line {line}, column 'time'",
+                value=float(now),
+                allowed=f"above {before:g} s",
+                next_step="Sort the lines by time and remove doubles",
+            )
+
+
+def _example(columns: Mapping[str, str]) -> str:
+    return ", ".join(["time [s]", *(f"{name} [{DIMENSIONS[dimension].unit}]" for name, dimension in columns.items())])

@@ -1,0 +1,64 @@
+"""Closed-form mathematics of the rigid robot: NumPy, vectorised over time."""
+
+from flexapod.rigid.dynamics import RigidForces
+from flexapod.rigid.forward import Postures
+from flexapod.rigid.jacobian import SingularityPath, length_jacobian
+from flexapod.rigid.kinematics import LegState, joint_angles, leg_frames, leg_lengths, leg_rotations
+from flexapod.rigid.laws import Law
+from flexapod.rigid.robot import (
+    drive_law,
+    energies,
+    forward_kinematics,
+    home_frames,
+    home_pose,
+    inverse_dynamics,
+    inverse_kinematics,
+    leg_bodies,
+    payload_body,
+    poses,
+    postures,
+    pull_out,
+    reachable,
+    singularity,
+    strokes,
+)
+from flexapod.rigid.schedule import load_law, motion_law, wrench
+from flexapod.rigid.trajectory import Poses, poses_from_coordinates, rotation_matrix
+from flexapod.rigid.workspace import Excess, WorkspaceMap, reachable_map
+
+__all__ = [
+    "Excess",
+    "Law",
+    "LegState",
+    "Poses",
+    "Postures",
+    "RigidForces",
+    "SingularityPath",
+    "WorkspaceMap",
+    "drive_law",
+    "energies",
+    "forward_kinematics",
+    "home_frames",
+    "home_pose",
+    "inverse_dynamics",
+    "inverse_kinematics",
+    "joint_angles",
+    "leg_bodies",
+    "leg_frames",
+    "leg_lengths",
+    "leg_rotations",
+    "length_jacobian",
+    "load_law",
+    "motion_law",
+    "payload_body",
+    "poses",
+    "poses_from_coordinates",
+    "postures",
+    "pull_out",
+    "reachable",
+    "reachable_map",
+    "rotation_matrix",
+    "singularity",
+    "strokes",
+    "wrench",
+]

@@ -1,0 +1,131 @@
+"""Length Jacobian of the legs and how near a pose or path is to a singularity, Eqs. (T2.21)-(T2.25)."""
+
+from __future__ import annotations
+
+from dataclasses import dataclass
+
+import numpy as np
+from numpy.typing import ArrayLike
+
+from flexapod.rigid.trajectory import Poses
+from flexapod.typing import Array
+
+__all__ = ["SingularityPath", "along_path", "characteristic_length", "length_jacobian", "scaled", "stiffness"]
+
+
+@dataclass(frozen=True, kw_only=True)
+class SingularityPath:
+    """Measures of the scaled Jacobian along a path of T poses.
+
+    Attributes
+    ----------
+    smallest_singular_value, condition, determinant : ndarray, shape (T,)
+        Of the scaled Jacobian [-]; the condition is inf where it is singular.
+    worst : int
+        Index of the pose with the smallest singular value.
+    sign_changes : ndarray of int, shape (m,)
+        Indices k where the determinant changes sign between the poses k and k + 1.
+    """
+
+    smallest_singular_value: Array
+    condition: Array
+    determinant: Array
+    worst: int
+    sign_changes: np.ndarray
+
+
+def length_jacobian(
+    base_joints: ArrayLike,
+    platform_joints: ArrayLike,
+    position: ArrayLike,
+    rotation: ArrayLike,
+    point: ArrayLike = (0.0, 0.0, 0.0),
+) -> Array:
+    """Map from the twist of a platform point to leg rates: rows ``[u_i, (r_i - c) x u_i]``, Eq. (T2.21).
+
+    Parameters
+    ----------
+    base_joints, platform_joints : array_like, shape (n, 3)
+        World axes; platform axes [m].
+    position, rotation : array_like, shape (..., 3) and (..., 3, 3)
+        Poses of the platform frame.
+    point : array_like, shape (3,)
+        Reference point of the twist, platform axes [m]; the platform frame's origin by default.
+
+    Returns
+    -------
+    ndarray, shape (..., n, 6)
+        ``l_dot = J [v_point, omega]``, twist in world axes; columns 1-3 [-], 4-6 [m].
+    """
+    turn = np.swapaxes(np.asarray(rotation, dtype=float), -1, -2)
+    joints = np.asarray(platform_joints, dtype=float)
+    s = np.asarray(position, dtype=float)[..., None, :] + joints @ turn - np.asarray(base_joints, dtype=float)
+    u = s / np.linalg.norm(s, axis=-1, keepdims=True)
+    arm = (joints - np.asarray(point, dtype=float)) @ turn
+    return np.concatenate([u, np.cross(arm, u)], axis=-1)
+
+
+def characteristic_length(platform_joints: ArrayLike) -> float:
+    """Root-mean-square distance of the platform joints from their centroid [m], Eq. (T2.22).
+
+    The radius, for joints on a circle.
+    """
+    joints = np.asarray(platform_joints, dtype=float)
+    return float(np.sqrt(np.mean(np.sum((joints - joints.mean(axis=0)) ** 2, axis=1))))
+
+
+def scaled(jacobian: Array, length: float) -> Array:
+    """Dimensionless Jacobian: the rotational columns divided by a characteristic length [m], Eq. (T2.23)."""
+    return jacobian / np.array([1.0, 1.0, 1.0, length, length, length])
+
+
+def along_path(base_joints: ArrayLike, platform_joints: ArrayLike, poses: Poses) -> SingularityPath:
+    """Distance to singularity along a path, Eq. (T2.24).
+
+    The Jacobian is taken at the centroid of the platform joints and scaled with `characteristic_length`: then
+    neither the choice of the platform frame nor the unit of length changes the measures.
+
+    Parameters
+    ----------
+    base_joints, platform_joints : array_like, shape (6, 3)
+        World axes; platform axes [m].
+    poses : Poses
+        T poses in the order of the path.
+
+    Returns
+    -------
+    SingularityPath
+    """
+    joints = np.asarray(platform_joints, dtype=float)
+    raw = length_jacobian(base_joints, joints, poses.position, poses.rotation, joints.mean(axis=0))
+    j = scaled(raw, characteristic_length(joints))
+    singular = np.asarray(np.linalg.svd(j, compute_uv=False), dtype=np.float64)
+    smallest = singular[:, -1]
+    condition = np.divide(singular[:, 0], smallest, out=np.full(len(j), np.inf), where=smallest > 0)
+    determinant = np.linalg.det(j)
+    return SingularityPath(
+        smallest_singular_value=smallest,
+        condition=condition,
+        determinant=determinant,
+        worst=int(np.argmin(smallest)),
+        sign_changes=np.flatnonzero(np.signbit(determinant[:-1]) != np.signbit(determinant[1:])),
+    )
+
+
+def stiffness(jacobian: Array, leg_stiffness: ArrayLike) -> Array:
+    """Stiffness of the unloaded platform on axial springs, ``J^T diag(k) J``, Eq. (T2.25).
+
+    Parameters
+    ----------
+    jacobian : ndarray, shape (..., n, 6)
+        From `length_jacobian`.
+    leg_stiffness : array_like, shape () or (n,)
+        Axial stiffness of the legs [N/m].
+
+    Returns
+    -------
+    ndarray, shape (..., 6, 6)
+        Force and moment at the Jacobian's point per displacement and turn [N/m, N, N m].
+    """
+    k = np.broadcast_to(np.asarray(leg_stiffness, dtype=float), jacobian.shape[-2:-1])
+    return np.swapaxes(jacobian, -1, -2) @ (k[:, None] * jacobian)

@@ -1,0 +1,226 @@
+"""Motion of the rigid platform: from laws of surge ... yaw to poses, rates and accelerations, Eqs. (T2.9)-(T2.13).
+
+``R = Rz(yaw) Ry(pitch) Rx(roll)``; translations and turns act on the pivot, a point fixed in the platform.
+"""
+
+from __future__ import annotations
+
+from dataclasses import dataclass, fields
+
+import numpy as np
+from numpy.typing import ArrayLike
+
+from flexapod.errors import InputError
+from flexapod.model import CsvMotion, Motion, WaypointMotion
+from flexapod.rigid.laws import Law, rest_to_rest, spline, spline_law
+from flexapod.typing import Array
+
+__all__ = ["Poses", "angular_motion", "coordinates", "poses_from_coordinates", "rotation_matrix", "sample"]
+
+
+@dataclass(frozen=True, kw_only=True)
+class Poses:
+    """Poses of the platform frame at instants, with rates and accelerations (world axes).
+
+    Attributes
+    ----------
+    position, velocity, acceleration : ndarray, shape (T, 3)
+        Of the platform frame's origin [m], [m/s], [m/s^2].
+    rotation : ndarray, shape (T, 3, 3)
+        Platform to world.
+    omega, alpha : ndarray, shape (T, 3)
+        Angular velocity [rad/s] and acceleration [rad/s^2].
+    """
+
+    position: Array
+    rotation: Array
+    velocity: Array
+    omega: Array
+    acceleration: Array
+    alpha: Array
+
+    def __post_init__(self) -> None:
+        for field in fields(self):
+            view = getattr(self, field.name).view()  # the caller's array stays writeable
+            view.flags.writeable = False
+            object.__setattr__(self, field.name, view)
+
+    def __len__(self) -> int:
+        return len(self.position)
+
+    @classmethod
+    def at_rest(cls, position: ArrayLike, rotation: ArrayLike) -> Poses:
+        """Poses without rates: `position` (T, 3) or (3,), `rotation` (T, 3, 3) or (3, 3)."""
+        p = np.array(np.atleast_2d(np.asarray(position, dtype=float)))
+        r = np.array(np.broadcast_to(np.asarray(rotation, dtype=float), (len(p), 3, 3)))
+        return cls(
+            position=p,
+            rotation=r,
+            velocity=np.zeros_like(p),
+            omega=np.zeros_like(p),
+            acceleration=np.zeros_like(p),
+            alpha=np.zeros_like(p),
+        )
+
+    def point(self, local: ArrayLike) -> tuple[Array, Array, Array]:
+        """World position, velocity, acceleration of points fixed in the platform, Eq. (T2.13).
+
+        Parameters
+        ----------
+        local : array_like, shape (3,) or (n, 3)
+            Platform-frame coordinates [m].
+
+        Returns
+        -------
+        tuple of ndarray, each shape (T, 3) or (T, n, 3)
+        """
+        local = np.asarray(local, dtype=float)
+        points = np.atleast_2d(local)
+        arm = np.einsum("tij,nj->tni", self.rotation, points)
+        w, a = self.omega[:, None], self.alpha[:, None]
+        spin = np.cross(w, arm)
+        place: Array = self.position[:, None] + arm
+        rate: Array = np.asarray(self.velocity[:, None] + spin, dtype=np.float64)
+        bend = np.cross(a, arm) + np.cross(w, spin)
+        change: Array = np.asarray(self.acceleration[:, None] + bend, dtype=np.float64)
+        return (place, rate, change) if local.ndim == 2 else (place[:, 0], rate[:, 0], change[:, 0])
+
+
+def rotation_matrix(angles: ArrayLike) -> Array:
+    """Platform-to-world rotation of roll, pitch, yaw [rad], Eq. (T2.9).
+
+    Parameters
+    ----------
+    angles : array_like, shape (..., 3)
+        Roll, pitch, yaw about the world's x, y, z.
+
+    Returns
+    -------
+    ndarray, shape (..., 3, 3)
+    """
+    angles = np.asarray(angles, dtype=float)
+    (cr, cp, cy), (sr, sp, sy) = (np.moveaxis(f(angles), -1, 0) for f in (np.cos, np.sin))
+    rows = [
+        [cy * cp, cy * sp * sr - sy * cr, cy * sp * cr + sy * sr],
+        [sy * cp, sy * sp * sr + cy * cr, sy * sp * cr - cy * sr],
+        [-sp, cp * sr, cp * cr],
+    ]
+    return np.stack([np.stack(row, axis=-1) for row in rows], axis=-2)
+
+
+def angular_motion(angles: Law) -> tuple[Array, Array]:
+    """World angular velocity and acceleration of roll, pitch, yaw laws, Eqs. (T2.10)-(T2.11).
+
+    Parameters
+    ----------
+    angles : Law
+        Roll, pitch, yaw [rad] with rates and accelerations, each shape (T, 3).
+
+    Returns
+    -------
+    omega, alpha : ndarray, shape (T, 3)
+        [rad/s], [rad/s^2], world axes.
+    """
+    _, pitch, yaw = angles.position.T
+    _, pitch_dot, yaw_dot = angles.rate.T
+    cp, sp, cy, sy, zero = np.cos(pitch), np.sin(pitch), np.cos(yaw), np.sin(yaw), np.zeros_like(yaw)
+    roll_axis = np.stack([cy * cp, sy * cp, -sp], axis=-1)
+    pitch_axis = np.stack([-sy, cy, zero], axis=-1)
+    yaw_axis = np.array([0.0, 0.0, 1.0])
+    roll_axis_dot = np.stack(
+        [
+            -yaw_dot * sy * cp - pitch_dot * cy * sp,
+            yaw_dot * cy * cp - pitch_dot * sy * sp,
+            -pitch_dot * cp,
+        ],
+        axis=-1,
+    )
+    pitch_axis_dot = yaw_dot[:, None] * np.stack([-cy, -sy, zero], axis=-1)
+
+    def combine(rates: Array) -> Array:
+        return rates[:, :1] * roll_axis + rates[:, 1:2] * pitch_axis + rates[:, 2:] * yaw_axis
+
+    omega = combine(angles.rate)
+    alpha = combine(angles.acceleration) + angles.rate[:, :1] * roll_axis_dot + angles.rate[:, 1:2] * pitch_axis_dot
+    return omega, alpha
+
+
+def poses_from_coordinates(home_height: float, law: Law, pivot: ArrayLike = (0.0, 0.0, 0.0)) -> Poses:
+    """Poses of the platform frame from surge, sway, heave, roll, pitch, yaw, Eq. (T2.12).
+
+    Parameters
+    ----------
+    home_height : float
+        Height of the platform frame's origin at home [m].
+    law : Law
+        The six coordinates with rates and accelerations, each shape (T, 6) [m, rad]; zero at home.
+    pivot : array_like, shape (3,)
+        Platform-frame point that the translations move and the turns leave in place [m].
+
+    Returns
+    -------
+    Poses
+    """
+    rotation = rotation_matrix(law.position[:, 3:])
+    omega, alpha = angular_motion(Law(*(part[:, 3:] for part in law)))
+    pivot = np.asarray(pivot, dtype=float)
+    arm = rotation @ pivot
+    spin = np.cross(omega, arm)
+    return Poses(
+        position=np.array([0.0, 0.0, home_height]) + pivot + law.position[:, :3] - arm,
+        rotation=rotation,
+        velocity=law.rate[:, :3] - spin,
+        omega=omega,
+        acceleration=law.acceleration[:, :3] - np.cross(alpha, arm) - np.cross(omega, spin),
+        alpha=alpha,
+    )
+
+
+def _waypoints(motion: WaypointMotion, t: Array) -> Law:
+    """Profile from each waypoint to the next, at rest in each; from home at t = 0 unless one is given there."""
+    times, rows = motion.times, motion.poses
+    out = [np.tile(rows[0], (len(t), 1)), np.zeros((len(t), 6)), np.zeros((len(t), 6))]
+    for start, end, stroke in zip(times[:-1], times[1:], np.diff(rows, axis=0), strict=True):
+        leg = rest_to_rest(t, profile=motion.profile, amplitude=1.0, duration=end - start, start=start)
+        for total, part in zip(out, leg, strict=True):
+            total += part[:, None] * stroke
+    return Law(*out)
+
+
+def coordinates(motion: Motion, t: ArrayLike) -> Law:
+    """Surge, sway, heave [m], roll, pitch, yaw [rad] of a motion with rates and accelerations.
+
+    Parameters
+    ----------
+    motion : flexapod.model.Motion
+        Any motion; a CSV table is interpolated by `laws.spline` (quintic, at rest at both ends).
+    t : array_like, shape (T,)
+        Instants [s].
+
+    Returns
+    -------
+    Law
+        Each part of shape (T, 6); constant before the start and after the end of the motion.
+    """
+    t = np.atleast_1d(np.asarray(t, dtype=float))
+    if isinstance(motion, WaypointMotion):
+        return _waypoints(motion, t)
+    if isinstance(motion, CsvMotion):
+        curve = spline(motion.time, motion.pose)
+        return spline_law(t, curve, first=float(motion.time[0]), last=float(motion.time[-1]))
+    unit = rest_to_rest(t, profile=motion.profile, amplitude=1.0, duration=motion.duration)
+    return Law(*(part[:, None] * motion.target for part in unit))
+
+
+def sample(home_height: float, motion: Motion, t: ArrayLike) -> Poses:
+    """Commanded poses of the rigid platform at instants `t` [s], shape (T,); exact rates and accelerations.
+
+    Raises
+    ------
+    InputError
+        If an instant is not finite.
+    """
+    t = np.atleast_1d(np.asarray(t, dtype=float))
+    if not np.all(np.isfinite(t)):
+        raise InputError("instants must be finite", key="t", allowed="finite seconds")
+    return poses_from_coordinates(home_height, coordinates(motion, t), motion.pivot)

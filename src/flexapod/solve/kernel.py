@@ -1,0 +1,101 @@
+"""The compiled (or interpreted) functions of one set of shapes, and the parameters they read."""
+
+import ctypes
+import logging
+from collections.abc import Callable
+from dataclasses import dataclass
+from functools import cache
+from pathlib import Path
+from typing import TYPE_CHECKING
+
+import numpy as np
+from numpy.typing import NDArray
+
+from flexapod import bases, mechanics, symbolic
+from flexapod.mechanics.layout import Shapes
+from flexapod.symbolic.compiler import CompiledFunction, compiled_library, compiler
+
+if TYPE_CHECKING:
+    from flexapod.symbolic.functions import NamedFunction
+
+Array = NDArray[np.float64]
+Function = Callable[..., tuple[Array, ...]]
+NATIVE = Path(__file__).parent / "native"
+SOURCES = tuple(NATIVE / name for name in ("system.h", "lu.c", "arrow.c", "single.c", "march.c"))
+_log = logging.getLogger("flexapod")
+
+
+@dataclass(frozen=True, kw_only=True)
+class Kernel:
+    """Functions of a leg with given shapes and of the payload; all take and return float arrays.
+
+    ``library`` holds the compiled time loop; None where no C compiler was found and casadi interprets the functions.
+    """
+
+    shapes: Shapes
+    leg_residual: Function
+    leg_matrices: Function
+    leg_energies: Function
+    payload_residual: Function
+    payload_matrices: Function
+    payload_energies: Function
+    library: ctypes.CDLL | None
+
+
+NAMES = ("leg_residual", "leg_matrices", "leg_energies", "payload_residual", "payload_matrices", "payload_energies")
+
+
+@cache
+def kernel(basis: str, modes: int, axial_modes: int, *, planar: bool = False, tip: tuple[float, float] = (0, 0)) -> Kernel:
+    """Kernel for ``modes`` shapes of a lateral basis per plane and ``axial_modes`` axial ones.
+
+    Parameters
+    ----------
+    basis, modes, axial_modes
+        See `flexapod.bases`.
+    planar : bool
+        The single actuator in its plane (one lateral direction, a tip body).
+    tip : (float, float)
+        Mass and inertia ratios of the ``tip-mass`` eigenfunctions.
+    """
+    lateral, axial = bases.lateral_basis(basis, modes, *tip), bases.axial_basis(axial_modes)
+    other = bases.lateral_basis(basis, 0, *tip) if planar else lateral
+    shapes = Shapes(a=lateral, b=other, axial=axial, planar=planar)
+    if command := compiler():
+        library, signatures = compiled_library(_fingerprint(shapes), lambda: _functions(shapes), SOURCES, command)
+        compiled = {name: CompiledFunction(library, name, signatures[name]) for name in NAMES}
+        return Kernel(shapes=shapes, library=library, **compiled)
+    _log.warning(
+        "No C compiler was found: the equations are interpreted, about 20 times slower. "
+        "Install gcc or clang, or `pip install flexapod[compiler]`."
+    )
+    return interpreted_kernel(shapes)
+
+
+def interpreted_kernel(shapes: Shapes) -> Kernel:
+    """Kernel evaluated by casadi, without a C compiler."""
+    from flexapod.symbolic.functions import Interpreted
+
+    return Kernel(shapes=shapes, library=None, **{f.name: Interpreted(f) for f in _functions(shapes)})
+
+
+def _functions(shapes: Shapes) -> "list[NamedFunction]":
+    from flexapod.mechanics.assembly import leg_functions, payload_functions
+
+    return [*leg_functions(shapes), *payload_functions()]
+
+
+def _fingerprint(shapes: Shapes) -> list[object]:
+    """Everything the generated code depends on: the text of the equations and the numbers of the bases."""
+    texts = [
+        path.read_bytes()
+        for package in (mechanics, symbolic)
+        for path in sorted(Path(str(package.__file__)).parent.glob("*.py"))
+    ]
+    lateral = shapes.a
+    numbers = [
+        lateral.tip, lateral.tip_slope, lateral.mass, lateral.first, lateral.moment, lateral.powers, lateral.stiffness,
+        lateral.slope_tip, lateral.slope_first, lateral.slope_moment, lateral.damping, shapes.axial.mass,
+        shapes.axial.stiffness, shapes.axial.damping, shapes.axial.series,
+    ]  # fmt: skip
+    return [*texts, *(np.ascontiguousarray(x).tobytes() for x in numbers), shapes.layout, shapes.planar]

@@ -1,0 +1,149 @@
+"""Time integration in chunks: fixed step or tolerance, failures as words, Eq. (T6.15)."""
+
+from collections.abc import Callable, Iterator
+from dataclasses import dataclass, replace
+
+import numpy as np
+from numpy.typing import NDArray
+
+from flexapod.errors import ComputationError
+from flexapod.solve import interpreted, native
+from flexapod.solve.genalpha import GeneralizedAlpha
+from flexapod.solve.plant import Counters, Flow, Plant, Recording, unpack
+
+Array = NDArray[np.float64]
+Tables = Callable[[Array], tuple[Array, Array]]
+Measure = Callable[[Recording], list[Array]]
+CHUNK = 100  # output intervals between looks at progress, tolerance and interrupts
+FINEST = 4096  # steps per output interval before the tolerance is called out of reach
+CAUSES = {
+    1: "the step's equations were not solved",
+    2: "numbers became infinite",
+    3: "the linear equations are singular",
+}
+ADVICE = "Reduce the step, check for a singular pose or a leg near buckling, or start from equilibrium."
+
+
+@dataclass(frozen=True, kw_only=True)
+class Problem:
+    """A time integration: plant, commands, method and output grid.
+
+    ``tables(t)`` gives (len(t), legs * 8) and (len(t), 6); ``measure`` the quantities whose error is controlled, as groups
+    (T, ...) with a common scale each; ``defect(flow, row, ratio)`` rescales what index 3 keeps in the velocities when h changes.
+    """
+
+    plant: Plant
+    method: GeneralizedAlpha
+    tables: Tables
+    output_step: float
+    outputs: int
+    measure: Measure
+    defect: Callable[[Flow, float, float], Flow]
+    check: Callable[[Recording], None]
+    step: float | None
+    tolerance: float | None
+
+
+@dataclass(frozen=True, kw_only=True)
+class Chunk:
+    """Piece of a result: recording, largest estimated relative error, step used."""
+
+    recording: Recording
+    error: float
+    step: float
+
+
+def march(problem: Problem, start: Flow, first_step: float, counters: Counters) -> Iterator[Chunk]:
+    """Integrate from ``start`` (prepared for ``first_step``) and yield chunks, the first holding the start alone.
+
+    Raises
+    ------
+    ComputationError
+        A step failed or the tolerance is out of reach; chunks yielded before stay valid.
+    """
+    table, wrench = problem.tables(np.zeros(1))
+    flow, row = _first_record(problem.plant, start, table, wrench)
+    first = unpack(problem.plant, np.zeros(1), row)
+    yield Chunk(recording=first, error=0.0, step=first_step)
+    control = _Control(problem, counters, first_step, [np.abs(x).max(initial=0.0) for x in problem.measure(first)])
+    done = 0
+    while done < problem.outputs:
+        count = min(CHUNK, problem.outputs - done)
+        flow, chunk = control.advance(flow, done, count)
+        problem.check(chunk.recording)
+        done += count
+        yield chunk
+
+
+class _Control:
+    """Step control between chunks; the only object here that remembers anything."""
+
+    def __init__(self, problem: Problem, counters: Counters, first_step: float, scales: list[float]) -> None:
+        self.problem, self.counters, self.scales = problem, counters, scales
+        self.h = first_step  # the step for which the flow's auxiliary values are prepared
+        self.per_output = max(1, round(problem.output_step / first_step))
+
+    def advance(self, flow: Flow, done: int, count: int) -> tuple[Flow, Chunk]:
+        """Return the next ``count`` outputs within the tolerance (or with the fixed step)."""
+        if self.problem.tolerance is None:
+            result = self._run(flow, done, count, self.per_output)
+            return result.flow, self._chunk(result.rows, done, 0.0, self.per_output)
+        while True:
+            coarse = self._run(flow, done, count, self.per_output)
+            fine = self._run(flow, done, count, 2 * self.per_output)
+            error = self._error(coarse.rows, fine.rows, done)
+            if error <= self.problem.tolerance:
+                break
+            self.counters.rejected += len(coarse.rows) * self.per_output
+            self.per_output *= 2
+            if self.per_output > FINEST:
+                raise ComputationError(
+                    f"tolerance {self.problem.tolerance:g} is out of reach at t = {done * self.problem.output_step:.6g} s: "
+                    f"the estimated error is still {error:.2g} with {self.per_output} steps per output",
+                    next_step="Loosen simulation.tolerance, or give a fixed simulation.step.",
+                )
+        used = 2 * self.per_output
+        chunk = self._chunk(fine.rows, done, error, used)
+        self.h = self.problem.output_step / used
+        if error < self.problem.tolerance / 16 and self.per_output > 1:
+            self.per_output //= 2
+        return fine.flow, chunk
+
+    def _run(self, flow: Flow, done: int, count: int, per_output: int) -> native.Advance:
+        p, h = self.problem, self.problem.output_step / per_output
+        t = (done * per_output + np.arange(count * per_output + 1)) * h
+        if abs(h - self.h) > 1e-12 * h:
+            flow = _rescaled(p, flow, float(t[0]), self.h, h)
+        loop = native.advance if p.plant.kernel.library else interpreted.advance
+        result = loop(p.plant, p.method, flow, h, p.tables(t), per_output, self.counters)
+        if result.status:
+            where = f" in leg {result.leg + 1}" if 0 <= result.leg < p.plant.legs else ""
+            raise ComputationError(
+                f"the integration stopped at t = {t[result.step]:.6g} s (step {h:.3g} s): {CAUSES[result.status]}{where}",
+                next_step=ADVICE,
+            )
+        return result
+
+    def _chunk(self, rows: Array, done: int, error: float, per_output: int) -> Chunk:
+        time = (done + 1 + np.arange(len(rows))) * self.problem.output_step
+        recording = unpack(self.problem.plant, time, rows)
+        return Chunk(recording=recording, error=error, step=self.problem.output_step / per_output)
+
+    def _error(self, coarse: Array, fine: Array, done: int) -> float:
+        """Return a third of the difference (order 2) over the largest value so far, group by group, Eq. (T6.15)."""
+        a, b = (self.problem.measure(self._chunk(rows, done, 0.0, 1).recording) for rows in (coarse, fine))
+        self.scales = [max(s, float(np.abs(x).max(initial=0.0))) for s, x in zip(self.scales, b, strict=True)]
+        groups = zip(a, b, self.scales, strict=True)
+        return max(float(np.abs(x - y).max(initial=0.0)) / 3 / max(s, 1e-9) for x, y, s in groups)
+
+
+def _first_record(plant: Plant, flow: Flow, table: Array, wrench: Array) -> tuple[Flow, Array]:
+    loop = native if plant.kernel.library else interpreted
+    return loop.first_record(plant, flow, table, wrench)
+
+
+def _rescaled(problem: Problem, flow: Flow, t: float, old: float, new: float) -> Flow:
+    """Prepare the auxiliary values for another step, Eqs. (T6.13)-(T6.14): a - v_dot grows with h, the defect with h^2."""
+    ratio = new / old
+    flow = replace(flow, a=flow.v_dot + ratio * (flow.a - flow.v_dot))
+    return problem.defect(flow, t, ratio**2)

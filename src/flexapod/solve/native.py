@@ -1,0 +1,101 @@
+"""The compiled time loop: one C call advances a chunk. Structures mirror ``native/system.h``."""
+
+
+from ctypes import POINTER, Structure, byref, c_double, c_long
+from dataclasses import dataclass
+
+import numpy as np
+from numpy.typing import NDArray
+
+from flexapod.solve.genalpha import GeneralizedAlpha
+from flexapod.solve.plant import Counters, Flow, Plant, record_width
+
+Array = NDArray[np.float64]
+_pointer = POINTER(c_double)
+TOL_CLOSURE, TOL_FORCE = 1e-14, 1e-10  # m; relative to the largest force: rounding floors of metres and kilonewtons
+MAX_ITERATIONS, MAX_AGE = 12, 16
+
+
+class _Settings(Structure):
+    _fields_ = [
+        *[(name, c_long) for name in ("legs", "n", "l_index", "payload", "prescribed_l", "prescribed_beta")],
+        ("leg_p", _pointer),
+        ("payload_p", _pointer),
+        ("leg_np", c_long),
+        *[(name, c_double) for name in ("h", "alpha_m", "alpha_f", "beta", "gamma", "tol_closure", "tol_force")],
+        *[(name, c_long) for name in ("max_iterations", "max_age", "output_every")],
+    ]
+
+
+class _State(Structure):
+    _fields_ = [
+        *[(name, _pointer) for name in ("q", "v", "v_dot", "a", "lam", "drive", "pose", "sums", "powers", "record")],
+        ("closure", c_double),
+        *[(name, c_long) for name in ("steps", "iterations", "factorisations", "bad_leg")],
+    ]
+
+
+@dataclass(frozen=True, kw_only=True)
+class Advance:
+    """Outcome of a chunk: new flow, output rows, status (0 = done), and where it failed."""
+
+    flow: Flow
+    rows: Array
+    status: int
+    step: int
+    leg: int
+
+
+def _address(array: Array):  # noqa: ANN202
+    return array.ctypes.data_as(_pointer)
+
+
+def _bits(mask: Array) -> int:
+    return sum(1 << i for i, on in enumerate(mask) if on)
+
+
+def _settings(plant: Plant, method: GeneralizedAlpha, h: float, output_every: int) -> _Settings:
+    return _Settings(
+        plant.legs, plant.n, plant.kernel.shapes.l_index, int(plant.robot), _bits(plant.held_l), _bits(plant.held_beta),
+        _address(plant.leg_p), _address(plant.payload_p), plant.leg_p.shape[1],
+        h, method.alpha_m, method.alpha_f, method.beta, method.gamma, TOL_CLOSURE, TOL_FORCE,
+        MAX_ITERATIONS, MAX_AGE, output_every,
+    )  # fmt: skip
+
+
+def _state(flow: Flow, rows: Array) -> _State:
+    arrays = (flow.q, flow.v, flow.v_dot, flow.a, flow.lam, flow.drive, flow.pose, flow.sums, flow.powers, rows)
+    return _State(*[_address(x) for x in arrays])
+
+
+def advance(
+    plant: Plant, method: GeneralizedAlpha, flow: Flow, h: float, tables: tuple[Array, Array], every: int, counters: Counters
+) -> Advance:
+    """Advance by the rows of ``tables`` ((steps + 1, legs * TABLE), (steps + 1, 6)), recording each ``every`` steps."""
+    library = plant.kernel.library
+    assert library is not None  # noqa: S101  the caller chose this path because the library exists
+    table, wrench = (np.ascontiguousarray(x) for x in tables)
+    steps = len(table) - 1
+    new, rows = flow.copy(), np.zeros((steps // every, record_width(plant)))
+    settings, state = _settings(plant, method, h, every), _state(new, rows)
+    status = library.march(byref(settings), byref(state), _address(table), _address(wrench), c_long(steps))
+    counters.steps += state.steps
+    counters.iterations += state.iterations
+    counters.factorisations += state.factorisations
+    done = steps if status == 0 else state.steps - 1
+    return Advance(flow=new, rows=rows[: done // every], status=status, step=done, leg=state.bad_leg)
+
+
+def first_record(plant: Plant, flow: Flow, table: Array, wrench: Array) -> tuple[Flow, Array]:
+    """Output row of the start, and the flow with its powers set."""
+    library = plant.kernel.library
+    assert library is not None  # noqa: S101
+    new, rows = flow.copy(), np.zeros((1, record_width(plant)))
+    settings, state = _settings(plant, GeneralizedAlpha(1.0), 1.0, 1), _state(new, rows)
+    library.record_state.restype = None
+    library.record_state(
+        byref(settings), byref(state), _address(np.ascontiguousarray(table)), _address(np.ascontiguousarray(wrench))
+    )
+    return new, rows
+
+

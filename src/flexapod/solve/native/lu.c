@@ -1,0 +1,41 @@
+/* LU factorisation with partial pivoting of small dense systems, column-major. */
+static int lu_factor(Lu *f) {
+  long n = f->n; double *A = f->A;
+  for (long k = 0; k < n; k++) {
+    long p = k;
+    for (long i = k + 1; i < n; i++) if (fabs(A[i + k*n]) > fabs(A[p + k*n])) p = i;
+    f->pivot[k] = p;
+    if (!(fabs(A[p + k*n]) > 0)) return SINGULAR;
+    if (p != k) for (long j = 0; j < n; j++) { double t = A[k + j*n]; A[k + j*n] = A[p + j*n]; A[p + j*n] = t; }
+    double inv = 1 / A[k + k*n];
+    for (long i = k + 1; i < n; i++) A[i + k*n] *= inv;
+    for (long j = k + 1; j < n; j++) {
+      double u = A[k + j*n];
+      if (u != 0) for (long i = k + 1; i < n; i++) A[i + j*n] -= A[i + k*n] * u;
+    }
+  }
+  return OK;
+}
+
+static void lu_solve(const Lu *f, double *b) {
+  long n = f->n; const double *A = f->A;
+  for (long k = 0; k < n; k++) {
+    long p = f->pivot[k];
+    double t = b[k]; b[k] = b[p]; b[p] = t;
+  }
+  for (long k = 0; k < n; k++) for (long i = k + 1; i < n; i++) b[i] -= A[i + k*n] * b[k];
+  for (long k = n - 1; k >= 0; k--) {
+    b[k] /= A[k + k*n];
+    for (long i = 0; i < k; i++) b[i] -= A[i + k*n] * b[k];
+  }
+}
+
+/* y += s A x, A (rows, cols) column-major */
+static void gemv(long rows, long cols, double s, const double *A, const double *x, double *y) {
+  for (long j = 0; j < cols; j++) { double t = s * x[j]; for (long i = 0; i < rows; i++) y[i] += A[i + j*rows] * t; }
+}
+
+/* y += s A^T x */
+static void gemv_t(long rows, long cols, double s, const double *A, const double *x, double *y) {
+  for (long j = 0; j < cols; j++) { double t = 0; for (long i = 0; i < rows; i++) t += A[i + j*rows] * x[i]; y[j] += s * t; }
+}

@@ -1,0 +1,165 @@
+"""A robot in time: start, commands and error measure around the time integration."""
+
+from collections.abc import Iterator
+from dataclasses import dataclass, field, replace
+
+import numpy as np
+from numpy.typing import NDArray
+
+from flexapod import rigid
+from flexapod.errors import ComputationError, InputError
+from flexapod.model import Study
+from flexapod.solve.equilibrium import equilibrium
+from flexapod.solve.genalpha import GeneralizedAlpha
+from flexapod.solve.march import Chunk, Problem, march
+from flexapod.solve.plant import TABLE, Counters, Flow, Plant, Recording
+from flexapod.solve.rotation import matrix
+from flexapod.solve.start import Start, consistent_start, normal_velocity
+from flexapod.solve.system import RobotSystem, State, rigid_state, robot_system
+from flexapod.solve.tables import Commands, command_law
+
+Array = NDArray[np.float64]
+BETA_LIMIT = np.deg2rad(85.0)
+
+
+@dataclass(frozen=True, kw_only=True)
+class RobotMarch:
+    """A prepared time integration of a study; iterate over `chunks`.
+
+    ``impact`` is the step of kinetic energy [J] where the command starts with a jump in rate.
+    """
+
+    system: RobotSystem
+    start: Start
+    step: float
+    chunks: Iterator[Chunk]
+    counters: Counters = field(default_factory=Counters)
+
+    @property
+    def impact(self) -> float:
+        """Step of kinetic energy at the start [J]."""
+        return self.start.impact
+
+
+def prepare(study: Study) -> RobotMarch:
+    """Start and time integration of a robot study.
+
+    Raises
+    ------
+    InputError
+        Equilibrium start of a pure force drive.
+    ComputationError
+        There is no equilibrium at the start.
+    """
+    robot, simulation = study.robot, study.simulation
+    system, law = robot_system(robot, simulation), command_law(robot, study.motion, study.load)
+    commands = law(np.zeros(1))
+    method = GeneralizedAlpha(simulation.rho_inf)
+    step = _first_step(simulation.step, simulation.output_step)
+    start = consistent_start(system, _configuration(study, system, commands), commands, method, step)
+    plant, counters = _plant(system), Counters()
+    problem = Problem(
+        plant=plant,
+        method=method,
+        tables=lambda t: _tables(law(t)),
+        output_step=max(simulation.output_step, step),
+        outputs=round(study.duration / max(simulation.output_step, step)),
+        measure=lambda recording: _measure(study, plant, recording),
+        defect=lambda flow, t, ratio: _rescaled_defect(system, flow, law(np.array([t])), ratio),
+        check=lambda recording: _check(study, plant, recording),
+        step=simulation.step,
+        tolerance=simulation.tolerance,
+    )
+    chunks = march(problem, _flow(start), step, counters)
+    return RobotMarch(system=system, start=start, step=step, chunks=chunks, counters=counters)
+
+
+def _first_step(step: float | None, output_step: float) -> float:
+    """Fixed step made to divide the output step (never larger than asked), or half the output step to begin with."""
+    if step is None:
+        return output_step / 2
+    return step if step >= output_step else output_step / np.ceil(output_step / step - 1e-9)
+
+
+def _configuration(study: Study, system: RobotSystem, commands: Commands) -> State:
+    """Configuration and velocities before the impact projection, by the kind of start."""
+    straight = rigid_state(system, study.robot, rigid.poses(study.robot, study.motion, np.zeros(1)))
+    if study.initial.start == "moving":
+        return straight
+    at_rest = replace(straight, v=np.zeros(system.size), v_dot=np.zeros(system.size))
+    if study.initial.start == "straight":
+        return at_rest
+    if free := pure_force_legs(study):
+        raise InputError(
+            f"has no meaning for leg {free[0]}: a pure force drive holds no position, so nothing fixes its rest state",
+            key="initial.start",
+            value="equilibrium",
+            allowed='"straight" or "moving", or a feedback stiffness in the drive',
+        )
+    found = equilibrium(system, at_rest, commands.length[0], commands.force[0], commands.wrench[0])
+    if not found.found:
+        raise ComputationError(f"the robot cannot start at rest: {found.reason}", next_step="See `flexapod check`.")
+    return found.state
+
+
+def pure_force_legs(study: Study) -> list[int]:
+    """Numbers (1 to 6) of legs whose drive is a force without feedback stiffness."""
+    return [
+        i
+        for i, leg in enumerate(study.robot.legs, start=1)
+        if leg.drive.type == "force" and (leg.drive.feedback is None or leg.drive.feedback.stiffness == 0)
+    ]
+
+
+def _plant(system: RobotSystem) -> Plant:
+    return Plant(
+        kernel=system.kernel,
+        leg_p=system.leg_p,
+        payload_p=system.payload_p,
+        held_l=system.held,
+        held_beta=np.zeros(6, dtype=bool),
+    )
+
+
+def _flow(start: Start) -> Flow:
+    x = start.state
+    drive = np.stack([x.drive, np.zeros(6)], axis=1)
+    return Flow(q=x.q, v=x.v, v_dot=x.v_dot, a=start.a, lam=x.lam, drive=drive, pose=x.pose)
+
+
+def _tables(c: Commands) -> tuple[Array, Array]:
+    table = np.zeros((len(c.time), 6, TABLE))
+    table[:, :, 0], table[:, :, 1], table[:, :, 2], table[:, :, 3] = c.length, c.rate, c.accel, c.force
+    return table.reshape(len(c.time), -1), c.wrench
+
+
+def _measure(study: Study, plant: Plant, recording: Recording) -> list[Array]:
+    """Deviation of the payload (CoM, and rotation at the joints' radius) and the lateral amplitudes."""
+    path = rigid.poses(study.robot, study.motion, recording.time)
+    com = path.position + np.einsum("tij,j->ti", path.rotation, study.robot.payload.com)
+    turn = np.einsum("tji,tjk->tik", path.rotation, matrix(recording.pose[:, 3:]))
+    radius = np.linalg.norm(study.robot.platform_joints, axis=1).max()
+    skew = 0.5 * radius * np.stack([turn[:, 2, 1] - turn[:, 1, 2], turn[:, 0, 2] - turn[:, 2, 0], turn[:, 1, 0] - turn[:, 0, 1]], 1)
+    lateral = 3 + plant.kernel.shapes.axial.count
+    return [np.concatenate([recording.pose[:, :3] - com, skew], axis=1), recording.q[:, :, lateral:]]
+
+
+def _rescaled_defect(system: RobotSystem, flow: Flow, commands: Commands, ratio: float) -> Flow:
+    """Velocities whose part normal to the closures is scaled by ``ratio``, Eq. (T6.14)."""
+    state = State(q=flow.q, pose=flow.pose, v=flow.v, v_dot=flow.v_dot, lam=flow.lam, drive=flow.drive[:, 0])
+    m = system.matrices(state, commands.wrench[0])
+    return replace(flow, v=flow.v + (ratio - 1.0) * normal_velocity(system, m, flow.v))
+
+
+def _check(study: Study, plant: Plant, recording: Recording) -> None:
+    """Stop where the model has no meaning: a leg inside its cylinder or its universal joint turned over."""
+    mouth = np.array([leg.cylinder.mouth for leg in study.robot.legs])
+    free = recording.q[:, :, plant.kernel.shapes.l_index] - mouth
+    for bad, words in ((free <= 0, "its piston has slid wholly into the cylinder"),
+                       (np.abs(recording.q[:, :, 1]) > BETA_LIMIT, "its universal joint has turned over")):  # fmt: skip
+        if bad.any():
+            at, leg = np.argwhere(bad)[0]
+            raise ComputationError(
+                f"leg {leg + 1} left the range of the model at t = {recording.time[at]:.6g} s: {words}",
+                next_step="Check drive forces and feedback of this leg, or the start.",
+            )

@@ -1,0 +1,49 @@
+"""Named functions of dense arrays: the only thing that leaves the symbolic layer."""
+
+from collections.abc import Sequence
+from dataclasses import dataclass
+
+import casadi
+import numpy as np
+from casadi import SX
+from numpy.typing import NDArray
+
+Array = NDArray[np.float64]
+
+
+@dataclass(frozen=True)
+class NamedFunction:
+    """A function by name with (name, expression) inputs and outputs."""
+
+    name: str
+    inputs: Sequence[tuple[str, SX]]
+    outputs: Sequence[tuple[str, SX]]
+
+    def build(self) -> casadi.Function:
+        """CasADi function with dense outputs."""
+        return casadi.Function(
+            self.name,
+            [x for _, x in self.inputs],
+            casadi.cse([casadi.densify(y) for _, y in self.outputs]),
+            [n for n, _ in self.inputs],
+            [n for n, _ in self.outputs],
+        )
+
+    def signature(self) -> dict[str, object]:
+        """Sizes of inputs and shapes of outputs, for callers that do not know casadi."""
+        return {
+            "inputs": [int(x.numel()) for _, x in self.inputs],
+            "outputs": [[int(y.shape[0]), int(y.shape[1])] for _, y in self.outputs],
+        }
+
+
+class Interpreted:
+    """A function evaluated by casadi's virtual machine; about twenty times slower than compiled."""
+
+    def __init__(self, function: NamedFunction) -> None:
+        self._function = function.build()
+
+    def __call__(self, *arguments: Array) -> tuple[Array, ...]:
+        """Outputs as 1-D arrays (columns) or 2-D arrays."""
+        result = self._function.call([casadi.DM(np.asarray(a, dtype=float).ravel()) for a in arguments])
+        return tuple(np.asarray(y).ravel() if y.shape[1] == 1 else np.asarray(y) for y in result)

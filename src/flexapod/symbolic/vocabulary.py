@@ -1,0 +1,104 @@
+"""The few words in which the equations are written; the rest of the package never imports casadi."""
+
+from collections.abc import Sequence
+from types import SimpleNamespace
+
+import casadi
+import numpy as np
+from casadi import SX, cos, dot, gradient, horzcat, jacobian, jtimes, mtimes, sin, sqrt, vertcat
+
+__all__ = [
+    "SX",
+    "bilinear",
+    "constant",
+    "cos",
+    "cross",
+    "dot",
+    "gradient",
+    "hessian",
+    "horzcat",
+    "jacobian",
+    "jtimes",
+    "matrix33",
+    "mtimes",
+    "quadratic",
+    "sin",
+    "split",
+    "sqrt",
+    "substitute",
+    "symbol",
+    "symbols",
+    "time_derivative",
+    "vertcat",
+    "zeros",
+]
+
+
+def symbol(name: str, size: int = 1) -> SX:
+    """Column of ``size`` symbols."""
+    return SX.sym(name, size)
+
+
+def constant(array: object) -> SX:
+    """Numeric array as a dense symbolic constant."""
+    return SX(np.atleast_2d(np.asarray(array, dtype=float)) if np.ndim(array) else float(np.asarray(array)))
+
+
+def zeros(rows: int, columns: int = 1) -> SX:
+    """Matrix of zeros."""
+    return SX.zeros(rows, columns)
+
+
+def substitute(expression: SX, old: Sequence[SX], new: Sequence[SX]) -> SX:
+    """Expression with every ``old`` symbol replaced by its ``new`` expression."""
+    return casadi.substitute([expression], list(old), list(new))[0]
+
+
+def cross(a: SX, b: SX) -> SX:
+    """Vector product of two columns of three."""
+    return vertcat(a[1] * b[2] - a[2] * b[1], a[2] * b[0] - a[0] * b[2], a[0] * b[1] - a[1] * b[0])
+
+
+def hessian(expression: SX, x: SX) -> SX:
+    """Matrix of second derivatives."""
+    return casadi.hessian(expression, x)[0]
+
+
+def matrix33(columns: SX) -> SX:
+    """3 x 3 matrix from its nine entries, column by column."""
+    return casadi.reshape(columns, 3, 3)
+
+
+def quadratic(x: SX, matrix: np.ndarray) -> SX:
+    """x^T matrix x for a symmetric numeric matrix, summed over one triangle; zero when there are no shapes."""
+    if not x.numel():
+        return zeros(1)
+    triangle = 2 * np.triu(matrix, 1) + np.diag(np.diag(matrix))
+    return dot(x, mtimes(SX(casadi.sparsify(casadi.DM(triangle))), x))
+
+
+def bilinear(x: SX, matrix: np.ndarray | SX, y: SX) -> SX:
+    """x^T matrix y; zero when either has no shapes."""
+    if not (x.numel() and y.numel()):
+        return zeros(1)
+    return dot(x, mtimes(casadi.sparsify(SX(matrix)), y))
+
+
+def time_derivative(expression: SX, *pairs: tuple[SX, SX]) -> SX:
+    """d/dt of an expression by the chain rule; ``pairs`` are (variable, its rate)."""
+    return sum((jtimes(expression, x, x_dot) for x, x_dot in pairs), SX.zeros(*expression.shape))
+
+
+def symbols(layout: Sequence[tuple[str, int]], name: str) -> tuple[SX, SimpleNamespace]:
+    """One symbolic column and its named pieces, in the order of ``layout`` (name, size)."""
+    column = SX.sym(name, sum(size for _, size in layout))
+    return column, split(column, layout)
+
+
+def split(column: SX, layout: Sequence[tuple[str, int]]) -> SimpleNamespace:
+    """Return the named pieces of a column."""
+    pieces, start = {}, 0
+    for key, size in layout:
+        pieces[key] = column[start : start + size]
+        start += size
+    return SimpleNamespace(**pieces)

@@ -1,0 +1,143 @@
+"""Text with units to SI floats: the only module that knows pint, and only where text values are present."""
+
+from __future__ import annotations
+
+import math
+import re
+from dataclasses import dataclass
+from decimal import Decimal
+from functools import cache
+from typing import TYPE_CHECKING
+
+from flexapod.errors import InputError
+
+if TYPE_CHECKING:
+    from pint import UnitRegistry
+
+__all__ = ["DIMENSIONS", "Dimension", "to_si"]
+
+
+@dataclass(frozen=True, kw_only=True)
+class Dimension:
+    """A physical dimension: its SI unit, an example for messages, whether its unit carries an angle."""
+
+    unit: str
+    example: str
+    angle: bool = False
+
+
+DIMENSIONS = {
+    "acceleration": Dimension(unit="m/s^2", example="9.81 m/s^2"),
+    "angle": Dimension(unit="rad", example="20 deg", angle=True),
+    "angular rate": Dimension(unit="rad/s", example="45 deg/s", angle=True),
+    "axial stiffness": Dimension(unit="N", example="115 MN"),
+    "bending stiffness": Dimension(unit="N m^2", example="756.65 N m^2"),
+    "damping": Dimension(unit="N s/m", example="2 kN s/m"),
+    "density": Dimension(unit="kg/m^3", example="7800 kg/m^3"),
+    "force": Dimension(unit="N", example="120 N"),
+    "frequency": Dimension(unit="Hz", example="5 Hz"),
+    "inertia": Dimension(unit="kg m^2", example="17.88 kg m^2"),
+    "length": Dimension(unit="m", example="27 mm"),
+    "line density": Dimension(unit="kg/m", example="4.02 kg/m"),
+    "mass": Dimension(unit="kg", example="100 kg"),
+    "number": Dimension(unit="", example="0.005"),
+    "stiffness": Dimension(unit="N/m", example="50 N/um"),
+    "stress": Dimension(unit="Pa", example="200 GPa"),
+    "time": Dimension(unit="s", example="0.5 ms"),
+    "torque": Dimension(unit="N m", example="12 N m"),
+    "velocity": Dimension(unit="m/s", example="0.1 m/s"),
+}
+
+_TEXT = re.compile(r"^\s*([-+]?(?:\d+\.?\d*|\.\d+)(?:[eE][-+]?\d+)?)\s*(.*?)\s*$")
+_ANGLES = ("radian", "degree", "arcminute", "arcsecond", "turn", "revolution", "gradian", "grade")
+
+
+def to_si(value: object, dimension: str, *, key: str | None = None) -> float:
+    """A number in SI units from a number (already SI) or a text with a unit.
+
+    Parameters
+    ----------
+    value : object
+        ``0.027`` or ``"27 mm"``.
+    dimension : str
+        A key of `DIMENSIONS`.
+    key : str, optional
+        Key path for messages.
+
+    Returns
+    -------
+    float
+        The value in the dimension's SI unit.
+
+    Raises
+    ------
+    InputError
+        If it is no finite number, or its unit belongs to something else.
+    """
+    if isinstance(value, str):
+        number = _from_text(value, dimension, key)
+    elif isinstance(value, bool) or not isinstance(value, int | float):
+        raise _refuse("is not a number", value, dimension, key)
+    else:
+        number = float(value)
+    if not math.isfinite(number):
+        raise _refuse("is not finite", value, dimension, key)
+    return number
+
+
+def _from_text(text: str, dimension: str, key: str | None) -> float:
+    match = _TEXT.match(text)
+    if match is None:
+        raise _refuse("is not a number with a unit", text, dimension, key)
+    number, unit = match[1], match[2]
+    if not unit:
+        if dimension == "number":
+            return float(number)
+        raise _refuse("has no unit", text, dimension, key)
+    factor = _factor(unit, dimension)
+    if isinstance(factor, str):
+        raise _refuse(factor, text, dimension, key)
+    return _times(number, factor)
+
+
+@cache
+def _factor(unit: str, dimension: str) -> float | str:
+    """Factor to SI, or what is wrong with the unit."""
+    import pint
+
+    registry, wanted = _registry(), DIMENSIONS[dimension]
+    try:
+        given = registry.Unit(unit.replace("²", "^2").replace("³", "^3"))
+    except (pint.PintError, ValueError, TypeError, AttributeError, SyntaxError):
+        return f"has an unknown unit ({unit})"
+    has_angle = any(name.endswith(_ANGLES) or name.startswith("revolution") for name in given._units)
+    if not given.is_compatible_with(registry.Unit(wanted.unit)) or has_angle != wanted.angle:
+        return f"is not {_article(dimension)}: {unit} does not measure one"
+    return float(registry.Quantity(1.0, given).to(wanted.unit).magnitude)
+
+
+def _times(number: str, factor: float) -> float:
+    """Exact for powers of ten, so that "315.18 mm" is the same float as 0.31518."""
+    power = round(math.log10(factor))
+    if math.isclose(factor, 10.0**power, rel_tol=1e-12):
+        return float(Decimal(number).scaleb(power))
+    return float(number) * factor
+
+
+@cache
+def _registry() -> UnitRegistry:
+    import pint
+
+    return pint.UnitRegistry()
+
+
+def _article(dimension: str) -> str:
+    return f"an {dimension}" if dimension[0] in "aeiou" else f"a {dimension}"
+
+
+def _refuse(what: str, value: object, dimension: str, key: str | None) -> InputError:
+    wanted = DIMENSIONS[dimension]
+    unit = f"in {wanted.unit} or " if wanted.unit else "or "
+    return InputError(
+        what, key=key, value=value, allowed=f'{_article(dimension)}: a number {unit}text such as "{wanted.example}"'
+    )

@@ -1,0 +1,1 @@
+"""Independent reference solutions. Plain NumPy/SciPy: nothing here may import the package under test."""
