@@ -2,7 +2,6 @@
 
 import numpy as np
 import pytest
-
 from tests.oracles import beams
 
 # printed digits: half a unit of the last one, rounded up
@@ -79,9 +78,11 @@ def test_leg_with_locked_actuator(c, mass, free, expected):
 
 
 def test_leg_with_heavy_cylinder_is_clamped_and_pinned():
-    leg = beams.ups_leg_frequencies(0.4, 1.0, 0.6, PISTON["EI"], PISTON["rhoA"], 3, cylinder_inertia_about_pivot=1e9)
+    leg = beams.ups_leg_frequencies(0.4, 1.0, 0.6, PISTON["EI"], PISTON["rhoA"], 3, cylinder_inertia_about_pivot=1e4)
     fixed = beams.frequency(beams.beam_roots("clamped", "pinned", 2), 0.6, PISTON["EI"], PISTON["rhoA"])
-    np.testing.assert_allclose(leg[-2:], fixed, rtol=1e-7)  # the first is the cylinder's own slow swing
+    # below them the cylinder swings slowly on the piston; the difference falls with the piston's share of inertia, 1e-5
+    np.testing.assert_allclose(leg[1:], fixed, rtol=2e-5)
+    assert leg[0] < 1
 
 
 def test_piston_of_the_paper():

@@ -2,7 +2,6 @@
 
 import numpy as np
 import pytest
-
 from tests.oracles import rotating
 
 FLAP = {

@@ -2,7 +2,6 @@
 
 import numpy as np
 import pytest
-
 from tests.oracles import sliding
 from tests.oracles.ritz import clamped_free, clamped_free_shapes, polynomial_shapes
 

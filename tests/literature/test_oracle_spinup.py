@@ -2,14 +2,13 @@
 
 import numpy as np
 import pytest
-
 from tests.oracles import spinup
 
 SIMO = {"length": 10.0, "EI": 1.4e4, "m": 1.2, "rate": 6.0, "duration": 15.0}
 E, AREA, SECOND, DENSITY = 6.8952e10, 7.2968e-5, 8.2189e-9, 2766.7
 ALUMINIUM = {"length": 8.0, "EI": E * SECOND, "m": DENSITY * AREA, "duration": 15.0}
 T = np.arange(0, 20.0005, 1e-3)
-# case: peak and its time (Ritz), largest residual after the spin-up, peak of a full nonlinear code
+# case, peak and its time (Ritz), largest residual after the spin-up, peak of a full nonlinear code
 CASES = [
     (SIMO, -0.57437, 6.762, 3.7e-3, -0.57384),
     (ALUMINIUM | {"rate": 4.0}, -0.53440, 6.766, 8.4e-3, -0.53370),

@@ -10,7 +10,16 @@ ROOT = Path(__file__).parents[2]
 SOURCES = sorted((ROOT / "src").rglob("*.py"))
 MAX_FILE, MAX_FUNCTION = 400, 60
 TEXTS = {".py", ".toml", ".md", ".cff", ".yaml", ".txt", ""}
-SKIPPED = {".venv", ".git", "build", ".ruff_cache", ".pytest_cache", "__pycache__", ".hypothesis", ".import_linter_cache"}
+SKIPPED = {
+    ".venv",
+    ".git",
+    "build",
+    ".ruff_cache",
+    ".pytest_cache",
+    "__pycache__",
+    ".hypothesis",
+    ".import_linter_cache",
+}
 
 
 def functions(tree: ast.AST) -> list[tuple[str, int]]:

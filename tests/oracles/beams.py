@@ -37,7 +37,9 @@ ENDS = {"clamped": (0, 1), "pinned": (0, 2), "free": (2, 3), "guided": (1, 3)}
 def beam_roots(left: str, right: str, n: int) -> np.ndarray:
     """Return lam_1..lam_n of a beam with two of the ends clamped, pinned, free, guided (rigid motions left out)."""
     picks = [list(ENDS[left]), list(ENDS[right])]
-    return roots(lambda lam: np.linalg.det(np.vstack([waves(lam, x)[p] for x, p in zip((0, 1), picks, strict=True)])), n)
+    return roots(
+        lambda lam: np.linalg.det(np.vstack([waves(lam, x)[p] for x, p in zip((0, 1), picks, strict=True)])), n
+    )
 
 
 def tip_body_roots(mu: float, n: int, inertia: float = 0.0, offset: float = 0.0) -> np.ndarray:

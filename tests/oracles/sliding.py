@@ -1,7 +1,8 @@
 """Equation of motion of a planar beam that slides out of a turning hub; constants by quadrature.
 
 Notation of the underlying report: exposed length L(t), hub angle th(t), rho mass per length, tip mass m_e, total
-length Lt. u = (rho L)^(-1/2) sum phi_i(x / L) q_i with the cantilever's eigenfunctions phi. Two roads to the same motion:
+length Lt. u = (rho L)^(-1/2) sum phi_i(x / L) q_i with the cantilever's eigenfunctions phi.
+Two roads to the same motion:
 
 - `q_equation`: the closed form in q; `Lagrangian`: energies and their exact derivatives, for q, th and L at once;
 - `pde_equation`: the field equation projected on any set of shapes, with no Lagrangian behind it.
@@ -10,6 +11,7 @@ length Lt. u = (rho L)^(-1/2) sum phi_i(x / L) q_i with the cantilever's eigenfu
 from collections.abc import Callable
 from dataclasses import dataclass
 from functools import lru_cache
+from itertools import pairwise
 
 import numpy as np
 
@@ -195,7 +197,7 @@ def march(
             [5 / 36 + w / 30, 2 / 9 + w / 15, 5 / 36],
         ]
     )
-    for start, end in zip(t[:-1], t[1:], strict=True):
+    for start, end in pairwise(t):
         n = int(np.ceil((end - start) / step - 1e-9))
         h = (end - start) / n
         for time in start + h * np.arange(n):

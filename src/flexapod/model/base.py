@@ -91,6 +91,15 @@ class Frozen(BaseModel):
         fields = {name: getattr(self, name) for name in type(self).model_fields}
         return type(self)(**(fields | changes))
 
+    def __deepcopy__(self, memo: dict[int, Any] | None = None) -> Self:
+        return self  # nothing in it can change
+
+    def __setstate__(self, state: dict[Any, Any]) -> None:
+        super().__setstate__(state)
+        for value in self.__dict__.values():
+            if isinstance(value, np.ndarray):
+                value.flags.writeable = False
+
     def _content(self) -> tuple[object, ...]:
         return tuple(_comparable(getattr(self, name)) for name in type(self).model_fields)
 
@@ -103,7 +112,7 @@ class Frozen(BaseModel):
 
 def _comparable(value: object) -> object:
     if isinstance(value, np.ndarray):
-        return (value.shape, value.tobytes())
+        return (value.shape, (value + 0.0).tobytes())  # -0.0 is 0.0
     if isinstance(value, dict):
         return tuple(sorted(value.items()))
     return value

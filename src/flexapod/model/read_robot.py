@@ -25,22 +25,16 @@ def read_robot(top: Section) -> Robot:
     section = top.child(top.data["robot"], "robot")
     section.only("type", "base", "platform", "home_height", "gravity")
     section.need("base", "platform", "home_height")
-    fields = {
-        "type": section.text("type"),
-        "base_joints": _joints(section, "base", base_circle),
-        "platform_joints": _joints(section, "platform", platform_circle),
-        "home_height": section.number("home_height", "length"),
-        "gravity": section.vector("gravity", "acceleration", "acceleration", "acceleration"),
-    }
-    if fields["type"] not in (None, "6-UPS"):
-        raise section.error("is not a robot of this version", "type", allowed="6-UPS")
-    payload = _payload(top.child(top.data["payload"], "payload"))
-    try:
-        return Robot(
-            payload=payload, legs=_legs(top), **{name: value for name, value in fields.items() if value is not None}
-        )
-    except InputError as error:
-        raise error.located(file=top.file) if error.file is None else error from None
+    return top.build(
+        Robot,
+        type=section.text("type", ("6-UPS",)),
+        base_joints=_joints(section, "base", base_circle),
+        platform_joints=_joints(section, "platform", platform_circle),
+        home_height=section.number("home_height", "length"),
+        gravity=section.vector("gravity", "acceleration", "acceleration", "acceleration") or (0.0, 0.0, -9.81),
+        payload=_payload(top.child(top.data["payload"], "payload")),
+        legs=_legs(top),
+    )
 
 
 def read_material(section: Section) -> Material:

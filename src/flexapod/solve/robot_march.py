@@ -7,11 +7,12 @@ import numpy as np
 from numpy.typing import NDArray
 
 from flexapod import rigid
-from flexapod.errors import ComputationError, InputError
+from flexapod.errors import ComputationError
 from flexapod.model import Study
 from flexapod.solve.equilibrium import equilibrium
 from flexapod.solve.genalpha import GeneralizedAlpha
 from flexapod.solve.march import Chunk, Problem, march
+from flexapod.solve.modes import refuse_pure_force
 from flexapod.solve.plant import TABLE, Counters, Flow, Plant, Recording
 from flexapod.solve.rotation import matrix
 from flexapod.solve.start import Start, consistent_start, normal_velocity
@@ -89,26 +90,11 @@ def _configuration(study: Study, system: RobotSystem, commands: Commands) -> Sta
     at_rest = replace(straight, v=np.zeros(system.size), v_dot=np.zeros(system.size))
     if study.initial.start == "straight":
         return at_rest
-    if free := pure_force_legs(study):
-        raise InputError(
-            f"has no meaning for leg {free[0]}: a pure force drive holds no position, so nothing fixes its rest state",
-            key="initial.start",
-            value="equilibrium",
-            allowed='"straight" or "moving", or a feedback stiffness in the drive',
-        )
+    refuse_pure_force(study.robot, "the equilibrium start")
     found = equilibrium(system, at_rest, commands.length[0], commands.force[0], commands.wrench[0])
     if not found.found:
         raise ComputationError(f"the robot cannot start at rest: {found.reason}", next_step="See `flexapod check`.")
     return found.state
-
-
-def pure_force_legs(study: Study) -> list[int]:
-    """Numbers (1 to 6) of legs whose drive is a force without feedback stiffness."""
-    return [
-        i
-        for i, leg in enumerate(study.robot.legs, start=1)
-        if leg.drive.type == "force" and (leg.drive.feedback is None or leg.drive.feedback.stiffness == 0)
-    ]
 
 
 def _plant(system: RobotSystem) -> Plant:

@@ -1,0 +1,180 @@
+"""A single planar actuator in time: the same leg without payload, Eqs. (T9.1)-(T9.5)."""
+
+from collections.abc import Callable, Iterator
+from dataclasses import dataclass, field, replace
+
+import numpy as np
+from numpy.typing import NDArray
+
+from flexapod import rigid
+from flexapod.errors import ComputationError
+from flexapod.model import Actuator, ActuatorStudy, Simulation
+from flexapod.solve.genalpha import GeneralizedAlpha
+from flexapod.solve.kernel import kernel
+from flexapod.solve.march import Chunk, Problem, march
+from flexapod.solve.parameters import actuator_parameters
+from flexapod.solve.plant import TABLE, Counters, Flow, Plant, Recording
+
+Array = NDArray[np.float64]
+Law = Callable[[Array], tuple[Array, Array]]
+
+
+@dataclass(frozen=True, kw_only=True)
+class ActuatorMarch:
+    """A prepared time integration of an actuator study; coordinates (beta, l, a_1..a_k), l from the pivot."""
+
+    plant: Plant
+    start: Flow
+    step: float
+    chunks: Iterator[Chunk]
+    counters: Counters = field(default_factory=Counters)
+
+
+def actuator_plant(actuator: Actuator, simulation: Simulation, *, rotation: bool = True, extension: bool = True) -> Plant:
+    """Plant of the planar actuator; ``rotation`` and ``extension`` say whether they are prescribed."""
+    mass = actuator.rhoA * actuator.free_length
+    tip = (actuator.tip_mass / mass, actuator.tip_inertia / (mass * actuator.free_length**2))
+    modes = 0 if simulation.fidelity == "rigid" else simulation.modes
+    return Plant(
+        kernel=kernel(simulation.basis, modes, 0, planar=True, tip=tip if simulation.basis == "tip-mass" else (0.0, 0.0)),
+        leg_p=actuator_parameters(actuator),
+        payload_p=np.zeros(0),
+        held_l=np.array([extension]),
+        held_beta=np.array([rotation]),
+    )
+
+
+def prepare_actuator(study: ActuatorStudy, amplitudes: Array | None = None, rates: Array | None = None) -> ActuatorMarch:
+    """Start and time integration of an actuator study.
+
+    Parameters
+    ----------
+    study : ActuatorStudy
+    amplitudes, rates : (k,) arrays, optional
+        Initial modal amplitudes [m] and rates [m/s] in place of the static shape with ``initial.tip_displacement``.
+
+    Raises
+    ------
+    ComputationError
+        While iterating: the beam has slid wholly into the hub or out of it.
+    """
+    simulation, method = study.simulation, GeneralizedAlpha(study.simulation.rho_inf)
+    plant = actuator_plant(
+        study.actuator,
+        simulation,
+        rotation=study.motion.rotation is not None,
+        extension=study.motion.extension is not None,
+    )
+    law = _tables(study)
+    h = simulation.output_step / 2 if simulation.step is None else simulation.step
+    if h < simulation.output_step and simulation.step is not None:
+        h = simulation.output_step / np.ceil(simulation.output_step / h - 1e-9)
+    output_step = max(simulation.output_step, h)
+    start, counters = _start(study, plant, law, method, h, amplitudes, rates), Counters()
+    problem = Problem(
+        plant=plant,
+        method=method,
+        tables=law,
+        output_step=output_step,
+        outputs=round(study.duration / output_step),
+        measure=lambda recording: _measure(plant, recording),
+        defect=lambda flow, t, ratio: flow,
+        check=lambda recording: _check(study.actuator, recording),
+        step=simulation.step,
+        tolerance=simulation.tolerance,
+    )
+    return ActuatorMarch(plant=plant, start=start, step=h, chunks=march(problem, start, h, counters), counters=counters)
+
+
+def static_shape(plant: Plant, displacement: float) -> Array:
+    """Amplitudes (k,) of the static shape under a tip force, scaled to a tip displacement [m], Eq. (T9.3)."""
+    basis = plant.kernel.shapes.a
+    if not basis.count:
+        return np.zeros(0)
+    shape = np.linalg.solve(basis.stiffness, basis.tip)
+    return displacement * shape / (basis.tip @ shape)
+
+
+def _tables(study: ActuatorStudy) -> Law:
+    """Rows (l, l', l'', force, beta, beta', beta'', torque) of the one leg at instants, and no wrench."""
+    actuator, motion, load = study.actuator, study.motion, study.load
+
+    def law(t: Array) -> tuple[Array, Array]:
+        table = np.zeros((len(t), TABLE))
+        if motion.extension is not None:
+            x = rigid.motion_law(motion.extension, t)
+            table[:, 0], table[:, 1], table[:, 2] = x.position, x.rate, x.acceleration
+            table[:, 0] += actuator.hub_radius + actuator.free_length
+        if motion.rotation is not None:
+            x = rigid.motion_law(motion.rotation, t)
+            table[:, 4], table[:, 5], table[:, 6] = x.position + actuator.angle, x.rate, x.acceleration
+        if load.force is not None:
+            table[:, 3] = rigid.load_law(load.force, t)
+        if load.torque is not None:
+            table[:, 7] = rigid.load_law(load.torque, t)
+        return table, np.zeros((len(t), 6))
+
+    return law
+
+
+def _start(
+    study: ActuatorStudy,
+    plant: Plant,
+    law: Law,
+    method: GeneralizedAlpha,
+    h: float,
+    amplitudes: Array | None,
+    rates: Array | None,
+) -> Flow:
+    """Static tip shape at rest in x/L(t), accelerations from the equation of motion, a_0 after Eq. (T6.13)."""
+    q, v = np.zeros((1, plant.n)), np.zeros(plant.n)
+    q[0, :2] = study.actuator.angle, study.actuator.hub_radius + study.actuator.free_length
+    row = law(np.zeros(1))[0][0]
+    if plant.held_beta[0]:
+        q[0, 0], v[0] = row[4], row[5]
+    if plant.held_l[0]:
+        q[0, 1], v[1] = row[0], row[1]
+    q[0, 2:] = static_shape(plant, study.initial.tip_displacement) if amplitudes is None else amplitudes
+    v[2:] = 0.0 if rates is None else rates
+    zero = np.zeros(plant.n)
+    flow = Flow(q=q, v=v, v_dot=zero, a=zero, lam=np.zeros((1, 3)), drive=np.zeros((1, 2)), pose=np.zeros(7))
+    flow = _accelerated(plant, flow, row)
+    t = min(1e-3 * h, 1e-6)
+    ahead = replace(flow, q=q + t * flow.v + 0.5 * t**2 * flow.v_dot, v=flow.v + t * flow.v_dot)
+    jerk = (_accelerated(plant, ahead, law(np.array([t]))[0][0]).v_dot - flow.v_dot) / t
+    a = np.where(plant.held, flow.v_dot, flow.v_dot + method.delta * h * jerk)
+    return replace(flow, a=a)
+
+
+def _accelerated(plant: Plant, x: Flow, row: Array) -> Flow:
+    """Accelerations of the free coordinates and drive force and torque of the held ones, Eq. (T9.4)."""
+    v_dot = np.zeros(plant.n)
+    if plant.held_beta[0]:
+        v_dot[0] = row[6]
+    if plant.held_l[0]:
+        v_dot[1] = row[2]
+    command = np.array([row[0], row[1], row[3], row[7]])
+    p, free = plant.leg_p[0], ~plant.held
+    r = plant.kernel.leg_residual(x.q[0], x.v, v_dot, np.zeros(3), command, p)[0]
+    M = plant.kernel.leg_matrices(x.q[0], np.zeros(3), p)[0]
+    v_dot[free] = np.linalg.solve(M[np.ix_(free, free)], -r[free])
+    r = plant.kernel.leg_residual(x.q[0], x.v, v_dot, np.zeros(3), command, p)[0]
+    drive = np.array([[r[1] if plant.held_l[0] else 0.0, r[0] if plant.held_beta[0] else 0.0]])
+    return replace(x, v_dot=v_dot, drive=drive)
+
+
+def _measure(plant: Plant, recording: Recording) -> list[Array]:
+    """Tip deflection, and angle and length where they are free."""
+    groups = [recording.q[:, 0, 2:] @ plant.kernel.shapes.a.tip]
+    groups += [recording.q[:, 0, j] for j, held in ((0, plant.held_beta[0]), (1, plant.held_l[0])) if not held]
+    return groups
+
+
+def _check(actuator: Actuator, recording: Recording) -> None:
+    free = recording.q[:, 0, 1] - actuator.hub_radius
+    for bad, words in ((free <= 0, "has slid wholly into the hub"), (free > actuator.length, "has left the hub")):
+        if bad.any():
+            raise ComputationError(
+                f"the beam {words} at t = {recording.time[np.argmax(bad)]:.6g} s",
+                next_step="Shorten the simulation, or check the extension law or the axial force.",
+            )

@@ -1,0 +1,119 @@
+"""Undamped and damped modes of the locked robot about its static equilibrium, Eqs. (T7.2)-(T7.5)."""
+
+from dataclasses import dataclass
+
+import numpy as np
+from numpy.typing import NDArray
+from scipy.linalg import eig, eigh, null_space
+
+from flexapod import rigid
+from flexapod.errors import ComputationError, InputError
+from flexapod.model import Robot, Simulation
+from flexapod.solve.equilibrium import Equilibrium, equilibrium
+from flexapod.solve.system import Matrices, RobotSystem, rigid_state, robot_system
+
+Array = NDArray[np.float64]
+
+
+@dataclass(frozen=True, kw_only=True)
+class RobotModes:
+    """Modes about an equilibrium, ascending.
+
+    ``frequency`` (m,) [Hz] undamped; ``damping_ratio`` (m,) of the damped modes; ``shapes`` (m, N), mass-normalised, in the
+    flat coordinates of `system.RobotSystem` (six legs, then CoM in the world frame and rotation in platform axes).
+    """
+
+    frequency: Array
+    damping_ratio: Array
+    shapes: Array
+    equilibrium: Equilibrium
+    system: RobotSystem
+
+
+def refuse_pure_force(robot: Robot, what: str) -> None:
+    """Raise InputError if a leg's drive is a force without feedback stiffness: nothing holds its stroke."""
+    for i, leg in enumerate(robot.legs, start=1):
+        if leg.drive.type == "force" and (leg.drive.feedback is None or leg.drive.feedback.stiffness == 0):
+            raise InputError(
+                f"{what} of leg {i} has no meaning: a pure force drive holds no position, so the stroke is free",
+                key="leg.drive",
+                value="force",
+                allowed='"prescribed", "servo", or a force drive with feedback stiffness',
+            )
+
+
+def locked_equilibrium(
+    robot: Robot, simulation: Simulation, path: rigid.Poses, wrench: Array | None = None
+) -> tuple[RobotSystem, Equilibrium]:
+    """Static equilibrium with the drives locked at the lengths of one rigid pose.
+
+    Raises
+    ------
+    InputError
+        A pure force drive.
+    ComputationError
+        No equilibrium at this pose.
+    """
+    refuse_pure_force(robot, "a static equilibrium")
+    system = robot_system(robot, simulation)
+    state = rigid_state(system, robot, path)
+    lengths = rigid.inverse_kinematics(robot, path).length[0]
+    found = equilibrium(system, state, lengths, np.zeros(6), np.zeros(6) if wrench is None else wrench)
+    if not found.found:
+        raise ComputationError(found.reason, next_step="Check the pose for a singularity and the load of the legs.")
+    return system, found
+
+
+def robot_modes(
+    robot: Robot, simulation: Simulation, path: rigid.Poses | None = None, wrench: Array | None = None
+) -> RobotModes:
+    """Modes of the locked robot at a pose (default: home), all degrees of freedom.
+
+    Raises
+    ------
+    InputError
+        Rigid legs on prescribed strokes (nothing can move), or a pure force drive.
+    ComputationError
+        No equilibrium at this pose.
+    """
+    path = rigid.home_pose(robot) if path is None else path
+    system, found = locked_equilibrium(robot, simulation, path, wrench)
+    m = system.matrices(found.state, np.zeros(6) if wrench is None else wrench)
+    scale = 1.0 / np.sqrt(np.maximum(np.diag(m.M), 1e-12))
+    N = scale[:, None] * null_space(m.G * scale)
+    if not N.size:
+        raise InputError(
+            "leaves nothing that could vibrate with the drives locked",
+            key="simulation.fidelity",
+            value=simulation.fidelity,
+            allowed="lumped, assumed-modes",
+        )
+    M, K = N.T @ m.M @ N, N.T @ m.K @ N
+    squared, vectors = eigh(0.5 * (K + K.T), M)
+    omega = np.sqrt(np.maximum(squared, 0.0))
+    ratio = _damping_ratios(m, N, omega, vectors)
+    return RobotModes(
+        frequency=omega / (2 * np.pi), damping_ratio=ratio, shapes=(N @ vectors).T, equilibrium=found, system=system
+    )
+
+
+def _damping_ratios(m: Matrices, N: Array, omega: Array, vectors: Array) -> Array:
+    """-Re/|.| of the damped eigenvalue that shares most of each undamped shape, Eqs. (T7.4)-(T7.5)."""
+    D = vectors.T @ N.T @ m.D @ N @ vectors
+    if not D.any():
+        return np.zeros(len(omega))
+    size = len(omega)
+    # Modal coordinates over omega_max keep the state matrix well scaled.
+    top = omega.max()
+    state = np.block([[np.zeros((size, size)), np.eye(size)], [-np.diag((omega / top) ** 2), -D / top]])
+    values, shapes = eig(state)
+    oscillating = values.imag > 1e-12
+    values, overlap = values[oscillating], np.abs(shapes[:size, oscillating])
+    ratio = np.diag(D) / (2 * np.maximum(omega, 1e-12))  # of an overdamped mode: the modal value
+    if not values.size:
+        return ratio
+    overlap /= np.linalg.norm(overlap, axis=0)
+    best = overlap.argmax(axis=1)
+    found = overlap[np.arange(size), best] > 0.5
+    ratio[found] = (-values.real / np.abs(values))[best[found]]
+    return ratio
