@@ -2,7 +2,9 @@
 
 PYTHON ?= python3
 BIN := .venv/bin
-STAMP := .venv/.installed
+PIP = $(BIN)/python -m pip install --quiet --disable-pip-version-check -c constraints.txt
+RUN := .venv/.installed-to-run
+DEV := .venv/.installed-to-develop
 
 .DEFAULT_GOAL := help
 .PHONY: help setup demo test lint format bench clean
@@ -10,32 +12,36 @@ STAMP := .venv/.installed
 help:  ## list the targets
 	@grep -hE '^[a-z]+:.*##' $(MAKEFILE_LIST) | sed -E 's/^([a-z]+):.*## ?/  make \1\t/' | expand -t 18
 
-setup: $(STAMP)  ## own virtual environment with everything in it
+setup: $(DEV)  ## own virtual environment with everything in it
 
-$(STAMP): pyproject.toml constraints.txt
+$(RUN): pyproject.toml constraints.txt
 	test -x $(BIN)/python || $(PYTHON) -m venv .venv
-	$(BIN)/python -m pip install --quiet --disable-pip-version-check -c constraints.txt pip
-	$(BIN)/python -m pip install --quiet --disable-pip-version-check -c constraints.txt --group dev --editable .
+	$(PIP) pip
+	$(PIP) --editable .
 	touch $@
 
-demo: $(STAMP)  ## the paper's whole study: figures, data and report in build/demo
+$(DEV): $(RUN)
+	$(PIP) --group dev
+	touch $@
+
+demo: $(RUN)  ## the paper's whole study: figures, data and report in build/demo
 	rm -rf build/demo
 	$(BIN)/flexapod replicate --out build/demo
 
 test: lint  ## lint, then all tests
 	$(BIN)/python -m pytest -n 2
 
-lint: $(STAMP)  ## style, types and import layers
+lint: $(DEV)  ## style, types and import layers
 	$(BIN)/ruff check .
 	$(BIN)/ruff format --check .
 	$(BIN)/pyright src
 	$(BIN)/lint-imports
 
-format: $(STAMP)  ## rewrite the code in the project's style
+format: $(DEV)  ## rewrite the code in the project's style
 	$(BIN)/ruff check --fix .
 	$(BIN)/ruff format .
 
-bench: $(STAMP)  ## measured speed, printed
+bench: $(RUN)  ## measured speed, printed
 	$(BIN)/python -m benchmarks
 
 clean:  ## remove what the targets made

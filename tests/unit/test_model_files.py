@@ -225,7 +225,7 @@ axial_modes = 1
         text = robot_with('EI = "756.65 N m^2"', 'material = "aluminium"', text)
         actuator = model.loads(text).actuator
         assert actuator.EI == pytest.approx(68.9e9 * 0.1524 * 0.009525**3 / 12, rel=1e-14)
-        assert (actuator.depth, actuator.E) == (pytest.approx(0.009525), 68.9e9)
+        assert (actuator.section.depth, actuator.material.E) == (pytest.approx(0.009525), 68.9e9)
 
     def test_driven_actuator(self):
         text = re.sub(r"rotation =.*\nextension =.*\n", "", ACTUATOR)

@@ -30,6 +30,7 @@ from flexapod.model.motion import (
 from flexapod.model.robot import Payload, Robot, base_circle, platform_circle
 from flexapod.model.simulation import DEFAULT_TOLERANCE, FIDELITIES, LATER_FIDELITIES, Initial, Simulation
 from flexapod.model.study import ActuatorStudy, Study, override
+from flexapod.model.write import to_toml
 
 __all__ = [
     "AXES",
@@ -91,4 +92,5 @@ __all__ = [
     "platform_circle",
     "preset",
     "preset_text",
+    "to_toml",
 ]

@@ -17,8 +17,8 @@ class Actuator(Frozen):
 
     `length` [m], whole beam; `rhoA` [kg/m]; `EI` [N m^2]; `free_length` [m], outside the hub at t = 0; `tip_mass` [kg];
     `tip_inertia`, `hub_inertia` [kg m^2]; `hub_radius` [m], from the pivot to the clamp; `angle` [rad] from the
-    horizontal at t = 0; `gravity` [m/s^2], along -Y in the plane; `damping`, modal damping ratio. Where the section is
-    known: `EA` [N], `depth` [m] in the direction of bending, `E` [Pa], `yield_stress` [Pa].
+    horizontal at t = 0; `gravity` [m/s^2], along -Y in the plane; `damping`, modal damping ratio; `section` and
+    `material` where they are known.
     """
 
     length: Positive
@@ -32,10 +32,8 @@ class Actuator(Frozen):
     angle: Number = 0.0
     gravity: Number = 0.0
     damping: float = Field(default=0.0, strict=True, ge=0, lt=1)
-    EA: Positive | None = None
-    depth: Positive | None = None
-    E: Positive | None = None
-    yield_stress: Positive | None = None
+    section: Tube | Rectangle | None = None
+    material: Material | None = None
 
     @model_validator(mode="after")
     def _fits(self) -> Actuator:
@@ -46,22 +44,18 @@ class Actuator(Frozen):
                 value=self.free_length,
                 allowed=f"above 0, at most length = {self.length:g} m",
             )
-        if self.depth is not None and self.depth >= self.length:
-            raise InputError(
-                "makes the beam thicker than long", key="section", value=self.depth, allowed=f"below {self.length:g} m"
-            )
+        if self.section is not None and self.section.depth >= self.length:
+            raise InputError("makes the beam thicker than long", key="section", allowed=f"below {self.length:g} m")
         return self
 
     @classmethod
     def from_section(cls, *, section: Tube | Rectangle, material: Material, **fields: float) -> Actuator:
-        """An actuator whose rhoA, EI and EA follow from section and material; `fields` are the others."""
+        """An actuator whose rhoA and EI follow from section and material; `fields` are the others."""
         return cls(
             rhoA=material.density * section.area,
             EI=material.E * section.second_moment,
-            EA=material.E * section.area,
-            depth=section.depth,
-            E=material.E,
-            yield_stress=material.yield_stress,
+            section=section,
+            material=material,
             **fields,
         )
 

@@ -22,8 +22,8 @@ def robot_remarks(robot: Robot) -> tuple[str, ...]:
 
 def actuator_remarks(actuator: Actuator) -> tuple[str, ...]:
     """Remarks on a single actuator's beam."""
-    depth = actuator.depth
-    if depth is not None and depth > _SLENDER * actuator.free_length:
+    depth = actuator.section.depth if actuator.section is not None else 0.0
+    if depth > _SLENDER * actuator.free_length:
         return (f"the beam is {depth:g} m deep, {_fat(depth, actuator.free_length, 'free length at t = 0')}",)
     return ()
 

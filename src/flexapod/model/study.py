@@ -2,7 +2,7 @@
 
 from __future__ import annotations
 
-from typing import Self
+from typing import Any, Self
 
 from pydantic import model_validator
 
@@ -14,14 +14,36 @@ from flexapod.model.motion import Motion
 from flexapod.model.remarks import actuator_remarks, robot_remarks
 from flexapod.model.robot import Robot
 from flexapod.model.simulation import Initial, Simulation
+from flexapod.model.write import to_toml
 
 __all__ = ["ActuatorStudy", "Study", "override"]
 
 
-class Study(Frozen):
+class _Documented(Frozen):
+    """Keeps `source_text` true: it is written anew when content is changed or the study was not read from text."""
+
+    source_text: str = ""
+    path: str | None = None
+    notes: tuple[str, ...] = ()
+
+    @model_validator(mode="after")
+    def _write(self) -> Self:
+        if not self.source_text:
+            object.__setattr__(self, "source_text", to_toml(self))
+        return self
+
+    def replace(self, **changes: Any) -> Self:
+        """A copy with some fields changed, validated again, and its text written anew."""
+        if all(getattr(self, name, None) == value for name, value in changes.items()):
+            return super().replace(**changes)
+        return super().replace(**({"source_text": "", "notes": ()} | changes))
+
+
+class Study(_Documented):
     """A robot, its motion, load, start and simulation settings.
 
-    `source_text`: the file as it was read; `path`: where from; `notes`: remarks made on reading it.
+    `source_text`: the whole study as TOML, the file as it was read or, where it was built or changed in Python, written
+    anew; `path`: where it was read; `notes`: remarks made on reading it.
     """
 
     robot: Robot
@@ -29,9 +51,6 @@ class Study(Frozen):
     load: Load = Load()
     initial: Initial = Initial()
     simulation: Simulation = Simulation()
-    source_text: str = ""
-    path: str | None = None
-    notes: tuple[str, ...] = ()
 
     @model_validator(mode="after")
     def _basis(self) -> Self:
@@ -55,7 +74,7 @@ class Study(Frozen):
         return (*robot_remarks(self.robot), *self.notes)
 
 
-class ActuatorStudy(Frozen):
+class ActuatorStudy(_Documented):
     """A single actuator, its motion or load, start and simulation settings."""
 
     actuator: Actuator
@@ -63,9 +82,6 @@ class ActuatorStudy(Frozen):
     load: ActuatorLoad = ActuatorLoad()
     initial: ActuatorInitial = ActuatorInitial()
     simulation: Simulation = Simulation(basis="clamped-free")
-    source_text: str = ""
-    path: str | None = None
-    notes: tuple[str, ...] = ()
 
     @model_validator(mode="after")
     def _consistent(self) -> Self:

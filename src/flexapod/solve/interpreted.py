@@ -115,11 +115,8 @@ def _step(
         r, g, powers = _residual(plant, x, row, wrench)
         force = max(1.0, np.abs(x.lam).max(initial=0.0), np.abs(x.drive).max(initial=0.0))
         worst = max(np.abs(r).max() / force / TOL_FORCE, np.abs(g).max(initial=0.0) / TOL_CLOSURE)
-        if worst <= 1 or (iteration == MAX_ITERATIONS and worst < 100):
-            sums = x.sums + 0.5 * h * (x.powers + powers)
-            counters.steps += 1
-            return replace(x, sums=sums, powers=powers), float(np.abs(g).max(initial=0.0))
-        if not np.isfinite(worst) or iteration == MAX_ITERATIONS:
+        done = worst <= 1 or (iteration == MAX_ITERATIONS and worst < 100)
+        if not np.isfinite(worst) or (iteration == MAX_ITERATIONS and not done):
             break
         A, G = _matrices(plant, x, wrench, c_v, c_a)
         counters.iterations += 1
@@ -140,4 +137,8 @@ def _step(
             drive=drive,
             pose=turned(old.pose, turn) if plant.robot else x.pose,
         )
+        if done:  # after a last correction: index 3 magnifies what is left
+            counters.steps += 1
+            sums = x.sums + 0.5 * h * (old.powers + powers)
+            return replace(x, sums=sums, powers=powers), float(np.abs(g).max(initial=0.0))
     return None, 0.0

@@ -146,11 +146,18 @@ int march(const Settings *s, State *x, const double *table, const double *wrench
   double h = s->h, am = s->alpha_m, af = s->alpha_f;
   double c_q = 1/(s->beta*h*h), c_v = s->gamma/(s->beta*h), c_a = (1 - am)/((1 - af)*s->beta*h*h);
   double q0[MAXF], step[MAXF], pose0[7], dq[MAXF], dlam[18], df[12], worst, before;
+  double v_dot1[MAXF], lam1[18], drive1[12];            /* of the step before: the predictor extrapolates */
+  memcpy(v_dot1, x->v_dot, sizeof(double)*N); memcpy(lam1, x->lam, sizeof(double)*3*s->legs);
+  memcpy(drive1, x->drive, sizeof(double)*2*s->legs);
   for (long t = 1; t <= steps; t++) {
     const double *row = table + t*width, *wr = wrench + 6*t;
     memcpy(q0, x->q, sizeof(double)*k); memcpy(pose0, x->pose, sizeof pose0);
-    for (long j = 0; j < N; j++) {                      /* predictor: v_dot of the last step, Eqs. (T6.1)-(T6.3) */
-      double a0 = x->a[j], a1 = (x->v_dot[j] - am*a0)/(1 - am);
+    for (long j = 0; j < 3*s->legs; j++) { double f = x->lam[j]; x->lam[j] += f - lam1[j]; lam1[j] = f; }
+    for (long j = 0; j < 2*s->legs; j++) { double f = x->drive[j]; x->drive[j] += f - drive1[j]; drive1[j] = f; }
+    for (long j = 0; j < N; j++) {                      /* predictor: extrapolated v_dot, Eqs. (T6.1)-(T6.3) */
+      double a0 = x->a[j], old = x->v_dot[j], a1;
+      x->v_dot[j] += old - v_dot1[j]; v_dot1[j] = old;
+      a1 = ((1 - af)*x->v_dot[j] + af*old - am*a0)/(1 - am);
       step[j] = h*x->v[j] + h*h*((0.5 - s->beta)*a0 + s->beta*a1);
       x->v[j] += h*((1 - s->gamma)*a0 + s->gamma*a1);
       x->a[j] = a1;
@@ -165,8 +172,7 @@ int march(const Settings *s, State *x, const double *table, const double *wrench
       int done = converged(s, x, &w, &worst, &leg);
       x->bad_leg = leg;
       if (!isfinite(worst)) { x->steps += t; return NOT_FINITE; }
-      if (done) break;
-      if (iteration >= s->max_iterations) {
+      if (!done && iteration >= s->max_iterations) {
         if (worst < 100) break;                         /* rounding floor of closures or forces reached */
         x->steps += t; return NOT_CONVERGED;
       }
@@ -187,6 +193,7 @@ int march(const Settings *s, State *x, const double *table, const double *wrench
         for (int j = 0; j < 18; j++) x->lam[j] += dlam[j];
         for (int j = 0; j < 6; j++) x->drive[2*j] += df[j];
       } else { x->drive[0] += df[0]; x->drive[1] += df[1]; }
+      if (done) break;                                  /* after a last correction: index 3 magnifies what is left */
     }
     age++;
     x->closure = 0;
