@@ -103,8 +103,6 @@ def _from_text(text: str, dimension: str, key: str | None) -> float:
 @cache
 def _factor(unit: str, dimension: str) -> float | str:
     """Factor to SI, or what is wrong with the unit."""
-    import pint
-
     registry, wanted = _registry(), DIMENSIONS[dimension]
     try:
         given = registry.Unit(unit.replace("²", "^2").replace("³", "^3"))

@@ -19,7 +19,7 @@ class AxialBasis:
     Attributes
     ----------
     mass, stiffness, damping : (m, m) arrays
-        int psi psi^T, int psi' psi'^T (diagonal) and the equal-ratio damping of the fixed-free modes, Eqs. (T1.11), (T5.2).
+        int psi psi^T, int psi' psi'^T (diagonal), equal-ratio damping of the fixed-free modes, Eqs. (T1.11), (T5.2).
     first, moment : (m,) arrays
         int psi and int eta psi.
     series : (m, MOMENTS) array
@@ -70,7 +70,7 @@ def _series(n: int) -> Array:
         coefficients[:2] = 1.0, -1.0
         return coefficients
     fit = Chebyshev.interpolate(lambda x: -((-1.0) ** n) * np.sin(n * np.pi * x), MOMENTS - 1, domain=[-1, 1])
-    odd = fit.coef * (np.arange(MOMENTS) % 2)
+    odd = np.where(np.arange(MOMENTS) % 2, np.asarray(fit.coef, dtype=float), 0.0)
     odd[np.abs(odd) < 1e-14] = 0.0
     power = Chebyshev(odd).convert(kind=Polynomial).coef
     coefficients[: power.size] = power

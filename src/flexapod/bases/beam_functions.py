@@ -9,7 +9,7 @@ from dataclasses import dataclass
 
 import numpy as np
 from numpy.typing import NDArray
-from scipy.optimize import brentq
+from scipy.optimize import root_scalar
 
 Array = NDArray[np.float64]
 
@@ -66,7 +66,8 @@ def _eigenfunctions(count: int, tip: Callable[..., list[Array]], mu: float, iner
     grid = np.arange(0.05, np.pi * (count + 2), 0.1)
     values = np.array([characteristic(e) for e in grid])
     for i in np.flatnonzero(np.sign(values[:-1]) != np.sign(values[1:]))[:count]:
-        eps = float(brentq(characteristic, grid[i], grid[i + 1], xtol=1e-15, rtol=4 * np.finfo(float).eps))
+        root = root_scalar(characteristic, bracket=(grid[i], grid[i + 1]), xtol=1e-15, rtol=4 * np.finfo(float).eps)
+        eps = float(root.root)
         null = np.linalg.svd(matrix(eps))[2][-1]
         found.append(_normalised(eps, null))
     return found

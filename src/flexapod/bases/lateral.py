@@ -29,7 +29,7 @@ class LateralBasis:
     tip, tip_slope : (k,) arrays
         phi(1) and phi'(1).
     mass : (2k, 2k) array
-        int Phi Phi^T of the extended shapes Phi = [phi; (1 - zeta) phi'], Eq. (T1.6): the second half is what sliding adds.
+        int Phi Phi^T of the extended shapes Phi = [phi; (1 - zeta) phi'], Eq. (T1.6): sliding adds the second half.
     first, moment : (2k,) arrays
         int Phi and int zeta Phi, Eq. (T1.7).
     powers : (MOMENTS, 2k) array
@@ -62,8 +62,8 @@ class LateralBasis:
         return len(self.tip)
 
     def values(self, zeta: Array, derivative: int = 0) -> Array:
-        """Shapes (or derivatives in zeta) at ``zeta`` of shape (n,): (k, n), dimensionless."""
-        return np.array([phi(zeta, derivative) for phi in self.shapes]).reshape(self.count, np.size(zeta))
+        """Shapes (or derivatives in zeta) at ``zeta`` of any shape: (k, ...), dimensionless."""
+        return np.array([phi(zeta, derivative) for phi in self.shapes]).reshape(self.count, *np.shape(zeta))
 
 
 def proportional_damping(mass: Array, stiffness: Array) -> Array:

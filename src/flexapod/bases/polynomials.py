@@ -31,7 +31,9 @@ def tip_load_shapes(count: int) -> list[PolynomialShape]:
     tip moment. Together they span every such polynomial, which converges exponentially for pinned and rotating beams,
     and the shapes stay well conditioned (their mass block is the identity, the stiffness matrix is diagonal).
     """
-    static = Legendre(np.polynomial.Polynomial([0.0, 0.0, 1.5, -0.5]).convert(kind=Legendre, domain=[0, 1]).coef, [0, 1])
+    static = Legendre(
+        np.polynomial.Polynomial([0.0, 0.0, 1.5, -0.5]).convert(kind=Legendre, domain=[0, 1]).coef, [0, 1]
+    )
     return [PolynomialShape(series=static), *_held_modes(count)][:count]
 
 

@@ -1,6 +1,6 @@
 """The named functions from which every solver is built, Eqs. (T4.7)-(T4.9).
 
-The residuals are exact. The matrices at rest serve equilibria, modes and as the iteration matrix of the time integration.
+The residuals are exact. The matrices at rest serve equilibria, modes and the iterations of the time integration.
 """
 
 from types import SimpleNamespace
@@ -77,7 +77,14 @@ def leg_tangents(shapes: Shapes) -> NamedFunction:
 
 
 def leg_residual(
-    shapes: Shapes, body: Leg, p: SimpleNamespace, qs: SimpleNamespace, vs: SimpleNamespace, v_dot: SX, lam: SX, command: SX
+    shapes: Shapes,
+    body: Leg,
+    p: SimpleNamespace,
+    qs: SimpleNamespace,
+    vs: SimpleNamespace,
+    v_dot: SX,
+    lam: SX,
+    command: SX,
 ) -> SX:
     """Balance of one leg, M v_dot + h + J^T lam - Q, Eq. (T4.7); the joint takes -lam off the leg's tip."""
     r = inverse_dynamics(body.lagrangian, v_dot)
@@ -110,7 +117,9 @@ def payload_functions() -> list[NamedFunction]:
     power = dot(wrench[:3], tool_velocity) + dot(wrench[3:], R @ u[3:])
     motion = [("pose", pose), ("u", u), ("u_dot", u_dot), ("lam", lam), ("wrench", wrench), ("p", p_vector)]
     return [
-        NamedFunction("payload_residual", motion, [("r", at_pose(r)), ("points", at_pose(points)), ("power", at_pose(power))]),
+        NamedFunction(
+            "payload_residual", motion, [("r", at_pose(r)), ("points", at_pose(points)), ("power", at_pose(power))]
+        ),
         NamedFunction(
             "payload_matrices",
             [("pose", pose), ("lam", lam), ("wrench", wrench), ("p", p_vector)],

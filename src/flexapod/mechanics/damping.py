@@ -5,6 +5,7 @@ from types import SimpleNamespace
 from flexapod.mechanics.layout import Shapes
 from flexapod.symbolic.vocabulary import SX, quadratic, sqrt
 
+
 def dissipation(shapes: Shapes, p: SimpleNamespace, s: SX, vs: SimpleNamespace) -> SX:
     """Rayleigh function on the amplitude rates at fixed zeta; dissipated power is twice this, Eq. (T5.1)."""
     lateral = 2 * p.zeta * sqrt(p.EI * p.rhoA) / s  # (T5.3)

@@ -35,8 +35,8 @@ class Field:
 class Distribution:
     """Inner products int f g dm of the field functions and the mass moments of the foreshortening e, Eq. (T3.9).
 
-    ``first`` and ``moment`` hold int f dm and int X f dm by function; ``phi_phi``, ``phi_sliding``, ``sliding_sliding`` are
-    numeric matrices to be multiplied by ``lateral_mass``, ``psi_psi`` by ``axial_mass``; ``phi_psi`` gives the
+    ``first`` and ``moment`` hold int f dm and int X f dm by function; ``phi_phi``, ``phi_sliding``, ``sliding_sliding``
+    are numeric matrices to be multiplied by ``lateral_mass``, ``psi_psi`` by ``axial_mass``; ``phi_psi`` gives the
     coupling matrices (phi, psi) and (sliding, psi). ``short`` = int e dm, ``short_X`` = int X e dm.
     """
 
@@ -76,7 +76,13 @@ class Distribution:
 
 
 def _combine(moments: SimpleNamespace, f: Field) -> SX:
-    pairs = ((moments.one, f.one), (moments.X, f.X), (moments.phi, f.phi), (moments.sliding, f.sliding), (moments.psi, f.psi))
+    pairs = (
+        (moments.one, f.one),
+        (moments.X, f.X),
+        (moments.phi, f.phi),
+        (moments.sliding, f.sliding),
+        (moments.psi, f.psi),
+    )
     return sum((c.T @ m for m, c in pairs if c.numel()), zeros(1))
 
 

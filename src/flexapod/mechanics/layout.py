@@ -56,6 +56,7 @@ class Shapes:
         """Position of the reference length l in q."""
         return 1 if self.planar else 2
 
+
 #: Physical parameters of the payload in kernel order (name, size); joints and tool from the CoM, in platform axes.
 PAYLOAD_PARAMETERS: tuple[tuple[str, int], ...] = (
     ("mass", 1),  # kg

@@ -10,6 +10,7 @@ from flexapod.mechanics.rotations import universal_joint, universal_joint_rate
 from flexapod.symbolic.lagrange import Lagrangian
 from flexapod.symbolic.vocabulary import SX, constant, dot, matrix33, quadratic, time_derivative, vertcat, zeros
 
+
 @dataclass(frozen=True, kw_only=True)
 class Leg:
     """One leg as expressions: Lagrangian parts and tip in the world frame."""
@@ -36,9 +37,7 @@ def leg(shapes: Shapes, p: SimpleNamespace, q: SX, v: SX, qs: SimpleNamespace, v
     V_g -= (sum(body.first.one for body in bodies) + p.cylinder_mass) * dot(p.gravity, p.base)  # zero at the base plane
     V_s = strain_energy(shapes, p, s, qs)
     tip = p.base + matrix33(p.R0) @ R @ tip_in_leg(motion, qs.l)
-    lagrangian = Lagrangian(
-        q=q, v=v, kinetic=T, potential=V_g + V_s, dissipation=dissipation(shapes, p, s, vs)
-    )
+    lagrangian = Lagrangian(q=q, v=v, kinetic=T, potential=V_g + V_s, dissipation=dissipation(shapes, p, s, vs))
     return Leg(lagrangian=lagrangian, gravity=V_g, strain=V_s, tip=tip)
 
 

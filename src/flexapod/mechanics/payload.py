@@ -5,6 +5,7 @@ from types import SimpleNamespace
 from flexapod.mechanics.rotations import from_quaternion, small_rotation
 from flexapod.symbolic.vocabulary import SX, cross, matrix33, mtimes, vertcat
 
+
 def displaced_pose(pose: SX, step: SX) -> tuple[SX, SX]:
     """Centre of mass and rotation after the increment (dx, theta): x + dx, R exp(theta^), Eq. (T4.3)."""
     return pose[:3] + step[:3], from_quaternion(pose[3:]) @ small_rotation(step[3:])

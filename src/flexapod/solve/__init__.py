@@ -1,0 +1,1 @@
+"""Numerics on the equations: starts, equilibria, time integration, modes, stiffness."""

@@ -30,13 +30,17 @@ class ActuatorMarch:
     counters: Counters = field(default_factory=Counters)
 
 
-def actuator_plant(actuator: Actuator, simulation: Simulation, *, rotation: bool = True, extension: bool = True) -> Plant:
+def actuator_plant(
+    actuator: Actuator, simulation: Simulation, *, rotation: bool = True, extension: bool = True
+) -> Plant:
     """Plant of the planar actuator; ``rotation`` and ``extension`` say whether they are prescribed."""
     mass = actuator.rhoA * actuator.free_length
     tip = (actuator.tip_mass / mass, actuator.tip_inertia / (mass * actuator.free_length**2))
     modes = 0 if simulation.fidelity == "rigid" else simulation.modes
     return Plant(
-        kernel=kernel(simulation.basis, modes, 0, planar=True, tip=tip if simulation.basis == "tip-mass" else (0.0, 0.0)),
+        kernel=kernel(
+            simulation.basis, modes, 0, planar=True, tip=tip if simulation.basis == "tip-mass" else (0.0, 0.0)
+        ),
         leg_p=actuator_parameters(actuator),
         payload_p=np.zeros(0),
         held_l=np.array([extension]),
@@ -44,7 +48,9 @@ def actuator_plant(actuator: Actuator, simulation: Simulation, *, rotation: bool
     )
 
 
-def prepare_actuator(study: ActuatorStudy, amplitudes: Array | None = None, rates: Array | None = None) -> ActuatorMarch:
+def prepare_actuator(
+    study: ActuatorStudy, amplitudes: Array | None = None, rates: Array | None = None
+) -> ActuatorMarch:
     """Start and time integration of an actuator study.
 
     Parameters

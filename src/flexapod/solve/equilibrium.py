@@ -75,7 +75,9 @@ def _newton(system: RobotSystem, x: State, l_cmd: Array, force: Array, wrench: A
             return Equilibrium(state=x, found=False, reason="the stiffness of the robot is singular")
         largest = np.abs(step).max()
         if largest > 0.5:  # half a radian or half a metre is no elastic deformation
-            return Equilibrium(state=x, found=False, reason="the legs give way (the payload would move by half a metre)")
+            return Equilibrium(
+                state=x, found=False, reason="the legs give way (the payload would move by half a metre)"
+            )
         x = system.moved(x, step)
         drive = x.drive.copy()
         drive[system.held] -= dlam[18:]

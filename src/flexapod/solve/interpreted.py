@@ -1,4 +1,4 @@
-"""The same time loop in NumPy with dense linear algebra: readable twin of ``native/march.c``, used without a C compiler."""
+"""The time loop in NumPy with dense linear algebra: readable twin of ``native/march.c``, used without a compiler."""
 
 from dataclasses import replace
 
@@ -57,7 +57,8 @@ def _row(plant: Plant, x: Flow, row: Array, closure: float) -> Array:
     k, n = plant.legs * plant.n, plant.n
     commands = _commands(plant, x.drive, row)
     energy = sum(
-        plant.kernel.leg_energies(x.q[i], x.v[i * n : i * n + n], commands[i], plant.leg_p[i])[0] for i in range(plant.legs)
+        plant.kernel.leg_energies(x.q[i], x.v[i * n : i * n + n], commands[i], plant.leg_p[i])[0]
+        for i in range(plant.legs)
     )
     if plant.robot:
         energy = energy + plant.kernel.payload_energies(x.pose, x.v[k:], plant.payload_p)[0]
@@ -73,7 +74,13 @@ def first_record(plant: Plant, flow: Flow, table: Array, wrench: Array) -> tuple
 
 
 def advance(
-    plant: Plant, method: GeneralizedAlpha, flow: Flow, h: float, tables: tuple[Array, Array], every: int, counters: Counters
+    plant: Plant,
+    method: GeneralizedAlpha,
+    flow: Flow,
+    h: float,
+    tables: tuple[Array, Array],
+    every: int,
+    counters: Counters,
 ) -> Advance:
     """Advance by the rows of ``tables``, recording each ``every`` steps; see `native.advance`."""
     rows, x = [], flow.copy()

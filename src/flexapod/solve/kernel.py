@@ -46,7 +46,9 @@ NAMES = ("leg_residual", "leg_matrices", "leg_energies", "payload_residual", "pa
 
 
 @cache
-def kernel(basis: str, modes: int, axial_modes: int, *, planar: bool = False, tip: tuple[float, float] = (0, 0)) -> Kernel:
+def kernel(
+    basis: str, modes: int, axial_modes: int, *, planar: bool = False, tip: tuple[float, float] = (0, 0)
+) -> Kernel:
     """Kernel for ``modes`` shapes of a lateral basis per plane and ``axial_modes`` axial ones.
 
     Parameters

@@ -4,7 +4,7 @@ from dataclasses import dataclass
 
 import numpy as np
 from numpy.typing import NDArray
-from scipy.linalg import eig, eigh, null_space
+from scipy.linalg import eigh, null_space
 
 from flexapod import rigid
 from flexapod.errors import ComputationError, InputError
@@ -19,8 +19,8 @@ Array = NDArray[np.float64]
 class RobotModes:
     """Modes about an equilibrium, ascending.
 
-    ``frequency`` (m,) [Hz] undamped; ``damping_ratio`` (m,) of the damped modes; ``shapes`` (m, N), mass-normalised, in the
-    flat coordinates of `system.RobotSystem` (six legs, then CoM in the world frame and rotation in platform axes).
+    ``frequency`` (m,) [Hz] undamped; ``damping_ratio`` (m,) of the damped modes; ``shapes`` (m, N), mass-normalised, in
+    the flat coordinates of `system.RobotSystem` (six legs, then CoM in the world frame and rotation in platform axes).
     """
 
     frequency: Array
@@ -106,8 +106,8 @@ def _damping_ratios(m: Matrices, N: Array, omega: Array, vectors: Array) -> Arra
     # Modal coordinates over omega_max keep the state matrix well scaled.
     top = omega.max()
     state = np.block([[np.zeros((size, size)), np.eye(size)], [-np.diag((omega / top) ** 2), -D / top]])
-    values, shapes = eig(state)
-    oscillating = values.imag > 1e-12
+    values, shapes = np.linalg.eig(state)
+    oscillating = np.imag(values) > 1e-12
     values, overlap = values[oscillating], np.abs(shapes[:size, oscillating])
     ratio = np.diag(D) / (2 * np.maximum(omega, 1e-12))  # of an overdamped mode: the modal value
     if not values.size:
@@ -115,5 +115,5 @@ def _damping_ratios(m: Matrices, N: Array, omega: Array, vectors: Array) -> Arra
     overlap /= np.linalg.norm(overlap, axis=0)
     best = overlap.argmax(axis=1)
     found = overlap[np.arange(size), best] > 0.5
-    ratio[found] = (-values.real / np.abs(values))[best[found]]
+    ratio[found] = (-np.real(values) / np.abs(values))[best[found]]
     return ratio

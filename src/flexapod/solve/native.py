@@ -1,6 +1,5 @@
 """The compiled time loop: one C call advances a chunk. Structures mirror ``native/system.h``."""
 
-
 from ctypes import POINTER, Structure, byref, c_double, c_long
 from dataclasses import dataclass
 
@@ -46,11 +45,11 @@ class Advance:
     leg: int
 
 
-def _address(array: Array):  # noqa: ANN202
+def _address(array: Array):
     return array.ctypes.data_as(_pointer)
 
 
-def _bits(mask: Array) -> int:
+def _bits(mask: NDArray[np.bool_]) -> int:
     return sum(1 << i for i, on in enumerate(mask) if on)
 
 
@@ -69,7 +68,13 @@ def _state(flow: Flow, rows: Array) -> _State:
 
 
 def advance(
-    plant: Plant, method: GeneralizedAlpha, flow: Flow, h: float, tables: tuple[Array, Array], every: int, counters: Counters
+    plant: Plant,
+    method: GeneralizedAlpha,
+    flow: Flow,
+    h: float,
+    tables: tuple[Array, Array],
+    every: int,
+    counters: Counters,
 ) -> Advance:
     """Advance by the rows of ``tables`` ((steps + 1, legs * TABLE), (steps + 1, 6)), recording each ``every`` steps."""
     library = plant.kernel.library
@@ -97,5 +102,3 @@ def first_record(plant: Plant, flow: Flow, table: Array, wrench: Array) -> tuple
         byref(settings), byref(state), _address(np.ascontiguousarray(table)), _address(np.ascontiguousarray(wrench))
     )
     return new, rows
-
-

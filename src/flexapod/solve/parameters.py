@@ -79,7 +79,8 @@ PLANE = np.array([[0.0, 0.0, 1.0], [1.0, 0.0, 0.0], [0.0, 1.0, 0.0]])
 
 def actuator_parameters(actuator: Actuator) -> Array:
     """Parameters of the single planar actuator, (1, size of LEG_PARAMETERS); beta is its angle from the horizontal."""
-    values: dict[str, object] = {name: 0.0 for name, size in LEG_PARAMETERS if size == 1} | {
+    values: dict[str, object] = dict.fromkeys((name for name, size in LEG_PARAMETERS if size == 1), 0.0)
+    values |= {
         "rhoA": actuator.rhoA,
         "EI": actuator.EI,
         "EA": 1.0,  # inextensible: no axial shape reads it

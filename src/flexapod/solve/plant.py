@@ -8,6 +8,7 @@ from numpy.typing import NDArray
 from flexapod.solve.kernel import Kernel
 
 Array = NDArray[np.float64]
+Mask = NDArray[np.bool_]
 TABLE = 8  # table row of a leg: l, l', l'', force, beta, beta', beta'', torque
 
 
@@ -21,8 +22,8 @@ class Plant:
     kernel: Kernel
     leg_p: Array
     payload_p: Array
-    held_l: Array
-    held_beta: Array
+    held_l: Mask
+    held_beta: Mask
 
     @property
     def legs(self) -> int:
@@ -45,7 +46,7 @@ class Plant:
         return self.legs * self.n + (6 if self.robot else 0)
 
     @property
-    def held(self) -> Array:
+    def held(self) -> Mask:
         """Mask (size,) of coordinates that follow their table."""
         mask, l_index = np.zeros((self.legs, self.n), dtype=bool), self.kernel.shapes.l_index
         mask[:, l_index], mask[:, l_index - 1] = self.held_l, self.held_beta
@@ -83,7 +84,7 @@ class Counters:
 
 @dataclass(frozen=True, kw_only=True)
 class Recording:
-    """States and sums at T output instants, axis 0 = time. ``energy``: kinetic, gravity, strain; ``sums``: lost, drives, wrench."""
+    """States at T output instants (axis 0); ``energy``: kinetic, gravity, strain; ``sums``: lost, drives, wrench."""
 
     time: Array
     q: Array

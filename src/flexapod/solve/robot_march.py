@@ -42,8 +42,14 @@ class RobotMarch:
         return self.start.impact
 
 
-def prepare(study: Study) -> RobotMarch:
+def prepare(study: Study, state: State | None = None) -> RobotMarch:
     """Start and time integration of a robot study.
+
+    Parameters
+    ----------
+    study : Study
+    state : State, optional
+        Configuration (closures satisfied) and velocities in place of the study's start.
 
     Raises
     ------
@@ -57,7 +63,8 @@ def prepare(study: Study) -> RobotMarch:
     commands = law(np.zeros(1))
     method = GeneralizedAlpha(simulation.rho_inf)
     step = _first_step(simulation.step, simulation.output_step)
-    start = consistent_start(system, _configuration(study, system, commands), commands, method, step)
+    state = _configuration(study, system, commands) if state is None else state
+    start = consistent_start(system, state, commands, method, step)
     plant, counters = _plant(system), Counters()
     problem = Problem(
         plant=plant,
@@ -125,7 +132,11 @@ def _measure(study: Study, plant: Plant, recording: Recording) -> list[Array]:
     com = path.position + np.einsum("tij,j->ti", path.rotation, study.robot.payload.com)
     turn = np.einsum("tji,tjk->tik", path.rotation, matrix(recording.pose[:, 3:]))
     radius = np.linalg.norm(study.robot.platform_joints, axis=1).max()
-    skew = 0.5 * radius * np.stack([turn[:, 2, 1] - turn[:, 1, 2], turn[:, 0, 2] - turn[:, 2, 0], turn[:, 1, 0] - turn[:, 0, 1]], 1)
+    skew = (
+        0.5
+        * radius
+        * np.stack([turn[:, 2, 1] - turn[:, 1, 2], turn[:, 0, 2] - turn[:, 2, 0], turn[:, 1, 0] - turn[:, 0, 1]], 1)
+    )
     lateral = 3 + plant.kernel.shapes.axial.count
     return [np.concatenate([recording.pose[:, :3] - com, skew], axis=1), recording.q[:, :, lateral:]]
 

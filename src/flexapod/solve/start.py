@@ -1,4 +1,4 @@
-"""Consistent starts: impact projection, accelerations and multipliers, integrator start values, Eqs. (T6.10)-(T6.14)."""
+"""Consistent starts: impact, accelerations and multipliers, the integrator's start values, Eqs. (T6.10)-(T6.14)."""
 
 from dataclasses import dataclass, replace
 
@@ -22,11 +22,13 @@ class Start:
     impact: float
 
 
-def consistent_start(system: RobotSystem, state: State, commands: Commands, method: GeneralizedAlpha, h: float) -> Start:
+def consistent_start(
+    system: RobotSystem, state: State, commands: Commands, method: GeneralizedAlpha, h: float
+) -> Start:
     """Make a configuration that satisfies the closures a start of the time integration with step ``h`` [s].
 
-    Velocities are projected on the constraints in the mass metric (an impact, if the command jumps in rate); accelerations
-    and multipliers solve the equations of motion; the integrator's start values follow Arnold, Bruls & Cardona (2015).
+    Velocities are projected on the constraints in the mass metric (an impact, if the command jumps in rate);
+    accelerations and multipliers solve the equations of motion; the integrator's start values follow Arnold, Bruls & Cardona (2015).
     """
     m = system.matrices(state, commands.wrench[0])
     moving, impact = _impact(system, state, m, commands)

@@ -17,8 +17,10 @@ Array = NDArray[np.float64]
 
 @dataclass(frozen=True, kw_only=True)
 class Stiffness:
-    """``total`` (6, 6) [N/m, N, N m/rad] at the tool in world axes; ``legs`` (6, 6, 6) the share of each leg; ``load`` (6, 6) what
-    the turning joint forces add. ``total`` is their sum.
+    """Stiffness at the tool in world axes, [N/m, N, N m/rad].
+
+    ``total`` (6, 6) is the sum of ``legs`` (6, 6, 6), the share of each leg, and ``load`` (6, 6), what turning
+    the joint forces adds.
     """
 
     total: Array

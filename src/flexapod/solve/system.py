@@ -14,14 +14,16 @@ from flexapod.solve.parameters import leg_parameters, payload_parameters
 from flexapod.solve.rotation import quaternion, turned
 
 Array = NDArray[np.float64]
+Mask = NDArray[np.bool_]
+Index = NDArray[np.intp]
 
 
 @dataclass(frozen=True, kw_only=True)
 class State:
     """State of a robot with n coordinates a leg.
 
-    ``q``, (6, n): leg coordinates; ``pose``, (7,): CoM [m] and quaternion (w x y z); ``v``, ``v_dot``, (6 n + 6,): rates of the
-    legs, then CoM velocity (world) and angular velocity (platform axes); ``lam``, (6, 3): joint forces on the
+    ``q``, (6, n): leg coordinates; ``pose``, (7,): CoM [m] and quaternion (w x y z); ``v``, ``v_dot``, (6 n + 6,): rates
+    of the legs, then CoM velocity (world) and angular velocity (platform axes); ``lam``, (6, 3): joint forces on the
     platform, world axes [N]; ``drive``, (6,): force of each prescribed drive [N].
     """
 
@@ -50,7 +52,7 @@ class RobotSystem:
     kernel: Kernel
     leg_p: Array
     payload_p: Array
-    held: Array
+    held: Mask
 
     @property
     def n(self) -> int:
@@ -63,12 +65,12 @@ class RobotSystem:
         return 6 * self.n + 6
 
     @property
-    def strokes(self) -> Array:
+    def strokes(self) -> Index:
         """Positions of the prescribed l in the flat coordinates."""
         return np.flatnonzero(self.held) * self.n + self.kernel.shapes.l_index
 
     def residual(self, x: State, commands: Array, wrench: Array) -> tuple[Array, Array]:
-        """Balance of every coordinate (N,) [N, N m] and closures (18,) [m]; commands (6, 2): l_cmd or force, see `command`."""
+        """Balance of every coordinate (N,) [N, N m] and closures (18,) [m]; command rows (6, 4), see `command`."""
         k = 6 * self.n
         rows, tips = [], []
         for i in range(6):
@@ -95,7 +97,9 @@ class RobotSystem:
             M[at, at], D[at, at], K[at, at], G[3 * i : 3 * i + 3, at] = self.kernel.leg_matrices(
                 x.q[i], x.lam[i], self.leg_p[i]
             )
-        M[6 * n :, 6 * n :], K[6 * n :, 6 * n :], P = self.kernel.payload_matrices(x.pose, x.lam, wrench, self.payload_p)
+        M[6 * n :, 6 * n :], K[6 * n :, 6 * n :], P = self.kernel.payload_matrices(
+            x.pose, x.lam, wrench, self.payload_p
+        )
         G[:18, 6 * n :] = -P
         G[18 + np.arange(len(self.strokes)), self.strokes] = 1.0
         return Matrices(M=M, D=D, K=K, G=G)

@@ -14,7 +14,7 @@ Array = NDArray[np.float64]
 
 @dataclass(frozen=True, kw_only=True)
 class Commands:
-    """Commands at T instants: ``length``, ``rate``, ``accel``, ``force`` (T, 6), ``wrench`` (T, 6); ``at(dt)`` a later row."""
+    """Commands at T instants: ``length``, ``rate``, ``accel``, ``force``, ``wrench``, all (T, 6)."""
 
     time: Array
     length: Array

@@ -6,6 +6,7 @@ from types import SimpleNamespace
 import casadi
 import numpy as np
 from casadi import SX, cos, dot, gradient, horzcat, jacobian, jtimes, mtimes, sin, sqrt, vertcat
+from numpy.typing import ArrayLike
 
 __all__ = [
     "SX",
@@ -39,7 +40,7 @@ def symbol(name: str, size: int = 1) -> SX:
     return SX.sym(name, size)
 
 
-def constant(array: object) -> SX:
+def constant(array: ArrayLike) -> SX:
     """Numeric array as a dense symbolic constant."""
     return SX(np.atleast_2d(np.asarray(array, dtype=float)) if np.ndim(array) else float(np.asarray(array)))
 

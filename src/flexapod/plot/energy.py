@@ -1,0 +1,59 @@
+"""Energies over time and how well their balance closes."""
+
+from __future__ import annotations
+
+import xarray as xr
+from matplotlib.figure import Figure
+
+from flexapod.plot.style import LEG_COLORS, LINE_STYLES, figure, mark_end, scale, styled
+from flexapod.study.scene import motion_end
+
+__all__ = ["energies"]
+
+_WORDS = {
+    "energy_kinetic": "kinetic",
+    "energy_potential": "gravity",
+    "energy_strain": "strain and drive springs",
+    "energy_dissipated": "lost in damping",
+    "work_drive": "work of the drives",
+    "work_external": "work of the load",
+}
+_SIGN = {"work_drive": -1.0, "work_external": -1.0}
+
+
+@styled
+def energies(data: xr.Dataset) -> Figure:
+    """Energies and works since the start, the strain energy on its own scale, and the closure of the balance.
+
+    Parameters
+    ----------
+    data : xarray.Dataset
+        With the `energy_...` and `work_...` variables (time) [J].
+    """
+    fig = figure(7.6, 6.6)
+    rows = fig.subplots(3, 1, sharex=True, height_ratios=(1.6, 1, 1))
+    end, time = motion_end(data), data.time.values
+    names = [name for name in _WORDS if name in data]
+    changes = {name: data[name] - data[name][0] for name in names}
+    big = scale(xr.concat(list(changes.values()), dim="part"), "J")
+    for i, name in enumerate(names):
+        style = {"color": LEG_COLORS[i], "linestyle": LINE_STYLES[i]}
+        rows[0].plot(time, big(changes[name]), label=_WORDS[name], **style)
+    _line(rows[1], time, data.energy_strain, "Strain energy, with that of the drive springs", "energy")
+    balance = sum(_SIGN.get(name, 1.0) * data[name] for name in names)
+    _line(rows[2], time, balance - balance[0], "Balance: energies plus losses minus works, change since the start", "balance")
+    rows[0].set_title("Energies and works, change since the start")
+    rows[0].set_ylabel(f"energy [{big.name}]")
+    rows[0].legend(loc="best", ncols=2, handlelength=3)
+    rows[-1].set_xlabel("time [s]")
+    for axes in rows:
+        mark_end(axes, end, "motion ends" if axes is rows[0] else "")
+    fig.align_ylabels(rows)
+    return fig
+
+
+def _line(axes, time, values: xr.DataArray, title: str, label: str) -> None:
+    small = scale(values, "J")
+    axes.plot(time, small(values), color="#333333", linewidth=1.0)
+    axes.set_title(title)
+    axes.set_ylabel(f"{label} [{small.name}]")

@@ -1,0 +1,120 @@
+"""Modes of the planar actuator with rotation and extension held, at rest or turning steadily, Eqs. (T9.6)-(T9.7)."""
+
+from dataclasses import dataclass
+from functools import lru_cache
+
+import numpy as np
+from numpy.typing import NDArray
+from scipy.linalg import eig, eigh
+from scipy.optimize import linear_sum_assignment
+
+from flexapod import bases
+from flexapod.errors import ComputationError, InputError
+from flexapod.mechanics.layout import COMMAND_SIZE, Shapes
+from flexapod.model import Actuator, Simulation
+from flexapod.solve.kernel import Function
+from flexapod.solve.parameters import actuator_parameters
+
+Array = NDArray[np.float64]
+
+
+@dataclass(frozen=True, kw_only=True)
+class ActuatorModes:
+    """Modes of a clamped beam in the plane in which its hub turns, ascending.
+
+    ``frequency`` (k,) [Hz] undamped; ``damping_ratio`` (k,) of the damped modes; ``shapes`` (k, k), one row of amplitudes of
+    the lateral basis [m] per mode, mass-normalised.
+    """
+
+    frequency: Array
+    shapes: Array
+    damping_ratio: Array
+
+
+def actuator_modes(
+    actuator: Actuator, simulation: Simulation, *, rate: float = 0.0, free_length: float | None = None
+) -> ActuatorModes:
+    """Modes about the straight beam with rotation and extension held, Eqs. (T9.6)-(T9.7).
+
+    Parameters
+    ----------
+    actuator : Actuator
+        Its ``gravity`` acts along the beam at ``actuator.angle`` when nothing turns. On a turning hub that load changes
+        sign every half turn, so steady modes leave it out.
+    simulation : Simulation
+        ``basis`` and ``modes`` of the beam.
+    rate : float
+        Steady rate of rotation [rad/s]: centrifugal stiffening less the centrifugal field across the beam (lag).
+    free_length : float, optional
+        Length outside the hub [m]; default that of the actuator.
+
+    Raises
+    ------
+    InputError
+        Rigid beam, or a free length that the beam does not have.
+    ComputationError
+        The straight beam is unstable: it has buckled.
+    """
+    if simulation.fidelity == "rigid":
+        raise InputError(
+            "leaves nothing that could vibrate with rotation and extension held",
+            key="simulation.fidelity",
+            value=simulation.fidelity,
+            allowed="assumed-modes",
+        )
+    if free_length is not None:
+        actuator = actuator.replace(free_length=free_length)
+    if rate:
+        actuator = actuator.replace(gravity=0.0)
+    M, D, K = turning_matrices(actuator, simulation, rate)
+    squared, vectors = eigh(K, M)  # (T9.7)
+    if squared[0] <= 0:
+        raise ComputationError(
+            f"the straight beam of {actuator.free_length:g} m is unstable: its own load along the axis buckles it",
+            next_step="Shorten actuator.free_length, or reduce gravity or tip_mass.",
+        )
+    omega = np.sqrt(squared)
+    ratio = _damping_ratios(omega, vectors.T @ D @ vectors)
+    return ActuatorModes(frequency=omega / (2 * np.pi), shapes=vectors.T, damping_ratio=ratio)
+
+
+def turning_matrices(actuator: Actuator, simulation: Simulation, rate: float) -> tuple[Array, Array, Array]:
+    """M, D, K (k, k) of the amplitudes of the beam in steady rotation, Eq. (T9.6)."""
+    mass = actuator.rhoA * actuator.free_length
+    tip = (actuator.tip_mass / mass, actuator.tip_inertia / (mass * actuator.free_length**2))
+    ratios = tip if simulation.basis == "tip-mass" else (0.0, 0.0)
+    matrices, tangents = _functions(simulation.basis, simulation.modes, ratios)
+    p, size = actuator_parameters(actuator)[0], 2 + simulation.modes
+    q, v, none = np.zeros(size), np.zeros(size), np.zeros(3)
+    q[:2], v[0] = (actuator.angle, actuator.hub_radius + actuator.free_length), rate
+    M = matrices(q, none, p)[0]
+    K, D = tangents(q, v, np.zeros(size), none, np.zeros(COMMAND_SIZE), p)  # (T9.6)
+    return M[2:, 2:], D[2:, 2:], 0.5 * (K + K.T)[2:, 2:]
+
+
+@lru_cache(maxsize=16)
+def _functions(basis: str, modes: int, tip: tuple[float, float]) -> tuple[Function, Function]:
+    """Matrices at rest and tangents in motion of the planar leg, interpreted: each is called once per analysis."""
+    from flexapod.mechanics.assembly import leg_functions, leg_tangents
+    from flexapod.symbolic.functions import Interpreted
+
+    lateral, other = (bases.lateral_basis(basis, count, *tip) for count in (modes, 0))
+    shapes = Shapes(a=lateral, b=other, axial=bases.axial_basis(0), planar=True)
+    matrices = next(f for f in leg_functions(shapes) if f.name == "leg_matrices")
+    return Interpreted(matrices), Interpreted(leg_tangents(shapes))
+
+
+def _damping_ratios(omega: Array, D: Array) -> Array:
+    """-Re/|.| of the damped eigenvalue that shares most of each undamped shape, Eqs. (T7.4)-(T7.5).
+
+    ``D`` in modal coordinates; where modes are overdamped, the modal value D_ii / (2 omega_i).
+    """
+    ratio, size, top = np.diag(D) / (2 * omega), len(omega), omega[-1]
+    state = np.block([[np.zeros((size, size)), np.eye(size)], [-np.diag((omega / top) ** 2), -D / top]])
+    values, shapes = eig(state)
+    above = values.imag > 1e-12
+    if above.sum() < size:
+        return ratio
+    values, share = values[above], np.abs(shapes[:size, above])
+    _, match = linear_sum_assignment(-share / np.linalg.norm(share, axis=0))
+    return (-values.real / np.abs(values))[match]

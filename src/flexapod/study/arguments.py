@@ -1,0 +1,130 @@
+"""From the arguments of a Python call to a study."""
+
+from __future__ import annotations
+
+from collections.abc import Mapping
+
+import numpy as np
+from numpy.typing import ArrayLike
+
+from flexapod import model, rigid
+from flexapod.errors import InputError
+
+__all__ = ["as_pose", "as_study", "overridden", "robot_of"]
+
+POSE_KEYS = model.AXES
+StartLike = model.Initial | str | None
+LoadLike = model.Load | model.Wrench | ArrayLike | None
+
+
+def as_study(
+    subject: model.Study | model.Robot,
+    motion: model.Motion | None = None,
+    load: LoadLike = None,
+    initial: StartLike = None,
+) -> model.Study:
+    """A study from a study, or from a robot and a motion, with another motion, load or start where given.
+
+    Raises
+    ------
+    InputError
+        A robot without a motion, or something that is neither robot nor study.
+    """
+    changes: dict[str, object] = {}
+    if load is not None:
+        changes["load"] = _load(load)
+    if initial is not None:
+        changes["initial"] = model.Initial(start=initial) if isinstance(initial, str) else initial
+    if isinstance(subject, model.Study):
+        changes |= {} if motion is None else {"motion": motion}
+        return subject.replace(**changes) if changes else subject
+    if not isinstance(subject, model.Robot):
+        raise InputError(
+            "is neither a robot nor the study of one",
+            key="robot",
+            value=type(subject).__name__,
+            allowed="flexapod.load(FILE) or its .robot",
+        )
+    if motion is None:
+        raise InputError("is missing", key="motion", next_step="Give a motion, e.g. study.motion, or a whole study")
+    return model.Study(robot=subject, motion=motion, **changes)  # type: ignore[arg-type]
+
+
+def _load(load: LoadLike) -> model.Load:
+    if isinstance(load, model.Load):
+        return load
+    kinds = (model.ConstantWrench, model.SineWrench, model.StepWrench, model.CsvWrench)
+    if isinstance(load, kinds):
+        return model.Load(wrench=load)
+    return model.Load(wrench=model.ConstantWrench(value=np.asarray(load, dtype=float)))
+
+
+def robot_of(subject: model.Study | model.Robot) -> model.Robot:
+    """The robot of a study, or the robot itself."""
+    return subject.robot if isinstance(subject, model.Study) else subject
+
+
+def overridden(
+    study: model.Study | model.ActuatorStudy, settings: Mapping[str, object]
+) -> model.Study | model.ActuatorStudy:
+    """The study with the given settings (None: as in the study) in place of those of [simulation]."""
+    given = {name: value for name, value in settings.items() if value is not None}
+    return model.override(study, **given) if given else study  # type: ignore[arg-type]
+
+
+def as_pose(robot: model.Robot, pose: rigid.Poses | Mapping[str, float] | ArrayLike | None) -> rigid.Poses:
+    """One pose of the platform frame at rest.
+
+    Parameters
+    ----------
+    robot : model.Robot
+    pose : Poses, mapping, array_like or None
+        Poses with one sample; surge, sway, heave [m], roll, pitch, yaw [rad] from home by name or as (6,); None: home.
+
+    Raises
+    ------
+    InputError
+        Unknown names, another shape, or a pose that the legs cannot reach.
+    """
+    if isinstance(pose, rigid.Poses):
+        if len(pose) != 1:
+            raise InputError("has several samples", key="pose", value=len(pose), allowed="one sample")
+        found = rigid.Poses.at_rest(pose.position, pose.rotation)
+    else:
+        values = _coordinates(pose)
+        home = rigid.home_pose(robot)
+        found = rigid.Poses.at_rest(home.position + values[:3], rigid.rotation_matrix(values[3:]))
+    _check_reachable(robot, found)
+    return found
+
+
+def _coordinates(pose: Mapping[str, float] | ArrayLike | None) -> np.ndarray:
+    if pose is None:
+        return np.zeros(6)
+    if isinstance(pose, Mapping):
+        unknown = [name for name in pose if name not in POSE_KEYS]
+        if unknown:
+            raise InputError("is not an axis", key=f"pose.{unknown[0]}", allowed=", ".join(POSE_KEYS))
+        pose = [pose.get(name, 0.0) for name in POSE_KEYS]
+    values = np.asarray(pose, dtype=float)
+    if values.shape != (6,) or not np.isfinite(values).all():
+        raise InputError(
+            "is not a pose", key="pose", value=np.asarray(pose).tolist(),
+            allowed="surge, sway, heave [m], roll, pitch, yaw [rad] from home, as names or six numbers",
+        )  # fmt: skip
+    return values
+
+
+def _check_reachable(robot: model.Robot, pose: rigid.Poses) -> None:
+    length = rigid.leg_lengths(robot.base_joints, robot.platform_joints, pose.position, pose.rotation)
+    at = np.zeros(1)
+    excess = [e for e in (*rigid.strokes(robot, at, length), *rigid.pull_out(robot, at, length)) if e.fatal]
+    if excess:
+        e = excess[0]
+        raise InputError(
+            f"leg {e.leg} {e.kind}: {e.value:.6g} m, limit {e.limit:.6g} m",
+            key="pose",
+            allowed="poses within the strokes",
+            next_step="Choose another pose, or widen leg.stroke",
+        )
+    rigid.inverse_kinematics(robot, pose)

@@ -1,0 +1,188 @@
+"""The one table of result names: dimensions, unit and meaning of every variable of a Dataset."""
+
+from __future__ import annotations
+
+from collections.abc import Mapping
+from typing import TYPE_CHECKING, NamedTuple
+
+import numpy as np
+
+from flexapod.typing import Array
+
+if TYPE_CHECKING:
+    from xarray import Dataset
+
+__all__ = ["CAUSES", "COORDINATES", "VARIABLES", "Variable", "dataset"]
+
+#: Causes of a leg's length error, in the order of the `cause` dimension.
+CAUSES = ("axial-strain", "bending", "drive")
+
+
+class Variable(NamedTuple):
+    """Dimensions, unit and long name of a result."""
+
+    dims: tuple[str, ...]
+    units: str
+    long_name: str
+
+
+#: Labels of dimensions that have fixed ones, with what they stand for.
+COORDINATES: dict[str, tuple[object, str]] = {
+    "leg": (np.arange(1, 7), "leg"),
+    "other_leg": (np.arange(1, 7), "leg"),
+    "axis": (list("xyz"), "world axis"),
+    "direction": (list("ab"), "lateral direction of the leg"),
+    "quaternion": (list("wxyz"), "component of the quaternion"),
+    "cause": (list(CAUSES), "cause of a leg's length error"),
+    "joint_angle": (["alpha", "beta"], "angle of the universal joint"),
+    "component": (["x", "y", "z", "rx", "ry", "rz"], "translation along and rotation about the world axes"),
+    "load": (["Fx", "Fy", "Fz", "Mx", "My", "Mz"], "force and moment, world axes"),
+    "plane_axis": (list("XY"), "axis in the plane of motion"),
+}
+
+_TA, _TL, _T = ("time", "axis"), ("time", "leg"), ("time",)
+
+_PATH = {
+    "com_position_rigid": Variable(_TA, "m", "centre of mass of the payload on the rigid path"),
+    "com_position": Variable(_TA, "m", "centre of mass of the payload"),
+    "com_deviation": Variable(_TA, "m", "deviation of the centre of mass, flexible minus rigid"),
+    "tool_position_rigid": Variable(_TA, "m", "tool point on the rigid path"),
+    "tool_position": Variable(_TA, "m", "tool point"),
+    "tool_deviation": Variable(_TA, "m", "deviation of the tool point, flexible minus rigid"),
+    "rotation_deviation": Variable(_TA, "rad", "rotation vector from the rigid to the flexible platform, world axes"),
+    "platform_quaternion": Variable(("time", "quaternion"), "1", "orientation of the platform, platform to world"),
+    "platform_quaternion_rigid": Variable(
+        ("time", "quaternion"), "1", "orientation of the platform on the rigid path, platform to world"
+    ),
+    "platform_angular_velocity": Variable(_TA, "rad s-1", "angular velocity of the platform, world axes"),
+    "deviation_by_cause": Variable(
+        ("time", "cause", "leg", "axis"), "m", "share of a cause in a leg in the deviation of the centre of mass"
+    ),
+    "deviation_residual": Variable(_TA, "m", "deviation of the centre of mass beyond the sum of its causes"),
+}
+
+_COMMAND = {
+    "translation_command": Variable(_TA, "m", "commanded surge, sway, heave from home"),
+    "translation_command_rate": Variable(_TA, "m s-1", "rate of commanded surge, sway, heave"),
+    "translation_command_acceleration": Variable(_TA, "m s-2", "acceleration of commanded surge, sway, heave"),
+    "rotation_command": Variable(_TA, "rad", "commanded roll, pitch, yaw"),
+    "rotation_command_rate": Variable(_TA, "rad s-1", "rate of commanded roll, pitch, yaw"),
+    "rotation_command_acceleration": Variable(_TA, "rad s-2", "acceleration of commanded roll, pitch, yaw"),
+}
+
+_LEGS = {
+    "leg_length_command": Variable(_TL, "m", "joint-to-joint length of the rigid leg"),
+    "leg_length": Variable(_TL, "m", "joint-to-joint length of the flexible leg"),
+    "leg_stroke": Variable(_TL, "m", "reference length: driven end of the piston plus its unstrained length"),
+    "leg_angle": Variable(("time", "leg", "joint_angle"), "rad", "angles of the universal joint, zero at home"),
+    "actuator_force_rigid": Variable(_TL, "N", "force of the drive on the piston, rigid robot (Newton-Euler)"),
+    "actuator_force": Variable(_TL, "N", "force of the drive on the piston, positive pushes out"),
+    "tip_deflection": Variable(("time", "leg", "direction"), "m", "tip of the piston from the cylinder's axis"),
+    "lateral_amplitude": Variable(("time", "leg", "direction", "shape"), "m", "amplitude of a lateral shape"),
+    "axial_amplitude": Variable(("time", "leg", "axial_shape"), "m", "amplitude of an axial shape"),
+    "joint_force": Variable(("time", "leg", "axis"), "N", "force of the leg on the platform, world axes"),
+    "joint_force_rigid": Variable(
+        ("time", "leg", "axis"), "N", "force of the leg on the platform, world axes, rigid robot (Newton-Euler)"
+    ),
+    "base_force_rigid": Variable(("time", "leg", "axis"), "N", "force of the base on the leg, world axes, rigid robot"),
+    "base_moment_rigid": Variable(
+        ("time", "leg", "axis"), "N m", "moment of the base on the leg at the universal joint, rigid robot"
+    ),
+    "leg_length_rate": Variable(_TL, "m s-1", "rate of the joint-to-joint length of the rigid leg"),
+    "leg_length_acceleration": Variable(_TL, "m s-2", "acceleration of the joint-to-joint length of the rigid leg"),
+    "leg_angle_rigid": Variable(("time", "leg", "joint_angle"), "rad", "angles of the universal joint, rigid robot"),
+}
+
+_ENERGY = {
+    "energy_kinetic": Variable(_T, "J", "kinetic energy"),
+    "energy_potential": Variable(_T, "J", "potential energy of gravity, zero at the base plane"),
+    "energy_strain": Variable(_T, "J", "strain energy of legs and drive springs"),
+    "energy_dissipated": Variable(_T, "J", "energy dissipated since the start"),
+    "work_drive": Variable(_T, "J", "work of the drives since the start"),
+    "work_external": Variable(_T, "J", "work of the external load since the start"),
+    "closure_residual": Variable(_T, "m", "largest gap between a leg's tip and its joint on the platform"),
+}
+
+_STATIC = {
+    "frequency": Variable(("mode",), "Hz", "undamped natural frequency"),
+    "damping_ratio": Variable(("mode",), "1", "damping ratio"),
+    "kind": Variable(("mode",), "1", "what mostly moves"),
+    "platform_shape": Variable(
+        ("mode", "component"), "1", "motion of the centre of mass [m] and rotation [rad] of the platform"
+    ),
+    "leg_shape": Variable(
+        ("mode", "leg", "direction", "station"), "1", "lateral displacement of the leg from the line of its joints [m]"
+    ),
+    "leg_stretch": Variable(("mode", "leg"), "1", "change of the joint-to-joint length [m]"),
+    "stiffness": Variable(("load", "component"), "mixed", "stiffness at the tool [N m-1, N, N m], world axes"),
+    "stiffness_share": Variable(
+        ("leg", "load", "component"), "mixed", "share of a leg in the stiffness at the tool [N m-1, N, N m]"
+    ),
+    "platform_position": Variable(("axis",), "m", "origin of the platform frame"),
+    "com_sag": Variable(("axis",), "m", "displacement of the centre of mass by gravity and load"),
+}
+
+_ACTUATOR = {
+    "length": Variable(_T, "m", "length of the beam outside the hub"),
+    "angle": Variable(_T, "rad", "angle of the hub from the horizontal"),
+    "length_rate": Variable(_T, "m s-1", "rate of the length outside the hub"),
+    "angle_rate": Variable(_T, "rad s-1", "rate of the angle of the hub"),
+    "mode_amplitude": Variable(("time", "mode"), "m", "amplitude of a lateral shape"),
+    "tip_position": Variable(("time", "plane_axis"), "m", "tip in the plane of motion"),
+    "torque": Variable(_T, "N m", "torque on the hub"),
+    "force": Variable(_T, "N", "axial force on the beam, positive pushes out"),
+}
+
+#: Every variable of every Dataset, by name.
+VARIABLES: Mapping[str, Variable] = {**_PATH, **_COMMAND, **_LEGS, **_ENERGY, **_STATIC, **_ACTUATOR}
+
+#: The actuator's own form of variables that a robot has per leg or with another zero.
+ACTUATOR_FORMS = {
+    "tip_deflection": Variable(_T, "m", "deflection of the tip in the hub frame"),
+    "energy_potential": Variable(_T, "J", "potential energy of gravity, zero at the pivot"),
+    "energy_strain": Variable(_T, "J", "strain energy of the beam"),
+}
+
+
+def dataset(
+    values: Mapping[str, Array],
+    coords: Mapping[str, Array] | None = None,
+    attrs: Mapping[str, object] | None = None,
+    forms: Mapping[str, Variable] | None = None,
+) -> Dataset:
+    """Dataset of named arrays; dimensions, units and long names come from the table.
+
+    Parameters
+    ----------
+    values : mapping
+        Arrays by name.
+    coords : mapping, optional
+        Labels of `time`, `mode`, `station` where these dimensions occur.
+    attrs : mapping, optional
+        Attributes of the whole Dataset.
+    forms : mapping, optional
+        Entries that replace those of `VARIABLES`.
+    """
+    import xarray as xr
+
+    table = {**VARIABLES, **(forms or {})}
+    data = {}
+    for name, array in values.items():
+        dims, units, long_name = table[name]
+        data[name] = (dims, array, {"units": units, "long_name": long_name})
+    used = {dim for dims, _, _ in data.values() for dim in dims}
+    labels = {
+        dim: ((dim,), given, {"long_name": words}) for dim, (given, words) in COORDINATES.items() if dim in used
+    }
+    for dim, given in (coords or {}).items():
+        labels[dim] = ((dim,), given, _COORDINATE_ATTRS.get(dim, {}))
+    return xr.Dataset(data, coords=labels, attrs=dict(attrs or {}))
+
+
+_COORDINATE_ATTRS = {
+    "time": {"units": "s", "long_name": "time"},
+    "mode": {"long_name": "mode"},
+    "shape": {"long_name": "lateral shape"},
+    "axial_shape": {"long_name": "axial shape"},
+    "station": {"units": "1", "long_name": "position along the leg: 0 universal joint, 1 tip"},
+}

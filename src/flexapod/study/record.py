@@ -1,0 +1,92 @@
+"""What is kept of a time integration: the stored quantities of each chunk, nothing else."""
+
+from __future__ import annotations
+
+import time
+from collections.abc import Callable, Iterable
+from dataclasses import dataclass
+
+import numpy as np
+
+from flexapod.errors import ComputationError
+from flexapod.solve.march import Chunk
+from flexapod.typing import Array
+
+__all__ = ["Progress", "Record", "collect"]
+
+#: Called with the simulated time reached and the whole simulated time [s].
+Progress = Callable[[float, float], None]
+
+
+@dataclass(frozen=True, kw_only=True)
+class Record:
+    """Quantities at T stored instants, axis 0 = time.
+
+    ``q`` (T, legs, n) leg coordinates; ``rate`` (T, legs, 2) rates of l and beta; ``turn`` (T, 3) angular velocity in
+    platform axes; ``lam``, ``drive``, ``pose``, ``energy``, ``sums``, ``closure`` as in `solve.plant.Recording`.
+    ``failure``: why the integration stopped early, in words, or None; ``interrupted``: by the user.
+    """
+
+    time: Array
+    q: Array
+    rate: Array
+    turn: Array
+    lam: Array
+    drive: Array
+    pose: Array
+    energy: Array
+    sums: Array
+    closure: Array
+    smallest_step: float
+    largest_error: float
+    wall_time: float
+    failure: ComputationError | None
+    interrupted: bool
+
+
+_ARRAYS = ("time", "q", "rate", "turn", "lam", "drive", "pose", "energy", "sums", "closure")
+
+
+def collect(chunks: Iterable[Chunk], l_index: int, duration: float, progress: Progress | None) -> Record:
+    """Run a time integration to its end, to its failure, or until the user interrupts it.
+
+    Raises
+    ------
+    ComputationError, KeyboardInterrupt
+        If nothing beyond the start had been computed.
+    """
+    parts: dict[str, list[Array]] = {name: [] for name in _ARRAYS}
+    steps, errors, begin = [np.inf], [0.0], time.perf_counter()
+    failure, interrupted = None, False
+    try:
+        for chunk in chunks:
+            for name, array in _kept(chunk, l_index).items():
+                parts[name].append(array)
+            steps.append(chunk.step)
+            errors.append(chunk.error)
+            if progress is not None:
+                progress(float(chunk.recording.time[-1]), duration)
+    except ComputationError as error:
+        failure = error
+    except KeyboardInterrupt:
+        interrupted = True
+    if len(parts["time"]) < 2 and (failure or interrupted):
+        raise failure or KeyboardInterrupt
+    return Record(
+        **{name: np.concatenate(arrays) for name, arrays in parts.items()},
+        smallest_step=min(steps),
+        largest_error=max(errors),
+        wall_time=time.perf_counter() - begin,
+        failure=failure,
+        interrupted=interrupted,
+    )
+
+
+def _kept(chunk: Chunk, l_index: int) -> dict[str, Array]:
+    r = chunk.recording
+    legs, n = r.q.shape[1:]
+    rates = r.v[:, : legs * n].reshape(len(r.time), legs, n)
+    kept = {name: getattr(r, name) for name in ("time", "q", "lam", "drive", "pose", "energy", "sums", "closure")}
+    kept["rate"] = rates[:, :, [l_index, l_index - 1]]
+    kept["turn"] = r.v[:, legs * n + 3 : legs * n + 6]
+    return {name: np.array(array) for name, array in kept.items()}  # copies: views would keep the whole chunk

@@ -1,0 +1,144 @@
+"""Simulations: a study in, a Dataset out."""
+
+from __future__ import annotations
+
+from typing import TYPE_CHECKING
+
+from flexapod import model, rigid
+from flexapod.errors import InputError
+from flexapod.solve.robot_march import RobotMarch, prepare
+from flexapod.study.arguments import LoadLike, StartLike, as_study, overridden
+from flexapod.study.attributes import attributes, march_attributes
+from flexapod.study.checks import check_path
+from flexapod.study.names import dataset
+from flexapod.study.plausibility import robot_warnings
+from flexapod.study.record import Progress, Record, collect
+from flexapod.study.results import robot_coords, robot_results
+
+if TYPE_CHECKING:
+    from xarray import Dataset
+
+__all__ = ["Interrupted", "run", "simulate"]
+
+
+class Interrupted(KeyboardInterrupt):
+    """The user stopped a simulation; `dataset` holds what was computed, marked as partial."""
+
+    def __init__(self, dataset: Dataset) -> None:
+        self.dataset = dataset
+        super().__init__(f"stopped at t = {float(dataset.time[-1]):.6g} s")
+
+
+def simulate(
+    robot: model.Robot | model.Study,
+    motion: model.Motion | None = None,
+    *,
+    load: LoadLike = None,
+    initial: StartLike = None,
+    fidelity: str | None = None,
+    modes: int | None = None,
+    axial_modes: int | None = None,
+    basis: str | None = None,
+    tolerance: float | None = None,
+    step: float | None = None,
+    duration: float | None = None,
+    output_step: float | None = None,
+    rho_inf: float | None = None,
+    progress: Progress | None = None,
+) -> Dataset:
+    """Motion of a robot with elastic legs against the rigid one.
+
+    Parameters
+    ----------
+    robot : Robot or Study
+        A robot with its motion, or a whole study.
+    motion : Motion, optional
+        In place of the study's.
+    load : Load, wrench or array_like (6,), optional
+        Fx Fy Fz [N], Mx My Mz [N m] at the tool, world axes, or a law; in place of the study's.
+    initial : str or Initial, optional
+        "equilibrium", "straight" or "moving"; in place of the study's.
+    fidelity, modes, axial_modes, basis, tolerance, step, duration, output_step, rho_inf : optional
+        In place of those of [simulation]; times in s.
+    progress : callable, optional
+        Called with simulated and whole time [s].
+
+    Returns
+    -------
+    xarray.Dataset
+        The variables of the table `study.names`, SI units. ``partial = 1`` in the attributes if the integration
+        stopped before its end; ``failure`` then says why.
+
+    Raises
+    ------
+    InputError
+        The path leaves a stroke, pulls a piston out or is singular; settings do not fit.
+    ComputationError
+        There is no equilibrium to start from, or the first steps fail.
+    Interrupted
+        By Ctrl-C, with what was computed.
+    """
+    settings = {
+        "fidelity": fidelity, "modes": modes, "axial_modes": axial_modes, "basis": basis, "tolerance": tolerance,
+        "step": step, "duration": duration, "output_step": output_step, "rho_inf": rho_inf,
+    }  # fmt: skip
+    study = overridden(as_study(robot, motion, load, initial), settings)
+    return _simulated(study, progress)  # type: ignore[arg-type]
+
+
+def run(
+    study: model.Study | model.ActuatorStudy, *, progress: Progress | None = None, **settings: object
+) -> Dataset:
+    """Rigid and flexible results of a study, of a robot or of a single actuator.
+
+    Parameters
+    ----------
+    study : Study or ActuatorStudy
+        From `flexapod.load` or `flexapod.preset`.
+    progress : callable, optional
+        Called with simulated and whole time [s].
+    **settings
+        As in `simulate`, in place of those of [simulation].
+
+    Returns
+    -------
+    xarray.Dataset
+
+    Raises
+    ------
+    InputError, ComputationError, Interrupted
+        As `simulate`.
+    """
+    changed = overridden(study, settings)
+    if isinstance(changed, model.ActuatorStudy):
+        from flexapod.study.actuator import simulate_actuator
+
+        return simulate_actuator(changed, progress=progress)
+    if not isinstance(changed, model.Study):
+        raise InputError("is no study", key="study", value=type(study).__name__, allowed="the result of flexapod.load")
+    return _simulated(changed, progress)
+
+
+def _simulated(study: model.Study, progress: Progress | None) -> Dataset:
+    remarks = check_path(study)
+    march = prepare(study)
+    record = collect(march.chunks, march.system.kernel.shapes.l_index, study.duration, progress)
+    result = _robot_dataset(study, march, record, remarks)
+    if record.interrupted:
+        raise Interrupted(result)
+    return result
+
+
+def _robot_dataset(study: model.Study, march: RobotMarch, record: Record, remarks: list[str]) -> Dataset:
+    values = robot_results(study, march.system, record)
+    path = rigid.poses(study.robot, study.motion, record.time)
+    forces = rigid.inverse_dynamics(study.robot, path, rigid.wrench(study.load, record.time))
+    values["actuator_force_rigid"] = forces.actuator_force
+    values["joint_force_rigid"] = forces.joint_force
+    warnings = [*study.warnings, *remarks, *robot_warnings(study.robot, march.system, record)]
+    attrs = {
+        **attributes(study, warnings),
+        **march_attributes(study, march.counters, record, compiled=march.system.kernel.library is not None),
+        "impact_energy": march.impact,
+    }
+    return dataset(values, robot_coords(march.system, record), attrs)

@@ -1,0 +1,88 @@
+"""The compiled march with leg-by-leg elimination against the dense twin in NumPy, in every limit of the leg."""
+
+import numpy as np
+import pytest
+from tests.runs import paper_robot, with_legs
+
+from flexapod.model import ForceDrive, PrescribedDrive, ServoDrive, override, preset
+from flexapod.solve import interpreted, native
+from flexapod.solve.actuator_march import prepare_actuator
+from flexapod.solve.plant import Counters
+from flexapod.solve.robot_march import _flow, _plant, _tables, prepare
+from flexapod.solve.tables import command_law
+
+DRIVES = {
+    "prescribed": PrescribedDrive(),
+    "servo": ServoDrive(stiffness=2e7, damping=1e3),
+    "force": ForceDrive(law="rigid", feedback={"stiffness": 1e6, "damping": 1e3}),
+}
+FIDELITIES = [
+    ("rigid", 3, 2),
+    ("lumped", 3, 1),
+    ("assumed-modes", 2, 0),
+    ("assumed-modes", 2, 2),
+    ("assumed-modes", 1, 1),
+]
+
+
+def bare(leg):
+    """No cylinder: mass, inertia and mouth zero."""
+    return leg.replace(cylinder=leg.cylinder.replace(mass=0.0, com=0.0, inertia=0.0, mouth=0.0))
+
+
+def study_for(fidelity, modes, axial_modes, drive, cylinder):
+    study = with_legs(
+        paper_robot(start="moving"), lambda leg: leg.replace(drive=DRIVES[drive], axial_modes=axial_modes)
+    )
+    if not cylinder:
+        study = with_legs(study, lambda leg: bare(leg).replace(piston=leg.piston.replace(length=1.2)))
+    settings = {"modes": modes} if fidelity == "assumed-modes" else {}
+    return override(study, fidelity=fidelity, step=1e-3, duration=0.02, **settings)
+
+
+@pytest.mark.parametrize("cylinder", [True, False], ids=["cylinder", "bare"])
+@pytest.mark.parametrize("drive", DRIVES)
+@pytest.mark.parametrize(("fidelity", "modes", "axial_modes"), FIDELITIES)
+def test_elimination_equals_the_dense_system(fidelity, modes, axial_modes, drive, cylinder):
+    study = study_for(fidelity, modes, axial_modes, drive, cylinder)
+    prepared = prepare(study)
+    plant, flow = _plant(prepared.system), _flow(prepared.start)
+    tables = _tables(command_law(study.robot, study.motion, study.load)(np.arange(11) * 1e-3))
+    method = replace_method(study)
+    flow, _ = native.first_record(plant, flow, *tables)
+    fast = native.advance(plant, method, flow, 1e-3, tables, 1, Counters())
+    slow = interpreted.advance(plant, method, flow, 1e-3, tables, 1, Counters())
+    assert fast.status == slow.status == 0
+    # Both end their Newton iterations at rounding; index 3 magnifies it by 1/h^2 = 1e6 in accelerations and forces.
+    for name, atol in (("q", 1e-12), ("pose", 1e-12), ("v", 1e-9), ("lam", 1e-4), ("drive", 1e-4)):
+        np.testing.assert_allclose(
+            getattr(fast.flow, name), getattr(slow.flow, name), rtol=1e-8, atol=atol, err_msg=name
+        )
+
+
+def replace_method(study):
+    from flexapod.solve.genalpha import GeneralizedAlpha
+
+    return GeneralizedAlpha(study.simulation.rho_inf)
+
+
+@pytest.mark.parametrize("driven", [False, True])
+def test_single_actuator_equals_its_twin(driven):
+    study = override(preset("paper-actuator"), step=1e-3, duration=0.05)
+    if driven:
+        study = study.replace(
+            motion=study.motion.replace(rotation=None, extension=None),
+            load=study.load.replace(torque={"law": "constant", "value": 3.0}, force={"law": "constant", "value": -2.0}),
+        )
+    prepared = prepare_actuator(study)
+    plant = prepared.plant
+    from flexapod.solve.actuator_march import _tables as actuator_tables
+
+    tables = actuator_tables(study)(np.arange(51) * 1e-3)
+    fast = native.advance(plant, replace_method(study), prepared.start, 1e-3, tables, 1, Counters())
+    slow = interpreted.advance(plant, replace_method(study), prepared.start, 1e-3, tables, 1, Counters())
+    for name in ("q", "v", "drive"):
+        # The free system has no constraint to magnify rounding; Newton ends at 1e-10 of the largest force.
+        np.testing.assert_allclose(
+            getattr(fast.flow, name), getattr(slow.flow, name), rtol=1e-7, atol=1e-9, err_msg=name
+        )

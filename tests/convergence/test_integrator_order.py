@@ -1,0 +1,48 @@
+"""Order two of positions, velocities and multipliers of the flexible robot over the whole of a smooth motion."""
+
+from itertools import pairwise
+
+import numpy as np
+import pytest
+from tests.runs import paper_robot, run_robot
+
+from flexapod.model import override
+
+STEPS = (2e-3, 1e-3, 5e-4, 2.5e-4)
+
+
+@pytest.fixture(scope="module")
+def runs():
+    # C-infinity law from equilibrium: the stiff axial modes follow quasi-statically and are no part of the error.
+    study = override(paper_robot(profile="smooth"), fidelity="lumped", output_step=4e-3, duration=1.2)
+    return [run_robot(override(study, step=h)) for h in STEPS]
+
+
+@pytest.mark.parametrize("name", ["pose", "v", "lam", "drive"])
+def test_second_order(runs, name):
+    # Successive differences need no reference solution: they fall by 4 when the error is h^2.
+    difference = [np.abs(a[name] - b[name]).max() for a, b in pairwise(runs)]
+    np.testing.assert_allclose(np.log2(np.array(difference[:-1]) / difference[1:]), 2.0, atol=0.1)
+
+
+def test_second_order_with_assumed_modes():
+    study = override(paper_robot(profile="smooth"), output_step=4e-3, duration=1.2)
+    runs = [run_robot(override(study, step=h)) for h in STEPS]
+    for name in ("pose", "v", "lam"):
+        difference = [np.abs(a[name] - b[name]).max() for a, b in pairwise(runs)]
+        np.testing.assert_allclose(np.log2(np.array(difference[:-1]) / difference[1:]), 2.0, atol=0.1)
+    assert max(run["closure"].max() for run in runs) < 1e-10
+
+
+def test_tolerance_is_kept():
+    # The estimated error of the step doubling bounds the true one (measured against a fine fixed step).
+    study = paper_robot(duration=0.5, modes=2)
+    reference = run_robot(override(study, step=2e-5, output_step=1e-3))
+    from flexapod import rigid
+
+    path = rigid.poses(study.robot, study.motion, reference["time"])
+    com = path.position + path.rotation @ study.robot.payload.com
+    peak = np.abs(reference["pose"][:, :3] - com).max()
+    for tolerance in (1e-2, 1e-3, 1e-4):
+        run = run_robot(override(study, tolerance=tolerance))
+        assert np.abs(run["pose"][:, :3] - reference["pose"][:, :3]).max() < tolerance * peak
