@@ -67,6 +67,12 @@ class ActuatorMotion(Frozen):
     extension: MotionLaw | None = RateLaw(rate=0.0)
 
     @property
+    def rate_jumps(self) -> tuple[float, ...]:
+        """Instants after t = 0 at which a prescribed rate jumps [s]."""
+        laws = (self.rotation, self.extension)
+        return tuple(sorted({law.duration for law in laws if law is not None and law.law == "linear"}))
+
+    @property
     def end_time(self) -> float | None:
         """When the last law with an end has reached it [s]; None where a constant rate never ends."""
         ends = []

@@ -15,7 +15,7 @@ from flexapod.typing import Array
 __all__ = ["AXES", "PROFILES", "AxisMotion", "CombinedMotion", "CsvMotion", "Motion", "Waypoint", "WaypointMotion"]
 
 Axis = Literal["surge", "sway", "heave", "roll", "pitch", "yaw"]
-Profile = Literal["quintic", "cycloidal", "s-curve", "trapezoid", "smooth"]
+Profile = Literal["quintic", "cycloidal", "s-curve", "trapezoid", "smooth", "linear"]
 AXES: tuple[Axis, ...] = get_args(Axis)
 PROFILES: tuple[Profile, ...] = get_args(Profile)
 _ORIGIN = (0.0, 0.0, 0.0)
@@ -49,6 +49,11 @@ class AxisMotion(Frozen):
         """End of the motion with its hold [s]."""
         return self.duration + self.hold
 
+    @property
+    def rate_jumps(self) -> tuple[float, ...]:
+        """Instants after t = 0 at which the command's rate jumps [s]."""
+        return (self.duration,) if self.profile == "linear" else ()
+
 
 class CombinedMotion(Frozen):
     """Several axes at once with one profile: `amplitudes` by axis name [m or rad]."""
@@ -76,6 +81,11 @@ class CombinedMotion(Frozen):
     def end_time(self) -> float:
         """End of the motion with its hold [s]."""
         return self.duration + self.hold
+
+    @property
+    def rate_jumps(self) -> tuple[float, ...]:
+        """Instants after t = 0 at which the command's rate jumps [s]."""
+        return (self.duration,) if self.profile == "linear" else ()
 
 
 class Waypoint(Frozen):
@@ -141,6 +151,11 @@ class WaypointMotion(Frozen):
         """End of the motion with its hold [s]."""
         return self.points[-1].time + self.hold
 
+    @property
+    def rate_jumps(self) -> tuple[float, ...]:
+        """Instants after t = 0 at which the command's rate jumps [s]."""
+        return tuple(self.times[1:].tolist()) if self.profile == "linear" else ()
+
 
 class CsvMotion(Frozen):
     """A table of poses: `time` (n,) [s], from 0, and `pose` (n, 6) relative to home, read from `file`.
@@ -164,6 +179,11 @@ class CsvMotion(Frozen):
     def end_time(self) -> float:
         """End of the table with its hold [s]."""
         return float(self.time[-1]) + self.hold
+
+    @property
+    def rate_jumps(self) -> tuple[float, ...]:
+        """A table is followed smoothly: no jumps."""
+        return ()
 
 
 Motion = Annotated[AxisMotion | CombinedMotion | WaypointMotion | CsvMotion, Field(discriminator="type")]

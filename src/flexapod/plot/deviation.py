@@ -7,7 +7,7 @@ import xarray as xr
 from matplotlib.axes import Axes
 from matplotlib.figure import Figure
 
-from flexapod.plot.style import LEG_COLORS, Scale, figure, mark_end, scale, styled
+from flexapod.plot.style import Scale, figure, mark_end, scale, styled
 from flexapod.study.scene import motion_end
 
 __all__ = ["CAUSE_WORDS", "deviation_by_cause"]
@@ -53,11 +53,15 @@ def deviation_by_cause(data: xr.Dataset) -> Figure:
 
 
 def _by_leg(axes: Axes, parts: xr.DataArray, total: xr.DataArray, small: Scale, axis: str) -> None:
-    """Bars: what each leg contributes at the instant of the largest deviation."""
+    """Stacked bars: what each leg contributes, cause by cause, at the instant of the largest deviation."""
     at = int(np.abs(total.values).argmax())
-    values = small(parts.isel(time=at).sum("cause"))
-    legs = np.arange(1, len(values) + 1)
-    axes.bar(legs, values, color=LEG_COLORS, width=0.7)
+    legs = np.arange(1, parts.sizes["leg"] + 1)
+    above, below = np.zeros(len(legs)), np.zeros(len(legs))
+    for cause in parts.cause.values:
+        values = small(parts.isel(time=at).sel(cause=cause))
+        base = np.where(values >= 0, above, below)
+        axes.bar(legs, values, bottom=base, color=_COLORS.get(str(cause)), width=0.7)
+        above, below = above + np.maximum(values, 0), below + np.minimum(values, 0)
     axes.axhline(0, color="#555555", linewidth=0.7)
     axes.set_xticks(legs)
     axes.grid(axis="x", visible=False)

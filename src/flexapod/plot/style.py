@@ -132,7 +132,7 @@ def mark_end(axes: Axes, instant: float | None, text: str = "") -> None:
     axes.axvline(instant, color="#888888", linewidth=0.8, linestyle=(0, (2, 2)), zorder=0)
     if text:
         place = {"xycoords": ("data", "axes fraction"), "textcoords": "offset points"}
-        axes.annotate(text, (instant, 1.0), xytext=(4, -3), va="top", fontsize=8, color="#555555", **place)
+        axes.annotate(text, (instant, 1.0), xytext=(4, 3), va="bottom", fontsize=8, color="#555555", **place)
 
 
 def save(fig: Figure, stem: str | Path, *, dpi: int = 160) -> tuple[Path, Path]:

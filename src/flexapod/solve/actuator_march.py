@@ -11,7 +11,7 @@ from flexapod.errors import ComputationError
 from flexapod.model import Actuator, ActuatorStudy, Simulation
 from flexapod.solve.genalpha import GeneralizedAlpha
 from flexapod.solve.kernel import kernel
-from flexapod.solve.march import Chunk, Problem, march
+from flexapod.solve.march import Chunk, Problem, march, restart_outputs
 from flexapod.solve.parameters import actuator_parameters
 from flexapod.solve.plant import TABLE, Counters, Flow, Plant, Recording
 
@@ -85,8 +85,9 @@ def prepare_actuator(
         outputs=round(study.duration / output_step),
         measure=lambda recording: _measure(plant, recording),
         defect=lambda flow, t, ratio: flow,
+        restart=lambda flow, t, h: _after_impact(plant, law, method, flow, t, h),
+        restarts=restart_outputs(study.motion.rate_jumps, output_step),
         check=lambda recording: _check(study.actuator, recording),
-        step=simulation.step,
         tolerance=simulation.tolerance,
     )
     return ActuatorMarch(plant=plant, start=start, step=h, chunks=march(problem, start, h, counters), counters=counters)
@@ -144,12 +145,29 @@ def _start(
     v[2:] = 0.0 if rates is None else rates
     zero = np.zeros(plant.n)
     flow = Flow(q=q, v=v, v_dot=zero, a=zero, lam=np.zeros((1, 3)), drive=np.zeros((1, 2)), pose=np.zeros(7))
-    flow = _accelerated(plant, flow, row)
+    return _prepared(plant, law, method, flow, 0.0, h)
+
+
+def _prepared(plant: Plant, law: Law, method: GeneralizedAlpha, flow: Flow, now: float, h: float) -> Flow:
+    """Flow with accelerations, drive forces and the integrator's a for the step h, Eq. (T6.13)."""
+    flow = _accelerated(plant, flow, law(np.array([now]))[0][0])
     t = min(1e-3 * h, 1e-6)
-    ahead = replace(flow, q=q + t * flow.v + 0.5 * t**2 * flow.v_dot, v=flow.v + t * flow.v_dot)
-    jerk = (_accelerated(plant, ahead, law(np.array([t]))[0][0]).v_dot - flow.v_dot) / t
+    ahead = replace(flow, q=flow.q + t * flow.v + 0.5 * t**2 * flow.v_dot, v=flow.v + t * flow.v_dot)
+    jerk = (_accelerated(plant, ahead, law(np.array([now + t]))[0][0]).v_dot - flow.v_dot) / t
     a = np.where(plant.held, flow.v_dot, flow.v_dot + method.delta * h * jerk)
     return replace(flow, a=a)
+
+
+def _after_impact(plant: Plant, law: Law, method: GeneralizedAlpha, flow: Flow, now: float, h: float) -> Flow:
+    """Flow after a jump in a prescribed rate: free rates change by the impulse balance, Eq. (T9.5)."""
+    row, p, held = law(np.array([now]))[0][0], plant.leg_p[0], plant.held
+    M = plant.kernel.leg_matrices(flow.q[0], np.zeros(3), p)[0]
+    v = flow.v.copy()
+    v[:2] = np.where(held[:2], [row[5], row[1]], v[:2])
+    v[~held] -= np.linalg.solve(M[np.ix_(~held, ~held)], M[np.ix_(~held, held)] @ (v - flow.v)[held])
+    work = 0.5 * (v @ M @ v - flow.v @ M @ flow.v)
+    moved = replace(flow, v=v, sums=flow.sums + np.array([0.0, work, 0.0]))
+    return _prepared(plant, law, method, moved, now, h)
 
 
 def _accelerated(plant: Plant, x: Flow, row: Array) -> Flow:

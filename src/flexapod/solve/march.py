@@ -6,7 +6,7 @@ from dataclasses import dataclass, replace
 import numpy as np
 from numpy.typing import NDArray
 
-from flexapod.errors import ComputationError
+from flexapod.errors import ComputationError, InputError
 from flexapod.solve import interpreted, native
 from flexapod.solve.genalpha import GeneralizedAlpha
 from flexapod.solve.plant import Counters, Flow, Plant, Recording, unpack
@@ -30,7 +30,8 @@ class Problem:
 
     ``tables(t)`` gives (len(t), legs * 8) and (len(t), 6); ``measure`` the quantities whose error is controlled, as
     groups (T, ...) with a common scale each; ``defect(flow, t, ratio)`` rescales what index 3 keeps in the velocities
-    when the step changes.
+    when the step changes; ``restart(flow, t, h)`` passes the impact of a jump in the commanded rate at the end of the
+    output intervals in ``restarts``.
     """
 
     plant: Plant
@@ -40,8 +41,9 @@ class Problem:
     outputs: int
     measure: Measure
     defect: Callable[[Flow, float, float], Flow]
+    restart: Callable[[Flow, float, float], Flow]
+    restarts: tuple[int, ...]
     check: Callable[[Recording], None]
-    step: float | None
     tolerance: float | None
 
 
@@ -52,6 +54,25 @@ class Chunk:
     recording: Recording
     error: float
     step: float
+
+
+def restart_outputs(jumps: tuple[float, ...], output_step: float) -> tuple[int, ...]:
+    """Output intervals at whose ends the command's rate jumps.
+
+    Raises
+    ------
+    InputError
+        A jump between two output instants.
+    """
+    for t in jumps:
+        if abs(t / output_step - round(t / output_step)) > 1e-6:
+            raise InputError(
+                f"jumps in rate at t = {t:g} s, which is no output instant",
+                key="motion.profile",
+                value="linear",
+                allowed=f"instants that are multiples of simulation.output_step = {output_step:g} s",
+            )
+    return tuple(round(t / output_step) for t in jumps)
 
 
 def march(problem: Problem, start: Flow, first_step: float, counters: Counters) -> Iterator[Chunk]:
@@ -69,10 +90,12 @@ def march(problem: Problem, start: Flow, first_step: float, counters: Counters) 
     control = _Control(problem, counters, first_step, [np.abs(x).max(initial=0.0) for x in problem.measure(first)])
     done = 0
     while done < problem.outputs:
-        count = min(CHUNK, problem.outputs - done)
-        flow, chunk = control.advance(flow, done, count)
+        stop = min([done + CHUNK, problem.outputs, *(r for r in problem.restarts if r > done)])
+        flow, chunk = control.advance(flow, done, stop - done)
         problem.check(chunk.recording)
-        done += count
+        done = stop
+        if done in problem.restarts and done < problem.outputs:
+            flow = _restarted(problem, flow, done * problem.output_step, control.h)
         yield chunk
 
 
@@ -116,6 +139,8 @@ class _Control:
     def _run(self, flow: Flow, done: int, count: int, per_output: int) -> native.Advance:
         p, h = self.problem, self.problem.output_step / per_output
         t = np.asarray((done * per_output + np.arange(count * per_output + 1)) * h, dtype=float)
+        if done + count in p.restarts:
+            t[-1] -= 1e-12 * max(1.0, t[-1])  # the command's value before its jump
         if abs(h - self.h) > 1e-12 * h:
             flow = _rescaled(p, flow, float(t[0]), self.h, h)
         loop = native.advance if p.plant.kernel.library else interpreted.advance
@@ -140,6 +165,12 @@ class _Control:
         self.scales = [max(s, float(np.abs(x).max(initial=0.0))) for s, x in zip(self.scales, b, strict=True)]
         groups = zip(a, b, self.scales, strict=True)
         return max(float(np.abs(x - y).max(initial=0.0)) / max(s, 1e-9) for x, y, s in groups)
+
+
+def _restarted(problem: Problem, flow: Flow, t: float, h: float) -> Flow:
+    """Flow after the impact of a jump in the commanded rate at time t, with the powers of the new motion."""
+    table, wrench = problem.tables(np.array([t]))
+    return _first_record(problem.plant, problem.restart(flow, t, h), table, wrench)[0]
 
 
 def _first_record(plant: Plant, flow: Flow, table: Array, wrench: Array) -> tuple[Flow, Array]:

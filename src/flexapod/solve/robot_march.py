@@ -11,7 +11,7 @@ from flexapod.errors import ComputationError
 from flexapod.model import Study
 from flexapod.solve.equilibrium import equilibrium
 from flexapod.solve.genalpha import GeneralizedAlpha
-from flexapod.solve.march import Chunk, Problem, march
+from flexapod.solve.march import Chunk, Problem, march, restart_outputs
 from flexapod.solve.modes import refuse_pure_force
 from flexapod.solve.plant import TABLE, Counters, Flow, Plant, Recording
 from flexapod.solve.rotation import matrix
@@ -65,17 +65,18 @@ def prepare(study: Study, state: State | None = None) -> RobotMarch:
     step = _first_step(simulation.step, simulation.output_step)
     state = _configuration(study, system, commands) if state is None else state
     start = consistent_start(system, state, commands, method, step)
-    plant, counters = _plant(system), Counters()
+    plant, counters, output_step = _plant(system), Counters(), max(simulation.output_step, step)
     problem = Problem(
         plant=plant,
         method=method,
         tables=lambda t: _tables(law(t)),
-        output_step=max(simulation.output_step, step),
-        outputs=round(study.duration / max(simulation.output_step, step)),
+        output_step=output_step,
+        outputs=round(study.duration / output_step),
         measure=lambda recording: _measure(study, plant, recording),
         defect=lambda flow, t, ratio: _rescaled_defect(system, flow, law(np.array([t])), ratio),
+        restart=lambda flow, t, h: _after_impact(system, flow, law(np.array([t])), method, h),
+        restarts=restart_outputs(study.motion.rate_jumps, output_step),
         check=lambda recording: _check(study, plant, recording),
-        step=simulation.step,
         tolerance=simulation.tolerance,
     )
     chunks = march(problem, _flow(start), step, counters)
@@ -141,10 +142,19 @@ def _measure(study: Study, plant: Plant, recording: Recording) -> list[Array]:
     return [np.concatenate([recording.pose[:, :3] - com, skew], axis=1), recording.q[:, :, lateral:]]
 
 
+def _after_impact(system: RobotSystem, flow: Flow, commands: Commands, method: GeneralizedAlpha, h: float) -> Flow:
+    """Flow after a jump in the commanded rates; the drives do the work of the impact."""
+    start = consistent_start(system, _state(flow), commands, method, h)
+    return replace(_flow(start), sums=flow.sums + np.array([0.0, start.impact, 0.0]))
+
+
+def _state(flow: Flow) -> State:
+    return State(q=flow.q, pose=flow.pose, v=flow.v, v_dot=flow.v_dot, lam=flow.lam, drive=flow.drive[:, 0])
+
+
 def _rescaled_defect(system: RobotSystem, flow: Flow, commands: Commands, ratio: float) -> Flow:
     """Velocities whose part normal to the closures is scaled by ``ratio``, Eq. (T6.14)."""
-    state = State(q=flow.q, pose=flow.pose, v=flow.v, v_dot=flow.v_dot, lam=flow.lam, drive=flow.drive[:, 0])
-    m = system.matrices(state, commands.wrench[0])
+    m = system.matrices(_state(flow), commands.wrench[0])
     return replace(flow, v=flow.v + (ratio - 1.0) * normal_velocity(system, m, flow.v))
 
 

@@ -28,7 +28,8 @@ def consistent_start(
     """Make a configuration that satisfies the closures a start of the time integration with step ``h`` [s].
 
     Velocities are projected on the constraints in the mass metric (an impact, if the command jumps in rate);
-    accelerations and multipliers solve the equations of motion; the integrator's start values follow Arnold, Bruls & Cardona (2015).
+    accelerations and multipliers solve the equations of motion; the integrator's start values follow Arnold, Bruls &
+    Cardona (2015).
     """
     m = system.matrices(state, commands.wrench[0])
     moving, impact = _impact(system, state, m, commands)

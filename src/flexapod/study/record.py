@@ -5,6 +5,7 @@ from __future__ import annotations
 import time
 from collections.abc import Callable, Iterable
 from dataclasses import dataclass
+from typing import TYPE_CHECKING
 
 import numpy as np
 
@@ -12,10 +13,21 @@ from flexapod.errors import ComputationError
 from flexapod.solve.march import Chunk
 from flexapod.typing import Array
 
-__all__ = ["Progress", "Record", "collect"]
+if TYPE_CHECKING:
+    from xarray import Dataset
+
+__all__ = ["Interrupted", "Progress", "Record", "collect", "finished"]
 
 #: Called with the simulated time reached and the whole simulated time [s].
 Progress = Callable[[float, float], None]
+
+
+class Interrupted(KeyboardInterrupt):
+    """The user stopped a simulation; `dataset` holds what was computed, marked as partial."""
+
+    def __init__(self, dataset: Dataset) -> None:
+        self.dataset = dataset
+        super().__init__(f"stopped at t = {float(dataset.time[-1]):.6g} s")
 
 
 @dataclass(frozen=True, kw_only=True)
@@ -90,3 +102,10 @@ def _kept(chunk: Chunk, l_index: int) -> dict[str, Array]:
     kept["rate"] = rates[:, :, [l_index, l_index - 1]]
     kept["turn"] = r.v[:, legs * n + 3 : legs * n + 6]
     return {name: np.array(array) for name, array in kept.items()}  # copies: views would keep the whole chunk
+
+
+def finished(result: Dataset, record: Record) -> Dataset:
+    """The result; raised as `Interrupted` if the user stopped it."""
+    if record.interrupted:
+        raise Interrupted(result)
+    return result

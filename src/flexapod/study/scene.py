@@ -11,25 +11,25 @@ from flexapod import model, rigid
 from flexapod.rigid.trajectory import coordinates
 from flexapod.typing import Array
 
-__all__ = ["Scene", "bent", "motion_coordinates", "motion_end", "scene", "study_of"]
+__all__ = ["Scene", "mode_scene", "motion_coordinates", "motion_end", "scene", "study_of"]
 
 STATIONS = 25  # points of a drawn piston
 
 
 @dataclass(frozen=True, kw_only=True)
 class Scene:
-    """Points of a robot in the world [m]: joints (6, 3), cylinder mouths (6, 3), piston lines (6, n, 3), CoM, centre.
-
-    `magnified` says by which factor lateral deflections are drawn larger than they are.
-    """
+    """Points of a robot in the world [m]: joints (6, 3), leg lines from cylinder mouth to tip (6, n, 3), CoM, centre (3,)."""
 
     base: Array
     platform: Array
-    mouth: Array
     piston: Array
     com: Array
     centre: Array
-    magnified: float = 1.0
+
+    @property
+    def mouth(self) -> Array:
+        """Mouths of the cylinders, (6, 3)."""
+        return self.piston[:, 0]
 
 
 def study_of(data: xr.Dataset) -> model.Study | model.ActuatorStudy:
@@ -58,8 +58,8 @@ def motion_coordinates(data: xr.Dataset) -> xr.Dataset:
     return xr.Dataset(parts, coords={"time": data.time, "coordinate": list(model.AXES)})
 
 
-def scene(data: xr.Dataset, time: float = 0.0, magnify: float | None = None) -> Scene:
-    """The robot of a result at an instant [s].
+def scene(data: xr.Dataset, time: float = 0.0, magnify: float = 1.0) -> Scene:
+    """The robot of a result at an instant.
 
     Parameters
     ----------
@@ -67,40 +67,77 @@ def scene(data: xr.Dataset, time: float = 0.0, magnify: float | None = None) -> 
         Result of a simulation, with its study in the attributes.
     time : float
         Instant [s]; the nearest output is taken.
-    magnify : float, optional
-        Factor on lateral deflections; None draws them as they are.
+    magnify : float
+        Factor on lateral deflections of the pistons.
     """
     robot, at = study_of(data).robot, data.sel(time=time, method="nearest")
     R = _matrix(at.platform_quaternion.values)
     com = at.com_position.values
     centre = com - R @ robot.payload.com
-    tip = at.tip_deflection.values if "tip_deflection" in at else np.zeros((6, 2))
-    zeta = np.linspace(0.0, 1.0, STATIONS)
+    length = np.linalg.norm(centre + robot.platform_joints @ R.T - robot.base_joints, axis=1)
+    tip, zeta = magnify * at.tip_deflection.values, np.linspace(0.0, 1.0, STATIONS)
     shape = 0.5 * (3 * zeta**2 - zeta**3)  # of a cantilever under a force at its tip
-    factor = 1.0 if magnify is None else magnify
-    return bent(robot, centre, R, com, factor * tip[:, :, None] * shape, factor)
+    off_chord = shape - _along(robot, length)[:, None] / length[:, None, None]
+    return _scene(robot, centre, R, com, tip[:, :, None] * off_chord)
 
 
-def bent(robot: model.Robot, centre: Array, R: Array, com: Array, lateral: Array, magnified: float = 1.0) -> Scene:
-    """Scene of a pose with lateral deflections (6, 2, n) of the pistons from their cylinders' axes, mouth to tip.
+def mode_scene(modes: xr.Dataset, mode: int, size: float, phase: float = 1.0) -> Scene:
+    """The robot displaced in one of its modes.
 
-    The joints stay where the pose puts them: a cylinder turns as far as its piston's tip is off its axis.
+    Parameters
+    ----------
+    modes : xarray.Dataset
+        Result of `flexapod.modes`.
+    mode : int
+        Label on the `mode` dimension.
+    size : float
+        Largest displacement drawn [m].
+    phase : float
+        Between -1 and 1; 0 is the robot at rest.
     """
+    robot, shape = study_of(modes).robot, modes.sel(mode=mode)
+    R = _matrix(modes.platform_quaternion.values)
+    centre = modes.platform_position.values
+    arms = np.vstack([robot.platform_joints, robot.payload.com]) @ R.T
+    step, turn = shape.platform_shape.values[:3], shape.platform_shape.values[3:]
+    platform = step + np.cross(turn, arms - R @ robot.payload.com)
+    lateral = shape.leg_shape.values
+    largest = max(np.linalg.norm(platform, axis=1).max(), np.linalg.norm(lateral, axis=1).max(), 1e-30)
+    factor = phase * size / largest
+    turned = _rotation(factor * turn) @ R
+    com = centre + R @ robot.payload.com + factor * step
+    centre = com - turned @ robot.payload.com
+    length = np.linalg.norm(centre + robot.platform_joints @ turned.T - robot.base_joints, axis=1)
+    place = _along(robot, length) / length[:, None]
+    station = modes.station.values
+    offset = np.array([[np.interp(place[i], station, row) for row in rows] for i, rows in enumerate(lateral)])
+    return _scene(robot, centre, turned, com, factor * offset)
+
+
+def _along(robot: model.Robot, length: Array) -> Array:
+    """Distances of the drawn points from the universal joint, mouth to tip, (6, n) [m]."""
+    mouth = np.array([leg.cylinder.mouth for leg in robot.legs])
+    return mouth[:, None] + (length - mouth)[:, None] * np.linspace(0.0, 1.0, STATIONS)
+
+
+def _scene(robot: model.Robot, centre: Array, R: Array, com: Array, offset: Array) -> Scene:
+    """Scene of a pose whose legs are off the lines of their joints by `offset` (6, 2, n) [m]."""
     base, platform = robot.base_joints, centre + robot.platform_joints @ R.T
     chord = platform - base
     length = np.linalg.norm(chord, axis=1)
     axis = chord / length[:, None]
     frames = rigid.home_frames(robot)
-    alpha, beta = rigid.joint_angles(frames, axis[None])
-    turned = rigid.leg_rotations(frames, alpha, beta)[0]
-    mouth = np.array([leg.cylinder.mouth for leg in robot.legs])
-    place = mouth[:, None] + (length - mouth)[:, None] * np.linspace(0.0, 1.0, lateral.shape[2])
-    offset = lateral - (place / length[:, None])[:, None] * lateral[:, :, -1:]
+    turned = rigid.leg_rotations(frames, *rigid.joint_angles(frames, axis[None]))[0]
     across = np.einsum("ixd,idn->inx", turned[:, :, :2], offset)
-    lines = base[:, None] + place[:, :, None] * axis[:, None] + across
-    return Scene(
-        base=base, platform=platform, mouth=lines[:, 0], piston=lines, com=com, centre=centre, magnified=magnified
-    )
+    lines = base[:, None] + _along(robot, length)[:, :, None] * axis[:, None] + across
+    return Scene(base=base, platform=platform, piston=lines, com=com, centre=centre)
+
+
+def _rotation(vector: Array) -> Array:
+    """Rotation matrix (3, 3) of a rotation vector [rad]."""
+    angle = float(np.linalg.norm(vector))
+    axis = vector / angle if angle > 0 else vector
+    return _matrix(np.concatenate([[np.cos(angle / 2)], np.sin(angle / 2) * axis]))
 
 
 def _matrix(quaternion: Array) -> Array:

@@ -7,26 +7,19 @@ from typing import TYPE_CHECKING
 from flexapod import model, rigid
 from flexapod.errors import InputError
 from flexapod.solve.robot_march import RobotMarch, prepare
+from flexapod.study.actuator import simulate_actuator
 from flexapod.study.arguments import LoadLike, StartLike, as_study, overridden
 from flexapod.study.attributes import attributes, march_attributes
 from flexapod.study.checks import check_path
 from flexapod.study.names import dataset
 from flexapod.study.plausibility import robot_warnings
-from flexapod.study.record import Progress, Record, collect
+from flexapod.study.record import Progress, Record, collect, finished
 from flexapod.study.results import robot_coords, robot_results
 
 if TYPE_CHECKING:
     from xarray import Dataset
 
-__all__ = ["Interrupted", "run", "simulate"]
-
-
-class Interrupted(KeyboardInterrupt):
-    """The user stopped a simulation; `dataset` holds what was computed, marked as partial."""
-
-    def __init__(self, dataset: Dataset) -> None:
-        self.dataset = dataset
-        super().__init__(f"stopped at t = {float(dataset.time[-1]):.6g} s")
+__all__ = ["run", "simulate"]
 
 
 def simulate(
@@ -86,9 +79,7 @@ def simulate(
     return _simulated(study, progress)  # type: ignore[arg-type]
 
 
-def run(
-    study: model.Study | model.ActuatorStudy, *, progress: Progress | None = None, **settings: object
-) -> Dataset:
+def run(study: model.Study | model.ActuatorStudy, *, progress: Progress | None = None) -> Dataset:
     """Rigid and flexible results of a study, of a robot or of a single actuator.
 
     Parameters
@@ -97,8 +88,6 @@ def run(
         From `flexapod.load` or `flexapod.preset`.
     progress : callable, optional
         Called with simulated and whole time [s].
-    **settings
-        As in `simulate`, in place of those of [simulation].
 
     Returns
     -------
@@ -109,24 +98,18 @@ def run(
     InputError, ComputationError, Interrupted
         As `simulate`.
     """
-    changed = overridden(study, settings)
-    if isinstance(changed, model.ActuatorStudy):
-        from flexapod.study.actuator import simulate_actuator
-
-        return simulate_actuator(changed, progress=progress)
-    if not isinstance(changed, model.Study):
+    if isinstance(study, model.ActuatorStudy):
+        return simulate_actuator(study, progress=progress)
+    if not isinstance(study, model.Study):
         raise InputError("is no study", key="study", value=type(study).__name__, allowed="the result of flexapod.load")
-    return _simulated(changed, progress)
+    return _simulated(study, progress)
 
 
 def _simulated(study: model.Study, progress: Progress | None) -> Dataset:
     remarks = check_path(study)
     march = prepare(study)
     record = collect(march.chunks, march.system.kernel.shapes.l_index, study.duration, progress)
-    result = _robot_dataset(study, march, record, remarks)
-    if record.interrupted:
-        raise Interrupted(result)
-    return result
+    return finished(_robot_dataset(study, march, record, remarks), record)
 
 
 def _robot_dataset(study: model.Study, march: RobotMarch, record: Record, remarks: list[str]) -> Dataset:

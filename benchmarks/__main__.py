@@ -1,0 +1,86 @@
+"""`python -m benchmarks`: medians of repeated runs on one core, against the figures this project promises."""
+
+import os
+import statistics
+import subprocess
+import sys
+import tempfile
+import time
+from collections.abc import Callable
+
+from flexapod.model import override, preset
+from flexapod.solve.actuator_march import prepare_actuator
+from flexapod.solve.robot_march import prepare
+
+REPEATS = 7
+
+
+def one_core() -> None:
+    """Pin this process and its children to one core, where the system can."""
+    if hasattr(os, "sched_setaffinity"):
+        os.sched_setaffinity(0, {min(os.sched_getaffinity(0))})
+
+
+def median(action: Callable[[], float], repeats: int = REPEATS) -> float:
+    return statistics.median(action() for _ in range(repeats))
+
+
+def roll(fidelity: str, **settings: object) -> tuple[float, int]:
+    """Seconds and steps of the 2 s roll of `paper-robot` at step 0.5 ms, kernel compiled, start included."""
+    study = override(preset("paper-robot"), fidelity=fidelity, step=5e-4, **settings)
+    begin = time.perf_counter()
+    run = prepare(study)
+    for _ in run.chunks:
+        pass
+    return time.perf_counter() - begin, run.counters.steps
+
+
+def actuator() -> float:
+    """Seconds for 10 s of `paper-actuator`, three shapes, tolerance 1e-4."""
+    begin = time.perf_counter()
+    for _ in prepare_actuator(preset("paper-actuator")).chunks:
+        pass
+    return time.perf_counter() - begin
+
+
+def command(*arguments: str, **environment: str) -> float:
+    """Seconds of a whole command as a user types it."""
+    begin = time.perf_counter()
+    subprocess.run(
+        [sys.executable, "-m", "flexapod", *arguments],
+        check=True, stdout=subprocess.DEVNULL, stderr=subprocess.DEVNULL, env=os.environ | environment,
+    )  # fmt: skip
+    return time.perf_counter() - begin
+
+
+def cold() -> float:
+    """Seconds from nothing to a finished roll in a new process, its kernel compiled for the first time."""
+    code = (
+        "from flexapod.model import override, preset\n"
+        "from flexapod.solve.robot_march import prepare\n"
+        "list(prepare(override(preset('paper-robot'), step=5e-4)).chunks)\n"
+    )
+    with tempfile.TemporaryDirectory() as folder:
+        begin = time.perf_counter()
+        subprocess.run([sys.executable, "-c", code], check=True, env=os.environ | {"FLEXAPOD_CACHE": folder})
+        return time.perf_counter() - begin
+
+
+def main() -> None:
+    """Print the table."""
+    one_core()
+    for settings in ({"fidelity": "assumed-modes", "modes": 3}, {"fidelity": "lumped"}, {"fidelity": "rigid"}):
+        roll(**settings)  # warm
+        times = [roll(**settings) for _ in range(REPEATS)]
+        seconds, steps = statistics.median(t for t, _ in times), times[0][1]
+        name = settings["fidelity"] + (f", k = {settings['modes']}" if "modes" in settings else "")
+        goal = "at most 0.2 s, 50 us a step" if "modes" in settings else ""
+        print(f"2 s roll at 0.5 ms, {name:22s} {seconds:8.3f} s {1e6 * seconds / steps:7.1f} us a step   {goal}")
+    actuator()
+    print(f"10 s actuator, k = 3, tolerance 1e-4        {median(actuator):8.3f} s")
+    print(f"cold start to finished roll (compiles)      {median(cold, 3):8.3f} s                     at most 15 s")
+    print(f"flexapod --help                             {median(lambda: command('--help')):8.3f} s                     at most 0.5 s")
+
+
+if __name__ == "__main__":
+    main()

@@ -1,0 +1,28 @@
+"""Figures from Datasets: each call takes a result and returns a matplotlib figure; `save` writes PNG and SVG."""
+
+from flexapod.plot.actuator import actuator_modes, actuator_response
+from flexapod.plot.deviation import deviation_by_cause
+from flexapod.plot.energy import energies
+from flexapod.plot.legs import actuator_forces, leg_lengths, tip_deflections
+from flexapod.plot.motion import motion_law
+from flexapod.plot.paths import com_path
+from flexapod.plot.robot3d import modes_3d, robot_3d
+from flexapod.plot.style import save
+from flexapod.plot.sweeps import half_angles, start_jump
+
+__all__ = [
+    "actuator_forces",
+    "actuator_modes",
+    "actuator_response",
+    "com_path",
+    "deviation_by_cause",
+    "energies",
+    "half_angles",
+    "leg_lengths",
+    "modes_3d",
+    "motion_law",
+    "robot_3d",
+    "save",
+    "start_jump",
+    "tip_deflections",
+]

@@ -1,0 +1,95 @@
+"""The single actuator: response of its tip, convergence with the number of shapes, amplitudes of the shapes."""
+
+from __future__ import annotations
+
+from collections.abc import Mapping
+
+import numpy as np
+import xarray as xr
+from matplotlib.axes import Axes
+from matplotlib.figure import Figure
+
+from flexapod.plot.style import FLEXIBLE, LEG_COLORS, LINE_STYLES, RIGID, figure, scale, styled
+
+__all__ = ["actuator_modes", "actuator_response"]
+
+
+@styled
+def actuator_response(data: xr.Dataset | Mapping[int, xr.Dataset]) -> Figure:
+    """Tip deflection over time; with several numbers of shapes also how far each is from the finest.
+
+    Parameters
+    ----------
+    data : xarray.Dataset, or mapping of number of shapes to xarray.Dataset
+        Results of `flexapod.simulate_actuator` on the same output instants.
+    """
+    series = dict(sorted(data.items())) if isinstance(data, Mapping) else {int(data.attrs.get("modes", 0)): data}
+    counts = list(series)
+    finest = series[counts[-1]]
+    rows = 3 if len(series) > 1 else 2
+    fig = figure(7.6, 2.5 * rows)
+    panels = fig.subplots(rows, 1, sharex=True, height_ratios=(1.6, 1.1, 0.8)[:rows] if rows == 3 else (1.6, 0.8))
+    _responses(panels[0], series)
+    if len(series) > 1:
+        _differences(panels[1], series)
+    length = panels[-1]
+    length.plot(finest.time, finest.length, color="#333333")
+    length.set_ylabel("free length [m]")
+    length.set_title("Length outside the hub")
+    length.set_xlabel("time [s]")
+    fig.align_ylabels(panels)
+    return fig
+
+
+def _responses(axes: Axes, series: Mapping[int, xr.Dataset]) -> None:
+    unit = scale(xr.concat([d.tip_deflection for d in series.values()], dim="k"), "m")
+    for i, (count, d) in enumerate(series.items()):
+        last = i == len(series) - 1
+        style = {"color": RIGID, "linewidth": 5} if last and len(series) > 1 else {"color": LEG_COLORS[i], "zorder": 3}
+        style |= {"linestyle": LINE_STYLES[len(series) - 2 - i]} if not last else {}
+        axes.plot(d.time, unit(d.tip_deflection), label=f"{count} shape{'s' if count > 1 else ''}", **style)
+    axes.axhline(0, color="#555555", linewidth=0.7)
+    axes.set_title("Lateral deflection of the tip, in the frame of the hub")
+    axes.set_ylabel(f"deflection [{unit.name}]")
+    if len(series) > 1:
+        axes.legend(ncols=len(series), loc="upper left")
+        axes.margins(y=0.18)
+
+
+def _differences(axes: Axes, series: Mapping[int, xr.Dataset]) -> None:
+    counts = list(series)
+    finest = series[counts[-1]].tip_deflection
+    for i, count in enumerate(counts[:-1]):
+        gap = 1e6 * np.abs(series[count].tip_deflection - finest)
+        style = LINE_STYLES[len(counts) - 2 - i]
+        axes.semilogy(finest.time, np.maximum(gap, 1e-6), color=LEG_COLORS[i], linestyle=style, linewidth=1.0)
+        place = {"xycoords": ("axes fraction", "data"), "textcoords": "offset points", "va": "center"}
+        level = float(gap[1:].max())
+        axes.annotate(f"{count}: {level:.2g} µm", (1.0, level), xytext=(4, 0), color=LEG_COLORS[i], fontsize=8.5, **place)
+    axes.set_title(f"Distance from the result with {counts[-1]} shapes (right: the largest)")
+    axes.set_ylabel("difference [µm]")
+    axes.set_ylim(bottom=1e-3)
+
+
+@styled
+def actuator_modes(data: xr.Dataset) -> Figure:
+    """Amplitude of each lateral shape over time, each on its own scale.
+
+    Parameters
+    ----------
+    data : xarray.Dataset
+        Result of `flexapod.simulate_actuator`, with `mode_amplitude` (time, mode).
+    """
+    labels = data.mode.values
+    fig = figure(7.6, 1.2 + 1.5 * len(labels))
+    panels = np.atleast_1d(fig.subplots(len(labels), 1, sharex=True))
+    for axes, label in zip(panels, labels, strict=True):
+        values = data.mode_amplitude.sel(mode=label)
+        unit = scale(values, "m")
+        axes.plot(data.time, unit(values), color=FLEXIBLE, linewidth=1.0)
+        axes.axhline(0, color="#555555", linewidth=0.7)
+        axes.set_title(f"Shape {label}")
+        axes.set_ylabel(f"amplitude [{unit.name}]")
+    panels[-1].set_xlabel("time [s]")
+    fig.align_ylabels(panels)
+    return fig

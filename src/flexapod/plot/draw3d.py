@@ -1,0 +1,100 @@
+"""Drawing a robot in space: base, cylinders, pistons, platform, payload."""
+
+from __future__ import annotations
+
+from collections.abc import Sequence
+from typing import Any
+
+import numpy as np
+from matplotlib.figure import Figure
+from mpl_toolkits.mplot3d.art3d import Line3DCollection, Poly3DCollection
+
+from flexapod.plot.style import LEG_COLORS
+from flexapod.study.scene import Scene
+
+__all__ = ["draw_ghost", "draw_robot", "space", "view"]
+
+CYLINDER = "#8A8F98"
+BASE = "#4A4F57"
+PLATFORM = "#2F6690"
+
+
+def space(fig: Figure, place: tuple[int, int, int] | Any, *, turn: float = -62, tilt: float = 16) -> Any:
+    """3D axes with equal scales on all three directions, seen from `turn` and `tilt` [deg]."""
+    axes = fig.add_subplot(place, projection="3d", computed_zorder=False)
+    axes.set_proj_type("ortho")
+    axes.view_init(elev=tilt, azim=turn)
+    for axis in (axes.xaxis, axes.yaxis, axes.zaxis):
+        axis.set_pane_color((1, 1, 1, 0))
+        axis._axinfo["grid"].update(color="#E4E4E4", linewidth=0.6)
+    return axes
+
+
+def view(axes: Any, scenes: Sequence[Scene], zoom: float = 1.0) -> None:
+    """Limits that hold all scenes, in equal scale, with world axes in mm."""
+    points = np.concatenate([np.vstack([s.base, s.platform, s.com[None]]) for s in scenes])
+    low, high = points.min(axis=0), points.max(axis=0)
+    low, high = low - 0.06 * (high - low).max(), high + 0.06 * (high - low).max()
+    low[2] = min(low[2], 0.0)
+    axes.set(xlim=1e3 * np.array([low[0], high[0]]), ylim=1e3 * np.array([low[1], high[1]]))
+    axes.set_zlim(1e3 * low[2], 1e3 * high[2])
+    axes.set_box_aspect(high - low, zoom=zoom)
+    for axis in (axes.xaxis, axes.yaxis, axes.zaxis):
+        axis.get_major_locator().set_params(nbins=4)
+    axes.tick_params(labelsize=7.5, pad=0)
+    axes.set_xlabel("x [mm]", fontsize=8.5, labelpad=0)
+    axes.set_ylabel("y [mm]", fontsize=8.5, labelpad=0)
+    axes.set_zlabel("z [mm]", fontsize=8.5, labelpad=2)
+
+
+def draw_robot(axes: Any, s: Scene, *, numbers: bool = True, legs: Sequence[str] = LEG_COLORS) -> None:
+    """Draw a robot: grey cylinders, coloured pistons, translucent platform, payload's centre of mass as a cross-hair."""
+    _plate(axes, s.base, BASE, 0.12)
+    for i in range(6):
+        _line(axes, s.base[i], s.mouth[i], color=CYLINDER, linewidth=6, zorder=3)
+        x, y, z = 1e3 * s.piston[i].T
+        axes.plot(x, y, z, color=legs[i], linewidth=2.6, solid_capstyle="round", zorder=4)
+        if numbers:
+            outward = s.base[i] * np.array([1.12, 1.12, 0.0]) + np.array([0, 0, s.base[i, 2]])
+            axes.text(*(1e3 * outward), str(i + 1), fontsize=8, color=legs[i], ha="center", va="center", zorder=9)
+    _plate(axes, s.platform, PLATFORM, 0.35)
+    _dots(axes, s.base, BASE, 14)
+    _dots(axes, s.platform, PLATFORM, 18)
+    _line(axes, s.centre, s.com, color="#333333", linewidth=1.2, linestyle=(0, (4, 2)), zorder=6)
+    x, y, z = 1e3 * s.com
+    axes.plot([x], [y], [z], marker="o", markersize=11, color="white", markeredgecolor="#333333", zorder=7)
+    axes.plot([x], [y], [z], marker="+", markersize=10, color="#333333", zorder=8)
+
+
+def draw_ghost(axes: Any, s: Scene) -> None:
+    """Draw a robot in pale lines, for comparison."""
+    segments = [1e3 * np.vstack([s.base[i][None], s.piston[i]]) for i in range(6)]
+    axes.add_collection3d(Line3DCollection(segments, colors="#BDBDBD", linewidths=1.0, zorder=1))
+    loop = s.platform[_around(s.platform)]
+    closed = 1e3 * np.vstack([loop, loop[:1]])
+    axes.plot(*closed.T, color="#BDBDBD", linewidth=1.0, zorder=1)
+    axes.plot(*(1e3 * s.com[:, None]), marker="o", markersize=6, color="#BDBDBD", zorder=1)
+    axes.plot(*(1e3 * np.stack([s.centre, s.com]).T), color="#BDBDBD", linewidth=1.0, zorder=1)
+
+
+def _around(points: np.ndarray) -> np.ndarray:
+    """Order of coplanar points around their centre."""
+    arms = points - points.mean(axis=0)
+    _, _, directions = np.linalg.svd(arms)
+    flat = arms @ directions[:2].T
+    return np.argsort(np.arctan2(flat[:, 1], flat[:, 0]))
+
+
+def _plate(axes: Any, points: np.ndarray, color: str, alpha: float) -> None:
+    polygon = 1e3 * points[_around(points)]
+    axes.add_collection3d(Poly3DCollection([polygon], facecolors=color, alpha=alpha, edgecolors="none", zorder=2))
+    closed = np.vstack([polygon, polygon[:1]])
+    axes.plot(*closed.T, color=color, linewidth=1.6, zorder=5 if alpha > 0.2 else 2)
+
+
+def _dots(axes: Any, points: np.ndarray, color: str, size: float) -> None:
+    axes.scatter(*(1e3 * points.T), s=size, color=color, depthshade=False, zorder=6)
+
+
+def _line(axes: Any, start: np.ndarray, end: np.ndarray, **style: Any) -> None:
+    axes.plot(*(1e3 * np.stack([start, end]).T), solid_capstyle="butt", **style)

@@ -1,0 +1,81 @@
+"""The robot in space: at an instant of a result, and in its modes."""
+
+from __future__ import annotations
+
+from collections.abc import Sequence
+
+import numpy as np
+import xarray as xr
+from matplotlib.figure import Figure
+
+from flexapod.plot.draw3d import draw_ghost, draw_robot, space, view
+from flexapod.plot.style import figure, styled
+from flexapod.study.scene import mode_scene, motion_end, scene
+
+__all__ = ["modes_3d", "robot_3d"]
+
+
+@styled
+def robot_3d(data: xr.Dataset, time: float | None = None) -> Figure:
+    """The robot at an instant, with its pose at the start in pale lines: in space and seen along X.
+
+    Parameters
+    ----------
+    data : xarray.Dataset
+        Result of a simulation.
+    time : float, optional
+        Instant [s]; left out: the end of the motion.
+    """
+    if time is None:
+        time = motion_end(data)
+    time = float(data.time[-1] if time is None else data.time.sel(time=time, method="nearest"))
+    now, start = scene(data, time), scene(data, float(data.time[0]))
+    fig = figure(8.6, 4.9)
+    places = fig.add_gridspec(1, 2, width_ratios=(1.15, 1))
+    left, right = space(fig, places[0]), space(fig, places[1], turn=0, tilt=0)
+    for axes in (left, right):
+        draw_ghost(axes, start)
+        draw_robot(axes, now, numbers=axes is left)
+        view(axes, [now, start], zoom=1.15)
+    right.set_xticks([])
+    right.set_xlabel("")
+    left.set_title(f"At t = {time:.2f} s; pale: at the start")
+    right.set_title("Seen along X")
+    return fig
+
+
+@styled
+def modes_3d(modes: xr.Dataset, show: Sequence[int] | None = None, size: float = 0.1) -> Figure:
+    """Modes of the locked robot, drawn on it, with the robot at rest in pale lines.
+
+    Parameters
+    ----------
+    modes : xarray.Dataset
+        Result of `flexapod.modes`.
+    show : sequence of int, optional
+        Labels of the modes; left out: the first six.
+    size : float
+        Largest displacement drawn, as a share of the robot's height.
+    """
+    labels = [int(m) for m in (modes.mode.values[:6] if show is None else show)]
+    columns = min(3, len(labels))
+    rows = -(-len(labels) // columns)
+    fig = figure(3.2 * columns, 3.7 * rows)
+    rest = mode_scene(modes, labels[0], 1.0, phase=0.0)
+    height = float(np.ptp(np.vstack([rest.base, rest.platform])[:, 2]))
+    for i, label in enumerate(labels, start=1):
+        axes = space(fig, (rows, columns, i))
+        moved = mode_scene(modes, label, size * height)
+        draw_ghost(axes, rest)
+        draw_robot(axes, moved, numbers=True)
+        view(axes, [rest, moved], zoom=1.2)
+        axes.set(xlabel="", ylabel="", zlabel="")
+        axes.tick_params(labelbottom=False, labelleft=False, labelright=False)
+        axes.set_title(_title(modes.sel(mode=label), label), fontsize=9)
+    return fig
+
+
+def _title(mode: xr.Dataset, label: int) -> str:
+    damping = 100 * float(mode.damping_ratio)
+    kind = f"\n{mode.kind.item()}" if "kind" in mode else ""
+    return f"Mode {label}: {float(mode.frequency):.1f} Hz, damping {damping:.2g} %{kind}"

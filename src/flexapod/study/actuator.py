@@ -1,0 +1,146 @@
+"""The single planar actuator: a study in, a Dataset out."""
+
+from __future__ import annotations
+
+from typing import TYPE_CHECKING
+
+import numpy as np
+
+from flexapod import model, rigid
+from flexapod.errors import InputError
+from flexapod.solve.actuator_march import ActuatorMarch, prepare_actuator
+from flexapod.study.arguments import overridden
+from flexapod.study.attributes import attributes, march_attributes
+from flexapod.study.checks import check_actuator_path
+from flexapod.study.names import ACTUATOR_FORMS, dataset
+from flexapod.study.plausibility import actuator_warnings
+from flexapod.study.record import Progress, Record, collect, finished
+from flexapod.study.results import energy_results
+from flexapod.typing import Array
+
+if TYPE_CHECKING:
+    from xarray import Dataset
+
+__all__ = ["simulate_actuator"]
+
+
+def simulate_actuator(
+    actuator: model.Actuator | model.ActuatorStudy,
+    motion: model.ActuatorMotion | None = None,
+    *,
+    load: model.ActuatorLoad | None = None,
+    initial: model.ActuatorInitial | None = None,
+    fidelity: str | None = None,
+    modes: int | None = None,
+    basis: str | None = None,
+    tolerance: float | None = None,
+    step: float | None = None,
+    duration: float | None = None,
+    output_step: float | None = None,
+    rho_inf: float | None = None,
+    progress: Progress | None = None,
+) -> Dataset:
+    """Motion of a beam that slides out of a turning hub.
+
+    Parameters
+    ----------
+    actuator : Actuator or ActuatorStudy
+        An actuator with its motion (or load), or a whole study.
+    motion : ActuatorMotion, optional
+        In place of the study's.
+    load : ActuatorLoad, optional
+        Torque and axial force; a coordinate that is driven so must not be prescribed in `motion`.
+    initial : ActuatorInitial, optional
+        In place of the study's.
+    fidelity, modes, basis, tolerance, step, duration, output_step, rho_inf : optional
+        In place of those of [simulation]; times in s.
+    progress : callable, optional
+        Called with simulated and whole time [s].
+
+    Returns
+    -------
+    xarray.Dataset
+        `tip_deflection`, `length`, `angle`, `mode_amplitude`, energies, `torque`, `force` over time, SI units.
+        ``partial = 1`` in the attributes if the integration stopped before its end.
+
+    Raises
+    ------
+    InputError
+        The beam leaves its hub, or settings do not fit.
+    ComputationError
+        The first steps fail.
+    Interrupted
+        By Ctrl-C, with what was computed.
+    """
+    settings = {
+        "fidelity": fidelity, "modes": modes, "basis": basis, "tolerance": tolerance, "step": step,
+        "duration": duration, "output_step": output_step, "rho_inf": rho_inf,
+    }  # fmt: skip
+    study = _as_study(actuator, motion, load, initial, settings)
+    remarks = check_actuator_path(study)
+    march = prepare_actuator(study)
+    record = collect(march.chunks, march.plant.kernel.shapes.l_index, study.duration, progress)
+    warnings = [*study.warnings, *remarks, *actuator_warnings(study.actuator, march.plant.kernel.shapes.a, record)]
+    attrs = {
+        **attributes(study, warnings),
+        **march_attributes(study, march.counters, record, compiled=march.plant.kernel.library is not None),
+    }
+    count = march.plant.kernel.shapes.a.count
+    coords = {"time": record.time} | ({"mode": np.arange(1, count + 1)} if count else {})
+    return finished(dataset(_results(study, march, record), coords, attrs, ACTUATOR_FORMS), record)
+
+
+def _as_study(
+    actuator: model.Actuator | model.ActuatorStudy,
+    motion: model.ActuatorMotion | None,
+    load: model.ActuatorLoad | None,
+    initial: model.ActuatorInitial | None,
+    settings: dict[str, object],
+) -> model.ActuatorStudy:
+    given = {"motion": motion, "load": load, "initial": initial}
+    changes = {name: value for name, value in given.items() if value is not None}
+    if isinstance(actuator, model.ActuatorStudy):
+        changed = actuator.replace(**changes) if changes else actuator
+    elif isinstance(actuator, model.Actuator):
+        # A motion without an end of its own needs the duration before the study can be made.
+        known = {} if settings["duration"] is None else {"duration": settings["duration"]}
+        simulation = model.Simulation(basis="clamped-free", **known)
+        changed = model.ActuatorStudy(actuator=actuator, simulation=simulation, **changes)  # type: ignore[arg-type]
+    else:
+        raise InputError(
+            "is neither an actuator nor the study of one",
+            key="actuator",
+            value=type(actuator).__name__,
+            allowed="flexapod.load(FILE) or its .actuator",
+        )
+    return overridden(changed, settings)  # type: ignore[return-value]
+
+
+def _results(study: model.ActuatorStudy, march: ActuatorMarch, record: Record) -> dict[str, Array]:
+    q, shapes = record.q[:, 0], march.plant.kernel.shapes.a
+    beta, length, amplitudes = q[:, 0], q[:, 1], q[:, 2:]
+    deflection = amplitudes @ shapes.tip
+    return {
+        "tip_deflection": deflection,
+        "length": length - study.actuator.hub_radius,
+        "angle": beta,
+        "length_rate": record.rate[:, 0, 0],
+        "angle_rate": record.rate[:, 0, 1],
+        **({"mode_amplitude": amplitudes} if shapes.count else {}),
+        "tip_position": _tip(beta, length, deflection, amplitudes, shapes.slope_tip, study.actuator.hub_radius),
+        "force": _given_or_reaction(study.load.force, record, 0),
+        "torque": _given_or_reaction(study.load.torque, record, 1),
+        **energy_results(record),
+    }
+
+
+def _tip(beta: Array, length: Array, v: Array, a: Array, slopes: Array, hub: float) -> Array:
+    """Tip in the plane of motion, (T, 2) [m], with the foreshortening of the bent beam, Eqs. (T3.11), (T8.9)."""
+    along = length - 0.5 * np.einsum("ti,ij,tj->t", a, slopes, a) / (length - hub)
+    c, s = np.cos(beta), np.sin(beta)
+    return np.stack([along * c - v * s, along * s + v * c], axis=1)
+
+
+def _given_or_reaction(law: model.LoadLaw | None, record: Record, column: int) -> Array:
+    """The load where it drives the coordinate, else the reaction of the prescribed motion, (T,)."""
+    return record.drive[:, 0, column] if law is None else rigid.load_law(law, record.time)

@@ -1,0 +1,167 @@
+"""Checks of a path before anything is computed: strokes, pistons, universal joints, singularities, start."""
+
+from __future__ import annotations
+
+from dataclasses import dataclass
+
+import numpy as np
+
+from flexapod import rigid
+from flexapod.errors import InputError
+from flexapod.model import ActuatorStudy, Robot, Study
+from flexapod.rigid.kinematics import BETA_LIMIT
+from flexapod.rigid.workspace import LONGEST, PULLED_OUT, SHORTEST
+from flexapod.solve.robot_march import pure_force_legs
+from flexapod.typing import Array
+
+__all__ = ["NEAR_SINGULAR", "SINGULAR", "check_actuator_path", "check_path", "path_instants", "path_remarks"]
+
+SINGULAR = 1e-8  # smallest singular value of the scaled Jacobian below which a pose is refused
+NEAR_SINGULAR = 0.05  # and below which it is remarked on: leg forces and length errors are magnified about 20 times
+
+_KEYS = {SHORTEST: "leg.stroke.min", LONGEST: "leg.stroke.max", PULLED_OUT: "leg.piston.length"}
+
+
+@dataclass(frozen=True, kw_only=True)
+class _Path:
+    """A commanded path: instants (T,), poses, joint-to-joint lengths (T, 6)."""
+
+    t: Array
+    poses: rigid.Poses
+    length: Array
+
+
+def path_instants(study: Study | ActuatorStudy) -> Array:
+    """Instants at which a path is looked at [s]: those of the output, at least 2001, at most 50001."""
+    count = int(np.clip(round(study.duration / study.simulation.output_step), 2000, 50000))
+    return np.linspace(0.0, study.duration, count + 1)
+
+
+def check_path(study: Study) -> list[str]:
+    """Refuse a study whose path no robot could follow; return remarks on what is only doubtful.
+
+    Raises
+    ------
+    InputError
+        A leg leaves its stroke, a piston its cylinder, a universal joint folds, a pose is singular (smallest singular
+        value of the scaled Jacobian, Eq. (T2.24), below 1e-8 or a change of sign of its determinant), or a pure force
+        drive is to start from equilibrium.
+    """
+    try:
+        _refuse_start(study)
+        path = _sampled(study)
+        _refuse_excess(study.robot, path)
+        _refuse_folded(study.robot, path)
+        _refuse_singular(study.robot, path)
+    except InputError as error:
+        raise error.located(file=study.path) from None
+    return path_remarks(study.robot, path.t, path.poses)
+
+
+def path_remarks(robot: Robot, t: Array, poses: rigid.Poses) -> list[str]:
+    """Remarks on poses near a singularity and pistons that reach behind their universal joint."""
+    length = rigid.leg_lengths(robot.base_joints, robot.platform_joints, poses.position, poses.rotation)
+    remarks = [e.message for e in rigid.pull_out(robot, t, length) if not e.fatal]
+    found = rigid.singularity(robot, poses)
+    if found.smallest_singular_value.min() < NEAR_SINGULAR:
+        k = found.worst
+        remarks.append(
+            f"the path comes near a singular pose at t = {t[k]:.6g} s: smallest singular value "
+            f"{found.smallest_singular_value[k]:.3g} of the scaled Jacobian, condition {found.condition[k]:.3g} "
+            f"(remarked on below {NEAR_SINGULAR:g})"
+        )
+    return remarks
+
+
+def _sampled(study: Study) -> _Path:
+    t, robot = path_instants(study), study.robot
+    poses = rigid.poses(robot, study.motion, t)
+    length = rigid.leg_lengths(robot.base_joints, robot.platform_joints, poses.position, poses.rotation)
+    return _Path(t=t, poses=poses, length=length)
+
+
+def _refuse_start(study: Study) -> None:
+    free = pure_force_legs(study)
+    if study.initial.start == "equilibrium" and free:
+        raise InputError(
+            f"has no meaning for leg {free[0]}: a pure force drive holds no position, so nothing fixes its rest state",
+            key="initial.start",
+            value="equilibrium",
+            allowed='"straight" or "moving", or a feedback stiffness in the drive',
+        )
+
+
+def _refuse_excess(robot: Robot, path: _Path) -> None:
+    found = [*rigid.strokes(robot, path.t, path.length), *rigid.pull_out(robot, path.t, path.length)]
+    fatal = [e for e in found if e.fatal]
+    if not fatal:
+        return
+    worst = max(fatal, key=lambda e: abs(e.value - e.limit))
+    others = sorted({e.leg for e in fatal} - {worst.leg})
+    also = f"; so do legs {', '.join(map(str, others))}" if len(others) > 1 else f"; so does leg {others[0]}"
+    raise InputError(
+        worst.message.rstrip(".") + (also if others else ""),
+        key=_KEYS.get(worst.kind, "leg.cylinder.mouth"),
+        next_step="Reduce the motion, or change the limit named here",
+    )
+
+
+def _refuse_folded(robot: Robot, path: _Path) -> None:
+    tips = path.poses.point(robot.platform_joints)[0] - robot.base_joints
+    _, beta = rigid.joint_angles(rigid.home_frames(robot), tips / path.length[..., None])
+    if np.abs(beta).max() <= BETA_LIMIT:
+        return
+    k, leg = np.unravel_index(np.abs(beta).argmax(), beta.shape)
+    first = path.t[np.argmax(np.abs(beta[:, leg]) > BETA_LIMIT)]
+    raise InputError(
+        f"the universal joint of leg {leg + 1} folds to beta = {np.rad2deg(beta[k, leg]):.1f} deg at t = {path.t[k]:.6g} s "
+        f"(beyond the limit from t = {first:.6g} s on)",
+        key="leg.u_axis",
+        allowed="|beta| at most 85 deg",
+        next_step="Turn the universal joint's first axis (u_axis), or reduce the motion",
+    )
+
+
+def _refuse_singular(robot: Robot, path: _Path) -> None:
+    found = rigid.singularity(robot, path.poses)
+    k, words = found.worst, ""
+    if found.smallest_singular_value[k] < SINGULAR:
+        words = f"is singular at t = {path.t[k]:.6g} s"
+    elif len(found.sign_changes):
+        k = int(found.sign_changes[0])
+        words = f"passes through a singular pose between t = {path.t[k]:.6g} and {path.t[k + 1]:.6g} s"
+    if words:
+        raise InputError(
+            f"the path {words}: smallest singular value {found.smallest_singular_value[k]:.2g} of the scaled Jacobian",
+            key="motion",
+            allowed=f"at least {SINGULAR:g}, and no change of sign of its determinant",
+            next_step="There the legs cannot hold the platform: change the joints' places (half_angle) or the motion",
+        )
+
+
+def check_actuator_path(study: ActuatorStudy) -> list[str]:
+    """Refuse an extension law that pulls the beam wholly into the hub or out of it; no remarks where it is a result.
+
+    Raises
+    ------
+    InputError
+        The free length leaves (0, length] at an instant of the law.
+    """
+    actuator, law = study.actuator, study.motion.extension
+    if law is None:
+        return []
+    t = path_instants(study)
+    free = actuator.free_length + rigid.motion_law(law, t).position
+    for bad, words, limit in (
+        (free <= 0, "slides wholly into the hub", 0.0),
+        (free > actuator.length * (1 + 1e-12), "leaves the hub", actuator.length),
+    ):
+        if bad.any():
+            raise InputError(
+                f"the beam {words} at t = {t[np.argmax(bad)]:.6g} s: free length {free[np.argmax(bad)]:.6g} m, "
+                f"limit {limit:.6g} m",
+                file=study.path,
+                key="motion.extension",
+                next_step="Shorten simulation.duration, or change the law or actuator.free_length",
+            )
+    return []
