@@ -1,11 +1,11 @@
 """Jumps in the commanded rate are impacts: velocities jump consistently and the energy balance stays."""
 
 import numpy as np
+from tests.runs import balance, collect, paper_robot, run_actuator
 
 from flexapod import rigid
 from flexapod.model import override, preset
 from flexapod.solve.robot_march import prepare
-from tests.runs import balance, collect, paper_robot, run_actuator
 
 
 def first_instant(fidelity):

@@ -7,6 +7,7 @@ from typing import Any
 
 import numpy as np
 from matplotlib.figure import Figure
+from matplotlib.gridspec import SubplotSpec
 from mpl_toolkits.mplot3d.art3d import Line3DCollection, Poly3DCollection
 
 from flexapod.plot.style import LEG_COLORS
@@ -19,7 +20,7 @@ BASE = "#4A4F57"
 PLATFORM = "#2F6690"
 
 
-def space(fig: Figure, place: tuple[int, int, int] | Any, *, turn: float = -62, tilt: float = 16) -> Any:
+def space(fig: Figure, place: SubplotSpec, *, turn: float = -62, tilt: float = 16) -> Any:
     """3D axes with equal scales on all three directions, seen from `turn` and `tilt` [deg]."""
     axes = fig.add_subplot(place, projection="3d", computed_zorder=False)
     axes.set_proj_type("ortho")

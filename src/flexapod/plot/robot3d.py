@@ -61,10 +61,11 @@ def modes_3d(modes: xr.Dataset, show: Sequence[int] | None = None, size: float =
     columns = min(3, len(labels))
     rows = -(-len(labels) // columns)
     fig = figure(3.2 * columns, 3.7 * rows)
+    places = fig.add_gridspec(rows, columns)
     rest = mode_scene(modes, labels[0], 1.0, phase=0.0)
     height = float(np.ptp(np.vstack([rest.base, rest.platform])[:, 2]))
-    for i, label in enumerate(labels, start=1):
-        axes = space(fig, (rows, columns, i))
+    for i, label in enumerate(labels):
+        axes = space(fig, places[divmod(i, columns)])
         moved = mode_scene(modes, label, size * height)
         draw_ghost(axes, rest)
         draw_robot(axes, moved, numbers=True)

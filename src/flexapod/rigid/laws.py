@@ -11,9 +11,11 @@ from typing import NamedTuple
 
 import numpy as np
 from numpy.typing import ArrayLike, NDArray
-from scipy.interpolate import BSpline, make_interp_spline
 
 from flexapod.errors import InputError, closest
+
+if TYPE_CHECKING:
+    from scipy.interpolate import BSpline
 
 __all__ = ["PROFILES", "Law", "constant_rate", "rest_to_rest", "spin_up", "spline", "spline_law", "step"]
 
@@ -224,6 +226,8 @@ def spline(times: ArrayLike, values: ArrayLike) -> BSpline:
     times, values = np.asarray(times, dtype=float), np.asarray(values, dtype=float)
     zero = np.zeros(values.shape[1:])
     ends = [(1, zero), (2, zero)]
+    from scipy.interpolate import make_interp_spline  # half a second that only tables need
+
     return make_interp_spline(times, values, k=5, bc_type=(ends, ends))
 
 

@@ -121,7 +121,7 @@ def _step(
     for iteration in range(MAX_ITERATIONS + 1):
         r, g, powers = _residual(plant, x, row, wrench)
         force = max(1.0, np.abs(x.lam).max(initial=0.0), np.abs(x.drive).max(initial=0.0))
-        worst = max(np.abs(r).max() / force / TOL_FORCE, np.abs(g).max(initial=0.0) / TOL_CLOSURE)
+        worst = max(np.abs(r).max() / (TOL_FORCE * force + plant.force_floor), np.abs(g).max(initial=0.0) / TOL_CLOSURE)
         done = worst <= 1 or (iteration == MAX_ITERATIONS and worst < 100)
         if not np.isfinite(worst) or (iteration == MAX_ITERATIONS and not done):
             break

@@ -21,7 +21,10 @@ class _Settings(Structure):
         ("leg_p", _pointer),
         ("payload_p", _pointer),
         ("leg_np", c_long),
-        *[(name, c_double) for name in ("h", "alpha_m", "alpha_f", "beta", "gamma", "tol_closure", "tol_force")],
+        *[
+            (name, c_double)
+            for name in ("h", "alpha_m", "alpha_f", "beta", "gamma", "tol_closure", "tol_force", "force_floor")
+        ],
         *[(name, c_long) for name in ("max_iterations", "max_age", "output_every")],
     ]
 
@@ -57,7 +60,7 @@ def _settings(plant: Plant, method: GeneralizedAlpha, h: float, output_every: in
     return _Settings(
         plant.legs, plant.n, plant.kernel.shapes.l_index, int(plant.robot), _bits(plant.held_l), _bits(plant.held_beta),
         _address(plant.leg_p), _address(plant.payload_p), plant.leg_p.shape[1],
-        h, method.alpha_m, method.alpha_f, method.beta, method.gamma, TOL_CLOSURE, TOL_FORCE,
+        h, method.alpha_m, method.alpha_f, method.beta, method.gamma, TOL_CLOSURE, TOL_FORCE, plant.force_floor,
         MAX_ITERATIONS, MAX_AGE, output_every,
     )  # fmt: skip
 

@@ -5,6 +5,7 @@ from dataclasses import dataclass, field, replace
 import numpy as np
 from numpy.typing import NDArray
 
+from flexapod.mechanics.layout import LEG_PARAMETERS
 from flexapod.solve.kernel import Kernel
 
 Array = NDArray[np.float64]
@@ -44,6 +45,14 @@ class Plant:
     def size(self) -> int:
         """All coordinates."""
         return self.legs * self.n + (6 if self.robot else 0)
+
+    @property
+    def force_floor(self) -> float:
+        """Rounding of the stiffest spring's force [N]: what a residual cannot fall below at lengths of a metre."""
+        names = [name for name, size in LEG_PARAMETERS for _ in range(size)]
+        p = dict(zip(names, self.leg_p.T, strict=True))
+        stretch = p["EA"] / p["Lp"] * (self.kernel.shapes.axial.count > 0)
+        return float(8 * np.finfo(float).eps * np.maximum(stretch, p["drive_stiffness"]).max())
 
     @property
     def held(self) -> Mask:

@@ -23,8 +23,8 @@ class State:
     """State of a robot with n coordinates a leg.
 
     ``q``, (6, n): leg coordinates; ``pose``, (7,): CoM [m] and quaternion (w x y z); ``v``, ``v_dot``, (6 n + 6,):
-    rates of the legs, then CoM velocity (world) and angular velocity (platform axes); ``lam``, (6, 3): joint forces on the
-    platform, world axes [N]; ``drive``, (6,): force of each prescribed drive [N].
+    rates of the legs, then CoM velocity (world) and angular velocity (platform axes); ``lam``, (6, 3): joint forces
+    on the platform, world axes [N]; ``drive``, (6,): force of each prescribed drive [N].
     """
 
     q: Array

@@ -9,6 +9,7 @@ from flexapod import rigid
 from flexapod.model import Robot, Study
 from flexapod.rigid.trajectory import coordinates
 from flexapod.solve.parameters import drive_spring
+from flexapod.solve.rotation import matrix
 from flexapod.solve.system import RobotSystem
 from flexapod.solve.tables import Commands, command_law
 from flexapod.study.causes import deviation_by_cause, length_errors
@@ -64,7 +65,7 @@ def _payload_results(robot: Robot, path: rigid.Poses, record: Record) -> dict[st
 
 def _flexible_lengths(robot: Robot, record: Record) -> Array:
     """Joint-to-joint lengths of the flexible robot, (T, 6) [m], Eq. (T8.1)."""
-    R = Rotation.from_quat(record.pose[:, 3:], scalar_first=True).as_matrix()
+    R = matrix(record.pose[:, 3:])
     joints = robot.platform_joints - robot.payload.com
     return rigid.leg_lengths(robot.base_joints, joints, record.pose[:, :3], R)
 

@@ -93,7 +93,7 @@ static int converged(const Settings *s, const State *x, const Work *w, double *w
   *worst = 0; *leg = -1;
   for (long i = 0; i < 3*s->legs; i++) { double f = fabs(x->lam[i]); if (f > force) force = f; }
   for (long i = 0; i < 2*s->legs; i++) { double f = fabs(x->drive[i]); if (f > force) force = f; }
-  for (long i = 0; i < N; i++) { double e = fabs(w->r[i])/force; if (!(e <= *worst)) { *worst = e; *leg = i/s->n; } }
+  for (long i = 0; i < N; i++) { double e = fabs(w->r[i])/(force + s->force_floor/s->tol_force); if (!(e <= *worst)) { *worst = e; *leg = i/s->n; } }
   if (s->payload) for (int i = 0; i < 18; i++) { double e = fabs(w->g[i]); if (!(e <= closure)) closure = e; }
   double ratio = closure/s->tol_closure;
   *worst /= s->tol_force;

@@ -10,7 +10,7 @@ typedef struct {
   long prescribed_l, prescribed_beta;   /* bit i: the coordinate of leg i follows its table */
   const double *leg_p, *payload_p;      /* (legs, leg_np), (payload_np) */
   long leg_np;
-  double h, alpha_m, alpha_f, beta, gamma, tol_closure, tol_force;
+  double h, alpha_m, alpha_f, beta, gamma, tol_closure, tol_force, force_floor;
   long max_iterations, max_age, output_every;
 } Settings;
 

@@ -1,0 +1,164 @@
+"""Estimates before a simulation: Euler loads, stresses on the rigid path, residual vibration, Eqs. (T8.11)-(T8.18)."""
+
+from __future__ import annotations
+
+from dataclasses import dataclass
+
+import numpy as np
+from scipy.integrate import trapezoid
+
+from flexapod import rigid
+from flexapod.model import Leg, Piston, Robot
+from flexapod.rigid.kinematics import LegState
+from flexapod.solve.modes import RobotModes
+from flexapod.solve.rotation import matrix
+from flexapod.typing import Array
+
+__all__ = ["Vibration", "bending_moment", "buckling_load", "residual_vibration", "section_width"]
+
+_STATIONS = np.linspace(0.0, 1.0, 11)
+
+
+def section_width(piston: Piston) -> float:
+    """Width of a piston [m]: its diameter, or that of the full round bar with its EI and EA, 4 sqrt(EI / EA)."""
+    return piston.diameter if piston.diameter is not None else 4.0 * float(np.sqrt(piston.EI / piston.EA))
+
+
+def buckling_load(leg: Leg, free: Array) -> Array:
+    """Euler load of a leg [N]: elastic over its free length, rigid to the mouth, pinned at both ends, Eq. (T8.11).
+
+    Parameters
+    ----------
+    leg : Leg
+    free : ndarray, shape (T,)
+        Free length s [m].
+
+    Returns
+    -------
+    ndarray, shape (T,)
+        EI k^2 with the smallest root of tan(k s) + k m = 0, m the distance of the mouth from the universal joint.
+    """
+    free = np.asarray(free, dtype=float)
+    ratio = leg.cylinder.mouth / free
+    # x + arctan(ratio x) = pi has one root between pi/2 and pi; the left side is concave and increasing: Newton converges.
+    x = np.full_like(free, np.pi / 2)
+    for _ in range(50):
+        value = x + np.arctan(ratio * x) - np.pi
+        x = x - value / (1 + ratio / (1 + (ratio * x) ** 2))
+        if np.abs(value).max(initial=0.0) < 1e-14:
+            break
+    return leg.piston.EI * (x / free) ** 2  # (T8.11)
+
+
+def bending_moment(robot: Robot, path: rigid.Poses, legs: LegState, forces: rigid.RigidForces) -> Array:
+    """Largest bending moment in the free part of each piston on the rigid path, (T, 6) [N m], Eqs. (T8.12)-(T8.13).
+
+    The piston is loaded by the joint force at its tip, its weight and its inertia as a rigid rod; the leg's own
+    vibration is left out.
+    """
+    tip, tip_dot, tip_ddot = path.point(robot.platform_joints)
+    axis = (tip - robot.base_joints) / legs.length[..., None]
+    axis_dot = (tip_dot - legs.rate[..., None] * axis) / legs.length[..., None]
+
+    def across(vector: Array) -> Array:
+        return vector - np.einsum("tni,tni->tn", vector, axis)[..., None] * axis
+
+    base = 2 * legs.rate[..., None] * axis_dot  # (T8.12)  transverse acceleration of a piston point at the U joint
+    at_tip = across(tip_ddot)
+    slope = (at_tip - across(base)) / legs.length[..., None]
+    load = across(np.broadcast_to(robot.gravity, tip.shape)) - at_tip
+    rhoA = np.array([leg.piston.rhoA for leg in robot.legs])[:, None]
+    mouth = np.array([leg.cylinder.mouth for leg in robot.legs])
+    largest = np.zeros(legs.length.shape)
+    for share in _STATIONS:
+        d = (share * (legs.length - mouth))[..., None]
+        moment = -d * across(forces.joint_force) + rhoA * (load * d**2 / 2 + slope * d**3 / 6)  # (T8.13)
+        largest = np.maximum(largest, np.linalg.norm(moment, axis=-1))
+    return largest
+
+
+@dataclass(frozen=True, kw_only=True)
+class Vibration:
+    """Residual vibration after a motion, mode by mode.
+
+    ``frequency`` (m,) [Hz]; ``damping_ratio`` (m,); ``amplitude`` (m,) of the tool [m] at the end of the motion;
+    ``settling`` (m,) [s] until each amplitude has fallen to `band` [m]; inf without damping.
+    """
+
+    frequency: Array
+    damping_ratio: Array
+    amplitude: Array
+    settling: Array
+    band: float
+
+    @property
+    def total(self) -> float:
+        """Upper bound of the tool's vibration at the end of the motion [m]: all modes in phase."""
+        return float(self.amplitude.sum())
+
+    def time_to_band(self) -> float:
+        """Time after the motion until the sum of all modes has fallen to the band [s]; inf if it never does."""
+        rates = 2 * np.pi * self.frequency * self.damping_ratio
+        if self.total <= self.band:
+            return 0.0
+        if self.amplitude[rates <= 0].sum() > self.band:
+            return float("inf")
+        damped = rates > 0
+        low, high = 0.0, float((np.log(self.total / self.band * len(rates) + 1) / rates[damped]).max())
+        for _ in range(60):
+            middle = 0.5 * (low + high)
+            left = float((self.amplitude * np.exp(-rates * middle)).sum())
+            low, high = (middle, high) if left > self.band else (low, middle)
+        return high
+
+
+def residual_vibration(
+    robot: Robot, modes: RobotModes, t: Array, path: rigid.Poses, band: float = 1e-6, count: int = 12
+) -> Vibration:
+    """Residual vibration of the tool after a motion, Eqs. (T8.14)-(T8.17).
+
+    A single-mode estimate: each of the first ``count`` modes of the end pose answers by itself to the inertial forces
+    of the rigid path, with the masses and directions of the end pose.
+
+    Parameters
+    ----------
+    robot : Robot
+    modes : RobotModes
+        About the end pose.
+    t : ndarray, shape (T,)
+        Equally spaced instants of the motion, from 0 to its end [s].
+    path : Poses
+        At these instants.
+    band : float
+        Amplitude at which the tool counts as settled [m].
+    """
+    count = min(count, len(modes.frequency))
+    keep = modes.frequency[:count] > 0
+    frequency, ratio = modes.frequency[:count][keep], modes.damping_ratio[:count][keep]
+    shapes, omega = modes.shapes[:count][keep], 2 * np.pi * modes.frequency[:count][keep]
+    mass = modes.system.matrices(modes.equilibrium.state, np.zeros(6)).M
+    force = -_rigid_accelerations(robot, modes, path) @ (mass @ shapes.T)  # (T8.14)
+    past = t[-1] - t
+    kernel = np.exp((-ratio[None, :] + 1j * np.sqrt(1 - np.minimum(ratio, 1.0) ** 2)) * omega * past[:, None])
+    answer = np.abs(trapezoid(force * kernel, t, axis=0)) / omega  # (T8.15)
+    amplitude = answer * _tool_amplitudes(robot, modes, shapes)  # (T8.16)
+    with np.errstate(divide="ignore", invalid="ignore"):
+        settling = np.where(amplitude > band, np.log(amplitude / band) / (ratio * omega), 0.0)  # (T8.17)
+    return Vibration(frequency=frequency, damping_ratio=ratio, amplitude=amplitude, settling=settling, band=band)
+
+
+def _rigid_accelerations(robot: Robot, modes: RobotModes, path: rigid.Poses) -> Array:
+    """Accelerations of the rigid path in the flat coordinates of the modes, (T, N)."""
+    legs, n = rigid.inverse_kinematics(robot, path), modes.system.n
+    flat = np.zeros((len(path), 6, n))
+    flat[:, :, :3] = np.stack([legs.alpha_ddot, legs.beta_ddot, legs.accel], axis=-1)
+    com = path.point(robot.payload.com)[2]
+    turn = np.einsum("tij,ti->tj", path.rotation, path.alpha)
+    return np.concatenate([flat.reshape(len(path), -1), com, turn], axis=1)
+
+
+def _tool_amplitudes(robot: Robot, modes: RobotModes, shapes: Array) -> Array:
+    """Displacement of the tool per unit of each mode's coordinate, (m,)."""
+    R = matrix(modes.equilibrium.state.pose[3:])
+    turn = np.cross(shapes[:, -3:], robot.payload.tool - robot.payload.com)
+    return np.linalg.norm(shapes[:, -6:-3] + turn @ R.T, axis=1)

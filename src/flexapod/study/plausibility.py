@@ -1,0 +1,156 @@
+"""Remarks on results that leave the theory: slopes, axial loads, slenderness, strains."""
+
+from __future__ import annotations
+
+import numpy as np
+
+from flexapod.bases import LateralBasis
+from flexapod.model import Actuator, Leg, Robot
+from flexapod.solve.rotation import matrix
+from flexapod.solve.system import RobotSystem
+from flexapod.study.estimates import buckling_load, section_width
+from flexapod.study.record import Record
+from flexapod.typing import Array
+
+__all__ = ["SLENDERNESS", "SLOPE", "actuator_warnings", "leg_stress", "robot_warnings"]
+
+SLOPE = 0.1  # tip slope up to which second order in the amplitudes is enough
+SLENDERNESS = 10.0  # free length over width below which shear is no longer small
+NEAR_BUCKLING = 0.5  # share of the Euler load from which stiffness has changed by half
+STATIONS = np.linspace(0.0, 1.0, 21)
+
+
+def robot_warnings(robot: Robot, system: RobotSystem, record: Record) -> list[str]:
+    """Remarks on a simulation of a robot, each with leg, instant, value and limit."""
+    axes = _leg_axes(robot, record)
+    compression = np.einsum("tli,tli->tl", record.lam, axes)
+    found = []
+    for i, leg in enumerate(robot.legs):
+        free = record.q[:, i, system.kernel.shapes.l_index] - leg.cylinder.mouth
+        lateral = record.q[:, i, 3 + system.kernel.shapes.axial.count :].reshape(len(free), 2, -1)
+        found += [
+            (i, *remark)
+            for remark in (
+                *_slope(system.kernel.shapes.a, lateral, free, record.time),
+                *_axial(leg, free, compression[:, i], record.time),
+                *_slender(leg, free, record.time),
+                *_stress(leg, system.kernel.shapes.a, lateral, free, compression[:, i], record.time),
+            )
+        ]
+    return _worst_of_each(found)
+
+
+def actuator_warnings(actuator: Actuator, basis: LateralBasis, record: Record) -> list[str]:
+    """Remarks on a simulation of a single actuator."""
+    free = record.q[:, 0, 1] - actuator.hub_radius
+    lateral = record.q[:, :, 2:]
+    found = _slope(basis, lateral, free, record.time)
+    if actuator.depth is not None and free.min() < SLENDERNESS * actuator.depth:
+        k = int(free.argmin())
+        found.append(_slender_words(free[k] / actuator.depth, record.time[k]))
+    if actuator.depth is not None and actuator.E is not None and actuator.yield_stress is not None:
+        bending = _bending(basis, lateral, free) * actuator.E * actuator.depth / 2
+        found += _yield_words(bending, actuator.yield_stress, record.time)
+    return [f"the beam: {words}" for _, _, words in found]
+
+
+def leg_stress(leg: Leg, basis: LateralBasis, lateral: Array, free: Array, compression: Array) -> Array | None:
+    """Largest axial plus bending stress in a piston at T instants [Pa], Eq. (T8.10); None without section and material.
+
+    Parameters
+    ----------
+    leg : Leg
+    basis : LateralBasis
+    lateral : ndarray, shape (T, 2, k)
+        Amplitudes [m].
+    free, compression : ndarray, shape (T,)
+        Free length [m] and axial force [N].
+    """
+    piston = leg.piston
+    if piston.diameter is None or piston.E is None:
+        return None
+    bending = _bending(basis, lateral, free) * piston.E * piston.diameter / 2
+    return np.abs(compression) * piston.E / piston.EA + bending
+
+
+def _leg_axes(robot: Robot, record: Record) -> Array:
+    """Unit vectors from base to platform joint, (T, 6, 3)."""
+    R = matrix(record.pose[:, 3:])
+    tips = record.pose[:, None, :3] + np.einsum("tij,nj->tni", R, robot.platform_joints - robot.payload.com)
+    vectors = tips - robot.base_joints
+    return vectors / np.linalg.norm(vectors, axis=-1, keepdims=True)
+
+
+_Remark = tuple[str, float, str]  # kind, severity (value over limit), words
+
+
+def _slope(basis: LateralBasis, lateral: Array, free: Array, t: Array) -> list[_Remark]:
+    if not basis.count:
+        return []
+    slope = np.linalg.norm(lateral @ basis.tip_slope, axis=1) / free
+    k = int(slope.argmax())
+    if slope[k] <= SLOPE:
+        return []
+    words = f"the tip slope reaches {slope[k]:.3g} at t = {t[k]:.6g} s: above {SLOPE:g} second-order theory is strained"
+    return [("slope", slope[k] / SLOPE, words)]
+
+
+def _axial(leg: Leg, free: Array, compression: Array, t: Array) -> list[_Remark]:
+    share = compression / buckling_load(leg, free)
+    k = int(share.argmax())
+    if share[k] <= NEAR_BUCKLING:
+        return []
+    words = (
+        f"the axial load reaches {share[k]:.0%} of the Euler load ({compression[k]:.4g} N at t = {t[k]:.6g} s): "
+        "the leg is close to buckling"
+    )
+    return [("buckling", share[k], words)]
+
+
+def _slender(leg: Leg, free: Array, t: Array) -> list[_Remark]:
+    ratio = free / section_width(leg.piston)
+    k = int(ratio.argmin())
+    return [] if ratio[k] >= SLENDERNESS else [_slender_words(ratio[k], t[k])]
+
+
+def _slender_words(ratio: float, t: float) -> _Remark:
+    words = (
+        f"the free length is only {ratio:.3g} times the width at t = {t:.6g} s: below {SLENDERNESS:g} shear, which an "
+        "Euler-Bernoulli beam leaves out, is no longer small"
+    )
+    return ("slenderness", SLENDERNESS / ratio, words)
+
+
+def _bending(basis: LateralBasis, lateral: Array, free: Array) -> Array:
+    """Largest curvature along the free piston, (T,) [1/m]."""
+    if not basis.count:
+        return np.zeros(len(free))
+    curvature = np.linalg.norm(lateral @ basis.values(STATIONS, 2), axis=1)
+    return curvature.max(axis=1) / free**2
+
+
+def _stress(leg: Leg, basis: LateralBasis, lateral: Array, free: Array, compression: Array, t: Array) -> list[_Remark]:
+    stress = leg_stress(leg, basis, lateral, free, compression)
+    if stress is None or leg.piston.yield_stress is None:
+        return []
+    return _yield_words(stress, leg.piston.yield_stress, t)
+
+
+def _yield_words(stress: Array, limit: float, t: Array) -> list[_Remark]:
+    k = int(stress.argmax())
+    if stress[k] <= limit:
+        return []
+    words = f"the stress reaches {stress[k] / 1e6:.4g} MPa at t = {t[k]:.6g} s, above the yield stress of {limit / 1e6:.4g} MPa"
+    return [("yield", stress[k] / limit, words)]
+
+
+def _worst_of_each(found: list[tuple[int, str, float, str]]) -> list[str]:
+    """One sentence for each kind of remark: of the leg where it is worst, and which others share it."""
+    texts = []
+    for kind in dict.fromkeys(entry[1] for entry in found):
+        same = [entry for entry in found if entry[1] == kind]
+        worst = max(same, key=lambda entry: entry[2])
+        others = sorted(entry[0] + 1 for entry in same if entry is not worst)
+        also = f" (also legs {', '.join(map(str, others))})" if others else ""
+        texts.append(f"leg {worst[0] + 1}: {worst[3]}{also}")
+    return texts
