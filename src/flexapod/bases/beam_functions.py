@@ -54,7 +54,6 @@ def _pinned_tip_rows(eps: float, mu: float, inertia: float) -> list[Array]:
 
 def _eigenfunctions(count: int, tip: Callable[..., list[Array]], mu: float, inertia: float) -> list[BeamFunction]:
     """First ``count`` eigenfunctions with unit norm int phi^2 dzeta = 1 and positive curvature at the clamp."""
-
     from scipy.optimize import root_scalar  # heavy, and the default basis of robots needs no roots
 
     def matrix(eps: float) -> Array:
