@@ -1,9 +1,11 @@
 """Folder = marker: a test carries the name of its folder as its marker."""
 
+import os
 from pathlib import Path
 
 import pytest
 
+os.environ.setdefault("OPENBLAS_NUM_THREADS", "1")  # small matrices: threads of BLAS only cost
 HERE = Path(__file__).parent
 KINDS = (
     "analytic", "cli", "consistency", "contract", "conservation", "convergence",

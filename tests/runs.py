@@ -1,9 +1,14 @@
 """Marches of robots and actuators collected into arrays, for tests."""
 
+from functools import cache
+
 import numpy as np
 
+from flexapod.bases import axial_basis, lateral_basis
+from flexapod.mechanics.layout import LEG_PARAMETERS, Shapes
 from flexapod.model import override, preset
 from flexapod.solve.actuator_march import prepare_actuator
+from flexapod.solve.kernel import interpreted_kernel
 from flexapod.solve.robot_march import prepare
 
 FIELDS = ("time", "q", "v", "v_dot", "lam", "drive", "pose", "energy", "sums", "closure")
@@ -39,3 +44,17 @@ def with_legs(study, change):
 def balance(run):
     """Constant of the energy balance, (T,) [J]."""
     return run["energy"].sum(axis=1) + run["sums"][:, 0] - run["sums"][:, 1] - run["sums"][:, 2]
+
+
+def leg_vector(**values):
+    """Parameters of one leg as kernels read them; what is not given is zero, its home frame the world's."""
+    values = {"R0": np.eye(3).ravel()} | values
+    return np.concatenate([np.ravel(values.get(name, np.zeros(size))) for name, size in LEG_PARAMETERS])
+
+
+@cache
+def uncompiled(basis, modes, axial_modes, *, planar=False):
+    """Functions of a leg for tests that call them a few times: no C compiler need run for that."""
+    lateral = lateral_basis(basis, modes)
+    other = lateral_basis(basis, 0) if planar else lateral
+    return interpreted_kernel(Shapes(a=lateral, b=other, axial=axial_basis(axial_modes), planar=planar))

@@ -151,3 +151,21 @@ def test_actuator_end_of_motion():
     assert model.ActuatorMotion(rotation=rate(rate=1.0), extension=still).end_time is None
     assert model.ActuatorMotion(rotation=still, extension=still).end_time is None
     assert model.ActuatorMotion(rotation=None, extension=still).end_time is None
+
+
+@pytest.mark.parametrize(
+    ("tip", "basis", "remarked"),
+    [
+        ("tip_mass = 1", "clamped-free", True),
+        ("tip_mass = 1", "tip-load", False),
+        ("tip_mass = 1\ntip_inertia = 0.1", "tip-load", True),
+        ("tip_mass = 1\ntip_inertia = 0.1", "tip-mass", False),
+        ("tip_mass = 0", "clamped-free", False),
+    ],
+)
+def test_shapes_that_ignore_the_inertia_at_the_tip_are_remarked_on(tip, basis, remarked):
+    text = (
+        f"[actuator]\nlength = 2\nrhoA = 1\nEI = 1\nfree_length = 1\n{tip}\n"
+        f'[simulation]\nduration = 1\nbasis = "{basis}"'
+    )
+    assert any('"tip-mass"' in remark for remark in model.loads(text).warnings) == remarked

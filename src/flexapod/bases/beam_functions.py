@@ -57,7 +57,8 @@ def _eigenfunctions(count: int, tip: Callable[..., list[Array]], mu: float, iner
     from scipy.optimize import root_scalar  # heavy, and the default basis of robots needs no roots
 
     def matrix(eps: float) -> Array:
-        return np.array(_clamped_rows(eps) + tip(eps, mu, inertia))
+        rows = np.array(_clamped_rows(eps) + tip(eps, mu, inertia))
+        return rows / np.linalg.norm(rows, axis=1, keepdims=True)  # a heavy tip must not drown the clamp
 
     def characteristic(eps: float) -> float:
         return float(np.linalg.det(matrix(eps)))

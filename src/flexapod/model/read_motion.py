@@ -14,7 +14,7 @@ from flexapod.model.motion import (
     WaypointMotion,
 )
 from flexapod.model.section import Section
-from flexapod.model.simulation import FIDELITIES, LATER_FIDELITIES, Initial, Simulation
+from flexapod.model.simulation import FIDELITIES, LATER_BASES, LATER_FIDELITIES, Initial, Simulation
 from flexapod.model.tables import POSE, WRENCH, read_table
 
 __all__ = ["read_initial", "read_load", "read_motion", "read_simulation", "unused_settings"]
@@ -67,7 +67,7 @@ def read_simulation(section: Section | None, *, basis: str, bases: tuple[str, ..
     return section.build(
         Simulation,
         fidelity=section.text("fidelity", (*FIDELITIES, *LATER_FIDELITIES)),
-        basis=section.text("basis", bases) or basis,
+        basis=_basis(section, bases) or basis,
         modes=section.whole("modes"),
         duration=section.number("duration", "time"),
         tolerance=section.number("tolerance", "number"),
@@ -75,6 +75,12 @@ def read_simulation(section: Section | None, *, basis: str, bases: tuple[str, ..
         output_step=section.number("output_step", "time"),
         rho_inf=section.number("rho_inf", "number"),
     )
+
+
+def _basis(section: Section, bases: tuple[str, ...]) -> str | None:
+    if section.data.get("basis") in LATER_BASES:
+        raise section.error("comes with a later version of flexapod", "basis", allowed=", ".join(bases))
+    return section.text("basis", bases)
 
 
 def unused_settings(section: Section | None, simulation: Simulation) -> tuple[str, ...]:

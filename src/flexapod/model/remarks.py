@@ -20,12 +20,19 @@ def robot_remarks(robot: Robot) -> tuple[str, ...]:
     return tuple(f"{_legs(which)}: {remark}" for remark, which in numbers.items())
 
 
-def actuator_remarks(actuator: Actuator) -> tuple[str, ...]:
-    """Remarks on a single actuator's beam."""
+def actuator_remarks(actuator: Actuator, basis: str | None) -> tuple[str, ...]:
+    """Remarks on a single actuator's beam and the lateral shapes chosen for it (None: rigid beam)."""
+    remarks = []
     depth = actuator.section.depth if actuator.section is not None else 0.0
     if depth > _SLENDER * actuator.free_length:
-        return (f"the beam is {depth:g} m deep, {_fat(depth, actuator.free_length, 'free length at t = 0')}",)
-    return ()
+        remarks.append(f"the beam is {depth:g} m deep, {_fat(depth, actuator.free_length, 'free length at t = 0')}")
+    inertial = actuator.tip_inertia > 0 or (basis == "clamped-free" and actuator.tip_mass > 0)
+    if inertial and basis in ("clamped-free", "tip-load"):
+        remarks.append(
+            f'shapes of basis "{basis}" know nothing of the inertia at the tip and converge slowly with it: '
+            'check with more modes, or choose basis = "tip-mass"'
+        )
+    return tuple(remarks)
 
 
 def _leg_remarks(leg: Leg) -> list[str]:

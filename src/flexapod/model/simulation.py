@@ -9,10 +9,11 @@ from pydantic import Field, model_validator
 from flexapod.errors import InputError, closest
 from flexapod.model.base import Frozen, Positive
 
-__all__ = ["DEFAULT_TOLERANCE", "FIDELITIES", "LATER_FIDELITIES", "Initial", "Simulation"]
+__all__ = ["DEFAULT_TOLERANCE", "FIDELITIES", "LATER_BASES", "LATER_FIDELITIES", "Initial", "Simulation"]
 
 FIDELITIES = ("rigid", "lumped", "assumed-modes")
 LATER_FIDELITIES = ("finite-segment", "beam-fem")
+LATER_BASES = ("segments", "hermite")
 DEFAULT_TOLERANCE = 1e-4
 
 

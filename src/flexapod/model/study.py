@@ -111,7 +111,8 @@ class ActuatorStudy(_Documented):
     @property
     def warnings(self) -> tuple[str, ...]:
         """What is legal but doubtful, in words."""
-        return (*actuator_remarks(self.actuator), *self.notes)
+        basis = self.simulation.basis if self.simulation.lateral_shapes else None
+        return (*actuator_remarks(self.actuator, basis), *self.notes)
 
 
 def override(

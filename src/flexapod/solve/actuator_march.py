@@ -1,4 +1,4 @@
-"""A single planar actuator in time: the same leg without payload, Eqs. (T9.1)-(T9.5)."""
+"""A single planar actuator in time: the same leg without payload, Eqs. (T9.1)-(T9.4)."""
 
 from collections.abc import Callable, Iterator
 from dataclasses import dataclass, field, replace
@@ -159,7 +159,7 @@ def _prepared(plant: Plant, law: Law, method: GeneralizedAlpha, flow: Flow, now:
 
 
 def _after_impact(plant: Plant, law: Law, method: GeneralizedAlpha, flow: Flow, now: float, h: float) -> Flow:
-    """Flow after a jump in a prescribed rate: free rates change by the impulse balance, Eq. (T9.5)."""
+    """Flow after a jump in a prescribed rate: free rates change by the impulse balance, Eq. (T6.10)."""
     row, p, held = law(np.array([now]))[0][0], plant.leg_p[0], plant.held
     M = plant.kernel.leg_matrices(flow.q[0], np.zeros(3), p)[0]
     v = flow.v.copy()

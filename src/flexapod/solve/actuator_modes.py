@@ -5,7 +5,7 @@ from functools import lru_cache
 
 import numpy as np
 from numpy.typing import NDArray
-from scipy.linalg import eig, eigh
+from scipy.linalg import eigh
 from scipy.optimize import linear_sum_assignment
 
 from flexapod import bases
@@ -22,8 +22,8 @@ Array = NDArray[np.float64]
 class ActuatorModes:
     """Modes of a clamped beam in the plane in which its hub turns, ascending.
 
-    ``frequency`` (k,) [Hz] undamped; ``damping_ratio`` (k,) of the damped modes; ``shapes`` (k, k), one row of amplitudes of
-    the lateral basis [m] per mode, mass-normalised.
+    ``frequency`` (k,) [Hz] undamped; ``damping_ratio`` (k,) of the damped modes; ``shapes`` (k, k), one row of
+    amplitudes of the lateral basis [m] per mode, mass-normalised.
     """
 
     frequency: Array
@@ -111,10 +111,10 @@ def _damping_ratios(omega: Array, D: Array) -> Array:
     """
     ratio, size, top = np.diag(D) / (2 * omega), len(omega), omega[-1]
     state = np.block([[np.zeros((size, size)), np.eye(size)], [-np.diag((omega / top) ** 2), -D / top]])
-    values, shapes = eig(state)
-    above = values.imag > 1e-12
+    values, shapes = np.linalg.eig(state)
+    above = np.imag(values) > 1e-12
     if above.sum() < size:
         return ratio
     values, share = values[above], np.abs(shapes[:size, above])
     _, match = linear_sum_assignment(-share / np.linalg.norm(share, axis=0))
-    return (-values.real / np.abs(values))[match]
+    return (-np.real(values) / np.abs(values))[match]

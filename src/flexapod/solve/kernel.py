@@ -67,11 +67,17 @@ def kernel(
         library, signatures = compiled_library(_fingerprint(shapes), lambda: _functions(shapes), SOURCES, command)
         compiled = {name: CompiledFunction(library, name, signatures[name]) for name in NAMES}
         return Kernel(shapes=shapes, library=library, **compiled)
+    _warn_interpreted()
+    return interpreted_kernel(shapes)
+
+
+@cache
+def _warn_interpreted() -> None:
+    """Say once, whatever the number of kernels, that they are slow."""
     _log.warning(
         "No C compiler was found: the equations are interpreted, about 20 times slower. "
         "Install gcc or clang, or `pip install flexapod[compiler]`."
     )
-    return interpreted_kernel(shapes)
 
 
 def interpreted_kernel(shapes: Shapes) -> Kernel:

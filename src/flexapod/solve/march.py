@@ -15,6 +15,7 @@ Array = NDArray[np.float64]
 Tables = Callable[[Array], tuple[Array, Array]]
 Measure = Callable[[Recording], list[Array]]
 CHUNK = 100  # output intervals between looks at progress, tolerance and interrupts
+CHUNK_STEPS = 2000  # steps in a chunk of several intervals: tables of fine steps must not outgrow the output
 FINEST = 4096  # steps per output interval before the tolerance is called out of reach
 CAUSES = {
     1: "the step's equations were not solved",
@@ -81,19 +82,27 @@ def march(problem: Problem, start: Flow, first_step: float, counters: Counters) 
     Raises
     ------
     ComputationError
-        A step failed or the tolerance is out of reach; chunks yielded before stay valid.
+        A step failed or the tolerance is out of reach; the chunks yielded before hold all outputs up to there.
     """
     table, wrench = problem.tables(np.zeros(1))
     flow, row = _first_record(problem.plant, start, table, wrench)
     first = unpack(problem.plant, np.zeros(1), row)
     yield Chunk(recording=first, error=0.0, step=first_step)
     control = _Control(problem, counters, first_step, [np.abs(x).max(initial=0.0) for x in problem.measure(first)])
-    done = 0
+    done, most = 0, CHUNK
     while done < problem.outputs:
-        stop = min([done + CHUNK, problem.outputs, *(r for r in problem.restarts if r > done)])
-        flow, chunk = control.advance(flow, done, stop - done)
-        problem.check(chunk.recording)
-        done = stop
+        count = max(1, min(most, CHUNK_STEPS // control.per_output))
+        stop = min([done + count, problem.outputs, *(r for r in problem.restarts if r > done)])
+        before = control.settings
+        try:
+            ahead, chunk = control.advance(flow, done, stop - done)
+            problem.check(chunk.recording)
+        except ComputationError:
+            if stop - done == 1:
+                raise
+            most, control.settings = (stop - done) // 2, before  # as far as the last output before the failure
+            continue
+        flow, done = ahead, stop
         if done in problem.restarts and done < problem.outputs:
             flow = _restarted(problem, flow, done * problem.output_step, control.h)
         yield chunk
@@ -106,6 +115,15 @@ class _Control:
         self.problem, self.counters, self.scales = problem, counters, scales
         self.h = first_step  # the step for which the flow's auxiliary values are prepared
         self.per_output = max(1, round(problem.output_step / first_step))
+
+    @property
+    def settings(self) -> tuple[float, int, list[float]]:
+        """What it remembers: step of the flow, steps per output, scales of the errors."""
+        return self.h, self.per_output, self.scales
+
+    @settings.setter
+    def settings(self, settings: tuple[float, int, list[float]]) -> None:
+        self.h, self.per_output, self.scales = settings
 
     def advance(self, flow: Flow, done: int, count: int) -> tuple[Flow, Chunk]:
         """Return the next ``count`` outputs within the tolerance (or with the fixed step)."""

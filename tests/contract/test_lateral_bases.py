@@ -1,0 +1,142 @@
+"""Every lateral basis keeps one contract, for every number of shapes from 1 to 12."""
+
+import numpy as np
+import pytest
+from tests.oracles import beams
+from tests.oracles.ritz import clamped_free
+
+from flexapod.bases import lateral_basis
+
+BASES = [("clamped-free", 0.0, 0.0), ("tip-load", 0.0, 0.0), ("tip-mass", 1.0, 0.0), ("tip-mass", 1.0, 10.0)]
+NAMES = ["clamped-free", "tip-load", "tip-mass", "tip-body"]
+COUNTS = range(1, 13)
+#: Largest n-th derivative of twelve shapes, order of magnitude: rounding is relative to this.
+STEEP = 38.0 ** np.arange(4)
+
+every_basis = pytest.mark.parametrize("which", BASES, ids=NAMES)
+
+
+def fine_rule(panels=40, points=12):
+    """A composite rule unlike the one in the package: 40 panels of 12 Gauss points on [0, 1]."""
+    x, w = np.polynomial.legendre.leggauss(points)
+    left = np.arange(panels) / panels
+    return (left[:, None] + (x + 1) / (2 * panels)).ravel(), np.tile(w / (2 * panels), panels)
+
+
+def close(ours, reference, digits=1e-12):
+    np.testing.assert_allclose(ours, reference, rtol=0, atol=digits * max(1.0, np.abs(reference).max()))
+
+
+@every_basis
+@pytest.mark.parametrize("count", COUNTS)
+def test_closed_integrals(which, count):
+    b = lateral_basis(which[0], count, *which[1:])
+    z, w = fine_rule()
+    phi, slope, curvature = (b.values(z, order) for order in range(3))
+    sliding = (1 - z) * slope
+    both = np.concatenate([phi, sliding])
+    assert b.count == count
+    close(b.mass, (both * w) @ both.T)
+    close(b.first, both @ w)
+    close(b.moment, both @ (w * z))
+    close(b.powers, np.array([both @ (w * (1 - z) ** j) for j in range(len(b.powers))]))
+    close(b.stiffness, (curvature * w) @ curvature.T)
+    close(b.slope_tip, (slope * w) @ slope.T)
+    close(b.slope_first, (slope * w * (1 - z)) @ slope.T)
+    close(b.slope_moment, (slope * w * (1 - z**2) / 2) @ slope.T)
+
+
+@every_basis
+@pytest.mark.parametrize("count", COUNTS)
+def test_ends(which, count):
+    b, mu, inertia = lateral_basis(which[0], count, *which[1:]), *which[1:]
+    clamp, tip = ([b.values(np.array([x]), n)[:, 0] / STEEP[n] for n in range(4)] for x in (0.0, 1.0))
+    np.testing.assert_allclose([clamp[0], clamp[1]], 0, atol=1e-13)
+    np.testing.assert_allclose([tip[0], tip[1] * STEEP[1]], [b.tip, b.tip_slope], rtol=1e-13, atol=1e-13)
+    if which[0] == "tip-load":  # a held tip carries a force, no moment
+        np.testing.assert_allclose(tip[2], 0, atol=1e-12)
+        np.testing.assert_allclose(b.tip, np.eye(count)[0], atol=1e-12)
+    else:
+        eps = np.array([phi.eps for phi in b.shapes])
+        np.testing.assert_allclose(tip[2] * STEEP[2] / eps**2, inertia * eps**2 * b.tip_slope, atol=1e-11)
+        np.testing.assert_allclose(tip[3] * STEEP[3] / eps**3, -mu * eps * b.tip, atol=1e-11)
+
+
+@every_basis
+def test_derivatives_belong_together(which):
+    b = lateral_basis(which[0], 12, *which[1:])
+    z, w = fine_rule()
+    for order in range(3):  # from the clamp to three stations, by integration: differences would lose digits
+        for station in (0.2, 0.55, 1.0):
+            start, end = b.values(np.array([0.0, station]), order).T
+            rise = station * b.values(station * z, order + 1) @ w
+            np.testing.assert_allclose(end - start, rise, atol=1e-11 * STEEP[order])
+
+
+@every_basis
+def test_a_count_is_a_prefix_of_orthogonal_shapes(which):
+    # Shapes are unit vectors in the mass they belong to; the first twelve curvatures are orthogonal.
+    b, mu, inertia = lateral_basis(which[0], 12, *which[1:]), *which[1:]
+    bend = np.diag(b.stiffness)
+    np.testing.assert_allclose(b.stiffness / np.sqrt(np.outer(bend, bend)), np.eye(12), atol=1e-11)
+    mass = b.mass[:12, :12] + mu * np.outer(b.tip, b.tip) + inertia * np.outer(b.tip_slope, b.tip_slope)
+    rows = slice(1, None) if which[0] == "tip-load" else slice(None)  # its static shape has another scale
+    size = np.sqrt(np.diag(mass))
+    np.testing.assert_allclose((mass / np.outer(size, size))[rows, rows], np.eye(12)[rows, rows], atol=1e-11)
+    assert (b.values(np.array([1e-3]))[:, 0] > 0).all()  # all start out to the same side
+
+
+@pytest.mark.parametrize(("which", "roots"), [
+    (BASES[0], beams.beam_roots("clamped", "free", 12)),
+    (BASES[2], beams.tip_body_roots(1.0, 12)),
+    (BASES[3], beams.tip_body_roots(1.0, 12, 10.0)),
+], ids=["clamped-free", "tip-mass", "tip-body"])  # fmt: skip
+def test_eigenfunctions_keep_their_digits(which, roots):
+    b, mu, inertia = lateral_basis(which[0], 12, *which[1:]), *which[1:]
+    np.testing.assert_allclose([phi.eps for phi in b.shapes], roots, rtol=1e-13)
+    mass = np.diag(b.mass)[:12] + mu * b.tip**2 + inertia * b.tip_slope**2
+    np.testing.assert_allclose(np.diag(b.stiffness) / mass, roots**4, rtol=1e-12)  # Rayleigh quotient
+    z = np.linspace(0, 1, 41)
+    quartic = np.array([phi(z, 4) / phi.eps**4 for phi in b.shapes])
+    np.testing.assert_allclose(quartic, b.values(z), atol=1e-13)
+
+
+def test_clamped_free_equals_the_other_formulation():
+    b, z = lateral_basis("clamped-free", 12), np.linspace(0, 1, 101)
+    for i in range(12):
+        for order in range(4):
+            reference = clamped_free(i + 1)(z, order)
+            np.testing.assert_allclose(b.values(z, order)[i], reference, atol=1e-12 * np.abs(reference).max())
+    np.testing.assert_allclose(b.tip, 2 * (-1.0) ** np.arange(12), rtol=1e-12)
+
+
+@pytest.mark.parametrize("count", COUNTS)
+def test_tip_load_spans_all_polynomials_that_fit(count):
+    # Clamped and free of moment at the tip: phi'' = (1 - z) times any polynomial of degree count - 1.
+    b, z = lateral_basis("tip-load", count), np.linspace(0, 1, 101)
+    shapes = b.values(z, 2)
+    for degree in range(count):
+        target = (1 - z) * np.polynomial.Legendre.basis(degree, domain=[0, 1])(z)
+        part = np.linalg.lstsq(shapes.T, target, rcond=None)[0]
+        np.testing.assert_allclose(part @ shapes, target, atol=1e-10)
+    np.testing.assert_allclose(b.values(z)[0], (3 * z**2 - z**3) / 2, atol=1e-15)
+
+
+@every_basis
+def test_damping_is_the_same_ratio_for_every_mode(which):
+    b = lateral_basis(which[0], 12, *which[1:])
+    mass = b.mass[:12, :12]
+    product = b.damping @ np.linalg.solve(mass, b.damping)  # D M^-1 D = K
+    scale = np.sqrt(np.outer(np.diag(b.stiffness), np.diag(b.stiffness)))
+    np.testing.assert_allclose(product / scale, b.stiffness / scale, atol=1e-10)
+
+
+@pytest.mark.parametrize("name", ["clamped-free", "tip-load", "tip-mass"])
+def test_no_shapes(name):
+    b = lateral_basis(name, 0)
+    assert (b.count, b.mass.shape, b.powers.shape[1]) == (0, (0, 0), 0)
+
+
+def test_unknown_name():
+    with pytest.raises(ValueError, match="clamped-free, tip-load or tip-mass"):
+        lateral_basis("hinged", 3)
