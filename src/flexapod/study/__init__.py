@@ -2,7 +2,28 @@
 
 from flexapod.study.actuator import simulate_actuator
 from flexapod.study.checks import check_path
+from flexapod.study.kinematics import forward_kinematics, inverse_dynamics, inverse_kinematics
+from flexapod.study.paper import PaperStudy, replicate
 from flexapod.study.record import Interrupted
-from flexapod.study.simulate import run, simulate
+from flexapod.study.simulation import run, simulate
+from flexapod.study.static import modes, stiffness
+from flexapod.study.store import open_results, save
+from flexapod.study.summary import summary
 
-__all__ = ["Interrupted", "check_path", "run", "simulate", "simulate_actuator"]
+__all__ = [
+    "Interrupted",
+    "PaperStudy",
+    "check_path",
+    "forward_kinematics",
+    "inverse_dynamics",
+    "inverse_kinematics",
+    "modes",
+    "open_results",
+    "replicate",
+    "run",
+    "save",
+    "simulate",
+    "simulate_actuator",
+    "stiffness",
+    "summary",
+]

@@ -5,11 +5,11 @@ from __future__ import annotations
 from typing import TYPE_CHECKING
 
 import numpy as np
+from numpy.typing import ArrayLike
 
 from flexapod import model, rigid
 from flexapod.errors import InputError
 from flexapod.solve.actuator_march import ActuatorMarch, prepare_actuator
-from flexapod.study.arguments import overridden
 from flexapod.study.attributes import attributes, march_attributes
 from flexapod.study.checks import check_actuator_path
 from flexapod.study.names import ACTUATOR_FORMS, dataset
@@ -77,6 +77,10 @@ def simulate_actuator(
         "duration": duration, "output_step": output_step, "rho_inf": rho_inf,
     }  # fmt: skip
     study = _as_study(actuator, motion, load, initial, settings)
+    return _simulated(study, progress)
+
+
+def _simulated(study: model.ActuatorStudy, progress: Progress | None) -> Dataset:
     remarks = check_actuator_path(study)
     march = prepare_actuator(study)
     record = collect(march.chunks, march.plant.kernel.shapes.l_index, study.duration, progress)
@@ -86,7 +90,9 @@ def simulate_actuator(
         **march_attributes(study, march.counters, record, compiled=march.plant.kernel.library is not None),
     }
     count = march.plant.kernel.shapes.a.count
-    coords = {"time": record.time} | ({"mode": np.arange(1, count + 1)} if count else {})
+    coords: dict[str, ArrayLike] = {"time": record.time}
+    if count:
+        coords["mode"] = np.arange(1, count + 1)
     return finished(dataset(_results(study, march, record), coords, attrs, ACTUATOR_FORMS), record)
 
 
@@ -113,7 +119,7 @@ def _as_study(
             value=type(actuator).__name__,
             allowed="flexapod.load(FILE) or its .actuator",
         )
-    return overridden(changed, settings)  # type: ignore[return-value]
+    return model.override(changed, **settings)  # type: ignore[return-value, arg-type]
 
 
 def _results(study: model.ActuatorStudy, march: ActuatorMarch, record: Record) -> dict[str, Array]:

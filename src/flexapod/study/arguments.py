@@ -10,10 +10,11 @@ from numpy.typing import ArrayLike
 from flexapod import model, rigid
 from flexapod.errors import InputError
 
-__all__ = ["as_pose", "as_study", "overridden", "robot_of"]
+__all__ = ["LoadLike", "PoseLike", "StartLike", "as_pose", "as_study", "at_pose"]
 
 POSE_KEYS = model.AXES
 StartLike = model.Initial | str | None
+PoseLike = rigid.Poses | Mapping[str, float] | ArrayLike | None
 LoadLike = model.Load | model.Wrench | ArrayLike | None
 
 
@@ -34,7 +35,7 @@ def as_study(
     if load is not None:
         changes["load"] = _load(load)
     if initial is not None:
-        changes["initial"] = model.Initial(start=initial) if isinstance(initial, str) else initial
+        changes["initial"] = model.Initial(start=initial) if isinstance(initial, str) else initial  # type: ignore[arg-type]
     if isinstance(subject, model.Study):
         changes |= {} if motion is None else {"motion": motion}
         return subject.replace(**changes) if changes else subject
@@ -59,20 +60,13 @@ def _load(load: LoadLike) -> model.Load:
     return model.Load(wrench=model.ConstantWrench(value=np.asarray(load, dtype=float)))
 
 
-def robot_of(subject: model.Study | model.Robot) -> model.Robot:
-    """The robot of a study, or the robot itself."""
-    return subject.robot if isinstance(subject, model.Study) else subject
+def at_pose(subject: model.Study | model.Robot, load: LoadLike = None) -> model.Study:
+    """A study for calls that look at one pose: a bare robot is given a motion that stays at home."""
+    still = None if isinstance(subject, model.Study) else model.AxisMotion(type="heave", amplitude=0.0, duration=1.0)
+    return as_study(subject, still, load)
 
 
-def overridden(
-    study: model.Study | model.ActuatorStudy, settings: Mapping[str, object]
-) -> model.Study | model.ActuatorStudy:
-    """The study with the given settings (None: as in the study) in place of those of [simulation]."""
-    given = {name: value for name, value in settings.items() if value is not None}
-    return model.override(study, **given) if given else study  # type: ignore[arg-type]
-
-
-def as_pose(robot: model.Robot, pose: rigid.Poses | Mapping[str, float] | ArrayLike | None) -> rigid.Poses:
+def as_pose(robot: model.Robot, pose: PoseLike, *, check: bool = True) -> rigid.Poses:
     """One pose of the platform frame at rest.
 
     Parameters
@@ -80,6 +74,8 @@ def as_pose(robot: model.Robot, pose: rigid.Poses | Mapping[str, float] | ArrayL
     robot : model.Robot
     pose : Poses, mapping, array_like or None
         Poses with one sample; surge, sway, heave [m], roll, pitch, yaw [rad] from home by name or as (6,); None: home.
+    check : bool
+        Whether the legs must reach it.
 
     Raises
     ------
@@ -94,7 +90,8 @@ def as_pose(robot: model.Robot, pose: rigid.Poses | Mapping[str, float] | ArrayL
         values = _coordinates(pose)
         home = rigid.home_pose(robot)
         found = rigid.Poses.at_rest(home.position + values[:3], rigid.rotation_matrix(values[3:]))
-    _check_reachable(robot, found)
+    if check:
+        _check_reachable(robot, found)
     return found
 
 

@@ -10,7 +10,6 @@ import flexapod
 from flexapod import model
 from flexapod.solve.plant import Counters
 from flexapod.study.record import Record
-from flexapod.study.toml_text import study_text
 
 __all__ = ["attributes", "march_attributes"]
 
@@ -19,7 +18,7 @@ _log = logging.getLogger("flexapod")
 
 def attributes(study: model.Study | model.ActuatorStudy, warnings: Iterable[str] = ()) -> dict[str, object]:
     """Attributes that every Dataset of a study carries; warnings as lines of text."""
-    text = study_text(study)
+    text = study.source_text
     found = list(dict.fromkeys(warnings))
     return {
         "title": "flexapod: single actuator" if isinstance(study, model.ActuatorStudy) else "flexapod: parallel robot",

@@ -11,10 +11,10 @@ from flexapod.errors import InputError
 from flexapod.model import ActuatorStudy, Robot, Study
 from flexapod.rigid.kinematics import BETA_LIMIT
 from flexapod.rigid.workspace import LONGEST, PULLED_OUT, SHORTEST
-from flexapod.solve.robot_march import pure_force_legs
+from flexapod.solve.modes import refuse_pure_force
 from flexapod.typing import Array
 
-__all__ = ["NEAR_SINGULAR", "SINGULAR", "check_actuator_path", "check_path", "path_instants", "path_remarks"]
+__all__ = ["check_actuator_path", "check_geometry", "check_path", "path_instants", "path_remarks"]
 
 SINGULAR = 1e-8  # smallest singular value of the scaled Jacobian below which a pose is refused
 NEAR_SINGULAR = 0.05  # and below which it is remarked on: leg forces and length errors are magnified about 20 times
@@ -48,7 +48,16 @@ def check_path(study: Study) -> list[str]:
         drive is to start from equilibrium.
     """
     try:
-        _refuse_start(study)
+        if study.initial.start == "equilibrium":
+            refuse_pure_force(study.robot, "the equilibrium start")
+    except InputError as error:
+        raise error.located(file=study.path) from None
+    return check_geometry(study)
+
+
+def check_geometry(study: Study) -> list[str]:
+    """The checks of `check_path` but that of the start."""
+    try:
         path = _sampled(study)
         _refuse_excess(study.robot, path)
         _refuse_folded(study.robot, path)
@@ -80,27 +89,16 @@ def _sampled(study: Study) -> _Path:
     return _Path(t=t, poses=poses, length=length)
 
 
-def _refuse_start(study: Study) -> None:
-    free = pure_force_legs(study)
-    if study.initial.start == "equilibrium" and free:
-        raise InputError(
-            f"has no meaning for leg {free[0]}: a pure force drive holds no position, so nothing fixes its rest state",
-            key="initial.start",
-            value="equilibrium",
-            allowed='"straight" or "moving", or a feedback stiffness in the drive',
-        )
-
-
 def _refuse_excess(robot: Robot, path: _Path) -> None:
     found = [*rigid.strokes(robot, path.t, path.length), *rigid.pull_out(robot, path.t, path.length)]
     fatal = [e for e in found if e.fatal]
     if not fatal:
         return
     worst = max(fatal, key=lambda e: abs(e.value - e.limit))
-    others = sorted({e.leg for e in fatal} - {worst.leg})
-    also = f"; so do legs {', '.join(map(str, others))}" if len(others) > 1 else f"; so does leg {others[0]}"
+    others = [str(leg) for leg in sorted({e.leg for e in fatal} - {worst.leg})]
+    also = f"; so do legs {', '.join(others)}" if len(others) > 1 else "".join(f"; so does leg {n}" for n in others)
     raise InputError(
-        worst.message.rstrip(".") + (also if others else ""),
+        worst.message.rstrip(".") + also,
         key=_KEYS.get(worst.kind, "leg.cylinder.mouth"),
         next_step="Reduce the motion, or change the limit named here",
     )
@@ -114,8 +112,8 @@ def _refuse_folded(robot: Robot, path: _Path) -> None:
     k, leg = np.unravel_index(np.abs(beta).argmax(), beta.shape)
     first = path.t[np.argmax(np.abs(beta[:, leg]) > BETA_LIMIT)]
     raise InputError(
-        f"the universal joint of leg {leg + 1} folds to beta = {np.rad2deg(beta[k, leg]):.1f} deg at t = {path.t[k]:.6g} s "
-        f"(beyond the limit from t = {first:.6g} s on)",
+        f"the universal joint of leg {leg + 1} folds to beta = {np.rad2deg(beta[k, leg]):.1f} deg "
+        f"at t = {path.t[k]:.6g} s (beyond the limit from t = {first:.6g} s on)",
         key="leg.u_axis",
         allowed="|beta| at most 85 deg",
         next_step="Turn the universal joint's first axis (u_axis), or reduce the motion",

@@ -5,7 +5,6 @@ from __future__ import annotations
 from dataclasses import dataclass
 
 import numpy as np
-from scipy.integrate import trapezoid
 
 from flexapod import rigid
 from flexapod.model import Leg, Piston, Robot
@@ -40,7 +39,7 @@ def buckling_load(leg: Leg, free: Array) -> Array:
     """
     free = np.asarray(free, dtype=float)
     ratio = leg.cylinder.mouth / free
-    # x + arctan(ratio x) = pi has one root between pi/2 and pi; the left side is concave and increasing: Newton converges.
+    # x + arctan(ratio x) = pi has one root between pi/2 and pi; its left side is concave and rising: Newton converges.
     x = np.full_like(free, np.pi / 2)
     for _ in range(50):
         value = x + np.arctan(ratio * x) - np.pi
@@ -97,28 +96,31 @@ class Vibration:
         return float(self.amplitude.sum())
 
     def time_to_band(self) -> float:
-        """Time after the motion until the sum of all modes has fallen to the band [s]; inf if it never does."""
+        """Time after the motion until the sum of all modes is down to the band [s], Eq. (T8.18); inf if it never is."""
         rates = 2 * np.pi * self.frequency * self.damping_ratio
+        damped = rates > 0
+        amplitude, rates = self.amplitude[damped], rates[damped]
+        allowed = self.band - self.amplitude[~damped].sum()
         if self.total <= self.band:
             return 0.0
-        if self.amplitude[rates <= 0].sum() > self.band:
+        if allowed <= 0:
             return float("inf")
-        damped = rates > 0
-        low, high = 0.0, float((np.log(self.total / self.band * len(rates) + 1) / rates[damped]).max())
+        low, high = 0.0, float(np.log(amplitude.sum() / allowed) / rates.min())
         for _ in range(60):
             middle = 0.5 * (low + high)
-            left = float((self.amplitude * np.exp(-rates * middle)).sum())
-            low, high = (middle, high) if left > self.band else (low, middle)
+            left = float((amplitude * np.exp(-rates * middle)).sum())  # (T8.18)
+            low, high = (middle, high) if left > allowed else (low, middle)
         return high
 
 
 def residual_vibration(
-    robot: Robot, modes: RobotModes, t: Array, path: rigid.Poses, band: float = 1e-6, count: int = 12
+    robot: Robot, modes: RobotModes, t: Array, path: rigid.Poses, band: float = 1e-6, *, from_rest: bool = True
 ) -> Vibration:
     """Residual vibration of the tool after a motion, Eqs. (T8.14)-(T8.17).
 
-    A single-mode estimate: each of the first ``count`` modes of the end pose answers by itself to the inertial forces
-    of the rigid path, with the masses and directions of the end pose.
+    A single-mode estimate: each mode of the end pose with ten instants a period or more answers by itself to the
+    inertial forces of the rigid path, with the masses and directions of the end pose. Jumps of the commanded rate,
+    at the start and the end too, are impacts.
 
     Parameters
     ----------
@@ -131,29 +133,34 @@ def residual_vibration(
         At these instants.
     band : float
         Amplitude at which the tool counts as settled [m].
+    from_rest : bool
+        Whether the payload rests at t = 0 whatever the command's rate, or moves with it.
     """
-    count = min(count, len(modes.frequency))
-    keep = modes.frequency[:count] > 0
-    frequency, ratio = modes.frequency[:count][keep], modes.damping_ratio[:count][keep]
-    shapes, omega = modes.shapes[:count][keep], 2 * np.pi * modes.frequency[:count][keep]
+    keep = (modes.frequency > 0) & (modes.damping_ratio < 1) & (modes.frequency * (t[1] - t[0]) <= 0.1)
+    frequency, ratio = modes.frequency[keep], modes.damping_ratio[keep]
+    shapes, omega = modes.shapes[keep], 2 * np.pi * frequency
+    damped = omega * np.sqrt(1 - ratio**2)
     mass = modes.system.matrices(modes.equilibrium.state, np.zeros(6)).M
-    force = -_rigid_accelerations(robot, modes, path) @ (mass @ shapes.T)  # (T8.14)
-    past = t[-1] - t
-    kernel = np.exp((-ratio[None, :] + 1j * np.sqrt(1 - np.minimum(ratio, 1.0) ** 2)) * omega * past[:, None])
-    answer = np.abs(trapezoid(force * kernel, t, axis=0)) / omega  # (T8.15)
+    rates = _rigid_rates(robot, modes, path)
+    before = np.zeros(rates.shape[1]) if from_rest else rates[0]
+    steps = np.diff(rates, axis=0, prepend=before[None], append=np.zeros((1, rates.shape[1])))
+    impulse = -steps @ (mass @ shapes.T)  # (T8.14)  Q_j dt
+    middle = np.concatenate([t[:1], 0.5 * (t[1:] + t[:-1]), t[-1:]])
+    kernel = np.exp((1j * damped - ratio * omega) * (t[-1] - middle)[:, None])
+    answer = np.abs((impulse * kernel).sum(axis=0)) / damped  # (T8.15)
     amplitude = answer * _tool_amplitudes(robot, modes, shapes)  # (T8.16)
     with np.errstate(divide="ignore", invalid="ignore"):
         settling = np.where(amplitude > band, np.log(amplitude / band) / (ratio * omega), 0.0)  # (T8.17)
     return Vibration(frequency=frequency, damping_ratio=ratio, amplitude=amplitude, settling=settling, band=band)
 
 
-def _rigid_accelerations(robot: Robot, modes: RobotModes, path: rigid.Poses) -> Array:
-    """Accelerations of the rigid path in the flat coordinates of the modes, (T, N)."""
+def _rigid_rates(robot: Robot, modes: RobotModes, path: rigid.Poses) -> Array:
+    """Rates of the rigid path in the flat coordinates of the modes, (T, N)."""
     legs, n = rigid.inverse_kinematics(robot, path), modes.system.n
     flat = np.zeros((len(path), 6, n))
-    flat[:, :, :3] = np.stack([legs.alpha_ddot, legs.beta_ddot, legs.accel], axis=-1)
-    com = path.point(robot.payload.com)[2]
-    turn = np.einsum("tij,ti->tj", path.rotation, path.alpha)
+    flat[:, :, :3] = np.stack([legs.alpha_dot, legs.beta_dot, legs.rate], axis=-1)
+    com = path.point(robot.payload.com)[1]
+    turn = np.einsum("tij,ti->tj", path.rotation, path.omega)
     return np.concatenate([flat.reshape(len(path), -1), com, turn], axis=1)
 
 

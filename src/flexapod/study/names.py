@@ -6,16 +6,29 @@ from collections.abc import Mapping
 from typing import TYPE_CHECKING, NamedTuple
 
 import numpy as np
-
-from flexapod.typing import Array
+from numpy.typing import ArrayLike
 
 if TYPE_CHECKING:
     from xarray import Dataset
 
-__all__ = ["CAUSES", "COORDINATES", "VARIABLES", "Variable", "dataset"]
+__all__ = [
+    "ACTUATOR_FORMS",
+    "CAUSES",
+    "CAUSE_WORDS",
+    "COORDINATES",
+    "ONE_POSE_FORMS",
+    "VARIABLES",
+    "Variable",
+    "dataset",
+]
 
 #: Causes of a leg's length error, in the order of the `cause` dimension.
 CAUSES = ("axial-strain", "bending", "drive")
+CAUSE_WORDS = {
+    "axial-strain": "stretch of the pistons",
+    "bending": "bending of the pistons",
+    "drive": "give of the drives",
+}
 
 
 class Variable(NamedTuple):
@@ -29,7 +42,6 @@ class Variable(NamedTuple):
 #: Labels of dimensions that have fixed ones, with what they stand for.
 COORDINATES: dict[str, tuple[object, str]] = {
     "leg": (np.arange(1, 7), "leg"),
-    "other_leg": (np.arange(1, 7), "leg"),
     "axis": (list("xyz"), "world axis"),
     "direction": (list("ab"), "lateral direction of the leg"),
     "quaternion": (list("wxyz"), "component of the quaternion"),
@@ -118,7 +130,10 @@ _STATIC = {
     "stiffness_share": Variable(
         ("leg", "load", "component"), "mixed", "share of a leg in the stiffness at the tool [N m-1, N, N m]"
     ),
-    "platform_position": Variable(("axis",), "m", "origin of the platform frame"),
+    "stiffness_turning": Variable(
+        ("load", "component"), "mixed", "what joint forces and load add to the stiffness when the platform turns"
+    ),
+    "platform_position": Variable(_TA, "m", "origin of the platform frame"),
     "com_sag": Variable(("axis",), "m", "displacement of the centre of mass by gravity and load"),
 }
 
@@ -143,10 +158,16 @@ ACTUATOR_FORMS = {
     "energy_strain": Variable(_T, "J", "strain energy of the beam"),
 }
 
+#: Of a single pose.
+ONE_POSE_FORMS = {
+    "platform_position": Variable(("axis",), "m", "origin of the platform frame"),
+    "platform_quaternion": Variable(("quaternion",), "1", "orientation of the platform, platform to world"),
+}
+
 
 def dataset(
-    values: Mapping[str, Array],
-    coords: Mapping[str, Array] | None = None,
+    values: Mapping[str, ArrayLike],
+    coords: Mapping[str, ArrayLike] | None = None,
     attrs: Mapping[str, object] | None = None,
     forms: Mapping[str, Variable] | None = None,
 ) -> Dataset:
@@ -171,9 +192,7 @@ def dataset(
         dims, units, long_name = table[name]
         data[name] = (dims, array, {"units": units, "long_name": long_name})
     used = {dim for dims, _, _ in data.values() for dim in dims}
-    labels = {
-        dim: ((dim,), given, {"long_name": words}) for dim, (given, words) in COORDINATES.items() if dim in used
-    }
+    labels = {dim: ((dim,), given, {"long_name": words}) for dim, (given, words) in COORDINATES.items() if dim in used}
     for dim, given in (coords or {}).items():
         labels[dim] = ((dim,), given, _COORDINATE_ATTRS.get(dim, {}))
     return xr.Dataset(data, coords=labels, attrs=dict(attrs or {}))

@@ -45,12 +45,14 @@ def actuator_warnings(actuator: Actuator, basis: LateralBasis, record: Record) -
     free = record.q[:, 0, 1] - actuator.hub_radius
     lateral = record.q[:, :, 2:]
     found = _slope(basis, lateral, free, record.time)
-    if actuator.depth is not None and free.min() < SLENDERNESS * actuator.depth:
-        k = int(free.argmin())
-        found.append(_slender_words(free[k] / actuator.depth, record.time[k]))
-    if actuator.depth is not None and actuator.E is not None and actuator.yield_stress is not None:
-        bending = _bending(basis, lateral, free) * actuator.E * actuator.depth / 2
-        found += _yield_words(bending, actuator.yield_stress, record.time)
+    if actuator.section is not None and actuator.material is not None:
+        depth, material = actuator.section.depth, actuator.material
+        if free.min() < SLENDERNESS * depth:
+            k = int(free.argmin())
+            found.append(_slender_words(free[k] / depth, record.time[k]))
+        if material.yield_stress is not None:
+            bending = _bending(basis, lateral, free) * material.E * depth / 2
+            found += _yield_words(bending, material.yield_stress, record.time)
     return [f"the beam: {words}" for _, _, words in found]
 
 
@@ -140,7 +142,10 @@ def _yield_words(stress: Array, limit: float, t: Array) -> list[_Remark]:
     k = int(stress.argmax())
     if stress[k] <= limit:
         return []
-    words = f"the stress reaches {stress[k] / 1e6:.4g} MPa at t = {t[k]:.6g} s, above the yield stress of {limit / 1e6:.4g} MPa"
+    words = (
+        f"the stress reaches {stress[k] / 1e6:.4g} MPa at t = {t[k]:.6g} s, above the yield stress of "
+        f"{limit / 1e6:.4g} MPa"
+    )
     return [("yield", stress[k] / limit, words)]
 
 

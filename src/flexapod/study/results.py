@@ -3,6 +3,7 @@
 from __future__ import annotations
 
 import numpy as np
+from numpy.typing import ArrayLike
 from scipy.spatial.transform import Rotation
 
 from flexapod import rigid
@@ -32,10 +33,10 @@ def robot_results(study: Study, system: RobotSystem, record: Record) -> dict[str
     }
 
 
-def robot_coords(system: RobotSystem, record: Record) -> dict[str, Array]:
+def robot_coords(system: RobotSystem, record: Record) -> dict[str, ArrayLike]:
     """Labels of the dimensions whose size depends on the study."""
     shapes = system.kernel.shapes
-    labels = {"time": record.time}
+    labels: dict[str, ArrayLike] = {"time": record.time}
     if shapes.a.count:
         labels["shape"] = np.arange(1, shapes.a.count + 1)
     if shapes.axial.count:
@@ -91,7 +92,7 @@ def _leg_results(robot: Robot, system: RobotSystem, commands: Commands, record: 
 
 
 def _drive_forces(robot: Robot, system: RobotSystem, commands: Commands, record: Record) -> Array:
-    """Force of every drive on its piston, (T, 6) [N]: constraint, or feed-forward with spring and damper, Eq. (T8.8)."""
+    """Force of every drive on its piston, (T, 6) [N]: constraint, or feed-forward, spring and damper, Eq. (T8.8)."""
     stiffness, damping = np.array([drive_spring(leg) for leg in robot.legs]).T
     l_index = system.kernel.shapes.l_index
     spring = stiffness * (commands.length - record.q[:, :, l_index])

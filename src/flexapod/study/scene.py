@@ -3,22 +3,29 @@
 from __future__ import annotations
 
 from dataclasses import dataclass
+from typing import TYPE_CHECKING
 
 import numpy as np
-import xarray as xr
 
 from flexapod import model, rigid
+from flexapod.errors import InputError
 from flexapod.rigid.trajectory import coordinates
 from flexapod.typing import Array
 
-__all__ = ["Scene", "mode_scene", "motion_coordinates", "motion_end", "scene", "study_of"]
+if TYPE_CHECKING:
+    from xarray import Dataset
+
+__all__ = ["Scene", "mode_scene", "motion_coordinates", "motion_end", "robot_study", "scene"]
 
 STATIONS = 25  # points of a drawn piston
 
 
 @dataclass(frozen=True, kw_only=True)
 class Scene:
-    """Points of a robot in the world [m]: joints (6, 3), leg lines from cylinder mouth to tip (6, n, 3), CoM, centre (3,)."""
+    """Points of a robot in the world [m].
+
+    `base`, `platform`: joints (6, 3); `piston`: lines from cylinder mouth to tip (6, n, 3); `com`, `centre` (3,).
+    """
 
     base: Array
     platform: Array
@@ -32,12 +39,21 @@ class Scene:
         return self.piston[:, 0]
 
 
-def study_of(data: xr.Dataset) -> model.Study | model.ActuatorStudy:
-    """The study that a result carries as text in its attributes."""
-    return model.loads(data.attrs["study"], path=data.attrs.get("study_path") or None)
+def robot_study(data: Dataset) -> model.Study:
+    """The study of a robot that a result carries as text in its attributes.
+
+    Raises
+    ------
+    InputError
+        The result is one of a single actuator.
+    """
+    study = model.loads(data.attrs["study"], path=data.attrs.get("study_file") or None)
+    if not isinstance(study, model.Study):
+        raise InputError("is the result of a single actuator", key="data", allowed="results of a robot")
+    return study
 
 
-def motion_end(data: xr.Dataset) -> float | None:
+def motion_end(data: Dataset) -> float | None:
     """Instant from which the rigid payload rests [s]; None where it moves until the end or never."""
     if "com_position_rigid" not in data:
         return None
@@ -49,16 +65,18 @@ def motion_end(data: xr.Dataset) -> float | None:
     return float(data.time[moving[-1] + 1])
 
 
-def motion_coordinates(data: xr.Dataset) -> xr.Dataset:
-    """Commanded surge, sway, heave [m], roll, pitch, yaw [rad] with rates and accelerations, dims (time, coordinate)."""
-    study = study_of(data)
+def motion_coordinates(data: Dataset) -> Dataset:
+    """Commanded surge, sway, heave [m], roll, pitch, yaw [rad], their rates and accelerations (time, coordinate)."""
+    import xarray as xr
+
+    study = robot_study(data)
     law = coordinates(study.motion, data.time.values)
     dims = ("time", "coordinate")
     parts = {name: (dims, getattr(law, name)) for name in ("position", "rate", "acceleration")}
     return xr.Dataset(parts, coords={"time": data.time, "coordinate": list(model.AXES)})
 
 
-def scene(data: xr.Dataset, time: float = 0.0, magnify: float = 1.0) -> Scene:
+def scene(data: Dataset, time: float = 0.0, magnify: float = 1.0) -> Scene:
     """The robot of a result at an instant.
 
     Parameters
@@ -70,7 +88,7 @@ def scene(data: xr.Dataset, time: float = 0.0, magnify: float = 1.0) -> Scene:
     magnify : float
         Factor on lateral deflections of the pistons.
     """
-    robot, at = study_of(data).robot, data.sel(time=time, method="nearest")
+    robot, at = robot_study(data).robot, data.sel(time=time, method="nearest")
     R = _matrix(at.platform_quaternion.values)
     com = at.com_position.values
     centre = com - R @ robot.payload.com
@@ -81,7 +99,7 @@ def scene(data: xr.Dataset, time: float = 0.0, magnify: float = 1.0) -> Scene:
     return _scene(robot, centre, R, com, tip[:, :, None] * off_chord)
 
 
-def mode_scene(modes: xr.Dataset, mode: int, size: float, phase: float = 1.0) -> Scene:
+def mode_scene(modes: Dataset, mode: int, size: float, phase: float = 1.0) -> Scene:
     """The robot displaced in one of its modes.
 
     Parameters
@@ -95,7 +113,7 @@ def mode_scene(modes: xr.Dataset, mode: int, size: float, phase: float = 1.0) ->
     phase : float
         Between -1 and 1; 0 is the robot at rest.
     """
-    robot, shape = study_of(modes).robot, modes.sel(mode=mode)
+    robot, shape = robot_study(modes).robot, modes.sel(mode=mode)
     R = _matrix(modes.platform_quaternion.values)
     centre = modes.platform_position.values
     arms = np.vstack([robot.platform_joints, robot.payload.com]) @ R.T

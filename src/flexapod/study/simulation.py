@@ -8,7 +8,7 @@ from flexapod import model, rigid
 from flexapod.errors import InputError
 from flexapod.solve.robot_march import RobotMarch, prepare
 from flexapod.study.actuator import simulate_actuator
-from flexapod.study.arguments import LoadLike, StartLike, as_study, overridden
+from flexapod.study.arguments import LoadLike, StartLike, as_study
 from flexapod.study.attributes import attributes, march_attributes
 from flexapod.study.checks import check_path
 from flexapod.study.names import dataset
@@ -75,7 +75,7 @@ def simulate(
         "fidelity": fidelity, "modes": modes, "axial_modes": axial_modes, "basis": basis, "tolerance": tolerance,
         "step": step, "duration": duration, "output_step": output_step, "rho_inf": rho_inf,
     }  # fmt: skip
-    study = overridden(as_study(robot, motion, load, initial), settings)
+    study = model.override(as_study(robot, motion, load, initial), **settings)  # type: ignore[arg-type]
     return _simulated(study, progress)  # type: ignore[arg-type]
 
 

@@ -1,0 +1,146 @@
+"""Stiffness, frequencies and residual vibration of a robot at poses of its path, in numbers to print."""
+
+from __future__ import annotations
+
+from dataclasses import dataclass
+
+import numpy as np
+from numpy.typing import NDArray
+
+from flexapod import model, rigid
+from flexapod.errors import FlexapodError
+from flexapod.solve.modes import robot_modes
+from flexapod.solve.stiffness import robot_stiffness
+from flexapod.study.estimates import residual_vibration
+from flexapod.study.kinds import mode_kinds
+from flexapod.typing import Array
+
+__all__ = [
+    "ModeLine",
+    "PoseDescription",
+    "StiffnessDescription",
+    "VibrationToExpect",
+    "describe_pose",
+    "vibration_to_expect",
+]
+
+SHOWN = 6
+BAND = 1e-6  # amplitude at which the tool counts as settled [m]
+SAMPLING = 5e-5  # [s]: modes up to 2 kHz
+
+
+@dataclass(frozen=True, kw_only=True)
+class ModeLine:
+    """A mode of the locked robot: `frequency` [Hz] undamped, `damping_ratio`, `kind` in words."""
+
+    frequency: float
+    damping_ratio: float
+    kind: str
+
+
+@dataclass(frozen=True, kw_only=True)
+class StiffnessDescription:
+    """Stiffness at the tool: `least`, `most` [N/m] along, `turning_least`, `turning_most` [N m/rad] about a direction.
+
+    Against a force alone (the platform free to turn) and a moment alone; `softest` (3,): direction of `least`, world.
+    """
+
+    least: float
+    most: float
+    softest: tuple[float, ...]
+    turning_least: float
+    turning_most: float
+
+
+@dataclass(frozen=True, kw_only=True)
+class PoseDescription:
+    """The robot at one pose, drives locked, about its static equilibrium.
+
+    `sag` [m] of the centre of mass, `stiffness`, `modes`: the lowest. None and empty where there is no such thing;
+    `problem` then says why.
+    """
+
+    name: str
+    time: float
+    sag: float | None = None
+    stiffness: StiffnessDescription | None = None
+    modes: tuple[ModeLine, ...] = ()
+    problem: str | None = None
+
+
+@dataclass(frozen=True, kw_only=True)
+class VibrationToExpect:
+    """Residual vibration of the tool after the motion (T8.14)-(T8.18).
+
+    `amplitude` [m]: all modes in phase; `frequency` [Hz] and `share` of the largest; `settling` [s] until the sum is
+    below `band` [m], inf without damping.
+    """
+
+    amplitude: float
+    frequency: float
+    share: float
+    settling: float
+    band: float
+
+
+def describe_pose(study: model.Study, name: str, time: float) -> PoseDescription:
+    """The robot at rest at an instant of its path."""
+    robot, simulation = study.robot, study.simulation
+    path, wrench = _at_rest(study, time), rigid.wrench(study.load, np.array([time]))[0]
+    try:
+        found = robot_modes(robot, simulation, path, wrench)
+        stiffness = _stiffness(robot_stiffness(robot, simulation, path, wrench).total)
+    except FlexapodError as error:
+        return PoseDescription(name=name, time=time, problem=str(error))
+    sag = found.equilibrium.state.pose[:3] - path.point(robot.payload.com)[0][0]
+    lines = zip(found.frequency, found.damping_ratio, mode_kinds(found, wrench), strict=True)
+    modes = tuple(ModeLine(frequency=float(f), damping_ratio=float(ratio), kind=kind) for f, ratio, kind in lines)
+    return PoseDescription(
+        name=name, time=time, sag=float(np.linalg.norm(sag)), stiffness=stiffness, modes=modes[:SHOWN]
+    )
+
+
+def _stiffness(total: Array) -> StiffnessDescription:
+    compliance = np.linalg.inv(total)
+    shift, vectors = np.linalg.eigh(_symmetric(compliance[:3, :3]))
+    turning = np.linalg.eigvalsh(_symmetric(compliance[3:, 3:]))
+    softest = vectors[:, -1] * np.sign(vectors[np.abs(vectors[:, -1]).argmax(), -1])
+    return StiffnessDescription(
+        least=float(1 / shift[-1]),
+        most=float(1 / shift[0]),
+        softest=tuple(softest.tolist()),
+        turning_least=float(1 / turning[-1]),
+        turning_most=float(1 / turning[0]),
+    )
+
+
+def _symmetric(matrix: NDArray[np.floating]) -> NDArray[np.floating]:
+    return 0.5 * (matrix + matrix.T)
+
+
+def _at_rest(study: model.Study, time: float) -> rigid.Poses:
+    moving = rigid.poses(study.robot, study.motion, np.array([time]))
+    return rigid.Poses.at_rest(moving.position, moving.rotation)
+
+
+def vibration_to_expect(study: model.Study, end: float) -> VibrationToExpect | None:
+    """Residual vibration after the motion that ends at `end` [s]; None where nothing can vibrate."""
+    robot = study.robot
+    try:
+        wrench = rigid.wrench(study.load, np.array([end]))[0]
+        modes = robot_modes(robot, study.simulation, _at_rest(study, end), wrench)
+    except FlexapodError:
+        return None
+    t = np.linspace(0.0, end, int(np.clip(end / SAMPLING, 2000, 50000)) + 1)
+    path = rigid.poses(robot, study.motion, t)
+    found = residual_vibration(robot, modes, t, path, BAND, from_rest=study.initial.start != "moving")
+    if not found.frequency.size:
+        return None
+    largest = int(found.amplitude.argmax())
+    return VibrationToExpect(
+        amplitude=found.total,
+        frequency=float(found.frequency[largest]),
+        share=float(found.amplitude[largest] / found.total) if found.total > 0 else 0.0,
+        settling=found.time_to_band(),
+        band=BAND,
+    )

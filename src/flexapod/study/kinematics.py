@@ -1,0 +1,192 @@
+"""The rigid robot as Datasets: lengths, poses, forces over a motion."""
+
+from __future__ import annotations
+
+from typing import TYPE_CHECKING
+
+import numpy as np
+from numpy.typing import ArrayLike
+from scipy.spatial.transform import Rotation
+
+from flexapod import model, rigid
+from flexapod.errors import InputError
+from flexapod.study.arguments import LoadLike, PoseLike, as_pose, as_study, at_pose
+from flexapod.study.attributes import attributes
+from flexapod.study.checks import check_geometry
+from flexapod.study.names import dataset
+from flexapod.typing import Array
+
+if TYPE_CHECKING:
+    from xarray import Dataset
+
+__all__ = ["forward_kinematics", "inverse_dynamics", "inverse_kinematics", "rigid_path"]
+
+
+def inverse_kinematics(
+    robot: model.Robot | model.Study,
+    motion: model.Motion | None = None,
+    *,
+    duration: float | None = None,
+    output_step: float | None = None,
+) -> Dataset:
+    """Leg lengths, rates, accelerations and joint angles of the rigid robot along a motion, Eqs. (T2.14)-(T2.20).
+
+    Parameters
+    ----------
+    robot : Robot or Study
+        A robot with its motion, or a whole study.
+    motion : Motion, optional
+        In place of the study's.
+    duration, output_step : float, optional
+        In place of those of [simulation], s.
+
+    Returns
+    -------
+    xarray.Dataset
+        `leg_length_command`, its rate and acceleration, `leg_angle_rigid`, the rigid path of centre of mass and tool.
+
+    Raises
+    ------
+    InputError
+        The path leaves a stroke, pulls a piston out, folds a universal joint or is singular.
+    """
+    study = _study(robot, motion, None, duration, output_step)
+    remarks, t = check_geometry(study), _instants(study)
+    path = rigid.poses(study.robot, study.motion, t)
+    return dataset(rigid_path(study.robot, path), {"time": t}, attributes(study, [*study.warnings, *remarks]))
+
+
+def inverse_dynamics(
+    robot: model.Robot | model.Study,
+    motion: model.Motion | None = None,
+    *,
+    load: LoadLike = None,
+    duration: float | None = None,
+    output_step: float | None = None,
+) -> Dataset:
+    """Actuator forces and joint reactions of the rigid robot by Newton and Euler, Eqs. (T2.26)-(T2.36).
+
+    Parameters
+    ----------
+    robot : Robot or Study
+        A robot with its motion, or a whole study.
+    motion : Motion, optional
+        In place of the study's.
+    load : Load, wrench or array_like (6,), optional
+        Fx Fy Fz [N], Mx My Mz [N m] at the tool, world axes, or a law; in place of the study's.
+    duration, output_step : float, optional
+        In place of those of [simulation], s.
+
+    Returns
+    -------
+    xarray.Dataset
+        `actuator_force_rigid`, `joint_force_rigid`, `base_force_rigid`, `base_moment_rigid` and the variables of
+        `inverse_kinematics`.
+
+    Raises
+    ------
+    InputError
+        As `inverse_kinematics`.
+    """
+    study = _study(robot, motion, load, duration, output_step)
+    remarks, t = check_geometry(study), _instants(study)
+    path = rigid.poses(study.robot, study.motion, t)
+    forces = rigid.inverse_dynamics(study.robot, path, rigid.wrench(study.load, t))
+    values = rigid_path(study.robot, path) | {
+        "actuator_force_rigid": forces.actuator_force,
+        "joint_force_rigid": forces.joint_force,
+        "base_force_rigid": forces.base_force,
+        "base_moment_rigid": forces.base_moment,
+    }
+    return dataset(values, {"time": t}, attributes(study, [*study.warnings, *remarks]))
+
+
+def forward_kinematics(
+    robot: model.Robot | model.Study,
+    lengths: ArrayLike,
+    guess: PoseLike = None,
+    *,
+    time: ArrayLike | None = None,
+) -> Dataset:
+    """Poses of the rigid robot at given leg lengths, each near the one before, Eq. (T2.41).
+
+    Parameters
+    ----------
+    robot : Robot or Study
+    lengths : array_like, shape (6,) or (T, 6)
+        Joint-to-joint lengths [m]; six of them give a single pose.
+    guess : pose, optional
+        Near the first one, as for `modes`; default home. All postures of six lengths: `flexapod.rigid.postures`.
+    time : array_like, shape (T,), optional
+        Instants of the lengths [s]; default 0, 1, 2, ...
+
+    Returns
+    -------
+    xarray.Dataset
+        `platform_position`, `platform_quaternion`, `com_position`, `tool_position`, over `time` for a path of lengths.
+
+    Raises
+    ------
+    InputError
+        Lengths that are not six positive numbers, or a guess that is no pose.
+    ComputationError
+        No pose near the guess fits.
+    """
+    study, given = at_pose(robot), _numbers(lengths)
+    payload = study.robot.payload
+    found = rigid.forward_kinematics(study.robot, given, as_pose(study.robot, guess, check=False))
+    t = np.arange(len(found), dtype=float) if time is None else np.asarray(time, dtype=float)
+    if t.shape != (len(found),):
+        raise InputError("does not fit the lengths", key="time", value=t.shape, allowed=f"({len(found)},)")
+    values = {
+        "leg_length_command": np.atleast_2d(given),
+        "platform_position": found.position,
+        "platform_quaternion": _quaternions(found.rotation),
+        "com_position": found.point(payload.com)[0],
+        "tool_position": found.point(payload.tool)[0],
+    }
+    result = dataset(values, {"time": t}, attributes(study, study.warnings))
+    return result if given.ndim == 2 else result.isel(time=0, drop=True)
+
+
+def rigid_path(robot: model.Robot, path: rigid.Poses) -> dict[str, Array]:
+    """Legs and payload of the rigid robot along T poses, by name."""
+    legs = rigid.inverse_kinematics(robot, path)
+    return {
+        "leg_length_command": legs.length,
+        "leg_length_rate": legs.rate,
+        "leg_length_acceleration": legs.accel,
+        "leg_angle_rigid": np.stack([legs.alpha, legs.beta], axis=-1),
+        "com_position_rigid": path.point(robot.payload.com)[0],
+        "tool_position_rigid": path.point(robot.payload.tool)[0],
+        "platform_quaternion_rigid": _quaternions(path.rotation),
+    }
+
+
+def _numbers(lengths: ArrayLike) -> Array:
+    try:
+        return np.asarray(lengths, dtype=float)
+    except (TypeError, ValueError):
+        raise InputError(
+            "are no numbers", key="lengths", allowed="joint-to-joint lengths [m], (6,) or (T, 6)"
+        ) from None
+
+
+def _quaternions(rotation: Array) -> Array:
+    return Rotation.from_matrix(rotation).as_quat(canonical=True, scalar_first=True)
+
+
+def _study(
+    robot: model.Robot | model.Study,
+    motion: model.Motion | None,
+    load: LoadLike,
+    duration: float | None,
+    output_step: float | None,
+) -> model.Study:
+    study = as_study(robot, motion, load)
+    return model.override(study, duration=duration, output_step=output_step)  # type: ignore[return-value]
+
+
+def _instants(study: model.Study) -> Array:
+    step = study.simulation.output_step
+    return np.arange(round(study.duration / step) + 1, dtype=float) * step

@@ -1,0 +1,162 @@
+"""The paper's whole study: single actuator, robot, and what its deviation depends on."""
+
+from __future__ import annotations
+
+from collections.abc import Callable, Mapping
+from dataclasses import dataclass, field
+from typing import TYPE_CHECKING
+
+from flexapod import model
+from flexapod.study.actuator import simulate_actuator
+from flexapod.study.paper_variants import (
+    HALF_ANGLES,
+    JUMP_STEP,
+    assumptions,
+    half_angle_sweep,
+    jump_motion,
+    with_half_angle,
+)
+from flexapod.study.simulation import run, simulate
+from flexapod.study.static import modes
+
+if TYPE_CHECKING:
+    from xarray import Dataset
+
+__all__ = ["ACTUATOR_MODES", "STEPS", "PaperStudy", "Progress", "replicate"]
+
+ACTUATOR_MODES = (1, 2, 3, 4, 5)
+
+#: Called with what is being computed, in words, and the share of the whole that is done (0 to 1).
+Progress = Callable[[str, float], None]
+_Report = Callable[[float], None]
+
+
+@dataclass(frozen=True, kw_only=True)
+class PaperStudy:
+    """Results of `replicate` by name, in the order of `STEPS`."""
+
+    parts: Mapping[str, Dataset] = field(repr=False)
+
+    def __getitem__(self, name: str) -> Dataset:
+        return self.parts[name]
+
+    @property
+    def actuator(self) -> dict[int, Dataset]:
+        """The single actuator by number of shapes."""
+        return {k: self.parts[f"actuator-{k}"] for k in ACTUATOR_MODES}
+
+
+@dataclass(frozen=True, kw_only=True)
+class Step:
+    """A part of the study: name, words, usual share of the time, and how it is computed."""
+
+    name: str
+    words: str
+    weight: float
+    compute: Callable[[_Report], Dataset]
+
+
+def _preset(name: str) -> model.Study:
+    study = model.preset(name)
+    assert isinstance(study, model.Study)  # noqa: S101  the presets of robots are robots
+    return study
+
+
+def _over(report: _Report) -> Callable[[float, float], None]:
+    """Progress of one simulation as a share."""
+    return lambda time, end: report(time / end)
+
+
+def _actuator(count: int) -> Callable[[_Report], Dataset]:
+    def compute(report: _Report) -> Dataset:
+        study = model.preset("paper-actuator")
+        return simulate_actuator(study, modes=count, progress=_over(report))  # type: ignore[arg-type]
+
+    return compute
+
+
+def _robot(name: str) -> Callable[[_Report], Dataset]:
+    return lambda report: run(_preset(name), progress=_over(report))
+
+
+def _fidelity(name: str, step: float) -> Callable[[_Report], Dataset]:
+    return lambda report: simulate(_preset("paper-robot"), fidelity=name, step=step, progress=_over(report))
+
+
+def _jump(name: str, angle: float | None = None) -> Callable[[_Report], Dataset]:
+    def compute(report: _Report) -> Dataset:
+        study = _preset(name) if angle is None else with_half_angle(_preset(name), angle)
+        return simulate(study, jump_motion(study), step=JUMP_STEP, progress=_over(report))
+
+    return compute
+
+
+def _modes(_: _Report) -> Dataset:
+    study = _preset("paper-robot")
+    return modes(study, study.motion.target)  # type: ignore[union-attr]
+
+
+def _sweep(name: str) -> Callable[[_Report], Dataset]:
+    return lambda report: half_angle_sweep(_preset(name), HALF_ANGLES, report)
+
+
+STEPS: tuple[Step, ...] = (
+    *(
+        Step(name=f"actuator-{k}", words=f"single actuator, {k} shapes", weight=0.2 * k, compute=_actuator(k))
+        for k in ACTUATOR_MODES
+    ),
+    Step(name="robot", words="robot with flexible legs", weight=4, compute=_robot("paper-robot")),
+    Step(name="robot-rigid", words="robot with rigid legs", weight=0.3, compute=_fidelity("rigid", 5e-4)),
+    Step(name="robot-lumped", words="robot whose legs only stretch", weight=0.3, compute=_fidelity("lumped", 2.5e-4)),
+    Step(name="modes", words="modes at the largest roll", weight=0.2, compute=_modes),
+    Step(name="robot-radii", words="circles read as radii", weight=4, compute=_robot("paper-robot-radii")),
+    Step(name="jump", words="start with a jump of the velocity", weight=2, compute=_jump("paper-robot")),
+    Step(name="jump-radii", words="the same, circles read as radii", weight=2, compute=_jump("paper-robot-radii")),
+    Step(name="jump-27", words="the same, half-angles of 27 deg", weight=2, compute=_jump("paper-robot", 27.0)),
+    Step(name="half-angles", words="half-angles of the joints", weight=4, compute=_sweep("paper-robot")),
+    Step(name="half-angles-radii", words="half-angles, radii", weight=4, compute=_sweep("paper-robot-radii")),
+    Step(
+        name="assumptions",
+        words="other assumptions",
+        weight=3,
+        compute=lambda r: assumptions(_preset("paper-robot"), r),
+    ),
+)
+
+
+def replicate(*, progress: Progress | None = None, keep: Callable[[str, Dataset], None] | None = None) -> PaperStudy:
+    """Compute the paper's whole study with the presets.
+
+    Parameters
+    ----------
+    progress : callable, optional
+        Called with what is being computed, in words, and the share of the whole that is done.
+    keep : callable, optional
+        Called with name and Dataset of each part as soon as it is done, so that an interrupt loses only the last.
+
+    Returns
+    -------
+    PaperStudy
+
+    Raises
+    ------
+    ComputationError
+        Of the simulations.
+    Interrupted
+        By Ctrl-C; `keep` has seen what was done before.
+    """
+    whole, done = sum(step.weight for step in STEPS), 0.0
+    parts: dict[str, Dataset] = {}
+    for step in STEPS:
+
+        def report(share: float, step: Step = step, before: float = done) -> None:
+            if progress is not None:
+                progress(step.words, (before + step.weight * share) / whole)
+
+        report(0.0)
+        parts[step.name] = step.compute(report)
+        if keep is not None:
+            keep(step.name, parts[step.name])
+        done += step.weight
+        report(1.0)
+    return PaperStudy(parts=parts)

@@ -1,0 +1,171 @@
+"""The answer in a few numbers: how large the deviation is, on which axis, and which part is to blame."""
+
+from __future__ import annotations
+
+from dataclasses import asdict, dataclass
+from typing import TYPE_CHECKING
+
+import numpy as np
+
+from flexapod.study.names import CAUSE_WORDS
+from flexapod.study.words import text
+from flexapod.typing import Array
+
+if TYPE_CHECKING:
+    from xarray import Dataset
+
+__all__ = ["ActuatorSummary", "AxisSummary", "RobotSummary", "summary"]
+
+SMALLEST_EXCURSION = 1e-6  # rigid travel below which a percentage says nothing [m]
+NOTHING = 1e-12  # deviation that is rounding [m]
+
+
+@dataclass(frozen=True, kw_only=True)
+class AxisSummary:
+    """Deviation along one world axis: `peak` (largest size) at `time`, `rms`, `excursion` of the rigid path [m, s].
+
+    `per_cent`: peak over peak-to-peak rigid excursion; None ("n/a") where the excursion is below 1 um.
+    """
+
+    axis: str
+    peak: float
+    time: float
+    rms: float
+    excursion: float
+    per_cent: float | None
+
+
+@dataclass(frozen=True, kw_only=True)
+class RobotSummary:
+    """Deviation of a payload point from the rigid path.
+
+    `peak`, `rms` [m] of the distance, `time` [s] of the peak; `start`: distance at t = 0; `axes`: x, y, z; `causes`:
+    share of each cause in the deviation at the peak, along its direction (they add up to 1 but for second order);
+    `worst_leg`, `worst_leg_share`: the leg that the largest cause owes most to, and its part of it; None without
+    deviation. `partial`: the integration stopped early.
+    """
+
+    point: str
+    peak: float
+    time: float
+    rms: float
+    start: float
+    axes: tuple[AxisSummary, ...]
+    causes: dict[str, float]
+    worst_leg: int | None
+    worst_leg_share: float | None
+    partial: bool
+
+    @property
+    def largest_cause(self) -> str | None:
+        """Cause with the largest share in size; None without deviation."""
+        return max(self.causes, key=lambda cause: abs(self.causes[cause])) if self.causes else None
+
+    @property
+    def sentence(self) -> str:
+        """The deviation and its largest cause, in one sentence."""
+        name = {"com": "The payload's centre of mass", "tool": "The tool"}[self.point]
+        if self.largest_cause is None:
+            return f"{name} stays on the path of the rigid robot: its legs are rigid."
+        by_axis = ", ".join(f"{a.axis} {text(a.peak, 'm')}" for a in self.axes)
+        leg = "" if self.worst_leg is None else f", most of it in leg {self.worst_leg}"
+        until = " until the computation stopped" if self.partial else ""
+        return (
+            f"{name} misses its rigid path by up to {text(self.peak, 'm')}{until} ({by_axis}); the largest cause is "
+            f"{CAUSE_WORDS[self.largest_cause]} ({100 * self.causes[self.largest_cause]:.0f} %{leg})."
+        )
+
+    def as_dict(self) -> dict[str, object]:
+        """Everything as plain data."""
+        return {**asdict(self), "largest_cause": self.largest_cause, "sentence": self.sentence}
+
+
+@dataclass(frozen=True, kw_only=True)
+class ActuatorSummary:
+    """Deflection of an actuator's tip in the hub frame: `peak` at `time`, `rms`, `end` [m, s]; `lengths` [m]."""
+
+    peak: float
+    time: float
+    rms: float
+    end: float
+    lengths: tuple[float, float]
+    partial: bool
+
+    @property
+    def sentence(self) -> str:
+        """The deflection and its cause, in one sentence."""
+        until = " until the computation stopped" if self.partial else ""
+        return (
+            f"The tip leaves the hub's line by up to {text(self.peak, 'm')}{until}, at t = {self.time:.3g} s, because "
+            f"the beam bends (free length {self.lengths[0]:.4g} m at the start, {self.lengths[1]:.4g} m at the end)."
+        )
+
+    def as_dict(self) -> dict[str, object]:
+        """Everything as plain data."""
+        return {**asdict(self), "sentence": self.sentence}
+
+
+def summary(data: Dataset, point: str = "com") -> RobotSummary | ActuatorSummary:
+    """Summary of a simulation.
+
+    Parameters
+    ----------
+    data : xarray.Dataset
+        Result of `flexapod.simulate`, `simulate_actuator` or `run`.
+    point : str
+        ``com`` (centre of mass; the only one with causes) or ``tool``.
+    """
+    partial = bool(data.attrs.get("partial", 0))
+    if "com_deviation" not in data:
+        tip = data.tip_deflection.values
+        at, length = int(np.abs(tip).argmax()), data.length.values
+        return ActuatorSummary(
+            peak=float(np.abs(tip[at])),
+            time=float(data.time[at]),
+            rms=_rms(tip),
+            end=float(tip[-1]),
+            lengths=(float(length[0]), float(length[-1])),
+            partial=partial,
+        )
+    deviation, path = data[f"{point}_deviation"].values, data[f"{point}_position_rigid"].values
+    size, time = np.linalg.norm(deviation, axis=1), data.time.values
+    at = int(size.argmax())
+    causes, leg, share = _blame(data, at)
+    return RobotSummary(
+        point=point,
+        peak=float(size[at]),
+        time=float(time[at]),
+        rms=_rms(size),
+        start=float(size[0]),
+        axes=tuple(_axis(str(a), deviation[:, i], path[:, i], time) for i, a in enumerate(data.axis.values)),
+        causes=causes,
+        worst_leg=leg,
+        worst_leg_share=share,
+        partial=partial,
+    )
+
+
+def _axis(name: str, deviation: Array, path: Array, time: Array) -> AxisSummary:
+    at, excursion = int(np.abs(deviation).argmax()), float(np.ptp(path))
+    peak = float(np.abs(deviation[at]))
+    per_cent = 100 * peak / excursion if excursion >= SMALLEST_EXCURSION else None
+    return AxisSummary(
+        axis=name, peak=peak, time=float(time[at]), rms=_rms(deviation), excursion=excursion, per_cent=per_cent
+    )
+
+
+def _blame(data: Dataset, at: int) -> tuple[dict[str, float], int | None, float | None]:
+    """Share of each cause at an instant along the CoM's deviation; the leg behind most of the largest, its part."""
+    deviation = data.com_deviation.values[at]
+    size = float(np.linalg.norm(deviation))
+    if size < NOTHING:
+        return {}, None, None
+    shares = data.deviation_by_cause.values[at] @ deviation / size**2
+    causes = dict(zip(map(str, data.cause.values), shares.sum(axis=1).tolist(), strict=True))
+    by_leg = shares[int(np.abs(shares.sum(axis=1)).argmax())]
+    leg = int((by_leg * np.sign(by_leg.sum())).argmax())
+    return causes, leg + 1, float(by_leg[leg] / by_leg.sum())
+
+
+def _rms(values: Array) -> float:
+    return float(np.sqrt(np.mean(np.square(values))))

@@ -1,0 +1,222 @@
+"""Estimates before a simulation, against closed forms and against the flexible model."""
+
+from dataclasses import replace
+
+import numpy as np
+import pytest
+from scipy.integrate import quad, solve_ivp
+from scipy.linalg import null_space
+from scipy.optimize import brentq
+from tests.runs import paper_robot, with_legs
+
+import flexapod as fx
+from flexapod import rigid
+from flexapod.mechanics.layout import LEG_PARAMETERS
+from flexapod.model import AxisMotion, Payload
+from flexapod.solve.kernel import kernel
+from flexapod.solve.modes import robot_modes
+from flexapod.solve.parameters import leg_parameters
+from flexapod.study.estimates import Vibration, bending_moment, buckling_load, residual_vibration, section_width
+
+LEG = paper_robot().robot.legs[0]
+EI = LEG.piston.EI
+
+
+def with_mouth(mouth):
+    return LEG.replace(cylinder=LEG.cylinder.replace(mouth=mouth))
+
+
+def test_buckling_load_in_the_limits():
+    free = np.array([0.34, 0.6])
+    np.testing.assert_allclose(buckling_load(with_mouth(0.0), free), np.pi**2 * EI / free**2, rtol=1e-12)
+    # A very long rigid part is a clamp that slides sideways: a quarter; corrected by 1 / (1 + s / m)^2.
+    np.testing.assert_allclose(buckling_load(with_mouth(1e6), free), np.pi**2 * EI / (4 * free**2), rtol=3e-6)
+
+
+@pytest.mark.parametrize("mouth", [0.05, 0.315, 1.0])
+def test_buckling_load_makes_the_own_stiffness_of_a_leg_singular(mouth):
+    # The model's leg, its tip fixed: N^T K N under a thrust that rises until it is singular.
+    robot = paper_robot().robot.replace(gravity=[0, 0, 0])
+    axis = robot.home_vectors[0] / robot.home_lengths[0]
+    p, leg = leg_parameters(robot)[0], kernel("tip-load", 6, 2)
+    p[[name for name, size in LEG_PARAMETERS for _ in range(size)].index("mouth")] = mouth
+    q, l_index = np.zeros(leg.shapes.size), leg.shapes.l_index
+    q[l_index] = mouth + 0.6
+
+    def smallest(thrust):
+        _, _, K, tip = leg.leg_matrices(q, thrust * axis, p)
+        N = null_space(np.vstack([tip, np.eye(len(q))[l_index]]))
+        return np.linalg.eigvalsh(N.T @ K @ N)[0]
+
+    expected = float(buckling_load(with_mouth(mouth), np.array([0.6]))[0])
+    found = brentq(smallest, 0.5 * expected, 1.5 * expected, rtol=1e-10)
+    assert found == pytest.approx(expected, rel=1e-8)  # Ritz: error of the load is the square of the shape's, 1e-6
+
+
+def test_width_of_a_piston_without_section():
+    assert section_width(LEG.piston) == 0.027
+    bare = LEG.piston.replace(diameter=None, E=None, density=None)
+    assert section_width(bare) == pytest.approx(0.027, rel=1e-12)
+
+
+def moments(study, t):
+    path = rigid.poses(study.robot, study.motion, t)
+    legs = rigid.inverse_kinematics(study.robot, path)
+    forces = rigid.inverse_dynamics(study.robot, path, np.zeros((len(t), 6)))
+    return bending_moment(study.robot, path, legs, forces)
+
+
+def test_bending_moment_is_that_of_stiff_pistons_in_motion():
+    # Bending a hundred times stiffer: its own vibration has no part in it, curvature times EI is the moment.
+    study = paper_robot(profile="smooth")
+    study = study.replace(motion=study.motion.replace(duration=0.5, hold=0.0))
+    study = with_legs(study, lambda leg: leg.replace(
+        piston=leg.piston.replace(EI=100 * EI, EA=100 * leg.piston.EA, E=None, density=None)))  # fmt: skip
+    data = fx.simulate(study, modes=6, step=5e-4, output_step=5e-3, duration=0.5)
+    basis = kernel("tip-load", 6, 2).shapes.a
+    free = data.leg_stroke.values - LEG.cylinder.mouth
+    bend = np.einsum("tldk,ks->tlds", data.lateral_amplitude.values, basis.values(np.linspace(0, 1, 11), 2))
+    found = 100 * EI * np.linalg.norm(bend, axis=2).max(axis=-1) / free**2
+    expected = moments(study, data.time.values)
+    # What is left, the pistons' own vibration and thrust times deflection, falls as 1 / EI: 2e-4 here.
+    np.testing.assert_allclose(found, expected, atol=1e-3 * expected.max())
+
+
+def test_bending_moment_of_a_leg_at_rest():
+    # A rod between two joints under its own weight, the moment as on two supports, up to the mouth.
+    study = paper_robot()
+    robot = study.robot
+    found = moments(study, np.zeros(1))[0]
+    rhoA, mouth, length = LEG.piston.rhoA, LEG.cylinder.mouth, robot.home_lengths[0]
+    sine = np.linalg.norm(robot.home_vectors[0][:2]) / length
+    g, m_c, inner = 9.81 * sine, LEG.cylinder.mass, length - LEG.piston.length
+    about_base = g * (m_c * LEG.cylinder.com + rhoA * (length**2 - inner**2) / 2)
+    at_tip = about_base / length  # reaction of the joint across the leg
+    d = np.linspace(0, length - mouth, 11)
+    expected = np.abs(at_tip * d - rhoA * g * d**2 / 2).max()
+    np.testing.assert_allclose(found, expected, rtol=1e-9)
+
+
+def single_mode(T, height=1e-3, damping=0.0, profile="quintic"):
+    """A light-legged robot that heaves: the payload on six axial springs, its vertical mode, and its path."""
+    study = with_legs(paper_robot(), lambda leg: leg.replace(
+        damping=damping,
+        cylinder=leg.cylinder.replace(mass=0.0, inertia=0.0), piston=leg.piston.replace(rhoA=1e-9, E=None, density=None)
+    ))  # fmt: skip
+    payload = Payload(mass=100.0, inertia=[17.88] * 3, com=[0, 0, 0])
+    robot = study.robot.replace(payload=payload, gravity=[0, 0, 0])
+    study = study.replace(robot=robot, motion=AxisMotion(type="heave", amplitude=height, duration=T, profile=profile))
+    simulation = study.simulation.replace(fidelity="lumped")
+    t = np.linspace(0.0, T, 4001)
+    path = rigid.poses(robot, study.motion, t)
+    end = rigid.Poses.at_rest(path.position[-1], path.rotation[-1])
+    return robot, robot_modes(robot, simulation, end), t, path
+
+
+def acceleration(x):
+    """Acceleration of the quintic law of unit stroke and duration."""
+    return 60 * x - 180 * x**2 + 120 * x**3
+
+
+def quintic(s):
+    """Residual amplitude over stroke of one mode driven by the quintic law, s = omega T."""
+    return 120 / s**5 * abs((12 - s**2) * np.sin(s / 2) - 6 * s * np.cos(s / 2))
+
+
+def test_closed_form_of_the_quintic_law():
+    # The published value at s = 10, and Duhamel's integral of its acceleration done by quadrature.
+    assert quintic(10.0) == pytest.approx(0.08083873, abs=5e-9)
+    parts = [quad(lambda x, f=f: acceleration(x) * f(10 * x), 0, 1, epsabs=1e-12)[0] for f in (np.sin, np.cos)]
+    assert np.hypot(*parts) / 10 == pytest.approx(quintic(10.0), rel=1e-10)
+
+
+def test_residual_vibration_of_one_mode_is_the_closed_form():
+    height = 1e-3
+    robot, modes, *_ = single_mode(0.1)
+    vertical = int(np.abs(modes.shapes[:, -4]).argmax())
+    omega = 2 * np.pi * modes.frequency[vertical]
+    for s in (6.0, 10.0, 25.0):
+        robot, modes, t, path = single_mode(s / omega, height)
+        found = residual_vibration(robot, modes, t, path)
+        # The direction of the legs turns by 1e-3 over the stroke, and the stiffness with it.
+        assert found.total == pytest.approx(quintic(s) * height, rel=5e-3)
+        assert found.amplitude.argmax() == vertical
+
+
+def test_jumps_of_the_rate_are_impacts():
+    # Constant rate v: the payload, at rest, is left behind at v; at the end the command stops under it.
+    height, T = 1e-3, 0.0123
+    robot, modes, t, path = single_mode(T, height, profile="linear")
+    j = int(np.abs(modes.shapes[:, -4]).argmax())
+    omega, v = 2 * np.pi * modes.frequency[j], height / T
+    from_rest = residual_vibration(robot, modes, t, path).amplitude[j]
+    assert from_rest == pytest.approx(2 * v / omega * abs(np.sin(omega * T / 2)), rel=5e-3)  # turn of the legs
+    moving = residual_vibration(robot, modes, t, path, from_rest=False).amplitude[j]
+    assert moving == pytest.approx(v / omega, rel=5e-3)
+
+
+def test_estimate_bounds_and_meets_the_simulated_vibration():
+    study = paper_robot()
+    T = 0.25
+    study = study.replace(motion=study.motion.replace(duration=T, hold=0.1, amplitude=0.1))
+    data = fx.simulate(study, step=2e-4, duration=T + 0.1, fidelity="lumped")
+    after = data.com_deviation.sel(time=slice(T, None)).values
+    found_modes = robot_modes(
+        study.robot, study.simulation.replace(fidelity="lumped"), rigid.poses(study.robot, study.motion, np.array([T]))
+    )
+    t = np.linspace(0, T, 4001)
+    estimate = residual_vibration(study.robot, found_modes, t, rigid.poses(study.robot, study.motion, t))
+    simulated = np.linalg.norm(after - after.mean(axis=0), axis=1).max()
+    # All modes in phase is an upper bound; frozen directions over 0.1 rad and no gyroscopic terms cost some per cent.
+    assert 0.5 * estimate.total < simulated < 1.1 * estimate.total
+
+
+def vibration(amplitude, ratio, frequency=(10.0, 20.0), band=1e-6):
+    return Vibration(
+        frequency=np.array(frequency), damping_ratio=np.array(ratio), amplitude=np.array(amplitude),
+        settling=np.zeros(2), band=band,
+    )  # fmt: skip
+
+
+def test_time_to_band():
+    one = vibration([1e-3, 0.0], [0.01, 0.01])
+    assert one.time_to_band() == pytest.approx(np.log(1e3) / (0.01 * 2 * np.pi * 10), rel=1e-9)
+    two = vibration([1e-3, 2e-3], [0.01, 0.02])
+    t = two.time_to_band()
+    left = 1e-3 * np.exp(-2 * np.pi * 0.1 * t) + 2e-3 * np.exp(-2 * np.pi * 0.4 * t)
+    assert left == pytest.approx(1e-6, rel=1e-9)
+    assert vibration([4e-7, 5e-7], [0.0, 0.0]).time_to_band() == 0.0
+    assert vibration([1e-3, 2e-6], [0.01, 0.0]).time_to_band() == np.inf
+
+
+def test_time_to_band_with_an_undamped_rest_inside_the_band():
+    # The damped mode must fall to what the undamped one leaves of the band.
+    t = vibration([1e-3, 9e-7], [0.01, 0.0]).time_to_band()
+    assert t == pytest.approx(np.log(1e-3 / 1e-7) / (0.01 * 2 * np.pi * 10), rel=1e-6)
+
+
+def test_damping_shortens_the_vibration_as_duhamel_says():
+    T, ratio = 0.05, 0.2
+    robot, modes, t, path = single_mode(T)
+    j = int(np.abs(modes.shapes[:, -4]).argmax())
+    omega, ratios = 2 * np.pi * modes.frequency[j], np.zeros_like(modes.damping_ratio)
+    ratios[j] = ratio
+    found = residual_vibration(robot, replace(modes, damping_ratio=ratios), t, path, band=1e-9)
+
+    def rates(time, y):
+        """One damped oscillator under the same acceleration, as an initial value problem."""
+        return [y[1], -1e-3 * acceleration(time / T) / T**2 - 2 * ratio * omega * y[1] - omega**2 * y[0]]
+
+    end = solve_ivp(rates, (0, T), [0, 0], rtol=1e-10, atol=1e-16).y[:, -1]
+    damped = omega * np.sqrt(1 - ratio**2)
+    envelope = np.hypot(end[0], (end[1] + ratio * omega * end[0]) / damped)
+    assert found.amplitude[j] == pytest.approx(envelope, rel=5e-3)  # turn of the legs over the stroke
+    assert found.settling[j] == pytest.approx(np.log(envelope / 1e-9) / (ratio * omega), rel=5e-3)
+
+
+def test_overdamped_modes_do_not_vibrate():
+    robot, modes, t, path = single_mode(0.05)
+    found = residual_vibration(robot, replace(modes, damping_ratio=np.full_like(modes.frequency, 1.5)), t, path)
+    assert len(found.frequency) == 0
+    assert found.total == 0.0
+    assert found.time_to_band() == 0.0
