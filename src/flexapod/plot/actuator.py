@@ -8,8 +8,10 @@ import numpy as np
 import xarray as xr
 from matplotlib.axes import Axes
 from matplotlib.figure import Figure
+from scipy.ndimage import maximum_filter1d
 
 from flexapod.plot.style import FLEXIBLE, LEG_COLORS, LINE_STYLES, RIGID, figure, scale, styled
+from flexapod.study.words import number
 
 __all__ = ["actuator_modes", "actuator_response"]
 
@@ -23,7 +25,8 @@ def actuator_response(data: xr.Dataset | Mapping[int, xr.Dataset]) -> Figure:
     data : xarray.Dataset, or mapping of number of shapes to xarray.Dataset
         Results of `flexapod.simulate_actuator` on the same output instants.
     """
-    series = dict(sorted(data.items())) if isinstance(data, Mapping) else {int(data.attrs.get("modes", 0)): data}
+    given = {int(data.attrs.get("modes", 0)): data} if isinstance(data, xr.Dataset) else data
+    series = {count: given[count] for count in sorted(given)}
     counts = list(series)
     finest = series[counts[-1]]
     rows = 3 if len(series) > 1 else 2
@@ -60,15 +63,17 @@ def _differences(axes: Axes, series: Mapping[int, xr.Dataset]) -> None:
     counts = list(series)
     finest = series[counts[-1]].tip_deflection
     for i, count in enumerate(counts[:-1]):
-        gap = 1e6 * np.abs(series[count].tip_deflection - finest)
+        gap = 1e6 * np.abs((series[count].tip_deflection - finest).values)
+        envelope = maximum_filter1d(gap, max(3, len(gap) // 20))
         style = LINE_STYLES[len(counts) - 2 - i]
-        axes.semilogy(finest.time, np.maximum(gap, 1e-6), color=LEG_COLORS[i], linestyle=style, linewidth=1.0)
+        axes.semilogy(finest.time, np.maximum(envelope, 1e-6), color=LEG_COLORS[i], linestyle=style)
         place = {"xycoords": ("axes fraction", "data"), "textcoords": "offset points", "va": "center"}
         level = float(gap[1:].max())
-        axes.annotate(f"{count}: {level:.2g} µm", (1.0, level), xytext=(4, 0), color=LEG_COLORS[i], fontsize=8.5, **place)
-    axes.set_title(f"Distance from the result with {counts[-1]} shapes (right: the largest)")
+        axes.annotate(
+            f"{count}: {number(level, 2)} µm", (1.0, level), xytext=(4, 0), color=LEG_COLORS[i], fontsize=8.5, **place
+        )
+    axes.set_title(f"Largest distance nearby from the result with {counts[-1]} shapes (right: of all)")
     axes.set_ylabel("difference [µm]")
-    axes.set_ylim(bottom=1e-3)
 
 
 @styled

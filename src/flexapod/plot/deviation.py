@@ -8,15 +8,11 @@ from matplotlib.axes import Axes
 from matplotlib.figure import Figure
 
 from flexapod.plot.style import Scale, figure, mark_end, scale, styled
+from flexapod.study.names import CAUSE_WORDS
 from flexapod.study.scene import motion_end
 
-__all__ = ["CAUSE_WORDS", "deviation_by_cause"]
+__all__ = ["deviation_by_cause"]
 
-CAUSE_WORDS = {
-    "axial-strain": "stretch of the pistons",
-    "bending": "bending of the pistons",
-    "drive": "give of the drives",
-}
 _COLORS = {"axial-strain": "#0072B2", "bending": "#D55E00", "drive": "#009E73"}
 
 
@@ -30,15 +26,17 @@ def deviation_by_cause(data: xr.Dataset) -> Figure:
         With `deviation_by_cause` (time, cause, leg, axis) and `com_deviation` (time, axis).
     """
     fig = figure(9.2, 6.6)
-    grid = fig.subplots(3, 2, width_ratios=(2.1, 1), sharex="col", sharey="row")
-    parts, total = data.deviation_by_cause, data.com_deviation
+    grid = fig.subplots(3, 2, width_ratios=(2.1, 1), sharex="col")
+    total = data.com_deviation
+    acting = np.abs(data.deviation_by_cause).max(("time", "leg", "axis")) > 0
+    parts = data.deviation_by_cause.sel(cause=acting)
     small = scale(total, "m")
     end, time = motion_end(data), data.time.values
     for row, axis in enumerate(data.axis.values):
         left, right = grid[row]
         sums = parts.sel(axis=axis).sum("leg")
         left.plot(time, small(total.sel(axis=axis)), color="#C8C8C8", linewidth=5, label="whole deviation")
-        for cause in data.cause.values:
+        for cause in parts.cause.values:
             label = CAUSE_WORDS.get(str(cause), str(cause))
             left.plot(time, small(sums.sel(cause=cause)), color=_COLORS.get(str(cause)), linewidth=1.2, label=label)
         left.axhline(0, color="#555555", linewidth=0.7)
@@ -66,4 +64,5 @@ def _by_leg(axes: Axes, parts: xr.DataArray, total: xr.DataArray, small: Scale, 
     axes.set_xticks(legs)
     axes.grid(axis="x", visible=False)
     axes.set_title(f"{axis.upper()}, by leg at {float(total.time[at]):.2f} s")
-    axes.tick_params(labelleft=True)
+    axes.use_sticky_edges = False
+    axes.margins(y=0.1)

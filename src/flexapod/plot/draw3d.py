@@ -18,6 +18,7 @@ __all__ = ["draw_ghost", "draw_robot", "space", "view"]
 CYLINDER = "#8A8F98"
 BASE = "#4A4F57"
 PLATFORM = "#2F6690"
+_NUMBER: dict[str, Any] = {"fontsize": 8, "bbox": {"facecolor": "white", "edgecolor": "none", "pad": 0.6}}
 
 
 def space(fig: Figure, place: SubplotSpec, *, turn: float = -62, tilt: float = 16) -> Any:
@@ -25,10 +26,11 @@ def space(fig: Figure, place: SubplotSpec, *, turn: float = -62, tilt: float = 1
     axes = fig.add_subplot(place, projection="3d", computed_zorder=False)
     axes.set_proj_type("ortho")
     axes.view_init(elev=tilt, azim=turn)
-    for axis in (axes.xaxis, axes.yaxis, axes.zaxis):
+    made: Any = axes
+    for axis in (made.xaxis, made.yaxis, made.zaxis):
         axis.set_pane_color((1, 1, 1, 0))
         axis._axinfo["grid"].update(color="#E4E4E4", linewidth=0.6)
-    return axes
+    return made
 
 
 def view(axes: Any, scenes: Sequence[Scene], zoom: float = 1.0) -> None:
@@ -49,22 +51,24 @@ def view(axes: Any, scenes: Sequence[Scene], zoom: float = 1.0) -> None:
 
 
 def draw_robot(axes: Any, s: Scene, *, numbers: bool = True, legs: Sequence[str] = LEG_COLORS) -> None:
-    """Draw a robot: grey cylinders, coloured pistons, translucent platform, payload's centre of mass as a cross-hair."""
+    """Draw a robot: grey cylinders, coloured pistons, translucent platform, cross-hair at the centre of mass."""
     _plate(axes, s.base, BASE, 0.12)
     for i in range(6):
         _line(axes, s.base[i], s.mouth[i], color=CYLINDER, linewidth=6, zorder=3)
         x, y, z = 1e3 * s.piston[i].T
         axes.plot(x, y, z, color=legs[i], linewidth=2.6, solid_capstyle="round", zorder=4)
         if numbers:
-            outward = s.base[i] * np.array([1.12, 1.12, 0.0]) + np.array([0, 0, s.base[i, 2]])
-            axes.text(*(1e3 * outward), str(i + 1), fontsize=8, color=legs[i], ha="center", va="center", zorder=9)
+            outward = s.base[i] * np.array([1.2, 1.2, 0.0]) + np.array([0, 0, s.base[i, 2]])
+            axes.text(*(1e3 * outward), str(i + 1), color=legs[i], ha="center", va="center", zorder=9, **_NUMBER)
     _plate(axes, s.platform, PLATFORM, 0.35)
     _dots(axes, s.base, BASE, 14)
     _dots(axes, s.platform, PLATFORM, 18)
     _line(axes, s.centre, s.com, color="#333333", linewidth=1.2, linestyle=(0, (4, 2)), zorder=6)
     x, y, z = 1e3 * s.com
-    axes.plot([x], [y], [z], marker="o", markersize=11, color="white", markeredgecolor="#333333", zorder=7)
-    axes.plot([x], [y], [z], marker="+", markersize=10, color="#333333", zorder=8)
+    axes.plot(
+        [x], [y], [z], marker="o", markersize=10, clip_on=False, color="white", markeredgecolor="#333333", zorder=7
+    )
+    axes.plot([x], [y], [z], marker="+", markersize=9, clip_on=False, color="#333333", zorder=8)
 
 
 def draw_ghost(axes: Any, s: Scene) -> None:

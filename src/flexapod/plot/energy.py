@@ -2,7 +2,9 @@
 
 from __future__ import annotations
 
+import numpy as np
 import xarray as xr
+from matplotlib.axes import Axes
 from matplotlib.figure import Figure
 
 from flexapod.plot.style import LEG_COLORS, LINE_STYLES, figure, mark_end, scale, styled
@@ -40,8 +42,14 @@ def energies(data: xr.Dataset) -> Figure:
         style = {"color": LEG_COLORS[i], "linestyle": LINE_STYLES[i]}
         rows[0].plot(time, big(changes[name]), label=_WORDS[name], **style)
     _line(rows[1], time, data.energy_strain, "Strain energy, with that of the drive springs", "energy")
-    balance = sum(_SIGN.get(name, 1.0) * data[name] for name in names)
-    _line(rows[2], time, balance - balance[0], "Balance: energies plus losses minus works, change since the start", "balance")
+    balance = xr.concat([_SIGN.get(name, 1.0) * data[name] for name in names], dim="part").sum("part")
+    _line(
+        rows[2],
+        time,
+        balance - balance[0],
+        "Balance: energies plus losses minus works, change since the start",
+        "balance",
+    )
     rows[0].set_title("Energies and works, change since the start")
     rows[0].set_ylabel(f"energy [{big.name}]")
     rows[0].legend(loc="best", ncols=2, handlelength=3)
@@ -52,7 +60,7 @@ def energies(data: xr.Dataset) -> Figure:
     return fig
 
 
-def _line(axes, time, values: xr.DataArray, title: str, label: str) -> None:
+def _line(axes: Axes, time: np.ndarray, values: xr.DataArray, title: str, label: str) -> None:
     small = scale(values, "J")
     axes.plot(time, small(values), color="#333333", linewidth=1.0)
     axes.set_title(title)

@@ -40,8 +40,9 @@ def motion_law(data: xr.Dataset) -> Figure:
                 style = {"color": LEG_COLORS[i], "linestyle": LINE_STYLES[i]}
                 axes.plot(data.time, unit(values.sel(coordinate=name)), label=name, **style)
             axes.set_ylabel(f"{part} [{unit.name}]")
+            if row == 0:
+                axes.set_title(" and ".join(names).capitalize() + " from home")
             mark_end(axes, end, "motion ends" if row == column == 0 else "")
-        grid[0, column].set_title(" and ".join(names).capitalize() + " from home")
         grid[-1, column].set_xlabel("time [s]")
         if len(names) > 1:
             grid[0, column].legend()

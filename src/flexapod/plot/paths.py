@@ -28,7 +28,7 @@ def com_path(data: xr.Dataset, axes: Sequence[str] = ("y", "z"), point: str = "c
     point : str
         ``com`` (centre of mass) or ``tool``.
     """
-    fig = figure(3.9 * len(axes), 5.2)
+    fig = figure(4.0 * len(axes), 5.2, gap=0.06)
     grid = fig.subplots(2, len(axes), sharex=True, squeeze=False, height_ratios=(1.15, 1.0))
     deviation = data[f"{point}_deviation"].sel(axis=list(axes))
     small = scale(deviation, "m")
@@ -51,7 +51,7 @@ def com_path(data: xr.Dataset, axes: Sequence[str] = ("y", "z"), point: str = "c
 
 
 def _paths(axes: Axes, data: xr.Dataset, point: str, axis: str) -> None:
-    """Rigid path as a broad pale band, flexible path as a fine dark line on it: both stay visible where they coincide."""
+    """Rigid path as a broad pale band, flexible path as a fine dark line on it: both show where they coincide."""
     time = data.time.values
     rigid, flexible = (data[f"{point}_position{end}"].sel(axis=axis).values for end in ("_rigid", ""))
     axes.plot(time, 1e3 * rigid, color=RIGID, linewidth=6, solid_capstyle="butt", label="rigid legs")
@@ -72,7 +72,7 @@ def _peak(axes: Axes, time: np.ndarray, values: np.ndarray, unit: str) -> None:
     axes.plot(time[at], values[at], "o", color="#333333", markersize=4, zorder=5)
     right = time[at] > 0.5 * (time[0] + time[-1])
     axes.annotate(
-        f"peak {values[at]:.3g} {unit}",
+        f"peak {values[at]:.3g} {unit}".replace("-", "\N{MINUS SIGN}"),
         (time[at], values[at]),
         xytext=(-6 if right else 6, 6 if above else -6),
         textcoords="offset points",

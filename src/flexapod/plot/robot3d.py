@@ -30,13 +30,14 @@ def robot_3d(data: xr.Dataset, time: float | None = None) -> Figure:
         time = motion_end(data)
     time = float(data.time[-1] if time is None else data.time.sel(time=time, method="nearest"))
     now, start = scene(data, time), scene(data, float(data.time[0]))
-    fig = figure(8.6, 4.9)
-    places = fig.add_gridspec(1, 2, width_ratios=(1.15, 1))
+    fig = figure(8.6, 5.6)
+    fig.set_layout_engine("none")  # 3D axes have no extents that a layout could use
+    places = fig.add_gridspec(1, 2, width_ratios=(1.15, 1), left=0.0, right=0.96, bottom=0.07, top=0.93, wspace=0.1)
     left, right = space(fig, places[0]), space(fig, places[1], turn=0, tilt=0)
     for axes in (left, right):
         draw_ghost(axes, start)
         draw_robot(axes, now, numbers=axes is left)
-        view(axes, [now, start], zoom=1.15)
+        view(axes, [now, start], zoom=1.0)
     right.set_xticks([])
     right.set_xlabel("")
     left.set_title(f"At t = {time:.2f} s; pale: at the start")
@@ -60,8 +61,11 @@ def modes_3d(modes: xr.Dataset, show: Sequence[int] | None = None, size: float =
     labels = [int(m) for m in (modes.mode.values[:6] if show is None else show)]
     columns = min(3, len(labels))
     rows = -(-len(labels) // columns)
-    fig = figure(3.2 * columns, 3.7 * rows)
-    places = fig.add_gridspec(rows, columns)
+    fig = figure(3.2 * columns, 4.0 * rows)
+    fig.set_layout_engine("none")
+    places = fig.add_gridspec(
+        rows, columns, left=0.0, right=1.0, bottom=0.0, top=1 - 0.11 / rows, hspace=0.14, wspace=0.0
+    )
     rest = mode_scene(modes, labels[0], 1.0, phase=0.0)
     height = float(np.ptp(np.vstack([rest.base, rest.platform])[:, 2]))
     for i, label in enumerate(labels):
@@ -69,7 +73,7 @@ def modes_3d(modes: xr.Dataset, show: Sequence[int] | None = None, size: float =
         moved = mode_scene(modes, label, size * height)
         draw_ghost(axes, rest)
         draw_robot(axes, moved, numbers=True)
-        view(axes, [rest, moved], zoom=1.2)
+        view(axes, [rest, moved], zoom=1.15)
         axes.set(xlabel="", ylabel="", zlabel="")
         axes.tick_params(labelbottom=False, labelleft=False, labelright=False)
         axes.set_title(_title(modes.sel(mode=label), label), fontsize=9)

@@ -43,7 +43,7 @@ def half_angles(sweeps: Mapping[str, xr.Dataset]) -> Figure:
         _lost(top, sweep)
     grid[0, 0].set_ylabel("largest deviation of the\ncentre of mass [µm]")
     grid[1, 0].set_ylabel("largest drive\nforce [kN]")
-    grid[2, 0].set_ylabel("lowest frequency\nat home [Hz]")
+    grid[2, 0].set_ylabel("lowest frequency\non the path [Hz]")
     grid[0, 0].legend(loc="upper left")
     fig.align_ylabels(grid[:, 0])
     return fig
@@ -53,7 +53,9 @@ def _peaks(axes: Axes, sweep: xr.Dataset) -> None:
     for axis in sweep.axis.values:
         name = str(axis)
         values = 1e6 * sweep.deviation_peak.sel(axis=name)
-        axes.semilogy(sweep.half_angle, values, _MARKS[name] + "-", color=AXIS_COLORS[name], label=name.upper(), markersize=5)
+        axes.semilogy(
+            sweep.half_angle, values, _MARKS[name] + "-", color=AXIS_COLORS[name], label=name.upper(), markersize=5
+        )
     for name, limit in _LIMITS.items():
         axes.axhline(1e6 * limit, color=AXIS_COLORS[name], linewidth=0.9, linestyle=(0, (5, 3)))
         axes.annotate(
@@ -74,8 +76,14 @@ def _lost(axes: Axes, sweep: xr.Dataset) -> None:
     """Name the half-angles at which there is no result."""
     for angle, words in zip(sweep.half_angle.values, sweep.verdict.values, strict=True):
         if str(words) != "":
-            axes.annotate(str(words).split(":")[0], (angle, 0.97), xycoords=("data", "axes fraction"), xytext=(-7, 0),
-                          textcoords="offset points", rotation=90, ha="right", va="top", fontsize=8, color="#C44E52")  # fmt: skip
+            place = {
+                "xycoords": ("data", "axes fraction"),
+                "textcoords": "offset points",
+                "rotation": 90,
+                "va": "bottom",
+            }
+            label = str(words).split(":")[0].split(" from ")[0]
+            axes.annotate(label, (angle, 0.03), xytext=(-7, 0), ha="right", fontsize=8, color="#C44E52", **place)
 
 
 @styled
@@ -93,7 +101,9 @@ def start_jump(smooth: xr.Dataset, jump: xr.Dataset) -> Figure:
     for axes, axis in zip(rows, ("y", "z"), strict=True):
         values = unit(jump.com_deviation.sel(axis=axis))
         axes.plot(jump.time, values, color=AXIS_COLORS[axis], linewidth=0.8, label="rate jumps at the start")
-        axes.plot(smooth.time, unit(smooth.com_deviation.sel(axis=axis)), color="#222222", linewidth=1.4, label="smooth start")
+        axes.plot(
+            smooth.time, unit(smooth.com_deviation.sel(axis=axis)), color="#222222", linewidth=1.4, label="smooth start"
+        )
         axes.axhline(0, color="#555555", linewidth=0.7)
         peak = float(np.abs(values).max())
         axes.set_title(f"Flexible minus rigid, {axis.upper()} (largest with the jump: {peak:.3g} {unit.name})")

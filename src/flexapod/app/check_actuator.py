@@ -1,0 +1,63 @@
+"""What `flexapod check` says about a single actuator."""
+
+from __future__ import annotations
+
+import math
+from typing import TYPE_CHECKING
+
+from flexapod.app.terminal import print_table, print_text
+from flexapod.study.words import text
+
+if TYPE_CHECKING:
+    from flexapod.study.describe_actuator import ActuatorDescription, BeamDescription
+
+__all__ = ["show_actuator"]
+
+
+def show_actuator(found: ActuatorDescription) -> None:
+    """Print a description in sections."""
+    print_text(f"The beam stays in its hub. A single actuator over {found.duration:.4g} s ({found.fidelity}).")
+    print_text()
+    print_text("Motion")
+    for line in _motion(found):
+        print_text(line, indent=2)
+    print_text()
+    print_text("Beam, rotation and extension held")
+    header = ["", "free length [m]", "frequencies [Hz]", "damping [%]", "free length / depth", "sag if level"]
+    print_table(header, [_row(beam) for beam in found.beam])
+    for beam in found.beam:
+        if beam.problem:
+            print_text(f"{beam.name}: {beam.problem}", indent=2)
+    print_text()
+    print_text("Remarks")
+    for remark in found.remarks or ("None.",):
+        print_text(remark, indent=2)
+
+
+def _motion(found: ActuatorDescription) -> list[str]:
+    lines = []
+    if found.angles is not None:
+        first, last = (math.degrees(angle) for angle in found.angles)
+        lines.append(f"The hub turns from {first:.4g} to {last:.4g} deg.")
+    if found.free_lengths is not None:
+        low, high = found.free_lengths
+        lines.append(f"The free length lies between {low:.4g} and {high:.4g} m.")
+    names = {
+        "rotation": "The hub is driven by a torque: its angle",
+        "extension": "The beam is driven by a force: its length",
+    }
+    lines += [f"{names[name]} is a result." for name in found.driven]
+    if found.tip_displacement:
+        lines.append(f"The tip starts {text(found.tip_displacement, 'm')} off the line, released at rest.")
+    return lines
+
+
+def _row(beam: BeamDescription) -> list[str]:
+    return [
+        f"  {beam.name}",
+        f"{beam.free_length:.4g}",
+        ", ".join(f"{f:.4g}" for f in beam.frequency) or "n/a",
+        ", ".join(f"{100 * d:.2g}" for d in beam.damping_ratio) or "n/a",
+        "n/a" if beam.slenderness is None else f"{beam.slenderness:.3g}",
+        text(beam.sag, "m") if beam.sag else "no gravity",
+    ]

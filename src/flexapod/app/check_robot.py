@@ -1,0 +1,150 @@
+"""What `flexapod check` says about a robot."""
+
+from __future__ import annotations
+
+import math
+from typing import TYPE_CHECKING
+
+from flexapod.app.terminal import print_table, print_text
+from flexapod.study.words import number, text
+
+if TYPE_CHECKING:
+    from flexapod.study.describe import RobotDescription
+    from flexapod.study.describe_leg import Extreme, Stress
+    from flexapod.study.describe_pose import PoseDescription, VibrationToExpect
+
+__all__ = ["show_robot"]
+
+
+def show_robot(found: RobotDescription) -> None:
+    """Print a description in sections."""
+    print_text(
+        f"The path keeps all limits. The motion takes {found.motion_end:.4g} s, the simulation {found.duration:.4g} s "
+        f"({found.fidelity}). Estimates from the rigid path:"
+    )
+    _lengths(found)
+    _singularity(found)
+    _loads(found)
+    for pose in found.poses:
+        _pose(pose)
+    _vibration(found.vibration)
+    _heading("Remarks")
+    for remark in found.remarks or ("None.",):
+        print_text(remark, indent=2)
+
+
+def _heading(title: str) -> None:
+    print_text()
+    print_text(title)
+
+
+def _lengths(found: RobotDescription) -> None:
+    _heading("Lengths, joint to joint")
+    rows = [
+        [
+            f"  leg {leg.leg}",
+            _at(leg.shortest),
+            _at(leg.longest),
+            "no limits" if leg.stroke_margin is None else _at(leg.stroke_margin),
+            f"{1e3 * leg.guided.value:.2f}",
+            f"{leg.slenderness:.3g}",
+        ]
+        for leg in found.legs
+    ]
+    header = ["", "shortest [mm]", "longest [mm]", "stroke left [mm]", "in cylinder [mm]", "free length / width"]
+    print_table(header, rows)
+    limited = [(leg.stroke_margin.value, leg) for leg in found.legs if leg.stroke_margin is not None]
+    if limited:
+        margin, leg = min(limited, key=lambda entry: entry[0])
+        low, high = leg.stroke or (0.0, 0.0)
+        print_text(
+            f"Leg {leg.leg} comes nearest to its limits of {1e3 * low:.4g} and {1e3 * high:.4g} mm: {1e3 * margin:.2f} "
+            "mm are left.",
+            indent=2,
+        )
+
+
+def _at(extreme: Extreme) -> str:
+    return f"{1e3 * extreme.value:.2f} at {extreme.time:.3f} s"
+
+
+def _singularity(found: RobotDescription) -> None:
+    s = found.singularity
+    _heading("Distance to a singularity (scaled Jacobian)")
+    print_text(
+        f"Smallest singular value {s.smallest_singular_value:.3g}, condition {s.condition:.3g} at t = {s.time:.3f} s; "
+        f"at home {s.home_smallest_singular_value:.3g} and {s.home_condition:.3g}. "
+        "An error of the legs' lengths reaches the platform up to "
+        f"{1 / s.smallest_singular_value:.3g} times as large.",
+        indent=2,
+    )
+
+
+def _loads(found: RobotDescription) -> None:
+    _heading("Loads (+ pushes)")
+    rows = []
+    for leg in found.legs:
+        share = leg.euler_share
+        words = "never pushed" if share.value == 0 else f"{100 * share.value:.2g} % at {share.time:.3f} s"
+        forces = [f"{leg.force_min.value:.5g}", f"{leg.force_max.value:.5g}"]
+        rows.append([f"  leg {leg.leg}", *forces, words, *_stresses(leg.stress)])
+    header = ["", "least [N]", "largest [N]", "of Euler load", "axial [MPa]", "bending [MPa]", "together"]
+    print_table(header, rows)
+    pushed = max(found.legs, key=lambda leg: leg.euler_share.value)
+    if pushed.euler_share.value > 0:
+        print_text(
+            f"Leg {pushed.leg} comes nearest to buckling: {1 / pushed.euler_share.value:.3g} times its load would "
+            f"do it (Euler load {text(pushed.euler_load, 'N')}).",
+            indent=2,
+        )
+    known = [(leg.stress, leg.leg) for leg in found.legs if leg.stress is not None]
+    if not known:
+        print_text("No stresses: the section or the material of the pistons is not given.", indent=2)
+        return
+    most, number = max(known, key=lambda entry: entry[0].total.value)
+    limit = "" if most.yield_stress is None else f", {100 * most.total.value / most.yield_stress:.2g} % of yield"
+    print_text(f"Leg {number} is stressed most: {text(most.total.value, 'Pa')}{limit}.", indent=2)
+
+
+def _stresses(stress: Stress | None) -> list[str]:
+    if stress is None:
+        return ["n/a"] * 3
+    return [f"{value / 1e6:.3g}" for value in (stress.axial, stress.bending, stress.total.value)]
+
+
+def _pose(pose: PoseDescription) -> None:
+    _heading(f"Drives locked, {pose.name} (t = {pose.time:.3f} s)")
+    if pose.problem:
+        print_text(pose.problem, indent=2)
+    if pose.stiffness is not None:
+        s = pose.stiffness
+        direction = ", ".join(f"{round(part, 2) + 0.0:.2f}" for part in s.softest)
+        print_text(
+            f"Stiffness at the tool: {text(s.least, 'N/m')} along [{direction}], where it is least, to "
+            f"{text(s.most, 'N/m')}; against turning {number(1e-3 * s.turning_least)} to "
+            f"{number(1e-3 * s.turning_most)} kN m/rad. At rest the centre of mass is off by "
+            f"{text(pose.sag or 0.0, 'm')}.",
+            indent=2,
+        )
+    if pose.modes:
+        listed = ", ".join(f"{m.frequency:.4g} Hz ({m.kind}, {100 * m.damping_ratio:.2g} %)" for m in pose.modes)
+        print_text(f"Frequencies (what moves, damping): {listed}.", indent=2)
+
+
+def _vibration(found: VibrationToExpect | None) -> None:
+    _heading("Vibration to expect after the motion, at the tool")
+    if found is None:
+        print_text("None that could be estimated.", indent=2)
+        return
+    band = text(found.band, "m")
+    if math.isinf(found.settling):
+        when = f"without damping it does not fall below {band}"
+    elif found.settling == 0:
+        when = f"below {band} at once"
+    else:
+        when = f"below {band} after {text(found.settling, 's')}"
+    print_text(
+        f"About {text(found.amplitude, 'm')} with all modes in phase, {number(100 * found.share, 2)} % of it at "
+        f"{found.frequency:.4g} Hz; {when}.",
+        indent=2,
+    )

@@ -1,0 +1,134 @@
+"""`flexapod modes`: frequencies, damping and shapes of the locked robot at a pose."""
+
+from __future__ import annotations
+
+from pathlib import Path
+from typing import TYPE_CHECKING, Annotated
+
+import typer
+
+from flexapod.app.failures import guarded
+from flexapod.app.options import Json, StudyFile
+
+if TYPE_CHECKING:
+    from xarray import Dataset
+
+__all__ = ["add", "parse_pose"]
+
+Pose = Annotated[
+    str | None,
+    typer.Option("--pose", metavar='"roll=20deg,heave=10mm"', help="From home; numbers without unit in m and rad."),
+]
+Folder = Annotated[
+    Path | None, typer.Option("--out", metavar="DIR", help="Write modes.nc and the shapes as a figure; default: not.")
+]
+Count = Annotated[int, typer.Option("--count", min=1, help="How many of the lowest modes to show.")]
+
+
+def add(app: typer.Typer) -> None:
+    """Give `app` the command."""
+    app.command("modes")(modes)
+
+
+@guarded
+def modes(file: StudyFile, pose: Pose = None, out: Folder = None, count: Count = 12, json: Json = False) -> None:
+    """Frequencies, damping and shapes at a pose, drives locked, about the static equilibrium."""
+    from flexapod import model
+    from flexapod.app.outputs import check_writable
+    from flexapod.app.terminal import print_json
+    from flexapod.errors import InputError
+    from flexapod.study import modes as compute
+
+    study = model.load(file)
+    if isinstance(study, model.ActuatorStudy):
+        raise InputError(
+            "is the study of a single actuator",
+            file=file,
+            allowed="the study of a robot",
+            next_step=f"`flexapod check {file}` gives the frequencies of its beam",
+        )
+    check_writable(out)
+    data = compute(study, parse_pose(pose))
+    files = [] if out is None else _write(data, out)
+    if json:
+        print_json(_as_dict(data, files))
+    else:
+        _show(data, pose, count, files)
+
+
+def parse_pose(text: str | None) -> dict[str, float] | None:
+    """Surge, sway, heave [m], roll, pitch, yaw [rad] from ``"roll=20deg,heave=10mm"``; None: home.
+
+    Raises
+    ------
+    InputError
+        Unknown axes, something that is no number with a unit of the right kind.
+    """
+    from flexapod.errors import InputError, closest
+    from flexapod.model import AXES
+    from flexapod.units import to_si
+
+    if not text or not text.strip():
+        return None
+    pose: dict[str, float] = {}
+    for part in text.split(","):
+        name, equals, value = (piece.strip() for piece in part.partition("="))
+        if not equals or name not in AXES or name in pose:
+            what = "is given twice" if name in pose else "is no axis with its value"
+            hint = closest(name, AXES) or 'Write --pose "roll=20deg,heave=10mm"'
+            raise InputError(what, key="--pose", value=part.strip(), allowed=", ".join(AXES), next_step=hint)
+        dimension = "length" if name in AXES[:3] else "angle"
+        pose[name] = to_si(_number(value), dimension, key=f"--pose {name}")
+    return pose
+
+
+def _number(text: str) -> float | str:
+    try:
+        return float(text)
+    except ValueError:
+        return text
+
+
+def _write(data: Dataset, folder: Path) -> list[Path]:
+    from flexapod import plot
+    from flexapod.study.store import save
+
+    figure = plot.modes_3d(data)
+    return [save(data, folder / "modes.nc"), *plot.save(figure, folder / "modes")]
+
+
+def _as_dict(data: Dataset, files: list[Path]) -> dict[str, object]:
+    found = [
+        {"mode": int(m), "frequency": float(f), "damping_ratio": float(d), "kind": str(kind)}
+        for m, f, d, kind in zip(data.mode, data.frequency, data.damping_ratio, data.kind.values, strict=True)
+    ]
+    return {
+        "modes": found,
+        "com_sag": data.com_sag.values.tolist(),
+        "warnings": [line for line in data.attrs["warnings"].splitlines() if line],
+        "files": files,
+    }
+
+
+def _show(data: Dataset, pose: str | None, count: int, files: list[Path]) -> None:
+    from flexapod.app.terminal import print_table, print_text
+    from flexapod.study.words import text
+
+    sag = float((data.com_sag**2).sum() ** 0.5)
+    print_text(
+        f"Drives locked, {f'at {pose} from home' if pose else 'at home'}, about the static equilibrium "
+        f"(the centre of mass sags by {text(sag, 'm')})."
+    )
+    print_text()
+    shown = data.isel(mode=slice(0, count))
+    rows = [
+        [str(int(m)), f"{float(f):.6g}", f"{100 * float(d):.3g}", str(kind)]
+        for m, f, d, kind in zip(shown.mode, shown.frequency, shown.damping_ratio, shown.kind.values, strict=True)
+    ]
+    print_table(["mode", "frequency [Hz]", "damping [%]", "what moves most"], rows, left=(3,))
+    if data.sizes["mode"] > count:
+        print_text(f"The lowest {count} of {data.sizes['mode']} modes; more with --count.")
+    for line in data.attrs["warnings"].splitlines():
+        print_text(f"Warning: {line}")
+    for path in files:
+        print_text(f"Written: {path}")

@@ -1,0 +1,110 @@
+"""`flexapod run` and `flexapod actuator`: simulate, write everything, say the answer."""
+
+from __future__ import annotations
+
+from pathlib import Path
+from typing import TYPE_CHECKING
+
+import typer
+
+from flexapod.app.failures import INTERRUPTED, guarded, print_parts, show
+from flexapod.app.options import Json, Out, Quiet, StudyFile
+
+if TYPE_CHECKING:
+    from xarray import Dataset
+
+    from flexapod.model import ActuatorStudy, Study
+
+__all__ = ["add"]
+
+COMPUTING = 0.88  # share of the bar for the simulation; the rest is for files
+
+
+def add(app: typer.Typer) -> None:
+    """Give `app` the commands."""
+    app.command("run")(run)
+    app.command("actuator")(actuator)
+
+
+@guarded
+def run(file: StudyFile, out: Out = None, json: Json = False, quiet: Quiet = False) -> None:
+    """Simulate a study, rigid and flexible: results.nc, results.csv, figures, report.html."""
+    from flexapod.model import load
+
+    _run(load(file), file, out, json=json, quiet=quiet)
+
+
+@guarded
+def actuator(file: StudyFile, out: Out = None, json: Json = False, quiet: Quiet = False) -> None:
+    """Simulate the study of a single actuator; writes what `run` writes."""
+    from flexapod.errors import InputError
+    from flexapod.model import ActuatorStudy, load
+
+    study = load(file)
+    if not isinstance(study, ActuatorStudy):
+        raise InputError(
+            "is the study of a robot",
+            file=file,
+            allowed="a study with [actuator]",
+            next_step=f"Use `flexapod run {file}`",
+        )
+    _run(study, file, out, json=json, quiet=quiet)
+
+
+def _run(study: Study | ActuatorStudy, file: Path, out: Path | None, *, json: bool, quiet: bool) -> None:
+    from flexapod.app.outputs import results_folder, write_all, write_data
+    from flexapod.app.terminal import progress_bar
+    from flexapod.study import Interrupted
+    from flexapod.study import run as simulate
+
+    folder = results_folder(file, out)
+    with progress_bar(quiet=quiet or json) as report:
+        try:
+            data = simulate(study, progress=lambda time, end: report("simulating", COMPUTING * time / end))
+            interrupted = False
+        except Interrupted as stop:
+            data, interrupted = stop.dataset, True
+        files = write_data(data, folder) if interrupted else write_all(data, folder, report)
+    _say(data, folder, files, json=json)
+    if interrupted:
+        _stopped(data, json=json)
+        raise typer.Exit(INTERRUPTED)
+    if data.attrs["partial"]:
+        _failed(data, json=json)
+        raise typer.Exit(1)
+
+
+def _say(data: Dataset, folder: Path, files: list[Path], *, json: bool) -> None:
+    from flexapod.app.run_words import show_run
+    from flexapod.app.terminal import print_json
+    from flexapod.study.summary import summary
+
+    warnings = [line for line in data.attrs["warnings"].splitlines() if line]
+    if not json:
+        show_run(data, folder, files, warnings)
+        return
+    state = {name: data.attrs[name] for name in ("failure", "time_reached") if name in data.attrs}
+    print_json(
+        {
+            "summary": summary(data).as_dict(),
+            "partial": bool(data.attrs["partial"]),
+            **state,
+            "warnings": warnings,
+            "wall_time": data.attrs["wall_time"],
+            "steps": int(data.attrs["steps"]),
+            "folder": folder,
+            "files": files,
+        }
+    )
+
+
+def _stopped(data: Dataset, *, json: bool) -> None:
+    what = f"stopped by Ctrl-C at t = {float(data.time[-1]):.6g} s; what was computed is kept and marked as partial"
+    print_parts({"kind": "interrupt", "what": what}, INTERRUPTED, as_json=json)
+
+
+def _failed(data: Dataset, *, json: bool) -> None:
+    from flexapod.errors import ComputationError
+
+    what = f"the simulation stopped at t = {float(data.time[-1]):.6g} s: {data.attrs['failure']}"
+    show(ComputationError(what, next_step="What was computed is kept and marked as partial"), as_json=json)

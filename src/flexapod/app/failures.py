@@ -1,0 +1,122 @@
+"""Errors at the edge: words or JSON on stderr, and an exit code; a traceback only where it is asked for."""
+
+from __future__ import annotations
+
+import functools
+import json as _json
+import logging
+import os
+import sys
+import traceback
+from collections.abc import Callable, Iterator, Mapping
+from contextlib import contextmanager
+from typing import ParamSpec
+
+import typer
+
+from flexapod import __version__
+from flexapod.errors import ComputationError, FlexapodError, InputError
+
+__all__ = ["INTERRUPTED", "guarded", "print_parts", "show"]
+
+P = ParamSpec("P")
+INTERRUPTED = 130
+
+
+def guarded(command: Callable[P, None]) -> Callable[P, None]:
+    """Turn what a command raises into a message on stderr and an exit code; its ``json`` argument says in which form.
+
+    2: bad input; 1: a failed computation, or a fault of ours; 130: stopped by Ctrl-C.
+    """
+
+    @functools.wraps(command)
+    def run(*args: P.args, **kwargs: P.kwargs) -> None:
+        as_json = bool(kwargs.get("json", False))
+        try:
+            with _warnings(as_json=as_json):
+                command(*args, **kwargs)
+        except (typer.Exit, typer.Abort, BrokenPipeError):
+            raise
+        except FlexapodError as error:
+            _trace()
+            show(error, as_json=as_json)
+            raise typer.Exit(error.exit_code) from None
+        except KeyboardInterrupt:
+            _trace()
+            parts = {"kind": "interrupt", "what": "stopped by Ctrl-C; files already written are whole"}
+            print_parts(parts, INTERRUPTED, as_json=as_json)
+            raise typer.Exit(INTERRUPTED) from None
+        except Exception as error:
+            _trace()
+            print_parts(_fault(error), 1, as_json=as_json)
+            raise typer.Exit(1) from None
+
+    return run
+
+
+def show(error: FlexapodError, *, as_json: bool) -> None:
+    """An error on stderr: a line each for file, key, value, what is allowed and the next step; or one JSON object."""
+    if isinstance(error, InputError):
+        parts = {"kind": "input", **error.as_dict()}
+    elif isinstance(error, ComputationError):
+        parts = {"kind": "computation", "what": error.what, "next_step": error.next_step}
+    else:
+        parts = {"kind": "computation", "what": str(error)}
+    print_parts(parts, error.exit_code, as_json=as_json)
+
+
+@contextmanager
+def _warnings(*, as_json: bool) -> Iterator[None]:
+    """Warnings of the package on stderr, in the form of the errors."""
+    handler, logger = _Warnings(as_json), logging.getLogger("flexapod")
+    logger.addHandler(handler)
+    try:
+        yield
+    finally:
+        logger.removeHandler(handler)
+
+
+class _Warnings(logging.Handler):
+    def __init__(self, as_json: bool) -> None:
+        super().__init__(logging.WARNING)
+        self.as_json = as_json
+
+    def emit(self, record: logging.LogRecord) -> None:
+        if record.module == "attributes":
+            return  # the command says itself that a result is partial
+        text = record.getMessage()
+        print(_json.dumps({"warning": text}) if self.as_json else f"Warning: {text}", file=sys.stderr)
+
+
+def print_parts(parts: Mapping[str, str | None], exit_code: int, *, as_json: bool) -> None:
+    """Print `kind`, `what`, `file`, `key`, `value`, `allowed`, `next_step`, where given, on stderr."""
+    if as_json:
+        text = _json.dumps({"error": {**parts, "exit_code": exit_code}}, ensure_ascii=False)
+    else:
+        named = ("allowed", "next_step") if not parts.get("key") else ("file", "allowed", "next_step")
+        lines = [f"  {name.replace('_', ' '):11s}{parts[name]}" for name in named if parts.get(name)]
+        text = "\n".join([_headline(parts), *lines])
+    print(text, file=sys.stderr)
+
+
+def _headline(parts: Mapping[str, str | None]) -> str:
+    """Key and value, else the file, and what is wrong with it."""
+    place = parts.get("key") or parts.get("file")
+    if parts.get("key") and parts.get("value") is not None:
+        place = f"{place} = {parts['value']}"
+    return f"Error: {place}: {parts['what']}" if place else f"Error: {parts['what']}"
+
+
+def _fault(error: Exception) -> dict[str, str | None]:
+    return {
+        "kind": "fault",
+        "what": f"unexpected {type(error).__name__}: {error} (flexapod {__version__})",
+        "next_step": "This is a fault of flexapod, not yours. Please report it with your file and what the same "
+        "command prints with FLEXAPOD_DEBUG=1",
+    }
+
+
+def _trace() -> None:
+    """Where the error being handled arose, if asked for."""
+    if os.environ.get("FLEXAPOD_DEBUG", "") not in ("", "0"):
+        traceback.print_exc()

@@ -1,0 +1,82 @@
+"""The figures of the paper's study, in the order of the paper."""
+
+from __future__ import annotations
+
+from collections.abc import Callable, Iterator
+from pathlib import Path
+from typing import TYPE_CHECKING
+
+from flexapod.app.figures import Drawn, store
+
+if TYPE_CHECKING:
+    from matplotlib.figure import Figure
+
+    from flexapod.study.paper import PaperStudy, Progress
+
+__all__ = ["paper_figures"]
+
+_Plan = tuple[str, str, str, Callable[[], "Figure"]]
+ACTUATOR, ROBOT, VARIANTS = "Single actuator", "Robot", "What the deviation depends on"
+
+
+def paper_figures(result: PaperStudy, folder: Path, progress: Progress | None = None) -> dict[str, list[Drawn]]:
+    """Draw all figures of the paper's study, by group."""
+    plans = [*_actuator(result), *_robot(result), *_variants(result)]
+    drawn: dict[str, list[Drawn]] = {}
+    for i, (group, name, title, make) in enumerate(plans):
+        if progress is not None:
+            progress(f"figure {i + 1} of {len(plans)}", i / len(plans))
+        drawn.setdefault(group, []).append(store(make(), title, folder / name))
+    if progress is not None:
+        progress("report", 1.0)
+    return drawn
+
+
+def _actuator(result: PaperStudy) -> Iterator[_Plan]:
+    from flexapod import plot
+
+    series = result.actuator
+    finest = series[max(series)]
+    title = (
+        "Fig. 4 of the paper, its analytic curve: tip of the single actuator with 1 to 5 shapes. The values that the "
+        "paper leaves open are ours, so size and phase are not to be laid over the printed curve"
+    )
+    yield ACTUATOR, "actuator-response", title, lambda: plot.actuator_response(series)
+    title = "Amplitudes of the shapes with 5 of them"
+    yield ACTUATOR, "actuator-amplitudes", title, lambda: plot.actuator_modes(finest)
+
+
+def _robot(result: PaperStudy) -> Iterator[_Plan]:
+    from flexapod import plot
+
+    data, rigid, modes = result["robot"], result["robot-rigid"], result["modes"]
+    bending = [int(m) for m, kind in zip(modes.mode.values, modes.kind.values, strict=True) if "bending" in str(kind)]
+    yield (ROBOT, "roll-law", "Fig. 6: the roll about X, quintic", lambda: plot.motion_law(data))
+    yield (ROBOT, "robot-end", "Fig. 7: the robot at the end of the roll; pale: at home", lambda: plot.robot_3d(data))
+    yield (ROBOT, "leg-lengths", "Leg lengths, and how far the flexible legs are off", lambda: plot.leg_lengths(data))
+    title = "Fig. 8: drive forces of the rigid robot, Newton-Euler against the multibody model, and their difference"
+    yield (ROBOT, "forces-rigid", title, lambda: plot.actuator_forces(rigid))
+    title = "Drive forces of the robot with flexible legs against those of the rigid one"
+    yield (ROBOT, "forces-flexible", title, lambda: plot.actuator_forces(data))
+    title = "Fig. 9: path of the centre of mass in Y and Z, rigid against flexible; the deviation needs its own scale"
+    yield (ROBOT, "com-path", title, lambda: plot.com_path(data))
+    title = "The deviation by cause and by leg: stretch of the pistons is all of it"
+    yield (ROBOT, "deviation-by-cause", title, lambda: plot.deviation_by_cause(data))
+    title = "Fig. 10: the first bending modes of the legs at the largest roll, drives locked; magnified, size arbitrary"
+    yield (ROBOT, "modes-bending", title, lambda: plot.modes_3d(modes, bending[:3]))
+    title = "The lowest modes of the robot at the largest roll; magnified, size arbitrary"
+    yield (ROBOT, "modes-lowest", title, lambda: plot.modes_3d(modes))
+    yield (ROBOT, "tip-deflections", "Tips of the pistons across their legs", lambda: plot.tip_deflections(data))
+    yield (ROBOT, "energies", "Energies, and how well their balance closes", lambda: plot.energies(data))
+
+
+def _variants(result: PaperStudy) -> Iterator[_Plan]:
+    from flexapod import plot
+
+    title = "Fig. 9 with the circles read as radii, roll of 30 deg"
+    yield (VARIANTS, "com-path-radii", title, lambda: plot.com_path(result["robot-radii"]))
+    sweeps = {"Circles as diameters": result["half-angles"], "Circles as radii": result["half-angles-radii"]}
+    title = "Half-angles of the joint pairs: the road to the architecture singularity at 30 deg"
+    yield (VARIANTS, "half-angles", title, lambda: plot.half_angles(sweeps))
+    title = "A start and a stop at full rate against the quintic"
+    yield (VARIANTS, "velocity-jump", title, lambda: plot.start_jump(result["robot"], result["jump"]))

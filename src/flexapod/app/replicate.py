@@ -1,0 +1,135 @@
+"""The paper's whole study on disk: data, figures, claims, report."""
+
+from __future__ import annotations
+
+import csv
+from pathlib import Path
+from typing import TYPE_CHECKING
+
+from flexapod.app.paper_figures import paper_figures
+from flexapod.app.paper_report import paper_page
+from flexapod.app.report import store_page
+from flexapod.errors import InputError
+
+if TYPE_CHECKING:
+    from xarray import Dataset
+
+    from flexapod.study.paper import PaperStudy, Progress
+
+__all__ = ["replicate", "write"]
+
+
+def replicate(folder: str | Path, *, progress: Progress | None = None) -> PaperStudy:
+    """Compute the paper's whole study and write it into a folder.
+
+    Data of each part are written as soon as it is computed: an interrupt leaves what is done. An older report is
+    removed first, so that none speaks of other data.
+
+    Parameters
+    ----------
+    folder : path
+        Made if needed.
+    progress : callable, optional
+        Called with what is being done, in words, and the share of the whole that is done (0 to 1).
+
+    Returns
+    -------
+    PaperStudy
+
+    Raises
+    ------
+    InputError
+        The folder cannot be written to.
+    ComputationError
+        Of the simulations.
+    """
+    from flexapod.study.paper import replicate as compute
+
+    folder = Path(folder)
+    _remove(folder / "report.html")
+    result = compute(progress=_upto(0.75, progress), keep=lambda name, data: _store(data, folder / "data" / name))
+    _figures_and_report(result, folder, _from(0.75, progress))
+    return result
+
+
+def write(result: PaperStudy, folder: str | Path, *, progress: Progress | None = None) -> Path:
+    """Write data, figures, claims and report of `flexapod.replicate` into a folder.
+
+    Parameters
+    ----------
+    result : PaperStudy
+    folder : path
+        Made if needed; files of the same name are replaced when the new ones are complete.
+    progress : callable, optional
+        As for `replicate`.
+
+    Returns
+    -------
+    Path
+        Of the report.
+
+    Raises
+    ------
+    InputError
+        The folder cannot be written to.
+    """
+    for name, data in result.parts.items():
+        _store(data, Path(folder) / "data" / name)
+    return _figures_and_report(result, Path(folder), progress)
+
+
+def _figures_and_report(result: PaperStudy, folder: Path, progress: Progress | None) -> Path:
+    from flexapod.study.claims import claims, markdown
+
+    groups = paper_figures(result, folder / "figures", progress)
+    table = claims(result)
+    store_page(folder / "claims.md", markdown(table))
+    return store_page(folder / "report.html", paper_page(result, table, groups))
+
+
+def _remove(path: Path) -> None:
+    try:
+        path.unlink(missing_ok=True)
+    except OSError as error:
+        words = f"cannot be replaced: {error.strerror or error}"
+        raise InputError(words, file=path, next_step="Choose another folder with --out DIR") from None
+
+
+def _upto(share: float, progress: Progress | None) -> Progress | None:
+    return None if progress is None else lambda words, done: progress(words, share * done)
+
+
+def _from(share: float, progress: Progress | None) -> Progress | None:
+    return None if progress is None else lambda words, done: progress(words, share + (1 - share) * done)
+
+
+def _store(data: Dataset, stem: Path) -> None:
+    """NetCDF and CSV of a part."""
+    from flexapod.study.store import save, save_csv
+
+    save(data, stem.with_name(stem.name + ".nc"))
+    table = stem.with_name(stem.name + ".csv")
+    if "time" in data.dims:
+        save_csv(data, table)
+    else:
+        _save_rows(data, table)
+
+
+def _save_rows(data: Dataset, path: Path) -> None:
+    """A CSV file of a part without time: variable, labels, value and unit, a value a row."""
+    from flexapod.study.store import replacing
+
+    with replacing(path) as temporary, temporary.open("w", newline="", encoding="utf-8") as file:
+        rows = csv.writer(file)
+        rows.writerow(["variable", "labels", "value", "unit"])
+        for name, values in data.data_vars.items():
+            unit = values.attrs.get("units", "1")
+            flat = values.stack(all_labels=values.dims) if values.dims else values.expand_dims(all_labels=[()])
+            for label, value in zip(flat.all_labels.values, flat.values, strict=True):
+                shown = f"{value:.10g}" if values.dtype.kind == "f" else str(value)
+                rows.writerow([name, _label(label, values.dims), shown, unit])
+
+
+def _label(label: object, dims: tuple[object, ...]) -> str:
+    parts = label if isinstance(label, tuple) else (label,)
+    return " ".join(f"{dim}={part}" for dim, part in zip(dims, parts, strict=True))

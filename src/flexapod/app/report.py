@@ -1,0 +1,192 @@
+"""The report of a run: one self-contained page whose first sentence is the answer."""
+
+from __future__ import annotations
+
+from collections.abc import Mapping, Sequence
+from importlib.metadata import version
+from pathlib import Path
+from platform import python_version
+from typing import TYPE_CHECKING
+
+from flexapod.app import html
+from flexapod.app.figures import Drawn
+
+if TYPE_CHECKING:
+    from xarray import Dataset
+
+    from flexapod.study.summary import RobotSummary
+
+__all__ = [
+    "by_axis",
+    "figures_section",
+    "repeat_section",
+    "solver_table",
+    "store_page",
+    "warnings_section",
+    "write_report",
+]
+
+SOLVER = {
+    "integrator": "Time integration",
+    "rho_inf": "Spectral radius at infinite frequency",
+    "fidelity": "Fidelity",
+    "basis": "Lateral shapes",
+    "modes": "Shapes per plane",
+    "axial_modes": "Axial shapes",
+    "start": "Start",
+    "compiled": "Compiled equations",
+    "tolerance": "Tolerance of the step control",
+    "estimated_error": "Largest estimated error of a chunk",
+    "step": "Smallest step [s]",
+    "output_step": "Output step [s]",
+    "steps": "Steps",
+    "newton_iterations": "Newton iterations",
+    "factorisations": "Factorisations",
+    "rejected_steps": "Rejected steps",
+    "impact_energy": "Energy step of an impact at the start [J]",
+    "wall_time": "Time of the integration [s]",
+}
+_PACKAGES = ("flexapod", "numpy", "scipy", "casadi", "xarray", "matplotlib")
+
+
+def write_report(data: Dataset, folder: str | Path, figures: Sequence[Drawn] = ()) -> Path:
+    """Write ``report.html`` of a robot's or an actuator's run.
+
+    Parameters
+    ----------
+    data : xarray.Dataset
+        Result of `flexapod.run`, whole or partial.
+    folder : path
+        Made if needed; an existing report is replaced when the new one is complete.
+    figures : sequence of Drawn
+        From `flexapod.app.figures.draw`.
+
+    Returns
+    -------
+    Path
+
+    Raises
+    ------
+    InputError
+        The folder cannot be written to.
+    """
+    from flexapod.study.summary import RobotSummary, summary
+
+    found = summary(data)
+    name = Path(str(data.attrs.get("study_file") or "study")).name
+    numbers = by_axis(data) if isinstance(found, RobotSummary) else _actuator_numbers(data)
+    body = [
+        html.paragraph(f"Report of {name}, flexapod {data.attrs['flexapod_version']}.", "soft"),
+        *_partial(data),
+        numbers,
+        warnings_section(data),
+        figures_section("figures", "Figures", figures),
+        html.section("study", "The study", html.code(str(data.attrs["study"]))),
+        html.section("solver", "Solver", solver_table(data)),
+        repeat_section("Save the study above as study.toml, then", "flexapod run study.toml --out results"),
+    ]
+    return store_page(Path(folder) / "report.html", html.page(f"flexapod: {name}", found.sentence, body))
+
+
+def store_page(path: Path, text: str) -> Path:
+    """Write a page; an existing one is replaced when the new one is complete."""
+    from flexapod.study.store import replacing
+
+    with replacing(path) as temporary:
+        temporary.write_text(text, encoding="utf-8")
+    return path
+
+
+def by_axis(data: Dataset) -> str:
+    """Largest and rms deviation along each axis, of the centre of mass and of a tool elsewhere."""
+    from flexapod.study.summary import summary
+
+    points = {"com": "Centre of mass"}
+    if float(abs(data.tool_position_rigid - data.com_position_rigid).max()) > 0:
+        points = {"tool": "Tool", **points}
+    parts = []
+    for point, title in points.items():
+        found = summary(data, point)
+        parts += [f"<h3>{title}</h3>"] * (len(points) > 1) + [_axis_table(found)]  # type: ignore[arg-type]
+    note = "Flexible minus rigid at the same instant, world axes; it contains the sag at rest. Per cent of the travel: "
+    note += "largest deviation over the rigid point's peak-to-peak travel, n/a where that is below 1 µm."
+    return html.section("deviation", "Deviation by axis", *parts, html.paragraph(note, "soft"))
+
+
+def _axis_table(found: RobotSummary) -> str:
+    from flexapod.study.words import text
+
+    head = ("Axis", "Largest", "at", "rms", "Rigid travel", "Per cent of the travel")
+    rows = [
+        (
+            a.axis.upper(),
+            text(a.peak, "m"),
+            f"{a.time:.3f} s",
+            text(a.rms, "m"),
+            text(a.excursion, "m", 4),
+            "n/a" if a.per_cent is None else f"{a.per_cent:.2g} %",
+        )
+        for a in found.axes
+    ]
+    rows.append(("Distance", text(found.peak, "m"), f"{found.time:.3f} s", text(found.rms, "m"), "", ""))
+    return html.table(head, rows)
+
+
+def _actuator_numbers(data: Dataset) -> str:
+    from flexapod.study.summary import ActuatorSummary, summary
+    from flexapod.study.words import text
+
+    found = summary(data)
+    assert isinstance(found, ActuatorSummary)  # noqa: S101  data of an actuator
+    pairs = {
+        "Largest deflection of the tip": f"{text(found.peak, 'm')} at {found.time:.3f} s",
+        "rms": text(found.rms, "m"),
+        "At the end": text(found.end, "m"),
+        "Free length": f"{text(found.lengths[0], 'm', 4)} at the start, {text(found.lengths[1], 'm', 4)} at the end",
+    }
+    return html.section("deflection", "Deflection of the tip", html.values(pairs))
+
+
+def _partial(data: Dataset) -> list[str]:
+    if not data.attrs.get("partial"):
+        return []
+    return [
+        html.paragraph(
+            f"Incomplete: computed to t = {float(data.time[-1]):.6g} s. {data.attrs.get('failure', '')}", "bad"
+        )
+    ]
+
+
+def warnings_section(data: Dataset) -> str:
+    """What is doubtful about a result, in words."""
+    found = [line for line in str(data.attrs.get("warnings", "")).splitlines() if line]
+    return html.section("warnings", "Warnings", html.bullets(found) if found else html.paragraph("None."))
+
+
+def figures_section(name: str, title: str, figures: Sequence[Drawn]) -> str:
+    """Figures, one below the other."""
+    return html.section(name, title, *(html.figure(figure.title, figure.png) for figure in figures))
+
+
+def solver_table(data: Dataset) -> str:
+    """Settings and counters of the time integration."""
+    attrs: Mapping[object, object] = data.attrs
+    return html.values({words: _shown(attrs[key], key) for key, words in SOLVER.items() if key in attrs})
+
+
+def _shown(value: object, key: str) -> str:
+    if key == "compiled":
+        return "yes" if value else "no (interpreted: slow)"
+    return f"{value:.4g}" if isinstance(value, float) else str(value)
+
+
+def repeat_section(words: str, command: str) -> str:
+    """How to get the same again, with the versions it was got with."""
+    versions = ", ".join(f"{name} {version(name)}" for name in _PACKAGES)
+    return html.section(
+        "repeat",
+        "How to repeat this",
+        html.paragraph(words),
+        html.code(command),
+        html.paragraph(f"Python {python_version()}, {versions}.", "soft"),
+    )

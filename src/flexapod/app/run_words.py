@@ -1,0 +1,59 @@
+"""The answer of a run on the terminal: sentence, table by axis, warnings, files."""
+
+from __future__ import annotations
+
+from collections.abc import Sequence
+from pathlib import Path
+from typing import TYPE_CHECKING
+
+from flexapod.app.terminal import print_table, print_text
+
+if TYPE_CHECKING:
+    from xarray import Dataset
+
+    from flexapod.study.summary import RobotSummary
+
+__all__ = ["show_run"]
+
+
+def show_run(data: Dataset, folder: Path, files: Sequence[Path], warnings: Sequence[str]) -> None:
+    """Print what a run found and where it is."""
+    from flexapod.study.summary import RobotSummary, summary
+
+    found = summary(data)
+    print_text(found.sentence)
+    if isinstance(found, RobotSummary):
+        print_text()
+        tool = summary(data, "tool") if _tool_apart(data) else None
+        for name, part in (("centre of mass", found), ("tool", tool)):
+            if isinstance(part, RobotSummary):
+                _axes(part, name)
+    for line in warnings:
+        print_text(f"Warning: {line}")
+    print_text()
+    names = ", ".join(path.name for path in files if path.suffix not in (".png", ".svg"))
+    figures = sum(path.suffix == ".png" for path in files)
+    drawn = f", {figures} figures (PNG and SVG)" if figures else ""
+    seconds = f"{data.attrs['steps']} steps, {data.attrs['wall_time']:.2g} s"
+    print_text(f"In {folder}: {names}{drawn}. ({seconds} of time integration)")
+
+
+def _tool_apart(data: Dataset) -> bool:
+    return float(abs(data.tool_position_rigid - data.com_position_rigid).max()) > 0
+
+
+def _axes(found: RobotSummary, name: str) -> None:
+    from flexapod.study.words import text
+
+    rows = [
+        [
+            a.axis,
+            text(a.peak, "m"),
+            f"{a.time:.4g} s",
+            text(a.rms, "m"),
+            text(a.excursion, "m", 4),
+            "n/a" if a.per_cent is None else f"{a.per_cent:.2g} %",
+        ]
+        for a in found.axes
+    ]
+    print_table([name, "peak", "at", "rms", "rigid travel", "peak / travel"], rows)

@@ -1,0 +1,75 @@
+"""Text on the terminal: JSON, sentences, tables, progress."""
+
+from __future__ import annotations
+
+import json
+import math
+from collections.abc import Callable, Collection, Iterator, Sequence
+from contextlib import contextmanager
+from pathlib import Path
+
+__all__ = ["Report", "print_json", "print_table", "print_text", "progress_bar"]
+
+#: Called with what is being done, in words, and the share that is done (0 to 1).
+Report = Callable[[str, float], None]
+
+
+def print_json(data: object) -> None:
+    """One JSON document on stdout; numbers that are not finite become null, paths text."""
+    print(json.dumps(_plain(data), indent=2, ensure_ascii=False))
+
+
+def _plain(data: object) -> object:
+    if isinstance(data, dict):
+        return {str(key): _plain(value) for key, value in data.items()}
+    if isinstance(data, list | tuple):
+        return [_plain(value) for value in data]
+    if isinstance(data, float) and not math.isfinite(data):
+        return None
+    return str(data) if isinstance(data, Path) else data
+
+
+def print_text(text: str = "", *, error: bool = False, indent: int = 0) -> None:
+    """A paragraph that wraps at words on a terminal and is one line elsewhere."""
+    from rich.console import Console
+    from rich.padding import Padding
+
+    console = Console(stderr=error, highlight=False, markup=False, emoji=False)
+    if console.is_terminal:
+        console.print(Padding(text, (0, 0, 0, indent)))
+    else:
+        console.print(" " * indent + text, soft_wrap=True)
+
+
+def print_table(header: Sequence[str], rows: Sequence[Sequence[str]], left: Collection[int] = (0,)) -> None:
+    """A table; the columns `left` are aligned to the left, the others, of numbers, to the right."""
+    from rich.console import Console
+    from rich.table import Table
+
+    console = Console(highlight=False, markup=False, emoji=False)
+    if not console.is_terminal:
+        console.width = 200
+    table = Table(box=None, pad_edge=False, padding=(0, 2, 0, 0), header_style="bold")
+    for i, name in enumerate(header):
+        table.add_column(name, justify="left" if i in left else "right", no_wrap=i not in left)
+    for row in rows:
+        table.add_row(*row)
+    console.print(table)
+
+
+@contextmanager
+def progress_bar(*, quiet: bool) -> Iterator[Report]:
+    """A bar with the remaining time on stderr; silent if `quiet` or where stderr is no terminal."""
+    from rich.console import Console
+    from rich.progress import BarColumn, Progress, TaskProgressColumn, TextColumn, TimeRemainingColumn
+
+    columns = (TextColumn("{task.description}"), BarColumn(), TaskProgressColumn(), TimeRemainingColumn())
+    console = Console(stderr=True)
+    hidden = quiet or not console.is_terminal
+    with Progress(*columns, console=console, transient=True, disable=hidden, refresh_per_second=5) as bar:
+        task = bar.add_task("preparing", total=1.0)
+
+        def report(words: str, share: float) -> None:
+            bar.update(task, description=words, completed=share)
+
+        yield report

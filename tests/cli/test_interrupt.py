@@ -1,0 +1,86 @@
+"""Ctrl-C during a run: what was computed is on disk, readable, and marked as partial."""
+
+import json
+import os
+import signal
+import subprocess
+import sys
+import time
+
+import pytest
+
+from flexapod.study import open_results
+
+LONG = [
+    ('duration = "2 s" ', 'duration = "1000 s" '),
+    ("tolerance = 1e-4", 'step = "0.5 ms"\noutput_step = "10 ms"'),
+    ('hold = "1 s" ', 'hold = "999 s" '),
+]
+
+
+def terminal():
+    return pytest.importorskip("pty").openpty()
+
+
+def read_until(source, word, seconds=60.0):
+    """What a terminal shows until `word` appears."""
+    shown, end = b"", time.monotonic() + seconds
+    while word not in shown:
+        assert time.monotonic() < end, shown.decode(errors="replace")[-2000:]
+        shown += os.read(source, 4096)
+    return shown
+
+
+@pytest.mark.skipif(sys.platform == "win32", reason="needs a pseudo-terminal and SIGINT")
+def test_interrupted_run(study, folder):
+    source, sink = terminal()
+    command = [sys.executable, "-m", "flexapod", "run", str(study(*LONG))]
+    environment = os.environ | {"TERM": "xterm", "COLUMNS": "120"}
+    run = subprocess.Popen(command, stdout=subprocess.PIPE, stderr=sink, text=True, env=environment)
+    os.close(sink)
+    shown = read_until(source, b"simulating")
+    time.sleep(1.0)
+    run.send_signal(signal.SIGINT)
+    shown += read_until(source, b"stopped by Ctrl-C")
+    out, _ = run.communicate(timeout=60)
+    os.close(source)
+    assert run.returncode == 130
+    assert b"Traceback" not in shown
+    assert "until the computation stopped" in out
+    data = open_results(folder / "study" / "results.nc")
+    assert data.attrs["partial"] == 1
+    assert data.attrs["failure"] == "stopped by the user"
+    assert 0 < float(data.time[-1]) < 1000
+    assert (folder / "study" / "results.csv").is_file()
+
+
+@pytest.mark.skipif(sys.platform == "win32", reason="SIGINT")
+def test_interrupted_run_as_json(study, folder):
+    command = [sys.executable, "-c", PROGRAM, str(study(*LONG))]
+    run = subprocess.run(command, capture_output=True, text=True, timeout=60)
+    assert run.returncode == 130
+    assert json.loads(run.stdout)["partial"] is True
+    assert json.loads(run.stderr)["error"]["kind"] == "interrupt"
+    assert open_results(folder / "study" / "results.nc").attrs["partial"] == 1
+
+
+#: The command in a process that sends itself SIGINT when the simulation is under way.
+PROGRAM = """
+import os, signal, sys
+from flexapod.app import cli, terminal
+from contextlib import contextmanager
+
+calls = []
+
+@contextmanager
+def bar(*, quiet):
+    def report(words, share):
+        calls.append(words)
+        if len(calls) == 5:
+            os.kill(os.getpid(), signal.SIGINT)
+    yield report
+
+terminal.progress_bar = bar
+sys.argv = ["flexapod", "run", sys.argv[1], "--json"]
+cli.main()
+"""

@@ -1,0 +1,172 @@
+"""Figures: labelled with units, true to the data, drawn in any state of the user's matplotlib."""
+
+import re
+
+import matplotlib
+import numpy as np
+import pytest
+from matplotlib.figure import Figure
+
+from flexapod import plot
+from flexapod.app.figures import draw
+from flexapod.app.report import write_report
+from flexapod.errors import InputError
+from flexapod.model import preset
+from flexapod.study import modes, simulate, simulate_actuator
+from flexapod.study.scene import mode_scene, motion_end, robot_study, scene
+
+
+@pytest.fixture(scope="module")
+def robot():
+    return simulate(preset("paper-robot"), step=1e-3, output_step=5e-3)
+
+
+@pytest.fixture(scope="module")
+def rigid():
+    return simulate(preset("paper-robot"), fidelity="rigid", step=1e-3, output_step=5e-3)
+
+
+@pytest.fixture(scope="module")
+def actuator():
+    return {k: simulate_actuator(preset("paper-actuator"), modes=k, step=1e-3, duration=1.0) for k in (1, 2, 3)}
+
+
+@pytest.fixture(scope="module")
+def shapes():
+    study = preset("paper-robot")
+    return modes(study, study.motion.target)
+
+
+ROBOT = (
+    "com_path",
+    "deviation_by_cause",
+    "energies",
+    "actuator_forces",
+    "leg_lengths",
+    "tip_deflections",
+    "motion_law",
+)
+
+
+def left_labels(figure):
+    return [axes.get_ylabel() for axes in figure.axes if axes.get_ylabel()]
+
+
+@pytest.mark.parametrize("name", ROBOT)
+@pytest.mark.parametrize("which", ["robot", "rigid"])
+def test_axes_name_quantity_and_unit(name, which, request):
+    figure = getattr(plot, name)(request.getfixturevalue(which))
+    assert isinstance(figure, Figure)
+    assert left_labels(figure) and all("[" in label and "]" in label for label in left_labels(figure))
+    assert any("time [s]" in axes.get_xlabel() for axes in figure.axes)
+    assert all(axes.get_title(loc="left") or not axes.get_subplotspec().is_first_row() for axes in figure.axes)
+
+
+def test_path_shows_the_deviation_of_the_data(robot):
+    figure = plot.com_path(robot, ("z",))
+    below = next(axes for axes in figure.axes if "minus" in axes.get_title(loc="left"))
+    np.testing.assert_allclose(below.lines[0].get_ydata(), 1e6 * robot.com_deviation.sel(axis="z"))
+    largest = 1e6 * float(np.abs(robot.com_deviation.sel(axis="z")).max())
+    assert below.texts[0].get_text() == f"peak \N{MINUS SIGN}{largest:.3g} µm"
+
+
+def test_bars_of_the_legs_add_up_and_fit_their_axes(robot):
+    figure = plot.deviation_by_cause(robot)
+    bars = next(axes for axes in figure.axes if axes.get_title(loc="left").startswith("Z, by leg"))
+    heights = [patch.get_height() for patch in bars.patches]
+    whole = 1e6 * float(np.abs(robot.com_deviation.sel(axis="z")).max())
+    assert sum(heights) == pytest.approx(-whole, rel=1e-3)  # causes add up to second order in the deviation
+    low, high = bars.get_ylim()
+    assert low < min(heights) and high > max(heights)
+
+
+def test_nothing_moves_across_gives_no_drama(robot):
+    figure = plot.com_path(robot, ("x",))
+    low, high = figure.axes[0].get_ylim()
+    assert high - low == pytest.approx(2.0)  # mm: x rests on this path
+
+
+def test_actuator_response_shows_convergence(actuator):
+    figure = plot.actuator_response(actuator)
+    assert len(figure.axes) == 3
+    gap = 1e6 * float(np.abs(actuator[2].tip_deflection - actuator[3].tip_deflection).max())
+    shown = [text.get_text() for text in figure.axes[1].texts]
+    assert f"2: {gap:.2g} µm" in shown
+    assert len(plot.actuator_response(actuator[3]).axes) == 2
+    assert len(plot.actuator_modes(actuator[3]).axes) == 3
+
+
+def test_robot_in_space_stands_where_the_data_say(robot):
+    end = motion_end(robot)
+    assert end == pytest.approx(1.0, abs=0.01)
+    at = scene(robot, end)
+    np.testing.assert_allclose(at.com, robot.com_position.sel(time=end, method="nearest"))
+    np.testing.assert_allclose(at.piston[:, -1], at.platform, atol=1e-12)
+    length = np.linalg.norm(at.platform - at.base, axis=1)
+    np.testing.assert_allclose(length, robot.leg_length.sel(time=end, method="nearest"), atol=1e-9)
+    assert plot.robot_3d(robot).axes[0].get_title().startswith("At t = 1.00 s")
+
+
+def test_mode_moves_a_tip_with_its_platform(shapes):
+    moved, rest = mode_scene(shapes, 1, 0.05), mode_scene(shapes, 1, 0.05, phase=0.0)
+    largest = np.linalg.norm(np.vstack([moved.platform - rest.platform, moved.com - rest.com]), axis=1).max()
+    assert largest == pytest.approx(0.05, rel=0.05)  # drawn as a finite rotation, scaled as a small one
+    np.testing.assert_allclose(moved.piston[:, -1], moved.platform, atol=1e-12)
+    assert len(plot.modes_3d(shapes, [2, 3]).axes) == 2
+
+
+def test_study_of_an_actuator_is_refused_where_a_robot_is_needed(actuator):
+    with pytest.raises(InputError, match="single actuator"):
+        robot_study(actuator[1])
+
+
+def test_users_settings_neither_count_nor_change(robot):
+    with matplotlib.rc_context({"axes.grid": False, "font.size": 30}):
+        before = dict(matplotlib.rcParams)
+        figure = plot.com_path(robot)
+        assert dict(matplotlib.rcParams) == before
+    assert figure.axes[0].title.get_fontsize() < 15
+
+
+def test_files_are_replaced_whole(robot, tmp_path):
+    figure = plot.com_path(robot)
+    png, svg = plot.save(figure, tmp_path / "new" / "path")
+    assert png.read_bytes().startswith(b"\x89PNG") and "<svg" in svg.read_text(encoding="utf-8")
+    first = svg.read_bytes()
+    plot.save(plot.com_path(robot), tmp_path / "new" / "path")
+    assert svg.read_bytes() == first  # the same picture is the same file
+    assert sorted(p.name for p in (tmp_path / "new").iterdir()) == ["path.png", "path.svg"]
+
+
+def test_folder_that_is_a_file_is_refused(robot, tmp_path):
+    (tmp_path / "file").write_text("", encoding="utf-8")
+    with pytest.raises(InputError):
+        plot.save(plot.com_path(robot), tmp_path / "file" / "path")
+
+
+def test_report_of_a_run_has_its_figures_and_its_answer(actuator, tmp_path):
+    figures = draw(actuator[3], tmp_path)
+    text = write_report(actuator[3], tmp_path, figures).read_text(encoding="utf-8")
+    assert text.count("<figure>") == len(figures) == 2
+    assert "The tip leaves the hub" in text.split("</h1>")[0]
+    assert "[motion]" in text and "Newton iterations" in text and "flexapod run study.toml" in text
+
+
+def test_report_of_a_robot_gives_per_cent_by_axis(robot, tmp_path):
+    text = write_report(robot, tmp_path).read_text(encoding="utf-8")
+    assert "largest cause is stretch of the pistons" in text.split("</h1>")[0]
+    # x does not move on a roll about x: no percentage of nothing.
+    row = re.search(r"<td[^>]*>X</td>.*?</tr>", text, re.S)
+    assert row is not None and "n/a" in row[0]
+
+
+def test_report_of_a_partial_run_says_so(robot, tmp_path):
+    part = robot.isel(time=slice(0, 101)).assign_attrs(partial=1, failure="leg 2 left the range of the model.")
+    text = write_report(part, tmp_path).read_text(encoding="utf-8").replace("\N{NO-BREAK SPACE}", " ")
+    assert "Incomplete: computed to t = 0.5 s. leg 2 left the range of the model." in text
+    assert plot.com_path(part) is not None
+
+
+def test_text_in_a_report_is_text(robot, tmp_path):
+    odd = robot.assign_attrs(warnings="leg 1: <b>1 < 2</b> & more")
+    assert "&lt;b&gt;1 &lt; 2&lt;/b&gt; &amp; more" in write_report(odd, tmp_path).read_text(encoding="utf-8")
