@@ -55,10 +55,10 @@ def test_stiffness_is_load_over_displacement(fidelity, drive):
 
 def test_shares_add_up_and_the_stiffness_is_symmetric():
     data = fx.stiffness(still(), POSE)
-    assert data.stiffness.dims == ("load", "component")
-    assert data["load"].values.tolist() == ["Fx", "Fy", "Fz", "Mx", "My", "Mz"]
+    assert data.stiffness.dims == ("wrench", "component")
+    assert data.wrench.values.tolist() == ["Fx", "Fy", "Fz", "Mx", "My", "Mz"]
     assert data.component.values.tolist() == ["x", "y", "z", "rx", "ry", "rz"]
-    assert data.stiffness_share.dims == ("leg", "load", "component")
+    assert data.stiffness_share.dims == ("leg", "wrench", "component")
     whole = data.stiffness.values
     scale = np.sqrt(np.outer(np.diag(whole), np.diag(whole)))
     shares = data.stiffness_share.sum("leg") + data.stiffness_turning

@@ -2,7 +2,7 @@
 
 from flexapod.model.actuator import Actuator, ActuatorInitial, ActuatorLoad, ActuatorMotion
 from flexapod.model.drive import Drive, Feedback, ForceDrive, PrescribedDrive, ServoDrive
-from flexapod.model.files import PRESETS, OpenValue, load, loads, open_values, preset, preset_text
+from flexapod.model.files import PRESETS, OpenValue, load, loads, loads_robot, open_values, preset, preset_text
 from flexapod.model.laws import (
     ConstantLaw,
     CsvLaw,
@@ -87,6 +87,7 @@ __all__ = [
     "base_circle",
     "load",
     "loads",
+    "loads_robot",
     "open_values",
     "override",
     "platform_circle",

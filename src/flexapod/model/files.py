@@ -12,10 +12,11 @@ from flexapod.errors import InputError, closest
 from flexapod.model.read_actuator import read_actuator, read_drives, read_tip
 from flexapod.model.read_motion import read_initial, read_load, read_motion, read_simulation, unused_settings
 from flexapod.model.read_robot import read_robot
+from flexapod.model.robot import Robot
 from flexapod.model.section import Section
 from flexapod.model.study import ActuatorStudy, Study
 
-__all__ = ["PRESETS", "OpenValue", "load", "loads", "open_values", "preset", "preset_text"]
+__all__ = ["PRESETS", "OpenValue", "load", "loads", "loads_robot", "open_values", "preset", "preset_text"]
 
 PRESETS = ("paper-robot", "paper-robot-radii", "paper-actuator")
 _COMMON = ("motion", "load", "initial", "simulation")
@@ -61,6 +62,18 @@ def load(path: str | Path) -> Study | ActuatorStudy:
 
 def loads(text: str, *, path: str | Path | None = None) -> Study | ActuatorStudy:
     """Read a study from its text; `path` is for messages and for the tables it names."""
+    top = _tables(text, path)
+    return _actuator_study(top, text) if "actuator" in top else _study(top, text)
+
+
+def loads_robot(text: str, *, path: str | Path | None = None) -> Robot:
+    """Read the robot alone from the text of its study: tables of its motion and load need not be there."""
+    top = _tables(text, path)
+    top.need("robot", "payload", "leg")
+    return read_robot(top)
+
+
+def _tables(text: str, path: str | Path | None) -> Section:
     file = None if path is None else str(path)
     try:
         data = tomllib.loads(text)
@@ -70,7 +83,7 @@ def loads(text: str, *, path: str | Path | None = None) -> Study | ActuatorStudy
     if ("robot" in top) == ("actuator" in top):
         found = "both [robot] and [actuator]" if "robot" in top else "neither [robot] nor [actuator]"
         raise InputError(f"has {found}", file=file or "study text", allowed="one of the two")
-    return _actuator_study(top, text) if "actuator" in top else _study(top, text)
+    return top
 
 
 def preset(name: str) -> Study | ActuatorStudy:

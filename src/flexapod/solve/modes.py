@@ -39,6 +39,7 @@ def refuse_pure_force(robot: Robot, what: str) -> None:
                 key="leg.drive",
                 value="force",
                 allowed='"prescribed", "servo", or a force drive with feedback stiffness',
+                next_step='A simulation can start with [initial] start = "moving"',
             )
 
 

@@ -48,7 +48,7 @@ COORDINATES: dict[str, tuple[object, str]] = {
     "cause": (list(CAUSES), "cause of a leg's length error"),
     "joint_angle": (["alpha", "beta"], "angle of the universal joint"),
     "component": (["x", "y", "z", "rx", "ry", "rz"], "translation along and rotation about the world axes"),
-    "load": (["Fx", "Fy", "Fz", "Mx", "My", "Mz"], "force and moment, world axes"),
+    "wrench": (["Fx", "Fy", "Fz", "Mx", "My", "Mz"], "force and moment, world axes"),
     "plane_axis": (list("XY"), "axis in the plane of motion"),
 }
 
@@ -126,12 +126,12 @@ _STATIC = {
         ("mode", "leg", "direction", "station"), "1", "lateral displacement of the leg from the line of its joints [m]"
     ),
     "leg_stretch": Variable(("mode", "leg"), "1", "change of the joint-to-joint length [m]"),
-    "stiffness": Variable(("load", "component"), "mixed", "stiffness at the tool [N m-1, N, N m], world axes"),
+    "stiffness": Variable(("wrench", "component"), "mixed", "stiffness at the tool [N m-1, N, N m], world axes"),
     "stiffness_share": Variable(
-        ("leg", "load", "component"), "mixed", "share of a leg in the stiffness at the tool [N m-1, N, N m]"
+        ("leg", "wrench", "component"), "mixed", "share of a leg in the stiffness at the tool [N m-1, N, N m]"
     ),
     "stiffness_turning": Variable(
-        ("load", "component"), "mixed", "what joint forces and load add to the stiffness when the platform turns"
+        ("wrench", "component"), "mixed", "what joint forces and load add to the stiffness when the platform turns"
     ),
     "platform_position": Variable(_TA, "m", "origin of the platform frame"),
     "com_sag": Variable(("axis",), "m", "displacement of the centre of mass by gravity and load"),

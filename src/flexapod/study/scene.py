@@ -9,7 +9,6 @@ import numpy as np
 
 from flexapod import model, rigid
 from flexapod.errors import InputError
-from flexapod.rigid.trajectory import coordinates
 from flexapod.typing import Array
 
 if TYPE_CHECKING:
@@ -53,6 +52,11 @@ def robot_study(data: Dataset) -> model.Study:
     return study
 
 
+def _robot(data: Dataset) -> model.Robot:
+    """The robot of a result, whether or not the tables of its motion and load are still there."""
+    return model.loads_robot(data.attrs["study"], path=data.attrs.get("study_file") or None)
+
+
 def motion_end(data: Dataset) -> float | None:
     """Instant from which the rigid payload rests [s]; None where it moves until the end or never."""
     if "com_position_rigid" not in data:
@@ -69,10 +73,10 @@ def motion_coordinates(data: Dataset) -> Dataset:
     """Commanded surge, sway, heave [m], roll, pitch, yaw [rad], their rates and accelerations (time, coordinate)."""
     import xarray as xr
 
-    study = robot_study(data)
-    law = coordinates(study.motion, data.time.values)
-    dims = ("time", "coordinate")
-    parts = {name: (dims, getattr(law, name)) for name in ("position", "rate", "acceleration")}
+    dims, parts = ("time", "coordinate"), {}
+    for name, ending in (("position", ""), ("rate", "_rate"), ("acceleration", "_acceleration")):
+        both = [data[f"{kind}_command{ending}"].values for kind in ("translation", "rotation")]
+        parts[name] = (dims, np.concatenate(both, axis=1))
     return xr.Dataset(parts, coords={"time": data.time, "coordinate": list(model.AXES)})
 
 
@@ -88,7 +92,7 @@ def scene(data: Dataset, time: float = 0.0, magnify: float = 1.0) -> Scene:
     magnify : float
         Factor on lateral deflections of the pistons.
     """
-    robot, at = robot_study(data).robot, data.sel(time=time, method="nearest")
+    robot, at = _robot(data), data.sel(time=time, method="nearest")
     R = _matrix(at.platform_quaternion.values)
     com = at.com_position.values
     centre = com - R @ robot.payload.com
@@ -113,7 +117,7 @@ def mode_scene(modes: Dataset, mode: int, size: float, phase: float = 1.0) -> Sc
     phase : float
         Between -1 and 1; 0 is the robot at rest.
     """
-    robot, shape = robot_study(modes).robot, modes.sel(mode=mode)
+    robot, shape = _robot(modes), modes.sel(mode=mode)
     R = _matrix(modes.platform_quaternion.values)
     centre = modes.platform_position.values
     arms = np.vstack([robot.platform_joints, robot.payload.com]) @ R.T

@@ -102,7 +102,7 @@ def stiffness(
     Returns
     -------
     xarray.Dataset
-        `stiffness` (load, component), world axes [N/m, N, N m/rad]: the sum over the legs of `stiffness_share` and of
+        `stiffness` (wrench, component), world axes [N/m, N, N m/rad]: the sum over the legs of `stiffness_share` and of
         `stiffness_turning`, what the joint forces and the load add when the platform turns.
 
     Raises

@@ -1,0 +1,28 @@
+"""Results can be drawn without the files that their study was read from."""
+
+import numpy as np
+
+import flexapod as fx
+from flexapod.model import preset_text
+from flexapod.study.scene import mode_scene, motion_coordinates, scene
+
+
+def test_a_result_whose_motion_table_is_gone_is_still_drawn(tmp_path):
+    head = preset_text("paper-robot").split("[motion]")[0]
+    table = tmp_path / "path.csv"
+    t = np.linspace(0.0, 0.02, 21)
+    rows = "\n".join(f"{x:.3f},{1e-3 * (x / 0.02) ** 3:.9f}" for x in t)
+    table.write_text(f"time [s],heave [m]\n{rows}\n", encoding="utf-8")
+    file = tmp_path / "robot.toml"
+    file.write_text(
+        f'{head}[motion]\ntype = "csv"\nfile = "path.csv"\n[simulation]\nfidelity = "rigid"\nstep = "1 ms"\n',
+        encoding="utf-8",
+    )
+    data = fx.run(fx.load(file))
+    modes = fx.modes(fx.load(file), fidelity="lumped")
+    table.unlink()
+    assert np.allclose(scene(data, 0.02).com - scene(data, 0.0).com, [0, 0, 1e-3], atol=1e-9)
+    assert mode_scene(modes, 1, 0.05).piston.shape == (6, 25, 3)
+    heave = motion_coordinates(data).position.sel(coordinate="heave").values
+    assert np.allclose(heave, data.translation_command.sel(axis="z"), rtol=0, atol=0)
+    assert heave[-1] > 0.99e-3
