@@ -1,4 +1,4 @@
-"""A: how far does the payload of the paper's robot miss its path, and which part is to blame?"""
+"""How far does the payload of the paper's robot miss its path, and which part is to blame?"""
 
 import numpy as np
 

@@ -1,4 +1,4 @@
-"""The claims table: verdicts follow from numbers, and docs/claims.md is what the program says."""
+"""The claims table: verdicts follow from numbers, and the README says what the program says."""
 
 import re
 from pathlib import Path
@@ -11,7 +11,7 @@ from flexapod.study.claim import BREAKS, HOLDS, NOT, OPEN, REACHES
 from flexapod.study.claims import claims, markdown
 from flexapod.study.paper import STEPS
 
-PAGE = Path(__file__).parents[2] / "docs" / "claims.md"
+README = Path(__file__).parents[2] / "README.md"
 NUMBER = re.compile(r"-?\d+(?:\.\d+)?(?:e[-+]\d+)?")
 
 
@@ -31,13 +31,15 @@ def test_every_row_is_filled_and_appears_once(table):
         assert "nan" not in (claim.ours + claim.reason).lower()
 
 
-def test_page_is_what_the_program_says():
-    """Made by `flexapod replicate --out DIR`, then DIR/claims.md copied to docs/claims.md.
+def test_readme_says_what_the_program_says():
+    """Made by `flexapod replicate --out DIR`, then the table of DIR/claims.md copied into the README.
 
-    Words must be equal. Numbers of the coarse steps used here lie within 10 % of those of the page: they are printed
+    Words must be equal. Numbers of the coarse steps used here lie within 10 % of those of the table: they are printed
     with two or three digits, and peaks of a ringing robot depend on the step.
     """
-    page, ours = PAGE.read_text(encoding="utf-8").split("\n\n")[-1], markdown(claims(coarse_study()))
+    chapter = README.read_text(encoding="utf-8").split("## The paper's claims, one by one")[1]
+    page = "\n".join(line for line in chapter.splitlines() if line.startswith("|")) + "\n"
+    ours = markdown(claims(coarse_study()))
     assert NUMBER.sub("#", page).split("\n") == NUMBER.sub("#", ours).split("\n")
     printed, found = (np.array([float(n) for n in NUMBER.findall(text)]) for text in (page, ours))
     np.testing.assert_allclose(found, printed, rtol=0.1)
