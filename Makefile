@@ -1,10 +1,12 @@
-# `make` lists the targets. Each one sets up what it needs: nothing but Python >= 3.11 and a C compiler is assumed.
+# `make` lists the targets. Each one sets up what it needs: nothing but Python >= 3.11 is assumed. Where there is no C
+# compiler, one comes from pip.
 
 PYTHON ?= python3
 BIN := .venv/bin
 PIP = $(BIN)/python -m pip install --quiet --disable-pip-version-check -c constraints.txt
 RUN := .venv/.installed-to-run
 DEV := .venv/.installed-to-develop
+COMPILER ?= $(shell command -v cc || command -v gcc || command -v clang)
 
 .DEFAULT_GOAL := help
 .PHONY: help setup demo test lint format bench clean
@@ -17,7 +19,7 @@ setup: $(DEV)  ## own virtual environment with everything in it
 $(RUN): pyproject.toml constraints.txt
 	test -x $(BIN)/python || $(PYTHON) -m venv .venv
 	$(PIP) pip
-	$(PIP) --editable .
+	$(PIP) --editable ".$(if $(COMPILER),,[compiler])"
 	touch $@
 
 $(DEV): $(RUN)

@@ -34,8 +34,8 @@ _WORKS = {
     "dasgupta-mruthyunjaya": Citation(
         authors="B. Dasgupta, T. S. Mruthyunjaya",
         year=1998,
-        title="Closed-form dynamic equations of the general Stewart platform through the Newton-Euler approach",
-        source="Mechanism and Machine Theory 33(7), 993-1012",
+        title="A Newton-Euler formulation for the inverse dynamics of the Stewart platform manipulator",
+        source="Mechanism and Machine Theory 33(8), 1135-1152",
     ),
     "dietmaier": Citation(
         authors="P. Dietmaier",

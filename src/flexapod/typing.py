@@ -5,7 +5,10 @@ from __future__ import annotations
 import numpy as np
 from numpy.typing import ArrayLike, NDArray
 
-__all__ = ["Array", "ArrayLike"]
+__all__ = ["Array", "ArrayLike", "Mask"]
 
 Array = NDArray[np.float64]
 """A float64 array; SI units."""
+
+Mask = NDArray[np.bool_]
+"""A Boolean array."""

@@ -5,11 +5,9 @@ from functools import lru_cache
 
 import numpy as np
 from numpy.polynomial import Chebyshev, Polynomial
-from numpy.typing import NDArray
 
 from flexapod.bases.lateral import MOMENTS, proportional_damping
-
-Array = NDArray[np.float64]
+from flexapod.typing import Array
 
 
 @dataclass(frozen=True, kw_only=True)

@@ -8,9 +8,8 @@ from collections.abc import Callable
 from dataclasses import dataclass
 
 import numpy as np
-from numpy.typing import NDArray
 
-Array = NDArray[np.float64]
+from flexapod.typing import Array
 
 
 @dataclass(frozen=True, kw_only=True)
@@ -45,19 +44,19 @@ def _free_tip_rows(eps: float, mu: float, inertia: float) -> list[Array]:
     return [d[2] - inertia * eps**3 * d[1], d[3] + mu * eps * d[0]]
 
 
-def _pinned_tip_rows(eps: float, mu: float, inertia: float) -> list[Array]:
-    """Tip held laterally, free to turn: phi(1) = phi''(1) = 0, Eq. (T1.4)."""
-    del mu, inertia
-    d = [_terms(eps, np.ones(()), n) / eps**n for n in (0, 2)]
-    return d
+def clamped_tip_mass(count: int, mu: float, inertia: float) -> list[BeamFunction]:
+    """First ``count`` eigenfunctions with a tip body, norm int phi^2 dzeta = 1, positive curvature at the clamp.
 
-
-def _eigenfunctions(count: int, tip: Callable[..., list[Array]], mu: float, inertia: float) -> list[BeamFunction]:
-    """First ``count`` eigenfunctions with unit norm int phi^2 dzeta = 1 and positive curvature at the clamp."""
+    Parameters
+    ----------
+    count : int
+    mu, inertia : float
+        m/(rhoA L) and J/(rhoA L^3) of the tip body, Eq. (T1.3).
+    """
     from scipy.optimize import root_scalar  # heavy, and the default basis of robots needs no roots
 
     def matrix(eps: float) -> Array:
-        rows = np.array(_clamped_rows(eps) + tip(eps, mu, inertia))
+        rows = np.array(_clamped_rows(eps) + _free_tip_rows(eps, mu, inertia))
         return rows / np.linalg.norm(rows, axis=1, keepdims=True)  # a heavy tip must not drown the clamp
 
     def characteristic(eps: float) -> float:
@@ -89,14 +88,4 @@ def gauss_unit(points: int = 96) -> tuple[Array, Array]:
 
 def clamped_free(count: int) -> list[BeamFunction]:
     """Eigenfunctions of the clamped-free beam (the paper's Eqs. 2-3 with the norm corrected), Eq. (T1.2)."""
-    return _eigenfunctions(count, _free_tip_rows, 0.0, 0.0)
-
-
-def clamped_tip_mass(count: int, mu: float, inertia: float) -> list[BeamFunction]:
-    """Eigenfunctions with a tip mass ``mu`` = m/(rhoA L) and rotary inertia ``inertia`` = J/(rhoA L^3), Eq. (T1.3)."""
-    return _eigenfunctions(count, _free_tip_rows, mu, inertia)
-
-
-def clamped_pinned(count: int) -> list[BeamFunction]:
-    """Eigenfunctions of the clamped-pinned beam, Eq. (T1.4)."""
-    return _eigenfunctions(count, _pinned_tip_rows, 0.0, 0.0)
+    return clamped_tip_mass(count, 0.0, 0.0)

@@ -4,12 +4,11 @@ from collections.abc import Callable, Sequence
 from dataclasses import dataclass
 
 import numpy as np
-from numpy.typing import NDArray
 from scipy.linalg import eigh
 
 from flexapod.bases.beam_functions import gauss_unit
+from flexapod.typing import Array
 
-Array = NDArray[np.float64]
 Shape = Callable[..., Array]
 
 #: Powers of (1 - zeta) whose moments are kept: the coupling with the axial sine shapes is a polynomial of this degree.

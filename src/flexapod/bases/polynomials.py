@@ -4,12 +4,10 @@ from dataclasses import dataclass
 
 import numpy as np
 from numpy.polynomial import Legendre
-from numpy.typing import NDArray
 from scipy.linalg import eigh, null_space
 
 from flexapod.bases.beam_functions import gauss_unit
-
-Array = NDArray[np.float64]
+from flexapod.typing import Array
 
 
 @dataclass(frozen=True, kw_only=True)

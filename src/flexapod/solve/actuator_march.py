@@ -4,18 +4,17 @@ from collections.abc import Callable, Iterator
 from dataclasses import dataclass, field, replace
 
 import numpy as np
-from numpy.typing import NDArray
 
 from flexapod import rigid
 from flexapod.errors import ComputationError
 from flexapod.model import Actuator, ActuatorStudy, Simulation
 from flexapod.solve.genalpha import GeneralizedAlpha
 from flexapod.solve.kernel import kernel
-from flexapod.solve.march import Chunk, Problem, march, restart_outputs
+from flexapod.solve.march import Chunk, Problem, first_step, march, restart_outputs
 from flexapod.solve.parameters import actuator_parameters
 from flexapod.solve.plant import TABLE, Counters, Flow, Plant, Recording
+from flexapod.typing import Array
 
-Array = NDArray[np.float64]
 Law = Callable[[Array], tuple[Array, Array]]
 
 
@@ -72,9 +71,7 @@ def prepare_actuator(
         extension=study.motion.extension is not None,
     )
     law = _tables(study)
-    h = simulation.output_step / 2 if simulation.step is None else simulation.step
-    if h < simulation.output_step and simulation.step is not None:
-        h = simulation.output_step / np.ceil(simulation.output_step / h - 1e-9)
+    h = first_step(simulation.step, simulation.output_step)
     output_step = max(simulation.output_step, h)
     start, counters = _start(study, plant, law, method, h, amplitudes, rates), Counters()
     problem = Problem(

@@ -4,7 +4,6 @@ from dataclasses import dataclass
 from functools import lru_cache
 
 import numpy as np
-from numpy.typing import NDArray
 from scipy.linalg import eigh
 from scipy.optimize import linear_sum_assignment
 
@@ -14,8 +13,7 @@ from flexapod.mechanics.layout import COMMAND_SIZE, Shapes
 from flexapod.model import Actuator, Simulation
 from flexapod.solve.kernel import Function
 from flexapod.solve.parameters import actuator_parameters
-
-Array = NDArray[np.float64]
+from flexapod.typing import Array
 
 
 @dataclass(frozen=True, kw_only=True)

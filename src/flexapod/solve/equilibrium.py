@@ -3,13 +3,12 @@
 from dataclasses import dataclass, replace
 
 import numpy as np
-from numpy.typing import NDArray
 from scipy.linalg import null_space
 
 from flexapod.mechanics.layout import LEG_PARAMETERS
 from flexapod.solve.system import RobotSystem, State
+from flexapod.typing import Array
 
-Array = NDArray[np.float64]
 _GRAVITY = slice(*(sum(s for _, s in LEG_PARAMETERS[:i]) for i in (13, 14)))
 
 

@@ -9,8 +9,8 @@ class GeneralizedAlpha:
 
     References
     ----------
-    J. Chung, G. M. Hulbert, J. Appl. Mech. 60 (1993) 371-375; M. Arnold, O. Bruls, Numer. Math. 107 (2007);
-    M. Arnold, O. Bruls, A. Cardona, Numer. Math. 129 (2015) 149-179.
+    J. Chung, G. M. Hulbert, J. Appl. Mech. 60 (1993) 371-375; M. Arnold, O. Bruls, Multibody Syst. Dyn. 18 (2007)
+    185-202; M. Arnold, O. Bruls, A. Cardona, Numer. Math. 129 (2015) 149-179.
     """
 
     rho: float

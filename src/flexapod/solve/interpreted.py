@@ -3,15 +3,13 @@
 from dataclasses import replace
 
 import numpy as np
-from numpy.typing import NDArray
 
 from flexapod.solve.equilibrium import saddle_solve
 from flexapod.solve.genalpha import GeneralizedAlpha
 from flexapod.solve.native import MAX_ITERATIONS, TOL_CLOSURE, TOL_FORCE, Advance
 from flexapod.solve.plant import TABLE, Counters, Flow, Plant
 from flexapod.solve.rotation import turned
-
-Array = NDArray[np.float64]
+from flexapod.typing import Array
 
 
 def _commands(plant: Plant, drive: Array, row: Array) -> Array:

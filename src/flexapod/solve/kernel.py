@@ -3,22 +3,21 @@
 import ctypes
 import logging
 from collections.abc import Callable
-from dataclasses import dataclass
+from dataclasses import dataclass, fields
 from functools import cache
 from pathlib import Path
 from typing import TYPE_CHECKING
 
 import numpy as np
-from numpy.typing import NDArray
 
 from flexapod import bases, mechanics, symbolic
 from flexapod.mechanics.layout import Shapes
 from flexapod.symbolic.compiler import CompiledFunction, compiled_library, compiler
+from flexapod.typing import Array
 
 if TYPE_CHECKING:
     from flexapod.symbolic.functions import NamedFunction
 
-Array = NDArray[np.float64]
 Function = Callable[..., tuple[Array, ...]]
 NATIVE = Path(__file__).parent / "native"
 SOURCES = tuple(NATIVE / name for name in ("system.h", "lu.c", "arrow.c", "single.c", "march.c"))
@@ -100,10 +99,6 @@ def _fingerprint(shapes: Shapes) -> list[object]:
         for package in (mechanics, symbolic)
         for path in sorted(Path(str(package.__file__)).parent.glob("*.py"))
     ]
-    lateral = shapes.a
-    numbers = [
-        lateral.tip, lateral.tip_slope, lateral.mass, lateral.first, lateral.moment, lateral.powers, lateral.stiffness,
-        lateral.slope_tip, lateral.slope_first, lateral.slope_moment, lateral.damping, shapes.axial.mass,
-        shapes.axial.stiffness, shapes.axial.damping, shapes.axial.series,
-    ]  # fmt: skip
-    return [*texts, *(np.ascontiguousarray(x).tobytes() for x in numbers), shapes.layout, shapes.planar]
+    numbers = [getattr(basis, field.name) for basis in (shapes.a, shapes.axial) for field in fields(basis)]
+    arrays = [np.ascontiguousarray(x).tobytes() for x in numbers if isinstance(x, np.ndarray)]
+    return [*texts, *arrays, shapes.layout, shapes.planar]

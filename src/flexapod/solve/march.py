@@ -4,14 +4,13 @@ from collections.abc import Callable, Iterator
 from dataclasses import dataclass, replace
 
 import numpy as np
-from numpy.typing import NDArray
 
 from flexapod.errors import ComputationError, InputError
 from flexapod.solve import interpreted, native
 from flexapod.solve.genalpha import GeneralizedAlpha
 from flexapod.solve.plant import Counters, Flow, Plant, Recording, unpack
+from flexapod.typing import Array
 
-Array = NDArray[np.float64]
 Tables = Callable[[Array], tuple[Array, Array]]
 Measure = Callable[[Recording], list[Array]]
 CHUNK = 100  # output intervals between looks at progress, tolerance and interrupts
@@ -55,6 +54,13 @@ class Chunk:
     recording: Recording
     error: float
     step: float
+
+
+def first_step(step: float | None, output_step: float) -> float:
+    """Fixed step made to divide the output step (never larger than asked), or half the output step to begin with."""
+    if step is None:
+        return output_step / 2
+    return step if step >= output_step else output_step / np.ceil(output_step / step - 1e-9)
 
 
 def restart_outputs(jumps: tuple[float, ...], output_step: float) -> tuple[int, ...]:

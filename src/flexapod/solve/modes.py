@@ -3,7 +3,6 @@
 from dataclasses import dataclass
 
 import numpy as np
-from numpy.typing import NDArray
 from scipy.linalg import eigh, null_space
 
 from flexapod import rigid
@@ -11,8 +10,7 @@ from flexapod.errors import ComputationError, InputError
 from flexapod.model import Robot, Simulation
 from flexapod.solve.equilibrium import Equilibrium, equilibrium
 from flexapod.solve.system import Matrices, RobotSystem, rigid_state, robot_system
-
-Array = NDArray[np.float64]
+from flexapod.typing import Array
 
 
 @dataclass(frozen=True, kw_only=True)

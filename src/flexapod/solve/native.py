@@ -8,8 +8,8 @@ from numpy.typing import NDArray
 
 from flexapod.solve.genalpha import GeneralizedAlpha
 from flexapod.solve.plant import Counters, Flow, Plant, record_width
+from flexapod.typing import Array
 
-Array = NDArray[np.float64]
 _pointer = POINTER(c_double)
 TOL_CLOSURE, TOL_FORCE = 1e-14, 1e-10  # m; relative to the largest force: rounding floors of metres and kilonewtons
 MAX_ITERATIONS, MAX_AGE = 12, 16

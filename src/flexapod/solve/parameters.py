@@ -1,13 +1,11 @@
 """Physical parameters of a model as the flat vectors that kernels read."""
 
 import numpy as np
-from numpy.typing import NDArray
 
 from flexapod import rigid
 from flexapod.mechanics.layout import LEG_PARAMETERS, PAYLOAD_PARAMETERS
 from flexapod.model import Actuator, ForceDrive, Leg, Robot, ServoDrive
-
-Array = NDArray[np.float64]
+from flexapod.typing import Array
 
 
 def _pack(layout: tuple[tuple[str, int], ...], values: dict[str, object]) -> Array:

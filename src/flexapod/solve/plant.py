@@ -7,9 +7,8 @@ from numpy.typing import NDArray
 
 from flexapod.mechanics.layout import LEG_PARAMETERS
 from flexapod.solve.kernel import Kernel
+from flexapod.typing import Array, Mask
 
-Array = NDArray[np.float64]
-Mask = NDArray[np.bool_]
 TABLE = 8  # table row of a leg: l, l', l'', force, beta, beta', beta'', torque
 
 

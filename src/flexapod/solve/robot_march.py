@@ -4,22 +4,21 @@ from collections.abc import Iterator
 from dataclasses import dataclass, field, replace
 
 import numpy as np
-from numpy.typing import NDArray
 
 from flexapod import rigid
 from flexapod.errors import ComputationError
 from flexapod.model import Study
 from flexapod.solve.equilibrium import equilibrium
 from flexapod.solve.genalpha import GeneralizedAlpha
-from flexapod.solve.march import Chunk, Problem, march, restart_outputs
+from flexapod.solve.march import Chunk, Problem, first_step, march, restart_outputs
 from flexapod.solve.modes import refuse_pure_force
 from flexapod.solve.plant import TABLE, Counters, Flow, Plant, Recording
 from flexapod.solve.rotation import matrix
 from flexapod.solve.start import Start, consistent_start, normal_velocity
 from flexapod.solve.system import RobotSystem, State, rigid_state, robot_system
 from flexapod.solve.tables import Commands, command_law
+from flexapod.typing import Array
 
-Array = NDArray[np.float64]
 BETA_LIMIT = np.deg2rad(85.0)
 
 
@@ -62,7 +61,7 @@ def prepare(study: Study, state: State | None = None) -> RobotMarch:
     system, law = robot_system(robot, simulation), command_law(robot, study.motion, study.load)
     commands = law(np.zeros(1))
     method = GeneralizedAlpha(simulation.rho_inf)
-    step = _first_step(simulation.step, simulation.output_step)
+    step = first_step(simulation.step, simulation.output_step)
     state = _configuration(study, system, commands) if state is None else state
     start = consistent_start(system, state, commands, method, step)
     plant, counters, output_step = _plant(system), Counters(), max(simulation.output_step, step)
@@ -81,13 +80,6 @@ def prepare(study: Study, state: State | None = None) -> RobotMarch:
     )
     chunks = march(problem, _flow(start), step, counters)
     return RobotMarch(system=system, start=start, step=step, chunks=chunks, counters=counters)
-
-
-def _first_step(step: float | None, output_step: float) -> float:
-    """Fixed step made to divide the output step (never larger than asked), or half the output step to begin with."""
-    if step is None:
-        return output_step / 2
-    return step if step >= output_step else output_step / np.ceil(output_step / step - 1e-9)
 
 
 def _configuration(study: Study, system: RobotSystem, commands: Commands) -> State:

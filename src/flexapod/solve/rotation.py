@@ -1,10 +1,9 @@
 """Quaternions (w x y z, platform to world) for the numeric side."""
 
 import numpy as np
-from numpy.typing import NDArray
 from scipy.spatial.transform import Rotation
 
-Array = NDArray[np.float64]
+from flexapod.typing import Array
 
 
 def quaternion(R: Array) -> Array:

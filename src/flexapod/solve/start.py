@@ -3,14 +3,12 @@
 from dataclasses import dataclass, replace
 
 import numpy as np
-from numpy.typing import NDArray
 
 from flexapod.solve.equilibrium import saddle_solve
 from flexapod.solve.genalpha import GeneralizedAlpha
 from flexapod.solve.system import Matrices, RobotSystem, State
 from flexapod.solve.tables import Commands
-
-Array = NDArray[np.float64]
+from flexapod.typing import Array
 
 
 @dataclass(frozen=True, kw_only=True)

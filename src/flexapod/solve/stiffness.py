@@ -3,7 +3,6 @@
 from dataclasses import dataclass
 
 import numpy as np
-from numpy.typing import NDArray
 
 from flexapod import rigid
 from flexapod.errors import InputError
@@ -11,8 +10,7 @@ from flexapod.model import Robot, Simulation
 from flexapod.solve.equilibrium import saddle_solve
 from flexapod.solve.modes import locked_equilibrium
 from flexapod.solve.rotation import matrix
-
-Array = NDArray[np.float64]
+from flexapod.typing import Array
 
 
 @dataclass(frozen=True, kw_only=True)

@@ -12,9 +12,8 @@ from flexapod.model import Robot, Simulation
 from flexapod.solve.kernel import Kernel, kernel
 from flexapod.solve.parameters import leg_parameters, payload_parameters
 from flexapod.solve.rotation import quaternion, turned
+from flexapod.typing import Array, Mask
 
-Array = NDArray[np.float64]
-Mask = NDArray[np.bool_]
 Index = NDArray[np.intp]
 
 

@@ -4,12 +4,10 @@ from collections.abc import Callable
 from dataclasses import dataclass
 
 import numpy as np
-from numpy.typing import NDArray
 
 from flexapod import rigid
 from flexapod.model import ForceDrive, Load, Motion, Robot
-
-Array = NDArray[np.float64]
+from flexapod.typing import Array
 
 
 @dataclass(frozen=True, kw_only=True)

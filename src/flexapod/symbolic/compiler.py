@@ -4,6 +4,7 @@ import ctypes
 import hashlib
 import json
 import os
+import platform
 import shutil
 import subprocess
 import sys
@@ -13,11 +14,10 @@ from importlib.util import find_spec
 from pathlib import Path
 
 import numpy as np
-from numpy.typing import NDArray
 
 from flexapod.errors import ComputationError
+from flexapod.typing import Array
 
-Array = NDArray[np.float64]
 #: -O1 runs straight-line code as fast as -O2 and compiles it in half the time.
 FLAGS = ("-O1", "-fPIC", "-shared", "-std=gnu11", "-fno-math-errno", "-fno-trapping-math")
 
@@ -83,7 +83,7 @@ def compiled_library(
         The compiler failed; the message carries its words.
     """
     digest = hashlib.sha256()
-    for part in [*key, *FLAGS, *command, *(path.read_bytes() for path in sources)]:
+    for part in [*key, sys.platform, platform.machine(), *FLAGS, *command, *(path.read_bytes() for path in sources)]:
         digest.update(part if isinstance(part, bytes) else repr(part).encode())
     target = cache_directory() / f"{digest.hexdigest()[:32]}.so"
     record = target.with_suffix(".json")

@@ -6,9 +6,8 @@ from dataclasses import dataclass
 import casadi
 import numpy as np
 from casadi import SX
-from numpy.typing import NDArray
 
-Array = NDArray[np.float64]
+from flexapod.typing import Array
 
 
 @dataclass(frozen=True)
