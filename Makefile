@@ -47,4 +47,4 @@ bench: $(RUN)  ## measured speed, printed
 	$(BIN)/python -m benchmarks
 
 clean:  ## remove what the targets made
-	rm -rf build .venv .pytest_cache .ruff_cache
+	rm -rf build .venv .hypothesis .import_linter_cache .pytest_cache .ruff_cache

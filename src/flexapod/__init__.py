@@ -9,9 +9,21 @@ from importlib import import_module
 from typing import TYPE_CHECKING
 
 if TYPE_CHECKING:
+    from flexapod import model, plot, rigid, study
     from flexapod.citations import cite
     from flexapod.errors import ComputationError, FlexapodError, InputError
     from flexapod.model import ActuatorStudy, Study, load, loads, open_values, preset
+    from flexapod.study import (
+        forward_kinematics,
+        inverse_dynamics,
+        inverse_kinematics,
+        modes,
+        replicate,
+        run,
+        simulate,
+        simulate_actuator,
+        stiffness,
+    )
 
 __version__ = "0.1.0"
 
@@ -42,10 +54,23 @@ __all__ = [
     "Study",
     "__version__",
     "cite",
+    "forward_kinematics",
+    "inverse_dynamics",
+    "inverse_kinematics",
     "load",
     "loads",
+    "model",
+    "modes",
     "open_values",
+    "plot",
     "preset",
+    "replicate",
+    "rigid",
+    "run",
+    "simulate",
+    "simulate_actuator",
+    "stiffness",
+    "study",
 ]
 
 

@@ -3,9 +3,9 @@
 from __future__ import annotations
 
 import numpy as np
-from numpy.typing import ArrayLike, NDArray
+from numpy.typing import NDArray
 
-__all__ = ["Array", "ArrayLike", "Mask"]
+__all__ = ["Array", "Mask"]
 
 Array = NDArray[np.float64]
 """A float64 array; SI units."""

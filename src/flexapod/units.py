@@ -4,6 +4,7 @@ from __future__ import annotations
 
 import math
 import re
+import sys
 from dataclasses import dataclass
 from decimal import Decimal
 from functools import cache
@@ -79,7 +80,7 @@ def to_si(value: object, dimension: str, *, key: str | None = None) -> float:
     elif isinstance(value, bool) or not isinstance(value, int | float):
         raise _refuse("is not a number", value, dimension, key)
     else:
-        number = float(value)
+        number = math.inf if abs(value) > sys.float_info.max else float(value)
     if not math.isfinite(number):
         raise _refuse("is not finite", value, dimension, key)
     return number

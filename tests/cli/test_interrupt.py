@@ -18,6 +18,11 @@ LONG = [
 ]
 
 
+def heed_interrupts():
+    """A suite that runs in the background of a shell passes on that SIGINT is ignored."""
+    signal.signal(signal.SIGINT, signal.default_int_handler)
+
+
 def terminal():
     return pytest.importorskip("pty").openpty()
 
@@ -36,7 +41,9 @@ def test_interrupted_run(study, folder):
     source, sink = terminal()
     command = [sys.executable, "-m", "flexapod", "run", str(study(*LONG))]
     environment = os.environ | {"TERM": "xterm", "COLUMNS": "120"}
-    run = subprocess.Popen(command, stdout=subprocess.PIPE, stderr=sink, text=True, env=environment)
+    run = subprocess.Popen(
+        command, stdout=subprocess.PIPE, stderr=sink, text=True, env=environment, preexec_fn=heed_interrupts
+    )
     os.close(sink)
     shown = read_until(source, b"simulating")
     time.sleep(1.0)
@@ -57,7 +64,7 @@ def test_interrupted_run(study, folder):
 @pytest.mark.skipif(sys.platform == "win32", reason="SIGINT")
 def test_interrupted_run_as_json(study, folder):
     command = [sys.executable, "-c", PROGRAM, str(study(*LONG))]
-    run = subprocess.run(command, capture_output=True, text=True, timeout=60)
+    run = subprocess.run(command, capture_output=True, text=True, timeout=60, preexec_fn=heed_interrupts)
     assert run.returncode == 130
     assert json.loads(run.stdout)["partial"] is True
     assert json.loads(run.stderr)["error"]["kind"] == "interrupt"

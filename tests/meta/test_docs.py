@@ -4,12 +4,13 @@ import re
 from pathlib import Path
 
 import pytest
+from markdown_it import MarkdownIt
 
 ROOT = Path(__file__).parents[2]
 PAGES = sorted([*(ROOT / "docs").rglob("*.md"), *ROOT.glob("*.md")])
 LINK = re.compile(r"\]\((?!https?://|mailto:|#)([^)#\s]+)")
 CODE = re.compile(r"`([\w./-]+\.(?:py|c|h|toml|md)|[\w-]+/)`")
-ROOTS = (ROOT, ROOT / "src" / "flexapod", ROOT / "src" / "flexapod" / "solve", ROOT / "docs")
+ROOTS = (ROOT, ROOT / "src" / "flexapod", ROOT / "src" / "flexapod" / "solve", ROOT / "docs", ROOT / "tests")
 EXAMPLES = {"study.toml", "robot.toml", "NAME.toml", "SWEEP.toml"}  # files of users
 
 
@@ -58,6 +59,22 @@ def test_equations_that_are_referred_to_exist(page):
     tagged = {tag for p in pages for tag in re.findall(r"\\tag\{(T\d+\.\d+[a-z]?)\}", p.read_text(encoding="utf-8"))}
     used = set(re.findall(r"\((T\d+\.\d+[a-z]?)\)", page.read_text(encoding="utf-8")))
     assert not sorted(used - tagged)
+
+
+@pytest.mark.parametrize("page", PAGES, ids=name)
+def test_formulas_show_on_github(page):
+    """GitHub refuses some macros, and reads Markdown before mathematics."""
+    text = re.sub(r"```.*?```|`[^`\n]*`", "", page.read_text(encoding="utf-8"), flags=re.DOTALL)
+    displayed = re.findall(r"\$\$(.*?)\$\$", text, flags=re.DOTALL)
+    inline = [line for line in re.sub(r"\$\$.*?\$\$", "", text, flags=re.DOTALL).splitlines() if "$" in line]
+    assert text.count("$$") % 2 == 0
+    assert not re.findall(r"\\(?:operatorname|mbox|def|newcommand)\b", text)  # refused
+    assert not [f for f in displayed if re.search(r"\n\s*\n|\n\s*[-+*] ", f)]  # a new paragraph, a list
+    assert not [line for line in inline if line.count("$") % 2]  # a formula does not go over a line's end
+    emphasis = {"em_open", "strong_open"}  # underscores that Markdown would take for italics: use a fence ```math
+    assert not [f for f in displayed if emphasis & {x.type for x in MarkdownIt().parseInline(f)[0].children or ()}]
+    formulas = [f for line in inline for f in re.findall(r"\$([^$]*)\$", line)]
+    assert not [f for f in formulas if f != f.strip() or re.search(r"\\[,;:!{}]|\\tag", f)]  # backslashes are eaten
 
 
 def test_every_source_package_is_in_the_folder_map():

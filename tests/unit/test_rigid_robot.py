@@ -40,14 +40,18 @@ def make(stroke=None, u_axis=None):
 ROBOT = make()
 
 
-def test_drive_law_starts_at_home_and_has_exact_derivatives():
-    length, rate, acceleration = rigid.drive_law(ROBOT, ROLL, T)
-    np.testing.assert_allclose(length[0], ROBOT.home_lengths, rtol=1e-15)
+def legs(robot, motion, t):
+    return rigid.inverse_kinematics(robot, rigid.poses(robot, motion, t))
+
+
+def test_strokes_start_at_home_and_have_exact_derivatives():
+    found = legs(ROBOT, ROLL, T)
+    np.testing.assert_allclose(found.length[0], ROBOT.home_lengths, rtol=1e-15)
     inner = T[3:20]
-    slope = central_difference(lambda t: rigid.drive_law(ROBOT, ROLL, t)[0], inner)
-    np.testing.assert_allclose(rate[3:20], slope, atol=1e-10)
-    slope = central_difference(lambda t: rigid.drive_law(ROBOT, ROLL, t)[1], inner)
-    np.testing.assert_allclose(acceleration[3:20], slope, atol=1e-8)
+    slope = central_difference(lambda t: legs(ROBOT, ROLL, t).length, inner)
+    np.testing.assert_allclose(found.rate[3:20], slope, atol=1e-10)
+    slope = central_difference(lambda t: legs(ROBOT, ROLL, t).rate, inner)
+    np.testing.assert_allclose(found.accel[3:20], slope, atol=1e-8)
 
 
 def test_forward_kinematics_returns_the_path():
@@ -84,7 +88,7 @@ def test_wrench_is_carried_besides_the_weight():
 
 def test_strokes_and_pull_out_of_a_path():
     robot = make(stroke=Stroke(min=0.7, max=1.1))
-    length, _, _ = rigid.drive_law(robot, HEAVE, T)
+    length = legs(robot, HEAVE, T).length
     found = rigid.strokes(robot, T, length)
     assert [e.leg for e in found] == [1, 2, 3, 4, 5, 6]
     assert found[0].value == pytest.approx(np.hypot(1.2, np.linalg.norm(robot.home_vectors[0, :2])))

@@ -11,7 +11,7 @@ from tests.runs import paper_robot, with_legs
 
 import flexapod as fx
 from flexapod import rigid
-from flexapod.mechanics.layout import LEG_PARAMETERS
+from flexapod.mechanics.layout import LEG_PARAMETERS, columns
 from flexapod.model import AxisMotion, Payload
 from flexapod.solve.kernel import kernel
 from flexapod.solve.modes import robot_modes
@@ -39,7 +39,7 @@ def test_buckling_load_makes_the_own_stiffness_of_a_leg_singular(mouth):
     robot = paper_robot().robot.replace(gravity=[0, 0, 0])
     axis = robot.home_vectors[0] / robot.home_lengths[0]
     p, leg = leg_parameters(robot)[0], kernel("tip-load", 6, 2)
-    p[[name for name, size in LEG_PARAMETERS for _ in range(size)].index("mouth")] = mouth
+    p[columns(LEG_PARAMETERS, "mouth")] = mouth
     q, l_index = np.zeros(leg.shapes.size), leg.shapes.l_index
     q[l_index] = mouth + 0.6
 

@@ -151,3 +151,14 @@ def test_memory_is_a_small_multiple_of_what_is_stored():
     kept = [memory(paper_robot(fidelity="lumped", duration=T, output_step=5e-3, step=5e-3)) for T in (4.0, 20.0)]
     # Stored once as a record, once as results, and copies while they are computed.
     assert (kept[1][0] - kept[0][0]) < 4 * (kept[1][1] - kept[0][1])
+
+
+def test_a_piston_pulled_out_by_its_drive_is_told():
+    """Drives that push too hard once pushed pistons out of their cylinders without a word."""
+    drive = ForceDrive(law="csv", file="much.csv", time=[0.0, 2.0], force=[500.0, 500.0])
+    data = fx.simulate(with_legs(falling(), lambda leg: leg.replace(drive=drive)))
+    assert data.attrs["partial"] == 1
+    assert "its piston has been pulled out of the cylinder" in data.attrs["failure"]
+    assert (data.leg_stroke <= 0.31518 + 0.75).all()
+    # On the way the legs leave their strokes: no command did, so it is a remark.
+    assert "its drive leaves the stroke of 0.7 to 1.05 m by 1" in data.attrs["warnings"]

@@ -4,15 +4,16 @@ from __future__ import annotations
 
 from dataclasses import asdict
 from pathlib import Path
+from typing import Annotated
 
 import typer
 
 from flexapod.app.failures import guarded
-from flexapod.app.options import Json, Out, Quiet
+from flexapod.app.options import Json, Quiet
 
 __all__ = ["add"]
 
-FOLDER = Path("replicate")
+Folder = Annotated[Path, typer.Option("--out", metavar="DIR", help="Folder for the results.")]
 
 
 def add(app: typer.Typer) -> None:
@@ -21,7 +22,7 @@ def add(app: typer.Typer) -> None:
 
 
 @guarded
-def replicate(out: Out = None, json: Json = False, quiet: Quiet = False) -> None:
+def replicate(out: Folder = Path("replicate"), json: Json = False, quiet: Quiet = False) -> None:
     """Repeat the paper's whole study: figures, data, table of its claims, report."""
     from flexapod.app.outputs import check_writable
     from flexapod.app.replicate import replicate as repeat
@@ -29,13 +30,12 @@ def replicate(out: Out = None, json: Json = False, quiet: Quiet = False) -> None
     from flexapod.study.claims import claims
     from flexapod.study.summary import summary
 
-    folder = FOLDER if out is None else out
-    check_writable(folder)
+    check_writable(out)
     with progress_bar(quiet=quiet or json) as report:
-        result = repeat(folder, progress=report)
+        result = repeat(out, progress=report)
     found, table = summary(result["robot"]), claims(result)
     if json:
-        files = sorted(path for path in folder.rglob("*") if path.is_file())
+        files = sorted(path for path in out.rglob("*") if path.is_file())
         print_json({"summary": found.as_dict(), "claims": [asdict(claim) for claim in table], "files": files})
         return
     print_text(found.sentence)
@@ -43,4 +43,4 @@ def replicate(out: Out = None, json: Json = False, quiet: Quiet = False) -> None
     for claim in table:
         print_text(f"{claim.where}: {claim.says}: {claim.verdict} ({claim.ours})", indent=2)
     print_text()
-    print_text(f"In {folder}: report.html (open it in a browser), claims.md, figures/ and data/.")
+    print_text(f"In {out}: report.html (open it in a browser), claims.md, figures/ and data/.")

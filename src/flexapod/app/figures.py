@@ -58,12 +58,12 @@ def _robot(data: Dataset) -> Iterator[_Plan]:
     import numpy as np
 
     from flexapod import plot
+    from flexapod.study.summary import tool_apart
 
     elastic = bool(np.abs(data.com_deviation).max() > 0)
-    apart = bool(np.abs(data.tool_position_rigid - data.com_position_rigid).max() > 0)
     axes = ("x", "y", "z")
     words = "rigid legs against flexible ones, and the deviation on its own scale"
-    if apart:
+    if tool_apart(data):
         yield "tool-path", f"Path of the tool: {words}", lambda: plot.com_path(data, axes, "tool")
     yield "com-path", f"Path of the centre of mass: {words}", lambda: plot.com_path(data, axes)
     if elastic:

@@ -9,6 +9,7 @@ from flexapod import model
 from flexapod.app import html
 from flexapod.app.figures import Drawn
 from flexapod.app.report import by_axis, figures_section, repeat_section, solver_table, warnings_section
+from flexapod.study.claim import BREAKS, HOLDS, IN_PART, MISPRINT, NOT, OPEN, REACHES
 
 if TYPE_CHECKING:
     from flexapod.study.claims import Claim
@@ -16,15 +17,7 @@ if TYPE_CHECKING:
 
 __all__ = ["paper_page"]
 
-_MARKS = {
-    "holds": "good",
-    "holds in part": "open",
-    "does not hold": "bad",
-    "cannot be compared": "open",
-    "misprint": "bad",
-    "reaches that size": "open",
-    "robot gives way": "bad",
-}
+_MARKS = {HOLDS: "good", IN_PART: "open", NOT: "bad", OPEN: "open", MISPRINT: "bad", REACHES: "open", BREAKS: "bad"}
 _SHOWN = {
     "robot": "Robot, flexible legs",
     "robot-rigid": "Robot, rigid legs",
@@ -39,7 +32,6 @@ def paper_page(result: PaperStudy, claims: Sequence[Claim], groups: Mapping[str,
     from flexapod.study.summary import summary
 
     paper = CITATIONS["nourian-akbarzadeh"]
-
     robot = result["robot"]
     links = {"deviation": "Deviation", "claims": "Claims", **{_anchor(name): name for name in groups}}
     links |= {"open": "Open values", "studies": "Studies", "repeat": "Repeat"}

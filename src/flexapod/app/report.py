@@ -14,7 +14,7 @@ from flexapod.app.figures import Drawn
 if TYPE_CHECKING:
     from xarray import Dataset
 
-    from flexapod.study.summary import RobotSummary
+    from flexapod.study.summary import ActuatorSummary, RobotSummary
 
 __all__ = [
     "by_axis",
@@ -74,7 +74,7 @@ def write_report(data: Dataset, folder: str | Path, figures: Sequence[Drawn] = (
 
     found = summary(data)
     name = Path(str(data.attrs.get("study_file") or "study")).name
-    numbers = by_axis(data) if isinstance(found, RobotSummary) else _actuator_numbers(data)
+    numbers = by_axis(data) if isinstance(found, RobotSummary) else _actuator_numbers(found)
     body = [
         html.paragraph(f"Report of {name}, flexapod {data.attrs['flexapod_version']}.", "soft"),
         *_partial(data),
@@ -99,10 +99,10 @@ def store_page(path: Path, text: str) -> Path:
 
 def by_axis(data: Dataset) -> str:
     """Largest and rms deviation along each axis, of the centre of mass and of a tool elsewhere."""
-    from flexapod.study.summary import summary
+    from flexapod.study.summary import summary, tool_apart
 
     points = {"com": "Centre of mass"}
-    if float(abs(data.tool_position_rigid - data.com_position_rigid).max()) > 0:
+    if tool_apart(data):
         points = {"tool": "Tool", **points}
     parts = []
     for point, title in points.items():
@@ -132,12 +132,9 @@ def _axis_table(found: RobotSummary) -> str:
     return html.table(head, rows)
 
 
-def _actuator_numbers(data: Dataset) -> str:
-    from flexapod.study.summary import ActuatorSummary, summary
+def _actuator_numbers(found: ActuatorSummary) -> str:
     from flexapod.study.words import text
 
-    found = summary(data)
-    assert isinstance(found, ActuatorSummary)  # noqa: S101  data of an actuator
     pairs = {
         "Largest deflection of the tip": f"{text(found.peak, 'm')} at {found.time:.3f} s",
         "rms": text(found.rms, "m"),

@@ -18,13 +18,13 @@ __all__ = ["show_run"]
 
 def show_run(data: Dataset, folder: Path, files: Sequence[Path], warnings: Sequence[str]) -> None:
     """Print what a run found and where it is."""
-    from flexapod.study.summary import RobotSummary, summary
+    from flexapod.study.summary import RobotSummary, summary, tool_apart
 
     found = summary(data)
     print_text(found.sentence)
     if isinstance(found, RobotSummary):
         print_text()
-        tool = summary(data, "tool") if _tool_apart(data) else None
+        tool = summary(data, "tool") if tool_apart(data) else None
         for name, part in (("centre of mass", found), ("tool", tool)):
             if isinstance(part, RobotSummary):
                 _axes(part, name)
@@ -36,10 +36,6 @@ def show_run(data: Dataset, folder: Path, files: Sequence[Path], warnings: Seque
     drawn = f", {figures} figures (PNG and SVG)" if figures else ""
     seconds = f"{data.attrs['steps']} steps, {data.attrs['wall_time']:.2g} s"
     print_text(f"In {folder}: {names}{drawn}. ({seconds} of time integration)")
-
-
-def _tool_apart(data: Dataset) -> bool:
-    return float(abs(data.tool_position_rigid - data.com_position_rigid).max()) > 0
 
 
 def _axes(found: RobotSummary, name: str) -> None:

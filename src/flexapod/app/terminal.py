@@ -29,12 +29,12 @@ def _plain(data: object) -> object:
     return str(data) if isinstance(data, Path) else data
 
 
-def print_text(text: str = "", *, error: bool = False, indent: int = 0) -> None:
+def print_text(text: str = "", *, indent: int = 0) -> None:
     """A paragraph that wraps at words on a terminal and is one line elsewhere."""
     from rich.console import Console
     from rich.padding import Padding
 
-    console = Console(stderr=error, highlight=False, markup=False, emoji=False)
+    console = Console(highlight=False, markup=False, emoji=False)
     if console.is_terminal:
         console.print(Padding(text, (0, 0, 0, indent)))
     else:

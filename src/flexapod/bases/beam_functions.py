@@ -4,7 +4,6 @@ Every function is written as ``A cos(e z) + B sin(e z) + C exp(-e z) + D exp(-e 
 stay below one in magnitude, so that high modes keep their digits where cosh - sinh would lose them.
 """
 
-from collections.abc import Callable
 from dataclasses import dataclass
 
 import numpy as np

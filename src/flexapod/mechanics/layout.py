@@ -26,9 +26,24 @@ LEG_PARAMETERS: tuple[tuple[str, int], ...] = (
     ("tip_inertia", 1),  # kg m^2, transverse
 )
 
+#: Physical parameters of the payload in kernel order (name, size); joints and tool from the CoM, in platform axes.
+PAYLOAD_PARAMETERS: tuple[tuple[str, int], ...] = (
+    ("mass", 1),  # kg
+    ("inertia", 9),  # kg m^2 about the CoM, platform axes, column by column
+    ("gravity", 3),  # m/s^2
+    ("tool", 3),  # m
+    ("joints", 18),  # m, spherical joints of legs 1..6
+)
 
 #: Commands of one leg: commanded length l_cmd and its rate, force along the leg, torque about beta (planar leg).
 COMMAND_SIZE = 4
+
+
+def columns(layout: tuple[tuple[str, int], ...], name: str) -> slice:
+    """Columns of a parameter in the flat vectors of a layout."""
+    names = [key for key, _ in layout]
+    start = sum(size for _, size in layout[: names.index(name)])
+    return slice(start, start + dict(layout)[name])
 
 
 @dataclass(frozen=True, kw_only=True)
@@ -55,13 +70,3 @@ class Shapes:
     def l_index(self) -> int:
         """Position of the reference length l in q."""
         return 1 if self.planar else 2
-
-
-#: Physical parameters of the payload in kernel order (name, size); joints and tool from the CoM, in platform axes.
-PAYLOAD_PARAMETERS: tuple[tuple[str, int], ...] = (
-    ("mass", 1),  # kg
-    ("inertia", 9),  # kg m^2 about the CoM, platform axes, column by column
-    ("gravity", 3),  # m/s^2
-    ("tool", 3),  # m
-    ("joints", 18),  # m, spherical joints of legs 1..6
-)

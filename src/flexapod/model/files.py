@@ -14,6 +14,7 @@ from flexapod.model.read_motion import read_initial, read_load, read_motion, rea
 from flexapod.model.read_robot import read_robot
 from flexapod.model.robot import Robot
 from flexapod.model.section import Section
+from flexapod.model.simulation import Simulation
 from flexapod.model.study import ActuatorStudy, Study
 
 __all__ = ["PRESETS", "OpenValue", "load", "loads", "loads_robot", "open_values", "preset", "preset_text"]
@@ -143,8 +144,16 @@ def _study(top: Section, text: str) -> Study:
         simulation=simulation,
         source_text=text,
         path=top.file,
-        notes=unused_settings(settings, simulation),
+        notes=(*unused_settings(settings, simulation), *_unused_axial_modes(top, simulation)),
     )
+
+
+def _unused_axial_modes(top: Section, simulation: Simulation) -> tuple[str, ...]:
+    legs = top.data["leg"]
+    given = any("axial_modes" in leg for leg in (legs if isinstance(legs, list) else [legs]))
+    if simulation.fidelity == "assumed-modes" or not given:
+        return ()
+    return (f"leg.axial_modes has no effect with fidelity {simulation.fidelity!r}",)
 
 
 def _actuator_study(top: Section, text: str) -> ActuatorStudy:

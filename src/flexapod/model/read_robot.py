@@ -47,6 +47,14 @@ def read_material(section: Section) -> Material:
         name = section.text("material", tuple(MATERIALS))
         material = MATERIALS[str(name)]
         return material if yield_stress is None else section.build(Material, **_fields(material, yield_stress))
+    if "E" not in section and "density" not in section:
+        raise InputError(
+            "is missing",
+            file=section.file,
+            key=section.key("material"),
+            allowed=f"material ({', '.join(MATERIALS)}), or E and density",
+            next_step=f"Add {section.key('material')}",
+        )
     section.need("E", "density")
     return section.build(
         Material,

@@ -40,6 +40,8 @@ def _leg_remarks(leg: Leg) -> list[str]:
     remarks = []
     if piston.diameter is not None and piston.diameter > _SLENDER * piston.length:
         remarks.append(f"the piston is {piston.diameter:g} m wide, {_fat(piston.diameter, piston.length, 'length')}")
+    if piston.yield_stress is not None and (piston.diameter is None or piston.E is None):
+        remarks.append("yield_stress has no effect: stress needs the piston's diameter and material, not EI and EA")
     if cylinder.mass > 0 and cylinder.mouth > 0 and not 0 <= cylinder.com <= cylinder.mouth:
         remarks.append(
             f"the cylinder's centre of mass ({cylinder.com:g} m) lies outside the cylinder "

@@ -78,6 +78,14 @@ class Robot(Frozen):
     def _legs_fit(self) -> Robot:
         for i, (leg, length) in enumerate(zip(self.legs, self.home_lengths, strict=True), start=1):
             _check_home(i, leg, float(length))
+        axial = {leg.axial_modes for leg in self.legs}
+        if len(axial) > 1:
+            raise InputError(
+                "differs between legs",
+                key="leg.axial_modes",
+                value=sorted(axial),
+                allowed="one number for all six legs",
+            )
         return self
 
     @property

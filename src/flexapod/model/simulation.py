@@ -2,7 +2,8 @@
 
 from __future__ import annotations
 
-from typing import Literal, Self
+import math
+from typing import Annotated, Literal, Self
 
 from pydantic import Field, model_validator
 
@@ -35,7 +36,7 @@ class Simulation(Frozen):
     basis: Literal["tip-load", "clamped-free", "tip-mass"] = "tip-load"
     modes: int = Field(default=3, strict=True, ge=0, le=12)
     duration: Positive | None = None
-    tolerance: Positive | None = None
+    tolerance: Annotated[Positive, Field(lt=1)] | None = None
     step: Positive | None = None
     output_step: Positive = 1e-3
     rho_inf: float = Field(default=0.9, strict=True, ge=0, le=1)
@@ -43,6 +44,13 @@ class Simulation(Frozen):
     def __init__(self, **fields: object) -> None:
         if fields.get("tolerance") is None and fields.get("step") is None:
             fields = fields | {"tolerance": DEFAULT_TOLERANCE}
+        if fields.get("basis") in LATER_BASES:
+            raise InputError(
+                "comes with a later version of flexapod",
+                key="basis",
+                value=fields["basis"],
+                allowed="tip-load, clamped-free, tip-mass",
+            )
         super().__init__(**fields)
 
     @model_validator(mode="after")
@@ -69,6 +77,15 @@ class Simulation(Frozen):
     def lateral_shapes(self) -> int:
         """Shapes per lateral plane that the fidelity uses: `modes`, or 0 for rigid and lumped legs."""
         return self.modes if self.fidelity == "assumed-modes" else 0
+
+    @property
+    def stored_step(self) -> float:
+        """Time between stored results [s]: `output_step`, or a fixed `step` longer than it."""
+        return max(self.output_step, self.step or 0.0)
+
+    def outputs(self, duration: float) -> int:
+        """Number of intervals between stored results in `duration` [s]; a rest shorter than one is left out."""
+        return math.floor(duration / self.stored_step + 1e-6)
 
 
 def check_fidelity(fidelity: str) -> None:

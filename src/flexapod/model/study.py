@@ -2,7 +2,7 @@
 
 from __future__ import annotations
 
-from typing import Any, Self
+from typing import Any, Self, TypeVar
 
 from pydantic import model_validator
 
@@ -112,11 +112,20 @@ class ActuatorStudy(_Documented):
     def warnings(self) -> tuple[str, ...]:
         """What is legal but doubtful, in words."""
         basis = self.simulation.basis if self.simulation.lateral_shapes else None
-        return (*actuator_remarks(self.actuator, basis), *self.notes)
+        return (*actuator_remarks(self.actuator, basis), *self._ignored, *self.notes)
+
+    @property
+    def _ignored(self) -> tuple[str, ...]:
+        if self.initial.tip_displacement == 0 or self.simulation.lateral_shapes:
+            return ()
+        return (f"initial.tip_displacement = {self.initial.tip_displacement:g} m has no effect on a rigid beam",)
+
+
+S = TypeVar("S", bound=Study | ActuatorStudy)
 
 
 def override(
-    study: Study | ActuatorStudy,
+    study: S,
     *,
     fidelity: str | None = None,
     modes: int | None = None,
@@ -127,7 +136,7 @@ def override(
     duration: float | None = None,
     output_step: float | None = None,
     rho_inf: float | None = None,
-) -> Study | ActuatorStudy:
+) -> S:
     """The study with settings of a Python call in place of those of the file; None keeps the file's.
 
     Raises

@@ -10,13 +10,14 @@ from matplotlib.axes import Axes
 from matplotlib.figure import Figure
 from scipy.ndimage import maximum_filter1d
 
-from flexapod.plot.style import FLEXIBLE, LEG_COLORS, LINE_STYLES, RIGID, figure, scale, styled
+from flexapod.plot.style import FLEXIBLE, LEG_COLORS, LINE_STYLES, RIGID, figure, needs, scale, styled
 from flexapod.study.words import number
 
 __all__ = ["actuator_modes", "actuator_response"]
 
 
 @styled
+@needs("tip_deflection", "length", "angle")
 def actuator_response(data: xr.Dataset | Mapping[int, xr.Dataset]) -> Figure:
     """Tip deflection over time; with several numbers of shapes also how far each is from the finest.
 
@@ -77,6 +78,7 @@ def _differences(axes: Axes, series: Mapping[int, xr.Dataset]) -> None:
 
 
 @styled
+@needs("mode_amplitude")
 def actuator_modes(data: xr.Dataset) -> Figure:
     """Amplitude of each lateral shape over time, each on its own scale.
 

@@ -7,7 +7,7 @@ import xarray as xr
 from matplotlib.axes import Axes
 from matplotlib.figure import Figure
 
-from flexapod.plot.style import Scale, figure, mark_end, scale, styled
+from flexapod.plot.style import Scale, figure, mark_end, needs, scale, styled
 from flexapod.study.names import CAUSE_WORDS
 from flexapod.study.scene import motion_end
 
@@ -17,6 +17,7 @@ _COLORS = {"axial-strain": "#0072B2", "bending": "#D55E00", "drive": "#009E73"}
 
 
 @styled
+@needs("deviation_by_cause")
 def deviation_by_cause(data: xr.Dataset) -> Figure:
     """Deviation of the centre of mass by cause over time, and by leg at the largest deviation of each axis.
 

@@ -7,7 +7,7 @@ import xarray as xr
 from matplotlib.axes import Axes
 from matplotlib.figure import Figure
 
-from flexapod.plot.style import LEG_COLORS, LINE_STYLES, figure, mark_end, scale, styled
+from flexapod.plot.style import LEG_COLORS, LINE_STYLES, figure, mark_end, needs, scale, styled
 from flexapod.study.scene import motion_end
 
 __all__ = ["energies"]
@@ -24,6 +24,7 @@ _SIGN = {"work_drive": -1.0, "work_external": -1.0}
 
 
 @styled
+@needs("energy_kinetic", "work_drive")
 def energies(data: xr.Dataset) -> Figure:
     """Energies and works since the start, the strain energy on its own scale, and the closure of the balance.
 

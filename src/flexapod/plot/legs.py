@@ -7,7 +7,7 @@ import xarray as xr
 from matplotlib.axes import Axes
 from matplotlib.figure import Figure
 
-from flexapod.plot.style import FLEXIBLE, LEG_COLORS, LINE_STYLES, RIGID, figure, mark_end, scale, styled
+from flexapod.plot.style import FLEXIBLE, LEG_COLORS, LINE_STYLES, RIGID, figure, mark_end, needs, scale, styled
 from flexapod.study.scene import motion_end
 
 __all__ = ["actuator_forces", "leg_lengths", "tip_deflections"]
@@ -16,6 +16,7 @@ _WORDS = {"rigid": "rigid legs", "lumped": "legs that stretch", "assumed-modes":
 
 
 @styled
+@needs("actuator_force_rigid", "actuator_force")
 def actuator_forces(data: xr.Dataset) -> Figure:
     """Drive forces of the six legs: Newton-Euler (rigid) against the multibody model, with their difference below.
 
@@ -61,6 +62,7 @@ def _limits(values: np.ndarray) -> tuple[float, float]:
 
 
 @styled
+@needs("leg_length_command", "leg_length")
 def leg_lengths(data: xr.Dataset) -> Figure:
     """Lengths of the six legs, joint to joint: what the drives command, and how far the flexible legs are off.
 
@@ -90,6 +92,7 @@ def leg_lengths(data: xr.Dataset) -> Figure:
 
 
 @styled
+@needs("tip_deflection", "leg_length")
 def tip_deflections(data: xr.Dataset) -> Figure:
     """Lateral deflection of each piston's tip from its cylinder's axis, in the two directions of the leg frame.
 

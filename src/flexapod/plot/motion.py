@@ -6,7 +6,7 @@ import numpy as np
 import xarray as xr
 from matplotlib.figure import Figure
 
-from flexapod.plot.style import LEG_COLORS, LINE_STYLES, figure, mark_end, scale, styled
+from flexapod.plot.style import LEG_COLORS, LINE_STYLES, figure, mark_end, needs, scale, styled
 from flexapod.study.scene import motion_coordinates, motion_end
 
 __all__ = ["motion_law"]
@@ -16,6 +16,7 @@ _UNITS = {"position": ("m", "rad"), "rate": ("m/s", "rad/s"), "acceleration": ("
 
 
 @styled
+@needs("translation_command")
 def motion_law(data: xr.Dataset) -> Figure:
     """Commanded motion of the platform, of those axes that move: position, rate and acceleration.
 

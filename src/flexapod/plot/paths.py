@@ -9,13 +9,14 @@ import xarray as xr
 from matplotlib.axes import Axes
 from matplotlib.figure import Figure
 
-from flexapod.plot.style import AXIS_COLORS, FLEXIBLE, RIGID, figure, mark_end, scale, styled
+from flexapod.plot.style import AXIS_COLORS, FLEXIBLE, RIGID, figure, mark_end, needs, scale, styled
 from flexapod.study.scene import motion_end
 
 __all__ = ["com_path"]
 
 
 @styled
+@needs("com_deviation")
 def com_path(data: xr.Dataset, axes: Sequence[str] = ("y", "z"), point: str = "com") -> Figure:
     """Path of a payload point, rigid against flexible, with the deviation below on its own scale.
 

@@ -9,7 +9,7 @@ import xarray as xr
 from matplotlib.figure import Figure
 
 from flexapod.plot.draw3d import draw_ghost, draw_robot, space, view
-from flexapod.plot.style import figure, styled
+from flexapod.plot.style import figure, needs, styled
 from flexapod.study.scene import mode_scene, motion_end, scene
 
 __all__ = ["modes_3d", "robot_3d"]
@@ -46,6 +46,7 @@ def robot_3d(data: xr.Dataset, time: float | None = None) -> Figure:
 
 
 @styled
+@needs("platform_shape", "leg_shape")
 def modes_3d(modes: xr.Dataset, show: Sequence[int] | None = None, size: float = 0.1) -> Figure:
     """Modes of the locked robot, drawn on it, with the robot at rest in pale lines.
 

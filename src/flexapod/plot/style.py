@@ -3,7 +3,7 @@
 from __future__ import annotations
 
 import logging
-from collections.abc import Callable
+from collections.abc import Callable, Mapping
 from functools import wraps
 from pathlib import Path
 from typing import Any, ParamSpec
@@ -14,10 +14,23 @@ from matplotlib.backends.backend_agg import FigureCanvasAgg
 from matplotlib.figure import Figure
 from matplotlib.layout_engine import ConstrainedLayoutEngine
 
+from flexapod.errors import InputError
 from flexapod.study.store import replacing
 from flexapod.study.words import Scale, scale
 
-__all__ = ["AXIS_COLORS", "FLEXIBLE", "LEG_COLORS", "RIGID", "Scale", "figure", "mark_end", "save", "scale", "styled"]
+__all__ = [
+    "AXIS_COLORS",
+    "FLEXIBLE",
+    "LEG_COLORS",
+    "RIGID",
+    "Scale",
+    "figure",
+    "mark_end",
+    "needs",
+    "save",
+    "scale",
+    "styled",
+]
 
 P = ParamSpec("P")
 
@@ -60,6 +73,29 @@ def figure(width: float = 7.4, height: float = 4.6, gap: float = 0.02) -> Figure
     made = Figure(figsize=(width, height), layout=ConstrainedLayoutEngine(wspace=gap))
     FigureCanvasAgg(made)
     return made
+
+
+def needs(*names: str) -> Callable[[Callable[P, Figure]], Callable[P, Figure]]:
+    """Refuse a first argument that is no Dataset, or mapping of Datasets, with these variables."""
+
+    def decorate(draw: Callable[P, Figure]) -> Callable[P, Figure]:
+        @wraps(draw)
+        def checked(*args: P.args, **kwargs: P.kwargs) -> Figure:
+            given: Any = args[0] if args else next(iter(kwargs.values()), None)
+            several = isinstance(given, Mapping) and not hasattr(given, "data_vars")
+            for data in given.values() if several else (given,):
+                missing = [name for name in names if name not in getattr(data, "data_vars", ())]
+                if missing:
+                    raise InputError(
+                        f"cannot be drawn: the result has no {missing[0]!r}",
+                        key=draw.__name__,
+                        allowed=f"a result with {', '.join(names)}",
+                    )
+            return draw(*args, **kwargs)
+
+        return checked
+
+    return decorate
 
 
 def styled(draw: Callable[P, Figure]) -> Callable[P, Figure]:

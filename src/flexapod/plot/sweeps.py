@@ -10,11 +10,11 @@ from matplotlib.axes import Axes
 from matplotlib.figure import Figure
 
 from flexapod.plot.style import AXIS_COLORS, figure, scale, styled
+from flexapod.study.claim import PAPER_DEVIATION
 
 __all__ = ["half_angles", "start_jump"]
 
 _MARKS = {"x": "^", "y": "o", "z": "s"}
-_LIMITS = {"y": 5e-3, "z": 10e-3}  # the paper's approximate deviations [m]
 
 
 @styled
@@ -56,7 +56,7 @@ def _peaks(axes: Axes, sweep: xr.Dataset) -> None:
         axes.semilogy(
             sweep.half_angle, values, _MARKS[name] + "-", color=AXIS_COLORS[name], label=name.upper(), markersize=5
         )
-    for name, limit in _LIMITS.items():
+    for name, limit in PAPER_DEVIATION.items():
         axes.axhline(1e6 * limit, color=AXIS_COLORS[name], linewidth=0.9, linestyle=(0, (5, 3)))
         axes.annotate(
             f"the paper's {1e3 * limit:.0f} mm in {name.upper()}",

@@ -6,7 +6,6 @@ from flexapod.rigid.jacobian import SingularityPath, length_jacobian
 from flexapod.rigid.kinematics import LegState, joint_angles, leg_frames, leg_lengths, leg_rotations
 from flexapod.rigid.laws import Law
 from flexapod.rigid.robot import (
-    drive_law,
     energies,
     forward_kinematics,
     home_frames,
@@ -35,7 +34,6 @@ __all__ = [
     "RigidForces",
     "SingularityPath",
     "WorkspaceMap",
-    "drive_law",
     "energies",
     "forward_kinematics",
     "home_frames",

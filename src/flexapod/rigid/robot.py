@@ -17,7 +17,6 @@ if TYPE_CHECKING:
     from flexapod.model import Motion, Robot
 
 __all__ = [
-    "drive_law",
     "energies",
     "forward_kinematics",
     "home_frames",
@@ -74,18 +73,6 @@ def poses(robot: Robot, motion: Motion, t: ArrayLike) -> Poses:
 def inverse_kinematics(robot: Robot, path: Poses) -> LegState:
     """Leg lengths and universal-joint angles with two derivatives, arrays (T, 6); see `kinematics.leg_state`."""
     return kinematics.leg_state(robot.base_joints, robot.platform_joints, home_frames(robot), path)
-
-
-def drive_law(robot: Robot, motion: Motion, t: ArrayLike) -> tuple[Array, Array, Array]:
-    """Joint-to-joint lengths of the rigid path with rate and acceleration, exact at instants `t` (T,).
-
-    Returns
-    -------
-    length, rate, acceleration : ndarray, each shape (T, 6)
-        [m], [m/s], [m/s^2].
-    """
-    legs = inverse_kinematics(robot, poses(robot, motion, t))
-    return legs.length, legs.rate, legs.accel
 
 
 def inverse_dynamics(robot: Robot, path: Poses, wrench: ArrayLike | None = None) -> RigidForces:

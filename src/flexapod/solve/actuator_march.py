@@ -10,7 +10,7 @@ from flexapod.errors import ComputationError
 from flexapod.model import Actuator, ActuatorStudy, Simulation
 from flexapod.solve.genalpha import GeneralizedAlpha
 from flexapod.solve.kernel import kernel
-from flexapod.solve.march import Chunk, Problem, first_step, march, restart_outputs
+from flexapod.solve.march import Chunk, Problem, initial_step, march, restart_outputs
 from flexapod.solve.parameters import actuator_parameters
 from flexapod.solve.plant import TABLE, Counters, Flow, Plant, Recording
 from flexapod.typing import Array
@@ -71,15 +71,15 @@ def prepare_actuator(
         extension=study.motion.extension is not None,
     )
     law = _tables(study)
-    h = first_step(simulation.step, simulation.output_step)
-    output_step = max(simulation.output_step, h)
+    h = initial_step(simulation.step, simulation.output_step)
+    output_step = simulation.stored_step
     start, counters = _start(study, plant, law, method, h, amplitudes, rates), Counters()
     problem = Problem(
         plant=plant,
         method=method,
         tables=law,
         output_step=output_step,
-        outputs=round(study.duration / output_step),
+        outputs=simulation.outputs(study.duration),
         measure=lambda recording: _measure(plant, recording),
         defect=lambda flow, t, ratio: flow,
         restart=lambda flow, t, h: _after_impact(plant, law, method, flow, t, h),

@@ -5,12 +5,12 @@ from functools import lru_cache
 
 import numpy as np
 from scipy.linalg import eigh
-from scipy.optimize import linear_sum_assignment
 
 from flexapod import bases
 from flexapod.errors import ComputationError, InputError
 from flexapod.mechanics.layout import COMMAND_SIZE, Shapes
 from flexapod.model import Actuator, Simulation
+from flexapod.solve.damped import damping_ratios
 from flexapod.solve.kernel import Function
 from flexapod.solve.parameters import actuator_parameters
 from flexapod.typing import Array
@@ -72,7 +72,7 @@ def actuator_modes(
             next_step="Shorten actuator.free_length, or reduce gravity or tip_mass.",
         )
     omega = np.sqrt(squared)
-    ratio = _damping_ratios(omega, vectors.T @ D @ vectors)
+    ratio = damping_ratios(omega, vectors.T @ D @ vectors)
     return ActuatorModes(frequency=omega / (2 * np.pi), shapes=vectors.T, damping_ratio=ratio)
 
 
@@ -100,19 +100,3 @@ def _functions(basis: str, modes: int, tip: tuple[float, float]) -> tuple[Functi
     shapes = Shapes(a=lateral, b=other, axial=bases.axial_basis(0), planar=True)
     matrices = next(f for f in leg_functions(shapes) if f.name == "leg_matrices")
     return Interpreted(matrices), Interpreted(leg_tangents(shapes))
-
-
-def _damping_ratios(omega: Array, D: Array) -> Array:
-    """-Re/|.| of the damped eigenvalue that shares most of each undamped shape, Eqs. (T7.4)-(T7.5).
-
-    ``D`` in modal coordinates; where modes are overdamped, the modal value D_ii / (2 omega_i).
-    """
-    ratio, size, top = np.diag(D) / (2 * omega), len(omega), omega[-1]
-    state = np.block([[np.zeros((size, size)), np.eye(size)], [-np.diag((omega / top) ** 2), -D / top]])
-    values, shapes = np.linalg.eig(state)
-    above = np.imag(values) > 1e-12
-    if above.sum() < size:
-        return ratio
-    values, share = values[above], np.abs(shapes[:size, above])
-    _, match = linear_sum_assignment(-share / np.linalg.norm(share, axis=0))
-    return (-np.real(values) / np.abs(values))[match]

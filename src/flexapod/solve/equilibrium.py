@@ -5,11 +5,9 @@ from dataclasses import dataclass, replace
 import numpy as np
 from scipy.linalg import null_space
 
-from flexapod.mechanics.layout import LEG_PARAMETERS
+from flexapod.mechanics.layout import LEG_PARAMETERS, PAYLOAD_PARAMETERS, columns
 from flexapod.solve.system import RobotSystem, State
 from flexapod.typing import Array
-
-_GRAVITY = slice(*(sum(s for _, s in LEG_PARAMETERS[:i]) for i in (13, 14)))
 
 
 @dataclass(frozen=True, kw_only=True)
@@ -54,8 +52,8 @@ def equilibrium(system: RobotSystem, start: State, l_cmd: Array, force: Array, w
 def _scaled(system: RobotSystem, share: float) -> RobotSystem:
     """Return the same robot in ``share`` of its gravity."""
     leg_p, payload_p = system.leg_p.copy(), system.payload_p.copy()
-    leg_p[:, _GRAVITY] *= share
-    payload_p[10:13] *= share
+    leg_p[:, columns(LEG_PARAMETERS, "gravity")] *= share
+    payload_p[columns(PAYLOAD_PARAMETERS, "gravity")] *= share
     return replace(system, leg_p=leg_p, payload_p=payload_p)
 
 

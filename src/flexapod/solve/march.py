@@ -21,7 +21,10 @@ CAUSES = {
     2: "numbers became infinite",
     3: "the linear equations are singular",
 }
-ADVICE = "Reduce the step, check for a singular pose or a leg near buckling, or start from equilibrium."
+ADVICE = (
+    "Reduce the step, check for a singular pose, a leg near buckling or a piston almost inside its cylinder, "
+    "or start from equilibrium."
+)
 
 
 @dataclass(frozen=True, kw_only=True)
@@ -56,7 +59,7 @@ class Chunk:
     step: float
 
 
-def first_step(step: float | None, output_step: float) -> float:
+def initial_step(step: float | None, output_step: float) -> float:
     """Fixed step made to divide the output step (never larger than asked), or half the output step to begin with."""
     if step is None:
         return output_step / 2
@@ -75,9 +78,9 @@ def restart_outputs(jumps: tuple[float, ...], output_step: float) -> tuple[int, 
         if abs(t / output_step - round(t / output_step)) > 1e-6:
             raise InputError(
                 f"jumps in rate at t = {t:g} s, which is no output instant",
-                key="motion.profile",
-                value="linear",
+                key="motion",
                 allowed=f"instants that are multiples of simulation.output_step = {output_step:g} s",
+                next_step="Change output_step, or choose a profile without jumps in rate",
             )
     return tuple(round(t / output_step) for t in jumps)
 
@@ -102,6 +105,7 @@ def march(problem: Problem, start: Flow, first_step: float, counters: Counters) 
         before = control.settings
         try:
             ahead, chunk = control.advance(flow, done, stop - done)
+            stop = done + len(chunk.recording.time)
             problem.check(chunk.recording)
         except ComputationError:
             if stop - done == 1:
@@ -132,13 +136,13 @@ class _Control:
         self.h, self.per_output, self.scales = settings
 
     def advance(self, flow: Flow, done: int, count: int) -> tuple[Flow, Chunk]:
-        """Return the next ``count`` outputs within the tolerance (or with the fixed step)."""
+        """Return the next ``count`` outputs with the fixed step, or up to ``count`` within the tolerance."""
         if self.problem.tolerance is None:
             result = self._run(flow, done, count, self.per_output)
             return result.flow, self._chunk(result.rows, done, 0.0, self.per_output)
-        # Errors of chunks add up in part (damping forgets): each may use the root of its share.
-        allowed = self.problem.tolerance * np.sqrt(count / self.problem.outputs)
         while True:
+            # Errors of chunks add up in part (damping forgets): each may use the root of its share.
+            allowed = self.problem.tolerance * np.sqrt(count / self.problem.outputs)
             coarse = self._run(flow, done, count, self.per_output)
             fine = self._run(flow, done, count, 2 * self.per_output)
             error = self._error(coarse.rows, fine.rows, done)
@@ -150,9 +154,11 @@ class _Control:
                 now = done * self.problem.output_step
                 raise ComputationError(
                     f"tolerance {self.problem.tolerance:g} is out of reach at t = {now:.6g} s: "
-                    f"the estimated error is still {error:.2g} with {self.per_output} steps per output",
+                    f"with {self.per_output} steps per output the estimated error of one is {error:.2g}, "
+                    f"{allowed:.2g} is its share of the tolerance",
                     next_step="Loosen simulation.tolerance, or give a fixed simulation.step.",
                 )
+            count = max(1, min(count, CHUNK_STEPS // self.per_output))
         used = 2 * self.per_output
         chunk = self._chunk(fine.rows, done, error, used)
         self.h = self.problem.output_step / used

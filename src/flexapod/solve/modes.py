@@ -8,8 +8,9 @@ from scipy.linalg import eigh, null_space
 from flexapod import rigid
 from flexapod.errors import ComputationError, InputError
 from flexapod.model import Robot, Simulation
+from flexapod.solve.damped import damping_ratios
 from flexapod.solve.equilibrium import Equilibrium, equilibrium
-from flexapod.solve.system import Matrices, RobotSystem, rigid_state, robot_system
+from flexapod.solve.system import RobotSystem, rigid_state, robot_system
 from flexapod.typing import Array
 
 
@@ -90,29 +91,11 @@ def robot_modes(
     M, K = N.T @ m.M @ N, N.T @ m.K @ N
     squared, vectors = eigh(0.5 * (K + K.T), M)
     omega = np.sqrt(np.maximum(squared, 0.0))
-    ratio = _damping_ratios(m, N, omega, vectors)
-    return RobotModes(
-        frequency=omega / (2 * np.pi), damping_ratio=ratio, shapes=(N @ vectors).T, equilibrium=found, system=system
-    )
-
-
-def _damping_ratios(m: Matrices, N: Array, omega: Array, vectors: Array) -> Array:
-    """-Re/|.| of the damped eigenvalue that shares most of each undamped shape, Eqs. (T7.4)-(T7.5)."""
     D = vectors.T @ N.T @ m.D @ N @ vectors
-    if not D.any():
-        return np.zeros(len(omega))
-    size = len(omega)
-    # Modal coordinates over omega_max keep the state matrix well scaled.
-    top = omega.max()
-    state = np.block([[np.zeros((size, size)), np.eye(size)], [-np.diag((omega / top) ** 2), -D / top]])
-    values, shapes = np.linalg.eig(state)
-    oscillating = np.imag(values) > 1e-12
-    values, overlap = values[oscillating], np.abs(shapes[:size, oscillating])
-    ratio = np.diag(D) / (2 * np.maximum(omega, 1e-12))  # of an overdamped mode: the modal value
-    if not values.size:
-        return ratio
-    overlap /= np.linalg.norm(overlap, axis=0)
-    best = overlap.argmax(axis=1)
-    found = overlap[np.arange(size), best] > 0.5
-    ratio[found] = (-np.real(values) / np.abs(values))[best[found]]
-    return ratio
+    return RobotModes(
+        frequency=omega / (2 * np.pi),
+        damping_ratio=damping_ratios(omega, D),
+        shapes=(N @ vectors).T,
+        equilibrium=found,
+        system=system,
+    )

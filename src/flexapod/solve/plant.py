@@ -3,9 +3,8 @@
 from dataclasses import dataclass, field, replace
 
 import numpy as np
-from numpy.typing import NDArray
 
-from flexapod.mechanics.layout import LEG_PARAMETERS
+from flexapod.mechanics.layout import LEG_PARAMETERS, columns
 from flexapod.solve.kernel import Kernel
 from flexapod.typing import Array, Mask
 
@@ -48,10 +47,9 @@ class Plant:
     @property
     def force_floor(self) -> float:
         """Rounding of the stiffest spring's force [N]: what a residual cannot fall below at lengths of a metre."""
-        names = [name for name, size in LEG_PARAMETERS for _ in range(size)]
-        p = dict(zip(names, self.leg_p.T, strict=True))
-        stretch = p["EA"] / p["Lp"] * (self.kernel.shapes.axial.count > 0)
-        return float(8 * np.finfo(float).eps * np.maximum(stretch, p["drive_stiffness"]).max())
+        EA, Lp, drive = (self.leg_p[:, columns(LEG_PARAMETERS, name)] for name in ("EA", "Lp", "drive_stiffness"))
+        stretch = EA / Lp * (self.kernel.shapes.axial.count > 0)
+        return float(8 * np.finfo(float).eps * np.maximum(stretch, drive).max())
 
     @property
     def held(self) -> Mask:

@@ -8,9 +8,10 @@ import numpy as np
 from flexapod import rigid
 from flexapod.errors import ComputationError
 from flexapod.model import Study
+from flexapod.rigid.kinematics import BETA_LIMIT
 from flexapod.solve.equilibrium import equilibrium
 from flexapod.solve.genalpha import GeneralizedAlpha
-from flexapod.solve.march import Chunk, Problem, first_step, march, restart_outputs
+from flexapod.solve.march import Chunk, Problem, initial_step, march, restart_outputs
 from flexapod.solve.modes import refuse_pure_force
 from flexapod.solve.plant import TABLE, Counters, Flow, Plant, Recording
 from flexapod.solve.rotation import matrix
@@ -19,7 +20,7 @@ from flexapod.solve.system import RobotSystem, State, rigid_state, robot_system
 from flexapod.solve.tables import Commands, command_law
 from flexapod.typing import Array
 
-BETA_LIMIT = np.deg2rad(85.0)
+BEFORE = -1e-12  # just before the start [s]: a load that steps at t = 0 has not come yet
 
 
 @dataclass(frozen=True, kw_only=True)
@@ -61,16 +62,16 @@ def prepare(study: Study, state: State | None = None) -> RobotMarch:
     system, law = robot_system(robot, simulation), command_law(robot, study.motion, study.load)
     commands = law(np.zeros(1))
     method = GeneralizedAlpha(simulation.rho_inf)
-    step = first_step(simulation.step, simulation.output_step)
-    state = _configuration(study, system, commands) if state is None else state
+    step = initial_step(simulation.step, simulation.output_step)
+    state = _configuration(study, system, law(np.array([BEFORE]))) if state is None else state
     start = consistent_start(system, state, commands, method, step)
-    plant, counters, output_step = _plant(system), Counters(), max(simulation.output_step, step)
+    plant, counters, output_step = _plant(system), Counters(), simulation.stored_step
     problem = Problem(
         plant=plant,
         method=method,
         tables=lambda t: _tables(law(t)),
         output_step=output_step,
-        outputs=round(study.duration / output_step),
+        outputs=simulation.outputs(study.duration),
         measure=lambda recording: _measure(study, plant, recording),
         defect=lambda flow, t, ratio: _rescaled_defect(system, flow, law(np.array([t])), ratio),
         restart=lambda flow, t, h: _after_impact(system, flow, law(np.array([t])), method, h),
@@ -82,8 +83,8 @@ def prepare(study: Study, state: State | None = None) -> RobotMarch:
     return RobotMarch(system=system, start=start, step=step, chunks=chunks, counters=counters)
 
 
-def _configuration(study: Study, system: RobotSystem, commands: Commands) -> State:
-    """Configuration and velocities before the impact projection, by the kind of start."""
+def _configuration(study: Study, system: RobotSystem, before: Commands) -> State:
+    """Configuration and velocities before the impact projection, by the kind of start and the commands until then."""
     straight = rigid_state(system, study.robot, rigid.poses(study.robot, study.motion, np.zeros(1)))
     if study.initial.start == "moving":
         return straight
@@ -91,7 +92,7 @@ def _configuration(study: Study, system: RobotSystem, commands: Commands) -> Sta
     if study.initial.start == "straight":
         return at_rest
     refuse_pure_force(study.robot, "the equilibrium start")
-    found = equilibrium(system, at_rest, commands.length[0], commands.force[0], commands.wrench[0])
+    found = equilibrium(system, at_rest, before.length[0], before.force[0], before.wrench[0])
     if not found.found:
         raise ComputationError(f"the robot cannot start at rest: {found.reason}", next_step="See `flexapod check`.")
     return found.state
@@ -151,11 +152,15 @@ def _rescaled_defect(system: RobotSystem, flow: Flow, commands: Commands, ratio:
 
 
 def _check(study: Study, plant: Plant, recording: Recording) -> None:
-    """Stop where the model has no meaning: a leg inside its cylinder or its universal joint turned over."""
+    """Stop where the model has no meaning: a piston inside or out of its cylinder, a universal joint turned over."""
     mouth = np.array([leg.cylinder.mouth for leg in study.robot.legs])
+    guided = np.array([leg.piston.length if leg.cylinder.mouth > 0 else np.inf for leg in study.robot.legs])
     free = recording.q[:, :, plant.kernel.shapes.l_index] - mouth
-    for bad, words in ((free <= 0, "its piston has slid wholly into the cylinder"),
-                       (np.abs(recording.q[:, :, 1]) > BETA_LIMIT, "its universal joint has turned over")):  # fmt: skip
+    for bad, words in (
+        (free <= 0, "its piston has slid wholly into the cylinder"),
+        (free > guided * (1 + 1e-9), "its piston has been pulled out of the cylinder"),
+        (np.abs(recording.q[:, :, 1]) > BETA_LIMIT, "its universal joint has turned over"),
+    ):
         if bad.any():
             at, leg = np.argwhere(bad)[0]
             raise ComputationError(

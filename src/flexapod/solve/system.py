@@ -6,7 +6,6 @@ import numpy as np
 from numpy.typing import NDArray
 
 from flexapod import rigid
-from flexapod.errors import InputError
 from flexapod.mechanics.layout import COMMAND_SIZE
 from flexapod.model import Robot, Simulation
 from flexapod.solve.kernel import Kernel, kernel
@@ -110,20 +109,9 @@ class RobotSystem:
 
 
 def robot_system(robot: Robot, simulation: Simulation) -> RobotSystem:
-    """System of a robot in the fidelity, basis and number of shapes of ``simulation``.
-
-    Raises
-    ------
-    InputError
-        Legs with different numbers of axial shapes.
-    """
-    axial = {leg.axial_modes for leg in robot.legs}
-    if len(axial) > 1:
-        raise InputError(
-            "differs between legs", key="leg.axial_modes", value=sorted(axial), allowed="one number for all six legs"
-        )
+    """System of a robot in the fidelity, basis and number of shapes of ``simulation``."""
     modes = simulation.modes if simulation.fidelity == "assumed-modes" else 0
-    axial_modes = {"rigid": 0, "lumped": 1, "assumed-modes": axial.pop()}[simulation.fidelity]
+    axial_modes = {"rigid": 0, "lumped": 1, "assumed-modes": robot.legs[0].axial_modes}[simulation.fidelity]
     return RobotSystem(
         kernel=kernel(simulation.basis, modes, axial_modes),
         leg_p=leg_parameters(robot),

@@ -57,7 +57,11 @@ def _load(load: LoadLike) -> model.Load:
     kinds = (model.ConstantWrench, model.SineWrench, model.StepWrench, model.CsvWrench)
     if isinstance(load, kinds):
         return model.Load(wrench=load)
-    return model.Load(wrench=model.ConstantWrench(value=np.asarray(load, dtype=float)))
+    try:
+        return model.Load(wrench=model.ConstantWrench(value=load))  # type: ignore[arg-type]
+    except InputError as error:
+        words = "Fx Fy Fz [N], Mx My Mz [N m], or a law"
+        raise InputError(error.what, key="load", value=error.value, allowed=words) from None
 
 
 def at_pose(subject: model.Study | model.Robot, load: LoadLike = None) -> model.Study:
@@ -103,7 +107,10 @@ def _coordinates(pose: Mapping[str, float] | ArrayLike | None) -> np.ndarray:
         if unknown:
             raise InputError("is not an axis", key=f"pose.{unknown[0]}", allowed=", ".join(POSE_KEYS))
         pose = [pose.get(name, 0.0) for name in POSE_KEYS]
-    values = np.asarray(pose, dtype=float)
+    try:
+        values = np.asarray(pose, dtype=float)
+    except (TypeError, ValueError):
+        values = np.full(0, np.nan)
     if values.shape != (6,) or not np.isfinite(values).all():
         raise InputError(
             "is not a pose", key="pose", value=np.asarray(pose).tolist(),

@@ -18,14 +18,14 @@ _log = logging.getLogger("flexapod")
 
 def attributes(study: model.Study | model.ActuatorStudy, warnings: Iterable[str] = ()) -> dict[str, object]:
     """Attributes that every Dataset of a study carries; warnings as lines of text."""
-    text = study.source_text
+    content = study.model_dump_json(exclude={"source_text", "path", "notes"})  # with the tables that the text names
     found = list(dict.fromkeys(warnings))
     return {
         "title": "flexapod: single actuator" if isinstance(study, model.ActuatorStudy) else "flexapod: parallel robot",
         "flexapod_version": flexapod.__version__,
-        "study": text,
+        "study": study.source_text,
         "study_file": study.path or "",
-        "study_hash": hashlib.sha256(text.encode()).hexdigest()[:16],
+        "study_hash": hashlib.sha256(content.encode()).hexdigest()[:16],
         "warnings": "\n".join(found),
     }
 

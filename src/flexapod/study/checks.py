@@ -12,6 +12,7 @@ from flexapod.model import ActuatorStudy, Robot, Study
 from flexapod.rigid.kinematics import BETA_LIMIT
 from flexapod.rigid.workspace import LONGEST, PULLED_OUT, SHORTEST
 from flexapod.solve.modes import refuse_pure_force
+from flexapod.study.timing import check_jumps, check_outputs
 from flexapod.typing import Array
 
 __all__ = ["check_actuator_path", "check_geometry", "check_path", "path_instants", "path_remarks"]
@@ -44,27 +45,29 @@ def check_path(study: Study) -> list[str]:
     ------
     InputError
         A leg leaves its stroke, a piston its cylinder, a universal joint folds, a pose is singular (smallest singular
-        value of the scaled Jacobian, Eq. (T2.24), below 1e-8 or a change of sign of its determinant), or a pure force
-        drive is to start from equilibrium.
+        value of the scaled Jacobian, Eq. (T2.24), below 1e-8 or a change of sign of its determinant), a pure force
+        drive is to start from equilibrium, or the study's times do not fit each other.
     """
     try:
         if study.initial.start == "equilibrium":
             refuse_pure_force(study.robot, "the equilibrium start")
+        check_jumps(study)
     except InputError as error:
         raise error.located(file=study.path) from None
     return check_geometry(study)
 
 
 def check_geometry(study: Study) -> list[str]:
-    """The checks of `check_path` but that of the start."""
+    """The checks of `check_path` that concern the path alone."""
     try:
+        remarks = check_outputs(study)
         path = _sampled(study)
         _refuse_excess(study.robot, path)
         _refuse_folded(study.robot, path)
         _refuse_singular(study.robot, path)
     except InputError as error:
         raise error.located(file=study.path) from None
-    return path_remarks(study.robot, path.t, path.poses)
+    return remarks + path_remarks(study.robot, path.t, path.poses)
 
 
 def path_remarks(robot: Robot, t: Array, poses: rigid.Poses) -> list[str]:
@@ -138,16 +141,21 @@ def _refuse_singular(robot: Robot, path: _Path) -> None:
 
 
 def check_actuator_path(study: ActuatorStudy) -> list[str]:
-    """Refuse an extension law that pulls the beam wholly into the hub or out of it; no remarks where it is a result.
+    """Refuse an extension law that pulls the beam wholly into the hub or out of it; return remarks on times.
 
     Raises
     ------
     InputError
-        The free length leaves (0, length] at an instant of the law.
+        The free length leaves (0, length] at an instant of the law, or the study's times do not fit each other.
     """
+    try:
+        remarks = check_outputs(study)
+        check_jumps(study)
+    except InputError as error:
+        raise error.located(file=study.path) from None
     actuator, law = study.actuator, study.motion.extension
     if law is None:
-        return []
+        return remarks
     t = path_instants(study)
     free = actuator.free_length + rigid.motion_law(law, t).position
     for bad, words, limit in (
@@ -162,4 +170,4 @@ def check_actuator_path(study: ActuatorStudy) -> list[str]:
                 key="motion.extension",
                 next_step="Shorten simulation.duration, or change the law or actuator.free_length",
             )
-    return []
+    return remarks

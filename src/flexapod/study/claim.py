@@ -8,6 +8,7 @@ from typing import TYPE_CHECKING
 import numpy as np
 
 from flexapod import model
+from flexapod.errors import InputError
 from flexapod.study.scene import robot_study
 from flexapod.study.words import text
 
@@ -16,14 +17,16 @@ if TYPE_CHECKING:
 
 __all__ = [
     "BREAKS",
+    "ELASTIC_LENGTH",
     "HOLDS",
     "IN_PART",
     "MISPRINT",
     "NOT",
     "OPEN",
-    "PAPER",
+    "PAPER_DEVIATION",
     "REACHES",
     "Claim",
+    "axis_motion",
     "by_axis",
     "peaks",
     "roll_and_arm",
@@ -31,7 +34,8 @@ __all__ = [
 
 HOLDS, IN_PART, NOT, OPEN, MISPRINT = "holds", "holds in part", "does not hold", "cannot be compared", "misprint"
 REACHES, BREAKS = "reaches that size", "robot gives way"
-PAPER = {"y": 5e-3, "z": 10e-3}  # the paper's approximate deviations [m]
+PAPER_DEVIATION = {"y": 5e-3, "z": 10e-3}  # of the centre of mass, Fig. 9 [m]
+ELASTIC_LENGTH = 0.6  # of a piston, Table 3 [m]
 
 
 @dataclass(frozen=True, kw_only=True)
@@ -58,5 +62,17 @@ def peaks(data: Dataset, digits: int = 3) -> str:
 def roll_and_arm(data: Dataset) -> tuple[float, float]:
     """Roll reached [rad] and distance of the centre of mass from the platform's centre [m]."""
     study = robot_study(data)
-    assert isinstance(study.motion, model.AxisMotion)  # noqa: S101  the presets turn about one axis
-    return float(study.motion.target[3]), float(np.linalg.norm(study.robot.payload.com))
+    return float(axis_motion(study).target[3]), float(np.linalg.norm(study.robot.payload.com))
+
+
+def axis_motion(study: model.Study) -> model.AxisMotion:
+    """The motion of a study, along or about one axis as in all of the paper's.
+
+    Raises
+    ------
+    InputError
+        Another kind of motion.
+    """
+    if isinstance(study.motion, model.AxisMotion):
+        return study.motion
+    raise InputError("is not along or about one axis", key="motion.type", allowed=", ".join(model.AXES))

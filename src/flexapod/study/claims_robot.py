@@ -7,7 +7,18 @@ from typing import TYPE_CHECKING
 import numpy as np
 
 from flexapod import rigid
-from flexapod.study.claim import HOLDS, IN_PART, NOT, OPEN, PAPER, Claim, peaks, roll_and_arm
+from flexapod.study.claim import (
+    ELASTIC_LENGTH,
+    HOLDS,
+    IN_PART,
+    NOT,
+    OPEN,
+    PAPER_DEVIATION,
+    Claim,
+    axis_motion,
+    peaks,
+    roll_and_arm,
+)
 from flexapod.study.paper import PaperStudy
 from flexapod.study.scene import motion_end, robot_study
 from flexapod.study.summary import AxisSummary, RobotSummary, summary
@@ -19,7 +30,6 @@ if TYPE_CHECKING:
 __all__ = ["robot_claims"]
 
 AWAY = 0.05  # distance from the ends of the quintic at which its jump of jerk no longer shows in the forces [s]
-ELASTIC_LENGTH = 0.6  # Table 3 [m]
 
 
 def robot_claims(result: PaperStudy) -> tuple[Claim, ...]:
@@ -51,11 +61,11 @@ def _slender(robot: Dataset) -> Claim:
 
 
 def _figure6(robot: Dataset) -> Claim:
-    roll, motion = np.rad2deg(roll_and_arm(robot)[0]), robot_study(robot).motion
+    motion = axis_motion(robot_study(robot))
     return Claim(
         where="Fig. 6",
         says="Roll about X; no amplitude, time or law in the text",
-        ours=f"Quintic law, 0 to {roll:.1f} deg in {getattr(motion, 'duration', np.nan):g} s",
+        ours=f"Quintic law, 0 to {np.rad2deg(motion.target[3]):.1f} deg in {motion.duration:g} s",
         verdict=OPEN,
         reason="The amplitude is backed out of Eqs. 11-12 and the printed 5 mm, 10 mm and 6 %; law and time are ours.",
     )
@@ -129,7 +139,7 @@ def _axes(robot: Dataset) -> dict[str, AxisSummary]:
 
 def _figure9(robot: Dataset) -> Claim:
     found, piston = _axes(robot), robot_study(robot).robot.legs[0].piston
-    ratios = " and ".join(number(value / found[axis].peak, 2) for axis, value in PAPER.items())
+    ratios = " and ".join(number(value / found[axis].peak, 2) for axis, value in PAPER_DEVIATION.items())
     sag = abs(float(robot.com_deviation.sel(axis="z")[0]))
     return Claim(
         where="Fig. 9, section 4.1",
@@ -145,7 +155,7 @@ def _figure9(robot: Dataset) -> Claim:
 
 def _six_per_cent(robot: Dataset) -> Claim:
     found = _axes(robot)
-    shares = ", ".join(f"{axis} {found[axis].per_cent or np.nan:.2g} %" for axis in PAPER)
+    shares = ", ".join(f"{axis} {found[axis].per_cent or np.nan:.2g} %" for axis in PAPER_DEVIATION)
     return Claim(
         where="Abstract",
         says="Deviations of up to 6 % of the end effector's position",

@@ -133,20 +133,23 @@ def forward_kinematics(
         No pose near the guess fits.
     """
     study, given = at_pose(robot), _numbers(lengths)
+    single = given.ndim == 1
     payload = study.robot.payload
     found = rigid.forward_kinematics(study.robot, given, as_pose(study.robot, guess, check=False))
+    given = np.atleast_2d(given)
     t = np.arange(len(found), dtype=float) if time is None else np.asarray(time, dtype=float)
     if t.shape != (len(found),):
         raise InputError("does not fit the lengths", key="time", value=t.shape, allowed=f"({len(found)},)")
     values = {
-        "leg_length_command": np.atleast_2d(given),
+        "leg_length_command": given,
         "platform_position": found.position,
         "platform_quaternion": _quaternions(found.rotation),
         "com_position": found.point(payload.com)[0],
         "tool_position": found.point(payload.tool)[0],
     }
-    result = dataset(values, {"time": t}, attributes(study, study.warnings))
-    return result if given.ndim == 2 else result.isel(time=0, drop=True)
+    excess = [*rigid.strokes(study.robot, t, given), *rigid.pull_out(study.robot, t, given)]
+    result = dataset(values, {"time": t}, attributes(study, [*study.warnings, *(e.message for e in excess)]))
+    return result.isel(time=0, drop=True) if single else result
 
 
 def rigid_path(robot: model.Robot, path: rigid.Poses) -> dict[str, Array]:
@@ -184,9 +187,9 @@ def _study(
     output_step: float | None,
 ) -> model.Study:
     study = as_study(robot, motion, load)
-    return model.override(study, duration=duration, output_step=output_step)  # type: ignore[return-value]
+    return model.override(study, duration=duration, output_step=output_step)
 
 
 def _instants(study: model.Study) -> Array:
-    step = study.simulation.output_step
-    return np.arange(round(study.duration / step) + 1, dtype=float) * step
+    simulation = study.simulation
+    return np.arange(simulation.outputs(study.duration) + 1, dtype=float) * simulation.stored_step

@@ -8,6 +8,7 @@ from typing import TYPE_CHECKING
 
 from flexapod import model
 from flexapod.study.actuator import simulate_actuator
+from flexapod.study.claim import axis_motion
 from flexapod.study.paper_variants import (
     HALF_ANGLES,
     JUMP_STEP,
@@ -93,7 +94,7 @@ def _jump(name: str, angle: float | None = None) -> Callable[[_Report], Dataset]
 
 def _modes(_: _Report) -> Dataset:
     study = _preset("paper-robot")
-    return modes(study, study.motion.target)  # type: ignore[union-attr]
+    return modes(study, axis_motion(study).target)
 
 
 def _sweep(name: str) -> Callable[[_Report], Dataset]:

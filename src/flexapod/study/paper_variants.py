@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+import math
 from collections.abc import Callable, Sequence
 from typing import TYPE_CHECKING
 
@@ -11,6 +12,7 @@ from flexapod import model, rigid
 from flexapod.errors import ComputationError, InputError
 from flexapod.study.attributes import attributes
 from flexapod.study.checks import path_instants
+from flexapod.study.claim import PAPER_DEVIATION, axis_motion
 from flexapod.study.estimates import buckling_load
 from flexapod.study.simulation import simulate
 from flexapod.study.static import modes
@@ -70,7 +72,7 @@ def _opened(leg: model.Leg, longest: float) -> model.Leg:
 
 def jump_motion(study: model.Study) -> model.Motion:
     """The study's motion at constant rate: its velocity jumps at the start and at the end."""
-    return study.motion.replace(profile="linear")  # type: ignore[union-attr]
+    return axis_motion(study).replace(profile="linear")
 
 
 def half_angle_sweep(study: model.Study, angles: Sequence[float], report: _Report) -> Dataset:
@@ -132,7 +134,7 @@ def _statics(study: model.Study) -> tuple[Array, float, str | None]:
     """Largest sag (3,) [m] and lowest frequency [Hz] of the resting robot on the path; where equilibrium is lost."""
     sag, frequency = np.full(3, np.nan), np.nan
     for share in np.linspace(0.0, 1.0, POSES):
-        target = share * study.motion.target  # type: ignore[union-attr]
+        target = share * axis_motion(study).target
         try:
             found = modes(study, target)
         except (InputError, ComputationError):
@@ -157,7 +159,7 @@ def assumptions(study: model.Study, report: _Report) -> Dataset:
     whole = len(DURATIONS) + len(SERVO_STIFFNESS)
     durations, drives = [], []
     for duration in DURATIONS:
-        motion = study.motion.replace(duration=duration)
+        motion = axis_motion(study).replace(duration=duration)
         durations.append(_peaks(simulate(study, motion, step=SWEEP_STEP, duration=duration + 1.0)))
         report(len(durations) / whole)
     for stiffness in SERVO_STIFFNESS:
@@ -193,10 +195,10 @@ def _with_servo(study: model.Study, stiffness: float) -> model.Study:
 
 
 def _needed_errors(study: model.Study) -> tuple[Array, Array]:
-    """Leg-length errors (6,) [m] that move the CoM by the paper's 5 and 10 mm; turn (6,) [rad] of the joints above."""
-    robot, target = study.robot, study.motion.target  # type: ignore[union-attr]
+    """Leg-length errors (6,) [m] that move the CoM by the paper's deviation; turn (6,) [rad] of the joints above."""
+    robot, target = study.robot, axis_motion(study).target
     roll, arm = target[3], float(np.linalg.norm(robot.payload.com))
-    error = float(np.hypot(5e-3, 10e-3)) / arm
+    error = math.hypot(*PAPER_DEVIATION.values()) / arm
     home = rigid.home_pose(robot)
     turned = [rigid.rotation_matrix(np.array([[x, 0.0, 0.0]])) for x in (roll, roll + error)]
     lengths = [rigid.leg_lengths(robot.base_joints, robot.platform_joints, home.position, R)[0] for R in turned]

@@ -1,4 +1,4 @@
-"""Remarks on results that leave the theory: slopes, axial loads, slenderness, strains."""
+"""Remarks on results that leave the theory: slopes, strokes, axial loads, slenderness, strains."""
 
 from __future__ import annotations
 
@@ -16,6 +16,7 @@ __all__ = ["SLENDERNESS", "SLOPE", "actuator_warnings", "leg_stress", "robot_war
 
 SLOPE = 0.1  # tip slope up to which second order in the amplitudes is enough
 SLENDERNESS = 10.0  # free length over width below which shear is no longer small
+STROKE_ROUNDING = 1e-9  # excess over a stroke that is rounding or solver residual [m]
 NEAR_BUCKLING = 0.5  # share of the Euler load from which stiffness has changed by half
 STATIONS = np.linspace(0.0, 1.0, 21)
 
@@ -32,6 +33,7 @@ def robot_warnings(robot: Robot, system: RobotSystem, record: Record) -> list[st
             (i, *remark)
             for remark in (
                 *_slope(system.kernel.shapes.a, lateral, free, record.time),
+                *_stroke(leg, record.q[:, i, system.kernel.shapes.l_index], record.time),
                 *_axial(leg, free, compression[:, i], record.time),
                 *_slender(leg, free, record.time),
                 *_stress(leg, system.kernel.shapes.a, lateral, free, compression[:, i], record.time),
@@ -95,6 +97,21 @@ def _slope(basis: LateralBasis, lateral: Array, free: Array, t: Array) -> list[_
         return []
     words = f"the tip slope reaches {slope[k]:.3g} at t = {t[k]:.6g} s: above {SLOPE:g} second-order theory is strained"
     return [("slope", slope[k] / SLOPE, words)]
+
+
+def _stroke(leg: Leg, length: Array, t: Array) -> list[_Remark]:
+    """Strokes that are no command but a result may leave their limits; the stops there are not part of the model."""
+    if leg.stroke is None:
+        return []
+    excess = np.maximum(leg.stroke.min - length, length - leg.stroke.max)
+    k = int(excess.argmax())
+    if excess[k] <= STROKE_ROUNDING:
+        return []
+    words = (
+        f"its drive leaves the stroke of {leg.stroke.min:g} to {leg.stroke.max:g} m by {1e3 * excess[k]:.3g} mm "
+        f"at t = {t[k]:.6g} s: end stops are not part of the model"
+    )
+    return [("stroke", excess[k], words)]
 
 
 def _axial(leg: Leg, free: Array, compression: Array, t: Array) -> list[_Remark]:

@@ -6,9 +6,11 @@ from dataclasses import dataclass
 from typing import TYPE_CHECKING
 
 import numpy as np
+from scipy.spatial.transform import Rotation
 
 from flexapod import model, rigid
 from flexapod.errors import InputError
+from flexapod.solve.rotation import matrix
 from flexapod.typing import Array
 
 if TYPE_CHECKING:
@@ -93,7 +95,7 @@ def scene(data: Dataset, time: float = 0.0, magnify: float = 1.0) -> Scene:
         Factor on lateral deflections of the pistons.
     """
     robot, at = _robot(data), data.sel(time=time, method="nearest")
-    R = _matrix(at.platform_quaternion.values)
+    R = matrix(at.platform_quaternion.values)
     com = at.com_position.values
     centre = com - R @ robot.payload.com
     length = np.linalg.norm(centre + robot.platform_joints @ R.T - robot.base_joints, axis=1)
@@ -118,7 +120,7 @@ def mode_scene(modes: Dataset, mode: int, size: float, phase: float = 1.0) -> Sc
         Between -1 and 1; 0 is the robot at rest.
     """
     robot, shape = _robot(modes), modes.sel(mode=mode)
-    R = _matrix(modes.platform_quaternion.values)
+    R = matrix(modes.platform_quaternion.values)
     centre = modes.platform_position.values
     arms = np.vstack([robot.platform_joints, robot.payload.com]) @ R.T
     step, turn = shape.platform_shape.values[:3], shape.platform_shape.values[3:]
@@ -126,7 +128,7 @@ def mode_scene(modes: Dataset, mode: int, size: float, phase: float = 1.0) -> Sc
     lateral = shape.leg_shape.values
     largest = max(np.linalg.norm(platform, axis=1).max(), np.linalg.norm(lateral, axis=1).max(), 1e-30)
     factor = phase * size / largest
-    turned = _rotation(factor * turn) @ R
+    turned = Rotation.from_rotvec(factor * turn).as_matrix() @ R
     com = centre + R @ robot.payload.com + factor * step
     centre = com - turned @ robot.payload.com
     length = np.linalg.norm(centre + robot.platform_joints @ turned.T - robot.base_joints, axis=1)
@@ -153,17 +155,3 @@ def _scene(robot: model.Robot, centre: Array, R: Array, com: Array, offset: Arra
     across = np.einsum("ixd,idn->inx", turned[:, :, :2], offset)
     lines = base[:, None] + _along(robot, length)[:, :, None] * axis[:, None] + across
     return Scene(base=base, platform=platform, piston=lines, com=com, centre=centre)
-
-
-def _rotation(vector: Array) -> Array:
-    """Rotation matrix (3, 3) of a rotation vector [rad]."""
-    angle = float(np.linalg.norm(vector))
-    axis = vector / angle if angle > 0 else vector
-    return _matrix(np.concatenate([[np.cos(angle / 2)], np.sin(angle / 2) * axis]))
-
-
-def _matrix(quaternion: Array) -> Array:
-    """Rotation matrix (3, 3) of a unit quaternion w x y z."""
-    w, v = quaternion[0], quaternion[1:]
-    cross = np.array([[0, -v[2], v[1]], [v[2], 0, -v[0]], [-v[1], v[0], 0]])
-    return np.eye(3) + 2 * w * cross + 2 * cross @ cross

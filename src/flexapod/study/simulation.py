@@ -76,7 +76,7 @@ def simulate(
         "step": step, "duration": duration, "output_step": output_step, "rho_inf": rho_inf,
     }  # fmt: skip
     study = model.override(as_study(robot, motion, load, initial), **settings)  # type: ignore[arg-type]
-    return _simulated(study, progress)  # type: ignore[arg-type]
+    return _simulated(study, progress)
 
 
 def run(study: model.Study | model.ActuatorStudy, *, progress: Progress | None = None) -> Dataset:

@@ -14,7 +14,7 @@ from flexapod.typing import Array
 if TYPE_CHECKING:
     from xarray import Dataset
 
-__all__ = ["ActuatorSummary", "AxisSummary", "RobotSummary", "summary"]
+__all__ = ["ActuatorSummary", "AxisSummary", "RobotSummary", "summary", "tool_apart"]
 
 SMALLEST_EXCURSION = 1e-6  # rigid travel below which a percentage says nothing [m]
 NOTHING = 1e-12  # deviation that is rounding [m]
@@ -143,6 +143,11 @@ def summary(data: Dataset, point: str = "com") -> RobotSummary | ActuatorSummary
         worst_leg_share=share,
         partial=partial,
     )
+
+
+def tool_apart(data: Dataset) -> bool:
+    """Whether the tool of a robot is another point than its centre of mass."""
+    return float(np.abs(data.tool_position_rigid - data.com_position_rigid).max()) > 0
 
 
 def _axis(name: str, deviation: Array, path: Array, time: Array) -> AxisSummary:

@@ -1,0 +1,53 @@
+"""Checks of the times of a study: duration, output step, step and jumps must fit each other."""
+
+from __future__ import annotations
+
+from flexapod.errors import InputError
+from flexapod.model import ActuatorStudy, Study
+from flexapod.solve.march import restart_outputs
+
+__all__ = ["check_jumps", "check_outputs"]
+
+
+def check_outputs(study: Study | ActuatorStudy) -> list[str]:
+    """Refuse a study whose results could not be stored even once after the start; remark on what is left out.
+
+    Raises
+    ------
+    InputError
+        The duration is shorter than the time between stored results.
+    """
+    simulation, duration = study.simulation, study.duration
+    stored, outputs = simulation.stored_step, simulation.outputs(duration)
+    name = "output_step" if stored == simulation.output_step else "step"
+    if not outputs:
+        raise InputError(
+            "is longer than the simulation",
+            key=f"simulation.{name}",
+            value=stored,
+            allowed=f"at most the duration of {duration:g} s",
+        )
+    remarks = []
+    if name == "step":
+        remarks.append(
+            f"simulation.step = {stored:g} s is longer than output_step = {simulation.output_step:g} s: "
+            "results are stored at every step"
+        )
+    end = outputs * stored
+    if duration - end > 1e-6 * stored:
+        remarks.append(
+            f"the duration of {duration:g} s is no multiple of simulation.{name} = {stored:g} s: "
+            f"results end at t = {end:g} s"
+        )
+    return remarks
+
+
+def check_jumps(study: Study | ActuatorStudy) -> None:
+    """Refuse a command whose rate jumps between stored results.
+
+    Raises
+    ------
+    InputError
+        As `solve.march.restart_outputs`.
+    """
+    restart_outputs(study.motion.rate_jumps, study.simulation.stored_step)
