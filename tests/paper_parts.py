@@ -4,8 +4,8 @@ from functools import cache
 
 from flexapod.model import preset
 from flexapod.study import modes, simulate, simulate_actuator
-from flexapod.study.paper import ACTUATOR_MODES, PaperStudy
-from flexapod.study.paper_variants import HALF_ANGLES, assumptions, half_angle_sweep, jump_motion, with_half_angle
+from flexapod.study.paper.study import ACTUATOR_MODES, PaperStudy
+from flexapod.study.paper.variants import HALF_ANGLES, assumptions, half_angle_sweep, jump_motion, with_half_angle
 
 ROBOT, RADII = "paper-robot", "paper-robot-radii"
 

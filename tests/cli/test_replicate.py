@@ -10,7 +10,8 @@ from tests.paper_parts import coarse_parts, coarse_study
 from flexapod.app import replicate as app_replicate
 from flexapod.app.replicate import replicate, write
 from flexapod.errors import InputError
-from flexapod.study import open_results, paper
+from flexapod.study import open_results
+from flexapod.study.paper import study as paper
 
 ANGLES = (10.0, 29.0)
 

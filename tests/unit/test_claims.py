@@ -7,9 +7,9 @@ import numpy as np
 import pytest
 from tests.paper_parts import coarse_parts, coarse_study
 
-from flexapod.study.claim import BREAKS, HOLDS, NOT, OPEN, REACHES
-from flexapod.study.claims import claims, markdown
-from flexapod.study.paper import STEPS
+from flexapod.study.paper.claim import BREAKS, HOLDS, NOT, OPEN, REACHES
+from flexapod.study.paper.claims import claims, markdown
+from flexapod.study.paper.study import STEPS
 
 README = Path(__file__).parents[2] / "README.md"
 NUMBER = re.compile(r"-?\d+(?:\.\d+)?(?:e[-+]\d+)?")

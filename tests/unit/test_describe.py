@@ -6,7 +6,7 @@ from tests.runs import paper_robot, with_legs
 
 import flexapod as fx
 from flexapod.model import AxisMotion, ConstantLaw, ConstantWrench, Load, RateLaw, ServoDrive, Stroke, Tube
-from flexapod.study.describe import describe
+from flexapod.study.describe.robot import describe
 
 
 def rolling(duration, amplitude=0.4643, profile="quintic", hold=0.25, **settings):

@@ -130,3 +130,11 @@ def test_unreadable_results_are_refused(tmp_path):
     (tmp_path / "file").write_text("")
     with pytest.raises(fx.InputError, match="cannot be written"):
         save(xr.Dataset(), tmp_path / "file" / "results.nc")
+
+
+def test_sentence_of_a_beam_that_nothing_bends():
+    text = (
+        "[actuator]\nlength = 2\nrhoA = 1\nEI = 100\nfree_length = 1\n[motion]\nrotation = { rate = 1 }\n"
+        '[simulation]\nfidelity = "rigid"\nduration = 0.1'
+    )
+    assert "stays on the hub's line" in summary(fx.run(fx.loads(text))).sentence

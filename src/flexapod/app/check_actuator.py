@@ -9,7 +9,7 @@ from flexapod.app.terminal import print_table, print_text
 from flexapod.study.words import text
 
 if TYPE_CHECKING:
-    from flexapod.study.describe_actuator import ActuatorDescription, BeamDescription
+    from flexapod.study.describe.actuator import ActuatorDescription, BeamDescription
 
 __all__ = ["show_actuator"]
 
@@ -41,7 +41,8 @@ def _motion(found: ActuatorDescription) -> list[str]:
         lines.append(f"The hub turns from {first:.4g} to {last:.4g} deg.")
     if found.free_lengths is not None:
         low, high = found.free_lengths
-        lines.append(f"The free length lies between {low:.4g} and {high:.4g} m.")
+        span = f"lies between {low:.4g} and {high:.4g} m" if high > low else f"stays at {low:.4g} m"
+        lines.append(f"The free length {span}.")
     names = {
         "rotation": "The hub is driven by a torque: its angle",
         "extension": "The beam is driven by a force: its length",

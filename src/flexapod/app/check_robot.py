@@ -9,9 +9,9 @@ from flexapod.app.terminal import print_table, print_text
 from flexapod.study.words import number, text
 
 if TYPE_CHECKING:
-    from flexapod.study.describe import RobotDescription
-    from flexapod.study.describe_leg import Extreme, Stress
-    from flexapod.study.describe_pose import PoseDescription, VibrationToExpect
+    from flexapod.study.describe.leg import Extreme, Stress
+    from flexapod.study.describe.pose import PoseDescription, VibrationToExpect
+    from flexapod.study.describe.robot import RobotDescription
 
 __all__ = ["show_robot"]
 

@@ -27,7 +27,7 @@ def replicate(out: Folder = Path("replicate"), json: Json = False, quiet: Quiet 
     from flexapod.app.outputs import check_writable
     from flexapod.app.replicate import replicate as repeat
     from flexapod.app.terminal import print_json, print_text, progress_bar
-    from flexapod.study.claims import claims
+    from flexapod.study.paper.claims import claims
     from flexapod.study.summary import summary
 
     check_writable(out)

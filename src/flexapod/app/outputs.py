@@ -12,7 +12,7 @@ from flexapod.errors import InputError
 if TYPE_CHECKING:
     from xarray import Dataset
 
-    from flexapod.app.terminal import Report
+    from flexapod.study.record import Report
 
 __all__ = ["check_writable", "results_folder", "write_all", "write_data"]
 

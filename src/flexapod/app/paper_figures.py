@@ -11,7 +11,8 @@ from flexapod.app.figures import Drawn, store
 if TYPE_CHECKING:
     from matplotlib.figure import Figure
 
-    from flexapod.study.paper import PaperStudy, Progress
+    from flexapod.study.paper.study import PaperStudy
+    from flexapod.study.record import Report
 
 __all__ = ["paper_figures"]
 
@@ -19,7 +20,7 @@ _Plan = tuple[str, str, str, Callable[[], "Figure"]]
 ACTUATOR, ROBOT, VARIANTS = "Single actuator", "Robot", "What the deviation depends on"
 
 
-def paper_figures(result: PaperStudy, folder: Path, progress: Progress | None = None) -> dict[str, list[Drawn]]:
+def paper_figures(result: PaperStudy, folder: Path, progress: Report | None = None) -> dict[str, list[Drawn]]:
     """Draw all figures of the paper's study, by group."""
     plans = [*_actuator(result), *_robot(result), *_variants(result)]
     drawn: dict[str, list[Drawn]] = {}

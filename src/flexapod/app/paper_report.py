@@ -9,11 +9,11 @@ from flexapod import model
 from flexapod.app import html
 from flexapod.app.figures import Drawn
 from flexapod.app.report import by_axis, figures_section, repeat_section, solver_table, warnings_section
-from flexapod.study.claim import BREAKS, HOLDS, IN_PART, MISPRINT, NOT, OPEN, REACHES
+from flexapod.study.paper.claim import BREAKS, HOLDS, IN_PART, MISPRINT, NOT, OPEN, REACHES
 
 if TYPE_CHECKING:
-    from flexapod.study.claims import Claim
-    from flexapod.study.paper import PaperStudy
+    from flexapod.study.paper.claims import Claim
+    from flexapod.study.paper.study import PaperStudy
 
 __all__ = ["paper_page"]
 
@@ -59,7 +59,7 @@ def _anchor(name: str) -> str:
 
 
 def _claims(claims: Sequence[Claim]) -> str:
-    from flexapod.study.claims import CLAIM_HEAD
+    from flexapod.study.paper.claims import CLAIM_HEAD
 
     rows = [(c.where, c.says, c.ours, c.verdict, c.reason) for c in claims]
     words = (

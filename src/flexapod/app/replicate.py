@@ -14,12 +14,13 @@ from flexapod.errors import InputError
 if TYPE_CHECKING:
     from xarray import Dataset
 
-    from flexapod.study.paper import PaperStudy, Progress
+    from flexapod.study.paper.study import PaperStudy
+    from flexapod.study.record import Report
 
 __all__ = ["replicate", "write"]
 
 
-def replicate(folder: str | Path, *, progress: Progress | None = None) -> PaperStudy:
+def replicate(folder: str | Path, *, progress: Report | None = None) -> PaperStudy:
     """Compute the paper's whole study and write it into a folder.
 
     Data of each part are written as soon as it is computed: an interrupt leaves what is done. An older report is
@@ -43,7 +44,7 @@ def replicate(folder: str | Path, *, progress: Progress | None = None) -> PaperS
     ComputationError
         Of the simulations.
     """
-    from flexapod.study.paper import replicate as compute
+    from flexapod.study.paper.study import replicate as compute
 
     folder = Path(folder)
     _remove(folder / "report.html")
@@ -52,7 +53,7 @@ def replicate(folder: str | Path, *, progress: Progress | None = None) -> PaperS
     return result
 
 
-def write(result: PaperStudy, folder: str | Path, *, progress: Progress | None = None) -> Path:
+def write(result: PaperStudy, folder: str | Path, *, progress: Report | None = None) -> Path:
     """Write data, figures, claims and report of `flexapod.replicate` into a folder.
 
     Parameters
@@ -78,8 +79,8 @@ def write(result: PaperStudy, folder: str | Path, *, progress: Progress | None =
     return _figures_and_report(result, Path(folder), progress)
 
 
-def _figures_and_report(result: PaperStudy, folder: Path, progress: Progress | None) -> Path:
-    from flexapod.study.claims import claims, markdown
+def _figures_and_report(result: PaperStudy, folder: Path, progress: Report | None) -> Path:
+    from flexapod.study.paper.claims import claims, markdown
 
     groups = paper_figures(result, folder / "figures", progress)
     table = claims(result)
@@ -95,11 +96,11 @@ def _remove(path: Path) -> None:
         raise InputError(words, file=path, next_step="Choose another folder with --out DIR") from None
 
 
-def _upto(share: float, progress: Progress | None) -> Progress | None:
+def _upto(share: float, progress: Report | None) -> Report | None:
     return None if progress is None else lambda words, done: progress(words, share * done)
 
 
-def _from(share: float, progress: Progress | None) -> Progress | None:
+def _from(share: float, progress: Report | None) -> Report | None:
     return None if progress is None else lambda words, done: progress(words, share + (1 - share) * done)
 
 

@@ -33,7 +33,7 @@ def show_run(data: Dataset, folder: Path, files: Sequence[Path], warnings: Seque
     print_text()
     names = ", ".join(path.name for path in files if path.suffix not in (".png", ".svg"))
     figures = sum(path.suffix == ".png" for path in files)
-    drawn = f", {figures} figures (PNG and SVG)" if figures else ""
+    drawn = f", {figures} figure{'s' * (figures > 1)} (PNG and SVG)" if figures else ""
     seconds = f"{data.attrs['steps']} steps, {data.attrs['wall_time']:.2g} s"
     print_text(f"In {folder}: {names}{drawn}. ({seconds} of time integration)")
 

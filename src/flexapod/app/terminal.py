@@ -4,14 +4,15 @@ from __future__ import annotations
 
 import json
 import math
-from collections.abc import Callable, Collection, Iterator, Sequence
+from collections.abc import Collection, Iterator, Sequence
 from contextlib import contextmanager
 from pathlib import Path
+from typing import TYPE_CHECKING
 
-__all__ = ["Report", "print_json", "print_table", "print_text", "progress_bar"]
+if TYPE_CHECKING:
+    from flexapod.study.record import Report
 
-#: Called with what is being done, in words, and the share that is done (0 to 1).
-Report = Callable[[str, float], None]
+__all__ = ["print_json", "print_table", "print_text", "progress_bar"]
 
 
 def print_json(data: object) -> None:

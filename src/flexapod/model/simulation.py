@@ -69,7 +69,7 @@ class Simulation(Frozen):
                 key="modes",
                 value=0,
                 allowed="1 to 12",
-                next_step='For legs that only stretch choose fidelity = "lumped"',
+                next_step='Choose fidelity = "lumped" for legs that only stretch, "rigid" for a straight beam',
             )
         return self
 

@@ -10,7 +10,7 @@ from matplotlib.axes import Axes
 from matplotlib.figure import Figure
 
 from flexapod.plot.style import AXIS_COLORS, figure, scale, styled
-from flexapod.study.claim import PAPER_DEVIATION
+from flexapod.study.paper.claim import PAPER_DEVIATION
 
 __all__ = ["half_angles", "start_jump"]
 

@@ -3,7 +3,7 @@
 from flexapod.study.actuator import simulate_actuator
 from flexapod.study.checks import check_path
 from flexapod.study.kinematics import forward_kinematics, inverse_dynamics, inverse_kinematics
-from flexapod.study.paper import PaperStudy, replicate
+from flexapod.study.paper.study import PaperStudy, replicate
 from flexapod.study.record import Interrupted
 from flexapod.study.simulation import run, simulate
 from flexapod.study.static import modes, stiffness

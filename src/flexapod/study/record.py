@@ -16,10 +16,14 @@ from flexapod.typing import Array
 if TYPE_CHECKING:
     from xarray import Dataset
 
-__all__ = ["Interrupted", "Progress", "Record", "collect", "finished"]
+__all__ = ["Interrupted", "Progress", "Record", "Report", "Share", "collect", "finished"]
 
 #: Called with the simulated time reached and the whole simulated time [s].
 Progress = Callable[[float, float], None]
+#: Called with what is being done, in words, and the share of the whole that is done (0 to 1).
+Report = Callable[[str, float], None]
+#: Called with the share of a part that is done (0 to 1).
+Share = Callable[[float], None]
 
 
 class Interrupted(KeyboardInterrupt):

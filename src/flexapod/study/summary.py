@@ -95,9 +95,12 @@ class ActuatorSummary:
     def sentence(self) -> str:
         """The deflection and its cause, in one sentence."""
         until = " until the computation stopped" if self.partial else ""
+        lengths = f"(free length {self.lengths[0]:.4g} m at the start, {self.lengths[1]:.4g} m at the end)"
+        if self.peak < NOTHING:
+            return f"The tip stays on the hub's line{until}: nothing bends the beam {lengths}."
         return (
             f"The tip leaves the hub's line by up to {text(self.peak, 'm')}{until}, at t = {self.time:.3g} s, because "
-            f"the beam bends (free length {self.lengths[0]:.4g} m at the start, {self.lengths[1]:.4g} m at the end)."
+            f"the beam bends {lengths}."
         )
 
     def as_dict(self) -> dict[str, object]:

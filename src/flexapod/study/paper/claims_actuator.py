@@ -5,8 +5,8 @@ from __future__ import annotations
 import numpy as np
 
 from flexapod.bases.beam_functions import clamped_free
-from flexapod.study.claim import HOLDS, MISPRINT, OPEN, Claim
-from flexapod.study.paper import ACTUATOR_MODES, PaperStudy
+from flexapod.study.paper.claim import HOLDS, MISPRINT, OPEN, Claim
+from flexapod.study.paper.study import ACTUATOR_MODES, PaperStudy
 from flexapod.study.words import text
 
 __all__ = ["actuator_claims"]

@@ -7,7 +7,7 @@ from typing import TYPE_CHECKING
 
 import numpy as np
 
-from flexapod.study.claim import (
+from flexapod.study.paper.claim import (
     BREAKS,
     ELASTIC_LENGTH,
     NOT,
@@ -19,7 +19,7 @@ from flexapod.study.claim import (
     peaks,
     roll_and_arm,
 )
-from flexapod.study.paper import PaperStudy
+from flexapod.study.paper.study import PaperStudy
 from flexapod.study.words import text
 
 if TYPE_CHECKING:

@@ -3,7 +3,7 @@
 from __future__ import annotations
 
 import math
-from collections.abc import Callable, Sequence
+from collections.abc import Sequence
 from typing import TYPE_CHECKING
 
 import numpy as np
@@ -12,8 +12,9 @@ from flexapod import model, rigid
 from flexapod.errors import ComputationError, InputError
 from flexapod.study.attributes import attributes
 from flexapod.study.checks import path_instants
-from flexapod.study.claim import PAPER_DEVIATION, axis_motion
 from flexapod.study.estimates import buckling_load
+from flexapod.study.paper.claim import PAPER_DEVIATION, axis_motion
+from flexapod.study.record import Share
 from flexapod.study.simulation import simulate
 from flexapod.study.static import modes
 from flexapod.typing import Array
@@ -38,8 +39,6 @@ JUMP_STEP = 3.125e-5  # s; an impact rings the legs at kilohertz: peaks within 4
 DURATIONS = (0.25, 0.5, 1.0, 2.0)  # s
 SERVO_STIFFNESS = (3e5, 1e7)  # N/m
 POSES = 11
-
-_Report = Callable[[float], None]
 
 
 def with_half_angle(study: model.Study, angle: float) -> model.Study:
@@ -75,7 +74,7 @@ def jump_motion(study: model.Study) -> model.Motion:
     return axis_motion(study).replace(profile="linear")
 
 
-def half_angle_sweep(study: model.Study, angles: Sequence[float], report: _Report) -> Dataset:
+def half_angle_sweep(study: model.Study, angles: Sequence[float], report: Share) -> Dataset:
     """Deviation, drive force, frequency and equilibrium of the path for several half-angles.
 
     Returns
@@ -144,7 +143,7 @@ def _statics(study: model.Study) -> tuple[Array, float, str | None]:
     return sag, float(frequency), None
 
 
-def assumptions(study: model.Study, report: _Report) -> Dataset:
+def assumptions(study: model.Study, report: Share) -> Dataset:
     """Largest deviation of the robot under other durations of the motion and with yielding drives.
 
     Returns

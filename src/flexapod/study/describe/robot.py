@@ -8,9 +8,9 @@ import numpy as np
 
 from flexapod import model, rigid
 from flexapod.study.checks import check_path, path_instants
-from flexapod.study.describe_actuator import ActuatorDescription, describe_actuator
-from flexapod.study.describe_leg import LegDescription, describe_leg, load_remarks
-from flexapod.study.describe_pose import PoseDescription, VibrationToExpect, describe_pose, vibration_to_expect
+from flexapod.study.describe.actuator import ActuatorDescription, describe_actuator
+from flexapod.study.describe.leg import LegDescription, describe_leg, load_remarks
+from flexapod.study.describe.pose import PoseDescription, VibrationToExpect, describe_pose, vibration_to_expect
 from flexapod.study.estimates import bending_moment
 from flexapod.typing import Array
 

@@ -8,8 +8,8 @@ from typing import TYPE_CHECKING
 
 from flexapod import model
 from flexapod.study.actuator import simulate_actuator
-from flexapod.study.claim import axis_motion
-from flexapod.study.paper_variants import (
+from flexapod.study.paper.claim import axis_motion
+from flexapod.study.paper.variants import (
     HALF_ANGLES,
     JUMP_STEP,
     assumptions,
@@ -17,19 +17,16 @@ from flexapod.study.paper_variants import (
     jump_motion,
     with_half_angle,
 )
+from flexapod.study.record import Report, Share
 from flexapod.study.simulation import run, simulate
 from flexapod.study.static import modes
 
 if TYPE_CHECKING:
     from xarray import Dataset
 
-__all__ = ["ACTUATOR_MODES", "STEPS", "PaperStudy", "Progress", "replicate"]
+__all__ = ["ACTUATOR_MODES", "STEPS", "PaperStudy", "replicate"]
 
 ACTUATOR_MODES = (1, 2, 3, 4, 5)
-
-#: Called with what is being computed, in words, and the share of the whole that is done (0 to 1).
-Progress = Callable[[str, float], None]
-_Report = Callable[[float], None]
 
 
 @dataclass(frozen=True, kw_only=True)
@@ -54,7 +51,7 @@ class Step:
     name: str
     words: str
     weight: float
-    compute: Callable[[_Report], Dataset]
+    compute: Callable[[Share], Dataset]
 
 
 def _preset(name: str) -> model.Study:
@@ -63,41 +60,41 @@ def _preset(name: str) -> model.Study:
     return study
 
 
-def _over(report: _Report) -> Callable[[float, float], None]:
+def _over(report: Share) -> Callable[[float, float], None]:
     """Progress of one simulation as a share."""
     return lambda time, end: report(time / end)
 
 
-def _actuator(count: int) -> Callable[[_Report], Dataset]:
-    def compute(report: _Report) -> Dataset:
+def _actuator(count: int) -> Callable[[Share], Dataset]:
+    def compute(report: Share) -> Dataset:
         study = model.preset("paper-actuator")
         return simulate_actuator(study, modes=count, progress=_over(report))  # type: ignore[arg-type]
 
     return compute
 
 
-def _robot(name: str) -> Callable[[_Report], Dataset]:
+def _robot(name: str) -> Callable[[Share], Dataset]:
     return lambda report: run(_preset(name), progress=_over(report))
 
 
-def _fidelity(name: str, step: float) -> Callable[[_Report], Dataset]:
+def _fidelity(name: str, step: float) -> Callable[[Share], Dataset]:
     return lambda report: simulate(_preset("paper-robot"), fidelity=name, step=step, progress=_over(report))
 
 
-def _jump(name: str, angle: float | None = None) -> Callable[[_Report], Dataset]:
-    def compute(report: _Report) -> Dataset:
+def _jump(name: str, angle: float | None = None) -> Callable[[Share], Dataset]:
+    def compute(report: Share) -> Dataset:
         study = _preset(name) if angle is None else with_half_angle(_preset(name), angle)
         return simulate(study, jump_motion(study), step=JUMP_STEP, progress=_over(report))
 
     return compute
 
 
-def _modes(_: _Report) -> Dataset:
+def _modes(_: Share) -> Dataset:
     study = _preset("paper-robot")
     return modes(study, axis_motion(study).target)
 
 
-def _sweep(name: str) -> Callable[[_Report], Dataset]:
+def _sweep(name: str) -> Callable[[Share], Dataset]:
     return lambda report: half_angle_sweep(_preset(name), HALF_ANGLES, report)
 
 
@@ -125,7 +122,7 @@ STEPS: tuple[Step, ...] = (
 )
 
 
-def replicate(*, progress: Progress | None = None, keep: Callable[[str, Dataset], None] | None = None) -> PaperStudy:
+def replicate(*, progress: Report | None = None, keep: Callable[[str, Dataset], None] | None = None) -> PaperStudy:
     """Compute the paper's whole study with the presets.
 
     Parameters

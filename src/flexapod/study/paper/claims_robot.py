@@ -7,7 +7,7 @@ from typing import TYPE_CHECKING
 import numpy as np
 
 from flexapod import rigid
-from flexapod.study.claim import (
+from flexapod.study.paper.claim import (
     ELASTIC_LENGTH,
     HOLDS,
     IN_PART,
@@ -19,7 +19,7 @@ from flexapod.study.claim import (
     peaks,
     roll_and_arm,
 )
-from flexapod.study.paper import PaperStudy
+from flexapod.study.paper.study import PaperStudy
 from flexapod.study.scene import motion_end, robot_study
 from flexapod.study.summary import AxisSummary, RobotSummary, summary
 from flexapod.study.words import number, text

@@ -4,11 +4,11 @@ from __future__ import annotations
 
 from collections.abc import Sequence
 
-from flexapod.study.claim import Claim
-from flexapod.study.claims_actuator import actuator_claims
-from flexapod.study.claims_robot import robot_claims
-from flexapod.study.claims_variants import explanation_claims, variant_claims
-from flexapod.study.paper import PaperStudy
+from flexapod.study.paper.claim import Claim
+from flexapod.study.paper.claims_actuator import actuator_claims
+from flexapod.study.paper.claims_robot import robot_claims
+from flexapod.study.paper.claims_variants import explanation_claims, variant_claims
+from flexapod.study.paper.study import PaperStudy
 
 __all__ = ["CLAIM_HEAD", "Claim", "claims", "markdown"]
 

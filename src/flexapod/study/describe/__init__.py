@@ -1,0 +1,1 @@
+"""A study before it is computed: `robot.describe`."""
