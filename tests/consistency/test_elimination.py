@@ -22,6 +22,8 @@ FIDELITIES = [
     ("assumed-modes", 2, 0),
     ("assumed-modes", 2, 2),
     ("assumed-modes", 1, 1),
+    ("beam-fem", 2, 2),
+    ("finite-segment", 2, 1),
 ]
 
 
@@ -36,7 +38,7 @@ def study_for(fidelity, modes, axial_modes, drive, cylinder):
     )
     if not cylinder:
         study = with_legs(study, lambda leg: bare(leg).replace(piston=leg.piston.replace(length=1.2)))
-    settings = {"modes": modes} if fidelity == "assumed-modes" else {}
+    settings = {"modes": modes} if fidelity not in ("rigid", "lumped") else {}
     return override(study, fidelity=fidelity, step=1e-3, duration=0.02, **settings)
 
 

@@ -13,6 +13,12 @@ COUNTS = range(1, 13)
 #: Largest n-th derivative of twelve shapes, order of magnitude: rounding is relative to this.
 STEEP = 38.0 ** np.arange(4)
 
+ALL_NAMES = [*NAMES, "segments", "hermite"]
+PIECEWISE = [("segments", 0.0, 0.0), ("hermite", 0.0, 0.0)]
+ALL = [(which, count) for which in BASES + PIECEWISE for count in COUNTS if which[0] != "hermite" or count % 2 == 0]
+every_count = pytest.mark.parametrize(
+    ("which", "count"), ALL, ids=[f"{ALL_NAMES[(BASES + PIECEWISE).index(which)]}-{count}" for which, count in ALL]
+)
 every_basis = pytest.mark.parametrize("which", BASES, ids=NAMES)
 
 
@@ -23,15 +29,19 @@ def fine_rule(panels=40, points=12):
     return (left[:, None] + (x + 1) / (2 * panels)).ravel(), np.tile(w / (2 * panels), panels)
 
 
+def rule_for(which, count):
+    """The fine rule, with panels inside which the shapes are smooth."""
+    return fine_rule(4 * count) if which in PIECEWISE else fine_rule()
+
+
 def close(ours, reference, digits=1e-12):
     np.testing.assert_allclose(ours, reference, rtol=0, atol=digits * max(1.0, np.abs(reference).max()))
 
 
-@every_basis
-@pytest.mark.parametrize("count", COUNTS)
+@every_count
 def test_closed_integrals(which, count):
     b = lateral_basis(which[0], count, *which[1:])
-    z, w = fine_rule()
+    z, w = rule_for(which, count)
     phi, slope, curvature = (b.values(z, order) for order in range(3))
     sliding = (1 - z) * slope
     both = np.concatenate([phi, sliding])
@@ -46,8 +56,7 @@ def test_closed_integrals(which, count):
     close(b.slope_moment, (slope * w * (1 - z**2) / 2) @ slope.T)
 
 
-@every_basis
-@pytest.mark.parametrize("count", COUNTS)
+@every_count
 def test_ends(which, count):
     b, mu, inertia = lateral_basis(which[0], count, *which[1:]), *which[1:]
     clamp, tip = ([b.values(np.array([x]), n)[:, 0] / STEEP[n] for n in range(4)] for x in (0.0, 1.0))
@@ -56,7 +65,7 @@ def test_ends(which, count):
     if which[0] == "tip-load":  # a held tip carries a force, no moment
         np.testing.assert_allclose(tip[2], 0, atol=1e-12)
         np.testing.assert_allclose(b.tip, np.eye(count)[0], atol=1e-12)
-    else:
+    elif which not in PIECEWISE:
         eps = np.array([phi.eps for phi in b.shapes])
         np.testing.assert_allclose(tip[2] * STEEP[2] / eps**2, inertia * eps**2 * b.tip_slope, atol=1e-11)
         np.testing.assert_allclose(tip[3] * STEEP[3] / eps**3, -mu * eps * b.tip, atol=1e-11)
@@ -71,6 +80,49 @@ def test_derivatives_belong_together(which):
             start, end = b.values(np.array([0.0, station]), order).T
             rise = station * b.values(station * z, order + 1) @ w
             np.testing.assert_allclose(end - start, rise, atol=1e-11 * STEEP[order])
+
+
+@pytest.mark.parametrize("name", ["segments", "hermite"])
+def test_derivatives_of_pieces_belong_together(name):
+    # As above. The spread turn of a hinge makes up its jump of slope at the ends of its segment, where stations lie.
+    b = lateral_basis(name, 12)
+    z, w = fine_rule(48)
+    for order in range(2):
+        for station in (0.25, 0.5, 1.0):
+            start, end = b.values(np.array([0.0, station]), order).T
+            rise = station * b.values(station * z, order + 1) @ w
+            np.testing.assert_allclose(end - start, rise, atol=1e-11 * STEEP[order])
+
+
+@pytest.mark.parametrize("elements", [1, 2, 3, 6])
+def test_hermite_shapes_are_nodal_and_hold_every_clamped_cubic(elements):
+    b, nodes = lateral_basis("hermite", 2 * elements), np.arange(1, elements + 1) / elements
+    np.testing.assert_allclose(b.values(nodes)[0::2], np.eye(elements), atol=1e-14)
+    np.testing.assert_allclose(b.values(nodes, 1)[1::2], elements * np.eye(elements), atol=1e-12)
+    z = np.linspace(0, 1, 61)
+    for power in (2, 3):
+        part = np.ravel([nodes**power, power * nodes ** (power - 1) / elements], order="F")
+        np.testing.assert_allclose(part @ b.values(z), z**power, atol=1e-14)
+        # inside the elements: third derivatives jump at nodes
+        np.testing.assert_allclose(part @ b.values(z + 1e-3 * (z < 1), 3), 6 * (power == 3), atol=1e-9)
+    static = np.linalg.solve(b.stiffness, b.tip)  # exact under a tip force
+    np.testing.assert_allclose([b.tip @ static, b.tip_slope @ static], [1 / 3, 1 / 2], rtol=1e-11)
+
+
+@pytest.mark.parametrize("count", COUNTS)
+def test_segments_are_rigid_between_hinges(count):
+    b, hinges = lateral_basis("segments", count), (np.arange(count) + 0.5) / count
+    np.testing.assert_allclose(b.values(np.append(hinges[1:], 1.0)), np.eye(count), atol=1e-14)
+    ends = np.concatenate([[0.0], hinges, [1.0]])
+    inside = ends[:-1] + np.array([[0.1], [0.5], [0.9]]) * np.diff(ends)
+    slopes = b.values(inside, 1)
+    np.testing.assert_allclose(slopes, slopes[:, :1, :] + np.zeros((3, 1)), atol=1e-12)
+    turns = np.diff(slopes[:, 0], axis=1)  # (T1.14): springs EI n / s on them
+    np.testing.assert_allclose(b.stiffness, count * turns @ turns.T, rtol=1e-12, atol=1e-9)
+    # A tip force turns hinge j by (1 - zeta_j) / n: the midpoint rule of int (1 - zeta)^2, low by 1 / (4 n^2).
+    static = np.linalg.solve(b.stiffness, b.tip)
+    np.testing.assert_allclose(b.tip @ static, (1 - 0.25 / count**2) / 3, rtol=1e-11)
+    np.testing.assert_allclose(static @ b.values(hinges, 2), 1 - hinges, atol=1e-10)  # the moment of the springs
 
 
 @every_basis
@@ -122,7 +174,7 @@ def test_tip_load_spans_all_polynomials_that_fit(count):
     np.testing.assert_allclose(b.values(z)[0], (3 * z**2 - z**3) / 2, atol=1e-15)
 
 
-@every_basis
+@pytest.mark.parametrize("which", BASES + PIECEWISE, ids=ALL_NAMES)
 def test_damping_is_the_same_ratio_for_every_mode(which):
     b = lateral_basis(which[0], 12, *which[1:])
     mass = b.mass[:12, :12]
@@ -131,12 +183,14 @@ def test_damping_is_the_same_ratio_for_every_mode(which):
     np.testing.assert_allclose(product / scale, b.stiffness / scale, atol=1e-10)
 
 
-@pytest.mark.parametrize("name", ["clamped-free", "tip-load", "tip-mass"])
+@pytest.mark.parametrize("name", ["clamped-free", "tip-load", "tip-mass", "segments", "hermite"])
 def test_no_shapes(name):
     b = lateral_basis(name, 0)
     assert (b.count, b.mass.shape, b.powers.shape[1]) == (0, (0, 0), 0)
 
 
 def test_unknown_name():
-    with pytest.raises(ValueError, match="clamped-free, tip-load or tip-mass"):
+    with pytest.raises(ValueError, match="clamped-free, tip-load, tip-mass, segments or hermite"):
         lateral_basis("hinged", 3)
+    with pytest.raises(ValueError, match="two"):
+        lateral_basis("hermite", 3)

@@ -23,8 +23,8 @@ def test_poses_that_are_none(pose):
 
 
 @pytest.mark.parametrize("basis", ["segments", "hermite"])
-def test_later_bases_are_refused_by_name_from_python_too(basis):
-    with pytest.raises(fx.InputError, match="comes with a later version"):
+def test_bases_of_a_fidelity_are_refused_by_name_from_python_too(basis):
+    with pytest.raises(fx.InputError, match="is the basis of a fidelity"):
         fx.simulate(paper_robot(), basis=basis)
 
 

@@ -39,7 +39,9 @@ def test_piston_rules():
 
 
 def test_piston_without_cylinder_cannot_be_pulled_out():
-    assert piston_excess(T, LENGTH, np.zeros(3), np.full(3, 0.1)) == []
+    found = piston_excess(T, LENGTH, np.zeros(3), np.full(3, 0.1))
+    assert [(e.kind, e.fatal) for e in found] == [(workspace.TOO_SHORT, False)] * 3
+    assert piston_excess(T, LENGTH, np.zeros(3), np.full(3, 2.0)) == []
 
 
 def test_reachable_agrees_with_the_rules():

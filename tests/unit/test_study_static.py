@@ -7,6 +7,7 @@ from scipy.spatial.transform import Rotation
 from tests.runs import paper_robot, with_legs
 
 import flexapod as fx
+from flexapod.errors import ComputationError
 from flexapod.model import AxisMotion, ForceDrive, ServoDrive
 
 POSE = {"sway": 0.03, "heave": 0.02, "roll": 0.2}
@@ -212,3 +213,12 @@ def test_near_singular_pose_is_remarked_on():
         robot=study.robot.replace(base_joints=base_circle(0.25, h), platform_joints=platform_circle(0.15, h))
     )
     assert "near a singular pose" in fx.modes(study, {"roll": 0.4}).attrs["warnings"]
+
+
+def test_a_piston_that_does_not_reach_its_joint_is_refused_in_words():
+    study = with_legs(
+        paper_robot(),
+        lambda leg: leg.replace(cylinder=leg.cylinder.replace(mass=0.0, com=0.0, inertia=0.0, mouth=0.0)),
+    )
+    with pytest.raises(ComputationError, match="piston is shorter"):
+        fx.modes(study)

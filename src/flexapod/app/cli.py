@@ -10,7 +10,15 @@ from typing import Annotated
 import typer
 
 from flexapod import __version__
-from flexapod.app import commands_check, commands_later, commands_modes, commands_new, commands_replicate, commands_run
+from flexapod.app import (
+    commands_check,
+    commands_later,
+    commands_modes,
+    commands_new,
+    commands_replicate,
+    commands_run,
+    commands_verify,
+)
 
 __all__ = ["app", "main"]
 
@@ -21,7 +29,7 @@ app = typer.Typer(
     pretty_exceptions_enable=False,
     rich_markup_mode="rich",
     epilog="Exit codes: 0 done, 1 a computation failed, 2 bad input, 130 stopped by Ctrl-C. "
-    "Later releases bring sweep, verify, view, converge and export.",
+    "Later releases bring sweep, view, converge and export.",
 )
 
 
@@ -45,7 +53,15 @@ def flexapod(
         os.environ["FLEXAPOD_DEBUG"] = "1"
 
 
-for part in (commands_replicate, commands_new, commands_check, commands_run, commands_modes, commands_later):
+for part in (
+    commands_replicate,
+    commands_new,
+    commands_check,
+    commands_run,
+    commands_modes,
+    commands_verify,
+    commands_later,
+):
     part.add(app)
 
 

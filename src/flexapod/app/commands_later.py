@@ -13,7 +13,6 @@ __all__ = ["LATER", "add"]
 
 LATER = {
     "sweep": "for a few variants, change the study in a Python loop over flexapod.run",
-    "verify": "`make test` runs the checks against closed forms and published results",
     "view": "`flexapod run FILE` writes figures and report.html",
     "converge": "compare runs with other `modes` and `tolerance` in [simulation]",
     "export": "`flexapod run FILE` writes results.nc (NetCDF) and results.csv",

@@ -85,6 +85,13 @@ def gauss_unit(points: int = 96) -> tuple[Array, Array]:
     return 0.5 * (x + 1.0), 0.5 * w
 
 
+def gauss_pieces(pieces: int) -> tuple[Array, Array]:
+    """Abscissas and weights of `gauss_unit` on each of ``pieces`` equal pieces of [0, 1] (none: on the whole)."""
+    x, w = gauss_unit()
+    n = max(pieces, 1)
+    return ((np.arange(n)[:, None] + x) / n).ravel(), np.tile(w / n, n)
+
+
 def clamped_free(count: int) -> list[BeamFunction]:
     """Eigenfunctions of the clamped-free beam (the paper's Eqs. 2-3 with the norm corrected), Eq. (T1.2)."""
     return clamped_tip_mass(count, 0.0, 0.0)

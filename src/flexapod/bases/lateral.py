@@ -6,7 +6,7 @@ from dataclasses import dataclass
 import numpy as np
 from scipy.linalg import eigh
 
-from flexapod.bases.beam_functions import gauss_unit
+from flexapod.bases.beam_functions import gauss_pieces
 from flexapod.typing import Array
 
 Shape = Callable[..., Array]
@@ -83,9 +83,18 @@ def _clean(matrix: Array) -> Array:
     return np.where(np.abs(matrix) < 1e-13 * scale, 0.0, matrix)
 
 
-def integrate(name: str, shapes: Sequence[Shape]) -> LateralBasis:
-    """Evaluate every closed integral of ``shapes`` by Gauss-Legendre quadrature, once."""
-    zeta, weight = gauss_unit()
+def integrate(name: str, shapes: Sequence[Shape], pieces: int = 1) -> LateralBasis:
+    """Evaluate every closed integral of ``shapes`` by Gauss-Legendre quadrature, once.
+
+    Parameters
+    ----------
+    name : str
+    shapes : sequence of callables
+        ``phi(zeta, derivative)``.
+    pieces : int
+        Equal pieces of [0, 1] inside which the shapes and their derivatives are smooth.
+    """
+    zeta, weight = gauss_pieces(pieces)
     count = len(shapes)
 
     def table(derivative: int) -> Array:

@@ -28,7 +28,7 @@ from flexapod.model.motion import (
     WaypointMotion,
 )
 from flexapod.model.robot import Payload, Robot, base_circle, platform_circle
-from flexapod.model.simulation import DEFAULT_TOLERANCE, FIDELITIES, LATER_FIDELITIES, Initial, Simulation
+from flexapod.model.simulation import DEFAULT_TOLERANCE, FIDELITIES, Initial, Simulation
 from flexapod.model.study import ActuatorStudy, Study, override
 from flexapod.model.write import to_toml
 
@@ -36,7 +36,6 @@ __all__ = [
     "AXES",
     "DEFAULT_TOLERANCE",
     "FIDELITIES",
-    "LATER_FIDELITIES",
     "MATERIALS",
     "PRESETS",
     "PROFILES",

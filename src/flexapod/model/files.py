@@ -14,7 +14,7 @@ from flexapod.model.read_motion import read_initial, read_load, read_motion, rea
 from flexapod.model.read_robot import read_robot
 from flexapod.model.robot import Robot
 from flexapod.model.section import Section
-from flexapod.model.simulation import Simulation
+from flexapod.model.simulation import STRAIGHT, Simulation
 from flexapod.model.study import ActuatorStudy, Study
 
 __all__ = ["PRESETS", "OpenValue", "load", "loads", "loads_robot", "open_values", "preset", "preset_text"]
@@ -151,7 +151,7 @@ def _study(top: Section, text: str) -> Study:
 def _unused_axial_modes(top: Section, simulation: Simulation) -> tuple[str, ...]:
     legs = top.data["leg"]
     given = any("axial_modes" in leg for leg in (legs if isinstance(legs, list) else [legs]))
-    if simulation.fidelity == "assumed-modes" or not given:
+    if simulation.fidelity not in STRAIGHT or not given:
         return ()
     return (f"leg.axial_modes has no effect with fidelity {simulation.fidelity!r}",)
 

@@ -14,7 +14,7 @@ from flexapod.model.motion import (
     WaypointMotion,
 )
 from flexapod.model.section import Section
-from flexapod.model.simulation import FIDELITIES, LATER_BASES, LATER_FIDELITIES, Initial, Simulation
+from flexapod.model.simulation import FIDELITIES, OWN_BASIS, STRAIGHT, Initial, Simulation, own_fidelity
 from flexapod.model.tables import POSE, WRENCH, read_table
 
 __all__ = ["read_initial", "read_load", "read_motion", "read_simulation", "unused_settings"]
@@ -66,7 +66,7 @@ def read_simulation(section: Section | None, *, basis: str, bases: tuple[str, ..
     section.only("fidelity", "basis", "modes", "duration", "tolerance", "step", "output_step", "rho_inf")
     return section.build(
         Simulation,
-        fidelity=section.text("fidelity", (*FIDELITIES, *LATER_FIDELITIES)),
+        fidelity=section.text("fidelity", FIDELITIES),
         basis=_basis(section, bases) or basis,
         modes=section.whole("modes"),
         duration=section.number("duration", "time"),
@@ -78,14 +78,18 @@ def read_simulation(section: Section | None, *, basis: str, bases: tuple[str, ..
 
 
 def _basis(section: Section, bases: tuple[str, ...]) -> str | None:
-    if section.data.get("basis") in LATER_BASES:
-        raise section.error("comes with a later version of flexapod", "basis", allowed=", ".join(bases))
+    fidelity = section.data.get("fidelity")
+    if hint := own_fidelity(section.data.get("basis")):
+        raise section.error("is the basis of a fidelity", "basis", allowed=", ".join(bases), next_step=hint)
+    if isinstance(fidelity, str) and fidelity in OWN_BASIS and "basis" in section:
+        words = f"has no effect with fidelity {fidelity!r}, which has a basis of its own"
+        raise section.error(words, "basis", next_step="Leave basis out")
     return section.text("basis", bases)
 
 
 def unused_settings(section: Section | None, simulation: Simulation) -> tuple[str, ...]:
     """Notes on settings of the file that the chosen fidelity does not use."""
-    if section is None or simulation.fidelity == "assumed-modes":
+    if section is None or simulation.fidelity not in STRAIGHT:
         return ()
     return tuple(
         f"simulation.{name} = {section.data[name]!r} has no effect with fidelity {simulation.fidelity!r}"

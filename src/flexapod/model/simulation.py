@@ -10,11 +10,11 @@ from pydantic import Field, model_validator
 from flexapod.errors import InputError, closest
 from flexapod.model.base import Frozen, Positive
 
-__all__ = ["DEFAULT_TOLERANCE", "FIDELITIES", "LATER_BASES", "LATER_FIDELITIES", "Initial", "Simulation"]
+__all__ = ["DEFAULT_TOLERANCE", "FIDELITIES", "OWN_BASIS", "STRAIGHT", "Initial", "Simulation", "own_fidelity"]
 
-FIDELITIES = ("rigid", "lumped", "assumed-modes")
-LATER_FIDELITIES = ("finite-segment", "beam-fem")
-LATER_BASES = ("segments", "hermite")
+FIDELITIES = ("rigid", "lumped", "finite-segment", "assumed-modes", "beam-fem")
+STRAIGHT = ("rigid", "lumped")  # fidelities without lateral shapes
+OWN_BASIS = {"finite-segment": "segments", "beam-fem": "hermite"}  # fidelities that leave no choice of basis
 DEFAULT_TOLERANCE = 1e-4
 
 
@@ -27,7 +27,8 @@ class Initial(Frozen):
 class Simulation(Frozen):
     """Settings of a simulation.
 
-    `fidelity`; `basis` and `modes` of the lateral shapes (per plane); `duration` [s] (None: the motion with its hold);
+    `fidelity`; `basis` of `assumed-modes`; `modes`, the lateral shapes per plane (of `finite-segment` one per segment,
+    of `beam-fem` two per element); `duration` [s] (None: the motion with its hold);
     `tolerance` (relative, of the step control) or fixed `step` [s]; `output_step` [s]; `rho_inf`, spectral radius of
     the integrator at infinite frequency.
     """
@@ -44,12 +45,13 @@ class Simulation(Frozen):
     def __init__(self, **fields: object) -> None:
         if fields.get("tolerance") is None and fields.get("step") is None:
             fields = fields | {"tolerance": DEFAULT_TOLERANCE}
-        if fields.get("basis") in LATER_BASES:
+        if hint := own_fidelity(fields.get("basis")):
             raise InputError(
-                "comes with a later version of flexapod",
+                "is the basis of a fidelity",
                 key="basis",
                 value=fields["basis"],
                 allowed="tip-load, clamped-free, tip-mass",
+                next_step=hint,
             )
         super().__init__(**fields)
 
@@ -63,20 +65,40 @@ class Simulation(Frozen):
                 value=self.step,
                 allowed="tolerance (steps are chosen) or step (fixed), not both",
             )
-        if self.fidelity == "assumed-modes" and self.modes == 0:
+        self._check_modes()
+        return self
+
+    def _check_modes(self) -> None:
+        if self.fidelity not in STRAIGHT and self.modes == 0:
             raise InputError(
-                "leaves no lateral shape for 'assumed-modes'",
+                f"leaves no lateral shape for {self.fidelity!r}",
                 key="modes",
                 value=0,
                 allowed="1 to 12",
                 next_step='Choose fidelity = "lumped" for legs that only stretch, "rigid" for a straight beam',
             )
-        return self
+        if self.fidelity == "beam-fem" and self.modes % 2:
+            raise InputError(
+                "is no whole number of beam elements: 'beam-fem' has two shapes per element and plane",
+                key="modes",
+                value=self.modes,
+                allowed="2, 4, 6, 8, 10, 12",
+                next_step=f"Give modes = {self.modes + 1}",
+            )
+
+    @property
+    def lateral_basis(self) -> str:
+        """Name of the lateral basis that the fidelity uses."""
+        return OWN_BASIS.get(self.fidelity, self.basis)
 
     @property
     def lateral_shapes(self) -> int:
         """Shapes per lateral plane that the fidelity uses: `modes`, or 0 for rigid and lumped legs."""
-        return self.modes if self.fidelity == "assumed-modes" else 0
+        return 0 if self.fidelity in STRAIGHT else self.modes
+
+    def axial_shapes(self, axial_modes: int) -> int:
+        """Axial shapes of a leg that the fidelity uses, of the `axial_modes` of its table."""
+        return {"rigid": 0, "lumped": 1}.get(self.fidelity, axial_modes)
 
     @property
     def stored_step(self) -> float:
@@ -88,16 +110,14 @@ class Simulation(Frozen):
         return math.floor(duration / self.stored_step + 1e-6)
 
 
+def own_fidelity(basis: object) -> str | None:
+    """Advice on a `basis` that is chosen as a fidelity; None for others."""
+    found = [fidelity for fidelity, own in OWN_BASIS.items() if own == basis]
+    return f'Choose fidelity = "{found[0]}" instead' if found else None
+
+
 def check_fidelity(fidelity: str) -> None:
-    """Refuse a fidelity that does not exist, and name those that come later."""
-    if fidelity in LATER_FIDELITIES:
-        raise InputError(
-            "comes with a later version of flexapod",
-            key="fidelity",
-            value=fidelity,
-            allowed=", ".join(FIDELITIES),
-            next_step='Choose "assumed-modes" for bending legs',
-        )
+    """Refuse a fidelity that does not exist."""
     if fidelity not in FIDELITIES:
         raise InputError(
             "is not known",

@@ -4,7 +4,7 @@ from __future__ import annotations
 
 from typing import Any, Self, TypeVar
 
-from pydantic import model_validator
+from pydantic import field_validator, model_validator
 
 from flexapod.errors import InputError
 from flexapod.model.actuator import Actuator, ActuatorInitial, ActuatorLoad, ActuatorMotion
@@ -13,7 +13,7 @@ from flexapod.model.load import Load
 from flexapod.model.motion import Motion
 from flexapod.model.remarks import actuator_remarks, robot_remarks
 from flexapod.model.robot import Robot
-from flexapod.model.simulation import Initial, Simulation
+from flexapod.model.simulation import OWN_BASIS, STRAIGHT, Initial, Simulation
 from flexapod.model.write import to_toml
 
 __all__ = ["ActuatorStudy", "Study", "override"]
@@ -25,6 +25,14 @@ class _Documented(Frozen):
     source_text: str = ""
     path: str | None = None
     notes: tuple[str, ...] = ()
+
+    @field_validator("simulation", check_fields=False)
+    @classmethod
+    def _default_basis(cls, simulation: Simulation) -> Simulation:
+        """An unused basis is the default one, since the text does not name it."""
+        if simulation.fidelity not in OWN_BASIS:
+            return simulation
+        return simulation.replace(basis=cls.model_fields["simulation"].default.basis)
 
     @model_validator(mode="after")
     def _write(self) -> Self:
@@ -93,7 +101,7 @@ class ActuatorStudy(_Documented):
                 "has no meaning for the single actuator, whose beam bends but does not stretch",
                 key="simulation.fidelity",
                 value="lumped",
-                allowed="assumed-modes, rigid",
+                allowed="rigid, finite-segment, assumed-modes, beam-fem",
             )
         if self.simulation.duration is None and self.motion.end_time is None:
             raise InputError(
@@ -111,7 +119,7 @@ class ActuatorStudy(_Documented):
     @property
     def warnings(self) -> tuple[str, ...]:
         """What is legal but doubtful, in words."""
-        basis = self.simulation.basis if self.simulation.lateral_shapes else None
+        basis = self.simulation.lateral_basis if self.simulation.lateral_shapes else None
         return (*actuator_remarks(self.actuator, basis), *self._ignored, *self.notes)
 
     @property
@@ -170,10 +178,10 @@ def override(
 
 
 def _refuse_unused(fidelity: str, changes: dict[str, object], axial_modes: int | None) -> None:
-    if fidelity == "assumed-modes":
-        return
     given = [name for name in ("modes", "basis") if name in changes] + ["axial_modes"] * (axial_modes is not None)
-    if given and fidelity in ("rigid", "lumped"):
+    if fidelity in tuple(OWN_BASIS):
+        given = [name for name in given if name == "basis"]
+    if given and fidelity in (*STRAIGHT, *OWN_BASIS):
         raise InputError(
             f"has no effect with fidelity {fidelity!r}",
             key=given[0],

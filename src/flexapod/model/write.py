@@ -15,6 +15,7 @@ from flexapod.model.load import CsvWrench
 from flexapod.model.material import Material, Tube
 from flexapod.model.motion import CsvMotion
 from flexapod.model.robot import Robot
+from flexapod.model.simulation import OWN_BASIS, Simulation
 
 __all__ = ["to_toml"]
 
@@ -107,8 +108,10 @@ def _actuator(actuator: Actuator) -> dict[str, object]:
 
 def _fields(model: Frozen) -> dict[str, object]:
     skipped = _IN_FILE.get(type(model), ())
+    if isinstance(model, Simulation) and model.fidelity in OWN_BASIS:
+        skipped = ("basis",)
     fields = {name: getattr(model, name) for name in type(model).model_fields if name not in skipped}
-    if skipped and fields["file"] is None and getattr(model, "time", None) is not None:
+    if "file" in fields and fields["file"] is None and getattr(model, "time", None) is not None:
         fields["file"] = "table.csv"
     return {name: value for name, value in fields.items() if value is not None}
 

@@ -17,6 +17,7 @@ SHORTEST, LONGEST = "shorter than its stroke allows", "longer than its stroke al
 NO_FREE_LENGTH = "has no free length left outside its cylinder"
 PULLED_OUT = "is pulled out of its cylinder"
 BEHIND_JOINT = "reaches behind its universal joint"
+TOO_SHORT = "is shorter than its leg; without a cylinder what is missing counts as negative mass"
 
 
 @dataclass(frozen=True, kw_only=True)
@@ -30,7 +31,7 @@ class Excess:
     kind : str
         One of this module's constants, a predicate of a sentence.
     fatal : bool
-        False for what only deserves a warning: a piston that passes the plane of its universal joint.
+        False for what only deserves a warning: a piston that passes its universal joint or does not reach it.
     value, limit : float
         Joint-to-joint length reached and its limit [m].
     time, first : float
@@ -101,7 +102,8 @@ def piston_excess(t: ArrayLike, length: Array, mouth: Array, piston_length: Arra
 
     The free length outside the mouth, l - mouth, must be positive, and the inner end, at l - Lp from the universal
     joint, must stay before the mouth. An inner end behind the universal joint (l < Lp) is reported, not fatal.
-    With a mouth at the joint (mouth = 0) the piston has no guide that it could leave, and only the first rule holds.
+    With a mouth at the joint (mouth = 0) the piston has no guide that it could leave, and only the first rule holds;
+    one that does not reach back to the joint is reported, not fatal.
 
     Parameters
     ----------
@@ -121,6 +123,7 @@ def piston_excess(t: ArrayLike, length: Array, mouth: Array, piston_length: Arra
         _worst(t, length, mouth, -1, NO_FREE_LENGTH)
         + _worst(t, length, guided, 1, PULLED_OUT)
         + _worst(t, length, np.where(mouth > 0, piston_length, -np.inf), -1, BEHIND_JOINT, fatal=False)
+        + _worst(t, length, np.where(mouth > 0, np.inf, piston_length), 1, TOO_SHORT, fatal=False)
     )
 
 

@@ -35,11 +35,10 @@ def actuator_plant(
     """Plant of the planar actuator; ``rotation`` and ``extension`` say whether they are prescribed."""
     mass = actuator.rhoA * actuator.free_length
     tip = (actuator.tip_mass / mass, actuator.tip_inertia / (mass * actuator.free_length**2))
-    modes = 0 if simulation.fidelity == "rigid" else simulation.modes
+    basis = simulation.lateral_basis
+    ratios = tip if basis == "tip-mass" else (0.0, 0.0)
     return Plant(
-        kernel=kernel(
-            simulation.basis, modes, 0, planar=True, tip=tip if simulation.basis == "tip-mass" else (0.0, 0.0)
-        ),
+        kernel=kernel(basis, simulation.lateral_shapes, 0, planar=True, tip=ratios),
         leg_p=actuator_parameters(actuator),
         payload_p=np.zeros(0),
         held_l=np.array([extension]),

@@ -40,7 +40,7 @@ def actuator_modes(
         Its ``gravity`` acts along the beam at ``actuator.angle`` when nothing turns. On a turning hub that load changes
         sign every half turn, so steady modes leave it out.
     simulation : Simulation
-        ``basis`` and ``modes`` of the beam.
+        ``fidelity``, ``basis`` and ``modes`` of the beam.
     rate : float
         Steady rate of rotation [rad/s]: centrifugal stiffening less the centrifugal field across the beam (lag).
     free_length : float, optional
@@ -53,12 +53,12 @@ def actuator_modes(
     ComputationError
         The straight beam is unstable: it has buckled.
     """
-    if simulation.fidelity == "rigid":
+    if not simulation.lateral_shapes:
         raise InputError(
             "leaves nothing that could vibrate with rotation and extension held",
             key="simulation.fidelity",
             value=simulation.fidelity,
-            allowed="assumed-modes",
+            allowed="finite-segment, assumed-modes, beam-fem",
         )
     if free_length is not None:
         actuator = actuator.replace(free_length=free_length)
@@ -80,8 +80,8 @@ def turning_matrices(actuator: Actuator, simulation: Simulation, rate: float) ->
     """M, D, K (k, k) of the amplitudes of the beam in steady rotation, Eq. (T9.6)."""
     mass = actuator.rhoA * actuator.free_length
     tip = (actuator.tip_mass / mass, actuator.tip_inertia / (mass * actuator.free_length**2))
-    ratios = tip if simulation.basis == "tip-mass" else (0.0, 0.0)
-    matrices, tangents = _functions(simulation.basis, simulation.modes, ratios)
+    basis = simulation.lateral_basis
+    matrices, tangents = _functions(basis, simulation.modes, tip if basis == "tip-mass" else (0.0, 0.0))
     p, size = actuator_parameters(actuator)[0], 2 + simulation.modes
     q, v, none = np.zeros(size), np.zeros(size), np.zeros(3)
     q[:2], v[0] = (actuator.angle, actuator.hub_radius + actuator.free_length), rate

@@ -74,7 +74,7 @@ def robot_modes(
     InputError
         Rigid legs on prescribed strokes (nothing can move), or a pure force drive.
     ComputationError
-        No equilibrium at this pose.
+        No equilibrium at this pose, or masses that no body can have.
     """
     path = rigid.home_pose(robot) if path is None else path
     system, found = locked_equilibrium(robot, simulation, path, wrench)
@@ -86,10 +86,17 @@ def robot_modes(
             "leaves nothing that could vibrate with the drives locked",
             key="simulation.fidelity",
             value=simulation.fidelity,
-            allowed="lumped, assumed-modes",
+            allowed="lumped, finite-segment, assumed-modes, beam-fem",
         )
     M, K = N.T @ m.M @ N, N.T @ m.K @ N
-    squared, vectors = eigh(0.5 * (K + K.T), M)
+    try:
+        squared, vectors = eigh(0.5 * (K + K.T), M)
+    except np.linalg.LinAlgError:
+        raise ComputationError(
+            "the mass matrix is not positive: a piston is shorter than what its leg has outside the cylinder, or a leg "
+            "has no mass at all",
+            next_step="Give leg.piston.length at least the largest leg length less leg.cylinder.mouth.",
+        ) from None
     omega = np.sqrt(np.maximum(squared, 0.0))
     D = vectors.T @ N.T @ m.D @ N @ vectors
     return RobotModes(

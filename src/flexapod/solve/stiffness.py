@@ -45,7 +45,7 @@ def robot_stiffness(
             "makes the robot infinitely stiff",
             key="simulation.fidelity",
             value=simulation.fidelity,
-            allowed='"lumped" or "assumed-modes" with at least one axial shape',
+            allowed='"lumped", or a bending fidelity with at least one axial shape',
         )
     m, n, k = system.matrices(found.state, np.zeros(6) if wrench is None else wrench), system.n, 6 * system.n
     P = -m.G[:18, k:]

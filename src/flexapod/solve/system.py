@@ -110,10 +110,9 @@ class RobotSystem:
 
 def robot_system(robot: Robot, simulation: Simulation) -> RobotSystem:
     """System of a robot in the fidelity, basis and number of shapes of ``simulation``."""
-    modes = simulation.modes if simulation.fidelity == "assumed-modes" else 0
-    axial_modes = {"rigid": 0, "lumped": 1, "assumed-modes": robot.legs[0].axial_modes}[simulation.fidelity]
+    axial_modes = simulation.axial_shapes(robot.legs[0].axial_modes)
     return RobotSystem(
-        kernel=kernel(simulation.basis, modes, axial_modes),
+        kernel=kernel(simulation.lateral_basis, simulation.lateral_shapes, axial_modes),
         leg_p=leg_parameters(robot),
         payload_p=payload_parameters(robot),
         held=np.array([leg.drive.type == "prescribed" for leg in robot.legs]),

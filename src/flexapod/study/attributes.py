@@ -40,7 +40,7 @@ def march_attributes(
         "integrator": "generalized-alpha, index-3 constraints",
         "rho_inf": s.rho_inf,
         "fidelity": s.fidelity,
-        "basis": s.basis if s.lateral_shapes else "none",
+        "basis": s.lateral_basis if s.lateral_shapes else "none",
         "modes": s.lateral_shapes,
         "compiled": int(compiled),
         "output_step": s.output_step,
@@ -48,7 +48,7 @@ def march_attributes(
         **error,
     }
     if isinstance(study, model.Study):
-        axial = {"rigid": 0, "lumped": 1}.get(s.fidelity, study.robot.legs[0].axial_modes)
+        axial = s.axial_shapes(study.robot.legs[0].axial_modes)
         settings |= {"axial_modes": axial, "start": study.initial.start}
     return settings | _cost(counters, record) | _ending(record, study.duration)
 

@@ -128,7 +128,8 @@ def _problem(
 
 def _attributes(study: model.Study, path: rigid.Poses) -> dict[str, object]:
     s = study.simulation
-    settings = {"fidelity": s.fidelity, "basis": s.basis if s.lateral_shapes else "none", "modes": s.lateral_shapes}
+    basis = s.lateral_basis if s.lateral_shapes else "none"
+    settings = {"fidelity": s.fidelity, "basis": basis, "modes": s.lateral_shapes}
     return attributes(study, [*study.warnings, *path_remarks(study.robot, np.zeros(1), path)]) | settings
 
 

@@ -1,0 +1,87 @@
+"""`flexapod verify`: the verification pack, computed on the spot."""
+
+from __future__ import annotations
+
+from pathlib import Path
+from typing import TYPE_CHECKING, Annotated
+
+import typer
+
+from flexapod.app.failures import guarded
+from flexapod.app.options import Json, Quiet
+
+if TYPE_CHECKING:
+    from flexapod.study.verify.pack import Outcome
+
+__all__ = ["add"]
+
+Only = Annotated[list[str] | None, typer.Option("--only", metavar="NAME", help="This case; may be given again.")]
+Page = Annotated[Path | None, typer.Option("--html", metavar="FILE", help="Also write the table as a page.")]
+Markdown = Annotated[Path | None, typer.Option("--markdown", metavar="FILE", help="Also write it as Markdown.")]
+
+
+def add(app: typer.Typer) -> None:
+    """Give `app` the command."""
+    app.command("verify")(verify)
+
+
+@guarded
+def verify(
+    only: Only = None, html: Page = None, markdown: Markdown = None, json: Json = False, quiet: Quiet = False
+) -> None:
+    """Compute cases with published or closed-form answers: reference, ours, tolerance, verdict, time."""
+    from flexapod.app.terminal import print_json, print_table, print_text, progress_bar
+    from flexapod.study.verify import page
+    from flexapod.study.verify.pack import verify as compute
+
+    outcomes: list[Outcome] = []
+    interrupted = False
+    with progress_bar(quiet=quiet or json) as report:
+        try:
+            compute(only or (), progress=report, keep=outcomes.append)
+        except KeyboardInterrupt:
+            interrupted = True
+    _write(outcomes, html, markdown)
+    if json:
+        print_json({"passed": all(o.passed for o in outcomes), "cases": [o.as_dict() for o in outcomes]})
+    else:
+        print_table(page.HEAD, page.rows(outcomes), left=(0, 1))
+        print_text()
+        print_text(page.sentence(outcomes))
+    if interrupted:
+        raise KeyboardInterrupt
+    if not all(o.passed for o in outcomes):
+        raise typer.Exit(1)
+
+
+def _write(outcomes: list[Outcome], html: Path | None, markdown: Path | None) -> None:
+    from flexapod.app import html as parts
+    from flexapod.study.store import replacing
+    from flexapod.study.verify import page
+
+    if markdown is not None:
+        with replacing(markdown) as file:
+            file.write_text(page.markdown(outcomes), encoding="utf-8")
+    if html is not None:
+        marks = {"pass": "good", "fail": "bad", "not computed": "bad"}
+        cases = [
+            parts.section(o.case.name, o.case.name, parts.paragraph(f"{o.case.statement}."),
+                          parts.bullets([f"Source: {o.case.source}.", f"Tolerance: {o.case.argument}."]), _checks(o))
+            for o in outcomes
+        ]  # fmt: skip
+        table = parts.table(page.HEAD, page.rows(outcomes), marks)
+        with replacing(html) as file:
+            text = parts.page("flexapod: verification", page.sentence(outcomes), [table, *cases])
+            file.write_text(text, encoding="utf-8")
+
+
+def _checks(outcome: Outcome) -> str:
+    from flexapod.app import html as parts
+
+    head = ("What", "Reference", "Ours", "Error", "Tolerance", "Verdict")
+    rows = [
+        (c.what, f"{c.reference:.10g}", f"{c.ours:.10g}", f"{c.error:.2g}", f"{c.tolerance:.2g}",
+         "pass" if c.passed else "fail")
+        for c in outcome.checks
+    ]  # fmt: skip
+    return parts.table(head, rows, {"pass": "good", "fail": "bad"})

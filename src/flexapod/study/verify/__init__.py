@@ -1,0 +1,1 @@
+"""The verification pack: cases with a published or closed-form answer, computed on the spot: `pack.verify`."""

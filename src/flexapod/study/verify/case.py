@@ -1,0 +1,62 @@
+"""A case of the verification pack: what is compared with what, and why the tolerance is what it is."""
+
+from __future__ import annotations
+
+from collections.abc import Callable, Sequence
+from dataclasses import dataclass
+
+import numpy as np
+from numpy.typing import ArrayLike
+
+__all__ = ["Case", "Check", "checks"]
+
+
+@dataclass(frozen=True, kw_only=True)
+class Check:
+    """One number: `ours` against `reference`; `tolerance` is relative, or absolute in `unit` if `absolute`."""
+
+    what: str
+    reference: float
+    ours: float
+    tolerance: float
+    unit: str = "1"
+    absolute: bool = False
+
+    @property
+    def error(self) -> float:
+        """Size of the difference, relative to the reference unless absolute."""
+        difference = abs(self.ours - self.reference)
+        return difference if self.absolute else difference / abs(self.reference)
+
+    @property
+    def passed(self) -> bool:
+        """Whether the error is a number within the tolerance."""
+        return bool(np.isfinite(self.error) and self.error <= self.tolerance)
+
+
+@dataclass(frozen=True, kw_only=True)
+class Case:
+    """A case: short `name`, `statement`, `source` of the reference, `argument` for the tolerance, how to compute it."""
+
+    name: str
+    statement: str
+    source: str
+    argument: str
+    compute: Callable[[], Sequence[Check]]
+
+
+def checks(
+    names: Sequence[str],
+    reference: ArrayLike,
+    ours: ArrayLike,
+    tolerance: float,
+    unit: str = "1",
+    *,
+    absolute: bool = False,
+) -> list[Check]:
+    """Checks of several numbers with one tolerance."""
+    rows = zip(names, np.ravel(reference), np.ravel(ours), strict=True)
+    return [
+        Check(what=name, reference=float(a), ours=float(b), tolerance=tolerance, unit=unit, absolute=absolute)
+        for name, a, b in rows
+    ]

@@ -1,0 +1,45 @@
+"""Poses and architectures in which the legs do not hold the platform."""
+
+from __future__ import annotations
+
+import numpy as np
+
+from flexapod import model
+from flexapod.rigid.jacobian import characteristic_length, length_jacobian, scaled
+from flexapod.rigid.trajectory import rotation_matrix
+from flexapod.study.verify.case import Case, Check
+from flexapod.typing import Array
+
+
+def _smallest(base: Array, platform: Array, position: Array, rotation: Array) -> float:
+    """Largest smallest singular value of the scaled Jacobian over poses."""
+    jacobian = scaled(length_jacobian(base, platform, position, rotation), characteristic_length(platform))
+    return float(np.linalg.svd(jacobian, compute_uv=False)[..., -1].max())
+
+
+def base(half_angle: float) -> Array:
+    """Base joints on a circle of 0.5 m; half-angle in deg."""
+    return model.base_circle(0.5, np.deg2rad(half_angle))
+
+
+def _compute() -> list[Check]:
+    random = np.random.default_rng(1991)
+    position = random.uniform([-0.2, -0.2, 0.6], [0.2, 0.2, 1.1], (2000, 3))
+    rotation = rotation_matrix(random.uniform(-0.5, 0.5, (2000, 3)))
+    platform, regular = (model.platform_circle(0.3, np.deg2rad(h)) for h in (10.0, 30.0))
+    yaw = rotation_matrix(np.array([0, 0, np.pi / 2]))
+    rows = (
+        ("similar hexagons, 2000 poses", _smallest(base(10.0), 0.6 * base(10.0), position, rotation)),
+        ("regular hexagons joined crosswise", _smallest(base(30.0), regular, position, rotation)),
+        ("standard layout at a yaw of 90 deg", _smallest(base(10.0), platform, np.array([0, 0, 0.9]), yaw)),
+    )
+    return [Check(what=what, reference=0, ours=ours, tolerance=1e-15, absolute=True) for what, ours in rows]
+
+
+SINGULARITIES = Case(
+    name="singularities",
+    statement="Smallest singular value of the scaled Jacobian in known singularities",
+    source="Ma & Angeles 1991 (architecture), Fichter 1986 (yaw)",
+    argument="a few units in the last place of the largest singular value, about 2",
+    compute=_compute,
+)

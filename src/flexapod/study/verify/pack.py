@@ -1,0 +1,97 @@
+"""Running the pack: every case by itself, a failure of one leaves the others."""
+
+from __future__ import annotations
+
+import time
+from collections.abc import Callable, Sequence
+from dataclasses import asdict, dataclass
+
+from flexapod.errors import FlexapodError, InputError, closest
+from flexapod.study.record import Report
+from flexapod.study.verify.case import Case, Check
+from flexapod.study.verify.cases import CASES
+
+__all__ = ["Outcome", "verify"]
+
+
+@dataclass(frozen=True, kw_only=True)
+class Outcome:
+    """What a case gave: its checks, or why it could not be computed; `seconds` it took."""
+
+    case: Case
+    checks: tuple[Check, ...]
+    seconds: float
+    failure: str = ""
+
+    @property
+    def passed(self) -> bool:
+        """Whether it was computed and every check lies within its tolerance."""
+        return not self.failure and all(check.passed for check in self.checks)
+
+    @property
+    def worst(self) -> Check | None:
+        """The check that comes nearest to its tolerance or exceeds it most; None if nothing was computed."""
+        return max(self.checks, key=lambda check: check.error / check.tolerance, default=None)
+
+    def as_dict(self) -> dict[str, object]:
+        """Everything as plain data."""
+        rows = [{**asdict(check), "error": check.error, "passed": check.passed} for check in self.checks]
+        words = {name: getattr(self.case, name) for name in ("name", "statement", "source", "argument")}
+        return {**words, "passed": self.passed, "failure": self.failure, "seconds": self.seconds, "checks": rows}
+
+
+def verify(
+    only: Sequence[str] = (),
+    *,
+    progress: Report | None = None,
+    keep: Callable[[Outcome], None] | None = None,
+) -> tuple[Outcome, ...]:
+    """Compute the cases of the verification pack.
+
+    Parameters
+    ----------
+    only : sequence of str
+        Names of cases; none: all.
+    progress : callable, optional
+        Called with the name of the case and the share of the whole that is done.
+    keep : callable, optional
+        Called with each outcome as soon as it is there.
+
+    Returns
+    -------
+    tuple of Outcome
+        In the order of the pack.
+
+    Raises
+    ------
+    InputError
+        A name that no case has.
+    """
+    chosen = _chosen(only)
+    outcomes = []
+    for i, case in enumerate(chosen):
+        if progress is not None:
+            progress(case.name, i / len(chosen))
+        outcomes.append(_computed(case))
+        if keep is not None:
+            keep(outcomes[-1])
+    return tuple(outcomes)
+
+
+def _chosen(only: Sequence[str]) -> list[Case]:
+    names = [case.name for case in CASES]
+    for name in only:
+        if name not in names:
+            raise InputError(
+                "is no case", key="--only", value=name, allowed=", ".join(names), next_step=closest(name, names)
+            )
+    return [case for case in CASES if not only or case.name in only]
+
+
+def _computed(case: Case) -> Outcome:
+    begin = time.perf_counter()
+    try:
+        found, failure = tuple(case.compute()), ""
+    except FlexapodError as error:
+        found, failure = (), str(error)
+    return Outcome(case=case, checks=found, seconds=time.perf_counter() - begin, failure=failure)

@@ -1,0 +1,50 @@
+"""The pack as a page of the documentation: what is compared, with what, and why the tolerance is what it is."""
+
+from __future__ import annotations
+
+from collections.abc import Sequence
+
+from flexapod.study.verify.pack import Outcome
+
+__all__ = ["HEAD", "markdown", "rows", "sentence"]
+
+HEAD = ("Case", "Nearest to its tolerance", "Reference", "Ours", "Tolerance", "Verdict", "Time")
+
+
+def rows(outcomes: Sequence[Outcome]) -> list[tuple[str, ...]]:
+    """A row for each case, under `HEAD`: the check that comes nearest to its tolerance."""
+    return [_row(outcome) for outcome in outcomes]
+
+
+def _row(outcome: Outcome) -> tuple[str, ...]:
+    worst, time = outcome.worst, f"{outcome.seconds:.2g} s"
+    if worst is None:
+        return (outcome.case.name, outcome.failure, "", "", "", "not computed", time)
+    unit = "" if worst.unit == "1" else f" {worst.unit}"
+    bound = f"{worst.tolerance:.2g}{unit}" if worst.absolute else f"{worst.tolerance:.2g} of it"
+    verdict = "pass" if outcome.passed else "fail"
+    return (
+        outcome.case.name, worst.what, f"{worst.reference:.8g}{unit}", f"{worst.ours:.8g}{unit}", bound, verdict, time,
+    )  # fmt: skip
+
+
+def sentence(outcomes: Sequence[Outcome]) -> str:
+    """How many cases and numbers agree."""
+    passed, numbers = sum(o.passed for o in outcomes), sum(len(o.checks) for o in outcomes)
+    return f"{passed} of {len(outcomes)} cases pass, {numbers} numbers compared."
+
+
+def markdown(outcomes: Sequence[Outcome]) -> str:
+    """The page `docs/verification.md`."""
+    table = [HEAD[:-1], ("---",) * (len(HEAD) - 1), *(row[:-1] for row in rows(outcomes))]
+    lines = ["| " + " | ".join(cells) + " |" for cells in table]
+    cases = [
+        f"### {o.case.name}\n\n{o.case.statement}: {len(o.checks)} numbers.\n\n"
+        f"- Source: {o.case.source}.\n- Tolerance: {o.case.argument}."
+        for o in outcomes
+    ]
+    head = (
+        "# Verification\n\nWritten by `flexapod verify --markdown FILE`, which computes every number on the spot. "
+        "Many more comparisons are in `tests/`.\n"
+    )
+    return "\n".join([head, sentence(outcomes), "", *lines, "", "## Cases", "", "\n\n".join(cases), ""])
