@@ -66,6 +66,27 @@ def cold() -> float:
         return time.perf_counter() - begin
 
 
+def interpreted() -> float:
+    """Microseconds of a step, k = 3, without a compiler: the difference of two runs leaves out the start."""
+    code = (
+        "import time\n"
+        "from flexapod.model import override, preset\n"
+        "from flexapod.solve.robot_march import prepare\n"
+        "def seconds(duration):\n"
+        "    run = prepare(override(preset('paper-robot'), step=5e-4, duration=duration))\n"
+        "    begin = time.perf_counter()\n"
+        "    list(run.chunks)\n"
+        "    return time.perf_counter() - begin\n"
+        "short, long = seconds(0.02), seconds(0.12)\n"
+        "print(1e6 * (long - short) / 200)\n"
+    )
+    run = subprocess.run(
+        [sys.executable, "-W", "ignore", "-c", code],
+        check=True, capture_output=True, text=True, env=os.environ | {"FLEXAPOD_COMPILER": "none"},
+    )  # fmt: skip
+    return float(run.stdout)
+
+
 def main() -> None:
     """Print the table."""
     one_core()
@@ -79,6 +100,8 @@ def main() -> None:
     actuator()
     line("10 s actuator, k = 3, tolerance 1e-4", median(actuator), "")
     line("cold start to finished roll (compiles)", median(cold, 3), "at most 15 s")
+    step = interpreted()
+    line("without a C compiler, k = 3", 1e-6 * step, "", f"{step:7.1f} us a step")
     line("flexapod --help", median(lambda: command("--help")), "at most 0.5 s")
     line("flexapod replicate", replicate(), "at most 90 s")
 

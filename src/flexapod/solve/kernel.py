@@ -74,7 +74,7 @@ def kernel(
 def _warn_interpreted() -> None:
     """Say once, whatever the number of kernels, that they are slow."""
     _log.warning(
-        "No C compiler was found: the equations are interpreted, about 20 times slower. "
+        "No C compiler was found: the equations are interpreted, some 150 times slower. "
         "Install gcc or clang, or `pip install flexapod[compiler]`."
     )
 

@@ -37,7 +37,7 @@ class NamedFunction:
 
 
 class Interpreted:
-    """A function evaluated by casadi's virtual machine; about twenty times slower than compiled."""
+    """A function evaluated by casadi's virtual machine: slow, but there at once."""
 
     def __init__(self, function: NamedFunction) -> None:
         self._function = function.build()
