@@ -30,7 +30,7 @@ def test_the_page_is_what_the_program_writes(outcomes):
 
     def fixed(text):
         rows = [line.split(" | ") for line in text.splitlines()]
-        return [row[:1] + row[-2:] if len(row) > 5 else row for row in rows]
+        return [row[:3] + row[4:] if len(row) > 5 else row for row in rows]
 
     assert fixed(PAGE.read_text(encoding="utf-8")) == fixed(markdown(outcomes))
 
@@ -70,15 +70,47 @@ def test_a_failed_case_leaves_the_others(flexapod, monkeypatch):
     cases = (
         case("wrong", lambda: [Check(what="x", reference=1.0, ours=1.1, tolerance=1e-3)]),
         case("broken", refuse),
+        case("faulty", lambda: 1 / 0),
         case("right", lambda: checks(["x"], [2.0], [2.0], 1e-3)),
     )
     monkeypatch.setattr(pack, "CASES", cases)
     run = flexapod("verify", "--json")
     assert run.exit_code == 1
     found = {c["name"]: c for c in json.loads(run.stdout)["cases"]}
-    assert [found[name]["passed"] for name in ("wrong", "broken", "right")] == [False, False, True]
+    assert [found[name]["passed"] for name in ("wrong", "broken", "faulty", "right")] == [False, False, False, True]
     assert "no engine here" in found["broken"]["failure"]
 
 
-def test_nan_does_not_pass():
-    assert not Check(what="x", reference=1.0, ours=float("nan"), tolerance=1.0).passed
+def outcome(*found):
+    return pack.Outcome(case=case("x", refuse), checks=found, seconds=0.0)
+
+
+def test_nan_does_not_pass_and_is_the_worst():
+    good = Check(what="good", reference=1.0, ours=1.0, tolerance=1.0)
+    nan = Check(what="nan", reference=1.0, ours=float("nan"), tolerance=1.0)
+    assert not nan.passed
+    assert outcome(good, nan).worst is nan
+    assert not outcome(good, nan).passed
+
+
+def test_a_case_that_compares_nothing_does_not_pass():
+    assert not outcome().passed
+
+
+def test_a_reference_of_zero_has_no_relative_error():
+    with pytest.raises(ValueError, match="absolute"):
+        Check(what="x", reference=0.0, ours=0.0, tolerance=1.0)
+
+
+def stop():
+    raise KeyboardInterrupt
+
+
+def test_a_pack_that_is_stopped_does_not_pass_and_writes_no_page(flexapod, folder, monkeypatch):
+    right = case("right", lambda: checks(["x"], [2.0], [2.0], 1e-3))
+    monkeypatch.setattr(pack, "CASES", (right, case("stopped", stop)))
+    run = flexapod("verify", "--json", "--markdown", "a.md")
+    assert run.exit_code == 130
+    found = json.loads(run.stdout)
+    assert (found["passed"], found["complete"], len(found["cases"])) == (False, False, 1)
+    assert not (folder / "a.md").exists()

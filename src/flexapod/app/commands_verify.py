@@ -41,16 +41,19 @@ def verify(
             compute(only or (), progress=report, keep=outcomes.append)
         except KeyboardInterrupt:
             interrupted = True
-    _write(outcomes, html, markdown)
+    passed = not interrupted and all(o.passed for o in outcomes)
+    if not interrupted:
+        _write(outcomes, html, markdown)
     if json:
-        print_json({"passed": all(o.passed for o in outcomes), "cases": [o.as_dict() for o in outcomes]})
+        state = {"passed": passed, "complete": not interrupted}
+        print_json({**state, "cases": [o.as_dict() for o in outcomes]})
     else:
         print_table(page.HEAD, page.rows(outcomes), left=(0, 1))
         print_text()
         print_text(page.sentence(outcomes))
     if interrupted:
         raise KeyboardInterrupt
-    if not all(o.passed for o in outcomes):
+    if not passed:
         raise typer.Exit(1)
 
 

@@ -22,11 +22,20 @@ class Check:
     unit: str = "1"
     absolute: bool = False
 
+    def __post_init__(self) -> None:
+        if self.reference == 0 and not self.absolute:
+            raise ValueError(f"{self.what}: a reference of zero needs an absolute tolerance")
+
     @property
     def error(self) -> float:
         """Size of the difference, relative to the reference unless absolute."""
         difference = abs(self.ours - self.reference)
         return difference if self.absolute else difference / abs(self.reference)
+
+    @property
+    def strain(self) -> float:
+        """Error over tolerance; inf where the error is no number."""
+        return self.error / self.tolerance if np.isfinite(self.error) else float("inf")
 
     @property
     def passed(self) -> bool:

@@ -26,12 +26,12 @@ class Outcome:
     @property
     def passed(self) -> bool:
         """Whether it was computed and every check lies within its tolerance."""
-        return not self.failure and all(check.passed for check in self.checks)
+        return not self.failure and bool(self.checks) and all(check.passed for check in self.checks)
 
     @property
     def worst(self) -> Check | None:
         """The check that comes nearest to its tolerance or exceeds it most; None if nothing was computed."""
-        return max(self.checks, key=lambda check: check.error / check.tolerance, default=None)
+        return max(self.checks, key=lambda check: check.strain, default=None)
 
     def as_dict(self) -> dict[str, object]:
         """Everything as plain data."""
@@ -92,6 +92,7 @@ def _computed(case: Case) -> Outcome:
     begin = time.perf_counter()
     try:
         found, failure = tuple(case.compute()), ""
-    except FlexapodError as error:
-        found, failure = (), str(error)
+    except Exception as error:  # whatever a case does, the others are computed
+        words = str(error) if isinstance(error, FlexapodError) else f"{type(error).__name__}: {error}"
+        found, failure = (), words
     return Outcome(case=case, checks=found, seconds=time.perf_counter() - begin, failure=failure)
