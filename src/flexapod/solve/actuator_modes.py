@@ -81,8 +81,8 @@ def turning_matrices(actuator: Actuator, simulation: Simulation, rate: float) ->
     mass = actuator.rhoA * actuator.free_length
     tip = (actuator.tip_mass / mass, actuator.tip_inertia / (mass * actuator.free_length**2))
     basis = simulation.lateral_basis
-    matrices, tangents = _functions(basis, simulation.modes, tip if basis == "tip-mass" else (0.0, 0.0))
-    p, size = actuator_parameters(actuator)[0], 2 + simulation.modes
+    matrices, tangents = _functions(basis, simulation.lateral_shapes, tip if basis == "tip-mass" else (0.0, 0.0))
+    p, size = actuator_parameters(actuator)[0], 2 + simulation.lateral_shapes
     q, v, none = np.zeros(size), np.zeros(size), np.zeros(3)
     q[:2], v[0] = (actuator.angle, actuator.hub_radius + actuator.free_length), rate
     M = matrices(q, none, p)[0]

@@ -112,7 +112,7 @@ def march(problem: Problem, start: Flow, first_step: float, counters: Counters) 
                 raise
             most, control.settings = (stop - done) // 2, before  # as far as the last output before the failure
             continue
-        flow, done = ahead, stop
+        flow, done, most = ahead, stop, min(2 * most, CHUNK)
         if done in problem.restarts and done < problem.outputs:
             flow = _restarted(problem, flow, done * problem.output_step, control.h)
         yield chunk

@@ -124,7 +124,7 @@ def _unwritable(path: Path, error: OSError) -> InputError:
     return InputError(
         f"cannot be written: {error.strerror or error}",
         file=str(path),
-        next_step="Choose a folder that you may write to and that has space, with --out DIR",
+        next_step="Choose a place that you may write to and that has space",
     )
 
 

@@ -65,13 +65,16 @@ class RobotSummary:
     def sentence(self) -> str:
         """The deviation and its largest cause, in one sentence."""
         name = {"com": "The payload's centre of mass", "tool": "The tool"}[self.point]
-        if self.largest_cause is None:
+        if self.peak < NOTHING:
             return f"{name} stays on the path of the rigid robot: its legs are rigid."
         by_axis = ", ".join(f"{a.axis} {text(a.peak, 'm')}" for a in self.axes)
         leg = "" if self.worst_leg is None else f", most of it in leg {self.worst_leg}"
         until = " until the computation stopped" if self.partial else ""
+        size = f"{name} misses its rigid path by up to {text(self.peak, 'm')}{until} ({by_axis})"
+        if self.largest_cause is None:
+            return f"{size}."
         return (
-            f"{name} misses its rigid path by up to {text(self.peak, 'm')}{until} ({by_axis}); the largest cause is "
+            f"{size}; the largest cause is "
             f"{CAUSE_WORDS[self.largest_cause]} ({100 * self.causes[self.largest_cause]:.0f} %{leg})."
         )
 
@@ -133,7 +136,7 @@ def summary(data: Dataset, point: str = "com") -> RobotSummary | ActuatorSummary
     deviation, path = data[f"{point}_deviation"].values, data[f"{point}_position_rigid"].values
     size, time = np.linalg.norm(deviation, axis=1), data.time.values
     at = int(size.argmax())
-    causes, leg, share = _blame(data, at)
+    causes, leg, share = _blame(data, at) if point == "com" else ({}, None, None)
     return RobotSummary(
         point=point,
         peak=float(size[at]),

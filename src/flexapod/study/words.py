@@ -7,7 +7,7 @@ from numpy.typing import ArrayLike
 
 from flexapod.typing import Array
 
-__all__ = ["Scale", "scale", "text"]
+__all__ = ["Scale", "number", "scale", "text"]
 
 _PREFIXES = {
     "m": ((1.0, "m"), (1e3, "mm"), (1e6, "µm"), (1e9, "nm")),
