@@ -31,7 +31,7 @@ demo: $(RUN)  ## the paper's whole study: figures, data and report in build/demo
 	$(BIN)/flexapod replicate --out build/demo
 
 test: lint  ## lint, then all tests
-	$(BIN)/python -m pytest -n 2
+	$(BIN)/python -m pytest -n 2 --dist loadgroup
 
 lint: $(DEV)  ## style, types and import layers
 	$(BIN)/ruff check .

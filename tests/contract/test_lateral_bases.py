@@ -7,17 +7,24 @@ from tests.oracles.ritz import clamped_free
 
 from flexapod.bases import lateral_basis
 
-BASES = [("clamped-free", 0.0, 0.0), ("tip-load", 0.0, 0.0), ("tip-mass", 1.0, 0.0), ("tip-mass", 1.0, 10.0)]
+BASES = [
+    ("clamped-free", 0.0, 0.0),
+    ("tip-load", 0.0, 0.0),
+    ("tip-mass", 1.0, 0.0),
+    ("tip-mass", 1.0, 10.0),
+]
 NAMES = ["clamped-free", "tip-load", "tip-mass", "tip-body"]
 COUNTS = range(1, 13)
 #: Largest n-th derivative of twelve shapes, order of magnitude: rounding is relative to this.
 STEEP = 38.0 ** np.arange(4)
 
-ALL_NAMES = [*NAMES, "segments", "hermite"]
+LOADED = [("tip-load", 0.0, 1.0), ("tip-load", 1.0, 0.0, 50.0, 5.0)]  # a moment at the tip, a turning beam
 PIECEWISE = [("segments", 0.0, 0.0), ("hermite", 0.0, 0.0)]
-ALL = [(which, count) for which in BASES + PIECEWISE for count in COUNTS if which[0] != "hermite" or count % 2 == 0]
+ALL_BASES = BASES + LOADED + PIECEWISE
+ALL_NAMES = [*NAMES, "tip-moment", "turning", "segments", "hermite"]
+ALL = [(which, count) for which in ALL_BASES for count in COUNTS if which[0] != "hermite" or count % 2 == 0]
 every_count = pytest.mark.parametrize(
-    ("which", "count"), ALL, ids=[f"{ALL_NAMES[(BASES + PIECEWISE).index(which)]}-{count}" for which, count in ALL]
+    ("which", "count"), ALL, ids=[f"{ALL_NAMES[ALL_BASES.index(which)]}-{count}" for which, count in ALL]
 )
 every_basis = pytest.mark.parametrize("which", BASES, ids=NAMES)
 
@@ -58,10 +65,12 @@ def test_closed_integrals(which, count):
 
 @every_count
 def test_ends(which, count):
-    b, mu, inertia = lateral_basis(which[0], count, *which[1:]), *which[1:]
+    b, mu, inertia = lateral_basis(which[0], count, *which[1:]), *which[1:3]
     clamp, tip = ([b.values(np.array([x]), n)[:, 0] / STEEP[n] for n in range(4)] for x in (0.0, 1.0))
-    np.testing.assert_allclose([clamp[0], clamp[1]], 0, atol=1e-13)
+    np.testing.assert_allclose([clamp[0], clamp[1]] / np.abs(b.tip).max(initial=1.0), 0, atol=1e-13)
     np.testing.assert_allclose([tip[0], tip[1] * STEEP[1]], [b.tip, b.tip_slope], rtol=1e-13, atol=1e-13)
+    if which in LOADED:
+        return
     if which[0] == "tip-load":  # a held tip carries a force, no moment
         np.testing.assert_allclose(tip[2], 0, atol=1e-12)
         np.testing.assert_allclose(b.tip, np.eye(count)[0], atol=1e-12)
@@ -69,6 +78,22 @@ def test_ends(which, count):
         eps = np.array([phi.eps for phi in b.shapes])
         np.testing.assert_allclose(tip[2] * STEEP[2] / eps**2, inertia * eps**2 * b.tip_slope, atol=1e-11)
         np.testing.assert_allclose(tip[3] * STEEP[3] / eps**3, -mu * eps * b.tip, atol=1e-11)
+
+
+@pytest.mark.parametrize("which", LOADED, ids=["tip-moment", "turning"])
+@pytest.mark.parametrize("count", [2, 3, 6, 12])
+def test_load_shapes_contain_the_static_ones(which, count):
+    """(T1.16): the static shape under a tip force, with a moment also that one, lies in what the shapes span."""
+    b = lateral_basis(which[0], count, *which[1:])
+    np.testing.assert_allclose(b.mass[:count, :count], np.eye(count), atol=1e-9)
+    _, _, inertia, speed, hub = (*which, 0.0, 0.0)[:5]
+    tension = speed**2 * (hub * b.slope_first + b.slope_moment + which[1] * (1 + hub) * b.slope_tip)
+    stiffness = b.stiffness + tension
+    np.testing.assert_allclose(stiffness / np.sqrt(np.outer(*2 * [np.diag(stiffness)])), np.eye(count), atol=1e-9)
+    if inertia:
+        z = np.linspace(0, 1, 21)
+        for load, shape in ((b.tip, z**2 / 2 - z**3 / 6), (b.tip_slope, z**2 / 2)):
+            np.testing.assert_allclose(np.linalg.solve(b.stiffness, load) @ b.values(z), shape, atol=1e-9)
 
 
 @every_basis
@@ -174,7 +199,7 @@ def test_tip_load_spans_all_polynomials_that_fit(count):
     np.testing.assert_allclose(b.values(z)[0], (3 * z**2 - z**3) / 2, atol=1e-15)
 
 
-@pytest.mark.parametrize("which", BASES + PIECEWISE, ids=ALL_NAMES)
+@pytest.mark.parametrize("which", ALL_BASES, ids=ALL_NAMES)
 def test_damping_is_the_same_ratio_for_every_mode(which):
     b = lateral_basis(which[0], 12, *which[1:])
     mass = b.mass[:12, :12]

@@ -158,7 +158,8 @@ def test_actuator_end_of_motion():
     [
         ("tip_mass = 1", "clamped-free", True),
         ("tip_mass = 1", "tip-load", False),
-        ("tip_mass = 1\ntip_inertia = 0.1", "tip-load", True),
+        ("tip_mass = 1\ntip_inertia = 0.1", "tip-load", False),
+        ("tip_inertia = 0.1", "clamped-free", True),
         ("tip_mass = 1\ntip_inertia = 0.1", "tip-mass", False),
         ("tip_mass = 0", "clamped-free", False),
     ],

@@ -333,7 +333,7 @@ REFUSALS = [
     ('"assumed-modes"   #', '"beam-fem"   #', "simulation.modes", ("two shapes per element", "2, 4, 6")),
     ("modes = 3", 'modes = 3\nbasis = "segments"', "simulation.basis", ('fidelity = "finite-segment"',)),
     ('"assumed-modes"   #', '"assumed-mode"   #', "simulation.fidelity", ("Did you mean 'assumed-modes'",)),
-    ("modes = 3", "modes = 13", "simulation.modes", ("at most 12",)),
+    ("modes = 3", "modes = 13", "simulation.modes", ("1 to 12",)),
     ("modes = 3", "modes = 0", "simulation.modes", ("lumped",)),
     ("modes = 3", "modes = 2.5", "simulation.modes", ("whole number",)),
     ("modes = 3", 'modes = 3\nbasis = "tip-mass"', "simulation.basis", ("tip-load, clamped-free",)),

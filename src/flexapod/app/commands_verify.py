@@ -16,6 +16,7 @@ if TYPE_CHECKING:
 __all__ = ["add"]
 
 Only = Annotated[list[str] | None, typer.Option("--only", metavar="NAME", help="This case; may be given again.")]
+All = Annotated[bool, typer.Option("--all", help="Also the slow cases (minutes).")]
 Page = Annotated[Path | None, typer.Option("--html", metavar="FILE", help="Also write the table as a page.")]
 Markdown = Annotated[Path | None, typer.Option("--markdown", metavar="FILE", help="Also write it as Markdown.")]
 
@@ -27,7 +28,12 @@ def add(app: typer.Typer) -> None:
 
 @guarded
 def verify(
-    only: Only = None, html: Page = None, markdown: Markdown = None, json: Json = False, quiet: Quiet = False
+    only: Only = None,
+    slow: All = False,
+    html: Page = None,
+    markdown: Markdown = None,
+    json: Json = False,
+    quiet: Quiet = False,
 ) -> None:
     """Compute cases with published or closed-form answers: reference, ours, tolerance, verdict, time."""
     from flexapod.app.terminal import print_json, print_table, print_text, progress_bar
@@ -38,10 +44,10 @@ def verify(
     interrupted = False
     with progress_bar(quiet=quiet or json) as report:
         try:
-            compute(only or (), progress=report, keep=outcomes.append)
+            compute(only or (), slow=slow, progress=report, keep=outcomes.append)
         except KeyboardInterrupt:
             interrupted = True
-    passed = not interrupted and all(o.passed for o in outcomes)
+    passed = not interrupted and all(o.passed or o.not_run for o in outcomes)
     if not interrupted:
         _write(outcomes, html, markdown)
     if json:
@@ -66,10 +72,10 @@ def _write(outcomes: list[Outcome], html: Path | None, markdown: Path | None) ->
         with replacing(markdown) as file:
             file.write_text(page.markdown(outcomes), encoding="utf-8")
     if html is not None:
-        marks = {"pass": "good", "fail": "bad", "not computed": "bad"}
+        marks = {"pass": "good", "fail": "bad", "not computed": "bad", "not run": "open"}
         cases = [
             parts.section(o.case.name, o.case.name, parts.paragraph(f"{o.case.statement}."),
-                          parts.bullets([f"Source: {o.case.source}.", f"Tolerance: {o.case.argument}."]), _checks(o))
+                          parts.bullets(page.notes(o)), _checks(o))
             for o in outcomes
         ]  # fmt: skip
         table = parts.table(page.HEAD, page.rows(outcomes), marks)
@@ -84,7 +90,7 @@ def _checks(outcome: Outcome) -> str:
     head = ("What", "Reference", "Ours", "Error", "Tolerance", "Verdict")
     rows = [
         (c.what, f"{c.reference:.10g}", f"{c.ours:.10g}", f"{c.error:.2g}", f"{c.tolerance:.2g}",
-         "pass" if c.passed else "fail")
+         "reference at fault" if c.fault else "pass" if c.passed else "fail")
         for c in outcome.checks
     ]  # fmt: skip
     return parts.table(head, rows, {"pass": "good", "fail": "bad"})

@@ -5,21 +5,32 @@ from functools import lru_cache
 from flexapod.bases.beam_functions import clamped_free, clamped_tip_mass
 from flexapod.bases.hermite import hermite_shapes
 from flexapod.bases.lateral import LateralBasis, integrate
+from flexapod.bases.load_shapes import load_shapes
 from flexapod.bases.polynomials import tip_load_shapes
 from flexapod.bases.segments import segment_shapes
 
 
 @lru_cache(maxsize=64)
-def lateral_basis(name: str, count: int, tip_mass_ratio: float = 0.0, tip_inertia_ratio: float = 0.0) -> LateralBasis:
+def lateral_basis(
+    name: str,
+    count: int,
+    tip_mass_ratio: float = 0.0,
+    tip_inertia_ratio: float = 0.0,
+    speed: float = 0.0,
+    hub_ratio: float = 0.0,
+) -> LateralBasis:
     """Lateral basis ``name`` with ``count`` shapes.
 
     Parameters
     ----------
     name : {"clamped-free", "tip-load", "tip-mass", "segments", "hermite"}
     count : int
-        Shapes per plane, 0 to 12; of ``segments`` one per segment, of ``hermite`` two per element.
+        Shapes per plane, 0 to 12 (``hermite`` 24); of ``segments`` one per segment, of ``hermite`` two per element.
     tip_mass_ratio, tip_inertia_ratio : float
-        m/(rhoA s) and J/(rhoA s^3) of the ``tip-mass`` eigenfunctions, dimensionless; unused by the others.
+        m/(rhoA s) and J/(rhoA s^3) of the tip body, dimensionless, in the ``tip-mass`` eigenfunctions; ``tip-load``
+        asks whether J is positive (the tip takes a moment) and, where the beam turns, for the tension by m.
+    speed, hub_ratio : float
+        theta_dot sqrt(rhoA s^4 / EI) and R_h/s of a beam in steady rotation, in ``tip-load`` shapes only.
 
     Raises
     ------
@@ -28,6 +39,11 @@ def lateral_basis(name: str, count: int, tip_mass_ratio: float = 0.0, tip_inerti
     """
     if name == "clamped-free":
         return integrate(name, clamped_free(count))
+    if name == "tip-load" and (speed or tip_inertia_ratio):
+        turning = load_shapes(
+            count, speed=speed, hub_ratio=hub_ratio, mass_ratio=tip_mass_ratio, moment=tip_inertia_ratio > 0
+        )
+        return integrate(name, turning)
     if name == "tip-load":
         return integrate(name, tip_load_shapes(count))
     if name == "tip-mass":

@@ -26,11 +26,10 @@ def actuator_remarks(actuator: Actuator, basis: str | None) -> tuple[str, ...]:
     depth = actuator.section.depth if actuator.section is not None else 0.0
     if depth > _SLENDER * actuator.free_length:
         remarks.append(f"the beam is {depth:g} m deep, {_fat(depth, actuator.free_length, 'free length at t = 0')}")
-    inertial = actuator.tip_inertia > 0 or (basis == "clamped-free" and actuator.tip_mass > 0)
-    if inertial and basis in ("clamped-free", "tip-load"):
+    if basis == "clamped-free" and (actuator.tip_mass > 0 or actuator.tip_inertia > 0):
         remarks.append(
-            f'shapes of basis "{basis}" know nothing of the inertia at the tip and converge slowly with it: '
-            'check with more modes, or choose basis = "tip-mass"'
+            'shapes of basis "clamped-free" know nothing of the inertia at the tip and converge slowly with it: '
+            'check with more modes, or choose basis = "tip-load" or "tip-mass"'
         )
     return tuple(remarks)
 

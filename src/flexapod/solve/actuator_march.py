@@ -11,7 +11,7 @@ from flexapod.model import Actuator, ActuatorStudy, Simulation
 from flexapod.solve.genalpha import GeneralizedAlpha
 from flexapod.solve.kernel import kernel
 from flexapod.solve.march import Chunk, Problem, initial_step, march, restart_outputs
-from flexapod.solve.parameters import actuator_parameters
+from flexapod.solve.parameters import actuator_parameters, shape_ratios
 from flexapod.solve.plant import TABLE, Counters, Flow, Plant, Recording
 from flexapod.typing import Array
 
@@ -33,12 +33,10 @@ def actuator_plant(
     actuator: Actuator, simulation: Simulation, *, rotation: bool = True, extension: bool = True
 ) -> Plant:
     """Plant of the planar actuator; ``rotation`` and ``extension`` say whether they are prescribed."""
-    mass = actuator.rhoA * actuator.free_length
-    tip = (actuator.tip_mass / mass, actuator.tip_inertia / (mass * actuator.free_length**2))
     basis = simulation.lateral_basis
-    ratios = tip if basis == "tip-mass" else (0.0, 0.0)
+    ratios = shape_ratios(actuator, basis)
     return Plant(
-        kernel=kernel(basis, simulation.lateral_shapes, 0, planar=True, tip=ratios),
+        kernel=kernel(basis, simulation.lateral_shapes, 0, planar=True, ratios=ratios),
         leg_p=actuator_parameters(actuator),
         payload_p=np.zeros(0),
         held_l=np.array([extension]),

@@ -12,7 +12,7 @@ from flexapod.mechanics.layout import COMMAND_SIZE, Shapes
 from flexapod.model import Actuator, Simulation
 from flexapod.solve.damped import damping_ratios
 from flexapod.solve.kernel import Function
-from flexapod.solve.parameters import actuator_parameters
+from flexapod.solve.parameters import actuator_parameters, shape_ratios
 from flexapod.typing import Array
 
 
@@ -78,10 +78,8 @@ def actuator_modes(
 
 def turning_matrices(actuator: Actuator, simulation: Simulation, rate: float) -> tuple[Array, Array, Array]:
     """M, D, K (k, k) of the amplitudes of the beam in steady rotation, Eq. (T9.6)."""
-    mass = actuator.rhoA * actuator.free_length
-    tip = (actuator.tip_mass / mass, actuator.tip_inertia / (mass * actuator.free_length**2))
     basis = simulation.lateral_basis
-    matrices, tangents = _functions(basis, simulation.lateral_shapes, tip if basis == "tip-mass" else (0.0, 0.0))
+    matrices, tangents = _functions(basis, simulation.lateral_shapes, shape_ratios(actuator, basis, rate))
     p, size = actuator_parameters(actuator)[0], 2 + simulation.lateral_shapes
     q, v, none = np.zeros(size), np.zeros(size), np.zeros(3)
     q[:2], v[0] = (actuator.angle, actuator.hub_radius + actuator.free_length), rate
@@ -91,12 +89,12 @@ def turning_matrices(actuator: Actuator, simulation: Simulation, rate: float) ->
 
 
 @lru_cache(maxsize=16)
-def _functions(basis: str, modes: int, tip: tuple[float, float]) -> tuple[Function, Function]:
+def _functions(basis: str, modes: int, ratios: tuple[float, ...]) -> tuple[Function, Function]:
     """Matrices at rest and tangents in motion of the planar leg, interpreted: each is called once per analysis."""
     from flexapod.mechanics.assembly import leg_functions, leg_tangents
     from flexapod.symbolic.functions import Interpreted
 
-    lateral, other = (bases.lateral_basis(basis, count, *tip) for count in (modes, 0))
+    lateral, other = (bases.lateral_basis(basis, count, *ratios) for count in (modes, 0))
     shapes = Shapes(a=lateral, b=other, axial=bases.axial_basis(0), planar=True)
     matrices = next(f for f in leg_functions(shapes) if f.name == "leg_matrices")
     return Interpreted(matrices), Interpreted(leg_tangents(shapes))

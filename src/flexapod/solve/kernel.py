@@ -45,9 +45,7 @@ NAMES = ("leg_residual", "leg_matrices", "leg_energies", "payload_residual", "pa
 
 
 @cache
-def kernel(
-    basis: str, modes: int, axial_modes: int, *, planar: bool = False, tip: tuple[float, float] = (0, 0)
-) -> Kernel:
+def kernel(basis: str, modes: int, axial_modes: int, *, planar: bool = False, ratios: tuple[float, ...] = ()) -> Kernel:
     """Kernel for ``modes`` shapes of a lateral basis per plane and ``axial_modes`` axial ones.
 
     Parameters
@@ -56,11 +54,11 @@ def kernel(
         See `flexapod.bases`.
     planar : bool
         The single actuator in its plane (one lateral direction, a tip body).
-    tip : (float, float)
-        Mass and inertia ratios of the ``tip-mass`` eigenfunctions.
+    ratios : tuple of float
+        What else the shapes depend on, see `parameters.shape_ratios`.
     """
-    lateral, axial = bases.lateral_basis(basis, modes, *tip), bases.axial_basis(axial_modes)
-    other = bases.lateral_basis(basis, 0, *tip) if planar else lateral
+    lateral, axial = bases.lateral_basis(basis, modes, *ratios), bases.axial_basis(axial_modes)
+    other = bases.lateral_basis(basis, 0, *ratios) if planar else lateral
     shapes = Shapes(a=lateral, b=other, axial=axial, planar=planar)
     if command := compiler():
         library, signatures = compiled_library(_fingerprint(shapes), lambda: _functions(shapes), SOURCES, command)

@@ -7,7 +7,7 @@
      e_l^T dq_i                         = 0          (prescribed stroke)
    Pivot by the closure: J1 = d tip / d(alpha, beta, l) is regular for every leg (det = l^2 cos beta), whatever is
    massless, rigid or prescribed. The other coordinates see N^T A N with N = [-J1^-1 J2; I]. */
-enum { MAXN = 40, BORDER = 12 };
+enum { MAXN = 64, BORDER = 12 }; /* coordinates of a leg: 3, up to 4 axial and twice 24 lateral shapes */
 
 typedef struct {
   double A[MAXN*MAXN], J[3*MAXN], P[18], J1inv[9], N[MAXN*MAXN], Y[MAXN*6], AN[MAXN*MAXN], AY[MAXN*6];

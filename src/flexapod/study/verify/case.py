@@ -8,12 +8,17 @@ from dataclasses import dataclass
 import numpy as np
 from numpy.typing import ArrayLike
 
+from flexapod.engines.engine import Engine
+
 __all__ = ["Case", "Check", "checks"]
 
 
 @dataclass(frozen=True, kw_only=True)
 class Check:
-    """One number: `ours` against `reference`; `tolerance` is relative, or absolute in `unit` if `absolute`."""
+    """One number: `ours` against `reference`; `tolerance` is relative, or absolute in `unit` if `absolute`.
+
+    `fault` says what is wrong with the reference, where that is shown: the number is listed and does not count.
+    """
 
     what: str
     reference: float
@@ -21,6 +26,7 @@ class Check:
     tolerance: float
     unit: str = "1"
     absolute: bool = False
+    fault: str = ""
 
     def __post_init__(self) -> None:
         if self.reference == 0 and not self.absolute:
@@ -45,13 +51,27 @@ class Check:
 
 @dataclass(frozen=True, kw_only=True)
 class Case:
-    """A case: short `name`, `statement`, `source` of the reference, `argument` for the tolerance, how to compute it."""
+    """A case: short `name`, `statement`, `source` of the reference, `argument` for the tolerance, how to compute it.
+
+    `engine` is the independent program it needs; a `slow` one (half a minute and more) is computed on demand only;
+    `not_run` says why it cannot be computed at all.
+    """
 
     name: str
     statement: str
     source: str
     argument: str
     compute: Callable[[], Sequence[Check]]
+    engine: Engine | None = None
+    slow: bool = False
+    not_run: str = ""
+
+    @property
+    def obstacle(self) -> str:
+        """Why it cannot be computed here; empty if it can."""
+        if self.engine is not None and not self.engine.found():
+            return f"{self.engine.name} is not installed: {self.engine.install}"
+        return self.not_run
 
 
 def checks(

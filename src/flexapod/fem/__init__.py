@@ -1,0 +1,1 @@
+"""Finite elements of actuators and legs, and decks for finite element programs."""
