@@ -6,6 +6,7 @@ from scipy.spatial.transform import Rotation
 from tests.runs import paper_robot
 
 import flexapod as fx
+from flexapod.errors import InputError
 from flexapod.model import CombinedMotion
 
 MOTION = CombinedMotion(amplitudes={"sway": 0.03, "heave": 0.02, "roll": 0.2}, duration=0.5, hold=0.1)
@@ -110,3 +111,13 @@ def test_quaternions_are_those_of_the_motion():
     turn = Rotation.from_quat(data.platform_quaternion_rigid.values, scalar_first=True).as_rotvec()
     np.testing.assert_allclose(turn[-1], [0.2, 0, 0], atol=1e-14)
     assert (data.platform_quaternion_rigid.sel(quaternion="w") > 0).all()
+
+
+def test_instants_that_do_not_fit_the_lengths_are_refused():
+    robot = fx.preset("paper-robot").robot
+    lengths = np.full(6, 0.95)
+    with pytest.raises(InputError, match="single pose"):
+        fx.forward_kinematics(robot, lengths, time=[0.0])
+    for time, words in ((["now", "then"], "no numbers"), ([0.0], "does not fit")):
+        with pytest.raises(InputError, match=words):
+            fx.forward_kinematics(robot, np.tile(lengths, (2, 1)), time=time)

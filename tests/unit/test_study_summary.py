@@ -5,6 +5,7 @@ import pytest
 from tests.runs import paper_robot
 
 import flexapod as fx
+from flexapod.errors import InputError
 from flexapod.study import open_results, save, summary
 from flexapod.study.store import save_csv
 
@@ -36,6 +37,11 @@ def test_numbers_of_a_robot(data, point):
             assert axis.per_cent == pytest.approx(100 * axis.peak / travel)
     assert found.axes[0].per_cent is None  # a roll about x moves nothing along x
     assert not found.partial
+
+
+def test_another_point_is_refused(data):
+    with pytest.raises(InputError, match="com, tool"):
+        summary(data, "elbow")
 
 
 def test_causes_add_up_and_the_largest_is_named(data):

@@ -128,16 +128,19 @@ def forward_kinematics(
     Raises
     ------
     InputError
-        Lengths that are not six positive numbers, or a guess that is no pose.
+        Lengths that are not six positive numbers, a guess that is no pose, or instants that do not fit.
     ComputationError
         No pose near the guess fits.
     """
-    study, given = at_pose(robot), _numbers(lengths)
+    study = at_pose(robot)
+    given = _numbers(lengths, "lengths", "joint-to-joint lengths [m], (6,) or (T, 6)")
     single = given.ndim == 1
     payload = study.robot.payload
     found = rigid.forward_kinematics(study.robot, given, as_pose(study.robot, guess, check=False))
     given = np.atleast_2d(given)
-    t = np.arange(len(found), dtype=float) if time is None else np.asarray(time, dtype=float)
+    t = np.arange(len(found), dtype=float) if time is None else _numbers(time, "time", "instants [s], (T,)")
+    if single and time is not None:
+        raise InputError("has no meaning for a single pose", key="time", next_step="Leave it out")
     if t.shape != (len(found),):
         raise InputError("does not fit the lengths", key="time", value=t.shape, allowed=f"({len(found)},)")
     values = {
@@ -166,13 +169,11 @@ def rigid_path(robot: model.Robot, path: rigid.Poses) -> dict[str, Array]:
     }
 
 
-def _numbers(lengths: ArrayLike) -> Array:
+def _numbers(values: ArrayLike, key: str, allowed: str) -> Array:
     try:
-        return np.asarray(lengths, dtype=float)
+        return np.asarray(values, dtype=float)
     except (TypeError, ValueError):
-        raise InputError(
-            "are no numbers", key="lengths", allowed="joint-to-joint lengths [m], (6,) or (T, 6)"
-        ) from None
+        raise InputError("are no numbers", key=key, allowed=allowed) from None
 
 
 def _quaternions(rotation: Array) -> Array:

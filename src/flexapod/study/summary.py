@@ -7,6 +7,7 @@ from typing import TYPE_CHECKING
 
 import numpy as np
 
+from flexapod.errors import InputError
 from flexapod.study.names import CAUSE_WORDS
 from flexapod.study.words import text
 from flexapod.typing import Array
@@ -18,6 +19,7 @@ __all__ = ["ActuatorSummary", "AxisSummary", "RobotSummary", "summary", "tool_ap
 
 SMALLEST_EXCURSION = 1e-6  # rigid travel below which a percentage says nothing [m]
 NOTHING = 1e-12  # deviation that is rounding [m]
+POINTS = {"com": "The payload's centre of mass", "tool": "The tool"}
 
 
 @dataclass(frozen=True, kw_only=True)
@@ -64,7 +66,7 @@ class RobotSummary:
     @property
     def sentence(self) -> str:
         """The deviation and its largest cause, in one sentence."""
-        name = {"com": "The payload's centre of mass", "tool": "The tool"}[self.point]
+        name = POINTS[self.point]
         if self.peak < NOTHING:
             return f"{name} stays on the path of the rigid robot: its legs are rigid."
         by_axis = ", ".join(f"{a.axis} {text(a.peak, 'm')}" for a in self.axes)
@@ -120,7 +122,14 @@ def summary(data: Dataset, point: str = "com") -> RobotSummary | ActuatorSummary
         Result of `flexapod.simulate`, `simulate_actuator` or `run`.
     point : str
         ``com`` (centre of mass; the only one with causes) or ``tool``.
+
+    Raises
+    ------
+    InputError
+        Another point.
     """
+    if point not in POINTS:
+        raise InputError("is no point of the payload", key="point", value=point, allowed=", ".join(POINTS))
     partial = bool(data.attrs.get("partial", 0))
     if "com_deviation" not in data:
         tip = data.tip_deflection.values
