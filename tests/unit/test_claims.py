@@ -55,7 +55,8 @@ def test_headline_is_micrometres(table):
 def test_road_to_the_singularity(table):
     verdicts = [table[f"Half-angles {angle} deg"].verdict for angle in (5, 10, 15, 20, 25, 27, 28, 29)]
     assert verdicts == [NOT] * 6 + [REACHES, BREAKS]
-    assert "no equilibrium" in table["Half-angles 29 deg"].ours
+    assert "singular pose at 17.0 deg of roll" in table["Half-angles 29 deg"].ours
+    assert "beyond 18.7 deg no equilibrium" in table["Half-angles 29 deg"].ours
 
 
 @pytest.mark.parametrize("name", ["half-angles", "half-angles-radii"])
@@ -64,7 +65,8 @@ def test_deviation_grows_towards_the_singularity(name):
     whole = data.deviation_peak.max("axis").values
     good = np.isfinite(whole)
     assert np.all(np.diff(whole[good][1:]) > 0)
-    assert np.all(np.diff(data.lowest_frequency.values[3:]) < 0)
+    frequency = data.lowest_frequency.values[3:]
+    assert np.all(np.diff(frequency[np.isfinite(frequency)]) < 0) and np.isfinite(frequency[:-1]).all()
 
 
 def test_rows_that_hold(table):

@@ -7,6 +7,7 @@ from dataclasses import dataclass, field
 from typing import TYPE_CHECKING
 
 from flexapod import model
+from flexapod.errors import InputError
 from flexapod.study.actuator import simulate_actuator
 from flexapod.study.paper.claim import axis_motion
 from flexapod.study.paper.variants import (
@@ -56,8 +57,9 @@ class Step:
 
 def _preset(name: str) -> model.Study:
     study = model.preset(name)
-    assert isinstance(study, model.Study)  # noqa: S101  the presets of robots are robots
-    return study
+    if isinstance(study, model.Study):
+        return study
+    raise InputError("is the preset of a single actuator", key="preset", value=name, allowed="presets of robots")
 
 
 def _over(report: Share) -> Callable[[float, float], None]:

@@ -2,7 +2,6 @@
 
 from __future__ import annotations
 
-import math
 from collections.abc import Sequence
 from typing import TYPE_CHECKING
 
@@ -13,10 +12,10 @@ from flexapod.errors import ComputationError, InputError
 from flexapod.study.attributes import attributes
 from flexapod.study.checks import path_instants
 from flexapod.study.estimates import buckling_load
-from flexapod.study.paper.claim import PAPER_DEVIATION, axis_motion
+from flexapod.study.paper.claim import axis_motion, roll_error
+from flexapod.study.paper.statics import Rest, at_rest, singular_turn
 from flexapod.study.record import Share
 from flexapod.study.simulation import simulate
-from flexapod.study.static import modes
 from flexapod.typing import Array
 
 if TYPE_CHECKING:
@@ -36,9 +35,8 @@ __all__ = [
 HALF_ANGLES = (5.0, 10.0, 15.0, 20.0, 25.0, 27.0, 28.0, 29.0)  # deg
 SWEEP_STEP = 5e-4  # s; peaks change by less than 1 % from 1 ms to 0.25 ms
 JUMP_STEP = 3.125e-5  # s; an impact rings the legs at kilohertz: peaks within 4 % of those at a quarter of it
-DURATIONS = (0.25, 0.5, 1.0, 2.0)  # s
-SERVO_STIFFNESS = (3e5, 1e7)  # N/m
-POSES = 11
+DURATIONS = (0.25, 0.5, 1.0, 2.0)  # s; from four times as fast as the preset to half as fast
+SERVO_STIFFNESS = (3e5, 1e7)  # N/m; so soft that the payload sags by the size the paper prints; a usual ball screw
 
 
 def with_half_angle(study: model.Study, angle: float) -> model.Study:
@@ -81,8 +79,9 @@ def half_angle_sweep(study: model.Study, angles: Sequence[float], report: Share)
     -------
     xarray.Dataset
         Over `half_angle` [deg]: `deviation_peak` (half_angle, axis) [m], `force_peak` [N], `load_share` (largest axial
-        load over the Euler load), `lowest_frequency` on the path [Hz], `sag` (half_angle, axis) [m]: largest static
-        deviation on the path, `verdict`: empty, or in words why there is no deviation to trust.
+        load over the Euler load), `lowest_frequency` on the path [Hz], NaN if its equilibrium ends, `sag` (half_angle,
+        axis) [m]: largest static deviation on the path, as far as there is an equilibrium; `verdict`: empty, or in
+        words why there is no deviation to trust.
     """
     import xarray as xr
 
@@ -104,43 +103,37 @@ def half_angle_sweep(study: model.Study, angles: Sequence[float], report: Share)
 
 def _at_half_angle(study: model.Study) -> dict[str, object]:
     nothing = np.full(3, np.nan)
-    row = {"deviation_peak": nothing, "force_peak": np.nan, "load_share": np.nan}
-    sag, frequency, lost = _statics(study)
+    rest, singular = at_rest(study), singular_turn(study)
+    row: dict[str, object] = {"deviation_peak": nothing, "force_peak": np.nan, "load_share": np.nan}
+    row |= {"sag": rest.sag, "lowest_frequency": rest.frequency, "verdict": _lost(rest, singular)}
+    if singular is not None:  # no path to simulate
+        return row
     try:
         data = simulate(study, step=SWEEP_STEP)
     except (InputError, ComputationError) as error:
-        what = error.what if lost is None else lost
-        return row | {"sag": sag, "lowest_frequency": frequency, "verdict": what.split(":")[0]}
+        return row | {"verdict": row["verdict"] or error.what.split(":")[0]}
     free = data.leg_length.values - np.array([leg.cylinder.mouth for leg in study.robot.legs])
     share = max(float((data.actuator_force.values[:, i] / buckling_load(leg, free[:, i])).max())
                 for i, leg in enumerate(study.robot.legs))  # fmt: skip
-    verdict = lost or ""
-    if not verdict and data.attrs["partial"]:
-        verdict = str(data.attrs["failure"])
-    if not verdict and share >= 1:
-        verdict = f"collapse: a leg bears {100 * share:.0f} % of its Euler load"
-    return {
-        "deviation_peak": np.abs(data.com_deviation.values).max(axis=0),
+    if not row["verdict"] and data.attrs["partial"]:
+        row["verdict"] = str(data.attrs["failure"])
+    if not row["verdict"] and share >= 1:
+        row["verdict"] = f"collapse: a leg bears {100 * share:.0f} % of its Euler load"
+    return row | {
+        "deviation_peak": _peaks(data),
         "force_peak": float(np.abs(data.actuator_force).max()),
         "load_share": share,
-        "sag": sag,
-        "lowest_frequency": frequency,
-        "verdict": verdict,
     }
 
 
-def _statics(study: model.Study) -> tuple[Array, float, str | None]:
-    """Largest sag (3,) [m] and lowest frequency [Hz] of the resting robot on the path; where equilibrium is lost."""
-    sag, frequency = np.full(3, np.nan), np.nan
-    for share in np.linspace(0.0, 1.0, POSES):
-        target = share * axis_motion(study).target
-        try:
-            found = modes(study, target)
-        except (InputError, ComputationError):
-            return sag, frequency, f"no equilibrium from {np.rad2deg(np.abs(target[3:]).max()):.1f} deg of roll on"
-        sag = np.fmax(sag, np.abs(found.com_sag.values))
-        frequency = np.fmin(frequency, float(found.frequency[0]))
-    return sag, float(frequency), None
+def _lost(rest: Rest, singular: float | None) -> str:
+    """Why the robot cannot go its path at rest, in words; empty if it can. What is before a colon labels figures."""
+    if singular is None:
+        return "" if rest.end is None else f"no equilibrium: the one at home ends at {rest.end:.1f} deg of roll"
+    words = f"singular path: the rigid robot passes through a singular pose at {singular:.1f} deg of roll"
+    if rest.end is None:
+        return words
+    return f"{words}, and beyond {rest.end:.1f} deg no equilibrium continues the one at home"
 
 
 def assumptions(study: model.Study, report: Share) -> Dataset:
@@ -149,26 +142,30 @@ def assumptions(study: model.Study, report: Share) -> Dataset:
     Returns
     -------
     xarray.Dataset
-        `deviation_by_duration` (duration, axis), `deviation_by_drive` (drive_stiffness, axis) [m];
+        `deviation_by_duration` (duration, axis), `deviation_by_drive` (drive_stiffness, axis) [m]; `sag_by_drive`: the
+        part of the latter that is there at rest, before the motion;
         `length_error` (leg) [m]: what the legs would have to be off for the paper's deviation;
         `joint_turn` (leg) [rad]: what the spherical joints turn on the path.
     """
     import xarray as xr
 
     whole = len(DURATIONS) + len(SERVO_STIFFNESS)
-    durations, drives = [], []
+    durations, drives, sags = [], [], []
     for duration in DURATIONS:
         motion = axis_motion(study).replace(duration=duration)
         durations.append(_peaks(simulate(study, motion, step=SWEEP_STEP, duration=duration + 1.0)))
         report(len(durations) / whole)
     for stiffness in SERVO_STIFFNESS:
-        drives.append(_peaks(simulate(_with_servo(study, stiffness), step=SWEEP_STEP)))
+        data = simulate(_with_servo(study, stiffness), step=SWEEP_STEP)
+        drives.append(_peaks(data))
+        sags.append(np.abs(data.com_deviation.values[0]))
         report((len(durations) + len(drives)) / whole)
     length_error, turn = _needed_errors(study)
     metre = {"units": "m"}
-    data = {
+    values = {
         "deviation_by_duration": (("duration", "axis"), np.array(durations), metre),
         "deviation_by_drive": (("drive_stiffness", "axis"), np.array(drives), metre),
+        "sag_by_drive": (("drive_stiffness", "axis"), np.array(sags), metre),
         "length_error": ("leg", length_error, metre),
         "joint_turn": ("leg", turn, {"units": "rad"}),
     }
@@ -178,7 +175,7 @@ def assumptions(study: model.Study, report: Share) -> Dataset:
         "axis": list("xyz"),
         "leg": np.arange(1, 7),
     }
-    return xr.Dataset(data, coords, attributes(study) | {"step": SWEEP_STEP})
+    return xr.Dataset(values, coords, attributes(study) | {"step": SWEEP_STEP})
 
 
 def _peaks(data: Dataset) -> Array:
@@ -196,8 +193,7 @@ def _with_servo(study: model.Study, stiffness: float) -> model.Study:
 def _needed_errors(study: model.Study) -> tuple[Array, Array]:
     """Leg-length errors (6,) [m] that move the CoM by the paper's deviation; turn (6,) [rad] of the joints above."""
     robot, target = study.robot, axis_motion(study).target
-    roll, arm = target[3], float(np.linalg.norm(robot.payload.com))
-    error = math.hypot(*PAPER_DEVIATION.values()) / arm
+    roll, error = target[3], roll_error(float(np.linalg.norm(robot.payload.com)))
     home = rigid.home_pose(robot)
     turned = [rigid.rotation_matrix(np.array([[x, 0.0, 0.0]])) for x in (roll, roll + error)]
     lengths = [rigid.leg_lengths(robot.base_joints, robot.platform_joints, home.position, R)[0] for R in turned]
