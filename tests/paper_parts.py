@@ -4,7 +4,7 @@ from functools import cache
 
 from flexapod.model import preset
 from flexapod.study import modes, simulate, simulate_actuator
-from flexapod.study.paper.study import ACTUATOR_MODES, PaperStudy
+from flexapod.study.paper.study import ACTUATOR_MODES, STEPS, PaperStudy
 from flexapod.study.paper.variants import HALF_ANGLES, assumptions, half_angle_sweep, jump_motion, with_half_angle
 
 ROBOT, RADII = "paper-robot", "paper-robot-radii"
@@ -19,6 +19,13 @@ def jump(name, angle=None, step=6.25e-5):
     return simulate(study, jump_motion(study), step=step)
 
 
+@cache
+def elements():
+    """The single actuator by finite elements and by 8 shapes, as `replicate` computes them: a dozen seconds."""
+    finite = ("actuator-fine", "actuator-beam", "actuator-solid")
+    return {step.name: step.compute(quiet) for step in STEPS if step.name.startswith(finite)}
+
+
 def coarse_parts(angles=HALF_ANGLES):
     return _parts(angles)
 
@@ -29,6 +36,7 @@ def _parts(angles):
     robot, radii = preset(ROBOT), preset(RADII)
     return {
         **{f"actuator-{k}": simulate_actuator(preset("paper-actuator"), modes=k, step=5e-4) for k in ACTUATOR_MODES},
+        **elements(),
         "robot": simulate(robot, step=1e-3),
         "robot-rigid": simulate(robot, fidelity="rigid", step=5e-4),
         "robot-lumped": simulate(robot, fidelity="lumped", step=1e-3),

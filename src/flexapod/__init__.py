@@ -14,14 +14,17 @@ if TYPE_CHECKING:
     from flexapod.errors import ComputationError, FlexapodError, InputError
     from flexapod.model import ActuatorStudy, Study, load, loads, open_values, preset
     from flexapod.study import (
+        converge,
         forward_kinematics,
         inverse_dynamics,
         inverse_kinematics,
+        ladder,
         modes,
         replicate,
         run,
         simulate,
         simulate_actuator,
+        simulate_solid,
         stiffness,
     )
 
@@ -32,14 +35,17 @@ _HOMES = {
     "flexapod.citations": ("cite",),
     "flexapod.model": ("ActuatorStudy", "Study", "load", "loads", "open_values", "preset"),
     "flexapod.study": (
+        "converge",
         "forward_kinematics",
         "inverse_dynamics",
         "inverse_kinematics",
+        "ladder",
         "modes",
         "replicate",
         "run",
         "simulate",
         "simulate_actuator",
+        "simulate_solid",
         "stiffness",
     ),
 }
@@ -54,9 +60,11 @@ __all__ = [
     "Study",
     "__version__",
     "cite",
+    "converge",
     "forward_kinematics",
     "inverse_dynamics",
     "inverse_kinematics",
+    "ladder",
     "load",
     "loads",
     "model",
@@ -69,6 +77,7 @@ __all__ = [
     "run",
     "simulate",
     "simulate_actuator",
+    "simulate_solid",
     "stiffness",
     "study",
 ]

@@ -1,6 +1,6 @@
 """Frequencies of the locked 6-UPS robot against exact dynamic stiffness and a count that misses none.
 
-First the oracle (`oracles/dynamic_stiffness.py`) against closed forms and a count by finite elements, then `modes`
+First the oracle (`study/verify/dynamic_stiffness.py`) against closed forms and a count by finite elements, then `modes`
 against the oracle. Both are about the undeformed pose: gravity is zero.
 """
 
@@ -10,12 +10,13 @@ import numpy as np
 import pytest
 from scipy.linalg import block_diag, eigh
 from scipy.optimize import brentq
-from scipy.spatial.transform import Rotation
-from scipy.special import spherical_jn
-from tests.oracles import beams, dynamic_stiffness
+from tests.oracles import beams
 
 from flexapod import modes
 from flexapod.model import ServoDrive, preset
+from flexapod.study.verify import dynamic_stiffness, locked_robot
+from flexapod.study.verify.locked_robot import legs_and_body
+from flexapod.study.verify.unlike import unlike_legs, without_cylinders, without_gravity
 
 PISTON = beams.round_section(0.027, 200e9, 7800.0)
 HOME = (0.0,) * 6
@@ -43,52 +44,8 @@ def pinned(leg):
 @cache
 def case(name):
     """A robot without gravity: as the preset, without cylinders, or with six different legs."""
-    robot = preset("paper-robot").robot.replace(gravity=[0, 0, 0])
-    if name == "no cylinder":
-        bare = robot.legs[0].cylinder.replace(mouth=0.0, mass=0.0, com=0.0, inertia=0.0)
-        rod = robot.legs[0].piston.replace(length=1.0)  # no longer leg at these poses: nothing of it is pulled out
-        return robot.replace(legs=[leg.replace(cylinder=bare, piston=rod) for leg in robot.legs])
-    return robot.replace(legs=[unlike(i, leg) for i, leg in enumerate(robot.legs)]) if name == "unlike" else robot
-
-
-def unlike(i, leg):
-    rod, cylinder = leg.piston, leg.cylinder
-    rod = rod.replace(
-        length=rod.length * (1 - 0.03 * i), EI=rod.EI * (1 + 0.3 * i), EA=rod.EA / (1 + i), axial_inertia=2e-3 * i
-    )
-    cylinder = cylinder.replace(mass=1.0 + i, com=0.1 + 0.02 * i, mouth=0.25 + 0.03 * i, axial_inertia=4e-3 * (i % 3))
-    u_axis = [1.0, 0.2 * i, 0.3] if i % 2 else None
-    return leg.replace(piston=rod, cylinder=cylinder, u_axis=u_axis)
-
-
-def legs_and_body(robot, pose, shapes=None, compliance=0.0):
-    """The robot as the oracle takes it."""
-    R = Rotation.from_euler("xyz", pose[3:]).as_matrix()
-    at, legs = np.array([0, 0, robot.home_height]) + pose[:3], []
-    for leg, base, joint, z in zip(
-        robot.legs, robot.base_joints, robot.platform_joints, robot.home_vectors, strict=True
-    ):
-        axis = np.cross([0.0, 0.0, 1.0], z) if leg.u_axis is None else leg.u_axis
-        axis = axis - (axis @ z) / (z @ z) * z  # across the leg at home
-        cylinder, rod = leg.cylinder, leg.piston
-        legs.append(
-            dynamic_stiffness.Leg(
-                base=base,
-                tip=at + R @ joint,
-                first_axis=axis / np.linalg.norm(axis),
-                EA=rod.EA,
-                EI=rod.EI,
-                rhoA=rod.rhoA,
-                Lp=rod.length,
-                mouth=cylinder.mouth,
-                inertia=cylinder.inertia + cylinder.mass * cylinder.com**2,
-                axial_inertia=cylinder.axial_inertia + rod.axial_inertia,
-                shapes=shapes,
-                compliance=compliance,
-            )
-        )
-    load = robot.payload
-    return legs, dynamic_stiffness.Body(mass=load.mass, com=at + R @ load.com, inertia=R @ load.inertia @ R.T)
+    change = {"preset": lambda robot: robot, "no cylinder": without_cylinders, "unlike": unlike_legs}[name]
+    return change(without_gravity(preset("paper-robot").robot))
 
 
 @cache
@@ -104,27 +61,11 @@ def product(name, pose, k, axial=2, drive=None):
 
 
 def missing_sines(name, frequency, axial):
-    """Relative error of a frequency from the axial shapes left out, at most: half the rest of (T7.10)'s series.
-
-    To first order the shift is the tip's strain energy that the rest adds over twice the whole, and the whole is at
-    least the static one of the bars.
-    """
-    rods = [leg.piston for leg in case(name).legs]
-    x = 2 * np.pi * frequency * max(rod.length * np.sqrt(rod.rhoA / rod.EA) for rod in rods)
-    squares = (np.pi * np.arange(axial, 2000)) ** 2
-    return np.array([np.sum(y**4 / (squares * (squares - y**2))) for y in x])
+    return locked_robot.missing_sines(legs_and_body(case(name), HOME)[0], frequency, axial)
 
 
 def missing_polynomials(name, pose, k):
-    """Relative error of a frequency from k shapes a plane: what polynomials of degree < k lack of sin(lam z + phase).
-
-    The curvature of `tip-load` has degree k; the free tip takes one. Legendre coefficient n of the sine is
-    (2 n + 1) j_n(lam / 2); the mean square of the sine is a half, and half the energy's error is the frequency's.
-    """
-    legs, _ = legs_and_body(case(name), pose)
-    wave = max((leg.length - leg.mouth) * (leg.rhoA / leg.EI) ** 0.25 for leg in legs)
-    lam, n = wave * np.sqrt(2 * np.pi * exact(name, pose)), np.arange(k, 60)[:, None]
-    return np.sum((2 * n + 1) * spherical_jn(n, lam / 2) ** 2, axis=0)
+    return locked_robot.missing_polynomials(legs_and_body(case(name), pose)[0], exact(name, pose), k)
 
 
 @pytest.mark.parametrize(

@@ -161,7 +161,7 @@ def test_bad_pose(flexapod, study, pose, words):
     assert refusal(flexapod("modes", study(), "--pose", pose), *words)
 
 
-@pytest.mark.parametrize("name", ["sweep", "view", "converge", "export"])
+@pytest.mark.parametrize("name", ["sweep", "view"])
 def test_later_commands(flexapod, name):
     assert refusal(flexapod(name), f"flexapod {name}", "comes with a later release")
     assert refusal(flexapod(name, "a.toml", "b.toml", "--what", "3"), "later release")

@@ -2,16 +2,16 @@
 
 import numpy as np
 import pytest
-from tests.oracles.stewart_cases import DIETMAIER_BASE, DIETMAIER_LENGTHS, DIETMAIER_PLATFORM
 
 from flexapod.rigid.forward import all_postures
 from flexapod.rigid.jacobian import length_jacobian
 from flexapod.rigid.kinematics import leg_lengths
+from flexapod.study.verify.cases.dietmaier import BASE, LENGTHS, PLATFORM
 
 
 @pytest.fixture(scope="module")
 def found():
-    return all_postures(DIETMAIER_BASE, DIETMAIER_PLATFORM, DIETMAIER_LENGTHS)
+    return all_postures(BASE, PLATFORM, LENGTHS)
 
 
 def test_exactly_40_distinct_real_postures(found):
@@ -24,17 +24,15 @@ def test_exactly_40_distinct_real_postures(found):
 
 
 def test_postures_fit_the_leg_lengths(found):
-    lengths = leg_lengths(DIETMAIER_BASE, DIETMAIER_PLATFORM, found.poses.position, found.poses.rotation)
-    assert np.max(np.abs(lengths - DIETMAIER_LENGTHS)) < 1e-11
+    lengths = leg_lengths(BASE, PLATFORM, found.poses.position, found.poses.rotation)
+    assert np.max(np.abs(lengths - LENGTHS)) < 1e-11
     r = found.poses.rotation
     np.testing.assert_allclose(r @ np.swapaxes(r, 1, 2), np.broadcast_to(np.eye(3), r.shape), atol=1e-13)
     np.testing.assert_allclose(np.linalg.det(r), 1, atol=1e-13)
 
 
 def test_half_of_the_postures_have_a_positive_determinant(found):
-    determinant = np.linalg.det(
-        length_jacobian(DIETMAIER_BASE, DIETMAIER_PLATFORM, found.poses.position, found.poses.rotation)
-    )
+    determinant = np.linalg.det(length_jacobian(BASE, PLATFORM, found.poses.position, found.poses.rotation))
     assert np.sum(determinant > 0) == np.sum(determinant < 0) == 20
     assert np.min(np.abs(determinant)) == pytest.approx(1.5e-5, rel=0.05)  # printed with two digits
 

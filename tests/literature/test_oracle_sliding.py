@@ -5,8 +5,9 @@ import pytest
 from tests.oracles import sliding
 from tests.oracles.ritz import clamped_free, clamped_free_shapes, polynomial_shapes
 
+from flexapod.study.verify.cases.sliding_beam import TIP_MM
+
 RHO, EI = 4.02, 756.65
-TIP_MM = [5, 1.46875, 2.52914, 3.4969, -9.29794, 3.92053, -8.32143, -9.74686, -4.10753, -1.73481, -2.7728]
 STATE = {"L": 1.9, "L_dot": 0.4, "L_ddot": -0.3, "th": 0.6, "th_dot": 0.9, "th_ddot": 1.1}
 MOTION = sliding.uniform_motion(1.83, 0.1, 0.785)
 

@@ -8,9 +8,9 @@ from tests.runs import run_actuator
 import flexapod as fx
 from flexapod.bases import lateral_basis
 from flexapod.model import override, preset
+from flexapod.study.verify.cases.sliding_beam import TIP_MM
 
 LENGTH, FEED, TURN = 1.83, 0.1, 0.785
-TIP_MM = [5, 1.46875, 2.52914, 3.4969, -9.29794, 3.92053, -8.32143, -9.74686, -4.10753, -1.73481, -2.7728]
 MOTION = sliding.uniform_motion(LENGTH, FEED, TURN)
 
 

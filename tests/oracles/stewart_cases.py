@@ -1,30 +1,6 @@
-"""Layouts of Stewart platforms as plain arrays: joint circles and Dietmaier's platform with 40 real postures."""
+"""Layouts of Stewart platforms as plain arrays: joint circles; and a difference formula."""
 
 import numpy as np
-
-# P. Dietmaier, "The Stewart-Gough platform of general geometry can have 40 real postures", Advances in Robot
-# Kinematics (1998): base joints, platform joints (in the platform's frame), leg lengths.
-DIETMAIER_BASE = np.array(
-    [
-        [0.0, 0.0, 0.0],
-        [1.107915, 0.0, 0.0],
-        [0.549094, 0.756063, 0.0],
-        [0.735077, -0.223935, 0.525991],
-        [0.514188, -0.526063, -0.368418],
-        [0.590473, 0.094733, -0.205018],
-    ]
-)
-DIETMAIER_PLATFORM = np.array(
-    [
-        [0.0, 0.0, 0.0],
-        [0.542805, 0.0, 0.0],
-        [0.956919, -0.528915, 0.0],
-        [0.665885, -0.353482, 1.402538],
-        [0.478359, 1.158742, 0.107672],
-        [-0.137087, -0.235121, 0.353913],
-    ]
-)
-DIETMAIER_LENGTHS = np.array([1.0, 0.645275, 1.086284, 1.503439, 1.281933, 0.771071])
 
 
 def on_circle(radius, angles_deg):

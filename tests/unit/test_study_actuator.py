@@ -59,3 +59,10 @@ def test_what_is_neither_actuator_nor_study_is_refused():
         fx.simulate_actuator(STUDY, fidelity="lumped")
     with pytest.raises(fx.InputError, match="duration"):
         fx.simulate_actuator(STUDY.actuator, STUDY.motion)
+
+
+def test_a_beam_wholly_outside_its_hub_is_no_loss():
+    beam = fx.preset("paper-actuator").actuator.replace(length=1.83, free_length=1.83, hub_radius=0.2)
+    still = fx.model.ActuatorMotion(rotation={"law": "rate", "rate": 0.785}, extension={"law": "rate", "rate": 0.0})
+    data = fx.simulate_actuator(beam, still, step=1e-3, duration=0.01)
+    assert data.attrs["partial"] == 0

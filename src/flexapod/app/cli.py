@@ -12,6 +12,8 @@ import typer
 from flexapod import __version__
 from flexapod.app import (
     commands_check,
+    commands_converge,
+    commands_export,
     commands_later,
     commands_modes,
     commands_new,
@@ -29,7 +31,7 @@ app = typer.Typer(
     pretty_exceptions_enable=False,
     rich_markup_mode="rich",
     epilog="Exit codes: 0 done, 1 a computation failed, 2 bad input, 130 stopped by Ctrl-C. "
-    "Later releases bring sweep, view, converge and export.",
+    "Later releases bring sweep and view.",
 )
 
 
@@ -59,7 +61,9 @@ for part in (
     commands_check,
     commands_run,
     commands_modes,
+    commands_converge,
     commands_verify,
+    commands_export,
     commands_later,
 ):
     part.add(app)

@@ -14,8 +14,6 @@ __all__ = ["LATER", "add"]
 LATER = {
     "sweep": "for a few variants, change the study in a Python loop over flexapod.run",
     "view": "`flexapod run FILE` writes figures and report.html",
-    "converge": "compare runs with other `modes` and `tolerance` in [simulation]",
-    "export": "`flexapod run FILE` writes results.nc (NetCDF) and results.csv",
 }
 
 

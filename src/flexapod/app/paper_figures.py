@@ -17,6 +17,7 @@ if TYPE_CHECKING:
 __all__ = ["paper_figures"]
 
 _Plan = tuple[str, str, str, Callable[[], "Figure"]]
+SOLIDS = ("coarse", "fine", "quadratic")
 ACTUATOR, ROBOT, VARIANTS = "Single actuator", "Robot", "What the deviation depends on"
 
 
@@ -43,6 +44,12 @@ def _actuator(result: PaperStudy) -> Iterator[_Plan]:
         "paper leaves open are ours, so size and phase are not to be laid over the printed curve"
     )
     yield ACTUATOR, "actuator-response", title, lambda: plot.actuator_response(series)
+    meshes = {letter: result[f"actuator-solid-{name}"] for letter, name in zip("ABC", SOLIDS, strict=True)}
+    title = "Fig. 3: solid elements, coarse (A) and fine (B) linear ones, which lock in bending, and quadratic ones (C)"
+    yield ACTUATOR, "actuator-solid-meshes", title, lambda: plot.solid_meshes(meshes, result["actuator-fine"])
+    title = "Fig. 4: assumed modes (8 shapes) against beam and solid finite elements, with their differences"
+    others = {"beam elements": result["actuator-beam"], "solid elements": result["actuator-solid-quadratic"]}
+    yield ACTUATOR, "actuator-comparison", title, lambda: plot.solid_comparison(others, result["actuator-fine"])
     title = "Amplitudes of the shapes with 5 of them"
     yield ACTUATOR, "actuator-amplitudes", title, lambda: plot.actuator_modes(finest)
 

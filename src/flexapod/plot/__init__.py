@@ -1,12 +1,14 @@
 """Figures from Datasets: each call takes a result and returns a matplotlib figure; `save` writes PNG and SVG."""
 
 from flexapod.plot.actuator import actuator_modes, actuator_response
+from flexapod.plot.convergence import convergence, ladder
 from flexapod.plot.deviation import deviation_by_cause
 from flexapod.plot.energy import energies
 from flexapod.plot.legs import actuator_forces, leg_lengths, tip_deflections
 from flexapod.plot.motion import motion_law
 from flexapod.plot.paths import com_path
 from flexapod.plot.robot3d import modes_3d, robot_3d
+from flexapod.plot.solid import solid_comparison, solid_meshes
 from flexapod.plot.style import save
 from flexapod.plot.sweeps import half_angles, start_jump
 
@@ -15,14 +17,18 @@ __all__ = [
     "actuator_modes",
     "actuator_response",
     "com_path",
+    "convergence",
     "deviation_by_cause",
     "energies",
     "half_angles",
+    "ladder",
     "leg_lengths",
     "modes_3d",
     "motion_law",
     "robot_3d",
     "save",
+    "solid_comparison",
+    "solid_meshes",
     "start_jump",
     "tip_deflections",
 ]

@@ -20,6 +20,7 @@ from flexapod.study.paper.variants import (
 )
 from flexapod.study.record import Report, Share
 from flexapod.study.simulation import run, simulate
+from flexapod.study.solid import simulate_solid
 from flexapod.study.static import modes
 
 if TYPE_CHECKING:
@@ -28,6 +29,14 @@ if TYPE_CHECKING:
 __all__ = ["ACTUATOR_MODES", "STEPS", "PaperStudy", "replicate"]
 
 ACTUATOR_MODES = (1, 2, 3, 4, 5)
+COMPARED_STEP = 1e-4  # s: the time integration's error in 10 s is then about a micrometre, below what is compared
+COMPARED_OUTPUT = 1e-2  # s: a fortieth of the first period at the start
+# Name, words, usual share of the time, size [m] and kind of the hexahedra: the paper's meshes and a better one
+SOLIDS = (
+    ("coarse", "linear, 50 mm", 1, 0.05, "hex8"),
+    ("fine", "linear, 5 mm", 3, 0.005, "hex8"),
+    ("quadratic", "quadratic, 5 mm", 6, 0.005, "hex20"),
+)
 
 
 @dataclass(frozen=True, kw_only=True)
@@ -62,15 +71,41 @@ def _preset(name: str) -> model.Study:
     raise InputError("is the preset of a single actuator", key="preset", value=name, allowed="presets of robots")
 
 
+def _actuator_preset() -> model.ActuatorStudy:
+    study = model.preset("paper-actuator")
+    if isinstance(study, model.ActuatorStudy):
+        return study
+    raise InputError("is the preset of a robot", key="preset", value="paper-actuator")
+
+
 def _over(report: Share) -> Callable[[float, float], None]:
     """Progress of one simulation as a share."""
     return lambda time, end: report(time / end)
 
 
 def _actuator(count: int) -> Callable[[Share], Dataset]:
+    return lambda report: simulate_actuator(_actuator_preset(), modes=count, progress=_over(report))
+
+
+def _finest_actuator(fidelity: str, count: int) -> Callable[[Share], Dataset]:
     def compute(report: Share) -> Dataset:
-        study = model.preset("paper-actuator")
-        return simulate_actuator(study, modes=count, progress=_over(report))  # type: ignore[arg-type]
+        study = _actuator_preset()
+        return simulate_actuator(
+            study,
+            fidelity=fidelity,
+            modes=count,
+            step=COMPARED_STEP,
+            output_step=COMPARED_OUTPUT,
+            progress=_over(report),
+        )
+
+    return compute
+
+
+def _solid(size: float, kind: str) -> Callable[[Share], Dataset]:
+    def compute(report: Share) -> Dataset:
+        study = _actuator_preset()
+        return simulate_solid(study, size=size, kind=kind, output_step=COMPARED_OUTPUT, progress=_over(report))
 
     return compute
 
@@ -104,6 +139,19 @@ STEPS: tuple[Step, ...] = (
     *(
         Step(name=f"actuator-{k}", words=f"single actuator, {k} shapes", weight=0.2 * k, compute=_actuator(k))
         for k in ACTUATOR_MODES
+    ),
+    Step(
+        name="actuator-fine",
+        words="single actuator, 8 shapes",
+        weight=3,
+        compute=_finest_actuator("assumed-modes", 8),
+    ),
+    Step(
+        name="actuator-beam", words="single actuator, beam elements", weight=6, compute=_finest_actuator("beam-fem", 24)
+    ),
+    *(
+        Step(name=f"actuator-solid-{name}", words=f"solid elements, {words}", weight=weight, compute=_solid(size, kind))
+        for name, words, weight, size, kind in SOLIDS
     ),
     Step(name="robot", words="robot with flexible legs", weight=4, compute=_robot("paper-robot")),
     Step(name="robot-rigid", words="robot with rigid legs", weight=0.3, compute=_fidelity("rigid", 5e-4)),

@@ -11,16 +11,18 @@ from flexapod.study.verify.case import Case, Check, checks
 
 LENGTH, FEED = 1.83, 0.1
 TIP_MM = (5, 1.46875, 2.52914, 3.4969, -9.29794, 3.92053, -8.32143, -9.74686, -4.10753, -1.73481, -2.7728)
+LARGEST_MM = 13.9986
 
 
 def _compute() -> list[Check]:
-    study = model.override(model.preset("paper-actuator"), modes=3, step=1e-4, output_step=0.1)
+    study = model.override(model.preset("paper-actuator"), modes=3, step=1e-4, output_step=0.01)
     assert isinstance(study, model.ActuatorStudy)  # noqa: S101  the preset of an actuator
     first = 2.5e-3 * np.eye(3)[0]  # phi_1(1) = 2; the table starts from the first mode with sqrt(rhoA L) a at rest
     march = prepare_actuator(study, first, -FEED / (2 * LENGTH) * first)
     record = collect(march.chunks, march.plant.kernel.shapes.l_index, study.duration, None)
-    tip = 1e3 * record.q[::10, 0, 2:] @ march.plant.kernel.shapes.a.tip
-    return checks([f"tip at {t} s" for t in range(11)], TIP_MM, tip, 4e-3, "mm", absolute=True)
+    tip = 1e3 * record.q[:, 0, 2:] @ march.plant.kernel.shapes.a.tip
+    names = [*(f"tip at {t} s" for t in range(11)), "largest deflection"]
+    return checks(names, [*TIP_MM, LARGEST_MM], [*tip[::100], np.abs(tip).max()], 4e-3, "mm", absolute=True)
 
 
 SLIDING_BEAM = Case(

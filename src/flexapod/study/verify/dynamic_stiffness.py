@@ -1,6 +1,7 @@
 """Exact frequencies of a 6-UPS robot with locked drives, undeformed and without prestress, by counting.
 
-Dynamic stiffness of uniform members, transcendental in omega, no shape functions. Equations (T7.9)-(T7.15).
+Dynamic stiffness of uniform members, transcendental in omega, no shape functions. Equations (T7.9)-(T7.15). A second
+road to the frequencies that `flexapod.modes` finds: plain NumPy, nothing of the package is used here.
 
 References
 ----------
@@ -10,10 +11,14 @@ R. W. Clough, J. Penzien, "Dynamics of Structures", 2nd ed. (1993), ch. 20; A. Y
 Substructures" (1993), ch. 2: the stiffnesses of bar and beam.
 """
 
+from __future__ import annotations
+
 from collections.abc import Callable, Sequence
 from dataclasses import dataclass
 
 import numpy as np
+
+__all__ = ["Body", "Leg", "bar", "beam", "below", "lateral", "robot", "robot_frequencies", "roots"]
 
 Count = Callable[[float], int]
 Stiffness = tuple[np.ndarray, int]

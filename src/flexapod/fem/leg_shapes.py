@@ -1,0 +1,97 @@
+"""A leg reduced from solid elements: lateral shapes of a clamped solid piston as a basis, Eqs. (T10.22)-(T10.24)."""
+
+from __future__ import annotations
+
+from collections.abc import Callable
+from dataclasses import replace
+
+import numpy as np
+
+from flexapod.bases.lateral import LateralBasis, integrate, proportional_damping
+from flexapod.errors import InputError
+from flexapod.fem.reduction import StationModel, reduced_beam
+from flexapod.model import Rectangle, Tube
+from flexapod.typing import Array
+
+__all__ = ["solid_leg_shapes"]
+
+_INTERVALS = 24
+
+
+def solid_leg_shapes(
+    section: Tube | Rectangle, length: float, count: int, size: float | None = None, *, poisson: float = 0.3
+) -> LateralBasis:
+    """Lateral basis of a solid piston held by a guide: static tip-load shape, then modes with the tip held.
+
+    Shapes are section averages of deflection and rotation at 24 equal intervals, cubic between them; the stiffness is
+    the solid's strain energy at ``length``, shear and mouth included. Material cancels but for Poisson's ratio.
+
+    Parameters
+    ----------
+    section : Tube or Rectangle
+    length : float
+        Free length of the piston [m]; the basis is used at other lengths with the stiffness scaled as that of a beam.
+    count : int
+        Shapes, 1 to 12.
+    size : float, optional
+        Wanted edge of the elements [m]; default a sixth of the depth of the section, at most an interval.
+    poisson : float
+        Poisson's ratio.
+
+    Raises
+    ------
+    InputError
+        Sizes or counts that do not fit.
+    """
+    if not 1 <= count <= 12:
+        raise InputError("is no number of shapes", key="count", value=count, allowed="1 to 12")
+    if not (np.isfinite(length) and length > 0):
+        raise InputError("is no length", key="length", value=length, allowed="above 0 m")
+    spacing = length / _INTERVALS
+    # Behind the mouth as much as the section's end effects need to fade.
+    held = max(4, int(np.ceil(3 * section.depth / spacing)))
+    model = reduced_beam(
+        section,
+        spacing * (_INTERVALS + held),
+        min(section.depth / 6, spacing) if size is None else size,
+        E=1.0 / section.second_moment,
+        density=1.0 / section.area,
+        poisson=poisson,
+        spacing=spacing,
+    )
+    shapes, stiffness = _shapes(model, length, count)
+    basis = integrate("solid-fem", shapes, pieces=_INTERVALS)
+    damping = proportional_damping(basis.mass[:count, :count], stiffness)
+    return replace(basis, stiffness=stiffness, damping=damping)
+
+
+def _shapes(model: StationModel, length: float, count: int) -> tuple[list[Callable[..., Array]], Array]:
+    """Shapes over zeta and their stiffness matrix K^ (count, count), of EI = rhoA = 1."""
+    from scipy.linalg import eigh
+
+    n = 2 * _INTERVALS
+    K, M = model.stiffness[:n, :n], model.mass[:n, :n]
+    unit = np.zeros(n)
+    unit[0] = 1.0
+    load = np.linalg.solve(K, unit)
+    vectors = np.zeros((n, count))
+    vectors[:, 0] = load / load[0]
+    vectors[1:, 1:] = eigh(K[1:, 1:], M[1:, 1:])[1][:, : count - 1] * np.sqrt(length)
+    # The last free station is the one nearest to the mouth: positive there, as in the other bases.
+    vectors *= np.sign(vectors[-2])
+    stiffness = length**3 * vectors.T @ K @ vectors
+    return [_shape(v, length) for v in vectors.T], 0.5 * (stiffness + stiffness.T)
+
+
+def _shape(averages: Array, length: float) -> Callable[..., Array]:
+    """Cubic between stations with the given (w, theta) from the tip to the mouth, where both vanish."""
+    from scipy.interpolate import CubicHermiteSpline
+
+    values = np.concatenate([[0.0], averages[0::2][::-1]])
+    slopes = np.concatenate([[0.0], averages[1::2][::-1]]) * length
+    spline = CubicHermiteSpline(np.linspace(0.0, 1.0, len(values)), values, slopes)
+
+    def shape(zeta: Array, derivative: int = 0) -> Array:
+        return spline(np.asarray(zeta, dtype=float), derivative)
+
+    return shape

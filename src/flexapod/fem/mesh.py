@@ -1,0 +1,113 @@
+"""Hexahedral meshes of straight beams and pistons: a section mesh drawn out along the axis."""
+
+from __future__ import annotations
+
+from dataclasses import dataclass
+
+import numpy as np
+
+from flexapod.errors import InputError
+from flexapod.fem.section_mesh import KINDS, Indices, SectionMesh, section_mesh
+from flexapod.model import Rectangle, Tube
+from flexapod.typing import Array
+
+__all__ = ["SolidMesh", "beam_mesh", "extruded"]
+
+
+@dataclass(frozen=True, kw_only=True)
+class SolidMesh:
+    """Hexahedra of a straight beam along x, bending along y.
+
+    Attributes
+    ----------
+    nodes : (n, 3) array
+        Coordinates [m]; numbered from x = 0 to x = length, plane by plane.
+    elements : (m, 8) or (m, 20) array
+        Nodes of each element from 0, in the order of Abaqus and CalculiX (C3D8, C3D20): four corners of the end at
+        smaller x, four of the other end, then the middles of the edges of either end and of those along x.
+    kind : {"hex8", "hex20"}
+    section : SectionMesh
+        What was drawn out; says which halves are meshed.
+    length : float
+        [m]
+    """
+
+    nodes: Array
+    elements: Indices
+    kind: str
+    section: SectionMesh
+    length: float
+
+    @property
+    def unknowns(self) -> int:
+        """Displacements of all nodes."""
+        return self.nodes.size
+
+    def plane(self, end: int) -> Indices:
+        """Nodes of the end plane x = 0 (``end`` 0) or x = length (1), in the order of the section's points."""
+        count = len(self.section.points)
+        return np.arange(count) + (len(self.nodes) - count if end else 0)
+
+
+def beam_mesh(
+    section: Tube | Rectangle, length: float, size: float, *, kind: str = "hex20", whole: bool = True
+) -> SolidMesh:
+    """Hexahedra with edges near ``size`` [m] in a straight beam of ``length`` [m] along x.
+
+    Parameters
+    ----------
+    section : Tube or Rectangle
+        A rectangle bends along its height, which lies along y.
+    length, size : float
+        Beam and wanted element edge [m].
+    kind : {"hex8", "hex20"}
+        Linear, or quadratic serendipity elements, whose edges follow a circle.
+    whole : bool
+        Whole section, else the half or quarter that bending in the plane of y leaves independent.
+
+    Raises
+    ------
+    InputError
+        A size that is not positive or longer than the beam; an unknown kind; a beam without length.
+    """
+    _check(length, size)
+    return extruded(section_mesh(section, size, kind, whole=whole), length, max(1, round(length / size)))
+
+
+def _check(length: float, size: float) -> None:
+    if not (np.isfinite(length) and length > 0):
+        raise InputError("is no length of a beam", key="length", value=length, allowed="above 0 m")
+    if not (np.isfinite(size) and size > 0):
+        raise InputError("is no length of an element", key="size", value=size, allowed="above 0 m")
+    if size > length:
+        raise InputError(
+            "makes an element longer than the beam",
+            key="size",
+            value=size,
+            allowed=f"above 0, at most {length:g} m",
+            next_step="Take a smaller element size",
+        )
+
+
+def extruded(section: SectionMesh, length: float, layers: int) -> SolidMesh:
+    """Solid mesh of ``layers`` equal layers of elements along ``length`` [m]."""
+    quadratic = section.quads.shape[1] == 8
+    count, middles = len(section.points), int(section.corners.sum())
+    between = np.full(count, -1)
+    between[section.corners] = np.arange(middles)
+    step = count + (middles if quadratic else 0)
+    x = np.linspace(0.0, length, layers + 1)
+    planes: list[Array] = []
+    for layer in range(layers + 1):
+        planes.append(np.column_stack([np.full(count, x[layer]), section.points]))
+        if quadratic and layer < layers:
+            middle = section.points[section.corners]
+            planes.append(np.column_stack([np.full(middles, 0.5 * (x[layer] + x[layer + 1])), middle]))
+    corner, edge = section.quads[:, :4], section.quads[:, 4:]
+    parts = [corner, corner + step]
+    if quadratic:
+        parts += [edge, edge + step, count + between[corner]]
+    one = np.concatenate(parts, axis=1)
+    elements = (one[None] + step * np.arange(layers)[:, None, None]).reshape(-1, one.shape[1])
+    kind = next(name for name, nodes in KINDS.items() if nodes == one.shape[1])
+    return SolidMesh(nodes=np.concatenate(planes), elements=elements, kind=kind, section=section, length=length)

@@ -1,0 +1,123 @@
+"""A mesh that slides with the beam against a mesh of the free length: curves, orders, and why."""
+
+from __future__ import annotations
+
+import numpy as np
+import xarray as xr
+from matplotlib.axes import Axes
+from matplotlib.figure import Figure
+
+from flexapod.plot.style import LEG_COLORS, RIGID, figure, needs, scale, styled
+from flexapod.study.words import number
+
+__all__ = ["sliding_mesh"]
+
+_WORDS = {
+    "nodes": "guide touches nodes",
+    "elements": "guide touches whole elements",
+    "clamp": "clamp inside the element",
+}
+_MARKS = ("o", "s", "^")
+_REFERENCE = "#333333"
+
+
+@styled
+@needs("tip_reference", "error", "error_free_length", "clamp_shift", "error_of_stiffness")
+def sliding_mesh(data: xr.Dataset) -> Figure:
+    """Tip over time, error against element length with slopes, place of the clamp in an element, guide's stiffness.
+
+    Parameters
+    ----------
+    data : xarray.Dataset
+        Result of `flexapod.study.sliding_mesh.sliding_mesh`.
+    """
+    fig = figure(9.6, 7.4, gap=0.06)
+    panels = fig.subplots(2, 2)
+    _tips(panels[0, 0], data)
+    _errors(panels[0, 1], data)
+    _shifts(panels[1, 0], data)
+    _stiffnesses(panels[1, 1], data)
+    handles, labels = panels[0, 0].get_legend_handles_labels()
+    fig.legend(handles, labels, loc="outside lower center", ncols=4)
+    return fig
+
+
+def _guides(data: xr.Dataset) -> list[tuple[str, str, str, str]]:
+    """Name, words, colour and mark of each guide."""
+    names = [str(name) for name in data.guide.values]
+    return [(name, _WORDS.get(name, name), LEG_COLORS[i], _MARKS[i % 3]) for i, name in enumerate(names)]
+
+
+def _tips(axes: Axes, data: xr.Dataset) -> None:
+    unit = scale(data.tip_reference, "m")
+    axes.plot(data.time, unit(data.tip_reference), color=RIGID, linewidth=4.5, label="free length, assumed modes")
+    for name, words, color, _ in _guides(data):
+        axes.plot(data.time, unit(data.tip_deflection.sel(guide=name)), color=color, linewidth=1.1, label=words)
+    axes.set_title(f"Tip, elements of {number(1e3 * data.attrs['shown_element_length'], 2)} mm fixed to the beam")
+    axes.set_xlabel("time [s]")
+    axes.set_ylabel(f"deflection [{unit.name}]")
+
+
+def _errors(axes: Axes, data: xr.Dataset) -> None:
+    size = 1e3 * data.element_length
+    for name, _, color, mark in _guides(data):
+        axes.loglog(size, 1e2 * data.error.sel(guide=name), mark + "-", color=color, markersize=5)
+    free = 1e2 * data.error_free_length
+    axes.loglog(1e3 * data.free_element_length, free, "D-", color=_REFERENCE, markersize=5)
+    axes.annotate(
+        "elements on\nthe free length",
+        (float(1e3 * data.free_element_length[0]), float(free[0])),
+        xytext=(0, 8),
+        textcoords="offset points",
+        ha="center",
+        va="bottom",
+        fontsize=8.5,
+        color=_REFERENCE,
+    )
+    lowest = data.error.min("guide")
+    axes.margins(y=0.12)
+    _slope(axes, size.values, 0.45e2 * lowest.values[np.argmax(size.values)], 1)
+    axes.set_title("Error of the tip, and order 1")
+    axes.set_xlabel("length of an element [mm]")
+    axes.set_ylabel("root mean square error [%]")
+
+
+def _slope(axes: Axes, sizes: np.ndarray, at_largest: float, order: int) -> None:
+    ends = np.array([sizes.min(), sizes.max()])
+    values = at_largest * (ends / ends[1]) ** order
+    axes.loglog(ends, values, color="#888888", linestyle=(0, (4, 3)), linewidth=1.0)
+    axes.annotate(f"order {order}", (ends[0], values[0]), xytext=(2, -12), textcoords="offset points", fontsize=8.5,
+                  color="#666666")  # fmt: skip
+
+
+def _shifts(axes: Axes, data: xr.Dataset) -> None:
+    for name, _, color, mark in _guides(data):
+        axes.plot(data.outside_part, data.clamp_shift_law.sel(guide=name), color=color)
+        axes.plot(
+            data.outside_part, data.clamp_shift.sel(guide=name), mark, color=color, markersize=4, fillstyle="none"
+        )
+    axes.axhline(0, color=_REFERENCE, linewidth=0.9)
+    axes.annotate(
+        "lines: law\nmarks: from the first frequency",
+        (0.03, 0.97),
+        xycoords="axes fraction",
+        va="top",
+        fontsize=8.5,
+        color="#555555",
+    )
+    axes.annotate(
+        "the mouth", (1.0, 0.0), xytext=(0, -3), textcoords="offset points", ha="right", va="top", fontsize=8.5
+    )
+    axes.set_title("Why: where the clamp seems to be")
+    axes.set_xlabel("part of the element at the mouth that is outside")
+    axes.set_ylabel("shift / element length, outwards")
+
+
+def _stiffnesses(axes: Axes, data: xr.Dataset) -> None:
+    axes.loglog(data.stiffness, 1e2 * data.error_of_stiffness, _MARKS[1] + "-", color=LEG_COLORS[1], markersize=5)
+    axes.set_title("Stiffness of the guide, whole elements")
+    axes.set_xlabel("stiffness per length [N/m²]")
+    axes.set_ylabel("root mean square error [%]")
+    place = {"xycoords": "axes fraction", "fontsize": 8.5, "color": "#555555"}
+    axes.annotate("too soft: the clamp\nis behind the mouth", (0.02, 0.04), **place)
+    axes.annotate("too stiff: the\nelement locks", (0.97, 0.3), ha="right", **place)

@@ -1,0 +1,220 @@
+"""The single actuator by solid finite elements: a study in, a Dataset out."""
+
+from __future__ import annotations
+
+import time
+from collections.abc import Callable
+from typing import TYPE_CHECKING, NamedTuple
+
+import numpy as np
+
+from flexapod import model, rigid
+from flexapod.errors import InputError
+from flexapod.fem.reduction import StationModel, reduced_beam
+from flexapod.fem.sliding import HubMotion, SlidingBeam, slide
+from flexapod.study.attributes import attributes
+from flexapod.study.checks import check_actuator_path, path_instants
+from flexapod.study.names import ACTUATOR_FORMS, Variable, dataset
+from flexapod.study.record import Progress
+from flexapod.typing import Array
+
+if TYPE_CHECKING:
+    from xarray import Dataset
+
+__all__ = ["PAPER_SECTION", "simulate_solid"]
+
+#: Section of the paper's beam (Table 2), which bends along its 9.5 mm: 12 ft x 6 in x 3/8 in.
+PAPER_SECTION = model.Rectangle(width=0.1524, height=0.0095)
+
+_FORMS = ACTUATOR_FORMS | {
+    "frequency": Variable(("time",), "Hz", "lowest bending frequency at the length and rates of the moment"),
+    "static_deflection": Variable(("time",), "m", "deflection of the tip at rest under the loads of the moment"),
+}
+
+
+def simulate_solid(
+    study: model.ActuatorStudy,
+    *,
+    section: model.Rectangle | model.Tube | None = None,
+    size: float = 0.005,
+    kind: str = "hex20",
+    poisson: float = 0.0,
+    spacing: float | None = None,
+    step: float = 1e-3,
+    duration: float | None = None,
+    output_step: float | None = None,
+    progress: Progress | None = None,
+) -> Dataset:
+    """Motion of a solid beam that slides out of a turning hub.
+
+    E and density are those that give the study's EI and rhoA with the section. The guide holds the section averages of
+    deflection and rotation at stations; the solid is condensed onto them.
+
+    Parameters
+    ----------
+    study : ActuatorStudy
+        With prescribed rotation and extension, without damping.
+    section : Rectangle or Tube, optional
+        Default: the study's, else that of the paper's beam. A rectangle bends along its height.
+    size : float
+        Wanted edge of the elements [m].
+    kind : {"hex20", "hex8"}
+        Quadratic or linear hexahedra; linear ones lock in bending.
+    poisson : float
+        Poisson's ratio; at 0 the solid is the beam of the other fidelities.
+    spacing : float, optional
+        Distance of the stations [m]; default a 36th of the beam, at least one element.
+    step : float
+        Largest time step [s].
+    duration, output_step : float, optional
+        In place of those of [simulation] [s].
+    progress : callable, optional
+        Called with simulated and whole time [s].
+
+    Returns
+    -------
+    xarray.Dataset
+        `tip_deflection` (mean of the end section, in the frame of the hub), `length`, `angle` and their rates,
+        `frequency`, `static_deflection` over time; mesh, unknowns and times of computation as attributes.
+
+    Raises
+    ------
+    InputError
+        Degenerate meshes, a motion or load that the solid does not take, a beam that leaves its hub.
+    """
+    _only_prescribed(study)
+    if not (np.isfinite(step) and step > 0):
+        raise InputError("is no time step", key="step", value=step, allowed="above 0 s")
+    study = model.override(study, duration=duration, output_step=output_step)
+    mesh = _Mesh(section or study.actuator.section or PAPER_SECTION, size, kind, poisson, spacing)
+    return _simulated(study, mesh, step, progress)
+
+
+class _Mesh(NamedTuple):
+    """What is meshed, how finely, of which elements, with which Poisson's ratio and distance of stations."""
+
+    section: model.Rectangle | model.Tube
+    size: float
+    kind: str
+    poisson: float
+    spacing: float | None
+
+
+def _simulated(study: model.ActuatorStudy, mesh: _Mesh, step: float, progress: Progress | None) -> Dataset:
+    remarks = check_actuator_path(study)
+    begin = time.perf_counter()
+    reduced = _reduced(study.actuator, mesh)
+    _stays_held(study, reduced)
+    middle = time.perf_counter()
+    beam, motion, t = _in_hub(study.actuator, reduced), _motion(study), _outputs(study)
+    tip = slide(beam, motion, study.initial.tip_displacement, t, step, progress)
+    attrs = attributes(study, [*study.warnings, *remarks]) | {
+        "fidelity": "solid-fem",
+        "element": mesh.kind,
+        "element_size": mesh.size,
+        "poisson": mesh.poisson,
+        "unknowns": reduced.unknowns,
+        "stations": reduced.stations,
+        "station_spacing": reduced.spacing,
+        "integrator": "Gauss collocation, order 4",
+        "step": step,
+        "wall_time_reduction": middle - begin,
+        "wall_time": time.perf_counter() - begin,
+        "partial": 0,
+    }
+    return dataset(_results(beam, motion, t, tip), {"time": t}, attrs, _FORMS)
+
+
+def _outputs(study: model.ActuatorStudy) -> Array:
+    s = study.simulation
+    return np.asarray(s.stored_step * np.arange(s.outputs(study.duration) + 1), dtype=float)
+
+
+def _only_prescribed(study: model.ActuatorStudy) -> None:
+    if not isinstance(study, model.ActuatorStudy):
+        raise InputError(
+            "is not the study of a single actuator", key="study", value=type(study).__name__, allowed="[actuator]"
+        )
+    if study.motion.rotation is None or study.motion.extension is None:
+        raise InputError(
+            "leaves rotation or extension free",
+            key="motion",
+            allowed="both prescribed",
+            next_step="The solid takes no driving torque or force: use the other fidelities",
+        )
+    if any(jump < study.duration for jump in study.motion.rate_jumps):
+        raise InputError(
+            "jumps in rate within the simulated time", key="motion", allowed="laws that are smooth after the start"
+        )
+    if study.actuator.damping:
+        raise InputError("is not taken by the solid", key="actuator.damping", value=study.actuator.damping, allowed="0")
+
+
+def _reduced(actuator: model.Actuator, mesh: _Mesh) -> StationModel:
+    return reduced_beam(
+        mesh.section,
+        actuator.length,
+        mesh.size,
+        E=actuator.EI / mesh.section.second_moment,
+        density=actuator.rhoA / mesh.section.area,
+        poisson=mesh.poisson,
+        kind=mesh.kind,
+        spacing=mesh.spacing,
+    )
+
+
+def _in_hub(actuator: model.Actuator, reduced: StationModel) -> SlidingBeam:
+    return SlidingBeam(
+        model=reduced,
+        hub_radius=actuator.hub_radius,
+        tip_mass=actuator.tip_mass,
+        tip_inertia=actuator.tip_inertia,
+        gravity=actuator.gravity,
+    )
+
+
+def _stays_held(study: model.ActuatorStudy, reduced: StationModel) -> None:
+    """Refuse a motion at whose ends less than two stations are free or held."""
+    free = study.actuator.free_length
+    if study.motion.extension is not None:
+        free = free + rigid.motion_law(study.motion.extension, path_instants(study)).position
+    low, high = 2 * reduced.spacing, reduced.length - 2 * reduced.spacing
+    if np.min(free) < low or np.max(free) > high:
+        raise InputError(
+            "brings the mouth within two stations of an end of the beam",
+            key="motion.extension",
+            value=f"free length {np.min(free):.4g} to {np.max(free):.4g} m",
+            allowed=f"{low:.4g} to {high:.4g} m",
+            next_step="Shorten the motion, or lay the stations closer (spacing)",
+        )
+
+
+def _motion(study: model.ActuatorStudy) -> Callable[[float], HubMotion]:
+    actuator, rotation, extension = study.actuator, study.motion.rotation, study.motion.extension
+    assert rotation is not None and extension is not None  # noqa: S101  refused before
+
+    def motion(t: float) -> HubMotion:
+        turn, feed = (rigid.motion_law(law, np.array([t])) for law in (rotation, extension))
+        return HubMotion(
+            length=actuator.free_length + float(feed.position[0]),
+            length_rate=float(feed.rate[0]),
+            length_acceleration=float(feed.acceleration[0]),
+            angle=actuator.angle + float(turn.position[0]),
+            angle_rate=float(turn.rate[0]),
+            angle_acceleration=float(turn.acceleration[0]),
+        )
+
+    return motion
+
+
+def _results(beam: SlidingBeam, motion: Callable[[float], HubMotion], t: Array, tip: Array) -> dict[str, Array]:
+    path = [motion(instant) for instant in t.tolist()]
+    return {
+        "tip_deflection": tip,
+        "length": np.array([x.length for x in path]),
+        "angle": np.array([x.angle for x in path]),
+        "length_rate": np.array([x.length_rate for x in path]),
+        "angle_rate": np.array([x.angle_rate for x in path]),
+        "frequency": np.array([beam.frequencies(x, 1)[0] for x in path]),
+        "static_deflection": np.array([beam.static_deflection(x) for x in path]),
+    }

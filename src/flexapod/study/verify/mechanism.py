@@ -1,0 +1,242 @@
+"""Mechanisms of the literature in the time integration of the robot: same start, same compiled loop, other equations.
+
+The loop knows six legs of n coordinates, each closed by three equations to a body that carries them, and strokes that
+may follow a table. Any mechanism of that structure can take their place: `Branch` for the leg, `Hub` for the body.
+Needs casadi: import it where a case is computed.
+"""
+
+from __future__ import annotations
+
+from collections.abc import Callable
+from dataclasses import dataclass
+from pathlib import Path
+
+import numpy as np
+
+from flexapod.bases import axial_basis, lateral_basis
+from flexapod.errors import ComputationError
+from flexapod.mechanics.layout import COMMAND_SIZE, LEG_PARAMETERS, Shapes, columns
+from flexapod.solve.genalpha import GeneralizedAlpha
+from flexapod.solve.kernel import NAMES, SOURCES, Kernel
+from flexapod.solve.march import Problem, Tables, march
+from flexapod.solve.plant import TABLE, Counters, Flow, Plant, Recording
+from flexapod.solve.start import consistent_start
+from flexapod.solve.system import RobotSystem, State
+from flexapod.solve.tables import Commands
+from flexapod.symbolic import lagrange, vocabulary
+from flexapod.symbolic.compiler import CompiledFunction, compiled_library, compiler
+from flexapod.symbolic.functions import NamedFunction
+from flexapod.symbolic.lagrange import Lagrangian, inverse_dynamics, mass_matrix
+from flexapod.symbolic.vocabulary import SX, dot, gradient, hessian, jacobian, substitute, symbol, vertcat, zeros
+from flexapod.typing import Array
+
+__all__ = ["Branch", "Drive", "Hub", "Mechanism", "run"]
+
+#: branch(q, v, p) -> kinetic energy, potential energy, the point (3,) that is closed; p: the branch's own parameters
+Branch = Callable[[SX, SX, SX], tuple[SX, SX, SX]]
+#: hub(x, u) -> kinetic and potential energy, the points (18,) of branches 1 to 6; x: three coordinates, u: their rates
+Hub = Callable[[SX, SX], tuple[SX, SX, SX]]
+#: drive(t) -> value, rate and acceleration of the third coordinate of the first branch, which follows them
+Drive = Callable[[Array], tuple[Array, Array, Array]]
+
+OUTPUTS = 20
+
+
+@dataclass(frozen=True, kw_only=True)
+class Mechanism:
+    """Six branches on a hub.
+
+    ``shapes``: lateral shapes a direction, which set the number of coordinates of a branch, 3 + 2 ``shapes``; the
+    first three follow from the closed point and the others. ``parameters`` (6, m): those of each branch. ``file``:
+    where the equations are written; compiled code is kept as long as it stays the same.
+    """
+
+    branch: Branch
+    hub: Hub
+    drive: Drive
+    shapes: int
+    parameters: Array
+    file: str
+
+
+def run(mechanism: Mechanism, q: Array, x: Array, v: Array, u: Array, duration: float, steps: int) -> list[Recording]:
+    """The start, and what follows in `steps` equal steps of the time integration with spectral radius 0.9.
+
+    Parameters
+    ----------
+    mechanism : Mechanism
+    q, v : ndarray, shape (6, n)
+        Coordinates of the branches at the start, closed, and their rates.
+    x, u : ndarray, shape (3,)
+        Of the hub.
+    duration : float
+        [s]
+    steps : int
+        A multiple of 20, the number of stored instants.
+
+    Returns
+    -------
+    list of Recording
+        The start alone, then pieces in the order of time.
+
+    Raises
+    ------
+    ComputationError
+        There is no C compiler, or the integration stopped.
+    """
+    system, h, method = _system(mechanism), duration / steps, GeneralizedAlpha(0.9)
+    law = _law(mechanism.drive)
+    at = State(
+        q=q,
+        pose=np.concatenate([x, [1.0, 0.0, 0.0, 0.0]]),
+        v=np.concatenate([v.ravel(), u, np.zeros(3)]),
+        v_dot=np.zeros(system.size),
+        lam=np.zeros((6, 3)),
+        drive=np.zeros(6),
+    )
+    start = consistent_start(system, at, law(np.zeros(1)), method, h)
+    s, drive = start.state, np.stack([start.state.drive, np.zeros(6)], axis=1)
+    flow = Flow(q=s.q, v=s.v, v_dot=s.v_dot, a=start.a, lam=s.lam, drive=drive, pose=s.pose)
+    problem = _problem(system, method, lambda t: _tables(law(t)), duration)
+    return [chunk.recording for chunk in march(problem, flow, h, Counters())]
+
+
+def _problem(system: RobotSystem, method: GeneralizedAlpha, tables: Tables, duration: float) -> Problem:
+    """A fixed step, nothing that jumps, nothing to check."""
+    plant = Plant(
+        kernel=system.kernel,
+        leg_p=system.leg_p,
+        payload_p=system.payload_p,
+        held_l=system.held,
+        held_beta=np.zeros(6, dtype=bool),
+    )
+    return Problem(
+        plant=plant,
+        method=method,
+        tables=tables,
+        output_step=duration / OUTPUTS,
+        outputs=OUTPUTS,
+        measure=lambda recording: [recording.pose],
+        defect=lambda flow, t, ratio: flow,
+        restart=lambda flow, t, h: flow,
+        restarts=(),
+        check=lambda recording: None,
+        tolerance=None,
+    )
+
+
+def _law(drive: Drive) -> Callable[[Array], Commands]:
+    def law(t: Array) -> Commands:
+        rows = np.zeros((3, len(t), 6))
+        rows[:, :, 0] = drive(t)
+        none = np.zeros((len(t), 6))
+        return Commands(time=t, length=rows[0], rate=rows[1], accel=rows[2], force=none, wrench=none, law=law)
+
+    return law
+
+
+def _tables(c: Commands) -> tuple[Array, Array]:
+    table = np.zeros((len(c.time), 6, TABLE))
+    table[:, :, 0], table[:, :, 1], table[:, :, 2] = c.length, c.rate, c.accel
+    return table.reshape(len(c.time), -1), c.wrench
+
+
+def _system(mechanism: Mechanism) -> RobotSystem:
+    lateral = lateral_basis("tip-load", mechanism.shapes)  # for its number of shapes only
+    shapes = Shapes(a=lateral, b=lateral, axial=axial_basis(0))
+    general = np.zeros((6, sum(size for _, size in LEG_PARAMETERS)))  # what the loop itself asks of a leg
+    general[:, columns(LEG_PARAMETERS, "Lp")] = 1.0
+    return RobotSystem(
+        kernel=_kernel(mechanism, shapes, general.shape[1]),
+        leg_p=np.ascontiguousarray(np.concatenate([general, mechanism.parameters], axis=1)),
+        payload_p=np.ones(1),
+        held=np.arange(6) == 0,
+    )
+
+
+def _kernel(mechanism: Mechanism, shapes: Shapes, general: int) -> Kernel:
+    command = compiler()
+    if not command:
+        raise ComputationError(
+            "there is no C compiler, and interpreted equations would take hours",
+            next_step="Install gcc or clang, or `pip install flexapod[compiler]`.",
+        )
+    texts = [
+        Path(str(file)).read_bytes() for file in (__file__, mechanism.file, lagrange.__file__, vocabulary.__file__)
+    ]
+    library, signatures = compiled_library(
+        [*texts, shapes.size, general],
+        lambda: [*_branch_functions(mechanism, shapes, general), *_hub_functions(mechanism.hub)],
+        SOURCES,
+        command,
+    )
+    compiled = {name: CompiledFunction(library, name, signatures[name]) for name in NAMES}
+    return Kernel(shapes=shapes, library=library, **compiled)
+
+
+def _branch_functions(mechanism: Mechanism, shapes: Shapes, general: int) -> list[NamedFunction]:
+    """Residual, matrices and energies of a branch by Lagrange's equations, as of a leg in `mechanics.assembly`."""
+    n = shapes.size
+    q, v, v_dot, lam = (symbol(name, size) for name, size in (("q", n), ("v", n), ("v_dot", n), ("lam", 3)))
+    command, p = symbol("command", COMMAND_SIZE), symbol("p", general + mechanism.parameters.shape[1])
+    kinetic, potential, point = mechanism.branch(q, v, p[general:])
+    e = Lagrangian(q=q, v=v, kinetic=kinetic, potential=potential, dissipation=zeros(1))
+    r = inverse_dynamics(e, v_dot) + gradient(dot(point, lam), q)
+    r[shapes.l_index] -= command[2]
+    parameters = [("command", command), ("p", p)]
+    matrices = [
+        ("M", mass_matrix(e)),
+        ("D", zeros(n, n)),
+        ("K", hessian(potential + dot(point, lam), q)),
+        ("J", jacobian(point, q)),
+    ]
+    powers = vertcat(zeros(1), command[2] * v[shapes.l_index])
+    return [
+        NamedFunction(
+            "leg_residual",
+            [("q", q), ("v", v), ("v_dot", v_dot), ("lam", lam), *parameters],
+            [("r", r), ("tip", point), ("powers", powers)],
+        ),
+        NamedFunction("leg_matrices", [("q", q), ("lam", lam), ("p", p)], matrices),
+        NamedFunction(
+            "leg_energies",
+            [("q", q), ("v", v), *parameters],
+            [("energies", vertcat(kinetic, zeros(1), potential))],
+        ),
+    ]
+
+
+def _hub_functions(hub: Hub) -> list[NamedFunction]:
+    """The same of the hub: three coordinates, and a turn of unit inertia that nothing moves."""
+    pose, u, u_dot = symbol("pose", 7), symbol("u", 6), symbol("u_dot", 6)
+    lam, wrench, p = symbol("lam", 18), symbol("wrench", 6), symbol("p", 1)
+    x, rate, push = symbol("x", 3), symbol("rate", 3), symbol("push", 3)
+    kinetic, potential, points = hub(x, rate)
+    e = Lagrangian(q=x, v=rate, kinetic=kinetic, potential=potential, dissipation=zeros(1))
+
+    def here(expression: SX) -> SX:
+        return substitute(expression, (x, rate, push), (pose[:3], u[:3], u_dot[:3]))
+
+    r = inverse_dynamics(e, push) - gradient(dot(points, lam), x)
+    M, K, P = zeros(6, 6), zeros(6, 6), zeros(18, 6)
+    for i in (3, 4, 5):
+        M[i, i] = 1
+    M[:3, :3], K[:3, :3], P[:, :3] = mass_matrix(e), hessian(potential - dot(points, lam), x), jacobian(points, x)
+    motion = [("pose", pose), ("u", u), ("u_dot", u_dot), ("lam", lam), ("wrench", wrench), ("p", p)]
+    return [
+        NamedFunction(
+            "payload_residual",
+            motion,
+            [("r", vertcat(here(r), u_dot[3:])), ("points", here(points)), ("power", zeros(1))],
+        ),
+        NamedFunction(
+            "payload_matrices",
+            [("pose", pose), ("lam", lam), ("wrench", wrench), ("p", p)],
+            [("M", here(M)), ("K", here(K)), ("P", here(P))],
+        ),
+        NamedFunction(
+            "payload_energies",
+            [("pose", pose), ("u", u), ("p", p)],
+            [("energies", vertcat(here(kinetic), zeros(1), here(potential)))],
+        ),
+    ]
