@@ -178,3 +178,12 @@ def test_figures():
     np.testing.assert_allclose(four[1].lines[0].get_ydata(), gap)
     with pytest.raises(InputError, match="tip_deflection"):
         solid_comparison({"solid elements": fine.drop_vars("tip_deflection")}, reference)
+
+
+def test_meshes_that_no_machine_holds_are_refused_before_they_are_made():
+    flat = Rectangle(width=0.1524, height=0.0095)
+    with pytest.raises(InputError, match=r"2\.6e\+06 elements") as error:
+        beam_mesh(flat, 3.66, 0.00127)
+    assert error.value.key == "size"
+    with pytest.raises(InputError, match="elements of"):
+        reduced_beam(flat, 3.66, 0.001, E=1.0, density=1.0)

@@ -20,7 +20,7 @@ __all__ = ["add"]
 Accuracy = Annotated[
     float, typer.Option("--accuracy", metavar="ERROR", help="Relative error that the recommended setting keeps.")
 ]
-Ladder = Annotated[bool, typer.Option("--ladder", help="Also every fidelity, rigid to beam-fem: error against cost.")]
+Ladder = Annotated[bool, typer.Option("--ladder", help="Also every fidelity, rigid to solid-fem: error against cost.")]
 
 
 def add(app: typer.Typer) -> None:

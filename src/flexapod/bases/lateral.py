@@ -15,7 +15,7 @@ Shape = Callable[..., Array]
 MOMENTS = 26
 
 
-@dataclass(frozen=True, kw_only=True)
+@dataclass(frozen=True, kw_only=True, eq=False)
 class LateralBasis:
     """k shapes phi_i(zeta), zeta in [0, 1] from the mouth to the tip, with all integrals the mechanics needs.
 

@@ -34,7 +34,7 @@ def solid_leg_shapes(
     count : int
         Shapes, 1 to 12.
     size : float, optional
-        Wanted edge of the elements [m]; default a sixth of the depth of the section, at most an interval.
+        Wanted edge of the elements [m]; default a sixth of the larger side of the section, at most an interval.
     poisson : float
         Poisson's ratio.
 
@@ -53,7 +53,7 @@ def solid_leg_shapes(
     model = reduced_beam(
         section,
         spacing * (_INTERVALS + held),
-        min(section.depth / 6, spacing) if size is None else size,
+        min(_side(section) / 6, spacing) if size is None else size,
         E=1.0 / section.second_moment,
         density=1.0 / section.area,
         poisson=poisson,
@@ -63,6 +63,11 @@ def solid_leg_shapes(
     basis = integrate("solid-fem", shapes, pieces=_INTERVALS)
     damping = proportional_damping(basis.mass[:count, :count], stiffness)
     return replace(basis, stiffness=stiffness, damping=damping)
+
+
+def _side(section: Tube | Rectangle) -> float:
+    """Larger side of a section [m]; quadratic elements need no second one across the smaller side."""
+    return max(section.width, section.height) if isinstance(section, Rectangle) else section.diameter
 
 
 def _shapes(model: StationModel, length: float, count: int) -> tuple[list[Callable[..., Array]], Array]:

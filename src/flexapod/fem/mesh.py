@@ -11,7 +11,9 @@ from flexapod.fem.section_mesh import KINDS, Indices, SectionMesh, section_mesh
 from flexapod.model import Rectangle, Tube
 from flexapod.typing import Array
 
-__all__ = ["SolidMesh", "beam_mesh", "extruded"]
+__all__ = ["SolidMesh", "beam_mesh", "check_count", "extruded"]
+
+MOST = 1_000_000  # elements: some 10 million unknowns
 
 
 @dataclass(frozen=True, kw_only=True)
@@ -68,9 +70,10 @@ def beam_mesh(
     Raises
     ------
     InputError
-        A size that is not positive or longer than the beam; an unknown kind; a beam without length.
+        A size that is not positive, longer than the beam or too small; an unknown kind; a beam without length.
     """
     _check(length, size)
+    check_count(section, length, size, MOST)
     return extruded(section_mesh(section, size, kind, whole=whole), length, max(1, round(length / size)))
 
 
@@ -86,6 +89,19 @@ def _check(length: float, size: float) -> None:
             value=size,
             allowed=f"above 0, at most {length:g} m",
             next_step="Take a smaller element size",
+        )
+
+
+def check_count(section: Tube | Rectangle, length: float, size: float, most: int) -> None:
+    """Refuse a mesh before it is made that would not fit into memory: more than ``most`` elements."""
+    count = section.area * length / size**3
+    if count > most:
+        raise InputError(
+            f"makes about {count:.2g} elements in {length:.3g} m",
+            key="size",
+            value=size,
+            allowed=f"at most {most:,} of them there",
+            next_step=f"Take elements of {(section.area * length / most) ** (1 / 3):.2g} m or more",
         )
 
 

@@ -14,13 +14,15 @@ from scipy.sparse import csc_array, csr_array
 from flexapod.errors import InputError
 from flexapod.fem.elasticity import field_load, integrals, mass, slope_stiffness, stiffness
 from flexapod.fem.frequencies import check_material
-from flexapod.fem.mesh import SolidMesh, extruded
+from flexapod.fem.mesh import SolidMesh, check_count, extruded
 from flexapod.fem.section_average import SectionAverages, free_unknowns, section_averages
 from flexapod.fem.section_mesh import section_mesh
 from flexapod.model import Rectangle, Tube
 from flexapod.typing import Array
 
 __all__ = ["StationModel", "reduced_beam"]
+
+MOST = 20_000  # elements of an interval: its condensation is dense, one or two gigabytes there
 
 
 @dataclass(frozen=True, kw_only=True)
@@ -102,6 +104,7 @@ def reduced_beam(
     _check(length, size, wanted)
     count = max(1, round(length / wanted))
     step = length / count
+    check_count(section, step, size, MOST)
     across = section_mesh(section, size, kind, whole=False)
     interval = extruded(across, step, max(1, round(step / size)))
     averages = section_averages(across)

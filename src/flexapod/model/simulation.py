@@ -12,9 +12,10 @@ from flexapod.model.base import Frozen, Positive
 
 __all__ = ["DEFAULT_TOLERANCE", "FIDELITIES", "OWN_BASIS", "STRAIGHT", "Initial", "Simulation", "own_fidelity"]
 
-FIDELITIES = ("rigid", "lumped", "finite-segment", "assumed-modes", "beam-fem")
+FIDELITIES = ("rigid", "lumped", "finite-segment", "assumed-modes", "beam-fem", "solid-fem")
 STRAIGHT = ("rigid", "lumped")  # fidelities without lateral shapes
-OWN_BASIS = {"finite-segment": "segments", "beam-fem": "hermite"}  # fidelities that leave no choice of basis
+# Fidelities that leave no choice of basis
+OWN_BASIS = {"finite-segment": "segments", "beam-fem": "hermite", "solid-fem": "solid"}
 DEFAULT_TOLERANCE = 1e-4
 MOST_SHAPES = 12  # of a lateral plane; higher ones follow no excitation that a beam model describes
 MOST_ELEMENT_SHAPES = 24  # of `beam-fem`: twelve elements, for differences of 0.1 % in long runs
@@ -30,7 +31,8 @@ class Simulation(Frozen):
     """Settings of a simulation.
 
     `fidelity`; `basis` of `assumed-modes`; `modes`, the lateral shapes per plane (of `finite-segment` one per segment,
-    of `beam-fem` two per element); `duration` [s] (None: the motion with its hold);
+    of `beam-fem` two per element, of `solid-fem` those of the reduced solid piston);
+    `duration` [s] (None: the motion with its hold);
     `tolerance` (relative, of the step control) or fixed `step` [s]; `output_step` [s]; `rho_inf`, spectral radius of
     the integrator at infinite frequency.
     """

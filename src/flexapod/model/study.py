@@ -13,7 +13,7 @@ from flexapod.model.load import Load
 from flexapod.model.motion import Motion
 from flexapod.model.remarks import actuator_remarks, robot_remarks
 from flexapod.model.robot import Robot
-from flexapod.model.simulation import OWN_BASIS, STRAIGHT, Initial, Simulation
+from flexapod.model.simulation import FIDELITIES, OWN_BASIS, STRAIGHT, Initial, Simulation
 from flexapod.model.write import to_toml
 
 __all__ = ["ActuatorStudy", "Study", "override"]
@@ -101,7 +101,7 @@ class ActuatorStudy(_Documented):
                 "has no meaning for the single actuator, whose beam bends but does not stretch",
                 key="simulation.fidelity",
                 value="lumped",
-                allowed="rigid, finite-segment, assumed-modes, beam-fem",
+                allowed=", ".join(name for name in FIDELITIES if name != "lumped"),
             )
         if self.simulation.duration is None and self.motion.end_time is None:
             raise InputError(

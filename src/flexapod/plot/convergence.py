@@ -25,6 +25,7 @@ _RUNGS = {
     ("assumed-modes", "clamped-free"): (LEG_COLORS[4], "v", "assumed-modes, clamped-free"),
     ("assumed-modes", "tip-load"): (LEG_COLORS[0], "o", "assumed-modes, tip-load"),
     ("beam-fem", ""): (LEG_COLORS[3], "s", "beam-fem (elements)"),
+    ("solid-fem", ""): (LEG_COLORS[1], "h", "solid-fem (shapes)"),
 }
 # Where the numbers of a fidelity stand, so that neighbours do not cover each other.
 _SIDES = {
@@ -32,6 +33,7 @@ _SIDES = {
     ("assumed-modes", "clamped-free"): ((-5, 4), "right"),
     ("assumed-modes", "tip-load"): ((-6, -8), "right"),
     ("beam-fem", ""): ((6, -3), "left"),
+    ("solid-fem", ""): ((5, -9), "left"),
 }
 _OTHER = (LEG_COLORS[1], "P")
 _FILE, _CHOSEN = LEG_COLORS[5], LEG_COLORS[1]

@@ -11,8 +11,9 @@ from flexapod.model import Actuator, ActuatorStudy, Simulation
 from flexapod.solve.genalpha import GeneralizedAlpha
 from flexapod.solve.kernel import kernel
 from flexapod.solve.march import Chunk, Problem, initial_step, march, restart_outputs
-from flexapod.solve.parameters import actuator_parameters, shape_ratios
+from flexapod.solve.parameters import actuator_parameters
 from flexapod.solve.plant import TABLE, Counters, Flow, Plant, Recording
+from flexapod.solve.shapes import beam_shapes
 from flexapod.typing import Array
 
 Law = Callable[[Array], tuple[Array, Array]]
@@ -33,10 +34,8 @@ def actuator_plant(
     actuator: Actuator, simulation: Simulation, *, rotation: bool = True, extension: bool = True
 ) -> Plant:
     """Plant of the planar actuator; ``rotation`` and ``extension`` say whether they are prescribed."""
-    basis = simulation.lateral_basis
-    ratios = shape_ratios(actuator, basis)
     return Plant(
-        kernel=kernel(basis, simulation.lateral_shapes, 0, planar=True, ratios=ratios),
+        kernel=kernel(beam_shapes(actuator, simulation), 0, planar=True),
         leg_p=actuator_parameters(actuator),
         payload_p=np.zeros(0),
         held_l=np.array([extension]),

@@ -6,13 +6,14 @@ from functools import lru_cache
 import numpy as np
 from scipy.linalg import eigh
 
-from flexapod import bases
+from flexapod.bases.lateral import LateralBasis
 from flexapod.errors import ComputationError, InputError
-from flexapod.mechanics.layout import COMMAND_SIZE, Shapes
+from flexapod.mechanics.layout import COMMAND_SIZE
 from flexapod.model import Actuator, Simulation
 from flexapod.solve.damped import damping_ratios
-from flexapod.solve.kernel import Function
-from flexapod.solve.parameters import actuator_parameters, shape_ratios
+from flexapod.solve.kernel import Function, planar_shapes
+from flexapod.solve.parameters import actuator_parameters
+from flexapod.solve.shapes import beam_shapes
 from flexapod.typing import Array
 
 
@@ -58,7 +59,7 @@ def actuator_modes(
             "leaves nothing that could vibrate with rotation and extension held",
             key="simulation.fidelity",
             value=simulation.fidelity,
-            allowed="finite-segment, assumed-modes, beam-fem",
+            allowed="finite-segment, assumed-modes, beam-fem, solid-fem",
         )
     if free_length is not None:
         actuator = actuator.replace(free_length=free_length)
@@ -78,8 +79,7 @@ def actuator_modes(
 
 def turning_matrices(actuator: Actuator, simulation: Simulation, rate: float) -> tuple[Array, Array, Array]:
     """M, D, K (k, k) of the amplitudes of the beam in steady rotation, Eq. (T9.6)."""
-    basis = simulation.lateral_basis
-    matrices, tangents = _functions(basis, simulation.lateral_shapes, shape_ratios(actuator, basis, rate))
+    matrices, tangents = _functions(beam_shapes(actuator, simulation, rate))
     p, size = actuator_parameters(actuator)[0], 2 + simulation.lateral_shapes
     q, v, none = np.zeros(size), np.zeros(size), np.zeros(3)
     q[:2], v[0] = (actuator.angle, actuator.hub_radius + actuator.free_length), rate
@@ -89,12 +89,11 @@ def turning_matrices(actuator: Actuator, simulation: Simulation, rate: float) ->
 
 
 @lru_cache(maxsize=16)
-def _functions(basis: str, modes: int, ratios: tuple[float, ...]) -> tuple[Function, Function]:
+def _functions(lateral: LateralBasis) -> tuple[Function, Function]:
     """Matrices at rest and tangents in motion of the planar leg, interpreted: each is called once per analysis."""
     from flexapod.mechanics.assembly import leg_functions, leg_tangents
     from flexapod.symbolic.functions import Interpreted
 
-    lateral, other = (bases.lateral_basis(basis, count, *ratios) for count in (modes, 0))
-    shapes = Shapes(a=lateral, b=other, axial=bases.axial_basis(0), planar=True)
+    shapes = planar_shapes(lateral, 0)
     matrices = next(f for f in leg_functions(shapes) if f.name == "leg_matrices")
     return Interpreted(matrices), Interpreted(leg_tangents(shapes))

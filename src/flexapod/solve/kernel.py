@@ -11,6 +11,7 @@ from typing import TYPE_CHECKING
 import numpy as np
 
 from flexapod import bases, mechanics, symbolic
+from flexapod.bases.lateral import LateralBasis
 from flexapod.mechanics.layout import Shapes
 from flexapod.symbolic.compiler import CompiledFunction, compiled_library, compiler
 from flexapod.typing import Array
@@ -45,27 +46,25 @@ NAMES = ("leg_residual", "leg_matrices", "leg_energies", "payload_residual", "pa
 
 
 @cache
-def kernel(basis: str, modes: int, axial_modes: int, *, planar: bool = False, ratios: tuple[float, ...] = ()) -> Kernel:
-    """Kernel for ``modes`` shapes of a lateral basis per plane and ``axial_modes`` axial ones.
+def kernel(lateral: LateralBasis, axial_modes: int, *, planar: bool = False) -> Kernel:
+    """Kernel of legs with the same lateral shapes in both planes and ``axial_modes`` axial ones.
 
-    Parameters
-    ----------
-    basis, modes, axial_modes
-        See `flexapod.bases`.
-    planar : bool
-        The single actuator in its plane (one lateral direction, a tip body).
-    ratios : tuple of float
-        What else the shapes depend on, see `parameters.shape_ratios`.
+    ``planar``: the single actuator in its plane (one lateral direction, a tip body).
     """
-    lateral, axial = bases.lateral_basis(basis, modes, *ratios), bases.axial_basis(axial_modes)
-    other = bases.lateral_basis(basis, 0, *ratios) if planar else lateral
-    shapes = Shapes(a=lateral, b=other, axial=axial, planar=planar)
+    space = Shapes(a=lateral, b=lateral, axial=bases.axial_basis(axial_modes), planar=False)
+    shapes = planar_shapes(lateral, axial_modes) if planar else space
     if command := compiler():
         library, signatures = compiled_library(_fingerprint(shapes), lambda: _functions(shapes), SOURCES, command)
         compiled = {name: CompiledFunction(library, name, signatures[name]) for name in NAMES}
         return Kernel(shapes=shapes, library=library, **compiled)
     _warn_interpreted()
     return interpreted_kernel(shapes)
+
+
+def planar_shapes(lateral: LateralBasis, axial_modes: int) -> Shapes:
+    """Shapes of a leg that bends in one plane only."""
+    none = bases.lateral_basis("clamped-free", 0)
+    return Shapes(a=lateral, b=none, axial=bases.axial_basis(axial_modes), planar=True)
 
 
 @cache

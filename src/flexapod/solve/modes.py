@@ -86,7 +86,7 @@ def robot_modes(
             "leaves nothing that could vibrate with the drives locked",
             key="simulation.fidelity",
             value=simulation.fidelity,
-            allowed="lumped, finite-segment, assumed-modes, beam-fem",
+            allowed="lumped, finite-segment, assumed-modes, beam-fem, solid-fem",
         )
     M, K = N.T @ m.M @ N, N.T @ m.K @ N
     try:

@@ -93,20 +93,3 @@ def actuator_parameters(actuator: Actuator) -> Array:
         "tip_inertia": actuator.tip_inertia,
     }
     return _pack(LEG_PARAMETERS, values)[None, :]
-
-
-def shape_ratios(actuator: Actuator, basis: str, rate: float = 0.0) -> tuple[float, ...]:
-    """What the shapes of a lateral basis depend on, dimensionless: arguments of `bases.lateral_basis` after the count.
-
-    ``tip-mass`` shapes know mass and inertia of the tip body. ``tip-load`` shapes know whether it takes a moment and,
-    in steady rotation at ``rate`` [rad/s], speed, hub radius and the mass that pulls at the tip. The others: nothing.
-    """
-    length = actuator.free_length
-    mass = actuator.tip_mass / (actuator.rhoA * length)
-    inertia = actuator.tip_inertia / (actuator.rhoA * length**3)
-    if basis == "tip-mass":
-        return mass, inertia
-    if basis == "tip-load" and rate:
-        speed = abs(rate) * float(np.sqrt(actuator.rhoA * length**4 / actuator.EI))
-        return mass, inertia, speed, actuator.hub_radius / length
-    return (0.0, float(inertia > 0)) if basis == "tip-load" else ()

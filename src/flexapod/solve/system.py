@@ -11,6 +11,7 @@ from flexapod.model import Robot, Simulation
 from flexapod.solve.kernel import Kernel, kernel
 from flexapod.solve.parameters import leg_parameters, payload_parameters
 from flexapod.solve.rotation import quaternion, turned
+from flexapod.solve.shapes import leg_shapes
 from flexapod.typing import Array, Mask
 
 Index = NDArray[np.intp]
@@ -112,7 +113,7 @@ def robot_system(robot: Robot, simulation: Simulation) -> RobotSystem:
     """System of a robot in the fidelity, basis and number of shapes of ``simulation``."""
     axial_modes = simulation.axial_shapes(robot.legs[0].axial_modes)
     return RobotSystem(
-        kernel=kernel(simulation.lateral_basis, simulation.lateral_shapes, axial_modes),
+        kernel=kernel(leg_shapes(robot, simulation), axial_modes),
         leg_p=leg_parameters(robot),
         payload_p=payload_parameters(robot),
         held=np.array([leg.drive.type == "prescribed" for leg in robot.legs]),

@@ -56,6 +56,7 @@ class Setting:
         words = {
             "finite-segment": f"{n} segment{'s' * (n > 1)}",
             "beam-fem": f"{n // 2} element{'s' * (n > 3)}",
+            "solid-fem": f"{n} shape{'s' * (n > 1)} of the solid",
             "assumed-modes": f"{n} {self.basis} shape{'s' * (n > 1)}",
         }
         return words.get(self.fidelity, self.fidelity)
