@@ -25,7 +25,7 @@ _RUNGS = {
     ("assumed-modes", "clamped-free"): (LEG_COLORS[4], "v", "assumed-modes, clamped-free"),
     ("assumed-modes", "tip-load"): (LEG_COLORS[0], "o", "assumed-modes, tip-load"),
     ("beam-fem", ""): (LEG_COLORS[3], "s", "beam-fem (elements)"),
-    ("solid-fem", ""): (LEG_COLORS[1], "h", "solid-fem (shapes)"),
+    ("solid-fem", ""): (LEG_COLORS[1], "h", "solid-fem (shapes), with shear"),
 }
 # Where the numbers of a fidelity stand, so that neighbours do not cover each other.
 _SIDES = {
