@@ -15,6 +15,7 @@ from flexapod.fem.section_mesh import section_mesh
 from flexapod.fem.sliding import HubMotion, SlidingBeam, slide
 from flexapod.model import Rectangle, Tube
 from flexapod.plot.solid import solid_comparison, solid_meshes
+from flexapod.study.record import Interrupted
 from flexapod.study.solid import simulate_solid
 from flexapod.study.vibration import local_vibration
 
@@ -187,3 +188,15 @@ def test_meshes_that_no_machine_holds_are_refused_before_they_are_made():
     assert error.value.key == "size"
     with pytest.raises(InputError, match="elements of"):
         reduced_beam(flat, 3.66, 0.001, E=1.0, density=1.0)
+
+
+def test_a_stopped_run_keeps_what_was_computed():
+    def stop(time, end):
+        if time > 0.02:
+            raise KeyboardInterrupt
+
+    with pytest.raises(Interrupted) as stopped:
+        simulate_solid(fx.preset("paper-actuator"), size=0.05, duration=0.1, output_step=0.01, progress=stop)
+    data = stopped.value.dataset
+    assert data.attrs["partial"] == 1
+    np.testing.assert_allclose(data.time, [0.0, 0.01, 0.02, 0.03])

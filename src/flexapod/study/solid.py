@@ -15,7 +15,7 @@ from flexapod.fem.sliding import HubMotion, SlidingBeam, slide
 from flexapod.study.attributes import attributes
 from flexapod.study.checks import check_actuator_path, path_instants
 from flexapod.study.names import ACTUATOR_FORMS, Variable, dataset
-from flexapod.study.record import Progress
+from flexapod.study.record import Interrupted, Progress
 from flexapod.typing import Array
 
 if TYPE_CHECKING:
@@ -81,6 +81,8 @@ def simulate_solid(
     ------
     InputError
         Degenerate meshes, a motion or load that the solid does not take, a beam that leaves its hub.
+    Interrupted
+        By Ctrl-C, with what was computed.
     """
     _only_prescribed(study)
     if not (np.isfinite(step) and step > 0):
@@ -120,9 +122,13 @@ def _simulated(study: model.ActuatorStudy, mesh: _Mesh, step: float, progress: P
         "step": step,
         "wall_time_reduction": middle - begin,
         "wall_time": time.perf_counter() - begin,
-        "partial": 0,
+        "partial": int(len(tip) < len(t)),
     }
-    return dataset(_results(beam, motion, t, tip), {"time": t}, attrs, _FORMS)
+    t = t[: len(tip)]
+    result = dataset(_results(beam, motion, t, tip), {"time": t}, attrs, _FORMS)
+    if attrs["partial"]:
+        raise Interrupted(result)
+    return result
 
 
 def _outputs(study: model.ActuatorStudy) -> Array:
