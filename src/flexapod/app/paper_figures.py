@@ -14,16 +14,17 @@ if TYPE_CHECKING:
     from flexapod.study.paper.study import PaperStudy
     from flexapod.study.record import Report
 
-__all__ = ["paper_figures"]
+__all__ = ["ENGINE", "paper_figures"]
 
 _Plan = tuple[str, str, str, Callable[[], "Figure"]]
 SOLIDS = ("coarse", "fine", "quadratic")
 ACTUATOR, ROBOT, VARIANTS = "Single actuator", "Robot", "What the deviation depends on"
+ENGINE = "Independent engine"
 
 
 def paper_figures(result: PaperStudy, folder: Path, progress: Report | None = None) -> dict[str, list[Drawn]]:
     """Draw all figures of the paper's study, by group."""
-    plans = [*_actuator(result), *_robot(result), *_variants(result)]
+    plans = [*_actuator(result), *_robot(result), *_variants(result), *_engine(result)]
     drawn: dict[str, list[Drawn]] = {}
     for i, (group, name, title, make) in enumerate(plans):
         if progress is not None:
@@ -88,3 +89,30 @@ def _variants(result: PaperStudy) -> Iterator[_Plan]:
     yield (VARIANTS, "half-angles", title, lambda: plot.half_angles(sweeps))
     title = "A start and a stop at full rate against the quintic"
     yield (VARIANTS, "velocity-jump", title, lambda: plot.start_jump(result["robot"], result["jump"]))
+
+
+def _engine(result: PaperStudy) -> Iterator[_Plan]:
+    """Of those parts that the engine was asked for and computed."""
+    from flexapod import plot
+
+    model, engine = "multibody model", "Exudyn"
+    if "robot-exudyn-rigid" in result.parts:
+        rigid = {model: result["robot-rigid-same-step"], engine: result["robot-exudyn-rigid"]}
+        title = (
+            "Fig. 8 with an independent engine: drive forces of the rigid robot by Newton-Euler, our multibody model "
+            "and Exudyn. The quintic's jerk jumps at start and end of the roll: there both programs, which share "
+            "integrator and step, ring about Newton-Euler for some 20 ms, the less the shorter the step"
+        )
+        yield ENGINE, "engine-forces-rigid", title, lambda: plot.engine_forces(rigid)
+    if "robot-exudyn" in result.parts:
+        flexible = {model: result["robot-undamped"], engine: result["robot-exudyn"]}
+        title = (
+            "The same with flexible, undamped legs: below, what their vibration adds to the forces by our model (pale) "
+            "and how far Exudyn is from that (dark)"
+        )
+        yield ENGINE, "engine-forces-flexible", title, lambda: plot.engine_forces(flexible)
+        title = (
+            "Fig. 9 with an independent engine: path of the centre of mass, rigid and flexible, without damping. The "
+            "difference grows as the frequencies differ: the guide of Exudyn's pistons is softer than our clamp"
+        )
+        yield ENGINE, "engine-com-path", title, lambda: plot.engine_path(flexible)

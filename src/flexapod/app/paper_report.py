@@ -8,10 +8,13 @@ from typing import TYPE_CHECKING
 from flexapod import model
 from flexapod.app import html
 from flexapod.app.figures import Drawn
+from flexapod.app.paper_figures import ENGINE
 from flexapod.app.report import by_axis, figures_section, repeat_section, solver_table, warnings_section
 from flexapod.study.paper.claim import BREAKS, HOLDS, IN_PART, MISPRINT, NOT, OPEN, REACHES
 
 if TYPE_CHECKING:
+    from xarray import Dataset
+
     from flexapod.study.paper.claims import Claim
     from flexapod.study.paper.study import PaperStudy
 
@@ -34,6 +37,8 @@ def paper_page(result: PaperStudy, claims: Sequence[Claim], groups: Mapping[str,
     paper = CITATIONS["nourian-akbarzadeh"]
     robot = result["robot"]
     links = {"deviation": "Deviation", "claims": "Claims", **{_anchor(name): name for name in groups}}
+    if _asked(result):
+        links[_anchor(ENGINE)] = ENGINE
     links |= {"open": "Open values", "studies": "Studies", "repeat": "Repeat"}
     body = [
         html.paragraph(
@@ -44,14 +49,77 @@ def paper_page(result: PaperStudy, claims: Sequence[Claim], groups: Mapping[str,
         "<nav>" + " ".join(f'<a href="#{anchor}">{words}</a>' for anchor, words in links.items()) + "</nav>",
         by_axis(robot),
         _claims(claims),
-        *(figures_section(_anchor(name), name, drawn) for name, drawn in groups.items()),
+        *(figures_section(_anchor(name), name, drawn) for name, drawn in groups.items() if name != ENGINE),
+        *([_engine(result, groups.get(ENGINE, ()))] if _asked(result) else []),
         _open_values(),
         warnings_section(robot),
         _studies(),
         html.section("solver", "Solver", *(_solver(result, name, words) for name, words in _SHOWN.items())),
-        repeat_section("Everything on this page, with data as NetCDF and CSV:", "flexapod replicate --out DIR"),
+        repeat_section("Everything on this page, with data as NetCDF and CSV:", _command(result)),
     ]
     return html.page("flexapod: the paper's study", summary(robot).sentence, body)
+
+
+def _asked(result: PaperStudy) -> bool:
+    """Whether an independent engine was to compute."""
+    return bool(result.failures) or "robot-exudyn" in result.parts
+
+
+def _command(result: PaperStudy) -> str:
+    return f"flexapod replicate {'--engines ' if _asked(result) else ''}--out DIR"
+
+
+def _engine(result: PaperStudy, figures: Sequence[Drawn]) -> str:
+    """What the engine is, how well it agrees with us, its figures, and how to repeat."""
+    from flexapod.engines.engine import EXUDYN
+    from flexapod.study.paper.engines import agreements
+    from flexapod.study.words import scale, text
+
+    rows = []
+    for row in agreements(result.parts):
+        unit = scale([row.ours, row.theirs], row.unit)
+        apart = [text(value, row.unit, 2) if value == value else "" for value in (row.difference, row.refinement)]
+        rows.append((row.quantity, unit.text(row.ours, 5), unit.text(row.theirs, 5), *apart))
+    head = ("Largest", "Ours", EXUDYN.name, "Largest difference of the curves", "Exudyn's last refinement changes")
+    failures = [f"{name}: {error}" for name, error in result.failures.items()]
+    return html.section(
+        _anchor(ENGINE),
+        ENGINE,
+        *(html.paragraph(f"Not computed: {words}", "bad") for words in failures),
+        *(html.paragraph(words, "soft") for words in _engine_words(result)),
+        *([html.table(head, rows)] if rows else []),
+        *(html.figure(figure.title, figure.png) for figure in figures),
+        html.paragraph("To repeat this:"),
+        html.code(f"{EXUDYN.install}\n{_command(result)}"),
+    )
+
+
+def _engine_words(result: PaperStudy) -> list[str]:
+    from flexapod.study.words import number
+
+    done = [result[name] for name in ("robot-exudyn-rigid", "robot-exudyn") if name in result.parts]
+    if not done:
+        return []
+    attrs = done[0].attrs
+    words = [
+        f"{attrs['engine']} {attrs['engine_version']}, in a process of its own, {number(_seconds(done), 2)} s: legs as "
+        "kinematic trees, spherical joints by multipliers, prescribed strokes; generalized-alpha, steps of "
+        f"{number(1e3 * attrs['step'], 2)} ms, spectral radius {attrs['rho_inf']:g}, and the same in ours."
+    ]
+    if "robot-exudyn" in result.parts:
+        coarse, fine = result["robot-exudyn"].attrs["elements"]
+        near, nearer = result["robot-exudyn"].attrs["guide"]
+        words.append(
+            f"Flexible pistons are {coarse} and {fine} cable elements (Euler-Bernoulli, finite strains and rotations), "
+            f"extrapolated, that slide through two rings on the cylinder, {number(1e3 * near, 2)} and "
+            f"{number(1e3 * nearer, 2)} mm apart, in place of our clamp; without damping, which these elements do not "
+            "have in our form. The rings are softer than a clamp: that is most of the difference."
+        )
+    return words
+
+
+def _seconds(done: Sequence[Dataset]) -> float:
+    return sum(float(data.attrs["seconds"]) for data in done)
 
 
 def _anchor(name: str) -> str:

@@ -20,7 +20,7 @@ if TYPE_CHECKING:
 __all__ = ["replicate", "write"]
 
 
-def replicate(folder: str | Path, *, progress: Report | None = None) -> PaperStudy:
+def replicate(folder: str | Path, *, engines: bool = False, progress: Report | None = None) -> PaperStudy:
     """Compute the paper's whole study and write it into a folder.
 
     Data of each part are written as soon as it is computed: an interrupt leaves what is done. An older report is
@@ -30,6 +30,8 @@ def replicate(folder: str | Path, *, progress: Report | None = None) -> PaperStu
     ----------
     folder : path
         Made if needed.
+    engines : bool
+        Also with an independent engine, Exudyn; if it fails, the result says so and the rest is written.
     progress : callable, optional
         Called with what is being done, in words, and the share of the whole that is done (0 to 1).
 
@@ -40,15 +42,22 @@ def replicate(folder: str | Path, *, progress: Report | None = None) -> PaperStu
     Raises
     ------
     InputError
-        The folder cannot be written to.
+        The folder cannot be written to, or the engine is not installed.
     ComputationError
-        Of the simulations.
+        Of our simulations.
     """
+    from flexapod.study.paper.engines import check_engine
     from flexapod.study.paper.study import replicate as compute
 
+    if engines:
+        check_engine()
     folder = Path(folder)
     _remove(folder / "report.html")
-    result = compute(progress=_upto(0.75, progress), keep=lambda name, data: _store(data, folder / "data" / name))
+    result = compute(
+        engines=engines,
+        progress=_upto(0.75, progress),
+        keep=lambda name, data: _store(data, folder / "data" / name),
+    )
     _figures_and_report(result, folder, _from(0.75, progress))
     return result
 

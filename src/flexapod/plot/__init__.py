@@ -4,6 +4,7 @@ from flexapod.plot.actuator import actuator_modes, actuator_response
 from flexapod.plot.convergence import convergence, ladder
 from flexapod.plot.deviation import deviation_by_cause
 from flexapod.plot.energy import energies
+from flexapod.plot.engines import engine_forces, engine_path
 from flexapod.plot.legs import actuator_forces, leg_lengths, tip_deflections
 from flexapod.plot.motion import motion_law
 from flexapod.plot.paths import com_path
@@ -20,6 +21,8 @@ __all__ = [
     "convergence",
     "deviation_by_cause",
     "energies",
+    "engine_forces",
+    "engine_path",
     "half_angles",
     "ladder",
     "leg_lengths",
