@@ -89,3 +89,11 @@ def test_calculix_finds_the_frequencies_and_the_sag_of_the_study(flexapod, study
     _, moved = found.displacements("PAYLOAD")
     sag = ours.com_sag.values
     assert moved[0].mean(axis=0) == pytest.approx(sag, abs=2e-3 * abs(sag).max())
+
+
+def test_names_and_poses_that_the_other_programs_cannot_take_are_refused(flexapod, folder):
+    assert flexapod("new", "r.toml").exit_code == 0
+    run = flexapod("export", "r.toml", "--out", "my robot.inp")
+    assert run.exit_code == 2 and "letters" in run.stderr
+    run = flexapod("export", "r.toml", "--pose", "yaw=90deg")
+    assert run.exit_code != 0 and not list(folder.glob("*.inp"))

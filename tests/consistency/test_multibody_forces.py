@@ -43,7 +43,7 @@ def test_marched_forces_are_second_order_on_a_smooth_law():
 
 
 def test_marched_forces_on_the_quintic_away_from_its_ends():
-    # The quintic's jumps in jerk excite the integrator's damped mode for some tens of steps: the bound.
+    # The quintic's jumps in jerk excite the integrator's damped mode for some tens of steps; 50 ms are 100 steps.
     time, error = march_error("quintic", 5e-4)
     inner = (time > 0.05) & (np.abs(time - 1.0) > 0.05)
     assert error[inner].max() < 1e-4

@@ -6,7 +6,6 @@ import pytest
 import flexapod as fx
 from flexapod.errors import InputError
 from flexapod.model import Rectangle, preset_text
-from flexapod.solve.shapes import POISSON
 
 ROBOT = fx.preset("paper-robot")
 SHORT = {"duration": 0.1, "step": 1e-3}
@@ -17,10 +16,10 @@ def test_the_robot_differs_from_beam_legs_by_shear_only():
     solid = fx.simulate(ROBOT, fidelity="solid-fem", modes=6, **SHORT)
     assert (solid.attrs["fidelity"], solid.attrs["basis"]) == ("solid-fem", "solid")
     assert solid.closure_residual.max() < 1e-13
-    # Bending is softer by 6 (1 + nu) / kappa times (r / s)^2 = 1.1e-3 for a tip force, the mouth of the solid stiffer
-    # by as much at nu = 0.3; the payload's path is all stretch, which both have in common.
+    # Bending under a tip force is softer by 6 (1 + nu) / kappa (r / s)^2 = 9e-4 at nu = 0; the whole difference of the
+    # tips is of that size. The payload's path is all stretch, which both have in common.
     gap = np.abs(solid.tip_deflection - beam.tip_deflection).max() / np.abs(beam.tip_deflection).max()
-    assert 1e-6 < gap < 1.1e-3
+    assert 3e-4 < gap < 3e-3
     assert np.abs(solid.com_deviation - beam.com_deviation).max() < 2e-4 * np.abs(beam.com_deviation).max()
 
 
@@ -28,11 +27,10 @@ def test_frequencies_of_the_locked_robot():
     def lowest(fidelity):
         return fx.modes(ROBOT, fidelity=fidelity, modes=6).frequency.values[:16]
 
-    # First bending of a pinned leg: shear costs (r/s)^2 pi^2 (1 + E / kappa G) / 2, some 2e-3, less the stiffer mouth.
+    # Shear costs the first bending of a clamped leg half of 9e-4: a tip force is its static load.
     ratio = lowest("solid-fem") / lowest("assumed-modes")
-    assert np.all(np.abs(ratio - 1) < 2e-3)
-    assert np.any(np.abs(ratio - 1) > 1e-5)
-    assert 0 < POISSON < 0.5
+    assert np.all(ratio < 1 + 1e-7)
+    assert -6e-4 < ratio.min() - 1 < -3e-4
 
 
 def test_it_is_read_from_a_file_and_written_again():
@@ -61,7 +59,8 @@ def test_the_single_actuator_needs_its_section():
     with pytest.raises(InputError, match="section"):
         fx.simulate_actuator(study, fidelity="solid-fem", **SHORT)
     flat = study.actuator.replace(section=Rectangle(width=0.1524, height=0.0095))
-    solid = fx.simulate_actuator(study.replace(actuator=flat), fidelity="solid-fem", modes=3, **SHORT)
-    beam = fx.simulate_actuator(study, modes=3, **SHORT)
-    # A wide flat beam at nu = 0.3: the held section average of the mouth stiffens it by 0.25 % in frequency.
-    assert np.abs(solid.tip_deflection - beam.tip_deflection).max() < 0.01 * np.abs(beam.tip_deflection).max()
+    solid = fx.simulate_actuator(study.replace(actuator=flat), fidelity="solid-fem", modes=10, **SHORT)
+    beam = fx.simulate_actuator(study, modes=10, **SHORT)
+    # Shear of a beam 9.5 mm deep and 1.83 m long is 1e-5 in the first frequency, 1e-3 in the tenth; ten shapes carry the
+    # static start to 1e-4.
+    assert np.abs(solid.tip_deflection - beam.tip_deflection).max() < 5e-4 * np.abs(beam.tip_deflection).max()

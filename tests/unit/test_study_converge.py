@@ -224,3 +224,12 @@ def test_the_ladder_of_a_beam(beam):
     assert error["8 segments"] < error["4 segments"]
     assert data.attrs["reference"].startswith("12 tip-load shapes")
     assert (data.seconds_per_step > 0).all()
+
+
+def test_a_solid_study_is_compared_with_solids_only():
+    from flexapod.model import override, preset
+    from flexapod.study.converge.plan import base_setting, discretisations, largest
+
+    base = base_setting(override(preset("paper-robot"), fidelity="solid-fem"))
+    assert {(family, setting.fidelity) for family, setting in discretisations(base, 1e-3)} == {("shapes", "solid-fem")}
+    assert largest(base).fidelity == "solid-fem"

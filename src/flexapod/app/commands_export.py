@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+import string
 from pathlib import Path
 from typing import Annotated
 
@@ -12,6 +13,8 @@ from flexapod.app.failures import guarded
 from flexapod.app.options import Json, StudyFile
 
 __all__ = ["add"]
+
+NAMES = frozenset(string.ascii_letters + string.digits + "-_")
 
 Format = Annotated[str, typer.Option("--format", metavar="FORMAT", help="abaqus, which CalculiX reads as well.")]
 Pose = Annotated[
@@ -76,6 +79,14 @@ def _check_file(path: Path, force: bool) -> None:
         raise InputError(
             "is not named as a deck", key="--out", value=str(path), allowed="FILE.inp: both programs ask for it"
         )
+    if not set(path.stem) <= NAMES:
+        raise InputError(
+            "has a name that CalculiX or Abaqus do not read",
+            key="--out",
+            value=path.name,
+            allowed="letters without accents, digits, - and _",
+            next_step="Name the deck with --out NAME.inp",
+        )
     if path.exists() and not force:
         raise InputError("exists already", file=path, next_step="Choose another name, or replace it with --force")
 
@@ -87,3 +98,4 @@ def _show(path: Path, file: Path, pose: str | None) -> None:
     print_text(f"Written: {path}")
     print_text(f"Run it with `ccx -i {path.with_suffix('')}` (CalculiX) or `abaqus job={path.stem}` (Abaqus).")
     print_text(f"Compare its frequencies and its sag with `flexapod modes {file}{at}`.")
+    print_text("Bending of slender pistons lies parts in ten thousand lower: a solid has shear and rotary inertia.")

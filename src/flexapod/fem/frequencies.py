@@ -50,12 +50,12 @@ def frequencies(mesh: SolidMesh, *, E: float, density: float, poisson: float = 0
 
 
 def check_material(E: float, density: float, poisson: float) -> None:
-    """Refuse a Young's modulus or density that is not positive, and a Poisson's ratio outside (-1, 0.5)."""
+    """Refuse a Young's modulus or density that is not positive, and a Poisson's ratio outside [0, 0.5)."""
     for key, value in (("E", E), ("density", density)):
         if not (np.isfinite(value) and value > 0):
             raise InputError("is not physical", key=key, value=value, allowed="above 0")
-    if not -1 < poisson < 0.5:
-        raise InputError("is not physical", key="poisson", value=poisson, allowed="above -1, below 0.5")
+    if not 0 <= poisson < 0.5:
+        raise InputError("is not that of a solid bar", key="poisson", value=poisson, allowed="from 0, below 0.5")
 
 
 def lowest(K: csr_array, M: csr_array, count: int) -> Array:

@@ -19,7 +19,7 @@ _INTERVALS = 24
 
 
 def solid_leg_shapes(
-    section: Tube | Rectangle, length: float, count: int, size: float | None = None, *, poisson: float = 0.3
+    section: Tube | Rectangle, length: float, count: int, size: float | None = None, *, poisson: float = 0.0
 ) -> LateralBasis:
     """Lateral basis of a solid piston held by a guide: static tip-load shape, then modes with the tip held.
 

@@ -145,13 +145,23 @@ def slide(
             h = (end - begin) / count
             for i in range(count):
                 state = _stepped(beam, motion, state, begin + i * h, h)
-            tip.append(state.a[0])
+            tip.append(_bounded(float(state.a[0]), motion(end).length, end))
             if progress is not None:
                 progress(end, float(output[-1]))
     except KeyboardInterrupt:
         if len(tip) < 2:
             raise
     return np.array(tip)
+
+
+def _bounded(tip: float, length: float, t: float) -> float:
+    """The deflection, if it is one of a beam of that length."""
+    if not abs(tip) <= length:
+        raise ComputationError(
+            f"the tip is deflected by more than the free length at t = {t:.6g} s: an unstable beam, or too long a step",
+            next_step="Halve the step; check the motion and the axial load with `flexapod check`.",
+        )
+    return tip
 
 
 @dataclass(frozen=True, kw_only=True)

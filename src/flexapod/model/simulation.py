@@ -13,6 +13,7 @@ from flexapod.model.base import Frozen, Positive
 __all__ = ["DEFAULT_TOLERANCE", "FIDELITIES", "OWN_BASIS", "STRAIGHT", "Initial", "Simulation", "own_fidelity"]
 
 FIDELITIES = ("rigid", "lumped", "finite-segment", "assumed-modes", "beam-fem", "solid-fem")
+SOLID = "solid-fem"  # the fidelity that needs a section
 STRAIGHT = ("rigid", "lumped")  # fidelities without lateral shapes
 # Fidelities that leave no choice of basis
 OWN_BASIS = {"finite-segment": "segments", "beam-fem": "hermite", "solid-fem": "solid"}

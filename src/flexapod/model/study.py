@@ -13,7 +13,7 @@ from flexapod.model.load import Load
 from flexapod.model.motion import Motion
 from flexapod.model.remarks import actuator_remarks, robot_remarks
 from flexapod.model.robot import Robot
-from flexapod.model.simulation import FIDELITIES, OWN_BASIS, STRAIGHT, Initial, Simulation
+from flexapod.model.simulation import FIDELITIES, OWN_BASIS, SOLID, STRAIGHT, Initial, Simulation
 from flexapod.model.write import to_toml
 
 __all__ = ["ActuatorStudy", "Study", "override"]
@@ -71,6 +71,19 @@ class Study(_Documented):
             )
         return self
 
+    @model_validator(mode="after")
+    def _solid(self) -> Self:
+        sections = {(leg.piston.diameter, leg.piston.inner_diameter) for leg in self.robot.legs}
+        if self.simulation.fidelity == SOLID and (len(sections) > 1 or None in {outer for outer, _ in sections}):
+            raise InputError(
+                "takes legs whose pistons are alike and given by their diameter: one solid piston is reduced for all",
+                key="simulation.fidelity",
+                value=SOLID,
+                allowed=", ".join(name for name in FIDELITIES if name != SOLID) + " for other legs",
+                next_step='Choose "beam-fem" or "assumed-modes", or give leg.piston.diameter',
+            )
+        return self
+
     @property
     def duration(self) -> float:
         """Simulated time [s]: `simulation.duration`, else the motion with its hold."""
@@ -102,6 +115,14 @@ class ActuatorStudy(_Documented):
                 key="simulation.fidelity",
                 value="lumped",
                 allowed=", ".join(name for name in FIDELITIES if name != "lumped"),
+            )
+        if self.simulation.fidelity == SOLID and self.actuator.section is None:
+            raise InputError(
+                "needs the section of the beam",
+                key="simulation.fidelity",
+                value=SOLID,
+                allowed="beams with a section",
+                next_step="Give actuator.section and material in place of EI and rhoA",
             )
         if self.simulation.duration is None and self.motion.end_time is None:
             raise InputError(

@@ -8,58 +8,29 @@ import numpy as np
 
 from flexapod import bases, rigid
 from flexapod.bases.lateral import LateralBasis
-from flexapod.errors import InputError
 from flexapod.model import Actuator, Rectangle, Robot, Simulation, Tube
 
 __all__ = ["beam_shapes", "leg_shapes"]
 
 SOLID = "solid"
-POISSON = 0.3  # of metals; no study file gives it, and a beam does not know it
 
 
 def leg_shapes(robot: Robot, simulation: Simulation) -> LateralBasis:
-    """Shapes of the legs of a robot, the same in both planes of all six.
-
-    Raises
-    ------
-    InputError
-        Solid legs without a diameter, or of different pistons: one basis serves all legs.
-    """
+    """Shapes of the legs of a robot, the same in both planes of all six; solid pistons are alike (`model.Study`)."""
     name, count = simulation.lateral_basis, simulation.lateral_shapes
     if name != SOLID:
         return bases.lateral_basis(name, count)
-    sections = {(leg.piston.diameter, leg.piston.inner_diameter) for leg in robot.legs}
-    diameter, inner = min(sections, key=str)
-    if len(sections) > 1 or diameter is None:
-        raise InputError(
-            "takes legs whose pistons are alike and given by their diameter: one solid piston is reduced for all",
-            key="simulation.fidelity",
-            value=simulation.fidelity,
-            allowed="rigid, lumped, finite-segment, assumed-modes, beam-fem for other legs",
-        )
+    piston = robot.legs[0].piston
     home = rigid.inverse_kinematics(robot, rigid.home_pose(robot)).length[0]
     free = float(np.mean(home - [leg.cylinder.mouth for leg in robot.legs]))
-    return _solid(Tube(diameter=diameter, inner_diameter=inner), free, count)  # type: ignore[arg-type]
+    return _solid(Tube(diameter=piston.diameter, inner_diameter=piston.inner_diameter), free, count)  # type: ignore[arg-type]
 
 
 def beam_shapes(actuator: Actuator, simulation: Simulation, rate: float = 0.0) -> LateralBasis:
-    """Shapes of the single actuator; ``tip-load`` ones in steady rotation know the ``rate`` [rad/s], Eq. (T1.16).
-
-    Raises
-    ------
-    InputError
-        A solid beam without a section.
-    """
+    """Shapes of the single actuator; ``tip-load`` ones in steady rotation know the ``rate`` [rad/s], Eq. (T1.16)."""
     name, count = simulation.lateral_basis, simulation.lateral_shapes
     if name != SOLID:
         return bases.lateral_basis(name, count, *_ratios(actuator, name, rate))
-    if actuator.section is None:
-        raise InputError(
-            "needs the section of the beam",
-            key="simulation.fidelity",
-            value=simulation.fidelity,
-            next_step="Give actuator.section and material in place of EI and rhoA",
-        )
     return _solid(actuator.section, actuator.free_length, count)  # type: ignore[arg-type]
 
 
@@ -82,6 +53,7 @@ def _ratios(actuator: Actuator, basis: str, rate: float) -> tuple[float, ...]:
 
 @lru_cache(maxsize=16)
 def _solid(section: Tube | Rectangle, length: float, count: int) -> LateralBasis:
+    """Without lateral contraction, as a beam: no study file gives Poisson's ratio."""
     from flexapod.fem.leg_shapes import solid_leg_shapes  # scikit-fem loads on use
 
-    return solid_leg_shapes(section, length, count, poisson=POISSON)
+    return solid_leg_shapes(section, length, count)

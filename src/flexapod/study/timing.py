@@ -26,6 +26,7 @@ def check_outputs(study: Study | ActuatorStudy) -> list[str]:
             key=f"simulation.{name}",
             value=stored,
             allowed=f"at most the duration of {duration:g} s",
+            next_step=f"Give simulation.{name} a value below it, or a longer simulation.duration",
         )
     remarks = []
     if name == "step":

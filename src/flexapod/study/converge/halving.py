@@ -84,6 +84,11 @@ def step_of_shapes(trials: Trials, base: Setting, found: Findings) -> float:
         if not trial.failure and (trial.setting.step or 0.0) <= base.output_step
     ]
     good = [step for step, bound in known if bound <= SHARE * found.accuracy]
+    if not known:
+        raise ComputationError(
+            "no step as short as output_step gives a result",
+            next_step="See `flexapod run`, or give a shorter output_step.",
+        )
     step = max(good) if good else min(step for step, _ in known)
     most = largest(base)
     while step < base.output_step and trials.steps(replace(most, step=step)) * trials.per_step(most) > LONGEST_SHAPES:

@@ -7,6 +7,7 @@ from dataclasses import replace
 
 from flexapod.errors import InputError
 from flexapod.model import ActuatorStudy, Study
+from flexapod.model.simulation import SOLID
 from flexapod.study.checks import check_actuator_path, check_path
 from flexapod.study.converge.trials import Setting, Trials, setting_of
 
@@ -81,15 +82,21 @@ def first_step(base: Setting) -> float:
 
 def discretisations(base: Setting, step: float) -> list[tuple[str, Setting]]:
     """Family and setting of all shapes, elements and segments, each coarse to fine, all with one step."""
-    fidelity = {"shapes": "assumed-modes", "elements": "beam-fem", "segments": "finite-segment"}
+    fidelity = {"shapes": _shaped(base), "elements": "beam-fem", "segments": "finite-segment"}
     per = {"elements": 2}  # shapes of an element
     return [
         (family, replace(base, fidelity=fidelity[family], modes=n * per.get(family, 1), step=step, tolerance=None))
         for family, counts in COUNTS.items()
+        if family == "shapes" or base.fidelity != SOLID
         for n in counts
     ]
 
 
+def _shaped(base: Setting) -> str:
+    """The fidelity whose shapes are counted: a solid, another model than a beam, is compared with itself."""
+    return SOLID if base.fidelity == SOLID else "assumed-modes"
+
+
 def largest(base: Setting) -> Setting:
     """The setting with the most shapes."""
-    return replace(base, fidelity="assumed-modes", modes=max(COUNTS["shapes"]))
+    return replace(base, fidelity=_shaped(base), modes=max(COUNTS["shapes"]))

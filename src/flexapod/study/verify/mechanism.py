@@ -36,7 +36,7 @@ __all__ = ["Branch", "Drive", "Hub", "Mechanism", "run"]
 Branch = Callable[[SX, SX, SX], tuple[SX, SX, SX]]
 #: hub(x, u) -> kinetic and potential energy, the points (18,) of branches 1 to 6; x: three coordinates, u: their rates
 Hub = Callable[[SX, SX], tuple[SX, SX, SX]]
-#: drive(t) -> value, rate and acceleration of the third coordinate of the first branch, which follows them
+#: drive(t) -> value, rate and acceleration of the third coordinate of the driven branches, which follows them
 Drive = Callable[[Array], tuple[Array, Array, Array]]
 
 OUTPUTS = 20
@@ -48,7 +48,8 @@ class Mechanism:
 
     ``shapes``: lateral shapes a direction, which set the number of coordinates of a branch, 3 + 2 ``shapes``; the
     first three follow from the closed point and the others. ``parameters`` (6, m): those of each branch. ``file``:
-    where the equations are written; compiled code is kept as long as it stays the same.
+    where the equations are written; compiled code is kept as long as it stays the same. ``driven``: branches whose
+    third coordinate follows the drive.
     """
 
     branch: Branch
@@ -57,6 +58,7 @@ class Mechanism:
     shapes: int
     parameters: Array
     file: str
+    driven: tuple[int, ...] = (0,)
 
 
 def run(mechanism: Mechanism, q: Array, x: Array, v: Array, u: Array, duration: float, steps: int) -> list[Recording]:
@@ -150,7 +152,7 @@ def _system(mechanism: Mechanism) -> RobotSystem:
         kernel=_kernel(mechanism, shapes, general.shape[1]),
         leg_p=np.ascontiguousarray(np.concatenate([general, mechanism.parameters], axis=1)),
         payload_p=np.ones(1),
-        held=np.arange(6) == 0,
+        held=np.isin(np.arange(6), mechanism.driven),
     )
 
 
