@@ -61,6 +61,6 @@ def test_the_single_actuator_needs_its_section():
     flat = study.actuator.replace(section=Rectangle(width=0.1524, height=0.0095))
     solid = fx.simulate_actuator(study.replace(actuator=flat), fidelity="solid-fem", modes=10, **SHORT)
     beam = fx.simulate_actuator(study, modes=10, **SHORT)
-    # Shear of a beam 9.5 mm deep and 1.83 m long is 1e-5 in the first frequency, 1e-3 in the tenth; ten shapes carry the
-    # static start to 1e-4.
+    # Shear of a beam 9.5 mm deep and 1.83 m long is 1e-5 in the first frequency, 1e-3 in the tenth; ten shapes carry
+    # the static start to 1e-4.
     assert np.abs(solid.tip_deflection - beam.tip_deflection).max() < 5e-4 * np.abs(beam.tip_deflection).max()

@@ -9,6 +9,7 @@ from flexapod.plot.legs import actuator_forces, leg_lengths, tip_deflections
 from flexapod.plot.motion import motion_law
 from flexapod.plot.paths import com_path
 from flexapod.plot.robot3d import modes_3d, robot_3d
+from flexapod.plot.sliding_mesh import sliding_mesh
 from flexapod.plot.solid import solid_comparison, solid_meshes
 from flexapod.plot.style import save
 from flexapod.plot.sweeps import half_angles, start_jump
@@ -30,6 +31,7 @@ __all__ = [
     "motion_law",
     "robot_3d",
     "save",
+    "sliding_mesh",
     "solid_comparison",
     "solid_meshes",
     "start_jump",
