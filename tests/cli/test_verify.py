@@ -58,6 +58,7 @@ def test_files(flexapod, folder):
     run = flexapod("verify", "--only", "singularities", "--html", "a.html", "--markdown", "a.md")
     assert run.exit_code == 0, run.stderr
     assert "1 of 1 cases pass" in run.stdout
+    assert "singularities: Ma & Angeles 1991" in run.stdout
     assert "singularities" in (folder / "a.md").read_text(encoding="utf-8")
     assert "Ma &amp; Angeles" in (folder / "a.html").read_text(encoding="utf-8")
 

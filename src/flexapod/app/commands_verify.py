@@ -56,6 +56,12 @@ def verify(
     else:
         print_table(page.HEAD, page.rows(outcomes), left=(0, 1))
         print_text()
+        print_text("Sources of the references")
+        for o in outcomes:
+            print_text(f"  {o.case.name}: {o.case.source}")
+            for fault in page.faults(o):
+                print_text(f"    {fault}")
+        print_text()
         print_text(page.sentence(outcomes))
     if interrupted:
         raise KeyboardInterrupt

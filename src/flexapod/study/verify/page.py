@@ -6,7 +6,7 @@ from collections.abc import Sequence
 
 from flexapod.study.verify.pack import Outcome
 
-__all__ = ["HEAD", "markdown", "notes", "rows", "sentence"]
+__all__ = ["HEAD", "faults", "markdown", "notes", "rows", "sentence"]
 
 HEAD = ("Case", "Nearest to its tolerance", "Reference", "Ours", "Tolerance", "Verdict", "Time")
 
