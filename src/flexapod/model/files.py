@@ -7,6 +7,7 @@ import tomllib
 from dataclasses import dataclass
 from importlib.resources import files
 from pathlib import Path
+from typing import Literal, overload
 
 from flexapod.errors import InputError, closest
 from flexapod.model.read_actuator import read_actuator, read_drives, read_tip
@@ -87,6 +88,12 @@ def _tables(text: str, path: str | Path | None) -> Section:
     return top
 
 
+@overload
+def preset(name: Literal["paper-robot", "paper-robot-radii"]) -> Study: ...
+@overload
+def preset(name: Literal["paper-actuator"]) -> ActuatorStudy: ...
+@overload
+def preset(name: str) -> Study | ActuatorStudy: ...
 def preset(name: str) -> Study | ActuatorStudy:
     """A study that comes with flexapod, by name (see `PRESETS`)."""
     return loads(preset_text(name), path=f"{name}.toml")

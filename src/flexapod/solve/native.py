@@ -1,5 +1,6 @@
 """The compiled time loop: one C call advances a chunk. Structures mirror ``native/system.h``."""
 
+import ctypes
 from ctypes import POINTER, Structure, byref, c_double, c_long
 from dataclasses import dataclass
 
@@ -70,6 +71,13 @@ def _state(flow: Flow, rows: Array) -> _State:
     return _State(*[_address(x) for x in arrays])
 
 
+def _library(plant: Plant) -> ctypes.CDLL:
+    library = plant.kernel.library
+    if library is None:
+        raise RuntimeError("this kernel is not compiled: its steps are those of solve.interpreted")
+    return library
+
+
 def advance(
     plant: Plant,
     method: GeneralizedAlpha,
@@ -80,8 +88,7 @@ def advance(
     counters: Counters,
 ) -> Advance:
     """Advance by the rows of ``tables`` ((steps + 1, legs * TABLE), (steps + 1, 6)), recording each ``every`` steps."""
-    library = plant.kernel.library
-    assert library is not None  # noqa: S101  the caller chose this path because the library exists
+    library = _library(plant)
     table, wrench = (np.ascontiguousarray(x) for x in tables)
     steps = len(table) - 1
     new, rows = flow.copy(), np.zeros((steps // every, record_width(plant)))
@@ -96,8 +103,7 @@ def advance(
 
 def first_record(plant: Plant, flow: Flow, table: Array, wrench: Array) -> tuple[Flow, Array]:
     """Output row of the start, and the flow with its powers set."""
-    library = plant.kernel.library
-    assert library is not None  # noqa: S101
+    library = _library(plant)
     new, rows = flow.copy(), np.zeros((1, record_width(plant)))
     settings, state = _settings(plant, GeneralizedAlpha(1.0), 1.0, 1), _state(new, rows)
     library.record_state.restype = None

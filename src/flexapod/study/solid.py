@@ -141,13 +141,7 @@ def _only_prescribed(study: model.ActuatorStudy) -> None:
         raise InputError(
             "is not the study of a single actuator", key="study", value=type(study).__name__, allowed="[actuator]"
         )
-    if study.motion.rotation is None or study.motion.extension is None:
-        raise InputError(
-            "leaves rotation or extension free",
-            key="motion",
-            allowed="both prescribed",
-            next_step="The solid takes no driving torque or force: use the other fidelities",
-        )
+    _laws(study)
     if any(jump < study.duration for jump in study.motion.rate_jumps):
         raise InputError(
             "jumps in rate within the simulated time", key="motion", allowed="laws that are smooth after the start"
@@ -195,12 +189,23 @@ def _stays_held(study: model.ActuatorStudy, reduced: StationModel) -> None:
         )
 
 
+def _laws(study: model.ActuatorStudy) -> tuple[model.MotionLaw, model.MotionLaw]:
+    rotation, extension = study.motion.rotation, study.motion.extension
+    if rotation is None or extension is None:
+        raise InputError(
+            "leaves rotation or extension free",
+            key="motion",
+            allowed="both prescribed",
+            next_step="The solid takes no driving torque or force: use the other fidelities",
+        )
+    return rotation, extension
+
+
 def _motion(study: model.ActuatorStudy) -> Callable[[float], HubMotion]:
-    actuator, rotation, extension = study.actuator, study.motion.rotation, study.motion.extension
-    assert rotation is not None and extension is not None  # noqa: S101  refused before
+    actuator, laws = study.actuator, _laws(study)
 
     def motion(t: float) -> HubMotion:
-        turn, feed = (rigid.motion_law(law, np.array([t])) for law in (rotation, extension))
+        turn, feed = (rigid.motion_law(law, np.array([t])) for law in laws)
         return HubMotion(
             length=actuator.free_length + float(feed.position[0]),
             length_rate=float(feed.rate[0]),

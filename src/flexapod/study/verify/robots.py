@@ -24,7 +24,6 @@ def heavy_robot(*, mouth: float, mass: float, free: float, diameter: float, E: f
         Of the full round piston, SI.
     """
     layout = model.preset("paper-robot")
-    assert isinstance(layout, model.Study)  # noqa: S101  the preset of a robot
     robot = layout.robot
     across = np.linalg.norm((robot.base_joints - robot.platform_joints)[:, :2], axis=1)[0]
     leg = robot.legs[0].replace(

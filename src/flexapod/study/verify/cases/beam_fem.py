@@ -19,7 +19,6 @@ def _tip(study: model.ActuatorStudy, **settings: object) -> Array:
 
 def _compute() -> list[Check]:
     study = model.preset("paper-actuator")
-    assert isinstance(study, model.ActuatorStudy)  # noqa: S101  the preset of an actuator
     elements = _tip(study, fidelity="beam-fem", modes=2 * ELEMENTS)
     modes = _tip(study, fidelity="assumed-modes", basis="clamped-free", modes=6)
     peak, gap = float(np.abs(modes).max()), np.abs(elements - modes)

@@ -15,7 +15,6 @@ LIGHT = 1e-9  # kg/m, of pistons
 
 def _robot() -> model.Study:
     study = model.preset("paper-robot")
-    assert isinstance(study, model.Study)  # noqa: S101  the preset of a robot
     return study.replace(motion=study.motion.replace(profile="smooth"))
 
 

@@ -20,7 +20,6 @@ MOTION = model.CombinedMotion(
 
 def _compute() -> list[Check]:
     study = model.preset("paper-robot")
-    assert isinstance(study, model.Study)  # noqa: S101  the preset of a robot
     theirs = simulate_robot(study.robot, MOTION, Integration(duration=0.5, tolerance=1e-8), elements=0)
     ours = rigid.inverse_dynamics(study.robot, rigid.poses(study.robot, MOTION, theirs.time)).actuator_force
     peak, worst = np.abs(theirs.actuator_force), float(np.abs(ours - theirs.actuator_force).max())

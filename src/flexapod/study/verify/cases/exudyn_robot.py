@@ -21,7 +21,6 @@ MESHES = ((30, 0.01), (60, 0.005))  # elements per piston, distance of the rings
 
 def _compute(amplitude: float, travel: float, duration: float) -> list[Check]:
     study = model.preset("paper-robot")
-    assert isinstance(study, model.Study)  # noqa: S101  the preset of a robot
     robot = study.robot.replace(legs=tuple(leg.replace(damping=0.0) for leg in study.robot.legs))
     motion = model.AxisMotion(type="roll", amplitude=np.deg2rad(amplitude), duration=travel)
     plan = Integration(duration=duration, step=STEP)

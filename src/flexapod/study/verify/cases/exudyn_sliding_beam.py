@@ -18,7 +18,6 @@ STEP = 1e-3
 
 def _compute(duration: float, elements: int) -> list[Check]:
     study = model.override(model.preset("paper-actuator"), duration=duration)
-    assert isinstance(study, model.ActuatorStudy)  # noqa: S101  the preset of an actuator
     plan = Integration(duration=duration, step=STEP, tolerance=1e-5)
     coarse, fine = (exudyn_actuator(study, plan, elements=n).tip_deflection for n in (elements, 2 * elements))
     theirs = extrapolated(coarse, fine)

@@ -34,7 +34,6 @@ def _bound(legs: list[dynamic_stiffness.Leg], frequency: Array, fidelity: str, s
 
 def _compute() -> list[Check]:
     layout = model.preset("paper-robot")
-    assert isinstance(layout, model.Study)  # noqa: S101  the preset of a robot
     robot, found = without_gravity(layout.robot), []
     for name, body, pose, ladder in (
         ("preset", robot, HOME, LADDER),

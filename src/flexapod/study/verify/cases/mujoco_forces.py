@@ -35,7 +35,6 @@ def motions() -> dict[str, model.Motion]:
 def robots() -> dict[str, model.Robot]:
     """The robots of the case by name."""
     layout = model.preset("paper-robot")
-    assert isinstance(layout, model.Study)  # noqa: S101  the preset of a robot
     robot = layout.robot
     turning = [
         leg.replace(

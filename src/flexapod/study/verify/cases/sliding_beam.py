@@ -16,7 +16,6 @@ LARGEST_MM = 13.9986
 
 def _compute() -> list[Check]:
     study = model.override(model.preset("paper-actuator"), modes=3, step=1e-4, output_step=0.01)
-    assert isinstance(study, model.ActuatorStudy)  # noqa: S101  the preset of an actuator
     first = 2.5e-3 * np.eye(3)[0]  # phi_1(1) = 2; the table starts from the first mode with sqrt(rhoA L) a at rest
     march = prepare_actuator(study, first, -FEED / (2 * LENGTH) * first)
     record = collect(march.chunks, march.plant.kernel.shapes.l_index, study.duration, None)

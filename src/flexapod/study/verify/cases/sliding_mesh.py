@@ -32,7 +32,6 @@ def _lag(study: model.ActuatorStudy, shift: float) -> float:
 
 def _compute() -> list[Check]:
     study = model.preset("paper-actuator")
-    assert isinstance(study, model.ActuatorStudy)  # noqa: S101  the preset of an actuator
     exact = simulate_actuator(
         study, basis="clamped-free", modes=6, step=1e-4, duration=DURATION, output_step=OUTPUT_STEP
     ).tip_deflection.values
