@@ -122,6 +122,7 @@ def _check(length: float, size: float, spacing: float) -> None:
             key="size" if size > spacing or 4 * size > length else "spacing",
             value=size if size > spacing or 4 * size > length else spacing,
             allowed=f"size <= spacing <= {length / 4:g} m",
+            next_step=f"Take elements of {length / 100:.2g} m or less; the stations then find their place",
         )
 
 

@@ -85,11 +85,22 @@ def simulate_solid(
         By Ctrl-C, with what was computed.
     """
     _only_prescribed(study)
+    _check_numbers(size=size, poisson=poisson, step=step, spacing=size if spacing is None else spacing)
     if not (np.isfinite(step) and step > 0):
         raise InputError("is no time step", key="step", value=step, allowed="above 0 s")
+    if section is not None and not isinstance(section, model.Rectangle | model.Tube):
+        raise InputError(
+            "is no section", key="section", value=section, allowed="flexapod.model.Rectangle(...) or Tube(...)"
+        )
     study = model.override(study, duration=duration, output_step=output_step)
     mesh = _Mesh(section or study.actuator.section or PAPER_SECTION, size, kind, poisson, spacing)
     return _simulated(study, mesh, step, progress)
+
+
+def _check_numbers(**values: object) -> None:
+    for key, value in values.items():
+        if isinstance(value, bool) or not isinstance(value, int | float | np.number):
+            raise InputError("is no number", key=key, value=value, allowed="an SI number, as 0.005")
 
 
 class _Mesh(NamedTuple):
