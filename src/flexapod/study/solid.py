@@ -86,21 +86,25 @@ def simulate_solid(
     """
     _only_prescribed(study)
     _check_numbers(size=size, poisson=poisson, step=step, spacing=size if spacing is None else spacing)
-    if not (np.isfinite(step) and step > 0):
-        raise InputError("is no time step", key="step", value=step, allowed="above 0 s")
-    if section is not None and not isinstance(section, model.Rectangle | model.Tube):
-        raise InputError(
-            "is no section", key="section", value=section, allowed="flexapod.model.Rectangle(...) or Tube(...)"
-        )
+    _check_section(section)
     study = model.override(study, duration=duration, output_step=output_step)
     mesh = _Mesh(section or study.actuator.section or PAPER_SECTION, size, kind, poisson, spacing)
     return _simulated(study, mesh, step, progress)
 
 
-def _check_numbers(**values: object) -> None:
+def _check_numbers(**values: float) -> None:
     for key, value in values.items():
         if isinstance(value, bool) or not isinstance(value, int | float | np.number):
             raise InputError("is no number", key=key, value=value, allowed="an SI number, as 0.005")
+    if not (np.isfinite(values["step"]) and values["step"] > 0):
+        raise InputError("is no time step", key="step", value=values["step"], allowed="above 0 s")
+
+
+def _check_section(section: object) -> None:
+    if section is not None and not isinstance(section, model.Rectangle | model.Tube):
+        raise InputError(
+            "is no section", key="section", value=section, allowed="flexapod.model.Rectangle(...) or Tube(...)"
+        )
 
 
 class _Mesh(NamedTuple):

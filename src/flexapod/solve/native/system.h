@@ -1,4 +1,7 @@
 /* Data of the compiled time integration; filled in by Python (ctypes mirrors these structures field by field). */
+#if defined(__GNUC__) && !defined(__clang__)
+#pragma GCC optimize("O3")              /* loops of this size are worth unrolling; the generated code above has none */
+#endif
 #include <math.h>
 #include <string.h>
 
