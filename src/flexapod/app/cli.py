@@ -11,6 +11,7 @@ import typer
 
 from flexapod import __version__
 from flexapod.app import (
+    commands_cache,
     commands_check,
     commands_converge,
     commands_export,
@@ -64,6 +65,7 @@ for part in (
     commands_converge,
     commands_verify,
     commands_export,
+    commands_cache,
     commands_later,
 ):
     part.add(app)

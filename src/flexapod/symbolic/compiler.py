@@ -10,24 +10,22 @@ import subprocess
 import sys
 import tempfile
 from collections.abc import Callable, Sequence
+from importlib.metadata import version
 from importlib.util import find_spec
 from pathlib import Path
 
 import numpy as np
 
 from flexapod.errors import ComputationError
+from flexapod.symbolic.cache import intact_libraries, open_cache, store_library, warn_unused
 from flexapod.typing import Array
+
+__all__ = ["CompiledFunction", "compiled_library", "compiler"]
 
 #: -O1 runs straight-line code as fast as -O2 and compiles it in half the time.
 FLAGS = ("-O1", "-fPIC", "-shared", "-std=gnu11", "-fno-math-errno", "-fno-trapping-math")
-
-
-def cache_directory() -> Path:
-    """Directory of compiled kernels: ``FLEXAPOD_CACHE``, else the user's cache."""
-    if chosen := os.environ.get("FLEXAPOD_CACHE"):
-        return Path(chosen)
-    base = os.environ.get("XDG_CACHE_HOME") or os.environ.get("LOCALAPPDATA") or str(Path.home() / ".cache")
-    return Path(base) / "flexapod"
+#: Function of every library that returns sizes of inputs and shapes of outputs, as JSON.
+SIGNATURES = "flexapod_signatures"
 
 
 def compiler() -> list[str] | None:
@@ -80,40 +78,96 @@ def compiled_library(
     Raises
     ------
     ComputationError
-        The compiler failed; the message carries its words.
+        The compiler failed (the message carries its words), or its library cannot be loaded.
     """
+    name = _name([*key, *(path.read_bytes() for path in sources)], command)
+    cache = open_cache()
+    if cache and (found := _first(intact_libraries(cache, name))):
+        return found
+    with tempfile.TemporaryDirectory(prefix="flexapod-", ignore_cleanup_errors=True) as folder:
+        built = _build(functions(), sources, command, Path(folder))
+        if cache and (found := _first(intact_libraries(cache, name))):
+            return found  # another process was faster
+        if cache and (stored := store_library(cache, name, built)):
+            try:
+                return _load(stored)
+            except OSError as error:
+                if stored.exists():  # else another process has just made room
+                    warn_unused(cache, f"libraries cannot be loaded from there ({error})")
+        try:
+            return _load(built)  # it stays in memory when the folder is removed
+        except OSError as error:
+            raise ComputationError(
+                f"the compiled equations cannot be loaded: {error}",
+                next_step="Set FLEXAPOD_CACHE to a folder from which programs may be run, CC to another compiler, "
+                "or FLEXAPOD_COMPILER=none for the slow interpreted kernels.",
+            ) from None
+
+
+def _name(key: Sequence[object], command: list[str]) -> str:
+    """Hash of everything that the library depends on, 32 hexadecimal digits."""
+    program = Path(shutil.which(command[0]) or command[0]).resolve()
+    if not program.exists():
+        raise _failed(command, "there is no such program")
+    made_by = [str(program), program.stat().st_size, program.stat().st_mtime_ns, *command[1:]]
+    made_by += [version("ziglang")] if "ziglang" in command else []
+    machine = [sys.platform, platform.machine(), sys.maxsize]
     digest = hashlib.sha256()
-    for part in [*key, sys.platform, platform.machine(), *FLAGS, *command, *(path.read_bytes() for path in sources)]:
-        digest.update(part if isinstance(part, bytes) else repr(part).encode())
-    target = cache_directory() / f"{digest.hexdigest()[:32]}.so"
-    record = target.with_suffix(".json")
-    if not (target.exists() and record.exists()):
-        _build(functions(), sources, command, target, record)
-    return ctypes.CDLL(str(target)), json.loads(record.read_text())
+    for part in [*key, SIGNATURES, version("casadi"), *FLAGS, *made_by, *machine]:
+        text = part if isinstance(part, bytes) else repr(part).encode()
+        digest.update(b"%d:" % len(text) + text)  # the length keeps neighbours apart
+    return digest.hexdigest()[:32]
 
 
-def _build(functions: list, sources: Sequence[Path], command: list[str], target: Path, record: Path) -> None:
+def _load(path: Path) -> tuple[ctypes.CDLL, dict[str, dict]]:
+    """Library and signatures; OSError if it is none of ours, or not for this machine."""
+    library = ctypes.CDLL(str(path))
+    try:
+        signatures = getattr(library, SIGNATURES)
+    except AttributeError as error:
+        raise OSError(str(error)) from None
+    signatures.restype = ctypes.c_char_p
+    return library, json.loads(signatures())
+
+
+def _first(paths: Sequence[Path]) -> tuple[ctypes.CDLL, dict[str, dict]] | None:
+    """The first library that loads here: a home may be shared by machines with different C libraries."""
+    for path in paths:
+        try:
+            return _load(path)
+        except OSError:
+            continue
+    return None
+
+
+def _build(functions: list, sources: Sequence[Path], command: list[str], folder: Path) -> Path:
+    """Library of `functions` and `sources`, made in `folder`."""
     from casadi import CodeGenerator
 
-    target.parent.mkdir(parents=True, exist_ok=True)
-    with tempfile.TemporaryDirectory(dir=target.parent) as folder:
-        generator = CodeGenerator("generated.c", {"with_header": False})
-        for function in functions:
-            generator.add(function.build())
-        generator.generate(folder + os.sep)
-        unit = Path(folder) / "unit.c"
-        texts = [(Path(folder) / "generated.c").read_text(), *(path.read_text() for path in sources)]
-        unit.write_text("\n".join(texts))
-        built = Path(folder) / "unit.so"
-        done = subprocess.run(
-            [*command, *FLAGS, "-o", str(built), str(unit), "-lm"], capture_output=True, text=True, check=False
-        )
-        if done.returncode:
-            raise ComputationError(
-                f"the C compiler {' '.join(command)} failed: {done.stderr.strip()[-600:]}",
-                next_step="Set CC to another compiler, or FLEXAPOD_COMPILER=none for the slow interpreted kernels.",
-            )
-        note = Path(folder) / "unit.json"
-        note.write_text(json.dumps({f.name: f.signature() for f in functions}))
-        note.replace(record)
-        built.replace(target)
+    generator = CodeGenerator("generated.c", {"with_header": False})
+    for function in functions:
+        generator.add(function.build())
+    signatures = json.dumps(json.dumps({f.name: f.signature() for f in functions}))
+    program = shutil.which(command[0]) or command[0]
+    # Relative names and a folder of its own: some linkers write paths into what they make, which would no longer
+    # be the same from one process to the next.
+    line = [os.path.abspath(program), *command[1:], *FLAGS, "-o", "kernel.so", "kernel.c", "-lm"]
+    try:
+        generator.generate(str(folder) + os.sep)
+        tail = f"CASADI_SYMBOL_EXPORT const char* {SIGNATURES}(void) {{ return {signatures}; }}"
+        texts = [(folder / "generated.c").read_text(), tail, *(path.read_text() for path in sources)]
+        (folder / "kernel.c").write_text("\n".join(texts))
+        done = subprocess.run(line, cwd=folder, capture_output=True, text=True, check=False)
+    except OSError as error:
+        raise _failed(command, f"{error.filename or folder}: {error.strerror}") from None
+    if done.returncode:
+        raise _failed(command, done.stderr.strip()[-600:])
+    return folder / "kernel.so"
+
+
+def _failed(command: list[str], words: str) -> ComputationError:
+    return ComputationError(
+        f"the C compiler {' '.join(command)} failed: {words}",
+        next_step="Set CC to another compiler, TMPDIR to another folder for its files, "
+        "or FLEXAPOD_COMPILER=none for the slow interpreted kernels.",
+    )

@@ -1,0 +1,246 @@
+"""The folder of compiled kernels: private, whole files only, bounded in size, shared by many processes."""
+
+from __future__ import annotations
+
+import functools
+import hashlib
+import logging
+import math
+import os
+import re
+import shutil
+import sys
+import tempfile
+import time
+from contextlib import suppress
+from dataclasses import dataclass
+from pathlib import Path
+
+from flexapod.errors import ComputationError, InputError
+
+__all__ = [
+    "CacheContent",
+    "cache_content",
+    "cache_directory",
+    "clear_cache",
+    "intact_libraries",
+    "open_cache",
+    "size_limit",
+    "store_library",
+    "warn_unused",
+]
+
+#: A kernel takes 0.1 to 1 MB: room for some hundred sets of shapes, and little on any disk.
+DEFAULT_MEGABYTES = 256.0
+LIMIT = "FLEXAPOD_CACHE_MEGABYTES"
+#: Key of what the code depends on, then the beginning of the hash of the file itself.
+LIBRARY = re.compile(r"[0-9a-f]{32}-[0-9a-f]{16}\.so")
+UNFINISHED = re.compile(r"\.kernel-.*\.part")
+#: Copying a library takes milliseconds; what is unfinished after an hour belongs to a process that was killed.
+ABANDONED = 3600.0
+_log = logging.getLogger("flexapod")
+
+
+@dataclass(frozen=True, kw_only=True)
+class CacheContent:
+    """What the cache holds: ``kernels`` libraries, ``size`` bytes of at most ``limit``; why it is not used, if so."""
+
+    folder: Path
+    kernels: int
+    size: int
+    limit: int
+    unused_because: str | None
+
+
+def cache_directory() -> Path:
+    """Absolute path of the compiled kernels: ``FLEXAPOD_CACHE``, else in the user's cache; it need not exist."""
+    if chosen := os.environ.get("FLEXAPOD_CACHE"):
+        return Path(os.path.expanduser(chosen)).absolute()
+    for base in (os.environ.get("XDG_CACHE_HOME"), os.environ.get("LOCALAPPDATA"), os.path.expanduser("~/.cache")):
+        if base and os.path.isabs(base):  # a relative one is to be ignored, says the XDG specification
+            return Path(base) / "flexapod"
+    return Path(tempfile.gettempdir()) / "flexapod"  # a user without a home
+
+
+def size_limit() -> int:
+    """Largest size of the cache [byte]: ``FLEXAPOD_CACHE_MEGABYTES``, else 256 MB.
+
+    Raises
+    ------
+    InputError
+        The variable holds no positive number.
+    """
+    text = os.environ.get(LIMIT) or str(DEFAULT_MEGABYTES)
+    try:
+        megabytes = float(text)
+    except ValueError:
+        megabytes = math.nan
+    if not 0 < megabytes < math.inf:
+        raise InputError(
+            "is no size of the cache of compiled kernels",
+            key=LIMIT,
+            value=text,
+            allowed="a number of megabytes above 0",
+            next_step=f"Unset it for {DEFAULT_MEGABYTES:g} MB",
+        )
+    return round(megabytes * 1e6)
+
+
+def open_cache() -> Path | None:
+    """The cache folder, made if need be with access for its user alone; None, said once, if it is not to be used."""
+    size_limit()
+    folder = cache_directory()
+    try:
+        folder.mkdir(mode=0o700, parents=True, exist_ok=True)
+        reason = _distrust(folder)
+    except OSError as error:
+        reason = error.strerror or str(error)
+    if reason:
+        warn_unused(folder, reason)
+        return None
+    return folder
+
+
+def _distrust(path: Path) -> str | None:
+    """Why code must not be loaded from `path`: someone else than this user and root could have put it there."""
+    if sys.platform == "win32":
+        return None  # the user's profile is private by its access list, which stat does not show
+    found = path.stat()
+    if found.st_uid not in (os.geteuid(), 0):
+        return "it belongs to another user"
+    if found.st_mode & 0o022:
+        return f"others may write to it (chmod go-w {path})"
+    return None
+
+
+@functools.cache
+def warn_unused(folder: Path, reason: str) -> None:
+    """Say, once in a process, that compiled kernels are not kept in `folder`."""
+    _log.warning(
+        "Compiled kernels are not kept in %s: %s. Each run compiles its own, some seconds each; "
+        "set FLEXAPOD_CACHE to a folder of yours that only you can write to.",
+        folder,
+        reason,
+    )
+
+
+def intact_libraries(folder: Path, key: str) -> list[Path]:
+    """Libraries of `key` that are as they were written; others under its name are removed."""
+    intact = []
+    for path in _matching(folder, re.compile(f"{key}-.*\\.so")):
+        with suppress(OSError):
+            if path.name != _name(key, path) or _distrust(path):
+                path.unlink()
+                continue
+            intact.append(path)
+            os.utime(path)  # used now; not to be had in a folder that can only be read
+    return intact
+
+
+def store_library(folder: Path, key: str, built: Path) -> Path | None:
+    """Path of a copy of `built` in the cache; it appears there at once and whole. None, said once, if it cannot.
+
+    Least recently used libraries make room for it.
+    """
+    try:
+        target = folder / _name(key, built)
+        handle, unfinished = tempfile.mkstemp(prefix=".kernel-", suffix=".part", dir=folder)
+        os.close(handle)
+        try:
+            shutil.copyfile(built, unfinished)
+            os.chmod(unfinished, 0o700)
+            os.replace(unfinished, target)
+        except BaseException:
+            os.unlink(unfinished)
+            raise
+        _make_room(folder, target)
+    except OSError as error:
+        warn_unused(folder, error.strerror or str(error))
+        return None
+    return target
+
+
+def _name(key: str, path: Path) -> str:
+    return f"{key}-{hashlib.sha256(path.read_bytes()).hexdigest()[:16]}.so"
+
+
+def _make_room(folder: Path, newest: Path) -> None:
+    """Remove libraries, least recently used first, until all fit; `newest` stays. Remove what was abandoned."""
+    files = [(path != newest, -found.st_mtime_ns, found.st_size, path) for path, found in _kernels(folder).items()]
+    used = 0
+    for older, _, size, path in sorted(files):
+        used += size
+        if older and used > size_limit():
+            _remove(path)
+    for path in _matching(folder, UNFINISHED):
+        if (found := _stat(path)) and time.time() - found.st_mtime > ABANDONED:
+            _remove(path)
+
+
+def cache_content() -> CacheContent:
+    """What the cache holds now; nothing is made or changed."""
+    folder = cache_directory()
+    kernels = _kernels(folder)
+    return CacheContent(
+        folder=folder,
+        kernels=len(kernels),
+        size=sum(found.st_size for found in kernels.values()),
+        limit=size_limit(),
+        unused_because=_unused_because(folder),
+    )
+
+
+def _unused_because(folder: Path) -> str | None:
+    """Why a run would not keep kernels in `folder`, found without making it; None if it would."""
+    try:
+        reason = _distrust(folder)
+    except FileNotFoundError:
+        return None  # the first run makes it
+    except OSError as error:
+        return error.strerror
+    if not folder.is_dir():
+        return "it is no folder"
+    return reason or (None if os.access(folder, os.W_OK | os.X_OK) else "it cannot be written to")
+
+
+def clear_cache() -> CacheContent:
+    """Remove all kernels, and no other file; returns what was removed.
+
+    Raises
+    ------
+    ComputationError
+        Some could not be removed.
+    """
+    before = cache_content()
+    for path in (*_matching(before.folder, LIBRARY), *_matching(before.folder, UNFINISHED)):
+        _remove(path)
+    if left := cache_content().kernels:
+        raise ComputationError(
+            f"{left} of {before.kernels} kernels in {before.folder} could not be removed",
+            next_step="End the runs that use them, or see who owns the folder.",
+        )
+    return before
+
+
+def _kernels(folder: Path) -> dict[Path, os.stat_result]:
+    return {path: found for path in _matching(folder, LIBRARY) if (found := _stat(path))}
+
+
+def _matching(folder: Path, pattern: re.Pattern[str]) -> list[Path]:
+    """Files of `folder` with such names; none where there is no folder."""
+    try:
+        return sorted(path for path in folder.iterdir() if pattern.fullmatch(path.name))
+    except OSError:
+        return []
+
+
+def _stat(path: Path) -> os.stat_result | None:
+    """None if another process has removed it meanwhile."""
+    with suppress(OSError):
+        return path.stat()
+    return None
+
+
+def _remove(path: Path) -> None:
+    with suppress(OSError):
+        path.unlink()

@@ -1,0 +1,389 @@
+"""The cache of compiled kernels: whole files, of this user, within bounds, whatever else happens to the folder."""
+
+import errno
+import hashlib
+import logging
+import os
+import shutil
+import subprocess
+import sys
+import time
+from pathlib import Path
+
+import numpy as np
+import pytest
+
+from flexapod.errors import ComputationError, InputError
+from flexapod.symbolic import cache, compiler
+from flexapod.symbolic.compiler import CompiledFunction, compiled_library
+from flexapod.symbolic.functions import NamedFunction
+from flexapod.symbolic.vocabulary import symbol
+
+pytestmark = pytest.mark.skipif(compiler.compiler() is None, reason="there is no C compiler")
+
+
+def functions(factor: float) -> list[NamedFunction]:
+    x = symbol("x", 3)
+    return [NamedFunction("scaled", [("x", x)], [("y", factor * x)])]
+
+
+class Compile:
+    """`compile(2.0)`: the function that doubles, through the cache; counts how often it was built."""
+
+    def __init__(self) -> None:
+        self.built = 0
+
+    def __call__(self, factor: float = 2.0, sources: tuple[Path, ...] = ()) -> np.ndarray:
+        def build() -> list[NamedFunction]:
+            self.built += 1
+            return functions(factor)
+
+        library, signatures = compiled_library([factor], build, sources, compiler.compiler())
+        return CompiledFunction(library, "scaled", signatures["scaled"])([1.0, 2.0, 3.0])[0]
+
+
+@pytest.fixture(scope="module")
+def kernel(tmp_path_factory) -> Path:
+    """A cache with one kernel that this process has not loaded: made by another one."""
+    folder = tmp_path_factory.mktemp("made") / "cache"
+    code = "from tests.unit.test_compile_cache import Compile; print(Compile()())"
+    python(code, FLEXAPOD_CACHE=str(folder))
+    (only,) = folder.iterdir()
+    return only
+
+
+@pytest.fixture
+def folder(tmp_path, monkeypatch) -> Path:
+    monkeypatch.setenv("FLEXAPOD_CACHE", str(tmp_path / "cache"))
+    monkeypatch.delenv("FLEXAPOD_CACHE_MEGABYTES", raising=False)
+    cache.warn_unused.cache_clear()
+    return tmp_path / "cache"
+
+
+@pytest.fixture
+def scaled(folder) -> Compile:
+    return Compile()
+
+
+def python(code: str, **environment: str) -> str:
+    done = subprocess.run(
+        [sys.executable, "-c", code], cwd=Path(__file__).parents[2], env=os.environ | environment, text=True,
+        capture_output=True, check=True,
+    )  # fmt: skip
+    return done.stdout
+
+
+def doubled(values: np.ndarray) -> bool:
+    return values.tolist() == [2.0, 4.0, 6.0]  # doubling rounds nothing
+
+
+def test_compiled_once_and_kept_for_this_user_alone(scaled, folder):
+    old = os.umask(0)  # the least careful user
+    try:
+        assert doubled(scaled())
+    finally:
+        os.umask(old)
+    assert doubled(scaled())
+    assert scaled.built == 1
+    (library,) = folder.iterdir()
+    if sys.platform != "win32":
+        assert folder.stat().st_mode & 0o777 == library.stat().st_mode & 0o777 == 0o700
+
+
+def test_whatever_the_library_depends_on_changes_its_name(tmp_path, monkeypatch):
+    names = []
+
+    def note(key=(b"ab", b"c"), command=(sys.executable,)) -> None:
+        names.append(compiler._name(key, list(command)))
+
+    note()
+    note(key=(b"a", b"bc"))
+    note(key=(b"ab", b"c", b"a source"))
+    note(command=(sys.executable, "-m64"))
+    program = tmp_path / "cc"
+    shutil.copy(shutil.which("true") or sys.executable, program)
+    note(command=(str(program),))
+    program.write_bytes(b"another release of the compiler")
+    note(command=(str(program),))
+    for where, what, value in (
+        (compiler.platform, "machine", lambda: "another"),
+        (compiler.sys, "platform", "another"),
+        (compiler, "FLAGS", ("-O2",)),
+        (compiler, "version", lambda _: "another"),
+    ):
+        with monkeypatch.context() as changed:
+            changed.setattr(where, what, value)
+            note()
+    assert len(set(names)) == len(names)
+    note()
+    assert names[-1] == names[0]
+
+
+def test_a_changed_c_source_is_compiled(scaled, folder, tmp_path):
+    source = tmp_path / "more.c"
+    for text in ("int more;", "int less;"):
+        source.write_text(text)
+        scaled(sources=(source,))
+    assert scaled.built == len(list(folder.iterdir())) == 2
+
+
+def test_eight_processes_on_an_empty_folder(folder, tmp_path):
+    code = (
+        "import sys, time, pathlib\n"
+        "from tests.unit.test_compile_cache import Compile, doubled\n"
+        "import casadi\n"
+        "compile, here = Compile(), pathlib.Path(sys.argv[1])\n"
+        "(here / f'ready-{sys.argv[2]}').touch()\n"
+        "while not (here / 'go').exists():\n    time.sleep(0.001)\n"
+        "print(doubled(compile()), compile.built)\n"
+    )
+    processes = [
+        subprocess.Popen(
+            [sys.executable, "-c", code, str(tmp_path), str(i)], cwd=Path(__file__).parents[2], text=True,
+            stdout=subprocess.PIPE, stderr=subprocess.PIPE,
+        )
+        for i in range(8)
+    ]  # fmt: skip
+    while len(list(tmp_path.glob("ready-*"))) < 8 and all(p.poll() is None for p in processes):
+        time.sleep(0.01)
+    (tmp_path / "go").touch()
+    answers = [process.communicate() for process in processes]
+    assert [words for _, words in answers] == [""] * 8
+    assert [out.split()[0] for out, _ in answers] == ["True"] * 8
+    assert sum(int(out.split()[1]) for out, _ in answers) >= 2, "they did not start together: nothing is tested"
+    (library,) = folder.iterdir()  # one library, and nothing unfinished
+    assert cache.LIBRARY.fullmatch(library.name)
+
+
+def named(kernel: Path, content: bytes) -> str:
+    return f"{kernel.name[:32]}-{hashlib.sha256(content).hexdigest()[:16]}.so"
+
+
+def another_architecture(library: bytes) -> bytes:
+    """The same ELF file for SPARC (e_machine 2)."""
+    return library[:18] + (2).to_bytes(2, "little") + library[20:]
+
+
+@pytest.mark.parametrize("honest", [False, True], ids=["its name kept", "named after its content"])
+@pytest.mark.parametrize("damage", ["truncated", "text", "empty", "architecture", "symbols"])
+def test_a_damaged_or_foreign_library_is_built_again(scaled, folder, kernel, tmp_path, damage, honest):
+    content = kernel.read_bytes()
+    if damage == "symbols":
+        (tmp_path / "other.c").write_text("int other(void) { return 1; }")
+        line = [*compiler.compiler(), "-shared", "-fPIC", "-o", "other.so", "other.c"]
+        subprocess.run(line, cwd=tmp_path, check=True)
+    content = {
+        "truncated": content[: len(content) // 2 if not honest else 60],
+        "text": b"not a library",
+        "empty": b"",
+        "architecture": another_architecture(content),
+        "symbols": (tmp_path / "other.so").read_bytes() if damage == "symbols" else b"",
+    }[damage]
+    folder.mkdir(mode=0o700)
+    bad = folder / (named(kernel, content) if honest else kernel.name)
+    bad.write_bytes(content)
+    assert doubled(scaled())
+    assert scaled.built == 1
+    assert (folder / kernel.name).read_bytes() == kernel.read_bytes()
+    assert doubled(scaled())
+    assert scaled.built == 1
+
+
+def test_a_damaged_library_does_not_kill_a_new_process(folder, kernel):
+    # Loading half a library ends the process with a bus error: it must be noticed before.
+    folder.mkdir(mode=0o700)
+    (folder / kernel.name).write_bytes(kernel.read_bytes()[:6000])
+    assert python("from tests.unit.test_compile_cache import *; c = Compile(); print(doubled(c()), c.built)") == (
+        "True 1\n"
+    )
+
+
+@pytest.mark.skipif(sys.platform == "win32", reason="the user's profile is private by its access list")
+def test_a_folder_that_others_may_write_to_is_not_trusted(scaled, folder, kernel, caplog):
+    folder.mkdir()
+    folder.chmod(0o777)
+    shutil.copy(kernel, folder)
+    assert doubled(scaled())
+    assert doubled(scaled())
+    assert scaled.built == 2  # neither loaded from there nor left there
+    assert [path.name for path in folder.iterdir()] == [kernel.name]
+    assert len(caplog.records) == 1
+    assert "others may write to it" in caplog.text
+    assert cache.cache_content().unused_because
+
+
+@pytest.mark.skipif(sys.platform == "win32", reason="the user's profile is private by its access list")
+def test_what_another_user_owns_is_not_trusted(scaled, folder, kernel, caplog, monkeypatch):
+    folder.mkdir(mode=0o700)
+    shutil.copy(kernel, folder)
+    with monkeypatch.context() as someone:
+        real = Path.stat
+        someone.setattr(Path, "stat", lambda path, **k: os.stat_result([*real(path, **k)[:4], 4711, *real(path)[5:]]))
+        assert doubled(scaled())
+    assert scaled.built == 1
+    assert "belongs to another user" in caplog.text
+
+
+@pytest.mark.skipif(sys.platform == "win32", reason="the user's profile is private by its access list")
+def test_a_library_that_others_may_change_is_built_again(scaled, folder, kernel):
+    folder.mkdir(mode=0o700)
+    shutil.copy(kernel, folder)
+    (folder / kernel.name).chmod(0o666)
+    assert doubled(scaled())
+    assert scaled.built == 1
+    assert (folder / kernel.name).stat().st_mode & 0o777 == 0o700
+
+
+def no_folder(folder: Path, _: pytest.MonkeyPatch) -> str:
+    folder.write_text("a file")
+    return "File exists"
+
+
+def below_a_file(folder: Path, monkeypatch: pytest.MonkeyPatch) -> str:
+    folder.write_text("a file")
+    monkeypatch.setenv("FLEXAPOD_CACHE", str(folder / "cache"))
+    return "Not a directory"
+
+
+def full(_: Path, monkeypatch: pytest.MonkeyPatch) -> str:
+    def copyfile(source: Path, target: str) -> None:
+        Path(target).write_bytes(Path(source).read_bytes()[:100])
+        raise OSError(errno.ENOSPC, os.strerror(errno.ENOSPC))
+
+    monkeypatch.setattr(cache.shutil, "copyfile", copyfile)
+    return "No space left"
+
+
+def read_only(_: Path, monkeypatch: pytest.MonkeyPatch) -> str:
+    def mkstemp(**_: object) -> None:
+        raise OSError(errno.EROFS, os.strerror(errno.EROFS))
+
+    monkeypatch.setattr(cache.tempfile, "mkstemp", mkstemp)  # TemporaryDirectory takes mkdtemp
+    return "Read-only file system"
+
+
+@pytest.mark.parametrize("trouble", [no_folder, below_a_file, full, read_only])
+def test_a_cache_that_cannot_be_written_is_done_without(scaled, folder, monkeypatch, caplog, trouble):
+    words = trouble(folder, monkeypatch)
+    with caplog.at_level(logging.WARNING):
+        assert doubled(scaled())
+        assert doubled(scaled())
+        assert scaled(3.0).tolist() == [3.0, 6.0, 9.0]
+    assert scaled.built == 3
+    assert len(caplog.records) == 1
+    assert words in caplog.text
+    assert not folder.is_dir() or not list(folder.iterdir())
+
+
+@pytest.mark.skipif(not Path("/proc/self").exists(), reason="a folder that refuses everyone, even root")
+def test_a_folder_that_refuses_everyone(scaled, monkeypatch, caplog):
+    monkeypatch.setenv("FLEXAPOD_CACHE", "/proc/flexapod")
+    assert doubled(scaled())
+    assert "/proc/flexapod" in caplog.text
+
+
+def test_a_folder_from_which_nothing_can_be_loaded(scaled, folder, monkeypatch, caplog):
+    real = compiler.ctypes.CDLL
+
+    def refuse(path: str):
+        if Path(path).parent == folder:
+            raise OSError("failed to map segment from shared object")  # a file system mounted noexec
+        return real(path)
+
+    monkeypatch.setattr(compiler.ctypes, "CDLL", refuse)
+    assert doubled(scaled())
+    assert doubled(scaled())
+    assert scaled.built == 2
+    assert len(caplog.records) == 1
+    assert "cannot be loaded" in caplog.text
+
+
+def test_a_library_that_another_process_removes_at_once(scaled, folder, monkeypatch, caplog):
+    real = compiler.store_library
+
+    def store(*arguments: object) -> Path:
+        stored = real(*arguments)
+        stored.unlink()
+        return stored
+
+    monkeypatch.setattr(compiler, "store_library", store)
+    assert doubled(scaled())
+    assert not caplog.records
+
+
+def test_least_recently_used_go_first(scaled, folder, kernel, monkeypatch):
+    size = kernel.stat().st_size
+    names: dict[float, str] = {}
+    for age, factor in ((300, 1.0), (200, 2.0), (100, 3.0)):
+        before = set(folder.glob("*.so"))
+        scaled(factor)
+        (new,) = set(folder.glob("*.so")) - before
+        os.utime(new, (time.time() - age,) * 2)
+        names[factor] = new.name
+    scaled(1.0)  # the oldest is used again
+    monkeypatch.setenv("FLEXAPOD_CACHE_MEGABYTES", str(3.5 * size / 1e6))  # room for three: sizes differ by some bytes
+    scaled(4.0)
+    left = {path.name for path in folder.iterdir()}
+    assert {names[1.0], names[3.0]} < left
+    assert names[2.0] not in left
+    assert len(left) == 3
+    monkeypatch.setenv("FLEXAPOD_CACHE_MEGABYTES", "1e-6")
+    assert scaled(5.0).tolist() == [5.0, 10.0, 15.0]  # one larger than the bound is kept, alone
+    assert len(list(folder.iterdir())) == 1
+
+
+@pytest.mark.parametrize("text", ["many", "0", "-1", "nan", "inf"])
+def test_a_bound_that_is_none(scaled, monkeypatch, text):
+    monkeypatch.setenv("FLEXAPOD_CACHE_MEGABYTES", text)
+    with pytest.raises(InputError, match="FLEXAPOD_CACHE_MEGABYTES"):
+        scaled()
+    assert scaled.built == 0
+
+
+def test_only_what_was_abandoned_long_ago_is_swept(scaled, folder):
+    folder.mkdir(mode=0o700)
+    old, young, foreign = folder / ".kernel-a.part", folder / ".kernel-b.part", folder / "thesis.so"
+    for path in (old, young, foreign):
+        path.write_text("x")
+    os.utime(old, (0, 0))
+    os.utime(foreign, (0, 0))
+    scaled()
+    assert {path for path in folder.iterdir() if not cache.LIBRARY.fullmatch(path.name)} == {young, foreign}
+
+
+@pytest.mark.parametrize("relative", [".", "cache"])
+def test_a_relative_folder(scaled, tmp_path, monkeypatch, relative):
+    # ctypes looks a bare file name up in the system's libraries.
+    monkeypatch.chdir(tmp_path)
+    monkeypatch.setenv("FLEXAPOD_CACHE", relative)
+    tmp_path.chmod(0o700)
+    assert doubled(scaled())
+    assert doubled(scaled())
+    assert scaled.built == 1
+
+
+def test_where_the_folder_is(monkeypatch, tmp_path):
+    for name in ("FLEXAPOD_CACHE", "LOCALAPPDATA", "XDG_CACHE_HOME"):
+        monkeypatch.delenv(name, raising=False)
+    monkeypatch.setenv("HOME", str(tmp_path))
+    monkeypatch.setenv("USERPROFILE", str(tmp_path))
+    assert cache.cache_directory() == tmp_path / ".cache" / "flexapod"
+    monkeypatch.setenv("XDG_CACHE_HOME", "relative")
+    assert cache.cache_directory() == tmp_path / ".cache" / "flexapod"
+    monkeypatch.setenv("XDG_CACHE_HOME", str(tmp_path / "xdg"))
+    assert cache.cache_directory() == tmp_path / "xdg" / "flexapod"
+    monkeypatch.setenv("FLEXAPOD_CACHE", "~/kernels")
+    assert cache.cache_directory() == tmp_path / "kernels"
+
+
+def test_a_compiler_that_fails_says_why(folder, tmp_path):
+    source = tmp_path / "wrong.c"
+    source.write_text("no C at all")
+    with pytest.raises(ComputationError, match=r"error.*FLEXAPOD_COMPILER=none"):
+        Compile()(sources=(source,))
+    assert not list(folder.iterdir())
+    with pytest.raises(ComputationError, match="no such program"):
+        compiled_library([1.0], lambda: functions(1.0), (), [str(tmp_path / "nothing")])
+    (tmp_path / "text").write_text("not a program")
+    with pytest.raises(ComputationError, match=r"Permission denied|Exec format"):
+        compiled_library([1.0], lambda: functions(1.0), (), [str(tmp_path / "text")])
