@@ -1,120 +1,72 @@
-"""`python -m benchmarks`: medians of repeated runs on one core, against the figures this project promises."""
+"""`python -m benchmarks [names] [--write]`: measured speed, printed; all of it, or the sections named.
 
-import os
-import statistics
-import subprocess
+With `--write` and no names the page `RESULTS.md` is rewritten.
+"""
+
+from __future__ import annotations
+
 import sys
-import tempfile
-import time
 from collections.abc import Callable
+from datetime import date
+from pathlib import Path
 
-from flexapod.model import override, preset
-from flexapod.solve.actuator_march import prepare_actuator
-from flexapod.solve.robot_march import prepare
+from benchmarks.machine import machine, one_core, peak
+from benchmarks.report import Section
 
-REPEATS = 7
-
-
-def one_core() -> None:
-    """Pin this process and its children to one core, where the system can."""
-    if hasattr(os, "sched_setaffinity"):
-        os.sched_setaffinity(0, {min(os.sched_getaffinity(0))})
+PAGE = Path(__file__).with_name("RESULTS.md")
 
 
-def median(action: Callable[[], float], repeats: int = REPEATS) -> float:
-    return statistics.median(action() for _ in range(repeats))
+def sections() -> dict[str, Callable[[], list[Section]]]:
+    """The sections by name, in the order of the page."""
+    from benchmarks.many_poses import many_poses
+    from benchmarks.many_robots import many_robots
+    from benchmarks.one_actuator import one_actuator
+    from benchmarks.one_robot import one_robot
+    from benchmarks.scaling import scaling
+    from benchmarks.side_by_side import side_by_side
+    from benchmarks.startup import startup
+
+    return {
+        "one-robot": one_robot,
+        "scaling": scaling,
+        "side-by-side": side_by_side,
+        "one-actuator": one_actuator,
+        "many-poses": many_poses,
+        "many-robots": many_robots,
+        "start-up": startup,
+    }
 
 
-def roll(fidelity: str, **settings: object) -> tuple[float, int]:
-    """Seconds and steps of the 2 s roll of `paper-robot` at step 0.5 ms, kernel compiled, start included."""
-    study = override(preset("paper-robot"), fidelity=fidelity, step=5e-4, **settings)
-    begin = time.perf_counter()
-    run = prepare(study)
-    for _ in run.chunks:
-        pass
-    return time.perf_counter() - begin, run.counters.steps
-
-
-def actuator() -> float:
-    """Seconds for 10 s of `paper-actuator`, three shapes, tolerance 1e-4."""
-    begin = time.perf_counter()
-    for _ in prepare_actuator(preset("paper-actuator")).chunks:
-        pass
-    return time.perf_counter() - begin
-
-
-def command(*arguments: str, **environment: str) -> float:
-    """Seconds of a whole command as a user types it."""
-    begin = time.perf_counter()
-    subprocess.run(
-        [sys.executable, "-m", "flexapod", *arguments],
-        check=True, stdout=subprocess.DEVNULL, stderr=subprocess.DEVNULL, env=os.environ | environment,
-    )  # fmt: skip
-    return time.perf_counter() - begin
-
-
-def cold() -> float:
-    """Seconds from nothing to a finished roll in a new process, its kernel compiled for the first time."""
-    code = (
-        "from flexapod.model import override, preset\n"
-        "from flexapod.solve.robot_march import prepare\n"
-        "list(prepare(override(preset('paper-robot'), step=5e-4)).chunks)\n"
-    )
-    with tempfile.TemporaryDirectory() as folder:
-        begin = time.perf_counter()
-        subprocess.run([sys.executable, "-c", code], check=True, env=os.environ | {"FLEXAPOD_CACHE": folder})
-        return time.perf_counter() - begin
-
-
-def interpreted() -> float:
-    """Microseconds of a step, k = 3, without a compiler: the difference of two runs leaves out the start."""
-    code = (
-        "import time\n"
-        "from flexapod.model import override, preset\n"
-        "from flexapod.solve.robot_march import prepare\n"
-        "def seconds(duration):\n"
-        "    run = prepare(override(preset('paper-robot'), step=5e-4, duration=duration))\n"
-        "    begin = time.perf_counter()\n"
-        "    list(run.chunks)\n"
-        "    return time.perf_counter() - begin\n"
-        "short, long = seconds(0.02), seconds(0.12)\n"
-        "print(1e6 * (long - short) / 200)\n"
-    )
-    run = subprocess.run(
-        [sys.executable, "-W", "ignore", "-c", code],
-        check=True, capture_output=True, text=True, env=os.environ | {"FLEXAPOD_COMPILER": "none"},
-    )  # fmt: skip
-    return float(run.stdout)
-
-
-def main() -> None:
-    """Print the table."""
+def main(arguments: list[str]) -> int:
+    """Measure what is named, or everything."""
+    known = sections()
+    names = [a for a in arguments if a != "--write"]
+    if unknown := [name for name in names if name not in known]:
+        print(f"no such section: {', '.join(unknown)}; there are {', '.join(known)}", file=sys.stderr)
+        return 2
     one_core()
-    for settings in ({"fidelity": "assumed-modes", "modes": 3}, {"fidelity": "lumped"}, {"fidelity": "rigid"}):
-        roll(**settings)  # warm
-        times = [roll(**settings) for _ in range(REPEATS)]
-        seconds, steps = statistics.median(t for t, _ in times), times[0][1]
-        name = settings["fidelity"] + (f", k = {settings['modes']}" if "modes" in settings else "")
-        goal = "at most 0.2 s, 50 us a step" if "modes" in settings else ""
-        line(f"2 s roll at 0.5 ms, {name}", seconds, goal, f"{1e6 * seconds / steps:7.1f} us a step")
-    actuator()
-    line("10 s actuator, k = 3, tolerance 1e-4", median(actuator), "")
-    line("cold start to finished roll (compiles)", median(cold, 3), "at most 15 s")
-    step = interpreted()
-    line("without a C compiler, k = 3", 1e-6 * step, "", f"{step:7.1f} us a step")
-    line("flexapod --help", median(lambda: command("--help")), "at most 0.5 s")
-    line("flexapod replicate", replicate(), "at most 90 s")
+    rates = ", ".join(f"{rate / 1e9:.0f} GFLOP/s {width} wide" for width, rate in peak().items())
+    about = [*machine().lines(), f"Peak of one core, measured: {rates or 'no compiler'}"]
+    print("\n".join(about), end="\n\n", flush=True)
+    measured = []
+    for name in names or known:
+        for section in known[name]():
+            measured.append(section)
+            print(section.text(), end="\n\n", flush=True)
+    if "--write" in arguments and not names:
+        PAGE.write_text(page(about, measured), encoding="utf-8")
+    return 0
 
 
-def replicate() -> float:
-    """Seconds of the paper's whole study."""
-    with tempfile.TemporaryDirectory() as folder:
-        return command("replicate", "--out", folder)
-
-
-def line(name: str, seconds: float, goal: str, more: str = "") -> None:
-    print(f"{name:44s}{seconds:8.3f} s   {more:20s}{goal}")
+def page(about: list[str], measured: list[Section]) -> str:
+    """The page of results."""
+    head = (
+        "# Measured speed\n\n"
+        f"Measured on {date.today().isoformat()} by `make bench`, everything in one run on one core. "
+        "`python -m benchmarks --write` writes this page.\n\n"
+    )
+    return head + "\n".join(f"- {line}" for line in about) + "\n\n" + "\n\n".join(s.markdown() for s in measured) + "\n"
 
 
 if __name__ == "__main__":
-    main()
+    sys.exit(main(sys.argv[1:]))

@@ -1,4 +1,4 @@
-"""Text with units to SI floats: the only module that knows pint, and only where text values are present."""
+"""Text with units to SI floats: the only module that knows pint, and only where a text has an unusual unit."""
 
 from __future__ import annotations
 
@@ -15,7 +15,7 @@ from flexapod.errors import InputError
 if TYPE_CHECKING:
     from pint import UnitRegistry
 
-__all__ = ["DIMENSIONS", "Dimension", "to_si"]
+__all__ = ["COMMON_UNITS", "DIMENSIONS", "Dimension", "to_si"]
 
 
 @dataclass(frozen=True, kw_only=True)
@@ -47,6 +47,27 @@ DIMENSIONS = {
     "time": Dimension(unit="s", example="0.5 ms"),
     "torque": Dimension(unit="N m", example="12 N m"),
     "velocity": Dimension(unit="m/s", example="0.1 m/s"),
+}
+
+#: Factors of the units that most study files use: reading these needs no pint, whose import takes a third of a second.
+COMMON_UNITS = {
+    "acceleration": {"m/s^2": 1.0},
+    "angle": {"rad": 1.0, "deg": math.pi / 180},
+    "angular rate": {"rad/s": 1.0, "deg/s": math.pi / 180},
+    "bending stiffness": {"N m^2": 1.0},
+    "damping": {"N s/m": 1.0, "kN s/m": 1e3},
+    "density": {"kg/m^3": 1.0},
+    "force": {"N": 1.0, "kN": 1e3},
+    "frequency": {"Hz": 1.0},
+    "inertia": {"kg m^2": 1.0},
+    "length": {"m": 1.0, "cm": 1e-2, "mm": 1e-3, "um": 1e-6},
+    "line density": {"kg/m": 1.0},
+    "mass": {"kg": 1.0, "g": 1e-3},
+    "stiffness": {"N/m": 1.0, "N/um": 1e6},
+    "stress": {"Pa": 1.0, "MPa": 1e6, "GPa": 1e9},
+    "time": {"s": 1.0, "ms": 1e-3},
+    "torque": {"N m": 1.0},
+    "velocity": {"m/s": 1.0, "mm/s": 1e-3},
 }
 
 _TEXT = re.compile(r"^\s*([-+]?(?:\d+\.?\d*|\.\d+)(?:[eE][-+]?\d+)?)\s*(.*?)\s*$")
@@ -104,6 +125,8 @@ def _from_text(text: str, dimension: str, key: str | None) -> float:
 @cache
 def _factor(unit: str, dimension: str) -> float | str:
     """Factor to SI, or what is wrong with the unit."""
+    if (known := COMMON_UNITS.get(dimension, {}).get(unit)) is not None:
+        return known
     registry, wanted = _registry(), DIMENSIONS[dimension]
     try:
         given = registry.Unit(unit.replace("²", "^2").replace("³", "^3"))

@@ -161,12 +161,6 @@ def test_bad_pose(flexapod, study, pose, words):
     assert refusal(flexapod("modes", study(), "--pose", pose), *words)
 
 
-@pytest.mark.parametrize("name", ["sweep", "view"])
-def test_later_commands(flexapod, name):
-    assert refusal(flexapod(name), f"flexapod {name}", "comes with a later release")
-    assert refusal(flexapod(name, "a.toml", "b.toml", "--what", "3"), "later release")
-
-
 def test_unknown_command_and_option(flexapod):
     for arguments in (("swep",), ("run",), ("check", "a.toml", "--unknown")):
         result = flexapod(*arguments)
@@ -183,4 +177,34 @@ def test_errors_as_json(flexapod, study, command):
     assert error["kind"] == "input"
     assert (error["file"], error["key"], error["value"]) == ("study.toml", "payload.mass", "-100 kg")
     assert error["exit_code"] == 2
-    assert json.loads(flexapod("view", "--json").stderr)["error"]["key"] == "flexapod view"
+
+
+@pytest.mark.parametrize(
+    ("arguments", "words"),
+    [
+        (("run", "--json"), "Missing argument 'FILE'"),
+        (("check", "a.toml", "--unknown", "--json"), "No such option: --unknown"),
+        (("modes", "a.toml", "--count", "0", "--json"), "--count"),
+        (("swep", "--json"), "No such command 'swep'"),
+    ],
+)
+def test_a_wrong_command_line_as_json(flexapod, arguments, words):
+    """Where JSON was asked for, the command line's own errors came as a box of text."""
+    result = flexapod(*arguments)
+    assert (result.exit_code, result.stdout) == (2, "")
+    error = json.loads(result.stderr)["error"]
+    assert (error["kind"], error["exit_code"]) == ("input", 2)
+    assert words in error["what"]
+    assert "--help" in error["next_step"]
+
+
+@pytest.mark.parametrize(
+    ("command", "option", "value"),
+    [("export", "--count", "0"), ("export", "--elements", "1"), ("converge", "--accuracy", "3")],
+)
+def test_errors_name_the_option_that_was_typed(flexapod, study, command, option, value):
+    """`--count 0` was refused as "modes = 0", the keyword of the Python call behind it."""
+    result = flexapod(command, study(), option, value)
+    assert refusal(result, f"Error: {option} = {value}")
+    assert json.loads(flexapod(command, study(), option, value, "--json").stderr)["error"]["key"] == option
+    assert refusal(flexapod("new", "a.toml", "--preset", "papr-robot"), "Error: --preset = papr-robot", "Did you mean")

@@ -8,7 +8,9 @@ import sys
 import time
 
 import pytest
+import typer
 
+from flexapod.app.failures import guarded
 from flexapod.study import open_results
 
 LONG = [
@@ -91,3 +93,22 @@ terminal.progress_bar = bar
 sys.argv = ["flexapod", "run", sys.argv[1], "--json"]
 cli.main()
 """
+
+
+@pytest.mark.parametrize(
+    "raised", [RuntimeError("Error building model validator: KeyboardInterrupt"), KeyboardInterrupt()], ids=type
+)
+def test_an_interrupt_that_a_library_turns_into_its_own_error(raised, capsys):
+    """Ctrl-C while pydantic built a model ended as a fault of ours with exit code 1."""
+
+    @guarded
+    def command():
+        try:
+            raise raised
+        except BaseException as cause:
+            raise ValueError("schema") from cause
+
+    with pytest.raises(typer.Exit) as stopped:
+        command()
+    assert stopped.value.exit_code == 130
+    assert "stopped by Ctrl-C" in capsys.readouterr().err

@@ -55,15 +55,16 @@ def test_elimination_equals_the_dense_system(fidelity, modes, axial_modes, drive
     fast = native.advance(plant, method, flow, 1e-3, tables, 1, Counters())
     slow = interpreted.advance(plant, method, flow, 1e-3, tables, 1, Counters())
     assert fast.status == slow.status == 0
-    # Both end their Newton iterations at rounding; index 3 magnifies it by 1/h^2 = 1e6 in accelerations and forces.
-    for name, atol in (("q", 1e-12), ("pose", 1e-12), ("v", 1e-9), ("lam", 1e-4), ("drive", 1e-4)):
+    # Both end their Newton iterations at rounding. Where nothing yields (no axial shape, prescribed strokes) gaps of
+    # 1e-16 m make forces of M / (beta h^2 sigma^2) times that: 4e8 / 0.03^2 * 1e-16 = 5e-5 N, several times over.
+    for name, atol in (("q", 1e-12), ("pose", 1e-12), ("v", 1e-9), ("lam", 4e-4), ("drive", 4e-4)):
         np.testing.assert_allclose(
             getattr(fast.flow, name), getattr(slow.flow, name), rtol=1e-8, atol=atol, err_msg=name
         )
 
 
 def replace_method(study):
-    from flexapod.solve.genalpha import GeneralizedAlpha
+    from flexapod.integration import GeneralizedAlpha
 
     return GeneralizedAlpha(study.simulation.rho_inf)
 

@@ -58,6 +58,13 @@ def test_a_basis_beside_them_is_refused(fidelity, modes, basis):
     with pytest.raises(InputError, match="no effect") as error:
         override(ROBOT, fidelity=fidelity, modes=modes, basis="clamped-free")
     assert error.value.key == "basis"
+    for refused in (
+        lambda: Simulation(fidelity=fidelity, modes=modes, basis="tip-load"),
+        lambda: Simulation(fidelity=fidelity, modes=modes).replace(basis="clamped-free"),
+        lambda: ROBOT.simulation.replace(fidelity=fidelity, modes=modes, basis="clamped-free"),
+    ):
+        with pytest.raises(InputError, match=r"basis = .*no effect.*own"):
+            refused()
     text = preset_text("paper-robot")
     with pytest.raises(InputError, match=r"simulation\.basis.*no effect.*own"):
         loads(text.replace('"assumed-modes"', f'"{fidelity}"').replace("modes = 3", 'modes = 4\nbasis = "tip-load"'))
@@ -94,7 +101,7 @@ def test_beam_elements_take_more_shapes_than_the_others():
 
 
 def test_the_compiled_loop_has_room_for_the_largest_leg():
-    source = (Path(fx.__file__).parent / "solve" / "native" / "arrow.c").read_text(encoding="utf-8")
+    source = (Path(fx.__file__).parent / "solve" / "native" / "system.h").read_text(encoding="utf-8")
     room = int(re.search(r"MAXN = (\d+)", source)[1])
     leg = Leg.model_json_schema()["properties"]["axial_modes"]["maximum"]
     assert room >= 3 + leg + 2 * MOST_ELEMENT_SHAPES  # alpha, beta, l, axial and lateral shapes

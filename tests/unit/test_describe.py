@@ -5,7 +5,7 @@ import pytest
 from tests.runs import paper_robot, with_legs
 
 import flexapod as fx
-from flexapod.model import AxisMotion, ConstantLaw, ConstantWrench, Load, RateLaw, ServoDrive, Stroke, Tube
+from flexapod.model import AxisMotion, ConstantLaw, ConstantWrench, Load, RateLaw, ServoDrive, Stroke, Tube, override
 from flexapod.study.describe.robot import describe
 
 
@@ -152,6 +152,16 @@ def test_settling_time_is_when_a_simulation_settles():
     assert 0.5 * expected.settling < settled < 1.2 * expected.settling
 
 
+def test_modes_that_a_long_motion_leaves_out_are_named():
+    """Motions of more than 2.5 s were sampled too coarsely for modes of up to 2 kHz, and nobody was told."""
+    # The axial modes end at 852 Hz, the next ones are above 3 kHz; 100,000 instants take 12 a period of it for 9.8 s.
+    assert describe(override(rolling(9.5, 0.1), duration=9.5)).vibration.left_out is None
+    frequency = fx.modes(paper_robot(), {"roll": 0.1}).frequency.values
+    left_out = describe(override(rolling(40.0, 0.1), duration=40.0)).vibration.left_out
+    # Ten instants a period: 250 Hz in 40 s.
+    assert left_out == pytest.approx(frequency[frequency > 1e5 / 40 / 10][0], rel=1e-6)
+
+
 def test_undamped_vibration_never_settles():
     study = with_legs(rolling(0.15, 0.1, "linear"), lambda leg: leg.replace(damping=0.0))
     assert describe(study).vibration.settling == np.inf
@@ -168,7 +178,10 @@ def test_remarks_on_loads():
 
 def test_short_free_length_is_remarked_on():
     short = with_legs(paper_robot(), lambda leg: leg.replace(cylinder=leg.cylinder.replace(mouth=0.7), stroke=None))
-    assert any("times the width of the piston" in remark for remark in describe(short).remarks)
+    for fidelity, left_out in (("assumed-modes", "shear, which an Euler-Bernoulli beam"), ("solid-fem", "rotary")):
+        remarks = describe(override(short, fidelity=fidelity)).remarks
+        assert any("times the width of the piston" in remark and left_out in remark for remark in remarks)
+        assert sum("shear" in remark for remark in remarks) == (fidelity == "assumed-modes")
 
 
 def test_worst_pose_between_start_and_end_is_described_too():

@@ -104,7 +104,10 @@ def test_slenderness():
     words = only(data, "times the width")
     ratio = (study.robot.home_lengths[0] - 0.31518) / 0.065
     assert numbers(words.split(": ", 1)[1])[0] == pytest.approx(ratio, rel=1e-2)
-    assert "below 10" in words
+    assert "below 10 shear, which an Euler-Bernoulli beam leaves out" in words
+    solid = only(fx.simulate(study, fidelity="solid-fem", **SHORT), "times the width")
+    assert "below 10 rotary inertia" in solid
+    assert "shear" not in solid
 
 
 def test_yield():
@@ -151,3 +154,11 @@ def test_remarks_on_an_actuator():
     stress = next(numbers(line.split("stress reaches ")[1])[0] for line in found if "yield" in line)
     start = 3 * MATERIALS["steel"].E * 0.05 * 0.02 / 2 / 0.18**2
     assert stress * 1e6 >= 0.95 * start
+
+
+def test_the_two_lateral_directions_bend_a_leg_together():
+    leg, basis = fx.preset("paper-robot").robot.legs[0], lateral_basis("tip-load", 3)
+    both, one = np.zeros((1, 2, 3)), np.zeros((1, 2, 3))
+    both[0, :, 0], one[0, 1, 0] = (3e-4, 4e-4), 5e-4  # 3, 4, 5
+    free, none = np.array([0.6]), np.zeros(1)
+    np.testing.assert_allclose(leg_stress(leg, basis, both, free, none), leg_stress(leg, basis, one, free, none), 1e-14)

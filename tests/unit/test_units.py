@@ -4,8 +4,9 @@ import math
 
 import pytest
 
+from flexapod import units
 from flexapod.errors import InputError
-from flexapod.units import DIMENSIONS, to_si
+from flexapod.units import COMMON_UNITS, DIMENSIONS, to_si
 
 
 @pytest.mark.parametrize(
@@ -76,3 +77,11 @@ def test_anything_else_is_refused(value, dimension, what):
     assert "leg.piston.length" in message
     assert DIMENSIONS[dimension].example in message
     assert caught.value.exit_code == 2
+
+
+@pytest.mark.parametrize(("dimension", "unit"), [(d, unit) for d, units in COMMON_UNITS.items() for unit in units])
+def test_common_units_are_those_of_pint(dimension, unit, monkeypatch):
+    found = to_si(f"12.5 {unit}", dimension)
+    monkeypatch.setattr(units, "COMMON_UNITS", {})
+    monkeypatch.setattr(units, "_factor", units._factor.__wrapped__)
+    assert to_si(f"12.5 {unit}", dimension) == found

@@ -143,6 +143,8 @@ def _vibration(found: VibrationToExpect | None) -> None:
         when = f"below {band} at once"
     else:
         when = f"below {band} after {text(found.settling, 's')}"
+    if found.left_out is not None:
+        when += f"; modes from {found.left_out:.4g} Hz on are left out of it, the motion is too long to sample them"
     print_text(
         f"About {text(found.amplitude, 'm')} with all modes in phase, {number(100 * found.share, 2)} % of it at "
         f"{found.frequency:.4g} Hz; {when}.",

@@ -5,9 +5,11 @@ from __future__ import annotations
 import io
 import os
 import sys
-from typing import Annotated
+from collections.abc import Sequence
+from typing import Annotated, Any
 
 import typer
+from typer.core import TyperGroup
 
 from flexapod import __version__
 from flexapod.app import (
@@ -15,24 +17,60 @@ from flexapod.app import (
     commands_check,
     commands_converge,
     commands_export,
-    commands_later,
+    commands_map,
     commands_modes,
     commands_new,
     commands_replicate,
     commands_run,
+    commands_sweep,
     commands_verify,
 )
+from flexapod.app.failures import print_parts
 
 __all__ = ["app", "main"]
 
+
+_USAGE: Any = typer.BadParameter.__mro__[1]  # its base, click's UsageError, of which typer may have a copy of its own
+
+
+class _Commands(TyperGroup):
+    """The commands; where JSON is asked for, what is wrong with the command line is told in JSON as well."""
+
+    def main(
+        self,
+        args: Sequence[str] | None = None,
+        prog_name: str | None = None,
+        complete_var: str | None = None,
+        standalone_mode: bool = True,
+        windows_expand_args: bool = True,
+        **extra: Any,
+    ) -> Any:
+        words = list(sys.argv[1:] if args is None else args)
+        as_json = standalone_mode and "--json" in words
+        try:
+            code = super().main(
+                args, prog_name, complete_var, standalone_mode and not as_json, windows_expand_args, **extra
+            )
+        except _USAGE as error:
+            if not as_json:
+                raise
+            help_words = f"`{error.ctx.command_path if error.ctx else 'flexapod'} --help` lists what there is"
+            parts = {"kind": "input", "what": error.format_message(), "next_step": help_words}
+            print_parts(parts, error.exit_code, as_json=True)
+            sys.exit(error.exit_code)
+        if as_json:
+            sys.exit(code or 0)
+        return code
+
+
 app = typer.Typer(
     name="flexapod",
+    cls=_Commands,
     add_completion=False,
     no_args_is_help=True,
     pretty_exceptions_enable=False,
     rich_markup_mode="rich",
-    epilog="Exit codes: 0 done, 1 a computation failed, 2 bad input, 130 stopped by Ctrl-C. "
-    "Later releases bring sweep and view.",
+    epilog="Exit codes: 0 done, 1 a computation failed, 2 bad input, 130 stopped by Ctrl-C.",
 )
 
 
@@ -62,11 +100,12 @@ for part in (
     commands_check,
     commands_run,
     commands_modes,
+    commands_map,
     commands_converge,
+    commands_sweep,
     commands_verify,
     commands_export,
     commands_cache,
-    commands_later,
 ):
     part.add(app)
 

@@ -8,7 +8,7 @@ from typing import TYPE_CHECKING, Annotated
 import typer
 
 from flexapod.app.failures import INTERRUPTED, guarded, print_parts
-from flexapod.app.options import Json, Out, Quiet, StudyFile
+from flexapod.app.options import Json, Out, Quiet, StudyFile, as_options
 
 if TYPE_CHECKING:
     from xarray import Dataset
@@ -41,7 +41,8 @@ def converge(
 
     trials = checked_trials(load(file), None)
     folder = results_folder(file, out)
-    count, seconds = estimate(trials, accuracy)
+    with as_options(accuracy="--accuracy"):
+        count, seconds = estimate(trials, accuracy)
     if not (json or quiet):
         print_text(
             f"About {count} settings, {_rough(seconds)}; on the first time a few seconds more for each number of "

@@ -10,7 +10,7 @@ import typer
 
 from flexapod.app.commands_modes import parse_pose
 from flexapod.app.failures import guarded
-from flexapod.app.options import Json, StudyFile
+from flexapod.app.options import Json, StudyFile, as_options
 
 __all__ = ["add"]
 
@@ -61,7 +61,8 @@ def export(
     path = Path(file.stem + ".inp") if out is None else out
     _check_file(path, force)
     title = f"{file.stem}: robot with locked drives"
-    text = abaqus_deck(study, parse_pose(pose), elements=elements, modes=count, title=title)
+    with as_options(elements="--elements", modes="--count", pose="--pose"):
+        text = abaqus_deck(study, parse_pose(pose), elements=elements, modes=count, title=title)
     with replacing(path) as temporary:
         temporary.write_text(text, encoding="ascii", errors="replace")
     if json:

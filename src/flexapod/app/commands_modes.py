@@ -8,7 +8,7 @@ from typing import TYPE_CHECKING, Annotated
 import typer
 
 from flexapod.app.failures import guarded
-from flexapod.app.options import Json, StudyFile
+from flexapod.app.options import Json, StudyFile, as_options
 
 if TYPE_CHECKING:
     from xarray import Dataset
@@ -48,7 +48,8 @@ def modes(file: StudyFile, pose: Pose = None, out: Folder = None, count: Count =
             next_step=f"`flexapod check {file}` gives the frequencies of its beam",
         )
     check_writable(out)
-    data = compute(study, parse_pose(pose))
+    with as_options(pose="--pose"):
+        data = compute(study, parse_pose(pose))
     files = [] if out is None else _write(data, out)
     if json:
         print_json(_as_dict(data, files))

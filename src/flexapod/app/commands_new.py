@@ -8,7 +8,7 @@ from typing import Annotated
 import typer
 
 from flexapod.app.failures import guarded
-from flexapod.app.options import Json
+from flexapod.app.options import Json, as_options
 
 __all__ = ["add"]
 
@@ -30,7 +30,8 @@ def new(name: Name, preset: Preset = "paper-robot", force: Force = False, json: 
     from flexapod.model import preset_text
     from flexapod.study.store import replacing
 
-    text = preset_text(preset)
+    with as_options(preset="--preset"):
+        text = preset_text(preset)
     path = name if name.suffix else name.with_suffix(".toml")
     if path.is_dir():
         raise InputError("is a folder", file=path, next_step="Give the name of a file")

@@ -17,10 +17,11 @@ import typer
 from flexapod import __version__
 from flexapod.errors import ComputationError, FlexapodError, InputError
 
-__all__ = ["INTERRUPTED", "guarded", "print_parts", "show"]
+__all__ = ["INTERRUPTED", "guarded", "lines_of", "parts_of", "print_parts", "show"]
 
 P = ParamSpec("P")
 INTERRUPTED = 130
+_INTERRUPT = {"kind": "interrupt", "what": "stopped by Ctrl-C; files already written are whole"}
 
 
 def guarded(command: Callable[P, None]) -> Callable[P, None]:
@@ -41,28 +42,27 @@ def guarded(command: Callable[P, None]) -> Callable[P, None]:
             _trace()
             show(error, as_json=as_json)
             raise typer.Exit(error.exit_code) from None
-        except KeyboardInterrupt:
+        except (KeyboardInterrupt, Exception) as error:
             _trace()
-            parts = {"kind": "interrupt", "what": "stopped by Ctrl-C; files already written are whole"}
-            print_parts(parts, INTERRUPTED, as_json=as_json)
-            raise typer.Exit(INTERRUPTED) from None
-        except Exception as error:
-            _trace()
-            print_parts(_fault(error), 1, as_json=as_json)
-            raise typer.Exit(1) from None
+            parts, code = (_INTERRUPT, INTERRUPTED) if _by_ctrl_c(error) else (_fault(error), 1)
+            print_parts(parts, code, as_json=as_json)
+            raise typer.Exit(code) from None
 
     return run
 
 
 def show(error: FlexapodError, *, as_json: bool) -> None:
     """An error on stderr: a line each for file, key, value, what is allowed and the next step; or one JSON object."""
+    print_parts(parts_of(error), error.exit_code, as_json=as_json)
+
+
+def parts_of(error: FlexapodError) -> dict[str, str | None]:
+    """The parts of an error by name: `kind`, `what`, and where given `file`, `key`, `value`, `allowed`, `next_step`."""
     if isinstance(error, InputError):
-        parts = {"kind": "input", **error.as_dict()}
-    elif isinstance(error, ComputationError):
-        parts = {"kind": "computation", "what": error.what, "next_step": error.next_step}
-    else:
-        parts = {"kind": "computation", "what": str(error)}
-    print_parts(parts, error.exit_code, as_json=as_json)
+        return {"kind": "input", **error.as_dict()}
+    if isinstance(error, ComputationError):
+        return {"kind": "computation", "what": error.what, "next_step": error.next_step}
+    return {"kind": "computation", "what": str(error)}
 
 
 @contextmanager
@@ -93,10 +93,14 @@ def print_parts(parts: Mapping[str, str | None], exit_code: int, *, as_json: boo
     if as_json:
         text = _json.dumps({"error": {**parts, "exit_code": exit_code}}, ensure_ascii=False)
     else:
-        named = ("allowed", "next_step") if not parts.get("key") else ("file", "allowed", "next_step")
-        lines = [f"  {name.replace('_', ' '):11s}{parts[name]}" for name in named if parts.get(name)]
-        text = "\n".join([_headline(parts), *lines])
+        text = "\n".join(lines_of(parts))
     print(text, file=sys.stderr)
+
+
+def lines_of(parts: Mapping[str, str | None]) -> list[str]:
+    """An error in words: what is wrong and with what, then a line each for file, what is allowed and the next step."""
+    named = ("allowed", "next_step") if not parts.get("key") else ("file", "allowed", "next_step")
+    return [_headline(parts), *(f"  {name.replace('_', ' '):11s}{parts[name]}" for name in named if parts.get(name))]
 
 
 def _headline(parts: Mapping[str, str | None]) -> str:
@@ -107,7 +111,16 @@ def _headline(parts: Mapping[str, str | None]) -> str:
     return f"Error: {place}: {parts['what']}" if place else f"Error: {parts['what']}"
 
 
-def _fault(error: Exception) -> dict[str, str | None]:
+def _by_ctrl_c(error: BaseException | None) -> bool:
+    """Whether Ctrl-C is at the root of an error: a library may turn it into one of its own."""
+    while error is not None:
+        if isinstance(error, KeyboardInterrupt) or KeyboardInterrupt.__name__ in str(error):
+            return True
+        error = error.__cause__ or error.__context__
+    return False
+
+
+def _fault(error: BaseException) -> dict[str, str | None]:
     return {
         "kind": "fault",
         "what": f"unexpected {type(error).__name__}: {error} (flexapod {__version__})",

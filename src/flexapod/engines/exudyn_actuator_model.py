@@ -7,6 +7,8 @@ of the hub. A beam that is outside as a whole is clamped at its end.
 
 from __future__ import annotations
 
+from functools import partial
+
 import numpy as np
 
 from flexapod.engines.exudyn_actuator import ActuatorProblem, ActuatorResult
@@ -72,23 +74,11 @@ def _stations(problem: ActuatorProblem) -> Array:
 
 def _beam(system: System, problem: ActuatorProblem, places: Array) -> tuple[list[int], list[int]]:
     """Nodes and cables of the chain."""
-    actuator, mbs = problem.study.actuator, system.mbs
-    nodes = [mbs.AddNode(_node(problem, x)) for x in places]
-    cables = []
-    for k, size in enumerate(np.diff(places)):
-        cable = mbs.AddObject(
-            items.ObjectANCFCable2D(
-                length=size,
-                massPerLength=actuator.rhoA,
-                bendingStiffness=actuator.EI,
-                axialStiffness=problem.axial_stiffness,
-                nodeNumbers=nodes[k : k + 2],
-            )
-        )
-        marker = mbs.AddMarker(items.MarkerBodyMass(bodyNumber=cable))
-        mbs.AddLoad(items.LoadMassProportional(markerNumber=marker, loadVector=[0.0, -actuator.gravity, 0.0]))
-        cables.append(cable)
-    return nodes, cables
+    actuator, weight = problem.study.actuator, np.array([0.0, -problem.study.actuator.gravity, 0.0])
+    nodes = [system.mbs.AddNode(_node(problem, x)) for x in places]
+    stuff = {"rhoA": actuator.rhoA, "EI": actuator.EI, "EA": problem.axial_stiffness}
+    joined = partial(system.cable, items.ObjectANCFCable2D, **stuff)
+    return nodes, [joined(nodes[k : k + 2], size, gravity=weight) for k, size in enumerate(np.diff(places))]
 
 
 def _node(problem: ActuatorProblem, x: float) -> object:

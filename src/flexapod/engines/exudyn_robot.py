@@ -13,7 +13,12 @@ from flexapod.errors import InputError
 from flexapod.model import Motion, Robot
 from flexapod.typing import Array
 
-__all__ = ["RobotProblem", "RobotResult", "simulate_robot"]
+__all__ = ["MESHES", "STEP", "RobotProblem", "RobotResult", "simulate_robot"]
+
+#: s; longer ones ring more where the jerk jumps, shorter ones carry Newton's tolerance into the forces.
+STEP = 2.5e-4
+#: Elements per piston, distance of the rings [m]: one halved with the other, to extrapolate from.
+MESHES = ((30, 0.01), (60, 0.005))
 
 _AT_REST = 1e-9  # m/s, m/s^2
 

@@ -8,6 +8,7 @@ rings on the cylinder, one of them in its mouth, guide the chain.
 from __future__ import annotations
 
 from dataclasses import dataclass
+from functools import partial
 
 import numpy as np
 
@@ -69,13 +70,8 @@ def _payload(system: System, payload: Payload, place: Array, gravity: Array) -> 
             mass=payload.mass, inertia=[J[0, 0], J[1, 1], J[2, 2], J[1, 2], J[0, 2], J[0, 1]], nodeNumber=node
         )
     )
-    _weigh(system, body, gravity)
+    system.weigh(body, gravity)
     return body
-
-
-def _weigh(system: System, body: int, gravity: Array) -> None:
-    marker = system.mbs.AddMarker(items.MarkerBodyMass(bodyNumber=body))
-    system.mbs.AddLoad(items.LoadMassProportional(markerNumber=marker, loadVector=gravity))
 
 
 def _leg(system: System, problem: RobotProblem, i: int, frame: Array, length: Array, body: int) -> _LegNumbers:
@@ -155,19 +151,9 @@ def _piston(
         mbs.AddNode(items.NodePointSlope1(referenceCoordinates=[*(start + axis * k * size), *axis]))
         for k in range(count + 1)
     ]
-    shapes = []
-    for k in range(count):
-        cable = mbs.AddObject(
-            items.ObjectANCFCable(
-                length=size,
-                massPerLength=piston.rhoA,
-                bendingStiffness=piston.EI,
-                axialStiffness=piston.EA,
-                nodeNumbers=nodes[k : k + 2],
-            )
-        )
-        _weigh(system, cable, problem.robot.gravity)
-        shapes.append(mbs.AddMarker(items.MarkerBodyBeamShape(bodyNumber=cable)))
+    joined = partial(system.cable, items.ObjectANCFCable, rhoA=piston.rhoA, EI=piston.EI, EA=piston.EA)
+    cables = [joined(nodes[k : k + 2], size, gravity=problem.robot.gravity) for k in range(count)]
+    shapes = [mbs.AddMarker(items.MarkerBodyBeamShape(bodyNumber=cable)) for cable in cables]
     for place in (leg.cylinder.mouth, leg.cylinder.mouth - problem.guide):
         ring = mbs.AddMarker(
             items.MarkerKinematicTreeRigid(objectNumber=tree, linkNumber=1, localPosition=[0.0, 0.0, place])

@@ -50,6 +50,21 @@ class System:
             items.NodeGenericData(initialCoordinates=[element, position], numberOfDataCoordinates=2)
         )
 
+    def cable(
+        self, element: Any, nodes: Sequence[int], length: float, *, rhoA: float, EI: float, EA: float, gravity: Array
+    ) -> int:
+        """Let an `element` of Exudyn's cables, `length` [m] at rest, join two nodes and weigh; its number."""
+        body = self.mbs.AddObject(
+            element(length=length, massPerLength=rhoA, bendingStiffness=EI, axialStiffness=EA, nodeNumbers=nodes)
+        )
+        self.weigh(body, gravity)
+        return body
+
+    def weigh(self, body: int, gravity: Array) -> None:
+        """Let `gravity` (3,) [m/s^2] act on a body."""
+        marker = self.mbs.AddMarker(items.MarkerBodyMass(bodyNumber=body))
+        self.mbs.AddLoad(items.LoadMassProportional(markerNumber=marker, loadVector=gravity))
+
     def watch_node(self, node: int, variable: Any) -> int:
         """Sensor of a node."""
         return self.mbs.AddSensor(

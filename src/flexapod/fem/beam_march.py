@@ -13,13 +13,14 @@ from flexapod.fem.beam_contact import Contact, band_solve, settle
 from flexapod.fem.beam_guide import Guide
 from flexapod.fem.beam_mesh import BeamMesh, band_product, beam_mesh
 from flexapod.fem.beam_static import contact_at, static_shape
+from flexapod.integration import GeneralizedAlpha
 from flexapod.model import ActuatorStudy
 from flexapod.typing import Array
 
 __all__ = ["SlidingBeam", "march_sliding_beam"]
 
-#: Spectral radius at infinite frequency: the element that leaves the guide strikes vibrations of its own length.
-RHO_INF = 0.8
+#: With a spectral radius below one: the element that leaves the guide strikes vibrations of its own length.
+METHOD = GeneralizedAlpha(rho=0.8)
 
 
 @dataclass(frozen=True, kw_only=True)
@@ -146,8 +147,7 @@ class _Steps:
 
     def run(self, study: ActuatorStudy, every: int, progress: Callable[[float, float], None] | None) -> SlidingBeam:
         """All steps; states stored each ``every`` of them."""
-        alpha_m, alpha_f = (2 * RHO_INF - 1) / (RHO_INF + 1), RHO_INF / (RHO_INF + 1)
-        gamma, beta = 0.5 - alpha_m + alpha_f, 0.25 * (1 - alpha_m + alpha_f) ** 2
+        alpha_m, alpha_f, beta, gamma = METHOD.alpha_m, METHOD.alpha_f, METHOD.beta, METHOD.gamma
         h, count = self.step, len(self.path.length) - 1
         u, v = self._start(study)
         w = self._acceleration(0, u)

@@ -30,6 +30,8 @@ Number = Annotated[float, Field(strict=True, allow_inf_nan=False)]
 Positive = Annotated[float, Field(strict=True, gt=0, allow_inf_nan=False)]
 NonNegative = Annotated[float, Field(strict=True, ge=0, allow_inf_nan=False)]
 
+_HASH = "hash"  # where an object keeps its hash; no field can have this name, which would hide the built-in
+
 _LIMIT_WORDS = {
     "greater_than": ("gt", "above"),
     "greater_than_equal": ("ge", "at least"),
@@ -94,8 +96,14 @@ class Frozen(BaseModel):
     def __deepcopy__(self, memo: dict[int, Any] | None = None) -> Self:
         return self  # nothing in it can change
 
+    def __copy__(self) -> Self:
+        copy = super().__copy__()
+        vars(copy).pop(_HASH, None)  # pydantic copies before it changes fields
+        return copy
+
     def __setstate__(self, state: dict[Any, Any]) -> None:
         super().__setstate__(state)
+        vars(self).pop(_HASH, None)  # hashes of texts differ from process to process
         for value in self.__dict__.values():
             if isinstance(value, np.ndarray):
                 value.flags.writeable = False
@@ -104,10 +112,15 @@ class Frozen(BaseModel):
         return tuple(_comparable(getattr(self, name)) for name in type(self).model_fields)
 
     def __eq__(self, other: object) -> bool:
+        if self is other:
+            return True
         return isinstance(other, Frozen) and type(self) is type(other) and self._content() == other._content()
 
     def __hash__(self) -> int:
-        return hash((type(self).__name__, self._content()))
+        kept = vars(self)
+        if _HASH not in kept:  # computed once: what is derived from a robot is looked up by it
+            kept[_HASH] = hash((type(self).__name__, self._content()))
+        return kept[_HASH]
 
 
 def _comparable(value: object) -> object:

@@ -18,7 +18,17 @@ from flexapod.model.section import Section
 from flexapod.model.simulation import STRAIGHT, Simulation
 from flexapod.model.study import ActuatorStudy, Study
 
-__all__ = ["PRESETS", "OpenValue", "load", "loads", "loads_robot", "open_values", "preset", "preset_text"]
+__all__ = [
+    "PRESETS",
+    "OpenValue",
+    "load",
+    "loads",
+    "loads_robot",
+    "open_values",
+    "preset",
+    "preset_text",
+    "read_study",
+]
 
 PRESETS = ("paper-robot", "paper-robot-radii", "paper-actuator")
 _COMMON = ("motion", "load", "initial", "simulation")
@@ -64,7 +74,11 @@ def load(path: str | Path) -> Study | ActuatorStudy:
 
 def loads(text: str, *, path: str | Path | None = None) -> Study | ActuatorStudy:
     """Read a study from its text; `path` is for messages and for the tables it names."""
-    top = _tables(text, path)
+    return read_study(_tables(text, path), text)
+
+
+def read_study(top: Section, text: str) -> Study | ActuatorStudy:
+    """Study of a whole-file section; `text` is what it was read from."""
     return _actuator_study(top, text) if "actuator" in top else _study(top, text)
 
 

@@ -64,10 +64,11 @@ def read_simulation(section: Section | None, *, basis: str, bases: tuple[str, ..
     if section is None:
         return Simulation(basis=basis)
     section.only("fidelity", "basis", "modes", "duration", "tolerance", "step", "output_step", "rho_inf")
+    fidelity = section.text("fidelity", FIDELITIES)
     return section.build(
         Simulation,
-        fidelity=section.text("fidelity", FIDELITIES),
-        basis=_basis(section, bases) or basis,
+        fidelity=fidelity,
+        basis=_basis(section, bases) or (None if fidelity in OWN_BASIS else basis),
         modes=section.whole("modes"),
         duration=section.number("duration", "time"),
         tolerance=section.number("tolerance", "number"),
@@ -78,12 +79,8 @@ def read_simulation(section: Section | None, *, basis: str, bases: tuple[str, ..
 
 
 def _basis(section: Section, bases: tuple[str, ...]) -> str | None:
-    fidelity = section.data.get("fidelity")
     if hint := own_fidelity(section.data.get("basis")):
         raise section.error("is the basis of a fidelity", "basis", allowed=", ".join(bases), next_step=hint)
-    if isinstance(fidelity, str) and fidelity in OWN_BASIS and "basis" in section:
-        words = f"has no effect with fidelity {fidelity!r}, which has a basis of its own"
-        raise section.error(words, "basis", next_step="Leave basis out")
     return section.text("basis", bases)
 
 

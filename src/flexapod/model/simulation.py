@@ -58,7 +58,28 @@ class Simulation(Frozen):
                 allowed="tip-load, clamped-free, tip-mass",
                 next_step=hint,
             )
+        if "basis" in fields and fields.get("fidelity") in OWN_BASIS:
+            raise InputError(
+                f"has no effect with fidelity {fields['fidelity']!r}, which has a basis of its own",
+                key="basis",
+                value=fields["basis"],
+                next_step="Leave basis out",
+            )
         super().__init__(**fields)
+
+    def replace(self, **changes: object) -> Self:
+        """A copy with some fields changed; a basis that its fidelity does not use is kept for one that does."""
+        fields = {name: getattr(self, name) for name in type(self).model_fields} | changes
+        if "basis" in changes or fields["fidelity"] not in OWN_BASIS:
+            return super().replace(**changes)
+        del fields["basis"]
+        return type(self)(**fields).with_unused_basis(self.basis)
+
+    def with_unused_basis(self, basis: str) -> Self:
+        """The same settings with the `basis` that another fidelity would use."""
+        copy = self.model_copy()
+        object.__setattr__(copy, "basis", basis)
+        return copy
 
     @model_validator(mode="after")
     def _consistent(self) -> Self:

@@ -32,7 +32,7 @@ class _Documented(Frozen):
         """An unused basis is the default one, since the text does not name it."""
         if simulation.fidelity not in OWN_BASIS:
             return simulation
-        return simulation.replace(basis=cls.model_fields["simulation"].default.basis)
+        return simulation.with_unused_basis(cls.model_fields["simulation"].default.basis)
 
     @model_validator(mode="after")
     def _write(self) -> Self:

@@ -6,12 +6,14 @@ from flexapod.plot.deviation import deviation_by_cause
 from flexapod.plot.energy import energies
 from flexapod.plot.engines import engine_forces, engine_path
 from flexapod.plot.legs import actuator_forces, leg_lengths, tip_deflections
+from flexapod.plot.maps import workspace_map
 from flexapod.plot.motion import motion_law
 from flexapod.plot.paths import com_path
 from flexapod.plot.robot3d import modes_3d, robot_3d
 from flexapod.plot.sliding_mesh import sliding_mesh
 from flexapod.plot.solid import solid_comparison, solid_meshes
 from flexapod.plot.style import save
+from flexapod.plot.sweep import sweep
 from flexapod.plot.sweeps import half_angles, start_jump
 
 __all__ = [
@@ -35,5 +37,7 @@ __all__ = [
     "solid_comparison",
     "solid_meshes",
     "start_jump",
+    "sweep",
     "tip_deflections",
+    "workspace_map",
 ]

@@ -10,7 +10,7 @@ from matplotlib.axes import Axes
 from matplotlib.figure import Figure
 from scipy.ndimage import maximum_filter1d
 
-from flexapod.plot.style import FLEXIBLE, LEG_COLORS, LINE_STYLES, RIGID, figure, needs, scale, styled
+from flexapod.plot.style import FLEXIBLE, LEG_COLORS, LINE_STYLES, NOTE, PAGE, RIGID, figure, needs, scale, styled
 from flexapod.study.words import number
 
 __all__ = ["actuator_modes", "actuator_response"]
@@ -31,7 +31,7 @@ def actuator_response(data: xr.Dataset | Mapping[int, xr.Dataset]) -> Figure:
     counts = list(series)
     finest = series[counts[-1]]
     rows = 3 if len(series) > 1 else 2
-    fig = figure(7.6, 2.5 * rows)
+    fig = figure(PAGE, 2.2 * rows)
     panels = fig.subplots(rows, 1, sharex=True, height_ratios=(1.6, 1.1, 0.8)[:rows] if rows == 3 else (1.6, 0.8))
     _responses(panels[0], series)
     if len(series) > 1:
@@ -71,7 +71,7 @@ def _differences(axes: Axes, series: Mapping[int, xr.Dataset]) -> None:
         place = {"xycoords": ("axes fraction", "data"), "textcoords": "offset points", "va": "center"}
         level = float(gap[1:].max())
         axes.annotate(
-            f"{count}: {number(level, 2)} µm", (1.0, level), xytext=(4, 0), color=LEG_COLORS[i], fontsize=8.5, **place
+            f"{count}: {number(level, 2)} µm", (1.0, level), xytext=(4, 0), color=LEG_COLORS[i], fontsize=NOTE, **place
         )
     axes.set_title(f"Largest distance nearby from the result with {counts[-1]} shapes (right: of all)")
     axes.set_ylabel("difference [µm]")
@@ -88,7 +88,7 @@ def actuator_modes(data: xr.Dataset) -> Figure:
         Result of `flexapod.simulate_actuator`, with `mode_amplitude` (time, mode).
     """
     labels = data.mode.values
-    fig = figure(7.6, 1.2 + 1.5 * len(labels))
+    fig = figure(PAGE, 1.0 + 1.4 * len(labels))
     panels = np.atleast_1d(fig.subplots(len(labels), 1, sharex=True))
     for axes, label in zip(panels, labels, strict=True):
         values = data.mode_amplitude.sel(mode=label)

@@ -7,7 +7,7 @@ import xarray as xr
 from matplotlib.axes import Axes
 from matplotlib.figure import Figure
 
-from flexapod.plot.style import LEG_COLORS, figure, needs, styled
+from flexapod.plot.style import LEG_COLORS, PAGE, SMALL, figure, needs, styled
 
 __all__ = ["convergence", "ladder"]
 
@@ -50,7 +50,7 @@ def convergence(data: xr.Dataset) -> Figure:
         Result of `flexapod.converge`, whole or partial.
     """
     names = [name for name in _WORDS if f"error_{name}" in data]
-    fig = figure(9.2, 3.5 * len(names) + 0.5)
+    fig = figure(PAGE, 2.9 * len(names) + 0.5)
     grid = fig.subplots(len(names), 2, squeeze=False, sharex="col")
     for row, name in zip(grid, names, strict=True):
         for axes, families in zip(row, (("step", "file", "recommended"), tuple(_FAMILIES)), strict=True):
@@ -164,7 +164,7 @@ def ladder(data: xr.Dataset) -> Figure:
         Result of `flexapod.ladder`, whole or partial.
     """
     names = [name for name in _WORDS if f"error_{name}" in data]
-    fig = figure(4.8 * len(names) + 0.8, 4.9)
+    fig = figure(PAGE, 4.2)
     row = fig.subplots(1, len(names), squeeze=False)[0]
     for axes, name in zip(row, names, strict=True):
         for (fidelity, basis), (color, mark, words) in _styles(data).items():
@@ -204,7 +204,7 @@ def _rung(axes: Axes, data: xr.Dataset, name: str, of: tuple[str, str], color: s
     side, align = _SIDES.get(of, ((7, 3), "left"))
     for seconds, error, k in zip(x, y, part.shapes.values, strict=True):
         if k:
-            axes.annotate(str(int(k) // per), (seconds, error), xytext=side, textcoords="offset points", fontsize=8,
+            axes.annotate(str(int(k) // per), (seconds, error), xytext=side, textcoords="offset points", fontsize=SMALL,
                           color=color, ha=align)  # fmt: skip
 
 

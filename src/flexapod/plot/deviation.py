@@ -7,7 +7,7 @@ import xarray as xr
 from matplotlib.axes import Axes
 from matplotlib.figure import Figure
 
-from flexapod.plot.style import Scale, figure, mark_end, needs, scale, styled
+from flexapod.plot.style import PAGE, Scale, figure, mark_end, needs, scale, styled
 from flexapod.study.names import CAUSE_WORDS
 from flexapod.study.scene import motion_end
 
@@ -26,7 +26,7 @@ def deviation_by_cause(data: xr.Dataset) -> Figure:
     data : xarray.Dataset
         With `deviation_by_cause` (time, cause, leg, axis) and `com_deviation` (time, axis).
     """
-    fig = figure(9.2, 6.6)
+    fig = figure(PAGE, 5.6)
     grid = fig.subplots(3, 2, width_ratios=(2.1, 1), sharex="col")
     total = data.com_deviation
     acting = np.abs(data.deviation_by_cause).max(("time", "leg", "axis")) > 0
@@ -48,6 +48,8 @@ def deviation_by_cause(data: xr.Dataset) -> Figure:
     grid[-1, 0].set_xlabel("time [s]")
     grid[-1, 1].set_xlabel("leg")
     fig.legend(*grid[0, 0].get_legend_handles_labels(), loc="outside upper center", ncols=4)
+    for column in grid.T:
+        fig.align_ylabels(column)
     return fig
 
 
@@ -64,6 +66,7 @@ def _by_leg(axes: Axes, parts: xr.DataArray, total: xr.DataArray, small: Scale, 
     axes.axhline(0, color="#555555", linewidth=0.7)
     axes.set_xticks(legs)
     axes.grid(axis="x", visible=False)
+    axes.set_ylabel(f"part [{small.name}]")
     axes.set_title(f"{axis.upper()}, by leg at {float(total.time[at]):.2f} s")
     axes.use_sticky_edges = False
     axes.margins(y=0.1)

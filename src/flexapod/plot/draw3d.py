@@ -10,7 +10,7 @@ from matplotlib.figure import Figure
 from matplotlib.gridspec import SubplotSpec
 from mpl_toolkits.mplot3d.art3d import Line3DCollection, Poly3DCollection
 
-from flexapod.plot.style import LEG_COLORS
+from flexapod.plot.style import LEG_COLORS, NOTE, SMALL
 from flexapod.study.scene import Scene
 
 __all__ = ["draw_ghost", "draw_robot", "space", "view"]
@@ -18,7 +18,7 @@ __all__ = ["draw_ghost", "draw_robot", "space", "view"]
 CYLINDER = "#8A8F98"
 BASE = "#4A4F57"
 PLATFORM = "#2F6690"
-_NUMBER: dict[str, Any] = {"fontsize": 8, "bbox": {"facecolor": "white", "edgecolor": "none", "pad": 0.6}}
+_NUMBER: dict[str, Any] = {"fontsize": NOTE, "bbox": {"facecolor": "white", "edgecolor": "none", "pad": 0.6}}
 
 
 def space(fig: Figure, place: SubplotSpec, *, turn: float = -62, tilt: float = 16) -> Any:
@@ -44,10 +44,10 @@ def view(axes: Any, scenes: Sequence[Scene], zoom: float = 1.0) -> None:
     axes.set_box_aspect(high - low, zoom=zoom)
     for axis in (axes.xaxis, axes.yaxis, axes.zaxis):
         axis.get_major_locator().set_params(nbins=4)
-    axes.tick_params(labelsize=7.5, pad=0)
-    axes.set_xlabel("x [mm]", fontsize=8.5, labelpad=0)
-    axes.set_ylabel("y [mm]", fontsize=8.5, labelpad=0)
-    axes.set_zlabel("z [mm]", fontsize=8.5, labelpad=2)
+    axes.tick_params(labelsize=SMALL, pad=0)
+    axes.set_xlabel("x [mm]", fontsize=NOTE, labelpad=0)
+    axes.set_ylabel("y [mm]", fontsize=NOTE, labelpad=0)
+    axes.set_zlabel("z [mm]", fontsize=NOTE, labelpad=2)
 
 
 def draw_robot(axes: Any, s: Scene, *, numbers: bool = True, legs: Sequence[str] = LEG_COLORS) -> None:

@@ -7,7 +7,7 @@ import xarray as xr
 from matplotlib.axes import Axes
 from matplotlib.figure import Figure
 
-from flexapod.plot.style import LEG_COLORS, LINE_STYLES, figure, mark_end, needs, scale, styled
+from flexapod.plot.style import LEG_COLORS, LINE_STYLES, PAGE, figure, mark_end, needs, scale, styled
 from flexapod.study.scene import motion_end
 
 __all__ = ["energies"]
@@ -33,7 +33,7 @@ def energies(data: xr.Dataset) -> Figure:
     data : xarray.Dataset
         With the `energy_...` and `work_...` variables (time) [J].
     """
-    fig = figure(7.6, 6.6)
+    fig = figure(PAGE, 5.8)
     rows = fig.subplots(3, 1, sharex=True, height_ratios=(1.6, 1, 1))
     end, time = motion_end(data), data.time.values
     names = [name for name in _WORDS if name in data]

@@ -11,7 +11,20 @@ from matplotlib.axes import Axes
 from matplotlib.figure import Figure
 
 from flexapod.errors import InputError
-from flexapod.plot.style import FLEXIBLE, LEG_COLORS, RIGID, Scale, figure, mark_end, needs, scale, styled
+from flexapod.plot.style import (
+    COLUMN,
+    FLEXIBLE,
+    LEG_COLORS,
+    NOTE,
+    PAGE,
+    RIGID,
+    Scale,
+    figure,
+    mark_end,
+    needs,
+    scale,
+    styled,
+)
 from flexapod.study.scene import motion_end
 from flexapod.study.words import text
 
@@ -47,7 +60,7 @@ def engine_forces(results: Mapping[str, xr.Dataset]) -> Figure:
     first, name = _checked(results)
     rigid, end, time = first.actuator_force_rigid, motion_end(first), first.time.values
     gaps = dict(_gaps(results, "actuator_force", "actuator_force_rigid"))
-    fig = figure(9.6, 7.6)
+    fig = figure(PAGE, 6.4)
     grid = fig.subplots(4, 3, sharex=True, height_ratios=(2, 1.2, 2, 1.2))
     big = scale(rigid, "N")
     low, high = _limits(big([rigid.values, *(data.actuator_force.values for data in results.values())]))
@@ -92,7 +105,7 @@ def engine_path(results: Mapping[str, xr.Dataset], axes: Sequence[str] = ("y", "
     shown = {model: data.com_deviation.sel(axis=list(axes)) for model, data in results.items()}
     small = scale(np.array([values.values for values in shown.values()]), "m")
     tiny = scale(np.array([values.values - shown[name].values for values in shown.values()]), "m")
-    fig = figure(4.8 * len(axes), 7.2, gap=0.06)
+    fig = figure(COLUMN * min(len(axes), 2), 6.2, gap=0.06)
     grid = fig.subplots(3, len(axes), sharex=True, squeeze=False, height_ratios=(1, 1.1, 0.9))
     end = motion_end(first)
     for column, axis in enumerate(axes):
@@ -138,7 +151,7 @@ def _note(panel: Axes, words: str) -> None:
     """Numbers at the top of a panel, clear of its lines, and its zero."""
     panel.axhline(0, color="#555555", linewidth=0.7)
     panel.margins(y=0.25)
-    panel.annotate(words, (0.02, 0.97), xycoords="axes fraction", va="top", fontsize=8.5, color="#333333")
+    panel.annotate(words, (0.02, 0.97), xycoords="axes fraction", va="top", fontsize=NOTE, color="#333333")
 
 
 def _label(fig: Figure, grid: np.ndarray, names: Sequence[str]) -> None:

@@ -7,7 +7,7 @@ import xarray as xr
 from matplotlib.axes import Axes
 from matplotlib.figure import Figure
 
-from flexapod.plot.style import FLEXIBLE, LEG_COLORS, LINE_STYLES, RIGID, figure, mark_end, needs, scale, styled
+from flexapod.plot.style import FLEXIBLE, LEG_COLORS, LINE_STYLES, PAGE, RIGID, figure, mark_end, needs, scale, styled
 from flexapod.study.scene import motion_end
 
 __all__ = ["actuator_forces", "leg_lengths", "tip_deflections"]
@@ -25,7 +25,7 @@ def actuator_forces(data: xr.Dataset) -> Figure:
     data : xarray.Dataset
         With `actuator_force_rigid` and `actuator_force` (time, leg).
     """
-    fig = figure(9.6, 7.4)
+    fig = figure(PAGE, 6.2)
     grid = fig.subplots(4, 3, sharex=True, height_ratios=(2.2, 1, 2.2, 1))
     rigid, multibody = data.actuator_force_rigid, data.actuator_force
     big, small = scale(rigid, "N"), scale(multibody - rigid, "N")
@@ -71,7 +71,7 @@ def leg_lengths(data: xr.Dataset) -> Figure:
     data : xarray.Dataset
         With `leg_length_command` and `leg_length` (time, leg).
     """
-    fig = figure(7.6, 5.4)
+    fig = figure(PAGE, 5.0)
     above, below = fig.subplots(2, 1, sharex=True, height_ratios=(1.3, 1))
     command, error = data.leg_length_command, data.leg_length - data.leg_length_command
     small, end, time = scale(error, "m"), motion_end(data), data.time.values
@@ -87,7 +87,7 @@ def leg_lengths(data: xr.Dataset) -> Figure:
     below.set_xlabel("time [s]")
     mark_end(above, end, "motion ends")
     mark_end(below, end)
-    fig.legend(*above.get_legend_handles_labels(), loc="outside right upper", handlelength=3)
+    fig.legend(*above.get_legend_handles_labels(), loc="outside upper center", ncols=6, handlelength=2.6)
     return fig
 
 
@@ -101,7 +101,7 @@ def tip_deflections(data: xr.Dataset) -> Figure:
     data : xarray.Dataset
         With `tip_deflection` (time, leg, direction).
     """
-    fig = figure(7.6, 5.2)
+    fig = figure(PAGE, 4.8)
     rows = fig.subplots(2, 1, sharex=True, sharey=True)
     small, end, time = scale(data.tip_deflection, "m"), motion_end(data), data.time.values
     words = {"a": "across the leg, direction a (level at home)", "b": "across the leg, direction b"}
@@ -112,7 +112,7 @@ def tip_deflections(data: xr.Dataset) -> Figure:
         axes.set_ylabel(f"deflection [{small.name}]")
         mark_end(axes, end, "motion ends" if axes is rows[0] else "")
     rows[-1].set_xlabel("time [s]")
-    fig.legend(*rows[0].get_legend_handles_labels(), loc="outside right upper", handlelength=3)
+    fig.legend(*rows[0].get_legend_handles_labels(), loc="outside upper center", ncols=6, handlelength=2.6)
     return fig
 
 

@@ -6,7 +6,7 @@ import numpy as np
 import xarray as xr
 from matplotlib.figure import Figure
 
-from flexapod.plot.style import LEG_COLORS, LINE_STYLES, figure, mark_end, needs, scale, styled
+from flexapod.plot.style import LEG_COLORS, LINE_STYLES, PAGE, figure, mark_end, needs, scale, styled
 from flexapod.study.scene import motion_coordinates, motion_end
 
 __all__ = ["motion_law"]
@@ -30,7 +30,7 @@ def motion_law(data: xr.Dataset) -> Figure:
     turns = [name for name in moving if name in _TURNS]
     shifts = [name for name in moving if name not in _TURNS]
     groups = [group for group in (turns, shifts) if group] or [["roll"]]
-    fig = figure(6.4 if len(groups) == 1 else 9.2, 6.2)
+    fig = figure(PAGE, 5.2)
     grid = fig.subplots(3, len(groups), sharex=True, squeeze=False)
     end = motion_end(data)
     for column, names in enumerate(groups):

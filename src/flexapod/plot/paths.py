@@ -9,7 +9,7 @@ import xarray as xr
 from matplotlib.axes import Axes
 from matplotlib.figure import Figure
 
-from flexapod.plot.style import AXIS_COLORS, FLEXIBLE, RIGID, figure, mark_end, needs, scale, styled
+from flexapod.plot.style import AXIS_COLORS, COLUMN, FLEXIBLE, NOTE, RIGID, figure, mark_end, needs, scale, styled
 from flexapod.study.scene import motion_end
 
 __all__ = ["com_path"]
@@ -29,7 +29,7 @@ def com_path(data: xr.Dataset, axes: Sequence[str] = ("y", "z"), point: str = "c
     point : str
         ``com`` (centre of mass) or ``tool``.
     """
-    fig = figure(4.0 * len(axes), 5.2, gap=0.06)
+    fig = figure(COLUMN * min(len(axes), 2), 4.6, gap=0.06)
     grid = fig.subplots(2, len(axes), sharex=True, squeeze=False, height_ratios=(1.15, 1.0))
     deviation = data[f"{point}_deviation"].sel(axis=list(axes))
     small = scale(deviation, "m")
@@ -79,5 +79,5 @@ def _peak(axes: Axes, time: np.ndarray, values: np.ndarray, unit: str) -> None:
         textcoords="offset points",
         ha="right" if right else "left",
         va="bottom" if above else "top",
-        fontsize=8.5,
+        fontsize=NOTE,
     )

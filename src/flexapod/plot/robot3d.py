@@ -9,7 +9,7 @@ import xarray as xr
 from matplotlib.figure import Figure
 
 from flexapod.plot.draw3d import draw_ghost, draw_robot, space, view
-from flexapod.plot.style import figure, needs, styled
+from flexapod.plot.style import NOTE, PAGE, figure, needs, styled
 from flexapod.study.scene import mode_scene, motion_end, scene
 
 __all__ = ["modes_3d", "robot_3d"]
@@ -30,7 +30,7 @@ def robot_3d(data: xr.Dataset, time: float | None = None) -> Figure:
         time = motion_end(data)
     time = float(data.time[-1] if time is None else data.time.sel(time=time, method="nearest"))
     now, start = scene(data, time), scene(data, float(data.time[0]))
-    fig = figure(8.6, 5.6)
+    fig = figure(PAGE, 4.5)
     fig.set_layout_engine("none")  # 3D axes have no extents that a layout could use
     places = fig.add_gridspec(1, 2, width_ratios=(1.15, 1), left=0.0, right=0.96, bottom=0.07, top=0.93, wspace=0.1)
     left, right = space(fig, places[0]), space(fig, places[1], turn=0, tilt=0)
@@ -62,7 +62,7 @@ def modes_3d(modes: xr.Dataset, show: Sequence[int] | None = None, size: float =
     labels = [int(m) for m in (modes.mode.values[:6] if show is None else show)]
     columns = min(3, len(labels))
     rows = -(-len(labels) // columns)
-    fig = figure(3.2 * columns, 4.0 * rows)
+    fig = figure(PAGE / 3 * columns, 2.9 * rows)
     fig.set_layout_engine("none")
     places = fig.add_gridspec(
         rows, columns, left=0.0, right=1.0, bottom=0.0, top=1 - 0.11 / rows, hspace=0.14, wspace=0.0
@@ -77,11 +77,11 @@ def modes_3d(modes: xr.Dataset, show: Sequence[int] | None = None, size: float =
         view(axes, [rest, moved], zoom=1.15)
         axes.set(xlabel="", ylabel="", zlabel="")
         axes.tick_params(labelbottom=False, labelleft=False, labelright=False)
-        axes.set_title(_title(modes.sel(mode=label), label), fontsize=9)
+        axes.set_title(_title(modes.sel(mode=label), label), fontsize=NOTE)
     return fig
 
 
 def _title(mode: xr.Dataset, label: int) -> str:
     damping = 100 * float(mode.damping_ratio)
-    kind = f"\n{mode.kind.item()}" if "kind" in mode else ""
-    return f"Mode {label}: {float(mode.frequency):.1f} Hz, damping {damping:.2g} %{kind}"
+    kind = f"{mode.kind.item()}, " if "kind" in mode else ""
+    return f"Mode {label}: {float(mode.frequency):.1f} Hz\n{kind}damping {damping:.2g} %"

@@ -7,7 +7,7 @@ import xarray as xr
 from matplotlib.axes import Axes
 from matplotlib.figure import Figure
 
-from flexapod.plot.style import LEG_COLORS, RIGID, figure, needs, scale, styled
+from flexapod.plot.style import LEG_COLORS, NOTE, PAGE, RIGID, figure, needs, scale, styled
 from flexapod.study.words import number
 
 __all__ = ["sliding_mesh"]
@@ -31,7 +31,7 @@ def sliding_mesh(data: xr.Dataset) -> Figure:
     data : xarray.Dataset
         Result of `flexapod.study.sliding_mesh.sliding_mesh`.
     """
-    fig = figure(9.6, 7.4, gap=0.06)
+    fig = figure(PAGE, 6.0, gap=0.06)
     panels = fig.subplots(2, 2)
     _tips(panels[0, 0], data)
     _errors(panels[0, 1], data)
@@ -71,7 +71,7 @@ def _errors(axes: Axes, data: xr.Dataset) -> None:
         textcoords="offset points",
         ha="center",
         va="bottom",
-        fontsize=8.5,
+        fontsize=NOTE,
         color=_REFERENCE,
     )
     lowest = data.error.min("guide")
@@ -86,7 +86,7 @@ def _slope(axes: Axes, sizes: np.ndarray, at_largest: float, order: int) -> None
     ends = np.array([sizes.min(), sizes.max()])
     values = at_largest * (ends / ends[1]) ** order
     axes.loglog(ends, values, color="#888888", linestyle=(0, (4, 3)), linewidth=1.0)
-    axes.annotate(f"order {order}", (ends[0], values[0]), xytext=(2, -12), textcoords="offset points", fontsize=8.5,
+    axes.annotate(f"order {order}", (ends[0], values[0]), xytext=(2, -12), textcoords="offset points", fontsize=NOTE,
                   color="#666666")  # fmt: skip
 
 
@@ -102,11 +102,11 @@ def _shifts(axes: Axes, data: xr.Dataset) -> None:
         (0.03, 0.97),
         xycoords="axes fraction",
         va="top",
-        fontsize=8.5,
+        fontsize=NOTE,
         color="#555555",
     )
     axes.annotate(
-        "the mouth", (1.0, 0.0), xytext=(0, -3), textcoords="offset points", ha="right", va="top", fontsize=8.5
+        "the mouth", (1.0, 0.0), xytext=(0, -3), textcoords="offset points", ha="right", va="top", fontsize=NOTE
     )
     axes.set_title("Why: where the clamp seems to be")
     axes.set_xlabel("part of the element at the mouth that is outside")
@@ -118,6 +118,6 @@ def _stiffnesses(axes: Axes, data: xr.Dataset) -> None:
     axes.set_title("Stiffness of the guide, whole elements")
     axes.set_xlabel("stiffness per length [N/m²]")
     axes.set_ylabel("root mean square error [%]")
-    place = {"xycoords": "axes fraction", "fontsize": 8.5, "color": "#555555"}
+    place = {"xycoords": "axes fraction", "fontsize": NOTE, "color": "#555555"}
     axes.annotate("too soft: the clamp\nis behind the mouth", (0.02, 0.04), **place)
     axes.annotate("too stiff: the\nelement locks", (0.97, 0.3), ha="right", **place)

@@ -9,7 +9,7 @@ import xarray as xr
 from matplotlib.axes import Axes
 from matplotlib.figure import Figure
 
-from flexapod.plot.style import FLEXIBLE, LEG_COLORS, RIGID, figure, needs, scale, styled
+from flexapod.plot.style import FLEXIBLE, LEG_COLORS, PAGE, RIGID, figure, needs, scale, styled
 from flexapod.study.words import number
 
 __all__ = ["solid_comparison", "solid_meshes"]
@@ -29,7 +29,7 @@ def solid_meshes(meshes: Mapping[str, xr.Dataset], reference: xr.Dataset) -> Fig
     reference : xarray.Dataset
         Result of `flexapod.simulate_actuator`, drawn pale for orientation.
     """
-    fig = figure(7.6, 0.6 + 2.1 * len(meshes))
+    fig = figure(PAGE, 0.6 + 1.9 * len(meshes))
     panels = np.atleast_1d(fig.subplots(len(meshes), 1, sharex=True, sharey=True))
     unit = scale(reference.tip_deflection, "m")
     for axes, (letter, data) in zip(panels, meshes.items(), strict=True):
@@ -57,7 +57,7 @@ def solid_comparison(results: Mapping[str, xr.Dataset], reference: xr.Dataset) -
     reference : xarray.Dataset
         By assumed modes.
     """
-    fig = figure(7.6, 5.4)
+    fig = figure(PAGE, 4.8)
     above, below = fig.subplots(2, 1, sharex=True, height_ratios=(1.5, 1))
     unit = scale(reference.tip_deflection, "m")
     above.plot(reference.time, unit(reference.tip_deflection), color=RIGID, linewidth=5, label="assumed modes")

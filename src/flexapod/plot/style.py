@@ -1,18 +1,25 @@
-"""House style of all figures: colours that colour-blind readers tell apart, SI units in labels, PNG and SVG files."""
+"""House style of all figures: colours that colour-blind readers tell apart, units in labels, the width of a page.
+
+Figures are as wide as a page of a journal (170 mm), or as a column (85 mm) where they have one column of panels by
+themselves: their letters then have the size at which they are read, 7 points at least.
+"""
 
 from __future__ import annotations
 
 import logging
-from collections.abc import Callable, Mapping
+from collections.abc import Callable, Iterator, Mapping, Sequence
+from contextlib import contextmanager
 from functools import wraps
 from pathlib import Path
 from typing import Any, ParamSpec
 
 import matplotlib
+import numpy as np
 from matplotlib.axes import Axes
 from matplotlib.backends.backend_agg import FigureCanvasAgg
 from matplotlib.figure import Figure
 from matplotlib.layout_engine import ConstrainedLayoutEngine
+from matplotlib.text import Text
 
 from flexapod.errors import InputError
 from flexapod.study.store import replacing
@@ -20,9 +27,14 @@ from flexapod.study.words import Scale, scale
 
 __all__ = [
     "AXIS_COLORS",
+    "COLUMN",
     "FLEXIBLE",
     "LEG_COLORS",
+    "NOTE",
+    "PAGE",
     "RIGID",
+    "SMALL",
+    "TEXT",
     "Scale",
     "figure",
     "mark_end",
@@ -41,25 +53,37 @@ LINE_STYLES = ("-", "--", "-.", ":", (0, (5, 1, 1, 1, 1, 1)), (0, (3, 1)))
 RIGID = "#B8B8B8"
 FLEXIBLE = "#0B3C5D"
 GRID = "#DDDDDD"
+COLUMN, PAGE = 3.35, 6.7  # widths of a column and of a page [in]: 85 and 170 mm
+TEXT, NOTE, SMALL = 8.5, 7.5, 7.0  # sizes of letters [points]
 
+INCH = 0.0254  # [m]
+# What files say of themselves: no dates, so that the same figure is the same file.
+_METADATA: dict[str, dict[str, str | None]] = {
+    "png": {"Software": "flexapod"},
+    "svg": {"Date": None, "Creator": "flexapod"},
+    "pdf": {"CreationDate": None, "Creator": "flexapod", "Producer": None},
+}
 _RC = {
     "font.family": "DejaVu Sans",
-    "font.size": 9.5,
-    "axes.titlesize": 10.5,
+    "font.size": TEXT,
+    "axes.titlesize": 9.0,
     "axes.titleweight": "bold",
     "axes.titlelocation": "left",
-    "axes.labelsize": 9.5,
+    "axes.labelsize": TEXT,
     "axes.spines.top": False,
     "axes.spines.right": False,
     "axes.grid": True,
+    "xtick.labelsize": NOTE,
+    "ytick.labelsize": NOTE,
     "axes.axisbelow": True,
     "axes.formatter.useoffset": False,
     "axes.formatter.limits": (-4, 5),
     "grid.color": GRID,
     "grid.linewidth": 0.6,
-    "lines.linewidth": 1.4,
+    "lines.linewidth": 1.3,
     "legend.frameon": False,
-    "legend.fontsize": 8.5,
+    "legend.fontsize": NOTE,
+    "pdf.fonttype": 42,
     "svg.fonttype": "path",
     "svg.hashsalt": "flexapod",
     "figure.facecolor": "white",
@@ -68,7 +92,7 @@ _RC = {
 }
 
 
-def figure(width: float = 7.4, height: float = 4.6, gap: float = 0.02) -> Figure:
+def figure(width: float = PAGE, height: float = 4.0, gap: float = 0.02) -> Figure:
     """Empty figure [in] on the Agg canvas, without pyplot's global state; `gap` between columns, as a share of one."""
     made = Figure(figsize=(width, height), layout=ConstrainedLayoutEngine(wspace=gap))
     FigureCanvasAgg(made)
@@ -120,29 +144,76 @@ def mark_end(axes: Axes, instant: float | None, text: str = "") -> None:
     axes.axvline(instant, color="#888888", linewidth=0.8, linestyle=(0, (2, 2)), zorder=0)
     if text:
         place = {"xycoords": ("data", "axes fraction"), "textcoords": "offset points"}
-        axes.set_title(axes.get_title(loc="left"), pad=17)
-        axes.annotate(text, (instant, 1.0), xytext=(4, 3), va="bottom", fontsize=8, color="#555555", **place)
+        axes.set_title(axes.get_title(loc="left"), pad=15)
+        axes.annotate(text, (instant, 1.0), xytext=(4, 3), va="bottom", fontsize=SMALL, color="#555555", **place)
 
 
-def save(fig: Figure, stem: str | Path, *, dpi: int = 160) -> tuple[Path, Path]:
-    """Write a figure as ``stem.png`` and ``stem.svg``; existing ones are replaced when the new ones are complete.
+def save(
+    fig: Figure,
+    stem: str | Path,
+    *,
+    dpi: int = 200,
+    formats: Sequence[str] = ("png", "svg"),
+    width: float | None = None,
+) -> tuple[Path, ...]:
+    """Write a figure as ``stem.png``, ``stem.svg``, ``stem.pdf``; existing files are replaced by complete ones.
+
+    Parameters
+    ----------
+    fig : matplotlib.figure.Figure
+    stem : path
+        Without ending; the folder is made if needed.
+    dpi : int
+        Of the PNG file.
+    formats : sequence of str
+        Of png, svg, pdf.
+    width : float, optional
+        Width on paper [m], as 0.085 for a column; letters keep their size, long titles are broken. The figure itself
+        stays as it is.
 
     Returns
     -------
     tuple of Path
-        The PNG and the SVG file.
+        A file for each of `formats`, in their order.
 
     Raises
     ------
     InputError
-        The folder cannot be made or written to.
+        The folder cannot be made or written to, a format is unknown, or the width is not positive.
     """
     stem = Path(stem)
-    png, svg = stem.with_name(stem.name + ".png"), stem.with_name(stem.name + ".svg")
+    unknown = [name for name in formats if name not in _METADATA]
+    if unknown:
+        raise InputError("is no format of figures", key="formats", value=unknown[0], allowed=", ".join(_METADATA))
+    if width is not None and not width > 0:
+        raise InputError("is no width", key="width", value=width, allowed="above 0 m, as 0.085 or 0.17")
     logging.getLogger("matplotlib.font_manager").setLevel(logging.ERROR)
-    with matplotlib.rc_context(_rc()):
-        with replacing(png) as temporary:
-            fig.savefig(temporary, dpi=dpi, metadata={"Software": "flexapod"})
-        with replacing(svg) as temporary:
-            fig.savefig(temporary, metadata={"Date": None, "Creator": "flexapod"})
-    return png, svg
+    written = [stem.with_name(f"{stem.name}.{name}") for name in formats]
+    engine = fig.get_layout_engine()
+    with matplotlib.rc_context(_rc()), _resized(fig, width):
+        for path, name in zip(written, formats, strict=True):
+            with replacing(path) as temporary:
+                fig.savefig(temporary, dpi=dpi, format=name, metadata=_METADATA[name])
+            fig.set_layout_engine(None)  # the places are found once: that takes longer than to draw
+    fig.set_layout_engine(engine)
+    return tuple(written)
+
+
+@contextmanager
+def _resized(fig: Figure, width: float | None) -> Iterator[None]:
+    """The figure with another width [m], for as long as it is written."""
+    if width is None:
+        yield
+        return
+    before = tuple(float(size) for size in fig.get_size_inches())
+    titles = [text for axes in fig.axes for text in axes.findobj(Text) if text.get_text() == axes.get_title(loc="left")]
+    share = width / INCH / before[0]
+    fig.set_size_inches(width / INCH, before[1] * min(1.0, np.sqrt(share)))
+    for title in titles:
+        title.set_wrap(True)
+    try:
+        yield
+    finally:
+        fig.set_size_inches(before[0], before[1])
+        for title in titles:
+            title.set_wrap(False)

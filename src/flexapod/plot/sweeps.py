@@ -9,7 +9,7 @@ import xarray as xr
 from matplotlib.axes import Axes
 from matplotlib.figure import Figure
 
-from flexapod.plot.style import AXIS_COLORS, figure, scale, styled
+from flexapod.plot.style import AXIS_COLORS, COLUMN, PAGE, SMALL, figure, scale, styled
 from flexapod.study.paper.claim import PAPER_DEVIATION
 
 __all__ = ["half_angles", "start_jump"]
@@ -26,7 +26,7 @@ def half_angles(sweeps: Mapping[str, xr.Dataset]) -> Figure:
     sweeps : mapping of title to xarray.Dataset
         With `deviation_peak` (half_angle, axis), `force_peak`, `lowest_frequency`, `verdict` (half_angle).
     """
-    fig = figure(4.4 * len(sweeps), 7.6)
+    fig = figure(COLUMN * min(len(sweeps), 2), 6.6)
     grid = fig.subplots(3, len(sweeps), sharex=True, sharey="row", squeeze=False, height_ratios=(2, 1, 1))
     for column, (title, sweep) in enumerate(sweeps.items()):
         top, force, pitch = grid[:, column]
@@ -64,11 +64,11 @@ def _peaks(axes: Axes, sweep: xr.Dataset) -> None:
             xytext=(0, 2 if name == "z" else -2),
             textcoords="offset points",
             va="bottom" if name == "z" else "top",
-            fontsize=8,
+            fontsize=SMALL,
             color=AXIS_COLORS[name],
         )
     axes.annotate("architecture singularity", (30, 0.03), xycoords=("data", "axes fraction"), xytext=(-3, 0),
-                  textcoords="offset points", rotation=90, ha="right", fontsize=8, color="#C44E52")  # fmt: skip
+                  textcoords="offset points", rotation=90, ha="right", fontsize=SMALL, color="#C44E52")  # fmt: skip
     axes.set_xlim(4, 31)
 
 
@@ -83,7 +83,7 @@ def _lost(axes: Axes, sweep: xr.Dataset) -> None:
                 "va": "bottom",
             }
             label = str(words).split(":")[0].split(" from ")[0]
-            axes.annotate(label, (angle, 0.03), xytext=(-7, 0), ha="right", fontsize=8, color="#C44E52", **place)
+            axes.annotate(label, (angle, 0.03), xytext=(-7, 0), ha="right", fontsize=SMALL, color="#C44E52", **place)
 
 
 @styled
@@ -95,7 +95,7 @@ def start_jump(smooth: xr.Dataset, jump: xr.Dataset) -> Figure:
     smooth, jump : xarray.Dataset
         Results of the same robot and stroke.
     """
-    fig = figure(7.6, 5.6)
+    fig = figure(PAGE, 5.0)
     rows = fig.subplots(2, 1, sharex=True)
     unit = scale(jump.com_deviation, "m")
     for axes, axis in zip(rows, ("y", "z"), strict=True):

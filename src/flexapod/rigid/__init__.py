@@ -2,7 +2,7 @@
 
 from flexapod.rigid.dynamics import RigidForces
 from flexapod.rigid.forward import Postures
-from flexapod.rigid.jacobian import SingularityPath, length_jacobian
+from flexapod.rigid.jacobian import NearestSingularity, SingularityPath, length_jacobian
 from flexapod.rigid.kinematics import LegState, joint_angles, leg_frames, leg_lengths, leg_rotations
 from flexapod.rigid.laws import Law
 from flexapod.rigid.robot import (
@@ -13,6 +13,8 @@ from flexapod.rigid.robot import (
     inverse_dynamics,
     inverse_kinematics,
     leg_bodies,
+    leg_directions,
+    nearest_singularity,
     payload_body,
     poses,
     postures,
@@ -29,6 +31,7 @@ __all__ = [
     "Excess",
     "Law",
     "LegState",
+    "NearestSingularity",
     "Poses",
     "Postures",
     "RigidForces",
@@ -42,12 +45,14 @@ __all__ = [
     "inverse_kinematics",
     "joint_angles",
     "leg_bodies",
+    "leg_directions",
     "leg_frames",
     "leg_lengths",
     "leg_rotations",
     "length_jacobian",
     "load_law",
     "motion_law",
+    "nearest_singularity",
     "payload_body",
     "poses",
     "poses_from_coordinates",

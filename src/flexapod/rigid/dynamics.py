@@ -11,13 +11,15 @@ Mech. Mach. Theory 33 (1998) 1135-1152. Here the legs turn about their own axis 
 
 from __future__ import annotations
 
-from dataclasses import dataclass
+from dataclasses import dataclass, fields
+from typing import NamedTuple
 
 import numpy as np
 
 from flexapod.errors import ComputationError
-from flexapod.rigid.kinematics import LegState, leg_rotations
+from flexapod.rigid.kinematics import JointTurn, LegState, leg_rotations
 from flexapod.rigid.trajectory import Poses
+from flexapod.rigid.vectors import Vector, blocks, cross, time_first, time_last, turned
 from flexapod.typing import Array
 
 __all__ = ["LegBodies", "PayloadBody", "RigidForces", "energies", "inverse_dynamics"]
@@ -44,8 +46,13 @@ class LegBodies:
     piston_axial: Array
 
     @property
+    def upright(self) -> LegBodies:
+        """The same with columns (n, 1), for arrays (n, T)."""
+        return LegBodies(**{field.name: getattr(self, field.name)[:, None] for field in fields(self)})
+
+    @property
     def axial(self) -> Array:
-        """Moment of inertia about the leg's axis [kg m^2], shape (n,)."""
+        """Moment of inertia about the leg's axis [kg m^2], of the shape of the masses."""
         return self.cylinder_axial + self.piston_axial
 
     def piston_com(self, length: Array) -> Array:
@@ -95,91 +102,102 @@ class RigidForces:
     base_moment: Array
 
 
-@dataclass(frozen=True, kw_only=True)
-class _LegMotion:
-    """Legs in their own axes (z along the leg): rotation to world, angular velocity and its rate, accelerations."""
+class _Legs(NamedTuple):
+    """Legs of a block of poses, (n, T) each: lengths, turns of the universal joints, rates of the angles."""
 
-    rotation: Array  # (T, n, 3, 3)
-    w: Array  # (T, n, 3) [rad/s]
-    w_dot: Array  # (T, n, 3) components' rate [rad/s^2]
-    cylinder_acceleration: Array  # (T, n, 3) of the CoM [m/s^2]
-    piston_acceleration: Array
+    length: Array
+    rate: Array
+    accel: Array
+    turn: JointTurn
+    alpha_dot: Array
+    beta_dot: Array
+    alpha_ddot: Array
+    beta_ddot: Array
+
+    @classmethod
+    def of(cls, legs: LegState, where: slice) -> _Legs:
+        alpha, beta = time_last(legs.alpha[where]), time_last(legs.beta[where])
+        names = ("length", "rate", "accel", "alpha_dot", "beta_dot", "alpha_ddot", "beta_ddot")
+        rest = {name: time_last(getattr(legs, name)[where]) for name in names}
+        return cls(turn=JointTurn.of(alpha, beta), **rest)
 
 
-def _leg_motion(frames: Array, bodies: LegBodies, legs: LegState) -> _LegMotion:
+class _LegMotion(NamedTuple):
+    """Legs in their own axes (z along the leg): angular velocity, its rate, accelerations of the bodies' centres."""
+
+    w: Vector  # [rad/s]
+    w_dot: Vector  # components' rate [rad/s^2]
+    cylinder_acceleration: Vector  # [m/s^2]
+    piston_acceleration: Vector
+
+
+def _leg_motion(bodies: LegBodies, legs: _Legs) -> _LegMotion:
     """Angular rates of the legs, turn about their axis included, and CoM accelerations, Eqs. (T2.27)-(T2.28)."""
-    cb, sb = np.cos(legs.beta), np.sin(legs.beta)
-    w = np.stack([legs.alpha_dot * cb, legs.beta_dot, legs.alpha_dot * sb], axis=-1)
-    turn = legs.alpha_dot * legs.beta_dot
-    w_dot = np.stack(
-        [legs.alpha_ddot * cb - turn * sb, legs.beta_ddot, legs.alpha_ddot * sb + turn * cb],
-        axis=-1,
-    )
-
-    def acceleration(r: Array, r_dot: Array | float, r_ddot: Array | float) -> Array:
-        return np.stack(
-            [
-                r * (w_dot[..., 1] + w[..., 0] * w[..., 2]) + 2 * r_dot * w[..., 1],
-                r * (w[..., 1] * w[..., 2] - w_dot[..., 0]) - 2 * r_dot * w[..., 0],
-                r_ddot - r * (w[..., 0] ** 2 + w[..., 1] ** 2),
-            ],
-            axis=-1,
-        )
-
+    cb, sb = legs.turn.cb, legs.turn.sb
+    w = wx, wy, wz = legs.alpha_dot * cb, legs.beta_dot, legs.alpha_dot * sb
+    joint = legs.alpha_dot * legs.beta_dot
+    w_dot = legs.alpha_ddot * cb - joint * sb, legs.beta_ddot, legs.alpha_ddot * sb + joint * cb
+    swing = w_dot[1] + wx * wz, wy * wz - w_dot[0], wx**2 + wy**2  # acceleration for each metre from the joint
+    r, r_dot = bodies.piston_com(legs.length), 2 * legs.rate
     return _LegMotion(
-        rotation=leg_rotations(frames, legs.alpha, legs.beta),
         w=w,
         w_dot=w_dot,
-        cylinder_acceleration=acceleration(np.broadcast_to(bodies.cylinder_com, legs.length.shape), 0.0, 0.0),
-        piston_acceleration=acceleration(bodies.piston_com(legs.length), legs.rate, legs.accel),
+        cylinder_acceleration=[bodies.cylinder_com * x for x in (swing[0], swing[1], -swing[2])],
+        piston_acceleration=(
+            r * swing[0] + r_dot * wy,
+            r * swing[1] - r_dot * wx,
+            legs.accel - r * swing[2],
+        ),
     )
 
 
-def _across_the_leg(bodies: LegBodies, legs: LegState, motion: _LegMotion, gravity: Array) -> tuple[Array, Array]:
+def _across_the_leg(bodies: LegBodies, legs: _Legs, motion: _LegMotion, gravity: Vector) -> tuple[Vector, Vector]:
     """Force of the platform on the legs, across them, and moment of the base, in leg axes, Eqs. (T2.29)-(T2.31)."""
-    length, w, w_dot = legs.length, motion.w, motion.w_dot
+    length, (wx, wy, wz), w_dot = legs.length, motion.w, motion.w_dot
     transverse, axial = bodies.transverse(length), bodies.axial
     transverse_dot = 2 * bodies.piston_mass * bodies.piston_com(length) * legs.rate
     static = bodies.static_moment(length)
-    twist = axial * w_dot[..., 2] / np.cos(legs.beta)  # (T2.29)
-    moment = twist[..., None] * np.stack([-np.sin(legs.beta), np.zeros_like(length), np.cos(legs.beta)], axis=-1)
-    swing = w * w[..., 2:]
-    hx = transverse * w_dot[..., 0] + transverse_dot * w[..., 0] + (axial - transverse) * swing[..., 1]
-    hy = transverse * w_dot[..., 1] + transverse_dot * w[..., 1] + (transverse - axial) * swing[..., 0]
-    across = np.stack(
-        [
-            (hy - static * gravity[..., 0]) / length,
-            (moment[..., 0] - hx - static * gravity[..., 1]) / length,
-            np.zeros_like(length),
-        ],
-        axis=-1,
-    )
+    twist = axial * w_dot[2] / legs.turn.cb  # (T2.29)
+    none = np.zeros_like(length)
+    moment = -twist * legs.turn.sb, none, twist * legs.turn.cb
+    hx = transverse * w_dot[0] + transverse_dot * wx + (axial - transverse) * wy * wz
+    hy = transverse * w_dot[1] + transverse_dot * wy + (transverse - axial) * wx * wz
+    across = (hy - static * gravity[0]) / length, (moment[0] - hx - static * gravity[1]) / length, none
     return across, moment
 
 
-def _along_the_legs(payload: PayloadBody, poses: Poses, arms: Array, axes: Array, sides: Array, load: Array) -> Array:
-    """Force of the legs on the platform along them [N], (T, n), from the payload's balances, Eqs. (T2.32)-(T2.33)."""
-    inertia = poses.rotation @ payload.inertia @ np.swapaxes(poses.rotation, -1, -2)
-    spin = np.einsum("tij,tj->ti", inertia, poses.omega)
-    _, _, com_acceleration = poses.point(payload.com)
-    force = payload.mass * com_acceleration - load[:, :3] - sides.sum(axis=1)
-    moment = np.einsum("tij,tj->ti", inertia, poses.alpha) + np.cross(poses.omega, spin)
-    moment = moment - load[:, 3:] - np.cross(arms, sides).sum(axis=1)
-    lines = np.concatenate([axes, np.cross(arms, axes)], axis=-1)
-    balance = np.concatenate([force, moment], axis=-1)[..., None]
+def _payload_balance(payload: PayloadBody, gravity: Array, poses: Poses, wrench: Array) -> Array:
+    """What the legs must bring about at the payload's CoM: force and moment (6, T), Eqs. (T2.32)-(T2.33)."""
+    turn, w, alpha = time_last(poses.rotation), time_last(poses.omega), time_last(poses.alpha)
+    back = turn.swapaxes(0, 1)
+    inertia, w_local = payload.inertia[..., None], turned(back, w)
+    spin = np.add(turned(inertia, turned(back, alpha)), cross(w_local, turned(inertia, w_local)))
+    arm, lever = turned(turn, payload.com), turned(turn, payload.tool - payload.com)
+    acceleration = poses.acceleration.T + cross(alpha, arm) + np.array(cross(w, cross(w, arm)))
+    force = payload.mass * (acceleration - gravity[:, None]) - wrench[:3]
+    return np.concatenate([force, turned(turn, spin) - wrench[3:] - cross(lever, wrench[:3])])
+
+
+def _along_the_legs(balance: Array, arms: Vector, axes: Vector, sides: Vector) -> Array:
+    """Force of the legs on the platform along them [N], (n, T), from the payload's balances, Eqs. (T2.32)-(T2.33)."""
+    lines = np.array([*axes, *cross(arms, axes)])  # (6, n, T)
+    rest = balance - np.array([x.sum(axis=0) for x in (*sides, *cross(arms, sides))])
     try:
-        return np.asarray(np.linalg.solve(np.swapaxes(lines, -1, -2), balance)[..., 0], dtype=np.float64)
+        found = np.linalg.solve(np.moveaxis(lines, -1, 0), rest.T[..., None])[..., 0]
     except np.linalg.LinAlgError:
         raise ComputationError(
             "The legs cannot carry the payload: a pose of the path is singular",
             next_step="Check the path for singular poses and change the layout or the motion",
         ) from None
+    return np.asarray(found.T, dtype=np.float64)
 
 
-def _inertial_forces(bodies: LegBodies, motion: _LegMotion, leg_gravity: Array) -> Array:
-    """Mass times acceleration less weight of each leg, in leg axes (T, n, 3)."""
-    cylinder = bodies.cylinder_mass[:, None] * (motion.cylinder_acceleration - leg_gravity)
-    return cylinder + bodies.piston_mass[:, None] * (motion.piston_acceleration - leg_gravity)
+def _inertial_forces(bodies: LegBodies, motion: _LegMotion, gravity: Vector) -> list[Array]:
+    """Mass times acceleration less weight of each leg, in leg axes."""
+    return [
+        bodies.cylinder_mass * (c - g) + bodies.piston_mass * (p - g)
+        for c, p, g in zip(motion.cylinder_acceleration, motion.piston_acceleration, gravity, strict=True)
+    ]
 
 
 def inverse_dynamics(
@@ -219,26 +237,42 @@ def inverse_dynamics(
     ComputationError
         If a pose is exactly singular.
     """
-    motion = _leg_motion(frames, bodies, legs)
-    leg_gravity = np.einsum("tnij,i->tnj", motion.rotation, gravity)
+    count = len(poses)
+    external = np.broadcast_to(np.zeros(6) if wrench is None else np.asarray(wrench, dtype=float), (count, 6))
+    shapes = {"actuator_force": (count, 6)}
+    forces = {field.name: np.empty(shapes.get(field.name, (count, 6, 3))) for field in fields(RigidForces)}
+    robot = frames, platform_joints - payload.com, bodies.upright
+    for where in blocks(count):
+        part = poses.part(where)
+        balance = _payload_balance(payload, gravity, part, time_last(external[where]))
+        found = _forces(*robot, gravity, part, _Legs.of(legs, where), balance)
+        for name, values in zip(forces, found, strict=True):
+            forces[name][where] = values
+    return RigidForces(**forces)
+
+
+def _forces(
+    frames: Array, joints: Array, bodies: LegBodies, gravity: Array, poses: Poses, legs: _Legs, balance: Array
+) -> tuple[Array, Array, Array, Array]:
+    """Entries of `RigidForces` for one block; `joints` (6, 3) from the payload's CoM, `balance` (6, T)."""
+    motion, home = _leg_motion(bodies, legs), np.moveaxis(frames, 0, -1)[..., None]  # (3, 3, n, 1)
+
+    def in_world(vector: Vector) -> tuple[Array, Array, Array]:
+        return turned(home, legs.turn.out_of_leg(vector))
+
+    leg_gravity = legs.turn.into_leg(turned(home.swapaxes(0, 1), gravity))
     across, moment = _across_the_leg(bodies, legs, motion, leg_gravity)
-    sides = -np.einsum("tnij,tnj->tni", motion.rotation, across)
-    axes = motion.rotation[..., 2]
-    arms = np.einsum("tij,nj->tni", poses.rotation, platform_joints - payload.com)
-    external = np.broadcast_to(np.zeros(6) if wrench is None else np.asarray(wrench, dtype=float), (len(poses), 6))
-    lever = poses.rotation @ (payload.tool - payload.com)
-    load = np.concatenate(
-        [external[:, :3] + payload.mass * gravity, external[:, 3:] + np.cross(lever, external[:, :3])], axis=-1
-    )
-    along = _along_the_legs(payload, poses, arms, axes, sides, load)
-    joint_force = sides + along[..., None] * axes
-    thrust = bodies.piston_mass * (motion.piston_acceleration[..., 2] - leg_gravity[..., 2])
-    inertial = _inertial_forces(bodies, motion, leg_gravity)
-    return RigidForces(
-        actuator_force=along + thrust,  # (T2.34)
-        joint_force=joint_force,
-        base_force=np.einsum("tnij,tnj->tni", motion.rotation, inertial) + joint_force,  # (T2.35)
-        base_moment=np.einsum("tnij,tnj->tni", motion.rotation, moment),
+    sides = [-x for x in in_world(across)]
+    none = np.zeros_like(legs.length)
+    axes = in_world((none, none, none + 1.0))
+    along = _along_the_legs(balance, joints @ time_last(poses.rotation), axes, sides)
+    joint_force = [side + along * axis for side, axis in zip(sides, axes, strict=True)]
+    inertial = in_world(_inertial_forces(bodies, motion, leg_gravity))
+    return (
+        (along + bodies.piston_mass * (motion.piston_acceleration[2] - leg_gravity[2])).T,  # (T2.34)
+        time_first(joint_force),
+        time_first([i + f for i, f in zip(inertial, joint_force, strict=True)]),  # (T2.35)
+        time_first(in_world(moment)),
     )
 
 

@@ -8,9 +8,21 @@ import numpy as np
 from numpy.typing import ArrayLike
 
 from flexapod.rigid.trajectory import Poses
+from flexapod.rigid.vectors import cross, dot, time_first, time_last
 from flexapod.typing import Array
 
-__all__ = ["SingularityPath", "along_path", "characteristic_length", "length_jacobian", "scaled", "stiffness"]
+__all__ = [
+    "NearestSingularity",
+    "SingularityPath",
+    "along_path",
+    "characteristic_length",
+    "length_jacobian",
+    "nearest",
+    "scaled",
+    "stiffness",
+]
+
+STRIDES = (64, 8, 1)  # every so many poses of a path are looked at, where the last look leaves a doubt
 
 
 @dataclass(frozen=True, kw_only=True)
@@ -31,6 +43,26 @@ class SingularityPath:
     condition: Array
     determinant: Array
     worst: int
+    sign_changes: np.ndarray
+
+
+@dataclass(frozen=True, kw_only=True)
+class NearestSingularity:
+    """The pose of a path with the smallest singular value of the scaled Jacobian.
+
+    Attributes
+    ----------
+    worst : int
+        Its index.
+    smallest_singular_value, condition : float
+        There [-]; the condition is inf where it is singular.
+    sign_changes : ndarray of int, shape (m,)
+        Indices k where the determinant changes sign between the poses k and k + 1.
+    """
+
+    worst: int
+    smallest_singular_value: float
+    condition: float
     sign_changes: np.ndarray
 
 
@@ -57,12 +89,15 @@ def length_jacobian(
     ndarray, shape (..., n, 6)
         ``l_dot = J [v_point, omega]``, twist in world axes; columns 1-3 [-], 4-6 [m].
     """
-    turn = np.swapaxes(np.asarray(rotation, dtype=float), -1, -2)
+    position, rotation = np.asarray(position, dtype=float), np.asarray(rotation, dtype=float)
     joints = np.asarray(platform_joints, dtype=float)
-    s = np.asarray(position, dtype=float)[..., None, :] + joints @ turn - np.asarray(base_joints, dtype=float)
-    u = s / np.linalg.norm(s, axis=-1, keepdims=True)
+    lead = np.broadcast_shapes(position.shape[:-1], rotation.shape[:-2])
+    turn = time_last(np.broadcast_to(rotation, (*lead, 3, 3)).reshape(-1, 3, 3))
+    p = np.broadcast_to(position, (*lead, 3)).reshape(-1, 3).T[:, None]
+    s = p + joints @ turn - np.asarray(base_joints, dtype=float).T[..., None]  # (3, n, T)
+    u = s / np.sqrt(dot(s, s))
     arm = (joints - np.asarray(point, dtype=float)) @ turn
-    return np.concatenate([u, np.cross(arm, u)], axis=-1)
+    return time_first([*u, *cross(arm, u)]).reshape(*lead, len(joints), 6)
 
 
 def characteristic_length(platform_joints: ArrayLike) -> float:
@@ -96,9 +131,7 @@ def along_path(base_joints: ArrayLike, platform_joints: ArrayLike, poses: Poses)
     -------
     SingularityPath
     """
-    joints = np.asarray(platform_joints, dtype=float)
-    raw = length_jacobian(base_joints, joints, poses.position, poses.rotation, joints.mean(axis=0))
-    j = scaled(raw, characteristic_length(joints))
+    j = _scaled_path(base_joints, platform_joints, poses)
     singular = np.asarray(np.linalg.svd(j, compute_uv=False), dtype=np.float64)
     smallest = singular[:, -1]
     condition = np.divide(singular[:, 0], smallest, out=np.full(len(j), np.inf), where=smallest > 0)
@@ -110,6 +143,44 @@ def along_path(base_joints: ArrayLike, platform_joints: ArrayLike, poses: Poses)
         worst=int(np.argmin(smallest)),
         sign_changes=np.flatnonzero(np.signbit(determinant[:-1]) != np.signbit(determinant[1:])),
     )
+
+
+def nearest(base_joints: ArrayLike, platform_joints: ArrayLike, poses: Poses) -> NearestSingularity:
+    """What `along_path` finds worst, at a fraction of its cost, Eq. (T2.24).
+
+    A singular value moves by no more than the matrix does: ``|sigma(J) - sigma(J_k)| <= |J - J_k|`` in the Frobenius
+    norm (Weyl). A pose near one whose smallest singular value is known needs none of its own where this bound keeps
+    it at or above the smallest found; and as long as that is positive, the determinant has not changed sign between.
+
+    Parameters and frames as for `along_path`.
+    """
+    j = _scaled_path(base_joints, platform_joints, poses)
+    singular, sign = np.full((len(j), 6), np.inf), np.zeros(len(j), dtype=bool)
+    bound, best = np.full(len(j), -np.inf), np.inf
+    for stride in STRIDES:
+        at = np.arange(0, len(j), stride)
+        at = at[bound[at] < best]
+        singular[at], sign[at] = np.linalg.svd(j[at], compute_uv=False), np.signbit(np.linalg.det(j[at]))
+        bound[at], best = singular[at, -1], min(best, float(singular[at, -1].min(initial=np.inf)))
+        left = np.flatnonzero(bound < best)
+        near = np.maximum.accumulate(np.where(np.isfinite(singular[:, 0]), np.arange(len(j)), 0))[left]
+        bound[left] = singular[near, -1] - np.sqrt(np.sum((j[left] - j[near]) ** 2, axis=(1, 2)))
+        sign[left] = sign[near]
+    worst = int(np.argmin(singular[:, -1]))
+    smallest = float(singular[worst, -1])
+    return NearestSingularity(
+        worst=worst,
+        smallest_singular_value=smallest,
+        condition=float(singular[worst, 0]) / smallest if smallest > 0 else np.inf,
+        sign_changes=np.flatnonzero(sign[:-1] != sign[1:]),
+    )
+
+
+def _scaled_path(base_joints: ArrayLike, platform_joints: ArrayLike, poses: Poses) -> Array:
+    """Scaled Jacobians about the centroid of the platform joints, (T, 6, 6), Eq. (T2.23)."""
+    joints = np.asarray(platform_joints, dtype=float)
+    raw = length_jacobian(base_joints, joints, poses.position, poses.rotation, joints.mean(axis=0))
+    return scaled(raw, characteristic_length(joints))
 
 
 def stiffness(jacobian: Array, leg_stiffness: ArrayLike) -> Array:

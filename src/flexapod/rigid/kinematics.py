@@ -3,16 +3,30 @@
 from __future__ import annotations
 
 from collections.abc import Sequence
-from dataclasses import dataclass
+from dataclasses import dataclass, fields
+from typing import NamedTuple
 
 import numpy as np
 from numpy.typing import ArrayLike
 
 from flexapod.errors import InputError
 from flexapod.rigid.trajectory import Poses
+from flexapod.rigid.vectors import Vector, blocks, cross, time_last
 from flexapod.typing import Array
 
-__all__ = ["BETA_LIMIT", "LegState", "joint_angles", "leg_frames", "leg_lengths", "leg_rotations", "leg_state"]
+__all__ = [
+    "BETA_LIMIT",
+    "JointTurn",
+    "LegMap",
+    "LegState",
+    "directions_of",
+    "joint_angles",
+    "leg_frames",
+    "leg_lengths",
+    "leg_rotations",
+    "leg_state",
+    "state_of",
+]
 
 BETA_LIMIT = np.deg2rad(85.0)  # 5 deg from the universal joint's own singularity
 
@@ -41,6 +55,55 @@ class LegState:
     beta_dot: Array
     alpha_ddot: Array
     beta_ddot: Array
+
+
+class LegMap(NamedTuple):
+    """Legs in their home frames as a linear map of the pose, ``F_i^T (p + R a_i - b_i)``.
+
+    ``reach`` (3 n, 12) takes the nine entries of R, row by row, and p; ``offset`` (3, n, 1) is ``- F_i^T b_i``.
+    """
+
+    reach: Array
+    offset: Array
+
+    @property
+    def number(self) -> int:
+        """Number of legs."""
+        return self.offset.shape[1]
+
+    @classmethod
+    def of(cls, base_joints: Array, platform_joints: Array, frames: Array) -> LegMap:
+        """From joints (n, 3) and home frames (n, 3, 3)."""
+        turned = np.einsum("ikc,ij->cikj", frames, platform_joints).reshape(-1, 9)
+        moved = np.moveaxis(frames, -1, 0).reshape(-1, 3)
+        offset = -np.einsum("ikc,ik->ci", frames, base_joints)[..., None]
+        return cls(np.concatenate([turned, moved], axis=1), offset)
+
+
+class JointTurn(NamedTuple):
+    """Cosines and sines of the universal joints' angles, each (n, T): ``Rx(alpha) Ry(beta)`` of Eq. (T2.15)."""
+
+    ca: Array
+    sa: Array
+    cb: Array
+    sb: Array
+
+    @classmethod
+    def of(cls, alpha: Array, beta: Array) -> JointTurn:
+        """From the angles [rad]."""
+        return cls(np.cos(alpha), np.sin(alpha), np.cos(beta), np.sin(beta))
+
+    def into_leg(self, vector: Vector) -> tuple[Array, Array, Array]:
+        """Vector of home axes in leg axes."""
+        x, y, z = vector
+        level = self.ca * z - self.sa * y
+        return self.cb * x - self.sb * level, self.ca * y + self.sa * z, self.sb * x + self.cb * level
+
+    def out_of_leg(self, vector: Vector) -> tuple[Array, Array, Array]:
+        """Vector of leg axes in home axes."""
+        x, y, z = vector
+        level = self.cb * z - self.sb * x
+        return self.cb * x + self.sb * z, self.ca * y - self.sa * level, self.sa * y + self.ca * level
 
 
 def leg_frames(
@@ -106,9 +169,12 @@ def leg_rotations(frames: Array, alpha: Array, beta: Array) -> Array:
     -------
     ndarray, shape (T, n, 3, 3)
     """
-    ca, sa, cb, sb, zero = np.cos(alpha), np.sin(alpha), np.cos(beta), np.sin(beta), np.zeros_like(alpha)
-    rows = [[cb, zero, sb], [sa * sb, ca, -sa * cb], [-ca * sb, sa, ca * cb]]
-    return frames @ np.stack([np.stack(row, axis=-1) for row in rows], axis=-2)
+    ca, sa, cb, sb = np.cos(alpha), np.sin(alpha), np.cos(beta), np.sin(beta)
+    r = np.zeros((*alpha.shape, 3, 3))
+    r[..., 0, 0], r[..., 0, 2] = cb, sb
+    r[..., 1, 0], r[..., 1, 1], r[..., 1, 2] = sa * sb, ca, -sa * cb
+    r[..., 2, 0], r[..., 2, 1], r[..., 2, 2] = -ca * sb, sa, ca * cb
+    return frames @ r
 
 
 def joint_angles(frames: Array, directions: Array) -> tuple[Array, Array]:
@@ -163,43 +229,84 @@ def leg_state(base_joints: Array, platform_joints: Array, frames: Array, poses: 
     InputError
         If a leg has no length, or a universal joint comes within 5 deg of |beta| = 90 deg.
     """
-    tip, tip_dot, tip_ddot = poses.point(platform_joints)
-    s = tip - base_joints
-    length = np.linalg.norm(s, axis=-1)
+    return state_of(LegMap.of(base_joints, platform_joints, frames), poses)
+
+
+def state_of(legs: LegMap, poses: Poses) -> LegState:
+    """`leg_state` of a robot whose `LegMap` is known."""
+    state = LegState(**{field.name: np.empty((len(poses), legs.number)) for field in fields(LegState)})
+    for where in blocks(len(poses)):
+        s, s_dot, s_ddot = _in_home_frames(legs, poses.part(where))
+        length, alpha, beta, turn = _directions(s)
+        _refuse_folded_joint(beta.T, where.start, len(poses))
+        rates = _rates(length, turn, turn.into_leg(s_dot), turn.into_leg(s_ddot))
+        for name, values in ({"length": length, "alpha": alpha, "beta": beta} | rates).items():
+            getattr(state, name)[where] = values.T
+    return state
+
+
+def directions_of(legs: LegMap, poses: Poses) -> tuple[Array, Array, Array]:
+    """Length [m], alpha and beta [rad] of the legs at T poses, (T, n) each, however far their joints fold.
+
+    Raises
+    ------
+    InputError
+        If a leg has no length.
+    """
+    x = np.concatenate([time_last(poses.rotation).reshape(9, -1), poses.position.T])
+    length, alpha, beta, _ = _directions((legs.reach @ x).reshape(3, legs.number, -1) + legs.offset)
+    return length.T, alpha.T, beta.T
+
+
+def _in_home_frames(legs: LegMap, poses: Poses) -> Array:
+    """Vectors from base to platform joint with two derivatives in the legs' home frames, (3, 3, n, T)."""
+    x = np.empty((3, 12, len(poses)))
+    w, turn = time_last(poses.omega)[:, None], x[:, :9].reshape(3, 3, 3, -1)
+    turn[0] = time_last(poses.rotation)
+    turn[1] = cross(w, turn[0])  # R' = w x R
+    turn[2] = np.add(cross(time_last(poses.alpha)[:, None], turn[0]), cross(w, turn[1]))
+    x[:, :9] = turn.reshape(3, 9, -1)
+    x[0, 9:], x[1, 9:], x[2, 9:] = poses.position.T, poses.velocity.T, poses.acceleration.T
+    found = (legs.reach @ x).reshape(3, 3, legs.number, -1)
+    found[0] += legs.offset
+    return found
+
+
+def _directions(s: Array) -> tuple[Array, Array, Array, JointTurn]:
+    """Length, alpha, beta and their turn of legs along `s` (3, n, T) in their home frames, Eqs. (T2.16)-(T2.17)."""
+    across = np.sqrt(s[1] ** 2 + s[2] ** 2)
+    length = np.sqrt(s[0] ** 2 + across**2)
     if np.any(length < _NO_LENGTH):
-        raise InputError("a leg has no length at this pose", key=f"leg {np.argwhere(length < _NO_LENGTH)[0][1] + 1}")
-    alpha, beta = joint_angles(frames, s / length[..., None])
-    _refuse_folded_joint(beta)
-    body = leg_rotations(frames, alpha, beta)
-    v = np.einsum("tnij,tni->tnj", body, tip_dot)  # in leg axes
-    a = np.einsum("tnij,tni->tnj", body, tip_ddot)
-    l_dot = v[..., 2]  # (T2.17)
-    wx, wy = -v[..., 1] / length, v[..., 0] / length  # (T2.18)
-    cb, sb = np.cos(beta), np.sin(beta)
-    alpha_dot, beta_dot = wx / cb, wy
-    wz = alpha_dot * sb
-    wx_dot = (-a[..., 1] - 2 * l_dot * wx) / length + wy * wz  # (T2.19)
-    wy_dot = (a[..., 0] - 2 * l_dot * wy) / length - wx * wz
-    return LegState(
-        length=length,
-        rate=l_dot,
-        accel=a[..., 2] + length * (wx**2 + wy**2),  # (T2.20)
-        alpha=alpha,
-        beta=beta,
-        alpha_dot=alpha_dot,
-        beta_dot=beta_dot,
-        alpha_ddot=(wx_dot + alpha_dot * beta_dot * sb) / cb,
-        beta_ddot=wy_dot,
-    )
+        raise InputError("a leg has no length at this pose", key=f"leg {np.argwhere(length < _NO_LENGTH)[0][0] + 1}")
+    with np.errstate(divide="ignore", invalid="ignore"):  # a joint folded to 90 deg is refused by its angle
+        turn = JointTurn(ca=s[2] / across, sa=-s[1] / across, cb=across / length, sb=s[0] / length)
+    return length, np.arctan2(-s[1], s[2]), np.arctan2(s[0], across), turn
 
 
-def _refuse_folded_joint(beta: Array) -> None:
-    bad = np.argwhere(np.abs(beta) > BETA_LIMIT)
-    if len(bad):
-        instant, leg = bad[0]
+def _rates(length: Array, turn: JointTurn, v: Vector, a: Vector) -> dict[str, Array]:
+    """Rates of length and angles from velocity and acceleration of the tip in leg axes, Eqs. (T2.17)-(T2.20)."""
+    l_dot = v[2]  # (T2.17)
+    wx, wy = -v[1] / length, v[0] / length  # (T2.18)
+    alpha_dot, beta_dot = wx / turn.cb, wy
+    wz = alpha_dot * turn.sb
+    wx_dot = (-a[1] - 2 * l_dot * wx) / length + wy * wz  # (T2.19)
+    wy_dot = (a[0] - 2 * l_dot * wy) / length - wx * wz
+    return {
+        "rate": l_dot,
+        "accel": a[2] + length * (wx**2 + wy**2),  # (T2.20)
+        "alpha_dot": alpha_dot,
+        "beta_dot": beta_dot,
+        "alpha_ddot": (wx_dot + alpha_dot * beta_dot * turn.sb) / turn.cb,
+        "beta_ddot": wy_dot,
+    }
+
+
+def _refuse_folded_joint(beta: Array, first: int, count: int) -> None:
+    if np.abs(beta).max(initial=0.0) > BETA_LIMIT:
+        instant, leg = np.argwhere(np.abs(beta) > BETA_LIMIT)[0]
         raise InputError(
             f"the universal joint of leg {leg + 1} folds to beta = {np.rad2deg(beta[instant, leg]):.1f} deg "
-            f"(sample {instant + 1} of {len(beta)})",
+            f"(sample {first + instant + 1} of {count})",
             key=f"leg {leg + 1}: u_axis",
             allowed="|beta| at most 85 deg",
             next_step="Turn the universal joint's first axis (u_axis), or reduce the motion",

@@ -2,7 +2,9 @@
 
 from __future__ import annotations
 
-from typing import TYPE_CHECKING
+from collections.abc import Callable
+from functools import lru_cache, wraps
+from typing import TYPE_CHECKING, TypeVar, cast
 
 import numpy as np
 from numpy.typing import ArrayLike
@@ -24,6 +26,8 @@ __all__ = [
     "inverse_dynamics",
     "inverse_kinematics",
     "leg_bodies",
+    "leg_directions",
+    "nearest_singularity",
     "payload_body",
     "poses",
     "postures",
@@ -34,15 +38,46 @@ __all__ = [
 ]
 
 
+T = TypeVar("T")
+
+
+def _once(compute: Callable[[Robot], T]) -> Callable[[Robot], T]:
+    """Compute it once for each of the last 64 robots; the same robot again is not compared with its equals."""
+    of_equals = cast("Callable[[Robot], T]", lru_cache(maxsize=64)(compute))
+    latest: tuple[Robot, T] | None = None
+
+    def recalled(robot: Robot) -> T:
+        nonlocal latest
+        known = latest
+        if known is None or known[0] is not robot:
+            known = latest = robot, of_equals(robot)
+        return known[1]
+
+    return wraps(compute)(recalled)
+
+
 def home_pose(robot: Robot) -> Poses:
     """Home pose, at rest: one sample."""
     return Poses.at_rest([0.0, 0.0, robot.home_height], np.eye(3))
 
 
+@_once
 def home_frames(robot: Robot) -> Array:
-    """Home frames [x y z]_i of the legs, leg to world, shape (6, 3, 3), Eq. (T2.14)."""
+    """Home frames [x y z]_i of the legs, leg to world, shape (6, 3, 3), read-only, Eq. (T2.14)."""
     tips = robot.platform_joints + np.array([0.0, 0.0, robot.home_height])
-    return kinematics.leg_frames(robot.base_joints, tips, [leg.u_axis for leg in robot.legs])
+    frames = kinematics.leg_frames(robot.base_joints, tips, [leg.u_axis for leg in robot.legs])
+    frames.flags.writeable = False
+    return frames
+
+
+def leg_directions(robot: Robot, path: Poses) -> tuple[Array, Array, Array]:
+    """Lengths, alpha and beta of the legs, (T, 6) each, folded or not; see `kinematics.directions_of`."""
+    return kinematics.directions_of(_leg_map(robot), path)
+
+
+@_once
+def _leg_map(robot: Robot) -> kinematics.LegMap:
+    return kinematics.LegMap.of(robot.base_joints, robot.platform_joints, home_frames(robot))
 
 
 def leg_bodies(robot: Robot) -> LegBodies:
@@ -72,11 +107,16 @@ def poses(robot: Robot, motion: Motion, t: ArrayLike) -> Poses:
 
 def inverse_kinematics(robot: Robot, path: Poses) -> LegState:
     """Leg lengths and universal-joint angles with two derivatives, arrays (T, 6); see `kinematics.leg_state`."""
-    return kinematics.leg_state(robot.base_joints, robot.platform_joints, home_frames(robot), path)
+    return kinematics.state_of(_leg_map(robot), path)
 
 
-def inverse_dynamics(robot: Robot, path: Poses, wrench: ArrayLike | None = None) -> RigidForces:
-    """Drive forces and joint reactions along a path; `wrench` (T, 6) or (6,) at the tool, world axes."""
+def inverse_dynamics(
+    robot: Robot, path: Poses, wrench: ArrayLike | None = None, legs: LegState | None = None
+) -> RigidForces:
+    """Drive forces and joint reactions along a path; `wrench` (T, 6) or (6,) at the tool, world axes.
+
+    `legs`: of the same poses, where they are known already.
+    """
     return dynamics.inverse_dynamics(
         home_frames(robot),
         robot.platform_joints,
@@ -84,7 +124,7 @@ def inverse_dynamics(robot: Robot, path: Poses, wrench: ArrayLike | None = None)
         payload_body(robot),
         robot.gravity,
         path,
-        inverse_kinematics(robot, path),
+        inverse_kinematics(robot, path) if legs is None else legs,
         None if wrench is None else np.asarray(wrench, dtype=float),
     )
 
@@ -100,6 +140,11 @@ def energies(robot: Robot, path: Poses) -> tuple[Array, Array]:
 def singularity(robot: Robot, path: Poses) -> jacobian.SingularityPath:
     """Singular values, condition and determinant along a path; see `jacobian.along_path`."""
     return jacobian.along_path(robot.base_joints, robot.platform_joints, path)
+
+
+def nearest_singularity(robot: Robot, path: Poses) -> jacobian.NearestSingularity:
+    """The pose of a path that is nearest to a singularity; see `jacobian.nearest`."""
+    return jacobian.nearest(robot.base_joints, robot.platform_joints, path)
 
 
 def forward_kinematics(robot: Robot, lengths: ArrayLike, guess: Poses | None = None) -> Poses:

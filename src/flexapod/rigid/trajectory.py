@@ -13,6 +13,7 @@ from numpy.typing import ArrayLike
 from flexapod.errors import InputError
 from flexapod.model import CsvMotion, Motion, WaypointMotion
 from flexapod.rigid.laws import Law, rest_to_rest, spline, spline_law
+from flexapod.rigid.vectors import cross, time_first, time_last
 from flexapod.typing import Array
 
 __all__ = ["Poses", "angular_motion", "coordinates", "poses_from_coordinates", "rotation_matrix", "sample"]
@@ -40,10 +41,10 @@ class Poses:
     alpha: Array
 
     def __post_init__(self) -> None:
-        for field in fields(self):
-            view = getattr(self, field.name).view()  # the caller's array stays writeable
+        for name in _PARTS:
+            view = getattr(self, name).view()  # the caller's array stays writeable
             view.flags.writeable = False
-            object.__setattr__(self, field.name, view)
+            object.__setattr__(self, name, view)
 
     def __len__(self) -> int:
         return len(self.position)
@@ -62,6 +63,17 @@ class Poses:
             alpha=np.zeros_like(p),
         )
 
+    def part(self, where: slice) -> Poses:
+        """The poses of a range."""
+        return Poses(**{name: getattr(self, name)[where] for name in _PARTS})
+
+    def place(self, local: ArrayLike) -> Array:
+        """World position of points fixed in the platform: the first result of `point`."""
+        local = np.asarray(local, dtype=float)
+        if local.ndim == 1:
+            return self.position + self.rotation @ local
+        return self.position[:, None] + local @ np.swapaxes(self.rotation, -1, -2)
+
     def point(self, local: ArrayLike) -> tuple[Array, Array, Array]:
         """World position, velocity, acceleration of points fixed in the platform, Eq. (T2.13).
 
@@ -75,15 +87,19 @@ class Poses:
         tuple of ndarray, each shape (T, 3) or (T, n, 3)
         """
         local = np.asarray(local, dtype=float)
-        points = np.atleast_2d(local)
-        arm = np.einsum("tij,nj->tni", self.rotation, points)
-        w, a = self.omega[:, None], self.alpha[:, None]
-        spin = np.cross(w, arm)
-        place: Array = self.position[:, None] + arm
-        rate: Array = np.asarray(self.velocity[:, None] + spin, dtype=np.float64)
-        bend = np.cross(a, arm) + np.cross(w, spin)
-        change: Array = np.asarray(self.acceleration[:, None] + bend, dtype=np.float64)
-        return (place, rate, change) if local.ndim == 2 else (place[:, 0], rate[:, 0], change[:, 0])
+        arm = np.matmul(np.atleast_2d(local), time_last(self.rotation))  # (3, n, T)
+        w, a = time_last(self.omega), time_last(self.alpha)
+        spin = cross(w, arm)
+        bend = [x + y for x, y in zip(cross(a, arm), cross(w, spin), strict=True)]
+        found = []
+        for origin, relative in ((self.position, arm), (self.velocity, spin), (self.acceleration, bend)):
+            world = time_first([o + r for o, r in zip(origin.T, relative, strict=True)])
+            found.append(world if local.ndim == 2 else world[:, 0])
+        place, rate, change = found
+        return place, rate, change
+
+
+_PARTS = tuple(field.name for field in fields(Poses))
 
 
 def rotation_matrix(angles: ArrayLike) -> Array:
@@ -99,13 +115,12 @@ def rotation_matrix(angles: ArrayLike) -> Array:
     ndarray, shape (..., 3, 3)
     """
     angles = np.asarray(angles, dtype=float)
-    (cr, cp, cy), (sr, sp, sy) = (np.moveaxis(f(angles), -1, 0) for f in (np.cos, np.sin))
-    rows = [
-        [cy * cp, cy * sp * sr - sy * cr, cy * sp * cr + sy * sr],
-        [sy * cp, sy * sp * sr + cy * cr, sy * sp * cr - cy * sr],
-        [-sp, cp * sr, cp * cr],
-    ]
-    return np.stack([np.stack(row, axis=-1) for row in rows], axis=-2)
+    (cr, cp, cy), (sr, sp, sy) = (f(np.moveaxis(angles, -1, 0)) for f in (np.cos, np.sin))
+    r = np.empty((*angles.shape[:-1], 3, 3))
+    r[..., 0, 0], r[..., 0, 1], r[..., 0, 2] = cy * cp, cy * sp * sr - sy * cr, cy * sp * cr + sy * sr
+    r[..., 1, 0], r[..., 1, 1], r[..., 1, 2] = sy * cp, sy * sp * sr + cy * cr, sy * sp * cr - cy * sr
+    r[..., 2, 0], r[..., 2, 1], r[..., 2, 2] = -sp, cp * sr, cp * cr
+    return r
 
 
 def angular_motion(angles: Law) -> tuple[Array, Array]:
@@ -121,27 +136,24 @@ def angular_motion(angles: Law) -> tuple[Array, Array]:
     omega, alpha : ndarray, shape (T, 3)
         [rad/s], [rad/s^2], world axes.
     """
-    _, pitch, yaw = angles.position.T
-    _, pitch_dot, yaw_dot = angles.rate.T
-    cp, sp, cy, sy, zero = np.cos(pitch), np.sin(pitch), np.cos(yaw), np.sin(yaw), np.zeros_like(yaw)
-    roll_axis = np.stack([cy * cp, sy * cp, -sp], axis=-1)
-    pitch_axis = np.stack([-sy, cy, zero], axis=-1)
-    yaw_axis = np.array([0.0, 0.0, 1.0])
-    roll_axis_dot = np.stack(
-        [
-            -yaw_dot * sy * cp - pitch_dot * cy * sp,
-            yaw_dot * cy * cp - pitch_dot * sy * sp,
-            -pitch_dot * cp,
-        ],
-        axis=-1,
+    pitch, yaw = time_last(angles.position)[1:]
+    roll_dot, pitch_dot, yaw_dot = time_last(angles.rate)
+    roll_ddot, pitch_ddot, yaw_ddot = time_last(angles.acceleration)
+    cp, sp, cy, sy = np.cos(pitch), np.sin(pitch), np.cos(yaw), np.sin(yaw)
+    roll_axis, pitch_axis = (cy * cp, sy * cp, -sp), (-sy, cy, 0.0)
+    roll_axis_dot = (
+        -yaw_dot * roll_axis[1] - pitch_dot * cy * sp,
+        yaw_dot * roll_axis[0] - pitch_dot * sy * sp,
+        -pitch_dot * cp,
     )
-    pitch_axis_dot = yaw_dot[:, None] * np.stack([-cy, -sy, zero], axis=-1)
-
-    def combine(rates: Array) -> Array:
-        return rates[:, :1] * roll_axis + rates[:, 1:2] * pitch_axis + rates[:, 2:] * yaw_axis
-
-    omega = combine(angles.rate)
-    alpha = combine(angles.acceleration) + angles.rate[:, :1] * roll_axis_dot + angles.rate[:, 1:2] * pitch_axis_dot
+    pitch_axis_dot = (-yaw_dot * cy, -yaw_dot * sy, 0.0)
+    omega, alpha = np.empty(angles.rate.shape), np.empty(angles.rate.shape)
+    for k in range(3):
+        omega[:, k] = roll_dot * roll_axis[k] + pitch_dot * pitch_axis[k]
+        alpha[:, k] = roll_ddot * roll_axis[k] + pitch_ddot * pitch_axis[k]
+        alpha[:, k] += roll_dot * roll_axis_dot[k] + pitch_dot * pitch_axis_dot[k]
+    omega[:, 2] += yaw_dot
+    alpha[:, 2] += yaw_ddot
     return omega, alpha
 
 
@@ -165,13 +177,14 @@ def poses_from_coordinates(home_height: float, law: Law, pivot: ArrayLike = (0.0
     omega, alpha = angular_motion(Law(*(part[:, 3:] for part in law)))
     pivot = np.asarray(pivot, dtype=float)
     arm = rotation @ pivot
-    spin = np.cross(omega, arm)
+    spin = np.stack(cross(omega.T, arm.T), axis=-1)
+    bend = np.stack(cross(alpha.T, arm.T), axis=-1) + np.stack(cross(omega.T, spin.T), axis=-1)
     return Poses(
         position=np.array([0.0, 0.0, home_height]) + pivot + law.position[:, :3] - arm,
         rotation=rotation,
         velocity=law.rate[:, :3] - spin,
         omega=omega,
-        acceleration=law.acceleration[:, :3] - np.cross(alpha, arm) - np.cross(omega, spin),
+        acceleration=law.acceleration[:, :3] - bend,
         alpha=alpha,
     )
 
@@ -209,7 +222,8 @@ def coordinates(motion: Motion, t: ArrayLike) -> Law:
         curve = spline(motion.time, motion.pose)
         return spline_law(t, curve, first=float(motion.time[0]), last=float(motion.time[-1]))
     unit = rest_to_rest(t, profile=motion.profile, amplitude=1.0, duration=motion.duration)
-    return Law(*(part[:, None] * motion.target for part in unit))
+    target = motion.target
+    return Law(*(part[:, None] * target for part in unit))
 
 
 def sample(home_height: float, motion: Motion, t: ArrayLike) -> Poses:

@@ -7,8 +7,8 @@ import numpy as np
 
 from flexapod import rigid
 from flexapod.errors import ComputationError
+from flexapod.integration import GeneralizedAlpha
 from flexapod.model import Actuator, ActuatorStudy, Simulation
-from flexapod.solve.genalpha import GeneralizedAlpha
 from flexapod.solve.kernel import kernel
 from flexapod.solve.march import Chunk, Problem, initial_step, march, restart_outputs
 from flexapod.solve.parameters import actuator_parameters
@@ -77,7 +77,6 @@ def prepare_actuator(
         output_step=output_step,
         outputs=simulation.outputs(study.duration),
         measure=lambda recording: _measure(plant, recording),
-        defect=lambda flow, t, ratio: flow,
         restart=lambda flow, t, h: _after_impact(plant, law, method, flow, t, h),
         restarts=restart_outputs(study.motion.rate_jumps, output_step),
         check=lambda recording: _check(study.actuator, recording),

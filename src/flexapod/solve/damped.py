@@ -1,7 +1,6 @@
 """Damping ratios of damped modes, Eqs. (T7.4)-(T7.5)."""
 
 import numpy as np
-from scipy.optimize import linear_sum_assignment
 
 from flexapod.typing import Array
 
@@ -22,6 +21,8 @@ def damping_ratios(omega: Array, D: Array) -> Array:
     ratio = np.diag(D) / (2 * np.maximum(omega, 1e-12))
     if not D.any():
         return ratio
+    from scipy.optimize import linear_sum_assignment  # a twentieth of a second that only damped modes need
+
     # Rates over the highest frequency keep the state matrix well scaled.
     state = np.block([[np.zeros((size, size)), np.eye(size)], [-np.diag((omega / top) ** 2), -D / top]])
     values, shapes = np.linalg.eig(state)

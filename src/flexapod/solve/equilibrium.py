@@ -1,13 +1,24 @@
-"""Static equilibrium of a robot, Eq. (T7.1)."""
+"""Static equilibrium of a robot, at one pose or at many at once, Eq. (T7.1)."""
 
 from dataclasses import dataclass, replace
 
 import numpy as np
-from scipy.linalg import null_space
 
 from flexapod.mechanics.layout import LEG_PARAMETERS, PAYLOAD_PARAMETERS, columns
+from flexapod.solve.arrow import arrow_solve
+from flexapod.solve.elimination import leg_bases, null_space_of_borders, reduced, solve_each
+from flexapod.solve.many import RestMatrices, RestStates, matrices_at_rest, residual_at_rest
 from flexapod.solve.system import RobotSystem, State
 from flexapod.typing import Array
+
+FOUND, SINGULAR, GIVES_WAY, NOT_SETTLED, UNSTABLE = range(5)
+REASONS = (
+    "",
+    "the stiffness of the robot is singular",
+    "the legs give way (the payload would move by half a metre)",
+    "Newton's method does not settle; the robot is close to buckling",
+    "the balanced pose is unstable, the robot buckles under its load",
+)
 
 
 @dataclass(frozen=True, kw_only=True)
@@ -17,6 +28,20 @@ class Equilibrium:
     state: State
     found: bool
     reason: str = ""
+
+
+@dataclass(frozen=True, kw_only=True)
+class Equilibria:
+    """Results of P searches: the states, and for each `FOUND` or why it is none, an index into `REASONS`."""
+
+    states: RestStates
+    code: np.ndarray
+
+    def one(self, k: int) -> Equilibrium:
+        """One of them, with its reason in words."""
+        code = int(self.code[k])
+        reason = f"no equilibrium: {REASONS[code]}" if code else ""
+        return Equilibrium(state=self.states.state(k), found=code == FOUND, reason=reason)
 
 
 def saddle_solve(A: Array, G: Array, r: Array, g: Array) -> tuple[Array, Array]:
@@ -33,20 +58,41 @@ def saddle_solve(A: Array, G: Array, r: Array, g: Array) -> tuple[Array, Array]:
 def equilibrium(system: RobotSystem, start: State, l_cmd: Array, force: Array, wrench: Array) -> Equilibrium:
     """Static equilibrium at commanded lengths (6,) [m] under gravity, drive forces (6,) [N] and a wrench (6,).
 
-    Newton from ``start`` (undeformed); where that fails, the loads grow in ten steps.
+    See `equilibria`.
     """
-    rest = replace(start, v=np.zeros(system.size), v_dot=np.zeros(system.size))
-    found = _newton(system, rest, l_cmd, force, wrench)
-    if not found.found:
-        state = rest
-        for share in np.linspace(0.1, 1.0, 10):
-            found = _newton(_scaled(system, share), state, l_cmd, share * force, share * wrench)
-            if not found.found:
-                break
-            state = found.state
-    if not found.found:
-        return replace(found, reason=f"no equilibrium: {found.reason}")
-    return _stable(system, found, wrench)
+    return equilibria(system, RestStates.of(start), l_cmd[None], force[None], wrench).one(0)
+
+
+def equilibria(system: RobotSystem, start: RestStates, l_cmd: Array, force: Array, wrench: Array) -> Equilibria:
+    """Static equilibria at commanded lengths (P, 6) [m] under gravity, drive forces (P, 6) [N] and a wrench (6,).
+
+    Newton from ``start`` (undeformed); where that fails, the loads grow in ten steps. An equilibrium from which the
+    robot would fall (negative stiffness on the constraints) is none.
+    """
+    states, code = _newton(system, start, l_cmd, force, wrench)
+    lost = np.flatnonzero(code)
+    if lost.size:
+        part, codes = _loaded_slowly(system, start[lost], l_cmd[lost], force[lost], wrench)
+        states, code[lost] = states.with_(lost, part), codes
+    found = np.flatnonzero(code == FOUND)
+    if found.size:
+        m = matrices_at_rest(system, states[found], wrench)
+        code[found[_lowest_stiffness(system, m) <= 0]] = UNSTABLE
+    return Equilibria(states=states, code=code)
+
+
+def _loaded_slowly(
+    system: RobotSystem, x: RestStates, l_cmd: Array, force: Array, wrench: Array
+) -> tuple[RestStates, np.ndarray]:
+    """Newton with a tenth of the loads more in each of ten steps, as far as each pose gets."""
+    code = np.full(len(x), FOUND)
+    for share in np.linspace(0.1, 1.0, 10):
+        on = np.flatnonzero(code == FOUND)
+        if not on.size:
+            break
+        part, codes = _newton(_scaled(system, share), x[on], l_cmd[on], share * force[on], share * wrench)
+        x, code[on] = x.with_(on, part), codes
+    return x, code
 
 
 def _scaled(system: RobotSystem, share: float) -> RobotSystem:
@@ -57,41 +103,55 @@ def _scaled(system: RobotSystem, share: float) -> RobotSystem:
     return replace(system, leg_p=leg_p, payload_p=payload_p)
 
 
-def _newton(system: RobotSystem, x: State, l_cmd: Array, force: Array, wrench: Array) -> Equilibrium:
-    l_index = system.kernel.shapes.l_index
-    best = np.inf
+def _newton(
+    system: RobotSystem, x: RestStates, l_cmd: Array, force: Array, wrench: Array
+) -> tuple[RestStates, np.ndarray]:
+    """Newton at every pose that has neither settled nor failed; states and codes."""
+    code, best = np.full(len(x), NOT_SETTLED), np.full(len(x), np.inf)
+    on = np.arange(len(x))
     for _ in range(40):
-        r, g = system.residual(x, system.command(x, l_cmd, np.zeros(6), force), wrench)
-        gap = x.q[system.held, l_index] - l_cmd[system.held]
-        m = system.matrices(x, wrench)
-        try:
-            step, dlam = saddle_solve(m.K, m.G, -r, -np.concatenate([g, gap]))
-        except np.linalg.LinAlgError:
-            return Equilibrium(state=x, found=False, reason="the stiffness of the robot is singular")
-        if not np.isfinite(step).all():
-            return Equilibrium(state=x, found=False, reason="the stiffness of the robot is singular")
-        largest = np.abs(step).max()
-        if largest > 0.5:  # half a radian or half a metre is no elastic deformation
-            return Equilibrium(
-                state=x, found=False, reason="the legs give way (the payload would move by half a metre)"
-            )
-        x = system.moved(x, step)
-        drive = x.drive.copy()
-        drive[system.held] -= dlam[18:]
-        x = replace(x, lam=x.lam + dlam[:18].reshape(6, 3), drive=drive)
-        if largest < 1e-13 or (largest < 1e-10 and largest >= best):
-            return Equilibrium(state=x, found=True)
-        best = largest
-    return Equilibrium(state=x, found=False, reason="Newton's method does not settle; the robot is close to buckling")
+        new, largest = _newton_step(system, x[on], l_cmd[on], force[on], wrench)
+        singular = ~np.isfinite(largest)
+        away = ~singular & (largest > 0.5)  # half a radian or half a metre is no elastic deformation
+        code[on[singular]], code[on[away]] = SINGULAR, GIVES_WAY
+        good = ~singular & ~away
+        x = x.with_(on[good], new[np.flatnonzero(good)])
+        done = good & ((largest < 1e-13) | ((largest < 1e-10) & (largest >= best[on])))
+        code[on[done]] = FOUND
+        best[on] = largest
+        on = on[good & ~done]
+        if not on.size:
+            break
+    return x, code
 
 
-def _stable(system: RobotSystem, found: Equilibrium, wrench: Array) -> Equilibrium:
-    """Refuse an equilibrium from which the robot would fall: negative stiffness on the constraints."""
-    m = system.matrices(found.state, wrench)
-    scale = 1.0 / np.sqrt(np.maximum(np.diag(m.M), 1e-9))
-    N = null_space(m.G * scale)
-    lowest = np.linalg.eigvalsh((N.T * scale) @ m.K @ (scale[:, None] * N))[0] if N.size else 1.0
-    if lowest <= 0:
-        reason = "no equilibrium: the balanced pose is unstable, the robot buckles under its load"
-        return replace(found, found=False, reason=reason)
-    return found
+def _newton_step(
+    system: RobotSystem, x: RestStates, l_cmd: Array, force: Array, wrench: Array
+) -> tuple[RestStates, Array]:
+    """States after a step, and the largest coordinate of the step (P,); NaN where the stiffness is singular."""
+    r, r_payload, g = residual_at_rest(system, x, l_cmd, force, wrench)
+    gap = np.where(system.held, x.q[:, :, system.kernel.shapes.l_index] - l_cmd, 0.0)
+    step = arrow_solve(system, matrices_at_rest(system, x, wrench), r, r_payload, g, gap)
+    largest = np.maximum(np.abs(step.dq).max(axis=(1, 2)), np.abs(step.dy).max(axis=1))
+    moved = x.moved(step.dq, np.nan_to_num(step.dy))  # no rotation by NaN
+    return replace(moved, lam=x.lam + step.dlam, drive=x.drive + step.drive), largest
+
+
+def _lowest_stiffness(system: RobotSystem, m: RestMatrices) -> Array:
+    """Sign of the lowest stiffness on the constraints, (P,): least eigenvalue of each leg's and the payload's part.
+
+    By Sylvester's law of inertia the whole is positive where B of every leg and the payload's Schur complement are.
+    """
+    bases = leg_bases(system, m)
+    A = reduced(bases, m.K, m.payload_K)
+    N = null_space_of_borders(bases, system.kernel.shapes.l_index)
+    if N is not None:
+        whole = N.swapaxes(1, 2) @ A.dense() @ N
+        return np.linalg.eigvalsh(whole).min(axis=1, initial=np.inf)
+    rest, lowest = A.S, np.full(len(A.S), np.inf)
+    for B, C in zip(A.B, A.C, strict=True):
+        if B.shape[-1]:
+            lowest = np.minimum(lowest, np.linalg.eigvalsh(B).min(axis=(1, 2)))
+            rest = rest - (C.swapaxes(-1, -2) @ solve_each(B, C)).sum(axis=1)
+    rest = np.nan_to_num(0.5 * (rest + rest.swapaxes(1, 2)))  # NaN where a leg's part is singular: its lowest is 0
+    return np.minimum(lowest, np.linalg.eigvalsh(rest).min(axis=1))

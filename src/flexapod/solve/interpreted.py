@@ -4,8 +4,8 @@ from dataclasses import replace
 
 import numpy as np
 
+from flexapod.integration import GeneralizedAlpha
 from flexapod.solve.equilibrium import saddle_solve
-from flexapod.solve.genalpha import GeneralizedAlpha
 from flexapod.solve.native import MAX_ITERATIONS, TOL_CLOSURE, TOL_FORCE, Advance
 from flexapod.solve.plant import TABLE, Counters, Flow, Plant
 from flexapod.solve.rotation import turned
@@ -35,19 +35,19 @@ def _residual(plant: Plant, x: Flow, row: Array, wrench: Array) -> tuple[Array, 
     return np.concatenate([r, rp]), np.concatenate([p[1] for p in parts]) - points, powers
 
 
-def _matrices(plant: Plant, x: Flow, wrench: Array, c_v: float, c_a: float) -> tuple[Array, Array]:
-    """Iteration matrix and closure Jacobian, Eq. (T6.5)."""
+def _matrices(plant: Plant, x: Flow, wrench: Array, c_v: float, c_a: float, c_q: float) -> tuple[Array, Array]:
+    """c_a M + c_v D + c_q K and closure Jacobian, Eq. (T6.5)."""
     N, n, k = plant.size, plant.n, plant.legs * plant.n
     A, G = np.zeros((N, N)), np.zeros((18 if plant.robot else 0, N))
     for i in range(plant.legs):
         M, D, K, J = plant.kernel.leg_matrices(x.q[i], x.lam[i], plant.leg_p[i])
         at = slice(i * n, i * n + n)
-        A[at, at] = c_a * M + c_v * D + K
+        A[at, at] = c_a * M + c_v * D + c_q * K
         if plant.robot:
             G[3 * i : 3 * i + 3, at] = J
     if plant.robot:
         M, K, P = plant.kernel.payload_matrices(x.pose, x.lam, wrench, plant.payload_p)
-        A[k:, k:], G[:, k:] = c_a * M + K, -P
+        A[k:, k:], G[:, k:] = c_a * M + c_q * K, -P
     return A, G
 
 
@@ -123,7 +123,7 @@ def _step(
         done = worst <= 1 or (iteration == MAX_ITERATIONS and worst < 100)
         if not np.isfinite(worst) or (iteration == MAX_ITERATIONS and not done):
             break
-        A, G = _matrices(plant, x, wrench, c_v, c_a)
+        A, G = _matrices(plant, x, wrench, c_v, c_a, 1.0)
         counters.iterations += 1
         counters.factorisations += 1
         dq, dm = saddle_solve(A, np.vstack([G, held]), -r, np.concatenate([-g, np.zeros(len(held))]))
@@ -147,3 +147,12 @@ def _step(
             sums = x.sums + 0.5 * h * (old.powers + powers)
             return replace(x, sums=sums, powers=powers), float(np.abs(g).max(initial=0.0))
     return None, 0.0
+
+
+def scaled_defect(plant: Plant, flow: Flow, ratio: float) -> Flow:
+    """Flow of a robot whose velocities normal to the closures are ``ratio`` times those of ``flow``, Eq. (T6.14)."""
+    M, J = _matrices(plant, flow, np.zeros(6), 0.0, 1.0, 0.0)
+    free = ~plant.held
+    v = flow.v.copy()
+    v[free] += (ratio - 1) * saddle_solve(M[np.ix_(free, free)], J[:, free], np.zeros(free.sum()), J @ flow.v)[0]
+    return replace(flow, v=v)

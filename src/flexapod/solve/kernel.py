@@ -21,7 +21,7 @@ if TYPE_CHECKING:
 
 Function = Callable[..., tuple[Array, ...]]
 NATIVE = Path(__file__).parent / "native"
-SOURCES = tuple(NATIVE / name for name in ("system.h", "lu.c", "arrow.c", "single.c", "march.c"))
+SOURCES = tuple(NATIVE / name for name in ("system.h", "lu.c", "legs.c", "arrow.c", "single.c", "state.c", "march.c"))
 _log = logging.getLogger("flexapod")
 
 
@@ -71,8 +71,8 @@ def planar_shapes(lateral: LateralBasis, axial_modes: int) -> Shapes:
 def _warn_interpreted() -> None:
     """Say once, whatever the number of kernels, that they are slow."""
     _log.warning(
-        "No C compiler was found: the equations are interpreted, some 150 times slower. "
-        "Install gcc or clang, or `pip install flexapod[compiler]`."
+        "No C compiler was found: the equations are interpreted, some 1000 times slower. "
+        "Install gcc or clang, or `pip install ziglang`."
     )
 
 

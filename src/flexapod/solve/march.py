@@ -2,19 +2,21 @@
 
 from collections.abc import Callable, Iterator
 from dataclasses import dataclass, replace
+from types import ModuleType
 
 import numpy as np
 
 from flexapod.errors import ComputationError, InputError
+from flexapod.integration import GeneralizedAlpha
 from flexapod.solve import interpreted, native
-from flexapod.solve.genalpha import GeneralizedAlpha
 from flexapod.solve.plant import Counters, Flow, Plant, Recording, unpack
 from flexapod.typing import Array
 
 Tables = Callable[[Array], tuple[Array, Array]]
 Measure = Callable[[Recording], list[Array]]
-CHUNK = 100  # output intervals between looks at progress, tolerance and interrupts
+CHUNK = 100  # output intervals between looks at the tolerance, or at progress where steps are slow
 CHUNK_STEPS = 2000  # steps in a chunk of several intervals: tables of fine steps must not outgrow the output
+SAFETY = 1.5  # in the error, for the next chunk's step
 FINEST = 4096  # steps per output interval before the tolerance is called out of reach
 CAUSES = {
     1: "the step's equations were not solved",
@@ -32,9 +34,8 @@ class Problem:
     """A time integration: plant, commands, method and output grid.
 
     ``tables(t)`` gives (len(t), legs * 8) and (len(t), 6); ``measure`` the quantities whose error is controlled, as
-    groups (T, ...) with a common scale each; ``defect(flow, t, ratio)`` rescales what index 3 keeps in the velocities
-    when the step changes; ``restart(flow, t, h)`` passes the impact of a jump in the commanded rate at the end of the
-    output intervals in ``restarts``.
+    groups (T, ...) with a common scale each; ``restart(flow, t, h)`` passes the impact of a jump in the commanded rate
+    at the end of the output intervals in ``restarts``.
     """
 
     plant: Plant
@@ -43,7 +44,6 @@ class Problem:
     output_step: float
     outputs: int
     measure: Measure
-    defect: Callable[[Flow, float, float], Flow]
     restart: Callable[[Flow, float, float], Flow]
     restarts: tuple[int, ...]
     check: Callable[[Recording], None]
@@ -98,7 +98,8 @@ def march(problem: Problem, start: Flow, first_step: float, counters: Counters) 
     first = unpack(problem.plant, np.zeros(1), row)
     yield Chunk(recording=first, error=0.0, step=first_step)
     control = _Control(problem, counters, first_step, [np.abs(x).max(initial=0.0) for x in problem.measure(first)])
-    done, most = 0, CHUNK
+    longest = CHUNK_STEPS if problem.tolerance is None and problem.plant.kernel.library else CHUNK
+    done, most = 0, longest
     while done < problem.outputs:
         count = max(1, min(most, CHUNK_STEPS // control.per_output))
         stop = min([done + count, problem.outputs, *(r for r in problem.restarts if r > done)])
@@ -112,7 +113,7 @@ def march(problem: Problem, start: Flow, first_step: float, counters: Counters) 
                 raise
             most, control.settings = (stop - done) // 2, before  # as far as the last output before the failure
             continue
-        flow, done, most = ahead, stop, min(2 * most, CHUNK)
+        flow, done, most = ahead, stop, min(2 * most, longest)
         if done in problem.restarts and done < problem.outputs:
             flow = _restarted(problem, flow, done * problem.output_step, control.h)
         yield chunk
@@ -138,18 +139,20 @@ class _Control:
     def advance(self, flow: Flow, done: int, count: int) -> tuple[Flow, Chunk]:
         """Return the next ``count`` outputs with the fixed step, or up to ``count`` within the tolerance."""
         if self.problem.tolerance is None:
-            result = self._run(flow, done, count, self.per_output)
+            result = self._run(flow, self._grid(done, count, self.per_output), self.per_output)
             return result.flow, self._chunk(result.rows, done, 0.0, self.per_output)
         while True:
             # Errors of chunks add up in part (damping forgets): each may use the root of its share.
             allowed = self.problem.tolerance * np.sqrt(count / self.problem.outputs)
-            coarse = self._run(flow, done, count, self.per_output)
-            fine = self._run(flow, done, count, 2 * self.per_output)
+            grid = self._grid(done, count, 2 * self.per_output)
+            coarse = self._run(flow, tuple(x[::2] for x in grid), self.per_output)
+            fine = self._run(flow, grid, 2 * self.per_output)
             error = self._error(coarse.rows, fine.rows, done)
+            wanted = _level(self.per_output * np.sqrt(SAFETY * error / allowed))
             if error <= allowed:
                 break
-            self.counters.rejected += len(coarse.rows) * self.per_output
-            self.per_output *= 2
+            self.counters.rejected += 3 * len(coarse.rows) * self.per_output
+            self.per_output = min(max(wanted, _finer(self.per_output)), 8 * self.per_output)
             if self.per_output > FINEST:
                 now = done * self.problem.output_step
                 raise ComputationError(
@@ -162,19 +165,24 @@ class _Control:
         used = 2 * self.per_output
         chunk = self._chunk(fine.rows, done, error, used)
         self.h = self.problem.output_step / used
-        if error < allowed / 16 and self.per_output > 1:
-            self.per_output //= 2
+        self.per_output = min(self.per_output, max(wanted, self.per_output // 2))
         return fine.flow, chunk
 
-    def _run(self, flow: Flow, done: int, count: int, per_output: int) -> native.Advance:
-        p, h = self.problem, self.problem.output_step / per_output
-        t = np.asarray((done * per_output + np.arange(count * per_output + 1)) * h, dtype=float)
+    def _grid(self, done: int, count: int, per_output: int) -> tuple[Array, Array, Array]:
+        """Instants of the steps of a chunk, and the tables of commands and wrench there."""
+        p = self.problem
+        steps = done * per_output + np.arange(count * per_output + 1)
+        t = np.asarray(steps * (p.output_step / per_output), dtype=float)
         if done + count in p.restarts:
             t[-1] -= 1e-12 * max(1.0, t[-1])  # the command's value before its jump
+        return t, *p.tables(t)
+
+    def _run(self, flow: Flow, grid: tuple[Array, ...], per_output: int) -> native.Advance:
+        p, h, t = self.problem, self.problem.output_step / per_output, grid[0]
         if abs(h - self.h) > 1e-12 * h:
-            flow = _rescaled(p, flow, float(t[0]), self.h, h)
-        loop = native.advance if p.plant.kernel.library else interpreted.advance
-        result = loop(p.plant, p.method, flow, h, p.tables(t), per_output, self.counters)
+            flow = _rescaled(p.plant, flow, self.h, h)
+        tables = (grid[1], grid[2])
+        result = _loop(p.plant).advance(p.plant, p.method, flow, h, tables, per_output, self.counters)
         if result.status:
             where = f" in leg {result.leg + 1}" if 0 <= result.leg < p.plant.legs else ""
             raise ComputationError(
@@ -204,12 +212,30 @@ def _restarted(problem: Problem, flow: Flow, t: float, h: float) -> Flow:
 
 
 def _first_record(plant: Plant, flow: Flow, table: Array, wrench: Array) -> tuple[Flow, Array]:
-    loop = native if plant.kernel.library else interpreted
-    return loop.first_record(plant, flow, table, wrench)
+    return _loop(plant).first_record(plant, flow, table, wrench)
 
 
-def _rescaled(problem: Problem, flow: Flow, t: float, old: float, new: float) -> Flow:
+def _rescaled(plant: Plant, flow: Flow, old: float, new: float) -> Flow:
     """Auxiliary values for another step, Eqs. (T6.13)-(T6.14): a - v_dot grows with h, the defect with h^2."""
     ratio = new / old
     flow = replace(flow, a=flow.v_dot + ratio * (flow.a - flow.v_dot))
-    return problem.defect(flow, t, ratio**2)
+    return _loop(plant).scaled_defect(plant, flow, ratio**2) if plant.robot else flow
+
+
+def _loop(plant: Plant) -> ModuleType:
+    return native if plant.kernel.library else interpreted
+
+
+def _finer(steps: int) -> int:
+    """Next number of steps of 1, 2, 3, 4, 6, 8, 12 ... for an output interval."""
+    if steps == 1:
+        return 2
+    return steps * 3 // 2 if steps & (steps - 1) == 0 else steps * 4 // 3
+
+
+def _level(steps: float) -> int:
+    """Smallest of 1, 2, 3, 4, 6, 8, 12 ... that is no less than ``steps``."""
+    level = 1
+    while level < min(steps, 2 * FINEST):
+        level = _finer(level)
+    return level

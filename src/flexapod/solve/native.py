@@ -7,7 +7,7 @@ from dataclasses import dataclass
 import numpy as np
 from numpy.typing import NDArray
 
-from flexapod.solve.genalpha import GeneralizedAlpha
+from flexapod.integration import GeneralizedAlpha
 from flexapod.solve.plant import Counters, Flow, Plant, record_width
 from flexapod.typing import Array
 
@@ -111,3 +111,11 @@ def first_record(plant: Plant, flow: Flow, table: Array, wrench: Array) -> tuple
         byref(settings), byref(state), _address(np.ascontiguousarray(table)), _address(np.ascontiguousarray(wrench))
     )
     return new, rows
+
+
+def scaled_defect(plant: Plant, flow: Flow, ratio: float) -> Flow:
+    """Flow of a robot whose velocities normal to the closures are ``ratio`` times those of ``flow``, Eq. (T6.14)."""
+    new = flow.copy()
+    settings, state = _settings(plant, GeneralizedAlpha(1.0), 1.0, 1), _state(new, np.zeros(1))
+    _library(plant).scale_normal_velocity(byref(settings), byref(state), _address(np.zeros(6)), c_double(ratio - 1))
+    return new

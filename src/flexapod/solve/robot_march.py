@@ -7,15 +7,15 @@ import numpy as np
 
 from flexapod import rigid
 from flexapod.errors import ComputationError
+from flexapod.integration import GeneralizedAlpha
 from flexapod.model import Study
 from flexapod.rigid.kinematics import BETA_LIMIT
 from flexapod.solve.equilibrium import equilibrium
-from flexapod.solve.genalpha import GeneralizedAlpha
 from flexapod.solve.march import Chunk, Problem, initial_step, march, restart_outputs
 from flexapod.solve.modes import refuse_pure_force
 from flexapod.solve.plant import TABLE, Counters, Flow, Plant, Recording
 from flexapod.solve.rotation import matrix
-from flexapod.solve.start import Start, consistent_start, normal_velocity
+from flexapod.solve.start import Start, consistent_start
 from flexapod.solve.system import RobotSystem, State, rigid_state, robot_system
 from flexapod.solve.tables import Commands, command_law
 from flexapod.typing import Array
@@ -72,8 +72,7 @@ def prepare(study: Study, state: State | None = None) -> RobotMarch:
         tables=lambda t: _tables(law(t)),
         output_step=output_step,
         outputs=simulation.outputs(study.duration),
-        measure=lambda recording: _measure(study, plant, recording),
-        defect=lambda flow, t, ratio: _rescaled_defect(system, flow, law(np.array([t])), ratio),
+        measure=_Measure(study, plant),
         restart=lambda flow, t, h: _after_impact(system, flow, law(np.array([t])), method, h),
         restarts=restart_outputs(study.motion.rate_jumps, output_step),
         check=lambda recording: _check(study, plant, recording),
@@ -120,19 +119,26 @@ def _tables(c: Commands) -> tuple[Array, Array]:
     return table.reshape(len(c.time), -1), c.wrench
 
 
-def _measure(study: Study, plant: Plant, recording: Recording) -> list[Array]:
-    """Deviation of the payload (CoM, and rotation at the joints' radius) and the lateral amplitudes."""
-    path = rigid.poses(study.robot, study.motion, recording.time)
-    com = path.position + np.einsum("tij,j->ti", path.rotation, study.robot.payload.com)
-    turn = np.einsum("tji,tjk->tik", path.rotation, matrix(recording.pose[:, 3:]))
-    radius = np.linalg.norm(study.robot.platform_joints, axis=1).max()
-    skew = (
-        0.5
-        * radius
-        * np.stack([turn[:, 2, 1] - turn[:, 1, 2], turn[:, 0, 2] - turn[:, 2, 0], turn[:, 1, 0] - turn[:, 0, 1]], 1)
-    )
-    lateral = 3 + plant.kernel.shapes.axial.count
-    return [np.concatenate([recording.pose[:, :3] - com, skew], axis=1), recording.q[:, :, lateral:]]
+class _Measure:
+    """Deviation of the payload (CoM, and rotation at the joints' radius) and the lateral amplitudes of a recording."""
+
+    def __init__(self, study: Study, plant: Plant) -> None:
+        self.study, self.lateral = study, 3 + plant.kernel.shapes.axial.count
+        self.radius = np.linalg.norm(study.robot.platform_joints, axis=1).max()
+        self.time, self.com, self.rotation = np.zeros(0), np.zeros((0, 3)), np.zeros((0, 3, 3))
+
+    def __call__(self, recording: Recording) -> list[Array]:
+        if not np.array_equal(recording.time, self.time):  # a chunk is measured twice, with two steps
+            path = rigid.poses(self.study.robot, self.study.motion, recording.time)
+            self.time, self.rotation = recording.time, path.rotation
+            self.com = path.position + path.rotation @ self.study.robot.payload.com
+        turn = self.rotation.swapaxes(1, 2) @ matrix(recording.pose[:, 3:])
+        skew = [turn[:, 2, 1] - turn[:, 1, 2], turn[:, 0, 2] - turn[:, 2, 0], turn[:, 1, 0] - turn[:, 0, 1]]
+        shift = recording.pose[:, :3] - self.com
+        return [
+            np.concatenate([shift, 0.5 * self.radius * np.stack(skew, axis=1)], axis=1),
+            recording.q[:, :, self.lateral :],
+        ]
 
 
 def _after_impact(system: RobotSystem, flow: Flow, commands: Commands, method: GeneralizedAlpha, h: float) -> Flow:
@@ -143,12 +149,6 @@ def _after_impact(system: RobotSystem, flow: Flow, commands: Commands, method: G
 
 def _state(flow: Flow) -> State:
     return State(q=flow.q, pose=flow.pose, v=flow.v, v_dot=flow.v_dot, lam=flow.lam, drive=flow.drive[:, 0])
-
-
-def _rescaled_defect(system: RobotSystem, flow: Flow, commands: Commands, ratio: float) -> Flow:
-    """Velocities whose part normal to the closures is scaled by ``ratio``, Eq. (T6.14)."""
-    m = system.matrices(_state(flow), commands.wrench[0])
-    return replace(flow, v=flow.v + (ratio - 1.0) * normal_velocity(system, m, flow.v))
 
 
 def _check(study: Study, plant: Plant, recording: Recording) -> None:

@@ -4,8 +4,9 @@ from dataclasses import dataclass, replace
 
 import numpy as np
 
+from flexapod.integration import GeneralizedAlpha
 from flexapod.solve.equilibrium import saddle_solve
-from flexapod.solve.genalpha import GeneralizedAlpha
+from flexapod.solve.many import RestStates, matrices_at_rest
 from flexapod.solve.system import Matrices, RobotSystem, State
 from flexapod.solve.tables import Commands
 from flexapod.typing import Array
@@ -70,10 +71,12 @@ def _constraint_curvature(system: RobotSystem, x: State, step: float = 1e-4) -> 
     if not x.v.any():
         return np.zeros(18)
 
-    def rate(t: float) -> Array:
-        return system.matrices(system.moved(x, t * x.v), np.zeros(6)).G[:18] @ x.v
-
-    return -(8 * (rate(step) - rate(-step)) - (rate(2 * step) - rate(-2 * step))) / (12 * step)
+    t, k = step * np.array([1.0, -1.0, 2.0, -2.0]), 6 * system.n
+    legs, payload = x.v[:k].reshape(6, -1), x.v[k:]
+    here = RestStates(**{name: np.repeat(getattr(x, name)[None], 4, axis=0) for name in ("q", "pose", "lam", "drive")})
+    m = matrices_at_rest(system, here.moved(t[:, None, None] * legs, t[:, None] * payload), np.zeros(6))
+    rate = ((m.J @ legs[..., None])[..., 0] - m.P @ payload).reshape(4, 18)
+    return -(8 * (rate[0] - rate[1]) - (rate[2] - rate[3])) / (12 * step)
 
 
 def _jerk(system: RobotSystem, x: State, commands: Commands, h: float) -> Array:

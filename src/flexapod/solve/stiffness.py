@@ -7,15 +7,15 @@ import numpy as np
 from flexapod import rigid
 from flexapod.errors import InputError
 from flexapod.model import Robot, Simulation
-from flexapod.solve.equilibrium import saddle_solve
-from flexapod.solve.modes import locked_equilibrium
+from flexapod.solve.elimination import leg_bases, solve_each
+from flexapod.solve.modes import LockedPoses, locked_poses, the_equilibrium
 from flexapod.solve.rotation import matrix
 from flexapod.typing import Array
 
 
 @dataclass(frozen=True, kw_only=True)
 class Stiffness:
-    """Stiffness at the tool in world axes, [N/m, N, N m/rad].
+    """Stiffness at the tool in world axes, [N/m, N, N m/rad], at one pose or, with a first axis more, at several.
 
     ``total`` (6, 6) is the sum of ``legs`` (6, 6, 6), the share of each leg, and ``load`` (6, 6), what turning
     the joint forces adds.
@@ -38,35 +38,43 @@ def robot_stiffness(
     ComputationError
         No equilibrium at this pose.
     """
-    path = rigid.home_pose(robot) if path is None else path
-    system, found = locked_equilibrium(robot, simulation, path, wrench)
+    locked = locked_poses(robot, simulation, rigid.home_pose(robot) if path is None else path, wrench)
+    the_equilibrium(locked)
+    found = stiffness_of(robot, locked)
+    return Stiffness(total=found.total[0], legs=found.legs[0], load=found.load[0])
+
+
+def stiffness_of(robot: Robot, locked: LockedPoses) -> Stiffness:
+    """Stiffness at every equilibrium that was found.
+
+    Raises
+    ------
+    InputError
+        Legs on prescribed strokes that cannot stretch: no compliance.
+    """
+    system, m = locked.system, locked.m
     if system.kernel.shapes.axial.count == 0 and system.held.any():
         raise InputError(
             "makes the robot infinitely stiff",
             key="simulation.fidelity",
-            value=simulation.fidelity,
+            value=locked.simulation.fidelity,
             allowed='"lumped", or a bending fidelity with at least one axial shape',
         )
-    m, n, k = system.matrices(found.state, np.zeros(6) if wrench is None else wrench), system.n, 6 * system.n
-    P = -m.G[:18, k:]
-    legs = np.zeros((6, 6, 6))
-    strokes = np.flatnonzero(system.held)
-    for i in range(6):
-        at, rows = slice(i * n, (i + 1) * n), slice(3 * i, 3 * i + 3)
-        held = 18 + np.flatnonzero(strokes == i)
-        G = np.vstack([m.G[rows, at], m.G[held, at]])
-        for j in range(6):  # (T7.6)  joint forces that a unit step of the payload meets
-            given = np.concatenate([P[rows, j], np.zeros(len(held))])
-            _, multipliers = saddle_solve(m.K[at, at], G, np.zeros(n), given)
-            legs[i, :, j] = -P[rows].T @ multipliers[:3]
-    tool = _tool_motion(robot, found.state.pose)
-    back = np.linalg.inv(tool)
-    at_tool = np.array([back.T @ part @ back for part in (*legs, m.K[k:, k:])])  # (T7.8)
-    return Stiffness(total=at_tool.sum(axis=0), legs=at_tool[:6], load=at_tool[6])
+    legs = np.zeros((len(locked.at), 6, 6, 6))
+    for b in leg_bases(system, m):  # (T7.6)  joint forces that a unit step of the payload meets, legs eliminated
+        K, Nt, Yt = m.K[:, b.legs], b.N.swapaxes(-1, -2), b.Y.swapaxes(-1, -2)
+        C = Nt @ K @ b.Y
+        legs[:, b.legs] = Yt @ K @ b.Y - C.swapaxes(-1, -2) @ solve_each(Nt @ K @ b.N, C)
+    back = np.linalg.inv(tool_motion(robot, locked.equilibria.states[locked.at].pose))[:, None]
+    parts = np.concatenate([legs, m.payload_K[:, None]], axis=1)
+    at_tool = back.swapaxes(-1, -2) @ parts @ back  # (T7.8)
+    return Stiffness(total=at_tool.sum(axis=1), legs=at_tool[:, :6], load=at_tool[:, 6])
 
 
-def _tool_motion(robot: Robot, pose: Array) -> Array:
-    """Tool displacement and rotation (world) per payload step (dx, theta), Eq. (T7.7)."""
-    R, r = matrix(pose[3:]), robot.payload.tool - robot.payload.com
+def tool_motion(robot: Robot, pose: Array) -> Array:
+    """Tool displacement and rotation (world) per payload step (dx, theta), (P, 6, 6), at poses (P, 7), Eq. (T7.7)."""
+    R, r = matrix(pose[:, 3:]), robot.payload.tool - robot.payload.com
     cross = np.array([[0, -r[2], r[1]], [r[2], 0, -r[0]], [-r[1], r[0], 0]])
-    return np.block([[np.eye(3), -R @ cross], [np.zeros((3, 3)), R]])
+    motion = np.zeros((len(pose), 6, 6))
+    motion[:, :3, :3], motion[:, :3, 3:], motion[:, 3:, 3:] = np.eye(3), -R @ cross, R
+    return motion

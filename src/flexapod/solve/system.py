@@ -1,6 +1,7 @@
 """A robot as equations: state, residual and dense matrices, Eqs. (T4.7)-(T4.12)."""
 
 from dataclasses import dataclass, replace
+from functools import cached_property
 
 import numpy as np
 from numpy.typing import NDArray
@@ -53,17 +54,17 @@ class RobotSystem:
     payload_p: Array
     held: Mask
 
-    @property
+    @cached_property
     def n(self) -> int:
         """Coordinates of one leg."""
         return self.kernel.shapes.size
 
-    @property
+    @cached_property
     def size(self) -> int:
         """Coordinates of the whole robot, 6 n + 6."""
         return 6 * self.n + 6
 
-    @property
+    @cached_property
     def strokes(self) -> Index:
         """Positions of the prescribed l in the flat coordinates."""
         return np.flatnonzero(self.held) * self.n + self.kernel.shapes.l_index

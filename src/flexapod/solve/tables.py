@@ -39,7 +39,7 @@ def command_law(robot: Robot, motion: Motion, load: Load) -> Callable[[Array], C
             length=legs.length,
             rate=legs.rate,
             accel=legs.accel,
-            force=_forces(robot, t, path, wrench),
+            force=feed_forward(robot, t, path, wrench),
             wrench=wrench,
             law=law,
         )
@@ -47,8 +47,8 @@ def command_law(robot: Robot, motion: Motion, load: Load) -> Callable[[Array], C
     return law
 
 
-def _forces(robot: Robot, t: Array, path: rigid.Poses, wrench: Array) -> Array:
-    """Feed-forward forces of force drives, (T, 6) [N]; zero for other drives."""
+def feed_forward(robot: Robot, t: Array, path: rigid.Poses, wrench: Array) -> Array:
+    """Feed-forward forces of force drives on the rigid path at instants (T,), (T, 6) [N]; zero for other drives."""
     force = np.zeros((len(t), 6))
     drives = [leg.drive for leg in robot.legs]
     rigid_force = force

@@ -76,9 +76,9 @@ def deviation_by_cause(robot: Robot, path: rigid.Poses, errors: LengthErrors) ->
         robot.base_joints, robot.platform_joints, path.position, path.rotation, robot.payload.com
     )
     try:
-        inverse = np.linalg.inv(jacobian)[:, :3]  # (T8.6)
+        inverse = np.linalg.solve(jacobian.swapaxes(1, 2), np.eye(6, 3))  # (T8.6), (T, 6, 3): leg, axis
     except np.linalg.LinAlgError:
         raise ComputationError(
             "a pose on the path is singular: lengths do not determine it", next_step="See `flexapod check`."
         ) from None
-    return np.einsum("tal,tcl->tcla", inverse, errors.stacked)  # (T8.7)
+    return errors.stacked[..., None] * inverse[:, None]  # (T8.7)

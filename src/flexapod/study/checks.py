@@ -25,11 +25,17 @@ _KEYS = {SHORTEST: "leg.stroke.min", LONGEST: "leg.stroke.max", PULLED_OUT: "leg
 
 @dataclass(frozen=True, kw_only=True)
 class _Path:
-    """A commanded path: instants (T,), poses, joint-to-joint lengths (T, 6)."""
+    """A path: instants (T,), lengths and angles beta of the universal joints (T, 6), the pose nearest to singular."""
 
     t: Array
-    poses: rigid.Poses
     length: Array
+    beta: Array
+    nearest: rigid.NearestSingularity
+
+    @classmethod
+    def of(cls, robot: Robot, t: Array, poses: rigid.Poses) -> _Path:
+        length, _, beta = rigid.leg_directions(robot, poses)
+        return cls(t=t, length=length, beta=beta, nearest=rigid.nearest_singularity(robot, poses))
 
 
 def path_instants(study: Study | ActuatorStudy) -> Array:
@@ -61,35 +67,31 @@ def check_geometry(study: Study) -> list[str]:
     """The checks of `check_path` that concern the path alone."""
     try:
         remarks = check_outputs(study)
-        path = _sampled(study)
+        t = path_instants(study)
+        path = _Path.of(study.robot, t, rigid.poses(study.robot, study.motion, t))
         _refuse_excess(study.robot, path)
-        _refuse_folded(study.robot, path)
-        _refuse_singular(study.robot, path)
+        _refuse_folded(path)
+        _refuse_singular(path)
     except InputError as error:
         raise error.located(file=study.path) from None
-    return remarks + path_remarks(study.robot, path.t, path.poses)
+    return remarks + _remarks(study.robot, path)
 
 
 def path_remarks(robot: Robot, t: Array, poses: rigid.Poses) -> list[str]:
     """Remarks on poses near a singularity and pistons that reach behind their universal joint."""
-    length = rigid.leg_lengths(robot.base_joints, robot.platform_joints, poses.position, poses.rotation)
-    remarks = [e.message for e in rigid.pull_out(robot, t, length) if not e.fatal]
-    found = rigid.singularity(robot, poses)
-    if found.smallest_singular_value.min() < NEAR_SINGULAR:
-        k = found.worst
+    return _remarks(robot, _Path.of(robot, t, poses))
+
+
+def _remarks(robot: Robot, path: _Path) -> list[str]:
+    remarks = [e.message for e in rigid.pull_out(robot, path.t, path.length) if not e.fatal]
+    found = path.nearest
+    if found.smallest_singular_value < NEAR_SINGULAR:
         remarks.append(
-            f"the path comes near a singular pose at t = {t[k]:.6g} s: smallest singular value "
-            f"{found.smallest_singular_value[k]:.3g} of the scaled Jacobian, condition {found.condition[k]:.3g} "
+            f"the path comes near a singular pose at t = {path.t[found.worst]:.6g} s: smallest singular value "
+            f"{found.smallest_singular_value:.3g} of the scaled Jacobian, condition {found.condition:.3g} "
             f"(remarked on below {NEAR_SINGULAR:g})"
         )
     return remarks
-
-
-def _sampled(study: Study) -> _Path:
-    t, robot = path_instants(study), study.robot
-    poses = rigid.poses(robot, study.motion, t)
-    length = rigid.leg_lengths(robot.base_joints, robot.platform_joints, poses.position, poses.rotation)
-    return _Path(t=t, poses=poses, length=length)
 
 
 def _refuse_excess(robot: Robot, path: _Path) -> None:
@@ -107,9 +109,8 @@ def _refuse_excess(robot: Robot, path: _Path) -> None:
     )
 
 
-def _refuse_folded(robot: Robot, path: _Path) -> None:
-    tips = path.poses.point(robot.platform_joints)[0] - robot.base_joints
-    _, beta = rigid.joint_angles(rigid.home_frames(robot), tips / path.length[..., None])
+def _refuse_folded(path: _Path) -> None:
+    beta = path.beta
     if np.abs(beta).max() <= BETA_LIMIT:
         return
     k, leg = np.unravel_index(np.abs(beta).argmax(), beta.shape)
@@ -123,17 +124,16 @@ def _refuse_folded(robot: Robot, path: _Path) -> None:
     )
 
 
-def _refuse_singular(robot: Robot, path: _Path) -> None:
-    found = rigid.singularity(robot, path.poses)
-    k, words = found.worst, ""
-    if found.smallest_singular_value[k] < SINGULAR:
-        words = f"is singular at t = {path.t[k]:.6g} s"
+def _refuse_singular(path: _Path) -> None:
+    found, words = path.nearest, ""
+    if found.smallest_singular_value < SINGULAR:
+        words = f"is singular at t = {path.t[found.worst]:.6g} s"
     elif len(found.sign_changes):
         k = int(found.sign_changes[0])
         words = f"passes through a singular pose between t = {path.t[k]:.6g} and {path.t[k + 1]:.6g} s"
     if words:
         raise InputError(
-            f"the path {words}: smallest singular value {found.smallest_singular_value[k]:.2g} of the scaled Jacobian",
+            f"the path {words}: smallest singular value {found.smallest_singular_value:.2g} of the scaled Jacobian",
             key="motion",
             allowed=f"at least {SINGULAR:g}, and no change of sign of its determinant",
             next_step="There the legs cannot hold the platform: change the joints' places (half_angle) or the motion",

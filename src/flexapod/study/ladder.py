@@ -68,8 +68,7 @@ def ladder(
     ConvergenceStopped
         By Ctrl-C, with what was computed.
     """
-    trials = checked_trials(study, trials)
-    trials.report = progress
+    trials = checked_trials(study, trials, progress)
     settings, reference, second = rungs(trials.study, step)
     trials.plan([reference, second, *settings])
     done: list[Trial] = []

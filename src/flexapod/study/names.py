@@ -9,7 +9,8 @@ import numpy as np
 from numpy.typing import ArrayLike
 
 if TYPE_CHECKING:
-    from xarray import Dataset
+    from xarray import Coordinates, Dataset
+    from xarray import Variable as Labelled
 
 __all__ = [
     "ACTUATOR_FORMS",
@@ -190,12 +191,35 @@ def dataset(
     data = {}
     for name, array in values.items():
         dims, units, long_name = table[name]
-        data[name] = (dims, array, {"units": units, "long_name": long_name})
-    used = {dim for dims, _, _ in data.values() for dim in dims}
-    labels = {dim: ((dim,), given, {"long_name": words}) for dim, (given, words) in COORDINATES.items() if dim in used}
-    for dim, given in (coords or {}).items():
-        labels[dim] = ((dim,), given, _COORDINATE_ATTRS.get(dim, {}))
-    return xr.Dataset(data, coords=labels, attrs=dict(attrs or {}))
+        data[name] = _variable(dims, array, {"units": units, "long_name": long_name})
+    used = {dim for variable in data.values() for dim in variable.dims}
+    labels = {dim: (given, {"long_name": words}) for dim, (given, words) in COORDINATES.items() if dim in used}
+    labels |= {dim: (given, _COORDINATE_ATTRS.get(dim, {})) for dim, given in (coords or {}).items()}
+    return xr.Dataset(data, coords=_coordinates(labels), attrs=dict(attrs or {}))
+
+
+def _variable(dims: tuple[str, ...], given: ArrayLike, attrs: dict[str, str]) -> Labelled:
+    """Variable of plain numbers or texts; xarray's own conversion would first import dask, a quarter of a second."""
+    import xarray as xr
+
+    array = np.asarray(given)
+    return xr.Variable(dims, array, attrs, fastpath=array.dtype.kind in "biufU")
+
+
+def _coordinates(labels: Mapping[str, tuple[object, dict[str, str]]]) -> Coordinates:
+    """Indexed coordinates from labels and attributes; made from arrays, xarray would first import pint and others."""
+    import pandas as pd
+    import xarray as xr
+    from xarray.indexes import PandasIndex
+
+    variables, indexes = {}, {}
+    for dim, (given, attrs) in labels.items():
+        array = np.asarray(given)
+        index = PandasIndex(pd.Index(array), dim, coord_dtype=array.dtype)
+        variables[dim] = index.create_variables()[dim]
+        variables[dim].attrs = dict(attrs)
+        indexes[dim] = index
+    return xr.Coordinates(variables, indexes)
 
 
 _COORDINATE_ATTRS = {

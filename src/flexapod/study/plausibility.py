@@ -2,17 +2,20 @@
 
 from __future__ import annotations
 
+from functools import lru_cache
+
 import numpy as np
 
 from flexapod.bases import LateralBasis
 from flexapod.model import Actuator, Leg, Robot
+from flexapod.model.simulation import SOLID
 from flexapod.solve.rotation import matrix
 from flexapod.solve.system import RobotSystem
 from flexapod.study.estimates import buckling_load, section_width
 from flexapod.study.record import Record
 from flexapod.typing import Array
 
-__all__ = ["SLENDERNESS", "SLOPE", "actuator_warnings", "leg_stress", "robot_warnings"]
+__all__ = ["NEAR_BUCKLING", "SLENDERNESS", "SLOPE", "actuator_warnings", "leg_stress", "robot_warnings", "thick_words"]
 
 SLOPE = 0.1  # tip slope up to which second order in the amplitudes is enough
 SLENDERNESS = 10.0  # free length over width below which shear is no longer small
@@ -35,7 +38,7 @@ def robot_warnings(robot: Robot, system: RobotSystem, record: Record) -> list[st
                 *_slope(system.kernel.shapes.a, lateral, free, record.time),
                 *_stroke(leg, record.q[:, i, system.kernel.shapes.l_index], record.time),
                 *_axial(leg, free, compression[:, i], record.time),
-                *_slender(leg, free, record.time),
+                *_slender(leg, system.kernel.shapes.a, free, record.time),
                 *_stress(leg, system.kernel.shapes.a, lateral, free, compression[:, i], record.time),
             )
         ]
@@ -51,7 +54,7 @@ def actuator_warnings(actuator: Actuator, basis: LateralBasis, record: Record) -
         depth, material = actuator.section.depth, actuator.material
         if free.min() < SLENDERNESS * depth:
             k = int(free.argmin())
-            found.append(_slender_words(free[k] / depth, record.time[k]))
+            found.append(_slender_remark(free[k] / depth, basis, record.time[k]))
         if material.yield_stress is not None:
             bending = _bending(basis, lateral, free) * material.E * depth / 2
             found += _yield_words(bending, material.yield_stress, record.time)
@@ -80,7 +83,7 @@ def leg_stress(leg: Leg, basis: LateralBasis, lateral: Array, free: Array, compr
 def _leg_axes(robot: Robot, record: Record) -> Array:
     """Unit vectors from base to platform joint, (T, 6, 3)."""
     R = matrix(record.pose[:, 3:])
-    tips = record.pose[:, None, :3] + np.einsum("tij,nj->tni", R, robot.platform_joints - robot.payload.com)
+    tips = record.pose[:, None, :3] + (robot.platform_joints - robot.payload.com) @ R.swapaxes(1, 2)
     vectors = tips - robot.base_joints
     return vectors / np.linalg.norm(vectors, axis=-1, keepdims=True)
 
@@ -115,6 +118,8 @@ def _stroke(leg: Leg, length: Array, t: Array) -> list[_Remark]:
 
 
 def _axial(leg: Leg, free: Array, compression: Array, t: Array) -> list[_Remark]:
+    if (compression * free**2).max() <= NEAR_BUCKLING * leg.piston.EI * (np.pi / 2) ** 2:
+        return []  # even with the least root that (T8.11) can have
     share = compression / buckling_load(leg, free)
     k = int(share.argmax())
     if share[k] <= NEAR_BUCKLING:
@@ -126,26 +131,37 @@ def _axial(leg: Leg, free: Array, compression: Array, t: Array) -> list[_Remark]
     return [("buckling", share[k], words)]
 
 
-def _slender(leg: Leg, free: Array, t: Array) -> list[_Remark]:
+def _slender(leg: Leg, basis: LateralBasis, free: Array, t: Array) -> list[_Remark]:
     ratio = free / section_width(leg.piston)
     k = int(ratio.argmin())
-    return [] if ratio[k] >= SLENDERNESS else [_slender_words(ratio[k], t[k])]
+    return [] if ratio[k] >= SLENDERNESS else [_slender_remark(ratio[k], basis, t[k])]
 
 
-def _slender_words(ratio: float, t: float) -> _Remark:
-    words = (
-        f"the free length is only {ratio:.3g} times the width at t = {t:.6g} s: below {SLENDERNESS:g} shear, which an "
-        "Euler-Bernoulli beam leaves out, is no longer small"
-    )
-    return ("slenderness", SLENDERNESS / ratio, words)
+def _slender_remark(ratio: float, basis: LateralBasis, t: float) -> _Remark:
+    words = f"the free length is only {ratio:.3g} times the width at t = {t:.6g} s: "
+    return ("slenderness", SLENDERNESS / ratio, words + thick_words(solid=basis.name == SOLID))
+
+
+def thick_words(*, solid: bool) -> str:
+    """What a leg that is not slender has and the shapes of a beam, or those reduced from the solid, leave out."""
+    what = "rotary inertia, which the solid's shapes leave" if solid else "shear, which an Euler-Bernoulli beam leaves"
+    return f"below {SLENDERNESS:g} {what} out, is no longer small"
 
 
 def _bending(basis: LateralBasis, lateral: Array, free: Array) -> Array:
     """Largest curvature along the free piston, (T,) [1/m]."""
     if not basis.count:
         return np.zeros(len(free))
-    curvature = np.linalg.norm(lateral @ basis.values(STATIONS, 2), axis=1)
-    return curvature.max(axis=1) / free**2
+    square = np.zeros((len(STATIONS), len(free)))
+    for k in range(lateral.shape[1]):  # one lateral direction of an actuator, two of a leg
+        square += (_curvatures(basis).T @ lateral[:, k].T) ** 2
+    return np.sqrt(square.max(axis=0)) / free**2
+
+
+@lru_cache(maxsize=64)
+def _curvatures(basis: LateralBasis) -> Array:
+    """Second derivatives of the shapes at the stations, (k, 21)."""
+    return basis.values(STATIONS, 2)
 
 
 def _stress(leg: Leg, basis: LateralBasis, lateral: Array, free: Array, compression: Array, t: Array) -> list[_Remark]:

@@ -2,6 +2,8 @@
 
 from __future__ import annotations
 
+from dataclasses import dataclass
+
 import numpy as np
 from numpy.typing import ArrayLike
 from scipy.spatial.transform import Rotation
@@ -12,22 +14,50 @@ from flexapod.rigid.trajectory import coordinates
 from flexapod.solve.parameters import drive_spring
 from flexapod.solve.rotation import matrix
 from flexapod.solve.system import RobotSystem
-from flexapod.solve.tables import Commands, command_law
+from flexapod.solve.tables import feed_forward
 from flexapod.study.causes import deviation_by_cause, length_errors
 from flexapod.study.record import Record
 from flexapod.typing import Array
 
-__all__ = ["command_results", "energy_results", "robot_coords", "robot_results"]
+__all__ = [
+    "RigidPath",
+    "cause_results",
+    "command_results",
+    "energy_results",
+    "leg_results",
+    "payload_results",
+    "rigid_force_results",
+    "rigid_path",
+    "robot_coords",
+    "robot_results",
+]
 
 
-def robot_results(study: Study, system: RobotSystem, record: Record) -> dict[str, Array]:
-    """All variables of a robot's simulation but the rigid forces, by name."""
-    path = rigid.poses(study.robot, study.motion, record.time)
-    commands = command_law(study.robot, study.motion, study.load)(record.time)
+@dataclass(frozen=True, kw_only=True)
+class RigidPath:
+    """The rigid robot at T instants: poses, legs, and the wrench (T, 6) at the tool, world axes."""
+
+    time: Array
+    poses: rigid.Poses
+    legs: rigid.LegState
+    wrench: Array
+
+
+def rigid_path(study: Study, t: Array) -> RigidPath:
+    """The commanded path of a study at instants (T,) [s]."""
+    poses = rigid.poses(study.robot, study.motion, t)
+    legs = rigid.inverse_kinematics(study.robot, poses)
+    return RigidPath(time=t, poses=poses, legs=legs, wrench=rigid.wrench(study.load, t))
+
+
+def robot_results(study: Study, system: RobotSystem, record: Record, path: RigidPath | None = None) -> dict[str, Array]:
+    """All variables of a robot's simulation but the rigid forces, by name; `path` where it is known already."""
+    robot, path = study.robot, path or rigid_path(study, record.time)
+    legs = leg_results(robot, system, path, record)
     return {
-        **_payload_results(study.robot, path, record),
-        **_leg_results(study.robot, system, commands, record),
-        **_cause_results(study.robot, system, path, commands, record),
+        **payload_results(robot, path, record),
+        **legs,
+        **cause_results(robot, system, path, record, legs["leg_length"]),
         **energy_results(record),
         **command_results(study, record.time),
     }
@@ -44,11 +74,12 @@ def robot_coords(system: RobotSystem, record: Record) -> dict[str, ArrayLike]:
     return labels
 
 
-def _payload_results(robot: Robot, path: rigid.Poses, record: Record) -> dict[str, Array]:
+def payload_results(robot: Robot, path: RigidPath, record: Record) -> dict[str, Array]:
+    """Payload and tool against the rigid path."""
     load, com = robot.payload, record.pose[:, :3]
     turn = Rotation.from_quat(record.pose[:, 3:], scalar_first=True)
-    rigid_turn = Rotation.from_matrix(path.rotation)
-    com_rigid, tool_rigid = path.point(load.com)[0], path.point(load.tool)[0]
+    rigid_turn = Rotation.from_matrix(path.poses.rotation)
+    com_rigid, tool_rigid = path.poses.place(load.com), path.poses.place(load.tool)
     tool = com + turn.apply(load.tool - load.com)
     return {
         "com_position_rigid": com_rigid,
@@ -71,16 +102,17 @@ def _flexible_lengths(robot: Robot, record: Record) -> Array:
     return rigid.leg_lengths(robot.base_joints, joints, record.pose[:, :3], R)
 
 
-def _leg_results(robot: Robot, system: RobotSystem, commands: Commands, record: Record) -> dict[str, Array]:
+def leg_results(robot: Robot, system: RobotSystem, path: RigidPath, record: Record) -> dict[str, Array]:
+    """Lengths, angles, deflections and forces of the legs."""
     shapes, q = system.kernel.shapes, record.q
     k, first = shapes.a.count, 3 + shapes.axial.count
     lateral = q[:, :, first:].reshape(*q.shape[:2], 2, k)
     results = {
-        "leg_length_command": commands.length,
+        "leg_length_command": path.legs.length,
         "leg_length": _flexible_lengths(robot, record),
         "leg_stroke": q[:, :, shapes.l_index],
         "leg_angle": q[:, :, :2],
-        "actuator_force": _drive_forces(robot, system, commands, record),
+        "actuator_force": _drive_forces(robot, system, path, record),
         "tip_deflection": lateral @ shapes.a.tip,
         "joint_force": record.lam,
     }
@@ -91,28 +123,40 @@ def _leg_results(robot: Robot, system: RobotSystem, commands: Commands, record: 
     return results
 
 
-def _drive_forces(robot: Robot, system: RobotSystem, commands: Commands, record: Record) -> Array:
+def _drive_forces(robot: Robot, system: RobotSystem, path: RigidPath, record: Record) -> Array:
     """Force of every drive on its piston, (T, 6) [N]: constraint, or feed-forward, spring and damper, Eq. (T8.8)."""
+    if system.held.all():
+        return record.drive[:, :, 0]
     stiffness, damping = np.array([drive_spring(leg) for leg in robot.legs]).T
-    l_index = system.kernel.shapes.l_index
-    spring = stiffness * (commands.length - record.q[:, :, l_index])
-    spring = spring + damping * (commands.rate - record.rate[:, :, 0])
-    return np.where(system.held, record.drive[:, :, 0], commands.force + spring)
+    spring = stiffness * (path.legs.length - record.q[:, :, system.kernel.shapes.l_index])
+    spring = spring + damping * (path.legs.rate - record.rate[:, :, 0])
+    forward = feed_forward(robot, path.time, path.poses, path.wrench)
+    return np.where(system.held, record.drive[:, :, 0], forward + spring)
 
 
-def _cause_results(
-    robot: Robot, system: RobotSystem, path: rigid.Poses, commands: Commands, record: Record
+def cause_results(
+    robot: Robot, system: RobotSystem, path: RigidPath, record: Record, length: Array
 ) -> dict[str, Array]:
+    """Deviation of the centre of mass by cause; ``length`` (T, 6): joint to joint [m]."""
     shapes = system.kernel.shapes
     errors = length_errors(
-        length=_flexible_lengths(robot, record),
-        command=commands.length,
+        length=length,
+        command=path.legs.length,
         stroke=record.q[:, :, shapes.l_index],
-        stretch=record.q[:, :, 3] if shapes.axial.count else np.zeros(commands.length.shape),
+        stretch=record.q[:, :, 3] if shapes.axial.count else np.zeros(length.shape),
     )
-    shares = deviation_by_cause(robot, path, errors)
-    deviation = record.pose[:, :3] - path.point(robot.payload.com)[0]
-    return {"deviation_by_cause": shares, "deviation_residual": deviation - shares.sum(axis=(1, 2))}
+    shares = deviation_by_cause(robot, path.poses, errors)
+    deviation = record.pose[:, :3] - path.poses.place(robot.payload.com)
+    return {
+        "deviation_by_cause": shares,
+        "deviation_residual": deviation - shares.reshape(len(shares), -1, 3).sum(axis=1),
+    }
+
+
+def rigid_force_results(robot: Robot, path: RigidPath) -> dict[str, Array]:
+    """Drive and joint forces of the rigid robot."""
+    forces = rigid.inverse_dynamics(robot, path.poses, path.wrench, path.legs)
+    return {"actuator_force_rigid": forces.actuator_force, "joint_force_rigid": forces.joint_force}
 
 
 def energy_results(record: Record) -> dict[str, Array]:

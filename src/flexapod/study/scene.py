@@ -16,7 +16,18 @@ from flexapod.typing import Array
 if TYPE_CHECKING:
     from xarray import Dataset
 
-__all__ = ["Scene", "mode_scene", "motion_coordinates", "motion_end", "robot_study", "scene"]
+__all__ = [
+    "STATIONS",
+    "Scene",
+    "lateral_values",
+    "mode_scene",
+    "motion_coordinates",
+    "motion_end",
+    "off_chord",
+    "placed",
+    "robot_study",
+    "scene",
+]
 
 STATIONS = 25  # points of a drawn piston
 
@@ -101,8 +112,32 @@ def scene(data: Dataset, time: float = 0.0, magnify: float = 1.0) -> Scene:
     length = np.linalg.norm(centre + robot.platform_joints @ R.T - robot.base_joints, axis=1)
     tip, zeta = magnify * at.tip_deflection.values, np.linspace(0.0, 1.0, STATIONS)
     shape = 0.5 * (3 * zeta**2 - zeta**3)  # of a cantilever under a force at its tip
-    off_chord = shape - _along(robot, length)[:, None] / length[:, None, None]
-    return _scene(robot, centre, R, com, tip[:, :, None] * off_chord)
+    return placed(robot, centre, R, com, off_chord(robot, length, tip[:, :, None] * shape, tip))
+
+
+def lateral_values(study: model.Study | model.ActuatorStudy, zeta: Array) -> Array:
+    """Lateral shapes of a study's pistons (or of its beam) from mouth (0) to tip (1), (k, n)."""
+    from flexapod.solve.shapes import beam_shapes, leg_shapes
+
+    if isinstance(study, model.ActuatorStudy):
+        return beam_shapes(study.actuator, study.simulation).values(zeta)
+    return leg_shapes(study.robot, study.simulation).values(zeta)
+
+
+def off_chord(robot: model.Robot, length: Array, line: Array, tip: Array) -> Array:
+    """Offsets of the pistons from the lines of their joints, (6, 2, n) [m].
+
+    Parameters
+    ----------
+    robot : Robot
+    length : ndarray, shape (6,)
+        Joint-to-joint lengths [m].
+    line : ndarray, shape (6, 2, n)
+        Offsets from the axes of the cylinders at n points spread evenly from mouth to tip [m].
+    tip : ndarray, shape (6, 2)
+        Those of the tips: every cylinder leans so that its tip meets the platform.
+    """
+    return line - tip[:, :, None] * (_along(robot, length) / length[:, None])[:, None]
 
 
 def mode_scene(modes: Dataset, mode: int, size: float, phase: float = 1.0) -> Scene:
@@ -135,7 +170,7 @@ def mode_scene(modes: Dataset, mode: int, size: float, phase: float = 1.0) -> Sc
     place = _along(robot, length) / length[:, None]
     station = modes.station.values
     offset = np.array([[np.interp(place[i], station, row) for row in rows] for i, rows in enumerate(lateral)])
-    return _scene(robot, centre, turned, com, factor * offset)
+    return placed(robot, centre, turned, com, factor * offset)
 
 
 def _along(robot: model.Robot, length: Array) -> Array:
@@ -144,14 +179,18 @@ def _along(robot: model.Robot, length: Array) -> Array:
     return mouth[:, None] + (length - mouth)[:, None] * np.linspace(0.0, 1.0, STATIONS)
 
 
-def _scene(robot: model.Robot, centre: Array, R: Array, com: Array, offset: Array) -> Scene:
-    """Scene of a pose whose legs are off the lines of their joints by `offset` (6, 2, n) [m]."""
+def placed(robot: model.Robot, centre: Array, R: Array, com: Array, offset: Array | None = None) -> Scene:
+    """The robot with its platform frame's origin at `centre`, turned by `R`, its payload's centre of mass at `com`.
+
+    `offset` (6, 2, STATIONS): pistons off the lines of their joints [m], see `off_chord`; None: straight legs.
+    """
     base, platform = robot.base_joints, centre + robot.platform_joints @ R.T
     chord = platform - base
     length = np.linalg.norm(chord, axis=1)
     axis = chord / length[:, None]
-    frames = rigid.home_frames(robot)
-    turned = rigid.leg_rotations(frames, *rigid.joint_angles(frames, axis[None]))[0]
-    across = np.einsum("ixd,idn->inx", turned[:, :, :2], offset)
-    lines = base[:, None] + _along(robot, length)[:, :, None] * axis[:, None] + across
+    lines = base[:, None] + _along(robot, length)[:, :, None] * axis[:, None]
+    if offset is not None:
+        frames = rigid.home_frames(robot)
+        turned = rigid.leg_rotations(frames, *rigid.joint_angles(frames, axis[None]))[0]
+        lines = lines + np.einsum("ixd,idn->inx", turned[:, :, :2], offset)
     return Scene(base=base, platform=platform, piston=lines, com=com, centre=centre)

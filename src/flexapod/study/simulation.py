@@ -2,9 +2,10 @@
 
 from __future__ import annotations
 
+from dataclasses import dataclass
 from typing import TYPE_CHECKING
 
-from flexapod import model, rigid
+from flexapod import model
 from flexapod.errors import InputError
 from flexapod.solve.robot_march import RobotMarch, prepare
 from flexapod.study.actuator import simulate_actuator
@@ -14,12 +15,60 @@ from flexapod.study.checks import check_path
 from flexapod.study.names import dataset
 from flexapod.study.plausibility import robot_warnings
 from flexapod.study.record import Progress, Record, collect, finished
-from flexapod.study.results import robot_coords, robot_results
+from flexapod.study.results import rigid_force_results, rigid_path, robot_coords, robot_results
+from flexapod.typing import Array
 
 if TYPE_CHECKING:
     from xarray import Dataset
 
-__all__ = ["run", "simulate"]
+__all__ = ["Simulated", "run", "simulate", "simulated"]
+
+
+@dataclass(frozen=True, kw_only=True)
+class Simulated:
+    """A simulation of a robot before its results have names: study, prepared march, record, remarks on the path."""
+
+    study: model.Study
+    march: RobotMarch
+    record: Record
+    remarks: list[str]
+
+    def values(self) -> dict[str, Array]:
+        """The variables of the Dataset as plain arrays; single groups of them are functions of `study.results`."""
+        path = rigid_path(self.study, self.record.time)
+        found = robot_results(self.study, self.march.system, self.record, path)
+        return found | rigid_force_results(self.study.robot, path)
+
+    def warnings(self) -> list[str]:
+        """Remarks on the study, its path and its results."""
+        found = robot_warnings(self.study.robot, self.march.system, self.record)
+        return [*self.study.warnings, *self.remarks, *found]
+
+    def dataset(self) -> Dataset:
+        """Everything as a Dataset."""
+        march, system = self.march, self.march.system
+        attrs = {
+            **attributes(self.study, self.warnings()),
+            **march_attributes(self.study, march.counters, self.record, compiled=system.kernel.library is not None),
+            "impact_energy": march.impact,
+        }
+        return dataset(self.values(), robot_coords(system, self.record), attrs)
+
+
+def simulated(study: model.Study, progress: Progress | None = None) -> Simulated:
+    """Check and integrate a robot study; what `simulate` does, without a Dataset.
+
+    A record that stopped early says so: ``record.failure``, ``record.interrupted``.
+
+    Raises
+    ------
+    InputError, ComputationError
+        As `simulate`.
+    """
+    remarks = check_path(study)
+    march = prepare(study)
+    record = collect(march.chunks, march.system.kernel.shapes.l_index, study.duration, progress)
+    return Simulated(study=study, march=march, record=record, remarks=remarks)
 
 
 def simulate(
@@ -76,7 +125,8 @@ def simulate(
         "step": step, "duration": duration, "output_step": output_step, "rho_inf": rho_inf,
     }  # fmt: skip
     study = model.override(as_study(robot, motion, load, initial), **settings)  # type: ignore[arg-type]
-    return _simulated(study, progress)
+    found = simulated(study, progress)
+    return finished(found.dataset(), found.record)
 
 
 def run(study: model.Study | model.ActuatorStudy, *, progress: Progress | None = None) -> Dataset:
@@ -102,26 +152,5 @@ def run(study: model.Study | model.ActuatorStudy, *, progress: Progress | None =
         return simulate_actuator(study, progress=progress)
     if not isinstance(study, model.Study):
         raise InputError("is no study", key="study", value=type(study).__name__, allowed="the result of flexapod.load")
-    return _simulated(study, progress)
-
-
-def _simulated(study: model.Study, progress: Progress | None) -> Dataset:
-    remarks = check_path(study)
-    march = prepare(study)
-    record = collect(march.chunks, march.system.kernel.shapes.l_index, study.duration, progress)
-    return finished(_robot_dataset(study, march, record, remarks), record)
-
-
-def _robot_dataset(study: model.Study, march: RobotMarch, record: Record, remarks: list[str]) -> Dataset:
-    values = robot_results(study, march.system, record)
-    path = rigid.poses(study.robot, study.motion, record.time)
-    forces = rigid.inverse_dynamics(study.robot, path, rigid.wrench(study.load, record.time))
-    values["actuator_force_rigid"] = forces.actuator_force
-    values["joint_force_rigid"] = forces.joint_force
-    warnings = [*study.warnings, *remarks, *robot_warnings(study.robot, march.system, record)]
-    attrs = {
-        **attributes(study, warnings),
-        **march_attributes(study, march.counters, record, compiled=march.system.kernel.library is not None),
-        "impact_energy": march.impact,
-    }
-    return dataset(values, robot_coords(march.system, record), attrs)
+    found = simulated(study, progress)
+    return finished(found.dataset(), found.record)

@@ -1,29 +1,28 @@
-"""The robot at one pose with its drives locked: modes and stiffness, a pose in, a Dataset out."""
+"""The robot with its drives locked: modes and stiffness, a pose in, a Dataset out; for modes also many poses."""
 
 from __future__ import annotations
 
+from collections.abc import Iterable
 from typing import TYPE_CHECKING
 
 import numpy as np
-from scipy.spatial.transform import Rotation
 
 from flexapod import model, rigid
-from flexapod.solve.modes import RobotModes, robot_modes
-from flexapod.solve.rotation import matrix
+from flexapod.solve.modes import robot_modes
 from flexapod.solve.stiffness import robot_stiffness
 from flexapod.study.arguments import LoadLike, PoseLike, as_pose, at_pose
 from flexapod.study.attributes import attributes
 from flexapod.study.checks import path_remarks
-from flexapod.study.kinds import mode_kinds
+from flexapod.study.many_modes import modes_at_poses
+from flexapod.study.mode_shapes import STATIONS, mode_values
 from flexapod.study.names import ONE_POSE_FORMS, dataset
+from flexapod.study.poses import as_many, is_many
 from flexapod.typing import Array
 
 if TYPE_CHECKING:
     from xarray import Dataset
 
 __all__ = ["modes", "stiffness"]
-
-STATIONS = np.linspace(0.0, 1.0, 41)
 
 
 def modes(
@@ -35,6 +34,7 @@ def modes(
     modes: int | None = None,
     axial_modes: int | None = None,
     basis: str | None = None,
+    shapes: bool = False,
 ) -> Dataset:
     """Undamped and damped modes about the static equilibrium, drives locked, Eqs. (T7.2)-(T7.5).
 
@@ -42,17 +42,22 @@ def modes(
     ----------
     robot : Robot or Study
     pose : pose, optional
-        Surge, sway, heave [m], roll, pitch, yaw [rad] from home, by name or as (6,); default home.
+        Surge, sway, heave [m], roll, pitch, yaw [rad] from home, by name or as (6,); default home. Many poses at once:
+        names with arrays, or (P, 6).
     load : Load, wrench or array_like (6,), optional
         Fx Fy Fz [N], Mx My Mz [N m] at the tool, world axes; in place of the study's; a law is taken at t = 0.
     fidelity, modes, axial_modes, basis : optional
         In place of those of the study; a bare robot has assumed-modes, 3 per plane, tip-load.
+    shapes : bool
+        Of many poses also damping ratios, kinds and shapes: ten times the time, and much memory.
 
     Returns
     -------
     xarray.Dataset
         `frequency` [Hz] ascending, `damping_ratio`, `kind`, `platform_shape`, `leg_shape`, `leg_stretch`;
         `platform_position`, `platform_quaternion`, `com_sag` of the equilibrium. Shapes are mass-normalised.
+        Many poses: `frequency` (pose, mode), `com_sag`, position and quaternion, `pose_from_home`, and in `reason` why
+        a pose has none (NaN); it is not an error there.
 
     Raises
     ------
@@ -62,23 +67,13 @@ def modes(
         No equilibrium at this pose.
     """
     settings = {"fidelity": fidelity, "modes": modes, "axial_modes": axial_modes, "basis": basis}
+    if is_many(pose):
+        study = model.override(at_pose(robot, load), **settings)  # type: ignore[arg-type]
+        load_at_start = rigid.wrench(study.load, np.zeros(1))[0]
+        return modes_at_poses(study, as_many(study.robot, pose), load_at_start, shapes=shapes, attrs=_settings(study))
     study, path, wrench = _problem(robot, pose, load, settings)
-    found = robot_modes(study.robot, study.simulation, path, wrench)
-    at, R = found.equilibrium.state.pose, matrix(found.equilibrium.state.pose[3:])
-    com = study.robot.payload.com
-    platform = np.concatenate([found.shapes[:, -6:-3], found.shapes[:, -3:] @ R.T], axis=1)
-    values = {
-        "frequency": found.frequency,
-        "damping_ratio": found.damping_ratio,
-        "kind": np.array(mode_kinds(found, wrench)),
-        "platform_shape": platform,
-        "leg_shape": _leg_shapes(study.robot, found),
-        "leg_stretch": _stretch(study.robot, at, platform),
-        "platform_position": at[:3] - R @ com,
-        "platform_quaternion": Rotation.from_matrix(R).as_quat(canonical=True, scalar_first=True),
-        "com_sag": at[:3] - path.point(com)[0][0],
-    }
-    coords = {"mode": np.arange(1, len(found.frequency) + 1), "station": STATIONS}
+    values = mode_values(study.robot, robot_modes(study.robot, study.simulation, path, wrench), path, wrench)
+    coords = {"mode": np.arange(1, len(values["frequency"]) + 1), "station": STATIONS}
     return dataset(values, coords, _attributes(study, path), ONE_POSE_FORMS)
 
 
@@ -127,30 +122,11 @@ def _problem(
 
 
 def _attributes(study: model.Study, path: rigid.Poses) -> dict[str, object]:
+    return _settings(study, path_remarks(study.robot, np.zeros(1), path))
+
+
+def _settings(study: model.Study, remarks: Iterable[str] = ()) -> dict[str, object]:
     s = study.simulation
     basis = s.lateral_basis if s.lateral_shapes else "none"
     settings = {"fidelity": s.fidelity, "basis": basis, "modes": s.lateral_shapes}
-    return attributes(study, [*study.warnings, *path_remarks(study.robot, np.zeros(1), path)]) | settings
-
-
-def _leg_shapes(robot: model.Robot, found: RobotModes) -> Array:
-    """Lateral displacement of every leg off the line of its joints, (m, 6, 2, stations) [m]."""
-    shapes, n = found.system.kernel.shapes, found.system.n
-    first, k = 3 + shapes.axial.count, shapes.a.count
-    legs = found.shapes[:, : 6 * n].reshape(-1, 6, n)[:, :, first:].reshape(len(found.shapes), 6, 2, k)
-    result = np.zeros((*legs.shape[:3], len(STATIONS)))
-    for i, leg in enumerate(robot.legs):
-        length = found.equilibrium.state.q[i, shapes.l_index]
-        zeta = np.clip((STATIONS * length - leg.cylinder.mouth) / (length - leg.cylinder.mouth), 0.0, 1.0)
-        values = shapes.a.values(zeta) if k else np.zeros((0, len(STATIONS)))
-        off_chord = values - np.outer(shapes.a.tip, STATIONS)
-        result[:, i] = legs[:, i] @ off_chord
-    return result
-
-
-def _stretch(robot: model.Robot, pose: Array, platform: Array) -> Array:
-    """Change of the joint-to-joint lengths in each mode, (m, 6) [m]: rows of the Jacobian at the CoM, Eq. (T2.21)."""
-    jacobian = rigid.length_jacobian(
-        robot.base_joints, robot.platform_joints - robot.payload.com, pose[:3], matrix(pose[3:]), np.zeros(3)
-    )
-    return platform @ jacobian.T
+    return attributes(study, [*study.warnings, *remarks]) | settings

@@ -6,126 +6,123 @@
      A_p dy   - sum P_i^T dlam_i        = -r_p
      e_l^T dq_i                         = 0          (prescribed stroke)
    Pivot by the closure: J1 = d tip / d(alpha, beta, l) is regular for every leg (det = l^2 cos beta), whatever is
-   massless, rigid or prescribed. The other coordinates see N^T A N with N = [-J1^-1 J2; I]. */
-enum { MAXN = 64, BORDER = 12 }; /* coordinates of a leg: 3, up to 4 axial and twice 24 lateral shapes */
+   massless, rigid or prescribed. The other m = n - 3 coordinates see B = N^T A N, N = [N1; I] with N1 = -J1^-1 J2;
+   the payload moves them through Y = [Y1; 0], Y1 = J1^-1 P. A is symmetric, so Et = N^T A Y is the transpose of E. */
+enum { BORDER = 6 + LEGS, L = 2 };      /* L: position of l in a robot's leg */
 
-typedef struct {
-  double A[MAXN*MAXN], J[3*MAXN], P[18], J1inv[9], N[MAXN*MAXN], Y[MAXN*6], AN[MAXN*MAXN], AY[MAXN*6];
-  double B[MAXN*MAXN], C[MAXN*6], E[MAXN*6], d[MAXN], Bd[MAXN];
-  long pivot[MAXN];
-  Lu lu;
+typedef struct {                        /* of a vector of legs */
+  lanes A[MAXN*MAXN], J[3*MAXN], P[18], J1inv[9], N1[3*MAXN], Y1[18], Binv[MAXN*MAXN], Et[MAXN*6], C[MAXN*6], Bd[MAXN];
+  lanes prescribed;
 } LegBlock;
 
-typedef struct { LegBlock leg[6]; double border[BORDER*BORDER]; long pivot[BORDER]; Lu lu; } Arrow;
+typedef struct { LegBlock leg[GROUPS]; double border[BORDER*BORDER]; } Arrow;
 
-static int invert3(const double *m, double *inv) {       /* column-major */
-  double c0 = m[4]*m[8] - m[7]*m[5], c1 = m[7]*m[2] - m[1]*m[8], c2 = m[1]*m[5] - m[4]*m[2];
-  double det = m[0]*c0 + m[3]*c1 + m[6]*c2;
-  if (!(fabs(det) > 0)) return SINGULAR;
-  inv[0] = c0/det; inv[1] = c1/det; inv[2] = c2/det;
-  inv[3] = (m[6]*m[5] - m[3]*m[8])/det; inv[4] = (m[0]*m[8] - m[6]*m[2])/det; inv[5] = (m[3]*m[2] - m[0]*m[5])/det;
-  inv[6] = (m[3]*m[7] - m[6]*m[4])/det; inv[7] = (m[6]*m[1] - m[0]*m[7])/det; inv[8] = (m[0]*m[4] - m[3]*m[1])/det;
+static void invert3(const lanes *m, lanes *inv) {        /* column-major */
+  lanes c0 = m[4]*m[8] - m[7]*m[5], c1 = m[7]*m[2] - m[1]*m[8], c2 = m[1]*m[5] - m[4]*m[2];
+  lanes d = 1.0/(m[0]*c0 + m[3]*c1 + m[6]*c2);
+  inv[0] = c0*d; inv[1] = c1*d; inv[2] = c2*d;
+  inv[3] = (m[6]*m[5] - m[3]*m[8])*d; inv[4] = (m[0]*m[8] - m[6]*m[2])*d; inv[5] = (m[3]*m[2] - m[0]*m[5])*d;
+  inv[6] = (m[3]*m[7] - m[6]*m[4])*d; inv[7] = (m[6]*m[1] - m[0]*m[7])*d; inv[8] = (m[0]*m[4] - m[3]*m[1])*d;
+}
+
+/* Inverses of B, leg by leg because each has its own pivots */
+static int invert_each(const Settings *s, int group, long m, const lanes *B, lanes *inverse) {
+  double one[MAXN*MAXN], inv[MAXN*MAXN];
+  for (int i = 0; i < LANES; i++) {
+    if (i < used(s, group)) {
+      for (long j = 0; j < m*m; j++) one[j] = B[j][i];
+      if (m && invert(m, one, inv)) return SINGULAR;
+    }
+    for (long j = 0; j < m*m; j++) inverse[j][i] = inv[j];
+  }
   return OK;
 }
 
-/* Null-space basis N (n, m) and payload columns Y (n, 6) of one leg */
-static int leg_bases(LegBlock *b, long n) {
-  long m = n - 3;
-  if (invert3(b->J, b->J1inv)) return SINGULAR;
-  memset(b->N, 0, sizeof(double)*n*m); memset(b->Y, 0, sizeof(double)*n*6);
-  for (long j = 0; j < m; j++) {
-    double t[3] = {0, 0, 0};
-    gemv(3, 3, -1, b->J1inv, b->J + 3*(3 + j), t);
-    for (int i = 0; i < 3; i++) b->N[i + j*n] = t[i];
-    b->N[3 + j + j*n] = 1;
-  }
+/* Everything of a vector of legs that does not depend on residuals; its share of the border */
+static int leg_factor(const Settings *s, int group, LegBlock *b, double *border) {
+  static _Thread_local lanes AN[MAXN*MAXN], B[MAXN*MAXN];
+  long n = s->n, m = n - 3, size = BORDER;
+  lanes AY[MAXN*6];
+  memset(b->N1, 0, sizeof(lanes)*3*m); memset(b->Y1, 0, sizeof b->Y1);
+  invert3(b->J, b->J1inv);
+  for (long j = 0; j < m; j++) lanes_gemv(3, 3, -1, b->J1inv, b->J + 3*(3 + j), b->N1 + 3*j);
+  for (long j = 0; j < 6; j++) lanes_gemv(3, 3, 1, b->J1inv, b->P + 3*j, b->Y1 + 3*j);
+  memcpy(AN, b->A + 3*n, sizeof(lanes)*n*m); memset(AY, 0, sizeof(lanes)*n*6);
+  for (long j = 0; j < m; j++) lanes_gemv(n, 3, 1, b->A, b->N1 + 3*j, AN + j*n);
+  for (long j = 0; j < 6; j++) lanes_gemv(n, 3, 1, b->A, b->Y1 + 3*j, AY + j*n);
+  for (long j = 0; j < m; j++) { memcpy(B + j*m, AN + j*n + 3, sizeof(lanes)*m); lanes_gemv_t(3, m, 1, b->N1, AN + j*n, B + j*m); }
+  for (long j = 0; j < 6; j++) { memcpy(b->Et + j*m, AY + j*n + 3, sizeof(lanes)*m); lanes_gemv_t(3, m, 1, b->N1, AY + j*n, b->Et + j*m); }
+  if (invert_each(s, group, m, B, b->Binv)) return SINGULAR;
+  memset(b->C, 0, sizeof(lanes)*m*6); memset(b->Bd, 0, sizeof(lanes)*m);
+  for (long j = 0; j < 6; j++) lanes_gemv(m, m, 1, b->Binv, b->Et + j*m, b->C + j*m);
+  for (long j = 0; j < m; j++) for (long i = 0; i < m; i++) b->Bd[i] += b->Binv[i + j*m] * b->N1[L + 3*j];
   for (long j = 0; j < 6; j++) {
-    double t[3] = {0, 0, 0};
-    gemv(3, 3, 1, b->J1inv, b->P + 3*j, t);
-    for (int i = 0; i < 3; i++) b->Y[i + j*n] = t[i];
+    lanes payload[6] = {0}, force = b->Y1[L + 3*j];
+    lanes_gemv_t(3, 6, 1, b->Y1, AY + j*n, payload);
+    lanes_gemv_t(m, 6, -1, b->Et, b->C + j*m, payload);
+    for (long i = 0; i < m; i++) force -= b->N1[L + 3*i] * b->C[i + j*m];
+    for (int i = 0; i < 6; i++) border[i + j*size] += sum(s, group, payload[i]);
+    for (int i = 0; i < used(s, group); i++) {
+      long f = 6 + group*LANES + i;
+      border[f + j*size] = b->prescribed[i] * force[i];
+      border[j + f*size] = -border[f + j*size];
+    }
   }
+  lanes own = {0};
+  for (long i = 0; i < m; i++) own += b->N1[L + 3*i] * b->Bd[i];
+  for (int i = 0; i < used(s, group); i++) { long f = 6 + group*LANES + i; border[f + f*size] = b->prescribed[i] ? own[i] : 1; }
   return OK;
 }
 
 static int arrow_factor(Arrow *w, const Settings *s, const double *A_payload) {
-  long n = s->n, m = n - 3, size = BORDER;
-  memset(w->border, 0, sizeof w->border);
-  for (int j = 0; j < 6; j++) for (int i = 0; i < 6; i++) w->border[i + j*size] = A_payload[i + 6*j];
-  for (int leg = 0; leg < 6; leg++) {
-    LegBlock *b = &w->leg[leg];
-    if (leg_bases(b, n)) return SINGULAR;
-    memset(b->AN, 0, sizeof(double)*n*m); memset(b->AY, 0, sizeof(double)*n*6);
-    for (long j = 0; j < m; j++) gemv(n, n, 1, b->A, b->N + j*n, b->AN + j*n);
-    for (long j = 0; j < 6; j++) gemv(n, n, 1, b->A, b->Y + j*n, b->AY + j*n);
-    memset(b->B, 0, sizeof(double)*m*m); memset(b->C, 0, sizeof(double)*m*6); memset(b->E, 0, sizeof(double)*6*m);
-    for (long j = 0; j < m; j++) { gemv_t(n, m, 1, b->N, b->AN + j*n, b->B + j*m); gemv_t(n, 6, 1, b->Y, b->AN + j*n, b->E + j*6); }
-    for (long j = 0; j < 6; j++) gemv_t(n, m, 1, b->N, b->AY + j*n, b->C + j*m);
-    for (long i = 0; i < m; i++) b->d[i] = b->Bd[i] = b->N[s->l_index + i*n];
-    b->lu = (Lu){b->B, b->pivot, m};
-    if (lu_factor(&b->lu)) return SINGULAR;
-    for (long j = 0; j < 6; j++) lu_solve(&b->lu, b->C + j*m);            /* C <- B^-1 N^T A Y */
-    lu_solve(&b->lu, b->Bd);
-    for (long j = 0; j < 6; j++) {
-      gemv_t(n, 6, 1, b->Y, b->AY + j*n, w->border + j*size);
-      gemv(6, m, -1, b->E, b->C + j*m, w->border + j*size);
-    }
-    long f = 6 + leg;
-    if (s->prescribed_l >> leg & 1) {
-      gemv(6, m, 1, b->E, b->Bd, w->border + f*size);
-      for (int i = 0; i < 6; i++) w->border[i + f*size] -= b->Y[s->l_index + i*n];
-      for (int j = 0; j < 6; j++) {
-        double t = b->Y[s->l_index + j*n];
-        for (long i = 0; i < m; i++) t -= b->d[i] * b->C[i + j*m];
-        w->border[f + j*size] = t;
-      }
-      for (long i = 0; i < m; i++) w->border[f + f*size] += b->d[i] * b->Bd[i];
-    } else w->border[f + f*size] = 1;
-  }
-  w->lu = (Lu){w->border, w->pivot, size};
-  return lu_factor(&w->lu);
+  double border[BORDER*BORDER] = {0};
+  for (int j = 0; j < 6; j++) for (int i = 0; i < 6; i++) border[i + j*BORDER] = A_payload[i + 6*j];
+  for (int group = 0; group < groups(s); group++) if (leg_factor(s, group, &w->leg[group], border)) return SINGULAR;
+  return invert(BORDER, border, w->border);
 }
 
-/* r: residual (6 n + 6), g: closures (18). Out: dq (6 n + 6), dlam (18), df (6) */
-static void arrow_solve(const Arrow *w, const Settings *s, const double *r, const double *g, double *dq, double *dlam, double *df) {
+/* r, g, dq, dlam, df: a row of n, 3, n, 3, 1 vectors a group; rp, dy: of the payload */
+static void arrow_solve(const Arrow *w, const Settings *s, lanes (*r)[MAXN], lanes (*g)[3], const double *rp,
+                        lanes (*dq)[MAXN], lanes (*dlam)[3], lanes *df, double *dy) {
   long n = s->n, m = n - 3;
-  double z[6][MAXN], g0[6][3], rhs[BORDER];
-  for (int i = 0; i < 6; i++) { rhs[i] = -r[6*n + i]; rhs[6 + i] = 0; }
-  for (int leg = 0; leg < 6; leg++) {
-    const LegBlock *b = &w->leg[leg];
-    double t[MAXN];
-    memset(g0[leg], 0, sizeof g0[leg]);
-    gemv(3, 3, -1, b->J1inv, g + 3*leg, g0[leg]);
-    memcpy(t, r + leg*n, sizeof(double)*n);
-    gemv(n, 3, 1, b->A, g0[leg], t);                                       /* r + A g0 */
-    memset(z[leg], 0, sizeof(double)*m);
-    gemv_t(n, m, -1, b->N, t, z[leg]);
-    lu_solve(&b->lu, z[leg]);
-    double part[6] = {0};
-    gemv_t(n, 6, -1, b->Y, t, part);
-    gemv(6, m, -1, b->E, z[leg], part);
-    for (int i = 0; i < 6; i++) rhs[i] += part[i];
-    if (s->prescribed_l >> leg & 1) {
-      double l = g0[leg][s->l_index];
-      for (long i = 0; i < m; i++) l += b->d[i] * z[leg][i];
-      rhs[6 + leg] = -l;
-    }
+  lanes g0[GROUPS][3];
+  double rhs[BORDER] = {0}, x[BORDER] = {0};
+  for (int i = 0; i < 6; i++) rhs[i] = -rp[i];
+  for (int group = 0; group < groups(s); group++) {
+    const LegBlock *b = &w->leg[group];
+    lanes t[MAXN], *z = dq[group] + 3, part[6] = {0}, l;
+    memset(g0[group], 0, sizeof g0[group]);
+    lanes_gemv(3, 3, -1, b->J1inv, g[group], g0[group]);
+    memcpy(t, r[group], sizeof(lanes)*n);
+    lanes_gemv(n, 3, 1, b->A, g0[group], t);                               /* r + A g0 */
+    lanes_gemv_t(3, 6, -1, b->Y1, t, part);
+    lanes_gemv_t(3, m, 1, b->N1, t, t + 3);
+    memset(z, 0, sizeof(lanes)*m);
+    lanes_gemv(m, m, -1, b->Binv, t + 3, z);
+    lanes_gemv_t(m, 6, -1, b->Et, z, part);
+    l = g0[group][L];
+    for (long i = 0; i < m; i++) l += b->N1[L + 3*i] * z[i];
+    for (int i = 0; i < 6; i++) rhs[i] += sum(s, group, part[i]);
+    for (int i = 0; i < used(s, group); i++) rhs[6 + group*LANES + i] = -b->prescribed[i] * l[i];
   }
-  lu_solve(&w->lu, rhs);
-  memcpy(dq + 6*n, rhs, 6*sizeof(double));
-  for (int leg = 0; leg < 6; leg++) {
-    const LegBlock *b = &w->leg[leg];
-    double *x = dq + leg*n, *dz = z[leg], t[MAXN], f = df[leg] = rhs[6 + leg];
-    gemv(m, 6, -1, b->C, rhs, dz);
+  gemv(BORDER, BORDER, 1, w->border, rhs, x);
+  memcpy(dy, x, 6*sizeof(double));
+  for (int group = 0; group < groups(s); group++) {
+    const LegBlock *b = &w->leg[group];
+    lanes *change = dq[group], *dz = change + 3, t[3], f, y[6];
+    for (int i = 0; i < LANES; i++) f[i] = x[6 + lane_leg(s, group, i)];
+    for (int i = 0; i < 6; i++) y[i] = (lanes){0} + x[i];
+    df[group] = f;
+    lanes_gemv(m, 6, -1, b->C, y, dz);
     for (long i = 0; i < m; i++) dz[i] += b->Bd[i] * f;
-    memset(x, 0, sizeof(double)*n);
-    memcpy(x, g0[leg], 3*sizeof(double));
-    gemv(n, m, 1, b->N, dz, x);
-    gemv(n, 6, 1, b->Y, rhs, x);
-    if (s->prescribed_l >> leg & 1) x[s->l_index] = 0;
-    memcpy(t, r + leg*n, 3*sizeof(double));                                /* rows of alpha, beta, l give dlam */
-    for (long j = 0; j < n; j++) for (int i = 0; i < 3; i++) t[i] += b->A[i + j*n] * x[j];
-    t[s->l_index] -= f;
-    memset(dlam + 3*leg, 0, 3*sizeof(double));
-    gemv_t(3, 3, -1, b->J1inv, t, dlam + 3*leg);
+    memcpy(change, g0[group], sizeof g0[group]);
+    lanes_gemv(3, m, 1, b->N1, dz, change);
+    lanes_gemv(3, 6, 1, b->Y1, y, change);
+    change[L] *= 1.0 - b->prescribed;
+    memcpy(t, r[group], sizeof t);                                         /* rows of alpha, beta, l give dlam */
+    for (long j = 0; j < n; j++) for (int i = 0; i < 3; i++) t[i] += b->A[i + j*n] * change[j];
+    t[L] -= f;
+    memset(dlam[group], 0, sizeof dlam[group]);
+    lanes_gemv_t(3, 3, -1, b->J1inv, t, dlam[group]);
   }
 }

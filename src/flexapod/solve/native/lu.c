@@ -1,4 +1,7 @@
-/* LU factorisation with partial pivoting of small dense systems, column-major. */
+/* Small dense systems, column-major. */
+typedef struct { double *A; long *pivot; long n; } Lu;
+
+/* LU factorisation with partial pivoting */
 static int lu_factor(Lu *f) {
   long n = f->n; double *A = f->A;
   for (long k = 0; k < n; k++) {
@@ -30,12 +33,18 @@ static void lu_solve(const Lu *f, double *b) {
   }
 }
 
+/* Inverse of A (n, n), which is overwritten: the same matrix serves many right-hand sides, and a product has no
+   recurrences to wait for. */
+static int invert(long n, double *A, double *inverse) {
+  long pivot[MAXN];
+  Lu f = {A, pivot, n};
+  if (lu_factor(&f)) return SINGULAR;
+  memset(inverse, 0, sizeof(double)*n*n);
+  for (long j = 0; j < n; j++) { inverse[j + j*n] = 1; lu_solve(&f, inverse + j*n); }
+  return OK;
+}
+
 /* y += s A x, A (rows, cols) column-major */
 static void gemv(long rows, long cols, double s, const double *A, const double *x, double *y) {
   for (long j = 0; j < cols; j++) { double t = s * x[j]; for (long i = 0; i < rows; i++) y[i] += A[i + j*rows] * t; }
-}
-
-/* y += s A^T x */
-static void gemv_t(long rows, long cols, double s, const double *A, const double *x, double *y) {
-  for (long j = 0; j < cols; j++) { double t = 0; for (long i = 0; i < rows; i++) t += A[i + j*rows] * x[i]; y[j] += s * t; }
 }

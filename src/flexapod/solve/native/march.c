@@ -1,67 +1,53 @@
 /* Generalized-alpha for constrained systems on R^n x SE(3), Eqs. (T6.1)-(T6.5), fixed step within a call. */
-extern int leg_residual(const double **arg, double **res, long long *iw, double *w, int mem);
-extern int leg_matrices(const double **arg, double **res, long long *iw, double *w, int mem);
-extern int leg_energies(const double **arg, double **res, long long *iw, double *w, int mem);
-extern int payload_residual(const double **arg, double **res, long long *iw, double *w, int mem);
-extern int payload_matrices(const double **arg, double **res, long long *iw, double *w, int mem);
-extern int payload_energies(const double **arg, double **res, long long *iw, double *w, int mem);
-
-enum { MAXF = 6*MAXN + 6 };
-
-typedef struct {
-  double r[MAXF], g[18], points[18], powers[3], command[6][COMMAND];
-  Arrow arrow; Single single;
-} Work;
-
-static long total(const Settings *s) { return s->legs*s->n + (s->payload ? 6 : 0); }
-
-static void commands(const Settings *s, const State *x, const double *row, double out[6][COMMAND]) {
-  for (long i = 0; i < s->legs; i++) {
-    const double *t = row + i*TABLE;
-    out[i][0] = t[0]; out[i][1] = t[1];
-    out[i][2] = t[3] + x->drive[2*i]; out[i][3] = t[7] + x->drive[2*i + 1];
-  }
-}
 
 /* Residual of every equation at the present state; wrench in world axes at the tool. */
-static void residual(const Settings *s, State *x, const double *row, const double *wrench, Work *w) {
-  long n = s->n;
-  double tip[18], part[2];
-  commands(s, x, row, w->command);
+static void residual(const Settings *s, const double *wrench, Work *w) {
+  lanes tip[GROUPS][3], part[GROUPS][2];
+  set_commands(s, w);
   memset(w->powers, 0, sizeof w->powers);
-  for (long i = 0; i < s->legs; i++) {
-    const double *arg[] = {x->q + i*n, x->v + i*n, x->v_dot + i*n, x->lam + 3*i, w->command[i], s->leg_p + i*s->leg_np};
-    double *res[] = {w->r + i*n, tip + 3*i, part};
-    leg_residual(arg, res, 0, 0, 0);
-    w->powers[0] += part[0]; w->powers[1] += part[1];
+  for (int i = 0; i < groups(s); i++) {
+    const LegState *leg = &w->leg[i];
+    const lanes *in[] = {leg->q, leg->v, leg->v_dot, leg->lam, w->command[i], w->p[i]};
+    lanes *out[] = {w->r[i], tip[i], part[i]};
+    leg_residual_lanes(in, out);
+    for (int j = 0; j < 2; j++) w->powers[j] += sum(s, i, part[i][j]);
   }
   if (!s->payload) return;
-  long k = s->legs*n;
-  const double *arg[] = {x->pose, x->v + k, x->v_dot + k, x->lam, wrench, s->payload_p};
-  double *res[] = {w->r + k, w->points, w->powers + 2};
-  payload_residual(arg, res, 0, 0, 0);
-  for (int i = 0; i < 18; i++) w->g[i] = tip[i] - w->points[i];
+  double lam[3*LEGS], points[3*LEGS];
+  joint_forces(s, w, lam);
+  const double *in[] = {w->payload.pose, w->payload.u, w->payload.u_dot, lam, wrench, s->payload_p};
+  double *out[] = {w->rp, points, w->powers + 2};
+  payload_residual_double(in, out);
+  for (int i = 0; i < groups(s); i++) {
+    gather(s, i, points, 3, 3, w->g[i]);
+    for (int j = 0; j < 3; j++) w->g[i][j] = tip[i][j] - w->g[i][j];
+  }
 }
 
-/* Iteration matrix M/(...) + gamma/(beta h) D + K from the matrices at rest, Eq. (T6.5). */
-static int factor(const Settings *s, State *x, const double *wrench, double c_v, double c_a, Work *w) {
+/* Factors of c_a M + c_v D + c_q K with the matrices at rest: the iteration matrix (T6.5), or the mass metric alone. */
+static int factor(const Settings *s, const double *wrench, double c_v, double c_a, double c_q, Work *w) {
+  static _Thread_local lanes M[MAXN*MAXN], D[MAXN*MAXN], K[MAXN*MAXN];
+  static _Thread_local double one[MAXN*MAXN];
   long n = s->n;
-  double M[MAXN*MAXN], D[MAXN*MAXN], K[MAXN*MAXN], J[3*MAXN], A[MAXN*MAXN];
-  x->factorisations++;
-  for (long i = 0; i < s->legs; i++) {
-    double *into = s->payload ? w->arrow.leg[i].A : A;
-    const double *arg[] = {x->q + i*n, x->lam + 3*i, s->leg_p + i*s->leg_np};
-    double *res[] = {M, D, K, s->payload ? w->arrow.leg[i].J : J};
-    leg_matrices(arg, res, 0, 0, 0);
-    for (long j = 0; j < n*n; j++) into[j] = c_a*M[j] + c_v*D[j] + K[j];
+  for (int i = 0; i < groups(s); i++) {
+    LegBlock *b = &w->arrow.leg[i];
+    const lanes *in[] = {w->leg[i].q, w->leg[i].lam, w->p[i]};
+    lanes *out[] = {M, D, K, b->J};
+    leg_matrices_lanes(in, out);
+    for (long j = 0; j < n*n; j++) b->A[j] = c_a*M[j] + c_v*D[j] + c_q*K[j];
   }
-  if (!s->payload) return single_factor(&w->single, s, A);
-  double P[18*6], Ap[36];
-  const double *arg[] = {x->pose, x->lam, wrench, s->payload_p};
-  double *res[] = {M, K, P};
-  payload_matrices(arg, res, 0, 0, 0);
-  for (int j = 0; j < 36; j++) Ap[j] = c_a*M[j] + K[j];
-  for (int i = 0; i < 6; i++) for (int j = 0; j < 6; j++) for (int a = 0; a < 3; a++) w->arrow.leg[i].P[a + 3*j] = P[3*i + a + 18*j];
+  if (!s->payload) {
+    for (long j = 0; j < n*n; j++) one[j] = w->arrow.leg[0].A[j][0];
+    return single_factor(&w->single, s, one);
+  }
+  double mass[36], stiffness[36], P[3*LEGS*6], Ap[36], lam[3*LEGS], points[LEGS][18];
+  joint_forces(s, w, lam);
+  const double *in[] = {w->payload.pose, lam, wrench, s->payload_p};
+  double *out[] = {mass, stiffness, P};
+  payload_matrices_double(in, out);
+  for (int j = 0; j < 36; j++) Ap[j] = c_a*mass[j] + c_q*stiffness[j];
+  for (int i = 0; i < LEGS; i++) for (int j = 0; j < 6; j++) for (int a = 0; a < 3; a++) points[i][a + 3*j] = P[3*i + a + 3*LEGS*j];
+  for (int i = 0; i < groups(s); i++) gather(s, i, points[0], 18, 18, w->arrow.leg[i].P);
   return arrow_factor(&w->arrow, s, Ap);
 }
 
@@ -78,129 +64,227 @@ static void turned_pose(const double *old, const double *step, double *pose) {
   for (int i = 0; i < 4; i++) pose[3 + i] = q[i]/norm;
 }
 
-static void follow_tables(const Settings *s, State *x, const double *row) {
-  for (long i = 0; i < s->legs; i++) {
-    const double *t = row + i*TABLE;
-    long l = i*s->n + s->l_index;
-    if (s->prescribed_l >> i & 1) { x->q[l] = t[0]; x->v[l] = t[1]; x->v_dot[l] = x->a[l] = t[2]; }
-    if (s->prescribed_beta >> i & 1) { x->q[l-1] = t[4]; x->v[l-1] = t[5]; x->v_dot[l-1] = x->a[l-1] = t[6]; }
+static double largest(lanes x) {
+  double m = 0;
+  for (int i = 0; i < LANES; i++) if (!(x[i] <= m)) m = x[i];
+  return m;
+}
+
+/* Largest residual over what is tolerated (converged: at most 1), and whether every number is finite */
+static double excess(const Settings *s, Work *w, int *finite) {
+  lanes force = {0}, r = {0}, g = {0}, faults = {0};
+  double payload = 0;
+  for (int i = 0; i < groups(s); i++) {
+    force = magnitude(2, w->leg[i].drive, magnitude(3, w->leg[i].lam, force));
+    r = magnitude(s->n, w->r[i], r); faults += blemish(s->n, w->r[i]);
+    if (s->payload) { g = magnitude(3, w->g[i], g); faults += blemish(3, w->g[i]); }
   }
+  if (s->payload) for (int i = 0; i < 6; i++) { double e = fabs(w->rp[i]); if (!(e <= payload)) payload = e; }
+  double scale = largest(force), worst = largest(r), gap = largest(g);
+  worst = fmax(worst, payload)/(s->tol_force*fmax(scale, 1) + s->force_floor);
+  w->closure = gap;
+  worst = fmax(worst, gap/s->tol_closure);
+  *finite = isfinite(largest(faults)) && isfinite(payload) && isfinite(worst);
+  return worst;
 }
 
-static int converged(const Settings *s, const State *x, const Work *w, double *worst, long *leg) {
-  double force = 1, closure = 0;
-  long N = total(s);
-  *worst = 0; *leg = -1;
-  for (long i = 0; i < 3*s->legs; i++) { double f = fabs(x->lam[i]); if (f > force) force = f; }
-  for (long i = 0; i < 2*s->legs; i++) { double f = fabs(x->drive[i]); if (f > force) force = f; }
-  for (long i = 0; i < N; i++) { double e = fabs(w->r[i])/(force + s->force_floor/s->tol_force); if (!(e <= *worst)) { *worst = e; *leg = i/s->n; } }
-  if (s->payload) for (int i = 0; i < 18; i++) { double e = fabs(w->g[i]); if (!(e <= closure)) closure = e; }
-  double ratio = closure/s->tol_closure;
-  *worst /= s->tol_force;
-  if (!(ratio <= *worst)) *worst = ratio;
-  return *worst <= 1;
+/* Leg with the largest residual; the number of legs for the payload */
+static long worst_leg(const Settings *s, const Work *w) {
+  double most = 0;
+  long leg = s->legs;
+  for (int i = 0; s->payload && i < 6; i++) most = fmax(most, fabs(w->rp[i]));
+  for (long i = 0; i < s->legs; i++) for (long j = 0; j < s->n; j++) {
+    double e = fabs(w->r[i/LANES][j][i%LANES]);
+    if (!(e <= most)) { most = e; leg = i; }
+  }
+  return leg;
 }
 
-static void write_record(const Settings *s, State *x, const double *row, Work *w) {
-  long n = s->n, N = total(s), k = s->legs*n;
+static void write_record(const Settings *s, State *x, const Work *w) {
+  long n = s->n, k = s->legs*n, N = k + (s->payload ? 6 : 0);
   double *o = x->record, part[3], e[3] = {0, 0, 0};
-  commands(s, x, row, w->command);
-  for (long i = 0; i < s->legs; i++) {
-    const double *arg[] = {x->q + i*n, x->v + i*n, w->command[i], s->leg_p + i*s->leg_np};
-    double *res[] = {part};
-    leg_energies(arg, res, 0, 0, 0);
-    for (int j = 0; j < 3; j++) e[j] += part[j];
+  for (int i = 0; i < groups(s); i++) {
+    const LegState *leg = &w->leg[i];
+    const lanes *in[] = {leg->q, leg->v, w->command[i], w->p[i]};
+    lanes energies[3], *out[] = {energies};
+    leg_energies_lanes(in, out);
+    for (int j = 0; j < 3; j++) e[j] += sum(s, i, energies[j]);
+    scatter(s, i, leg->q, n, n, o); scatter(s, i, leg->v, n, n, o + k); scatter(s, i, leg->v_dot, n, n, o + k + N);
+    scatter(s, i, leg->lam, 3, 3, o + k + 2*N); scatter(s, i, leg->drive, 2, 2, o + k + 2*N + 3*s->legs);
   }
   if (s->payload) {
-    const double *arg[] = {x->pose, x->v + k, s->payload_p};
-    double *res[] = {part};
-    payload_energies(arg, res, 0, 0, 0);
+    const double *in[] = {w->payload.pose, w->payload.u, s->payload_p};
+    double *out[] = {part};
+    payload_energies_double(in, out);
     for (int j = 0; j < 3; j++) e[j] += part[j];
+    memcpy(o + 2*k, w->payload.u, 6*sizeof(double)); memcpy(o + 2*k + N, w->payload.u_dot, 6*sizeof(double));
   }
-  memcpy(o, x->q, sizeof(double)*k); o += k;
-  memcpy(o, x->v, sizeof(double)*N); o += N;
-  memcpy(o, x->v_dot, sizeof(double)*N); o += N;
-  memcpy(o, x->lam, sizeof(double)*3*s->legs); o += 3*s->legs;
-  memcpy(o, x->drive, sizeof(double)*2*s->legs); o += 2*s->legs;
-  memcpy(o, x->pose, sizeof(double)*7); o += 7;
+  o += k + 2*N + 5*s->legs;
+  memcpy(o, s->payload ? w->payload.pose : x->pose, 7*sizeof(double)); o += 7;
   memcpy(o, e, sizeof e); o += 3;
   memcpy(o, x->sums, sizeof(double)*3); o += 3;
-  *o++ = x->closure;
+  *o++ = w->closure;
   x->record = o;
+}
+
+static Work *work(void) {
+  static _Thread_local Work w;
+  return &w;
 }
 
 /* Record of the present state (used once, at the start); returns the largest closure through x->closure. */
 void record_state(const Settings *s, State *x, const double *row, const double *wrench) {
-  static Work w;
-  residual(s, x, row, wrench, &w);
-  x->closure = 0;
-  if (s->payload) for (int i = 0; i < 18; i++) if (fabs(w.g[i]) > x->closure) x->closure = fabs(w.g[i]);
-  memcpy(x->powers, w.powers, sizeof w.powers);
-  write_record(s, x, row, &w);
+  Work *w = work();
+  int finite;
+  load(s, x, w);
+  for (int i = 0; i < groups(s); i++) gather(s, i, row, TABLE, TABLE, w->table[i]);
+  residual(s, wrench, w);
+  excess(s, w, &finite);
+  x->closure = w->closure;
+  memcpy(x->powers, w->powers, sizeof w->powers);
+  write_record(s, x, w);
+}
+
+/* Legs' vectors are rows of numbers as well: what follows is the same for legs and payload. */
+
+/* x and its value before, one step on along the straight line through them */
+static void extrapolate(long count, double *x, double *before) {
+  for (long j = 0; j < count; j++) { double now = x[j]; x[j] += now - before[j]; before[j] = now; }
+}
+
+/* Predictor with extrapolated v_dot, Eqs. (T6.1)-(T6.3); `step` is the change of the coordinates */
+static void predict(const Settings *s, long count, double *v, double *v_dot, double *a, double *before, double *step) {
+  double h = s->h, am = s->alpha_m, af = s->alpha_f;
+  extrapolate(count, v_dot, before);
+  for (long j = 0; j < count; j++) {
+    double a1 = ((1 - af)*v_dot[j] + af*before[j] - am*a[j])/(1 - am);
+    step[j] = h*v[j] + h*h*((0.5 - s->beta)*a[j] + s->beta*a1);
+    v[j] += h*((1 - s->gamma)*a[j] + s->gamma*a1);
+    a[j] = a1;
+  }
+}
+
+/* Newton update, Eq. (T6.4) */
+static void update(const Settings *s, long count, const double *dq, double *v, double *v_dot, double *a) {
+  double c_q = 1/(s->beta*s->h*s->h), c_v = s->gamma*s->h*c_q, c_a = (1 - s->alpha_m)/(1 - s->alpha_f)*c_q;
+  for (long j = 0; j < count; j++) { v[j] += c_v*dq[j]; v_dot[j] += c_a*dq[j]; a[j] += c_q*dq[j]; }
+}
+
+typedef struct {                        /* of the step before, for the predictor */
+  lanes v_dot[GROUPS][MAXN], lam[GROUPS][3], drive[GROUPS][2];
+  double u_dot[6];
+} Past;
+
+static void predict_body(const Settings *s, const double *row, Past *past, Work *w, double *pose_step) {
+  for (int i = 0; i < groups(s); i++) {
+    LegState *leg = &w->leg[i];
+    lanes step[MAXN];
+    extrapolate(3*LANES, (double *)leg->lam, (double *)past->lam[i]);
+    extrapolate(2*LANES, (double *)leg->drive, (double *)past->drive[i]);
+    predict(s, s->n*LANES, (double *)leg->v, (double *)leg->v_dot, (double *)leg->a, (double *)past->v_dot[i], (double *)step);
+    for (long j = 0; j < s->n; j++) leg->q[j] += step[j];
+  }
+  follow_table(s, row, w);
+  if (s->payload) predict(s, 6, w->payload.u, w->payload.u_dot, w->payload.a, past->u_dot, pose_step);
+}
+
+/* Solve the linear equations and correct the state */
+static void correct(const Settings *s, const double *pose0, double *pose_step, Work *w) {
+  lanes dq[GROUPS][MAXN], dlam[GROUPS][3], df[GROUPS];
+  double dy[6];
+  if (s->payload) {
+    arrow_solve(&w->arrow, s, w->r, w->g, w->rp, dq, dlam, df, dy);
+    update(s, 6, dy, w->payload.u, w->payload.u_dot, w->payload.a);
+    for (int j = 0; j < 6; j++) pose_step[j] += dy[j];
+    turned_pose(pose0, pose_step, w->payload.pose);
+  } else {
+    double r[MAXN], x[MAXN], f[2];
+    for (long j = 0; j < s->n; j++) r[j] = w->r[0][j][0];
+    single_solve(&w->single, s, r, x, f);
+    for (long j = 0; j < s->n; j++) dq[0][j] = (lanes){0} + x[j];
+    memset(dlam, 0, sizeof dlam);
+    df[0] = (lanes){0} + f[0];
+    w->leg[0].drive[1] += f[1];
+  }
+  for (int i = 0; i < groups(s); i++) {
+    LegState *leg = &w->leg[i];
+    update(s, s->n*LANES, (double *)dq[i], (double *)leg->v, (double *)leg->v_dot, (double *)leg->a);
+    for (long j = 0; j < s->n; j++) leg->q[j] += dq[i][j];
+    for (int j = 0; j < 3; j++) leg->lam[j] += dlam[i][j];
+    leg->drive[0] += df[i];
+  }
+}
+
+/* Newton's iteration of one step; `age` counts the steps since the matrix was made. After the residuals are tolerable one
+   more correction is made: index 3 magnifies what is left. */
+static int iterate(const Settings *s, State *x, const double *wrench, double *pose_step, long *age, Work *w) {
+  double c_v = s->gamma/(s->beta*s->h), c_a = (1 - s->alpha_m)/((1 - s->alpha_f)*s->beta*s->h*s->h);
+  double before = INFINITY, pose0[7];
+  memcpy(pose0, w->payload.pose, sizeof pose0);
+  if (s->payload) turned_pose(pose0, pose_step, w->payload.pose);
+  for (long iteration = 0;; iteration++) {
+    int finite;
+    residual(s, wrench, w);
+    double worst = excess(s, w, &finite);
+    int done = worst <= 1;
+    if (!finite) return NOT_FINITE;
+    if (!done && iteration >= s->max_iterations) return worst < 100 ? OK : NOT_CONVERGED; /* OK: rounding floor reached */
+    if (*age >= s->max_age || (iteration > 1 && worst > 0.1*before)) {
+      x->factorisations++;
+      if (factor(s, wrench, c_v, c_a, 1, w)) return SINGULAR;
+      *age = 0;
+    }
+    before = worst;
+    x->iterations++;
+    correct(s, pose0, pose_step, w);
+    if (done) return OK;
+  }
 }
 
 /* Advance `steps` steps; tables have steps + 1 rows (row 0 is the present time). */
 int march(const Settings *s, State *x, const double *table, const double *wrench, long steps) {
-  static Work w;
-  long n = s->n, N = total(s), k = s->legs*n, width = s->legs*TABLE, age = s->max_age;
-  double h = s->h, am = s->alpha_m, af = s->alpha_f;
-  double c_q = 1/(s->beta*h*h), c_v = s->gamma/(s->beta*h), c_a = (1 - am)/((1 - af)*s->beta*h*h);
-  double q0[MAXF], step[MAXF], pose0[7], dq[MAXF], dlam[18], df[12], worst, before;
-  double v_dot1[MAXF], lam1[18], drive1[12];            /* of the step before: the predictor extrapolates */
-  memcpy(v_dot1, x->v_dot, sizeof(double)*N); memcpy(lam1, x->lam, sizeof(double)*3*s->legs);
-  memcpy(drive1, x->drive, sizeof(double)*2*s->legs);
+  static _Thread_local Past past;
+  Work *w = work();
+  long width = s->legs*TABLE, age = s->max_age;
+  double pose_step[6];
+  load(s, x, w);
+  for (int i = 0; i < groups(s); i++) {
+    memcpy(past.v_dot[i], w->leg[i].v_dot, sizeof past.v_dot[i]);
+    memcpy(past.lam[i], w->leg[i].lam, sizeof past.lam[i]);
+    memcpy(past.drive[i], w->leg[i].drive, sizeof past.drive[i]);
+  }
+  memcpy(past.u_dot, w->payload.u_dot, sizeof past.u_dot);
   for (long t = 1; t <= steps; t++) {
-    const double *row = table + t*width, *wr = wrench + 6*t;
-    memcpy(q0, x->q, sizeof(double)*k); memcpy(pose0, x->pose, sizeof pose0);
-    for (long j = 0; j < 3*s->legs; j++) { double f = x->lam[j]; x->lam[j] += f - lam1[j]; lam1[j] = f; }
-    for (long j = 0; j < 2*s->legs; j++) { double f = x->drive[j]; x->drive[j] += f - drive1[j]; drive1[j] = f; }
-    for (long j = 0; j < N; j++) {                      /* predictor: extrapolated v_dot, Eqs. (T6.1)-(T6.3) */
-      double a0 = x->a[j], old = x->v_dot[j], a1;
-      x->v_dot[j] += old - v_dot1[j]; v_dot1[j] = old;
-      a1 = ((1 - af)*x->v_dot[j] + af*old - am*a0)/(1 - am);
-      step[j] = h*x->v[j] + h*h*((0.5 - s->beta)*a0 + s->beta*a1);
-      x->v[j] += h*((1 - s->gamma)*a0 + s->gamma*a1);
-      x->a[j] = a1;
-      if (j < k) x->q[j] = q0[j] + step[j];
-    }
-    follow_tables(s, x, row);
-    if (s->payload) turned_pose(pose0, step + k, x->pose);
-    before = INFINITY;
-    for (long iteration = 0;; iteration++) {
-      residual(s, x, row, wr, &w);
-      long leg;
-      int done = converged(s, x, &w, &worst, &leg);
-      x->bad_leg = leg;
-      if (!isfinite(worst)) { x->steps += t; return NOT_FINITE; }
-      if (!done && iteration >= s->max_iterations) {
-        if (worst < 100) break;                         /* rounding floor of closures or forces reached */
-        x->steps += t; return NOT_CONVERGED;
-      }
-      if (age >= s->max_age || (iteration > 1 && worst > 0.1*before)) {
-        if (factor(s, x, wr, c_v, c_a, &w)) { x->steps += t; return SINGULAR; }
-        age = 0;
-      }
-      before = worst;
-      x->iterations++;
-      if (s->payload) arrow_solve(&w.arrow, s, w.r, w.g, dq, dlam, df);
-      else single_solve(&w.single, s, w.r, dq, df);
-      for (long j = 0; j < N; j++) {                    /* Newton update, Eq. (T6.4) */
-        step[j] += dq[j]; x->v[j] += c_v*dq[j]; x->v_dot[j] += c_a*dq[j]; x->a[j] += c_q*dq[j];
-        if (j < k) x->q[j] += dq[j];
-      }
-      if (s->payload) {
-        turned_pose(pose0, step + k, x->pose);
-        for (int j = 0; j < 18; j++) x->lam[j] += dlam[j];
-        for (int j = 0; j < 6; j++) x->drive[2*j] += df[j];
-      } else { x->drive[0] += df[0]; x->drive[1] += df[1]; }
-      if (done) break;                                  /* after a last correction: index 3 magnifies what is left */
-    }
+    predict_body(s, table + t*width, &past, w, pose_step);
+    int fault = iterate(s, x, wrench + 6*t, pose_step, &age, w);
+    if (fault) { x->steps += t; x->bad_leg = worst_leg(s, w); return fault; }
     age++;
-    x->closure = 0;
-    if (s->payload) for (int j = 0; j < 18; j++) if (fabs(w.g[j]) > x->closure) x->closure = fabs(w.g[j]);
-    for (int j = 0; j < 3; j++) { x->sums[j] += 0.5*h*(x->powers[j] + w.powers[j]); x->powers[j] = w.powers[j]; }
-    if (t % s->output_every == 0) write_record(s, x, row, &w);
+    for (int j = 0; j < 3; j++) { x->sums[j] += 0.5*s->h*(x->powers[j] + w->powers[j]); x->powers[j] = w->powers[j]; }
+    if (t % s->output_every == 0) { set_commands(s, w); write_record(s, x, w); }
   }
   x->steps += steps;
+  store(s, w, x);
+  return OK;
+}
+
+/* Add `share` times the part of the velocities that is normal to the closures in the mass metric, Eq. (T6.14):
+   M n + J^T pi = 0, J n - P n_p = J v - P u, prescribed strokes apart. */
+int scale_normal_velocity(const Settings *s, State *x, const double *wrench, double share) {
+  Work *w = work();
+  long n = s->n;
+  lanes dq[GROUPS][MAXN], dlam[GROUPS][3], df[GROUPS];
+  double still[6] = {0}, dy[6];
+  load(s, x, w);
+  if (factor(s, wrench, 0, 1, 0, w)) return SINGULAR;
+  for (int i = 0; i < groups(s); i++) {
+    const LegBlock *b = &w->arrow.leg[i];
+    memset(w->r[i], 0, sizeof(lanes)*n); memset(w->g[i], 0, sizeof w->g[i]);
+    lanes_gemv(3, n, -1, b->J, w->leg[i].v, w->g[i]);
+    for (int j = 0; j < 6; j++) for (int a = 0; a < 3; a++) w->g[i][a] += b->P[a + 3*j] * w->payload.u[j];
+  }
+  arrow_solve(&w->arrow, s, w->r, w->g, still, dq, dlam, df, dy);
+  for (int i = 0; i < groups(s); i++) for (long j = 0; j < n; j++) w->leg[i].v[j] += share * dq[i][j];
+  for (int j = 0; j < 6; j++) w->payload.u[j] += share * dy[j];
+  store(s, w, x);
   return OK;
 }

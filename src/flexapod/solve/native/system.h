@@ -2,11 +2,10 @@
 #if defined(__GNUC__) && !defined(__clang__)
 #pragma GCC optimize("O3")              /* loops of this size are worth unrolling; the generated code above has none */
 #endif
-#include <math.h>
-#include <string.h>
 
 enum { COMMAND = 4, TABLE = 8 };        /* table row of a leg: l, l', l'', force, beta, beta', beta'', torque */
 enum { OK = 0, NOT_CONVERGED = 1, NOT_FINITE = 2, SINGULAR = 3 };
+enum { LEGS = 6, MAXN = 64 };           /* coordinates of a leg: 3, up to 4 axial and twice 24 lateral shapes */
 
 typedef struct {
   long legs, n, l_index, payload;       /* payload: 1 for a robot, 0 for a single planar actuator */
@@ -25,5 +24,3 @@ typedef struct {                        /* flat coordinates: legs * n, then the 
   double closure;
   long steps, iterations, factorisations, bad_leg;
 } State;
-
-typedef struct { double *A; long *pivot; long n; } Lu;

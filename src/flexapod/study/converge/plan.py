@@ -10,6 +10,7 @@ from flexapod.model import ActuatorStudy, Study
 from flexapod.model.simulation import SOLID
 from flexapod.study.checks import check_actuator_path, check_path
 from flexapod.study.converge.trials import Setting, Trials, setting_of
+from flexapod.study.record import Report
 
 __all__ = ["base_setting", "check_accuracy", "checked_trials", "discretisations", "estimate", "first_step", "largest"]
 
@@ -49,8 +50,8 @@ def check_accuracy(accuracy: object) -> None:
         )
 
 
-def checked_trials(study: Study | ActuatorStudy, trials: Trials | None) -> Trials:
-    """Runs of a study that can be run.
+def checked_trials(study: Study | ActuatorStudy, trials: Trials | None, progress: Report | None = None) -> Trials:
+    """Runs of a study that can be run, which tell `progress`.
 
     Raises
     ------
@@ -65,7 +66,9 @@ def checked_trials(study: Study | ActuatorStudy, trials: Trials | None) -> Trial
         check_path(study)
     else:
         raise InputError("is no study", key="study", value=type(study).__name__, allowed="the result of flexapod.load")
-    return trials or Trials(study)
+    found = trials or Trials(study)
+    found.report = progress
+    return found
 
 
 def base_setting(study: Study | ActuatorStudy) -> Setting:

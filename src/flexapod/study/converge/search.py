@@ -65,8 +65,7 @@ def converge(
         By Ctrl-C, with what was computed.
     """
     check_accuracy(accuracy)
-    trials = checked_trials(study, trials)
-    trials.report = progress
+    trials = checked_trials(study, trials, progress)
     found = Findings(quantities=trials.quantities, accuracy=accuracy)
     try:
         _search(trials, found)

@@ -201,9 +201,8 @@ class Trials:
         )
 
     def _with(self, s: Setting) -> Study | ActuatorStudy:
-        changes = {
-            name: getattr(s, name) for name in ("fidelity", "basis", "modes", "step", "tolerance", "output_step")
-        }
+        names = ("fidelity", "modes", "step", "tolerance", "output_step")
+        changes = {name: getattr(s, name) for name in (*names, *(["basis"] * (s.fidelity not in OWN_BASIS)))}
         return self.study.replace(simulation=self.study.simulation.replace(**changes))
 
 

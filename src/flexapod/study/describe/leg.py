@@ -7,8 +7,9 @@ from dataclasses import dataclass
 import numpy as np
 
 from flexapod.model import Leg
+from flexapod.model.simulation import SOLID
 from flexapod.study.estimates import buckling_load, section_width
-from flexapod.study.plausibility import NEAR_BUCKLING, SLENDERNESS
+from flexapod.study.plausibility import NEAR_BUCKLING, SLENDERNESS, thick_words
 from flexapod.typing import Array
 
 __all__ = ["Extreme", "LegDescription", "Stress", "describe_leg", "load_remarks"]
@@ -124,8 +125,8 @@ def _stress(leg: Leg, t: Array, force: Array, moment: Array) -> Stress | None:
     )
 
 
-def load_remarks(legs: tuple[LegDescription, ...]) -> list[str]:
-    """Doubts about loads, each of the leg where it is worst."""
+def load_remarks(legs: tuple[LegDescription, ...], fidelity: str) -> list[str]:
+    """Doubts about loads and about legs too thick for the `fidelity`, each of the leg where it is worst."""
     remarks = []
     worst = max(legs, key=lambda leg: leg.euler_share.value)
     share, slender = worst.euler_share, min(legs, key=lambda leg: leg.slenderness)
@@ -137,7 +138,7 @@ def load_remarks(legs: tuple[LegDescription, ...]) -> list[str]:
     if slender.slenderness < SLENDERNESS:
         remarks.append(
             f"leg {slender.leg}: the free length falls to {slender.slenderness:.3g} times the width of the piston; "
-            f"below {SLENDERNESS:g} shear, which an Euler-Bernoulli beam leaves out, is no longer small"
+            + thick_words(solid=fidelity == SOLID)
         )
     return remarks + _yielding(legs)
 

@@ -9,8 +9,8 @@ from numpy.typing import NDArray
 
 from flexapod import model, rigid
 from flexapod.errors import FlexapodError
-from flexapod.solve.modes import robot_modes
-from flexapod.solve.stiffness import robot_stiffness
+from flexapod.solve.modes import locked_poses, robot_modes, the_modes
+from flexapod.solve.stiffness import stiffness_of
 from flexapod.study.estimates import residual_vibration
 from flexapod.study.kinds import mode_kinds
 from flexapod.typing import Array
@@ -26,7 +26,8 @@ __all__ = [
 
 SHOWN = 6
 BAND = 1e-6  # amplitude at which the tool counts as settled [m]
-SAMPLING = 5e-5  # [s]: modes up to 2 kHz
+HIGHEST = 2e3  # [Hz]: no motion of a machine excites a mode above
+PER_PERIOD, FEWEST, MOST = 12, 2000, 100_000  # instants of the motion: of a period of the highest mode, of all
 
 
 @dataclass(frozen=True, kw_only=True)
@@ -73,7 +74,8 @@ class VibrationToExpect:
     """Residual vibration of the tool after the motion (T8.14)-(T8.18).
 
     `amplitude` [m]: all modes in phase; `frequency` [Hz] and `share` of the largest; `settling` [s] until the sum is
-    below `band` [m], inf without damping.
+    below `band` [m], inf without damping; `left_out` [Hz]: the lowest mode that is not in it, because the motion is too
+    long to be sampled for it; None where none is.
     """
 
     amplitude: float
@@ -81,6 +83,7 @@ class VibrationToExpect:
     share: float
     settling: float
     band: float
+    left_out: float | None
 
 
 def describe_pose(study: model.Study, name: str, time: float) -> PoseDescription:
@@ -88,8 +91,8 @@ def describe_pose(study: model.Study, name: str, time: float) -> PoseDescription
     robot, simulation = study.robot, study.simulation
     path, wrench = _at_rest(study, time), rigid.wrench(study.load, np.array([time]))[0]
     try:
-        found = robot_modes(robot, simulation, path, wrench)
-        stiffness = _stiffness(robot_stiffness(robot, simulation, path, wrench).total)
+        locked = locked_poses(robot, simulation, path, wrench)
+        found, stiffness = the_modes(locked), _stiffness(stiffness_of(robot, locked).total[0])
     except FlexapodError as error:
         return PoseDescription(name=name, time=time, problem=str(error))
     sag = found.equilibrium.state.pose[:3] - path.point(robot.payload.com)[0][0]
@@ -131,7 +134,9 @@ def vibration_to_expect(study: model.Study, end: float) -> VibrationToExpect | N
         modes = robot_modes(robot, study.simulation, _at_rest(study, end), wrench)
     except FlexapodError:
         return None
-    t = np.linspace(0.0, end, int(np.clip(end / SAMPLING, 2000, 50000)) + 1)
+    wanted = modes.frequency[(modes.frequency > 0) & (modes.frequency <= HIGHEST) & (modes.damping_ratio < 1)]
+    count = int(np.clip(np.ceil(PER_PERIOD * wanted.max(initial=0.0) * end), FEWEST, MOST))
+    t = np.linspace(0.0, end, count + 1)
     path = rigid.poses(robot, study.motion, t)
     found = residual_vibration(robot, modes, t, path, BAND, from_rest=study.initial.start != "moving")
     if not found.frequency.size:
@@ -143,4 +148,5 @@ def vibration_to_expect(study: model.Study, end: float) -> VibrationToExpect | N
         share=float(found.amplitude[largest] / found.total) if found.total > 0 else 0.0,
         settling=found.time_to_band(),
         band=BAND,
+        left_out=min(set(wanted.tolist()) - set(found.frequency.tolist()), default=None),
     )

@@ -79,7 +79,7 @@ def describe(study: model.Study | model.ActuatorStudy) -> RobotDescription | Act
         singularity=singularity,
         poses=tuple(describe_pose(study, name, instant) for name, instant in instants.items()),
         vibration=vibration_to_expect(study, end),
-        remarks=tuple(dict.fromkeys([*study.warnings, *remarks, *load_remarks(legs)])),
+        remarks=tuple(dict.fromkeys([*study.warnings, *remarks, *load_remarks(legs, study.simulation.fidelity)])),
     )
 
 

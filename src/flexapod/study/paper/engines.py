@@ -15,7 +15,7 @@ import numpy as np
 from flexapod import model, rigid
 from flexapod.engines.engine import EXUDYN
 from flexapod.engines.exudyn_integration import Integration, extrapolated
-from flexapod.engines.exudyn_robot import RobotResult, simulate_robot
+from flexapod.engines.exudyn_robot import MESHES, STEP, RobotResult, simulate_robot
 from flexapod.errors import InputError
 from flexapod.study.attributes import attributes
 from flexapod.study.names import dataset
@@ -38,8 +38,6 @@ __all__ = [
     "undamped",
 ]
 
-STEP = 2.5e-4  # s; longer ones ring more where the jerk jumps, shorter ones carry Newton's tolerance into the forces
-MESHES = ((30, 0.01), (60, 0.005))  # elements per piston, distance of the rings [m]: one halved with the other
 NO_GUIDE = 0.0  # m; of rigid pistons
 RIGID_TOLERANCE = 1e-8  # N; Newton's method
 USUAL = {0: 2.0, 30: 10.0, 60: 15.0}  # s, by elements per piston: for the progress only

@@ -15,8 +15,8 @@ import numpy as np
 
 from flexapod.bases import axial_basis, lateral_basis
 from flexapod.errors import ComputationError
+from flexapod.integration import GeneralizedAlpha
 from flexapod.mechanics.layout import COMMAND_SIZE, LEG_PARAMETERS, Shapes, columns
-from flexapod.solve.genalpha import GeneralizedAlpha
 from flexapod.solve.kernel import NAMES, SOURCES, Kernel
 from flexapod.solve.march import Problem, Tables, march
 from flexapod.solve.plant import TABLE, Counters, Flow, Plant, Recording
@@ -119,7 +119,6 @@ def _problem(system: RobotSystem, method: GeneralizedAlpha, tables: Tables, dura
         output_step=duration / OUTPUTS,
         outputs=OUTPUTS,
         measure=lambda recording: [recording.pose],
-        defect=lambda flow, t, ratio: flow,
         restart=lambda flow, t, h: flow,
         restarts=(),
         check=lambda recording: None,
@@ -161,7 +160,7 @@ def _kernel(mechanism: Mechanism, shapes: Shapes, general: int) -> Kernel:
     if not command:
         raise ComputationError(
             "there is no C compiler, and interpreted equations would take hours",
-            next_step="Install gcc or clang, or `pip install flexapod[compiler]`.",
+            next_step="Install gcc or clang, or `pip install ziglang`.",
         )
     texts = [
         Path(str(file)).read_bytes() for file in (__file__, mechanism.file, lagrange.__file__, vocabulary.__file__)

@@ -122,10 +122,12 @@ def _release() -> list[Check]:
     return checks(names, theirs[picks], tip, 0.022, "mm", absolute=True)
 
 
+_THREE_MESHES = "CalculiX, C3D20R on three meshes and the limit of two"
+
 CALCULIX_PISTON = Case(
     name="calculix-piston",
     statement="Bending frequencies of the clamped piston, 27 mm by 600 mm of steel, Poisson's ratio 0",
-    source="CalculiX, C3D20R on three meshes and the limit of two",
+    source=_THREE_MESHES,
     argument="ours with first-order shear and rotary inertia, r / L = 0.011, which take 0.1 to 1.6 %; the square of "
     "that and rounding, 1e-5; of a mesh what it differs from the limit: a circle of 8 parabolas is no circle",
     compute=_piston,
@@ -135,7 +137,7 @@ CALCULIX_PISTON = Case(
 CALCULIX_BEAM = Case(
     name="calculix-beam",
     statement="Bending frequencies of the paper's Table 2 beam, 1.83 m clamped, Poisson's ratio 0",
-    source="CalculiX, C3D20R on three meshes and the limit of two",
+    source=_THREE_MESHES,
     argument="as calculix-piston; shear and rotary inertia take 1e-4 at most",
     compute=_beam,
     engine=CALCULIX,

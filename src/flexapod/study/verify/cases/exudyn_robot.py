@@ -10,13 +10,11 @@ import numpy as np
 from flexapod import model
 from flexapod.engines.engine import EXUDYN
 from flexapod.engines.exudyn_integration import Integration, extrapolated
+from flexapod.engines.exudyn_robot import MESHES, STEP
 from flexapod.engines.exudyn_robot import simulate_robot as exudyn_robot
 from flexapod.study.simulation import simulate
 from flexapod.study.verify.case import Case, Check
 from flexapod.typing import Array
-
-STEP = 2.5e-4
-MESHES = ((30, 0.01), (60, 0.005))  # elements per piston, distance of the rings [m]: one halved with the other
 
 
 def _compute(amplitude: float, travel: float, duration: float) -> list[Check]:

@@ -1,6 +1,10 @@
 """Constants of the generalized-alpha method, Eqs. (T6.1)-(T6.5), (T6.13)-(T6.14)."""
 
+from __future__ import annotations
+
 from dataclasses import dataclass
+
+__all__ = ["GeneralizedAlpha"]
 
 
 @dataclass(frozen=True)

@@ -1,0 +1,46 @@
+"""Tables of figures, printed and as Markdown."""
+
+from __future__ import annotations
+
+from collections.abc import Sequence
+from dataclasses import dataclass, field
+
+__all__ = ["Section", "goal"]
+
+
+@dataclass(frozen=True, kw_only=True)
+class Section:
+    """One table with the command that repeats it, and remarks below."""
+
+    title: str
+    command: str
+    header: Sequence[str]
+    rows: Sequence[Sequence[str]]
+    remarks: Sequence[str] = field(default_factory=tuple)
+
+    def markdown(self) -> str:
+        """As a chapter of a page."""
+        lines = [_row(self.header), _row(["---"] * len(self.header)), *(_row(row) for row in self.rows)]
+        parts = [f"## {self.title}", f"`{self.command}`", "\n".join(lines)]
+        if self.remarks:
+            parts.append("\n".join(f"- {remark}" for remark in self.remarks))
+        return "\n\n".join(parts)
+
+    def text(self) -> str:
+        """For a terminal: columns aligned."""
+        table = [self.header, *self.rows]
+        widths = [max(len(row[i]) for row in table) for i in range(len(self.header))]
+        lines = [
+            "  ".join(cell.ljust(width) for cell, width in zip(row, widths, strict=True)).rstrip() for row in table
+        ]
+        return "\n".join([f"{self.title}   [{self.command}]", *lines, *(f"  {remark}" for remark in self.remarks)])
+
+
+def _row(cells: Sequence[str]) -> str:
+    return "| " + " | ".join(cells) + " |"
+
+
+def goal(value: float, limit: float, words: str, *, at_least: bool = False) -> str:
+    """The goal and whether it is met."""
+    met = value >= limit if at_least else value <= limit
+    return f"{words}: {'met' if met else 'not met'}"

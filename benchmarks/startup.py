@@ -1,0 +1,84 @@
+"""From nothing to a result: import, help, cold and warm start as whole processes, the paper's study."""
+
+from __future__ import annotations
+
+import os
+import statistics
+import subprocess
+import sys
+import tempfile
+import time
+from collections.abc import Callable
+
+from benchmarks.report import Section, goal
+
+__all__ = ["startup"]
+
+COMMAND = "python -m benchmarks start-up"
+ROLL = (
+    "import flexapod as fx\n"
+    "study = fx.preset('paper-robot')\n"
+    "fx.simulate(study.robot, study.motion, modes=3, step=5e-4)\n"
+)
+NO_COMPILER = (
+    "import time\n"
+    "from flexapod.model import override, preset\n"
+    "from flexapod.solve.robot_march import prepare\n"
+    "def seconds(duration):\n"
+    "    run = prepare(override(preset('paper-robot'), step=5e-4, duration=duration))\n"
+    "    begin = time.perf_counter()\n"
+    "    list(run.chunks)\n"
+    "    return time.perf_counter() - begin\n"
+    "short, long = seconds(0.02), seconds(0.12)\n"
+    "print((long - short) / 200)\n"
+)
+
+
+def startup() -> list[Section]:
+    """One section, times of the clock on the wall."""
+    imported = _median(lambda: _seconds("-c", "import flexapod") - _seconds("-c", "pass"))
+    helped = _median(lambda: _seconds("-m", "flexapod", "--help"))
+    cold, warm = _median(_cold, 3), _median(lambda: _seconds("-c", ROLL))
+    step, paper = _interpreted(), _replicate()
+    rows = [
+        ["import flexapod", f"{imported:.3f} s", goal(imported, 0.3, "0.3 s")],
+        ["flexapod --help", f"{helped:.3f} s", goal(helped, 0.5, "0.5 s")],
+        ["first roll ever, kernel compiled, whole process", f"{cold:.2f} s", goal(cold, 10.0, "10 s")],
+        ["2 s roll at 0.5 ms, warm, whole process", f"{warm:.2f} s", goal(warm, 1.0, "1 s")],
+        ["a step without a C compiler, k = 3", f"{1e3 * step:.2f} ms", ""],
+        ["flexapod replicate, the paper's whole study", f"{paper:.1f} s", goal(paper, 90.0, "90 s")],
+    ]
+    return [Section(title="Start", command=COMMAND, header=["what", "time", "goal"], rows=rows)]
+
+
+def _median(action: Callable[[], float], repeats: int = 7) -> float:
+    return statistics.median(action() for _ in range(repeats))
+
+
+def _seconds(*arguments: str, **environment: str) -> float:
+    """Seconds of a whole Python process."""
+    begin = time.perf_counter()
+    subprocess.run(
+        [sys.executable, *arguments], check=True, stdout=subprocess.DEVNULL, stderr=subprocess.DEVNULL,
+        env=os.environ | environment,
+    )  # fmt: skip
+    return time.perf_counter() - begin
+
+
+def _cold() -> float:
+    with tempfile.TemporaryDirectory() as folder:
+        return _seconds("-c", ROLL, FLEXAPOD_CACHE=folder)
+
+
+def _replicate() -> float:
+    with tempfile.TemporaryDirectory() as folder:
+        return _seconds("-m", "flexapod", "replicate", "--out", folder)
+
+
+def _interpreted() -> float:
+    """Seconds of a step without a compiler: the difference of two runs leaves out the start."""
+    run = subprocess.run(
+        [sys.executable, "-W", "ignore", "-c", NO_COMPILER],
+        check=True, capture_output=True, text=True, env=os.environ | {"FLEXAPOD_COMPILER": "none"},
+    )  # fmt: skip
+    return float(run.stdout)

@@ -1,0 +1,146 @@
+"""`flexapod map`: frequencies, stiffness, deviations, forces and margins over a line, slice or volume of poses."""
+
+from __future__ import annotations
+
+from pathlib import Path
+from typing import TYPE_CHECKING, Annotated
+
+import typer
+
+from flexapod.app.failures import guarded
+from flexapod.app.options import Json, Out, Quiet, StudyFile, as_options
+
+if TYPE_CHECKING:
+    from xarray import Dataset
+
+    from flexapod.study.map.findings import Finding, MapFindings
+
+__all__ = ["add"]
+
+COMPUTING = 0.7  # share of the bar for the poses; the rest is for figures
+_FORM = '"surge=-100..100mm:41"'
+X = Annotated[str | None, typer.Option("--x", metavar=_FORM, help="First axis; without range: as far as is reached.")]
+Y = Annotated[str | None, typer.Option("--y", metavar="AXIS", help="Second axis; default of both: surge and heave.")]
+Z = Annotated[str | None, typer.Option("--z", metavar="AXIS", help="Third axis of a volume: one panel per value.")]
+At = Annotated[
+    str | None, typer.Option("--at", metavar='"roll=10deg"', help="Fixed coordinates; the others as at home.")
+]
+Direction = Annotated[
+    str, typer.Option("--direction", metavar="x|y|z|1,0,1", help="Of the force for the stiffness at the tool.")
+]
+Acceleration = Annotated[
+    str | None,
+    typer.Option(
+        "--acceleration", metavar='"0,0,5"', help="Of the platform, m/s^2; default: 1 m/s^2, worst direction."
+    ),
+]
+Mode = Annotated[int, typer.Option("--mode", min=1, help="Which natural frequency to show.")]
+Count = Annotated[int | None, typer.Option("--count", min=1, help="Points of an axis that names none.")]
+
+
+def add(app: typer.Typer) -> None:
+    """Give `app` the command."""
+    app.command("map")(workspace_map)
+
+
+@guarded
+def workspace_map(
+    file: StudyFile, x: X = None, y: Y = None, z: Z = None, at: At = None, direction: Direction = "z",
+    acceleration: Acceleration = None, mode: Mode = 1, count: Count = None, out: Out = None, json: Json = False,
+    quiet: Quiet = False,
+) -> None:  # fmt: skip
+    """Map frequencies, stiffness, deviations, forces and margins over poses: map.nc and figures."""
+    from flexapod import model
+    from flexapod.app.map_options import parse_acceleration, parse_at, parse_axes, parse_direction
+    from flexapod.app.outputs import results_folder
+    from flexapod.app.terminal import print_json, progress_bar
+    from flexapod.errors import InputError
+    from flexapod.study.map import workspace_map as compute
+    from flexapod.study.map.findings import map_findings
+    from flexapod.study.map.workspace import FREQUENCIES
+
+    study = model.load(file)
+    if isinstance(study, model.ActuatorStudy):
+        raise InputError("is the study of a single actuator", file=file, allowed="the study of a robot")
+    axes = parse_axes({"--x": x, "--y": y, "--z": z}, count)
+    fixed = parse_at(at, axes or ("surge", "heave"))
+    settings = {"direction": parse_direction(direction), "acceleration": parse_acceleration(acceleration)}
+    folder = results_folder(file, out)
+    with progress_bar(quiet=quiet or json) as report:
+        with as_options(axes="--x", at="--at", direction="--direction", acceleration="--acceleration"):
+            data = compute(
+                study, axes, at=fixed, frequencies=max(mode, FREQUENCIES), **settings,
+                progress=lambda words, share: report(words, COMPUTING * share),
+            )  # fmt: skip
+        if mode > data.sizes["mode"]:
+            raise InputError("is no mode of this robot", key="--mode", value=mode, allowed=f"1 to {data.sizes['mode']}")
+        files = _write(data, folder, mode, report)
+    found = map_findings(data, mode)
+    if json:
+        print_json(found.as_dict() | {"wall_time": data.attrs["wall_time"], "folder": folder, "files": files})
+    else:
+        _show(data, found, folder)
+
+
+def _write(data: Dataset, folder: Path, mode: int, report) -> list[Path]:
+    from flexapod import plot
+    from flexapod.study.map.findings import drawn
+    from flexapod.study.store import save
+
+    report("writing the map", COMPUTING)
+    files, names = [save(data, folder / "map.nc")], drawn(data)
+    for k, name in enumerate(names):
+        report(f"drawing {name.replace('_', ' ')}", COMPUTING + (1 - COMPUTING) * k / len(names))
+        files += plot.save(plot.workspace_map(data, name, mode=mode), folder / f"map-{name.replace('_', '-')}")
+    return files
+
+
+def _show(data: Dataset, found: MapFindings, folder: Path) -> None:
+    from flexapod.app.terminal import print_table, print_text
+    from flexapod.study.map.findings import axis_words
+
+    share = found.reached / found.poses
+    print_text(f"{found.reached} of {found.poses} poses are reached ({100 * share:.3g} %): {axis_words(data)}.")
+    for words, count in sorted(found.reasons.items(), key=lambda item: -item[1]):
+        print_text(f"{count}: {words}", indent=2)
+    if not found.quantities:
+        print_text("Nothing to map: choose other ranges or fixed coordinates.")
+    for name in ("frequency", "stiffness_least"):
+        for quantity in found.quantities:
+            if quantity.name == name:
+                print_text(_sentence(quantity))
+    print_text()
+    rows = [_row(quantity) for quantity in found.quantities]
+    if rows:
+        print_table(["", "least", "at", "largest", "at", "home"], rows, left=(0, 2, 4))
+    for line in data.attrs["warnings"].splitlines():
+        print_text(f"Warning: {line}")
+    print_text(f"Written: map.nc and a figure of each quantity in {folder} ({data.attrs['wall_time']:.2g} s).")
+
+
+def _sentence(found: Finding) -> str:
+    from flexapod.study.map.findings import coordinate_words
+    from flexapod.study.words import text
+
+    words = found.words[0].upper() + found.words[1:]
+    return (
+        f"{words}: {text(found.least, found.unit)} to {text(found.largest, found.unit)}; "
+        f"least at {coordinate_words(found.least_at)}."
+    )
+
+
+def _row(found: Finding) -> list[str]:
+    from flexapod.study.map.findings import coordinate_words
+    from flexapod.study.words import text
+
+    def shown(value: float | None) -> str:
+        return "" if value is None else text(value, found.unit).strip()
+
+    return [
+        found.words,
+        shown(found.least),
+        coordinate_words(found.least_at),
+        shown(found.largest),
+        coordinate_words(found.largest_at),
+        shown(found.home),
+    ]

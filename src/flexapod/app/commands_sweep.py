@@ -1,0 +1,103 @@
+"""`flexapod sweep`: many variants of a study, on local cores or a Dask cluster, into a store that can be continued."""
+
+from __future__ import annotations
+
+import shlex
+import sys
+from pathlib import Path
+from typing import TYPE_CHECKING, Annotated
+
+import typer
+
+from flexapod.app.failures import INTERRUPTED, guarded, print_parts
+from flexapod.app.options import Json, Quiet, StudyFile
+
+if TYPE_CHECKING:
+    from xarray import Dataset
+
+__all__ = ["add"]
+
+SweepFile = Annotated[Path, typer.Argument(metavar="SWEEP", help="Sweep file (TOML): what varies, what is kept.")]
+Out = Annotated[
+    Path | None,
+    typer.Option("--out", metavar="DIR", help="Folder of the results; default: the names of both files."),
+]
+Scheduler = Annotated[
+    str | None, typer.Option("--scheduler", metavar="ADDRESS", help="A running Dask scheduler, tcp://host:8786.")
+]
+Workers = Annotated[
+    int | None, typer.Option("--workers", metavar="N", help="Local processes; default: one a core; 0: none but this.")
+]
+RetryFailed = Annotated[bool, typer.Option("--retry-failed", help="Compute points again that failed before.")]
+
+
+def add(app: typer.Typer) -> None:
+    """Give `app` the command."""
+    app.command("sweep")(sweep)
+
+
+@guarded
+def sweep(
+    file: StudyFile, sweep_file: SweepFile, out: Out = None, scheduler: Scheduler = None, workers: Workers = None,
+    retry_failed: RetryFailed = False, json: Json = False, quiet: Quiet = False,
+) -> None:  # fmt: skip
+    """Compute many variants of a study: grids, lists, Latin hypercubes, random tolerances. Run again, it continues."""
+    from flexapod.app.outputs import results_folder
+    from flexapod.app.terminal import progress_bar
+    from flexapod.study.sweep import SweepStopped
+    from flexapod.study.sweep import sweep as compute
+
+    folder = results_folder(Path(f"{file.stem}-{sweep_file.stem}"), out)
+    with progress_bar(quiet=quiet or json) as report:
+        try:
+            data = compute(
+                file, sweep_file, store=folder / "sweep.zarr", scheduler=scheduler, workers=workers,
+                retry_failed=retry_failed, progress=report,
+            )  # fmt: skip
+            interrupted = False
+        except SweepStopped as stop:
+            data, interrupted = stop.dataset, True
+        files = _write(data, folder)
+    _say(data, folder, files, json=json)
+    if interrupted:
+        _stopped(data, json=json)
+        raise typer.Exit(INTERRUPTED)
+    if not (data.status == "computed").any():
+        raise typer.Exit(1)
+
+
+def _write(data: Dataset, folder: Path) -> list[Path]:
+    """The table, and the figure of the main scalar where there is something to see."""
+    from flexapod import plot
+    from flexapod.plot.sweep import sweep as draw
+    from flexapod.study.sweep import save_table, scalar_names
+
+    files = [save_table(data, folder / "sweep.csv")]
+    if scalar_names(data) and (data.status == "computed").any():
+        files += plot.save(draw(data), folder / "sweep")
+    return files
+
+
+def _say(data: Dataset, folder: Path, files: list[Path], *, json: bool) -> None:
+    from flexapod.app.sweep_words import as_dict, show
+    from flexapod.app.terminal import print_json, print_text
+
+    if json:
+        print_json({**as_dict(data), "folder": folder, "files": [folder / "sweep.zarr", *files]})
+        return
+    show(data)
+    print_text()
+    print_text(f"In {folder}: sweep.zarr, {', '.join(path.name for path in files)}.")
+
+
+def _stopped(data: Dataset, *, json: bool) -> None:
+    done = int((data.status != "pending").sum())
+    print_parts(
+        {
+            "kind": "interrupt",
+            "what": f"stopped by Ctrl-C after {done} of {data.sizes['point']} points, which are stored",
+            "next_step": f"To continue, run the same command again: {shlex.join(['flexapod', *sys.argv[1:]])}",
+        },
+        INTERRUPTED,
+        as_json=json,
+    )

@@ -1,0 +1,160 @@
+"""Key paths of a study file: ``leg[3].piston.diameter``; what stands there, and putting a value there."""
+
+from __future__ import annotations
+
+import re
+from collections.abc import Iterator, Mapping
+from typing import Any
+
+from flexapod.errors import InputError, closest
+from flexapod.model import MATERIALS, base_circle, platform_circle
+from flexapod.units import to_si
+
+__all__ = ["Step", "copied", "key_text", "leaves", "parse_key", "put", "similar_key", "value_at"]
+
+Step = str | int
+_NAME = re.compile(r"([A-Za-z_][\w-]*)((?:\[\d+\])*)")
+_CIRCLES = {"base": base_circle, "platform": platform_circle}
+
+
+def parse_key(key: object, *, what: str) -> tuple[Step, ...]:
+    """Steps of a key path: names, and numbers of list items counted from 1.
+
+    Raises
+    ------
+    InputError
+        It is no key path; `what` is the entry of the sweep file that holds it.
+    """
+    steps: list[Step] = []
+    for part in key.split(".") if isinstance(key, str) else [""]:
+        match = _NAME.fullmatch(part.strip())
+        if match is None:
+            raise InputError(
+                "is no key path", key=what, value=key, allowed="names of the study file, e.g. leg[3].piston.diameter"
+            )
+        steps += [match[1], *(int(number) for number in re.findall(r"\d+", match[2]))]
+    return tuple(steps)
+
+
+def key_text(steps: tuple[Step, ...]) -> str:
+    """The key path as text."""
+    return "".join(f"[{step}]" if isinstance(step, int) else f".{step}" for step in steps).lstrip(".")
+
+
+def copied(data: Any) -> Any:
+    """A copy of tables and lists, all the way down; several times faster than `copy.deepcopy`."""
+    if isinstance(data, dict):
+        return {name: copied(value) for name, value in data.items()}
+    return [copied(value) for value in data] if isinstance(data, list) else data
+
+
+def put(data: dict[str, Any], steps: tuple[Step, ...], value: object) -> None:
+    """Set a value in the tables of a study file; a key without the number of a leg means all legs.
+
+    What the file gives in short is spelled out where the path needs it: one [leg] becomes six, circles become joints,
+    a material becomes E and density.
+
+    Raises
+    ------
+    InputError
+        The path leads through something that has no such key or item.
+    """
+    _put(data, steps, 0, value)
+
+
+def _put(holder: Any, steps: tuple[Step, ...], at: int, value: object) -> None:
+    step, last = steps[at], at == len(steps) - 1
+    if isinstance(step, int):
+        if not isinstance(holder, list) or not 1 <= step <= len(holder):
+            raise _no_item(steps, at, holder)
+        if last:
+            holder[step - 1] = copied(value)
+        else:
+            _put(holder[step - 1], steps, at + 1, value)
+        return
+    if isinstance(holder, list) and at == 1 and steps[0] == "leg":
+        for leg in holder:
+            _put(leg, steps, at, value)
+        return
+    if not isinstance(holder, dict):
+        raise InputError("is no table", key=key_text(steps[:at]), value=holder)
+    _spell_out(holder, steps, at)
+    if last:
+        holder[step] = copied(value)
+    else:
+        _put(holder.setdefault(step, {}), steps, at + 1, value)
+
+
+def _no_item(steps: tuple[Step, ...], at: int, holder: object) -> InputError:
+    allowed = f"1 to {len(holder)}" if isinstance(holder, list) else "a list, whose items are counted from 1"
+    return InputError("has no such item", key=key_text(steps[: at + 1]), allowed=allowed)
+
+
+def _spell_out(table: dict[str, Any], steps: tuple[Step, ...], at: int) -> None:
+    """Replace a short form in `table` by the long one that the path goes into."""
+    step, before = steps[at], steps[at - 1] if at else ""
+    numbered = at + 1 < len(steps) and isinstance(steps[at + 1], int)
+    if at == 0 and step == "leg" and numbered and isinstance(table.get("leg"), dict):
+        table["leg"] = [copied(table["leg"]) for _ in range(6)]
+    elif step == "joints" and before in _CIRCLES and {"radius", "half_angle"} <= table.keys():
+        radius = to_si(table.pop("radius"), "length", key=f"robot.{before}.radius")
+        half_angle = to_si(table.pop("half_angle"), "angle", key=f"robot.{before}.half_angle")
+        table["joints"] = _CIRCLES[str(before)](radius, half_angle).tolist()
+    elif step in ("E", "density") and table.get("material") in MATERIALS:
+        material = MATERIALS[table.pop("material")]
+        table |= {"E": material.E, "density": material.density}
+        if material.yield_stress is not None:
+            table.setdefault("yield_stress", material.yield_stress)
+
+
+def value_at(data: dict[str, Any], steps: tuple[Step, ...]) -> object:
+    """What stands at a path, short forms spelled out in `data`.
+
+    Raises
+    ------
+    InputError
+        Nothing stands there.
+    """
+    found: Any = data
+    for at, step in enumerate(steps):
+        if isinstance(found, dict) and isinstance(step, str):
+            _spell_out(found, steps, at)
+            if step in found:
+                found = found[step]
+                continue
+        if isinstance(found, list) and isinstance(step, int) and 1 <= step <= len(found):
+            found = found[step - 1]
+            continue
+        raise InputError(
+            "has no value in the study file that could vary about it",
+            key=key_text(steps),
+            next_step=f"{similar_key(data, steps) or ''} Otherwise add it to the study file".strip(),
+        )
+    return found
+
+
+def leaves(value: object, steps: tuple[Step, ...]) -> Iterator[tuple[tuple[Step, ...], object]]:
+    """Path and value of every single number in a value that may be a list, or a list of rows."""
+    if isinstance(value, list):
+        for number, item in enumerate(value, start=1):
+            yield from leaves(item, (*steps, number))
+    else:
+        yield steps, value
+
+
+def similar_key(data: Mapping[str, Any], steps: tuple[Step, ...]) -> str | None:
+    """The key of the file that the user may have meant, as a question, or None."""
+    wanted = key_text(steps)
+    known = list(_all_keys(data, ""))
+    ends = [key for key in known if key.endswith(f".{wanted}")]
+    return f"Did you mean {ends[0]!r}?" if ends else closest(wanted, known)
+
+
+def _all_keys(data: object, path: str) -> Iterator[str]:
+    if isinstance(data, Mapping):
+        for name, value in data.items():
+            inner = f"{path}.{name}" if path else str(name)
+            yield inner
+            yield from _all_keys(value, inner)
+    elif isinstance(data, list) and data and isinstance(data[0], Mapping):
+        yield from _all_keys(data[0], path)

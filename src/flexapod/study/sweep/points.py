@@ -1,0 +1,251 @@
+"""The points of a sweep: the study of each, which are alike, which cannot be, and what varies."""
+
+from __future__ import annotations
+
+import hashlib
+import pickle
+import tomllib
+from collections.abc import Callable, Collection, Mapping
+from dataclasses import dataclass, field
+from pathlib import Path
+from typing import Any
+
+import numpy as np
+
+from flexapod.errors import InputError
+from flexapod.model import ActuatorStudy, Study
+from flexapod.study.sweep.keys import Step, copied, key_text, leaves, put, similar_key, value_at
+from flexapod.study.sweep.plan import Plan, Tolerance
+from flexapod.study.sweep.reading import Malformed, dimension_of, read_with_dimensions, study_of
+from flexapod.study.sweep.samples import hypercube_values, number, spaced_values, standard_draws
+from flexapod.typing import Array
+
+__all__ = ["Points", "Resolved", "content_hash"]
+
+MEMORY = 64 << 20  # of studies that were read and wait to be computed; others are read again
+Setting = tuple[str, str, int, tuple[int, ...]]
+
+
+@dataclass(frozen=True, kw_only=True)
+class _Leaf:
+    """One number that scatters: its path and the size of its scatter (SI, or a share of the nominal)."""
+
+    key: tuple[Step, ...]
+    size: float
+    relative: bool
+
+
+@dataclass(frozen=True, kw_only=True)
+class Resolved:
+    """All points, read.
+
+    ``first`` (N,): the first point with an equal study; ``refused``: message by point whose study cannot be;
+    ``scattered``: by tolerance, the values (N, numbers) [SI]; ``hash``: of all studies; ``settings``: one point for
+    every kind of kernel; ``instants``: numbers of stored instants and time between them that occur.
+    """
+
+    first: Array
+    refused: Mapping[int, str]
+    scattered: tuple[Array, ...]
+    hash: str
+    settings: Mapping[Setting, int]
+    instants: frozenset[tuple[int, float]]
+
+
+@dataclass
+class _Found:
+    first: list[int] = field(default_factory=list)
+    refused: dict[int, str] = field(default_factory=dict)
+    known: dict[bytes, int] = field(default_factory=dict)
+    settings: dict[Setting, int] = field(default_factory=dict)
+    instants: set[tuple[int, float]] = field(default_factory=set)
+
+
+class Points:
+    """Points of a sweep of a study, by number from 0.
+
+    Parameters
+    ----------
+    study : Study or ActuatorStudy
+    plan : Plan
+
+    Raises
+    ------
+    InputError
+        A key that no study file has, or values that are not of its kind.
+    """
+
+    def __init__(self, study: Study | ActuatorStudy, plan: Plan) -> None:
+        self.nominal, self.plan = study, plan
+        self.data: dict[str, Any] = tomllib.loads(study.source_text)
+        self.folder = Path(study.path).parent if study.path else Path()
+        self.dimensions: dict[str, str] = {}
+        try:
+            probe = self._probe()
+            self.columns = tuple(self._columns())
+            cube = plan.hypercube
+            self.cube = None if cube is None else hypercube_values(cube, self.dimensions)
+            self.leaves = tuple(self._leaves(probe, t) for t in plan.draws.tolerances) if plan.draws else ()
+        except InputError as error:
+            raise error.located(file=plan.file) from None
+        self.draws = standard_draws(plan.draws, tuple(map(len, self.leaves))) if plan.draws else ()
+        self._packed: dict[int, bytes] = {}
+        self._room = MEMORY
+
+    def __len__(self) -> int:
+        return self.plan.size
+
+    def study(self, point: int) -> Study | ActuatorStudy:
+        """The study of a point.
+
+        Raises
+        ------
+        InputError
+            It cannot be: values that are not physical, or not allowed together.
+        """
+        return study_of(self._tables(point)[0], self.folder)
+
+    def packed(self, point: int) -> bytes:
+        """The study of a point, pickled; asked for once, it is forgotten."""
+        found = self._packed.pop(point, None)
+        return pickle.dumps(self.study(point), protocol=pickle.HIGHEST_PROTOCOL) if found is None else found
+
+    def forget_others(self, points: Collection[int]) -> None:
+        """Drop what was read of all points but these."""
+        wanted = set(points)
+        self._packed = {point: packed for point, packed in self._packed.items() if point in wanted}
+
+    def resolve(self, progress: Callable[[float], None] | None = None) -> Resolved:
+        """Read all points.
+
+        Raises
+        ------
+        InputError
+            A key or value that is wrong whatever the others, or not one point whose study can be.
+        """
+        found, scattered = _Found(), [np.full((len(self), len(group)), np.nan) for group in self.leaves]
+        last: InputError | None = None
+        for point in range(len(self)):
+            if progress is not None and point % 100 == 0:
+                progress(point / len(self))
+            try:
+                tables, values = self._tables(point)
+                for array, row in zip(scattered, values, strict=True):
+                    array[point] = row
+                self._note(found, point, study_of(tables, self.folder))
+            except Malformed as error:
+                raise error.located(file=self.plan.file) from None
+            except InputError as error:
+                last = error
+                found.first.append(point)
+                found.refused[point] = str(error)
+        if last is not None and len(found.refused) == len(self):
+            raise last.located(file=self.plan.file)
+        digest = hashlib.sha256(b"".join(found.known))
+        digest.update(np.array(found.first).tobytes())
+        return Resolved(
+            first=np.array(found.first),
+            refused=found.refused,
+            scattered=tuple(scattered),
+            hash=digest.hexdigest()[:16],
+            settings=found.settings,
+            instants=frozenset(found.instants),
+        )
+
+    def _note(self, found: _Found, point: int, study: Study | ActuatorStudy) -> None:
+        found.first.append(found.known.setdefault(content_hash(study), point))
+        if found.first[-1] == point and self._room > 0:
+            self._packed[point] = pickle.dumps(study, protocol=pickle.HIGHEST_PROTOCOL)
+            self._room -= len(self._packed[point])
+        s = study.simulation
+        axial = tuple(s.axial_shapes(leg.axial_modes) for leg in study.robot.legs) if isinstance(study, Study) else ()
+        found.settings.setdefault((s.fidelity, s.lateral_basis, s.lateral_shapes, axial), point)
+        found.instants.add((s.outputs(study.duration), s.stored_step))
+
+    def _probe(self) -> dict[str, Any]:
+        """Tables with the first value of every key; what is read of them tells the dimensions."""
+        read_with_dimensions(self.data, self.folder, self.dimensions)
+        probe = copied(self.data)
+        firsts: list[tuple[tuple[Step, ...], object]] = []
+        for block in self.plan.blocks:
+            values = [block.spaced.start] if block.spaced else [column[0] for column in block.values]
+            firsts += zip(block.keys, values, strict=True)
+        cube = self.plan.hypercube
+        firsts += [(entry.key, entry.low) for entry in cube.ranges] if cube else []
+        for key, value in firsts:
+            put(probe, key, value)
+        try:
+            read_with_dimensions(probe, self.folder, self.dimensions)
+        except Malformed as error:
+            if error.what == "unknown key" and error.key:
+                error.next_step = self._hint(error.key) or error.next_step
+            raise
+        except InputError:
+            pass  # not physical by itself: other points may be
+        return probe
+
+    def _known(self, key: tuple[Step, ...]) -> bool:
+        return dimension_of(key, self.dimensions) is not None
+
+    def _hint(self, key: str) -> str | None:
+        varied = [k for block in self.plan.blocks for k in block.keys]
+        varied += [entry.key for entry in self.plan.hypercube.ranges] if self.plan.hypercube else []
+        for candidate in varied:
+            if key_text(candidate).startswith(key.split("[")[0]):
+                return similar_key(self.data, candidate)
+        return None
+
+    def _columns(self) -> Any:
+        """By block: a tuple of values for every key."""
+        for block in self.plan.blocks:
+            if block.spaced:
+                yield (spaced_values(block.spaced, block.keys[0], self.dimensions),)
+            else:
+                yield block.values
+
+    def _leaves(self, probe: dict[str, Any], tolerance: Tolerance) -> tuple[_Leaf, ...]:
+        key = tolerance.key
+        each = [key]
+        if key[0] == "leg" and len(key) > 1 and isinstance(key[1], str):
+            each = [("leg", number, *key[1:]) for number in range(1, 7)]
+        tables = copied(self.data)
+        try:
+            found = [leaf for path in each for leaf, _ in leaves(value_at(tables, path), path)]
+            read_with_dimensions(tables, self.folder, self.dimensions)  # what was spelled out has new paths
+        except InputError:  # it has a value only where another entry of the sweep gives it one
+            found = [leaf for path in each for leaf, _ in leaves(value_at(probe, path), path)]
+        if not all(self._known(leaf) for leaf in found):
+            raise InputError(
+                "is no number that could scatter", key=key_text(key), next_step="Vary it with [[vary]] and values"
+            )
+        size = tolerance.size if tolerance.relative else number(tolerance.size, found[0], self.dimensions)
+        if not isinstance(size, float | int) or size < 0:
+            raise InputError("is out of range", key=f"{tolerance.law} of {key_text(key)}", value=size, allowed="from 0")
+        return tuple(_Leaf(key=leaf, size=float(size), relative=tolerance.relative) for leaf in found)
+
+    def _tables(self, point: int) -> tuple[dict[str, Any], list[list[float]]]:
+        """Tables of a point, and the scattered values by tolerance."""
+        data, at = copied(self.data), list(np.unravel_index(point, self.plan.shape))
+        for block, columns in zip(self.plan.blocks, self.columns, strict=True):
+            row = at.pop(0)
+            for key, column in zip(block.keys, columns, strict=True):
+                put(data, key, column[row])
+        if self.plan.hypercube is not None and self.cube is not None:
+            for entry, value in zip(self.plan.hypercube.ranges, self.cube[at.pop(0)].tolist(), strict=True):
+                put(data, entry.key, value)
+        values = []
+        for group, draws in zip(self.leaves, self.draws, strict=True):
+            values.append([self._scatter(data, leaf, draw) for leaf, draw in zip(group, draws[at[0]], strict=True)])
+        return data, values
+
+    def _scatter(self, data: dict[str, Any], leaf: _Leaf, draw: float) -> float:
+        nominal = number(value_at(data, leaf.key), leaf.key, self.dimensions)
+        value = float(nominal + leaf.size * draw * (nominal if leaf.relative else 1.0))
+        put(data, leaf.key, value)
+        return value
+
+
+def content_hash(study: Study | ActuatorStudy) -> bytes:
+    """Hash of what a study means, whatever its text and file."""
+    content = study.model_dump_json(exclude={"source_text", "path", "notes"})
+    return hashlib.sha256(content.encode()).digest()[:16]

@@ -1,0 +1,200 @@
+"""The results of a sweep as one Zarr store: written by one process, whole at any instant, continued when reopened."""
+
+from __future__ import annotations
+
+import tempfile
+import warnings
+from collections.abc import Mapping, Sequence
+from pathlib import Path
+from typing import TYPE_CHECKING, Any, NamedTuple
+
+import numpy as np
+from numpy.typing import NDArray
+
+from flexapod.errors import ComputationError, InputError
+from flexapod.typing import Array
+
+if TYPE_CHECKING:
+    import zarr
+
+__all__ = ["COMPUTED", "FAILED", "FORMAT", "PENDING", "Column", "SweepStore", "Values", "check_header"]
+
+FORMAT = 1
+Values = NDArray[Any]  # numbers of any kind, or texts
+PENDING, COMPUTED, FAILED = 0, 1, 2
+CHUNK_POINTS = 2048  # of scalars
+CHUNK_BYTES = 1 << 20  # of records
+_TEXTS = {"message": "why there is no result", "remarks": "remarks on the result, a line each"}
+_NEXT = "Choose another place with --out (store in Python), or remove this one"
+
+
+class Column(NamedTuple):
+    """An array of the store: dimensions, shape, attributes, and values if they are known from the start."""
+
+    dims: tuple[str, ...]
+    shape: tuple[int, ...]
+    attributes: Mapping[str, Any]
+    values: Values | None = None
+
+
+class SweepStore:
+    """An open store. Results are written first, the status of their points last.
+
+    Parameters
+    ----------
+    group : zarr.Group
+    path : Path, optional
+        Where it is; None: in memory.
+    """
+
+    def __init__(self, group: zarr.Group, path: Path | None) -> None:
+        self.group, self.path = group, path
+        self._arrays: dict[str, Any] = dict(group.arrays())
+        self.status: Values = np.asarray(self._arrays["status"][:])
+
+    @classmethod
+    def create(
+        cls, path: Path | None, size: int, header: Mapping[str, Any], columns: Mapping[str, Column]
+    ) -> SweepStore:
+        """A new store with nothing computed; it appears at `path` when it is whole.
+
+        Raises
+        ------
+        ComputationError
+            It cannot be written.
+        """
+        import zarr
+        from zarr.storage import MemoryStore
+
+        if path is None:
+            group = zarr.create_group(MemoryStore(), attributes=dict(header))
+            _fill(group, size, columns)
+            return cls(group, None)
+        try:
+            path.parent.mkdir(parents=True, exist_ok=True)
+            beside = {"prefix": f".{path.name}-", "dir": path.parent, "ignore_cleanup_errors": True}
+            with tempfile.TemporaryDirectory(**beside) as folder:
+                whole = Path(folder) / "store"
+                _fill(zarr.create_group(whole, attributes=dict(header)), size, columns)
+                whole.rename(path)
+        except OSError as error:
+            raise _unwritable(path, error, 0) from None
+        return cls.open(path, write=True)
+
+    @classmethod
+    def open(cls, path: Path, *, write: bool = False) -> SweepStore:
+        """A store that `create` made, to read it or, by who holds its lock, to write to it.
+
+        Raises
+        ------
+        InputError
+            There is something else.
+        """
+        import zarr
+
+        try:
+            group = zarr.open_group(path, mode="r+" if write else "r")
+        except (OSError, ValueError):
+            group = None
+        if group is None or "flexapod_sweep_format" not in group.attrs:
+            raise InputError("is no store of a sweep", file=path, next_step="Choose another place with --out")
+        for rest in path.rglob("*.partial") if write else ():
+            rest.unlink(missing_ok=True)  # of a process that was killed while writing
+        return cls(group, path)
+
+    @property
+    def header(self) -> dict[str, Any]:
+        """Attributes of the store."""
+        return dict(self.group.attrs)
+
+    def write(
+        self, points: Values, values: Mapping[str, Array], status: Values, texts: Mapping[str, Sequence[str]]
+    ) -> None:
+        """Write results of points (sorted): values (n, ...) by name, then status.
+
+        Raises
+        ------
+        ComputationError
+            The disk is full or cannot be written to; what was written before stays valid.
+        """
+        try:
+            for name, array in values.items():
+                self._set(name, points, array)
+            for name, lines in texts.items():
+                self._set(name, points, np.array(lines, dtype=object))
+            self._set("status", points, status)
+        except OSError as error:
+            done = int(np.count_nonzero(self.status))
+            raise _unwritable(self.path, error, done) from None
+        self.status[points] = status
+
+    def _set(self, name: str, points: Values, values: Values) -> None:
+        array = self._arrays[name]
+        if points[-1] - points[0] == len(points) - 1:
+            array[int(points[0]) : int(points[-1]) + 1] = values
+        else:
+            array.oindex[(points, *[slice(None)] * (array.ndim - 1))] = values
+
+
+def _fill(group: zarr.Group, size: int, columns: Mapping[str, Column]) -> None:
+    import zarr
+
+    flags = {"flag_values": [PENDING, COMPUTED, FAILED], "flag_meanings": "pending computed failed"}
+    made = {**columns, "status": Column(("point",), (size,), {"long_name": "state of the point", **flags})}
+    for name, column in made.items():
+        _array(group, name, column, np.dtype("int8") if name == "status" else np.dtype("float64"))
+    for name, words in _TEXTS.items():
+        _array(group, name, Column(("point",), (size,), {"long_name": words}), None)
+    with warnings.catch_warnings():  # all metadata in one place is what xarray looks for first
+        warnings.filterwarnings("ignore", message="Consolidated metadata")
+        zarr.consolidate_metadata(group.store)
+
+
+def _array(group: zarr.Group, name: str, column: Column, kind: np.dtype[Any] | None) -> None:
+    """An array of numbers, or of texts if `kind` is None or the values are."""
+    values = column.values
+    if values is not None:
+        kind = None if values.dtype.kind in "UOT" else values.dtype
+    width = 8 * int(np.prod(column.shape[1:], dtype=int))
+    chunk = CHUNK_POINTS if width <= CHUNK_BYTES // CHUNK_POINTS else max(1, CHUNK_BYTES // width)
+    made: Any = group.create_array(
+        name,
+        shape=column.shape,
+        chunks=(min(chunk, column.shape[0]), *column.shape[1:]),
+        dtype=str if kind is None else kind,
+        fill_value="" if kind is None else np.nan if kind.kind == "f" else 0,
+        dimension_names=column.dims,
+        attributes=dict(column.attributes),
+    )
+    if values is not None:
+        made[...] = values.astype(object) if kind is None else values
+
+
+def check_header(path: Path, found: Mapping[str, Any], wanted: Mapping[str, Any]) -> None:
+    """Refuse to continue the store of something else.
+
+    Raises
+    ------
+    InputError
+        Saying what differs: format, version, study, sweep, or how they are read.
+    """
+    words = {
+        "flexapod_sweep_format": "has another format",
+        "flexapod_version": "was made by another version of flexapod",
+        "study_hash": "holds another study",
+        "sweep_hash": "holds another sweep of this study",
+        "points_hash": "holds other points: tables that the study names have changed",
+    }
+    for name, what in words.items():
+        if found.get(name) != wanted[name]:
+            raise InputError(
+                what, file=path, key=name, value=found.get(name), allowed=str(wanted[name]), next_step=_NEXT
+            )
+
+
+def _unwritable(path: Path | None, error: OSError, done: int) -> ComputationError:
+    kept = f"; the points stored before ({done}) are whole" if done else ""
+    return ComputationError(
+        f"{path} cannot be written: {error.strerror or error}{kept}",
+        next_step="Make space, then run the same command again: it continues",
+    )

@@ -1,0 +1,239 @@
+"""Many poses in one call against dense algebra pose by pose, and against the readable matrices of one state."""
+
+from dataclasses import replace
+from functools import cache
+
+import numpy as np
+import pytest
+from scipy.linalg import eigh, null_space
+from tests.runs import paper_robot, with_legs
+
+import flexapod as fx
+from flexapod import rigid
+from flexapod.model import Cylinder, ServoDrive, override
+from flexapod.solve.arrow import arrow_solve
+from flexapod.solve.elimination import solve_each
+from flexapod.solve.equilibrium import equilibria, saddle_solve
+from flexapod.solve.kernel import interpreted_kernel
+from flexapod.solve.many import RestStates, matrices_at_rest, residual_at_rest, rigid_rest
+from flexapod.solve.modes import locked_poses, modes_of, robot_modes
+from flexapod.solve.stiffness import robot_stiffness, stiffness_of, tool_motion
+from flexapod.study.poses import from_home
+
+WRENCH = np.array([50.0, -30.0, -200.0, 5.0, 4.0, -3.0])
+POSES = np.array([
+    [0, 0, 0, 0, 0, 0], [0.03, -0.02, 0.04, 0.1, -0.05, 0.2], [-0.02, 0.03, -0.05, -0.2, 0.1, -0.3],
+    [0, 0, 0.08, 0.0, 0.2, 0.0], [0.01, 0, 0, 0.3, 0, 0.1],
+])  # fmt: skip
+
+
+def servos(study, which=range(1, 7)):
+    legs = [
+        leg.replace(drive=ServoDrive(stiffness=4e7, damping=1e4)) if i in which else leg
+        for i, leg in enumerate(study.robot.legs, start=1)
+    ]
+    return study.replace(robot=study.robot.replace(legs=tuple(legs)))
+
+
+def no_stretch(study):
+    return with_legs(study, lambda leg: leg.replace(axial_modes=0))
+
+
+@cache
+def robot(name):
+    study = paper_robot()
+    return {
+        "prescribed": study,
+        "servo": servos(study),
+        "mixed": servos(study, (2, 5)),
+        "no stretch": no_stretch(study),
+        "mixed, no stretch": servos(no_stretch(study), (1, 2, 3)),
+        "lumped": override(study, fidelity="lumped"),
+        "rigid servo": servos(override(study, fidelity="rigid")),
+    }[name]
+
+
+KINDS = ["prescribed", "servo", "mixed", "no stretch", "mixed, no stretch", "lumped", "rigid servo"]
+
+
+@pytest.mark.parametrize("kind", KINDS)
+def test_equilibria_balance_and_modes_are_those_of_dense_matrices(kind):
+    study = robot(kind)
+    path = from_home(study.robot, POSES)
+    locked = locked_poses(study.robot, study.simulation, path, WRENCH)
+    modes = modes_of(locked, shapes=True)
+    system = locked.system
+    assert locked.at.tolist() == list(range(len(POSES)))
+    for k in range(len(POSES)):
+        x = locked.equilibria.states.state(k)
+        r, g = system.residual(x, system.command(x, locked.lengths[k], np.zeros(6), np.zeros(6)), WRENCH)
+        size = np.abs(x.lam).max()
+        assert np.abs(r).max() < 1e-9 * size  # 1e8 N/m on steps of 1e-16 m: 1e-8 N on a kilonewton
+        assert np.abs(g).max() < 1e-14
+        assert np.abs(x.q[system.held, 2] - locked.lengths[k][system.held]).max(initial=0) == 0
+        m = system.matrices(x, WRENCH)
+        scale = 1 / np.sqrt(np.maximum(np.diag(m.M), 1e-12))
+        N = scale[:, None] * null_space(m.G * scale)
+        M, K = N.T @ m.M @ N, N.T @ m.K @ N
+        frequency = np.sqrt(eigh((K + K.T) / 2, M, eigvals_only=True)) / (2 * np.pi)
+        # Squares of the frequencies are right to rounding times the square of the highest over the lowest, 200 here.
+        np.testing.assert_allclose(modes.frequency[k], frequency, rtol=1e-10)
+        shapes = modes.shapes[k]
+        assert np.abs(m.G @ shapes.T).max() < 1e-10
+        np.testing.assert_allclose(shapes @ m.M @ shapes.T, np.eye(len(shapes)), atol=1e-9)
+        K_modal = shapes @ (m.K + m.K.T) / 2 @ shapes.T
+        omega2 = (2 * np.pi * frequency) ** 2
+        np.testing.assert_allclose(K_modal, np.diag(omega2), atol=1e-10 * omega2.max())
+
+
+@pytest.mark.parametrize("kind", KINDS)
+def test_a_newton_step_is_that_of_the_saddle_matrix(kind):
+    study = robot(kind)
+    locked = locked_poses(study.robot, study.simulation, from_home(study.robot, POSES), WRENCH)
+    system, rng = locked.system, np.random.default_rng(5)
+    r, payload, g = rng.normal(size=(5, 6, system.n)), rng.normal(size=(5, 6)), 1e-3 * rng.normal(size=(5, 6, 3))
+    gap = np.where(system.held, 1e-3 * rng.normal(size=(5, 6)), 0.0)
+    step = arrow_solve(system, locked.m, r, payload, g, gap)
+    for k in range(5):
+        m = system.matrices(locked.equilibria.states.state(k), WRENCH)
+        given = -np.concatenate([g[k].ravel(), gap[k][system.held]])
+        dq, multipliers = saddle_solve(m.K, m.G, -np.concatenate([r[k].ravel(), payload[k]]), given)
+        # The saddle matrix loses six digits or so: forces of 1e8 N/m springs balance within millinewtons.
+        np.testing.assert_allclose(step.dq[k].ravel(), dq[:-6], atol=1e-6 * np.abs(dq).max())
+        np.testing.assert_allclose(step.dy[k], dq[-6:], atol=1e-6 * np.abs(dq).max())
+        size = np.abs(multipliers).max()
+        np.testing.assert_allclose(step.dlam[k].ravel(), multipliers[:18], atol=1e-4 * size)
+        np.testing.assert_allclose(step.drive[k][system.held], -multipliers[18:], atol=1e-4 * size)
+        assert (step.drive[k][~system.held] == 0).all()
+
+
+@pytest.mark.parametrize("kind", ["prescribed", "mixed", "lumped"])
+def test_many_poses_are_the_single_ones(kind):
+    study = robot(kind)
+    path = from_home(study.robot, POSES)
+    locked = locked_poses(study.robot, study.simulation, path, WRENCH)
+    modes, stiffness = modes_of(locked), stiffness_of(study.robot, locked)
+    for k in range(len(POSES)):
+        one = from_home(study.robot, POSES[k : k + 1])
+        single = robot_modes(study.robot, study.simulation, one, WRENCH)
+        # The same operations, blocked differently: rounding of the least eigenvalue, as above.
+        np.testing.assert_allclose(modes.frequency[k], single.frequency, rtol=1e-10)
+        np.testing.assert_allclose(locked.equilibria.states.pose[k], single.equilibrium.state.pose, atol=1e-14)
+        alone = robot_stiffness(study.robot, study.simulation, one, WRENCH).total
+        np.testing.assert_allclose(stiffness.total[k], alone, atol=1e-11 * np.abs(alone).max())
+
+
+def test_stiffness_is_the_saddle_matrix_solved():
+    """Shares of the legs by Eq. (T7.6) as it stands; scaled, so that rounding stays small."""
+    study = robot("prescribed")
+    locked = locked_poses(study.robot, study.simulation, from_home(study.robot, POSES), WRENCH)
+    found, m, n = stiffness_of(study.robot, locked), locked.m, locked.system.n
+    back = np.linalg.inv(tool_motion(study.robot, locked.equilibria.states.pose))
+    for k in range(len(POSES)):
+        for i in range(6):
+            G = np.vstack([m.J[k, i], np.eye(n)[2]])
+            # Adding G^T G times a large number changes no solution, and makes the block regular.
+            K = m.K[k, i] + 1e8 * G.T @ G
+            full = np.block([[K, 1e8 * G.T], [1e8 * G, np.zeros((4, 4))]])
+            right = np.vstack([1e8 * G.T @ np.vstack([m.P[k, i], np.zeros((1, 6))]), 1e8 * m.P[k, i], np.zeros((1, 6))])
+            share = -m.P[k, i].T @ (1e8 * np.linalg.solve(full, right)[n : n + 3])
+            expected = back[k].T @ share @ back[k]
+            np.testing.assert_allclose(found.legs[k, i], expected, atol=1e-7 * np.abs(expected).max())
+
+
+def test_interpreted_kernels_give_the_same():
+    study = override(paper_robot(), modes=1)
+    locked = locked_poses(study.robot, study.simulation, from_home(study.robot, POSES[:2]), WRENCH)
+    system = replace(locked.system, kernel=interpreted_kernel(locked.system.kernel.shapes))
+    states = locked.equilibria.states
+    for name, array in vars(matrices_at_rest(system, states, WRENCH)).items():
+        other = getattr(locked.m, name)
+        np.testing.assert_allclose(array, other, atol=1e-13 * np.abs(other).max(), err_msg=name)
+    residuals = [residual_at_rest(s, states, locked.lengths, np.zeros((2, 6)), WRENCH) for s in (system, locked.system)]
+    for a, b in zip(*residuals, strict=True):
+        np.testing.assert_allclose(a, b, atol=1e-9)
+
+
+def test_lost_poses_do_not_disturb_their_neighbours():
+    study = robot("prescribed")
+    heavy = np.array([0, 0, -1.2e5, 0, 0, 0])
+    system = locked_poses(study.robot, study.simulation, from_home(study.robot, POSES)).system
+    start = rigid_rest(system, study.robot, from_home(study.robot, POSES))
+    length = start.q[:, :, 2].copy()
+    length[2, 0] += 0.4  # a leg that no pose fits: the first step is no elastic deformation
+    found = equilibria(system, start, length, np.zeros((5, 6)), WRENCH)
+    assert (found.code != 0).tolist() == [False, False, True, False, False]
+    alone = equilibria(system, start[slice(3, 4)], length[3:4], np.zeros((1, 6)), WRENCH)
+    np.testing.assert_allclose(found.states.pose[3], alone.states.pose[0], atol=1e-14)
+    assert found.one(2).reason.startswith("no equilibrium: ")
+    assert (equilibria(system, start, length, np.zeros((5, 6)), 10 * heavy).code != 0).all()
+
+
+def test_a_singular_matrix_of_a_stack_is_marked_alone():
+    A = np.stack([np.eye(2), np.zeros((2, 2)), 2 * np.eye(2)])
+    found = solve_each(A, np.ones((3, 2, 1)))[..., 0]
+    np.testing.assert_array_equal(found, [[1, 1], [np.nan, np.nan], [0.5, 0.5]])
+
+
+def test_states_of_a_batch():
+    study = robot("lumped")
+    locked = locked_poses(study.robot, study.simulation, from_home(study.robot, POSES))
+    states = locked.equilibria.states
+    assert len(states) == 5
+    assert len(states[np.array([1, 3])]) == 2
+    again = RestStates.of(states.state(3))
+    np.testing.assert_array_equal(again.q[0], states.q[3])
+
+
+def test_public_call_takes_many_poses():
+    study = paper_robot()
+    poses = np.vstack([POSES, [[0, 0, 0.3, 0, 0, 0], [0, 0, -0.3, 0, 0, 0]]])
+    data = fx.modes(study, poses)
+    assert data.frequency.dims == ("pose", "mode")
+    assert data.reason.values.tolist() == [0] * 5 + [2, 1]
+    assert data.reason.attrs["flag_meanings"].split()[2] == "leg_too_long"
+    assert np.isnan(data.frequency[5:]).all()
+    np.testing.assert_allclose(data.pose_from_home, poses, atol=1e-15)
+    named = fx.modes(study, {"heave": [0.0, 0.08], "pitch": [0.0, 0.2]})
+    np.testing.assert_allclose(named.frequency, data.frequency[[0, 3]], rtol=1e-12)
+    given = rigid.Poses.at_rest(
+        *(x[:5] for x in (from_home(study.robot, poses).position, from_home(study.robot, poses).rotation))
+    )
+    np.testing.assert_array_equal(fx.modes(study, given).frequency, data.frequency[:5])
+    full, one = fx.modes(study, poses[[1, 6]], shapes=True), fx.modes(study, poses[1])
+    for name in ("frequency", "damping_ratio", "com_sag", "platform_position", "platform_quaternion"):
+        np.testing.assert_allclose(full[name][0], one[name], rtol=1e-9, atol=1e-14)
+        assert np.isnan(full[name][1]).all()
+    assert full.kind[0].values.tolist() == one.kind.values.tolist()
+    assert full.leg_shape.dims == ("pose", "mode", "leg", "direction", "station")
+
+
+@pytest.mark.parametrize("shapes", [False, True])
+def test_no_pose_in_reach_and_no_pose_at_all(shapes):
+    far = fx.modes(paper_robot(), [[0, 0, 1, 0, 0, 0]], shapes=shapes)
+    assert far.reason.values.tolist() == [2]
+    assert np.isnan(far.frequency).all()
+    assert fx.modes(paper_robot(), np.zeros((0, 6)), shapes=shapes).sizes["pose"] == 0
+
+
+@pytest.mark.parametrize(
+    ("pose", "words"),
+    [
+        (np.zeros((2, 5)), "are no poses"),
+        (np.full((2, 6), np.nan), "are no poses"),
+        ([[0, 1], [1]], "are no poses"),
+        ({"heave": [0, 1], "roll": [0, 1, 2]}, "do not fit each other"),
+        ({"lift": [0, 1]}, "is not an axis"),
+    ],
+)
+def test_poses_that_are_none(pose, words):
+    with pytest.raises(fx.InputError, match=words):
+        fx.modes(paper_robot(), pose)
+
+
+def test_poses_without_mass_are_marked():
+    study = with_legs(paper_robot(), lambda leg: leg.replace(cylinder=Cylinder(mass=0, com=0, inertia=0, mouth=0)))
+    data = fx.modes(study, POSES[:3])
+    assert set(data.reason.values.tolist()) <= {0, 12}
+    assert 12 in data.reason.values
+    assert np.isnan(data.frequency.values[data.reason.values == 12]).all()

@@ -1,0 +1,29 @@
+"""What the closures demand of accelerations at a moving start against the accelerations of the rigid path."""
+
+import numpy as np
+import pytest
+
+import flexapod as fx
+from flexapod import rigid
+from flexapod.solve.robot_march import robot_system
+from flexapod.solve.start import accelerations
+from flexapod.solve.system import rigid_state
+from flexapod.solve.tables import command_law
+
+
+@pytest.mark.parametrize("t", [0.2, 0.5, 0.83])
+def test_closures_of_the_rigid_path(t):
+    """The rigid path keeps the closures: G v_dot = - G_dot v holds with its own, independently derived accelerations.
+
+    G_dot v is a fourth-order difference over 1e-4 s: rounding of 1e-16 over that step, 1e-12, times some ten terms,
+    beside a remainder of 1e-16 times the fifth derivative, about 1e4 here.
+    """
+    study = fx.preset("paper-robot")
+    system = robot_system(study.robot, study.simulation)
+    x = rigid_state(system, study.robot, rigid.poses(study.robot, study.motion, np.array([t])))
+    commands = command_law(study.robot, study.motion, study.load)(np.array([t]))
+    found = accelerations(system, x, commands, 0)
+    G = system.matrices(x, np.zeros(6)).G[:18]
+    needed = G @ x.v_dot
+    assert np.abs(needed).max() > 0.01  # m/s^2: a wrong sign would show
+    np.testing.assert_allclose(G @ found.v_dot, needed, rtol=0, atol=1e-10)

@@ -1,0 +1,86 @@
+"""What is computed, or loaded, only once or not at all."""
+
+import pickle
+import subprocess
+import sys
+
+import numpy as np
+import pytest
+import xarray as xr
+
+import flexapod as fx
+from flexapod import rigid
+from flexapod.rigid import kinematics
+from flexapod.study.names import COORDINATES, VARIABLES, dataset
+
+
+def test_home_frames_are_computed_once_for_equal_robots(monkeypatch):
+    calls = []
+    plain = kinematics.leg_frames
+    monkeypatch.setattr(kinematics, "leg_frames", lambda *given: calls.append(1) or plain(*given))
+    robot = fx.preset("paper-robot").robot.replace(home_height=0.8871)
+    path = rigid.home_pose(robot)
+    for subject in (robot, robot, pickle.loads(pickle.dumps(robot)), robot.replace(home_height=0.8871)):
+        rigid.home_frames(subject)
+        rigid.inverse_dynamics(subject, path)
+    assert len(calls) == 1
+    rigid.home_frames(robot.replace(home_height=0.8872))
+    assert len(calls) == 2
+
+
+def test_nobody_can_change_frames_that_others_use():
+    with pytest.raises(ValueError, match="read-only"):
+        rigid.home_frames(fx.preset("paper-robot").robot)[0, 0, 0] = 2.0
+
+
+def test_a_copy_with_another_value_has_its_own_hash():
+    robot = fx.preset("paper-robot").robot
+    before = hash(robot)
+    for other in (robot.replace(home_height=0.95), robot.model_copy(update={"home_height": 0.95})):
+        assert hash(other) != before
+        assert other != robot
+    assert "hash" not in robot.model_dump()
+
+
+def test_the_hash_of_another_process_is_not_taken_over():
+    """Texts hash differently in every process; a robot that brought its hash along would not be found again."""
+    code = (
+        "import pickle, sys; import flexapod as fx; r = fx.preset('paper-robot').robot; hash(r); "
+        "sys.stdout.buffer.write(pickle.dumps(r))"
+    )
+    sent = subprocess.run([sys.executable, "-c", code], check=True, capture_output=True).stdout
+    robot = fx.preset("paper-robot").robot
+    assert pickle.loads(sent) == robot
+    assert hash(pickle.loads(sent)) == hash(robot)
+
+
+def test_a_dataset_is_the_one_that_xarray_would_make():
+    t = np.linspace(0.0, 1.0, 5)
+    values = {"com_position": np.ones((5, 3)), "leg_length": np.ones((5, 6)), "kind": ["bending", "axial"]}
+    found = dataset(values, {"time": t, "mode": np.arange(1, 3)}, {"a": 1})
+    attrs = {name: {"units": VARIABLES[name].units, "long_name": VARIABLES[name].long_name} for name in values}
+    plain = xr.Dataset(
+        {name: (VARIABLES[name].dims, values[name], attrs[name]) for name in values},
+        coords={
+            "axis": ("axis", *COORDINATES["axis"][:1], {"long_name": COORDINATES["axis"][1]}),
+            "leg": ("leg", *COORDINATES["leg"][:1], {"long_name": COORDINATES["leg"][1]}),
+            "time": ("time", t, {"units": "s", "long_name": "time"}),
+            "mode": ("mode", np.arange(1, 3), {"long_name": "mode"}),
+        },
+        attrs={"a": 1},
+    )
+    xr.testing.assert_identical(found, plain)
+    assert {n: v.dtype for n, v in found.variables.items()} == {n: v.dtype for n, v in plain.variables.items()}
+    assert found.sel(leg=3, axis="z").com_position.shape == (5,)
+
+
+def test_a_first_dataset_needs_neither_units_nor_clusters():
+    """Loading pint and dask took a third of the time from a cold start to a finished simulation."""
+    code = (
+        "import sys, numpy as np, flexapod as fx; fx.preset('paper-robot'); fx.simulate; "
+        "from flexapod.study.names import dataset; "
+        "dataset({'com_position': np.zeros((2, 3))}, {'time': np.arange(2.0)}); "
+        "print([m for m in ('pint', 'dask', 'scipy.optimize', 'matplotlib', 'casadi', 'skfem') if m in sys.modules])"
+    )
+    found = subprocess.run([sys.executable, "-c", code], check=True, capture_output=True, text=True)
+    assert found.stdout.strip() == "[]"

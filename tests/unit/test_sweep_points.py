@@ -1,0 +1,131 @@
+"""From a plan to studies: products, short forms spelled out, draws, points that are alike."""
+
+import numpy as np
+import pytest
+from tests.sweeps import KEY, diameters, quick
+
+from flexapod.model import loads
+from flexapod.study.sweep.plan import read_plan
+from flexapod.study.sweep.points import Points
+
+
+def points(**sweep):
+    return Points(quick(), read_plan(sweep))
+
+
+def test_product_last_fastest():
+    mass = {"key": "payload.mass", "values": ["50 kg", 100]}
+    found = Points(quick(), read_plan(diameters(3, more=[mass])))
+    studies = [found.study(i) for i in range(len(found))]
+    assert [s.robot.payload.mass for s in studies] == [50.0, 100.0] * 3
+    assert [s.robot.legs[5].piston.diameter for s in studies] == pytest.approx(
+        [0.025, 0.025, 0.0275, 0.0275, 0.03, 0.03]
+    )
+
+
+def test_together():
+    found = points(vary=[{"together": {"payload.mass": [50, 100], "payload.com": [[0, 0, 0.1], [0, 0, 0.2]]}}])
+    assert [(s.robot.payload.mass, s.robot.payload.com[2]) for s in map(found.study, (0, 1))] == [(50, 0.1), (100, 0.2)]
+
+
+def test_one_leg_of_six_that_were_alike():
+    legs = points(vary=[{"key": "leg[3].damping", "values": [0.1]}]).study(0).robot.legs
+    assert [leg.damping for leg in legs] == [0.005, 0.005, 0.1, 0.005, 0.005, 0.005]
+
+
+def test_all_legs_of_six_tables():
+    six = points(vary=[{"key": "leg[3].damping", "values": [0.1]}]).study(0).replace(notes=())
+    written = loads(six.replace(source_text="").source_text)
+    legs = Points(written, read_plan({"vary": [{"key": KEY, "values": ["30 mm"]}]})).study(0).robot.legs
+    assert [leg.piston.diameter for leg in legs] == [0.03] * 6
+    assert [leg.damping for leg in legs][1:4] == [0.005, 0.1, 0.005]
+
+
+def test_item_of_a_vector():
+    assert points(vary=[{"key": "payload.com[3]", "values": ["10 mm"]}]).study(0).robot.payload.com.tolist() == [
+        0, 0.373, 0.01,
+    ]  # fmt: skip
+
+
+def test_spacing():
+    entry = {"key": KEY, "start": "10 mm", "stop": "40 mm", "count": 3, "spacing": "logarithmic"}
+    assert points(vary=[entry]).columns[0][0] == pytest.approx((0.01, 0.02, 0.04))
+    assert points(vary=[{"key": "simulation.modes", "start": 1, "stop": 5, "count": 3}]).columns == (((1, 3, 5),),)
+
+
+def test_points_that_are_alike_are_one():
+    found = points(vary=[{"key": KEY, "values": ["27 mm", 0.027, "30 mm", "2.7 cm"]}]).resolve()
+    assert found.first.tolist() == [0, 0, 2, 0]
+
+
+def test_points_that_cannot_be_are_told_apart():
+    found = points(vary=[{"key": KEY, "values": ["-1 mm", "27 mm"]}]).resolve()
+    assert found.first.tolist() == [0, 1]
+    assert list(found.refused) == [0]
+    assert "is out of range" in found.refused[0]
+
+
+def test_hypercube_has_one_sample_in_every_slice():
+    ranges = {KEY: ["20 mm", "30 mm"], "payload.mass": ["50 kg", 150]}
+    cube = points(latin_hypercube={"count": 20, "seed": 3, "ranges": ranges}).cube
+    slices = np.floor((cube - [0.02, 50]) / [0.01, 100] * 20).astype(int)
+    assert (np.sort(slices, axis=0) == np.arange(20)[:, None]).all()
+    again = points(latin_hypercube={"count": 20, "seed": 3, "ranges": ranges}).cube
+    assert (again == cube).all()
+    assert (points(latin_hypercube={"count": 20, "seed": 4, "ranges": ranges}).cube != cube).any()
+
+
+def draws(count, *tolerances):
+    return {"random": {"count": count, "seed": 1, "tolerance": [{"key": key, **law} for key, law in tolerances]}}
+
+
+def test_every_leg_has_its_own_draw():
+    found = Points(quick(), read_plan(draws(400, (KEY, {"normal": "0.1 mm"}))))
+    values = found.resolve().scattered[0]
+    assert values.shape == (400, 6)
+    assert [leg.piston.diameter for leg in found.study(7).robot.legs] == pytest.approx(values[7], rel=1e-15)
+    # 2400 normal numbers: mean within 4 standard errors, standard deviation within 4 of its own (1 / sqrt(2 n))
+    assert abs(values.mean() - 0.027) < 4 * 1e-4 / np.sqrt(2400)
+    assert values.std() == pytest.approx(1e-4, rel=4 / np.sqrt(4800))
+    assert abs(np.corrcoef(values.T)[0, 1]) < 4 / np.sqrt(400)
+
+
+def test_circles_become_joints_and_materials_numbers():
+    found = Points(
+        quick(), read_plan(draws(50, ("robot.base.joints", {"uniform": "0.1 mm"}), ("leg.piston.E", {"normal": "1 %"})))
+    )
+    joints, moduli = found.resolve().scattered
+    away = joints.reshape(50, 6, 3) - quick().robot.base_joints
+    assert 0.9e-4 < np.abs(away).max() <= 1e-4
+    study = found.study(3)
+    assert study.robot.base_joints == pytest.approx(joints[3].reshape(6, 3))
+    steel = quick().robot.legs[0].piston
+    assert study.robot.legs[1].piston.EA / steel.EA == pytest.approx(moduli[3, 1] / steel.E)
+    assert study.robot.legs[1].piston.rhoA == steel.rhoA
+
+
+def test_another_tolerance_leaves_the_draws_of_the_first():
+    one = Points(quick(), read_plan(draws(5, (KEY, {"normal": "0.1 mm"}))))
+    two = Points(quick(), read_plan(draws(5, (KEY, {"normal": "0.1 mm"}), ("payload.mass", {"uniform": "1 kg"}))))
+    assert (one.draws[0] == two.draws[0]).all()
+    alike = Points(quick(), read_plan(draws(5, (KEY, {"normal": "1 %"}), ("leg.damping", {"normal": "1 %"}))))
+    assert (alike.draws[0] != alike.draws[1]).all()
+
+
+def test_tolerances_scatter_about_what_varies():
+    sweep = {"vary": [{"key": "payload.mass", "values": [50, 100]}], **draws(3, ("payload.mass", {"normal": "1 %"}))}
+    values = Points(quick(), read_plan(sweep)).resolve().scattered[0][:, 0]
+    assert values[3:] == pytest.approx(2 * values[:3], rel=1e-15)  # the same draws about each nominal
+
+
+def test_tables_are_read_beside_the_study(tmp_path):
+    (tmp_path / "roll.csv").write_text("time [s], roll [deg]\n0, 0\n0.01, 0.1\n0.02, 0\n", encoding="utf-8")
+    text = quick().replace(source_text="").source_text
+    head, tail = text.split("[motion]")
+    study = head + '[motion]\ntype = "csv"\nfile = "roll.csv"\n\n[' + tail.split("\n[", 1)[1]
+    (tmp_path / "study.toml").write_text(study, encoding="utf-8")
+    found = Points(loads(study, path=tmp_path / "study.toml"), read_plan(diameters(2)))
+    assert found.study(1).motion.pose[1, 3] == pytest.approx(np.deg2rad(0.1))
+    before = found.resolve().hash
+    (tmp_path / "roll.csv").write_text("time [s], roll [deg]\n0, 0\n0.01, 0.2\n0.02, 0\n", encoding="utf-8")
+    assert found.resolve().hash != before

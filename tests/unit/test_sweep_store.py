@@ -1,0 +1,292 @@
+"""The store of a sweep: continued, refused, locked, whole whatever happens while it is written."""
+
+import errno
+import os
+import sys
+from pathlib import Path
+
+import numpy as np
+import pytest
+import xarray as xr
+from tests.sweeps import KEY, diameters, quick, quick_text, start
+from zarr.storage import LocalStore
+
+import flexapod as fx
+from flexapod.errors import ComputationError, InputError
+from flexapod.model import loads
+from flexapod.study.sweep import SweepStopped, batch, open_sweep, run, unstacked, writer
+from flexapod.study.sweep.batch import compute_batch
+from flexapod.study.sweep.lock import locked
+
+
+@pytest.fixture
+def path(tmp_path):
+    return tmp_path / "sweep.zarr"
+
+
+def sweep(path, count=4, **settings):
+    return fx.sweep(quick(), diameters(count), store=path, workers=0, **settings)
+
+
+def counted(monkeypatch):
+    """Points as they are computed."""
+    seen = []
+
+    def compute(version, kept, points, studies):
+        seen.extend(points)
+        return compute_batch(version, kept, points, studies)
+
+    monkeypatch.setattr(batch, "compute_batch", compute)
+    return seen
+
+
+def stopping(monkeypatch, point, error):
+    """A batch that raises at a point."""
+
+    def compute(version, kept, points, studies):
+        if point in points:
+            raise error
+        return compute_batch(version, kept, points, studies)
+
+    monkeypatch.setattr(batch, "compute_batch", compute)
+
+
+def test_what_is_stored(path):
+    made = sweep(path)
+    assert made.status.values.tolist() == ["computed"] * 4
+    assert made[KEY].values == pytest.approx(np.linspace(0.025, 0.03, 4))
+    assert (made[KEY].attrs["units"], made.com_deviation_peak.attrs["units"]) == ("m", "m")
+    for other in (open_sweep(path), sweep(None)):
+        xr.testing.assert_identical(other, made)
+    with xr.open_zarr(path, chunks=None) as plain:  # as anybody would open it, without a warning
+        assert plain.com_deviation_peak.values.tolist() == made.com_deviation_peak.values.tolist()
+    assert os.listdir(path.parent) == ["sweep.zarr"]
+
+
+def test_netcdf(path, tmp_path):
+    made = sweep(path)
+    made.to_netcdf(tmp_path / "sweep.nc")
+    with xr.open_dataset(tmp_path / "sweep.nc") as read:
+        assert read[KEY].values.tolist() == made[KEY].values.tolist()
+
+
+def test_a_finished_sweep_computes_nothing(path, monkeypatch):
+    made = sweep(path)
+    seen = counted(monkeypatch)
+    xr.testing.assert_identical(sweep(path), made)
+    assert seen == []
+
+
+def test_continued_after_ctrl_c(path, monkeypatch):
+    whole = sweep(None, 12)
+    stopping(monkeypatch, 5, KeyboardInterrupt)
+    with pytest.raises(SweepStopped, match=r"stopped after [1-5] of 12 points") as caught:
+        sweep(path, 12)
+    done = caught.value.dataset.status.values == "computed"
+    assert (caught.value.dataset.status.values[~done] == "pending").all()
+    assert (np.isnan(caught.value.dataset.com_deviation_peak.values) == ~done).all()
+    seen = counted(monkeypatch)
+    xr.testing.assert_identical(sweep(path, 12), whole)
+    assert seen == np.flatnonzero(~done).tolist()
+
+
+def test_points_that_are_alike_are_computed_once(path, monkeypatch):
+    seen = counted(monkeypatch)
+    entry = {"vary": [{"key": KEY, "values": ["27 mm", "30 mm", 0.027, "3 cm"]}]}
+    made = fx.sweep(quick(), entry, store=path, workers=0)
+    assert seen == [0, 1]
+    peak = made.com_deviation_peak.values
+    assert (peak[:2] == peak[2:]).all()
+    assert peak[0] != peak[1]
+
+
+def test_failed_points_keep_their_message(path, monkeypatch):
+    strokes = {"vary": [{"key": "leg.stroke.max", "values": ["1.05 m", "0.8 m", "-1 m"]}]}
+    made = fx.sweep(quick(), strokes, store=path, workers=0)
+    assert made.status.values.tolist() == ["computed", "failed", "failed"]
+    assert "leaves its stroke" in made.message.values[1] or "stroke" in made.message.values[1]
+    assert "leg.stroke" in made.message.values[2]
+    assert np.isnan(made.com_deviation_peak_by_axis.values[1:]).all()
+    seen = counted(monkeypatch)
+    fx.sweep(quick(), strokes, store=path, workers=0)
+    assert seen == []
+    again = fx.sweep(quick(), strokes, store=path, workers=0, retry_failed=True)
+    assert seen == [1]
+    xr.testing.assert_identical(again, made)
+
+
+def test_a_number_that_is_none_is_a_failure(monkeypatch):
+    nothing = batch.ROBOT_SCALARS["com_deviation_peak"]._replace(value=lambda run: np.nan)
+    monkeypatch.setitem(batch.ROBOT_SCALARS, "com_deviation_peak", nothing)
+    made = sweep(None, 2)
+    assert made.message.values.tolist() == ["com_deviation_peak is not finite"] * 2
+
+
+def test_a_fault_is_the_failure_of_a_point(monkeypatch):
+    def fault(study):
+        raise ZeroDivisionError("by zero")
+
+    monkeypatch.setattr(batch, "check_path", fault)
+    assert "unexpected ZeroDivisionError: by zero (a fault of flexapod)" in sweep(None, 2).message.values[0]
+
+
+def test_a_simulation_that_stops_early_is_a_failure(tmp_path):
+    forces = ", ".join(f"leg {i} [N]" for i in range(1, 7))
+    (tmp_path / "none.csv").write_text(f"time [s], {forces}\n0{6 * ', 0'}\n2{6 * ', 0'}\n", encoding="utf-8")
+    text = quick_text(('type = "prescribed"', 'type = "force", law = "csv", file = "none.csv"'))
+    falling = loads(text + '\n[initial]\nstart = "moving"\n', path=tmp_path / "study.toml")
+    made = fx.sweep(falling, {"vary": [{"key": "simulation.duration", "values": ["20 ms", "0.5 s"]}]}, workers=0)
+    assert made.status.values.tolist() == ["computed", "failed"]
+    assert "the simulation stopped at t = 0.357 s: leg 1 left the range of the model" in made.message.values[1]
+    assert np.isnan(made.com_deviation_peak.values[1])
+
+
+def test_another_study_sweep_or_version_is_refused(path, monkeypatch):
+    sweep(path)
+    heavier = loads(quick_text(('mass = "100 kg"', 'mass = "101 kg"')))
+    with pytest.raises(InputError, match=r"study_hash = .*holds another study.*--out"):
+        fx.sweep(heavier, diameters(4), store=path, workers=0)
+    with pytest.raises(InputError, match=r"holds another sweep of this study"):
+        sweep(path, 5)
+    monkeypatch.setattr(fx, "__version__", "9.9")
+    with pytest.raises(InputError, match=r"flexapod_version = .*was made by another version.*Allowed: 9.9"):
+        sweep(path)
+
+
+def test_a_comment_in_the_study_is_no_other_study(path):
+    sweep(path)
+    fx.sweep(loads(quick_text() + "\n# a comment\n"), diameters(4), store=path, workers=0)
+
+
+def test_what_is_no_store_is_refused_and_left_alone(tmp_path):
+    (tmp_path / "notes.txt").write_text("mine", encoding="utf-8")
+    for place in (tmp_path, tmp_path / "notes.txt"):
+        with pytest.raises(InputError, match="is no store of a sweep"):
+            sweep(place)
+    assert (tmp_path / "notes.txt").read_text(encoding="utf-8") == "mine"
+
+
+def test_two_sweeps_on_one_store(path):
+    with locked(path), pytest.raises(ComputationError, match="in use by another sweep"):
+        sweep(path)
+    assert sweep(path).status.values.tolist() == ["computed"] * 4
+
+
+@pytest.mark.skipif(sys.platform == "win32", reason="SIGKILL")
+def test_the_lock_of_a_killed_process_is_no_hindrance(path):
+    code = (
+        "import sys, pathlib; from flexapod.study.sweep.lock import locked\n"
+        "with locked(pathlib.Path(sys.argv[1])): print('held', flush=True); sys.stdin.read()"
+    )
+    holder = start("-c", code, path, stdin=-1)
+    assert holder.stdout.readline() == "held\n"
+    with pytest.raises(ComputationError, match="in use by another sweep"):
+        sweep(path)
+    holder.kill()
+    holder.communicate()
+    assert path.with_name("sweep.zarr.lock").exists()
+    assert sweep(path).status.values.tolist() == ["computed"] * 4
+
+
+def test_a_folder_without_locks_is_refused(path, monkeypatch):
+    def none(handle, kind):
+        raise OSError(errno.ENOLCK, os.strerror(errno.ENOLCK))
+
+    monkeypatch.setattr(pytest.importorskip("fcntl"), "flock", none)
+    with pytest.raises(ComputationError, match="cannot be locked"):
+        sweep(path)
+
+
+def failing_writes(monkeypatch, after):
+    """Every write to a disk after so many fails: it is full."""
+    whole, left = LocalStore.set, [after]
+
+    async def full(self, key, value):
+        left[0] -= 1
+        if left[0] < 0:
+            raise OSError(errno.ENOSPC, os.strerror(errno.ENOSPC))
+        await whole(self, key, value)
+
+    monkeypatch.setattr(LocalStore, "set", full)
+
+
+@pytest.mark.parametrize("after", range(0, 9))
+def test_full_disk(path, monkeypatch, after):
+    """Whichever write fails: what the store says to be computed is, and the next run completes it."""
+    whole = sweep(None, 6)
+    monkeypatch.setattr(writer, "OFTEN", 0.0)
+    monkeypatch.setattr(writer, "SHARE", np.inf)
+    with monkeypatch.context() as broken:
+        stopping(broken, 2, KeyboardInterrupt)
+        with pytest.raises(KeyboardInterrupt):
+            sweep(path, 6)
+    with monkeypatch.context() as broken:
+        failing_writes(broken, after)
+        with pytest.raises(ComputationError, match=r"No space left on device.*points stored before.*run the same"):
+            sweep(path, 6)
+    found = open_sweep(path)
+    done = found.status.values == "computed"
+    assert done[:2].all()
+    for name in ("com_deviation_peak", "com_deviation_peak_by_axis"):
+        assert (found[name].values[done] == whole[name].values[done]).all()
+    xr.testing.assert_identical(sweep(path, 6), whole)
+
+
+def test_full_disk_at_the_very_start(path, monkeypatch):
+    with monkeypatch.context() as broken:
+        failing_writes(broken, 3)
+        with pytest.raises(ComputationError, match="No space left on device"):
+            sweep(path)
+    assert not path.exists()
+    assert sweep(path).status.values.tolist() == ["computed"] * 4
+
+
+def test_chunks_are_renamed_into_place(path, monkeypatch):
+    """What a reader, or a process that comes after one that was killed, finds is never half a file."""
+    sweep(path)
+    moved = []
+    replace = Path.replace
+    monkeypatch.setattr(Path, "replace", lambda self, target: moved.append(Path(target)) or replace(self, target))
+    monkeypatch.setattr(run, "COMPUTED", 9)  # compute all again
+    sweep(path, retry_failed=True)
+    written = {p.relative_to(path).parts[0] for p in moved if path in p.parents}
+    assert {"com_deviation_peak", "com_deviation_peak_by_axis", "status"} <= written
+
+
+def test_remains_of_a_killed_process_are_removed(path):
+    made = sweep(path)
+    rest = path / "status" / "c" / "0.0123.partial"
+    rest.write_bytes(b"half")
+    xr.testing.assert_identical(open_sweep(path), made)
+    assert rest.exists()  # who only reads does not know whether its writer is alive
+    xr.testing.assert_identical(sweep(path), made)
+    assert not rest.exists()
+
+
+def test_records(path):
+    names = ["com_deviation", "actuator_force_rigid"]
+    made = fx.sweep(quick(), diameters(3, records=names, record_step=5e-3), store=path, workers=0)
+    assert made.com_deviation.dims == ("point", "time", "axis")
+    assert made.time.values == pytest.approx([0, 5e-3, 10e-3, 15e-3, 20e-3])
+    one = fx.run(loads(quick_text(('diameter = "27 mm"', f"diameter = {float(made[KEY][1])!r}"))))
+    for name in names:  # the same operations on the same numbers
+        assert (made[name].values[1] == one[name].values[::5]).all()
+
+
+def test_unstacked():
+    mass = {"key": "payload.mass", "values": [50, 100]}
+    made = fx.sweep(quick(), diameters(3, more=[mass]), workers=0)
+    grid = unstacked(made)
+    assert dict(grid.com_deviation_peak.sizes) == {KEY: 3, "payload.mass": 2}
+    assert grid[KEY].dims == (KEY,)
+    assert (grid.com_deviation_peak.values.ravel() == made.com_deviation_peak.values).all()
+    assert float(grid.com_deviation_peak.sel({"payload.mass": 100})[2]) == made.com_deviation_peak.values[5]
+
+
+def test_actuator():
+    text = fx.model.preset_text("paper-actuator").replace('duration = "10 s"', 'duration = "0.2 s"\nstep = "1 ms"')
+    starts = ["5 mm", "10 mm"]
+    made = fx.sweep(loads(text), {"vary": [{"key": "initial.tip_displacement", "values": starts}]}, workers=0)
+    for start_at, peak in zip(starts, made.tip_deflection_peak.values, strict=True):
+        alone = fx.run(loads(text.replace('"5 mm"', f'"{start_at}"')))
+        assert peak == fx.study.summary(alone).peak
