@@ -6,6 +6,8 @@ import matplotlib
 import numpy as np
 import pytest
 from matplotlib.figure import Figure
+from matplotlib.image import imread
+from matplotlib.text import Text
 
 from flexapod import plot
 from flexapod.app.figures import draw
@@ -138,6 +140,40 @@ def test_files_are_replaced_whole(robot, tmp_path):
     assert sorted(p.name for p in (tmp_path / "new").iterdir()) == ["path.png", "path.svg"]
 
 
+def test_formats_and_their_refusal(robot, tmp_path):
+    figure = plot.com_path(robot, ("z",))
+    written = plot.save(figure, tmp_path / "z", formats=("pdf", "png", "svg"))
+    assert [path.name for path in written] == ["z.pdf", "z.png", "z.svg"]
+    first = written[0].read_bytes()
+    assert first.startswith(b"%PDF")
+    plot.save(plot.com_path(robot, ("z",)), tmp_path / "z", formats=("pdf",))
+    assert written[0].read_bytes() == first  # the same picture is the same file
+    with pytest.raises(InputError, match="no format"):
+        plot.save(figure, tmp_path / "z", formats=("jpg",))
+    with pytest.raises(InputError, match="no width"):
+        plot.save(figure, tmp_path / "z", width=0.0)
+
+
+@pytest.mark.parametrize("name", ROBOT)
+def test_figures_are_as_wide_as_a_page_and_legible(robot, name):
+    """At 170 mm nothing need be scaled: 7 points are the least that journals ask for."""
+    figure = getattr(plot, name)(robot)
+    assert figure.get_figwidth() <= 0.1705 / 0.0254
+    figure.draw_without_rendering()
+    texts = [text for text in figure.findobj(Text) if text.get_visible() and text.get_text()]
+    assert min(text.get_fontsize() for text in texts) >= 7.0
+
+
+def test_a_figure_for_a_column_stays_as_it_was(robot, tmp_path):
+    figure = plot.leg_lengths(robot)
+    size, legend = tuple(figure.get_size_inches()), figure.legends[0]
+    (path,) = plot.save(figure, tmp_path / "lengths", formats=("png",), width=0.085, dpi=254)
+    assert imread(path).shape[1] == 850  # 85 mm at 10 dots a millimetre
+    assert tuple(figure.get_size_inches()) == size and figure.legends == [legend]
+    (path,) = plot.save(figure, tmp_path / "lengths", formats=("png",), dpi=100)
+    assert imread(path).shape[1] == 670
+
+
 def test_folder_that_is_a_file_is_refused(robot, tmp_path):
     (tmp_path / "file").write_text("", encoding="utf-8")
     with pytest.raises(InputError):
@@ -147,7 +183,7 @@ def test_folder_that_is_a_file_is_refused(robot, tmp_path):
 def test_report_of_a_run_has_its_figures_and_its_answer(actuator, tmp_path):
     figures = draw(actuator[3], tmp_path)
     text = write_report(actuator[3], tmp_path, figures).read_text(encoding="utf-8")
-    assert text.count("<figure>") == len(figures) == 2
+    assert text.count("<figure") == 1 + len(figures) == 3  # with the replay
     assert "The tip leaves the hub" in text.split("</h1>")[0]
     assert "[motion]" in text and "Newton iterations" in text and "flexapod run study.toml" in text
 

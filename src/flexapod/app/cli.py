@@ -24,6 +24,7 @@ from flexapod.app import (
     commands_run,
     commands_sweep,
     commands_verify,
+    commands_view,
 )
 from flexapod.app.failures import print_parts
 
@@ -106,6 +107,7 @@ for part in (
     commands_verify,
     commands_export,
     commands_cache,
+    commands_view,
 ):
     part.add(app)
 

@@ -4,7 +4,7 @@ from __future__ import annotations
 
 from collections.abc import Callable, Iterator
 from pathlib import Path
-from typing import TYPE_CHECKING, NamedTuple
+from typing import TYPE_CHECKING, Any, NamedTuple
 
 if TYPE_CHECKING:
     from matplotlib.figure import Figure
@@ -16,11 +16,12 @@ _Plan = tuple[str, str, Callable[[], "Figure"]]
 
 
 class Drawn(NamedTuple):
-    """A stored figure: title, PNG and SVG file."""
+    """A stored figure: title, PNG and SVG file, and its curves for a page, None where it is only a picture."""
 
     title: str
     png: Path
     svg: Path
+    plot: dict[str, Any] | None = None
 
 
 def draw(data: Dataset, folder: str | Path) -> list[Drawn]:
@@ -50,8 +51,10 @@ def draw(data: Dataset, folder: str | Path) -> list[Drawn]:
 def store(figure: Figure, title: str, stem: Path) -> Drawn:
     """Write a figure as ``stem.png`` and ``stem.svg``."""
     from flexapod import plot
+    from flexapod.app.interactive import interactive
 
-    return Drawn(title, *plot.save(figure, stem))
+    png, svg = plot.save(figure, stem)
+    return Drawn(title, png, svg, interactive(figure))
 
 
 def _robot(data: Dataset) -> Iterator[_Plan]:

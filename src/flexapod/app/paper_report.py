@@ -9,8 +9,17 @@ from flexapod import model
 from flexapod.app import html
 from flexapod.app.figures import Drawn
 from flexapod.app.paper_figures import ENGINE
-from flexapod.app.report import by_axis, figures_section, repeat_section, solver_table, warnings_section
+from flexapod.app.replay import replay
+from flexapod.app.report import (
+    by_axis,
+    figures_section,
+    repeat_section,
+    replay_section,
+    solver_table,
+    warnings_section,
+)
 from flexapod.study.paper.claim import BREAKS, HOLDS, IN_PART, MISPRINT, NOT, OPEN, REACHES
+from flexapod.study.scene import robot_study
 
 if TYPE_CHECKING:
     from xarray import Dataset
@@ -21,6 +30,7 @@ if TYPE_CHECKING:
 __all__ = ["paper_page"]
 
 _MARKS = {HOLDS: "good", IN_PART: "open", NOT: "bad", OPEN: "open", MISPRINT: "bad", REACHES: "open", BREAKS: "bad"}
+SHOWN_MODES = 12
 _SHOWN = {
     "robot": "Robot, flexible legs",
     "robot-rigid": "Robot, rigid legs",
@@ -36,21 +46,28 @@ def paper_page(result: PaperStudy, claims: Sequence[Claim], groups: Mapping[str,
 
     paper = CITATIONS["nourian-akbarzadeh"]
     robot = result["robot"]
-    links = {"deviation": "Deviation", "claims": "Claims", **{_anchor(name): name for name in groups}}
+    links = {"deviation": "Deviation", "claims": "Claims", "replay": "Replay"}
+    links |= {_anchor(name): name for name in groups}
     if _asked(result):
         links[_anchor(ENGINE)] = ENGINE
-    links |= {"open": "Open values", "studies": "Studies", "repeat": "Repeat"}
+    links |= {"modes": "Modes", "open": "Open values", "studies": "Studies", "solver": "Solver", "repeat": "Repeat"}
     body = [
         html.paragraph(
             "The paper prints about 5 mm in Y and 10 mm in Z. With its values, ideal joints and rigid drives the "
             "deviation is micrometres; nothing here is tuned to the printed figures. "
             f"The paper: {paper.authors} ({paper.year}), {paper.title}.",
         ),
-        "<nav>" + " ".join(f'<a href="#{anchor}">{words}</a>' for anchor, words in links.items()) + "</nav>",
+        html.contents(links),
         by_axis(robot),
         _claims(claims),
-        *(figures_section(_anchor(name), name, drawn) for name, drawn in groups.items() if name != ENGINE),
+        _replay(robot, result["modes"], [drawn for group in groups.values() for drawn in group]),
+        *(
+            figures_section(_anchor(name), name, drawn, first=i == 0)
+            for i, (name, drawn) in enumerate(groups.items())
+            if name != ENGINE
+        ),
         *([_engine(result, groups.get(ENGINE, ()))] if _asked(result) else []),
+        _modes(result["modes"]),
         _open_values(),
         warnings_section(robot),
         _studies(),
@@ -58,6 +75,24 @@ def paper_page(result: PaperStudy, claims: Sequence[Claim], groups: Mapping[str,
         repeat_section("Everything on this page, with data as NetCDF and CSV:", _command(result)),
     ]
     return html.page("flexapod: the paper's study", summary(robot).sentence, body)
+
+
+def _replay(data: Dataset, modes: Dataset, figures: Sequence[Drawn]) -> str:
+    """The robot in motion and in its modes at the largest roll; on paper the figure of its end."""
+    study = robot_study(data)
+    still = next((figure for figure in figures if figure.png.stem == "robot-end"), None)
+    return replay_section(data, replay(study, data, modes), still)
+
+
+def _modes(modes: Dataset) -> str:
+    """Frequencies, damping and kinds of the lowest modes at the largest roll."""
+    rows = [
+        (f"{int(m)}", f"{float(f):.4g} Hz", f"{100 * float(d):.2g} %", str(kind))
+        for m, f, d, kind in zip(modes.mode, modes.frequency, modes.damping_ratio, modes.kind.values, strict=True)
+    ]
+    words = "At the largest roll, drives locked, about the static equilibrium."
+    table = html.table(("Mode", "Frequency", "Damping", "What moves most"), rows[:SHOWN_MODES])
+    return html.section("modes", "Modes", html.paragraph(words, "soft"), table)
 
 
 def _asked(result: PaperStudy) -> bool:
@@ -88,7 +123,7 @@ def _engine(result: PaperStudy, figures: Sequence[Drawn]) -> str:
         *(html.paragraph(f"Not computed: {words}", "bad") for words in failures),
         *(html.paragraph(words, "soft") for words in _engine_words(result)),
         *([html.table(head, rows)] if rows else []),
-        *(html.figure(figure.title, figure.png) for figure in figures),
+        *(html.figure(figure.title, figure.png, figure.plot) for figure in figures),
         html.paragraph("To repeat this:"),
         html.code(f"{EXUDYN.install}\n{_command(result)}"),
     )

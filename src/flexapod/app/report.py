@@ -6,20 +6,28 @@ from collections.abc import Mapping, Sequence
 from importlib.metadata import version
 from pathlib import Path
 from platform import python_version
+from tempfile import TemporaryDirectory
 from typing import TYPE_CHECKING
 
 from flexapod.app import html
 from flexapod.app.figures import Drawn
+from flexapod.app.interactive import MOST_POINTS
+from flexapod.errors import FlexapodError
 
 if TYPE_CHECKING:
     from xarray import Dataset
 
+    from flexapod.model import ActuatorStudy, Study
+    from flexapod.study.describe.actuator import ActuatorDescription
+    from flexapod.study.describe.robot import RobotDescription
     from flexapod.study.summary import ActuatorSummary, RobotSummary
 
 __all__ = [
     "by_axis",
     "figures_section",
     "repeat_section",
+    "replay_section",
+    "robot_report",
     "solver_table",
     "store_page",
     "warnings_section",
@@ -46,7 +54,27 @@ SOLVER = {
     "impact_energy": "Energy step of an impact at the start [J]",
     "wall_time": "Time of the integration [s]",
 }
-_PACKAGES = ("flexapod", "numpy", "scipy", "casadi", "xarray", "matplotlib")
+THINNED = (
+    "Drag over a figure to zoom, double-click to see all again; point at a curve to read it. Curves of more than "
+    f"{MOST_POINTS} points are thinned for this page, and keep their least and largest values; the data are whole."
+)
+_PACKAGES = ("flexapod", "numpy", "scipy", "casadi", "xarray", "matplotlib", "plotly")
+
+
+def robot_report(study: Study | ActuatorStudy, data: Dataset) -> str:
+    """The report of a robot's or an actuator's run as text, with its figures drawn for it.
+
+    Parameters
+    ----------
+    study : Study or ActuatorStudy
+        What was computed.
+    data : xarray.Dataset
+        Result of `flexapod.run`, whole or partial.
+    """
+    from flexapod.app.figures import draw
+
+    with TemporaryDirectory() as folder:
+        return _page(study, data, draw(data, folder))
 
 
 def write_report(data: Dataset, folder: str | Path, figures: Sequence[Drawn] = ()) -> Path:
@@ -70,22 +98,79 @@ def write_report(data: Dataset, folder: str | Path, figures: Sequence[Drawn] = (
     InputError
         The folder cannot be written to.
     """
+    return store_page(Path(folder) / "report.html", _page(_study(data), data, figures))
+
+
+def _study(data: Dataset) -> Study | ActuatorStudy | None:
+    """The study that a result carries; None where a table that it refers to is gone."""
+    from flexapod import model
+
+    try:
+        return model.loads(data.attrs["study"], path=data.attrs.get("study_file") or None)
+    except FlexapodError:
+        return None
+
+
+def _page(study: Study | ActuatorStudy | None, data: Dataset, figures: Sequence[Drawn]) -> str:
+    from flexapod.app.study_words import modes_section, study_words
     from flexapod.study.summary import RobotSummary, summary
 
     found = summary(data)
+    described = _described(study)
     name = Path(str(data.attrs.get("study_file") or "study")).name
-    numbers = by_axis(data) if isinstance(found, RobotSummary) else _actuator_numbers(found)
+    modes = modes_section(described)
+    moving, others = _replay(study, data, figures)
+    parts = {"replay": moving, "figures": others, "modes": modes}
+    links = {"deviation": "Deviation", "warnings": "Warnings", "study": "Study"}
+    links |= {part: part.capitalize() for part, there in parts.items() if there}
+    links |= {"solver": "Solver", "toml": "Study file", "repeat": "Repeat"}
     body = [
         html.paragraph(f"Report of {name}, flexapod {data.attrs['flexapod_version']}.", "soft"),
+        html.contents(links),
         *_partial(data),
-        numbers,
+        by_axis(data) if isinstance(found, RobotSummary) else _actuator_numbers(found),
         warnings_section(data),
-        figures_section("figures", "Figures", figures),
-        html.section("study", "The study", html.code(str(data.attrs["study"]))),
+        html.section("study", "What was computed", *([] if study is None else study_words(study, described))),
+        *moving,
+        figures_section("figures", "Figures", others),
+        *modes,
         html.section("solver", "Solver", solver_table(data)),
-        repeat_section("Save the study above as study.toml, then", "flexapod run study.toml --out results"),
+        html.section("toml", "Study file", html.code(str(data.attrs["study"]))),
+        repeat_section("Save the study file above as study.toml, then", "flexapod run study.toml --out results"),
     ]
-    return store_page(Path(folder) / "report.html", html.page(f"flexapod: {name}", found.sentence, body))
+    return html.page(f"flexapod: {name}", found.sentence, body)
+
+
+def _described(study: Study | ActuatorStudy | None) -> RobotDescription | ActuatorDescription | None:
+    """The study as `flexapod check` describes it; None where it cannot be."""
+    from flexapod.study.describe.robot import describe
+
+    try:
+        return None if study is None else describe(study)
+    except FlexapodError:
+        return None
+
+
+def _replay(
+    study: Study | ActuatorStudy | None, data: Dataset, figures: Sequence[Drawn]
+) -> tuple[list[str], list[Drawn]]:
+    """The replay, with the figure that stands for it on paper, and the other figures."""
+    if study is None:
+        return [], list(figures)
+    from flexapod.app.replay import locked_modes, replay
+
+    still = next((figure for figure in figures if figure.png.stem == "robot"), None)
+    part = replay_section(data, replay(study, data, locked_modes(study)), still)
+    return [part], [figure for figure in figures if figure is not still]
+
+
+def replay_section(data: Dataset, told: Mapping[str, object], still: Drawn | None) -> str:
+    """What `flexapod.app.replay` tells, and the figure that stands for it on paper."""
+    title = "The robot in motion" if "com_deviation" in data else "The beam in motion"
+    words = str(told["words"])
+    shown = len(told["time"])  # type: ignore[arg-type]
+    title += f", {shown} of {data.sizes['time']} instants; {words}. Drag to turn, scroll to come nearer."
+    return html.section("replay", "Replay", html.replay(title, told, still and (still.title, still.png)))
 
 
 def store_page(path: Path, text: str) -> Path:
@@ -160,9 +245,12 @@ def warnings_section(data: Dataset) -> str:
     return html.section("warnings", "Warnings", html.bullets(found) if found else html.paragraph("None."))
 
 
-def figures_section(name: str, title: str, figures: Sequence[Drawn]) -> str:
-    """Figures, one below the other."""
-    return html.section(name, title, *(html.figure(figure.title, figure.png) for figure in figures))
+def figures_section(name: str, title: str, figures: Sequence[Drawn], *, first: bool = True) -> str:
+    """Figures, one below the other, nothing where there are none; the first of a page say how they are read."""
+    if not figures:
+        return ""
+    parts = [html.figure(figure.title, figure.png, figure.plot) for figure in figures]
+    return html.section(name, title, *([html.paragraph(THINNED, "soft screen")] if first else []), *parts)
 
 
 def solver_table(data: Dataset) -> str:

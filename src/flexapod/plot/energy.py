@@ -53,7 +53,7 @@ def energies(data: xr.Dataset) -> Figure:
     )
     rows[0].set_title("Energies and works, change since the start")
     rows[0].set_ylabel(f"energy [{big.name}]")
-    rows[0].legend(loc="best", ncols=2, handlelength=3)
+    fig.legend(*rows[0].get_legend_handles_labels(), loc="outside upper center", ncols=3, handlelength=3)
     rows[-1].set_xlabel("time [s]")
     for axes in rows:
         mark_end(axes, end, "motion ends" if axes is rows[0] else "")

@@ -18,7 +18,7 @@ from matplotlib.ticker import LogLocator, MaxNLocator
 
 from flexapod.errors import InputError
 from flexapod.model import AXES
-from flexapod.plot.style import NOTE, PAGE, SMALL, TEXT, figure, needs, scale, styled
+from flexapod.plot.style import COLORS, NOTE, PAGE, SMALL, TEXT, figure, needs, scale, styled
 from flexapod.study.map.findings import coordinate_words, name_of, scalar, unit_of
 from flexapod.study.map.grid import UNITS
 from flexapod.study.map.names import SCALARS
@@ -29,7 +29,6 @@ from flexapod.typing import Array
 
 __all__ = ["workspace_map"]
 
-COLORS = "cividis"  # even in lightness, and for colour-blind readers
 # Ground and hatching of what is not reached, by code; codes that rarely meet share one.
 GROUNDS = {
     1: ("#E4E4E4", "///"), 2: ("#CFCFCF", "\\\\\\"), 3: ("#DADADA", "xx"), 4: ("#C4C4C4", "++"), 5: ("#EFEFEF", "oo"),
@@ -97,10 +96,7 @@ def _slices(data: xr.Dataset, values: xr.DataArray, unit: Scale, title: str, qua
             axes.set_title(coordinate_words({third: float(places[k])}), fontsize=TEXT, fontweight="normal")
     for axes in grid.flat[len(chosen) :]:
         axes.set_visible(False)
-    for axes in grid[-1]:
-        axes.set_xlabel(_axis_label(str(values.dims[0])))
-    for axes in grid[:, 0]:
-        axes.set_ylabel(_axis_label(str(values.dims[1])))
+    _label(fig, grid, *(_axis_label(str(dim)) for dim in values.dims[:2]))
     if image is not None and np.isfinite(values.values).any():
         bar = fig.colorbar(image, ax=grid, extend=extend, shrink=0.9, pad=0.02)
         bar.set_label(unit.name or WITHOUT_UNIT[quantity])
@@ -109,6 +105,19 @@ def _slices(data: xr.Dataset, values: xr.DataArray, unit: Scale, title: str, qua
     _headline(fig, title)
     _legend(fig, grid.flat, data)
     return fig
+
+
+def _label(fig: Figure, grid, x: str, y: str) -> None:
+    """Labels of the axes: below each column of slices; at the side once, where there are several."""
+    if grid.size == 1:
+        grid[0, 0].set_xlabel(x)
+        grid[0, 0].set_ylabel(y)
+        return
+    for column in grid.T:
+        lowest = [axes for axes in column if axes.get_visible()][-1]
+        lowest.tick_params(labelbottom=True)
+        lowest.set_xlabel(x.replace(" from home", ""))
+    fig.supylabel(y, fontsize=TEXT)
 
 
 def _headline(fig: Figure, title: str) -> None:

@@ -46,6 +46,7 @@ def com_path(data: xr.Dataset, axes: Sequence[str] = ("y", "z"), point: str = "c
         below.set_title(f"Flexible minus rigid, {axis.upper()}")
         mark_end(grid[0, column], end, "motion ends")
         mark_end(below, end)
+    fig.legend(*grid[0, 0].get_legend_handles_labels(), loc="outside upper center", ncols=2)
     grid[0, 0].set_ylabel(f"position of the\n{name} [mm]")
     grid[1, 0].set_ylabel(f"deviation [{small.name}]")
     return fig
@@ -62,7 +63,6 @@ def _paths(axes: Axes, data: xr.Dataset, point: str, axis: str) -> None:
     if np.ptp(rigid) < 1e-6:  # nothing moves along this axis: no false drama by the choice of the scale
         middle = 1e3 * float(rigid.mean())
         axes.set_ylim(middle - 1, middle + 1)
-    axes.legend(loc="best")
 
 
 def _peak(axes: Axes, time: np.ndarray, values: np.ndarray, unit: str) -> None:

@@ -27,6 +27,7 @@ from flexapod.study.words import Scale, scale
 
 __all__ = [
     "AXIS_COLORS",
+    "COLORS",
     "COLUMN",
     "FLEXIBLE",
     "LEG_COLORS",
@@ -53,6 +54,7 @@ LINE_STYLES = ("-", "--", "-.", ":", (0, (5, 1, 1, 1, 1, 1)), (0, (3, 1)))
 RIGID = "#B8B8B8"
 FLEXIBLE = "#0B3C5D"
 GRID = "#DDDDDD"
+COLORS = "cividis"  # of maps: even in lightness, and for colour-blind readers
 COLUMN, PAGE = 3.35, 6.7  # widths of a column and of a page [in]: 85 and 170 mm
 TEXT, NOTE, SMALL = 8.5, 7.5, 7.0  # sizes of letters [points]
 
@@ -168,8 +170,8 @@ def save(
     formats : sequence of str
         Of png, svg, pdf.
     width : float, optional
-        Width on paper [m], as 0.085 for a column; letters keep their size, long titles are broken. The figure itself
-        stays as it is.
+        Width on paper [m], as 0.085 for a column; letters keep their size, long titles and legends are broken. For
+        figures with one column of panels. The figure itself stays as it is.
 
     Returns
     -------
@@ -211,9 +213,26 @@ def _resized(fig: Figure, width: float | None) -> Iterator[None]:
     fig.set_size_inches(width / INCH, before[1] * min(1.0, np.sqrt(share)))
     for title in titles:
         title.set_wrap(True)
+    legends = list(fig.legends)
+    for legend in legends:
+        _narrowed(fig, legend, share)
     try:
         yield
     finally:
         fig.set_size_inches(before[0], before[1])
         for title in titles:
             title.set_wrap(False)
+        fig.legends[:] = legends
+
+
+def _narrowed(fig: Figure, legend: Any, share: float) -> None:
+    """The same legend outside the panels in fewer columns."""
+    legend.remove()
+    where: Any = f"outside {legend._outside_loc} center"
+    fig.legend(
+        legend.legend_handles,
+        [text.get_text() for text in legend.get_texts()],
+        loc=where,
+        ncols=max(1, int(legend._ncols * share)),
+        title=legend.get_title().get_text() or None,
+    )

@@ -3,6 +3,7 @@
 from __future__ import annotations
 
 import json
+from textwrap import wrap
 from typing import Any, NamedTuple
 
 import numpy as np
@@ -10,15 +11,17 @@ import xarray as xr
 from matplotlib.axes import Axes
 from matplotlib.colors import ListedColormap
 from matplotlib.figure import Figure
+from matplotlib.ticker import MaxNLocator
 from numpy.typing import NDArray
 
 from flexapod.errors import InputError
-from flexapod.plot.style import COLUMN, FLEXIBLE, NOTE, PAGE, RIGID, TEXT, figure, scale, styled
+from flexapod.plot.style import COLORS, COLUMN, FLEXIBLE, NOTE, PAGE, RIGID, TEXT, figure, scale, styled
 
 __all__ = ["sweep"]
 
 FAILED = "#C44E52"
 MOST_PANELS = 6
+LABEL = 28  # letters of a label beside a row of panels
 PERCENTILES = (5, 50, 95)
 Values = NDArray[Any]
 
@@ -134,7 +137,7 @@ def _map(x: _Shown, y: _Shown, z: _Shown, data: xr.Dataset) -> Figure:
     grid, failed = np.full((len(rows), len(columns)), np.nan), np.zeros((len(rows), len(columns)), dtype=bool)
     grid[row, column], failed[row, column] = z.values, _failed(data)
     edges = _edges(columns), _edges(rows)
-    shown = axes.pcolormesh(*edges, np.ma.masked_invalid(grid), cmap="viridis", linewidth=0, rasterized=True)
+    shown = axes.pcolormesh(*edges, np.ma.masked_invalid(grid), cmap=COLORS, linewidth=0, rasterized=True)
     if failed.any():
         axes.pcolormesh(*edges, np.ma.masked_equal(failed, False), cmap=ListedColormap([FAILED]), alpha=0.35)
         axes.set_title(f"red: failed ({failed.sum()} of {failed.size})", fontsize=TEXT)
@@ -169,6 +172,7 @@ def _histogram(y: _Shown, data: xr.Dataset) -> Figure:
     axes.set_title(f"{len(values)} draws{f', {failed} failed' if failed else ''}", fontsize=TEXT)
     axes.set_xlabel(y.words)
     axes.set_ylabel("points")
+    axes.yaxis.set_major_locator(MaxNLocator(6, integer=True))
     return fig
 
 
@@ -187,7 +191,7 @@ def _panels(y: _Shown, data: xr.Dataset) -> Figure:
         _label(place, key)
     for place in grid.flat[len(keys) :]:
         place.set_visible(False)
-    fig.supylabel(y.words, fontsize=TEXT)
+    fig.supylabel("\n".join(wrap(y.words, LABEL * rows)), fontsize=TEXT)
     if _failed(data).any():
         grid[0, 0].legend(loc="best")
     return fig

@@ -1,7 +1,7 @@
 """The compiled time loop: one C call advances a chunk. Structures mirror ``native/system.h``."""
 
 import ctypes
-from ctypes import POINTER, Structure, byref, c_double, c_long
+from ctypes import Structure, byref, c_double, c_long, c_void_p
 from dataclasses import dataclass
 
 import numpy as np
@@ -11,7 +11,6 @@ from flexapod.integration import GeneralizedAlpha
 from flexapod.solve.plant import Counters, Flow, Plant, record_width
 from flexapod.typing import Array
 
-_pointer = POINTER(c_double)
 TOL_CLOSURE, TOL_FORCE = 1e-14, 1e-10  # m; relative to the largest force: rounding floors of metres and kilonewtons
 MAX_ITERATIONS, MAX_AGE = 12, 16
 
@@ -19,8 +18,8 @@ MAX_ITERATIONS, MAX_AGE = 12, 16
 class _Settings(Structure):
     _fields_ = [
         *[(name, c_long) for name in ("legs", "n", "l_index", "payload", "prescribed_l", "prescribed_beta")],
-        ("leg_p", _pointer),
-        ("payload_p", _pointer),
+        ("leg_p", c_void_p),
+        ("payload_p", c_void_p),
         ("leg_np", c_long),
         *[
             (name, c_double)
@@ -32,7 +31,7 @@ class _Settings(Structure):
 
 class _State(Structure):
     _fields_ = [
-        *[(name, _pointer) for name in ("q", "v", "v_dot", "a", "lam", "drive", "pose", "sums", "powers", "record")],
+        *[(name, c_void_p) for name in ("q", "v", "v_dot", "a", "lam", "drive", "pose", "sums", "powers", "record")],
         ("closure", c_double),
         *[(name, c_long) for name in ("steps", "iterations", "factorisations", "bad_leg")],
     ]
@@ -49,8 +48,8 @@ class Advance:
     leg: int
 
 
-def _address(array: Array):
-    return array.ctypes.data_as(_pointer)
+def _address(array: Array) -> c_void_p:
+    return c_void_p(array.ctypes.data)
 
 
 def _bits(mask: NDArray[np.bool_]) -> int:

@@ -1,6 +1,7 @@
 """What a time integration works on, whatever its body: flat arrays, held coordinates, tables."""
 
 from dataclasses import dataclass, field, replace
+from functools import cached_property
 
 import numpy as np
 
@@ -44,7 +45,7 @@ class Plant:
         """All coordinates."""
         return self.legs * self.n + (6 if self.robot else 0)
 
-    @property
+    @cached_property
     def force_floor(self) -> float:
         """Rounding of the stiffest spring's force [N]: what a residual cannot fall below at lengths of a metre."""
         EA, Lp, drive = (self.leg_p[:, columns(LEG_PARAMETERS, name)] for name in ("EA", "Lp", "drive_stiffness"))

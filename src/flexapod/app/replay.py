@@ -1,0 +1,234 @@
+"""A result in motion, for the report: points of every frame, and the traces that join them."""
+
+from __future__ import annotations
+
+from collections.abc import Sequence
+from typing import TYPE_CHECKING, Any
+
+import numpy as np
+
+from flexapod import model
+from flexapod.app.interactive import packed
+from flexapod.app.view.scene_geometry import ActuatorMotion, RobotMotion
+from flexapod.errors import FlexapodError
+from flexapod.plot.style import FLEXIBLE, LEG_COLORS, RIGID
+from flexapod.study.scene import STATIONS, Scene, mode_scene
+from flexapod.study.words import number, scale
+from flexapod.typing import Array
+
+if TYPE_CHECKING:
+    from xarray import Dataset
+
+    from flexapod.model import ActuatorStudy, Robot, Study
+
+__all__ = ["locked_modes", "replay"]
+
+FRAMES = 241
+MODES = 6
+MODE_SIZE = 0.1  # largest displacement of a mode, as a share of the robot's height
+EVERY = 3  # of the points of a drawn piston
+LEGS = 6
+FILLED = 1.6  # size of the drawn box, which nearly fills its place
+CYLINDER, DEVIATION = "#8A8F98", "#D55E00"
+Traces = list[dict[str, Any]]
+
+
+def replay(study: Study | ActuatorStudy, data: Dataset, modes: Dataset | None = None) -> dict[str, Any]:
+    """Frames and traces of a robot's or an actuator's result, as the page's script reads them.
+
+    Parameters
+    ----------
+    study : Study or ActuatorStudy
+        What was computed.
+    data : xarray.Dataset
+        Result of `flexapod.run`, whole or partial.
+    modes : xarray.Dataset, optional
+        Result of `flexapod.modes` of the same robot; its lowest modes can be played too.
+
+    Returns
+    -------
+    dict
+        ``points``: (frame, point, direction) in mm, packed; ``time`` [s] and ``values`` of the frames; ``traces`` in
+        the form of plotly, where ``take`` numbers the points that a line joins (-1: a gap); ``modes``: their points at
+        rest and displaced.
+    """
+    return _actuator(study, data) if isinstance(study, model.ActuatorStudy) else _robot(study, data, modes)
+
+
+def locked_modes(study: Study | ActuatorStudy) -> Dataset | None:
+    """Modes of a robot at home with its drives locked; None for an actuator, and where there are none."""
+    if isinstance(study, model.ActuatorStudy):
+        return None
+    from flexapod.study import modes
+
+    try:
+        return modes(study)
+    except FlexapodError:
+        return None
+
+
+def _chosen(count: int) -> Array:
+    """Stored instants that become frames, evenly over the whole."""
+    return np.unique(np.linspace(0, count - 1, min(count, FRAMES)).round().astype(int))
+
+
+def _robot(study: Study, data: Dataset, modes: Dataset | None) -> dict[str, Any]:
+    motion = RobotMotion(study, data)
+    chosen, factor = _chosen(len(motion.time)), motion.automatic_scale()
+    times = motion.time[chosen]
+    frames = np.array([_points(at.flexible, at.rigid) for at in (motion.at(time, factor) for time in times)])
+    played = [] if modes is None else _modes(modes)
+    everything = [frames, *(part for mode in played for part in mode["ends"])]
+    deviation = motion.paths[1][chosen]
+    return {
+        **_frames(times, frames, f"deflections and deviation drawn {number(factor)} times larger"),
+        **_values("deviation", np.column_stack([deviation, np.linalg.norm(deviation, axis=1)]), (*"xyz", "distance")),
+        "traces": [*_paths(motion, factor), *_robot_traces(study.robot)],
+        "layout": _space(np.concatenate([part.reshape(-1, 3) for part in everything])),
+        "modes": [{"title": mode["title"], "ends": [packed(part) for part in mode["ends"]]} for mode in played],
+    }
+
+
+def _points(flexible: Scene, rigid: Scene) -> Array:
+    """Points of a frame in mm: bases, pistons, platform, centre, centre of mass; platform, centres of the rigid one."""
+    pistons = flexible.piston[:, ::EVERY].reshape(-1, 3)
+    ends = [flexible.centre, flexible.com, rigid.centre, rigid.com]
+    return 1e3 * np.vstack([flexible.base, pistons, flexible.platform, rigid.platform, *ends])
+
+
+def _modes(modes: Dataset) -> list[dict[str, Any]]:
+    """The lowest modes: title, points at rest and displaced."""
+    labels = [int(label) for label in modes.mode.values[:MODES]]
+    rest = mode_scene(modes, labels[0], 1.0, phase=0.0)
+    size = MODE_SIZE * float(np.ptp(np.vstack([rest.base, rest.platform])[:, 2]))
+    found = []
+    for label in labels:
+        mode = modes.sel(mode=label)
+        title = f"Mode {label}: {float(mode.frequency):.4g} Hz, {mode.kind.item()}"
+        moved = mode_scene(modes, label, size)
+        found.append({"title": title, "ends": (_points(rest, rest), _points(moved, rest))})
+    return found
+
+
+def _around(joints: Array, first: int) -> list[int]:
+    """Numbers of the points of a ring of joints (6, 3), the one after the other; its points begin at `first`."""
+    arms = joints - joints.mean(axis=0)
+    return [first + int(i) for i in np.argsort(np.arctan2(arms[:, 1], arms[:, 0]))]
+
+
+def _robot_traces(robot: Robot) -> Traces:
+    """Lines between the points of `_points`, in its order."""
+    line = len(range(0, STATIONS, EVERY))
+    pistons = [list(range(LEGS + i * line, LEGS + (i + 1) * line)) for i in range(LEGS)]
+    start = LEGS + LEGS * line
+    base, platform = _around(robot.base_joints, 0), _around(robot.platform_joints, start)
+    rigid = [point + LEGS for point in platform]
+    centre, com, rigid_centre, rigid_com = range(start + 2 * LEGS, start + 2 * LEGS + 4)
+    ghost = [point for i in range(LEGS) for point in (i, start + LEGS + i, -1)]
+    ghost += [*rigid, rigid[0], -1, rigid_centre, rigid_com]
+    cylinders = [point for i in range(LEGS) for point in (i, pistons[i][0], -1)]
+    legs = [_line(pistons[i], LEG_COLORS[i], 7, name=f"leg {i + 1}", showlegend=False) for i in range(LEGS)]
+    return [
+        _line([*base, base[0]], "#4A4F57", 3, name="base", showlegend=False),
+        _line(ghost, RIGID, 2, name="rigid legs"),
+        _line(cylinders, CYLINDER, 13, name="cylinders", showlegend=False),
+        *legs,
+        _plate(platform),
+        _line([*platform, platform[0]], "#2F6690", 4, name="platform", showlegend=False),
+        _line([centre, com], "#333333", 3, name="payload", showlegend=False),
+        _line([rigid_com, com], DEVIATION, 7, name="deviation"),
+        _dots([com], FLEXIBLE, 4, name="centre of mass, flexible"),
+        _dots([rigid_com], CYLINDER, 4, name="centre of mass, rigid", symbol="circle-open"),
+        {**_dots(list(range(LEGS)), "#333333", 3, showlegend=False), "mode": "markers+text", "hoverinfo": "skip"}
+        | {"text": [str(i + 1) for i in range(LEGS)], "textposition": "bottom center"},
+    ]
+
+
+def _paths(motion: RobotMotion, factor: float) -> Traces:
+    """Paths of the centre of mass, which do not move with time."""
+    com, deviation = (path[_chosen(len(motion.time))] for path in motion.paths)
+    return [
+        _fixed(1e3 * com, RIGID, 4, name="path, rigid"),
+        _fixed(1e3 * (com + factor * deviation), FLEXIBLE, 3, name="path, flexible"),
+    ]
+
+
+def _actuator(study: ActuatorStudy, data: Dataset) -> dict[str, Any]:
+    motion = ActuatorMotion(study, data)
+    chosen, factor = _chosen(len(motion.time)), motion.automatic_scale()
+    times = motion.time[chosen]
+    shown = [motion.at(time, factor)[1:] for time in times]
+    frames = 1e3 * np.array([np.vstack([bent, line[[0, -1]], np.zeros((1, 3))]) for bent, line in shown])[:, :, [0, 2]]
+    bent = list(range(frames.shape[1] - 3))
+    start, end, pivot = range(len(bent), len(bent) + 3)
+    traces = [
+        _line([start, end], RIGID, 7, name="rigid beam"),
+        _line(bent, FLEXIBLE, 3, name="flexible beam"),
+        _dots([pivot], CYLINDER, 14, name="hub", symbol="square"),
+        _dots([bent[-1]], DEVIATION, 8, name="tip"),
+    ]
+    words = f"deflection drawn {number(factor)} times larger"
+    values = _values("deflection of the", motion.deflection[chosen, None], ("tip",))
+    return {**_frames(times, frames, words), **values, "traces": traces, "layout": _plane(frames), "modes": []}
+
+
+def _frames(times: Array, frames: Array, words: str) -> dict[str, Any]:
+    return {"time": [round(float(t), 6) for t in times], "points": packed(frames), "words": words}
+
+
+def _values(what: str, values: Array, names: Sequence[str]) -> dict[str, Any]:
+    """Numbers beside the frames (frame, name), in the unit in which they read well."""
+    unit = scale(values, "m")
+    shown = unit(values)
+    places = 3 - int(np.floor(np.log10(max(np.abs(shown).max(), 1e-9))))
+    return {"what": what, "names": list(names), "unit": unit.name, "values": np.round(shown, places).tolist()}
+
+
+def _line(take: Sequence[int], color: str, width: float, **more: Any) -> dict[str, Any]:
+    style = {"mode": "lines", "line": {"color": color, "width": width}, "hoverinfo": "skip"}
+    return {**style, "take": list(take), **more}
+
+
+def _dots(take: Sequence[int], color: str, size: float, symbol: str = "circle", **more: Any) -> dict[str, Any]:
+    marker = {"color": color, "size": size, "symbol": symbol}
+    return {"mode": "markers", "marker": marker, "hoverinfo": "skip", "take": list(take), **more}
+
+
+def _plate(points: Sequence[int]) -> dict[str, Any]:
+    """A translucent surface over the joints of the platform, which follow each other around it."""
+    fan = range(1, len(points) - 1)
+    corners = {"i": [0 for _ in fan], "j": list(fan), "k": [i + 1 for i in fan]}
+    look = {"color": "#2F6690", "opacity": 0.35, "hoverinfo": "skip", "showlegend": False, "flatshading": True}
+    return {"type": "mesh3d", "take": list(points), **corners, **look}
+
+
+def _fixed(points: Array, color: str, width: float, **more: Any) -> dict[str, Any]:
+    x, y, z = ([float(f"{v:.6g}") for v in part] for part in points.T)
+    return {**_line([], color, width, **more), "x": x, "y": y, "z": z}
+
+
+def _space(points: Array) -> dict[str, Any]:
+    """3D axes in mm with equal scales that hold all frames, so that nothing jumps."""
+    low, high = _limits(points)
+    span = high - low
+    axes = {
+        f"{name}axis": {"title": {"text": f"{name} [mm]"}, "range": [float(low[i]), float(high[i])], "nticks": 5}
+        for i, name in enumerate("xyz")
+    }
+    ratio = {name: FILLED * float(span[i] / span.max()) for i, name in enumerate("xyz")}
+    camera = {"eye": {"x": 1.5, "y": -1.7, "z": 0.5}, "projection": {"type": "orthographic"}}
+    return {"scene": {**axes, "aspectmode": "manual", "aspectratio": ratio, "camera": camera, "dragmode": "turntable"}}
+
+
+def _plane(points: Array) -> dict[str, Any]:
+    """2D axes in mm with equal scales."""
+    low, high = _limits(points.reshape(-1, 2))
+    x = {"title": {"text": "X [mm]"}, "range": [float(low[0]), float(high[0])], "zeroline": False}
+    y = {"title": {"text": "Y [mm]"}, "range": [float(low[1]), float(high[1])], "zeroline": False}
+    return {"xaxis": x, "yaxis": {**y, "scaleanchor": "x", "scaleratio": 1}}
+
+
+def _limits(points: Array) -> tuple[Array, Array]:
+    low, high = points.min(axis=0), points.max(axis=0)
+    margin = 0.04 * float((high - low).max())
+    return low - margin, high + margin

@@ -1,0 +1,202 @@
+"""Charts over time with a cursor at the instant that the scene shows."""
+
+from __future__ import annotations
+
+from dataclasses import dataclass
+from html import escape
+from typing import TYPE_CHECKING, Any
+
+import numpy as np
+from numpy.typing import NDArray
+
+from flexapod.app.view.legend import LEG_COLORS
+from flexapod.study.words import number, scale
+from flexapod.typing import Array
+
+if TYPE_CHECKING:
+    import viser
+    from xarray import DataArray, Dataset
+
+__all__ = ["Chart", "ChartView", "charts", "thinned"]
+
+POINTS = 900  # of a drawn line: the extremes of each piece are kept
+
+_AXES = ("#7A5195", "#0072B2", "#D55E00")
+_OTHERS = ("#0072B2", "#009E73", "#D55E00", "#E69F00", "#A23B72", "#56B4E9")
+_DASHES: tuple[tuple[float, ...], ...] = ((), (6, 3), (8, 3, 2, 3), (2, 2), (10, 2), (4, 2, 1, 2))
+_CURSOR = "#888888"
+
+
+@dataclass(frozen=True, kw_only=True)
+class Chart:
+    """Lines over time: `values` (lines, T) in the unit `unit`, at `time` (T,) [s]."""
+
+    title: str
+    unit: str
+    time: Array
+    values: Array
+    names: tuple[str, ...]
+    colors: tuple[str, ...]
+
+    @property
+    def limits(self) -> tuple[float, float]:
+        """Of the vertical axis."""
+        low, high = float(np.nanmin(self.values)), float(np.nanmax(self.values))
+        margin = 0.06 * (high - low) or 0.06 * abs(high) or 1.0
+        return low - margin, high + margin
+
+    def at(self, time: float) -> Array:
+        """Values of all lines at an instant, between the stored ones, (lines,)."""
+        return np.array([np.interp(time, self.time, line) for line in self.values])
+
+
+def charts(data: Dataset) -> dict[str, Chart]:
+    """The charts of a result by name: a robot's, or a single actuator's."""
+    if "com_deviation" in data:
+        return {
+            "deviation": _chart(data, "Deviation of the centre of mass", data.com_deviation, "m", list("xyz"), _AXES),
+            "leg forces": _chart(data, "Force of the drives", data.actuator_force, "N", _legs(data), LEG_COLORS),
+            "tip deflections": _chart(
+                data, "Piston tips off the cylinders' axes", _sizes(data.tip_deflection), "m", _legs(data), LEG_COLORS
+            ),
+            "energies": _energies(data),
+        }
+    return {
+        "tip deflection": _chart(data, "Tip in the frame of the hub", data.tip_deflection, "m", ["tip"], _OTHERS),
+        "length": _chart(data, "Length outside the hub", data.length, "m", ["length"], _OTHERS),
+        "torque": _chart(data, "Torque on the hub", data.torque, "N m", ["torque"], _OTHERS),
+        "force": _chart(data, "Axial force on the beam", data.force, "N", ["force"], _OTHERS),
+        "energies": _energies(data),
+    }
+
+
+def _legs(data: Dataset) -> list[str]:
+    return [f"leg {leg}" for leg in data.leg.values]
+
+
+def _sizes(values: DataArray) -> DataArray:
+    return (values**2).sum("direction") ** 0.5
+
+
+def _chart(data: Dataset, title: str, values: DataArray, unit: str, names: list[str], colors: tuple[str, ...]) -> Chart:
+    shown = scale(values, unit)
+    lines = shown(values.values).reshape(data.sizes["time"], -1).T
+    return Chart(
+        title=title,
+        unit=shown.name,
+        time=data.time.values,
+        values=lines,
+        names=tuple(names),
+        colors=colors[: len(names)],
+    )
+
+
+def _energies(data: Dataset) -> Chart:
+    parts = {
+        "kinetic": data.energy_kinetic,
+        "gravity, change": data.energy_potential - data.energy_potential[0],
+        "strain": data.energy_strain,
+        "dissipated": data.energy_dissipated,
+        "work of drives": data.work_drive,
+        "work of loads": data.work_external,
+    }
+    values = np.stack([part.values for part in parts.values()])
+    shown = scale(values, "J")
+    return Chart(
+        title="Energies and works",
+        unit=shown.name,
+        time=data.time.values,
+        values=shown(values),
+        names=tuple(parts),
+        colors=_OTHERS,
+    )
+
+
+def thinned(values: Array, most: int = POINTS) -> NDArray[np.intp]:
+    """Which of T instants to draw: of each piece of the time the extremes of every line (lines, T), in order."""
+    count = values.shape[1]
+    if count <= most:
+        return np.arange(count)
+    pieces = np.array_split(np.arange(count), max(1, most // (2 * len(values))))
+    kept = [piece[0] + at for piece in pieces for line in values for at in _extremes(line[piece])]
+    return np.unique([0, *kept, count - 1])
+
+
+def _extremes(line: Array) -> tuple[int, int]:
+    return int(line.argmin()), int(line.argmax())
+
+
+class ChartView:
+    """One chart in the panel, its cursor, and below it the values at the cursor."""
+
+    def __init__(self, gui: viser.GuiApi) -> None:
+        self._gui, self._place = gui, gui.add_folder(None)
+        self._plot: viser.GuiUplotHandle | None = None
+        self._values: viser.GuiHtmlHandle | None = None
+        self._chart: Chart | None = None
+        self._drawn: NDArray[np.intp] = np.zeros(0, dtype=int)
+
+    def show(self, chart: Chart | None, time: float) -> None:
+        """Draw another chart with its cursor at `time` [s]; None: nothing."""
+        for handle in (self._plot, self._values):
+            if handle is not None:
+                handle.remove()
+        self._chart, self._plot, self._values = chart, None, None
+        if chart is None:
+            return
+        self._drawn = thinned(chart.values)
+        with self._place:
+            self._plot = self._gui.add_uplot(
+                self._lines(chart, time),
+                _series(chart),
+                title=f"{chart.title} [{chart.unit}]",
+                scales={"x": {"time": False}, "y": {"range": chart.limits}},
+                axes=_axes(),
+                legend={"show": False},
+                height=230,
+                padding=(4, 12, 0, 0),
+            )
+            self._values = self._gui.add_html(_readout(chart, time))
+
+    def cursor(self, time: float) -> None:
+        """Move the cursor."""
+        if self._chart is not None and self._plot is not None and self._values is not None:
+            self._plot.data = self._lines(self._chart, time)
+            self._values.content = _readout(self._chart, time)
+
+    def _lines(self, chart: Chart, time: float) -> tuple[Array, ...]:
+        """Instants, lines, and the cursor: a line along the lower edge that rises to the upper one at `time`."""
+        instants, (low, high) = chart.time[self._drawn], chart.limits
+        place, now = np.full(3, int(np.searchsorted(instants, time))), chart.at(time)
+        lines = [np.insert(line[self._drawn], place, at) for line, at in zip(chart.values, now, strict=True)]
+        mark = np.insert(np.full(len(instants), low), place, (low, high, low))
+        return np.insert(instants, place, time), *lines, mark
+
+
+def _series(chart: Chart) -> tuple[Any, ...]:
+    """How the lines are drawn; the last is the cursor."""
+    plain = {"points": {"show": False}}
+    lines = [
+        {"label": name, "stroke": color, "width": 1.6, "dash": dash, **plain}
+        for name, color, dash in zip(chart.names, chart.colors, _DASHES, strict=False)
+    ]
+    return {"label": "time [s]"}, *lines, {"label": "now", "stroke": _CURSOR, "width": 1.5, **plain}
+
+
+def _axes() -> tuple[Any, ...]:
+    return {"label": "time [s]", "labelSize": 18, "size": 30}, {"size": 54}
+
+
+def _readout(chart: Chart, time: float) -> str:
+    """Names, colours and values of the lines at an instant, as HTML."""
+    cells = "".join(
+        f"<span style='white-space:nowrap'><svg width='22' height='8' aria-hidden='true'><line x1='0' y1='4' x2='22' "
+        f"y2='4' stroke='{color}' stroke-width='2.5' stroke-dasharray='{','.join(str(d) for d in dash)}'/></svg> "
+        f"{escape(name)} <b>{number(value)}</b></span>"
+        for name, color, dash, value in zip(chart.names, chart.colors, _DASHES, chart.at(time), strict=False)
+    )
+    return (
+        f"<div class='flexapod-readout' style='padding:0 0.75em 0.5em;font-size:0.8rem;line-height:1.5'>"
+        f"At {time:.4g} s, in {escape(chart.unit)}:"
+        f"<div style='display:grid;grid-template-columns:1fr 1fr;gap:0 0.8em'>{cells}</div></div>"
+    )

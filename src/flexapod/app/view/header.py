@@ -1,0 +1,57 @@
+"""Above the tabs: what is shown, the answer or what is wrong, Simulate, Cancel, progress."""
+
+from __future__ import annotations
+
+from collections.abc import Callable
+from typing import TYPE_CHECKING
+
+from viser import Icon
+
+from flexapod.app.view import words
+
+if TYPE_CHECKING:
+    from viser import ClientHandle
+
+__all__ = ["Header"]
+
+
+class Header:
+    """The top of the panel of one client.
+
+    Parameters
+    ----------
+    client : viser.ClientHandle
+    name : str
+        Name of the study.
+    simulate, cancel : callable
+        What the two buttons do.
+    """
+
+    def __init__(
+        self, client: ClientHandle, name: str, simulate: Callable[[], None], cancel: Callable[[], None]
+    ) -> None:
+        gui = client.gui
+        gui.add_html(words.title(name))
+        self._words = gui.add_html("")
+        self._simulate = gui.add_button("Simulate", icon=Icon.PLAYER_PLAY, hint="Compute the study as it stands now")
+        self._progress = gui.add_progress_bar(0.0, visible=False)
+        self._cancel = gui.add_button("Cancel", icon=Icon.X, visible=False, color="red", hint="Stop the simulation")
+        self._simulate.on_click(lambda _: simulate())
+        self._cancel.on_click(lambda _: cancel())
+
+    def say(self, html: str) -> None:
+        """Show words (HTML of `words`) in place of those before."""
+        self._words.content = html
+
+    def running(self, on: bool) -> None:
+        """Show the progress bar and Cancel in place of Simulate, or the other way round."""
+        self._progress.value = 0.0
+        self._simulate.visible, self._progress.visible, self._cancel.visible = not on, on, on
+
+    def progress(self, share: float) -> None:
+        """Show how much is done (0 to 1)."""
+        self._progress.value = 100.0 * min(max(share, 0.0), 1.0)
+
+    def ready(self, on: bool) -> None:
+        """Whether there is a study that can be simulated."""
+        self._simulate.disabled = not on

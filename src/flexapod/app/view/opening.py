@@ -1,0 +1,61 @@
+"""From a file to what the page begins with: a study file, or results that carry their study."""
+
+from __future__ import annotations
+
+from pathlib import Path
+from typing import TYPE_CHECKING
+
+import numpy as np
+
+from flexapod import model
+from flexapod.app.view.document import Document
+from flexapod.errors import InputError
+
+if TYPE_CHECKING:
+    from xarray import Dataset
+
+    from flexapod.app.view.session import Source
+
+__all__ = ["open_source"]
+
+_RESULTS = (".nc", ".nc4", ".netcdf")
+
+
+def open_source(file: Path) -> Source:
+    """What a study file or results on disk begin with.
+
+    Raises
+    ------
+    InputError
+        As `flexapod.load`; or the file is no result of a simulation.
+    """
+    from flexapod.app.view.session import Source
+
+    if file.suffix.lower() not in _RESULTS:
+        study = model.load(file)
+        return Source(document=Document(study.source_text, str(file)), study=study)
+    from flexapod.study.store import open_results
+
+    data = open_results(file)
+    if "com_deviation" not in data and not ("tip_deflection" in data and "angle" in data):
+        raise InputError(
+            "is no result of a simulation", file=file, allowed="results.nc of `flexapod run`, or a study file"
+        )
+    path, text = data.attrs.get("study_file") or str(file), str(data.attrs["study"])
+    try:
+        study = model.loads(text, path=path)
+    except InputError:
+        study = _without_tables(data, text, str(file))
+        text, path = study.source_text, str(file)
+    return Source(document=Document(text, str(path)), study=study, data=data)
+
+
+def _without_tables(data: Dataset, text: str, file: str) -> model.Study:
+    """The study of a robot's results whose tables are elsewhere: the motion as it was commanded, no load."""
+    robot = model.loads_robot(text, path=file)
+    pose = np.concatenate([data.translation_command.values, data.rotation_command.values], axis=1)
+    motion = model.CsvMotion(time=data.time.values, pose=pose)
+    note = (
+        "tables that the study names are not here: the motion is the one that the results carry, the load is left out"
+    )
+    return model.Study(robot=robot, motion=motion, path=file, notes=(note,))

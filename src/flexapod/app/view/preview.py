@@ -1,0 +1,58 @@
+"""What the rigid robot says at once while a number is dragged: strokes with their margins, singularity."""
+
+from __future__ import annotations
+
+import numpy as np
+
+from flexapod import model, rigid
+from flexapod.app.view import words
+from flexapod.errors import InputError
+from flexapod.study.checks import check_actuator_path, check_path
+
+__all__ = ["preview_html"]
+
+INSTANTS = 201
+
+
+def preview_html(study: model.Study | model.ActuatorStudy) -> str:
+    """Leg lengths, stroke margins and singularity on the path, as HTML; and why the path is refused, if it is."""
+    try:
+        remarks = check_path(study) if isinstance(study, model.Study) else check_actuator_path(study)
+        refusal = ""
+    except InputError as error:
+        remarks, refusal = [], words.error_html(error)
+    body = _robot(study) if isinstance(study, model.Study) else _actuator(study)
+    return refusal + body + "".join(words.block(remark, "warning") for remark in remarks)
+
+
+def _robot(study: model.Study) -> str:
+    t = np.linspace(0.0, study.duration, INSTANTS)
+    path = rigid.poses(study.robot, study.motion, t)
+    length, _, _ = rigid.leg_directions(study.robot, path)
+    rows, bad = [], []
+    for i, leg in enumerate(study.robot.legs):
+        low, high = float(length[:, i].min()), float(length[:, i].max())
+        margin = None if leg.stroke is None else min(low - leg.stroke.min, leg.stroke.max - high)
+        rows.append([str(i + 1), f"{1e3 * low:.1f}", f"{1e3 * high:.1f}", _millimetres(margin)])
+        bad.append(margin is not None and margin < 0)
+    header = ["Leg", "shortest [mm]", "longest [mm]", "stroke left [mm]"]
+    found = rigid.singularity(study.robot, path)
+    worst = float(found.smallest_singular_value[found.worst])
+    singular = f"Smallest singular value {worst:.3g} at t = {t[found.worst]:.3g} s (0 is singular; scaled Jacobian)."
+    return words.table_html(header, rows, bad) + words.block(singular)
+
+
+def _millimetres(margin: float | None) -> str:
+    return "no limits" if margin is None else f"{1e3 * margin:.1f}"
+
+
+def _actuator(study: model.ActuatorStudy) -> str:
+    actuator, law = study.actuator, study.motion.extension
+    if law is None:
+        return words.block("The extension is driven by a force: the free length is a result.")
+    t = np.linspace(0.0, study.duration, INSTANTS)
+    free = actuator.free_length + rigid.motion_law(law, t).position
+    return words.block(
+        f"Free length {free.min():.4g} to {free.max():.4g} m of {actuator.length:.4g} m; "
+        f"{study.simulation.lateral_shapes} shapes."
+    )

@@ -1,0 +1,210 @@
+"""The nodes of a drawn robot: made once, then only moved."""
+
+from __future__ import annotations
+
+from collections.abc import Callable
+from typing import TYPE_CHECKING, Any, Literal
+
+import numpy as np
+
+from flexapod import model
+from flexapod.app.view.legend import LEG_COLORS, rgb
+from flexapod.app.view.scene_geometry import (
+    ROUNDING,
+    Instant,
+    orientation,
+    plate,
+    platform_rotation,
+    round_down,
+    strip,
+    tube,
+    tube_faces,
+)
+from flexapod.study.scene import STATIONS, Scene
+from flexapod.study.words import number, text
+from flexapod.typing import Array
+
+if TYPE_CHECKING:
+    import viser
+
+__all__ = ["SOMETIMES", "Deviation", "Ghost", "RobotParts", "add_grid", "robot_size"]
+
+#: Nodes that some robots lack.
+SOMETIMES = ("/platform/tool", "/platform/tool_name", *(f"/cylinder_{leg}/body" for leg in range(1, 7)))
+
+Add = Callable[[str, Any], Any]
+
+_CYLINDER, _BASE, _PLATFORM, _PAYLOAD = rgb("#8A8F98"), rgb("#4A4F57"), rgb("#2F6690"), rgb("#F2F2F2")
+_GHOST, _RIGID, _FLEXIBLE = rgb("#9A9A9A"), rgb("#6E6E6E"), rgb("#C2185B")
+_HERE = (0.0, 0.0, 0.0)
+_NOTHING = np.zeros((1, 2, 3))
+
+
+def add_grid(scene: viser.SceneApi, width: float, plane: Literal["xy", "xz"], position: Array) -> Any:
+    """A square grid whose lines are 10, 20, 50 mm ... apart."""
+    cell = 1e-3 * round_down(1e3 * width / 30)
+    return scene.add_grid(
+        "/grid",
+        width,
+        width,
+        plane=plane,
+        position=position,
+        cell_size=cell,
+        section_size=5 * cell,
+        cell_color=(228, 228, 228),
+        section_color=(195, 195, 195),
+    )
+
+
+def robot_size(robot: model.Robot) -> float:
+    """A length that stands for the robot's size [m]: the largest extent of its joints at home."""
+    points = np.vstack([robot.base_joints, robot.base_joints + robot.home_vectors])
+    return float(np.ptp(points, axis=0).max())
+
+
+class RobotParts:
+    """Base, six legs, platform with its payload, frames and labels."""
+
+    def __init__(self, scene: viser.SceneApi, add: Add, robot: model.Robot) -> None:
+        self.robot, self.size = robot, robot_size(robot)
+        self._colors: Array = np.zeros((6, 3), dtype=int)
+        self._make_base(scene, add)
+        self._platform = self._make_platform(scene, add)
+        self._cylinders, self._pistons = self._make_legs(scene)
+
+    def draw(self, points: Scene, colors: Array) -> None:
+        """Move everything to the points of a robot; colours (6, 3) of the pistons."""
+        self._platform.position, self._platform.wxyz = points.centre, platform_rotation(self.robot, points)
+        along = points.piston[:, 0] - points.base
+        turns = orientation(np.where(self._mouth > 0, along, points.piston[:, 1] - points.base))
+        vertices = tube(points.piston, 1.0)
+        vertices = _thickened(vertices, points.piston, self._radius)
+        for i in range(6):
+            self._cylinders[i].wxyz = turns[i]
+            self._pistons[i].vertices = vertices[i]
+            if (colors[i] != self._colors[i]).any():
+                self._pistons[i].color = tuple(int(c) for c in colors[i])
+        self._colors = np.array(colors)
+
+    @property
+    def _mouth(self) -> Array:
+        return np.array([[leg.cylinder.mouth] for leg in self.robot.legs])
+
+    @property
+    def _radius(self) -> Array:
+        """Radii of the pistons (6,) [m]; a thickness to see by where the study gives no diameter."""
+        given = [leg.piston.diameter for leg in self.robot.legs]
+        return np.array([0.012 * self.size if d is None else max(0.5 * d, 0.004 * self.size) for d in given])
+
+    def _make_base(self, scene: viser.SceneApi, add: Add) -> None:
+        robot, size = self.robot, self.size
+        floor = float(robot.base_joints[:, 2].min()) - 0.03 * size
+        vertices, faces = plate(robot.base_joints - [0.0, 0.0, 0.02 * size], 0.012 * size)
+        scene.add_mesh_simple("/base", vertices, faces, color=_BASE, opacity=0.55, flat_shading=True)
+        add("grid", add_grid(scene, 4 * size, "xy", np.array([0.0, 0.0, floor])))
+        add("frames", scene.add_frame("/frame", axes_length=0.25 * size, axes_radius=0.006 * size))
+        add("frames", scene.add_label("/frame/name", "W (world)", position=_HERE, anchor="top-center"))
+        for i, joint in enumerate(robot.base_joints):
+            outward = joint * [1.15, 1.15, 1.0]
+            scene.add_icosphere(f"/joint_{i + 1}", 1.5 * float(self._radius[i]), color=_BASE, position=joint)
+            add("labels", scene.add_label(f"/leg_{i + 1}", f"leg {i + 1}", position=outward, anchor="top-center"))
+
+    def _make_platform(self, scene: viser.SceneApi, add: Add) -> Any:
+        robot, size, load = self.robot, self.size, self.robot.payload
+        frame = scene.add_frame("/platform", show_axes=False)
+        vertices, faces = plate(robot.platform_joints, 0.012 * size)
+        scene.add_mesh_simple("/platform/plate", vertices, faces, color=_PLATFORM, opacity=0.8, flat_shading=True)
+        for i, joint in enumerate(robot.platform_joints):
+            radius = 1.4 * float(self._radius[i])
+            scene.add_icosphere(f"/platform/joint_{i + 1}", radius, color=_PLATFORM, position=joint)
+        stem = np.stack([robot.platform_joints.mean(axis=0), load.com])[None]
+        scene.add_line_segments("/platform/stem", stem, _BASE, thickness=2.0, thickness_units="screen")
+        scene.add_icosphere("/platform/payload", 0.055 * size, color=_PAYLOAD, opacity=0.2, position=load.com)
+        scene.add_icosphere("/platform/com", 0.009 * size, color=rgb("#111111"), position=load.com)
+        words, below = f"centre of mass, {number(load.mass)} kg", load.com - np.array([0.0, 0.0, 0.07 * size])
+        add("labels", scene.add_label("/platform/mass", words, position=below, anchor="top-left"))
+        if np.linalg.norm(load.tool - load.com) > 1e-6:
+            scene.add_icosphere("/platform/tool", 0.012 * size, color=_FLEXIBLE, position=load.tool)
+            add("labels", scene.add_label("/platform/tool_name", "tool", position=load.tool, anchor="top-left"))
+        axes = scene.add_frame("/platform/axes", axes_length=0.18 * size, axes_radius=0.005 * size)
+        add("frames", axes)
+        add("frames", scene.add_label("/platform/axes/name", "P (platform)", anchor="top-center"))
+        return frame
+
+    def _make_legs(self, scene: viser.SceneApi) -> tuple[list[Any], list[Any]]:
+        cylinders, pistons, faces = [], [], tube_faces(STATIONS)
+        for i, leg in enumerate(self.robot.legs):
+            node = scene.add_frame(f"/cylinder_{i + 1}", show_axes=False, position=self.robot.base_joints[i])
+            mouth, radius = leg.cylinder.mouth, 1.6 * float(self._radius[i])
+            if mouth > 0:
+                place = (0.0, 0.0, 0.5 * mouth)
+                scene.add_cylinder(f"/cylinder_{i + 1}/body", radius, mouth, _CYLINDER, position=place)
+            cylinders.append(node)
+            empty = np.zeros((STATIONS * 8, 3))
+            pistons.append(scene.add_mesh_simple(f"/piston_{i + 1}", empty, faces, color=rgb(LEG_COLORS[i])))
+        return cylinders, pistons
+
+
+def _thickened(vertices: Array, lines: Array, radius: Array) -> Array:
+    """Tubes of radius 1 around lines (6, n, 3), made as thick as `radius` (6,)."""
+    centre = np.repeat(lines, vertices.shape[1] // lines.shape[1], axis=1)
+    return centre + radius[:, None, None] * (vertices - centre)
+
+
+class Ghost:
+    """The rigid robot in pale lines."""
+
+    def __init__(self, scene: viser.SceneApi, add: Add, robot: model.Robot) -> None:
+        self.robot = robot
+        vertices, faces = plate(robot.platform_joints, 0.004 * robot_size(robot))
+        self._frame = scene.add_frame("/ghost", show_axes=False)
+        mesh = scene.add_mesh_simple(
+            "/ghost/plate", vertices, faces, color=_GHOST, opacity=0.35, flat_shading=True, cast_shadow=False
+        )
+        stem = np.stack([robot.platform_joints.mean(axis=0), robot.payload.com])[None]
+        line = scene.add_line_segments("/ghost/stem", stem, _GHOST, thickness=1.5, thickness_units="screen")
+        radius = 0.007 * robot_size(robot)
+        com = scene.add_icosphere("/ghost/com", radius, color=_GHOST, opacity=0.8, position=robot.payload.com)
+        legs = np.zeros((6, 2, 3))
+        self._legs = scene.add_line_segments("/ghost_legs", legs, _GHOST, thickness=2.0, thickness_units="screen")
+        for handle in (mesh, line, com, self._legs):
+            add("rigid ghost", handle)
+
+    def draw(self, points: Scene) -> None:
+        """Move it to the points of a rigid robot."""
+        self._frame.position, self._frame.wxyz = points.centre, platform_rotation(self.robot, points)
+        self._legs.points = np.stack([points.base, points.platform], axis=1).astype(np.float32)
+
+
+class Deviation:
+    """Both paths of the centre of mass, and the deviation as an arrow with its length."""
+
+    def __init__(self, scene: viser.SceneApi, add: Add, size: float) -> None:
+        self.size = size
+        self._rigid = scene.add_line_segments("/path_rigid", _NOTHING, _RIGID, thickness=2.0, thickness_units="screen")
+        self._bent = scene.add_line_segments(
+            "/path_flexible", _NOTHING, _FLEXIBLE, thickness=2.0, thickness_units="screen"
+        )
+        self._arrow = scene.add_arrows(
+            "/deviation", _NOTHING, _FLEXIBLE, shaft_radius=0.004 * size, head_radius=0.01 * size
+        )
+        self._words = scene.add_label("/deviation_length", "", position=_HERE, anchor="bottom-left")
+        for part, handle in (("paths", self._rigid), ("paths", self._bent)):
+            add(part, handle)
+        for handle in (self._arrow, self._words):
+            add("deviation arrow", handle)
+
+    def paths(self, rigid: Array, deviation: Array, scale: float) -> None:
+        """Draw both paths (T, 3), the flexible one with its deviation magnified."""
+        self._rigid.points = strip(rigid).astype(np.float32)
+        self._bent.points = strip(rigid + scale * deviation).astype(np.float32)
+
+    def draw(self, now: Instant) -> None:
+        """The arrow from the rigid to the drawn centre of mass; in words the true length."""
+        start, end = now.rigid.com, now.flexible.com
+        length = float(np.linalg.norm(end - start))
+        self._arrow.points = np.stack([start, end])[None].astype(np.float32)
+        self._arrow.head_length = round(min(0.03 * self.size, 0.5 * length), 4)
+        deviation = float(np.linalg.norm(now.deviation))
+        self._words.text = f"deviation {text(deviation, 'm')}" if deviation > ROUNDING * self.size else "no deviation"
+        self._words.position = start + np.array([0.0, 0.0, 0.02 * self.size])

@@ -1,0 +1,173 @@
+"""A robot in the browser: legs with their bent pistons, payload, rigid ghost, paths, deviation."""
+
+from __future__ import annotations
+
+from dataclasses import dataclass
+from typing import TYPE_CHECKING
+
+import numpy as np
+
+from flexapod import model, rigid
+from flexapod.app.view.legend import LEG_COLORS, QUANTITIES, LegColors, leg_colors, plain_legend, rgb
+from flexapod.app.view.robot_parts import SOMETIMES, Deviation, Ghost, RobotParts, robot_size
+from flexapod.app.view.scene import OF_RESULTS, Scene
+from flexapod.app.view.scene_geometry import RobotMotion
+from flexapod.study.arguments import PoseLike, as_pose
+from flexapod.study.scene import Scene as Points
+from flexapod.study.scene import mode_scene, placed
+from flexapod.typing import Array
+
+if TYPE_CHECKING:
+    import viser
+    from xarray import Dataset
+
+__all__ = ["RobotScene"]
+
+_PLAIN = np.array([rgb(color) for color in LEG_COLORS])
+
+
+@dataclass(frozen=True, kw_only=True)
+class _Drawn:
+    """A study with the nodes that show it."""
+
+    study: model.Study
+    robot: RobotParts
+    ghost: Ghost
+    deviation: Deviation
+
+
+class RobotScene(Scene):
+    """One user's view of a robot."""
+
+    quantities = QUANTITIES
+
+    def __init__(self, client: viser.ClientHandle) -> None:
+        super().__init__(client)
+        self._drawn: _Drawn | None = None
+        self._motion: RobotMotion | None = None
+        self._colors: LegColors | None = None
+        self._at_rest: Dataset | None = None  # the modes whose equilibrium the ghost shows
+
+    def show_study(self, study: model.Study) -> None:
+        """As `Scene.show_study`."""
+        with self.lock:
+            if self._closed:
+                return
+            first, api = self._drawn is None, self.client.scene
+            self._motion = self._colors = self._at_rest = None
+            with self.client.atomic():
+                if first:
+                    self._light()
+                self._begin(*SOMETIMES)
+                drawn = self._drawn = _Drawn(
+                    study=study,
+                    robot=RobotParts(api, self._add, study.robot),
+                    ghost=Ghost(api, self._add, study.robot),
+                    deviation=Deviation(api, self._add, robot_size(study.robot)),
+                )
+                self._only()
+                drawn.robot.draw(_undeformed(study.robot, rigid.poses(study.robot, study.motion, [self.time])), _PLAIN)
+            if first:
+                self._look_at(study.robot)
+
+    def show_pose(self, pose: PoseLike) -> None:
+        """As `Scene.show_pose`; a pose as for `flexapod.modes`, in reach or not.
+
+        Raises
+        ------
+        InputError
+            It is no pose.
+        """
+        with self.lock:
+            if self._drawn is None:
+                return
+            robot = self._drawn.study.robot
+            points = _undeformed(robot, as_pose(robot, pose, check=False))
+            with self.client.atomic():
+                self._only()
+                self._drawn.robot.draw(points, _PLAIN)
+
+    def show_data(self, data: Dataset | None) -> None:
+        """As `Scene.show_data`."""
+        with self.lock:
+            if self._drawn is None:
+                return
+            self.data, self._motion, self._colors = data, None, None
+            if data is None:
+                self._only()
+                return
+            self._motion = RobotMotion(self._drawn.study, data)
+            self.automatic = self._motion.automatic_scale()
+            self.scale = self._factor or self.automatic
+            self._redraw_paths()
+            self.set_time(min(self.time, float(self._motion.time[-1])))
+
+    def set_time(self, time: float) -> None:
+        """As `Scene.set_time`."""
+        with self.lock:
+            if self._drawn is None or self._motion is None:
+                return
+            self.time = float(time)
+            now = self._motion.at(time, self.scale)
+            with self.client.atomic():
+                self._only(*OF_RESULTS)
+                self._drawn.robot.draw(now.flexible, self._leg_colors(now.index))
+                self._drawn.ghost.draw(now.rigid)
+                self._at_rest = None
+                self._drawn.deviation.draw(now)
+
+    def show_mode(self, modes: Dataset, mode: int, amplitude: float, phase: float) -> None:
+        """As `Scene.show_mode`."""
+        with self.lock:
+            if self._drawn is None:
+                return
+            size = amplitude * self._drawn.robot.size
+            with self.client.atomic():
+                self._only("rigid ghost")
+                self._drawn.robot.draw(mode_scene(modes, mode, size, phase), _PLAIN)
+                if modes is not self._at_rest:
+                    self._drawn.ghost.draw(mode_scene(modes, mode, size, 0.0))
+                    self._at_rest = modes
+
+    def legend(self) -> str:
+        """As `Scene.legend`, with the values at the time that is shown."""
+        with self.lock:
+            if self._motion is None:
+                return plain_legend()
+            index = self._motion.index(self.time)
+            self._leg_colors(index)
+            return plain_legend() if self._colors is None else self._colors.html(index)
+
+    def colour_by(self, quantity: str) -> None:
+        """As `Scene.colour_by`."""
+        with self.lock:
+            self._colors = None
+            super().colour_by(quantity)
+
+    def close(self) -> None:
+        """As `Scene.close`."""
+        with self.lock:
+            super().close()
+            self._motion = self._colors = self._at_rest = self._drawn = None
+
+    def _leg_colors(self, index: int) -> Array:
+        if self.quantity == "plain" or self._drawn is None or self.data is None:
+            return _PLAIN
+        if self._colors is None:
+            self._colors = leg_colors(self.quantity, self._drawn.study, self.data)
+        return self._colors.colors(index)
+
+    def _redraw_paths(self) -> None:
+        if self._motion is not None and self._drawn is not None:
+            self._drawn.deviation.paths(*self._motion.paths, self.scale)
+
+    def _look_at(self, robot: model.Robot) -> None:
+        points = np.vstack([robot.base_joints, robot.base_joints + robot.home_vectors])
+        size = robot_size(robot)
+        beside = size * np.array([0.13, 0.16, 0.05])  # the panel covers the right of the page
+        self._look(size * np.array([1.1, -0.95, 0.35]), points.mean(axis=0) + beside)
+
+
+def _undeformed(robot: model.Robot, path: rigid.Poses) -> Points:
+    centre, R = path.position[0], path.rotation[0]
+    return placed(robot, centre, R, centre + R @ robot.payload.com)

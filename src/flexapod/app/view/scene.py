@@ -1,0 +1,163 @@
+"""What both scenes share: one user's scene, what can be hidden, the factor on deflections, who moves it."""
+
+from __future__ import annotations
+
+import threading
+from abc import ABC, abstractmethod
+from typing import TYPE_CHECKING, Any
+
+from flexapod.study.words import number
+from flexapod.typing import Array
+
+if TYPE_CHECKING:
+    import viser
+    from xarray import Dataset
+
+__all__ = ["OF_RESULTS", "PARTS", "Scene"]
+
+#: What can be shown and hidden, and whether it is shown at first.
+PARTS = {
+    "rigid ghost": True,
+    "paths": True,
+    "deviation arrow": True,
+    "labels": True,
+    "frames": False,
+    "grid": True,
+}
+
+
+#: Parts that show a result: hidden while there is none.
+OF_RESULTS = ("rigid ghost", "paths", "deviation arrow")
+
+
+class Scene(ABC):
+    """One user's scene. Every method may be called from any thread.
+
+    Attributes
+    ----------
+    data : xarray.Dataset or None
+        The result that is shown over time.
+    scale : float
+        Factor on deflections.
+    driver : object or None
+        Who moves the scene by itself (`Player`); who finds another one here stops.
+    quantities : tuple of str
+        What `colour_by` takes.
+    """
+
+    quantities: tuple[str, ...] = ("plain",)
+
+    def __init__(self, client: viser.ClientHandle) -> None:
+        self.client, self.lock = client, threading.RLock()
+        self.data: Dataset | None = None
+        self.scale, self.automatic, self.time = 1.0, 1.0, 0.0
+        self.driver: object | None = None
+        self._factor: float | None = None  # the user's, in place of the automatic one
+        self.quantity = "plain"
+        self._shown = dict(PARTS)
+        self._parts: dict[str, list[Any]] = {name: [] for name in PARTS}
+        self._now: tuple[str, ...] = ()
+        self._closed = False
+
+    @abstractmethod
+    def show_study(self, study: Any) -> None:
+        """Draw a study undeformed at the instant that was shown, at first the start; no result is shown any more."""
+
+    @abstractmethod
+    def show_pose(self, pose: Any) -> None:
+        """Draw the undeformed mechanism at a pose, without ghost, paths and arrow."""
+
+    @abstractmethod
+    def show_data(self, data: Dataset | None) -> None:
+        """Take a result of the study that is shown and draw it, deflections magnified so that they are seen."""
+
+    @abstractmethod
+    def set_time(self, time: float) -> None:
+        """Draw the stored instant nearest to `time` [s]; only what changes is sent."""
+
+    @abstractmethod
+    def show_mode(self, modes: Dataset, mode: int, amplitude: float, phase: float) -> None:
+        """Draw a mode: label, largest displacement as a share of the mechanism's size, phase between -1 and 1."""
+
+    @abstractmethod
+    def legend(self) -> str:
+        """What the colours mean, as HTML."""
+
+    def set_scale(self, factor: float | None) -> None:
+        """Draw deflections `factor` times larger; None: the automatic factor."""
+        with self.lock:
+            self._factor = None if factor is None else max(1.0, float(factor))
+            self.scale = self._factor or self.automatic
+            if self.data is not None:
+                self._redraw_paths()
+                self.set_time(self.time)
+
+    def scale_words(self) -> str:
+        """The factor on deflections in a sentence."""
+        if self.scale == 1:
+            return "Deflections are drawn in true size."
+        return f"Deflections are drawn {number(self.scale, 4)} times larger than they are."
+
+    def colour_by(self, quantity: str) -> None:
+        """Colour the legs by "force", "stroke margin", "bending", or by their number ("plain")."""
+        with self.lock:
+            self.quantity = quantity
+            if self.data is not None:
+                self.set_time(self.time)
+
+    def visible(self, name: str, on: bool) -> None:
+        """Show or hide a part by its name in `PARTS`."""
+        with self.lock:
+            self._shown[name] = on
+            for handle in self._parts[name]:
+                handle.visible = on and (name not in OF_RESULTS or name in self._now)
+
+    def close(self) -> None:
+        """Drop the arrays; nothing is drawn any more."""
+        with self.lock:
+            self._closed, self.data, self.driver = True, None, None
+            for handles in self._parts.values():
+                handles.clear()
+
+    def _add(self, part: str, handle: Any) -> Any:
+        """Register a node under the part that hides and shows it."""
+        self._parts[part].append(handle)
+        handle.visible = self._shown[part]
+        return handle
+
+    def _only(self, *parts: str) -> None:
+        """Of the parts that show a result, draw these alone, unless the user hides them."""
+        self._now = parts
+        for part in OF_RESULTS:
+            self.visible(part, self._shown[part])
+
+    def _begin(self, *sometimes: str) -> None:
+        """Before the nodes of another study take the place of those with the same names: no flicker while dragging.
+
+        `sometimes`: names of nodes that not every study has.
+        """
+        self.data = None
+        for handles in self._parts.values():
+            handles.clear()
+        for name in sometimes:
+            handle = self.client.scene.get_handle_by_name(name)
+            if handle is not None:
+                handle.remove()
+
+    def _light(self) -> None:
+        """Softer than the page's own light, under which all colours are pale."""
+        scene = self.client.scene
+        scene.configure_default_lights(enabled=False)
+        scene.configure_environment_map("studio", environment_intensity=0.35)
+        scene.add_light_directional("/light", intensity=1.2, position=(1.0, -1.5, 3.0))
+        scene.add_light_ambient("/light_around", intensity=0.5)
+
+    @abstractmethod
+    def _redraw_paths(self) -> None:
+        """Draw anew what depends on the factor but not on time."""
+
+    def _look(self, away: Array, at: Array) -> None:
+        """Place the camera `away` from what it looks `at`, (3,) [m] each."""
+        camera = self.client.camera
+        camera.up_direction = (0.0, 0.0, 1.0)
+        camera.position, camera.look_at = at + away, at

@@ -1,0 +1,235 @@
+"""The study as a form: every number of the file with its unit, validated at each change; the rigid preview."""
+
+from __future__ import annotations
+
+import threading
+import tomllib
+from collections.abc import Callable, Collection
+from typing import TYPE_CHECKING, Any
+
+from viser import Icon
+
+from flexapod.app.view import words
+from flexapod.app.view.document import Document
+from flexapod.app.view.editing import Edit, chosen, edited, first_value, read
+from flexapod.app.view.fields import Field, read_fields
+from flexapod.app.view.knob import Knob
+from flexapod.app.view.preview import preview_html
+from flexapod.app.view.widgets import Setter, add_widget, signature
+from flexapod.errors import InputError
+
+if TYPE_CHECKING:
+    from viser import ClientHandle
+
+__all__ = ["StudyPanel"]
+
+OPEN = ("[motion]",)
+_NOTHING = "add a value ..."
+
+
+class StudyPanel:
+    """The tab "Study" of one client.
+
+    Parameters
+    ----------
+    client : viser.ClientHandle
+    document : Document
+        The study file to begin with.
+    on_edit : callable
+        Called with each `Edit`, valid or refused.
+    """
+
+    def __init__(self, client: ClientHandle, document: Document, on_edit: Callable[[Edit], None]) -> None:
+        self._gui, self._original, self._on_edit = client.gui, document, on_edit
+        self.document = document
+        self._lock, self._waiting, self._busy = threading.Lock(), dict[str, tuple[object, bool]](), False
+        self._before: list[Document] = []
+        self._fields: dict[str, Field] = {}
+        self._setters: dict[str, Setter] = {}
+        self._folders: dict[str, Any] = {}
+        self._signatures: dict[str, object] = {}
+        self._beside: dict[str, Any] = {}
+        self._words = self._gui.add_html("")
+        self._knob = Knob(client, self._changed)
+        undo = self._gui.add_button("Undo", color="gray", icon=Icon.ARROW_BACK_UP, hint="Take back the last change")
+        reset = self._gui.add_button("Back to the file", color="gray", icon=Icon.FILE, hint="Take back all changes")
+        undo.on_click(lambda _: self._undo())
+        reset.on_click(lambda _: self._replace(self._original))
+        self._tab = self._gui.add_folder(None)
+        self._show(read(document))
+
+    def _typed(self, key: str, value: object) -> None:
+        """Take a value from its input, which shows it already."""
+        self._changed(key, value, typed=True)
+
+    def _changed(self, key: str, value: object, typed: bool = False) -> None:
+        """Take a changed value; while one is being read, only the newest of each key waits."""
+        with self._lock:
+            self._waiting[key] = (value, typed)
+            if self._busy:
+                return
+            self._busy = True
+        while (changes := self._next()) is not None:
+            try:
+                self._apply(changes)
+            except BaseException:
+                with self._lock:
+                    self._busy = False
+                raise
+
+    def _next(self) -> dict[str, tuple[object, bool]] | None:
+        """What waits and differs from the document; None, and nobody is busy any more, if there is nothing."""
+        with self._lock:
+            changes = {key: change for key, change in self._waiting.items() if not self._same(key, change[0])}
+            self._waiting.clear()
+            self._busy = bool(changes)
+            return changes or None
+
+    def _same(self, key: str, value: object) -> bool:
+        """Whether a field shows `value` because it was read there, not because somebody changed it."""
+        field = self._fields.get(key)
+        return field is not None and type(field.value) is type(value) and field.value == value
+
+    def _apply(self, changes: dict[str, tuple[object, bool]]) -> None:
+        before = self.document
+        choices = [key for key in changes if key in self._fields and self._fields[key].choices]
+        found = edited(before, {key: value for key, (value, _) in changes.items() if key not in choices})
+        for key in choices:
+            found = chosen(found.document, self._fields[key], str(changes[key][0]))
+        if found.document != before:
+            self._before = [*self._before[-99:], before]
+            typed = {key if key in self._fields else key.rpartition("[")[0] for key, (_, t) in changes.items() if t}
+            self._take(found, typed, turned=bool(changes) and not typed)
+
+    def _undo(self) -> None:
+        if self._before:
+            document = self._before.pop()
+            self._take(read(document))
+
+    def _replace(self, document: Document) -> None:
+        if document != self.document:
+            self._before = [*self._before[-99:], self.document]
+            self._take(read(document))
+
+    def _take(self, found: Edit, typed: Collection[str] = (), turned: bool = False) -> None:
+        self._show(found, typed, turned)
+        self._on_edit(found)
+
+    def _show(self, found: Edit, typed: Collection[str] = (), turned: bool = False) -> None:
+        """Show a document; inputs of the keys in `typed`, and the slider where it was turned, are left alone.
+
+        Somebody may be typing on, or dragging on, there.
+        """
+        self.document = found.document
+        fields = self._readable(found)
+        before, self._fields = self._fields, {field.key: field for field in fields}
+        present = [field for field in fields if field.value is not None]
+        self._fit_folders(fields)
+        for field in present:
+            if field.key not in typed and field.key in before and before[field.key].value != field.value:
+                self._setters[field.key](field.value)
+        if found.error is None:
+            self._knob.show(present, aim=not turned)
+        self._words.content = self._said(found)
+        self._point_at(found.error)
+
+    def _readable(self, found: Edit) -> list[Field]:
+        """Fields of the document in its order; where reading stopped, those known before stay as they were."""
+        fields = {field.key: field for field in read_fields(found.document.text, found.document.path)}
+        if found.error is not None:
+            known = {key: f for key, f in self._fields.items() if f.value is None or found.document.has(key)}
+            fields = known | fields
+        order = list(tomllib.loads(found.document.text))
+        return sorted(fields.values(), key=lambda f: _place(order, f.key))
+
+    def _said(self, found: Edit) -> str:
+        removed = [f"{key} is taken out: the choice does not use it" for key in found.removed]
+        html = words.lines_html(removed, "warning") if removed else ""
+        if found.error is not None:
+            return html + words.error_html(found.error)
+        if found.study is None:
+            return html
+        remarks = "".join(words.block(remark, "warning") for remark in found.study.warnings)
+        return html + preview_html(found.study) + remarks
+
+    def _fit_folders(self, fields: list[Field]) -> None:
+        """A folder for each table of the file; one is made anew where its inputs are others than before."""
+        tables: dict[str, list[Field]] = {}
+        for field in fields:
+            if field.value is not None or field.kind != "text" or field.choices:
+                tables.setdefault(_top(field.key), []).append(field)
+        for name in [name for name in self._folders if name not in tables]:
+            self._folders.pop(name).remove()
+            del self._signatures[name]
+            self._beside = {t: h for t, h in self._beside.items() if _top(t) != name}
+        for place, (name, listed) in enumerate(tables.items()):
+            now = [(signature(f), f.value is None) for f in listed]
+            if self._signatures.get(name) != now:
+                self._make_folder(name, listed, place)
+                self._signatures[name] = now
+
+    def _point_at(self, error: InputError | None) -> None:
+        """Say what is wrong beside the inputs of its table too: those may be far below."""
+        key = "" if error is None else error.key or ""
+        near = max((t for t in self._beside if key.startswith(f"{t}.") or key.startswith(f"{t}[")), key=len, default="")
+        for table, handle in self._beside.items():
+            content = words.error_html(error) if error is not None and table == near else ""
+            if handle.content != content:
+                handle.content = content
+
+    def _make_folder(self, name: str, fields: list[Field], place: int) -> None:
+        known = name in self._folders
+        if known:
+            self._folders.pop(name).remove()
+        with self._tab:
+            folder = self._gui.add_folder(name, expand_by_default=known or name in OPEN, order=float(place))
+        self._folders[name] = folder
+        self._beside = {t: h for t, h in self._beside.items() if _top(t) != name}
+        with folder:
+            self._fill([f for f in fields if f.value is not None], [f for f in fields if f.value is None])
+
+    def _fill(self, present: list[Field], absent: list[Field]) -> None:
+        inner: dict[str, list[Field]] = {}
+        for field in present:
+            inner.setdefault(_inside(field), []).append(field)
+        for name, fields in inner.items():
+            if not name:
+                self._add(fields)
+                continue
+            with self._gui.add_folder(name):
+                self._add(fields)
+        if absent:
+            self._offer(absent)
+
+    def _add(self, fields: list[Field]) -> None:
+        """The inputs of one table, and a place for words."""
+        for field in fields:
+            self._setters[field.key] = add_widget(self._gui, field, self._typed)
+        self._beside[fields[0].table] = self._gui.add_html("")
+
+    def _offer(self, absent: list[Field]) -> None:
+        names = {field.key: field for field in absent}
+        handle = self._gui.add_dropdown("more", (_NOTHING, *names), initial_value=_NOTHING)
+
+        def add(_: object) -> None:
+            if handle.value != _NOTHING:
+                self._changed(handle.value, first_value(names[handle.value]))
+
+        handle.on_update(add)
+
+
+def _top(key: str) -> str:
+    """Name of the folder: the table's heading in the file, ``[leg]`` or ``[[leg]] 2``."""
+    head = key.split(".")[0]
+    name, bracket, index = head.partition("[")
+    return f"[[{name}]] {index.rstrip(']')}" if bracket else f"[{name}]"
+
+
+def _inside(field: Field) -> str:
+    """Path of the inner table within its top one."""
+    return field.table.partition(".")[2]
+
+
+def _place(order: list[str], key: str) -> int:
+    name = key.split(".")[0].split("[")[0]
+    return order.index(name) if name in order else len(order)

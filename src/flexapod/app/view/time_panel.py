@@ -1,0 +1,181 @@
+"""The tab "Time": play, pause, speed, scrub; what the scene shows; charts with a cursor at its time."""
+
+from __future__ import annotations
+
+import math
+import threading
+from collections.abc import Callable
+from typing import TYPE_CHECKING, Any
+
+from viser import Icon
+
+from flexapod.app.view import words
+from flexapod.app.view.charts import Chart, ChartView, charts
+from flexapod.app.view.player import Player
+from flexapod.app.view.scene import PARTS, Scene
+
+if TYPE_CHECKING:
+    import viser
+    from xarray import Dataset
+
+__all__ = ["TimePanel"]
+
+CHART_FRAMES = 4  # updates of the scene between two of the chart
+_NOTHING: str = "none"
+SPEEDS = {"1/100": 0.01, "1/20": 0.05, "1/10": 0.1, "1/4": 0.25, "1/2": 0.5, "real time": 1.0, "2 x": 2.0}
+
+
+class TimePanel:
+    """Controls of time for one user; made inside the tab that holds them.
+
+    Parameters
+    ----------
+    client : viser.ClientHandle
+    scene : Scene
+        It follows the time of this panel.
+    """
+
+    def __init__(self, client: viser.ClientHandle, scene: Scene) -> None:
+        self.client, self.scene = client, scene
+        self._data: Dataset | None = None
+        self._charts: dict[str, Chart] = {}
+        self._time, self._end, self._frame = 0.0, 0.0, 0
+        self._lock = threading.RLock()
+        self._player = Player(scene, self._lock, self._step, self._label)
+        gui = client.gui
+        self._hint = gui.add_html(words.block("No result yet: press Simulate.", "soft"))
+        self._play = gui.add_button("Play", icon=Icon.PLAYER_PLAY, disabled=True, hint="Play or pause")
+        self._slider = gui.add_slider("time [s]", 0.0, 1.0, 0.001, 0.0, disabled=True)
+        self._speed = gui.add_dropdown("speed", tuple(SPEEDS), initial_value="1/4", hint="Time shown per time passed")
+        self._choice = gui.add_dropdown("chart", [_NOTHING], initial_value=_NOTHING)
+        self._view = ChartView(gui)
+        self._make_look(gui)
+        self._play.on_click(lambda _: self.pause() if self._player.playing else self.play())
+        self._slider.on_update(self._user(self._scrubbed))
+        self._choice.on_update(self._user(self._draw_chart))
+
+    def show_data(self, data: Dataset | None) -> None:
+        """Take a result, or nothing; the scene has it already, at the time that stays."""
+        self.pause()
+        with self._lock:
+            self._data, self._charts = data, {} if data is None else charts(data)
+            if data is not None:
+                self._end = float(data.time[-1])
+                self._time = min(self._time, self._end)
+            self._play.disabled = self._slider.disabled = data is None
+            self._hint.visible = data is None
+            if data is not None:
+                self._set_range(float(data.time[1] - data.time[0]))
+            self._list_charts()
+            self._tell_scale()
+            self._legend.content = self.scene.legend()
+
+    def play(self) -> None:
+        """Let time pass, from the start again after the end."""
+        with self._lock:
+            if self._data is None:
+                return
+            if self._time >= self._end:
+                self._time = float(self._data.time[0])
+            self._player.start()
+
+    def pause(self) -> None:
+        """Stand still."""
+        self._player.stop()
+
+    def close(self) -> None:
+        """Stop, and drop the result."""
+        self._player.close()
+        with self._lock:
+            self._data, self._charts = None, {}
+
+    def _step(self, passed: float) -> bool:
+        if self._data is None:
+            return False
+        self._time = min(self._end, self._time + passed * SPEEDS[self._speed.value])
+        self._frame += 1
+        over = self._time >= self._end
+        self._show(chart=over or self._frame % CHART_FRAMES == 0)
+        return not over
+
+    def _show(self, *, chart: bool = True, slider: bool = True) -> None:
+        with self.client.atomic():
+            self.scene.set_time(self._time)
+            if slider:
+                self._slider.value = self._time
+            if chart:
+                self._view.cursor(self._time)
+                if self.scene.quantity != "plain":
+                    self._legend.content = self.scene.legend()
+
+    def _scrubbed(self) -> None:
+        with self._lock:
+            if self._data is None:
+                return
+            if not self._player.playing:
+                self.scene.driver = None  # a mode that moves stops
+            self._time = float(self._slider.value)
+            self._show(slider=False)
+
+    def _label(self, playing: bool) -> None:
+        if not playing:
+            self._view.cursor(self._time)
+        self._play.label = "Pause" if playing else "Play"
+        self._play.icon = Icon.PLAYER_PAUSE if playing else Icon.PLAYER_PLAY
+
+    def _set_range(self, step: float) -> None:
+        self._slider.max, self._slider.step = self._end, step
+        self._slider.precision = max(0, math.ceil(-math.log10(step)))
+        self._slider.value = self._time
+
+    def _list_charts(self) -> None:
+        kept = self._choice.value
+        names = (*self._charts, _NOTHING)
+        self._choice.options = names
+        self._choice.value = kept if kept in self._charts else names[0]
+        self._draw_chart()
+
+    def _draw_chart(self) -> None:
+        with self._lock:
+            self._view.show(self._charts.get(self._choice.value), self._time)
+
+    def _make_look(self, gui: viser.GuiApi) -> None:
+        """The folder of what the scene shows and how."""
+        with gui.add_folder("Scene"):
+            self._color = gui.add_dropdown(
+                "leg colours", self.scene.quantities, initial_value="plain", visible=len(self.scene.quantities) > 1
+            )
+            self._legend = gui.add_html(self.scene.legend())
+            self._factor = gui.add_number(
+                "magnify", 1.0, min=1.0, step=1.0, hint="Factor on all deflections in the picture"
+            )
+            self._automatic = gui.add_button("Automatic factor", hint="Largest deflection well visible")
+            self._scale_words = gui.add_html("")
+            boxes = {name: gui.add_checkbox(name, shown) for name, shown in PARTS.items()}
+        self._color.on_update(self._user(self._recolor))
+        self._factor.on_update(self._user(lambda: self._rescale(self._factor.value)))
+        self._automatic.on_click(lambda _: self._rescale(None))
+        for name, box in boxes.items():
+            box.on_update(self._user(lambda name=name, box=box: self.scene.visible(name, box.value)))
+
+    def _recolor(self) -> None:
+        self.scene.colour_by(self._color.value)
+        self._legend.content = self.scene.legend()
+
+    def _rescale(self, factor: float | None) -> None:
+        self.scene.set_scale(factor)
+        self._tell_scale()
+
+    def _tell_scale(self) -> None:
+        self._factor.value = self.scene.scale
+        self._scale_words.content = words.block(self.scene.scale_words(), "soft")
+
+    @staticmethod
+    def _user(act: Callable[[], Any]) -> Callable[[Any], None]:
+        """A callback for what the user changes, not for what the program sets."""
+
+        def update(event: Any) -> None:
+            if event.client is not None:
+                act()
+
+        return update

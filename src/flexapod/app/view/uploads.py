@@ -1,0 +1,117 @@
+"""A study file that somebody sends: limited in size, read as data, refused in the words of the command line."""
+
+from __future__ import annotations
+
+import tomllib
+from collections.abc import Iterator
+from pathlib import Path, PurePosixPath
+from typing import Any
+
+from flexapod.app.view.document import Document
+from flexapod.app.view.editing import read
+from flexapod.errors import InputError
+
+__all__ = ["LARGEST", "read_upload", "refuse_size", "store_table"]
+
+LARGEST = 1_000_000
+"""Largest file that is taken [bytes]."""
+
+
+def refuse_size(name: str, size: int) -> None:
+    """Refuse a file that is too large, before it is taken in.
+
+    Raises
+    ------
+    InputError
+        It is larger than `LARGEST`.
+    """
+    if size > LARGEST:
+        raise InputError(
+            f"is too large: {size / 1e6:.3g} MB", file=_plain(name), allowed=f"at most {LARGEST / 1e6:g} MB"
+        )
+
+
+def read_upload(name: str, content: bytes, folder: Path) -> Document:
+    """The document of a sent study file.
+
+    Parameters
+    ----------
+    name : str
+        Its name, as the browser gives it; only the last part is used, for messages.
+    content : bytes
+    folder : Path
+        Where the tables lie that the same person has sent before; no other file is read.
+
+    Raises
+    ------
+    InputError
+        Too large, no UTF-8, no TOML, no valid study, or it names a table that was not sent.
+    """
+    name = _plain(name)
+    refuse_size(name, len(content))
+    try:
+        text = content.decode("utf-8-sig")
+    except UnicodeDecodeError:
+        raise InputError("cannot be read: it is no UTF-8 text", file=name, allowed="a study file (TOML)") from None
+    try:
+        data = tomllib.loads(text)
+    except (tomllib.TOMLDecodeError, RecursionError) as error:
+        raise InputError(f"is not valid TOML: {error}", file=name) from None
+    for key, file in _files(data, ""):
+        _check_table(name, key, file, folder)
+    found = read(Document(text, str(folder / name)))
+    if found.error is not None:
+        raise found.error
+    return found.document
+
+
+def store_table(name: str, content: bytes, folder: Path) -> str:
+    """Keep a sent CSV table for a study file that names it; returns the name it goes by.
+
+    Raises
+    ------
+    InputError
+        Too large, or no text.
+    """
+    name = _plain(name)
+    refuse_size(name, len(content))
+    try:
+        content.decode("utf-8-sig")
+    except UnicodeDecodeError:
+        raise InputError("cannot be read: it is no text table", file=name, allowed="a CSV file") from None
+    (folder / name).write_bytes(content)
+    return name
+
+
+def _plain(name: str) -> str:
+    """The last part of a name, with nothing in it that leads elsewhere."""
+    last = PurePosixPath(name.replace("\\", "/")).name
+    kept = "".join(c for c in last if c.isprintable() and c not in '/\\:*?"<>|')[-100:].lstrip(".")
+    return kept or "study.toml"
+
+
+def _files(data: Any, path: str) -> Iterator[tuple[str, object]]:
+    """Key paths and values of every ``file = ...``, however deep."""
+    if isinstance(data, dict):
+        for name, value in data.items():
+            key = f"{path}.{name}" if path else str(name)
+            if name == "file":
+                yield key, value
+            yield from _files(value, key)
+    elif isinstance(data, list):
+        for i, item in enumerate(data, start=1):
+            yield from _files(item, f"{path}[{i}]")
+
+
+def _check_table(name: str, key: str, file: object, folder: Path) -> None:
+    if not isinstance(file, str):
+        return  # the reader says what is wrong with it
+    if file != _plain(file) or not (folder / file).is_file():
+        raise InputError(
+            "is a table that was not sent",
+            file=name,
+            key=key,
+            value=file,
+            allowed="the plain name of a CSV file that was uploaded before; no other file is read",
+            next_step="Upload the table first, then the study",
+        )

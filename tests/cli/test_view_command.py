@@ -1,0 +1,129 @@
+"""`flexapod view` as a user types it: refusals in words, where it listens, results on disk, Ctrl-C."""
+
+import json
+import os
+import signal
+import socket
+import subprocess
+import sys
+import urllib.request
+
+import pytest
+from tests.cli.conftest import SHORT
+from tests.cli.test_interrupt import heed_interrupts
+
+import flexapod as fx
+from flexapod.app.view.network import address, free_port, is_local
+from flexapod.app.view.opening import open_source
+from flexapod.errors import InputError
+from flexapod.study import save
+
+
+def refused(result) -> str:
+    assert result.exit_code == 2 and result.stdout == ""
+    return result.stderr
+
+
+def test_bad_files_are_refused_before_a_server_starts(flexapod, study, folder):
+    assert "cannot be read" in refused(flexapod("view", "nowhere.toml"))
+    assert "payload.mass = -100 kg" in refused(flexapod("view", study(("100 kg", "-100 kg"))))
+    (folder / "a.nc").write_bytes(b"no results")
+    assert "is not a readable NetCDF file" in refused(flexapod("view", "a.nc"))
+    save(fx.modes(fx.preset("paper-robot")), folder / "modes.nc")
+    assert "is no result of a simulation" in refused(flexapod("view", "modes.nc"))
+
+
+def test_places_to_listen(flexapod, study):
+    with socket.socket() as taken:
+        taken.bind(("127.0.0.1", 0))
+        taken.listen()
+        port = taken.getsockname()[1]
+        assert f"--port = {port}" in refused(flexapod("view", study(), "--port", port))
+    assert "--host = 203.0.113.7" in refused(flexapod("view", study(), "--host", "203.0.113.7"))
+    assert "is no name or address" in refused(flexapod("view", study(), "--host", "no.such.host.invalid"))
+
+
+@pytest.mark.parametrize(
+    ("host", "local", "page"),
+    [
+        ("127.0.0.1", True, "http://127.0.0.1:8080"),
+        ("localhost", True, "http://localhost:8080"),
+        ("::1", True, "http://[::1]:8080"),
+        ("0.0.0.0", False, "http://localhost:8080"),
+        ("192.168.0.7", False, "http://192.168.0.7:8080"),
+    ],
+)
+def test_who_reaches_a_host(host, local, page):
+    assert is_local(host) is local
+    assert address(host, 8080) == page
+
+
+def test_the_next_port_is_taken_where_one_is_in_use():
+    with socket.socket() as taken:
+        taken.bind(("127.0.0.1", 0))
+        taken.listen()
+        with pytest.raises(InputError, match="cannot be listened on"):
+            free_port("127.0.0.1", taken.getsockname()[1])
+
+
+@pytest.mark.parametrize(("options", "words"), [([], b""), (["--host", "0.0.0.0"], b"everyone on the network")])
+def test_serves_until_ctrl_c(study, folder, options, words):
+    """The page is served where the command says; --host says who gets in; Ctrl-C ends it with exit code 0."""
+    command = [sys.executable, "-m", "flexapod", "view", str(study(*SHORT)), "--no-browser", "--port", "0"]
+    running = subprocess.Popen(
+        [*command, *options], cwd=folder, stdout=subprocess.PIPE, stderr=subprocess.PIPE, preexec_fn=heed_interrupts,
+        env={**os.environ, "PYTHONUNBUFFERED": "1"},
+    )  # fmt: skip
+    assert running.stdout is not None
+    try:
+        said = running.stdout.readline()
+        page = said.decode().split("http://")[1].split()[0]
+        with urllib.request.urlopen(f"http://{page}", timeout=60) as answer:
+            assert b"<html" in answer.read()
+        running.send_signal(signal.SIGINT)
+        rest, wrong = running.communicate(timeout=60)
+    finally:
+        running.kill()
+    assert running.returncode == 0
+    assert words in rest and (words or not rest)
+    assert wrong == b""
+
+
+def test_address_as_json(study, folder):
+    command = [sys.executable, "-m", "flexapod", "view", str(study(*SHORT)), "--no-browser", "--port", "0", "--json"]
+    running = subprocess.Popen(command, cwd=folder, stdout=subprocess.PIPE, preexec_fn=heed_interrupts)
+    assert running.stdout is not None
+    try:
+        lines = b""
+        while b"}" not in lines:
+            lines += running.stdout.readline()
+        assert json.loads(lines)["local"] is True
+        running.send_signal(signal.SIGINT)
+        running.wait(timeout=60)
+    finally:
+        running.kill()
+        running.stdout.close()
+
+
+def test_results_open_with_their_study(study, folder):
+    data = fx.run(fx.load(study(*SHORT)))
+    path = save(data, folder / "results.nc")
+    (folder / "study.toml").unlink()
+    source = open_source(path)
+    assert source.study.source_text == data.attrs["study"]
+    assert source.data.com_deviation.equals(data.com_deviation)
+
+
+def test_results_open_without_the_tables_of_their_study(folder):
+    """Results that came by mail: the table of the motion stayed where it was."""
+    (folder / "path.csv").write_text("time [s], heave [mm]\n0, 0\n0.1, 2\n0.2, 3\n")
+    motion = fx.preset("paper-robot").source_text.split("[motion]")
+    text = motion[0] + '[motion]\ntype = "csv"\nfile = "path.csv"\n[simulation]\nfidelity = "lumped"\n'
+    (folder / "study.toml").write_text(text)
+    data = fx.run(fx.load("study.toml"))
+    path = save(data, folder / "results.nc")
+    (folder / "path.csv").unlink()
+    study = open_source(path).study
+    assert study.robot == fx.preset("paper-robot").robot
+    assert study.motion.pose[-1, 2] == pytest.approx(0.003, abs=1e-12)
+    assert "tables" in study.warnings[-1]

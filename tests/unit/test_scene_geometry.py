@@ -1,0 +1,228 @@
+"""Points, meshes, colours and charts of the view, without a browser."""
+
+from functools import cache
+
+import numpy as np
+import pytest
+
+import flexapod as fx
+from flexapod import bases, model, rigid
+from flexapod.app.view import charts as view_charts
+from flexapod.app.view import legend
+from flexapod.app.view import scene_geometry as geometry
+from flexapod.plot.style import LEG_COLORS
+from flexapod.study.scene import STATIONS
+
+
+@cache
+def robot_run(**settings):
+    study = fx.preset("paper-robot")
+    data = fx.simulate(study.replace(motion=study.motion.replace(duration=0.3, hold=0.0)), duration=0.3, **settings)
+    return fx.loads(data.attrs["study"]), data
+
+
+@cache
+def actuator_run():
+    study = fx.preset("paper-actuator")
+    data = fx.simulate_actuator(study, duration=1.0)
+    return fx.loads(data.attrs["study"]), data
+
+
+def test_in_true_size_the_robot_stands_where_the_result_says():
+    study, data = robot_run()
+    now = geometry.RobotMotion(study, data).at(0.2, 1.0)
+    at = data.isel(time=now.index)
+    R = at.platform_quaternion.values
+    arms = study.robot.platform_joints - study.robot.payload.com
+    turned = arms @ rotation(R).T
+    # The same numbers by another path: rounding only.
+    assert now.flexible.com == pytest.approx(at.com_position.values, abs=1e-15)
+    assert now.flexible.platform == pytest.approx(at.com_position.values + turned, abs=1e-14)
+    assert now.rigid.com == pytest.approx(at.com_position_rigid.values, abs=1e-15)
+    lengths = np.linalg.norm(now.rigid.platform - now.rigid.base, axis=1)
+    assert lengths == pytest.approx(at.leg_length_command.values, abs=1e-14)
+
+
+def rotation(q):
+    """Rotation matrix of a quaternion w x y z, by hand."""
+    w, x, y, z = q
+    return np.array(
+        [
+            [1 - 2 * (y * y + z * z), 2 * (x * y - w * z), 2 * (x * z + w * y)],
+            [2 * (x * y + w * z), 1 - 2 * (x * x + z * z), 2 * (y * z - w * x)],
+            [2 * (x * z - w * y), 2 * (y * z + w * x), 1 - 2 * (x * x + y * y)],
+        ]
+    )
+
+
+@pytest.mark.parametrize("settings", [{}, {"basis": "clamped-free", "modes": 5}, {"fidelity": "beam-fem", "modes": 4}])
+def test_the_drawn_centre_line_is_the_bent_piston(settings):
+    """Against the leg's own coordinates: cylinder axis from the joint's angles, shapes on it."""
+    study, data = robot_run(**settings)
+    i = int(np.abs(data.tip_deflection.values).max(axis=(1, 2)).argmax())
+    drawn = geometry.RobotMotion(study, data).at(float(data.time[i]), 1.0).flexible.piston
+    at, robot, zeta = data.isel(time=i), study.robot, np.linspace(0, 1, STATIONS)
+    simulation = study.simulation
+    phi = bases.lateral_basis(simulation.lateral_basis, simulation.lateral_shapes).values(zeta)
+    frames = rigid.home_frames(robot)
+    largest = float(np.abs(at.tip_deflection).max())
+    for leg in range(6):
+        alpha, beta = at.leg_angle.values[leg]
+        cx, sx, cy, sy = np.cos(alpha), np.sin(alpha), np.cos(beta), np.sin(beta)
+        turned = frames[leg] @ np.array([[1, 0, 0], [0, cx, -sx], [0, sx, cx]]) @ [[cy, 0, sy], [0, 1, 0], [-sy, 0, cy]]
+        across = at.lateral_amplitude.values[leg] @ phi
+        mouth = robot.legs[leg].cylinder.mouth
+        along = mouth + (float(at.leg_length[leg]) - mouth) * zeta
+        exact = robot.base_joints[leg] + np.stack([*across, along], axis=1) @ turned.T
+        # The chord and the axis of the cylinder differ by the angle tip/length: second order in the deflection.
+        assert np.abs(drawn[leg] - exact).max() < 2 * largest**2 / 0.3
+        assert np.abs(across).max() > 100 * largest**2 / 0.3  # so the line would be seen to be wrong
+
+
+def test_magnified_pistons_still_join_cylinder_and_platform():
+    study, data = robot_run()
+    motion = geometry.RobotMotion(study, data)
+    factor = motion.automatic_scale()
+    assert factor > 1
+    now = motion.at(0.3, factor)
+    assert now.flexible.piston[:, -1] == pytest.approx(now.flexible.platform, abs=1e-12)
+    mouths = np.linalg.norm(now.flexible.mouth - now.flexible.base, axis=1)
+    # The cylinder is as long as it is, up to the square of its lean of at most 0.12 (the automatic factor's share).
+    assert mouths == pytest.approx([leg.cylinder.mouth for leg in study.robot.legs], rel=0.12**2)
+    assert now.flexible.com - now.rigid.com == pytest.approx(factor * now.deviation, abs=1e-12)
+
+
+def test_rigid_and_lumped_legs_are_drawn_straight():
+    for fidelity in ("rigid", "lumped"):
+        study, data = robot_run(fidelity=fidelity)
+        motion = geometry.RobotMotion(study, data)
+        assert (motion.automatic_scale() == 1) == (fidelity == "rigid")  # rounding is not magnified
+        drawn = motion.at(0.1, 1000.0).flexible
+        chord = drawn.platform - drawn.base
+        away = np.cross(drawn.piston - drawn.base[:, None], chord[:, None])
+        assert np.abs(away).max() < 1e-12
+
+
+def test_results_are_drawn_with_the_shapes_they_were_computed_with():
+    """Results whose study could not be read whole come with default settings: once a mismatch of three and five."""
+    study, data = robot_run(basis="clamped-free", modes=5)
+    lost = study.replace(simulation=model.Simulation())
+    one, other = geometry.RobotMotion(study, data).at(0.3, 50.0), geometry.RobotMotion(lost, data).at(0.3, 50.0)
+    assert np.array_equal(one.flexible.piston, other.flexible.piston)
+    assert geometry.as_computed(study, data) is study
+
+
+def test_the_beam_of_the_actuator_ends_where_the_result_says():
+    study, data = actuator_run()
+    motion = geometry.ActuatorMotion(study, data)
+    i, bent, straight = motion.at(0.7, 1.0)
+    X, Y = data.tip_position.values[i]
+    # The drawn beam is not foreshortened: (3/5) v^2 / L of a static shape, about 1e-5 m here.
+    assert bent[-1] == pytest.approx([X, 0.0, Y], abs=2 * float(np.abs(data.tip_deflection).max()) ** 2 / 1.83)
+    assert np.linalg.norm(straight[-1] - straight[0]) == pytest.approx(float(data.length[i]), rel=1e-14)
+    i, bent, straight = motion.at(0.7, 20.0)
+    assert motion.tips(20.0)[i] == pytest.approx(bent[-1], abs=1e-12)
+    assert np.linalg.norm(bent[-1] - straight[-1]) == pytest.approx(20 * abs(float(data.tip_deflection[i])), rel=1e-12)
+
+
+@pytest.mark.parametrize(("factor", "shown"), [(0.2, 1), (1, 1), (1.9, 1), (2, 2), (49, 20), (50, 50), (1e6, 1e6)])
+def test_round_down(factor, shown):
+    assert geometry.round_down(factor) == shown
+
+
+def test_nearest_instant():
+    instants = np.array([0.0, 0.1, 0.2])
+    assert [geometry.nearest(instants, t) for t in (-1.0, 0.04, 0.06, 0.19, 9.0)] == [0, 0, 1, 2, 2]
+
+
+def test_tubes_have_their_radius_and_close_around():
+    line = np.stack([np.linspace(0, 1, 9), 0.1 * np.linspace(0, 1, 9) ** 2, np.zeros(9)], axis=1)
+    rings = geometry.tube(np.stack([line, line[:, ::-1]]), 0.02).reshape(2, 9, 8, 3)
+    assert np.linalg.norm(rings[0] - line[:, None], axis=-1) == pytest.approx(np.full((9, 8), 0.02), rel=1e-12)
+    faces = geometry.tube_faces(9)
+    assert faces.max() == 71 and len(faces) == 128
+    assert volume(rings[0].reshape(-1, 3), faces) > 0  # outward: else it is drawn from inside
+
+
+def volume(vertices, faces):
+    """Enclosed volume of a surface with outward triangles."""
+    a, b, c = (vertices[faces[:, k]] for k in range(3))
+    return float(np.einsum("ij,ij->", a, np.cross(b, c))) / 6
+
+
+def test_plates_are_closed_and_face_outward():
+    square = np.array([[1.0, 1, 0], [-1, 1, 0], [1, -1, 0], [-1, -1, 0]])
+    # A square of 2 by 2 and 0.1 thick, its corners in any order.
+    assert volume(*geometry.plate(square, 0.1)) == pytest.approx(0.4, rel=1e-12)
+    vertices, faces = geometry.disc(0.5, 0.2, sides=40)
+    area = 0.5 * 40 * 0.25 * np.sin(2 * np.pi / 40)
+    assert volume(vertices, faces) == pytest.approx(0.2 * area, rel=1e-12)
+    assert np.abs(vertices[:, 1]).max() == pytest.approx(0.1)
+
+
+def test_orientation_turns_z_into_a_direction():
+    directions = np.array([[0, 0, 1.0], [1, 0, 0], [0.3, -2, 0.5], [0, 0, -1]])
+    for q, d in zip(geometry.orientation(directions), directions, strict=True):
+        assert rotation(q)[:, 2] == pytest.approx(d / np.linalg.norm(d), abs=1e-12)
+
+
+def test_platform_rotation_of_a_drawn_robot():
+    study, data = robot_run()
+    now = geometry.RobotMotion(study, data).at(0.3, 1.0)
+    found = geometry.platform_rotation(study.robot, now.flexible)
+    assert rotation(found) == pytest.approx(rotation(data.platform_quaternion.values[now.index]), abs=1e-12)
+
+
+def test_paths_are_thinned_and_keep_their_ends():
+    path = np.linspace([0, 0, 0], [1, 2, 3], 5001)
+    segments = geometry.strip(path, 400)
+    assert segments.shape == (400, 2, 3)
+    assert np.array_equal(segments[0, 0], path[0]) and np.array_equal(segments[-1, 1], path[-1])
+    assert np.array_equal(segments[1:, 0], segments[:-1, 1])
+
+
+def test_leg_colors_of_figures_and_view_are_the_same():
+    assert legend.LEG_COLORS == LEG_COLORS
+
+
+@pytest.mark.parametrize("quantity", legend.QUANTITIES[1:])
+def test_colours_span_the_scale_and_the_legend_tells_the_values(quantity):
+    study, data = robot_run()
+    found = legend.leg_colors(quantity, study, data)
+    assert found.low < found.high
+    assert (found.values >= found.low - 1e-12).all() and (found.values <= found.high + 1e-12).all()
+    first = np.unravel_index(found.values.argmax(), found.values.shape)
+    html = found.html(int(first[0]))
+    assert found.title in html and html.count("leg ") >= 6
+    colors = found.colors(int(first[0]))
+    assert colors.shape == (6, 3) and colors.min() >= 0 and colors.max() <= 255
+    end = found.anchors[-1] if found.values[first] == found.high else found.anchors[0]
+    assert quantity == "force" or tuple(colors[first[1]]) == legend.rgb(end)
+
+
+def test_stroke_margins_are_what_is_left():
+    study, data = robot_run()
+    found = legend.leg_colors("stroke margin", study, data)
+    stroke = study.robot.legs[0].stroke
+    length = data.leg_length.values[-1, 0]
+    assert found.values[-1, 0] == pytest.approx(1e3 * min(length - stroke.min, stroke.max - length), rel=1e-12)
+    free = study.robot.replace(legs=tuple(leg.replace(stroke=None) for leg in study.robot.legs))
+    low, high = legend.stroke_limits(free)
+    piston, cylinder = free.legs[0].piston, free.legs[0].cylinder
+    assert (low[0], high[0]) == (cylinder.mouth, cylinder.mouth + piston.length)
+
+
+def test_charts_keep_extremes_and_values():
+    _, data = robot_run()
+    drawn = view_charts.charts(data)
+    assert list(drawn) == ["deviation", "leg forces", "tip deflections", "energies"]
+    deviation = drawn["deviation"]
+    assert deviation.unit == "µm"
+    assert deviation.values == pytest.approx(1e6 * data.com_deviation.values.T)
+    assert deviation.at(0.1) == pytest.approx(1e6 * data.com_deviation.sel(time=0.1, method="nearest").values)
+    signal = np.vstack([np.sin(np.arange(5000.0)), np.zeros(5000)])
+    signal[0, 1234] = 7.0  # one instant among thousands
+    kept = view_charts.thinned(signal)
+    assert 1234 in kept and len(kept) <= view_charts.POINTS + 2
+    assert kept[0] == 0 and kept[-1] == 4999 and (np.diff(kept) > 0).all()
+    assert list(view_charts.charts(actuator_run()[1])) == ["tip deflection", "length", "torque", "force", "energies"]

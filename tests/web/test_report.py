@@ -1,0 +1,223 @@
+"""The report as it is mailed: one file opened from disk, without a server and without a network."""
+
+import hashlib
+from collections.abc import Callable, Iterator
+from time import monotonic, sleep
+
+import pytest
+from tests.web.conftest import SHORT, study_text
+
+from flexapod.app.report import robot_report
+from flexapod.model import loads
+from flexapod.study import run
+
+REPLAY = "figure.replay"
+
+
+@pytest.fixture(scope="module")
+def reports(tmp_path_factory):
+    """Addresses of the reports of a robot and of an actuator, and their texts."""
+    place = tmp_path_factory.mktemp("reports")
+    short = (('duration = "10 s"', 'duration = "1 s"'),)
+    found = {}
+    for preset, changes in (("paper-robot", SHORT), ("paper-actuator", short)):
+        study = loads(study_text(*changes, preset=preset))
+        path = place / f"{preset}.html"
+        path.write_text(robot_report(study, run(study)), encoding="utf-8")
+        found[preset] = path
+    return found
+
+
+@pytest.fixture
+def read(browser, reports) -> Iterator[Callable[..., object]]:
+    """`read(preset)`: the report in a window of its own; fails on an error in it, or if it asks for anything."""
+    contexts, errors, asked = [], [], []
+
+    def go(preset: str = "paper-robot", **settings: object) -> object:
+        context = browser.new_context(**({"viewport": {"width": 1100, "height": 900}} | settings))
+        contexts.append(context)
+        page = context.new_page()
+        page.set_default_timeout(60_000)  # the machine may be busy: what is waited for comes, or the test is wrong
+        page.on("pageerror", lambda error: errors.append(str(error)))
+        page.on("console", lambda said: errors.append(said.text) if said.type == "error" else None)
+        page.on("request", lambda request: asked.append(request.url))
+        page.goto(reports[preset].as_uri())
+        if settings.get("java_script_enabled", True):
+            page.locator("html[data-ready=yes]").wait_for(state="attached")
+        return page
+
+    yield go
+    for context in contexts:
+        context.close()
+    assert not errors
+    outside = [url for url in asked if not url.startswith(("data:", "blob:"))]
+    assert all(url.endswith(".html") for url in outside) and len(outside) == len(contexts)
+
+
+def chart(page, which=0):
+    """A figure that zooms, in the window and drawn."""
+    figure = page.locator("figure.chart").nth(which)
+    figure.scroll_into_view_if_needed()
+    figure.locator(".main-svg").first.wait_for()
+    return figure
+
+
+def limits(figure, axis="xaxis"):
+    return figure.locator(".plot").evaluate(f"plot => plot._fullLayout.{axis}.range.map(Number)")
+
+
+def look(page):
+    """A fingerprint of the replay's picture, without the ring of the keyboard's place."""
+    page.evaluate("document.activeElement.blur()")
+    page.wait_for_timeout(300)
+    return hashlib.sha256(page.locator(f"{REPLAY} .plot").screenshot()).hexdigest()
+
+
+def part(page, name):
+    return page.locator(f"{REPLAY} [data-part={name}]")
+
+
+def wait_for_readout(page, words):
+    part(page, "readout").filter(has_text=words).wait_for()
+
+
+def wait_until(true):
+    """Ask until it is so: the page's policy forbids what the browser's own waiting would evaluate in it."""
+    end = monotonic() + 60
+    while not true():
+        assert monotonic() < end
+        sleep(0.05)
+
+
+def test_answer_first_and_all_sections(read):
+    page = read()
+    assert "misses its rigid path by up to" in page.locator("h1").inner_text()
+    assert page.locator("h2").first.inner_text() == "Deviation by axis"
+    assert page.locator("nav a").count() == page.locator("section").count()
+    assert page.locator("img").count() == page.locator("figure").count()
+
+
+def test_a_figure_is_zoomed_by_dragging_and_shown_whole_again(read):
+    page = read()
+    figure = chart(page)
+    before = limits(figure)
+    box = figure.locator(".draglayer .xy .nsewdrag").bounding_box()
+    x, y = box["x"] + 0.3 * box["width"], box["y"] + 0.5 * box["height"]
+    page.mouse.move(x, y)
+    page.mouse.down()
+    page.mouse.move(x + 0.4 * box["width"], y, steps=5)
+    page.mouse.up()
+    low, high = limits(figure)
+    # Where the mouse was, to a few pixels of a panel that is some 200 wide.
+    assert low - before[0] == pytest.approx(0.3 * (before[1] - before[0]), abs=0.03 * (before[1] - before[0]))
+    assert high - before[0] == pytest.approx(0.7 * (before[1] - before[0]), abs=0.03 * (before[1] - before[0]))
+    assert limits(figure, "xaxis2") == [low, high]  # the panels share time
+    page.mouse.dblclick(x, y)
+    wait_until(lambda: limits(figure) == before)
+    assert limits(figure) == before
+
+
+def test_a_figure_answers_the_keyboard(read):
+    page = read()
+    figure = chart(page)
+    before = limits(figure)
+    figure.locator(".plot").focus()
+    page.keyboard.press("+")
+    width = before[1] - before[0]
+    assert limits(figure) == [pytest.approx(before[0] + 0.1 * width), pytest.approx(before[0] + 0.9 * width)]
+    page.keyboard.press("ArrowRight")
+    assert limits(figure)[0] == pytest.approx(before[0] + 0.18 * width)
+    page.keyboard.press("0")
+    assert limits(figure) == before
+    buttons = figure.locator(".modebar-btn")
+    assert all(buttons.nth(i).get_attribute("tabindex") == "0" for i in range(buttons.count()))
+
+
+def test_the_replay_plays_and_is_scrubbed(read):
+    page = read()
+    page.locator(REPLAY).scroll_into_view_if_needed()
+    start = look(page)
+    assert part(page, "readout").inner_text().startswith("t = 0.000 s")
+    part(page, "speed").select_option("0.1")
+    part(page, "play").click()
+    wait_until(lambda: not part(page, "readout").inner_text().startswith("t = 0.000"))
+    wait_for_readout(page, "t = 0.200 s")  # it stops by itself at the end
+    assert part(page, "play").inner_text() == "Play"
+    end = look(page)
+    assert end != start
+    part(page, "scrub").evaluate("bar => { bar.value = 0.1; bar.dispatchEvent(new Event('input')); }")
+    wait_for_readout(page, "t = 0.100 s")
+    assert look(page) not in (start, end)
+    page.locator(f"{REPLAY} .plot").focus()
+    page.keyboard.press("Home")
+    wait_for_readout(page, "t = 0.000 s")
+    assert look(page) == start
+    part(page, "choice").select_option(label=part(page, "choice").locator("option").nth(1).inner_text())
+    wait_for_readout(page, "Mode 1")
+    assert look(page) != start
+
+
+def test_the_keys_reach_every_control_in_order(read):
+    page = read()
+    page.keyboard.press("Tab")
+    assert page.evaluate("document.activeElement.id") == "theme"
+    page.locator(f"{REPLAY} .plot").focus()
+    page.keyboard.press(" ")
+    wait_until(lambda: not part(page, "readout").inner_text().startswith("t = 0.000"))
+    part(page, "play").focus()
+    seen = []
+    for _ in range(3):
+        page.keyboard.press("Tab")
+        seen.append(page.evaluate("document.activeElement.dataset.part"))
+    assert seen == ["scrub", "speed", "choice"]
+    assert part(page, "scrub").get_attribute("aria-label") == "Time"
+
+
+def test_light_and_dark(read):
+    def paper(page):
+        return page.evaluate("getComputedStyle(document.body).backgroundColor")
+
+    page = read(color_scheme="dark")
+    figure = chart(page)
+    assert paper(page) == "rgb(22, 25, 29)"
+    dark = figure.locator(".plot").evaluate("plot => [plot._fullLayout.paper_bgcolor, plot._fullData[1].line.color]")
+    page.locator("#theme").click()
+    assert paper(page) == "rgb(255, 255, 255)"
+    wait_until(lambda: figure.locator(".plot").evaluate("plot => plot._fullLayout.paper_bgcolor") == "#ffffff")
+    light = figure.locator(".plot").evaluate("plot => [plot._fullLayout.paper_bgcolor, plot._fullData[1].line.color]")
+    assert dark[0] == "#16191d" and light[1] == "#0b3c5d" and dark[1] != light[1]
+
+
+def test_on_paper_figures_are_pictures(read):
+    page = read(color_scheme="dark")
+    figure = chart(page)
+    page.emulate_media(media="print")
+    assert page.evaluate("getComputedStyle(document.body).backgroundColor") == "rgb(255, 255, 255)"
+    assert figure.locator("img").is_visible() and not figure.locator(".plot").is_visible()
+    assert not page.locator("#theme").is_visible() and not part(page, "play").is_visible()
+    assert page.locator(f"{REPLAY} img").is_visible()
+    assert page.pdf(format="A4").startswith(b"%PDF")
+
+
+def test_without_scripts_the_pictures_are_there(read):
+    page = read(java_script_enabled=False)
+    assert page.locator("figure img").first.is_visible()
+    assert not page.locator(".controls").is_visible()
+
+
+def test_on_a_phone_figures_stay_pictures_and_nothing_runs_over(read):
+    page = read(viewport={"width": 390, "height": 800})
+    figure = page.locator("figure.chart").first
+    figure.scroll_into_view_if_needed()
+    assert figure.locator("img").is_visible()
+    assert page.evaluate("document.documentElement.scrollWidth") <= 390
+
+
+def test_the_actuator_is_replayed_in_its_plane(read):
+    page = read("paper-actuator")
+    page.locator(REPLAY).scroll_into_view_if_needed()
+    start = look(page)
+    part(page, "scrub").evaluate("bar => { bar.value = 0.5; bar.dispatchEvent(new Event('input')); }")
+    wait_for_readout(page, "t = 0.500 s")
+    assert look(page) != start
+    assert not part(page, "choice").is_visible()
