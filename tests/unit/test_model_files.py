@@ -407,3 +407,14 @@ def test_massless_cylinder_is_legal():
         "{ mass = 0, com = 0, inertia = 0, mouth = 0 }",
     )
     assert model.loads(text).warnings == ()
+
+
+def test_legs_alike_are_read_once_and_a_table_of_forces_has_a_column_for_each(tmp_path):
+    legs = model.loads(ROBOT).robot.legs
+    assert all(leg is legs[0] for leg in legs)
+    head = "time [s]," + ",".join(f"leg {i} [N]" for i in range(1, 7))
+    (tmp_path / "forces.csv").write_text(f"{head}\n0,1,2,3,4,5,6\n1,1,2,3,4,5,6\n")
+    drive = 'drive = { type = "force", law = "csv", file = "forces.csv" }'
+    study = tmp_path / "study.toml"
+    study.write_text(robot_with('drive = { type = "prescribed" }', drive), encoding="utf-8")
+    assert [leg.drive.force[0] for leg in model.load(study).robot.legs] == [1, 2, 3, 4, 5, 6]

@@ -104,7 +104,9 @@ def _legs(top: Section) -> tuple[Leg, ...]:
     value = top.data["leg"]
     if not isinstance(value, list):
         section = top.child(value, "leg")
-        return tuple(_leg(section, i) for i in range(1, 7))
+        first = _leg(section, 1)
+        apart = isinstance(first.drive, ForceDrive) and first.drive.force is not None  # a column for each leg
+        return (first, *(_leg(section, i) if apart else first for i in range(2, 7)))
     if len(value) != 6:
         raise InputError(
             f"appears {len(value)} times", file=top.file, key="[[leg]]", allowed="[leg] once, or [[leg]] six times"
