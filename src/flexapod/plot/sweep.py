@@ -22,6 +22,7 @@ __all__ = ["sweep"]
 FAILED = "#C44E52"
 MOST_PANELS = 6
 LABEL = 28  # letters of a label beside a row of panels
+FEW = 8  # values of a key that each get a tick
 PERCENTILES = (5, 50, 95)
 Values = NDArray[Any]
 
@@ -143,6 +144,9 @@ def _map(x: _Shown, y: _Shown, z: _Shown, data: xr.Dataset) -> Figure:
         axes.set_title(f"red: failed ({failed.sum()} of {failed.size})", fontsize=TEXT)
     axes.grid(False)
     fig.colorbar(shown, label=z.words)
+    for axis, values in ((axes.xaxis, columns), (axes.yaxis, rows)):
+        if len(values) <= FEW:
+            axis.set_ticks(values, [f"{value:.4g}" for value in values])
     _label(axes, x)
     _label(axes, y, vertical=True)
     return fig
