@@ -57,8 +57,8 @@ def _shapes() -> Section:
             f"Exponent over k = 1 to 6: {power.text()}; goal at most 2: {met}. Over 6 to 12: {power_high.text()}.",
             f"a + b k + c k^2 + d k^3 over 1 to 6 [us]: {terms}.",
             f"Share of the cubic term, fitted over 1 to 12 (negative: growth is below quadratic there): {shares}.",
-            "The number of legs cannot be varied: a 6-UPS has six. Each is evaluated and eliminated by itself, in a "
-            "loop; only the payload's system of 12 unknowns is shared.",
+            "The number of legs cannot be varied: a 6-UPS has six, computed side by side in the processor's vectors; "
+            "only the payload's system of 12 unknowns is shared.",
         ],
     )
 

@@ -59,15 +59,14 @@ def measured(action):
 
 
 def in_one_process(points, keep, count):
-    """Processor seconds of a point: the bare simulation, and what a sweep adds to it in client and worker."""
-    simulated, read, kept_too = [], [], []
+    """Processor seconds of a point: the bare simulation, and what a sweep adds to it in the worker."""
+    simulated, kept_too = [], []
     for number in range(count):
-        read.append(measured(lambda number=number: points.study(number)))
         one = points.study(number)
         simulated.append(measured(lambda one=one: bare(one)))
         kept_too.append(measured(lambda one=one: compute_point(keep, one)))
     added = statistics.median(b - a for a, b in zip(simulated, kept_too, strict=True))
-    return statistics.median(simulated), statistics.median(read), added
+    return statistics.median(simulated), added
 
 
 def swept(settings, count, workers, store):
@@ -130,8 +129,9 @@ def main():
     settings = {"step": given.step} if given.step else {"tolerance": given.tolerance}
     points = Points(study(settings), read_plan(plan(given.points)))
     keep = kept(points.plan.keep, points.nominal, points.resolve())
+    read = measured(Points(points.nominal, points.plan).resolve) / given.points  # as a sweep does, all in a row
     compute_point(keep, points.study(0))
-    simulated, read, added = in_one_process(points, keep, 30)
+    simulated, added = in_one_process(points, keep, 30)
     print(f"a simulation, without a Dataset {1e3 * simulated:26.1f} ms of one core")
     print(f"reading its study               {1e3 * read:26.2f} ms")
     print(f"scalars from its record         {1e3 * added:26.2f} ms")
