@@ -20,6 +20,7 @@ $(RUN): pyproject.toml constraints.txt
 	test -x $(BIN)/python || $(PYTHON) -m venv .venv
 	$(PIP) pip
 	$(PIP) --editable ".$(if $(COMPILER),,[compiler])"
+	$(BIN)/python -m compileall -q src
 	touch $@
 
 $(DEV): $(RUN)

@@ -5,10 +5,9 @@ Public names load on first use, so that ``import flexapod`` stays fast.
 
 from __future__ import annotations
 
-import gc
-from importlib import import_module
-from types import ModuleType
 from typing import TYPE_CHECKING
+
+from flexapod.loading import loaded
 
 if TYPE_CHECKING:
     from flexapod import model, plot, rigid, study
@@ -91,22 +90,11 @@ __all__ = [
 ]
 
 
-def _loaded(module: str) -> ModuleType:
-    """Import without looking for garbage: what modules make stays, and each search costs more (a tenth of a start)."""
-    collecting = gc.isenabled()
-    gc.disable()
-    try:
-        return import_module(module)
-    finally:
-        if collecting:
-            gc.enable()
-
-
 def __getattr__(name: str) -> object:
     if name in _NAMES:
-        value = getattr(_loaded(_NAMES[name]), name)
+        value = getattr(loaded(_NAMES[name]), name)
     elif name in _PACKAGES:
-        value = _loaded(f"flexapod.{name}")
+        value = loaded(f"flexapod.{name}")
     else:
         raise AttributeError(f"module 'flexapod' has no attribute {name!r}")
     globals()[name] = value

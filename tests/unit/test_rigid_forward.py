@@ -6,10 +6,11 @@ from scipy.spatial.transform import Rotation
 from tests.oracles.stewart_cases import base_circle, platform_circle
 
 from flexapod.errors import ComputationError, InputError
-from flexapod.rigid.forward import all_postures, exponential, newton, newton_path
+from flexapod.rigid.forward import all_postures, newton, newton_path
 from flexapod.rigid.homotopy import Platform, quadrics
 from flexapod.rigid.jacobian import length_jacobian
 from flexapod.rigid.kinematics import leg_lengths
+from flexapod.rigid.rotations import exponential
 from flexapod.rigid.trajectory import Poses, rotation_matrix
 
 BASE, PLATFORM, HOME = base_circle(0.25, 10), platform_circle(0.15, 10), np.array([0, 0, 0.9])
@@ -47,11 +48,6 @@ def test_path_follows_large_turns():
     lengths = leg_lengths(BASE, PLATFORM, np.tile(HOME, (56, 1)), r)
     found = newton_path(BASE, PLATFORM, lengths, Poses.at_rest(HOME, np.eye(3)))
     np.testing.assert_allclose(found.rotation, r, atol=1e-10)
-
-
-def test_exponential_is_the_rotation_of_a_vector():
-    turns = np.concatenate([RNG.normal(size=(20, 3)), 1e-9 * RNG.normal(size=(5, 3)), np.zeros((1, 3))])
-    np.testing.assert_allclose(exponential(turns), Rotation.from_rotvec(turns).as_matrix(), atol=1e-14)
 
 
 def test_quadrics_vanish_on_real_poses():

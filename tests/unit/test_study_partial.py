@@ -10,6 +10,7 @@ from tests.runs import paper_robot, with_legs
 
 import flexapod as fx
 from flexapod.model import ActuatorLoad, ForceDrive
+from flexapod.solve import robot_march
 from flexapod.study import Interrupted
 
 
@@ -37,6 +38,24 @@ def test_a_failed_run_keeps_what_was_computed(how, caplog):
     # Free fall of everything: half g t^2, before the motion of the legs counts.
     drop = float(data.com_position_rigid[0, 2] - data.com_position.sel(time=0.05, method="nearest")[2])
     assert drop == pytest.approx(0.5 * 9.81 * 0.05**2, rel=0.05)
+
+
+@pytest.mark.parametrize("leg", range(6))
+def test_a_number_that_becomes_infinite_names_its_leg(leg, monkeypatch):
+    """Legs are computed side by side: a NaN of one must not be lost among the numbers of the others."""
+    whole = robot_march._tables
+
+    def broken(commands):
+        table, wrench = whole(commands)
+        table = table.reshape(len(commands.time), 6, -1).copy()
+        table[np.abs(commands.time - 0.0105) < 1e-9, leg] = np.nan
+        return table.reshape(len(commands.time), -1), wrench
+
+    monkeypatch.setattr(robot_march, "_tables", broken)
+    data = fx.simulate(paper_robot(fidelity="lumped", step=5e-4), duration=0.02)
+    assert data.attrs["time_reached"] == pytest.approx(0.01)
+    assert f"numbers became infinite in leg {leg + 1}." in data.attrs["failure"]
+    assert np.isfinite(data.com_position).all()
 
 
 def test_what_was_computed_is_what_a_whole_run_has():

@@ -4,9 +4,9 @@ from collections.abc import Callable, Sequence
 from dataclasses import dataclass
 
 import numpy as np
-from scipy.linalg import eigh
 
 from flexapod.bases.beam_functions import gauss_pieces
+from flexapod.bases.eigen import eigh
 from flexapod.typing import Array
 
 Shape = Callable[..., Array]

@@ -4,7 +4,6 @@ from __future__ import annotations
 
 import numpy as np
 from numpy.polynomial import Legendre
-from scipy.linalg import eigh, solve
 
 from flexapod.bases.beam_functions import gauss_unit
 from flexapod.bases.polynomials import PolynomialShape
@@ -34,6 +33,8 @@ def load_shapes(
     moment : bool
         Whether the tip body has rotary inertia and so takes a moment.
     """
+    from scipy.linalg import eigh, solve  # slow to import, and the default basis of robots needs neither
+
     polynomials = [Legendre.basis(j, domain=[0, 1]).integ(2, lbnd=0) for j in range(DEGREE - 1)]  # clamped at 0
     zeta, weight = gauss_unit()
     value, slope, curvature = (np.array([p.deriv(n)(zeta) if n else p(zeta) for p in polynomials]) for n in range(3))

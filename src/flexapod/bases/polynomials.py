@@ -4,9 +4,9 @@ from dataclasses import dataclass
 
 import numpy as np
 from numpy.polynomial import Legendre
-from scipy.linalg import eigh, null_space
 
 from flexapod.bases.beam_functions import gauss_unit
+from flexapod.bases.eigen import eigh
 from flexapod.typing import Array
 
 
@@ -42,7 +42,8 @@ def _held_modes(count: int) -> list[PolynomialShape]:
     conditions = np.array(
         [[p(0.0), p.deriv(1)(0.0), p(1.0), p.deriv(2)(1.0)] for p in legendre]
     ).T  # clamp at 0, held and free of moment at 1
-    space = null_space(conditions / np.linalg.norm(conditions, axis=1, keepdims=True))
+    rows = np.linalg.svd(conditions / np.linalg.norm(conditions, axis=1, keepdims=True))[2]
+    space = rows[len(conditions) :].T  # what satisfies all conditions
     zeta, weight = gauss_unit()
     value = space.T @ np.array([p(zeta) for p in legendre])
     curvature = space.T @ np.array([p.deriv(2)(zeta) if p.degree() > 1 else 0.0 * zeta for p in legendre])

@@ -11,10 +11,11 @@ from flexapod.errors import ComputationError, InputError
 from flexapod.rigid.homotopy import Complex, Platform, complex_postures
 from flexapod.rigid.jacobian import length_jacobian
 from flexapod.rigid.kinematics import leg_lengths
+from flexapod.rigid.rotations import exponential
 from flexapod.rigid.trajectory import Poses
 from flexapod.typing import Array
 
-__all__ = ["RESIDUAL", "Postures", "all_postures", "exponential", "newton", "newton_path", "real_postures"]
+__all__ = ["RESIDUAL", "Postures", "all_postures", "newton", "newton_path", "real_postures"]
 
 RESIDUAL = 1e-12  # largest length error of a pose, relative to the longest leg
 
@@ -39,16 +40,6 @@ class Postures:
 
     poses: Poses
     complex_count: int
-
-
-def exponential(turn: Array) -> Array:
-    """Rotation matrices of rotation vectors (..., 3) [rad], shape (..., 3, 3), Eq. (T2.40)."""
-    angle = np.linalg.norm(turn, axis=-1)[..., None, None]
-    x, y, z = np.moveaxis(turn, -1, 0)
-    zero = np.zeros_like(x)
-    k = np.stack([np.stack(r, axis=-1) for r in ([zero, -z, y], [z, zero, -x], [-y, x, zero])], axis=-2)
-    half = np.sinc(angle / (2 * np.pi))  # sin(angle / 2) / (angle / 2)
-    return np.eye(3) + np.sinc(angle / np.pi) * k + half**2 / 2 * (k @ k)
 
 
 def _checked(lengths: ArrayLike) -> Array:

@@ -4,8 +4,8 @@ from dataclasses import dataclass
 from functools import lru_cache
 
 import numpy as np
-from scipy.linalg import eigh
 
+from flexapod.bases.eigen import eigh
 from flexapod.bases.lateral import LateralBasis
 from flexapod.errors import ComputationError, InputError
 from flexapod.mechanics.layout import COMMAND_SIZE

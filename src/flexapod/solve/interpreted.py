@@ -5,10 +5,10 @@ from dataclasses import replace
 import numpy as np
 
 from flexapod.integration import GeneralizedAlpha
+from flexapod.rigid.rotations import turned
 from flexapod.solve.equilibrium import saddle_solve
 from flexapod.solve.native import MAX_ITERATIONS, TOL_CLOSURE, TOL_FORCE, Advance
 from flexapod.solve.plant import TABLE, Counters, Flow, Plant
-from flexapod.solve.rotation import turned
 from flexapod.typing import Array
 
 

@@ -8,13 +8,12 @@ from ctypes import c_double, c_long
 from dataclasses import dataclass, fields, replace
 
 import numpy as np
-from scipy.spatial.transform import Rotation
 
 from flexapod import rigid
 from flexapod.mechanics.layout import COMMAND_SIZE
 from flexapod.model import Robot
+from flexapod.rigid.rotations import quaternion, turned
 from flexapod.solve.kernel import Kernel
-from flexapod.solve.rotation import quaternion
 from flexapod.solve.system import Index, RobotSystem, State
 from flexapod.typing import Array
 
@@ -52,9 +51,7 @@ class RestStates:
 
     def moved(self, dq: Array, step: Array) -> RestStates:
         """States displaced by dq (P, 6, n) and payload steps (P, 6): q + dq, x + dx, R exp(theta^), Eq. (T4.3)."""
-        turn = Rotation.from_quat(self.pose[:, 3:], scalar_first=True) * Rotation.from_rotvec(step[:, 3:])
-        pose = np.concatenate([self.pose[:, :3] + step[:, :3], turn.as_quat(scalar_first=True)], axis=1)
-        return replace(self, q=self.q + dq, pose=pose)
+        return replace(self, q=self.q + dq, pose=turned(self.pose, step))
 
     def state(self, k: int) -> State:
         """One of them as the state of a robot."""

@@ -10,11 +10,11 @@ from flexapod.errors import ComputationError
 from flexapod.integration import GeneralizedAlpha
 from flexapod.model import Study
 from flexapod.rigid.kinematics import BETA_LIMIT
+from flexapod.rigid.rotations import matrix
 from flexapod.solve.equilibrium import equilibrium
 from flexapod.solve.march import Chunk, Problem, initial_step, march, restart_outputs
 from flexapod.solve.modes import refuse_pure_force
 from flexapod.solve.plant import TABLE, Counters, Flow, Plant, Recording
-from flexapod.solve.rotation import matrix
 from flexapod.solve.start import Start, consistent_start
 from flexapod.solve.system import RobotSystem, State, rigid_state, robot_system
 from flexapod.solve.tables import Commands, command_law

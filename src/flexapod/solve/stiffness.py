@@ -7,9 +7,9 @@ import numpy as np
 from flexapod import rigid
 from flexapod.errors import InputError
 from flexapod.model import Robot, Simulation
+from flexapod.rigid.rotations import matrix
 from flexapod.solve.elimination import leg_bases, solve_each
 from flexapod.solve.modes import LockedPoses, locked_poses, the_equilibrium
-from flexapod.solve.rotation import matrix
 from flexapod.typing import Array
 
 

@@ -9,9 +9,9 @@ from numpy.typing import NDArray
 from flexapod import rigid
 from flexapod.mechanics.layout import COMMAND_SIZE
 from flexapod.model import Robot, Simulation
+from flexapod.rigid.rotations import quaternion, turned
 from flexapod.solve.kernel import Kernel, kernel
 from flexapod.solve.parameters import leg_parameters, payload_parameters
-from flexapod.solve.rotation import quaternion, turned
 from flexapod.solve.shapes import leg_shapes
 from flexapod.typing import Array, Mask
 

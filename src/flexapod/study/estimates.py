@@ -9,8 +9,8 @@ import numpy as np
 from flexapod import rigid
 from flexapod.model import Leg, Piston, Robot
 from flexapod.rigid.kinematics import LegState
+from flexapod.rigid.rotations import matrix
 from flexapod.solve.modes import RobotModes
-from flexapod.solve.rotation import matrix
 from flexapod.typing import Array
 
 __all__ = ["Vibration", "bending_moment", "buckling_load", "residual_vibration", "section_width"]

@@ -6,10 +6,10 @@ from typing import TYPE_CHECKING
 
 import numpy as np
 from numpy.typing import ArrayLike
-from scipy.spatial.transform import Rotation
 
 from flexapod import model, rigid
 from flexapod.errors import InputError
+from flexapod.rigid.rotations import quaternion
 from flexapod.study.arguments import LoadLike, PoseLike, as_pose, as_study, at_pose
 from flexapod.study.attributes import attributes
 from flexapod.study.checks import check_geometry
@@ -146,7 +146,7 @@ def forward_kinematics(
     values = {
         "leg_length_command": given,
         "platform_position": found.position,
-        "platform_quaternion": _quaternions(found.rotation),
+        "platform_quaternion": quaternion(found.rotation),
         "com_position": found.point(payload.com)[0],
         "tool_position": found.point(payload.tool)[0],
     }
@@ -165,7 +165,7 @@ def rigid_path(robot: model.Robot, path: rigid.Poses) -> dict[str, Array]:
         "leg_angle_rigid": np.stack([legs.alpha, legs.beta], axis=-1),
         "com_position_rigid": path.point(robot.payload.com)[0],
         "tool_position_rigid": path.point(robot.payload.tool)[0],
-        "platform_quaternion_rigid": _quaternions(path.rotation),
+        "platform_quaternion_rigid": quaternion(path.rotation),
     }
 
 
@@ -174,10 +174,6 @@ def _numbers(values: ArrayLike, key: str, allowed: str) -> Array:
         return np.asarray(values, dtype=float)
     except (TypeError, ValueError):
         raise InputError("are no numbers", key=key, allowed=allowed) from None
-
-
-def _quaternions(rotation: Array) -> Array:
-    return Rotation.from_matrix(rotation).as_quat(canonical=True, scalar_first=True)
 
 
 def _study(

@@ -8,8 +8,8 @@ from typing import TYPE_CHECKING
 import numpy as np
 
 from flexapod import model, rigid
+from flexapod.rigid.rotations import matrix, quaternion
 from flexapod.solve.modes import LockedPoses, ManyModes, RobotModes, locked_poses, modes_of
-from flexapod.solve.rotation import matrix, quaternion
 from flexapod.study.mode_shapes import STATIONS, mode_values
 from flexapod.study.names import VARIABLES, Variable, dataset
 from flexapod.study.poses import batches, coordinates_of

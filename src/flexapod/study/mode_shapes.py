@@ -3,11 +3,10 @@
 from __future__ import annotations
 
 import numpy as np
-from scipy.spatial.transform import Rotation
 
 from flexapod import model, rigid
+from flexapod.rigid.rotations import matrix, quaternion
 from flexapod.solve.modes import RobotModes
-from flexapod.solve.rotation import matrix
 from flexapod.study.kinds import mode_kinds
 from flexapod.typing import Array
 
@@ -28,7 +27,7 @@ def mode_values(robot: model.Robot, found: RobotModes, path: rigid.Poses, wrench
         "leg_shape": _leg_shapes(robot, found),
         "leg_stretch": _stretch(robot, at, platform),
         "platform_position": at[:3] - R @ com,
-        "platform_quaternion": Rotation.from_matrix(R).as_quat(canonical=True, scalar_first=True),
+        "platform_quaternion": quaternion(R),
         "com_sag": at[:3] - path.point(com)[0][0],
     }
 

@@ -8,6 +8,8 @@ from typing import TYPE_CHECKING, NamedTuple
 import numpy as np
 from numpy.typing import ArrayLike
 
+from flexapod.loading import loaded
+
 if TYPE_CHECKING:
     from xarray import Coordinates, Dataset
     from xarray import Variable as Labelled
@@ -185,6 +187,7 @@ def dataset(
     forms : mapping, optional
         Entries that replace those of `VARIABLES`.
     """
+    loaded("xarray")
     import xarray as xr
 
     table = {**VARIABLES, **(forms or {})}

@@ -9,7 +9,7 @@ import numpy as np
 from flexapod.bases import LateralBasis
 from flexapod.model import Actuator, Leg, Robot
 from flexapod.model.simulation import SOLID
-from flexapod.solve.rotation import matrix
+from flexapod.rigid.rotations import matrix
 from flexapod.solve.system import RobotSystem
 from flexapod.study.estimates import buckling_load, section_width
 from flexapod.study.record import Record

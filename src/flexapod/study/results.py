@@ -6,13 +6,12 @@ from dataclasses import dataclass
 
 import numpy as np
 from numpy.typing import ArrayLike
-from scipy.spatial.transform import Rotation
 
 from flexapod import rigid
 from flexapod.model import Robot, Study
+from flexapod.rigid.rotations import canonical, difference, matrix, quaternion
 from flexapod.rigid.trajectory import coordinates
 from flexapod.solve.parameters import drive_spring
-from flexapod.solve.rotation import matrix
 from flexapod.solve.system import RobotSystem
 from flexapod.solve.tables import feed_forward
 from flexapod.study.causes import deviation_by_cause, length_errors
@@ -77,10 +76,10 @@ def robot_coords(system: RobotSystem, record: Record) -> dict[str, ArrayLike]:
 def payload_results(robot: Robot, path: RigidPath, record: Record) -> dict[str, Array]:
     """Payload and tool against the rigid path."""
     load, com = robot.payload, record.pose[:, :3]
-    turn = Rotation.from_quat(record.pose[:, 3:], scalar_first=True)
-    rigid_turn = Rotation.from_matrix(path.poses.rotation)
+    e, e_rigid = canonical(record.pose[:, 3:]), quaternion(path.poses.rotation)
+    R = matrix(e)
     com_rigid, tool_rigid = path.poses.place(load.com), path.poses.place(load.tool)
-    tool = com + turn.apply(load.tool - load.com)
+    tool = com + R @ (load.tool - load.com)
     return {
         "com_position_rigid": com_rigid,
         "com_position": com,
@@ -88,10 +87,10 @@ def payload_results(robot: Robot, path: RigidPath, record: Record) -> dict[str, 
         "tool_position_rigid": tool_rigid,
         "tool_position": tool,
         "tool_deviation": tool - tool_rigid,
-        "rotation_deviation": (turn * rigid_turn.inv()).as_rotvec(),
-        "platform_quaternion": turn.as_quat(canonical=True, scalar_first=True),
-        "platform_quaternion_rigid": rigid_turn.as_quat(canonical=True, scalar_first=True),
-        "platform_angular_velocity": turn.apply(record.turn),
+        "rotation_deviation": difference(e, e_rigid),
+        "platform_quaternion": e,
+        "platform_quaternion_rigid": e_rigid,
+        "platform_angular_velocity": np.einsum("tij,tj->ti", R, record.turn),
     }
 
 

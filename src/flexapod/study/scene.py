@@ -6,11 +6,10 @@ from dataclasses import dataclass
 from typing import TYPE_CHECKING
 
 import numpy as np
-from scipy.spatial.transform import Rotation
 
 from flexapod import model, rigid
 from flexapod.errors import InputError
-from flexapod.solve.rotation import matrix
+from flexapod.rigid.rotations import exponential, matrix
 from flexapod.typing import Array
 
 if TYPE_CHECKING:
@@ -163,7 +162,7 @@ def mode_scene(modes: Dataset, mode: int, size: float, phase: float = 1.0) -> Sc
     lateral = shape.leg_shape.values
     largest = max(np.linalg.norm(platform, axis=1).max(), np.linalg.norm(lateral, axis=1).max(), 1e-30)
     factor = phase * size / largest
-    turned = Rotation.from_rotvec(factor * turn).as_matrix() @ R
+    turned = exponential(factor * turn) @ R
     com = centre + R @ robot.payload.com + factor * step
     centre = com - turned @ robot.payload.com
     length = np.linalg.norm(centre + robot.platform_joints @ turned.T - robot.base_joints, axis=1)

@@ -66,36 +66,44 @@ static void turned_pose(const double *old, const double *step, double *pose) {
 
 static double largest(lanes x) {
   double m = 0;
-  for (int i = 0; i < LANES; i++) if (!(x[i] <= m)) m = x[i];
+  for (int i = 0; i < LANES; i++) m = fmax(m, x[i]);
   return m;
+}
+
+/* 0 where all are finite, otherwise no number */
+static double blemished(lanes x) {
+  double sum = 0;
+  for (int i = 0; i < LANES; i++) sum += 0*x[i];
+  return sum;
 }
 
 /* Largest residual over what is tolerated (converged: at most 1), and whether every number is finite */
 static double excess(const Settings *s, Work *w, int *finite) {
   lanes force = {0}, r = {0}, g = {0}, faults = {0};
-  double payload = 0;
+  double payload = 0, fault = 0;
   for (int i = 0; i < groups(s); i++) {
     force = magnitude(2, w->leg[i].drive, magnitude(3, w->leg[i].lam, force));
     r = magnitude(s->n, w->r[i], r); faults += blemish(s->n, w->r[i]);
     if (s->payload) { g = magnitude(3, w->g[i], g); faults += blemish(3, w->g[i]); }
   }
-  if (s->payload) for (int i = 0; i < 6; i++) { double e = fabs(w->rp[i]); if (!(e <= payload)) payload = e; }
+  if (s->payload) for (int i = 0; i < 6; i++) { payload = fmax(payload, fabs(w->rp[i])); fault += 0*w->rp[i]; }
   double scale = largest(force), worst = largest(r), gap = largest(g);
   worst = fmax(worst, payload)/(s->tol_force*fmax(scale, 1) + s->force_floor);
   w->closure = gap;
   worst = fmax(worst, gap/s->tol_closure);
-  *finite = isfinite(largest(faults)) && isfinite(payload) && isfinite(worst);
+  *finite = isfinite(fault + blemished(faults)) && isfinite(worst);
   return worst;
 }
 
-/* Leg with the largest residual; the number of legs for the payload */
+/* First leg with an infinite residual, else the one with the largest; the number of legs for the payload */
 static long worst_leg(const Settings *s, const Work *w) {
   double most = 0;
   long leg = s->legs;
   for (int i = 0; s->payload && i < 6; i++) most = fmax(most, fabs(w->rp[i]));
   for (long i = 0; i < s->legs; i++) for (long j = 0; j < s->n; j++) {
     double e = fabs(w->r[i/LANES][j][i%LANES]);
-    if (!(e <= most)) { most = e; leg = i; }
+    if (!isfinite(e)) return i;
+    if (e > most) { most = e; leg = i; }
   }
   return leg;
 }

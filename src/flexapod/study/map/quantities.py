@@ -7,10 +7,10 @@ from dataclasses import dataclass
 import numpy as np
 
 from flexapod import model, rigid
+from flexapod.rigid.rotations import matrix
 from flexapod.solve.arrow import arrow_solve
 from flexapod.solve.modes import LockedPoses, locked_poses, modes_of
 from flexapod.solve.parameters import drive_spring
-from flexapod.solve.rotation import matrix
 from flexapod.solve.stiffness import stiffness_of, tool_motion
 from flexapod.study.estimates import buckling_load
 from flexapod.study.many_modes import poses_of

@@ -5,10 +5,10 @@ from __future__ import annotations
 from dataclasses import dataclass, replace
 
 import numpy as np
-from scipy.spatial.transform import Rotation
 
 from flexapod import model, rigid
 from flexapod.errors import ComputationError
+from flexapod.rigid.rotations import quaternion, rotation_vector
 from flexapod.solve.equilibrium import Equilibrium, equilibrium
 from flexapod.solve.system import RobotSystem, State, rigid_state, robot_system
 from flexapod.study.arguments import as_pose
@@ -47,7 +47,7 @@ def singular_turn(study: model.Study) -> float | None:
     changes = rigid.singularity(study.robot, path).sign_changes
     if not len(changes):
         return None
-    return float(np.rad2deg(Rotation.from_matrix(path.rotation[int(changes[0])]).magnitude()))
+    return float(np.rad2deg(np.linalg.norm(rotation_vector(quaternion(path.rotation[int(changes[0])])))))
 
 
 def at_rest(study: model.Study) -> Rest:

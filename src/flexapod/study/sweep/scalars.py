@@ -8,13 +8,12 @@ from functools import cached_property
 from typing import NamedTuple
 
 import numpy as np
-from scipy.spatial.transform import Rotation
 
 from flexapod import rigid
 from flexapod.model import Study
+from flexapod.rigid.rotations import difference, matrix, quaternion
 from flexapod.solve.modes import robot_modes
 from flexapod.solve.plant import Counters
-from flexapod.solve.rotation import matrix
 from flexapod.solve.system import RobotSystem
 from flexapod.study.plausibility import leg_stress
 from flexapod.study.record import Record
@@ -71,8 +70,7 @@ class RobotRun:
     @cached_property
     def rotation_deviation(self) -> Array:
         """Angle between flexible and rigid platform, (T,) [rad]."""
-        turn = Rotation.from_quat(self.record.pose[:, 3:], scalar_first=True)
-        return (turn * Rotation.from_matrix(self.path.rotation).inv()).magnitude()
+        return np.linalg.norm(difference(self.record.pose[:, 3:], quaternion(self.path.rotation)), axis=1)
 
     @cached_property
     def actuator_force(self) -> Array:

@@ -1,0 +1,35 @@
+"""The symmetric eigenproblem K x = lambda M x.
+
+By NumPy: importing SciPy's `linalg` takes longer than all a simulation asks of it.
+"""
+
+from __future__ import annotations
+
+import numpy as np
+
+from flexapod.typing import Array
+
+__all__ = ["eigh"]
+
+
+def eigh(K: Array, M: Array) -> tuple[Array, Array]:
+    """Eigenvalues, ascending, and eigenvectors X (columns), X^T M X = 1.
+
+    Parameters
+    ----------
+    K : (n, n) array
+        Symmetric.
+    M : (n, n) array
+        Symmetric, positive definite: M = L L^T reduces the problem to L^-1 K L^-T y = lambda y, x = L^-T y.
+
+    Raises
+    ------
+    numpy.linalg.LinAlgError
+        M is not positive definite.
+    """
+    root = np.linalg.cholesky(M)
+    half = np.linalg.solve(root, K)
+    A = np.linalg.solve(root, half.T)
+    values, vectors = np.linalg.eigh(0.5 * (A + A.T))
+    values, vectors = np.linalg.eigh(0.5 * (A + A.T))
+    return values, np.asarray(np.linalg.solve(root.T, vectors), dtype=np.float64)
