@@ -1,5 +1,7 @@
 """What the closures demand of accelerations at a moving start against the accelerations of the rigid path."""
 
+from functools import partial
+
 import numpy as np
 import pytest
 
@@ -21,7 +23,7 @@ def test_closures_of_the_rigid_path(t):
     study = fx.preset("paper-robot")
     system = robot_system(study.robot, study.simulation)
     x = rigid_state(system, study.robot, rigid.poses(study.robot, study.motion, np.array([t])))
-    commands = command_law(study.robot, study.motion, study.load)(np.array([t]))
+    commands = command_law(study.robot, study.load, partial(rigid.poses, study.robot, study.motion))(np.array([t]))
     found = accelerations(system, x, commands, 0)
     G = system.matrices(x, np.zeros(6)).G[:18]
     needed = G @ x.v_dot

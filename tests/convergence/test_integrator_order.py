@@ -4,9 +4,11 @@ from itertools import pairwise
 
 import numpy as np
 import pytest
-from tests.runs import paper_robot, run_robot
+from tests.runs import collect, paper_robot, run_robot
 
+from flexapod import rigid
 from flexapod.model import override
+from flexapod.solve.robot_march import prepare
 
 STEPS = (2e-3, 1e-3, 5e-4, 2.5e-4)
 
@@ -38,11 +40,24 @@ def test_tolerance_is_kept():
     # The estimated error of the step doubling bounds the true one (measured against a fine fixed step).
     study = paper_robot(duration=0.5, modes=2)
     reference = run_robot(override(study, step=2e-5, output_step=1e-3))
-    from flexapod import rigid
-
     path = rigid.poses(study.robot, study.motion, reference["time"])
     com = path.position + path.rotation @ study.robot.payload.com
     peak = np.abs(reference["pose"][:, :3] - com).max()
     for tolerance in (1e-2, 1e-3, 1e-4):
         run = run_robot(override(study, tolerance=tolerance))
         assert np.abs(run["pose"][:, :3] - reference["pose"][:, :3]).max() < tolerance * peak
+
+
+def test_a_coarse_step_may_span_two_outputs():
+    """A slow motion with dense outputs: one kept step an output, also where the number of outputs to a jump is odd."""
+    study = paper_robot(profile="linear", start="moving", fidelity="lumped", output_step=2e-4, duration=0.1414)
+    study = study.replace(motion=study.motion.replace(duration=0.1002, amplitude=0.01))
+    chunks = list(prepare(override(study, tolerance=0.5)).chunks)
+    run, reference = collect(chunks), run_robot(override(study, step=2e-5))
+    assert min(round(chunk.step / 2e-4, 6) for chunk in chunks[1:]) < 1  # the single output before the jump
+    assert max(round(chunk.step / 2e-4, 6) for chunk in chunks[1:]) == 1
+    np.testing.assert_allclose(run["time"], reference["time"], atol=1e-12)
+    path = rigid.poses(study.robot, study.motion, reference["time"])
+    com = path.position + path.rotation @ study.robot.payload.com
+    peak = np.abs(reference["pose"][:, :3] - com).max()
+    assert np.abs(run["pose"][:, :3] - reference["pose"][:, :3]).max() < 0.5 * peak

@@ -17,7 +17,8 @@ Measure = Callable[[Recording], list[Array]]
 CHUNK = 100  # output intervals between looks at the tolerance, or at progress where steps are slow
 CHUNK_STEPS = 2000  # steps in a chunk of several intervals: tables of fine steps must not outgrow the output
 SAFETY = 1.5  # in the error, for the next chunk's step
-FINEST = 4096  # steps per output interval before the tolerance is called out of reach
+FINEST = 8192  # steps per output interval before the tolerance is called out of reach
+SHORT = 8  # steps per output interval: when a run with longer ones fails, this many are tried before giving up
 CAUSES = {
     1: "the step's equations were not solved",
     2: "numbers became infinite",
@@ -101,7 +102,7 @@ def march(problem: Problem, start: Flow, first_step: float, counters: Counters) 
     longest = CHUNK_STEPS if problem.tolerance is None and problem.plant.kernel.library else CHUNK
     done, most = 0, longest
     while done < problem.outputs:
-        count = max(1, min(most, CHUNK_STEPS // control.per_output))
+        count = max(1, min(most, control.longest))
         stop = min([done + count, problem.outputs, *(r for r in problem.restarts if r > done)])
         before = control.settings
         try:
@@ -119,13 +120,38 @@ def march(problem: Problem, start: Flow, first_step: float, counters: Counters) 
         yield chunk
 
 
+@dataclass(frozen=True, kw_only=True)
+class _Window:
+    """Instants, commands and wrenches of the steps of ``count`` outputs after ``done``, for several chunks at once."""
+
+    done: int = 0
+    count: int = 0
+    per_output: int = 0
+    rows: tuple[Array, ...] = ()
+
+    def holds(self, done: int, count: int, per_output: int) -> bool:
+        return per_output == self.per_output and self.done <= done and done + count <= self.done + self.count
+
+    def part(self, done: int, count: int) -> list[Array]:
+        first = (done - self.done) * self.per_output
+        return [x[first : first + count * self.per_output + 1] for x in self.rows]
+
+
 class _Control:
     """Step control between chunks; the only object here that remembers anything."""
 
     def __init__(self, problem: Problem, counters: Counters, first_step: float, scales: list[float]) -> None:
         self.problem, self.counters, self.scales = problem, counters, scales
+        self.window = _Window()
         self.h = first_step  # the step for which the flow's auxiliary values are prepared
-        self.per_output = max(1, round(problem.output_step / first_step))
+        self.per_output = max(1, round(problem.output_step / first_step))  # steps of the run that is kept
+        if problem.tolerance is not None:
+            self.per_output *= 2
+
+    @property
+    def longest(self) -> int:
+        """Outputs in a chunk whose (coarse) run has as many steps as allowed."""
+        return CHUNK_STEPS // self.per_output if self.problem.tolerance is None else 2 * CHUNK_STEPS // self.per_output
 
     @property
     def settings(self) -> tuple[float, int, list[float]]:
@@ -142,47 +168,73 @@ class _Control:
             result = self._run(flow, self._grid(done, count, self.per_output), self.per_output)
             return result.flow, self._chunk(result.rows, done, 0.0, self.per_output)
         while True:
+            count = self._whole(count)
             # Errors of chunks add up in part (damping forgets): each may use the root of its share.
             allowed = self.problem.tolerance * np.sqrt(count / self.problem.outputs)
-            grid = self._grid(done, count, 2 * self.per_output)
-            coarse = self._run(flow, tuple(x[::2] for x in grid), self.per_output)
-            fine = self._run(flow, grid, 2 * self.per_output)
-            error = self._error(coarse.rows, fine.rows, done)
+            try:
+                error, fine = self._twice(flow, done, count)
+            except ComputationError:
+                if self.per_output >= SHORT:
+                    raise
+                self.per_output = SHORT
+                continue
             wanted = _level(self.per_output * np.sqrt(SAFETY * error / allowed))
             if error <= allowed:
                 break
-            self.counters.rejected += 3 * len(coarse.rows) * self.per_output
-            self.per_output = min(max(wanted, _finer(self.per_output)), 8 * self.per_output)
-            if self.per_output > FINEST:
+            self.counters.rejected += 3 * count * self.per_output // 2
+            if self.per_output >= FINEST:
                 now = done * self.problem.output_step
                 raise ComputationError(
                     f"tolerance {self.problem.tolerance:g} is out of reach at t = {now:.6g} s: "
-                    f"with {self.per_output} steps per output the estimated error of one is {error:.2g}, "
-                    f"{allowed:.2g} is its share of the tolerance",
+                    f"from {self.per_output // 2} to {self.per_output} steps per output the result still changes by "
+                    f"{error:.2g}, {allowed:.2g} is the share of the tolerance here, and it would take more than "
+                    f"{FINEST}",
                     next_step="Loosen simulation.tolerance, or give a fixed simulation.step.",
                 )
-            count = max(1, min(count, CHUNK_STEPS // self.per_output))
-        used = 2 * self.per_output
-        chunk = self._chunk(fine.rows, done, error, used)
-        self.h = self.problem.output_step / used
-        self.per_output = min(self.per_output, max(wanted, self.per_output // 2))
+            self.per_output = min(max(wanted, _finer(self.per_output)), 8 * self.per_output)
+            count = max(1, min(count, self.longest))
+        chunk = self._chunk(fine.rows, done, error, self.per_output)
+        self.h = self.problem.output_step / self.per_output
+        self.per_output = min(self.per_output, max(wanted, 2 * (self.per_output // 4), 1))
         return fine.flow, chunk
 
-    def _grid(self, done: int, count: int, per_output: int) -> tuple[Array, Array, Array]:
+    def _whole(self, count: int) -> int:
+        """Outputs of a chunk: an even number where a coarse step spans two; of a single output two steps are made."""
+        if self.per_output == 1 and count == 1:
+            self.per_output = 2
+        return count - count % 2 if self.per_output == 1 else count
+
+    def _twice(self, flow: Flow, done: int, count: int) -> tuple[float, native.Advance]:
+        """Run a chunk with steps twice as long and with those to be kept: estimated error, the second run."""
+        grid = self._grid(done, count, self.per_output)
+        coarse = self._run(flow, [x[::2] for x in grid], self.per_output / 2)
+        fine = self._run(flow, grid, self.per_output)
+        every = count // len(coarse.rows)
+        a, b = (self._measured(rows, done, every) for rows in (coarse.rows, fine.rows[every - 1 :: every]))
+        return self._error(a, b), fine
+
+    def _grid(self, done: int, count: int, per_output: int) -> list[Array]:
         """Instants of the steps of a chunk, and the tables of commands and wrench there."""
+        if not self.window.holds(done, count, per_output):
+            ahead = 2 * self.window.count if self.window.per_output == per_output else count
+            most = min([CHUNK_STEPS // per_output, *(r - done for r in self.problem.restarts if r > done)])
+            self.window = self._window(done, max(count, min(ahead, most, self.problem.outputs - done)), per_output)
+        return self.window.part(done, count)
+
+    def _window(self, done: int, count: int, per_output: int) -> _Window:
         p = self.problem
         steps = done * per_output + np.arange(count * per_output + 1)
         t = np.asarray(steps * (p.output_step / per_output), dtype=float)
         if done + count in p.restarts:
             t[-1] -= 1e-12 * max(1.0, t[-1])  # the command's value before its jump
-        return t, *p.tables(t)
+        return _Window(done=done, count=count, per_output=per_output, rows=(t, *p.tables(t)))
 
-    def _run(self, flow: Flow, grid: tuple[Array, ...], per_output: int) -> native.Advance:
+    def _run(self, flow: Flow, grid: list[Array], per_output: float) -> native.Advance:
         p, h, t = self.problem, self.problem.output_step / per_output, grid[0]
         if abs(h - self.h) > 1e-12 * h:
             flow = _rescaled(p.plant, flow, self.h, h)
         tables = (grid[1], grid[2])
-        result = _loop(p.plant).advance(p.plant, p.method, flow, h, tables, per_output, self.counters)
+        result = _loop(p.plant).advance(p.plant, p.method, flow, h, tables, max(1, int(per_output)), self.counters)
         if result.status:
             where = f" in leg {result.leg + 1}" if 0 <= result.leg < p.plant.legs else ""
             raise ComputationError(
@@ -197,11 +249,15 @@ class _Control:
         recording = unpack(self.problem.plant, time, rows)
         return Chunk(recording=recording, error=error, step=self.problem.output_step / per_output)
 
-    def _error(self, coarse: Array, fine: Array, done: int) -> float:
+    def _measured(self, rows: Array, done: int, every: int) -> list[Array]:
+        """Quantities whose error is controlled, at each ``every``-th output after ``done``."""
+        time = np.asarray((done + every * (1 + np.arange(len(rows)))) * self.problem.output_step, dtype=float)
+        return self.problem.measure(unpack(self.problem.plant, time, rows))
+
+    def _error(self, coarse: list[Array], fine: list[Array]) -> float:
         """Difference over the largest value so far, group by group: three times the fine run's error, Eq. (T6.15)."""
-        a, b = (self.problem.measure(self._chunk(rows, done, 0.0, 1).recording) for rows in (coarse, fine))
-        self.scales = [max(s, float(np.abs(x).max(initial=0.0))) for s, x in zip(self.scales, b, strict=True)]
-        groups = zip(a, b, self.scales, strict=True)
+        self.scales = [max(s, float(np.abs(x).max(initial=0.0))) for s, x in zip(self.scales, fine, strict=True)]
+        groups = zip(coarse, fine, self.scales, strict=True)
         return max(float(np.abs(x - y).max(initial=0.0)) / max(s, 1e-9) for x, y, s in groups)
 
 
@@ -227,14 +283,14 @@ def _loop(plant: Plant) -> ModuleType:
 
 
 def _finer(steps: int) -> int:
-    """Next number of steps of 1, 2, 3, 4, 6, 8, 12 ... for an output interval."""
-    if steps == 1:
-        return 2
+    """Next number of kept steps of 1, 2, 4, 6, 8, 12, 16, 24 ... for an output interval; coarse ones are half of it."""
+    if steps <= 2:
+        return 2 * steps
     return steps * 3 // 2 if steps & (steps - 1) == 0 else steps * 4 // 3
 
 
 def _level(steps: float) -> int:
-    """Smallest of 1, 2, 3, 4, 6, 8, 12 ... that is no less than ``steps``."""
+    """Smallest of 1, 2, 4, 6, 8, 12 ... that is no less than ``steps``."""
     level = 1
     while level < min(steps, 2 * FINEST):
         level = _finer(level)

@@ -7,6 +7,7 @@ from dataclasses import dataclass
 import numpy as np
 from numpy.typing import NDArray
 
+from flexapod.errors import ComputationError
 from flexapod.integration import GeneralizedAlpha
 from flexapod.solve.plant import Counters, Flow, Plant, record_width
 from flexapod.typing import Array
@@ -113,8 +114,19 @@ def first_record(plant: Plant, flow: Flow, table: Array, wrench: Array) -> tuple
 
 
 def scaled_defect(plant: Plant, flow: Flow, ratio: float) -> Flow:
-    """Flow of a robot whose velocities normal to the closures are ``ratio`` times those of ``flow``, Eq. (T6.14)."""
+    """Flow of a robot whose velocities normal to the closures are ``ratio`` times those of ``flow``, Eq. (T6.14).
+
+    Raises
+    ------
+    ComputationError
+        The mass metric is singular on the closures.
+    """
     new = flow.copy()
     settings, state = _settings(plant, GeneralizedAlpha(1.0), 1.0, 1), _state(new, np.zeros(1))
-    _library(plant).scale_normal_velocity(byref(settings), byref(state), _address(np.zeros(6)), c_double(ratio - 1))
+    scale = _library(plant).scale_normal_velocity
+    if scale(byref(settings), byref(state), _address(np.zeros(6)), c_double(ratio - 1)):
+        raise ComputationError(
+            "the step cannot be changed here: the mass matrix is singular on the joints",
+            next_step="Check for a leg without mass, or give a fixed simulation.step in place of a tolerance",
+        )
     return new

@@ -20,6 +20,7 @@ from flexapod.solve.system import RobotSystem, State, rigid_state, robot_system
 from flexapod.solve.tables import Commands, command_law
 from flexapod.typing import Array
 
+SAME = 1e-10  # instants that differ by less are the same; the shortest steps are a thousand times as long [s]
 BEFORE = -1e-12  # just before the start [s]: a load that steps at t = 0 has not come yet
 
 
@@ -59,7 +60,8 @@ def prepare(study: Study, state: State | None = None) -> RobotMarch:
         There is no equilibrium at the start.
     """
     robot, simulation = study.robot, study.simulation
-    system, law = robot_system(robot, simulation), command_law(robot, study.motion, study.load)
+    system, path = robot_system(robot, simulation), _Path(study)
+    law = command_law(robot, study.load, path.poses)
     commands = law(np.zeros(1))
     method = GeneralizedAlpha(simulation.rho_inf)
     step = initial_step(simulation.step, simulation.output_step)
@@ -72,7 +74,7 @@ def prepare(study: Study, state: State | None = None) -> RobotMarch:
         tables=lambda t: _tables(law(t)),
         output_step=output_step,
         outputs=simulation.outputs(study.duration),
-        measure=_Measure(study, plant),
+        measure=_Measure(study, plant, path),
         restart=lambda flow, t, h: _after_impact(system, flow, law(np.array([t])), method, h),
         restarts=restart_outputs(study.motion.rate_jumps, output_step),
         check=lambda recording: _check(study, plant, recording),
@@ -119,19 +121,41 @@ def _tables(c: Commands) -> tuple[Array, Array]:
     return table.reshape(len(c.time), -1), c.wrench
 
 
+class _Path:
+    """Rigid path, which commands and error measure share: the last poses asked for are remembered."""
+
+    def __init__(self, study: Study) -> None:
+        self.robot, self.motion = study.robot, study.motion
+        self.time, self.last = np.zeros(0), None
+
+    def poses(self, t: Array) -> rigid.Poses:
+        """Poses with rates at instants (T,), ascending."""
+        self.time, self.last = t, rigid.poses(self.robot, self.motion, t)
+        return self.last
+
+    def centre(self, t: Array) -> tuple[Array, Array]:
+        """Centre of mass (T, 3) and rotation (T, 3, 3) at instants (T,), if possible out of what is remembered."""
+        at = np.minimum(np.searchsorted(self.time, t - SAME), max(len(self.time) - 1, 0))
+        if self.last is None or np.abs(self.time[at] - t).max() > 2 * SAME:
+            path, at = rigid.poses(self.robot, self.motion, t), np.arange(len(t))
+        else:
+            path = self.last
+        rotation = path.rotation[at]
+        return path.position[at] + rotation @ self.robot.payload.com, rotation
+
+
 class _Measure:
     """Deviation of the payload (CoM, and rotation at the joints' radius) and the lateral amplitudes of a recording."""
 
-    def __init__(self, study: Study, plant: Plant) -> None:
-        self.study, self.lateral = study, 3 + plant.kernel.shapes.axial.count
+    def __init__(self, study: Study, plant: Plant, path: _Path) -> None:
+        self.path, self.lateral = path, 3 + plant.kernel.shapes.axial.count
         self.radius = np.linalg.norm(study.robot.platform_joints, axis=1).max()
         self.time, self.com, self.rotation = np.zeros(0), np.zeros((0, 3)), np.zeros((0, 3, 3))
 
     def __call__(self, recording: Recording) -> list[Array]:
         if not np.array_equal(recording.time, self.time):  # a chunk is measured twice, with two steps
-            path = rigid.poses(self.study.robot, self.study.motion, recording.time)
-            self.time, self.rotation = recording.time, path.rotation
-            self.com = path.position + path.rotation @ self.study.robot.payload.com
+            self.time = recording.time
+            self.com, self.rotation = self.path.centre(self.time)
         turn = self.rotation.swapaxes(1, 2) @ matrix(recording.pose[:, 3:])
         skew = [turn[:, 2, 1] - turn[:, 1, 2], turn[:, 0, 2] - turn[:, 2, 0], turn[:, 1, 0] - turn[:, 0, 1]]
         shift = recording.pose[:, :3] - self.com

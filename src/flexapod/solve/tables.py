@@ -6,7 +6,7 @@ from dataclasses import dataclass
 import numpy as np
 
 from flexapod import rigid
-from flexapod.model import ForceDrive, Load, Motion, Robot
+from flexapod.model import ForceDrive, Load, Robot
 from flexapod.typing import Array
 
 
@@ -27,11 +27,11 @@ class Commands:
         return self.law(self.time[:1] + dt)
 
 
-def command_law(robot: Robot, motion: Motion, load: Load) -> Callable[[Array], Commands]:
-    """Return the commands as a function of instants (T,) [s]."""
+def command_law(robot: Robot, load: Load, poses: Callable[[Array], rigid.Poses]) -> Callable[[Array], Commands]:
+    """Return the commands as a function of instants (T,) [s]; ``poses`` is the rigid path."""
 
     def law(t: Array) -> Commands:
-        path = rigid.poses(robot, motion, t)
+        path = poses(t)
         legs = rigid.inverse_kinematics(robot, path)
         wrench = rigid.wrench(load, t)
         return Commands(

@@ -1,0 +1,56 @@
+"""What the time loop says when the tolerance is out of reach, and when it cannot change its step."""
+
+import re
+from dataclasses import replace
+
+import numpy as np
+import pytest
+from tests.runs import paper_robot
+
+import flexapod as fx
+from flexapod.mechanics.layout import LEG_PARAMETERS, columns
+from flexapod.solve import march, native
+from flexapod.solve.plant import Flow, Plant
+from flexapod.solve.robot_march import prepare
+
+
+def test_the_message_pairs_the_error_with_the_steps_it_was_measured_with(monkeypatch):
+    """It once named the steps of the next try, up to eight times those that gave the error."""
+    runs, errors = [], []
+
+    def recorded(self, flow, grid, per_output):
+        runs.append(per_output)
+        return run(self, flow, grid, per_output)
+
+    def measured(self, *arguments):
+        errors.append(error(self, *arguments))
+        return errors[-1]
+
+    run, error = march._Control._run, march._Control._error
+    monkeypatch.setattr(march._Control, "_run", recorded)
+    monkeypatch.setattr(march._Control, "_error", measured)
+    found = prepare(paper_robot(fidelity="lumped", duration=0.02, tolerance=1e-11))
+    with pytest.raises(fx.ComputationError, match="out of reach") as raised:
+        list(found.chunks)
+    words = re.search(r"from (\d+) to (\d+) steps per output the result still changes by (\S+),", str(raised.value))
+    assert words is not None
+    assert [int(words[1]), int(words[2])] == runs[-2:]
+    assert words[3] == f"{errors[-1]:.2g}"
+
+
+def test_a_step_that_cannot_be_changed_is_told():
+    """Legs without any mass: the metric that splits off the normal velocities is singular. Once it went on."""
+    ready = prepare(paper_robot(duration=0.01, tolerance=1e-4))
+    system, x = ready.system, ready.start.state
+    plant = Plant(
+        kernel=system.kernel, leg_p=system.leg_p, payload_p=system.payload_p, held_l=system.held,
+        held_beta=np.zeros(6, dtype=bool),
+    )  # fmt: skip
+    drive = np.stack([x.drive, np.zeros(6)], axis=1)
+    flow = Flow(q=x.q, v=x.v, v_dot=x.v_dot, a=ready.start.a, lam=x.lam, drive=drive, pose=x.pose)
+    assert np.isfinite(native.scaled_defect(plant, flow, 4.0).v).all()
+    leg_p = plant.leg_p.copy()
+    for name in ("rhoA", "cylinder_mass", "cylinder_inertia"):
+        leg_p[:, columns(LEG_PARAMETERS, name)] = 0.0
+    with pytest.raises(fx.ComputationError, match="mass matrix is singular"):
+        native.scaled_defect(replace(plant, leg_p=leg_p), flow, 4.0)
