@@ -10,7 +10,7 @@ from tests.runs import paper_robot, with_legs
 
 import flexapod as fx
 from flexapod import rigid
-from flexapod.model import Cylinder, ServoDrive, override
+from flexapod.model import Cylinder, ServoDrive, Waypoint, WaypointMotion, override
 from flexapod.solve.arrow import arrow_solve
 from flexapod.solve.elimination import solve_each
 from flexapod.solve.equilibrium import equilibria, saddle_solve
@@ -209,11 +209,59 @@ def test_public_call_takes_many_poses():
 
 
 @pytest.mark.parametrize("shapes", [False, True])
-def test_no_pose_in_reach_and_no_pose_at_all(shapes):
+def test_no_pose_in_reach_and_no_pose_at_all(shapes, tmp_path):
+    """Where no pose was reached, damping ratios, kinds and shapes were once missing."""
+    near = fx.modes(paper_robot(), [[0, 0, 0, 0, 0, 0]], shapes=shapes)
     far = fx.modes(paper_robot(), [[0, 0, 1, 0, 0, 0]], shapes=shapes)
+    none = fx.modes(paper_robot(), np.zeros((0, 6)), shapes=shapes)
     assert far.reason.values.tolist() == [2]
-    assert np.isnan(far.frequency).all()
-    assert fx.modes(paper_robot(), np.zeros((0, 6)), shapes=shapes).sizes["pose"] == 0
+    assert none.sizes["pose"] == 0
+    for data in (far, none):
+        assert set(data.variables) == set(near.variables)
+        for name, variable in near.variables.items():
+            assert (data[name].dims, data[name].dtype.kind) == (variable.dims, variable.dtype.kind), name
+            assert {**data[name].sizes, "pose": 1} == {**near[name].sizes, "pose": 1}, name
+            assert data[name].attrs.get("units") == variable.attrs.get("units"), name
+    for name in set(near.data_vars) - {"reason", "cut_off", "pose_from_home", "kind"}:
+        assert np.isnan(far[name]).all(), name
+    if shapes:
+        assert set(far.kind.values.ravel()) == {""}
+    assert fx.study.open_results(fx.study.save(far, tmp_path / "far.nc")).equals(far)
+
+
+ACROSS = {"roll": np.deg2rad([-40.0, -20.0, 0.0]), "yaw": np.deg2rad([-100.0, -92, -88, -87, -84, 0, 84, 87, 88, 100])}
+
+
+def test_a_map_and_modes_at_its_poses_say_the_same():
+    """A map asks whether a pose is reached from home; modes ask the pose alone, and name those that are cut off."""
+    study = robot("prescribed")
+    seen = fx.workspace_map(study, ACROSS)
+    roll, yaw = (x.ravel() for x in np.meshgrid(*ACROSS.values(), indexing="ij"))
+    data = fx.modes(study, {"roll": roll, "yaw": yaw})
+    flags, code = seen.reason.attrs["flag_meanings"].split(), seen.reason.values.ravel()
+    cut_off = code == flags.index("singular")
+    assert cut_off.any()
+    np.testing.assert_array_equal(data.cut_off, cut_off)
+    np.testing.assert_array_equal(data.reason.values[~cut_off], code[~cut_off])
+    assert {"reached", "falls_through"} <= {flags[k] for k in code}
+    reached = code == 0
+    np.testing.assert_allclose(data.frequency[reached, :6], seen.frequency.values.reshape(-1, 6)[reached], rtol=1e-10)
+    assert np.isnan(data.frequency[~reached & ~cut_off]).all()
+    some = int(np.flatnonzero(cut_off & (data.reason.values == 0))[0])
+    alone = fx.modes(study, {"roll": roll[some], "yaw": yaw[some]})
+    np.testing.assert_allclose(data.frequency[some], alone.frequency, rtol=1e-10)
+
+
+def test_an_equilibrium_across_a_singularity_is_none_of_the_pose():
+    """At 87 deg of yaw the robot sags by 45 mm, through its singularity; the modes beyond it were once given."""
+    data = fx.modes(robot("prescribed"), {"yaw": np.deg2rad([84.0, 87.0, 93.0])}, shapes=True)
+    assert [data.reason.attrs["flag_meanings"].split()[k] for k in data.reason.values] == [
+        "reached", "falls_through", "reached",
+    ]  # fmt: skip
+    assert data.cut_off.values.tolist() == [False, False, True]
+    assert np.isnan(data.com_sag[1]).all()
+    assert set(data.kind[1].values) == {""}
+    assert np.isfinite(data.com_sag[[0, 2]]).all()
 
 
 @pytest.mark.parametrize(
@@ -237,3 +285,15 @@ def test_poses_without_mass_are_marked():
     assert set(data.reason.values.tolist()) <= {0, 12}
     assert 12 in data.reason.values
     assert np.isnan(data.frequency.values[data.reason.values == 12]).all()
+
+
+def test_one_such_pose_is_refused():
+    """Modes, stiffness and a simulation alike: what the lengths hold there is another assembly."""
+    study = robot("prescribed")
+    for compute in (fx.modes, fx.stiffness):
+        with pytest.raises(fx.ComputationError, match="sags through a singularity"):
+            compute(study, {"yaw": np.deg2rad(87.0)})
+    there = {"yaw": np.deg2rad(87.0)}
+    held = WaypointMotion(points=(Waypoint(time=0.0, **there), Waypoint(time=1.0, **there)))
+    with pytest.raises(fx.ComputationError, match="sags through a singularity"):
+        fx.simulate(study.replace(motion=held), duration=0.01, step=1e-3)

@@ -54,13 +54,15 @@ def error(guide, elements, step=1e-3):
 @pytest.mark.parametrize("name", RIGID)
 def test_first_order(name):
     errors = np.array([error(RIGID[name], n) for n in (100, 200, 400)])
-    np.testing.assert_allclose(np.log2(errors[:-1] / errors[1:]), 1.0, atol=0.3)
     # Size: the phase lags by the integral of 2 omega shift / L, omega = c / L^2, so c shift (L0^-2 - L1^-2) / L'; of
-    # the root mean square of a lag that grows like t the motion sees 1 / sqrt(3). Shifts of 0.8 elements at 100
-    # elements are no small ones, and the shape of the tip's motion is no pure sine: a quarter.
+    # the root mean square of a lag that grows like t the motion sees 1 / sqrt(3). In contact the free length grows by
+    # jumps of an element h: each changes the amplitude by 3/2 h / L at whatever phase, a tenth of the lag of 14 h / L
+    # that every mesh has anew; a twentieth for the sag, which does not lag, and one for the last of five elements.
     c = beams.beam_roots("clamped", "free", 1)[0] ** 2 * np.sqrt(BEAM.EI / BEAM.rhoA)
-    lag = c * abs(MEAN[name]) * BEAM.length / 400 * (LENGTH**-2 - (LENGTH + FEED * DURATION) ** -2) / FEED
-    assert errors[-1] == pytest.approx(lag / 3**0.5, rel=0.25)
+    h = BEAM.length / np.array([100, 200, 400])
+    lag = c * abs(MEAN[name]) * h * (LENGTH**-2 - (LENGTH + FEED * DURATION) ** -2) / FEED
+    np.testing.assert_allclose(errors, lag / 3**0.5, rtol=0.2)
+    assert np.log2(errors[0] / errors[-1]) / 2 == pytest.approx(1.0, abs=0.15)  # log2(1.1 / 0.9) / 2, as above
 
 
 def test_rollers_converge_to_a_longer_beam():

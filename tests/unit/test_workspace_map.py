@@ -175,6 +175,11 @@ def test_ranges_that_are_chosen(study):
     ("change", "words"),
     [
         ({"axes": {"surg": None}}, "Did you mean 'surge'"),
+        ({"axes": ["surge", "heave"]}, "no set of coordinates by name"),
+        ({"axes": "surge"}, "no set of coordinates by name"),
+        ({"axes": {3: [0.0]}}, "is not a coordinate"),
+        ({"at": 3}, "no set of coordinates by name"),
+        ({"at": {2: 0.1}}, "is not a coordinate"),
         ({"axes": {}}, "number of axes"),
         ({"axes": dict.fromkeys(("surge", "sway", "heave", "yaw"))}, "number of axes"),
         ({"axes": {"surge": []}}, "no points"),
@@ -191,12 +196,54 @@ def test_ranges_that_are_chosen(study):
         ({"direction": [0, 0, 0]}, "has no direction"),
         ({"acceleration": [1, 2]}, "is no vector"),
         ({"frequencies": 0}, "number of modes"),
+        ({"frequencies": 2.5}, "number of modes"),
         ({"fidelity": "rigid"}, "nothing that could vibrate"),
     ],
 )
 def test_input_that_is_refused(study, change, words):
     with pytest.raises(fx.InputError, match=words):
         fx.workspace_map(study, **{"axes": {"heave": [0.0], "surge": [0.0]}} | change)
+
+
+def test_numbers_of_numpy_and_directions_of_any_length(study):
+    data = fx.workspace_map(study, {"heave": [0.0]}, frequencies=np.int64(3), direction="x")
+    assert data.sizes["mode"] == 3
+    for length in (1e-200, 1e300):  # squares are no numbers
+        along = fx.workspace_map(study, {"heave": [0.0]}, direction=[length, 0, 0])
+        assert along.stiffness.item() == data.stiffness.item()
+
+
+def test_margins_are_those_of_the_legs_that_have_limits(study):
+    """Legs without a stroke once had their whole length left; one leg without a cylinder took the others' margin."""
+    legs, at = study.robot.legs, {"heave": [0.0], "roll": [0.1]}
+
+    def changed(change, numbers):
+        some = [change(leg) if i in numbers else leg for i, leg in enumerate(legs, start=1)]
+        return fx.workspace_map(study.replace(robot=study.robot.replace(legs=tuple(some))), at, fidelity="lumped")
+
+    def no_stroke(leg):
+        return leg.replace(stroke=None)
+
+    def no_cylinder(leg):
+        return leg.replace(cylinder=leg.cylinder.replace(mouth=0.0))
+
+    length = rigid.inverse_kinematics(study.robot, from_home(study.robot, np.array([[0, 0, 0, 0.1, 0, 0]]))).length[0]
+    stroke, mouth, piston = legs[0].stroke, legs[0].cylinder.mouth, legs[0].piston.length
+    margin = np.minimum(length - stroke.min, stroke.max - length)
+    guided = np.minimum(piston, mouth + piston - length)
+    worst = int(margin.argmin()) + 1
+    assert changed(no_stroke, []).stroke_margin.item() == pytest.approx(margin.min(), rel=1e-12)
+    assert changed(no_stroke, [worst]).stroke_margin.item() == pytest.approx(
+        np.delete(margin, worst - 1).min(), rel=1e-12
+    )
+    assert np.isnan(changed(no_stroke, range(1, 7)).stroke_margin.item())
+    worst = int(guided.argmin()) + 1
+    assert changed(no_cylinder, [worst]).guided_length.item() == pytest.approx(
+        np.delete(guided, worst - 1).min(), rel=1e-12
+    )
+    none = changed(no_cylinder, range(1, 7))
+    assert np.isnan(none.guided_length.item())
+    assert none.reason.item() == 0
 
 
 def test_findings(study):
@@ -253,6 +300,10 @@ def test_figures_that_are_refused(study):
     data = fx.workspace_map(study, {"heave": [0.0]}, fidelity="lumped")
     with pytest.raises(fx.InputError, match="not in this map"):
         fx.plot.workspace_map(data, "speed")
+    free = with_legs(study, lambda leg: leg.replace(stroke=None))
+    without = fx.workspace_map(free, {"heave": [0.0]}, fidelity="lumped")
+    with pytest.raises(fx.InputError, match="no leg has such a limit"):  # an empty picture once
+        fx.plot.workspace_map(without, "stroke_margin")
     with pytest.raises(fx.InputError, match="cannot be drawn"):
         fx.plot.workspace_map(fx.modes(study, fidelity="lumped"))
 

@@ -19,7 +19,7 @@ from matplotlib.ticker import LogLocator, MaxNLocator
 from flexapod.errors import InputError
 from flexapod.model import AXES
 from flexapod.plot.style import COLORS, NOTE, PAGE, SMALL, TEXT, figure, needs, scale, styled
-from flexapod.study.map.findings import coordinate_words, name_of, scalar, unit_of
+from flexapod.study.map.findings import coordinate_words, drawn, name_of, scalar, unit_of
 from flexapod.study.map.grid import UNITS
 from flexapod.study.map.names import SCALARS
 from flexapod.study.map.overlay import motion_path
@@ -55,10 +55,20 @@ def workspace_map(data: xr.Dataset, quantity: str = "frequency", *, mode: int = 
         A variable with one number per pose.
     mode : int
         Which frequency.
+
+    Raises
+    ------
+    InputError
+        A quantity that is not in the map, or that no leg of the robot has (margins without strokes or cylinders).
     """
     if quantity not in SCALARS or quantity not in data:
         raise InputError("is not in this map", key="quantity", value=quantity, allowed=", ".join(SCALARS))
     values = scalar(data, quantity, mode)
+    if not np.isfinite(values.values).any() and (data.reason.values == REACHED).any():
+        allowed = ", ".join(drawn(data))
+        raise InputError(
+            "has no value in this map: no leg has such a limit", key="quantity", value=quantity, allowed=allowed
+        )
     unit = scale(values.values, unit_of(values))
     title = _title(data, quantity, mode)
     if values.ndim == 1:

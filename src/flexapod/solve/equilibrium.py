@@ -4,12 +4,16 @@ from dataclasses import dataclass, replace
 
 import numpy as np
 
+from flexapod import rigid
+from flexapod.errors import ComputationError
 from flexapod.mechanics.layout import LEG_PARAMETERS, PAYLOAD_PARAMETERS, columns
+from flexapod.model import Robot
+from flexapod.rigid.rotations import matrix
 from flexapod.solve.arrow import arrow_solve
 from flexapod.solve.elimination import leg_bases, null_space_of_borders, reduced, solve_each
 from flexapod.solve.many import RestMatrices, RestStates, matrices_at_rest, residual_at_rest
 from flexapod.solve.system import RobotSystem, State
-from flexapod.typing import Array
+from flexapod.typing import Array, Mask
 
 FOUND, SINGULAR, GIVES_WAY, NOT_SETTLED, UNSTABLE = range(5)
 REASONS = (
@@ -19,6 +23,8 @@ REASONS = (
     "Newton's method does not settle; the robot is close to buckling",
     "the balanced pose is unstable, the robot buckles under its load",
 )
+
+FALLS_THROUGH = "no equilibrium: the robot sags through a singularity"
 
 
 @dataclass(frozen=True, kw_only=True)
@@ -42,6 +48,29 @@ class Equilibria:
         code = int(self.code[k])
         reason = f"no equilibrium: {REASONS[code]}" if code else ""
         return Equilibrium(state=self.states.state(k), found=code == FOUND, reason=reason)
+
+
+def platform_poses(robot: Robot, pose: Array) -> rigid.Poses:
+    """Poses of the platform in states (P, 7) of centre of mass and quaternion."""
+    R = matrix(pose[:, 3:])
+    return rigid.Poses.at_rest(pose[:, :3] - R @ robot.payload.com, R)
+
+
+def fallen(robot: Robot, path: rigid.Poses, pose: Array) -> Mask:
+    """Which of the equilibria (P, 7) lie on the other side of a singularity than their rigid poses, (P,).
+
+    The lengths have another assembly there, which the drives do not mean.
+    """
+    if not len(path):
+        return np.zeros(0, dtype=bool)
+    before, after = (rigid.singularity(robot, x).determinant for x in (path, platform_poses(robot, pose)))
+    return np.sign(before) != np.sign(after)
+
+
+def refuse_fallen(robot: Robot, path: rigid.Poses, pose: Array) -> None:
+    """Raise ComputationError where the equilibrium (7,) of one rigid pose is `fallen`."""
+    if fallen(robot, path, pose[None]).any():
+        raise ComputationError(FALLS_THROUGH, next_step="Choose a pose farther from the singularity.")
 
 
 def saddle_solve(A: Array, G: Array, r: Array, g: Array) -> tuple[Array, Array]:

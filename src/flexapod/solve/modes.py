@@ -10,7 +10,7 @@ from flexapod.errors import ComputationError, InputError
 from flexapod.model import Robot, Simulation
 from flexapod.solve.damped import damping_ratios
 from flexapod.solve.elimination import LegBases, expanded, leg_bases, null_space_of_borders, reduced
-from flexapod.solve.equilibrium import FOUND, Equilibria, Equilibrium, equilibria
+from flexapod.solve.equilibrium import FOUND, Equilibria, Equilibrium, equilibria, refuse_fallen
 from flexapod.solve.many import RestMatrices, matrices_at_rest, rigid_rest
 from flexapod.solve.system import Index, RobotSystem, robot_system
 from flexapod.typing import Array, Mask
@@ -38,8 +38,13 @@ class RobotModes:
 
 @dataclass(frozen=True, kw_only=True)
 class LockedPoses:
-    """A robot with drives locked at ``lengths`` (P, 6): equilibria, and the matrices ``m`` of those found, ``at``."""
+    """A robot with drives locked at the ``lengths`` (P, 6) of a rigid ``path`` of P poses.
 
+    Equilibria, and the matrices ``m`` of those found, ``at``.
+    """
+
+    robot: Robot
+    path: rigid.Poses
     system: RobotSystem
     simulation: Simulation
     lengths: Array
@@ -90,7 +95,9 @@ def locked_poses(robot: Robot, simulation: Simulation, path: rigid.Poses, wrench
     found = equilibria(system, start, lengths, np.zeros(lengths.shape), load)
     at = np.flatnonzero(found.code == FOUND)
     m = matrices_at_rest(system, found.states[at], load)
-    return LockedPoses(system=system, simulation=simulation, lengths=lengths, equilibria=found, at=at, m=m)
+    return LockedPoses(
+        robot=robot, path=path, system=system, simulation=simulation, lengths=lengths, equilibria=found, at=at, m=m
+    )
 
 
 def locked_equilibrium(
@@ -114,6 +121,7 @@ def the_equilibrium(locked: LockedPoses) -> Equilibrium:
     found = locked.equilibria.one(0)
     if not found.found:
         raise ComputationError(found.reason, next_step="Check the pose for a singularity and the load of the legs.")
+    refuse_fallen(locked.robot, locked.path, found.state.pose)
     return found
 
 

@@ -11,7 +11,7 @@ from flexapod.integration import GeneralizedAlpha
 from flexapod.model import Study
 from flexapod.rigid.kinematics import BETA_LIMIT
 from flexapod.rigid.rotations import matrix
-from flexapod.solve.equilibrium import equilibrium
+from flexapod.solve.equilibrium import equilibrium, refuse_fallen
 from flexapod.solve.march import Chunk, Problem, initial_step, march, restart_outputs
 from flexapod.solve.modes import refuse_pure_force
 from flexapod.solve.plant import TABLE, Counters, Flow, Plant, Recording
@@ -96,6 +96,7 @@ def _configuration(study: Study, system: RobotSystem, before: Commands) -> State
     found = equilibrium(system, at_rest, before.length[0], before.force[0], before.wrench[0])
     if not found.found:
         raise ComputationError(f"the robot cannot start at rest: {found.reason}", next_step="See `flexapod check`.")
+    refuse_fallen(study.robot, rigid.poses(study.robot, study.motion, np.zeros(1)), found.state.pose)
     return found.state
 
 

@@ -8,18 +8,28 @@ from typing import TYPE_CHECKING
 import numpy as np
 
 from flexapod import model, rigid
-from flexapod.rigid.rotations import matrix, quaternion
+from flexapod.rigid.rotations import quaternion
+from flexapod.solve.equilibrium import fallen, platform_poses
 from flexapod.solve.modes import LockedPoses, ManyModes, RobotModes, locked_poses, modes_of
 from flexapod.study.mode_shapes import STATIONS, mode_values
-from flexapod.study.names import VARIABLES, Variable, dataset
+from flexapod.study.names import COORDINATES, VARIABLES, Variable, dataset
 from flexapod.study.poses import batches, coordinates_of
-from flexapod.study.reach import NO_MASS, REACHED, Codes, equilibrium_codes, flags, rigid_codes
-from flexapod.typing import Array
+from flexapod.study.reach import (
+    CUT_OFF,
+    FALLS_THROUGH,
+    NO_MASS,
+    REACHED,
+    Codes,
+    equilibrium_codes,
+    flags,
+    rigid_codes,
+)
+from flexapod.typing import Array, Mask
 
 if TYPE_CHECKING:
     from xarray import Dataset
 
-__all__ = ["modes_at_poses", "poses_of"]
+__all__ = ["codes_at_rest", "modes_at_poses", "poses_of"]
 
 FORMS = {
     **{name: Variable(("pose", *VARIABLES[name].dims), *VARIABLES[name][1:])
@@ -28,7 +38,9 @@ FORMS = {
     "platform_quaternion": Variable(("pose", "quaternion"), "1", "orientation of the platform, platform to world"),
     "pose_from_home": Variable(("pose", "coordinate"), "mixed", "rigid pose from home [m, rad]"),
     "reason": Variable(("pose",), "1", "why a pose has no modes: a code"),
+    "cut_off": Variable(("pose",), "1", "a singularity lies between home and this pose, or in it"),
 }  # fmt: skip
+OF_POSES = ("pose_from_home", "reason", "cut_off")  # whatever comes of the search for an equilibrium
 
 
 def modes_at_poses(
@@ -36,26 +48,32 @@ def modes_at_poses(
 ) -> Dataset:
     """Modes at P poses; see `flexapod.modes`.
 
+    A pose that a singularity cuts off from home is out of reach to a map, but has modes of its own: they are computed,
+    and `cut_off` says so. One whose equilibrium lies on the other side of a singularity than the pose itself has none.
+
     Raises
     ------
     InputError
         Rigid legs on prescribed strokes (nothing can move), or a pure force drive.
     """
     robot, P = study.robot, len(path)
-    reason = rigid_codes(robot, path, from_home=False)
+    reason = rigid_codes(robot, path, from_home=True)
+    cut_off = reason == CUT_OFF
+    reason[cut_off] = REACHED
     within = np.flatnonzero(reason == REACHED)
-    values: dict[str, Array | Codes] = {}
+    values: dict[str, Array | Codes | Mask] = {}
     for part in batches(len(within)) if within.size else [slice(0, 0)]:
         chosen = within[part]
         some = poses_of(path, chosen)
         locked = locked_poses(robot, study.simulation, some, wrench)
         modes = modes_of(locked, shapes=shapes)
-        reason[chosen] = _codes(locked, modes)
-        rows = _shape_rows(robot, locked, modes, some, wrench) if shapes else _rows(robot, locked, modes, some)
+        reason[chosen] = codes = codes_at_rest(locked, modes)
+        kept = codes[locked.at] == REACHED
+        rows = (_shape_rows if shapes else _rows)(robot, locked, modes, some, wrench, kept)
         for name, row in rows.items():
             target = values.setdefault(name, _empty(row, P))
-            target[chosen[locked.at[modes.positive]]] = row
-    values |= {"pose_from_home": coordinates_of(robot, path), "reason": reason}
+            target[chosen[locked.at[kept]]] = row
+    values |= {"pose_from_home": coordinates_of(robot, path), "reason": reason, "cut_off": cut_off}
     coords = {"pose": np.arange(P), "coordinate": list(model.AXES)}
     coords |= {"mode": np.arange(1, values["frequency"].shape[1] + 1)}
     data = dataset(values, coords | ({"station": STATIONS} if shapes else {}), attrs, FORMS)
@@ -68,9 +86,12 @@ def poses_of(path: rigid.Poses, chosen: np.ndarray) -> rigid.Poses:
     return rigid.Poses.at_rest(path.position[chosen], path.rotation[chosen])
 
 
-def _codes(locked: LockedPoses, modes: ManyModes) -> Codes:
+def codes_at_rest(locked: LockedPoses, modes: ManyModes) -> Codes:
+    """Codes (P,) of what the search for equilibria and modes says of P rigid poses within the legs' reach."""
     codes = equilibrium_codes(locked.equilibria.code)
     codes[locked.at[~modes.positive]] = NO_MASS
+    at_rest = locked.equilibria.states.pose[locked.at]
+    codes[locked.at[fallen(locked.robot, poses_of(locked.path, locked.at), at_rest)]] = FALLS_THROUGH
     return codes
 
 
@@ -81,26 +102,28 @@ def _empty(row: Array, count: int) -> Array:
     return np.full((count, *row.shape[1:]), np.nan)
 
 
-def _rows(robot: model.Robot, locked: LockedPoses, modes: ManyModes, path: rigid.Poses) -> dict[str, Array]:
+def _rows(
+    robot: model.Robot, locked: LockedPoses, modes: ManyModes, path: rigid.Poses, wrench: Array, kept: Mask
+) -> dict[str, Array]:
     """Frequencies and places of the poses that have modes."""
-    at = locked.at[modes.positive]
+    at, com = locked.at[kept], robot.payload.com
     pose = locked.equilibria.states.pose[at]
-    R, com = matrix(pose[:, 3:]), robot.payload.com
+    rest = platform_poses(robot, pose)
     return {
-        "frequency": modes.frequency[modes.positive],
-        "platform_position": pose[:, :3] - R @ com,
-        "platform_quaternion": quaternion(R),
+        "frequency": modes.frequency[kept],
+        "platform_position": rest.position,
+        "platform_quaternion": quaternion(rest.rotation),
         "com_sag": pose[:, :3] - path.point(com)[0][at],
     }
 
 
 def _shape_rows(
-    robot: model.Robot, locked: LockedPoses, modes: ManyModes, path: rigid.Poses, wrench: Array
+    robot: model.Robot, locked: LockedPoses, modes: ManyModes, path: rigid.Poses, wrench: Array, kept: Mask
 ) -> dict[str, Array]:
     """Everything, pose by pose."""
     found = []
     for k, at in enumerate(locked.at):
-        if not modes.positive[k]:
+        if not kept[k]:
             continue
         one = RobotModes(
             frequency=modes.frequency[k],
@@ -111,5 +134,19 @@ def _shape_rows(
         )
         found.append(mode_values(robot, one, poses_of(path, np.array([at])), wrench))
     if not found:
-        return {"frequency": np.zeros((0, modes.frequency.shape[1]))}
+        return _no_rows(modes.frequency.shape[1])
     return {name: np.stack([values[name] for values in found]) for name in found[0]}
+
+
+def _no_rows(count: int) -> dict[str, Array]:
+    """Everything, of no pose; ``count`` modes."""
+    sizes = {
+        "mode": count,
+        "station": len(STATIONS),
+        **{dim: np.asarray(labels).size for dim, (labels, _) in COORDINATES.items()},
+    }
+    return {
+        name: np.zeros((0, *(sizes[dim] for dim in form.dims[1:])), dtype="U32" if name == "kind" else float)
+        for name, form in FORMS.items()
+        if name not in OF_POSES
+    }

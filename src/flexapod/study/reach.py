@@ -15,6 +15,8 @@ from flexapod.study.checks import SINGULAR
 from flexapod.typing import Array
 
 __all__ = [
+    "CUT_OFF",
+    "FALLS_THROUGH",
     "NO_MASS",
     "REACHED",
     "REASONS",
@@ -48,13 +50,14 @@ REASONS = (
     Reason("gives_way", "no equilibrium: the legs give way"),
     Reason("not_settled", "no equilibrium found: close to buckling"),
     Reason("unstable", "no equilibrium: the robot buckles under its load"),
-    Reason("falls_through", "no equilibrium: the robot sags through a singularity"),
+    Reason("falls_through", equilibrium.FALLS_THROUGH),
     Reason("no_mass", "the mass matrix is not positive"),
 )
 """Reasons by code."""
 
 _CODE = {reason.flag: code for code, reason in enumerate(REASONS)}
-REACHED, FALLS_THROUGH, NO_MASS = _CODE["reached"], _CODE["falls_through"], _CODE["no_mass"]
+REACHED, CUT_OFF = _CODE["reached"], _CODE["singular"]
+FALLS_THROUGH, NO_MASS = _CODE["falls_through"], _CODE["no_mass"]
 _OF_EQUILIBRIUM = {
     equilibrium.FOUND: "reached",
     equilibrium.SINGULAR: "no_stiffness",
@@ -125,16 +128,11 @@ def _folded(robot: Robot, path: rigid.Poses, length: Array) -> NDArray[np.bool_]
 
 
 def _cut_off(robot: Robot, path: rigid.Poses) -> NDArray[np.bool_]:
+    if not len(path):
+        return np.zeros(0, dtype=bool)
     with np.errstate(invalid="ignore", divide="ignore"):  # a leg without length has no direction: another code is its
         found = rigid.singularity(robot, path)
     return (found.smallest_singular_value < SINGULAR) | (np.sign(found.determinant) != _sign_at_home(robot))
-
-
-def beyond_singularity(robot: Robot, path: rigid.Poses) -> NDArray[np.bool_]:
-    """Whether the determinant of the scaled Jacobian has not the sign that it has at home, (P,)."""
-    if not len(path):
-        return np.zeros(0, dtype=bool)
-    return np.sign(rigid.singularity(robot, path).determinant) != _sign_at_home(robot)
 
 
 def _sign_at_home(robot: Robot) -> float:

@@ -57,7 +57,8 @@ def modes(
         `frequency` [Hz] ascending, `damping_ratio`, `kind`, `platform_shape`, `leg_shape`, `leg_stretch`;
         `platform_position`, `platform_quaternion`, `com_sag` of the equilibrium. Shapes are mass-normalised.
         Many poses: `frequency` (pose, mode), `com_sag`, position and quaternion, `pose_from_home`, and in `reason` why
-        a pose has none (NaN); it is not an error there.
+        a pose has none (NaN); it is not an error there. `cut_off` marks poses that a singularity separates from home;
+        a map calls them out of reach.
 
     Raises
     ------

@@ -72,16 +72,18 @@ def grid(robot: model.Robot, axes: Axes | None, at: Mapping[str, float] | None) 
     Raises
     ------
     InputError
-        Unknown or too many names, no points, values that do not ascend, a coordinate both fixed and varying, or more
-        than two million poses.
+        Something else than names with values, unknown or too many names, no points, values that do not ascend, a
+        coordinate both fixed and varying, or more than two million poses.
     """
     axes = {"surge": None, "heave": None} if axes is None else axes
+    at = {} if at is None else at
+    _check_names(axes, "axes", 'axes = {"surge": [-0.1, 0.0, 0.1], "heave": None}')
+    _check_names(at, "at", 'at = {"roll": 0.1}')
     fixed = _fixed(at, axes)
     if not 1 <= len(axes) <= 3:
         raise InputError("has the wrong number of axes", key="axes", value=len(axes), allowed="1 to 3 axes")
     values = {}
     for place, (name, given) in enumerate(axes.items()):
-        _check_name(name, "axes")
         values[name] = _values(robot, name, given, fixed, slices=place == 2, axes=len(axes))
     size = int(np.prod([len(v) for v in values.values()], dtype=float))
     if size > LARGEST:
@@ -89,10 +91,9 @@ def grid(robot: model.Robot, axes: Axes | None, at: Mapping[str, float] | None) 
     return Grid(values=values, at=fixed)
 
 
-def _fixed(at: Mapping[str, float] | None, axes: Axes) -> Array:
+def _fixed(at: Mapping[str, float], axes: Axes) -> Array:
     fixed = np.zeros(6)
-    for name, value in (at or {}).items():
-        _check_name(name, "at")
+    for name, value in at.items():
         if name in axes:
             raise InputError("varies in this map: it cannot be fixed, too", key=f"at.{name}", value=value)
         try:
@@ -105,11 +106,14 @@ def _fixed(at: Mapping[str, float] | None, axes: Axes) -> Array:
     return fixed
 
 
-def _check_name(name: str, key: str) -> None:
-    if name not in AXES:
-        raise InputError(
-            "is not a coordinate", key=key, value=name, allowed=", ".join(AXES), next_step=closest(name, AXES)
-        )
+def _check_names(given: object, key: str, example: str) -> None:
+    if not isinstance(given, Mapping):
+        raise InputError("is no set of coordinates by name", key=key, value=given, next_step=f"For example {example}")
+    for name in given:
+        if name not in AXES:
+            raise InputError(
+                "is not a coordinate", key=key, value=name, allowed=", ".join(AXES), next_step=closest(str(name), AXES)
+            )
 
 
 def _values(

@@ -13,17 +13,8 @@ from flexapod.solve.modes import LockedPoses, locked_poses, modes_of
 from flexapod.solve.parameters import drive_spring
 from flexapod.solve.stiffness import stiffness_of, tool_motion
 from flexapod.study.estimates import buckling_load
-from flexapod.study.many_modes import poses_of
-from flexapod.study.reach import (
-    FALLS_THROUGH,
-    NO_MASS,
-    REACHED,
-    Codes,
-    beyond_singularity,
-    equilibrium_codes,
-    leg_limits,
-    rigid_codes,
-)
+from flexapod.study.many_modes import codes_at_rest, poses_of
+from flexapod.study.reach import REACHED, Codes, leg_limits, rigid_codes
 from flexapod.typing import Array, Mask
 
 __all__ = ["Wanted", "batch_values"]
@@ -64,9 +55,7 @@ def batch_values(study: model.Study, path: rigid.Poses, wanted: Wanted) -> tuple
         **{name: row[locked.at] for name, row in _rigid(study.robot, some).items()},
     }
     if within.size:
-        code[within] = equilibrium_codes(locked.equilibria.code)
-        code[within[locked.at[~modes.positive]]] = NO_MASS
-        code[within[locked.at[beyond_singularity(study.robot, _resting(study.robot, locked))]]] = FALLS_THROUGH
+        code[within] = codes_at_rest(locked, modes)
     at, result = within[locked.at] if within.size else within, {}
     for name, rows in values.items():
         result[name] = np.full((len(path), *rows.shape[1:]), np.nan)
@@ -75,28 +64,19 @@ def batch_values(study: model.Study, path: rigid.Poses, wanted: Wanted) -> tuple
     return code, result
 
 
-def _resting(robot: model.Robot, locked: LockedPoses) -> rigid.Poses:
-    """Poses of the platform in the equilibria that were found."""
-    pose = locked.equilibria.states.pose[locked.at]
-    R = matrix(pose[:, 3:])
-    return rigid.Poses.at_rest(pose[:, :3] - R @ robot.payload.com, R)
-
-
 def _rigid(robot: model.Robot, path: rigid.Poses) -> Values:
     """Margins of strokes, pistons and joints, and distance to a singularity, (P,)."""
     found, length = rigid.singularity(robot, path), _lengths(robot, path)
     limits, mouth, piston = leg_limits(robot)
-    stroke = np.minimum(length - limits[:, 0], limits[:, 1] - length).min(axis=1)
+    stroke = np.minimum(length - limits[:, 0], limits[:, 1] - length)
     inside = np.minimum(piston, mouth + piston - length)
     axes, home = _leg_axes(robot, path), _leg_axes(robot, rigid.home_pose(robot))
     seen = np.einsum("tji,tlj->tli", path.rotation, axes)  # from the platform
     return {
         "condition": found.condition,
         "smallest_singular_value": found.smallest_singular_value,
-        "stroke_margin": np.where(np.isfinite(stroke), stroke, np.nan),
-        "guided_length": np.where(mouth > 0, inside, np.nan).min(axis=1)
-        if (mouth > 0).all()
-        else length[:, 0] * np.nan,
+        "stroke_margin": _least_where(np.isfinite(limits[:, 1]), stroke),
+        "guided_length": _least_where(mouth > 0, inside),
         "base_joint_angle": _largest_angle(axes, home),
         "platform_joint_angle": _largest_angle(seen, home),
     }

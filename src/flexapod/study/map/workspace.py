@@ -4,6 +4,7 @@ from __future__ import annotations
 
 import time
 from collections.abc import Mapping
+from numbers import Integral
 from typing import TYPE_CHECKING
 
 import numpy as np
@@ -115,9 +116,9 @@ def _computed(study: model.Study, poses: Grid, wanted: Wanted, progress: Report 
 
 
 def _count(frequencies: int) -> int:
-    if isinstance(frequencies, bool) or not isinstance(frequencies, int) or frequencies < 1:
-        raise InputError("is no number of modes", key="frequencies", value=frequencies, allowed="1 or more")
-    return frequencies
+    if isinstance(frequencies, bool) or not isinstance(frequencies, Integral) or frequencies < 1:
+        raise InputError("is no number of modes", key="frequencies", value=frequencies, allowed="1 or more, whole")
+    return int(frequencies)
 
 
 def _unit(direction: str | ArrayLike) -> Array:
@@ -132,6 +133,7 @@ def _unit(direction: str | ArrayLike) -> Array:
         raise InputError(
             "has no direction", key="direction", value=vector.tolist(), allowed="a vector that is not zero"
         )
+    vector = vector / np.abs(vector).max()  # so that no square is too small or too large for a number
     return vector / np.linalg.norm(vector)
 
 

@@ -14,6 +14,7 @@ ELEMENTS, STEP, OUTPUT_STEP = (100, 200, 400), 1e-3, 5e-3
 FEED = 0.1  # m/s, of the preset
 #: [s] 5, 10, 20 elements pass the mouth, from node to node.
 DURATION = 1.83
+ORDER, SIZE = 0.15, 0.2  # tolerances
 #: Mean of the shift of the clamp over the places of the mouth in an element, by its length, Eq. (T11.8).
 GUIDES: dict[str, tuple[Guide, float]] = {
     "whole elements": (ElementContact(stiffness=1e24), 0.5),
@@ -41,20 +42,19 @@ def _compute() -> list[Check]:
         for n in ELEMENTS:
             run = march_sliding_beam(study, n, guide, step=STEP, duration=DURATION, output_step=OUTPUT_STEP)
             errors.append(float(np.sqrt(((run.tip - exact) ** 2).mean() / (exact**2).mean())))
-        orders = np.log2(np.array(errors[:-1]) / np.array(errors[1:]))
+        first, last = ELEMENTS[0], ELEMENTS[-1]
+        order = float(np.log(errors[0] / errors[-1]) / np.log(last / first))
+        what = f"{name}, order from {first} to {last} elements"
+        rows.append(Check(what=what, reference=1.0, ours=order, tolerance=ORDER))
         rows += [
-            Check(what=f"{name}, order from {a} to {2 * a} elements", reference=1.0, ours=float(order), tolerance=0.3)
-            for a, order in zip(ELEMENTS, orders, strict=False)
-        ]
-        length = study.actuator.length / ELEMENTS[-1]
-        rows.append(
             Check(
-                what=f"{name}, error with {ELEMENTS[-1]} elements",
-                reference=_lag(study, shift * length),
-                ours=errors[-1],
-                tolerance=0.25,
+                what=f"{name}, error with {n} elements",
+                reference=_lag(study, shift * study.actuator.length / n),
+                ours=error,
+                tolerance=SIZE,
             )
-        )
+            for n, error in zip(ELEMENTS, errors, strict=True)
+        ]
     return rows
 
 
@@ -62,8 +62,9 @@ SLIDING_MESH = Case(
     name="sliding-mesh",
     statement="Error of a beam mesh that is fixed to the material and slides through a guide, Table 2 beam, 1.83 s",
     source="theory: the clamp is off by a share of an element's length, so order one and 2 int omega shift / L dt",
-    argument="shifts of 0.8 elements at 100 elements are no small ones and errors up to 60 % no linear ones: 0.3 of "
-    "the "
-    "order; the tip's motion is no pure sine: a quarter of the size",
+    argument="in contact the free length grows by jumps of an element at any phase of the vibration: each changes the "
+    "amplitude by 3/2 h / L, which does not average out over four periods, a tenth of the lag of 14 h / L, in every "
+    "mesh anew: log2(1.1 / 0.9) / 2 = 0.15 of the order. Sizes: that tenth, a twentieth for the sag that does not lag, "
+    "a twentieth for the last of five elements: 0.2",
     compute=_compute,
 )
