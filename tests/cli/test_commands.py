@@ -165,6 +165,31 @@ def test_run_writes_results_figures_and_report(flexapod, study, folder):
     assert len(table) == data.sizes["time"]
 
 
+def test_run_writes_the_formats_asked_for(flexapod, study, folder):
+    result = flexapod("run", study(*SHORT), "--format", "PDF, svg", "--out", "out")
+    assert result.exit_code == 0, result.stderr
+    out = folder / "out"
+    assert {path.stem for path in out.glob("*.pdf")} == {path.stem for path in out.glob("*.svg")} >= FIGURES
+    assert not list(out.glob("*.png")) and (out / "com-path.pdf").read_bytes().startswith(b"%PDF")
+    assert "figures (PDF and SVG)" in result.stdout
+    assert (out / "report.html").read_text(encoding="utf-8").count("data:image/png") >= len(FIGURES)
+
+
+@pytest.mark.parametrize("command", ["run", "actuator"])
+@pytest.mark.parametrize(("formats", "named"), [("jpg", "jpg"), ("png,gif", "gif"), (",", ",")])
+def test_unknown_formats_are_refused_before_anything_is_computed(
+    flexapod, study, folder, monkeypatch, command, formats, named
+):
+    monkeypatch.setattr("flexapod.study.run", lambda *_, **__: pytest.fail("computed"))
+    result = flexapod(
+        command, study(preset=f"paper-{'robot' if command == 'run' else 'actuator'}"), "--format", formats
+    )
+    assert result.exit_code == 2
+    assert f"--format = {named}: is no format of figures" in result.stderr
+    assert "png, svg, pdf" in result.stderr
+    assert [path.name for path in folder.iterdir()] == ["study.toml"]
+
+
 def test_run_as_json(flexapod, study, folder):
     file = study(*SHORT)
     result = flexapod("run", file, "--out", "deep/er", "--json")

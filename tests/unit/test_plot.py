@@ -5,6 +5,7 @@ import re
 import matplotlib
 import numpy as np
 import pytest
+from matplotlib.colors import to_rgb
 from matplotlib.figure import Figure
 from matplotlib.image import imread
 from matplotlib.text import Text
@@ -14,6 +15,8 @@ from flexapod.app.figures import draw
 from flexapod.app.report import write_report
 from flexapod.errors import InputError
 from flexapod.model import preset
+from flexapod.plot.narrow import narrowed
+from flexapod.plot.style import ink
 from flexapod.study import modes, simulate, simulate_actuator
 from flexapod.study.scene import mode_scene, motion_end, robot_study, scene
 
@@ -150,6 +153,8 @@ def test_formats_and_their_refusal(robot, tmp_path):
     assert written[0].read_bytes() == first  # the same picture is the same file
     with pytest.raises(InputError, match="no format"):
         plot.save(figure, tmp_path / "z", formats=("jpg",))
+    with pytest.raises(InputError, match="no format"):
+        plot.save(figure, tmp_path / "z", formats=())
     with pytest.raises(InputError, match="no width"):
         plot.save(figure, tmp_path / "z", width=0.0)
 
@@ -174,6 +179,72 @@ def test_a_figure_for_a_column_stays_as_it_was(robot, tmp_path):
     assert imread(path).shape[1] == 670
 
 
+def panels(figure):
+    return [axes for axes in figure.axes if axes.get_visible()]
+
+
+@pytest.mark.parametrize("name", [*ROBOT, "com_path of all axes", "actuator_path", "actuator_response", "modes_3d"])
+def test_at_the_width_of_a_column_nothing_overlaps_or_is_cut(robot, actuator, shapes, name):
+    draws = {
+        "com_path of all axes": lambda: plot.com_path(robot, ("x", "y", "z")),
+        "actuator_path": lambda: plot.actuator_path(actuator[3], magnify=20.0),
+        "actuator_response": lambda: plot.actuator_response(actuator),
+        "modes_3d": lambda: plot.modes_3d(shapes),
+    }
+    figure = draws.get(name, lambda: getattr(plot, name)(robot))()
+    made = narrowed(figure, 0.085 / 0.0254)
+    made.draw_without_rendering()
+    assert made.get_figwidth() == pytest.approx(0.085 / 0.0254) and made.get_figheight() < 0.24 / 0.0254
+    assert len({round(axes.get_position().x0, 2) for axes in panels(made)}) <= 2
+    assert len(panels(made)) == len(panels(figure))
+    assert min(text.get_fontsize() for text in texts(made)) >= 7.0
+    if name == "modes_3d":  # pictures in space reach beyond what is seen of them
+        boxes = [title.get_window_extent() for axes in panels(made) for title in (axes.title,)]
+    else:
+        boxes = [axes.get_window_extent() for axes in panels(made)]
+        inside = made.bbox.padded(1.5)  # half a point: rounding of letters
+        for text in texts(made):
+            box = text.get_window_extent()
+            assert inside.x0 <= box.x0 and box.x1 <= inside.x1, text.get_text()
+    for i, one in enumerate(boxes):
+        assert not any(one.overlaps(other) for other in boxes[i + 1 :])
+
+
+def texts(figure):
+    ticks = {label for axes in figure.axes for label in (*axes.get_xticklabels(), *axes.get_yticklabels())}
+    return [t for t in figure.findobj(Text) if t.get_visible() and t.get_text().strip() and t not in ticks]
+
+
+def test_panels_in_a_column_keep_their_labels(robot):
+    made = narrowed(plot.com_path(robot), 0.085 / 0.0254)
+    by_height = sorted(panels(made), key=lambda axes: -axes.get_position().y0)
+    assert [axes.get_title(loc="left")[-1] for axes in by_height] == ["Y", "Y", "Z", "Z"]
+    assert all("mm" in axes.get_ylabel() or "µm" in axes.get_ylabel() for axes in by_height)
+    assert [bool(axes.get_xlabel()) for axes in by_height] == [False, False, False, True]  # they share time
+    forces = narrowed(plot.actuator_forces(robot), 0.085 / 0.0254)
+    lowest = [axes for axes in panels(forces) if axes.get_xlabel()]
+    assert len(lowest) == 2 and lowest[0].get_position().y0 == pytest.approx(lowest[1].get_position().y0)
+
+
+@pytest.mark.parametrize("color", ["#E69F00", "#56B4E9", "#009E73", "#333333"])
+def test_words_in_colour_have_contrast(color):
+    """4.5 to 1 on white (WCAG 2.2, 1.4.3); what is dark enough stays as it is."""
+    linear = [p / 12.92 if p <= 0.04045 else ((p + 0.055) / 1.055) ** 2.4 for p in to_rgb(ink(color))]
+    assert 1.05 / (np.dot([0.2126, 0.7152, 0.0722], linear) + 0.05) >= 4.5
+    assert (ink(color) == color) == (color == "#333333")
+
+
+def test_path_of_a_beam_is_that_of_its_tip(actuator):
+    data = actuator[3]
+    figure = plot.actuator_path(data, hub_radius=0.1, magnify=20.0)
+    flexible = next(line for line in figure.axes[0].lines if "20 times larger" in str(line.get_label()))
+    x, y = flexible.get_data()
+    # Pythagoras: along the straight beam, and across it.
+    np.testing.assert_allclose(np.hypot(x, y) ** 2, (0.1 + data.length) ** 2 + (20 * data.tip_deflection) ** 2)
+    turned = np.arctan2(20 * data.tip_deflection, 0.1 + data.length)
+    np.testing.assert_allclose(np.unwrap(np.arctan2(y, x)), data.angle + turned, atol=1e-12)
+
+
 def test_folder_that_is_a_file_is_refused(robot, tmp_path):
     (tmp_path / "file").write_text("", encoding="utf-8")
     with pytest.raises(InputError):
@@ -183,7 +254,7 @@ def test_folder_that_is_a_file_is_refused(robot, tmp_path):
 def test_report_of_a_run_has_its_figures_and_its_answer(actuator, tmp_path):
     figures = draw(actuator[3], tmp_path)
     text = write_report(actuator[3], tmp_path, figures).read_text(encoding="utf-8")
-    assert text.count("<figure") == 1 + len(figures) == 3  # with the replay
+    assert text.count("<figure") == len(figures) == 3  # one of them stands for the replay on paper
     assert "The tip leaves the hub" in text.split("</h1>")[0]
     assert "[motion]" in text and "Newton iterations" in text and "flexapod run study.toml" in text
 

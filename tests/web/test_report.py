@@ -12,6 +12,41 @@ from flexapod.model import loads
 from flexapod.study import run
 
 REPLAY = "figure.replay"
+# Contrast of every piece of text that is seen with what is behind it, by the formula of WCAG 2.2.
+CONTRASTS = """() => {
+  const parse = (color) => {
+    const [r, g, b, a = 1] = color.match(/[\\d.]+/g).map(Number);
+    return [r, g, b, a];
+  };
+  const luminance = (color) => {
+    const linear = color.slice(0, 3).map((v) => (v <= 10.31 ? v / 3294.6 : ((v / 255 + 0.055) / 1.055) ** 2.4));
+    return 0.2126 * linear[0] + 0.7152 * linear[1] + 0.0722 * linear[2];
+  };
+  const behind = (part) => {
+    for (; part; part = part.parentElement) {
+      const color = parse(getComputedStyle(part).backgroundColor);
+      if (color[3] === 1) return color;
+    }
+    return [255, 255, 255, 1];
+  };
+  const seen = [];
+  const walk = document.createTreeWalker(document.body, NodeFilter.SHOW_TEXT);
+  for (let node = walk.nextNode(); node; node = walk.nextNode()) {
+    const part = node.parentElement, style = getComputedStyle(part), box = part.getBoundingClientRect();
+    if (!node.data.trim() || /^(script|style|option)$/i.test(part.tagName) || !box.width) continue;
+    if (style.visibility === "hidden") continue;
+    const back = behind(part), front = parse(part instanceof SVGElement ? style.fill : style.color);
+    const share = front[3] * style.opacity * (part instanceof SVGElement ? style.fillOpacity : 1);
+    const mixed = front.map((v, i) => share * v + (1 - share) * back[i]);
+    const [low, high] = [luminance(mixed), luminance(back)].sort((a, b) => a - b);
+    seen.push([(high + 0.05) / (low + 0.05), node.data.trim()]);
+  }
+  return seen;
+}"""
+NAMELESS = """() => [...document.querySelectorAll("a, button, input, select, img, [tabindex]")]
+  .filter((part) => part.getClientRects().length)
+  .filter((part) => !(part.ariaLabel || part.alt || part.textContent.trim() || part.labels?.length))
+  .map((part) => part.outerHTML.slice(0, 200))"""
 
 
 @pytest.fixture(scope="module")
@@ -197,6 +232,56 @@ def test_on_paper_figures_are_pictures(read):
     assert not page.locator("#theme").is_visible() and not part(page, "play").is_visible()
     assert page.locator(f"{REPLAY} img").is_visible()
     assert page.pdf(format="A4").startswith(b"%PDF")
+
+
+@pytest.mark.parametrize("preset", ["paper-robot", "paper-actuator"])
+def test_on_paper_the_replay_is_a_picture_and_figures_go_two_a_page(read, preset):
+    page = read(preset, viewport={"width": 680, "height": 1000})  # A4 between its margins: 180 mm
+    page.emulate_media(media="print")
+    assert page.locator(f"{REPLAY} img").is_visible() and page.locator(f"{REPLAY} .still").is_visible()
+    assert not page.locator(f"{REPLAY} .moving").is_visible() and not page.locator("nav").is_visible()
+    heights = page.evaluate("[...document.querySelectorAll('figure:not(.tall) img')].map((p) => p.clientHeight)")
+    assert len(heights) >= 3 and max(heights) <= 108 * 96 / 25.4 + 1  # of 269 mm
+    assert page.evaluate("document.documentElement.scrollWidth") <= 680
+
+
+@pytest.mark.parametrize("scheme", ["light", "dark"])
+@pytest.mark.parametrize("preset", ["paper-robot", "paper-actuator"])
+def test_words_have_contrast_and_controls_have_names(read, preset, scheme):
+    """WCAG 2.2: contrast of 4.5 to 1 (1.4.3), names of controls and pictures (4.1.2), links that lead somewhere."""
+    page = read(preset, color_scheme=scheme)
+    for which in range(page.locator("figure.chart").count()):
+        chart(page, which)
+    assert page.evaluate("document.documentElement.lang") == "en"
+    seen = page.evaluate(CONTRASTS)
+    assert len(seen) > 100
+    assert [words for ratio, words in seen if ratio < 4.5] == []
+    assert page.evaluate(NAMELESS) == []
+    assert page.evaluate(
+        "[...document.querySelectorAll('nav a')].every((a) => document.getElementById(a.hash.slice(1)))"
+    )
+
+
+@pytest.mark.parametrize("scheme", ["light", "dark"])
+def test_focus_is_seen_wherever_the_keys_lead(read, scheme):
+    """Tab goes from top to bottom, and what has the focus has a ring (WCAG 2.2: 2.4.3, 2.4.7)."""
+    page = read(color_scheme=scheme)
+    chart(page)
+    page.evaluate("window.scrollTo(0, 0)")
+    page.locator("#theme").focus()
+    tops, rings = [], set()
+    for _ in range(32):
+        page.keyboard.press("Tab")
+        top, ring = page.evaluate(
+            "(() => { const at = document.activeElement, style = getComputedStyle(at);"
+            " return [Math.round(at.closest('nav, figure').getBoundingClientRect().top + scrollY),"
+            " `${style.outlineStyle} ${style.outlineWidth} ${style.outlineColor}`]; })()"
+        )
+        tops.append(top)
+        rings.add(ring)
+    assert tops == sorted(tops) and len(set(tops)) >= 3  # links, replay, a figure
+    color = {"light": "rgb(11, 92, 148)", "dark": "rgb(124, 192, 238)"}[scheme]
+    assert rings == {f"solid 3px {color}"}
 
 
 def test_without_scripts_the_pictures_are_there(read):

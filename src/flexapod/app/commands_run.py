@@ -2,8 +2,9 @@
 
 from __future__ import annotations
 
+from collections.abc import Sequence
 from pathlib import Path
-from typing import TYPE_CHECKING
+from typing import TYPE_CHECKING, Annotated
 
 import typer
 
@@ -18,6 +19,10 @@ if TYPE_CHECKING:
 __all__ = ["add"]
 
 COMPUTING = 0.88  # share of the bar for the simulation; the rest is for files
+Format = Annotated[
+    str, typer.Option("--format", metavar="FORMATS", help="Of the figures: one or more of png,svg,pdf, with commas.")
+]
+FORMATS = "png,svg"
 
 
 def add(app: typer.Typer) -> None:
@@ -27,16 +32,20 @@ def add(app: typer.Typer) -> None:
 
 
 @guarded
-def run(file: StudyFile, out: Out = None, json: Json = False, quiet: Quiet = False) -> None:
+def run(file: StudyFile, out: Out = None, formats: Format = FORMATS, json: Json = False, quiet: Quiet = False) -> None:
     """Simulate a study, rigid and flexible: results.nc, results.csv, figures, report.html."""
+    from flexapod.app.outputs import parse_formats
     from flexapod.model import load
 
-    _run(load(file), file, out, json=json, quiet=quiet)
+    _run(load(file), file, out, parse_formats(formats), json=json, quiet=quiet)
 
 
 @guarded
-def actuator(file: StudyFile, out: Out = None, json: Json = False, quiet: Quiet = False) -> None:
+def actuator(
+    file: StudyFile, out: Out = None, formats: Format = FORMATS, json: Json = False, quiet: Quiet = False
+) -> None:
     """Simulate the study of a single actuator; writes what `run` writes."""
+    from flexapod.app.outputs import parse_formats
     from flexapod.errors import InputError
     from flexapod.model import ActuatorStudy, load
 
@@ -48,10 +57,12 @@ def actuator(file: StudyFile, out: Out = None, json: Json = False, quiet: Quiet 
             allowed="a study with [actuator]",
             next_step=f"Use `flexapod run {file}`",
         )
-    _run(study, file, out, json=json, quiet=quiet)
+    _run(study, file, out, parse_formats(formats), json=json, quiet=quiet)
 
 
-def _run(study: Study | ActuatorStudy, file: Path, out: Path | None, *, json: bool, quiet: bool) -> None:
+def _run(
+    study: Study | ActuatorStudy, file: Path, out: Path | None, formats: Sequence[str], *, json: bool, quiet: bool
+) -> None:
     from flexapod.app.outputs import results_folder, write_all, write_data
     from flexapod.app.terminal import progress_bar
     from flexapod.study import Interrupted
@@ -64,7 +75,7 @@ def _run(study: Study | ActuatorStudy, file: Path, out: Path | None, *, json: bo
             interrupted = False
         except Interrupted as stop:
             data, interrupted = stop.dataset, True
-        files = write_data(data, folder) if interrupted else write_all(data, folder, report)
+        files = write_data(data, folder) if interrupted else write_all(data, folder, report, formats)
     _say(data, folder, files, json=json)
     if interrupted:
         _stopped(data, json=json)

@@ -4,6 +4,7 @@ from __future__ import annotations
 
 import os
 import tempfile
+from collections.abc import Sequence
 from pathlib import Path
 from typing import TYPE_CHECKING
 
@@ -14,7 +15,30 @@ if TYPE_CHECKING:
 
     from flexapod.study.record import Report
 
-__all__ = ["check_writable", "results_folder", "write_all", "write_data"]
+__all__ = ["FORMATS", "check_writable", "parse_formats", "results_folder", "write_all", "write_data"]
+
+FORMATS = ("png", "svg", "pdf")  # of figures
+
+
+def parse_formats(text: str) -> tuple[str, ...]:
+    """Formats of figures from the text of ``--format``, each once: ``"png, PDF"`` gives ``("png", "pdf")``.
+
+    Raises
+    ------
+    InputError
+        One of them is unknown, or there is none.
+    """
+    names = tuple(dict.fromkeys(name.strip().lower() for name in text.split(",") if name.strip()))
+    unknown = [name for name in names if name not in FORMATS]
+    if unknown or not names:
+        raise InputError(
+            "is no format of figures",
+            key="--format",
+            value=unknown[0] if unknown else text,
+            allowed=f"{', '.join(FORMATS)}, or several with commas",
+            next_step="For example --format png,pdf",
+        )
+    return names
 
 
 def results_folder(file: Path, out: Path | None) -> Path:
@@ -53,15 +77,15 @@ def write_data(data: Dataset, folder: Path) -> list[Path]:
     return [save(data, folder / "results.nc"), save_csv(data, folder / "results.csv")]
 
 
-def write_all(data: Dataset, folder: Path, report: Report) -> list[Path]:
-    """Data, figures and ``report.html``; `report` is told what is being written."""
+def write_all(data: Dataset, folder: Path, report: Report, formats: Sequence[str]) -> list[Path]:
+    """Data, figures in the formats asked for, and ``report.html``; `report` is told what is being written."""
     report("writing results", 0.90)
     files = write_data(data, folder)
     report("drawing figures", 0.92)
     from flexapod.app.figures import draw
     from flexapod.app.report import write_report
 
-    figures = draw(data, folder)
+    figures = draw(data, folder, formats)
     report("writing the report", 0.98)
     page = write_report(data, folder, figures)
-    return [*files, *(path for figure in figures for path in (figure.png, figure.svg)), page]
+    return [*files, *(path for figure in figures for path in figure.files), page]

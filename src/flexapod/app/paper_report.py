@@ -80,7 +80,7 @@ def paper_page(result: PaperStudy, claims: Sequence[Claim], groups: Mapping[str,
 def _replay(data: Dataset, modes: Dataset, figures: Sequence[Drawn]) -> str:
     """The robot in motion and in its modes at the largest roll; on paper the figure of its end."""
     study = robot_study(data)
-    still = next((figure for figure in figures if figure.png.stem == "robot-end"), None)
+    still = next((figure for figure in figures if figure.name == "robot-end"), None)
     return replay_section(data, replay(study, data, modes), still)
 
 
@@ -123,7 +123,7 @@ def _engine(result: PaperStudy, figures: Sequence[Drawn]) -> str:
         *(html.paragraph(f"Not computed: {words}", "bad") for words in failures),
         *(html.paragraph(words, "soft") for words in _engine_words(result)),
         *([html.table(head, rows)] if rows else []),
-        *(html.figure(figure.title, figure.png, figure.plot) for figure in figures),
+        *(html.figure(figure.title, figure.picture, figure.plot) for figure in figures),
         html.paragraph("To repeat this:"),
         html.code(f"{EXUDYN.install}\n{_command(result)}"),
     )

@@ -58,6 +58,7 @@ THINNED = (
     "Drag over a figure to zoom, double-click to see all again; point at a curve to read it. Curves of more than "
     f"{MOST_POINTS} points are thinned for this page, and keep their least and largest values; the data are whole."
 )
+STILLS = ("robot", "path")  # figures that stand for the replay on paper
 _PACKAGES = ("flexapod", "numpy", "scipy", "casadi", "xarray", "matplotlib", "plotly")
 
 
@@ -74,7 +75,7 @@ def robot_report(study: Study | ActuatorStudy, data: Dataset) -> str:
     from flexapod.app.figures import draw
 
     with TemporaryDirectory() as folder:
-        return _page(study, data, draw(data, folder))
+        return _page(study, data, draw(data, folder, ("png",)))
 
 
 def write_report(data: Dataset, folder: str | Path, figures: Sequence[Drawn] = ()) -> Path:
@@ -121,7 +122,8 @@ def _page(study: Study | ActuatorStudy | None, data: Dataset, figures: Sequence[
     modes = modes_section(described)
     moving, others = _replay(study, data, figures)
     parts = {"replay": moving, "figures": others, "modes": modes}
-    links = {"deviation": "Deviation", "warnings": "Warnings", "study": "Study"}
+    first = {"deviation": "Deviation"} if isinstance(found, RobotSummary) else {"deflection": "Deflection"}
+    links = {**first, "warnings": "Warnings", "study": "Study"}
     links |= {part: part.capitalize() for part, there in parts.items() if there}
     links |= {"solver": "Solver", "toml": "Study file", "repeat": "Repeat"}
     body = [
@@ -159,7 +161,7 @@ def _replay(
         return [], list(figures)
     from flexapod.app.replay import locked_modes, replay
 
-    still = next((figure for figure in figures if figure.png.stem == "robot"), None)
+    still = next((figure for figure in figures if figure.name in STILLS), None)
     part = replay_section(data, replay(study, data, locked_modes(study)), still)
     return [part], [figure for figure in figures if figure is not still]
 
@@ -170,7 +172,7 @@ def replay_section(data: Dataset, told: Mapping[str, object], still: Drawn | Non
     words = str(told["words"])
     shown = len(told["time"])  # type: ignore[arg-type]
     title += f", {shown} of {data.sizes['time']} instants; {words}. Drag to turn, scroll to come nearer."
-    return html.section("replay", "Replay", html.replay(title, told, still and (still.title, still.png)))
+    return html.section("replay", "Replay", html.replay(title, told, still and (still.title, still.picture)))
 
 
 def store_page(path: Path, text: str) -> Path:
@@ -249,7 +251,7 @@ def figures_section(name: str, title: str, figures: Sequence[Drawn], *, first: b
     """Figures, one below the other, nothing where there are none; the first of a page say how they are read."""
     if not figures:
         return ""
-    parts = [html.figure(figure.title, figure.png, figure.plot) for figure in figures]
+    parts = [html.figure(figure.title, figure.picture, figure.plot) for figure in figures]
     return html.section(name, title, *([html.paragraph(THINNED, "soft screen")] if first else []), *parts)
 
 

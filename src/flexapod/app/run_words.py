@@ -6,6 +6,7 @@ from collections.abc import Sequence
 from pathlib import Path
 from typing import TYPE_CHECKING
 
+from flexapod.app.outputs import FORMATS
 from flexapod.app.terminal import print_table, print_text
 
 if TYPE_CHECKING:
@@ -31,9 +32,11 @@ def show_run(data: Dataset, folder: Path, files: Sequence[Path], warnings: Seque
     for line in warnings:
         print_text(f"Warning: {line}")
     print_text()
-    names = ", ".join(path.name for path in files if path.suffix not in (".png", ".svg"))
-    figures = sum(path.suffix == ".png" for path in files)
-    drawn = f", {figures} figure{'s' * (figures > 1)} (PNG and SVG)" if figures else ""
+    formats = list(dict.fromkeys(path.suffix for path in files if path.suffix[1:] in FORMATS))
+    names = ", ".join(path.name for path in files if path.suffix not in formats)
+    figures = sum(path.suffix in formats for path in files) // max(len(formats), 1)
+    kinds = " and ".join(suffix[1:].upper() for suffix in formats)
+    drawn = f", {figures} figure{'s' * (figures > 1)} ({kinds})" if figures else ""
     seconds = f"{data.attrs['steps']} steps, {data.attrs['wall_time']:.2g} s"
     print_text(f"In {folder}: {names}{drawn}. ({seconds} of time integration)")
 

@@ -1,6 +1,6 @@
-"""Figures from Datasets: each call takes a result and returns a matplotlib figure; `save` writes PNG and SVG."""
+"""Figures from Datasets: each call takes a result and returns a matplotlib figure; `save` writes PNG, SVG, PDF."""
 
-from flexapod.plot.actuator import actuator_modes, actuator_response
+from flexapod.plot.actuator import actuator_modes, actuator_path, actuator_response
 from flexapod.plot.convergence import convergence, ladder
 from flexapod.plot.deviation import deviation_by_cause
 from flexapod.plot.energy import energies
@@ -19,6 +19,7 @@ from flexapod.plot.sweeps import half_angles, start_jump
 __all__ = [
     "actuator_forces",
     "actuator_modes",
+    "actuator_path",
     "actuator_response",
     "com_path",
     "convergence",

@@ -8,12 +8,11 @@ import numpy as np
 import xarray as xr
 from matplotlib.axes import Axes
 from matplotlib.figure import Figure
-from scipy.ndimage import maximum_filter1d
 
-from flexapod.plot.style import FLEXIBLE, LEG_COLORS, LINE_STYLES, NOTE, PAGE, RIGID, figure, needs, scale, styled
+from flexapod.plot.style import FLEXIBLE, LEG_COLORS, LINE_STYLES, NOTE, PAGE, RIGID, figure, ink, needs, scale, styled
 from flexapod.study.words import number
 
-__all__ = ["actuator_modes", "actuator_response"]
+__all__ = ["actuator_modes", "actuator_path", "actuator_response"]
 
 
 @styled
@@ -61,6 +60,8 @@ def _responses(axes: Axes, series: Mapping[int, xr.Dataset]) -> None:
 
 
 def _differences(axes: Axes, series: Mapping[int, xr.Dataset]) -> None:
+    from scipy.ndimage import maximum_filter1d
+
     counts = list(series)
     finest = series[counts[-1]].tip_deflection
     for i, count in enumerate(counts[:-1]):
@@ -71,10 +72,49 @@ def _differences(axes: Axes, series: Mapping[int, xr.Dataset]) -> None:
         place = {"xycoords": ("axes fraction", "data"), "textcoords": "offset points", "va": "center"}
         level = float(gap[1:].max())
         axes.annotate(
-            f"{count}: {number(level, 2)} µm", (1.0, level), xytext=(4, 0), color=LEG_COLORS[i], fontsize=NOTE, **place
+            f"{count}: {number(level, 2)} µm",
+            (1.0, level),
+            xytext=(4, 0),
+            color=ink(LEG_COLORS[i]),
+            fontsize=NOTE,
+            **place,
         )
     axes.set_title(f"Largest distance nearby from the result with {counts[-1]} shapes (right: of all)")
     axes.set_ylabel("difference [µm]")
+
+
+@styled
+@needs("tip_deflection", "length", "angle")
+def actuator_path(data: xr.Dataset, hub_radius: float = 0.0, magnify: float = 1.0) -> Figure:
+    """Path of the tip in the plane of motion, rigid and flexible, with the straight beam at start and end.
+
+    Parameters
+    ----------
+    data : xarray.Dataset
+        Result of `flexapod.simulate_actuator`.
+    hub_radius : float
+        From the axis to where the beam leaves the hub [m].
+    magnify : float
+        How many times larger the deflection is drawn.
+    """
+    length, angle, across = (data[name].values for name in ("length", "angle", "tip_deflection"))
+    along = np.array([np.cos(angle), np.sin(angle)])
+    rigid = (hub_radius + length) * along
+    flexible = rigid + magnify * across * np.array([-along[1], along[0]])
+    drawn = "" if magnify == 1 else f"; deflection {number(magnify)} times larger"
+    fig = figure(PAGE, 4.4)
+    axes = fig.subplots()
+    for at, style in ((0, (0, (4, 3))), (-1, "-")):
+        words = f"straight beam at {float(data.time[at]):.3g} s"
+        axes.plot([0, rigid[0, at]], [0, rigid[1, at]], color="#555555", linewidth=1.0, linestyle=style, label=words)
+    axes.plot(*rigid, color=RIGID, linewidth=4, label="tip, rigid")
+    axes.plot(*flexible, color=FLEXIBLE, linewidth=1.2, label=f"tip, flexible{drawn}")
+    axes.plot(0, 0, "s", color="#333333", markersize=7)
+    axes.set_aspect("equal", adjustable="datalim")
+    axes.set(xlabel="X [m]", ylabel="Y [m]")
+    axes.set_title("Tip of the beam in its plane")
+    fig.legend(*axes.get_legend_handles_labels(), loc="outside upper center", ncols=2)
+    return fig
 
 
 @styled

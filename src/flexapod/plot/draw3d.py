@@ -5,6 +5,7 @@ from __future__ import annotations
 from collections.abc import Sequence
 from typing import Any
 
+import matplotlib
 import numpy as np
 from matplotlib.figure import Figure
 from matplotlib.gridspec import SubplotSpec
@@ -13,24 +14,31 @@ from mpl_toolkits.mplot3d.art3d import Line3DCollection, Poly3DCollection
 from flexapod.plot.style import LEG_COLORS, NOTE, SMALL
 from flexapod.study.scene import Scene
 
-__all__ = ["draw_ghost", "draw_robot", "space", "view"]
+__all__ = ["draw_ghost", "draw_robot", "head", "space", "view"]
 
 CYLINDER = "#8A8F98"
 BASE = "#4A4F57"
 PLATFORM = "#2F6690"
+_FREE: Any = {"axes.titley": None}  # titles go above what is drawn
 _NUMBER: dict[str, Any] = {"fontsize": NOTE, "bbox": {"facecolor": "white", "edgecolor": "none", "pad": 0.6}}
 
 
 def space(fig: Figure, place: SubplotSpec, *, turn: float = -62, tilt: float = 16) -> Any:
     """3D axes with equal scales on all three directions, seen from `turn` and `tilt` [deg]."""
-    axes = fig.add_subplot(place, projection="3d", computed_zorder=False)
-    axes.set_proj_type("ortho")
-    axes.view_init(elev=tilt, azim=turn)
-    made: Any = axes
+    with matplotlib.rc_context(_FREE):
+        made: Any = fig.add_subplot(place, projection="3d", computed_zorder=False)
+    made.set_proj_type("ortho")
+    made.view_init(elev=tilt, azim=turn)
     for axis in (made.xaxis, made.yaxis, made.zaxis):
         axis.set_pane_color((1, 1, 1, 0))
         axis._axinfo["grid"].update(color="#E4E4E4", linewidth=0.6)
     return made
+
+
+def head(axes: Any, words: str, **style: Any) -> None:
+    """A title clear of what is drawn, which may reach above the axes."""
+    with matplotlib.rc_context(_FREE):
+        axes.set_title(words, **style)
 
 
 def view(axes: Any, scenes: Sequence[Scene], zoom: float = 1.0) -> None:

@@ -8,7 +8,7 @@ import numpy as np
 import xarray as xr
 from matplotlib.figure import Figure
 
-from flexapod.plot.draw3d import draw_ghost, draw_robot, space, view
+from flexapod.plot.draw3d import draw_ghost, draw_robot, head, space, view
 from flexapod.plot.style import NOTE, PAGE, figure, needs, styled
 from flexapod.study.scene import mode_scene, motion_end, scene
 
@@ -40,8 +40,8 @@ def robot_3d(data: xr.Dataset, time: float | None = None) -> Figure:
         view(axes, [now, start], zoom=1.0)
     right.set_xticks([])
     right.set_xlabel("")
-    left.set_title(f"At t = {time:.2f} s; pale: at the start")
-    right.set_title("Seen along X")
+    head(left, f"At t = {time:.2f} s; pale: at the start")
+    head(right, "Seen along X")
     return fig
 
 
@@ -77,7 +77,7 @@ def modes_3d(modes: xr.Dataset, show: Sequence[int] | None = None, size: float =
         view(axes, [rest, moved], zoom=1.15)
         axes.set(xlabel="", ylabel="", zlabel="")
         axes.tick_params(labelbottom=False, labelleft=False, labelright=False)
-        axes.set_title(_title(modes.sel(mode=label), label), fontsize=NOTE)
+        head(axes, _title(modes.sel(mode=label), label), fontsize=NOTE)
     return fig
 
 

@@ -1,7 +1,7 @@
 """House style of all figures: colours that colour-blind readers tell apart, units in labels, the width of a page.
 
-Figures are as wide as a page of a journal (170 mm), or as a column (85 mm) where they have one column of panels by
-themselves: their letters then have the size at which they are read, 7 points at least.
+Figures are as wide as a page of a journal (170 mm); `save` writes them as wide as a column (85 mm), too. Letters have
+the size at which they are read, 7 points at least.
 """
 
 from __future__ import annotations
@@ -14,14 +14,15 @@ from pathlib import Path
 from typing import Any, ParamSpec
 
 import matplotlib
-import numpy as np
 from matplotlib.axes import Axes
 from matplotlib.backends.backend_agg import FigureCanvasAgg
+from matplotlib.colors import to_hex, to_rgb
 from matplotlib.figure import Figure
 from matplotlib.layout_engine import ConstrainedLayoutEngine
-from matplotlib.text import Text
 
 from flexapod.errors import InputError
+from flexapod.plot.narrow import narrowed
+from flexapod.study.colours import AXIS_COLORS, LEG_COLORS
 from flexapod.study.store import replacing
 from flexapod.study.words import Scale, scale
 
@@ -37,7 +38,9 @@ __all__ = [
     "SMALL",
     "TEXT",
     "Scale",
+    "check_formats",
     "figure",
+    "ink",
     "mark_end",
     "needs",
     "save",
@@ -47,9 +50,6 @@ __all__ = [
 
 P = ParamSpec("P")
 
-# Okabe & Ito's palette, in an order whose neighbours also differ in lightness.
-LEG_COLORS = ("#0072B2", "#E69F00", "#009E73", "#D55E00", "#56B4E9", "#A23B72")
-AXIS_COLORS = {"x": "#7A5195", "y": "#0072B2", "z": "#D55E00"}
 LINE_STYLES = ("-", "--", "-.", ":", (0, (5, 1, 1, 1, 1, 1)), (0, (3, 1)))
 RIGID = "#B8B8B8"
 FLEXIBLE = "#0B3C5D"
@@ -58,6 +58,7 @@ COLORS = "cividis"  # of maps: even in lightness, and for colour-blind readers
 COLUMN, PAGE = 3.35, 6.7  # widths of a column and of a page [in]: 85 and 170 mm
 TEXT, NOTE, SMALL = 8.5, 7.5, 7.0  # sizes of letters [points]
 
+CONTRAST = 4.6  # of words; a little above what is asked for, as colours are rounded
 INCH = 0.0254  # [m]
 # What files say of themselves: no dates, so that the same figure is the same file.
 _METADATA: dict[str, dict[str, str | None]] = {
@@ -71,6 +72,7 @@ _RC = {
     "axes.titlesize": 9.0,
     "axes.titleweight": "bold",
     "axes.titlelocation": "left",
+    "axes.titley": 1.0,  # above the panel: nothing else is there, and to look for it takes a third of the drawing
     "axes.labelsize": TEXT,
     "axes.spines.top": False,
     "axes.spines.right": False,
@@ -139,6 +141,20 @@ def _rc() -> Any:
     return {**matplotlib.rcParamsDefault, **_RC, "backend": matplotlib.rcParams["backend"]}
 
 
+def ink(color: str) -> str:
+    """A colour for words on white: as it is, or darker, so that its contrast is 4.5 at least (WCAG 2.2, 1.4.3)."""
+    red, green, blue = to_rgb(color)
+    while 1.05 / (_luminance(red, green, blue) + 0.05) < CONTRAST:
+        red, green, blue = (0.97 * part for part in (red, green, blue))
+    return to_hex((red, green, blue))
+
+
+def _luminance(*parts: float) -> float:
+    """Relative luminance of an sRGB colour (WCAG 2.2)."""
+    linear = [part / 12.92 if part <= 0.04045 else ((part + 0.055) / 1.055) ** 2.4 for part in parts]
+    return 0.2126 * linear[0] + 0.7152 * linear[1] + 0.0722 * linear[2]
+
+
 def mark_end(axes: Axes, instant: float | None, text: str = "") -> None:
     """Mark the end of the commanded motion by a fine line; with a word, on the first of a column, below its title."""
     if instant is None:
@@ -170,8 +186,8 @@ def save(
     formats : sequence of str
         Of png, svg, pdf.
     width : float, optional
-        Width on paper [m], as 0.085 for a column; letters keep their size, long titles and legends are broken. For
-        figures with one column of panels. The figure itself stays as it is.
+        Width on paper [m], as 0.085 for a column: letters keep their size, panels beside each other go below each
+        other, long titles and legends are broken. The figure itself stays as it is.
 
     Returns
     -------
@@ -184,55 +200,44 @@ def save(
         The folder cannot be made or written to, a format is unknown, or the width is not positive.
     """
     stem = Path(stem)
-    unknown = [name for name in formats if name not in _METADATA]
-    if unknown:
-        raise InputError("is no format of figures", key="formats", value=unknown[0], allowed=", ".join(_METADATA))
+    check_formats(formats)
     if width is not None and not width > 0:
         raise InputError("is no width", key="width", value=width, allowed="above 0 m, as 0.085 or 0.17")
     logging.getLogger("matplotlib.font_manager").setLevel(logging.ERROR)
     written = [stem.with_name(f"{stem.name}.{name}") for name in formats]
-    engine = fig.get_layout_engine()
-    with matplotlib.rc_context(_rc()), _resized(fig, width):
-        for path, name in zip(written, formats, strict=True):
-            with replacing(path) as temporary:
-                fig.savefig(temporary, dpi=dpi, format=name, metadata=_METADATA[name])
-            fig.set_layout_engine(None)  # the places are found once: that takes longer than to draw
-    fig.set_layout_engine(engine)
+    with matplotlib.rc_context(_rc()):
+        shown = fig if width is None else narrowed(fig, width / INCH)
+        with _laid_out(shown, dpi):
+            for path, name in zip(written, formats, strict=True):
+                with replacing(path) as temporary:
+                    more: dict[str, Any] = {"pil_kwargs": {"compress_level": 3}} if name == "png" else {}
+                    shown.savefig(temporary, dpi=dpi, format=name, metadata=_METADATA[name], **more)
     return tuple(written)
 
 
+def check_formats(formats: Sequence[str]) -> None:
+    """Refuse formats of figures that are unknown, and none.
+
+    Raises
+    ------
+    InputError
+    """
+    unknown = [name for name in formats if name not in _METADATA]
+    if unknown or not formats:
+        value = unknown[0] if unknown else "none"
+        raise InputError("is no format of figures", key="formats", value=value, allowed=", ".join(_METADATA))
+
+
 @contextmanager
-def _resized(fig: Figure, width: float | None) -> Iterator[None]:
-    """The figure with another width [m], for as long as it is written."""
-    if width is None:
-        yield
-        return
-    before = tuple(float(size) for size in fig.get_size_inches())
-    titles = [text for axes in fig.axes for text in axes.findobj(Text) if text.get_text() == axes.get_title(loc="left")]
-    share = width / INCH / before[0]
-    fig.set_size_inches(width / INCH, before[1] * min(1.0, np.sqrt(share)))
-    for title in titles:
-        title.set_wrap(True)
-    legends = list(fig.legends)
-    for legend in legends:
-        _narrowed(fig, legend, share)
+def _laid_out(fig: Figure, dpi: float) -> Iterator[None]:
+    """The figure with its places found, once for all of its files: that takes longer than to draw it."""
+    engine, before = fig.get_layout_engine(), fig.dpi
+    if engine is not None:
+        fig.dpi = dpi  # widths of letters depend on it a little
+        engine.execute(fig)
+        fig.dpi = before
+    fig.set_layout_engine(None)
     try:
         yield
     finally:
-        fig.set_size_inches(before[0], before[1])
-        for title in titles:
-            title.set_wrap(False)
-        fig.legends[:] = legends
-
-
-def _narrowed(fig: Figure, legend: Any, share: float) -> None:
-    """The same legend outside the panels in fewer columns."""
-    legend.remove()
-    where: Any = f"outside {legend._outside_loc} center"
-    fig.legend(
-        legend.legend_handles,
-        [text.get_text() for text in legend.get_texts()],
-        loc=where,
-        ncols=max(1, int(legend._ncols * share)),
-        title=legend.get_title().get_text() or None,
-    )
+        fig.set_layout_engine(engine)

@@ -9,7 +9,7 @@ import xarray as xr
 from matplotlib.axes import Axes
 from matplotlib.figure import Figure
 
-from flexapod.plot.style import AXIS_COLORS, COLUMN, PAGE, SMALL, figure, scale, styled
+from flexapod.plot.style import AXIS_COLORS, COLUMN, PAGE, SMALL, figure, ink, scale, styled
 from flexapod.study.paper.claim import PAPER_DEVIATION
 
 __all__ = ["half_angles", "start_jump"]
@@ -65,7 +65,7 @@ def _peaks(axes: Axes, sweep: xr.Dataset) -> None:
             textcoords="offset points",
             va="bottom" if name == "z" else "top",
             fontsize=SMALL,
-            color=AXIS_COLORS[name],
+            color=ink(AXIS_COLORS[name]),
         )
     axes.annotate("architecture singularity", (30, 0.03), xycoords=("data", "axes fraction"), xytext=(-3, 0),
                   textcoords="offset points", rotation=90, ha="right", fontsize=SMALL, color="#C44E52")  # fmt: skip
