@@ -228,3 +228,9 @@ def test_driven_actuator_has_no_path_to_describe():
     assert found.driven == ("rotation", "extension")
     assert found.angles is None
     assert [beam.name for beam in found.beam] == ["at the start"]
+
+
+def test_what_gives_way_is_not_called_locked():
+    servo = with_legs(paper_robot(), lambda leg: leg.replace(drive=ServoDrive(stiffness=2e7, damping=1e3)))
+    assert describe(paper_robot()).held == "Drives locked"
+    assert describe(servo).held == "Commands of the drives held, with the springs and dampers of the servo drives"

@@ -13,11 +13,13 @@ from matplotlib.text import Text
 from flexapod import plot
 from flexapod.app.figures import draw
 from flexapod.app.report import write_report
+from flexapod.app.view.charts import charts
 from flexapod.errors import InputError
 from flexapod.model import preset
 from flexapod.plot.narrow import narrowed
 from flexapod.plot.style import ink
 from flexapod.study import modes, simulate, simulate_actuator
+from flexapod.study.colours import ENERGIES
 from flexapod.study.scene import mode_scene, motion_end, robot_study, scene
 
 
@@ -110,6 +112,20 @@ def test_robot_in_space_stands_where_the_data_say(robot):
     length = np.linalg.norm(at.platform - at.base, axis=1)
     np.testing.assert_allclose(length, robot.leg_length.sel(time=end, method="nearest"), atol=1e-9)
     assert plot.robot_3d(robot).axes[0].get_title().startswith("At t = 1.00 s")
+
+
+def test_the_robot_in_space_says_that_nothing_is_magnified(robot):
+    assert "deflections to scale" in plot.robot_3d(robot).axes[1].get_title()
+
+
+def test_energies_have_the_same_words_and_colours_and_values_on_the_page(robot):
+    lines = plot.energies(robot).axes[0].lines[: len(ENERGIES)]
+    chart = charts(robot)["energies"]
+    shown = [(line.get_label(), line.get_color()) for line in lines]
+    assert shown == list(zip(chart.names, chart.colors, strict=True)) == list(ENERGIES.values())
+    assert chart.unit in plot.energies(robot).axes[0].get_ylabel()
+    for line, values in zip(lines, chart.values, strict=True):
+        np.testing.assert_allclose(line.get_ydata(), values, rtol=1e-12, atol=1e-12 * np.abs(chart.values).max())
 
 
 def test_mode_moves_a_tip_with_its_platform(shapes):
@@ -208,6 +224,17 @@ def test_at_the_width_of_a_column_nothing_overlaps_or_is_cut(robot, actuator, sh
             assert inside.x0 <= box.x0 and box.x1 <= inside.x1, text.get_text()
     for i, one in enumerate(boxes):
         assert not any(one.overlaps(other) for other in boxes[i + 1 :])
+
+
+def test_titles_in_space_stay_clear_of_the_labels_above_them(robot):
+    made = narrowed(plot.robot_3d(robot), 0.085 / 0.0254)
+    made.draw_without_rendering()
+    above, below = panels(made)
+    title = below.title.get_window_extent()
+    for label in (above.xaxis.label, above.yaxis.label):
+        assert label.get_window_extent().y0 > title.y1
+    tops = [axes.title.get_window_extent().y1 for axes in (above, below)]
+    assert max(tops) <= made.bbox.y1 and made.get_figheight() < 9.2
 
 
 def texts(figure):

@@ -7,15 +7,21 @@ from html.parser import HTMLParser
 import numpy as np
 import pytest
 
+from flexapod.app.html import code
 from flexapod.app.html import replay as replay_figure
 from flexapod.app.interactive import MOST_POINTS
 from flexapod.app.replay import FRAMES, locked_modes, replay
 from flexapod.app.report import robot_report, write_report
-from flexapod.app.study_words import study_words
+from flexapod.app.run_words import show_run
+from flexapod.app.study_words import modes_section, study_words
 from flexapod.model import loads, preset, preset_text
+from flexapod.rigid.rotations import exponential, matrix
 from flexapod.study import simulate, simulate_actuator
+from flexapod.study.describe.robot import describe
+from flexapod.study.summary import summary
 
-POINTS = 6 + 6 * 9 + 2 * 6 + 4  # of a frame: bases, pistons, platforms, centres
+POINTS = 6 + 6 * 9 + 2 * 6 + 4 + 2  # of a frame: bases, pistons, platforms, centres, tools
+PRESCRIBED = 'drive = { type = "prescribed" }'
 
 
 @pytest.fixture(scope="module")
@@ -31,6 +37,29 @@ def robot(study):
 @pytest.fixture(scope="module")
 def page(study, robot):
     return robot_report(study, robot)
+
+
+def changed(*changes, name="paper-robot"):
+    """A preset with pieces of its text replaced."""
+    text = preset_text(name)
+    for old, new in changes:
+        assert text.count(old) == 1
+        text = text.replace(old, new)
+    return loads(text)
+
+
+@pytest.fixture(scope="module")
+def tool():
+    """A study whose tool is not at the centre of mass, and its result."""
+    study = changed(
+        ('# tool = [0, 0, "100 mm"] ', 'tool = [0, 0, "100 mm"] '),
+        (PRESCRIBED, 'drive = { type = "servo", stiffness = "20 N/um", damping = "500 N s/m" }'),
+        (
+            "[simulation]",
+            '[load]\nwrench = { law = "step", amplitude = [100, 0, 0, 0, 0, -2], time = 0.2 }\n\n[simulation]',
+        ),
+    )
+    return study, simulate(study, step=1e-3, output_step=5e-3, duration=0.5)
 
 
 class Page(HTMLParser):
@@ -123,13 +152,116 @@ def test_frames_of_the_replay_follow_the_result(study, robot):
     assert frames.shape == (FRAMES, POINTS, 3)
     com = 1e3 * robot.com_position_rigid.sel(time=told["time"], method="nearest").values
     # 32 bit floats of 1 m in mm: 1e-4 mm.
-    np.testing.assert_allclose(frames[:, -1], com, atol=1e-3)
+    np.testing.assert_allclose(frames[:, -3], com, atol=1e-3)
     factor = float(re.search(r"drawn (\S+) times", told["words"])[1])
     deviation = robot.com_deviation.sel(time=told["time"], method="nearest").values
-    np.testing.assert_allclose(frames[:, -3], com + 1e3 * factor * deviation, atol=1e-3)
+    np.testing.assert_allclose(frames[:, -5], com + 1e3 * factor * deviation, atol=1e-3)
+    np.testing.assert_allclose(frames[:, -2:], frames[:, [-5, -3]], atol=1e-3)  # the tool is the centre of mass
     np.testing.assert_allclose(np.array(told["values"])[:, 2], 1e6 * deviation[:, 2], atol=6e-3)  # two places shown
     numbers = [point for trace in told["traces"] for point in trace["take"]]
     assert max(numbers) == POINTS - 1 and min(numbers) == -1
+
+
+def test_the_replay_is_that_of_a_tool_apart(tool):
+    study, data = tool
+    told = replay(study, data)
+    at = data.sel(time=told["time"], method="nearest")
+    frames, factor = points(told["points"]), float(re.search(r"drawn (\S+) times", told["words"])[1])
+    np.testing.assert_allclose(frames[:, -1], 1e3 * at.tool_position_rigid, atol=1e-3)
+    # The drawn payload is a rigid body: it moves with its centre of mass and turns about it, both magnified.
+    turned = exponential(factor * at.rotation_deviation.values) @ matrix(at.platform_quaternion_rigid.values)
+    arm = turned @ (study.robot.payload.tool - study.robot.payload.com)
+    drawn = 1e3 * (at.com_position_rigid + factor * at.com_deviation).values + 1e3 * arm
+    np.testing.assert_allclose(frames[:, -2], drawn, atol=1e-3)
+    assert "tool" in told["what"]
+    assert told["unit"] == "µm"
+    shown = 1e6 * np.linalg.norm(at.tool_deviation, axis=1)
+    np.testing.assert_allclose(np.array(told["values"])[:, 3], shown, rtol=1e-3, atol=0.06)  # one place shown
+    traces = {trace.get("name"): trace for trace in told["traces"]}
+    assert traces["deviation of the tool"]["take"] == [POINTS - 1, POINTS - 2]
+    np.testing.assert_allclose(traces["path of the tool, flexible"]["z"], frames[:, -2, 2], atol=5e-3)  # six digits
+
+
+def test_the_tool_is_told_first(tool):
+    study, data = tool
+    page = robot_report(study, data).replace("\N{NO-BREAK SPACE}", " ")
+    assert summary(data, "tool").sentence in page.split("</h1>")[0]
+    assert summary(data).sentence.replace("'", "&#x27;") in page.split("</h1>")[1].split("<nav")[0]
+    heads = re.findall(r"<h3>(Tool|Centre of mass)</h3>", page)
+    assert heads == ["Tool", "Centre of mass"]
+
+
+def test_words_of_tool_drives_and_load(tool):
+    words = " ".join(study_words(tool[0], None)).replace("\N{NO-BREAK SPACE}", " ")
+    for part in (
+        "gravity of 9.81 m/s² along -z",
+        "Centre of mass at [0, 373, 0] mm from the platform&#x27;s centre, the tool at [0, 0, 100] mm",
+        "damping of 0.5 % of the critical one",
+        "Drives: servo, a spring of 20 N/µm and a damper of 500 N s/m",
+        "Load: Fx 100 N and Mz -2 N m from t = 0.2 s on, at the tool",
+    ):
+        assert part in words
+
+
+@pytest.mark.parametrize(
+    ("drive", "words"),
+    [
+        (PRESCRIBED, "prescribed, the stroke follows its command exactly"),
+        ('drive = { type = "servo", stiffness = "2 N/um" }', "a spring of 2 N/µm between"),
+        ('drive = { type = "force" }', "force, that which the rigid robot needs."),
+        (
+            'drive = { type = "force", feedback = { stiffness = "5 N/um", damping = 100 } }',
+            "corrected by 5 N/µm and 100 N s/m on the stroke",
+        ),
+    ],
+)
+def test_words_of_drives(drive, words):
+    text = " ".join(study_words(changed((PRESCRIBED, drive)), None)).replace("\N{NO-BREAK SPACE}", " ")
+    assert words in text and "Load: none" in text and "which is the tool, too" in text
+
+
+@pytest.mark.parametrize(
+    ("wrench", "words"),
+    [
+        ('law = "constant", value = [0, 0, -50, 0, 0, 0]', "Fz -50 N, constant"),
+        ('law = "sine", amplitude = [5, 0, 0, 0, 0, 0], frequency = 20', "Fx 5 N, times a sine of 20 Hz, at the tool"),
+    ],
+)
+def test_words_of_loads(wrench, words):
+    study = changed(("[simulation]", f"[load]\nwrench = {{ {wrench} }}\n\n[simulation]"), ("-9.81]", "0]"))
+    text = " ".join(study_words(study, None)).replace("\N{NO-BREAK SPACE}", " ")
+    assert words in text and "no gravity" in text
+
+
+def test_legs_with_unlike_drives_are_told_apart(study):
+    robot, servo = study.robot, loads(changed((PRESCRIBED, 'drive = { type = "servo", stiffness = 1e6 }')).source_text)
+    legs = (servo.robot.legs[0], *robot.legs[1:])
+    words = " ".join(study_words(study.replace(robot=robot.replace(legs=legs)), None))
+    assert "Drives: leg 1: servo" in words and "legs 2, 3, 4, 5, 6: prescribed" in words
+
+
+def test_modes_say_what_is_held(study, tool):
+    """The springs of servo drives give way in a mode: 21.7 Hz become fewer, and nothing is locked."""
+    (plain,) = modes_section(study, describe(study))
+    assert "Drives locked" in plain
+    (soft,) = modes_section(tool[0], describe(tool[0]))
+    assert "Drives locked" not in soft and "springs and dampers of the servo drives" in soft
+
+
+def test_words_of_a_driven_beam():
+    held = ("rotation = { rate = 0.785 }  # rad/s (section 2.2); or", "# rad/s (section 2.2); or")
+    torque = ("[initial]", '[load]\ntorque = { law = "constant", value = 30 }\n\n[initial]')
+    gravity = ("gravity = 0 ", "gravity = 9.81 ")
+    study = changed(held, torque, gravity, ("damping = 0 ", "damping = 0.01 "), name="paper-actuator")
+    words = " ".join(study_words(study, None)).replace("\N{NO-BREAK SPACE}", " ")
+    for part in ("by a torque of 30 N m, so that", "gravity of 9.81 m/s² along -y", "damping of 1 % of the critical"):
+        assert part in words
+
+
+def test_a_study_can_be_taken_out_of_the_page_as_it_was():
+    """Spaces between numbers and units stay spaces: a file's name may have them, and its text a hash."""
+    text = 'file = "a 2 m.csv"\nlength = "27 mm"  # < 1 kN'
+    assert code(text) == "<pre>file = &quot;a 2 m.csv&quot;\nlength = &quot;27 mm&quot;  # &lt; 1 kN</pre>"
 
 
 def test_limits_of_the_replay_hold_every_frame(study, robot):
@@ -153,6 +285,7 @@ def test_replay_of_an_actuator_is_in_its_plane():
     end = 1e3 * at.length.values[:, None] * np.stack([np.cos(at.angle), np.sin(at.angle)], axis=1)
     np.testing.assert_allclose(frames[:, -2], end, atol=1e-3)
     page = robot_report(study, data)
+    assert "to zoom" in told["mouse"] and "turn" not in page.split('id="replay"')[1].split("</section>")[0]
     assert Page(page).sections[0] == "deflection" and '<figure class="replay">' in page
 
 
@@ -173,3 +306,10 @@ def test_data_cannot_end_their_element(tmp_path):
 def test_pictures_stand_below_the_figures_that_zoom(page):
     """On paper, and where no script runs, every figure is a picture."""
     assert page.count('src="data:image/png') == 8 == page.count("<figure ")
+
+
+def test_the_terminal_tells_of_the_tool_first(tool, tmp_path, capsys):
+    show_run(tool[1], tmp_path, [], [])
+    lines = capsys.readouterr().out
+    assert lines.startswith("The tool misses its rigid path")
+    assert lines.index("The payload's centre of mass") < lines.index("peak / travel")

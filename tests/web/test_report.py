@@ -1,15 +1,23 @@
 """The report as it is mailed: one file opened from disk, without a server and without a network."""
 
+import base64
 import hashlib
+import json
+import re
 from collections.abc import Callable, Iterator
 from time import monotonic, sleep
 
+import numpy as np
 import pytest
 from tests.web.conftest import SHORT, study_text
 
+from flexapod.app.figures import draw
+from flexapod.app.paper_report import paper_page
 from flexapod.app.report import robot_report
 from flexapod.model import loads
-from flexapod.study import run
+from flexapod.study import modes, run
+from flexapod.study.paper.claim import BREAKS, HOLDS, IN_PART, MISPRINT, NOT, OPEN, REACHES, Claim
+from flexapod.study.paper.study import PaperStudy
 
 REPLAY = "figure.replay"
 # Contrast of every piece of text that is seen with what is behind it, by the formula of WCAG 2.2.
@@ -51,16 +59,28 @@ NAMELESS = """() => [...document.querySelectorAll("a, button, input, select, img
 
 @pytest.fixture(scope="module")
 def reports(tmp_path_factory):
-    """Addresses of the reports of a robot and of an actuator, and their texts."""
+    """Files of the reports of a robot, of an actuator, and of the replication, all with short runs."""
     place = tmp_path_factory.mktemp("reports")
     short = (('duration = "10 s"', 'duration = "1 s"'),)
-    found = {}
+    found, results = {}, {}
     for preset, changes in (("paper-robot", SHORT), ("paper-actuator", short)):
         study = loads(study_text(*changes, preset=preset))
-        path = place / f"{preset}.html"
-        path.write_text(robot_report(study, run(study)), encoding="utf-8")
-        found[preset] = path
+        results[preset] = run(study)
+        found[preset] = place / f"{preset}.html"
+        found[preset].write_text(robot_report(study, results[preset]), encoding="utf-8")
+    found["replication"] = place / "replication.html"
+    found["replication"].write_text(replication(results, place), encoding="utf-8")
     return found
+
+
+def replication(results, place):
+    """The page of `flexapod replicate` with short runs in place of the paper's, and a claim of every verdict."""
+    robot = results["paper-robot"]
+    parts = {name: robot for name in ("robot", "robot-rigid", "jump")}
+    parts |= {"actuator-3": results["paper-actuator"], "modes": modes(loads(robot.attrs["study"]))}
+    verdicts = (HOLDS, IN_PART, NOT, REACHES, BREAKS, OPEN, MISPRINT)
+    claims = [Claim(where="Fig. 9", says="5 mm", ours="3 µm", verdict=v, reason="Legs are stiff.") for v in verdicts]
+    return paper_page(PaperStudy(parts=parts), claims, {"Robot": draw(robot, place / "figures", ("png",))})
 
 
 @pytest.fixture
@@ -110,6 +130,17 @@ def look(page):
 
 def part(page, name):
     return page.locator(f"{REPLAY} [data-part={name}]")
+
+
+def scrub(page, frame):
+    part(page, "scrub").evaluate(f"bar => {{ bar.value = {frame}; bar.dispatchEvent(new Event('input')); }}")
+
+
+def stored(page):
+    """What the page holds of its replay, and the points of its frames."""
+    told = json.loads(page.locator(f"{REPLAY} script").text_content())
+    shape = [int(size) for size in told["points"]["shape"].split(",")]
+    return told, np.frombuffer(base64.b64decode(told["points"]["bdata"]), dtype="<f4").reshape(shape)
 
 
 def wait_for_readout(page, words):
@@ -180,7 +211,7 @@ def test_the_replay_plays_and_is_scrubbed(read):
     assert part(page, "play").inner_text() == "Play"
     end = look(page)
     assert end != start
-    part(page, "scrub").evaluate("bar => { bar.value = 0.1; bar.dispatchEvent(new Event('input')); }")
+    scrub(page, 100)  # of 201 instants
     wait_for_readout(page, "t = 0.100 s")
     assert look(page) not in (start, end)
     page.locator(f"{REPLAY} .plot").focus()
@@ -246,7 +277,7 @@ def test_on_paper_the_replay_is_a_picture_and_figures_go_two_a_page(read, preset
 
 
 @pytest.mark.parametrize("scheme", ["light", "dark"])
-@pytest.mark.parametrize("preset", ["paper-robot", "paper-actuator"])
+@pytest.mark.parametrize("preset", ["paper-robot", "paper-actuator", "replication"])
 def test_words_have_contrast_and_controls_have_names(read, preset, scheme):
     """WCAG 2.2: contrast of 4.5 to 1 (1.4.3), names of controls and pictures (4.1.2), links that lead somewhere."""
     page = read(preset, color_scheme=scheme)
@@ -302,7 +333,44 @@ def test_the_actuator_is_replayed_in_its_plane(read):
     page = read("paper-actuator")
     page.locator(REPLAY).scroll_into_view_if_needed()
     start = look(page)
-    part(page, "scrub").evaluate("bar => { bar.value = 0.5; bar.dispatchEvent(new Event('input')); }")
+    scrub(page, 120)  # of 241 instants
     wait_for_readout(page, "t = 0.500 s")
     assert look(page) != start
     assert not part(page, "choice").is_visible()
+
+
+def test_the_number_is_of_the_instant_that_is_drawn(read):
+    """Frames of a run of 10 s are 42 ms apart: a picture between two of them has a number that nobody computed."""
+    page = read("paper-actuator")
+    told, points = stored(page)
+    page.locator(REPLAY).scroll_into_view_if_needed()
+    part(page, "speed").select_option("0.1")
+    part(page, "play").click()
+    wait_until(lambda: not part(page, "readout").inner_text().startswith("t = 0.000"))
+    part(page, "play").click()
+    wait_until(lambda: part(page, "play").inner_text() == "Play")
+    page.wait_for_timeout(500)  # what was asked for last is drawn
+    time, shown = re.match(r"t = ([\d.]+) s: .* tip (\S+) ", part(page, "readout").inner_text()).groups()
+    # The run has 1001 instants, of which every fourth or fifth is a frame; three places tell them apart.
+    (frame,) = (i for i, instant in enumerate(told["time"]) if f"{instant:.3f}" == time)
+    assert 0 < frame < len(told["time"]) - 1
+    assert float(shown.replace("\N{MINUS SIGN}", "-")) == told["values"][frame][0]
+    (tip,) = (i for i, trace in enumerate(told["traces"]) if trace["name"] == "tip")
+    drawn = page.locator(f"{REPLAY} .plot").evaluate(f"plot => [plot.data[{tip}].x[0], plot.data[{tip}].y[0]]")
+    assert drawn == pytest.approx(points[frame, told["traces"][tip]["take"][0]].tolist())
+    assert int(part(page, "scrub").input_value()) == frame
+
+
+def test_the_beam_fills_its_axes(read):
+    """In equal scales, in the limits of what moves: axes as wide as the page would make it a speck."""
+    page = read("paper-actuator")
+    page.locator(f"{REPLAY} .main-svg").first.wait_for()
+    told, _ = stored(page)
+    (low, high), (bottom, top) = (told["layout"][name]["range"] for name in ("xaxis", "yaxis"))
+    for name, ends in (("xaxis", (low, high)), ("yaxis", (bottom, top))):
+        assert limits(page.locator(REPLAY), name) == pytest.approx(ends, abs=0.02 * (high - low))
+    across, up = page.locator(f"{REPLAY} .plot").evaluate(
+        "plot => [plot._fullLayout.xaxis._length, plot._fullLayout.yaxis._length]"
+    )
+    assert across / (high - low) == pytest.approx(up / (top - bottom), rel=0.02)
+    assert max(across, up) > 500  # pixels of a page of 1100

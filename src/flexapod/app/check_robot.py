@@ -26,7 +26,7 @@ def show_robot(found: RobotDescription) -> None:
     _singularity(found)
     _loads(found)
     for pose in found.poses:
-        _pose(pose)
+        _pose(pose, found.held)
     _vibration(found.vibration)
     _heading("Remarks")
     for remark in found.remarks or ("None.",):
@@ -112,8 +112,8 @@ def _stresses(stress: Stress | None) -> list[str]:
     return [f"{value / 1e6:.3g}" for value in (stress.axial, stress.bending, stress.total.value)]
 
 
-def _pose(pose: PoseDescription) -> None:
-    _heading(f"Drives locked, {pose.name} (t = {pose.time:.3f} s)")
+def _pose(pose: PoseDescription, held: str) -> None:
+    _heading(f"{held}, {pose.name} (t = {pose.time:.3f} s)")
     if pose.problem:
         print_text(pose.problem, indent=2)
     if pose.stiffness is not None:

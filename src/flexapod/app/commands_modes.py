@@ -38,6 +38,7 @@ def modes(file: StudyFile, pose: Pose = None, out: Folder = None, count: Count =
     from flexapod.app.terminal import print_json
     from flexapod.errors import InputError
     from flexapod.study import modes as compute
+    from flexapod.study.words import held
 
     study = model.load(file)
     if isinstance(study, model.ActuatorStudy):
@@ -54,7 +55,7 @@ def modes(file: StudyFile, pose: Pose = None, out: Folder = None, count: Count =
     if json:
         print_json(_as_dict(data, files))
     else:
-        _show(data, pose, count, files)
+        _show(data, held(study.robot), pose, count, files)
 
 
 def parse_pose(text: str | None) -> dict[str, float] | None:
@@ -111,13 +112,13 @@ def _as_dict(data: Dataset, files: list[Path]) -> dict[str, object]:
     }
 
 
-def _show(data: Dataset, pose: str | None, count: int, files: list[Path]) -> None:
+def _show(data: Dataset, held: str, pose: str | None, count: int, files: list[Path]) -> None:
     from flexapod.app.terminal import print_table, print_text
     from flexapod.study.words import text
 
     sag = float((data.com_sag**2).sum() ** 0.5)
     print_text(
-        f"Drives locked, {f'at {pose} from home' if pose else 'at home'}, about the static equilibrium "
+        f"{held}, {f'at {pose} from home' if pose else 'at home'}, about the static equilibrium "
         f"(the centre of mass sags by {text(sag, 'm')})."
     )
     print_text()

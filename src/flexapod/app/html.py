@@ -30,7 +30,7 @@ _POLICY = (
     "default-src 'none'; img-src data: blob:; style-src 'unsafe-inline'; script-src 'unsafe-inline'; font-src data:; "
     "base-uri 'none'; form-action 'none'"
 )
-_QUANTITY = re.compile(r"(?<=\d) (?=(?:[µnmk]?m|k?N|[mk]?J|Hz|deg|ms|s|%|GPa|MPa)(?![\w]))")
+_QUANTITY = re.compile(r"(?<=\d) (?=(?:[µnmk]?m|k?N|[mk]?J|Hz|deg|ms|s|%|GPa|MPa)(?![\w]))|(?<=\d N) (?=m²?(?!\w)|s/m)")
 
 
 def escape(text: str) -> str:
@@ -81,7 +81,7 @@ def bullets(texts: Sequence[str]) -> str:
 
 def code(text: str, title: str | None = None) -> str:
     """Text as it is; folded away under a title if there is one."""
-    block = f"<pre>{escape(text)}</pre>"
+    block = f"<pre>{html.escape(text)}</pre>"  # every space as it is: it can be taken out of the page and run
     return block if title is None else f"<details><summary>{escape(title)}</summary>{block}</details>"
 
 
@@ -142,7 +142,7 @@ def replay(title: str, told: Mapping[str, object], still: tuple[str, bytes] | No
     still : tuple of title and picture (PNG), optional
         What stands in its place on paper and where no scripts run.
     """
-    keys = "Space plays and stops, arrow keys step, Home and End go to the ends; the mouse turns and zooms"
+    keys = "Space plays and stops, arrow keys step, Home and End go to the ends"
     controls = (
         '<div class="controls"><button type="button" data-part="play" aria-pressed="false">Play</button>'
         '<input type="range" data-part="scrub" aria-label="Time"><label>Speed '
@@ -172,7 +172,8 @@ def _image(title: str, png: bytes) -> str:
 
 
 def _plot(title: str, keys: str) -> str:
-    return f'<div class="plot" hidden tabindex="0" role="group" aria-label="{escape(f"{title}. {keys}.")}"></div>'
+    words = escape(f"{title.rstrip('.')}. {keys}.")
+    return f'<div class="plot" hidden tabindex="0" role="group" aria-label="{words}"></div>'
 
 
 def _json(value: Mapping[str, object]) -> str:

@@ -6,13 +6,16 @@ from collections.abc import Sequence
 from typing import TYPE_CHECKING, Any
 
 import numpy as np
+from numpy.typing import NDArray
 
 from flexapod import model
 from flexapod.app.interactive import packed
-from flexapod.app.view.scene_geometry import ActuatorMotion, RobotMotion
+from flexapod.app.view.scene_geometry import ActuatorMotion, RobotMotion, platform_rotation
 from flexapod.errors import FlexapodError
 from flexapod.plot.style import FLEXIBLE, LEG_COLORS, RIGID
+from flexapod.rigid.rotations import matrix
 from flexapod.study.scene import STATIONS, Scene, mode_scene
+from flexapod.study.summary import tool_apart
 from flexapod.study.words import number, scale
 from flexapod.typing import Array
 
@@ -30,6 +33,7 @@ EVERY = 3  # of the points of a drawn piston
 LEGS = 6
 FILLED = 1.6  # size of the drawn box, which nearly fills its place
 CYLINDER, DEVIATION = "#8A8F98", "#D55E00"
+POINTS = {"com": "centre of mass", "tool": "tool"}
 Traces = list[dict[str, Any]]
 
 
@@ -48,15 +52,16 @@ def replay(study: Study | ActuatorStudy, data: Dataset, modes: Dataset | None = 
     Returns
     -------
     dict
-        ``points``: (frame, point, direction) in mm, packed; ``time`` [s] and ``values`` of the frames; ``traces`` in
-        the form of plotly, where ``take`` numbers the points that a line joins (-1: a gap); ``modes``: their points at
-        rest and displaced.
+        ``points``: (frame, point, direction) in mm, packed; ``time`` [s] and ``values`` of the frames, of the tool
+        where it is another point than the centre of mass; ``traces`` in the form of plotly, where ``take`` numbers the
+        points that a line joins (-1: a gap); ``modes``: their points at rest and displaced; ``words`` and ``mouse``:
+        what is drawn and how it is looked at.
     """
     return _actuator(study, data) if isinstance(study, model.ActuatorStudy) else _robot(study, data, modes)
 
 
 def locked_modes(study: Study | ActuatorStudy) -> Dataset | None:
-    """Modes of a robot at home with its drives locked; None for an actuator, and where there are none."""
+    """Modes of a robot at home while its commands stand still; None for an actuator, and where there are none."""
     if isinstance(study, model.ActuatorStudy):
         return None
     from flexapod.study import modes
@@ -67,7 +72,7 @@ def locked_modes(study: Study | ActuatorStudy) -> Dataset | None:
         return None
 
 
-def _chosen(count: int) -> Array:
+def _chosen(count: int) -> NDArray[np.intp]:
     """Stored instants that become frames, evenly over the whole."""
     return np.unique(np.linspace(0, count - 1, min(count, FRAMES)).round().astype(int))
 
@@ -76,27 +81,34 @@ def _robot(study: Study, data: Dataset, modes: Dataset | None) -> dict[str, Any]
     motion = RobotMotion(study, data)
     chosen, factor = _chosen(len(motion.time)), motion.automatic_scale()
     times = motion.time[chosen]
-    frames = np.array([_points(at.flexible, at.rigid) for at in (motion.at(time, factor) for time in times)])
-    played = [] if modes is None else _modes(modes)
+    robot, point = study.robot, "tool" if tool_apart(data) else "com"
+    frames = np.array([_points(robot, at.flexible, at.rigid) for at in (motion.at(time, factor) for time in times)])
+    played = [] if modes is None else _modes(robot, modes)
     everything = [frames, *(part for mode in played for part in mode["ends"])]
-    deviation = motion.paths[1][chosen]
+    deviation = data[f"{point}_deviation"].values[chosen]
+    numbers = np.column_stack([deviation, np.linalg.norm(deviation, axis=1)])
     return {
         **_frames(times, frames, f"deflections and deviation drawn {number(factor)} times larger"),
-        **_values("deviation", np.column_stack([deviation, np.linalg.norm(deviation, axis=1)]), (*"xyz", "distance")),
-        "traces": [*_paths(motion, factor), *_robot_traces(study.robot)],
+        **_values(f"deviation of the {POINTS[point]}", numbers, (*"xyz", "distance")),
+        "mouse": "Drag to turn, scroll to come nearer",
+        "traces": [*_paths(frames, POINTS[point]), *_robot_traces(robot, point)],
         "layout": _space(np.concatenate([part.reshape(-1, 3) for part in everything])),
         "modes": [{"title": mode["title"], "ends": [packed(part) for part in mode["ends"]]} for mode in played],
     }
 
 
-def _points(flexible: Scene, rigid: Scene) -> Array:
-    """Points of a frame in mm: bases, pistons, platform, centre, centre of mass; platform, centres of the rigid one."""
+def _points(robot: Robot, flexible: Scene, rigid: Scene) -> Array:
+    """Points of a frame in mm: bases, pistons, both platforms, centre and centre of mass of both, tool of both.
+
+    Of both: of the flexible robot, then of the rigid one.
+    """
     pistons = flexible.piston[:, ::EVERY].reshape(-1, 3)
-    ends = [flexible.centre, flexible.com, rigid.centre, rigid.com]
-    return 1e3 * np.vstack([flexible.base, pistons, flexible.platform, rigid.platform, *ends])
+    centres = [flexible.centre, flexible.com, rigid.centre, rigid.com]
+    tools = [at.centre + matrix(platform_rotation(robot, at)) @ robot.payload.tool for at in (flexible, rigid)]
+    return 1e3 * np.vstack([flexible.base, pistons, flexible.platform, rigid.platform, *centres, *tools])
 
 
-def _modes(modes: Dataset) -> list[dict[str, Any]]:
+def _modes(robot: Robot, modes: Dataset) -> list[dict[str, Any]]:
     """The lowest modes: title, points at rest and displaced."""
     labels = [int(label) for label in modes.mode.values[:MODES]]
     rest = mode_scene(modes, labels[0], 1.0, phase=0.0)
@@ -106,7 +118,7 @@ def _modes(modes: Dataset) -> list[dict[str, Any]]:
         mode = modes.sel(mode=label)
         title = f"Mode {label}: {float(mode.frequency):.4g} Hz, {mode.kind.item()}"
         moved = mode_scene(modes, label, size)
-        found.append({"title": title, "ends": (_points(rest, rest), _points(moved, rest))})
+        found.append({"title": title, "ends": (_points(robot, rest, rest), _points(robot, moved, rest))})
     return found
 
 
@@ -116,16 +128,17 @@ def _around(joints: Array, first: int) -> list[int]:
     return [first + int(i) for i in np.argsort(np.arctan2(arms[:, 1], arms[:, 0]))]
 
 
-def _robot_traces(robot: Robot) -> Traces:
-    """Lines between the points of `_points`, in its order."""
+def _robot_traces(robot: Robot, point: str) -> Traces:
+    """Lines between the points of `_points`, in its order; the deviation is that of a point: ``com`` or ``tool``."""
     line = len(range(0, STATIONS, EVERY))
     pistons = [list(range(LEGS + i * line, LEGS + (i + 1) * line)) for i in range(LEGS)]
     start = LEGS + LEGS * line
     base, platform = _around(robot.base_joints, 0), _around(robot.platform_joints, start)
     rigid = [point + LEGS for point in platform]
-    centre, com, rigid_centre, rigid_com = range(start + 2 * LEGS, start + 2 * LEGS + 4)
+    centre, com, rigid_centre, rigid_com, tool, rigid_tool = range(start + 2 * LEGS, start + 2 * LEGS + 6)
+    apart = point == "tool"
     ghost = [point for i in range(LEGS) for point in (i, start + LEGS + i, -1)]
-    ghost += [*rigid, rigid[0], -1, rigid_centre, rigid_com]
+    ghost += [*rigid, rigid[0], -1, rigid_com, rigid_centre, *[rigid_tool] * apart]
     cylinders = [point for i in range(LEGS) for point in (i, pistons[i][0], -1)]
     legs = [_line(pistons[i], LEG_COLORS[i], 7, name=f"leg {i + 1}", showlegend=False) for i in range(LEGS)]
     return [
@@ -135,21 +148,29 @@ def _robot_traces(robot: Robot) -> Traces:
         *legs,
         _plate(platform),
         _line([*platform, platform[0]], "#2F6690", 4, name="platform", showlegend=False),
-        _line([centre, com], "#333333", 3, name="payload", showlegend=False),
-        _line([rigid_com, com], DEVIATION, 7, name="deviation"),
+        _line([com, centre, *[tool] * apart], "#333333", 3, name="payload", showlegend=False),
+        _line([rigid_tool, tool], DEVIATION, 7, name=f"deviation of the {POINTS[point]}"),
         _dots([com], FLEXIBLE, 4, name="centre of mass, flexible"),
         _dots([rigid_com], CYLINDER, 4, name="centre of mass, rigid", symbol="circle-open"),
+        *(_tool(tool, rigid_tool) if apart else []),
         {**_dots(list(range(LEGS)), "#333333", 3, showlegend=False), "mode": "markers+text", "hoverinfo": "skip"}
         | {"text": [str(i + 1) for i in range(LEGS)], "textposition": "bottom center"},
     ]
 
 
-def _paths(motion: RobotMotion, factor: float) -> Traces:
-    """Paths of the centre of mass, which do not move with time."""
-    com, deviation = (path[_chosen(len(motion.time))] for path in motion.paths)
+def _tool(flexible: int, rigid: int) -> Traces:
+    """Dots at the tool of both robots, by the numbers of their points."""
     return [
-        _fixed(1e3 * com, RIGID, 4, name="path, rigid"),
-        _fixed(1e3 * (com + factor * deviation), FLEXIBLE, 3, name="path, flexible"),
+        _dots([flexible], FLEXIBLE, 5, name="tool, flexible", symbol="diamond"),
+        _dots([rigid], CYLINDER, 5, name="tool, rigid", symbol="diamond-open"),
+    ]
+
+
+def _paths(frames: Array, name: str) -> Traces:
+    """Paths of the last two points of all frames, the tool as drawn; they do not move with time."""
+    return [
+        _fixed(frames[:, -1], RIGID, 4, name=f"path of the {name}, rigid"),
+        _fixed(frames[:, -2], FLEXIBLE, 3, name=f"path of the {name}, flexible"),
     ]
 
 
@@ -169,7 +190,8 @@ def _actuator(study: ActuatorStudy, data: Dataset) -> dict[str, Any]:
     ]
     words = f"deflection drawn {number(factor)} times larger"
     values = _values("deflection of the", motion.deflection[chosen, None], ("tip",))
-    return {**_frames(times, frames, words), **values, "traces": traces, "layout": _plane(frames), "modes": []}
+    told = {**_frames(times, frames, words), **values, "mouse": "Drag over it to zoom, double-click to see all again"}
+    return {**told, "traces": traces, "layout": _plane(frames), "modes": []}
 
 
 def _frames(times: Array, frames: Array, words: str) -> dict[str, Any]:
@@ -221,10 +243,13 @@ def _space(points: Array) -> dict[str, Any]:
 
 
 def _plane(points: Array) -> dict[str, Any]:
-    """2D axes in mm with equal scales."""
+    """2D axes in mm with equal scales, no wider than what moves in them."""
     low, high = _limits(points.reshape(-1, 2))
-    x = {"title": {"text": "X [mm]"}, "range": [float(low[0]), float(high[0])], "zeroline": False}
-    y = {"title": {"text": "Y [mm]"}, "range": [float(low[1]), float(high[1])], "zeroline": False}
+    fitted = {"zeroline": False, "constrain": "domain"}
+    x, y = (
+        {**fitted, "title": {"text": f"{name} [mm]"}, "range": [float(low[i]), float(high[i])]}
+        for i, name in enumerate("XY")
+    )
     return {"xaxis": x, "yaxis": {**y, "scaleanchor": "x", "scaleratio": 1}}
 
 

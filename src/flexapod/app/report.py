@@ -114,23 +114,24 @@ def _study(data: Dataset) -> Study | ActuatorStudy | None:
 
 def _page(study: Study | ActuatorStudy | None, data: Dataset, figures: Sequence[Drawn]) -> str:
     from flexapod.app.study_words import modes_section, study_words
-    from flexapod.study.summary import RobotSummary, summary
+    from flexapod.study.summary import RobotSummary, summaries
 
-    found = summary(data)
+    first, *further = summaries(data)
     described = _described(study)
     name = Path(str(data.attrs.get("study_file") or "study")).name
-    modes = modes_section(described)
+    modes = modes_section(study, described)
     moving, others = _replay(study, data, figures)
     parts = {"replay": moving, "figures": others, "modes": modes}
-    first = {"deviation": "Deviation"} if isinstance(found, RobotSummary) else {"deflection": "Deflection"}
-    links = {**first, "warnings": "Warnings", "study": "Study"}
+    numbers = {"deviation": "Deviation"} if isinstance(first, RobotSummary) else {"deflection": "Deflection"}
+    links = {**numbers, "warnings": "Warnings", "study": "Study"}
     links |= {part: part.capitalize() for part, there in parts.items() if there}
     links |= {"solver": "Solver", "toml": "Study file", "repeat": "Repeat"}
     body = [
+        *(html.paragraph(found.sentence) for found in further),
         html.paragraph(f"Report of {name}, flexapod {data.attrs['flexapod_version']}.", "soft"),
         html.contents(links),
         *_partial(data),
-        by_axis(data) if isinstance(found, RobotSummary) else _actuator_numbers(found),
+        by_axis(data) if isinstance(first, RobotSummary) else _actuator_numbers(first),
         warnings_section(data),
         html.section("study", "What was computed", *([] if study is None else study_words(study, described))),
         *moving,
@@ -140,7 +141,7 @@ def _page(study: Study | ActuatorStudy | None, data: Dataset, figures: Sequence[
         html.section("toml", "Study file", html.code(str(data.attrs["study"]))),
         repeat_section("Save the study file above as study.toml, then", "flexapod run study.toml --out results"),
     ]
-    return html.page(f"flexapod: {name}", found.sentence, body)
+    return html.page(f"flexapod: {name}", first.sentence, body)
 
 
 def _described(study: Study | ActuatorStudy | None) -> RobotDescription | ActuatorDescription | None:
@@ -171,7 +172,7 @@ def replay_section(data: Dataset, told: Mapping[str, object], still: Drawn | Non
     title = "The robot in motion" if "com_deviation" in data else "The beam in motion"
     words = str(told["words"])
     shown = len(told["time"])  # type: ignore[arg-type]
-    title += f", {shown} of {data.sizes['time']} instants; {words}. Drag to turn, scroll to come nearer."
+    title += f", {shown} of {data.sizes['time']} instants; {words}. {told['mouse']}."
     return html.section("replay", "Replay", html.replay(title, told, still and (still.title, still.picture)))
 
 
@@ -186,15 +187,13 @@ def store_page(path: Path, text: str) -> Path:
 
 def by_axis(data: Dataset) -> str:
     """Largest and rms deviation along each axis, of the centre of mass and of a tool elsewhere."""
-    from flexapod.study.summary import summary, tool_apart
+    from flexapod.study.summary import RobotSummary, summaries
 
-    points = {"com": "Centre of mass"}
-    if tool_apart(data):
-        points = {"tool": "Tool", **points}
+    told = [found for found in summaries(data) if isinstance(found, RobotSummary)]
     parts = []
-    for point, title in points.items():
-        found = summary(data, point)
-        parts += [f"<h3>{title}</h3>"] * (len(points) > 1) + [_axis_table(found)]  # type: ignore[arg-type]
+    for found in told:
+        title = {"tool": "Tool", "com": "Centre of mass"}[found.point]
+        parts += [html.heading(title)] * (len(told) > 1) + [_axis_table(found)]
     note = "Flexible minus rigid at the same instant, world axes; it contains the sag at rest. Per cent of the travel: "
     note += "largest deviation over the rigid point's peak-to-peak travel, n/a where that is below 1 µm."
     return html.section("deviation", "Deviation by axis", *parts, html.paragraph(note, "soft"))

@@ -19,16 +19,15 @@ __all__ = ["show_run"]
 
 def show_run(data: Dataset, folder: Path, files: Sequence[Path], warnings: Sequence[str]) -> None:
     """Print what a run found and where it is."""
-    from flexapod.study.summary import RobotSummary, summary, tool_apart
+    from flexapod.study.summary import RobotSummary, summaries
 
-    found = summary(data)
-    print_text(found.sentence)
-    if isinstance(found, RobotSummary):
-        print_text()
-        tool = summary(data, "tool") if tool_apart(data) else None
-        for name, part in (("centre of mass", found), ("tool", tool)):
-            if isinstance(part, RobotSummary):
-                _axes(part, name)
+    told = summaries(data)
+    for found in told:
+        print_text(found.sentence)
+    for found in told:
+        if isinstance(found, RobotSummary):
+            print_text()
+            _axes(found, {"tool": "tool", "com": "centre of mass"}[found.point])
     for line in warnings:
         print_text(f"Warning: {line}")
     print_text()

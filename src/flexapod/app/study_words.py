@@ -9,13 +9,14 @@ import numpy as np
 
 from flexapod import model
 from flexapod.app import html
-from flexapod.study.words import number, text
+from flexapod.study.words import held, number, text
 
 if TYPE_CHECKING:
-    from flexapod.model import ActuatorStudy, Study
+    from flexapod.model import ActuatorStudy, Robot, Study
     from flexapod.study.describe.actuator import ActuatorDescription
     from flexapod.study.describe.pose import PoseDescription
     from flexapod.study.describe.robot import RobotDescription
+    from flexapod.typing import Array
 
 __all__ = ["modes_section", "study_words"]
 
@@ -46,10 +47,13 @@ def _robot(study: Study) -> list[str]:
     shapes = simulation.lateral_shapes
     count = f", {shapes} lateral shapes per plane and leg" if shapes else ""
     return [
-        f"A robot of type {robot.type} carries {number(robot.payload.mass)} kg on six legs.",
+        f"A robot of type {robot.type} carries {number(robot.payload.mass)} kg on six legs; {_gravity(robot.gravity)}.",
+        _points(robot.payload),
         f"Pistons: {size}{number(1e3 * piston.length)} mm long, EA = {number(1e-6 * piston.EA)} MN, "
-        f"EI = {number(piston.EI)} N m²{alike}.",
+        f"EI = {number(piston.EI)} N m², {_damping(robot.legs[0].damping)}{alike}.",
+        f"Drives: {_drives(robot)}.",
         f"Motion: {_motion(study.motion)}.",
+        f"Load: {_load(study.load.wrench)}.",
         f"Legs: {_LEGS.get(simulation.fidelity, simulation.fidelity)} ({simulation.fidelity}{count}); "
         f"{number(study.duration, 4)} s simulated, from {_START.get(study.initial.start, study.initial.start)}.",
     ]
@@ -60,6 +64,67 @@ _START = {
     "straight": "straight legs at rest",
     "moving": "the velocity of the command",
 }
+
+
+def _gravity(gravity: Array) -> str:
+    along = np.flatnonzero(gravity)
+    if not along.size:
+        return "no gravity"
+    if along.size > 1:
+        return f"gravity [{', '.join(number(part) for part in gravity)}] m/s²"
+    size = float(gravity[along[0]])
+    return f"gravity of {number(abs(size))} m/s² along {'-' if size < 0 else ''}{'xyz'[along[0]]}"
+
+
+def _points(payload: model.Payload) -> str:
+    com, tool = (f"[{', '.join(number(1e3 * part + 0.0, 4) for part in at)}] mm" for at in (payload.com, payload.tool))
+    also = "which is the tool, too" if np.array_equal(payload.com, payload.tool) else f"the tool at {tool}"
+    return f"Centre of mass at {com} from the platform's centre, {also}."
+
+
+def _damping(ratio: float) -> str:
+    return f"damping of {number(100 * ratio)} % of the critical one in every mode" if ratio else "no damping"
+
+
+def _drives(robot: Robot) -> str:
+    """The drives in words, those of a kind together."""
+    legs: dict[str, list[str]] = {}
+    for i, leg in enumerate(robot.legs, start=1):
+        legs.setdefault(_drive(leg.drive), []).append(str(i))
+    if len(legs) == 1:
+        return next(iter(legs))
+    return "; ".join(f"leg{'s' * (len(some) > 1)} {', '.join(some)}: {words}" for words, some in legs.items())
+
+
+def _drive(drive: model.Drive) -> str:
+    if isinstance(drive, model.PrescribedDrive):
+        return "prescribed, the stroke follows its command exactly"
+    if isinstance(drive, model.ServoDrive):
+        damper = f" and a damper of {number(drive.damping)} N s/m" if drive.damping else ""
+        return f"servo, a spring of {text(drive.stiffness, 'N/m')}{damper} between commanded and real stroke"
+    force = "that which the rigid robot needs" if drive.law == "rigid" else "from a table"
+    back = drive.feedback
+    if back is None:
+        return f"force, {force}"
+    return f"force, {force}, corrected by {text(back.stiffness, 'N/m')} and {number(back.damping)} N s/m on the stroke"
+
+
+_WRENCH = (("Fx", "N"), ("Fy", "N"), ("Fz", "N"), ("Mx", "N m"), ("My", "N m"), ("Mz", "N m"))
+
+
+def _load(wrench: model.Wrench | None) -> str:
+    if wrench is None:
+        return "none"
+    if isinstance(wrench, model.CsvWrench):
+        return "from a table, at the tool, world axes"
+    values = wrench.value if isinstance(wrench, model.ConstantWrench) else wrench.amplitude
+    parts = [f"{name} {text(float(v), unit)}" for (name, unit), v in zip(_WRENCH, values, strict=True) if v]
+    if isinstance(wrench, model.SineWrench):
+        phase = f", phase {number(math.degrees(wrench.phase))} deg" if wrench.phase else ""
+        when = f", times a sine of {text(wrench.frequency, 'Hz')}{phase}"
+    else:
+        when = f" from t = {number(wrench.time, 4)} s on" if isinstance(wrench, model.StepWrench) else ", constant"
+    return f"{' and '.join(parts)}{when}, at the tool, world axes" if parts else "none"
 
 
 def _motion(motion: model.Motion) -> str:
@@ -107,7 +172,8 @@ def _actuator(study: ActuatorStudy) -> list[str]:
     released = f", released from {text(start, 'm')} at the tip" if start else ""
     return [
         f"A single actuator: a beam of {number(beam.length)} m, {number(beam.free_length)} m of it outside the hub at "
-        f"the start{tip}; rhoA = {number(beam.rhoA)} kg/m, EI = {number(beam.EI, 5)} N m².",
+        f"the start{tip}; rhoA = {number(beam.rhoA)} kg/m, EI = {number(beam.EI, 5)} N m²; "
+        f"{_damping(beam.damping)}, {_gravity(np.array([0.0, -beam.gravity, 0.0]))}.",
         f"Driven: {_driven(study)}.",
         f"The beam is {_LEGS.get(simulation.fidelity, simulation.fidelity)} ({simulation.fidelity}, {shapes} shapes); "
         f"{number(study.duration, 4)} s simulated{released}.",
@@ -116,25 +182,39 @@ def _actuator(study: ActuatorStudy) -> list[str]:
 
 def _driven(study: ActuatorStudy) -> str:
     words = []
-    for name, load, unit in (("rotation", "torque", "rad/s"), ("extension", "force", "m/s")):
+    for name, load, rate, unit in (("rotation", "torque", "rad/s", "N m"), ("extension", "force", "m/s", "N")):
         law = getattr(study.motion, name)
         if law is None:
-            words.append(f"{name} by a {load}, so that it is a result")
+            words.append(f"{name} by a {load}{_law(getattr(study.load, load), unit)}, so that it is a result")
         elif law.law == "rate":
-            words.append(f"{name} at {number(law.rate)} {unit}")
+            words.append(f"{name} at {number(law.rate)} {rate}")
         else:
             words.append(f"{name} by the law {law.law}")
     return " and ".join(words)
 
 
-def modes_section(found: RobotDescription | ActuatorDescription | None) -> list[str]:
-    """Frequencies, damping and stiffness with the drives locked; nothing where there is no description."""
-    if found is None:
+def _law(law: model.LoadLaw, unit: str) -> str:
+    """How large a torque or a force is."""
+    if isinstance(law, model.ConstantLaw):
+        return f" of {text(law.value, unit)}"
+    if isinstance(law, model.CsvLaw):
+        return " from a table"
+    if isinstance(law, model.SineLaw):
+        return f" of up to {text(law.amplitude, unit)} at {text(law.frequency, 'Hz')}"
+    when = f" from t = {number(law.time, 4)} s on" if isinstance(law, model.StepLaw) else f", {law.law}"
+    return f" of up to {text(law.amplitude, unit)}{when}"
+
+
+def modes_section(
+    study: Study | ActuatorStudy | None, found: RobotDescription | ActuatorDescription | None
+) -> list[str]:
+    """Frequencies, damping and stiffness while the commands stand still; nothing where there is no description."""
+    if study is None or found is None:
         return []
-    if found.kind == "actuator":
+    if isinstance(study, model.ActuatorStudy):
         return [html.section("modes", "Modes", *_beam(found))]  # type: ignore[arg-type]
     parts = [part for pose in found.poses for part in _pose(pose)]  # type: ignore[union-attr]
-    words = "Drives locked, about the static equilibrium. Damping is the part of critical damping."
+    words = f"{held(study.robot)}, about the static equilibrium. Damping is the part of critical damping."
     return [html.section("modes", "Modes", html.paragraph(words, "soft"), *parts)]
 
 

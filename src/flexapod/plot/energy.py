@@ -7,19 +7,12 @@ import xarray as xr
 from matplotlib.axes import Axes
 from matplotlib.figure import Figure
 
-from flexapod.plot.style import LEG_COLORS, LINE_STYLES, PAGE, figure, mark_end, needs, scale, styled
+from flexapod.plot.style import LINE_STYLES, PAGE, figure, mark_end, needs, scale, styled
+from flexapod.study.colours import ENERGIES
 from flexapod.study.scene import motion_end
 
 __all__ = ["energies"]
 
-_WORDS = {
-    "energy_kinetic": "kinetic",
-    "energy_potential": "gravity",
-    "energy_strain": "strain and drive springs",
-    "energy_dissipated": "lost in damping",
-    "work_drive": "work of the drives",
-    "work_external": "work of the load",
-}
 _SIGN = {"work_drive": -1.0, "work_external": -1.0}
 
 
@@ -36,12 +29,12 @@ def energies(data: xr.Dataset) -> Figure:
     fig = figure(PAGE, 5.8)
     rows = fig.subplots(3, 1, sharex=True, height_ratios=(1.6, 1, 1))
     end, time = motion_end(data), data.time.values
-    names = [name for name in _WORDS if name in data]
+    names = [name for name in ENERGIES if name in data]
     changes = {name: data[name] - data[name][0] for name in names}
     big = scale(xr.concat(list(changes.values()), dim="part"), "J")
     for i, name in enumerate(names):
-        style = {"color": LEG_COLORS[i], "linestyle": LINE_STYLES[i]}
-        rows[0].plot(time, big(changes[name]), label=_WORDS[name], **style)
+        words, color = ENERGIES[name]
+        rows[0].plot(time, big(changes[name]), label=words, color=color, linestyle=LINE_STYLES[i])
     _line(rows[1], time, data.energy_strain, "Strain energy, with that of the drive springs", "energy")
     balance = xr.concat([_SIGN.get(name, 1.0) * data[name] for name in names], dim="part").sum("part")
     _line(

@@ -19,11 +19,11 @@ __all__ = ["narrowed"]
 
 MOST = 6  # panels in a column
 TALLEST = 9.2  # of a column: what a page has room for [in]
-FLATTER = 0.75  # height of a panel that has no aspect of its own, against that on the wide figure
+FLATTER, SPACE = 0.75, 0.85  # heights against the wide figure: of a panel without a shape of its own, of one in space
 WIDE, HIGHER, HIGHEST = 0.1, 1.6, 2.4  # margins above which a panel has words in it; how much more notes, legends need
 FINE = 200  # dots per inch at which letters are as wide as they are on paper
 INSET = 0.04  # clear of the right edge [in]
-_EDGES = {"left": 0.04, "right": 0.93, "bottom": 0.04, "top": 0.94, "hspace": 0.75}  # of figures without a layout
+_EDGES = {"left": 0.04, "right": 0.93, "bottom": 0.04, "top": 0.91, "hspace": 0.3}  # of a column of pictures in space
 
 Stack = list[Axes]
 
@@ -84,6 +84,13 @@ def _keeps_shape(axes: Axes) -> bool:
     return axes.name != "rectilinear" or axes.get_aspect() != "auto"
 
 
+def _height(axes: Axes) -> float:
+    """Height of a panel against that on the wide figure."""
+    if axes.name != "rectilinear":
+        return SPACE
+    return 1.0 if _keeps_shape(axes) else FLATTER
+
+
 def _stacked(fig: Figure, stacks: list[Stack], columns: int, size: tuple[float, float], width: float) -> float:
     """Give the panels their new places; the height that they need [in]."""
     first = stacks[0][0].get_subplotspec()
@@ -93,9 +100,10 @@ def _stacked(fig: Figure, stacks: list[Stack], columns: int, size: tuple[float, 
     ratios = np.asarray(grid.get_height_ratios(), dtype=float)
     rows = [stacks[i : i + columns] for i in range(0, len(stacks), columns)]
     heights = [float(ratios[_place(axes)[0]]) for row in rows for axes in row[0]]
-    flat = any(axes.name == "rectilinear" and axes.get_aspect() != "auto" for stack in stacks for axes in stack)
-    scale = min(1.0 if flat else FLATTER, width / columns / (size[0] / grid.ncols))
-    edges = _EDGES if fig.get_layout_engine() is None else {}
+    height = max(_height(axes) for stack in stacks for axes in stack)
+    scale = min(height, width / columns / (size[0] / grid.ncols))
+    in_space = columns == 1 and all(axes.name != "rectilinear" for stack in stacks for axes in stack)
+    edges: dict[str, Any] = _EDGES if in_space else {}
     places = fig.add_gridspec(len(heights), columns, height_ratios=heights, **edges)
     _carry_labels(fig, stacks)
     at = 0

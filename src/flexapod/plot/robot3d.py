@@ -17,7 +17,7 @@ __all__ = ["modes_3d", "robot_3d"]
 
 @styled
 def robot_3d(data: xr.Dataset, time: float | None = None) -> Figure:
-    """The robot at an instant, with its pose at the start in pale lines: in space and seen along X.
+    """The robot at an instant, with its pose at the start in pale lines: in space and seen along X, true to scale.
 
     Parameters
     ----------
@@ -41,7 +41,7 @@ def robot_3d(data: xr.Dataset, time: float | None = None) -> Figure:
     right.set_xticks([])
     right.set_xlabel("")
     head(left, f"At t = {time:.2f} s; pale: at the start")
-    head(right, "Seen along X")
+    head(right, "Seen along X; deflections to scale")
     return fig
 
 

@@ -1,9 +1,18 @@
-"""Colours of legs and axes, the same in figures, on the page and in reports; they load without matplotlib."""
+"""Colours of legs, axes and energies, the same in figures, on the page and in reports; they load without matplotlib."""
 
 from __future__ import annotations
 
-__all__ = ["AXIS_COLORS", "LEG_COLORS"]
+__all__ = ["AXIS_COLORS", "ENERGIES", "LEG_COLORS"]
 
 #: Okabe & Ito's palette, in an order whose neighbours also differ in lightness.
 LEG_COLORS = ("#0072B2", "#E69F00", "#009E73", "#D55E00", "#56B4E9", "#A23B72")
 AXIS_COLORS = {"x": "#7A5195", "y": "#0072B2", "z": "#D55E00"}
+#: Words and colour of each energy and work by its variable.
+ENERGIES = {
+    "energy_kinetic": ("kinetic", "#0072B2"),
+    "energy_potential": ("gravity", "#E69F00"),
+    "energy_strain": ("strain and springs", "#009E73"),
+    "energy_dissipated": ("lost in damping", "#D55E00"),
+    "work_drive": ("work of the drives", "#56B4E9"),
+    "work_external": ("work of the load", "#A23B72"),
+}

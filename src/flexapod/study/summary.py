@@ -15,7 +15,7 @@ from flexapod.typing import Array
 if TYPE_CHECKING:
     from xarray import Dataset
 
-__all__ = ["ActuatorSummary", "AxisSummary", "RobotSummary", "summary", "tool_apart"]
+__all__ = ["ActuatorSummary", "AxisSummary", "RobotSummary", "summaries", "summary", "tool_apart"]
 
 SMALLEST_EXCURSION = 1e-6  # rigid travel below which a percentage says nothing [m]
 NOTHING = 1e-12  # deviation that is rounding [m]
@@ -158,6 +158,12 @@ def summary(data: Dataset, point: str = "com") -> RobotSummary | ActuatorSummary
         worst_leg_share=share,
         partial=partial,
     )
+
+
+def summaries(data: Dataset) -> list[RobotSummary | ActuatorSummary]:
+    """What is told of a result, the point that matters most first: a tool, where it is apart, then centre of mass."""
+    tool = [summary(data, "tool")] if "com_deviation" in data and tool_apart(data) else []
+    return [*tool, summary(data)]
 
 
 def tool_apart(data: Dataset) -> bool:

@@ -1,13 +1,18 @@
-"""Quantities in words: the unit in which a number reads well."""
+"""Quantities in words, in the unit in which a number reads well, and what a robot holds still."""
 
 from __future__ import annotations
+
+from typing import TYPE_CHECKING
 
 import numpy as np
 from numpy.typing import ArrayLike
 
 from flexapod.typing import Array
 
-__all__ = ["Scale", "number", "scale", "text"]
+if TYPE_CHECKING:
+    from flexapod.model import Robot
+
+__all__ = ["Scale", "held", "number", "scale", "text"]
 
 _PREFIXES = {
     "m": ((1.0, "m"), (1e3, "mm"), (1e6, "µm"), (1e9, "nm")),
@@ -71,3 +76,12 @@ def number(value: float, digits: int = 3) -> str:
     """A number of `digits` significant digits without powers of ten, where it has at most nine figures."""
     shown = f"{value:.{digits}g}"
     return f"{float(shown):.0f}" if "e" in shown and 1 <= abs(value) < 1e9 else shown
+
+
+def held(robot: Robot) -> str:
+    """What modes and stiffness hold still: the drives, or their commands where drives give way."""
+    soft = {leg.drive.type for leg in robot.legs} - {"prescribed"}
+    if not soft:
+        return "Drives locked"
+    parts = {"servo": "springs and dampers of the servo drives", "force": "feedback of the force drives"}
+    return f"Commands of the drives held, with the {' and the '.join(parts[kind] for kind in sorted(soft))}"

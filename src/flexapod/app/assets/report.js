@@ -131,7 +131,7 @@
   function resize(plot, figure) {
     const holder = plot.closest("figure");
     if (!plot.hidden && !plot.clientWidth) return; // on paper
-    if (figure.replay) figure.layout = { ...figure.layout, width: plot.clientWidth };
+    if (figure.replay) figure.layout = { ...figure.layout, ...replaySize(figure.layout, plot.clientWidth) };
     else {
       plot.hidden = !wideEnough(holder);
       holder.classList.toggle("live", !plot.hidden);
@@ -199,6 +199,15 @@
     return { values: new Float32Array(bytes.buffer), shape: packed.shape.split(", ").map(Number) };
   }
 
+  // In the plane as high as what moves in it asks for, so that equal scales leave no empty sides.
+  function replaySize(layout, width) {
+    if (layout.scene) return { width, height: 560, margin: { l: 0, r: 0, t: 56, b: 0 } };
+    const margin = { l: 64, r: 12, t: 56, b: 48 };
+    const [across, up] = [layout.xaxis, layout.yaxis].map(({ range }) => range[1] - range[0]);
+    const high = ((width - margin.l - margin.r) * up) / across;
+    return { width, height: Math.min(Math.max(high, 240), 540) + margin.t + margin.b, margin };
+  }
+
   function replay() {
     const figure = document.querySelector("figure.replay");
     if (!figure) return;
@@ -213,19 +222,26 @@
     const last = told.time[frames - 1];
     const start = told.time[0];
     const moving = told.traces.map((trace, i) => (trace.take.length ? i : -1)).filter((i) => i >= 0);
-    const state = { time: start, phase: 0, playing: false, mode: -1, before: 0, busy: false, late: false };
+    // `frame` is drawn, and the numbers are its own; `time` runs on while it plays.
+    const state = { frame: 0, time: start, phase: 0, playing: false, mode: -1, before: 0, busy: false, late: false };
+    let places = 3; // of the instants in seconds
+    while (places < 6 && told.time.some((time) => Math.abs(Number(time.toFixed(places)) - time) > 1e-7)) places += 1;
 
-    // Coordinates of all points: between two frames, or of a mode at its phase.
+    // Coordinates of all points: of a frame, or of a mode at its phase.
     function at() {
       if (state.mode >= 0) {
         const [rest, moved] = modes[state.mode].ends;
         const share = Math.sin(2 * Math.PI * state.phase);
         return (k) => rest.values[k] + share * (moved.values[k] - rest.values[k]);
       }
-      const after = Math.max(1, told.time.findIndex((time) => time >= state.time));
-      const share = frames > 1 ? (state.time - told.time[after - 1]) / (told.time[after] - told.time[after - 1]) : 0;
-      const [low, high] = frames > 1 ? [(after - 1) * count * directions, after * count * directions] : [0, 0];
-      return (k) => points.values[low + k] + share * (points.values[high + k] - points.values[low + k]);
+      const first = state.frame * count * directions;
+      return (k) => points.values[first + k];
+    }
+
+    function nearest(time) {
+      const after = told.time.findIndex((instant) => instant >= time);
+      if (after < 1) return after < 0 ? frames - 1 : 0;
+      return time - told.time[after - 1] < told.time[after] - time ? after - 1 : after;
     }
 
     function coordinates() {
@@ -245,15 +261,15 @@
         readout.textContent = `${modes[state.mode].title}; magnified, size arbitrary`;
         return;
       }
-      const nearest = told.time.reduce((best, time, i) => (Math.abs(time - state.time) < Math.abs(told.time[best] - state.time) ? i : best), 0);
-      const numbers = told.names.map((name, j) => `${name} ${String(told.values[nearest][j]).replace("-", "\u2212")}`).join(", ");
-      readout.textContent = `t = ${state.time.toFixed(3)} s: ${told.what} ${numbers} ${told.unit}`;
-      scrub.setAttribute("aria-valuetext", `${state.time.toFixed(3)} s`);
+      const numbers = told.names.map((name, j) => `${name} ${String(told.values[state.frame][j]).replace("-", "\u2212")}`).join(", ");
+      const instant = `${told.time[state.frame].toFixed(places)} s`;
+      readout.textContent = `t = ${instant}: ${told.what} ${numbers} ${told.unit}`;
+      scrub.setAttribute("aria-valuetext", instant);
     }
 
     function draw() {
       say();
-      scrub.value = state.mode >= 0 ? state.phase : state.time;
+      scrub.value = state.mode >= 0 ? state.phase : state.frame;
       state.late = state.busy;
       if (state.busy) return;
       state.busy = true;
@@ -271,15 +287,14 @@
       if (!state.playing) return;
       const passed = Math.min((now - state.before) / 1000, 0.2);
       state.before = now;
+      const before = state.frame;
       if (state.mode >= 0) state.phase = (state.phase + passed / 2) % 1;
       else {
-        state.time += passed * Number(speed.value);
-        if (state.time >= last) {
-          state.time = last;
-          toggle();
-        }
+        state.time = Math.min(last, state.time + passed * Number(speed.value));
+        state.frame = nearest(state.time);
+        if (state.time === last) toggle();
       }
-      draw();
+      if (state.mode >= 0 || state.frame !== before) draw();
       requestAnimationFrame(tick);
     }
 
@@ -288,23 +303,28 @@
       play.textContent = state.playing ? "Pause" : "Play";
       play.setAttribute("aria-pressed", String(state.playing));
       if (!state.playing) return;
-      if (state.mode < 0 && state.time >= last) state.time = start;
+      if (state.mode < 0 && state.time >= last) show(0);
       state.before = performance.now();
       requestAnimationFrame(tick);
     }
 
-    function step(frame) {
+    function show(frame) {
+      state.frame = Math.min(frames - 1, Math.max(0, frame));
+      state.time = told.time[state.frame];
+    }
+
+    function step(by) {
       if (state.playing) toggle();
-      if (state.mode >= 0) state.phase = Math.min(1, Math.max(0, state.phase + frame / 40));
-      else state.time = Math.min(last, Math.max(start, state.time + (frame * (last - start)) / Math.max(1, frames - 1)));
+      if (state.mode >= 0) state.phase = Math.min(1, Math.max(0, state.phase + by / 40));
+      else show(state.frame + by);
       draw();
     }
 
     function ranges() {
       const mode = state.mode >= 0;
-      Object.assign(scrub, { min: mode ? 0 : start, max: mode ? 1 : last, step: mode ? 0.01 : (last - start) / 1000 || 1 });
+      Object.assign(scrub, { min: 0, max: mode ? 1 : frames - 1, step: mode ? 0.01 : 1 });
       scrub.setAttribute("aria-label", mode ? "Phase" : "Time");
-      scrub.value = mode ? state.phase : state.time;
+      scrub.value = mode ? state.phase : state.frame;
       speed.disabled = mode;
     }
 
@@ -314,7 +334,8 @@
     play.addEventListener("click", toggle);
     scrub.addEventListener("input", () => {
       if (state.playing) toggle();
-      state[state.mode >= 0 ? "phase" : "time"] = Number(scrub.value);
+      if (state.mode >= 0) state.phase = Number(scrub.value);
+      else show(Number(scrub.value));
       draw();
     });
     choice.addEventListener("change", () => {
@@ -337,10 +358,8 @@
     moving.forEach((i, j) => Object.keys(first).forEach((letter) => (data[i][letter] = first[letter][j])));
     figure.classList.add("live");
     plot.hidden = false;
-    const size = { width: plot.clientWidth, height: directions === 3 ? 560 : 460 };
     const legend = { orientation: "h", x: 0, y: 1, yref: "container", yanchor: "top" };
-    const margin = directions === 3 ? { l: 0, r: 0, t: 56, b: 0 } : { l: 64, r: 12, t: 56, b: 48 };
-    const made = { data, replay: true, layout: { ...told.layout, ...size, legend, margin } };
+    const made = { data, replay: true, layout: { ...told.layout, ...replaySize(told.layout, plot.clientWidth), legend } };
     drawn.set(plot, made);
     paint(plot, made).then(say);
   }

@@ -12,6 +12,7 @@ from flexapod.study.describe.actuator import ActuatorDescription, describe_actua
 from flexapod.study.describe.leg import LegDescription, describe_leg, load_remarks
 from flexapod.study.describe.pose import PoseDescription, VibrationToExpect, describe_pose, vibration_to_expect
 from flexapod.study.estimates import bending_moment
+from flexapod.study.words import held
 from flexapod.typing import Array
 
 __all__ = ["RobotDescription", "Singularity", "describe"]
@@ -30,13 +31,14 @@ class Singularity:
 
 @dataclass(frozen=True, kw_only=True)
 class RobotDescription:
-    """What `describe` finds for a robot; times in s; `remarks` are doubts in words."""
+    """What `describe` finds for a robot; times in s; what poses `held` still and `remarks` of doubt in words."""
 
     kind: str = "robot"
     file: str | None
     duration: float
     motion_end: float
     fidelity: str
+    held: str
     legs: tuple[LegDescription, ...]
     singularity: Singularity
     poses: tuple[PoseDescription, ...]
@@ -75,6 +77,7 @@ def describe(study: model.Study | model.ActuatorStudy) -> RobotDescription | Act
         duration=study.duration,
         motion_end=end,
         fidelity=study.simulation.fidelity,
+        held=held(study.robot),
         legs=legs,
         singularity=singularity,
         poses=tuple(describe_pose(study, name, instant) for name, instant in instants.items()),
