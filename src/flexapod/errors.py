@@ -33,7 +33,7 @@ class ComputationError(FlexapodError):
         super().__init__(_sentences(what, next_step))
 
     def __reduce__(self) -> tuple[object, ...]:
-        return _rebuild_computation, (self.what, self.next_step)
+        return _rebuild_computation, (type(self), self.what, self.next_step)
 
 
 class InputError(FlexapodError):
@@ -106,7 +106,7 @@ class InputError(FlexapodError):
         }
 
     def __reduce__(self) -> tuple[object, ...]:
-        return _rebuild_input, (self.what, self.file, self.key, self.value, self.allowed, self.next_step)
+        return _rebuild_input, (type(self), self.what, self.file, self.key, self.value, self.allowed, self.next_step)
 
 
 def closest(word: str, allowed: Iterable[str]) -> str | None:
@@ -115,14 +115,15 @@ def closest(word: str, allowed: Iterable[str]) -> str | None:
     return f"Did you mean {found[0]!r}?" if found else None
 
 
-def _rebuild_computation(what: str, next_step: str | None) -> ComputationError:
-    return ComputationError(what, next_step=next_step)
+def _rebuild_computation(kind: type[ComputationError], what: str, next_step: str | None) -> ComputationError:
+    return kind(what, next_step=next_step)
 
 
 def _rebuild_input(
-    what: str, file: str | None, key: str | None, value: object, allowed: str | None, next_step: str | None
-) -> InputError:
-    return InputError(what, file=file, key=key, value=value, allowed=allowed, next_step=next_step)
+    kind: type[InputError], what: str, file: str | None, key: str | None, value: object, allowed: str | None,
+    next_step: str | None,
+) -> InputError:  # fmt: skip
+    return kind(what, file=file, key=key, value=value, allowed=allowed, next_step=next_step)
 
 
 def _short(value: object) -> str:

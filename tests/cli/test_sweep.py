@@ -103,6 +103,23 @@ def test_bad_input(flexapod, files, folder):
     assert not (folder / "study-sweep").exists()
 
 
+@pytest.mark.parametrize("more", [(), ("--scheduler", "x")])
+def test_workers_below_zero_leave_nothing_behind(flexapod, files, folder, more):
+    run = flexapod("sweep", *files(), "--workers", "-1", *more)
+    assert run.exit_code == 2
+    assert "Error: --workers = -1: is out of range" in run.stderr
+    assert not (folder / "study-sweep" / "sweep.zarr").exists()
+    assert flexapod("sweep", *files(), "--workers", "0").exit_code == 0
+    assert flexapod("sweep", *files(), "--workers", "-1", *more).exit_code == 2  # also where nothing is left to do
+
+
+def test_a_scalar_that_no_point_has(flexapod, files):
+    text = '[[vary]]\nkey = "simulation.fidelity"\nvalues = ["rigid"]\n[keep]\nscalars = ["first_frequency"]\n'
+    run = flexapod("sweep", *files(text=text), "--workers", "0")
+    assert run.exit_code == 0, run.stderr
+    assert "first_frequency has no value: rigid legs on held strokes" in run.stdout
+
+
 def test_another_sweep_in_the_same_place(flexapod, files):
     assert flexapod("sweep", *files(3), "--workers", "0", "--out", "there").exit_code == 0
     run = flexapod("sweep", *files(4), "--workers", "0", "--out", "there")

@@ -72,7 +72,7 @@ def test_serves_until_ctrl_c(study, folder, options, words):
     command = [sys.executable, "-m", "flexapod", "view", str(study(*SHORT)), "--no-browser", "--port", "0"]
     running = subprocess.Popen(
         [*command, *options], cwd=folder, stdout=subprocess.PIPE, stderr=subprocess.PIPE, preexec_fn=heed_interrupts,
-        env={**os.environ, "PYTHONUNBUFFERED": "1"},
+        env={**os.environ, "PYTHONUNBUFFERED": "1"}, bufsize=0,  # the second line is for communicate()
     )  # fmt: skip
     assert running.stdout is not None
     try:

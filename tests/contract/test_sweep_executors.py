@@ -2,6 +2,7 @@
 
 import itertools
 import os
+import pickle
 import signal
 import sys
 
@@ -15,6 +16,7 @@ from flexapod.errors import ComputationError, InputError
 from flexapod.study.sweep import batch, executors, open_sweep, run, schedule
 from flexapod.study.sweep.batch import compute_batch, compute_packed
 from flexapod.study.sweep.executors import InProcess, WorkerDied
+from flexapod.study.sweep.reading import Malformed
 
 
 def sweep(count, **settings):
@@ -82,10 +84,10 @@ def test_batches_grow_to_what_is_worth_a_task_and_shrink_at_the_end():
         batches.learn(batch.BatchResult(points=tuple(points), results=(), seconds=0.05 * len(points)))
     assert sizes[0] == 1
     assert max(sizes) == pytest.approx(schedule.TASK / 0.05, abs=1)
-    assert sizes[-1] == 1
     assert sum(sizes) == 1000
-    ends = list(itertools.accumulate(sizes))
-    assert all(size <= -(-(1000 - end + size) // 4) for size, end in zip(sizes, ends, strict=True))
+    ends, least = list(itertools.accumulate(sizes)), schedule.LEAST / 0.05
+    assert all(size <= max(least, -(-(1000 - end + size) // 4)) for size, end in zip(sizes, ends, strict=True))
+    assert all(size >= least - 1 for size in sizes[1:-1])  # a task of less is more cost than work
 
 
 def test_two_local_workers_one_of_which_dies(monkeypatch, tmp_path):
@@ -122,9 +124,20 @@ def test_worker_of_another_version():
         compute_batch("9.9", None, [0], [quick()])
 
 
+def test_a_worker_of_another_version_is_told_from_other_faults():
+    """The error lost its kind on the way from a worker, and the user read that a task could not be run."""
+    error = pickle.loads(pickle.dumps(batch.OtherVersion("a worker", next_step="Give")))
+    assert (type(error), str(error)) == (batch.OtherVersion, "a worker. Give.")
+    malformed = pickle.loads(pickle.dumps(Malformed("is bad", key="a", value=3)))
+    assert (type(malformed), malformed.key, malformed.value) == (Malformed, "a", 3)
+
+
 @pytest.mark.parametrize(
     ("settings", "words"),
     [
+        ({"workers": 1.5}, "workers = 1.5: is not a whole number"),
+        ({"workers": "2"}, "workers = '2': is not a whole number"),
+        ({"scheduler": 8786}, "scheduler = 8786: is no address"),
         ({"workers": -1}, "workers = -1: is out of range"),
         ({"workers": 1, "scheduler": "tcp://127.0.0.1:1"}, "together with a scheduler"),
         ({"scheduler": "tcp://127.0.0.1:1"}, "scheduler = 'tcp://127.0.0.1:1': cannot be reached"),

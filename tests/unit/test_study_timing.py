@@ -65,3 +65,12 @@ def test_a_tolerance_out_of_reach_is_found_without_minutes_of_work():
         list(found.chunks)
     # Seven tries (100, 50, .. 1 outputs); each doubles to 8192 steps of one output and their double: about 4e4 steps.
     assert found.counters.steps < 3e5
+
+
+@pytest.mark.parametrize("duration", [2e5, 1e307])
+def test_results_that_no_machine_could_hold_are_refused(duration):
+    study = paper_robot(duration=duration, output_step=1e-3)
+    with pytest.raises(fx.InputError, match=r"simulation\.duration = .*: asks for more results than can be stored"):
+        fx.simulate(study)
+    with pytest.raises(fx.InputError, match="more results than can be stored"):
+        fx.inverse_kinematics(study)

@@ -1,5 +1,6 @@
 """Sweep files: what they may hold, and what is refused before anything is computed."""
 
+import numpy as np
 import pytest
 from tests.sweeps import KEY, diameters, quick
 
@@ -36,6 +37,30 @@ def scatter(key, **law):
         ({"vary": [{"key": KEY, "start": 1, "stop": 2, "count": 1}]}, ["vary[1].count = 1", "at least 2"]),
         ({"vary": [{"together": {KEY: [0.02], "payload.mass": [1, 2]}}]}, ["payload.mass: has 2 values", "1, as"]),
         ({"vary": [*vary(KEY, 1)["vary"], *vary(KEY, 2)["vary"]]}, [KEY, "varies in two places"]),
+        ({"vary": [*vary("leg[3].damping", 1)["vary"], *vary("leg.damping", 2)["vary"]]}, ["and so does leg.damping"]),
+        ({"vary": [*vary("payload.com[2]", 1)["vary"], *vary("payload.com", [1, 2, 3])["vary"]]}, ["would replace"]),
+        ({"vary": [{"together": {"leg.piston": [{}], "leg[2].piston.E": [1]}}]}, ["and so does leg[2].piston.E"]),
+        (
+            {"vary": [*vary("robot.base.radius", 1)["vary"], *vary("robot.base.joints[1][2]", 1)["vary"]]},
+            ["robot.base.radius: varies, and so does robot.base.joints[1][2]"],
+        ),
+        (
+            {
+                "random": {
+                    "count": 2,
+                    "tolerance": [
+                        {"key": "payload.com", "normal": 1e-3},
+                        {"key": "payload.com[2]", "normal": 1e-3},
+                    ],
+                }
+            },
+            ["payload.com: varies, and so does payload.com[2]"],
+        ),
+        (vary("leg", {}), ["leg: is a whole table", "[vary.together]"]),
+        (
+            {**vary("load.wrench", [0, 0, 1, 0, 0, 0]), **scatter("load.wrench", uniform="1 N")},
+            ["load.wrench: holds numbers of several kinds (force, torque)", "load.wrench[1]"],
+        ),
         (vary("base.radius", "0.2 m"), ["unknown key", "Did you mean 'robot.base.radius'?"]),
         (vary("leg.piston.diametre", 1), ["leg.piston.diametre: unknown key", "diameter, inner_diameter"]),
         (vary(KEY, "27 mm", "27 deg"), ["27 deg", "is not a length", '"27 mm"']),
@@ -79,6 +104,33 @@ def scatter(key, **law):
 def test_refused_in_words(sweep, words):
     message = refused(sweep)
     assert not [word for word in words if word not in message], message
+
+
+@pytest.mark.parametrize(
+    "keys",
+    [
+        ("payload.mass", "payload.com[2]"),
+        ("leg[1].damping", "leg[2].damping"),
+        ("robot.base.radius", "robot.platform.joints"),
+    ],
+)
+def test_keys_that_have_nothing_in_common(keys):
+    assert read_plan({"vary": [*vary(keys[0], 1)["vary"], *vary(keys[1], 2)["vary"]]}).size == 1
+
+
+def test_numbers_of_numpy():
+    by_numpy = {
+        "vary": [{"key": KEY, "values": np.array([0.025, 0.03])}, {"key": "simulation.modes", "values": [np.int64(2)]}]
+    }
+    plain = {"vary": [{"key": KEY, "values": [0.025, 0.03]}, {"key": "simulation.modes", "values": [2]}]}
+    assert read_plan(by_numpy) == read_plan(plain)
+
+
+def test_an_unphysical_first_value_hides_no_other_key():
+    """A mass of 0 stopped the reading before the diameter, whose values were then no numbers."""
+    inner = {"key": "leg.piston.inner_diameter", "start": "0 mm", "stop": "20 mm", "count": 2}
+    points = Points(quick(), read_plan({"vary": [*vary("payload.mass", 0, 100)["vary"], inner]}))
+    assert points.columns[1] == ((0.0, 0.02),)
 
 
 def test_file_is_named(tmp_path):

@@ -47,6 +47,24 @@ def test_map():
     np.testing.assert_allclose(np.asarray(shown).T.ravel(), 1e3 * data.com_deviation_peak.values, rtol=1e-12)
 
 
+def test_a_list_is_drawn_by_its_values_or_their_numbers():
+    """A key that holds a list once ended the command after everything had been computed."""
+    places = {"key": "payload.com", "values": [[0, 0, 0], [0, 0.1, 0]]}
+    fig = draw(swept({"vary": [places]}))
+    assert [label.get_text() for label in fig.axes[0].get_xticklabels()] == ["[0, 0, 0]", "[0, 0.1, 0]"]
+    assert labels(fig)[0] == "payload.com [m]"
+    inertia = [[9, 0, 0], [0, 9, 0], [0, 0, 9]], [[18, 0, 0], [0, 18, 0], [0, 0, 18]]
+    tables = {"key": "payload.inertia", "values": list(inertia)}
+    fig = draw(swept({"vary": [tables, places]}))
+    assert labels(fig) == ("payload.inertia [kg m^2] (number of the value)", "payload.com [m]")
+    assert [label.get_text() for label in fig.axes[0].get_xticklabels()] == ["1", "2"]
+
+
+def test_keys_together_are_drawn_against_the_first_single_number():
+    together = {"payload.com": [[0, 0, 0], [0, 0.1, 0]], "payload.mass": [50, 100]}
+    assert labels(draw(swept({"vary": [{"together": together}]})))[0] == "payload.mass [kg]"
+
+
 def test_histogram():
     fig = draw(swept({"random": DRAWS}))
     assert sum(bar.get_height() for bar in fig.axes[0].patches) == 12

@@ -4,7 +4,8 @@ import numpy as np
 import pytest
 from tests.sweeps import KEY, diameters, quick
 
-from flexapod.model import loads
+from flexapod.model import loads, preset_text
+from flexapod.solve.kernel import kernel
 from flexapod.study.sweep.plan import read_plan
 from flexapod.study.sweep.points import Points
 
@@ -116,6 +117,40 @@ def test_tolerances_scatter_about_what_varies():
     sweep = {"vary": [{"key": "payload.mass", "values": [50, 100]}], **draws(3, ("payload.mass", {"normal": "1 %"}))}
     values = Points(quick(), read_plan(sweep)).resolve().scattered[0][:, 0]
     assert values[3:] == pytest.approx(2 * values[:3], rel=1e-15)  # the same draws about each nominal
+
+
+def test_tolerances_scatter_about_a_circle_that_varies():
+    """What all draws of a grid point share is kept from one to the next, and not too long."""
+    sweep = {
+        "vary": [{"key": "robot.base.radius", "values": [0.25, 0.3]}],
+        **draws(2, ("robot.base.joints", {"uniform": "0.1 mm"}), ("leg[2].damping", {"normal": "10 %"})),
+    }
+    found = Points(quick(), read_plan(sweep))
+    for point in (3, 0, 2, 1):
+        joints = found.study(point).robot.base_joints
+        radius = (0.25, 0.3)[point // 2]
+        assert np.hypot(joints[:, 0], joints[:, 1]) == pytest.approx(np.full(6, radius), abs=1.5e-4)
+        damping = [leg.damping for leg in found.study(point).robot.legs]
+        assert damping[1] == pytest.approx(0.005 * (1 + 0.1 * found.draws[1][point % 2, 0]), rel=1e-15)
+        assert damping[2:] == [0.005] * 4
+    again = Points(quick(), read_plan(sweep))
+    assert again.study(1) == found.study(1)
+
+
+def test_every_shape_has_a_kernel_of_its_own():
+    """Shapes of solid pistons depend on their diameter, those of a tip body on its mass: one kind was counted."""
+    fidelity = {"key": "simulation.fidelity", "values": ["solid-fem"]}
+    modes = {"key": "simulation.modes", "values": [2]}
+    solid = points(vary=[{"key": KEY, "values": ["25 mm", "27 mm", "30 mm"]}, fidelity, modes]).resolve()
+    assert (len(solid.settings), solid.refused) == (3, {})
+    mass = {"key": "payload.mass", "values": [50, 100]}
+    assert len(points(vary=[mass, fidelity, modes]).resolve().settings) == 1
+    actuator = loads(preset_text("paper-actuator"))
+    tips = [{"key": "actuator.tip_mass", "values": [1, 2]}]
+    for basis, kinds in (("clamped-free", 1), ("tip-load", 1), ("tip-mass", 2)):
+        chosen = {"key": "simulation.basis", "values": [basis]}
+        assert len(Points(actuator, read_plan({"vary": [*tips, chosen]})).resolve().settings) == kinds
+    assert kernel.cache_info().maxsize is not None  # a worker meets thousands of them
 
 
 def test_tables_are_read_beside_the_study(tmp_path):

@@ -10,7 +10,7 @@ from typing import TYPE_CHECKING, Annotated
 import typer
 
 from flexapod.app.failures import INTERRUPTED, guarded, print_parts
-from flexapod.app.options import Json, Quiet, StudyFile
+from flexapod.app.options import Json, Quiet, StudyFile, as_options
 
 if TYPE_CHECKING:
     from xarray import Dataset
@@ -48,7 +48,7 @@ def sweep(
     from flexapod.study.sweep import sweep as compute
 
     folder = results_folder(Path(f"{file.stem}-{sweep_file.stem}"), out)
-    with progress_bar(quiet=quiet or json) as report:
+    with as_options(workers="--workers", scheduler="--scheduler"), progress_bar(quiet=quiet or json) as report:
         try:
             data = compute(
                 file, sweep_file, store=folder / "sweep.zarr", scheduler=scheduler, workers=workers,
@@ -73,8 +73,9 @@ def _write(data: Dataset, folder: Path) -> list[Path]:
     from flexapod.study.sweep import save_table, scalar_names
 
     files = [save_table(data, folder / "sweep.csv")]
-    if scalar_names(data) and (data.status == "computed").any():
-        files += plot.save(draw(data), folder / "sweep")
+    there = [name for name in scalar_names(data) if data[name].notnull().any()]
+    if there:
+        files += plot.save(draw(data, there[0]), folder / "sweep")
     return files
 
 

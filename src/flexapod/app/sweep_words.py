@@ -25,14 +25,13 @@ def as_dict(data: Dataset) -> dict[str, Any]:
         **{state: states[state] for state in ("computed", "failed", "pending")},
         "failures": [{"message": m, "points": n, "first": first} for m, n, first in _failures(data)],
         "remarks": [{"remark": m, "points": n} for m, n in _remarks(data)],
-        "scalars": {name: _extremes(data, name) for name in scalar_names(data)} if states["computed"] else {},
+        "scalars": {name: _extremes(data, name) for name in scalar_names(data) if data[name].notnull().any()},
     }
 
 
 def show(data: Dataset) -> None:
     """Print what was found."""
     from flexapod.app.terminal import print_table, print_text
-    from flexapod.study.sweep import scalar_names
     from flexapod.study.words import text
 
     found = as_dict(data)
@@ -45,14 +44,14 @@ def show(data: Dataset) -> None:
     for entry in found["remarks"][:MESSAGES]:
         print_text(f"Warning at {_times(entry['points'])}: {entry['remark']}")
     rows = []
-    for name in scalar_names(data) if found["scalars"] else ():
-        unit, extremes = str(data[name].attrs.get("units", "1")), found["scalars"][name]
+    for name, extremes in found["scalars"].items():
+        unit = str(data[name].attrs.get("units", "1"))
         values = [text(extremes[key], "" if unit == "1" else unit).strip() for key in ("median", "smallest", "largest")]
         rows.append([name, *values])
     if rows:
         print_text()
         print_table(["scalar", "median", "smallest", "largest"], rows)
-        main = scalar_names(data)[0]
+        main = next(iter(found["scalars"]))
         for key in ("smallest", "largest"):
             at = found["scalars"][main][f"{key}_at"]
             print_text(f"{main} is {key} at point {at['point']}{_place(data, at['point'])}.")

@@ -17,6 +17,7 @@ from flexapod.model.robot import Robot
 from flexapod.model.section import Section
 from flexapod.model.simulation import STRAIGHT, Simulation
 from flexapod.model.study import ActuatorStudy, Study
+from flexapod.model.toml import parsed
 
 __all__ = [
     "PRESETS",
@@ -91,11 +92,7 @@ def loads_robot(text: str, *, path: str | Path | None = None) -> Robot:
 
 def _tables(text: str, path: str | Path | None) -> Section:
     file = None if path is None else str(path)
-    try:
-        data = tomllib.loads(text)
-    except tomllib.TOMLDecodeError as error:
-        raise InputError(f"is not valid TOML: {error}", file=file or "study text") from None
-    top = Section(data, "", file, Path(path).parent if path else Path())
+    top = Section(parsed(text, file or "study text"), "", file, Path(path).parent if path else Path())
     if ("robot" in top) == ("actuator" in top):
         found = "both [robot] and [actuator]" if "robot" in top else "neither [robot] nor [actuator]"
         raise InputError(f"has {found}", file=file or "study text", allowed="one of the two")

@@ -57,7 +57,7 @@ def sweep(data: xr.Dataset, quantity: str | None = None) -> Figure:
     """
     found = _quantity(data, quantity)
     axes: list[dict[str, Any]] = [axis for axis in json.loads(data.attrs["axes"]) if axis["count"] > 1]
-    single = [axis["keys"][0] for axis in axes if axis["keys"] and axis["name"] != "sample"]
+    single = [_owner(data, axis["keys"]) for axis in axes if axis["keys"] and axis["name"] != "sample"]
     draws = sum(axis["count"] for axis in axes if axis["name"] == "draw")
     if axes and not single and draws == sum(axis["count"] for axis in axes):
         return _histogram(found, data)
@@ -78,17 +78,37 @@ def _quantity(data: xr.Dataset, name: str | None) -> _Shown:
     return _shown(data[name], str(data[name].attrs.get("long_name", name)))
 
 
+def _owner(data: xr.Dataset, keys: list[str]) -> str:
+    """Of keys that vary together the one to draw against: the first with a single number or text a point."""
+    return next((key for key in keys if data[key].ndim == 1), keys[0])
+
+
 def _key(data: xr.Dataset, name: str) -> _Shown:
     return _shown(data[name], name)
 
 
 def _shown(array: xr.DataArray, words: str) -> _Shown:
-    if array.dtype.kind not in "fiu":
-        names = tuple(dict.fromkeys(map(str, array.values)))
-        return _Shown(np.array([names.index(str(value)) for value in array.values]), words, "", names)
+    if array.ndim > 1 or array.dtype.kind not in "fiu":
+        unit = str(array.attrs.get("units", "1"))
+        words = words if unit == "1" else f"{words} [{unit}]"
+        return _named([str(value) if array.ndim == 1 else _listed(value) for value in array.values], words)
     unit = str(array.attrs.get("units", "1"))
     shown = scale(array.values, unit) if unit != "1" else scale(array.values, "")
     return _Shown(shown(array.values), f"{words} [{shown.name}]" if shown.name else words, shown.name)
+
+
+def _listed(values: Values) -> str:
+    """Numbers of a list or of a table."""
+    return f"[{', '.join(_listed(v) if np.ndim(v) else v if isinstance(v, str) else f'{v:.4g}' for v in values)}]"
+
+
+def _named(texts: list[str], words: str) -> _Shown:
+    """Texts by their place in order of appearance; long ones by number."""
+    number = {text: place for place, text in enumerate(dict.fromkeys(texts))}
+    names = tuple(number)
+    if max(map(len, names)) > LABEL:
+        names, words = tuple(str(1 + place) for place in range(len(names))), f"{words} (number of the value)"
+    return _Shown(np.array([number[text] for text in texts]), words, "", names)
 
 
 def _failed(data: xr.Dataset) -> Values:
@@ -182,7 +202,7 @@ def _histogram(y: _Shown, data: xr.Dataset) -> Figure:
 
 def _panels(y: _Shown, data: xr.Dataset) -> Figure:
     names = [str(name) for name, array in data.coords.items() if array.dims == ("point",)]
-    keys = [_key(data, name) for name in names if len(np.unique(data[name].values)) > 1][:MOST_PANELS]
+    keys = [_key(data, name) for name in names if len(set(data[name].values.tolist())) > 1][:MOST_PANELS]
     if not keys:
         return _histogram(y, data)
     columns = min(3, len(keys))

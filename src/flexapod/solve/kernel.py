@@ -4,7 +4,7 @@ import ctypes
 import logging
 from collections.abc import Callable
 from dataclasses import dataclass, fields
-from functools import cache
+from functools import cache, lru_cache
 from pathlib import Path
 from typing import TYPE_CHECKING
 
@@ -45,7 +45,7 @@ class Kernel:
 NAMES = ("leg_residual", "leg_matrices", "leg_energies", "payload_residual", "payload_matrices", "payload_energies")
 
 
-@cache
+@lru_cache(maxsize=32)  # solid pistons and tip bodies of many sizes have shapes of their own
 def kernel(lateral: LateralBasis, axial_modes: int, *, planar: bool = False) -> Kernel:
     """Kernel of legs with the same lateral shapes in both planes and ``axial_modes`` axial ones.
 

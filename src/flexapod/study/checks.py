@@ -40,7 +40,7 @@ class _Path:
 
 def path_instants(study: Study | ActuatorStudy) -> Array:
     """Instants at which a path is looked at [s]: those of the output, at least 2001, at most 50001."""
-    count = int(np.clip(round(study.duration / study.simulation.output_step), 2000, 50000))
+    count = int(np.clip(study.duration / study.simulation.output_step, 2000, 50000).round())
     return np.linspace(0.0, study.duration, count + 1)
 
 

@@ -8,6 +8,8 @@ from flexapod.solve.march import restart_outputs
 
 __all__ = ["check_jumps", "check_outputs"]
 
+MOST_OUTPUTS = 1e8  # a robot keeps 2 kB of each: no machine could hold them
+
 
 def check_outputs(study: Study | ActuatorStudy) -> list[str]:
     """Refuse a study whose results could not be stored even once after the start; remark on what is left out.
@@ -15,11 +17,20 @@ def check_outputs(study: Study | ActuatorStudy) -> list[str]:
     Raises
     ------
     InputError
-        The duration is shorter than the time between stored results.
+        The duration is shorter than the time between stored results, or far too long for it.
     """
     simulation, duration = study.simulation, study.duration
-    stored, outputs = simulation.stored_step, simulation.outputs(duration)
+    stored = simulation.stored_step
     name = "output_step" if stored == simulation.output_step else "step"
+    if duration / stored > MOST_OUTPUTS:
+        raise InputError(
+            "asks for more results than can be stored",
+            key="simulation.duration",
+            value=duration,
+            allowed=f"at most {MOST_OUTPUTS:g} times simulation.{name} = {stored:g} s",
+            next_step=f"Give a shorter duration, or a longer simulation.{name}",
+        )
+    outputs = simulation.outputs(duration)
     if not outputs:
         raise InputError(
             "is longer than the simulation",

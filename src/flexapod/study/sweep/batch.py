@@ -4,13 +4,12 @@ from __future__ import annotations
 
 import pickle
 from collections.abc import Callable, Sequence
-from dataclasses import dataclass
+from dataclasses import dataclass, replace
 from time import perf_counter
 from typing import Any
 
 import numpy as np
 
-import flexapod
 from flexapod import rigid
 from flexapod.errors import ComputationError, FlexapodError
 from flexapod.model import ActuatorStudy, Study
@@ -20,6 +19,7 @@ from flexapod.study.checks import check_path
 from flexapod.study.plausibility import robot_warnings
 from flexapod.study.record import Record, collect
 from flexapod.study.results import robot_results
+from flexapod.study.sweep.identity import this_version
 from flexapod.study.sweep.kept import ACTUATOR_SCALARS, Kept
 from flexapod.study.sweep.scalars import ROBOT_SCALARS, RobotRun
 from flexapod.typing import Array
@@ -74,10 +74,10 @@ def compute_packed(
 
 
 def refuse_other(version: str) -> None:
-    """Refuse to compute for another version of flexapod than this one."""
-    if version != flexapod.__version__:
+    """Refuse to compute for another version of flexapod, or other sources of it, than this process has."""
+    if version != this_version():
         raise OtherVersion(
-            f"a worker runs flexapod {flexapod.__version__}, the sweep {version}",
+            f"a worker runs flexapod {this_version()}, the sweep {version}",
             next_step="Give all workers the same version",
         )
 
@@ -91,7 +91,16 @@ def compute_point(kept: Kept, study: Study | ActuatorStudy) -> PointResult:
     except Exception as error:  # one point must not end a sweep of thousands
         return PointResult(values={}, failure=f"unexpected {type(error).__name__}: {error} (a fault of flexapod)")
     endless = [name for name, value in result.values.items() if not np.isfinite(value).all()]
-    return PointResult(values={}, failure=f"{endless[0]} is not finite") if endless else result
+    for name in endless:
+        if name not in kept.absent or np.isinf(result.values[name]).any():
+            return PointResult(values={}, failure=f"{name} is not finite")
+    return _remarked(result, kept, endless) if endless else result
+
+
+def _remarked(result: PointResult, kept: Kept, absent: Sequence[str]) -> PointResult:
+    """The result with the reasons why some of its values are none."""
+    words = [f"{name} has no value: {kept.absent[name]}" for name in absent]
+    return replace(result, remarks="\n".join(filter(None, [result.remarks, *words])))
 
 
 def _robot(kept: Kept, study: Study) -> PointResult:

@@ -13,6 +13,7 @@ from flexapod.errors import InputError
 from flexapod.model import ActuatorStudy
 from flexapod.study.attributes import attributes
 from flexapod.study.names import COORDINATES
+from flexapod.study.sweep.identity import sources
 from flexapod.study.sweep.kept import Kept
 from flexapod.study.sweep.keys import Step, key_text
 from flexapod.study.sweep.points import Points, Resolved
@@ -23,6 +24,8 @@ from flexapod.units import DIMENSIONS
 
 __all__ = ["axes", "columns", "header"]
 
+DRAWN = "_drawn"  # what a tolerance drew about values that vary themselves, and own the name
+
 
 def header(points: Points, kept: Kept, resolved: Resolved, varied: Mapping[str, Column]) -> dict[str, Any]:
     """Attributes of the store: what is in it, told by hashes, and how its points are laid out."""
@@ -31,6 +34,7 @@ def header(points: Points, kept: Kept, resolved: Resolved, varied: Mapping[str, 
         "title": f"flexapod: sweep of a {'single actuator' if isinstance(points.nominal, ActuatorStudy) else 'robot'}",
         "flexapod_sweep_format": FORMAT,
         "flexapod_version": flexapod.__version__,
+        "flexapod_sources": sources(),
         "study": study["study"],
         "study_file": study["study_file"],
         "study_hash": study["study_hash"],
@@ -42,6 +46,7 @@ def header(points: Points, kept: Kept, resolved: Resolved, varied: Mapping[str, 
         "coordinates": " ".join(varied),  # for other readers: CF
         "varied": " ".join(varied),
         "kept": " ".join(kept.variables),
+        "complete": " ".join(name for name in kept.variables if name not in kept.absent),
     }
 
 
@@ -62,11 +67,14 @@ def axes(points: Points) -> list[dict[str, Any]]:
 
 def columns(points: Points, kept: Kept, resolved: Resolved) -> tuple[dict[str, Column], dict[str, Column]]:
     """Arrays of what varies, and of what is kept with the labels of its dimensions."""
-    varied = _varied(points) | _scattered(points, resolved)
+    given = _varied(points)
+    drawn = _scattered(points, resolved)
+    varied = given | {f"{name}{DRAWN}" if name in given else name: column for name, column in drawn.items()}
     made: dict[str, Column] = {}
     for name, (dims, units, long_name) in kept.variables.items():
         shape = (len(points), *kept.shape(name))
-        made[name] = Column(("point", *dims), shape, {"units": units, "long_name": long_name})
+        comment = {"comment": f"NaN at a computed point: {kept.absent[name]}"} if name in kept.absent else {}
+        made[name] = Column(("point", *dims), shape, {"units": units, "long_name": long_name, **comment})
     used = {dim for column in (*varied.values(), *made.values()) for dim in column.dims}
     for dim, (labels, words) in COORDINATES.items():
         if dim in used:
@@ -91,22 +99,25 @@ def _varied(points: Points) -> dict[str, Column]:
 
 
 def _column(key: tuple[Step, ...], values: Any, at: Values, points: Points) -> Column:
-    dimension = dimension_of(key, points.dimensions)
     plain = np.asarray(_plain(values, key, points))
     attributes = {"long_name": key_text(key)}
-    if dimension is not None and plain.dtype.kind != "U":
-        attributes["units"] = DIMENSIONS[dimension].unit or "1"
+    items = [key, *((*key, number) for number in range(1, 1 + plain.shape[1] if plain.ndim > 1 else 1))]
+    found = {dimension_of(item, points.dimensions) for item in items} - {None}
+    if len(found) == 1 and plain.dtype.kind != "U":  # forces and moments in one list have no unit in common
+        attributes["units"] = DIMENSIONS[str(found.pop())].unit or "1"
     return Column(("point", *_dims(key, plain.shape[1:])), (len(at), *plain.shape[1:]), attributes, plain[at])
 
 
 def _plain(values: Any, key: tuple[Step, ...], points: Points) -> list[Any]:
     """Values as numbers in SI where all are numbers of one shape, else as text."""
 
-    def si(value: object) -> Any:
-        return [si(item) for item in value] if isinstance(value, list) else number(value, key, points.dimensions)
+    def si(value: object, key: tuple[Step, ...]) -> Any:
+        if isinstance(value, list):
+            return [si(item, (*key, at)) for at, item in enumerate(value, start=1)]
+        return number(value, key, points.dimensions)
 
     try:
-        found = [si(value) for value in values]
+        found = [si(value, key) for value in values]
         np.array(found, dtype=float)
     except (ValueError, InputError):
         return [str(value) for value in values]

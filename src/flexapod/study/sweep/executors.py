@@ -3,6 +3,7 @@
 from __future__ import annotations
 
 import logging
+import math
 import os
 import queue
 import signal
@@ -20,7 +21,7 @@ from flexapod.study.sweep.kept import Kept
 if TYPE_CHECKING:
     from distributed import Client, Future
 
-__all__ = ["DaskExecutor", "Executor", "InProcess", "WorkerDied", "executor", "local_cores"]
+__all__ = ["DaskExecutor", "Executor", "InProcess", "WorkerDied", "check_place", "executor", "local_cores"]
 
 CONNECT = 10.0  # seconds to reach a scheduler
 PATIENCE = 60.0  # seconds without any worker until the sweep gives up
@@ -106,17 +107,21 @@ class DaskExecutor:
         self._done: queue.SimpleQueue[Future] = queue.SimpleQueue()
         self._points: dict[object, tuple[int, ...]] = {}
         self._seen = time.monotonic()  # when there was a worker last
+        self._threads, self._looked = 0, -math.inf  # how many there were, and when
 
     @property
     def threads(self) -> int:
-        """Threads of all workers that are there now."""
+        """Threads of all workers that are there; asked of the scheduler once in a while."""
+        if time.monotonic() - self._looked < LOOK:
+            return self._threads
         try:
-            found = sum(self._client.nthreads().values())  # pyright: ignore[reportAttributeAccessIssue]
+            self._threads = sum(self._client.nthreads().values())  # pyright: ignore[reportAttributeAccessIssue]
         except (OSError, TimeoutError):
-            found = 0
-        if found:
-            self._seen = time.monotonic()
-        return found
+            self._threads = 0
+        self._looked = time.monotonic()
+        if self._threads:
+            self._seen = self._looked
+        return self._threads
 
     def submit(self, kept: Kept, points: Sequence[int], packed: Sequence[bytes]) -> None:
         """Hand over a batch: numbers of points, and their pickled studies."""
@@ -172,6 +177,28 @@ def local_cores() -> int:
     return len(os.sched_getaffinity(0)) if hasattr(os, "sched_getaffinity") else os.cpu_count() or 1
 
 
+def check_place(scheduler: object, workers: object) -> None:
+    """Refuse a place that cannot be, before anything is read.
+
+    Raises
+    ------
+    InputError
+        Both are given, or what is given is neither a number of processes nor an address.
+    """
+    if scheduler is not None and not isinstance(scheduler, str):
+        raise InputError("is no address", key="scheduler", value=scheduler, allowed="such as tcp://10.0.0.1:8786")
+    if workers is None:
+        return
+    if isinstance(workers, bool) or not isinstance(workers, int):
+        raise InputError("is not a whole number", key="workers", value=workers, allowed="0 (this process) or more")
+    if workers < 0:
+        raise InputError("is out of range", key="workers", value=workers, allowed="0 (this process) or more")
+    if scheduler is not None:
+        raise InputError(
+            "is given together with a scheduler, whose cluster has workers of its own", key="workers", value=workers
+        )
+
+
 @contextmanager
 def executor(version: str, scheduler: str | None, workers: int | None) -> Iterator[Executor]:
     """Where to compute: `workers` local processes of one thread (default: one a core; 0: this process), or a cluster.
@@ -183,12 +210,7 @@ def executor(version: str, scheduler: str | None, workers: int | None) -> Iterat
     ComputationError
         Local workers do not start.
     """
-    if scheduler is not None and workers is not None:
-        raise InputError(
-            "is given together with a scheduler, whose cluster has workers of its own", key="workers", value=workers
-        )
-    if workers is not None and workers < 0:
-        raise InputError("is out of range", key="workers", value=workers, allowed="0 (this process) or more")
+    check_place(scheduler, workers)
     if workers == 0:
         yield InProcess(version)
         return

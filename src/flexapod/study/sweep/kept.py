@@ -29,7 +29,8 @@ _SHAPES = ("shape", "axial_shape", "mode")  # dimensions whose size is a setting
 class Kept:
     """Names, in order, with their dimensions beside `point`, units and meaning; sizes of those dimensions.
 
-    ``every``: stored instants between two that records keep; ``times`` (T,) of records [s].
+    ``every``: stored instants between two that records keep; ``times`` (T,) of records [s]. ``absent``: why some
+    scalars have no value at some computed points.
     """
 
     scalars: tuple[str, ...]
@@ -38,6 +39,7 @@ class Kept:
     sizes: Mapping[str, int]
     every: int
     times: Array
+    absent: Mapping[str, str]
 
     def shape(self, name: str) -> tuple[int, ...]:
         """Shape of a value of one point."""
@@ -82,7 +84,10 @@ def kept(keep: Keep, study: Study | ActuatorStudy, resolved: Resolved) -> Kept:
     if keep.records:
         every, times = _instants(keep, resolved)
         sizes |= {"time": len(times), **_shape_sizes(resolved, variables)}
-    return Kept(scalars=names, records=keep.records, variables=variables, sizes=sizes, every=every, times=times)
+    absent = {name: table[name].absent for name in names if table[name].absent}
+    return Kept(
+        scalars=names, records=keep.records, variables=variables, sizes=sizes, every=every, times=times, absent=absent
+    )
 
 
 def _known(name: str, table: Mapping[str, object], key: str) -> None:
@@ -128,7 +133,7 @@ def _shape_sizes(resolved: Resolved, variables: Mapping[str, Variable]) -> dict[
     wanted = {dim for entry in variables.values() for dim in entry.dims if dim in _SHAPES}
     if not wanted:
         return {}
-    counts: set[tuple[Any, Any]] = {(lateral, max(axial, default=0)) for _, _, lateral, axial in resolved.settings}
+    counts: set[tuple[Any, Any]] = {(lateral, max(axial, default=0)) for _, _, lateral, axial, _ in resolved.settings}
     if len(counts) > 1 or 0 in next(iter(counts))[: 1 + ("axial_shape" in wanted)]:
         raise InputError(
             "has no one number of shapes at all points", key="keep.records", next_step="Leave amplitudes out"

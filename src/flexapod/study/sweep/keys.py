@@ -10,7 +10,7 @@ from flexapod.errors import InputError, closest
 from flexapod.model import MATERIALS, base_circle, platform_circle
 from flexapod.units import to_si
 
-__all__ = ["Step", "copied", "key_text", "leaves", "parse_key", "put", "similar_key", "value_at"]
+__all__ = ["Step", "copied", "key_text", "leaves", "overlap", "parse_key", "put", "similar_key", "value_at"]
 
 Step = str | int
 _NAME = re.compile(r"([A-Za-z_][\w-]*)((?:\[\d+\])*)")
@@ -39,6 +39,21 @@ def parse_key(key: object, *, what: str) -> tuple[Step, ...]:
 def key_text(steps: tuple[Step, ...]) -> str:
     """The key path as text."""
     return "".join(f"[{step}]" if isinstance(step, int) else f".{step}" for step in steps).lstrip(".")
+
+
+def overlap(one: tuple[Step, ...], other: tuple[Step, ...]) -> bool:
+    """Whether one key holds the other, or what one sets replaces the other: joints replace the circle they lie on."""
+    one, other = _of_leg(one), _of_leg(other)
+    circle = {one[2:3], other[2:3]} in ({("joints",), ("radius",)}, {("joints",), ("half_angle",)})
+    if circle and one[:2] == other[:2]:
+        return True
+    return all(a == b or 0 in (a, b) for a, b in zip(one, other, strict=False))
+
+
+def _of_leg(steps: tuple[Step, ...]) -> tuple[Step, ...]:
+    """The key with number 0 for all legs, where it gives none."""
+    every = steps[0] == "leg" and len(steps) > 1 and isinstance(steps[1], str)
+    return ("leg", 0, *steps[1:]) if every else steps
 
 
 def copied(data: Any) -> Any:
@@ -125,10 +140,11 @@ def value_at(data: dict[str, Any], steps: tuple[Step, ...]) -> object:
         if isinstance(found, list) and isinstance(step, int) and 1 <= step <= len(found):
             found = found[step - 1]
             continue
+        similar = similar_key(data, steps)
         raise InputError(
             "has no value in the study file that could vary about it",
             key=key_text(steps),
-            next_step=f"{similar_key(data, steps) or ''} Otherwise add it to the study file".strip(),
+            next_step=f"{similar} Otherwise add it to the study file" if similar else "Add it to the study file",
         )
     return found
 

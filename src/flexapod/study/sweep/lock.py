@@ -9,7 +9,7 @@ from collections.abc import Iterator
 from contextlib import contextmanager
 from pathlib import Path
 
-from flexapod.errors import ComputationError
+from flexapod.errors import ComputationError, InputError
 
 __all__ = ["locked"]
 
@@ -24,6 +24,8 @@ def locked(store: Path) -> Iterator[None]:
 
     Raises
     ------
+    InputError
+        There can be no such file.
     ComputationError
         Another process holds it, or the file system knows no locks.
     """
@@ -38,7 +40,12 @@ def locked(store: Path) -> Iterator[None]:
 
 def _acquire(path: Path, store: Path) -> int:
     while True:
-        handle = os.open(path, os.O_RDWR | os.O_CREAT, 0o666)
+        try:
+            handle = os.open(path, os.O_RDWR | os.O_CREAT, 0o666)
+        except OSError as error:
+            raise InputError(
+                f"cannot be made: {error.strerror or error}", file=path, next_step="Choose another place with --out"
+            ) from None
         try:
             _lock(handle)
         except OSError as error:

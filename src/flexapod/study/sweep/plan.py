@@ -3,18 +3,21 @@
 from __future__ import annotations
 
 import hashlib
+import itertools
 import json
 import math
 import re
-import tomllib
 from collections.abc import Mapping
 from dataclasses import dataclass
 from pathlib import Path
 from typing import Any
 
+import numpy as np
+
 from flexapod.errors import InputError
 from flexapod.model.section import Section
-from flexapod.study.sweep.keys import Step, key_text, parse_key
+from flexapod.model.toml import parsed
+from flexapod.study.sweep.keys import Step, key_text, overlap, parse_key
 
 __all__ = ["Block", "Draws", "Hypercube", "Keep", "Plan", "Range", "Spaced", "Tolerance", "read_plan"]
 
@@ -133,7 +136,8 @@ def read_plan(sweep: str | Path | Mapping[str, Any]) -> Plan:
         With file, key, value, what is allowed and the next step.
     """
     if isinstance(sweep, Mapping):
-        return _plan(Section(sweep, "", None, Path()), json.dumps(sweep, indent=1, default=str))
+        plain = _plain(sweep)
+        return _plan(Section(plain, "", None, Path()), json.dumps(plain, indent=1, default=str))
     if not isinstance(sweep, str | Path):
         raise InputError(
             "is no sweep", key="sweep", value=type(sweep).__name__, allowed="a sweep file or a dictionary like it"
@@ -141,13 +145,19 @@ def read_plan(sweep: str | Path | Mapping[str, Any]) -> Plan:
     file = Path(sweep)
     try:
         text = file.read_text(encoding="utf-8-sig")
-        data = tomllib.loads(text)
     except (OSError, UnicodeDecodeError) as error:
         reason = error.strerror if isinstance(error, OSError) else "it is no UTF-8 text"
         raise InputError(f"cannot be read: {reason}", file=file, next_step="See docs/sweep.md for an example") from None
-    except tomllib.TOMLDecodeError as error:
-        raise InputError(f"is not valid TOML: {error}", file=file) from None
-    return _plan(Section(data, "", str(file), file.parent), text)
+    return _plan(Section(parsed(text, str(file)), "", str(file), file.parent), text)
+
+
+def _plain(value: Any) -> Any:
+    """Numbers and arrays of NumPy as those of Python, all the way down."""
+    if isinstance(value, Mapping):
+        return {name: _plain(inner) for name, inner in value.items()}
+    if isinstance(value, np.generic | np.ndarray):
+        return value.tolist()
+    return [_plain(inner) for inner in value] if isinstance(value, list | tuple) else value
 
 
 def _plan(top: Section, text: str) -> Plan:
@@ -169,7 +179,7 @@ def _plan(top: Section, text: str) -> Plan:
         )
     if plan.size > MOST_POINTS:
         raise InputError(f"has {plan.size:,} points", file=top.file or "sweep", allowed=f"at most {MOST_POINTS:,}")
-    _refuse_twice(plan)
+    _refuse_overlaps(plan)
     return plan
 
 
@@ -180,15 +190,25 @@ def _tables(section: Section, name: str) -> list[object]:
     return value
 
 
-def _refuse_twice(plan: Plan) -> None:
-    """A key may vary in one place, and be given a tolerance in one more."""
+def _refuse_overlaps(plan: Plan) -> None:
+    """A value may vary in one place, and be given a tolerance in one more."""
     varied = [key for block in plan.blocks for key in block.keys]
     varied += [entry.key for entry in plan.hypercube.ranges] if plan.hypercube else []
     scattered = [entry.key for entry in plan.draws.tolerances] if plan.draws else []
-    for keys in (varied, scattered):
-        for key in keys:
-            if keys.count(key) > 1:
-                raise InputError("varies in two places", file=plan.file, key=key_text(key), allowed="one of them")
+    for key in (*varied, *scattered):
+        if key == ("leg",):  # its coordinate would be named like the dimension
+            words = "[vary.together] with a list of values for each"
+            raise InputError("is a whole table", file=plan.file, key="leg", allowed=f"keys in it; {words}")
+    for one, other in itertools.chain(itertools.combinations(varied, 2), itertools.combinations(scattered, 2)):
+        if one == other:
+            raise InputError("varies in two places", file=plan.file, key=key_text(one), allowed="one of them")
+        if overlap(one, other):
+            raise InputError(
+                f"varies, and so does {key_text(other)}: one would replace the other",
+                file=plan.file,
+                key=key_text(one),
+                allowed="one of them, or keys that have no value in common",
+            )
 
 
 def _block(section: Section) -> Block:

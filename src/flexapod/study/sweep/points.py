@@ -6,9 +6,10 @@ import hashlib
 import pickle
 import tomllib
 from collections.abc import Callable, Collection, Mapping
+from contextlib import suppress
 from dataclasses import dataclass, field
 from pathlib import Path
-from typing import Any
+from typing import Any, NamedTuple
 
 import numpy as np
 
@@ -23,7 +24,7 @@ from flexapod.typing import Array
 __all__ = ["Points", "Resolved", "content_hash"]
 
 MEMORY = 64 << 20  # of studies that were read and wait to be computed; others are read again
-Setting = tuple[str, str, int, tuple[int, ...]]
+Setting = tuple[str, str, int, tuple[int, ...], tuple[object, ...]]
 
 
 @dataclass(frozen=True, kw_only=True)
@@ -33,6 +34,21 @@ class _Leaf:
     key: tuple[Step, ...]
     size: float
     relative: bool
+
+    def place(self, data: Any, value: float) -> None:
+        """Set the number in tables in which nothing on its path is given in short."""
+        for step in self.key[:-1]:
+            data = data[step - 1] if isinstance(step, int) else data[step]
+        last = self.key[-1]
+        data[last - 1 if isinstance(last, int) else last] = value
+
+
+class _Cell(NamedTuple):
+    """A point of the grid before anything scatters: its number, its tables, by tolerance its numbers [SI]."""
+
+    at: tuple[int, ...]
+    tables: dict[str, Any]
+    nominal: tuple[Array, ...]
 
 
 @dataclass(frozen=True, kw_only=True)
@@ -91,6 +107,7 @@ class Points:
         self.draws = standard_draws(plan.draws, tuple(map(len, self.leaves))) if plan.draws else ()
         self._packed: dict[int, bytes] = {}
         self._room = MEMORY
+        self._cell: _Cell | None = None
 
     def __len__(self) -> int:
         return self.plan.size
@@ -159,7 +176,7 @@ class Points:
             self._room -= len(self._packed[point])
         s = study.simulation
         axial = tuple(s.axial_shapes(leg.axial_modes) for leg in study.robot.legs) if isinstance(study, Study) else ()
-        found.settings.setdefault((s.fidelity, s.lateral_basis, s.lateral_shapes, axial), point)
+        found.settings.setdefault((s.fidelity, s.lateral_basis, s.lateral_shapes, axial, _shape_numbers(study)), point)
         found.instants.add((s.outputs(study.duration), s.stored_step))
 
     def _probe(self) -> dict[str, Any]:
@@ -180,12 +197,19 @@ class Points:
             if error.what == "unknown key" and error.key:
                 error.next_step = self._hint(error.key) or error.next_step
             raise
-        except InputError:
-            pass  # not physical by itself: other points may be
+        except InputError:  # not physical: other points may be, and what stands behind it has not been read
+            self._read_one_by_one(firsts)
         return probe
 
-    def _known(self, key: tuple[Step, ...]) -> bool:
-        return dimension_of(key, self.dimensions) is not None
+    def _read_one_by_one(self, firsts: list[tuple[tuple[Step, ...], object]]) -> None:
+        """Read the first values again, without those that are not physical."""
+        good = copied(self.data)
+        for key, value in firsts:
+            trial = copied(good)
+            with suppress(InputError):
+                put(trial, key, value)
+                read_with_dimensions(trial, self.folder, self.dimensions)
+                good = trial
 
     def _hint(self, key: str) -> str | None:
         varied = [k for block in self.plan.blocks for k in block.keys]
@@ -214,9 +238,16 @@ class Points:
             read_with_dimensions(tables, self.folder, self.dimensions)  # what was spelled out has new paths
         except InputError:  # it has a value only where another entry of the sweep gives it one
             found = [leaf for path in each for leaf, _ in leaves(value_at(probe, path), path)]
-        if not all(self._known(leaf) for leaf in found):
+        dimensions = {dimension_of(leaf, self.dimensions) for leaf in found}
+        if None in dimensions:
             raise InputError(
                 "is no number that could scatter", key=key_text(key), next_step="Vary it with [[vary]] and values"
+            )
+        if len(dimensions) > 1:
+            raise InputError(
+                f"holds numbers of several kinds ({', '.join(sorted(map(str, dimensions)))})",
+                key=key_text(key),
+                next_step=f"Give a tolerance to each, such as {key_text(found[0])}",
             )
         size = tolerance.size if tolerance.relative else number(tolerance.size, found[0], self.dimensions)
         if not isinstance(size, float | int) or size < 0:
@@ -225,24 +256,49 @@ class Points:
 
     def _tables(self, point: int) -> tuple[dict[str, Any], list[list[float]]]:
         """Tables of a point, and the scattered values by tolerance."""
-        data, at = copied(self.data), list(np.unravel_index(point, self.plan.shape))
-        for block, columns in zip(self.plan.blocks, self.columns, strict=True):
-            row = at.pop(0)
-            for key, column in zip(block.keys, columns, strict=True):
-                put(data, key, column[row])
-        if self.plan.hypercube is not None and self.cube is not None:
-            for entry, value in zip(self.plan.hypercube.ranges, self.cube[at.pop(0)].tolist(), strict=True):
-                put(data, entry.key, value)
-        values = []
-        for group, draws in zip(self.leaves, self.draws, strict=True):
-            values.append([self._scatter(data, leaf, draw) for leaf, draw in zip(group, draws[at[0]], strict=True)])
+        at = tuple(map(int, np.unravel_index(point, self.plan.shape)))
+        cell = self._grid(at[:-1] if self.plan.draws else at)
+        data, values = copied(cell.tables), []
+        for group, draws, nominal in zip(self.leaves, self.draws, cell.nominal, strict=True):
+            first = group[0]  # size and form are those of the tolerance
+            row = (nominal + first.size * draws[at[-1]] * (nominal if first.relative else 1.0)).tolist()
+            for leaf, value in zip(group, row, strict=True):
+                leaf.place(data, value)
+            values.append(row)
         return data, values
 
-    def _scatter(self, data: dict[str, Any], leaf: _Leaf, draw: float) -> float:
-        nominal = number(value_at(data, leaf.key), leaf.key, self.dimensions)
-        value = float(nominal + leaf.size * draw * (nominal if leaf.relative else 1.0))
-        put(data, leaf.key, value)
-        return value
+    def _grid(self, at: tuple[int, ...]) -> _Cell:
+        """What all draws about a point of the grid share; the last is kept, since draws vary fastest."""
+        if self._cell is None or self._cell.at != at:
+            data, left = copied(self.data), list(at)
+            for block, columns in zip(self.plan.blocks, self.columns, strict=True):
+                row = left.pop(0)
+                for key, column in zip(block.keys, columns, strict=True):
+                    put(data, key, column[row])
+            if self.plan.hypercube is not None and self.cube is not None:
+                for entry, value in zip(self.plan.hypercube.ranges, self.cube[left.pop(0)].tolist(), strict=True):
+                    put(data, entry.key, value)
+            nominal = tuple(
+                np.array([number(value_at(data, leaf.key), leaf.key, self.dimensions) for leaf in group])
+                for group in self.leaves
+            )
+            self._cell = _Cell(at, data, nominal)
+        return self._cell
+
+
+def _shape_numbers(study: Study | ActuatorStudy) -> tuple[object, ...]:
+    """Numbers of a study that its shapes, and with them its kernel, may depend on."""
+    basis = study.simulation.lateral_basis
+    if isinstance(study, Study):
+        robot = study.robot
+        circles = robot.base_joints.tobytes(), robot.platform_joints.tobytes()
+        mouths = tuple(leg.cylinder.mouth for leg in robot.legs)
+        return (robot.legs[0].piston, *circles, robot.home_height, mouths) if basis == "solid" else ()
+    beam = study.actuator
+    if basis == "tip-load":
+        return (beam.tip_inertia > 0,)
+    by_basis = {"tip-mass": (beam.tip_mass, beam.tip_inertia, beam.rhoA), "solid": (beam.section,)}
+    return (*by_basis[basis], beam.free_length) if basis in by_basis else ()
 
 
 def content_hash(study: Study | ActuatorStudy) -> bytes:

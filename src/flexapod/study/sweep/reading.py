@@ -59,10 +59,13 @@ class _Recorder(Section):
         self.dimensions = dimensions
 
     def child(self, data: object, name: str) -> Section:
+        if isinstance(data, dict):
+            return _Recorder(data, self.key(name), self.folder, self.dimensions)
         return _marked(lambda: _Recorder(data, self.key(name), self.folder, self.dimensions))
 
     def only(self, *names: str) -> None:
-        _marked(lambda: super(_Recorder, self).only(*names))
+        if not self.data.keys() <= {*names}:
+            _marked(lambda: super(_Recorder, self).only(*names))
 
     def whole(self, name: str) -> int | None:
         return _marked(lambda: super(_Recorder, self).whole(name))

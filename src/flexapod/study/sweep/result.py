@@ -3,13 +3,15 @@
 from __future__ import annotations
 
 import json
+from collections.abc import Hashable, Sequence
 from pathlib import Path
 from typing import TYPE_CHECKING, Any
 
 import numpy as np
 
 from flexapod.study.store import replacing
-from flexapod.study.sweep.store import SweepStore
+from flexapod.study.sweep.mending import incomplete
+from flexapod.study.sweep.store import COMPUTED, FAILED, PENDING, SweepStore, unreadable
 
 if TYPE_CHECKING:
     from xarray import DataArray, Dataset
@@ -26,6 +28,8 @@ def open_sweep(path: str | Path) -> Dataset:
     ------
     InputError
         There is no store of a sweep.
+    ComputationError
+        A part of it cannot be read.
     """
     return as_dataset(SweepStore.open(Path(path)))
 
@@ -35,18 +39,39 @@ def as_dataset(store: SweepStore) -> Dataset:
     import xarray as xr
 
     data = xr.open_zarr(store.group.store, chunks=None, consolidated=False)
-    varied, kept = (str(data.attrs.pop(name)).split() for name in ("varied", "kept"))
+    _load(data, "status", store.path)  # first: what is written meanwhile has its values before its status
+    varied, kept, complete = (str(data.attrs.pop(name)).split() for name in ("varied", "kept", "complete"))
     data = data.reset_coords(varied)  # a store keeps no order
     coordinates = {name: data[name] for name in varied}
     data = data[[*kept, "status", "message", "remarks"]].assign_coords(coordinates)
     small = [name for name, array in data.variables.items() if "time" not in array.dims or store.path is None]
     for name in small:
-        data[name].load()
+        _load(data, name, store.path)
     for name in data.variables:
         if data[name].dtype.kind == "T":
             data[name] = data[name].astype(object)
-    long_name = {"long_name": "state of the point"}
-    return data.assign(status=("point", STATES[data["status"].values], long_name))
+    return data.assign(_consistent(data, [name for name in complete if name in small]))
+
+
+def _load(data: Dataset, name: Hashable, path: Path | None) -> None:
+    try:
+        data[name].load()
+    except Exception:  # whatever the decoder of a spoilt chunk says
+        raise unreadable(path, str(name)) from None
+
+
+def _consistent(data: Dataset, complete: Sequence[str]) -> dict[str, Any]:
+    """The status in words, and loaded values and texts as they belong to it, whatever was written meanwhile."""
+    status = data["status"].values.copy()
+    status[incomplete(status, {name: data[name].values for name in complete})] = PENDING
+    made: dict[str, Any] = {"status": ("point", STATES[status], {"long_name": "state of the point"})}
+    for name, state in (("message", FAILED), ("remarks", COMPUTED)):
+        made[name] = ("point", np.where(status == state, data[name].values, ""), data[name].attrs)
+    for name, array in data.data_vars.items():
+        if array.dtype.kind == "f" and "time" not in array.dims:
+            there = (status == COMPUTED).reshape(-1, *[1] * (array.ndim - 1))
+            made[str(name)] = (array.dims, np.where(there, array.values, np.nan), array.attrs)
+    return made
 
 
 def unstacked(data: Dataset) -> Dataset:

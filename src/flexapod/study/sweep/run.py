@@ -4,16 +4,17 @@ from __future__ import annotations
 
 import logging
 import multiprocessing
+import os
 from collections.abc import Callable, Iterator, Mapping
 from contextlib import ExitStack, contextmanager
 from dataclasses import dataclass
+from itertools import islice
 from pathlib import Path
 from time import perf_counter
 from typing import TYPE_CHECKING, Any
 
 import numpy as np
 
-import flexapod
 from flexapod.errors import ComputationError, InputError
 from flexapod.model import ActuatorStudy, Study, load
 from flexapod.solve.actuator_march import prepare_actuator
@@ -21,14 +22,16 @@ from flexapod.solve.system import robot_system
 from flexapod.study.record import Report
 from flexapod.study.sweep.batch import BatchResult, PointResult
 from flexapod.study.sweep.columns import columns, header
-from flexapod.study.sweep.executors import executor
+from flexapod.study.sweep.executors import check_place, executor
+from flexapod.study.sweep.identity import this_version
 from flexapod.study.sweep.kept import Kept, kept
 from flexapod.study.sweep.lock import locked
+from flexapod.study.sweep.mending import mend
 from flexapod.study.sweep.plan import read_plan
 from flexapod.study.sweep.points import Points, Resolved
 from flexapod.study.sweep.result import as_dataset
 from flexapod.study.sweep.schedule import results
-from flexapod.study.sweep.store import COMPUTED, FAILED, SweepStore, check_header
+from flexapod.study.sweep.store import COMPUTED, FAILED, SweepStore, check_header, tidy
 from flexapod.study.sweep.writer import Writer
 
 if TYPE_CHECKING:
@@ -37,6 +40,7 @@ if TYPE_CHECKING:
 __all__ = ["SweepStopped", "sweep"]
 
 READING = 0.05  # share of the bar for reading the points
+KERNELS = 8  # compiled before the sweep begins; of more, each has few points, and workers compile side by side
 _log = logging.getLogger("flexapod")
 
 
@@ -94,13 +98,11 @@ def sweep(
         By Ctrl-C.
     """
     _refuse_import_by_worker()
-    nominal = load(study) if isinstance(study, str | Path) else study
-    if not isinstance(nominal, Study | ActuatorStudy):
-        raise InputError("is no study", key="study", value=type(study).__name__, allowed="the result of flexapod.load")
-    tell, points = progress or (lambda words, share: None), Points(nominal, read_plan(sweep))
+    check_place(scheduler, workers)
+    path = None if store is None else _place(store)
+    tell, points = progress or (lambda words, share: None), Points(_nominal(study), read_plan(sweep))
     resolved = points.resolve(lambda share: tell("reading the points", READING * share))
     keep = _kept(points, resolved)
-    path = None if store is None else Path(store)
     with _alone(path):
         opened = _store(path, points, keep, resolved)
         job = _Job(points=points, resolved=resolved, kept=keep, store=opened)
@@ -109,6 +111,22 @@ def sweep(
         except KeyboardInterrupt:
             raise SweepStopped(as_dataset(opened)) from None
         return as_dataset(opened)
+
+
+def _nominal(study: object) -> Study | ActuatorStudy:
+    """The study that others vary from."""
+    nominal = load(study) if isinstance(study, str | Path) else study
+    if not isinstance(nominal, Study | ActuatorStudy):
+        raise InputError("is no study", key="study", value=type(study).__name__, allowed="the result of flexapod.load")
+    return nominal
+
+
+def _place(store: object) -> Path:
+    """Where the store is; it needs a name."""
+    path = Path(store) if isinstance(store, str | os.PathLike) else Path()
+    if not path.name or path.name == "..":
+        raise InputError("names no folder", key="store", value=str(store), allowed='such as "sweep.zarr"')
+    return path
 
 
 @contextmanager
@@ -144,9 +162,13 @@ def _kept(points: Points, resolved: Resolved) -> Kept:
 def _store(path: Path | None, points: Points, keep: Kept, resolved: Resolved) -> SweepStore:
     varied, others = columns(points, keep, resolved)
     wanted = header(points, keep, resolved, varied)
+    if path is not None:
+        tidy(path)
     if path is not None and path.exists():
         found = SweepStore.open(path, write=True)
         check_header(path, found.header, wanted)
+        if lost := mend(found):
+            _log.warning("Results of %d points in %s are lost (was the power off?): computed again", lost, path)
         return found
     return SweepStore.create(path, len(points), wanted, varied | others)
 
@@ -177,20 +199,21 @@ class _Job:
             tell("preparing", READING)
             self._compile()
             clock = _Clock(len(todo), tell)
-            work = ends.enter_context(executor(flexapod.__version__, scheduler, workers))
+            work = ends.enter_context(executor(this_version(), scheduler, workers))
             for done in results(work, self.kept, todo, self.points.packed):
                 writer.add(done)
                 clock.count(len(done.points))
 
     def _refused(self, todo: list[int]) -> BatchResult:
         """Points whose study cannot be."""
-        found = {point: message for point, message in self.resolved.refused.items() if point in set(todo)}
+        wanted = set(todo)
+        found = {point: message for point, message in self.resolved.refused.items() if point in wanted}
         failed = tuple(PointResult(values={}, failure=message) for message in found.values())
         return BatchResult(points=tuple(found), results=failed, seconds=0.0)
 
     def _compile(self) -> None:
-        """Compile the kernels of all points here, once, so that no two workers do it at the same time."""
-        for point in self.resolved.settings.values():
+        """Compile kernels here, once, so that no two workers do it at the same time; of many kinds, the first ones."""
+        for point in islice(self.resolved.settings.values(), KERNELS):
             study = self.points.study(point)
             if isinstance(study, Study):
                 robot_system(study.robot, study.simulation)

@@ -10,6 +10,7 @@ from typing import NamedTuple
 import numpy as np
 
 from flexapod import rigid
+from flexapod.errors import InputError
 from flexapod.model import Study
 from flexapod.rigid.rotations import difference, matrix, quaternion
 from flexapod.solve.modes import robot_modes
@@ -24,12 +25,16 @@ __all__ = ["ROBOT_DEFAULTS", "ROBOT_SCALARS", "RobotRun", "Scalar"]
 
 
 class Scalar(NamedTuple):
-    """A quantity of a point: dimensions beside `point`, SI unit, meaning, and how it follows from a run."""
+    """A quantity of a point: dimensions beside `point`, SI unit, meaning, and how it follows from a run.
+
+    ``absent``: why a computed point may have no such number; empty: it always has one.
+    """
 
     dims: tuple[str, ...]
     units: str
     long_name: str
     value: Callable[..., Array | float]
+    absent: str = ""
 
 
 @dataclass(frozen=True)
@@ -121,10 +126,13 @@ class RobotRun:
 
     @property
     def first_frequency(self) -> float:
-        """Lowest natural frequency at home under the load at t = 0, drives locked [Hz]."""
+        """Lowest natural frequency at home under the load at t = 0, drives locked [Hz]; NaN where there is none."""
         home = rigid.home_pose(self.study.robot)
         wrench = rigid.wrench(self.study.load, np.zeros(1))[0]
-        return float(robot_modes(self.study.robot, self.study.simulation, home, wrench).frequency[0])
+        try:
+            return float(robot_modes(self.study.robot, self.study.simulation, home, wrench).frequency[0])
+        except InputError:  # nothing can move, or a drive that cannot be locked
+            return np.nan
 
 
 def _instant(record: Record, at: int) -> Record:
@@ -165,11 +173,16 @@ def _deviation(point: str, words: str) -> dict[str, Scalar]:
     }
 
 
-def _by_leg(name: str, units: str, words: str, largest: Callable[[RobotRun], Array]) -> dict[str, Scalar]:
+def _by_leg(
+    name: str, units: str, words: str, largest: Callable[[RobotRun], Array], absent: str = ""
+) -> dict[str, Scalar]:
     return {
-        name: Scalar((), units, f"largest {words}, of all legs", lambda run: largest(run).max()),
-        f"{name}_by_leg": Scalar(("leg",), units, f"largest {words}", largest),
+        name: Scalar((), units, f"largest {words}, of all legs", lambda run: largest(run).max(), absent),
+        f"{name}_by_leg": Scalar(("leg",), units, f"largest {words}", largest, absent),
     }
+
+
+_NO_SECTION = "a piston is given by EI, EA and rhoA, without section or material"
 
 
 #: Scalars of a robot's simulation, by name.
@@ -189,10 +202,11 @@ ROBOT_SCALARS: Mapping[str, Scalar] = {
     ),
     **_by_leg("actuator_force_peak", "N", "size of the drive force", lambda run: _peak(run.actuator_force)),
     **_by_leg("tip_deflection_peak", "m", "deflection of the piston's tip", lambda run: _peak(run.tip_deflection)),
-    **_by_leg("stress_peak", "Pa", "axial plus bending stress in the piston", lambda run: run.stress),
-    **_by_leg("strain_peak", "1", "axial plus bending strain in the piston", lambda run: run.strain),
+    **_by_leg("stress_peak", "Pa", "axial plus bending stress in the piston", lambda run: run.stress, _NO_SECTION),
+    **_by_leg("strain_peak", "1", "axial plus bending strain in the piston", lambda run: run.strain, _NO_SECTION),
     "first_frequency": Scalar(
-        (), "Hz", "lowest natural frequency at home, drives locked", lambda run: run.first_frequency
+        (), "Hz", "lowest natural frequency at home, drives locked", lambda run: run.first_frequency,
+        "rigid legs on held strokes cannot vibrate, a pure force drive cannot be locked",
     ),
     "steps": Scalar((), "1", "steps of the time integration", lambda run: float(run.counters.steps)),
 }  # fmt: skip

@@ -10,7 +10,8 @@ from flexapod.study.sweep.kept import Kept
 
 __all__ = ["results"]
 
-TASK = 1.0  # seconds of work that a task should be: it costs Dask some milliseconds
+TASK = 3.0  # seconds of work that a task should be: it costs Dask some milliseconds
+LEAST = 0.25  # seconds of work of the last tasks: so long a thread may wait for the others
 AHEAD = 2  # batches at a time for every thread, so that none waits for the next
 MOST = 500  # points of a task
 DEADLY = "the process that computed this point died, and did so again when it computed nothing else"
@@ -62,9 +63,10 @@ class _Batches:
 
     def take(self, threads: int) -> list[int]:
         """The next batch: single points until the first has come back."""
-        size = 1 if not self._points else int(TASK * self._points / max(self._seconds, 1e-9))
+        rate = self._points / max(self._seconds, 1e-9)
         share = -(-self.left // (AHEAD * max(threads, 1)))
-        size = max(1, min(size, share, MOST))
+        size = min(int(TASK * rate), max(share, int(LEAST * rate)), MOST) if self._points else 1
+        size = max(1, min(size, self.left))
         found = self._todo[self._at : self._at + size]
         self._at += size
         return found

@@ -2,9 +2,11 @@
 
 from __future__ import annotations
 
+import re
+import shutil
 import tempfile
 import warnings
-from collections.abc import Mapping, Sequence
+from collections.abc import Iterator, Mapping, Sequence
 from pathlib import Path
 from typing import TYPE_CHECKING, Any, NamedTuple
 
@@ -17,14 +19,26 @@ from flexapod.typing import Array
 if TYPE_CHECKING:
     import zarr
 
-__all__ = ["COMPUTED", "FAILED", "FORMAT", "PENDING", "Column", "SweepStore", "Values", "check_header"]
+__all__ = [
+    "COMPUTED",
+    "FAILED",
+    "FORMAT",
+    "PENDING",
+    "TEXTS",
+    "Column",
+    "SweepStore",
+    "Values",
+    "check_header",
+    "tidy",
+    "unreadable",
+]
 
 FORMAT = 1
 Values = NDArray[Any]  # numbers of any kind, or texts
 PENDING, COMPUTED, FAILED = 0, 1, 2
 CHUNK_POINTS = 2048  # of scalars
 CHUNK_BYTES = 1 << 20  # of records
-_TEXTS = {"message": "why there is no result", "remarks": "remarks on the result, a line each"}
+TEXTS = {"message": "why there is no result", "remarks": "remarks on the result, a line each"}
 _NEXT = "Choose another place with --out (store in Python), or remove this one"
 
 
@@ -49,8 +63,15 @@ class SweepStore:
 
     def __init__(self, group: zarr.Group, path: Path | None) -> None:
         self.group, self.path = group, path
-        self._arrays: dict[str, Any] = dict(group.arrays())
-        self.status: Values = np.asarray(self._arrays["status"][:])
+        self._arrays = _arrays(group, path)
+        self.status: Values = np.zeros(self._arrays["status"].shape, dtype=np.int8)
+        for rows, file in self.chunks("status"):
+            try:
+                self.status[rows] = self.read("status", rows)
+            except Exception:  # spoilt: whatever its decoder says
+                if group.read_only:
+                    raise unreadable(path, "status") from None
+                file.unlink(missing_ok=True)
 
     @classmethod
     def create(
@@ -66,6 +87,8 @@ class SweepStore:
         import zarr
         from zarr.storage import MemoryStore
 
+        from flexapod.study.sweep.disk import DurableStore, settle
+
         if path is None:
             group = zarr.create_group(MemoryStore(), attributes=dict(header))
             _fill(group, size, columns)
@@ -75,8 +98,9 @@ class SweepStore:
             beside = {"prefix": f".{path.name}-", "dir": path.parent, "ignore_cleanup_errors": True}
             with tempfile.TemporaryDirectory(**beside) as folder:
                 whole = Path(folder) / "store"
-                _fill(zarr.create_group(whole, attributes=dict(header)), size, columns)
+                _fill(zarr.create_group(DurableStore(whole), attributes=dict(header)), size, columns)
                 whole.rename(path)
+            settle(path.parent)
         except OSError as error:
             raise _unwritable(path, error, 0) from None
         return cls.open(path, write=True)
@@ -88,19 +112,39 @@ class SweepStore:
         Raises
         ------
         InputError
-            There is something else.
+            There is something else, or a part is missing.
+        ComputationError
+            To read: the status of its points is spoilt.
         """
         import zarr
 
+        from flexapod.study.sweep.disk import DurableStore
+
         try:
-            group = zarr.open_group(path, mode="r+" if write else "r")
-        except (OSError, ValueError):
+            place = DurableStore(path) if write and path.is_dir() else path
+            group = zarr.open_group(place, mode="r+" if write else "r", use_consolidated=False)
+        except (OSError, ValueError, KeyError):
             group = None
         if group is None or "flexapod_sweep_format" not in group.attrs:
             raise InputError("is no store of a sweep", file=path, next_step="Choose another place with --out")
         for rest in path.rglob("*.partial") if write else ():
             rest.unlink(missing_ok=True)  # of a process that was killed while writing
         return cls(group, path)
+
+    def dims(self, name: str) -> tuple[str, ...]:
+        """Dimensions of an array."""
+        return tuple(self._arrays[name].metadata.dimension_names or ())
+
+    def read(self, name: str, rows: slice) -> Values:
+        """Values of some points."""
+        return np.asarray(self._arrays[name][rows])
+
+    def chunks(self, name: str) -> Iterator[tuple[slice, Path]]:
+        """Points of an array that share a file, and the file."""
+        array, folder = self._arrays[name], (self.path or Path()) / name
+        for number, begin in enumerate(range(0, array.shape[0], array.chunks[0])):
+            key = array.metadata.encode_chunk_key((number, *(0,) * (array.ndim - 1)))
+            yield slice(begin, min(begin + array.chunks[0], array.shape[0])), folder / key
 
     @property
     def header(self) -> dict[str, Any]:
@@ -136,6 +180,37 @@ class SweepStore:
             array.oindex[(points, *[slice(None)] * (array.ndim - 1))] = values
 
 
+def _arrays(group: zarr.Group, path: Path | None) -> dict[str, Any]:
+    """Arrays of the store; refused where one is missing."""
+    try:
+        with warnings.catch_warnings():  # the folder of an array that is none: said below, in words
+            warnings.filterwarnings("ignore", message="Object at")
+            found: dict[str, Any] = dict(group.arrays())
+        known = " ".join(str(group.attrs[name]) for name in ("varied", "kept")).split()
+    except (OSError, ValueError, KeyError):
+        found, known = {}, []
+    for name in ("status", *TEXTS, *known):
+        if name not in found:
+            raise InputError(f"is a damaged store of a sweep: there is no {name}", file=path, next_step=_NEXT)
+    return found
+
+
+def unreadable(path: Path | None, name: str) -> ComputationError:
+    """What is to be done about a spoilt chunk."""
+    return ComputationError(
+        f"{path}: {name} cannot be read",
+        next_step="Run the sweep again with this store: it computes again what was lost",
+    )
+
+
+def tidy(path: Path) -> None:
+    """Remove what processes left beside a store that were killed while they made it; for the holder of its lock."""
+    made = re.compile(re.escape(f".{path.name}-") + "[a-z0-9_]{8}")  # by tempfile
+    for rest in path.parent.iterdir():
+        if made.fullmatch(rest.name):
+            shutil.rmtree(rest, ignore_errors=True)
+
+
 def _fill(group: zarr.Group, size: int, columns: Mapping[str, Column]) -> None:
     import zarr
 
@@ -143,7 +218,7 @@ def _fill(group: zarr.Group, size: int, columns: Mapping[str, Column]) -> None:
     made = {**columns, "status": Column(("point",), (size,), {"long_name": "state of the point", **flags})}
     for name, column in made.items():
         _array(group, name, column, np.dtype("int8") if name == "status" else np.dtype("float64"))
-    for name, words in _TEXTS.items():
+    for name, words in TEXTS.items():
         _array(group, name, Column(("point",), (size,), {"long_name": words}), None)
     with warnings.catch_warnings():  # all metadata in one place is what xarray looks for first
         warnings.filterwarnings("ignore", message="Consolidated metadata")
@@ -181,6 +256,7 @@ def check_header(path: Path, found: Mapping[str, Any], wanted: Mapping[str, Any]
     words = {
         "flexapod_sweep_format": "has another format",
         "flexapod_version": "was made by another version of flexapod",
+        "flexapod_sources": "was made by other sources of flexapod",
         "study_hash": "holds another study",
         "sweep_hash": "holds another sweep of this study",
         "points_hash": "holds other points: tables that the study names have changed",

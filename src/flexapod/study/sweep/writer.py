@@ -13,7 +13,8 @@ from flexapod.typing import Array
 
 __all__ = ["Writer"]
 
-OFTEN = 1.0  # seconds between two looks at the disk at least
+OFTEN = 2.0  # seconds between two looks at the disk at least
+SELDOM = 30.0  # at most, on however slow a disk
 SHARE = 0.02  # of the time that writing may take
 MOST_BYTES = 32 << 20  # of results that wait
 
@@ -43,7 +44,8 @@ class Writer:
             for copy in self._order[low:high].tolist():
                 self._waiting[copy] = result
             self._bytes += int(high - low) * sum(array.nbytes for array in result.values.values())
-        if self._bytes > MOST_BYTES or perf_counter() - self._last > max(OFTEN, self._cost / SHARE):
+        wait = max(OFTEN, min(SELDOM, self._cost / SHARE))
+        if self._bytes > MOST_BYTES or perf_counter() - self._last > wait:
             self.flush()
 
     def flush(self) -> None:

@@ -1,0 +1,88 @@
+"""TOML text to data: refused in words where it is not valid, or where reading it would take for ever."""
+
+from __future__ import annotations
+
+import re
+import tomllib
+from typing import Any
+
+from flexapod.errors import InputError
+
+__all__ = ["parsed"]
+
+DEEPEST = 32
+"""Most names in a dotted key and most levels of tables and lists; a study has six. Reading takes the square of it."""
+MOST_DIGITS = 1000
+"""Longest whole number that is handed on; Python writes none of more than 4300 digits, not even into a message."""
+
+# Texts and comments, which are passed over, and what separates keys; no piece fails to match once it has begun, so
+# that the time stays proportional to the length of the text.
+_PIECES = re.compile(
+    r'"""(?:\\.|[^\\])*?(?:"{3,5}|\\?\Z)'
+    r"|'''.*?(?:'{3,5}|\Z)"
+    r'|"(?:\\.|[^"\\\n])*\\?"?'
+    r"|'[^'\n]*'?"
+    r"|#[^\n]*"
+    r"|[.=,\n\[\]{}]",
+    re.DOTALL,
+)
+
+
+def parsed(text: str, file: str) -> dict[str, Any]:
+    """The data of a TOML text.
+
+    Parameters
+    ----------
+    text : str
+    file : str
+        Name of the file for messages.
+
+    Raises
+    ------
+    InputError
+        It is no TOML; a key has too many dots, tables or lists lie too deep in each other, or a whole number has
+        thousands of digits.
+    """
+    _refuse_long_keys(text, file)
+    try:
+        data = tomllib.loads(text)
+    except (ValueError, RecursionError) as error:  # ValueError: no TOML, or a number of thousands of digits
+        raise InputError(f"is not valid TOML: {_reason(error)}", file=file) from None
+    _refuse_excess(data, file)
+    return data
+
+
+def _reason(error: Exception) -> str:
+    if isinstance(error, RecursionError):
+        return "lists or tables lie too deep in each other"
+    if isinstance(error, tomllib.TOMLDecodeError):
+        return str(error)
+    return "a number has too many digits, or a date does not exist"
+
+
+def _refuse_long_keys(text: str, file: str) -> None:
+    """Refuse a dotted key of more than `DEEPEST` names before it is read."""
+    dots = 0
+    for piece in _PIECES.finditer(text):
+        if piece[0] == ".":
+            dots += 1
+        elif piece[0] in "=,\n[]{}":
+            dots = 0
+        if dots >= DEEPEST:
+            line = text.count("\n", 0, piece.start()) + 1
+            raise InputError(f"has a key of too many parts in line {line}", file=file, allowed=f"at most {DEEPEST}")
+
+
+def _refuse_excess(data: dict[str, Any], file: str) -> None:
+    """Refuse what lies too deep, and whole numbers that do not fit 64 bits; without recursion, however deep it is."""
+    waiting: list[tuple[str, int, object]] = [("", 0, data)]
+    while waiting:
+        path, depth, value = waiting.pop()
+        if depth > DEEPEST:
+            raise InputError("lies too deep", file=file, key=path, allowed=f"at most {DEEPEST} levels")
+        if isinstance(value, dict):
+            waiting += [(f"{path}.{name}" if path else name, depth + 1, item) for name, item in value.items()]
+        elif isinstance(value, list):
+            waiting += [(f"{path}[{i}]", depth + 1, item) for i, item in enumerate(value, start=1)]
+        elif isinstance(value, int) and abs(value) >= 10**MOST_DIGITS:
+            raise InputError("has too many digits", file=file, key=path, allowed=f"at most {MOST_DIGITS}")

@@ -1,0 +1,52 @@
+"""What a store says to be computed is checked when a sweep goes on with it: what cannot be read is computed again."""
+
+from __future__ import annotations
+
+from collections.abc import Mapping
+
+import numpy as np
+
+from flexapod.study.sweep.store import COMPUTED, PENDING, TEXTS, SweepStore, Values
+
+__all__ = ["incomplete", "mend"]
+
+
+def mend(store: SweepStore) -> int:
+    """Make points pending whose results cannot be read, or are no numbers where every computed point has some.
+
+    Scalars and texts are read; records may be many gigabytes: of them only the presence of their files is checked.
+    Returns how many points became pending.
+    """
+    before, complete = store.status.copy(), store.header["complete"].split()
+    for name in (*store.header["kept"].split(), *TEXTS):
+        for rows, file in store.chunks(name):
+            status = store.status[rows]  # a view
+            if "time" in store.dims(name):
+                spoilt = (status == COMPUTED).any() and not (file.is_file() and file.stat().st_size)
+            else:
+                values = _read(store, name, rows)
+                spoilt = values is None
+                if values is not None and name in complete:
+                    status[incomplete(status, {name: values})] = PENDING
+            if spoilt:
+                file.unlink(missing_ok=True)  # it would be read before points are added to it
+                status[:] = PENDING
+    changed = np.flatnonzero(store.status != before)
+    if len(changed):
+        store.write(changed, {}, store.status[changed], {})
+    return len(changed)
+
+
+def incomplete(status: Values, values: Mapping[str, Values]) -> Values:
+    """Which points are said to be computed while a value of theirs is not a number, (N,)."""
+    lost = np.zeros(len(status), dtype=bool)
+    for array in values.values():
+        lost |= np.isnan(array.reshape(len(array), -1)).any(axis=1)
+    return lost & (status == COMPUTED)
+
+
+def _read(store: SweepStore, name: str, rows: slice) -> Values | None:
+    try:
+        return store.read(name, rows)
+    except Exception:  # whatever the decoder of a spoilt chunk says
+        return None
