@@ -206,10 +206,18 @@ def test_stroke_margins_are_what_is_left():
     stroke = study.robot.legs[0].stroke
     length = data.leg_length.values[-1, 0]
     assert found.values[-1, 0] == pytest.approx(1e3 * min(length - stroke.min, stroke.max - length), rel=1e-12)
-    free = study.robot.replace(legs=tuple(leg.replace(stroke=None) for leg in study.robot.legs))
-    low, high = legend.stroke_limits(free)
-    piston, cylinder = free.legs[0].piston, free.legs[0].cylinder
-    assert (low[0], high[0]) == (cylinder.mouth, cylinder.mouth + piston.length)
+    first, *others = study.robot.legs
+    length = data.leg_length.values[:, 1]
+    narrow = others[0].replace(stroke=others[0].stroke.replace(min=float(np.median(length))))
+    robot = study.robot.replace(legs=(first.replace(stroke=None), narrow, *others[1:]))
+    found = legend.leg_colors("stroke margin", study.replace(robot=robot), data)
+    beyond = int(length.argmin())
+    colors = found.colors(beyond)
+    assert np.isnan(found.values[:, 0]).all() and "leg 1: no limits" in found.html(0)
+    assert found.values[beyond, 1] < 0
+    grey, red = legend.rgb("#A8A8A8"), legend.rgb("#D6002F")  # neither is on the scale of what is left
+    assert tuple(colors[0]) == grey and tuple(colors[1]) == red
+    assert tuple(colors[2]) not in (grey, red)
 
 
 def test_charts_keep_extremes_and_values():
@@ -219,10 +227,12 @@ def test_charts_keep_extremes_and_values():
     deviation = drawn["deviation"]
     assert deviation.unit == "µm"
     assert deviation.values == pytest.approx(1e6 * data.com_deviation.values.T)
-    assert deviation.at(0.1) == pytest.approx(1e6 * data.com_deviation.sel(time=0.1, method="nearest").values)
+    time, values = deviation.at(0.1004)  # of the nearest stored instant, as in the scene
+    assert time == pytest.approx(0.1)
+    assert values == pytest.approx(1e6 * data.com_deviation.sel(time=0.1, method="nearest").values)
     signal = np.vstack([np.sin(np.arange(5000.0)), np.zeros(5000)])
     signal[0, 1234] = 7.0  # one instant among thousands
     kept = view_charts.thinned(signal)
-    assert 1234 in kept and len(kept) <= view_charts.POINTS + 2
+    assert 1234 in kept and len(kept) <= view_charts.MOST + 2
     assert kept[0] == 0 and kept[-1] == 4999 and (np.diff(kept) > 0).all()
     assert list(view_charts.charts(actuator_run()[1])) == ["tip deflection", "length", "torque", "force", "energies"]

@@ -7,11 +7,13 @@ from pathlib import Path
 
 import pytest
 
-from flexapod.app.view import session
+from flexapod.app.view.document import Document
 from flexapod.app.view.network import free_port
 from flexapod.app.view.opening import open_source
 from flexapod.app.view.server import GONE, View
-from flexapod.model import preset_text
+from flexapod.app.view.session import Session
+from flexapod.app.view.source import Source
+from flexapod.model import loads, preset_text
 
 HOST = "127.0.0.1"
 ARGUMENTS = ["--no-sandbox", "--use-gl=angle", "--use-angle=swiftshader", "--enable-unsafe-swiftshader"]
@@ -22,6 +24,13 @@ SHORT = (
     ('hold = "1 s" ', 'hold = "0.05 s" '),
     ('duration = "2 s" ', 'duration = "0.2 s" '),
     ('amplitude = "26.6 deg"', 'amplitude = "2 deg"'),
+)
+
+#: A motion that is computed for minutes, unless somebody cancels it.
+LONG = (
+    ('duration = "2 s" ', 'duration = "1000 s" '),
+    ("tolerance = 1e-4", 'step = "0.5 ms"\noutput_step = "10 ms"'),
+    ('hold = "1 s" ', 'hold = "999 s" '),
 )
 
 
@@ -62,17 +71,14 @@ def browser() -> Iterator[object]:
 
 
 @pytest.fixture
-def view(tmp_path, monkeypatch) -> Iterator[Callable[..., View]]:
-    """`view(text)` or `view(path)`: a server in this process that shows a study or results."""
-    monkeypatch.setattr(session, "QUICK", float("inf"))  # a busy machine is slow, and simulates at once all the same
+def view(tmp_path) -> Iterator[Callable[..., View]]:
+    """`view(text)`: a server in this process that shows a study."""
     running: list[View] = []
 
-    def serve(what: str | Path) -> View:
-        path = what
-        if isinstance(what, str):
-            path = tmp_path / "study.toml"
-            path.write_text(what, encoding="utf-8")
-        running.append(View(open_source(Path(path)), HOST, free_port(HOST, 0)))
+    def serve(text: str) -> View:
+        path = tmp_path / "study.toml"
+        path.write_text(text, encoding="utf-8")
+        running.append(View(open_source(path), HOST, free_port(HOST, 0)))
         return running[-1]
 
     yield serve
@@ -80,15 +86,15 @@ def view(tmp_path, monkeypatch) -> Iterator[Callable[..., View]]:
         server.stop()
 
 
-@pytest.fixture
-def visit(browser) -> Iterator[Callable[..., object]]:
-    """`visit(server)`: a page in a window of its own; the test fails if the page reports an error."""
-    contexts, errors = [], []
+@pytest.fixture(scope="session")
+def desk(browser, tmp_path_factory) -> Iterator[tuple[View, Callable[..., object], list[str]]]:
+    """One server for all tests with a browser; `visit()`: another page that shows it; what went wrong in the pages."""
+    path = tmp_path_factory.mktemp("view") / "study.toml"
+    path.write_text(study_text(*SHORT), encoding="utf-8")
+    errors: list[str] = []
 
-    def go(server: View, **size: int) -> object:
-        context = browser.new_context(viewport={"width": 900, "height": 700} | size, accept_downloads=True)
-        contexts.append(context)
-        page = context.new_page()
+    def visit() -> object:
+        page = browser.new_context(viewport={"width": 900, "height": 700}, accept_downloads=True).new_page()
         page.set_default_timeout(60_000)  # the machine may be busy: what is waited for comes, or the test is wrong
         page.on("pageerror", lambda error: errors.append(str(error)))
         page.on("console", lambda said: errors.append(said.text) if said.type == "error" else None)
@@ -96,7 +102,34 @@ def visit(browser) -> Iterator[Callable[..., object]]:
         page.get_by_role("tab", name="Study").wait_for()
         return page
 
-    yield go
-    for context in contexts:
-        context.close()
-    assert not errors
+    server = View(open_source(path), HOST, free_port(HOST, 0))
+    yield server, visit, errors
+    server.stop()
+
+
+@pytest.fixture(scope="session")
+def table(desk) -> tuple[object, Session]:
+    """A page that stays open from test to test, and its session: a page takes longer to load than most tests."""
+    page = desk[1]()
+    page.get_by_text("misses its rigid path by up to").wait_for()
+    page.wait_for_timeout(300)  # as where people look: they see a page before they ask for another
+    return page, desk[0].sessions[0]
+
+
+@pytest.fixture
+def show(table, desk, tmp_path) -> Iterator[Callable[..., tuple[object, Session]]]:
+    """`show(text)`: the open page with another study from its beginning, and its session; pages report no error."""
+    page, found = table
+    desk[2].clear()
+
+    def begin(text: str, **size: int) -> tuple[object, Session]:
+        page.set_viewport_size({"width": 900, "height": 700} | size)
+        path = str(tmp_path / "study.toml")
+        found.open(Source(document=Document(text, path), study=loads(text, path=path)))
+        return page, found
+
+    yield begin
+    found.cancel()
+    page.wait_for_timeout(300)  # what was said last arrives before the page is cleared, as it does where people look
+    assert not desk[2]
+    assert found in desk[0].sessions

@@ -1,34 +1,34 @@
 """The page of `flexapod view` in a browser: numbers, words, simulation, files, two people at once."""
 
-import gc
 import io
+import os
 import threading
 import time
-import weakref
 import zipfile
 from pathlib import Path
 
-import msgspec
 import pytest
-import viser
-from tests.web.conftest import SHORT, study_text
-from viser import _messages
-from websockets.sync.client import connect
+from tests.web.conftest import LONG, SHORT, study_text
 
 import flexapod as fx
+from flexapod.app import figures
 from flexapod.app.failures import lines_of, parts_of
 from flexapod.app.view import files_panel
-from flexapod.app.view.session import Session
 from flexapod.app.view.uploads import LARGEST
 from flexapod.errors import InputError
 from flexapod.study import open_results, summary
 
 ANSWER = "misses its rigid path by up to"
-LONG = (
-    ('duration = "2 s" ', 'duration = "1000 s" '),
-    ("tolerance = 1e-4", 'step = "0.5 ms"\noutput_step = "10 ms"'),
-    ('hold = "1 s" ', 'hold = "999 s" '),
-)
+POINTS = """[motion]
+type = "waypoints"  # two poses
+points = [
+  { time = "0.05 s", roll = "1 deg" },  # there
+  { time = "0.1 s", heave = "1 mm" },   # and back
+]
+[simulation]
+duration = "0.2 s"
+modes = 1
+"""
 CSV_MOTION = (
     ('type = "roll" ', 'type = "csv"\nfile = "path.csv" '),
     ('amplitude = "26.6 deg"', ""),
@@ -48,10 +48,6 @@ def until(true, seconds=60.0):
     return found
 
 
-def only_session(server) -> Session:
-    return until(lambda: server.sessions)[0]
-
-
 def words_of(text: str) -> list[str]:
     """The words of the command line for a study that is refused."""
     with pytest.raises(InputError) as refused:
@@ -69,10 +65,9 @@ def tab(page, name: str) -> None:
     page.get_by_role("tab", name=name).click()
 
 
-def test_every_number_can_be_changed_and_is_validated_at_once(view, visit):
+def test_every_number_can_be_changed_and_is_validated_at_once(show):
     text = study_text(*SHORT)
-    server = view(text)
-    page, session = visit(server), only_session(server)
+    page, session = show(text)
     page.get_by_text(ANSWER).wait_for()
     assert page.get_by_text(summary(session.data).sentence).is_visible()
 
@@ -87,6 +82,10 @@ def test_every_number_can_be_changed_and_is_validated_at_once(view, visit):
 
     page.get_by_label("mouth [mm]", exact=True).fill("300")
     diameter.fill("20")
+    page.get_by_text("Preview, right to about 1 %").wait_for()
+    page.get_by_role("button", name="Simulate").click()
+    until(lambda: session.data is not None and session.data.attrs["tolerance"] == 1e-4)
+    page.get_by_text("Preview, right to about 1 %").wait_for(state="hidden")
     page.get_by_text(ANSWER).wait_for()
     wanted = text.replace('= "27 mm"', '= "20 mm"').replace('"315.18 mm"', '"300 mm"')
     assert session.study.robot == fx.loads(wanted).robot
@@ -98,9 +97,8 @@ def test_every_number_can_be_changed_and_is_validated_at_once(view, visit):
     until(lambda: session.study.source_text == text)
 
 
-def test_a_dragged_number_moves_the_rigid_preview_before_anything_is_simulated(view, visit, monkeypatch):
-    server = view(study_text(*SHORT))
-    page, session = visit(server), only_session(server)
+def test_a_dragged_number_moves_the_rigid_preview_before_anything_is_simulated(show, monkeypatch):
+    page, session = show(study_text(*SHORT))
     page.get_by_text(ANSWER).wait_for()
     tab(page, "Study")
     page.get_by_label("number", exact=True).click()
@@ -116,25 +114,62 @@ def test_a_dragged_number_moves_the_rigid_preview_before_anything_is_simulated(v
     until(lambda: page.get_by_role("cell").all_inner_texts() != lengths)
 
 
-def test_simulate_shows_progress_and_can_be_cancelled(view, visit):
-    server = view(study_text(*LONG))
-    page, session = visit(server), only_session(server)
+def test_simulate_shows_progress_and_can_be_cancelled(show):
+    page, session = show(study_text(*LONG))
     page.get_by_role("progressbar").wait_for()
     page.get_by_role("button", name="Cancel").click()
     page.get_by_text("Cancelled").wait_for()
     assert not session.busy and session.data is None
     until(lambda: not [t for t in threading.enumerate() if t.name == "flexapod-simulation"])
+    places = session._cores
+    while places._free:
+        assert places.take(lambda: False, lambda: None)
     page.get_by_role("button", name="Simulate").click()
-    page.get_by_role("button", name="Cancel").wait_for()
-    page.context.close()  # who leaves takes the simulation along
-    until(lambda: not [t for t in threading.enumerate() if t.name == "flexapod-simulation"])
-    assert server.sessions == []
+    page.get_by_text("Waiting for a free core").wait_for()
+    places.give_back()
+    page.get_by_text("Simulating.").wait_for()
+    page.get_by_role("button", name="Cancel").click()
+    until(lambda: places._free)
+    while places._free < len(os.sched_getaffinity(0)):
+        places.give_back()
 
 
-def test_downloads(view, visit, tmp_path):
+def test_points_and_tables_are_added_and_taken_out(show):
+    motion = study_text(*SHORT).split("[motion]")[0] + POINTS
+    page, session = show(motion)
+    page.get_by_text(ANSWER).wait_for()
+    tab(page, "Study")
+    page.get_by_role("button", name="Add a point").click()
+    page.get_by_role("button", name="Take out points[3]").wait_for()
+    until(lambda: [p.time for p in session.study.motion.points] == pytest.approx([0.05, 0.1, 0.15]))
+    page.get_by_role("button", name="Take out points[1]").click()
+    until(lambda: [p.time for p in session.study.motion.points] == pytest.approx([0.1, 0.15]))
+    page.get_by_role("button", name="Undo").click()
+    page.get_by_role("button", name="Undo").click()
+    until(lambda: session.study.source_text == motion)
+    page.get_by_role("button", name="Add [load]").click()
+    page.get_by_text("[load]", exact=True).click()
+    page.get_by_role("button", name="Take out [load]").click()
+    until(lambda: "wrench" not in session.study.source_text)
+    page.get_by_text("[leg]", exact=True).click()
+    page.get_by_role("button", name="Six different legs").click()
+    page.get_by_text("[[leg]] 6", exact=True).wait_for()
+    page.get_by_text("[[leg]] 1", exact=True).click()
+    page.get_by_role("button", name="All legs as this one").click()
+    page.get_by_text("[leg]", exact=True).wait_for()
+    until(lambda: session.study.source_text.split() == motion.split() and session.data is not None)
+
+
+def test_downloads(show, tmp_path, monkeypatch):
+    drawn, draw = [], figures.draw
+
+    def once(data, folder, formats):
+        drawn.extend([] if drawn else draw(data, tmp_path / "figures", formats))
+        return drawn
+
+    monkeypatch.setattr(figures, "draw", once)  # the same figures for the archive and the report
     text = study_text(*SHORT)
-    server = view(text)
-    page, session = visit(server), only_session(server)
+    page, session = show(text)
     page.get_by_text(ANSWER).wait_for()
     tab(page, "Files")
     assert download(page, "Study (TOML)") == ("study.toml", text.encode())
@@ -147,16 +182,15 @@ def test_downloads(view, visit, tmp_path):
     name, content = download(page, "Results (CSV)")
     assert name == "study.csv" and content.startswith(b"time [s],")
     name, content = download(page, "Figures (ZIP of PNG)")
-    assert all(n.endswith(".png") for n in zipfile.ZipFile(io.BytesIO(content)).namelist())
+    assert zipfile.ZipFile(io.BytesIO(content)).namelist() == [figure.png.name for figure in drawn]
     name, content = download(page, "Report (HTML)")
     assert name == "study-report.html" and b"</html>" in content
 
 
 @pytest.fixture
-def sender(view, visit):
+def sender(show):
     """A page with the tab Files open: `send(button, name, content)`."""
-    server = view(study_text(*SHORT))
-    page, session = visit(server), only_session(server)
+    page, session = show(study_text(*SHORT))
     tab(page, "Files")
 
     def send(button: str, name: str, content: bytes) -> None:
@@ -194,6 +228,10 @@ def test_an_uploaded_study_takes_the_place_of_the_one_before(sender):
     sender("Study file", "mine.toml", study_text(*CSV_MOTION).encode())
     page.get_by_text("mine.toml", exact=True).wait_for()
     until(lambda: session.study.motion.type == "csv" and session.data is not None)
+    tab(page, "Study")
+    page.get_by_text("[payload]", exact=True).click()
+    page.get_by_label("mass [kg]", exact=True).first.fill("90")  # the table it names is still there
+    until(lambda: session.study.robot.payload.mass == 90.0 and session.data is not None)
     tab(page, "Files")
     actuator = study_text(('duration = "10 s"', 'duration = "0.2 s"'), preset="paper-actuator")
     sender("Study file", "beam.toml", actuator.encode())
@@ -205,70 +243,28 @@ def test_an_uploaded_study_takes_the_place_of_the_one_before(sender):
     assert session.data.sizes["mode"] == 2
 
 
-def test_two_people_have_a_state_each_and_a_fault_stays_with_one(view, visit, monkeypatch):
+def test_two_people_have_a_state_each_and_a_fault_stays_with_one(desk, show, monkeypatch):
     def broken(data):
         raise RuntimeError("the pen is broken")
 
     monkeypatch.setattr(files_panel.downloads, "figures", broken)
-    server = view(study_text(*SHORT))
-    one, two = visit(server), visit(server)
-    until(lambda: len(server.sessions) == 2)
+    server, visit, _ = desk
+    one, first = show(study_text(*SHORT))
+    two = visit()
+    second = until(lambda: [s for s in server.sessions if s is not first])[0]
     for page in (one, two):
         page.get_by_text(ANSWER).wait_for()
-    first, second = server.sessions
     tab(one, "Study")
     one.get_by_text("[payload]", exact=True).click()
     one.get_by_label("mass [kg]", exact=True).first.fill("50")
     until(lambda: {s.study.robot.payload.mass for s in (first, second)} == {50.0, 100.0})
+    until(lambda: first.data is not None)
     tab(one, "Files")
     one.get_by_role("button", name="Figures").click()
     one.get_by_text("unexpected RuntimeError: the pen is broken").wait_for()
     assert not two.get_by_text("RuntimeError").is_visible()
-    one.context.close()
-    until(lambda: len(server.sessions) == 1)
-    tab(two, "Study")
-    two.get_by_text("[payload]", exact=True).click()
-    two.get_by_label("mass [kg]", exact=True).first.fill("60")
-    until(lambda: server.sessions[0].study.robot.payload.mass == 60.0 and server.sessions[0].data is not None)
-
-
-def guest(server, **headers):
-    """Somebody who connects as a browser does, without one."""
-    camera = _messages.ViewerCameraMessage(
-        wxyz=(1, 0, 0, 0), position=(1, 1, 1), fov=1.0, near=0.1, far=10.0, image_height=10, image_width=10,
-        look_at=(0, 0, 0), up_direction=(0, 0, 1),
-    )  # fmt: skip
-    socket = connect(
-        f"ws://127.0.0.1:{server.port}", subprotocols=[f"viser-v{viser.__version__}"], max_size=None, **headers
-    )
-    socket.send(msgspec.msgpack.encode(camera.as_serializable_dict([])))
-    return socket
-
-
-def test_who_comes_and_goes_leaves_nothing(view):
-    server = view(study_text(*SHORT))
-
-    def visit() -> weakref.ref:
-        with guest(server):
-            session = until(lambda: server.sessions)[0]
-            until(lambda: session.data is not None)
-            left = weakref.ref(session)
-            scene = weakref.ref(session.scene)
-        until(lambda: not server.sessions)
-        return left, scene
-
-    visit()
-    threads, left = threading.active_count(), []
-    for _ in range(4):
-        left += visit()
-    gc.collect()
-    until(lambda: gc.collect() >= 0 and not [r for r in left if r() is not None])
-    pool = 32  # viser's callbacks share a pool that grows to this size and no further
-    assert threading.active_count() <= threads + pool
-
-
-def test_a_page_of_another_site_gets_nothing(view, caplog):
-    server = view(study_text(*SHORT))
-    with guest(server, origin="http://evil.example"):
-        until(lambda: "refused" in caplog.text)
-        assert server.sessions == []
+    two.context.close()  # who leaves takes nobody along
+    until(lambda: server.sessions == [first])
+    tab(one, "Study")
+    one.get_by_label("mass [kg]", exact=True).first.fill("60")
+    until(lambda: first.study.robot.payload.mass == 60.0 and first.data is not None)

@@ -9,9 +9,17 @@ import numpy as np
 from flexapod import model
 from flexapod.app.view.legend import LEGEND_STYLE, rgb
 from flexapod.app.view.robot_parts import add_grid
-from flexapod.app.view.scene import OF_RESULTS, Scene
-from flexapod.app.view.scene_geometry import ActuatorMotion, beam_line, disc, strip, tube, tube_faces
-from flexapod.study.scene import STATIONS
+from flexapod.app.view.scene import OF_RESULTS, STRAIGHT, Scene, mode_note
+from flexapod.app.view.scene_geometry import (
+    BEAM_POINTS,
+    ActuatorMotion,
+    across,
+    beam_line,
+    disc,
+    strip,
+    tube,
+    tube_faces,
+)
 from flexapod.study.words import number, text
 from flexapod.typing import Array
 
@@ -19,9 +27,10 @@ if TYPE_CHECKING:
     import viser
     from xarray import Dataset
 
+    from flexapod.study.beam_modes import BeamModes
+
 __all__ = ["ActuatorScene"]
 
-_POINTS = 2 * STATIONS - 1
 _BEAM, _HUB, _INSIDE, _GHOST, _TIP = rgb("#0072B2"), rgb("#4A4F57"), rgb("#B5BAC1"), rgb("#7A7A7A"), rgb("#C2185B")
 _HERE = (0.0, 0.0, 0.0)
 _NOTHING = np.zeros((1, 2, 3))
@@ -51,32 +60,19 @@ class ActuatorScene(Scene):
                 self.show_pose((actuator.angle, actuator.free_length))
             if first:
                 reach = actuator.hub_radius + actuator.length
-                self._look(reach * np.array([0.0, -1.6, 0.2]), reach * np.array([0.3, 0.0, 0.0]))
+                beside = reach * np.array([0.7, 0.0, 0.0])  # the panel covers the right of the page
+                self._look(reach * np.array([0.0, -1.6, 0.2]), beside)
 
     def show_pose(self, pose: tuple[float, float]) -> None:
         """As `Scene.show_pose`; angle from the horizontal [rad] and length outside the hub [m]."""
         with self.lock:
             if self._study is None:
                 return
-            line = beam_line(self._study.actuator, pose[0], pose[1], np.linspace(0.0, 1.0, _POINTS))
+            line = beam_line(self._study.actuator, pose[0], pose[1], np.linspace(0.0, 1.0, BEAM_POINTS))
             with self.client.atomic():
                 self._only()
                 self._draw(self._study.actuator, line, pose[0], pose[1])
-
-    def show_data(self, data: Dataset | None) -> None:
-        """As `Scene.show_data`."""
-        with self.lock:
-            if self._study is None:
-                return
-            self.data, self._motion = data, None
-            if data is None:
-                self._only()
-                return
-            self._motion = ActuatorMotion(self._study, data)
-            self.automatic = self._motion.automatic_scale()
-            self.scale = self._factor or self.automatic
-            self._redraw_paths()
-            self.set_time(min(self.time, float(self._motion.time[-1])))
+                self._draws(f"the straight beam, {text(pose[1], 'm', 4)} outside the hub", STRAIGHT)
 
     def set_time(self, time: float) -> None:
         """As `Scene.set_time`."""
@@ -88,11 +84,23 @@ class ActuatorScene(Scene):
             with self.client.atomic():
                 self._only(*OF_RESULTS)
                 self._draw(self._motion.actuator, bent, float(self._motion.angle[i]), float(self._motion.length[i]))
-                self._nodes["ghost"].points = np.stack([straight[:1], straight[-1:]], axis=1)
+                self._draw_ghost(straight)
                 self._mark(straight[-1], bent[-1], float(self._motion.deflection[i]))
+                self._draws("")
 
-    def show_mode(self, modes: Dataset, mode: int, amplitude: float, phase: float) -> None:
-        """Modes of the single actuator are listed, not drawn."""
+    def show_mode(self, modes: BeamModes, mode: int, amplitude: float, phase: float, where: str = "") -> None:
+        """As `Scene.show_mode`; the size is the free length."""
+        with self.lock:
+            if self._study is None:
+                return
+            actuator, length = self._study.actuator, modes.free_length
+            line = beam_line(actuator, actuator.angle, length, np.linspace(0.0, 1.0, BEAM_POINTS))
+            bent = line + across(actuator.angle, amplitude * length * phase * modes.shape[mode - 1])
+            with self.client.atomic():
+                self._only("rigid ghost")
+                self._draw(actuator, bent, actuator.angle, length)
+                self._draw_ghost(line)
+                self._draws(f"mode {mode}{where and f' at {where}'}", mode_note(amplitude * length))
 
     def legend(self) -> str:
         """As `Scene.legend`."""
@@ -126,10 +134,10 @@ class ActuatorScene(Scene):
         tip_radius = 3.0 * radius if actuator.tip_mass else 1.3 * radius
         tip = scene.add_icosphere("/tip", tip_radius, color=_HUB)
         self._add("labels", scene.add_label("/tip/name", _tip_words(actuator), position=_HERE, anchor="top-left"))
-        empty = np.zeros((_POINTS * 8, 3))
+        empty = np.zeros((BEAM_POINTS * 8, 3))
         inside = scene.add_mesh_simple("/beam_inside", np.zeros((16, 3)), tube_faces(2), color=_INSIDE)
         return {
-            "beam": scene.add_mesh_simple("/beam", empty, tube_faces(_POINTS), color=_BEAM),
+            "beam": scene.add_mesh_simple("/beam", empty, tube_faces(BEAM_POINTS), color=_BEAM),
             "inside": inside,
             "tip": tip,
             "ghost": self._add("rigid ghost", ghost),
@@ -147,6 +155,9 @@ class ActuatorScene(Scene):
         self._nodes["inside"].vertices = tube(np.stack([behind, line[0]]), 0.9 * radius)
         self._nodes["tip"].position = line[-1]
 
+    def _draw_ghost(self, line: Array) -> None:
+        self._nodes["ghost"].points = np.stack([line[:1], line[-1:]], axis=1)
+
     def _mark(self, start: Array, end: Array, deflection: float) -> None:
         """Arrow from the rigid to the drawn tip; in words the true deflection."""
         length = float(np.linalg.norm(end - start))
@@ -154,6 +165,10 @@ class ActuatorScene(Scene):
         self._nodes["arrow"].head_length = round(min(0.06, 0.5 * length), 4)
         self._nodes["words"].text = f"deflection {text(deflection, 'm')}"
         self._nodes["words"].position = end
+
+    def _take(self, data: Dataset | None) -> ActuatorMotion | None:
+        self._motion = None if data is None or self._study is None else ActuatorMotion(self._study, data)
+        return self._motion
 
     def _redraw_paths(self) -> None:
         if self._motion is not None:

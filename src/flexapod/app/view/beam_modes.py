@@ -1,4 +1,4 @@
-"""Modes of a single actuator's beam at a free length: frequencies and damping, rotation and extension held."""
+"""Modes of a single actuator's beam at a free length, rotation and extension held: a list, one of them animated."""
 
 from __future__ import annotations
 
@@ -7,84 +7,72 @@ from typing import TYPE_CHECKING
 
 from flexapod import model
 from flexapod.app.view import words
-from flexapod.app.view.latest import Latest
-from flexapod.app.view.scene import Scene
-from flexapod.errors import FlexapodError
+from flexapod.app.view.listed_modes import Listed, ListedModes
+from flexapod.app.view.scene_geometry import BEAM_POINTS
 from flexapod.study.words import number, text
 
 if TYPE_CHECKING:
     import viser
 
+    from flexapod.study.beam_modes import BeamModes as Modes
+
 __all__ = ["BeamModes"]
 
-QUIET = 0.2  # after a change, before the modes are computed [s]
+QUIET = 0.1  # after the slider has moved, before the modes are computed [s]
+MOST = 12  # shapes
 
 
-class BeamModes:
-    """Length and number of shapes of a beam, and the frequencies they give, for one user."""
+class BeamModes(ListedModes[model.ActuatorStudy]):
+    """Length and number of shapes of a beam, and the modes they give, for one user."""
 
-    def __init__(self, client: viser.ClientHandle, scene: Scene) -> None:
-        self.client, self.scene = client, scene
-        self._study: model.ActuatorStudy | None = None
-        self._latest = Latest(self._compute, quiet=QUIET)
-        gui = client.gui
+    size = "the free length"
+
+    def _add_controls(self, gui: viser.GuiApi) -> None:
         self._length = gui.add_slider("free length [m]", 0.0, 1.0, 0.01, 0.5, hint="Length outside the hub")
-        self._count = gui.add_slider("shapes", 1, 12, 1, 3, hint="Number of lateral shapes")
-        self._words = gui.add_html("")
+        self._count = gui.add_slider("shapes", 1, MOST, 1, 3, hint="Number of lateral shapes, and of modes")
         for slider in (self._length, self._count):
-            slider.on_update(lambda event: self._moved() if event.client is not None else None)
+            slider.on_update(lambda event: self._moved(QUIET) if event.client is not None else None)
 
-    def show_study(self, study: model.ActuatorStudy) -> None:
-        """List the modes of another study; computed in the background."""
+    def _fit(self, study: model.ActuatorStudy) -> None:
         actuator = study.actuator
-        self._study = study
         self._length.min, self._length.max = 0.05 * actuator.length, actuator.length
         self._length.precision = max(0, math.ceil(2 - math.log10(actuator.length)))
         self._length.step, self._length.value = 0.005 * actuator.length, actuator.free_length
-        self._count.value = min(12, max(1, study.simulation.modes))
-        self._latest.request()
+        self._count.value = min(MOST, max(1, study.simulation.modes))
 
-    def pause(self) -> None:
-        """Nothing moves here."""
+    def _listed(self, study: model.ActuatorStudy) -> Listed:
+        from flexapod.study.beam_modes import beam_modes
 
-    def close(self) -> None:
-        """Drop the study."""
-        self._latest.close()
-        self._study = None
+        still = _still(study, self._length.value, self._count.value)
+        found = beam_modes(still, BEAM_POINTS)
+        names = [f"{i}: {number(f, 4)} Hz" for i, f in enumerate(found.frequency, start=1)]
+        return Listed(
+            found, names, _table(found, still), f"{text(found.free_length, 'm', 4)} of free length", found.free_length
+        )
 
-    def _moved(self) -> None:
-        if self._study is not None:
-            self.scene.driver = None
-            self.scene.show_pose((self._study.actuator.angle, self._length.value))
-            self._latest.request()
-
-    def _compute(self) -> None:
-        study = self._study
-        if study is None:
-            return
-        try:
-            self._words.content = _described(study, self._length.value, self._count.value)
-        except FlexapodError as error:
-            self._words.content = words.error_html(error)
-        except Exception as error:
-            self._words.content = words.fault_html(error)
+    def _preview(self, study: model.ActuatorStudy) -> None:
+        self.scene.show_pose((study.actuator.angle, self._length.value))
 
 
-def _described(study: model.ActuatorStudy, length: float, count: int) -> str:
-    """Frequencies and damping of the beam at a free length [m] with a number of shapes."""
+def _still(study: model.ActuatorStudy, length: float, count: int) -> model.ActuatorStudy:
+    """The study at rest at a free length [m] with a number of shapes."""
+    return study.replace(
+        actuator=study.actuator.replace(free_length=length),
+        simulation=study.simulation.replace(modes=count, duration=study.duration),
+        motion=model.ActuatorMotion(),
+        load=model.ActuatorLoad(),
+    )
+
+
+def _table(modes: Modes, study: model.ActuatorStudy) -> str:
+    """Frequencies and damping as HTML, and the sag where the beam lies level."""
     from flexapod.study.describe.actuator import describe_actuator
 
-    still = model.ActuatorMotion()
-    actuator = study.actuator.replace(free_length=length)
-    simulation = study.simulation.replace(modes=count, duration=study.duration)
-    changed = study.replace(actuator=actuator, simulation=simulation, motion=still, load=model.ActuatorLoad())
-    beam = describe_actuator(changed).beam[0]
-    if beam.problem is not None:
-        return words.block(beam.problem, "error")
     rows = [
         [str(i), number(f, 4), number(100 * d, 3)]
-        for i, (f, d) in enumerate(zip(beam.frequency, beam.damping_ratio, strict=True), start=1)
+        for i, (f, d) in enumerate(zip(modes.frequency, modes.damping_ratio, strict=True), start=1)
     ]
-    sag = f"The tip sags by {text(beam.sag, 'm')} where the beam lies level. " if beam.sag else ""
-    note = sag + "Rotation and extension held, about the straight beam at rest."
+    sag = describe_actuator(study).beam[0].sag
+    level = f"The tip sags by {text(sag, 'm')} where the beam lies level. " if sag else ""
+    note = level + "Rotation and extension held, about the straight beam at rest."
     return words.table_html(["Mode", "frequency [Hz]", "damping [%]"], rows) + words.block(note, "soft")

@@ -9,7 +9,9 @@ from typing import TYPE_CHECKING, Any
 import numpy as np
 from numpy.typing import NDArray
 
-from flexapod.app.view.legend import LEG_COLORS
+from flexapod.app.view.scene_geometry import nearest
+from flexapod.study.colours import AXIS_COLORS, ENERGIES, LEG_COLORS
+from flexapod.study.summary import NOTHING
 from flexapod.study.words import number, scale
 from flexapod.typing import Array
 
@@ -17,11 +19,12 @@ if TYPE_CHECKING:
     import viser
     from xarray import DataArray, Dataset
 
-__all__ = ["Chart", "ChartView", "charts", "thinned"]
+__all__ = ["POINTS", "Chart", "ChartView", "charts", "thinned"]
 
-POINTS = 900  # of a drawn line: the extremes of each piece are kept
+POINTS = {"com": "centre of mass", "tool": "tool"}
+MOST = 900  # instants of a drawn line: the extremes of each piece are kept
 
-_AXES = ("#7A5195", "#0072B2", "#D55E00")
+_AXES = tuple(AXIS_COLORS.values())
 _OTHERS = ("#0072B2", "#009E73", "#D55E00", "#E69F00", "#A23B72", "#56B4E9")
 _DASHES: tuple[tuple[float, ...], ...] = ((), (6, 3), (8, 3, 2, 3), (2, 2), (10, 2), (4, 2, 1, 2))
 _CURSOR = "#888888"
@@ -29,7 +32,7 @@ _CURSOR = "#888888"
 
 @dataclass(frozen=True, kw_only=True)
 class Chart:
-    """Lines over time: `values` (lines, T) in the unit `unit`, at `time` (T,) [s]."""
+    """Lines over time: `values` (lines, T) in the unit `unit`, at `time` (T,) [s]; 0 where they are but rounding."""
 
     title: str
     unit: str
@@ -42,19 +45,21 @@ class Chart:
     def limits(self) -> tuple[float, float]:
         """Of the vertical axis."""
         low, high = float(np.nanmin(self.values)), float(np.nanmax(self.values))
-        margin = 0.06 * (high - low) or 0.06 * abs(high) or 1.0
+        margin = 0.06 * (high - low) or 0.06 * abs(high) or 1.0  # lines that are 0: from -1 to 1
         return low - margin, high + margin
 
-    def at(self, time: float) -> Array:
-        """Values of all lines at an instant, between the stored ones, (lines,)."""
-        return np.array([np.interp(time, self.time, line) for line in self.values])
+    def at(self, time: float) -> tuple[float, Array]:
+        """The stored instant nearest to a time, as in the scene, and the values of all lines there, (lines,)."""
+        place = nearest(self.time, time)
+        return float(self.time[place]), self.values[:, place]
 
 
-def charts(data: Dataset) -> dict[str, Chart]:
-    """The charts of a result by name: a robot's, or a single actuator's."""
+def charts(data: Dataset, point: str = "com") -> dict[str, Chart]:
+    """The charts of a result by name: a robot's (deviation of its `point`, "com" or "tool"), or a single actuator's."""
     if "com_deviation" in data:
+        title, deviation = f"Deviation of the {POINTS[point]}", data[f"{point}_deviation"]
         return {
-            "deviation": _chart(data, "Deviation of the centre of mass", data.com_deviation, "m", list("xyz"), _AXES),
+            "deviation": _chart(data, title, deviation, "m", list("xyz"), _AXES),
             "leg forces": _chart(data, "Force of the drives", data.actuator_force, "N", _legs(data), LEG_COLORS),
             "tip deflections": _chart(
                 data, "Piston tips off the cylinders' axes", _sizes(data.tip_deflection), "m", _legs(data), LEG_COLORS
@@ -79,10 +84,11 @@ def _sizes(values: DataArray) -> DataArray:
 
 
 def _chart(data: Dataset, title: str, values: DataArray, unit: str, names: list[str], colors: tuple[str, ...]) -> Chart:
-    shown = scale(values, unit)
-    lines = shown(values.values).reshape(data.sizes["time"], -1).T
+    none = unit == "m" and float(np.abs(values.values).max()) < NOTHING
+    shown = scale(0 * values if none else values, unit)
+    lines = shown(0 * values.values if none else values.values).reshape(data.sizes["time"], -1).T
     return Chart(
-        title=title,
+        title=f"{title}: none" if none else title,
         unit=shown.name,
         time=data.time.values,
         values=lines,
@@ -92,27 +98,20 @@ def _chart(data: Dataset, title: str, values: DataArray, unit: str, names: list[
 
 
 def _energies(data: Dataset) -> Chart:
-    parts = {
-        "kinetic": data.energy_kinetic,
-        "gravity, change": data.energy_potential - data.energy_potential[0],
-        "strain": data.energy_strain,
-        "dissipated": data.energy_dissipated,
-        "work of drives": data.work_drive,
-        "work of loads": data.work_external,
-    }
-    values = np.stack([part.values for part in parts.values()])
+    drawn = [name for name in ENERGIES if name in data]
+    values = np.stack([data[name].values - data[name].values[0] for name in drawn])
     shown = scale(values, "J")
     return Chart(
-        title="Energies and works",
+        title="Energies and works, change since the start",
         unit=shown.name,
         time=data.time.values,
         values=shown(values),
-        names=tuple(parts),
-        colors=_OTHERS,
+        names=tuple(ENERGIES[name][0] for name in drawn),
+        colors=tuple(ENERGIES[name][1] for name in drawn),
     )
 
 
-def thinned(values: Array, most: int = POINTS) -> NDArray[np.intp]:
+def thinned(values: Array, most: int = MOST) -> NDArray[np.intp]:
     """Which of T instants to draw: of each piece of the time the extremes of every line (lines, T), in order."""
     count = values.shape[1]
     if count <= most:
@@ -165,9 +164,10 @@ class ChartView:
             self._values.content = _readout(self._chart, time)
 
     def _lines(self, chart: Chart, time: float) -> tuple[Array, ...]:
-        """Instants, lines, and the cursor: a line along the lower edge that rises to the upper one at `time`."""
+        """Instants, lines, and the cursor: a line along the lower edge that rises at the instant nearest to `time`."""
         instants, (low, high) = chart.time[self._drawn], chart.limits
-        place, now = np.full(3, int(np.searchsorted(instants, time))), chart.at(time)
+        time, now = chart.at(time)
+        place = np.full(3, int(np.searchsorted(instants, time)))
         lines = [np.insert(line[self._drawn], place, at) for line, at in zip(chart.values, now, strict=True)]
         mark = np.insert(np.full(len(instants), low), place, (low, high, low))
         return np.insert(instants, place, time), *lines, mark
@@ -188,15 +188,16 @@ def _axes() -> tuple[Any, ...]:
 
 
 def _readout(chart: Chart, time: float) -> str:
-    """Names, colours and values of the lines at an instant, as HTML."""
+    """Names, colours and values of the lines at the instant nearest to a time, as HTML."""
+    time, values = chart.at(time)
     cells = "".join(
-        f"<span style='white-space:nowrap'><svg width='22' height='8' aria-hidden='true'><line x1='0' y1='4' x2='22' "
+        f"<span><svg width='22' height='8' aria-hidden='true'><line x1='0' y1='4' x2='22' "
         f"y2='4' stroke='{color}' stroke-width='2.5' stroke-dasharray='{','.join(str(d) for d in dash)}'/></svg> "
         f"{escape(name)} <b>{number(value)}</b></span>"
-        for name, color, dash, value in zip(chart.names, chart.colors, _DASHES, chart.at(time), strict=False)
+        for name, color, dash, value in zip(chart.names, chart.colors, _DASHES, values, strict=False)
     )
     return (
         f"<div class='flexapod-readout' style='padding:0 0.75em 0.5em;font-size:0.8rem;line-height:1.5'>"
         f"At {time:.4g} s, in {escape(chart.unit)}:"
-        f"<div style='display:grid;grid-template-columns:1fr 1fr;gap:0 0.8em'>{cells}</div></div>"
+        f"<div style='display:grid;grid-template-columns:repeat(2,minmax(0,1fr));gap:0 0.8em'>{cells}</div></div>"
     )

@@ -3,6 +3,8 @@
 from __future__ import annotations
 
 import re
+import tomllib
+from collections.abc import Iterable
 from dataclasses import dataclass
 from typing import Any
 
@@ -37,13 +39,10 @@ class Document:
         del table[last]
         return Document(tree.as_string(), self.path)
 
-    def has(self, key: str) -> bool:
-        """Whether there is a value at a key path."""
-        try:
-            table, last = _holder(tomlkit.parse(self.text), key)
-            return bool(table[last] is not None)
-        except (LookupError, TypeError):
-            return False
+    def having(self, keys: Iterable[str]) -> set[str]:
+        """Those of the key paths at which there is a value."""
+        data = tomllib.loads(self.text)
+        return {key for key in keys if _is_there(data, key)}
 
 
 @dataclass(frozen=True)
@@ -80,6 +79,15 @@ def quantity(value: object) -> Quantity | None:
         return Quantity(float(value), "")
     match = _WRITTEN.match(value) if isinstance(value, str) else None
     return Quantity(float(match[1]), match[2]) if match else None
+
+
+def _is_there(data: Any, key: str) -> bool:
+    for name, index in _STEP.findall(key):
+        try:
+            data = data[int(index) - 1 if index else name]
+        except (LookupError, TypeError):
+            return False
+    return True
 
 
 def _holder(tree: Any, key: str) -> tuple[Any, str | int]:

@@ -43,7 +43,7 @@ def figures(data: Dataset) -> bytes:
     with _ONE_AT_A_TIME, tempfile.TemporaryDirectory(prefix="flexapod-") as folder:
         archive = io.BytesIO()
         with zipfile.ZipFile(archive, "w", zipfile.ZIP_STORED) as files:
-            for figure in draw(data, folder):
+            for figure in draw(data, folder, ("png",)):
                 files.write(figure.png, figure.png.name)
         return archive.getvalue()
 

@@ -2,7 +2,7 @@
 
 from __future__ import annotations
 
-import tempfile
+import threading
 import time
 from collections.abc import Callable
 from pathlib import Path
@@ -12,8 +12,10 @@ from viser import Icon, IconName
 
 from flexapod.app.view import downloads, words
 from flexapod.app.view.document import Document
+from flexapod.app.view.editing import read
 from flexapod.app.view.limits import limit_uploads
-from flexapod.app.view.uploads import LARGEST, read_upload, store_table
+from flexapod.app.view.threads import Threads
+from flexapod.app.view.uploads import LARGEST, Sent, read_upload, store_table
 from flexapod.errors import FlexapodError
 
 if TYPE_CHECKING:
@@ -25,15 +27,20 @@ if TYPE_CHECKING:
 __all__ = ["FilesPanel"]
 
 ACKNOWLEDGED = 0.5  # time in which the browser shows that a file has arrived, before the page is built anew [s]
+_BUSY = "One file at a time: wait until the one before is done."
 _NO_RESULTS = "There are no results yet: press Simulate, or wait until it is done."
 
 
 class FilesPanel:
-    """The tab "Files" of one client.
+    """The tab "Files" of one client; one file is written or read at a time, in a thread of the session.
 
     Parameters
     ----------
     client : viser.ClientHandle
+    threads : Threads
+        Of the session.
+    sent : Sent
+        The tables that this person has sent.
     document : callable
         Gives the study file as it stands.
     study, data : callable
@@ -45,19 +52,21 @@ class FilesPanel:
     def __init__(
         self,
         client: ClientHandle,
+        threads: Threads,
+        sent: Sent,
         document: Callable[[], Document],
         study: Callable[[], Study | ActuatorStudy],
         data: Callable[[], Dataset | None],
         on_upload: Callable[[Document], None],
     ) -> None:
         self._client, self._document, self._study, self._data = client, document, study, data
-        self._on_upload = on_upload
-        self._folder = tempfile.TemporaryDirectory(prefix="flexapod-uploads-", ignore_cleanup_errors=True)
+        self._threads, self._sent, self._on_upload = threads, sent, on_upload
+        self._lock, self._busy, self._closed = threading.Lock(), False, False
         gui = client.gui
         self._words = gui.add_html("")
         with gui.add_folder("Download"):
             text = gui.add_button("Study (TOML)", icon=Icon.FILE_TEXT)
-            text.on_click(lambda _: self._send(self._name(".toml"), self._document().text.encode()))
+            text.on_click(lambda _: self._do(self._send_study))
             self._offer("Results (NetCDF)", Icon.DATABASE, ".nc", downloads.netcdf)
             self._offer("Results (CSV)", Icon.TABLE, ".csv", downloads.csv)
             self._offer("Figures (ZIP of PNG)", Icon.PHOTO, "-figures.zip", downloads.figures)
@@ -66,21 +75,36 @@ class FilesPanel:
             )
         with gui.add_folder("Upload"):
             gui.add_html(words.block(f"A study file (TOML, UTF-8) of at most {LARGEST / 1e6:g} MB.", "soft"))
-            sent = gui.add_upload_button("Study file", icon=Icon.UPLOAD, mime_type=".toml,text/plain")
+            study_file = gui.add_upload_button("Study file", icon=Icon.UPLOAD, mime_type=".toml,text/plain")
             gui.add_html(words.block("Tables that a study names (CSV) first, then the study.", "soft"))
             table = gui.add_upload_button("Table", icon=Icon.UPLOAD, mime_type=".csv,text/csv")
-        sent.on_upload(lambda _: self._take(sent.value.name, sent.value.content))
-        table.on_upload(lambda _: self._keep(table.value.name, table.value.content))
+        study_file.on_upload(lambda _: self._do(lambda: self._take(study_file.value.name, study_file.value.content)))
+        table.on_upload(lambda _: self._do(lambda: self._keep(table.value.name, table.value.content)))
         limit_uploads(client, LARGEST, self._too_large)
 
     def close(self) -> None:
-        """Delete the tables that were sent."""
-        self._folder.cleanup()
+        """Send nothing any more; what is being written is dropped."""
+        self._closed = True
+
+    def _do(self, work: Callable[[], None]) -> None:
+        """Do some work in the background, unless some is being done: a button that waits would hold up others."""
+        with self._lock:
+            if self._busy:
+                self._words.content = words.block(_BUSY, "warning")
+                return
+            self._busy = True
+        self._threads.start("files", lambda: self._done(work))
+
+    def _done(self, work: Callable[[], None]) -> None:
+        try:
+            work()
+        finally:
+            self._busy = False
 
     def _offer(self, label: str, icon: IconName, ending: str, make: Callable[[Dataset], bytes]) -> None:
         button = self._client.gui.add_button(label, icon=icon)
 
-        def send(_: object) -> None:
+        def send() -> None:
             data = self._data()
             if data is None:
                 self._words.content = words.block(_NO_RESULTS, "warning")
@@ -92,9 +116,18 @@ class FilesPanel:
             finally:
                 button.disabled = False
 
-        button.on_click(send)
+        button.on_click(lambda _: self._do(send))
+
+    def _send_study(self) -> None:
+        found = read(self._document())
+        self._send(self._name(".toml"), found.document.text.encode())
+        if found.error is not None:
+            remark = words.block("The study is sent as it stands, which is refused:", "warning")
+            self._words.content += remark + words.error_html(found.error)
 
     def _send(self, name: str, content: bytes) -> None:
+        if self._closed:
+            return
         self._client.send_file_download(name, content, save_immediately=True)
         self._words.content = words.block(f"Sent: {name} ({len(content) / 1e6:.2g} MB).", "good")
 
@@ -104,7 +137,7 @@ class FilesPanel:
 
     def _take(self, name: str, content: bytes) -> None:
         try:
-            document = read_upload(name, content, Path(self._folder.name))
+            document = read_upload(name, content, self._sent.folder)
         except FlexapodError as error:
             self._words.content = words.error_html(error)
             return
@@ -114,7 +147,7 @@ class FilesPanel:
 
     def _keep(self, name: str, content: bytes) -> None:
         try:
-            kept = store_table(name, content, Path(self._folder.name))
+            kept = store_table(name, content, self._sent.folder)
         except FlexapodError as error:
             self._words.content = words.error_html(error)
             return

@@ -32,7 +32,7 @@ class Header:
     ) -> None:
         gui = client.gui
         gui.add_html(words.title(name))
-        self._words = gui.add_html("")
+        self._words, self._fault = gui.add_html(""), gui.add_html("")
         self._simulate = gui.add_button("Simulate", icon=Icon.PLAYER_PLAY, hint="Compute the study as it stands now")
         self._progress = gui.add_progress_bar(0.0, visible=False)
         self._cancel = gui.add_button("Cancel", icon=Icon.X, visible=False, color="red", hint="Stop the simulation")
@@ -42,6 +42,11 @@ class Header:
     def say(self, html: str) -> None:
         """Show words (HTML of `words`) in place of those before."""
         self._words.content = html
+
+    def fault(self, html: str) -> None:
+        """Show a fault below the words until the next change or simulation that is asked for; "" for none."""
+        if self._fault.content != html:
+            self._fault.content = html
 
     def running(self, on: bool) -> None:
         """Show the progress bar and Cancel in place of Simulate, or the other way round."""

@@ -6,6 +6,8 @@ import threading
 import time
 from collections.abc import Callable
 
+from flexapod.app.view.threads import Threads
+
 __all__ = ["Latest"]
 
 
@@ -14,24 +16,29 @@ class Latest:
 
     Parameters
     ----------
+    threads : Threads
+        Of the session; they tell what the work raises.
     work : callable
-        Without arguments; it must take care of its own errors.
-    quiet : float
-        Time without a request before the work begins [s].
+        Without arguments.
     """
 
-    def __init__(self, work: Callable[[], None], quiet: float = 0.0) -> None:
-        self._work, self._quiet = work, quiet
-        self._lock, self._asked, self._running, self._last = threading.Lock(), False, False, 0.0
+    def __init__(self, threads: Threads, work: Callable[[], None]) -> None:
+        self._threads, self._work = threads, work
+        self._lock, self._asked, self._running, self._due = threading.Lock(), False, False, 0.0
 
-    def request(self) -> None:
-        """Ask for the work to be done with what holds from now on."""
+    def request(self, quiet: float = 0.0) -> None:
+        """Ask for the work to be done with what holds from now on, after a time [s] without another request."""
         with self._lock:
-            self._asked, self._last = True, time.monotonic()
+            self._asked, self._due = True, time.monotonic() + quiet
             if self._running:
                 return
             self._running = True
-        threading.Thread(target=self._run, name="flexapod-latest", daemon=True).start()
+        self._threads.start("latest", self._run)
+
+    def cancel(self) -> None:
+        """Take the request back; work that has begun goes on."""
+        with self._lock:
+            self._asked = False
 
     def close(self) -> None:
         """Begin nothing any more."""
@@ -44,14 +51,14 @@ class Latest:
                 time.sleep(wait)
                 continue
             with self._lock:
-                self._asked = False
-            self._work()
+                self._asked, work = False, self._work
+            self._threads.guarded(work)
 
     def _wait(self) -> float | None:
         """Time until the work may begin [s]; None, and the thread ends, where nothing is asked for."""
         with self._lock:
             self._running = self._asked
-            return self._last + self._quiet - time.monotonic() if self._asked else None
+            return self._due - time.monotonic() if self._asked else None
 
 
 def _nothing() -> None:

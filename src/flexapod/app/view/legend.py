@@ -8,23 +8,24 @@ from typing import TYPE_CHECKING
 import numpy as np
 
 from flexapod import model
+from flexapod.study.colours import LEG_COLORS
+from flexapod.study.summary import NOTHING
 from flexapod.study.words import number, scale
 from flexapod.typing import Array
 
 if TYPE_CHECKING:
     from xarray import Dataset
 
-__all__ = ["LEGEND_STYLE", "LEG_COLORS", "QUANTITIES", "LegColors", "leg_colors", "plain_legend", "rgb"]
+__all__ = ["LEGEND_STYLE", "QUANTITIES", "LegColors", "leg_colors", "plain_legend", "rgb"]
 
 #: What legs can be coloured by.
 QUANTITIES = ("plain", "force", "stroke margin", "bending")
 
-#: Those of the figures (`plot.style`, which would load matplotlib before the first picture).
-LEG_COLORS = ("#0072B2", "#E69F00", "#009E73", "#D55E00", "#56B4E9", "#A23B72")
-
 # Anchors at equal distances. Both scales also grow or fall in lightness alone: readable in grey.
 _SEQUENTIAL = ("#00204D", "#31446B", "#666970", "#958F78", "#CBBA69", "#FFEA46")  # cividis
 _DIVERGING = ("#B35806", "#F1A340", "#D8D8D8", "#67A9CF", "#2166AC")
+
+_BEYOND, _NO_VALUE = "#D6002F", "#A8A8A8"
 
 #: Of a legend in the panel.
 LEGEND_STYLE = "padding:0 0.75em 0.5em;font-size:0.8rem;line-height:1.4"
@@ -39,7 +40,8 @@ def rgb(color: str) -> tuple[int, int, int]:
 class LegColors:
     """Values of a quantity in all legs over time, and the colours that stand for them.
 
-    `values` (T, 6) in the unit `unit`; the scale goes from `low` to `high`; `title` and `note`: words of the legend.
+    `values` (T, 6) in the unit `unit`, NaN for a leg without one (grey); the scale goes from `low` to `high`; `title`
+    and `note`: words of the legend; `below`: colour of values below `low`, None where that of `low` is meant.
     """
 
     values: Array
@@ -49,19 +51,25 @@ class LegColors:
     title: str
     note: str
     anchors: tuple[str, ...]
+    below: str | None = None
 
     def colors(self, index: int) -> Array:
         """Colours of the six legs at a stored instant, (6, 3) in 0 to 255."""
         span = self.high - self.low
         share = (self.values[index] - self.low) / span if span > 0 else np.full(6, 0.5)
         table = np.array([rgb(anchor) for anchor in self.anchors], dtype=float)
-        places = np.clip(share, 0.0, 1.0) * (len(table) - 1)
-        return np.stack([np.interp(places, np.arange(len(table)), column) for column in table.T], axis=1).astype(int)
+        places = np.clip(np.nan_to_num(share), 0.0, 1.0) * (len(table) - 1)
+        found = np.stack([np.interp(places, np.arange(len(table)), column) for column in table.T], axis=1)
+        if self.below is not None:
+            found[share < 0] = rgb(self.below)
+        found[np.isnan(share)] = rgb(_NO_VALUE)
+        return found.astype(int)
 
     def html(self, index: int | None = None) -> str:
         """The scale as a bar with its ends and middle, and the six values at a stored instant."""
         ticks = [f"{number(value)} {self.unit}" for value in (self.low, 0.5 * (self.low + self.high), self.high)]
-        now = "" if index is None else _leg_row(self.colors(index), [number(v) for v in self.values[index]], self.unit)
+        values = [] if index is None else [_text(v, self.unit) for v in self.values[index]]
+        now = "" if index is None else _leg_row(self.colors(index), values)
         return (
             f'<div role="img" aria-label="Legend: {self.title}" style="{LEGEND_STYLE}">'
             f"<b>{self.title}</b>"
@@ -79,14 +87,18 @@ def leg_colors(quantity: str, study: model.Study, data: Dataset) -> LegColors:
 
 def plain_legend() -> str:
     """The legend of legs that are coloured by their number."""
-    row = _leg_row(np.array([rgb(color) for color in LEG_COLORS]), [], "")
+    row = _leg_row(np.array([rgb(color) for color in LEG_COLORS]), [])
     return f'<div style="{LEGEND_STYLE}"><b>Legs by number</b>{row}</div>'
 
 
-def _leg_row(colors: Array, values: list[str], unit: str) -> str:
+def _text(value: float, unit: str) -> str:
+    return "no limits" if np.isnan(value) else f"{number(value)} {unit}"
+
+
+def _leg_row(colors: Array, values: list[str]) -> str:
     cells = []
     for i, color in enumerate(colors):
-        value = f"{values[i]} {unit}" if values else ""
+        value = values[i] if values else ""
         cells.append(
             f'<span style="white-space:nowrap"><span style="display:inline-block;width:0.8em;height:0.8em;'
             f'border-radius:2px;border:1px solid #888;background:rgb({",".join(str(int(c)) for c in color)})"></span> '
@@ -113,31 +125,24 @@ def _force(study: model.Study, data: Dataset) -> LegColors:
 
 def _margin(study: model.Study, data: Dataset) -> LegColors:
     length = data.leg_length.values
-    low, high = stroke_limits(study.robot)
+    limits = [(leg.stroke.min, leg.stroke.max) if leg.stroke else (np.nan, np.nan) for leg in study.robot.legs]
+    low, high = np.array(limits).T
     values = 1e3 * np.minimum(length - low, high - length)
     return LegColors(
         values=values,
-        low=min(0.0, float(values.min())),
-        high=max(1e-9, float(values.max())),
+        low=0.0,
+        high=max(1e-9, float(np.nan_to_num(values).max())),
         unit="mm",
         title="Stroke left to the nearer end",
-        note="0: at an end of leg.stroke, or of the piston where the study gives no stroke.",
+        note="0: at an end of leg.stroke; red: beyond it; grey: a leg without stroke.",
         anchors=_SEQUENTIAL,
+        below=_BEYOND,
     )
-
-
-def stroke_limits(robot: model.Robot) -> tuple[Array, Array]:
-    """Shortest and longest length of every leg, (6,) [m] each: its stroke, else what the piston allows."""
-    pairs = [
-        (leg.stroke.min, leg.stroke.max) if leg.stroke else (leg.cylinder.mouth, leg.cylinder.mouth + leg.piston.length)
-        for leg in robot.legs
-    ]
-    low, high = np.array(pairs).T
-    return low, high
 
 
 def _bending(study: model.Study, data: Dataset) -> LegColors:
     size = np.linalg.norm(data.tip_deflection.values, axis=-1)
+    size = size if size.max() >= NOTHING else 0 * size
     unit = scale(size, "m")
     return LegColors(
         values=unit(size),

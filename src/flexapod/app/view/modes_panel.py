@@ -9,6 +9,7 @@ from flexapod import model
 from flexapod.app.view.beam_modes import BeamModes
 from flexapod.app.view.robot_modes import RobotModes
 from flexapod.app.view.scene import Scene
+from flexapod.app.view.threads import Threads
 
 if TYPE_CHECKING:
     import viser
@@ -24,10 +25,12 @@ class ModesPanel:
     client : viser.ClientHandle
     scene : Scene
         It draws the modes.
+    threads : Threads
+        Of the session.
     """
 
-    def __init__(self, client: viser.ClientHandle, scene: Scene) -> None:
-        self.client, self.scene = client, scene
+    def __init__(self, client: viser.ClientHandle, scene: Scene, threads: Threads) -> None:
+        self.client, self.scene, self._threads = client, scene, threads
         self._place = client.gui.add_folder(None)
         self._lock = threading.Lock()
         self._inside: RobotModes | BeamModes | None = None
@@ -39,7 +42,7 @@ class ModesPanel:
             if not isinstance(self._inside, kind):
                 self._leave()
                 with self._place:
-                    self._inside = kind(self.client, self.scene)
+                    self._inside = kind(self.client, self.scene, self._threads)
             self._inside.show_study(study)  # type: ignore[arg-type]
 
     def pause(self) -> None:

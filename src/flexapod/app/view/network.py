@@ -4,10 +4,11 @@ from __future__ import annotations
 
 import ipaddress
 import socket
+from functools import cache
 
 from flexapod.errors import InputError
 
-__all__ = ["address", "free_port", "is_local"]
+__all__ = ["address", "free_port", "is_expected", "is_local"]
 
 FIRST, TRIES = 8080, 100
 
@@ -42,6 +43,35 @@ def is_local(host: str) -> bool:
         return ipaddress.ip_address(host).is_loopback
     except ValueError:
         return host == "localhost"
+
+
+def is_expected(asked: str, host: str) -> bool:
+    """Whether the page was asked for under an address or a name of this machine, which listens on `host`.
+
+    A page of another site may have its own name point here (DNS rebinding) and would then count as this site: names
+    that are not this machine's are refused, unless `host` is that name.
+
+    Parameters
+    ----------
+    asked : str
+        The header ``Host``: name and port.
+    host : str
+        As `free_port`.
+    """
+    name = (asked.rpartition("]")[0].lstrip("[") or asked.partition(":")[0]).lower().rstrip(".")
+    if is_local(host):
+        return is_local(name)
+    try:
+        ipaddress.ip_address(name)
+    except ValueError:
+        return name in ("localhost", host.lower()) or name in _own_names()
+    return True
+
+
+@cache
+def _own_names() -> tuple[str, ...]:
+    own = socket.gethostname().lower()
+    return own, f"{own}.local", socket.getfqdn().lower()
 
 
 def address(host: str, port: int) -> str:

@@ -9,12 +9,11 @@ import numpy as np
 
 from flexapod import model
 from flexapod.app.view.document import Document
+from flexapod.app.view.source import Source
 from flexapod.errors import InputError
 
 if TYPE_CHECKING:
     from xarray import Dataset
-
-    from flexapod.app.view.session import Source
 
 __all__ = ["open_source"]
 
@@ -29,8 +28,6 @@ def open_source(file: Path) -> Source:
     InputError
         As `flexapod.load`; or the file is no result of a simulation.
     """
-    from flexapod.app.view.session import Source
-
     if file.suffix.lower() not in _RESULTS:
         study = model.load(file)
         return Source(document=Document(study.source_text, str(file)), study=study)

@@ -7,6 +7,7 @@ import time
 from collections.abc import Callable
 
 from flexapod.app.view.scene import Scene
+from flexapod.app.view.threads import Threads
 
 __all__ = ["Player"]
 
@@ -20,6 +21,8 @@ class Player:
     ----------
     scene : Scene
         Its `driver` says who moves it.
+    threads : Threads
+        Of the session; they tell what a step raises, which ends the movement.
     lock : lock
         Held during a step.
     step : callable
@@ -29,9 +32,14 @@ class Player:
     """
 
     def __init__(
-        self, scene: Scene, lock: threading.RLock, step: Callable[[float], bool], told: Callable[[bool], None]
+        self,
+        scene: Scene,
+        threads: Threads,
+        lock: threading.RLock,
+        step: Callable[[float], bool],
+        told: Callable[[bool], None],
     ) -> None:
-        self._scene, self._lock, self._step, self._told = scene, lock, step, told
+        self._scene, self._threads, self._lock, self._step, self._told = scene, threads, lock, step, told
         self._token: object = None  # of the run that is going on
 
     @property
@@ -46,7 +54,7 @@ class Player:
                 return
             token = self._token = self._scene.driver = object()
             self._told(True)
-            threading.Thread(target=self._run, args=(token,), name="flexapod-play", daemon=True).start()
+            self._threads.start("play", lambda: self._run(token))
 
     def stop(self) -> None:
         """Step no more."""
@@ -67,7 +75,7 @@ class Player:
         try:
             while more and self._scene.driver is token:
                 now = time.perf_counter()
-                with self._lock:
+                with self._lock, self._scene.lock:  # who takes the scene meanwhile has the last word
                     if self._scene.driver is token:
                         more = self._step(now - before)
                 before = now

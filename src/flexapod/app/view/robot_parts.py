@@ -8,7 +8,7 @@ from typing import TYPE_CHECKING, Any, Literal
 import numpy as np
 
 from flexapod import model
-from flexapod.app.view.legend import LEG_COLORS, rgb
+from flexapod.app.view.legend import rgb
 from flexapod.app.view.scene_geometry import (
     ROUNDING,
     Instant,
@@ -20,6 +20,7 @@ from flexapod.app.view.scene_geometry import (
     tube,
     tube_faces,
 )
+from flexapod.study.colours import LEG_COLORS
 from flexapod.study.scene import STATIONS, Scene
 from flexapod.study.words import number, text
 from flexapod.typing import Array
@@ -177,7 +178,7 @@ class Ghost:
 
 
 class Deviation:
-    """Both paths of the centre of mass, and the deviation as an arrow with its length."""
+    """Both paths of the centre of mass or the tool, and its deviation as an arrow with its length."""
 
     def __init__(self, scene: viser.SceneApi, add: Add, size: float) -> None:
         self.size = size
@@ -194,14 +195,14 @@ class Deviation:
         for handle in (self._arrow, self._words):
             add("deviation arrow", handle)
 
-    def paths(self, rigid: Array, deviation: Array, scale: float) -> None:
+    def paths(self, rigid: Array, flexible: Array) -> None:
         """Draw both paths (T, 3), the flexible one with its deviation magnified."""
         self._rigid.points = strip(rigid).astype(np.float32)
-        self._bent.points = strip(rigid + scale * deviation).astype(np.float32)
+        self._bent.points = strip(flexible).astype(np.float32)
 
     def draw(self, now: Instant) -> None:
-        """The arrow from the rigid to the drawn centre of mass; in words the true length."""
-        start, end = now.rigid.com, now.flexible.com
+        """The arrow from the rigid to the drawn point; in words the true length."""
+        start, end = now.start, now.end
         length = float(np.linalg.norm(end - start))
         self._arrow.points = np.stack([start, end])[None].astype(np.float32)
         self._arrow.head_length = round(min(0.03 * self.size, 0.5 * length), 4)

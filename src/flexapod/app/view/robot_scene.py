@@ -2,26 +2,30 @@
 
 from __future__ import annotations
 
+import math
+from collections.abc import Mapping
 from dataclasses import dataclass
 from typing import TYPE_CHECKING
 
 import numpy as np
 
 from flexapod import model, rigid
-from flexapod.app.view.legend import LEG_COLORS, QUANTITIES, LegColors, leg_colors, plain_legend, rgb
+from flexapod.app.view.legend import QUANTITIES, LegColors, leg_colors, plain_legend, rgb
 from flexapod.app.view.robot_parts import SOMETIMES, Deviation, Ghost, RobotParts, robot_size
-from flexapod.app.view.scene import OF_RESULTS, Scene
+from flexapod.app.view.scene import OF_RESULTS, STRAIGHT, Scene, mode_note
 from flexapod.app.view.scene_geometry import RobotMotion
 from flexapod.study.arguments import PoseLike, as_pose
+from flexapod.study.colours import LEG_COLORS
 from flexapod.study.scene import Scene as Points
 from flexapod.study.scene import mode_scene, placed
+from flexapod.study.words import number
 from flexapod.typing import Array
 
 if TYPE_CHECKING:
     import viser
     from xarray import Dataset
 
-__all__ = ["RobotScene"]
+__all__ = ["RobotScene", "pose_words"]
 
 _PLAIN = np.array([rgb(color) for color in LEG_COLORS])
 
@@ -48,6 +52,11 @@ class RobotScene(Scene):
         self._colors: LegColors | None = None
         self._at_rest: Dataset | None = None  # the modes whose equilibrium the ghost shows
 
+    @property
+    def points(self) -> tuple[str, ...]:
+        """As `Scene.points`."""
+        return ("tool", "com") if self._motion is not None and self._motion.tool_apart else ("com",)
+
     def show_study(self, study: model.Study) -> None:
         """As `Scene.show_study`."""
         with self.lock:
@@ -67,6 +76,7 @@ class RobotScene(Scene):
                 )
                 self._only()
                 drawn.robot.draw(_undeformed(study.robot, rigid.poses(study.robot, study.motion, [self.time])), _PLAIN)
+                self._draws(f"the rigid robot at {number(self.time, 4)} s; no result yet", STRAIGHT)
             if first:
                 self._look_at(study.robot)
 
@@ -86,21 +96,7 @@ class RobotScene(Scene):
             with self.client.atomic():
                 self._only()
                 self._drawn.robot.draw(points, _PLAIN)
-
-    def show_data(self, data: Dataset | None) -> None:
-        """As `Scene.show_data`."""
-        with self.lock:
-            if self._drawn is None:
-                return
-            self.data, self._motion, self._colors = data, None, None
-            if data is None:
-                self._only()
-                return
-            self._motion = RobotMotion(self._drawn.study, data)
-            self.automatic = self._motion.automatic_scale()
-            self.scale = self._factor or self.automatic
-            self._redraw_paths()
-            self.set_time(min(self.time, float(self._motion.time[-1])))
+                self._draws(f"the undeformed robot at {pose_words(pose)}", STRAIGHT)
 
     def set_time(self, time: float) -> None:
         """As `Scene.set_time`."""
@@ -108,15 +104,16 @@ class RobotScene(Scene):
             if self._drawn is None or self._motion is None:
                 return
             self.time = float(time)
-            now = self._motion.at(time, self.scale)
+            now = self._motion.at(time, self.scale, self.point)
             with self.client.atomic():
                 self._only(*OF_RESULTS)
                 self._drawn.robot.draw(now.flexible, self._leg_colors(now.index))
                 self._drawn.ghost.draw(now.rigid)
                 self._at_rest = None
                 self._drawn.deviation.draw(now)
+                self._draws("")
 
-    def show_mode(self, modes: Dataset, mode: int, amplitude: float, phase: float) -> None:
+    def show_mode(self, modes: Dataset, mode: int, amplitude: float, phase: float, where: str = "") -> None:
         """As `Scene.show_mode`."""
         with self.lock:
             if self._drawn is None:
@@ -128,11 +125,12 @@ class RobotScene(Scene):
                 if modes is not self._at_rest:
                     self._drawn.ghost.draw(mode_scene(modes, mode, size, 0.0))
                     self._at_rest = modes
+                self._draws(f"mode {mode}{where and f' at {where}'}", mode_note(size))
 
     def legend(self) -> str:
         """As `Scene.legend`, with the values at the time that is shown."""
         with self.lock:
-            if self._motion is None:
+            if self._motion is None or self.drawn:
                 return plain_legend()
             index = self._motion.index(self.time)
             self._leg_colors(index)
@@ -157,15 +155,33 @@ class RobotScene(Scene):
             self._colors = leg_colors(self.quantity, self._drawn.study, self.data)
         return self._colors.colors(index)
 
+    def _take(self, data: Dataset | None) -> RobotMotion | None:
+        self._motion = self._colors = None
+        if data is not None and self._drawn is not None:
+            self._motion = RobotMotion(self._drawn.study, data)
+            self.point = self._wanted if self._motion.tool_apart else "com"
+        return self._motion
+
     def _redraw_paths(self) -> None:
         if self._motion is not None and self._drawn is not None:
-            self._drawn.deviation.paths(*self._motion.paths, self.scale)
+            self._drawn.deviation.paths(*self._motion.paths(self.scale, self.point))
 
     def _look_at(self, robot: model.Robot) -> None:
         points = np.vstack([robot.base_joints, robot.base_joints + robot.home_vectors])
         size = robot_size(robot)
         beside = size * np.array([0.13, 0.16, 0.05])  # the panel covers the right of the page
         self._look(size * np.array([1.1, -0.95, 0.35]), points.mean(axis=0) + beside)
+
+
+def pose_words(pose: PoseLike) -> str:
+    """A pose from home in a few words: "heave 80 mm, roll 5 deg"."""
+    named = pose if isinstance(pose, Mapping) else {}
+    moved = {name: float(named[name]) for name in model.AXES if named.get(name)}
+    words = [
+        f"{name} {number(1e3 * v, 4)} mm" if name in model.AXES[:3] else f"{name} {number(math.degrees(v), 4)} deg"
+        for name, v in moved.items()
+    ]
+    return ", ".join(words) or ("home" if isinstance(pose, Mapping) else "another pose")
 
 
 def _undeformed(robot: model.Robot, path: rigid.Poses) -> Points:

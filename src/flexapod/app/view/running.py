@@ -1,20 +1,37 @@
-"""A simulation in a thread of its own, which can be cancelled."""
+"""A simulation in a thread of its own, which waits for a free core and can be cancelled."""
 
 from __future__ import annotations
 
 import threading
 import time
-from collections.abc import Callable
-from typing import TYPE_CHECKING
+from typing import TYPE_CHECKING, Protocol
 
 from flexapod import model
+from flexapod.app.view.cores import Cores
+from flexapod.app.view.threads import Threads
 
 if TYPE_CHECKING:
     from xarray import Dataset
 
-__all__ = ["Run"]
+__all__ = ["Run", "Watcher"]
 
 REPORTS = 0.1  # least time between two reports of progress [s]
+
+
+class Watcher(Protocol):
+    """Who is told how a simulation goes, in the simulation's thread."""
+
+    def waits(self, run: Run) -> None:
+        """No core has been free for a while."""
+
+    def begins(self, run: Run) -> None:
+        """It has a core."""
+
+    def progress(self, run: Run, share: float) -> None:
+        """How much is done (0 to 1), at most ten times a second."""
+
+    def ended(self, run: Run, found: Dataset | BaseException) -> None:
+        """Once, at the end: the result or what ended it; not where it was cancelled before it began."""
 
 
 class Run:
@@ -23,31 +40,28 @@ class Run:
     Parameters
     ----------
     study : Study or ActuatorStudy
-    on_progress : callable
-        Called with the run and the share of it that is done (0 to 1), at most ten times a second.
-    on_end : callable
-        Called once with the run and its result or the exception that ended it, also when it was cancelled; in the
-        run's thread.
+    threads : Threads
+        Of the session that asks for it.
+    cores : Cores
+        Of the server.
+    watcher : Watcher
     """
 
     def __init__(
-        self,
-        study: model.Study | model.ActuatorStudy,
-        on_progress: Callable[[Run, float], None],
-        on_end: Callable[[Run, Dataset | BaseException], None],
+        self, study: model.Study | model.ActuatorStudy, threads: Threads, cores: Cores, watcher: Watcher
     ) -> None:
-        self.study, self._on_progress, self._on_end = study, on_progress, on_end
+        self.study, self._threads, self._cores, self._watcher = study, threads, cores, watcher
         self._cancelled = threading.Event()
         self._reported = 0.0
-        self._thread = threading.Thread(target=self._run, name="flexapod-simulation", daemon=True)
 
     def start(self) -> None:
-        """Begin."""
-        self._thread.start()
+        """Begin, or wait for a free core."""
+        self._threads.start("simulation", self._run)
 
     def cancel(self) -> None:
-        """Ask it to stop; it ends at the next chunk of steps."""
+        """Ask it to stop: at once where it waits, else at the next chunk of steps."""
         self._cancelled.set()
+        self._cores.wake()
 
     @property
     def cancelled(self) -> bool:
@@ -55,17 +69,26 @@ class Run:
         return self._cancelled.is_set()
 
     def _run(self) -> None:
+        if not self._cores.take(self._cancelled.is_set, lambda: self._watcher.waits(self)):
+            return
+        try:
+            self._watcher.begins(self)
+            found = self._computed()
+        finally:
+            self._cores.give_back()
+        self._watcher.ended(self, found)
+
+    def _computed(self) -> Dataset | BaseException:
         from flexapod import study
 
         try:
-            found: Dataset | BaseException = study.run(self.study, progress=self._progress)
+            return study.run(self.study, progress=self._progress)
         except BaseException as error:
-            found = error
-        self._on_end(self, found)
+            return error
 
     def _progress(self, reached: float, duration: float) -> None:
         if self.cancelled:
             raise KeyboardInterrupt  # a simulation keeps what it has and ends as after Ctrl-C
         if time.monotonic() - self._reported > REPORTS:
             self._reported = time.monotonic()
-            self._on_progress(self, min(1.0, reached / duration) if duration > 0 else 1.0)
+            self._watcher.progress(self, min(1.0, reached / duration) if duration > 0 else 1.0)

@@ -4,16 +4,21 @@ from __future__ import annotations
 
 import threading
 from abc import ABC, abstractmethod
+from collections.abc import Callable
 from typing import TYPE_CHECKING, Any
 
-from flexapod.study.words import number
+from flexapod.study.words import number, text
 from flexapod.typing import Array
 
 if TYPE_CHECKING:
     import viser
     from xarray import Dataset
 
-__all__ = ["OF_RESULTS", "PARTS", "Scene"]
+    from flexapod.app.view.scene_geometry import ActuatorMotion, RobotMotion
+
+__all__ = ["OF_RESULTS", "PARTS", "STRAIGHT", "Scene", "mode_note"]
+
+STRAIGHT = "Drawn without deflections."
 
 #: What can be shown and hidden, and whether it is shown at first.
 PARTS = {
@@ -43,6 +48,12 @@ class Scene(ABC):
         Who moves the scene by itself (`Player`); who finds another one here stops.
     quantities : tuple of str
         What `colour_by` takes.
+    point : str
+        Whose deviation is drawn: ``tool`` of a robot whose tool is apart, unless the user wants ``com``.
+    drawn : str
+        In words what is drawn where that is not the result over time; "" where it is.
+    told : callable
+        Called where what is drawn, or the factor on it, has become another.
     """
 
     quantities: tuple[str, ...] = ("plain",)
@@ -53,11 +64,18 @@ class Scene(ABC):
         self.scale, self.automatic, self.time = 1.0, 1.0, 0.0
         self.driver: object | None = None
         self._factor: float | None = None  # the user's, in place of the automatic one
-        self.quantity = "plain"
+        self.quantity, self.point, self._wanted = "plain", "com", "tool"
+        self.drawn, self._note = "", ""
+        self.told: Callable[[], None] = _nothing
         self._shown = dict(PARTS)
         self._parts: dict[str, list[Any]] = {name: [] for name in PARTS}
         self._now: tuple[str, ...] = ()
         self._closed = False
+
+    @property
+    def points(self) -> tuple[str, ...]:
+        """Whose deviation the result has, the one that matters most first."""
+        return ("com",)
 
     @abstractmethod
     def show_study(self, study: Any) -> None:
@@ -67,17 +85,32 @@ class Scene(ABC):
     def show_pose(self, pose: Any) -> None:
         """Draw the undeformed mechanism at a pose, without ghost, paths and arrow."""
 
-    @abstractmethod
     def show_data(self, data: Dataset | None) -> None:
         """Take a result of the study that is shown and draw it, deflections magnified so that they are seen."""
+        with self.lock:
+            if self._closed:
+                return
+            self.data = data
+            motion = self._take(data)
+            if motion is None:
+                self._only()
+                return
+            self.automatic = motion.automatic_scale()
+            self.scale = self._factor or self.automatic
+            self._redraw_paths()
+            self.set_time(min(self.time, float(motion.time[-1])))
 
     @abstractmethod
     def set_time(self, time: float) -> None:
         """Draw the stored instant nearest to `time` [s]; only what changes is sent."""
 
     @abstractmethod
-    def show_mode(self, modes: Dataset, mode: int, amplitude: float, phase: float) -> None:
-        """Draw a mode: label, largest displacement as a share of the mechanism's size, phase between -1 and 1."""
+    def show_mode(self, modes: Any, mode: int, amplitude: float, phase: float, where: str = "") -> None:
+        """Draw a mode: number from 1, largest displacement as a share of the mechanism's size, phase between -1 and 1.
+
+        `modes`: of a robot the result of `flexapod.modes`, of a single actuator `study.beam_modes.BeamModes`; `where`:
+        in words the pose or length that they belong to.
+        """
 
     @abstractmethod
     def legend(self) -> str:
@@ -91,9 +124,27 @@ class Scene(ABC):
             if self.data is not None:
                 self._redraw_paths()
                 self.set_time(self.time)
+                self.told()
+
+    def show_point(self, point: str) -> None:
+        """Draw path and deviation of another point of a robot whose tool is apart: ``com`` or ``tool``."""
+        with self.lock:
+            self.point = self._wanted = point
+            if self.data is not None:
+                self._redraw_paths()
+                self.set_time(self.time)
+
+    def picture_words(self) -> str:
+        """What is drawn, and by how much deflections are drawn larger, in a few words."""
+        if self.drawn:
+            return self.drawn
+        larger = "in true size" if self.scale == 1 else f"{number(self.scale, 4)} times larger"
+        return f"the motion, deflections {larger}"
 
     def scale_words(self) -> str:
-        """The factor on deflections in a sentence."""
+        """How large deflections are drawn, in a sentence."""
+        if self.drawn:
+            return self._note
         if self.scale == 1:
             return "Deflections are drawn in true size."
         return f"Deflections are drawn {number(self.scale, 4)} times larger than they are."
@@ -125,6 +176,12 @@ class Scene(ABC):
         handle.visible = self._shown[part]
         return handle
 
+    def _draws(self, what: str, note: str = "") -> None:
+        """Remember what is drawn and a sentence on its size; who shows that in words is told of a change."""
+        if (what, note) != (self.drawn, self._note):
+            self.drawn, self._note = what, note
+            self.told()
+
     def _only(self, *parts: str) -> None:
         """Of the parts that show a result, draw these alone, unless the user hides them."""
         self._now = parts
@@ -148,9 +205,13 @@ class Scene(ABC):
         """Softer than the page's own light, under which all colours are pale."""
         scene = self.client.scene
         scene.configure_default_lights(enabled=False)
-        scene.configure_environment_map("studio", environment_intensity=0.35)
-        scene.add_light_directional("/light", intensity=1.2, position=(1.0, -1.5, 3.0))
-        scene.add_light_ambient("/light_around", intensity=0.5)
+        scene.configure_environment_map(None)
+        scene.add_light_directional("/light", intensity=2.0, position=(1.0, -1.5, 3.0))
+        scene.add_light_hemisphere("/light_around", ground_color=(150, 150, 150), intensity=1.6)
+
+    @abstractmethod
+    def _take(self, data: Dataset | None) -> RobotMotion | ActuatorMotion | None:
+        """Take the arrays of a result, or none, in place of those before."""
 
     @abstractmethod
     def _redraw_paths(self) -> None:
@@ -161,3 +222,12 @@ class Scene(ABC):
         camera = self.client.camera
         camera.up_direction = (0.0, 0.0, 1.0)
         camera.position, camera.look_at = at + away, at
+
+
+def mode_note(size: float) -> str:
+    """How large a mode is drawn; `size` of its largest displacement [m]."""
+    return f"A mode has no size of its own: its largest displacement is drawn as {text(size, 'm')}."
+
+
+def _nothing() -> None:
+    """Nobody is told."""

@@ -7,20 +7,23 @@ from typing import TYPE_CHECKING, TypeVar
 
 import numpy as np
 from numpy.typing import NDArray
-from scipy.spatial.transform import Rotation
 
 from flexapod import model
+from flexapod.rigid.rotations import exponential, matrix, quaternion
 from flexapod.study.scene import STATIONS, Scene, lateral_values, off_chord, placed
+from flexapod.study.summary import tool_apart
 from flexapod.typing import Array
 
 if TYPE_CHECKING:
     from xarray import Dataset
 
 __all__ = [
+    "BEAM_POINTS",
     "ROUNDING",
     "ActuatorMotion",
     "Instant",
     "RobotMotion",
+    "across",
     "as_computed",
     "beam_line",
     "disc",
@@ -38,6 +41,7 @@ __all__ = [
 S = TypeVar("S", model.Study, model.ActuatorStudy)
 Faces = NDArray[np.uint32]
 
+BEAM_POINTS = 2 * STATIONS - 1  # of the drawn beam of a single actuator
 ROUNDING = 1e-11  # of the size: below, a deflection is the rounding of positions
 SHARE = 0.12  # of the robot's size: the largest drawn deflection where the factor is automatic
 
@@ -46,12 +50,15 @@ SHARE = 0.12  # of the robot's size: the largest drawn deflection where the fact
 class Instant:
     """What is drawn at one instant [m]: the flexible robot with its deflections magnified, the rigid one, the truth.
 
-    `index` of the stored instant; `deviation` (3,): centre of mass, flexible minus rigid, not magnified.
+    `index` of the stored instant; `start`, `end` (3,): the point whose deviation is shown, rigid and as drawn;
+    `deviation` (3,): of that point, flexible minus rigid, not magnified.
     """
 
     index: int
     flexible: Scene
     rigid: Scene
+    start: Array
+    end: Array
     deviation: Array
 
 
@@ -62,20 +69,30 @@ class RobotMotion:
     ----------
     time : ndarray, shape (T,)
         Stored instants [s].
-    paths : tuple of ndarray, shape (T, 3)
-        Centre of mass of the rigid robot [m], its deviation [m].
+    tool_apart : bool
+        Whether the tool is another point than the centre of mass.
     """
 
     def __init__(self, study: model.Study, data: Dataset) -> None:
         self.robot, self.time = study.robot, data.time.values
         self._com, self._deviation = data.com_position_rigid.values, data.com_deviation.values
+        self._tool_deviation = data.tool_deviation.values
+        self._arm = study.robot.payload.tool - study.robot.payload.com
+        self.tool_apart = tool_apart(data)
         self._turn = data.rotation_deviation.values
-        self._rotation = Rotation.from_quat(data.platform_quaternion_rigid.values, scalar_first=True).as_matrix()
+        self._rotation = matrix(data.platform_quaternion_rigid.values)
         self._tip = data.tip_deflection.values
         self._amplitude = data.lateral_amplitude.values if "lateral_amplitude" in data else None
         zeta = np.linspace(0.0, 1.0, STATIONS)
         self._shapes = None if self._amplitude is None else lateral_values(as_computed(study, data), zeta)
-        self.paths = (self._com, self._deviation)
+
+    def paths(self, scale: float, point: str = "com") -> tuple[Array, Array]:
+        """Paths of a point ("com", "tool"), (T, 3) [m] each: of the rigid robot, and as drawn `scale` times off it."""
+        moved = self._com + scale * self._deviation
+        if point == "com":
+            return self._com, moved
+        arm = self._rotation @ self._arm
+        return self._com + arm, moved + np.einsum("tij,tj->ti", exponential(scale * self._turn), arm)
 
     def index(self, time: float) -> int:
         """The stored instant nearest to `time` [s]."""
@@ -86,15 +103,18 @@ class RobotMotion:
         arms = self.robot.platform_joints - self.robot.payload.com
         moved = np.einsum("tij,kj->tki", self._rotation, arms)
         moved = self._deviation[:, None] + np.cross(self._turn[:, None], moved)
-        sizes = (moved, self._deviation, self._tip)
+        sizes = (moved, self._deviation, self._tool_deviation, self._tip)
         largest = max(float(np.linalg.norm(part, axis=-1).max()) for part in sizes)
         return factor_to_see(largest, float(self.robot.home_lengths.mean()))
 
-    def at(self, time: float, scale: float) -> Instant:
-        """The robot at the stored instant nearest to `time` [s], deflections drawn `scale` times larger."""
+    def at(self, time: float, scale: float, point: str = "com") -> Instant:
+        """The robot at the stored instant nearest to `time` [s], deflections drawn `scale` times larger.
+
+        `point`: whose deviation is shown, "com" or "tool".
+        """
         i, robot = self.index(time), self.robot
         R, com = self._rotation[i], self._com[i]
-        turned = Rotation.from_rotvec(scale * self._turn[i]).as_matrix() @ R
+        turned = exponential(scale * self._turn[i]) @ R
         moved = com + scale * self._deviation[i]
         centre = moved - turned @ robot.payload.com
         length = np.linalg.norm(centre + robot.platform_joints @ turned.T - robot.base_joints, axis=1)
@@ -102,11 +122,14 @@ class RobotMotion:
         if self._amplitude is not None and self._shapes is not None:
             line = scale * self._amplitude[i] @ self._shapes
             offset = off_chord(robot, length, line, scale * self._tip[i])
+        arm = self._arm if point == "tool" else np.zeros(3)
         return Instant(
             index=i,
             flexible=placed(robot, centre, turned, moved, offset),
             rigid=placed(robot, com - R @ robot.payload.com, R, com),
-            deviation=self._deviation[i],
+            start=com + R @ arm,
+            end=moved + turned @ arm,
+            deviation=(self._tool_deviation if point == "tool" else self._deviation)[i],
         )
 
 
@@ -118,7 +141,7 @@ class ActuatorMotion:
         self.angle, self.length = data.angle.values, data.length.values
         self.deflection = data.tip_deflection.values
         self._amplitude = data.mode_amplitude.values if "mode_amplitude" in data else None
-        self._zeta = np.linspace(0.0, 1.0, 2 * STATIONS - 1)
+        self._zeta = np.linspace(0.0, 1.0, BEAM_POINTS)
         self._shapes = None if self._amplitude is None else lateral_values(as_computed(study, data), self._zeta)
 
     def index(self, time: float) -> int:
@@ -133,10 +156,10 @@ class ActuatorMotion:
     def at(self, time: float, scale: float) -> tuple[int, Array, Array]:
         """Stored instant; the beam outside the hub, bent `scale` times, and as if rigid: points (n, 3) [m]."""
         i = self.index(time)
-        bent = 0.0 if self._amplitude is None or self._shapes is None else self._amplitude[i] @ self._shapes
+        straight = 0.0 * self._zeta
+        bent = straight if self._amplitude is None or self._shapes is None else self._amplitude[i] @ self._shapes
         line = beam_line(self.actuator, self.angle[i], self.length[i], self._zeta)
-        across = np.array([-np.sin(self.angle[i]), 0.0, np.cos(self.angle[i])])
-        return i, line + scale * np.multiply.outer(bent + 0.0 * self._zeta, across), line
+        return i, line + across(self.angle[i], scale * bent), line
 
     def tips(self, scale: float) -> Array:
         """Path of the drawn tip, (T, 3) [m]."""
@@ -155,7 +178,9 @@ def as_computed(study: S, data: Dataset) -> S:
 
 
 def nearest(instants: Array, time: float) -> int:
-    """Place of the instant nearest to `time` in ascending ones (T,), T above 1."""
+    """Place of the instant nearest to `time` in ascending ones (T,)."""
+    if len(instants) == 1:
+        return 0
     after = int(np.clip(np.searchsorted(instants, time), 1, len(instants) - 1))
     return after - int(time - instants[after - 1] <= instants[after] - time)
 
@@ -164,6 +189,11 @@ def beam_line(actuator: model.Actuator, angle: float, length: float, zeta: Array
     """The straight beam outside the hub at an angle [rad] from the horizontal, (n, 3) [m]."""
     along = actuator.hub_radius + length * zeta
     return np.stack([along * np.cos(angle), 0.0 * along, along * np.sin(angle)], axis=1)
+
+
+def across(angle: float, offset: Array) -> Array:
+    """Offsets (n,) across a beam at an angle [rad] from the horizontal, in its plane, as vectors (n, 3)."""
+    return np.multiply.outer(offset, np.array([-np.sin(angle), 0.0, np.cos(angle)]))
 
 
 def factor_to_see(largest: float, size: float) -> float:
@@ -183,7 +213,8 @@ def platform_rotation(robot: model.Robot, scene: Scene) -> Array:
     """Platform to world (w x y z) of a drawn robot, from its joints and centre of mass."""
     arms = np.vstack([robot.platform_joints, robot.payload.com])
     seen = np.vstack([scene.platform, scene.com]) - scene.centre
-    return Rotation.align_vectors(seen, arms)[0].as_quat(canonical=True, scalar_first=True)
+    u, _, v = np.linalg.svd(seen.T @ arms)  # the rotation closest to turning arms into what is seen
+    return quaternion(u @ np.diag([1.0, 1.0, np.linalg.det(u @ v)]) @ v)
 
 
 def orientation(direction: Array) -> Array:
@@ -239,6 +270,8 @@ def disc(radius: float, width: float, sides: int = 40) -> tuple[Array, Faces]:
 
 
 def strip(points: Array, most: int = 400) -> Array:
-    """A path (T, 3) as line segments (n, 2, 3), thinned to at most `most`."""
+    """A path (T, 3) as line segments (n, 2, 3), thinned to at most `most`; of one point, a segment of no length."""
+    if len(points) == 1:
+        return np.stack([points, points], axis=1)
     chosen = points[np.unique(np.linspace(0, len(points) - 1, min(len(points), most + 1)).astype(int))]
     return np.stack([chosen[:-1], chosen[1:]], axis=1)

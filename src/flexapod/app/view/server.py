@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+import asyncio
 import contextlib
 import io
 import logging
@@ -10,17 +11,24 @@ import traceback
 import warnings
 from collections.abc import Callable
 from concurrent.futures import Future, ThreadPoolExecutor
-from typing import Any
+from typing import TYPE_CHECKING, Any
 
 import viser
 
-from flexapod.app.view.network import is_local
-from flexapod.app.view.session import Session, Source
+from flexapod.app.view.cores import Cores
+from flexapod.app.view.network import is_expected
+from flexapod.loading import loaded
+
+if TYPE_CHECKING:
+    from flexapod.app.view.session import Session
+    from flexapod.app.view.source import Source
 
 __all__ = ["GONE", "View"]
 
 GONE = "Queued a .* on a closed connection"
 """What viser remarks where somebody leaves while their page is being drawn: nothing is wrong then."""
+
+POLICY_VIOLATION = 1008  # why a connection is closed, RFC 6455
 
 _LOG = logging.getLogger("flexapod.view")
 
@@ -38,15 +46,19 @@ class View:
 
     def __init__(self, source: Source, host: str, port: int) -> None:
         warnings.filterwarnings("ignore", message=GONE)
-        self._source, self._sessions = source, dict[int, Session]()
+        self._source, self._cores = source, Cores()
+        self._sessions: dict[int, Session] = {}
         self._lock = threading.Lock()
         with contextlib.redirect_stdout(io.StringIO()):  # viser announces itself; the command says where it listens
             self._server = _Server(host=host, port=port, label="flexapod", verbose=False)
         self._server._thread_executor = _Guarded(self._fault)
-        self.port, self._local = self._server.get_port(), is_local(host)
+        self.port, self._host = self._server.get_port(), host
         self._server.gui.configure_theme(
             show_logo=False, show_share_button=False, control_width="large", brand_color=(0, 90, 160)
         )
+        self._server.scene.configure_environment_map(None)  # its reflections take seconds where no GPU draws the page
+        self._server.scene.configure_default_lights(enabled=False)
+        threading.Thread(target=_load, name="flexapod-load", daemon=True).start()
         self._server.on_client_connect(self._connected)
         self._server.on_client_disconnect(self._disconnected)
 
@@ -64,10 +76,13 @@ class View:
             self._server.stop()
 
     def _connected(self, client: viser.ClientHandle) -> None:
-        if not _from_here(self._server, client, self._local):
+        if not _from_here(self._server, client, self._host):
             _LOG.warning("client %s refused: its page came from another site", client.client_id)
+            _hang_up(self._server, client)
             return
-        session = Session(client, self._source)
+        from flexapod.app.view.session import Session
+
+        session = Session(client, self._source, self._cores)
         with self._lock:
             self._sessions[client.client_id] = session
         session.start()
@@ -114,11 +129,23 @@ class _Guarded(ThreadPoolExecutor):
             return None
 
 
-def _from_here(server: viser.ViserServer, client: viser.ClientHandle, local: bool) -> bool:
+def _load() -> None:
+    """Load what the first session needs while its browser fetches the page."""
+    for name in ("flexapod.app.view.session", *(f"flexapod.app.view.{panel}_panel" for panel in ("time", "modes"))):
+        loaded(name)
+    loaded("flexapod.study.simulation")
+    loaded("xarray")
+
+
+def _hang_up(server: viser.ViserServer, client: viser.ClientHandle) -> None:
+    connection: Any = server._websock_server._live_connections.get(client.client_id)
+    if connection is not None:
+        asyncio.run_coroutine_threadsafe(connection.close(POLICY_VIOLATION), server.get_event_loop())
+
+
+def _from_here(server: viser.ViserServer, client: viser.ClientHandle, host: str) -> bool:
     """Whether a connection comes from the page of this server, not from a page of some other site."""
     connection: Any = server._websock_server._live_connections.get(client.client_id)
     headers = connection.request.headers if connection is not None and connection.request is not None else {}
-    origin, host = headers.get("Origin"), headers.get("Host", "")
-    if local and not is_local(host.rpartition(":")[0].strip("[]") or host):
-        return False
-    return origin is None or origin.partition("://")[2] == host
+    origin, asked = headers.get("Origin"), headers.get("Host", "")
+    return is_expected(asked, host) and (origin is None or origin.partition("://")[2] == asked)

@@ -5,7 +5,6 @@ from __future__ import annotations
 import logging
 import threading
 import traceback
-from dataclasses import dataclass
 from pathlib import Path
 from typing import TYPE_CHECKING, Any
 
@@ -14,34 +13,32 @@ from viser import Icon
 from flexapod import model
 from flexapod.app.view import words
 from flexapod.app.view.actuator_scene import ActuatorScene
+from flexapod.app.view.cores import Cores
 from flexapod.app.view.document import Document
 from flexapod.app.view.editing import Edit, read
 from flexapod.app.view.files_panel import FilesPanel
 from flexapod.app.view.header import Header
+from flexapod.app.view.latest import Latest
+from flexapod.app.view.limits import refuse_length
+from flexapod.app.view.picture import Picture
+from flexapod.app.view.quick import coarse, is_quick, preview_words
 from flexapod.app.view.robot_scene import RobotScene
 from flexapod.app.view.running import Run
+from flexapod.app.view.source import Source
 from flexapod.app.view.study_panel import StudyPanel
+from flexapod.app.view.threads import Threads
+from flexapod.app.view.uploads import Sent
 from flexapod.errors import FlexapodError
 
 if TYPE_CHECKING:
     from viser import ClientHandle
     from xarray import Dataset
 
-__all__ = ["Session", "Source"]
+__all__ = ["Session"]
 
 QUIET = 0.15  # time without a change after which the study is simulated [s]
-QUICK = 3.0  # a simulation that takes longer waits for the button [s]
 
 _LOG = logging.getLogger("flexapod.view")
-
-
-@dataclass(frozen=True, kw_only=True)
-class Source:
-    """What everybody begins with: a study file, its study, and results if there are any."""
-
-    document: Document
-    study: model.Study | model.ActuatorStudy
-    data: Dataset | None = None
 
 
 class Session:
@@ -52,6 +49,8 @@ class Session:
     client : viser.ClientHandle
     source : Source
         What to begin with.
+    cores : Cores
+        Of the server: simulations of all sessions share them.
 
     Attributes
     ----------
@@ -61,13 +60,15 @@ class Session:
         Results of it.
     """
 
-    def __init__(self, client: ClientHandle, source: Source) -> None:
-        self.client = client
+    def __init__(self, client: ClientHandle, source: Source, cores: Cores) -> None:
+        self.client, self._cores = client, cores
+        self._threads, self._sent = Threads(self.fault), Sent()
         self.study, self.data = source.study, source.data
         self._lock, self._closed = threading.RLock(), False
         self._run: Run | None = None
-        self._timer: threading.Timer | None = None
-        self._quick, self._valid = True, True
+        self._settling = Latest(self._threads, self._settled)
+        self._unsettled = False
+        self._valid = True
         self._panels: list[Any] = []
         self._source: Source | None = source
         self.header: Header | None = None
@@ -90,12 +91,12 @@ class Session:
                 return
             self._stop()
             self._drop_panels()
-            self.study, self.data, self._valid, self._quick = source.study, source.data, True, True
+            self.study, self.data, self._valid = source.study, source.data, True
             self._build(source.document)
-            self._show_study()
+            self.time_panel.show_data(None)
             self.modes_panel.show_study(self.study)
             if self.data is None:
-                self.simulate()
+                self._simulate()
             else:
                 self._show_data()
 
@@ -105,15 +106,25 @@ class Session:
             self._closed = True
             self._stop()
             self._drop_panels()
+            self._sent.close()
             self.data = None
 
     def simulate(self) -> None:
-        """Compute the study as it stands; one that is running is cancelled."""
+        """Compute the study as it stands, as the user asks; one that is running is cancelled."""
+        self._fault("")
+        self._simulate()
+
+    def _simulate(self, preview: bool = False) -> None:
         with self._lock:
             if self._closed or not self._valid:
                 return
             self._stop()
-            self._run = Run(self.study, self._progress, self._ended)
+            try:
+                refuse_length(self.study)
+            except FlexapodError as error:
+                self.fault(error)
+                return
+            self._run = Run(coarse(self.study) if preview else self.study, self._threads, self._cores, self)
             self._show_running(True)
             self._run.start()
 
@@ -122,21 +133,66 @@ class Session:
         with self._lock:
             if self._run is not None:
                 self._stop()
-                self._say(words.block("Cancelled. The study is not simulated as it stands.", "warning"))
+                if self.data is None:
+                    self._say(words.block("Cancelled. The study is not simulated as it stands.", "warning"))
+                else:
+                    self._say(words.block("Cancelled. What was there stays.", "warning") + self._answer(self.data))
 
     def fault(self, error: BaseException) -> None:
         """Tell this person, and the log, what went wrong; the session goes on."""
-        if isinstance(error, FlexapodError):
-            html = words.error_html(error)
-        else:
+        known = isinstance(error, FlexapodError)
+        html = words.error_html(error) if known else words.fault_html(error)
+        if not known or self.header is None:
             _LOG.error("client %s: %s", self.client.client_id, "".join(traceback.format_exception(error)))
-            html = words.fault_html(error)
-        self._say(html)
+        if self.header is None and not self._closed:  # the page is not there yet: the words are all there is
+            self.client.gui.add_html(html)
+        elif known:
+            self._say(html)
+        else:
+            self._fault(html)
+
+    def waits(self, run: Run) -> None:
+        """As `Watcher.waits`."""
+        self._tell(run, words.block("Waiting for a free core: others are simulating on this machine.", "soft"))
+
+    def begins(self, run: Run) -> None:
+        """As `Watcher.begins`."""
+        self._tell(run, words.block("Simulating.", "soft"))
+
+    def progress(self, run: Run, share: float) -> None:
+        """As `Watcher.progress`."""
+        with self._lock:
+            if run is self._run and not self._closed and self.header is not None:
+                self.header.progress(share)
+
+    def ended(self, run: Run, found: Dataset | BaseException) -> None:
+        """As `Watcher.ended`."""
+        with self._lock:
+            if run is not self._run or self._closed:
+                return  # cancelled, or another one was started since
+            self._run = None
+            self._show_running(False)
+            if isinstance(found, BaseException):
+                self._say("")
+                self.fault(found)
+                return
+            self.data = found
+            self._show_data()
+
+    def _tell(self, run: Run, html: str) -> None:
+        with self._lock:
+            if run is self._run:
+                self._say(html)
 
     def _say(self, html: str) -> None:
         with self._lock:
             if not self._closed and self.header is not None:
                 self.header.say(html)
+
+    def _fault(self, html: str) -> None:
+        with self._lock:
+            if not self._closed and self.header is not None:
+                self.header.fault(html)
 
     def _build(self, document: Document) -> None:
         from flexapod.app.view.modes_panel import ModesPanel
@@ -145,21 +201,27 @@ class Session:
         gui = self.client.gui
         self.header = Header(self.client, _name(document), self.simulate, self.cancel)
         self.scene: Any = RobotScene(self.client) if isinstance(self.study, model.Study) else ActuatorScene(self.client)
+        self.scene.show_study(self.study)  # first of all: it is what takes the browser longest
+        self._picture = Picture(gui, self._back)
         tabs = gui.add_tab_group()
         with tabs.add_tab("Time", icon=Icon.CLOCK):
-            self.time_panel = TimePanel(self.client, self.scene)
+            self.time_panel = TimePanel(self.client, self.scene, self._threads, self._point_chosen)
         with tabs.add_tab("Study", icon=Icon.ADJUSTMENTS):
             self.study_panel = StudyPanel(self.client, document, self._edited)
         with tabs.add_tab("Modes", icon=Icon.WAVE_SINE):
-            self.modes_panel = ModesPanel(self.client, self.scene)
+            self.modes_panel = ModesPanel(self.client, self.scene, self._threads)
         with tabs.add_tab("Files", icon=Icon.FOLDER):
             self.files_panel = FilesPanel(
                 self.client,
+                self._threads,
+                self._sent,
                 lambda: self.study_panel.document,
                 lambda: self.study,
                 lambda: self.data,
                 self._uploaded,
             )
+        self.scene.told = self._drawn
+        self._drawn()
         self._panels = [self.time_panel, self.modes_panel, self.files_panel, self.scene]
 
     def _drop_panels(self) -> None:
@@ -168,7 +230,7 @@ class Session:
         if self._panels and not self._closed:
             self.client.gui.reset()
             self.client.scene.reset()
-        self._panels = []
+        self._panels, self.header = [], None
 
     def _edited(self, found: Edit) -> None:
         with self._lock:
@@ -181,21 +243,21 @@ class Session:
                 return
             self._stop()
             self.study, self.data = found.study, None
+            self._fault("")
             self._say(words.block("Changed: rigid preview.", "soft"))
             self._show_study()
-            self._timer = threading.Timer(QUIET, self._settled)
-            self._timer.daemon = True
-            self._timer.start()
+            self._unsettled = True
+            self._settling.request(QUIET)
 
     def _settled(self) -> None:
         """Compute what takes longer than the preview, once nothing has changed for a while."""
         with self._lock:
-            if self._closed or self._timer is not threading.current_thread():
+            if self._closed or not self._unsettled:
                 return
-            self._timer = None
+            self._unsettled = False
             self.modes_panel.show_study(self.study)
-            if self._quick:
-                self.simulate()
+            if is_quick(self.study):
+                self._simulate(preview=True)
             else:
                 self._say(words.block("Changed: press Simulate for the flexible result.", "soft"))
 
@@ -210,49 +272,56 @@ class Session:
 
     def _show_data(self) -> None:
         if self.data is not None:
-            self._say(_answer(self.data))
             self.scene.show_data(self.data)
+            self._say(self._answer(self.data))
             self.time_panel.show_data(self.data)
 
+    def _drawn(self) -> None:
+        """The scene shows something else: the words about it follow."""
+        self._picture.tell(self.scene)
+        self.time_panel.follow()
+
+    def _back(self) -> None:
+        """Show the result over time in place of a mode or a pose."""
+        self.scene.driver = None
+        self.scene.set_time(self.scene.time)
+
+    def _point_chosen(self) -> None:
+        with self._lock:
+            if self.data is not None and not self.busy:
+                self._say(self._answer(self.data))
+
+    def _answer(self, data: Dataset) -> str:
+        return _answer(data, self.scene.point) + _preview(self.study, data)
+
     def _stop(self) -> None:
-        if self._timer is not None:
-            self._timer.cancel()
-            self._timer = None
+        self._unsettled = False
+        self._settling.cancel()
         if self._run is not None:
             self._run.cancel()
             self._run = None
             self._show_running(False)
 
-    def _progress(self, run: Run, share: float) -> None:
-        with self._lock:
-            if run is self._run and not self._closed and self.header is not None:
-                self.header.progress(share)
-
     def _show_running(self, on: bool) -> None:
         if not self._closed and self.header is not None:
             self.header.running(on)
-
-    def _ended(self, run: Run, found: Dataset | BaseException) -> None:
-        with self._lock:
-            if run is not self._run or self._closed:
-                return  # cancelled, or another one was started since
-            self._run = None
-            self._show_running(False)
-            if isinstance(found, BaseException):
-                self.fault(found)
-                return
-            self.data, self._quick = found, float(found.attrs["wall_time"]) < QUICK
-            self._show_data()
 
 
 def _name(document: Document) -> str:
     return Path(document.path).name if document.path else "study"
 
 
-def _answer(data: Dataset) -> str:
-    from flexapod.study.summary import summary
+def _preview(study: model.Study | model.ActuatorStudy, data: Dataset) -> str:
+    said = preview_words(study, data)
+    return words.block(said, "warning") if said else ""
 
-    html = words.block(summary(data).sentence, "good")
+
+def _answer(data: Dataset, point: str) -> str:
+    """The deviation of a point in a sentence, of the others below it, and what the result warns of."""
+    from flexapod.study.summary import summaries
+
+    said = sorted(summaries(data), key=lambda s: getattr(s, "point", point) != point)
+    html = "".join(words.block(s.sentence, "soft" if i else "good") for i, s in enumerate(said))
     if data.attrs["partial"]:
         reached = f"Stopped at t = {float(data.time[-1]):.6g} s: {data.attrs.get('failure', '')}"
         html += words.block(reached, "error")

@@ -14,7 +14,9 @@ from flexapod.app.view.document import Document
 from flexapod.app.view.editing import Edit, chosen, edited, first_value, read
 from flexapod.app.view.fields import Field, read_fields
 from flexapod.app.view.knob import Knob
+from flexapod.app.view.long_lists import parted, without_rows
 from flexapod.app.view.preview import preview_html
+from flexapod.app.view.structure import Offer, offers
 from flexapod.app.view.widgets import Setter, add_widget, signature
 from flexapod.errors import InputError
 
@@ -45,6 +47,7 @@ class StudyPanel:
         self._lock, self._waiting, self._busy = threading.Lock(), dict[str, tuple[object, bool]](), False
         self._before: list[Document] = []
         self._fields: dict[str, Field] = {}
+        self._long: dict[str, int] = {}
         self._setters: dict[str, Setter] = {}
         self._folders: dict[str, Any] = {}
         self._signatures: dict[str, object] = {}
@@ -56,6 +59,8 @@ class StudyPanel:
         undo.on_click(lambda _: self._undo())
         reset.on_click(lambda _: self._replace(self._original))
         self._tab = self._gui.add_folder(None)
+        self._more = self._gui.add_folder(None)
+        self._absent: list[tuple[str, Any]] = []
         self._show(read(document))
 
     def _typed(self, key: str, value: object) -> None:
@@ -101,6 +106,9 @@ class StudyPanel:
             typed = {key if key in self._fields else key.rpartition("[")[0] for key, (_, t) in changes.items() if t}
             self._take(found, typed, turned=bool(changes) and not typed)
 
+    def _apply_offer(self, offer: Offer) -> None:
+        self._replace(offer.apply(self.document))
+
     def _undo(self) -> None:
         if self._before:
             document = self._before.pop()
@@ -121,10 +129,14 @@ class StudyPanel:
         Somebody may be typing on, or dragging on, there.
         """
         self.document = found.document
-        fields = self._readable(found)
+        fields, long = parted(self._readable(found))
+        if found.error is not None:  # reading stopped, before the rows perhaps
+            there = found.document.having(self._long)
+            long = {key: count for key, count in self._long.items() if key in there} | long
+        self._long = long
         before, self._fields = self._fields, {field.key: field for field in fields}
         present = [field for field in fields if field.value is not None]
-        self._fit_folders(fields)
+        self._fit_folders(fields, long)
         for field in present:
             if field.key not in typed and field.key in before and before[field.key].value != field.value:
                 self._setters[field.key](field.value)
@@ -137,7 +149,8 @@ class StudyPanel:
         """Fields of the document in its order; where reading stopped, those known before stay as they were."""
         fields = {field.key: field for field in read_fields(found.document.text, found.document.path)}
         if found.error is not None:
-            known = {key: f for key, f in self._fields.items() if f.value is None or found.document.has(key)}
+            there = found.document.having(key for key, f in self._fields.items() if f.value is not None)
+            known = {key: f for key, f in self._fields.items() if f.value is None or key in there}
             fields = known | fields
         order = list(tomllib.loads(found.document.text))
         return sorted(fields.values(), key=lambda f: _place(order, f.key))
@@ -152,8 +165,11 @@ class StudyPanel:
         remarks = "".join(words.block(remark, "warning") for remark in found.study.warnings)
         return html + preview_html(found.study) + remarks
 
-    def _fit_folders(self, fields: list[Field]) -> None:
-        """A folder for each table of the file; one is made anew where its inputs are others than before."""
+    def _fit_folders(self, fields: list[Field], long: dict[str, int]) -> None:
+        """A folder for each table of the file; one is made anew where its inputs are others than before.
+
+        `long`: rows of the lists that are too long to show.
+        """
         tables: dict[str, list[Field]] = {}
         for field in fields:
             if field.value is not None or field.kind != "text" or field.choices:
@@ -162,11 +178,35 @@ class StudyPanel:
             self._folders.pop(name).remove()
             del self._signatures[name]
             self._beside = {t: h for t, h in self._beside.items() if _top(t) != name}
+        found = without_rows(offers(self.document), long)
         for place, (name, listed) in enumerate(tables.items()):
-            now = [(signature(f), f.value is None) for f in listed]
+            here = [offer for offer in found if offer.place == name]
+            remarks = [_counted(key, count) for key, count in long.items() if _top(key) == name]
+            now = [[(signature(f), f.value is None) for f in listed], [offer.label for offer in here], remarks]
             if self._signatures.get(name) != now:
-                self._make_folder(name, listed, place)
+                self._make_folder(name, listed, here, remarks, place)
                 self._signatures[name] = now
+        self._offer_tables([offer for offer in found if not offer.place])
+
+    def _offer_tables(self, found: list[Offer]) -> None:
+        """Below the folders: a button for each table that the file leaves out."""
+        if [label for label, _ in self._absent] == [offer.label for offer in found]:
+            return
+        for _, handle in self._absent:
+            handle.remove()
+        with self._more:
+            self._absent = [(offer.label, self._button(offer)) for offer in found]
+
+    def _buttons(self, found: list[Offer], inside: str) -> None:
+        for offer in found:
+            if offer.inside == inside:
+                self._button(offer)
+
+    def _button(self, offer: Offer) -> Any:
+        icon = Icon.MINUS if offer.label.startswith("Take out") else Icon.PLUS
+        handle = self._gui.add_button(offer.label, color="gray", icon=icon, hint=offer.hint)
+        handle.on_click(lambda _: self._apply_offer(offer))
+        return handle
 
     def _point_at(self, error: InputError | None) -> None:
         """Say what is wrong beside the inputs of its table too: those may be far below."""
@@ -177,7 +217,7 @@ class StudyPanel:
             if handle.content != content:
                 handle.content = content
 
-    def _make_folder(self, name: str, fields: list[Field], place: int) -> None:
+    def _make_folder(self, name: str, fields: list[Field], found: list[Offer], remarks: list[str], place: int) -> None:
         known = name in self._folders
         if known:
             self._folders.pop(name).remove()
@@ -186,18 +226,23 @@ class StudyPanel:
         self._folders[name] = folder
         self._beside = {t: h for t, h in self._beside.items() if _top(t) != name}
         with folder:
-            self._fill([f for f in fields if f.value is not None], [f for f in fields if f.value is None])
+            self._fill(fields, found)
+            for remark in remarks:
+                self._gui.add_html(words.block(remark, "soft"))
 
-    def _fill(self, present: list[Field], absent: list[Field]) -> None:
+    def _fill(self, fields: list[Field], found: list[Offer]) -> None:
         inner: dict[str, list[Field]] = {}
+        present, absent = _parted(fields)
         for field in present:
             inner.setdefault(_inside(field), []).append(field)
-        for name, fields in inner.items():
+        for name, listed in inner.items():
             if not name:
-                self._add(fields)
+                self._add(listed)
                 continue
             with self._gui.add_folder(name):
-                self._add(fields)
+                self._add(listed)
+                self._buttons(found, name)
+        self._buttons(found, "")
         if absent:
             self._offer(absent)
 
@@ -216,6 +261,16 @@ class StudyPanel:
                 self._changed(handle.value, first_value(names[handle.value]))
 
         handle.on_update(add)
+
+
+def _parted(fields: list[Field]) -> tuple[list[Field], list[Field]]:
+    """Fields that the file gives, and those that it leaves out."""
+    return [f for f in fields if f.value is not None], [f for f in fields if f.value is None]
+
+
+def _counted(key: str, count: int) -> str:
+    """What is said in place of the rows of a long list."""
+    return f"{count} {key.rpartition('.')[2]}, not changed here: change them in the file"
 
 
 def _top(key: str) -> str:

@@ -10,9 +10,11 @@ from typing import TYPE_CHECKING, Any
 from viser import Icon
 
 from flexapod.app.view import words
-from flexapod.app.view.charts import Chart, ChartView, charts
+from flexapod.app.view.charts import POINTS, Chart, ChartView, charts
 from flexapod.app.view.player import Player
 from flexapod.app.view.scene import PARTS, Scene
+from flexapod.app.view.scene_geometry import nearest
+from flexapod.app.view.threads import Threads
 
 if TYPE_CHECKING:
     import viser
@@ -22,6 +24,8 @@ __all__ = ["TimePanel"]
 
 CHART_FRAMES = 4  # updates of the scene between two of the chart
 _NOTHING: str = "none"
+NONE = "No result yet: press Simulate."
+ONE = "The result has a single instant: nothing moves."
 SPEEDS = {"1/100": 0.01, "1/20": 0.05, "1/10": 0.1, "1/4": 0.25, "1/2": 0.5, "real time": 1.0, "2 x": 2.0}
 
 
@@ -33,17 +37,23 @@ class TimePanel:
     client : viser.ClientHandle
     scene : Scene
         It follows the time of this panel.
+    threads : Threads
+        Of the session.
+    told_point : callable
+        Called after the user has chosen another point of the payload.
     """
 
-    def __init__(self, client: viser.ClientHandle, scene: Scene) -> None:
-        self.client, self.scene = client, scene
+    def __init__(
+        self, client: viser.ClientHandle, scene: Scene, threads: Threads, told_point: Callable[[], None]
+    ) -> None:
+        self.client, self.scene, self._told_point = client, scene, told_point
         self._data: Dataset | None = None
         self._charts: dict[str, Chart] = {}
         self._time, self._end, self._frame = 0.0, 0.0, 0
         self._lock = threading.RLock()
-        self._player = Player(scene, self._lock, self._step, self._label)
+        self._player = Player(scene, threads, self._lock, self._step, self._label)
         gui = client.gui
-        self._hint = gui.add_html(words.block("No result yet: press Simulate.", "soft"))
+        self._hint = gui.add_html(words.block(NONE, "soft"))
         self._play = gui.add_button("Play", icon=Icon.PLAYER_PLAY, disabled=True, hint="Play or pause")
         self._slider = gui.add_slider("time [s]", 0.0, 1.0, 0.001, 0.0, disabled=True)
         self._speed = gui.add_dropdown("speed", tuple(SPEEDS), initial_value="1/4", hint="Time shown per time passed")
@@ -58,17 +68,24 @@ class TimePanel:
         """Take a result, or nothing; the scene has it already, at the time that stays."""
         self.pause()
         with self._lock:
-            self._data, self._charts = data, {} if data is None else charts(data)
+            self._data, self._charts = data, {} if data is None else charts(data, self.scene.point)
             if data is not None:
                 self._end = float(data.time[-1])
                 self._time = min(self._time, self._end)
-            self._play.disabled = self._slider.disabled = data is None
-            self._hint.visible = data is None
-            if data is not None:
+            instants = 0 if data is None else data.sizes["time"]
+            self._play.disabled = self._slider.disabled = instants < 2
+            self._hint.visible = instants < 2
+            self._hint.content = words.block(ONE if instants else NONE, "soft")
+            if data is not None and instants > 1:
                 self._set_range(float(data.time[1] - data.time[0]))
+            self._list_points()
             self._list_charts()
-            self._tell_scale()
-            self._legend.content = self.scene.legend()
+            self.follow()
+
+    def follow(self) -> None:
+        """Say of what the scene shows now what its colours mean and how large it is drawn."""
+        self._legend.content = self.scene.legend()
+        self._tell_scale()
 
     def play(self) -> None:
         """Let time pass, from the start again after the end."""
@@ -101,27 +118,33 @@ class TimePanel:
     def _show(self, *, chart: bool = True, slider: bool = True) -> None:
         with self.client.atomic():
             self.scene.set_time(self._time)
-            if slider:
-                self._slider.value = self._time
+            self._tell_time(slider)
             if chart:
                 self._view.cursor(self._time)
                 if self.scene.quantity != "plain":
                     self._legend.content = self.scene.legend()
 
+    def _tell_time(self, always: bool) -> None:
+        """Write the stored instant that is shown; where the user wrote a time, only if it is another one."""
+        if self._data is not None:
+            instants = self._data.time.values
+            shown = float(instants[nearest(instants, self._time)])
+            if always or abs(shown - self._time) > 1e-3 * self._slider.step:
+                self._slider.value = shown
+
     def _scrubbed(self) -> None:
         with self._lock:
             if self._data is None:
                 return
-            if not self._player.playing:
-                self.scene.driver = None  # a mode that moves stops
+            self._take_scene()
             self._time = float(self._slider.value)
             self._show(slider=False)
 
     def _label(self, playing: bool) -> None:
-        if not playing:
-            self._view.cursor(self._time)
         self._play.label = "Pause" if playing else "Play"
         self._play.icon = Icon.PLAYER_PAUSE if playing else Icon.PLAYER_PLAY
+        if not playing:
+            self._view.cursor(self._time)
 
     def _set_range(self, step: float) -> None:
         self._slider.max, self._slider.step = self._end, step
@@ -145,6 +168,9 @@ class TimePanel:
             self._color = gui.add_dropdown(
                 "leg colours", self.scene.quantities, initial_value="plain", visible=len(self.scene.quantities) > 1
             )
+            self._point = gui.add_dropdown(
+                "point", tuple(POINTS.values()), visible=False, hint="Whose path and deviation are shown"
+            )
             self._legend = gui.add_html(self.scene.legend())
             self._factor = gui.add_number(
                 "magnify", 1.0, min=1.0, step=1.0, hint="Factor on all deflections in the picture"
@@ -153,18 +179,40 @@ class TimePanel:
             self._scale_words = gui.add_html("")
             boxes = {name: gui.add_checkbox(name, shown) for name, shown in PARTS.items()}
         self._color.on_update(self._user(self._recolor))
+        self._point.on_update(self._user(self._choose_point))
         self._factor.on_update(self._user(lambda: self._rescale(self._factor.value)))
         self._automatic.on_click(lambda _: self._rescale(None))
         for name, box in boxes.items():
             box.on_update(self._user(lambda name=name, box=box: self.scene.visible(name, box.value)))
 
     def _recolor(self) -> None:
+        self._take_scene()
         self.scene.colour_by(self._color.value)
         self._legend.content = self.scene.legend()
 
     def _rescale(self, factor: float | None) -> None:
+        self._take_scene()
         self.scene.set_scale(factor)
         self._tell_scale()
+
+    def _take_scene(self) -> None:
+        """Stop whatever else moves the scene, a mode: the motion is to be seen."""
+        if not self._player.playing:
+            self.scene.driver = None
+
+    def _list_points(self) -> None:
+        """Offer the points of the payload whose deviation is known, where there is a choice."""
+        self._point.visible = len(self.scene.points) > 1
+        self._point.value = POINTS[self.scene.point]
+
+    def _choose_point(self) -> None:
+        with self._lock:
+            self._take_scene()
+            self.scene.show_point(next(key for key, name in POINTS.items() if name == self._point.value))
+            if self._data is not None:
+                self._charts = charts(self._data, self.scene.point)
+                self._draw_chart()
+        self._told_point()
 
     def _tell_scale(self) -> None:
         self._factor.value = self.scene.scale

@@ -2,19 +2,34 @@
 
 from __future__ import annotations
 
-import tomllib
-from collections.abc import Iterator
+import tempfile
 from pathlib import Path, PurePosixPath
-from typing import Any
 
 from flexapod.app.view.document import Document
 from flexapod.app.view.editing import read
 from flexapod.errors import InputError
+from flexapod.model.toml import parsed
 
-__all__ = ["LARGEST", "read_upload", "refuse_size", "store_table"]
+__all__ = ["LARGEST", "MOST_BYTES", "MOST_TABLES", "Sent", "read_upload", "refuse_size", "store_table"]
 
 LARGEST = 1_000_000
 """Largest file that is taken [bytes]."""
+MOST_TABLES = 20
+"""Tables that are kept for one person."""
+MOST_BYTES = 10 * LARGEST
+"""Size of all tables that are kept for one person [bytes]."""
+
+
+class Sent:
+    """The folder of the tables that one person has sent; it lasts as long as their session."""
+
+    def __init__(self) -> None:
+        self._folder = tempfile.TemporaryDirectory(prefix="flexapod-uploads-", ignore_cleanup_errors=True)
+        self.folder = Path(self._folder.name)
+
+    def close(self) -> None:
+        """Delete the tables."""
+        self._folder.cleanup()
 
 
 def refuse_size(name: str, size: int) -> None:
@@ -53,11 +68,7 @@ def read_upload(name: str, content: bytes, folder: Path) -> Document:
         text = content.decode("utf-8-sig")
     except UnicodeDecodeError:
         raise InputError("cannot be read: it is no UTF-8 text", file=name, allowed="a study file (TOML)") from None
-    try:
-        data = tomllib.loads(text)
-    except (tomllib.TOMLDecodeError, RecursionError) as error:
-        raise InputError(f"is not valid TOML: {error}", file=name) from None
-    for key, file in _files(data, ""):
+    for key, file in _files(parsed(text, name)):
         _check_table(name, key, file, folder)
     found = read(Document(text, str(folder / name)))
     if found.error is not None:
@@ -71,7 +82,7 @@ def store_table(name: str, content: bytes, folder: Path) -> str:
     Raises
     ------
     InputError
-        Too large, or no text.
+        Too large, or no text; or with it there would be more than `MOST_TABLES` or `MOST_BYTES`.
     """
     name = _plain(name)
     refuse_size(name, len(content))
@@ -79,6 +90,14 @@ def store_table(name: str, content: bytes, folder: Path) -> str:
         content.decode("utf-8-sig")
     except UnicodeDecodeError:
         raise InputError("cannot be read: it is no text table", file=name, allowed="a CSV file") from None
+    kept = [path.stat().st_size for path in folder.iterdir() if path.name != name]
+    if len(kept) >= MOST_TABLES or sum(kept) + len(content) > MOST_BYTES:
+        raise InputError(
+            "is one table too many",
+            file=name,
+            allowed=f"{MOST_TABLES} tables, {MOST_BYTES / 1e6:g} MB together",
+            next_step="Send it under the name of one that is not needed any more, which it then replaces",
+        )
     (folder / name).write_bytes(content)
     return name
 
@@ -90,17 +109,19 @@ def _plain(name: str) -> str:
     return kept or "study.toml"
 
 
-def _files(data: Any, path: str) -> Iterator[tuple[str, object]]:
+def _files(data: object) -> list[tuple[str, object]]:
     """Key paths and values of every ``file = ...``, however deep."""
-    if isinstance(data, dict):
-        for name, value in data.items():
-            key = f"{path}.{name}" if path else str(name)
-            if name == "file":
-                yield key, value
-            yield from _files(value, key)
-    elif isinstance(data, list):
-        for i, item in enumerate(data, start=1):
-            yield from _files(item, f"{path}[{i}]")
+    found: list[tuple[str, object]] = []
+    waiting = [("", data)]
+    while waiting:
+        path, value = waiting.pop()
+        if isinstance(value, dict):
+            inner = [(name, f"{path}.{name}" if path else name, item) for name, item in value.items()]
+            found += [(key, item) for name, key, item in inner if name == "file"]
+            waiting += [(key, item) for _, key, item in inner]
+        elif isinstance(value, list):
+            waiting += [(f"{path}[{i}]", item) for i, item in enumerate(value, start=1)]
+    return found
 
 
 def _check_table(name: str, key: str, file: object, folder: Path) -> None:

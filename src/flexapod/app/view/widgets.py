@@ -4,7 +4,7 @@ from __future__ import annotations
 
 import math
 from collections.abc import Callable
-from typing import TYPE_CHECKING
+from typing import TYPE_CHECKING, Any
 
 from flexapod.app.view.document import Quantity, quantity
 from flexapod.app.view.fields import Field
@@ -12,7 +12,7 @@ from flexapod.errors import InputError
 from flexapod.units import DIMENSIONS, to_si
 
 if TYPE_CHECKING:
-    from viser import GuiApi
+    from viser import GuiApi, GuiEvent
 
 __all__ = ["Changed", "Setter", "add_widget", "signature"]
 
@@ -22,6 +22,7 @@ Changed = Callable[[str, object], None]
 Setter = Callable[[object], None]
 
 DIGITS = 12
+EMPTY = "an empty box leaves the value as it is"  # the browser tells nobody of it
 
 
 def signature(field: Field) -> tuple[object, ...]:
@@ -42,13 +43,18 @@ def add_widget(gui: GuiApi, field: Field, changed: Changed) -> Setter:
     return _written(gui, field, changed)
 
 
+def _by_user(work: Callable[[], None]) -> Callable[[GuiEvent[Any]], None]:
+    """Work to do where a user, not this program, has set an input: what is shown is no change of the study."""
+    return lambda event: work() if event.client is not None else None
+
+
 def _number(gui: GuiApi, field: Field, changed: Changed) -> Setter:
     first, dimension = quantity(field.value) or Quantity(0.0, ""), field.dimensions[0]
     unit = first.shown_unit(dimension)
     label = f"{field.name} [{unit}]" if unit else field.name
-    handle = gui.add_number(label, first.number, step=_step(first.number), hint=_hint(field, first.unit))
+    handle = gui.add_number(label, first.number, step=_step(first.number), hint=_hint(field, first.unit, EMPTY))
     handle.precision = DIGITS
-    handle.on_update(lambda _: changed(field.key, Quantity(handle.value, first.unit).written()))
+    handle.on_update(_by_user(lambda: changed(field.key, Quantity(handle.value, first.unit).written())))
 
     def show(value: object) -> None:
         handle.value = (quantity(value) or first).number
@@ -57,8 +63,8 @@ def _number(gui: GuiApi, field: Field, changed: Changed) -> Setter:
 
 
 def _whole(gui: GuiApi, field: Field, changed: Changed) -> Setter:
-    handle = gui.add_number(field.name, int(str(field.value)), step=1, hint=_hint(field, ""))
-    handle.on_update(lambda _: changed(field.key, handle.value))
+    handle = gui.add_number(field.name, int(str(field.value)), step=1, hint=_hint(field, "", EMPTY))
+    handle.on_update(_by_user(lambda: changed(field.key, handle.value)))
 
     def show(value: object) -> None:
         if isinstance(value, int):
@@ -72,7 +78,7 @@ def _choice(gui: GuiApi, field: Field, changed: Changed) -> Setter:
     if field.value not in options:
         options = (*options, str(field.value))
     handle = gui.add_dropdown(field.name, options, initial_value=str(field.value))
-    handle.on_update(lambda _: changed(field.key, handle.value))
+    handle.on_update(_by_user(lambda: changed(field.key, handle.value)))
 
     def show(value: object) -> None:
         if value in options:
@@ -90,7 +96,7 @@ def _fixed(gui: GuiApi, field: Field) -> Setter:
 def _written(gui: GuiApi, field: Field, changed: Changed) -> Setter:
     """A value whose unit does not fit, as text: the unit can be changed too."""
     handle = gui.add_text(field.name, str(field.value), hint=_hint(field, ""))
-    handle.on_update(lambda _: changed(field.key, _as_written(handle.value)))
+    handle.on_update(_by_user(lambda: changed(field.key, _as_written(handle.value))))
 
     def show(value: object) -> None:
         handle.value = str(value)
@@ -143,10 +149,10 @@ def _triple(
 
     last = numbers(values)
     title = f"{label} [{shown}]" if shown else label
-    handle = gui.add_vector3(title, last, step=_step(max(map(abs, last))), hint="x, y, z")
+    handle = gui.add_vector3(title, last, step=_step(max(map(abs, last))), hint=f"x, y, z; {EMPTY}")
     handle.precision = DIGITS
 
-    def update(_: object) -> None:
+    def update() -> None:
         nonlocal last
         now, before, last = handle.value, last, handle.value
         for i, (number, old) in enumerate(zip(now, before, strict=True), start=start + 1):
@@ -158,7 +164,7 @@ def _triple(
         last = numbers(written)
         handle.value = last
 
-    handle.on_update(update)
+    handle.on_update(_by_user(update))
     return show
 
 
@@ -189,7 +195,7 @@ def _as_written(text: str) -> object:
     return found.written() if found is not None and not found.unit else text
 
 
-def _hint(field: Field, unit: str) -> str:
+def _hint(field: Field, unit: str, more: str = "") -> str:
     dimension = field.dimensions[0] if field.dimensions else "number"
     parts = [field.key, "whole number" if field.kind == "whole" else DIMENSIONS[dimension].unit and dimension]
     if field.bounds.words:
@@ -197,7 +203,7 @@ def _hint(field: Field, unit: str) -> str:
         limits = (field.bounds.least, field.bounds.most)
         in_si = any(limit for limit in limits) and si and unit != si
         parts.append(f"allowed: {field.bounds.words}{f' {si}' if in_si else ''}")
-    return "; ".join(part for part in parts if part)
+    return "; ".join(part for part in (*parts, more) if part)
 
 
 def _step(value: float) -> float:

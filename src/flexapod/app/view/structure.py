@@ -1,0 +1,182 @@
+"""Rows and tables of a study file that can be added and taken out: waypoints, legs, amplitudes, load, start."""
+
+from __future__ import annotations
+
+import tomllib
+from collections.abc import Callable
+from dataclasses import dataclass
+from typing import Any
+
+import tomlkit
+
+from flexapod.app.view.blocks import bare, blocks, checked, renamed, replaced
+from flexapod.app.view.document import Document, Quantity, quantity
+
+__all__ = ["Offer", "offers"]
+
+STARTS: dict[str, dict[str, object]] = {"load": {"wrench": [0] * 6}, "initial": {"start": "equilibrium"}}
+"""Tables that a robot's study may leave out, as they are added: they change nothing yet."""
+
+LEGS, POINTS = 6, "motion.points"
+
+
+@dataclass(frozen=True, kw_only=True)
+class Offer:
+    """A change that a button makes.
+
+    `place`: the folder that shows it, ``[motion]``, "" where there is none yet; `inside`: the folder in that one;
+    `label`; `hint`; `apply`: the document after it, which may raise InputError; `rows`: key of the list whose row it
+    adds or takes out, "" where it is none.
+    """
+
+    place: str
+    inside: str = ""
+    label: str
+    hint: str
+    apply: Callable[[Document], Document]
+    rows: str = ""
+
+
+def offers(document: Document) -> list[Offer]:
+    """What can be added to a study file and taken out of it; nothing for a text that is no TOML."""
+    try:
+        data = tomllib.loads(document.text)
+    except tomllib.TOMLDecodeError:
+        return []
+    found = _motion(data.get("motion"))
+    if "robot" in data:
+        found += _legs(data.get("leg")) + _tables(data)
+    return found
+
+
+def _motion(motion: object) -> list[Offer]:
+    if not isinstance(motion, dict):
+        return []
+    if motion.get("type") == "combined" and "amplitudes" not in motion:
+        hint = "The axes that move; others are added below"
+        start = {"roll": "1 deg"}
+        return [_offer("[motion]", "Add amplitudes", hint, lambda d: d.changed("motion.amplitudes", start))]
+    if motion.get("type") != "waypoints":
+        return []
+    points = motion.get("points", [])
+    if not isinstance(points, list) or not all(isinstance(point, dict) for point in points):
+        return []
+    hint = "A copy of the last point at a later time"
+    found = [Offer(place="[motion]", label="Add a point", hint=hint, apply=_with_point, rows=POINTS)]
+    if len(points) > 1:
+        found += [_without_offer(place) for place in range(len(points))]
+    return found
+
+
+def _without_offer(place: int) -> Offer:
+    name = f"points[{place + 1}]"
+    return Offer(
+        place="[motion]",
+        inside=name,
+        label=f"Take out {name}",
+        hint="Without this point",
+        apply=lambda document: _without_point(document, place),
+        rows=POINTS,
+    )
+
+
+def _legs(leg: object) -> list[Offer]:
+    if isinstance(leg, dict):
+        return [_offer("[leg]", "Six different legs", "[[leg]] six times, all as this one at first", _each_leg)]
+    if isinstance(leg, list) and len(leg) == LEGS:
+        return [
+            _offer("[[leg]] 1", "All legs as this one", "[leg] once, as leg 1 is; the others are taken out", _one_leg)
+        ]
+    return []
+
+
+def _tables(data: dict[str, Any]) -> list[Offer]:
+    found = []
+    for name, start in STARTS.items():
+        if name in data:
+            label, hint = f"Take out [{name}]", "Without this table"
+            found.append(_offer(f"[{name}]", label, hint, lambda d, n=name: d.without(n)))
+        else:
+            hint = "A table that the file leaves out"
+            found.append(_offer("", f"Add [{name}]", hint, lambda d, n=name, s=start: _with_table(d, n, s)))
+    return found
+
+
+def _offer(place: str, label: str, hint: str, apply: Callable[[Document], Document]) -> Offer:
+    return Offer(place=place, label=label, hint=hint, apply=apply)
+
+
+def _with_table(document: Document, name: str, values: dict[str, object]) -> Document:
+    tree = tomlkit.parse(document.text)
+    table = tomlkit.table()
+    table.update(values)
+    tree[name] = table
+    return Document(tree.as_string(), document.path)
+
+
+def _with_point(document: Document) -> Document:
+    """One more waypoint: the pose of the last, as much later as that is after the one before."""
+    expected = tomllib.loads(document.text)
+    points = expected["motion"].setdefault("points", [])
+    if not points:
+        return document.changed("motion.points", [{"time": "1 s", "roll": "1 deg"}])
+    last = {**points[-1], "time": _later(points)}
+    points.append(last)
+    found = blocks(document.text, POINTS)
+    if found:
+        added = ["", f"[[{POINTS}]]", *tomlkit.dumps(last).splitlines()]
+        text = replaced(document.text, found[-1][1], found[-1][1], added)
+    else:
+        tree: Any = tomlkit.parse(document.text)
+        row = tomlkit.inline_table()
+        row.update(last)
+        tree["motion"]["points"].append(row)
+        text = tree.as_string()
+    return Document(checked(text, expected, POINTS), document.path)
+
+
+def _without_point(document: Document, place: int) -> Document:
+    """Without one waypoint, the first is 0."""
+    expected = tomllib.loads(document.text)
+    del expected["motion"]["points"][place]
+    found = blocks(document.text, POINTS)
+    if not found:
+        text = document.without(f"{POINTS}[{place + 1}]").text
+    else:
+        text = replaced(document.text, *found[place], [])
+    return Document(checked(text, expected, POINTS), document.path)
+
+
+def _later(points: list[dict[str, object]]) -> object:
+    """A time as much after the last point's as that is after the one before (or after 0), in its unit."""
+    last = quantity(points[-1].get("time"))
+    if last is None:
+        return "1 s"
+    before = quantity(points[-2].get("time")) if len(points) > 1 else None
+    step = last.number - before.in_unit(last.unit, "time").number if before is not None else last.number
+    return Quantity(last.number + (step if step > 0 else 1.0), last.unit).written()
+
+
+def _each_leg(document: Document) -> Document:
+    """``[[leg]]`` six times in place of ``[leg]``; the comments stay with the first."""
+    expected = tomllib.loads(document.text)
+    expected["leg"] = [expected["leg"]] * LEGS
+    text = document.text
+    for first, after in blocks(text, "leg")[:1]:
+        lines = renamed(text.splitlines()[first:after], "leg", "[[leg]]")
+        copies = [line for _ in range(LEGS - 1) for line in ("", *bare(lines))]
+        text = replaced(text, first, after, [*lines, *copies])
+    return Document(checked(text, expected, "leg"), document.path)
+
+
+def _one_leg(document: Document) -> Document:
+    """``[leg]`` as the first ``[[leg]]`` is; the others go with their comments."""
+    expected = tomllib.loads(document.text)
+    expected["leg"] = expected["leg"][0]
+    text, found = document.text, blocks(document.text, "leg")
+    for first, after in reversed(found[1:]):
+        blank = first > 0 and not text.splitlines()[first - 1].strip()
+        text = replaced(text, first - blank, after, [])
+    for first, after in found[:1]:
+        text = replaced(text, first, after, renamed(text.splitlines()[first:after], "leg", "[leg]"))
+    return Document(checked(text, expected, "leg"), document.path)
