@@ -274,7 +274,7 @@ def test_results_that_were_opened_are_no_preview(tmp_path):
 def test_the_page_says_how_modes_are_drawn_and_sliders_fit_the_robot(visit):
     session = visit(study_text(*SHORT))
     modes = session.modes_panel._inside
-    assert "drawn at 0.5 Hz" in modes._show._note.content
+    until(lambda: "drawn at 0.5 Hz" in modes._show._note.content)
     assert "100 % of the robot's size: 900 mm" in unescape(modes._show._note.content)  # base joints to platform joints
     assert (modes._pose["heave"].min, modes._pose["heave"].max, modes._pose["heave"].step) == (-500.0, 500.0, 1.0)
     small = SimpleNamespace(robot=SimpleNamespace(home_lengths=np.full(6, 0.0092)))  # legs of 9.2 mm
