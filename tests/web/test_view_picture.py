@@ -48,11 +48,18 @@ def visit(view):
         modes = session.modes_panel._inside
         until(lambda: modes._modes is not None or modes._words.content)
         until(lambda: "Simulating" not in said(session))
+        shown(session)
         return session
 
     yield begin
     for client in open_guests:
         client.__exit__(None, None, None)
+
+
+def shown(session) -> None:
+    """Wait until all panels have what the session has: they are told one after the other."""
+    with session._lock:
+        pass
 
 
 def said(session) -> str:
@@ -173,8 +180,8 @@ def test_a_tool_comes_first(visit):
     check("com")
     assert said(session).index(com) < said(session).index(tool)
     session.simulate()  # the choice stays
-    until(lambda: session.data is not data)
-    until(lambda: "misses" in said(session))
+    until(lambda: session.data is not data and not session.busy)
+    shown(session)
     assert session.scene.point == "com" and said(session).index(com) < said(session).index(tool)
 
 
