@@ -149,6 +149,8 @@ def test_points_and_tables_are_added_and_taken_out(show):
     until(lambda: session.study.source_text == motion)
     page.get_by_role("button", name="Add [load]").click()
     page.get_by_text("[load]", exact=True).click()
+    page.get_by_role("button", name="Take out [load]").wait_for()
+    until(lambda: session.data is not None and not session.busy)  # the page is not drawn anew under the click
     page.get_by_role("button", name="Take out [load]").click()
     until(lambda: "wrench" not in session.study.source_text)
     page.get_by_text("[leg]", exact=True).click()
