@@ -46,3 +46,24 @@ def test_version_is_that_of_the_distribution():
 def test_unknown_name_is_refused():
     with pytest.raises(AttributeError, match="simulat_"):
         _ = flexapod.simulat_
+
+
+def test_a_simulation_needs_no_scipy():
+    """It took a third of the time of a whole process; the kernel is compiled before, which needs CasADi."""
+    roll = "import sys, gc, flexapod as fx; s = fx.preset('paper-robot'); fx.simulate(s, duration=0.01, step=1e-3); "
+    python(roll)
+    assert python(f"{roll}print([m for m in ('scipy', 'casadi', 'dask', 'matplotlib') if m in sys.modules])") == "[]"
+
+
+def test_garbage_is_looked_for_as_before():
+    """Imports go without; what is thrown away later, and what was there before, is found."""
+    code = (
+        "import gc, weakref\n"
+        "class Ring: pass\n"
+        "early = Ring(); early.me = early; seen = [weakref.ref(early)]\n"
+        "import flexapod as fx; fx.simulate\n"
+        "late = Ring(); late.me = late; seen.append(weakref.ref(late))\n"
+        "del early, late; gc.collect()\n"
+        "print(gc.isenabled(), gc.get_freeze_count(), [ring() for ring in seen])"
+    )
+    assert python(code) == "True 0 [None, None]"

@@ -54,3 +54,24 @@ def test_a_step_that_cannot_be_changed_is_told():
         leg_p[:, columns(LEG_PARAMETERS, name)] = 0.0
     with pytest.raises(fx.ComputationError, match="mass matrix is singular"):
         native.scaled_defect(replace(plant, leg_p=leg_p), flow, 4.0)
+
+
+@pytest.mark.parametrize("needed", [4, 16])
+def test_steps_too_long_for_newton_are_shortened_before_giving_up(needed, monkeypatch):
+    """Eight steps an output are tried; where these fail as well, it is the robot and not the step."""
+    run = march._Control._run
+
+    def failing(self, flow, grid, per_output):
+        if per_output < needed:
+            raise fx.ComputationError("the step's equations were not solved")
+        return run(self, flow, grid, per_output)
+
+    monkeypatch.setattr(march._Control, "_run", failing)
+    chunks = prepare(paper_robot(fidelity="lumped", duration=0.02, tolerance=0.5)).chunks
+    if needed > march.SHORT / 2:  # the coarse run has half as many
+        with pytest.raises(fx.ComputationError, match="not solved"):
+            list(chunks)
+        return
+    found = list(chunks)
+    assert found[-1].recording.time[-1] == pytest.approx(0.02)
+    assert {round(1e-3 / chunk.step) for chunk in found[1:]} == {march.SHORT}

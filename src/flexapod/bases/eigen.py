@@ -31,5 +31,4 @@ def eigh(K: Array, M: Array) -> tuple[Array, Array]:
     half = np.linalg.solve(root, K)
     A = np.linalg.solve(root, half.T)
     values, vectors = np.linalg.eigh(0.5 * (A + A.T))
-    values, vectors = np.linalg.eigh(0.5 * (A + A.T))
     return values, np.asarray(np.linalg.solve(root.T, vectors), dtype=np.float64)

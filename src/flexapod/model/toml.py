@@ -74,7 +74,7 @@ def _refuse_long_keys(text: str, file: str) -> None:
 
 
 def _refuse_excess(data: dict[str, Any], file: str) -> None:
-    """Refuse what lies too deep, and whole numbers that do not fit 64 bits; without recursion, however deep it is."""
+    """Refuse what lies too deep, and whole numbers of too many digits; without recursion, however deep it is."""
     waiting: list[tuple[str, int, object]] = [("", 0, data)]
     while waiting:
         path, depth, value = waiting.pop()
