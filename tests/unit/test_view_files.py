@@ -260,12 +260,19 @@ def test_the_slider_turns_what_a_user_turns(client):
     text = TEXT.replace('"27 mm"', '"27.00 mm"').replace('"100 kg"', '"100.0 kg"')
     panel = StudyPanel(client, Document(text, None), lambda edit: None)
     assert panel._knob._choice.value == "leg.piston.diameter"
-    panel._knob._choice.value = "payload.mass"  # the slider is brought there
+    before = panel._knob._slider
+    panel._knob._choice.value = "payload.mass"  # another slider
     assert panel.document.text == text
-    panel._knob._slider._impl.value = 120.0
-    for callback in panel._knob._slider._impl.update_cb:
-        callback(SimpleNamespace(client=client, client_id=0, target=panel._knob._slider))
+
+    def drag(slider, value):
+        slider._impl.value = value
+        for callback in slider._impl.update_cb:
+            callback(SimpleNamespace(client=client, client_id=0, target=slider))
+
+    drag(panel._knob._slider, 120.0)
     assert '"120 kg"' in panel.document.text and '"27.00 mm"' in panel.document.text
+    drag(before, 30.0)  # still on its way when the other number was chosen
+    assert '"120 kg"' in panel.document.text and '"30 mm"' in panel.document.text
 
 
 @pytest.mark.parametrize(

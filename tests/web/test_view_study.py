@@ -103,6 +103,7 @@ def test_a_dragged_number_moves_the_rigid_preview_before_anything_is_simulated(s
     tab(page, "Study")
     page.get_by_label("number", exact=True).click()
     page.get_by_role("option", name="motion.amplitude").click()
+    page.get_by_text("motion.amplitude = 2 deg").wait_for()
     monkeypatch.setattr(session, "_settled", lambda: None)
     lengths = page.get_by_role("cell").all_inner_texts()
     slider = page.get_by_role("slider").last

@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+import threading
 from collections.abc import Sequence
 from typing import TYPE_CHECKING
 
@@ -10,7 +11,7 @@ from flexapod.app.view.document import Quantity, quantity
 from flexapod.app.view.fields import Field
 
 if TYPE_CHECKING:
-    from viser import ClientHandle, GuiDropdownHandle
+    from viser import ClientHandle, GuiDropdownHandle, GuiSliderHandle
 
     from flexapod.app.view.widgets import Changed
 
@@ -32,29 +33,31 @@ class Knob:
     """
 
     def __init__(self, client: ClientHandle, changed: Changed) -> None:
-        self._changed, self._fields = changed, dict[str, Field]()
-        with client.gui.add_folder("Turn a number"):
+        self._gui, self._changed, self._fields = client.gui, changed, dict[str, Field]()
+        self._lock = threading.RLock()  # numbers are chosen in one thread and turned in another
+        self._slider: GuiSliderHandle[float] | None = None
+        self._folder = client.gui.add_folder("Turn a number")
+        with self._folder:
             self._choice: GuiDropdownHandle[str] = client.gui.add_dropdown(
-                "number", _NONE, hint="The number that the slider changes"
+                "number", _NONE, hint="The number that the slider changes", order=0
             )
-            self._slider = client.gui.add_slider("value", 0.0, 1.0, 0.01, 0.0, hint="Drag: the picture follows")
-            self._words = client.gui.add_html("")  # the slider's own field cuts long numbers
-        self._choice.on_update(lambda _: self._aim())
-        self._slider.on_update(lambda event: self._turned() if event.client is not None else None)
+            self._words = client.gui.add_html("", order=2)  # the slider's own field cuts long numbers
+        self._choice.on_update(lambda _: self._chosen())
 
     def show(self, fields: Sequence[Field], aim: bool) -> None:
         """Offer the numbers of `fields` that are not zero, and show the value of the chosen one if `aim`."""
-        kept = self._choice.value
-        numbers = {f.key: (f, q) for f in fields if f.kind == "number" and (q := quantity(f.value)) is not None}
-        found = {key: field for key, (field, q) in numbers.items() if q.number or key == kept}
-        if set(found) | {kept} != set(self._fields) | {kept}:
-            self._choice.options = tuple(found)
-        self._fields = found
-        if kept not in found:
-            self._choice.value = next((key for key in FIRST if key in found), next(iter(found), ""))
-        elif aim and (now := quantity(found[kept].value)) is not None and now.number != self._slider.value:
-            self._aim(moved=not self._slider.min <= now.number <= self._slider.max)
-        self._tell()
+        with self._lock:
+            kept = self._choice.value
+            numbers = {f.key: (f, q) for f in fields if f.kind == "number" and (q := quantity(f.value)) is not None}
+            found = {key: field for key, (field, q) in numbers.items() if q.number or key == kept}
+            if set(found) | {kept} != set(self._fields) | {kept}:
+                self._choice.options = tuple(found)
+            self._fields = found
+            if kept not in found:
+                self._choice.value = next((key for key in FIRST if key in found), next(iter(found), ""))
+            elif aim:
+                self._aim(found[kept])
+            self._tell()
 
     def _tell(self) -> None:
         """Write the chosen number out."""
@@ -63,25 +66,47 @@ class Knob:
         if self._words.content != content:
             self._words.content = content
 
-    def _aim(self, moved: bool = True) -> None:
-        """Bring the slider to the chosen number; `moved`: with a range about it."""
-        field = self._fields.get(self._choice.value)
-        now = quantity(field.value) if field is not None else None
-        if field is None or now is None:
-            return
-        unit = now.shown_unit(field.dimensions[0])
-        self._slider.label = f"value [{unit}]" if unit else "value"
-        if moved:
-            reach = 2 * now.number or 1.0
-            self._slider.min, self._slider.max = min(0.0, reach), max(0.0, reach)
-            self._slider.step = abs(reach) / PARTS
-            self._slider.precision = 12
-        self._slider.value = now.number
-        self._tell()
+    def _chosen(self) -> None:
+        with self._lock:
+            field = self._fields.get(self._choice.value)
+            if field is not None:
+                self._make(field)
+                self._tell()
 
-    def _turned(self) -> None:
-        field = self._fields.get(self._choice.value)
-        now = quantity(field.value) if field is not None else None
-        if field is None or now is None:
+    def _aim(self, field: Field) -> None:
+        """Bring the slider to its number, which was changed elsewhere."""
+        now, slider = quantity(field.value), self._slider
+        if now is None or (slider is not None and now.number == slider.value):
             return
-        self._changed(field.key, Quantity(self._slider.value, now.unit).written())
+        if slider is not None and slider.min <= now.number <= slider.max:
+            slider.label, slider.value = _label(field, now), now.number
+        else:
+            self._make(field)
+
+    def _make(self, field: Field) -> None:
+        """A slider of this number's own: what is still coming from the one before is not taken for this number."""
+        now = quantity(field.value)
+        if now is None:
+            return
+        if self._slider is not None:
+            self._slider.remove()
+        reach = 2 * now.number or 1.0
+        low, high = min(0.0, reach), max(0.0, reach)
+        with self._folder:
+            slider = self._gui.add_slider(
+                _label(field, now), low, high, abs(reach) / PARTS, now.number, hint="Drag: the picture follows", order=1
+            )
+        slider.precision = 12
+        slider.on_update(lambda event: self._turned(field.key, slider.value) if event.client is not None else None)
+        self._slider = slider
+
+    def _turned(self, key: str, number: float) -> None:
+        field = self._fields.get(key)
+        now = quantity(field.value) if field is not None else None
+        if now is not None:
+            self._changed(key, Quantity(number, now.unit).written())
+
+
+def _label(field: Field, now: Quantity) -> str:
+    unit = now.shown_unit(field.dimensions[0])
+    return f"value [{unit}]" if unit else "value"
