@@ -14,23 +14,19 @@ __all__ = ["incomplete", "mend"]
 def mend(store: SweepStore) -> int:
     """Make points pending whose results cannot be read, or are no numbers where every computed point has some.
 
-    Scalars and texts are read; records may be many gigabytes: of them only the presence of their files is checked.
-    Returns how many points became pending.
+    Everything is read, a chunk at a time. Returns how many points became pending.
     """
     before, complete = store.status.copy(), store.header["complete"].split()
     for name in (*store.header["kept"].split(), *TEXTS):
+        absent = store.absent(name)
         for rows, file in store.chunks(name):
             status = store.status[rows]  # a view
-            if "time" in store.dims(name):
-                spoilt = (status == COMPUTED).any() and not (file.is_file() and file.stat().st_size)
-            else:
-                values = _read(store, name, rows)
-                spoilt = values is None
-                if values is not None and name in complete:
-                    status[incomplete(status, {name: values})] = PENDING
-            if spoilt:
+            values = None if (absent[rows] & (status != PENDING)).any() else _read(store, name, rows)
+            if values is None:
                 file.unlink(missing_ok=True)  # it would be read before points are added to it
                 status[:] = PENDING
+            elif name in complete:
+                status[incomplete(status, {name: values})] = PENDING
     changed = np.flatnonzero(store.status != before)
     if len(changed):
         store.write(changed, {}, store.status[changed], {})

@@ -11,7 +11,7 @@ import numpy as np
 
 from flexapod.study.store import replacing
 from flexapod.study.sweep.mending import incomplete
-from flexapod.study.sweep.store import COMPUTED, FAILED, PENDING, SweepStore, unreadable
+from flexapod.study.sweep.store import COMPUTED, FAILED, PENDING, TEXTS, SweepStore, Values, unreadable
 
 if TYPE_CHECKING:
     from xarray import DataArray, Dataset
@@ -50,7 +50,8 @@ def as_dataset(store: SweepStore) -> Dataset:
     for name in data.variables:
         if data[name].dtype.kind == "T":
             data[name] = data[name].astype(object)
-    return data.assign(_consistent(data, [name for name in complete if name in small]))
+    absent = np.any([store.absent(name) for name in (*kept, *TEXTS)], axis=0)
+    return data.assign(_consistent(data, absent, [name for name in complete if name in small]))
 
 
 def _load(data: Dataset, name: Hashable, path: Path | None) -> None:
@@ -60,9 +61,10 @@ def _load(data: Dataset, name: Hashable, path: Path | None) -> None:
         raise unreadable(path, str(name)) from None
 
 
-def _consistent(data: Dataset, complete: Sequence[str]) -> dict[str, Any]:
+def _consistent(data: Dataset, absent: Values, complete: Sequence[str]) -> dict[str, Any]:
     """The status in words, and loaded values and texts as they belong to it, whatever was written meanwhile."""
     status = data["status"].values.copy()
+    status[absent] = PENDING
     status[incomplete(status, {name: data[name].values for name in complete})] = PENDING
     made: dict[str, Any] = {"status": ("point", STATES[status], {"long_name": "state of the point"})}
     for name, state in (("message", FAILED), ("remarks", COMPUTED)):

@@ -146,6 +146,13 @@ class SweepStore:
             key = array.metadata.encode_chunk_key((number, *(0,) * (array.ndim - 1)))
             yield slice(begin, min(begin + array.chunks[0], array.shape[0])), folder / key
 
+    def absent(self, name: str) -> Values:
+        """Points whose values of an array are in no file, (N,)."""
+        found = np.zeros(self.status.shape, dtype=bool)
+        for rows, file in self.chunks(name) if self.path is not None else ():
+            found[rows] = not file.is_file()
+        return found
+
     @property
     def header(self) -> dict[str, Any]:
         """Attributes of the store."""
@@ -181,10 +188,12 @@ class SweepStore:
 
 
 def _arrays(group: zarr.Group, path: Path | None) -> dict[str, Any]:
-    """Arrays of the store; refused where one is missing."""
+    """Arrays of the store, which write chunks of nothing too: no file means lost; refused where one is missing."""
+    import zarr
+
     try:
-        with warnings.catch_warnings():  # the folder of an array that is none: said below, in words
-            warnings.filterwarnings("ignore", message="Object at")
+        with zarr.config.set({"array.write_empty_chunks": True}), warnings.catch_warnings():
+            warnings.filterwarnings("ignore", message="Object at")  # an array that is none: said below, in words
             found: dict[str, Any] = dict(group.arrays())
         known = " ".join(str(group.attrs[name]) for name in ("varied", "kept")).split()
     except (OSError, ValueError, KeyError):
@@ -227,6 +236,8 @@ def _fill(group: zarr.Group, size: int, columns: Mapping[str, Column]) -> None:
 
 def _array(group: zarr.Group, name: str, column: Column, kind: np.dtype[Any] | None) -> None:
     """An array of numbers, or of texts if `kind` is None or the values are."""
+    from zarr.codecs import ZstdCodec
+
     values = column.values
     if values is not None:
         kind = None if values.dtype.kind in "UOT" else values.dtype
@@ -237,6 +248,7 @@ def _array(group: zarr.Group, name: str, column: Column, kind: np.dtype[Any] | N
         shape=column.shape,
         chunks=(min(chunk, column.shape[0]), *column.shape[1:]),
         dtype=str if kind is None else kind,
+        compressors=ZstdCodec(checksum=True),  # what is not what was written cannot be read
         fill_value="" if kind is None else np.nan if kind.kind == "f" else 0,
         dimension_names=column.dims,
         attributes=dict(column.attributes),
