@@ -10,6 +10,7 @@ from tests.runs import paper_robot
 import flexapod as fx
 from flexapod.mechanics.layout import LEG_PARAMETERS, columns
 from flexapod.solve import march, native
+from flexapod.solve.equilibrium import saddle_solve
 from flexapod.solve.plant import Flow, Plant
 from flexapod.solve.robot_march import prepare
 
@@ -54,6 +55,12 @@ def test_a_step_that_cannot_be_changed_is_told():
         leg_p[:, columns(LEG_PARAMETERS, name)] = 0.0
     with pytest.raises(fx.ComputationError, match="mass matrix is singular"):
         native.scaled_defect(replace(plant, leg_p=leg_p), flow, 4.0)
+
+
+def test_equations_of_motion_that_are_singular_are_told():
+    """Once a bare LinAlgError, for pistons of 1e-300 kg/m."""
+    with pytest.raises(fx.ComputationError, match="a leg has next to no mass"):
+        saddle_solve(np.diag([1.0, 0.0]), np.array([[1.0, 0.0]]), np.ones(2), np.zeros(1))
 
 
 @pytest.mark.parametrize("needed", [4, 16])

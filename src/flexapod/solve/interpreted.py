@@ -4,6 +4,7 @@ from dataclasses import replace
 
 import numpy as np
 
+from flexapod.errors import ComputationError
 from flexapod.integration import GeneralizedAlpha
 from flexapod.rigid.rotations import turned
 from flexapod.solve.equilibrium import saddle_solve
@@ -126,7 +127,10 @@ def _step(
         A, G = _matrices(plant, x, wrench, c_v, c_a, 1.0)
         counters.iterations += 1
         counters.factorisations += 1
-        dq, dm = saddle_solve(A, np.vstack([G, held]), -r, np.concatenate([-g, np.zeros(len(held))]))
+        try:
+            dq, dm = saddle_solve(A, np.vstack([G, held]), -r, np.concatenate([-g, np.zeros(len(held))]))
+        except ComputationError:
+            break
         turn = turn + dq[k:]
         drive, force_held = x.drive.copy(), -dm[len(g) :]
         order = np.flatnonzero(plant.held)
