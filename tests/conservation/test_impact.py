@@ -37,7 +37,7 @@ def test_energy_balance_across_an_impact_converges_at_second_order():
         study = study.replace(motion=study.motion.replace(duration=0.1, amplitude=0.01))
         run = collect(prepare(override(study, duration=0.2)).chunks)
         drift.append(np.ptp(balance(run)))
-        assert run["closure"].max() < 1e-10
+        assert run["closure"].max() < 1e-13  # rounding of metres
     scale = np.ptp(run["energy"][:, 0])
     assert drift[-1] < 0.05 * scale  # undissolved axial ringing at 200 Hz after the impact
     assert drift[2] < 0.5 * drift[1] < 0.25 * drift[0] * 1.3

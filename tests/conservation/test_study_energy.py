@@ -41,7 +41,7 @@ def test_balance_of_a_damped_and_driven_robot(drive):
     assert found[-1] < 1e-4 * np.ptp(data.work_drive.values)
     assert (np.diff(data.energy_dissipated.values) >= -1e-15).all()  # losses only grow
     assert np.ptp(data.work_external.values) > 100 * found[-1]
-    assert data.closure_residual.max() < 1e-10
+    assert data.closure_residual.max() < 1e-13  # rounding of metres
 
 
 @pytest.mark.parametrize("drive", [None, ServoDrive(**GAINS)], ids=["prescribed", "servo"])
