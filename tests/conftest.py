@@ -9,7 +9,7 @@ os.environ.setdefault("OPENBLAS_NUM_THREADS", "1")  # small matrices: threads of
 HERE = Path(__file__).parent
 KINDS = (
     "analytic", "cli", "consistency", "contract", "conservation", "convergence",
-    "literature", "meta", "property", "unit", "web",
+    "golden", "literature", "meta", "property", "unit", "web",
 )  # fmt: skip
 
 
