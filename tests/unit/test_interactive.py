@@ -76,6 +76,15 @@ def test_bars_and_areas():
     assert area["fill"] == "toself" and area["fillcolor"] == "rgba(184, 184, 184, 0.5)"
 
 
+def test_what_lies_above_in_the_figure_lies_above_on_the_page():
+    figure = Figure()
+    axes = figure.subplots()
+    axes.plot([0, 1], [0, 1], zorder=3, label="thin, above")
+    axes.plot([0, 1], [0, 1], linewidth=5, label="wide, below")
+    axes.legend()
+    assert [trace["name"] for trace in interactive(figure)["data"]] == ["wide, below", "thin, above"]
+
+
 def test_what_has_no_counterpart_stays_a_picture():
     space, coloured = Figure(), Figure()
     space.add_subplot(projection="3d")
@@ -92,7 +101,7 @@ def test_thinning_keeps_ends_and_extremes():
     assert {x[0], x[-1], x[3333], x[7777]} <= set(short_x)
     assert (short_y.max(), short_y.min()) == (5.0, -5.0)
     np.testing.assert_array_equal(np.interp(short_x, x, y), short_y)
-    assert thinned(x[:100], y[:100])[0] is not None and len(thinned(x[:100], y[:100])[0]) == 100
+    assert len(thinned(x[:100], y[:100])[0]) == 100
 
 
 def test_thinning_bears_gaps():

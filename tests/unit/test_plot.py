@@ -1,13 +1,15 @@
 """Figures: labelled with units, true to the data, drawn in any state of the user's matplotlib."""
 
 import re
+from itertools import pairwise
 
 import matplotlib
 import numpy as np
 import pytest
-from matplotlib.colors import to_rgb
+from matplotlib.colors import to_hex, to_rgb
 from matplotlib.figure import Figure
 from matplotlib.image import imread
+from matplotlib.legend import Legend
 from matplotlib.text import Text
 
 from flexapod import plot
@@ -17,8 +19,9 @@ from flexapod.app.view.charts import charts
 from flexapod.errors import InputError
 from flexapod.model import preset
 from flexapod.plot.narrow import narrowed
+from flexapod.plot.style import figure as page_figure
 from flexapod.plot.style import ink
-from flexapod.study import modes, simulate, simulate_actuator
+from flexapod.study import modes, simulate, simulate_actuator, workspace_map
 from flexapod.study.colours import ENERGIES
 from flexapod.study.scene import mode_scene, motion_end, robot_study, scene
 
@@ -175,7 +178,7 @@ def test_formats_and_their_refusal(robot, tmp_path):
         plot.save(figure, tmp_path / "z", width=0.0)
 
 
-@pytest.mark.parametrize("name", ROBOT)
+@pytest.mark.parametrize("name", [*ROBOT, "robot_3d"])
 def test_figures_are_as_wide_as_a_page_and_legible(robot, name):
     """At 170 mm nothing need be scaled: 7 points are the least that journals ask for."""
     figure = getattr(plot, name)(robot)
@@ -183,6 +186,7 @@ def test_figures_are_as_wide_as_a_page_and_legible(robot, name):
     figure.draw_without_rendering()
     texts = [text for text in figure.findobj(Text) if text.get_visible() and text.get_text()]
     assert min(text.get_fontsize() for text in texts) >= 7.0
+    assert all(ink(to_hex(text.get_color())) == to_hex(text.get_color()) for text in texts)  # contrast on white
 
 
 def test_a_figure_for_a_column_stays_as_it_was(robot, tmp_path):
@@ -217,7 +221,7 @@ def test_at_the_width_of_a_column_nothing_overlaps_or_is_cut(robot, actuator, sh
     if name == "modes_3d":  # pictures in space reach beyond what is seen of them
         boxes = [title.get_window_extent() for axes in panels(made) for title in (axes.title,)]
     else:
-        boxes = [axes.get_window_extent() for axes in panels(made)]
+        boxes = [part.get_window_extent() for part in (*panels(made), *made.findobj(Legend))]
         inside = made.bbox.padded(1.5)  # half a point: rounding of letters
         for text in texts(made):
             box = text.get_window_extent()
@@ -235,6 +239,31 @@ def test_titles_in_space_stay_clear_of_the_labels_above_them(robot):
         assert label.get_window_extent().y0 > title.y1
     tops = [axes.title.get_window_extent().y1 for axes in (above, below)]
     assert max(tops) <= made.bbox.y1 and made.get_figheight() < 9.2
+
+
+def test_a_label_longer_than_its_panel_is_broken():
+    figure = page_figure(height=3.0)
+    for axes in figure.subplots(3, 1):
+        axes.set_ylabel("largest difference of the two [µm]")
+    made = narrowed(figure, 0.085 / 0.0254)
+    made.draw_without_rendering()
+    labels = [axes.yaxis.label.get_window_extent() for axes in panels(made)]
+    assert not any(one.overlaps(other) for one, other in pairwise(labels))
+
+
+def test_slices_of_a_volume_fit_into_a_column():
+    """Seven slices leave two places of the wide figure empty: that once ended the narrow one in an IndexError."""
+    poses = {"surge": np.linspace(-0.2, 0.2, 5), "sway": np.linspace(-0.2, 0.2, 5), "heave": np.linspace(-0.15, 0.1, 7)}
+    made = narrowed(plot.workspace_map(workspace_map(preset("paper-robot"), poses, frequencies=1)), 0.085 / 0.0254)
+    made.draw_without_rendering()
+    *slices, bar = panels(made)
+    assert len(slices) == 7 and made.get_figheight() < 9.2
+    for axes in slices:
+        title = axes.title.get_window_extent()
+        assert title.x1 < bar.get_window_extent().x0
+        low, high = axes.get_position(original=True).height, axes.get_position().height
+        assert low == pytest.approx(high, rel=0.1)  # no empty stripes above and below equal scales
+    assert {to_hex(label.get_color()) for axes in slices for label in axes.texts} == {"#222222", "#ffffff"}
 
 
 def texts(figure):

@@ -22,7 +22,7 @@ COMPUTING = 0.88  # share of the bar for the simulation; the rest is for files
 Format = Annotated[
     str, typer.Option("--format", metavar="FORMATS", help="Of the figures: one or more of png,svg,pdf, with commas.")
 ]
-FORMATS = "png,svg"
+USUAL = "png,svg"
 
 
 def add(app: typer.Typer) -> None:
@@ -32,7 +32,7 @@ def add(app: typer.Typer) -> None:
 
 
 @guarded
-def run(file: StudyFile, out: Out = None, formats: Format = FORMATS, json: Json = False, quiet: Quiet = False) -> None:
+def run(file: StudyFile, out: Out = None, formats: Format = USUAL, json: Json = False, quiet: Quiet = False) -> None:
     """Simulate a study, rigid and flexible: results.nc, results.csv, figures, report.html."""
     from flexapod.app.outputs import parse_formats
     from flexapod.model import load
@@ -42,7 +42,7 @@ def run(file: StudyFile, out: Out = None, formats: Format = FORMATS, json: Json 
 
 @guarded
 def actuator(
-    file: StudyFile, out: Out = None, formats: Format = FORMATS, json: Json = False, quiet: Quiet = False
+    file: StudyFile, out: Out = None, formats: Format = USUAL, json: Json = False, quiet: Quiet = False
 ) -> None:
     """Simulate the study of a single actuator; writes what `run` writes."""
     from flexapod.app.outputs import parse_formats

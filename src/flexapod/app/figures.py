@@ -12,7 +12,9 @@ if TYPE_CHECKING:
     from matplotlib.figure import Figure
     from xarray import Dataset
 
-__all__ = ["Drawn", "draw", "store"]
+    from flexapod.model import ActuatorStudy, Study
+
+__all__ = ["Drawn", "carried_study", "draw", "store"]
 
 FAST = 3  # level of deflating: half the time of the usual one, a quarter more bytes
 _Plan = tuple[str, str, Callable[[], "Figure"]]
@@ -31,6 +33,17 @@ class Drawn(NamedTuple):
     def png(self) -> Path:
         """Its PNG file, where one was asked for."""
         return next(path for path in self.files if path.suffix == ".png")
+
+
+def carried_study(data: Dataset) -> Study | ActuatorStudy | None:
+    """The study that a result carries; None where it cannot be read any more, as when a table is gone."""
+    from flexapod import model
+    from flexapod.errors import FlexapodError
+
+    try:
+        return model.loads(data.attrs["study"], path=data.attrs.get("study_file") or None)
+    except FlexapodError:
+        return None
 
 
 def draw(data: Dataset, folder: str | Path, formats: Sequence[str] = ("png", "svg")) -> list[Drawn]:
@@ -124,12 +137,8 @@ def _seen(data: Dataset) -> tuple[float, float] | None:
     """Radius of the hub [m] and the factor of the replay; None where the study cannot be read any more."""
     from flexapod import model
     from flexapod.app.view.scene_geometry import ActuatorMotion
-    from flexapod.errors import FlexapodError
 
-    try:
-        study = model.loads(data.attrs["study"], path=data.attrs.get("study_file") or None)
-    except FlexapodError:
-        return None
+    study = carried_study(data)
     if not isinstance(study, model.ActuatorStudy):
         return None
     return study.actuator.hub_radius, ActuatorMotion(study, data).automatic_scale()

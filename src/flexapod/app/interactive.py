@@ -201,8 +201,9 @@ def _ties(axes: Axes, artist: Any) -> tuple[bool, bool]:
 
 
 def _lines(axes: Axes, k: int) -> Iterator[dict[str, Any]]:
+    """Curves, those that lie above others last."""
     unit = _UNIT.search(axes.get_ylabel()) or _shared_unit(axes)
-    for line in axes.get_lines():
+    for line in sorted(axes.get_lines(), key=lambda line: line.get_zorder()):
         if _ties(axes, line) != (True, True) or not line.get_visible():
             continue
         x, y = (np.ma.filled(np.ma.asarray(v, dtype=float), np.nan) for v in line.get_data())

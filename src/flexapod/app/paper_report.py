@@ -18,6 +18,7 @@ from flexapod.app.report import (
     solver_table,
     warnings_section,
 )
+from flexapod.app.study_words import modes_table
 from flexapod.study.paper.claim import BREAKS, HOLDS, IN_PART, MISPRINT, NOT, OPEN, REACHES
 from flexapod.study.scene import robot_study
 
@@ -86,13 +87,10 @@ def _replay(data: Dataset, modes: Dataset, figures: Sequence[Drawn]) -> str:
 
 def _modes(modes: Dataset) -> str:
     """Frequencies, damping and kinds of the lowest modes at the largest roll."""
-    rows = [
-        (f"{int(m)}", f"{float(f):.4g} Hz", f"{100 * float(d):.2g} %", str(kind))
-        for m, f, d, kind in zip(modes.mode, modes.frequency, modes.damping_ratio, modes.kind.values, strict=True)
-    ]
+    shown = modes.isel(mode=slice(SHOWN_MODES))
+    columns = (shown[name].values.tolist() for name in ("frequency", "damping_ratio", "kind"))
     words = "At the largest roll, drives locked, about the static equilibrium."
-    table = html.table(("Mode", "Frequency", "Damping", "What moves most"), rows[:SHOWN_MODES])
-    return html.section("modes", "Modes", html.paragraph(words, "soft"), table)
+    return html.section("modes", "Modes", html.paragraph(words, "soft"), modes_table(zip(*columns, strict=True)))
 
 
 def _asked(result: PaperStudy) -> bool:
@@ -177,7 +175,7 @@ def _open_values() -> str:
     parts = [html.paragraph("The paper does not give these values. Each is ours, for the reason beside it.", "soft")]
     for name in model.PRESETS:
         rows = [(value.key, value.value, value.reason) for value in model.open_values(name)]
-        parts += [f"<h3>{name}</h3>", html.table(("Value", "Ours", "Reason"), rows)]
+        parts += [html.heading(name), html.table(("Value", "Ours", "Reason"), rows)]
     return html.section("open", "Values that the paper leaves open", *parts)
 
 
@@ -188,4 +186,4 @@ def _studies() -> str:
 
 
 def _solver(result: PaperStudy, name: str, words: str) -> str:
-    return f"<h3>{words}</h3>" + solver_table(result[name])
+    return html.heading(words) + solver_table(result[name])

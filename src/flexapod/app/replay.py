@@ -15,7 +15,7 @@ from flexapod.errors import FlexapodError
 from flexapod.plot.style import FLEXIBLE, LEG_COLORS, RIGID
 from flexapod.rigid.rotations import matrix
 from flexapod.study.scene import STATIONS, Scene, mode_scene
-from flexapod.study.summary import tool_apart
+from flexapod.study.summary import POINT_WORDS, tool_apart
 from flexapod.study.words import number, scale
 from flexapod.typing import Array
 
@@ -33,7 +33,6 @@ EVERY = 3  # of the points of a drawn piston
 LEGS = 6
 FILLED = 1.6  # size of the drawn box, which nearly fills its place
 CYLINDER, DEVIATION = "#8A8F98", "#D55E00"
-POINTS = {"com": "centre of mass", "tool": "tool"}
 Traces = list[dict[str, Any]]
 
 
@@ -89,9 +88,9 @@ def _robot(study: Study, data: Dataset, modes: Dataset | None) -> dict[str, Any]
     numbers = np.column_stack([deviation, np.linalg.norm(deviation, axis=1)])
     return {
         **_frames(times, frames, f"deflections and deviation drawn {number(factor)} times larger"),
-        **_values(f"deviation of the {POINTS[point]}", numbers, (*"xyz", "distance")),
+        **_values(f"deviation of the {POINT_WORDS[point]}", numbers, (*"xyz", "distance")),
         "mouse": "Drag to turn, scroll to come nearer",
-        "traces": [*_paths(frames, POINTS[point]), *_robot_traces(robot, point)],
+        "traces": [*_paths(frames, POINT_WORDS[point]), *_robot_traces(robot, point)],
         "layout": _space(np.concatenate([part.reshape(-1, 3) for part in everything])),
         "modes": [{"title": mode["title"], "ends": [packed(part) for part in mode["ends"]]} for mode in played],
     }
@@ -149,7 +148,7 @@ def _robot_traces(robot: Robot, point: str) -> Traces:
         _plate(platform),
         _line([*platform, platform[0]], "#2F6690", 4, name="platform", showlegend=False),
         _line([com, centre, *[tool] * apart], "#333333", 3, name="payload", showlegend=False),
-        _line([rigid_tool, tool], DEVIATION, 7, name=f"deviation of the {POINTS[point]}"),
+        _line([rigid_tool, tool], DEVIATION, 7, name=f"deviation of the {POINT_WORDS[point]}"),
         _dots([com], FLEXIBLE, 4, name="centre of mass, flexible"),
         _dots([rigid_com], CYLINDER, 4, name="centre of mass, rigid", symbol="circle-open"),
         *(_tool(tool, rigid_tool) if apart else []),

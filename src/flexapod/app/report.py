@@ -10,7 +10,7 @@ from tempfile import TemporaryDirectory
 from typing import TYPE_CHECKING
 
 from flexapod.app import html
-from flexapod.app.figures import Drawn
+from flexapod.app.figures import Drawn, carried_study
 from flexapod.app.interactive import MOST_POINTS
 from flexapod.errors import FlexapodError
 
@@ -63,15 +63,7 @@ _PACKAGES = ("flexapod", "numpy", "scipy", "casadi", "xarray", "matplotlib", "pl
 
 
 def robot_report(study: Study | ActuatorStudy, data: Dataset) -> str:
-    """The report of a robot's or an actuator's run as text, with its figures drawn for it.
-
-    Parameters
-    ----------
-    study : Study or ActuatorStudy
-        What was computed.
-    data : xarray.Dataset
-        Result of `flexapod.run`, whole or partial.
-    """
+    """The report of a robot's or an actuator's run as text, with figures drawn for it; see `flexapod.app.replay`."""
     from flexapod.app.figures import draw
 
     with TemporaryDirectory() as folder:
@@ -99,17 +91,7 @@ def write_report(data: Dataset, folder: str | Path, figures: Sequence[Drawn] = (
     InputError
         The folder cannot be written to.
     """
-    return store_page(Path(folder) / "report.html", _page(_study(data), data, figures))
-
-
-def _study(data: Dataset) -> Study | ActuatorStudy | None:
-    """The study that a result carries; None where a table that it refers to is gone."""
-    from flexapod import model
-
-    try:
-        return model.loads(data.attrs["study"], path=data.attrs.get("study_file") or None)
-    except FlexapodError:
-        return None
+    return store_page(Path(folder) / "report.html", _page(carried_study(data), data, figures))
 
 
 def _page(study: Study | ActuatorStudy | None, data: Dataset, figures: Sequence[Drawn]) -> str:
@@ -187,13 +169,12 @@ def store_page(path: Path, text: str) -> Path:
 
 def by_axis(data: Dataset) -> str:
     """Largest and rms deviation along each axis, of the centre of mass and of a tool elsewhere."""
-    from flexapod.study.summary import RobotSummary, summaries
+    from flexapod.study.summary import POINT_WORDS, RobotSummary, summaries
 
     told = [found for found in summaries(data) if isinstance(found, RobotSummary)]
     parts = []
     for found in told:
-        title = {"tool": "Tool", "com": "Centre of mass"}[found.point]
-        parts += [html.heading(title)] * (len(told) > 1) + [_axis_table(found)]
+        parts += [html.heading(POINT_WORDS[found.point].capitalize())] * (len(told) > 1) + [_axis_table(found)]
     note = "Flexible minus rigid at the same instant, world axes; it contains the sag at rest. Per cent of the travel: "
     note += "largest deviation over the rigid point's peak-to-peak travel, n/a where that is below 1 µm."
     return html.section("deviation", "Deviation by axis", *parts, html.paragraph(note, "soft"))

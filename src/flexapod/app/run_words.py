@@ -19,7 +19,7 @@ __all__ = ["show_run"]
 
 def show_run(data: Dataset, folder: Path, files: Sequence[Path], warnings: Sequence[str]) -> None:
     """Print what a run found and where it is."""
-    from flexapod.study.summary import RobotSummary, summaries
+    from flexapod.study.summary import POINT_WORDS, RobotSummary, summaries
 
     told = summaries(data)
     for found in told:
@@ -27,7 +27,7 @@ def show_run(data: Dataset, folder: Path, files: Sequence[Path], warnings: Seque
     for found in told:
         if isinstance(found, RobotSummary):
             print_text()
-            _axes(found, {"tool": "tool", "com": "centre of mass"}[found.point])
+            _axes(found, POINT_WORDS[found.point])
     for line in warnings:
         print_text(f"Warning: {line}")
     print_text()

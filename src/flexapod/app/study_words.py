@@ -3,6 +3,7 @@
 from __future__ import annotations
 
 import math
+from collections.abc import Iterable
 from typing import TYPE_CHECKING
 
 import numpy as np
@@ -18,7 +19,7 @@ if TYPE_CHECKING:
     from flexapod.study.describe.robot import RobotDescription
     from flexapod.typing import Array
 
-__all__ = ["modes_section", "study_words"]
+__all__ = ["modes_section", "modes_table", "study_words"]
 
 _LEGS = {
     "rigid": "rigid",
@@ -27,6 +28,11 @@ _LEGS = {
     "assumed-modes": "flexible by assumed modes",
     "beam-fem": "flexible by beam elements",
     "solid-fem": "flexible by shapes of solid elements",
+}
+_START = {
+    "equilibrium": "the static equilibrium",
+    "straight": "straight legs at rest",
+    "moving": "the velocity of the command",
 }
 
 
@@ -54,16 +60,9 @@ def _robot(study: Study) -> list[str]:
         f"Drives: {_drives(robot)}.",
         f"Motion: {_motion(study.motion)}.",
         f"Load: {_load(study.load.wrench)}.",
-        f"Legs: {_LEGS.get(simulation.fidelity, simulation.fidelity)} ({simulation.fidelity}{count}); "
-        f"{number(study.duration, 4)} s simulated, from {_START.get(study.initial.start, study.initial.start)}.",
+        f"Legs: {_LEGS[simulation.fidelity]} ({simulation.fidelity}{count}); "
+        f"{number(study.duration, 4)} s simulated, from {_START[study.initial.start]}.",
     ]
-
-
-_START = {
-    "equilibrium": "the static equilibrium",
-    "straight": "straight legs at rest",
-    "moving": "the velocity of the command",
-}
 
 
 def _gravity(gravity: Array) -> str:
@@ -175,7 +174,7 @@ def _actuator(study: ActuatorStudy) -> list[str]:
         f"the start{tip}; rhoA = {number(beam.rhoA)} kg/m, EI = {number(beam.EI, 5)} N m²; "
         f"{_damping(beam.damping)}, {_gravity(np.array([0.0, -beam.gravity, 0.0]))}.",
         f"Driven: {_driven(study)}.",
-        f"The beam is {_LEGS.get(simulation.fidelity, simulation.fidelity)} ({simulation.fidelity}, {shapes} shapes); "
+        f"The beam is {_LEGS[simulation.fidelity]} ({simulation.fidelity}, {shapes} shapes); "
         f"{number(study.duration, 4)} s simulated{released}.",
     ]
 
@@ -223,16 +222,18 @@ def _pose(pose: PoseDescription) -> list[str]:
     if pose.problem:
         parts.append(html.paragraph(pose.problem, "bad"))
     if pose.modes:
-        rows = [
-            (f"{i}", f"{mode.frequency:.4g} Hz", f"{100 * mode.damping_ratio:.2g} %", mode.kind)
-            for i, mode in enumerate(pose.modes, start=1)
-        ]
-        parts.append(html.table(("Mode", "Frequency", "Damping", "What moves most"), rows))
+        parts.append(modes_table((mode.frequency, mode.damping_ratio, mode.kind) for mode in pose.modes))
     if pose.stiffness is not None:
         s = pose.stiffness
         words = f"Stiffness at the tool: {text(s.least, 'N/m')} to {text(s.most, 'N/m')} along a direction."
         parts.append(html.paragraph(words, "soft"))
     return parts
+
+
+def modes_table(modes: Iterable[tuple[float, float, str]]) -> str:
+    """Modes from the lowest on: frequency [Hz], damping ratio, kind."""
+    rows = [(f"{i}", f"{f:.4g} Hz", f"{100 * d:.2g} %", kind) for i, (f, d, kind) in enumerate(modes, start=1)]
+    return html.table(("Mode", "Frequency", "Damping", "What moves most"), rows)
 
 
 def _beam(found: ActuatorDescription) -> list[str]:

@@ -34,6 +34,7 @@ def actuator_response(data: xr.Dataset | Mapping[int, xr.Dataset]) -> Figure:
     panels = fig.subplots(rows, 1, sharex=True, height_ratios=(1.6, 1.1, 0.8)[:rows] if rows == 3 else (1.6, 0.8))
     _responses(panels[0], series)
     if len(series) > 1:
+        fig.legend(*panels[0].get_legend_handles_labels(), loc="outside upper center", ncols=len(series))
         _differences(panels[1], series)
     length = panels[-1]
     length.plot(finest.time, finest.length, color="#333333")
@@ -54,9 +55,6 @@ def _responses(axes: Axes, series: Mapping[int, xr.Dataset]) -> None:
     axes.axhline(0, color="#555555", linewidth=0.7)
     axes.set_title("Lateral deflection of the tip, in the frame of the hub")
     axes.set_ylabel(f"deflection [{unit.name}]")
-    if len(series) > 1:
-        axes.legend(ncols=len(series), loc="upper left")
-        axes.margins(y=0.18)
 
 
 def _differences(axes: Axes, series: Mapping[int, xr.Dataset]) -> None:

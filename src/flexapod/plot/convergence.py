@@ -7,7 +7,7 @@ import xarray as xr
 from matplotlib.axes import Axes
 from matplotlib.figure import Figure
 
-from flexapod.plot.style import LEG_COLORS, PAGE, SMALL, figure, needs, styled
+from flexapod.plot.style import FLEXIBLE, LEG_COLORS, PAGE, SMALL, figure, ink, needs, styled
 
 __all__ = ["convergence", "ladder"]
 
@@ -60,14 +60,13 @@ def convergence(data: xr.Dataset) -> Figure:
         _step(row[0], data, name)
         _shapes(row[1], data, name)
         row[0].set_ylabel(f"{_WORDS[name]}:\nrelative error")
-        for axes, place in zip(row, ("lower right", "best"), strict=True):
-            if axes.get_legend_handles_labels()[0]:
-                axes.legend(loc=place, frameon=True, facecolor="white", edgecolor="none", framealpha=0.9)
     grid[0, 0].set_title(f"Step ({_subject(data)})")
     grid[0, 1].set_title(f"Shapes ({_step_of(data)})")
     grid[-1, 0].set_xlabel("step [ms]")
     grid[-1, 1].set_xlabel("lateral shapes per plane")
     fig.align_ylabels(grid[:, 0])
+    named = {words: part for axes in grid.flat for part, words in zip(*axes.get_legend_handles_labels(), strict=True)}
+    fig.legend(list(named.values()), list(named), loc="outside lower center", ncols=4)
     return fig
 
 
@@ -75,7 +74,7 @@ def _step(axes: Axes, data: xr.Dataset, name: str) -> None:
     part = _successes(data, "step", name)
     x, y = 1e3 * part.step.values, part[f"error_{name}"].values
     _slope(axes, x, y, 2.0)
-    axes.loglog(x, y, "o-", color=LEG_COLORS[0], markersize=5, label="fixed step")
+    axes.loglog(x, y, "o-", color=FLEXIBLE, markersize=5, label="fixed step")
     _step_ticks(axes, x)
     for family, mark, color, words in (
         ("file", "*", _FILE, "as in the file"),
@@ -205,7 +204,7 @@ def _rung(axes: Axes, data: xr.Dataset, name: str, of: tuple[str, str], color: s
     for seconds, error, k in zip(x, y, part.shapes.values, strict=True):
         if k:
             axes.annotate(str(int(k) // per), (seconds, error), xytext=side, textcoords="offset points", fontsize=SMALL,
-                          color=color, ha=align)  # fmt: skip
+                          color=ink(color), ha=align)  # fmt: skip
 
 
 def _plain_times(axes: Axes, data: xr.Dataset) -> None:

@@ -9,9 +9,10 @@ import matplotlib
 import numpy as np
 from matplotlib.figure import Figure
 from matplotlib.gridspec import SubplotSpec
+from matplotlib.patheffects import withStroke
 from mpl_toolkits.mplot3d.art3d import Line3DCollection, Poly3DCollection
 
-from flexapod.plot.style import LEG_COLORS, NOTE, SMALL
+from flexapod.plot.style import LEG_COLORS, NOTE, SMALL, ink
 from flexapod.study.scene import Scene
 
 __all__ = ["draw_ghost", "draw_robot", "head", "space", "view"]
@@ -20,7 +21,7 @@ CYLINDER = "#8A8F98"
 BASE = "#4A4F57"
 PLATFORM = "#2F6690"
 _FREE: Any = {"axes.titley": None}  # titles go above what is drawn
-_NUMBER: dict[str, Any] = {"fontsize": NOTE, "bbox": {"facecolor": "white", "edgecolor": "none", "pad": 0.6}}
+_NUMBER: dict[str, Any] = {"fontsize": NOTE, "path_effects": [withStroke(linewidth=2.0, foreground="white")]}
 
 
 def space(fig: Figure, place: SubplotSpec, *, turn: float = -62, tilt: float = 16) -> Any:
@@ -67,7 +68,7 @@ def draw_robot(axes: Any, s: Scene, *, numbers: bool = True, legs: Sequence[str]
         axes.plot(x, y, z, color=legs[i], linewidth=2.6, solid_capstyle="round", zorder=4)
         if numbers:
             outward = s.base[i] * np.array([1.2, 1.2, 0.0]) + np.array([0, 0, s.base[i, 2]])
-            axes.text(*(1e3 * outward), str(i + 1), color=legs[i], ha="center", va="center", zorder=9, **_NUMBER)
+            axes.text(*(1e3 * outward), str(i + 1), color=ink(legs[i]), ha="center", va="center", zorder=9, **_NUMBER)
     _plate(axes, s.platform, PLATFORM, 0.35)
     _dots(axes, s.base, BASE, 14)
     _dots(axes, s.platform, PLATFORM, 18)

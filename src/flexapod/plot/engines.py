@@ -150,7 +150,7 @@ def _difference(panel: Axes, shown: Mapping[str, xr.DataArray], axis: str, unit:
 def _note(panel: Axes, words: str) -> None:
     """Numbers at the top of a panel, clear of its lines, and its zero."""
     panel.axhline(0, color="#555555", linewidth=0.7)
-    panel.margins(y=0.25)
+    panel.margins(y=0.35)
     panel.annotate(words, (0.02, 0.97), xycoords="axes fraction", va="top", fontsize=NOTE, color="#333333")
 
 

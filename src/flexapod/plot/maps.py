@@ -13,7 +13,6 @@ from matplotlib.colors import Colormap, LogNorm, Normalize
 from matplotlib.figure import Figure
 from matplotlib.lines import Line2D
 from matplotlib.patches import Patch
-from matplotlib.patheffects import withStroke
 from matplotlib.ticker import LogLocator, MaxNLocator
 
 from flexapod.errors import InputError
@@ -38,6 +37,7 @@ GROUNDS = {
 WITHOUT_UNIT = {"condition": "condition", "euler_share": "thrust over Euler load"}
 LINEAR = ("stroke_margin", "guided_length", "base_joint_angle", "platform_joint_angle", "euler_share")
 HATCH, OVER, BAD = "#8C8C8C", "#D55E00", "#D7263D"
+BRIGHT = 0.5  # share of the colours from which dark words are easier to read on them than white ones
 LOG_FROM = 20.0  # ratio of largest to least from which colours go with the logarithm
 HIGHEST = 1e4  # of the least value: colours end there, towards a singularity
 
@@ -108,7 +108,8 @@ def _slices(data: xr.Dataset, values: xr.DataArray, unit: Scale, title: str, qua
         axes.set_visible(False)
     _label(fig, grid, *(_axis_label(str(dim)) for dim in values.dims[:2]))
     if image is not None and np.isfinite(values.values).any():
-        bar = fig.colorbar(image, ax=grid, extend=extend, shrink=0.9, pad=0.02)
+        seen = [axes for axes in grid.flat if axes.get_visible()]
+        bar = fig.colorbar(image, ax=seen, extend=extend, shrink=0.9, pad=0.02)
         bar.set_label(unit.name or WITHOUT_UNIT[quantity])
         bar.outline.set_visible(False)  # pyright: ignore
         _mark_worst(grid.flat, values, unit, quantity, third, chosen)
@@ -173,8 +174,9 @@ def _slice(axes: Axes, part: xr.DataArray, codes: xr.DataArray, unit: Scale, nor
     image = axes.pcolormesh(_edges(x), _edges(y), shown, cmap=colors, norm=norm, rasterized=True, zorder=1)
     axes.grid(visible=False)
     if min(len(x), len(y)) > 4 and shown.count() > 12 and np.ptp(shown.compressed()) > 0:
-        lines = axes.contour(x, y, shown, levels=_levels(norm), colors="white", linewidths=0.7, norm=norm, zorder=2)
-        lines.set_path_effects([withStroke(linewidth=1.5, foreground="#33333380")])  # seen on yellow, too
+        levels = _levels(norm)
+        inks = np.where(norm(np.asarray(levels)) > BRIGHT, "#222222", "white").tolist()
+        lines = axes.contour(x, y, shown, levels=levels, colors=inks, linewidths=0.7, zorder=2)
         axes.clabel(lines, fontsize=SMALL, fmt=lambda value: number(value))
     axes.set_xlim(*_edges(x)[[0, -1]])
     axes.set_ylim(*_edges(y)[[0, -1]])

@@ -23,6 +23,7 @@ FLATTER, SPACE = 0.75, 0.85  # heights against the wide figure: of a panel witho
 WIDE, HIGHER, HIGHEST = 0.1, 1.6, 2.4  # margins above which a panel has words in it; how much more notes, legends need
 FINE = 200  # dots per inch at which letters are as wide as they are on paper
 INSET = 0.04  # clear of the right edge [in]
+BESIDE = 1.25  # length of a label beside a panel against the panel's height: it may reach into the gaps
 _EDGES = {"left": 0.04, "right": 0.93, "bottom": 0.04, "top": 0.91, "hspace": 0.3}  # of a column of pictures in space
 
 Stack = list[Axes]
@@ -102,7 +103,7 @@ def _stacked(fig: Figure, stacks: list[Stack], columns: int, size: tuple[float, 
     heights = [float(ratios[_place(axes)[0]]) for row in rows for axes in row[0]]
     height = max(_height(axes) for stack in stacks for axes in stack)
     scale = min(height, width / columns / (size[0] / grid.ncols))
-    in_space = columns == 1 and all(axes.name != "rectilinear" for stack in stacks for axes in stack)
+    in_space = all(axes.name != "rectilinear" for stack in stacks for axes in stack)
     edges: dict[str, Any] = _EDGES if in_space else {}
     places = fig.add_gridspec(len(heights), columns, height_ratios=heights, **edges)
     _carry_labels(fig, stacks)
@@ -150,7 +151,7 @@ def _outer_labels(columns: Sequence[Stack]) -> None:
 
 
 def _broken(fig: Figure, columns: int) -> None:
-    """Break legends, titles and notes that would run over the edge of their column."""
+    """Break legends, titles, notes and labels that would run over the edge of their column or of their panel."""
     notes = {axes: [text for text in axes.texts if _runs_right(text)] for axes in _panels(fig)}
     legends = {axes: legend for axes in notes if (legend := axes.get_legend()) is not None}
     for part in (*legends.values(), *(note for several in notes.values() for note in several)):
@@ -164,8 +165,13 @@ def _broken(fig: Figure, columns: int) -> None:
     for legend in list(fig.legends):
         _fitted(fig, legend, wide)
     for axes in notes:
+        if axes.name == "rectilinear":
+            _break(axes.yaxis.label, BESIDE * axes.get_position().height * fig.bbox.height)
+    _closed(fig)
+    for axes in notes:
         box = axes.get_position()
-        end = (int(0.5 * (box.x0 + box.x1) * columns) + 1) * wide / columns - INSET
+        bars = [bar.get_position().x0 for bar in fig.axes if bar.get_subplotspec() is None]  # of colours
+        end = min([(int(0.5 * (box.x0 + box.x1) * columns) + 1) / columns, *bars]) * wide - INSET
         if axes in legends:
             _fitted(axes, legends[axes], (box.x1 - box.x0) * wide)
         for title in _titles(axes):
@@ -177,6 +183,21 @@ def _broken(fig: Figure, columns: int) -> None:
     if headline is not None:
         headline.set_text(" ".join(headline.get_text().split()))
         _break(headline, (wide - 2 * INSET) * fig.dpi)
+
+
+def _closed(fig: Figure) -> None:
+    """Take away the height that panels with equal scales leave free above and below them."""
+    free: dict[int, float] = {}
+    fig.draw_without_rendering()
+    for axes in _panels(fig):
+        box = axes.get_tightbbox() if axes.name == "rectilinear" and axes.get_aspect() != "auto" else None
+        if box is not None:
+            row, high = _place(axes)[0], axes.get_position(original=True).height
+            left = max(high - box.height / fig.bbox.height, 0.0)
+            free[row] = min(left, free.get(row, left))
+    if free:
+        fig.set_figheight(fig.get_figheight() * (1 - sum(free.values())))
+        fig.draw_without_rendering()
 
 
 def _titles(axes: Axes) -> list[Any]:
@@ -201,7 +222,7 @@ def _fitted(of: Figure | Axes, legend: Legend, room: float) -> None:
     title, handles = legend.get_title().get_text() or None, [part for part in legend.legend_handles if part is not None]
     outside = legend._outside_loc  # pyright: ignore[reportAttributeAccessIssue]
     where: Any = f"outside {outside} center" if outside else legend._loc  # pyright: ignore[reportAttributeAccessIssue]
-    look = {"title": title, "handlelength": legend.handlelength, "frameon": legend.get_frame_on(), "loc": where}
+    look = {"title": title, "handlelength": legend.handlelength, "loc": where}
     for columns in range(len(names), 0, -1):
         if isinstance(of, Figure):
             of.legends.clear()  # axes replace theirs
@@ -216,7 +237,8 @@ def _break(text: Text, room: float) -> None:
 
     def over(words: str) -> bool:
         text.set_text(words)
-        return text.get_window_extent().width > room
+        box = text.get_window_extent()
+        return (box.height if text.get_rotation() == 90 else box.width) > room
 
     whole = text.get_text()
     if not over(whole):

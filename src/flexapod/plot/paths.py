@@ -11,6 +11,7 @@ from matplotlib.figure import Figure
 
 from flexapod.plot.style import AXIS_COLORS, COLUMN, FLEXIBLE, NOTE, RIGID, figure, mark_end, needs, scale, styled
 from flexapod.study.scene import motion_end
+from flexapod.study.summary import POINT_WORDS
 
 __all__ = ["com_path"]
 
@@ -34,7 +35,7 @@ def com_path(data: xr.Dataset, axes: Sequence[str] = ("y", "z"), point: str = "c
     deviation = data[f"{point}_deviation"].sel(axis=list(axes))
     small = scale(deviation, "m")
     end, time = motion_end(data), data.time.values
-    name = {"com": "centre of mass", "tool": "tool"}[point]
+    name = POINT_WORDS[point]
     for column, axis in enumerate(axes):
         _paths(grid[0, column], data, point, axis)
         below = grid[1, column]

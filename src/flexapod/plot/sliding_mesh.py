@@ -38,7 +38,7 @@ def sliding_mesh(data: xr.Dataset) -> Figure:
     _shifts(panels[1, 0], data)
     _stiffnesses(panels[1, 1], data)
     handles, labels = panels[0, 0].get_legend_handles_labels()
-    fig.legend(handles, labels, loc="outside lower center", ncols=4)
+    fig.legend(handles, labels, loc="outside lower center", ncols=2)
     return fig
 
 
@@ -105,9 +105,8 @@ def _shifts(axes: Axes, data: xr.Dataset) -> None:
         fontsize=NOTE,
         color="#555555",
     )
-    axes.annotate(
-        "the mouth", (1.0, 0.0), xytext=(0, -3), textcoords="offset points", ha="right", va="top", fontsize=NOTE
-    )
+    axes.annotate("the mouth", (0.0, 0.0), xytext=(0, -3), textcoords="offset points", va="top", fontsize=NOTE)
+    axes.margins(y=0.25)
     axes.set_title("Why: where the clamp seems to be")
     axes.set_xlabel("part of the element at the mouth that is outside")
     axes.set_ylabel("shift / element length, outwards")
@@ -115,7 +114,8 @@ def _shifts(axes: Axes, data: xr.Dataset) -> None:
 
 def _stiffnesses(axes: Axes, data: xr.Dataset) -> None:
     axes.loglog(data.stiffness, 1e2 * data.error_of_stiffness, _MARKS[1] + "-", color=LEG_COLORS[1], markersize=5)
-    axes.set_title("Stiffness of the guide, whole elements")
+    axes.margins(y=0.3)
+    axes.set_title("Stiffness, for whole elements")
     axes.set_xlabel("stiffness per length [N/m²]")
     axes.set_ylabel("root mean square error [%]")
     place = {"xycoords": "axes fraction", "fontsize": NOTE, "color": "#555555"}

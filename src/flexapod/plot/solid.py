@@ -38,8 +38,7 @@ def solid_meshes(meshes: Mapping[str, xr.Dataset], reference: xr.Dataset) -> Fig
         axes.axhline(0, color="#555555", linewidth=0.7)
         axes.set_title(f"{letter}: {_mesh(data)}; {float(data.frequency[0]):.3g} Hz at the start")
         axes.set_ylabel(f"deflection [{unit.name}]")
-    panels[0].legend(ncols=2, loc="upper left")
-    panels[0].margins(y=0.18)
+    fig.legend(*panels[0].get_legend_handles_labels(), loc="outside upper center", ncols=2)
     panels[-1].set_xlabel("time [s]")
     fig.align_ylabels(panels)
     return fig
@@ -67,8 +66,7 @@ def solid_comparison(results: Mapping[str, xr.Dataset], reference: xr.Dataset) -
     above.axhline(0, color="#555555", linewidth=0.7)
     above.set_title("Lateral deflection of the tip, in the frame of the hub")
     above.set_ylabel(f"deflection [{unit.name}]")
-    above.legend(ncols=3, loc="upper left")
-    above.margins(y=0.18)
+    fig.legend(*above.get_legend_handles_labels(), loc="outside upper center", ncols=3)
     _differences(below, results, reference)
     below.set_xlabel("time [s]")
     fig.align_ylabels([above, below])
@@ -85,7 +83,7 @@ def _differences(axes: Axes, results: Mapping[str, xr.Dataset], reference: xr.Da
     axes.set_title("Difference from the assumed modes")
     axes.set_ylabel(f"difference [{unit.name}]")
     axes.legend(ncols=2, loc="upper left")
-    axes.margins(y=0.25)
+    axes.margins(y=0.35)
 
 
 def _mesh(data: xr.Dataset) -> str:

@@ -87,6 +87,7 @@ _RC = {
     "lines.linewidth": 1.3,
     "legend.frameon": False,
     "legend.fontsize": NOTE,
+    "legend.title_fontsize": NOTE,
     "pdf.fonttype": 42,
     "svg.fonttype": "path",
     "svg.hashsalt": "flexapod",

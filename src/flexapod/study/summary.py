@@ -15,11 +15,12 @@ from flexapod.typing import Array
 if TYPE_CHECKING:
     from xarray import Dataset
 
-__all__ = ["ActuatorSummary", "AxisSummary", "RobotSummary", "summaries", "summary", "tool_apart"]
+__all__ = ["POINT_WORDS", "ActuatorSummary", "AxisSummary", "RobotSummary", "summaries", "summary", "tool_apart"]
 
 SMALLEST_EXCURSION = 1e-6  # rigid travel below which a percentage says nothing [m]
 NOTHING = 1e-12  # deviation that is rounding [m]
 POINTS = {"com": "The payload's centre of mass", "tool": "The tool"}
+POINT_WORDS = {"com": "centre of mass", "tool": "tool"}
 
 
 @dataclass(frozen=True, kw_only=True)

@@ -303,12 +303,12 @@
       play.textContent = state.playing ? "Pause" : "Play";
       play.setAttribute("aria-pressed", String(state.playing));
       if (!state.playing) return;
-      if (state.mode < 0 && state.time >= last) show(0);
+      if (state.mode < 0 && state.time >= last) goTo(0);
       state.before = performance.now();
       requestAnimationFrame(tick);
     }
 
-    function show(frame) {
+    function goTo(frame) {
       state.frame = Math.min(frames - 1, Math.max(0, frame));
       state.time = told.time[state.frame];
     }
@@ -316,7 +316,7 @@
     function step(by) {
       if (state.playing) toggle();
       if (state.mode >= 0) state.phase = Math.min(1, Math.max(0, state.phase + by / 40));
-      else show(state.frame + by);
+      else goTo(state.frame + by);
       draw();
     }
 
@@ -335,7 +335,7 @@
     scrub.addEventListener("input", () => {
       if (state.playing) toggle();
       if (state.mode >= 0) state.phase = Number(scrub.value);
-      else show(Number(scrub.value));
+      else goTo(Number(scrub.value));
       draw();
     });
     choice.addEventListener("change", () => {
