@@ -13,6 +13,7 @@ from tests.cli.conftest import SHORT
 from tests.cli.test_interrupt import heed_interrupts
 
 import flexapod as fx
+from flexapod.app.view import network
 from flexapod.app.view.network import address, free_port, is_local
 from flexapod.app.view.opening import open_source
 from flexapod.errors import InputError
@@ -58,12 +59,15 @@ def test_who_reaches_a_host(host, local, page):
     assert address(host, 8080) == page
 
 
-def test_the_next_port_is_taken_where_one_is_in_use():
+def test_the_next_port_is_taken_where_one_is_in_use(monkeypatch):
     with socket.socket() as taken:
         taken.bind(("127.0.0.1", 0))
         taken.listen()
+        first = taken.getsockname()[1]
         with pytest.raises(InputError, match="cannot be listened on"):
-            free_port("127.0.0.1", taken.getsockname()[1])
+            free_port("127.0.0.1", first)
+        monkeypatch.setattr(network, "FIRST", first)
+        assert first < free_port("127.0.0.1", None) < first + network.TRIES
 
 
 @pytest.mark.parametrize(("options", "words"), [([], b""), (["--host", "0.0.0.0"], b"everyone on the network")])

@@ -105,6 +105,7 @@ def test_a_fault_ends_one_download(client, monkeypatch, request):
     press(client, "Results (NetCDF)")
     until(lambda: panel.faults and not panel._busy)
     assert isinstance(panel.faults[0], ZeroDivisionError)
+    assert panel._words.content == ""  # nothing is being written any more
     press(client, "Study (TOML)")
     until(lambda: client.sent)
 
@@ -254,6 +255,28 @@ def test_back_to_the_file_and_undo_give_the_text_as_it_was_written(client, befor
     for _ in range(4):
         panel._undo()
     assert panel.document.text == text
+
+
+def test_quick_clicks_are_taken_one_after_the_other(client, monkeypatch):
+    """Each click comes in a thread of its own: of two on Undo the first once had the last word."""
+    edits: list[str] = []
+    panel = StudyPanel(client, Document(TEXT, None), lambda edit: edits.append(edit.document.text))
+    panel._changed("payload.mass", "90 kg")
+    panel._changed("payload.mass", "80 kg")
+    show, slow, begun = panel._show, [0.3], threading.Event()
+
+    def late(*found):
+        begun.set()
+        time.sleep(slow.pop() if slow else 0.0)
+        show(*found)
+
+    monkeypatch.setattr(panel, "_show", late)
+    first = threading.Thread(target=panel._undo)
+    first.start()
+    assert begun.wait(20)
+    panel._undo()
+    first.join(20)
+    assert edits[-1] == panel.document.text == TEXT
 
 
 def test_the_slider_turns_what_a_user_turns(client):

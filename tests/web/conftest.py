@@ -134,7 +134,10 @@ def show(table, desk, tmp_path) -> Iterator[Callable[..., tuple[object, Session]
     def begin(text: str, **size: int) -> tuple[object, Session]:
         page.set_viewport_size({"width": 900, "height": 700} | size)
         path = str(tmp_path / "study.toml")
+        before = page.get_by_role("tab", name="Study").element_handle()
         found.open(Source(document=Document(text, path), study=loads(text, path=path)))
+        before.wait_for_element_state("hidden")
+        page.get_by_role("tab", name="Study").wait_for()
         return page, found
 
     yield begin

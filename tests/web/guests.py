@@ -1,10 +1,12 @@
-"""Somebody who connects to the page's server as a browser does, without one, and reads what is sent."""
+"""Somebody who connects to the page's server as a browser does, without one, and reads what is sent; waiting."""
 
 from __future__ import annotations
 
 import threading
+import time
 from collections import Counter
 from contextlib import contextmanager
+from html import unescape
 
 import msgspec
 import viser
@@ -17,6 +19,20 @@ CAMERA = _messages.ViewerCameraMessage(
     wxyz=(1, 0, 0, 0), position=(1, 1, 1), fov=1.0, near=0.1, far=10.0, image_height=10, image_width=10,
     look_at=(0, 0, 0), up_direction=(0, 0, 1),
 )  # fmt: skip
+
+
+def until(true, seconds=60.0):
+    """Wait until something holds; a busy machine takes longer, a fault for ever."""
+    end = time.monotonic() + seconds
+    while not (found := true()):
+        assert time.monotonic() < end
+        time.sleep(0.02)
+    return found
+
+
+def said(session) -> str:
+    """What a session says above its tabs."""
+    return unescape(session.header.said + session.header._fault.content)
 
 
 class Guest:

@@ -11,25 +11,20 @@ from collections import Counter
 import msgspec
 import pytest
 from tests.web.conftest import LONG, SHORT, study_text
-from tests.web.guests import guest
+from tests.web.guests import guest, said, until
 from viser import _messages
 
+import flexapod as fx
 from flexapod import study as studies
 from flexapod.app.view import cores, downloads, time_panel
 from flexapod.app.view.cores import Cores
+from flexapod.app.view.document import Document
+from flexapod.app.view.editing import read
+from flexapod.app.view.source import Source
 from flexapod.app.view.structure import offers
 from flexapod.study import beam_modes
 
 BEAM = study_text(('duration = "10 s"', 'duration = "0.5 s"'), preset="paper-actuator")
-
-
-def until(true, seconds=60.0):
-    """Wait until something holds; a busy machine takes longer, a fault for ever."""
-    end = time.monotonic() + seconds
-    while not (found := true()):
-        assert time.monotonic() < end
-        time.sleep(0.02)
-    return found
 
 
 @pytest.fixture
@@ -50,10 +45,6 @@ def _session(server):
         until(lambda: found.data is not None and found.modes_panel._inside._modes is not None)
         found.guest, found.server = client, server
         yield found
-
-
-def said(session) -> str:
-    return session.header._words.content + session.header._fault.content
 
 
 def broken(*_, **__):
@@ -112,7 +103,7 @@ def test_a_fault_in_a_thread_is_told_and_ends_nothing(what, request, monkeypatch
         assert "broken" not in said(other)
     for panel in (session.time_panel._player, session.modes_panel._inside._show):
         assert not panel.playing
-    assert session.time_panel._play.label == "Play"
+    until(lambda: session.time_panel._play.label == "Play")
     before = session.data
     act(session)  # mended, everything goes on
     session.time_panel.pause()
@@ -259,9 +250,10 @@ def test_long_use_leaves_nothing_behind(session, monkeypatch):
     assert after[2] == before[2]
 
     def more():
+        session.header.say(session.header.said + " ")  # viser keeps what it sent last until it sends something else
         return {kind: count for kind, count in kinds().items() if count > before[3][kind] + 5}
 
-    # One object a change of the study would be 20: two changes, ten times. What is being sent goes in a moment.
+    # One object a change of the study would be 20: two changes, ten times.
     until(lambda: not more())
 
 
@@ -352,6 +344,14 @@ def test_a_study_with_a_table_can_be_edited_and_sent_again(session):
     assert [path.name for path in folder.iterdir()] == ["path.csv"]
     session.close()
     assert not folder.exists()
+
+
+def test_an_edit_that_was_being_read_while_another_study_was_opened_is_dropped(session):
+    text = study_text(*SHORT, ('"100 kg"', '"80 kg"'))
+    before = session.study_panel
+    session.open(Source(document=Document(text, None), study=fx.loads(text)))
+    before._on_edit(read(before.document.changed("payload.mass", "90 kg")))
+    assert session.study.source_text == session.study_panel.document.text == text
 
 
 def test_a_study_that_would_fill_the_memory_is_not_begun(session):

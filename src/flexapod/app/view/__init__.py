@@ -1,1 +1,1 @@
-"""`flexapod view`: a study or its results as a web page; `server.serve`."""
+"""`flexapod view`: a study or its results as a web page; `server.View`."""

@@ -9,6 +9,7 @@ from flexapod import model
 from flexapod.app.view import words
 from flexapod.app.view.listed_modes import Listed, ListedModes
 from flexapod.app.view.scene_geometry import BEAM_POINTS
+from flexapod.app.view.widgets import by_user
 from flexapod.study.words import number, text
 
 if TYPE_CHECKING:
@@ -31,7 +32,7 @@ class BeamModes(ListedModes[model.ActuatorStudy]):
         self._length = gui.add_slider("free length [m]", 0.0, 1.0, 0.01, 0.5, hint="Length outside the hub")
         self._count = gui.add_slider("shapes", 1, MOST, 1, 3, hint="Number of lateral shapes, and of modes")
         for slider in (self._length, self._count):
-            slider.on_update(lambda event: self._moved(QUIET) if event.client is not None else None)
+            slider.on_update(by_user(lambda: self._moved(QUIET)))
 
     def _fit(self, study: model.ActuatorStudy) -> None:
         actuator = study.actuator

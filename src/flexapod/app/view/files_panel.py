@@ -113,6 +113,9 @@ class FilesPanel:
             self._words.content = words.block(f"Writing {label} ...", "soft")
             try:
                 self._send(self._name(ending), make(data))
+            except Exception:
+                self._words.content = ""  # what went wrong is said above the tabs
+                raise
             finally:
                 button.disabled = False
 

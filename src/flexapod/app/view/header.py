@@ -14,6 +14,8 @@ if TYPE_CHECKING:
 
 __all__ = ["Header"]
 
+_NO_PROGRESS = "<div style='height:1.125rem'></div>"  # as high as the progress bar, in whose place it is
+
 
 class Header:
     """The top of the panel of one client.
@@ -25,6 +27,11 @@ class Header:
         Name of the study.
     simulate, cancel : callable
         What the two buttons do.
+
+    Attributes
+    ----------
+    said : str
+        The words that are shown (HTML).
     """
 
     def __init__(
@@ -32,16 +39,23 @@ class Header:
     ) -> None:
         gui = client.gui
         gui.add_html(words.title(name))
+        self._client, self.said, self._answer = client, "", ""
         self._words, self._fault = gui.add_html(""), gui.add_html("")
         self._simulate = gui.add_button("Simulate", icon=Icon.PLAYER_PLAY, hint="Compute the study as it stands now")
-        self._progress = gui.add_progress_bar(0.0, visible=False)
+        self._progress, self._no_progress = gui.add_progress_bar(0.0, visible=False), gui.add_html(_NO_PROGRESS)
         self._cancel = gui.add_button("Cancel", icon=Icon.X, visible=False, color="red", hint="Stop the simulation")
         self._simulate.on_click(lambda _: simulate())
         self._cancel.on_click(lambda _: cancel())
 
+    def answer(self, html: str) -> None:
+        """Show an answer (HTML of `words`) in place of the words before."""
+        self._answer = html
+        self.say(html)
+
     def say(self, html: str) -> None:
-        """Show words (HTML of `words`) in place of those before."""
-        self._words.content = html
+        """Show words in place of those before; the last answer keeps its room: what is below stays under the mouse."""
+        self.said = html
+        self._words.content = html if html == self._answer else words.in_room_of(self._answer, html)
 
     def fault(self, html: str) -> None:
         """Show a fault below the words until the next change or simulation that is asked for; "" for none."""
@@ -51,7 +65,9 @@ class Header:
     def running(self, on: bool) -> None:
         """Show the progress bar and Cancel in place of Simulate, or the other way round."""
         self._progress.value = 0.0
-        self._simulate.visible, self._progress.visible, self._cancel.visible = not on, on, on
+        with self._client.atomic():
+            self._simulate.visible = self._no_progress.visible = not on
+            self._progress.visible = self._cancel.visible = on
 
     def progress(self, share: float) -> None:
         """Show how much is done (0 to 1)."""

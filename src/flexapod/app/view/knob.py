@@ -9,6 +9,7 @@ from typing import TYPE_CHECKING
 from flexapod.app.view import words
 from flexapod.app.view.document import Quantity, quantity
 from flexapod.app.view.fields import Field
+from flexapod.app.view.widgets import by_user
 
 if TYPE_CHECKING:
     from viser import ClientHandle, GuiDropdownHandle, GuiSliderHandle
@@ -97,7 +98,7 @@ class Knob:
                 _label(field, now), low, high, abs(reach) / PARTS, now.number, hint="Drag: the picture follows", order=1
             )
         slider.precision = 12
-        slider.on_update(lambda event: self._turned(field.key, slider.value) if event.client is not None else None)
+        slider.on_update(by_user(lambda: self._turned(field.key, slider.value)))
         self._slider = slider
 
     def _turned(self, key: str, number: float) -> None:

@@ -14,6 +14,7 @@ from flexapod.app.view import words
 from flexapod.app.view.player import Player
 from flexapod.app.view.scene import Scene
 from flexapod.app.view.threads import Threads
+from flexapod.app.view.widgets import by_user
 from flexapod.study.words import text
 
 if TYPE_CHECKING:
@@ -56,10 +57,10 @@ class ModeShow:
         self._amplitude = gui.add_slider("amplitude [%]", 1.0, 25.0, 0.5, 8.0)
         self._phase = gui.add_slider("phase [deg]", 0.0, 360.0, 1.0, 90.0)
         self._size, self._note = size, gui.add_html("")
-        self._choice.on_update(lambda event: self.play() if event.client is not None else None)
+        self._choice.on_update(by_user(self.play))
         self._play.on_click(lambda _: self.pause() if self.playing else self.play())
         for slider in (self._amplitude, self._phase):
-            slider.on_update(lambda event: self._still() if event.client is not None else None)
+            slider.on_update(by_user(self._still))
 
     @property
     def playing(self) -> bool:

@@ -18,16 +18,7 @@ __all__ = ["ModesPanel"]
 
 
 class ModesPanel:
-    """Modes for one user; made inside the tab that holds them.
-
-    Parameters
-    ----------
-    client : viser.ClientHandle
-    scene : Scene
-        It draws the modes.
-    threads : Threads
-        Of the session.
-    """
+    """Modes for one user; made inside the tab that holds them, with what `ListedModes` takes."""
 
     def __init__(self, client: viser.ClientHandle, scene: Scene, threads: Threads) -> None:
         self.client, self.scene, self._threads = client, scene, threads

@@ -12,6 +12,7 @@ from flexapod.app.view import words
 from flexapod.app.view.listed_modes import Listed, ListedModes
 from flexapod.app.view.robot_parts import robot_size
 from flexapod.app.view.robot_scene import pose_words
+from flexapod.app.view.widgets import by_user
 from flexapod.study.words import held, number
 
 if TYPE_CHECKING:
@@ -35,7 +36,7 @@ class RobotModes(ListedModes[model.Study]):
             home = gui.add_button("Home", icon=Icon.HOME)
         self._pose = {**lengths, **angles}
         for slider in self._pose.values():
-            slider.on_update(lambda event: self._moved() if event.client is not None else None)
+            slider.on_update(by_user(self._moved))
         home.on_click(lambda _: self._go_home())
 
     def _fit(self, study: model.Study) -> None:

@@ -69,6 +69,8 @@ class RobotParts:
     def __init__(self, scene: viser.SceneApi, add: Add, robot: model.Robot) -> None:
         self.robot, self.size = robot, robot_size(robot)
         self._colors: Array = np.zeros((6, 3), dtype=int)
+        self._mouth = np.array([[leg.cylinder.mouth] for leg in robot.legs])
+        self._radius = _radii(robot, self.size)
         self._make_base(scene, add)
         self._platform = self._make_platform(scene, add)
         self._cylinders, self._pistons = self._make_legs(scene)
@@ -86,16 +88,6 @@ class RobotParts:
             if (colors[i] != self._colors[i]).any():
                 self._pistons[i].color = tuple(int(c) for c in colors[i])
         self._colors = np.array(colors)
-
-    @property
-    def _mouth(self) -> Array:
-        return np.array([[leg.cylinder.mouth] for leg in self.robot.legs])
-
-    @property
-    def _radius(self) -> Array:
-        """Radii of the pistons (6,) [m]; a thickness to see by where the study gives no diameter."""
-        given = [leg.piston.diameter for leg in self.robot.legs]
-        return np.array([0.012 * self.size if d is None else max(0.5 * d, 0.004 * self.size) for d in given])
 
     def _make_base(self, scene: viser.SceneApi, add: Add) -> None:
         robot, size = self.robot, self.size
@@ -144,6 +136,12 @@ class RobotParts:
             empty = np.zeros((STATIONS * 8, 3))
             pistons.append(scene.add_mesh_simple(f"/piston_{i + 1}", empty, faces, color=rgb(LEG_COLORS[i])))
         return cylinders, pistons
+
+
+def _radii(robot: model.Robot, size: float) -> Array:
+    """Radii of the pistons (6,) [m]; a thickness to see by where the study gives no diameter."""
+    given = [leg.piston.diameter for leg in robot.legs]
+    return np.array([0.012 * size if d is None else max(0.5 * d, 0.004 * size) for d in given])
 
 
 def _thickened(vertices: Array, lines: Array, radius: Array) -> Array:

@@ -136,7 +136,7 @@ class Session:
                 if self.data is None:
                     self._say(words.block("Cancelled. The study is not simulated as it stands.", "warning"))
                 else:
-                    self._say(words.block("Cancelled. What was there stays.", "warning") + self._answer(self.data))
+                    self._show_answer(self.data, words.block("Cancelled. What was there stays.", "warning"))
 
     def fault(self, error: BaseException) -> None:
         """Tell this person, and the log, what went wrong; the session goes on."""
@@ -234,14 +234,15 @@ class Session:
 
     def _edited(self, found: Edit) -> None:
         with self._lock:
+            if found.document is not self.study_panel.document:
+                return  # of the study before: another one was opened while it was read
             self._valid = found.study is not None
             if self.header is not None:
                 self.header.ready(self._valid)
+            self._stop()
             if found.study is None:
-                self._stop()
                 self._say(words.block("The study is refused; the picture shows the last valid one.", "error"))
                 return
-            self._stop()
             self.study, self.data = found.study, None
             self._fault("")
             self._say(words.block("Changed: rigid preview.", "soft"))
@@ -273,8 +274,13 @@ class Session:
     def _show_data(self) -> None:
         if self.data is not None:
             self.scene.show_data(self.data)
-            self._say(self._answer(self.data))
+            self._show_answer(self.data)
             self.time_panel.show_data(self.data)
+
+    def _show_answer(self, data: Dataset, first: str = "") -> None:
+        """Show the answer of a result, below other words if there are any."""
+        if not self._closed and self.header is not None:
+            self.header.answer(first + _answer(data, self.scene.point) + _preview(self.study, data))
 
     def _drawn(self) -> None:
         """The scene shows something else: the words about it follow."""
@@ -289,10 +295,7 @@ class Session:
     def _point_chosen(self) -> None:
         with self._lock:
             if self.data is not None and not self.busy:
-                self._say(self._answer(self.data))
-
-    def _answer(self, data: Dataset) -> str:
-        return _answer(data, self.scene.point) + _preview(self.study, data)
+                self._show_answer(self.data)
 
     def _stop(self) -> None:
         self._unsettled = False

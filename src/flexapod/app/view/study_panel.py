@@ -46,6 +46,7 @@ class StudyPanel:
         self.document = document
         self._lock, self._waiting, self._busy = threading.Lock(), dict[str, tuple[object, bool]](), False
         self._before: list[Document] = []
+        self._taking = threading.RLock()  # each click comes in a thread of its own: one change after the other
         self._fields: dict[str, Field] = {}
         self._long: dict[str, int] = {}
         self._setters: dict[str, Setter] = {}
@@ -96,28 +97,31 @@ class StudyPanel:
         return field is not None and type(field.value) is type(value) and field.value == value
 
     def _apply(self, changes: dict[str, tuple[object, bool]]) -> None:
-        before = self.document
-        choices = [key for key in changes if key in self._fields and self._fields[key].choices]
-        found = edited(before, {key: value for key, (value, _) in changes.items() if key not in choices})
-        for key in choices:
-            found = chosen(found.document, self._fields[key], str(changes[key][0]))
-        if found.document != before:
-            self._before = [*self._before[-99:], before]
-            typed = {key if key in self._fields else key.rpartition("[")[0] for key, (_, t) in changes.items() if t}
-            self._take(found, typed, turned=bool(changes) and not typed)
+        with self._taking:
+            before = self.document
+            choices = [key for key in changes if key in self._fields and self._fields[key].choices]
+            found = edited(before, {key: value for key, (value, _) in changes.items() if key not in choices})
+            for key in choices:
+                found = chosen(found.document, self._fields[key], str(changes[key][0]))
+            if found.document != before:
+                self._before = [*self._before[-99:], before]
+                typed = {key if key in self._fields else key.rpartition("[")[0] for key, (_, t) in changes.items() if t}
+                self._take(found, typed, turned=not typed)
 
     def _apply_offer(self, offer: Offer) -> None:
-        self._replace(offer.apply(self.document))
+        with self._taking:
+            self._replace(offer.apply(self.document))
 
     def _undo(self) -> None:
-        if self._before:
-            document = self._before.pop()
-            self._take(read(document))
+        with self._taking:
+            if self._before:
+                self._take(read(self._before.pop()))
 
     def _replace(self, document: Document) -> None:
-        if document != self.document:
-            self._before = [*self._before[-99:], self.document]
-            self._take(read(document))
+        with self._taking:
+            if document != self.document:
+                self._before = [*self._before[-99:], self.document]
+                self._take(read(document))
 
     def _take(self, found: Edit, typed: Collection[str] = (), turned: bool = False) -> None:
         self._show(found, typed, turned)

@@ -5,7 +5,7 @@ from __future__ import annotations
 import math
 import threading
 from collections.abc import Callable
-from typing import TYPE_CHECKING, Any
+from typing import TYPE_CHECKING
 
 from viser import Icon
 
@@ -15,6 +15,7 @@ from flexapod.app.view.player import Player
 from flexapod.app.view.scene import PARTS, Scene
 from flexapod.app.view.scene_geometry import nearest
 from flexapod.app.view.threads import Threads
+from flexapod.app.view.widgets import by_user
 
 if TYPE_CHECKING:
     import viser
@@ -61,8 +62,8 @@ class TimePanel:
         self._view = ChartView(gui)
         self._make_look(gui)
         self._play.on_click(lambda _: self.pause() if self._player.playing else self.play())
-        self._slider.on_update(self._user(self._scrubbed))
-        self._choice.on_update(self._user(self._draw_chart))
+        self._slider.on_update(by_user(self._scrubbed))
+        self._choice.on_update(by_user(self._draw_chart))
 
     def show_data(self, data: Dataset | None) -> None:
         """Take a result, or nothing; the scene has it already, at the time that stays."""
@@ -73,11 +74,11 @@ class TimePanel:
                 self._end = float(data.time[-1])
                 self._time = min(self._time, self._end)
             instants = 0 if data is None else data.sizes["time"]
-            self._play.disabled = self._slider.disabled = instants < 2
             self._hint.visible = instants < 2
             self._hint.content = words.block(ONE if instants else NONE, "soft")
             if data is not None and instants > 1:
                 self._set_range(float(data.time[1] - data.time[0]))
+            self._play.disabled = self._slider.disabled = instants < 2
             self._list_points()
             self._list_charts()
             self.follow()
@@ -178,12 +179,12 @@ class TimePanel:
             self._automatic = gui.add_button("Automatic factor", hint="Largest deflection well visible")
             self._scale_words = gui.add_html("")
             boxes = {name: gui.add_checkbox(name, shown) for name, shown in PARTS.items()}
-        self._color.on_update(self._user(self._recolor))
-        self._point.on_update(self._user(self._choose_point))
-        self._factor.on_update(self._user(lambda: self._rescale(self._factor.value)))
+        self._color.on_update(by_user(self._recolor))
+        self._point.on_update(by_user(self._choose_point))
+        self._factor.on_update(by_user(lambda: self._rescale(self._factor.value)))
         self._automatic.on_click(lambda _: self._rescale(None))
         for name, box in boxes.items():
-            box.on_update(self._user(lambda name=name, box=box: self.scene.visible(name, box.value)))
+            box.on_update(by_user(lambda name=name, box=box: self.scene.visible(name, box.value)))
 
     def _recolor(self) -> None:
         self._take_scene()
@@ -215,15 +216,6 @@ class TimePanel:
         self._told_point()
 
     def _tell_scale(self) -> None:
-        self._factor.value = self.scene.scale
+        if self.scene.scale == self.scene.automatic:  # another one is the user's, who may be writing on
+            self._factor.value = self.scene.scale
         self._scale_words.content = words.block(self.scene.scale_words(), "soft")
-
-    @staticmethod
-    def _user(act: Callable[[], Any]) -> Callable[[Any], None]:
-        """A callback for what the user changes, not for what the program sets."""
-
-        def update(event: Any) -> None:
-            if event.client is not None:
-                act()
-
-        return update

@@ -14,7 +14,7 @@ from flexapod.units import DIMENSIONS, to_si
 if TYPE_CHECKING:
     from viser import GuiApi, GuiEvent
 
-__all__ = ["Changed", "Setter", "add_widget", "signature"]
+__all__ = ["Changed", "Setter", "add_widget", "by_user", "signature"]
 
 #: Called with a field's key, or the key of one component, and the value to write.
 Changed = Callable[[str, object], None]
@@ -43,8 +43,8 @@ def add_widget(gui: GuiApi, field: Field, changed: Changed) -> Setter:
     return _written(gui, field, changed)
 
 
-def _by_user(work: Callable[[], None]) -> Callable[[GuiEvent[Any]], None]:
-    """Work to do where a user, not this program, has set an input: what is shown is no change of the study."""
+def by_user(work: Callable[[], Any]) -> Callable[[GuiEvent[Any]], None]:
+    """Work to do where a user, not this program, has set an input."""
     return lambda event: work() if event.client is not None else None
 
 
@@ -54,7 +54,7 @@ def _number(gui: GuiApi, field: Field, changed: Changed) -> Setter:
     label = f"{field.name} [{unit}]" if unit else field.name
     handle = gui.add_number(label, first.number, step=_step(first.number), hint=_hint(field, first.unit, EMPTY))
     handle.precision = DIGITS
-    handle.on_update(_by_user(lambda: changed(field.key, Quantity(handle.value, first.unit).written())))
+    handle.on_update(by_user(lambda: changed(field.key, Quantity(handle.value, first.unit).written())))
 
     def show(value: object) -> None:
         handle.value = (quantity(value) or first).number
@@ -64,7 +64,7 @@ def _number(gui: GuiApi, field: Field, changed: Changed) -> Setter:
 
 def _whole(gui: GuiApi, field: Field, changed: Changed) -> Setter:
     handle = gui.add_number(field.name, int(str(field.value)), step=1, hint=_hint(field, "", EMPTY))
-    handle.on_update(_by_user(lambda: changed(field.key, handle.value)))
+    handle.on_update(by_user(lambda: changed(field.key, handle.value)))
 
     def show(value: object) -> None:
         if isinstance(value, int):
@@ -78,7 +78,7 @@ def _choice(gui: GuiApi, field: Field, changed: Changed) -> Setter:
     if field.value not in options:
         options = (*options, str(field.value))
     handle = gui.add_dropdown(field.name, options, initial_value=str(field.value))
-    handle.on_update(_by_user(lambda: changed(field.key, handle.value)))
+    handle.on_update(by_user(lambda: changed(field.key, handle.value)))
 
     def show(value: object) -> None:
         if value in options:
@@ -96,7 +96,7 @@ def _fixed(gui: GuiApi, field: Field) -> Setter:
 def _written(gui: GuiApi, field: Field, changed: Changed) -> Setter:
     """A value whose unit does not fit, as text: the unit can be changed too."""
     handle = gui.add_text(field.name, str(field.value), hint=_hint(field, ""))
-    handle.on_update(_by_user(lambda: changed(field.key, _as_written(handle.value))))
+    handle.on_update(by_user(lambda: changed(field.key, _as_written(handle.value))))
 
     def show(value: object) -> None:
         handle.value = str(value)
@@ -154,7 +154,8 @@ def _triple(
 
     def update() -> None:
         nonlocal last
-        now, before, last = handle.value, last, handle.value
+        now = handle.value
+        before, last = last, now
         for i, (number, old) in enumerate(zip(now, before, strict=True), start=start + 1):
             if number != old:
                 changed(f"{key}[{i}]", Quantity(number, unit if number else "").written())
@@ -164,7 +165,7 @@ def _triple(
         last = numbers(written)
         handle.value = last
 
-    handle.on_update(_by_user(update))
+    handle.on_update(by_user(update))
     return show
 
 

@@ -10,7 +10,7 @@ from flexapod import __version__
 from flexapod.app.failures import lines_of, parts_of
 from flexapod.errors import FlexapodError
 
-__all__ = ["block", "error_html", "fault_html", "lines_html", "table_html", "title"]
+__all__ = ["block", "error_html", "fault_html", "in_room_of", "lines_html", "table_html", "title"]
 
 _COLOURS = {"error": "#c0392b", "warning": "#9a6700", "good": "#2c6e49", "plain": "inherit", "soft": "#777777"}
 
@@ -44,6 +44,15 @@ def fault_html(error: BaseException) -> str:
     """A fault of ours, in words."""
     what = f"unexpected {type(error).__name__}: {error} (flexapod {__version__})"
     return block(f"Error: {what}. This is a fault of flexapod, not yours; the server's terminal shows more.", "error")
+
+
+def in_room_of(hidden: str, html: str) -> str:
+    """Words that take no less room than others, which are not seen."""
+    place = "grid-area:1/1;min-width:0"
+    return (
+        f"<div style='display:grid'><div style='{place};visibility:hidden'>{hidden}</div>"
+        f"<div style='{place}'>{html}</div></div>"
+    )
 
 
 def table_html(header: Sequence[str], rows: Sequence[Sequence[str]], marked: Sequence[bool] = ()) -> str:
