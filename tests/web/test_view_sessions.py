@@ -145,7 +145,7 @@ def test_who_waits_for_a_core_is_told_and_can_cancel(session, monkeypatch):
     assert taken == len(os.sched_getaffinity(0))
     session.simulate()
     until(lambda: "Waiting for a free core" in said(session))
-    assert session.busy and session.header._cancel.visible
+    assert session.busy and not session.header._cancel.disabled
     session.cancel()
     assert "Cancelled" in said(session) and not session.busy
     until(lambda: not places._queue)

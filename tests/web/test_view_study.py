@@ -142,7 +142,7 @@ def test_what_is_below_the_answer_stays_under_the_mouse(show):
 
 def test_simulate_shows_progress_and_can_be_cancelled(show):
     page, session = show(study_text(*LONG))
-    page.get_by_role("progressbar").wait_for()
+    until(lambda: float(page.get_by_role("progressbar").get_attribute("aria-valuenow")) > 0)
     page.get_by_role("button", name="Cancel").click()
     page.get_by_text("Cancelled").wait_for()
     assert not session.busy and session.data is None

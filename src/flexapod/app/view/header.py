@@ -14,8 +14,6 @@ if TYPE_CHECKING:
 
 __all__ = ["Header"]
 
-_NO_PROGRESS = "<div style='height:1.125rem'></div>"  # as high as the progress bar, in whose place it is
-
 
 class Header:
     """The top of the panel of one client.
@@ -39,11 +37,11 @@ class Header:
     ) -> None:
         gui = client.gui
         gui.add_html(words.title(name))
-        self._client, self.said, self._answer = client, "", ""
+        self.said, self._answer, self._runs, self._ready = "", "", False, True
         self._words, self._fault = gui.add_html(""), gui.add_html("")
         self._simulate = gui.add_button("Simulate", icon=Icon.PLAYER_PLAY, hint="Compute the study as it stands now")
-        self._progress, self._no_progress = gui.add_progress_bar(0.0, visible=False), gui.add_html(_NO_PROGRESS)
-        self._cancel = gui.add_button("Cancel", icon=Icon.X, visible=False, color="red", hint="Stop the simulation")
+        self._progress = gui.add_progress_bar(0.0)
+        self._cancel = gui.add_button("Cancel", icon=Icon.X, disabled=True, color="red", hint="Stop the simulation")
         self._simulate.on_click(lambda _: simulate())
         self._cancel.on_click(lambda _: cancel())
 
@@ -63,11 +61,9 @@ class Header:
             self._fault.content = html
 
     def running(self, on: bool) -> None:
-        """Show the progress bar and Cancel in place of Simulate, or the other way round."""
-        self._progress.value = 0.0
-        with self._client.atomic():
-            self._simulate.visible = self._no_progress.visible = not on
-            self._progress.visible = self._cancel.visible = on
+        """Whether a simulation runs, from its beginning: Cancel or Simulate can be pressed."""
+        self._progress.value, self._runs = 0.0, on
+        self._update()
 
     def progress(self, share: float) -> None:
         """Show how much is done (0 to 1)."""
@@ -75,4 +71,9 @@ class Header:
 
     def ready(self, on: bool) -> None:
         """Whether there is a study that can be simulated."""
-        self._simulate.disabled = not on
+        self._ready = on
+        self._update()
+
+    def _update(self) -> None:
+        """Nothing comes and goes: what is below stays under the mouse."""
+        self._simulate.disabled, self._cancel.disabled = self._runs or not self._ready, not self._runs
