@@ -63,6 +63,15 @@ def tab(page, name: str) -> None:
     page.get_by_role("tab", name=name).click()
 
 
+def press_inside(page, folder: str, button: str) -> None:
+    """Open a folder and press a button in it, as a user does: when the folder has stopped opening."""
+    page.get_by_text(folder, exact=True).click()
+    found, places = page.get_by_role("button", name=button), []
+    found.wait_for()
+    until(lambda: places.append(found.bounding_box()) or places[-20:] == [places[-1]] * 20)  # half a second
+    found.click()
+
+
 def test_every_number_can_be_changed_and_is_validated_at_once(show):
     text = study_text(*SHORT)
     page, session = show(text)
@@ -179,17 +188,14 @@ def test_points_and_tables_are_added_and_taken_out(show):
     page.get_by_role("button", name="Add [load]").click()
     until(lambda: "wrench" in session.study.source_text)
     answered(page, session)
-    page.get_by_text("[load]", exact=True).click()
-    page.get_by_role("button", name="Take out [load]").click()
+    press_inside(page, "[load]", "Take out [load]")
     until(lambda: "wrench" not in session.study.source_text)
     answered(page, session)
-    page.get_by_text("[leg]", exact=True).click()
-    page.get_by_role("button", name="Six different legs").click()
+    press_inside(page, "[leg]", "Six different legs")
     page.get_by_text("[[leg]] 6", exact=True).wait_for()
     until(lambda: session.study.source_text.count("\n[[leg]]") == 6)
     answered(page, session)
-    page.get_by_text("[[leg]] 1", exact=True).click()
-    page.get_by_role("button", name="All legs as this one").click()
+    press_inside(page, "[[leg]] 1", "All legs as this one")
     page.get_by_text("[leg]", exact=True).wait_for()
     until(lambda: session.study.source_text.split() == motion.split() and session.data is not None)
 
