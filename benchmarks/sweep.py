@@ -145,7 +145,7 @@ def main():
             rates.append(rate)
             ratios.append(rate / two)
             client.append(cost)
-            print(f"two plain processes {two:8.2f}/s, two workers {rate:8.2f}/s, memory {resident() - before:+.0f} MB")
+            print(f"two plain processes {two:8.2f}/s, two workers {rate:.2f}/s, memory {resident() - before:+.0f} MB")
     cost = statistics.median(client)
     overhead = cost + read
     print(f"client: Dask, storing           {1e3 * cost:26.2f} ms a point")

@@ -7,7 +7,7 @@ from flexapod.bases.eigen import eigh
 
 
 def test_values_and_vectors_are_those_of_scipy():
-    """Condition of M about 1e4 here: twelve digits are left of the eigenvalues."""
+    """Condition of M about 2e2 here: twelve digits are left of the eigenvalues."""
     rng = np.random.default_rng(7)
     A, B = rng.normal(size=(2, 8, 8))
     K, M = A @ A.T, B @ B.T + 1e-2 * np.eye(8)

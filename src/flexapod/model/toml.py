@@ -8,7 +8,7 @@ from typing import Any
 
 from flexapod.errors import InputError
 
-__all__ = ["parsed"]
+__all__ = ["parsed", "refuse_excess"]
 
 DEEPEST = 32
 """Most names in a dotted key and most levels of tables and lists; a study has six. Reading takes the square of it."""
@@ -48,7 +48,7 @@ def parsed(text: str, file: str) -> dict[str, Any]:
         data = tomllib.loads(text)
     except (ValueError, RecursionError) as error:  # ValueError: no TOML, or a number of thousands of digits
         raise InputError(f"is not valid TOML: {_reason(error)}", file=file) from None
-    _refuse_excess(data, file)
+    refuse_excess(data, file)
     return data
 
 
@@ -73,8 +73,14 @@ def _refuse_long_keys(text: str, file: str) -> None:
             raise InputError(f"has a key of too many parts in line {line}", file=file, allowed=f"at most {DEEPEST}")
 
 
-def _refuse_excess(data: dict[str, Any], file: str) -> None:
-    """Refuse what lies too deep, and whole numbers of too many digits; without recursion, however deep it is."""
+def refuse_excess(data: dict[str, Any], file: str | None) -> None:
+    """Refuse what lies too deep, and whole numbers of too many digits; without recursion, however deep it is.
+
+    Raises
+    ------
+    InputError
+        With the key, and the file if there is one.
+    """
     waiting: list[tuple[str, int, object]] = [("", 0, data)]
     while waiting:
         path, depth, value = waiting.pop()

@@ -8,7 +8,7 @@ from flexapod.solve.march import restart_outputs
 
 __all__ = ["check_jumps", "check_outputs"]
 
-MOST_OUTPUTS = 1e8  # a robot keeps 2 kB of each: no machine could hold them
+MOST_OUTPUTS = 1e8  # a robot keeps 2 kB of each: 200 GB
 
 
 def check_outputs(study: Study | ActuatorStudy) -> list[str]:

@@ -11,7 +11,7 @@ from numpy.typing import NDArray
 
 from flexapod.app.view.scene_geometry import nearest
 from flexapod.study.colours import AXIS_COLORS, ENERGIES, LEG_COLORS
-from flexapod.study.summary import NOTHING
+from flexapod.study.summary import NOTHING, POINT_WORDS
 from flexapod.study.words import number, scale
 from flexapod.typing import Array
 
@@ -19,9 +19,8 @@ if TYPE_CHECKING:
     import viser
     from xarray import DataArray, Dataset
 
-__all__ = ["POINTS", "Chart", "ChartView", "charts", "thinned"]
+__all__ = ["Chart", "ChartView", "charts", "thinned"]
 
-POINTS = {"com": "centre of mass", "tool": "tool"}
 MOST = 900  # instants of a drawn line: the extremes of each piece are kept
 
 _AXES = tuple(AXIS_COLORS.values())
@@ -57,7 +56,7 @@ class Chart:
 def charts(data: Dataset, point: str = "com") -> dict[str, Chart]:
     """The charts of a result by name: a robot's (deviation of its `point`, "com" or "tool"), or a single actuator's."""
     if "com_deviation" in data:
-        title, deviation = f"Deviation of the {POINTS[point]}", data[f"{point}_deviation"]
+        title, deviation = f"Deviation of the {POINT_WORDS[point]}", data[f"{point}_deviation"]
         return {
             "deviation": _chart(data, title, deviation, "m", list("xyz"), _AXES),
             "leg forces": _chart(data, "Force of the drives", data.actuator_force, "N", _legs(data), LEG_COLORS),

@@ -10,12 +10,13 @@ from typing import TYPE_CHECKING
 from viser import Icon
 
 from flexapod.app.view import words
-from flexapod.app.view.charts import POINTS, Chart, ChartView, charts
+from flexapod.app.view.charts import Chart, ChartView, charts
 from flexapod.app.view.player import Player
 from flexapod.app.view.scene import PARTS, Scene
 from flexapod.app.view.scene_geometry import nearest
 from flexapod.app.view.threads import Threads
 from flexapod.app.view.widgets import by_user
+from flexapod.study.summary import POINT_WORDS
 
 if TYPE_CHECKING:
     import viser
@@ -170,7 +171,7 @@ class TimePanel:
                 "leg colours", self.scene.quantities, initial_value="plain", visible=len(self.scene.quantities) > 1
             )
             self._point = gui.add_dropdown(
-                "point", tuple(POINTS.values()), visible=False, hint="Whose path and deviation are shown"
+                "point", tuple(POINT_WORDS.values()), visible=False, hint="Whose path and deviation are shown"
             )
             self._legend = gui.add_html(self.scene.legend())
             self._factor = gui.add_number(
@@ -204,12 +205,12 @@ class TimePanel:
     def _list_points(self) -> None:
         """Offer the points of the payload whose deviation is known, where there is a choice."""
         self._point.visible = len(self.scene.points) > 1
-        self._point.value = POINTS[self.scene.point]
+        self._point.value = POINT_WORDS[self.scene.point]
 
     def _choose_point(self) -> None:
         with self._lock:
             self._take_scene()
-            self.scene.show_point(next(key for key, name in POINTS.items() if name == self._point.value))
+            self.scene.show_point(next(key for key, name in POINT_WORDS.items() if name == self._point.value))
             if self._data is not None:
                 self._charts = charts(self._data, self.scene.point)
                 self._draw_chart()

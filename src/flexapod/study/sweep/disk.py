@@ -3,8 +3,8 @@
 from __future__ import annotations
 
 import asyncio
+import errno
 import os
-from contextlib import suppress
 from pathlib import Path
 from typing import TYPE_CHECKING, Any
 from uuid import uuid4
@@ -22,11 +22,15 @@ class DurableStore(LocalStore):
 
     async def set(self, key: str, value: Buffer) -> None:
         """Write a file under another name, wait for the disk, rename it, wait for the disk."""
+        self._check_writable()
         await asyncio.to_thread(_put, self.root / key, value.as_buffer_like())
 
 
 def _put(path: Path, content: Any) -> None:
+    made = [folder for folder in path.parents if not folder.exists()]
     path.parent.mkdir(parents=True, exist_ok=True)
+    for folder in made:
+        settle(folder.parent)
     temporary = path.with_name(f"{path.name}.{uuid4().hex}.partial")
     try:
         with temporary.open("wb") as file:
@@ -41,10 +45,15 @@ def _put(path: Path, content: Any) -> None:
 
 
 def settle(folder: Path) -> None:
-    """Wait until the names in a folder are on the disk; where folders cannot be waited for (Windows), do not."""
-    with suppress(OSError):
+    """Wait until the names in a folder are on the disk; where folders cannot be waited for, do not."""
+    try:
         handle = os.open(folder, os.O_RDONLY)
-        try:
-            os.fsync(handle)
-        finally:
-            os.close(handle)
+    except OSError:  # Windows
+        return
+    try:
+        os.fsync(handle)
+    except OSError as error:
+        if error.errno not in (errno.EINVAL, errno.ENOTSUP):  # some file systems on a network
+            raise
+    finally:
+        os.close(handle)

@@ -14,6 +14,7 @@ __all__ = ["Step", "copied", "key_text", "leaves", "overlap", "parse_key", "put"
 
 Step = str | int
 _NAME = re.compile(r"([A-Za-z_][\w-]*)((?:\[\d+\])*)")
+_SHORT = [{"joints", "radius"}, {"joints", "half_angle"}, {"material", "E"}, {"material", "density"}]
 _CIRCLES = {"base": base_circle, "platform": platform_circle}
 
 
@@ -42,12 +43,13 @@ def key_text(steps: tuple[Step, ...]) -> str:
 
 
 def overlap(one: tuple[Step, ...], other: tuple[Step, ...]) -> bool:
-    """Whether one key holds the other, or what one sets replaces the other: joints replace the circle they lie on."""
-    one, other = _of_leg(one), _of_leg(other)
-    circle = {one[2:3], other[2:3]} in ({("joints",), ("radius",)}, {("joints",), ("half_angle",)})
-    if circle and one[:2] == other[:2]:
-        return True
-    return all(a == b or 0 in (a, b) for a, b in zip(one, other, strict=False))
+    """Whether one key holds the other, or one replaces the other: joints their circle, E and density the material's."""
+    for a, b in zip(_of_leg(one), _of_leg(other), strict=False):
+        if {a, b} in _SHORT:
+            return True
+        if a != b and 0 not in (a, b):
+            return False
+    return True
 
 
 def _of_leg(steps: tuple[Step, ...]) -> tuple[Step, ...]:

@@ -14,7 +14,7 @@ __all__ = ["incomplete", "mend"]
 def mend(store: SweepStore) -> int:
     """Make points pending whose results cannot be read, or are no numbers where every computed point has some.
 
-    Everything is read, a chunk at a time. Returns how many points became pending.
+    Everything is read, a chunk at a time. Returns how many points became pending, or are since the store was opened.
     """
     before, complete = store.status.copy(), store.header["complete"].split()
     for name in (*store.header["kept"].split(), *TEXTS):
@@ -30,7 +30,7 @@ def mend(store: SweepStore) -> int:
     changed = np.flatnonzero(store.status != before)
     if len(changed):
         store.write(changed, {}, store.status[changed], {})
-    return len(changed)
+    return len(changed) + store.lost
 
 
 def incomplete(status: Values, values: Mapping[str, Values]) -> Values:

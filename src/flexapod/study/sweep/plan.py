@@ -16,7 +16,7 @@ import numpy as np
 
 from flexapod.errors import InputError
 from flexapod.model.section import Section
-from flexapod.model.toml import parsed
+from flexapod.model.toml import parsed, refuse_excess
 from flexapod.study.sweep.keys import Step, key_text, overlap, parse_key
 
 __all__ = ["Block", "Draws", "Hypercube", "Keep", "Plan", "Range", "Spaced", "Tolerance", "read_plan"]
@@ -137,6 +137,7 @@ def read_plan(sweep: str | Path | Mapping[str, Any]) -> Plan:
     """
     if isinstance(sweep, Mapping):
         plain = _plain(sweep)
+        refuse_excess(plain, None)
         return _plan(Section(plain, "", None, Path()), json.dumps(plain, indent=1, default=str))
     if not isinstance(sweep, str | Path):
         raise InputError(

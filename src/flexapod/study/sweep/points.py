@@ -19,6 +19,7 @@ from flexapod.study.sweep.keys import Step, copied, key_text, leaves, put, simil
 from flexapod.study.sweep.plan import Plan, Tolerance
 from flexapod.study.sweep.reading import Malformed, dimension_of, read_with_dimensions, study_of
 from flexapod.study.sweep.samples import hypercube_values, number, spaced_values, standard_draws
+from flexapod.study.timing import check_outputs
 from flexapod.typing import Array
 
 __all__ = ["Points", "Resolved", "content_hash"]
@@ -170,6 +171,7 @@ class Points:
         )
 
     def _note(self, found: _Found, point: int, study: Study | ActuatorStudy) -> None:
+        check_outputs(study)  # before anything is made as long as its record
         found.first.append(found.known.setdefault(content_hash(study), point))
         if found.first[-1] == point and self._room > 0:
             self._packed[point] = pickle.dumps(study, protocol=pickle.HIGHEST_PROTOCOL)

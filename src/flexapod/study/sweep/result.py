@@ -27,9 +27,9 @@ def open_sweep(path: str | Path) -> Dataset:
     Raises
     ------
     InputError
-        There is no store of a sweep.
+        There is no store of a sweep, or another version has written it.
     ComputationError
-        A part of it cannot be read.
+        A part of it cannot be read. Of a record that is told by Zarr, when it is used; the sweep run again mends it.
     """
     return as_dataset(SweepStore.open(Path(path)))
 
@@ -38,6 +38,9 @@ def as_dataset(store: SweepStore) -> Dataset:
     """The Dataset of an open store: whole records of one on disk stay there until they are used."""
     import xarray as xr
 
+    for name in store.coordinates:
+        if not store.whole(name):
+            raise unreadable(store.path, name)
     data = xr.open_zarr(store.group.store, chunks=None, consolidated=False)
     _load(data, "status", store.path)  # first: what is written meanwhile has its values before its status
     varied, kept, complete = (str(data.attrs.pop(name)).split() for name in ("varied", "kept", "complete"))
@@ -56,7 +59,7 @@ def as_dataset(store: SweepStore) -> Dataset:
 
 def _load(data: Dataset, name: Hashable, path: Path | None) -> None:
     try:
-        data[name].load()
+        data.variables[name].load()  # without its coordinates, which have their own turn
     except Exception:  # whatever the decoder of a spoilt chunk says
         raise unreadable(path, str(name)) from None
 

@@ -167,6 +167,7 @@ def _store(path: Path | None, points: Points, keep: Kept, resolved: Resolved) ->
     if path is not None and path.exists():
         found = SweepStore.open(path, write=True)
         check_header(path, found.header, wanted)
+        found.renew(varied | others)
         if lost := mend(found):
             _log.warning("Results of %d points in %s are lost (was the power off?): computed again", lost, path)
         return found

@@ -33,7 +33,7 @@ __all__ = [
     "unreadable",
 ]
 
-FORMAT = 1
+FORMAT = 2
 Values = NDArray[Any]  # numbers of any kind, or texts
 PENDING, COMPUTED, FAILED = 0, 1, 2
 CHUNK_POINTS = 2048  # of scalars
@@ -64,6 +64,7 @@ class SweepStore:
     def __init__(self, group: zarr.Group, path: Path | None) -> None:
         self.group, self.path = group, path
         self._arrays = _arrays(group, path)
+        self.lost = 0  # points whose status could not be read
         self.status: Values = np.zeros(self._arrays["status"].shape, dtype=np.int8)
         for rows, file in self.chunks("status"):
             try:
@@ -72,6 +73,7 @@ class SweepStore:
                 if group.read_only:
                     raise unreadable(path, "status") from None
                 file.unlink(missing_ok=True)
+                self.lost += rows.stop - rows.start
 
     @classmethod
     def create(
@@ -112,7 +114,7 @@ class SweepStore:
         Raises
         ------
         InputError
-            There is something else, or a part is missing.
+            There is something else, or a part is missing; to read: another version has written it.
         ComputationError
             To read: the status of its points is spoilt.
         """
@@ -127,6 +129,12 @@ class SweepStore:
             group = None
         if group is None or "flexapod_sweep_format" not in group.attrs:
             raise InputError("is no store of a sweep", file=path, next_step="Choose another place with --out")
+        if not write and group.attrs["flexapod_sweep_format"] != FORMAT:  # `check_header` is for who goes on with it
+            raise InputError(
+                "was written by another version of flexapod", file=path, key="flexapod_sweep_format",
+                value=group.attrs["flexapod_sweep_format"], allowed=str(FORMAT),
+                next_step=f"Read it with flexapod {group.attrs.get('flexapod_version', 'of that time')}",
+            )  # fmt: skip
         for rest in path.rglob("*.partial") if write else ():
             rest.unlink(missing_ok=True)  # of a process that was killed while writing
         return cls(group, path)
@@ -146,12 +154,45 @@ class SweepStore:
             key = array.metadata.encode_chunk_key((number, *(0,) * (array.ndim - 1)))
             yield slice(begin, min(begin + array.chunks[0], array.shape[0])), folder / key
 
+    def missing(self, name: str) -> list[slice]:
+        """Items of an array that are in no file."""
+        return [rows for rows, file in self.chunks(name) if not file.is_file()] if self.path is not None else []
+
     def absent(self, name: str) -> Values:
         """Points whose values of an array are in no file, (N,)."""
         found = np.zeros(self.status.shape, dtype=bool)
-        for rows, file in self.chunks(name) if self.path is not None else ():
-            found[rows] = not file.is_file()
+        for rows in self.missing(name):
+            found[rows] = True
         return found
+
+    def whole(self, name: str) -> bool:
+        """Whether an array is there and can be read."""
+        try:
+            return not self.missing(name) and self._arrays[name][...] is not None
+        except Exception:  # whatever the decoder of a spoilt chunk says
+            return False
+
+    @property
+    def coordinates(self) -> list[str]:
+        """Names of what is known from the start."""
+        return [name for name in self._arrays if name not in ("status", *TEXTS, *self.header["kept"].split())]
+
+    def renew(self, columns: Mapping[str, Column]) -> None:
+        """Write again what is known from the start, where it is missing or cannot be read.
+
+        Raises
+        ------
+        ComputationError
+            It cannot be written.
+        """
+        try:
+            for name, column in columns.items():
+                if column.values is not None and not self.whole(name):
+                    for _, file in self.chunks(name):
+                        file.unlink(missing_ok=True)
+                    _set_all(self._arrays[name], column.values)
+        except OSError as error:
+            raise _unwritable(self.path, error, 0) from None
 
     @property
     def header(self) -> dict[str, Any]:
@@ -252,9 +293,14 @@ def _array(group: zarr.Group, name: str, column: Column, kind: np.dtype[Any] | N
         fill_value="" if kind is None else np.nan if kind.kind == "f" else 0,
         dimension_names=column.dims,
         attributes=dict(column.attributes),
+        config={"write_empty_chunks": True},
     )
     if values is not None:
-        made[...] = values.astype(object) if kind is None else values
+        _set_all(made, values)
+
+
+def _set_all(array: Any, values: Values) -> None:
+    array[...] = values.astype(object) if values.dtype.kind in "UOT" else values
 
 
 def check_header(path: Path, found: Mapping[str, Any], wanted: Mapping[str, Any]) -> None:
