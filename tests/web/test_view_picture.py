@@ -106,13 +106,14 @@ def test_an_edit_is_answered_by_a_preview_within_seconds(visit):
         assert session.data.attrs["tolerance"] == quick.TOLERANCE
         assert "Preview, right to about 1 %" in said(session) and "the study asks for tolerance 0.0001" in said(session)
     print(f"edit to preview: {took[0]:.2f} s, {took[1]:.2f} s")
-    assert min(took) < 2.0  # 0.5 s where nobody else works on this machine
+    assert min(took) < 2.0  # 0.2 s of the processor
     size = np.abs(full.com_deviation).max()
     assert np.abs(session.data.com_deviation - full.com_deviation).max() < 0.01 * size  # as it says
     session.simulate()
     until(lambda: session.data.attrs["tolerance"] == 1e-4)
     until(lambda: summary(session.data).sentence in said(session))
     assert "Preview" not in said(session)
+    until(lambda: session.scene.picture_words() in unescape(picture(session)))  # with the factor of this result
     assert session.data.attrs["study"] == session.study_panel.document.text
 
 

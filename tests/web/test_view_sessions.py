@@ -16,7 +16,7 @@ from viser import _messages
 
 import flexapod as fx
 from flexapod import study as studies
-from flexapod.app.view import cores, downloads, time_panel
+from flexapod.app.view import cores, downloads, player, time_panel
 from flexapod.app.view.cores import Cores
 from flexapod.app.view.document import Document
 from flexapod.app.view.editing import read
@@ -186,6 +186,7 @@ def test_twenty_five_frames_a_second_reach_a_client_from_a_fraction_of_one_core(
         f"a second, {spent / lasted:.2f} of a core"
     )
     assert client.frames >= 20  # a frame may carry two updates where the machine is busy
+    assert player.FRAME <= 1 / 20
     # Measured 0.3 s; six times as long would still leave room on the one core that drew them.
     assert spent < 1.8
 
@@ -344,6 +345,20 @@ def test_a_study_with_a_table_can_be_edited_and_sent_again(session):
     assert [path.name for path in folder.iterdir()] == ["path.csv"]
     session.close()
     assert not folder.exists()
+
+
+def test_modes_follow_an_edit_that_is_simulated_at_once(session):
+    """They once stayed those of the study before."""
+    edit(session)
+    session.simulate()
+    until(lambda: session.modes_panel._inside._study is session.study)
+    assert session.study.robot.payload.mass == 90
+
+
+def test_a_change_of_a_row_that_has_gone_is_dropped(session):
+    before = session.study_panel.document
+    session.study_panel._changed("motion.points[2].time", "1 s")
+    assert session.study_panel.document == before and not session.header._fault.content
 
 
 def test_an_edit_that_was_being_read_while_another_study_was_opened_is_dropped(session):

@@ -38,7 +38,8 @@ def blocks(text: str, name: str) -> list[tuple[int, int]]:
 def replaced(text: str, first: int, after: int, lines: Sequence[str]) -> str:
     """The text with other lines in place of some."""
     old = text.splitlines()
-    return "\n".join([*old[:first], *lines, *old[after:]]) + "\n"
+    end = "\r\n" if "\r\n" in text else "\n"
+    return end.join([*old[:first], *lines, *old[after:]]) + end
 
 
 def renamed(lines: Sequence[str], name: str, heading: str) -> list[str]:

@@ -2,9 +2,10 @@
 
 from __future__ import annotations
 
-import os
 import threading
 from collections.abc import Callable
+
+from flexapod.study.sweep.executors import local_cores
 
 __all__ = ["Cores"]
 
@@ -21,7 +22,7 @@ class Cores:
     """
 
     def __init__(self, count: int | None = None) -> None:
-        self._free = count or _cores()
+        self._free = count or local_cores()
         self._changed = threading.Condition()
         self._queue: list[object] = []
 
@@ -68,7 +69,3 @@ class Cores:
         """Those who wait look whether they are cancelled."""
         with self._changed:
             self._changed.notify_all()
-
-
-def _cores() -> int:
-    return len(os.sched_getaffinity(0)) if hasattr(os, "sched_getaffinity") else os.cpu_count() or 1

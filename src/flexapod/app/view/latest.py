@@ -35,11 +35,6 @@ class Latest:
             self._running = True
         self._threads.start("latest", self._run)
 
-    def cancel(self) -> None:
-        """Take the request back; work that has begun goes on."""
-        with self._lock:
-            self._asked = False
-
     def close(self) -> None:
         """Begin nothing any more."""
         with self._lock:

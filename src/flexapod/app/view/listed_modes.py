@@ -118,8 +118,9 @@ class ListedModes(ABC, Generic[Study]):
             found = self._listed(study)
         except FlexapodError as error:
             said = words.error_html(error)
-        with self._show.lock:
-            if study is self._study:
-                self._modes, self._where = found.modes, found.where
-                self._words.content, self._table.content = said, found.table
-                self._show.offer(found.names, found.length)
+        finally:  # a fault, too, leaves no modes of the study before
+            with self._show.lock:
+                if study is self._study:
+                    self._modes, self._where = found.modes, found.where
+                    self._words.content, self._table.content = said, found.table
+                    self._show.offer(found.names, found.length)

@@ -99,6 +99,7 @@ class Scene(ABC):
             self.scale = self._factor or self.automatic
             self._redraw_paths()
             self.set_time(min(self.time, float(motion.time[-1])))
+            self.told()
 
     @abstractmethod
     def set_time(self, time: float) -> None:

@@ -251,12 +251,14 @@ class Session:
             self._settling.request(QUIET)
 
     def _settled(self) -> None:
-        """Compute what takes longer than the preview, once nothing has changed for a while."""
+        """Compute what takes longer than the preview, once nothing has changed for a while; modes in any case."""
         with self._lock:
-            if self._closed or not self._unsettled:
+            if self._closed:
+                return
+            self.modes_panel.show_study(self.study)
+            if not self._unsettled:
                 return
             self._unsettled = False
-            self.modes_panel.show_study(self.study)
             if is_quick(self.study):
                 self._simulate(preview=True)
             else:
@@ -294,12 +296,11 @@ class Session:
 
     def _point_chosen(self) -> None:
         with self._lock:
-            if self.data is not None and not self.busy:
+            if self._valid and self.data is not None and not self.busy:
                 self._show_answer(self.data)
 
     def _stop(self) -> None:
         self._unsettled = False
-        self._settling.cancel()
         if self._run is not None:
             self._run.cancel()
             self._run = None

@@ -98,6 +98,8 @@ class StudyPanel:
 
     def _apply(self, changes: dict[str, tuple[object, bool]]) -> None:
         with self._taking:
+            there = self._fields  # a row or a leg may have gone meanwhile
+            changes = {key: c for key, c in changes.items() if key in there or key.rpartition("[")[0] in there}
             before = self.document
             choices = [key for key in changes if key in self._fields and self._fields[key].choices]
             found = edited(before, {key: value for key, (value, _) in changes.items() if key not in choices})
