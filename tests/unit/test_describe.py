@@ -5,8 +5,20 @@ import pytest
 from tests.runs import paper_robot, with_legs
 
 import flexapod as fx
-from flexapod.model import AxisMotion, ConstantLaw, ConstantWrench, Load, RateLaw, ServoDrive, Stroke, Tube, override
+from flexapod.model import (
+    AxisMotion,
+    ConstantLaw,
+    ConstantWrench,
+    ForceDrive,
+    Load,
+    RateLaw,
+    ServoDrive,
+    Stroke,
+    Tube,
+    override,
+)
 from flexapod.study.describe.robot import describe
+from flexapod.study.words import held
 
 
 def rolling(duration, amplitude=0.4643, profile="quintic", hold=0.25, **settings):
@@ -234,3 +246,5 @@ def test_what_gives_way_is_not_called_locked():
     servo = with_legs(paper_robot(), lambda leg: leg.replace(drive=ServoDrive(stiffness=2e7, damping=1e3)))
     assert describe(paper_robot()).held == "Drives locked"
     assert describe(servo).held == "Commands of the drives held, with the springs and dampers of the servo drives"
+    force = with_legs(paper_robot(), lambda leg: leg.replace(drive=ForceDrive()))
+    assert held(force.robot) == "Drives locked"  # what would have to be: there is no feedback to hold anything

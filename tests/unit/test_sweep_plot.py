@@ -77,6 +77,13 @@ def test_panels():
     assert [axes.get_xlabel() for axes in fig.axes[:2]] == ["payload.mass [kg]", "leg.piston.diameter [mm]"]
 
 
+def test_the_first_quantity_with_a_value_is_drawn():
+    """Rigid legs on held strokes have no frequency: the figure of such a sweep was once refused."""
+    made = fx.sweep(quick(), diameters(2, scalars=["first_frequency", "com_deviation_peak"]), workers=0)
+    made["first_frequency"][:] = np.nan
+    assert "centre of mass" in draw(made).axes[0].get_ylabel() + draw(made).axes[0].get_title()
+
+
 def test_refusals():
     data = swept(diameters(2))
     with pytest.raises(InputError, match="is no quantity of this sweep"):

@@ -32,7 +32,7 @@ def add(app: typer.Typer) -> None:
 
 @guarded
 def modes(file: StudyFile, pose: Pose = None, out: Folder = None, count: Count = 12, json: Json = False) -> None:
-    """Frequencies, damping and shapes at a pose, drives locked, about the static equilibrium."""
+    """Frequencies, damping and shapes at a pose, commands of the drives held, about the static equilibrium."""
     from flexapod import model
     from flexapod.app.outputs import check_writable
     from flexapod.app.terminal import print_json

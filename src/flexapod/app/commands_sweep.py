@@ -67,15 +67,14 @@ def sweep(
 
 
 def _write(data: Dataset, folder: Path) -> list[Path]:
-    """The table, and the figure of the main scalar where there is something to see."""
+    """The table, and the figure where there is something to see."""
     from flexapod import plot
     from flexapod.plot.sweep import sweep as draw
     from flexapod.study.sweep import save_table, scalar_names
 
     files = [save_table(data, folder / "sweep.csv")]
-    there = [name for name in scalar_names(data) if data[name].notnull().any()]
-    if there:
-        files += plot.save(draw(data, there[0]), folder / "sweep")
+    if any(data[name].notnull().any() for name in scalar_names(data)):
+        files += plot.save(draw(data), folder / "sweep")
     return files
 
 

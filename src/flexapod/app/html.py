@@ -30,7 +30,9 @@ _POLICY = (
     "default-src 'none'; img-src data: blob:; style-src 'unsafe-inline'; script-src 'unsafe-inline'; font-src data:; "
     "base-uri 'none'; form-action 'none'"
 )
-_QUANTITY = re.compile(r"(?<=\d) (?=(?:[µnmk]?m|k?N|[mk]?J|Hz|deg|ms|s|%|GPa|MPa)(?![\w]))|(?<=\d N) (?=m²?(?!\w)|s/m)")
+_QUANTITY = re.compile(
+    r"(?<=\d) (?=(?:[µnmk]?m|[kM]?N|[mk]?J|Hz|deg|ms|s|%|GPa|MPa)(?![\w]))|(?<=\d N) (?=m²?(?!\w)|s/m)"
+)
 
 
 def escape(text: str) -> str:

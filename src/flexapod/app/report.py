@@ -63,7 +63,15 @@ _PACKAGES = ("flexapod", "numpy", "scipy", "casadi", "xarray", "matplotlib", "pl
 
 
 def robot_report(study: Study | ActuatorStudy, data: Dataset) -> str:
-    """The report of a robot's or an actuator's run as text, with figures drawn for it; see `flexapod.app.replay`."""
+    """The report of a robot's or an actuator's run as text, with figures drawn for it.
+
+    Parameters
+    ----------
+    study : Study or ActuatorStudy
+        What was computed.
+    data : xarray.Dataset
+        Result of `flexapod.run`, whole or partial.
+    """
     from flexapod.app.figures import draw
 
     with TemporaryDirectory() as folder:

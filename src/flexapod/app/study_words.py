@@ -56,7 +56,7 @@ def _robot(study: Study) -> list[str]:
         f"A robot of type {robot.type} carries {number(robot.payload.mass)} kg on six legs; {_gravity(robot.gravity)}.",
         _points(robot.payload),
         f"Pistons: {size}{number(1e3 * piston.length)} mm long, EA = {number(1e-6 * piston.EA)} MN, "
-        f"EI = {number(piston.EI)} N m², {_damping(robot.legs[0].damping)}{alike}.",
+        f"EI = {number(piston.EI)} N m², {_damping(robot.legs[0].damping, 'piston')}{alike}.",
         f"Drives: {_drives(robot)}.",
         f"Motion: {_motion(study.motion)}.",
         f"Load: {_load(study.load.wrench)}.",
@@ -81,8 +81,9 @@ def _points(payload: model.Payload) -> str:
     return f"Centre of mass at {com} from the platform's centre, {also}."
 
 
-def _damping(ratio: float) -> str:
-    return f"damping of {number(100 * ratio)} % of the critical one in every mode" if ratio else "no damping"
+def _damping(ratio: float, body: str) -> str:
+    every = f"damping of {number(100 * ratio)} % of the critical one in every mode of the bare {body}"
+    return every if ratio else "no damping"
 
 
 def _drives(robot: Robot) -> str:
@@ -172,7 +173,7 @@ def _actuator(study: ActuatorStudy) -> list[str]:
     return [
         f"A single actuator: a beam of {number(beam.length)} m, {number(beam.free_length)} m of it outside the hub at "
         f"the start{tip}; rhoA = {number(beam.rhoA)} kg/m, EI = {number(beam.EI, 5)} N m²; "
-        f"{_damping(beam.damping)}, {_gravity(np.array([0.0, -beam.gravity, 0.0]))}.",
+        f"{_damping(beam.damping, 'beam')}, {_gravity(np.array([0.0, -beam.gravity, 0.0]))}.",
         f"Driven: {_driven(study)}.",
         f"The beam is {_LEGS[simulation.fidelity]} ({simulation.fidelity}, {shapes} shapes); "
         f"{number(study.duration, 4)} s simulated{released}.",

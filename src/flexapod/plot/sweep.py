@@ -70,7 +70,7 @@ def sweep(data: xr.Dataset, quantity: str | None = None) -> Figure:
 
 def _quantity(data: xr.Dataset, name: str | None) -> _Shown:
     known = [str(n) for n, array in data.data_vars.items() if array.dims == ("point",) and array.dtype.kind == "f"]
-    name = name or next(iter(known), "")
+    name = name or next((n for n in known if np.isfinite(data[n].values).any()), next(iter(known), ""))
     if name not in known:
         raise InputError("is no quantity of this sweep", key="quantity", value=name, allowed=", ".join(known) or "none")
     if not np.isfinite(data[name].values).any():

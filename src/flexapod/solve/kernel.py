@@ -71,7 +71,7 @@ def planar_shapes(lateral: LateralBasis, axial_modes: int) -> Shapes:
 def _warn_interpreted() -> None:
     """Say once, whatever the number of kernels, that they are slow."""
     _log.warning(
-        "No C compiler was found: the equations are interpreted, some 1000 times slower. "
+        "No C compiler was found: the equations are interpreted, some 700 times slower. "
         "Install gcc or clang, or `pip install ziglang`."
     )
 

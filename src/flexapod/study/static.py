@@ -1,4 +1,4 @@
-"""The robot with its drives locked: modes and stiffness, a pose in, a Dataset out; for modes also many poses."""
+"""Modes and stiffness, commands of the drives held: a pose in, a Dataset out; for modes also many poses."""
 
 from __future__ import annotations
 
@@ -36,7 +36,7 @@ def modes(
     basis: str | None = None,
     shapes: bool = False,
 ) -> Dataset:
-    """Undamped and damped modes about the static equilibrium, drives locked, Eqs. (T7.2)-(T7.5).
+    """Undamped and damped modes about the static equilibrium, commands of the drives held, Eqs. (T7.2)-(T7.5).
 
     Parameters
     ----------
@@ -88,7 +88,7 @@ def stiffness(
     axial_modes: int | None = None,
     basis: str | None = None,
 ) -> Dataset:
-    """Stiffness at the tool about the static equilibrium, drives locked, Eqs. (T7.6)-(T7.8).
+    """Stiffness at the tool about the static equilibrium, commands of the drives held, Eqs. (T7.6)-(T7.8).
 
     Parameters
     ----------

@@ -80,7 +80,7 @@ def number(value: float, digits: int = 3) -> str:
 
 def held(robot: Robot) -> str:
     """What modes and stiffness hold still: the drives, or their commands where drives give way."""
-    soft = {leg.drive.type for leg in robot.legs} - {"prescribed"}
+    soft = {leg.drive.type for leg in robot.legs if getattr(leg.drive, "feedback", True)} - {"prescribed"}
     if not soft:
         return "Drives locked"
     parts = {"servo": "springs and dampers of the servo drives", "force": "feedback of the force drives"}

@@ -259,6 +259,7 @@
     function say() {
       if (state.mode >= 0) {
         readout.textContent = `${modes[state.mode].title}; magnified, size arbitrary`;
+        scrub.setAttribute("aria-valuetext", state.phase.toFixed(2));
         return;
       }
       const numbers = told.names.map((name, j) => `${name} ${String(told.values[state.frame][j]).replace("-", "\u2212")}`).join(", ");

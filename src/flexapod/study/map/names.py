@@ -9,7 +9,7 @@ __all__ = ["GRID_VARIABLES", "SCALARS", "forms"]
 #: Variables by name; their dimensions follow those of the grid.
 GRID_VARIABLES = {
     "reason": Variable((), "1", "why a pose is not reached: a code, 0 where it is"),
-    "frequency": Variable(("mode",), "Hz", "undamped natural frequency, drives locked"),
+    "frequency": Variable(("mode",), "Hz", "undamped natural frequency, commands of the drives held"),
     "stiffness": Variable((), "N m-1", "stiffness at the tool against a force in the chosen direction"),
     "stiffness_least": Variable((), "N m-1", "stiffness at the tool against a force in the weakest direction"),
     "softest_direction": Variable(("axis",), "1", "weakest direction at the tool, world axes"),

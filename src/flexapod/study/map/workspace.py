@@ -48,7 +48,7 @@ def workspace_map(
     basis: str | None = None,
     progress: Report | None = None,
 ) -> Dataset:
-    """Frequencies, stiffness, deviations, forces and margins over a line, slice or volume of poses, drives locked.
+    """Frequencies, stiffness, deviations, forces and margins over a line, slice or volume of poses, drives held.
 
     Parameters
     ----------

@@ -126,7 +126,7 @@ class RobotRun:
 
     @property
     def first_frequency(self) -> float:
-        """Lowest natural frequency at home under the load at t = 0, drives locked [Hz]; NaN where there is none."""
+        """Lowest frequency at home, load at t = 0, commands of the drives held [Hz]; NaN where there is none."""
         home = rigid.home_pose(self.study.robot)
         wrench = rigid.wrench(self.study.load, np.zeros(1))[0]
         try:
@@ -205,7 +205,7 @@ ROBOT_SCALARS: Mapping[str, Scalar] = {
     **_by_leg("stress_peak", "Pa", "axial plus bending stress in the piston", lambda run: run.stress, _NO_SECTION),
     **_by_leg("strain_peak", "1", "axial plus bending strain in the piston", lambda run: run.strain, _NO_SECTION),
     "first_frequency": Scalar(
-        (), "Hz", "lowest natural frequency at home, drives locked", lambda run: run.first_frequency,
+        (), "Hz", "lowest natural frequency at home, commands of the drives held", lambda run: run.first_frequency,
         "rigid legs on held strokes cannot vibrate, a pure force drive cannot be locked",
     ),
     "steps": Scalar((), "1", "steps of the time integration", lambda run: float(run.counters.steps)),
