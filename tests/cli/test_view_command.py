@@ -70,13 +70,18 @@ def test_the_next_port_is_taken_where_one_is_in_use(monkeypatch):
         assert first < free_port("127.0.0.1", None) < first + network.TRIES
 
 
+def buffered():
+    """Python as it is by itself: what it prints waits in a pipe until it is flushed."""
+    return {name: value for name, value in os.environ.items() if name != "PYTHONUNBUFFERED"}
+
+
 @pytest.mark.parametrize(("options", "words"), [([], b""), (["--host", "0.0.0.0"], b"everyone on the network")])
 def test_serves_until_ctrl_c(study, folder, options, words):
     """The page is served where the command says; --host says who gets in; Ctrl-C ends it with exit code 0."""
     command = [sys.executable, "-m", "flexapod", "view", str(study(*SHORT)), "--no-browser", "--port", "0"]
     running = subprocess.Popen(
         [*command, *options], cwd=folder, stdout=subprocess.PIPE, stderr=subprocess.PIPE, preexec_fn=heed_interrupts,
-        env={**os.environ, "PYTHONUNBUFFERED": "1"}, bufsize=0,  # the second line is for communicate()
+        env=buffered(), bufsize=0,  # the second line is for communicate()
     )  # fmt: skip
     assert running.stdout is not None
     try:
@@ -95,7 +100,7 @@ def test_serves_until_ctrl_c(study, folder, options, words):
 
 def test_address_as_json(study, folder):
     command = [sys.executable, "-m", "flexapod", "view", str(study(*SHORT)), "--no-browser", "--port", "0", "--json"]
-    running = subprocess.Popen(command, cwd=folder, stdout=subprocess.PIPE, preexec_fn=heed_interrupts)
+    running = subprocess.Popen(command, cwd=folder, stdout=subprocess.PIPE, preexec_fn=heed_interrupts, env=buffered())
     assert running.stdout is not None
     try:
         lines = b""

@@ -16,8 +16,8 @@ __all__ = ["print_json", "print_table", "print_text", "progress_bar"]
 
 
 def print_json(data: object) -> None:
-    """One JSON document on stdout; numbers that are not finite become null, paths text."""
-    print(json.dumps(_plain(data), indent=2, ensure_ascii=False))
+    """One JSON document on stdout, at once; numbers that are not finite become null, paths text."""
+    print(json.dumps(_plain(data), indent=2, ensure_ascii=False), flush=True)
 
 
 def _plain(data: object) -> object:
