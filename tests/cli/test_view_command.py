@@ -105,7 +105,8 @@ def test_address_as_json(study, folder):
     try:
         lines = b""
         while b"}" not in lines:
-            lines += running.stdout.readline()
+            lines += (line := running.stdout.readline())
+            assert line, "it ended"
         assert json.loads(lines)["local"] is True
         running.send_signal(signal.SIGINT)
         running.wait(timeout=60)
