@@ -83,6 +83,25 @@ def test_linear_elements_lock_as_derived(size):
     assert 1 / mouth_of(model).bending == pytest.approx(EI * factor, rel=1e-9)
 
 
+@pytest.mark.parametrize("size", [0.05, 0.00475])
+def test_reduced_integration_bends_as_derived(size):
+    """Too soft by 1 / n^2 with n layers; the hourglass control gives 3 r G / n^2 E of it back, Eq. (T10.28)."""
+    model = reduced_beam(FLAT, LENGTH, size, **MATERIAL, kind="hex8r")
+    count = [max(1, round(x / size)) for x in (model.spacing, FLAT.height, FLAT.width)]
+    length, layers = model.spacing / count[0], count[1]
+    width = FLAT.width / (count[2] + count[2] % 2)  # the plane of symmetry runs along edges
+    held = 1.5 * 0.005 / layers**2 * length**2 * (length**-2 + (FLAT.height / layers) ** -2 + width**-2)
+    assert 1 / mouth_of(model).bending == pytest.approx(EI * (1 - layers**-2 + held), rel=1e-8)
+
+
+@pytest.mark.parametrize("size", [0.05, 0.01])
+def test_incompatible_modes_bend_like_a_beam(size):
+    # Boxes: exact whatever the mesh; rounding as for the elements that lock.
+    assert 1 / mouth_of(reduced_beam(FLAT, LENGTH, size, **MATERIAL, kind="hex8i")).bending == pytest.approx(
+        EI, rel=1e-8
+    )
+
+
 @pytest.mark.parametrize(("poisson", "tolerance"), [(0.0, 1e-8), (0.3, 1e-4)])
 def test_quadratic_elements_bend_like_saint_venants_beam(poisson, tolerance):
     # Any width bends with EI once its sections may curl; at nu = 0.3 the mouth's effect has faded to exp(-pi 3) there.

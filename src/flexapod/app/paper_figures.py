@@ -7,6 +7,7 @@ from pathlib import Path
 from typing import TYPE_CHECKING
 
 from flexapod.app.figures import Drawn, store
+from flexapod.study.paper.claims_actuator import LINEAR
 
 if TYPE_CHECKING:
     from matplotlib.figure import Figure
@@ -17,7 +18,6 @@ if TYPE_CHECKING:
 __all__ = ["ENGINE", "paper_figures"]
 
 _Plan = tuple[str, str, str, Callable[[], "Figure"]]
-SOLIDS = ("coarse", "fine", "quadratic")
 ACTUATOR, ROBOT, VARIANTS = "Single actuator", "Robot", "What the deviation depends on"
 ENGINE = "Independent engine"
 
@@ -45,8 +45,12 @@ def _actuator(result: PaperStudy) -> Iterator[_Plan]:
         "paper leaves open are ours, so size and phase are not to be laid over the printed curve"
     )
     yield ACTUATOR, "actuator-response", title, lambda: plot.actuator_response(series)
-    meshes = {letter: result[f"actuator-solid-{name}"] for letter, name in zip("ABC", SOLIDS, strict=True)}
-    title = "Fig. 3: solid elements, coarse (A) and fine (B) linear ones, which lock in bending, and quadratic ones (C)"
+    meshes = {f"{letter}, {kind}": result[f"actuator-solid-{name}"]
+              for kind, pair in LINEAR.items() for letter, name in zip("AB", pair, strict=True)}  # fmt: skip
+    title = (
+        "Fig. 3: solid elements, coarse (A, 50 mm) and fine (B, 5 mm), by the kinds of linear hexahedra that programs "
+        "offer: full integration locks in bending, reduced integration is too soft, incompatible modes are right"
+    )
     yield ACTUATOR, "actuator-solid-meshes", title, lambda: plot.solid_meshes(meshes, result["actuator-fine"])
     title = "Fig. 4: assumed modes (8 shapes) against beam and solid finite elements, with their differences"
     others = {"beam elements": result["actuator-beam"], "solid elements": result["actuator-solid-quadratic"]}

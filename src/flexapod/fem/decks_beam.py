@@ -10,7 +10,13 @@ from flexapod.fem.mesh import SolidMesh
 __all__ = ["clamped_frequencies", "clamped_release"]
 
 #: The element of both programs for a kind of ours; R: integrated at 2 x 2 x 2 points.
-ELEMENTS = {("hex8", False): "C3D8", ("hex20", False): "C3D20", ("hex20", True): "C3D20R"}
+ELEMENTS = {
+    ("hex8", False): "C3D8",
+    ("hex8r", False): "C3D8R",
+    ("hex8i", False): "C3D8I",
+    ("hex20", False): "C3D20",
+    ("hex20", True): "C3D20R",
+}
 
 
 def clamped_frequencies(

@@ -1,99 +1,22 @@
-"""Linear elasticity on hexahedra: stiffness, mass and the stiffness of an axial stress, Eqs. (T10.1)-(T10.4)."""
+"""Matrices of a mesh of hexahedra: stiffness, mass and the stiffness of an axial stress, Eqs. (T10.1)-(T10.4)."""
 
 from __future__ import annotations
 
 from collections.abc import Callable
-from dataclasses import dataclass
 
 import numpy as np
 from scipy.sparse import csr_array
 
-from flexapod.errors import InputError
+from flexapod.fem.hexahedra import Integrals, element_stiffness
 from flexapod.fem.mesh import SolidMesh
 from flexapod.typing import Array
 
-__all__ = ["Integrals", "field_load", "integrals", "mass", "slope_stiffness", "stiffness"]
-
-# Corners of the reference cube in the order of Abaqus; middles of edges follow as pairs of corners.
-_CORNERS = np.array([[0, 0, 0], [1, 0, 0], [1, 1, 0], [0, 1, 0], [0, 0, 1], [1, 0, 1], [1, 1, 1], [0, 1, 1]])
-_EDGES = [(0, 1), (1, 2), (2, 3), (3, 0), (4, 5), (5, 6), (6, 7), (7, 4), (0, 4), (1, 5), (2, 6), (3, 7)]
-
-
-@dataclass(frozen=True, kw_only=True)
-class Integrals:
-    """Shape functions of all elements at their Gauss points, fully integrated (2 or 3 points a direction).
-
-    Attributes
-    ----------
-    mesh : SolidMesh
-    x : (m, q, 3) array
-        Points [m].
-    weight : (m, q) array
-        Volumes [m^3]; those of the symmetric copies are counted in.
-    shape : (q, a) array
-        Shape functions.
-    gradient : (m, q, a, 3) array
-        Their gradients [1/m].
-    """
-
-    mesh: SolidMesh
-    x: Array
-    weight: Array
-    shape: Array
-    gradient: Array
-
-
-def integrals(mesh: SolidMesh) -> Integrals:
-    """Shape functions, gradients and volumes at the Gauss points of a mesh.
-
-    Raises
-    ------
-    InputError
-        An element is degenerate or turned inside out.
-    """
-    from skfem import ElementHex1, ElementHexS2
-    from skfem.quadrature import get_quadrature
-    from skfem.refdom import RefHex
-
-    element = ElementHex1() if mesh.kind == "hex8" else ElementHexS2()
-    points, weights = get_quadrature(RefHex, 3 if mesh.kind == "hex8" else 5)
-    places = np.concatenate([_CORNERS, [(_CORNERS[i] + _CORNERS[j]) / 2 for i, j in _EDGES]])
-    locations = np.asarray(element.doflocs)
-    order = [int(np.argmin(np.abs(locations - p).sum(axis=1))) for p in places[: mesh.elements.shape[1]]]
-    values = [element.lbasis(points, i) for i in order]
-    shape = np.array([phi for phi, _ in values]).T
-    local = np.array([slope for _, slope in values]).transpose(2, 0, 1)  # (q, a, 3)
-    corners = mesh.nodes[mesh.elements]
-    jacobian = np.einsum("mai,qaj->mqij", corners, local)
-    size = np.linalg.det(jacobian)
-    if not size.min() > 0:
-        raise InputError(
-            "has an element that is degenerate or turned inside out",
-            key="mesh",
-            value=f"element {int(size.min(axis=1).argmin()) + 1} of {len(size)}",
-            allowed="positive Jacobians at all Gauss points",
-            next_step="Check the coordinates of its nodes and their order",
-        )
-    return Integrals(
-        mesh=mesh,
-        x=np.einsum("qa,mai->mqi", shape, corners),
-        weight=size * weights * mesh.section.copies,
-        shape=shape,
-        gradient=np.einsum("qaj,mqji->mqai", local, np.linalg.inv(jacobian)),
-    )
+__all__ = ["field_load", "mass", "slope_stiffness", "stiffness"]
 
 
 def stiffness(parts: Integrals, E: float, poisson: float) -> csr_array:
     """Elastic stiffness [N/m], (3n, 3n), Eq. (T10.1); isotropic, Young's modulus E [Pa]."""
-    lame, shear = E * poisson / ((1 + poisson) * (1 - 2 * poisson)), 0.5 * E / (1 + poisson)
-    m, q, a, _ = parts.gradient.shape
-    flat = parts.gradient.reshape(m, q, 3 * a)
-    products = (flat * parts.weight[..., None]).transpose(0, 2, 1) @ flat  # int N_a,i N_b,j
-    s = products.reshape(m, a, 3, a, 3)
-    traces = np.einsum("makbk->mab", s)
-    blocks = lame * s + shear * s.transpose(0, 1, 4, 3, 2)
-    blocks += shear * np.einsum("mab,ij->maibj", traces, np.eye(3))
-    return _assembled(parts.mesh, blocks)
+    return _assembled(parts.mesh, element_stiffness(parts, E, poisson))
 
 
 def mass(parts: Integrals, density: float) -> csr_array:

@@ -7,7 +7,8 @@ from scipy.sparse import csr_array
 
 from flexapod.errors import InputError
 from flexapod.fem.banded import banded_solver
-from flexapod.fem.elasticity import integrals, mass, stiffness
+from flexapod.fem.elasticity import mass, stiffness
+from flexapod.fem.hexahedra import integrals
 from flexapod.fem.mesh import SolidMesh
 from flexapod.fem.section_average import free_unknowns
 from flexapod.typing import Array

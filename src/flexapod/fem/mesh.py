@@ -7,7 +7,7 @@ from dataclasses import dataclass
 import numpy as np
 
 from flexapod.errors import InputError
-from flexapod.fem.section_mesh import KINDS, Indices, SectionMesh, section_mesh
+from flexapod.fem.section_mesh import Indices, SectionMesh, section_mesh
 from flexapod.model import Rectangle, Tube
 from flexapod.typing import Array
 
@@ -27,7 +27,6 @@ class SolidMesh:
     elements : (m, 8) or (m, 20) array
         Nodes of each element from 0, in the order of Abaqus and CalculiX (C3D8, C3D20): four corners of the end at
         smaller x, four of the other end, then the middles of the edges of either end and of those along x.
-    kind : {"hex8", "hex20"}
     section : SectionMesh
         What was drawn out; says which halves are meshed.
     length : float
@@ -36,9 +35,13 @@ class SolidMesh:
 
     nodes: Array
     elements: Indices
-    kind: str
     section: SectionMesh
     length: float
+
+    @property
+    def kind(self) -> str:
+        """Of the elements, one of `section_mesh.KINDS`."""
+        return self.section.kind
 
     @property
     def unknowns(self) -> int:
@@ -62,8 +65,9 @@ def beam_mesh(
         A rectangle bends along its height, which lies along y.
     length, size : float
         Beam and wanted element edge [m].
-    kind : {"hex8", "hex20"}
-        Linear, or quadratic serendipity elements, whose edges follow a circle.
+    kind : {"hex20", "hex8", "hex8r", "hex8i"}
+        Quadratic serendipity elements, whose edges follow a circle, or linear ones: with full integration, with
+        reduced integration, with incompatible modes.
     whole : bool
         Whole section, else the half or quarter that bending in the plane of y leaves independent.
 
@@ -125,5 +129,4 @@ def extruded(section: SectionMesh, length: float, layers: int) -> SolidMesh:
         parts += [edge, edge + step, count + between[corner]]
     one = np.concatenate(parts, axis=1)
     elements = (one[None] + step * np.arange(layers)[:, None, None]).reshape(-1, one.shape[1])
-    kind = next(name for name, nodes in KINDS.items() if nodes == one.shape[1])
-    return SolidMesh(nodes=np.concatenate(planes), elements=elements, kind=kind, section=section, length=length)
+    return SolidMesh(nodes=np.concatenate(planes), elements=elements, section=section, length=length)

@@ -12,8 +12,9 @@ import numpy as np
 from scipy.sparse import csc_array, csr_array
 
 from flexapod.errors import InputError
-from flexapod.fem.elasticity import field_load, integrals, mass, slope_stiffness, stiffness
+from flexapod.fem.elasticity import field_load, mass, slope_stiffness, stiffness
 from flexapod.fem.frequencies import check_material
+from flexapod.fem.hexahedra import integrals
 from flexapod.fem.mesh import SolidMesh, check_count, extruded
 from flexapod.fem.section_average import SectionAverages, free_unknowns, section_averages
 from flexapod.fem.section_mesh import section_mesh
@@ -90,7 +91,8 @@ def reduced_beam(
         Beam and wanted element edge [m].
     E, density, poisson : float
         Young's modulus [Pa], density [kg/m^3], Poisson's ratio.
-    kind : {"hex8", "hex20"}
+    kind : {"hex20", "hex8", "hex8r", "hex8i"}
+        Quadratic hexahedra; linear ones with full integration, reduced integration, incompatible modes.
     spacing : float, optional
         Default: a 36th of the beam, at least one element.
 

@@ -3,7 +3,7 @@
 from __future__ import annotations
 
 from collections.abc import Callable
-from dataclasses import dataclass
+from dataclasses import dataclass, replace
 
 import numpy as np
 from numpy.typing import NDArray
@@ -17,8 +17,9 @@ __all__ = ["KINDS", "Indices", "SectionMesh", "section_mesh"]
 #: An array of whole numbers.
 Indices = NDArray[np.int_]
 
-#: Nodes of a solid element by its kind: linear and serendipity hexahedra.
-KINDS = {"hex8": 8, "hex20": 20}
+#: Kinds of solid elements and their nodes: linear hexahedra with full integration, with reduced integration and with
+#: incompatible modes; quadratic serendipity ones.
+KINDS = {"hex8": 8, "hex8r": 8, "hex8i": 8, "hex20": 20}
 
 # Corners of a quadrilateral, then the middles of its edges, as steps of half an element.
 _STEPS = np.array([[0, 0], [2, 0], [2, 2], [0, 2], [1, 0], [2, 1], [1, 2], [0, 1]])
@@ -39,6 +40,8 @@ class SectionMesh:
         Points that are corners, not middles.
     half_y, half_z : bool
         Only y >= 0, only z >= 0 is meshed; the rest follows by symmetry.
+    kind : str
+        Of the solid elements that stand on the quadrilaterals, one of `KINDS`.
     """
 
     points: Array
@@ -46,6 +49,7 @@ class SectionMesh:
     corners: Mask
     half_y: bool = False
     half_z: bool = False
+    kind: str = "hex20"
 
     @property
     def copies(self) -> int:
@@ -62,7 +66,7 @@ def section_mesh(section: Tube | Rectangle, size: float, kind: str, *, whole: bo
         A rectangle bends along its height.
     size : float
         Wanted length of the edges [m]; at least one element lies across every thickness.
-    kind : {"hex8", "hex20"}
+    kind : {"hex8", "hex8r", "hex8i", "hex20"}
         Of the solid elements that stand on the quadrilaterals.
     whole : bool
         Else the half z >= 0, and of it only y >= 0 where no element lies across y = 0.
@@ -78,7 +82,7 @@ def section_mesh(section: Tube | Rectangle, size: float, kind: str, *, whole: bo
         raise InputError("is no length of an element", key="size", value=size, allowed="above 0 m")
     patches = _rectangle(section, size, whole) if isinstance(section, Rectangle) else _round(section, size)
     joined = _joined(patches, kind == "hex20")
-    return joined if whole else _part(joined, 1e-6 * section.depth)
+    return replace(joined if whole else _part(joined, 1e-6 * section.depth), kind=kind)
 
 
 def _rectangle(section: Rectangle, size: float, whole: bool) -> list[_Patch]:

@@ -93,6 +93,11 @@ class ActuatorLoad(Frozen):
 
 
 class ActuatorInitial(Frozen):
-    """State at t = 0: `tip_displacement` [m] of the static shape under a tip force, modal velocities zero."""
+    """State at t = 0: `tip_displacement` [m] of the static shape under a tip force, modal velocities zero.
+
+    `angle_rate` [rad/s] and `length_rate` [m/s] where angle or length are free, that is driven by a load.
+    """
 
     tip_displacement: Number = 0.0
+    angle_rate: Number = 0.0
+    length_rate: Number = 0.0

@@ -10,7 +10,7 @@ from pathlib import Path
 from typing import Literal, overload
 
 from flexapod.errors import InputError, closest
-from flexapod.model.read_actuator import read_actuator, read_drives, read_tip
+from flexapod.model.read_actuator import read_actuator, read_drives, read_release
 from flexapod.model.read_motion import read_initial, read_load, read_motion, read_simulation, unused_settings
 from flexapod.model.read_robot import read_robot
 from flexapod.model.robot import Robot
@@ -185,7 +185,7 @@ def _actuator_study(top: Section, text: str) -> ActuatorStudy:
         actuator=read_actuator(top.child(top.data["actuator"], "actuator")),
         motion=motion,
         load=load,
-        initial=read_tip(top.section("initial")),
+        initial=read_release(top.section("initial")),
         simulation=simulation,
         source_text=text,
         path=top.file,

@@ -20,7 +20,7 @@ from flexapod.model.read_robot import read_material
 from flexapod.model.section import Section
 from flexapod.model.tables import read_table
 
-__all__ = ["read_actuator", "read_drives", "read_tip"]
+__all__ = ["read_actuator", "read_drives", "read_release"]
 
 _NUMBERS = {
     "length": "length",
@@ -33,6 +33,7 @@ _NUMBERS = {
     "gravity": "acceleration",
     "damping": "number",
 }
+_INITIAL = {"tip_displacement": "length", "angle_rate": "angular rate", "length_rate": "velocity"}
 _RATES = {"angle": "angular rate", "length": "velocity"}
 
 
@@ -76,12 +77,12 @@ def read_drives(top: Section) -> tuple[ActuatorMotion, ActuatorLoad]:
     return ActuatorMotion(**laws), ActuatorLoad(**loads)
 
 
-def read_tip(section: Section | None) -> ActuatorInitial:
+def read_release(section: Section | None) -> ActuatorInitial:
     """The start of a single actuator."""
     if section is None:
         return ActuatorInitial()
-    section.only("tip_displacement")
-    return section.build(ActuatorInitial, tip_displacement=section.number("tip_displacement", "length"))
+    section.only(*_INITIAL)
+    return section.build(ActuatorInitial, **{name: section.number(name, kind) for name, kind in _INITIAL.items()})
 
 
 def _shape(section: Section) -> Tube | Rectangle:

@@ -109,6 +109,7 @@ class ActuatorStudy(_Documented):
         for law, load in (("rotation", "torque"), ("extension", "force")):
             if (getattr(self.motion, law) is None) == (getattr(self.load, load) is None):
                 raise InputError(f"and motion.{law}: exactly one of the two drives this coordinate", key=f"load.{load}")
+        self._only_free_ones_start_with_a_rate()
         if self.simulation.fidelity == "lumped":
             raise InputError(
                 "has no meaning for the single actuator, whose beam bends but does not stretch",
@@ -131,6 +132,17 @@ class ActuatorStudy(_Documented):
                 next_step='Add duration = "10 s" to [simulation]',
             )
         return self
+
+    def _only_free_ones_start_with_a_rate(self) -> None:
+        for name, law, load in (("angle_rate", "rotation", "torque"), ("length_rate", "extension", "force")):
+            if getattr(self.initial, name) and getattr(self.motion, law) is not None:
+                raise InputError(
+                    f"starts a coordinate whose motion is prescribed (motion.{law})",
+                    key=f"initial.{name}",
+                    value=getattr(self.initial, name),
+                    allowed="coordinates that a load drives",
+                    next_step=f"For free motion write [load] {load} = 0 in place of motion.{law}",
+                )
 
     @property
     def duration(self) -> float:

@@ -14,7 +14,6 @@ from flexapod.study.words import number
 
 __all__ = ["solid_comparison", "solid_meshes"]
 
-_ELEMENTS = {"hex8": "linear", "hex20": "quadratic"}
 
 
 @styled
@@ -24,23 +23,29 @@ def solid_meshes(meshes: Mapping[str, xr.Dataset], reference: xr.Dataset) -> Fig
 
     Parameters
     ----------
-    meshes : mapping of letters to xarray.Dataset
-        Results of `simulate_solid`, coarse to fine.
+    meshes : mapping of names to xarray.Dataset
+        Results of `simulate_solid`, drawn two in a row: coarse and fine.
     reference : xarray.Dataset
         Result of `flexapod.simulate_actuator`, drawn pale for orientation.
     """
-    fig = figure(PAGE, 0.6 + 1.9 * len(meshes))
-    panels = np.atleast_1d(fig.subplots(len(meshes), 1, sharex=True, sharey=True))
+    columns = min(2, len(meshes))
+    rows = -(-len(meshes) // columns)
+    fig = figure(PAGE, 0.6 + 1.9 * rows)
+    panels = np.atleast_1d(fig.subplots(rows, columns, sharex=True, sharey=True)).reshape(rows, columns)
     unit = scale(reference.tip_deflection, "m")
-    for axes, (letter, data) in zip(panels, meshes.items(), strict=True):
+    for axes, (name, data) in zip(panels.flat, meshes.items(), strict=False):
         axes.plot(reference.time, unit(reference.tip_deflection), color=RIGID, linewidth=4, label="assumed modes")
         axes.plot(data.time, unit(data.tip_deflection), color=FLEXIBLE, linewidth=1.1, label="solid elements")
         axes.axhline(0, color="#555555", linewidth=0.7)
-        axes.set_title(f"{letter}: {_mesh(data)}; {float(data.frequency[0]):.3g} Hz at the start")
+        axes.set_title(f"{name}\n{_mesh(data)}\n{float(data.frequency[0]):.3g} Hz at the start", fontsize="medium")
+    for axes in panels.flat[len(meshes) :]:
+        axes.set_visible(False)
+    for axes in panels[:, 0]:
         axes.set_ylabel(f"deflection [{unit.name}]")
-    fig.legend(*panels[0].get_legend_handles_labels(), loc="outside upper center", ncols=2)
-    panels[-1].set_xlabel("time [s]")
-    fig.align_ylabels(panels)
+    for axes in panels[-1]:
+        axes.set_xlabel("time [s]")
+    fig.legend(*panels[0, 0].get_legend_handles_labels(), loc="outside upper center", ncols=2)
+    fig.align_ylabels(panels[:, 0])
     return fig
 
 
@@ -87,6 +92,5 @@ def _differences(axes: Axes, results: Mapping[str, xr.Dataset], reference: xr.Da
 
 
 def _mesh(data: xr.Dataset) -> str:
-    kind = _ELEMENTS.get(str(data.attrs.get("element")), "solid")
     size, unknowns = float(data.attrs.get("element_size", np.nan)), int(data.attrs.get("unknowns", 0))
-    return f"{kind} elements of {number(1e3 * size, 2)} mm, {unknowns:,} unknowns"
+    return f"{number(1e3 * size, 2)} mm, {unknowns:,} unknowns"

@@ -18,6 +18,12 @@ from flexapod.typing import Array
 
 Law = Callable[[Array], tuple[Array, Array]]
 
+SHORT = 0.1  # of the beam: its frequencies are then a hundred times those of the whole
+
+
+class _NotInHub(ComputationError):
+    """The beam has slid wholly into its hub or out of it."""
+
 
 @dataclass(frozen=True, kw_only=True)
 class ActuatorMarch:
@@ -82,7 +88,30 @@ def prepare_actuator(
         check=lambda recording: _check(study.actuator, recording),
         tolerance=simulation.tolerance,
     )
-    return ActuatorMarch(plant=plant, start=start, step=h, chunks=march(problem, start, h, counters), counters=counters)
+    chunks = march(problem, start, h, counters)
+    if study.motion.extension is None:
+        chunks = _retracting(study.actuator, chunks)
+    return ActuatorMarch(plant=plant, start=start, step=h, chunks=chunks, counters=counters)
+
+
+def _retracting(actuator: Actuator, chunks: Iterator[Chunk]) -> Iterator[Chunk]:
+    """The chunks; where they fail because next to nothing of the beam is left outside, that is what is said."""
+    now, free, rate = 0.0, actuator.free_length, 0.0
+    try:
+        for chunk in chunks:
+            last = chunk.recording
+            now, free, rate = float(last.time[-1]), float(last.q[-1, 0, 1]) - actuator.hub_radius, float(last.v[-1, 1])
+            yield chunk
+    except _NotInHub:
+        raise
+    except ComputationError as error:
+        if not (rate < 0 and free < SHORT * actuator.length):
+            raise
+        raise ComputationError(
+            f"the beam has slid into its hub: {1e3 * free:.3g} mm of it are left outside at t = {now:.6g} s, and "
+            f"{-rate:.3g} m/s more go in. So short a beam vibrates faster than steps can follow",
+            next_step="Shorten the simulation, or check the axial force.",
+        ) from error
 
 
 def static_shape(plant: Plant, displacement: float) -> Array:
@@ -125,9 +154,10 @@ def _start(
     amplitudes: Array | None,
     rates: Array | None,
 ) -> Flow:
-    """Static tip shape at rest in x/L(t), accelerations from the equation of motion, a_0 after Eq. (T6.13)."""
+    """Static tip shape at rest in x/L(t), given rates, accelerations from the equation of motion, a_0 (T6.13)."""
     q, v = np.zeros((1, plant.n)), np.zeros(plant.n)
     q[0, :2] = study.actuator.angle, study.actuator.hub_radius + study.actuator.free_length
+    v[:2] = study.initial.angle_rate, study.initial.length_rate
     row = law(np.zeros(1))[0][0]
     if plant.held_beta[0]:
         q[0, 0], v[0] = row[4], row[5]
@@ -191,7 +221,7 @@ def _check(actuator: Actuator, recording: Recording) -> None:
     most = actuator.length * (1 + 1e-9)  # with a hub radius the free length is a difference
     for bad, words in ((free <= 0, "has slid wholly into the hub"), (free > most, "has left the hub")):
         if bad.any():
-            raise ComputationError(
+            raise _NotInHub(
                 f"the beam {words} at t = {recording.time[np.argmax(bad)]:.6g} s",
                 next_step="Shorten the simulation, or check the extension law or the axial force.",
             )

@@ -58,8 +58,10 @@ def simulate_solid(
         Default: the study's, else that of the paper's beam. A rectangle bends along its height.
     size : float
         Wanted edge of the elements [m].
-    kind : {"hex20", "hex8"}
-        Quadratic or linear hexahedra; linear ones lock in bending.
+    kind : {"hex20", "hex8", "hex8r", "hex8i"}
+        Quadratic hexahedra (Abaqus C3D20), or linear ones: with full integration (C3D8), which lock in bending; with
+        reduced integration (C3D8R), too soft by 1 / n^2 with n of them across the depth; with incompatible modes
+        (C3D8I), which bend like a beam.
     poisson : float
         Poisson's ratio; at 0 the solid is the beam of the other fidelities.
     spacing : float, optional

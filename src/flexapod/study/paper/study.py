@@ -32,10 +32,15 @@ __all__ = ["ACTUATOR_MODES", "ENGINE_STEPS", "STEPS", "PaperStudy", "replicate"]
 ACTUATOR_MODES = (1, 2, 3, 4, 5)
 COMPARED_STEP = 1e-4  # s: the time integration's error in 10 s is then about a micrometre, below what is compared
 COMPARED_OUTPUT = 1e-2  # s: a fortieth of the first period at the start
-# Name, words, usual share of the time, size [m] and kind of the hexahedra: the paper's meshes and a better one
+# Name, words, usual share of the time, size [m] and kind of the hexahedra: the paper's meshes by the kinds of linear
+# elements that it may have taken, and a better one
 SOLIDS = (
-    ("coarse", "linear, 50 mm", 1, 0.05, "hex8"),
-    ("fine", "linear, 5 mm", 3, 0.005, "hex8"),
+    ("coarse", "full integration, 50 mm", 1, 0.05, "hex8"),
+    ("fine", "full integration, 5 mm", 3, 0.005, "hex8"),
+    ("reduced-coarse", "reduced integration, 50 mm", 1, 0.05, "hex8r"),
+    ("reduced-fine", "reduced integration, 5 mm", 3, 0.005, "hex8r"),
+    ("incompatible-coarse", "incompatible modes, 50 mm", 1, 0.05, "hex8i"),
+    ("incompatible-fine", "incompatible modes, 5 mm", 3, 0.005, "hex8i"),
     ("quadratic", "quadratic, 5 mm", 6, 0.005, "hex20"),
 )
 

@@ -6,7 +6,13 @@ from flexapod.study.verify.cases.bar import BAR
 from flexapod.study.verify.cases.beam_elements import BEAM_ELEMENTS
 from flexapod.study.verify.cases.beam_fem import BEAM_FEM
 from flexapod.study.verify.cases.bricard import BRICARD
-from flexapod.study.verify.cases.calculix_beams import CALCULIX_BEAM, CALCULIX_PISTON, CALCULIX_RELEASE, CALCULIX_SOLID
+from flexapod.study.verify.cases.calculix_beams import (
+    CALCULIX_BEAM,
+    CALCULIX_LINEAR,
+    CALCULIX_PISTON,
+    CALCULIX_RELEASE,
+    CALCULIX_SOLID,
+)
 from flexapod.study.verify.cases.calculix_robot import CALCULIX_PRESTRESS, CALCULIX_ROBOT
 from flexapod.study.verify.cases.cantilever import CANTILEVER
 from flexapod.study.verify.cases.conservation import CONSERVATION
@@ -74,6 +80,7 @@ CASES: tuple[Case, ...] = (
     CALCULIX_BEAM,
     CALCULIX_PISTON,
     CALCULIX_SOLID,
+    CALCULIX_LINEAR,
     CALCULIX_RELEASE,
     CALCULIX_ROBOT,
     CALCULIX_PRESTRESS,
