@@ -22,7 +22,7 @@ def jump(name, angle=None, step=6.25e-5):
 @cache
 def elements():
     """The single actuator by finite elements and by 8 shapes, as `replicate` computes them: a dozen seconds."""
-    finite = ("actuator-fine", "actuator-beam", "actuator-solid")
+    finite = ("actuator-free", "actuator-fine", "actuator-beam", "actuator-solid")
     return {step.name: step.compute(quiet) for step in STEPS if step.name.startswith(finite)}
 
 

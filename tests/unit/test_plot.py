@@ -14,6 +14,7 @@ from matplotlib.text import Text
 
 from flexapod import plot
 from flexapod.app.figures import draw
+from flexapod.app.interactive import interactive
 from flexapod.app.report import write_report
 from flexapod.app.view.charts import charts
 from flexapod.errors import InputError
@@ -52,6 +53,7 @@ ROBOT = (
     "deviation_by_cause",
     "energies",
     "actuator_forces",
+    "forces_overlaid",
     "leg_lengths",
     "tip_deflections",
     "motion_law",
@@ -199,17 +201,59 @@ def test_a_figure_for_a_column_stays_as_it_was(robot, tmp_path):
     assert imread(path).shape[1] == 670
 
 
+def first_bending(shapes):
+    return next(
+        int(m) for m, kind in zip(shapes.mode.values, shapes.kind.values, strict=True) if "bending" in str(kind)
+    )
+
+
+def test_piston_alone_is_bent_as_its_mode_says(shapes):
+    mode = first_bending(shapes)
+    axes = plot.piston_mode(shapes, mode).axes[0]
+    x, drawn = axes.lines[2].get_data()
+    leg = int(axes.get_title(loc="left").split()[1])
+    shape = shapes.leg_shape.sel(mode=mode, leg=leg).values
+    assert np.abs(shape).max() == np.abs(shapes.leg_shape.sel(mode=mode)).max()
+    across = np.linalg.svd(shape.T, full_matrices=False)[2][0] @ shape
+    np.testing.assert_allclose(drawn / np.abs(drawn).max(), across / np.abs(across).max(), atol=1e-12)
+    place = mode_scene(shapes, mode, 1.0, phase=0.0)
+    assert x[-1] == pytest.approx(1e3 * np.linalg.norm(place.platform[leg - 1] - place.base[leg - 1]), rel=1e-9)
+
+
+def test_bands_are_the_printed_deviation_to_scale(robot):
+    figure = plot.path_bands(robot, {"y": 5e-3, "z": 10e-3})
+    below = figure.axes[2]
+    np.testing.assert_allclose(below.lines[0].get_ydata(), 1e3 * robot.com_deviation.sel(axis="y"))
+    assert below.get_ylim() == pytest.approx((-6.25, 6.25))
+    assert below.texts[0].get_text() == "largest 9.38 µm:\nthe print is 530 times that"
+
+
+def test_a_drawing_stays_a_picture_on_the_page(robot, tmp_path):
+    drawing, curves = plot.actuator_symbols(), plot.forces_overlaid(robot)
+    for figure in (drawing, curves):
+        plot.save(figure, tmp_path / "x", formats=("png",))
+    assert interactive(drawing) is None and interactive(curves) is not None
+
+
 def panels(figure):
     return [axes for axes in figure.axes if axes.get_visible()]
 
 
-@pytest.mark.parametrize("name", [*ROBOT, "com_path of all axes", "actuator_path", "actuator_response", "modes_3d"])
+OTHERS = ("com_path of all axes", "actuator_path", "actuator_response", "modes_3d", "actuator_free",
+          "path_bands", "piston_mode", "actuator_symbols")  # fmt: skip
+
+
+@pytest.mark.parametrize("name", [*ROBOT, *OTHERS])
 def test_at_the_width_of_a_column_nothing_overlaps_or_is_cut(robot, actuator, shapes, name):
     draws = {
         "com_path of all axes": lambda: plot.com_path(robot, ("x", "y", "z")),
         "actuator_path": lambda: plot.actuator_path(actuator[3], magnify=20.0),
         "actuator_response": lambda: plot.actuator_response(actuator),
         "modes_3d": lambda: plot.modes_3d(shapes),
+        "actuator_free": lambda: plot.actuator_free({"held": actuator[3], "given at the start": actuator[2]}),
+        "path_bands": lambda: plot.path_bands(robot, {"y": 5e-3, "z": 10e-3}),
+        "piston_mode": lambda: plot.piston_mode(shapes, first_bending(shapes)),
+        "actuator_symbols": plot.actuator_symbols,
     }
     figure = draws.get(name, lambda: getattr(plot, name)(robot))()
     made = narrowed(figure, 0.085 / 0.0254)

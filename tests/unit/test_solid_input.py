@@ -171,9 +171,9 @@ def test_figures():
     coarse = simulate_solid(STUDY, size=0.05, kind="hex8", duration=0.2)
     fine = simulate_solid(STUDY, size=0.05, duration=0.2)
     reference = fx.simulate_actuator(STUDY, duration=0.2, output_step=1e-3)
-    three = solid_meshes({"A": coarse, "B": fine}, reference).axes
-    assert three[0].get_title(loc="left").startswith("A: linear elements of 50 mm, 1,314 unknowns; 8.97 Hz")
-    assert "quadratic" in three[1].get_title(loc="left")
+    three = solid_meshes({"A, linear": coarse, "B, quadratic": fine, "again": fine}, reference).axes
+    assert three[0].get_title(loc="left") == "A, linear\n50 mm, 1,314 unknowns\n8.97 Hz at the start"
+    assert three[1].get_title(loc="left").startswith("B, quadratic") and not three[3].get_visible()
     np.testing.assert_allclose(three[0].lines[1].get_ydata(), 1e3 * coarse.tip_deflection.values)
     four = solid_comparison({"solid elements": fine}, reference).axes
     gap = 1e6 * (fine.tip_deflection.values - reference.tip_deflection.values)

@@ -47,7 +47,10 @@ def _motion(found: ActuatorDescription) -> list[str]:
         "rotation": "The hub is driven by a torque: its angle",
         "extension": "The beam is driven by a force: its length",
     }
-    lines += [f"{names[name]} is a result." for name in found.driven]
+    rates = {"rotation": (found.angle_rate, "rad/s"), "extension": (found.length_rate, "m/s")}
+    for name in found.driven:
+        rate, unit = rates[name]
+        lines.append(f"{names[name]} is a result{f', starting at {rate:.4g} {unit}' if rate else ''}.")
     if found.tip_displacement:
         lines.append(f"The tip starts {text(found.tip_displacement, 'm')} off the line, released at rest.")
     return lines

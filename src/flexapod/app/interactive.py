@@ -48,7 +48,7 @@ def interactive(figure: Figure) -> dict[str, Any] | None:
         of each interval the least and the largest value stay.
     """
     panels = [axes for axes in figure.axes if axes.get_visible()]
-    if not panels or any(axes.name != "rectilinear" or axes.images or _maps(axes) for axes in panels):
+    if not panels or any(axes.name != "rectilinear" or axes.images or _maps(axes) or _drawn(axes) for axes in panels):
         return None
     width, height = (float(size) * 96 for size in figure.get_size_inches())
     size = [round(width), round(height), _above(figure, panels)]
@@ -96,6 +96,11 @@ def thinned(x: Array, y: Array, most: int = MOST_POINTS) -> tuple[Array, Array]:
 def _maps(axes: Axes) -> bool:
     """Whether there are collections with colours by value, or with hatching."""
     return any(part.get_array() is not None or part.get_hatch() for part in axes.collections)
+
+
+def _drawn(axes: Axes) -> bool:
+    """Whether there are circles, arcs or polygons: a drawing, not curves."""
+    return any(not isinstance(patch, Rectangle) for patch in axes.patches)
 
 
 def _legends(figure: Figure, panels: list[Axes]) -> list[Any]:

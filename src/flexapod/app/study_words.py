@@ -185,7 +185,9 @@ def _driven(study: ActuatorStudy) -> str:
     for name, load, rate, unit in (("rotation", "torque", "rad/s", "N m"), ("extension", "force", "m/s", "N")):
         law = getattr(study.motion, name)
         if law is None:
-            words.append(f"{name} by a {load}{_law(getattr(study.load, load), unit)}, so that it is a result")
+            first = getattr(study.initial, "angle_rate" if name == "rotation" else "length_rate")
+            begun = f", from {number(first)} {rate} at the start" if first else ""
+            words.append(f"{name} by a {load}{_law(getattr(study.load, load), unit)}{begun}, so that it is a result")
         elif law.law == "rate":
             words.append(f"{name} at {number(law.rate)} {rate}")
         else:

@@ -34,13 +34,15 @@ def robot_3d(data: xr.Dataset, time: float | None = None) -> Figure:
     fig.set_layout_engine("none")  # 3D axes have no extents that a layout could use
     places = fig.add_gridspec(1, 2, width_ratios=(1.15, 1), left=0.0, right=0.96, bottom=0.07, top=0.93, wspace=0.1)
     left, right = space(fig, places[0]), space(fig, places[1], turn=0, tilt=0)
+    moved = time > float(data.time[0])
     for axes in (left, right):
-        draw_ghost(axes, start)
+        if moved:
+            draw_ghost(axes, start)
         draw_robot(axes, now, numbers=axes is left)
         view(axes, [now, start], zoom=1.0)
     right.set_xticks([])
     right.set_xlabel("")
-    head(left, f"At t = {time:.2f} s; pale: at the start")
+    head(left, f"At t = {time:.2f} s; pale: at the start" if moved else "At the start")
     head(right, "Seen along X; deflections to scale")
     return fig
 

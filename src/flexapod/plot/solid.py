@@ -15,7 +15,6 @@ from flexapod.study.words import number
 __all__ = ["solid_comparison", "solid_meshes"]
 
 
-
 @styled
 @needs("tip_deflection", "frequency")
 def solid_meshes(meshes: Mapping[str, xr.Dataset], reference: xr.Dataset) -> Figure:

@@ -47,6 +47,8 @@ class ActuatorDescription:
     free_lengths: tuple[float, float] | None
     beam: tuple[BeamDescription, ...]
     tip_displacement: float
+    angle_rate: float
+    length_rate: float
     remarks: tuple[str, ...]
 
     def as_dict(self) -> dict[str, object]:
@@ -86,6 +88,8 @@ def describe_actuator(study: model.ActuatorStudy) -> ActuatorDescription:
         free_lengths=lengths,
         beam=tuple(_beam(study, name, length) for name, length in places.items()),
         tip_displacement=study.initial.tip_displacement,
+        angle_rate=study.initial.angle_rate,
+        length_rate=study.initial.length_rate,
         remarks=(*study.warnings, *remarks),
     )
 

@@ -30,6 +30,7 @@ if TYPE_CHECKING:
 __all__ = ["ACTUATOR_MODES", "ENGINE_STEPS", "STEPS", "PaperStudy", "replicate"]
 
 ACTUATOR_MODES = (1, 2, 3, 4, 5)
+FREE_TIME = 5.0  # s; set free, the beam leaves its hub soon after
 COMPARED_STEP = 1e-4  # s: the time integration's error in 10 s is then about a micrometre, below what is compared
 COMPARED_OUTPUT = 1e-2  # s: a fortieth of the first period at the start
 # Name, words, usual share of the time, size [m] and kind of the hexahedra: the paper's meshes by the kinds of linear
@@ -97,6 +98,19 @@ def _actuator(count: int) -> Callable[[Share], Dataset]:
     return lambda report: simulate_actuator(_actuator_preset(), modes=count, progress=_over(report))
 
 
+def _free_actuator(report: Share) -> Dataset:
+    """The same beam set free on a hub without friction or inertia, with the printed velocities at the start."""
+    study, none = _actuator_preset(), model.ConstantLaw(value=0.0)
+    laws = study.motion.rotation, study.motion.extension
+    turn, feed = (law.rate if isinstance(law, model.RateLaw) else 0.0 for law in laws)
+    free = study.replace(
+        motion=model.ActuatorMotion(rotation=None, extension=None),
+        load=model.ActuatorLoad(torque=none, force=none),
+        initial=study.initial.replace(angle_rate=turn, length_rate=feed),
+    )
+    return simulate_actuator(free, duration=FREE_TIME, progress=_over(report))
+
+
 def _finest_actuator(fidelity: str, count: int) -> Callable[[Share], Dataset]:
     def compute(report: Share) -> Dataset:
         study = _actuator_preset()
@@ -150,6 +164,7 @@ STEPS: tuple[Step, ...] = (
         Step(name=f"actuator-{k}", words=f"single actuator, {k} shapes", weight=0.2 * k, compute=_actuator(k))
         for k in ACTUATOR_MODES
     ),
+    Step(name="actuator-free", words="single actuator, set free", weight=0.5, compute=_free_actuator),
     Step(
         name="actuator-fine",
         words="single actuator, 8 shapes",
