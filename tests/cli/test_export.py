@@ -68,8 +68,15 @@ def test_an_actuator_is_no_robot(flexapod, study):
 
 
 @pytest.mark.skipif(not CALCULIX.found(), reason=f"CalculiX is not installed: {CALCULIX.install}")
-def test_calculix_finds_the_frequencies_and_the_sag_of_the_study(flexapod, study, folder):
-    """A tube on servo drives under a load, at a pose: no case of the verification pack has these.
+@pytest.mark.parametrize(
+    "drive",
+    [
+        '{ type = "servo", stiffness = 2e8, damping = 0 }',
+        '{ type = "force", law = "rigid", feedback = { stiffness = 2e8, damping = 0 } }',
+    ],
+)
+def test_calculix_finds_the_frequencies_and_the_sag_of_the_study(flexapod, study, folder, drive):
+    """A tube on servo or force drives under a load, at a pose: no case of the verification pack has these.
 
     Shear and rotary inertia take (r lambda / s)^2 (1 + E / k G) / 2 = 0.13 % of the first bending frequency, which 16
     elements raise by 0.01 %. What turns with the payload, m g times 0.4 m over its stiffness of 17.88 kg m^2 (16 Hz)^2
@@ -77,7 +84,7 @@ def test_calculix_finds_the_frequencies_and_the_sag_of_the_study(flexapod, study
     """
     changes = (
         ('diameter = "27 mm", length', 'diameter = "30 mm", inner_diameter = "20 mm", length'),
-        ('drive = { type = "prescribed" }', 'drive = { type = "servo", stiffness = 2e8, damping = 0 }'),
+        ('drive = { type = "prescribed" }', f"drive = {drive}"),
     )
     file = study(*changes, more="\n[load]\nwrench = [100, -200, 300, 20, 30, -40]\n")
     run = flexapod("export", file, "--pose", "pitch=5deg,heave=20mm", "--elements", 16, "--count", 8)

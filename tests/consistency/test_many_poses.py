@@ -10,7 +10,7 @@ from tests.runs import paper_robot, with_legs
 
 import flexapod as fx
 from flexapod import rigid
-from flexapod.model import Cylinder, ServoDrive, Waypoint, WaypointMotion, override
+from flexapod.model import ConstantWrench, Cylinder, Load, ServoDrive, Waypoint, WaypointMotion, override
 from flexapod.solve.arrow import arrow_solve
 from flexapod.solve.elimination import solve_each
 from flexapod.solve.equilibrium import equilibria, saddle_solve
@@ -21,6 +21,7 @@ from flexapod.solve.stiffness import robot_stiffness, stiffness_of, tool_motion
 from flexapod.study.poses import from_home
 
 WRENCH = np.array([50.0, -30.0, -200.0, 5.0, 4.0, -3.0])
+LOAD = Load(wrench=ConstantWrench(value=WRENCH))
 POSES = np.array([
     [0, 0, 0, 0, 0, 0], [0.03, -0.02, 0.04, 0.1, -0.05, 0.2], [-0.02, 0.03, -0.05, -0.2, 0.1, -0.3],
     [0, 0, 0.08, 0.0, 0.2, 0.0], [0.01, 0, 0, 0.3, 0, 0.1],
@@ -60,7 +61,7 @@ KINDS = ["prescribed", "servo", "mixed", "no stretch", "mixed, no stretch", "lum
 def test_equilibria_balance_and_modes_are_those_of_dense_matrices(kind):
     study = robot(kind)
     path = from_home(study.robot, POSES)
-    locked = locked_poses(study.robot, study.simulation, path, WRENCH)
+    locked = locked_poses(study.robot, study.simulation, path, LOAD)
     modes = modes_of(locked, shapes=True)
     system = locked.system
     assert locked.at.tolist() == list(range(len(POSES)))
@@ -89,7 +90,7 @@ def test_equilibria_balance_and_modes_are_those_of_dense_matrices(kind):
 @pytest.mark.parametrize("kind", KINDS)
 def test_a_newton_step_is_that_of_the_saddle_matrix(kind):
     study = robot(kind)
-    locked = locked_poses(study.robot, study.simulation, from_home(study.robot, POSES), WRENCH)
+    locked = locked_poses(study.robot, study.simulation, from_home(study.robot, POSES), LOAD)
     system, rng = locked.system, np.random.default_rng(5)
     r, payload, g = rng.normal(size=(5, 6, system.n)), rng.normal(size=(5, 6)), 1e-3 * rng.normal(size=(5, 6, 3))
     gap = np.where(system.held, 1e-3 * rng.normal(size=(5, 6)), 0.0)
@@ -111,22 +112,22 @@ def test_a_newton_step_is_that_of_the_saddle_matrix(kind):
 def test_many_poses_are_the_single_ones(kind):
     study = robot(kind)
     path = from_home(study.robot, POSES)
-    locked = locked_poses(study.robot, study.simulation, path, WRENCH)
+    locked = locked_poses(study.robot, study.simulation, path, LOAD)
     modes, stiffness = modes_of(locked), stiffness_of(study.robot, locked)
     for k in range(len(POSES)):
         one = from_home(study.robot, POSES[k : k + 1])
-        single = robot_modes(study.robot, study.simulation, one, WRENCH)
+        single = robot_modes(study.robot, study.simulation, one, LOAD)
         # The same operations, blocked differently: rounding of the least eigenvalue, as above.
         np.testing.assert_allclose(modes.frequency[k], single.frequency, rtol=1e-10)
         np.testing.assert_allclose(locked.equilibria.states.pose[k], single.equilibrium.state.pose, atol=1e-14)
-        alone = robot_stiffness(study.robot, study.simulation, one, WRENCH).total
+        alone = robot_stiffness(study.robot, study.simulation, one, LOAD).total
         np.testing.assert_allclose(stiffness.total[k], alone, atol=1e-11 * np.abs(alone).max())
 
 
 def test_stiffness_is_the_saddle_matrix_solved():
     """Shares of the legs by Eq. (T7.6) as it stands; scaled, so that rounding stays small."""
     study = robot("prescribed")
-    locked = locked_poses(study.robot, study.simulation, from_home(study.robot, POSES), WRENCH)
+    locked = locked_poses(study.robot, study.simulation, from_home(study.robot, POSES), LOAD)
     found, m, n = stiffness_of(study.robot, locked), locked.m, locked.system.n
     back = np.linalg.inv(tool_motion(study.robot, locked.equilibria.states.pose))
     for k in range(len(POSES)):
@@ -143,7 +144,7 @@ def test_stiffness_is_the_saddle_matrix_solved():
 
 def test_interpreted_kernels_give_the_same():
     study = override(paper_robot(), modes=1)
-    locked = locked_poses(study.robot, study.simulation, from_home(study.robot, POSES[:2]), WRENCH)
+    locked = locked_poses(study.robot, study.simulation, from_home(study.robot, POSES[:2]), LOAD)
     system = replace(locked.system, kernel=interpreted_kernel(locked.system.kernel.shapes))
     states = locked.equilibria.states
     for name, array in vars(matrices_at_rest(system, states, WRENCH)).items():

@@ -50,6 +50,13 @@ class RobotProblem:
                     value=leg.drive.type,
                     allowed="prescribed",
                 )
+            if self.elements and not leg.piston.rhoA:
+                raise InputError(
+                    "makes cables without mass, which Exudyn cannot move",
+                    key=f"leg {number}: piston.rhoA",
+                    value=0,
+                    next_step="Give a small rhoA, or take rigid pistons (elements=0)",
+                )
             if leg.damping and self.elements:
                 raise InputError(
                     "has no counterpart in Exudyn, whose cables are damped in proportion to stiffness",

@@ -13,14 +13,14 @@ from itertools import pairwise
 import numpy as np
 from scipy.linalg import qr
 
-from flexapod.fem.decks import Deck, Term
+from flexapod.fem.decks import Deck, Term, number
 from flexapod.fem.decks_ties import Tie, cross_matrix, solved
 from flexapod.fem.mesh import extruded
 from flexapod.fem.section_mesh import section_mesh
 from flexapod.model import Rectangle
 from flexapod.typing import Array
 
-__all__ = ["Carriers", "LegAtPose", "PayloadAtPose", "point_masses", "write_leg", "write_payload"]
+__all__ = ["Carriers", "LegAtPose", "PayloadAtPose", "drive_shift", "point_masses", "write_leg", "write_payload"]
 
 Carriers = dict[Term, Array]
 """The six displacements in which the payload is free, each with the motion (6,) that it causes, see `write_payload`."""
@@ -38,7 +38,8 @@ class LegAtPose:
 
     `base`, `tip` (3,): its joints; `axes` (3, 3): columns x, y, z of the leg, z towards the tip; `first_axis` (3,) of
     the universal joint, whose second is y; `mouth`, `piston_length` [m]; `EA`, `EI`, `rhoA` of the piston; `mass`,
-    `com`, `inertia`, `axial_inertia` of the cylinder; `drive` [N/m], inf for a prescribed stroke.
+    `com`, `inertia`, `axial_inertia` of the cylinder; `drive` [N/m], inf for a prescribed stroke; `force` [N] that a
+    force drive gives beside that spring.
     """
 
     base: Array
@@ -55,6 +56,7 @@ class LegAtPose:
     inertia: float
     axial_inertia: float
     drive: float
+    force: float
 
     @property
     def length(self) -> float:
@@ -70,6 +72,11 @@ class LegAtPose:
     def side(self) -> float:
         """Side of the square bar that has the piston's EI / EA [m]."""
         return float(np.sqrt(12 * self.EI / self.EA))
+
+    @property
+    def drive_spring(self) -> float:
+        """Stiffness of the spring that holds the piston's end [N/m]."""
+        return min(self.drive, _STIFF * self.EA / self.length)
 
     def at(self, place: float | Array) -> Array:
         """Points on the axis at distances from the universal joint, (3,) or (n, 3) [m]."""
@@ -168,6 +175,12 @@ def write_leg(deck: Deck, leg: LegAtPose, name: str, count: int, payload: Payloa
     deck.equations(solved([_guide(guided), _joint(leg, tip, payload, carriers)], keep=carriers.keys()))
 
 
+def drive_shift(leg: LegAtPose, name: str) -> list[str]:
+    """Lines of *BOUNDARY in a step: the anchor of the drive's spring moves until the spring pushes with its force."""
+    shift = leg.force / leg.drive_spring * leg.axes[:, 2] if leg.force else np.zeros(3)
+    return [f"{name}BASE, {axis}, {axis}, {number(x)}" for axis, x in enumerate(shift, start=1) if x]
+
+
 def _turned(leg: LegAtPose, point: Array) -> Array:
     """Displacement (3, 2) of a point by the two angles of the universal joint times the leg's length."""
     return cross_matrix(point - leg.base) @ np.column_stack([leg.first_axis, leg.axes[:, 1]]) / leg.length
@@ -209,7 +222,7 @@ def _inside(deck: Deck, leg: LegAtPose, name: str, count: int) -> list[_Guided]:
     anchor = 0.0 if abs(places[-1]) > _NEAR * leg.length else -_BEHIND * leg.length
     held = int(deck.nodes(leg.at(anchor), f"{name}BASE")[0])
     deck.fixed([held])
-    deck.springs([(held, nodes[-1])], min(leg.drive, _STIFF * leg.EA / leg.length), f"{name}DRIVE")
+    deck.springs([(held, nodes[-1])], leg.drive_spring, f"{name}DRIVE")
     across = leg.axes[:, :2].T
     loose = [
         _Guided(node=node, directions=across, motion=np.column_stack([across @ _turned(leg, point), np.zeros(2)]))

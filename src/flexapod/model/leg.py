@@ -34,14 +34,14 @@ class Cylinder(Frozen):
 class Piston(Frozen):
     """The upper, flexible part of a leg: a uniform Euler-Bernoulli beam.
 
-    `length` [m], whole piston; `EA` [N]; `EI` [N m^2]; `rhoA` [kg/m]; `diameter`, `inner_diameter` [m], `E` [Pa],
-    `density` [kg/m^3] and `yield_stress` [Pa] where known; `axial_inertia` [kg m^2].
+    `length` [m], whole piston; `EA` [N]; `EI` [N m^2]; `rhoA` [kg/m], 0 for a spring without mass; `diameter`,
+    `inner_diameter` [m], `E` [Pa], `density` [kg/m^3] and `yield_stress` [Pa] where known; `axial_inertia` [kg m^2].
     """
 
     length: Positive
     EA: Positive
     EI: Positive
-    rhoA: Positive
+    rhoA: NonNegative
     diameter: Positive | None = None
     inner_diameter: Positive | None = None
     E: Positive | None = None

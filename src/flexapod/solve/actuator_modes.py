@@ -73,7 +73,7 @@ def actuator_modes(
             next_step="Shorten actuator.free_length, or reduce gravity or tip_mass.",
         )
     omega = np.sqrt(squared)
-    ratio = damping_ratios(omega, vectors.T @ D @ vectors)
+    ratio = damping_ratios(omega, (vectors / omega).T @ D @ (vectors / omega))
     return ActuatorModes(frequency=omega / (2 * np.pi), shapes=vectors.T, damping_ratio=ratio)
 
 

@@ -1,33 +1,36 @@
-"""Damping ratios of damped modes, Eqs. (T7.4)-(T7.5)."""
+"""Damping ratios of damped modes, Eqs. (T7.4)-(T7.5), (T7.23)."""
 
 import numpy as np
 
 from flexapod.typing import Array
 
+OSCILLATES = 1e-9  # imaginary part over size of an eigenvalue: less is a pair of real ones, split by rounding
+
 
 def damping_ratios(omega: Array, D: Array) -> Array:
     """-Re/|.| of the damped eigenvalue that shares most of each undamped shape, Eqs. (T7.4)-(T7.5), (m,).
 
-    D_jj / (2 omega_j) for a mode of which no oscillating eigenvalue has at least half (overdamped or evenly mixed).
+    D_jj omega_j / 2 for a mode of which no oscillating eigenvalue has at least half (overdamped or evenly mixed).
 
     Parameters
     ----------
     omega : ndarray, shape (m,)
-        Undamped angular frequencies [rad/s].
+        Undamped angular frequencies [rad/s], above 0; inf for what has no mass.
     D : ndarray, shape (m, m)
-        Damping matrix in modal coordinates [1/s].
+        Damping matrix in modal coordinates of unit stiffness [s].
     """
-    size, top = len(omega), omega.max()
-    ratio = np.diag(D) / (2 * np.maximum(omega, 1e-12))
+    size = len(omega)
+    ratio = 0.5 * np.diag(D) * np.where(np.isfinite(omega), omega, 0.0)
     if not D.any():
         return ratio
     from scipy.optimize import linear_sum_assignment  # a twentieth of a second that only damped modes need
 
-    # Rates over the highest frequency keep the state matrix well scaled.
-    state = np.block([[np.zeros((size, size)), np.eye(size)], [-np.diag((omega / top) ** 2), -D / top]])
-    values, shapes = np.linalg.eig(state)
-    oscillating = np.imag(values) > 1e-12
-    values, share = values[oscillating], np.abs(shapes[:size, oscillating])
+    # (T7.23)  Eigenvalues 1/mu: the slow modes come out right however fast a light part is.
+    lowest = omega.min()
+    slowness = np.diag(lowest / omega)
+    values, shapes = np.linalg.eig(np.block([[-lowest * D, -slowness], [slowness, np.zeros((size, size))]]))
+    oscillating = np.imag(values) < -OSCILLATES * np.abs(values)
+    values, share = values[oscillating], slowness @ np.abs(shapes[:size, oscillating])
     mode, column = linear_sum_assignment(-share / np.linalg.norm(share, axis=0))
     clear = share[mode, column] > 0.5 * np.linalg.norm(share[:, column], axis=0)
     ratio[mode[clear]] = (-np.real(values) / np.abs(values))[column[clear]]

@@ -11,6 +11,7 @@ from flexapod.model import Robot
 from flexapod.rigid.rotations import matrix
 from flexapod.solve.arrow import arrow_solve
 from flexapod.solve.elimination import leg_bases, null_space_of_borders, reduced, solve_each
+from flexapod.solve.frequencies import cholesky_each
 from flexapod.solve.many import RestMatrices, RestStates, matrices_at_rest, residual_at_rest
 from flexapod.solve.system import RobotSystem, State
 from flexapod.typing import Array, Mask
@@ -118,7 +119,7 @@ def equilibria(system: RobotSystem, start: RestStates, l_cmd: Array, force: Arra
     found = np.flatnonzero(code == FOUND)
     if found.size:
         m = matrices_at_rest(system, states[found], wrench)
-        code[found[_lowest_stiffness(system, m) <= 0]] = UNSTABLE
+        code[found[~_stable(system, m)]] = UNSTABLE
     return Equilibria(states=states, code=code)
 
 
@@ -178,21 +179,21 @@ def _newton_step(
     return replace(moved, lam=x.lam + step.dlam, drive=x.drive + step.drive), largest
 
 
-def _lowest_stiffness(system: RobotSystem, m: RestMatrices) -> Array:
-    """Sign of the lowest stiffness on the constraints, (P,): least eigenvalue of each leg's and the payload's part.
+def _stable(system: RobotSystem, m: RestMatrices) -> Mask:
+    """Whether the stiffness on the constraints is positive, (P,).
 
-    By Sylvester's law of inertia the whole is positive where B of every leg and the payload's Schur complement are.
+    By Sylvester's law of inertia it is where B of every leg and the payload's Schur complement are. Factors tell, not
+    eigenvalues: their sign does not depend on how much stiffer another part is.
     """
     bases = leg_bases(system, m)
     A = reduced(bases, m.K, m.payload_K)
     N = null_space_of_borders(bases, system.kernel.shapes.l_index)
     if N is not None:
-        whole = N.swapaxes(1, 2) @ A.dense() @ N
-        return np.linalg.eigvalsh(whole).min(axis=1, initial=np.inf)
-    rest, lowest = A.S, np.full(len(A.S), np.inf)
+        return cholesky_each(N.swapaxes(1, 2) @ A.dense() @ N)[1]
+    rest, stable = A.S, np.ones(len(A.S), dtype=bool)
     for B, C in zip(A.B, A.C, strict=True):
         if B.shape[-1]:
-            lowest = np.minimum(lowest, np.linalg.eigvalsh(B).min(axis=(1, 2)))
+            stable &= cholesky_each(B)[1].all(axis=1)
             rest = rest - (C.swapaxes(-1, -2) @ solve_each(B, C)).sum(axis=1)
-    rest = np.nan_to_num(0.5 * (rest + rest.swapaxes(1, 2)))  # NaN where a leg's part is singular: its lowest is 0
-    return np.minimum(lowest, np.linalg.eigvalsh(rest).min(axis=1))
+    rest = np.nan_to_num(0.5 * (rest + rest.swapaxes(1, 2)))  # NaN where a leg's part is singular: it is not stable
+    return stable & cholesky_each(rest)[1]

@@ -3,22 +3,20 @@
 from dataclasses import dataclass
 
 import numpy as np
-from numpy.typing import NDArray
 
 from flexapod import rigid
 from flexapod.errors import ComputationError, InputError
-from flexapod.model import Robot, Simulation
+from flexapod.model import Load, Robot, Simulation
 from flexapod.solve.damped import damping_ratios
 from flexapod.solve.elimination import LegBases, expanded, leg_bases, null_space_of_borders, reduced
 from flexapod.solve.equilibrium import FOUND, Equilibria, Equilibrium, equilibria, refuse_fallen
+from flexapod.solve.frequencies import count_real, mass_factor, natural
 from flexapod.solve.many import RestMatrices, matrices_at_rest, rigid_rest
+from flexapod.solve.rest import RestLoad, rest_load
 from flexapod.solve.system import Index, RobotSystem, robot_system
 from flexapod.typing import Array, Mask
 
-NO_MASS = (
-    "the mass matrix is not positive: a piston is shorter than what its leg has outside the cylinder, or a leg "
-    "has no mass at all"
-)
+NO_MASS = "the mass matrix is not positive: a piston is shorter than what its leg has outside the cylinder"
 
 
 @dataclass(frozen=True, kw_only=True)
@@ -26,7 +24,8 @@ class RobotModes:
     """Modes about an equilibrium, ascending.
 
     ``frequency`` (m,) [Hz] undamped; ``damping_ratio`` (m,) of the damped modes; ``shapes`` (m, N), mass-normalised, in
-    the flat coordinates of `system.RobotSystem` (six legs, then CoM in the world frame and rotation in platform axes).
+    the flat coordinates of `system.RobotSystem` (six legs, then CoM in the world frame and rotation in platform axes);
+    ``wrench`` (6,) at the tool.
     """
 
     frequency: Array
@@ -34,13 +33,14 @@ class RobotModes:
     shapes: Array
     equilibrium: Equilibrium
     system: RobotSystem
+    wrench: Array
 
 
 @dataclass(frozen=True, kw_only=True)
 class LockedPoses:
     """A robot with drives locked at the ``lengths`` (P, 6) of a rigid ``path`` of P poses.
 
-    Equilibria, and the matrices ``m`` of those found, ``at``.
+    What ``acts`` on it, equilibria, and the matrices ``m`` of those found, ``at``.
     """
 
     robot: Robot
@@ -48,6 +48,7 @@ class LockedPoses:
     system: RobotSystem
     simulation: Simulation
     lengths: Array
+    acts: RestLoad
     equilibria: Equilibria
     at: Index
     m: RestMatrices
@@ -57,8 +58,8 @@ class LockedPoses:
 class ManyModes:
     """Modes about the equilibria found in `LockedPoses`, p of them, ascending; NaN where masses are not `positive`.
 
-    ``frequency`` (p, m) [Hz]; ``positive`` (p,); ``damping_ratio`` (p, m) and ``shapes`` (p, m, N) as in `RobotModes`,
-    empty unless asked for.
+    ``frequency`` (p, m) [Hz], NaN last for what has no mass; ``positive`` (p,); ``damping_ratio`` (p, m) and ``shapes``
+    (p, m, N) as in `RobotModes`, empty unless asked for.
     """
 
     frequency: Array
@@ -80,8 +81,12 @@ def refuse_pure_force(robot: Robot, what: str) -> None:
             )
 
 
-def locked_poses(robot: Robot, simulation: Simulation, path: rigid.Poses, wrench: Array | None = None) -> LockedPoses:
+def locked_poses(
+    robot: Robot, simulation: Simulation, path: rigid.Poses, load: Load | None = None, time: float = 0.0
+) -> LockedPoses:
     """Static equilibria with the drives locked at the lengths of each of P rigid poses.
+
+    The drives' forces and the wrench of ``load`` are those of `rest.rest_load` at ``time`` [s].
 
     Raises
     ------
@@ -89,31 +94,23 @@ def locked_poses(robot: Robot, simulation: Simulation, path: rigid.Poses, wrench
         A pure force drive.
     """
     refuse_pure_force(robot, "a static equilibrium")
-    system, load = robot_system(robot, simulation), np.zeros(6) if wrench is None else wrench
+    system, acts = robot_system(robot, simulation), rest_load(robot, path, load, time)
     start = rigid_rest(system, robot, path)
     lengths = start.q[:, :, system.kernel.shapes.l_index]
-    found = equilibria(system, start, lengths, np.zeros(lengths.shape), load)
+    found = equilibria(system, start, lengths, acts.force, acts.wrench)
     at = np.flatnonzero(found.code == FOUND)
-    m = matrices_at_rest(system, found.states[at], load)
+    m = matrices_at_rest(system, found.states[at], acts.wrench)
     return LockedPoses(
-        robot=robot, path=path, system=system, simulation=simulation, lengths=lengths, equilibria=found, at=at, m=m
+        robot=robot,
+        path=path,
+        system=system,
+        simulation=simulation,
+        lengths=lengths,
+        acts=acts,
+        equilibria=found,
+        at=at,
+        m=m,
     )
-
-
-def locked_equilibrium(
-    robot: Robot, simulation: Simulation, path: rigid.Poses, wrench: Array | None = None
-) -> tuple[RobotSystem, Equilibrium]:
-    """Static equilibrium with the drives locked at the lengths of one rigid pose.
-
-    Raises
-    ------
-    InputError
-        A pure force drive.
-    ComputationError
-        No equilibrium at this pose.
-    """
-    locked = locked_poses(robot, simulation, path, wrench)
-    return locked.system, the_equilibrium(locked)
 
 
 def the_equilibrium(locked: LockedPoses) -> Equilibrium:
@@ -126,9 +123,13 @@ def the_equilibrium(locked: LockedPoses) -> Equilibrium:
 
 
 def robot_modes(
-    robot: Robot, simulation: Simulation, path: rigid.Poses | None = None, wrench: Array | None = None
+    robot: Robot,
+    simulation: Simulation,
+    path: rigid.Poses | None = None,
+    load: Load | None = None,
+    time: float = 0.0,
 ) -> RobotModes:
-    """Modes of the locked robot at a pose (default: home), all degrees of freedom.
+    """Modes of the locked robot at a pose (default: home), all degrees of freedom; loads as of `locked_poses`.
 
     Raises
     ------
@@ -137,7 +138,7 @@ def robot_modes(
     ComputationError
         No equilibrium at this pose, or masses that no body can have.
     """
-    return the_modes(locked_poses(robot, simulation, rigid.home_pose(robot) if path is None else path, wrench))
+    return the_modes(locked_poses(robot, simulation, rigid.home_pose(robot) if path is None else path, load, time))
 
 
 def the_modes(locked: LockedPoses) -> RobotModes:
@@ -147,83 +148,71 @@ def the_modes(locked: LockedPoses) -> RobotModes:
         raise ComputationError(
             NO_MASS, next_step="Give leg.piston.length at least the largest leg length less leg.cylinder.mouth."
         )
+    count = count_real(modes.frequency)
     return RobotModes(
-        frequency=modes.frequency[0],
-        damping_ratio=modes.damping_ratio[0],
-        shapes=modes.shapes[0],
+        frequency=modes.frequency[0, :count],
+        damping_ratio=modes.damping_ratio[0, :count],
+        shapes=modes.shapes[0, :count],
         equilibrium=found,
         system=locked.system,
+        wrench=locked.acts.wrench,
     )
 
 
 def modes_of(locked: LockedPoses, *, shapes: bool = False) -> ManyModes:
-    """Modes at all equilibria, Eq. (T7.3), on the admissible motions (T7.16); with damping and ``shapes`` if asked.
+    """Modes at all equilibria, Eq. (T7.3), on the admissible motions (T7.16), by (T7.21); with ``shapes`` if asked.
 
     Raises
     ------
     InputError
         Rigid legs on prescribed strokes: nothing can move.
     """
-    bases = leg_bases(locked.system, locked.m)
-    N = null_space_of_borders(bases, locked.system.kernel.shapes.l_index)
-    M, K = _reduced(bases, N, locked.m.M, locked.m.payload_M), _reduced(bases, N, locked.m.K, locked.m.payload_K)
-    if not M.shape[-1]:
+    system, m = locked.system, locked.m
+    bases = leg_bases(system, m)
+    N = null_space_of_borders(bases, system.kernel.shapes.l_index)
+    K = reduced(bases, m.K, m.payload_K).dense()
+    U, positive = _mass_factor(bases, m)
+    if N is not None:
+        K, U = N.swapaxes(1, 2) @ K @ N, U @ N
+    if not K.shape[-1]:
         raise InputError(
             "leaves nothing that could vibrate with the drives locked",
             key="simulation.fidelity",
             value=locked.simulation.fidelity,
             allowed="lumped, finite-segment, assumed-modes, beam-fem, solid-fem",
         )
-    back, positive = _inverse_roots(M)
-    A = back @ K @ back.swapaxes(1, 2)
-    A = 0.5 * (A + A.swapaxes(1, 2))
-    nothing = np.zeros((0, M.shape[-1]))
+    omega, z, stable = natural(U, K, shapes=shapes)
+    positive = positive & stable
+    omega = np.where(positive[:, None], omega, np.nan)
+    frequency = np.where(np.isfinite(omega), omega / (2 * np.pi), np.nan)
     if not shapes:
-        omega = _omega(np.linalg.eigvalsh(A), positive)
-        return ManyModes(frequency=omega / (2 * np.pi), positive=positive, damping_ratio=nothing, shapes=nothing)
-    squared, vectors = np.linalg.eigh(A)
-    omega, z = _omega(squared, positive), back.swapaxes(1, 2) @ vectors
+        nothing = np.zeros((0, omega.shape[1]))
+        return ManyModes(frequency=frequency, positive=positive, damping_ratio=nothing, shapes=nothing)
     flat = expanded(bases, z if N is None else N @ z)
     return ManyModes(
-        frequency=omega / (2 * np.pi),
+        frequency=frequency,
         positive=positive,
-        damping_ratio=_damping(locked, omega, flat),
-        shapes=flat.swapaxes(1, 2),
+        damping_ratio=np.where(np.isfinite(frequency), _damping(locked, omega, flat), np.nan),
+        shapes=(flat * (2 * np.pi * frequency)[:, None]).swapaxes(1, 2),
     )
 
 
-def _reduced(bases: list[LegBases], N: Array | None, legs: Array, payload: Array) -> Array:
-    whole = reduced(bases, legs, payload).dense()
-    return whole if N is None else N.swapaxes(1, 2) @ whole @ N
-
-
-def _inverse_roots(M: Array) -> tuple[Array, Mask]:
-    """Inverses of the Cholesky factors of mass matrices (p, r, r), and which of these are positive."""
-    one = np.broadcast_to(np.eye(M.shape[-1]), M.shape)
-    try:
-        root, positive = np.linalg.cholesky(M), np.ones(len(M), dtype=bool)
-    except np.linalg.LinAlgError:  # does not say of which matrix
-        positive = np.array([_is_positive(matrix) for matrix in M], dtype=bool)
-        root = np.linalg.cholesky(np.where(positive[:, None, None], M, one))
-    return np.asarray(np.linalg.solve(root, one), dtype=np.float64), np.asarray(positive, dtype=bool)
-
-
-def _is_positive(matrix: Array) -> bool:
-    try:
-        np.linalg.cholesky(matrix)
-    except np.linalg.LinAlgError:
-        return False
-    return True
-
-
-def _omega(squared: NDArray[np.floating], positive: Mask) -> Array:
-    return np.where(positive[:, None], np.sqrt(np.maximum(squared, 0.0)), np.nan)
+def _mass_factor(bases: list[LegBases], m: RestMatrices) -> tuple[Array, Mask]:
+    """Factor U (p, 6 n + 6, r) of the mass matrix on admissible motions, body by body, and where it is positive."""
+    p, _, n, _ = m.M.shape
+    size = sum(b.legs.size * b.rest.size for b in bases) + 6
+    motion = expanded(bases, np.broadcast_to(np.eye(size), (p, size, size)))
+    (legs, real), (payload, real_payload) = mass_factor(m.M), mass_factor(m.payload_M)
+    of_legs = (legs @ motion[:, :-6].reshape(p, 6, n, size)).reshape(p, 6 * n, size)
+    U = np.concatenate([of_legs, payload @ motion[:, -6:]], axis=1)
+    positive = real.all(axis=1) & real_payload
+    return np.where(positive[:, None, None], U, 0.0), positive
 
 
 def _damping(locked: LockedPoses, omega: Array, flat: Array) -> Array:
-    """Damping ratios (p, m) of shapes (p, N, m)."""
+    """Damping ratios (p, m) of shapes (p, N, m) of unit stiffness."""
     p, n = len(flat), locked.system.n
     legs = flat[:, :-6].reshape(p, 6, n, flat.shape[2])
     D = (legs.swapaxes(-1, -2) @ locked.m.D @ legs).sum(axis=1)
-    found = [damping_ratios(w, d) if np.isfinite(w).all() else w for w, d in zip(omega, D, strict=True)]
+    found = [w if np.isnan(w).any() else damping_ratios(w, d) for w, d in zip(omega, D, strict=True)]
     return np.array(found).reshape(omega.shape)

@@ -6,7 +6,7 @@ from dataclasses import dataclass, field, replace
 import numpy as np
 
 from flexapod import rigid
-from flexapod.errors import ComputationError
+from flexapod.errors import ComputationError, InputError
 from flexapod.integration import GeneralizedAlpha
 from flexapod.model import Study
 from flexapod.rigid.kinematics import BETA_LIMIT
@@ -15,13 +15,13 @@ from flexapod.solve.equilibrium import equilibrium, refuse_fallen
 from flexapod.solve.march import Chunk, Problem, initial_step, march, restart_outputs
 from flexapod.solve.modes import refuse_pure_force
 from flexapod.solve.plant import TABLE, Counters, Flow, Plant, Recording
+from flexapod.solve.rest import rest_load
 from flexapod.solve.start import Start, consistent_start
 from flexapod.solve.system import RobotSystem, State, rigid_state, robot_system
 from flexapod.solve.tables import Commands, command_law
 from flexapod.typing import Array
 
 SAME = 1e-10  # instants that differ by less are the same; the shortest steps are a thousand times as long [s]
-BEFORE = -1e-12  # just before the start [s]: a load that steps at t = 0 has not come yet
 
 
 @dataclass(frozen=True, kw_only=True)
@@ -55,17 +55,18 @@ def prepare(study: Study, state: State | None = None) -> RobotMarch:
     Raises
     ------
     InputError
-        Equilibrium start of a pure force drive.
+        Equilibrium start of a pure force drive; pistons without mass whose shapes would have none either.
     ComputationError
         There is no equilibrium at the start.
     """
+    refuse_massless(study)
     robot, simulation = study.robot, study.simulation
     system, path = robot_system(robot, simulation), _Path(study)
     law = command_law(robot, study.load, path.poses)
     commands = law(np.zeros(1))
     method = GeneralizedAlpha(simulation.rho_inf)
     step = initial_step(simulation.step, simulation.output_step)
-    state = _configuration(study, system, law(np.array([BEFORE]))) if state is None else state
+    state = _configuration(study, system) if state is None else state
     start = consistent_start(system, state, commands, method, step)
     plant, counters, output_step = _plant(system), Counters(), simulation.stored_step
     problem = Problem(
@@ -84,19 +85,37 @@ def prepare(study: Study, state: State | None = None) -> RobotMarch:
     return RobotMarch(system=system, start=start, step=step, chunks=chunks, counters=counters)
 
 
-def _configuration(study: Study, system: RobotSystem, before: Commands) -> State:
-    """Configuration and velocities before the impact projection, by the kind of start and the commands until then."""
-    straight = rigid_state(system, study.robot, rigid.poses(study.robot, study.motion, np.zeros(1)))
+def refuse_massless(study: Study) -> None:
+    """Raise InputError if a piston without mass leaves coordinates that nothing but their stiffness determines."""
+    simulation = study.simulation
+    for i, leg in enumerate(study.robot.legs, start=1):
+        alone = simulation.axial_shapes(study.robot.legs[0].axial_modes) - (leg.drive.type == "prescribed")
+        if leg.piston.rhoA == 0 and (simulation.lateral_shapes or alone > 0):
+            raise InputError(
+                f"of leg {i} leaves shapes of the piston without mass: they have statics, but no motion in time",
+                file=study.path,
+                key="leg.piston.rhoA",
+                value=0,
+                allowed='0 in modes, stiffness, maps; in time with "rigid", or "lumped" and prescribed strokes',
+                next_step="Give a small rhoA, as 1e-6 kg/m: steps need not follow what is that light",
+            )
+
+
+def _configuration(study: Study, system: RobotSystem) -> State:
+    """Configuration and velocities before the impact projection, by the kind of start and what acts until then."""
+    path = rigid.poses(study.robot, study.motion, np.zeros(1))
+    straight = rigid_state(system, study.robot, path)
     if study.initial.start == "moving":
         return straight
     at_rest = replace(straight, v=np.zeros(system.size), v_dot=np.zeros(system.size))
     if study.initial.start == "straight":
         return at_rest
     refuse_pure_force(study.robot, "the equilibrium start")
-    found = equilibrium(system, at_rest, before.length[0], before.force[0], before.wrench[0])
+    acts, lengths = rest_load(study.robot, path, study.load), straight.q[:, system.kernel.shapes.l_index]
+    found = equilibrium(system, at_rest, lengths, acts.force[0], acts.wrench)
     if not found.found:
         raise ComputationError(f"the robot cannot start at rest: {found.reason}", next_step="See `flexapod check`.")
-    refuse_fallen(study.robot, rigid.poses(study.robot, study.motion, np.zeros(1)), found.state.pose)
+    refuse_fallen(study.robot, path, found.state.pose)
     return found.state
 
 

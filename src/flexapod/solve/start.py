@@ -33,7 +33,7 @@ def consistent_start(
     m = system.matrices(state, commands.wrench[0])
     moving, impact = _impact(system, state, m, commands)
     now = accelerations(system, moving, commands, 0)
-    jerk = _jerk(system, now, commands, h)
+    jerk = _resolved(m, _jerk(system, now, commands, h), h)
     a = now.v_dot + method.delta * h * jerk  # (T6.13)
     v = now.v + method.velocity_defect * h**2 * normal_velocity(system, m, jerk)  # (T6.14)
     a[system.strokes] = now.v_dot[system.strokes]
@@ -86,6 +86,11 @@ def _jerk(system: RobotSystem, x: State, commands: Commands, h: float) -> Array:
     ahead = replace(ahead, v=x.v + t * x.v_dot)
     later = accelerations(system, ahead, commands.at(t), 0)
     return (later.v_dot - x.v_dot) / t
+
+
+def _resolved(m: Matrices, jerk: Array, h: float) -> Array:
+    """The jerk without what steps of ``h`` cannot follow, Eq. (T6.25): light parts are quasi-static to them."""
+    return saddle_solve(m.M + h * m.D + h**2 * m.K, m.G, m.M @ jerk, m.G @ jerk)[0]
 
 
 def normal_velocity(system: RobotSystem, m: Matrices, vector: Array) -> Array:

@@ -6,7 +6,7 @@ import numpy as np
 
 from flexapod import rigid
 from flexapod.errors import InputError
-from flexapod.model import Robot, Simulation
+from flexapod.model import Load, Robot, Simulation
 from flexapod.rigid.rotations import matrix
 from flexapod.solve.elimination import leg_bases, solve_each
 from flexapod.solve.modes import LockedPoses, locked_poses, the_equilibrium
@@ -27,9 +27,11 @@ class Stiffness:
 
 
 def robot_stiffness(
-    robot: Robot, simulation: Simulation, path: rigid.Poses | None = None, wrench: Array | None = None
+    robot: Robot, simulation: Simulation, path: rigid.Poses | None = None, load: Load | None = None
 ) -> Stiffness:
     """Stiffness against a wrench at the tool, drives locked, about the static equilibrium at a pose (default: home).
+
+    Loads as of `modes.locked_poses`.
 
     Raises
     ------
@@ -38,7 +40,7 @@ def robot_stiffness(
     ComputationError
         No equilibrium at this pose.
     """
-    locked = locked_poses(robot, simulation, rigid.home_pose(robot) if path is None else path, wrench)
+    locked = locked_poses(robot, simulation, rigid.home_pose(robot) if path is None else path, load)
     the_equilibrium(locked)
     found = stiffness_of(robot, locked)
     return Stiffness(total=found.total[0], legs=found.legs[0], load=found.load[0])

@@ -7,8 +7,8 @@ import numpy as np
 from flexapod import model, rigid
 from flexapod.errors import InputError
 from flexapod.fem.decks import Deck, number
-from flexapod.fem.decks_robot import Carriers, LegAtPose, PayloadAtPose, write_leg, write_payload
-from flexapod.solve.modes import locked_equilibrium
+from flexapod.fem.decks_robot import Carriers, LegAtPose, PayloadAtPose, drive_shift, write_leg, write_payload
+from flexapod.solve.modes import locked_poses, the_equilibrium
 from flexapod.study.arguments import LoadLike, PoseLike, as_pose, at_pose
 from flexapod.typing import Array
 
@@ -37,8 +37,8 @@ def abaqus_deck(
 ) -> str:
     """The robot with its drives locked as a deck that Abaqus and CalculiX read.
 
-    Two steps: gravity and the load, with large displacements, which gives the sag; then the frequencies about that
-    state. Without gravity and load only the second.
+    Two steps: gravity, the load and the drives' forces, with large displacements, which gives the sag; then the
+    frequencies about that state. Where nothing acts only the second.
 
     Parameters
     ----------
@@ -61,16 +61,17 @@ def abaqus_deck(
     ComputationError
         No static equilibrium at the pose.
     InputError
-        A pose out of reach, a pure force drive, a piston that does not reach back to the mouth, a cylinder with
-        inertia and no mass, numbers of elements or modes out of range.
+        A pose out of reach, a pure force drive, a piston that does not reach back to the mouth or has no mass, a
+        cylinder with inertia and no mass, numbers of elements or modes out of range.
     """
     study = at_pose(robot, load)
     robot = study.robot
-    locked_equilibrium(robot, model.Simulation(), as_pose(robot, pose), rigid.wrench(study.load, np.zeros(1))[0])
+    path = as_pose(robot, pose)
+    locked = locked_poses(robot, model.Simulation(), path, study.load)
+    the_equilibrium(locked)
     _check_count("elements", elements, 2, _MOST)
     _check_count("modes", modes, 1, _MOST)
-    path = as_pose(robot, pose)
-    legs = _legs(robot, path)
+    legs = _legs(robot, path, locked.acts.force[0])
     R = path.rotation[0]
     payload = PayloadAtPose(
         mass=robot.payload.mass, com=path.point(robot.payload.com)[0][0], inertia=R @ robot.payload.inertia @ R.T
@@ -80,9 +81,9 @@ def abaqus_deck(
     carriers = write_payload(deck, payload)
     for i, leg in enumerate(legs, start=1):
         write_leg(deck, leg, f"LEG{i}", elements, payload, carriers)
-    wrench = rigid.wrench(study.load, np.zeros(1))[0]
+    wrench = locked.acts.wrench.copy()
     wrench[3:] += np.cross(path.point(robot.payload.tool)[0][0] - payload.com, wrench[:3])
-    _write_steps(deck, robot, carriers, wrench, modes)
+    _write_steps(deck, robot, legs, carriers, wrench, modes)
     return deck.text
 
 
@@ -100,7 +101,7 @@ def _axial(leg: model.Leg) -> float:
     return whole if leg.cylinder.mass and whole <= 2 * leg.cylinder.inertia else leg.cylinder.axial_inertia
 
 
-def _legs(robot: model.Robot, path: rigid.Poses) -> list[LegAtPose]:
+def _legs(robot: model.Robot, path: rigid.Poses, force: Array) -> list[LegAtPose]:
     state, frames = rigid.inverse_kinematics(robot, path), rigid.home_frames(robot)
     axes = rigid.leg_rotations(frames, state.alpha, state.beta)[0]
     tips = path.point(robot.platform_joints)[0][0]
@@ -123,6 +124,7 @@ def _legs(robot: model.Robot, path: rigid.Poses) -> list[LegAtPose]:
             inertia=cylinder.inertia,
             axial_inertia=_axial(leg),
             drive=_drive(leg.drive),
+            force=float(force[i]),
         )
         legs.append(at)
     return legs
@@ -143,6 +145,13 @@ def _check_leg(i: int, leg: model.Leg, length: float) -> None:
             key="leg.piston.length",
             value=leg.piston.length,
             allowed=f"at least {free:.6g} m, the leg's length less leg.cylinder.mouth",
+        )
+    if not leg.piston.rhoA:
+        raise InputError(
+            f"of leg {i} leaves its solid elements without mass: finite element programs want some for frequencies",
+            key="leg.piston.rhoA",
+            value=0,
+            next_step="Give a small rhoA, as 1e-6 kg/m",
         )
     if not leg.cylinder.mass and (leg.cylinder.inertia or leg.cylinder.axial_inertia):
         raise InputError(
@@ -170,7 +179,8 @@ def _explanation(robot: model.Robot, path: rigid.Poses, elements: int) -> list[s
         f"Pistons: outside the cylinder {elements} solid elements C3D20, a square bar with the EA, EI and rhoA of the "
         "piston and Poisson's ratio 0, as a beam has none; for stresses take the real section. Inside the cylinder the "
         "piston is guided without friction and can only stretch: springs and point masses on the axis (set AXIS). Its "
-        "end is held by a spring (set DRIVE): the servo's stiffness, or 1e5 EA / l for a locked stroke.",
+        "end is held by a spring (set DRIVE): the servo's stiffness, or 1e5 EA / l for a locked stroke. Where a force "
+        "drive pushes, its spring's anchor (set BASE) is moved until the spring pushes as much.",
         "Cylinders and payload are rigid: point masses with the body's mass, centre and inertia, joined by *EQUATION. "
         "Universal joints at the base: two free rotations, the leg's twist held. Spherical joints at the platform.",
         f"Left out: {', '.join(left_out(robot))}.",
@@ -189,12 +199,17 @@ def _roll_pitch_yaw(R: Array) -> Array:
     return np.array([np.arctan2(R[2, 1], R[2, 2]), -np.arcsin(np.clip(R[2, 0], -1, 1)), np.arctan2(R[1, 0], R[0, 0])])
 
 
-def _write_steps(deck: Deck, robot: model.Robot, carriers: Carriers, wrench: Array, modes: int) -> None:
+def _write_steps(
+    deck: Deck, robot: model.Robot, legs: list[LegAtPose], carriers: Carriers, wrench: Array, modes: int
+) -> None:
     g = float(np.linalg.norm(robot.gravity))
+    moved = [line for i, leg in enumerate(legs, start=1) for line in drive_shift(leg, f"LEG{i}")]
     deck.say("")
-    if g or wrench.any():
-        deck.say("Sag under gravity and load; displacements of the payload's point masses are printed.")
+    if g or wrench.any() or moved:
+        deck.say("Sag under gravity, load and drive forces; displacements of the payload's point masses are printed.")
         deck.write("*STEP, NLGEOM", "*STATIC", "1., 1., 1E-5, 1.")
+        if moved:
+            deck.write("*BOUNDARY", *moved)
         if g:
             deck.elset("HEAVY", deck.heavy)
             x, y, z = robot.gravity / g

@@ -12,7 +12,7 @@ __all__ = ["mode_kinds"]
 MOSTLY = 0.5  # share of an energy from which a part names the mode
 
 
-def mode_kinds(found: RobotModes, wrench: Array) -> list[str]:
+def mode_kinds(found: RobotModes) -> list[str]:
     """``payload``, ``leg n bending``, ``legs bending``, ``leg n axial``, ``legs axial`` for each mode.
 
     The kinetic energy says whether payload or legs; that of the legs, which leg; the strain energy of its shapes, how.
@@ -20,11 +20,9 @@ def mode_kinds(found: RobotModes, wrench: Array) -> list[str]:
     Parameters
     ----------
     found : RobotModes
-    wrench : ndarray, shape (6,)
-        Load at the tool of the equilibrium.
     """
     system, state = found.system, found.equilibrium.state
-    matrices, n, axial = system.matrices(state, wrench), system.n, system.kernel.shapes.axial.count
+    matrices, n, axial = system.matrices(state, found.wrench), system.n, system.kernel.shapes.axial.count
     legs = found.shapes[:, : 6 * n].reshape(-1, 6, n)
     blocks = [slice(i * n, (i + 1) * n) for i in range(6)]
     kinetic = np.stack([_form(legs[:, i], matrices.M[at, at]) for i, at in enumerate(blocks)], axis=1)
@@ -41,6 +39,8 @@ def _form(vectors: Array, matrix: Array) -> Array:
 
 def _kind(kinetic: Array, lateral: Array, along: Array) -> str:
     whole = float(kinetic.sum())  # of a mass-normalised mode: 1 with the payload's
+    if np.isnan(whole):
+        return ""
     if whole < MOSTLY:
         return "payload"
     first = int(kinetic.argmax())

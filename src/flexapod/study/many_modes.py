@@ -10,6 +10,7 @@ import numpy as np
 from flexapod import model, rigid
 from flexapod.rigid.rotations import quaternion
 from flexapod.solve.equilibrium import fallen, platform_poses
+from flexapod.solve.frequencies import count_real
 from flexapod.solve.modes import LockedPoses, ManyModes, RobotModes, locked_poses, modes_of
 from flexapod.study.mode_shapes import STATIONS, mode_values
 from flexapod.study.names import COORDINATES, VARIABLES, Variable, dataset
@@ -43,9 +44,7 @@ FORMS = {
 OF_POSES = ("pose_from_home", "reason", "cut_off")  # whatever comes of the search for an equilibrium
 
 
-def modes_at_poses(
-    study: model.Study, path: rigid.Poses, wrench: Array, *, shapes: bool, attrs: Mapping[str, object]
-) -> Dataset:
+def modes_at_poses(study: model.Study, path: rigid.Poses, *, shapes: bool, attrs: Mapping[str, object]) -> Dataset:
     """Modes at P poses; see `flexapod.modes`.
 
     A pose that a singularity cuts off from home is out of reach to a map, but has modes of its own: they are computed,
@@ -65,17 +64,19 @@ def modes_at_poses(
     for part in batches(len(within)) if within.size else [slice(0, 0)]:
         chosen = within[part]
         some = poses_of(path, chosen)
-        locked = locked_poses(robot, study.simulation, some, wrench)
+        locked = locked_poses(robot, study.simulation, some, study.load)
         modes = modes_of(locked, shapes=shapes)
         reason[chosen] = codes = codes_at_rest(locked, modes)
         kept = codes[locked.at] == REACHED
-        rows = (_shape_rows if shapes else _rows)(robot, locked, modes, some, wrench, kept)
+        rows = (_shape_rows if shapes else _rows)(robot, locked, modes, some, kept)
         for name, row in rows.items():
             target = values.setdefault(name, _empty(row, P))
             target[chosen[locked.at[kept]]] = row
+    count = count_real(np.asarray(values["frequency"], dtype=np.float64))
+    values = {name: row[:, :count] if "mode" in FORMS[name].dims else row for name, row in values.items()}
     values |= {"pose_from_home": coordinates_of(robot, path), "reason": reason, "cut_off": cut_off}
     coords = {"pose": np.arange(P), "coordinate": list(model.AXES)}
-    coords |= {"mode": np.arange(1, values["frequency"].shape[1] + 1)}
+    coords |= {"mode": np.arange(1, count + 1)}
     data = dataset(values, coords | ({"station": STATIONS} if shapes else {}), attrs, FORMS)
     data.reason.attrs |= flags()
     return data
@@ -102,9 +103,7 @@ def _empty(row: Array, count: int) -> Array:
     return np.full((count, *row.shape[1:]), np.nan)
 
 
-def _rows(
-    robot: model.Robot, locked: LockedPoses, modes: ManyModes, path: rigid.Poses, wrench: Array, kept: Mask
-) -> dict[str, Array]:
+def _rows(robot: model.Robot, locked: LockedPoses, modes: ManyModes, path: rigid.Poses, kept: Mask) -> dict[str, Array]:
     """Frequencies and places of the poses that have modes."""
     at, com = locked.at[kept], robot.payload.com
     pose = locked.equilibria.states.pose[at]
@@ -118,7 +117,7 @@ def _rows(
 
 
 def _shape_rows(
-    robot: model.Robot, locked: LockedPoses, modes: ManyModes, path: rigid.Poses, wrench: Array, kept: Mask
+    robot: model.Robot, locked: LockedPoses, modes: ManyModes, path: rigid.Poses, kept: Mask
 ) -> dict[str, Array]:
     """Everything, pose by pose."""
     found = []
@@ -131,8 +130,9 @@ def _shape_rows(
             shapes=modes.shapes[k],
             equilibrium=locked.equilibria.one(int(at)),
             system=locked.system,
+            wrench=locked.acts.wrench,
         )
-        found.append(mode_values(robot, one, poses_of(path, np.array([at])), wrench))
+        found.append(mode_values(robot, one, poses_of(path, np.array([at]))))
     if not found:
         return _no_rows(modes.frequency.shape[1])
     return {name: np.stack([values[name] for values in found]) for name in found[0]}

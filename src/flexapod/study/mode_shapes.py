@@ -15,14 +15,14 @@ __all__ = ["STATIONS", "mode_values"]
 STATIONS = np.linspace(0.0, 1.0, 41)
 
 
-def mode_values(robot: model.Robot, found: RobotModes, path: rigid.Poses, wrench: Array) -> dict[str, Array]:
+def mode_values(robot: model.Robot, found: RobotModes, path: rigid.Poses) -> dict[str, Array]:
     """Variables of `flexapod.modes` at one pose, by name; ``path`` is the rigid pose."""
     at, R, com = found.equilibrium.state.pose, matrix(found.equilibrium.state.pose[3:]), robot.payload.com
     platform = np.concatenate([found.shapes[:, -6:-3], found.shapes[:, -3:] @ R.T], axis=1)
     return {
         "frequency": found.frequency,
         "damping_ratio": found.damping_ratio,
-        "kind": np.array(mode_kinds(found, wrench)),
+        "kind": np.array(mode_kinds(found)),
         "platform_shape": platform,
         "leg_shape": _leg_shapes(robot, found),
         "leg_stretch": _stretch(robot, at, platform),

@@ -17,7 +17,6 @@ from flexapod.study.many_modes import modes_at_poses
 from flexapod.study.mode_shapes import STATIONS, mode_values
 from flexapod.study.names import ONE_POSE_FORMS, dataset
 from flexapod.study.poses import as_many, is_many
-from flexapod.typing import Array
 
 if TYPE_CHECKING:
     from xarray import Dataset
@@ -45,7 +44,9 @@ def modes(
         Surge, sway, heave [m], roll, pitch, yaw [rad] from home, by name or as (6,); default home. Many poses at once:
         names with arrays, or (P, 6).
     load : Load, wrench or array_like (6,), optional
-        Fx Fy Fz [N], Mx My Mz [N m] at the tool, world axes; in place of the study's; a law is taken at t = 0.
+        Fx Fy Fz [N], Mx My Mz [N m] at the tool, world axes; in place of the study's; a law is
+        taken just before t = 0, where a simulation from equilibrium starts: a step at t = 0 has not come yet. So is the
+        table of a force drive; law "rigid" pushes as the rigid robot needs at rest in the pose.
     fidelity, modes, axial_modes, basis : optional
         In place of those of the study; a bare robot has assumed-modes, 3 per plane, tip-load.
     shapes : bool
@@ -70,10 +71,9 @@ def modes(
     settings = {"fidelity": fidelity, "modes": modes, "axial_modes": axial_modes, "basis": basis}
     if is_many(pose):
         study = model.override(at_pose(robot, load), **settings)  # type: ignore[arg-type]
-        load_at_start = rigid.wrench(study.load, np.zeros(1))[0]
-        return modes_at_poses(study, as_many(study.robot, pose), load_at_start, shapes=shapes, attrs=_settings(study))
-    study, path, wrench = _problem(robot, pose, load, settings)
-    values = mode_values(study.robot, robot_modes(study.robot, study.simulation, path, wrench), path, wrench)
+        return modes_at_poses(study, as_many(study.robot, pose), shapes=shapes, attrs=_settings(study))
+    study, path = _problem(robot, pose, load, settings)
+    values = mode_values(study.robot, robot_modes(study.robot, study.simulation, path, study.load), path)
     coords = {"mode": np.arange(1, len(values["frequency"]) + 1), "station": STATIONS}
     return dataset(values, coords, _attributes(study, path), ONE_POSE_FORMS)
 
@@ -109,17 +109,17 @@ def stiffness(
         No equilibrium at this pose.
     """
     settings = {"fidelity": fidelity, "modes": modes, "axial_modes": axial_modes, "basis": basis}
-    study, path, wrench = _problem(robot, pose, load, settings)
-    found = robot_stiffness(study.robot, study.simulation, path, wrench)
+    study, path = _problem(robot, pose, load, settings)
+    found = robot_stiffness(study.robot, study.simulation, path, study.load)
     values = {"stiffness": found.total, "stiffness_share": found.legs, "stiffness_turning": found.load}
     return dataset(values, attrs=_attributes(study, path))
 
 
 def _problem(
     robot: model.Robot | model.Study, pose: PoseLike, load: LoadLike, settings: dict[str, object]
-) -> tuple[model.Study, rigid.Poses, Array]:
+) -> tuple[model.Study, rigid.Poses]:
     study = model.override(at_pose(robot, load), **settings)  # type: ignore[arg-type]
-    return study, as_pose(study.robot, pose), rigid.wrench(study.load, np.zeros(1))[0]
+    return study, as_pose(study.robot, pose)
 
 
 def _attributes(study: model.Study, path: rigid.Poses) -> dict[str, object]:

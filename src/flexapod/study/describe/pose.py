@@ -89,14 +89,14 @@ class VibrationToExpect:
 def describe_pose(study: model.Study, name: str, time: float) -> PoseDescription:
     """The robot at rest at an instant of its path."""
     robot, simulation = study.robot, study.simulation
-    path, wrench = _at_rest(study, time), rigid.wrench(study.load, np.array([time]))[0]
+    path = _at_rest(study, time)
     try:
-        locked = locked_poses(robot, simulation, path, wrench)
+        locked = locked_poses(robot, simulation, path, study.load, time)
         found, stiffness = the_modes(locked), _stiffness(stiffness_of(robot, locked).total[0])
     except FlexapodError as error:
         return PoseDescription(name=name, time=time, problem=str(error))
     sag = found.equilibrium.state.pose[:3] - path.point(robot.payload.com)[0][0]
-    lines = zip(found.frequency, found.damping_ratio, mode_kinds(found, wrench), strict=True)
+    lines = zip(found.frequency, found.damping_ratio, mode_kinds(found), strict=True)
     modes = tuple(ModeLine(frequency=float(f), damping_ratio=float(ratio), kind=kind) for f, ratio, kind in lines)
     return PoseDescription(
         name=name, time=time, sag=float(np.linalg.norm(sag)), stiffness=stiffness, modes=modes[:SHOWN]
@@ -130,8 +130,7 @@ def vibration_to_expect(study: model.Study, end: float) -> VibrationToExpect | N
     """Residual vibration after the motion that ends at `end` [s]; None where nothing can vibrate."""
     robot = study.robot
     try:
-        wrench = rigid.wrench(study.load, np.array([end]))[0]
-        modes = robot_modes(robot, study.simulation, _at_rest(study, end), wrench)
+        modes = robot_modes(robot, study.simulation, _at_rest(study, end), study.load, end)
     except FlexapodError:
         return None
     wanted = modes.frequency[(modes.frequency > 0) & (modes.frequency <= HIGHEST) & (modes.damping_ratio < 1)]

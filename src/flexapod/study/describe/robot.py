@@ -7,6 +7,8 @@ from dataclasses import asdict, dataclass
 import numpy as np
 
 from flexapod import model, rigid
+from flexapod.errors import InputError
+from flexapod.solve.robot_march import refuse_massless
 from flexapod.study.checks import check_path, path_instants
 from flexapod.study.describe.actuator import ActuatorDescription, describe_actuator
 from flexapod.study.describe.leg import LegDescription, describe_leg, load_remarks
@@ -64,7 +66,7 @@ def describe(study: model.Study | model.ActuatorStudy) -> RobotDescription | Act
     """
     if isinstance(study, model.ActuatorStudy):
         return describe_actuator(study)
-    remarks, t = check_path(study), path_instants(study)
+    remarks, t = [*check_path(study), *_in_time(study)], path_instants(study)
     path = rigid.poses(study.robot, study.motion, t)
     legs, singularity = _legs(study, t, path), _singularity(study.robot, t, path)
     end = min(study.motion.end_time - study.motion.hold, study.duration)
@@ -84,6 +86,15 @@ def describe(study: model.Study | model.ActuatorStudy) -> RobotDescription | Act
         vibration=vibration_to_expect(study, end),
         remarks=tuple(dict.fromkeys([*study.warnings, *remarks, *load_remarks(legs, study.simulation.fidelity)])),
     )
+
+
+def _in_time(study: model.Study) -> list[str]:
+    """Why a simulation will be refused although everything at rest has an answer."""
+    try:
+        refuse_massless(study)
+    except InputError as error:
+        return [f"a simulation is not possible: {error.key} = {error.value} {error.what}"]
+    return []
 
 
 def _singularity(robot: model.Robot, t: Array, path: rigid.Poses) -> Singularity:

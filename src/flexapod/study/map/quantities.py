@@ -26,11 +26,10 @@ Values = dict[str, Array]
 class Wanted:
     """What is asked of each pose.
 
-    ``wrench`` (6,) at the tool; ``direction`` (3,) unit vector of the stiffness; ``acceleration`` (3,) [m/s^2], None:
+    ``direction`` (3,) unit vector of the stiffness; ``acceleration`` (3,) [m/s^2], None:
     1 m/s^2 in whichever direction is worst; ``frequencies``: how many of the lowest.
     """
 
-    wrench: Array
     direction: Array
     acceleration: Array | None
     frequencies: int
@@ -47,7 +46,7 @@ def batch_values(study: model.Study, path: rigid.Poses, wanted: Wanted) -> tuple
     code = rigid_codes(study.robot, path, from_home=True)
     within = np.flatnonzero(code == REACHED)
     some = poses_of(path, within) if within.size else rigid.home_pose(study.robot)  # for what it refuses, and shapes
-    locked = locked_poses(study.robot, study.simulation, some, wanted.wrench)
+    locked = locked_poses(study.robot, study.simulation, some, study.load)
     modes = modes_of(locked)
     values = {
         "frequency": modes.frequency[:, : wanted.frequencies],
@@ -129,11 +128,11 @@ def _elastic(robot: model.Robot, path: rigid.Poses, locked: LockedPoses, wanted:
 
 
 def _drive_forces(robot: model.Robot, locked: LockedPoses) -> Array:
-    """Force of every drive on its piston at rest, (p, 6) [N]; springs of servos against their commands."""
+    """Force of every drive on its piston at rest, (p, 6) [N]: constraint, or given force and spring, Eq. (T8.8)."""
     states, system = locked.equilibria.states[locked.at], locked.system
     stiffness = np.array([drive_spring(leg)[0] for leg in robot.legs])
-    given = stiffness * (locked.lengths[locked.at] - states.q[:, :, system.kernel.shapes.l_index])
-    return np.where(system.held, states.drive, given)
+    spring = stiffness * (locked.lengths[locked.at] - states.q[:, :, system.kernel.shapes.l_index])
+    return np.where(system.held, states.drive, locked.acts.force[locked.at] + spring)
 
 
 def _euler_share(robot: model.Robot, path: rigid.Poses, locked: LockedPoses, force: Array) -> Array:

@@ -10,8 +10,9 @@ from typing import TYPE_CHECKING
 import numpy as np
 from numpy.typing import ArrayLike
 
-from flexapod import model, rigid
+from flexapod import model
 from flexapod.errors import InputError
+from flexapod.solve.frequencies import count_real
 from flexapod.study.arguments import LoadLike, at_pose
 from flexapod.study.attributes import attributes
 from flexapod.study.map.grid import UNITS, Axes, Grid, grid
@@ -82,14 +83,14 @@ def workspace_map(
     study = model.override(at_pose(robot, load), fidelity=fidelity, modes=modes, axial_modes=axial_modes, basis=basis)
     poses = grid(study.robot, axes, at)
     wanted = Wanted(
-        wrench=rigid.wrench(study.load, np.zeros(1))[0],
         direction=_unit(direction),
         acceleration=None if acceleration is None else _vector("acceleration", acceleration),
         frequencies=_count(frequencies),
     )
     began = time.perf_counter()
     values = _computed(study, poses, wanted, progress)
-    count = values["frequency"].shape[-1]
+    count = count_real(values["frequency"])
+    values["frequency"] = values["frequency"][..., :count]
     coords = {**poses.values, "mode": np.arange(1, count + 1)}
     data = dataset(values, coords, _attributes(study, poses, wanted), forms(tuple(poses.values)))
     return _described(data, poses, time.perf_counter() - began)

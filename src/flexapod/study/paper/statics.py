@@ -10,6 +10,7 @@ from flexapod import model, rigid
 from flexapod.errors import ComputationError
 from flexapod.rigid.rotations import quaternion, rotation_vector
 from flexapod.solve.equilibrium import Equilibrium, equilibrium
+from flexapod.solve.rest import rest_load
 from flexapod.solve.system import RobotSystem, State, rigid_state, robot_system
 from flexapod.study.arguments import as_pose
 from flexapod.study.checks import path_instants
@@ -91,6 +92,6 @@ def _near(study: model.Study, system: RobotSystem, share: float, state: State | 
     robot = study.robot
     path = as_pose(robot, share * axis_motion(study).target)
     start = rigid_state(system, robot, path) if state is None else state
-    wrench = rigid.wrench(study.load, np.zeros(1))[0]
-    found = equilibrium(system, start, rigid.inverse_kinematics(robot, path).length[0], np.zeros(6), wrench)
+    acts, lengths = rest_load(robot, path, study.load), rigid.inverse_kinematics(robot, path).length[0]
+    found = equilibrium(system, start, lengths, acts.force[0], acts.wrench)
     return found, found.state.pose[:3] - path.point(robot.payload.com)[0][0]

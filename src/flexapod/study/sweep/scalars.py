@@ -126,11 +126,10 @@ class RobotRun:
 
     @property
     def first_frequency(self) -> float:
-        """Lowest frequency at home, load at t = 0, commands of the drives held [Hz]; NaN where there is none."""
+        """Lowest frequency at home, loads just before t = 0, commands of the drives held [Hz]; NaN if there is none."""
         home = rigid.home_pose(self.study.robot)
-        wrench = rigid.wrench(self.study.load, np.zeros(1))[0]
         try:
-            return float(robot_modes(self.study.robot, self.study.simulation, home, wrench).frequency[0])
+            return float(robot_modes(self.study.robot, self.study.simulation, home, self.study.load).frequency[0])
         except InputError:  # nothing can move, or a drive that cannot be locked
             return np.nan
 

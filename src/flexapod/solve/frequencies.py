@@ -1,0 +1,73 @@
+"""Frequencies and shapes from factors of stiffness and mass, right however light a part is, Eqs. (T7.21)-(T7.22)."""
+
+from __future__ import annotations
+
+import numpy as np
+
+from flexapod.typing import Array, Mask
+
+__all__ = ["cholesky_each", "count_real", "mass_factor", "natural"]
+
+LIGHTEST = 1e-9  # lowest frequency over the highest that counts: beyond, a mass is lost in rounding
+
+
+def cholesky_each(A: Array) -> tuple[Array, Mask]:
+    """Lower factors (..., r, r) of symmetric matrices, and which of these are positive; NaN for the others."""
+    try:
+        return np.asarray(np.linalg.cholesky(A), dtype=np.float64), np.ones(A.shape[:-2], dtype=bool)
+    except np.linalg.LinAlgError:  # does not say of which matrix
+        if A.ndim == 2:
+            return np.full(A.shape, np.nan), np.zeros((), dtype=bool)
+    found = [cholesky_each(part) for part in A]
+    return np.stack([root for root, _ in found]), np.stack([positive for _, positive in found])
+
+
+def mass_factor(M: Array) -> tuple[Array, Mask]:
+    """Factors U, M = U^T U, of mass matrices (..., n, n), and which of these no mass or a real one has.
+
+    A coordinate without mass has a row of zeros. Taken of one body by itself, each row is right to rounding of its own
+    size, however much heavier other bodies are.
+    """
+    massless = np.diagonal(M, axis1=-2, axis2=-1) == 0
+    filled = M + massless[..., None] * np.eye(M.shape[-1])
+    root, positive = cholesky_each(filled)
+    return root.swapaxes(-1, -2) * ~massless[..., None], positive
+
+
+def natural(U: Array, K: Array, *, shapes: bool) -> tuple[Array, Array, Mask]:
+    """Angular frequencies (p, r) [rad/s] ascending, shapes (p, r, r) of unit stiffness, and where K is positive.
+
+    Parameters
+    ----------
+    U : ndarray, shape (p, rows, r)
+        Factor of the mass matrix, M = U^T U, with r rows or more; its rank may be lower than r.
+    K : ndarray, shape (p, r, r)
+        Stiffness, symmetric.
+    shapes : bool
+        Whether shapes are wanted; else (p, r, 0).
+
+    Notes
+    -----
+    With K = L L^T and the singular values s of U L^-T (T7.21) the frequencies are 1 / s: the lowest ones are right to
+    rounding, the others to rounding times their multiple of it. Above 1 / `LIGHTEST` of the lowest there is no mass to
+    speak of and no mode (T7.22): inf, or NaN where K is not positive. Times its frequency a shape has unit mass.
+    """
+    L, positive = cholesky_each(K)
+    L = np.where(positive[:, None, None], L, np.eye(K.shape[-1]))
+    X = np.asarray(np.linalg.solve(L, U.swapaxes(1, 2)), dtype=np.float64)  # (T7.21), transposed
+    if shapes:
+        left, sizes, _ = np.linalg.svd(X, full_matrices=False)
+    else:
+        left, sizes = np.zeros((*K.shape[:2], 0)), np.linalg.svd(X, compute_uv=False)
+    real = sizes > LIGHTEST * sizes[:, :1]  # (T7.22)
+    omega = np.divide(1.0, sizes, out=np.full(sizes.shape, np.inf), where=real)
+    omega[~positive] = np.nan
+    z = np.asarray(np.linalg.solve(L.swapaxes(1, 2), left), dtype=np.float64)
+    return omega, z, positive
+
+
+def count_real(frequency: Array) -> int:
+    """How many modes any pose has, of frequencies (..., m), those that are none last; all where no pose has any."""
+    width = frequency.shape[-1]
+    real = np.isfinite(frequency).reshape(-1, width).any(axis=0)
+    return int(real.sum()) or width
