@@ -15,6 +15,7 @@ from flexapod.model import (
     ActuatorMotion,
     ActuatorStudy,
     ConstantLaw,
+    CsvWrench,
     Simulation,
     override,
     preset,
@@ -73,6 +74,14 @@ def test_robot(interpreted, fidelity):
     study = override(paper_robot(), fidelity=fidelity, step=1e-3, output_step=5e-3, duration=0.03, **modes)
     compiled, twin = interpreted(run_robot, study)
     same(twin, compiled, 1e-3)
+
+
+def test_jumps_and_corners_between_outputs(interpreted):
+    study = override(paper_robot(), fidelity="lumped", step=1e-3, output_step=5e-3, duration=0.02)
+    time, value = [0, 0.0123, 0.0123, 0.0157, 1], np.array([0, 0, 1, 0.5, 0.5])
+    study = study.replace(load={"wrench": CsvWrench(time=time, wrench=value[:, None] * np.full(6, 50.0))})
+    compiled, twin = interpreted(run_robot, study)
+    same(twin, compiled, 3e-4)  # the shortest step
 
 
 def test_it_is_said_once():

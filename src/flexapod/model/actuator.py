@@ -6,8 +6,9 @@ from pydantic import Field, model_validator
 
 from flexapod.errors import InputError
 from flexapod.model.base import Frozen, NonNegative, Number, Positive
-from flexapod.model.laws import LoadLaw, MotionLaw, RateLaw
+from flexapod.model.laws import CsvLaw, LoadLaw, MotionLaw, RateLaw
 from flexapod.model.material import Material, Rectangle, Tube
+from flexapod.model.motion import check_times
 
 __all__ = ["Actuator", "ActuatorInitial", "ActuatorLoad", "ActuatorMotion"]
 
@@ -65,6 +66,13 @@ class ActuatorMotion(Frozen):
 
     rotation: MotionLaw | None = RateLaw(rate=0.0)
     extension: MotionLaw | None = RateLaw(rate=0.0)
+
+    @model_validator(mode="after")
+    def _smooth(self) -> ActuatorMotion:
+        for name, law in (("rotation", self.rotation), ("extension", self.extension)):
+            if isinstance(law, CsvLaw):
+                check_times(law.time, len(law.value), key=f"{name}.time")
+        return self
 
     @property
     def rate_jumps(self) -> tuple[float, ...]:

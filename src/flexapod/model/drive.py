@@ -8,6 +8,7 @@ from pydantic import Field, model_validator
 
 from flexapod.errors import InputError
 from flexapod.model.base import Frozen, NonNegative, Positive, Series
+from flexapod.model.motion import check_times
 
 __all__ = ["Drive", "Feedback", "ForceDrive", "PrescribedDrive", "ServoDrive"]
 
@@ -37,7 +38,8 @@ class ForceDrive(Frozen):
     """A force along the leg; the stroke is a result.
 
     ``law = "rigid"`` replays the force that the rigid robot needs; ``law = "csv"`` takes `force` [N] at the
-    instants `time` [s], read from `file`.
+    instants `time` [s], from 0, read from `file`: linear between the rows, with a jump where two rows stand at one
+    instant.
     """
 
     type: Literal["force"] = "force"
@@ -56,6 +58,8 @@ class ForceDrive(Frozen):
             raise InputError("is missing", key="file", next_step='Add file = "forces.csv" to the drive')
         if self.time is not None and self.force is not None and self.time.shape != self.force.shape:
             raise InputError("has another length than time", key="force", value=self.force.shape)
+        if self.time is not None:
+            check_times(self.time, len(self.time), jumps=True)
         return self
 
 

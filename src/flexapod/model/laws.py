@@ -36,7 +36,10 @@ class SpinUpLaw(Frozen):
 
 
 class CsvLaw(Frozen):
-    """A table: `value` (n,) [rad, m, N m or N] at `time` (n,) [s], from 0, read from `file`."""
+    """A table: `value` (n,) [rad, m, N m or N] at `time` (n,) [s], from 0, read from `file`.
+
+    A torque or force is linear between the rows and jumps where two rows stand at one instant; a motion is smooth.
+    """
 
     law: Literal["csv"] = "csv"
     file: str | None = None
@@ -45,7 +48,7 @@ class CsvLaw(Frozen):
 
     @model_validator(mode="after")
     def _table(self) -> CsvLaw:
-        check_times(self.time, len(self.value))
+        check_times(self.time, len(self.value), jumps=True)  # of a load; a motion refuses them
         return self
 
 

@@ -37,7 +37,10 @@ class StepWrench(Frozen):
 
 
 class CsvWrench(Frozen):
-    """A table: `time` (n,) [s], from 0, and `wrench` (n, 6) [N, N m], read from `file`."""
+    """A table: `time` (n,) [s], from 0, and `wrench` (n, 6) [N, N m], read from `file`.
+
+    The wrench is linear between the rows, jumps where two rows stand at one instant and keeps its last value.
+    """
 
     law: Literal["csv"] = "csv"
     file: str | None = None
@@ -46,7 +49,7 @@ class CsvWrench(Frozen):
 
     @model_validator(mode="after")
     def _table(self) -> CsvWrench:
-        check_times(self.time, len(self.wrench))
+        check_times(self.time, len(self.wrench), jumps=True)
         return self
 
 

@@ -10,6 +10,7 @@ from pydantic import Field, model_validator
 
 from flexapod.errors import InputError
 from flexapod.model.base import Frozen, NonNegative, Number, Positive, Series, Series6, Vec3
+from flexapod.model.tables import wrong_instant
 from flexapod.typing import Array
 
 __all__ = ["AXES", "PROFILES", "AxisMotion", "CombinedMotion", "CsvMotion", "Motion", "Waypoint", "WaypointMotion"]
@@ -189,21 +190,22 @@ class CsvMotion(Frozen):
 Motion = Annotated[AxisMotion | CombinedMotion | WaypointMotion | CsvMotion, Field(discriminator="type")]
 
 
-def check_times(time: Array, rows: int) -> None:
-    """Refuse a time column that does not start at 0, does not increase, or has another length than the data."""
+def check_times(time: Array, rows: int, *, key: str = "time", jumps: bool = False) -> None:
+    """Refuse a time column that does not start at 0, does not increase, or has another length than the data.
+
+    With `jumps` two rows may stand at one instant: before and after a jump.
+    """
     if len(time) != rows:
-        raise InputError(f"has {len(time)} instants for {rows} rows of values", key="time")
+        raise InputError(f"has {len(time)} instants for {rows} rows of values", key=key)
     if len(time) < 2:
-        raise InputError("has fewer than two rows", key="time", next_step="A table needs two instants at least")
+        raise InputError("has fewer than two rows", key=key, next_step="A table needs two instants at least")
     if time[0] != 0:
-        raise InputError(
-            "does not start at 0", key="time", value=float(time[0]), next_step="Subtract the first instant"
-        )
-    if np.any(np.diff(time) <= 0):
-        row = int(np.argmax(np.diff(time) <= 0)) + 1
+        raise InputError("does not start at 0", key=key, value=float(time[0]), next_step="Subtract the first instant")
+    row = wrong_instant(time, jumps)
+    if row is not None:
         raise InputError(
             f"does not increase at row {row + 1}",
-            key="time",
+            key=key,
             value=float(time[row]),
             allowed=f"above {time[row - 1]:g} s",
         )

@@ -114,7 +114,7 @@ def _motion_law(section: Section, dimension: str) -> MotionLaw:
         return section.build(
             SpinUpLaw, rate=section.number("rate", _RATES[dimension]), duration=section.number("duration", "time")
         )
-    return _csv(section, dimension) if law == "csv" else _profile(section, str(law), dimension)
+    return _csv(section, dimension, jumps=False) if law == "csv" else _profile(section, str(law), dimension)
 
 
 def _load_law(load: Section, name: str, dimension: str) -> LoadLaw:
@@ -139,7 +139,7 @@ def _load_law(load: Section, name: str, dimension: str) -> LoadLaw:
         return section.build(
             StepLaw, amplitude=section.number("amplitude", dimension), time=section.number("time", "time")
         )
-    return _csv(section, dimension) if law == "csv" else _profile(section, str(law), dimension)
+    return _csv(section, dimension, jumps=True) if law == "csv" else _profile(section, str(law), dimension)
 
 
 def _profile(section: Section, law: str, dimension: str) -> ProfileLaw:
@@ -152,9 +152,9 @@ def _profile(section: Section, law: str, dimension: str) -> ProfileLaw:
     )
 
 
-def _csv(section: Section, dimension: str) -> CsvLaw:
+def _csv(section: Section, dimension: str, *, jumps: bool) -> CsvLaw:
     section.only("law", "file")
     section.need("file")
     file = str(section.text("file"))
-    table = read_table(section.folder / file, {"value": dimension}, needed=True)
+    table = read_table(section.folder / file, {"value": dimension}, needed=True, jumps=jumps)
     return section.build(CsvLaw, file=file, time=table["time"], value=table["value"])

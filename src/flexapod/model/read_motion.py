@@ -170,7 +170,7 @@ def _wrench(section: Section) -> Wrench:
     section.only("law", "file")
     section.need("file")
     file = str(section.text("file"))
-    table = read_table(section.folder / file, WRENCH)
+    table = read_table(section.folder / file, WRENCH, jumps=True)
     time = table["time"]
     wrench = [[table[name][i] if name in table else 0.0 for name in WRENCH] for i in range(len(time))]
     return section.build(CsvWrench, file=file, time=time, wrench=wrench)

@@ -211,7 +211,7 @@ def _force_drive(section: Section, number: int) -> ForceDrive:
         feedback.only("stiffness", "damping")
     table: dict[str, Array] = {}
     if law == "csv" and file is not None:
-        table = read_table(section.folder / file, FORCES, needed=True)
+        table = read_table(section.folder / file, FORCES, needed=True, jumps=True)
     return section.build(
         ForceDrive,
         law=law,

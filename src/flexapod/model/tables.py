@@ -14,7 +14,7 @@ from flexapod.errors import InputError, closest
 from flexapod.typing import Array
 from flexapod.units import DIMENSIONS, to_si
 
-__all__ = ["FORCES", "POSE", "WRENCH", "read_table"]
+__all__ = ["FORCES", "POSE", "WRENCH", "read_table", "wrong_instant"]
 
 POSE = {"surge": "length", "sway": "length", "heave": "length", "roll": "angle", "pitch": "angle", "yaw": "angle"}
 WRENCH = {"Fx": "force", "Fy": "force", "Fz": "force", "Mx": "torque", "My": "torque", "Mz": "torque"}
@@ -23,7 +23,9 @@ FORCES = {f"leg {i}": "force" for i in range(1, 7)}
 _HEADER = re.compile(r"^\s*(.+?)\s*\[\s*(.+?)\s*\]\s*$")
 
 
-def read_table(path: Path, columns: Mapping[str, str], *, needed: bool = False) -> dict[str, Array]:
+def read_table(
+    path: Path, columns: Mapping[str, str], *, needed: bool = False, jumps: bool = False
+) -> dict[str, Array]:
     """Columns of a CSV file in SI units, by name.
 
     The header names each column with its unit, ``time [s], roll [deg]``. Lines that start with # are comments.
@@ -36,6 +38,8 @@ def read_table(path: Path, columns: Mapping[str, str], *, needed: bool = False) 
         Allowed columns besides ``time`` and their dimension (see `flexapod.units`).
     needed : bool
         Whether all of them must be there; otherwise at least one.
+    jumps : bool
+        Whether two rows may stand at one instant: before and after a jump.
 
     Returns
     -------
@@ -46,7 +50,7 @@ def read_table(path: Path, columns: Mapping[str, str], *, needed: bool = False) 
     ------
     InputError
         If the file cannot be read, a column is unknown or missing, a cell is empty or no finite number, or the
-        instants do not start at 0 and increase; with the line number.
+        instants do not start at 0 and increase, apart from ``jumps``; with the line number.
     """
     lines = _lines(path)
     if not lines:
@@ -58,7 +62,7 @@ def read_table(path: Path, columns: Mapping[str, str], *, needed: bool = False) 
         raise InputError(f"has no column {missing[0]!r}", file=path, key=f"line {number}", allowed=_example(columns))
     values = np.array([_row(path, n, row, list(factors)) for n, row in lines[1:]]).reshape(-1, len(factors))
     table = {name: values[:, i] * factor for i, (name, factor) in enumerate(factors.items())}
-    _check_times(path, table["time"], [n for n, _ in lines[1:]])
+    _check_times(path, table["time"], [n for n, _ in lines[1:]], jumps)
     return table
 
 
@@ -124,7 +128,15 @@ def _row(path: Path, line: int, cells: list[str], names: list[str]) -> list[floa
     return row
 
 
-def _check_times(path: Path, time: Array, lines: list[int]) -> None:
+def wrong_instant(time: Array, jumps: bool) -> int | None:
+    """Index of the first instant that is no later than the one before it; with `jumps` two may be the same."""
+    fine = np.diff(time) > 0
+    if jumps:
+        fine |= (np.diff(time) == 0) & np.append(True, fine[:-1])
+    return None if fine.all() else int(np.argmin(fine)) + 1
+
+
+def _check_times(path: Path, time: Array, lines: list[int], jumps: bool) -> None:
     if len(time) < 2:
         raise InputError("has fewer than two rows of numbers", file=path)
     if time[0] != 0:
@@ -135,17 +147,20 @@ def _check_times(path: Path, time: Array, lines: list[int]) -> None:
             value=float(time[0]),
             next_step="Subtract the first instant from all",
         )
-    for line, before, now in zip(lines[1:], time, time[1:], strict=False):
-        if now <= before:
-            what = "repeats the instant before" if now == before else "goes back in time"
-            raise InputError(
-                what,
-                file=path,
-                key=f"line {line}, column 'time'",
-                value=float(now),
-                allowed=f"above {before:g} s",
-                next_step="Sort the lines by time and remove doubles",
-            )
+    at = wrong_instant(time, jumps)
+    if at is not None:
+        before, now = time[at - 1], time[at]
+        what = "repeats the instant before" if now == before else "goes back in time"
+        raise InputError(
+            f"{what} once more" if jumps and now == before else what,
+            file=path,
+            key=f"line {lines[at]}, column 'time'",
+            value=float(now),
+            allowed=f"above {before:g} s",
+            next_step="Two rows at one instant are a jump, a third has no meaning"
+            if jumps and now == before
+            else "Sort the lines by time and remove doubles",
+        )
 
 
 def _example(columns: Mapping[str, str]) -> str:

@@ -1,5 +1,6 @@
 """Closed-form mathematics of the rigid robot: NumPy, vectorised over time."""
 
+from flexapod.rigid.breaks import Breaks, actuator_breaks, robot_breaks
 from flexapod.rigid.dynamics import RigidForces
 from flexapod.rigid.forward import Postures
 from flexapod.rigid.jacobian import NearestSingularity, SingularityPath, length_jacobian
@@ -28,6 +29,7 @@ from flexapod.rigid.trajectory import Poses, poses_from_coordinates, rotation_ma
 from flexapod.rigid.workspace import Excess, WorkspaceMap, reachable_map
 
 __all__ = [
+    "Breaks",
     "Excess",
     "Law",
     "LegState",
@@ -37,6 +39,7 @@ __all__ = [
     "RigidForces",
     "SingularityPath",
     "WorkspaceMap",
+    "actuator_breaks",
     "energies",
     "forward_kinematics",
     "home_frames",
@@ -60,6 +63,7 @@ __all__ = [
     "pull_out",
     "reachable",
     "reachable_map",
+    "robot_breaks",
     "rotation_matrix",
     "singularity",
     "strokes",

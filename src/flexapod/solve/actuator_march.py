@@ -10,10 +10,11 @@ from flexapod.errors import ComputationError
 from flexapod.integration import GeneralizedAlpha
 from flexapod.model import Actuator, ActuatorStudy, Simulation
 from flexapod.solve.kernel import kernel
-from flexapod.solve.march import Chunk, Problem, initial_step, march, restart_outputs
+from flexapod.solve.march import Chunk, Problem, initial_step, march
 from flexapod.solve.parameters import actuator_parameters
 from flexapod.solve.plant import TABLE, Counters, Flow, Plant, Recording
 from flexapod.solve.shapes import beam_shapes
+from flexapod.solve.stops import Stops
 from flexapod.typing import Array
 
 Law = Callable[[Array], tuple[Array, Array]]
@@ -74,17 +75,17 @@ def prepare_actuator(
     )
     law = _tables(study)
     h = initial_step(simulation.step, simulation.output_step)
-    output_step = simulation.stored_step
+    output_step, outputs = simulation.stored_step, simulation.outputs(study.duration)
     start, counters = _start(study, plant, law, method, h, amplitudes, rates), Counters()
     problem = Problem(
         plant=plant,
         method=method,
         tables=law,
         output_step=output_step,
-        outputs=simulation.outputs(study.duration),
+        outputs=outputs,
         measure=lambda recording: _measure(plant, recording),
         restart=lambda flow, t, h: _after_impact(plant, law, method, flow, t, h),
-        restarts=restart_outputs(study.motion.rate_jumps, output_step),
+        stops=Stops.of(rigid.actuator_breaks(study), output_step, simulation.step, outputs),
         check=lambda recording: _check(study.actuator, recording),
         tolerance=simulation.tolerance,
     )

@@ -1,15 +1,16 @@
 """Time integration in chunks: fixed step or tolerance, failures as words, Eq. (T6.15)."""
 
-from collections.abc import Callable, Iterator
+from collections.abc import Callable, Iterator, Sequence
 from dataclasses import dataclass, replace
 from types import ModuleType
 
 import numpy as np
 
-from flexapod.errors import ComputationError, InputError
+from flexapod.errors import ComputationError
 from flexapod.integration import GeneralizedAlpha
 from flexapod.solve import interpreted, native
 from flexapod.solve.plant import Counters, Flow, Plant, Recording, unpack
+from flexapod.solve.stops import Stop, Stops, after, before
 from flexapod.typing import Array
 
 Tables = Callable[[Array], tuple[Array, Array]]
@@ -35,8 +36,8 @@ class Problem:
     """A time integration: plant, commands, method and output grid.
 
     ``tables(t)`` gives (len(t), legs * 8) and (len(t), 6); ``measure`` the quantities whose error is controlled, as
-    groups (T, ...) with a common scale each; ``restart(flow, t, h)`` passes the impact of a jump in the commanded rate
-    at the end of the output intervals in ``restarts``.
+    groups (T, ...) with a common scale each; ``restart(flow, t, h)`` goes on after a jump of a command or a load just
+    before t, of which ``stops`` tells the instants.
     """
 
     plant: Plant
@@ -46,7 +47,7 @@ class Problem:
     outputs: int
     measure: Measure
     restart: Callable[[Flow, float, float], Flow]
-    restarts: tuple[int, ...]
+    stops: Stops
     check: Callable[[Recording], None]
     tolerance: float | None
 
@@ -67,25 +68,6 @@ def initial_step(step: float | None, output_step: float) -> float:
     return step if step >= output_step else output_step / np.ceil(output_step / step - 1e-9)
 
 
-def restart_outputs(jumps: tuple[float, ...], output_step: float) -> tuple[int, ...]:
-    """Output intervals at whose ends the command's rate jumps.
-
-    Raises
-    ------
-    InputError
-        A jump between two output instants.
-    """
-    for t in jumps:
-        if abs(t / output_step - round(t / output_step)) > 1e-6:
-            raise InputError(
-                f"jumps in rate at t = {t:g} s, which is no output instant",
-                key="motion",
-                allowed=f"instants that are multiples of simulation.output_step = {output_step:g} s",
-                next_step="Change output_step, or choose a profile without jumps in rate",
-            )
-    return tuple(round(t / output_step) for t in jumps)
-
-
 def march(problem: Problem, start: Flow, first_step: float, counters: Counters) -> Iterator[Chunk]:
     """Integrate from ``start`` (prepared for ``first_step``) and yield chunks, the first holding the start alone.
 
@@ -100,11 +82,13 @@ def march(problem: Problem, start: Flow, first_step: float, counters: Counters) 
     yield Chunk(recording=first, error=0.0, step=first_step)
     control = _Control(problem, counters, first_step, [np.abs(x).max(initial=0.0) for x in problem.measure(first)])
     longest = CHUNK_STEPS if problem.tolerance is None and problem.plant.kernel.library else CHUNK
-    done, most = 0, longest
+    done, most, stops = 0, longest, problem.stops
+    if 0 in stops.ends:
+        flow, _ = _restarted(problem, flow, 0.0, stops.ends[0], first_step)
     while done < problem.outputs:
         count = max(1, min(most, control.longest))
-        stop = min([done + count, problem.outputs, *(r for r in problem.restarts if r > done)])
-        before = control.settings
+        stop = stops.next(done, min(done + count, problem.outputs), control.coarse)
+        kept = control.settings
         try:
             ahead, chunk = control.advance(flow, done, stop - done)
             stop = done + len(chunk.recording.time)
@@ -112,11 +96,12 @@ def march(problem: Problem, start: Flow, first_step: float, counters: Counters) 
         except ComputationError:
             if stop - done == 1:
                 raise
-            most, control.settings = (stop - done) // 2, before  # as far as the last output before the failure
+            most, control.settings = (stop - done) // 2, kept  # as far as the last output before the failure
             continue
         flow, done, most = ahead, stop, min(2 * most, longest)
-        if done in problem.restarts and done < problem.outputs:
-            flow = _restarted(problem, flow, done * problem.output_step, control.h)
+        if done in stops.ends:  # what is stored there is the value after the jump
+            flow, row = _restarted(problem, flow, done * problem.output_step, stops.ends[done], control.h)
+            chunk = replace(chunk, recording=chunk.recording.ending(row))
         yield chunk
 
 
@@ -154,6 +139,11 @@ class _Control:
         return CHUNK_STEPS // self.per_output if self.problem.tolerance is None else 2 * CHUNK_STEPS // self.per_output
 
     @property
+    def coarse(self) -> float:
+        """Steps per output of the run with the longest steps."""
+        return self.per_output if self.problem.tolerance is None else self.per_output / 2
+
+    @property
     def settings(self) -> tuple[float, int, list[float]]:
         """What it remembers: step of the flow, steps per output, scales of the errors."""
         return self.h, self.per_output, self.scales
@@ -165,14 +155,14 @@ class _Control:
     def advance(self, flow: Flow, done: int, count: int) -> tuple[Flow, Chunk]:
         """Return the next ``count`` outputs with the fixed step, or up to ``count`` within the tolerance."""
         if self.problem.tolerance is None:
-            result = self._run(flow, self._grid(done, count, self.per_output), self.per_output)
+            result, self.h = self._once(flow, done, count, 1)
             return result.flow, self._chunk(result.rows, done, 0.0, self.per_output)
         while True:
-            count = self._whole(count)
+            count = self._whole(self.problem.stops.next(done, done + count, self.coarse) - done)
             # Errors of chunks add up in part (damping forgets): each may use the root of its share.
             allowed = self.problem.tolerance * np.sqrt(count / self.problem.outputs)
             try:
-                error, fine = self._twice(flow, done, count)
+                error, fine, h = self._twice(flow, done, count)
             except ComputationError:
                 if self.per_output >= SHORT:
                     raise
@@ -194,7 +184,7 @@ class _Control:
             self.per_output = min(max(wanted, _finer(self.per_output)), 8 * self.per_output)
             count = max(1, min(count, self.longest))
         chunk = self._chunk(fine.rows, done, error, self.per_output)
-        self.h = self.problem.output_step / self.per_output
+        self.h = h
         self.per_output = min(self.per_output, max(wanted, 2 * (self.per_output // 4), 1))
         return fine.flow, chunk
 
@@ -204,37 +194,72 @@ class _Control:
             self.per_output = 2
         return count - count % 2 if self.per_output == 1 else count
 
-    def _twice(self, flow: Flow, done: int, count: int) -> tuple[float, native.Advance]:
-        """Run a chunk with steps twice as long and with those to be kept: estimated error, the second run."""
-        grid = self._grid(done, count, self.per_output)
-        coarse = self._run(flow, [x[::2] for x in grid], self.per_output / 2)
-        fine = self._run(flow, grid, self.per_output)
+    def _twice(self, flow: Flow, done: int, count: int) -> tuple[float, native.Advance, float]:
+        """Run a chunk with steps twice as long and with those to be kept: error, second run, its last step."""
+        (coarse, _), (fine, h) = (self._once(flow, done, count, parts) for parts in (1, 2))
         every = count // len(coarse.rows)
         a, b = (self._measured(rows, done, every) for rows in (coarse.rows, fine.rows[every - 1 :: every]))
-        return self._error(a, b), fine
+        return self._error(a, b), fine, h
+
+    def _once(self, flow: Flow, done: int, count: int, parts: int) -> tuple[native.Advance, float]:
+        """Run a chunk, each of the longest steps in `parts`; the outcome and the last step's length."""
+        stops, per_output = self.problem.stops.within(done, self.coarse), self.coarse * parts
+        if stops:
+            return self._through(flow, done, stops, parts)
+        grid = [x[:: round(self.per_output / per_output)] for x in self._grid(done, count, self.per_output)]
+        return self._run(flow, grid, per_output), self.problem.output_step / per_output
+
+    def _through(self, flow: Flow, done: int, stops: Sequence[Stop], parts: int) -> tuple[native.Advance, float]:
+        """Run one output interval piece by piece, from break to break, with a restart after each that jumps."""
+        p, prepared = self.problem, self.h
+        edges = [done * p.output_step, *(stop.first for stop in stops), (done + 1) * p.output_step]
+        spans = np.diff(edges)
+        counts = [parts * max(1, int(np.ceil(x / p.output_step * self.coarse - 1e-6))) for x in spans]
+        steps, grids = spans / counts, self._pieces(edges, counts, [*stops, p.stops.ends.get(done + 1)])
+        for i, stop in enumerate(stops):
+            flow, prepared = self._steps(flow, prepared, steps[i], grids[i], counts[i]).flow, steps[i]
+            if stop.jumps:
+                prepared = steps[i + 1]
+                flow, _ = _restarted(p, flow, stop.first, stop, prepared)
+        return self._steps(flow, prepared, steps[-1], grids[-1], counts[-1]), steps[-1]
+
+    def _pieces(self, edges: list[float], counts: list[int], ends: Sequence[Stop | None]) -> list[list[Array]]:
+        """Instants, commands and wrenches of even steps from edge to edge, each up to just before its break."""
+        times = [np.linspace(a, b, n + 1) for a, b, n in zip(edges[:-1], edges[1:], counts, strict=True)]
+        for t, stop in zip(times, ends, strict=True):
+            if stop is not None:
+                t[-1] = before(min(t[-1], stop.first))
+        cuts = np.cumsum([len(t) for t in times])[:-1]
+        table, wrench = (np.split(x, cuts) for x in self.problem.tables(np.concatenate(times)))
+        return [list(piece) for piece in zip(times, table, wrench, strict=True)]
 
     def _grid(self, done: int, count: int, per_output: int) -> list[Array]:
         """Instants of the steps of a chunk, and the tables of commands and wrench there."""
         if not self.window.holds(done, count, per_output):
             ahead = 2 * self.window.count if self.window.per_output == per_output else count
-            most = min([CHUNK_STEPS // per_output, *(r - done for r in self.problem.restarts if r > done)])
-            self.window = self._window(done, max(count, min(ahead, most, self.problem.outputs - done)), per_output)
+            most = min(done + min(ahead, CHUNK_STEPS // per_output), self.problem.outputs)
+            most = self.problem.stops.next(done, most, self.coarse) - done
+            self.window = self._window(done, max(count, most), per_output)
         return self.window.part(done, count)
 
     def _window(self, done: int, count: int, per_output: int) -> _Window:
         p = self.problem
         steps = done * per_output + np.arange(count * per_output + 1)
         t = np.asarray(steps * (p.output_step / per_output), dtype=float)
-        if done + count in p.restarts:
-            t[-1] -= 1e-12 * max(1.0, t[-1])  # the command's value before its jump
+        if (stop := p.stops.ends.get(done + count)) is not None:
+            t[-1] = before(min(t[-1], stop.first))
         return _Window(done=done, count=count, per_output=per_output, rows=(t, *p.tables(t)))
 
     def _run(self, flow: Flow, grid: list[Array], per_output: float) -> native.Advance:
-        p, h, t = self.problem, self.problem.output_step / per_output, grid[0]
-        if abs(h - self.h) > 1e-12 * h:
-            flow = _rescaled(p.plant, flow, self.h, h)
+        return self._steps(flow, self.h, self.problem.output_step / per_output, grid, max(1, int(per_output)))
+
+    def _steps(self, flow: Flow, prepared: float, h: float, grid: list[Array], every: int) -> native.Advance:
+        """Steps of length h over the rows of a grid, from a flow prepared for another; a record after each `every`."""
+        p, t = self.problem, grid[0]
+        if abs(h - prepared) > 1e-12 * h:
+            flow = _rescaled(p.plant, flow, prepared, h)
         tables = (grid[1], grid[2])
-        result = _loop(p.plant).advance(p.plant, p.method, flow, h, tables, max(1, int(per_output)), self.counters)
+        result = _loop(p.plant).advance(p.plant, p.method, flow, h, tables, every, self.counters)
         if result.status:
             where = f" in leg {result.leg + 1}" if 0 <= result.leg < p.plant.legs else ""
             raise ComputationError(
@@ -261,10 +286,12 @@ class _Control:
         return max(float(np.abs(x - y).max(initial=0.0)) / max(s, 1e-9) for x, y, s in groups)
 
 
-def _restarted(problem: Problem, flow: Flow, t: float, h: float) -> Flow:
-    """Flow after the impact of a jump in the commanded rate at time t, with the powers of the new motion."""
-    table, wrench = problem.tables(np.array([t]))
-    return _first_record(problem.plant, problem.restart(flow, t, h), table, wrench)[0]
+def _restarted(problem: Problem, flow: Flow, t: float, stop: Stop, h: float) -> tuple[Flow, Recording]:
+    """Flow after a jump at time t, prepared for steps h, with the new powers; and what is recorded of it."""
+    now = after(max(t, stop.last))
+    table, wrench = problem.tables(np.array([now]))
+    flow, row = _first_record(problem.plant, problem.restart(flow, now, h), table, wrench)
+    return flow, unpack(problem.plant, np.array([t]), row)
 
 
 def _first_record(plant: Plant, flow: Flow, table: Array, wrench: Array) -> tuple[Flow, Array]:

@@ -1,6 +1,6 @@
 """What a time integration works on, whatever its body: flat arrays, held coordinates, tables."""
 
-from dataclasses import dataclass, field, replace
+from dataclasses import dataclass, field, fields, replace
 from functools import cached_property
 
 import numpy as np
@@ -103,6 +103,12 @@ class Recording:
     energy: Array
     sums: Array
     closure: Array
+
+    def ending(self, last: "Recording") -> "Recording":
+        """The same with another last instant."""
+        names = [field.name for field in fields(self) if field.name != "time"]
+        ends = {name: np.concatenate([getattr(self, name)[:-1], getattr(last, name)]) for name in names}
+        return replace(self, **ends)
 
 
 def record_width(plant: Plant) -> int:

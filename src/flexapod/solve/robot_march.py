@@ -12,11 +12,12 @@ from flexapod.model import Study
 from flexapod.rigid.kinematics import BETA_LIMIT
 from flexapod.rigid.rotations import matrix
 from flexapod.solve.equilibrium import equilibrium, refuse_fallen
-from flexapod.solve.march import Chunk, Problem, initial_step, march, restart_outputs
+from flexapod.solve.march import Chunk, Problem, initial_step, march
 from flexapod.solve.modes import refuse_pure_force
 from flexapod.solve.plant import TABLE, Counters, Flow, Plant, Recording
 from flexapod.solve.rest import rest_load
 from flexapod.solve.start import Start, consistent_start
+from flexapod.solve.stops import Stops
 from flexapod.solve.system import RobotSystem, State, rigid_state, robot_system
 from flexapod.solve.tables import Commands, command_law
 from flexapod.typing import Array
@@ -69,15 +70,16 @@ def prepare(study: Study, state: State | None = None) -> RobotMarch:
     state = _configuration(study, system) if state is None else state
     start = consistent_start(system, state, commands, method, step)
     plant, counters, output_step = _plant(system), Counters(), simulation.stored_step
+    outputs = simulation.outputs(study.duration)
     problem = Problem(
         plant=plant,
         method=method,
         tables=lambda t: _tables(law(t)),
         output_step=output_step,
-        outputs=simulation.outputs(study.duration),
+        outputs=outputs,
         measure=_Measure(study, plant, path),
         restart=lambda flow, t, h: _after_impact(system, flow, law(np.array([t])), method, h),
-        restarts=restart_outputs(study.motion.rate_jumps, output_step),
+        stops=Stops.of(rigid.robot_breaks(study), output_step, simulation.step, outputs),
         check=lambda recording: _check(study, plant, recording),
         tolerance=simulation.tolerance,
     )

@@ -12,7 +12,7 @@ from flexapod.model import ActuatorStudy, Robot, Study
 from flexapod.rigid.kinematics import BETA_LIMIT
 from flexapod.rigid.workspace import LONGEST, PULLED_OUT, SHORTEST
 from flexapod.solve.modes import refuse_pure_force
-from flexapod.study.timing import check_jumps, check_outputs
+from flexapod.study.timing import check_outputs
 from flexapod.typing import Array
 
 __all__ = ["check_actuator_path", "check_geometry", "check_path", "path_instants", "path_remarks"]
@@ -57,7 +57,6 @@ def check_path(study: Study) -> list[str]:
     try:
         if study.initial.start == "equilibrium":
             refuse_pure_force(study.robot, "the equilibrium start")
-        check_jumps(study)
     except InputError as error:
         raise error.located(file=study.path) from None
     return check_geometry(study)
@@ -150,7 +149,6 @@ def check_actuator_path(study: ActuatorStudy) -> list[str]:
     """
     try:
         remarks = check_outputs(study)
-        check_jumps(study)
     except InputError as error:
         raise error.located(file=study.path) from None
     actuator, law = study.actuator, study.motion.extension

@@ -4,9 +4,8 @@ from __future__ import annotations
 
 from flexapod.errors import InputError
 from flexapod.model import ActuatorStudy, Study
-from flexapod.solve.march import restart_outputs
 
-__all__ = ["check_jumps", "check_outputs"]
+__all__ = ["check_outputs"]
 
 MOST_OUTPUTS = 1e8  # a robot keeps 2 kB of each: 200 GB
 
@@ -52,14 +51,3 @@ def check_outputs(study: Study | ActuatorStudy) -> list[str]:
             f"results end at t = {end:g} s"
         )
     return remarks
-
-
-def check_jumps(study: Study | ActuatorStudy) -> None:
-    """Refuse a command whose rate jumps between stored results.
-
-    Raises
-    ------
-    InputError
-        As `solve.march.restart_outputs`.
-    """
-    restart_outputs(study.motion.rate_jumps, study.simulation.stored_step)

@@ -21,6 +21,7 @@ from flexapod.solve.kernel import NAMES, SOURCES, Kernel
 from flexapod.solve.march import Problem, Tables, march
 from flexapod.solve.plant import TABLE, Counters, Flow, Plant, Recording
 from flexapod.solve.start import consistent_start
+from flexapod.solve.stops import Stops
 from flexapod.solve.system import RobotSystem, State
 from flexapod.solve.tables import Commands
 from flexapod.symbolic import lagrange, vocabulary
@@ -120,7 +121,7 @@ def _problem(system: RobotSystem, method: GeneralizedAlpha, tables: Tables, dura
         outputs=OUTPUTS,
         measure=lambda recording: [recording.pose],
         restart=lambda flow, t, h: flow,
-        restarts=(),
+        stops=Stops(output_step=duration / OUTPUTS),
         check=lambda recording: None,
         tolerance=None,
     )

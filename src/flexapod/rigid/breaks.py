@@ -1,0 +1,125 @@
+"""Instants at which commands and loads are not smooth; steps of the time integration end there, Eq. (T6.17)."""
+
+from __future__ import annotations
+
+from dataclasses import dataclass
+
+import numpy as np
+
+from flexapod.model import (
+    ActuatorStudy,
+    AxisMotion,
+    CombinedMotion,
+    CsvLaw,
+    CsvWrench,
+    ForceDrive,
+    LoadLaw,
+    Motion,
+    MotionLaw,
+    ProfileLaw,
+    StepLaw,
+    StepWrench,
+    Study,
+    WaypointMotion,
+)
+from flexapod.model import Wrench as WrenchLaw
+from flexapod.rigid.laws import TRAPEZOID_FRACTIONS
+from flexapod.typing import Array
+
+__all__ = ["Breaks", "actuator_breaks", "robot_breaks"]
+
+STRAIGHT = 1e-9  # change of a table's slope, over its largest slope, below which a row is no corner: rounding of text
+
+
+@dataclass(frozen=True, kw_only=True)
+class Breaks:
+    """Instants after t = 0 [s]: `jumps` of a commanded rate or acceleration, of a force or torque; `corners` of forces.
+
+    A corner is a jump in the rate of a force or torque, which itself is continuous there.
+    """
+
+    jumps: tuple[float, ...] = ()
+    corners: tuple[float, ...] = ()
+
+    def __or__(self, other: Breaks) -> Breaks:
+        """Both, each instant once, ascending."""
+        jumps = {*self.jumps, *other.jumps}
+        corners = {*self.corners, *other.corners} - jumps
+        return Breaks(jumps=tuple(sorted(jumps)), corners=tuple(sorted(corners)))
+
+
+def robot_breaks(study: Study) -> Breaks:
+    """Breaks of a robot's commanded motion, of its load and of the force tables of its drives."""
+    far = study.simulation.stored_step
+    found = _motion(study.motion) | _load(study.load.wrench, far)
+    for drive in {id(leg.drive): leg.drive for leg in study.robot.legs}.values():
+        if isinstance(drive, ForceDrive) and drive.time is not None and drive.force is not None:
+            found |= _table(drive.time, drive.force, far)
+    return found
+
+
+def actuator_breaks(study: ActuatorStudy) -> Breaks:
+    """Breaks of the prescribed rotation and extension of an actuator, of its torque and axial force."""
+    far, motion, load = study.simulation.stored_step, study.motion, study.load
+    found = Breaks()
+    for law in (motion.rotation, motion.extension):
+        found |= _scalar(law)
+    for given in (load.torque, load.force):
+        found |= _load(given, far)
+    return found
+
+
+def _motion(motion: Motion) -> Breaks:
+    """Jumps in rate or acceleration of a platform's path."""
+    if isinstance(motion, AxisMotion | CombinedMotion):
+        return _profile(motion.profile, 0.0, motion.duration)
+    found = Breaks()
+    if isinstance(motion, WaypointMotion):
+        for first, last in zip(motion.times[:-1].tolist(), motion.times[1:].tolist(), strict=True):
+            found |= _profile(motion.profile, first, last)
+    return found
+
+
+def _scalar(law: MotionLaw | None) -> Breaks:
+    return _profile(law.law, 0.0, law.duration) if isinstance(law, ProfileLaw) else Breaks()
+
+
+def _profile(profile: str, first: float, last: float) -> Breaks:
+    """Jumps in the rate of `linear` and in the acceleration of `trapezoid`; the other profiles have none."""
+    if profile == "linear":
+        ends = [first, last]
+    elif profile == "trapezoid":
+        ends = [first, *(first + (last - first) * np.cumsum(TRAPEZOID_FRACTIONS[:-1])).tolist(), last]
+    else:
+        ends = []
+    return Breaks(jumps=tuple(t for t in ends if t > 0))
+
+
+def _load(law: WrenchLaw | LoadLaw | None, far: float) -> Breaks:
+    """Breaks of a wrench, a torque or a force."""
+    if isinstance(law, StepLaw | StepWrench):
+        return Breaks(jumps=(law.time,) if law.time > 0 else ())
+    if isinstance(law, CsvWrench):
+        return _table(law.time, law.wrench, far)
+    if isinstance(law, CsvLaw):
+        return _table(law.time, law.value, far)
+    if isinstance(law, ProfileLaw) and law.law == "linear":
+        return Breaks(corners=(law.duration,))
+    return Breaks()
+
+
+def _table(time: Array, values: Array, far: float) -> Breaks:
+    """Breaks of a table (n,), (n,) or (n, m): two rows at one instant are a jump, a change of slope is a corner.
+
+    Rows with neighbours nearer than `far` [s] on both sides are samples of a curve and not corners.
+    """
+    columns = values.reshape(len(time), -1)
+    gap, rise = np.diff(time), np.diff(columns, axis=0)
+    twice = gap == 0
+    slope = np.where(twice[:, None], 0.0, rise / np.where(twice, 1.0, gap)[:, None])
+    change = np.abs(np.diff(slope, axis=0, append=0.0)).max(axis=1)  # of the rows after the first; constant at the end
+    bends = change > STRAIGHT * np.abs(slope).max(initial=0.0)
+    alone = np.maximum(gap, np.append(gap[1:], np.inf)) >= far * (1 - 1e-6)
+    jumps = time[1:][twice & (time[1:] > 0)]
+    corners = time[1:][bends & alone & (time[1:] > 0)]
+    return Breaks(jumps=tuple(jumps.tolist())) | Breaks(corners=tuple(corners.tolist()))
