@@ -15,7 +15,7 @@ from flexapod.errors import InputError
 if TYPE_CHECKING:
     from pint import UnitRegistry
 
-__all__ = ["COMMON_UNITS", "DIMENSIONS", "Dimension", "to_si"]
+__all__ = ["COMMON_UNITS", "DIMENSIONS", "Dimension", "number_and_unit", "to_si"]
 
 
 @dataclass(frozen=True, kw_only=True)
@@ -70,8 +70,19 @@ COMMON_UNITS = {
     "velocity": {"m/s": 1.0, "mm/s": 1e-3},
 }
 
-_TEXT = re.compile(r"^\s*([-+]?(?:\d+\.?\d*|\.\d+)(?:[eE][-+]?\d+)?)\s*(.*?)\s*$")
+_TEXT = re.compile(r"^\s*([-+]?(?:\d+(?:\.\d*|,\d+)?|[.,]\d+)(?:[eE][-+]?\d+)?)(?![\d.,'])\s*(.*?)\s*$")
+_TWO_READINGS = re.compile(r"^\s*[-+]?[1-9]\d{0,2},\d{3}(?!\d)")  # a thousand, or one with three decimals
+_NO_COMMA = "Write the number without a comma, with a point before decimals"
 _ANGLES = ("radian", "degree", "arcminute", "arcsecond", "turn", "revolution", "gradian", "grade")
+
+
+def number_and_unit(text: str) -> tuple[str, str] | None:
+    """The number of a text, with a decimal point, and its unit, "" where it has none.
+
+    None where the text cannot be read, or in two ways: "27,5 mm" is 27.5 mm, "1,000 kg" one kilogram or a thousand.
+    """
+    match = None if _TWO_READINGS.match(text) else _TEXT.match(text)
+    return (match[1].replace(",", "."), match[2]) if match else None
 
 
 def to_si(value: object, dimension: str, *, key: str | None = None) -> float:
@@ -108,10 +119,12 @@ def to_si(value: object, dimension: str, *, key: str | None = None) -> float:
 
 
 def _from_text(text: str, dimension: str, key: str | None) -> float:
-    match = _TEXT.match(text)
-    if match is None:
+    read = number_and_unit(text)
+    if read is None:
+        if _TWO_READINGS.match(text):
+            raise _refuse("has a comma that is a decimal mark or sets thousands apart", text, dimension, key, _NO_COMMA)
         raise _refuse("is not a number with a unit", text, dimension, key)
-    number, unit = match[1], match[2]
+    number, unit = read
     if not unit:
         if dimension == "number":
             return float(number)
@@ -157,9 +170,8 @@ def _article(dimension: str) -> str:
     return f"an {dimension}" if dimension[0] in "aeiou" else f"a {dimension}"
 
 
-def _refuse(what: str, value: object, dimension: str, key: str | None) -> InputError:
+def _refuse(what: str, value: object, dimension: str, key: str | None, next_step: str | None = None) -> InputError:
     wanted = DIMENSIONS[dimension]
     unit = f"in {wanted.unit} or " if wanted.unit else "or "
-    return InputError(
-        what, key=key, value=value, allowed=f'{_article(dimension)}: a number {unit}text such as "{wanted.example}"'
-    )
+    allowed = f'{_article(dimension)}: a number {unit}text such as "{wanted.example}"'
+    return InputError(what, key=key, value=value, allowed=allowed, next_step=next_step)

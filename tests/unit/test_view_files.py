@@ -15,10 +15,12 @@ from flexapod.app.view.files_panel import FilesPanel
 from flexapod.app.view.network import is_expected
 from flexapod.app.view.study_panel import StudyPanel
 from flexapod.app.view.threads import Threads
+from flexapod.app.view.typed import LEFT
 from flexapod.app.view.uploads import LARGEST, MOST_TABLES, Sent, read_upload, store_table
 from flexapod.errors import InputError
 
 TEXT = model.preset_text("paper-robot")
+THREADS = Threads(lambda error: None)
 
 
 @pytest.fixture
@@ -240,11 +242,11 @@ def test_back_to_the_file_and_undo_give_the_text_as_it_was_written(client, befor
     """What the page itself shows in a box came back as an edit: 27.00 mm became 27 mm."""
     text = TEXT.replace(before, after)
     assert text != TEXT
-    panel = StudyPanel(client, Document(text, None), lambda edit: None)
-    turn(client, "diameter [mm]", 30.0)
-    turn(client, "modes", 5)
-    turn(client, "com [mm]", (1.0, 373.0, 0.0))
-    turn(client, "tolerance", 1e-3)
+    panel = StudyPanel(client, Document(text, None), THREADS, lambda edit: None)
+    turn(client, "diameter [mm]", "30" + LEFT)
+    turn(client, "modes", "5" + LEFT)
+    turn(client, "com x [mm]", "1" + LEFT)
+    turn(client, "tolerance", "1e-3" + LEFT)
     changed = panel.document.text
     for written in ('"30 mm"', "modes = 5", '"1 mm", "373', "0.001"):
         assert written in changed
@@ -260,7 +262,7 @@ def test_back_to_the_file_and_undo_give_the_text_as_it_was_written(client, befor
 def test_quick_clicks_are_taken_one_after_the_other(client, monkeypatch):
     """Each click comes in a thread of its own: of two on Undo the first once had the last word."""
     edits: list[str] = []
-    panel = StudyPanel(client, Document(TEXT, None), lambda edit: edits.append(edit.document.text))
+    panel = StudyPanel(client, Document(TEXT, None), THREADS, lambda edit: edits.append(edit.document.text))
     panel._changed("payload.mass", "90 kg")
     panel._changed("payload.mass", "80 kg")
     show, slow, begun = panel._show, [0.3], threading.Event()
@@ -281,7 +283,7 @@ def test_quick_clicks_are_taken_one_after_the_other(client, monkeypatch):
 
 def test_the_slider_turns_what_a_user_turns(client):
     text = TEXT.replace('"27 mm"', '"27.00 mm"').replace('"100 kg"', '"100.0 kg"')
-    panel = StudyPanel(client, Document(text, None), lambda edit: None)
+    panel = StudyPanel(client, Document(text, None), THREADS, lambda edit: None)
     assert panel._knob._choice.value == "leg.piston.diameter"
     before = panel._knob._slider
     panel._knob._choice.value = "payload.mass"  # another slider

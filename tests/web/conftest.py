@@ -1,4 +1,4 @@
-"""A real browser that looks at a real server; skipped where there is no Chromium, unless FLEXAPOD_BROWSER=required."""
+"""A real browser for the page and for reports; skipped where there is no Chromium, unless FLEXAPOD_BROWSER=required."""
 
 import os
 import shutil
@@ -7,6 +7,10 @@ from pathlib import Path
 
 import pytest
 
+from flexapod.app.commands_verify import _write
+from flexapod.app.figures import draw
+from flexapod.app.paper_report import paper_page
+from flexapod.app.report import robot_report
 from flexapod.app.view.document import Document
 from flexapod.app.view.network import free_port
 from flexapod.app.view.opening import open_source
@@ -14,6 +18,10 @@ from flexapod.app.view.server import GONE, View
 from flexapod.app.view.session import Session
 from flexapod.app.view.source import Source
 from flexapod.model import loads, preset_text
+from flexapod.study import modes, run
+from flexapod.study.paper.claim import BREAKS, HOLDS, IN_PART, MISPRINT, NOT, OPEN, REACHES, Claim
+from flexapod.study.paper.study import PaperStudy
+from flexapod.study.verify.pack import verify
 
 HOST = "127.0.0.1"
 ARGUMENTS = ["--no-sandbox", "--use-gl=angle", "--use-angle=swiftshader", "--enable-unsafe-swiftshader"]
@@ -68,6 +76,28 @@ def browser() -> Iterator[object]:
         running = playwright.chromium.launch(executable_path=chromium, args=ARGUMENTS)
         yield running
         running.close()
+
+
+@pytest.fixture(scope="session")
+def axe() -> Callable[[object], list[str]]:
+    """`axe(page)`: what axe-core finds on a page that is critical or serious."""
+    try:
+        from axe_playwright_python.sync_playwright import Axe
+    except ImportError:
+        if os.environ.get("FLEXAPOD_BROWSER") == "required":
+            raise
+        pytest.skip("axe-playwright-python is not installed")
+
+    def findings(page: object) -> list[str]:
+        found = Axe().run(page).response["violations"]
+        return [
+            f"{finding['impact']}: {finding['help']}: {part['html']}"
+            for finding in found
+            if finding["impact"] in ("critical", "serious")
+            for part in finding["nodes"]
+        ]
+
+    return findings
 
 
 def told(error: str) -> bool:
@@ -144,3 +174,57 @@ def show(table, desk, tmp_path) -> Iterator[Callable[..., tuple[object, Session]
     found.cancel()
     assert not desk[2]
     assert found in desk[0].sessions
+
+
+@pytest.fixture(scope="session")
+def reports(tmp_path_factory):
+    """Files of every kind of page that is written: a run's report, the replication, the verification; short runs."""
+    place = tmp_path_factory.mktemp("reports")
+    short = (('duration = "10 s"', 'duration = "1 s"'),)
+    found, results = {}, {}
+    for preset, changes in (("paper-robot", SHORT), ("paper-actuator", short)):
+        study = loads(study_text(*changes, preset=preset))
+        results[preset] = run(study)
+        found[preset] = place / f"{preset}.html"
+        found[preset].write_text(robot_report(study, results[preset]), encoding="utf-8")
+    found["replication"] = place / "replication.html"
+    found["replication"].write_text(replication(results, place), encoding="utf-8")
+    found["verification"] = place / "verification.html"
+    _write(list(verify(["cubic-hexapod", "not-modelled"])), found["verification"], None)
+    return found
+
+
+def replication(results, place):
+    """The page of `flexapod replicate` with short runs in place of the paper's, and a claim of every verdict."""
+    robot = results["paper-robot"]
+    parts = {name: robot for name in ("robot", "robot-rigid", "jump")}
+    parts |= {"actuator-3": results["paper-actuator"], "modes": modes(loads(robot.attrs["study"]))}
+    verdicts = (HOLDS, IN_PART, NOT, REACHES, BREAKS, OPEN, MISPRINT)
+    claims = [Claim(where="Fig. 9", says="5 mm", ours="3 µm", verdict=v, reason="Legs are stiff.") for v in verdicts]
+    return paper_page(PaperStudy(parts=parts), claims, {"Robot": draw(robot, place / "figures", ("png",))})
+
+
+@pytest.fixture
+def read(browser, reports) -> Iterator[Callable[..., object]]:
+    """`read(preset)`: the report in a window of its own; fails on an error in it, or if it asks for anything."""
+    contexts, errors, asked = [], [], []
+
+    def go(preset: str = "paper-robot", **settings: object) -> object:
+        context = browser.new_context(**({"viewport": {"width": 1100, "height": 900}} | settings))
+        contexts.append(context)
+        page = context.new_page()
+        page.set_default_timeout(60_000)  # the machine may be busy: what is waited for comes, or the test is wrong
+        page.on("pageerror", lambda error: errors.append(str(error)))
+        page.on("console", lambda said: errors.append(said.text) if said.type == "error" else None)
+        page.on("request", lambda request: asked.append(request.url))
+        page.goto(reports[preset].as_uri())
+        if settings.get("java_script_enabled", True):
+            page.locator("html[data-ready=yes]").wait_for(state="attached")
+        return page
+
+    yield go
+    for context in contexts:
+        context.close()
+    assert not errors
+    outside = [url for url in asked if not url.startswith(("data:", "blob:"))]
+    assert all(url.endswith(".html") for url in outside) and len(outside) == len(contexts)

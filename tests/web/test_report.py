@@ -4,20 +4,10 @@ import base64
 import hashlib
 import json
 import re
-from collections.abc import Callable, Iterator
 from time import monotonic, sleep
 
 import numpy as np
 import pytest
-from tests.web.conftest import SHORT, study_text
-
-from flexapod.app.figures import draw
-from flexapod.app.paper_report import paper_page
-from flexapod.app.report import robot_report
-from flexapod.model import loads
-from flexapod.study import modes, run
-from flexapod.study.paper.claim import BREAKS, HOLDS, IN_PART, MISPRINT, NOT, OPEN, REACHES, Claim
-from flexapod.study.paper.study import PaperStudy
 
 REPLAY = "figure.replay"
 # Contrast of every piece of text that is seen with what is behind it, by the formula of WCAG 2.2.
@@ -55,58 +45,6 @@ NAMELESS = """() => [...document.querySelectorAll("a, button, input, select, img
   .filter((part) => part.getClientRects().length)
   .filter((part) => !(part.ariaLabel || part.alt || part.textContent.trim() || part.labels?.length))
   .map((part) => part.outerHTML.slice(0, 200))"""
-
-
-@pytest.fixture(scope="module")
-def reports(tmp_path_factory):
-    """Files of the reports of a robot, of an actuator, and of the replication, all with short runs."""
-    place = tmp_path_factory.mktemp("reports")
-    short = (('duration = "10 s"', 'duration = "1 s"'),)
-    found, results = {}, {}
-    for preset, changes in (("paper-robot", SHORT), ("paper-actuator", short)):
-        study = loads(study_text(*changes, preset=preset))
-        results[preset] = run(study)
-        found[preset] = place / f"{preset}.html"
-        found[preset].write_text(robot_report(study, results[preset]), encoding="utf-8")
-    found["replication"] = place / "replication.html"
-    found["replication"].write_text(replication(results, place), encoding="utf-8")
-    return found
-
-
-def replication(results, place):
-    """The page of `flexapod replicate` with short runs in place of the paper's, and a claim of every verdict."""
-    robot = results["paper-robot"]
-    parts = {name: robot for name in ("robot", "robot-rigid", "jump")}
-    parts |= {"actuator-3": results["paper-actuator"], "modes": modes(loads(robot.attrs["study"]))}
-    verdicts = (HOLDS, IN_PART, NOT, REACHES, BREAKS, OPEN, MISPRINT)
-    claims = [Claim(where="Fig. 9", says="5 mm", ours="3 µm", verdict=v, reason="Legs are stiff.") for v in verdicts]
-    return paper_page(PaperStudy(parts=parts), claims, {"Robot": draw(robot, place / "figures", ("png",))})
-
-
-@pytest.fixture
-def read(browser, reports) -> Iterator[Callable[..., object]]:
-    """`read(preset)`: the report in a window of its own; fails on an error in it, or if it asks for anything."""
-    contexts, errors, asked = [], [], []
-
-    def go(preset: str = "paper-robot", **settings: object) -> object:
-        context = browser.new_context(**({"viewport": {"width": 1100, "height": 900}} | settings))
-        contexts.append(context)
-        page = context.new_page()
-        page.set_default_timeout(60_000)  # the machine may be busy: what is waited for comes, or the test is wrong
-        page.on("pageerror", lambda error: errors.append(str(error)))
-        page.on("console", lambda said: errors.append(said.text) if said.type == "error" else None)
-        page.on("request", lambda request: asked.append(request.url))
-        page.goto(reports[preset].as_uri())
-        if settings.get("java_script_enabled", True):
-            page.locator("html[data-ready=yes]").wait_for(state="attached")
-        return page
-
-    yield go
-    for context in contexts:
-        context.close()
-    assert not errors
-    outside = [url for url in asked if not url.startswith(("data:", "blob:"))]
-    assert all(url.endswith(".html") for url in outside) and len(outside) == len(contexts)
 
 
 def chart(page, which=0):

@@ -183,9 +183,9 @@ def test_scene_chart_and_slider_show_the_same_stored_instant(visit):
     """Between two outputs, 40 ms apart, one part of the page took the nearest one, another interpolated."""
     session = visit(study_text(*SHORT, ("tolerance = 1e-4", 'tolerance = 1e-4\noutput_step = "40 ms"')))
     panel, data = session.time_panel, session.data
-    panel._slider.value = 0.0617
+    panel._dial.value = 0.0617
     panel._scrubbed()
-    assert panel._slider.value == pytest.approx(0.08)
+    assert panel._dial.value == pytest.approx(0.08)
     assert "At 0.08 s" in panel._view._values.content
     panel._choice.value = "leg forces"
     panel._draw_chart()
@@ -271,23 +271,24 @@ def test_the_page_says_how_modes_are_drawn_and_sliders_fit_the_robot(visit):
     modes = session.modes_panel._inside
     until(lambda: "drawn at 0.5 Hz" in modes._show._note.content)
     assert "100 % of the robot's size: 900 mm" in unescape(modes._show._note.content)  # base joints to platform joints
-    assert (modes._pose["heave"].min, modes._pose["heave"].max, modes._pose["heave"].step) == (-500.0, 500.0, 1.0)
+    assert (*modes._pose["heave"].ends, modes._pose["heave"].step) == (-500.0, 500.0, 1.0)
     small = SimpleNamespace(robot=SimpleNamespace(home_lengths=np.full(6, 0.0092)))  # legs of 9.2 mm
     modes._pose["heave"].value = 80.0
     modes._fit(small)
     heave = modes._pose["heave"]
-    assert (heave.min, heave.max, heave.value, heave.precision) == (-5.0, 5.0, 5.0, 2)
+    assert (*heave.ends, heave.value, heave._slider.precision) == (-5.0, 5.0, 5.0, 2)
 
 
 def test_a_factor_that_is_being_typed_stays(visit):
     """Who typed 50 got 5 where the picture of the first digit took longer than the second."""
     session = visit(study_text(*SHORT))
     panel = session.time_panel
-    panel._factor._impl.value = 50.0  # has come while 5 is being drawn
+    field = panel._factor._handle
+    field._impl.value = "50"  # has come while 5 is being drawn
     panel._rescale(5.0)
-    assert session.scene.scale == 5.0 and panel._factor.value == 50.0
+    assert session.scene.scale == 5.0 and field.value == "50"
     panel._rescale(None)
-    assert panel._factor.value == session.scene.automatic == session.scene.scale
+    assert float(field.value) == session.scene.automatic == session.scene.scale
 
 
 def test_the_number_that_is_turned_is_written_out(visit):

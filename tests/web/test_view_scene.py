@@ -62,7 +62,7 @@ def row(page, label):
 
 
 def write(page, label, value):
-    row(page, label).locator("input[type=text]").last.fill(str(value))
+    row(page, label).locator("input").last.fill(str(value))
 
 
 def pick(page, label, option):

@@ -83,7 +83,8 @@ def bullets(texts: Sequence[str]) -> str:
 
 def code(text: str, title: str | None = None) -> str:
     """Text as it is; folded away under a title if there is one."""
-    block = f"<pre>{html.escape(text)}</pre>"  # every space as it is: it can be taken out of the page and run
+    name = escape(title or "Text")  # long lines are scrolled, by keys too
+    block = f'<pre tabindex="0" role="group" aria-label="{name}">{html.escape(text)}</pre>'  # every space as it is
     return block if title is None else f"<details><summary>{escape(title)}</summary>{block}</details>"
 
 

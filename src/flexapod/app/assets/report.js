@@ -3,8 +3,11 @@
 
 (() => {
   const root = document.documentElement;
+  // The buttons are listed, and no server is known: plotly itself would offer to send the chart to its cloud.
   const still = { displaylogo: false, responsive: false, doubleClick: "reset", showTips: false,
-    modeBarButtonsToRemove: ["select2d", "lasso2d", "autoScale2d"] };
+    showSendToCloud: false, plotlyServerURL: "" };
+  const flat = [["toImage"], ["zoom2d", "pan2d", "zoomIn2d", "zoomOut2d", "resetScale2d"]];
+  const space = [["toImage"], ["zoom3d", "pan3d", "orbitRotation", "tableRotation", "resetCameraDefault3d"]];
   const drawn = new Map(); // plot element -> figure as stored, in the colours of the light page
 
   // Light and dark -------------------------------------------------------------------------------------------------
@@ -94,7 +97,8 @@
     }
     if (now && now.scene) layout.scene.camera = plot.layout.scene.camera;
     layout.uirevision = "kept";
-    return Plotly.react(plot, data, layout, still).then(() => reachable(plot));
+    const settings = { ...still, modeBarButtons: layout.scene ? space : flat };
+    return Plotly.react(plot, data, layout, settings).then(() => reachable(plot));
   }
 
   // Figures --------------------------------------------------------------------------------------------------------

@@ -127,7 +127,7 @@ class ActuatorScene(Scene):
         frame = scene.add_frame("/frame", axes_length=0.15 * reach, axes_radius=0.004 * reach)
         self._add("frames", frame)
         line = {"thickness": 2.0, "thickness_units": "screen"}
-        ghost = scene.add_line_segments("/ghost", _NOTHING, _GHOST, **line)
+        ghost = scene.add_line_segments("/ghost_beam", _NOTHING, _GHOST, **line)
         path = scene.add_line_segments("/path", _NOTHING, _TIP, **line)
         arrow = scene.add_arrows("/deflection", _NOTHING, _TIP, shaft_radius=0.004 * reach, head_radius=0.01 * reach)
         words = scene.add_label("/deflection_length", "", position=_HERE, anchor="bottom-left")

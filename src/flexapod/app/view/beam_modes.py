@@ -2,14 +2,14 @@
 
 from __future__ import annotations
 
-import math
 from typing import TYPE_CHECKING
 
 from flexapod import model
 from flexapod.app.view import words
+from flexapod.app.view.dial import Dial
 from flexapod.app.view.listed_modes import Listed, ListedModes
 from flexapod.app.view.scene_geometry import BEAM_POINTS
-from flexapod.app.view.widgets import by_user
+from flexapod.app.view.threads import Threads
 from flexapod.study.words import number, text
 
 if TYPE_CHECKING:
@@ -28,23 +28,25 @@ class BeamModes(ListedModes[model.ActuatorStudy]):
 
     size = "the free length"
 
-    def _add_controls(self, gui: viser.GuiApi) -> None:
-        self._length = gui.add_slider("free length [m]", 0.0, 1.0, 0.01, 0.5, hint="Length outside the hub")
-        self._count = gui.add_slider("shapes", 1, MOST, 1, 3, hint="Number of lateral shapes, and of modes")
-        for slider in (self._length, self._count):
-            slider.on_update(by_user(lambda: self._moved(QUIET)))
+    def _add_controls(self, gui: viser.GuiApi, threads: Threads) -> None:
+        def moved() -> None:
+            self._moved(QUIET)
+
+        self._length = Dial(
+            gui, threads, "free length", "m", (0.0, 1.0), 0.01, 0.5, moved, dimension="length", hint="Outside the hub"
+        )
+        self._count = Dial(gui, threads, "shapes", "", (1, MOST), 1, 3, moved, hint="Lateral shapes, and modes")
 
     def _fit(self, study: model.ActuatorStudy) -> None:
         actuator = study.actuator
-        self._length.min, self._length.max = 0.05 * actuator.length, actuator.length
-        self._length.precision = max(0, math.ceil(2 - math.log10(actuator.length)))
-        self._length.step, self._length.value = 0.005 * actuator.length, actuator.free_length
+        self._length.fit(0.05 * actuator.length, actuator.length, 0.005 * actuator.length)
+        self._length.value = actuator.free_length
         self._count.value = min(MOST, max(1, study.simulation.modes))
 
     def _listed(self, study: model.ActuatorStudy) -> Listed:
         from flexapod.study.beam_modes import beam_modes
 
-        still = _still(study, self._length.value, self._count.value)
+        still = _still(study, self._length.value, int(self._count.value))
         found = beam_modes(still, BEAM_POINTS)
         names = [f"{i}: {number(f, 4)} Hz" for i, f in enumerate(found.frequency, start=1)]
         return Listed(

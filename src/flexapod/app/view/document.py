@@ -10,12 +10,12 @@ from typing import Any
 
 import tomlkit
 
-from flexapod.units import DIMENSIONS, to_si
+from flexapod.app.view.typed import plain
+from flexapod.units import DIMENSIONS, number_and_unit, to_si
 
 __all__ = ["Document", "Quantity", "quantity"]
 
 _STEP = re.compile(r"([^.\[\]]+)|\[(\d+)\]")
-_WRITTEN = re.compile(r"^\s*([-+]?(?:\d+\.?\d*|\.\d+)(?:[eE][-+]?\d+)?)\s*(.*?)\s*$")
 
 
 @dataclass(frozen=True)
@@ -39,10 +39,14 @@ class Document:
         del table[last]
         return Document(tree.as_string(), self.path)
 
+    def value(self, key: str) -> object:
+        """The value at a key path, as written; None where there is none."""
+        return _value(tomllib.loads(self.text), key)
+
     def having(self, keys: Iterable[str]) -> set[str]:
         """Those of the key paths at which there is a value."""
         data = tomllib.loads(self.text)
-        return {key for key in keys if _is_there(data, key)}
+        return {key for key in keys if _value(data, key) is not None}
 
 
 @dataclass(frozen=True)
@@ -65,29 +69,29 @@ class Quantity:
 
     def written(self) -> object:
         """What to write into the file: a number, or a text with the unit."""
-        text = f"{self.number:.12g}"
+        text = plain(self.number)
         if self.unit:
             return f"{text} {self.unit}"
         return int(text) if re.fullmatch(r"[-+]?\d+", text) else float(text)
 
 
 def quantity(value: object) -> Quantity | None:
-    """The number and unit of a written value; None where it is neither a number nor a text that starts with one."""
+    """The number and unit of a written value; None where it is neither a number nor a text that is read as one."""
     if isinstance(value, bool):
         return None
     if isinstance(value, int | float):
         return Quantity(float(value), "")
-    match = _WRITTEN.match(value) if isinstance(value, str) else None
-    return Quantity(float(match[1]), match[2]) if match else None
+    read = number_and_unit(value) if isinstance(value, str) else None
+    return Quantity(float(read[0]), read[1]) if read else None
 
 
-def _is_there(data: Any, key: str) -> bool:
+def _value(data: Any, key: str) -> object:
     for name, index in _STEP.findall(key):
         try:
             data = data[int(index) - 1 if index else name]
         except (LookupError, TypeError):
-            return False
-    return True
+            return None
+    return data
 
 
 def _holder(tree: Any, key: str) -> tuple[Any, str | int]:

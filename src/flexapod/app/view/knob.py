@@ -1,25 +1,26 @@
-"""One slider that turns any number of the study."""
+"""One slider, with a text field above it, that turns any number of the study."""
 
 from __future__ import annotations
 
+import math
 import threading
-from collections.abc import Sequence
+from collections.abc import Callable, Sequence
 from typing import TYPE_CHECKING
 
 from flexapod.app.view import words
 from flexapod.app.view.document import Quantity, quantity
 from flexapod.app.view.fields import Field
-from flexapod.app.view.widgets import by_user
+from flexapod.app.view.threads import Threads
+from flexapod.app.view.typed import TypedText, by_user, plain, written
 
 if TYPE_CHECKING:
     from viser import ClientHandle, GuiDropdownHandle, GuiSliderHandle
-
-    from flexapod.app.view.widgets import Changed
 
 __all__ = ["Knob"]
 
 FIRST = ("leg.piston.diameter", "payload.mass", "actuator.EI")
 PARTS = 200  # steps of the slider
+DIGITS = 12  # of a number that is turned
 _NONE: tuple[str, ...] = ("",)
 
 
@@ -29,12 +30,24 @@ class Knob:
     Parameters
     ----------
     client : viser.ClientHandle
-    changed : callable
-        Called with key and value to write while the slider is dragged.
+    threads : Threads
+        Of the session.
+    turned, entered : callable
+        Called with key and value to write while the slider is dragged, and where a number is typed.
+    left : callable
+        As `widgets.Left`.
     """
 
-    def __init__(self, client: ClientHandle, changed: Changed) -> None:
-        self._gui, self._changed, self._fields = client.gui, changed, dict[str, Field]()
+    def __init__(
+        self,
+        client: ClientHandle,
+        threads: Threads,
+        turned: Callable[[str, object], None],
+        entered: Callable[[str, object], None],
+        left: Callable[[str, bool], None],
+    ) -> None:
+        self._gui, self._slid, self._fields = client.gui, turned, dict[str, Field]()
+        self._entered, self._field_left, self._typing = entered, left, False
         self._lock = threading.RLock()  # numbers are chosen in one thread and turned in another
         self._slider: GuiSliderHandle[float] | None = None
         self._folder = client.gui.add_folder("Turn a number")
@@ -42,7 +55,8 @@ class Knob:
             self._choice: GuiDropdownHandle[str] = client.gui.add_dropdown(
                 "number", _NONE, hint="The number that the slider changes", order=0
             )
-            self._words = client.gui.add_html("", order=2)  # the slider's own field cuts long numbers
+            self._text = TypedText(client.gui, threads, "value", "", self._typed, self._left, order=1)
+            self._words = client.gui.add_html("", order=3)
         self._choice.on_update(lambda _: self._chosen())
 
     def show(self, fields: Sequence[Field], aim: bool) -> None:
@@ -63,13 +77,15 @@ class Knob:
     def _tell(self) -> None:
         """Write the chosen number out."""
         field = self._fields.get(self._choice.value)
+        if not self._typing:
+            self._show_text()
         content = "" if field is None else words.block(f"{field.key} = {field.value}", "soft")
         if self._words.content != content:
             self._words.content = content
 
     def _chosen(self) -> None:
         with self._lock:
-            field = self._fields.get(self._choice.value)
+            field, self._typing = self._fields.get(self._choice.value), False
             if field is not None:
                 self._make(field)
                 self._tell()
@@ -80,7 +96,7 @@ class Knob:
         if now is None or (slider is not None and now.number == slider.value):
             return
         if slider is not None and slider.min <= now.number <= slider.max:
-            slider.label, slider.value = _label(field, now), now.number
+            slider.value = now.number
         else:
             self._make(field)
 
@@ -95,17 +111,42 @@ class Knob:
         low, high = min(0.0, reach), max(0.0, reach)
         with self._folder:
             slider = self._gui.add_slider(
-                _label(field, now), low, high, abs(reach) / PARTS, now.number, hint="Drag: the picture follows", order=1
+                "",
+                low,
+                high,
+                abs(reach) / PARTS,
+                now.number,
+                marks=((low, f"{low:.6g}"), (high, f"{high:.6g}")),
+                hint="Drag: the picture follows",
+                order=2,
             )
-        slider.precision = 12
+        slider.precision = min(100, max(0, DIGITS - math.floor(math.log10(abs(reach)))))
         slider.on_update(by_user(lambda: self._turned(field.key, slider.value)))
         self._slider = slider
 
     def _turned(self, key: str, number: float) -> None:
-        field = self._fields.get(key)
+        field, self._typing = self._fields.get(key), False
         now = quantity(field.value) if field is not None else None
         if now is not None:
-            self._changed(key, Quantity(number, now.unit).written())
+            self._slid(key, Quantity(float(f"{number:.{DIGITS}g}"), now.unit).written())
+
+    def _typed(self, text: str, left: bool) -> None:
+        field = self._fields.get(self._choice.value)
+        now = quantity(field.value) if field is not None else None
+        self._typing = not left
+        if field is not None:
+            self._entered(field.key, written(text, now.unit if now is not None else ""))
+
+    def _left(self, empty: bool) -> None:
+        self._typing = False
+        self._field_left(self._choice.value, empty)
+        self._show_text()
+
+    def _show_text(self) -> None:
+        field = self._fields.get(self._choice.value)
+        now = quantity(field.value) if field is not None else None
+        if field is not None and now is not None:
+            self._text.show(plain(now.number), _label(field, now))
 
 
 def _label(field: Field, now: Quantity) -> str:

@@ -57,11 +57,11 @@ class ListedModes(ABC, Generic[Study]):
         self._latest = Latest(threads, self._compute)
         self._words = client.gui.add_html("")
         self._show = ModeShow(client.gui, scene, threads, self._draw, self.size)
-        self._add_controls(client.gui)
+        self._add_controls(client.gui, threads)
         self._table = client.gui.add_html("")
 
     @abstractmethod
-    def _add_controls(self, gui: viser.GuiApi) -> None:
+    def _add_controls(self, gui: viser.GuiApi, threads: Threads) -> None:
         """Inputs of what the modes depend on besides the study."""
 
     @abstractmethod

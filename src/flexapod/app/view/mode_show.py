@@ -11,10 +11,11 @@ from typing import TYPE_CHECKING
 from viser import Icon
 
 from flexapod.app.view import words
+from flexapod.app.view.dial import Dial
 from flexapod.app.view.player import Player
 from flexapod.app.view.scene import Scene
 from flexapod.app.view.threads import Threads
-from flexapod.app.view.widgets import by_user
+from flexapod.app.view.typed import by_user
 from flexapod.study.words import text
 
 if TYPE_CHECKING:
@@ -54,13 +55,11 @@ class ModeShow:
         self._player = Player(scene, threads, self.lock, self._step, self._label)
         self._choice = gui.add_dropdown("mode", [_NONE], initial_value=_NONE)
         self._play = gui.add_button("Animate", icon=Icon.PLAYER_PLAY, disabled=True, hint="Show the chosen mode moving")
-        self._amplitude = gui.add_slider("amplitude [%]", 1.0, 25.0, 0.5, 8.0)
-        self._phase = gui.add_slider("phase [deg]", 0.0, 360.0, 1.0, 90.0)
+        self._amplitude = Dial(gui, threads, "amplitude", "%", (1.0, 25.0), 0.5, 8.0, self._still)
+        self._phase = Dial(gui, threads, "phase", "deg", (0.0, 360.0), 1.0, 90.0, self._still, dimension="angle")
         self._size, self._note = size, gui.add_html("")
         self._choice.on_update(by_user(self.play))
         self._play.on_click(lambda _: self.pause() if self.playing else self.play())
-        for slider in (self._amplitude, self._phase):
-            slider.on_update(by_user(self._still))
 
     @property
     def playing(self) -> bool:

@@ -1,4 +1,4 @@
-"""Above the tabs: what the scene shows, and where that is not the motion, the way back to it."""
+"""Above the tabs: what the scene shows, and the ways back: to its first view, and to the motion."""
 
 from __future__ import annotations
 
@@ -18,17 +18,19 @@ __all__ = ["Picture"]
 
 
 class Picture:
-    """Words on the scene of one user, and a button.
+    """Words on the scene of one user, and two buttons.
 
     Parameters
     ----------
     gui : viser.GuiApi
-    back : callable
-        What the button does.
+    back, reset : callable
+        What the buttons do.
     """
 
-    def __init__(self, gui: viser.GuiApi, back: Callable[[], None]) -> None:
+    def __init__(self, gui: viser.GuiApi, back: Callable[[], None], reset: Callable[[], None]) -> None:
         self._words = gui.add_html("")
+        view = gui.add_button("Reset view", color="gray", icon=Icon.CAMERA, hint="See the whole from where it began")
+        view.on_click(lambda _: reset())
         self._back = gui.add_button(
             "Back to the motion", color="gray", icon=Icon.ARROW_BACK_UP, visible=False, hint="Show the result over time"
         )

@@ -9,10 +9,11 @@ from viser import Icon
 
 from flexapod import model
 from flexapod.app.view import words
+from flexapod.app.view.dial import Dial
 from flexapod.app.view.listed_modes import Listed, ListedModes
 from flexapod.app.view.robot_parts import robot_size
 from flexapod.app.view.robot_scene import pose_words
-from flexapod.app.view.widgets import by_user
+from flexapod.app.view.threads import Threads
 from flexapod.study.words import held, number
 
 if TYPE_CHECKING:
@@ -28,15 +29,19 @@ class RobotModes(ListedModes[model.Study]):
 
     size = "the robot's size"
 
-    def _add_controls(self, gui: viser.GuiApi) -> None:
+    def _add_controls(self, gui: viser.GuiApi, threads: Threads) -> None:
         """Sliders of the pose from home: millimetres and degrees; `_fit` sets how far the former reach."""
+        self._pose: dict[str, Dial] = {}
         with gui.add_folder("Pose from home"):
-            lengths = {name: gui.add_slider(f"{name} [mm]", -1.0, 1.0, 1.0, 0.0) for name in model.AXES[:3]}
-            angles = {name: gui.add_slider(f"{name} [deg]", -60.0, 60.0, 0.5, 0.0) for name in model.AXES[3:]}
+            for name in model.AXES[:3]:
+                self._pose[name] = Dial(
+                    gui, threads, name, "mm", (-1.0, 1.0), 1.0, 0.0, self._moved, dimension="length"
+                )
+            for name in model.AXES[3:]:
+                self._pose[name] = Dial(
+                    gui, threads, name, "deg", (-60.0, 60.0), 0.5, 0.0, self._moved, dimension="angle"
+                )
             home = gui.add_button("Home", icon=Icon.HOME)
-        self._pose = {**lengths, **angles}
-        for slider in self._pose.values():
-            slider.on_update(by_user(self._moved))
         home.on_click(lambda _: self._go_home())
 
     def _fit(self, study: model.Study) -> None:
@@ -44,11 +49,7 @@ class RobotModes(ListedModes[model.Study]):
         reach = 500.0 * float(study.robot.home_lengths.mean())
         reach = float(f"{reach:.1g}")
         for name in model.AXES[:3]:
-            slider = self._pose[name]
-            slider.min, slider.max, slider.step = -reach, reach, reach / 500
-            slider.precision = max(0, math.ceil(-math.log10(slider.step)))
-            if abs(slider.value) > reach:
-                slider.value = math.copysign(reach, slider.value)
+            self._pose[name].fit(-reach, reach, reach / 500)
 
     def _listed(self, study: model.Study) -> Listed:
         from flexapod import study as fx
@@ -78,6 +79,6 @@ class RobotModes(ListedModes[model.Study]):
         return {name: unit * self._pose[name].value for name, unit in zip(model.AXES, units, strict=True)}
 
     def _go_home(self) -> None:
-        for slider in self._pose.values():
-            slider.value = 0.0
+        for dial in self._pose.values():
+            dial.value = 0.0
         self._moved()

@@ -71,6 +71,7 @@ class Scene(ABC):
         self._parts: dict[str, list[Any]] = {name: [] for name in PARTS}
         self._now: tuple[str, ...] = ()
         self._closed = False
+        self._view: tuple[Array, Array]
 
     @property
     def points(self) -> tuple[str, ...]:
@@ -219,8 +220,13 @@ class Scene(ABC):
         """Draw anew what depends on the factor but not on time."""
 
     def _look(self, away: Array, at: Array) -> None:
-        """Place the camera `away` from what it looks `at`, (3,) [m] each."""
-        camera = self.client.camera
+        """Place the camera `away` from what it looks `at`, (3,) [m] each; so it stands again after `reset_view`."""
+        self._view = away, at
+        self.reset_view()
+
+    def reset_view(self) -> None:
+        """Place the camera where it was at first."""
+        camera, (away, at) = self.client.camera, self._view
         camera.up_direction = (0.0, 0.0, 1.0)
         camera.position, camera.look_at = at + away, at
 

@@ -20,6 +20,7 @@ from flexapod.app.view.files_panel import FilesPanel
 from flexapod.app.view.header import Header
 from flexapod.app.view.latest import Latest
 from flexapod.app.view.limits import refuse_length
+from flexapod.app.view.page import prepare
 from flexapod.app.view.picture import Picture
 from flexapod.app.view.quick import coarse, is_quick, preview_words
 from flexapod.app.view.robot_scene import RobotScene
@@ -199,15 +200,16 @@ class Session:
         from flexapod.app.view.time_panel import TimePanel
 
         gui = self.client.gui
+        prepare(self.client, _name(document))
         self.header = Header(self.client, _name(document), self.simulate, self.cancel)
         self.scene: Any = RobotScene(self.client) if isinstance(self.study, model.Study) else ActuatorScene(self.client)
         self.scene.show_study(self.study)  # first of all: it is what takes the browser longest
-        self._picture = Picture(gui, self._back)
+        self._picture = Picture(gui, self._back, self.scene.reset_view)
         tabs = gui.add_tab_group()
         with tabs.add_tab("Time", icon=Icon.CLOCK):
             self.time_panel = TimePanel(self.client, self.scene, self._threads, self._point_chosen)
         with tabs.add_tab("Study", icon=Icon.ADJUSTMENTS):
-            self.study_panel = StudyPanel(self.client, document, self._edited)
+            self.study_panel = StudyPanel(self.client, document, self._threads, self._edited)
         with tabs.add_tab("Modes", icon=Icon.WAVE_SINE):
             self.modes_panel = ModesPanel(self.client, self.scene, self._threads)
         with tabs.add_tab("Files", icon=Icon.FOLDER):

@@ -17,6 +17,7 @@ from flexapod.app.view.knob import Knob
 from flexapod.app.view.long_lists import parted, without_rows
 from flexapod.app.view.preview import preview_html
 from flexapod.app.view.structure import Offer, offers
+from flexapod.app.view.threads import Threads
 from flexapod.app.view.widgets import Setter, add_widget, signature
 from flexapod.errors import InputError
 
@@ -37,14 +38,18 @@ class StudyPanel:
     client : viser.ClientHandle
     document : Document
         The study file to begin with.
+    threads : Threads
+        Of the session.
     on_edit : callable
         Called with each `Edit`, valid or refused.
     """
 
-    def __init__(self, client: ClientHandle, document: Document, on_edit: Callable[[Edit], None]) -> None:
-        self._gui, self._original, self._on_edit = client.gui, document, on_edit
-        self.document = document
-        self._lock, self._waiting, self._busy = threading.Lock(), dict[str, tuple[object, bool]](), False
+    def __init__(
+        self, client: ClientHandle, document: Document, threads: Threads, on_edit: Callable[[Edit], None]
+    ) -> None:
+        self._gui, self._original, self._threads, self._on_edit = client.gui, document, threads, on_edit
+        self.document = self._valid = document  # as it is, and as it was when it was valid last
+        self._lock, self._waiting, self._busy = threading.Lock(), dict[str, tuple[object, str]](), False
         self._before: list[Document] = []
         self._taking = threading.RLock()  # each click comes in a thread of its own: one change after the other
         self._fields: dict[str, Field] = {}
@@ -54,7 +59,7 @@ class StudyPanel:
         self._signatures: dict[str, object] = {}
         self._beside: dict[str, Any] = {}
         self._words = self._gui.add_html("")
-        self._knob = Knob(client, self._changed)
+        self._knob = Knob(client, threads, self._turned, self._changed, self._left)
         undo = self._gui.add_button("Undo", color="gray", icon=Icon.ARROW_BACK_UP, hint="Take back the last change")
         reset = self._gui.add_button("Back to the file", color="gray", icon=Icon.FILE, hint="Take back all changes")
         undo.on_click(lambda _: self._undo())
@@ -64,14 +69,27 @@ class StudyPanel:
         self._absent: list[tuple[str, Any]] = []
         self._show(read(document))
 
-    def _typed(self, key: str, value: object) -> None:
-        """Take a value from its input, which shows it already."""
-        self._changed(key, value, typed=True)
+    def _typed(self, key: str, value: object, on: bool) -> None:
+        """Take a value from its input, which shows it already and is left alone while somebody types `on`."""
+        self._changed(key, value, "typed" if on else "left")
 
-    def _changed(self, key: str, value: object, typed: bool = False) -> None:
+    def _turned(self, key: str, value: object) -> None:
+        """Take a value from the slider, which is left alone."""
+        self._changed(key, value, "turned")
+
+    def _left(self, key: str, empty: bool) -> None:
+        """Show in an input that was left what the document has; an empty one gets the last valid value back."""
+        with self._taking:
+            name = key if key in self._fields else key.rpartition("[")[0]
+            if empty and (good := self._valid.value(key)) is not None and good != self.document.value(key):
+                self._changed(key, good, "left")
+            if name in self._fields and name in self._setters:
+                self._setters[name](self._fields[name].value)
+
+    def _changed(self, key: str, value: object, how: str = "") -> None:
         """Take a changed value; while one is being read, only the newest of each key waits."""
         with self._lock:
-            self._waiting[key] = (value, typed)
+            self._waiting[key] = (value, how)
             if self._busy:
                 return
             self._busy = True
@@ -83,7 +101,7 @@ class StudyPanel:
                     self._busy = False
                 raise
 
-    def _next(self) -> dict[str, tuple[object, bool]] | None:
+    def _next(self) -> dict[str, tuple[object, str]] | None:
         """What waits and differs from the document; None, and nobody is busy any more, if there is nothing."""
         with self._lock:
             changes = {key: change for key, change in self._waiting.items() if not self._same(key, change[0])}
@@ -96,7 +114,7 @@ class StudyPanel:
         field = self._fields.get(key)
         return field is not None and type(field.value) is type(value) and field.value == value
 
-    def _apply(self, changes: dict[str, tuple[object, bool]]) -> None:
+    def _apply(self, changes: dict[str, tuple[object, str]]) -> None:
         with self._taking:
             there = self._fields  # a row or a leg may have gone meanwhile
             changes = {key: c for key, c in changes.items() if key in there or key.rpartition("[")[0] in there}
@@ -107,8 +125,12 @@ class StudyPanel:
                 found = chosen(found.document, self._fields[key], str(changes[key][0]))
             if found.document != before:
                 self._before = [*self._before[-99:], before]
-                typed = {key if key in self._fields else key.rpartition("[")[0] for key, (_, t) in changes.items() if t}
-                self._take(found, typed, turned=not typed)
+                typed = {
+                    key if key in self._fields else key.rpartition("[")[0]
+                    for key, (_, how) in changes.items()
+                    if how == "typed"
+                }
+                self._take(found, typed, turned=all(how == "turned" for _, how in changes.values()))
 
     def _apply_offer(self, offer: Offer) -> None:
         with self._taking:
@@ -135,6 +157,8 @@ class StudyPanel:
         Somebody may be typing on, or dragging on, there.
         """
         self.document = found.document
+        if found.error is None:
+            self._valid = found.document
         fields, long = parted(self._readable(found))
         if found.error is not None:  # reading stopped, before the rows perhaps
             there = found.document.having(self._long)
@@ -255,7 +279,7 @@ class StudyPanel:
     def _add(self, fields: list[Field]) -> None:
         """The inputs of one table, and a place for words."""
         for field in fields:
-            self._setters[field.key] = add_widget(self._gui, field, self._typed)
+            self._setters[field.key] = add_widget(self._gui, self._threads, field, self._typed, self._left)
         self._beside[fields[0].table] = self._gui.add_html("")
 
     def _offer(self, absent: list[Field]) -> None:

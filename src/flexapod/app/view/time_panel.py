@@ -2,7 +2,6 @@
 
 from __future__ import annotations
 
-import math
 import threading
 from collections.abc import Callable
 from typing import TYPE_CHECKING
@@ -11,11 +10,13 @@ from viser import Icon
 
 from flexapod.app.view import words
 from flexapod.app.view.charts import Chart, ChartView, charts
+from flexapod.app.view.dial import Dial
 from flexapod.app.view.player import Player
 from flexapod.app.view.scene import PARTS, Scene
 from flexapod.app.view.scene_geometry import nearest
 from flexapod.app.view.threads import Threads
-from flexapod.app.view.widgets import by_user
+from flexapod.app.view.typed import TypedText, by_user, in_unit, plain
+from flexapod.errors import InputError
 from flexapod.study.summary import POINT_WORDS
 
 if TYPE_CHECKING:
@@ -57,13 +58,13 @@ class TimePanel:
         gui = client.gui
         self._hint = gui.add_html(words.block(NONE, "soft"))
         self._play = gui.add_button("Play", icon=Icon.PLAYER_PLAY, disabled=True, hint="Play or pause")
-        self._slider = gui.add_slider("time [s]", 0.0, 1.0, 0.001, 0.0, disabled=True)
+        self._dial = Dial(gui, threads, "time", "s", (0.0, 1.0), 0.001, 0.0, self._scrubbed, dimension="time")
+        self._dial.disabled = True
         self._speed = gui.add_dropdown("speed", tuple(SPEEDS), initial_value="1/4", hint="Time shown per time passed")
         self._choice = gui.add_dropdown("chart", [_NOTHING], initial_value=_NOTHING)
         self._view = ChartView(gui)
-        self._make_look(gui)
+        self._make_look(gui, threads)
         self._play.on_click(lambda _: self.pause() if self._player.playing else self.play())
-        self._slider.on_update(by_user(self._scrubbed))
         self._choice.on_update(by_user(self._draw_chart))
 
     def show_data(self, data: Dataset | None) -> None:
@@ -78,8 +79,9 @@ class TimePanel:
             self._hint.visible = instants < 2
             self._hint.content = words.block(ONE if instants else NONE, "soft")
             if data is not None and instants > 1:
-                self._set_range(float(data.time[1] - data.time[0]))
-            self._play.disabled = self._slider.disabled = instants < 2
+                self._dial.fit(0.0, self._end, float(data.time[1] - data.time[0]))
+                self._dial.value = self._time
+            self._play.disabled = self._dial.disabled = instants < 2
             self._list_points()
             self._list_charts()
             self.follow()
@@ -131,15 +133,15 @@ class TimePanel:
         if self._data is not None:
             instants = self._data.time.values
             shown = float(instants[nearest(instants, self._time)])
-            if always or abs(shown - self._time) > 1e-3 * self._slider.step:
-                self._slider.value = shown
+            if always or abs(shown - self._time) > 1e-3 * self._dial.step:
+                self._dial.value = shown
 
     def _scrubbed(self) -> None:
         with self._lock:
             if self._data is None:
                 return
             self._take_scene()
-            self._time = float(self._slider.value)
+            self._time = float(self._dial.value)
             self._show(slider=False)
 
     def _label(self, playing: bool) -> None:
@@ -147,11 +149,6 @@ class TimePanel:
         self._play.icon = Icon.PLAYER_PAUSE if playing else Icon.PLAYER_PLAY
         if not playing:
             self._view.cursor(self._time)
-
-    def _set_range(self, step: float) -> None:
-        self._slider.max, self._slider.step = self._end, step
-        self._slider.precision = max(0, math.ceil(-math.log10(step)))
-        self._slider.value = self._time
 
     def _list_charts(self) -> None:
         kept = self._choice.value
@@ -164,7 +161,7 @@ class TimePanel:
         with self._lock:
             self._view.show(self._charts.get(self._choice.value), self._time)
 
-    def _make_look(self, gui: viser.GuiApi) -> None:
+    def _make_look(self, gui: viser.GuiApi, threads: Threads) -> None:
         """The folder of what the scene shows and how."""
         with gui.add_folder("Scene"):
             self._color = gui.add_dropdown(
@@ -174,15 +171,21 @@ class TimePanel:
                 "point", tuple(POINT_WORDS.values()), visible=False, hint="Whose path and deviation are shown"
             )
             self._legend = gui.add_html(self.scene.legend())
-            self._factor = gui.add_number(
-                "magnify", 1.0, min=1.0, step=1.0, hint="Factor on all deflections in the picture"
+            self._factor = TypedText(
+                gui,
+                threads,
+                "magnify",
+                "1",
+                self._take_factor,
+                lambda _: self._tell_factor(),
+                hint="Factor on all deflections in the picture, 1 or more",
             )
+            self._factor_words = gui.add_html("")
             self._automatic = gui.add_button("Automatic factor", hint="Largest deflection well visible")
             self._scale_words = gui.add_html("")
             boxes = {name: gui.add_checkbox(name, shown) for name, shown in PARTS.items()}
         self._color.on_update(by_user(self._recolor))
         self._point.on_update(by_user(self._choose_point))
-        self._factor.on_update(by_user(lambda: self._rescale(self._factor.value)))
         self._automatic.on_click(lambda _: self._rescale(None))
         for name, box in boxes.items():
             box.on_update(by_user(lambda name=name, box=box: self.scene.visible(name, box.value)))
@@ -193,6 +196,7 @@ class TimePanel:
         self._legend.content = self.scene.legend()
 
     def _rescale(self, factor: float | None) -> None:
+        self._factor_words.content = ""
         self._take_scene()
         self.scene.set_scale(factor)
         self._tell_scale()
@@ -218,5 +222,19 @@ class TimePanel:
 
     def _tell_scale(self) -> None:
         if self.scene.scale == self.scene.automatic:  # another one is the user's, who may be writing on
-            self._factor.value = self.scene.scale
+            self._tell_factor()
         self._scale_words.content = words.block(self.scene.scale_words(), "soft")
+
+    def _tell_factor(self) -> None:
+        self._factor.show(plain(self.scene.scale))
+
+    def _take_factor(self, text: str, left: bool) -> None:
+        """Draw deflections as many times larger as somebody has typed, or say why not."""
+        try:
+            factor = in_unit(text, "", "number", "magnify")
+            if factor < 1:
+                raise InputError("makes deflections smaller", key="magnify", value=text, allowed="1 or more")
+        except InputError as error:
+            self._factor_words.content = words.error_html(error)
+        else:
+            self._rescale(factor)

@@ -1,76 +1,88 @@
-"""Inputs for the fields of a study: a number with its unit, a vector, a choice; each tells what is to be written."""
+"""Inputs for the fields of a study: a number, a vector, a choice; each tells what is to be written."""
 
 from __future__ import annotations
 
-import math
 from collections.abc import Callable
-from typing import TYPE_CHECKING, Any
+from typing import TYPE_CHECKING
 
 from flexapod.app.view.document import Quantity, quantity
 from flexapod.app.view.fields import Field
+from flexapod.app.view.typed import TypedText, by_user, plain, written
 from flexapod.errors import InputError
 from flexapod.units import DIMENSIONS, to_si
 
 if TYPE_CHECKING:
-    from viser import GuiApi, GuiEvent
+    from viser import GuiApi
 
-__all__ = ["Changed", "Setter", "add_widget", "by_user", "signature"]
+    from flexapod.app.view.threads import Threads
 
-#: Called with a field's key, or the key of one component, and the value to write.
-Changed = Callable[[str, object], None]
+__all__ = ["Changed", "Left", "Setter", "add_widget", "signature"]
+
+#: Called with a field's key, or the key of one component, the value to write, and whether it is still being typed.
+Changed = Callable[[str, object, bool], None]
+#: Called with the key of a field, or of one component, whose input was left, and whether it was empty.
+Left = Callable[[str, bool], None]
 #: Shows another value, as written, without calling back.
 Setter = Callable[[object], None]
 
-DIGITS = 12
-EMPTY = "an empty box leaves the value as it is"  # the browser tells nobody of it
+EMPTY = "a number, or one with a unit; an emptied field gets its value back"
 
 
 def signature(field: Field) -> tuple[object, ...]:
     """What a field's input depends on besides the value: where it differs, another input is needed."""
-    return field.key, field.kind, field.dimensions, field.choices, _units(field)
+    return field.key, field.kind, field.dimensions, field.choices, _rows(field)
 
 
-def add_widget(gui: GuiApi, field: Field, changed: Changed) -> Setter:
+def add_widget(gui: GuiApi, threads: Threads, field: Field, changed: Changed, left: Left) -> Setter:
     """Add the input of a field that has a value."""
     if field.kind == "text":
         return _choice(gui, field, changed) if field.choices else _fixed(gui, field)
-    if field.kind == "whole" and isinstance(field.value, int):
-        return _whole(gui, field, changed)
-    if field.kind == "number" and _units(field) is not None:
-        return _number(gui, field, changed)
-    if field.kind in ("vector", "rows") and _units(field) is not None:
-        return _vectors(gui, field, changed)
-    return _written(gui, field, changed)
+    if field.kind in ("number", "whole"):
+        return _number(gui, threads, field, changed, left)
+    if _rows(field):
+        return _vectors(gui, threads, field, changed, left)
+    return _written(gui, threads, field, changed, left)
 
 
-def by_user(work: Callable[[], Any]) -> Callable[[GuiEvent[Any]], None]:
-    """Work to do where a user, not this program, has set an input."""
-    return lambda event: work() if event.client is not None else None
+def _number(gui: GuiApi, threads: Threads, field: Field, changed: Changed, left: Left) -> Setter:
+    dimension = field.dimensions[0]
+    first, unit = _shown(field.value, "", dimension)
 
+    def taken(text: str, done: bool) -> None:
+        changed(field.key, written(text, unit), not done)
 
-def _number(gui: GuiApi, field: Field, changed: Changed) -> Setter:
-    first, dimension = quantity(field.value) or Quantity(0.0, ""), field.dimensions[0]
-    unit = first.shown_unit(dimension)
-    label = f"{field.name} [{unit}]" if unit else field.name
-    handle = gui.add_number(label, first.number, step=_step(first.number), hint=_hint(field, first.unit, EMPTY))
-    handle.precision = DIGITS
-    handle.on_update(by_user(lambda: changed(field.key, Quantity(handle.value, first.unit).written())))
+    def title() -> str:
+        return _label(field.name, unit, dimension)
+
+    hint = _hint(field, unit)
+    box = TypedText(gui, threads, title(), first, taken, lambda empty: left(field.key, empty), hint=hint)
 
     def show(value: object) -> None:
-        handle.value = (quantity(value) or first).number
+        nonlocal unit
+        text, unit = _shown(value, unit, dimension)
+        box.show(text, title())
 
     return show
 
 
-def _whole(gui: GuiApi, field: Field, changed: Changed) -> Setter:
-    handle = gui.add_number(field.name, int(str(field.value)), step=1, hint=_hint(field, "", EMPTY))
-    handle.on_update(by_user(lambda: changed(field.key, handle.value)))
+def _shown(value: object, unit: str, dimension: str) -> tuple[str, str]:
+    """The text of a number without its unit, and that unit; of what is not one, all of it, and the `unit` before."""
+    found = _readable(value, dimension)
+    return (str(value), unit) if found is None else (plain(found.number), found.unit)
 
-    def show(value: object) -> None:
-        if isinstance(value, int):
-            handle.value = value
 
-    return show
+def _readable(value: object, dimension: str) -> Quantity | None:
+    """A value as the readers of study files take it; None where they do not."""
+    try:
+        to_si(value, dimension)
+    except InputError:
+        return None
+    return quantity(value)
+
+
+def _label(name: str, unit: str, dimension: str) -> str:
+    shown = Quantity(0.0, unit).shown_unit(dimension)
+    return f"{name} [{shown}]" if shown else name
 
 
 def _choice(gui: GuiApi, field: Field, changed: Changed) -> Setter:
@@ -78,7 +90,7 @@ def _choice(gui: GuiApi, field: Field, changed: Changed) -> Setter:
     if field.value not in options:
         options = (*options, str(field.value))
     handle = gui.add_dropdown(field.name, options, initial_value=str(field.value))
-    handle.on_update(by_user(lambda: changed(field.key, handle.value)))
+    handle.on_update(by_user(lambda: changed(field.key, handle.value, True)))
 
     def show(value: object) -> None:
         if value in options:
@@ -93,23 +105,23 @@ def _fixed(gui: GuiApi, field: Field) -> Setter:
     return lambda value: None
 
 
-def _written(gui: GuiApi, field: Field, changed: Changed) -> Setter:
-    """A value whose unit does not fit, as text: the unit can be changed too."""
-    handle = gui.add_text(field.name, str(field.value), hint=_hint(field, ""))
-    handle.on_update(by_user(lambda: changed(field.key, _as_written(handle.value))))
+def _written(gui: GuiApi, threads: Threads, field: Field, changed: Changed, left: Left) -> Setter:
+    """A list that is none of the numbers that are asked for, as text."""
 
-    def show(value: object) -> None:
-        handle.value = str(value)
+    def taken(text: str, done: bool) -> None:
+        changed(field.key, text, not done)
 
-    return show
+    hint = _hint(field, "")
+    box = TypedText(gui, threads, field.name, str(field.value), taken, lambda empty: left(field.key, empty), hint=hint)
+    return lambda value: box.show(str(value))
 
 
-def _vectors(gui: GuiApi, field: Field, changed: Changed) -> Setter:
+def _vectors(gui: GuiApi, threads: Threads, field: Field, changed: Changed, left: Left) -> Setter:
     """Inputs of three numbers each: one for a vector, two for a wrench, one a row for rows."""
-    setters = []
-    for label, key, start in _triples(field):
-        dimension = field.dimensions[start]
-        setters.append((start, key, _triple(gui, label, key, start, dimension, _at(field.value, key, start), changed)))
+    setters = [
+        (start, key, _triple(gui, threads, field, (label, key, start), changed, left))
+        for label, key, start in _triples(field)
+    ]
 
     def show(value: object) -> None:
         for start, key, setter in setters:
@@ -137,66 +149,55 @@ def _at(value: object, key: str, start: int) -> list[object]:
 
 
 def _triple(
-    gui: GuiApi, label: str, key: str, start: int, dimension: str, values: list[object], changed: Changed
+    gui: GuiApi, threads: Threads, field: Field, place: tuple[str, str, int], changed: Changed, left: Left
 ) -> Setter:
-    unit = next((q.unit for q in map(quantity, values) if q is not None and q.unit), "")
-    shown = Quantity(0.0, unit).shown_unit(dimension)
+    """Three numbers in one unit, that of the first which has one."""
+    label, key, start = place
+    dimension, unit = field.dimensions[start], ""
 
-    def numbers(written: object) -> tuple[float, float, float]:
-        found = [quantity(v) or Quantity(0.0, "") for v in (written if isinstance(written, list) else [])]
-        x, y, z = (q.in_unit(unit, dimension).number for q in found)
-        return x, y, z
+    def numbers(values: list[object]) -> list[str]:
+        nonlocal unit
+        found = [_readable(value, dimension) for value in values]
+        unit = next((q.unit for q in found if q is not None and q.unit), "")
+        shown = [None if q is None else q.in_unit(unit, dimension) for q in found]
+        return [str(v) if q is None else plain(q.number) for v, q in zip(values, shown, strict=True)]
 
-    last = numbers(values)
-    title = f"{label} [{shown}]" if shown else label
-    handle = gui.add_vector3(title, last, step=_step(max(map(abs, last))), hint=f"x, y, z; {EMPTY}")
-    handle.precision = DIGITS
+    def taken(i: int) -> Callable[[str, bool], None]:
+        def take(text: str, done: bool) -> None:
+            value = written(text, unit)
+            changed(f"{key}[{start + i + 1}]", 0 if value == written("0", unit) else value, not done)
 
-    def update() -> None:
-        nonlocal last
-        now = handle.value
-        before, last = last, now
-        for i, (number, old) in enumerate(zip(now, before, strict=True), start=start + 1):
-            if number != old:
-                changed(f"{key}[{i}]", Quantity(number, unit if number else "").written())
+        return take
 
-    def show(written: object) -> None:
-        nonlocal last
-        last = numbers(written)
-        handle.value = last
+    def leave(i: int) -> Callable[[bool], None]:
+        return lambda empty: left(f"{key}[{start + i + 1}]", empty)
 
-    handle.on_update(by_user(update))
+    def titles() -> list[str]:
+        return [_label(f"{label} {axis}", unit, dimension) for axis in "xyz"]
+
+    texts = numbers(_at(field.value, key, start))
+    boxes = [
+        TypedText(gui, threads, title, text, taken(i), leave(i), hint=_hint(field, unit))
+        for i, (title, text) in enumerate(zip(titles(), texts, strict=True))
+    ]
+
+    def show(value: object) -> None:
+        shown = numbers(value if isinstance(value, list) else [0.0] * len(boxes))
+        for box, text, title in zip(boxes, shown, titles(), strict=True):
+            box.show(text, title)
+
     return show
 
 
-def _units(field: Field) -> tuple[str, ...] | None:
-    """Units as written of a field's numbers; None where they are no numbers with units that fit."""
-    if field.kind not in ("number", "vector", "rows"):
-        return ()
-    values = [field.value] if field.kind == "number" else field.value
-    if field.kind == "rows" and isinstance(values, list):
-        values = [item for row in values for item in (row if isinstance(row, list) else [None])]
-    if not isinstance(values, list) or len(values) % len(field.dimensions):
-        return None
-    dimensions = field.dimensions * (len(values) // len(field.dimensions))
-    found = []
-    for value, dimension in zip(values, dimensions, strict=True):
-        try:
-            to_si(value, dimension)
-        except InputError:
-            return None
-        written = quantity(value)
-        found.append(written.unit if written else "")
-    return tuple(found) if field.kind == "number" else ()
+def _rows(field: Field) -> int:
+    """How many lists of numbers a field has; 0 where they are not as long as they are asked for."""
+    if field.kind not in ("vector", "rows") or not isinstance(field.value, list):
+        return 0
+    rows = field.value if field.kind == "rows" else [field.value]
+    return len(rows) * all(isinstance(row, list) and len(row) == len(field.dimensions) for row in rows)
 
 
-def _as_written(text: str) -> object:
-    """What a typed text means in a file: a number without a unit, else the text."""
-    found = quantity(text)
-    return found.written() if found is not None and not found.unit else text
-
-
-def _hint(field: Field, unit: str, more: str = "") -> str:
+def _hint(field: Field, unit: str) -> str:
     dimension = field.dimensions[0] if field.dimensions else "number"
     parts = [field.key, "whole number" if field.kind == "whole" else DIMENSIONS[dimension].unit and dimension]
     if field.bounds.words:
@@ -204,9 +205,4 @@ def _hint(field: Field, unit: str, more: str = "") -> str:
         limits = (field.bounds.least, field.bounds.most)
         in_si = any(limit for limit in limits) and si and unit != si
         parts.append(f"allowed: {field.bounds.words}{f' {si}' if in_si else ''}")
-    return "; ".join(part for part in (*parts, more) if part)
-
-
-def _step(value: float) -> float:
-    """A step of the arrows: between a hundredth and a tenth of the value."""
-    return 10.0 ** (math.floor(math.log10(abs(value))) - 1) if value else 0.1
+    return "; ".join(part for part in (*parts, EMPTY) if part)

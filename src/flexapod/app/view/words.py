@@ -12,7 +12,7 @@ from flexapod.errors import FlexapodError
 
 __all__ = ["block", "error_html", "fault_html", "in_room_of", "lines_html", "table_html", "title"]
 
-_COLOURS = {"error": "#c0392b", "warning": "#9a6700", "good": "#2c6e49", "plain": "inherit", "soft": "#777777"}
+_COLOURS = {"error": "#c0392b", "warning": "#9a6700", "good": "#2c6e49", "plain": "inherit", "soft": "#666666"}
 
 
 def block(text: str, kind: str = "plain") -> str:

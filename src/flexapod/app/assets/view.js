@@ -1,0 +1,133 @@
+// Script of the page of `flexapod view`, sent to the browser when a study is opened: what viser's page lacks.
+"use strict";
+
+(title) => {
+  document.title = title;
+  if (window.flexapodPage) return; // another study on the same page
+  window.flexapodPage = true;
+
+  const LEFT = "\u2003"; // as in typed.py: the text of a field that was left
+  const style = document.createElement("style");
+  style.textContent = `
+    :root { --mantine-color-dimmed: #5c636a !important; }
+    .mantine-Button-root { --button-bg: #005aa0 !important; --button-hover: #004a85 !important; }
+    .mantine-Button-root[style*="gray"] { --button-bg: #566069 !important; --button-hover: #454d55 !important; }
+    .mantine-Button-root[style*="red"] { --button-bg: #b3261e !important; --button-hover: #93201a !important; }
+    .mantine-Slider-root + .mantine-NumberInput-root { display: none; }
+    .flexapod-below { margin: -0.5em 0 0.4em; }
+    [role="button"]:focus-visible, canvas:focus-visible { outline: 2px solid #005aa0; outline-offset: -2px; }`;
+  document.head.append(style);
+
+  // Keys --------------------------------------------------------------------------------------------------------
+
+  // viser moves the camera by keys wherever the focus is; here only while it is on the picture.
+  const MOVES = /^(Key[WASDQE]|Arrow(Up|Down|Left|Right))$/;
+  const isPicture = (part) => part instanceof HTMLCanvasElement && /three/.test(part.dataset.engine || "");
+  document.body.addEventListener("keydown", (event) => {
+    if (MOVES.test(event.code) && !isPicture(event.target)) event.stopPropagation();
+  });
+  document.addEventListener("pointerdown", (event) => {
+    if (isPicture(event.target)) event.target.focus({ preventScroll: true });
+    else if (isPicture(document.activeElement)) document.activeElement.blur();
+  }, true);
+
+  // Fields ------------------------------------------------------------------------------------------------------
+
+  const setText = Object.getOwnPropertyDescriptor(HTMLInputElement.prototype, "value").set;
+  const isField = (part) => part instanceof HTMLInputElement && part.dataset.flexapod === "field";
+
+  // Tell the server that a field was left: it reads the text at once, and answers with the text to show, the value
+  // before where the field is empty. viser drops what is sent within 50 ms of something else: it is told again then.
+  function tell(field, text, times = 1) {
+    const told = text + LEFT.repeat(times); // another text each time, or nobody is told
+    setText.call(field, told);
+    field.dispatchEvent(new Event("input", { bubbles: true }));
+    if (times < 5) setTimeout(() => {
+      if (field.isConnected && field.value === told) tell(field, text, times + 1);
+    }, 400);
+  }
+
+  document.addEventListener("focusin", ({ target }) => {
+    if (isField(target)) target.dataset.before = target.value;
+  });
+  document.addEventListener("focusout", ({ target }) => {
+    const text = isField(target) ? target.value.trim() : "";
+    if (isField(target) && (!text || target.value !== target.dataset.before)) tell(target, text);
+  });
+  document.addEventListener("input", ({ isTrusted, target }) => {
+    if (!isTrusted || !isField(target) || !target.value.includes(LEFT)) return;
+    setText.call(target, target.value.replaceAll(LEFT, "")); // somebody writes on
+  }, true);
+  document.addEventListener("keydown", ({ key, target }) => {
+    if (!isField(target) || !["Enter", "Escape"].includes(key)) return;
+    tell(target, key === "Enter" ? target.value.trim() : "");
+  }, true);
+
+  // Names -------------------------------------------------------------------------------------------------------
+
+  const ICONS = { adjustments: "Settings of the page", "arrow-back": "Back from the settings", minus: "Fold away" };
+  const named = (button) => {
+    const icon = button.querySelector("svg")?.classList.value.match(/tabler-icon-([a-z-]+)/)?.[1];
+    return button.closest(".mantine-Notification-root") ? "Close" : ICONS[icon] || icon || "Button";
+  };
+
+  // Labels that belong to no input, sliders and folders without a name or a place among the keys, wrong words.
+  function mend() {
+    let name = ""; // of the field above
+    for (const label of document.querySelectorAll("label[for]")) {
+      const row = label.parentElement.parentElement.parentElement;
+      const thumb = row.querySelector("[role=slider]");
+      name = label.textContent || name;
+      if (thumb) {
+        thumb.setAttribute("aria-label", name);
+        row.classList.add("flexapod-below");
+      } else if (!document.getElementById(label.htmlFor)) {
+        const field = row.querySelector("input[type=text], input:not([type])");
+        if (!field) continue;
+        field.id = label.htmlFor;
+        field.dataset.flexapod = "field";
+        field.autocomplete = "off";
+      }
+    }
+    for (const arrow of document.querySelectorAll(".tabler-icon-chevron-up, .tabler-icon-chevron-down")) {
+      const head = arrow.parentElement;
+      if (head.closest("button, .mantine-Input-wrapper")) continue;
+      head.setAttribute("aria-expanded", String(arrow.classList.contains("tabler-icon-chevron-up")));
+      if (head.role === "button") continue;
+      head.role = "button";
+      head.tabIndex = 0;
+      head.addEventListener("keydown", (event) => {
+        if (event.target !== head || !["Enter", " "].includes(event.key)) return;
+        event.preventDefault();
+        head.click();
+      });
+    }
+    for (const picture of document.querySelectorAll("canvas[data-engine]")) {
+      if (!isPicture(picture) || picture.tabIndex === 0) continue;
+      picture.tabIndex = 0;
+      picture.setAttribute("role", "img");
+      picture.setAttribute("aria-label", "The picture: arrow keys turn it, W, A, S, D, Q and E move it");
+    }
+    for (const button of document.querySelectorAll("button:not([aria-label])")) {
+      if (!button.textContent.trim()) button.setAttribute("aria-label", named(button));
+    }
+    document.querySelector(".mantine-Progress-section")?.setAttribute("aria-label", "Progress of the simulation");
+    for (const words of document.querySelectorAll(".mantine-Notification-description")) {
+      if (words.firstChild?.data === "File uploaded successfully.") {
+        words.firstChild.data = "Sent. The tab Files says whether it is taken.";
+      }
+    }
+  }
+
+  let waits = false;
+  const later = () => {
+    if (waits) return;
+    waits = true;
+    setTimeout(() => {
+      waits = false;
+      mend();
+    }, 50);
+  };
+  new MutationObserver(later).observe(document.body, { childList: true, subtree: true });
+  mend();
+};

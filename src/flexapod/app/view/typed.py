@@ -1,0 +1,137 @@
+"""Text fields for numbers: they take what study files take, read it when the writer pauses or leaves, never shorten it.
+
+viser's own number fields drop what they do not know while it is typed: 2e2 becomes 22, and 1,000 one.
+"""
+
+from __future__ import annotations
+
+from collections.abc import Callable
+from typing import TYPE_CHECKING, Any
+
+from flexapod.app.view.latest import Latest
+from flexapod.app.view.threads import Threads
+from flexapod.errors import InputError
+from flexapod.units import number_and_unit, to_si
+
+if TYPE_CHECKING:
+    from viser import GuiApi, GuiEvent
+
+__all__ = ["LEFT", "TypedText", "by_user", "in_unit", "plain", "written"]
+
+LEFT = "\N{EM SPACE}"
+"""What the page's script adds to the text of a field that is left (`assets/view.js`)."""
+QUIET = 0.4  # time without another letter after which a text is read [s]
+
+
+class TypedText:
+    """A text field.
+
+    Parameters
+    ----------
+    gui : viser.GuiApi
+    threads : Threads
+        Of the session.
+    label, text : str
+        What it shows at first.
+    taken : callable
+        Called with a text that is another than the one before, never an empty one, and whether the field was left.
+    left : callable
+        Called after a field was left, with whether it was empty: it may `show` the value that holds.
+    **look
+        As `viser.GuiApi.add_text` takes it.
+    """
+
+    def __init__(
+        self,
+        gui: GuiApi,
+        threads: Threads,
+        label: str,
+        text: str,
+        taken: Callable[[str, bool], None],
+        left: Callable[[bool], None],
+        **look: Any,
+    ) -> None:
+        self._read_last, self._taken, self._left = text, taken, left
+        self._handle = gui.add_text(label, text, **look)
+        self._latest = Latest(threads, self._read)
+        self._handle.on_update(by_user(self._heard))
+
+    def show(self, text: str, label: str | None = None) -> None:
+        """Show another text in place of whatever is written there."""
+        self._read_last = text
+        if label is not None and self._handle.label != label:
+            self._handle.label = label
+        if self._handle.value != text:
+            self._handle.value = text
+
+    @property
+    def disabled(self) -> bool:
+        """Whether nothing can be typed."""
+        return self._handle.disabled
+
+    @disabled.setter
+    def disabled(self, disabled: bool) -> None:
+        if self._handle.disabled != disabled:
+            self._handle.disabled = disabled
+
+    def remove(self) -> None:
+        """Take it off the page."""
+        self._latest.close()
+        self._handle.remove()
+
+    def _heard(self) -> None:
+        if not self._handle.value.endswith(LEFT):
+            self._latest.request(QUIET)
+            return
+        self._read()
+        if self._handle.value.endswith(LEFT):  # nobody writes on
+            self._left(not self._handle.value.strip())
+
+    def _read(self) -> None:
+        text = self._handle.value.strip()
+        if text and text != self._read_last:
+            self._read_last = text
+            self._taken(text, self._handle.value.endswith(LEFT))
+
+
+def by_user(work: Callable[[], Any]) -> Callable[[GuiEvent[Any]], None]:
+    """Work to do where a user, not this program, has set an input."""
+    return lambda event: work() if event.client is not None else None
+
+
+def written(text: str, unit: str) -> object:
+    """What a typed text means in a study file: a number without a unit is in the one that is shown ("" for SI).
+
+    A text that cannot be read is written as it is: the reader of study files says what is wrong with it.
+    """
+    read = number_and_unit(text)
+    if read is None or read[1]:
+        return text
+    number = read[0]
+    if unit:
+        return f"{number} {unit}"
+    return int(number) if number.lstrip("+-").isdecimal() else float(number)
+
+
+def in_unit(text: str, unit: str, dimension: str, key: str) -> float:
+    """A typed text as a number in the unit that is shown.
+
+    Raises
+    ------
+    InputError
+        As `flexapod.units.to_si`.
+    """
+    read = number_and_unit(text)
+    if read is not None and not read[1]:
+        return to_si(float(read[0]), "number", key=key)
+    try:
+        return to_si(text, dimension, key=key) / (to_si(f"1 {unit}", dimension) if unit else 1.0)
+    except InputError as error:
+        error.value = text
+        raise
+
+
+def plain(number: float) -> str:
+    """A number in the fewest digits that give it back."""
+    text = f"{number:.12g}"
+    return text if float(text) == number else repr(number)

@@ -1,0 +1,163 @@
+"""What viser's page lacks and ours adds: typed numbers, keys that stay in their place, a way back, names for all."""
+
+import numpy as np
+import pytest
+from tests.web.conftest import SHORT, study_text
+from tests.web.guests import until
+
+from flexapod.app.view.dial import SETTLED
+
+ANSWER = "misses its rigid path by up to"
+PICTURE = "canvas[data-engine]"
+ACTUATOR = study_text(('duration = "10 s"', 'duration = "0.2 s"'), preset="paper-actuator")
+
+
+@pytest.fixture
+def opened(show):
+    page, session = show(study_text(*SHORT))
+    page.get_by_text(ANSWER).wait_for()
+    until(lambda: session.data is not None and not session.busy)
+    return page, session
+
+
+def camera(session):
+    """Where the camera is and looks."""
+    found = session.client.camera
+    return np.concatenate([found.position, found.look_at])
+
+
+def stands(session):
+    """Where the camera is once it stands still."""
+    seen = [camera(session)]
+
+    def still():
+        session.table.wait_for_timeout(200)
+        seen.append(camera(session))
+        return np.array_equal(seen[-1], seen[-2])
+
+    until(still)
+    return seen[-1]
+
+
+def test_typed_numbers_mean_what_they_mean_in_a_file(opened):
+    """2e2 became 22, 1.5e2 1.52 and 1,000 one: the page computed another study than the one that was typed."""
+    page, session = opened
+    page.get_by_role("tab", name="Study").click()
+    page.get_by_text("[payload]", exact=True).click()
+    mass = page.get_by_label("mass [kg]", exact=True).first
+    for text, value, shown in (("2e2", 200.0, "200"), ("27,5 kg", 27.5, "27.5"), ("1.5e2", 150.0, "150")):
+        mass.click()
+        mass.fill("")
+        mass.press_sequentially(text)  # letter by letter, as people write
+        mass.press("Enter")
+        until(lambda value=value: session.study.robot.payload.mass == value)
+        until(lambda shown=shown: mass.input_value() == shown)
+    mass.fill("1,000")
+    page.get_by_text("has a comma that is a decimal mark or sets thousands apart").first.wait_for()
+    page.locator("button:disabled", has_text="Simulate").wait_for()
+    assert session.study.robot.payload.mass == 150.0 and mass.input_value() == "1,000"
+    mass.fill("")
+    page.wait_for_timeout(600)
+    assert mass.input_value() == ""  # it is still being written in
+    mass.press("Tab")
+    until(lambda: mass.input_value() == "150" and session._valid)
+    page.get_by_text(ANSWER).wait_for()
+    page.get_by_role("tab", name="Time").click()
+    time = page.get_by_label("time [s]", exact=True).first
+    time.fill("5e-2")
+    page.get_by_text("At 0.05 s, in").wait_for()
+    time.fill("100 ms")
+    page.get_by_text("At 0.1 s, in").wait_for()
+    time.press("Enter")
+    until(lambda: time.input_value() == "0.1")
+    page.get_by_label("magnify", exact=True).fill("1e3")
+    until(lambda: session.scene.scale == 1000.0)
+
+
+def test_keys_in_the_panel_do_not_move_the_camera_and_a_button_brings_it_back(opened):
+    page, session = opened
+    session.table = page
+    first = stands(session)
+    page.get_by_role("tab", name="Time").focus()
+    for key in ("w", "a", "q", "ArrowLeft", "ArrowUp"):
+        page.keyboard.press(key, delay=80)
+    page.get_by_role("slider", name="time [s]").focus()
+    page.keyboard.press("ArrowRight")
+    page.get_by_text("study.toml", exact=True).click()  # nothing has the focus
+    page.keyboard.press("s", delay=80)
+    assert np.array_equal(stands(session), first)
+    page.locator(PICTURE).click(position={"x": 60, "y": 600})
+    page.keyboard.press("s", delay=200)
+    until(lambda: not np.allclose(camera(session), first, atol=1e-3))
+    stands(session)
+    page.get_by_role("button", name="Reset view").click()
+    until(lambda: np.allclose(camera(session), first, atol=1e-3))
+    page.get_by_role("button", name="Reset view").press("d")  # nor do keys move it from there
+    assert np.allclose(stands(session), first, atol=1e-3)
+
+
+def test_slider_and_picture_agree_after_pause_and_arrow_keys(opened):
+    """A time that was on its way to the browser while a key was pressed had the last word there, not in the picture."""
+    page, session = opened
+    panel = session.time_panel
+    slider = page.get_by_role("slider", name="time [s]")
+    page.get_by_role("button", name="Play", exact=True).click()
+    until(lambda: panel._player.playing and panel._time > 0.01)
+    slider.focus()
+    panel.pause()
+    slider.press("ArrowRight")
+    panel._dial._slider._impl.gui_api._websock_interface.queue_message(_late(panel, 0.123))
+    page.wait_for_timeout(1e3 * SETTLED + 500)
+    until(lambda: float(slider.get_attribute("aria-valuenow")) == pytest.approx(session.scene.time, abs=6e-4))
+    assert panel._dial.value == pytest.approx(session.scene.time, abs=6e-4)
+    assert f"At {panel._dial.value:.4g} s" in page.locator(".flexapod-readout").inner_text()
+    assert float(page.get_by_label("time [s]", exact=True).first.input_value()) == panel._dial.value
+
+
+def _late(panel, value):
+    """A value of the slider that was sent before the user moved it."""
+    from viser._messages import GuiUpdateMessage
+
+    return GuiUpdateMessage(panel._dial._slider._impl.uuid, {"value": value})
+
+
+def test_the_tab_is_called_after_the_study_and_a_refused_upload_is_not_called_successful(opened):
+    page, _ = opened
+    assert page.title() == "study.toml - flexapod"
+    page.get_by_role("tab", name="Files").click()
+    with page.expect_file_chooser() as chooser:
+        page.get_by_role("button", name="Study file", exact=True).click()
+    chooser.value.set_files({"name": "bad.toml", "mimeType": "text/plain", "buffer": b"[robot\n"})
+    page.get_by_text("is not valid TOML").first.wait_for()
+    page.get_by_text("The tab Files says whether it is taken.").first.wait_for()
+    assert not page.get_by_text("successfully").count()
+    with page.expect_file_chooser() as chooser:
+        page.get_by_role("button", name="Study file", exact=True).click()
+    chooser.value.set_files({"name": "beam.toml", "mimeType": "text/plain", "buffer": ACTUATOR.encode()})
+    until(lambda: page.title() == "beam.toml - flexapod")
+
+
+def test_nothing_of_a_robot_stays_where_an_actuator_is_drawn(show):
+    """Both had a node /ghost: the beam's rigid line stood where the robot's ghost platform had been, 0.9 m too high."""
+    page, session = show(study_text(*SHORT))
+    until(lambda: session.data is not None and not session.busy)
+    robot = set(session.client.scene._handle_from_node_name)
+    page, session = show(ACTUATOR)
+    until(lambda: session.data is not None and not session.busy)
+    shared = robot & set(session.client.scene._handle_from_node_name)
+    # These stand at the origin in both, or are placed anew.
+    assert shared <= {"", "/WorldAxes", "/frame", "/grid", "/light", "/light_around"}
+
+
+@pytest.mark.parametrize("text", [study_text(*SHORT), ACTUATOR], ids=["robot", "actuator"])
+def test_no_serious_finding_of_axe_on_the_page(show, axe, text):
+    page, session = show(text)
+    until(lambda: session.data is not None and not session.busy)
+    for tab in ("Time", "Study", "Modes", "Files"):
+        page.get_by_role("tab", name=tab).click()
+        page.wait_for_timeout(300)
+        for folder in page.get_by_role("button", expanded=False).all():
+            if folder.is_visible():
+                folder.press("Enter")
+        page.wait_for_timeout(500)
+        assert axe(page) == []
