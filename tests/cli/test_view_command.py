@@ -8,9 +8,13 @@ import subprocess
 import sys
 import urllib.request
 
+import msgspec
 import pytest
+import viser
 from tests.cli.conftest import SHORT
 from tests.cli.test_interrupt import heed_interrupts
+from tests.web.guests import CAMERA, until
+from websockets.sync.client import connect
 
 import flexapod as fx
 from flexapod.app.view import network
@@ -96,6 +100,35 @@ def test_serves_until_ctrl_c(study, folder, options, words):
     assert running.returncode == 0
     assert words in rest and (words or not rest)
     assert wrong == b""
+
+
+@pytest.mark.skipif(sys.platform == "win32", reason="no such signals")
+@pytest.mark.parametrize("kinds", [["SIGINT"], ["SIGTERM"], ["SIGHUP"], ["SIGHUP", "SIGTERM"]])
+def test_however_it_is_ended_nothing_that_was_sent_stays(study, folder, kinds):
+    """Ended by the system, or by the terminal that goes, the tables of those who were there stayed behind."""
+    (sent := folder / "tmp").mkdir()
+    command = [sys.executable, "-m", "flexapod", "view", str(study(*SHORT)), "--no-browser", "--port", "0", "--json"]
+    running = subprocess.Popen(
+        command, cwd=folder, stdout=subprocess.PIPE, stderr=subprocess.PIPE, preexec_fn=heed_interrupts,
+        env=buffered() | {"TMPDIR": str(sent)},
+    )  # fmt: skip
+    try:
+        lines = b""
+        while b"}" not in lines:
+            lines += (line := running.stdout.readline())
+            assert line, "it ended"
+        address = json.loads(lines)["address"].replace("http", "ws")
+        with connect(address, subprotocols=[f"viser-v{viser.__version__}"], max_size=None) as somebody:
+            somebody.send(msgspec.msgpack.encode(CAMERA.as_serializable_dict([])))
+            (until(lambda: [*sent.glob("flexapod-uploads-*")])[0] / "path.csv").write_text("time [s], roll [deg]")
+            for kind in kinds:
+                running.send_signal(getattr(signal, kind))
+            assert running.wait(timeout=60) == 0
+            _, wrong = running.communicate()
+    finally:
+        running.kill()
+    assert [*sent.iterdir()] == []
+    assert wrong.decode() == ""
 
 
 def test_address_as_json(study, folder):

@@ -2,8 +2,10 @@
 
 from __future__ import annotations
 
-import time
+import signal
+import socket
 from pathlib import Path
+from types import FrameType
 from typing import Annotated
 
 import typer
@@ -24,6 +26,10 @@ Port = Annotated[
     int | None,
     typer.Option("--port", metavar="N", min=0, max=65535, help="Port; default: the first free from 8080 on."),
 ]
+Name = Annotated[
+    str | None,
+    typer.Option("--name", metavar="NAME", help="Another name under which the page is reached, as through a proxy."),
+]
 NoBrowser = Annotated[bool, typer.Option("--no-browser", help="Do not open the page in the browser.")]
 
 
@@ -33,7 +39,14 @@ def add(app: typer.Typer) -> None:
 
 
 @guarded
-def view(file: File, host: Host = LOCAL, port: Port = None, no_browser: NoBrowser = False, json: Json = False) -> None:
+def view(
+    file: File,
+    host: Host = LOCAL,
+    port: Port = None,
+    name: Name = None,
+    no_browser: NoBrowser = False,
+    json: Json = False,
+) -> None:
     """Look at a study or its results in the browser: 3D, charts, modes, every number to turn. Ctrl-C ends it."""
     from flexapod.app.view.network import address, free_port
     from flexapod.app.view.opening import open_source
@@ -41,7 +54,8 @@ def view(file: File, host: Host = LOCAL, port: Port = None, no_browser: NoBrowse
     source, free = open_source(file), free_port(host, port)
     from flexapod.app.view.server import View
 
-    running = View(source, host, free)
+    _end_by_signals()
+    running = View(source, host, free, name)
     try:
         page = address(host, running.port)
         _say(page, host, json=json)
@@ -49,12 +63,40 @@ def view(file: File, host: Host = LOCAL, port: Port = None, no_browser: NoBrowse
             import webbrowser
 
             webbrowser.open(page)
-        while True:
-            time.sleep(3600)
+        _wait_for_a_signal()
     except KeyboardInterrupt:
         pass
     finally:
         running.stop()
+
+
+def _end_by_signals() -> None:
+    """End as by Ctrl-C where the system says so (SIGTERM), or the terminal goes (SIGHUP): what was sent is deleted."""
+    kinds = [signal.Signals[kind] for kind in ("SIGTERM", "SIGHUP") if kind in signal.Signals.__members__]
+    ended = False
+
+    def end(_number: int, _frame: FrameType | None) -> None:
+        nonlocal ended
+        if not ended:  # both may come, one after the other: the end itself is not interrupted
+            ended = True
+            raise KeyboardInterrupt
+
+    for kind in kinds:
+        if signal.getsignal(kind) is signal.SIG_DFL:  # nohup has switched SIGHUP off
+            signal.signal(kind, end)
+
+
+def _wait_for_a_signal() -> None:
+    """Sleep until a signal ends it, also where another thread received it: a mere sleep would not wake."""
+    woken, wakes = socket.socketpair()
+    with woken, wakes:
+        wakes.setblocking(False)
+        signal.set_wakeup_fd(wakes.fileno(), warn_on_full_buffer=False)
+        try:
+            while True:
+                woken.recv(1)
+        finally:
+            signal.set_wakeup_fd(-1)
 
 
 def _say(page: str, host: str, *, json: bool) -> None:

@@ -8,7 +8,7 @@ from functools import cache
 
 from flexapod.errors import InputError
 
-__all__ = ["address", "free_port", "is_expected", "is_local"]
+__all__ = ["address", "free_port", "is_expected", "is_local", "is_same_site", "names_in_words"]
 
 FIRST, TRIES = 8080, 100
 
@@ -45,11 +45,11 @@ def is_local(host: str) -> bool:
         return host == "localhost"
 
 
-def is_expected(asked: str, host: str) -> bool:
+def is_expected(asked: str, host: str, name: str | None = None) -> bool:
     """Whether the page was asked for under an address or a name of this machine, which listens on `host`.
 
     A page of another site may have its own name point here (DNS rebinding) and would then count as this site: names
-    that are not this machine's are refused, unless `host` is that name.
+    that are not this machine's are refused, unless `host` or `name` is that name.
 
     Parameters
     ----------
@@ -57,15 +57,45 @@ def is_expected(asked: str, host: str) -> bool:
         The header ``Host``: name and port.
     host : str
         As `free_port`.
+    name : str, optional
+        Another name under which the page is reached, as through a proxy.
     """
-    name = (asked.rpartition("]")[0].lstrip("[") or asked.partition(":")[0]).lower().rstrip(".")
+    known = _parts(asked)[0].rstrip(".")
+    if name is not None and known == name.lower().rstrip("."):
+        return True
     if is_local(host):
-        return is_local(name)
+        return is_local(known)
     try:
-        ipaddress.ip_address(name)
+        ipaddress.ip_address(known)
     except ValueError:
-        return name in ("localhost", host.lower()) or name in _own_names()
+        return known in ("localhost", host.lower()) or known in _own_names()
     return True
+
+
+def is_same_site(origin: str, asked: str) -> bool:
+    """Whether the header ``Origin`` names the site that the header ``Host`` asks for.
+
+    The scheme may be https: a proxy before this server may speak TLS. A port that is not given is the scheme's own.
+    """
+    scheme, _, place = origin.lower().partition("://")
+    own = {"http": "80", "https": "443"}.get(scheme)
+    if own is None:
+        return False
+    (there, port), (here, asked_port) = _parts(place), _parts(asked)
+    return there == here and (port or own) == (asked_port or own)
+
+
+def names_in_words(host: str, name: str | None) -> str:
+    """Under what the page is served."""
+    listed = ["127.0.0.1", "localhost"] if is_local(host) else ["its address", "localhost", "the name of this machine"]
+    return ", ".join(listed + ([name] if name else [])) + " (flexapod view --name NAME adds one)"
+
+
+def _parts(asked: str) -> tuple[str, str]:
+    """Name, in lower case, and port of ``name:port``, ``[::1]:port``; the port is "" where there is none."""
+    bracketed, found, rest = asked.lower().rpartition("]")
+    name, _, port = (bracketed.lstrip("["), "", rest.lstrip(":")) if found else asked.lower().partition(":")
+    return name, port
 
 
 @cache

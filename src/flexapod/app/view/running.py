@@ -1,4 +1,4 @@
-"""A simulation in a thread of its own, which waits for a free core and can be cancelled."""
+"""A simulation in a thread of its own, which waits for a free core, lets shorter ones pass and can be cancelled."""
 
 from __future__ import annotations
 
@@ -7,7 +7,7 @@ import time
 from typing import TYPE_CHECKING, Protocol
 
 from flexapod import model
-from flexapod.app.view.cores import Cores
+from flexapod.app.view.cores import Cores, Turn
 from flexapod.app.view.threads import Threads
 
 if TYPE_CHECKING:
@@ -52,6 +52,7 @@ class Run:
     ) -> None:
         self.study, self._threads, self._cores, self._watcher = study, threads, cores, watcher
         self._cancelled = threading.Event()
+        self._turn, self._has_place = Turn(), False
         self._reported = 0.0
 
     def start(self) -> None:
@@ -69,14 +70,26 @@ class Run:
         return self._cancelled.is_set()
 
     def _run(self) -> None:
-        if not self._cores.take(self._cancelled.is_set, lambda: self._watcher.waits(self)):
+        if not self._cores.take(self._turn, self._cancelled.is_set, lambda: self._watcher.waits(self)):
             return
+        self._has_place = True
         try:
             self._watcher.begins(self)
             found = self._computed()
         finally:
-            self._cores.give_back()
+            self._give_back()
         self._watcher.ended(self, found)
+
+    def _give_back(self) -> None:
+        if self._has_place:
+            self._has_place = False
+            self._cores.give_back(self._turn)
+
+    def _let_others_compute(self) -> None:
+        """Between two chunks of steps: give the place to who has computed less, and wait for the next one."""
+        if self._cores.is_wanted(self._turn):
+            self._give_back()
+            self._has_place = self._cores.take(self._turn, self._cancelled.is_set, _nothing)
 
     def _computed(self) -> Dataset | BaseException:
         from flexapod import study
@@ -87,8 +100,13 @@ class Run:
             return error
 
     def _progress(self, reached: float, duration: float) -> None:
+        self._let_others_compute()
         if self.cancelled:
             raise KeyboardInterrupt  # a simulation keeps what it has and ends as after Ctrl-C
         if time.monotonic() - self._reported > REPORTS:
             self._reported = time.monotonic()
             self._watcher.progress(self, min(1.0, reached / duration) if duration > 0 else 1.0)
+
+
+def _nothing() -> None:
+    """Who has shown progress does not say that it waits: its bar stands."""

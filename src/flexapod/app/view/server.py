@@ -4,33 +4,37 @@ from __future__ import annotations
 
 import asyncio
 import contextlib
+import gc
 import io
-import logging
 import threading
 import traceback
 import warnings
-from collections.abc import Callable
-from concurrent.futures import Future, ThreadPoolExecutor
-from typing import TYPE_CHECKING, Any
+from typing import TYPE_CHECKING, Any, cast
 
 import viser
 
 from flexapod.app.view.cores import Cores
-from flexapod.app.view.network import is_expected
+from flexapod.app.view.door import Door
+from flexapod.app.view.latest import Latest
+from flexapod.app.view.logs import LOG
+from flexapod.app.view.pool import Pool
+from flexapod.app.view.threads import Threads
 from flexapod.loading import loaded
 
 if TYPE_CHECKING:
     from flexapod.app.view.session import Session
     from flexapod.app.view.source import Source
+    from flexapod.app.view.visitor import Visitor
 
 __all__ = ["GONE", "View"]
 
 GONE = "Queued a .* on a closed connection"
 """What viser remarks where somebody leaves while their page is being drawn: nothing is wrong then."""
 
-POLICY_VIOLATION = 1008  # why a connection is closed, RFC 6455
+GARBLED = r"\[viser\] .* does not match annotation"
+"""What viser remarks of a message that is not as it should be; Python would keep each remark, and the message in it."""
 
-_LOG = logging.getLogger("flexapod.view")
+SETTLED = 0.5  # time after somebody has left, when what they leave is collected [s]
 
 
 class View:
@@ -42,17 +46,24 @@ class View:
         What everybody begins with.
     host, port
         Where to listen; the port must be free (see `free_port`).
+    name : str, optional
+        Another name under which the page is reached, as through a proxy.
     """
 
-    def __init__(self, source: Source, host: str, port: int) -> None:
-        warnings.filterwarnings("ignore", message=GONE)
+    def __init__(self, source: Source, host: str, port: int, name: str | None = None) -> None:
+        for remark in (GONE, GARBLED):
+            warnings.filterwarnings("ignore", message=remark)
         self._source, self._cores = source, Cores()
         self._sessions: dict[int, Session] = {}
         self._lock = threading.Lock()
+        self._leftovers = Latest(Threads(lambda error: self._fault(None, error)), _collect)
+        door = Door(host, name, lambda: self._leftovers.request(SETTLED))
         with contextlib.redirect_stdout(io.StringIO()):  # viser announces itself; the command says where it listens
-            self._server = _Server(host=host, port=port, label="flexapod", verbose=False)
-        self._server._thread_executor = _Guarded(self._fault)
-        self.port, self._host = self._server.get_port(), host
+            with door.before():
+                self._server = _Server(host=host, port=port, label="flexapod", verbose=False)
+        self._server._thread_executor = Pool(self._fault, self._visitor)
+        self._server.get_event_loop().set_exception_handler(_unhandled)
+        self.port = self._server.get_port()
         self._server.gui.configure_theme(
             show_logo=False, show_share_button=False, control_width="large", brand_color=(0, 90, 160)
         )
@@ -76,10 +87,6 @@ class View:
             self._server.stop()
 
     def _connected(self, client: viser.ClientHandle) -> None:
-        if not _from_here(self._server, client, self._host):
-            _LOG.warning("client %s refused: its page came from another site", client.client_id)
-            _hang_up(self._server, client)
-            return
         from flexapod.app.view.session import Session
 
         session = Session(client, self._source, self._cores)
@@ -95,13 +102,16 @@ class View:
         if session is not None:
             session.close()
 
+    def _visitor(self, client_id: int) -> Visitor | None:
+        return cast("Visitor | None", self._server._websock_server._live_connections.get(client_id))
+
     def _fault(self, client_id: int | None, error: BaseException) -> None:
         with self._lock:
             session = self._sessions.get(client_id) if client_id is not None else None
         if session is not None:
             session.fault(error)
         else:
-            _LOG.error("client %s: %s", client_id, "".join(traceback.format_exception(error)))
+            LOG.error("client %s: %s", client_id, "".join(traceback.format_exception(error)))
 
 
 class _Server(viser.ViserServer):
@@ -109,24 +119,6 @@ class _Server(viser.ViserServer):
 
     def request_share_url(self, verbose: bool = True) -> str | None:
         return None
-
-
-class _Guarded(ThreadPoolExecutor):
-    """The pool in which viser calls back; what a callback raises is told to the client that it belongs to."""
-
-    def __init__(self, fault: Callable[[int | None, BaseException], None]) -> None:
-        super().__init__(max_workers=32, thread_name_prefix="flexapod-view")
-        self._fault = fault
-
-    def submit(self, fn: Callable[..., Any], /, *args: Any, **kwargs: Any) -> Future[Any]:
-        return super().submit(self._guarded, fn, *args, **kwargs)
-
-    def _guarded(self, fn: Callable[..., Any], *args: Any, **kwargs: Any) -> Any:
-        try:
-            return fn(*args, **kwargs)
-        except Exception as error:
-            self._fault(getattr(args[0], "client_id", None) if args else None, error)
-            return None
 
 
 def _load() -> None:
@@ -137,15 +129,15 @@ def _load() -> None:
     loaded("xarray")
 
 
-def _hang_up(server: viser.ViserServer, client: viser.ClientHandle) -> None:
-    connection: Any = server._websock_server._live_connections.get(client.client_id)
-    if connection is not None:
-        asyncio.run_coroutine_threadsafe(connection.close(POLICY_VIOLATION), server.get_event_loop())
+def _collect() -> None:
+    """Free what somebody who has left leaves in cycles, before it adds up."""
+    gc.collect()
 
 
-def _from_here(server: viser.ViserServer, client: viser.ClientHandle, host: str) -> bool:
-    """Whether a connection comes from the page of this server, not from a page of some other site."""
-    connection: Any = server._websock_server._live_connections.get(client.client_id)
-    headers = connection.request.headers if connection is not None and connection.request is not None else {}
-    origin, asked = headers.get("Origin"), headers.get("Host", "")
-    return is_expected(asked, host) and (origin is None or origin.partition("://")[2] == asked)
+def _unhandled(loop: asyncio.AbstractEventLoop, context: dict[str, Any]) -> None:
+    """An entry in the log for what viser could not do with a message, without the message."""
+    error = context.get("exception")
+    if error is None:
+        loop.default_exception_handler(context)
+    else:
+        LOG.error("a message had no effect: %.100s", f"{type(error).__name__}: {error}")

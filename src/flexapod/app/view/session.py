@@ -2,7 +2,6 @@
 
 from __future__ import annotations
 
-import logging
 import threading
 import traceback
 from pathlib import Path
@@ -20,6 +19,7 @@ from flexapod.app.view.files_panel import FilesPanel
 from flexapod.app.view.header import Header
 from flexapod.app.view.latest import Latest
 from flexapod.app.view.limits import refuse_length
+from flexapod.app.view.logs import LOG
 from flexapod.app.view.page import prepare
 from flexapod.app.view.picture import Picture
 from flexapod.app.view.quick import coarse, is_quick, preview_words
@@ -38,8 +38,6 @@ if TYPE_CHECKING:
 __all__ = ["Session"]
 
 QUIET = 0.15  # time without a change after which the study is simulated [s]
-
-_LOG = logging.getLogger("flexapod.view")
 
 
 class Session:
@@ -144,7 +142,7 @@ class Session:
         known = isinstance(error, FlexapodError)
         html = words.error_html(error) if known else words.fault_html(error)
         if not known or self.header is None:
-            _LOG.error("client %s: %s", self.client.client_id, "".join(traceback.format_exception(error)))
+            LOG.error("client %s: %s", self.client.client_id, "".join(traceback.format_exception(error)))
         if self.header is None and not self._closed:  # the page is not there yet: the words are all there is
             self.client.gui.add_html(html)
         elif known:

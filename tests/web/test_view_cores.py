@@ -1,0 +1,98 @@
+"""Who computes when: short simulations before long ones, long ones in turns, nobody starved."""
+
+import os
+import threading
+import time
+from collections import Counter
+from contextlib import ExitStack
+
+from tests.web.conftest import LONG, SHORT, study_text
+from tests.web.guests import guest, said, until
+
+import flexapod as fx
+from flexapod.app.view import cores
+from flexapod.app.view.cores import Cores, Turn
+from flexapod.app.view.document import Document
+from flexapod.app.view.source import Source
+
+
+def test_long_simulations_take_turns_and_short_ones_pass(monkeypatch):
+    """Six long ones that never end of themselves, on one place; now and then somebody wants a moment of it."""
+    monkeypatch.setattr(cores, "SLICE", 0.02)
+    monkeypatch.setattr(cores, "LONG", 0.2)
+    places, stop, had, waited = Cores(1), threading.Event(), Counter(), []
+
+    def long(number):
+        turn = Turn()
+        assert places.take(turn, lambda: False, lambda: None)
+        while not stop.is_set():
+            time.sleep(0.002)
+            had[number] += 1
+            if places.is_wanted(turn):
+                places.give_back(turn)
+                assert places.take(turn, lambda: False, lambda: None)
+        places.give_back(turn)
+
+    threads = [threading.Thread(target=long, args=(i,)) for i in range(6)]
+    for thread in threads:
+        thread.start()
+    until(lambda: len(had) == 6)
+    for _ in range(40):
+        turn, begin = Turn(), time.monotonic()
+        assert places.take(turn, lambda: False, lambda: None)
+        waited.append(time.monotonic() - begin)
+        places.give_back(turn)
+        time.sleep(0.02)
+    before = dict(had)
+    until(lambda: all(had[i] > before[i] for i in range(6)))  # and nobody starves
+    stop.set()
+    for thread in threads:
+        thread.join(30)
+    # A slice of 0.02 s, and what a busy machine adds; without turns it is until the long ones end, which they do not.
+    assert sorted(waited)[20] < 0.5
+    assert places._free == 1 and not places._queue
+
+
+def test_short_simulations_without_end_do_not_starve_a_long_one(monkeypatch):
+    monkeypatch.setattr(cores, "LONG", 0.2)
+    places, stop, turn = Cores(1), threading.Event(), Turn(used=100.0)
+
+    def short():
+        while not stop.is_set():
+            mine = Turn()
+            if places.take(mine, stop.is_set, lambda: None):
+                time.sleep(0.01)
+                places.give_back(mine)
+
+    threads = [threading.Thread(target=short) for _ in range(3)]
+    for thread in threads:
+        thread.start()
+    try:
+        assert places.take(turn, lambda: False, lambda: None)
+        places.give_back(turn)
+    finally:
+        stop.set()
+        places.wake()
+    for thread in threads:
+        thread.join(30)
+
+
+def test_six_long_studies_do_not_keep_a_seventh_user_waiting(view):
+    """All were served in order: whoever came after as many long studies as there are cores waited for minutes."""
+    server = view(study_text(*LONG))
+    with ExitStack() as open_pages:
+        for i in range(6):
+            open_pages.enter_context(guest(server))
+            until(lambda count=i + 1: len(server.sessions) == count and all(s.busy for s in server.sessions))
+        six = server.sessions
+        server._source = Source(document=Document(study_text(*SHORT), None), study=fx.loads(study_text(*SHORT)))
+        open_pages.enter_context(guest(server))
+        seventh = until(lambda: [s for s in server.sessions if s not in six])[0]
+        until(lambda: seventh.data is not None)
+        seventh.study_panel._changed("payload.mass", "90 kg")
+        until(lambda: seventh.data is not None and "Preview" in said(seventh))
+        assert all(s.busy for s in six)
+        until(lambda: all(s.header._progress.value > 0 for s in six))  # they go on, all of them
+        six[0].cancel()
+        assert not six[0].busy
+    until(lambda: not server.sessions and server._cores._free == len(os.sched_getaffinity(0)))
