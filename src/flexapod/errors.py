@@ -6,7 +6,7 @@ import difflib
 from collections.abc import Iterable
 from pathlib import Path
 
-__all__ = ["ComputationError", "FlexapodError", "InputError", "closest"]
+__all__ = ["ComputationError", "FlexapodError", "InputError", "closest", "nearest"]
 
 
 class FlexapodError(Exception):
@@ -111,8 +111,14 @@ class InputError(FlexapodError):
 
 def closest(word: str, allowed: Iterable[str]) -> str | None:
     """The allowed word that a mistyped one most resembles, as a question, or None."""
+    found = nearest(word, allowed)
+    return None if found is None else f"Did you mean {found!r}?"
+
+
+def nearest(word: str, allowed: Iterable[str]) -> str | None:
+    """The allowed word that a mistyped one most resembles, or None."""
     found = difflib.get_close_matches(word, list(allowed), n=1, cutoff=0.6)
-    return f"Did you mean {found[0]!r}?" if found else None
+    return found[0] if found else None
 
 
 def _rebuild_computation(kind: type[ComputationError], what: str, next_step: str | None) -> ComputationError:

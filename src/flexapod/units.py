@@ -20,33 +20,39 @@ __all__ = ["COMMON_UNITS", "DIMENSIONS", "Dimension", "number_and_unit", "to_si"
 
 @dataclass(frozen=True, kw_only=True)
 class Dimension:
-    """A physical dimension: its SI unit, an example for messages, whether its unit carries an angle."""
+    """A physical dimension: its SI unit, an example for messages, whether its unit carries an angle.
+
+    `least` and `most` bound the size of what is computed with, in SI: beyond every machine by orders of magnitude, and
+    near enough to 1 that squares and products neither overflow nor vanish.
+    """
 
     unit: str
     example: str
+    least: float
+    most: float
     angle: bool = False
 
 
 DIMENSIONS = {
-    "acceleration": Dimension(unit="m/s^2", example="9.81 m/s^2"),
-    "angle": Dimension(unit="rad", example="20 deg", angle=True),
-    "angular rate": Dimension(unit="rad/s", example="45 deg/s", angle=True),
-    "axial stiffness": Dimension(unit="N", example="115 MN"),
-    "bending stiffness": Dimension(unit="N m^2", example="756.65 N m^2"),
-    "damping": Dimension(unit="N s/m", example="2 kN s/m"),
-    "density": Dimension(unit="kg/m^3", example="7800 kg/m^3"),
-    "force": Dimension(unit="N", example="120 N"),
-    "frequency": Dimension(unit="Hz", example="5 Hz"),
-    "inertia": Dimension(unit="kg m^2", example="17.88 kg m^2"),
-    "length": Dimension(unit="m", example="27 mm"),
-    "line density": Dimension(unit="kg/m", example="4.02 kg/m"),
-    "mass": Dimension(unit="kg", example="100 kg"),
-    "number": Dimension(unit="", example="0.005"),
-    "stiffness": Dimension(unit="N/m", example="50 N/um"),
-    "stress": Dimension(unit="Pa", example="200 GPa"),
-    "time": Dimension(unit="s", example="0.5 ms"),
-    "torque": Dimension(unit="N m", example="12 N m"),
-    "velocity": Dimension(unit="m/s", example="0.1 m/s"),
+    "acceleration": Dimension(unit="m/s^2", example="9.81 m/s^2", least=1e-9, most=1e6),
+    "angle": Dimension(unit="rad", example="20 deg", least=1e-12, most=1e6, angle=True),
+    "angular rate": Dimension(unit="rad/s", example="45 deg/s", least=1e-12, most=1e6, angle=True),
+    "axial stiffness": Dimension(unit="N", example="115 MN", least=1e-6, most=1e18),
+    "bending stiffness": Dimension(unit="N m^2", example="756.65 N m^2", least=1e-18, most=1e18),
+    "damping": Dimension(unit="N s/m", example="2 kN s/m", least=1e-12, most=1e15),
+    "density": Dimension(unit="kg/m^3", example="7800 kg/m^3", least=1e-12, most=1e9),
+    "force": Dimension(unit="N", example="120 N", least=1e-12, most=1e12),
+    "frequency": Dimension(unit="Hz", example="5 Hz", least=1e-9, most=1e9),
+    "inertia": Dimension(unit="kg m^2", example="17.88 kg m^2", least=1e-18, most=1e15),
+    "length": Dimension(unit="m", example="27 mm", least=1e-9, most=1e6),
+    "line density": Dimension(unit="kg/m", example="4.02 kg/m", least=1e-15, most=1e9),
+    "mass": Dimension(unit="kg", example="100 kg", least=1e-15, most=1e12),
+    "number": Dimension(unit="", example="0.005", least=1e-15, most=1e15),
+    "stiffness": Dimension(unit="N/m", example="50 N/um", least=1e-9, most=1e18),
+    "stress": Dimension(unit="Pa", example="200 GPa", least=1e-3, most=1e18),
+    "time": Dimension(unit="s", example="0.5 ms", least=1e-9, most=1e9),
+    "torque": Dimension(unit="N m", example="12 N m", least=1e-12, most=1e12),
+    "velocity": Dimension(unit="m/s", example="0.1 m/s", least=1e-12, most=1e6),
 }
 
 #: Factors of the units that most study files use: reading these needs no pint, whose import takes a third of a second.

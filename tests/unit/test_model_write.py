@@ -26,6 +26,15 @@ def unequal():
     return ROBOT.robot.replace(legs=tuple(legs))
 
 
+def sectioned(material):
+    section = model.Rectangle(width=0.15, height=0.01)
+    return ACTUATOR.replace(
+        actuator=model.Actuator.from_section(
+            section=section, material=material, length=3.0, free_length=1.0, tip_mass=2.0
+        )
+    )
+
+
 STUDIES = {
     "preset": ROBOT,
     "radii": model.preset("paper-robot-radii"),
@@ -48,15 +57,9 @@ STUDIES = {
         ),
         load=model.ActuatorLoad(torque=model.SineLaw(amplitude=1.0, frequency=2.0)),
     ),
-    "section": ACTUATOR.replace(
-        actuator=model.Actuator.from_section(
-            section=model.Rectangle(width=0.15, height=0.01),
-            material=model.MATERIALS["aluminium"].replace(name="given"),
-            length=3.0,
-            free_length=1.0,
-            tip_mass=2.0,
-        )
-    ),
+    "section": sectioned(model.MATERIALS["aluminium"].replace(name="given")),
+    "material by name": sectioned(model.MATERIALS["aluminium"]),
+    "with another yield stress": sectioned(model.MATERIALS["aluminium"].replace(yield_stress=1e8)),
 }
 
 

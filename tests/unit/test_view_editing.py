@@ -6,10 +6,10 @@ import pytest
 
 from flexapod.app.view.document import Document, Quantity, quantity
 from flexapod.app.view.editing import chosen, edited, first_value, read
-from flexapod.app.view.fields import read_fields
 from flexapod.app.view.uploads import LARGEST, read_upload, store_table
 from flexapod.errors import InputError
 from flexapod.model import PRESETS, preset_text
+from flexapod.model.fields import read_fields
 
 TEXT = preset_text("paper-robot")
 

@@ -17,6 +17,7 @@ from flexapod.app import (
     commands_check,
     commands_converge,
     commands_export,
+    commands_keys,
     commands_map,
     commands_modes,
     commands_new,
@@ -98,6 +99,7 @@ def flexapod(
 for part in (
     commands_replicate,
     commands_new,
+    commands_keys,
     commands_check,
     commands_run,
     commands_modes,

@@ -2,10 +2,12 @@
 
 from __future__ import annotations
 
+from typing import Annotated
+
 from pydantic import Field, model_validator
 
 from flexapod.errors import InputError
-from flexapod.model.base import Frozen, NonNegative, Number, Positive
+from flexapod.model.base import Frozen, Measure, NonNegative, Number, Positive
 from flexapod.model.laws import CsvLaw, LoadLaw, MotionLaw, RateLaw
 from flexapod.model.material import Material, Rectangle, Tube
 from flexapod.model.motion import check_times
@@ -22,16 +24,16 @@ class Actuator(Frozen):
     `material` where they are known.
     """
 
-    length: Positive
-    rhoA: Positive
-    EI: Positive
-    free_length: Positive
-    tip_mass: NonNegative = 0.0
-    tip_inertia: NonNegative = 0.0
-    hub_inertia: NonNegative = 0.0
-    hub_radius: NonNegative = 0.0
-    angle: Number = 0.0
-    gravity: Number = 0.0
+    length: Annotated[Positive, Measure("length")]
+    rhoA: Annotated[Positive, Measure("line density")]
+    EI: Annotated[Positive, Measure("bending stiffness")]
+    free_length: Annotated[Positive, Measure("length")]
+    tip_mass: Annotated[NonNegative, Measure("mass")] = 0.0
+    tip_inertia: Annotated[NonNegative, Measure("inertia")] = 0.0
+    hub_inertia: Annotated[NonNegative, Measure("inertia")] = 0.0
+    hub_radius: Annotated[NonNegative, Measure("length")] = 0.0
+    angle: Annotated[Number, Measure("angle")] = 0.0
+    gravity: Annotated[Number, Measure("acceleration")] = 0.0
     damping: float = Field(default=0.0, strict=True, ge=0, lt=1)
     section: Tube | Rectangle | None = None
     material: Material | None = None
@@ -106,6 +108,6 @@ class ActuatorInitial(Frozen):
     `angle_rate` [rad/s] and `length_rate` [m/s] where angle or length are free, that is driven by a load.
     """
 
-    tip_displacement: Number = 0.0
-    angle_rate: Number = 0.0
-    length_rate: Number = 0.0
+    tip_displacement: Annotated[Number, Measure("length")] = 0.0
+    angle_rate: Annotated[Number, Measure("angular rate")] = 0.0
+    length_rate: Annotated[Number, Measure("velocity")] = 0.0

@@ -7,15 +7,26 @@ from collections.abc import Callable
 from typing import Annotated, Any, Self
 
 import numpy as np
-from pydantic import BaseModel, ConfigDict, Field, PlainSerializer, PlainValidator, ValidationError
+from pydantic import (
+    BaseModel,
+    ConfigDict,
+    Field,
+    GetCoreSchemaHandler,
+    PlainSerializer,
+    PlainValidator,
+    ValidationError,
+)
+from pydantic_core import CoreSchema, PydanticCustomError, core_schema
 
 from flexapod.errors import InputError, closest
 from flexapod.typing import Array
+from flexapod.units import DIMENSIONS
 
 __all__ = [
     "Frozen",
     "Joints",
     "Matrix3",
+    "Measure",
     "NonNegative",
     "Number",
     "Positive",
@@ -40,6 +51,34 @@ _LIMIT_WORDS = {
 }
 
 
+class Measure:
+    """What the number or the array of a field measures: its size lies in the range of that dimension.
+
+    ``Annotated[Positive, Measure("length")]``; of several dimensions, where another field decides which, the widest
+    range counts. The lower end concerns numbers that cannot be 0: what may be 0 may be next to it as well.
+    """
+
+    def __init__(self, *dimensions: str) -> None:
+        self.dimensions = dimensions
+        self.least = min(DIMENSIONS[name].least for name in dimensions)
+        self.most = max(DIMENSIONS[name].most for name in dimensions)
+
+    def __get_pydantic_core_schema__(self, source: Any, handler: GetCoreSchemaHandler) -> CoreSchema:
+        inner = handler(source)
+        least = self.least if inner.get("gt") == 0 else 0.0
+        unit = DIMENSIONS[self.dimensions[0]].unit if len(self.dimensions) == 1 else ""
+        most = f"{self.most:g} {unit}".rstrip()
+        allowed = f"{least:g} to {most}" if least else f"at most {most} in size"
+
+        def within(value: Any) -> Any:
+            size = np.abs(value).max(initial=0.0) if isinstance(value, np.ndarray) else abs(value)
+            if not least <= size <= self.most:
+                raise PydanticCustomError("size", "is out of range", {"allowed": allowed})
+            return value
+
+        return core_schema.no_info_after_validator_function(within, inner)
+
+
 def array_of(shape: tuple[int | None, ...]) -> Callable[[object], Array]:
     """A converter to a finite, read-only float array of `shape` (None: any length)."""
     words = " x ".join("n" if n is None else str(n) for n in shape)
@@ -47,7 +86,7 @@ def array_of(shape: tuple[int | None, ...]) -> Callable[[object], Array]:
     def convert(value: object) -> Array:
         try:
             array = np.array(value, dtype=np.float64)
-        except (TypeError, ValueError):
+        except (TypeError, ValueError, OverflowError):  # the last: a whole number beyond floats
             raise ValueError(f"must be {words} numbers") from None
         if array.ndim != len(shape) or any(n not in (None, m) for n, m in zip(shape, array.shape, strict=True)):
             raise ValueError(f"must be {words} numbers, got {' x '.join(map(str, array.shape)) or 'a single one'}")
@@ -150,5 +189,7 @@ def _input_error(error: ValidationError, model: type[Frozen]) -> InputError:
         names = re.findall(r"'([^']*)'", str(context["expected"]))
         hint = closest(value, names) if isinstance(value, str) else None
         return InputError("is not known", key=key, value=value, allowed=", ".join(names), next_step=hint)
+    if kind == "size":
+        return InputError(first["msg"], key=key, value=value, allowed=context["allowed"])
     message = first["msg"].removeprefix("Value error, ").replace("Input should be", "must be")
     return InputError(message, key=key, value=value)

@@ -7,7 +7,7 @@ from typing import Annotated, Literal
 from pydantic import Field, model_validator
 
 from flexapod.errors import InputError
-from flexapod.model.base import Frozen, NonNegative, Positive, Series
+from flexapod.model.base import Frozen, Measure, NonNegative, Positive, Series
 from flexapod.model.motion import check_times
 
 __all__ = ["Drive", "Feedback", "ForceDrive", "PrescribedDrive", "ServoDrive"]
@@ -23,15 +23,15 @@ class ServoDrive(Frozen):
     """A spring [N/m] and a damper [N s/m] between the commanded and the real stroke."""
 
     type: Literal["servo"] = "servo"
-    stiffness: Positive
-    damping: NonNegative = 0.0
+    stiffness: Annotated[Positive, Measure("stiffness")]
+    damping: Annotated[NonNegative, Measure("damping")] = 0.0
 
 
 class Feedback(Frozen):
     """Correction of a force drive: gain on stroke [N/m] and on stroke rate [N s/m]."""
 
-    stiffness: NonNegative
-    damping: NonNegative = 0.0
+    stiffness: Annotated[NonNegative, Measure("stiffness")]
+    damping: Annotated[NonNegative, Measure("damping")] = 0.0
 
 
 class ForceDrive(Frozen):
@@ -45,8 +45,8 @@ class ForceDrive(Frozen):
     type: Literal["force"] = "force"
     law: Literal["rigid", "csv"] = "rigid"
     file: str | None = None
-    time: Series | None = None
-    force: Series | None = None
+    time: Annotated[Series, Measure("time")] | None = None
+    force: Annotated[Series, Measure("force")] | None = None
     feedback: Feedback | None = None
 
     @model_validator(mode="after")

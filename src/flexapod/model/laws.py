@@ -6,33 +6,34 @@ from typing import Annotated, Literal
 
 from pydantic import Field, model_validator
 
-from flexapod.model.base import Frozen, NonNegative, Number, Positive, Series
+from flexapod.model.base import Frozen, Measure, NonNegative, Number, Positive, Series
 from flexapod.model.motion import Profile, check_times
 
 __all__ = ["ConstantLaw", "CsvLaw", "LoadLaw", "MotionLaw", "ProfileLaw", "RateLaw", "SineLaw", "SpinUpLaw", "StepLaw"]
+_AMPLITUDE = Measure("angle", "length", "torque", "force")
 
 
 class RateLaw(Frozen):
     """Constant `rate` [rad/s or m/s] from t = 0 on."""
 
     law: Literal["rate"] = "rate"
-    rate: Number
+    rate: Annotated[Number, Measure("angular rate", "velocity")]
 
 
 class ProfileLaw(Frozen):
     """From 0 to `amplitude` [rad, m, N m or N] in `duration` [s], then constant."""
 
     law: Profile
-    amplitude: Number
-    duration: Positive
+    amplitude: Annotated[Number, _AMPLITUDE]
+    duration: Annotated[Positive, Measure("time")]
 
 
 class SpinUpLaw(Frozen):
     """From rest to `rate` [rad/s or m/s] in `duration` [s] with a smooth acceleration, then constant rate."""
 
     law: Literal["spin-up"] = "spin-up"
-    rate: Number
-    duration: Positive
+    rate: Annotated[Number, Measure("angular rate", "velocity")]
+    duration: Annotated[Positive, Measure("time")]
 
 
 class CsvLaw(Frozen):
@@ -43,8 +44,8 @@ class CsvLaw(Frozen):
 
     law: Literal["csv"] = "csv"
     file: str | None = None
-    time: Series
-    value: Series
+    time: Annotated[Series, Measure("time")]
+    value: Annotated[Series, _AMPLITUDE]
 
     @model_validator(mode="after")
     def _table(self) -> CsvLaw:
@@ -56,24 +57,24 @@ class ConstantLaw(Frozen):
     """A constant `value` [N m or N]."""
 
     law: Literal["constant"] = "constant"
-    value: Number
+    value: Annotated[Number, Measure("torque", "force")]
 
 
 class SineLaw(Frozen):
     """amplitude [N m or N] times sin(2 pi frequency t + phase); frequency [Hz], phase [rad]."""
 
     law: Literal["sine"] = "sine"
-    amplitude: Number
-    frequency: Positive
-    phase: Number = 0.0
+    amplitude: Annotated[Number, _AMPLITUDE]
+    frequency: Annotated[Positive, Measure("frequency")]
+    phase: Annotated[Number, Measure("angle")] = 0.0
 
 
 class StepLaw(Frozen):
     """Zero before `time` [s], `amplitude` [N m or N] from then on."""
 
     law: Literal["step"] = "step"
-    amplitude: Number
-    time: NonNegative = 0.0
+    amplitude: Annotated[Number, _AMPLITUDE]
+    time: Annotated[NonNegative, Measure("time")] = 0.0
 
 
 MotionLaw = Annotated[RateLaw | ProfileLaw | SpinUpLaw | CsvLaw, Field(discriminator="law")]

@@ -2,10 +2,12 @@
 
 from __future__ import annotations
 
+from typing import Annotated
+
 from pydantic import Field, model_validator
 
 from flexapod.errors import InputError
-from flexapod.model.base import Frozen, NonNegative, Number, Positive, Vec3
+from flexapod.model.base import Frozen, Measure, NonNegative, Number, Positive, Vec3
 from flexapod.model.drive import Drive, PrescribedDrive
 from flexapod.model.material import Material, Tube
 
@@ -19,11 +21,11 @@ class Cylinder(Frozen):
     about that centre; `mouth` [m], where the piston comes out, from the universal joint; `axial_inertia` [kg m^2].
     """
 
-    mass: NonNegative
-    com: Number = 0.0
-    inertia: NonNegative = 0.0
-    mouth: NonNegative
-    axial_inertia: NonNegative = 0.0
+    mass: Annotated[NonNegative, Measure("mass")]
+    com: Annotated[Number, Measure("length")] = 0.0
+    inertia: Annotated[NonNegative, Measure("inertia")] = 0.0
+    mouth: Annotated[NonNegative, Measure("length")]
+    axial_inertia: Annotated[NonNegative, Measure("inertia")] = 0.0
 
     @model_validator(mode="after")
     def _real_body(self) -> Cylinder:
@@ -38,16 +40,16 @@ class Piston(Frozen):
     `inner_diameter` [m], `E` [Pa], `density` [kg/m^3] and `yield_stress` [Pa] where known; `axial_inertia` [kg m^2].
     """
 
-    length: Positive
-    EA: Positive
-    EI: Positive
-    rhoA: NonNegative
-    diameter: Positive | None = None
-    inner_diameter: Positive | None = None
-    E: Positive | None = None
-    density: Positive | None = None
-    yield_stress: Positive | None = None
-    axial_inertia: NonNegative = 0.0
+    length: Annotated[Positive, Measure("length")]
+    EA: Annotated[Positive, Measure("axial stiffness")]
+    EI: Annotated[Positive, Measure("bending stiffness")]
+    rhoA: Annotated[NonNegative, Measure("line density")]
+    diameter: Annotated[Positive, Measure("length")] | None = None
+    inner_diameter: Annotated[Positive, Measure("length")] | None = None
+    E: Annotated[Positive, Measure("stress")] | None = None
+    density: Annotated[Positive, Measure("density")] | None = None
+    yield_stress: Annotated[Positive, Measure("stress")] | None = None
+    axial_inertia: Annotated[NonNegative, Measure("inertia")] = 0.0
 
     @model_validator(mode="after")
     def _sensible(self) -> Piston:
@@ -90,8 +92,8 @@ class Piston(Frozen):
 class Stroke(Frozen):
     """Allowed joint-to-joint length [m]."""
 
-    min: NonNegative
-    max: Positive
+    min: Annotated[NonNegative, Measure("length")]
+    max: Annotated[Positive, Measure("length")]
 
     @model_validator(mode="after")
     def _ordered(self) -> Stroke:
@@ -119,7 +121,7 @@ class Leg(Frozen):
     damping: float = Field(default=0.0, strict=True, ge=0, lt=1)
     drive: Drive = PrescribedDrive()
     axial_modes: int = Field(default=2, strict=True, ge=0, le=4)
-    u_axis: Vec3 | None = None
+    u_axis: Annotated[Vec3, Measure("number")] | None = None
 
     @model_validator(mode="after")
     def _axis_has_a_direction(self) -> Leg:

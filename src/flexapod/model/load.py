@@ -6,7 +6,7 @@ from typing import Annotated, Literal
 
 from pydantic import Field, model_validator
 
-from flexapod.model.base import Frozen, NonNegative, Number, Positive, Series, Series6, Vec6
+from flexapod.model.base import Frozen, Measure, NonNegative, Number, Positive, Series, Series6, Vec6
 from flexapod.model.motion import check_times
 
 __all__ = ["ConstantWrench", "CsvWrench", "Load", "SineWrench", "StepWrench", "Wrench"]
@@ -16,24 +16,24 @@ class ConstantWrench(Frozen):
     """`value` (6,): Fx Fy Fz [N], Mx My Mz [N m], at the tool, world axes, at all times."""
 
     law: Literal["constant"] = "constant"
-    value: Vec6
+    value: Annotated[Vec6, Measure("force", "torque")]
 
 
 class SineWrench(Frozen):
     """amplitude (6,) [N, N m] times sin(2 pi frequency t + phase); frequency [Hz], phase [rad]."""
 
     law: Literal["sine"] = "sine"
-    amplitude: Vec6
-    frequency: Positive
-    phase: Number = 0.0
+    amplitude: Annotated[Vec6, Measure("force", "torque")]
+    frequency: Annotated[Positive, Measure("frequency")]
+    phase: Annotated[Number, Measure("angle")] = 0.0
 
 
 class StepWrench(Frozen):
     """Zero before `time` [s], `amplitude` (6,) [N, N m] from then on."""
 
     law: Literal["step"] = "step"
-    amplitude: Vec6
-    time: NonNegative = 0.0
+    amplitude: Annotated[Vec6, Measure("force", "torque")]
+    time: Annotated[NonNegative, Measure("time")] = 0.0
 
 
 class CsvWrench(Frozen):
@@ -44,8 +44,8 @@ class CsvWrench(Frozen):
 
     law: Literal["csv"] = "csv"
     file: str | None = None
-    time: Series
-    wrench: Series6
+    time: Annotated[Series, Measure("time")]
+    wrench: Annotated[Series6, Measure("force", "torque")]
 
     @model_validator(mode="after")
     def _table(self) -> CsvWrench:

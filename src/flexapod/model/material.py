@@ -4,11 +4,12 @@ from __future__ import annotations
 
 import math
 from types import MappingProxyType
+from typing import Annotated
 
 from pydantic import model_validator
 
 from flexapod.errors import InputError
-from flexapod.model.base import Frozen, Positive
+from flexapod.model.base import Frozen, Measure, Positive
 
 __all__ = ["MATERIALS", "Material", "Rectangle", "Tube"]
 
@@ -17,9 +18,9 @@ class Material(Frozen):
     """Elastic modulus E [Pa], density [kg/m^3] and yield stress [Pa] of a beam's material."""
 
     name: str
-    E: Positive
-    density: Positive
-    yield_stress: Positive | None = None
+    E: Annotated[Positive, Measure("stress")]
+    density: Annotated[Positive, Measure("density")]
+    yield_stress: Annotated[Positive, Measure("stress")] | None = None
 
 
 # E and density of steel: Table 3 of the paper. The others are handbook values at room temperature
@@ -37,8 +38,8 @@ MATERIALS = MappingProxyType({material.name: material for material in _TABLE})
 class Tube(Frozen):
     """Round section, full or hollow: outer and inner diameter [m]."""
 
-    diameter: Positive
-    inner_diameter: Positive | None = None
+    diameter: Annotated[Positive, Measure("length")]
+    inner_diameter: Annotated[Positive, Measure("length")] | None = None
 
     @model_validator(mode="after")
     def _hollow_inside(self) -> Tube:
@@ -71,8 +72,8 @@ class Tube(Frozen):
 class Rectangle(Frozen):
     """Rectangular section: width across and height along the direction of bending [m]."""
 
-    width: Positive
-    height: Positive
+    width: Annotated[Positive, Measure("length")]
+    height: Annotated[Positive, Measure("length")]
 
     @property
     def area(self) -> float:

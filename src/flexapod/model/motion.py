@@ -9,9 +9,10 @@ import numpy as np
 from pydantic import Field, model_validator
 
 from flexapod.errors import InputError
-from flexapod.model.base import Frozen, NonNegative, Number, Positive, Series, Series6, Vec3
+from flexapod.model.base import Frozen, Measure, NonNegative, Number, Positive, Series, Series6, Vec3
 from flexapod.model.tables import wrong_instant
 from flexapod.typing import Array
+from flexapod.units import DIMENSIONS
 
 __all__ = ["AXES", "PROFILES", "AxisMotion", "CombinedMotion", "CsvMotion", "Motion", "Waypoint", "WaypointMotion"]
 
@@ -29,11 +30,11 @@ class AxisMotion(Frozen):
     """
 
     type: Axis
-    amplitude: Number
-    duration: Positive
-    hold: NonNegative = 0.0
+    amplitude: Annotated[Number, Measure("length", "angle")]
+    duration: Annotated[Positive, Measure("time")]
+    hold: Annotated[NonNegative, Measure("time")] = 0.0
     profile: Profile = "quintic"
-    pivot: Vec3 = Field(default=_ORIGIN, validate_default=True)
+    pivot: Annotated[Vec3, Measure("length")] = Field(default=_ORIGIN, validate_default=True)
 
     @model_validator(mode="after")
     def _angle(self) -> AxisMotion:
@@ -60,11 +61,11 @@ class CombinedMotion(Frozen):
     """Several axes at once with one profile: `amplitudes` by axis name [m or rad]."""
 
     type: Literal["combined"] = "combined"
-    amplitudes: dict[Axis, Number]
-    duration: Positive
-    hold: NonNegative = 0.0
+    amplitudes: dict[Axis, Annotated[Number, Measure("length", "angle")]]
+    duration: Annotated[Positive, Measure("time")]
+    hold: Annotated[NonNegative, Measure("time")] = 0.0
     profile: Profile = "quintic"
-    pivot: Vec3 = Field(default=_ORIGIN, validate_default=True)
+    pivot: Annotated[Vec3, Measure("length")] = Field(default=_ORIGIN, validate_default=True)
 
     @model_validator(mode="after")
     def _angles(self) -> CombinedMotion:
@@ -92,13 +93,13 @@ class CombinedMotion(Frozen):
 class Waypoint(Frozen):
     """A pose relative to home at `time` [s]: surge, sway, heave [m], roll, pitch, yaw [rad]."""
 
-    time: NonNegative
-    surge: Number = 0.0
-    sway: Number = 0.0
-    heave: Number = 0.0
-    roll: Number = 0.0
-    pitch: Number = 0.0
-    yaw: Number = 0.0
+    time: Annotated[NonNegative, Measure("time")]
+    surge: Annotated[Number, Measure("length")] = 0.0
+    sway: Annotated[Number, Measure("length")] = 0.0
+    heave: Annotated[Number, Measure("length")] = 0.0
+    roll: Annotated[Number, Measure("angle")] = 0.0
+    pitch: Annotated[Number, Measure("angle")] = 0.0
+    yaw: Annotated[Number, Measure("angle")] = 0.0
 
     @model_validator(mode="after")
     def _angles(self) -> Waypoint:
@@ -117,9 +118,9 @@ class WaypointMotion(Frozen):
 
     type: Literal["waypoints"] = "waypoints"
     points: tuple[Waypoint, ...]
-    hold: NonNegative = 0.0
+    hold: Annotated[NonNegative, Measure("time")] = 0.0
     profile: Profile = "quintic"
-    pivot: Vec3 = Field(default=_ORIGIN, validate_default=True)
+    pivot: Annotated[Vec3, Measure("length")] = Field(default=_ORIGIN, validate_default=True)
 
     @model_validator(mode="after")
     def _in_order(self) -> WaypointMotion:
@@ -166,10 +167,10 @@ class CsvMotion(Frozen):
 
     type: Literal["csv"] = "csv"
     file: str | None = None
-    time: Series
-    pose: Series6
-    hold: NonNegative = 0.0
-    pivot: Vec3 = Field(default=_ORIGIN, validate_default=True)
+    time: Annotated[Series, Measure("time")]
+    pose: Annotated[Series6, Measure("length", "angle")]
+    hold: Annotated[NonNegative, Measure("time")] = 0.0
+    pivot: Annotated[Vec3, Measure("length")] = Field(default=_ORIGIN, validate_default=True)
 
     @model_validator(mode="after")
     def _table(self) -> CsvMotion:
@@ -207,7 +208,7 @@ def check_times(time: Array, rows: int, *, key: str = "time", jumps: bool = Fals
             f"does not increase at row {row + 1}",
             key=key,
             value=float(time[row]),
-            allowed=f"above {time[row - 1]:g} s",
+            allowed=f"at least {DIMENSIONS['time'].least:g} s above {time[row - 1]:g} s",
         )
 
 

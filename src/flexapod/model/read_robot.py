@@ -8,7 +8,7 @@ from flexapod.errors import InputError
 from flexapod.model.drive import Drive, Feedback, ForceDrive, PrescribedDrive, ServoDrive
 from flexapod.model.leg import Cylinder, Leg, Piston, Stroke
 from flexapod.model.material import MATERIALS, Material, Tube
-from flexapod.model.robot import Payload, Robot, base_circle, platform_circle
+from flexapod.model.robot import Circle, Payload, Robot, base_circle, platform_circle
 from flexapod.model.section import Section
 from flexapod.model.tables import FORCES, read_table
 from flexapod.typing import Array
@@ -76,14 +76,10 @@ def _joints(robot: Section, name: str, circle: Callable[[float, float], Array]) 
         return section.rows("joints", 6, *_LENGTHS)
     section.only("radius", "half_angle", "joints")
     section.need("radius", "half_angle")
-    radius, half_angle = section.number("radius", "length"), section.number("half_angle", "angle")
-    if radius is None or radius <= 0:
-        raise section.error("is out of range", "radius", allowed="above 0")
-    if half_angle is None or not 0 <= half_angle <= 1.0471975511965979:
-        raise section.error(
-            "is out of range", "half_angle", allowed="0 to 60 deg", next_step='Write degrees as "10 deg"'
-        )
-    return circle(radius, half_angle)
+    found = section.build(
+        Circle, radius=section.number("radius", "length"), half_angle=section.number("half_angle", "angle")
+    )
+    return circle(found.radius, found.half_angle)
 
 
 def _payload(section: Section) -> Payload:

@@ -2,17 +2,18 @@
 
 from __future__ import annotations
 
-from typing import Literal
+import math
+from typing import Annotated, Literal
 
 import numpy as np
 from pydantic import field_validator, model_validator
 
 from flexapod.errors import InputError
-from flexapod.model.base import Frozen, Joints, Matrix3, Number, Positive, Vec3
+from flexapod.model.base import Frozen, Joints, Matrix3, Measure, NonNegative, Number, Positive, Vec3
 from flexapod.model.leg import Leg
 from flexapod.typing import Array
 
-__all__ = ["Payload", "Robot", "base_circle", "platform_circle"]
+__all__ = ["Circle", "Payload", "Robot", "base_circle", "platform_circle"]
 
 _LOWER = ((0, -1), (0, 1), (120, -1), (120, 1), (240, -1), (240, 1))
 _UPPER = ((-60, 1), (60, -1), (60, 1), (180, -1), (180, 1), (300, -1))
@@ -25,10 +26,10 @@ class Payload(Frozen):
     `com` and `tool` (3,) [m] from the platform frame's origin in platform axes (`tool` defaults to `com`).
     """
 
-    mass: Positive
-    inertia: Matrix3
-    com: Vec3
-    tool: Vec3
+    mass: Annotated[Positive, Measure("mass")]
+    inertia: Annotated[Matrix3, Measure("inertia")]
+    com: Annotated[Vec3, Measure("length")]
+    tool: Annotated[Vec3, Measure("length")]
 
     def __init__(self, **fields: object) -> None:
         if fields.get("tool") is None and "com" in fields:
@@ -59,6 +60,25 @@ class Payload(Frozen):
         return self
 
 
+class Circle(Frozen):
+    """Joints in pairs on a circle: `radius` [m]; `half_angle` [rad], half the angle between the joints of a pair."""
+
+    radius: Annotated[Positive, Measure("length")]
+    half_angle: Annotated[NonNegative, Measure("angle")]
+
+    @model_validator(mode="after")
+    def _pairs_apart(self) -> Circle:
+        if self.half_angle > math.pi / 3:
+            raise InputError(
+                "is out of range",
+                key="half_angle",
+                value=self.half_angle,
+                allowed="0 to 60 deg",
+                next_step='Write degrees as "10 deg"',
+            )
+        return self
+
+
 class Robot(Frozen):
     """A 6-UPS robot.
 
@@ -67,10 +87,10 @@ class Robot(Frozen):
     """
 
     type: Literal["6-UPS"] = "6-UPS"
-    base_joints: Joints
-    platform_joints: Joints
-    home_height: Number
-    gravity: Vec3
+    base_joints: Annotated[Joints, Measure("length")]
+    platform_joints: Annotated[Joints, Measure("length")]
+    home_height: Annotated[Number, Measure("length")]
+    gravity: Annotated[Vec3, Measure("acceleration")]
     payload: Payload
     legs: tuple[Leg, Leg, Leg, Leg, Leg, Leg]
 

@@ -8,6 +8,7 @@ from typing import Any, TypeVar
 
 from flexapod.errors import InputError, closest
 from flexapod.model.base import Frozen
+from flexapod.model.reference import advice, example_line
 from flexapod.units import to_si
 
 __all__ = ["Section"]
@@ -33,7 +34,15 @@ class Section:
     def __init__(self, data: object, path: str, file: str | None, folder: Path) -> None:
         self.path, self.file, self.folder = path, file, folder
         if not isinstance(data, Mapping):
-            raise InputError("is not a table", file=file, key=path, value=data, allowed="[section] or { key = value }")
+            table, _, name = path.rpartition(".")
+            raise InputError(
+                "is not a table",
+                file=file,
+                key=path,
+                value=data,
+                allowed="[section] or { key = value }",
+                next_step=_such_as(table, name),
+            )
         self.data: Mapping[str, Any] = data
 
     def key(self, name: str) -> str:
@@ -55,14 +64,14 @@ class Section:
                     file=self.file,
                     key=self.key(name),
                     allowed=", ".join(names),
-                    next_step=closest(name, names),
+                    next_step=advice(self.path, name, names, self.data),
                 )
 
     def need(self, *names: str) -> None:
         """Refuse a section without these keys."""
         for name in names:
             if name not in self.data:
-                raise InputError("is missing", file=self.file, key=self.key(name), next_step=f"Add {self.key(name)}")
+                raise InputError("is missing", file=self.file, key=self.key(name), next_step=self._add(name))
 
     def __contains__(self, name: str) -> bool:
         return name in self.data
@@ -125,13 +134,22 @@ class Section:
         if error.key is not None and error.key in self.data:
             error.value = self.data[error.key]
         if error.what == "is missing" and error.key:
-            error.next_step = f"Add {self.key(error.key)}"
+            error.next_step = self._add(error.key)
         return error.located(file=self.file, prefix=self.path)
+
+    def _add(self, name: str) -> str:
+        line = example_line(self.path, name, self.data)
+        return f"Add {self.key(name)}" + (f", for example: {line}" if line else "")
 
     def _vector(self, value: object, dimensions: tuple[str, ...], key: str) -> list[float]:
         if not isinstance(value, list) or len(value) != len(dimensions):
             raise InputError(
-                "is not a vector", file=self.file, key=key, value=value, allowed=f"{len(dimensions)} numbers"
+                "is not a vector",
+                file=self.file,
+                key=key,
+                value=value,
+                allowed=f"{len(dimensions)} numbers",
+                next_step=_such_as(self.path, key.rpartition(".")[2], self.data),
             )
         return [
             self._si(item, dimension, f"{key}[{i}]")
@@ -143,3 +161,8 @@ class Section:
             return to_si(value, dimension, key=key)
         except InputError as error:
             raise error.located(file=self.file) from None
+
+
+def _such_as(table: str, name: str, like: Mapping[str, Any] | None = None) -> str | None:
+    line = example_line(table, name, like)
+    return f"For example: {line}" if line else None

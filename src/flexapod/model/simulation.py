@@ -8,7 +8,7 @@ from typing import Annotated, Literal, Self
 from pydantic import Field, model_validator
 
 from flexapod.errors import InputError, closest
-from flexapod.model.base import Frozen, Positive
+from flexapod.model.base import Frozen, Measure, Positive
 
 __all__ = ["DEFAULT_TOLERANCE", "FIDELITIES", "OWN_BASIS", "STRAIGHT", "Initial", "Simulation", "own_fidelity"]
 
@@ -41,10 +41,10 @@ class Simulation(Frozen):
     fidelity: str = "assumed-modes"
     basis: Literal["tip-load", "clamped-free", "tip-mass"] = "tip-load"
     modes: int = Field(default=3, strict=True, ge=0, le=MOST_ELEMENT_SHAPES)
-    duration: Positive | None = None
-    tolerance: Annotated[Positive, Field(lt=1)] | None = None
-    step: Positive | None = None
-    output_step: Positive = 1e-3
+    duration: Annotated[Positive, Measure("time")] | None = None
+    tolerance: Annotated[Positive, Field(lt=1), Measure("number")] | None = None
+    step: Annotated[Positive, Measure("time")] | None = None
+    output_step: Annotated[Positive, Measure("time")] = 1e-3
     rho_inf: float = Field(default=0.9, strict=True, ge=0, le=1)
 
     def __init__(self, **fields: object) -> None:

@@ -14,7 +14,7 @@ from flexapod.errors import InputError, closest
 from flexapod.typing import Array
 from flexapod.units import DIMENSIONS, to_si
 
-__all__ = ["FORCES", "POSE", "WRENCH", "read_table", "wrong_instant"]
+__all__ = ["FORCES", "POSE", "WRENCH", "header", "read_table", "wrong_instant"]
 
 POSE = {"surge": "length", "sway": "length", "heave": "length", "roll": "angle", "pitch": "angle", "yaw": "angle"}
 WRENCH = {"Fx": "force", "Fy": "force", "Fz": "force", "Mx": "torque", "My": "torque", "Mz": "torque"}
@@ -54,12 +54,12 @@ def read_table(
     """
     lines = _lines(path)
     if not lines:
-        raise InputError("is empty", file=path, next_step=f"First line: {_example(columns)}")
+        raise InputError("is empty", file=path, next_step=f"First line: {header(columns)}")
     number, cells = lines[0]
     factors = _header(path, number, cells, {"time": "time", **columns})
     missing = [name for name in ("time", *columns) if name not in factors]
     if "time" in missing or (needed and missing) or len(missing) == len(columns):
-        raise InputError(f"has no column {missing[0]!r}", file=path, key=f"line {number}", allowed=_example(columns))
+        raise InputError(f"has no column {missing[0]!r}", file=path, key=f"line {number}", allowed=header(columns))
     values = np.array([_row(path, n, row, list(factors)) for n, row in lines[1:]]).reshape(-1, len(factors))
     table = {name: values[:, i] * factor for i, (name, factor) in enumerate(factors.items())}
     _check_times(path, table["time"], [n for n, _ in lines[1:]], jumps)
@@ -129,8 +129,8 @@ def _row(path: Path, line: int, cells: list[str], names: list[str]) -> list[floa
 
 
 def wrong_instant(time: Array, jumps: bool) -> int | None:
-    """Index of the first instant that is no later than the one before it; with `jumps` two may be the same."""
-    fine = np.diff(time) > 0
+    """Index of the first instant that is not later than the one before it; with `jumps` two may be the same."""
+    fine = np.diff(time) >= DIMENSIONS["time"].least
     if jumps:
         fine |= (np.diff(time) == 0) & np.append(True, fine[:-1])
     return None if fine.all() else int(np.argmin(fine)) + 1
@@ -150,18 +150,19 @@ def _check_times(path: Path, time: Array, lines: list[int], jumps: bool) -> None
     at = wrong_instant(time, jumps)
     if at is not None:
         before, now = time[at - 1], time[at]
-        what = "repeats the instant before" if now == before else "goes back in time"
+        what = "goes back in time" if now < before else "repeats the instant before"
         raise InputError(
             f"{what} once more" if jumps and now == before else what,
             file=path,
             key=f"line {lines[at]}, column 'time'",
             value=float(now),
-            allowed=f"above {before:g} s",
+            allowed=f"at least {DIMENSIONS['time'].least:g} s above {before:g} s",
             next_step="Two rows at one instant are a jump, a third has no meaning"
             if jumps and now == before
             else "Sort the lines by time and remove doubles",
         )
 
 
-def _example(columns: Mapping[str, str]) -> str:
+def header(columns: Mapping[str, str]) -> str:
+    """First line of a table with these columns, in SI units."""
     return ", ".join(["time [s]", *(f"{name} [{DIMENSIONS[dimension].unit}]" for name, dimension in columns.items())])

@@ -12,12 +12,12 @@ from flexapod.model.drive import ForceDrive
 from flexapod.model.laws import CsvLaw
 from flexapod.model.leg import Leg, Piston
 from flexapod.model.load import CsvWrench
-from flexapod.model.material import Material, Tube
+from flexapod.model.material import MATERIALS, Material, Tube
 from flexapod.model.motion import CsvMotion
 from flexapod.model.robot import Robot
 from flexapod.model.simulation import OWN_BASIS, Simulation
 
-__all__ = ["to_toml"]
+__all__ = ["to_toml", "toml_value"]
 
 _IN_FILE = {
     CsvMotion: ("time", "pose"),
@@ -102,8 +102,16 @@ def _actuator(actuator: Actuator) -> dict[str, object]:
     others = {name: value for name, value in fields.items() if name not in ("rhoA", "EI")}
     if Actuator.from_section(section=section, material=material, **others) != actuator:  # type: ignore[arg-type]
         return fields
-    made_of = {name: value for name, value in _fields(material).items() if name != "name"}
-    return others | {"section": section} | made_of
+    return others | {"section": section} | _material(material)
+
+
+def _material(material: Material) -> dict[str, object]:
+    """Its name where that says what it is made of, else its values."""
+    known, fields = MATERIALS.get(material.name), _fields(material)
+    if known is None or (known.E, known.density) != (material.E, material.density):
+        return {name: value for name, value in fields.items() if name != "name"}
+    named: dict[str, object] = {"material": material.name}
+    return named if known == material else named | {"yield_stress": material.yield_stress}
 
 
 def _fields(model: Frozen) -> dict[str, object]:
@@ -121,10 +129,11 @@ def _section(name: str, fields: dict[str, object]) -> list[str]:
 
 
 def _keys(fields: dict[str, object]) -> list[str]:
-    return [f"{name} = {_value(value)}" for name, value in fields.items()]
+    return [f"{name} = {toml_value(value)}" for name, value in fields.items()]
 
 
-def _value(value: object) -> str:
+def toml_value(value: object) -> str:
+    """A value as it stands in a study file."""
     if isinstance(value, Frozen):
         value = _fields(value)
     if isinstance(value, dict):
@@ -132,7 +141,7 @@ def _value(value: object) -> str:
     if isinstance(value, np.ndarray):
         value = value.tolist()
     if isinstance(value, list | tuple):
-        return "[" + ", ".join(_value(item) for item in value) + "]"
+        return "[" + ", ".join(toml_value(item) for item in value) + "]"
     if isinstance(value, str):
         return '"' + value.replace("\\", "\\\\").replace('"', '\\"') + '"'
     return repr(value)

@@ -7,8 +7,8 @@ from dataclasses import dataclass
 
 from flexapod import model
 from flexapod.app.view.document import Document
-from flexapod.app.view.fields import Field
 from flexapod.errors import InputError
+from flexapod.model.fields import Field
 from flexapod.units import DIMENSIONS
 
 __all__ = ["Edit", "chosen", "edited", "first_value", "read"]

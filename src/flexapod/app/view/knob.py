@@ -9,9 +9,9 @@ from typing import TYPE_CHECKING
 
 from flexapod.app.view import words
 from flexapod.app.view.document import Quantity, quantity
-from flexapod.app.view.fields import Field
 from flexapod.app.view.threads import Threads
 from flexapod.app.view.typed import TypedText, by_user, plain, written
+from flexapod.model.fields import Field
 
 if TYPE_CHECKING:
     from viser import ClientHandle, GuiDropdownHandle, GuiSliderHandle

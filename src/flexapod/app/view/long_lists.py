@@ -5,8 +5,8 @@ from __future__ import annotations
 import re
 from collections.abc import Sequence
 
-from flexapod.app.view.fields import Field
 from flexapod.app.view.structure import Offer
+from flexapod.model.fields import Field
 
 __all__ = ["MOST", "parted", "without_rows"]
 

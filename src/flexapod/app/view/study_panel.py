@@ -12,7 +12,6 @@ from viser import Icon
 from flexapod.app.view import words
 from flexapod.app.view.document import Document
 from flexapod.app.view.editing import Edit, chosen, edited, first_value, read
-from flexapod.app.view.fields import Field, read_fields
 from flexapod.app.view.knob import Knob
 from flexapod.app.view.long_lists import parted, without_rows
 from flexapod.app.view.preview import preview_html
@@ -20,6 +19,7 @@ from flexapod.app.view.structure import Offer, offers
 from flexapod.app.view.threads import Threads
 from flexapod.app.view.widgets import Setter, add_widget, signature
 from flexapod.errors import InputError
+from flexapod.model.fields import Field, read_fields
 
 if TYPE_CHECKING:
     from viser import ClientHandle

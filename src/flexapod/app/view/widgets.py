@@ -6,9 +6,9 @@ from collections.abc import Callable
 from typing import TYPE_CHECKING
 
 from flexapod.app.view.document import Quantity, quantity
-from flexapod.app.view.fields import Field
 from flexapod.app.view.typed import TypedText, by_user, plain, written
 from flexapod.errors import InputError
+from flexapod.model.fields import Field
 from flexapod.units import DIMENSIONS, to_si
 
 if TYPE_CHECKING:

@@ -2,10 +2,9 @@
 
 from __future__ import annotations
 
-import contextlib
 import tomllib
-from collections.abc import Callable
-from dataclasses import dataclass, replace
+from collections.abc import Callable, Mapping
+from dataclasses import dataclass, field, replace
 from pathlib import Path
 from typing import Annotated, Any, Literal, get_args, get_origin
 
@@ -16,7 +15,7 @@ from flexapod.model.base import Frozen
 from flexapod.model.files import read_study
 from flexapod.model.section import Section
 
-__all__ = ["Bounds", "Field", "read_fields"]
+__all__ = ["Bounds", "Field", "Notes", "listened", "read_fields"]
 
 Kind = Literal["number", "vector", "rows", "whole", "text"]
 
@@ -36,7 +35,8 @@ class Field:
 
     `key`: path, ``leg.piston.diameter``; `kind`; `dimensions`: of a number, or of each component of a vector or of a
     row (see `flexapod.units`); `choices` of a text, None where any text is meant; `value` as written, None if absent;
-    `default`: what the model takes where it is absent, SI, None where that is nothing or no number.
+    `default`: what the model takes where it is absent, SI, None where that is nothing or no number; `taken`: what the
+    model has for an absent key, of any type.
     """
 
     key: str
@@ -46,6 +46,7 @@ class Field:
     value: object = None
     bounds: Bounds = Bounds()
     default: float | None = None
+    taken: object = None
 
     @property
     def table(self) -> str:
@@ -74,21 +75,47 @@ def read_fields(text: str, path: str | Path | None) -> list[Field]:
         data = tomllib.loads(text)
     except tomllib.TOMLDecodeError:
         return []
-    found: dict[str, Field] = {}
-    with contextlib.suppress(InputError):
-        read_study(_Listener(data, "", None, Path(path).parent if path else Path(), found), text)
-    return list(found.values())
+    notes, _ = listened(data, Path(path).parent if path else Path())
+    return list(notes.fields.values())
+
+
+@dataclass
+class Notes:
+    """What was asked while a study was read.
+
+    `fields` by key; `allowed`: keys by path of their table; `given`: (class, field) of the model that were filled.
+    """
+
+    fields: dict[str, Field] = field(default_factory=dict)
+    allowed: dict[str, set[str]] = field(default_factory=dict)
+    given: set[tuple[str, str]] = field(default_factory=set)
+
+
+def listened(data: Mapping[str, Any], folder: Path) -> tuple[Notes, InputError | None]:
+    """What the readers ask of a study's tables, and why they refuse them, if they do."""
+    reader = _Listener(data, folder)
+    try:
+        read_study(reader, "-")
+    except InputError as error:
+        return reader.notes, error
+    return reader.notes, None
 
 
 class _Listener(Section):
     """A reader that notes what is asked of it."""
 
-    def __init__(self, data: object, path: str, file: str | None, folder: Path, found: dict[str, Field]) -> None:
-        self.found = found
+    def __init__(
+        self, data: object, folder: Path, path: str = "", file: str | None = None, notes: Notes | None = None
+    ) -> None:
+        self.notes = notes or Notes()
         super().__init__(data, path, file, folder)
 
     def child(self, data: object, name: str) -> Section:
-        return _Listener(data, self.key(name), self.file, self.folder, self.found)
+        return _Listener(data, self.folder, self.key(name), self.file, self.notes)
+
+    def only(self, *names: str) -> None:
+        self.notes.allowed.setdefault(self.path, set()).update(names)
+        super().only(*names)
 
     def number(self, name: str, dimension: str) -> float | None:
         self._note(name, "number", (dimension,))
@@ -112,21 +139,27 @@ class _Listener(Section):
 
     def build(self, model: Callable[..., Any], **fields: object) -> Any:
         cls = model if isinstance(model, type) else getattr(model, "__self__", None)
-        if isinstance(cls, type) and issubclass(cls, Frozen):
-            for name, info in cls.model_fields.items():
-                field = self.found.get(self.key(name))
-                if field is not None and field.kind in ("number", "whole"):
-                    bounds = _bounds([*info.metadata, info.annotation])
-                    default = info.default if isinstance(info.default, int | float) else None
-                    self.found[field.key] = replace(field, bounds=bounds, default=default)
-        return super().build(model, **fields)
+        if not (isinstance(cls, type) and issubclass(cls, Frozen)):
+            return super().build(model, **fields)
+        self.notes.given |= {(cls.__name__, name) for name, value in fields.items() if value is not None}
+        asked = self.notes.fields
+        for name, info in cls.model_fields.items():
+            if (known := asked.get(self.key(name))) is not None and known.kind in ("number", "whole"):
+                bounds = _bounds([*info.metadata, info.annotation])
+                default = info.default if isinstance(info.default, int | float) else None
+                asked[known.key] = replace(known, bounds=bounds, default=default)
+        built = super().build(model, **fields)
+        for name in cls.model_fields:
+            if (known := asked.get(self.key(name))) is not None and known.value is None:
+                asked[known.key] = replace(known, taken=getattr(built, name, None))
+        return built
 
     def _note(
         self, name: str, kind: Kind, dimensions: tuple[str, ...] = (), choices: tuple[str, ...] | None = None
     ) -> None:
         key = self.key(name)
-        if key not in self.found:
-            self.found[key] = Field(
+        if key not in self.notes.fields:
+            self.notes.fields[key] = Field(
                 key=key, kind=kind, dimensions=dimensions, choices=choices, value=self.data.get(name)
             )
 
