@@ -88,7 +88,7 @@ def test_bad_table(flexapod, folder, table, words):
     (folder / "motion.csv").write_text(table)
     file = follow_table(folder)
     assert refusal(flexapod("run", file), "motion.csv", *words)
-    assert not (folder / "study").exists()
+    assert not (folder / "study-run").exists()
 
 
 def test_missing_table(flexapod, folder):
@@ -120,7 +120,7 @@ def test_lost_equilibrium_is_a_result_of_check_and_stops_run(flexapod, study, fo
     assert result.exit_code == 1
     assert "no equilibrium" in result.stderr
     assert "Traceback" not in result.stderr
-    assert not (folder / "study").exists()
+    assert not (folder / "study-run").exists()
 
 
 @pytest.mark.parametrize("command", ["check", "run", "modes", "actuator"])

@@ -150,8 +150,8 @@ def test_run_writes_results_figures_and_report(flexapod, study, folder):
     assert result.exit_code == 0, result.stderr
     assert result.stderr == ""
     assert result.stdout.startswith("The payload's centre of mass misses its rigid path by up to")
-    assert "In study: results.nc, results.csv, report.html" in result.stdout
-    out = folder / "study"
+    assert "In study-run: results.nc, results.csv, report.html (open it in a browser)" in result.stdout
+    out = folder / "study-run"
     assert {path.stem for path in out.glob("*.png")} == {path.stem for path in out.glob("*.svg")} >= FIGURES
     assert not [path for path in out.iterdir() if path.name.startswith(".")]  # no temporary file is left
     for figure in out.glob("*.svg"):
@@ -209,7 +209,7 @@ def test_actuator(flexapod, study, folder, command):
     result = flexapod(command, file)
     assert result.exit_code == 0, result.stderr
     assert "The tip leaves the hub's line by up to 6.96 mm, at t = 0.2 s" in result.stdout
-    names = {path.name for path in (folder / "study").iterdir()}
+    names = {path.name for path in (folder / "study-run").iterdir()}
     assert {"results.nc", "results.csv", "report.html", "response.png", "response.svg"} <= names
 
 
@@ -230,10 +230,10 @@ def test_failure_in_mid_course_keeps_what_was_computed(flexapod, study, folder):
         assert words in error["what"]
     told = json.loads(result.stdout)
     assert told["partial"] is True
-    data = open_results("study/results.nc")
+    data = open_results("study-run/results.nc")
     assert data.attrs["partial"] == 1
     assert data.attrs["failure"] in error["what"]
-    assert "Incomplete" in (folder / "study" / "report.html").read_text(encoding="utf-8")
+    assert "Incomplete" in (folder / "study-run" / "report.html").read_text(encoding="utf-8")
 
 
 @pytest.mark.parametrize("command", ["run", "modes"])
@@ -270,7 +270,7 @@ def test_full_disk_is_told_and_leaves_no_half_file(flexapod, study, folder, monk
     result = flexapod("run", study(*SHORT))
     assert result.exit_code == 2
     assert "No space left on device" in result.stderr
-    assert list((folder / "study").iterdir()) == []
+    assert list((folder / "study-run").iterdir()) == []
 
 
 def test_fault_of_ours_is_one_line_and_how_to_report_it(flexapod, study, monkeypatch):

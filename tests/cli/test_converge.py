@@ -31,10 +31,15 @@ def test_what_it_prints_and_writes(flexapod, beam, folder):
         assert words in run.stdout
     assert "Every fidelity" in run.stdout
     for name in ("convergence", "ladder"):
-        assert {path.suffix for path in (folder / "study").glob(f"{name}.*")} == {".nc", ".csv", ".png", ".svg"}
-    data = open_results(folder / "study" / "convergence.nc")
+        assert {path.suffix for path in (folder / "study-converge").glob(f"{name}.*")} == {
+            ".nc",
+            ".csv",
+            ".png",
+            ".svg",
+        }
+    data = open_results(folder / "study-converge" / "convergence.nc")
     assert data.attrs["partial"] == 0
-    with (folder / "study" / "convergence.csv").open(encoding="utf-8") as file:
+    with (folder / "study-converge" / "convergence.csv").open(encoding="utf-8") as file:
         table = list(csv.DictReader(file))
     assert [row["family"] for row in table] == list(data.family.values)
     assert float(table[-1]["error_tip"]) == pytest.approx(float(data.error_tip[-1]))
@@ -59,7 +64,7 @@ def test_bad_accuracy(flexapod, beam, folder, accuracy):
     assert run.exit_code == 2
     assert "accuracy" in run.stderr
     assert "1e-6 to 0.5" in run.stderr
-    assert not (folder / "study").exists()
+    assert not (folder / "study-converge").exists()
 
 
 def test_a_study_that_is_refused_is_refused_at_once(flexapod, study):
@@ -82,10 +87,10 @@ def test_interrupt(flexapod, beam, folder, monkeypatch, form):
     run = flexapod("converge", beam, *form)
     assert run.exit_code == 130
     assert "stopped by Ctrl-C after" in run.stderr
-    data = open_results(folder / "study" / "convergence.nc")
+    data = open_results(folder / "study-converge" / "convergence.nc")
     assert data.attrs["partial"] == 1
     assert set(data.family.values) == {"step", "shapes"}
-    assert (folder / "study" / "convergence.png").is_file()
+    assert (folder / "study-converge" / "convergence.png").is_file()
     if form:
         assert json.loads(run.stdout)["partial"] is True
         assert json.loads(run.stderr)["error"]["kind"] == "interrupt"

@@ -56,11 +56,11 @@ def test_interrupted_run(study, folder):
     assert run.returncode == 130
     assert b"Traceback" not in shown
     assert "until the computation stopped" in out
-    data = open_results(folder / "study" / "results.nc")
+    data = open_results(folder / "study-run" / "results.nc")
     assert data.attrs["partial"] == 1
     assert data.attrs["failure"] == "stopped by the user"
     assert 0 < float(data.time[-1]) < 1000
-    assert (folder / "study" / "results.csv").is_file()
+    assert (folder / "study-run" / "results.csv").is_file()
 
 
 @pytest.mark.skipif(sys.platform == "win32", reason="SIGINT")
@@ -70,7 +70,7 @@ def test_interrupted_run_as_json(study, folder):
     assert run.returncode == 130
     assert json.loads(run.stdout)["partial"] is True
     assert json.loads(run.stderr)["error"]["kind"] == "interrupt"
-    assert open_results(folder / "study" / "results.nc").attrs["partial"] == 1
+    assert open_results(folder / "study-run" / "results.nc").attrs["partial"] == 1
 
 
 #: The command in a process that sends itself SIGINT when the simulation is under way.

@@ -10,7 +10,7 @@ ANGLES = (10.0, 29.0)
 
 
 def replaced(monkeypatch, action):
-    def repeat(folder, *, engines, progress):
+    def repeat(folder, *, engines, figures, progress):
         progress("robot", 0.5)
         folder.mkdir()
         (folder / "report.html").write_text("page")

@@ -50,7 +50,7 @@ def few(monkeypatch):
 
 
 def replaced(monkeypatch, result):
-    def repeat(folder, *, engines, progress):
+    def repeat(folder, *, engines, figures, progress):
         assert engines
         folder.mkdir(exist_ok=True)
         (folder / "report.html").write_text("page")

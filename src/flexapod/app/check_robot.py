@@ -6,10 +6,10 @@ import math
 from typing import TYPE_CHECKING
 
 from flexapod.app.terminal import print_table, print_text
-from flexapod.study.words import number, text
+from flexapod.study.words import column, number, scale, text
 
 if TYPE_CHECKING:
-    from flexapod.study.describe.leg import Extreme, Stress
+    from flexapod.study.describe.leg import Extreme
     from flexapod.study.describe.pose import PoseDescription, VibrationToExpect
     from flexapod.study.describe.robot import RobotDescription
 
@@ -47,7 +47,7 @@ def _lengths(found: RobotDescription) -> None:
             _at(leg.longest),
             "no limits" if leg.stroke_margin is None else _at(leg.stroke_margin),
             f"{1e3 * leg.guided.value:.2f}",
-            f"{leg.slenderness:.3g}",
+            f"{leg.slenderness:.1f}",
         ]
         for leg in found.legs
     ]
@@ -82,14 +82,21 @@ def _singularity(found: RobotDescription) -> None:
 
 def _loads(found: RobotDescription) -> None:
     _heading("Loads (+ pushes)")
-    rows = []
-    for leg in found.legs:
-        share = leg.euler_share
-        words = "never pushed" if share.value == 0 else f"{100 * share.value:.2g} % at {share.time:.3f} s"
-        forces = [f"{leg.force_min.value:.5g}", f"{leg.force_max.value:.5g}"]
-        rows.append([f"  leg {leg.leg}", *forces, words, *_stresses(leg.stress)])
-    header = ["", "least [N]", "largest [N]", "of Euler load", "axial [MPa]", "bending [MPa]", "together"]
-    print_table(header, rows)
+    count = len(found.legs)
+    unit, forces = column(
+        [*(leg.force_min.value for leg in found.legs), *(leg.force_max.value for leg in found.legs)], "N"
+    )
+    _, shares = column([100 * leg.euler_share.value for leg in found.legs], "", 3)
+    times = [f" at {leg.euler_share.time:.3f} s" for leg in found.legs]
+    pushed_words = [
+        "never pushed" if leg.euler_share.value == 0 else share + time
+        for leg, share, time in zip(found.legs, shares, times, strict=True)
+    ]
+    pressure, *stresses = _stresses(found)
+    names = [f"  leg {leg.leg}" for leg in found.legs]
+    rows = zip(names, forces[:count], forces[count:], pushed_words, *stresses, strict=True)
+    header = ["", f"least [{unit}]", f"largest [{unit}]", "of Euler load [%]", *pressure]
+    print_table(header, [list(row) for row in rows])
     pushed = max(found.legs, key=lambda leg: leg.euler_share.value)
     if pushed.euler_share.value > 0:
         print_text(
@@ -106,10 +113,11 @@ def _loads(found: RobotDescription) -> None:
     print_text(f"Leg {number} is stressed most: {text(most.total.value, 'Pa')}{limit}.", indent=2)
 
 
-def _stresses(stress: Stress | None) -> list[str]:
-    if stress is None:
-        return ["n/a"] * 3
-    return [f"{value / 1e6:.3g}" for value in (stress.axial, stress.bending, stress.total.value)]
+def _stresses(found: RobotDescription) -> tuple[list[str], list[str], list[str], list[str]]:
+    """Heads and columns of axial stress, bending stress and their sum."""
+    known = [(s.axial, s.bending, s.total.value) if (s := leg.stress) else (math.nan,) * 3 for leg in found.legs]
+    unit, flat = column([value for stresses in known for value in stresses], "Pa")
+    return [f"axial [{unit}]", f"bending [{unit}]", f"together [{unit}]"], flat[0::3], flat[1::3], flat[2::3]
 
 
 def _pose(pose: PoseDescription, held: str) -> None:
@@ -119,10 +127,11 @@ def _pose(pose: PoseDescription, held: str) -> None:
     if pose.stiffness is not None:
         s = pose.stiffness
         direction = ", ".join(f"{round(part, 2) + 0.0:.2f}" for part in s.softest)
+        turning = scale([s.turning_least, s.turning_most], "N m/rad")
         print_text(
             f"Stiffness at the tool: {text(s.least, 'N/m')} along [{direction}], where it is least, to "
-            f"{text(s.most, 'N/m')}; against turning {number(1e-3 * s.turning_least)} to "
-            f"{number(1e-3 * s.turning_most)} kN m/rad. At rest the centre of mass is off by "
+            f"{text(s.most, 'N/m')}; against turning {number(turning.factor * s.turning_least)} to "
+            f"{turning.text(s.turning_most)}. At rest the centre of mass is off by "
             f"{text(pose.sag or 0.0, 'm')}.",
             indent=2,
         )

@@ -8,7 +8,7 @@ from typing import TYPE_CHECKING, Annotated
 import typer
 
 from flexapod.app.failures import INTERRUPTED, guarded, print_parts
-from flexapod.app.options import Json, Out, Quiet, StudyFile, as_options
+from flexapod.app.options import Json, NoFigures, Out, Quiet, StudyFile, as_options
 
 if TYPE_CHECKING:
     from xarray import Dataset
@@ -30,8 +30,8 @@ def add(app: typer.Typer) -> None:
 
 @guarded
 def converge(
-    file: StudyFile, accuracy: Accuracy = 1e-2, ladder: Ladder = False, out: Out = None, json: Json = False,
-    quiet: Quiet = False,
+    file: StudyFile, accuracy: Accuracy = 1e-2, ladder: Ladder = False, out: Out = None,
+    no_figures: NoFigures = False, json: Json = False, quiet: Quiet = False,
 ) -> None:  # fmt: skip
     """Vary step, shapes and elements of a study: errors, orders, cost, and the cheapest setting that will do."""
     from flexapod.app.outputs import results_folder
@@ -40,7 +40,7 @@ def converge(
     from flexapod.study.converge.plan import checked_trials, estimate
 
     trials = checked_trials(load(file), None)
-    folder = results_folder(file, out)
+    folder = results_folder(file, "converge", out)
     with as_options(accuracy="--accuracy"):
         count, seconds = estimate(trials, accuracy)
     if not (json or quiet):
@@ -49,7 +49,7 @@ def converge(
             "shapes that is compiled."
         )
     tables, interrupted = _computed(trials, accuracy, ladder=ladder, quiet=quiet or json)
-    files = [path for name, data in tables.items() for path in _write(data, folder, name)]
+    files = [path for name, data in tables.items() for path in _write(data, folder, name, figure=not no_figures)]
     _say(tables, folder, files, json=json)
     if interrupted:
         _stopped(tables, json=json)
@@ -86,8 +86,8 @@ def _rough(seconds: float) -> str:
     return f"up to {max(10, 10 * round(seconds / 10 + 0.4))} s" if seconds < 90 else f"{seconds / 60:.0f} minutes"
 
 
-def _write(data: Dataset, folder: Path, name: str) -> list[Path]:
-    """The table as NetCDF and CSV, and its figure."""
+def _write(data: Dataset, folder: Path, name: str, *, figure: bool) -> list[Path]:
+    """The table as NetCDF and CSV, and its figure where it is wanted."""
     from flexapod import plot
     from flexapod.plot.convergence import convergence, ladder
     from flexapod.study.converge.table import save_table
@@ -95,7 +95,7 @@ def _write(data: Dataset, folder: Path, name: str) -> list[Path]:
 
     draw = {"convergence": convergence, "ladder": ladder}[name]
     files = [save(data, folder / f"{name}.nc"), save_table(data, folder / f"{name}.csv")]
-    return [*files, *plot.save(draw(data), folder / name)]
+    return [*files, *(plot.save(draw(data), folder / name) if figure else ())]
 
 
 def _say(tables: dict[str, Dataset], folder: Path, files: list[Path], *, json: bool) -> None:

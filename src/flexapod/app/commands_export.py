@@ -24,7 +24,7 @@ Pose = Annotated[
 Elements = Annotated[int, typer.Option("--elements", help="Solid elements along the free part of each piston.")]
 Count = Annotated[int, typer.Option("--count", help="How many frequencies the deck asks for.")]
 File = Annotated[
-    Path | None, typer.Option("--out", metavar="FILE.inp", help="File to write; default: the study file's name, .inp.")
+    Path | None, typer.Option("--out", metavar="FILE.inp", help="File to write; default: beside the study, FILE.inp.")
 ]
 Force = Annotated[bool, typer.Option("--force", help="Replace the file if it exists.")]
 
@@ -58,7 +58,7 @@ def export(
     study = model.load(file)
     if isinstance(study, model.ActuatorStudy):
         raise InputError("is the study of a single actuator", file=file, allowed="the study of a robot")
-    path = Path(file.stem + ".inp") if out is None else out
+    path = file.with_name(file.stem + ".inp") if out is None else out
     _check_file(path, force)
     title = f"{file.stem}: robot with locked drives"
     with as_options(elements="--elements", modes="--count", pose="--pose"):

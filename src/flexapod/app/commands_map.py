@@ -8,12 +8,13 @@ from typing import TYPE_CHECKING, Annotated
 import typer
 
 from flexapod.app.failures import guarded
-from flexapod.app.options import Json, Out, Quiet, StudyFile, as_options
+from flexapod.app.options import Json, NoFigures, Out, Quiet, StudyFile, as_options
 
 if TYPE_CHECKING:
     from xarray import Dataset
 
     from flexapod.study.map.findings import Finding, MapFindings
+    from flexapod.study.record import Report
 
 __all__ = ["add"]
 
@@ -46,8 +47,8 @@ def add(app: typer.Typer) -> None:
 @guarded
 def workspace_map(
     file: StudyFile, x: X = None, y: Y = None, z: Z = None, at: At = None, direction: Direction = "z",
-    acceleration: Acceleration = None, mode: Mode = 1, count: Count = None, out: Out = None, json: Json = False,
-    quiet: Quiet = False,
+    acceleration: Acceleration = None, mode: Mode = 1, count: Count = None, out: Out = None,
+    no_figures: NoFigures = False, json: Json = False, quiet: Quiet = False,
 ) -> None:  # fmt: skip
     """Map frequencies, stiffness, deviations, forces and margins over poses: map.nc and figures."""
     from flexapod import model
@@ -65,7 +66,7 @@ def workspace_map(
     axes = parse_axes({"--x": x, "--y": y, "--z": z}, count)
     fixed = parse_at(at, axes or ("surge", "heave"))
     settings = {"direction": parse_direction(direction), "acceleration": parse_acceleration(acceleration)}
-    folder = results_folder(file, out)
+    folder = results_folder(file, "map", out)
     with progress_bar(quiet=quiet or json) as report:
         with as_options(axes="--x", at="--at", direction="--direction", acceleration="--acceleration"):
             data = compute(
@@ -74,28 +75,29 @@ def workspace_map(
             )  # fmt: skip
         if mode > data.sizes["mode"]:
             raise InputError("is no mode of this robot", key="--mode", value=mode, allowed=f"1 to {data.sizes['mode']}")
-        files = _write(data, folder, mode, report)
+        files = _write(data, folder, mode, report, figures=not no_figures)
     found = map_findings(data, mode)
     if json:
         print_json(found.as_dict() | {"wall_time": data.attrs["wall_time"], "folder": folder, "files": files})
     else:
-        _show(data, found, folder)
+        _show(data, found, folder, files)
 
 
-def _write(data: Dataset, folder: Path, mode: int, report) -> list[Path]:
+def _write(data: Dataset, folder: Path, mode: int, report: Report, *, figures: bool) -> list[Path]:
+    """The map, and where they are wanted a figure of each quantity, of frequencies that of this `mode`."""
     from flexapod import plot
     from flexapod.study.map.findings import drawn
     from flexapod.study.store import save
 
     report("writing the map", COMPUTING)
-    files, names = [save(data, folder / "map.nc")], drawn(data)
+    files, names = [save(data, folder / "map.nc")], drawn(data) if figures else ()
     for k, name in enumerate(names):
         report(f"drawing {name.replace('_', ' ')}", COMPUTING + (1 - COMPUTING) * k / len(names))
         files += plot.save(plot.workspace_map(data, name, mode=mode), folder / f"map-{name.replace('_', '-')}")
     return files
 
 
-def _show(data: Dataset, found: MapFindings, folder: Path) -> None:
+def _show(data: Dataset, found: MapFindings, folder: Path, files: list[Path]) -> None:
     from flexapod.app.terminal import print_table, print_text
     from flexapod.study.map.findings import axis_words
 
@@ -112,10 +114,11 @@ def _show(data: Dataset, found: MapFindings, folder: Path) -> None:
     print_text()
     rows = [_row(quantity) for quantity in found.quantities]
     if rows:
-        print_table(["", "least", "at", "largest", "at", "home"], rows, left=(0, 2, 4))
+        print_table(["", "unit", "least", "at", "largest", "at", "home"], rows, left=(0, 1, 3, 5))
     for line in data.attrs["warnings"].splitlines():
         print_text(f"Warning: {line}")
-    print_text(f"Written: map.nc and a figure of each quantity in {folder} ({data.attrs['wall_time']:.2g} s).")
+    drawn = " and a figure of each quantity" if len(files) > 1 else ""
+    print_text(f"In {folder}: map.nc{drawn}. ({data.attrs['wall_time']:.2g} s of computation)")
 
 
 def _sentence(found: Finding) -> str:
@@ -131,16 +134,16 @@ def _sentence(found: Finding) -> str:
 
 def _row(found: Finding) -> list[str]:
     from flexapod.study.map.findings import coordinate_words
-    from flexapod.study.words import text
+    from flexapod.study.words import column
 
-    def shown(value: float | None) -> str:
-        return "" if value is None else text(value, found.unit).strip()
-
+    home = float("nan") if found.home is None else found.home
+    unit, (least, largest, at_home) = column([found.least, found.largest, home], found.unit)
     return [
         found.words,
-        shown(found.least),
+        unit,
+        least,
         coordinate_words(found.least_at),
-        shown(found.largest),
+        largest,
         coordinate_words(found.largest_at),
-        shown(found.home),
+        "" if found.home is None else at_home,
     ]

@@ -8,7 +8,7 @@ from typing import TYPE_CHECKING, Annotated
 import typer
 
 from flexapod.app.failures import guarded
-from flexapod.app.options import Json, StudyFile, as_options
+from flexapod.app.options import Json, NoFigures, StudyFile, as_options
 
 if TYPE_CHECKING:
     from xarray import Dataset
@@ -31,7 +31,10 @@ def add(app: typer.Typer) -> None:
 
 
 @guarded
-def modes(file: StudyFile, pose: Pose = None, out: Folder = None, count: Count = 12, json: Json = False) -> None:
+def modes(
+    file: StudyFile, pose: Pose = None, out: Folder = None, count: Count = 12, no_figures: NoFigures = False,
+    json: Json = False,
+) -> None:  # fmt: skip
     """Frequencies, damping and shapes at a pose, commands of the drives held, about the static equilibrium."""
     from flexapod import model
     from flexapod.app.outputs import check_writable
@@ -51,7 +54,7 @@ def modes(file: StudyFile, pose: Pose = None, out: Folder = None, count: Count =
     check_writable(out)
     with as_options(pose="--pose"):
         data = compute(study, parse_pose(pose))
-    files = [] if out is None else _write(data, out)
+    files = [] if out is None else _write(data, out, figure=not no_figures)
     if json:
         print_json(_as_dict(data, files))
     else:
@@ -91,12 +94,12 @@ def _number(text: str) -> float | str:
         return text
 
 
-def _write(data: Dataset, folder: Path) -> list[Path]:
+def _write(data: Dataset, folder: Path, *, figure: bool) -> list[Path]:
     from flexapod import plot
     from flexapod.study.store import save
 
-    figure = plot.modes_3d(data)
-    return [save(data, folder / "modes.nc"), *plot.save(figure, folder / "modes")]
+    files = [save(data, folder / "modes.nc")]
+    return [*files, *(plot.save(plot.modes_3d(data), folder / "modes") if figure else ())]
 
 
 def _as_dict(data: Dataset, files: list[Path]) -> dict[str, object]:
@@ -114,7 +117,7 @@ def _as_dict(data: Dataset, files: list[Path]) -> dict[str, object]:
 
 def _show(data: Dataset, held: str, pose: str | None, count: int, files: list[Path]) -> None:
     from flexapod.app.terminal import print_table, print_text
-    from flexapod.study.words import text
+    from flexapod.study.words import column, text
 
     sag = float((data.com_sag**2).sum() ** 0.5)
     print_text(
@@ -123,10 +126,10 @@ def _show(data: Dataset, held: str, pose: str | None, count: int, files: list[Pa
     )
     print_text()
     shown = data.isel(mode=slice(0, count))
-    rows = [
-        [str(int(m)), f"{float(f):.6g}", f"{100 * float(d):.3g}", str(kind)]
-        for m, f, d, kind in zip(shown.mode, shown.frequency, shown.damping_ratio, shown.kind.values, strict=True)
-    ]
+    _, frequencies = column(shown.frequency.values, "Hz", 6)
+    _, ratios = column(100 * shown.damping_ratio.values, "")
+    kinds = map(str, shown.kind.values)
+    rows = [[str(int(m)), *row] for m, *row in zip(shown.mode, frequencies, ratios, kinds, strict=True)]
     print_table(["mode", "frequency [Hz]", "damping [%]", "what moves most"], rows, left=(3,))
     if data.sizes["mode"] > count:
         print_text(f"The lowest {count} of {data.sizes['mode']} modes; more with --count.")

@@ -9,7 +9,7 @@ from typing import TYPE_CHECKING, Annotated
 import typer
 
 from flexapod.app.failures import guarded
-from flexapod.app.options import Json, Quiet
+from flexapod.app.options import Json, NoFigures, Quiet
 
 if TYPE_CHECKING:
     from flexapod.study.paper.study import PaperStudy
@@ -29,8 +29,9 @@ def add(app: typer.Typer) -> None:
 
 @guarded
 def replicate(
-    out: Folder = Path("replicate"), engines: Engines = False, json: Json = False, quiet: Quiet = False
-) -> None:
+    out: Folder = Path("replicate"), engines: Engines = False, no_figures: NoFigures = False, json: Json = False,
+    quiet: Quiet = False,
+) -> None:  # fmt: skip
     """Repeat the paper's whole study: figures, data, table of its claims, report."""
     from flexapod.app.outputs import check_writable
     from flexapod.app.replicate import replicate as repeat
@@ -41,7 +42,7 @@ def replicate(
 
     check_writable(out)
     with progress_bar(quiet=quiet or json) as report:
-        result = repeat(out, engines=engines, progress=report)
+        result = repeat(out, engines=engines, figures=not no_figures, progress=report)
     found, table, agreed = summary(result["robot"]), claims(result), agreements(result.parts)
     if json:
         files = sorted(path for path in out.rglob("*") if path.is_file())
@@ -58,7 +59,9 @@ def replicate(
     for row in agreed:
         print_text(f"{row.quantity}: {row.words}", indent=2)
     print_text()
-    print_text(f"In {out}: report.html (open it in a browser), claims.md, figures/ and data/.")
+    print_text(
+        f"In {out}: report.html (open it in a browser), claims.md, {'' if no_figures else 'figures/ '}and data/."
+    )
     _fail(result)
 
 

@@ -3,18 +3,21 @@
 from __future__ import annotations
 
 from collections.abc import Sequence
+from dataclasses import asdict
 from pathlib import Path
 from typing import TYPE_CHECKING, Annotated
 
 import typer
 
 from flexapod.app.failures import INTERRUPTED, guarded, print_parts, show
-from flexapod.app.options import Json, Out, Quiet, StudyFile
+from flexapod.app.options import Json, NoFigures, Out, Quiet, StudyFile
 
 if TYPE_CHECKING:
     from xarray import Dataset
 
     from flexapod.model import ActuatorStudy, Study
+    from flexapod.study.quicker import Quicker
+    from flexapod.study.record import Report
 
 __all__ = ["add"]
 
@@ -32,20 +35,25 @@ def add(app: typer.Typer) -> None:
 
 
 @guarded
-def run(file: StudyFile, out: Out = None, formats: Format = USUAL, json: Json = False, quiet: Quiet = False) -> None:
+def run(
+    file: StudyFile, out: Out = None, formats: Format = USUAL, no_figures: NoFigures = False, json: Json = False,
+    quiet: Quiet = False,
+) -> None:  # fmt: skip
     """Simulate a study, rigid and flexible: results.nc, results.csv, figures, report.html."""
-    from flexapod.app.outputs import parse_formats
+    from flexapod.app.outputs import parse_formats, results_folder
     from flexapod.model import load
 
-    _run(load(file), file, out, parse_formats(formats), json=json, quiet=quiet)
+    drawn = () if no_figures else parse_formats(formats)
+    _run(load(file), results_folder(file, "run", out), drawn, json=json, quiet=quiet)
 
 
 @guarded
 def actuator(
-    file: StudyFile, out: Out = None, formats: Format = USUAL, json: Json = False, quiet: Quiet = False
-) -> None:
+    file: StudyFile, out: Out = None, formats: Format = USUAL, no_figures: NoFigures = False, json: Json = False,
+    quiet: Quiet = False,
+) -> None:  # fmt: skip
     """Simulate the study of a single actuator; writes what `run` writes."""
-    from flexapod.app.outputs import parse_formats
+    from flexapod.app.outputs import parse_formats, results_folder
     from flexapod.errors import InputError
     from flexapod.model import ActuatorStudy, load
 
@@ -57,18 +65,16 @@ def actuator(
             allowed="a study with [actuator]",
             next_step=f"Use `flexapod run {file}`",
         )
-    _run(study, file, out, parse_formats(formats), json=json, quiet=quiet)
+    drawn = () if no_figures else parse_formats(formats)
+    _run(study, results_folder(file, "run", out), drawn, json=json, quiet=quiet)
 
 
-def _run(
-    study: Study | ActuatorStudy, file: Path, out: Path | None, formats: Sequence[str], *, json: bool, quiet: bool
-) -> None:
-    from flexapod.app.outputs import results_folder, write_all, write_data
+def _run(study: Study | ActuatorStudy, folder: Path, formats: Sequence[str], *, json: bool, quiet: bool) -> None:
+    from flexapod.app.outputs import write_all, write_data
     from flexapod.app.terminal import progress_bar
     from flexapod.study import Interrupted
     from flexapod.study import run as simulate
 
-    folder = results_folder(file, out)
     with progress_bar(quiet=quiet or json) as report:
         try:
             data = simulate(study, progress=lambda time, end: report("simulating", COMPUTING * time / end))
@@ -76,7 +82,8 @@ def _run(
         except Interrupted as stop:
             data, interrupted = stop.dataset, True
         files = write_data(data, folder) if interrupted else write_all(data, folder, report, formats)
-    _say(data, folder, files, json=json)
+        faster = None if interrupted else _quicker(study, data, report)
+    _say(data, folder, files, faster, json=json)
     if interrupted:
         _stopped(data, json=json)
         raise typer.Exit(INTERRUPTED)
@@ -85,14 +92,26 @@ def _run(
         raise typer.Exit(1)
 
 
-def _say(data: Dataset, folder: Path, files: list[Path], *, json: bool) -> None:
+def _quicker(study: Study | ActuatorStudy, data: Dataset, report: Report) -> Quicker | None:
+    """A step that would have done, where the tolerance made the run slow; all files are written by now."""
+    from flexapod.study.quicker import quicker
+
+    try:
+        return quicker(study, data, progress=lambda time, end: report("trying a fixed step", 0.99))
+    except KeyboardInterrupt:
+        return None
+
+
+def _say(data: Dataset, folder: Path, files: list[Path], faster: Quicker | None, *, json: bool) -> None:
     from flexapod.app.run_words import show_run
-    from flexapod.app.terminal import print_json
+    from flexapod.app.terminal import print_json, print_text
     from flexapod.study.summary import summary
 
     warnings = [line for line in data.attrs["warnings"].splitlines() if line]
     if not json:
         show_run(data, folder, files, warnings)
+        if faster is not None:
+            print_text(f"Slow? In [simulation], {faster.words}.")
         return
     state = {name: data.attrs[name] for name in ("failure", "time_reached") if name in data.attrs}
     print_json(
@@ -103,6 +122,7 @@ def _say(data: Dataset, folder: Path, files: list[Path], *, json: bool) -> None:
             "warnings": warnings,
             "wall_time": data.attrs["wall_time"],
             "steps": int(data.attrs["steps"]),
+            "quicker": None if faster is None else asdict(faster),
             "folder": folder,
             "files": files,
         }

@@ -10,7 +10,7 @@ from typing import TYPE_CHECKING, Annotated
 import typer
 
 from flexapod.app.failures import INTERRUPTED, guarded, print_parts
-from flexapod.app.options import Json, Quiet, StudyFile, as_options
+from flexapod.app.options import Json, NoFigures, Quiet, StudyFile, as_options
 
 if TYPE_CHECKING:
     from xarray import Dataset
@@ -20,7 +20,9 @@ __all__ = ["add"]
 SweepFile = Annotated[Path, typer.Argument(metavar="SWEEP", help="Sweep file (TOML): what varies, what is kept.")]
 Out = Annotated[
     Path | None,
-    typer.Option("--out", metavar="DIR", help="Folder of the results; default: the names of both files."),
+    typer.Option(
+        "--out", metavar="DIR", help="Folder of the results; default: beside the study, the names of both files."
+    ),
 ]
 Scheduler = Annotated[
     str | None, typer.Option("--scheduler", metavar="ADDRESS", help="A running Dask scheduler, tcp://host:8786.")
@@ -39,7 +41,7 @@ def add(app: typer.Typer) -> None:
 @guarded
 def sweep(
     file: StudyFile, sweep_file: SweepFile, out: Out = None, scheduler: Scheduler = None, workers: Workers = None,
-    retry_failed: RetryFailed = False, json: Json = False, quiet: Quiet = False,
+    retry_failed: RetryFailed = False, no_figures: NoFigures = False, json: Json = False, quiet: Quiet = False,
 ) -> None:  # fmt: skip
     """Compute many variants of a study: grids, lists, Latin hypercubes, random tolerances. Run again, it continues."""
     from flexapod.app.outputs import results_folder
@@ -47,7 +49,7 @@ def sweep(
     from flexapod.study.sweep import SweepStopped
     from flexapod.study.sweep import sweep as compute
 
-    folder = results_folder(Path(f"{file.stem}-{sweep_file.stem}"), out)
+    folder = results_folder(file, sweep_file.stem, out)
     with as_options(workers="--workers", scheduler="--scheduler"), progress_bar(quiet=quiet or json) as report:
         try:
             data = compute(
@@ -57,7 +59,7 @@ def sweep(
             interrupted = False
         except SweepStopped as stop:
             data, interrupted = stop.dataset, True
-        files = _write(data, folder)
+        files = _write(data, folder, figure=not no_figures)
     _say(data, folder, files, json=json)
     if interrupted:
         _stopped(data, json=json)
@@ -66,14 +68,14 @@ def sweep(
         raise typer.Exit(1)
 
 
-def _write(data: Dataset, folder: Path) -> list[Path]:
-    """The table, and the figure where there is something to see."""
+def _write(data: Dataset, folder: Path, *, figure: bool) -> list[Path]:
+    """The table, and the figure where it is wanted and there is something to see."""
     from flexapod import plot
     from flexapod.plot.sweep import sweep as draw
     from flexapod.study.sweep import save_table, scalar_names
 
     files = [save_table(data, folder / "sweep.csv")]
-    if any(data[name].notnull().any() for name in scalar_names(data)):
+    if figure and any(data[name].notnull().any() for name in scalar_names(data)):
         files += plot.save(draw(data), folder / "sweep")
     return files
 

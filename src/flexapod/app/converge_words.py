@@ -33,6 +33,8 @@ def show(data: Dataset) -> None:
 
 def show_ladder(data: Dataset) -> None:
     """Print every fidelity with error and cost."""
+    from flexapod.study.words import column
+
     names = _quantities(data)
     print_text()
     own = ", ".join(f"{_error(float(data.attrs[f'reference_error_{q}']))} in the {_NAMES[q]}" for q in names)
@@ -40,17 +42,21 @@ def show_ladder(data: Dataset) -> None:
         f"Every fidelity, with the same step: errors against {data.attrs['reference']} "
         f"(8 of these shapes differ from it by {own})."
     )
-    head = ["fidelity", "made of", *(f"error, {_NAMES[q]}" for q in names), "time of a step", "time", ""]
+    found = _rows(data, "ladder")
+    _, each = column([1e6 * row["seconds_per_step"] for row in found], "", 3)
+    unit, times = column([row["seconds"] for row in found], "s", 3)
+    errors = (f"error, {_NAMES[q]}" for q in names)
+    head = ["fidelity", "made of", *errors, "time of a step [µs]", f"time [{unit}]", ""]
     rows = [
         [
             str(row["fidelity"]),
             str(row["label"]),
             *(_error(row[f"error_{q}"]) for q in names),
-            _time(row["seconds_per_step"]),
-            _time(row["seconds"]),
+            each[i],
+            times[i],
             str(row["failure"]),
         ]
-        for row in _rows(data, "ladder")
+        for i, row in enumerate(found)
     ]
     print_table(head, rows, left=(0, 1, len(head) - 1))
     if data.attrs["notes"]:
@@ -74,30 +80,22 @@ def as_dict(data: Dataset) -> dict[str, object]:
 
 def _table(data: Dataset, family: str, *, orders: bool) -> None:
     """Rows of a family; without orders where the error falls with no power or not steadily."""
-    from flexapod.study.words import text
+    from flexapod.study.words import column
 
     names, rows = _quantities(data), _rows(data, family)
-    each = ("error", "order") if orders else ("error",)
-    head = [family, *(word for q in names for word in (f"peak, {_NAMES[q]}", *each)), "steps", "time", ""]
-    lines = [
-        [
-            str(row["label"]).removeprefix("step "),
-            *(
-                word
-                for q in names
-                for word in (
-                    text(row[f"peak_{q}"], "m", 5) if not row["failure"] else "",
-                    "reference" if row["reference"] else _error(row[f"error_{q}"]),
-                    *([_order(row[f"order_{q}"])] if orders else []),
-                )
-            ),
-            str(row["steps"]),
-            _time(row["seconds"]),
-            str(row["failure"]),
-        ]
-        for row in rows
-    ]
-    print_table(head, lines, left=(0, len(head) - 1))
+    columns = [[str(row["label"]).removeprefix("step ") for row in rows]]
+    head = [family]
+    for q in names:
+        unit, peaks = column([math.nan if row["failure"] else row[f"peak_{q}"] for row in rows], "m", 5)
+        head += [f"peak [{unit}], {_NAMES[q]}", "error"]
+        columns += [peaks, ["reference" if row["reference"] else _error(row[f"error_{q}"]) for row in rows]]
+        if orders:
+            head.append("order")
+            columns.append([_order(row[f"order_{q}"]) for row in rows])
+    unit, times = column([row["seconds"] for row in rows], "s", 3)
+    columns += [[str(row["steps"]) for row in rows], times, [str(row["failure"]) for row in rows]]
+    head += ["steps", f"time [{unit}]", ""]
+    print_table(head, [list(line) for line in zip(*columns, strict=True)], left=(0, len(head) - 1))
 
 
 def _conclusion(data: Dataset) -> None:

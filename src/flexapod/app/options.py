@@ -11,13 +11,15 @@ import typer
 
 from flexapod.errors import InputError
 
-__all__ = ["Json", "Out", "Quiet", "StudyFile", "as_options"]
+__all__ = ["Json", "NoFigures", "Out", "Quiet", "StudyFile", "as_options"]
 
 StudyFile = Annotated[Path, typer.Argument(metavar="FILE", help="Study file (TOML); `flexapod new` writes one.")]
 Json = Annotated[bool, typer.Option("--json", help="Print JSON on stdout and nothing else; errors as JSON on stderr.")]
 Out = Annotated[
-    Path | None, typer.Option("--out", metavar="DIR", help="Folder for the results; default: the file's name.")
+    Path | None,
+    typer.Option("--out", metavar="DIR", help="Folder for the results; default: beside the study, FILE-COMMAND."),
 ]
+NoFigures = Annotated[bool, typer.Option("--no-figures", help="Draw nothing: data and words only, in less time.")]
 Quiet = Annotated[bool, typer.Option("--quiet", "-q", help="No progress bar.")]
 
 _PARTS = ("what", "file", "value", "allowed", "next_step")

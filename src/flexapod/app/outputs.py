@@ -41,15 +41,15 @@ def parse_formats(text: str) -> tuple[str, ...]:
     return names
 
 
-def results_folder(file: Path, out: Path | None) -> Path:
-    """Where results go: `out`, else a folder in the current one named after the study file.
+def results_folder(file: Path, command: str, out: Path | None) -> Path:
+    """Where a command's results go: `out`, else a folder of its own beside the study file, ``robot-run``.
 
     Raises
     ------
     InputError
         It cannot be written to.
     """
-    folder = Path(file.stem) if out is None else out
+    folder = file.with_name(f"{file.stem}-{command}") if out is None else out
     check_writable(folder)
     return folder
 
@@ -78,14 +78,14 @@ def write_data(data: Dataset, folder: Path) -> list[Path]:
 
 
 def write_all(data: Dataset, folder: Path, report: Report, formats: Sequence[str]) -> list[Path]:
-    """Data, figures in the formats asked for, and ``report.html``; `report` is told what is being written."""
+    """Data, figures in the formats asked for (none: no figures), ``report.html``; `report` is told what is written."""
     report("writing results", 0.90)
     files = write_data(data, folder)
     report("drawing figures", 0.92)
     from flexapod.app.figures import draw
     from flexapod.app.report import write_report
 
-    figures = draw(data, folder, formats)
+    figures = draw(data, folder, formats) if formats else []
     report("writing the report", 0.98)
     page = write_report(data, folder, figures)
     return [*files, *(path for figure in figures for path in figure.files), page]

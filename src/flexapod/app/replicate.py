@@ -20,7 +20,9 @@ if TYPE_CHECKING:
 __all__ = ["replicate", "write"]
 
 
-def replicate(folder: str | Path, *, engines: bool = False, progress: Report | None = None) -> PaperStudy:
+def replicate(
+    folder: str | Path, *, engines: bool = False, figures: bool = True, progress: Report | None = None
+) -> PaperStudy:
     """Compute the paper's whole study and write it into a folder.
 
     Data of each part are written as soon as it is computed: an interrupt leaves what is done. An older report is
@@ -32,6 +34,8 @@ def replicate(folder: str | Path, *, engines: bool = False, progress: Report | N
         Made if needed.
     engines : bool
         Also with an independent engine, Exudyn; if it fails, the result says so and the rest is written.
+    figures : bool
+        Whether to draw them; the report is written in either case.
     progress : callable, optional
         Called with what is being done, in words, and the share of the whole that is done (0 to 1).
 
@@ -58,7 +62,7 @@ def replicate(folder: str | Path, *, engines: bool = False, progress: Report | N
         progress=_upto(0.75, progress),
         keep=lambda name, data: _store(data, folder / "data" / name),
     )
-    _figures_and_report(result, folder, _from(0.75, progress))
+    _figures_and_report(result, folder, _from(0.75, progress), figures=figures)
     return result
 
 
@@ -88,10 +92,10 @@ def write(result: PaperStudy, folder: str | Path, *, progress: Report | None = N
     return _figures_and_report(result, Path(folder), progress)
 
 
-def _figures_and_report(result: PaperStudy, folder: Path, progress: Report | None) -> Path:
+def _figures_and_report(result: PaperStudy, folder: Path, progress: Report | None, *, figures: bool = True) -> Path:
     from flexapod.study.paper.claims import claims, markdown
 
-    groups = paper_figures(result, folder / "figures", progress)
+    groups = paper_figures(result, folder / "figures", progress) if figures else {}
     table = claims(result)
     store_page(folder / "claims.md", markdown(table))
     return store_page(folder / "report.html", paper_page(result, table, groups))

@@ -33,6 +33,7 @@ def show_run(data: Dataset, folder: Path, files: Sequence[Path], warnings: Seque
     print_text()
     formats = list(dict.fromkeys(path.suffix for path in files if path.suffix[1:] in FORMATS))
     names = ", ".join(path.name for path in files if path.suffix not in formats)
+    names = names.replace("report.html", "report.html (open it in a browser)")
     figures = sum(path.suffix in formats for path in files) // max(len(formats), 1)
     kinds = " and ".join(suffix[1:].upper() for suffix in formats)
     drawn = f", {figures} figure{'s' * (figures > 1)} ({kinds})" if figures else ""
@@ -41,17 +42,20 @@ def show_run(data: Dataset, folder: Path, files: Sequence[Path], warnings: Seque
 
 
 def _axes(found: RobotSummary, name: str) -> None:
-    from flexapod.study.words import text
+    from flexapod.study.words import column
 
-    rows = [
-        [
-            a.axis,
-            text(a.peak, "m"),
-            f"{a.time:.4g} s",
-            text(a.rms, "m"),
-            text(a.excursion, "m", 4),
-            "n/a" if a.per_cent is None else f"{a.per_cent:.2g} %",
-        ]
-        for a in found.axes
-    ]
-    print_table([name, "peak", "at", "rms", "rigid travel", "peak / travel"], rows)
+    length, peaks_and_rms = column([*(a.peak for a in found.axes), *(a.rms for a in found.axes)], "m")
+    count = len(found.axes)
+    travel_unit, travels = column([a.excursion for a in found.axes], "m")
+    _, shares = column([float("nan") if a.per_cent is None else a.per_cent for a in found.axes], "", 2)
+    rows = zip(
+        (a.axis for a in found.axes),
+        peaks_and_rms[:count],
+        (f"{a.time:.3f}" for a in found.axes),
+        peaks_and_rms[count:],
+        travels,
+        shares,
+        strict=True,
+    )
+    head = [name, f"peak [{length}]", "at [s]", f"rms [{length}]", f"rigid travel [{travel_unit}]", "peak / travel [%]"]
+    print_table(head, [list(row) for row in rows])

@@ -32,7 +32,7 @@ def as_dict(data: Dataset) -> dict[str, Any]:
 def show(data: Dataset) -> None:
     """Print what was found."""
     from flexapod.app.terminal import print_table, print_text
-    from flexapod.study.words import text
+    from flexapod.study.words import column
 
     found = as_dict(data)
     states = [f"{found[state]} {state}" for state in ("computed", "failed", "pending") if found[state]]
@@ -46,11 +46,13 @@ def show(data: Dataset) -> None:
     rows = []
     for name, extremes in found["scalars"].items():
         unit = str(data[name].attrs.get("units", "1"))
-        values = [text(extremes[key], "" if unit == "1" else unit).strip() for key in ("median", "smallest", "largest")]
-        rows.append([name, *values])
+        shown, values = column(
+            [extremes[key] for key in ("median", "smallest", "largest")], "" if unit == "1" else unit
+        )
+        rows.append([name, shown, *values])
     if rows:
         print_text()
-        print_table(["scalar", "median", "smallest", "largest"], rows)
+        print_table(["scalar", "unit", "median", "smallest", "largest"], rows, left=(0, 1))
         main = next(iter(found["scalars"]))
         for key in ("smallest", "largest"):
             at = found["scalars"][main][f"{key}_at"]

@@ -11,6 +11,7 @@ from flexapod.model.base import Frozen, Measure, NonNegative, Number, Positive
 from flexapod.model.laws import CsvLaw, LoadLaw, MotionLaw, RateLaw
 from flexapod.model.material import Material, Rectangle, Tube
 from flexapod.model.motion import check_times
+from flexapod.words import number, text
 
 __all__ = ["Actuator", "ActuatorInitial", "ActuatorLoad", "ActuatorMotion"]
 
@@ -37,6 +38,15 @@ class Actuator(Frozen):
     damping: float = Field(default=0.0, strict=True, ge=0, lt=1)
     section: Tube | Rectangle | None = None
     material: Material | None = None
+
+    def _shown(self) -> dict[str, str]:
+        tip = {"tip": f"{number(self.tip_mass, 4)} kg"} if self.tip_mass else {}
+        return {
+            "beam": f"{text(self.length, 'm', 4)}, {text(self.free_length, 'm', 4)} of it outside the hub at t = 0",
+            "EI": f"{number(self.EI, 5)} N m^2",
+            "rhoA": f"{number(self.rhoA, 4)} kg/m",
+            **tip,
+        }
 
     @model_validator(mode="after")
     def _fits(self) -> Actuator:

@@ -3,7 +3,8 @@
 from __future__ import annotations
 
 import re
-from collections.abc import Callable
+from collections.abc import Callable, Mapping
+from html import escape
 from typing import Annotated, Any, Self
 
 import numpy as np
@@ -21,6 +22,7 @@ from pydantic_core import CoreSchema, PydanticCustomError, core_schema
 from flexapod.errors import InputError, closest
 from flexapod.typing import Array
 from flexapod.units import DIMENSIONS
+from flexapod.words import number
 
 __all__ = [
     "Frozen",
@@ -150,6 +152,27 @@ class Frozen(BaseModel):
     def _content(self) -> tuple[object, ...]:
         return tuple(_comparable(getattr(self, name)) for name in type(self).model_fields)
 
+    def _shown(self) -> Mapping[str, str]:
+        """What `repr` and notebooks show: names and words; all fields that are given where a class chooses none."""
+        fields = {name: getattr(self, name) for name in type(self).model_fields}
+        return {name: _brief(value) for name, value in fields.items() if value is not None}
+
+    def __repr__(self) -> str:
+        return f"{type(self).__name__}({'; '.join(f'{name}: {words}' for name, words in self._shown().items())})"
+
+    def __str__(self) -> str:
+        return repr(self)
+
+    def _repr_html_(self) -> str:
+        cell = '<td style="text-align: left">'
+        rows = (
+            f"<tr>{cell}{escape(name)}</td>{cell}{escape(words)}</td></tr>" for name, words in self._shown().items()
+        )
+        return f"<b>{type(self).__name__}</b><table>{''.join(rows)}</table>"
+
+    def __dir__(self) -> list[str]:
+        return sorted({*object.__dir__(self)} - _OF_PYDANTIC)
+
     def __eq__(self, other: object) -> bool:
         if self is other:
             return True
@@ -160,6 +183,18 @@ class Frozen(BaseModel):
         if _HASH not in kept:  # computed once: what is derived from a robot is looked up by it
             kept[_HASH] = hash((type(self).__name__, self._content()))
         return kept[_HASH]
+
+
+# Names that work, and that nobody who completes a name is looking for
+_OF_PYDANTIC = {name for name in dir(BaseModel) if not name.startswith("__")} | {"model_config", _HASH}
+
+
+def _brief(value: object) -> str:
+    if isinstance(value, float):
+        return number(value, 6)
+    if isinstance(value, np.ndarray):
+        return str(value.tolist()) if value.size <= 9 else f"{' x '.join(map(str, value.shape))} numbers"
+    return str(value)
 
 
 def _comparable(value: object) -> object:

@@ -10,6 +10,7 @@ from flexapod.errors import InputError
 from flexapod.model.base import Frozen, Measure, NonNegative, Number, Positive, Vec3
 from flexapod.model.drive import Drive, PrescribedDrive
 from flexapod.model.material import Material, Tube
+from flexapod.words import number, text
 
 __all__ = ["Cylinder", "Leg", "Piston", "Stroke"]
 
@@ -123,11 +124,27 @@ class Leg(Frozen):
     axial_modes: int = Field(default=2, strict=True, ge=0, le=4)
     u_axis: Annotated[Vec3, Measure("number")] | None = None
 
+    def _shown(self) -> dict[str, str]:
+        width = "" if self.piston.diameter is None else f"{text(self.piston.diameter, 'm', 4)} thick, "
+        limits = {} if self.stroke is None else {"stroke": _span(self.stroke.min, self.stroke.max)}
+        return {
+            "piston": f"{width}{text(self.piston.length, 'm', 4)} long, EA {text(self.piston.EA, 'N', 4)}, "
+            f"EI {number(self.piston.EI, 4)} N m^2",
+            "cylinder": f"mouth at {text(self.cylinder.mouth, 'm', 4)}, {number(self.cylinder.mass, 4)} kg",
+            **limits,
+            "drive": self.drive.type,
+            "damping": f"{number(100 * self.damping)} %",
+        }
+
     @model_validator(mode="after")
     def _axis_has_a_direction(self) -> Leg:
         if self.u_axis is not None and not self.u_axis.any():
             raise InputError("has no direction", key="u_axis", value=self.u_axis.tolist(), allowed="a non-zero vector")
         return self
+
+
+def _span(low: float, high: float) -> str:
+    return f"{text(low, 'm', 4)} to {text(high, 'm', 4)} joint to joint"
 
 
 def _check_axial(axial: float, transverse: float, name: str) -> None:

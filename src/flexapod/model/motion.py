@@ -13,6 +13,7 @@ from flexapod.model.base import Frozen, Measure, NonNegative, Number, Positive, 
 from flexapod.model.tables import wrong_instant
 from flexapod.typing import Array
 from flexapod.units import DIMENSIONS
+from flexapod.words import number, text
 
 __all__ = ["AXES", "PROFILES", "AxisMotion", "CombinedMotion", "CsvMotion", "Motion", "Waypoint", "WaypointMotion"]
 
@@ -35,6 +36,9 @@ class AxisMotion(Frozen):
     hold: Annotated[NonNegative, Measure("time")] = 0.0
     profile: Profile = "quintic"
     pivot: Annotated[Vec3, Measure("length")] = Field(default=_ORIGIN, validate_default=True)
+
+    def _shown(self) -> dict[str, str]:
+        return _in_words(self.target, self.duration, self.hold, self.profile)
 
     @model_validator(mode="after")
     def _angle(self) -> AxisMotion:
@@ -66,6 +70,9 @@ class CombinedMotion(Frozen):
     hold: Annotated[NonNegative, Measure("time")] = 0.0
     profile: Profile = "quintic"
     pivot: Annotated[Vec3, Measure("length")] = Field(default=_ORIGIN, validate_default=True)
+
+    def _shown(self) -> dict[str, str]:
+        return _in_words(self.target, self.duration, self.hold, self.profile)
 
     @model_validator(mode="after")
     def _angles(self) -> CombinedMotion:
@@ -122,6 +129,9 @@ class WaypointMotion(Frozen):
     profile: Profile = "quintic"
     pivot: Annotated[Vec3, Measure("length")] = Field(default=_ORIGIN, validate_default=True)
 
+    def _shown(self) -> dict[str, str]:
+        return {"to": f"{len(self.points)} points", "in": f"{number(self.end_time, 4)} s", "profile": self.profile}
+
     @model_validator(mode="after")
     def _in_order(self) -> WaypointMotion:
         if len(self.times) < 2:
@@ -172,6 +182,9 @@ class CsvMotion(Frozen):
     hold: Annotated[NonNegative, Measure("time")] = 0.0
     pivot: Annotated[Vec3, Measure("length")] = Field(default=_ORIGIN, validate_default=True)
 
+    def _shown(self) -> dict[str, str]:
+        return {"table": f"{self.file or 'given'}, {len(self.time)} rows", "in": f"{number(self.end_time, 4)} s"}
+
     @model_validator(mode="after")
     def _table(self) -> CsvMotion:
         check_times(self.time, len(self.pose))
@@ -210,6 +223,14 @@ def check_times(time: Array, rows: int, *, key: str = "time", jumps: bool = Fals
             value=float(time[row]),
             allowed=f"at least {DIMENSIONS['time'].least:g} s above {time[row - 1]:g} s",
         )
+
+
+def _in_words(target: Array, duration: float, hold: float, profile: str) -> dict[str, str]:
+    """What a motion from home to `target` (6,) [m, rad] shows."""
+    units = ("m",) * 3 + ("rad",) * 3
+    parts = [f"{axis} {text(v, unit, 4)}" for axis, v, unit in zip(AXES, target, units, strict=True) if v]
+    rest = {"hold": f"{number(hold, 4)} s"} if hold else {}
+    return {"to": " and ".join(parts) or "home", "in": f"{number(duration, 4)} s", **rest, "profile": profile}
 
 
 def _pose(amplitudes: dict[Axis, float]) -> Array:

@@ -2,20 +2,25 @@
 
 from __future__ import annotations
 
+import math
+
 from flexapod.model.actuator import Actuator
+from flexapod.model.drive import Drive, ServoDrive
 from flexapod.model.leg import Leg
 from flexapod.model.robot import Robot
+from flexapod.words import number
 
 __all__ = ["actuator_remarks", "robot_remarks"]
 
 _SLENDER = 0.1
+_RATIO = 0.1  # damping ratio of the advice for a drive without damping
 
 
 def robot_remarks(robot: Robot) -> tuple[str, ...]:
     """Remarks on a robot's legs; the same remark for several legs is made once."""
     numbers: dict[str, list[int]] = {}
     for i, leg in enumerate(robot.legs, start=1):
-        for remark in _leg_remarks(leg):
+        for remark in (*_leg_remarks(leg), *_undamped(leg.drive, robot.payload.mass)):
             numbers.setdefault(remark, []).append(i)
     return tuple(f"{_legs(which)}: {remark}" for remark, which in numbers.items())
 
@@ -49,6 +54,19 @@ def _leg_remarks(leg: Leg) -> list[str]:
     if cylinder.mass == 0 and cylinder.inertia > 0:
         remarks.append(f"the cylinder has inertia ({cylinder.inertia:g} kg m^2) but no mass")
     return remarks
+
+
+def _undamped(drive: Drive, mass: float) -> list[str]:
+    """A drive that is a spring and no damper: payload and spring go on vibrating."""
+    spring = drive if isinstance(drive, ServoDrive) else getattr(drive, "feedback", None)
+    if spring is None or spring.stiffness == 0 or spring.damping > 0:
+        return []
+    key = "drive" if isinstance(drive, ServoDrive) else "drive.feedback"
+    good = 2 * _RATIO * math.sqrt(spring.stiffness * mass / 6)  # of a sixth of the payload on this spring
+    return [
+        f"the {drive.type} drive has stiffness but no damping: what once vibrates on it goes on; "
+        f"leg.{key}.damping = {number(good, 2)} N s/m, for example, is {_RATIO:.0%} of the critical one"
+    ]
 
 
 def _fat(depth: float, length: float, name: str) -> str:

@@ -12,6 +12,7 @@ from flexapod.errors import InputError
 from flexapod.model.base import Frozen, Joints, Matrix3, Measure, NonNegative, Number, Positive, Vec3
 from flexapod.model.leg import Leg
 from flexapod.typing import Array
+from flexapod.words import number, text
 
 __all__ = ["Circle", "Payload", "Robot", "base_circle", "platform_circle"]
 
@@ -42,6 +43,16 @@ class Payload(Frozen):
         if np.shape(value) == (3,):  # type: ignore[arg-type]
             return np.diag(np.asarray(value, dtype=np.float64))
         return value
+
+    def _shown(self) -> dict[str, str]:
+        tool = {} if np.array_equal(self.com, self.tool) else {"tool": f"at {_millimetres(self.tool)}"}
+        moments = ", ".join(number(moment, 4) for moment in np.diag(self.inertia))
+        return {
+            "mass": f"{number(self.mass, 4)} kg",
+            "com": f"at {_millimetres(self.com)}",
+            **tool,
+            "inertia": f"{moments} kg m^2 (xx, yy, zz)",
+        }
 
     @model_validator(mode="after")
     def _real_body(self) -> Payload:
@@ -108,6 +119,18 @@ class Robot(Frozen):
             )
         return self
 
+    def _shown(self) -> dict[str, str]:
+        lengths, first = self.home_lengths, self.legs[0]
+        alike = all(leg == first for leg in self.legs)
+        span = text(lengths.min(), "m", 4) + (f" to {text(lengths.max(), 'm', 4)}" if np.ptp(lengths) > 1e-9 else "")
+        drives = ", ".join(dict.fromkeys(leg.drive.type for leg in self.legs))
+        return {
+            "type": self.type,
+            "home height": text(self.home_height, "m", 4),
+            "legs": f"{'six alike' if alike else 'of several kinds'}, {span} long at home, drives {drives}",
+            "payload": f"{number(self.payload.mass, 4)} kg, centre of mass at {_millimetres(self.payload.com)}",
+        }
+
     @property
     def home_vectors(self) -> Array:
         """From base to platform joint of every leg at home, (6, 3) [m], world axes."""
@@ -117,6 +140,10 @@ class Robot(Frozen):
     def home_lengths(self) -> Array:
         """Joint-to-joint lengths at home, (6,) [m]."""
         return np.linalg.norm(self.home_vectors, axis=1)
+
+
+def _millimetres(point: Array) -> str:
+    return f"[{', '.join(number(1e3 * part + 0.0, 4) for part in point)}] mm"
 
 
 def base_circle(radius: float, half_angle: float) -> Array:

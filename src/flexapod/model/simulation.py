@@ -9,6 +9,7 @@ from pydantic import Field, model_validator
 
 from flexapod.errors import InputError, closest
 from flexapod.model.base import Frozen, Measure, Positive
+from flexapod.words import number, text
 
 __all__ = ["DEFAULT_TOLERANCE", "FIDELITIES", "OWN_BASIS", "STRAIGHT", "Initial", "Simulation", "own_fidelity"]
 
@@ -74,6 +75,12 @@ class Simulation(Frozen):
             return super().replace(**changes)
         del fields["basis"]
         return type(self)(**fields).with_unused_basis(self.basis)
+
+    def _shown(self) -> dict[str, str]:
+        shapes = {"modes": f"{self.modes} a plane"} if self.lateral_shapes else {}
+        time = {"step": text(self.step, "s", 4)} if self.step is not None else {"tolerance": f"{self.tolerance:g}"}
+        until = {} if self.duration is None else {"duration": f"{number(self.duration, 4)} s"}
+        return {"fidelity": self.fidelity, **shapes, **time, "output step": text(self.output_step, "s", 4), **until}
 
     def with_unused_basis(self, basis: str) -> Self:
         """The same settings with the `basis` that another fidelity would use."""

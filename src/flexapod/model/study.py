@@ -34,6 +34,16 @@ class _Documented(Frozen):
             return simulation
         return simulation.with_unused_basis(cls.model_fields["simulation"].default.basis)
 
+    def _shown(self) -> dict[str, str]:
+        """File, and what each part shows; nothing of parts at their defaults."""
+        fields = type(self).model_fields
+        parts = {name: getattr(self, name) for name in fields if name not in _Documented.model_fields}
+        given = {name: part for name, part in parts.items() if part != fields[name].default}
+        words = {
+            name: ", ".join(f"{key} {value}" for key, value in part._shown().items()) for name, part in given.items()
+        }
+        return ({} if self.path is None else {"file": self.path}) | words
+
     @model_validator(mode="after")
     def _write(self) -> Self:
         if not self.source_text:

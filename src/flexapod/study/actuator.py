@@ -10,6 +10,7 @@ from numpy.typing import ArrayLike
 from flexapod import model, rigid
 from flexapod.errors import InputError
 from flexapod.solve.actuator_march import ActuatorMarch, prepare_actuator
+from flexapod.study.arguments import FileLike, read
 from flexapod.study.attributes import attributes, march_attributes
 from flexapod.study.checks import check_actuator_path
 from flexapod.study.names import ACTUATOR_FORMS, dataset
@@ -25,7 +26,7 @@ __all__ = ["simulate_actuator"]
 
 
 def simulate_actuator(
-    actuator: model.Actuator | model.ActuatorStudy,
+    actuator: model.Actuator | model.ActuatorStudy | FileLike,
     motion: model.ActuatorMotion | None = None,
     *,
     load: model.ActuatorLoad | None = None,
@@ -44,8 +45,8 @@ def simulate_actuator(
 
     Parameters
     ----------
-    actuator : Actuator or ActuatorStudy
-        An actuator with its motion (or load), or a whole study.
+    actuator : Actuator, ActuatorStudy or path
+        An actuator with its motion (or load), a whole study, or its file.
     motion : ActuatorMotion, optional
         In place of the study's.
     load : ActuatorLoad, optional
@@ -97,12 +98,13 @@ def _simulated(study: model.ActuatorStudy, progress: Progress | None) -> Dataset
 
 
 def _as_study(
-    actuator: model.Actuator | model.ActuatorStudy,
+    actuator: model.Actuator | model.ActuatorStudy | FileLike,
     motion: model.ActuatorMotion | None,
     load: model.ActuatorLoad | None,
     initial: model.ActuatorInitial | None,
     settings: dict[str, object],
 ) -> model.ActuatorStudy:
+    actuator = read(actuator)  # type: ignore[assignment]
     given = {"motion": motion, "load": load, "initial": initial}
     changes = {name: value for name, value in given.items() if value is not None}
     if isinstance(actuator, model.ActuatorStudy):
@@ -117,7 +119,7 @@ def _as_study(
             "is neither an actuator nor the study of one",
             key="actuator",
             value=type(actuator).__name__,
-            allowed="flexapod.load(FILE) or its .actuator",
+            allowed="flexapod.load(FILE), its .actuator, or FILE itself",
         )
     return model.override(changed, **settings)  # type: ignore[arg-type]
 

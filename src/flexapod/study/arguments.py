@@ -3,6 +3,8 @@
 from __future__ import annotations
 
 from collections.abc import Mapping
+from pathlib import Path
+from typing import TypeVar
 
 import numpy as np
 from numpy.typing import ArrayLike
@@ -10,45 +12,55 @@ from numpy.typing import ArrayLike
 from flexapod import model, rigid
 from flexapod.errors import InputError
 
-__all__ = ["LoadLike", "PoseLike", "StartLike", "as_pose", "as_study", "at_pose"]
+__all__ = ["FileLike", "LoadLike", "PoseLike", "RobotLike", "StartLike", "as_pose", "as_study", "at_pose", "read"]
 
 POSE_KEYS = model.AXES
+FileLike = str | Path
+RobotLike = model.Study | model.Robot | FileLike
 StartLike = model.Initial | str | None
 PoseLike = rigid.Poses | Mapping[str, float] | ArrayLike | None
 LoadLike = model.Load | model.Wrench | ArrayLike | None
 
+T = TypeVar("T")
+
+
+def read(subject: T | FileLike) -> T | model.Study | model.ActuatorStudy:
+    """The study in a file, where `subject` is its path; anything else as it is."""
+    return model.load(subject) if isinstance(subject, str | Path) else subject
+
 
 def as_study(
-    subject: model.Study | model.Robot,
+    subject: RobotLike,
     motion: model.Motion | None = None,
     load: LoadLike = None,
     initial: StartLike = None,
 ) -> model.Study:
-    """A study from a study, or from a robot and a motion, with another motion, load or start where given.
+    """A study from a study, its file, or a robot and a motion, with another motion, load or start where given.
 
     Raises
     ------
     InputError
         A robot without a motion, or something that is neither robot nor study.
     """
+    found = read(subject)
     changes: dict[str, object] = {}
     if load is not None:
         changes["load"] = _load(load)
     if initial is not None:
         changes["initial"] = model.Initial(start=initial) if isinstance(initial, str) else initial  # type: ignore[arg-type]
-    if isinstance(subject, model.Study):
+    if isinstance(found, model.Study):
         changes |= {} if motion is None else {"motion": motion}
-        return subject.replace(**changes) if changes else subject
-    if not isinstance(subject, model.Robot):
+        return found.replace(**changes) if changes else found
+    if not isinstance(found, model.Robot):
         raise InputError(
             "is neither a robot nor the study of one",
             key="robot",
-            value=type(subject).__name__,
-            allowed="flexapod.load(FILE) or its .robot",
+            value=type(found).__name__,
+            allowed="flexapod.load(FILE), its .robot, or FILE itself",
         )
     if motion is None:
         raise InputError("is missing", key="motion", next_step="Give a motion, e.g. study.motion, or a whole study")
-    return model.Study(robot=subject, motion=motion, **changes)  # type: ignore[arg-type]
+    return model.Study(robot=found, motion=motion, **changes)  # type: ignore[arg-type]
 
 
 def _load(load: LoadLike) -> model.Load:
@@ -64,9 +76,11 @@ def _load(load: LoadLike) -> model.Load:
         raise InputError(error.what, key="load", value=error.value, allowed=words) from None
 
 
-def at_pose(subject: model.Study | model.Robot, load: LoadLike = None) -> model.Study:
+def at_pose(subject: RobotLike, load: LoadLike = None) -> model.Study:
     """A study for calls that look at one pose: a bare robot is given a motion that stays at home."""
-    still = None if isinstance(subject, model.Study) else model.AxisMotion(type="heave", amplitude=0.0, duration=1.0)
+    still = (
+        None if not isinstance(subject, model.Robot) else model.AxisMotion(type="heave", amplitude=0.0, duration=1.0)
+    )
     return as_study(subject, still, load)
 
 

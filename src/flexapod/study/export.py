@@ -9,7 +9,7 @@ from flexapod.errors import InputError
 from flexapod.fem.decks import Deck, number
 from flexapod.fem.decks_robot import Carriers, LegAtPose, PayloadAtPose, drive_shift, write_leg, write_payload
 from flexapod.solve.modes import locked_poses, the_equilibrium
-from flexapod.study.arguments import LoadLike, PoseLike, as_pose, at_pose
+from flexapod.study.arguments import LoadLike, PoseLike, RobotLike, as_pose, at_pose
 from flexapod.typing import Array
 
 __all__ = ["ELEMENTS", "FORMATS", "MODES", "abaqus_deck", "left_out"]
@@ -27,7 +27,7 @@ _MOST = 500
 
 
 def abaqus_deck(
-    robot: model.Robot | model.Study,
+    robot: RobotLike,
     pose: PoseLike = None,
     *,
     load: LoadLike = None,

@@ -10,7 +10,7 @@ from numpy.typing import ArrayLike
 from flexapod import model, rigid
 from flexapod.errors import InputError
 from flexapod.rigid.rotations import quaternion
-from flexapod.study.arguments import LoadLike, PoseLike, as_pose, as_study, at_pose
+from flexapod.study.arguments import LoadLike, PoseLike, RobotLike, as_pose, as_study, at_pose
 from flexapod.study.attributes import attributes
 from flexapod.study.checks import check_geometry
 from flexapod.study.names import dataset
@@ -23,7 +23,7 @@ __all__ = ["forward_kinematics", "inverse_dynamics", "inverse_kinematics", "rigi
 
 
 def inverse_kinematics(
-    robot: model.Robot | model.Study,
+    robot: RobotLike,
     motion: model.Motion | None = None,
     *,
     duration: float | None = None,
@@ -33,8 +33,8 @@ def inverse_kinematics(
 
     Parameters
     ----------
-    robot : Robot or Study
-        A robot with its motion, or a whole study.
+    robot : Robot, Study or path
+        A robot with its motion, a whole study, or its file.
     motion : Motion, optional
         In place of the study's.
     duration, output_step : float, optional
@@ -57,7 +57,7 @@ def inverse_kinematics(
 
 
 def inverse_dynamics(
-    robot: model.Robot | model.Study,
+    robot: RobotLike,
     motion: model.Motion | None = None,
     *,
     load: LoadLike = None,
@@ -68,8 +68,8 @@ def inverse_dynamics(
 
     Parameters
     ----------
-    robot : Robot or Study
-        A robot with its motion, or a whole study.
+    robot : Robot, Study or path
+        A robot with its motion, a whole study, or its file.
     motion : Motion, optional
         In place of the study's.
     load : Load, wrench or array_like (6,), optional
@@ -102,7 +102,7 @@ def inverse_dynamics(
 
 
 def forward_kinematics(
-    robot: model.Robot | model.Study,
+    robot: RobotLike,
     lengths: ArrayLike,
     guess: PoseLike = None,
     *,
@@ -112,7 +112,7 @@ def forward_kinematics(
 
     Parameters
     ----------
-    robot : Robot or Study
+    robot : Robot, Study or path
     lengths : array_like, shape (6,) or (T, 6)
         Joint-to-joint lengths [m]; six of them give a single pose.
     guess : pose, optional
@@ -177,7 +177,7 @@ def _numbers(values: ArrayLike, key: str, allowed: str) -> Array:
 
 
 def _study(
-    robot: model.Robot | model.Study,
+    robot: RobotLike,
     motion: model.Motion | None,
     load: LoadLike,
     duration: float | None,

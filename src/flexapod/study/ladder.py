@@ -8,6 +8,7 @@ from typing import TYPE_CHECKING
 import numpy as np
 
 from flexapod.model import ActuatorStudy, Study
+from flexapod.study.arguments import FileLike
 from flexapod.study.attributes import attributes
 from flexapod.study.converge.orders import relative_difference
 from flexapod.study.converge.plan import checked_trials
@@ -36,7 +37,7 @@ PER_OUTPUT = 4  # steps in an output step where neither the study nor the caller
 
 
 def ladder(
-    study: Study | ActuatorStudy,
+    study: Study | ActuatorStudy | FileLike,
     *,
     step: float | None = None,
     progress: Report | None = None,
@@ -46,8 +47,8 @@ def ladder(
 
     Parameters
     ----------
-    study : Study or ActuatorStudy
-        From `flexapod.load` or `flexapod.preset`; its fidelity does not matter.
+    study : Study, ActuatorStudy or path
+        From `flexapod.load` or `flexapod.preset`, or the file; its fidelity does not matter.
     step : float, optional
         Fixed step [s]; default: that of the study, or a quarter of its output step.
     progress : callable, optional

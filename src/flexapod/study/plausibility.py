@@ -13,6 +13,7 @@ from flexapod.rigid.rotations import matrix
 from flexapod.solve.system import RobotSystem
 from flexapod.study.estimates import buckling_load, section_width
 from flexapod.study.record import Record
+from flexapod.study.thick import Section, beam_section, bending_errors, piston_section
 from flexapod.typing import Array
 
 __all__ = ["NEAR_BUCKLING", "SLENDERNESS", "SLOPE", "actuator_warnings", "leg_stress", "robot_warnings", "thick_words"]
@@ -52,9 +53,10 @@ def actuator_warnings(actuator: Actuator, basis: LateralBasis, record: Record) -
     found = _slope(basis, lateral, free, record.time)
     if actuator.section is not None and actuator.material is not None:
         depth, material = actuator.section.depth, actuator.material
-        if free.min() < SLENDERNESS * depth:
+        section = beam_section(actuator)
+        if free.min() < SLENDERNESS * depth and section is not None:
             k = int(free.argmin())
-            found.append(_slender_remark(free[k] / depth, basis, record.time[k]))
+            found.append(_slender_remark(free[k], depth, section, basis, record.time[k]))
         if material.yield_stress is not None:
             bending = _bending(basis, lateral, free) * material.E * depth / 2
             found += _yield_words(bending, material.yield_stress, record.time)
@@ -132,20 +134,31 @@ def _axial(leg: Leg, free: Array, compression: Array, t: Array) -> list[_Remark]
 
 
 def _slender(leg: Leg, basis: LateralBasis, free: Array, t: Array) -> list[_Remark]:
-    ratio = free / section_width(leg.piston)
-    k = int(ratio.argmin())
-    return [] if ratio[k] >= SLENDERNESS else [_slender_remark(ratio[k], basis, t[k])]
+    width, k = section_width(leg.piston), int(free.argmin())
+    if free[k] >= SLENDERNESS * width:
+        return []
+    return [_slender_remark(free[k], width, piston_section(leg.piston), basis, t[k])]
 
 
-def _slender_remark(ratio: float, basis: LateralBasis, t: float) -> _Remark:
+def _slender_remark(free: float, width: float, section: Section, basis: LateralBasis, t: float) -> _Remark:
+    ratio = free / width
     words = f"the free length is only {ratio:.3g} times the width at t = {t:.6g} s: "
-    return ("slenderness", SLENDERNESS / ratio, words + thick_words(solid=basis.name == SOLID))
+    return ("slenderness", SLENDERNESS / ratio, words + thick_words(section, free, solid=basis.name == SOLID))
 
 
-def thick_words(*, solid: bool) -> str:
+def thick_words(section: Section, free: float, *, solid: bool) -> str:
     """What a leg that is not slender has and the shapes of a beam, or those reduced from the solid, leave out."""
-    what = "rotary inertia, which the solid's shapes leave" if solid else "shear, which an Euler-Bernoulli beam leaves"
-    return f"below {SLENDERNESS:g} {what} out, is no longer small"
+    deflection, frequency, inertia = bending_errors(section, free)
+    if solid:
+        return (
+            f"below {SLENDERNESS:g} rotary inertia, which the solid's shapes leave out, is no longer small: its first "
+            f"frequency of bending is up to {100 * inertia:.2g} % too high (a pinned beam's)"
+        )
+    return (
+        f"below {SLENDERNESS:g} shear, which an Euler-Bernoulli beam leaves out, is no longer small: it deflects by "
+        f"about {100 * deflection:.2g} % too little under a force across its end, and its first bending frequency is "
+        f"up to {100 * frequency:.2g} % too high (Timoshenko's beam, clamped and pinned)"
+    )
 
 
 def _bending(basis: LateralBasis, lateral: Array, free: Array) -> Array:

@@ -6,10 +6,9 @@ from dataclasses import dataclass
 from typing import TYPE_CHECKING
 
 from flexapod import model
-from flexapod.errors import InputError
 from flexapod.solve.robot_march import RobotMarch, prepare
 from flexapod.study.actuator import simulate_actuator
-from flexapod.study.arguments import LoadLike, StartLike, as_study
+from flexapod.study.arguments import LoadLike, RobotLike, StartLike, as_study, read
 from flexapod.study.attributes import attributes, march_attributes
 from flexapod.study.checks import check_path
 from flexapod.study.names import dataset
@@ -72,7 +71,7 @@ def simulated(study: model.Study, progress: Progress | None = None) -> Simulated
 
 
 def simulate(
-    robot: model.Robot | model.Study,
+    robot: RobotLike,
     motion: model.Motion | None = None,
     *,
     load: LoadLike = None,
@@ -92,8 +91,8 @@ def simulate(
 
     Parameters
     ----------
-    robot : Robot or Study
-        A robot with its motion, or a whole study.
+    robot : Robot, Study or path
+        A robot with its motion, a whole study, or its file.
     motion : Motion, optional
         In place of the study's.
     load : Load, wrench or array_like (6,), optional
@@ -129,13 +128,20 @@ def simulate(
     return finished(found.dataset(), found.record)
 
 
-def run(study: model.Study | model.ActuatorStudy, *, progress: Progress | None = None) -> Dataset:
+def run(
+    study: RobotLike | model.ActuatorStudy | model.Actuator,
+    motion: model.Motion | model.ActuatorMotion | None = None,
+    *,
+    progress: Progress | None = None,
+) -> Dataset:
     """Rigid and flexible results of a study, of a robot or of a single actuator.
 
     Parameters
     ----------
-    study : Study or ActuatorStudy
-        From `flexapod.load` or `flexapod.preset`.
+    study : Study, ActuatorStudy or path
+        From `flexapod.load` or `flexapod.preset`, or the file; also a robot or an actuator with its `motion`.
+    motion : Motion, optional
+        In place of the study's.
     progress : callable, optional
         Called with simulated and whole time [s].
 
@@ -148,9 +154,8 @@ def run(study: model.Study | model.ActuatorStudy, *, progress: Progress | None =
     InputError, ComputationError, Interrupted
         As `simulate`.
     """
-    if isinstance(study, model.ActuatorStudy):
-        return simulate_actuator(study, progress=progress)
-    if not isinstance(study, model.Study):
-        raise InputError("is no study", key="study", value=type(study).__name__, allowed="the result of flexapod.load")
-    found = simulated(study, progress)
+    study = read(study)
+    if isinstance(study, model.ActuatorStudy | model.Actuator):
+        return simulate_actuator(study, motion, progress=progress)  # type: ignore[arg-type]
+    found = simulated(as_study(study, motion), progress)  # type: ignore[arg-type]
     return finished(found.dataset(), found.record)

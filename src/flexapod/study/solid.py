@@ -12,6 +12,7 @@ from flexapod import model, rigid
 from flexapod.errors import InputError
 from flexapod.fem.reduction import StationModel, reduced_beam
 from flexapod.fem.sliding import HubMotion, SlidingBeam, slide
+from flexapod.study.arguments import FileLike, read
 from flexapod.study.attributes import attributes
 from flexapod.study.checks import check_actuator_path, path_instants
 from flexapod.study.names import ACTUATOR_FORMS, Variable, dataset
@@ -33,7 +34,7 @@ _FORMS = ACTUATOR_FORMS | {
 
 
 def simulate_solid(
-    study: model.ActuatorStudy,
+    study: model.ActuatorStudy | FileLike,
     *,
     section: model.Rectangle | model.Tube | None = None,
     size: float = 0.005,
@@ -52,7 +53,7 @@ def simulate_solid(
 
     Parameters
     ----------
-    study : ActuatorStudy
+    study : ActuatorStudy or path
         With prescribed rotation and extension, without damping.
     section : Rectangle or Tube, optional
         Default: the study's, else that of the paper's beam. A rectangle bends along its height.
@@ -86,7 +87,7 @@ def simulate_solid(
     Interrupted
         By Ctrl-C, with what was computed.
     """
-    _only_prescribed(study)
+    study = _only_prescribed(read(study))
     _check_numbers(size=size, poisson=poisson, step=step, spacing=size if spacing is None else spacing)
     _check_section(section)
     study = model.override(study, duration=duration, output_step=output_step)
@@ -153,7 +154,7 @@ def _outputs(study: model.ActuatorStudy) -> Array:
     return np.asarray(s.stored_step * np.arange(s.outputs(study.duration) + 1), dtype=float)
 
 
-def _only_prescribed(study: model.ActuatorStudy) -> None:
+def _only_prescribed(study: object) -> model.ActuatorStudy:
     if not isinstance(study, model.ActuatorStudy):
         raise InputError(
             "is not the study of a single actuator", key="study", value=type(study).__name__, allowed="[actuator]"
@@ -165,6 +166,7 @@ def _only_prescribed(study: model.ActuatorStudy) -> None:
         )
     if study.actuator.damping:
         raise InputError("is not taken by the solid", key="actuator.damping", value=study.actuator.damping, allowed="0")
+    return study
 
 
 def _reduced(actuator: model.Actuator, mesh: _Mesh) -> StationModel:

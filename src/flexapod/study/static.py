@@ -10,7 +10,7 @@ import numpy as np
 from flexapod import model, rigid
 from flexapod.solve.modes import robot_modes
 from flexapod.solve.stiffness import robot_stiffness
-from flexapod.study.arguments import LoadLike, PoseLike, as_pose, at_pose
+from flexapod.study.arguments import LoadLike, PoseLike, RobotLike, as_pose, at_pose
 from flexapod.study.attributes import attributes
 from flexapod.study.checks import path_remarks
 from flexapod.study.many_modes import modes_at_poses
@@ -25,7 +25,7 @@ __all__ = ["modes", "stiffness"]
 
 
 def modes(
-    robot: model.Robot | model.Study,
+    robot: RobotLike,
     pose: PoseLike = None,
     *,
     load: LoadLike = None,
@@ -39,7 +39,7 @@ def modes(
 
     Parameters
     ----------
-    robot : Robot or Study
+    robot : Robot, Study or path
     pose : pose, optional
         Surge, sway, heave [m], roll, pitch, yaw [rad] from home, by name or as (6,); default home. Many poses at once:
         names with arrays, or (P, 6).
@@ -79,7 +79,7 @@ def modes(
 
 
 def stiffness(
-    robot: model.Robot | model.Study,
+    robot: RobotLike,
     pose: PoseLike = None,
     *,
     load: LoadLike = None,
@@ -116,7 +116,7 @@ def stiffness(
 
 
 def _problem(
-    robot: model.Robot | model.Study, pose: PoseLike, load: LoadLike, settings: dict[str, object]
+    robot: RobotLike, pose: PoseLike, load: LoadLike, settings: dict[str, object]
 ) -> tuple[model.Study, rigid.Poses]:
     study = model.override(at_pose(robot, load), **settings)  # type: ignore[arg-type]
     return study, as_pose(study.robot, pose)

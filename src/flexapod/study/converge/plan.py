@@ -8,6 +8,7 @@ from dataclasses import replace
 from flexapod.errors import InputError
 from flexapod.model import ActuatorStudy, Study
 from flexapod.model.simulation import SOLID
+from flexapod.study.arguments import FileLike, read
 from flexapod.study.checks import check_actuator_path, check_path
 from flexapod.study.converge.trials import Setting, Trials, setting_of
 from flexapod.study.record import Report
@@ -50,7 +51,9 @@ def check_accuracy(accuracy: object) -> None:
         )
 
 
-def checked_trials(study: Study | ActuatorStudy, trials: Trials | None, progress: Report | None = None) -> Trials:
+def checked_trials(
+    study: Study | ActuatorStudy | FileLike, trials: Trials | None, progress: Report | None = None
+) -> Trials:
     """Runs of a study that can be run, which tell `progress`.
 
     Raises
@@ -58,8 +61,7 @@ def checked_trials(study: Study | ActuatorStudy, trials: Trials | None, progress
     InputError
         What `flexapod.run` would refuse.
     """
-    if trials is not None:
-        study = trials.study
+    study = read(study) if trials is None else trials.study
     if isinstance(study, ActuatorStudy):
         check_actuator_path(study)
     elif isinstance(study, Study):

@@ -6,6 +6,7 @@ from dataclasses import replace
 from typing import TYPE_CHECKING
 
 from flexapod.model import ActuatorStudy, Study
+from flexapod.study.arguments import FileLike
 from flexapod.study.converge.choice import choose
 from flexapod.study.converge.findings import Findings
 from flexapod.study.converge.halving import halve_steps, step_of_shapes
@@ -29,7 +30,7 @@ class ConvergenceStopped(KeyboardInterrupt):
 
 
 def converge(
-    study: Study | ActuatorStudy,
+    study: Study | ActuatorStudy | FileLike,
     *,
     accuracy: float = 1e-2,
     progress: Report | None = None,
@@ -39,8 +40,8 @@ def converge(
 
     Parameters
     ----------
-    study : Study or ActuatorStudy
-        From `flexapod.load` or `flexapod.preset`.
+    study : Study, ActuatorStudy or path
+        From `flexapod.load` or `flexapod.preset`, or the file.
     accuracy : float
         Relative error that the recommended setting keeps: largest difference between two curves over the largest
         value, of the deviation of the centre of mass (robot) or of the tip deflection (actuator), Eq. (T12.1).

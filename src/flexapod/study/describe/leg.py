@@ -6,10 +6,11 @@ from dataclasses import dataclass
 
 import numpy as np
 
-from flexapod.model import Leg
+from flexapod.model import Leg, Robot
 from flexapod.model.simulation import SOLID
 from flexapod.study.estimates import buckling_load, section_width
 from flexapod.study.plausibility import NEAR_BUCKLING, SLENDERNESS, thick_words
+from flexapod.study.thick import piston_section
 from flexapod.typing import Array
 
 __all__ = ["Extreme", "LegDescription", "Stress", "describe_leg", "load_remarks"]
@@ -125,7 +126,7 @@ def _stress(leg: Leg, t: Array, force: Array, moment: Array) -> Stress | None:
     )
 
 
-def load_remarks(legs: tuple[LegDescription, ...], fidelity: str) -> list[str]:
+def load_remarks(legs: tuple[LegDescription, ...], robot: Robot, fidelity: str) -> list[str]:
     """Doubts about loads and about legs too thick for the `fidelity`, each of the leg where it is worst."""
     remarks = []
     worst = max(legs, key=lambda leg: leg.euler_share.value)
@@ -138,9 +139,13 @@ def load_remarks(legs: tuple[LegDescription, ...], fidelity: str) -> list[str]:
     if slender.slenderness < SLENDERNESS:
         remarks.append(
             f"leg {slender.leg}: the free length falls to {slender.slenderness:.3g} times the width of the piston; "
-            + thick_words(solid=fidelity == SOLID)
+            + _thick(robot.legs[slender.leg - 1], slender.slenderness, solid=fidelity == SOLID)
         )
     return remarks + _yielding(legs)
+
+
+def _thick(leg: Leg, slenderness: float, *, solid: bool) -> str:
+    return thick_words(piston_section(leg.piston), slenderness * section_width(leg.piston), solid=solid)
 
 
 def _yielding(legs: tuple[LegDescription, ...]) -> list[str]:

@@ -17,7 +17,7 @@ from flexapod.study.estimates import bending_moment
 from flexapod.study.words import held
 from flexapod.typing import Array
 
-__all__ = ["RobotDescription", "Singularity", "describe"]
+__all__ = ["RobotDescription", "Singularity", "describe", "describe_legs"]
 
 
 @dataclass(frozen=True, kw_only=True)
@@ -68,7 +68,7 @@ def describe(study: model.Study | model.ActuatorStudy) -> RobotDescription | Act
         return describe_actuator(study)
     remarks, t = [*check_path(study), *_in_time(study)], path_instants(study)
     path = rigid.poses(study.robot, study.motion, t)
-    legs, singularity = _legs(study, t, path), _singularity(study.robot, t, path)
+    legs, singularity = describe_legs(study, t, path), _singularity(study.robot, t, path)
     end = min(study.motion.end_time - study.motion.hold, study.duration)
     instants = {"start": 0.0, "end of the motion": end}
     worst = singularity.time
@@ -84,7 +84,9 @@ def describe(study: model.Study | model.ActuatorStudy) -> RobotDescription | Act
         singularity=singularity,
         poses=tuple(describe_pose(study, name, instant) for name, instant in instants.items()),
         vibration=vibration_to_expect(study, end),
-        remarks=tuple(dict.fromkeys([*study.warnings, *remarks, *load_remarks(legs, study.simulation.fidelity)])),
+        remarks=tuple(
+            dict.fromkeys([*study.warnings, *remarks, *load_remarks(legs, study.robot, study.simulation.fidelity)])
+        ),
     )
 
 
@@ -108,7 +110,8 @@ def _singularity(robot: model.Robot, t: Array, path: rigid.Poses) -> Singularity
     )
 
 
-def _legs(study: model.Study, t: Array, path: rigid.Poses) -> tuple[LegDescription, ...]:
+def describe_legs(study: model.Study, t: Array, path: rigid.Poses) -> tuple[LegDescription, ...]:
+    """Extremes of the legs on the rigid `path` of a study at instants `t` (T,) [s]."""
     robot = study.robot
     state = rigid.inverse_kinematics(robot, path)
     forces = rigid.inverse_dynamics(robot, path, rigid.wrench(study.load, t))

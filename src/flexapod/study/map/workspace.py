@@ -13,7 +13,7 @@ from numpy.typing import ArrayLike
 from flexapod import model
 from flexapod.errors import InputError
 from flexapod.solve.frequencies import count_real
-from flexapod.study.arguments import LoadLike, at_pose
+from flexapod.study.arguments import LoadLike, RobotLike, at_pose
 from flexapod.study.attributes import attributes
 from flexapod.study.map.grid import UNITS, Axes, Grid, grid
 from flexapod.study.map.names import forms
@@ -35,7 +35,7 @@ FREQUENCIES = 6
 
 
 def workspace_map(
-    robot: model.Robot | model.Study,
+    robot: RobotLike,
     axes: Axes | None = None,
     *,
     at: Mapping[str, float] | None = None,
@@ -53,7 +53,7 @@ def workspace_map(
 
     Parameters
     ----------
-    robot : Robot or Study
+    robot : Robot, Study or path
     axes : mapping, optional
         One to three of surge, sway, heave [m], roll, pitch, yaw [rad] from home, each with its values, or None for as
         far as the robot reaches; default: surge and heave.

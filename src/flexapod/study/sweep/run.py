@@ -16,9 +16,10 @@ from typing import TYPE_CHECKING, Any
 import numpy as np
 
 from flexapod.errors import ComputationError, InputError
-from flexapod.model import ActuatorStudy, Study, load
+from flexapod.model import ActuatorStudy, Study
 from flexapod.solve.actuator_march import prepare_actuator
 from flexapod.solve.system import robot_system
+from flexapod.study.arguments import read
 from flexapod.study.record import Report
 from flexapod.study.sweep.batch import BatchResult, PointResult
 from flexapod.study.sweep.columns import columns, header
@@ -115,7 +116,7 @@ def sweep(
 
 def _nominal(study: object) -> Study | ActuatorStudy:
     """The study that others vary from."""
-    nominal = load(study) if isinstance(study, str | Path) else study
+    nominal = read(study)
     if not isinstance(nominal, Study | ActuatorStudy):
         raise InputError("is no study", key="study", value=type(study).__name__, allowed="the result of flexapod.load")
     return nominal

@@ -1,0 +1,51 @@
+"""A first robot in words: what was found, and what to think about."""
+
+from __future__ import annotations
+
+from flexapod import model
+from flexapod.study.describe.robot import RobotDescription, describe
+from flexapod.study.words import number, text
+
+__all__ = ["first_words"]
+
+HEAVY = 1.0  # mass of the legs over that of the payload above which it is remarked on
+
+
+def first_words(written: str) -> list[str]:
+    """Sentences about the study in a text."""
+    study = model.loads(written)
+    found = describe(study)
+    if not isinstance(study, model.Study) or not isinstance(found, RobotDescription):
+        return []
+    return [*_found(study, found), *(f"Remark: {remark}" for remark in (*_heavy(study.robot), *found.remarks))]
+
+
+def _found(study: model.Study, found: RobotDescription) -> list[str]:
+    robot, motion, start = study.robot, study.motion, found.poses[0]
+    leg = robot.legs[0]
+    low, high = (leg.stroke.min, leg.stroke.max) if leg.stroke is not None else (0.0, 0.0)
+    path = ", ".join(f"{name} {words}" for name, words in motion._shown().items())
+    lines = [
+        f"Legs of {text(float(robot.home_lengths[0]), 'm', 4)} at home, {text(low, 'm', 4)} to {text(high, 'm', 4)}; "
+        f"pistons {text(leg.piston.diameter or 0.0, 'm')} thick and {text(leg.piston.length, 'm', 4)} long, mouths of "
+        f"the cylinders at {text(leg.cylinder.mouth, 'm', 4)}. Motion: {path}.",
+    ]
+    pushed = max(leg.euler_share.value for leg in found.legs)
+    bears = f"Pistons bear at most {number(100 * pushed, 2)} % of their Euler load"
+    if start.sag is not None and start.modes:
+        first = start.modes[0]
+        bears += (
+            f"; at rest the payload sags by {text(start.sag, 'm')}; the lowest frequency is {first.frequency:.3g} Hz "
+            f"({first.kind})"
+        )
+    return [*lines, f"{bears}."]
+
+
+def _heavy(robot: model.Robot) -> list[str]:
+    legs = sum(leg.piston.mass + leg.cylinder.mass for leg in robot.legs)
+    if legs <= HEAVY * robot.payload.mass:
+        return []
+    return [
+        f"the legs weigh {number(legs)} kg, more than the payload of {number(robot.payload.mass)} kg: thinner, "
+        "hollow or lighter pistons would do (diameter, material)"
+    ]

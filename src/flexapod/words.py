@@ -1,0 +1,99 @@
+"""Quantities in words, in the unit in which a number reads well."""
+
+from __future__ import annotations
+
+import numpy as np
+from numpy.typing import ArrayLike
+
+from flexapod.typing import Array
+
+__all__ = ["Scale", "column", "number", "scale", "text"]
+
+_PREFIXES = {
+    "m": ((1.0, "m"), (1e3, "mm"), (1e6, "µm"), (1e9, "nm")),
+    "N": ((1e-6, "MN"), (1e-3, "kN"), (1.0, "N"), (1e3, "mN"), (1e6, "µN")),
+    "N m": ((1e-3, "kN m"), (1.0, "N m"), (1e3, "mN m")),
+    "N m/rad": ((1e-6, "MN m/rad"), (1e-3, "kN m/rad"), (1.0, "N m/rad")),
+    "N/m": ((1e-9, "N/nm"), (1e-6, "N/µm"), (1e-3, "N/mm"), (1.0, "N/m")),
+    "Pa": ((1e-9, "GPa"), (1e-6, "MPa"), (1e-3, "kPa"), (1.0, "Pa")),
+    "J": ((1e-3, "kJ"), (1.0, "J"), (1e3, "mJ"), (1e6, "µJ"), (1e9, "nJ")),
+    "s": ((1.0, "s"), (1e3, "ms")),
+    "rad": ((180 / np.pi, "deg"), (1e3, "mrad"), (1e6, "µrad")),
+    "m/s": ((1.0, "m/s"), (1e3, "mm/s")),
+    "m/s²": ((1.0, "m/s²"), (1e3, "mm/s²")),
+    "rad/s": ((180 / np.pi, "deg/s"),),
+    "rad/s²": ((180 / np.pi, "deg/s²"),),
+}
+
+
+class Scale:
+    """Factor from SI to the unit `name` in which a quantity reads well."""
+
+    def __init__(self, factor: float, name: str) -> None:
+        self.factor, self.name = factor, name
+
+    def __call__(self, values: ArrayLike) -> Array:
+        """Values in that unit."""
+        return np.asarray(values, dtype=float) * self.factor
+
+    def text(self, value: float, digits: int = 3) -> str:
+        """A number with its unit."""
+        return f"{number(value * self.factor, digits)} {self.name}"
+
+
+def scale(values: ArrayLike, unit: str) -> Scale:
+    """Choose the unit in which the largest of `values` (SI, `unit`) lies between 1 and 1000, if there is one.
+
+    Parameters
+    ----------
+    values : array_like
+        In SI units; NaN are ignored.
+    unit : str
+        SI unit: m, N, J, rad, m/s, rad/s, ...; others stay as they are.
+    """
+    finite = np.abs(np.asarray(values, dtype=float))
+    finite = finite[np.isfinite(finite)]
+    largest = float(finite.max()) if finite.size else 0.0
+    choices = [Scale(factor, name) for factor, name in _PREFIXES.get(unit, ((1.0, unit),))]
+    if largest == 0:
+        return Scale(1.0, unit) if unit != "rad" else choices[0]
+    for choice in choices:
+        if largest * choice.factor >= 1:
+            return choice
+    return choices[-1]
+
+
+def text(value: float, unit: str, digits: int = 3) -> str:
+    """A number with the unit in which it reads well: ``text(1.93e-5, "m")`` is "19.3 µm"."""
+    return scale(value, unit).text(value, digits)
+
+
+def number(value: float, digits: int = 3) -> str:
+    """A number of `digits` significant digits without powers of ten, where it has at most nine figures."""
+    shown = f"{value:.{digits}g}"
+    return f"{float(shown):.0f}" if "e" in shown and 1 <= abs(value) < 1e9 else shown
+
+
+def column(values: ArrayLike, unit: str, digits: int = 4) -> tuple[str, list[str]]:
+    """Unit and numbers of a column: one unit and as many decimals for all, so that they align; NaN is "n/a".
+
+    Parameters
+    ----------
+    values : array_like, shape (n,)
+        In SI units.
+    unit : str
+        SI unit.
+    digits : int
+        Of the largest.
+
+    Examples
+    --------
+    >>> column([4.33e-6, 1.929e-5], "m")
+    ('µm', ['4.33', '19.29'])
+    """
+    chosen = scale(values, unit)
+    shown = chosen(values)
+    finite = np.abs(shown[np.isfinite(shown)])
+    largest = float(finite.max(initial=0.0))
+    decimals = max(0, digits - 1 - int(np.floor(np.log10(largest)))) if largest > 0 else 0
+    return chosen.name, [f"{value + 0.0:.{decimals}f}" if np.isfinite(value) else "n/a" for value in shown]

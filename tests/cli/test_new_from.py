@@ -1,0 +1,39 @@
+"""`flexapod new --from`: a first robot as a user asks for it."""
+
+import json
+
+import flexapod as fx
+
+WISH = "home=300 mm, payload=20 kg, stroke=60 mm"
+
+
+def test_says_what_it_found_and_passes_check(flexapod, folder):
+    done = flexapod("new", "first.toml", "--from", WISH)
+    assert done.exit_code == 0, done.stderr
+    for words in ("292.9 mm to 352.9 mm", "pistons 8 mm thick", "Euler load", "lowest frequency", "first.toml written"):
+        assert words in done.stdout
+    assert WISH in (folder / "first.toml").read_text(encoding="utf-8")
+    checked = flexapod("check", "first.toml")
+    assert checked.exit_code == 0, checked.stderr
+    assert "The path keeps all limits." in checked.stdout
+    assert checked.stdout.rstrip().endswith("None.")
+
+
+def test_json_and_remarks(flexapod, folder):
+    done = flexapod("new", "light.toml", "--from", "home=2 m, payload=1 kg, motion=yaw", "--json")
+    found = json.loads(done.stdout)
+    assert (found["file"], found["from"]) == ("light.toml", "home=2 m, payload=1 kg, motion=yaw")
+    assert any("the legs weigh" in remark for remark in found["remarks"])
+    assert fx.load("light.toml").motion.type == "yaw"
+
+
+def test_refusals_leave_no_file(flexapod, folder):
+    for wish, words in (
+        ("home=50 mm, payload=10 t", "at most 1.55 kg"),
+        ("hom=1 m", "Did you mean 'home'?"),
+    ):
+        done = flexapod("new", "a.toml", "--from", wish)
+        assert done.exit_code == 2 and words in done.stderr
+    both = flexapod("new", "a.toml", "--from", WISH, "--preset", "paper-robot")
+    assert both.exit_code == 2 and "given together with --from" in both.stderr
+    assert list(folder.iterdir()) == []
