@@ -42,7 +42,8 @@ COMPILED = {("rigid", 0), ("lumped", 0), ("assumed-modes", 1), ("assumed-modes",
 
 ODD = [
     "0", "-1", "1", "-0.0", "nan", "inf", "-inf", "1e-300", "1e-30", "1e-12", "1e12", "1e160", "1e308", "1e400",
-    "5e-324", "9" * 400, "-" + "9" * 30, "0x10", "1_000", "true", "false", '""', "''", '" "', '"x"', '"0 mm"', '"-3 mm"',
+    "5e-324", "9" * 400, "-" + "9" * 30, "0x10", "1_000", "true", "false", '""', "''", '" "', '"x"', '"0 mm"',
+    '"-3 mm"',
     '"nan mm"', '"inf m"', '"1e160 m"', '"1e-300 kg"', '"1e400 m"', '"27 parsec"', '"27 mm mm"', '"27 kg"', '"3 deg"',
     '"3 m/s"', '"27mm"', '"27,5 mm"', '"1 N m^2"', '"5 %"', '"5 m^1e9"', '"5 m**9999999"', '"1 (((m)))"', '"1 degC"',
     '"1 m + 1"', '"1 \\u0000"', '"\\U0001F600"', '"1 µm"', '"../x.csv"', '"/dev/null"', '"."', '"path.csv\\u0000"',
@@ -50,7 +51,8 @@ ODD = [
     "[1e160, 0, 0]", "[1e-300, 0, 0]", "[[1, 2, 3]]", "[[1, 0, 0], [0, 1, 0], [0, 0, 1]]", "[true, false, true]",
     "{}", "{ a = 1 }", "{ type = 1 }", "{ rate = 1 }", "[{}]", "[{ time = 0 }, { time = 1 }]", "1979-05-27",
     "1979-05-27T07:32:00Z", "07:32:00", '"quintic"', '"linear"', '"smooth"', '"trapezoid"', '"csv"', '"rigid"',
-    '"lumped"', '"force"', '"servo"', '"roll"', '"heave"', '"steel"', '"straight"', '"moving"', '"tip-load"', '"clamped-free"',
+    '"lumped"', '"force"', '"servo"', '"roll"', '"heave"', '"steel"', '"straight"', '"moving"', '"tip-load"',
+    '"clamped-free"',
     '"constant"', '"sine"', '"step"', '"spin-up"', "2", "3", "12", "24", "25", "4", "5", "1e-3", "1e-9", "1e9", "0.05",
 ]  # fmt: skip
 CELLS = [

@@ -17,7 +17,7 @@ def kernels(folder, monkeypatch):
     for name in NAMES:
         (place / name).write_bytes(b"x" * 500_000)
     (place / "notes.txt").write_text("mine")
-    (place / ".kernel-abc.part").write_text("left by a process that was killed")
+    (place / ".flexapod-abc.so").write_text("left by a process that was killed")
     return place
 
 

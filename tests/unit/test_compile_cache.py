@@ -246,19 +246,21 @@ def below_a_file(folder: Path, monkeypatch: pytest.MonkeyPatch) -> str:
 
 
 def full(_: Path, monkeypatch: pytest.MonkeyPatch) -> str:
-    def copyfile(source: Path, target: str) -> None:
-        Path(target).write_bytes(Path(source).read_bytes()[:100])
+    write = Path.write_bytes
+
+    def half(path: Path, content: bytes) -> int:
+        write(path, content[:100])
         raise OSError(errno.ENOSPC, os.strerror(errno.ENOSPC))
 
-    monkeypatch.setattr(cache.shutil, "copyfile", copyfile)
+    monkeypatch.setattr(Path, "write_bytes", half)
     return "No space left"
 
 
 def read_only(_: Path, monkeypatch: pytest.MonkeyPatch) -> str:
-    def mkstemp(**_: object) -> None:
+    def refused(*_: object, **__: object) -> None:
         raise OSError(errno.EROFS, os.strerror(errno.EROFS))
 
-    monkeypatch.setattr(cache.tempfile, "mkstemp", mkstemp)  # TemporaryDirectory takes mkdtemp
+    monkeypatch.setattr(cache, "whole", refused)
     return "Read-only file system"
 
 
@@ -342,7 +344,7 @@ def test_a_bound_that_is_none(scaled, monkeypatch, text):
 
 def test_only_what_was_abandoned_long_ago_is_swept(scaled, folder):
     folder.mkdir(mode=0o700)
-    old, young, foreign = folder / ".kernel-a.part", folder / ".kernel-b.part", folder / "thesis.so"
+    old, young, foreign = folder / ".flexapod-a.so", folder / ".flexapod-b.so", folder / "thesis.so"
     for path in (old, young, foreign):
         path.write_text("x")
     os.utime(old, (0, 0))

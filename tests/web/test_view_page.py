@@ -139,10 +139,10 @@ def test_the_tab_is_called_after_the_study_and_a_refused_upload_is_not_called_su
 
 def test_nothing_of_a_robot_stays_where_an_actuator_is_drawn(show):
     """Both had a node /ghost: the beam's rigid line stood where the robot's ghost platform had been, 0.9 m too high."""
-    page, session = show(study_text(*SHORT))
+    _, session = show(study_text(*SHORT))
     until(lambda: session.data is not None and not session.busy)
     robot = set(session.client.scene._handle_from_node_name)
-    page, session = show(ACTUATOR)
+    _, session = show(ACTUATOR)
     until(lambda: session.data is not None and not session.busy)
     shared = robot & set(session.client.scene._handle_from_node_name)
     # These stand at the origin in both, or are placed anew.

@@ -6,6 +6,7 @@ import io
 import os
 import sys
 from collections.abc import Sequence
+from contextlib import suppress
 from typing import Annotated, Any
 
 import typer
@@ -27,7 +28,8 @@ from flexapod.app import (
     commands_verify,
     commands_view,
 )
-from flexapod.app.failures import print_parts
+from flexapod.app.failures import INTERRUPTED, print_parts, say_full
+from flexapod.app.stopping import heed_signals, stop_code
 
 __all__ = ["app", "main"]
 
@@ -72,7 +74,7 @@ app = typer.Typer(
     no_args_is_help=True,
     pretty_exceptions_enable=False,
     rich_markup_mode="rich",
-    epilog="Exit codes: 0 done, 1 a computation failed, 2 bad input, 130 stopped by Ctrl-C.",
+    epilog="Exit codes: 0 done, 1 a computation failed, 2 bad input, 130 stopped by Ctrl-C, 143 by SIGTERM.",
 )
 
 
@@ -120,4 +122,33 @@ def main() -> None:
     for stream in (sys.stdout, sys.stderr):
         if isinstance(stream, io.TextIOWrapper):
             stream.reconfigure(errors="replace")  # a terminal without the letter µ shows ? and goes on
-    app()
+    heed_signals()
+    try:
+        code = _whole()
+    except OSError as error:
+        say_full(error)
+        _let_go()
+        code = 1
+    sys.exit(stop_code(code) if code == INTERRUPTED else code)
+
+
+def _whole() -> int:
+    """Run the command, and wait until what it says is out; its exit code."""
+    try:
+        app()
+    except SystemExit as end:
+        code = end.code
+    else:
+        code = 0
+    for stream in (sys.stdout, sys.stderr):
+        if stream is not None:
+            stream.flush()
+    return code if isinstance(code, int) else int(code is not None)
+
+
+def _let_go() -> None:
+    """What could not be written is given up, so that the end of the process does not try again."""
+    with suppress(OSError, ValueError):
+        nothing = os.open(os.devnull, os.O_WRONLY)
+        os.dup2(nothing, sys.stdout.fileno())
+        os.close(nothing)

@@ -9,6 +9,7 @@ import typer
 
 from flexapod.app.failures import INTERRUPTED, guarded, print_parts
 from flexapod.app.options import Json, NoFigures, Out, Quiet, StudyFile, as_options
+from flexapod.app.stopping import stopped
 
 if TYPE_CHECKING:
     from xarray import Dataset
@@ -114,5 +115,5 @@ def _say(tables: dict[str, Dataset], folder: Path, files: list[Path], *, json: b
 
 def _stopped(tables: dict[str, Dataset], *, json: bool) -> None:
     count = sum(data.sizes["setting"] for data in tables.values())
-    what = f"stopped by Ctrl-C after {count} settings; what was computed is kept and marked as partial"
+    what = f"{stopped()} after {count} settings; what was computed is kept and marked as partial"
     print_parts({"kind": "interrupt", "what": what}, INTERRUPTED, as_json=json)

@@ -28,8 +28,8 @@ def keys(table: Table = None, markdown: Markdown = None, json: Json = False) -> 
 
     from flexapod.app.terminal import print_json, print_table, print_text
     from flexapod.errors import InputError, closest
+    from flexapod.files import replacing
     from flexapod.model import page
-    from flexapod.study.store import replacing
 
     if markdown is not None:
         with replacing(markdown) as file:

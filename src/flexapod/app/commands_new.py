@@ -39,9 +39,9 @@ def new(name: Name, preset: Preset = None, request: From = None, force: Force = 
     """Write a commented study file to edit."""
     from flexapod.app.terminal import print_json, print_text
     from flexapod.errors import InputError
-    from flexapod.study.store import replacing
+    from flexapod.files import replacing
 
-    path = name if name.suffix else name.with_suffix(".toml")
+    path = name if name.suffix or name.is_dir() else name.with_suffix(".toml")
     if path.is_dir():
         raise InputError("is a folder", file=path, next_step="Give the name of a file")
     if path.exists() and not force:

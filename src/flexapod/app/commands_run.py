@@ -11,6 +11,7 @@ import typer
 
 from flexapod.app.failures import INTERRUPTED, guarded, print_parts, show
 from flexapod.app.options import Json, NoFigures, Out, Quiet, StudyFile
+from flexapod.app.stopping import stopped
 
 if TYPE_CHECKING:
     from xarray import Dataset
@@ -74,7 +75,9 @@ def _run(study: Study | ActuatorStudy, folder: Path, formats: Sequence[str], *, 
     from flexapod.app.terminal import progress_bar
     from flexapod.study import Interrupted
     from flexapod.study import run as simulate
+    from flexapod.study.room import check_disk
 
+    check_disk(study, folder)
     with progress_bar(quiet=quiet or json) as report:
         try:
             data = simulate(study, progress=lambda time, end: report("simulating", COMPUTING * time / end))
@@ -130,7 +133,7 @@ def _say(data: Dataset, folder: Path, files: list[Path], faster: Quicker | None,
 
 
 def _stopped(data: Dataset, *, json: bool) -> None:
-    what = f"stopped by Ctrl-C at t = {float(data.time[-1]):.6g} s; what was computed is kept and marked as partial"
+    what = f"{stopped()} at t = {float(data.time[-1]):.6g} s; what was computed is kept and marked as partial"
     print_parts({"kind": "interrupt", "what": what}, INTERRUPTED, as_json=json)
 
 

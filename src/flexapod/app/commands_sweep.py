@@ -11,6 +11,7 @@ import typer
 
 from flexapod.app.failures import INTERRUPTED, guarded, print_parts
 from flexapod.app.options import Json, NoFigures, Quiet, StudyFile, as_options
+from flexapod.app.stopping import stopped
 
 if TYPE_CHECKING:
     from xarray import Dataset
@@ -97,7 +98,7 @@ def _stopped(data: Dataset, *, json: bool) -> None:
     print_parts(
         {
             "kind": "interrupt",
-            "what": f"stopped by Ctrl-C after {done} of {data.sizes['point']} points, which are stored",
+            "what": f"{stopped()} after {done} of {data.sizes['point']} points, which are stored",
             "next_step": f"To continue, run the same command again: {shlex.join(['flexapod', *sys.argv[1:]])}",
         },
         INTERRUPTED,

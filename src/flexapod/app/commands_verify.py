@@ -36,10 +36,13 @@ def verify(
     quiet: Quiet = False,
 ) -> None:
     """Compute cases with published or closed-form answers: reference, ours, tolerance, verdict, time."""
+    from flexapod.app.outputs import check_writable
     from flexapod.app.terminal import print_json, print_table, print_text, progress_bar
     from flexapod.study.verify import page
     from flexapod.study.verify.pack import verify as compute
 
+    for key, file in (("--html", html), ("--markdown", markdown)):
+        check_writable(None if file is None else file.parent, key)
     outcomes: list[Outcome] = []
     interrupted = False
     with progress_bar(quiet=quiet or json) as report:
@@ -71,7 +74,7 @@ def verify(
 
 def _write(outcomes: list[Outcome], html: Path | None, markdown: Path | None) -> None:
     from flexapod.app import html as parts
-    from flexapod.study.store import replacing
+    from flexapod.files import replacing
     from flexapod.study.verify import page
 
     if markdown is not None:

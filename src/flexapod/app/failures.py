@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+import errno
 import functools
 import json as _json
 import logging
@@ -9,19 +10,21 @@ import os
 import sys
 import traceback
 from collections.abc import Callable, Iterator, Mapping
-from contextlib import contextmanager
+from contextlib import contextmanager, suppress
 from typing import ParamSpec
 
 import typer
 
 from flexapod import __version__
+from flexapod.app.stopping import stopped
 from flexapod.errors import ComputationError, FlexapodError, InputError
 
-__all__ = ["INTERRUPTED", "guarded", "lines_of", "parts_of", "print_parts", "show"]
+__all__ = ["INTERRUPTED", "guarded", "lines_of", "parts_of", "print_parts", "say_full", "show"]
 
 P = ParamSpec("P")
 INTERRUPTED = 130
-_INTERRUPT = {"kind": "interrupt", "what": "stopped by Ctrl-C; files already written are whole"}
+#: What says that there is no more room for what is written, wherever it goes.
+_FULL = (errno.ENOSPC, errno.EDQUOT, errno.EFBIG, errno.EIO)
 
 
 def guarded(command: Callable[P, None]) -> Callable[P, None]:
@@ -34,7 +37,7 @@ def guarded(command: Callable[P, None]) -> Callable[P, None]:
     def run(*args: P.args, **kwargs: P.kwargs) -> None:
         as_json = bool(kwargs.get("json", False))
         try:
-            with _warnings(as_json=as_json):
+            with _warnings(as_json=as_json, quiet=bool(kwargs.get("quiet", False))):
                 command(*args, **kwargs)
         except (typer.Exit, typer.Abort, BrokenPipeError):
             raise
@@ -44,7 +47,7 @@ def guarded(command: Callable[P, None]) -> Callable[P, None]:
             raise typer.Exit(error.exit_code) from None
         except (KeyboardInterrupt, Exception) as error:
             _trace()
-            parts, code = (_INTERRUPT, INTERRUPTED) if _by_ctrl_c(error) else (_fault(error), 1)
+            parts, code = (_interrupt(), INTERRUPTED) if _by_ctrl_c(error) else (_no_room(error) or _fault(error), 1)
             print_parts(parts, code, as_json=as_json)
             raise typer.Exit(code) from None
 
@@ -66,26 +69,30 @@ def parts_of(error: FlexapodError) -> dict[str, str | None]:
 
 
 @contextmanager
-def _warnings(*, as_json: bool) -> Iterator[None]:
-    """Warnings of the package on stderr, in the form of the errors."""
+def _warnings(*, as_json: bool, quiet: bool) -> Iterator[None]:
+    """Warnings of the package on stderr, in the form of the errors; and, in words only, what takes its time."""
     handler, logger = _Warnings(as_json), logging.getLogger("flexapod")
+    level = logger.level
     logger.addHandler(handler)
+    logger.setLevel(logging.WARNING if as_json or quiet else logging.INFO)
     try:
         yield
     finally:
+        logger.setLevel(level)
         logger.removeHandler(handler)
 
 
 class _Warnings(logging.Handler):
     def __init__(self, as_json: bool) -> None:
-        super().__init__(logging.WARNING)
+        super().__init__()
         self.as_json = as_json
 
     def emit(self, record: logging.LogRecord) -> None:
         if record.module == "attributes":
             return  # the command says itself that a result is partial
         text = record.getMessage()
-        print(_json.dumps({"warning": text}) if self.as_json else f"Warning: {text}", file=sys.stderr)
+        words = f"{text} ..." if record.levelno < logging.WARNING else f"Warning: {text}"
+        print(_json.dumps({"warning": text}) if self.as_json else words, file=sys.stderr)
 
 
 def print_parts(parts: Mapping[str, str | None], exit_code: int, *, as_json: bool) -> None:
@@ -94,7 +101,8 @@ def print_parts(parts: Mapping[str, str | None], exit_code: int, *, as_json: boo
         text = _json.dumps({"error": {**parts, "exit_code": exit_code}}, ensure_ascii=False)
     else:
         text = "\n".join(lines_of(parts))
-    print(text, file=sys.stderr)
+    with suppress(OSError):  # where stderr takes no more, the exit code says it
+        print(text, file=sys.stderr, flush=True)
 
 
 def lines_of(parts: Mapping[str, str | None]) -> list[str]:
@@ -118,6 +126,24 @@ def _by_ctrl_c(error: BaseException | None) -> bool:
             return True
         error = error.__cause__ or error.__context__
     return False
+
+
+def _interrupt() -> dict[str, str | None]:
+    return {"kind": "interrupt", "what": f"{stopped()}; files already written are whole"}
+
+
+def _no_room(error: BaseException) -> dict[str, str | None] | None:
+    """A disk or a terminal that takes no more, in words; None for other errors."""
+    if not isinstance(error, OSError) or error.errno not in _FULL:
+        return None
+    what = f"{error.filename or 'the output'} cannot be written: {error.strerror}"
+    return {"kind": "computation", "what": what, "next_step": "Make space, or write to another place"}
+
+
+def say_full(error: OSError) -> None:
+    """Say on stderr that stdout takes no more; who has closed it wants nothing said."""
+    if not isinstance(error, BrokenPipeError):
+        print_parts(_no_room(error) or _fault(error), 1, as_json=False)
 
 
 def _fault(error: BaseException) -> dict[str, str | None]:

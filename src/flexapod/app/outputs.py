@@ -9,6 +9,7 @@ from pathlib import Path
 from typing import TYPE_CHECKING
 
 from flexapod.errors import InputError
+from flexapod.files import check_name
 
 if TYPE_CHECKING:
     from xarray import Dataset
@@ -54,10 +55,11 @@ def results_folder(file: Path, command: str, out: Path | None) -> Path:
     return folder
 
 
-def check_writable(folder: Path | None) -> None:
+def check_writable(folder: Path | None, key: str = "--out") -> None:
     """Refuse a folder that could not be made or written to, before anything is computed; it is not made yet."""
     if folder is None:
         return
+    check_name(folder.absolute(), key)
     existing = next(place for place in (folder.absolute(), *folder.absolute().parents) if os.path.lexists(place))
     try:
         os.rmdir(tempfile.mkdtemp(prefix=".flexapod-", dir=existing))
@@ -65,9 +67,7 @@ def check_writable(folder: Path | None) -> None:
         what = (
             f"cannot be made: {existing} is a file" if existing.is_file() else f"cannot be written to: {error.strerror}"
         )
-        raise InputError(
-            what, key="--out", value=str(folder), next_step="Choose another folder with --out DIR"
-        ) from None
+        raise InputError(what, key=key, value=str(folder), next_step=f"Choose another place with {key}") from None
 
 
 def write_data(data: Dataset, folder: Path) -> list[Path]:

@@ -131,7 +131,7 @@ def _store(data: Dataset, stem: Path) -> None:
 
 def _save_rows(data: Dataset, path: Path) -> None:
     """A CSV file of a part without time: variable, labels, value and unit, a value a row."""
-    from flexapod.study.store import replacing
+    from flexapod.files import replacing
 
     with replacing(path) as temporary, temporary.open("w", newline="", encoding="utf-8") as file:
         rows = csv.writer(file)

@@ -168,7 +168,7 @@ def replay_section(data: Dataset, told: Mapping[str, object], still: Drawn | Non
 
 def store_page(path: Path, text: str) -> Path:
     """Write a page; an existing one is replaced when the new one is complete."""
-    from flexapod.study.store import replacing
+    from flexapod.files import replacing
 
     with replacing(path) as temporary:
         temporary.write_text(text, encoding="utf-8")

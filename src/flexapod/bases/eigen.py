@@ -7,9 +7,24 @@ from __future__ import annotations
 
 import numpy as np
 
+from flexapod.errors import ComputationError
 from flexapod.typing import Array
 
-__all__ = ["eigh"]
+__all__ = ["eigh", "finite"]
+
+
+def finite(*matrices: Array) -> None:
+    """Refuse numbers that are not finite: LAPACK answers them with noise, or not at all.
+
+    Raises
+    ------
+    ComputationError
+    """
+    if not all(np.isfinite(matrix).all() for matrix in matrices):
+        raise ComputationError(
+            "the equations hold a number that is not finite",
+            next_step="Look in the study for a value that is far too large or far too small",
+        )
 
 
 def eigh(K: Array, M: Array) -> tuple[Array, Array]:
@@ -24,9 +39,12 @@ def eigh(K: Array, M: Array) -> tuple[Array, Array]:
 
     Raises
     ------
+    ComputationError
+        A number in them is not finite.
     numpy.linalg.LinAlgError
         M is not positive definite.
     """
+    finite(K, M)
     root = np.linalg.cholesky(M)
     half = np.linalg.solve(root, K)
     A = np.linalg.solve(root, half.T)

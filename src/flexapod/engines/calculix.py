@@ -2,11 +2,9 @@
 
 from __future__ import annotations
 
-import os
 import re
 import shutil
 import signal
-import subprocess
 import tempfile
 from dataclasses import dataclass
 from pathlib import Path
@@ -15,6 +13,7 @@ import numpy as np
 
 from flexapod.engines.engine import CALCULIX
 from flexapod.errors import ComputationError
+from flexapod.processes import call
 from flexapod.typing import Array
 
 __all__ = ["TIME_LIMIT", "Run", "run"]
@@ -24,6 +23,7 @@ TIME_LIMIT = 300.0
 
 _LAST = 8  # lines of its output in a message
 _JOB = "deck"
+_ONE_THREAD = {"OMP_NUM_THREADS": "1", "OPENBLAS_NUM_THREADS": "1", "CCX_NPROC_EQUATION_SOLVER": "1"}
 _BLOCK = re.compile(r"^ displacements \(vx,vy,vz\) for set (\S+) and time +(\S+)")
 
 
@@ -102,7 +102,7 @@ def run(deck: str, *, time_limit: float = TIME_LIMIT) -> Run:
     with tempfile.TemporaryDirectory(prefix="flexapod-ccx-") as name:
         folder = Path(name)
         (folder / f"{_JOB}.inp").write_text(deck, encoding="ascii")
-        output, code = _call(program, folder, time_limit)
+        output, code = call([program, "-i", _JOB], folder, time_limit, _ONE_THREAD)
         table = folder / f"{_JOB}.dat"
         printed = table.read_text(encoding="ascii", errors="replace") if table.exists() else ""
     if code is None:
@@ -118,27 +118,6 @@ def run(deck: str, *, time_limit: float = TIME_LIMIT) -> Run:
     if code > 0 or "*ERROR" in output:
         raise ComputationError(f"CalculiX stopped with an error (exit code {code}). {_said(output)}")
     return Run(printed=printed, output=output)
-
-
-def _call(program: str, folder: Path, time_limit: float) -> tuple[str, int | None]:
-    """What it said and its exit code; None if it was stopped."""
-    threads = {"OMP_NUM_THREADS": "1", "OPENBLAS_NUM_THREADS": "1", "CCX_NPROC_EQUATION_SOLVER": "1"}
-    spoken = folder / "spoken.txt"
-    with spoken.open("wb") as file:
-        # A session of its own, so that whatever it starts can be stopped with it.
-        process = subprocess.Popen(
-            [program, "-i", _JOB], cwd=folder, env=os.environ | threads, stdin=subprocess.DEVNULL,
-            stdout=file, stderr=subprocess.STDOUT, start_new_session=True,
-        )  # fmt: skip
-        try:
-            code: int | None = process.wait(timeout=time_limit)
-        except subprocess.TimeoutExpired:
-            code = None
-        finally:
-            if process.poll() is None:
-                os.killpg(process.pid, signal.SIGKILL)
-                process.wait()
-    return spoken.read_text(encoding="utf-8", errors="replace"), code
 
 
 def _said(output: str) -> str:

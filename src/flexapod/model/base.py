@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+import hashlib
 import re
 from collections.abc import Callable, Mapping
 from html import escape
@@ -15,6 +16,7 @@ from pydantic import (
     GetCoreSchemaHandler,
     PlainSerializer,
     PlainValidator,
+    SerializationInfo,
     ValidationError,
 )
 from pydantic_core import CoreSchema, PydanticCustomError, core_schema
@@ -25,6 +27,7 @@ from flexapod.units import DIMENSIONS
 from flexapod.words import number
 
 __all__ = [
+    "SHORT",
     "Frozen",
     "Joints",
     "Matrix3",
@@ -100,7 +103,13 @@ def array_of(shape: tuple[int | None, ...]) -> Callable[[object], Array]:
     return convert
 
 
-def _as_list(array: Array) -> list[Any]:
+#: Context of `model_dump_json` in which a hash stands for a long table: of a thousand points each writes it.
+SHORT = {"tables": "hashes"}
+
+
+def _as_list(array: Array, info: SerializationInfo) -> list[Any] | str:
+    if info.context == SHORT and array.size > 100:
+        return f"{array.shape} {hashlib.sha256(np.ascontiguousarray(array)).hexdigest()}"
     return array.tolist()
 
 

@@ -10,6 +10,7 @@ from pathlib import Path
 from typing import Literal, overload
 
 from flexapod.errors import InputError, closest
+from flexapod.files import LARGEST_TEXT, check_name, read_text
 from flexapod.model.read_actuator import read_actuator, read_drives, read_release
 from flexapod.model.read_motion import read_initial, read_load, read_motion, read_simulation, unused_settings
 from flexapod.model.read_robot import read_robot
@@ -63,12 +64,14 @@ def load(path: str | Path) -> Study | ActuatorStudy:
         With file, key path, value, what is allowed, and the next step.
     """
     path = Path(path)
+    check_name(path)
     try:
-        text = path.read_text(encoding="utf-8-sig")
-    except (OSError, UnicodeDecodeError) as error:
-        reason = error.strerror if isinstance(error, OSError) else "it is no UTF-8 text"
+        text = read_text(path, LARGEST_TEXT)
+    except OSError as error:
         raise InputError(
-            f"cannot be read: {reason}", file=path, next_step="`flexapod new NAME.toml` writes one to start from"
+            f"cannot be read: {error.strerror}",
+            file=path,
+            next_step="`flexapod new NAME.toml` writes one to start from",
         ) from None
     return loads(text, path=path)
 
@@ -92,6 +95,7 @@ def loads_robot(text: str, *, path: str | Path | None = None) -> Robot:
 
 def _tables(text: str, path: str | Path | None) -> Section:
     file = None if path is None else str(path)
+    check_name(file or "")
     top = Section(parsed(text, file or "study text"), "", file, Path(path).parent if path else Path())
     if ("robot" in top) == ("actuator" in top):
         found = "both [robot] and [actuator]" if "robot" in top else "neither [robot] nor [actuator]"

@@ -2,6 +2,10 @@
 
 from __future__ import annotations
 
+from collections.abc import Iterable, Mapping
+
+import numpy as np
+
 from flexapod.model.load import ConstantWrench, CsvWrench, Load, SineWrench, StepWrench, Wrench
 from flexapod.model.motion import (
     AXES,
@@ -16,6 +20,7 @@ from flexapod.model.motion import (
 from flexapod.model.section import Section
 from flexapod.model.simulation import FIDELITIES, OWN_BASIS, STRAIGHT, Initial, Simulation, own_fidelity
 from flexapod.model.tables import POSE, WRENCH, read_table
+from flexapod.typing import Array
 
 __all__ = ["read_initial", "read_load", "read_motion", "read_simulation", "unused_settings"]
 
@@ -136,13 +141,11 @@ def _csv(section: Section) -> CsvMotion:
     section.need("file")
     file = str(section.text("file"))
     table = read_table(section.folder / file, POSE)
-    time = table["time"]
-    pose = [[table[axis][i] if axis in table else 0.0 for axis in AXES] for i in range(len(time))]
     return section.build(
         CsvMotion,
         file=file,
-        time=time,
-        pose=pose,
+        time=table["time"],
+        pose=_beside(table, AXES),
         hold=section.number("hold", "time"),
         pivot=section.vector("pivot", "length", "length", "length"),
     )
@@ -171,6 +174,9 @@ def _wrench(section: Section) -> Wrench:
     section.need("file")
     file = str(section.text("file"))
     table = read_table(section.folder / file, WRENCH, jumps=True)
-    time = table["time"]
-    wrench = [[table[name][i] if name in table else 0.0 for name in WRENCH] for i in range(len(time))]
-    return section.build(CsvWrench, file=file, time=time, wrench=wrench)
+    return section.build(CsvWrench, file=file, time=table["time"], wrench=_beside(table, WRENCH))
+
+
+def _beside(table: Mapping[str, Array], names: Iterable[str]) -> Array:
+    """Columns of a table side by side; 0 where there is none."""
+    return np.column_stack([table.get(name, np.zeros_like(table["time"])) for name in names])

@@ -12,6 +12,7 @@ from flexapod.errors import InputError
 from flexapod.model.base import Frozen, Joints, Matrix3, Measure, NonNegative, Number, Positive, Vec3
 from flexapod.model.leg import Leg
 from flexapod.typing import Array
+from flexapod.units import DIMENSIONS
 from flexapod.words import number, text
 
 __all__ = ["Circle", "Payload", "Robot", "base_circle", "platform_circle"]
@@ -107,6 +108,14 @@ class Robot(Frozen):
 
     @model_validator(mode="after")
     def _legs_fit(self) -> Robot:
+        for name, joints in (("base", self.base_joints), ("platform", self.platform_joints)):
+            if np.ptp(joints, axis=0).max() < DIMENSIONS["length"].least:
+                raise InputError(
+                    f"all {name} joints lie at one point: the legs cannot hold the platform against turning",
+                    key=f"robot.{name}",
+                    value=joints[0].tolist(),
+                    next_step=f"Give robot.{name} a radius, or six places apart from each other",
+                )
         for i, (leg, length) in enumerate(zip(self.legs, self.home_lengths, strict=True), start=1):
             _check_home(i, leg, float(length))
         axial = {leg.axial_modes for leg in self.legs}

@@ -3,14 +3,17 @@
 from __future__ import annotations
 
 import csv
+import io
 import math
 import re
 from collections.abc import Mapping
+from functools import lru_cache
 from pathlib import Path
 
 import numpy as np
 
 from flexapod.errors import InputError, closest
+from flexapod.files import LARGEST_TABLE, read_text
 from flexapod.typing import Array
 from flexapod.units import DIMENSIONS, to_si
 
@@ -20,6 +23,7 @@ POSE = {"surge": "length", "sway": "length", "heave": "length", "roll": "angle",
 WRENCH = {"Fx": "force", "Fy": "force", "Fz": "force", "Mx": "torque", "My": "torque", "Mz": "torque"}
 FORCES = {f"leg {i}": "force" for i in range(1, 7)}
 
+MOST_KEPT = 2_000_000  # letters of a table that is kept for the next time it is read
 _HEADER = re.compile(r"^\s*(.+?)\s*\[\s*(.+?)\s*\]\s*$")
 
 
@@ -52,7 +56,19 @@ def read_table(
         If the file cannot be read, a column is unknown or missing, a cell is empty or no finite number, or the
         instants do not start at 0 and increase, apart from ``jumps``; with the line number.
     """
-    lines = _lines(path)
+    try:
+        text = read_text(path, LARGEST_TABLE)
+    except OSError as error:
+        raise _unreadable(path, str(error.strerror)) from None
+    read = _read if len(text) < MOST_KEPT else _read.__wrapped__
+    return dict(read(path, text, tuple(columns.items()), needed=needed, jumps=jumps))
+
+
+@lru_cache(maxsize=16)  # a sweep reads the tables of its study at every point
+def _read(
+    path: Path, text: str, allowed: tuple[tuple[str, str], ...], *, needed: bool, jumps: bool
+) -> dict[str, Array]:
+    lines, columns = _lines(path, text), dict(allowed)
     if not lines:
         raise InputError("is empty", file=path, next_step=f"First line: {header(columns)}")
     number, cells = lines[0]
@@ -63,19 +79,21 @@ def read_table(
     values = np.array([_row(path, n, row, list(factors)) for n, row in lines[1:]]).reshape(-1, len(factors))
     table = {name: values[:, i] * factor for i, (name, factor) in enumerate(factors.items())}
     _check_times(path, table["time"], [n for n, _ in lines[1:]], jumps)
+    for column in table.values():
+        column.flags.writeable = False
     return table
 
 
-def _lines(path: Path) -> list[tuple[int, list[str]]]:
+def _lines(path: Path, text: str) -> list[tuple[int, list[str]]]:
     try:
-        with path.open(newline="", encoding="utf-8-sig") as stream:
-            rows = list(enumerate(csv.reader(stream), start=1))
-    except (OSError, UnicodeDecodeError, csv.Error) as error:
-        reason = error.strerror if isinstance(error, OSError) else "it is no text table"
-        raise InputError(
-            f"cannot be read: {reason}", file=path, next_step="Give its place relative to the study file"
-        ) from None
+        rows = list(enumerate(csv.reader(io.StringIO(text, newline="")), start=1))
+    except csv.Error:
+        raise _unreadable(path, "it is no text table") from None
     return [(n, row) for n, row in rows if any(cell.strip() for cell in row) and not row[0].lstrip().startswith("#")]
+
+
+def _unreadable(path: Path, why: str) -> InputError:
+    return InputError(f"cannot be read: {why}", file=path, next_step="Give its place relative to the study file")
 
 
 def _header(path: Path, line: int, cells: list[str], dimensions: Mapping[str, str]) -> dict[str, float]:

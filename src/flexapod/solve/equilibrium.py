@@ -5,6 +5,7 @@ from dataclasses import dataclass, replace
 import numpy as np
 
 from flexapod import rigid
+from flexapod.bases.eigen import finite
 from flexapod.errors import ComputationError
 from flexapod.mechanics.layout import LEG_PARAMETERS, PAYLOAD_PARAMETERS, columns
 from flexapod.model import Robot
@@ -80,10 +81,11 @@ def saddle_solve(A: Array, G: Array, r: Array, g: Array) -> tuple[Array, Array]:
     Raises
     ------
     ComputationError
-        The matrix is singular.
+        The matrix is singular, or a number is not finite.
     """
     size = len(A)
     full = np.block([[A, G.T], [G, np.zeros((len(G), len(G)))]])
+    finite(full, r, g)
     scale = 1.0 / np.sqrt(np.maximum(np.abs(full).max(axis=1), 1e-300))
     scale[:size] = 1.0 / np.sqrt(np.maximum(np.abs(np.diag(A)), 1e-12 * np.abs(A).max()))
     scale[size:] = 1.0 / np.maximum(np.abs(G * scale[:size]).max(axis=1), 1e-300)

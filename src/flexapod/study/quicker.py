@@ -35,8 +35,8 @@ class Quicker:
     def words(self) -> str:
         """The finding in one sentence."""
         return (
-            f'step = "{number(1e3 * self.step, 4)} ms" in place of the tolerance is {self.times:.2g} times faster, with '
-            f"the same result to {self.difference:.1g} of the largest deviation (measured)"
+            f'step = "{number(1e3 * self.step, 4)} ms" in place of the tolerance is {self.times:.2g} times faster, '
+            f"with the same result to {self.difference:.1g} of the largest deviation (measured)"
         )
 
 

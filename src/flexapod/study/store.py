@@ -2,53 +2,94 @@
 
 from __future__ import annotations
 
-import os
-import tempfile
-from collections.abc import Iterator
-from contextlib import contextmanager
 from pathlib import Path
-from typing import TYPE_CHECKING
+from typing import TYPE_CHECKING, Any
 
 from flexapod.errors import InputError
+from flexapod.files import check_regular, replacing
+from flexapod.study.room import available_memory
 from flexapod.typing import Array
 
 if TYPE_CHECKING:
-    from xarray import DataArray, Dataset
+    from xarray import DataArray, Dataset, Variable
 
-__all__ = ["open_results", "replacing", "save", "save_csv"]
+BLOCK = 1 << 20
+AGAIN = "Make it again with `flexapod run FILE`"
+__all__ = ["open_results", "save", "save_csv"]
 
 
 def save(data: Dataset, path: str | Path) -> Path:
-    """Write a Dataset to a NetCDF 4 file; an existing file is replaced when the new one is complete.
+    """Write a Dataset to a NetCDF 4 file, every variable with checksums; an existing file is replaced by the whole one.
 
     Raises
     ------
     InputError
-        The folder cannot be written to.
+        The folder cannot be written to, or the disk is full.
     """
+    checked: Any = {
+        name: {"fletcher32": True} | ({"dtype": "S1"} if array.dtype.kind in "UOT" else {})  # texts of letters
+        for name, array in data.variables.items()
+        if array.ndim and array.size
+    }
     with replacing(path) as temporary:
-        data.to_netcdf(temporary, engine="netcdf4", format="NETCDF4")
+        try:
+            data.to_netcdf(temporary, engine="netcdf4", format="NETCDF4", encoding=checked)
+        except RuntimeError as error:
+            _fill(temporary, data.nbytes)
+            raise OSError(f"the NetCDF library says {error}") from None
     return Path(path)
 
 
+def _fill(path: Path, size: int) -> None:
+    """Write as many zeros: the system says why a file cannot be written, the NetCDF library does not."""
+    with path.open("wb") as file:
+        for begin in range(0, size, BLOCK):
+            file.write(bytes(min(BLOCK, size - begin)))
+
+
 def open_results(path: str | Path) -> Dataset:
-    """Read a Dataset that `save` wrote, whole, so that the file may be replaced.
+    """Read a Dataset that `save` wrote, whole, so that the file may be replaced; its checksums are compared.
 
     Raises
     ------
     InputError
-        No such file, or none of ours.
+        No such file, none of ours, spoilt, or larger than the memory.
     """
     import xarray as xr
 
     try:
+        check_regular(path)
         with xr.open_dataset(path, engine="netcdf4") as data:
-            found = data.load()
-    except (OSError, ValueError) as error:
-        raise InputError(f"is not a readable NetCDF file ({error})", file=str(path)) from None
-    if "flexapod_version" not in found.attrs:
-        raise InputError("is not a result of flexapod", file=str(path), next_step="Make one with `flexapod run FILE`")
-    return found
+            _check_ours(data, path)
+            for name, array in data.variables.items():
+                _load(array, str(name), path)
+            return data
+    except InputError:
+        raise
+    except Exception as error:  # whatever a file that is none of ours makes its reader say
+        words = error.strerror if isinstance(error, OSError) and error.strerror else str(error)
+        raise InputError(f"is not a readable NetCDF file ({words})", file=str(path), next_step=AGAIN) from None
+
+
+def _check_ours(data: Dataset, path: str | Path) -> None:
+    if "flexapod_version" not in data.attrs or "study" not in data.attrs:
+        raise InputError("is not a result of flexapod", file=str(path), next_step=AGAIN)
+    free = available_memory()
+    if data.nbytes > free:
+        raise InputError(
+            f"holds {data.nbytes / 1e9:.3g} GB", file=str(path), allowed=f"at most the free memory, {free / 1e9:.3g} GB"
+        )
+
+
+def _load(array: Variable, name: str, path: str | Path) -> None:
+    try:
+        array.load()
+    except (OSError, RuntimeError, ValueError) as error:
+        raise InputError(
+            f"is damaged: {name} is not what was written ({error})",
+            file=str(path),
+            next_step=f"Take a copy of the file, if there is one. {AGAIN}",
+        ) from None
 
 
 def save_csv(data: Dataset, path: str | Path) -> Path:
@@ -91,44 +132,3 @@ def _columns(name: str, values: DataArray) -> dict[str, Array]:
     flat = values.stack(all_labels=dims).transpose("time", "all_labels")
     labels = [".".join(str(part) for part in label) for label in flat.all_labels.values]
     return {f"{name}.{label} [{unit}]": column for label, column in zip(labels, flat.values.T, strict=True)}
-
-
-@contextmanager
-def replacing(path: str | Path) -> Iterator[Path]:
-    """A temporary file beside `path` that takes its place when the block ends without an error.
-
-    Raises
-    ------
-    InputError
-        The folder cannot be made or written to.
-    """
-    path = Path(path)
-    try:
-        path.parent.mkdir(parents=True, exist_ok=True)
-        handle, name = tempfile.mkstemp(prefix=f".{path.stem}-", suffix=path.suffix, dir=path.parent)
-        os.close(handle)
-        temporary = Path(name)
-    except OSError as error:
-        raise _unwritable(path, error) from None
-    try:
-        yield temporary
-        temporary.chmod(0o666 & ~_umask())
-        temporary.replace(path)
-    except OSError as error:
-        raise _unwritable(path, error) from error
-    finally:
-        temporary.unlink(missing_ok=True)
-
-
-def _unwritable(path: Path, error: OSError) -> InputError:
-    return InputError(
-        f"cannot be written: {error.strerror or error}",
-        file=str(path),
-        next_step="Choose a place that you may write to and that has space",
-    )
-
-
-def _umask() -> int:
-    mask = os.umask(0)
-    os.umask(mask)
-    return mask

@@ -4,10 +4,9 @@ from __future__ import annotations
 
 from flexapod.errors import InputError
 from flexapod.model import ActuatorStudy, Study
+from flexapod.study.room import check_memory
 
 __all__ = ["check_outputs"]
-
-MOST_OUTPUTS = 1e8  # a robot keeps 2 kB of each: 200 GB
 
 
 def check_outputs(study: Study | ActuatorStudy) -> list[str]:
@@ -16,19 +15,12 @@ def check_outputs(study: Study | ActuatorStudy) -> list[str]:
     Raises
     ------
     InputError
-        The duration is shorter than the time between stored results, or far too long for it.
+        The duration is shorter than the time between stored results, or so long that the memory does not hold them.
     """
     simulation, duration = study.simulation, study.duration
     stored = simulation.stored_step
     name = "output_step" if stored == simulation.output_step else "step"
-    if duration / stored > MOST_OUTPUTS:
-        raise InputError(
-            "asks for more results than can be stored",
-            key="simulation.duration",
-            value=duration,
-            allowed=f"at most {MOST_OUTPUTS:g} times simulation.{name} = {stored:g} s",
-            next_step=f"Give a shorter duration, or a longer simulation.{name}",
-        )
+    remarks = check_memory(study)
     outputs = simulation.outputs(duration)
     if not outputs:
         raise InputError(
@@ -38,7 +30,6 @@ def check_outputs(study: Study | ActuatorStudy) -> list[str]:
             allowed=f"at most the duration of {duration:g} s",
             next_step=f"Give simulation.{name} a value below it, or a longer simulation.duration",
         )
-    remarks = []
     if name == "step":
         remarks.append(
             f"simulation.step = {stored:g} s is longer than output_step = {simulation.output_step:g} s: "

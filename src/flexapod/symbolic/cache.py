@@ -8,7 +8,6 @@ import logging
 import math
 import os
 import re
-import shutil
 import sys
 import tempfile
 import time
@@ -17,6 +16,7 @@ from dataclasses import dataclass
 from pathlib import Path
 
 from flexapod.errors import ComputationError, InputError
+from flexapod.files import UNFINISHED, read_bytes, whole
 
 __all__ = [
     "CacheContent",
@@ -33,9 +33,10 @@ __all__ = [
 #: A kernel takes 0.1 to 1 MB: room for some hundred sets of shapes, and little on any disk.
 DEFAULT_MEGABYTES = 256.0
 LIMIT = "FLEXAPOD_CACHE_MEGABYTES"
+#: Of one library [byte]: more is none of ours.
+LARGEST = 100_000_000
 #: Key of what the code depends on, then the beginning of the hash of the file itself.
 LIBRARY = re.compile(r"[0-9a-f]{32}-[0-9a-f]{16}\.so")
-UNFINISHED = re.compile(r"\.kernel-.*\.part")
 #: Copying a library takes milliseconds; what is unfinished after an hour belongs to a process that was killed.
 ABANDONED = 3600.0
 _log = logging.getLogger("flexapod")
@@ -129,7 +130,7 @@ def intact_libraries(folder: Path, key: str) -> list[Path]:
     intact = []
     for path in _matching(folder, re.compile(f"{key}-.*\\.so")):
         with suppress(OSError):
-            if path.name != _name(key, path) or _distrust(path):
+            if not _intact(key, path):
                 path.unlink()
                 continue
             intact.append(path)
@@ -144,15 +145,8 @@ def store_library(folder: Path, key: str, built: Path) -> Path | None:
     """
     try:
         target = folder / _name(key, built)
-        handle, unfinished = tempfile.mkstemp(prefix=".kernel-", suffix=".part", dir=folder)
-        os.close(handle)
-        try:
-            shutil.copyfile(built, unfinished)
-            os.chmod(unfinished, 0o700)
-            os.replace(unfinished, target)
-        except BaseException:
-            os.unlink(unfinished)
-            raise
+        with whole(target, mode=0o700) as unfinished:
+            unfinished.write_bytes(read_bytes(built, LARGEST))
         _make_room(folder, target)
     except OSError as error:
         warn_unused(folder, error.strerror or str(error))
@@ -160,8 +154,15 @@ def store_library(folder: Path, key: str, built: Path) -> Path | None:
     return target
 
 
+def _intact(key: str, path: Path) -> bool:
+    try:
+        return path.name == _name(key, path) and not _distrust(path)
+    except OSError:  # a pipe, a device, something endless
+        return False
+
+
 def _name(key: str, path: Path) -> str:
-    return f"{key}-{hashlib.sha256(path.read_bytes()).hexdigest()[:16]}.so"
+    return f"{key}-{hashlib.sha256(read_bytes(path, LARGEST)).hexdigest()[:16]}.so"
 
 
 def _make_room(folder: Path, newest: Path) -> None:
@@ -172,7 +173,7 @@ def _make_room(folder: Path, newest: Path) -> None:
         used += size
         if older and used > size_limit():
             _remove(path)
-    for path in _matching(folder, UNFINISHED):
+    for path in folder.glob(UNFINISHED):
         if (found := _stat(path)) and time.time() - found.st_mtime > ABANDONED:
             _remove(path)
 
@@ -212,7 +213,7 @@ def clear_cache() -> CacheContent:
         Some could not be removed.
     """
     before = cache_content()
-    for path in (*_matching(before.folder, LIBRARY), *_matching(before.folder, UNFINISHED)):
+    for path in (*_matching(before.folder, LIBRARY), *before.folder.glob(UNFINISHED)):
         _remove(path)
     if left := cache_content().kernels:
         raise ComputationError(

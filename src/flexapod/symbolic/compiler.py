@@ -3,13 +3,16 @@
 import ctypes
 import hashlib
 import json
+import logging
 import os
 import platform
+import shlex
 import shutil
-import subprocess
 import sys
 import tempfile
-from collections.abc import Callable, Sequence
+import threading
+from collections.abc import Callable, Iterator, Sequence
+from contextlib import contextmanager
 from functools import cache
 from importlib.metadata import version
 from importlib.util import find_spec
@@ -18,6 +21,7 @@ from pathlib import Path
 import numpy as np
 
 from flexapod.errors import ComputationError
+from flexapod.processes import call
 from flexapod.symbolic.cache import intact_libraries, open_cache, store_library, warn_unused
 from flexapod.typing import Array
 
@@ -31,6 +35,9 @@ __all__ = ["CompiledFunction", "compiled_library", "compiler"]
 FLAGS = ("-O1", "-fPIC", "-shared", "-std=gnu11", "-fno-math-errno", "-fno-trapping-math", "-ffp-contract=off")
 #: Vectors as wide as the processor has them; left out where the compiler does not know it.
 NATIVE = "-march=native"
+LONGEST = 300.0  # seconds that a compiler may take: usual are 2 to 20
+SILENT = 2.0  # seconds after which it is told that there is a compiler at work
+_log = logging.getLogger("flexapod")
 #: Function of every library that returns sizes of inputs and shapes of outputs, as JSON.
 SIGNATURES = "flexapod_signatures"
 
@@ -39,12 +46,26 @@ def compiler() -> list[str] | None:
     """Command of a C compiler: ``CC``, cc, gcc, clang, or the pip-installable ``ziglang``; None if there is none."""
     if os.environ.get("FLEXAPOD_COMPILER") == "none":
         return None
-    for name in (os.environ.get("CC"), "cc", "gcc", "clang"):
-        if name and shutil.which(name):
-            return [name]
-    if find_spec("ziglang"):
-        return [sys.executable, "-m", "ziglang", "cc"]
-    return None
+    chosen = _words(os.environ.get("CC", ""))
+    found = next((line for line in (chosen, ["cc"], ["gcc"], ["clang"]) if line and shutil.which(line[0])), None)
+    if found is None and find_spec("ziglang"):
+        found = [sys.executable, "-m", "ziglang", "cc"]
+    if chosen and found is not chosen:
+        _say_passed_over(shlex.join(chosen), shlex.join(found or []))
+    return found
+
+
+def _words(line: str) -> list[str]:
+    """Program and arguments; a name that has spaces and is a program is one word."""
+    try:
+        return [line] if shutil.which(line) else shlex.split(line)
+    except ValueError:  # a quotation mark that is not closed
+        return [line]
+
+
+@cache
+def _say_passed_over(chosen: str, found: str) -> None:
+    _log.warning("CC = %s is passed over: there is no such program. Used instead: %s", chosen, found or "none")
 
 
 class CompiledFunction:
@@ -88,6 +109,13 @@ def compiled_library(
     ComputationError
         The compiler failed (the message carries its words), or its library cannot be loaded.
     """
+    with _announced():
+        return _library(key, functions, sources, command)
+
+
+def _library(
+    key: Sequence[object], functions: Callable[[], list], sources: Sequence[Path], command: list[str]
+) -> tuple[ctypes.CDLL, dict[str, dict]]:
     name = _name([*key, *(path.read_bytes() for path in sources)], command)
     cache = open_cache()
     if cache and (found := _first(intact_libraries(cache, name))):
@@ -110,6 +138,19 @@ def compiled_library(
                 next_step="Set FLEXAPOD_CACHE to a folder from which programs may be run, CC to another compiler, "
                 "or FLEXAPOD_COMPILER=none for the slow interpreted kernels.",
             ) from None
+
+
+@contextmanager
+def _announced() -> Iterator[None]:
+    """What takes longer than a moment is told."""
+    words = "Compiling the equations of motion: once for each number of shapes, some seconds"
+    timer = threading.Timer(SILENT, _log.info, [words])
+    timer.daemon = True
+    timer.start()
+    try:
+        yield
+    finally:
+        timer.cancel()
 
 
 def _name(key: Sequence[object], command: list[str]) -> str:
@@ -173,19 +214,22 @@ def _build(functions: list, sources: Sequence[Path], command: list[str], folder:
         generated = [c_source(function) for function in functions]
         texts = [PRELUDE.read_text(), *generated, tail, *(path.read_text() for path in sources)]
         (folder / "kernel.c").write_text("\n".join(texts))
-        done = subprocess.run([*line, NATIVE], cwd=folder, capture_output=True, text=True, check=False)
-        if done.returncode:
-            done = subprocess.run(line, cwd=folder, capture_output=True, text=True, check=False)
+        said, status = call([*line, NATIVE], folder, LONGEST)
+        if status:
+            said, status = call(line, folder, LONGEST)
     except OSError as error:
         raise _failed(command, f"{error.filename or folder}: {error.strerror}") from None
-    if done.returncode:
-        raise _failed(command, done.stderr.strip()[-600:])
+    if status is None:
+        raise _failed(command, f"it did not end within {LONGEST:g} s and was stopped")
+    if status or not (folder / "kernel.so").is_file():
+        made = "" if status else ", and made no library"
+        raise _failed(command, said.strip()[-600:] or f"it said nothing; its exit status is {status}{made}")
     return folder / "kernel.so"
 
 
 def _failed(command: list[str], words: str) -> ComputationError:
     return ComputationError(
-        f"the C compiler {' '.join(command)} failed: {words}",
+        f"the C compiler {shlex.join(command)} failed: {words}",
         next_step="Set CC to another compiler, TMPDIR to another folder for its files, "
         "or FLEXAPOD_COMPILER=none for the slow interpreted kernels.",
     )

@@ -10,12 +10,12 @@ from typing import TYPE_CHECKING
 
 import numpy as np
 
+from flexapod.files import replacing
 from flexapod.model import ActuatorStudy, Study
 from flexapod.study.attributes import attributes
 from flexapod.study.converge.family import FAMILIES, Family
 from flexapod.study.converge.findings import Findings
 from flexapod.study.converge.trials import QUANTITIES, Setting, Trial
-from flexapod.study.store import replacing
 
 if TYPE_CHECKING:
     from xarray import Dataset

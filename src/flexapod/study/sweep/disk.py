@@ -3,18 +3,17 @@
 from __future__ import annotations
 
 import asyncio
-import errno
-import os
 from pathlib import Path
 from typing import TYPE_CHECKING, Any
-from uuid import uuid4
 
 from zarr.storage import LocalStore
+
+from flexapod.files import whole
 
 if TYPE_CHECKING:
     from zarr.core.buffer import Buffer
 
-__all__ = ["DurableStore", "settle"]
+__all__ = ["DurableStore"]
 
 
 class DurableStore(LocalStore):
@@ -27,33 +26,5 @@ class DurableStore(LocalStore):
 
 
 def _put(path: Path, content: Any) -> None:
-    made = [folder for folder in path.parents if not folder.exists()]
-    path.parent.mkdir(parents=True, exist_ok=True)
-    for folder in made:
-        settle(folder.parent)
-    temporary = path.with_name(f"{path.name}.{uuid4().hex}.partial")
-    try:
-        with temporary.open("wb") as file:
-            file.write(content)
-            file.flush()
-            os.fsync(file.fileno())
-        temporary.replace(path)
-    except BaseException:
-        temporary.unlink(missing_ok=True)
-        raise
-    settle(path.parent)
-
-
-def settle(folder: Path) -> None:
-    """Wait until the names in a folder are on the disk; where folders cannot be waited for, do not."""
-    try:
-        handle = os.open(folder, os.O_RDONLY)
-    except OSError:  # Windows
-        return
-    try:
-        os.fsync(handle)
-    except OSError as error:
-        if error.errno not in (errno.EINVAL, errno.ENOTSUP):  # some file systems on a network
-            raise
-    finally:
-        os.close(handle)
+    with whole(path, settled=True) as temporary:
+        temporary.write_bytes(content)

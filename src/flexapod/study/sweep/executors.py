@@ -7,10 +7,12 @@ import math
 import os
 import queue
 import signal
+import threading
 import time
 import warnings
 from collections.abc import Iterator, Sequence
-from contextlib import contextmanager, suppress
+from contextlib import ExitStack, contextmanager, suppress
+from multiprocessing import resource_tracker
 from typing import TYPE_CHECKING, Any, Protocol
 
 from flexapod.errors import ComputationError, InputError
@@ -26,6 +28,7 @@ __all__ = ["DaskExecutor", "Executor", "InProcess", "WorkerDied", "check_place",
 CONNECT = 10.0  # seconds to reach a scheduler
 PATIENCE = 60.0  # seconds without any worker until the sweep gives up
 LOOK = 1.0  # seconds between looks at the cluster
+_ENDINGS = (signal.SIGINT, signal.SIGTERM)
 LOST = "Nothing that was stored is lost: run the same command again to continue"
 #: A connection remembers its last thousand messages: studies of many points, hundreds of megabytes.
 FORGETFUL = {"distributed.admin.low-level-log-length": 10}
@@ -240,18 +243,47 @@ def _client(scheduler: str | None, workers: int) -> Iterator[Client]:
             yield client
         return
     with config.set(FORGETFUL | QUIET):
-        try:
-            cluster = LocalCluster(
-                n_workers=workers, threads_per_worker=1, processes=True, host="127.0.0.1",
-                dashboard_address="127.0.0.1:0", silence_logs=logging.CRITICAL,
-            )  # fmt: skip
-        except (RuntimeError, OSError) as error:
-            raise ComputationError(
-                f"local workers do not start: {error}", next_step="--workers 0 computes in this process"
-            ) from None
-        with cluster, Client(cluster, set_as_default=False) as client:
-            client.register_plugin(_heedless())
+        with ExitStack() as ends:
+            with _undisturbed():
+                try:
+                    cluster = LocalCluster(
+                        n_workers=workers, threads_per_worker=1, processes=True, host="127.0.0.1",
+                        dashboard_address="127.0.0.1:0", silence_logs=logging.CRITICAL,
+                    )  # fmt: skip
+                except (RuntimeError, OSError) as error:
+                    raise ComputationError(
+                        f"local workers do not start: {error}", next_step="--workers 0 computes in this process"
+                    ) from None
+                ends.enter_context(cluster)
+                client = ends.enter_context(Client(cluster, set_as_default=False))
+                client.register_plugin(_heedless())
             yield client
+
+
+@contextmanager
+def _undisturbed() -> Iterator[None]:
+    """Signals wait until workers have started: half started they, and Dask, end with many words.
+
+    Processes that start here do not see Ctrl-C, which a terminal sends to all of its processes.
+    """
+    if threading.current_thread() is not threading.main_thread():
+        yield
+        return
+    waiting: list[int] = []
+    before = {number: signal.signal(number, lambda n, _: waiting.append(n)) for number in _ENDINGS}
+    blocked = hasattr(signal, "pthread_sigmask")
+    if blocked:
+        resource_tracker.ensure_running()  # it unblocks signals when it starts
+        mask = signal.pthread_sigmask(signal.SIG_BLOCK, {signal.SIGINT})
+    try:
+        yield
+    finally:
+        if blocked:
+            signal.pthread_sigmask(signal.SIG_SETMASK, mask)
+        for number, handler in before.items():
+            signal.signal(number, handler)
+    if waiting:
+        signal.raise_signal(waiting[0])
 
 
 def _heedless() -> Any:

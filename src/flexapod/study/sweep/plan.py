@@ -15,6 +15,7 @@ from typing import Any
 import numpy as np
 
 from flexapod.errors import InputError
+from flexapod.files import LARGEST_TEXT, check_name, read_text
 from flexapod.model.section import Section
 from flexapod.model.toml import parsed, refuse_excess
 from flexapod.study.sweep.keys import Step, key_text, overlap, parse_key
@@ -144,11 +145,12 @@ def read_plan(sweep: str | Path | Mapping[str, Any]) -> Plan:
             "is no sweep", key="sweep", value=type(sweep).__name__, allowed="a sweep file or a dictionary like it"
         )
     file = Path(sweep)
+    check_name(file)
     try:
-        text = file.read_text(encoding="utf-8-sig")
-    except (OSError, UnicodeDecodeError) as error:
-        reason = error.strerror if isinstance(error, OSError) else "it is no UTF-8 text"
-        raise InputError(f"cannot be read: {reason}", file=file, next_step="See docs/sweep.md for an example") from None
+        text = read_text(file, LARGEST_TEXT)
+    except OSError as error:
+        words = f"cannot be read: {error.strerror}"
+        raise InputError(words, file=file, next_step="See docs/sweep.md for an example") from None
     return _plan(Section(parsed(text, str(file)), "", str(file), file.parent), text)
 
 

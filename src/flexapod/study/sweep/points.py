@@ -15,6 +15,8 @@ import numpy as np
 
 from flexapod.errors import InputError
 from flexapod.model import ActuatorStudy, Study
+from flexapod.model.base import SHORT
+from flexapod.study.room import result_bytes
 from flexapod.study.sweep.keys import Step, copied, key_text, leaves, put, similar_key, value_at
 from flexapod.study.sweep.plan import Plan, Tolerance
 from flexapod.study.sweep.reading import Malformed, dimension_of, read_with_dimensions, study_of
@@ -58,7 +60,8 @@ class Resolved:
 
     ``first`` (N,): the first point with an equal study; ``refused``: message by point whose study cannot be;
     ``scattered``: by tolerance, the values (N, numbers) [SI]; ``hash``: of all studies; ``settings``: one point for
-    every kind of kernel; ``instants``: numbers of stored instants and time between them that occur.
+    every kind of kernel; ``instants``: numbers of stored instants and time between them that occur; ``largest``: the
+    point whose results are the largest.
     """
 
     first: Array
@@ -67,6 +70,7 @@ class Resolved:
     hash: str
     settings: Mapping[Setting, int]
     instants: frozenset[tuple[int, float]]
+    largest: int
 
 
 @dataclass
@@ -76,6 +80,7 @@ class _Found:
     known: dict[bytes, int] = field(default_factory=dict)
     settings: dict[Setting, int] = field(default_factory=dict)
     instants: set[tuple[int, float]] = field(default_factory=set)
+    largest: tuple[float, int] = (0.0, 0)
 
 
 class Points:
@@ -168,6 +173,7 @@ class Points:
             hash=digest.hexdigest()[:16],
             settings=found.settings,
             instants=frozenset(found.instants),
+            largest=found.largest[1],
         )
 
     def _note(self, found: _Found, point: int, study: Study | ActuatorStudy) -> None:
@@ -179,6 +185,7 @@ class Points:
         s = study.simulation
         axial = tuple(s.axial_shapes(leg.axial_modes) for leg in study.robot.legs) if isinstance(study, Study) else ()
         found.settings.setdefault((s.fidelity, s.lateral_basis, s.lateral_shapes, axial, _shape_numbers(study)), point)
+        found.largest = max(found.largest, (result_bytes(study), point))
         found.instants.add((s.outputs(study.duration), s.stored_step))
 
     def _probe(self) -> dict[str, Any]:
@@ -305,5 +312,5 @@ def _shape_numbers(study: Study | ActuatorStudy) -> tuple[object, ...]:
 
 def content_hash(study: Study | ActuatorStudy) -> bytes:
     """Hash of what a study means, whatever its text and file."""
-    content = study.model_dump_json(exclude={"source_text", "path", "notes"})
+    content = study.model_dump_json(exclude={"source_text", "path", "notes"}, context=SHORT)
     return hashlib.sha256(content.encode()).digest()[:16]

@@ -9,7 +9,7 @@ from typing import TYPE_CHECKING, Any
 
 import numpy as np
 
-from flexapod.study.store import replacing
+from flexapod.files import replacing
 from flexapod.study.sweep.mending import incomplete
 from flexapod.study.sweep.store import COMPUTED, FAILED, PENDING, TEXTS, SweepStore, Values, unreadable
 

@@ -3,6 +3,7 @@
 from __future__ import annotations
 
 import logging
+import math
 import multiprocessing
 import os
 from collections.abc import Callable, Iterator, Mapping
@@ -21,9 +22,10 @@ from flexapod.solve.actuator_march import prepare_actuator
 from flexapod.solve.system import robot_system
 from flexapod.study.arguments import read
 from flexapod.study.record import Report
+from flexapod.study.room import check_memory, check_room
 from flexapod.study.sweep.batch import BatchResult, PointResult
 from flexapod.study.sweep.columns import columns, header
-from flexapod.study.sweep.executors import check_place, executor
+from flexapod.study.sweep.executors import check_place, executor, local_cores
 from flexapod.study.sweep.identity import this_version
 from flexapod.study.sweep.kept import Kept, kept
 from flexapod.study.sweep.lock import locked
@@ -104,6 +106,7 @@ def sweep(
     tell, points = progress or (lambda words, share: None), Points(_nominal(study), read_plan(sweep))
     resolved = points.resolve(lambda share: tell("reading the points", READING * share))
     keep = _kept(points, resolved)
+    _check_room(points, resolved, keep, path, 1 if scheduler else local_cores() if workers is None else workers)
     with _alone(path):
         opened = _store(path, points, keep, resolved)
         job = _Job(points=points, resolved=resolved, kept=keep, store=opened)
@@ -158,6 +161,16 @@ def _kept(points: Points, resolved: Resolved) -> Kept:
         return kept(points.plan.keep, points.nominal, resolved)
     except InputError as error:
         raise error.located(file=points.plan.file) from None
+
+
+def _check_room(points: Points, resolved: Resolved, keep: Kept, path: Path | None, workers: int) -> None:
+    """Refuse more results at a time than the memory holds, more records than the store can."""
+    try:
+        check_memory(points.study(resolved.largest), max(1, min(workers, len(points))))
+    except InputError as error:
+        raise error.located(file=points.nominal.path) from None
+    size = sum(8.0 * math.prod(keep.shape(name)) for name in keep.variables)
+    check_room(len(points) * size, path, points.plan.file)
 
 
 def _store(path: Path | None, points: Points, keep: Kept, resolved: Resolved) -> SweepStore:

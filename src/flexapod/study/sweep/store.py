@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+import os
 import re
 import shutil
 import tempfile
@@ -14,6 +15,7 @@ import numpy as np
 from numpy.typing import NDArray
 
 from flexapod.errors import ComputationError, InputError
+from flexapod.files import UNFINISHED, check_regular, settle
 from flexapod.typing import Array
 
 if TYPE_CHECKING:
@@ -89,7 +91,7 @@ class SweepStore:
         import zarr
         from zarr.storage import MemoryStore
 
-        from flexapod.study.sweep.disk import DurableStore, settle
+        from flexapod.study.sweep.disk import DurableStore
 
         if path is None:
             group = zarr.create_group(MemoryStore(), attributes=dict(header))
@@ -127,6 +129,8 @@ class SweepStore:
             group = zarr.open_group(place, mode="r+" if write else "r", use_consolidated=False)
         except (OSError, ValueError, KeyError):
             group = None
+        if group is None and (path / "status").is_dir():
+            raise _damaged(path / "zarr.json", "what describes the whole cannot be read")
         if group is None or "flexapod_sweep_format" not in group.attrs:
             raise InputError("is no store of a sweep", file=path, next_step="Choose another place with --out")
         if not write and group.attrs["flexapod_sweep_format"] != FORMAT:  # `check_header` is for who goes on with it
@@ -135,7 +139,7 @@ class SweepStore:
                 value=group.attrs["flexapod_sweep_format"], allowed=str(FORMAT),
                 next_step=f"Read it with flexapod {group.attrs.get('flexapod_version', 'of that time')}",
             )  # fmt: skip
-        for rest in path.rglob("*.partial") if write else ():
+        for rest in path.rglob(UNFINISHED) if write else ():
             rest.unlink(missing_ok=True)  # of a process that was killed while writing
         return cls(group, path)
 
@@ -232,17 +236,36 @@ def _arrays(group: zarr.Group, path: Path | None) -> dict[str, Any]:
     """Arrays of the store, which write chunks of nothing too: no file means lost; refused where one is missing."""
     import zarr
 
-    try:
-        with zarr.config.set({"array.write_empty_chunks": True}), warnings.catch_warnings():
-            warnings.filterwarnings("ignore", message="Object at")  # an array that is none: said below, in words
-            found: dict[str, Any] = dict(group.arrays())
-        known = " ".join(str(group.attrs[name]) for name in ("varied", "kept")).split()
-    except (OSError, ValueError, KeyError):
-        found, known = {}, []
+    with zarr.config.set({"array.write_empty_chunks": True}):
+        found = dict(group.arrays()) if path is None else {name: _array_of(group, path, name) for name in _names(path)}
+    known = [name for part in ("varied", "kept") for name in str(group.attrs.get(part, "")).split()]
     for name in ("status", *TEXTS, *known):
         if name not in found:
-            raise InputError(f"is a damaged store of a sweep: there is no {name}", file=path, next_step=_NEXT)
+            raise _damaged(path, f"there is no {name}")
     return found
+
+
+def _names(path: Path) -> list[str]:
+    """Folders of a store that hold an array, or did so once."""
+    return sorted(f.name for f in path.iterdir() if (f / "c").is_dir() or os.path.lexists(f / "zarr.json"))
+
+
+def _array_of(group: zarr.Group, path: Path, name: str) -> Any:
+    file = path / name / "zarr.json"
+    if not os.path.lexists(file):
+        raise _damaged(path, f"there is no {name}")
+    try:
+        check_regular(file)
+        found = group[name]
+        if found.metadata.dimension_names is not None:
+            return found
+    except Exception:  # whatever the reader of a spoilt description says
+        pass
+    raise _damaged(file, f"what describes the array {name} cannot be read")
+
+
+def _damaged(path: Path | None, why: str) -> InputError:
+    return InputError(f"is a damaged store of a sweep: {why}", file=path, next_step=_NEXT)
 
 
 def unreadable(path: Path | None, name: str) -> ComputationError:

@@ -1,0 +1,185 @@
+"""Files in and out: regular files of bounded size are read, and what is written appears whole or not at all."""
+
+from __future__ import annotations
+
+import errno
+import os
+import stat
+from collections.abc import Iterator
+from contextlib import contextmanager
+from pathlib import Path
+from uuid import uuid4
+
+from flexapod.errors import InputError
+
+__all__ = [
+    "LARGEST_TABLE",
+    "LARGEST_TEXT",
+    "UNFINISHED",
+    "check_name",
+    "check_regular",
+    "read_bytes",
+    "read_text",
+    "replacing",
+    "settle",
+    "whole",
+]
+
+LARGEST_TEXT = 10_000_000
+"""Of a study or a sweep file [byte]: the largest are some hundred kilobytes."""
+LARGEST_TABLE = 100_000_000
+"""Of a table [byte]: a million lines of a motion."""
+UNFINISHED = ".flexapod-*"
+"""Names of files that are being written; who finds one of a process that is gone may remove it."""
+
+
+def check_regular(path: str | Path, most: float = float("inf")) -> None:
+    """Refuse what is not a regular file of at most `most` bytes: a pipe or a device would never end.
+
+    Raises
+    ------
+    OSError
+        Its `strerror` says why in words that fit behind "cannot be read:".
+    """
+    try:
+        _refuse(os.stat(path), most)
+    except ValueError:
+        raise _zero_byte() from None
+
+
+def read_bytes(path: str | Path, most: int) -> bytes:
+    """The content of a regular file of at most `most` bytes.
+
+    Raises
+    ------
+    OSError
+        As `check_regular`, or it cannot be read.
+    """
+    try:
+        handle = os.open(path, os.O_RDONLY | getattr(os, "O_NONBLOCK", 0) | getattr(os, "O_BINARY", 0))
+    except ValueError:
+        raise _zero_byte() from None
+    with open(handle, "rb") as file:
+        _refuse(os.fstat(handle), most)
+        content = file.read(most + 1)
+    if len(content) > most:
+        raise _too_large(most)
+    return content
+
+
+def read_text(path: str | Path, most: int) -> str:
+    """The UTF-8 text of a regular file, as `read_bytes`; a mark of the byte order is left out."""
+    try:
+        return read_bytes(path, most).decode("utf-8-sig")
+    except UnicodeDecodeError:
+        raise OSError(errno.EILSEQ, "it is no UTF-8 text") from None
+
+
+def _refuse(found: os.stat_result, most: float) -> None:
+    if stat.S_ISDIR(found.st_mode):
+        raise OSError(errno.EISDIR, os.strerror(errno.EISDIR))
+    if not stat.S_ISREG(found.st_mode):
+        raise OSError(errno.EINVAL, "it is not a regular file but a pipe or a device")
+    if found.st_size > most:
+        raise _too_large(most)
+
+
+def _too_large(most: float) -> OSError:
+    return OSError(errno.EFBIG, f"it is larger than {most / 1e6:g} MB")
+
+
+def _zero_byte() -> OSError:
+    return OSError(errno.EINVAL, "its name holds a zero byte")
+
+
+def check_name(path: str | Path, key: str | None = None) -> None:
+    """Refuse a name that is not UTF-8: neither results nor reports can hold it, or be written to it.
+
+    Raises
+    ------
+    InputError
+        About the option `key`, or about the file.
+    """
+    name = str(path)
+    try:
+        name.encode()
+    except UnicodeEncodeError:
+        shown = name.encode(errors="backslashreplace").decode()
+        where = {"file": shown} if key is None else {"key": key, "value": shown}
+        raise InputError(
+            "has a name that is not UTF-8 text", **where, next_step="Rename the file or the folder that is named so"
+        ) from None
+
+
+@contextmanager
+def replacing(path: str | Path) -> Iterator[Path]:
+    """As `whole`, with errors in words.
+
+    Raises
+    ------
+    InputError
+        The folder cannot be made or written to, or the disk is full.
+    """
+    check_name(Path(path).absolute())
+    try:
+        with whole(path) as temporary:
+            yield temporary
+    except OSError as error:
+        raise InputError(
+            f"cannot be written: {error.strerror or error}",
+            file=str(path),
+            next_step="Choose a place that you may write to and that has space",
+        ) from error
+
+
+@contextmanager
+def whole(path: str | Path, *, mode: int = 0o666, settled: bool = False) -> Iterator[Path]:
+    """A temporary file beside `path` that takes its place when the block ends without an error.
+
+    Whatever ends the block, Ctrl-C and SIGTERM too, the temporary file is gone.
+
+    Parameters
+    ----------
+    path : path
+        Its folder is made if need be.
+    mode : int
+        Who may do what with it, as far as the user's mask allows.
+    settled : bool
+        Whether content and name are to be on the disk, and not only on their way to it, when the block has ended.
+
+    Raises
+    ------
+    OSError
+    """
+    path = Path(path)
+    temporary = path.with_name(f"{UNFINISHED[:-1]}{uuid4().hex[:12]}{path.suffix}")
+    made = [folder for folder in path.parents if not folder.exists()] if settled else []
+    try:
+        path.parent.mkdir(parents=True, exist_ok=True)
+        os.close(os.open(temporary, os.O_WRONLY | os.O_CREAT | os.O_EXCL, mode))
+        yield temporary
+        if settled:
+            _settle(temporary, os.O_RDWR)
+        temporary.replace(path)
+    finally:
+        temporary.unlink(missing_ok=True)
+    for folder in (path, *made) if settled else ():
+        settle(folder.parent)
+
+
+def settle(folder: Path) -> None:
+    """Wait until the names in a folder are on the disk; where folders cannot be waited for, do not."""
+    try:
+        _settle(folder, os.O_RDONLY)
+    except OSError as error:
+        # Windows opens no folders; some file systems on a network do not wait for them
+        if error.errno not in (errno.EACCES, errno.EINVAL, errno.ENOTSUP):
+            raise
+
+
+def _settle(path: Path, access: int) -> None:
+    handle = os.open(path, access)
+    try:
+        os.fsync(handle)
+    finally:
+        os.close(handle)

@@ -1,0 +1,137 @@
+"""Reading regular files of bounded size, and writing whole ones."""
+
+import errno
+import os
+import stat
+from pathlib import Path
+
+import pytest
+
+from flexapod import files, model
+from flexapod.errors import InputError
+from flexapod.files import read_bytes, read_text, replacing, whole
+from flexapod.model import preset_text, tables
+from flexapod.study.sweep.plan import read_plan
+from flexapod.symbolic import cache
+
+resource = pytest.importorskip("resource")  # and pipes: neither is on Windows
+
+
+@pytest.fixture
+def pipe(tmp_path):
+    path = tmp_path / "pipe"
+    os.mkfifo(path)
+    return path
+
+
+@pytest.mark.parametrize("read", [model.load, read_plan, lambda path: tables.read_table(path, tables.POSE)])
+@pytest.mark.parametrize("place", ["pipe", "/dev/zero", "/dev/full"])
+def test_what_is_not_a_regular_file_is_refused(pipe, read, place):
+    """A pipe without a writer once hung for ever, /dev/zero filled the memory."""
+    with pytest.raises(InputError, match="cannot be read: it is not a regular file"):
+        read(pipe if place == "pipe" else Path(place))
+
+
+def test_sizes_are_bounded(tmp_path, monkeypatch):
+    path = tmp_path / "large.toml"
+    path.touch()
+    os.truncate(path, files.LARGEST_TABLE + 1)  # no space is taken
+    for read in (model.load, read_plan, lambda path: tables.read_table(path, tables.POSE)):
+        with pytest.raises(InputError, match=r"cannot be read: it is larger than 100? MB"):
+            read(path)
+    # what grows while it is read, or tells no size, is bounded too
+    path.write_bytes(b"123456")
+    monkeypatch.setattr(files, "_refuse", lambda found, most: None)
+    with pytest.raises(OSError, match="larger than"):
+        read_bytes(path, 5)
+    assert read_bytes(path, 6) == b"123456"
+
+
+def test_texts(tmp_path):
+    path = tmp_path / "text"
+    path.write_bytes(b"\xef\xbb\xbf\xc2\xb5")
+    assert read_text(path, 10) == "µ"
+    path.write_bytes(b"\xb5")
+    with pytest.raises(OSError, match="no UTF-8 text"):
+        read_text(path, 10)
+
+
+@pytest.mark.parametrize("read", [model.load, lambda path: tables.read_table(Path(path), tables.POSE)])
+def test_a_name_with_a_zero_byte(read):
+    with pytest.raises(InputError, match="its name holds a zero byte"):
+        read("a\0b")
+
+
+def test_a_pipe_in_the_cache_of_kernels_is_removed(tmp_path):
+    os.mkfifo(tmp_path / f"{'a' * 32}-{'b' * 16}.so")
+    assert cache.intact_libraries(tmp_path, "a" * 32) == []
+    assert list(tmp_path.iterdir()) == []
+
+
+def test_a_file_appears_whole_or_not_at_all(tmp_path):
+    path = tmp_path / "deep" / "a.txt"
+    for end in (KeyboardInterrupt, OSError, ValueError):
+        with pytest.raises(end), whole(path) as temporary:
+            temporary.write_text("half", encoding="utf-8")
+            raise end
+        assert list(path.parent.iterdir()) == []
+    with replacing(path) as temporary:
+        temporary.write_text("whole", encoding="utf-8")
+    assert path.read_text(encoding="utf-8") == "whole"
+    mask = os.umask(0)
+    os.umask(mask)
+    assert stat.S_IMODE(path.stat().st_mode) == 0o666 & ~mask
+    assert [p.name for p in path.parent.iterdir()] == ["a.txt"]
+
+
+def limited(size):
+    """No file of this process may become larger: what a full disk is to its writers."""
+    resource.setrlimit(resource.RLIMIT_FSIZE, (size, resource.getrlimit(resource.RLIMIT_FSIZE)[1]))
+
+
+@pytest.fixture
+def full():
+    """Files of this process may have 8 kB."""
+    before = resource.getrlimit(resource.RLIMIT_FSIZE)
+    limited(8192)
+    yield
+    resource.setrlimit(resource.RLIMIT_FSIZE, before)
+
+
+def test_a_full_disk_in_words(tmp_path, full):
+    path = tmp_path / "a.bin"
+    with (
+        pytest.raises(InputError, match=r"a.bin: cannot be written: File too large.*has space"),
+        replacing(path) as part,
+    ):
+        part.write_bytes(bytes(20_000))
+    assert list(tmp_path.iterdir()) == []
+
+
+def test_names_that_are_not_utf8_are_refused_before_anything_is_computed(tmp_path):
+    """They were computed with, then lost: neither NetCDF nor reports can hold them."""
+    bad = os.fsdecode(os.fsencode(tmp_path) + b"/b\xe9")
+    with pytest.raises(InputError, match=r"b\\udce9: has a name that is not UTF-8 text"):
+        model.load(bad)
+    with pytest.raises(InputError, match="not UTF-8"):
+        read_plan(bad)
+    with pytest.raises(InputError, match="not UTF-8"):
+        model.loads(preset_text("paper-robot"), path=bad)
+    with pytest.raises(InputError, match="not UTF-8"), replacing(bad):
+        pass
+
+
+def test_settled_files_are_waited_for(tmp_path, monkeypatch):
+    waited = []
+    monkeypatch.setattr(files.os, "fsync", lambda handle: waited.append(stat.S_ISDIR(os.fstat(handle).st_mode)))
+    with whole(tmp_path / "a" / "b" / "c", settled=True) as temporary:
+        temporary.write_text("x", encoding="utf-8")
+    assert waited == [False, True, True, True]  # the file, its folder, and the folders that were made
+
+
+def test_folders_that_cannot_be_waited_for(tmp_path, monkeypatch):
+    def refuse(handle):
+        raise OSError(errno.EINVAL, "not here")
+
+    monkeypatch.setattr(files.os, "fsync", refuse)
+    files.settle(tmp_path)
