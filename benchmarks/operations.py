@@ -17,7 +17,10 @@ import tempfile
 from dataclasses import dataclass
 from pathlib import Path
 
+import casadi
 import numpy as np
+
+from flexapod.symbolic.functions import operations
 
 __all__ = ["Count", "casadi_count", "counted", "main"]
 
@@ -86,32 +89,9 @@ def reader(library: ctypes.CDLL) -> np.ndarray:
     return np.ctypeslib.as_array((ctypes.c_longlong * len(KINDS)).in_dll(library, "operation_counts"))
 
 
-def casadi_count(function: object) -> Count:
+def casadi_count(function: casadi.Function) -> Count:
     """Operations in the list of instructions of a CasADi function."""
-    import casadi
-
-    kinds = {
-        casadi.OP_ADD: "additions",
-        casadi.OP_SUB: "additions",
-        casadi.OP_TWICE: "additions",
-        casadi.OP_MUL: "multiplications",
-        casadi.OP_SQ: "multiplications",
-        casadi.OP_DIV: "divisions",
-        casadi.OP_INV: "divisions",
-        casadi.OP_SQRT: "roots",
-        casadi.OP_SIN: "circular",
-        casadi.OP_COS: "circular",
-    }
-    moves = {casadi.OP_CONST, casadi.OP_INPUT, casadi.OP_OUTPUT, casadi.OP_NEG, casadi.OP_ASSIGN}
-    found: dict[str, float] = {}
-    for k in range(function.n_instructions()):  # type: ignore[attr-defined]
-        operation = function.instruction_id(k)  # type: ignore[attr-defined]
-        if operation in moves:
-            continue
-        if operation not in kinds:
-            raise ValueError(f"an operation that is not counted: {operation}")
-        found[kinds[operation]] = found.get(kinds[operation], 0) + 1
-    return Count(**found)
+    return Count(**operations(function))
 
 
 def compile_counting(arguments: list[str]) -> int:

@@ -4,7 +4,10 @@ from functools import cache
 
 from flexapod.model import preset
 from flexapod.study import modes, simulate, simulate_actuator
+from flexapod.study.paper.cost import inverse_dynamics_cost
+from flexapod.study.paper.readings import readings
 from flexapod.study.paper.study import ACTUATOR_MODES, STEPS, PaperStudy
+from flexapod.study.paper.trials import trials
 from flexapod.study.paper.variants import HALF_ANGLES, assumptions, half_angle_sweep, jump_motion, with_half_angle
 
 ROBOT, RADII = "paper-robot", "paper-robot-radii"
@@ -48,6 +51,8 @@ def _parts(angles):
         "half-angles": half_angle_sweep(robot, angles, quiet),
         "half-angles-radii": half_angle_sweep(radii, angles, quiet),
         "assumptions": assumptions(robot, quiet),
+        "readings": trials(readings(), quiet),
+        "cost": inverse_dynamics_cost(robot),
     }
 
 

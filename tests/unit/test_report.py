@@ -7,6 +7,7 @@ from html.parser import HTMLParser
 import numpy as np
 import pytest
 
+from flexapod.app import html
 from flexapod.app.html import code
 from flexapod.app.html import replay as replay_figure
 from flexapod.app.interactive import MOST_POINTS
@@ -314,3 +315,8 @@ def test_the_terminal_tells_of_the_tool_first(tool, tmp_path, capsys):
     lines = capsys.readouterr().out
     assert lines.startswith("The tool misses its rigid path")
     assert lines.index("The payload's centre of mass") < lines.index("peak / travel")
+
+
+def test_an_axis_stays_with_its_number():
+    shown = html.escape("x 4.33 µm, y 9.39 µm; mesh of 5 cm")
+    assert shown == "x~4.33~µm, y~9.39~µm; mesh of 5~cm".replace("~", "\N{NO-BREAK SPACE}")

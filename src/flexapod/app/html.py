@@ -31,12 +31,13 @@ _POLICY = (
     "base-uri 'none'; form-action 'none'"
 )
 _QUANTITY = re.compile(
-    r"(?<=\d) (?=(?:[µnmk]?m|[kM]?N|[mk]?J|Hz|deg|ms|s|%|GPa|MPa)(?![\w]))|(?<=\d N) (?=m²?(?!\w)|s/m)"
+    r"(?<=\d) (?=(?:[µnmkc]?m|[kM]?N|[mk]?J|Hz|deg|ms|s|%|GPa|MPa)(?![\w]))|(?<=\d N) (?=m²?(?!\w)|s/m)"
+    r"|(?<=\b[xyz]) (?=\d)"
 )
 
 
 def escape(text: str) -> str:
-    """Text for a page: markup escaped, no line break between a number and its unit."""
+    """Text for a page: markup escaped, no line break between a number and its unit, nor an axis and its number."""
     return _QUANTITY.sub("\N{NO-BREAK SPACE}", html.escape(text))
 
 

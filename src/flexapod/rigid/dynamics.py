@@ -22,7 +22,17 @@ from flexapod.rigid.trajectory import Poses
 from flexapod.rigid.vectors import Vector, blocks, cross, time_first, time_last, turned
 from flexapod.typing import Array
 
-__all__ = ["LegBodies", "PayloadBody", "RigidForces", "energies", "inverse_dynamics"]
+__all__ = [
+    "LegArrays",
+    "LegBodies",
+    "PayloadBody",
+    "RigidForces",
+    "across_the_leg",
+    "along_the_leg",
+    "energies",
+    "inverse_dynamics",
+    "leg_motion",
+]
 
 
 @dataclass(frozen=True, kw_only=True)
@@ -102,7 +112,7 @@ class RigidForces:
     base_moment: Array
 
 
-class _Legs(NamedTuple):
+class LegArrays(NamedTuple):
     """Legs of a block of poses, (n, T) each: lengths, turns of the universal joints, rates of the angles."""
 
     length: Array
@@ -115,14 +125,15 @@ class _Legs(NamedTuple):
     beta_ddot: Array
 
     @classmethod
-    def of(cls, legs: LegState, where: slice) -> _Legs:
+    def of(cls, legs: LegState, where: slice) -> LegArrays:
+        """Of a range of poses."""
         alpha, beta = time_last(legs.alpha[where]), time_last(legs.beta[where])
         names = ("length", "rate", "accel", "alpha_dot", "beta_dot", "alpha_ddot", "beta_ddot")
         rest = {name: time_last(getattr(legs, name)[where]) for name in names}
         return cls(turn=JointTurn.of(alpha, beta), **rest)
 
 
-class _LegMotion(NamedTuple):
+class LegMotion(NamedTuple):
     """Legs in their own axes (z along the leg): angular velocity, its rate, accelerations of the bodies' centres."""
 
     w: Vector  # [rad/s]
@@ -131,7 +142,7 @@ class _LegMotion(NamedTuple):
     piston_acceleration: Vector
 
 
-def _leg_motion(bodies: LegBodies, legs: _Legs) -> _LegMotion:
+def leg_motion(bodies: LegBodies, legs: LegArrays) -> LegMotion:
     """Angular rates of the legs, turn about their axis included, and CoM accelerations, Eqs. (T2.27)-(T2.28)."""
     cb, sb = legs.turn.cb, legs.turn.sb
     w = wx, wy, wz = legs.alpha_dot * cb, legs.beta_dot, legs.alpha_dot * sb
@@ -139,7 +150,7 @@ def _leg_motion(bodies: LegBodies, legs: _Legs) -> _LegMotion:
     w_dot = legs.alpha_ddot * cb - joint * sb, legs.beta_ddot, legs.alpha_ddot * sb + joint * cb
     swing = w_dot[1] + wx * wz, wy * wz - w_dot[0], wx**2 + wy**2  # acceleration for each metre from the joint
     r, r_dot = bodies.piston_com(legs.length), 2 * legs.rate
-    return _LegMotion(
+    return LegMotion(
         w=w,
         w_dot=w_dot,
         cylinder_acceleration=[bodies.cylinder_com * x for x in (swing[0], swing[1], -swing[2])],
@@ -151,7 +162,7 @@ def _leg_motion(bodies: LegBodies, legs: _Legs) -> _LegMotion:
     )
 
 
-def _across_the_leg(bodies: LegBodies, legs: _Legs, motion: _LegMotion, gravity: Vector) -> tuple[Vector, Vector]:
+def across_the_leg(bodies: LegBodies, legs: LegArrays, motion: LegMotion, gravity: Vector) -> tuple[Vector, Vector]:
     """Force of the platform on the legs, across them, and moment of the base, in leg axes, Eqs. (T2.29)-(T2.31)."""
     length, (wx, wy, wz), w_dot = legs.length, motion.w, motion.w_dot
     transverse, axial = bodies.transverse(length), bodies.axial
@@ -164,6 +175,11 @@ def _across_the_leg(bodies: LegBodies, legs: _Legs, motion: _LegMotion, gravity:
     hy = transverse * w_dot[1] + transverse_dot * wy + (transverse - axial) * wx * wz
     across = (hy - static * gravity[0]) / length, (moment[0] - hx - static * gravity[1]) / length, none
     return across, moment
+
+
+def along_the_leg(bodies: LegBodies, motion: LegMotion, gravity: Vector, along: Array) -> Array:
+    """Drive force from that of the leg on the platform, both along the leg [N], Eq. (T2.34)."""
+    return along + bodies.piston_mass * (motion.piston_acceleration[2] - gravity[2])
 
 
 def _payload_balance(payload: PayloadBody, gravity: Array, poses: Poses, wrench: Array) -> Array:
@@ -192,7 +208,7 @@ def _along_the_legs(balance: Array, arms: Vector, axes: Vector, sides: Vector) -
     return np.asarray(found.T, dtype=np.float64)
 
 
-def _inertial_forces(bodies: LegBodies, motion: _LegMotion, gravity: Vector) -> list[Array]:
+def _inertial_forces(bodies: LegBodies, motion: LegMotion, gravity: Vector) -> list[Array]:
     """Mass times acceleration less weight of each leg, in leg axes."""
     return [
         bodies.cylinder_mass * (c - g) + bodies.piston_mass * (p - g)
@@ -245,23 +261,23 @@ def inverse_dynamics(
     for where in blocks(count):
         part = poses.part(where)
         balance = _payload_balance(payload, gravity, part, time_last(external[where]))
-        found = _forces(*robot, gravity, part, _Legs.of(legs, where), balance)
+        found = _forces(*robot, gravity, part, LegArrays.of(legs, where), balance)
         for name, values in zip(forces, found, strict=True):
             forces[name][where] = values
     return RigidForces(**forces)
 
 
 def _forces(
-    frames: Array, joints: Array, bodies: LegBodies, gravity: Array, poses: Poses, legs: _Legs, balance: Array
+    frames: Array, joints: Array, bodies: LegBodies, gravity: Array, poses: Poses, legs: LegArrays, balance: Array
 ) -> tuple[Array, Array, Array, Array]:
     """Entries of `RigidForces` for one block; `joints` (6, 3) from the payload's CoM, `balance` (6, T)."""
-    motion, home = _leg_motion(bodies, legs), np.moveaxis(frames, 0, -1)[..., None]  # (3, 3, n, 1)
+    motion, home = leg_motion(bodies, legs), np.moveaxis(frames, 0, -1)[..., None]  # (3, 3, n, 1)
 
     def in_world(vector: Vector) -> tuple[Array, Array, Array]:
         return turned(home, legs.turn.out_of_leg(vector))
 
     leg_gravity = legs.turn.into_leg(turned(home.swapaxes(0, 1), gravity))
-    across, moment = _across_the_leg(bodies, legs, motion, leg_gravity)
+    across, moment = across_the_leg(bodies, legs, motion, leg_gravity)
     sides = [-x for x in in_world(across)]
     none = np.zeros_like(legs.length)
     axes = in_world((none, none, none + 1.0))
@@ -269,7 +285,7 @@ def _forces(
     joint_force = [side + along * axis for side, axis in zip(sides, axes, strict=True)]
     inertial = in_world(_inertial_forces(bodies, motion, leg_gravity))
     return (
-        (along + bodies.piston_mass * (motion.piston_acceleration[2] - leg_gravity[2])).T,  # (T2.34)
+        along_the_leg(bodies, motion, leg_gravity, along).T,
         time_first(joint_force),
         time_first([i + f for i, f in zip(inertial, joint_force, strict=True)]),  # (T2.35)
         time_first(in_world(moment)),

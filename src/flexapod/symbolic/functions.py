@@ -46,3 +46,37 @@ class Interpreted:
         """Outputs as 1-D arrays (columns) or 2-D arrays."""
         result = self._function.call([casadi.DM(np.asarray(a, dtype=float).ravel()) for a in arguments])
         return tuple(np.asarray(y).ravel() if y.shape[1] == 1 else np.asarray(y) for y in result)
+
+
+_KINDS = {
+    casadi.OP_ADD: "additions",
+    casadi.OP_SUB: "additions",
+    casadi.OP_TWICE: "additions",
+    casadi.OP_MUL: "multiplications",
+    casadi.OP_SQ: "multiplications",
+    casadi.OP_DIV: "divisions",
+    casadi.OP_INV: "divisions",
+    casadi.OP_SQRT: "roots",
+    casadi.OP_SIN: "circular",
+    casadi.OP_COS: "circular",
+}
+_MOVES = {casadi.OP_CONST, casadi.OP_INPUT, casadi.OP_OUTPUT, casadi.OP_NEG, casadi.OP_ASSIGN}
+
+
+def operations(function: casadi.Function) -> dict[str, int]:
+    """Floating-point operations of one call by kind: additions, multiplications, divisions, roots, circular.
+
+    Raises
+    ------
+    ValueError
+        An operation of no such kind.
+    """
+    found: dict[str, int] = {}
+    for k in range(function.n_instructions()):
+        operation = function.instruction_id(k)
+        if operation in _MOVES:
+            continue
+        if operation not in _KINDS:
+            raise ValueError(f"an operation that is not counted: {operation}")
+        found[_KINDS[operation]] = found.get(_KINDS[operation], 0) + 1
+    return found

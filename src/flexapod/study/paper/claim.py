@@ -3,6 +3,7 @@
 from __future__ import annotations
 
 import math
+from collections.abc import Sequence
 from dataclasses import dataclass
 from typing import TYPE_CHECKING
 
@@ -10,7 +11,7 @@ import numpy as np
 
 from flexapod import model
 from flexapod.errors import InputError
-from flexapod.study.scene import robot_study
+from flexapod.study.scene import motion_end, robot_study
 from flexapod.study.words import number, text
 
 if TYPE_CHECKING:
@@ -28,12 +29,16 @@ __all__ = [
     "REACHES",
     "SIZE",
     "Claim",
+    "after_motion",
     "axis_motion",
     "by_axis",
     "explained",
     "judged",
+    "largest",
     "left_open",
+    "near",
     "peaks",
+    "printed_deviation",
     "roll_and_arm",
     "roll_error",
     "size",
@@ -46,7 +51,7 @@ OPEN = "cannot be compared"  # of the text: the paper does not give what the pre
 MISPRINT = "misprint"  # of the text: a printed formula against the derived one, in the last table of chapter T9
 PAPER_DEVIATION = {"y": 5e-3, "z": 10e-3}  # of the centre of mass, Fig. 9 [m]
 ELASTIC_LENGTH = 0.6  # of a piston, Table 3 [m]
-SIZE = 0.5  # "about 5 mm": a deviation within this share of the printed one counts as that size
+SIZE = 0.5  # "about 5 mm": from half to one and a half times the printed value counts as that size
 
 
 @dataclass(frozen=True, kw_only=True)
@@ -65,10 +70,19 @@ def judged(holds: bool | np.bool_, in_part: bool | np.bool_ = False, best: str =
     return best if holds else IN_PART if in_part else NOT
 
 
-def size(y: float, z: float) -> str:
-    """Verdict on largest deviations [m]: whether both are at least half of the paper's."""
-    share = min(y / PAPER_DEVIATION["y"], z / PAPER_DEVIATION["z"])
-    return judged(share >= 1 - SIZE, best=REACHES)
+def near(ours: float, paper: float) -> bool:
+    """Whether a value is of the size of the paper's: from half to one and a half times as large."""
+    return abs(ours / paper - 1) <= SIZE
+
+
+def printed_deviation(y: float, z: float) -> bool:
+    """Whether largest deviations [m] are of the size that the paper prints, both of them."""
+    return near(y, PAPER_DEVIATION["y"]) and near(z, PAPER_DEVIATION["z"])
+
+
+def size(*peaks: Sequence[float] | np.ndarray) -> str:
+    """Verdict on largest deviations along x, y, z [m] of one or several robots: whether one is of the printed size."""
+    return judged(any(printed_deviation(y, z) for _, y, z in peaks), best=REACHES)
 
 
 def explained(verdict: str, expected: str, reason: str) -> str:
@@ -98,9 +112,20 @@ def by_axis(values: np.ndarray, digits: int = 3) -> str:
     return ", ".join(f"{axis} {text(float(value), 'm', digits)}" for axis, value in zip("xyz", values, strict=True))
 
 
+def largest(data: Dataset) -> np.ndarray:
+    """Largest deviation of the centre of mass along x, y, z [m]."""
+    return np.abs(data.com_deviation.values).max(axis=0)
+
+
 def peaks(data: Dataset, digits: int = 3) -> str:
-    """Largest deviation of the centre of mass by axis, in words."""
-    return by_axis(np.abs(data.com_deviation.values).max(axis=0), digits)
+    """The same in words."""
+    return by_axis(largest(data), digits)
+
+
+def after_motion(data: Dataset, name: str) -> float:
+    """Vibration that is left after the motion: largest peak to peak of a variable along one direction [its unit]."""
+    rest = data[name].where(data.time >= (motion_end(data) or 0.0), drop=True)
+    return float((rest.max("time") - rest.min("time")).max())
 
 
 def roll_and_arm(data: Dataset) -> tuple[float, float]:

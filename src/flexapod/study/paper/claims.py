@@ -6,6 +6,8 @@ from collections.abc import Sequence
 
 from flexapod.study.paper.claim import Claim
 from flexapod.study.paper.claims_actuator import actuator_claims
+from flexapod.study.paper.claims_readings import reading_claims
+from flexapod.study.paper.claims_rigid import rigid_claims
 from flexapod.study.paper.claims_robot import robot_claims
 from flexapod.study.paper.claims_variants import explanation_claims, variant_claims
 from flexapod.study.paper.study import PaperStudy
@@ -16,7 +18,7 @@ CLAIM_HEAD = ("Where", "The paper", "What we get", "Verdict", "Reason")
 
 
 def claims(result: PaperStudy) -> tuple[Claim, ...]:
-    """All claims in the order of the paper, then what the deviation depends on and what would give the paper's.
+    """All claims in the order of the paper, then other readings, what the deviation depends on, what would give it.
 
     Parameters
     ----------
@@ -25,7 +27,9 @@ def claims(result: PaperStudy) -> tuple[Claim, ...]:
     """
     return (
         *actuator_claims(result),
+        *rigid_claims(result),
         *robot_claims(result),
+        *reading_claims(result),
         *variant_claims(result),
         *explanation_claims(result),
     )

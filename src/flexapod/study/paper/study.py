@@ -10,7 +10,10 @@ from flexapod import model
 from flexapod.errors import ComputationError, InputError
 from flexapod.study.actuator import simulate_actuator
 from flexapod.study.paper.claim import axis_motion
+from flexapod.study.paper.cost import inverse_dynamics_cost
 from flexapod.study.paper.engines import check_engine, exudyn_flexible, exudyn_rigid, rigid_same_step, undamped
+from flexapod.study.paper.readings import readings, robot_preset
+from flexapod.study.paper.trials import trials
 from flexapod.study.paper.variants import (
     HALF_ANGLES,
     JUMP_STEP,
@@ -75,13 +78,6 @@ class Step:
     compute: Callable[[Share], Dataset]
 
 
-def _preset(name: str) -> model.Study:
-    study = model.preset(name)
-    if isinstance(study, model.Study):
-        return study
-    raise InputError("is the preset of a single actuator", key="preset", value=name, allowed="presets of robots")
-
-
 def _actuator_preset() -> model.ActuatorStudy:
     study = model.preset("paper-actuator")
     if isinstance(study, model.ActuatorStudy):
@@ -135,28 +131,28 @@ def _solid(size: float, kind: str) -> Callable[[Share], Dataset]:
 
 
 def _robot(name: str) -> Callable[[Share], Dataset]:
-    return lambda report: run(_preset(name), progress=_over(report))
+    return lambda report: run(robot_preset(name), progress=_over(report))
 
 
 def _fidelity(name: str, step: float) -> Callable[[Share], Dataset]:
-    return lambda report: simulate(_preset("paper-robot"), fidelity=name, step=step, progress=_over(report))
+    return lambda report: simulate(robot_preset("paper-robot"), fidelity=name, step=step, progress=_over(report))
 
 
 def _jump(name: str, angle: float | None = None) -> Callable[[Share], Dataset]:
     def compute(report: Share) -> Dataset:
-        study = _preset(name) if angle is None else with_half_angle(_preset(name), angle)
+        study = robot_preset(name) if angle is None else with_half_angle(robot_preset(name), angle)
         return simulate(study, jump_motion(study), step=JUMP_STEP, progress=_over(report))
 
     return compute
 
 
 def _modes(_: Share) -> Dataset:
-    study = _preset("paper-robot")
+    study = robot_preset("paper-robot")
     return modes(study, axis_motion(study).target)
 
 
 def _sweep(name: str) -> Callable[[Share], Dataset]:
-    return lambda report: half_angle_sweep(_preset(name), HALF_ANGLES, report)
+    return lambda report: half_angle_sweep(robot_preset(name), HALF_ANGLES, report)
 
 
 STEPS: tuple[Step, ...] = (
@@ -192,13 +188,20 @@ STEPS: tuple[Step, ...] = (
         name="assumptions",
         words="other assumptions",
         weight=3,
-        compute=lambda r: assumptions(_preset("paper-robot"), r),
+        compute=lambda r: assumptions(robot_preset("paper-robot"), r),
+    ),
+    Step(name="readings", words="other readings of the paper", weight=4, compute=lambda r: trials(readings(), r)),
+    Step(
+        name="cost",
+        words="operations of inverse dynamics",
+        weight=0.3,
+        compute=lambda _: inverse_dynamics_cost(robot_preset("paper-robot")),
     ),
 )
 
 
 def _engine(compute: Callable[[model.Study, Share], Dataset]) -> Callable[[Share], Dataset]:
-    return lambda report: compute(_preset("paper-robot"), report)
+    return lambda report: compute(robot_preset("paper-robot"), report)
 
 
 #: What an independent engine computes, with our runs at its step.

@@ -8,12 +8,10 @@ from typing import TYPE_CHECKING
 import numpy as np
 
 from flexapod import model, rigid
-from flexapod.errors import ComputationError, InputError
 from flexapod.study.attributes import attributes
-from flexapod.study.checks import path_instants
-from flexapod.study.estimates import buckling_load
-from flexapod.study.paper.claim import axis_motion, roll_error
+from flexapod.study.paper.claim import axis_motion, largest, roll_error
 from flexapod.study.paper.statics import Rest, at_rest, singular_turn
+from flexapod.study.paper.trials import TRIAL_STEP, opened, table, trial
 from flexapod.study.record import Share
 from flexapod.study.simulation import simulate
 from flexapod.typing import Array
@@ -33,7 +31,7 @@ __all__ = [
 ]
 
 HALF_ANGLES = (5.0, 10.0, 15.0, 20.0, 25.0, 27.0, 28.0, 29.0)  # deg
-SWEEP_STEP = 5e-4  # s; peaks change by less than 1 % from 1 ms to 0.25 ms
+SWEEP_COLUMNS = {"deviation_peak": "m", "force_peak": "N", "load_share": "1", "lowest_frequency": "Hz", "sag": "m"}
 JUMP_STEP = 3.125e-5  # s; an impact rings the legs at kilohertz: peaks within 4 % of those at a quarter of it
 DURATIONS = (0.25, 0.5, 1.0, 2.0)  # s; from four times as fast as the preset to half as fast
 SERVO_STIFFNESS = (3e5, 1e7)  # N/m; so soft that the payload sags by the size the paper prints; a usual ball screw
@@ -54,17 +52,7 @@ def with_half_angle(study: model.Study, angle: float) -> model.Study:
     robot, half = study.robot, np.deg2rad(angle)
     base = model.base_circle(float(np.linalg.norm(robot.base_joints[0])), half)
     platform = model.platform_circle(float(np.linalg.norm(robot.platform_joints[0])), half)
-    moved = robot.replace(base_joints=base, platform_joints=platform)
-    path = rigid.poses(moved, study.motion, path_instants(study))
-    longest = float(rigid.leg_lengths(base, platform, path.position, path.rotation).max())
-    legs = tuple(_opened(leg, longest) for leg in robot.legs)
-    return study.replace(robot=moved.replace(legs=legs))
-
-
-def _opened(leg: model.Leg, longest: float) -> model.Leg:
-    mouth = max(leg.cylinder.mouth, longest - leg.piston.length)
-    stroke = model.Stroke(min=mouth, max=mouth + leg.piston.length)
-    return leg.replace(stroke=stroke, cylinder=leg.cylinder.replace(mouth=mouth))
+    return opened(study.replace(robot=robot.replace(base_joints=base, platform_joints=platform)))
 
 
 def jump_motion(study: model.Study) -> model.Motion:
@@ -83,47 +71,20 @@ def half_angle_sweep(study: model.Study, angles: Sequence[float], report: Share)
         axis) [m]: largest static deviation on the path, as far as there is an equilibrium; `verdict`: empty, or in
         words why there is no deviation to trust.
     """
-    import xarray as xr
-
     rows = []
     for i, angle in enumerate(angles):
         rows.append(_at_half_angle(with_half_angle(study, angle)))
         report((i + 1) / len(angles))
-    deviation, sag = (np.array([row[name] for row in rows]) for name in ("deviation_peak", "sag"))
-    scalars = {"force_peak": "N", "load_share": "1", "lowest_frequency": "Hz"}
-    data = {
-        "deviation_peak": (("half_angle", "axis"), deviation, {"units": "m"}),
-        "sag": (("half_angle", "axis"), sag, {"units": "m"}),
-        **{name: ("half_angle", np.array([row[name] for row in rows]), {"units": u}) for name, u in scalars.items()},
-        "verdict": ("half_angle", [row["verdict"] for row in rows]),
-    }
-    coords = {"half_angle": ("half_angle", np.array(angles), {"units": "deg"}), "axis": list("xyz")}
-    return xr.Dataset(data, coords, attributes(study) | {"step": SWEEP_STEP})
+    along = ("half_angle", list(angles), {"units": "deg"})
+    return table(rows, along, SWEEP_COLUMNS, attributes(study) | {"step": TRIAL_STEP})
 
 
 def _at_half_angle(study: model.Study) -> dict[str, object]:
-    nothing = np.full(3, np.nan)
     rest, singular = at_rest(study), singular_turn(study)
-    row: dict[str, object] = {"deviation_peak": nothing, "force_peak": np.nan, "load_share": np.nan}
-    row |= {"sag": rest.sag, "lowest_frequency": rest.frequency, "verdict": _lost(rest, singular)}
-    if singular is not None:  # no path to simulate
-        return row
-    try:
-        data = simulate(study, step=SWEEP_STEP)
-    except (InputError, ComputationError) as error:
-        return row | {"verdict": row["verdict"] or error.what.split(":")[0]}
-    free = data.leg_length.values - np.array([leg.cylinder.mouth for leg in study.robot.legs])
-    share = max(float((data.actuator_force.values[:, i] / buckling_load(leg, free[:, i])).max())
-                for i, leg in enumerate(study.robot.legs))  # fmt: skip
-    if not row["verdict"] and data.attrs["partial"]:
-        row["verdict"] = str(data.attrs["failure"])
-    if not row["verdict"] and share >= 1:
-        row["verdict"] = f"collapse: a leg bears {100 * share:.0f} % of its Euler load"
-    return row | {
-        "deviation_peak": _peaks(data),
-        "force_peak": float(np.abs(data.actuator_force).max()),
-        "load_share": share,
-    }
+    lost = {"verdict": words} if (words := _lost(rest, singular)) else {}
+    nothing = {"deviation_peak": np.full(3, np.nan), "force_peak": np.nan, "load_share": np.nan}
+    tried = nothing if singular is not None else trial(study)  # no path to simulate where it is singular
+    return {**tried, "sag": rest.sag, "lowest_frequency": rest.frequency, **lost}
 
 
 def _lost(rest: Rest, singular: float | None) -> str:
@@ -153,11 +114,11 @@ def assumptions(study: model.Study, report: Share) -> Dataset:
     durations, drives, sags = [], [], []
     for duration in DURATIONS:
         motion = axis_motion(study).replace(duration=duration)
-        durations.append(_peaks(simulate(study, motion, step=SWEEP_STEP, duration=duration + 1.0)))
+        durations.append(largest(simulate(study, motion, step=TRIAL_STEP, duration=duration + 1.0)))
         report(len(durations) / whole)
     for stiffness in SERVO_STIFFNESS:
-        data = simulate(_with_servo(study, stiffness), step=SWEEP_STEP)
-        drives.append(_peaks(data))
+        data = simulate(_with_servo(study, stiffness), step=TRIAL_STEP)
+        drives.append(largest(data))
         sags.append(np.abs(data.com_deviation.values[0]))
         report((len(durations) + len(drives)) / whole)
     length_error, turn = _needed_errors(study)
@@ -175,11 +136,7 @@ def assumptions(study: model.Study, report: Share) -> Dataset:
         "axis": list("xyz"),
         "leg": np.arange(1, 7),
     }
-    return xr.Dataset(values, coords, attributes(study) | {"step": SWEEP_STEP})
-
-
-def _peaks(data: Dataset) -> Array:
-    return np.abs(data.com_deviation.values).max(axis=0)
+    return xr.Dataset(values, coords, attributes(study) | {"step": TRIAL_STEP})
 
 
 def _with_servo(study: model.Study, stiffness: float) -> model.Study:
