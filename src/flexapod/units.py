@@ -128,7 +128,9 @@ def _from_text(text: str, dimension: str, key: str | None) -> float:
     read = number_and_unit(text)
     if read is None:
         if _TWO_READINGS.match(text):
-            raise _refuse("has a comma that is a decimal mark or sets thousands apart", text, dimension, key, _NO_COMMA)
+            raise _refuse(
+                "has a comma that may be a decimal mark or set thousands apart", text, dimension, key, _NO_COMMA
+            )
         raise _refuse("is not a number with a unit", text, dimension, key)
     number, unit = read
     if not unit:

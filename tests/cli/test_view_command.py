@@ -9,6 +9,7 @@ import sys
 import urllib.request
 
 import msgspec
+import netCDF4
 import pytest
 import viser
 from tests.cli.conftest import SHORT
@@ -34,6 +35,13 @@ def test_bad_files_are_refused_before_a_server_starts(flexapod, study, folder):
     assert "payload.mass = -100 kg" in refused(flexapod("view", study(("100 kg", "-100 kg"))))
     (folder / "a.nc").write_bytes(b"no results")
     assert "is not a readable NetCDF file" in refused(flexapod("view", "a.nc"))
+    with netCDF4.Dataset(folder / "zeros.nc", "w") as file:
+        file.createDimension("time", 2_000_000_000)
+        file.createVariable("time", "f8", ("time",), zlib=True)
+    assert "unpacks to 16 GB" in refused(flexapod("view", "zeros.nc"))
+    (data := fx.run(fx.load(study(*SHORT)))).attrs.pop("study")
+    save(data, folder / "torn.nc")
+    assert "study: is missing" in refused(flexapod("view", "torn.nc"))
     save(fx.modes(fx.preset("paper-robot")), folder / "modes.nc")
     assert "is no result of a simulation" in refused(flexapod("view", "modes.nc"))
 

@@ -264,6 +264,11 @@ class TestTables:
             ("1, 90, 5", "1, 90", ("line 5", "has 2 cells for 3 columns")),
             ("1, 90, 5", "2, 90, 5\n1, 90, 5", ("line 6", "goes back in time")),
             ("1, 90, 5", "1, 90, 5\n1, 90, 5", ("line 6", "repeats the instant before")),
+            (
+                "1, 90, 5",
+                "1, 90, 5\n1.0000000001, 90, 5",
+                ("line 6", "repeats the instant before", "at least 1e-09 s above 1 s"),
+            ),
             ("0, 0, 0", "0.5, 0, 0", ("line 3", "does not start at 0")),
             ("1, 90, 5", "", ("fewer than two rows",)),
             ("roll [deg]", "roll", ("line 2", "has no unit in the header")),

@@ -86,3 +86,9 @@ def test_a_file_says_which_key_is_out_of_range():
         with pytest.raises(InputError) as caught:
             model.loads(text.replace(written, f'{name} = "1e160 {unit}"'), path="robot.toml")
         assert str(caught.value) == f"robot.toml: {key}: is out of range. Allowed: {words}."
+
+
+def test_instants_of_a_table_do_not_come_as_near_as_no_time_that_is_computed_with():
+    # A spline through instants 1e-300 s apart has no coefficients.
+    with pytest.raises(InputError, match=r"does not increase at row 2.*at least 1e-09 s above 0 s"):
+        model.CsvLaw(time=[0.0, 1e-300, 1.0], value=[0.0, 1.0, 2.0])

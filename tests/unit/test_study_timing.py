@@ -70,7 +70,7 @@ def test_a_tolerance_out_of_reach_is_found_without_minutes_of_work():
     assert found.counters.steps < 3e5
 
 
-@pytest.mark.parametrize("duration", [2e5, 1e307])
+@pytest.mark.parametrize("duration", [2e5, 1e9])
 def test_results_that_no_machine_could_hold_are_refused(duration):
     study = paper_robot(duration=duration, output_step=1e-3)
     with pytest.raises(fx.InputError, match=r"output_step = 0.001: asks for more results than .* GB of memory.*Give"):

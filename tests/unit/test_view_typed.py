@@ -164,7 +164,7 @@ def test_the_number_that_is_turned_can_be_typed(client, panel):
         ("3", 0.0, "is beyond the slider"),
         ("-1", 0.0, "is beyond the slider"),
         ("5 mm", 0.0, "is not a time"),
-        ("1,000", 0.0, "sets thousands apart"),
+        ("1,000", 0.0, "set thousands apart"),
         ("2e", 0.0, "is not a time"),
     ],
 )

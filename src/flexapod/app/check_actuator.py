@@ -6,7 +6,7 @@ import math
 from typing import TYPE_CHECKING
 
 from flexapod.app.terminal import print_table, print_text
-from flexapod.study.words import text
+from flexapod.study.words import column, text
 
 if TYPE_CHECKING:
     from flexapod.study.describe.actuator import ActuatorDescription, BeamDescription
@@ -23,8 +23,21 @@ def show_actuator(found: ActuatorDescription) -> None:
         print_text(line, indent=2)
     print_text()
     print_text("Beam, rotation and extension held")
-    header = ["", "free length [m]", "frequencies [Hz]", "damping [%]", "free length / depth", "sag if level"]
-    print_table(header, [_row(beam) for beam in found.beam])
+    unit, sags = column([beam.sag or math.nan for beam in found.beam], "m")
+    length, lengths = column([beam.free_length for beam in found.beam], "m")
+    header = [
+        "",
+        f"free length [{length}]",
+        "frequencies [Hz]",
+        "damping [%]",
+        "free length / depth",
+        f"sag if level [{unit}]",
+    ]
+    rows = [
+        _row(beam, free, "no gravity" if sag == "n/a" else sag)
+        for beam, free, sag in zip(found.beam, lengths, sags, strict=True)
+    ]
+    print_table(header, rows)
     for beam in found.beam:
         if beam.problem:
             print_text(f"{beam.name}: {beam.problem}", indent=2)
@@ -56,12 +69,12 @@ def _motion(found: ActuatorDescription) -> list[str]:
     return lines
 
 
-def _row(beam: BeamDescription) -> list[str]:
+def _row(beam: BeamDescription, free: str, sag: str) -> list[str]:
     return [
         f"  {beam.name}",
-        f"{beam.free_length:.4g}",
+        free,
         ", ".join(f"{f:.4g}" for f in beam.frequency) or "n/a",
         ", ".join(f"{100 * d:.2g}" for d in beam.damping_ratio) or "n/a",
         "n/a" if beam.slenderness is None else f"{beam.slenderness:.3g}",
-        text(beam.sag, "m") if beam.sag else "no gravity",
+        sag,
     ]

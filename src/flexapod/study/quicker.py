@@ -73,17 +73,21 @@ def quicker(
     each, step = took / max(int(data.attrs["steps"]), 1), study.simulation.output_step
     wanted = _curve(data)
     while WORTH * each * study.duration / step <= took:
-        try:
-            tried = run(model.override(study, step=step), progress=progress)
-        except FlexapodError:
-            return None
-        if not tried.attrs["partial"]:
-            difference = relative_difference(_curve(tried), wanted)
+        tried = _tried(study, step, progress)
+        if tried is not None and (difference := relative_difference(_curve(tried), wanted)) <= SAME:
             times = took / max(float(tried.attrs["wall_time"]), 1e-9)
-            if difference <= SAME:
-                return Quicker(step=step, times=times, difference=difference) if times >= WORTH else None
+            return Quicker(step=step, times=times, difference=difference) if times >= WORTH else None
         step /= 2
     return None
+
+
+def _tried(study: model.Study | model.ActuatorStudy, step: float, progress: Progress | None) -> Dataset | None:
+    """The whole result with a fixed step, if there is one."""
+    try:
+        data = run(model.override(study, step=step), progress=progress)
+    except FlexapodError:
+        return None
+    return None if data.attrs["partial"] else data
 
 
 def _curve(data: Dataset) -> Array:

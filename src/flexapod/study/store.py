@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+import math
 from pathlib import Path
 from typing import TYPE_CHECKING, Any
 
@@ -16,6 +17,12 @@ if TYPE_CHECKING:
 BLOCK = 1 << 20
 AGAIN = "Make it again with `flexapod run FILE`"
 __all__ = ["open_results", "save", "save_csv"]
+
+NUMBER = 8  # bytes of a number in memory
+ANY_FILE = 100e6
+"""What any file may unpack to [bytes]."""
+MOST_PACKED = 50
+"""How many times its own size a larger one may unpack to; results are stored as they are, zeros pack a thousandfold."""
 
 
 def save(data: Dataset, path: str | Path) -> Path:
@@ -53,13 +60,14 @@ def open_results(path: str | Path) -> Dataset:
     Raises
     ------
     InputError
-        No such file, none of ours, spoilt, or larger than the memory.
+        No such file, none of ours, spoilt, or one that unpacks to more than this machine can hold.
     """
     import xarray as xr
 
     try:
         check_regular(path)
-        with xr.open_dataset(path, engine="netcdf4") as data:
+        _refuse_size(Path(path))
+        with xr.open_dataset(path, engine="netcdf4", decode_times=False) as data:
             _check_ours(data, path)
             for name, array in data.variables.items():
                 _load(array, str(name), path)
@@ -67,18 +75,14 @@ def open_results(path: str | Path) -> Dataset:
     except InputError:
         raise
     except Exception as error:  # whatever a file that is none of ours makes its reader say
-        words = error.strerror if isinstance(error, OSError) and error.strerror else str(error)
-        raise InputError(f"is not a readable NetCDF file ({words})", file=str(path), next_step=AGAIN) from None
+        words = error.strerror if isinstance(error, OSError) and error.strerror else f"{error!s:.200}"
+        why = words or type(error).__name__
+        raise InputError(f"is not a readable NetCDF file ({why})", file=str(path), next_step=AGAIN) from None
 
 
 def _check_ours(data: Dataset, path: str | Path) -> None:
-    if "flexapod_version" not in data.attrs or "study" not in data.attrs:
+    if not isinstance(data.attrs.get("flexapod_version"), str):
         raise InputError("is not a result of flexapod", file=str(path), next_step=AGAIN)
-    free = available_memory()
-    if data.nbytes > free:
-        raise InputError(
-            f"holds {data.nbytes / 1e9:.3g} GB", file=str(path), allowed=f"at most the free memory, {free / 1e9:.3g} GB"
-        )
 
 
 def _load(array: Variable, name: str, path: str | Path) -> None:
@@ -90,6 +94,28 @@ def _load(array: Variable, name: str, path: str | Path) -> None:
             file=str(path),
             next_step=f"Take a copy of the file, if there is one. {AGAIN}",
         ) from None
+
+
+def _refuse_size(path: Path) -> None:
+    """Refuse a file before it is read: what it unpacks to is written at its beginning."""
+    from netCDF4 import Dataset as File
+
+    with File(path) as file:
+        numbers = sum(max(math.prod(v.shape), _chunk(v.chunking())) for v in file.variables.values())
+    size, packed = NUMBER * numbers, path.stat().st_size
+    most = min(available_memory() / 2, max(ANY_FILE, MOST_PACKED * packed))
+    if size > most:
+        raise InputError(
+            f"unpacks to {size / 1e9:.3g} GB from {packed / 1e6:.3g} MB",
+            file=str(path),
+            allowed=f"at most {most / 1e9:.3g} GB: half the free memory, and {MOST_PACKED} times the file",
+            next_step="Raise output_step or shorten the duration, and compute it anew",
+        )
+
+
+def _chunk(lengths: object) -> int:
+    """How many numbers of a variable are unpacked at once."""
+    return math.prod(lengths) if isinstance(lengths, list) else 0
 
 
 def save_csv(data: Dataset, path: str | Path) -> Path:

@@ -48,11 +48,11 @@
   }
 
   document.addEventListener("focusin", ({ target }) => {
-    if (isField(target)) target.dataset.before = target.value;
+    if (isField(target)) target.dataset.before = target.value.trim();
   });
   document.addEventListener("focusout", ({ target }) => {
     const text = isField(target) ? target.value.trim() : "";
-    if (isField(target) && (!text || target.value !== target.dataset.before)) tell(target, text);
+    if (isField(target) && (!text || text !== target.dataset.before)) tell(target, text);
   });
   document.addEventListener("input", ({ isTrusted, target }) => {
     if (!isTrusted || !isField(target) || !target.value.includes(LEFT)) return;

@@ -9,7 +9,7 @@ from typing import TYPE_CHECKING
 from flexapod.app.view import words
 from flexapod.app.view.latest import Latest
 from flexapod.app.view.threads import Threads
-from flexapod.app.view.typed import TypedText, by_user, in_unit
+from flexapod.app.view.typed import TypedText, by_user, in_unit, say_again
 from flexapod.errors import InputError
 
 if TYPE_CHECKING:
@@ -60,7 +60,7 @@ class Dial:
         self._text = TypedText(gui, threads, label, self._shown(value), self._typed, lambda _: self._show(), hint=hint)
         self._slider: GuiSliderHandle[float] = gui.add_slider("", *ends, step, value)
         self._words = gui.add_html("")
-        self._latest = Latest(threads, self._confirm)
+        self._latest = Latest(threads, lambda: say_again(self._slider))
         self._slider.on_update(by_user(self._dragged))
 
     @property
@@ -140,9 +140,3 @@ class Dial:
                 allowed=f"{kind}from {low:.6g} to {high:.6g} {self._unit}".rstrip(),
             )
         return int(number) if self._whole else number
-
-    def _confirm(self) -> None:
-        """Tell the browser the value again: one that was on its way while the user moved may have come after it."""
-        value = self._slider.value
-        self._slider.value = self.ends[0] if value != self.ends[0] else self.ends[1]
-        self._slider.value = value

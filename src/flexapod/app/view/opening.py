@@ -3,7 +3,7 @@
 from __future__ import annotations
 
 from pathlib import Path
-from typing import TYPE_CHECKING
+from typing import TYPE_CHECKING, Any
 
 import numpy as np
 
@@ -32,19 +32,33 @@ def open_source(file: Path) -> Source:
         study = model.load(file)
         return Source(document=Document(study.source_text, str(file)), study=study)
     from flexapod.study.store import open_results
+    from flexapod.study.stored_run import check_run
 
     data = open_results(file)
-    if "com_deviation" not in data and not ("tip_deflection" in data and "angle" in data):
-        raise InputError(
-            "is no result of a simulation", file=file, allowed="results.nc of `flexapod run`, or a study file"
-        )
+    check_run(data, str(file))
     path, text = data.attrs.get("study_file") or str(file), str(data.attrs["study"])
     try:
         study = model.loads(text, path=path)
-    except InputError:
+    except InputError as error:
+        if "com_deviation" not in data:
+            raise InputError(f"carries a study that is refused: {error}", file=file) from None
         study = _without_tables(data, text, str(file))
         text, path = study.source_text, str(file)
+    _check_kind(study, data, str(file))
     return Source(document=Document(text, str(path)), study=study, data=data)
+
+
+def _check_kind(study: model.Study | model.ActuatorStudy, data: Dataset, file: str) -> None:
+    """Refuse results whose study is of something else, or does not know the shapes they were computed with."""
+    from flexapod.app.view.scene_geometry import as_computed
+
+    if isinstance(study, model.Study) != ("com_deviation" in data):
+        raise InputError("holds a study of something else than its results", file=file, key="study")
+    match_shapes: Any = as_computed  # of one kind or the other
+    try:
+        match_shapes(study, data)
+    except InputError as error:
+        raise error.located(file=file) from None
 
 
 def _without_tables(data: Dataset, text: str, file: str) -> model.Study:

@@ -174,7 +174,7 @@ def as_computed(study: S, data: Dataset) -> S:
     if (now.fidelity, now.lateral_basis, now.lateral_shapes) == (then["fidelity"], then["basis"], then["modes"]):
         return study
     basis = str(then["basis"]) if then["fidelity"] == "assumed-modes" else None
-    return model.override(study, fidelity=str(then["fidelity"]), modes=int(then["modes"]), basis=basis)
+    return model.override(study, fidelity=str(then["fidelity"]), modes=int(then["modes"]) or None, basis=basis)
 
 
 def nearest(instants: Array, time: float) -> int:

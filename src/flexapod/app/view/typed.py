@@ -5,6 +5,7 @@ viser's own number fields drop what they do not know while it is typed: 2e2 beco
 
 from __future__ import annotations
 
+import time
 from collections.abc import Callable
 from typing import TYPE_CHECKING, Any
 
@@ -16,11 +17,12 @@ from flexapod.units import number_and_unit, to_si
 if TYPE_CHECKING:
     from viser import GuiApi, GuiEvent
 
-__all__ = ["LEFT", "TypedText", "by_user", "in_unit", "plain", "written"]
+__all__ = ["LEFT", "TypedText", "by_user", "in_unit", "plain", "say_again", "written"]
 
 LEFT = "\N{EM SPACE}"
 """What the page's script adds to the text of a field that is left (`assets/view.js`)."""
 QUIET = 0.4  # time without another letter after which a text is read [s]
+CROSSED = 2.0  # time after the server has written a text in which letters of a user may have met it on the way [s]
 
 
 class TypedText:
@@ -52,8 +54,9 @@ class TypedText:
         **look: Any,
     ) -> None:
         self._read_last, self._taken, self._left = text, taken, left
+        self._shown_at = 0.0
         self._handle = gui.add_text(label, text, **look)
-        self._latest = Latest(threads, self._read)
+        self._latest = Latest(threads, self._paused)
         self._handle.on_update(by_user(self._heard))
 
     def show(self, text: str, label: str | None = None) -> None:
@@ -62,7 +65,7 @@ class TypedText:
         if label is not None and self._handle.label != label:
             self._handle.label = label
         if self._handle.value != text:
-            self._handle.value = text
+            self._handle.value, self._shown_at = text, time.monotonic()
 
     @property
     def disabled(self) -> bool:
@@ -87,11 +90,24 @@ class TypedText:
         if self._handle.value.endswith(LEFT):  # nobody writes on
             self._left(not self._handle.value.strip())
 
+    def _paused(self) -> None:
+        if time.monotonic() - self._shown_at < CROSSED:
+            say_again(self._handle)
+        self._read()
+
     def _read(self) -> None:
         text = self._handle.value.strip()
         if text and text != self._read_last:
             self._read_last = text
             self._taken(text, self._handle.value.endswith(LEFT))
+
+
+def say_again(handle: Any) -> None:
+    """Tell the browser the value of an input once more: what it was told before may have crossed what the user did."""
+    from viser import _messages
+
+    message = _messages.GuiUpdateMessage(handle._impl.uuid, {"value": handle.value})
+    handle._impl.gui_api._websock_interface.queue_message(message)
 
 
 def by_user(work: Callable[[], Any]) -> Callable[[GuiEvent[Any]], None]:
