@@ -216,8 +216,10 @@ def test_refused_keywords_are_named():
     with pytest.raises(fx.InputError, match="motion"):
         fx.simulate(paper_robot().robot)
     with pytest.raises(fx.InputError, match="robot"):
-        fx.simulate("robot.toml")
+        fx.simulate(3)
     with pytest.raises(fx.InputError, match="study"):
+        fx.run(3)
+    with pytest.raises(fx.InputError, match=r"robot.toml: cannot be read"):
         fx.run("robot.toml")
 
 

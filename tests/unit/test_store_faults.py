@@ -74,7 +74,6 @@ def test_a_spoilt_value_is_noticed_and_named(data, path):
 
 
 def test_a_turned_bit_anywhere_changes_nothing_or_is_told(data, path):
-    """Of 1200 places in a longer run by hand none changed anything unnoticed; text of labels is the last 1 in 100."""
     save(data, path)
     content, random = path.read_bytes(), np.random.default_rng(1)
     told = 0
@@ -108,7 +107,7 @@ def test_what_is_not_a_file_of_ours(data, path, tmp_path, monkeypatch):
         open_results(path)
     save(data, path)
     monkeypatch.setattr(store, "available_memory", lambda: 1000.0)
-    with pytest.raises(InputError, match=r"holds 3.*e-05 GB.*free memory"):
+    with pytest.raises(InputError, match=r"unpacks to 3.*e-05 GB.*half the free memory"):
         open_results(path)
 
 

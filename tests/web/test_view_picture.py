@@ -13,6 +13,7 @@ import flexapod as fx
 from flexapod import model
 from flexapod.app.view import quick
 from flexapod.app.view import session as sessions
+from flexapod.app.view.cores import Turn
 from flexapod.app.view.document import Document
 from flexapod.app.view.opening import open_source
 from flexapod.app.view.source import Source
@@ -244,7 +245,7 @@ def test_cancelling_keeps_the_answer_of_results_that_are_there(visit):
     sentence = summary(session.data).sentence
     places = session._cores
     while places._free:
-        places.take(lambda: False, lambda: None)
+        places.take(Turn(), lambda: False, lambda: None)
     session.simulate()
     session.cancel()
     assert "Cancelled. What was there stays." in said(session) and sentence in said(session)

@@ -109,7 +109,7 @@ SHORT = {"tables": "hashes"}
 
 def _as_list(array: Array, info: SerializationInfo) -> list[Any] | str:
     if info.context == SHORT and array.size > 100:
-        return f"{array.shape} {hashlib.sha256(np.ascontiguousarray(array)).hexdigest()}"
+        return f"{array.shape} {hashlib.sha256(array.tobytes()).hexdigest()}"
     return array.tolist()
 
 

@@ -2,9 +2,13 @@
 
 from __future__ import annotations
 
+import hashlib
+import json
 import math
 from pathlib import Path
 from typing import TYPE_CHECKING, Any
+
+import numpy as np
 
 from flexapod.errors import InputError
 from flexapod.files import check_regular, replacing
@@ -19,6 +23,7 @@ AGAIN = "Make it again with `flexapod run FILE`"
 __all__ = ["open_results", "save", "save_csv"]
 
 NUMBER = 8  # bytes of a number in memory
+SUM = "checksum_of_attributes"
 ANY_FILE = 100e6
 """What any file may unpack to [bytes]."""
 MOST_PACKED = 50
@@ -40,7 +45,9 @@ def save(data: Dataset, path: str | Path) -> Path:
     }
     with replacing(path) as temporary:
         try:
-            data.to_netcdf(temporary, engine="netcdf4", format="NETCDF4", encoding=checked)
+            data.assign_attrs({SUM: _sum(data)}).to_netcdf(
+                temporary, engine="netcdf4", format="NETCDF4", encoding=checked
+            )
         except RuntimeError as error:
             _fill(temporary, data.nbytes)
             raise OSError(f"the NetCDF library says {error}") from None
@@ -69,6 +76,7 @@ def open_results(path: str | Path) -> Dataset:
         _refuse_size(Path(path))
         with xr.open_dataset(path, engine="netcdf4", decode_times=False) as data:
             _check_ours(data, path)
+            _check_attributes(data, path)
             for name, array in data.variables.items():
                 _load(array, str(name), path)
             return data
@@ -83,6 +91,26 @@ def open_results(path: str | Path) -> Dataset:
 def _check_ours(data: Dataset, path: str | Path) -> None:
     if not isinstance(data.attrs.get("flexapod_version"), str):
         raise InputError("is not a result of flexapod", file=str(path), next_step=AGAIN)
+
+
+def _check_attributes(data: Dataset, path: str | Path) -> None:
+    """NetCDF has checksums for values alone; those of the attributes are ours."""
+    if data.attrs.pop(SUM, None) not in (None, _sum(data)):  # none: written before there were any
+        raise InputError(
+            "is damaged: its attributes are not what was written",
+            file=str(path),
+            next_step=f"Take a copy of the file, if there is one. {AGAIN}",
+        )
+
+
+def _sum(data: Dataset) -> str:
+    """Checksum of all attributes of a Dataset and its variables, the same before writing and after reading."""
+    parts = {"": data.attrs, **{str(name): array.attrs for name, array in data.variables.items()}}
+    plain = {
+        name: {key: np.atleast_1d(np.asarray(value)).tolist() for key, value in sorted(attrs.items()) if key != SUM}
+        for name, attrs in sorted(parts.items())
+    }
+    return hashlib.sha256(json.dumps(plain).encode()).hexdigest()
 
 
 def _load(array: Variable, name: str, path: str | Path) -> None:

@@ -271,14 +271,14 @@ def _undisturbed() -> Iterator[None]:
         return
     waiting: list[int] = []
     before = {number: signal.signal(number, lambda n, _: waiting.append(n)) for number in _ENDINGS}
-    blocked = hasattr(signal, "pthread_sigmask")
-    if blocked:
+    mask = None
+    if hasattr(signal, "pthread_sigmask"):
         resource_tracker.ensure_running()  # it unblocks signals when it starts
         mask = signal.pthread_sigmask(signal.SIG_BLOCK, {signal.SIGINT})
     try:
         yield
     finally:
-        if blocked:
+        if mask is not None:
             signal.pthread_sigmask(signal.SIG_SETMASK, mask)
         for number, handler in before.items():
             signal.signal(number, handler)

@@ -256,7 +256,7 @@ def _array_of(group: zarr.Group, path: Path, name: str) -> Any:
         raise _damaged(path, f"there is no {name}")
     try:
         check_regular(file)
-        found = group[name]
+        found: Any = group[name]
         if found.metadata.dimension_names is not None:
             return found
     except Exception:  # whatever the reader of a spoilt description says
