@@ -11,7 +11,8 @@ from flexapod.solve.kernel import kernel
 PHYSICS = {
     "rhoA": 4.466, "EI": 5217.4, "EA": 1.1451e8, "Lp": 0.75, "mouth": 0.315, "piston_axial_inertia": 4e-4,
     "cylinder_mass": 3.0, "cylinder_com": 0.157, "cylinder_inertia": 0.0248, "cylinder_axial_inertia": 0.002,
-    "zeta": 0.005, "drive_stiffness": 0.0, "drive_damping": 0.0, "gravity": [1.0, 2.0, -9.0], "base": [0.0, 0.0, 0.0],
+    "zeta": 0.005, "damping_time": 0.0,
+    "drive_stiffness": 0.0, "drive_damping": 0.0, "gravity": [1.0, 2.0, -9.0], "base": [0.0, 0.0, 0.0],
     "R0": np.eye(3).ravel(), "tip_mass": 0.0, "tip_inertia": 0.0,
 }  # fmt: skip
 ORACLE = {

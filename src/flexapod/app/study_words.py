@@ -81,9 +81,11 @@ def _points(payload: model.Payload) -> str:
     return f"Centre of mass at {com} from the platform's centre, {also}."
 
 
-def _damping(ratio: float, body: str) -> str:
+def _damping(damping: float | model.Damping, body: str) -> str:
+    ratio, time = model.damping_parts(damping)
     every = f"damping of {number(100 * ratio)} % of the critical one in every mode of the bare {body}"
-    return every if ratio else "no damping"
+    stiff = f"damping of {text(time, 's')} times the stiffness of the {body}"
+    return " and ".join([*([every] if ratio else []), *([stiff] if time else [])]) or "no damping"
 
 
 def _drives(robot: Robot) -> str:

@@ -59,7 +59,7 @@ class RobotProblem:
                 )
             if leg.damping and self.elements:
                 raise InputError(
-                    "has no counterpart in Exudyn, whose cables are damped in proportion to stiffness",
+                    "is not modelled in Exudyn",
                     key=f"leg {number}: damping",
                     value=leg.damping,
                     allowed="0",

@@ -119,7 +119,7 @@ def beam_mesh(beam: Actuator, elements: int) -> BeamMesh:
                          allowed="4 or more")  # fmt: skip
     if beam.damping:
         raise InputError(
-            "is not modelled by a mesh that slides: damping ratios belong to the modes of the free length",
+            "is not modelled by a mesh that slides: damping belongs to the shapes of the free length",
             key="actuator.damping",
             value=beam.damping,
             allowed="0",

@@ -17,6 +17,7 @@ LEG_PARAMETERS: tuple[tuple[str, int], ...] = (
     ("cylinder_inertia", 1),  # kg m^2, transverse, about its CoM
     ("cylinder_axial_inertia", 1),  # kg m^2
     ("zeta", 1),  # modal damping ratio
+    ("damping_time", 1),  # s, damping matrix over stiffness matrix
     ("drive_stiffness", 1),  # N/m, between command and stroke
     ("drive_damping", 1),  # N s/m
     ("gravity", 3),  # m/s^2

@@ -37,7 +37,8 @@ def leg(shapes: Shapes, p: SimpleNamespace, q: SX, v: SX, qs: SimpleNamespace, v
     V_g -= (sum(body.first.one for body in bodies) + p.cylinder_mass) * dot(p.gravity, p.base)  # zero at the base plane
     V_s = strain_energy(shapes, p, s, qs)
     tip = p.base + matrix33(p.R0) @ R @ tip_in_leg(motion, qs.l)
-    lagrangian = Lagrangian(q=q, v=v, kinetic=T, potential=V_g + V_s, dissipation=dissipation(shapes, p, s, vs))
+    loss = dissipation(shapes, p, s, vs) + p.damping_time * strain_energy(shapes, p, s, vs)  # (T5.6)
+    lagrangian = Lagrangian(q=q, v=v, kinetic=T, potential=V_g + V_s, dissipation=loss)
     return Leg(lagrangian=lagrangian, gravity=V_g, strain=V_s, tip=tip)
 
 
@@ -61,7 +62,7 @@ def gravity_energy(f: Motion, body: Distribution, g: SX) -> SX:
 
 
 def strain_energy(shapes: Shapes, p: SimpleNamespace, s: SX, qs: SimpleNamespace) -> SX:
-    """Bending of the free length and stretch of the whole piston, Eq. (T3.15)."""
+    """Bending of the free length and stretch of the whole piston, Eq. (T3.15); quadratic in the amplitudes ``qs``."""
     bending = quadratic(qs.a, shapes.a.stiffness) + quadratic(qs.b, shapes.b.stiffness)
     return 0.5 * p.EI / s**3 * bending + 0.5 * p.EA / p.Lp * quadratic(qs.c, shapes.axial.stiffness)
 

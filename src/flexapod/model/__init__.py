@@ -1,6 +1,7 @@
 """WHAT is analysed: frozen descriptions in SI units, read from text files with units."""
 
 from flexapod.model.actuator import Actuator, ActuatorInitial, ActuatorLoad, ActuatorMotion
+from flexapod.model.damping import Damping, damping_parts
 from flexapod.model.drive import Drive, Feedback, ForceDrive, PrescribedDrive, ServoDrive
 from flexapod.model.files import PRESETS, OpenValue, load, loads, loads_robot, open_values, preset, preset_text
 from flexapod.model.laws import (
@@ -52,6 +53,7 @@ __all__ = [
     "CsvMotion",
     "CsvWrench",
     "Cylinder",
+    "Damping",
     "Drive",
     "Feedback",
     "ForceDrive",
@@ -84,6 +86,7 @@ __all__ = [
     "WaypointMotion",
     "Wrench",
     "base_circle",
+    "damping_parts",
     "load",
     "loads",
     "loads_robot",

@@ -4,10 +4,11 @@ from __future__ import annotations
 
 from typing import Annotated
 
-from pydantic import Field, model_validator
+from pydantic import model_validator
 
 from flexapod.errors import InputError
 from flexapod.model.base import Frozen, Measure, NonNegative, Number, Positive
+from flexapod.model.damping import BodyDamping
 from flexapod.model.laws import CsvLaw, LoadLaw, MotionLaw, RateLaw
 from flexapod.model.material import Material, Rectangle, Tube
 from flexapod.model.motion import check_times
@@ -21,8 +22,8 @@ class Actuator(Frozen):
 
     `length` [m], whole beam; `rhoA` [kg/m]; `EI` [N m^2]; `free_length` [m], outside the hub at t = 0; `tip_mass` [kg];
     `tip_inertia`, `hub_inertia` [kg m^2]; `hub_radius` [m], from the pivot to the clamp; `angle` [rad] from the
-    horizontal at t = 0; `gravity` [m/s^2], along -Y in the plane; `damping`, modal damping ratio; `section` and
-    `material` where they are known.
+    horizontal at t = 0; `gravity` [m/s^2], along -Y in the plane; `damping`, modal damping ratio, or
+    `Damping` with a part in proportion to stiffness; `section` and `material` where they are known.
     """
 
     length: Annotated[Positive, Measure("length")]
@@ -35,7 +36,7 @@ class Actuator(Frozen):
     hub_radius: Annotated[NonNegative, Measure("length")] = 0.0
     angle: Annotated[Number, Measure("angle")] = 0.0
     gravity: Annotated[Number, Measure("acceleration")] = 0.0
-    damping: float = Field(default=0.0, strict=True, ge=0, lt=1)
+    damping: BodyDamping = 0.0
     section: Tube | Rectangle | None = None
     material: Material | None = None
 

@@ -8,6 +8,7 @@ from pydantic import Field, model_validator
 
 from flexapod.errors import InputError
 from flexapod.model.base import Frozen, Measure, NonNegative, Number, Positive, Vec3
+from flexapod.model.damping import BodyDamping
 from flexapod.model.drive import Drive, PrescribedDrive
 from flexapod.model.material import Material, Tube
 from flexapod.words import number, text
@@ -112,14 +113,15 @@ class Stroke(Frozen):
 class Leg(Frozen):
     """A leg between a universal joint on the base and a spherical joint on the platform.
 
-    `damping`: modal damping ratio of the piston; `axial_modes`: number of axial shapes, the static one first;
+    `damping`: modal damping ratio of the piston, or `Damping` with a part in proportion to its stiffness;
+    `axial_modes`: number of axial shapes, the static one first;
     `u_axis`: direction of the universal joint's base-fixed axis (world axes), default Z x leg.
     """
 
     cylinder: Cylinder
     piston: Piston
     stroke: Stroke | None = None
-    damping: float = Field(default=0.0, strict=True, ge=0, lt=1)
+    damping: BodyDamping = 0.0
     drive: Drive = PrescribedDrive()
     axial_modes: int = Field(default=2, strict=True, ge=0, le=4)
     u_axis: Annotated[Vec3, Measure("number")] | None = None

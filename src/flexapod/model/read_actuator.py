@@ -3,6 +3,7 @@
 from __future__ import annotations
 
 from flexapod.model.actuator import Actuator, ActuatorInitial, ActuatorLoad, ActuatorMotion
+from flexapod.model.damping import read_damping
 from flexapod.model.laws import (
     ConstantLaw,
     CsvLaw,
@@ -31,7 +32,6 @@ _NUMBERS = {
     "hub_radius": "length",
     "angle": "angle",
     "gravity": "acceleration",
-    "damping": "number",
 }
 _INITIAL = {"tip_displacement": "length", "angle_rate": "angular rate", "length_rate": "velocity"}
 _RATES = {"angle": "angular rate", "length": "velocity"}
@@ -40,20 +40,21 @@ _RATES = {"angle": "angular rate", "length": "velocity"}
 def read_actuator(section: Section) -> Actuator:
     """The beam and its hub."""
     stiffness, made_of = ("rhoA", "EI"), ("section", "material", "E", "density", "yield_stress")
-    section.only(*_NUMBERS, *stiffness, *made_of)
+    section.only(*_NUMBERS, "damping", *stiffness, *made_of)
     numbers = {name: section.number(name, dimension) for name, dimension in _NUMBERS.items()}
+    fields = numbers | {"damping": read_damping(section)}
     if "section" not in section:
         section.need(*stiffness)
         for name in made_of:
             if name in section:
                 raise section.error("needs a section", name, allowed="rhoA and EI, or section and material")
         line, bending = section.number("rhoA", "line density"), section.number("EI", "bending stiffness")
-        return section.build(Actuator, rhoA=line, EI=bending, **numbers)
+        return section.build(Actuator, rhoA=line, EI=bending, **fields)
     for name in stiffness:
         if name in section:
             raise section.error("is given together with section", name, allowed="rhoA and EI, or section and material")
     shape = _shape(section.child(section.data["section"], "section"))
-    return section.build(Actuator.from_section, section=shape, material=read_material(section), **numbers)
+    return section.build(Actuator.from_section, section=shape, material=read_material(section), **fields)
 
 
 def read_drives(top: Section) -> tuple[ActuatorMotion, ActuatorLoad]:

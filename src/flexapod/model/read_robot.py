@@ -5,6 +5,7 @@ from __future__ import annotations
 from collections.abc import Callable
 
 from flexapod.errors import InputError
+from flexapod.model.damping import read_damping
 from flexapod.model.drive import Drive, Feedback, ForceDrive, PrescribedDrive, ServoDrive
 from flexapod.model.leg import Cylinder, Leg, Piston, Stroke
 from flexapod.model.material import MATERIALS, Material, Tube
@@ -118,7 +119,7 @@ def _leg(section: Section, number: int) -> Leg:
         cylinder=_cylinder(section.child(section.data["cylinder"], "cylinder")),
         piston=_piston(section.child(section.data["piston"], "piston")),
         stroke=_stroke(section.section("stroke")),
-        damping=section.number("damping", "number"),
+        damping=read_damping(section),
         drive=_drive(section.section("drive"), number),
         axial_modes=section.whole("axial_modes"),
         u_axis=section.vector("u_axis", "number", "number", "number"),

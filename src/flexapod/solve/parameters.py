@@ -4,7 +4,7 @@ import numpy as np
 
 from flexapod import rigid
 from flexapod.mechanics.layout import LEG_PARAMETERS, PAYLOAD_PARAMETERS
-from flexapod.model import Actuator, ForceDrive, Leg, Robot, ServoDrive
+from flexapod.model import Actuator, ForceDrive, Leg, Robot, ServoDrive, damping_parts
 from flexapod.typing import Array
 
 
@@ -32,6 +32,7 @@ def leg_parameters(robot: Robot) -> Array:
     rows = []
     for leg, base, frame in zip(robot.legs, robot.base_joints, frames, strict=True):
         stiffness, damping = drive_spring(leg)
+        zeta, damping_time = damping_parts(leg.damping)
         values: dict[str, object] = {
             "rhoA": leg.piston.rhoA,
             "EI": leg.piston.EI,
@@ -43,7 +44,8 @@ def leg_parameters(robot: Robot) -> Array:
             "cylinder_com": leg.cylinder.com,
             "cylinder_inertia": leg.cylinder.inertia,
             "cylinder_axial_inertia": leg.cylinder.axial_inertia,
-            "zeta": leg.damping,
+            "zeta": zeta,
+            "damping_time": damping_time,
             "drive_stiffness": stiffness,
             "drive_damping": damping,
             "gravity": robot.gravity,
@@ -78,6 +80,7 @@ PLANE = np.array([[0.0, 0.0, 1.0], [1.0, 0.0, 0.0], [0.0, 1.0, 0.0]])
 def actuator_parameters(actuator: Actuator) -> Array:
     """Parameters of the single planar actuator, (1, size of LEG_PARAMETERS); beta is its angle from the horizontal."""
     values: dict[str, object] = dict.fromkeys((name for name, size in LEG_PARAMETERS if size == 1), 0.0)
+    zeta, damping_time = damping_parts(actuator.damping)
     values |= {
         "rhoA": actuator.rhoA,
         "EI": actuator.EI,
@@ -85,7 +88,8 @@ def actuator_parameters(actuator: Actuator) -> Array:
         "Lp": actuator.length,
         "mouth": actuator.hub_radius,
         "cylinder_inertia": actuator.hub_inertia,
-        "zeta": actuator.damping,
+        "zeta": zeta,
+        "damping_time": damping_time,
         "gravity": [0.0, -actuator.gravity, 0.0],
         "base": np.zeros(3),
         "R0": PLANE.T,

@@ -69,7 +69,7 @@ def put(data: dict[str, Any], steps: tuple[Step, ...], value: object) -> None:
     """Set a value in the tables of a study file; a key without the number of a leg means all legs.
 
     What the file gives in short is spelled out where the path needs it: one [leg] becomes six, circles become joints,
-    a material becomes E and density.
+    a material becomes E and density, a damping ratio the table that holds it.
 
     Raises
     ------
@@ -117,6 +117,9 @@ def _spell_out(table: dict[str, Any], steps: tuple[Step, ...], at: int) -> None:
         radius = to_si(table.pop("radius"), "length", key=f"robot.{before}.radius")
         half_angle = to_si(table.pop("half_angle"), "angle", key=f"robot.{before}.half_angle")
         table["joints"] = _CIRCLES[str(before)](radius, half_angle).tolist()
+    elif step == "damping" and len(steps) == at + 2 and (at == 1 or isinstance(before, int)):
+        if not isinstance(table.get("damping", {}), dict):
+            table["damping"] = {"ratio": table["damping"]}
     elif step in ("E", "density") and table.get("material") in MATERIALS:
         material = MATERIALS[table.pop("material")]
         table |= {"E": material.E, "density": material.density}
