@@ -189,15 +189,15 @@ def by_axis(data: Dataset) -> str:
 
 
 def _axis_table(found: RobotSummary) -> str:
-    from flexapod.study.words import text
+    from flexapod.study.words import cleared, text
 
     head = ("Axis", "Largest", "at", "rms", "Rigid travel", "Per cent of the travel")
     rows = [
         (
             a.axis.upper(),
-            text(a.peak, "m"),
+            text(float(cleared(a.peak, found.peak)), "m"),
             f"{a.time:.3f} s",
-            text(a.rms, "m"),
+            text(float(cleared(a.rms, found.rms)), "m"),
             text(a.excursion, "m", 4),
             "n/a" if a.per_cent is None else f"{a.per_cent:.2g} %",
         )

@@ -42,9 +42,11 @@ def show_run(data: Dataset, folder: Path, files: Sequence[Path], warnings: Seque
 
 
 def _axes(found: RobotSummary, name: str) -> None:
-    from flexapod.study.words import column
+    from flexapod.study.words import cleared, column
 
-    length, peaks_and_rms = column([*(a.peak for a in found.axes), *(a.rms for a in found.axes)], "m")
+    peaks = [float(cleared(a.peak, found.peak)) for a in found.axes]
+    means = [float(cleared(a.rms, found.rms)) for a in found.axes]
+    length, peaks_and_rms = column([*peaks, *means], "m")
     count = len(found.axes)
     travel_unit, travels = column([a.excursion for a in found.axes], "m")
     _, shares = column([float("nan") if a.per_cent is None else a.per_cent for a in found.axes], "", 2)

@@ -8,7 +8,7 @@ from pydantic import Field, model_validator
 
 from flexapod.errors import InputError
 from flexapod.model.base import Frozen, Measure, NonNegative, Number, Positive, Vec3
-from flexapod.model.damping import BodyDamping
+from flexapod.model.damping import BodyDamping, damping_parts
 from flexapod.model.drive import Drive, PrescribedDrive
 from flexapod.model.material import Material, Tube
 from flexapod.words import number, text
@@ -135,7 +135,7 @@ class Leg(Frozen):
             "cylinder": f"mouth at {text(self.cylinder.mouth, 'm', 4)}, {number(self.cylinder.mass, 4)} kg",
             **limits,
             "drive": self.drive.type,
-            "damping": f"{number(100 * self.damping)} %",
+            "damping": _damped(self.damping),
         }
 
     @model_validator(mode="after")
@@ -143,6 +143,11 @@ class Leg(Frozen):
         if self.u_axis is not None and not self.u_axis.any():
             raise InputError("has no direction", key="u_axis", value=self.u_axis.tolist(), allowed="a non-zero vector")
         return self
+
+
+def _damped(damping: BodyDamping) -> str:
+    ratio, time = damping_parts(damping)
+    return f"{number(100 * ratio)} %" + (f" and {text(time, 's')} times stiffness" if time else "")
 
 
 def _span(low: float, high: float) -> str:

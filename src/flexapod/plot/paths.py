@@ -9,9 +9,22 @@ import xarray as xr
 from matplotlib.axes import Axes
 from matplotlib.figure import Figure
 
-from flexapod.plot.style import AXIS_COLORS, COLUMN, FLEXIBLE, NOTE, RIGID, figure, mark_end, needs, scale, styled
+from flexapod.plot.style import (
+    AXIS_COLORS,
+    COLUMN,
+    FLEXIBLE,
+    NOTE,
+    RIGID,
+    figure,
+    flat_on_the_scale_of_others,
+    mark_end,
+    needs,
+    scale,
+    styled,
+)
 from flexapod.study.scene import motion_end
 from flexapod.study.summary import POINT_WORDS
+from flexapod.study.words import cleared
 
 __all__ = ["com_path"]
 
@@ -36,17 +49,21 @@ def com_path(data: xr.Dataset, axes: Sequence[str] = ("y", "z"), point: str = "c
     small = scale(deviation, "m")
     end, time = motion_end(data), data.time.values
     name = POINT_WORDS[point]
+    largest, sizes = float(np.abs(small(data[f"{point}_deviation"])).max()), []
     for column, axis in enumerate(axes):
         _paths(grid[0, column], data, point, axis)
         below = grid[1, column]
-        values = small(deviation.sel(axis=axis))
+        values = cleared(small(deviation.sel(axis=axis)), largest)
+        sizes.append(float(np.abs(values).max()))
         below.plot(time, values, color=AXIS_COLORS[axis], linewidth=1.1)
         below.axhline(0, color="#555555", linewidth=0.7)
-        _peak(below, time, values, small.name)
+        if sizes[-1]:
+            _peak(below, time, values, small.name)
         below.set_xlabel("time [s]")
         below.set_title(f"Flexible minus rigid, {axis.upper()}")
         mark_end(grid[0, column], end, "motion ends")
         mark_end(below, end)
+    flat_on_the_scale_of_others(grid[1], sizes)
     fig.legend(*grid[0, 0].get_legend_handles_labels(), loc="outside upper center", ncols=2)
     grid[0, 0].set_ylabel(f"position of the\n{name} [mm]")
     grid[1, 0].set_ylabel(f"deviation [{small.name}]")

@@ -40,6 +40,7 @@ __all__ = [
     "Scale",
     "check_formats",
     "figure",
+    "flat_on_the_scale_of_others",
     "ink",
     "mark_end",
     "needs",
@@ -140,6 +141,14 @@ def styled(draw: Callable[P, Figure]) -> Callable[P, Figure]:
 
 def _rc() -> Any:
     return {**matplotlib.rcParamsDefault, **_RC, "backend": matplotlib.rcParams["backend"]}
+
+
+def flat_on_the_scale_of_others(panels: Sequence[Axes], sizes: Sequence[float]) -> None:
+    """Give panels of `sizes` 0 the vertical limits of the panel of the largest: what is nothing looks like it."""
+    limits = panels[max(range(len(panels)), key=lambda i: sizes[i])].get_ylim()
+    for panel, size in zip(panels, sizes, strict=True):
+        if size == 0 and max(sizes) > 0:
+            panel.set_ylim(limits)
 
 
 def ink(color: str) -> str:

@@ -9,7 +9,9 @@ from flexapod.errors import InputError
 from flexapod.model import Load, Robot, Simulation
 from flexapod.rigid.rotations import matrix
 from flexapod.solve.elimination import leg_bases, solve_each
+from flexapod.solve.equilibrium import Equilibrium
 from flexapod.solve.modes import LockedPoses, locked_poses, the_equilibrium
+from flexapod.solve.system import RobotSystem
 from flexapod.typing import Array
 
 
@@ -26,9 +28,17 @@ class Stiffness:
     load: Array
 
 
+@dataclass(frozen=True, kw_only=True)
+class PoseStiffness(Stiffness):
+    """Stiffness at one pose, and the equilibrium that it is about."""
+
+    equilibrium: Equilibrium
+    system: RobotSystem
+
+
 def robot_stiffness(
     robot: Robot, simulation: Simulation, path: rigid.Poses | None = None, load: Load | None = None
-) -> Stiffness:
+) -> PoseStiffness:
     """Stiffness against a wrench at the tool, drives locked, about the static equilibrium at a pose (default: home).
 
     Loads as of `modes.locked_poses`.
@@ -41,9 +51,10 @@ def robot_stiffness(
         No equilibrium at this pose.
     """
     locked = locked_poses(robot, simulation, rigid.home_pose(robot) if path is None else path, load)
-    the_equilibrium(locked)
-    found = stiffness_of(robot, locked)
-    return Stiffness(total=found.total[0], legs=found.legs[0], load=found.load[0])
+    rest, found = the_equilibrium(locked), stiffness_of(robot, locked)
+    return PoseStiffness(
+        total=found.total[0], legs=found.legs[0], load=found.load[0], equilibrium=rest, system=locked.system
+    )
 
 
 def stiffness_of(robot: Robot, locked: LockedPoses) -> Stiffness:

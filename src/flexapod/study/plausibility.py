@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+from dataclasses import dataclass
 from functools import lru_cache
 
 import numpy as np
@@ -10,13 +11,24 @@ from flexapod.bases import LateralBasis
 from flexapod.model import Actuator, Leg, Robot
 from flexapod.model.simulation import SOLID
 from flexapod.rigid.rotations import matrix
+from flexapod.solve.many import RestStates
 from flexapod.solve.system import RobotSystem
 from flexapod.study.estimates import buckling_load, section_width
 from flexapod.study.record import Record
 from flexapod.study.thick import Section, beam_section, bending_errors, piston_section
 from flexapod.typing import Array
 
-__all__ = ["NEAR_BUCKLING", "SLENDERNESS", "SLOPE", "actuator_warnings", "leg_stress", "robot_warnings", "thick_words"]
+__all__ = [
+    "NEAR_BUCKLING",
+    "SLENDERNESS",
+    "SLOPE",
+    "actuator_warnings",
+    "buckling_words",
+    "leg_stress",
+    "rest_warnings",
+    "robot_warnings",
+    "thick_words",
+]
 
 SLOPE = 0.1  # tip slope up to which second order in the amplitudes is enough
 SLENDERNESS = 10.0  # free length over width below which shear is no longer small
@@ -25,8 +37,27 @@ NEAR_BUCKLING = 0.5  # share of the Euler load from which stiffness has changed 
 STATIONS = np.linspace(0.0, 1.0, 21)
 
 
+@dataclass(frozen=True)
+class _When:
+    """When the kth of several states is, in words: at an instant of `time` [s], or, at rest, nothing."""
+
+    time: Array | None = None
+
+    def __getitem__(self, k: int) -> str:
+        return "" if self.time is None else f" at t = {self.time[k]:.6g} s"
+
+
 def robot_warnings(robot: Robot, system: RobotSystem, record: Record) -> list[str]:
     """Remarks on a simulation of a robot, each with leg, instant, value and limit."""
+    return _leg_warnings(robot, system, record, _When(record.time))
+
+
+def rest_warnings(robot: Robot, system: RobotSystem, states: RestStates) -> list[str]:
+    """The same remarks on a robot at rest."""
+    return _leg_warnings(robot, system, states, _When())
+
+
+def _leg_warnings(robot: Robot, system: RobotSystem, record: Record | RestStates, when: _When) -> list[str]:
     axes = _leg_axes(robot, record)
     compression = np.einsum("tli,tli->tl", record.lam, axes)
     found = []
@@ -36,11 +67,11 @@ def robot_warnings(robot: Robot, system: RobotSystem, record: Record) -> list[st
         found += [
             (i, *remark)
             for remark in (
-                *_slope(system.kernel.shapes.a, lateral, free, record.time),
-                *_stroke(leg, record.q[:, i, system.kernel.shapes.l_index], record.time),
-                *_axial(leg, free, compression[:, i], record.time),
-                *_slender(leg, system.kernel.shapes.a, free, record.time),
-                *_stress(leg, system.kernel.shapes.a, lateral, free, compression[:, i], record.time),
+                *_slope(system.kernel.shapes.a, lateral, free, when),
+                *_stroke(leg, record.q[:, i, system.kernel.shapes.l_index], when),
+                *_axial(leg, free, compression[:, i], when),
+                *_slender(leg, system.kernel.shapes.a, free, when),
+                *_stress(leg, system.kernel.shapes.a, lateral, free, compression[:, i], when),
             )
         ]
     return _worst_of_each(found)
@@ -50,16 +81,17 @@ def actuator_warnings(actuator: Actuator, basis: LateralBasis, record: Record) -
     """Remarks on a simulation of a single actuator."""
     free = record.q[:, 0, 1] - actuator.hub_radius
     lateral = record.q[:, :, 2:]
-    found = _slope(basis, lateral, free, record.time)
+    when = _When(record.time)
+    found = _slope(basis, lateral, free, when)
     if actuator.section is not None and actuator.material is not None:
         depth, material = actuator.section.depth, actuator.material
         section = beam_section(actuator)
         if free.min() < SLENDERNESS * depth and section is not None:
             k = int(free.argmin())
-            found.append(_slender_remark(free[k], depth, section, basis, record.time[k]))
+            found.append(_slender_remark(free[k], depth, section, basis, when[k]))
         if material.yield_stress is not None:
             bending = _bending(basis, lateral, free) * material.E * depth / 2
-            found += _yield_words(bending, material.yield_stress, record.time)
+            found += _yield_words(bending, material.yield_stress, when)
     return [f"the beam: {words}" for _, _, words in found]
 
 
@@ -82,7 +114,7 @@ def leg_stress(leg: Leg, basis: LateralBasis, lateral: Array, free: Array, compr
     return np.abs(compression) * piston.E / piston.EA + bending
 
 
-def _leg_axes(robot: Robot, record: Record) -> Array:
+def _leg_axes(robot: Robot, record: Record | RestStates) -> Array:
     """Unit vectors from base to platform joint, (T, 6, 3)."""
     R = matrix(record.pose[:, 3:])
     tips = record.pose[:, None, :3] + (robot.platform_joints - robot.payload.com) @ R.swapaxes(1, 2)
@@ -93,18 +125,18 @@ def _leg_axes(robot: Robot, record: Record) -> Array:
 _Remark = tuple[str, float, str]  # kind, severity (value over limit), words
 
 
-def _slope(basis: LateralBasis, lateral: Array, free: Array, t: Array) -> list[_Remark]:
+def _slope(basis: LateralBasis, lateral: Array, free: Array, when: _When) -> list[_Remark]:
     if not basis.count:
         return []
     slope = np.linalg.norm(lateral @ basis.tip_slope, axis=1) / free
     k = int(slope.argmax())
     if slope[k] <= SLOPE:
         return []
-    words = f"the tip slope reaches {slope[k]:.3g} at t = {t[k]:.6g} s: above {SLOPE:g} second-order theory is strained"
+    words = f"the tip slope reaches {slope[k]:.3g}{when[k]}: above {SLOPE:g} second-order theory is strained"
     return [("slope", slope[k] / SLOPE, words)]
 
 
-def _stroke(leg: Leg, length: Array, t: Array) -> list[_Remark]:
+def _stroke(leg: Leg, length: Array, when: _When) -> list[_Remark]:
     """Strokes that are no command but a result may leave their limits; the stops there are not part of the model."""
     if leg.stroke is None:
         return []
@@ -113,36 +145,38 @@ def _stroke(leg: Leg, length: Array, t: Array) -> list[_Remark]:
     if excess[k] <= STROKE_ROUNDING:
         return []
     words = (
-        f"its drive leaves the stroke of {leg.stroke.min:g} to {leg.stroke.max:g} m by {1e3 * excess[k]:.3g} mm "
-        f"at t = {t[k]:.6g} s: end stops are not part of the model"
+        f"its drive leaves the stroke of {leg.stroke.min:g} to {leg.stroke.max:g} m by "
+        f"{1e3 * excess[k]:.3g} mm{when[k]}: end stops are not part of the model"
     )
     return [("stroke", excess[k], words)]
 
 
-def _axial(leg: Leg, free: Array, compression: Array, t: Array) -> list[_Remark]:
+def _axial(leg: Leg, free: Array, compression: Array, when: _When) -> list[_Remark]:
     if (compression * free**2).max() <= NEAR_BUCKLING * leg.piston.EI * (np.pi / 2) ** 2:
         return []  # even with the least root that (T8.11) can have
     share = compression / buckling_load(leg, free)
     k = int(share.argmax())
     if share[k] <= NEAR_BUCKLING:
         return []
-    words = (
-        f"the axial load reaches {share[k]:.0%} of the Euler load ({compression[k]:.4g} N at t = {t[k]:.6g} s): "
-        "the leg is close to buckling"
-    )
-    return [("buckling", share[k], words)]
+    return [("buckling", share[k], buckling_words(share[k], compression[k], when[k]))]
 
 
-def _slender(leg: Leg, basis: LateralBasis, free: Array, t: Array) -> list[_Remark]:
+def buckling_words(share: float, force: float, when: str) -> str:
+    """That an axial force [N] is near the Euler load (T8.11), or above it, and where: for all that remark on it."""
+    what = "buckles" if share >= 1 else "is close to buckling"
+    return f"the axial load reaches {share:.0%} of the Euler load ({force:.4g} N{when}): the leg {what}"
+
+
+def _slender(leg: Leg, basis: LateralBasis, free: Array, when: _When) -> list[_Remark]:
     width, k = section_width(leg.piston), int(free.argmin())
     if free[k] >= SLENDERNESS * width:
         return []
-    return [_slender_remark(free[k], width, piston_section(leg.piston), basis, t[k])]
+    return [_slender_remark(free[k], width, piston_section(leg.piston), basis, when[k])]
 
 
-def _slender_remark(free: float, width: float, section: Section, basis: LateralBasis, t: float) -> _Remark:
+def _slender_remark(free: float, width: float, section: Section, basis: LateralBasis, when: str) -> _Remark:
     ratio = free / width
-    words = f"the free length is only {ratio:.3g} times the width at t = {t:.6g} s: "
+    words = f"the free length is only {ratio:.3g} times the width{when}: "
     return ("slenderness", SLENDERNESS / ratio, words + thick_words(section, free, solid=basis.name == SOLID))
 
 
@@ -177,21 +211,20 @@ def _curvatures(basis: LateralBasis) -> Array:
     return basis.values(STATIONS, 2)
 
 
-def _stress(leg: Leg, basis: LateralBasis, lateral: Array, free: Array, compression: Array, t: Array) -> list[_Remark]:
+def _stress(
+    leg: Leg, basis: LateralBasis, lateral: Array, free: Array, compression: Array, when: _When
+) -> list[_Remark]:
     stress = leg_stress(leg, basis, lateral, free, compression)
     if stress is None or leg.piston.yield_stress is None:
         return []
-    return _yield_words(stress, leg.piston.yield_stress, t)
+    return _yield_words(stress, leg.piston.yield_stress, when)
 
 
-def _yield_words(stress: Array, limit: float, t: Array) -> list[_Remark]:
+def _yield_words(stress: Array, limit: float, when: _When) -> list[_Remark]:
     k = int(stress.argmax())
     if stress[k] <= limit:
         return []
-    words = (
-        f"the stress reaches {stress[k] / 1e6:.4g} MPa at t = {t[k]:.6g} s, above the yield stress of "
-        f"{limit / 1e6:.4g} MPa"
-    )
+    words = f"the stress reaches {stress[k] / 1e6:.4g} MPa{when[k]}, above the yield stress of {limit / 1e6:.4g} MPa"
     return [("yield", stress[k] / limit, words)]
 
 

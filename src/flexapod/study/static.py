@@ -8,14 +8,17 @@ from typing import TYPE_CHECKING
 import numpy as np
 
 from flexapod import model, rigid
+from flexapod.solve.many import RestStates
 from flexapod.solve.modes import robot_modes
 from flexapod.solve.stiffness import robot_stiffness
+from flexapod.solve.system import RobotSystem, State
 from flexapod.study.arguments import LoadLike, PoseLike, RobotLike, as_pose, at_pose
 from flexapod.study.attributes import attributes
 from flexapod.study.checks import path_remarks
 from flexapod.study.many_modes import modes_at_poses
 from flexapod.study.mode_shapes import STATIONS, mode_values
 from flexapod.study.names import ONE_POSE_FORMS, dataset
+from flexapod.study.plausibility import rest_warnings
 from flexapod.study.poses import as_many, is_many
 
 if TYPE_CHECKING:
@@ -73,9 +76,10 @@ def modes(
         study = model.override(at_pose(robot, load), **settings)  # type: ignore[arg-type]
         return modes_at_poses(study, as_many(study.robot, pose), shapes=shapes, attrs=_settings(study))
     study, path = _problem(robot, pose, load, settings)
-    values = mode_values(study.robot, robot_modes(study.robot, study.simulation, path, study.load), path)
+    found = robot_modes(study.robot, study.simulation, path, study.load)
+    values = mode_values(study.robot, found, path)
     coords = {"mode": np.arange(1, len(values["frequency"]) + 1), "station": STATIONS}
-    return dataset(values, coords, _attributes(study, path), ONE_POSE_FORMS)
+    return dataset(values, coords, _attributes(study, path, found.system, found.equilibrium.state), ONE_POSE_FORMS)
 
 
 def stiffness(
@@ -112,7 +116,7 @@ def stiffness(
     study, path = _problem(robot, pose, load, settings)
     found = robot_stiffness(study.robot, study.simulation, path, study.load)
     values = {"stiffness": found.total, "stiffness_share": found.legs, "stiffness_turning": found.load}
-    return dataset(values, attrs=_attributes(study, path))
+    return dataset(values, attrs=_attributes(study, path, found.system, found.equilibrium.state))
 
 
 def _problem(
@@ -122,8 +126,9 @@ def _problem(
     return study, as_pose(study.robot, pose)
 
 
-def _attributes(study: model.Study, path: rigid.Poses) -> dict[str, object]:
-    return _settings(study, path_remarks(study.robot, np.zeros(1), path))
+def _attributes(study: model.Study, path: rigid.Poses, system: RobotSystem, state: State) -> dict[str, object]:
+    remarks = [*path_remarks(study.robot, np.zeros(1), path), *rest_warnings(study.robot, system, RestStates.of(state))]
+    return _settings(study, remarks)
 
 
 def _settings(study: model.Study, remarks: Iterable[str] = ()) -> dict[str, object]:

@@ -9,7 +9,7 @@ import numpy as np
 
 from flexapod.errors import InputError
 from flexapod.study.names import CAUSE_WORDS
-from flexapod.study.words import text
+from flexapod.study.words import cleared, text
 from flexapod.typing import Array
 
 if TYPE_CHECKING:
@@ -70,7 +70,7 @@ class RobotSummary:
         name = POINTS[self.point]
         if self.peak < NOTHING:
             return f"{name} stays on the path of the rigid robot: its legs are rigid."
-        by_axis = ", ".join(f"{a.axis} {text(a.peak, 'm')}" for a in self.axes)
+        by_axis = ", ".join(f"{a.axis} {text(float(cleared(a.peak, self.peak)), 'm')}" for a in self.axes)
         leg = "" if self.worst_leg is None else f", most of it in leg {self.worst_leg}"
         until = " until the computation stopped" if self.partial else ""
         size = f"{name} misses its rigid path by up to {text(self.peak, 'm')}{until} ({by_axis})"

@@ -4,12 +4,24 @@ from __future__ import annotations
 
 from typing import TYPE_CHECKING
 
+import numpy as np
+from numpy.typing import ArrayLike
+
+from flexapod.typing import Array
 from flexapod.words import Scale, column, number, scale, text
 
 if TYPE_CHECKING:
     from flexapod.model import Robot
 
-__all__ = ["Scale", "column", "held", "number", "scale", "text"]
+__all__ = ["Scale", "cleared", "column", "held", "number", "scale", "text"]
+
+ROUNDING = 1e-6  # of the largest axis: what is smaller is shown as 0
+
+
+def cleared(values: ArrayLike, largest: float) -> Array:
+    """Values of one axis to show beside the others: 0 throughout where all are rounding beside the largest axis."""
+    given = np.asarray(values, dtype=float)
+    return given * (np.abs(given).max(initial=0.0) > ROUNDING * abs(largest))
 
 
 def held(robot: Robot) -> str:

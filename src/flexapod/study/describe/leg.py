@@ -9,7 +9,7 @@ import numpy as np
 from flexapod.model import Leg, Robot
 from flexapod.model.simulation import SOLID
 from flexapod.study.estimates import buckling_load, section_width
-from flexapod.study.plausibility import NEAR_BUCKLING, SLENDERNESS, thick_words
+from flexapod.study.plausibility import NEAR_BUCKLING, SLENDERNESS, buckling_words, thick_words
 from flexapod.study.thick import piston_section
 from flexapod.typing import Array
 
@@ -132,10 +132,8 @@ def load_remarks(legs: tuple[LegDescription, ...], robot: Robot, fidelity: str) 
     worst = max(legs, key=lambda leg: leg.euler_share.value)
     share, slender = worst.euler_share, min(legs, key=lambda leg: leg.slenderness)
     if share.value > NEAR_BUCKLING:
-        what = "buckles" if share.value >= 1 else "is close to buckling"
-        remarks.append(
-            f"leg {worst.leg} {what}: it bears {share.value:.0%} of its Euler load at t = {share.time:.6g} s"
-        )
+        words = buckling_words(share.value, share.value * worst.euler_load, f" at t = {share.time:.6g} s")
+        remarks.append(f"leg {worst.leg}: {words}")
     if slender.slenderness < SLENDERNESS:
         remarks.append(
             f"leg {slender.leg}: the free length falls to {slender.slenderness:.3g} times the width of the piston; "
