@@ -2,7 +2,6 @@
 
 import numpy as np
 import pytest
-from flexapod.app.view.fields import read_fields
 from tests.runs import FIELDS, paper_robot, run_actuator, run_robot, with_legs
 
 import flexapod as fx
@@ -10,6 +9,7 @@ from flexapod.app.study_words import _damping
 from flexapod.errors import InputError
 from flexapod.mechanics.layout import LEG_PARAMETERS, columns
 from flexapod.model import Actuator, ActuatorMotion, ActuatorStudy, Damping, Simulation, loads, override, to_toml
+from flexapod.model.fields import read_fields
 from flexapod.solve.actuator_modes import actuator_modes
 from flexapod.solve.parameters import leg_parameters
 from flexapod.solve.robot_march import prepare

@@ -38,7 +38,7 @@ REFUSED = {
     "fidelity": ([('"assumed-modes"', '"beam-fem"')], ["simulation.modes = 3", "two shapes per element"]),
     "basis": ([("modes = 3", 'modes = 3\nbasis = "hermite"')], ["simulation.basis = hermite", 'fidelity = "beam-fem"']),
     "modes": ([("modes = 3", "modes = 13")], ["simulation.modes = 13", "12"]),
-    "not TOML": ([("[payload]", "[payload")], ["is not valid TOML", "line 18"]),
+    "not TOML": ([("[payload]", "[payload")], ["is not valid TOML", "line 20"]),
 }  # fmt: skip
 
 

@@ -10,6 +10,7 @@ from pathlib import Path
 
 import pytest
 from tests.cli.conftest import SHORT
+from tests.cli.test_interrupt import heed_interrupts
 
 from flexapod.app import outputs, stopping
 from flexapod.app.failures import guarded
@@ -151,12 +152,13 @@ cli.main()
 def test_a_signal_while_results_are_written_leaves_nothing_half(study, folder, name, code):
     file = study(*SHORT)
     done = subprocess.run(
-        [sys.executable, "-c", WRITING.format(name=name), str(file)], capture_output=True, text=True, timeout=120
-    )
+        [sys.executable, "-c", WRITING.format(name=name), str(file)], capture_output=True, text=True, timeout=120,
+        preexec_fn=heed_interrupts,
+    )  # fmt: skip
     assert done.returncode == code
     assert f"stopped by {name}; files already written are whole" in done.stderr
     assert "Traceback" not in done.stderr
-    assert os.listdir(folder / "study") == []
+    assert os.listdir(folder / "study-run") == []
 
 
 @pytest.mark.skipif(sys.platform == "win32", reason="signals")
@@ -172,7 +174,7 @@ def test_sigterm_keeps_what_was_computed(study, folder):
     done = subprocess.run([sys.executable, "-c", code, str(file)], capture_output=True, text=True, timeout=120)
     assert done.returncode == 143
     assert "stopped by SIGTERM at t = " in done.stderr
-    assert open_results(folder / "study" / "results.nc").attrs["partial"] == 1
+    assert open_results(folder / "study-run" / "results.nc").attrs["partial"] == 1
 
 
 @pytest.mark.skipif(sys.platform == "win32", reason="signals")

@@ -21,8 +21,10 @@ LONG = [
 
 
 def heed_interrupts():
-    """A suite that runs in the background of a shell passes on that SIGINT is ignored."""
+    """A suite that runs in the background, or under nohup, passes on that signals are ignored."""
     signal.signal(signal.SIGINT, signal.default_int_handler)
+    for name in ("SIGTERM", "SIGHUP"):
+        signal.signal(getattr(signal, name), signal.SIG_DFL)
 
 
 def terminal():

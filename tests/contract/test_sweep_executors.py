@@ -5,6 +5,7 @@ import os
 import pickle
 import signal
 import sys
+from contextlib import suppress
 
 import numpy as np
 import pytest
@@ -114,7 +115,10 @@ def test_two_local_workers_one_of_which_dies(monkeypatch, tmp_path):
 def _kill_a_worker():
     psutil = pytest.importorskip("psutil")
     children = psutil.Process().children(recursive=True)
-    workers = [child.pid for child in children if "spawn_main" in " ".join(child.cmdline())]
+    workers = []
+    for child in children:
+        with suppress(psutil.Error):  # one that ends meanwhile
+            workers += [child.pid] * ("spawn_main" in " ".join(child.cmdline()))
     os.kill(workers[0], signal.SIGKILL)
     return True
 

@@ -121,7 +121,7 @@ def numbers(rng, *shape):
 def test_what_is_counted_is_the_same_force_both_ways():
     """Lagrange's forces along alpha, beta, l against Newton-Euler's across and along; no inertia about the leg."""
     rng = np.random.default_rng(5)
-    names = ("rhoA", "EI", "EA", "Lp", "mouth", "piston_axial", "m", "c", "I", "axial", "zeta", "k", "d")
+    names = ("rhoA", "EI", "EA", "Lp", "mouth", "piston_axial", "m", "c", "I", "axial", "zeta", "time", "k", "d")
     p = dict.fromkeys(names, 0.0) | {name: float(rng.uniform(0.5, 1.5)) for name in ("rhoA", "Lp", "m", "c", "I")}
     p |= {"EI": 1.0, "EA": 1.0, "mouth": 0.4}
     (alpha, beta, length), v, v_dot, g = (numbers(rng, 3) for _ in range(4))

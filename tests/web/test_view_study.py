@@ -1,7 +1,6 @@
 """The page of `flexapod view` in a browser: numbers, words, simulation, files, two people at once."""
 
 import io
-import os
 import threading
 import zipfile
 from pathlib import Path
@@ -14,6 +13,7 @@ import flexapod as fx
 from flexapod.app import figures
 from flexapod.app.failures import lines_of, parts_of
 from flexapod.app.view import files_panel
+from flexapod.app.view.cores import Turn
 from flexapod.app.view.uploads import LARGEST
 from flexapod.errors import InputError
 from flexapod.study import open_results, summary
@@ -157,16 +157,18 @@ def test_simulate_shows_progress_and_can_be_cancelled(show):
     assert not session.busy and session.data is None
     until(lambda: not [t for t in threading.enumerate() if t.name == "flexapod-simulation"])
     places = session._cores
+    taken = []
     while places._free:
-        assert places.take(lambda: False, lambda: None)
+        taken.append(Turn())
+        assert places.take(taken[-1], lambda: False, lambda: None)
     page.get_by_role("button", name="Simulate").click()
     page.get_by_text("Waiting for a free core").wait_for()
-    places.give_back()
+    places.give_back(taken.pop())
     page.get_by_text("Simulating.").wait_for()
     page.get_by_role("button", name="Cancel").click()
     until(lambda: places._free)
-    while places._free < len(os.sched_getaffinity(0)):
-        places.give_back()
+    while taken:
+        places.give_back(taken.pop())
 
 
 def test_points_and_tables_are_added_and_taken_out(show):

@@ -82,7 +82,7 @@ def _end_by_signals() -> None:
             raise KeyboardInterrupt
 
     for kind in kinds:
-        if signal.getsignal(kind) is signal.SIG_DFL:  # nohup has switched SIGHUP off
+        if signal.getsignal(kind) is not signal.SIG_IGN:  # as nohup has switched SIGHUP off
             signal.signal(kind, end)
 
 

@@ -214,6 +214,14 @@ def _comparable(value: object) -> object:
     return value
 
 
+def _largest(value: Any) -> Any:
+    """Of a table or a vector the number of the largest size, else the value."""
+    if not isinstance(value, list | tuple | np.ndarray):
+        return value
+    flat = np.asarray(value, dtype=float).ravel()
+    return float(flat[np.abs(flat).argmax()])
+
+
 def _input_error(error: ValidationError, model: type[Frozen]) -> InputError:
     first = error.errors(include_url=False)[0]
     key = ".".join(str(part) for part in first["loc"]) or None
@@ -234,6 +242,6 @@ def _input_error(error: ValidationError, model: type[Frozen]) -> InputError:
         hint = closest(value, names) if isinstance(value, str) else None
         return InputError("is not known", key=key, value=value, allowed=", ".join(names), next_step=hint)
     if kind == "size":
-        return InputError(first["msg"], key=key, value=value, allowed=context["allowed"])
+        return InputError(first["msg"], key=key, value=_largest(value), allowed=context["allowed"])
     message = first["msg"].removeprefix("Value error, ").replace("Input should be", "must be")
     return InputError(message, key=key, value=value)

@@ -148,7 +148,7 @@ def _row(path: Path, line: int, cells: list[str], names: list[str]) -> list[floa
 
 def wrong_instant(time: Array, jumps: bool) -> int | None:
     """Index of the first instant that is not later than the one before it; with `jumps` two may be the same."""
-    fine = np.diff(time) >= DIMENSIONS["time"].least
+    fine = np.diff(time) > 0.999 * DIMENSIONS["time"].least  # a difference of two instants is rounded
     if jumps:
         fine |= (np.diff(time) == 0) & np.append(True, fine[:-1])
     return None if fine.all() else int(np.argmin(fine)) + 1

@@ -28,7 +28,7 @@ from flexapod.plot.style import (
     scale,
     styled,
 )  # fmt: skip
-from flexapod.study.scene import motion_end
+from flexapod.study.scene import mode_scene, motion_end, robot_study
 from flexapod.study.words import number, text
 
 __all__ = ["actuator_free", "actuator_symbols", "forces_overlaid", "path_bands", "piston_mode"]
@@ -204,15 +204,13 @@ def piston_mode(modes: xr.Dataset, mode: int) -> Figure:
     mode : int
         Label on the `mode` dimension.
     """
-    from flexapod.study.scene import robot_study
-
-    one = modes.sel(mode=mode)
+    one, rest = modes.sel(mode=mode), mode_scene(modes, mode, 1.0, phase=0.0)
     shape = one.leg_shape.values  # (leg, direction, station)
     leg = int(np.argmax(np.abs(shape).max(axis=(1, 2))))
     _, _, directions = np.linalg.svd(shape[leg].T, full_matrices=False)
     across, station = directions[0] @ shape[leg], one.station.values
     mouth = robot_study(modes).robot.legs[leg].cylinder.mouth
-    length = float(np.linalg.norm(_leg_vector(modes, leg)))
+    length = float(np.linalg.norm(rest.platform[leg] - rest.base[leg]))
     drawn = 1e3 * BENT * length * across / np.abs(across).max()
     fig = figure(PAGE, 2.9)
     axes = fig.subplots()
@@ -229,11 +227,3 @@ def piston_mode(modes: xr.Dataset, mode: int) -> Figure:
     axes.set_title(f"Leg {leg + 1} in mode {mode}: {float(one.frequency):.1f} Hz")
     fig.legend(*axes.get_legend_handles_labels(), loc="outside upper center", ncols=3)
     return fig
-
-
-def _leg_vector(modes: xr.Dataset, leg: int) -> np.ndarray:
-    from flexapod.rigid.rotations import matrix
-    from flexapod.study.scene import robot_study
-
-    robot, R = robot_study(modes).robot, matrix(modes.platform_quaternion.values)
-    return modes.platform_position.values + R @ robot.platform_joints[leg] - robot.base_joints[leg]

@@ -11,6 +11,8 @@ from flexapod.solve.system import Matrices, RobotSystem, State
 from flexapod.solve.tables import Commands
 from flexapod.typing import Array
 
+FOLLOWED = 0.03  # of a step, 1 over a rate: what vibrates five times in a step is not followed at all, slower parts are
+
 
 @dataclass(frozen=True, kw_only=True)
 class Start:
@@ -90,7 +92,10 @@ def _jerk(system: RobotSystem, x: State, commands: Commands, h: float) -> Array:
 
 def _resolved(m: Matrices, jerk: Array, h: float) -> Array:
     """The jerk without what steps of ``h`` cannot follow, Eq. (T6.25): light parts are quasi-static to them."""
-    return saddle_solve(m.M + h * m.D + h**2 * m.K, m.G, m.M @ jerk, m.G @ jerk)[0]
+    left, t = jerk, FOLLOWED * h
+    for _ in range(2):
+        left = left - saddle_solve(m.M + t * m.D + t**2 * m.K, m.G, m.M @ left, m.G @ left)[0]
+    return jerk - left
 
 
 def normal_velocity(system: RobotSystem, m: Matrices, vector: Array) -> Array:

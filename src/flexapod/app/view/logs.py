@@ -52,5 +52,6 @@ CONNECTIONS = LOG.getChild("connections")
 
 FEW = Few()
 LOG.addFilter(FEW)
+CONNECTIONS.setLevel(logging.WARNING)  # who comes and goes is not told
 CONNECTIONS.addFilter(_unexpected)
 CONNECTIONS.addFilter(FEW)
