@@ -25,7 +25,8 @@ from flexapod.symbolic.functions import operations
 __all__ = ["Count", "casadi_count", "counted", "main"]
 
 HERE = Path(__file__).parent
-#: A vector of bodies is a type of `counted.h` with one lane; zero plus a value, which makes a vector of it, is no sum.
+#: A vector of bodies is a type of `counted.h` with one lane; zero plus a value, which makes
+#: a vector of it, is not a sum.
 REWRITTEN = (
     (r"typedef double lanes __attribute__\(\(.*\)\);", ""),
     (r"enum \{ LANES = \d+ \};", "enum { LANES = 1 };"),
@@ -69,7 +70,7 @@ def counted(action: str) -> Count:
     Raises
     ------
     RuntimeError
-        There is no C++ compiler, or the sources are no C++ with another number type: with the words of what failed.
+        There is no C++ compiler, or the sources are not C++ with another number type: with the words of what failed.
     """
     with tempfile.TemporaryDirectory() as name:
         script = Path(name) / "counting-cc"

@@ -72,7 +72,7 @@ def read_text(path: str | Path, most: int) -> str:
     try:
         return read_bytes(path, most).decode("utf-8-sig")
     except UnicodeDecodeError:
-        raise OSError(errno.EILSEQ, "it is no UTF-8 text") from None
+        raise OSError(errno.EILSEQ, "it is not UTF-8 text") from None
 
 
 def _refuse(found: os.stat_result, most: float) -> None:

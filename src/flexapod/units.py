@@ -111,7 +111,7 @@ def to_si(value: object, dimension: str, *, key: str | None = None) -> float:
     Raises
     ------
     InputError
-        If it is no finite number, or its unit belongs to something else.
+        If it is not a finite number, or its unit belongs to something else.
     """
     if isinstance(value, str):
         number = _from_text(value, dimension, key)

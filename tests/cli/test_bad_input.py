@@ -130,7 +130,7 @@ def test_files_that_are_none(flexapod, folder, command):
     (folder / "empty.toml").write_text("")
     assert refusal(flexapod(command, "nowhere.toml"), "nowhere.toml", "No such file", "flexapod new")
     assert refusal(flexapod(command, "folder.toml"), "folder.toml", "cannot be read", "directory")
-    assert refusal(flexapod(command, "latin.toml"), "latin.toml", "no UTF-8 text")
+    assert refusal(flexapod(command, "latin.toml"), "latin.toml", "not UTF-8 text")
     assert refusal(flexapod(command, "empty.toml"), "empty.toml", "neither [robot] nor [actuator]")
 
 
@@ -150,7 +150,7 @@ def test_actuator_that_leaves_its_hub(flexapod, study):
     "pose, words",
     [
         ("rol=20deg", ["--pose = rol=20deg", "surge, sway", "Did you mean 'roll'?"]),
-        ("roll", ["is no axis with its value"]),
+        ("roll", ["is not an axis with its value"]),
         ("roll=20 kg", ["--pose roll = 20 kg", "is not an angle"]),
         ("roll=1deg,roll=2deg", ["is given twice"]),
         ("heave=inf", ["is not finite"]),

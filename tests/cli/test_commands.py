@@ -185,7 +185,7 @@ def test_unknown_formats_are_refused_before_anything_is_computed(
         command, study(preset=f"paper-{'robot' if command == 'run' else 'actuator'}"), "--format", formats
     )
     assert result.exit_code == 2
-    assert f"--format = {named}: is no format of figures" in result.stderr
+    assert f"--format = {named}: is not a format of figures" in result.stderr
     assert "png, svg, pdf" in result.stderr
     assert [path.name for path in folder.iterdir()] == ["study.toml"]
 

@@ -43,7 +43,7 @@ def test_bad_files_are_refused_before_a_server_starts(flexapod, study, folder):
     save(data, folder / "torn.nc")
     assert "study: is missing" in refused(flexapod("view", "torn.nc"))
     save(fx.modes(fx.preset("paper-robot")), folder / "modes.nc")
-    assert "is no result of a simulation" in refused(flexapod("view", "modes.nc"))
+    assert "is not a result of a simulation" in refused(flexapod("view", "modes.nc"))
 
 
 def test_places_to_listen(flexapod, study):
@@ -53,7 +53,7 @@ def test_places_to_listen(flexapod, study):
         port = taken.getsockname()[1]
         assert f"--port = {port}" in refused(flexapod("view", study(), "--port", port))
     assert "--host = 203.0.113.7" in refused(flexapod("view", study(), "--host", "203.0.113.7"))
-    assert "is no name or address" in refused(flexapod("view", study(), "--host", "no.such.host.invalid"))
+    assert "is not a name or address" in refused(flexapod("view", study(), "--host", "no.such.host.invalid"))
 
 
 @pytest.mark.parametrize(

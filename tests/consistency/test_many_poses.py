@@ -161,7 +161,7 @@ def test_lost_poses_do_not_disturb_their_neighbours():
     system = locked_poses(study.robot, study.simulation, from_home(study.robot, POSES)).system
     start = rigid_rest(system, study.robot, from_home(study.robot, POSES))
     length = start.q[:, :, 2].copy()
-    length[2, 0] += 0.4  # a leg that no pose fits: the first step is no elastic deformation
+    length[2, 0] += 0.4  # a leg that no pose fits: the first step is not an elastic deformation
     found = equilibria(system, start, length, np.zeros((5, 6)), WRENCH)
     assert (found.code != 0).tolist() == [False, False, True, False, False]
     alone = equilibria(system, start[slice(3, 4)], length[3:4], np.zeros((1, 6)), WRENCH)
@@ -268,9 +268,9 @@ def test_an_equilibrium_across_a_singularity_is_none_of_the_pose():
 @pytest.mark.parametrize(
     ("pose", "words"),
     [
-        (np.zeros((2, 5)), "are no poses"),
-        (np.full((2, 6), np.nan), "are no poses"),
-        ([[0, 1], [1]], "are no poses"),
+        (np.zeros((2, 5)), "are not poses"),
+        (np.full((2, 6), np.nan), "are not poses"),
+        ([[0, 1], [1]], "are not poses"),
         ({"heave": [0, 1], "roll": [0, 1, 2]}, "do not fit each other"),
         ({"lift": [0, 1]}, "is not an axis"),
     ],

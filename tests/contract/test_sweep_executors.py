@@ -141,7 +141,7 @@ def test_a_worker_of_another_version_is_told_from_other_faults():
     [
         ({"workers": 1.5}, "workers = 1.5: is not a whole number"),
         ({"workers": "2"}, "workers = '2': is not a whole number"),
-        ({"scheduler": 8786}, "scheduler = 8786: is no address"),
+        ({"scheduler": 8786}, "scheduler = 8786: is not an address"),
         ({"workers": -1}, "workers = -1: is out of range"),
         ({"workers": 1, "scheduler": "tcp://127.0.0.1:1"}, "together with a scheduler"),
         ({"scheduler": "tcp://127.0.0.1:1"}, "scheduler = 'tcp://127.0.0.1:1': cannot be reached"),
@@ -170,5 +170,5 @@ def test_a_script_without_a_guard_is_told_so(tmp_path):
 
 
 def test_open_sweep_of_nothing(tmp_path):
-    with pytest.raises(InputError, match="is no store of a sweep"):
+    with pytest.raises(InputError, match="is not a store of a sweep"):
         open_sweep(tmp_path / "none.zarr")

@@ -15,7 +15,7 @@ STEPS = (2e-3, 1e-3, 5e-4, 2.5e-4)
 
 @pytest.fixture(scope="module")
 def runs():
-    # C-infinity law from equilibrium: the stiff axial modes follow quasi-statically and are no part of the error.
+    # C-infinity law from equilibrium: the stiff axial modes follow quasi-statically and are not part of the error.
     study = override(paper_robot(profile="smooth"), fidelity="lumped", output_step=4e-3, duration=1.2)
     return [run_robot(override(study, step=h)) for h in STEPS]
 

@@ -52,7 +52,7 @@ def test_texts(tmp_path):
     path.write_bytes(b"\xef\xbb\xbf\xc2\xb5")
     assert read_text(path, 10) == "µ"
     path.write_bytes(b"\xb5")
-    with pytest.raises(OSError, match="no UTF-8 text"):
+    with pytest.raises(OSError, match="not UTF-8 text"):
         read_text(path, 10)
 
 

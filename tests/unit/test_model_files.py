@@ -391,7 +391,7 @@ def test_broken_files(tmp_path):
     with pytest.raises(InputError, match="cannot be read: No such file"):
         model.load(tmp_path / "none.toml")
     (tmp_path / "latin.toml").write_bytes(b"# \xe9")
-    with pytest.raises(InputError, match="no UTF-8 text"):
+    with pytest.raises(InputError, match="not UTF-8 text"):
         model.load(tmp_path / "latin.toml")
 
 

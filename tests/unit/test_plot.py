@@ -172,11 +172,11 @@ def test_formats_and_their_refusal(robot, tmp_path):
     assert first.startswith(b"%PDF")
     plot.save(plot.com_path(robot, ("z",)), tmp_path / "z", formats=("pdf",))
     assert written[0].read_bytes() == first  # the same picture is the same file
-    with pytest.raises(InputError, match="no format"):
+    with pytest.raises(InputError, match="not a format"):
         plot.save(figure, tmp_path / "z", formats=("jpg",))
-    with pytest.raises(InputError, match="no format"):
+    with pytest.raises(InputError, match="not a format"):
         plot.save(figure, tmp_path / "z", formats=())
-    with pytest.raises(InputError, match="no width"):
+    with pytest.raises(InputError, match="not a width"):
         plot.save(figure, tmp_path / "z", width=0.0)
 
 

@@ -129,7 +129,7 @@ def test_variables_are_what_they_should_be(results, kind, tmp_path):
         "not finite": data.assign({name: data[name] * np.nan}),
         "has instants that do not grow": data.isel(time=slice(None, None, -1)),
         "is not a list of instants": data.drop_vars("time"),
-        "no result of a simulation": data.drop_vars(["com_deviation", "angle"], errors="ignore"),
+        "not a result of a simulation": data.drop_vars(["com_deviation", "angle"], errors="ignore"),
     }
     for words, broken in changed.items():
         assert words in refusal(broken, path), words

@@ -204,7 +204,7 @@ def test_figures_of_a_study_stopped_early(beam, runs):
 
 @pytest.mark.parametrize("accuracy", [0, -1, 2.0, float("nan"), 1e-9, "small", True])
 def test_an_accuracy_that_is_none(beam, accuracy):
-    with pytest.raises(fx.InputError, match="no relative error") as error:
+    with pytest.raises(fx.InputError, match="not a relative error") as error:
         converge(beam, accuracy=accuracy)
     assert error.value.key == "accuracy"
 

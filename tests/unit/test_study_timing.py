@@ -15,7 +15,7 @@ QUICK = {"fidelity": "lumped", "step": 1e-3}
 def test_a_rest_shorter_than_an_output_step_is_left_out_with_a_remark():
     data = fx.simulate(paper_robot(**QUICK), duration=0.0267, output_step=0.01)
     assert data.time.values == pytest.approx([0.0, 0.01, 0.02])  # not 0.03, which is beyond the duration
-    assert "0.0267 s is no multiple of simulation.output_step = 0.01 s: results end at t = 0.02 s" in data.warnings
+    assert "0.0267 s is not a multiple of simulation.output_step = 0.01 s: results end at t = 0.02 s" in data.warnings
     np.testing.assert_array_equal(
         fx.inverse_kinematics(paper_robot(), duration=0.0267, output_step=0.01).time, data.time
     )

@@ -86,7 +86,7 @@ def test_the_first_quantity_with_a_value_is_drawn():
 
 def test_refusals():
     data = swept(diameters(2))
-    with pytest.raises(InputError, match="is no quantity of this sweep"):
+    with pytest.raises(InputError, match="is not a quantity of this sweep"):
         draw(data, "peak")
     data["com_deviation_peak"][:] = np.nan
     with pytest.raises(InputError, match="has no computed point"):

@@ -176,7 +176,7 @@ def test_a_comment_in_the_study_is_no_other_study(path):
 def test_what_is_no_store_is_refused_and_left_alone(tmp_path):
     (tmp_path / "notes.txt").write_text("mine", encoding="utf-8")
     for place in (tmp_path, tmp_path / "notes.txt"):
-        with pytest.raises(InputError, match="is no store of a sweep"):
+        with pytest.raises(InputError, match="is not a store of a sweep"):
             sweep(place)
     assert (tmp_path / "notes.txt").read_text(encoding="utf-8") == "mine"
 
@@ -384,7 +384,7 @@ def test_a_spoilt_description_is_named(path, name):
     for spoilt in (b"", content[: len(content) // 2], b"{}"):
         file.write_bytes(spoilt)
         for opening in (lambda: open_sweep(path), lambda: sweep(path)):
-            words = f"the array {name} cannot be read" if name else "the whole cannot be read|is no store of a sweep"
+            words = f"the array {name} cannot be read" if name else "the whole cannot be read|is not a store of a sweep"
             with pytest.raises(InputError, match=words):
                 opening()
     file.write_bytes(content)

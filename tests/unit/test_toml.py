@@ -1,4 +1,4 @@
-"""TOML that is no study, or is made to keep the reader busy: refused in words, and soon."""
+"""TOML that is not a study, or is made to keep the reader busy: refused in words, and soon."""
 
 import time
 import tomllib

@@ -120,7 +120,7 @@ def test_an_upload_reads_no_file_of_the_server(tmp_path):
     ("content", "words"),
     [
         (b"a = 1" + b" " * LARGEST, "too large"),
-        (b"\xff\xfe", "no UTF-8"),
+        (b"\xff\xfe", "not UTF-8"),
         (b"a =", "not valid TOML"),
         (b"a = 1", "neither"),
     ],

@@ -175,26 +175,26 @@ def test_ranges_that_are_chosen(study):
     ("change", "words"),
     [
         ({"axes": {"surg": None}}, "Did you mean 'surge'"),
-        ({"axes": ["surge", "heave"]}, "no set of coordinates by name"),
-        ({"axes": "surge"}, "no set of coordinates by name"),
+        ({"axes": ["surge", "heave"]}, "not a set of coordinates by name"),
+        ({"axes": "surge"}, "not a set of coordinates by name"),
         ({"axes": {3: [0.0]}}, "is not a coordinate"),
-        ({"at": 3}, "no set of coordinates by name"),
+        ({"at": 3}, "not a set of coordinates by name"),
         ({"at": {2: 0.1}}, "is not a coordinate"),
         ({"axes": {}}, "number of axes"),
         ({"axes": dict.fromkeys(("surge", "sway", "heave", "yaw"))}, "number of axes"),
-        ({"axes": {"surge": []}}, "no points"),
+        ({"axes": {"surge": []}}, "not points"),
         ({"axes": {"surge": [0.1, 0.0]}}, "ascending"),
         ({"axes": {"surge": [np.nan]}}, "finite"),
         ({"axes": {"surge": Range(low=0.1, high=-0.1)}}, "begins where it should end"),
-        ({"axes": {"surge": Range(count=0)}}, "no number of points"),
+        ({"axes": {"surge": Range(count=0)}}, "not a number of points"),
         ({"axes": {"surge": Range(low=0, high=1, count=3_000_000)}}, "too many poses"),
         ({"at": {"heave": 0.1}}, "varies in this map"),
         ({"at": {"lift": 0.1}}, "is not a coordinate"),
-        ({"at": {"roll": "10 deg"}}, "is no number"),
+        ({"at": {"roll": "10 deg"}}, "is not a number"),
         ({"axes": {"roll": None}, "at": {"heave": 1.0}}, "out of reach"),
-        ({"direction": "up"}, "is no direction"),
+        ({"direction": "up"}, "is not a direction"),
         ({"direction": [0, 0, 0]}, "has no direction"),
-        ({"acceleration": [1, 2]}, "is no vector"),
+        ({"acceleration": [1, 2]}, "is not a vector"),
         ({"frequencies": 0}, "number of modes"),
         ({"frequencies": 2.5}, "number of modes"),
         ({"fidelity": "rigid"}, "nothing that could vibrate"),
@@ -208,7 +208,7 @@ def test_input_that_is_refused(study, change, words):
 def test_numbers_of_numpy_and_directions_of_any_length(study):
     data = fx.workspace_map(study, {"heave": [0.0]}, frequencies=np.int64(3), direction="x")
     assert data.sizes["mode"] == 3
-    for length in (1e-200, 1e300):  # squares are no numbers
+    for length in (1e-200, 1e300):  # squares are not numbers
         along = fx.workspace_map(study, {"heave": [0.0]}, direction=[length, 0, 0])
         assert along.stiffness.item() == data.stiffness.item()
 

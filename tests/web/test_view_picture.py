@@ -231,12 +231,12 @@ def test_a_result_with_one_instant_is_shown(visit, tmp_path):
 
 def test_errors_before_the_page_exists_are_shown_and_logged(visit, monkeypatch, caplog):
     def broken(*_):
-        raise InputError("is no header", key="header")
+        raise InputError("is not a header", key="header")
 
     session = visit(study_text(*SHORT))
     monkeypatch.setattr(sessions, "Header", broken)
     with guest(session.server) as client:
-        until(lambda: "is no header" in caplog.text)
+        until(lambda: "is not a header" in caplog.text)
         until(lambda: client.messages["GuiHtmlMessage"])
 
 

@@ -54,7 +54,7 @@ def export(
 
     if format not in FORMATS:
         words = "abaqus, a deck that CalculiX reads as well"
-        raise InputError("is no format", key="--format", value=format, allowed=words)
+        raise InputError("is not a format", key="--format", value=format, allowed=words)
     study = model.load(file)
     if isinstance(study, model.ActuatorStudy):
         raise InputError("is the study of a single actuator", file=file, allowed="the study of a robot")

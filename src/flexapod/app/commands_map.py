@@ -74,7 +74,9 @@ def workspace_map(
                 progress=lambda words, share: report(words, COMPUTING * share),
             )  # fmt: skip
         if mode > data.sizes["mode"]:
-            raise InputError("is no mode of this robot", key="--mode", value=mode, allowed=f"1 to {data.sizes['mode']}")
+            raise InputError(
+                "is not a mode of this robot", key="--mode", value=mode, allowed=f"1 to {data.sizes['mode']}"
+            )
         files = _write(data, folder, mode, report, figures=not no_figures)
     found = map_findings(data, mode)
     if json:

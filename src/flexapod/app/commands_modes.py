@@ -67,7 +67,7 @@ def parse_pose(text: str | None) -> dict[str, float] | None:
     Raises
     ------
     InputError
-        Unknown axes, something that is no number with a unit of the right kind.
+        Unknown axes, something that is not a number with a unit of the right kind.
     """
     from flexapod.errors import InputError, closest
     from flexapod.model import AXES
@@ -79,7 +79,7 @@ def parse_pose(text: str | None) -> dict[str, float] | None:
     for part in text.split(","):
         name, equals, value = (piece.strip() for piece in part.partition("="))
         if not equals or name not in AXES or name in pose:
-            what = "is given twice" if name in pose else "is no axis with its value"
+            what = "is given twice" if name in pose else "is not an axis with its value"
             hint = closest(name, AXES) or 'Write --pose "roll=20deg,heave=10mm"'
             raise InputError(what, key="--pose", value=part.strip(), allowed=", ".join(AXES), next_step=hint)
         dimension = "length" if name in AXES[:3] else "angle"

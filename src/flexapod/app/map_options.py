@@ -32,7 +32,7 @@ def parse_axes(options: dict[str, str | None], count: int | None) -> dict[str, R
     Raises
     ------
     InputError
-        An unknown coordinate, one that is given twice, ends that are no lengths or angles, ends in the wrong order, no
+        An unknown coordinate, one that is given twice, ends that are not lengths or angles, ends in the wrong order, no
         points.
     """
     axes: dict[str, Range] = {}
@@ -55,11 +55,11 @@ def _axis(option: str, text: str) -> tuple[str, Range]:
     if match is None or name != match["name"]:
         match = _AXIS.match(text.replace(":", " :", 1)) if match else None
     if match is None:
-        raise InputError("is no axis", key=option, value=text, allowed=FORM)
+        raise InputError("is not an axis", key=option, value=text, allowed=FORM)
     count = _count(option, match["count"])
     if match["low"] is None:
         if "=" in text:
-            raise InputError("is no axis", key=option, value=text, allowed=FORM)
+            raise InputError("is not an axis", key=option, value=text, allowed=FORM)
         return name, Range(count=count)
     low, high = match["low"], match["high"]
     if (unit := _UNIT.search(high)) and _is_number(low):
@@ -74,7 +74,7 @@ def _count(option: str, text: str | None) -> int | None:
     if text is None:
         return None
     if not text.isdecimal() or int(text) < 1:
-        raise InputError("is no number of points", key=option, value=text, allowed="1 or more")
+        raise InputError("is not a number of points", key=option, value=text, allowed="1 or more")
     return int(text)
 
 
@@ -84,7 +84,7 @@ def parse_at(text: str | None, axes: Collection[str] = ()) -> dict[str, float]:
     Raises
     ------
     InputError
-        Unknown coordinates, one given twice or one of the `axes`, something that is no length or angle.
+        Unknown coordinates, one given twice or one of the `axes`, something that is not a length or angle.
     """
     fixed: dict[str, float] = {}
     for part in (text or "").split(","):
@@ -116,7 +116,7 @@ def parse_acceleration(text: str | None) -> list[float] | None:
     unit = _UNIT.search(parts[-1].strip())
     whole = [part.strip() + (unit[0] if unit and _is_number(part) else "") for part in parts]
     if len(whole) != 3:
-        raise InputError("is no vector", key="--acceleration", value=text, allowed='three numbers such as "0,0,5"')
+        raise InputError("is not a vector", key="--acceleration", value=text, allowed='three numbers such as "0,0,5"')
     return [to_si(_number(part), "acceleration", key="--acceleration") for part in whole]
 
 
@@ -126,14 +126,14 @@ def _numbers(option: str, text: str, allowed: str) -> list[float]:
     except ValueError:
         found = []
     if len(found) != 3:
-        raise InputError("is no direction", key=option, value=text, allowed=allowed)
+        raise InputError("is not a direction", key=option, value=text, allowed=allowed)
     return found
 
 
 def _check_name(option: str, name: str) -> None:
     if name not in AXES:
         raise InputError(
-            "is no coordinate", key=option, value=name, allowed=", ".join(AXES), next_step=closest(name, AXES)
+            "is not a coordinate", key=option, value=name, allowed=", ".join(AXES), next_step=closest(name, AXES)
         )
 
 

@@ -33,7 +33,7 @@ def parse_formats(text: str) -> tuple[str, ...]:
     unknown = [name for name in names if name not in FORMATS]
     if unknown or not names:
         raise InputError(
-            "is no format of figures",
+            "is not a format of figures",
             key="--format",
             value=unknown[0] if unknown else text,
             allowed=f"{', '.join(FORMATS)}, or several with commas",

@@ -60,7 +60,7 @@ def print_table(header: Sequence[str], rows: Sequence[Sequence[str]], left: Coll
 
 @contextmanager
 def progress_bar(*, quiet: bool) -> Iterator[Report]:
-    """A bar with the remaining time on stderr; silent if `quiet` or where stderr is no terminal."""
+    """A bar with the remaining time on stderr; silent if `quiet` or where stderr is not a terminal."""
     from rich.console import Console
     from rich.progress import BarColumn, Progress, TaskProgressColumn, TextColumn, TimeRemainingColumn
 

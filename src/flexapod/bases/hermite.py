@@ -40,6 +40,6 @@ def hermite_shapes(count: int) -> list[HermiteShape]:
         Odd count (the study file is checked before).
     """
     if count % 2:
-        raise ValueError(f"{count} shapes are no whole number of beam elements: each has two")
+        raise ValueError(f"{count} shapes are not a whole number of beam elements: each has two")
     elements = count // 2
     return [HermiteShape(node=i, elements=elements, order=d) for i in range(1, elements + 1) for d in (0, 1)]

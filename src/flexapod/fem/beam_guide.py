@@ -186,9 +186,9 @@ def _mouth(mesh: BeamMesh, inside: float) -> tuple[int, float]:
 
 def _positive(key: str, value: float) -> None:
     if not (math.isfinite(value) and value > 0):
-        raise InputError("is no property of a guide", key=f"guide.{key}", value=value, allowed="above 0, finite")
+        raise InputError("is not a property of a guide", key=f"guide.{key}", value=value, allowed="above 0, finite")
 
 
 def _not_negative(key: str, value: float) -> None:
     if not (math.isfinite(value) and value >= 0):
-        raise InputError("is no property of a guide", key=f"guide.{key}", value=value, allowed="0 or more, finite")
+        raise InputError("is not a property of a guide", key=f"guide.{key}", value=value, allowed="0 or more, finite")

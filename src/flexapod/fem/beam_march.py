@@ -91,7 +91,7 @@ def march_sliding_beam(
 
 def _check_times(study: ActuatorStudy, step: float, end: float) -> None:
     if not 0 < step <= end:
-        raise InputError("is no step of the run", key="step", value=step, allowed=f"above 0, at most {end:g} s")
+        raise InputError("is not a step of the run", key="step", value=step, allowed=f"above 0, at most {end:g} s")
     jumps = [jump for jump in study.motion.rate_jumps if jump < end]
     if jumps:
         raise InputError(

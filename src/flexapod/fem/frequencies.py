@@ -44,7 +44,7 @@ def frequencies(mesh: SolidMesh, *, E: float, density: float, poisson: float = 0
     free = free_unknowns(mesh.nodes[:, 1:], mesh.section)
     free[np.repeat(np.isin(np.arange(len(mesh.nodes)), mesh.plane(0)), 3)] = False
     if not 0 < count < free.sum() - 1:
-        raise InputError("is no number of modes", key="count", value=count, allowed=f"1 to {free.sum() - 2}")
+        raise InputError("is not a number of modes", key="count", value=count, allowed=f"1 to {free.sum() - 2}")
     parts = integrals(mesh)
     K, M = (matrix[free][:, free] for matrix in (stiffness(parts, E, poisson), mass(parts, density)))
     return lowest(K, M, count)

@@ -44,9 +44,9 @@ def solid_leg_shapes(
         Sizes or counts that do not fit.
     """
     if not 1 <= count <= 12:
-        raise InputError("is no number of shapes", key="count", value=count, allowed="1 to 12")
+        raise InputError("is not a number of shapes", key="count", value=count, allowed="1 to 12")
     if not (np.isfinite(length) and length > 0):
-        raise InputError("is no length", key="length", value=length, allowed="above 0 m")
+        raise InputError("is not a length", key="length", value=length, allowed="above 0 m")
     spacing = length / _INTERVALS
     # Behind the mouth as much as the section's end effects need to fade.
     held = max(4, int(np.ceil(3 * section.depth / spacing)))

@@ -83,9 +83,9 @@ def beam_mesh(
 
 def _check(length: float, size: float) -> None:
     if not (np.isfinite(length) and length > 0):
-        raise InputError("is no length of a beam", key="length", value=length, allowed="above 0 m")
+        raise InputError("is not a length of a beam", key="length", value=length, allowed="above 0 m")
     if not (np.isfinite(size) and size > 0):
-        raise InputError("is no length of an element", key="size", value=size, allowed="above 0 m")
+        raise InputError("is not a length of an element", key="size", value=size, allowed="above 0 m")
     if size > length:
         raise InputError(
             "makes an element longer than the beam",

@@ -117,7 +117,7 @@ def reduced_beam(
 def _check(length: float, size: float, spacing: float) -> None:
     for key, value in (("length", length), ("size", size), ("spacing", spacing)):
         if not (np.isfinite(value) and value > 0):
-            raise InputError("is no length", key=key, value=value, allowed="above 0 m")
+            raise InputError("is not a length", key=key, value=value, allowed="above 0 m")
     if size > spacing or 4 * spacing > length:
         raise InputError(
             "does not fit: elements are at most as long as the stations are apart, and these a quarter of the beam",

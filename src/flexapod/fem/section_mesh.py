@@ -77,9 +77,9 @@ def section_mesh(section: Tube | Rectangle, size: float, kind: str, *, whole: bo
         Unknown kind, or a size that is not positive.
     """
     if kind not in KINDS:
-        raise InputError("is no kind of solid element", key="kind", value=kind, allowed=", ".join(KINDS))
+        raise InputError("is not a kind of solid element", key="kind", value=kind, allowed=", ".join(KINDS))
     if not (np.isfinite(size) and size > 0):
-        raise InputError("is no length of an element", key="size", value=size, allowed="above 0 m")
+        raise InputError("is not a length of an element", key="size", value=size, allowed="above 0 m")
     patches = _rectangle(section, size, whole) if isinstance(section, Rectangle) else _round(section, size)
     joined = _joined(patches, kind == "hex20")
     return replace(joined if whole else _part(joined, 1e-6 * section.depth), kind=kind)

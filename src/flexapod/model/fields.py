@@ -62,7 +62,7 @@ class Field:
 def read_fields(text: str, path: str | Path | None) -> list[Field]:
     """Fields of a study text in the order of reading, absent optional ones included.
 
-    A text that is refused gives the fields up to the refusal; one that is no TOML gives none.
+    A text that is refused gives the fields up to the refusal; one that is not TOML gives none.
 
     Parameters
     ----------

@@ -61,7 +61,7 @@ class Piston(Frozen):
             Tube(diameter=self.diameter, inner_diameter=self.inner_diameter)
             if self.diameter >= self.length:
                 raise InputError(
-                    "makes the piston wider than long: it is no beam",
+                    "makes the piston wider than long: it is not a beam",
                     key="diameter",
                     value=self.diameter,
                     allowed=f"below a tenth of the length of {self.length:g} m for an accurate beam",

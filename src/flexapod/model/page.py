@@ -7,6 +7,7 @@ import tomllib
 from collections.abc import Iterator
 from dataclasses import astuple, dataclass
 from pathlib import Path
+from textwrap import fill
 from typing import Any
 
 import numpy as np
@@ -19,7 +20,7 @@ from flexapod.units import COMMON_UNITS, DIMENSIONS
 
 __all__ = ["HEAD", "Listed", "Row", "entry_text", "listed", "markdown", "study_data"]
 
-HEAD = ("Key", "What it is", "Unit", "Left out", "Allowed")
+HEAD = ("Key", "What it is", "Unit", "Default", "Allowed")
 _NEEDED = {"robot": ("robot", "payload", "leg", "motion"), "actuator": ("actuator", "simulation")}
 _EXTENDED = ("robot", "leg")  # an example of a part of these leaves the rest as it is
 _TABLES = {
@@ -160,7 +161,7 @@ def markdown() -> str:
             if item.entry.study == study:
                 parts += entry_text(item)
     parts += ["## What the choices mean", *_choices(), "## Tables over time", *_tables()]
-    return "\n\n".join(parts) + "\n"
+    return "\n\n".join(_wrapped(part) for part in parts) + "\n"
 
 
 def entry_text(item: Listed) -> Iterator[str]:
@@ -173,16 +174,21 @@ def entry_text(item: Listed) -> Iterator[str]:
     if item.rows:
         yield _table(HEAD, [(f"`{row.key}`", *astuple(row)[1:]) for row in item.rows])
     if item.besides and item.rows:
-        yield "Besides, as above: " + ", ".join(f"`{key}`" for key in item.besides) + "."
+        yield "Further keys, as above: " + ", ".join(f"`{key}`" for key in item.besides) + "."
     yield f"```toml\n{entry.example.strip()}\n```"
+
+
+def _wrapped(part: str) -> str:
+    """A paragraph in lines of at most 110 letters; headings, tables and code as they are."""
+    return part if part.startswith(("#", "|", "```")) else fill(part, 110, break_on_hyphens=False)
 
 
 def _dimensions() -> Iterator[str]:
     yield "## Numbers and units"
     yield (
         'A number without a unit is in SI; text carries its unit: `"27 mm"`, `"200 GPa"`, `"20 deg"`. Other units than '
-        "those named here are read as well. The last column bounds what is computed with: the lower end concerns "
-        "numbers that must be above 0."
+        "those named here are read as well. The last column has the least and the largest size that is accepted; the "
+        "least one applies to numbers that must be above 0."
     )
     rows = [
         (name, d.unit or "", f"`{d.example}`" if not d.unit else f'`"{d.example}"`',
@@ -206,10 +212,10 @@ def _choices() -> Iterator[str]:
 
 def _tables() -> Iterator[str]:
     yield (
-        "A CSV file, relative to the study file. The first line names each column with its unit; any unit of the right "
-        "kind will do. The first instant is 0, the others increase. Lines that begin with # are comments. Between its "
-        "instants a motion is a quintic spline that rests at both ends; loads and forces are linear, and held at the "
-        "end."
+        "The path of a CSV file is relative to the study file. The first line names each column with its unit; any unit "
+        "of the right kind will do. The first instant is 0, the others increase. Lines that begin with # are comments. "
+        "Between its instants a motion is a quintic spline that rests at both ends; loads and forces are linear, and "
+        "held at the end."
     )
     yield _table(
         ("Read by", "First line", "Columns"),
@@ -225,9 +231,9 @@ def _table(head: tuple[str, ...], rows: list[tuple[str, ...]]) -> str:
 
 _INTRODUCTION = """# The study file
 
-A study is one TOML file: what is analysed, how it moves, how it is computed. `flexapod new NAME.toml` writes one to
-start from, `flexapod check NAME.toml` reads and describes it. Keys that are not named here are refused, with the right
-form.
+A study is one TOML file: what is analysed, how it moves, how it is computed. `flexapod new NAME.toml`
+writes one to start from, `flexapod check NAME.toml` reads and describes it. Keys that are not named here are
+refused, with the right form.
 
-Written by `flexapod keys --markdown docs/study-file.md` from the readers, the model and `src/flexapod/model/keys.toml`;
-`flexapod keys leg.drive` shows a part of it in the terminal. Every example loads."""
+This page is written by `flexapod keys --markdown docs/study-file.md` from the readers, the model and
+`src/flexapod/model/keys.toml`; `flexapod keys leg.drive` shows a part of it in the terminal. All examples load."""

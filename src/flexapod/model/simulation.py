@@ -120,7 +120,7 @@ class Simulation(Frozen):
             )
         if self.fidelity == "beam-fem" and self.modes % 2:
             raise InputError(
-                "is no whole number of beam elements: 'beam-fem' has two shapes per element and plane",
+                "is not a whole number of beam elements: 'beam-fem' has two shapes per element and plane",
                 key="modes",
                 value=self.modes,
                 allowed=f"2, 4, 6 ... {MOST_ELEMENT_SHAPES}",

@@ -88,7 +88,7 @@ def _lines(path: Path, text: str) -> list[tuple[int, list[str]]]:
     try:
         rows = list(enumerate(csv.reader(io.StringIO(text, newline="")), start=1))
     except csv.Error:
-        raise _unreadable(path, "it is no text table") from None
+        raise _unreadable(path, "it is not a text table") from None
     return [(n, row) for n, row in rows if any(cell.strip() for cell in row) and not row[0].lstrip().startswith("#")]
 
 

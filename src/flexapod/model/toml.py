@@ -40,7 +40,7 @@ def parsed(text: str, file: str) -> dict[str, Any]:
     Raises
     ------
     InputError
-        It is no TOML; a key has too many dots, tables or lists lie too deep in each other, or a whole number has
+        It is not TOML; a key has too many dots, tables or lists lie too deep in each other, or a whole number has
         thousands of digits.
     """
     _refuse_long_keys(text, file)

@@ -106,7 +106,7 @@ def figure(width: float = PAGE, height: float = 4.0, gap: float = 0.02) -> Figur
 
 
 def needs(*names: str) -> Callable[[Callable[P, Figure]], Callable[P, Figure]]:
-    """Refuse a first argument that is no Dataset, or mapping of Datasets, with these variables."""
+    """Refuse a first argument that is not a Dataset, or mapping of Datasets, with these variables."""
 
     def decorate(draw: Callable[P, Figure]) -> Callable[P, Figure]:
         @wraps(draw)
@@ -212,7 +212,7 @@ def save(
     stem = Path(stem)
     check_formats(formats)
     if width is not None and not width > 0:
-        raise InputError("is no width", key="width", value=width, allowed="above 0 m, as 0.085 or 0.17")
+        raise InputError("is not a width", key="width", value=width, allowed="above 0 m, as 0.085 or 0.17")
     logging.getLogger("matplotlib.font_manager").setLevel(logging.ERROR)
     written = [stem.with_name(f"{stem.name}.{name}") for name in formats]
     with matplotlib.rc_context(_rc()):
@@ -235,7 +235,7 @@ def check_formats(formats: Sequence[str]) -> None:
     unknown = [name for name in formats if name not in _METADATA]
     if unknown or not formats:
         value = unknown[0] if unknown else "none"
-        raise InputError("is no format of figures", key="formats", value=value, allowed=", ".join(_METADATA))
+        raise InputError("is not a format of figures", key="formats", value=value, allowed=", ".join(_METADATA))
 
 
 @contextmanager

@@ -72,7 +72,9 @@ def _quantity(data: xr.Dataset, name: str | None) -> _Shown:
     known = [str(n) for n, array in data.data_vars.items() if array.dims == ("point",) and array.dtype.kind == "f"]
     name = name or next((n for n in known if np.isfinite(data[n].values).any()), next(iter(known), ""))
     if name not in known:
-        raise InputError("is no quantity of this sweep", key="quantity", value=name, allowed=", ".join(known) or "none")
+        raise InputError(
+            "is not a quantity of this sweep", key="quantity", value=name, allowed=", ".join(known) or "none"
+        )
     if not np.isfinite(data[name].values).any():
         raise InputError("has no computed point", key="quantity", value=name)
     return _shown(data[name], str(data[name].attrs.get("long_name", name)))

@@ -28,7 +28,7 @@ from flexapod.typing import Array
 
 __all__ = ["Breaks", "actuator_breaks", "robot_breaks"]
 
-STRAIGHT = 1e-9  # change of a table's slope, over its largest slope, below which a row is no corner: rounding of text
+STRAIGHT = 1e-9  # a row is not a corner where a table's slope changes by less of its largest one: rounding of text
 
 
 @dataclass(frozen=True, kw_only=True)

@@ -29,7 +29,7 @@ GENERIC_POSTURES = 40  # complex solutions of a generic platform, Raghavan 1993;
 
 _SEED = 1998
 _MAX_LOOPS = 60
-_AT_INFINITY = 1e-6  # norm of e in a unit solution, below which it is no pose
+_AT_INFINITY = 1e-6  # norm of e in a unit solution, below which it is not a pose
 _LEAVING = 1e-2  # norm of e at which a path that stopped short is taken to go to infinity
 _SAME = 1e-9  # unit vectors nearer than this are one solution; distinct ones of a generic system differ by > 1e-7
 

@@ -156,7 +156,7 @@ def _newton(
     for _ in range(40):
         new, largest = _newton_step(system, x[on], l_cmd[on], force[on], wrench)
         singular = ~np.isfinite(largest)
-        away = ~singular & (largest > 0.5)  # half a radian or half a metre is no elastic deformation
+        away = ~singular & (largest > 0.5)  # half a radian or half a metre is not an elastic deformation
         code[on[singular]], code[on[away]] = SINGULAR, GIVES_WAY
         good = ~singular & ~away
         x = x.with_(on[good], new[np.flatnonzero(good)])

@@ -128,7 +128,7 @@ def forward_kinematics(
     Raises
     ------
     InputError
-        Lengths that are not six positive numbers, a guess that is no pose, or instants that do not fit.
+        Lengths that are not six positive numbers, a guess that is not a pose, or instants that do not fit.
     ComputationError
         No pose near the guess fits.
     """
@@ -173,7 +173,7 @@ def _numbers(values: ArrayLike, key: str, allowed: str) -> Array:
     try:
         return np.asarray(values, dtype=float)
     except (TypeError, ValueError):
-        raise InputError("are no numbers", key=key, allowed=allowed) from None
+        raise InputError("are not numbers", key=key, allowed=allowed) from None
 
 
 def _study(

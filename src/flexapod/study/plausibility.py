@@ -137,7 +137,7 @@ def _slope(basis: LateralBasis, lateral: Array, free: Array, when: _When) -> lis
 
 
 def _stroke(leg: Leg, length: Array, when: _When) -> list[_Remark]:
-    """Strokes that are no command but a result may leave their limits; the stops there are not part of the model."""
+    """Strokes that are a result, not commands, may leave their limits; the stops there are not part of the model."""
     if leg.stroke is None:
         return []
     excess = np.maximum(leg.stroke.min - length, length - leg.stroke.max)

@@ -53,7 +53,7 @@ def as_many(robot: model.Robot, pose: PoseLike) -> rigid.Poses:
         values = _numbers(pose)
     if values.ndim != 2 or values.shape[1] != 6 or not np.isfinite(values).all():
         raise InputError(
-            "are no poses",
+            "are not poses",
             key="pose",
             value=values.shape,
             allowed="finite numbers of shape (P, 6): surge, sway, heave [m], roll, pitch, yaw [rad] from home",

@@ -98,15 +98,15 @@ def simulate_solid(
 def _check_numbers(**values: float) -> None:
     for key, value in values.items():
         if isinstance(value, bool) or not isinstance(value, int | float | np.number):
-            raise InputError("is no number", key=key, value=value, allowed="an SI number, as 0.005")
+            raise InputError("is not a number", key=key, value=value, allowed="an SI number, as 0.005")
     if not (np.isfinite(values["step"]) and values["step"] > 0):
-        raise InputError("is no time step", key="step", value=values["step"], allowed="above 0 s")
+        raise InputError("is not a time step", key="step", value=values["step"], allowed="above 0 s")
 
 
 def _check_section(section: object) -> None:
     if section is not None and not isinstance(section, model.Rectangle | model.Tube):
         raise InputError(
-            "is no section", key="section", value=section, allowed="flexapod.model.Rectangle(...) or Tube(...)"
+            "is not a section", key="section", value=section, allowed="flexapod.model.Rectangle(...) or Tube(...)"
         )
 
 

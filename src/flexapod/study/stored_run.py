@@ -53,7 +53,7 @@ def check_run(data: Dataset, file: str) -> None:
     is_robot = "com_deviation" in data
     if not is_robot and not ("tip_deflection" in data and "angle" in data):
         raise InputError(
-            "is no result of a simulation", file=file, allowed="results.nc of `flexapod run`, or a study file"
+            "is not a result of a simulation", file=file, allowed="results.nc of `flexapod run`, or a study file"
         )
     try:
         _check_attributes(data.attrs)

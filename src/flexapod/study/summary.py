@@ -130,7 +130,7 @@ def summary(data: Dataset, point: str = "com") -> RobotSummary | ActuatorSummary
         Another point.
     """
     if point not in POINTS:
-        raise InputError("is no point of the payload", key="point", value=point, allowed=", ".join(POINTS))
+        raise InputError("is not a point of the payload", key="point", value=point, allowed=", ".join(POINTS))
     partial = bool(data.attrs.get("partial", 0))
     if "com_deviation" not in data:
         tip = data.tip_deflection.values

@@ -38,7 +38,7 @@ def check_outputs(study: Study | ActuatorStudy) -> list[str]:
     end = outputs * stored
     if duration - end > 1e-6 * stored:
         remarks.append(
-            f"the duration of {duration:g} s is no multiple of simulation.{name} = {stored:g} s: "
+            f"the duration of {duration:g} s is not a multiple of simulation.{name} = {stored:g} s: "
             f"results end at t = {end:g} s"
         )
     return remarks

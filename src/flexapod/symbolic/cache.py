@@ -78,7 +78,7 @@ def size_limit() -> int:
         megabytes = math.nan
     if not 0 < megabytes < math.inf:
         raise InputError(
-            "is no size of the cache of compiled kernels",
+            "is not a size of the cache of compiled kernels",
             key=LIMIT,
             value=text,
             allowed="a number of megabytes above 0",
@@ -200,7 +200,7 @@ def _unused_because(folder: Path) -> str | None:
     except OSError as error:
         return error.strerror
     if not folder.is_dir():
-        return "it is no folder"
+        return "it is not a folder"
     return reason or (None if os.access(folder, os.W_OK | os.X_OK) else "it cannot be written to")
 
 

@@ -30,7 +30,7 @@ def free_port(host: str, port: int | None) -> int:
                 probe.bind((host, number))
                 return int(probe.getsockname()[1])
         except (socket.gaierror, UnicodeError):
-            raise InputError("is no name or address of this machine", key="--host", value=host) from None
+            raise InputError("is not a name or address of this machine", key="--host", value=host) from None
         except OSError as error:
             problem = error.strerror or str(error)
     key, value = ("--host", host) if port is None else ("--port", str(port))

@@ -26,7 +26,7 @@ def open_source(file: Path) -> Source:
     Raises
     ------
     InputError
-        As `flexapod.load`; or the file is no result of a simulation.
+        As `flexapod.load`; or the file is not a result of a simulation.
     """
     if file.suffix.lower() not in _RESULTS:
         study = model.load(file)

@@ -86,7 +86,7 @@ class RobotScene(Scene):
         Raises
         ------
         InputError
-            It is no pose.
+            It is not a pose.
         """
         with self.lock:
             if self._drawn is None:

@@ -38,7 +38,7 @@ class Offer:
 
 
 def offers(document: Document) -> list[Offer]:
-    """What can be added to a study file and taken out of it; nothing for a text that is no TOML."""
+    """What can be added to a study file and taken out of it; nothing for a text that is not TOML."""
     try:
         data = tomllib.loads(document.text)
     except tomllib.TOMLDecodeError:

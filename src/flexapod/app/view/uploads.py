@@ -67,7 +67,7 @@ def read_upload(name: str, content: bytes, folder: Path) -> Document:
     try:
         text = content.decode("utf-8-sig")
     except UnicodeDecodeError:
-        raise InputError("cannot be read: it is no UTF-8 text", file=name, allowed="a study file (TOML)") from None
+        raise InputError("cannot be read: it is not UTF-8 text", file=name, allowed="a study file (TOML)") from None
     for key, file in _files(parsed(text, name)):
         _check_table(name, key, file, folder)
     found = read(Document(text, str(folder / name)))
@@ -89,7 +89,7 @@ def store_table(name: str, content: bytes, folder: Path) -> str:
     try:
         content.decode("utf-8-sig")
     except UnicodeDecodeError:
-        raise InputError("cannot be read: it is no text table", file=name, allowed="a CSV file") from None
+        raise InputError("cannot be read: it is not a text table", file=name, allowed="a CSV file") from None
     kept = [path.stat().st_size for path in folder.iterdir() if path.name != name]
     if len(kept) >= MOST_TABLES or sum(kept) + len(content) > MOST_BYTES:
         raise InputError(

@@ -92,7 +92,7 @@ class Visitor(ServerConnection):
         TimeoutError
             `FIRST_MESSAGE` is over, and no page has said that it is there.
         ValueError
-            What was sent is no message of a page.
+            What was sent is not a message of a page.
         """
         self._until = self._until or self.loop.time() + FIRST_MESSAGE
         while True:

@@ -10,7 +10,7 @@ from flexapod.typing import Array
 
 __all__ = ["finest_error", "observed_order", "relative_difference", "shape_factor"]
 
-HIGHEST = 40.0  # orders beyond it are no orders
+HIGHEST = 40.0  # orders beyond it are not orders
 
 
 def relative_difference(values: Array, reference: Array) -> float:

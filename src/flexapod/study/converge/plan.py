@@ -35,7 +35,7 @@ def estimate(trials: Trials, accuracy: float = 1e-2) -> tuple[int, float]:
 
 
 def check_accuracy(accuracy: object) -> None:
-    """Refuse what is no relative error.
+    """Refuse what is not a relative error.
 
     Raises
     ------
@@ -44,7 +44,7 @@ def check_accuracy(accuracy: object) -> None:
     """
     if isinstance(accuracy, bool) or not isinstance(accuracy, int | float) or not 1e-6 <= accuracy <= 0.5:
         raise InputError(
-            "is no relative error that can be asked for",
+            "is not a relative error that can be asked for",
             key="accuracy",
             value=accuracy,
             allowed="1e-6 to 0.5; 0.01 is one per cent of the largest deviation",
@@ -67,7 +67,9 @@ def checked_trials(
     elif isinstance(study, Study):
         check_path(study)
     else:
-        raise InputError("is no study", key="study", value=type(study).__name__, allowed="the result of flexapod.load")
+        raise InputError(
+            "is not a study", key="study", value=type(study).__name__, allowed="the result of flexapod.load"
+        )
     found = trials or Trials(study)
     found.report = progress
     return found

@@ -36,7 +36,7 @@ _UNIT_WORDS = {"N m-1": "N/m", "1": ""}
 class Finding:
     """Least and largest value of a quantity over the reached poses, where they are, and the value at home.
 
-    SI units; `home` is None where home is no point of the grid, or not reached.
+    SI units; `home` is None where home is not a point of the grid, or not reached.
     """
 
     name: str

@@ -101,14 +101,16 @@ def _fixed(at: Mapping[str, float], axes: Axes) -> Array:
         except (TypeError, ValueError):
             number = np.nan
         if not np.isfinite(number):
-            raise InputError("is no number", key=f"at.{name}", value=value, allowed=f"a number in {UNITS[name]}")
+            raise InputError("is not a number", key=f"at.{name}", value=value, allowed=f"a number in {UNITS[name]}")
         fixed[AXES.index(name)] = number
     return fixed
 
 
 def _check_names(given: object, key: str, example: str) -> None:
     if not isinstance(given, Mapping):
-        raise InputError("is no set of coordinates by name", key=key, value=given, next_step=f"For example {example}")
+        raise InputError(
+            "is not a set of coordinates by name", key=key, value=given, next_step=f"For example {example}"
+        )
     for name in given:
         if name not in AXES:
             raise InputError(
@@ -124,7 +126,7 @@ def _values(
     wanted = given or Range()
     count = (SLICES if slices else COUNT[axes]) if wanted.count is None else wanted.count
     if count < 1:
-        raise InputError("is no number of points", key=f"axes.{name}", value=count, allowed="1 or more")
+        raise InputError("is not a number of points", key=f"axes.{name}", value=count, allowed="1 or more")
     low, high = wanted.low, wanted.high
     if low is None or high is None:
         return _as_far_as_reached(reach_from_home(robot, name, fixed), count, slices=slices)
@@ -145,7 +147,7 @@ def _given_values(name: str, given: ArrayLike) -> Array:
         values = np.zeros(0)
     if values.ndim != 1 or not values.size or not np.isfinite(values).all() or (np.diff(values) <= 0).any():
         raise InputError(
-            "are no points of an axis",
+            "are not points of an axis",
             key=f"axes.{name}",
             allowed=f"one or more finite numbers in {UNITS[name]}, ascending",
         )

@@ -118,7 +118,7 @@ def _computed(study: model.Study, poses: Grid, wanted: Wanted, progress: Report 
 
 def _count(frequencies: int) -> int:
     if isinstance(frequencies, bool) or not isinstance(frequencies, Integral) or frequencies < 1:
-        raise InputError("is no number of modes", key="frequencies", value=frequencies, allowed="1 or more, whole")
+        raise InputError("is not a number of modes", key="frequencies", value=frequencies, allowed="1 or more, whole")
     return int(frequencies)
 
 
@@ -126,7 +126,7 @@ def _unit(direction: str | ArrayLike) -> Array:
     if isinstance(direction, str):
         if direction not in DIRECTIONS:
             raise InputError(
-                "is no direction", key="direction", value=direction, allowed="x, y, z, or three numbers, world axes"
+                "is not a direction", key="direction", value=direction, allowed="x, y, z, or three numbers, world axes"
             )
         return np.array(DIRECTIONS[direction])
     vector = _vector("direction", direction)
@@ -144,7 +144,7 @@ def _vector(key: str, given: ArrayLike) -> Array:
     except (TypeError, ValueError):
         vector = np.zeros(0)
     if vector.shape != (3,) or not np.isfinite(vector).all():
-        raise InputError("is no vector", key=key, value=given, allowed="three finite numbers, world axes")
+        raise InputError("is not a vector", key=key, value=given, allowed="three finite numbers, world axes")
     return vector
 
 

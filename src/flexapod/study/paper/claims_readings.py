@@ -126,7 +126,7 @@ def _modulus(readings: Dataset) -> Claim:
         reason=explained(
             verdict,
             NOT,
-            "A digit lost makes the stretch ten times larger. Towards the Euler load millimetres come with a visibly "
+            "With one digit lost the stretch is ten times larger. Near the Euler load millimetres come with a visibly "
             f"bent piston, as in Fig. 10 (at {100 * float(last.load_share):.0f} % of it tips are "
             f"{text(float(last.tip_peak), 'm', 2)} off): a modulus {number(200 / min(sound, default=np.nan), 2)} times "
             "too small, and then x is off the most. Beyond, legs collapse and the deviation has any size.",

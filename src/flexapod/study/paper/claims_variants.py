@@ -133,7 +133,7 @@ def _near(force: float) -> str:
     words = f"Leg forces up to {number(force, 2)} times the payload's weight"
     if force < 10:
         return f"{words}: near the singularity the robot turns soft; Fig. 8 would show such forces."
-    return f"{words}: next to the singularity, no robot for use."
+    return f"{words}: next to the singularity, where no robot can be used."
 
 
 def _jump(diameters: Dataset, radii: Dataset, smooth: Dataset) -> Claim:
@@ -245,7 +245,7 @@ def _joints(data: Dataset) -> Claim:
             REACHES,
             f"Legs turn by up to {np.rad2deg(turn):.0f} deg against the platform; a piston held at its end shortens by "
             f"L theta^2 / 10 and is stressed to {text(stress, 'Pa', 2)}, {above}, to which a linear elastic material "
-            "does not object. Bending only shortens, so it is no match leg by leg; and it is not a property of ideal "
-            "joints.",
+            "does not object. Bending only shortens, so it does not match leg by leg; and it is not a property of "
+            "ideal joints.",
         ),
     )

@@ -189,7 +189,7 @@ def check_place(scheduler: object, workers: object) -> None:
         Both are given, or what is given is neither a number of processes nor an address.
     """
     if scheduler is not None and not isinstance(scheduler, str):
-        raise InputError("is no address", key="scheduler", value=scheduler, allowed="such as tcp://10.0.0.1:8786")
+        raise InputError("is not an address", key="scheduler", value=scheduler, allowed="such as tcp://10.0.0.1:8786")
     if workers is None:
         return
     if isinstance(workers, bool) or not isinstance(workers, int):

@@ -120,7 +120,7 @@ def _instants(keep: Keep, resolved: Resolved) -> tuple[int, Array]:
     every = round(ratio)
     if every < 1 or abs(ratio - every) > 1e-6:
         raise InputError(
-            "is no multiple of the time between stored results",
+            "is not a multiple of the time between stored results",
             key="keep.record_step",
             value=keep.record_step,
             allowed=f"multiples of {spacing:g} s",

@@ -24,14 +24,14 @@ def parse_key(key: object, *, what: str) -> tuple[Step, ...]:
     Raises
     ------
     InputError
-        It is no key path; `what` is the entry of the sweep file that holds it.
+        It is not a key path; `what` is the entry of the sweep file that holds it.
     """
     steps: list[Step] = []
     for part in key.split(".") if isinstance(key, str) else [""]:
         match = _NAME.fullmatch(part.strip())
         if match is None:
             raise InputError(
-                "is no key path", key=what, value=key, allowed="names of the study file, e.g. leg[3].piston.diameter"
+                "is not a key path", key=what, value=key, allowed="names of the study file, e.g. leg[3].piston.diameter"
             )
         steps += [match[1], *(int(number) for number in re.findall(r"\d+", match[2]))]
     return tuple(steps)
@@ -94,7 +94,7 @@ def _put(holder: Any, steps: tuple[Step, ...], at: int, value: object) -> None:
             _put(leg, steps, at, value)
         return
     if not isinstance(holder, dict):
-        raise InputError("is no table", key=key_text(steps[:at]), value=holder)
+        raise InputError("is not a table", key=key_text(steps[:at]), value=holder)
     _spell_out(holder, steps, at)
     if last:
         holder[step] = copied(value)

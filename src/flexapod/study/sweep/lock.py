@@ -20,7 +20,7 @@ _TAKEN = (errno.EWOULDBLOCK, errno.EACCES, errno.EDEADLK)
 def locked(store: Path) -> Iterator[None]:
     """Hold the lock of a store: of the file ``STORE.lock`` beside it, which is removed at the end.
 
-    A file that a killed process left behind is no hindrance: its lock went with the process.
+    A file that a killed process left behind is not a hindrance: its lock went with the process.
 
     Raises
     ------

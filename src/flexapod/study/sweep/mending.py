@@ -12,7 +12,7 @@ __all__ = ["incomplete", "mend"]
 
 
 def mend(store: SweepStore) -> int:
-    """Make points pending whose results cannot be read, or are no numbers where every computed point has some.
+    """Make points pending whose results cannot be read, or are not numbers where every computed point has some.
 
     Everything is read, a chunk at a time. Returns how many points became pending, or are since the store was opened.
     """

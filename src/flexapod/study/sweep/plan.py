@@ -142,7 +142,7 @@ def read_plan(sweep: str | Path | Mapping[str, Any]) -> Plan:
         return _plan(Section(plain, "", None, Path()), json.dumps(plain, indent=1, default=str))
     if not isinstance(sweep, str | Path):
         raise InputError(
-            "is no sweep", key="sweep", value=type(sweep).__name__, allowed="a sweep file or a dictionary like it"
+            "is not a sweep", key="sweep", value=type(sweep).__name__, allowed="a sweep file or a dictionary like it"
         )
     file = Path(sweep)
     check_name(file)
@@ -189,7 +189,7 @@ def _plan(top: Section, text: str) -> Plan:
 def _tables(section: Section, name: str) -> list[object]:
     value = section.data.get(name, [])
     if not isinstance(value, list):
-        raise section.error("is no list of tables", name, allowed=f"[[{section.key(name)}]]")
+        raise section.error("is not a list of tables", name, allowed=f"[[{section.key(name)}]]")
     return value
 
 
@@ -251,7 +251,7 @@ def _together(section: Section) -> Block:
 def _list(section: Section, name: str) -> tuple[object, ...]:
     value = section.data[name]
     if not isinstance(value, list) or not value:
-        raise section.error("is no list of values", name, allowed='such as ["25 mm", "27 mm", "30 mm"]')
+        raise section.error("is not a list of values", name, allowed='such as ["25 mm", "27 mm", "30 mm"]')
     return tuple(value)
 
 
@@ -278,7 +278,7 @@ def _hypercube(section: Section | None) -> Hypercube | None:
     inner, ranges = section.child(section.data["ranges"], "ranges"), []
     for name, value in inner.data.items():
         if not isinstance(value, list) or len(value) != 2:
-            raise inner.error("is no range", name, allowed='lowest and highest value, such as ["25 mm", "30 mm"]')
+            raise inner.error("is not a range", name, allowed='lowest and highest value, such as ["25 mm", "30 mm"]')
         ranges.append(Range(key=parse_key(name, what=inner.path), low=value[0], high=value[1]))
     if not ranges:
         raise section.error("names no key", "ranges", allowed='such as { "payload.mass" = ["50 kg", "150 kg"] }')
@@ -324,7 +324,7 @@ def _keep(section: Section | None) -> Keep:
     for kind in ("scalars", "records"):
         value = section.data.get(kind, [])
         if not isinstance(value, list) or not all(isinstance(name, str) for name in value):
-            raise section.error("is no list of names", kind)
+            raise section.error("is not a list of names", kind)
         names[kind] = tuple(dict.fromkeys(value))
     step = section.number("record_step", "time")
     if step is not None and step <= 0:

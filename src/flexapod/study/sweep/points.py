@@ -250,7 +250,7 @@ class Points:
         dimensions = {dimension_of(leaf, self.dimensions) for leaf in found}
         if None in dimensions:
             raise InputError(
-                "is no number that could scatter", key=key_text(key), next_step="Vary it with [[vary]] and values"
+                "is not a number that could scatter", key=key_text(key), next_step="Vary it with [[vary]] and values"
             )
         if len(dimensions) > 1:
             raise InputError(

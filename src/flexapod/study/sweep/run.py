@@ -121,7 +121,9 @@ def _nominal(study: object) -> Study | ActuatorStudy:
     """The study that others vary from."""
     nominal = read(study)
     if not isinstance(nominal, Study | ActuatorStudy):
-        raise InputError("is no study", key="study", value=type(study).__name__, allowed="the result of flexapod.load")
+        raise InputError(
+            "is not a study", key="study", value=type(study).__name__, allowed="the result of flexapod.load"
+        )
     return nominal
 
 

@@ -22,13 +22,13 @@ def number(value: object, key: tuple[Step, ...], dimensions: Mapping[str, str]) 
     Raises
     ------
     InputError
-        It is no number of the key's dimension, or the key holds none.
+        It is not a number of the key's dimension, or the key holds none.
     """
     dimension = dimension_of(key, dimensions)
     if dimension is not None:
         return to_si(value, dimension, key=key_text(key))
     if isinstance(value, bool) or not isinstance(value, int | float):
-        raise InputError("is no number", key=key_text(key), value=value, allowed="a list of values for such a key")
+        raise InputError("is not a number", key=key_text(key), value=value, allowed="a list of values for such a key")
     return value
 
 
@@ -72,7 +72,7 @@ def hypercube_values(cube: Hypercube, dimensions: Mapping[str, str]) -> Array:
     for entry, (low, high) in zip(cube.ranges, limits, strict=True):
         if low >= high:
             raise InputError(
-                "is no range", key=key_text(entry.key), value=[entry.low, entry.high], allowed="lowest, then highest"
+                "is not a range", key=key_text(entry.key), value=[entry.low, entry.high], allowed="lowest, then highest"
             )
     unit = LatinHypercube(len(limits), seed=cube.seed).random(cube.count)  # pyright: ignore  (renamed in SciPy 1.15)
     return limits[:, 0] + unit * (limits[:, 1] - limits[:, 0])

@@ -132,7 +132,7 @@ class SweepStore:
         if group is None and (path / "status").is_dir():
             raise _damaged(path / "zarr.json", "what describes the whole cannot be read")
         if group is None or "flexapod_sweep_format" not in group.attrs:
-            raise InputError("is no store of a sweep", file=path, next_step="Choose another place with --out")
+            raise InputError("is not a store of a sweep", file=path, next_step="Choose another place with --out")
         if not write and group.attrs["flexapod_sweep_format"] != FORMAT:  # `check_header` is for who goes on with it
             raise InputError(
                 "was written by another version of flexapod", file=path, key="flexapod_sweep_format",

@@ -40,7 +40,7 @@ class Check:
 
     @property
     def strain(self) -> float:
-        """Error over tolerance; inf where the error is no number."""
+        """Error over tolerance; inf where the error is not a number."""
         return self.error / self.tolerance if np.isfinite(self.error) else float("inf")
 
     @property

@@ -102,7 +102,7 @@ def _chosen(only: Sequence[str], slow: bool) -> list[Case]:
     for name in only:
         if name not in names:
             raise InputError(
-                "is no case", key="--only", value=name, allowed=", ".join(names), next_step=closest(name, names)
+                "is not a case", key="--only", value=name, allowed=", ".join(names), next_step=closest(name, names)
             )
     return [case for case in CASES if case.name in only or (not only and (slow or not case.slow))]
 

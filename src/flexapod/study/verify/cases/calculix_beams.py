@@ -151,7 +151,7 @@ CALCULIX_PISTON = Case(
     statement="Bending frequencies of the clamped piston, 27 mm by 600 mm of steel, Poisson's ratio 0",
     source=_THREE_MESHES,
     argument="ours with first-order shear and rotary inertia, r / L = 0.011, which take 0.1 to 1.6 %; the square of "
-    "that and rounding, 1e-5; of a mesh what it differs from the limit: a circle of 8 parabolas is no circle",
+    "that and rounding, 1e-5; of a mesh what it differs from the limit: a circle of 8 parabolas is not a circle",
     compute=_piston,
     engine=CALCULIX,
 )
