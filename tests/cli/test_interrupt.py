@@ -10,6 +10,7 @@ import time
 import pytest
 import typer
 
+from flexapod.app import cli
 from flexapod.app.failures import guarded
 from flexapod.study import open_results
 
@@ -114,3 +115,14 @@ def test_an_interrupt_that_a_library_turns_into_its_own_error(raised, capsys):
         command()
     assert stopped.value.exit_code == 130
     assert "stopped by Ctrl-C" in capsys.readouterr().err
+
+
+def test_ctrl_c_before_a_command_begins_is_no_traceback(monkeypatch):
+    def interrupted():
+        raise KeyboardInterrupt
+
+    monkeypatch.setattr(cli, "app", interrupted)
+    monkeypatch.setattr(cli, "heed_signals", lambda: None)
+    with pytest.raises(SystemExit) as end:
+        cli.main()
+    assert end.value.code == 130

@@ -4,7 +4,7 @@ import json
 
 import pytest
 
-from flexapod.study import open_results
+from flexapod.study import open_results, room
 from flexapod.study.map.names import SCALARS
 
 LUMPED = ('fidelity = "assumed-modes"', 'fidelity = "lumped"')
@@ -96,4 +96,13 @@ def test_stopped_by_the_user_nothing_is_half_written(flexapod, study, folder, mo
     done = flexapod("map", study(LUMPED), "--out", "m")
     assert done.exit_code == 130
     assert "Ctrl-C" in done.stderr
+    assert not (folder / "m").exists()
+
+
+def test_a_map_beyond_the_disk_is_refused_before_it_is_computed(flexapod, study, folder, monkeypatch):
+    monkeypatch.setattr(room, "free_disk", lambda folder: 1.5e8)
+    axes = ["--x", "surge=-1..1mm:100", "--y", "sway=-1..1mm:100", "--z", "heave=-1..1mm:100"]
+    done = flexapod("map", study(LUMPED), *axes, "--out", "m")
+    assert done.exit_code == 2
+    assert "on the disk, where 0.15 GB is free" in " ".join(done.stderr.split())
     assert not (folder / "m").exists()

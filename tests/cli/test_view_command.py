@@ -1,6 +1,7 @@
 """`flexapod view` as a user types it: refusals in words, where it listens, results on disk, Ctrl-C."""
 
 import json
+import logging
 import os
 import signal
 import socket
@@ -19,6 +20,7 @@ from websockets.sync.client import connect
 
 import flexapod as fx
 from flexapod.app.view import network
+from flexapod.app.view.logs import CONNECTIONS
 from flexapod.app.view.network import address, free_port, is_local
 from flexapod.app.view.opening import open_source
 from flexapod.errors import InputError
@@ -178,3 +180,12 @@ def test_results_open_without_the_tables_of_their_study(folder):
     assert study.robot == fx.preset("paper-robot").robot
     assert study.motion.pose[-1, 2] == pytest.approx(0.003, abs=1e-12)
     assert "tables" in study.warnings[-1]
+
+
+def test_who_comes_and_goes_is_not_told_in_the_terminal():
+    """The library of the connections says so at the level at which the command tells of long compilations."""
+    logging.getLogger("flexapod").setLevel(logging.INFO)
+    try:
+        assert not CONNECTIONS.isEnabledFor(logging.INFO) and CONNECTIONS.isEnabledFor(logging.WARNING)
+    finally:
+        logging.getLogger("flexapod").setLevel(logging.NOTSET)

@@ -7,6 +7,7 @@ import pytest
 
 import flexapod as fx
 from flexapod import model, rigid
+from flexapod.app.first_words import first_words
 from flexapod.errors import InputError
 from flexapod.study.checks import check_path
 from flexapod.study.describe.robot import describe
@@ -165,6 +166,31 @@ def test_refusals_say_which_number_to_change(text, words):
     told = f"{error.value} {error.value.key}"
     for word in words:
         assert word in told, told
+
+
+@pytest.mark.parametrize(
+    "text",
+    [
+        "home=275 mm; payload=5 kg; stroke=30 mm",
+        "home=275 mm payload=5 kg stroke=30 mm",
+        "home = 27,5 cm,payload = 5 kg , stroke=3 cm",
+        "Home=275 mm, PAYLOAD=5 kg, stroke=30 mm",
+    ],
+)
+def test_lists_are_read_as_people_write_them(text):
+    request = parse_request(text)
+    assert request.home == pytest.approx(0.275) and request.payload == 5 and request.stroke == pytest.approx(0.03)
+
+
+def test_a_number_without_a_unit_is_not_offered_one_in_si():
+    with pytest.raises(InputError) as error:
+        parse_request("home=900, payload=100 kg")
+    assert "has no unit" in str(error.value) and "a number in m" not in str(error.value)
+
+
+def test_lengths_of_legs_are_told_in_one_unit():
+    words = first_words(first_robot(parse_request("home=900 mm, payload=100 kg, stroke=200 mm")))
+    assert words[0].startswith("Legs of 968.8 mm at home, 868.8 to 1069 mm; pistons"), words[0]
 
 
 def test_a_line_break_in_a_value_stays_out_of_the_comment():

@@ -71,7 +71,7 @@ def test_bars_and_areas():
     axes = figure.subplots()
     axes.bar([1, 2], [3, -4], bottom=[0, 1], width=0.5)
     axes.fill_between([0, 1], [0, 0], [1, 2], color="#B8B8B8", alpha=0.5)
-    bars, area = interactive(figure)["data"]
+    area, bars = interactive(figure)["data"]
     assert bars["x"] == [0.75, 1.75] and bars["y"] == [3, -4] and bars["base"] == [0, 1]
     assert area["fill"] == "toself" and area["fillcolor"] == "rgba(184, 184, 184, 0.5)"
 
@@ -126,3 +126,14 @@ def test_plotly_knows_every_word_of_it(log):
     figure = graph_objects.Figure(data=made["data"], layout=layout)
     assert len(figure.data) == 2
     json.dumps(made, allow_nan=False)
+
+
+def test_areas_lie_below_curves():
+    """The band of the printed deviation hid both paths in the report."""
+    figure = Figure(figsize=(6, 4), layout="constrained")
+    panel = figure.subplots()
+    panel.plot([0, 1], [1, 2], label="path")
+    panel.fill_between([0, 1], [0, 1], [2, 3])
+    figure.draw_without_rendering()
+    area, curve = interactive(figure)["data"]
+    assert area["fill"] == "toself" and curve["name"] == "path"

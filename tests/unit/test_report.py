@@ -320,3 +320,14 @@ def test_the_terminal_tells_of_the_tool_first(tool, tmp_path, capsys):
 def test_an_axis_stays_with_its_number():
     shown = html.escape("x 4.33 µm, y 9.39 µm; mesh of 5 cm")
     assert shown == "x~4.33~µm, y~9.39~µm; mesh of 5~cm".replace("~", "\N{NO-BREAK SPACE}")
+
+
+def test_labels_of_the_replayed_axes_have_the_middle_to_themselves(study, robot):
+    """Labels stand in the middle of their axes, where ticks and the numbers of the legs lay below them."""
+    scene = replay(study, robot)["layout"]["scene"]
+    for name in "xyz":
+        axis = scene[f"{name}axis"]
+        (low, high), ticks = axis["range"], axis["tickvals"]
+        middle = (low + high) / 2
+        assert len(ticks) == 2 and low <= ticks[0] < ticks[1] <= high
+        assert min(abs(tick - middle) for tick in ticks) > 0.15 * (high - low)

@@ -6,8 +6,10 @@ from tests.runs import paper_robot, with_legs
 
 import flexapod as fx
 from flexapod import plot
+from flexapod.app.view.charts import charts
 from flexapod.study.estimates import buckling_load
 from flexapod.study.summary import summary
+from flexapod.study.words import length
 
 
 @pytest.fixture(scope="module")
@@ -28,6 +30,51 @@ def test_panels_of_nothing_are_flat_on_the_scale_of_the_others(data):
     shown = plot.com_path(data, ("x", "y", "z")).axes[3:6]
     assert not any(np.any(line.get_ydata()) for line in shown[0].lines if len(line.get_xdata()) > 2)
     assert shown[0].get_ylim() in [other.get_ylim() for other in shown[1:]]
+
+
+def test_causes_that_are_nothing_are_flat(data):
+    """Panels of noise once had `1e-9` over their title, and the instant of their bars was that of the largest noise."""
+    shown = plot.deviation_by_cause(data).axes
+    panel = shown[0]
+    assert not any(np.any(line.get_ydata()) for line in panel.lines if len(line.get_xdata()) > 2)
+    assert panel.get_ylim() in [other.get_ylim() for other in (shown[2], shown[4])]
+    assert f"at {summary(data).time:.2f} s" in shown[1].get_title(loc="left")
+
+
+def test_tables_have_no_instant_of_nothing(data):
+    x, y, _ = summary(data).shown_axes
+    assert (x.peak, x.time, x.rms) == (0.0, None, 0.0)
+    assert y == summary(data).axes[1]
+    assert summary(data).axes[0].peak > 0  # as it was computed
+
+
+def test_no_leg_is_named_where_legs_are_alike(data):
+    """A symmetric heave once owed most to leg 1: the leg of the largest rounding."""
+    alike = data.copy(deep=True)
+    alike["deviation_by_cause"][:] = alike.deviation_by_cause.mean("leg")
+    assert summary(data).worst_leg is not None
+    assert summary(alike).worst_leg is None
+    assert "most of it" not in summary(alike).sentence
+
+
+def test_charts_of_the_page_hold_no_rounding(data):
+    chart = charts(data)["deviation"]
+    assert not chart.values[0].any()
+    assert chart.values[1].any()
+
+
+def test_shapes_that_hardly_move_are_flat():
+    found = fx.simulate_actuator(fx.preset("paper-actuator"), duration=0.02, step=1e-3)
+    found["mode_amplitude"][:, 1] = 1e-9 * found.mode_amplitude[:, 0].values
+    first, second, *_ = plot.actuator_modes(found).axes
+    assert not np.any(second.lines[0].get_ydata())
+    assert second.get_ylim() == first.get_ylim()
+    assert second.get_ylabel() == first.get_ylabel()
+
+
+def test_a_sag_of_rounding_is_zero():
+    assert length(3e-16) == "0 m"
+    assert length(-3e-6) == "-3 µm"
 
 
 def test_modes_and_stiffness_remark_on_buckling():

@@ -128,6 +128,17 @@ def test_results_of_gigabytes_are_remarked_on(monkeypatch):
     assert room.check_memory(study) == ["the results take 4.05 GB, and 3 times as much while they are made"]
 
 
+def test_a_control_group_gives_back_what_files_left_in_memory(monkeypatch, tmp_path):
+    """A container that has read large files counts them as memory in use; runs were refused for lack of it."""
+    group = {"memory.max": "1000000", "memory.current": "990000", "memory.stat": "anon 10000\ninactive_file 980000\n"}
+    for name, content in group.items():
+        (tmp_path / name).write_text(content, encoding="ascii")
+    monkeypatch.setattr(room, "_CGROUPS", ((tmp_path, "memory.max", "memory.current", "inactive_file"),))
+    assert room.available_memory() == 990_000
+    (tmp_path / "memory.max").write_text("max", encoding="ascii")
+    assert room.available_memory() > 1_000_000
+
+
 def test_the_advised_output_step_will_do(monkeypatch):
     study = fx.model.override(fx.preset("paper-robot"), **LONG)
     monkeypatch.setattr(room, "available_memory", lambda: 1e9)

@@ -144,3 +144,12 @@ def test_sentence_of_a_beam_that_nothing_bends():
         '[simulation]\nfidelity = "rigid"\nduration = 0.1'
     )
     assert "stays on the hub's line" in summary(fx.run(fx.loads(text))).sentence
+
+
+def test_no_leg_is_blamed_where_all_have_the_same_part(data):
+    """Six legs alike under a payload in their middle: the leg that was named was the largest by rounding."""
+    alike = data.copy(deep=True)
+    alike["deviation_by_cause"][:] = alike.deviation_by_cause.mean("leg") * (1 + 1e-9 * alike.leg)
+    found = summary(alike)
+    assert found.worst_leg is None and found.worst_leg_share is None
+    assert "most of it in leg" not in found.sentence and "%)" in found.sentence

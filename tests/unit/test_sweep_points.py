@@ -4,8 +4,10 @@ import numpy as np
 import pytest
 from tests.sweeps import KEY, diameters, quick
 
+from flexapod.errors import InputError
 from flexapod.model import loads, preset_text
 from flexapod.solve.kernel import kernel
+from flexapod.study import room
 from flexapod.study.sweep.plan import read_plan
 from flexapod.study.sweep.points import Points
 
@@ -164,3 +166,13 @@ def test_tables_are_read_beside_the_study(tmp_path):
     before = found.resolve().hash
     (tmp_path / "roll.csv").write_text("time [s], roll [deg]\n0, 0\n0.01, 0.2\n0.02, 0\n", encoding="utf-8")
     assert found.resolve().hash != before
+
+
+def test_draws_beyond_the_memory_are_refused_before_they_are_made(monkeypatch):
+    """All random numbers are made at once: 1e7 draws of six diameters take gigabytes."""
+    monkeypatch.setattr(room, "available_memory", lambda: 1e9)
+    with pytest.raises(InputError, match=r"random.count.*2.96 GB of memory, where 1 GB is free.*Give fewer points"):
+        Points(quick(), read_plan(draws(10_000_000, (KEY, {"normal": "0.1 mm"}))))
+    cube = {"count": 10_000_000, "seed": 3, "ranges": {KEY: ["25 mm", "30 mm"]}}
+    with pytest.raises(InputError, match=r"latin_hypercube.count.*2.16 GB of memory"):
+        points(latin_hypercube=cube)

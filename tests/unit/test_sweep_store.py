@@ -507,3 +507,24 @@ def test_actuator():
     for start_at, peak in zip(starts, made.tip_deflection_peak.values, strict=True):
         alone = fx.run(loads(text.replace('"5 mm"', f'"{start_at}"')))
         assert peak == fx.study.summary(alone).peak
+
+
+@pytest.mark.skipif(not hasattr(os, "mkfifo"), reason="pipes have names")
+@pytest.mark.parametrize("name", ["zarr.json", "status/zarr.json", "status", "com_deviation_peak", "axis"])
+def test_a_pipe_in_the_place_of_a_file_of_a_store(path, monkeypatch, name):
+    """Reading it would wait for ever: refused, and a chunk of results is computed again."""
+    sweep_of = diameters(2) | {"keep": {"scalars": ["com_deviation_peak", "com_deviation_peak_by_axis"]}}
+    made = fx.sweep(quick(), sweep_of, store=path, workers=0)
+    file = path / name if name.endswith("json") else chunk(path, name)
+    file.unlink()
+    os.mkfifo(file)
+    with pytest.raises(InputError, match="it is not a regular file"):
+        open_sweep(path)
+    if name.endswith("json"):
+        with pytest.raises(InputError, match="it is not a regular file"):
+            fx.sweep(quick(), sweep_of, store=path, workers=0)
+        return
+    seen = counted(monkeypatch)
+    again = fx.sweep(quick(), sweep_of, store=path, workers=0)
+    assert seen == ([] if name == "axis" else [0, 1])
+    xr.testing.assert_identical(again, made)

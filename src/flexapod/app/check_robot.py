@@ -3,10 +3,11 @@
 from __future__ import annotations
 
 import math
+from collections.abc import Sequence
 from typing import TYPE_CHECKING
 
 from flexapod.app.terminal import print_table, print_text
-from flexapod.study.words import column, number, scale, text
+from flexapod.study.words import column, length, number, scale, text
 
 if TYPE_CHECKING:
     from flexapod.study.describe.leg import Extreme
@@ -55,13 +56,19 @@ def _lengths(found: RobotDescription) -> None:
     print_table(header, rows)
     limited = [(leg.stroke_margin.value, leg) for leg in found.legs if leg.stroke_margin is not None]
     if limited:
-        margin, leg = min(limited, key=lambda entry: entry[0])
+        margin, leg = limited[_most([-margin for margin, _ in limited])]
         low, high = leg.stroke or (0.0, 0.0)
         print_text(
             f"Leg {leg.leg} comes nearest to its limits of {1e3 * low:.4g} and {1e3 * high:.4g} mm: {1e3 * margin:.2f} "
             "mm are left.",
             indent=2,
         )
+
+
+def _most(values: Sequence[float]) -> int:
+    """Number of the largest value: the first of those that differ by rounding."""
+    largest = max(values)
+    return next(i for i, value in enumerate(values) if value >= largest - 1e-9 * abs(largest))
 
 
 def _at(extreme: Extreme) -> str:
@@ -97,7 +104,7 @@ def _loads(found: RobotDescription) -> None:
     rows = zip(names, forces[:count], forces[count:], pushed_words, *stresses, strict=True)
     header = ["", f"least [{unit}]", f"largest [{unit}]", "of Euler load [%]", *pressure]
     print_table(header, [list(row) for row in rows])
-    pushed = max(found.legs, key=lambda leg: leg.euler_share.value)
+    pushed = found.legs[_most([leg.euler_share.value for leg in found.legs])]
     if pushed.euler_share.value > 0:
         print_text(
             f"Leg {pushed.leg} comes nearest to buckling: {1 / pushed.euler_share.value:.3g} times its load would "
@@ -108,7 +115,7 @@ def _loads(found: RobotDescription) -> None:
     if not known:
         print_text("No stresses: the section or the material of the pistons is not given.", indent=2)
         return
-    most, number = max(known, key=lambda entry: entry[0].total.value)
+    most, number = known[_most([stress.total.value for stress, _ in known])]
     limit = "" if most.yield_stress is None else f", {100 * most.total.value / most.yield_stress:.2g} % of yield"
     print_text(f"Leg {number} is stressed most: {text(most.total.value, 'Pa')}{limit}.", indent=2)
 
@@ -132,7 +139,7 @@ def _pose(pose: PoseDescription, held: str) -> None:
             f"Stiffness at the tool: {text(s.least, 'N/m')} along [{direction}], where it is least, to "
             f"{text(s.most, 'N/m')}; against turning {number(turning.factor * s.turning_least)} to "
             f"{turning.text(s.turning_most)}. At rest the centre of mass is off by "
-            f"{text(pose.sag or 0.0, 'm')}.",
+            f"{length(pose.sag or 0.0)}.",
             indent=2,
         )
     if pose.modes:

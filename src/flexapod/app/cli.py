@@ -138,6 +138,8 @@ def _whole() -> int:
         app()
     except SystemExit as end:
         code = end.code
+    except KeyboardInterrupt:  # before the command itself began
+        code = INTERRUPTED
     else:
         code = 0
     for stream in (sys.stdout, sys.stderr):

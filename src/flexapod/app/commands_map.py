@@ -58,7 +58,9 @@ def workspace_map(
     from flexapod.errors import InputError
     from flexapod.study.map import workspace_map as compute
     from flexapod.study.map.findings import map_findings
+    from flexapod.study.map.grid import grid
     from flexapod.study.map.workspace import FREQUENCIES
+    from flexapod.study.room import check_map
 
     study = model.load(file)
     if isinstance(study, model.ActuatorStudy):
@@ -69,8 +71,10 @@ def workspace_map(
     folder = results_folder(file, "map", out)
     with progress_bar(quiet=quiet or json) as report:
         with as_options(axes="--x", at="--at", direction="--direction", acceleration="--acceleration"):
+            poses, frequencies = grid(study.robot, axes, fixed), max(mode, FREQUENCIES)
+            check_map(poses.size, frequencies, folder)
             data = compute(
-                study, axes, at=fixed, frequencies=max(mode, FREQUENCIES), **settings,
+                study, poses.values, at=fixed, frequencies=frequencies, **settings,
                 progress=lambda words, share: report(words, COMPUTING * share),
             )  # fmt: skip
         if mode > data.sizes["mode"]:

@@ -117,12 +117,12 @@ def _as_dict(data: Dataset, files: list[Path]) -> dict[str, object]:
 
 def _show(data: Dataset, held: str, pose: str | None, count: int, files: list[Path]) -> None:
     from flexapod.app.terminal import print_table, print_text
-    from flexapod.study.words import column, text
+    from flexapod.study.words import column, length
 
     sag = float((data.com_sag**2).sum() ** 0.5)
     print_text(
         f"{held}, {f'at {pose} from home' if pose else 'at home'}, about the static equilibrium "
-        f"(the centre of mass sags by {text(sag, 'm')})."
+        f"(the centre of mass sags by {length(sag)})."
     )
     print_text()
     shown = data.isel(mode=slice(0, count))

@@ -4,7 +4,7 @@ from __future__ import annotations
 
 from flexapod import model
 from flexapod.study.describe.robot import RobotDescription, describe
-from flexapod.study.words import number, text
+from flexapod.study.words import length, number, text
 
 __all__ = ["first_words"]
 
@@ -25,8 +25,9 @@ def _found(study: model.Study, found: RobotDescription) -> list[str]:
     leg = robot.legs[0]
     low, high = (leg.stroke.min, leg.stroke.max) if leg.stroke is not None else (0.0, 0.0)
     path = ", ".join(f"{name} {words}" for name, words in motion._shown().items())
+    home, shortest, longest = (number(1e3 * length, 4) for length in (float(robot.home_lengths[0]), low, high))
     lines = [
-        f"Legs of {text(float(robot.home_lengths[0]), 'm', 4)} at home, {text(low, 'm', 4)} to {text(high, 'm', 4)}; "
+        f"Legs of {home} mm at home, {shortest} to {longest} mm; "
         f"pistons {text(leg.piston.diameter or 0.0, 'm')} thick and {text(leg.piston.length, 'm', 4)} long, mouths of "
         f"the cylinders at {text(leg.cylinder.mouth, 'm', 4)}. Motion: {path}.",
     ]
@@ -35,7 +36,7 @@ def _found(study: model.Study, found: RobotDescription) -> list[str]:
     if start.sag is not None and start.modes:
         first = start.modes[0]
         bears += (
-            f"; at rest the payload sags by {text(start.sag, 'm')}; the lowest frequency is {first.frequency:.3g} Hz "
+            f"; at rest the payload sags by {length(start.sag)}; the lowest frequency is {first.frequency:.3g} Hz "
             f"({first.kind})"
         )
     return [*lines, f"{bears}."]

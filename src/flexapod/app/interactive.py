@@ -59,7 +59,7 @@ def interactive(figure: Figure) -> dict[str, Any] | None:
         layout |= _axes(axes, k, panels)
         layout["annotations"] += [*_title(axes, k), *_notes(axes, k)]
         layout["shapes"] += [*_rules(axes, k), *_bands(axes, k)]
-        data += [*_lines(axes, k), *_bars(axes, k), *_areas(axes, k)]
+        data += [*_areas(axes, k), *_lines(axes, k), *_bars(axes, k)]  # areas lie below curves
     _label(data, shown)
     if all(_is_time(axes) for axes in panels if axes.get_xlabel()):
         layout["hovermode"] = "x unified"

@@ -16,7 +16,7 @@ from flexapod.plot.style import FLEXIBLE, LEG_COLORS, RIGID
 from flexapod.rigid.rotations import matrix
 from flexapod.study.scene import STATIONS, Scene, mode_scene
 from flexapod.study.summary import POINT_WORDS, tool_apart
-from flexapod.study.words import number, scale
+from flexapod.study.words import cleared_lines, number, scale
 from flexapod.typing import Array
 
 if TYPE_CHECKING:
@@ -32,6 +32,7 @@ MODE_SIZE = 0.1  # largest displacement of a mode, as a share of the robot's hei
 EVERY = 3  # of the points of a drawn piston
 LEGS = 6
 FILLED = 1.6  # size of the drawn box, which nearly fills its place
+BELOW = 0.06  # of the box's height, free below the base: numbers of the legs and of the axes stay apart
 CYLINDER, DEVIATION = "#8A8F98", "#D55E00"
 Traces = list[dict[str, Any]]
 
@@ -85,7 +86,7 @@ def _robot(study: Study, data: Dataset, modes: Dataset | None) -> dict[str, Any]
     played = [] if modes is None else _modes(robot, modes)
     everything = [frames, *(part for mode in played for part in mode["ends"])]
     deviation = data[f"{point}_deviation"].values[chosen]
-    numbers = np.column_stack([deviation, np.linalg.norm(deviation, axis=1)])
+    numbers = cleared_lines(np.vstack([deviation.T, np.linalg.norm(deviation, axis=1)])).T
     return {
         **_frames(times, frames, f"deflections and deviation drawn {number(factor)} times larger"),
         **_values(f"deviation of the {POINT_WORDS[point]}", numbers, (*"xyz", "distance")),
@@ -231,14 +232,23 @@ def _fixed(points: Array, color: str, width: float, **more: Any) -> dict[str, An
 def _space(points: Array) -> dict[str, Any]:
     """3D axes in mm with equal scales that hold all frames, so that nothing jumps."""
     low, high = _limits(points)
+    low[2] -= BELOW * float((high - low)[2])
     span = high - low
     axes = {
-        f"{name}axis": {"title": {"text": f"{name} [mm]"}, "range": [float(low[i]), float(high[i])], "nticks": 5}
+        f"{name}axis": {"title": {"text": f"{name} [mm]"}, "range": [float(low[i]), float(high[i])], "tickvals": ends}
         for i, name in enumerate("xyz")
+        for ends in [_round_ends(float(low[i]), float(high[i]))]
     }
     ratio = {name: FILLED * float(span[i] / span.max()) for i, name in enumerate("xyz")}
     camera = {"eye": {"x": 1.5, "y": -1.7, "z": 0.5}, "projection": {"type": "orthographic"}}
     return {"scene": {**axes, "aspectmode": "manual", "aspectratio": ratio, "camera": camera, "dragmode": "turntable"}}
+
+
+def _round_ends(low: float, high: float) -> list[float]:
+    """A round number near either end: the label of the axis stands in the middle, and would cover one there."""
+    digit = 10.0 ** np.floor(np.log10((high - low) / 2))
+    step = next(size * digit for size in (5, 2, 1) if size * digit <= (high - low) / 2)
+    return [float(np.ceil(low / step) * step), float(np.floor(high / step) * step)]
 
 
 def _plane(points: Array) -> dict[str, Any]:

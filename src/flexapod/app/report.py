@@ -189,19 +189,19 @@ def by_axis(data: Dataset) -> str:
 
 
 def _axis_table(found: RobotSummary) -> str:
-    from flexapod.study.words import cleared, text
+    from flexapod.study.words import text
 
     head = ("Axis", "Largest", "at", "rms", "Rigid travel", "Per cent of the travel")
     rows = [
         (
             a.axis.upper(),
-            text(float(cleared(a.peak, found.peak)), "m"),
-            f"{a.time:.3f} s",
-            text(float(cleared(a.rms, found.rms)), "m"),
+            text(a.peak, "m"),
+            "n/a" if a.time is None else f"{a.time:.3f} s",
+            text(a.rms, "m"),
             text(a.excursion, "m", 4),
             "n/a" if a.per_cent is None else f"{a.per_cent:.2g} %",
         )
-        for a in found.axes
+        for a in found.shown_axes
     ]
     rows.append(("Distance", text(found.peak, "m"), f"{found.time:.3f} s", text(found.rms, "m"), "", ""))
     return html.table(head, rows)

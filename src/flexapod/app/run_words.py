@@ -42,18 +42,17 @@ def show_run(data: Dataset, folder: Path, files: Sequence[Path], warnings: Seque
 
 
 def _axes(found: RobotSummary, name: str) -> None:
-    from flexapod.study.words import cleared, column
+    from flexapod.study.words import column
 
-    peaks = [float(cleared(a.peak, found.peak)) for a in found.axes]
-    means = [float(cleared(a.rms, found.rms)) for a in found.axes]
-    length, peaks_and_rms = column([*peaks, *means], "m")
-    count = len(found.axes)
-    travel_unit, travels = column([a.excursion for a in found.axes], "m")
-    _, shares = column([float("nan") if a.per_cent is None else a.per_cent for a in found.axes], "", 2)
+    axes = found.shown_axes
+    length, peaks_and_rms = column([*(a.peak for a in axes), *(a.rms for a in axes)], "m")
+    count = len(axes)
+    travel_unit, travels = column([a.excursion for a in axes], "m")
+    _, shares = column([float("nan") if a.per_cent is None else a.per_cent for a in axes], "", 2)
     rows = zip(
-        (a.axis for a in found.axes),
+        (a.axis for a in axes),
         peaks_and_rms[:count],
-        (f"{a.time:.3f}" for a in found.axes),
+        ("n/a" if a.time is None else f"{a.time:.3f}" for a in axes),
         peaks_and_rms[count:],
         travels,
         shares,

@@ -212,10 +212,10 @@ def _choices() -> Iterator[str]:
 
 def _tables() -> Iterator[str]:
     yield (
-        "The path of a CSV file is relative to the study file. The first line names each column with its unit; any unit "
-        "of the right kind will do. The first instant is 0, the others increase. Lines that begin with # are comments. "
-        "Between its instants a motion is a quintic spline that rests at both ends; loads and forces are linear, and "
-        "held at the end."
+        "The path of a CSV file is relative to the study file. The first line names each column with its "
+        "unit; any unit of the right kind will do. The first instant is 0, the others increase. Lines that "
+        "begin with # are comments. Between its instants a motion is a quintic spline that rests at both "
+        "ends; loads and forces are linear, and held at the end."
     )
     yield _table(
         ("Read by", "First line", "Columns"),

@@ -9,8 +9,21 @@ import xarray as xr
 from matplotlib.axes import Axes
 from matplotlib.figure import Figure
 
-from flexapod.plot.style import FLEXIBLE, LEG_COLORS, LINE_STYLES, NOTE, PAGE, RIGID, figure, ink, needs, scale, styled
-from flexapod.study.words import number
+from flexapod.plot.style import (
+    FLEXIBLE,
+    LEG_COLORS,
+    LINE_STYLES,
+    NOTE,
+    PAGE,
+    RIGID,
+    figure,
+    flat_on_the_scale_of_others,
+    ink,
+    needs,
+    scale,
+    styled,
+)
+from flexapod.study.words import cleared_lines, number
 
 __all__ = ["actuator_modes", "actuator_path", "actuator_response"]
 
@@ -118,7 +131,7 @@ def actuator_path(data: xr.Dataset, hub_radius: float = 0.0, magnify: float = 1.
 @styled
 @needs("mode_amplitude")
 def actuator_modes(data: xr.Dataset) -> Figure:
-    """Amplitude of each lateral shape over time, each on its own scale.
+    """Amplitude of each lateral shape over time, each on its own scale; 0 where all is rounding beside the largest.
 
     Parameters
     ----------
@@ -128,13 +141,14 @@ def actuator_modes(data: xr.Dataset) -> Figure:
     labels = data.mode.values
     fig = figure(PAGE, 1.0 + 1.4 * len(labels))
     panels = np.atleast_1d(fig.subplots(len(labels), 1, sharex=True))
-    for axes, label in zip(panels, labels, strict=True):
-        values = data.mode_amplitude.sel(mode=label)
-        unit = scale(values, "m")
+    lines = cleared_lines(data.mode_amplitude.transpose("mode", "time").values)
+    for axes, label, values in zip(panels, labels, lines, strict=True):
+        unit = scale(values if values.any() else lines, "m")
         axes.plot(data.time, unit(values), color=FLEXIBLE, linewidth=1.0)
         axes.axhline(0, color="#555555", linewidth=0.7)
         axes.set_title(f"Shape {label}")
         axes.set_ylabel(f"amplitude [{unit.name}]")
+    flat_on_the_scale_of_others(panels.tolist(), [float(np.abs(values).max()) for values in lines])
     panels[-1].set_xlabel("time [s]")
     fig.align_ylabels(panels)
     return fig

@@ -9,6 +9,7 @@ from matplotlib.figure import Figure
 
 from flexapod.plot.style import FLEXIBLE, LEG_COLORS, LINE_STYLES, PAGE, RIGID, figure, mark_end, needs, scale, styled
 from flexapod.study.scene import motion_end
+from flexapod.study.words import NOTHING
 
 __all__ = ["actuator_forces", "leg_lengths", "tip_deflections"]
 
@@ -103,11 +104,12 @@ def tip_deflections(data: xr.Dataset) -> Figure:
     """
     fig = figure(PAGE, 4.8)
     rows = fig.subplots(2, 1, sharex=True, sharey=True)
-    small, end, time = scale(data.tip_deflection, "m"), motion_end(data), data.time.values
+    off = data.tip_deflection * (float(np.abs(data.tip_deflection).max()) >= NOTHING)
+    small, end, time = scale(off, "m"), motion_end(data), data.time.values
     words = {"a": "across the leg, direction a (level at home)", "b": "across the leg, direction b"}
     for axes, direction in zip(rows, data.direction.values, strict=True):
         for i, leg in enumerate(data.leg.values):
-            _leg_line(axes, time, small(data.tip_deflection.sel(leg=leg, direction=direction)), i)
+            _leg_line(axes, time, small(off.sel(leg=leg, direction=direction)), i)
         axes.set_title("Piston tip " + words[str(direction)])
         axes.set_ylabel(f"deflection [{small.name}]")
         mark_end(axes, end, "motion ends" if axes is rows[0] else "")

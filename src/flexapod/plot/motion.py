@@ -8,6 +8,7 @@ from matplotlib.figure import Figure
 
 from flexapod.plot.style import LEG_COLORS, LINE_STYLES, PAGE, figure, mark_end, needs, scale, styled
 from flexapod.study.scene import motion_coordinates, motion_end
+from flexapod.study.words import NOTHING
 
 __all__ = ["motion_law"]
 
@@ -26,7 +27,7 @@ def motion_law(data: xr.Dataset) -> Figure:
         Result of a simulation, with its study in the attributes.
     """
     law = motion_coordinates(data)
-    moving = [str(name) for name in law.coordinate.values if np.ptp(law.position.sel(coordinate=name).values) > 0]
+    moving = [str(name) for name in law.coordinate.values if np.ptp(law.position.sel(coordinate=name).values) > NOTHING]
     turns = [name for name in moving if name in _TURNS]
     shifts = [name for name in moving if name not in _TURNS]
     groups = [group for group in (turns, shifts) if group] or [["roll"]]

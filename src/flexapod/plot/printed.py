@@ -181,7 +181,7 @@ def path_bands(data: xr.Dataset, printed: Mapping[str, float]) -> Figure:
         below.set_ylim(-1.25e3 * band, 1.25e3 * band)
         largest = float(np.abs(gap).max()) / 1e3
         words = f"largest {text(largest, 'm')}:\nthe print is {number(band / largest, 2)} times that"
-        below.annotate(words, (0.03, 0.93), xycoords="axes fraction", va="top", fontsize=NOTE, color=ink("#333333"))
+        below.annotate(words, (0.03, 0.85), xycoords="axes fraction", va="top", fontsize=NOTE, color=ink("#333333"))
         below.set_title(f"Flexible minus rigid, {axis.upper()}")
         below.set_xlabel("time [s]")
         mark_end(above, end, "motion ends")

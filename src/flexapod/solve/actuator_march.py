@@ -6,6 +6,7 @@ from dataclasses import dataclass, field, replace
 import numpy as np
 
 from flexapod import rigid
+from flexapod.bases.eigen import finite
 from flexapod.errors import ComputationError
 from flexapod.integration import GeneralizedAlpha
 from flexapod.model import Actuator, ActuatorStudy, Simulation
@@ -185,6 +186,7 @@ def _after_impact(plant: Plant, law: Law, method: GeneralizedAlpha, flow: Flow, 
     """Flow after a jump in a prescribed rate: free rates change by the impulse balance, Eq. (T6.10)."""
     row, p, held = law(np.array([now]))[0][0], plant.leg_p[0], plant.held
     M = plant.kernel.leg_matrices(flow.q[0], np.zeros(3), p)[0]
+    finite(M)
     v = flow.v.copy()
     v[:2] = np.where(held[:2], [row[5], row[1]], v[:2])
     v[~held] -= np.linalg.solve(M[np.ix_(~held, ~held)], M[np.ix_(~held, held)] @ (v - flow.v)[held])
@@ -204,6 +206,7 @@ def _accelerated(plant: Plant, x: Flow, row: Array) -> Flow:
     p, free = plant.leg_p[0], ~plant.held
     r = plant.kernel.leg_residual(x.q[0], x.v, v_dot, np.zeros(3), command, p)[0]
     M = plant.kernel.leg_matrices(x.q[0], np.zeros(3), p)[0]
+    finite(M, r)
     v_dot[free] = np.linalg.solve(M[np.ix_(free, free)], -r[free])
     r = plant.kernel.leg_residual(x.q[0], x.v, v_dot, np.zeros(3), command, p)[0]
     drive = np.array([[r[1] if plant.held_l[0] else 0.0, r[0] if plant.held_beta[0] else 0.0]])

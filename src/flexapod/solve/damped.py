@@ -2,6 +2,7 @@
 
 import numpy as np
 
+from flexapod.bases.eigen import finite
 from flexapod.typing import Array
 
 OSCILLATES = 1e-9  # imaginary part over size of an eigenvalue: less is a pair of real ones, split by rounding
@@ -18,7 +19,13 @@ def damping_ratios(omega: Array, D: Array) -> Array:
         Undamped angular frequencies [rad/s], above 0; inf for what has no mass.
     D : ndarray, shape (m, m)
         Damping matrix in modal coordinates of unit stiffness [s].
+
+    Raises
+    ------
+    ComputationError
+        A number in it is not finite.
     """
+    finite(D)
     size = len(omega)
     ratio = 0.5 * np.diag(D) * np.where(np.isfinite(omega), omega, 0.0)
     if not D.any():

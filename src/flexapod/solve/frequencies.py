@@ -4,6 +4,7 @@ from __future__ import annotations
 
 import numpy as np
 
+from flexapod.bases.eigen import finite
 from flexapod.typing import Array, Mask
 
 __all__ = ["cholesky_each", "count_real", "mass_factor", "natural"]
@@ -46,6 +47,11 @@ def natural(U: Array, K: Array, *, shapes: bool) -> tuple[Array, Array, Mask]:
     shapes : bool
         Whether shapes are wanted; else (p, r, 0).
 
+    Raises
+    ------
+    ComputationError
+        A number is not finite.
+
     Notes
     -----
     With K = L L^T and the singular values s of U L^-T (T7.21) the frequencies are 1 / s: the lowest ones are right to
@@ -55,6 +61,7 @@ def natural(U: Array, K: Array, *, shapes: bool) -> tuple[Array, Array, Mask]:
     L, positive = cholesky_each(K)
     L = np.where(positive[:, None, None], L, np.eye(K.shape[-1]))
     X = np.asarray(np.linalg.solve(L, U.swapaxes(1, 2)), dtype=np.float64)  # (T7.21), transposed
+    finite(X)
     if shapes:
         left, sizes, _ = np.linalg.svd(X, full_matrices=False)
     else:

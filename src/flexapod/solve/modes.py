@@ -5,6 +5,7 @@ from dataclasses import dataclass
 import numpy as np
 
 from flexapod import rigid
+from flexapod.bases.eigen import finite
 from flexapod.errors import ComputationError, InputError
 from flexapod.model import Load, Robot, Simulation
 from flexapod.solve.damped import damping_ratios
@@ -136,14 +137,16 @@ def robot_modes(
     InputError
         Rigid legs on prescribed strokes (nothing can move), or a pure force drive.
     ComputationError
-        No equilibrium at this pose, or masses that no body can have.
+        No equilibrium at this pose, masses that no body can have, or a number that is not finite.
     """
     return the_modes(locked_poses(robot, simulation, rigid.home_pose(robot) if path is None else path, load, time))
 
 
 def the_modes(locked: LockedPoses) -> RobotModes:
     """Modes at a single pose; raises as `robot_modes`."""
-    found, modes = the_equilibrium(locked), modes_of(locked, shapes=True)
+    found, m = the_equilibrium(locked), locked.m
+    finite(m.M, m.K, m.D, m.payload_M, m.payload_K)
+    modes = modes_of(locked, shapes=True)
     if not modes.positive[0]:
         raise ComputationError(
             NO_MASS, next_step="Give leg.piston.length at least the largest leg length less leg.cylinder.mouth."

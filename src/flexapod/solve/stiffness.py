@@ -5,6 +5,7 @@ from dataclasses import dataclass
 import numpy as np
 
 from flexapod import rigid
+from flexapod.bases.eigen import finite
 from flexapod.errors import InputError
 from flexapod.model import Load, Robot, Simulation
 from flexapod.rigid.rotations import matrix
@@ -82,6 +83,19 @@ def stiffness_of(robot: Robot, locked: LockedPoses) -> Stiffness:
     parts = np.concatenate([legs, m.payload_K[:, None]], axis=1)
     at_tool = back.swapaxes(-1, -2) @ parts @ back  # (T7.8)
     return Stiffness(total=at_tool.sum(axis=1), legs=at_tool[:, :6], load=at_tool[:, 6])
+
+
+def compliance(total: Array) -> Array:
+    """Inverses of stiffness matrices (p, 6, 6), symmetric.
+
+    Raises
+    ------
+    ComputationError
+        A matrix is singular, or a number in it is not finite.
+    """
+    found = solve_each(total, np.broadcast_to(np.eye(6), total.shape))
+    finite(total, found)
+    return 0.5 * (found + found.swapaxes(-1, -2))
 
 
 def tool_motion(robot: Robot, pose: Array) -> Array:

@@ -1,7 +1,9 @@
 """Where the steps of a time integration have to end: at breaks of commands and loads, Eq. (T6.17)."""
 
+from bisect import bisect_left
 from collections.abc import Sequence
 from dataclasses import dataclass, field
+from functools import cached_property
 
 from flexapod.rigid import Breaks
 
@@ -55,9 +57,14 @@ class Stops:
         place = stop.first / self.output_step * per_output
         return not stop.jumps and abs(place - round(place)) < 1e-6 * per_output
 
+    @cached_property
+    def _places(self) -> list[int]:
+        """Numbers of the intervals that have a stop, ascending: few of many."""
+        return sorted({*self.ends, *self.inside})
+
     def next(self, done: int, most: int, per_output: float) -> int:
         """Number of outputs up to which steps go on evenly from `done`, at most `most`, at least one more."""
-        for k in range(done, most):
+        for k in self._places[bisect_left(self._places, done) : bisect_left(self._places, most)]:
             if k > done and k in self.ends:
                 return k
             if self.within(k, per_output):

@@ -11,6 +11,7 @@ from flexapod.model import Leg, Piston, Robot
 from flexapod.rigid.kinematics import LegState
 from flexapod.rigid.rotations import matrix
 from flexapod.solve.modes import RobotModes
+from flexapod.solve.tables import feed_forward
 from flexapod.typing import Array
 
 __all__ = ["Vibration", "bending_moment", "buckling_load", "residual_vibration", "section_width"]
@@ -119,8 +120,8 @@ def residual_vibration(
     """Residual vibration of the tool after a motion, Eqs. (T8.14)-(T8.17).
 
     A single-mode estimate: each mode of the end pose with ten instants a period or more answers by itself to the
-    inertial forces of the rigid path, with the masses and directions of the end pose. Jumps of the commanded rate,
-    at the start and the end too, are impacts.
+    inertial forces of the rigid path, less what force drives of law "rigid" feed forward of them, with the masses and
+    directions of the end pose. Jumps of the commanded rate, at the start and the end too, are impacts.
 
     Parameters
     ----------
@@ -144,7 +145,7 @@ def residual_vibration(
     rates = _rigid_rates(robot, modes, path)
     before = np.zeros(rates.shape[1]) if from_rest else rates[0]
     steps = np.diff(rates, axis=0, prepend=before[None], append=np.zeros((1, rates.shape[1])))
-    impulse = -steps @ (mass @ shapes.T)  # (T8.14)  Q_j dt
+    impulse = -steps @ (mass @ shapes.T) + _fed_forward(robot, t, path) @ _strokes(modes, shapes).T  # (T8.14)  Q_j dt
     middle = np.concatenate([t[:1], 0.5 * (t[1:] + t[:-1]), t[-1:]])
     kernel = np.exp((1j * damped - ratio * omega) * (t[-1] - middle)[:, None])
     answer = np.abs((impulse * kernel).sum(axis=0)) / damped  # (T8.15)
@@ -162,6 +163,19 @@ def _rigid_rates(robot: Robot, modes: RobotModes, path: rigid.Poses) -> Array:
     com = path.point(robot.payload.com)[1]
     turn = np.einsum("tij,ti->tj", path.rotation, path.omega)
     return np.concatenate([flat.reshape(len(path), -1), com, turn], axis=1)
+
+
+def _fed_forward(robot: Robot, t: Array, path: rigid.Poses) -> Array:
+    """Impulses (T + 1, 6) [N s] of what drives feed forward of inertia: none at the jumps at the start and the end."""
+    still = rigid.Poses.at_rest(path.position, path.rotation)
+    none = np.zeros((len(t), 6))
+    force = feed_forward(robot, t, path, none) - feed_forward(robot, t, still, none)
+    return np.pad(0.5 * (force[1:] + force[:-1]) * np.diff(t)[:, None], ((1, 1), (0, 0)))
+
+
+def _strokes(modes: RobotModes, shapes: Array) -> Array:
+    """Travel of the six drives in every shape, (m, 6)."""
+    return shapes[:, :-6].reshape(len(shapes), 6, modes.system.n)[:, :, 2]
 
 
 def _tool_amplitudes(robot: Robot, modes: RobotModes, shapes: Array) -> Array:

@@ -10,13 +10,27 @@ from pathlib import Path
 from flexapod.errors import InputError
 from flexapod.model import ActuatorStudy, Study
 
-__all__ = ["available_memory", "check_disk", "check_memory", "check_room", "free_disk", "gigabytes", "result_bytes"]
+__all__ = [
+    "available_memory",
+    "check_disk",
+    "check_map",
+    "check_memory",
+    "check_room",
+    "free_disk",
+    "gigabytes",
+    "result_bytes",
+]
 
 REMARKED = 1e9  # byte of results from which on their size is worth a remark
 SMALL = 1e8  # byte that every machine has free: below it nothing is asked
 PEAK = 3  # times the results is what they take while they are made: the record, the Dataset, what is written
 CSV = 3  # times the results is what NetCDF and CSV take together: a number in letters is twice its 8 bytes
-_CGROUPS = (("memory.max", "memory.current"), ("memory/memory.limit_in_bytes", "memory/memory.usage_in_bytes"))
+POSE = 24  # numbers of a pose of a map beside its frequencies
+# Of a control group: most memory, memory in use, and the part of it that files left behind and the kernel gives back.
+_CGROUPS = (
+    (Path("/sys/fs/cgroup"), "memory.max", "memory.current", "inactive_file"),
+    (Path("/sys/fs/cgroup/memory"), "memory.limit_in_bytes", "memory.usage_in_bytes", "total_inactive_file"),
+)
 
 
 def stored_instants(study: Study | ActuatorStudy) -> float:
@@ -80,22 +94,44 @@ def _too_much(study: Study | ActuatorStudy, what: str, where: str, free: float, 
     )
 
 
-def check_room(size: float, path: Path | None, file: str | None) -> None:
-    """Refuse a sweep whose records neither memory nor the disk of its store (`path`) holds.
+def check_room(size: float, folder: Path | None, *, key: str, next_step: str, file: str | None = None) -> None:
+    """Refuse what the disk of a folder, or without one the memory, does not hold.
+
+    Parameters
+    ----------
+    size : float
+        What is asked for [byte].
+    folder : Path, optional
+        Where it is to be written.
+    key, next_step, file : str
+        What asks for it, what would do instead, and where it stands.
+
+    Raises
+    ------
+    InputError
+        Naming how many gigabytes.
+    """
+    free = available_memory() if folder is None else free_disk(folder)
+    if size > SMALL and size > free:
+        place = "of memory" if folder is None else "on the disk"
+        raise InputError(
+            f"asks for {gigabytes(size)} {place}, where {gigabytes(free)} is free",
+            file=file,
+            key=key,
+            next_step=next_step,
+        )
+
+
+def check_map(poses: int, frequencies: int, folder: Path | None = None) -> None:
+    """Refuse a map that the memory, or the disk of its folder, does not hold.
 
     Raises
     ------
     InputError
     """
-    free = available_memory() if path is None else free_disk(path.parent)
-    if size > SMALL and size > free:
-        place = "of memory" if path is None else "on the disk"
-        raise InputError(
-            f"asks for {gigabytes(size)} {place}, where {gigabytes(free)} is free",
-            file=file,
-            key="keep",
-            next_step="Keep fewer records, or give [keep] a longer record_step",
-        )
+    size = 8.0 * poses * (POSE + frequencies)
+    next_step = "Give the axes fewer points, or compute the map in parts"
+    check_room(size if folder else PEAK * size, folder, key="axes", next_step=next_step)
 
 
 def gigabytes(size: float) -> str:
@@ -120,8 +156,14 @@ def available_memory() -> float:
     if len(found) == 1 and hasattr(os, "sysconf"):
         with suppress(OSError, ValueError):
             found.append(float(os.sysconf("SC_PHYS_PAGES") * os.sysconf("SC_PAGE_SIZE")))
-    for most, used in _CGROUPS:
+    for folder, *names in _CGROUPS:
         with suppress(OSError, ValueError):
-            limit, now = (int((Path("/sys/fs/cgroup") / name).read_text(encoding="ascii")) for name in (most, used))
-            found.append(float(max(limit - now, 0)))
+            found.append(_free_of_group(folder, *names))
     return min(found)
+
+
+def _free_of_group(folder: Path, most: str, used: str, cached: str) -> float:
+    """Memory [byte] that a control group may still take."""
+    limit, now = (int((folder / name).read_text(encoding="ascii")) for name in (most, used))
+    lines = (folder / "memory.stat").read_text(encoding="ascii").splitlines()
+    return float(max(limit - now + sum(int(n) for name, n in map(str.split, lines) if name == cached), 0))

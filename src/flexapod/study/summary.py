@@ -2,14 +2,14 @@
 
 from __future__ import annotations
 
-from dataclasses import asdict, dataclass
+from dataclasses import asdict, dataclass, replace
 from typing import TYPE_CHECKING
 
 import numpy as np
 
 from flexapod.errors import InputError
 from flexapod.study.names import CAUSE_WORDS
-from flexapod.study.words import cleared, text
+from flexapod.study.words import NOTHING, cleared, text
 from flexapod.typing import Array
 
 if TYPE_CHECKING:
@@ -18,7 +18,6 @@ if TYPE_CHECKING:
 __all__ = ["POINT_WORDS", "ActuatorSummary", "AxisSummary", "RobotSummary", "summaries", "summary", "tool_apart"]
 
 SMALLEST_EXCURSION = 1e-6  # rigid travel below which a percentage says nothing [m]
-NOTHING = 1e-12  # deviation that is rounding [m]
 POINTS = {"com": "The payload's centre of mass", "tool": "The tool"}
 POINT_WORDS = {"com": "centre of mass", "tool": "tool"}
 
@@ -27,12 +26,13 @@ POINT_WORDS = {"com": "centre of mass", "tool": "tool"}
 class AxisSummary:
     """Deviation along one world axis: `peak` (largest size) at `time`, `rms`, `excursion` of the rigid path [m, s].
 
-    `per_cent`: peak over peak-to-peak rigid excursion; None ("n/a") where the excursion is below 1 um.
+    `per_cent`: peak over peak-to-peak rigid excursion; None ("n/a") where the excursion is below 1 um. `time`: None
+    where the peak is shown as 0.
     """
 
     axis: str
     peak: float
-    time: float
+    time: float | None
     rms: float
     excursion: float
     per_cent: float | None
@@ -45,7 +45,7 @@ class RobotSummary:
     `peak`, `rms` [m] of the distance, `time` [s] of the peak; `start`: distance at t = 0; `axes`: x, y, z; `causes`:
     share of each cause in the deviation at the peak, along its direction (they add up to 1 but for second order);
     `worst_leg`, `worst_leg_share`: the leg that the largest cause owes most to, and its part of it; None without
-    deviation. `partial`: the integration stopped early.
+    deviation, and where legs contribute alike. `partial`: the integration stopped early.
     """
 
     point: str
@@ -65,12 +65,20 @@ class RobotSummary:
         return max(self.causes, key=lambda cause: abs(self.causes[cause])) if self.causes else None
 
     @property
+    def shown_axes(self) -> tuple[AxisSummary, ...]:
+        """The axes as they are shown: what is rounding beside the largest deviation is 0, at no time."""
+        return tuple(
+            a if cleared(a.peak, self.peak) else replace(a, peak=0.0, time=None, rms=0.0, per_cent=a.per_cent and 0.0)
+            for a in self.axes
+        )
+
+    @property
     def sentence(self) -> str:
         """The deviation and its largest cause, in one sentence."""
         name = POINTS[self.point]
         if self.peak < NOTHING:
             return f"{name} stays on the path of the rigid robot: its legs are rigid."
-        by_axis = ", ".join(f"{a.axis} {text(float(cleared(a.peak, self.peak)), 'm')}" for a in self.axes)
+        by_axis = ", ".join(f"{a.axis} {text(a.peak, 'm')}" for a in self.shown_axes)
         leg = "" if self.worst_leg is None else f", most of it in leg {self.worst_leg}"
         until = " until the computation stopped" if self.partial else ""
         size = f"{name} misses its rigid path by up to {text(self.peak, 'm')}{until} ({by_axis})"
@@ -190,8 +198,12 @@ def _blame(data: Dataset, at: int) -> tuple[dict[str, float], int | None, float 
     shares = data.deviation_by_cause.values[at] @ deviation / size**2
     causes = dict(zip(map(str, data.cause.values), shares.sum(axis=1).tolist(), strict=True))
     by_leg = shares[int(np.abs(shares.sum(axis=1)).argmax())]
-    leg = int((by_leg * np.sign(by_leg.sum())).argmax())
-    return causes, leg + 1, float(by_leg[leg] / by_leg.sum())
+    parts = by_leg / by_leg.sum()
+    second, largest = np.sort(parts)[-2:]
+    if not cleared(largest - second, largest):  # legs alike: none of them is the one
+        return causes, None, None
+    leg = int(parts.argmax())
+    return causes, leg + 1, float(parts[leg])
 
 
 def _rms(values: Array) -> float:

@@ -13,8 +13,9 @@ from flexapod.words import Scale, column, number, scale, text
 if TYPE_CHECKING:
     from flexapod.model import Robot
 
-__all__ = ["Scale", "cleared", "column", "held", "number", "scale", "text"]
+__all__ = ["NOTHING", "Scale", "cleared", "cleared_lines", "column", "held", "length", "number", "scale", "text"]
 
+NOTHING = 1e-12  # length that is rounding [m]
 ROUNDING = 1e-6  # of the largest axis: what is smaller is shown as 0
 
 
@@ -22,6 +23,17 @@ def cleared(values: ArrayLike, largest: float) -> Array:
     """Values of one axis to show beside the others: 0 throughout where all are rounding beside the largest axis."""
     given = np.asarray(values, dtype=float)
     return given * (np.abs(given).max(initial=0.0) > ROUNDING * abs(largest))
+
+
+def cleared_lines(lines: Array) -> Array:
+    """Lines (lines, T) to show together: each that is rounding beside the largest of all is 0 throughout."""
+    largest = float(np.abs(lines).max(initial=0.0))
+    return np.stack([cleared(line, largest) for line in lines])
+
+
+def length(value: float) -> str:
+    """A computed length of which what is below a picometre is rounding, in words."""
+    return text(value if abs(value) >= NOTHING else 0.0, "m")
 
 
 def held(robot: Robot) -> str:

@@ -11,8 +11,8 @@ from numpy.typing import NDArray
 
 from flexapod.app.view.scene_geometry import nearest
 from flexapod.study.colours import AXIS_COLORS, ENERGIES, LEG_COLORS
-from flexapod.study.summary import NOTHING, POINT_WORDS
-from flexapod.study.words import number, scale
+from flexapod.study.summary import POINT_WORDS
+from flexapod.study.words import NOTHING, cleared_lines, number, scale
 from flexapod.typing import Array
 
 if TYPE_CHECKING:
@@ -31,7 +31,10 @@ _CURSOR = "#888888"
 
 @dataclass(frozen=True, kw_only=True)
 class Chart:
-    """Lines over time: `values` (lines, T) in the unit `unit`, at `time` (T,) [s]; 0 where they are but rounding."""
+    """Lines over time: `values` (lines, T) in the unit `unit`, at `time` (T,) [s].
+
+    A line that is rounding beside the largest is 0; energies stay as they are, as small ones are real.
+    """
 
     title: str
     unit: str
@@ -90,7 +93,7 @@ def _chart(data: Dataset, title: str, values: DataArray, unit: str, names: list[
         title=f"{title}: none" if none else title,
         unit=shown.name,
         time=data.time.values,
-        values=lines,
+        values=cleared_lines(lines),
         names=tuple(names),
         colors=colors[: len(names)],
     )

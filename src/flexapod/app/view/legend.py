@@ -9,8 +9,7 @@ import numpy as np
 
 from flexapod import model
 from flexapod.study.colours import LEG_COLORS
-from flexapod.study.summary import NOTHING
-from flexapod.study.words import number, scale
+from flexapod.study.words import NOTHING, cleared_lines, number, scale
 from flexapod.typing import Array
 
 if TYPE_CHECKING:
@@ -113,7 +112,7 @@ def _force(study: model.Study, data: Dataset) -> LegColors:
     values = unit(data.actuator_force.values)
     largest = float(np.abs(values).max()) or 1.0
     return LegColors(
-        values=values,
+        values=cleared_lines(values.T).T,
         low=-largest,
         high=largest,
         unit=unit.name,
@@ -145,7 +144,7 @@ def _bending(study: model.Study, data: Dataset) -> LegColors:
     size = size if size.max() >= NOTHING else 0 * size
     unit = scale(size, "m")
     return LegColors(
-        values=unit(size),
+        values=cleared_lines(unit(size).T).T,
         low=0.0,
         high=float(unit(size).max()) or 1.0,
         unit=unit.name,

@@ -5,12 +5,11 @@ from __future__ import annotations
 from dataclasses import dataclass
 
 import numpy as np
-from numpy.typing import NDArray
 
 from flexapod import model, rigid
 from flexapod.errors import FlexapodError
 from flexapod.solve.modes import locked_poses, robot_modes, the_modes
-from flexapod.solve.stiffness import stiffness_of
+from flexapod.solve.stiffness import compliance, stiffness_of
 from flexapod.study.estimates import residual_vibration
 from flexapod.study.kinds import mode_kinds
 from flexapod.typing import Array
@@ -92,7 +91,7 @@ def describe_pose(study: model.Study, name: str, time: float) -> PoseDescription
     path = _at_rest(study, time)
     try:
         locked = locked_poses(robot, simulation, path, study.load, time)
-        found, stiffness = the_modes(locked), _stiffness(stiffness_of(robot, locked).total[0])
+        found, stiffness = the_modes(locked), _stiffness(stiffness_of(robot, locked).total)
     except FlexapodError as error:
         return PoseDescription(name=name, time=time, problem=str(error))
     sag = found.equilibrium.state.pose[:3] - path.point(robot.payload.com)[0][0]
@@ -104,9 +103,9 @@ def describe_pose(study: model.Study, name: str, time: float) -> PoseDescription
 
 
 def _stiffness(total: Array) -> StiffnessDescription:
-    compliance = np.linalg.inv(total)
-    shift, vectors = np.linalg.eigh(_symmetric(compliance[:3, :3]))
-    turning = np.linalg.eigvalsh(_symmetric(compliance[3:, 3:]))
+    give = compliance(total)[0]
+    shift, vectors = np.linalg.eigh(give[:3, :3])
+    turning = np.linalg.eigvalsh(give[3:, 3:])
     softest = vectors[:, -1] * np.sign(vectors[np.abs(vectors[:, -1]).argmax(), -1])
     return StiffnessDescription(
         least=float(1 / shift[-1]),
@@ -115,10 +114,6 @@ def _stiffness(total: Array) -> StiffnessDescription:
         turning_least=float(1 / turning[-1]),
         turning_most=float(1 / turning[0]),
     )
-
-
-def _symmetric(matrix: NDArray[np.floating]) -> NDArray[np.floating]:
-    return 0.5 * (matrix + matrix.T)
 
 
 def _at_rest(study: model.Study, time: float) -> rigid.Poses:

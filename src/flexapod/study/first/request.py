@@ -2,17 +2,19 @@
 
 from __future__ import annotations
 
+import re
 from dataclasses import dataclass, field
 
 from flexapod.errors import InputError, closest
 from flexapod.model import AXES, MATERIALS
-from flexapod.units import to_si
+from flexapod.units import DIMENSIONS, number_and_unit, to_si
 
 __all__ = ["EXAMPLE", "OPTION", "Request", "parse_request"]
 
 OPTION = "--from"
 EXAMPLE = "home=300 mm, payload=20 kg, stroke=60 mm"
 CHOICES = {"material": tuple(MATERIALS), "motion": AXES}
+_BETWEEN = re.compile(r";|,(?!\d)|\s+(?=[A-Za-z]+\s*=)")  # not the comma of 27,5 mm
 _NUMBERS = {  # key: dimension, least, most [SI]
     "home": ("length", 0.01, 100.0),
     "payload": ("mass", 1e-3, 1e6),
@@ -54,8 +56,9 @@ def parse_request(text: str) -> Request:
         An unknown key, one that is given twice or missing, a value without a unit or out of range.
     """
     given: dict[str, str] = {}
-    for part in filter(None, (" ".join(piece.split()) for piece in text.split(","))):
+    for part in filter(None, (" ".join(piece.split()) for piece in _BETWEEN.split(text))):
         key, equals, value = (piece.strip() for piece in part.partition("="))
+        key = key.lower()
         if key not in (*_NUMBERS, *CHOICES):
             names = ", ".join((*_NUMBERS, *CHOICES))
             hint = closest(key, (*_NUMBERS, *CHOICES)) or f'For example {OPTION} "{EXAMPLE}"'
@@ -73,6 +76,9 @@ def parse_request(text: str) -> Request:
 
 def _number(key: str, value: str) -> float:
     dimension, least, most = _NUMBERS[key]
+    if (read := number_and_unit(value)) is not None and not read[1]:
+        words = f'a {dimension} with its unit, such as "{DIMENSIONS[dimension].example}"'
+        raise InputError("has no unit", key=f"{OPTION} {key}", value=value, allowed=words)
     number = to_si(value, dimension, key=f"{OPTION} {key}")
     if not least <= number <= most:
         unit = {"length": "m", "mass": "kg", "time": "s"}[dimension]

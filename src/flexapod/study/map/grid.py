@@ -49,9 +49,14 @@ class Grid:
         """Points along each axis."""
         return tuple(len(values) for values in self.values.values())
 
+    @property
+    def size(self) -> int:
+        """How many poses."""
+        return int(np.prod(self.shape))
+
     def coordinates(self) -> Array:
         """Surge ... yaw of all poses, (P, 6), the last axis fastest."""
-        table = np.tile(self.at, (int(np.prod(self.shape)), 1))
+        table = np.tile(self.at, (self.size, 1))
         for name, column in zip(self.values, np.meshgrid(*self.values.values(), indexing="ij"), strict=True):
             table[:, AXES.index(name)] = column.ravel()
         return table

@@ -11,7 +11,7 @@ from flexapod.rigid.rotations import matrix
 from flexapod.solve.arrow import arrow_solve
 from flexapod.solve.modes import LockedPoses, locked_poses, modes_of
 from flexapod.solve.parameters import drive_spring
-from flexapod.solve.stiffness import stiffness_of, tool_motion
+from flexapod.solve.stiffness import compliance, stiffness_of, tool_motion
 from flexapod.study.estimates import buckling_load
 from flexapod.study.many_modes import codes_at_rest, poses_of
 from flexapod.study.reach import REACHED, Codes, leg_limits, rigid_codes
@@ -105,9 +105,8 @@ def _largest_angle(a: Array, b: Array) -> Array:
 def _elastic(robot: model.Robot, path: rigid.Poses, locked: LockedPoses, wanted: Wanted) -> Values:
     """Stiffness, deviations and forces about the equilibria that were found, (p, ...)."""
     rigid_pose, states = poses_of(path, locked.at), locked.equilibria.states[locked.at]
-    compliance = np.linalg.inv(stiffness_of(robot, locked).total)[:, :3, :3]
-    compliance = 0.5 * (compliance + compliance.swapaxes(1, 2))
-    principal, axes = np.linalg.eigh(compliance)
+    give = compliance(stiffness_of(robot, locked).total)[:, :3, :3]
+    principal, axes = np.linalg.eigh(give)
     softest = axes[:, :, -1]
     sign = np.sign(np.take_along_axis(softest, np.abs(softest).argmax(axis=1)[:, None], axis=1))
     tool = states.pose[:, :3] + matrix(states.pose[:, 3:]) @ (robot.payload.tool - robot.payload.com)
@@ -115,7 +114,7 @@ def _elastic(robot: model.Robot, path: rigid.Poses, locked: LockedPoses, wanted:
     force = _drive_forces(robot, locked)
     u = wanted.direction
     return {
-        "stiffness": 1 / np.einsum("i,pij,j->p", u, compliance, u),  # (T7.18)
+        "stiffness": 1 / np.einsum("i,pij,j->p", u, give, u),  # (T7.18)
         "stiffness_least": 1 / principal[:, -1],
         "softest_direction": softest * sign,
         "static_deviation": sag,

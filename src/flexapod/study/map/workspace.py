@@ -21,6 +21,7 @@ from flexapod.study.map.quantities import Wanted, batch_values
 from flexapod.study.names import dataset
 from flexapod.study.poses import batches, from_home
 from flexapod.study.reach import flags
+from flexapod.study.room import check_map
 from flexapod.typing import Array
 
 if TYPE_CHECKING:
@@ -87,8 +88,8 @@ def workspace_map(
         acceleration=None if acceleration is None else _vector("acceleration", acceleration),
         frequencies=_count(frequencies),
     )
-    began = time.perf_counter()
-    values = _computed(study, poses, wanted, progress)
+    check_map(poses.size, wanted.frequencies)
+    began, values = time.perf_counter(), _computed(study, poses, wanted, progress)
     count = count_real(values["frequency"])
     values["frequency"] = values["frequency"][..., :count]
     coords = {**poses.values, "mode": np.arange(1, count + 1)}

@@ -16,7 +16,7 @@ import numpy as np
 from flexapod.errors import InputError
 from flexapod.model import ActuatorStudy, Study
 from flexapod.model.base import SHORT
-from flexapod.study.room import result_bytes
+from flexapod.study.room import check_room, result_bytes
 from flexapod.study.sweep.keys import Step, copied, key_text, leaves, put, similar_key, value_at
 from flexapod.study.sweep.plan import Plan, Tolerance
 from flexapod.study.sweep.reading import Malformed, dimension_of, read_with_dimensions, study_of
@@ -27,6 +27,7 @@ from flexapod.typing import Array
 __all__ = ["Points", "Resolved", "content_hash"]
 
 MEMORY = 64 << 20  # of studies that were read and wait to be computed; others are read again
+POINT = 200  # byte kept of each point while points are read: its hash, its number, their places in lists
 Setting = tuple[str, str, int, tuple[int, ...], tuple[object, ...]]
 
 
@@ -105,15 +106,28 @@ class Points:
         try:
             probe = self._probe()
             self.columns = tuple(self._columns())
+            self.leaves = tuple(self._leaves(probe, t) for t in plan.draws.tolerances) if plan.draws else ()
+            self._check_room()
             cube = plan.hypercube
             self.cube = None if cube is None else hypercube_values(cube, self.dimensions)
-            self.leaves = tuple(self._leaves(probe, t) for t in plan.draws.tolerances) if plan.draws else ()
         except InputError as error:
             raise error.located(file=plan.file) from None
         self.draws = standard_draws(plan.draws, tuple(map(len, self.leaves))) if plan.draws else ()
         self._packed: dict[int, bytes] = {}
         self._room = MEMORY
         self._cell: _Cell | None = None
+
+    def _check_room(self) -> None:
+        """Refuse more random numbers than the memory holds: draws, samples, and what is recorded of each point."""
+        cube, draws, leaves = self.plan.hypercube, self.plan.draws, sum(map(len, self.leaves))
+        samples = 2 * cube.count * len(cube.ranges) if cube else 0  # between 0 and 1, and between their limits
+        drawn = leaves * draws.count if draws else 0
+        check_room(
+            8.0 * (samples + drawn + leaves * len(self)) + POINT * len(self),
+            None,
+            key="random.count" if draws else "latin_hypercube.count" if cube else "vary",
+            next_step="Give fewer points; sweeps with other seeds, each with a store of its own, add more",
+        )
 
     def __len__(self) -> int:
         return self.plan.size

@@ -172,7 +172,13 @@ def _check_room(points: Points, resolved: Resolved, keep: Kept, path: Path | Non
     except InputError as error:
         raise error.located(file=points.nominal.path) from None
     size = sum(8.0 * math.prod(keep.shape(name)) for name in keep.variables)
-    check_room(len(points) * size, path, points.plan.file)
+    check_room(
+        len(points) * size,
+        None if path is None else path.parent,
+        file=points.plan.file,
+        key="keep",
+        next_step="Keep fewer records, or give [keep] a longer record_step",
+    )
 
 
 def _store(path: Path | None, points: Points, keep: Kept, resolved: Resolved) -> SweepStore:

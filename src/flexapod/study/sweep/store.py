@@ -116,7 +116,8 @@ class SweepStore:
         Raises
         ------
         InputError
-            There is something else, or a part is missing; to read: another version has written it.
+            There is something else, or a part is missing; to read: another version has written it, or there is a pipe
+            or a device in the place of a file.
         ComputationError
             To read: the status of its points is spoilt.
         """
@@ -124,6 +125,7 @@ class SweepStore:
 
         from flexapod.study.sweep.disk import DurableStore
 
+        _only_files(path, write=write)
         try:
             place = DurableStore(path) if write and path.is_dir() else path
             group = zarr.open_group(place, mode="r+" if write else "r", use_consolidated=False)
@@ -243,6 +245,15 @@ def _arrays(group: zarr.Group, path: Path | None) -> dict[str, Any]:
         if name not in found:
             raise _damaged(path, f"there is no {name}")
     return found
+
+
+def _only_files(path: Path, *, write: bool) -> None:
+    """Refuse a store with a pipe, a device or a link to nothing: reading would never end, what is written is lost."""
+    for folder, _, names in os.walk(path):
+        for file in (Path(folder, name) for name in names if not os.path.isfile(os.path.join(folder, name))):
+            if not write or file.name == "zarr.json":
+                raise _damaged(file, "it is not a regular file")
+            file.unlink(missing_ok=True)
 
 
 def _names(path: Path) -> list[str]:

@@ -1,0 +1,33 @@
+"""Numbers that are not finite are refused in words before LAPACK sees them."""
+
+import numpy as np
+import pytest
+
+from flexapod.errors import ComputationError
+from flexapod.solve.damped import damping_ratios
+from flexapod.solve.frequencies import natural
+from flexapod.solve.stiffness import compliance
+
+HUGE = 1e200 * np.eye(3)[None]
+
+
+@pytest.mark.parametrize(
+    "computed",
+    [
+        lambda: natural(1e100 * HUGE, 1e-220 * HUGE, shapes=True),  # mass over stiffness overflows
+        lambda: damping_ratios(np.ones(2), np.full((2, 2), np.inf)),
+        lambda: compliance(np.zeros((1, 6, 6))),
+        lambda: compliance(np.full((1, 6, 6), np.nan)),
+    ],
+)
+def test_numbers_that_are_not_finite_are_refused(computed):
+    with pytest.raises(ComputationError, match="not finite") as refused, np.errstate(all="ignore"):
+        computed()
+    assert refused.value.next_step is not None
+
+
+def test_compliance_is_the_inverse():
+    rng = np.random.default_rng(1)
+    A = rng.normal(size=(4, 6, 6))
+    total = A @ A.swapaxes(1, 2) + 6 * np.eye(6)
+    np.testing.assert_allclose(total @ compliance(total), np.broadcast_to(np.eye(6), total.shape), atol=1e-13)
