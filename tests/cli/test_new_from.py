@@ -10,7 +10,7 @@ WISH = "home=300 mm, payload=20 kg, stroke=60 mm"
 def test_says_what_it_found_and_passes_check(flexapod, folder):
     done = flexapod("new", "first.toml", "--from", WISH)
     assert done.exit_code == 0, done.stderr
-    for words in ("292.9 mm to 352.9 mm", "pistons 8 mm thick", "Euler load", "lowest frequency", "first.toml written"):
+    for words in ("292.9 to 352.9 mm", "pistons 8 mm thick", "Euler load", "lowest frequency", "first.toml written"):
         assert words in done.stdout
     assert WISH in (folder / "first.toml").read_text(encoding="utf-8")
     checked = flexapod("check", "first.toml")

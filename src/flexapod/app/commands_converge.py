@@ -46,7 +46,7 @@ def converge(
         count, seconds = estimate(trials, accuracy)
     if not (json or quiet):
         print_text(
-            f"About {count} settings, {_rough(seconds)}; on the first time a few seconds more for each number of "
+            f"About {count} settings, {_rough(seconds)}; the first time a few seconds more for each number of "
             "shapes that is compiled."
         )
     tables, interrupted = _computed(trials, accuracy, ladder=ladder, quiet=quiet or json)
