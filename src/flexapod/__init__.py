@@ -102,4 +102,4 @@ def __getattr__(name: str) -> object:
 
 
 def __dir__() -> list[str]:
-    return sorted({*globals(), *_NAMES, *_PACKAGES})
+    return sorted({name for name in globals() if name.startswith("__")} | {*_NAMES, *_PACKAGES})
