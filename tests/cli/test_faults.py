@@ -162,6 +162,29 @@ def test_a_signal_while_results_are_written_leaves_nothing_half(study, folder, n
 
 
 @pytest.mark.skipif(sys.platform == "win32", reason="signals")
+@pytest.mark.parametrize(
+    ("module", "name"),
+    [("study.simulation", "Simulated.values"), ("study.store", "save_csv"), ("app.figures", "draw")],
+)
+def test_a_signal_after_the_last_step_loses_nothing(study, folder, module, name):
+    """The results were made and written once, and gone with a signal that came meanwhile."""
+    *cls, function = name.split(".")
+    code = (
+        f"import os, signal, sys\nfrom flexapod.app import cli\nimport flexapod.{module} as owner\n"
+        + "".join(f"owner = owner.{part}\n" for part in cls)
+        + f"whole, count = owner.{function}, []\n"
+        "def once(*a, **k):\n    count.append(1)\n    len(count) == 1 and os.kill(os.getpid(), signal.SIGTERM)\n"
+        f"    return whole(*a, **k)\nowner.{function} = once\n"
+        "sys.argv = ['flexapod', 'run', sys.argv[1]]\ncli.main()"
+    )
+    done = subprocess.run([sys.executable, "-c", code, str(study(*SHORT))], capture_output=True, text=True, timeout=120)
+    assert done.returncode == 143 and "Traceback" not in done.stderr
+    assert "stopped by SIGTERM at t = 0.2 s; the whole result is kept" in done.stderr
+    found = open_results(folder / "study-run" / "results.nc")
+    assert found.attrs["partial"] == 0 and float(found.time[-1]) == pytest.approx(0.2)
+
+
+@pytest.mark.skipif(sys.platform == "win32", reason="signals")
 def test_sigterm_keeps_what_was_computed(study, folder):
     changes = [('duration = "2 s" ', 'duration = "1000 s" '), ('hold = "1 s" ', 'hold = "999 s" ')]
     file = study(*changes, ("tolerance = 1e-4", 'step = "0.5 ms"\noutput_step = "10 ms"'))

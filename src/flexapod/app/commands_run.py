@@ -78,14 +78,17 @@ def _run(study: Study | ActuatorStudy, folder: Path, formats: Sequence[str], *, 
     from flexapod.study.room import check_disk
 
     check_disk(study, folder)
+    interrupted, faster = False, None
     with progress_bar(quiet=quiet or json) as report:
         try:
             data = simulate(study, progress=lambda time, end: report("simulating", COMPUTING * time / end))
-            interrupted = False
         except Interrupted as stop:
             data, interrupted = stop.dataset, True
-        files = write_data(data, folder) if interrupted else write_all(data, folder, report, formats)
-        faster = None if interrupted else _quicker(study, data, report)
+        try:
+            files = write_data(data, folder) if interrupted else write_all(data, folder, report, formats)
+            faster = None if interrupted else _quicker(study, data, report)
+        except KeyboardInterrupt:  # a second one ends it
+            files, interrupted = write_data(data, folder), True
     _say(data, folder, files, faster, json=json)
     if interrupted:
         _stopped(data, json=json)
@@ -133,7 +136,8 @@ def _say(data: Dataset, folder: Path, files: list[Path], faster: Quicker | None,
 
 
 def _stopped(data: Dataset, *, json: bool) -> None:
-    what = f"{stopped()} at t = {float(data.time[-1]):.6g} s; what was computed is kept and marked as partial"
+    kept = "what was computed is kept and marked as partial" if data.attrs["partial"] else "the whole result is kept"
+    what = f"{stopped()} at t = {float(data.time[-1]):.6g} s; {kept}"
     print_parts({"kind": "interrupt", "what": what}, INTERRUPTED, as_json=json)
 
 

@@ -85,6 +85,10 @@ def _simulated(study: model.ActuatorStudy, progress: Progress | None) -> Dataset
     remarks = check_actuator_path(study)
     march = prepare_actuator(study)
     record = collect(march.chunks, march.plant.kernel.shapes.l_index, study.duration, progress)
+    return finished(lambda: _dataset(study, march, record, remarks), record)
+
+
+def _dataset(study: model.ActuatorStudy, march: ActuatorMarch, record: Record, remarks: list[str]) -> Dataset:
     warnings = [*study.warnings, *remarks, *actuator_warnings(study.actuator, march.plant.kernel.shapes.a, record)]
     attrs = {
         **attributes(study, warnings),
@@ -94,7 +98,7 @@ def _simulated(study: model.ActuatorStudy, progress: Progress | None) -> Dataset
     coords: dict[str, ArrayLike] = {"time": record.time}
     if count:
         coords["mode"] = np.arange(1, count + 1)
-    return finished(dataset(_results(study, march, record), coords, attrs, ACTUATOR_FORMS), record)
+    return dataset(_results(study, march, record), coords, attrs, ACTUATOR_FORMS)
 
 
 def _as_study(

@@ -71,13 +71,12 @@ def collect(chunks: Iterable[Chunk], l_index: int, duration: float, progress: Pr
     ComputationError, KeyboardInterrupt
         If nothing beyond the start had been computed.
     """
-    parts: dict[str, list[Array]] = {name: [] for name in _ARRAYS}
+    parts: list[dict[str, Array]] = []
     steps, errors, begin = [np.inf], [0.0], time.perf_counter()
     failure, interrupted = None, False
     try:
         for chunk in chunks:
-            for name, array in _kept(chunk, l_index).items():
-                parts[name].append(array)
+            parts.append(_kept(chunk, l_index))  # whole or not at all, whenever the user interrupts
             steps.append(chunk.step)
             errors.append(chunk.error)
             if progress is not None:
@@ -86,10 +85,10 @@ def collect(chunks: Iterable[Chunk], l_index: int, duration: float, progress: Pr
         failure = error
     except KeyboardInterrupt:
         interrupted = True
-    if len(parts["time"]) < 2 and (failure or interrupted):
+    if len(parts) < 2 and (failure or interrupted):
         raise failure or KeyboardInterrupt
     return Record(
-        **{name: np.concatenate(arrays) for name, arrays in parts.items()},
+        **{name: np.concatenate([part[name] for part in parts]) for name in _ARRAYS},
         smallest_step=min(steps),
         largest_error=max(errors),
         wall_time=time.perf_counter() - begin,
@@ -108,8 +107,12 @@ def _kept(chunk: Chunk, l_index: int) -> dict[str, Array]:
     return {name: np.array(array) for name, array in kept.items()}  # copies: views would keep the whole chunk
 
 
-def finished(result: Dataset, record: Record) -> Dataset:
-    """The result; raised as `Interrupted` if the user stopped it."""
+def finished(made: Callable[[], Dataset], record: Record) -> Dataset:
+    """The result of a record; raised as `Interrupted` if the user stopped it, also while the result was made."""
+    try:
+        result = made()
+    except KeyboardInterrupt:  # a second one ends it
+        raise Interrupted(made()) from None
     if record.interrupted:
         raise Interrupted(result)
     return result

@@ -125,7 +125,7 @@ def simulate(
     }  # fmt: skip
     study = model.override(as_study(robot, motion, load, initial), **settings)  # type: ignore[arg-type]
     found = simulated(study, progress)
-    return finished(found.dataset(), found.record)
+    return finished(found.dataset, found.record)
 
 
 def run(
@@ -158,4 +158,4 @@ def run(
     if isinstance(study, model.ActuatorStudy | model.Actuator):
         return simulate_actuator(study, motion, progress=progress)  # type: ignore[arg-type]
     found = simulated(as_study(study, motion), progress)  # type: ignore[arg-type]
-    return finished(found.dataset(), found.record)
+    return finished(found.dataset, found.record)
