@@ -57,4 +57,5 @@ def uncompiled(basis, modes, axial_modes, *, planar=False):
     """Functions of a leg for tests that call them a few times: no C compiler need run for that."""
     lateral = lateral_basis(basis, modes)
     other = lateral_basis(basis, 0) if planar else lateral
-    return interpreted_kernel(Shapes(a=lateral, b=other, axial=axial_basis(axial_modes), planar=planar))
+    meeting = {"planar": True, "closure": "none", "tip_body": True} if planar else {}
+    return interpreted_kernel(Shapes(a=lateral, b=other, axial=axial_basis(axial_modes), **meeting))

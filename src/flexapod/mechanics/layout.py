@@ -1,6 +1,7 @@
 """What kernels read and in which order: coordinates and parameters of a leg and of the payload. No casadi here."""
 
 from dataclasses import dataclass
+from typing import Literal
 
 from flexapod.bases import AxialBasis, LateralBasis
 
@@ -27,6 +28,39 @@ LEG_PARAMETERS: tuple[tuple[str, int], ...] = (
     ("tip_inertia", 1),  # kg m^2, transverse
 )
 
+#: Further parameters of legs with a carriage; axis and arms in the world frame, where chi = 0.
+CARRIAGE_PARAMETERS: tuple[tuple[str, int], ...] = (
+    ("carriage_mass", 1),  # kg
+    ("carriage_axis", 3),  # unit vector along a slider's rail or a crank's shaft
+    ("carriage_stiffness", 1),  # N/m or N m/rad, between command and chi
+    ("carriage_damping", 1),  # N s/m or N m s/rad
+)
+#: ... of a crank.
+CRANK_PARAMETERS: tuple[tuple[str, int], ...] = (
+    ("carriage_inertia", 1),  # kg m^2 about the shaft
+    ("carriage_com", 3),  # m, from the shaft
+    ("carriage_arm", 3),  # m, from the shaft to the base joint; `base` is the base joint
+)
+#: ... of legs that turn about their axis at the base joint.
+SPIN_PARAMETERS: tuple[tuple[str, int], ...] = (
+    ("cylinder_spins", 1),  # 1: the cylinder turns along (S, F), 0: the piston alone (C)
+)
+#: ... of pistons that twist: from the driven end to the tip, as they stretch.
+TORSION_PARAMETERS: tuple[tuple[str, int], ...] = (("GJ", 1),)  # N m^2
+#: ... of a leg in space with a body at its tip, beside mass and transverse inertia.
+TIP_BODY_PARAMETERS: tuple[tuple[str, int], ...] = (("tip_axial_inertia", 1),)  # kg m^2
+#: ... of legs that meet the payload with place and attitude, Q = F_P^T R^T R_tip F_L Gamma = 1.
+POSE_PARAMETERS: tuple[tuple[str, int], ...] = (
+    ("joint", 3),  # m, platform joint from the payload's CoM, platform axes
+    ("platform_frame", 9),  # F_P, joint frame in platform axes, column by column
+    ("leg_frame", 9),  # F_L, joint frame in the axes of the leg's tip, column by column
+    ("L_c", 1),  # m, length that makes rotations comparable with displacements
+    ("base_stiffness", 3),  # N m/rad, springs on alpha, beta, spin
+    ("base_home", 3),  # rad, where they are slack
+    ("gamma_stiffness", 3),  # N m/rad, springs on gamma1..3
+    ("gamma_home", 3),  # rad
+)
+
 #: Physical parameters of the payload in kernel order (name, size); joints and tool from the CoM, in platform axes.
 PAYLOAD_PARAMETERS: tuple[tuple[str, int], ...] = (
     ("mass", 1),  # kg
@@ -49,18 +83,47 @@ def columns(layout: tuple[tuple[str, int], ...], name: str) -> slice:
 
 @dataclass(frozen=True, kw_only=True)
 class Shapes:
-    """Bases of one leg: lateral directions a and b, axial. A planar leg bends in a only and may carry a tip body."""
+    """What one kernel is made of: the bases of a leg, the joints it has room for, and how it meets the payload.
+
+    Attributes
+    ----------
+    a, b : LateralBasis
+        Shapes along leg x and y; a planar leg bends in a only.
+    axial : AxialBasis
+    planar : bool
+        The single actuator in its plane: beta alone, no direction b, a body at the tip.
+    closure : {"none", "point", "pose"}
+        What the payload fixes at the tip: nothing, its place (an ideal ball) or its place and attitude.
+    carriage : {"", "slider", "crank"}
+        What moves the base joint.
+    spin, torsion : bool
+        Rotation about the leg's axis at the base joint; twist of the piston.
+    tip_body : bool
+        A body at the tip of a leg without payload.
+    pivot_spin : bool
+        A free spin takes the place of gamma3 among the coordinates that the closure determines.
+    """
 
     a: LateralBasis
     b: LateralBasis
     axial: AxialBasis
     planar: bool = False
+    closure: Literal["none", "point", "pose"] = "point"
+    carriage: Literal["", "slider", "crank"] = ""
+    spin: bool = False
+    torsion: bool = False
+    tip_body: bool = False
+    pivot_spin: bool = False
 
     @property
     def layout(self) -> tuple[tuple[str, int], ...]:
         """Coordinates q of the leg (name, size); a planar leg has no alpha and no direction b."""
-        angles = (("beta", 1),) if self.planar else (("alpha", 1), ("beta", 1))
-        return (*angles, ("l", 1), ("c", self.axial.count), ("a", self.a.count), ("b", self.b.count))
+        angles = ("beta",) if self.planar else ("alpha", "beta")
+        amplitudes = (("c", self.axial.count), ("a", self.a.count), ("b", self.b.count))
+        gamma = ("gamma1", "gamma2", "gamma3") if self.closure == "pose" else ()
+        there = (("chi", bool(self.carriage)), ("spin", self.spin), ("t", self.torsion))
+        more = (*(name for name, has in there if has), *gamma)
+        return (*((name, 1) for name in (*angles, "l")), *amplitudes, *((name, 1) for name in more))
 
     @property
     def size(self) -> int:
@@ -68,6 +131,40 @@ class Shapes:
         return sum(size for _, size in self.layout)
 
     @property
+    def rows(self) -> int:
+        """Rows of the closure: 0, 3 or 6."""
+        return {"none": 0, "point": 3, "pose": 6}[self.closure]
+
+    @property
+    def pivots(self) -> tuple[int, ...]:
+        """Positions of the coordinates that the closure determines, one for each of its rows."""
+        last = "spin" if self.pivot_spin else "gamma3"
+        names = {"none": (), "point": ("alpha", "beta", "l"), "pose": ("alpha", "beta", "l", "gamma1", "gamma2", last)}
+        return tuple(self.index(name) for name in names[self.closure])
+
+    @property
     def l_index(self) -> int:
         """Position of the reference length l in q."""
-        return 1 if self.planar else 2
+        return self.index("l")
+
+    def has(self, name: str) -> bool:
+        """Whether the leg has a coordinate of this name."""
+        return name in dict(self.layout)
+
+    def index(self, name: str) -> int:
+        """Position of a coordinate in q; of amplitudes that of the first."""
+        return columns(self.layout, name).start
+
+
+def leg_parameters(shapes: Shapes) -> tuple[tuple[str, int], ...]:
+    """Physical parameters of one leg in kernel order (name, size)."""
+    parts = (
+        (True, LEG_PARAMETERS),
+        (bool(shapes.carriage), CARRIAGE_PARAMETERS),
+        (shapes.carriage == "crank", CRANK_PARAMETERS),
+        (shapes.spin, SPIN_PARAMETERS),
+        (shapes.torsion, TORSION_PARAMETERS),
+        (shapes.tip_body and not shapes.planar, TIP_BODY_PARAMETERS),
+        (shapes.closure == "pose", POSE_PARAMETERS),
+    )
+    return tuple(item for there, table in parts if there for item in table)

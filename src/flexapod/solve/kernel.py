@@ -64,7 +64,7 @@ def kernel(lateral: LateralBasis, axial_modes: int, *, planar: bool = False) -> 
 def planar_shapes(lateral: LateralBasis, axial_modes: int) -> Shapes:
     """Shapes of a leg that bends in one plane only."""
     none = bases.lateral_basis("clamped-free", 0)
-    return Shapes(a=lateral, b=none, axial=bases.axial_basis(axial_modes), planar=True)
+    return Shapes(a=lateral, b=none, axial=bases.axial_basis(axial_modes), planar=True, closure="none", tip_body=True)
 
 
 @cache
@@ -98,4 +98,5 @@ def _fingerprint(shapes: Shapes) -> list[object]:
     ]
     numbers = [getattr(basis, field.name) for basis in (shapes.a, shapes.axial) for field in fields(basis)]
     arrays = [np.ascontiguousarray(x).tobytes() for x in numbers if isinstance(x, np.ndarray)]
-    return [*texts, *arrays, shapes.layout, shapes.planar]
+    switches = [x for x in (getattr(shapes, field.name) for field in fields(shapes)) if isinstance(x, (bool, str))]
+    return [*texts, *arrays, shapes.layout, switches]
