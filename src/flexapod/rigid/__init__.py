@@ -6,6 +6,7 @@ from flexapod.rigid.forward import Postures
 from flexapod.rigid.jacobian import NearestSingularity, SingularityPath, length_jacobian
 from flexapod.rigid.kinematics import LegState, joint_angles, leg_frames, leg_lengths, leg_rotations
 from flexapod.rigid.laws import Law
+from flexapod.rigid.limbs import ABSENT, COORDINATES, DRIVEN, FREE, HELD, Limbs, limbs
 from flexapod.rigid.robot import (
     energies,
     forward_kinematics,
@@ -29,10 +30,16 @@ from flexapod.rigid.trajectory import Poses, poses_from_coordinates, rotation_ma
 from flexapod.rigid.workspace import Excess, WorkspaceMap, reachable_map
 
 __all__ = [
+    "ABSENT",
+    "COORDINATES",
+    "DRIVEN",
+    "FREE",
+    "HELD",
     "Breaks",
     "Excess",
     "Law",
     "LegState",
+    "Limbs",
     "NearestSingularity",
     "Poses",
     "Postures",
@@ -53,6 +60,7 @@ __all__ = [
     "leg_lengths",
     "leg_rotations",
     "length_jacobian",
+    "limbs",
     "load_law",
     "motion_law",
     "nearest_singularity",
