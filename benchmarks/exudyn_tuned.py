@@ -10,9 +10,9 @@ from __future__ import annotations
 import time
 from unittest.mock import patch
 
-from flexapod.engines import exudyn_robot_model
-from flexapod.engines.exudyn_robot import RobotProblem, RobotResult
-from flexapod.engines.exudyn_system import System, items
+from flexapod.proof.engines import exudyn_robot_model
+from flexapod.proof.engines.exudyn_robot import RobotProblem, RobotResult
+from flexapod.proof.engines.exudyn_system import System, items
 from flexapod.typing import Array
 
 __all__ = ["solve"]

@@ -15,9 +15,9 @@ from benchmarks.deviation import Curve, error, marched, reference, roll, undampe
 from benchmarks.ode import Ode, ode
 from benchmarks.report import Section
 from benchmarks.timing import interleaved
-from flexapod.engines.engine import EXUDYN
 from flexapod.errors import ComputationError
 from flexapod.model import override
+from flexapod.proof.engines.engine import EXUDYN
 from flexapod.typing import Array
 
 __all__ = ["Family", "chosen", "side_by_side"]
@@ -159,9 +159,9 @@ def _exudyn() -> list[Family]:
 
 
 def _asked(elements: int, guide: float, rho: float, h: float, tolerance: float = 1e-4) -> tuple[Curve, float]:
-    from flexapod.engines.exudyn_integration import Integration
-    from flexapod.engines.exudyn_process import ask
-    from flexapod.engines.exudyn_robot import RobotProblem
+    from flexapod.proof.engines.exudyn_integration import Integration
+    from flexapod.proof.engines.exudyn_process import ask
+    from flexapod.proof.engines.exudyn_robot import RobotProblem
 
     # Its process finds this package here, and takes Exudyn's build without range checks.
     os.environ |= {"PYTHONPATH": _with_this(os.environ.get("PYTHONPATH", "")), "EXUDYN_MODULE": "fast"}

@@ -18,14 +18,14 @@ from benchmarks.report import goal
 from flexapod import sweep
 from flexapod.model import override, preset
 from flexapod.solve.robot_march import prepare
-from flexapod.study.checks import check_path
-from flexapod.study.plausibility import robot_warnings
+from flexapod.study.after.plausibility import robot_warnings
+from flexapod.study.before.checks import check_path
 from flexapod.study.record import collect
-from flexapod.study.sweep import schedule
-from flexapod.study.sweep.batch import compute_point
-from flexapod.study.sweep.kept import kept
-from flexapod.study.sweep.plan import read_plan
-from flexapod.study.sweep.points import Points
+from flexapod.surveys.sweeps import schedule
+from flexapod.surveys.sweeps.batch import compute_point
+from flexapod.surveys.sweeps.kept import kept
+from flexapod.surveys.sweeps.plan import read_plan
+from flexapod.surveys.sweeps.points import Points
 
 GOAL = 0.05 * 0.05  # overhead: 5 % of a simulation of 50 ms [s]
 REPEATS = 3

@@ -25,11 +25,11 @@ from flexapod.errors import ComputationError, InputError
 from flexapod.model import Study, load, loads, to_toml
 from flexapod.model.base import Frozen
 from flexapod.study import simulate, simulate_actuator
-from flexapod.study.describe.robot import describe
-from flexapod.study.sweep.columns import columns
-from flexapod.study.sweep.kept import kept
-from flexapod.study.sweep.plan import read_plan
-from flexapod.study.sweep.points import Points
+from flexapod.study.before.describe.robot import describe
+from flexapod.surveys.sweeps.columns import columns
+from flexapod.surveys.sweeps.kept import kept
+from flexapod.surveys.sweeps.plan import read_plan
+from flexapod.surveys.sweeps.points import Points
 
 WHOLE = tomllib.loads(Path(__file__).with_suffix(".toml").read_text(encoding="utf-8"))
 SWEEPS = [name for name, files in WHOLE.items() if "sweep.toml" in files]

@@ -3,12 +3,12 @@
 from functools import cache
 
 from flexapod.model import preset
+from flexapod.paper.cost import inverse_dynamics_cost
+from flexapod.paper.readings import readings
+from flexapod.paper.study import ACTUATOR_MODES, STEPS, PaperStudy
+from flexapod.paper.trials import trials
+from flexapod.paper.variants import HALF_ANGLES, assumptions, half_angle_sweep, jump_motion, with_half_angle
 from flexapod.study import modes, simulate, simulate_actuator
-from flexapod.study.paper.cost import inverse_dynamics_cost
-from flexapod.study.paper.readings import readings
-from flexapod.study.paper.study import ACTUATOR_MODES, STEPS, PaperStudy
-from flexapod.study.paper.trials import trials
-from flexapod.study.paper.variants import HALF_ANGLES, assumptions, half_angle_sweep, jump_motion, with_half_angle
 
 ROBOT, RADII = "paper-robot", "paper-robot-radii"
 

@@ -9,7 +9,7 @@ import time
 from dataclasses import replace
 
 from flexapod.model import loads, preset_text
-from flexapod.study.sweep.batch import compute_batch
+from flexapod.surveys.sweeps.batch import compute_batch
 
 KEY = "leg.piston.diameter"
 QUICK = (

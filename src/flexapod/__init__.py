@@ -14,45 +14,45 @@ if TYPE_CHECKING:
     from flexapod.citations import cite
     from flexapod.errors import ComputationError, FlexapodError, InputError
     from flexapod.model import ActuatorStudy, Study, load, loads, open_values, preset
+    from flexapod.paper.study import replicate
     from flexapod.study import (
-        converge,
         forward_kinematics,
         inverse_dynamics,
         inverse_kinematics,
-        ladder,
         modes,
-        replicate,
         run,
         simulate,
         simulate_actuator,
         simulate_solid,
         stiffness,
-        workspace_map,
     )
-    from flexapod.study.sweep import sweep
-
-__version__ = "0.1.0"
+    from flexapod.surveys.convergence import converge
+    from flexapod.surveys.convergence.ladder import ladder
+    from flexapod.surveys.sweeps import sweep
+    from flexapod.surveys.workspace import workspace_map
+    from flexapod.version import __version__
 
 _HOMES = {
     "flexapod.errors": ("ComputationError", "FlexapodError", "InputError"),
     "flexapod.citations": ("cite",),
     "flexapod.model": ("ActuatorStudy", "Study", "load", "loads", "open_values", "preset"),
+    "flexapod.paper.study": ("replicate",),
     "flexapod.study": (
-        "converge",
         "forward_kinematics",
         "inverse_dynamics",
         "inverse_kinematics",
-        "ladder",
         "modes",
-        "replicate",
         "run",
         "simulate",
         "simulate_actuator",
         "simulate_solid",
         "stiffness",
-        "workspace_map",
     ),
-    "flexapod.study.sweep": ("sweep",),
+    "flexapod.surveys.convergence": ("converge",),
+    "flexapod.surveys.convergence.ladder": ("ladder",),
+    "flexapod.surveys.sweeps": ("sweep",),
+    "flexapod.surveys.workspace": ("workspace_map",),
+    "flexapod.version": ("__version__",),
 }
 _NAMES = {name: module for module, names in _HOMES.items() for name in names}
 _PACKAGES = ("model", "plot", "rigid", "study")

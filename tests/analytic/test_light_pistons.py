@@ -8,7 +8,7 @@ from tests.runs import paper_robot, with_legs
 import flexapod as fx
 from flexapod.errors import InputError
 from flexapod.model import Cylinder, ServoDrive
-from flexapod.study.describe.robot import describe
+from flexapod.study.before.describe.robot import describe
 
 SERVO = ServoDrive(stiffness=4e7, damping=1e4)
 

@@ -5,15 +5,15 @@ import pytest
 from tests.runs import FIELDS, paper_robot, run_actuator, run_robot, with_legs
 
 import flexapod as fx
-from flexapod.app.study_words import _damping
 from flexapod.errors import InputError
 from flexapod.mechanics.layout import LEG_PARAMETERS, columns
 from flexapod.model import Actuator, ActuatorMotion, ActuatorStudy, Damping, Simulation, loads, override, to_toml
 from flexapod.model.fields import read_fields
+from flexapod.report.study_words import _damping
 from flexapod.solve.actuator_modes import actuator_modes
 from flexapod.solve.parameters import leg_parameters
 from flexapod.solve.robot_march import prepare
-from flexapod.study.sweep.keys import parse_key, put, value_at
+from flexapod.surveys.sweeps.keys import parse_key, put, value_at
 
 BEAM = {"length": 1.0, "rhoA": 1.0, "EI": 1.0, "free_length": 1.0}
 BETA = np.array([1.875104068711961, 4.694091132974174, 7.854757438237613])  # roots of cos b cosh b = -1

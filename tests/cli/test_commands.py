@@ -274,7 +274,7 @@ def test_full_disk_is_told_and_leaves_no_half_file(flexapod, study, folder, monk
 
 
 def test_fault_of_ours_is_one_line_and_how_to_report_it(flexapod, study, monkeypatch):
-    monkeypatch.setattr("flexapod.study.describe.robot.describe", lambda _: 1 / 0)
+    monkeypatch.setattr("flexapod.study.before.describe.robot.describe", lambda _: 1 / 0)
     monkeypatch.delenv("FLEXAPOD_DEBUG", raising=False)
     result = flexapod("check", study())
     assert result.exit_code == 1

@@ -6,8 +6,8 @@ import json
 import pytest
 
 from flexapod.study import open_results
-from flexapod.study.converge import plan
-from flexapod.study.converge.trials import Trials
+from flexapod.surveys.convergence import plan
+from flexapod.surveys.convergence.trials import Trials
 
 BEAM = (('duration = "10 s"', 'duration = "0.3 s"\nstep = "1 ms"\noutput_step = "5 ms"'),)
 

@@ -5,9 +5,9 @@ import json
 import pytest
 
 from flexapod import load, modes
-from flexapod.engines import calculix
-from flexapod.engines.engine import CALCULIX
-from flexapod.study.export import ELEMENTS, MODES
+from flexapod.exchange.export import ELEMENTS, MODES
+from flexapod.proof.engines import calculix
+from flexapod.proof.engines.engine import CALCULIX
 
 
 def test_writes_a_deck_named_after_the_study(flexapod, study, folder):

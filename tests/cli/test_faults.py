@@ -14,7 +14,8 @@ from tests.cli.test_interrupt import heed_interrupts
 
 from flexapod.app import outputs, stopping
 from flexapod.app.failures import guarded
-from flexapod.study import open_results, room, store
+from flexapod.study import open_results, store
+from flexapod.study.before import room
 
 posix = pytest.mark.skipif(not Path("/dev/full").exists(), reason="needs /dev/full")
 
@@ -122,7 +123,7 @@ def test_a_disk_that_fills_while_modes_are_written(flexapod, study, folder, monk
 
 
 def test_a_page_of_verify_that_could_not_be_written_is_refused_first(flexapod, folder, monkeypatch):
-    monkeypatch.setattr("flexapod.study.verify.pack.verify", lambda *_, **__: pytest.fail("computed"))
+    monkeypatch.setattr("flexapod.proof.pack.verify", lambda *_, **__: pytest.fail("computed"))
     (folder / "file").touch()
     for key in ("--html", "--markdown"):
         done = flexapod("verify", key, "file/page")
@@ -164,7 +165,7 @@ def test_a_signal_while_results_are_written_leaves_nothing_half(study, folder, n
 @pytest.mark.skipif(sys.platform == "win32", reason="signals")
 @pytest.mark.parametrize(
     ("module", "name"),
-    [("study.simulation", "Simulated.values"), ("study.store", "save_csv"), ("app.figures", "draw")],
+    [("study.simulation", "Simulated.values"), ("study.store", "save_csv"), ("report.figures", "draw")],
 )
 def test_a_signal_after_the_last_step_loses_nothing(study, folder, module, name):
     """The results were made and written once, and gone with a signal that came meanwhile."""

@@ -7,7 +7,7 @@ from pathlib import Path
 import pytest
 from tests.sweeps import QUICK
 
-from flexapod.study.converge import plan
+from flexapod.surveys.convergence import plan
 
 PICTURES = (".png", ".svg", ".pdf")
 SWEEP = """

@@ -4,8 +4,9 @@ import json
 
 import pytest
 
-from flexapod.study import open_results, room
-from flexapod.study.map.names import SCALARS
+from flexapod.study import open_results
+from flexapod.study.before import room
+from flexapod.surveys.workspace.names import SCALARS
 
 LUMPED = ('fidelity = "assumed-modes"', 'fidelity = "lumped"')
 
@@ -87,7 +88,7 @@ def test_an_actuator_has_no_map(flexapod, study):
 
 
 def test_stopped_by_the_user_nothing_is_half_written(flexapod, study, folder, monkeypatch):
-    import flexapod.study.map.workspace as workspace
+    import flexapod.surveys.workspace.maps as workspace
 
     def stop(*_):
         raise KeyboardInterrupt

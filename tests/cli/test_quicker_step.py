@@ -4,7 +4,7 @@ import json
 
 import pytest
 
-from flexapod.study import quicker
+from flexapod.surveys.convergence import quicker
 
 SERVO = ('drive = { type = "prescribed" }', 'drive = { type = "servo", stiffness = "10 N/um" }')
 

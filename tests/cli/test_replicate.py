@@ -7,11 +7,11 @@ from html.parser import HTMLParser
 import pytest
 from tests.paper_parts import coarse_parts, coarse_study
 
-from flexapod.app import replicate as app_replicate
-from flexapod.app.replicate import replicate, write
 from flexapod.errors import InputError
+from flexapod.paper import outputs as app_replicate
+from flexapod.paper import study as paper
+from flexapod.paper.outputs import replicate, write
 from flexapod.study import open_results
-from flexapod.study.paper import study as paper
 
 ANGLES = (10.0, 29.0)
 

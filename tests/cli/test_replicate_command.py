@@ -16,7 +16,7 @@ def replaced(monkeypatch, action):
         (folder / "report.html").write_text("page")
         return action()
 
-    monkeypatch.setattr("flexapod.app.replicate.replicate", repeat)
+    monkeypatch.setattr("flexapod.paper.outputs.replicate", repeat)
 
 
 def test_answer_and_claims(flexapod, folder, monkeypatch):

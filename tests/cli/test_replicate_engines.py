@@ -11,14 +11,14 @@ from dataclasses import replace
 import pytest
 
 from flexapod import model
-from flexapod.app import paper_figures
-from flexapod.app.paper_report import paper_page
-from flexapod.app.replicate import write
-from flexapod.engines.engine import EXUDYN
 from flexapod.errors import ComputationError
+from flexapod.paper import engines
+from flexapod.paper import figures as paper_figures
+from flexapod.paper.outputs import write
+from flexapod.paper.report import paper_page
+from flexapod.paper.study import PaperStudy
+from flexapod.proof.engines.engine import EXUDYN
 from flexapod.study import modes, simulate, simulate_actuator
-from flexapod.study.paper import engines
-from flexapod.study.paper.study import PaperStudy
 
 ASKED = {
     "engine": "Exudyn", "engine_version": "1.2.3", "elements": [30, 60], "guide": [0.01, 0.005], "step": 2.5e-4,
@@ -44,7 +44,7 @@ def parts():
 @pytest.fixture
 def few(monkeypatch):
     """No claims, and only the figures of the engine."""
-    monkeypatch.setattr("flexapod.study.paper.claims.claims", lambda _: [])
+    monkeypatch.setattr("flexapod.paper.claims.claims", lambda _: [])
     for name in ("_actuator", "_robot", "_variants"):
         monkeypatch.setattr(paper_figures, name, lambda _: [])
 
@@ -56,7 +56,7 @@ def replaced(monkeypatch, result):
         (folder / "report.html").write_text("page")
         return result
 
-    monkeypatch.setattr("flexapod.app.replicate.replicate", repeat)
+    monkeypatch.setattr("flexapod.paper.outputs.replicate", repeat)
 
 
 def test_answer(flexapod, few, parts, monkeypatch):
@@ -127,7 +127,7 @@ PROGRAM = """
 import os, signal, subprocess, sys
 from contextlib import contextmanager
 from flexapod.app import cli, terminal
-from flexapod.study.paper import study
+from flexapod.paper import study
 
 started, told = [], []
 class Popen(subprocess.Popen):

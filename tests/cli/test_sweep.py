@@ -13,8 +13,8 @@ import pytest
 from tests.sweeps import quick, quick_text, start
 
 import flexapod as fx
-from flexapod.study.sweep import batch, open_sweep
-from flexapod.study.sweep.batch import compute_batch
+from flexapod.surveys.sweeps import batch, open_sweep
+from flexapod.surveys.sweeps.batch import compute_batch
 
 POSIX = pytest.mark.skipif(sys.platform == "win32", reason="POSIX signals")
 SWEEP = """
@@ -152,7 +152,7 @@ def test_interrupt(flexapod, files, folder, monkeypatch, form):
 SLOW = """
 import signal, sys
 from flexapod.app import cli
-from flexapod.study.sweep import batch
+from flexapod.surveys.sweeps import batch
 from tests.sweeps import slow
 
 signal.signal(signal.SIGINT, signal.default_int_handler)

@@ -6,11 +6,11 @@ from pathlib import Path
 
 import pytest
 
-from flexapod.engines.engine import CALCULIX, EXUDYN, MUJOCO, Engine
 from flexapod.errors import ComputationError
-from flexapod.study.verify import pack
-from flexapod.study.verify.case import Case, Check, checks
-from flexapod.study.verify.page import markdown, notes
+from flexapod.proof import pack
+from flexapod.proof.case import Case, Check, checks
+from flexapod.proof.engines.engine import CALCULIX, EXUDYN, MUJOCO, Engine
+from flexapod.proof.page import markdown, notes
 
 pytestmark = pytest.mark.xdist_group("pack")  # one process computes the pack
 PAGE = Path(__file__).parents[2] / "docs" / "verification.md"

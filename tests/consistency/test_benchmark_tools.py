@@ -8,10 +8,10 @@ from benchmarks.deviation import error, reference, roll, undamped
 from benchmarks.ode import ode
 from benchmarks.side_by_side import _with_this
 
-from flexapod.engines.exudyn_integration import Integration
-from flexapod.engines.exudyn_process import ask
-from flexapod.engines.exudyn_robot import RobotProblem, simulate_robot
 from flexapod.model import AxisMotion
+from flexapod.proof.engines.exudyn_integration import Integration
+from flexapod.proof.engines.exudyn_process import ask
+from flexapod.proof.engines.exudyn_robot import RobotProblem, simulate_robot
 
 
 def test_independent_coordinates_give_the_motion_of_the_time_loop():

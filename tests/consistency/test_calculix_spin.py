@@ -4,11 +4,11 @@ import numpy as np
 import pytest
 
 from flexapod import modes, rigid
-from flexapod.engines import calculix
-from flexapod.engines.engine import CALCULIX
+from flexapod.exchange.export import abaqus_deck
 from flexapod.model import Study, preset
+from flexapod.proof.engines import calculix
+from flexapod.proof.engines.engine import CALCULIX
 from flexapod.study.arguments import as_pose
-from flexapod.study.export import abaqus_deck
 
 POSE = (0.35, 0.1, -0.05, 0.0, 0.0, 0.3)
 

@@ -4,10 +4,10 @@ import numpy as np
 import pytest
 
 from flexapod import model
-from flexapod.engines.engine import EXUDYN
-from flexapod.engines.exudyn_actuator import simulate_actuator as exudyn_actuator
-from flexapod.engines.exudyn_integration import Integration, extrapolated
 from flexapod.errors import InputError
+from flexapod.proof.engines.engine import EXUDYN
+from flexapod.proof.engines.exudyn_actuator import simulate_actuator as exudyn_actuator
+from flexapod.proof.engines.exudyn_integration import Integration, extrapolated
 from flexapod.study.actuator import simulate_actuator
 
 pytestmark = pytest.mark.skipif(not EXUDYN.found(), reason="needs Exudyn")

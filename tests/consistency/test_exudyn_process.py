@@ -9,12 +9,12 @@ from dataclasses import replace
 import pytest
 
 from flexapod import model
-from flexapod.engines import exudyn_process
-from flexapod.engines.engine import EXUDYN
-from flexapod.engines.exudyn_integration import Integration
-from flexapod.engines.exudyn_process import ask
-from flexapod.engines.exudyn_robot import simulate_robot
 from flexapod.errors import ComputationError
+from flexapod.proof.engines import exudyn_process
+from flexapod.proof.engines.engine import EXUDYN
+from flexapod.proof.engines.exudyn_integration import Integration
+from flexapod.proof.engines.exudyn_process import ask
+from flexapod.proof.engines.exudyn_robot import simulate_robot
 
 ROLL = model.AxisMotion(type="roll", amplitude=0.05, duration=0.1)
 
@@ -32,7 +32,7 @@ class Does:
 def test_an_absent_engine_is_named_with_the_line_that_installs_it(monkeypatch):
     monkeypatch.setattr(exudyn_process, "EXUDYN", replace(EXUDYN, module="no_such_module"))
     with pytest.raises(ComputationError, match="not installed") as raised:
-        ask("flexapod.engines.exudyn_robot_model", None)
+        ask("flexapod.proof.engines.exudyn_robot_model", None)
     assert EXUDYN.install in str(raised.value)
 
 
@@ -59,6 +59,8 @@ class TestPresent:
 
 
 def test_our_own_process_does_not_import_it():
-    modules = ", ".join(f"flexapod.engines.exudyn_{name}" for name in ("robot", "actuator", "process", "integration"))
+    modules = ", ".join(
+        f"flexapod.proof.engines.exudyn_{name}" for name in ("robot", "actuator", "process", "integration")
+    )
     code = f"import sys, {modules}; sys.exit('exudyn' in sys.modules)"
     assert subprocess.run([sys.executable, "-c", code], check=False).returncode == 0

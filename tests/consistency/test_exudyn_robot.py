@@ -4,10 +4,10 @@ import numpy as np
 import pytest
 
 from flexapod import model, rigid
-from flexapod.engines.engine import EXUDYN
-from flexapod.engines.exudyn_integration import Integration, extrapolated
-from flexapod.engines.exudyn_robot import simulate_robot
 from flexapod.errors import InputError
+from flexapod.proof.engines.engine import EXUDYN
+from flexapod.proof.engines.exudyn_integration import Integration, extrapolated
+from flexapod.proof.engines.exudyn_robot import simulate_robot
 from flexapod.study.simulation import simulate
 
 pytestmark = pytest.mark.skipif(not EXUDYN.found(), reason="needs Exudyn")

@@ -4,12 +4,12 @@ import numpy as np
 import pytest
 
 from flexapod import rigid
-from flexapod.engines import mujoco_forces
-from flexapod.engines.mujoco_model import mjcf
 from flexapod.errors import ComputationError
 from flexapod.model import AxisMotion, preset
-from flexapod.study.verify.cases import mujoco_forces as case
-from flexapod.study.verify.unlike import unlike_legs, without_cylinders
+from flexapod.proof.cases import mujoco_forces as case
+from flexapod.proof.engines import mujoco_forces
+from flexapod.proof.engines.mujoco_model import mjcf
+from flexapod.proof.unlike import unlike_legs, without_cylinders
 
 mujoco = pytest.importorskip("mujoco")
 ROBOT = preset("paper-robot").robot

@@ -4,8 +4,8 @@ import numpy as np
 import pytest
 
 import flexapod as fx
+from flexapod.study.after.vibration import local_vibration
 from flexapod.study.solid import simulate_solid
-from flexapod.study.vibration import local_vibration
 
 STUDY = fx.preset("paper-actuator")
 

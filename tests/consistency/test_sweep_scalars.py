@@ -7,11 +7,11 @@ from tests.sweeps import quick_text
 import flexapod as fx
 from flexapod.model import loads
 from flexapod.study import summary
-from flexapod.study.sweep.batch import compute_point
-from flexapod.study.sweep.kept import kept
-from flexapod.study.sweep.plan import read_plan
-from flexapod.study.sweep.points import Points
-from flexapod.study.sweep.scalars import ROBOT_SCALARS
+from flexapod.surveys.sweeps.batch import compute_point
+from flexapod.surveys.sweeps.kept import kept
+from flexapod.surveys.sweeps.plan import read_plan
+from flexapod.surveys.sweeps.points import Points
+from flexapod.surveys.sweeps.scalars import ROBOT_SCALARS
 
 SERVO = ('drive = { type = "prescribed" }', 'drive = { type = "servo", stiffness = "20 N/um", damping = 1000 }')
 TOOL = ("# tool = [0, 0,", "tool = [0, 0,")

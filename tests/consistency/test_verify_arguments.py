@@ -4,7 +4,7 @@ import numpy as np
 import pytest
 
 from flexapod import model
-from flexapod.study.verify.cases import beam_fem
+from flexapod.proof.cases import beam_fem
 
 
 def test_the_gap_of_six_elements_is_that_of_modes_that_run_ahead():

@@ -20,8 +20,8 @@ from flexapod.model import (
     Waypoint,
     WaypointMotion,
 )
-from flexapod.study.describe.pose import describe_pose
-from flexapod.study.sweep.scalars import ROBOT_SCALARS, RobotRun
+from flexapod.study.before.describe.pose import describe_pose
+from flexapod.surveys.sweeps.scalars import ROBOT_SCALARS, RobotRun
 
 WRENCH = np.array([50.0, -30.0, -200.0, 5.0, 4.0, -3.0])
 POSE = {"sway": 0.03, "heave": 0.02, "roll": 0.1}

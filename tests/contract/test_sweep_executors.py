@@ -14,10 +14,10 @@ from tests.sweeps import deadly, diameters, quick, start
 
 import flexapod as fx
 from flexapod.errors import ComputationError, InputError
-from flexapod.study.sweep import batch, executors, open_sweep, run, schedule
-from flexapod.study.sweep.batch import compute_batch, compute_packed
-from flexapod.study.sweep.executors import InProcess, WorkerDied
-from flexapod.study.sweep.reading import Malformed
+from flexapod.surveys.sweeps import batch, executors, open_sweep, run, schedule
+from flexapod.surveys.sweeps.batch import compute_batch, compute_packed
+from flexapod.surveys.sweeps.executors import InProcess, WorkerDied
+from flexapod.surveys.sweeps.reading import Malformed
 
 
 def sweep(count, **settings):

@@ -3,8 +3,8 @@
 import numpy as np
 import pytest
 
-from flexapod.study.verify.cases.axial_free import AXIAL_FREE
-from flexapod.study.verify.cases.timoshenko import PLANE_KAPPA, TABLE, TABLE_KAPPA, TIMOSHENKO, solid, timoshenko
+from flexapod.proof.cases.axial_free import AXIAL_FREE
+from flexapod.proof.cases.timoshenko import PLANE_KAPPA, TABLE, TABLE_KAPPA, TIMOSHENKO, solid, timoshenko
 
 
 @pytest.mark.parametrize(("gyration", "ends", "waves"), TABLE)

@@ -9,9 +9,9 @@ import flexapod as fx
 from flexapod import model, rigid
 from flexapod.app.first_words import first_words
 from flexapod.errors import InputError
-from flexapod.study.checks import check_path
-from flexapod.study.describe.robot import describe
-from flexapod.study.estimates import buckling_load
+from flexapod.study.before.checks import check_path
+from flexapod.study.before.describe.robot import describe
+from flexapod.study.before.estimates import buckling_load
 from flexapod.study.first import Request, first_robot, parse_request, sizes
 from flexapod.units import to_si
 

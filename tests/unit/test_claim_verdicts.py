@@ -10,11 +10,11 @@ from flexapod import model
 from flexapod.errors import InputError
 from flexapod.model import preset
 from flexapod.model.write import to_toml
-from flexapod.study.paper import claims_actuator, claims_rigid, claims_robot, claims_variants, readings, statics
-from flexapod.study.paper.claim import BREAKS, HOLDS, IN_PART, MISPRINT, NOT, OPEN, REACHES, Claim, judged, size, times
-from flexapod.study.paper.claims import claims
-from flexapod.study.paper.study import PaperStudy
-from flexapod.study.paper.variants import with_half_angle
+from flexapod.paper import claims_actuator, claims_rigid, claims_robot, claims_variants, readings, statics
+from flexapod.paper.claim import BREAKS, HOLDS, IN_PART, MISPRINT, NOT, OPEN, REACHES, Claim, judged, size, times
+from flexapod.paper.claims import claims
+from flexapod.paper.study import PaperStudy
+from flexapod.paper.variants import with_half_angle
 
 pytestmark = pytest.mark.xdist_group("claims")  # one process computes the parts
 ANGLES = (10.0, 29.0)

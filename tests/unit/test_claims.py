@@ -7,9 +7,9 @@ import numpy as np
 import pytest
 from tests.paper_parts import coarse_parts, coarse_study
 
-from flexapod.study.paper.claim import BREAKS, HOLDS, IN_PART, NOT, OPEN
-from flexapod.study.paper.claims import claims, markdown
-from flexapod.study.paper.study import STEPS
+from flexapod.paper.claim import BREAKS, HOLDS, IN_PART, NOT, OPEN
+from flexapod.paper.claims import claims, markdown
+from flexapod.paper.study import STEPS
 
 pytestmark = pytest.mark.xdist_group("claims")  # one process computes the parts
 PAGE = Path(__file__).parents[2] / "docs" / "paper.md"

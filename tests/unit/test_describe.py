@@ -17,7 +17,7 @@ from flexapod.model import (
     Tube,
     override,
 )
-from flexapod.study.describe.robot import describe
+from flexapod.study.before.describe.robot import describe
 from flexapod.study.words import held
 
 

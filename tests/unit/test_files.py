@@ -11,7 +11,7 @@ from flexapod import files, model
 from flexapod.errors import InputError
 from flexapod.files import read_bytes, read_text, replacing, whole
 from flexapod.model import preset_text, tables
-from flexapod.study.sweep.plan import read_plan
+from flexapod.surveys.sweeps.plan import read_plan
 from flexapod.symbolic import cache
 
 resource = pytest.importorskip("resource")  # and pipes: neither is on Windows

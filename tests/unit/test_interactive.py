@@ -7,7 +7,7 @@ import numpy as np
 import pytest
 from matplotlib.figure import Figure
 
-from flexapod.app.interactive import MOST_POINTS, interactive, packed, thinned
+from flexapod.report.interactive import MOST_POINTS, interactive, packed, thinned
 
 
 def unpacked(value):

@@ -8,13 +8,13 @@ import numpy as np
 import pytest
 
 from flexapod import model, plot
-from flexapod.engines.engine import EXUDYN
-from flexapod.engines.exudyn_robot import RobotResult
 from flexapod.errors import ComputationError, InputError
-from flexapod.study.paper import engines
-from flexapod.study.paper import study as paper
-from flexapod.study.paper.engines import agreements, exudyn_flexible, exudyn_rigid, rigid_same_step, undamped
-from flexapod.study.scene import robot_study
+from flexapod.paper import engines
+from flexapod.paper import study as paper
+from flexapod.paper.engines import agreements, exudyn_flexible, exudyn_rigid, rigid_same_step, undamped
+from flexapod.proof.engines.engine import EXUDYN
+from flexapod.proof.engines.exudyn_robot import RobotResult
+from flexapod.scene.robot import robot_study
 from flexapod.study.words import text as words
 
 

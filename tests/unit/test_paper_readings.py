@@ -5,9 +5,9 @@ import pytest
 from tests.paper_parts import quiet
 
 from flexapod import model
+from flexapod.paper import cost, readings, trials
 from flexapod.rigid import dynamics
 from flexapod.rigid.kinematics import JointTurn
-from flexapod.study.paper import cost, readings, trials
 
 
 @pytest.fixture(scope="module")

@@ -13,18 +13,19 @@ from matplotlib.legend import Legend
 from matplotlib.text import Text
 
 from flexapod import plot
-from flexapod.app.figures import draw
-from flexapod.app.interactive import interactive
-from flexapod.app.report import write_report
 from flexapod.app.view.charts import charts
 from flexapod.errors import InputError
 from flexapod.model import preset
 from flexapod.plot.narrow import narrowed
 from flexapod.plot.style import figure as page_figure
 from flexapod.plot.style import ink
-from flexapod.study import modes, simulate, simulate_actuator, workspace_map
-from flexapod.study.colours import ENERGIES
-from flexapod.study.scene import mode_scene, motion_end, robot_study, scene
+from flexapod.report.figures import draw
+from flexapod.report.interactive import interactive
+from flexapod.report.page import write_report
+from flexapod.scene.colours import ENERGIES
+from flexapod.scene.robot import mode_scene, motion_end, robot_study, scene
+from flexapod.study import modes, simulate, simulate_actuator
+from flexapod.surveys.workspace import workspace_map
 
 
 @pytest.fixture(scope="module")

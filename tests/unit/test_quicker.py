@@ -6,8 +6,8 @@ from tests.sweeps import quick
 
 import flexapod as fx
 from flexapod import model
-from flexapod.study import quicker as module
-from flexapod.study.quicker import Quicker, quicker
+from flexapod.surveys.convergence import quicker as module
+from flexapod.surveys.convergence.quicker import Quicker, quicker
 
 
 def with_drive(drive):

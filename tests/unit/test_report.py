@@ -7,19 +7,19 @@ from html.parser import HTMLParser
 import numpy as np
 import pytest
 
-from flexapod.app import html
-from flexapod.app.html import code
-from flexapod.app.html import replay as replay_figure
-from flexapod.app.interactive import MOST_POINTS
-from flexapod.app.replay import FRAMES, locked_modes, replay
-from flexapod.app.report import robot_report, write_report
 from flexapod.app.run_words import show_run
-from flexapod.app.study_words import modes_section, study_words
 from flexapod.model import loads, preset, preset_text
+from flexapod.report import html
+from flexapod.report.html import code
+from flexapod.report.html import replay as replay_figure
+from flexapod.report.interactive import MOST_POINTS
+from flexapod.report.page import robot_report, write_report
+from flexapod.report.replay import FRAMES, locked_modes, replay
+from flexapod.report.study_words import modes_section, study_words
 from flexapod.rigid.rotations import exponential, matrix
 from flexapod.study import simulate, simulate_actuator
-from flexapod.study.describe.robot import describe
-from flexapod.study.summary import summary
+from flexapod.study.after.summary import summary
+from flexapod.study.before.describe.robot import describe
 
 POINTS = 6 + 6 * 9 + 2 * 6 + 4 + 2  # of a frame: bases, pistons, platforms, centres, tools
 PRESCRIBED = 'drive = { type = "prescribed" }'

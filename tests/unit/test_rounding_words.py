@@ -7,8 +7,8 @@ from tests.runs import paper_robot, with_legs
 import flexapod as fx
 from flexapod import plot
 from flexapod.app.view.charts import charts
-from flexapod.study.estimates import buckling_load
-from flexapod.study.summary import summary
+from flexapod.study.after.summary import summary
+from flexapod.study.before.estimates import buckling_load
 from flexapod.study.words import length
 
 

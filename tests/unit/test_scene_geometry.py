@@ -9,9 +9,9 @@ import flexapod as fx
 from flexapod import bases, model, rigid
 from flexapod.app.view import charts as view_charts
 from flexapod.app.view import legend
-from flexapod.app.view import scene_geometry as geometry
 from flexapod.plot.style import LEG_COLORS
-from flexapod.study.scene import STATIONS
+from flexapod.scene import geometry
+from flexapod.scene.robot import STATIONS
 
 
 @cache

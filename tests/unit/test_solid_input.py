@@ -16,9 +16,9 @@ from flexapod.fem.section_mesh import section_mesh
 from flexapod.fem.sliding import HubMotion, SlidingBeam, slide
 from flexapod.model import Rectangle, Tube
 from flexapod.plot.solid import solid_comparison, solid_meshes
+from flexapod.study.after.vibration import local_vibration
 from flexapod.study.record import Interrupted
 from flexapod.study.solid import simulate_solid
-from flexapod.study.vibration import local_vibration
 
 FLAT = Rectangle(width=0.1524, height=0.0095)
 SECTIONS = [FLAT, Tube(diameter=0.027), Tube(diameter=0.03, inner_diameter=0.02)]

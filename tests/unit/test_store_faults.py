@@ -9,7 +9,8 @@ from tests.sweeps import quick
 
 import flexapod as fx
 from flexapod.errors import InputError
-from flexapod.study import open_results, room, save, store
+from flexapod.study import open_results, save, store
+from flexapod.study.before import room
 
 resource = pytest.importorskip("resource")
 

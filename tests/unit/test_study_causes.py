@@ -7,7 +7,7 @@ from tests.runs import paper_robot, with_legs
 
 import flexapod as fx
 from flexapod.model import AxisMotion, ForceDrive, Payload, ServoDrive
-from flexapod.study.causes import deviation_by_cause, length_errors
+from flexapod.study.after.causes import deviation_by_cause, length_errors
 
 STILL = AxisMotion(type="roll", amplitude=0.0, duration=1.0)
 SHORT = {"duration": 0.1, "step": 1e-3}

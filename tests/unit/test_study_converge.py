@@ -10,13 +10,13 @@ import flexapod as fx
 from flexapod.model import ActuatorInitial, ActuatorMotion, override
 from flexapod.plot.convergence import convergence
 from flexapod.study import open_results, save
-from flexapod.study.converge import ConvergenceStopped, Trials, choice, converge, halving, plan
-from flexapod.study.converge.family import Family
-from flexapod.study.converge.orders import finest_error, observed_order, relative_difference, shape_factor
-from flexapod.study.converge.recommend import Candidate, Discretisation, Step, candidates
-from flexapod.study.converge.table import save_table
-from flexapod.study.converge.trials import Setting, Trial, setting_of
-from flexapod.study.ladder import RUNGS, ladder
+from flexapod.surveys.convergence import ConvergenceStopped, Trials, choice, converge, halving, plan
+from flexapod.surveys.convergence.family import Family
+from flexapod.surveys.convergence.ladder import RUNGS, ladder
+from flexapod.surveys.convergence.orders import finest_error, observed_order, relative_difference, shape_factor
+from flexapod.surveys.convergence.recommend import Candidate, Discretisation, Step, candidates
+from flexapod.surveys.convergence.table import save_table
+from flexapod.surveys.convergence.trials import Setting, Trial, setting_of
 
 TIME = np.linspace(0.0, 1.0, 11)
 BASE = Setting(fidelity="assumed-modes", basis="tip-load", modes=3, step=1e-3, output_step=1e-3)
@@ -228,7 +228,7 @@ def test_the_ladder_of_a_beam(beam):
 
 def test_a_solid_study_is_compared_with_solids_only():
     from flexapod.model import override, preset
-    from flexapod.study.converge.plan import base_setting, discretisations, largest
+    from flexapod.surveys.convergence.plan import base_setting, discretisations, largest
 
     base = base_setting(override(preset("paper-robot"), fidelity="solid-fem"))
     assert {(family, setting.fidelity) for family, setting in discretisations(base, 1e-3)} == {("shapes", "solid-fem")}

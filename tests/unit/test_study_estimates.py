@@ -17,8 +17,8 @@ from flexapod.model import AxisMotion, Feedback, ForceDrive, Payload, ServoDrive
 from flexapod.solve.kernel import kernel
 from flexapod.solve.modes import robot_modes
 from flexapod.solve.parameters import leg_parameters
-from flexapod.study.describe.pose import vibration_to_expect
-from flexapod.study.estimates import Vibration, bending_moment, buckling_load, residual_vibration, section_width
+from flexapod.study.before.describe.pose import vibration_to_expect
+from flexapod.study.before.estimates import Vibration, bending_moment, buckling_load, residual_vibration, section_width
 
 LEG = paper_robot().robot.legs[0]
 EI = LEG.piston.EI

@@ -6,8 +6,9 @@ from tests.sweeps import quick, quick_text
 
 import flexapod as fx
 from flexapod.model import preset_text
-from flexapod.study import converge, ladder
-from flexapod.study.converge.plan import checked_trials
+from flexapod.surveys.convergence import converge
+from flexapod.surveys.convergence.ladder import ladder
+from flexapod.surveys.convergence.plan import checked_trials
 
 BEAM = preset_text("paper-actuator").replace('duration = "10 s"', 'duration = "10 ms"')
 

@@ -11,8 +11,8 @@ from flexapod.bases import lateral_basis
 from flexapod.model import AxisMotion, Rectangle, Tube
 from flexapod.model.material import MATERIALS
 from flexapod.solve.kernel import kernel
-from flexapod.study.estimates import buckling_load
-from flexapod.study.plausibility import leg_stress
+from flexapod.study.after.plausibility import leg_stress
+from flexapod.study.before.estimates import buckling_load
 
 STILL = AxisMotion(type="heave", amplitude=0.0, duration=1.0)
 SHORT = {"duration": 0.02, "step": 1e-3}

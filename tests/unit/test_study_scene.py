@@ -4,7 +4,7 @@ import numpy as np
 
 import flexapod as fx
 from flexapod.model import preset_text
-from flexapod.study.scene import mode_scene, motion_coordinates, scene
+from flexapod.scene.robot import mode_scene, motion_coordinates, scene
 
 
 def test_a_result_whose_motion_table_is_gone_is_still_drawn(tmp_path):

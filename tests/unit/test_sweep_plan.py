@@ -5,9 +5,9 @@ import pytest
 from tests.sweeps import KEY, diameters, quick
 
 from flexapod.errors import InputError
-from flexapod.study.sweep.kept import kept
-from flexapod.study.sweep.plan import read_plan
-from flexapod.study.sweep.points import Points
+from flexapod.surveys.sweeps.kept import kept
+from flexapod.surveys.sweeps.plan import read_plan
+from flexapod.surveys.sweeps.points import Points
 
 
 def refused(sweep):

@@ -7,9 +7,9 @@ from tests.sweeps import KEY, diameters, quick
 from flexapod.errors import InputError
 from flexapod.model import loads, preset_text
 from flexapod.solve.kernel import kernel
-from flexapod.study import room
-from flexapod.study.sweep.plan import read_plan
-from flexapod.study.sweep.points import Points
+from flexapod.study.before import room
+from flexapod.surveys.sweeps.plan import read_plan
+from flexapod.surveys.sweeps.points import Points
 
 
 def points(**sweep):

@@ -12,14 +12,15 @@ import xarray as xr
 from tests.sweeps import KEY, diameters, quick, quick_text, start
 
 import flexapod as fx
+from flexapod import version
 from flexapod.errors import ComputationError, InputError
 from flexapod.model import loads, tables
-from flexapod.study.sweep import SweepStopped, batch, identity, open_sweep, result, run, unstacked, writer
-from flexapod.study.sweep.batch import compute_batch
-from flexapod.study.sweep.disk import DurableStore
-from flexapod.study.sweep.lock import locked
-from flexapod.study.sweep.plan import read_plan
-from flexapod.study.sweep.points import Points
+from flexapod.surveys.sweeps import SweepStopped, batch, identity, open_sweep, result, run, unstacked, writer
+from flexapod.surveys.sweeps.batch import compute_batch
+from flexapod.surveys.sweeps.disk import DurableStore
+from flexapod.surveys.sweeps.lock import locked
+from flexapod.surveys.sweeps.plan import read_plan
+from flexapod.surveys.sweeps.points import Points
 
 
 @pytest.fixture
@@ -151,7 +152,7 @@ def test_another_study_sweep_or_version_is_refused(path, monkeypatch):
         fx.sweep(heavier, diameters(4), store=path, workers=0)
     with pytest.raises(InputError, match=r"holds another sweep of this study"):
         sweep(path, 5)
-    monkeypatch.setattr(fx, "__version__", "9.9")
+    monkeypatch.setattr(version, "__version__", "9.9")
     with pytest.raises(InputError, match=r"flexapod_version = .*was made by another version.*Allowed: 9.9"):
         sweep(path)
 
@@ -190,7 +191,7 @@ def test_two_sweeps_on_one_store(path):
 @pytest.mark.skipif(sys.platform == "win32", reason="SIGKILL")
 def test_the_lock_of_a_killed_process_is_no_hindrance(path):
     code = (
-        "import sys, pathlib; from flexapod.study.sweep.lock import locked\n"
+        "import sys, pathlib; from flexapod.surveys.sweeps.lock import locked\n"
         "with locked(pathlib.Path(sys.argv[1])): print('held', flush=True); sys.stdin.read()"
     )
     holder = start("-c", code, path, stdin=-1)

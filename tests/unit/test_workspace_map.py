@@ -9,11 +9,11 @@ from flexapod import rigid
 from flexapod.model.motion import Waypoint, WaypointMotion
 from flexapod.rigid.kinematics import BETA_LIMIT
 from flexapod.rigid.workspace import LONGEST, NO_FREE_LENGTH, PULLED_OUT, SHORTEST
-from flexapod.study.map.findings import axis_words, map_findings
-from flexapod.study.map.grid import Range, grid
-from flexapod.study.map.names import GRID_VARIABLES, SCALARS
+from flexapod.study.before.reach import REASONS, rigid_codes
 from flexapod.study.poses import coordinates_of, from_home
-from flexapod.study.reach import REASONS, rigid_codes
+from flexapod.surveys.workspace.findings import axis_words, map_findings
+from flexapod.surveys.workspace.grid import Range, grid
+from flexapod.surveys.workspace.names import GRID_VARIABLES, SCALARS
 
 FLAG = [reason.flag for reason in REASONS]
 AT = {"sway": 0.02, "pitch": 0.05}

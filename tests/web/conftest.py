@@ -8,9 +8,6 @@ from pathlib import Path
 import pytest
 
 from flexapod.app.commands_verify import _write
-from flexapod.app.figures import draw
-from flexapod.app.paper_report import paper_page
-from flexapod.app.report import robot_report
 from flexapod.app.view.document import Document
 from flexapod.app.view.network import free_port
 from flexapod.app.view.opening import open_source
@@ -18,10 +15,13 @@ from flexapod.app.view.server import GONE, View
 from flexapod.app.view.session import Session
 from flexapod.app.view.source import Source
 from flexapod.model import loads, preset_text
+from flexapod.paper.claim import BREAKS, HOLDS, IN_PART, MISPRINT, NOT, OPEN, REACHES, Claim
+from flexapod.paper.report import paper_page
+from flexapod.paper.study import PaperStudy
+from flexapod.proof.pack import verify
+from flexapod.report.figures import draw
+from flexapod.report.page import robot_report
 from flexapod.study import modes, run
-from flexapod.study.paper.claim import BREAKS, HOLDS, IN_PART, MISPRINT, NOT, OPEN, REACHES, Claim
-from flexapod.study.paper.study import PaperStudy
-from flexapod.study.verify.pack import verify
 
 HOST = "127.0.0.1"
 ARGUMENTS = ["--no-sandbox", "--use-gl=angle", "--use-angle=swiftshader", "--enable-unsafe-swiftshader"]

@@ -18,8 +18,8 @@ from flexapod.app.view.document import Document
 from flexapod.app.view.opening import open_source
 from flexapod.app.view.source import Source
 from flexapod.errors import InputError
+from flexapod.study.after.summary import summary
 from flexapod.study.store import save
-from flexapod.study.summary import summary
 
 TOOL = ('com = [0, "373 mm", 0] ', 'tool = [0, 0, "300 mm"]\ncom = [0, "373 mm", 0] ')
 

@@ -22,7 +22,7 @@ from flexapod.app.view.document import Document
 from flexapod.app.view.editing import read
 from flexapod.app.view.source import Source
 from flexapod.app.view.structure import offers
-from flexapod.study import beam_modes
+from flexapod.scene import beam_modes
 
 BEAM = study_text(('duration = "10 s"', 'duration = "0.5 s"'), preset="paper-actuator")
 

@@ -10,12 +10,12 @@ from tests.web.conftest import LONG, SHORT, study_text
 from tests.web.guests import until
 
 import flexapod as fx
-from flexapod.app import figures
 from flexapod.app.failures import lines_of, parts_of
 from flexapod.app.view import files_panel
 from flexapod.app.view.cores import Turn
 from flexapod.app.view.uploads import LARGEST
 from flexapod.errors import InputError
+from flexapod.report import figures
 from flexapod.study import open_results, summary
 
 ANSWER = "misses its rigid path by up to"

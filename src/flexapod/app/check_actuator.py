@@ -9,7 +9,7 @@ from flexapod.app.terminal import print_table, print_text
 from flexapod.study.words import column, text
 
 if TYPE_CHECKING:
-    from flexapod.study.describe.actuator import ActuatorDescription, BeamDescription
+    from flexapod.study.before.describe.actuator import ActuatorDescription, BeamDescription
 
 __all__ = ["show_actuator"]
 

@@ -10,9 +10,9 @@ from flexapod.app.terminal import print_table, print_text
 from flexapod.study.words import column, length, number, scale, text
 
 if TYPE_CHECKING:
-    from flexapod.study.describe.leg import Extreme
-    from flexapod.study.describe.pose import PoseDescription, VibrationToExpect
-    from flexapod.study.describe.robot import RobotDescription
+    from flexapod.study.before.describe.leg import Extreme
+    from flexapod.study.before.describe.pose import PoseDescription, VibrationToExpect
+    from flexapod.study.before.describe.robot import RobotDescription
 
 __all__ = ["show_robot"]
 

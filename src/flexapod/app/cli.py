@@ -12,7 +12,6 @@ from typing import Annotated, Any
 import typer
 from typer.core import TyperGroup
 
-from flexapod import __version__
 from flexapod.app import (
     commands_cache,
     commands_check,
@@ -30,6 +29,7 @@ from flexapod.app import (
 )
 from flexapod.app.failures import INTERRUPTED, print_parts, say_full
 from flexapod.app.stopping import heed_signals, stop_code
+from flexapod.version import __version__
 
 __all__ = ["app", "main"]
 

@@ -22,7 +22,7 @@ def check(file: StudyFile, json: Json = False) -> None:
     from flexapod.app.check_robot import show_robot
     from flexapod.app.terminal import print_json
     from flexapod.model import load
-    from flexapod.study.describe.robot import RobotDescription, describe
+    from flexapod.study.before.describe.robot import RobotDescription, describe
 
     found = describe(load(file))
     if json:

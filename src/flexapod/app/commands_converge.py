@@ -14,7 +14,7 @@ from flexapod.app.stopping import stopped
 if TYPE_CHECKING:
     from xarray import Dataset
 
-    from flexapod.study.converge import Trials
+    from flexapod.surveys.convergence import Trials
 
 __all__ = ["add"]
 
@@ -38,7 +38,7 @@ def converge(
     from flexapod.app.outputs import results_folder
     from flexapod.app.terminal import print_text
     from flexapod.model import load
-    from flexapod.study.converge.plan import checked_trials, estimate
+    from flexapod.surveys.convergence.plan import checked_trials, estimate
 
     trials = checked_trials(load(file), None)
     folder = results_folder(file, "converge", out)
@@ -60,9 +60,9 @@ def converge(
 def _computed(trials: Trials, accuracy: float, *, ladder: bool, quiet: bool) -> tuple[dict[str, Dataset], bool]:
     """Tables by the names of their files, and whether the user stopped."""
     from flexapod.app.terminal import progress_bar
-    from flexapod.study.converge import ConvergenceStopped
-    from flexapod.study.converge import converge as compute
-    from flexapod.study.ladder import ladder as climb
+    from flexapod.surveys.convergence import ConvergenceStopped
+    from flexapod.surveys.convergence import converge as compute
+    from flexapod.surveys.convergence.ladder import ladder as climb
 
     tables: dict[str, Dataset] = {}
     name = "convergence"
@@ -91,8 +91,8 @@ def _write(data: Dataset, folder: Path, name: str, *, figure: bool) -> list[Path
     """The table as NetCDF and CSV, and its figure where it is wanted."""
     from flexapod import plot
     from flexapod.plot.convergence import convergence, ladder
-    from flexapod.study.converge.table import save_table
     from flexapod.study.store import save
+    from flexapod.surveys.convergence.table import save_table
 
     draw = {"convergence": convergence, "ladder": ladder}[name]
     files = [save(data, folder / f"{name}.nc"), save_table(data, folder / f"{name}.csv")]

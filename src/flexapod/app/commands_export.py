@@ -49,8 +49,8 @@ def export(
     from flexapod import model
     from flexapod.app.terminal import print_json
     from flexapod.errors import InputError
+    from flexapod.exchange.export import FORMATS, abaqus_deck
     from flexapod.files import replacing
-    from flexapod.study.export import FORMATS, abaqus_deck
 
     if format not in FORMATS:
         words = "abaqus, a deck that CalculiX reads as well"

@@ -13,8 +13,8 @@ from flexapod.app.options import Json, NoFigures, Out, Quiet, StudyFile, as_opti
 if TYPE_CHECKING:
     from xarray import Dataset
 
-    from flexapod.study.map.findings import Finding, MapFindings
     from flexapod.study.record import Report
+    from flexapod.surveys.workspace.findings import Finding, MapFindings
 
 __all__ = ["add"]
 
@@ -56,11 +56,11 @@ def workspace_map(
     from flexapod.app.outputs import results_folder
     from flexapod.app.terminal import print_json, progress_bar
     from flexapod.errors import InputError
-    from flexapod.study.map import workspace_map as compute
-    from flexapod.study.map.findings import map_findings
-    from flexapod.study.map.grid import grid
-    from flexapod.study.map.workspace import FREQUENCIES
-    from flexapod.study.room import check_map
+    from flexapod.study.before.room import check_map
+    from flexapod.surveys.workspace import workspace_map as compute
+    from flexapod.surveys.workspace.findings import map_findings
+    from flexapod.surveys.workspace.grid import grid
+    from flexapod.surveys.workspace.maps import FREQUENCIES
 
     study = model.load(file)
     if isinstance(study, model.ActuatorStudy):
@@ -92,8 +92,8 @@ def workspace_map(
 def _write(data: Dataset, folder: Path, mode: int, report: Report, *, figures: bool) -> list[Path]:
     """The map, and where they are wanted a figure of each quantity, of frequencies that of this `mode`."""
     from flexapod import plot
-    from flexapod.study.map.findings import drawn
     from flexapod.study.store import save
+    from flexapod.surveys.workspace.findings import drawn
 
     report("writing the map", COMPUTING)
     files, names = [save(data, folder / "map.nc")], drawn(data) if figures else ()
@@ -105,7 +105,7 @@ def _write(data: Dataset, folder: Path, mode: int, report: Report, *, figures: b
 
 def _show(data: Dataset, found: MapFindings, folder: Path, files: list[Path]) -> None:
     from flexapod.app.terminal import print_table, print_text
-    from flexapod.study.map.findings import axis_words
+    from flexapod.surveys.workspace.findings import axis_words
 
     share = found.reached / found.poses
     print_text(f"{found.reached} of {found.poses} poses are reached ({100 * share:.3g} %): {axis_words(data)}.")
@@ -128,8 +128,8 @@ def _show(data: Dataset, found: MapFindings, folder: Path, files: list[Path]) ->
 
 
 def _sentence(found: Finding) -> str:
-    from flexapod.study.map.findings import coordinate_words
     from flexapod.study.words import text
+    from flexapod.surveys.workspace.findings import coordinate_words
 
     words = found.words[0].upper() + found.words[1:]
     return (
@@ -139,8 +139,8 @@ def _sentence(found: Finding) -> str:
 
 
 def _row(found: Finding) -> list[str]:
-    from flexapod.study.map.findings import coordinate_words
     from flexapod.study.words import column
+    from flexapod.surveys.workspace.findings import coordinate_words
 
     home = float("nan") if found.home is None else found.home
     unit, (least, largest, at_home) = column([found.least, found.largest, home], found.unit)

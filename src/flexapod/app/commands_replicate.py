@@ -12,7 +12,7 @@ from flexapod.app.failures import guarded
 from flexapod.app.options import Json, NoFigures, Quiet
 
 if TYPE_CHECKING:
-    from flexapod.study.paper.study import PaperStudy
+    from flexapod.paper.study import PaperStudy
 
 __all__ = ["add"]
 
@@ -34,11 +34,11 @@ def replicate(
 ) -> None:  # fmt: skip
     """Repeat the paper's whole study: figures, data, table of its claims, report."""
     from flexapod.app.outputs import check_writable
-    from flexapod.app.replicate import replicate as repeat
     from flexapod.app.terminal import print_json, print_text, progress_bar
-    from flexapod.study.paper.claims import claims
-    from flexapod.study.paper.engines import agreements
-    from flexapod.study.summary import summary
+    from flexapod.paper.claims import claims
+    from flexapod.paper.engines import agreements
+    from flexapod.paper.outputs import replicate as repeat
+    from flexapod.study.after.summary import summary
 
     check_writable(out)
     with progress_bar(quiet=quiet or json) as report:

@@ -17,8 +17,8 @@ if TYPE_CHECKING:
     from xarray import Dataset
 
     from flexapod.model import ActuatorStudy, Study
-    from flexapod.study.quicker import Quicker
     from flexapod.study.record import Report
+    from flexapod.surveys.convergence.quicker import Quicker
 
 __all__ = ["add"]
 
@@ -75,7 +75,7 @@ def _run(study: Study | ActuatorStudy, folder: Path, formats: Sequence[str], *, 
     from flexapod.app.terminal import progress_bar
     from flexapod.study import Interrupted
     from flexapod.study import run as simulate
-    from flexapod.study.room import check_disk
+    from flexapod.study.before.room import check_disk
 
     check_disk(study, folder)
     interrupted, faster = False, None
@@ -100,7 +100,7 @@ def _run(study: Study | ActuatorStudy, folder: Path, formats: Sequence[str], *, 
 
 def _quicker(study: Study | ActuatorStudy, data: Dataset, report: Report) -> Quicker | None:
     """A step that would have done, where the tolerance made the run slow; all files are written by now."""
-    from flexapod.study.quicker import quicker
+    from flexapod.surveys.convergence.quicker import quicker
 
     try:
         return quicker(study, data, progress=lambda time, end: report("trying a fixed step", 0.99))
@@ -111,7 +111,7 @@ def _quicker(study: Study | ActuatorStudy, data: Dataset, report: Report) -> Qui
 def _say(data: Dataset, folder: Path, files: list[Path], faster: Quicker | None, *, json: bool) -> None:
     from flexapod.app.run_words import show_run
     from flexapod.app.terminal import print_json, print_text
-    from flexapod.study.summary import summary
+    from flexapod.study.after.summary import summary
 
     warnings = [line for line in data.attrs["warnings"].splitlines() if line]
     if not json:

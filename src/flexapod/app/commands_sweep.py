@@ -47,8 +47,8 @@ def sweep(
     """Compute many variants of a study: grids, lists, Latin hypercubes, random tolerances. Run again, it continues."""
     from flexapod.app.outputs import results_folder
     from flexapod.app.terminal import progress_bar
-    from flexapod.study.sweep import SweepStopped
-    from flexapod.study.sweep import sweep as compute
+    from flexapod.surveys.sweeps import SweepStopped
+    from flexapod.surveys.sweeps import sweep as compute
 
     folder = results_folder(file, sweep_file.stem, out)
     with as_options(workers="--workers", scheduler="--scheduler"), progress_bar(quiet=quiet or json) as report:
@@ -73,7 +73,7 @@ def _write(data: Dataset, folder: Path, *, figure: bool) -> list[Path]:
     """The table, and the figure where it is wanted and there is something to see."""
     from flexapod import plot
     from flexapod.plot.sweep import sweep as draw
-    from flexapod.study.sweep import save_table, scalar_names
+    from flexapod.surveys.sweeps import save_table, scalar_names
 
     files = [save_table(data, folder / "sweep.csv")]
     if figure and any(data[name].notnull().any() for name in scalar_names(data)):

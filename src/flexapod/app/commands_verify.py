@@ -11,7 +11,7 @@ from flexapod.app.failures import guarded
 from flexapod.app.options import Json, Quiet
 
 if TYPE_CHECKING:
-    from flexapod.study.verify.pack import Outcome
+    from flexapod.proof.pack import Outcome
 
 __all__ = ["add"]
 
@@ -38,8 +38,8 @@ def verify(
     """Compute cases with published or closed-form answers: reference, ours, tolerance, verdict, time."""
     from flexapod.app.outputs import check_writable
     from flexapod.app.terminal import print_json, print_table, print_text, progress_bar
-    from flexapod.study.verify import page
-    from flexapod.study.verify.pack import verify as compute
+    from flexapod.proof import page
+    from flexapod.proof.pack import verify as compute
 
     for key, file in (("--html", html), ("--markdown", markdown)):
         check_writable(None if file is None else file.parent, key)
@@ -73,9 +73,9 @@ def verify(
 
 
 def _write(outcomes: list[Outcome], html: Path | None, markdown: Path | None) -> None:
-    from flexapod.app import html as parts
     from flexapod.files import replacing
-    from flexapod.study.verify import page
+    from flexapod.proof import page
+    from flexapod.report import html as parts
 
     if markdown is not None:
         with replacing(markdown) as file:
@@ -94,7 +94,7 @@ def _write(outcomes: list[Outcome], html: Path | None, markdown: Path | None) ->
 
 
 def _checks(outcome: Outcome) -> str:
-    from flexapod.app import html as parts
+    from flexapod.report import html as parts
 
     head = ("What", "Reference", "Ours", "Error", "Tolerance", "Verdict")
     rows = [

@@ -15,9 +15,9 @@ from typing import ParamSpec
 
 import typer
 
-from flexapod import __version__
 from flexapod.app.stopping import stopped
 from flexapod.errors import ComputationError, FlexapodError, InputError
+from flexapod.version import __version__
 
 __all__ = ["INTERRUPTED", "guarded", "lines_of", "parts_of", "print_parts", "say_full", "show"]
 

@@ -3,7 +3,7 @@
 from __future__ import annotations
 
 from flexapod import model
-from flexapod.study.describe.robot import RobotDescription, describe
+from flexapod.study.before.describe.robot import RobotDescription, describe
 from flexapod.study.words import length, number, text
 
 __all__ = ["first_words"]

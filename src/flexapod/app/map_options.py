@@ -7,7 +7,7 @@ from collections.abc import Collection
 
 from flexapod.errors import InputError, closest
 from flexapod.model import AXES
-from flexapod.study.map.grid import Range
+from flexapod.surveys.workspace.grid import Range
 from flexapod.units import to_si
 
 __all__ = ["parse_acceleration", "parse_at", "parse_axes", "parse_direction"]

@@ -82,8 +82,8 @@ def write_all(data: Dataset, folder: Path, report: Report, formats: Sequence[str
     report("writing results", 0.90)
     files = write_data(data, folder)
     report("drawing figures", 0.92)
-    from flexapod.app.figures import draw
-    from flexapod.app.report import write_report
+    from flexapod.report.figures import draw
+    from flexapod.report.page import write_report
 
     figures = draw(data, folder, formats) if formats else []
     report("writing the report", 0.98)

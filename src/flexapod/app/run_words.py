@@ -12,14 +12,14 @@ from flexapod.app.terminal import print_table, print_text
 if TYPE_CHECKING:
     from xarray import Dataset
 
-    from flexapod.study.summary import RobotSummary
+    from flexapod.study.after.summary import RobotSummary
 
 __all__ = ["show_run"]
 
 
 def show_run(data: Dataset, folder: Path, files: Sequence[Path], warnings: Sequence[str]) -> None:
     """Print what a run found and where it is."""
-    from flexapod.study.summary import POINT_WORDS, RobotSummary, summaries
+    from flexapod.study.after.summary import POINT_WORDS, RobotSummary, summaries
 
     told = summaries(data)
     for found in told:

@@ -17,7 +17,7 @@ MESSAGES = 3  # different ones that are shown
 
 def as_dict(data: Dataset) -> dict[str, Any]:
     """Counts, messages, and the extremes of every scalar of a point."""
-    from flexapod.study.sweep import scalar_names
+    from flexapod.surveys.sweeps import scalar_names
 
     states = Counter(data.status.values.tolist())
     return {

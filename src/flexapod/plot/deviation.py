@@ -8,8 +8,8 @@ from matplotlib.axes import Axes
 from matplotlib.figure import Figure
 
 from flexapod.plot.style import PAGE, Scale, figure, flat_on_the_scale_of_others, mark_end, needs, scale, styled
+from flexapod.scene.robot import motion_end
 from flexapod.study.names import CAUSE_WORDS
-from flexapod.study.scene import motion_end
 from flexapod.study.words import cleared
 
 __all__ = ["deviation_by_cause"]

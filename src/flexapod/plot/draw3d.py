@@ -13,7 +13,7 @@ from matplotlib.patheffects import withStroke
 from mpl_toolkits.mplot3d.art3d import Line3DCollection, Poly3DCollection
 
 from flexapod.plot.style import LEG_COLORS, NOTE, SMALL, ink
-from flexapod.study.scene import Scene
+from flexapod.scene.robot import Scene
 
 __all__ = ["draw_ghost", "draw_robot", "head", "space", "view"]
 

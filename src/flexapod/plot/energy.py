@@ -8,8 +8,8 @@ from matplotlib.axes import Axes
 from matplotlib.figure import Figure
 
 from flexapod.plot.style import LINE_STYLES, PAGE, figure, mark_end, needs, scale, styled
-from flexapod.study.colours import ENERGIES
-from flexapod.study.scene import motion_end
+from flexapod.scene.colours import ENERGIES
+from flexapod.scene.robot import motion_end
 
 __all__ = ["energies"]
 

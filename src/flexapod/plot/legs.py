@@ -8,7 +8,7 @@ from matplotlib.axes import Axes
 from matplotlib.figure import Figure
 
 from flexapod.plot.style import FLEXIBLE, LEG_COLORS, LINE_STYLES, PAGE, RIGID, figure, mark_end, needs, scale, styled
-from flexapod.study.scene import motion_end
+from flexapod.scene.robot import motion_end
 from flexapod.study.words import NOTHING
 
 __all__ = ["actuator_forces", "leg_lengths", "tip_deflections"]

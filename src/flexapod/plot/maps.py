@@ -18,12 +18,12 @@ from matplotlib.ticker import LogLocator, MaxNLocator
 from flexapod.errors import InputError
 from flexapod.model import AXES
 from flexapod.plot.style import COLORS, NOTE, PAGE, SMALL, TEXT, figure, needs, scale, styled
-from flexapod.study.map.findings import coordinate_words, drawn, name_of, scalar, unit_of
-from flexapod.study.map.grid import UNITS
-from flexapod.study.map.names import SCALARS
-from flexapod.study.map.overlay import motion_path
-from flexapod.study.reach import REACHED, REASONS
+from flexapod.study.before.reach import REACHED, REASONS
 from flexapod.study.words import Scale, number
+from flexapod.surveys.workspace.findings import coordinate_words, drawn, name_of, scalar, unit_of
+from flexapod.surveys.workspace.grid import UNITS
+from flexapod.surveys.workspace.names import SCALARS
+from flexapod.surveys.workspace.overlay import motion_path
 from flexapod.typing import Array
 
 __all__ = ["workspace_map"]

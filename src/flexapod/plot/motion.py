@@ -7,7 +7,7 @@ import xarray as xr
 from matplotlib.figure import Figure
 
 from flexapod.plot.style import LEG_COLORS, LINE_STYLES, PAGE, figure, mark_end, needs, scale, styled
-from flexapod.study.scene import motion_coordinates, motion_end
+from flexapod.scene.robot import motion_coordinates, motion_end
 from flexapod.study.words import NOTHING
 
 __all__ = ["motion_law"]

@@ -22,8 +22,8 @@ from flexapod.plot.style import (
     scale,
     styled,
 )
-from flexapod.study.scene import motion_end
-from flexapod.study.summary import POINT_WORDS
+from flexapod.scene.robot import motion_end
+from flexapod.study.after.summary import POINT_WORDS
 from flexapod.study.words import cleared
 
 __all__ = ["com_path"]

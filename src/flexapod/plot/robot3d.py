@@ -10,7 +10,7 @@ from matplotlib.figure import Figure
 
 from flexapod.plot.draw3d import draw_ghost, draw_robot, head, space, view
 from flexapod.plot.style import NOTE, PAGE, figure, needs, styled
-from flexapod.study.scene import mode_scene, motion_end, scene
+from flexapod.scene.robot import mode_scene, motion_end, scene
 
 __all__ = ["modes_3d", "robot_3d"]
 

@@ -23,7 +23,7 @@ from matplotlib.layout_engine import ConstrainedLayoutEngine
 from flexapod.errors import InputError
 from flexapod.files import replacing
 from flexapod.plot.narrow import narrowed
-from flexapod.study.colours import AXIS_COLORS, LEG_COLORS
+from flexapod.scene.colours import AXIS_COLORS, LEG_COLORS
 from flexapod.study.words import Scale, scale
 
 __all__ = [

@@ -10,13 +10,13 @@ from numpy.typing import ArrayLike
 from flexapod import model, rigid
 from flexapod.errors import InputError
 from flexapod.solve.actuator_march import ActuatorMarch, prepare_actuator
+from flexapod.study.after.plausibility import actuator_warnings
+from flexapod.study.after.results import energy_results
 from flexapod.study.arguments import FileLike, read
 from flexapod.study.attributes import attributes, march_attributes
-from flexapod.study.checks import check_actuator_path
+from flexapod.study.before.checks import check_actuator_path
 from flexapod.study.names import ACTUATOR_FORMS, dataset
-from flexapod.study.plausibility import actuator_warnings
 from flexapod.study.record import Progress, Record, collect, finished
-from flexapod.study.results import energy_results
 from flexapod.typing import Array
 
 if TYPE_CHECKING:

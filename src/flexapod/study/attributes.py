@@ -6,8 +6,7 @@ import hashlib
 import logging
 from collections.abc import Iterable
 
-import flexapod
-from flexapod import model
+from flexapod import model, version
 from flexapod.solve.plant import Counters
 from flexapod.study.record import Record
 
@@ -22,7 +21,7 @@ def attributes(study: model.Study | model.ActuatorStudy, warnings: Iterable[str]
     found = list(dict.fromkeys(warnings))
     return {
         "title": "flexapod: single actuator" if isinstance(study, model.ActuatorStudy) else "flexapod: parallel robot",
-        "flexapod_version": flexapod.__version__,
+        "flexapod_version": version.__version__,
         "study": study.source_text,
         "study_file": study.path or "",
         "study_hash": hashlib.sha256(content.encode()).hexdigest()[:16],

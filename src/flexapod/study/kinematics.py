@@ -12,7 +12,7 @@ from flexapod.errors import InputError
 from flexapod.rigid.rotations import quaternion
 from flexapod.study.arguments import LoadLike, PoseLike, RobotLike, as_pose, as_study, at_pose
 from flexapod.study.attributes import attributes
-from flexapod.study.checks import check_geometry
+from flexapod.study.before.checks import check_geometry
 from flexapod.study.names import dataset
 from flexapod.typing import Array
 

@@ -12,10 +12,8 @@ from flexapod.rigid.rotations import quaternion
 from flexapod.solve.equilibrium import fallen, platform_poses
 from flexapod.solve.frequencies import count_real
 from flexapod.solve.modes import LockedPoses, ManyModes, RobotModes, locked_poses, modes_of
-from flexapod.study.mode_shapes import STATIONS, mode_values
-from flexapod.study.names import COORDINATES, VARIABLES, Variable, dataset
-from flexapod.study.poses import batches, coordinates_of
-from flexapod.study.reach import (
+from flexapod.study.after.mode_shapes import STATIONS, mode_values
+from flexapod.study.before.reach import (
     CUT_OFF,
     FALLS_THROUGH,
     NO_MASS,
@@ -25,6 +23,8 @@ from flexapod.study.reach import (
     flags,
     rigid_codes,
 )
+from flexapod.study.names import COORDINATES, VARIABLES, Variable, dataset
+from flexapod.study.poses import batches, coordinates_of
 from flexapod.typing import Array, Mask
 
 if TYPE_CHECKING:

@@ -8,13 +8,13 @@ from typing import TYPE_CHECKING
 from flexapod import model
 from flexapod.solve.robot_march import RobotMarch, prepare
 from flexapod.study.actuator import simulate_actuator
+from flexapod.study.after.plausibility import robot_warnings
+from flexapod.study.after.results import rigid_force_results, rigid_path, robot_coords, robot_results
 from flexapod.study.arguments import LoadLike, RobotLike, StartLike, as_study, read
 from flexapod.study.attributes import attributes, march_attributes
-from flexapod.study.checks import check_path
+from flexapod.study.before.checks import check_path
 from flexapod.study.names import dataset
-from flexapod.study.plausibility import robot_warnings
 from flexapod.study.record import Progress, Record, collect, finished
-from flexapod.study.results import rigid_force_results, rigid_path, robot_coords, robot_results
 from flexapod.typing import Array
 
 if TYPE_CHECKING:

@@ -12,13 +12,13 @@ from flexapod.solve.many import RestStates
 from flexapod.solve.modes import robot_modes
 from flexapod.solve.stiffness import robot_stiffness
 from flexapod.solve.system import RobotSystem, State
+from flexapod.study.after.mode_shapes import STATIONS, mode_values
+from flexapod.study.after.plausibility import rest_warnings
 from flexapod.study.arguments import LoadLike, PoseLike, RobotLike, as_pose, at_pose
 from flexapod.study.attributes import attributes
-from flexapod.study.checks import path_remarks
+from flexapod.study.before.checks import path_remarks
 from flexapod.study.many_modes import modes_at_poses
-from flexapod.study.mode_shapes import STATIONS, mode_values
 from flexapod.study.names import ONE_POSE_FORMS, dataset
-from flexapod.study.plausibility import rest_warnings
 from flexapod.study.poses import as_many, is_many
 
 if TYPE_CHECKING:

@@ -12,7 +12,7 @@ import numpy as np
 
 from flexapod.errors import InputError
 from flexapod.files import check_regular, replacing
-from flexapod.study.room import available_memory
+from flexapod.study.before.room import available_memory
 from flexapod.typing import Array
 
 if TYPE_CHECKING:

@@ -10,7 +10,7 @@ from flexapod import model
 from flexapod.app.view.legend import LEGEND_STYLE, rgb
 from flexapod.app.view.robot_parts import add_grid
 from flexapod.app.view.scene import OF_RESULTS, STRAIGHT, Scene, mode_note
-from flexapod.app.view.scene_geometry import (
+from flexapod.scene.geometry import (
     BEAM_POINTS,
     ActuatorMotion,
     across,
@@ -27,7 +27,7 @@ if TYPE_CHECKING:
     import viser
     from xarray import Dataset
 
-    from flexapod.study.beam_modes import BeamModes
+    from flexapod.scene.beam_modes import BeamModes
 
 __all__ = ["ActuatorScene"]
 

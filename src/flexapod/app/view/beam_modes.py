@@ -8,14 +8,14 @@ from flexapod import model
 from flexapod.app.view import words
 from flexapod.app.view.dial import Dial
 from flexapod.app.view.listed_modes import Listed, ListedModes
-from flexapod.app.view.scene_geometry import BEAM_POINTS
 from flexapod.app.view.threads import Threads
+from flexapod.scene.geometry import BEAM_POINTS
 from flexapod.study.words import number, text
 
 if TYPE_CHECKING:
     import viser
 
-    from flexapod.study.beam_modes import BeamModes as Modes
+    from flexapod.scene.beam_modes import BeamModes as Modes
 
 __all__ = ["BeamModes"]
 
@@ -44,7 +44,7 @@ class BeamModes(ListedModes[model.ActuatorStudy]):
         self._count.value = min(MOST, max(1, study.simulation.modes))
 
     def _listed(self, study: model.ActuatorStudy) -> Listed:
-        from flexapod.study.beam_modes import beam_modes
+        from flexapod.scene.beam_modes import beam_modes
 
         still = _still(study, self._length.value, int(self._count.value))
         found = beam_modes(still, BEAM_POINTS)
@@ -69,7 +69,7 @@ def _still(study: model.ActuatorStudy, length: float, count: int) -> model.Actua
 
 def _table(modes: Modes, study: model.ActuatorStudy) -> str:
     """Frequencies and damping as HTML, and the sag where the beam lies level."""
-    from flexapod.study.describe.actuator import describe_actuator
+    from flexapod.study.before.describe.actuator import describe_actuator
 
     rows = [
         [str(i), number(f, 4), number(100 * d, 3)]

@@ -9,9 +9,9 @@ from typing import TYPE_CHECKING, Any
 import numpy as np
 from numpy.typing import NDArray
 
-from flexapod.app.view.scene_geometry import nearest
-from flexapod.study.colours import AXIS_COLORS, ENERGIES, LEG_COLORS
-from flexapod.study.summary import POINT_WORDS
+from flexapod.scene.colours import AXIS_COLORS, ENERGIES, LEG_COLORS
+from flexapod.scene.geometry import nearest
+from flexapod.study.after.summary import POINT_WORDS
 from flexapod.study.words import NOTHING, cleared_lines, number, scale
 from flexapod.typing import Array
 

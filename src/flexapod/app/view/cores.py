@@ -7,7 +7,7 @@ import time
 from collections.abc import Callable
 from dataclasses import dataclass, field
 
-from flexapod.study.sweep.executors import local_cores
+from flexapod.surveys.sweeps.executors import local_cores
 
 __all__ = ["Cores", "Turn"]
 

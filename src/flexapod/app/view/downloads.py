@@ -38,7 +38,7 @@ def csv(data: Dataset) -> bytes:
 
 def figures(data: Dataset) -> bytes:
     """A ZIP archive of the standard figures, PNG."""
-    from flexapod.app.figures import draw
+    from flexapod.report.figures import draw
 
     with _ONE_AT_A_TIME, tempfile.TemporaryDirectory(prefix="flexapod-") as folder:
         archive = io.BytesIO()
@@ -50,7 +50,7 @@ def figures(data: Dataset) -> bytes:
 
 def report(study: Study | ActuatorStudy, data: Dataset) -> bytes:
     """``report.html``, one file."""
-    from flexapod.app.report import robot_report
+    from flexapod.report.page import robot_report
 
     with _ONE_AT_A_TIME:
         return robot_report(study, data).encode()

@@ -8,7 +8,7 @@ from typing import TYPE_CHECKING
 import numpy as np
 
 from flexapod import model
-from flexapod.study.colours import LEG_COLORS
+from flexapod.scene.colours import LEG_COLORS
 from flexapod.study.words import NOTHING, cleared_lines, number, scale
 from flexapod.typing import Array
 

@@ -50,7 +50,7 @@ def open_source(file: Path) -> Source:
 
 def _check_kind(study: model.Study | model.ActuatorStudy, data: Dataset, file: str) -> None:
     """Refuse results whose study is of something else, or does not know the shapes they were computed with."""
-    from flexapod.app.view.scene_geometry import as_computed
+    from flexapod.scene.geometry import as_computed
 
     if isinstance(study, model.Study) != ("com_deviation" in data):
         raise InputError("holds a study of something else than its results", file=file, key="study")

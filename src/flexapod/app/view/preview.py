@@ -7,7 +7,7 @@ import numpy as np
 from flexapod import model, rigid
 from flexapod.app.view import words
 from flexapod.errors import InputError
-from flexapod.study.checks import check_actuator_path, check_path
+from flexapod.study.before.checks import check_actuator_path, check_path
 
 __all__ = ["preview_html"]
 

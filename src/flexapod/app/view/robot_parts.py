@@ -9,7 +9,8 @@ import numpy as np
 
 from flexapod import model
 from flexapod.app.view.legend import rgb
-from flexapod.app.view.scene_geometry import (
+from flexapod.scene.colours import LEG_COLORS
+from flexapod.scene.geometry import (
     ROUNDING,
     Instant,
     orientation,
@@ -20,8 +21,7 @@ from flexapod.app.view.scene_geometry import (
     tube,
     tube_faces,
 )
-from flexapod.study.colours import LEG_COLORS
-from flexapod.study.scene import STATIONS, Scene
+from flexapod.scene.robot import STATIONS, Scene
 from flexapod.study.words import number, text
 from flexapod.typing import Array
 

@@ -13,11 +13,11 @@ from flexapod import model, rigid
 from flexapod.app.view.legend import QUANTITIES, LegColors, leg_colors, plain_legend, rgb
 from flexapod.app.view.robot_parts import SOMETIMES, Deviation, Ghost, RobotParts, robot_size
 from flexapod.app.view.scene import OF_RESULTS, STRAIGHT, Scene, mode_note
-from flexapod.app.view.scene_geometry import RobotMotion
+from flexapod.scene.colours import LEG_COLORS
+from flexapod.scene.geometry import RobotMotion
+from flexapod.scene.robot import Scene as Points
+from flexapod.scene.robot import mode_scene, placed
 from flexapod.study.arguments import PoseLike, as_pose
-from flexapod.study.colours import LEG_COLORS
-from flexapod.study.scene import Scene as Points
-from flexapod.study.scene import mode_scene, placed
 from flexapod.study.words import number
 from flexapod.typing import Array
 

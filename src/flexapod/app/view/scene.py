@@ -14,7 +14,7 @@ if TYPE_CHECKING:
     import viser
     from xarray import Dataset
 
-    from flexapod.app.view.scene_geometry import ActuatorMotion, RobotMotion
+    from flexapod.scene.geometry import ActuatorMotion, RobotMotion
 
 __all__ = ["OF_RESULTS", "PARTS", "STRAIGHT", "Scene", "mode_note"]
 

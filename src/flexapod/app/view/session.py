@@ -322,7 +322,7 @@ def _preview(study: model.Study | model.ActuatorStudy, data: Dataset) -> str:
 
 def _answer(data: Dataset, point: str) -> str:
     """The deviation of a point in a sentence, of the others below it, and what the result warns of."""
-    from flexapod.study.summary import summaries
+    from flexapod.study.after.summary import summaries
 
     said = sorted(summaries(data), key=lambda s: getattr(s, "point", point) != point)
     html = "".join(words.block(s.sentence, "soft" if i else "good") for i, s in enumerate(said))

@@ -13,11 +13,11 @@ from flexapod.app.view.charts import Chart, ChartView, charts
 from flexapod.app.view.dial import Dial
 from flexapod.app.view.player import Player
 from flexapod.app.view.scene import PARTS, Scene
-from flexapod.app.view.scene_geometry import nearest
 from flexapod.app.view.threads import Threads
 from flexapod.app.view.typed import TypedText, by_user, in_unit, plain
 from flexapod.errors import InputError
-from flexapod.study.summary import POINT_WORDS
+from flexapod.scene.geometry import nearest
+from flexapod.study.after.summary import POINT_WORDS
 
 if TYPE_CHECKING:
     import viser

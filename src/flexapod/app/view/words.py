@@ -6,9 +6,9 @@ from collections.abc import Sequence
 from html import escape
 from pathlib import Path
 
-from flexapod import __version__
 from flexapod.app.failures import lines_of, parts_of
 from flexapod.errors import FlexapodError
+from flexapod.version import __version__
 
 __all__ = ["block", "error_html", "fault_html", "in_room_of", "lines_html", "table_html", "title"]
 

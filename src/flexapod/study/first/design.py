@@ -8,9 +8,9 @@ import numpy as np
 
 from flexapod import model, rigid
 from flexapod.errors import InputError
-from flexapod.study.checks import path_instants
-from flexapod.study.describe.robot import describe_legs
-from flexapod.study.estimates import buckling_load
+from flexapod.study.before.checks import path_instants
+from flexapod.study.before.describe.robot import describe_legs
+from flexapod.study.before.estimates import buckling_load
 from flexapod.study.first import sizes
 from flexapod.study.first.request import OPTION, Request
 from flexapod.study.first.sizes import Body, Joints, Leg

@@ -1,0 +1,224 @@
+"""A robot at a pose as a deck for other finite element programs."""
+
+from __future__ import annotations
+
+import numpy as np
+
+from flexapod import model, rigid
+from flexapod.errors import InputError
+from flexapod.exchange.decks import Deck, number
+from flexapod.exchange.decks_robot import Carriers, LegAtPose, PayloadAtPose, drive_shift, write_leg, write_payload
+from flexapod.solve.modes import locked_poses, the_equilibrium
+from flexapod.study.arguments import LoadLike, PoseLike, RobotLike, as_pose, at_pose
+from flexapod.typing import Array
+
+__all__ = ["ELEMENTS", "FORMATS", "MODES", "abaqus_deck", "left_out"]
+
+FORMATS = ("abaqus",)
+"""What a robot can be written as; CalculiX reads the same deck."""
+
+ELEMENTS = 20
+"""Solid elements along the free part of each piston: first bending right to 5e-5, second to 3e-4."""
+
+MODES = 24
+"""Frequencies that the deck asks for."""
+
+_MOST = 500
+
+
+def abaqus_deck(
+    robot: RobotLike,
+    pose: PoseLike = None,
+    *,
+    load: LoadLike = None,
+    elements: int = ELEMENTS,
+    modes: int = MODES,
+    title: str = "Robot with locked drives",
+) -> str:
+    """The robot with its drives locked as a deck that Abaqus and CalculiX read.
+
+    Two steps: gravity, the load and the drives' forces, with large displacements, which gives the sag; then the
+    frequencies about that state. Where nothing acts only the second.
+
+    Parameters
+    ----------
+    robot, pose, load
+        As for `flexapod.modes`.
+    elements : int
+        Solid elements along the free part of each piston.
+    modes : int
+        How many frequencies.
+    title : str
+        First line of the deck.
+
+    Returns
+    -------
+    str
+        The deck, SI units.
+
+    Raises
+    ------
+    ComputationError
+        No static equilibrium at the pose.
+    InputError
+        A pose out of reach, a pure force drive, a piston that does not reach back to the mouth or has no mass, a
+        cylinder with inertia and no mass, numbers of elements or modes out of range.
+    """
+    study = at_pose(robot, load)
+    robot = study.robot
+    path = as_pose(robot, pose)
+    locked = locked_poses(robot, model.Simulation(), path, study.load)
+    the_equilibrium(locked)
+    _check_count("elements", elements, 2, _MOST)
+    _check_count("modes", modes, 1, _MOST)
+    legs = _legs(robot, path, locked.acts.force[0])
+    R = path.rotation[0]
+    payload = PayloadAtPose(
+        mass=robot.payload.mass, com=path.point(robot.payload.com)[0][0], inertia=R @ robot.payload.inertia @ R.T
+    )
+    deck = Deck(title)
+    deck.say(*_explanation(robot, path, elements))
+    carriers = write_payload(deck, payload)
+    for i, leg in enumerate(legs, start=1):
+        write_leg(deck, leg, f"LEG{i}", elements, payload, carriers)
+    wrench = locked.acts.wrench.copy()
+    wrench[3:] += np.cross(path.point(robot.payload.tool)[0][0] - payload.com, wrench[:3])
+    _write_steps(deck, robot, legs, carriers, wrench, modes)
+    return deck.text
+
+
+def left_out(robot: model.Robot) -> list[str]:
+    """What of the robot the deck does not have, in words."""
+    found = ["damping"]
+    if any(leg.piston.axial_inertia and _axial(leg) == leg.cylinder.axial_inertia for leg in robot.legs):
+        found.append("leg.piston.axial_inertia, which no cylinder of the given mass and inertia could carry")
+    return found
+
+
+def _axial(leg: model.Leg) -> float:
+    """Inertia about the axis of what spins with the cylinder, as far as a body with its transverse one can have it."""
+    whole = leg.cylinder.axial_inertia + leg.piston.axial_inertia
+    return whole if leg.cylinder.mass and whole <= 2 * leg.cylinder.inertia else leg.cylinder.axial_inertia
+
+
+def _legs(robot: model.Robot, path: rigid.Poses, force: Array) -> list[LegAtPose]:
+    state, frames = rigid.inverse_kinematics(robot, path), rigid.home_frames(robot)
+    axes = rigid.leg_rotations(frames, state.alpha, state.beta)[0]
+    tips = path.point(robot.platform_joints)[0][0]
+    legs = []
+    for i, leg in enumerate(robot.legs):
+        cylinder, piston = leg.cylinder, leg.piston
+        _check_leg(i + 1, leg, float(state.length[0, i]))
+        at = LegAtPose(
+            base=robot.base_joints[i],
+            tip=tips[i],
+            axes=axes[i],
+            first_axis=frames[i, :, 0],
+            mouth=cylinder.mouth,
+            piston_length=piston.length,
+            EA=piston.EA,
+            EI=piston.EI,
+            rhoA=piston.rhoA,
+            mass=cylinder.mass,
+            com=cylinder.com,
+            inertia=cylinder.inertia,
+            axial_inertia=_axial(leg),
+            drive=_drive(leg.drive),
+            force=float(force[i]),
+        )
+        legs.append(at)
+    return legs
+
+
+def _drive(drive: model.Drive) -> float:
+    """Stiffness of a locked drive [N/m]."""
+    if drive.type == "servo":
+        return drive.stiffness
+    return drive.feedback.stiffness if drive.type == "force" and drive.feedback else np.inf
+
+
+def _check_leg(i: int, leg: model.Leg, length: float) -> None:
+    free = length - leg.cylinder.mouth
+    if leg.piston.length < free * (1 - 1e-9):
+        raise InputError(
+            f"of leg {i} does not reach back to the mouth of its cylinder at this pose",
+            key="leg.piston.length",
+            value=leg.piston.length,
+            allowed=f"at least {free:.6g} m, the leg's length less leg.cylinder.mouth",
+        )
+    if not leg.piston.rhoA:
+        raise InputError(
+            f"of leg {i} leaves its solid elements without mass: finite element programs want some for frequencies",
+            key="leg.piston.rhoA",
+            value=0,
+            next_step="Give a small rhoA, as 1e-6 kg/m",
+        )
+    if not leg.cylinder.mass and (leg.cylinder.inertia or leg.cylinder.axial_inertia):
+        raise InputError(
+            f"of leg {i} has inertia without mass, which point masses cannot have",
+            key="leg.cylinder.inertia",
+            value=leg.cylinder.inertia,
+            next_step="Give leg.cylinder.mass, or no inertia",
+        )
+
+
+def _check_count(key: str, value: int, least: int, most: int) -> None:
+    if isinstance(value, bool) or not isinstance(value, int) or not least <= value <= most:
+        raise InputError("is out of range", key=key, value=value, allowed=f"a whole number from {least} to {most}")
+
+
+def _explanation(robot: model.Robot, path: rigid.Poses, elements: int) -> list[str]:
+    shift, angles = path.position[0] - [0.0, 0.0, robot.home_height], _roll_pitch_yaw(path.rotation[0])
+    moved = [f"{1e3 * x + 0.0:.6g} mm" for x in shift] + [f"{np.rad2deg(x) + 0.0:.6g} deg" for x in angles]
+    words = ", ".join(f"{name} {value}" for name, value in zip(model.AXES, moved, strict=True))
+    return [
+        "Written by flexapod. Units: m, kg, s, N, Pa, Hz. World axes, z up.",
+        f"Pose from home: {words}.",
+        "Run NAME.inp:   ccx -i NAME   (results in NAME.dat)   or   abaqus job=NAME",
+        "",
+        f"Pistons: outside the cylinder {elements} solid elements C3D20, a square bar with the EA, EI and rhoA of the "
+        "piston and Poisson's ratio 0, as a beam has none; for stresses take the real section. Inside the cylinder the "
+        "piston is guided without friction and can only stretch: springs and point masses on the axis (set AXIS). Its "
+        "end is held by a spring (set DRIVE): the servo's stiffness, or 1e5 EA / l for a locked stroke. Where a force "
+        "drive pushes, its spring's anchor (set BASE) is moved until the spring pushes as much.",
+        "Cylinders and payload are rigid: point masses with the body's mass, centre and inertia, joined by *EQUATION. "
+        "Universal joints at the base: two free rotations, the leg's twist held. Spherical joints at the platform.",
+        f"Left out: {', '.join(left_out(robot))}.",
+        "Solids have shear and rotary inertia, beams have not: bending frequencies of slender pistons lie below those "
+        "of `flexapod modes`, by parts in ten thousand in the first and some thousandths in the second.",
+        "The equations are linear: good for small elastic motions about this pose, not for driving the robot. They "
+        "leave out how weight and joint forces turn with payload and cylinders: of a squared frequency at most the "
+        "weight times its distance from the joints, over the rotational stiffness.",
+        "CalculiX warns that material MASS has no elastic constants; point masses need none.",
+        "",
+    ]
+
+
+def _roll_pitch_yaw(R: Array) -> Array:
+    """Angles of R = Rz(yaw) Ry(pitch) Rx(roll), Eq. (T2.9) [rad]."""
+    return np.array([np.arctan2(R[2, 1], R[2, 2]), -np.arcsin(np.clip(R[2, 0], -1, 1)), np.arctan2(R[1, 0], R[0, 0])])
+
+
+def _write_steps(
+    deck: Deck, robot: model.Robot, legs: list[LegAtPose], carriers: Carriers, wrench: Array, modes: int
+) -> None:
+    g = float(np.linalg.norm(robot.gravity))
+    moved = [line for i, leg in enumerate(legs, start=1) for line in drive_shift(leg, f"LEG{i}")]
+    deck.say("")
+    if g or wrench.any() or moved:
+        deck.say("Sag under gravity, load and drive forces; displacements of the payload's point masses are printed.")
+        deck.write("*STEP, NLGEOM", "*STATIC", "1., 1., 1E-5, 1.")
+        if moved:
+            deck.write("*BOUNDARY", *moved)
+        if g:
+            deck.elset("HEAVY", deck.heavy)
+            x, y, z = robot.gravity / g
+            deck.write("*DLOAD", ", ".join(["HEAVY, GRAV", *map(number, (g, x, y, z))]))
+        if wrench.any():
+            forces = {term: float(motion @ wrench) for term, motion in carriers.items()}
+            deck.write(
+                "*CLOAD", *(f"{node}, {axis}, {number(force)}" for (node, axis), force in forces.items() if force)
+            )
+        deck.write("*NODE PRINT, NSET=PAYLOAD", "U", "*NODE FILE", "U", "*END STEP")
+    deck.say("Frequencies about that state.")
+    deck.write("*STEP, PERTURBATION", "*FREQUENCY", str(modes), "*NODE FILE", "U", "*END STEP")

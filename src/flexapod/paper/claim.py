@@ -1,0 +1,147 @@
+"""A claim of the paper and our verdict on it."""
+
+from __future__ import annotations
+
+import math
+from collections.abc import Sequence
+from dataclasses import dataclass
+from typing import TYPE_CHECKING
+
+import numpy as np
+
+from flexapod import model
+from flexapod.errors import InputError
+from flexapod.scene.robot import motion_end, robot_study
+from flexapod.study.words import number, text
+
+if TYPE_CHECKING:
+    from xarray import Dataset
+
+__all__ = [
+    "BREAKS",
+    "ELASTIC_LENGTH",
+    "HOLDS",
+    "IN_PART",
+    "MISPRINT",
+    "NOT",
+    "OPEN",
+    "PAPER_DEVIATION",
+    "REACHES",
+    "SIZE",
+    "Claim",
+    "after_motion",
+    "axis_motion",
+    "by_axis",
+    "explained",
+    "judged",
+    "largest",
+    "left_open",
+    "near",
+    "peaks",
+    "printed_deviation",
+    "roll_and_arm",
+    "roll_error",
+    "size",
+    "times",
+]
+
+HOLDS, IN_PART, NOT = "holds", "holds in part", "does not hold"  # of numbers, by `judged`
+REACHES, BREAKS = "reaches that size", "robot gives way"  # of numbers, too
+OPEN = "cannot be compared"  # of the text: the paper does not give what the preset marks as ours, `left_open`
+MISPRINT = "misprint"  # of the text: a printed formula against the derived one, in the last table of chapter T9
+PAPER_DEVIATION = {"y": 5e-3, "z": 10e-3}  # of the centre of mass, Fig. 9 [m]
+ELASTIC_LENGTH = 0.6  # of a piston, Table 3 [m]
+SIZE = 0.5  # "about 5 mm": from half to one and a half times the printed value counts as that size
+
+
+@dataclass(frozen=True, kw_only=True)
+class Claim:
+    """What the paper says and where, what we get, the verdict, and its reason."""
+
+    where: str
+    says: str
+    ours: str
+    verdict: str
+    reason: str
+
+
+def judged(holds: bool | np.bool_, in_part: bool | np.bool_ = False, best: str = HOLDS) -> str:
+    """Verdict of the first rule that is true of the numbers: `best`, holds in part, or does not hold."""
+    return best if holds else IN_PART if in_part else NOT
+
+
+def near(ours: float, paper: float) -> bool:
+    """Whether a value is of the size of the paper's: from half to one and a half times as large."""
+    return abs(ours / paper - 1) <= SIZE
+
+
+def printed_deviation(y: float, z: float) -> bool:
+    """Whether largest deviations [m] are of the size that the paper prints, both of them."""
+    return near(y, PAPER_DEVIATION["y"]) and near(z, PAPER_DEVIATION["z"])
+
+
+def size(*peaks: Sequence[float] | np.ndarray) -> str:
+    """Verdict on largest deviations along x, y, z [m] of one or several robots: whether one is of the printed size."""
+    return judged(any(printed_deviation(y, z) for _, y, z in peaks), best=REACHES)
+
+
+def explained(verdict: str, expected: str, reason: str) -> str:
+    """The reason, as long as the verdict is the one that it explains."""
+    return reason if verdict == expected else f"Not explained: these results were expected to give '{expected}'."
+
+
+def left_open(preset: str, *keys: str) -> bool:
+    """Whether a preset marks one of these values as ours, because the paper does not give it."""
+    return not {value.key for value in model.open_values(preset)}.isdisjoint(keys)
+
+
+def times(ours: float, paper: float) -> str:
+    """How many times smaller or larger than the paper's a value is, in words."""
+    if ours <= 0 or paper <= 0:
+        return "not comparable"
+    return f"{number(paper / ours, 2)} times smaller" if ours < paper else f"{number(ours / paper, 2)} times larger"
+
+
+def roll_error(arm: float) -> float:
+    """Error of the roll [rad] that moves a centre of mass `arm` [m] off the axis by the paper's deviation."""
+    return math.hypot(*PAPER_DEVIATION.values()) / arm
+
+
+def by_axis(values: np.ndarray, digits: int = 3) -> str:
+    """Lengths along x, y, z in words."""
+    return ", ".join(f"{axis} {text(float(value), 'm', digits)}" for axis, value in zip("xyz", values, strict=True))
+
+
+def largest(data: Dataset) -> np.ndarray:
+    """Largest deviation of the centre of mass along x, y, z [m]."""
+    return np.abs(data.com_deviation.values).max(axis=0)
+
+
+def peaks(data: Dataset, digits: int = 3) -> str:
+    """The same in words."""
+    return by_axis(largest(data), digits)
+
+
+def after_motion(data: Dataset, name: str) -> float:
+    """Vibration that is left after the motion: largest peak to peak of a variable along one direction [its unit]."""
+    rest = data[name].where(data.time >= (motion_end(data) or 0.0), drop=True)
+    return float((rest.max("time") - rest.min("time")).max())
+
+
+def roll_and_arm(data: Dataset) -> tuple[float, float]:
+    """Roll reached [rad] and distance of the centre of mass from the platform's centre [m]."""
+    study = robot_study(data)
+    return float(axis_motion(study).target[3]), float(np.linalg.norm(study.robot.payload.com))
+
+
+def axis_motion(study: model.Study) -> model.AxisMotion:
+    """The motion of a study, along or about one axis as in all of the paper's.
+
+    Raises
+    ------
+    InputError
+        Another kind of motion.
+    """
+    if isinstance(study.motion, model.AxisMotion):
+        return study.motion
+    raise InputError("is not along or about one axis", key="motion.type", allowed=", ".join(model.AXES))

@@ -1,0 +1,183 @@
+"""Claims of the paper's section 3 on the rigid robot: slenderness, roll, travel, forces, path."""
+
+from __future__ import annotations
+
+from typing import TYPE_CHECKING
+
+import numpy as np
+
+from flexapod import rigid
+from flexapod.paper.claim import (
+    ELASTIC_LENGTH,
+    IN_PART,
+    OPEN,
+    Claim,
+    axis_motion,
+    explained,
+    judged,
+    left_open,
+    roll_and_arm,
+)
+from flexapod.paper.cost import FORMULATIONS
+from flexapod.paper.readings import TRAVELS
+from flexapod.paper.study import PaperStudy
+from flexapod.scene.robot import motion_end, robot_study
+from flexapod.study.before.estimates import section_width
+from flexapod.study.words import number, text
+
+if TYPE_CHECKING:
+    from xarray import Dataset
+
+__all__ = ["rigid_claims"]
+
+AWAY = 0.05  # distance from the ends of the quintic at which its jump of jerk no longer shows in the forces [s]
+TRAVEL, TRAVEL_ROUNDED = 0.26, 0.005  # of a piston, Fig. 7; printed to 10 mm [m]
+SHEAR = 2.6 / 0.9  # E / kappa G of a round steel section: 2 (1 + 0.3), kappa = 0.9
+ROUNDING = 1e-9  # of a path computed in double precision, relative
+
+
+def rigid_claims(result: PaperStudy) -> tuple[Claim, ...]:
+    """Slenderness, Figs. 6 to 8, the methods of inverse dynamics, Eqs. 11 and 12."""
+    robot = result["robot"]
+    return (
+        _slender(robot),
+        _figure6(robot),
+        _figure7(result["readings"]),
+        _cost(result["cost"]),
+        _figure8(result["robot-rigid"]),
+        _equations_11_12(robot),
+    )
+
+
+def _slender(robot: Dataset) -> Claim:
+    diameter = section_width(robot_study(robot).robot.legs[0].piston)
+    ratio = diameter / ELASTIC_LENGTH
+    lower = _lowered(ratio)
+    verdict = judged(ratio < 0.1 and lower < 0.01, ratio < 0.1)
+    return Claim(
+        where="Section 3",
+        says="Diameter below a tenth of the length: Euler-Bernoulli theory is valid",
+        ours=f"{100 * ratio:.2g} % of the elastic length",
+        verdict=verdict,
+        reason=f"Shear and rotary inertia lower the first frequency of such a pinned piston by {100 * lower:.2g} %.",
+    )
+
+
+def _lowered(ratio: float) -> float:
+    """Share by which Timoshenko's theory lowers the first frequency of a round pinned beam; diameter over length.
+
+    Smaller root of r^2 s^2 W^4 - [1 + pi^2 (r^2 + s^2)] W^2 + pi^4 = 0 against W = pi^2, with the radius of gyration
+    r = d / 4 L and s^2 = r^2 E / (kappa G): Han, Benaroya & Wei (1999), J. Sound Vib. 225(5), 935-988.
+    """
+    r2 = ratio**2 / 16
+    s2 = SHEAR * r2
+    half = 0.5 * (1 + np.pi**2 * (r2 + s2))
+    squared = np.pi**4 / (half + np.sqrt(half**2 - r2 * s2 * np.pi**4))
+    return 1 - float(np.sqrt(squared)) / np.pi**2
+
+
+def _figure6(robot: Dataset) -> Claim:
+    motion = axis_motion(robot_study(robot))
+    open_here = left_open("paper-robot", "motion.amplitude", "motion.duration", "motion.profile")
+    verdict = OPEN if open_here else judged(motion.type == "roll")
+    return Claim(
+        where="Fig. 6",
+        says="Roll about X; no amplitude, time or law in the text",
+        ours=f"{motion.profile.capitalize()} law, 0 to {np.rad2deg(motion.target[3]):.1f} deg in {motion.duration:g} s",
+        verdict=verdict,
+        reason=explained(
+            verdict,
+            OPEN,
+            "The amplitude is backed out of Eqs. 11-12 and the printed 5 mm, 10 mm and 6 %; law and time are ours.",
+        ),
+    )
+
+
+def _figure7(readings: Dataset) -> Claim:
+    found = {name: readings.sel(reading=name) for name in TRAVELS}
+    travel, apart = ({name: float(row[key]) for name, row in found.items()} for key in ("travel", "apart"))
+    travels = [name for name in TRAVELS if _is_260(travel[name])]
+    differs = [name for name in TRAVELS if name not in travels and _is_260(apart[name])]
+    first = next(iter(TRAVELS))
+    ways = [f"the longest leg less the shortest ({_named(name)})" for name in differs]
+    ways += [f"a piston's travel ({_named(name)}; deviations {_yz(found[name])})" for name in travels]
+    can_be = f" 260 mm can be {', '.join(ways)}; the text does not say which." if ways else ""
+    return Claim(
+        where="Fig. 7",
+        says="Pistons reach a maximum travel of 260 mm at the end of the roll",
+        ours=". ".join(f"{_named(name).capitalize()}: {1e3 * travel[name]:.0f} mm" for name in TRAVELS),
+        verdict=judged(first in travels, bool(ways)),
+        reason=f"The printed diameters and the roll that is backed out give {1e3 * travel[first]:.0f} mm.{can_be}",
+    )
+
+
+def _is_260(length: float) -> bool:
+    return abs(length - TRAVEL) <= TRAVEL_ROUNDED
+
+
+def _named(reading: str) -> str:
+    """A reading of Fig. 7 in words."""
+    preset, turn, both_sides = TRAVELS[reading]
+    circles = "radii" if preset.endswith("radii") else "diameters"
+    return f"{circles}, {-turn if both_sides else 0:g} to {turn:g} deg"
+
+
+def _yz(row: Dataset) -> str:
+    _, y, z = row.deviation_peak.values
+    return f"y {text(float(y), 'm')}, z {text(float(z), 'm')}"
+
+
+def _cost(cost: Dataset) -> Claim:
+    newton_euler, lagrange = (int(cost.operations.sel(formulation=name)) for name in FORMULATIONS)
+    return Claim(
+        where="Section 3.1",
+        says="Newton-Euler is more efficient than Lagrange, which differentiates, for the inverse dynamics",
+        ours=f"A rigid leg in one pose takes {newton_euler} operations by Newton-Euler, {lagrange} by Lagrange",
+        verdict=judged(newton_euler < 0.9 * lagrange, newton_euler < lagrange),
+        reason=(
+            f"Lagrange's equations take {number(lagrange / newton_euler, 2)} times as many, even differentiated "
+            "symbolically with common terms computed once. Balances of the payload and the solution for six forces are "
+            "the same for both, and so are the results."
+        ),
+    )
+
+
+def _figure8(rigid_legs: Dataset) -> Claim:
+    gap = np.abs(rigid_legs.actuator_force - rigid_legs.actuator_force_rigid).max("leg")
+    largest = float(np.abs(rigid_legs.actuator_force_rigid).max())
+    end = motion_end(rigid_legs) or np.inf
+    near = (rigid_legs.time < AWAY) | (np.abs(rigid_legs.time - end) < AWAY)
+    apart = float(gap.where(~near).max()) / largest
+    return Claim(
+        where="Fig. 8",
+        says="Actuator forces of the rigid robot: Newton-Euler and finite elements agree strongly",
+        ours=(f"Newton-Euler and our multibody model differ by {apart:.0e} of the largest force, {largest:.0f} N"),
+        verdict=judged(apart < 0.01, apart < 0.1),  # a line's width in the figure; visibly apart
+        reason=(
+            f"Closer than {1e3 * AWAY:.0f} ms to the ends of the quintic, where its jerk jumps, by "
+            f"{100 * float(gap.max()) / largest:.1g} % at a step of {1e3 * rigid_legs.attrs['step']:g} ms; this falls "
+            "with the step."
+        ),
+    )
+
+
+def _equations_11_12(robot: Dataset) -> Claim:
+    study, (_, arm) = robot_study(robot), roll_and_arm(robot)
+    R = rigid.poses(study.robot, study.motion, robot.time.values).rotation
+    roll = np.arctan2(R[:, 2, 1], R[:, 2, 2])
+    rest = robot.com_position_rigid.values[:, 1:] - arm * np.stack([np.cos(roll), np.sin(roll)], axis=1)
+    printed, off = (float(np.abs(rest - [0.0, height]).max()) for height in (0.0, study.robot.home_height))
+    verdict = judged(printed < ROUNDING * arm, off < ROUNDING * arm)
+    so = "So it is" if off < ROUNDING * arm else f"Off by {text(off, 'm')}"
+    return Claim(
+        where="Eqs. 11-12",
+        says="Rigid path of the centre of mass: Y = d cos(theta), Z = d sin(theta)",
+        ours=f"{so}, with d = {1e3 * arm:.0f} mm along the platform's y and its height added",
+        verdict=verdict,
+        reason=explained(
+            verdict,
+            IN_PART,
+            "A payload on top of the platform would have Y = -d sin(theta), Z = d cos(theta) (T2.13); no height is "
+            f"given, ours is {study.robot.home_height:g} m.",
+        ),
+    )

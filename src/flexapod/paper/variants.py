@@ -1,0 +1,161 @@
+"""What the deviation of the paper's robot depends on: half-angles, a jump of the velocity, other assumptions."""
+
+from __future__ import annotations
+
+from collections.abc import Sequence
+from typing import TYPE_CHECKING
+
+import numpy as np
+
+from flexapod import model, rigid
+from flexapod.paper.claim import axis_motion, largest, roll_error
+from flexapod.paper.statics import Rest, at_rest, singular_turn
+from flexapod.paper.trials import TRIAL_STEP, opened, table, trial
+from flexapod.study.attributes import attributes
+from flexapod.study.record import Share
+from flexapod.study.simulation import simulate
+from flexapod.typing import Array
+
+if TYPE_CHECKING:
+    from xarray import Dataset
+
+__all__ = [
+    "DURATIONS",
+    "HALF_ANGLES",
+    "JUMP_STEP",
+    "SERVO_STIFFNESS",
+    "assumptions",
+    "half_angle_sweep",
+    "jump_motion",
+    "with_half_angle",
+]
+
+HALF_ANGLES = (5.0, 10.0, 15.0, 20.0, 25.0, 27.0, 28.0, 29.0)  # deg
+SWEEP_COLUMNS = {"deviation_peak": "m", "force_peak": "N", "load_share": "1", "lowest_frequency": "Hz", "sag": "m"}
+JUMP_STEP = 3.125e-5  # s; an impact rings the legs at kilohertz: peaks within 4 % of those at a quarter of it
+DURATIONS = (0.25, 0.5, 1.0, 2.0)  # s; from four times as fast as the preset to half as fast
+SERVO_STIFFNESS = (3e5, 1e7)  # N/m; so soft that the payload sags by the size the paper prints; a usual ball screw
+
+
+def with_half_angle(study: model.Study, angle: float) -> model.Study:
+    """The same robot with other half-angles of its joint pairs, base and platform alike.
+
+    Strokes are opened, and the mouths of the cylinders moved just so far that no piston leaves its cylinder.
+
+    Parameters
+    ----------
+    study : Study
+        A robot whose joints lie on circles.
+    angle : float
+        Half-angle [deg]; at 30 deg both circles are regular hexagons.
+    """
+    robot, half = study.robot, np.deg2rad(angle)
+    base = model.base_circle(float(np.linalg.norm(robot.base_joints[0])), half)
+    platform = model.platform_circle(float(np.linalg.norm(robot.platform_joints[0])), half)
+    return opened(study.replace(robot=robot.replace(base_joints=base, platform_joints=platform)))
+
+
+def jump_motion(study: model.Study) -> model.Motion:
+    """The study's motion at constant rate: its velocity jumps at the start and at the end."""
+    return axis_motion(study).replace(profile="linear")
+
+
+def half_angle_sweep(study: model.Study, angles: Sequence[float], report: Share) -> Dataset:
+    """Deviation, drive force, frequency and equilibrium of the path for several half-angles.
+
+    Returns
+    -------
+    xarray.Dataset
+        Over `half_angle` [deg]: `deviation_peak` (half_angle, axis) [m], `force_peak` [N], `load_share` (largest axial
+        load over the Euler load), `lowest_frequency` on the path [Hz], NaN if its equilibrium ends, `sag` (half_angle,
+        axis) [m]: largest static deviation on the path, as far as there is an equilibrium; `verdict`: empty, or in
+        words why there is no deviation to trust.
+    """
+    rows = []
+    for i, angle in enumerate(angles):
+        rows.append(_at_half_angle(with_half_angle(study, angle)))
+        report((i + 1) / len(angles))
+    along = ("half_angle", list(angles), {"units": "deg"})
+    return table(rows, along, SWEEP_COLUMNS, attributes(study) | {"step": TRIAL_STEP})
+
+
+def _at_half_angle(study: model.Study) -> dict[str, object]:
+    rest, singular = at_rest(study), singular_turn(study)
+    lost = {"verdict": words} if (words := _lost(rest, singular)) else {}
+    nothing = {"deviation_peak": np.full(3, np.nan), "force_peak": np.nan, "load_share": np.nan}
+    tried = nothing if singular is not None else trial(study)  # no path to simulate where it is singular
+    return {**tried, "sag": rest.sag, "lowest_frequency": rest.frequency, **lost}
+
+
+def _lost(rest: Rest, singular: float | None) -> str:
+    """Why the robot cannot go its path at rest, in words; empty if it can. What is before a colon labels figures."""
+    if singular is None:
+        return "" if rest.end is None else f"no equilibrium: the one at home ends at {rest.end:.1f} deg of roll"
+    words = f"singular path: the rigid robot passes through a singular pose at {singular:.1f} deg of roll"
+    if rest.end is None:
+        return words
+    return f"{words}, and beyond {rest.end:.1f} deg no equilibrium continues the one at home"
+
+
+def assumptions(study: model.Study, report: Share) -> Dataset:
+    """Largest deviation of the robot under other durations of the motion and with yielding drives.
+
+    Returns
+    -------
+    xarray.Dataset
+        `deviation_by_duration` (duration, axis), `deviation_by_drive` (drive_stiffness, axis) [m]; `sag_by_drive`: the
+        part of the latter that is there at rest, before the motion;
+        `length_error` (leg) [m]: what the legs would have to be off for the paper's deviation;
+        `joint_turn` (leg) [rad]: what the spherical joints turn on the path.
+    """
+    import xarray as xr
+
+    whole = len(DURATIONS) + len(SERVO_STIFFNESS)
+    durations, drives, sags = [], [], []
+    for duration in DURATIONS:
+        motion = axis_motion(study).replace(duration=duration)
+        durations.append(largest(simulate(study, motion, step=TRIAL_STEP, duration=duration + 1.0)))
+        report(len(durations) / whole)
+    for stiffness in SERVO_STIFFNESS:
+        data = simulate(_with_servo(study, stiffness), step=TRIAL_STEP)
+        drives.append(largest(data))
+        sags.append(np.abs(data.com_deviation.values[0]))
+        report((len(durations) + len(drives)) / whole)
+    length_error, turn = _needed_errors(study)
+    metre = {"units": "m"}
+    values = {
+        "deviation_by_duration": (("duration", "axis"), np.array(durations), metre),
+        "deviation_by_drive": (("drive_stiffness", "axis"), np.array(drives), metre),
+        "sag_by_drive": (("drive_stiffness", "axis"), np.array(sags), metre),
+        "length_error": ("leg", length_error, metre),
+        "joint_turn": ("leg", turn, {"units": "rad"}),
+    }
+    coords = {
+        "duration": ("duration", np.array(DURATIONS), {"units": "s"}),
+        "drive_stiffness": ("drive_stiffness", np.array(SERVO_STIFFNESS), {"units": "N m-1"}),
+        "axis": list("xyz"),
+        "leg": np.arange(1, 7),
+    }
+    return xr.Dataset(values, coords, attributes(study) | {"step": TRIAL_STEP})
+
+
+def _with_servo(study: model.Study, stiffness: float) -> model.Study:
+    """Drives with a spring, damped at about a tenth of critical for a sixth of the payload."""
+    damping = 0.2 * float(np.sqrt(stiffness * study.robot.payload.mass / 6))
+    drive = model.ServoDrive(stiffness=stiffness, damping=damping)
+    legs = tuple(leg.replace(drive=drive) for leg in study.robot.legs)
+    return study.replace(robot=study.robot.replace(legs=legs))
+
+
+def _needed_errors(study: model.Study) -> tuple[Array, Array]:
+    """Leg-length errors (6,) [m] that move the CoM by the paper's deviation; turn (6,) [rad] of the joints above."""
+    robot, target = study.robot, axis_motion(study).target
+    roll, error = target[3], roll_error(float(np.linalg.norm(robot.payload.com)))
+    home = rigid.home_pose(robot)
+    turned = [rigid.rotation_matrix(np.array([[x, 0.0, 0.0]])) for x in (roll, roll + error)]
+    lengths = [rigid.leg_lengths(robot.base_joints, robot.platform_joints, home.position, R)[0] for R in turned]
+    axes = []
+    for R in (np.eye(3), turned[0][0]):
+        vectors = robot.platform_joints @ R.T + home.position[0] - robot.base_joints
+        axes.append(vectors / np.linalg.norm(vectors, axis=1)[:, None] @ R)  # in platform axes
+    return lengths[1] - lengths[0], np.arccos(np.clip((axes[0] * axes[1]).sum(axis=1), -1.0, 1.0))

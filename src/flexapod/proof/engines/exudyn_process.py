@@ -1,0 +1,100 @@
+"""Exudyn in a process of its own: it writes to the console, may not come to an end, and can fall with its host."""
+
+from __future__ import annotations
+
+import importlib
+import pickle
+import re
+import signal
+import subprocess
+import sys
+import tempfile
+from pathlib import Path
+from typing import Any
+
+from flexapod.errors import ComputationError, FlexapodError
+from flexapod.proof.engines.engine import EXUDYN
+
+__all__ = ["TIME_LIMIT", "ask", "main"]
+
+TIME_LIMIT = 300.0
+"""Seconds after which Exudyn is stopped."""
+
+_TELLING = re.compile(r"fail|singular|error", re.IGNORECASE)
+_LAST = 3  # telling lines of its output in a message
+
+
+def ask(solver: str, problem: object, *, time_limit: float = TIME_LIMIT) -> Any:
+    """What ``solve(problem)`` of the module `solver` returns, computed in a process of its own.
+
+    Parameters
+    ----------
+    solver : str
+        Full name of a module that imports Exudyn and has a function `solve`.
+    problem : object
+        Its argument; argument and result must be picklable.
+    time_limit : float
+        Seconds after which the process is stopped.
+
+    Raises
+    ------
+    ComputationError
+        Exudyn is not installed, does not end in time, crashes, or does not converge: with what it said.
+    FlexapodError
+        Raised by the solver itself.
+    """
+    if not EXUDYN.found():
+        raise ComputationError("Exudyn is not installed", next_step=f"Install it: {EXUDYN.install}")
+    with tempfile.TemporaryDirectory(prefix="flexapod-exudyn-") as name:
+        given, found = Path(name) / "problem", Path(name) / "result"
+        given.write_bytes(pickle.dumps((solver, problem)))
+        # -P: no file of the folder that the user works in takes the place of a module.
+        command = [sys.executable, "-P", "-m", "flexapod.proof.engines.exudyn_process", str(given), str(found)]
+        try:
+            run = subprocess.run(command, capture_output=True, text=True, errors="replace", timeout=time_limit)
+        except subprocess.TimeoutExpired as stopped:
+            raise ComputationError(
+                f"Exudyn did not end within {time_limit:g} s and was stopped. {_said(_text(stopped.stdout))}",
+                next_step="Use fewer elements or a longer step",
+            ) from None
+        if not found.exists():
+            raise ComputationError(f"Exudyn crashed ({_code(run.returncode)}). {_said(run.stdout + run.stderr)}")
+        answer, error = pickle.loads(found.read_bytes())
+    if isinstance(error, FlexapodError):
+        raise error
+    if error:
+        raise ComputationError(
+            f"Exudyn did not solve the problem ({error}). {_said(run.stdout)}",
+            next_step="Use fewer elements, a larger tolerance of Newton's method or a shorter step",
+        )
+    return answer
+
+
+def main(given: str, found: str) -> None:
+    """Solve the problem in the file `given`; leave result and error, one of them None, in the file `found`."""
+    solver, problem = pickle.loads(Path(given).read_bytes())
+    module = importlib.import_module(solver)
+    try:
+        outcome = module.solve(problem), None
+    except FlexapodError as error:
+        outcome = None, error
+    except Exception as error:  # Exudyn's errors have no common base
+        outcome = None, f"{type(error).__name__}: {error}"
+    Path(found).write_bytes(pickle.dumps(outcome))
+
+
+def _said(output: str) -> str:
+    lines = [line.strip() for line in output.splitlines() if _TELLING.search(line)]
+    return "Its output: " + " | ".join(lines[:_LAST]) if lines else "It said nothing about it."
+
+
+def _text(output: str | bytes | None) -> str:
+    return output.decode(errors="replace") if isinstance(output, bytes) else output or ""
+
+
+def _code(code: int) -> str:
+    return signal.Signals(-code).name if -code in set(signal.Signals) else f"exit code {code}"
+
+
+if __name__ == "__main__":
+    main(*sys.argv[1:])

@@ -1,0 +1,148 @@
+"""The 6-UPS robot by Exudyn: the same legs, joints and drives, with rigid pistons or cables of finite elements."""
+
+from __future__ import annotations
+
+from dataclasses import dataclass
+
+import numpy as np
+
+from flexapod import rigid
+from flexapod.errors import InputError
+from flexapod.model import Motion, Robot
+from flexapod.proof.engines.exudyn_integration import Integration
+from flexapod.proof.engines.exudyn_process import TIME_LIMIT, ask
+from flexapod.typing import Array
+
+__all__ = ["MESHES", "STEP", "RobotProblem", "RobotResult", "simulate_robot"]
+
+#: s; longer ones ring more where the jerk jumps, shorter ones carry Newton's tolerance into the forces.
+STEP = 2.5e-4
+#: Elements per piston, distance of the rings [m]: one halved with the other, to extrapolate from.
+MESHES = ((30, 0.01), (60, 0.005))
+
+_AT_REST = 1e-9  # m/s, m/s^2
+
+
+@dataclass(frozen=True, kw_only=True)
+class RobotProblem:
+    """A robot, its motion and how Exudyn models and integrates it.
+
+    `elements` per piston, 0 for rigid ones; `guide` [m]: distance of the two frictionless rings, at the mouth and
+    behind it, that hold a flexible piston in its cylinder.
+    """
+
+    robot: Robot
+    motion: Motion
+    integration: Integration
+    elements: int
+    guide: float
+
+    def __post_init__(self) -> None:
+        if self.elements < 0:
+            raise InputError("is negative", key="elements", value=self.elements, allowed="0 (rigid pistons), 1, 2 ...")
+        if self.elements and self.guide <= 0:
+            raise InputError("leaves the piston free to turn", key="guide", value=self.guide, allowed="above 0 m")
+        for number, leg in enumerate(self.robot.legs, start=1):
+            if leg.drive.type != "prescribed":
+                raise InputError(
+                    "is not modelled in Exudyn",
+                    key=f"leg {number}: drive.type",
+                    value=leg.drive.type,
+                    allowed="prescribed",
+                )
+            if self.elements and not leg.piston.rhoA:
+                raise InputError(
+                    "makes cables without mass, which Exudyn cannot move",
+                    key=f"leg {number}: piston.rhoA",
+                    value=0,
+                    next_step="Give a small rhoA, or take rigid pistons (elements=0)",
+                )
+            if leg.damping and self.elements:
+                raise InputError(
+                    "is not modelled in Exudyn",
+                    key=f"leg {number}: damping",
+                    value=leg.damping,
+                    allowed="0",
+                    next_step="Compare without damping",
+                )
+        self._check_path()
+
+    def _check_path(self) -> None:
+        legs = rigid.inverse_kinematics(self.robot, rigid.poses(self.robot, self.motion, self.integration.time))
+        if np.abs(legs.rate[0]).max() > _AT_REST or np.abs(legs.accel[0]).max() > _AT_REST:
+            raise InputError(
+                "starts with a rate or an acceleration; Exudyn starts from static equilibrium, at rest",
+                key="motion",
+                allowed="a law that starts smoothly, such as profile = 'quintic'",
+            )
+        if not self.elements:
+            return
+        for number, (leg, length) in enumerate(zip(self.robot.legs, legs.length.T, strict=True), start=1):
+            inner, outer = leg.cylinder.mouth - self.guide, leg.cylinder.mouth
+            if length.max() - leg.piston.length >= inner or length.min() <= outer:
+                raise InputError(
+                    f"the piston of leg {number} leaves the rings {inner:g} m and {outer:g} m from the universal joint",
+                    key="guide",
+                    value=self.guide,
+                    next_step="Choose a smaller guide, a longer piston or a smaller motion",
+                )
+
+
+@dataclass(frozen=True, kw_only=True)
+class RobotResult:
+    """Motion of the robot as Exudyn finds it, at T instants.
+
+    Attributes
+    ----------
+    time : ndarray, shape (T,)
+        [s].
+    com_deviation : ndarray, shape (T, 3)
+        Centre of mass, from its place in the robot with rigid legs of the commanded length [m], world axes.
+    actuator_force : ndarray, shape (T, 6)
+        Of the drive on the piston along the leg [N]; positive pushes out.
+    tip_deflection : ndarray, shape (T, 6, 2)
+        Of the piston's tip from the cylinder's axis [m], along a and b.
+    seconds : float
+        That the integration took, without building, start and records.
+    """
+
+    time: Array
+    com_deviation: Array
+    actuator_force: Array
+    tip_deflection: Array
+    seconds: float
+
+
+def simulate_robot(
+    robot: Robot,
+    motion: Motion,
+    integration: Integration,
+    *,
+    elements: int = 30,
+    guide: float = 0.01,
+    time_limit: float = TIME_LIMIT,
+) -> RobotResult:
+    """Motion of a robot with prescribed strokes from its static equilibrium on, computed by Exudyn.
+
+    Parameters
+    ----------
+    robot, motion : Robot, Motion
+        Drives prescribed, damping zero, no load; the motion starts smoothly from rest.
+    integration : Integration
+    elements : int
+        ANCF cable elements per piston (Euler-Bernoulli, finite strain and rotation); 0: rigid pistons.
+    guide : float
+        Distance of the two rings that stand for the clamp at the mouth [m]: their softness is the largest error, about
+        guide over free length in the lateral deflection, and of first order.
+    time_limit : float
+        Seconds after which Exudyn is stopped.
+
+    Raises
+    ------
+    InputError
+        Something that this model does not have, or a piston that leaves its rings.
+    ComputationError
+        Exudyn is not installed, does not end in time, crashes, or does not converge.
+    """
+    problem = RobotProblem(robot=robot, motion=motion, integration=integration, elements=elements, guide=guide)
+    return ask("flexapod.proof.engines.exudyn_robot_model", problem, time_limit=time_limit)

@@ -1,0 +1,144 @@
+"""The standard figures of a run, drawn and stored."""
+
+from __future__ import annotations
+
+from collections.abc import Callable, Iterator, Sequence
+from io import BytesIO
+from pathlib import Path
+from tempfile import TemporaryDirectory
+from typing import TYPE_CHECKING, Any, NamedTuple
+
+if TYPE_CHECKING:
+    from matplotlib.figure import Figure
+    from xarray import Dataset
+
+    from flexapod.model import ActuatorStudy, Study
+
+__all__ = ["Drawn", "carried_study", "draw", "store"]
+
+FAST = 3  # level of deflating: half the time of the usual one, a quarter more bytes
+_Plan = tuple[str, str, Callable[[], "Figure"]]
+
+
+class Drawn(NamedTuple):
+    """A figure: its name and title, for a page its picture (PNG) and its curves, if it has any; its files."""
+
+    name: str
+    title: str
+    picture: bytes
+    plot: dict[str, Any] | None = None
+    files: tuple[Path, ...] = ()
+
+    @property
+    def png(self) -> Path:
+        """Its PNG file, where one was asked for."""
+        return next(path for path in self.files if path.suffix == ".png")
+
+
+def carried_study(data: Dataset) -> Study | ActuatorStudy | None:
+    """The study that a result carries; None where it cannot be read any more, as when a table is gone."""
+    from flexapod import model
+    from flexapod.errors import FlexapodError
+
+    try:
+        return model.loads(data.attrs["study"], path=data.attrs.get("study_file") or None)
+    except FlexapodError:
+        return None
+
+
+def draw(data: Dataset, folder: str | Path, formats: Sequence[str] = ("png", "svg")) -> list[Drawn]:
+    """Draw the standard figures of a robot's or an actuator's run.
+
+    Parameters
+    ----------
+    data : xarray.Dataset
+        Result of `flexapod.run`, whole or partial.
+    folder : path
+        Made if needed; figures of the same name are replaced.
+    formats : sequence of str
+        Of png, svg, pdf.
+
+    Returns
+    -------
+    list of Drawn
+        In the order of the report.
+
+    Raises
+    ------
+    InputError
+        The folder cannot be written to, or a format is unknown.
+    """
+    plans = _robot(data) if "com_deviation" in data else _actuator(data)
+    return [store(make(), title, Path(folder) / name, formats) for name, title, make in plans]
+
+
+def store(figure: Figure, title: str, stem: Path, formats: Sequence[str] = ("png", "svg")) -> Drawn:
+    """Write a figure as ``stem.png``, ``stem.svg``, ``stem.pdf``, as asked for."""
+    from flexapod import plot
+    from flexapod.report.interactive import interactive
+
+    files = plot.save(figure, stem, formats=formats)
+    png = next((path for path in files if path.suffix == ".png"), None)
+    if png is not None:
+        picture = _picture(png)
+    else:
+        with TemporaryDirectory() as folder:
+            picture = _picture(*plot.save(figure, Path(folder) / stem.name, formats=("png",)))
+    return Drawn(stem.name, title, picture, interactive(figure), files)
+
+
+def _picture(png: Path) -> bytes:
+    """A drawing in 128 colours: a third of its size, and no difference to the eye."""
+    from PIL import Image
+
+    made = BytesIO()
+    with Image.open(png) as image:
+        few = image.convert("RGB").quantize(128, method=Image.Quantize.FASTOCTREE, dither=Image.Dither.NONE)
+    few.save(made, "PNG", compress_level=FAST)
+    return made.getvalue()
+
+
+def _robot(data: Dataset) -> Iterator[_Plan]:
+    import numpy as np
+
+    from flexapod import plot
+    from flexapod.study.after.summary import tool_apart
+
+    elastic = bool(np.abs(data.com_deviation).max() > 0)
+    axes = ("x", "y", "z")
+    words = "rigid legs against flexible ones, and the deviation on its own scale"
+    if tool_apart(data):
+        yield "tool-path", f"Path of the tool: {words}", lambda: plot.com_path(data, axes, "tool")
+    yield "com-path", f"Path of the centre of mass: {words}", lambda: plot.com_path(data, axes)
+    if elastic:
+        yield "deviation-by-cause", "Deviation of the centre of mass by cause", lambda: plot.deviation_by_cause(data)
+    forces = "Drive forces: Newton-Euler with rigid legs against the multibody model, and their difference"
+    yield "actuator-forces", forces, lambda: plot.actuator_forces(data)
+    yield "leg-lengths", "Leg lengths, and how far the flexible legs are off", lambda: plot.leg_lengths(data)
+    if np.abs(data.tip_deflection).max() > 0:
+        yield "tip-deflections", "Deflection of the piston tips across the legs", lambda: plot.tip_deflections(data)
+    yield "motion", "Commanded motion", lambda: plot.motion_law(data)
+    yield "energies", "Energies and their balance", lambda: plot.energies(data)
+    yield "robot", "The robot at the end of the motion; pale: at the start", lambda: plot.robot_3d(data)
+
+
+def _actuator(data: Dataset) -> Iterator[_Plan]:
+    from flexapod import plot
+
+    drawn = _seen(data)
+    if drawn is not None:
+        yield "path", "The tip in the plane of motion", lambda: plot.actuator_path(data, *drawn)
+    yield "response", "Deflection of the tip, and the length outside the hub", lambda: plot.actuator_response(data)
+    if "mode_amplitude" in data:
+        yield "amplitudes", "Amplitudes of the shapes", lambda: plot.actuator_modes(data)
+
+
+def _seen(data: Dataset) -> tuple[float, float] | None:
+    """Radius of the hub [m] and the factor of the replay; None where the study cannot be read any more."""
+    from flexapod import model
+    from flexapod.scene.geometry import ActuatorMotion
+
+    study = carried_study(data)
+    if not isinstance(study, model.ActuatorStudy):
+        return None
+    return study.actuator.hub_radius, ActuatorMotion(study, data).automatic_scale()

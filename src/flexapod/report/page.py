@@ -1,0 +1,267 @@
+"""The report of a run: one self-contained page whose first sentence is the answer."""
+
+from __future__ import annotations
+
+from collections.abc import Mapping, Sequence
+from importlib.metadata import version
+from pathlib import Path
+from platform import python_version
+from tempfile import TemporaryDirectory
+from typing import TYPE_CHECKING
+
+from flexapod.errors import FlexapodError
+from flexapod.report import html
+from flexapod.report.figures import Drawn, carried_study
+from flexapod.report.interactive import MOST_POINTS
+
+if TYPE_CHECKING:
+    from xarray import Dataset
+
+    from flexapod.model import ActuatorStudy, Study
+    from flexapod.study.after.summary import ActuatorSummary, RobotSummary
+    from flexapod.study.before.describe.actuator import ActuatorDescription
+    from flexapod.study.before.describe.robot import RobotDescription
+
+__all__ = [
+    "by_axis",
+    "figures_section",
+    "repeat_section",
+    "replay_section",
+    "robot_report",
+    "solver_table",
+    "store_page",
+    "warnings_section",
+    "write_report",
+]
+
+SOLVER = {
+    "integrator": "Time integration",
+    "rho_inf": "Spectral radius at infinite frequency",
+    "fidelity": "Fidelity",
+    "basis": "Lateral shapes",
+    "modes": "Shapes per plane",
+    "axial_modes": "Axial shapes",
+    "start": "Start",
+    "compiled": "Compiled equations",
+    "tolerance": "Tolerance of the step control",
+    "estimated_error": "Largest estimated error of a chunk",
+    "step": "Smallest step [s]",
+    "output_step": "Output step [s]",
+    "steps": "Steps",
+    "newton_iterations": "Newton iterations",
+    "factorisations": "Factorisations",
+    "rejected_steps": "Rejected steps",
+    "impact_energy": "Energy step of an impact at the start [J]",
+    "wall_time": "Time of the integration [s]",
+}
+THINNED = (
+    "Drag over a figure to zoom, double-click to see all again; point at a curve to read it. Curves of more than "
+    f"{MOST_POINTS} points are thinned for this page, and keep their least and largest values; the data are whole."
+)
+STILLS = ("robot", "path")  # figures that stand for the replay on paper
+_PACKAGES = ("flexapod", "numpy", "scipy", "casadi", "xarray", "matplotlib", "plotly")
+
+
+def robot_report(study: Study | ActuatorStudy, data: Dataset) -> str:
+    """The report of a robot's or an actuator's run as text, with figures drawn for it.
+
+    Parameters
+    ----------
+    study : Study or ActuatorStudy
+        What was computed.
+    data : xarray.Dataset
+        Result of `flexapod.run`, whole or partial.
+    """
+    from flexapod.report.figures import draw
+
+    with TemporaryDirectory() as folder:
+        return _page(study, data, draw(data, folder, ("png",)))
+
+
+def write_report(data: Dataset, folder: str | Path, figures: Sequence[Drawn] = ()) -> Path:
+    """Write ``report.html`` of a robot's or an actuator's run.
+
+    Parameters
+    ----------
+    data : xarray.Dataset
+        Result of `flexapod.run`, whole or partial.
+    folder : path
+        Made if needed; an existing report is replaced when the new one is complete.
+    figures : sequence of Drawn
+        From `flexapod.report.figures.draw`.
+
+    Returns
+    -------
+    Path
+
+    Raises
+    ------
+    InputError
+        The folder cannot be written to.
+    """
+    return store_page(Path(folder) / "report.html", _page(carried_study(data), data, figures))
+
+
+def _page(study: Study | ActuatorStudy | None, data: Dataset, figures: Sequence[Drawn]) -> str:
+    from flexapod.report.study_words import modes_section, study_words
+    from flexapod.study.after.summary import RobotSummary, summaries
+
+    first, *further = summaries(data)
+    described = _described(study)
+    name = Path(str(data.attrs.get("study_file") or "study")).name
+    modes = modes_section(study, described)
+    moving, others = _replay(study, data, figures)
+    parts = {"replay": moving, "figures": others, "modes": modes}
+    numbers = {"deviation": "Deviation"} if isinstance(first, RobotSummary) else {"deflection": "Deflection"}
+    links = {**numbers, "warnings": "Warnings", "study": "Study"}
+    links |= {part: part.capitalize() for part, there in parts.items() if there}
+    links |= {"solver": "Solver", "toml": "Study file", "repeat": "Repeat"}
+    body = [
+        *(html.paragraph(found.sentence) for found in further),
+        html.paragraph(f"Report of {name}, flexapod {data.attrs['flexapod_version']}.", "soft"),
+        html.contents(links),
+        *_partial(data),
+        by_axis(data) if isinstance(first, RobotSummary) else _actuator_numbers(first),
+        warnings_section(data),
+        html.section("study", "What was computed", *([] if study is None else study_words(study, described))),
+        *moving,
+        figures_section("figures", "Figures", others),
+        *modes,
+        html.section("solver", "Solver", solver_table(data)),
+        html.section("toml", "Study file", html.code(str(data.attrs["study"]))),
+        repeat_section("Save the study file above as study.toml, then", "flexapod run study.toml --out results"),
+    ]
+    return html.page(f"flexapod: {name}", first.sentence, body)
+
+
+def _described(study: Study | ActuatorStudy | None) -> RobotDescription | ActuatorDescription | None:
+    """The study as `flexapod check` describes it; None where it cannot be."""
+    from flexapod.study.before.describe.robot import describe
+
+    try:
+        return None if study is None else describe(study)
+    except FlexapodError:
+        return None
+
+
+def _replay(
+    study: Study | ActuatorStudy | None, data: Dataset, figures: Sequence[Drawn]
+) -> tuple[list[str], list[Drawn]]:
+    """The replay, with the figure that stands for it on paper, and the other figures."""
+    if study is None:
+        return [], list(figures)
+    from flexapod.report.replay import locked_modes, replay
+
+    still = next((figure for figure in figures if figure.name in STILLS), None)
+    part = replay_section(data, replay(study, data, locked_modes(study)), still)
+    return [part], [figure for figure in figures if figure is not still]
+
+
+def replay_section(data: Dataset, told: Mapping[str, object], still: Drawn | None) -> str:
+    """What `flexapod.report.replay` tells, and the figure that stands for it on paper."""
+    title = "The robot in motion" if "com_deviation" in data else "The beam in motion"
+    words = str(told["words"])
+    shown = len(told["time"])  # type: ignore[arg-type]
+    title += f", {shown} of {data.sizes['time']} instants; {words}. {told['mouse']}."
+    return html.section("replay", "Replay", html.replay(title, told, still and (still.title, still.picture)))
+
+
+def store_page(path: Path, text: str) -> Path:
+    """Write a page; an existing one is replaced when the new one is complete."""
+    from flexapod.files import replacing
+
+    with replacing(path) as temporary:
+        temporary.write_text(text, encoding="utf-8")
+    return path
+
+
+def by_axis(data: Dataset) -> str:
+    """Largest and rms deviation along each axis, of the centre of mass and of a tool elsewhere."""
+    from flexapod.study.after.summary import POINT_WORDS, RobotSummary, summaries
+
+    told = [found for found in summaries(data) if isinstance(found, RobotSummary)]
+    parts = []
+    for found in told:
+        parts += [html.heading(POINT_WORDS[found.point].capitalize())] * (len(told) > 1) + [_axis_table(found)]
+    note = "Flexible minus rigid at the same instant, world axes; it contains the sag at rest. Per cent of the travel: "
+    note += "largest deviation over the rigid point's peak-to-peak travel, n/a where that is below 1 µm."
+    return html.section("deviation", "Deviation by axis", *parts, html.paragraph(note, "soft"))
+
+
+def _axis_table(found: RobotSummary) -> str:
+    from flexapod.study.words import text
+
+    head = ("Axis", "Largest", "at", "rms", "Rigid travel", "Per cent of the travel")
+    rows = [
+        (
+            a.axis.upper(),
+            text(a.peak, "m"),
+            "n/a" if a.time is None else f"{a.time:.3f} s",
+            text(a.rms, "m"),
+            text(a.excursion, "m", 4),
+            "n/a" if a.per_cent is None else f"{a.per_cent:.2g} %",
+        )
+        for a in found.shown_axes
+    ]
+    rows.append(("Distance", text(found.peak, "m"), f"{found.time:.3f} s", text(found.rms, "m"), "", ""))
+    return html.table(head, rows)
+
+
+def _actuator_numbers(found: ActuatorSummary) -> str:
+    from flexapod.study.words import text
+
+    pairs = {
+        "Largest deflection of the tip": f"{text(found.peak, 'm')} at {found.time:.3f} s",
+        "rms": text(found.rms, "m"),
+        "At the end": text(found.end, "m"),
+        "Free length": f"{text(found.lengths[0], 'm', 4)} at the start, {text(found.lengths[1], 'm', 4)} at the end",
+    }
+    return html.section("deflection", "Deflection of the tip", html.values(pairs))
+
+
+def _partial(data: Dataset) -> list[str]:
+    if not data.attrs.get("partial"):
+        return []
+    return [
+        html.paragraph(
+            f"Incomplete: computed to t = {float(data.time[-1]):.6g} s. {data.attrs.get('failure', '')}", "bad"
+        )
+    ]
+
+
+def warnings_section(data: Dataset) -> str:
+    """What is doubtful about a result, in words."""
+    found = [line for line in str(data.attrs.get("warnings", "")).splitlines() if line]
+    return html.section("warnings", "Warnings", html.bullets(found) if found else html.paragraph("None."))
+
+
+def figures_section(name: str, title: str, figures: Sequence[Drawn], *, first: bool = True) -> str:
+    """Figures, one below the other, nothing where there are none; the first of a page say how they are read."""
+    if not figures:
+        return ""
+    parts = [html.figure(figure.title, figure.picture, figure.plot) for figure in figures]
+    return html.section(name, title, *([html.paragraph(THINNED, "soft screen")] if first else []), *parts)
+
+
+def solver_table(data: Dataset) -> str:
+    """Settings and counters of the time integration."""
+    attrs: Mapping[object, object] = data.attrs
+    return html.values({words: _shown(attrs[key], key) for key, words in SOLVER.items() if key in attrs})
+
+
+def _shown(value: object, key: str) -> str:
+    if key == "compiled":
+        return "yes" if value else "no (interpreted: slow)"
+    return f"{value:.4g}" if isinstance(value, float) else str(value)
+
+
+def repeat_section(words: str, command: str) -> str:
+    """How to get the same again, with the versions it was got with."""
+    versions = ", ".join(f"{name} {version(name)}" for name in _PACKAGES)
+    return html.section(
+        "repeat",
+        "How to repeat this",
+        html.paragraph(words),
+        html.code(command),
+        html.paragraph(f"Python {python_version()}, {versions}.", "soft"),
+    )

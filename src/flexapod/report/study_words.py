@@ -1,0 +1,256 @@
+"""A study in words, for the report: what moves, what the legs are, how it was computed, what the path asks for."""
+
+from __future__ import annotations
+
+import math
+from collections.abc import Iterable
+from typing import TYPE_CHECKING
+
+import numpy as np
+
+from flexapod import model
+from flexapod.report import html
+from flexapod.study.words import held, number, text
+
+if TYPE_CHECKING:
+    from flexapod.model import ActuatorStudy, Robot, Study
+    from flexapod.study.before.describe.actuator import ActuatorDescription
+    from flexapod.study.before.describe.pose import PoseDescription
+    from flexapod.study.before.describe.robot import RobotDescription
+    from flexapod.typing import Array
+
+__all__ = ["modes_section", "modes_table", "study_words"]
+
+_LEGS = {
+    "rigid": "rigid",
+    "lumped": "stretching, without bending",
+    "finite-segment": "chains of rigid segments",
+    "assumed-modes": "flexible by assumed modes",
+    "beam-fem": "flexible by beam elements",
+    "solid-fem": "flexible by shapes of solid elements",
+}
+_START = {
+    "equilibrium": "the static equilibrium",
+    "straight": "straight legs at rest",
+    "moving": "the velocity of the command",
+}
+
+
+def study_words(study: Study | ActuatorStudy, found: RobotDescription | ActuatorDescription | None) -> list[str]:
+    """Sentences and, where the path could be described, a table of the legs on it."""
+    if isinstance(study, model.ActuatorStudy):
+        return [html.bullets(_actuator(study))]
+    parts = [html.bullets(_robot(study))]
+    if found is not None and found.kind == "robot":
+        parts += _path(found)  # type: ignore[arg-type]
+    return parts
+
+
+def _robot(study: Study) -> list[str]:
+    robot, piston, simulation = study.robot, study.robot.legs[0].piston, study.simulation
+    size = f"{number(1e3 * piston.diameter)} mm thick, " if piston.diameter else ""
+    alike = "" if all(leg == robot.legs[0] for leg in robot.legs) else " (leg 1; the legs differ)"
+    shapes = simulation.lateral_shapes
+    count = f", {shapes} lateral shapes per plane and leg" if shapes else ""
+    return [
+        f"A robot of type {robot.type} carries {number(robot.payload.mass)} kg on six legs; {_gravity(robot.gravity)}.",
+        _points(robot.payload),
+        f"Pistons: {size}{number(1e3 * piston.length)} mm long, EA = {number(1e-6 * piston.EA)} MN, "
+        f"EI = {number(piston.EI)} N m², {_damping(robot.legs[0].damping, 'piston')}{alike}.",
+        f"Drives: {_drives(robot)}.",
+        f"Motion: {_motion(study.motion)}.",
+        f"Load: {_load(study.load.wrench)}.",
+        f"Legs: {_LEGS[simulation.fidelity]} ({simulation.fidelity}{count}); "
+        f"{number(study.duration, 4)} s simulated, from {_START[study.initial.start]}.",
+    ]
+
+
+def _gravity(gravity: Array) -> str:
+    along = np.flatnonzero(gravity)
+    if not along.size:
+        return "no gravity"
+    if along.size > 1:
+        return f"gravity [{', '.join(number(part) for part in gravity)}] m/s²"
+    size = float(gravity[along[0]])
+    return f"gravity of {number(abs(size))} m/s² along {'-' if size < 0 else ''}{'xyz'[along[0]]}"
+
+
+def _points(payload: model.Payload) -> str:
+    com, tool = (f"[{', '.join(number(1e3 * part + 0.0, 4) for part in at)}] mm" for at in (payload.com, payload.tool))
+    also = "which is the tool, too" if np.array_equal(payload.com, payload.tool) else f"the tool at {tool}"
+    return f"Centre of mass at {com} from the platform's centre, {also}."
+
+
+def _damping(damping: float | model.Damping, body: str) -> str:
+    ratio, time = model.damping_parts(damping)
+    every = f"damping of {number(100 * ratio)} % of the critical one in every mode of the bare {body}"
+    stiff = f"damping of {text(time, 's')} times the stiffness of the {body}"
+    return " and ".join([*([every] if ratio else []), *([stiff] if time else [])]) or "no damping"
+
+
+def _drives(robot: Robot) -> str:
+    """The drives in words, those of a kind together."""
+    legs: dict[str, list[str]] = {}
+    for i, leg in enumerate(robot.legs, start=1):
+        legs.setdefault(_drive(leg.drive), []).append(str(i))
+    if len(legs) == 1:
+        return next(iter(legs))
+    return "; ".join(f"leg{'s' * (len(some) > 1)} {', '.join(some)}: {words}" for words, some in legs.items())
+
+
+def _drive(drive: model.Drive) -> str:
+    if isinstance(drive, model.PrescribedDrive):
+        return "prescribed, the stroke follows its command exactly"
+    if isinstance(drive, model.ServoDrive):
+        damper = f" and a damper of {number(drive.damping)} N s/m" if drive.damping else ""
+        return f"servo, a spring of {text(drive.stiffness, 'N/m')}{damper} between commanded and real stroke"
+    force = "that which the rigid robot needs" if drive.law == "rigid" else "from a table"
+    back = drive.feedback
+    if back is None:
+        return f"force, {force}"
+    return f"force, {force}, corrected by {text(back.stiffness, 'N/m')} and {number(back.damping)} N s/m on the stroke"
+
+
+_WRENCH = (("Fx", "N"), ("Fy", "N"), ("Fz", "N"), ("Mx", "N m"), ("My", "N m"), ("Mz", "N m"))
+
+
+def _load(wrench: model.Wrench | None) -> str:
+    if wrench is None:
+        return "none"
+    if isinstance(wrench, model.CsvWrench):
+        return "from a table, at the tool, world axes"
+    values = wrench.value if isinstance(wrench, model.ConstantWrench) else wrench.amplitude
+    parts = [f"{name} {text(float(v), unit)}" for (name, unit), v in zip(_WRENCH, values, strict=True) if v]
+    if isinstance(wrench, model.SineWrench):
+        phase = f", phase {number(math.degrees(wrench.phase))} deg" if wrench.phase else ""
+        when = f", times a sine of {text(wrench.frequency, 'Hz')}{phase}"
+    else:
+        when = f" from t = {number(wrench.time, 4)} s on" if isinstance(wrench, model.StepWrench) else ", constant"
+    return f"{' and '.join(parts)}{when}, at the tool, world axes" if parts else "none"
+
+
+def _motion(motion: model.Motion) -> str:
+    if isinstance(motion, model.CsvMotion):
+        return "from a table"
+    if isinstance(motion, model.WaypointMotion):
+        return f"through {len(motion.points)} points, {motion.profile} between them"
+    target = np.asarray(motion.target)
+    moved = [_amount(name, value) for name, value in zip(model.AXES, target, strict=True) if value]
+    ends = f" in {number(motion.duration, 4)} s, {motion.profile}, then {number(motion.hold, 4)} s of rest"
+    return (" and ".join(moved) or "none") + ends
+
+
+def _amount(name: str, value: float) -> str:
+    return f"{name} {text(value, 'm', 4) if name in model.AXES[:3] else f'{number(math.degrees(value), 4)} deg'}"
+
+
+def _path(found: RobotDescription) -> list[str]:
+    rows = [
+        (
+            f"{leg.leg}",
+            f"{1e3 * leg.shortest.value:.1f} to {1e3 * leg.longest.value:.1f} mm",
+            "no limits" if leg.stroke_margin is None else f"{1e3 * leg.stroke_margin.value:.1f} mm",
+            f"{leg.force_min.value:.4g} to {leg.force_max.value:.4g} N",
+            "never pushed" if leg.euler_share.value == 0 else f"{100 * leg.euler_share.value:.2g} %",
+            "n/a" if leg.stress is None else text(leg.stress.total.value, "Pa"),
+        )
+        for leg in found.legs
+    ]
+    head = ("Leg", "Length", "Stroke left", "Drive force", "Of Euler load", "Largest stress")
+    s = found.singularity
+    words = (
+        f"Estimates from the rigid path, as `flexapod check` gives them. Distance to a singularity: smallest singular "
+        f"value of the scaled Jacobian {s.smallest_singular_value:.3g} at t = {s.time:.3f} s, condition "
+        f"{s.condition:.3g}; at home {s.home_smallest_singular_value:.3g} and {s.home_condition:.3g}."
+    )
+    return [html.heading("What the path asks of the legs"), html.table(head, rows), html.paragraph(words, "soft")]
+
+
+def _actuator(study: ActuatorStudy) -> list[str]:
+    beam, simulation = study.actuator, study.simulation
+    shapes = simulation.lateral_shapes
+    tip = f", with {number(beam.tip_mass)} kg at its tip" if beam.tip_mass else ""
+    start = study.initial.tip_displacement
+    released = f", released from {text(start, 'm')} at the tip" if start else ""
+    return [
+        f"A single actuator: a beam of {number(beam.length)} m, {number(beam.free_length)} m of it outside the hub at "
+        f"the start{tip}; rhoA = {number(beam.rhoA)} kg/m, EI = {number(beam.EI, 5)} N m²; "
+        f"{_damping(beam.damping, 'beam')}, {_gravity(np.array([0.0, -beam.gravity, 0.0]))}.",
+        f"Driven: {_driven(study)}.",
+        f"The beam is {_LEGS[simulation.fidelity]} ({simulation.fidelity}, {shapes} shapes); "
+        f"{number(study.duration, 4)} s simulated{released}.",
+    ]
+
+
+def _driven(study: ActuatorStudy) -> str:
+    words = []
+    for name, load, rate, unit in (("rotation", "torque", "rad/s", "N m"), ("extension", "force", "m/s", "N")):
+        law = getattr(study.motion, name)
+        if law is None:
+            first = getattr(study.initial, "angle_rate" if name == "rotation" else "length_rate")
+            begun = f", from {number(first)} {rate} at the start" if first else ""
+            words.append(f"{name} by a {load}{_law(getattr(study.load, load), unit)}{begun}, so that it is a result")
+        elif law.law == "rate":
+            words.append(f"{name} at {number(law.rate)} {rate}")
+        else:
+            words.append(f"{name} by the law {law.law}")
+    return " and ".join(words)
+
+
+def _law(law: model.LoadLaw, unit: str) -> str:
+    """How large a torque or a force is."""
+    if isinstance(law, model.ConstantLaw):
+        return f" of {text(law.value, unit)}"
+    if isinstance(law, model.CsvLaw):
+        return " from a table"
+    if isinstance(law, model.SineLaw):
+        return f" of up to {text(law.amplitude, unit)} at {text(law.frequency, 'Hz')}"
+    when = f" from t = {number(law.time, 4)} s on" if isinstance(law, model.StepLaw) else f", {law.law}"
+    return f" of up to {text(law.amplitude, unit)}{when}"
+
+
+def modes_section(
+    study: Study | ActuatorStudy | None, found: RobotDescription | ActuatorDescription | None
+) -> list[str]:
+    """Frequencies, damping and stiffness while the commands stand still; nothing where there is no description."""
+    if study is None or found is None:
+        return []
+    if isinstance(study, model.ActuatorStudy):
+        return [html.section("modes", "Modes", *_beam(found))]  # type: ignore[arg-type]
+    parts = [part for pose in found.poses for part in _pose(pose)]  # type: ignore[union-attr]
+    words = f"{held(study.robot)}, about the static equilibrium. Damping is the part of critical damping."
+    return [html.section("modes", "Modes", html.paragraph(words, "soft"), *parts)]
+
+
+def _pose(pose: PoseDescription) -> list[str]:
+    parts = [html.heading(f"{pose.name[0].upper()}{pose.name[1:]}, t = {pose.time:.3f} s")]
+    if pose.problem:
+        parts.append(html.paragraph(pose.problem, "bad"))
+    if pose.modes:
+        parts.append(modes_table((mode.frequency, mode.damping_ratio, mode.kind) for mode in pose.modes))
+    if pose.stiffness is not None:
+        s = pose.stiffness
+        words = f"Stiffness at the tool: {text(s.least, 'N/m')} to {text(s.most, 'N/m')} along a direction."
+        parts.append(html.paragraph(words, "soft"))
+    return parts
+
+
+def modes_table(modes: Iterable[tuple[float, float, str]]) -> str:
+    """Modes from the lowest on: frequency [Hz], damping ratio, kind."""
+    rows = [(f"{i}", f"{f:.4g} Hz", f"{100 * d:.2g} %", kind) for i, (f, d, kind) in enumerate(modes, start=1)]
+    return html.table(("Mode", "Frequency", "Damping", "What moves most"), rows)
+
+
+def _beam(found: ActuatorDescription) -> list[str]:
+    rows = [
+        (
+            beam.name,
+            f"{beam.free_length:.4g} m",
+            ", ".join(f"{f:.4g}" for f in beam.frequency) or beam.problem or "n/a",
+            ", ".join(f"{100 * d:.2g}" for d in beam.damping_ratio) or "n/a",
+        )
+        for beam in found.beam
+    ]
+    words = "Rotation and extension held, about the straight beam at rest."
+    head = ("Beam", "Free length", "Frequencies [Hz]", "Damping [%]")
+    return [html.paragraph(words, "soft"), html.table(head, rows)]

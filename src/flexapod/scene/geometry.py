@@ -1,0 +1,277 @@
+"""Points, meshes and numbers that the scene draws, from studies and results; nothing here knows a browser."""
+
+from __future__ import annotations
+
+from dataclasses import dataclass
+from typing import TYPE_CHECKING, TypeVar
+
+import numpy as np
+from numpy.typing import NDArray
+
+from flexapod import model
+from flexapod.rigid.rotations import exponential, matrix, quaternion
+from flexapod.scene.robot import STATIONS, Scene, lateral_values, off_chord, placed
+from flexapod.study.after.summary import tool_apart
+from flexapod.typing import Array
+
+if TYPE_CHECKING:
+    from xarray import Dataset
+
+__all__ = [
+    "BEAM_POINTS",
+    "ROUNDING",
+    "ActuatorMotion",
+    "Instant",
+    "RobotMotion",
+    "across",
+    "as_computed",
+    "beam_line",
+    "disc",
+    "factor_to_see",
+    "nearest",
+    "orientation",
+    "plate",
+    "platform_rotation",
+    "round_down",
+    "strip",
+    "tube",
+    "tube_faces",
+]
+
+S = TypeVar("S", model.Study, model.ActuatorStudy)
+Faces = NDArray[np.uint32]
+
+BEAM_POINTS = 2 * STATIONS - 1  # of the drawn beam of a single actuator
+ROUNDING = 1e-11  # of the size: below, a deflection is the rounding of positions
+SHARE = 0.12  # of the robot's size: the largest drawn deflection where the factor is automatic
+
+
+@dataclass(frozen=True, kw_only=True)
+class Instant:
+    """What is drawn at one instant [m]: the flexible robot with its deflections magnified, the rigid one, the truth.
+
+    `index` of the stored instant; `start`, `end` (3,): the point whose deviation is shown, rigid and as drawn;
+    `deviation` (3,): of that point, flexible minus rigid, not magnified.
+    """
+
+    index: int
+    flexible: Scene
+    rigid: Scene
+    start: Array
+    end: Array
+    deviation: Array
+
+
+class RobotMotion:
+    """The arrays of a robot's result that the scene draws, taken out of the Dataset once.
+
+    Attributes
+    ----------
+    time : ndarray, shape (T,)
+        Stored instants [s].
+    tool_apart : bool
+        Whether the tool is another point than the centre of mass.
+    """
+
+    def __init__(self, study: model.Study, data: Dataset) -> None:
+        self.robot, self.time = study.robot, data.time.values
+        self._com, self._deviation = data.com_position_rigid.values, data.com_deviation.values
+        self._tool_deviation = data.tool_deviation.values
+        self._arm = study.robot.payload.tool - study.robot.payload.com
+        self.tool_apart = tool_apart(data)
+        self._turn = data.rotation_deviation.values
+        self._rotation = matrix(data.platform_quaternion_rigid.values)
+        self._tip = data.tip_deflection.values
+        self._amplitude = data.lateral_amplitude.values if "lateral_amplitude" in data else None
+        zeta = np.linspace(0.0, 1.0, STATIONS)
+        self._shapes = None if self._amplitude is None else lateral_values(as_computed(study, data), zeta)
+
+    def paths(self, scale: float, point: str = "com") -> tuple[Array, Array]:
+        """Paths of a point ("com", "tool"), (T, 3) [m] each: of the rigid robot, and as drawn `scale` times off it."""
+        moved = self._com + scale * self._deviation
+        if point == "com":
+            return self._com, moved
+        arm = self._rotation @ self._arm
+        return self._com + arm, moved + np.einsum("tij,tj->ti", exponential(scale * self._turn), arm)
+
+    def index(self, time: float) -> int:
+        """The stored instant nearest to `time` [s]."""
+        return nearest(self.time, time)
+
+    def automatic_scale(self) -> float:
+        """Factor at which the largest deflection of the motion is seen: 1, 2 or 5 times a power of ten, at least 1."""
+        arms = self.robot.platform_joints - self.robot.payload.com
+        moved = np.einsum("tij,kj->tki", self._rotation, arms)
+        moved = self._deviation[:, None] + np.cross(self._turn[:, None], moved)
+        sizes = (moved, self._deviation, self._tool_deviation, self._tip)
+        largest = max(float(np.linalg.norm(part, axis=-1).max()) for part in sizes)
+        return factor_to_see(largest, float(self.robot.home_lengths.mean()))
+
+    def at(self, time: float, scale: float, point: str = "com") -> Instant:
+        """The robot at the stored instant nearest to `time` [s], deflections drawn `scale` times larger.
+
+        `point`: whose deviation is shown, "com" or "tool".
+        """
+        i, robot = self.index(time), self.robot
+        R, com = self._rotation[i], self._com[i]
+        turned = exponential(scale * self._turn[i]) @ R
+        moved = com + scale * self._deviation[i]
+        centre = moved - turned @ robot.payload.com
+        length = np.linalg.norm(centre + robot.platform_joints @ turned.T - robot.base_joints, axis=1)
+        offset = None
+        if self._amplitude is not None and self._shapes is not None:
+            line = scale * self._amplitude[i] @ self._shapes
+            offset = off_chord(robot, length, line, scale * self._tip[i])
+        arm = self._arm if point == "tool" else np.zeros(3)
+        return Instant(
+            index=i,
+            flexible=placed(robot, centre, turned, moved, offset),
+            rigid=placed(robot, com - R @ robot.payload.com, R, com),
+            start=com + R @ arm,
+            end=moved + turned @ arm,
+            deviation=(self._tool_deviation if point == "tool" else self._deviation)[i],
+        )
+
+
+class ActuatorMotion:
+    """The beam of a single actuator's result over time; the plane of motion X, Y is drawn as x, z."""
+
+    def __init__(self, study: model.ActuatorStudy, data: Dataset) -> None:
+        self.actuator, self.time = study.actuator, data.time.values
+        self.angle, self.length = data.angle.values, data.length.values
+        self.deflection = data.tip_deflection.values
+        self._amplitude = data.mode_amplitude.values if "mode_amplitude" in data else None
+        self._zeta = np.linspace(0.0, 1.0, BEAM_POINTS)
+        self._shapes = None if self._amplitude is None else lateral_values(as_computed(study, data), self._zeta)
+
+    def index(self, time: float) -> int:
+        """As `RobotMotion.index`."""
+        return nearest(self.time, time)
+
+    def automatic_scale(self) -> float:
+        """As `RobotMotion.automatic_scale`, against the mean free length."""
+        largest = float(np.abs(self.deflection).max())
+        return factor_to_see(largest, float(self.length.mean()))
+
+    def at(self, time: float, scale: float) -> tuple[int, Array, Array]:
+        """Stored instant; the beam outside the hub, bent `scale` times, and as if rigid: points (n, 3) [m]."""
+        i = self.index(time)
+        straight = 0.0 * self._zeta
+        bent = straight if self._amplitude is None or self._shapes is None else self._amplitude[i] @ self._shapes
+        line = beam_line(self.actuator, self.angle[i], self.length[i], self._zeta)
+        return i, line + across(self.angle[i], scale * bent), line
+
+    def tips(self, scale: float) -> Array:
+        """Path of the drawn tip, (T, 3) [m]."""
+        along, across = self.actuator.hub_radius + self.length, scale * self.deflection
+        c, s = np.cos(self.angle), np.sin(self.angle)
+        return np.stack([along * c - across * s, 0.0 * along, along * s + across * c], axis=1)
+
+
+def as_computed(study: S, data: Dataset) -> S:
+    """The study with the fidelity and the shapes with which a result was computed."""
+    now, then = study.simulation, data.attrs
+    if (now.fidelity, now.lateral_basis, now.lateral_shapes) == (then["fidelity"], then["basis"], then["modes"]):
+        return study
+    basis = str(then["basis"]) if then["fidelity"] == "assumed-modes" else None
+    return model.override(study, fidelity=str(then["fidelity"]), modes=int(then["modes"]) or None, basis=basis)
+
+
+def nearest(instants: Array, time: float) -> int:
+    """Place of the instant nearest to `time` in ascending ones (T,)."""
+    if len(instants) == 1:
+        return 0
+    after = int(np.clip(np.searchsorted(instants, time), 1, len(instants) - 1))
+    return after - int(time - instants[after - 1] <= instants[after] - time)
+
+
+def beam_line(actuator: model.Actuator, angle: float, length: float, zeta: Array) -> Array:
+    """The straight beam outside the hub at an angle [rad] from the horizontal, (n, 3) [m]."""
+    along = actuator.hub_radius + length * zeta
+    return np.stack([along * np.cos(angle), 0.0 * along, along * np.sin(angle)], axis=1)
+
+
+def across(angle: float, offset: Array) -> Array:
+    """Offsets (n,) across a beam at an angle [rad] from the horizontal, in its plane, as vectors (n, 3)."""
+    return np.multiply.outer(offset, np.array([-np.sin(angle), 0.0, np.cos(angle)]))
+
+
+def factor_to_see(largest: float, size: float) -> float:
+    """Factor that brings the largest deflection to a share of a size [m]; 1 where it is nothing but rounding."""
+    return round_down(SHARE * size / largest) if largest > ROUNDING * size else 1.0
+
+
+def round_down(factor: float) -> float:
+    """The largest of 1, 2, 5, 10, 20 ... that is at most `factor`; 1 below 1."""
+    if factor <= 1:
+        return 1.0
+    power = 10.0 ** np.floor(np.log10(factor) + 1e-12)
+    return float(max(step for step in (1.0, 2.0, 5.0) if step * power <= factor * (1 + 1e-12)) * power)
+
+
+def platform_rotation(robot: model.Robot, scene: Scene) -> Array:
+    """Platform to world (w x y z) of a drawn robot, from its joints and centre of mass."""
+    arms = np.vstack([robot.platform_joints, robot.payload.com])
+    seen = np.vstack([scene.platform, scene.com]) - scene.centre
+    u, _, v = np.linalg.svd(seen.T @ arms)  # the rotation closest to turning arms into what is seen
+    return quaternion(u @ np.diag([1.0, 1.0, np.linalg.det(u @ v)]) @ v)
+
+
+def orientation(direction: Array) -> Array:
+    """Quaternions (w x y z) that turn the z axis into directions (..., 3)."""
+    d = direction / np.linalg.norm(direction, axis=-1, keepdims=True)
+    q = np.stack([1 + d[..., 2], -d[..., 1], d[..., 0], 0 * d[..., 0]], axis=-1)
+    norm = np.linalg.norm(q, axis=-1, keepdims=True)
+    return np.where(norm > 1e-9, q / np.maximum(norm, 1e-9), [0.0, 1.0, 0.0, 0.0])
+
+
+def tube(line: Array, radius: float, sides: int = 8) -> Array:
+    """Vertices of tubes around lines (..., n, 3): (..., n * sides, 3), a ring of `sides` at each point."""
+    ahead = np.gradient(line, axis=-2)
+    ahead = ahead / np.linalg.norm(ahead, axis=-1, keepdims=True)
+    whole = line[..., -1:, :] - line[..., :1, :]
+    least = np.eye(3)[np.argmin(np.abs(whole), axis=-1)]  # the world axis that is most across the line
+    u = np.cross(ahead, least)
+    u = u / np.linalg.norm(u, axis=-1, keepdims=True)
+    v = np.cross(ahead, u)
+    around = 2 * np.pi * np.arange(sides) / sides
+    ring = np.cos(around)[:, None] * u[..., None, :] + np.sin(around)[:, None] * v[..., None, :]
+    points = line[..., None, :] + radius * ring
+    return points.reshape(*line.shape[:-2], -1, 3)
+
+
+def tube_faces(count: int, sides: int = 8) -> Faces:
+    """Triangles of a tube through `count` points, open at its ends, (2 * (count - 1) * sides, 3)."""
+    ring, side = np.meshgrid(np.arange(count - 1), np.arange(sides), indexing="ij")
+    a, b = ring * sides + side, ring * sides + (side + 1) % sides
+    low, high = np.stack([a, b, a + sides], axis=-1), np.stack([b, b + sides, a + sides], axis=-1)
+    return np.concatenate([low.reshape(-1, 3), high.reshape(-1, 3)]).astype(np.uint32)
+
+
+def plate(points: Array, thickness: float) -> tuple[Array, Faces]:
+    """A flat body over coplanar points (n, 3), `thickness` [m] across: vertices, triangles."""
+    arms = points - points.mean(axis=0)
+    first, second, _ = np.linalg.svd(arms)[2]
+    normal = np.cross(first, second)  # the rim runs around it
+    rim = points[np.argsort(np.arctan2(arms @ second, arms @ first))]
+    n, half = len(rim), 0.5 * thickness * normal
+    vertices = np.vstack([rim + half, rim - half])
+    fan = np.array([[0, i, i + 1] for i in range(1, n - 1)])
+    around = np.arange(n)
+    after = (around + 1) % n
+    side = np.vstack([np.stack([around, around + n, after], 1), np.stack([after, around + n, after + n], 1)])
+    return vertices, np.vstack([fan, fan[:, ::-1] + n, side]).astype(np.uint32)
+
+
+def disc(radius: float, width: float, sides: int = 40) -> tuple[Array, Faces]:
+    """A disc about the y axis, `width` [m] along it: vertices, triangles."""
+    angle = 2 * np.pi * np.arange(sides) / sides
+    return plate(radius * np.stack([np.cos(angle), 0 * angle, np.sin(angle)], axis=1), width)
+
+
+def strip(points: Array, most: int = 400) -> Array:
+    """A path (T, 3) as line segments (n, 2, 3), thinned to at most `most`; of one point, a segment of no length."""
+    if len(points) == 1:
+        return np.stack([points, points], axis=1)
+    chosen = points[np.unique(np.linspace(0, len(points) - 1, min(len(points), most + 1)).astype(int))]
+    return np.stack([chosen[:-1], chosen[1:]], axis=1)

@@ -1,0 +1,1 @@
+"""From what was recorded to named results, causes, remarks and the summary."""

@@ -1,0 +1,240 @@
+"""Remarks on results that leave the theory: slopes, strokes, axial loads, slenderness, strains."""
+
+from __future__ import annotations
+
+from dataclasses import dataclass
+from functools import lru_cache
+
+import numpy as np
+
+from flexapod.bases import LateralBasis
+from flexapod.model import Actuator, Leg, Robot
+from flexapod.model.simulation import SOLID
+from flexapod.rigid.rotations import matrix
+from flexapod.solve.many import RestStates
+from flexapod.solve.system import RobotSystem
+from flexapod.study.before.estimates import buckling_load, section_width
+from flexapod.study.before.thick import Section, beam_section, bending_errors, piston_section
+from flexapod.study.record import Record
+from flexapod.typing import Array
+
+__all__ = [
+    "NEAR_BUCKLING",
+    "SLENDERNESS",
+    "SLOPE",
+    "actuator_warnings",
+    "buckling_words",
+    "leg_stress",
+    "rest_warnings",
+    "robot_warnings",
+    "thick_words",
+]
+
+SLOPE = 0.1  # tip slope up to which second order in the amplitudes is enough
+SLENDERNESS = 10.0  # free length over width below which shear is no longer small
+STROKE_ROUNDING = 1e-9  # excess over a stroke that is rounding or solver residual [m]
+NEAR_BUCKLING = 0.5  # share of the Euler load from which stiffness has changed by half
+STATIONS = np.linspace(0.0, 1.0, 21)
+
+
+@dataclass(frozen=True)
+class _When:
+    """When the kth of several states is, in words: at an instant of `time` [s], or, at rest, nothing."""
+
+    time: Array | None = None
+
+    def __getitem__(self, k: int) -> str:
+        return "" if self.time is None else f" at t = {self.time[k]:.6g} s"
+
+
+def robot_warnings(robot: Robot, system: RobotSystem, record: Record) -> list[str]:
+    """Remarks on a simulation of a robot, each with leg, instant, value and limit."""
+    return _leg_warnings(robot, system, record, _When(record.time))
+
+
+def rest_warnings(robot: Robot, system: RobotSystem, states: RestStates) -> list[str]:
+    """The same remarks on a robot at rest."""
+    return _leg_warnings(robot, system, states, _When())
+
+
+def _leg_warnings(robot: Robot, system: RobotSystem, record: Record | RestStates, when: _When) -> list[str]:
+    axes = _leg_axes(robot, record)
+    compression = np.einsum("tli,tli->tl", record.lam, axes)
+    found = []
+    for i, leg in enumerate(robot.legs):
+        free = record.q[:, i, system.kernel.shapes.l_index] - leg.cylinder.mouth
+        lateral = record.q[:, i, 3 + system.kernel.shapes.axial.count :].reshape(len(free), 2, -1)
+        found += [
+            (i, *remark)
+            for remark in (
+                *_slope(system.kernel.shapes.a, lateral, free, when),
+                *_stroke(leg, record.q[:, i, system.kernel.shapes.l_index], when),
+                *_axial(leg, free, compression[:, i], when),
+                *_slender(leg, system.kernel.shapes.a, free, when),
+                *_stress(leg, system.kernel.shapes.a, lateral, free, compression[:, i], when),
+            )
+        ]
+    return _worst_of_each(found)
+
+
+def actuator_warnings(actuator: Actuator, basis: LateralBasis, record: Record) -> list[str]:
+    """Remarks on a simulation of a single actuator."""
+    free = record.q[:, 0, 1] - actuator.hub_radius
+    lateral = record.q[:, :, 2:]
+    when = _When(record.time)
+    found = _slope(basis, lateral, free, when)
+    if actuator.section is not None and actuator.material is not None:
+        depth, material = actuator.section.depth, actuator.material
+        section = beam_section(actuator)
+        if free.min() < SLENDERNESS * depth and section is not None:
+            k = int(free.argmin())
+            found.append(_slender_remark(free[k], depth, section, basis, when[k]))
+        if material.yield_stress is not None:
+            bending = _bending(basis, lateral, free) * material.E * depth / 2
+            found += _yield_words(bending, material.yield_stress, when)
+    return [f"the beam: {words}" for _, _, words in found]
+
+
+def leg_stress(leg: Leg, basis: LateralBasis, lateral: Array, free: Array, compression: Array) -> Array | None:
+    """Largest axial plus bending stress in a piston at T instants [Pa], Eq. (T8.10); None without section and material.
+
+    Parameters
+    ----------
+    leg : Leg
+    basis : LateralBasis
+    lateral : ndarray, shape (T, 2, k)
+        Amplitudes [m].
+    free, compression : ndarray, shape (T,)
+        Free length [m] and axial force [N].
+    """
+    piston = leg.piston
+    if piston.diameter is None or piston.E is None:
+        return None
+    bending = _bending(basis, lateral, free) * piston.E * piston.diameter / 2
+    return np.abs(compression) * piston.E / piston.EA + bending
+
+
+def _leg_axes(robot: Robot, record: Record | RestStates) -> Array:
+    """Unit vectors from base to platform joint, (T, 6, 3)."""
+    R = matrix(record.pose[:, 3:])
+    tips = record.pose[:, None, :3] + (robot.platform_joints - robot.payload.com) @ R.swapaxes(1, 2)
+    vectors = tips - robot.base_joints
+    return vectors / np.linalg.norm(vectors, axis=-1, keepdims=True)
+
+
+_Remark = tuple[str, float, str]  # kind, severity (value over limit), words
+
+
+def _slope(basis: LateralBasis, lateral: Array, free: Array, when: _When) -> list[_Remark]:
+    if not basis.count:
+        return []
+    slope = np.linalg.norm(lateral @ basis.tip_slope, axis=1) / free
+    k = int(slope.argmax())
+    if slope[k] <= SLOPE:
+        return []
+    words = f"the tip slope reaches {slope[k]:.3g}{when[k]}: above {SLOPE:g} second-order theory is strained"
+    return [("slope", slope[k] / SLOPE, words)]
+
+
+def _stroke(leg: Leg, length: Array, when: _When) -> list[_Remark]:
+    """Strokes that are a result, not commands, may leave their limits; the stops there are not part of the model."""
+    if leg.stroke is None:
+        return []
+    excess = np.maximum(leg.stroke.min - length, length - leg.stroke.max)
+    k = int(excess.argmax())
+    if excess[k] <= STROKE_ROUNDING:
+        return []
+    words = (
+        f"its drive leaves the stroke of {leg.stroke.min:g} to {leg.stroke.max:g} m by "
+        f"{1e3 * excess[k]:.3g} mm{when[k]}: end stops are not part of the model"
+    )
+    return [("stroke", excess[k], words)]
+
+
+def _axial(leg: Leg, free: Array, compression: Array, when: _When) -> list[_Remark]:
+    if (compression * free**2).max() <= NEAR_BUCKLING * leg.piston.EI * (np.pi / 2) ** 2:
+        return []  # even with the least root that (T8.11) can have
+    share = compression / buckling_load(leg, free)
+    k = int(share.argmax())
+    if share[k] <= NEAR_BUCKLING:
+        return []
+    return [("buckling", share[k], buckling_words(share[k], compression[k], when[k]))]
+
+
+def buckling_words(share: float, force: float, when: str) -> str:
+    """That an axial force [N] is near the Euler load (T8.11), or above it, and where: for all that remark on it."""
+    what = "buckles" if share >= 1 else "is close to buckling"
+    return f"the axial load reaches {share:.0%} of the Euler load ({force:.4g} N{when}): the leg {what}"
+
+
+def _slender(leg: Leg, basis: LateralBasis, free: Array, when: _When) -> list[_Remark]:
+    width, k = section_width(leg.piston), int(free.argmin())
+    if free[k] >= SLENDERNESS * width:
+        return []
+    return [_slender_remark(free[k], width, piston_section(leg.piston), basis, when[k])]
+
+
+def _slender_remark(free: float, width: float, section: Section, basis: LateralBasis, when: str) -> _Remark:
+    ratio = free / width
+    words = f"the free length is only {ratio:.3g} times the width{when}: "
+    return ("slenderness", SLENDERNESS / ratio, words + thick_words(section, free, solid=basis.name == SOLID))
+
+
+def thick_words(section: Section, free: float, *, solid: bool) -> str:
+    """What a leg that is not slender has and the shapes of a beam, or those reduced from the solid, leave out."""
+    deflection, frequency, inertia = bending_errors(section, free)
+    if solid:
+        return (
+            f"below {SLENDERNESS:g} rotary inertia, which the solid's shapes leave out, is no longer small: its first "
+            f"frequency of bending is up to {100 * inertia:.2g} % too high (a pinned beam's)"
+        )
+    return (
+        f"below {SLENDERNESS:g} shear, which an Euler-Bernoulli beam leaves out, is no longer small: it deflects by "
+        f"about {100 * deflection:.2g} % too little under a force across its end, and its first bending frequency is "
+        f"up to {100 * frequency:.2g} % too high (Timoshenko's beam, clamped and pinned)"
+    )
+
+
+def _bending(basis: LateralBasis, lateral: Array, free: Array) -> Array:
+    """Largest curvature along the free piston, (T,) [1/m]."""
+    if not basis.count:
+        return np.zeros(len(free))
+    square = np.zeros((len(STATIONS), len(free)))
+    for k in range(lateral.shape[1]):  # one lateral direction of an actuator, two of a leg
+        square += (_curvatures(basis).T @ lateral[:, k].T) ** 2
+    return np.sqrt(square.max(axis=0)) / free**2
+
+
+@lru_cache(maxsize=64)
+def _curvatures(basis: LateralBasis) -> Array:
+    """Second derivatives of the shapes at the stations, (k, 21)."""
+    return basis.values(STATIONS, 2)
+
+
+def _stress(
+    leg: Leg, basis: LateralBasis, lateral: Array, free: Array, compression: Array, when: _When
+) -> list[_Remark]:
+    stress = leg_stress(leg, basis, lateral, free, compression)
+    if stress is None or leg.piston.yield_stress is None:
+        return []
+    return _yield_words(stress, leg.piston.yield_stress, when)
+
+
+def _yield_words(stress: Array, limit: float, when: _When) -> list[_Remark]:
+    k = int(stress.argmax())
+    if stress[k] <= limit:
+        return []
+    words = f"the stress reaches {stress[k] / 1e6:.4g} MPa{when[k]}, above the yield stress of {limit / 1e6:.4g} MPa"
+    return [("yield", stress[k] / limit, words)]
+
+
+def _worst_of_each(found: list[tuple[int, str, float, str]]) -> list[str]:
+    """One sentence for each kind of remark: of the leg where it is worst, and which others share it."""
+    texts = []
+    for kind in dict.fromkeys(entry[1] for entry in found):
+        same = [entry for entry in found if entry[1] == kind]
+        worst = max(same, key=lambda entry: entry[2])
+        others = sorted(entry[0] + 1 for entry in same if entry is not worst)
+        also = f" (also legs {', '.join(map(str, others))})" if others else ""
+        texts.append(f"leg {worst[0] + 1}: {worst[3]}{also}")
+    return texts

@@ -1,0 +1,171 @@
+"""Checks of a path before anything is computed: strokes, pistons, universal joints, singularities, start."""
+
+from __future__ import annotations
+
+from dataclasses import dataclass
+
+import numpy as np
+
+from flexapod import rigid
+from flexapod.errors import InputError
+from flexapod.model import ActuatorStudy, Robot, Study
+from flexapod.rigid.kinematics import BETA_LIMIT
+from flexapod.rigid.workspace import LONGEST, PULLED_OUT, SHORTEST
+from flexapod.solve.modes import refuse_pure_force
+from flexapod.study.before.timing import check_outputs
+from flexapod.typing import Array
+
+__all__ = ["check_actuator_path", "check_geometry", "check_path", "path_instants", "path_remarks"]
+
+SINGULAR = 1e-8  # smallest singular value of the scaled Jacobian below which a pose is refused
+NEAR_SINGULAR = 0.05  # and below which it is remarked on: leg forces and length errors are magnified about 20 times
+
+_KEYS = {SHORTEST: "leg.stroke.min", LONGEST: "leg.stroke.max", PULLED_OUT: "leg.piston.length"}
+
+
+@dataclass(frozen=True, kw_only=True)
+class _Path:
+    """A path: instants (T,), lengths and angles beta of the universal joints (T, 6), the pose nearest to singular."""
+
+    t: Array
+    length: Array
+    beta: Array
+    nearest: rigid.NearestSingularity
+
+    @classmethod
+    def of(cls, robot: Robot, t: Array, poses: rigid.Poses) -> _Path:
+        length, _, beta = rigid.leg_directions(robot, poses)
+        return cls(t=t, length=length, beta=beta, nearest=rigid.nearest_singularity(robot, poses))
+
+
+def path_instants(study: Study | ActuatorStudy) -> Array:
+    """Instants at which a path is looked at [s]: those of the output, at least 2001, at most 50001."""
+    count = int(np.clip(study.duration / study.simulation.output_step, 2000, 50000).round())
+    return np.linspace(0.0, study.duration, count + 1)
+
+
+def check_path(study: Study) -> list[str]:
+    """Refuse a study whose path no robot could follow; return remarks on what is only doubtful.
+
+    Raises
+    ------
+    InputError
+        A leg leaves its stroke, a piston its cylinder, a universal joint folds, a pose is singular (smallest singular
+        value of the scaled Jacobian, Eq. (T2.24), below 1e-8 or a change of sign of its determinant), a pure force
+        drive is to start from equilibrium, or the study's times do not fit each other.
+    """
+    try:
+        if study.initial.start == "equilibrium":
+            refuse_pure_force(study.robot, "the equilibrium start")
+    except InputError as error:
+        raise error.located(file=study.path) from None
+    return check_geometry(study)
+
+
+def check_geometry(study: Study) -> list[str]:
+    """The checks of `check_path` that concern the path alone."""
+    try:
+        remarks = check_outputs(study)
+        t = path_instants(study)
+        path = _Path.of(study.robot, t, rigid.poses(study.robot, study.motion, t))
+        _refuse_excess(study.robot, path)
+        _refuse_folded(path)
+        _refuse_singular(path)
+    except InputError as error:
+        raise error.located(file=study.path) from None
+    return remarks + _remarks(study.robot, path)
+
+
+def path_remarks(robot: Robot, t: Array, poses: rigid.Poses) -> list[str]:
+    """Remarks on poses near a singularity and pistons that reach behind their universal joint."""
+    return _remarks(robot, _Path.of(robot, t, poses))
+
+
+def _remarks(robot: Robot, path: _Path) -> list[str]:
+    remarks = [e.message for e in rigid.pull_out(robot, path.t, path.length) if not e.fatal]
+    found = path.nearest
+    if found.smallest_singular_value < NEAR_SINGULAR:
+        remarks.append(
+            f"the path comes near a singular pose at t = {path.t[found.worst]:.6g} s: smallest singular value "
+            f"{found.smallest_singular_value:.3g} of the scaled Jacobian, condition {found.condition:.3g} "
+            f"(remarked on below {NEAR_SINGULAR:g})"
+        )
+    return remarks
+
+
+def _refuse_excess(robot: Robot, path: _Path) -> None:
+    found = [*rigid.strokes(robot, path.t, path.length), *rigid.pull_out(robot, path.t, path.length)]
+    fatal = [e for e in found if e.fatal]
+    if not fatal:
+        return
+    worst = max(fatal, key=lambda e: abs(e.value - e.limit))
+    others = [str(leg) for leg in sorted({e.leg for e in fatal} - {worst.leg})]
+    also = f"; so do legs {', '.join(others)}" if len(others) > 1 else "".join(f"; so does leg {n}" for n in others)
+    raise InputError(
+        worst.message.rstrip(".") + also,
+        key=_KEYS.get(worst.kind, "leg.cylinder.mouth"),
+        next_step="Reduce the motion, or change the limit named here",
+    )
+
+
+def _refuse_folded(path: _Path) -> None:
+    beta = path.beta
+    if np.abs(beta).max() <= BETA_LIMIT:
+        return
+    k, leg = np.unravel_index(np.abs(beta).argmax(), beta.shape)
+    first = path.t[np.argmax(np.abs(beta[:, leg]) > BETA_LIMIT)]
+    raise InputError(
+        f"the universal joint of leg {leg + 1} folds to beta = {np.rad2deg(beta[k, leg]):.1f} deg "
+        f"at t = {path.t[k]:.6g} s (beyond the limit from t = {first:.6g} s on)",
+        key="leg.u_axis",
+        allowed="|beta| at most 85 deg",
+        next_step="Turn the universal joint's first axis (u_axis), or reduce the motion",
+    )
+
+
+def _refuse_singular(path: _Path) -> None:
+    found, words = path.nearest, ""
+    if found.smallest_singular_value < SINGULAR:
+        words = f"is singular at t = {path.t[found.worst]:.6g} s"
+    elif len(found.sign_changes):
+        k = int(found.sign_changes[0])
+        words = f"passes through a singular pose between t = {path.t[k]:.6g} and {path.t[k + 1]:.6g} s"
+    if words:
+        raise InputError(
+            f"the path {words}: smallest singular value {found.smallest_singular_value:.2g} of the scaled Jacobian",
+            key="motion",
+            allowed=f"at least {SINGULAR:g}, and no change of sign of its determinant",
+            next_step="There the legs cannot hold the platform: change the joints' places (half_angle) or the motion",
+        )
+
+
+def check_actuator_path(study: ActuatorStudy) -> list[str]:
+    """Refuse an extension law that pulls the beam wholly into the hub or out of it; return remarks on times.
+
+    Raises
+    ------
+    InputError
+        The free length leaves (0, length] at an instant of the law, or the study's times do not fit each other.
+    """
+    try:
+        remarks = check_outputs(study)
+    except InputError as error:
+        raise error.located(file=study.path) from None
+    actuator, law = study.actuator, study.motion.extension
+    if law is None:
+        return remarks
+    t = path_instants(study)
+    free = actuator.free_length + rigid.motion_law(law, t).position
+    for bad, words, limit in (
+        (free <= 0, "slides wholly into the hub", 0.0),
+        (free > actuator.length * (1 + 1e-12), "leaves the hub", actuator.length),
+    ):
+        if bad.any():
+            raise InputError(
+                f"the beam {words} at t = {t[np.argmax(bad)]:.6g} s: free length {free[np.argmax(bad)]:.6g} m, "
+                f"limit {limit:.6g} m",
+                file=study.path,
+                key="motion.extension",
+                next_step="Shorten simulation.duration, or change the law or actuator.free_length",
+            )
+    return remarks

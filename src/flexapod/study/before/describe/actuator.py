@@ -1,0 +1,113 @@
+"""A single actuator's study before it is computed: lengths, slenderness, frequencies, sag."""
+
+from __future__ import annotations
+
+from dataclasses import asdict, dataclass
+
+import numpy as np
+
+from flexapod import model, rigid
+from flexapod.errors import FlexapodError
+from flexapod.solve.actuator_modes import actuator_modes
+from flexapod.study.before.checks import check_actuator_path, path_instants
+
+__all__ = ["ActuatorDescription", "BeamDescription", "describe_actuator"]
+
+SHOWN = 4
+
+
+@dataclass(frozen=True, kw_only=True)
+class BeamDescription:
+    """The beam at one free length, SI units, rotation and extension held.
+
+    `frequency` [Hz] and `damping_ratio` of the lowest modes about the straight beam at rest, or `problem` in words;
+    `slenderness`: free length over depth, None without a section; `sag`: of the tip where the beam lies level, by
+    rhoA g s^4 / 8 EI + m g s^3 / 3 EI.
+    """
+
+    name: str
+    free_length: float
+    frequency: tuple[float, ...]
+    damping_ratio: tuple[float, ...]
+    slenderness: float | None
+    sag: float
+    problem: str | None = None
+
+
+@dataclass(frozen=True, kw_only=True)
+class ActuatorDescription:
+    """What `describe` finds for a single actuator; `driven`: the coordinates that a load drives."""
+
+    kind: str = "actuator"
+    file: str | None
+    duration: float
+    fidelity: str
+    driven: tuple[str, ...]
+    angles: tuple[float, float] | None
+    free_lengths: tuple[float, float] | None
+    beam: tuple[BeamDescription, ...]
+    tip_displacement: float
+    angle_rate: float
+    length_rate: float
+    remarks: tuple[str, ...]
+
+    def as_dict(self) -> dict[str, object]:
+        """Everything as plain data."""
+        return asdict(self)
+
+
+def describe_actuator(study: model.ActuatorStudy) -> ActuatorDescription:
+    """What a study asks of its actuator.
+
+    Raises
+    ------
+    InputError
+        A beam that leaves its hub.
+    """
+    remarks, actuator, t = check_actuator_path(study), study.actuator, path_instants(study)
+    rotation, extension = study.motion.rotation, study.motion.extension
+    angles = lengths = None
+    if rotation is not None:
+        turned = actuator.angle + rigid.motion_law(rotation, t).position
+        angles = (float(turned[0]), float(turned[-1]))
+    places = {"at the start": actuator.free_length}
+    if extension is not None:
+        free = actuator.free_length + rigid.motion_law(extension, t).position
+        lengths = (float(free.min()), float(free.max()))
+        same = 1e-9 * actuator.length
+        named = {"at the end": float(free[-1]), "shortest": lengths[0], "longest": lengths[1]}
+        for name, length in named.items():
+            if all(abs(length - other) > same for other in places.values()):
+                places[name] = length
+    return ActuatorDescription(
+        file=study.path,
+        duration=study.duration,
+        fidelity=study.simulation.fidelity,
+        driven=tuple(name for name, law in (("rotation", rotation), ("extension", extension)) if law is None),
+        angles=angles,
+        free_lengths=lengths,
+        beam=tuple(_beam(study, name, length) for name, length in places.items()),
+        tip_displacement=study.initial.tip_displacement,
+        angle_rate=study.initial.angle_rate,
+        length_rate=study.initial.length_rate,
+        remarks=(*study.warnings, *remarks),
+    )
+
+
+def _beam(study: model.ActuatorStudy, name: str, free: float) -> BeamDescription:
+    a = study.actuator
+    frequency, ratio, problem = np.zeros(0), np.zeros(0), None
+    try:
+        found = actuator_modes(a, study.simulation, free_length=free)
+        frequency, ratio = found.frequency[:SHOWN], found.damping_ratio[:SHOWN]
+    except FlexapodError as error:
+        problem = str(error)
+    return BeamDescription(
+        name=name,
+        free_length=free,
+        frequency=tuple(frequency.tolist()),
+        damping_ratio=tuple((ratio + 0.0).tolist()),
+        slenderness=None if a.section is None else free / a.section.depth,
+        sag=abs(a.gravity) * (a.rhoA * free**4 / 8 + a.tip_mass * free**3 / 3) / a.EI,
+        problem=problem,
+    )

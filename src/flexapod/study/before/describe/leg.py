@@ -1,0 +1,162 @@
+"""A leg on the rigid path: lengths, margins, forces, stresses, buckling."""
+
+from __future__ import annotations
+
+from dataclasses import dataclass
+
+import numpy as np
+
+from flexapod.model import Leg, Robot
+from flexapod.model.simulation import SOLID
+from flexapod.study.after.plausibility import NEAR_BUCKLING, SLENDERNESS, buckling_words, thick_words
+from flexapod.study.before.estimates import buckling_load, section_width
+from flexapod.study.before.thick import piston_section
+from flexapod.typing import Array
+
+__all__ = ["Extreme", "LegDescription", "Stress", "describe_leg", "load_remarks"]
+
+
+@dataclass(frozen=True, kw_only=True)
+class Extreme:
+    """The largest or smallest value of a quantity, and its instant [s]."""
+
+    value: float
+    time: float
+
+
+@dataclass(frozen=True, kw_only=True)
+class Stress:
+    """Largest stresses in a piston [Pa]: axial, bending, and their sum; `yield_stress` where it is known."""
+
+    axial: float
+    bending: float
+    total: Extreme
+    yield_stress: float | None
+
+
+@dataclass(frozen=True, kw_only=True)
+class LegDescription:
+    """One leg on the rigid path, SI units.
+
+    `home`, `shortest`, `longest`: joint to joint; `stroke`: allowed, None without limits; `stroke_margin`: least
+    distance from them; `guided`: least length of piston in the cylinder; `slenderness`: least free length over width;
+    `force_min`, `force_max`: of the drive, positive pushes out; `euler_share`: largest thrust over Euler load (T8.11),
+    0 if never pushed, `euler_load` there; `stress`: None where section or material is not known.
+    """
+
+    leg: int
+    home: float
+    shortest: Extreme
+    longest: Extreme
+    stroke: tuple[float, float] | None
+    stroke_margin: Extreme | None
+    guided: Extreme
+    slenderness: float
+    force_min: Extreme
+    force_max: Extreme
+    euler_share: Extreme
+    euler_load: float
+    stress: Stress | None
+
+
+def describe_leg(
+    number: int, leg: Leg, t: Array, length: Array, force: Array, thrust: Array, moment: Array, home: float
+) -> LegDescription:
+    """Extremes of a leg.
+
+    Parameters
+    ----------
+    number : int
+        1 to 6.
+    leg : Leg
+    t, length, force, thrust, moment : ndarray, each shape (T,)
+        Instants [s]; joint-to-joint length [m]; force of the drive and thrust at the tip [N]; bending moment [N m].
+    home : float
+        Length at home [m].
+    """
+    free = length - leg.cylinder.mouth
+    pushed = np.maximum(force, thrust)  # the axial force goes from the drive's to the tip's along the piston
+    euler = buckling_load(leg, free)
+    near = int((pushed / euler).argmax())
+    inside = np.minimum(leg.piston.length, leg.piston.length - free)
+    return LegDescription(
+        leg=number,
+        home=home,
+        shortest=_least(t, length),
+        longest=_most(t, length),
+        stroke=None if leg.stroke is None else (leg.stroke.min, leg.stroke.max),
+        stroke_margin=_margin(leg, t, length),
+        guided=_least(t, inside),
+        slenderness=float(free.min() / section_width(leg.piston)),
+        force_min=_least(t, force),
+        force_max=_most(t, force),
+        euler_share=Extreme(value=max(0.0, float(pushed[near] / euler[near])), time=float(t[near])),
+        euler_load=float(euler[near]),
+        stress=_stress(leg, t, np.maximum(np.abs(force), np.abs(thrust)), moment),
+    )
+
+
+def _least(t: Array, values: Array) -> Extreme:
+    k = int(values.argmin())
+    return Extreme(value=float(values[k]), time=float(t[k]))
+
+
+def _most(t: Array, values: Array) -> Extreme:
+    k = int(values.argmax())
+    return Extreme(value=float(values[k]), time=float(t[k]))
+
+
+def _margin(leg: Leg, t: Array, length: Array) -> Extreme | None:
+    if leg.stroke is None:
+        return None
+    return _least(t, np.minimum(length - leg.stroke.min, leg.stroke.max - length))
+
+
+def _stress(leg: Leg, t: Array, force: Array, moment: Array) -> Stress | None:
+    piston = leg.piston
+    if piston.diameter is None or piston.E is None:
+        return None
+    axial = force * piston.E / piston.EA
+    bending = moment * piston.E * piston.diameter / (2 * piston.EI)
+    return Stress(
+        axial=float(axial.max()),
+        bending=float(bending.max()),
+        total=_most(t, axial + bending),
+        yield_stress=piston.yield_stress,
+    )
+
+
+def load_remarks(legs: tuple[LegDescription, ...], robot: Robot, fidelity: str) -> list[str]:
+    """Doubts about loads and about legs too thick for the `fidelity`, each of the leg where it is worst."""
+    remarks = []
+    worst = max(legs, key=lambda leg: leg.euler_share.value)
+    share, slender = worst.euler_share, min(legs, key=lambda leg: leg.slenderness)
+    if share.value > NEAR_BUCKLING:
+        words = buckling_words(share.value, share.value * worst.euler_load, f" at t = {share.time:.6g} s")
+        remarks.append(f"leg {worst.leg}: {words}")
+    if slender.slenderness < SLENDERNESS:
+        remarks.append(
+            f"leg {slender.leg}: the free length falls to {slender.slenderness:.3g} times the width of the piston; "
+            + _thick(robot.legs[slender.leg - 1], slender.slenderness, solid=fidelity == SOLID)
+        )
+    return remarks + _yielding(legs)
+
+
+def _thick(leg: Leg, slenderness: float, *, solid: bool) -> str:
+    return thick_words(piston_section(leg.piston), slenderness * section_width(leg.piston), solid=solid)
+
+
+def _yielding(legs: tuple[LegDescription, ...]) -> list[str]:
+    """The leg that is stressed farthest above its yield stress, if any is."""
+    over = [
+        (leg.stress.total.value / leg.stress.yield_stress, leg.leg, leg.stress)
+        for leg in legs
+        if leg.stress is not None and leg.stress.yield_stress is not None
+    ]
+    ratio, leg, stress = max(over, key=lambda entry: entry[0], default=(0.0, 0, None))
+    if stress is None or ratio <= 1:
+        return []
+    return [
+        f"leg {leg} yields: a stress of {stress.total.value / 1e6:.4g} MPa at t = {stress.total.time:.6g} s, "
+        f"{ratio:.3g} times its yield stress"
+    ]

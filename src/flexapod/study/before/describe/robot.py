@@ -1,0 +1,127 @@
+"""A study before it is computed: lengths, margins, singularity, loads, stiffness, vibration to expect."""
+
+from __future__ import annotations
+
+from dataclasses import asdict, dataclass
+
+import numpy as np
+
+from flexapod import model, rigid
+from flexapod.errors import InputError
+from flexapod.solve.robot_march import refuse_massless
+from flexapod.study.before.checks import check_path, path_instants
+from flexapod.study.before.describe.actuator import ActuatorDescription, describe_actuator
+from flexapod.study.before.describe.leg import LegDescription, describe_leg, load_remarks
+from flexapod.study.before.describe.pose import PoseDescription, VibrationToExpect, describe_pose, vibration_to_expect
+from flexapod.study.before.estimates import bending_moment
+from flexapod.study.words import held
+from flexapod.typing import Array
+
+__all__ = ["RobotDescription", "Singularity", "describe", "describe_legs"]
+
+
+@dataclass(frozen=True, kw_only=True)
+class Singularity:
+    """Scaled Jacobian (T2.24) on the path: smallest singular value and condition at home and where it is worst."""
+
+    home_smallest_singular_value: float
+    home_condition: float
+    smallest_singular_value: float
+    condition: float
+    time: float
+
+
+@dataclass(frozen=True, kw_only=True)
+class RobotDescription:
+    """What `describe` finds for a robot; times in s; what poses `held` still and `remarks` of doubt in words."""
+
+    kind: str = "robot"
+    file: str | None
+    duration: float
+    motion_end: float
+    fidelity: str
+    held: str
+    legs: tuple[LegDescription, ...]
+    singularity: Singularity
+    poses: tuple[PoseDescription, ...]
+    vibration: VibrationToExpect | None
+    remarks: tuple[str, ...]
+
+    def as_dict(self) -> dict[str, object]:
+        """Everything as plain data."""
+        return asdict(self)
+
+
+def describe(study: model.Study | model.ActuatorStudy) -> RobotDescription | ActuatorDescription:
+    """What a study will ask of its robot or actuator, estimated without a simulation.
+
+    Parameters
+    ----------
+    study : Study or ActuatorStudy
+
+    Raises
+    ------
+    InputError
+        A path that no robot could follow, as `check_path`.
+    """
+    if isinstance(study, model.ActuatorStudy):
+        return describe_actuator(study)
+    remarks, t = [*check_path(study), *_in_time(study)], path_instants(study)
+    path = rigid.poses(study.robot, study.motion, t)
+    legs, singularity = describe_legs(study, t, path), _singularity(study.robot, t, path)
+    end = min(study.motion.end_time - study.motion.hold, study.duration)
+    instants = {"start": 0.0, "end of the motion": end}
+    worst = singularity.time
+    if min(worst, abs(worst - end)) > 0.02 * end and worst < end:
+        instants["nearest to a singularity"] = worst
+    return RobotDescription(
+        file=study.path,
+        duration=study.duration,
+        motion_end=end,
+        fidelity=study.simulation.fidelity,
+        held=held(study.robot),
+        legs=legs,
+        singularity=singularity,
+        poses=tuple(describe_pose(study, name, instant) for name, instant in instants.items()),
+        vibration=vibration_to_expect(study, end),
+        remarks=tuple(
+            dict.fromkeys([*study.warnings, *remarks, *load_remarks(legs, study.robot, study.simulation.fidelity)])
+        ),
+    )
+
+
+def _in_time(study: model.Study) -> list[str]:
+    """Why a simulation will be refused although everything at rest has an answer."""
+    try:
+        refuse_massless(study)
+    except InputError as error:
+        return [f"a simulation is not possible: {error.key} = {error.value} {error.what}"]
+    return []
+
+
+def _singularity(robot: model.Robot, t: Array, path: rigid.Poses) -> Singularity:
+    home, found = rigid.singularity(robot, rigid.home_pose(robot)), rigid.singularity(robot, path)
+    return Singularity(
+        home_smallest_singular_value=float(home.smallest_singular_value[0]),
+        home_condition=float(home.condition[0]),
+        smallest_singular_value=float(found.smallest_singular_value[found.worst]),
+        condition=float(found.condition[found.worst]),
+        time=float(t[found.worst]),
+    )
+
+
+def describe_legs(study: model.Study, t: Array, path: rigid.Poses) -> tuple[LegDescription, ...]:
+    """Extremes of the legs on the rigid `path` of a study at instants `t` (T,) [s]."""
+    robot = study.robot
+    state = rigid.inverse_kinematics(robot, path)
+    forces = rigid.inverse_dynamics(robot, path, rigid.wrench(study.load, t))
+    axes = (path.point(robot.platform_joints)[0] - robot.base_joints) / state.length[..., None]
+    thrust = np.einsum("tli,tli->tl", forces.joint_force, axes)
+    moment = bending_moment(robot, path, state, forces)
+    return tuple(
+        describe_leg(
+            i + 1, leg, t, state.length[:, i], forces.actuator_force[:, i], thrust[:, i], moment[:, i],
+            float(robot.home_lengths[i]),
+        )
+        for i, leg in enumerate(robot.legs)
+    )  # fmt: skip

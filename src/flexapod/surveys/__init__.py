@@ -1,0 +1,1 @@
+"""Many runs of one study: variants (`sweeps`), poses (`workspace`), steps and shapes (`convergence`)."""

@@ -1,0 +1,222 @@
+"""What a sweep keeps of a robot's simulation: scalars from the record, without building a Dataset."""
+
+from __future__ import annotations
+
+from collections.abc import Callable, Mapping
+from dataclasses import dataclass, fields, replace
+from functools import cached_property
+from typing import NamedTuple
+
+import numpy as np
+
+from flexapod import rigid
+from flexapod.errors import InputError
+from flexapod.model import Study
+from flexapod.rigid.rotations import difference, matrix, quaternion
+from flexapod.solve.modes import robot_modes
+from flexapod.solve.plant import Counters
+from flexapod.solve.system import RobotSystem
+from flexapod.study.after.plausibility import leg_stress
+from flexapod.study.after.results import robot_results
+from flexapod.study.record import Record
+from flexapod.typing import Array
+
+__all__ = ["ROBOT_DEFAULTS", "ROBOT_SCALARS", "RobotRun", "Scalar"]
+
+
+class Scalar(NamedTuple):
+    """A quantity of a point: dimensions beside `point`, SI unit, meaning, and how it follows from a run.
+
+    ``absent``: why a computed point may have no such number; empty: it always has one.
+    """
+
+    dims: tuple[str, ...]
+    units: str
+    long_name: str
+    value: Callable[..., Array | float]
+    absent: str = ""
+
+
+@dataclass(frozen=True)
+class RobotRun:
+    """A finished simulation of a robot; every quantity is computed when it is asked for, once."""
+
+    study: Study
+    system: RobotSystem
+    record: Record
+    counters: Counters
+
+    @cached_property
+    def path(self) -> rigid.Poses:
+        """The rigid path at the stored instants."""
+        return rigid.poses(self.study.robot, self.study.motion, self.record.time)
+
+    @cached_property
+    def com_rigid(self) -> Array:
+        """Centre of mass on the rigid path, (T, 3) [m]."""
+        return self.path.point(self.study.robot.payload.com)[0]
+
+    @cached_property
+    def com_deviation(self) -> Array:
+        """Deviation of the centre of mass, (T, 3) [m]."""
+        return self.record.pose[:, :3] - self.com_rigid
+
+    @cached_property
+    def turn(self) -> Array:
+        """Rotation matrices of the payload, (T, 3, 3)."""
+        return matrix(self.record.pose[:, 3:])
+
+    @cached_property
+    def tool_deviation(self) -> Array:
+        """Deviation of the tool, (T, 3) [m]."""
+        load = self.study.robot.payload
+        return self.record.pose[:, :3] + self.turn @ (load.tool - load.com) - self.path.point(load.tool)[0]
+
+    @cached_property
+    def rotation_deviation(self) -> Array:
+        """Angle between flexible and rigid platform, (T,) [rad]."""
+        return np.linalg.norm(difference(self.record.pose[:, 3:], quaternion(self.path.rotation)), axis=1)
+
+    @cached_property
+    def actuator_force(self) -> Array:
+        """Force of every drive on its piston, (T, 6) [N]."""
+        if self.system.held.all():
+            return self.record.drive[:, :, 0]
+        return robot_results(self.study, self.system, self.record)["actuator_force"]
+
+    @cached_property
+    def lateral(self) -> Array:
+        """Lateral amplitudes, (T, 6, 2, k) [m]."""
+        q = self.record.q[:, :, 3 + self.system.kernel.shapes.axial.count :]
+        return q.reshape(*q.shape[:2], 2, self.system.kernel.shapes.a.count)
+
+    @cached_property
+    def tip_deflection(self) -> Array:
+        """Distance of the pistons' tips from the cylinders' axes, (T, 6) [m]."""
+        return np.linalg.norm(self.lateral @ self.system.kernel.shapes.a.tip, axis=-1)
+
+    @cached_property
+    def stress(self) -> Array:
+        """Largest stress in every piston over time, (6,) [Pa]; NaN of a piston without section and material."""
+        joints = self.study.robot.platform_joints - self.study.robot.payload.com
+        legs = self.record.pose[:, None, :3] + joints @ self.turn.transpose(0, 2, 1) - self.study.robot.base_joints
+        compression = np.einsum("tli,tli->tl", self.record.lam, legs) / np.linalg.norm(legs, axis=-1)
+        found, shapes = np.full(6, np.nan), self.system.kernel.shapes
+        for i, leg in enumerate(self.study.robot.legs):
+            free = self.record.q[:, i, shapes.l_index] - leg.cylinder.mouth
+            stress = leg_stress(leg, shapes.a, self.lateral[:, i], free, compression[:, i])
+            found[i] = np.nan if stress is None else stress.max()
+        return found
+
+    @property
+    def strain(self) -> Array:
+        """Largest strain in every piston over time, (6,)."""
+        return self.stress / np.array([leg.piston.E or np.nan for leg in self.study.robot.legs])
+
+    @property
+    def cause_share(self) -> Array:
+        """Share of every cause in the deviation at its peak, along its direction, (3,); zero without deviation."""
+        deviation = self.com_deviation
+        at = int(np.linalg.norm(deviation, axis=1).argmax())
+        size = float(deviation[at] @ deviation[at])
+        if size == 0.0:
+            return np.zeros(3)
+        shares = robot_results(self.study, self.system, _instant(self.record, at))["deviation_by_cause"][0]
+        return shares.sum(axis=1) @ deviation[at] / size
+
+    @property
+    def first_frequency(self) -> float:
+        """Lowest frequency at home, loads just before t = 0, commands of the drives held [Hz]; NaN if there is none."""
+        home = rigid.home_pose(self.study.robot)
+        try:
+            return float(robot_modes(self.study.robot, self.study.simulation, home, self.study.load).frequency[0])
+        except InputError:  # nothing can move, or a drive that cannot be locked
+            return np.nan
+
+
+def _instant(record: Record, at: int) -> Record:
+    """The record at one instant alone."""
+    arrays = {f.name: getattr(record, f.name) for f in fields(record)}
+    one = {name: value[at : at + 1] for name, value in arrays.items() if isinstance(value, np.ndarray)}
+    return replace(record, **one)  # type: ignore[arg-type]
+
+
+def _size(vectors: Array) -> Array:
+    return np.linalg.norm(vectors, axis=1)
+
+
+def _peak(values: Array) -> Array:
+    return np.abs(values).max(axis=0)
+
+
+def _rms(values: Array) -> Array:
+    return np.sqrt(np.mean(np.square(values), axis=0))
+
+
+def _deviation(point: str, words: str) -> dict[str, Scalar]:
+    name = f"{point}_deviation"
+
+    def of(run: RobotRun) -> Array:
+        return getattr(run, name)
+
+    axis = ("axis",)
+    return {
+        f"{name}_peak": Scalar((), "m", f"largest deviation of {words}", lambda run: _size(of(run)).max()),
+        f"{name}_rms": Scalar((), "m", f"root mean square deviation of {words}", lambda run: _rms(_size(of(run)))),
+        f"{name}_start": Scalar(
+            (), "m", f"deviation of {words} at t = 0 (from equilibrium: the sag)", lambda run: _size(of(run)[:1])[0]
+        ),
+        f"{name}_peak_by_axis": Scalar(axis, "m", f"largest deviation of {words}", lambda run: _peak(of(run))),
+        f"{name}_rms_by_axis": Scalar(axis, "m", f"root mean square deviation of {words}", lambda run: _rms(of(run))),
+        f"{name}_start_by_axis": Scalar(axis, "m", f"deviation of {words} at t = 0", lambda run: of(run)[0]),
+    }
+
+
+def _by_leg(
+    name: str, units: str, words: str, largest: Callable[[RobotRun], Array], absent: str = ""
+) -> dict[str, Scalar]:
+    return {
+        name: Scalar((), units, f"largest {words}, of all legs", lambda run: largest(run).max(), absent),
+        f"{name}_by_leg": Scalar(("leg",), units, f"largest {words}", largest, absent),
+    }
+
+
+_NO_SECTION = "a piston is given by EI, EA and rhoA, without section or material"
+
+
+#: Scalars of a robot's simulation, by name.
+ROBOT_SCALARS: Mapping[str, Scalar] = {
+    **_deviation("com", "the centre of mass"),
+    **_deviation("tool", "the tool"),
+    "rotation_deviation_peak": Scalar(
+        (), "rad", "largest angle from the rigid to the flexible platform", lambda run: run.rotation_deviation.max()
+    ),
+    "com_excursion_by_axis": Scalar(
+        ("axis",), "m", "peak-to-peak travel of the centre of mass on the rigid path",
+        lambda run: np.ptp(run.com_rigid, axis=0),
+    ),
+    "cause_share": Scalar(
+        ("cause",), "1", "share of a cause in the deviation of the centre of mass at its peak",
+        lambda run: run.cause_share,
+    ),
+    **_by_leg("actuator_force_peak", "N", "size of the drive force", lambda run: _peak(run.actuator_force)),
+    **_by_leg("tip_deflection_peak", "m", "deflection of the piston's tip", lambda run: _peak(run.tip_deflection)),
+    **_by_leg("stress_peak", "Pa", "axial plus bending stress in the piston", lambda run: run.stress, _NO_SECTION),
+    **_by_leg("strain_peak", "1", "axial plus bending strain in the piston", lambda run: run.strain, _NO_SECTION),
+    "first_frequency": Scalar(
+        (), "Hz", "lowest natural frequency at home, commands of the drives held", lambda run: run.first_frequency,
+        "rigid legs on held strokes cannot vibrate, a pure force drive cannot be locked",
+    ),
+    "steps": Scalar((), "1", "steps of the time integration", lambda run: float(run.counters.steps)),
+}  # fmt: skip
+
+#: Kept where a sweep file names nothing; the first is the one that summaries and figures show.
+ROBOT_DEFAULTS = (
+    "com_deviation_peak",
+    "com_deviation_rms",
+    "com_deviation_peak_by_axis",
+    "tool_deviation_peak",
+    "actuator_force_peak",
+    "tip_deflection_peak",
+    "steps",
+)

@@ -1,0 +1,194 @@
+"""What a map says: where each quantity is least and largest, how much of the grid is reached, and why not the rest."""
+
+from __future__ import annotations
+
+from dataclasses import asdict, dataclass
+from typing import TYPE_CHECKING
+
+import numpy as np
+
+from flexapod.model import AXES
+from flexapod.study.before.reach import REACHED, REASONS
+from flexapod.study.words import number
+from flexapod.surveys.workspace.grid import UNITS
+from flexapod.surveys.workspace.names import SCALARS
+from flexapod.typing import Array
+
+if TYPE_CHECKING:
+    from xarray import DataArray, Dataset
+
+__all__ = [
+    "Finding",
+    "MapFindings",
+    "axis_words",
+    "coordinate_words",
+    "drawn",
+    "map_findings",
+    "name_of",
+    "scalar",
+    "unit_of",
+]
+
+_UNIT_WORDS = {"N m-1": "N/m", "1": ""}
+
+
+@dataclass(frozen=True, kw_only=True)
+class Finding:
+    """Least and largest value of a quantity over the reached poses, where they are, and the value at home.
+
+    SI units; `home` is None where home is not a point of the grid, or not reached.
+    """
+
+    name: str
+    words: str
+    unit: str
+    least: float
+    least_at: dict[str, float]
+    largest: float
+    largest_at: dict[str, float]
+    home: float | None
+
+
+@dataclass(frozen=True, kw_only=True)
+class MapFindings:
+    """Counts of poses, of all and of those reached; why the others are not, by words; findings by quantity."""
+
+    poses: int
+    reached: int
+    reasons: dict[str, int]
+    quantities: tuple[Finding, ...]
+
+    def as_dict(self) -> dict[str, object]:
+        """Everything as plain data."""
+        return asdict(self)
+
+
+def map_findings(data: Dataset, mode: int = 1) -> MapFindings:
+    """Find out what a map says.
+
+    Parameters
+    ----------
+    data : Dataset
+        Result of `flexapod.workspace_map`.
+    mode : int
+        Which frequency.
+    """
+    codes, counts = np.unique(data.reason.values, return_counts=True)
+    reasons = {REASONS[code].words: int(n) for code, n in zip(codes, counts, strict=True) if code != REACHED}
+    found = [_finding(data, name, scalar(data, name, mode), mode) for name in SCALARS]
+    return MapFindings(
+        poses=int(data.reason.size),
+        reached=int((data.reason.values == REACHED).sum()),
+        reasons=reasons,
+        quantities=tuple(finding for finding in found if finding is not None),
+    )
+
+
+def scalar(data: Dataset, name: str, mode: int = 1) -> DataArray:
+    """A quantity of one number per pose; of the frequencies, that of a mode."""
+    return data[name].sel(mode=mode) if "mode" in data[name].dims else data[name]
+
+
+def name_of(data: Dataset, name: str, mode: int = 1) -> str:
+    """A quantity in words."""
+    if name == "frequency":
+        return "first natural frequency" if mode == 1 else f"natural frequency of mode {mode}"
+    if name == "stiffness":
+        return f"stiffness at the tool along {_vector(data.attrs['stiffness_direction'])}"
+    if name == "dynamic_deviation":
+        return f"deviation of the tool at {_acceleration(data.attrs['acceleration'])}"
+    return {
+        "stiffness_least": "stiffness at the tool in its weakest direction",
+        "condition": "condition of the scaled Jacobian",
+        "static_deviation_size": "sag of the tool under gravity and load",
+        "largest_force": "largest drive force at rest",
+        "stroke_margin": "least stroke left",
+        "guided_length": "least length of piston in its cylinder",
+        "base_joint_angle": "largest turn of a base joint from home",
+        "platform_joint_angle": "largest turn of a platform joint from home",
+        "euler_share": "largest thrust over the Euler load",
+    }[name]
+
+
+def unit_of(values: DataArray) -> str:
+    """Unit as people write it; empty for numbers without one."""
+    unit = str(values.attrs.get("units", ""))
+    return _UNIT_WORDS.get(unit, unit)
+
+
+def coordinate_words(at: dict[str, float]) -> str:
+    """A place of the grid: "surge 12 mm, roll 5 deg"."""
+    return ", ".join(f"{name} {_in_shown_unit(name, value)}" for name, value in at.items())
+
+
+def _in_shown_unit(name: str, value: float) -> str:
+    shown, unit = (1e3 * value, "mm") if UNITS[name] == "m" else (np.rad2deg(value), "deg")
+    return f"{number(round(shown, 9), 4)} {unit}"
+
+
+def axis_words(data: Dataset) -> str:
+    """The grid: "surge -120 to 120 mm (41), heave ... at roll 5 deg"."""
+    parts = []
+    for name in data.attrs["axes"].split():
+        values = data[name].values
+        ends = " to ".join(_in_shown_unit(name, end) for end in dict.fromkeys(values[[0, -1]].tolist()))
+        parts.append(f"{name} {ends} ({len(values)})")
+    fixed = {name: float(data.attrs[f"at_{name}"]) for name in AXES if data.attrs.get(f"at_{name}", 0.0)}
+    return ", ".join(parts) + (f", at {coordinate_words(fixed)}" if fixed else "")
+
+
+def drawn(data: Dataset) -> list[str]:
+    """Quantities that have a value anywhere; the first one in any case."""
+    return [name for name in SCALARS if name == "frequency" or np.isfinite(data[name].values).any()]
+
+
+def _finding(data: Dataset, name: str, values: DataArray, mode: int) -> Finding | None:
+    flat = values.values.ravel()
+    if not np.isfinite(flat).any():
+        return None
+    least, largest = int(np.nanargmin(flat)), int(np.nanargmax(flat))
+    home = _home(data, values)
+    return Finding(
+        name=name,
+        words=name_of(data, name, mode),
+        unit=unit_of(values),
+        least=float(flat[least]),
+        least_at=_place(values, least),
+        largest=float(flat[largest]),
+        largest_at=_place(values, largest),
+        home=home,
+    )
+
+
+def _place(values: DataArray, flat: int) -> dict[str, float]:
+    index = np.unravel_index(flat, values.shape)
+    return {str(dim): float(values[dim].values[i]) for dim, i in zip(values.dims, index, strict=True)}
+
+
+def _home(data: Dataset, values: DataArray) -> float | None:
+    """Value at home, where the grid has that point."""
+    if any(data.attrs.get(f"at_{name}", 0.0) for name in AXES):
+        return None
+    index = []
+    for dim in values.dims:
+        axis = values[dim].values
+        k = int(np.abs(axis).argmin())
+        if abs(axis[k]) > 1e-9 * max(1.0, float(np.ptp(axis))):
+            return None
+        index.append(k)
+    found = float(values.values[tuple(index)])
+    return found if np.isfinite(found) else None
+
+
+def _vector(vector: Array) -> str:
+    whole = np.asarray(vector, dtype=float)
+    for axis, unit in zip("xyz", np.eye(3), strict=True):
+        if np.array_equal(whole, unit):
+            return axis
+    return f"[{', '.join(f'{part:.3g}' for part in whole)}]"
+
+
+def _acceleration(given: str | Array) -> str:
+    if isinstance(given, str):
+        return "1 m/s² in the worst direction"
+    return f"an acceleration of [{', '.join(f'{part:.3g}' for part in np.asarray(given, dtype=float))}] m/s²"

@@ -1,0 +1,163 @@
+"""A map: quantities over a grid of poses as a Dataset."""
+
+from __future__ import annotations
+
+import time
+from collections.abc import Mapping
+from numbers import Integral
+from typing import TYPE_CHECKING
+
+import numpy as np
+from numpy.typing import ArrayLike
+
+from flexapod import model
+from flexapod.errors import InputError
+from flexapod.solve.frequencies import count_real
+from flexapod.study.arguments import LoadLike, RobotLike, at_pose
+from flexapod.study.attributes import attributes
+from flexapod.study.before.reach import flags
+from flexapod.study.before.room import check_map
+from flexapod.study.names import dataset
+from flexapod.study.poses import batches, from_home
+from flexapod.surveys.workspace.grid import UNITS, Axes, Grid, grid
+from flexapod.surveys.workspace.names import forms
+from flexapod.surveys.workspace.quantities import Wanted, batch_values
+from flexapod.typing import Array
+
+if TYPE_CHECKING:
+    from xarray import Dataset
+
+    from flexapod.study.record import Report
+
+__all__ = ["DIRECTIONS", "workspace_map"]
+
+DIRECTIONS = {"x": (1.0, 0.0, 0.0), "y": (0.0, 1.0, 0.0), "z": (0.0, 0.0, 1.0)}
+FREQUENCIES = 6
+
+
+def workspace_map(
+    robot: RobotLike,
+    axes: Axes | None = None,
+    *,
+    at: Mapping[str, float] | None = None,
+    direction: str | ArrayLike = "z",
+    acceleration: ArrayLike | None = None,
+    frequencies: int = FREQUENCIES,
+    load: LoadLike = None,
+    fidelity: str | None = None,
+    modes: int | None = None,
+    axial_modes: int | None = None,
+    basis: str | None = None,
+    progress: Report | None = None,
+) -> Dataset:
+    """Frequencies, stiffness, deviations, forces and margins over a line, slice or volume of poses, drives held.
+
+    Parameters
+    ----------
+    robot : Robot, Study or path
+    axes : mapping, optional
+        One to three of surge, sway, heave [m], roll, pitch, yaw [rad] from home, each with its values, or None for as
+        far as the robot reaches; default: surge and heave.
+    at : mapping, optional
+        Fixed coordinates by name.
+    direction : str or array_like (3,)
+        Of `stiffness`: x, y, z, or a vector in world axes.
+    acceleration : array_like (3,), optional
+        Of the platform [m/s^2] for `dynamic_deviation`; default: 1 m/s^2 in whichever direction is worst.
+    frequencies : int
+        How many of the lowest.
+    load, fidelity, modes, axial_modes, basis
+        As for `flexapod.modes`.
+    progress : callable, optional
+        Told in words what is done, and its share.
+
+    Returns
+    -------
+    xarray.Dataset
+        Dimensions as the axes; `reason` is a code, 0 where a pose is reached; else all other variables are NaN.
+
+    Raises
+    ------
+    InputError
+        Axes, direction or acceleration that are none; rigid legs on prescribed strokes; a pure force drive.
+    """
+    study = model.override(at_pose(robot, load), fidelity=fidelity, modes=modes, axial_modes=axial_modes, basis=basis)
+    poses = grid(study.robot, axes, at)
+    wanted = Wanted(
+        direction=_unit(direction),
+        acceleration=None if acceleration is None else _vector("acceleration", acceleration),
+        frequencies=_count(frequencies),
+    )
+    check_map(poses.size, wanted.frequencies)
+    began, values = time.perf_counter(), _computed(study, poses, wanted, progress)
+    count = count_real(values["frequency"])
+    values["frequency"] = values["frequency"][..., :count]
+    coords = {**poses.values, "mode": np.arange(1, count + 1)}
+    data = dataset(values, coords, _attributes(study, poses, wanted), forms(tuple(poses.values)))
+    return _described(data, poses, time.perf_counter() - began)
+
+
+def _described(data: Dataset, poses: Grid, seconds: float) -> Dataset:
+    for name in poses.values:
+        data[name].attrs |= {"units": UNITS[name], "long_name": f"{name} from home"}
+    data.reason.attrs |= flags()
+    data.attrs["wall_time"] = seconds
+    return data
+
+
+def _computed(study: model.Study, poses: Grid, wanted: Wanted, progress: Report | None) -> dict[str, Array]:
+    table = poses.coordinates()
+    parts = []
+    for part in batches(len(table)):
+        code, values = batch_values(study, from_home(study.robot, table[part]), wanted)
+        parts.append(values | {"reason": code})
+        if progress is not None:
+            progress(f"computing {len(table)} poses", part.stop / len(table))
+    together = {name: np.concatenate([part[name] for part in parts]) for name in parts[0]}
+    return {name: rows.reshape(*poses.shape, *rows.shape[1:]) for name, rows in together.items()}
+
+
+def _count(frequencies: int) -> int:
+    if isinstance(frequencies, bool) or not isinstance(frequencies, Integral) or frequencies < 1:
+        raise InputError("is not a number of modes", key="frequencies", value=frequencies, allowed="1 or more, whole")
+    return int(frequencies)
+
+
+def _unit(direction: str | ArrayLike) -> Array:
+    if isinstance(direction, str):
+        if direction not in DIRECTIONS:
+            raise InputError(
+                "is not a direction", key="direction", value=direction, allowed="x, y, z, or three numbers, world axes"
+            )
+        return np.array(DIRECTIONS[direction])
+    vector = _vector("direction", direction)
+    if not vector.any():
+        raise InputError(
+            "has no direction", key="direction", value=vector.tolist(), allowed="a vector that is not zero"
+        )
+    vector = vector / np.abs(vector).max()  # so that no square is too small or too large for a number
+    return vector / np.linalg.norm(vector)
+
+
+def _vector(key: str, given: ArrayLike) -> Array:
+    try:
+        vector = np.asarray(given, dtype=float)
+    except (TypeError, ValueError):
+        vector = np.zeros(0)
+    if vector.shape != (3,) or not np.isfinite(vector).all():
+        raise InputError("is not a vector", key=key, value=given, allowed="three finite numbers, world axes")
+    return vector
+
+
+def _attributes(study: model.Study, poses: Grid, wanted: Wanted) -> dict[str, object]:
+    s, at = study.simulation, dict(zip(model.AXES, poses.at.tolist(), strict=True))
+    acceleration = "worst" if wanted.acceleration is None else wanted.acceleration
+    return attributes(study, study.warnings) | {
+        "fidelity": s.fidelity,
+        "basis": s.lateral_basis if s.lateral_shapes else "none",
+        "modes": s.lateral_shapes,
+        "axes": " ".join(poses.values),
+        **{f"at_{name}": value for name, value in at.items() if name not in poses.values},
+        "stiffness_direction": wanted.direction,
+        "acceleration": acceleration,
+    }

@@ -1,0 +1,169 @@
+"""What a map shows of the poses of a batch: rigid measures, and those about the static equilibrium."""
+
+from __future__ import annotations
+
+from dataclasses import dataclass
+
+import numpy as np
+
+from flexapod import model, rigid
+from flexapod.rigid.rotations import matrix
+from flexapod.solve.arrow import arrow_solve
+from flexapod.solve.modes import LockedPoses, locked_poses, modes_of
+from flexapod.solve.parameters import drive_spring
+from flexapod.solve.stiffness import compliance, stiffness_of, tool_motion
+from flexapod.study.before.estimates import buckling_load
+from flexapod.study.before.reach import REACHED, Codes, leg_limits, rigid_codes
+from flexapod.study.many_modes import codes_at_rest, poses_of
+from flexapod.typing import Array, Mask
+
+__all__ = ["Wanted", "batch_values"]
+
+Values = dict[str, Array]
+
+
+@dataclass(frozen=True, kw_only=True)
+class Wanted:
+    """What is asked of each pose.
+
+    ``direction`` (3,) unit vector of the stiffness; ``acceleration`` (3,) [m/s^2], None:
+    1 m/s^2 in whichever direction is worst; ``frequencies``: how many of the lowest.
+    """
+
+    direction: Array
+    acceleration: Array | None
+    frequencies: int
+
+
+def batch_values(study: model.Study, path: rigid.Poses, wanted: Wanted) -> tuple[Codes, Values]:
+    """Codes (P,) and, of each variable, the values (P, ...) at the poses of a batch; NaN out of reach.
+
+    Raises
+    ------
+    InputError
+        Rigid legs on prescribed strokes (nothing can move, no compliance), or a pure force drive.
+    """
+    code = rigid_codes(study.robot, path, from_home=True)
+    within = np.flatnonzero(code == REACHED)
+    some = poses_of(path, within) if within.size else rigid.home_pose(study.robot)  # for what it refuses, and shapes
+    locked = locked_poses(study.robot, study.simulation, some, study.load)
+    modes = modes_of(locked)
+    values = {
+        "frequency": modes.frequency[:, : wanted.frequencies],
+        **_elastic(study.robot, some, locked, wanted),
+        **{name: row[locked.at] for name, row in _rigid(study.robot, some).items()},
+    }
+    if within.size:
+        code[within] = codes_at_rest(locked, modes)
+    at, result = within[locked.at] if within.size else within, {}
+    for name, rows in values.items():
+        result[name] = np.full((len(path), *rows.shape[1:]), np.nan)
+        result[name][at] = rows[: len(at)]
+        result[name][code != REACHED] = np.nan
+    return code, result
+
+
+def _rigid(robot: model.Robot, path: rigid.Poses) -> Values:
+    """Margins of strokes, pistons and joints, and distance to a singularity, (P,)."""
+    found, length = rigid.singularity(robot, path), _lengths(robot, path)
+    limits, mouth, piston = leg_limits(robot)
+    stroke = np.minimum(length - limits[:, 0], limits[:, 1] - length)
+    inside = np.minimum(piston, mouth + piston - length)
+    axes, home = _leg_axes(robot, path), _leg_axes(robot, rigid.home_pose(robot))
+    seen = np.einsum("tji,tlj->tli", path.rotation, axes)  # from the platform
+    return {
+        "condition": found.condition,
+        "smallest_singular_value": found.smallest_singular_value,
+        "stroke_margin": _least_where(np.isfinite(limits[:, 1]), stroke),
+        "guided_length": _least_where(mouth > 0, inside),
+        "base_joint_angle": _largest_angle(axes, home),
+        "platform_joint_angle": _largest_angle(seen, home),
+    }
+
+
+def _least_where(legs: Mask, values: Array) -> Array:
+    """Least value of the legs that count, (P,); NaN where none does."""
+    return values[:, legs].min(axis=1) if legs.any() else np.full(len(values), np.nan)
+
+
+def _lengths(robot: model.Robot, path: rigid.Poses) -> Array:
+    return rigid.leg_lengths(robot.base_joints, robot.platform_joints, path.position, path.rotation)
+
+
+def _leg_axes(robot: model.Robot, path: rigid.Poses) -> Array:
+    """Unit vectors from base to platform joint, (P, 6, 3)."""
+    vectors = path.point(robot.platform_joints)[0] - robot.base_joints
+    return vectors / np.linalg.norm(vectors, axis=-1, keepdims=True)
+
+
+def _largest_angle(a: Array, b: Array) -> Array:
+    """Largest angle between unit vectors of the legs, (P,) [rad]; exact for small ones, too."""
+    across = np.linalg.norm(np.cross(a, np.broadcast_to(b, a.shape)), axis=-1)
+    return np.arctan2(across, (a * b).sum(axis=-1)).max(axis=1)
+
+
+def _elastic(robot: model.Robot, path: rigid.Poses, locked: LockedPoses, wanted: Wanted) -> Values:
+    """Stiffness, deviations and forces about the equilibria that were found, (p, ...)."""
+    rigid_pose, states = poses_of(path, locked.at), locked.equilibria.states[locked.at]
+    give = compliance(stiffness_of(robot, locked).total)[:, :3, :3]
+    principal, axes = np.linalg.eigh(give)
+    softest = axes[:, :, -1]
+    sign = np.sign(np.take_along_axis(softest, np.abs(softest).argmax(axis=1)[:, None], axis=1))
+    tool = states.pose[:, :3] + matrix(states.pose[:, 3:]) @ (robot.payload.tool - robot.payload.com)
+    sag = tool - rigid_pose.point(robot.payload.tool)[0]
+    force = _drive_forces(robot, locked)
+    u = wanted.direction
+    return {
+        "stiffness": 1 / np.einsum("i,pij,j->p", u, give, u),  # (T7.18)
+        "stiffness_least": 1 / principal[:, -1],
+        "softest_direction": softest * sign,
+        "static_deviation": sag,
+        "static_deviation_size": np.linalg.norm(sag, axis=1),
+        "dynamic_deviation": _dynamic(robot, rigid_pose, locked, wanted.acceleration),
+        "actuator_force": force,
+        "largest_force": np.abs(force).max(axis=1),
+        "euler_share": _euler_share(robot, rigid_pose, locked, force),
+    }
+
+
+def _drive_forces(robot: model.Robot, locked: LockedPoses) -> Array:
+    """Force of every drive on its piston at rest, (p, 6) [N]: constraint, or given force and spring, Eq. (T8.8)."""
+    states, system = locked.equilibria.states[locked.at], locked.system
+    stiffness = np.array([drive_spring(leg)[0] for leg in robot.legs])
+    spring = stiffness * (locked.lengths[locked.at] - states.q[:, :, system.kernel.shapes.l_index])
+    return np.where(system.held, states.drive, locked.acts.force[locked.at] + spring)
+
+
+def _euler_share(robot: model.Robot, path: rigid.Poses, locked: LockedPoses, force: Array) -> Array:
+    """Largest thrust of a leg over its Euler load (T8.11), (p,); 0 where no leg is pushed."""
+    thrust = np.einsum("pli,pli->pl", locked.equilibria.states.lam[locked.at], _leg_axes(robot, path))
+    pushed, length = np.maximum(force, thrust), _lengths(robot, path)
+    euler = [buckling_load(leg, length[:, i] - leg.cylinder.mouth) for i, leg in enumerate(robot.legs)]
+    return np.maximum(pushed / np.stack(euler, axis=1), 0.0).max(axis=1)
+
+
+def _dynamic(robot: model.Robot, path: rigid.Poses, locked: LockedPoses, acceleration: Array | None) -> Array:
+    """Deviation of the tool under the inertial forces of payload and legs, (p,) [m], Eq. (T7.19)."""
+    columns = [_answer(robot, path, locked, unit) for unit in np.eye(3)]
+    answer = np.stack(columns, axis=2)  # of the tool, per m/s^2 along each axis
+    if acceleration is None:
+        return np.linalg.norm(answer, ord=2, axis=(1, 2))
+    return np.linalg.norm(answer @ acceleration, axis=1)
+
+
+def _answer(robot: model.Robot, path: rigid.Poses, locked: LockedPoses, acceleration: Array) -> Array:
+    """Displacement of the tool while the platform accelerates without turning, from rest, (p, 3) [m]."""
+    p, system, m = len(path), locked.system, locked.m
+    zero = np.zeros((p, 3))
+    moving = rigid.Poses(
+        position=path.position, rotation=path.rotation, velocity=zero, omega=zero, alpha=zero,
+        acceleration=np.broadcast_to(acceleration, (p, 3)),
+    )  # fmt: skip
+    legs = rigid.inverse_kinematics(robot, moving)
+    v_dot = np.zeros((p, 6, system.n))
+    v_dot[:, :, :3] = np.stack([legs.alpha_ddot, legs.beta_ddot, legs.accel], axis=-1)
+    inertia = (m.M @ v_dot[..., None])[..., 0]
+    payload = (m.payload_M @ np.append(acceleration, np.zeros(3))[:, None])[..., 0]
+    step = arrow_solve(system, m, inertia, payload, np.zeros((p, 6, 3)), np.zeros((p, 6)))
+    pose = locked.equilibria.states.pose[locked.at]
+    return (tool_motion(robot, pose) @ step.dy[..., None])[:, :3, 0]
