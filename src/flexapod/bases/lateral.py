@@ -37,6 +37,8 @@ class LateralBasis:
         int phi'' phi''^T, Eq. (T1.8).
     slope_tip, slope_first, slope_moment : (k, k) arrays
         int phi' phi'^T, int (1 - zeta) phi' phi'^T, int (1 - zeta^2)/2 phi' phi'^T: foreshortening, Eq. (T1.9).
+    turn : (k, k) array
+        int phi' phi''^T - phi'' phi'^T, antisymmetric: how far bending in two planes turns the tip, Eq. (T1.17).
     damping : (k, k) array
         Equal damping ratio for every clamped-free mode of the bare piston, Eq. (T5.2).
     """
@@ -53,6 +55,7 @@ class LateralBasis:
     slope_tip: Array
     slope_first: Array
     slope_moment: Array
+    turn: Array
     damping: Array
 
     @property
@@ -106,6 +109,7 @@ def integrate(name: str, shapes: Sequence[Shape], pieces: int = 1) -> LateralBas
     phi, slope, curvature = table(0), table(1), table(2)
     rest = 1.0 - zeta
     extended = np.concatenate([phi, rest * slope])
+    bent = (slope * weight) @ curvature.T
     mass, stiffness = _clean((extended * weight) @ extended.T), _clean((curvature * weight) @ curvature.T)
     return LateralBasis(
         name=name,
@@ -120,5 +124,6 @@ def integrate(name: str, shapes: Sequence[Shape], pieces: int = 1) -> LateralBas
         slope_tip=(slope * weight) @ slope.T,
         slope_first=(slope * weight * rest) @ slope.T,
         slope_moment=(slope * weight * 0.5 * (1.0 - zeta**2)) @ slope.T,
+        turn=bent - bent.T,
         damping=_clean(proportional_damping(mass[:count, :count], stiffness)),
     )

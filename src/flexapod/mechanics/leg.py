@@ -1,75 +1,58 @@
-"""Energies and tip of one sliding flexible leg, Eqs. (T3.6)-(T3.15)."""
+"""One leg as a chain of elements, from its carriage to its tip."""
 
 from dataclasses import dataclass
 from types import SimpleNamespace
 
-from flexapod.mechanics.damping import dissipation
-from flexapod.mechanics.distribution import Distribution, Field, Motion, kinetic_energy, piston, tip_body
+from flexapod.elements.carriage import carriage
+from flexapod.elements.cylinder import cylinder
+from flexapod.elements.distribution import Motion
+from flexapod.elements.flexure import flexure
+from flexapod.elements.frame import Energies
+from flexapod.elements.rotations import small_rotation
+from flexapod.elements.sliding_piston import sliding_piston, tip_place, tip_turn
+from flexapod.elements.tip_body import tip_body
+from flexapod.elements.torsion import torsion
+from flexapod.elements.universal import universal
 from flexapod.mechanics.layout import Shapes
-from flexapod.mechanics.rotations import universal_joint, universal_joint_rate
 from flexapod.symbolic.lagrange import Lagrangian
-from flexapod.symbolic.vocabulary import SX, constant, dot, matrix33, quadratic, time_derivative, vertcat, zeros
+from flexapod.symbolic.vocabulary import SX, vertcat, zeros
 
 
 @dataclass(frozen=True, kw_only=True)
 class Leg:
-    """One leg as expressions: Lagrangian parts and tip in the world frame."""
+    """One leg as expressions: energies, place of the tip in the world, rotation from the tip's axes to the world."""
 
     lagrangian: Lagrangian
     gravity: SX
     strain: SX
     tip: SX
+    tip_axes: SX
 
 
 def leg(shapes: Shapes, p: SimpleNamespace, q: SX, v: SX, qs: SimpleNamespace, vs: SimpleNamespace) -> Leg:
     """Energies and tip of one leg from its coordinates; ``qs`` and ``vs`` are the named pieces of q and v."""
-    alpha, alpha_dot = (zeros(1), zeros(1)) if shapes.planar else (qs.alpha, vs.alpha)
+    ground, e = carriage(shapes.carriage, p, qs, vs)
+    frame = universal(ground, qs, vs)
     s = qs.l - p.mouth  # (T3.6)  free length outside the cylinder
-    R = universal_joint(alpha, qs.beta)
-    omega = universal_joint_rate(qs.beta, alpha_dot, vs.beta)
-    motion = Motion(shapes=shapes, s=s, q=q, v=v, qs=qs, vs=vs, omega=omega)
-    bodies = [piston(motion, p), *([tip_body(motion, p)] if shapes.planar else [])]
-    T = sum((kinetic_energy(motion, body) for body in bodies), rigid_rotation(p, omega))
-    if shapes.planar:
-        T += tip_rotation(motion, p)
-    g = R.T @ matrix33(p.R0).T @ p.gravity  # gravity in leg coordinates
-    V_g = sum((gravity_energy(motion, body, g) for body in bodies), -p.cylinder_mass * p.cylinder_com * g[2])
-    V_g -= (sum(body.first.one for body in bodies) + p.cylinder_mass) * dot(p.gravity, p.base)  # zero at the base plane
-    V_s = strain_energy(shapes, p, s, qs)
-    tip = p.base + matrix33(p.R0) @ R @ tip_in_leg(motion, qs.l)
-    loss = dissipation(shapes, p, s, vs) + p.damping_time * strain_energy(shapes, p, s, vs)  # (T5.6)
-    lagrangian = Lagrangian(q=q, v=v, kinetic=T, potential=V_g + V_s, dissipation=loss)
-    return Leg(lagrangian=lagrangian, gravity=V_g, strain=V_s, tip=tip)
+    motion = Motion(a=shapes.a, b=shapes.b, axial=shapes.axial, frame=frame, s=s, q=q, v=v, qs=qs, vs=vs)
+    e += cylinder(frame, p, vs) + sliding_piston(motion, p)
+    if shapes.torsion:
+        e += torsion(frame, p, qs, vs)
+    if shapes.tip_body:
+        e += tip_body(motion, p, shapes.planar)
+    if shapes.closure == "pose":
+        e += _springs(p, qs)
+    lagrangian = Lagrangian(q=q, v=v, kinetic=e.kinetic, potential=e.gravity + e.strain, dissipation=e.dissipation)
+    return Leg(
+        lagrangian=lagrangian,
+        gravity=e.gravity,
+        strain=e.strain,
+        tip=frame.origin + frame.axes @ tip_place(motion),
+        tip_axes=frame.axes @ small_rotation(tip_turn(motion)),
+    )
 
 
-def rigid_rotation(p: SimpleNamespace, omega: SX) -> SX:
-    """Cylinder about the U joint, and the spin of cylinder and piston about the leg, Eq. (T3.12)."""
-    transverse = p.cylinder_inertia + p.cylinder_mass * p.cylinder_com**2
-    axial = p.cylinder_axial_inertia + p.piston_axial_inertia
-    return 0.5 * (transverse * (omega[0] ** 2 + omega[1] ** 2) + axial * omega[2] ** 2)
-
-
-def tip_rotation(f: Motion, p: SimpleNamespace) -> SX:
-    """Rotary inertia of a body fixed to the tip of a planar leg, Eq. (T3.13)."""
-    slope = dot(constant(f.shapes.a.tip_slope).T, f.qs.a) / f.s if f.shapes.a.count else zeros(1)
-    return 0.5 * p.tip_inertia * (f.omega[1] + time_derivative(slope, (f.q, f.v))) ** 2
-
-
-def gravity_energy(f: Motion, body: Distribution, g: SX) -> SX:
-    """- int g . r dm with the foreshortening's fall, Eq. (T3.14); g in leg coordinates."""
-    height = body.integral(Field(X=SX(1), psi=f.qs.c)) + body.short
-    return -(g[0] * body.integral(Field(phi=f.qs.a)) + g[1] * body.integral(Field(phi=f.qs.b)) + g[2] * height)
-
-
-def strain_energy(shapes: Shapes, p: SimpleNamespace, s: SX, qs: SimpleNamespace) -> SX:
-    """Bending of the free length and stretch of the whole piston, Eq. (T3.15); quadratic in the amplitudes ``qs``."""
-    bending = quadratic(qs.a, shapes.a.stiffness) + quadratic(qs.b, shapes.b.stiffness)
-    return 0.5 * p.EI / s**3 * bending + 0.5 * p.EA / p.Lp * quadratic(qs.c, shapes.axial.stiffness)
-
-
-def tip_in_leg(f: Motion, l: SX) -> SX:  # noqa: E741
-    """Tip (v(1), w(1), l + c_0 + e(1)) in leg coordinates, Eq. (T3.11)."""
-    v = dot(constant(f.shapes.a.tip).T, f.qs.a) if f.shapes.a.count else zeros(1)
-    w = dot(constant(f.shapes.b.tip).T, f.qs.b) if f.shapes.b.count else zeros(1)
-    stretch = f.qs.c[0] if f.shapes.axial.count else zeros(1)
-    return vertcat(v, w, l + stretch + f.foreshortening("slope_tip") / f.s)
+def _springs(p: SimpleNamespace, qs: SimpleNamespace) -> Energies:
+    base = vertcat(qs.alpha, qs.beta, qs.spin if hasattr(qs, "spin") else zeros(1))
+    tip = vertcat(qs.gamma1, qs.gamma2, qs.gamma3)
+    return flexure(p.base_stiffness, base, p.base_home) + flexure(p.gamma_stiffness, tip, p.gamma_home)

@@ -2,7 +2,7 @@
 
 from types import SimpleNamespace
 
-from flexapod.mechanics.rotations import from_quaternion, small_rotation
+from flexapod.elements.rotations import from_quaternion, small_rotation
 from flexapod.symbolic.vocabulary import SX, cross, matrix33, mtimes, vertcat
 
 

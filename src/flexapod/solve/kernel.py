@@ -10,7 +10,7 @@ from typing import TYPE_CHECKING
 
 import numpy as np
 
-from flexapod import bases, mechanics, symbolic
+from flexapod import bases, elements, mechanics, symbolic
 from flexapod.bases.lateral import LateralBasis
 from flexapod.mechanics.layout import Shapes
 from flexapod.symbolic.compiler import CompiledFunction, compiled_library, compiler
@@ -93,7 +93,7 @@ def _fingerprint(shapes: Shapes) -> list[object]:
     """Everything the generated code depends on: the text of the equations and the numbers of the bases."""
     texts = [
         path.read_bytes()
-        for package in (mechanics, symbolic)
+        for package in (elements, mechanics, symbolic)
         for path in sorted(Path(str(package.__file__)).parent.glob("*.py"))
     ]
     numbers = [getattr(basis, field.name) for basis in (shapes.a, shapes.axial) for field in fields(basis)]

@@ -1,0 +1,136 @@
+"""Kinetic energy and weight of mass along a sliding flexible leg from closed integrals, Eqs. (T3.7)-(T3.10), (T3.14).
+
+Displacements and velocities of material points are fields: linear combinations of the functions 1, X, phi,
+(1 - zeta) phi' and psi. X is the distance along the axis from the U joint; (1 - zeta) phi' carries the sliding, because
+zeta_dot = (1 - zeta) l_dot / s at a fixed material point; psi are the axial shapes. A mass distribution knows the inner
+products of these functions, so that the kinetic energy is a sum of quadratic forms; foreshortening multiplies
+zero-order velocities and is added to second order.
+"""
+
+from dataclasses import dataclass, field
+from types import SimpleNamespace
+
+import numpy as np
+
+from flexapod.bases import AxialBasis, LateralBasis
+from flexapod.elements.frame import Frame
+from flexapod.symbolic.vocabulary import SX, bilinear, quadratic, time_derivative, vertcat, zeros
+
+
+def _none() -> SX:
+    return zeros(0)
+
+
+@dataclass(frozen=True, kw_only=True)
+class Field:
+    """Coefficients of a field on (1, X, phi, (1 - zeta) phi', psi); empty where absent."""
+
+    one: SX = field(default_factory=_none)
+    X: SX = field(default_factory=_none)
+    phi: SX = field(default_factory=_none)
+    sliding: SX = field(default_factory=_none)
+    psi: SX = field(default_factory=_none)
+
+
+@dataclass(frozen=True, kw_only=True)
+class Distribution:
+    """Inner products int f g dm of the field functions and the mass moments of the foreshortening e, Eq. (T3.9).
+
+    ``first`` and ``moment`` hold int f dm and int X f dm by function; ``phi_phi``, ``phi_sliding``, ``sliding_sliding``
+    are numeric matrices to be multiplied by ``lateral_mass``, ``psi_psi`` by ``axial_mass``; ``phi_psi`` gives the
+    coupling matrices (phi, psi) and (sliding, psi). ``short`` = int e dm, ``short_X`` = int X e dm.
+    """
+
+    first: SimpleNamespace
+    moment: SimpleNamespace
+    lateral_mass: SX
+    phi_phi: np.ndarray
+    phi_sliding: np.ndarray
+    sliding_sliding: np.ndarray
+    axial_mass: SX
+    psi_psi: np.ndarray
+    phi_psi: SX
+    sliding_psi: SX
+    short: SX
+    short_X: SX
+
+    def integral(self, f: Field) -> SX:
+        """Int f dm."""
+        return _combine(self.first, f)
+
+    def square(self, f: Field) -> SX:
+        """Int f^2 dm."""
+        total = zeros(1)
+        if f.one.numel():
+            rest = Field(X=f.X, phi=f.phi, sliding=f.sliding, psi=f.psi)
+            total += f.one * (f.one * self.first.one + 2 * _combine(self.first, rest))
+        if f.X.numel():
+            rest = Field(phi=f.phi, sliding=f.sliding, psi=f.psi)
+            total += f.X * (f.X * self.moment.X + 2 * _combine(self.moment, rest))
+        total += self.lateral_mass * (
+            quadratic(f.phi, self.phi_phi)
+            + 2 * bilinear(f.phi, self.phi_sliding, f.sliding)
+            + quadratic(f.sliding, self.sliding_sliding)
+        )
+        total += self.axial_mass * quadratic(f.psi, self.psi_psi)
+        return total + 2 * (bilinear(f.phi, self.phi_psi, f.psi) + bilinear(f.sliding, self.sliding_psi, f.psi))
+
+
+def _combine(moments: SimpleNamespace, f: Field) -> SX:
+    pairs = (
+        (moments.one, f.one),
+        (moments.X, f.X),
+        (moments.phi, f.phi),
+        (moments.sliding, f.sliding),
+        (moments.psi, f.psi),
+    )
+    return sum((c.T @ m for m, c in pairs if c.numel()), zeros(1))
+
+
+@dataclass(frozen=True, kw_only=True)
+class Motion:
+    """A bending leg: its bases, the frame of its cylinder, free length s and coordinates, and the fields they make."""
+
+    a: LateralBasis
+    b: LateralBasis
+    axial: AxialBasis
+    frame: Frame
+    s: SX
+    q: SX
+    v: SX
+    qs: SimpleNamespace
+    vs: SimpleNamespace
+
+    def rate(self, expression: SX) -> SX:
+        """Time derivative."""
+        return time_derivative(expression, (self.q, self.v))
+
+    def velocity(self) -> tuple[Field, Field, Field]:
+        """Velocity r_dot + omega x r in leg coordinates, without foreshortening, Eqs. (T3.7)-(T3.8), (T13.5)."""
+        q, v, r, u = self.qs, self.vs, self.vs.l / self.s, self.frame.velocity
+        w1, w2, w3 = self.frame.omega[0], self.frame.omega[1], self.frame.omega[2]
+        has_b = bool(q.b.numel())
+        return (
+            Field(one=u[0], X=w2, phi=v.a - w3 * q.b if has_b else v.a, sliding=r * q.a, psi=w2 * q.c),
+            Field(one=u[1], X=-w1, phi=v.b + w3 * q.a if has_b else v.b, sliding=r * q.b, psi=-w1 * q.c),
+            Field(one=v.l + u[2], phi=w1 * q.b - w2 * q.a if has_b else -w2 * q.a, psi=v.c),
+        )
+
+    def foreshortening(self, kind: str) -> SX:
+        """-1/2 (a^T G a + b^T G b) with the named slope integral, Eq. (T3.9)."""
+        return -0.5 * (quadratic(self.qs.a, getattr(self.a, kind)) + quadratic(self.qs.b, getattr(self.b, kind)))
+
+
+def kinetic_energy(f: Motion, body: Distribution) -> SX:
+    """Kinetic energy to second order in the amplitudes, Eqs. (T3.10) and (T13.5)."""
+    square = sum((body.square(component) for component in f.velocity()), zeros(1))
+    w, u = f.frame.omega, f.frame.velocity
+    turning = (w[0] ** 2 + w[1] ** 2) * body.short_X + (w[1] * u[0] - w[0] * u[1]) * body.short
+    return 0.5 * square + turning + (f.vs.l + u[2]) * f.rate(body.short)
+
+
+def gravity_energy(f: Motion, body: Distribution, gravity: SX) -> SX:
+    """- int g . r dm with the foreshortening's fall, Eq. (T3.14)."""
+    height = body.integral(Field(X=SX(1), psi=f.qs.c)) + body.short
+    moment = vertcat(body.integral(Field(phi=f.qs.a)), body.integral(Field(phi=f.qs.b)), height)
+    return f.frame.weight(gravity, body.first.one, moment)

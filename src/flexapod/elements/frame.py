@@ -1,0 +1,58 @@
+"""What passes from part to part along a leg: a moving frame; and what a part adds: energies."""
+
+from __future__ import annotations
+
+from dataclasses import dataclass, field
+
+from flexapod.symbolic.vocabulary import SX, dot, mtimes, zeros
+
+__all__ = ["Energies", "Frame"]
+
+
+@dataclass(frozen=True, kw_only=True)
+class Frame:
+    """A frame in a leg.
+
+    ``origin`` in the world and ``axes``, the rotation from the frame to the world; velocity of the origin and angular
+    velocity relative to the world, both in the frame's own axes.
+    """
+
+    origin: SX
+    axes: SX
+    velocity: SX
+    omega: SX
+
+    def turned(self, R: SX, rate: SX) -> Frame:
+        """Frame after a joint at the origin: ``R`` from the new axes to the old ones, ``rate`` in the new ones."""
+        return Frame(
+            origin=self.origin,
+            axes=self.axes @ R,
+            velocity=R.T @ self.velocity,
+            omega=R.T @ self.omega + rate,
+        )
+
+    def weight(self, gravity: SX, mass: SX, moment: SX) -> SX:
+        """Potential of gravity of a mass with the first moment int r dm in the frame, zero at the base plane."""
+        return -dot(mtimes(self.axes.T, gravity), moment) - mass * dot(gravity, self.origin)
+
+
+def _none() -> SX:
+    return zeros(1)
+
+
+@dataclass(frozen=True, kw_only=True)
+class Energies:
+    """Kinetic energy, potential of gravity, strain energy and Rayleigh function of a part; zero where not given."""
+
+    kinetic: SX = field(default_factory=_none)
+    gravity: SX = field(default_factory=_none)
+    strain: SX = field(default_factory=_none)
+    dissipation: SX = field(default_factory=_none)
+
+    def __add__(self, other: Energies) -> Energies:
+        return Energies(
+            kinetic=self.kinetic + other.kinetic,
+            gravity=self.gravity + other.gravity,
+            strain=self.strain + other.strain,
+            dissipation=self.dissipation + other.dissipation,
+        )
