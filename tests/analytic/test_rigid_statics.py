@@ -38,7 +38,7 @@ def test_heave_on_massless_legs(acceleration):
     """Six equal legs, each m (g + a) / (6 cos): z / l is the cosine."""
     zero = np.zeros((1, 6))
     law = Law(zero, zero, np.array([[0, 0, acceleration, 0, 0, 0.0]]))
-    found = forces(poses_from_coordinates(HOME, law), bodies(0.0, 0.0))
+    found = forces(poses_from_coordinates(Poses.at_rest([0.0, 0.0, HOME], np.eye(3)), law), bodies(0.0, 0.0))
     length = np.linalg.norm(PLATFORM[0] + np.array([0, 0, HOME]) - BASE[0])
     np.testing.assert_allclose(found.actuator_force, 100 * (G + acceleration) / 6 * length / HOME, rtol=1e-13)
     np.testing.assert_allclose(np.linalg.norm(found.joint_force, axis=-1), np.abs(found.actuator_force), rtol=1e-13)

@@ -7,7 +7,7 @@ import pytest
 from flexapod.rigid.dynamics import LegBodies, PayloadBody, energies, inverse_dynamics
 from flexapod.rigid.kinematics import leg_frames, leg_state
 from flexapod.rigid.laws import Law
-from flexapod.rigid.trajectory import poses_from_coordinates
+from flexapod.rigid.trajectory import Poses, poses_from_coordinates
 
 HOME = 0.9
 PIVOT = np.array([0.03, -0.05, 0.2])
@@ -48,7 +48,7 @@ def wrench_at(t):
 
 
 def path(t):
-    poses = poses_from_coordinates(HOME, coordinates(t), PIVOT)
+    poses = poses_from_coordinates(Poses.at_rest([0.0, 0.0, HOME], np.eye(3)), coordinates(t), PIVOT)
     return poses, leg_state(BASE, PLATFORM, FRAMES, poses)
 
 

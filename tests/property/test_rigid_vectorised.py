@@ -25,7 +25,7 @@ def path():
     numbers = np.random.default_rng(5)
     size = np.array([0.05, 0.05, 0.05, 0.3, 0.3, 0.3])
     law = Law(*(scale * size * numbers.uniform(-1, 1, (COUNT, 6)) for scale in (1, 3, 10)))
-    return poses_from_coordinates(ROBOT.home_height, law, (0.02, 0.1, 0.3))
+    return poses_from_coordinates(rigid.home_pose(ROBOT), law, (0.02, 0.1, 0.3))
 
 
 def one_by_one(path, function):

@@ -19,7 +19,7 @@ def path(t):
     law = Law(
         AMPLITUDE * np.sin(angle), AMPLITUDE * FREQUENCY * np.cos(angle), -AMPLITUDE * FREQUENCY**2 * np.sin(angle)
     )
-    return poses_from_coordinates(HOME, law, [0.02, 0.1, 0.3])
+    return poses_from_coordinates(Poses.at_rest([0.0, 0.0, HOME], np.eye(3)), law, [0.02, 0.1, 0.3])
 
 
 @pytest.mark.parametrize(

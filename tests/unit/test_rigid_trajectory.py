@@ -12,6 +12,7 @@ from flexapod.rigid.laws import PROFILES
 from flexapod.rigid.trajectory import Poses, coordinates, rotation_matrix, sample
 
 HOME = 0.9
+AT_HOME = Poses.at_rest([0.0, 0.0, HOME], np.eye(3))
 ALL_AXES = {"surge": 0.05, "sway": -0.04, "heave": 0.1, "roll": 0.4, "pitch": -0.3, "yaw": 0.5}
 PIVOT = [0.1, -0.2, 0.3]
 RNG = np.random.default_rng(17)
@@ -37,10 +38,10 @@ def test_rates_and_accelerations_are_derivatives(name):
     t = np.array([0.1234, 0.31, 0.555, 0.66, 0.8])
     if name == "csv":  # the fifth derivative of the spline jumps at the rows of the table
         t = (TABLE_TIME[:-1] + TABLE_TIME[1:])[2:12] / 2
-    poses = sample(HOME, motion, t)
+    poses = sample(AT_HOME, motion, t)
 
     def part(key):
-        return lambda x: getattr(sample(HOME, motion, x), key)
+        return lambda x: getattr(sample(AT_HOME, motion, x), key)
 
     scale = np.max(np.abs(poses.acceleration)) + np.max(np.abs(poses.alpha))
     assert scale > 0.1
@@ -55,7 +56,7 @@ def test_rates_and_accelerations_are_derivatives(name):
 @pytest.mark.parametrize("axis", ["roll", "pitch", "yaw"])
 def test_pivot_stays_in_place_in_pure_turns(axis):
     motion = AxisMotion(type=axis, amplitude=0.5, duration=1.0, pivot=PIVOT)
-    position, velocity, acceleration = sample(HOME, motion, np.linspace(0, 1.5, 31)).point(PIVOT)
+    position, velocity, acceleration = sample(AT_HOME, motion, np.linspace(0, 1.5, 31)).point(PIVOT)
     np.testing.assert_allclose(position, np.tile(np.add([0, 0, HOME], PIVOT), (31, 1)), atol=1e-15)
     np.testing.assert_allclose(velocity, 0, atol=1e-15)
     np.testing.assert_allclose(acceleration, 0, atol=1e-14)
@@ -110,4 +111,4 @@ def test_poses_are_read_only():
 
 def test_instants_must_be_finite():
     with pytest.raises(InputError, match="finite"):
-        sample(HOME, MOTIONS["roll"], [0.0, np.nan])
+        sample(AT_HOME, MOTIONS["roll"], [0.0, np.nan])

@@ -102,7 +102,7 @@ def payload_body(robot: Robot) -> PayloadBody:
 
 def poses(robot: Robot, motion: Motion, t: ArrayLike) -> Poses:
     """Commanded poses at instants `t` [s], shape (T,); see `trajectory.sample`."""
-    return trajectory.sample(robot.home_height, motion, t)
+    return trajectory.sample(home_pose(robot), motion, t)
 
 
 def inverse_kinematics(robot: Robot, path: Poses) -> LegState:

@@ -16,7 +16,15 @@ from flexapod.rigid.laws import Law, rest_to_rest, spline, spline_law
 from flexapod.rigid.vectors import cross, time_first, time_last
 from flexapod.typing import Array
 
-__all__ = ["Poses", "angular_motion", "coordinates", "poses_from_coordinates", "rotation_matrix", "sample"]
+__all__ = [
+    "Poses",
+    "angular_motion",
+    "coordinates",
+    "poses_from_coordinates",
+    "rotation_matrix",
+    "sample",
+    "turning_axes",
+]
 
 
 @dataclass(frozen=True, kw_only=True)
@@ -123,6 +131,14 @@ def rotation_matrix(angles: ArrayLike) -> Array:
     return r
 
 
+def turning_axes(angles: Array) -> Array:
+    """World axes about which roll, pitch and yaw (T, 3) turn the platform at an instant, in columns, (T, 3, 3)."""
+    pitch, yaw = angles[:, 1:].T
+    cp, sp, cy, sy = np.cos(pitch), np.sin(pitch), np.cos(yaw), np.sin(yaw)
+    zero = np.zeros_like(cp)
+    return np.moveaxis(np.array([[cy * cp, -sy, zero], [sy * cp, cy, zero], [-sp, zero, zero + 1]]), -1, 0)
+
+
 def angular_motion(angles: Law) -> tuple[Array, Array]:
     """World angular velocity and acceleration of roll, pitch, yaw laws, Eqs. (T2.10)-(T2.11).
 
@@ -157,13 +173,13 @@ def angular_motion(angles: Law) -> tuple[Array, Array]:
     return omega, alpha
 
 
-def poses_from_coordinates(home_height: float, law: Law, pivot: ArrayLike = (0.0, 0.0, 0.0)) -> Poses:
+def poses_from_coordinates(home: Poses, law: Law, pivot: ArrayLike = (0.0, 0.0, 0.0)) -> Poses:
     """Poses of the platform frame from surge, sway, heave, roll, pitch, yaw, Eq. (T2.12).
 
     Parameters
     ----------
-    home_height : float
-        Height of the platform frame's origin at home [m].
+    home : Poses
+        Of the platform frame at home: one sample.
     law : Law
         The six coordinates with rates and accelerations, each shape (T, 6) [m, rad]; zero at home.
     pivot : array_like, shape (3,)
@@ -173,14 +189,14 @@ def poses_from_coordinates(home_height: float, law: Law, pivot: ArrayLike = (0.0
     -------
     Poses
     """
-    rotation = rotation_matrix(law.position[:, 3:])
+    rotation = rotation_matrix(law.position[:, 3:]) @ home.rotation[0]
     omega, alpha = angular_motion(Law(*(part[:, 3:] for part in law)))
     pivot = np.asarray(pivot, dtype=float)
     arm = rotation @ pivot
     spin = np.stack(cross(omega.T, arm.T), axis=-1)
     bend = np.stack(cross(alpha.T, arm.T), axis=-1) + np.stack(cross(omega.T, spin.T), axis=-1)
     return Poses(
-        position=np.array([0.0, 0.0, home_height]) + pivot + law.position[:, :3] - arm,
+        position=home.position[0] + home.rotation[0] @ pivot + law.position[:, :3] - arm,
         rotation=rotation,
         velocity=law.rate[:, :3] - spin,
         omega=omega,
@@ -226,7 +242,7 @@ def coordinates(motion: Motion, t: ArrayLike) -> Law:
     return Law(*(part[:, None] * target for part in unit))
 
 
-def sample(home_height: float, motion: Motion, t: ArrayLike) -> Poses:
+def sample(home: Poses, motion: Motion, t: ArrayLike) -> Poses:
     """Commanded poses of the rigid platform at instants `t` [s], shape (T,); exact rates and accelerations.
 
     Raises
@@ -237,4 +253,4 @@ def sample(home_height: float, motion: Motion, t: ArrayLike) -> Poses:
     t = np.atleast_1d(np.asarray(t, dtype=float))
     if not np.all(np.isfinite(t)):
         raise InputError("instants must be finite", key="t", allowed="finite seconds")
-    return poses_from_coordinates(home_height, coordinates(motion, t), motion.pivot)
+    return poses_from_coordinates(home, coordinates(motion, t), motion.pivot)

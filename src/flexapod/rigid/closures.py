@@ -1,0 +1,245 @@
+"""Closures of any mechanism, solved by Newton's method with exact rates and accelerations, Eqs. (T14.6)-(T14.10).
+
+The legs are eliminated one by one: of the rows of a leg as many as it has unknowns give these, the others are left to
+determine the platform.
+"""
+
+from __future__ import annotations
+
+from dataclasses import dataclass
+from typing import NamedTuple
+
+import numpy as np
+from numpy.typing import NDArray
+
+from flexapod.rigid.laws import Law
+from flexapod.rigid.limbs import COORDINATES, Limbs
+from flexapod.rigid.screws import Screws, screws
+from flexapod.rigid.trajectory import Poses, poses_from_coordinates, turning_axes
+from flexapod.rigid.vectors import blocks
+from flexapod.typing import Array
+
+__all__ = ["Closed", "Motion", "Task", "close", "move"]
+
+Mask = NDArray[np.bool_]
+
+STRIDE = 0.35  # rad, or of a leg's length: the longest way in one step from home to a pose
+NEWTON = 25
+TAKEN = 1e-9  # gap relative to L_c at which a pose counts as taken by the legs
+CLOSE = 1e-7  # gap from which one step leaves nothing but rounding
+
+
+class Task(NamedTuple):
+    """What is asked of a mechanism: which coordinates follow from the closures, the others being given.
+
+    `legs` (n, 8) and `platform` (6,) (surge, sway, heave, roll, pitch, yaw from home, about `pivot`) are True where a
+    coordinate is unknown.
+    """
+
+    legs: Mask
+    platform: Mask
+    pivot: Array
+
+
+@dataclass(frozen=True, kw_only=True)
+class Closed:
+    """Solution at T instants: leg coordinates (T, n, 8), platform coordinates (T, 6), gaps of the legs (T, n) [m]."""
+
+    q: Array
+    x: Array
+    gap: Array
+
+
+class _Group(NamedTuple):
+    """Legs with as many rows and the same unknowns, and the inverse of what these do."""
+
+    legs: NDArray[np.intp]
+    rows: int
+    unknown: NDArray[np.intp]
+    inverse: Array  # (T, m, u, rows)
+    left: Array  # (T, m, rows - u, rows): combinations of the rows that no unknown of the leg changes
+
+
+class _Eliminated(NamedTuple):
+    groups: list[_Group]
+    columns: Array  # of the unknown platform coordinates (T, n, 6, d)
+
+    def solve(self, right: Array) -> tuple[Array, Array]:
+        """Unknowns of ``M dq - P dx = right`` (T, n, 6): dq (T, n, 8), dx (T, d), of too many rows the best."""
+        T, n, _, d = self.columns.shape
+        dx = np.zeros((T, d))
+        if d:
+            rest = [(g.left @ self.columns[:, g.legs, : g.rows]).reshape(T, -1, d) for g in self.groups]
+            said = [(g.left @ right[:, g.legs, : g.rows, None]).reshape(T, -1) for g in self.groups]
+            K, b = np.concatenate(rest, axis=1), -np.concatenate(said, axis=1)
+            dx = (np.linalg.pinv(K) @ b[..., None])[..., 0]
+        whole = right + (self.columns @ dx[:, None, :, None])[..., 0]
+        dq = np.zeros((T, n, 8))
+        for g in self.groups:
+            dq[:, g.legs[:, None], g.unknown] = (g.inverse @ whole[:, g.legs, : g.rows, None])[..., 0]
+        return dq, dx
+
+
+def _eliminated(limbs: Limbs, task: Task, chain: Screws, columns: Array) -> _Eliminated:
+    scale = np.array([1.0, 1.0, 1.0, limbs.L_c, limbs.L_c, limbs.L_c])
+    kinds: dict[tuple[int, ...], list[int]] = {}
+    for leg, (unknown, pose) in enumerate(zip(task.legs, limbs.pose_closure, strict=True)):
+        kinds.setdefault((6 if pose else 3, *np.flatnonzero(unknown)), []).append(leg)
+    groups = []
+    for (rows, *unknown), legs in kinds.items():
+        M = chain.columns[:, legs, :rows][..., unknown] * scale[:rows, None]
+        u = len(unknown)
+        if u == rows:
+            inverse, left = _inverse(M), np.zeros((*M.shape[:2], 0, rows))
+        else:
+            q, r = np.linalg.qr(M, mode="complete")
+            inverse = _inverse(r[..., :u, :]) @ q[..., :u].swapaxes(-1, -2)
+            left = q[..., u:].swapaxes(-1, -2) * scale[:rows]
+        groups.append(_Group(np.array(legs), rows, np.array(unknown, dtype=int), inverse * scale[:rows], left))
+    return _Eliminated(groups, columns)
+
+
+def _inverse(matrices: Array) -> Array:
+    """Inverses; the least-squares one where a matrix of the many has none."""
+    try:
+        return np.linalg.inv(matrices)
+    except np.linalg.LinAlgError:
+        return np.linalg.pinv(matrices)
+
+
+def _gaps(limbs: Limbs, chain: Screws, at: Poses) -> Array:
+    """Tip less platform joint [m], and half the rotation vector's sine of their frames, world axes, Eq. (T14.6)."""
+    place = chain.tip - at.place(limbs.platform)
+    goal = at.rotation[:, None] @ limbs.platform_frames
+    turn = np.cross(goal, chain.frame, axis=-2).sum(axis=-1) / 2
+    turn[:, ~limbs.pose_closure] = 0.0
+    return np.concatenate([place, turn], axis=-1)
+
+
+def _platform_columns(limbs: Limbs, task: Task, x: Array, at: Poses) -> Array:
+    """Velocities of the platform joints for the unknown platform coordinates, (T, n, 6, d), Eq. (T14.7)."""
+    T, n = len(x), len(limbs)
+    columns = np.zeros((T, n, 6, 6))
+    columns[..., :3, :3] = np.eye(3)
+    axes = turning_axes(x[:, 3:])  # (T, 3, 3): of roll, pitch, yaw as columns
+    arms = (limbs.platform - task.pivot) @ at.rotation.swapaxes(-1, -2)  # (T, n, 3)
+    columns[..., :3, 3:] = np.cross(axes[:, None], arms[..., None], axis=-2)
+    columns[..., 3:, 3:] = axes[:, None]
+    return columns[..., task.platform]
+
+
+def _poses(limbs: Limbs, task: Task, law: Law) -> Poses:
+    return poses_from_coordinates(Poses.at_rest(limbs.position, limbs.rotation), law, task.pivot)
+
+
+def close(limbs: Limbs, task: Task, q: Array, x: Array, start: Closed | None = None) -> Closed:
+    """Unknown coordinates such that the legs meet the platform, Eqs. (T14.6)-(T14.8).
+
+    Newton's method, along the straight way of what is given from `start` (default: home) to `q` and `x`: so the
+    solution is the one that the mechanism reaches without taking its legs apart, at whatever instant it is asked for.
+
+    Parameters
+    ----------
+    limbs : Limbs
+    task : Task
+    q, x : ndarray, shapes (T, n, 8), (T, 6)
+        What is given; unknowns do not count.
+    start : Closed, optional
+        One solution, at which to begin.
+
+    Returns
+    -------
+    Closed
+        With NaN where no solution is found.
+    """
+    q0 = limbs.home if start is None else start.q[0]
+    x0 = np.zeros(6) if start is None else start.x[0]
+    parts = [_close(limbs, task, (q[where], x[where]), q0, x0) for where in blocks(len(q))]
+    return Closed(
+        q=np.concatenate([p.q for p in parts]),
+        x=np.concatenate([p.x for p in parts]),
+        gap=np.concatenate([p.gap for p in parts]),
+    )
+
+
+def _close(limbs: Limbs, task: Task, goal: tuple[Array, Array], q0: Array, x0: Array) -> Closed:
+    unit = _units(limbs)
+    wayq, wayx = np.where(task.legs, 0.0, goal[0] - q0), np.where(task.platform, 0.0, goal[1] - x0)
+    far = max(np.abs(wayx / unit[:6]).max(initial=0.0), np.abs(wayq / unit[6:]).max(initial=0.0))
+    steps = 1 + int(far / STRIDE)
+    q, x = np.tile(q0, (len(wayq), 1, 1)), np.tile(x0, (len(wayx), 1))
+    for k in range(1, steps + 1):
+        q = np.where(task.legs, q, q0 + k / steps * wayq)
+        x = np.where(task.platform, x, x0 + k / steps * wayx)
+        q, x, gap = _newton(limbs, task, q, x, CLOSE if k == steps else 1e-3)
+    lost = ~(gap.max(axis=1, initial=0.0) < TAKEN * limbs.L_c)
+    q[lost], x[lost] = np.nan, np.nan
+    return Closed(q=q, x=x, gap=gap)
+
+
+def _units(limbs: Limbs) -> Array:
+    """What counts as far for the six platform coordinates and the eight of a leg: the length of a leg or a radian."""
+    far = float(limbs.home[:, COORDINATES.index("l")].mean())
+    lengths = {"l", "chi"} if limbs.carriage == "slider" else {"l"}
+    return np.array([far] * 3 + [1.0] * 3 + [far if name in lengths else 1.0 for name in COORDINATES])
+
+
+def _newton(limbs: Limbs, task: Task, q: Array, x: Array, enough: float) -> tuple[Array, Array, Array]:
+    """A few Newton steps; q, x and the gaps of the legs [m], rotations times L_c."""
+    still, unit = np.zeros_like(x), _units(limbs)
+    weight = np.array([1.0, 1.0, 1.0, limbs.L_c, limbs.L_c, limbs.L_c])
+    last = False
+    for _ in range(NEWTON):
+        at, chain = _poses(limbs, task, Law(x, still, still)), screws(limbs, q)
+        gaps = _gaps(limbs, chain, at)
+        gap = np.abs(gaps * weight).max(axis=-1)
+        if last:
+            break
+        last = bool(np.all(gap < enough * limbs.L_c))
+        dq, dx = _eliminated(limbs, task, chain, _platform_columns(limbs, task, x, at)).solve(-gaps)
+        longest = np.abs(dx / unit[:6][task.platform]).max(axis=1, initial=0.0)
+        short = STRIDE / np.maximum(np.maximum(np.abs(dq / unit[6:]).max(axis=(1, 2)), longest), STRIDE)
+        dq, dx = short[:, None, None] * dq, short[:, None] * dx
+        q, x = q + dq, x.copy()
+        x[:, task.platform] += dx
+    return q, x, gap
+
+
+class Motion(NamedTuple):
+    """Legs at T instants: coordinates (T, n, 8) with their rates and accelerations; the platform's, (T, 6)."""
+
+    q: Array
+    q_dot: Array
+    q_ddot: Array
+    platform: Law
+
+
+def move(limbs: Limbs, task: Task, found: Closed, given: Law) -> Motion:
+    """Rates and accelerations of a solution, by the matrix of its last Newton step, Eqs. (T14.9)-(T14.10).
+
+    Parameters
+    ----------
+    limbs, task, found
+        As for, and of, `close`; no given coordinate of a leg moves.
+    given : Law
+        Platform coordinates (T, 6); rates and accelerations of those that are unknown do not count.
+    """
+    parts = []
+    for where in blocks(len(found.q)):
+        q, x = found.q[where], found.x[where]
+        x_dot, x_ddot = (np.where(task.platform, 0.0, part[where]) for part in given[1:])
+        at, chain = _poses(limbs, task, Law(x, x_dot, 0 * x)), screws(limbs, q)
+        matrix = _eliminated(limbs, task, chain, _platform_columns(limbs, task, x, at))
+        q_dot, dx = matrix.solve(np.concatenate([at.point(limbs.platform)[1], _each(at.omega, limbs)], axis=-1))
+        x_dot[:, task.platform] = dx
+        at = _poses(limbs, task, Law(x, x_dot, x_ddot))
+        goal = np.concatenate([at.point(limbs.platform)[2], _each(at.alpha, limbs)], axis=-1)
+        q_ddot, dx = matrix.solve(goal - chain.bias(q_dot))
+        x_ddot[:, task.platform] = dx
+        parts.append((q, q_dot, q_ddot, x, x_dot, x_ddot))
+    q, q_dot, q_ddot, *platform = (np.concatenate(part) for part in zip(*parts, strict=True))
+    return Motion(q, q_dot, q_ddot, Law(*platform))
+
+
+def _each(vector: Array, limbs: Limbs) -> Array:
+    return np.broadcast_to(vector[:, None], (len(vector), len(limbs), 3))
