@@ -135,5 +135,6 @@ def test_variables_are_what_they_should_be(results, kind, tmp_path):
         assert words in refusal(broken, path), words
     assert "has instants that do not grow" in refusal(data.isel(time=[]), path)
     if kind == "robot":
-        assert "has other labels" in refusal(data.isel(leg=slice(0, 5)), path)
+        assert "has other labels" in refusal(data.assign_coords(leg=data.leg + 1), path)
+        assert "another number of legs" in refusal(data.isel(leg=slice(0, 5)), path)
         assert "has other labels" in refusal(data.assign_coords(axis=["x", "y", "w"]), path)

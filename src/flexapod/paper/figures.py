@@ -38,6 +38,7 @@ def paper_figures(result: PaperStudy, folder: Path, progress: Report | None = No
 
 def _actuator(result: PaperStudy) -> Iterator[_Plan]:
     from flexapod import plot
+    from flexapod.paper import printed
 
     series = result.actuator
     finest = series[max(series)]
@@ -46,7 +47,7 @@ def _actuator(result: PaperStudy) -> Iterator[_Plan]:
         "rho, whole length L_t) that slides through it without friction, L(t) of it outside, and stays straight "
         "behind; its deflection u(x, t) in the axes x, y of the hub; a tip body (m_e, J)"
     )
-    yield ACTUATOR, "actuator-symbols", title, plot.actuator_symbols
+    yield ACTUATOR, "actuator-symbols", title, printed.actuator_symbols
     title = (
         "Fig. 4 of the paper, its analytic curve: tip of the single actuator with 1 to 5 shapes. The values that the "
         "paper leaves open are ours, so size and phase are not to be laid over the printed curve"
@@ -64,7 +65,7 @@ def _actuator(result: PaperStudy) -> Iterator[_Plan]:
         "without friction and inertia. It comes out ever faster, as the turning throws it out, and slows the hub"
     )
     readings = {"held": series[3], "given at the start": result["actuator-free"]}
-    yield ACTUATOR, "actuator-free", title, lambda: plot.actuator_free(readings)
+    yield ACTUATOR, "actuator-free", title, lambda: printed.actuator_free(readings)
     title = "Fig. 4: assumed modes (8 shapes) against beam and solid finite elements, with their differences"
     others = {"beam elements": result["actuator-beam"], "solid elements": result["actuator-solid-quadratic"]}
     yield ACTUATOR, "actuator-comparison", title, lambda: plot.solid_comparison(others, result["actuator-fine"])
@@ -74,6 +75,7 @@ def _actuator(result: PaperStudy) -> Iterator[_Plan]:
 
 def _robot(result: PaperStudy) -> Iterator[_Plan]:
     from flexapod import plot
+    from flexapod.paper import printed
 
     data, rigid, modes = result["robot"], result["robot-rigid"], result["modes"]
     bending = [int(m) for m, kind in zip(modes.mode.values, modes.kind.values, strict=True) if "bending" in str(kind)]
@@ -84,20 +86,20 @@ def _robot(result: PaperStudy) -> Iterator[_Plan]:
     title = "Fig. 8: drive forces of the rigid robot, Newton-Euler against the multibody model, and their difference"
     yield (ROBOT, "forces-rigid", title, lambda: plot.actuator_forces(rigid))
     title = "Fig. 8 as the paper draws it: all forces in one panel, the two models over each other"
-    yield (ROBOT, "forces-overlaid", title, lambda: plot.forces_overlaid(rigid))
+    yield (ROBOT, "forces-overlaid", title, lambda: printed.forces_overlaid(rigid))
     title = "Drive forces of the robot with flexible legs against those of the rigid one"
     yield (ROBOT, "forces-flexible", title, lambda: plot.actuator_forces(data))
     title = "Fig. 9: path of the centre of mass in Y and Z, rigid against flexible; the deviation needs its own scale"
     yield (ROBOT, "com-path", title, lambda: plot.com_path(data))
     title = "Fig. 9 with the printed deviation of 5 and 10 mm to scale: ours is a line in its middle"
-    yield (ROBOT, "com-path-bands", title, lambda: plot.path_bands(data, PAPER_DEVIATION))
+    yield (ROBOT, "com-path-bands", title, lambda: printed.path_bands(data, PAPER_DEVIATION))
     title = "The deviation by cause and by leg: stretch of the pistons is all of it"
     yield (ROBOT, "deviation-by-cause", title, lambda: plot.deviation_by_cause(data))
     title = "Fig. 10: the first bending modes of the legs at the largest roll, drives locked; magnified, size arbitrary"
     yield (ROBOT, "modes-bending", title, lambda: plot.modes_3d(modes, bending[:3]))
     if bending:
         title = "Fig. 10 B: one piston alone in the first bending mode of the legs, at the largest roll; size arbitrary"
-        yield (ROBOT, "piston-mode", title, lambda: plot.piston_mode(modes, bending[0]))
+        yield (ROBOT, "piston-mode", title, lambda: printed.piston_mode(modes, bending[0]))
     title = "The lowest modes of the robot at the largest roll; magnified, size arbitrary"
     yield (ROBOT, "modes-lowest", title, lambda: plot.modes_3d(modes))
     yield (ROBOT, "tip-deflections", "Tips of the pistons across their legs", lambda: plot.tip_deflections(data))
@@ -106,19 +108,20 @@ def _robot(result: PaperStudy) -> Iterator[_Plan]:
 
 def _variants(result: PaperStudy) -> Iterator[_Plan]:
     from flexapod import plot
+    from flexapod.paper import variant_figures
 
     title = "Fig. 9 with the circles read as radii, roll of 30 deg"
     yield (VARIANTS, "com-path-radii", title, lambda: plot.com_path(result["robot-radii"]))
     sweeps = {"Circles as diameters": result["half-angles"], "Circles as radii": result["half-angles-radii"]}
     title = "Half-angles of the joint pairs: the road to the architecture singularity at 30 deg"
-    yield (VARIANTS, "half-angles", title, lambda: plot.half_angles(sweeps))
+    yield (VARIANTS, "half-angles", title, lambda: variant_figures.half_angles(sweeps))
     title = "A start and a stop at full rate against the quintic"
-    yield (VARIANTS, "velocity-jump", title, lambda: plot.start_jump(result["robot"], result["jump"]))
+    yield (VARIANTS, "velocity-jump", title, lambda: variant_figures.start_jump(result["robot"], result["jump"]))
 
 
 def _engine(result: PaperStudy) -> Iterator[_Plan]:
     """Of those parts that the engine was asked for and computed."""
-    from flexapod import plot
+    from flexapod.paper import engine_figures
 
     model, engine = "multibody model", "Exudyn"
     if "robot-exudyn-rigid" in result.parts:
@@ -128,16 +131,16 @@ def _engine(result: PaperStudy) -> Iterator[_Plan]:
             "and Exudyn. The quintic's jerk jumps at start and end of the roll: there both programs, which share "
             "integrator and step, ring about Newton-Euler for some 20 ms, the less the shorter the step"
         )
-        yield ENGINE, "engine-forces-rigid", title, lambda: plot.engine_forces(rigid)
+        yield ENGINE, "engine-forces-rigid", title, lambda: engine_figures.engine_forces(rigid)
     if "robot-exudyn" in result.parts:
         flexible = {model: result["robot-undamped"], engine: result["robot-exudyn"]}
         title = (
             "The same with flexible, undamped legs: below, what their vibration adds to the forces by our model (pale) "
             "and how far Exudyn is from that (dark)"
         )
-        yield ENGINE, "engine-forces-flexible", title, lambda: plot.engine_forces(flexible)
+        yield ENGINE, "engine-forces-flexible", title, lambda: engine_figures.engine_forces(flexible)
         title = (
             "Fig. 9 with an independent engine: path of the centre of mass, rigid and flexible, without damping. The "
             "difference grows as the frequencies differ: the guide of Exudyn's pistons is softer than our clamp"
         )
-        yield ENGINE, "engine-com-path", title, lambda: plot.engine_path(flexible)
+        yield ENGINE, "engine-com-path", title, lambda: engine_figures.engine_path(flexible)

@@ -113,10 +113,10 @@ def forward_kinematics(
     Parameters
     ----------
     robot : Robot, Study or path
-    lengths : array_like, shape (6,) or (T, 6)
-        Joint-to-joint lengths [m]; six of them give a single pose.
+    lengths : array_like, shape (legs,) or (T, legs)
+        Joint-to-joint lengths [m]; one of each leg gives a single pose.
     guess : pose, optional
-        Near the first one, as for `modes`; default home. All postures of six lengths: `flexapod.rigid.postures`.
+        Near the first one, as for `modes`; default home. All postures of given lengths: `flexapod.rigid.postures`.
     time : array_like, shape (T,), optional
         Instants of the lengths [s]; default 0, 1, 2, ...
 
@@ -128,7 +128,7 @@ def forward_kinematics(
     Raises
     ------
     InputError
-        Lengths that are not six positive numbers, a guess that is not a pose, or instants that do not fit.
+        Lengths that are not a positive number for each leg, a guess that is not a pose, or instants that do not fit.
     ComputationError
         No pose near the guess fits.
     """

@@ -134,14 +134,15 @@ def _shape_rows(
         )
         found.append(mode_values(robot, one, poses_of(path, np.array([at]))))
     if not found:
-        return _no_rows(modes.frequency.shape[1])
+        return _no_rows(modes.frequency.shape[1], len(robot.legs))
     return {name: np.stack([values[name] for values in found]) for name in found[0]}
 
 
-def _no_rows(count: int) -> dict[str, Array]:
+def _no_rows(count: int, legs: int) -> dict[str, Array]:
     """Everything, of no pose; ``count`` modes."""
     sizes = {
         "mode": count,
+        "leg": legs,
         "station": len(STATIONS),
         **{dim: np.asarray(labels).size for dim, (labels, _) in COORDINATES.items()},
     }

@@ -23,6 +23,7 @@ __all__ = [
     "VARIABLES",
     "Variable",
     "dataset",
+    "fixed_labels",
 ]
 
 #: Causes of a leg's length error, in the order of the `cause` dimension.
@@ -44,7 +45,6 @@ class Variable(NamedTuple):
 
 #: Labels of dimensions that have fixed ones, with what they stand for.
 COORDINATES: dict[str, tuple[object, str]] = {
-    "leg": (np.arange(1, 7), "leg"),
     "axis": (list("xyz"), "world axis"),
     "direction": (list("ab"), "lateral direction of the leg"),
     "quaternion": (list("wxyz"), "component of the quaternion"),
@@ -168,6 +168,12 @@ ONE_POSE_FORMS = {
 }
 
 
+def fixed_labels(sizes: Mapping[str, int]) -> dict[str, tuple[object, str]]:
+    """Labels of those of some dimensions that need no others from a study, and what they stand for; legs by number."""
+    found = {dim: COORDINATES[dim] for dim in COORDINATES if dim in sizes}
+    return {"leg": (np.arange(1, sizes["leg"] + 1), "leg"), **found} if "leg" in sizes else found
+
+
 def dataset(
     values: Mapping[str, ArrayLike],
     coords: Mapping[str, ArrayLike] | None = None,
@@ -191,12 +197,12 @@ def dataset(
     import xarray as xr
 
     table = {**VARIABLES, **(forms or {})}
-    data = {}
+    data, sizes = {}, {}
     for name, array in values.items():
         dims, units, long_name = table[name]
         data[name] = _variable(dims, array, {"units": units, "long_name": long_name})
-    used = {dim for variable in data.values() for dim in variable.dims}
-    labels = {dim: (given, {"long_name": words}) for dim, (given, words) in COORDINATES.items() if dim in used}
+        sizes |= data[name].sizes
+    labels = {dim: (given, {"long_name": words}) for dim, (given, words) in fixed_labels(sizes).items()}
     labels |= {dim: (given, _COORDINATE_ATTRS.get(dim, {})) for dim, given in (coords or {}).items()}
     return xr.Dataset(data, coords=_coordinates(labels), attrs=dict(attrs or {}))
 

@@ -9,7 +9,7 @@ from typing import TYPE_CHECKING
 import numpy as np
 
 from flexapod.errors import InputError
-from flexapod.study.names import ACTUATOR_FORMS, COORDINATES, VARIABLES, Variable
+from flexapod.study.names import ACTUATOR_FORMS, VARIABLES, Variable, fixed_labels
 
 if TYPE_CHECKING:
     from xarray import Dataset
@@ -120,9 +120,8 @@ def _check_variable(data: Dataset, name: str, known: Variable | None) -> None:
 
 
 def _check_labels(data: Dataset) -> None:
-    for dim in data.dims:
-        if str(dim) in COORDINATES:
-            wanted = [str(label) for label in np.asarray(COORDINATES[str(dim)][0])]
-            found = [f"{label!s:.40}" for label in data[dim].values[: len(wanted) + 1]]
-            if found != wanted:
-                raise _Wrong("has other labels than results have", str(dim), ", ".join(found))
+    for dim, (labels, _) in fixed_labels({str(dim): size for dim, size in data.sizes.items()}).items():
+        wanted = [str(label) for label in np.asarray(labels)]
+        found = [f"{label!s:.40}" for label in data[dim].values[: len(wanted) + 1]]
+        if found != wanted:
+            raise _Wrong("has other labels than results have", dim, ", ".join(found))

@@ -54,6 +54,14 @@ def _check_kind(study: model.Study | model.ActuatorStudy, data: Dataset, file: s
 
     if isinstance(study, model.Study) != ("com_deviation" in data):
         raise InputError("holds a study of something else than its results", file=file, key="study")
+    if isinstance(study, model.Study) and len(study.robot.legs) != data.sizes["leg"]:
+        raise InputError(
+            "holds a study with another number of legs than its results",
+            file=file,
+            key="study",
+            value=len(study.robot.legs),
+            allowed=str(data.sizes["leg"]),
+        )
     match_shapes: Any = as_computed  # of one kind or the other
     try:
         match_shapes(study, data)

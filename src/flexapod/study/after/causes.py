@@ -16,7 +16,7 @@ __all__ = ["LengthErrors", "deviation_by_cause", "length_errors"]
 
 @dataclass(frozen=True, kw_only=True)
 class LengthErrors:
-    """Length errors of the legs by cause, each (T, 6) [m]; they add up to ``length - command`` exactly."""
+    """Length errors of the legs by cause, each (T, legs) [m]; they add up to ``length - command`` exactly."""
 
     axial: Array
     bending: Array
@@ -24,12 +24,12 @@ class LengthErrors:
 
     @property
     def total(self) -> Array:
-        """Joint-to-joint length minus commanded length, (T, 6) [m], Eq. (T8.5)."""
+        """Joint-to-joint length minus commanded length, (T, legs) [m], Eq. (T8.5)."""
         return self.axial + self.bending + self.drive
 
     @property
     def stacked(self) -> Array:
-        """The causes in the order of `names.CAUSES`, (T, 3, 6) [m]."""
+        """The causes in the order of `names.CAUSES`, (T, 3, legs) [m]."""
         return np.stack([self.axial, self.bending, self.drive], axis=1)
 
 
@@ -38,11 +38,11 @@ def length_errors(length: Array, command: Array, stroke: Array, stretch: Array) 
 
     Parameters
     ----------
-    length, command : ndarray, shape (T, 6)
+    length, command : ndarray, shape (T, legs)
         Joint-to-joint lengths of the flexible and of the rigid robot [m].
-    stroke : ndarray, shape (T, 6)
+    stroke : ndarray, shape (T, legs)
         Reference length l [m].
-    stretch : ndarray, shape (T, 6)
+    stretch : ndarray, shape (T, legs)
         Amplitude of the static axial shape c_0 [m]: stretch of the piston at its tip.
     """
     return LengthErrors(
@@ -64,7 +64,7 @@ def deviation_by_cause(robot: Robot, path: rigid.Poses, errors: LengthErrors) ->
 
     Returns
     -------
-    ndarray, shape (T, 3, 6, 3)
+    ndarray, shape (T, 3, legs, 3)
         Time, cause, leg, world axis [m].
 
     Raises

@@ -23,8 +23,8 @@ def mode_kinds(found: RobotModes) -> list[str]:
     """
     system, state = found.system, found.equilibrium.state
     matrices, n, axial = system.matrices(state, found.wrench), system.n, system.kernel.shapes.axial.count
-    legs = found.shapes[:, : 6 * n].reshape(-1, 6, n)
-    blocks = [slice(i * n, (i + 1) * n) for i in range(6)]
+    legs = found.shapes[:, :-6].reshape(len(found.shapes), -1, n)
+    blocks = [slice(i * n, (i + 1) * n) for i in range(legs.shape[1])]
     kinetic = np.stack([_form(legs[:, i], matrices.M[at, at]) for i, at in enumerate(blocks)], axis=1)
     lateral = np.stack([_form(legs[:, i, 3 + axial :], matrices.K[at, at][3 + axial :, 3 + axial :])
                         for i, at in enumerate(blocks)], axis=1)  # fmt: skip

@@ -33,10 +33,11 @@ def mode_values(robot: model.Robot, found: RobotModes, path: rigid.Poses) -> dic
 
 
 def _leg_shapes(robot: model.Robot, found: RobotModes) -> Array:
-    """Lateral displacement of every leg off the line of its joints, (m, 6, 2, stations) [m]."""
+    """Lateral displacement of every leg off the line of its joints, (m, legs, 2, stations) [m]."""
     shapes, n = found.system.kernel.shapes, found.system.n
     first, k = 3 + shapes.axial.count, shapes.a.count
-    legs = found.shapes[:, : 6 * n].reshape(-1, 6, n)[:, :, first:].reshape(len(found.shapes), 6, 2, k)
+    m, count = len(found.shapes), len(robot.legs)
+    legs = found.shapes[:, :-6].reshape(m, count, n)[:, :, first:].reshape(m, count, 2, k)
     result = np.zeros((*legs.shape[:3], len(STATIONS)))
     for i, leg in enumerate(robot.legs):
         length = found.equilibrium.state.q[i, shapes.l_index]
@@ -48,7 +49,7 @@ def _leg_shapes(robot: model.Robot, found: RobotModes) -> Array:
 
 
 def _stretch(robot: model.Robot, pose: Array, platform: Array) -> Array:
-    """Change of the joint-to-joint lengths in each mode, (m, 6) [m]: rows of the Jacobian at the CoM, Eq. (T2.21)."""
+    """Change of joint-to-joint lengths in each mode, (m, legs) [m]: rows of the Jacobian at the CoM, Eq. (T2.21)."""
     jacobian = rigid.length_jacobian(
         robot.base_joints, robot.platform_joints - robot.payload.com, pose[:3], matrix(pose[3:]), np.zeros(3)
     )

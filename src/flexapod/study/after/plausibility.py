@@ -115,7 +115,7 @@ def leg_stress(leg: Leg, basis: LateralBasis, lateral: Array, free: Array, compr
 
 
 def _leg_axes(robot: Robot, record: Record | RestStates) -> Array:
-    """Unit vectors from base to platform joint, (T, 6, 3)."""
+    """Unit vectors from base to platform joint, (T, legs, 3)."""
     R = matrix(record.pose[:, 3:])
     tips = record.pose[:, None, :3] + (robot.platform_joints - robot.payload.com) @ R.swapaxes(1, 2)
     vectors = tips - robot.base_joints

@@ -95,7 +95,7 @@ def payload_results(robot: Robot, path: RigidPath, record: Record) -> dict[str, 
 
 
 def _flexible_lengths(robot: Robot, record: Record) -> Array:
-    """Joint-to-joint lengths of the flexible robot, (T, 6) [m], Eq. (T8.1)."""
+    """Joint-to-joint lengths of the flexible robot, (T, legs) [m], Eq. (T8.1)."""
     R = matrix(record.pose[:, 3:])
     joints = robot.platform_joints - robot.payload.com
     return rigid.leg_lengths(robot.base_joints, joints, record.pose[:, :3], R)
@@ -123,7 +123,7 @@ def leg_results(robot: Robot, system: RobotSystem, path: RigidPath, record: Reco
 
 
 def _drive_forces(robot: Robot, system: RobotSystem, path: RigidPath, record: Record) -> Array:
-    """Force of every drive on its piston, (T, 6) [N]: constraint, or feed-forward, spring and damper, Eq. (T8.8)."""
+    """Force of every drive on its piston, (T, legs) [N]: constraint, or feed-forward, spring and damper, Eq. (T8.8)."""
     if system.held.all():
         return record.drive[:, :, 0]
     stiffness, damping = np.array([drive_spring(leg) for leg in robot.legs]).T
@@ -136,7 +136,7 @@ def _drive_forces(robot: Robot, system: RobotSystem, path: RigidPath, record: Re
 def cause_results(
     robot: Robot, system: RobotSystem, path: RigidPath, record: Record, length: Array
 ) -> dict[str, Array]:
-    """Deviation of the centre of mass by cause; ``length`` (T, 6): joint to joint [m]."""
+    """Deviation of the centre of mass by cause; ``length`` (T, legs): joint to joint [m]."""
     shapes = system.kernel.shapes
     errors = length_errors(
         length=length,

@@ -25,7 +25,7 @@ _KEYS = {SHORTEST: "leg.stroke.min", LONGEST: "leg.stroke.max", PULLED_OUT: "leg
 
 @dataclass(frozen=True, kw_only=True)
 class _Path:
-    """A path: instants (T,), lengths and angles beta of the universal joints (T, 6), the pose nearest to singular."""
+    """A path: instants (T,), lengths and angles beta of base joints (T, legs), the pose nearest to singular."""
 
     t: Array
     length: Array

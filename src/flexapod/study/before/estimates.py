@@ -51,7 +51,7 @@ def buckling_load(leg: Leg, free: Array) -> Array:
 
 
 def bending_moment(robot: Robot, path: rigid.Poses, legs: LegState, forces: rigid.RigidForces) -> Array:
-    """Largest bending moment in the free part of each piston on the rigid path, (T, 6) [N m], Eqs. (T8.12)-(T8.13).
+    """Largest bending moment in the free part of each piston on the rigid path, (T, legs) [N m], Eqs. (T8.12)-(T8.13).
 
     The piston is loaded by the joint force at its tip, its weight and its inertia as a rigid rod; the leg's own
     vibration is left out.
@@ -158,7 +158,7 @@ def residual_vibration(
 def _rigid_rates(robot: Robot, modes: RobotModes, path: rigid.Poses) -> Array:
     """Rates of the rigid path in the flat coordinates of the modes, (T, N)."""
     legs, n = rigid.inverse_kinematics(robot, path), modes.system.n
-    flat = np.zeros((len(path), 6, n))
+    flat = np.zeros((len(path), len(robot.legs), n))
     flat[:, :, :3] = np.stack([legs.alpha_dot, legs.beta_dot, legs.rate], axis=-1)
     com = path.point(robot.payload.com)[1]
     turn = np.einsum("tij,ti->tj", path.rotation, path.omega)
@@ -166,7 +166,7 @@ def _rigid_rates(robot: Robot, modes: RobotModes, path: rigid.Poses) -> Array:
 
 
 def _fed_forward(robot: Robot, t: Array, path: rigid.Poses) -> Array:
-    """Impulses (T + 1, 6) [N s] of what drives feed forward of inertia: none at the jumps at the start and the end."""
+    """Impulses (T + 1, legs) [N s] of what drives feed forward of inertia: none at jumps at the start and the end."""
     still = rigid.Poses.at_rest(path.position, path.rotation)
     none = np.zeros((len(t), 6))
     force = feed_forward(robot, t, path, none) - feed_forward(robot, t, still, none)
@@ -174,8 +174,8 @@ def _fed_forward(robot: Robot, t: Array, path: rigid.Poses) -> Array:
 
 
 def _strokes(modes: RobotModes, shapes: Array) -> Array:
-    """Travel of the six drives in every shape, (m, 6)."""
-    return shapes[:, :-6].reshape(len(shapes), 6, modes.system.n)[:, :, 2]
+    """Travel of the drives in every shape, (m, legs)."""
+    return shapes[:, :-6].reshape(len(shapes), -1, modes.system.n)[:, :, 2]
 
 
 def _tool_amplitudes(robot: Robot, modes: RobotModes, shapes: Array) -> Array:

@@ -77,7 +77,7 @@ def flags() -> dict[str, object]:
 
 
 def leg_limits(robot: Robot) -> tuple[Array, Array, Array]:
-    """Stroke limits (6, 2), mouths (6,) and piston lengths (6,) [m]; 0 and inf where a leg has no limits."""
+    """Stroke limits (legs, 2), mouths and piston lengths (legs,) [m]; 0 and inf where a leg has no limits."""
     limits = [(leg.stroke.min, leg.stroke.max) if leg.stroke else (0.0, np.inf) for leg in robot.legs]
     mouth = np.array([leg.cylinder.mouth for leg in robot.legs])
     return np.array(limits), mouth, np.array([leg.piston.length for leg in robot.legs])

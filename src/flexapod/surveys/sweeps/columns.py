@@ -12,7 +12,7 @@ from flexapod import version
 from flexapod.errors import InputError
 from flexapod.model import ActuatorStudy
 from flexapod.study.attributes import attributes
-from flexapod.study.names import COORDINATES
+from flexapod.study.names import fixed_labels
 from flexapod.surveys.sweeps.identity import sources
 from flexapod.surveys.sweeps.kept import Kept
 from flexapod.surveys.sweeps.keys import Step, key_text
@@ -75,11 +75,14 @@ def columns(points: Points, kept: Kept, resolved: Resolved) -> tuple[dict[str, C
         shape = (len(points), *kept.shape(name))
         comment = {"comment": f"NaN at a computed point: {kept.absent[name]}"} if name in kept.absent else {}
         made[name] = Column(("point", *dims), shape, {"units": units, "long_name": long_name, **comment})
-    used = {dim for column in (*varied.values(), *made.values()) for dim in column.dims}
-    for dim, (labels, words) in COORDINATES.items():
-        if dim in used:
-            values = np.asarray(labels)
-            made[dim] = Column((dim,), values.shape, {"long_name": words}, values)
+    used = {
+        dim: size
+        for column in (*varied.values(), *made.values())
+        for dim, size in zip(column.dims, column.shape, strict=True)
+    }
+    for dim, (labels, words) in fixed_labels(used).items():
+        values = np.asarray(labels)
+        made[dim] = Column((dim,), values.shape, {"long_name": words}, values)
     if "time" in used:
         made["time"] = Column(("time",), kept.times.shape, {"units": "s", "long_name": "time"}, kept.times)
     return varied, made
@@ -105,7 +108,8 @@ def _column(key: tuple[Step, ...], values: Any, at: Values, points: Points) -> C
     found = {dimension_of(item, points.dimensions) for item in items} - {None}
     if len(found) == 1 and plain.dtype.kind != "U":  # forces and moments in one list have no unit in common
         attributes["units"] = DIMENSIONS[str(found.pop())].unit or "1"
-    return Column(("point", *_dims(key, plain.shape[1:])), (len(at), *plain.shape[1:]), attributes, plain[at])
+    dims = _dims(key, plain.shape[1:], each=key[-1] == "joints")
+    return Column(("point", *dims), (len(at), *plain.shape[1:]), attributes, plain[at])
 
 
 def _plain(values: Any, key: tuple[Step, ...], points: Points) -> list[Any]:
@@ -138,14 +142,20 @@ def _scattered(points: Points, resolved: Resolved) -> dict[str, Column]:
         dimension = dimension_of(group[0].key, points.dimensions) or "number"
         attributes = {"long_name": key_text(key), "units": DIMENSIONS[dimension].unit or "1"}
         whole = (len(points), *shape)
-        found[key_text(key)] = Column(("point", *_dims(key, shape)), whole, attributes, values.reshape(whole))
+        dims = _dims(key, shape, each=_of_each_leg(key))
+        found[key_text(key)] = Column(("point", *dims), whole, attributes, values.reshape(whole))
     return found
 
 
-def _dims(key: tuple[Step, ...], shape: tuple[int, ...]) -> tuple[str, ...]:
-    """Names of the dimensions of what stands under a key: legs or joints, axes, or names of its own."""
+def _of_each_leg(key: tuple[Step, ...]) -> bool:
+    """Whether what scatters under a key has one value or row of its own for each leg."""
+    return key[-1] == "joints" or (key[0] == "leg" and not isinstance(key[1], int))
+
+
+def _dims(key: tuple[Step, ...], shape: tuple[int, ...], *, each: bool) -> tuple[str, ...]:
+    """Names of the dimensions of what stands under a key: legs where there is one of `each`, axes, or own names."""
     dims: list[str] = []
     for position, size in enumerate(shape):
-        usual = {6: "leg", 3: "axis"}.get(size, "")
+        usual = "leg" if each and position == 0 else "axis" if size == 3 else ""
         dims.append(usual if usual and usual not in dims else f"{key_text(key)} {position + 1}")
     return tuple(dims)

@@ -21,7 +21,7 @@ if TYPE_CHECKING:
 
 __all__ = ["ACTUATOR_SCALARS", "Kept", "kept"]
 
-_LABELS = {"axis": 3, "leg": 6, "cause": 3, "direction": 2, "quaternion": 4, "joint_angle": 2, "plane_axis": 2}
+_LABELS = {"axis": 3, "cause": 3, "direction": 2, "quaternion": 4, "joint_angle": 2, "plane_axis": 2}
 _SHAPES = ("shape", "axial_shape", "mode")  # dimensions whose size is a setting of the study
 
 
@@ -81,6 +81,8 @@ def kept(keep: Keep, study: Study | ActuatorStudy, resolved: Resolved) -> Kept:
         _known(name, whole, "keep.records")
     variables = {name: Variable(*table[name][:3]) for name in names} | {name: whole[name] for name in keep.records}
     sizes, every, times = dict(_LABELS), 1, np.zeros(0)
+    if isinstance(study, Study):
+        sizes["leg"] = len(study.robot.legs)
     if keep.records:
         every, times = _instants(keep, resolved)
         sizes |= {"time": len(times), **_shape_sizes(resolved, variables)}

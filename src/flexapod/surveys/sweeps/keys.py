@@ -10,7 +10,18 @@ from flexapod.errors import InputError, closest
 from flexapod.model import MATERIALS, base_circle, platform_circle
 from flexapod.units import to_si
 
-__all__ = ["Step", "copied", "key_text", "leaves", "overlap", "parse_key", "put", "similar_key", "value_at"]
+__all__ = [
+    "Step",
+    "copied",
+    "key_text",
+    "leaves",
+    "leg_count",
+    "overlap",
+    "parse_key",
+    "put",
+    "similar_key",
+    "value_at",
+]
 
 Step = str | int
 _NAME = re.compile(r"([A-Za-z_][\w-]*)((?:\[\d+\])*)")
@@ -68,8 +79,8 @@ def copied(data: Any) -> Any:
 def put(data: dict[str, Any], steps: tuple[Step, ...], value: object) -> None:
     """Set a value in the tables of a study file; a key without the number of a leg means all legs.
 
-    What the file gives in short is spelled out where the path needs it: one [leg] becomes six, circles become joints,
-    a material becomes E and density, a damping ratio the table that holds it.
+    What the file gives in short is spelled out where the path needs it: one [leg] becomes one for each leg, circles
+    become joints, a material becomes E and density, a damping ratio the table that holds it.
 
     Raises
     ------
@@ -111,8 +122,8 @@ def _spell_out(table: dict[str, Any], steps: tuple[Step, ...], at: int) -> None:
     """Replace a short form in `table` by the long one that the path goes into."""
     step, before = steps[at], steps[at - 1] if at else ""
     numbered = at + 1 < len(steps) and isinstance(steps[at + 1], int)
-    if at == 0 and step == "leg" and numbered and isinstance(table.get("leg"), dict):
-        table["leg"] = [copied(table["leg"]) for _ in range(6)]
+    if at == 0 and step == "leg" and numbered:
+        table["leg"] = _each_leg(table)
     elif step == "joints" and before in _CIRCLES and {"radius", "half_angle"} <= table.keys():
         radius = to_si(table.pop("radius"), "length", key=f"robot.{before}.radius")
         half_angle = to_si(table.pop("half_angle"), "angle", key=f"robot.{before}.half_angle")
@@ -125,6 +136,29 @@ def _spell_out(table: dict[str, Any], steps: tuple[Step, ...], at: int) -> None:
         table |= {"E": material.E, "density": material.density}
         if material.yield_stress is not None:
             table.setdefault("yield_stress", material.yield_stress)
+
+
+def leg_count(data: Mapping[str, Any]) -> int:
+    """How many legs the tables of a study file name: "6-UPS" six, "3-UPS+UP" four."""
+    groups = re.findall(r"(?:^|\+)\s*(\d*)", str(data.get("robot", {}).get("type", "6-UPS")))
+    return sum(int(number or 1) for number in groups)
+
+
+def _each_leg(data: Mapping[str, Any]) -> Any:
+    """The table of every leg by itself; what is none as it is."""
+    legs = data.get("leg")
+    if isinstance(legs, dict):
+        legs = [{**legs, "count": leg_count(data)}]
+    if not isinstance(legs, list):
+        return legs
+    counts = [leg.get("count") if isinstance(leg, dict) else None for leg in legs]
+    if not any(isinstance(count, int) for count in counts):
+        return legs
+    found = []
+    for leg, count in zip(legs, counts, strict=True):
+        plain = {name: value for name, value in leg.items() if name != "count"} if isinstance(leg, dict) else leg
+        found += [copied(plain) for _ in range(count if isinstance(count, int) else 1)]
+    return found
 
 
 def value_at(data: dict[str, Any], steps: tuple[Step, ...]) -> object:

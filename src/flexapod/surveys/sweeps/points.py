@@ -18,7 +18,7 @@ from flexapod.model import ActuatorStudy, Study
 from flexapod.model.base import SHORT
 from flexapod.study.before.room import check_room, result_bytes
 from flexapod.study.before.timing import check_outputs
-from flexapod.surveys.sweeps.keys import Step, copied, key_text, leaves, put, similar_key, value_at
+from flexapod.surveys.sweeps.keys import Step, copied, key_text, leaves, leg_count, put, similar_key, value_at
 from flexapod.surveys.sweeps.plan import Plan, Tolerance
 from flexapod.surveys.sweeps.reading import Malformed, dimension_of, read_with_dimensions, study_of
 from flexapod.surveys.sweeps.samples import hypercube_values, number, spaced_values, standard_draws
@@ -254,7 +254,7 @@ class Points:
         key = tolerance.key
         each = [key]
         if key[0] == "leg" and len(key) > 1 and isinstance(key[1], str):
-            each = [("leg", number, *key[1:]) for number in range(1, 7)]
+            each = [("leg", number, *key[1:]) for number in range(1, leg_count(self.data) + 1)]
         tables = copied(self.data)
         try:
             found = [leaf for path in each for leaf, _ in leaves(value_at(tables, path), path)]

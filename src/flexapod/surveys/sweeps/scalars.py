@@ -79,29 +79,29 @@ class RobotRun:
 
     @cached_property
     def actuator_force(self) -> Array:
-        """Force of every drive on its piston, (T, 6) [N]."""
+        """Force of every drive on its piston, (T, legs) [N]."""
         if self.system.held.all():
             return self.record.drive[:, :, 0]
         return robot_results(self.study, self.system, self.record)["actuator_force"]
 
     @cached_property
     def lateral(self) -> Array:
-        """Lateral amplitudes, (T, 6, 2, k) [m]."""
+        """Lateral amplitudes, (T, legs, 2, k) [m]."""
         q = self.record.q[:, :, 3 + self.system.kernel.shapes.axial.count :]
         return q.reshape(*q.shape[:2], 2, self.system.kernel.shapes.a.count)
 
     @cached_property
     def tip_deflection(self) -> Array:
-        """Distance of the pistons' tips from the cylinders' axes, (T, 6) [m]."""
+        """Distance of the pistons' tips from the cylinders' axes, (T, legs) [m]."""
         return np.linalg.norm(self.lateral @ self.system.kernel.shapes.a.tip, axis=-1)
 
     @cached_property
     def stress(self) -> Array:
-        """Largest stress in every piston over time, (6,) [Pa]; NaN of a piston without section and material."""
+        """Largest stress in every piston over time, (legs,) [Pa]; NaN of a piston without section and material."""
         joints = self.study.robot.platform_joints - self.study.robot.payload.com
         legs = self.record.pose[:, None, :3] + joints @ self.turn.transpose(0, 2, 1) - self.study.robot.base_joints
         compression = np.einsum("tli,tli->tl", self.record.lam, legs) / np.linalg.norm(legs, axis=-1)
-        found, shapes = np.full(6, np.nan), self.system.kernel.shapes
+        found, shapes = np.full(legs.shape[1], np.nan), self.system.kernel.shapes
         for i, leg in enumerate(self.study.robot.legs):
             free = self.record.q[:, i, shapes.l_index] - leg.cylinder.mouth
             stress = leg_stress(leg, shapes.a, self.lateral[:, i], free, compression[:, i])
@@ -110,7 +110,7 @@ class RobotRun:
 
     @property
     def strain(self) -> Array:
-        """Largest strain in every piston over time, (6,)."""
+        """Largest strain in every piston over time, (legs,)."""
         return self.stress / np.array([leg.piston.E or np.nan for leg in self.study.robot.legs])
 
     @property

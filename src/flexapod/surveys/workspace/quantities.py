@@ -91,7 +91,7 @@ def _lengths(robot: model.Robot, path: rigid.Poses) -> Array:
 
 
 def _leg_axes(robot: model.Robot, path: rigid.Poses) -> Array:
-    """Unit vectors from base to platform joint, (P, 6, 3)."""
+    """Unit vectors from base to platform joint, (P, legs, 3)."""
     vectors = path.point(robot.platform_joints)[0] - robot.base_joints
     return vectors / np.linalg.norm(vectors, axis=-1, keepdims=True)
 
@@ -127,7 +127,7 @@ def _elastic(robot: model.Robot, path: rigid.Poses, locked: LockedPoses, wanted:
 
 
 def _drive_forces(robot: model.Robot, locked: LockedPoses) -> Array:
-    """Force of every drive on its piston at rest, (p, 6) [N]: constraint, or given force and spring, Eq. (T8.8)."""
+    """Force of every drive on its piston at rest, (p, legs) [N]: constraint, or given force and spring, Eq. (T8.8)."""
     states, system = locked.equilibria.states[locked.at], locked.system
     stiffness = np.array([drive_spring(leg)[0] for leg in robot.legs])
     spring = stiffness * (locked.lengths[locked.at] - states.q[:, :, system.kernel.shapes.l_index])
@@ -153,17 +153,17 @@ def _dynamic(robot: model.Robot, path: rigid.Poses, locked: LockedPoses, acceler
 
 def _answer(robot: model.Robot, path: rigid.Poses, locked: LockedPoses, acceleration: Array) -> Array:
     """Displacement of the tool while the platform accelerates without turning, from rest, (p, 3) [m]."""
-    p, system, m = len(path), locked.system, locked.m
+    p, count, system, m = len(path), len(robot.legs), locked.system, locked.m
     zero = np.zeros((p, 3))
     moving = rigid.Poses(
         position=path.position, rotation=path.rotation, velocity=zero, omega=zero, alpha=zero,
         acceleration=np.broadcast_to(acceleration, (p, 3)),
     )  # fmt: skip
     legs = rigid.inverse_kinematics(robot, moving)
-    v_dot = np.zeros((p, 6, system.n))
+    v_dot = np.zeros((p, count, system.n))
     v_dot[:, :, :3] = np.stack([legs.alpha_ddot, legs.beta_ddot, legs.accel], axis=-1)
     inertia = (m.M @ v_dot[..., None])[..., 0]
     payload = (m.payload_M @ np.append(acceleration, np.zeros(3))[:, None])[..., 0]
-    step = arrow_solve(system, m, inertia, payload, np.zeros((p, 6, 3)), np.zeros((p, 6)))
+    step = arrow_solve(system, m, inertia, payload, np.zeros((p, count, 3)), np.zeros((p, count)))
     pose = locked.equilibria.states.pose[locked.at]
     return (tool_motion(robot, pose) @ step.dy[..., None])[:, :3, 0]

@@ -67,7 +67,7 @@ def describe_leg(
     Parameters
     ----------
     number : int
-        1 to 6.
+        From 1.
     leg : Leg
     t, length, force, thrust, moment : ndarray, each shape (T,)
         Instants [s]; joint-to-joint length [m]; force of the drive and thrust at the tip [N]; bending moment [N m].
