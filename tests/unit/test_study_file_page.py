@@ -26,6 +26,8 @@ DERIVED = {
     *((kind, "type") for kind in ("CombinedMotion", "WaypointMotion", "CsvMotion", "PrescribedDrive", "ServoDrive",
                                   "ForceDrive")),
     ("CsvMotion", "profile"),
+    "Carriage", "Home", "Joint", "Strut", "Travel",
+    *(("Leg", name) for name in ("base_joint", "carriage", "chain", "passive", "platform_joint", "strut")),
 }  # fmt: skip
 
 

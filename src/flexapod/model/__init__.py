@@ -1,9 +1,13 @@
 """WHAT is analysed: frozen descriptions in SI units, read from text files with units."""
 
 from flexapod.model.actuator import Actuator, ActuatorInitial, ActuatorLoad, ActuatorMotion
+from flexapod.model.chain import Chain, chain_of, chains_of
+from flexapod.model.circle import base_circle, platform_circle
 from flexapod.model.damping import Damping, damping_parts
 from flexapod.model.drive import Drive, Feedback, ForceDrive, PrescribedDrive, ServoDrive
 from flexapod.model.files import PRESETS, OpenValue, load, loads, loads_robot, open_values, preset, preset_text
+from flexapod.model.home import Home
+from flexapod.model.joint import Carriage, Joint, Travel
 from flexapod.model.laws import (
     ConstantLaw,
     CsvLaw,
@@ -15,7 +19,7 @@ from flexapod.model.laws import (
     SpinUpLaw,
     StepLaw,
 )
-from flexapod.model.leg import Cylinder, Leg, Piston, Stroke
+from flexapod.model.leg import Leg, Stroke
 from flexapod.model.load import ConstantWrench, CsvWrench, Load, SineWrench, StepWrench, Wrench
 from flexapod.model.material import MATERIALS, Material, Rectangle, Tube
 from flexapod.model.motion import (
@@ -28,7 +32,9 @@ from flexapod.model.motion import (
     Waypoint,
     WaypointMotion,
 )
-from flexapod.model.robot import Payload, Robot, base_circle, platform_circle
+from flexapod.model.payload import Payload
+from flexapod.model.piston import Cylinder, Piston, Strut
+from flexapod.model.robot import Robot
 from flexapod.model.simulation import DEFAULT_TOLERANCE, FIDELITIES, Initial, Simulation
 from flexapod.model.study import ActuatorStudy, Study, override
 from flexapod.model.write import to_toml
@@ -46,6 +52,8 @@ __all__ = [
     "ActuatorMotion",
     "ActuatorStudy",
     "AxisMotion",
+    "Carriage",
+    "Chain",
     "CombinedMotion",
     "ConstantLaw",
     "ConstantWrench",
@@ -57,7 +65,9 @@ __all__ = [
     "Drive",
     "Feedback",
     "ForceDrive",
+    "Home",
     "Initial",
+    "Joint",
     "Leg",
     "Load",
     "LoadLaw",
@@ -80,12 +90,16 @@ __all__ = [
     "StepLaw",
     "StepWrench",
     "Stroke",
+    "Strut",
     "Study",
+    "Travel",
     "Tube",
     "Waypoint",
     "WaypointMotion",
     "Wrench",
     "base_circle",
+    "chain_of",
+    "chains_of",
     "damping_parts",
     "load",
     "loads",

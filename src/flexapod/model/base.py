@@ -31,6 +31,7 @@ __all__ = [
     "Frozen",
     "Joints",
     "Matrix3",
+    "Matrix6",
     "Measure",
     "NonNegative",
     "Number",
@@ -116,7 +117,8 @@ def _as_list(array: Array, info: SerializationInfo) -> list[Any] | str:
 Vec3 = Annotated[Array, PlainValidator(array_of((3,))), PlainSerializer(_as_list)]
 Vec6 = Annotated[Array, PlainValidator(array_of((6,))), PlainSerializer(_as_list)]
 Matrix3 = Annotated[Array, PlainValidator(array_of((3, 3))), PlainSerializer(_as_list)]
-Joints = Annotated[Array, PlainValidator(array_of((6, 3))), PlainSerializer(_as_list)]
+Matrix6 = Annotated[Array, PlainValidator(array_of((6, 6))), PlainSerializer(_as_list)]
+Joints = Annotated[Array, PlainValidator(array_of((None, 3))), PlainSerializer(_as_list)]
 Series = Annotated[Array, PlainValidator(array_of((None,))), PlainSerializer(_as_list)]
 Series6 = Annotated[Array, PlainValidator(array_of((None, 6))), PlainSerializer(_as_list)]
 
@@ -228,7 +230,7 @@ def _input_error(error: ValidationError, model: type[Frozen]) -> InputError:
     kind, context = first["type"], first.get("ctx", {})
     value = first.get("input")
     if kind == "extra_forbidden":
-        names = list(model.model_fields)
+        names = [*model.model_fields, *model.model_computed_fields]
         return InputError(
             "unknown key", key=key, allowed=", ".join(names), next_step=closest(str(first["loc"][-1]), names)
         )

@@ -2,93 +2,23 @@
 
 from __future__ import annotations
 
-from typing import Annotated
+from typing import Annotated, Any
 
 from pydantic import Field, model_validator
 
 from flexapod.errors import InputError
-from flexapod.model.base import Frozen, Measure, NonNegative, Number, Positive, Vec3
+from flexapod.model.base import Frozen, Measure, NonNegative, Positive, Vec3
+from flexapod.model.chain import Chain, chain_of
 from flexapod.model.damping import BodyDamping, damping_parts
 from flexapod.model.drive import Drive, PrescribedDrive
-from flexapod.model.material import Material, Tube
+from flexapod.model.joint import Carriage, Joint
+from flexapod.model.piston import Cylinder, Piston, Strut
 from flexapod.words import number, text
 
-__all__ = ["Cylinder", "Leg", "Piston", "Stroke"]
+__all__ = ["Leg", "Stroke"]
 
 
-class Cylinder(Frozen):
-    """The lower, rigid part of a leg.
-
-    `mass` [kg]; `com` [m], centre of mass from the universal joint along the axis; `inertia` [kg m^2], transverse,
-    about that centre; `mouth` [m], where the piston comes out, from the universal joint; `axial_inertia` [kg m^2].
-    """
-
-    mass: Annotated[NonNegative, Measure("mass")]
-    com: Annotated[Number, Measure("length")] = 0.0
-    inertia: Annotated[NonNegative, Measure("inertia")] = 0.0
-    mouth: Annotated[NonNegative, Measure("length")]
-    axial_inertia: Annotated[NonNegative, Measure("inertia")] = 0.0
-
-    @model_validator(mode="after")
-    def _real_body(self) -> Cylinder:
-        _check_axial(self.axial_inertia, self.inertia, "inertia")
-        return self
-
-
-class Piston(Frozen):
-    """The upper, flexible part of a leg: a uniform Euler-Bernoulli beam.
-
-    `length` [m], whole piston; `EA` [N]; `EI` [N m^2]; `rhoA` [kg/m], 0 for a spring without mass; `diameter`,
-    `inner_diameter` [m], `E` [Pa], `density` [kg/m^3] and `yield_stress` [Pa] where known; `axial_inertia` [kg m^2].
-    """
-
-    length: Annotated[Positive, Measure("length")]
-    EA: Annotated[Positive, Measure("axial stiffness")]
-    EI: Annotated[Positive, Measure("bending stiffness")]
-    rhoA: Annotated[NonNegative, Measure("line density")]
-    diameter: Annotated[Positive, Measure("length")] | None = None
-    inner_diameter: Annotated[Positive, Measure("length")] | None = None
-    E: Annotated[Positive, Measure("stress")] | None = None
-    density: Annotated[Positive, Measure("density")] | None = None
-    yield_stress: Annotated[Positive, Measure("stress")] | None = None
-    axial_inertia: Annotated[NonNegative, Measure("inertia")] = 0.0
-
-    @model_validator(mode="after")
-    def _sensible(self) -> Piston:
-        if self.inner_diameter is not None and self.diameter is None:
-            raise InputError("needs the outer diameter too", key="diameter", next_step="Add diameter")
-        if self.diameter is not None:
-            Tube(diameter=self.diameter, inner_diameter=self.inner_diameter)
-            if self.diameter >= self.length:
-                raise InputError(
-                    "makes the piston wider than long: it is not a beam",
-                    key="diameter",
-                    value=self.diameter,
-                    allowed=f"below a tenth of the length of {self.length:g} m for an accurate beam",
-                )
-        _check_axial(self.axial_inertia, self.rhoA * self.length**3 / 12, "transverse inertia, rhoA length^3 / 12,")
-        return self
-
-    @classmethod
-    def round(cls, *, length: float, section: Tube, material: Material, axial_inertia: float = 0.0) -> Piston:
-        """A piston of round section: EA, EI and rhoA follow from section and material."""
-        return cls(
-            length=length,
-            EA=material.E * section.area,
-            EI=material.E * section.second_moment,
-            rhoA=material.density * section.area,
-            diameter=section.diameter,
-            inner_diameter=section.inner_diameter,
-            E=material.E,
-            density=material.density,
-            yield_stress=material.yield_stress,
-            axial_inertia=axial_inertia,
-        )
-
-    @property
-    def mass(self) -> float:
-        """Mass of the whole piston [kg]."""
-        return self.rhoA * self.length
+NOTHING = Cylinder(mass=0.0, mouth=0.0)  # in place of the cylinder that a strut does not have
 
 
 class Stroke(Frozen):
@@ -111,38 +41,92 @@ class Stroke(Frozen):
 
 
 class Leg(Frozen):
-    """A leg between a universal joint on the base and a spherical joint on the platform.
+    """A leg between base and platform: a chain of joints, of letters "UPS" unless others are given (`model.chain`).
 
-    `damping`: modal damping ratio of the piston, or `Damping` with a part in proportion to its stiffness;
-    `axial_modes`: number of axial shapes, the static one first;
-    `u_axis`: direction of the universal joint's base-fixed axis (world axes), default Z x leg.
+    `cylinder` and `piston` of a leg with a stroke, or `strut` of fixed length (then `piston` is the strut, `cylinder`
+    nothing); `carriage`: what moves the foot, where the letters have one; `base_joint`, `platform_joint`;
+    `passive`: nothing drives it; `damping`: modal damping ratio of the piston, or `Damping` with a part in proportion
+    to its stiffness; `axial_modes`: number of axial shapes, the static one first.
+    `u_axis` stands for the axis of `base_joint`.
     """
 
-    cylinder: Cylinder
+    chain: str = "UPS"
+    passive: bool = False
+    cylinder: Cylinder = NOTHING
     piston: Piston
+    strut: Strut | None = None
+    carriage: Carriage | None = None
+    base_joint: Joint = Joint()
+    platform_joint: Joint = Joint()
     stroke: Stroke | None = None
     damping: BodyDamping = 0.0
     drive: Drive = PrescribedDrive()
     axial_modes: int = Field(default=2, strict=True, ge=0, le=4)
-    u_axis: Annotated[Vec3, Measure("number")] | None = None
+
+    def __init__(self, **fields: Any) -> None:
+        if fields.get("strut") is not None:
+            if not isinstance(fields.get("piston", fields["strut"]), Strut):
+                raise InputError("is given together with strut", key="piston", allowed="one of the two")
+            fields["piston"] = fields["strut"]
+        if (axis := fields.pop("u_axis", None)) is not None:
+            fields["base_joint"] = (fields.get("base_joint") or Joint()).replace(axis=axis)
+        super().__init__(**fields)
+
+    @property
+    def u_axis(self) -> Vec3 | None:
+        """Direction of the base joint's axis that is fixed to the base (3,), world axes; None: Z x leg."""
+        return self.base_joint.axis
+
+    @property
+    def letters(self) -> Chain:
+        """What the letters of its chain say."""
+        return chain_of(self.chain)
+
+    @property
+    def driven(self) -> str:
+        """What its drive moves: "stroke", "carriage", "" of a passive leg."""
+        return "" if self.passive else self.letters.driven
 
     def _shown(self) -> dict[str, str]:
+        letters = {} if self.chain == "UPS" else {"chain": self.chain + (", passive" if self.passive else "")}
         width = "" if self.piston.diameter is None else f"{text(self.piston.diameter, 'm', 4)} thick, "
+        beam = (
+            f"{width}{text(self.piston.length, 'm', 4)} long, EA {text(self.piston.EA, 'N', 4)}, "
+            f"EI {number(self.piston.EI, 4)} N m^2"
+        )
+        mouth = f"mouth at {text(self.cylinder.mouth, 'm', 4)}, {number(self.cylinder.mass, 4)} kg"
+        bodies = {"piston": beam, "cylinder": mouth} if self.strut is None else {"strut": beam}
+        carriage = {} if self.carriage is None else {"carriage": self.carriage.kind}
         limits = {} if self.stroke is None else {"stroke": _span(self.stroke.min, self.stroke.max)}
-        return {
-            "piston": f"{width}{text(self.piston.length, 'm', 4)} long, EA {text(self.piston.EA, 'N', 4)}, "
-            f"EI {number(self.piston.EI, 4)} N m^2",
-            "cylinder": f"mouth at {text(self.cylinder.mouth, 'm', 4)}, {number(self.cylinder.mass, 4)} kg",
-            **limits,
-            "drive": self.drive.type,
-            "damping": _damped(self.damping),
-        }
+        drive = {"drive": self.drive.type} if self.driven else {}
+        return {**letters, **carriage, **bodies, **limits, **drive, "damping": _damped(self.damping)}
 
     @model_validator(mode="after")
-    def _axis_has_a_direction(self) -> Leg:
-        if self.u_axis is not None and not self.u_axis.any():
-            raise InputError("has no direction", key="u_axis", value=self.u_axis.tolist(), allowed="a non-zero vector")
+    def _parts_of_its_chain(self) -> Leg:
+        try:
+            letters = self.letters
+        except InputError as error:
+            raise error.located(prefix="chain") from None
+        if not letters.stroke and self.strut is None:
+            raise _misfit(self.chain, "strut", "is missing: without P or C the leg is a rod of fixed length")
+        if letters.stroke and self.strut is not None:
+            raise _misfit(self.chain, "strut", "does not fit a leg with a stroke", "cylinder and piston")
+        if not letters.stroke and self.stroke is not None:
+            raise _misfit(self.chain, "stroke", "limits a stroke that the leg does not have", "carriage.stroke")
+        if letters.carriage != ("" if self.carriage is None else self.carriage.kind):
+            if self.carriage is None:
+                raise _misfit(self.chain, "carriage", f"is missing: {self.chain[0]} moves the foot of the leg")
+            allowed = f"a {letters.carriage}" if letters.carriage else "P or R before the base joint: PUS, RUS"
+            raise _misfit(self.chain, "carriage", f"is a {self.carriage.kind}", allowed)
+        if not self.passive and not letters.driven:
+            raise _misfit(self.chain, "chain", "has no drive: no P, no C, no R before the base joint", "passive = true")
+        if self.passive and self.drive != PrescribedDrive():
+            raise _misfit(self.chain, "drive", "drives a passive leg", "a drive, or passive = true")
         return self
+
+
+def _misfit(chain: str, key: str, what: str, allowed: str | None = None) -> InputError:
+    return InputError(f"{what} (chain {chain})", key=key, allowed=allowed)
 
 
 def _damped(damping: BodyDamping) -> str:
@@ -152,14 +136,3 @@ def _damped(damping: BodyDamping) -> str:
 
 def _span(low: float, high: float) -> str:
     return f"{text(low, 'm', 4)} to {text(high, 'm', 4)} joint to joint"
-
-
-def _check_axial(axial: float, transverse: float, name: str) -> None:
-    # Principal moments of a body of revolution (I, I, Ia): Ia <= 2 I, equal for a flat disc.
-    if axial > 2 * transverse * (1 + 1e-9):
-        raise InputError(
-            "belongs to no body",
-            key="axial_inertia",
-            value=axial,
-            allowed=f"at most twice the {name} of {transverse:g} kg m^2",
-        )

@@ -6,21 +6,25 @@ import math
 from types import MappingProxyType
 from typing import Annotated
 
-from pydantic import model_validator
+from pydantic import Field, model_validator
 
 from flexapod.errors import InputError
 from flexapod.model.base import Frozen, Measure, Positive
 
-__all__ = ["MATERIALS", "Material", "Rectangle", "Tube"]
+__all__ = ["MATERIALS", "POISSON", "Material", "Rectangle", "Tube"]
+
+
+POISSON = 0.3  # where no other is given
 
 
 class Material(Frozen):
-    """Elastic modulus E [Pa], density [kg/m^3] and yield stress [Pa] of a beam's material."""
+    """Elastic modulus E [Pa], density [kg/m^3], yield stress [Pa] and Poisson's ratio of a beam's material."""
 
     name: str
     E: Annotated[Positive, Measure("stress")]
     density: Annotated[Positive, Measure("density")]
     yield_stress: Annotated[Positive, Measure("stress")] | None = None
+    poisson: float = Field(default=POISSON, strict=True, ge=-0.5, le=0.5)
 
 
 # E and density of steel: Table 3 of the paper. The others are handbook values at room temperature
@@ -28,8 +32,8 @@ class Material(Frozen):
 # "yield" being the compressive strength); the yield stress of steel is that of a quenched and tempered shaft (42CrMo4).
 _TABLE = (
     Material(name="steel", E=200e9, density=7800.0, yield_stress=650e6),
-    Material(name="aluminium", E=68.9e9, density=2700.0, yield_stress=276e6),
-    Material(name="titanium", E=113.8e9, density=4430.0, yield_stress=880e6),
+    Material(name="aluminium", E=68.9e9, density=2700.0, yield_stress=276e6, poisson=0.33),
+    Material(name="titanium", E=113.8e9, density=4430.0, yield_stress=880e6, poisson=0.34),
     Material(name="cfrp", E=120e9, density=1600.0, yield_stress=600e6),
 )
 MATERIALS = MappingProxyType({material.name: material for material in _TABLE})

@@ -39,7 +39,7 @@ _RATES = {"angle": "angular rate", "length": "velocity"}
 
 def read_actuator(section: Section) -> Actuator:
     """The beam and its hub."""
-    stiffness, made_of = ("rhoA", "EI"), ("section", "material", "E", "density", "yield_stress")
+    stiffness, made_of = ("rhoA", "EI"), ("section", "material", "E", "density", "yield_stress", "poisson")
     section.only(*_NUMBERS, "damping", *stiffness, *made_of)
     numbers = {name: section.number(name, dimension) for name, dimension in _NUMBERS.items()}
     fields = numbers | {"damping": read_damping(section)}

@@ -5,11 +5,14 @@ from __future__ import annotations
 from collections.abc import Callable
 
 from flexapod.errors import InputError
+from flexapod.model.circle import Circle, base_circle, platform_circle
 from flexapod.model.damping import read_damping
 from flexapod.model.drive import Drive, Feedback, ForceDrive, PrescribedDrive, ServoDrive
-from flexapod.model.leg import Cylinder, Leg, Piston, Stroke
+from flexapod.model.leg import Leg, Stroke
 from flexapod.model.material import MATERIALS, Material, Tube
-from flexapod.model.robot import Circle, Payload, Robot, base_circle, platform_circle
+from flexapod.model.payload import Payload
+from flexapod.model.piston import Cylinder, Piston
+from flexapod.model.robot import Robot
 from flexapod.model.section import Section
 from flexapod.model.tables import FORCES, read_table
 from flexapod.typing import Array
@@ -39,15 +42,16 @@ def read_robot(top: Section) -> Robot:
 
 
 def read_material(section: Section) -> Material:
-    """Material of a section that has `material`, or `E` and `density`; `yield_stress` may be set in both cases."""
-    yield_stress = section.number("yield_stress", "stress")
+    """Material of a section that has `material`, or `E` and `density`; the others may be set in both cases."""
+    own = {"yield_stress": section.number("yield_stress", "stress"), "poisson": section.number("poisson", "number")}
     if "material" in section:
         for name in ("E", "density"):
             if name in section:
                 raise section.error("is given together with material", name, allowed="material, or E and density")
         name = section.text("material", tuple(MATERIALS))
         material = MATERIALS[str(name)]
-        return material if yield_stress is None else section.build(Material, **_fields(material, yield_stress))
+        given = {key: value for key, value in own.items() if value is not None}
+        return section.build(material.replace, **given) if given else material
     if "E" not in section and "density" not in section:
         raise InputError(
             "is missing",
@@ -62,12 +66,8 @@ def read_material(section: Section) -> Material:
         name="given",
         E=section.number("E", "stress"),
         density=section.number("density", "density"),
-        yield_stress=yield_stress,
+        **own,
     )
-
-
-def _fields(material: Material, yield_stress: float) -> dict[str, object]:
-    return {"name": material.name, "E": material.E, "density": material.density, "yield_stress": yield_stress}
 
 
 def _joints(robot: Section, name: str, circle: Callable[[float, float], Array]) -> Array | list[list[float]]:
@@ -140,12 +140,11 @@ def _cylinder(section: Section) -> Cylinder:
 
 def _piston(section: Section) -> Piston:
     stiffness = ("EI", "EA", "rhoA")
-    section.only(
-        "length", "diameter", "inner_diameter", "material", "E", "density", *stiffness, "yield_stress", "axial_inertia"
-    )
+    made_of = ("material", "E", "density", "yield_stress", "poisson")
+    section.only("length", "diameter", "inner_diameter", *made_of, *stiffness, "GJ", "axial_inertia")
     section.need("length")
     length, axial_inertia = section.number("length", "length"), section.number("axial_inertia", "inertia")
-    if not any(name in section for name in stiffness):
+    if not any(name in section for name in (*stiffness, "GJ")):
         section.need("diameter")
         return section.build(
             Piston.round,
@@ -167,6 +166,8 @@ def _piston(section: Section) -> Piston:
         diameter=section.number("diameter", "length"),
         inner_diameter=section.number("inner_diameter", "length"),
         yield_stress=section.number("yield_stress", "stress"),
+        poisson=section.number("poisson", "number"),
+        GJ=section.number("GJ", "bending stiffness"),
         axial_inertia=axial_inertia,
     )
 

@@ -10,10 +10,11 @@ from flexapod.model.actuator import Actuator
 from flexapod.model.base import Frozen
 from flexapod.model.drive import ForceDrive
 from flexapod.model.laws import CsvLaw
-from flexapod.model.leg import Leg, Piston
+from flexapod.model.leg import Leg
 from flexapod.model.load import CsvWrench
-from flexapod.model.material import MATERIALS, Material, Tube
+from flexapod.model.material import MATERIALS, POISSON, Material, Tube
 from flexapod.model.motion import CsvMotion
+from flexapod.model.piston import Piston
 from flexapod.model.robot import Robot
 from flexapod.model.simulation import OWN_BASIS, Simulation
 
@@ -76,7 +77,14 @@ def _robot(robot: Robot) -> Iterator[str]:
 
 
 def _leg(leg: Leg) -> dict[str, object]:
-    return _fields(leg) | {"piston": _piston(leg.piston)}
+    fields = _fields(leg)
+    for name in ("chain", "passive", "base_joint", "platform_joint"):
+        if fields[name] == Leg.model_fields[name].default:
+            del fields[name]
+    if leg.u_axis is not None:
+        fields["u_axis"] = leg.u_axis
+        del fields["base_joint"]
+    return fields | {"piston": _piston(leg.piston)}
 
 
 def _piston(piston: Piston) -> dict[str, object]:
@@ -84,7 +92,9 @@ def _piston(piston: Piston) -> dict[str, object]:
     made_of = {name: fields.pop(name, None) for name in ("E", "density")}
     if piston.diameter is None or piston.E is None or piston.density is None:
         return fields
-    material = Material(name="given", E=piston.E, density=piston.density, yield_stress=piston.yield_stress)
+    material = Material(
+        name="given", E=piston.E, density=piston.density, yield_stress=piston.yield_stress, poisson=piston.poisson
+    )
     section = Tube(diameter=piston.diameter, inner_diameter=piston.inner_diameter)
     same = Piston.round(length=piston.length, section=section, material=material, axial_inertia=piston.axial_inertia)
     if same != piston:
@@ -108,7 +118,7 @@ def _actuator(actuator: Actuator) -> dict[str, object]:
 def _material(material: Material) -> dict[str, object]:
     """Its name where that says what it is made of, else its values."""
     known, fields = MATERIALS.get(material.name), _fields(material)
-    if known is None or (known.E, known.density) != (material.E, material.density):
+    if known is None or known != material.replace(name=known.name, yield_stress=known.yield_stress):
         return {name: value for name, value in fields.items() if name != "name"}
     named: dict[str, object] = {"material": material.name}
     return named if known == material else named | {"yield_stress": material.yield_stress}
@@ -118,6 +128,8 @@ def _fields(model: Frozen) -> dict[str, object]:
     skipped = _IN_FILE.get(type(model), ())
     if isinstance(model, Simulation) and model.fidelity in OWN_BASIS:
         skipped = ("basis",)
+    if getattr(model, "poisson", None) == POISSON:
+        skipped += ("poisson",)
     fields = {name: getattr(model, name) for name in type(model).model_fields if name not in skipped}
     if "file" in fields and fields["file"] is None and getattr(model, "time", None) is not None:
         fields["file"] = "table.csv"
@@ -140,6 +152,8 @@ def toml_value(value: object) -> str:
         return "{ " + ", ".join(_keys(value)) + " }"
     if isinstance(value, np.ndarray):
         value = value.tolist()
+    if isinstance(value, bool):
+        return "true" if value else "false"
     if isinstance(value, list | tuple):
         return "[" + ", ".join(toml_value(item) for item in value) + "]"
     if isinstance(value, str):

@@ -1,0 +1,80 @@
+"""Directions in words, as seen from a joint: tangential, radial, vertical; and the plane of a planar robot."""
+
+from __future__ import annotations
+
+from typing import TYPE_CHECKING, Literal
+
+import numpy as np
+
+from flexapod.typing import Array
+
+if TYPE_CHECKING:
+    from flexapod.model.leg import Leg
+
+__all__ = ["WORDS", "Plane", "axis_of", "normal_of", "own_view", "plane_order", "word_of"]
+
+Plane = Literal["xy", "yz", "zx"]
+WORDS = ("tangential", "radial", "vertical")
+_NEAR = 1e-12  # of the axis: a joint nearer to it has no radial direction
+
+
+def plane_order(plane: Plane | None) -> tuple[int, int, int]:
+    """Numbers of the two axes of a plane, in the order of its letters, and of its normal; without a plane x, y, z."""
+    return {None: (0, 1, 2), "xy": (0, 1, 2), "yz": (1, 2, 0), "zx": (2, 0, 1)}[plane]
+
+
+def normal_of(plane: Plane | None) -> Array:
+    """The normal of a plane, (3,); without a plane z."""
+    return np.eye(3)[plane_order(plane)[2]]
+
+
+def axis_of(word: str, place: Array, normal: Array) -> Array | None:
+    """The direction that a word means at a joint, a unit vector (3,).
+
+    Parameters
+    ----------
+    word : {"tangential", "radial", "vertical"}
+        Radial leads away from the axis through the origin along the normal, tangential is a quarter of a turn further;
+        vertical is z.
+    place : Array
+        (3,) the joint [m].
+    normal : Array
+        (3,) unit vector.
+
+    Returns
+    -------
+    Array or None
+        None if the joint lies on that axis.
+    """
+    if word == "vertical":
+        return np.array([0.0, 0.0, 1.0])
+    radial = place - (place @ normal) * normal
+    size = float(np.linalg.norm(radial))
+    if size <= _NEAR * max(1.0, float(np.linalg.norm(place))):
+        return None
+    return radial / size if word == "radial" else np.cross(normal, radial / size)
+
+
+def word_of(axis: Array, place: Array, normal: Array) -> str | None:
+    """The word for a direction at a joint, or None."""
+    found = ((word, axis_of(word, place, normal)) for word in WORDS)
+    return next((word for word, meant in found if meant is not None and np.array_equal(axis, meant)), None)
+
+
+def own_view(leg: Leg, base: Array, platform: Array, normal: Array) -> Leg:
+    """The leg with its directions as seen from its own joints, along radial, tangential, normal: for comparisons."""
+    changes: dict[str, object] = {}
+    for name, joint, place in (("base_joint", leg.base_joint, base), ("platform_joint", leg.platform_joint, platform)):
+        if joint.axis is not None:
+            changes[name] = joint.replace(axis=_seen(joint.axis, place, normal))
+    if (carriage := leg.carriage) is not None:
+        arm = {} if carriage.arm is None else {"arm": _seen(carriage.arm, base, normal)}
+        changes["carriage"] = carriage.replace(axis=_seen(carriage.axis, base, normal), **arm)
+    return leg.replace(**changes) if changes else leg
+
+
+def _seen(vector: Array, place: Array, normal: Array) -> Array:
+    radial = axis_of("radial", place, normal)
+    if radial is None:
+        return vector
+    return np.round(np.array([radial, np.cross(normal, radial), normal]) @ vector, 12)

@@ -1,0 +1,68 @@
+"""Joints on a circle."""
+
+from __future__ import annotations
+
+import math
+from typing import Annotated
+
+import numpy as np
+from pydantic import model_validator
+
+from flexapod.errors import InputError
+from flexapod.model.base import Frozen, Measure, NonNegative, Positive
+from flexapod.typing import Array
+
+__all__ = ["Circle", "base_circle", "platform_circle"]
+
+_LOWER = ((0, -1), (0, 1), (120, -1), (120, 1), (240, -1), (240, 1))
+_UPPER = ((-60, 1), (60, -1), (60, 1), (180, -1), (180, 1), (300, -1))
+
+
+class Circle(Frozen):
+    """Joints in pairs on a circle: `radius` [m]; `half_angle` [rad], half the angle between the joints of a pair."""
+
+    radius: Annotated[Positive, Measure("length")]
+    half_angle: Annotated[NonNegative, Measure("angle")]
+
+    @model_validator(mode="after")
+    def _pairs_apart(self) -> Circle:
+        if self.half_angle > math.pi / 3:
+            raise InputError(
+                "is out of range",
+                key="half_angle",
+                value=self.half_angle,
+                allowed="0 to 60 deg",
+                next_step='Write degrees as "10 deg"',
+            )
+        return self
+
+
+def base_circle(radius: float, half_angle: float) -> Array:
+    """Base joints of legs 1 to 6 on a circle: pairs centred at 0, 120 and 240 deg, z = 0.
+
+    Parameters
+    ----------
+    radius : float
+        Radius of the circle [m].
+    half_angle : float
+        Half the angle between the two joints of a pair [rad].
+
+    Returns
+    -------
+    Array
+        (6, 3) [m], world axes.
+    """
+    return _circle(radius, half_angle, _LOWER)
+
+
+def platform_circle(radius: float, half_angle: float) -> Array:
+    """Platform joints of legs 1 to 6 on a circle: pairs centred at 60, 180 and 300 deg.
+
+    Parameters and result as for `base_circle`, in the platform frame.
+    """
+    return _circle(radius, half_angle, _UPPER)
+
+
+def _circle(radius: float, half_angle: float, places: tuple[tuple[int, int], ...]) -> Array:
+    angles = np.array([np.deg2rad(centre) + side * half_angle for centre, side in places])
+    return radius * np.column_stack([np.cos(angles), np.sin(angles), np.zeros(6)])

@@ -1,0 +1,82 @@
+"""Where a robot stands at home: the platform's pose, the positions of the carriages."""
+
+from __future__ import annotations
+
+import math
+from typing import Annotated
+
+import numpy as np
+from pydantic import Field
+
+from flexapod.model.base import Frozen, Measure, Vec3
+from flexapod.model.joint import Carriage
+from flexapod.typing import Array
+
+__all__ = ["Home", "carriage_home", "foot"]
+
+
+class Home(Frozen):
+    """Pose of the platform frame at home: `position` (3,) [m], `rotation` (3,) [rad], world axes.
+
+    `rotation`: roll, pitch, yaw about world x, y, z: R = Rz(yaw) Ry(pitch) Rx(roll).
+    """
+
+    position: Annotated[Vec3, Measure("length")]
+    rotation: Annotated[Vec3, Measure("angle")] = Field(default=(0.0, 0.0, 0.0), validate_default=True)
+
+    def raised(self, height: float) -> Home:
+        """The same pose at another height [m]."""
+        return self.replace(position=[*self.position[:2], height])
+
+    @property
+    def matrix(self) -> Array:
+        """Platform to world, (3, 3)."""
+        if not self.rotation.any():
+            return np.eye(3)
+        from scipy.spatial.transform import Rotation
+
+        return Rotation.from_euler("xyz", self.rotation).as_matrix()
+
+
+def foot(base: Array, carriage: Carriage | None, position: float) -> Array:
+    """Base joint of a leg whose carriage is at a position [m, rad], (3,) [m], world axes; `base`: slider's 0, axis."""
+    if carriage is None:
+        return base
+    if carriage.arm is None:
+        return base + position * carriage.unit
+    along, across, beside = _parts(carriage)
+    return base + along + math.cos(position) * across + math.sin(position) * beside
+
+
+def carriage_home(base: Array, carriage: Carriage, tip: Array, length: float) -> float | None:
+    """Position [m, rad] at which a strut of a `length` [m] from the carriage ends in `tip` (3,); None if at none."""
+    way = tip - base
+    if carriage.arm is None:
+        middle = float(way @ carriage.unit)
+        square = middle**2 - float(way @ way) + length**2
+        if square < 0:
+            return None
+        found = (middle - math.sqrt(square), middle + math.sqrt(square))
+    else:
+        along, across, beside = _parts(carriage)
+        part = (way @ way + carriage.arm @ carriage.arm - length**2) / 2 - way @ along
+        most = math.hypot(way @ across, way @ beside)
+        if abs(part) > most:
+            return None
+        middle, apart = math.atan2(way @ beside, way @ across), math.acos(part / most)
+        found = (_turn(middle - apart), _turn(middle + apart))
+    if carriage.side is not None:
+        return max(found) if carriage.side > 0 else min(found)
+    return min(found, key=lambda position: abs(position - (carriage.home or 0.0)))
+
+
+def _parts(carriage: Carriage) -> tuple[Array, Array, Array]:
+    """Arm along the axis, across it, and the latter a quarter of a turn further."""
+    arm, unit = np.asarray(carriage.arm), carriage.unit
+    along = (arm @ unit) * unit
+    return along, arm - along, np.cross(unit, arm)
+
+
+def _turn(angle: float) -> float:
+    """The angle within half a turn of 0."""
+    return math.remainder(angle, 2 * math.pi)

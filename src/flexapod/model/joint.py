@@ -1,0 +1,113 @@
+"""What a leg stands on and ends in: joints, and carriages that move its foot."""
+
+from __future__ import annotations
+
+from typing import Annotated, Literal
+
+import numpy as np
+from pydantic import model_validator
+
+from flexapod.errors import InputError
+from flexapod.model.base import Frozen, Matrix6, Measure, NonNegative, Number, Vec3
+
+__all__ = ["Carriage", "Joint", "Travel"]
+
+
+class Joint(Frozen):
+    """A joint at an end of a leg.
+
+    `axis` (3,): of a revolute joint its axis, of a universal joint the direction of the axis that is fixed to the base
+    (world axes) or to the platform (platform axes); None where it follows from the leg.
+    `bending`, `torsion` [N m/rad]: of springs across and about the leg; None: free as the letter of the joint says,
+    and rigid of a fixed joint.
+    `stiffness` (6, 6) [N/m, N, N m/rad]: of a flexure, along and about the axes of base or platform, or, with
+    `leg_axes`, those of the leg, z along it.
+    """
+
+    axis: Annotated[Vec3, Measure("number")] | None = None
+    bending: Annotated[NonNegative, Measure("rotational stiffness")] | None = None
+    torsion: Annotated[NonNegative, Measure("rotational stiffness")] | None = None
+    stiffness: Annotated[Matrix6, Measure("stiffness", "force", "rotational stiffness")] | None = None
+    leg_axes: bool = False
+
+    @model_validator(mode="after")
+    def _sensible(self) -> Joint:
+        _check_direction(self.axis, "axis")
+        stiffness = self.stiffness
+        if stiffness is None:
+            return self
+        size = np.abs(stiffness).max()
+        if np.abs(stiffness - stiffness.T).max() > 1e-9 * size or np.linalg.eigvalsh(stiffness)[0] < -1e-9 * size:
+            raise InputError(
+                "belongs to no spring",
+                key="stiffness",
+                value=stiffness.tolist(),
+                allowed="a symmetric matrix with no negative eigenvalue",
+            )
+        if stiffness[3:].any() and (self.bending is not None or self.torsion is not None):
+            raise InputError(
+                "is given together with six rows of stiffness, which hold it",
+                key="torsion" if self.bending is None else "bending",
+                allowed="either of the two",
+            )
+        return self
+
+
+class Travel(Frozen):
+    """Allowed positions of a carriage [m, of a crank rad]."""
+
+    min: Annotated[Number, Measure("length", "angle")]
+    max: Annotated[Number, Measure("length", "angle")]
+
+    @model_validator(mode="after")
+    def _ordered(self) -> Travel:
+        if self.min >= self.max:
+            raise InputError("is not above min", key="max", value=self.max, allowed=f"above {self.min:g}")
+        return self
+
+
+class Carriage(Frozen):
+    """What moves the foot of a leg: a slider along `axis`, or a crank about it.
+
+    `axis` (3,), world axes; `arm` (3,) [m], of a crank: from its axis to the base joint at angle 0, world axes;
+    `mass` [kg] of a slider; `inertia` [kg m^2] of a crank about its axis. Of the two positions in which a strut reaches
+    the platform at home `side` takes the larger (+1) or the smaller one (-1), else it is the one next to `home`
+    [m, rad] (default 0). `stroke`: allowed positions.
+    """
+
+    kind: Literal["slider", "crank"]
+    axis: Annotated[Vec3, Measure("number")]
+    arm: Annotated[Vec3, Measure("length")] | None = None
+    mass: Annotated[NonNegative, Measure("mass")] = 0.0
+    inertia: Annotated[NonNegative, Measure("inertia")] = 0.0
+    home: Annotated[Number, Measure("length", "angle")] | None = None
+    side: Literal[1, -1] | None = None
+    stroke: Travel | None = None
+
+    @model_validator(mode="after")
+    def _complete(self) -> Carriage:
+        _check_direction(self.axis, self.kind)
+        if self.side is not None and self.home is not None:
+            raise InputError("is given together with home", key="side", value=self.side, allowed="either of the two")
+        unused = ("mass", "a slider") if self.kind == "crank" else ("inertia", "a crank")
+        if getattr(self, unused[0]):
+            raise InputError(f"belongs to {unused[1]}", key=unused[0], value=getattr(self, unused[0]))
+        if (self.arm is None) == (self.kind == "crank"):
+            raise InputError(
+                "is missing" if self.kind == "crank" else "belongs to a crank",
+                key="arm",
+                next_step="It is the way from the crank's axis to the base joint" if self.kind == "crank" else None,
+            )
+        if self.arm is not None and np.linalg.norm(np.cross(self.unit, self.arm)) < 1e-9:
+            raise InputError("lies along the axis", key="arm", value=self.arm.tolist(), allowed="across the axis")
+        return self
+
+    @property
+    def unit(self) -> Vec3:
+        """Unit vector of the axis, (3,)."""
+        return self.axis / np.linalg.norm(self.axis)
+
+
+def _check_direction(axis: Vec3 | None, key: str) -> None:
+    if axis is not None and not axis.any():
+        raise InputError("has no direction", key=key, value=axis.tolist(), allowed="a non-zero vector")

@@ -1,0 +1,81 @@
+"""The platform and all it carries."""
+
+from __future__ import annotations
+
+from typing import Annotated
+
+import numpy as np
+from pydantic import field_validator, model_validator
+
+from flexapod.errors import InputError
+from flexapod.model.base import Frozen, Matrix3, Measure, Positive, Vec3
+from flexapod.typing import Array
+from flexapod.words import number
+
+__all__ = ["Payload", "millimetres"]
+
+
+class Payload(Frozen):
+    """Platform and everything on it, as one rigid body.
+
+    `mass` [kg]; `inertia` (3, 3) [kg m^2] about the centre of mass in platform axes, products with tensor sign;
+    `com` and `tool` (3,) [m] from the platform frame's origin in platform axes (`tool` defaults to `com`).
+    """
+
+    mass: Annotated[Positive, Measure("mass")]
+    inertia: Annotated[Matrix3, Measure("inertia")]
+    com: Annotated[Vec3, Measure("length")]
+    tool: Annotated[Vec3, Measure("length")]
+
+    def __init__(self, **fields: object) -> None:
+        if fields.get("tool") is None and "com" in fields:
+            fields = fields | {"tool": fields["com"]}
+        super().__init__(**fields)
+
+    @field_validator("inertia", mode="before")
+    @classmethod
+    def _from_principal(cls, value: object) -> object:
+        if np.shape(value) == (3,):  # type: ignore[arg-type]
+            return np.diag(np.asarray(value, dtype=np.float64))
+        return value
+
+    def _shown(self) -> dict[str, str]:
+        tool = {} if np.array_equal(self.com, self.tool) else {"tool": f"at {millimetres(self.tool)}"}
+        moments = ", ".join(number(moment, 4) for moment in np.diag(self.inertia))
+        return {
+            "mass": f"{number(self.mass, 4)} kg",
+            "com": f"at {millimetres(self.com)}",
+            **tool,
+            "inertia": f"{moments} kg m^2 (xx, yy, zz)",
+        }
+
+    @model_validator(mode="after")
+    def _real_body(self) -> Payload:
+        inertia = self.inertia
+        if not np.allclose(inertia, inertia.T, rtol=0, atol=1e-9 * np.abs(inertia).max()):
+            raise _no_body(inertia, "a symmetric tensor: Ixy = Iyx, Ixz = Izx, Iyz = Izy")
+        small, middle, large = np.linalg.eigvalsh(inertia)
+        if small <= 1e-12 * abs(large):
+            raise _no_body(inertia, f"principal moments above 0 (the smallest is {small:.6g} kg m^2)")
+        if large > (small + middle) * (1 + 1e-9):
+            raise _no_body(
+                inertia,
+                "no principal moment above the sum of the other two "
+                f"(these are {small:.6g}, {middle:.6g}, {large:.6g} kg m^2)",
+            )
+        return self
+
+
+def millimetres(point: Array) -> str:
+    """A point in words."""
+    return f"[{', '.join(number(1e3 * part + 0.0, 4) for part in point)}] mm"
+
+
+def _no_body(inertia: Array, allowed: str) -> InputError:
+    return InputError(
+        "is an inertia that no body can have",
+        key="inertia",
+        value=inertia.tolist(),
+        allowed=allowed,
+        next_step="It is about the centre of mass, in platform axes, products of inertia with tensor sign",
+    )

@@ -1,0 +1,133 @@
+"""Bodies of a leg: cylinder, piston, strut."""
+
+from __future__ import annotations
+
+from typing import Annotated, Self
+
+from pydantic import Field, model_validator
+
+from flexapod.errors import InputError
+from flexapod.model.base import Frozen, Measure, NonNegative, Number, Positive
+from flexapod.model.material import POISSON, Material, Rectangle, Tube
+
+__all__ = ["Cylinder", "Piston", "Strut"]
+
+
+class Cylinder(Frozen):
+    """The lower, rigid part of a leg.
+
+    `mass` [kg]; `com` [m], centre of mass from the universal joint along the axis; `inertia` [kg m^2], transverse,
+    about that centre; `mouth` [m], where the piston comes out, from the universal joint; `axial_inertia` [kg m^2].
+    """
+
+    mass: Annotated[NonNegative, Measure("mass")]
+    com: Annotated[Number, Measure("length")] = 0.0
+    inertia: Annotated[NonNegative, Measure("inertia")] = 0.0
+    mouth: Annotated[NonNegative, Measure("length")]
+    axial_inertia: Annotated[NonNegative, Measure("inertia")] = 0.0
+
+    @model_validator(mode="after")
+    def _real_body(self) -> Cylinder:
+        _check_axial(self.axial_inertia, self.inertia, "inertia")
+        return self
+
+
+class Piston(Frozen):
+    """The upper, flexible part of a leg: a uniform Euler-Bernoulli beam.
+
+    `length` [m], whole piston; `EA` [N]; `EI` [N m^2]; `rhoA` [kg/m], 0 for a spring without mass; `diameter`,
+    `inner_diameter` [m], `E` [Pa], `density` [kg/m^3] and `yield_stress` [Pa] where known; `axial_inertia` [kg m^2];
+    `poisson`, ratio of a round section; `GJ` [N m^2], torsional stiffness, of another one.
+    """
+
+    length: Annotated[Positive, Measure("length")]
+    EA: Annotated[Positive, Measure("axial stiffness")]
+    EI: Annotated[Positive, Measure("bending stiffness")]
+    rhoA: Annotated[NonNegative, Measure("line density")]
+    diameter: Annotated[Positive, Measure("length")] | None = None
+    inner_diameter: Annotated[Positive, Measure("length")] | None = None
+    E: Annotated[Positive, Measure("stress")] | None = None
+    density: Annotated[Positive, Measure("density")] | None = None
+    yield_stress: Annotated[Positive, Measure("stress")] | None = None
+    axial_inertia: Annotated[NonNegative, Measure("inertia")] = 0.0
+    poisson: float = Field(default=POISSON, strict=True, ge=-0.5, le=0.5)
+    GJ: Annotated[Positive, Measure("bending stiffness")] | None = None
+
+    @model_validator(mode="after")
+    def _sensible(self) -> Self:
+        if self.inner_diameter is not None and self.diameter is None:
+            raise InputError("needs the outer diameter too", key="diameter", next_step="Add diameter")
+        if self.diameter is not None:
+            Tube(diameter=self.diameter, inner_diameter=self.inner_diameter)
+            if self.diameter >= self.length:
+                raise InputError(
+                    "makes the piston wider than long: it is not a beam",
+                    key="diameter",
+                    value=self.diameter,
+                    allowed=f"below a tenth of the length of {self.length:g} m for an accurate beam",
+                )
+        _check_axial(self.axial_inertia, self.rhoA * self.length**3 / 12, "transverse inertia, rhoA length^3 / 12,")
+        return self
+
+    @classmethod
+    def round(cls, *, length: float, section: Tube, material: Material, axial_inertia: float = 0.0) -> Self:
+        """A piston of round section: EA, EI and rhoA follow from section and material."""
+        return cls(
+            length=length,
+            EA=material.E * section.area,
+            EI=material.E * section.second_moment,
+            rhoA=material.density * section.area,
+            diameter=section.diameter,
+            inner_diameter=section.inner_diameter,
+            E=material.E,
+            density=material.density,
+            yield_stress=material.yield_stress,
+            axial_inertia=axial_inertia,
+            poisson=material.poisson,
+        )
+
+    @property
+    def mass(self) -> float:
+        """Mass of the whole piston [kg]."""
+        return self.rhoA * self.length
+
+    @property
+    def torsional_stiffness(self) -> float:
+        """`GJ`, or that of a round section, E I / (1 + poisson) [N m^2]."""
+        return self.EI / (1 + self.poisson) if self.GJ is None else self.GJ
+
+
+class Strut(Piston):
+    """A rod of fixed length in place of cylinder and piston: the beam of a piston that nothing guides.
+
+    `width`, `thickness` [m] of a strip, which bends across its thickness in a planar robot.
+    """
+
+    width: Annotated[Positive, Measure("length")] | None = None
+    thickness: Annotated[Positive, Measure("length")] | None = None
+
+    @classmethod
+    def strip(cls, *, length: float, section: Rectangle, material: Material) -> Strut:
+        """A strip: EA, EI across its thickness and rhoA follow from section and material."""
+        return cls(
+            length=length,
+            EA=material.E * section.area,
+            EI=material.E * section.second_moment,
+            rhoA=material.density * section.area,
+            E=material.E,
+            density=material.density,
+            yield_stress=material.yield_stress,
+            width=section.width,
+            thickness=section.height,
+        )
+
+
+def _check_axial(axial: float, transverse: float, name: str) -> None:
+    # Principal moments of a body of revolution (I, I, Ia): Ia <= 2 I, equal for a flat disc.
+    if axial > 2 * transverse * (1 + 1e-9):
+        raise InputError(
+            "belongs to no body",
+            key="axial_inertia",
+            value=axial,
+            allowed=f"at most twice the {name} of {transverse:g} kg m^2",
+        )

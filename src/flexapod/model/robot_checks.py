@@ -1,0 +1,148 @@
+"""What a robot must fulfil before its kinematics are looked at: counts, places, lengths at home."""
+
+from __future__ import annotations
+
+import math
+from collections.abc import Iterator
+from typing import TYPE_CHECKING
+
+import numpy as np
+
+from flexapod.errors import InputError
+from flexapod.model.axes import plane_order
+from flexapod.model.chain import chains_of
+from flexapod.typing import Array
+from flexapod.units import DIMENSIONS
+
+if TYPE_CHECKING:
+    from flexapod.model.leg import Leg
+    from flexapod.model.robot import Robot
+
+__all__ = ["check_counts", "check_leg", "check_plane", "check_spread"]
+
+
+def check_counts(robot: Robot) -> None:
+    """Refuse a number of legs or joints that the type does not have, and legs that one robot cannot have together."""
+    try:
+        chains = chains_of(robot.type)
+    except InputError as error:
+        raise error.located(prefix="robot.type") from None
+    found = tuple(leg.chain for leg in robot.legs)
+    if found != chains:
+        words = f"says {', '.join(chains)}; the legs are {', '.join(found)}"
+        if len(found) != len(chains):
+            words = f"says {len(chains)} legs, and there are {len(found)}"
+        raise InputError(words, key="robot.type", value=robot.type, allowed="as many legs as the type says")
+    for name, joints in (("base", robot.base_joints), ("platform", robot.platform_joints)):
+        if len(joints) != len(chains):
+            raise InputError(
+                f"has {len(joints)} joints for {len(chains)} legs",
+                key=f"robot.{name}",
+                allowed="one for each leg, in the order of the legs",
+            )
+    if robot.payload is None and not robot.platform_fixed:
+        raise InputError("is missing", key="payload", next_step="Only a platform with fixed = true needs none")
+    for name, values in (
+        ("axial_modes", {leg.axial_modes for leg in robot.legs}),
+        ("carriage", {leg.carriage.kind for leg in robot.legs if leg.carriage is not None}),
+    ):
+        if len(values) > 1:
+            allowed = "one number for all legs" if name == "axial_modes" else "sliders or cranks, not both in one robot"
+            raise InputError("differs between legs", key=f"leg.{name}", value=sorted(values), allowed=allowed)
+
+
+def check_spread(robot: Robot) -> None:
+    """Refuse joints that all lie at one point."""
+    if len(robot.legs) == 1 or robot.platform_fixed:
+        return
+    for name, joints in (("base", robot.base_joints), ("platform", robot.platform_joints)):
+        if np.ptp(joints, axis=0).max() < DIMENSIONS["length"].least:
+            raise InputError(
+                f"all {name} joints lie at one point: the legs cannot hold the platform against turning",
+                key=f"robot.{name}",
+                value=joints[0].tolist(),
+                next_step=f"Give robot.{name} a radius, or places apart from each other",
+            )
+
+
+def check_plane(robot: Robot) -> None:
+    """Refuse places and directions outside the plane of a planar robot, and strips outside of one."""
+    if robot.plane is None:
+        for i, leg in enumerate(robot.legs, start=1):
+            if leg.strut is not None and leg.strut.thickness is not None:
+                raise InputError(
+                    f"leg {i}: a strip bends in a plane only",
+                    key="leg.strut",
+                    allowed="a round section, or robot.plane",
+                )
+        return
+    normal = plane_order(robot.plane)[2]
+    for key, vector in _in_plane(robot):
+        if abs(vector[normal]) > 1e-12 * max(1.0, np.abs(vector).max()):
+            raise InputError(
+                f"leads out of the plane {robot.plane}",
+                key=key,
+                value=vector.tolist(),
+                allowed=f"{'xyz'[normal]} = 0, or two numbers",
+            )
+    turns = np.delete(robot.home.rotation, normal)
+    axes = [axis for leg in robot.legs for axis in _hinges(leg)]
+    if turns.any() or any(np.abs(np.delete(axis, normal)).max() > 1e-9 * np.abs(axis).max() for axis in axes):
+        raise InputError(
+            f"turns out of the plane {robot.plane}",
+            key="robot.home.rotation" if turns.any() else "leg",
+            allowed=f"axes along {'xyz'[normal]}, the normal: leave them out",
+        )
+
+
+def _in_plane(robot: Robot) -> Iterator[tuple[str, Array]]:
+    yield "robot.home.position", robot.home.position
+    yield from (("robot.base", place) for place in robot.base_joints)
+    yield from (("robot.platform", place) for place in robot.platform_joints)
+    for leg in robot.legs:
+        if leg.carriage is not None:
+            yield "leg.carriage", leg.carriage.axis if leg.carriage.arm is None else leg.carriage.arm
+
+
+def _hinges(leg: Leg) -> list[Array]:
+    crank = None if leg.carriage is None or leg.carriage.arm is None else leg.carriage.axis
+    return [axis for axis in (crank, leg.base_joint.axis, leg.platform_joint.axis) if axis is not None]
+
+
+def check_leg(number: int, leg: Leg, length: float) -> None:
+    """Refuse a leg that cannot stand at home, where it is `length` [m] long (nan: its strut does not reach)."""
+    where = f"leg {number}"
+    if math.isnan(length):
+        raise InputError(
+            f"{where}: the strut reaches the platform at home from no position of its carriage",
+            key="leg.strut.length",
+            value=leg.piston.length,
+            next_step="Check robot.base, robot.home_height and the direction of leg.carriage",
+        )
+    if length < 1e-9:
+        raise InputError(
+            f"{where}: base and platform joint coincide at home",
+            key="robot.home_height",
+            next_step="Check the joints of this leg and home_height",
+        )
+    if leg.cylinder.mouth >= length:
+        raise InputError(
+            f"{where}: no piston is left outside the cylinder at home, where the leg is {length:.6g} m long",
+            key="leg.cylinder.mouth",
+            value=leg.cylinder.mouth,
+            allowed=f"below {length:.6g} m",
+        )
+    if abs(leg.cylinder.com) > length:
+        raise InputError(
+            f"{where}: the cylinder's centre of mass lies beyond the leg's ends at home",
+            key="leg.cylinder.com",
+            value=leg.cylinder.com,
+            allowed=f"between the universal joint (0) and the mouth ({leg.cylinder.mouth:.6g} m)",
+        )
+    if leg.strut is not None and leg.carriage is None and abs(length - leg.strut.length) > 1e-9 * length:
+        raise InputError(
+            f"{where}: the strut is not as long as the way from base to platform joint at home",
+            key="leg.strut.length",
+            value=leg.strut.length,
+            allowed=f"{length:.9g} m",
+        )
