@@ -184,7 +184,7 @@ def test_paths_are_thinned_and_keep_their_ends():
 def test_leg_colors_of_figures_and_view_are_the_same():
     assert view_charts.charts(robot_run()[1])["leg forces"].colors == LEG_COLORS
     for color in LEG_COLORS:
-        assert f"rgb({','.join(map(str, legend.rgb(color)))})" in legend.plain_legend()
+        assert f"rgb({','.join(map(str, legend.rgb(color)))})" in legend.plain_legend(6)
 
 
 @pytest.mark.parametrize("quantity", legend.QUANTITIES[1:])

@@ -11,12 +11,12 @@ from matplotlib.axes import Axes
 from matplotlib.figure import Figure
 
 from flexapod.errors import InputError
+from flexapod.plot.legs import force_panels
 from flexapod.plot.style import (
     COLUMN,
     FLEXIBLE,
     LEG_COLORS,
     NOTE,
-    PAGE,
     RIGID,
     Scale,
     figure,
@@ -58,29 +58,18 @@ def engine_forces(results: Mapping[str, xr.Dataset]) -> Figure:
         None or too many results, or at different instants.
     """
     first, name = _checked(results)
-    rigid, end, time = first.actuator_force_rigid, motion_end(first), first.time.values
-    gaps = dict(_gaps(results, "actuator_force", "actuator_force_rigid"))
-    fig = figure(PAGE, 6.4)
-    grid = fig.subplots(4, 3, sharex=True, height_ratios=(2, 1.2, 2, 1.2))
-    big = scale(rigid, "N")
-    low, high = _limits(big([rigid.values, *(data.actuator_force.values for data in results.values())]))
-    small = scale(np.array(list(gaps.values())), "N")
-    worst = 1.1 * float(np.abs(small(list(gaps.values()))).max())
-    for i, leg in enumerate(first.leg.values):
-        above, below = grid[2 * (i // 3), i % 3], grid[2 * (i // 3) + 1, i % 3]
+    rigid, time, gaps = first.actuator_force_rigid, first.time.values, dict(_gaps(results))
+    big, small = scale(rigid, "N"), scale(np.array(list(gaps.values())), "N")
+    forces = [rigid, *(data.actuator_force for data in results.values())]
+    fig, panels = force_panels(first, forces, list(gaps.values()), (big, small), (2, 1.2))
+    for i, (leg, (above, below)) in enumerate(panels.items()):
         above.plot(time, big(rigid.sel(leg=leg)), label="Newton-Euler, rigid legs", **_BAND)
         for (model, gap), line in zip(gaps.items(), _LINES, strict=False):
             largest = text(float(np.abs(gap).max()), "N", 2)
             label = f"{model}; at most {largest} from {'Newton-Euler' if model == name else name}"
             above.plot(time, big(results[model].actuator_force.sel(leg=leg)), label=label, **line)
             below.plot(time, small(gap[:, i]), **(line | {"linewidth": 0.9}))
-        above.set_title(f"Leg {leg}")
-        above.set_ylim(low, high)
-        if worst > 0:
-            below.set_ylim(-worst, worst)
-        for axes in (above, below):
-            mark_end(axes, end)
-    _label(fig, grid, (f"force [{big.name}]", f"difference\n[{small.name}]") * 2)
+    fig.legend(*panels[1][0].get_legend_handles_labels(), loc="outside upper center", ncols=4)
     return fig
 
 
@@ -163,18 +152,13 @@ def _label(fig: Figure, grid: np.ndarray, names: Sequence[str]) -> None:
     fig.align_ylabels(grid[:, 0])
 
 
-def _gaps(results: Mapping[str, xr.Dataset], quantity: str, known: str) -> Iterator[tuple[str, np.ndarray]]:
-    """The first result less what is known, the others less the first."""
-    reference = next(iter(results.values()))[known].values
+def _gaps(results: Mapping[str, xr.Dataset]) -> Iterator[tuple[str, np.ndarray]]:
+    """Drive forces of the first result less those of Newton-Euler, those of the others less those of the first."""
+    reference = next(iter(results.values())).actuator_force_rigid.values
     for i, (model, data) in enumerate(results.items()):
-        yield model, data[quantity].values - reference
+        yield model, data.actuator_force.values - reference
         if i == 0:
-            reference = data[quantity].values
-
-
-def _limits(values: np.ndarray) -> tuple[float, float]:
-    margin = 0.07 * max(float(np.ptp(values)), 1e-9)
-    return float(values.min()) - margin, float(values.max()) + margin
+            reference = data.actuator_force.values
 
 
 def _checked(results: Mapping[str, xr.Dataset]) -> tuple[xr.Dataset, str]:

@@ -12,7 +12,8 @@ from matplotlib.gridspec import SubplotSpec
 from matplotlib.patheffects import withStroke
 from mpl_toolkits.mplot3d.art3d import Line3DCollection, Poly3DCollection
 
-from flexapod.plot.style import LEG_COLORS, NOTE, SMALL, ink
+from flexapod.plot.style import NOTE, SMALL, ink
+from flexapod.scene.colours import colors_of_legs
 from flexapod.scene.robot import Scene
 
 __all__ = ["draw_ghost", "draw_robot", "head", "space", "view"]
@@ -59,10 +60,11 @@ def view(axes: Any, scenes: Sequence[Scene], zoom: float = 1.0) -> None:
     axes.set_zlabel("z [mm]", fontsize=NOTE, labelpad=2)
 
 
-def draw_robot(axes: Any, s: Scene, *, numbers: bool = True, legs: Sequence[str] = LEG_COLORS) -> None:
+def draw_robot(axes: Any, s: Scene, *, numbers: bool = True, legs: Sequence[str] = ()) -> None:
     """Draw a robot: grey cylinders, coloured pistons, translucent platform, cross-hair at the centre of mass."""
     _plate(axes, s.base, BASE, 0.12)
-    for i in range(6):
+    legs = legs or colors_of_legs(len(s.base))
+    for i in range(len(s.base)):
         _line(axes, s.base[i], s.mouth[i], color=CYLINDER, linewidth=6, zorder=3)
         x, y, z = 1e3 * s.piston[i].T
         axes.plot(x, y, z, color=legs[i], linewidth=2.6, solid_capstyle="round", zorder=4)
@@ -82,7 +84,7 @@ def draw_robot(axes: Any, s: Scene, *, numbers: bool = True, legs: Sequence[str]
 
 def draw_ghost(axes: Any, s: Scene) -> None:
     """Draw a robot in pale lines, for comparison."""
-    segments = [1e3 * np.vstack([s.base[i][None], s.piston[i]]) for i in range(6)]
+    segments = [1e3 * np.vstack([s.base[i][None], s.piston[i]]) for i in range(len(s.base))]
     axes.add_collection3d(Line3DCollection(segments, colors="#BDBDBD", linewidths=1.0, zorder=1))
     loop = s.platform[_around(s.platform)]
     closed = 1e3 * np.vstack([loop, loop[:1]])

@@ -39,6 +39,7 @@ __all__ = [
     "TEXT",
     "Scale",
     "check_formats",
+    "columns",
     "figure",
     "flat_on_the_scale_of_others",
     "ink",
@@ -149,6 +150,12 @@ def flat_on_the_scale_of_others(panels: Sequence[Axes], sizes: Sequence[float]) 
     for panel, size in zip(panels, sizes, strict=True):
         if size == 0 and max(sizes) > 0:
             panel.set_ylim(limits)
+
+
+def columns(entries: int, most: int = 6) -> int:
+    """Columns of a legend with a number of entries: in one row, or in rows of about the same length."""
+    rows = -(-entries // most)
+    return -(-entries // rows)
 
 
 def ink(color: str) -> str:

@@ -10,9 +10,10 @@ from numpy.typing import NDArray
 
 from flexapod import model
 from flexapod.errors import FlexapodError
-from flexapod.plot.style import FLEXIBLE, LEG_COLORS, RIGID
+from flexapod.plot.style import FLEXIBLE, RIGID
 from flexapod.report.interactive import packed
 from flexapod.rigid.rotations import matrix
+from flexapod.scene.colours import colors_of_legs
 from flexapod.scene.geometry import ActuatorMotion, RobotMotion, platform_rotation
 from flexapod.scene.robot import STATIONS, Scene, mode_scene
 from flexapod.study.after.summary import POINT_WORDS, tool_apart
@@ -30,7 +31,6 @@ FRAMES = 241
 MODES = 6
 MODE_SIZE = 0.1  # largest displacement of a mode, as a share of the robot's height
 EVERY = 3  # of the points of a drawn piston
-LEGS = 6
 FILLED = 1.6  # size of the drawn box, which nearly fills its place
 BELOW = 0.06  # of the box's height, free below the base: numbers of the legs and of the axes stay apart
 CYLINDER, DEVIATION = "#8A8F98", "#D55E00"
@@ -123,29 +123,32 @@ def _modes(robot: Robot, modes: Dataset) -> list[dict[str, Any]]:
 
 
 def _around(joints: Array, first: int) -> list[int]:
-    """Numbers of the points of a ring of joints (6, 3), the one after the other; its points begin at `first`."""
+    """Numbers of the points of a ring of joints (legs, 3), the one after the other; its points begin at `first`."""
     arms = joints - joints.mean(axis=0)
     return [first + int(i) for i in np.argsort(np.arctan2(arms[:, 1], arms[:, 0]))]
 
 
 def _robot_traces(robot: Robot, point: str) -> Traces:
     """Lines between the points of `_points`, in its order; the deviation is that of a point: ``com`` or ``tool``."""
-    line = len(range(0, STATIONS, EVERY))
-    pistons = [list(range(LEGS + i * line, LEGS + (i + 1) * line)) for i in range(LEGS)]
-    start = LEGS + LEGS * line
+    legs, line = len(robot.legs), len(range(0, STATIONS, EVERY))
+    pistons = [list(range(legs + i * line, legs + (i + 1) * line)) for i in range(legs)]
+    start = legs + legs * line
     base, platform = _around(robot.base_joints, 0), _around(robot.platform_joints, start)
-    rigid = [point + LEGS for point in platform]
-    centre, com, rigid_centre, rigid_com, tool, rigid_tool = range(start + 2 * LEGS, start + 2 * LEGS + 6)
+    rigid = [point + legs for point in platform]
+    centre, com, rigid_centre, rigid_com, tool, rigid_tool = range(start + 2 * legs, start + 2 * legs + 6)
     apart = point == "tool"
-    ghost = [point for i in range(LEGS) for point in (i, start + LEGS + i, -1)]
+    ghost = [point for i in range(legs) for point in (i, start + legs + i, -1)]
     ghost += [*rigid, rigid[0], -1, rigid_com, rigid_centre, *[rigid_tool] * apart]
-    cylinders = [point for i in range(LEGS) for point in (i, pistons[i][0], -1)]
-    legs = [_line(pistons[i], LEG_COLORS[i], 7, name=f"leg {i + 1}", showlegend=False) for i in range(LEGS)]
+    cylinders = [point for i in range(legs) for point in (i, pistons[i][0], -1)]
+    colored = [
+        _line(piston, color, 7, name=f"leg {i}", showlegend=False)
+        for i, (piston, color) in enumerate(zip(pistons, colors_of_legs(legs), strict=True), start=1)
+    ]
     return [
         _line([*base, base[0]], "#4A4F57", 3, name="base", showlegend=False),
         _line(ghost, RIGID, 2, name="rigid legs"),
         _line(cylinders, CYLINDER, 13, name="cylinders", showlegend=False),
-        *legs,
+        *colored,
         _plate(platform),
         _line([*platform, platform[0]], "#2F6690", 4, name="platform", showlegend=False),
         _line([com, centre, *[tool] * apart], "#333333", 3, name="payload", showlegend=False),
@@ -153,8 +156,8 @@ def _robot_traces(robot: Robot, point: str) -> Traces:
         _dots([com], FLEXIBLE, 4, name="centre of mass, flexible"),
         _dots([rigid_com], CYLINDER, 4, name="centre of mass, rigid", symbol="circle-open"),
         *(_tool(tool, rigid_tool) if apart else []),
-        {**_dots(list(range(LEGS)), "#333333", 3, showlegend=False), "mode": "markers+text", "hoverinfo": "skip"}
-        | {"text": [str(i + 1) for i in range(LEGS)], "textposition": "bottom center"},
+        {**_dots(list(range(legs)), "#333333", 3, showlegend=False), "mode": "markers+text", "hoverinfo": "skip"}
+        | {"text": [str(i + 1) for i in range(legs)], "textposition": "bottom center"},
     ]
 
 

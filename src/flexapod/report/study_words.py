@@ -53,7 +53,8 @@ def _robot(study: Study) -> list[str]:
     shapes = simulation.lateral_shapes
     count = f", {shapes} lateral shapes per plane and leg" if shapes else ""
     return [
-        f"A robot of type {robot.type} carries {number(robot.payload.mass)} kg on six legs; {_gravity(robot.gravity)}.",
+        f"A robot of type {robot.type} carries {number(robot.payload.mass)} kg on {_legs_of(robot)}; "
+        f"{_gravity(robot.gravity)}.",
         _points(robot.payload),
         f"Pistons: {size}{number(1e3 * piston.length)} mm long, EA = {number(1e-6 * piston.EA)} MN, "
         f"EI = {number(piston.EI)} N m², {_damping(robot.legs[0].damping, 'piston')}{alike}.",
@@ -63,6 +64,12 @@ def _robot(study: Study) -> list[str]:
         f"Legs: {_LEGS[simulation.fidelity]} ({simulation.fidelity}{count}); "
         f"{number(study.duration, 4)} s simulated, from {_START[study.initial.start]}.",
     ]
+
+
+def _legs_of(robot: Robot) -> str:
+    count = len(robot.legs)
+    words = ("one leg", "two", "three", "four", "five", "six", "seven", "eight")
+    return words[0] if count == 1 else f"{words[count - 1] if count <= len(words) else count} legs"
 
 
 def _gravity(gravity: Array) -> str:

@@ -2,7 +2,7 @@
 
 from __future__ import annotations
 
-__all__ = ["AXIS_COLORS", "ENERGIES", "LEG_COLORS"]
+__all__ = ["AXIS_COLORS", "ENERGIES", "LEG_COLORS", "colors_of_legs"]
 
 #: Okabe & Ito's palette, in an order whose neighbours also differ in lightness.
 LEG_COLORS = ("#0072B2", "#E69F00", "#009E73", "#D55E00", "#56B4E9", "#A23B72")
@@ -16,3 +16,14 @@ ENERGIES = {
     "work_drive": ("work of the drives", "#56B4E9"),
     "work_external": ("work of the load", "#A23B72"),
 }
+
+
+def colors_of_legs(count: int) -> tuple[str, ...]:
+    """A colour for each leg: those of `LEG_COLORS`, from the seventh leg on darker, from the thirteenth on paler."""
+    parts = [tuple(int(color[i : i + 2], 16) for i in (1, 3, 5)) for color in LEG_COLORS]
+    shades = ((1.0, 0.0), (0.55, 0.0), (0.5, 127.0))
+    return tuple(
+        "#" + "".join(f"{round(scale * part + white):02X}" for part in parts[i % len(parts)])
+        for i in range(count)
+        for scale, white in [shades[i // len(parts) % len(shades)]]
+    )

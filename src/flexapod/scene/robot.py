@@ -35,7 +35,7 @@ STATIONS = 25  # points of a drawn piston
 class Scene:
     """Points of a robot in the world [m].
 
-    `base`, `platform`: joints (6, 3); `piston`: lines from cylinder mouth to tip (6, n, 3); `com`, `centre` (3,).
+    `base`, `platform`: joints (legs, 3); `piston`: lines from cylinder mouth to tip (legs, n, 3); `com`, `centre` (3,).
     """
 
     base: Array
@@ -46,7 +46,7 @@ class Scene:
 
     @property
     def mouth(self) -> Array:
-        """Mouths of the cylinders, (6, 3)."""
+        """Mouths of the cylinders, (legs, 3)."""
         return self.piston[:, 0]
 
 
@@ -124,16 +124,16 @@ def lateral_values(study: model.Study | model.ActuatorStudy, zeta: Array) -> Arr
 
 
 def off_chord(robot: model.Robot, length: Array, line: Array, tip: Array) -> Array:
-    """Offsets of the pistons from the lines of their joints, (6, 2, n) [m].
+    """Offsets of the pistons from the lines of their joints, (legs, 2, n) [m].
 
     Parameters
     ----------
     robot : Robot
-    length : ndarray, shape (6,)
+    length : ndarray, shape (legs,)
         Joint-to-joint lengths [m].
-    line : ndarray, shape (6, 2, n)
+    line : ndarray, shape (legs, 2, n)
         Offsets from the axes of the cylinders at n points spread evenly from mouth to tip [m].
-    tip : ndarray, shape (6, 2)
+    tip : ndarray, shape (legs, 2)
         Those of the tips: every cylinder leans so that its tip meets the platform.
     """
     return line - tip[:, :, None] * (_along(robot, length) / length[:, None])[:, None]
@@ -173,7 +173,7 @@ def mode_scene(modes: Dataset, mode: int, size: float, phase: float = 1.0) -> Sc
 
 
 def _along(robot: model.Robot, length: Array) -> Array:
-    """Distances of the drawn points from the universal joint, mouth to tip, (6, n) [m]."""
+    """Distances of the drawn points from the universal joint, mouth to tip, (legs, n) [m]."""
     mouth = np.array([leg.cylinder.mouth for leg in robot.legs])
     return mouth[:, None] + (length - mouth)[:, None] * np.linspace(0.0, 1.0, STATIONS)
 
@@ -181,7 +181,7 @@ def _along(robot: model.Robot, length: Array) -> Array:
 def placed(robot: model.Robot, centre: Array, R: Array, com: Array, offset: Array | None = None) -> Scene:
     """The robot with its platform frame's origin at `centre`, turned by `R`, its payload's centre of mass at `com`.
 
-    `offset` (6, 2, STATIONS): pistons off the lines of their joints [m], see `off_chord`; None: straight legs.
+    `offset` (legs, 2, STATIONS): pistons off the lines of their joints [m], see `off_chord`; None: straight legs.
     """
     base, platform = robot.base_joints, centre + robot.platform_joints @ R.T
     chord = platform - base

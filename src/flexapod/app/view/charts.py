@@ -4,12 +4,13 @@ from __future__ import annotations
 
 from dataclasses import dataclass
 from html import escape
+from itertools import cycle
 from typing import TYPE_CHECKING, Any
 
 import numpy as np
 from numpy.typing import NDArray
 
-from flexapod.scene.colours import AXIS_COLORS, ENERGIES, LEG_COLORS
+from flexapod.scene.colours import AXIS_COLORS, ENERGIES, colors_of_legs
 from flexapod.scene.geometry import nearest
 from flexapod.study.after.summary import POINT_WORDS
 from flexapod.study.words import NOTHING, cleared_lines, number, scale
@@ -59,12 +60,13 @@ class Chart:
 def charts(data: Dataset, point: str = "com") -> dict[str, Chart]:
     """The charts of a result by name: a robot's (deviation of its `point`, "com" or "tool"), or a single actuator's."""
     if "com_deviation" in data:
+        colors = colors_of_legs(data.sizes["leg"])
         title, deviation = f"Deviation of the {POINT_WORDS[point]}", data[f"{point}_deviation"]
         return {
             "deviation": _chart(data, title, deviation, "m", list("xyz"), _AXES),
-            "leg forces": _chart(data, "Force of the drives", data.actuator_force, "N", _legs(data), LEG_COLORS),
+            "leg forces": _chart(data, "Force of the drives", data.actuator_force, "N", _legs(data), colors),
             "tip deflections": _chart(
-                data, "Piston tips off the cylinders' axes", _sizes(data.tip_deflection), "m", _legs(data), LEG_COLORS
+                data, "Piston tips off the cylinders' axes", _sizes(data.tip_deflection), "m", _legs(data), colors
             ),
             "energies": _energies(data),
         }
@@ -180,7 +182,7 @@ def _series(chart: Chart) -> tuple[Any, ...]:
     plain = {"points": {"show": False}}
     lines = [
         {"label": name, "stroke": color, "width": 1.6, "dash": dash, **plain}
-        for name, color, dash in zip(chart.names, chart.colors, _DASHES, strict=False)
+        for name, color, dash in zip(chart.names, chart.colors, cycle(_DASHES), strict=False)
     ]
     return {"label": "time [s]"}, *lines, {"label": "now", "stroke": _CURSOR, "width": 1.5, **plain}
 
@@ -196,7 +198,7 @@ def _readout(chart: Chart, time: float) -> str:
         f"<span><svg width='22' height='8' aria-hidden='true'><line x1='0' y1='4' x2='22' "
         f"y2='4' stroke='{color}' stroke-width='2.5' stroke-dasharray='{','.join(str(d) for d in dash)}'/></svg> "
         f"{escape(name)} <b>{number(value)}</b></span>"
-        for name, color, dash, value in zip(chart.names, chart.colors, _DASHES, values, strict=False)
+        for name, color, dash, value in zip(chart.names, chart.colors, cycle(_DASHES), values, strict=False)
     )
     return (
         f"<div class='flexapod-readout' style='padding:0 0.75em 0.5em;font-size:0.8rem;line-height:1.5'>"

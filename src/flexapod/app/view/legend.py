@@ -8,7 +8,7 @@ from typing import TYPE_CHECKING
 import numpy as np
 
 from flexapod import model
-from flexapod.scene.colours import LEG_COLORS
+from flexapod.scene.colours import colors_of_legs
 from flexapod.study.words import NOTHING, cleared_lines, number, scale
 from flexapod.typing import Array
 
@@ -39,8 +39,8 @@ def rgb(color: str) -> tuple[int, int, int]:
 class LegColors:
     """Values of a quantity in all legs over time, and the colours that stand for them.
 
-    `values` (T, 6) in the unit `unit`, NaN for a leg without one (grey); the scale goes from `low` to `high`; `title`
-    and `note`: words of the legend; `below`: colour of values below `low`, None where that of `low` is meant.
+    `values` (T, legs) in the unit `unit`, NaN for a leg without one (grey); the scale goes from `low` to `high`;
+    `title` and `note`: words of the legend; `below`: colour of values below `low`, None where that of `low` is meant.
     """
 
     values: Array
@@ -53,9 +53,9 @@ class LegColors:
     below: str | None = None
 
     def colors(self, index: int) -> Array:
-        """Colours of the six legs at a stored instant, (6, 3) in 0 to 255."""
+        """Colours of the legs at a stored instant, (legs, 3) in 0 to 255."""
         span = self.high - self.low
-        share = (self.values[index] - self.low) / span if span > 0 else np.full(6, 0.5)
+        share = (self.values[index] - self.low) / span if span > 0 else np.full(self.values.shape[1], 0.5)
         table = np.array([rgb(anchor) for anchor in self.anchors], dtype=float)
         places = np.clip(np.nan_to_num(share), 0.0, 1.0) * (len(table) - 1)
         found = np.stack([np.interp(places, np.arange(len(table)), column) for column in table.T], axis=1)
@@ -65,7 +65,7 @@ class LegColors:
         return found.astype(int)
 
     def html(self, index: int | None = None) -> str:
-        """The scale as a bar with its ends and middle, and the six values at a stored instant."""
+        """The scale as a bar with its ends and middle, and the values at a stored instant."""
         ticks = [f"{number(value)} {self.unit}" for value in (self.low, 0.5 * (self.low + self.high), self.high)]
         values = [] if index is None else [_text(v, self.unit) for v in self.values[index]]
         now = "" if index is None else _leg_row(self.colors(index), values)
@@ -84,9 +84,9 @@ def leg_colors(quantity: str, study: model.Study, data: Dataset) -> LegColors:
     return {"force": _force, "stroke margin": _margin, "bending": _bending}[quantity](study, data)
 
 
-def plain_legend() -> str:
+def plain_legend(legs: int) -> str:
     """The legend of legs that are coloured by their number."""
-    row = _leg_row(np.array([rgb(color) for color in LEG_COLORS]), [])
+    row = _leg_row(np.array([rgb(color) for color in colors_of_legs(legs)]), [])
     return f'<div style="{LEGEND_STYLE}"><b>Legs by number</b>{row}</div>'
 
 

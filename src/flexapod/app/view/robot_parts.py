@@ -3,13 +3,14 @@
 from __future__ import annotations
 
 from collections.abc import Callable
-from typing import TYPE_CHECKING, Any, Literal
+from typing import Any, Literal
 
 import numpy as np
 
 from flexapod import model
 from flexapod.app.view.legend import rgb
-from flexapod.scene.colours import LEG_COLORS
+from flexapod.app.view.nodes import Nodes
+from flexapod.scene.colours import colors_of_legs
 from flexapod.scene.geometry import (
     ROUNDING,
     Instant,
@@ -25,13 +26,7 @@ from flexapod.scene.robot import STATIONS, Scene
 from flexapod.study.words import number, text
 from flexapod.typing import Array
 
-if TYPE_CHECKING:
-    import viser
-
-__all__ = ["SOMETIMES", "Deviation", "Ghost", "RobotParts", "add_grid", "robot_size"]
-
-#: Nodes that some robots lack.
-SOMETIMES = ("/platform/tool", "/platform/tool_name", *(f"/cylinder_{leg}/body" for leg in range(1, 7)))
+__all__ = ["Deviation", "Ghost", "RobotParts", "add_grid", "robot_size"]
 
 Add = Callable[[str, Any], Any]
 
@@ -41,7 +36,7 @@ _HERE = (0.0, 0.0, 0.0)
 _NOTHING = np.zeros((1, 2, 3))
 
 
-def add_grid(scene: viser.SceneApi, width: float, plane: Literal["xy", "xz"], position: Array) -> Any:
+def add_grid(scene: Nodes, width: float, plane: Literal["xy", "xz"], position: Array) -> Any:
     """A square grid whose lines are 10, 20, 50 mm ... apart."""
     cell = 1e-3 * round_down(1e3 * width / 30)
     return scene.add_grid(
@@ -64,11 +59,11 @@ def robot_size(robot: model.Robot) -> float:
 
 
 class RobotParts:
-    """Base, six legs, platform with its payload, frames and labels."""
+    """Base, legs, platform with its payload, frames and labels."""
 
-    def __init__(self, scene: viser.SceneApi, add: Add, robot: model.Robot) -> None:
+    def __init__(self, scene: Nodes, add: Add, robot: model.Robot) -> None:
         self.robot, self.size = robot, robot_size(robot)
-        self._colors: Array = np.zeros((6, 3), dtype=int)
+        self._colors: Array = np.zeros((len(robot.legs), 3), dtype=int)
         self._mouth = np.array([[leg.cylinder.mouth] for leg in robot.legs])
         self._radius = _radii(robot, self.size)
         self._make_base(scene, add)
@@ -76,20 +71,20 @@ class RobotParts:
         self._cylinders, self._pistons = self._make_legs(scene)
 
     def draw(self, points: Scene, colors: Array) -> None:
-        """Move everything to the points of a robot; colours (6, 3) of the pistons."""
+        """Move everything to the points of a robot; colours (legs, 3) of the pistons."""
         self._platform.position, self._platform.wxyz = points.centre, platform_rotation(self.robot, points)
         along = points.piston[:, 0] - points.base
         turns = orientation(np.where(self._mouth > 0, along, points.piston[:, 1] - points.base))
         vertices = tube(points.piston, 1.0)
         vertices = _thickened(vertices, points.piston, self._radius)
-        for i in range(6):
+        for i in range(len(self._pistons)):
             self._cylinders[i].wxyz = turns[i]
             self._pistons[i].vertices = vertices[i]
             if (colors[i] != self._colors[i]).any():
                 self._pistons[i].color = tuple(int(c) for c in colors[i])
         self._colors = np.array(colors)
 
-    def _make_base(self, scene: viser.SceneApi, add: Add) -> None:
+    def _make_base(self, scene: Nodes, add: Add) -> None:
         robot, size = self.robot, self.size
         floor = float(robot.base_joints[:, 2].min()) - 0.03 * size
         vertices, faces = plate(robot.base_joints - [0.0, 0.0, 0.02 * size], 0.012 * size)
@@ -102,7 +97,7 @@ class RobotParts:
             scene.add_icosphere(f"/joint_{i + 1}", 1.5 * float(self._radius[i]), color=_BASE, position=joint)
             add("labels", scene.add_label(f"/leg_{i + 1}", f"leg {i + 1}", position=outward, anchor="top-center"))
 
-    def _make_platform(self, scene: viser.SceneApi, add: Add) -> Any:
+    def _make_platform(self, scene: Nodes, add: Add) -> Any:
         robot, size, load = self.robot, self.size, self.robot.payload
         frame = scene.add_frame("/platform", show_axes=False)
         vertices, faces = plate(robot.platform_joints, 0.012 * size)
@@ -124,8 +119,9 @@ class RobotParts:
         add("frames", scene.add_label("/platform/axes/name", "P (platform)", anchor="top-center"))
         return frame
 
-    def _make_legs(self, scene: viser.SceneApi) -> tuple[list[Any], list[Any]]:
+    def _make_legs(self, scene: Nodes) -> tuple[list[Any], list[Any]]:
         cylinders, pistons, faces = [], [], tube_faces(STATIONS)
+        colors = colors_of_legs(len(self.robot.legs))
         for i, leg in enumerate(self.robot.legs):
             node = scene.add_frame(f"/cylinder_{i + 1}", show_axes=False, position=self.robot.base_joints[i])
             mouth, radius = leg.cylinder.mouth, 1.6 * float(self._radius[i])
@@ -134,18 +130,18 @@ class RobotParts:
                 scene.add_cylinder(f"/cylinder_{i + 1}/body", radius, mouth, _CYLINDER, position=place)
             cylinders.append(node)
             empty = np.zeros((STATIONS * 8, 3))
-            pistons.append(scene.add_mesh_simple(f"/piston_{i + 1}", empty, faces, color=rgb(LEG_COLORS[i])))
+            pistons.append(scene.add_mesh_simple(f"/piston_{i + 1}", empty, faces, color=rgb(colors[i])))
         return cylinders, pistons
 
 
 def _radii(robot: model.Robot, size: float) -> Array:
-    """Radii of the pistons (6,) [m]; a thickness to see by where the study gives no diameter."""
+    """Radii of the pistons (legs,) [m]; a thickness to see by where the study gives no diameter."""
     given = [leg.piston.diameter for leg in robot.legs]
     return np.array([0.012 * size if d is None else max(0.5 * d, 0.004 * size) for d in given])
 
 
 def _thickened(vertices: Array, lines: Array, radius: Array) -> Array:
-    """Tubes of radius 1 around lines (6, n, 3), made as thick as `radius` (6,)."""
+    """Tubes of radius 1 around lines (legs, n, 3), made as thick as `radius` (legs,)."""
     centre = np.repeat(lines, vertices.shape[1] // lines.shape[1], axis=1)
     return centre + radius[:, None, None] * (vertices - centre)
 
@@ -153,7 +149,7 @@ def _thickened(vertices: Array, lines: Array, radius: Array) -> Array:
 class Ghost:
     """The rigid robot in pale lines."""
 
-    def __init__(self, scene: viser.SceneApi, add: Add, robot: model.Robot) -> None:
+    def __init__(self, scene: Nodes, add: Add, robot: model.Robot) -> None:
         self.robot = robot
         vertices, faces = plate(robot.platform_joints, 0.004 * robot_size(robot))
         self._frame = scene.add_frame("/ghost", show_axes=False)
@@ -164,7 +160,7 @@ class Ghost:
         line = scene.add_line_segments("/ghost/stem", stem, _GHOST, thickness=1.5, thickness_units="screen")
         radius = 0.007 * robot_size(robot)
         com = scene.add_icosphere("/ghost/com", radius, color=_GHOST, opacity=0.8, position=robot.payload.com)
-        legs = np.zeros((6, 2, 3))
+        legs = np.zeros((len(robot.legs), 2, 3))
         self._legs = scene.add_line_segments("/ghost_legs", legs, _GHOST, thickness=2.0, thickness_units="screen")
         for handle in (mesh, line, com, self._legs):
             add("rigid ghost", handle)
@@ -178,7 +174,7 @@ class Ghost:
 class Deviation:
     """Both paths of the centre of mass or the tool, and its deviation as an arrow with its length."""
 
-    def __init__(self, scene: viser.SceneApi, add: Add, size: float) -> None:
+    def __init__(self, scene: Nodes, add: Add, size: float) -> None:
         self.size = size
         self._rigid = scene.add_line_segments("/path_rigid", _NOTHING, _RIGID, thickness=2.0, thickness_units="screen")
         self._bent = scene.add_line_segments(

@@ -11,9 +11,10 @@ import numpy as np
 
 from flexapod import model, rigid
 from flexapod.app.view.legend import QUANTITIES, LegColors, leg_colors, plain_legend, rgb
-from flexapod.app.view.robot_parts import SOMETIMES, Deviation, Ghost, RobotParts, robot_size
+from flexapod.app.view.nodes import Nodes
+from flexapod.app.view.robot_parts import Deviation, Ghost, RobotParts, robot_size
 from flexapod.app.view.scene import OF_RESULTS, STRAIGHT, Scene, mode_note
-from flexapod.scene.colours import LEG_COLORS
+from flexapod.scene.colours import colors_of_legs
 from flexapod.scene.geometry import RobotMotion
 from flexapod.scene.robot import Scene as Points
 from flexapod.scene.robot import mode_scene, placed
@@ -26,8 +27,6 @@ if TYPE_CHECKING:
     from xarray import Dataset
 
 __all__ = ["RobotScene", "pose_words"]
-
-_PLAIN = np.array([rgb(color) for color in LEG_COLORS])
 
 
 @dataclass(frozen=True, kw_only=True)
@@ -50,6 +49,7 @@ class RobotScene(Scene):
         self._drawn: _Drawn | None = None
         self._motion: RobotMotion | None = None
         self._colors: LegColors | None = None
+        self._names: frozenset[str] = frozenset()  # of the nodes that the robot before had
         self._at_rest: Dataset | None = None  # the modes whose equilibrium the ghost shows
 
     @property
@@ -57,25 +57,35 @@ class RobotScene(Scene):
         """As `Scene.points`."""
         return ("tool", "com") if self._motion is not None and self._motion.tool_apart else ("com",)
 
+    @property
+    def _plain(self) -> Array:
+        """Colours of the legs by their number."""
+        count = 6 if self._drawn is None else len(self._drawn.study.robot.legs)
+        return np.array([rgb(color) for color in colors_of_legs(count)])
+
     def show_study(self, study: model.Study) -> None:
         """As `Scene.show_study`."""
         with self.lock:
             if self._closed:
                 return
-            first, api = self._drawn is None, self.client.scene
+            first = self._drawn is None
             self._motion = self._colors = self._at_rest = None
             with self.client.atomic():
                 if first:
                     self._light()
-                self._begin(*SOMETIMES)
+                self._begin()
+                api = Nodes(self.client.scene)
                 drawn = self._drawn = _Drawn(
                     study=study,
                     robot=RobotParts(api, self._add, study.robot),
                     ghost=Ghost(api, self._add, study.robot),
                     deviation=Deviation(api, self._add, robot_size(study.robot)),
                 )
+                self._names = api.replaces(self._names)
                 self._only()
-                drawn.robot.draw(_undeformed(study.robot, rigid.poses(study.robot, study.motion, [self.time])), _PLAIN)
+                drawn.robot.draw(
+                    _undeformed(study.robot, rigid.poses(study.robot, study.motion, [self.time])), self._plain
+                )
                 self._draws(f"the rigid robot at {number(self.time, 4)} s; no result yet", STRAIGHT)
             if first:
                 self._look_at(study.robot)
@@ -95,7 +105,7 @@ class RobotScene(Scene):
             points = _undeformed(robot, as_pose(robot, pose, check=False))
             with self.client.atomic():
                 self._only()
-                self._drawn.robot.draw(points, _PLAIN)
+                self._drawn.robot.draw(points, self._plain)
                 self._draws(f"the undeformed robot at {pose_words(pose)}", STRAIGHT)
 
     def set_time(self, time: float) -> None:
@@ -121,7 +131,7 @@ class RobotScene(Scene):
             size = amplitude * self._drawn.robot.size
             with self.client.atomic():
                 self._only("rigid ghost")
-                self._drawn.robot.draw(mode_scene(modes, mode, size, phase), _PLAIN)
+                self._drawn.robot.draw(mode_scene(modes, mode, size, phase), self._plain)
                 if modes is not self._at_rest:
                     self._drawn.ghost.draw(mode_scene(modes, mode, size, 0.0))
                     self._at_rest = modes
@@ -131,10 +141,10 @@ class RobotScene(Scene):
         """As `Scene.legend`, with the values at the time that is shown."""
         with self.lock:
             if self._motion is None or self.drawn:
-                return plain_legend()
+                return plain_legend(len(self._plain))
             index = self._motion.index(self.time)
             self._leg_colors(index)
-            return plain_legend() if self._colors is None else self._colors.html(index)
+            return plain_legend(len(self._plain)) if self._colors is None else self._colors.html(index)
 
     def colour_by(self, quantity: str) -> None:
         """As `Scene.colour_by`."""
@@ -150,7 +160,7 @@ class RobotScene(Scene):
 
     def _leg_colors(self, index: int) -> Array:
         if self.quantity == "plain" or self._drawn is None or self.data is None:
-            return _PLAIN
+            return self._plain
         if self._colors is None:
             self._colors = leg_colors(self.quantity, self._drawn.study, self.data)
         return self._colors.colors(index)

@@ -190,18 +190,11 @@ class Scene(ABC):
         for part in OF_RESULTS:
             self.visible(part, self._shown[part])
 
-    def _begin(self, *sometimes: str) -> None:
-        """Before the nodes of another study take the place of those with the same names: no flicker while dragging.
-
-        `sometimes`: names of nodes that not every study has.
-        """
+    def _begin(self) -> None:
+        """Before the nodes of another study take the place of those with the same names: no flicker while dragging."""
         self.data = None
         for handles in self._parts.values():
             handles.clear()
-        for name in sometimes:
-            handle = self.client.scene.get_handle_by_name(name)
-            if handle is not None:
-                handle.remove()
 
     def _light(self) -> None:
         """Softer than the page's own light, under which all colours are pale."""

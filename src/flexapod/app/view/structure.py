@@ -17,7 +17,10 @@ __all__ = ["Offer", "offers"]
 STARTS: dict[str, dict[str, object]] = {"load": {"wrench": [0] * 6}, "initial": {"start": "equilibrium"}}
 """Tables that a robot's study may leave out, as they are added: they change nothing yet."""
 
-LEGS, POINTS = 6, "motion.points"
+POINTS = "motion.points"
+
+
+_MANY = dict(enumerate("two three four five six seven eight".split(), start=2))
 
 
 @dataclass(frozen=True, kw_only=True)
@@ -45,7 +48,7 @@ def offers(document: Document) -> list[Offer]:
         return []
     found = _motion(data.get("motion"))
     if "robot" in data:
-        found += _legs(data.get("leg")) + _tables(data)
+        found += _legs(data) + _tables(data)
     return found
 
 
@@ -80,14 +83,24 @@ def _without_offer(place: int) -> Offer:
     )
 
 
-def _legs(leg: object) -> list[Offer]:
-    if isinstance(leg, dict):
-        return [_offer("[leg]", "Six different legs", "[[leg]] six times, all as this one at first", _each_leg)]
-    if isinstance(leg, list) and len(leg) == LEGS:
+def _legs(data: dict[str, Any]) -> list[Offer]:
+    leg, count = data.get("leg"), _count(data)
+    if isinstance(leg, dict) and count > 1:
+        many = _MANY.get(count, str(count))
+        hint = f"[[leg]] {many} times, all as this one at first"
+        return [_offer("[leg]", f"{many.capitalize()} different legs", hint, _each_leg)]
+    if isinstance(leg, list) and len(leg) == count:
         return [
             _offer("[[leg]] 1", "All legs as this one", "[leg] once, as leg 1 is; the others are taken out", _one_leg)
         ]
     return []
+
+
+def _count(data: dict[str, Any]) -> int:
+    """Legs of the robot by its type, such as "3-UPS+UP"; 0 where it has none that says so."""
+    groups = [group.strip().partition("-") for group in str(data["robot"].get("type", "6-UPS")).split("+")]
+    counts = [first if dash else "1" for first, dash, _ in groups]
+    return sum(map(int, counts)) if all(count.isdecimal() for count in counts) else 0
 
 
 def _tables(data: dict[str, Any]) -> list[Offer]:
@@ -158,13 +171,14 @@ def _later(points: list[dict[str, object]]) -> object:
 
 
 def _each_leg(document: Document) -> Document:
-    """``[[leg]]`` six times in place of ``[leg]``; the comments stay with the first."""
+    """``[[leg]]`` for each leg in place of ``[leg]``; the comments stay with the first."""
     expected = tomllib.loads(document.text)
-    expected["leg"] = [expected["leg"]] * LEGS
+    count = _count(expected)
+    expected["leg"] = [expected["leg"]] * count
     text = document.text
     for first, after in blocks(text, "leg")[:1]:
         lines = renamed(text.splitlines()[first:after], "leg", "[[leg]]")
-        copies = [line for _ in range(LEGS - 1) for line in ("", *bare(lines))]
+        copies = [line for _ in range(count - 1) for line in ("", *bare(lines))]
         text = replaced(text, first, after, [*lines, *copies])
     return Document(checked(text, expected, "leg"), document.path)
 

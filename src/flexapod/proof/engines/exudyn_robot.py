@@ -98,9 +98,9 @@ class RobotResult:
         [s].
     com_deviation : ndarray, shape (T, 3)
         Centre of mass, from its place in the robot with rigid legs of the commanded length [m], world axes.
-    actuator_force : ndarray, shape (T, 6)
+    actuator_force : ndarray, shape (T, legs)
         Of the drive on the piston along the leg [N]; positive pushes out.
-    tip_deflection : ndarray, shape (T, 6, 2)
+    tip_deflection : ndarray, shape (T, legs, 2)
         Of the piston's tip from the cylinder's axis [m], along a and b.
     seconds : float
         That the integration took, without building, start and records.

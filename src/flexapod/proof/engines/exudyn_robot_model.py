@@ -40,7 +40,7 @@ def solve(problem: RobotProblem) -> RobotResult:
     start = robot.payload.com + home
     body = _payload(system, robot.payload, start, robot.gravity)
     frames = rigid.home_frames(robot)
-    legs = [_leg(system, problem, i, frames[i], lengths[:, i], body) for i in range(6)]
+    legs = [_leg(system, problem, i, frames[i], lengths[:, i], body) for i in range(len(robot.legs))]
     centre = system.mbs.AddSensor(
         items.SensorBody(
             bodyNumber=body,
@@ -173,6 +173,6 @@ def _piston(
 
 
 def _tip_deflection(robot: Robot, frames: Array, coordinates: Array, tips: Array) -> Array:
-    """Tips (T, 6, 3) [m] seen from the axes of the cylinders at `coordinates` (T, 6, 3), (T, 6, 2) [m]."""
+    """Tips (T, legs, 3) [m] seen from the axes of the cylinders at `coordinates` (T, legs, 3), (T, legs, 2) [m]."""
     turns = rigid.leg_rotations(frames, coordinates[..., 0], coordinates[..., 1])
     return np.einsum("tnij,tni->tnj", turns, tips - robot.base_joints)[..., :2]
