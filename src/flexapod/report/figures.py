@@ -37,11 +37,11 @@ class Drawn(NamedTuple):
 
 def carried_study(data: Dataset) -> Study | ActuatorStudy | None:
     """The study that a result carries; None where it cannot be read any more, as when a table is gone."""
-    from flexapod import model
     from flexapod.errors import FlexapodError
+    from flexapod.study.attributes import study_of
 
     try:
-        return model.loads(data.attrs["study"], path=data.attrs.get("study_file") or None)
+        return study_of(data)
     except FlexapodError:
         return None
 

@@ -10,6 +10,7 @@ import numpy as np
 from flexapod import model, rigid
 from flexapod.errors import InputError
 from flexapod.rigid.rotations import exponential, matrix
+from flexapod.study.attributes import robot_of, study_of
 from flexapod.typing import Array
 
 if TYPE_CHECKING:
@@ -58,15 +59,10 @@ def robot_study(data: Dataset) -> model.Study:
     InputError
         The result is one of a single actuator.
     """
-    study = model.loads(data.attrs["study"], path=data.attrs.get("study_file") or None)
+    study = study_of(data)
     if not isinstance(study, model.Study):
         raise InputError("is the result of a single actuator", key="data", allowed="results of a robot")
     return study
-
-
-def _robot(data: Dataset) -> model.Robot:
-    """The robot of a result, whether or not the tables of its motion and load are still there."""
-    return model.loads_robot(data.attrs["study"], path=data.attrs.get("study_file") or None)
 
 
 def motion_end(data: Dataset) -> float | None:
@@ -104,7 +100,7 @@ def scene(data: Dataset, time: float = 0.0, magnify: float = 1.0) -> Scene:
     magnify : float
         Factor on lateral deflections of the pistons.
     """
-    robot, at = _robot(data), data.sel(time=time, method="nearest")
+    robot, at = robot_of(data), data.sel(time=time, method="nearest")
     R = matrix(at.platform_quaternion.values)
     com = at.com_position.values
     centre = com - R @ robot.payload.com
@@ -153,7 +149,7 @@ def mode_scene(modes: Dataset, mode: int, size: float, phase: float = 1.0) -> Sc
     phase : float
         Between -1 and 1; 0 is the robot at rest.
     """
-    robot, shape = _robot(modes), modes.sel(mode=mode)
+    robot, shape = robot_of(modes), modes.sel(mode=mode)
     R = matrix(modes.platform_quaternion.values)
     centre = modes.platform_position.values
     arms = np.vstack([robot.platform_joints, robot.payload.com]) @ R.T

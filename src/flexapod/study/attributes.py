@@ -1,32 +1,76 @@
-"""Attributes of Datasets: version, the whole study, solver settings, what it cost, warnings."""
+"""Attributes of Datasets: version, the whole study, solver settings, what it cost, warnings; and the study back."""
 
 from __future__ import annotations
 
 import hashlib
 import logging
+from collections import OrderedDict
 from collections.abc import Iterable
+from typing import TYPE_CHECKING
 
 from flexapod import model, version
 from flexapod.solve.plant import Counters
 from flexapod.study.record import Record
 
-__all__ = ["attributes", "march_attributes"]
+if TYPE_CHECKING:
+    from xarray import Dataset
 
+__all__ = ["attributes", "march_attributes", "robot_of", "study_of"]
+
+KEPT = 16  # of the last studies, so that their results need not be read as text again
 _log = logging.getLogger("flexapod")
+_known: OrderedDict[str, model.Study | model.ActuatorStudy] = OrderedDict()
 
 
 def attributes(study: model.Study | model.ActuatorStudy, warnings: Iterable[str] = ()) -> dict[str, object]:
     """Attributes that every Dataset of a study carries; warnings as lines of text."""
     content = study.model_dump_json(exclude={"source_text", "path", "notes"})  # with the tables that the text names
-    found = list(dict.fromkeys(warnings))
+    found, digest = list(dict.fromkeys(warnings)), hashlib.sha256(content.encode()).hexdigest()[:16]
+    _remember(digest, study)
     return {
         "title": "flexapod: single actuator" if isinstance(study, model.ActuatorStudy) else "flexapod: parallel robot",
         "flexapod_version": version.__version__,
         "study": study.source_text,
         "study_file": study.path or "",
-        "study_hash": hashlib.sha256(content.encode()).hexdigest()[:16],
+        "study_hash": digest,
         "warnings": "\n".join(found),
     }
+
+
+def _remember(digest: str, study: model.Study | model.ActuatorStudy) -> None:
+    _known[digest] = study
+    while len(_known) > KEPT:
+        _known.popitem(last=False)
+
+
+def study_of(data: Dataset) -> model.Study | model.ActuatorStudy:
+    """The study that a result carries: the one it was computed of while that is known, else read from its text.
+
+    Raises
+    ------
+    InputError
+        It cannot be read any more, as when a table is gone.
+    """
+    known = _recalled(data)
+    if known is None:
+        known = model.loads(data.attrs["study"], path=data.attrs.get("study_file") or None)
+        _remember(str(data.attrs.get("study_hash")), known)
+    return known
+
+
+def _recalled(data: Dataset) -> model.Study | model.ActuatorStudy | None:
+    known = _known.get(str(data.attrs.get("study_hash")))
+    if known is None or (known.source_text, known.path or "") != (data.attrs["study"], data.attrs.get("study_file")):
+        return None
+    return known
+
+
+def robot_of(data: Dataset) -> model.Robot:
+    """The robot of a result, whether or not the tables of its motion and load are still there."""
+    known = _recalled(data)
+    if isinstance(known, model.Study):
+        return known.robot
+    return model.loads_robot(data.attrs["study"], path=data.attrs.get("study_file") or None)
 
 
 def march_attributes(
