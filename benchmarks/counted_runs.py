@@ -34,7 +34,7 @@ def residual_of_a_leg() -> Count:
     kernel, n = run.system.kernel, run.system.n
     counters = reader(_library(run))
     before = counters.copy()
-    kernel.leg_residual(np.ones(n), np.ones(n), np.ones(n), np.ones(3), np.ones(4), run.system.leg_p[0])
+    kernel.leg_residual(np.ones(n), np.ones(n), np.ones(n), np.ones(3), np.ones(2), run.system.leg_p[0])
     return _count(counters - before)
 
 

@@ -9,7 +9,7 @@ import numpy as np
 
 from flexapod import rigid
 from flexapod.model import Study, override, preset
-from flexapod.solve.plant import Counters
+from flexapod.solve.recording import Counters
 from flexapod.solve.robot_march import prepare
 from flexapod.typing import Array
 

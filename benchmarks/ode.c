@@ -10,7 +10,7 @@ enum { MOST = 24 };                     /* coordinates of a leg */
 
 typedef struct {
   long n, rows, leg_np;                 /* coordinates of a leg; instants of the table */
-  const double *leg_p, *payload_p;
+  const double *leg_p, *joint_p, *payload_p;
   const double *table; double spacing;  /* (rows, 6, 5): stroke, rate, acceleration; alpha, beta of rigid legs */
 } Robot;
 
@@ -76,7 +76,7 @@ static void close_legs(const Robot *s, double t, const double *z, const double *
     stroke(s, t, i, w->law[i]);
     q[0] = w->law[i][3]; q[1] = w->law[i][4]; q[2] = w->law[i][0]; q[3] = 0; v[2] = w->law[i][1];
     memcpy(q + 4, z + i*m, m*sizeof(double)); memcpy(v + 4, z_dot + i*m, m*sizeof(double));
-    turn(R, s->payload_p + 16 + 3*i, w->arm[i]);
+    turn(R, s->joint_p + 3*i, w->arm[i]);
   }
   for (int round = 0; round < 10; round++) {
     const double *in[] = {w->q, s->leg_p}; double *out[] = {w->tip, w->J}, most = 0;
@@ -91,7 +91,7 @@ static void close_legs(const Robot *s, double t, const double *z, const double *
   }
   for (int i = 0; i < 6; i++) {
     double spin[3], d[3], *J = w->J + 3*n*i, *v = w->v + i*n, *r = w->inverse[i];
-    cross(u + 3, s->payload_p + 16 + 3*i, spin); turn(R, spin, d);
+    cross(u + 3, s->joint_p + 3*i, spin); turn(R, spin, d);
     for (int k = 0; k < 3; k++) {
       d[k] += u[k] - J[6 + k]*v[2];
       for (long j = 4; j < n; j++) d[k] -= J[3*j + k]*v[j];
@@ -104,7 +104,7 @@ static void close_legs(const Robot *s, double t, const double *z, const double *
 static void leg(const Robot *s, const Legs *legs, int i, const double *R, const double *u, double *C, double *b, double *S,
                 double *rhs) {
   long n = s->n, m = n - 4, wide = m + 7;
-  const double *joint = s->payload_p + 16 + 3*i, *law = legs->law[i], *J = legs->J + 3*n*i, *inv = legs->inverse[i];
+  const double *joint = s->joint_p + 3*i, *law = legs->law[i], *J = legs->J + 3*n*i, *inv = legs->inverse[i];
   const double *M = legs->M + n*n*i, *h = legs->h + n*i, *bend = legs->bend + 3*i;
   double T[4][MOST], MT[MOST][MOST], B[MOST*MOST], G[MOST*7], spin[3], spin2[3], d[3];
   cross(u + 3, joint, spin); cross(u + 3, spin, spin2); turn(R, spin2, d);
@@ -147,8 +147,8 @@ void rates(const Robot *s, double t, const double *y, double *y_dot) {
                  2*(b*c - w*a)/norm, 2*(a*c - w*b)/norm, 2*(b*c + w*a)/norm, 1 - 2*(a*a + b*b)/norm};
   static const long one[] = {1, 1, 1, 1, 1, 1}, six[] = {6, 6, 6};
   static Legs legs;
-  double S[36] = {0}, r[6], points[18], power[1], still[24] = {0}, C[6][6*MOST], g[6][MOST];
-  const double *in[] = {pose, u, still, still, still, p}; double *out[] = {r, points, power};
+  double S[36] = {0}, r[6], power[1], still[24] = {0}, C[6][6*MOST], g[6][MOST];
+  const double *in[] = {pose, u, still, still, still, p}; double *out[] = {r, power};
   payload_residual(1, in, one, out);
   close_legs(s, t, y, z_dot, R, pose, u, &legs);
   const double *state[] = {legs.q, legs.v, s->leg_p}; double *found[] = {legs.M, legs.h, legs.J, legs.bend};

@@ -46,6 +46,7 @@ class _Robot(Structure):
         ("rows", c_long),
         ("leg_np", c_long),
         ("leg_p", _pointer),
+        ("joint_p", _pointer),
         ("payload_p", _pointer),
         ("table", _pointer),
         ("spacing", c_double),
@@ -131,21 +132,21 @@ class Ode:
 def ode(study: Study) -> Ode:
     """The study's robot, strokes prescribed, at rest in equilibrium at the start, as an ordinary equation."""
     march = prepare(study)
-    system, state = march.system, march.start.state
+    system, state = march.system, march.start
     shapes, command = system.kernel.shapes, compiler()
     if command is None:
         raise RuntimeError("there is no C compiler")
     packages = [Path(str(package.__file__)).parent for package in (mechanics, symbolic)]
     texts = [path.read_bytes() for folder in packages for path in sorted(folder.glob("*.py"))]
     key = ["benchmark ode", *texts, repr(shapes), Path(__file__).read_bytes()]
-    library, _ = compiled_library(key, lambda: functions(shapes), (SOURCE,), command)
+    library, _ = compiled_library(key, lambda: functions(shapes), "", (SOURCE,), command)
     library.rates.restype = library.jacobian.restype = None
     library.rates.argtypes = [c_void_p, c_double, c_void_p, c_void_p]
     library.jacobian.argtypes = [c_void_p, c_double, c_void_p, c_long, c_long, c_double, c_double, c_void_p]
     t = np.arange(round(study.duration / SPACING) + 2) * SPACING
     legs = rigid.inverse_kinematics(study.robot, rigid.poses(study.robot, study.motion, t))
     table = np.ascontiguousarray(np.stack([legs.length, legs.rate, legs.accel, legs.alpha, legs.beta], axis=-1))
-    keep = (np.ascontiguousarray(system.leg_p), system.payload_p, table)
+    keep = (np.ascontiguousarray(system.leg_p), system.joint_p, system.payload_p, table)
     robot = _Robot(system.n, len(t), keep[0].shape[1], *(_address(x) for x in keep), SPACING)
     z = state.q[:, 4:].ravel()
     start = np.concatenate([z, state.pose, np.zeros(len(z) + 6)])

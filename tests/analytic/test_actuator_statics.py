@@ -4,7 +4,7 @@ import numpy as np
 import pytest
 
 from flexapod.model import Simulation, preset
-from flexapod.solve.actuator_march import actuator_plant, static_shape
+from flexapod.solve.actuator_march import actuator_system, static_shape
 from flexapod.solve.actuator_modes import turning_matrices
 
 BEAM = preset("paper-actuator").actuator
@@ -13,12 +13,12 @@ BEAM = preset("paper-actuator").actuator
 def tip_under_inertia_forces(beam, rates, *, basis="tip-load", modes=3):
     """Tip [m] where bending alone balances the loads on the straight beam that moves with rates (theta', L')."""
     simulation = Simulation(basis=basis, modes=modes)
-    plant = actuator_plant(beam, simulation)
-    q, v = np.zeros((2, plant.n))
+    system = actuator_system(beam, simulation)
+    q, v = np.zeros((2, system.n))
     q[:2], v[:2] = (beam.angle, beam.hub_radius + beam.free_length), rates
-    r = plant.kernel.leg_residual(q, v, np.zeros(plant.n), np.zeros(3), np.zeros(4), plant.leg_p[0])[0]
+    r = system.kernel.leg_residual(q, v, np.zeros(system.n), np.zeros(0), np.zeros(2), system.leg_p[0])[0]
     stiffness = turning_matrices(beam.replace(gravity=0.0), simulation, 0.0)[2]
-    return -plant.kernel.shapes.a.tip @ np.linalg.solve(stiffness, r[2:])
+    return -system.kernel.shapes.a.tip @ np.linalg.solve(stiffness, r[2:])
 
 
 @pytest.mark.parametrize("modes", [2, 6])
@@ -58,9 +58,9 @@ def test_coriolis_sag(length, table):
 @pytest.mark.parametrize("basis", ["clamped-free", "tip-load"])
 @pytest.mark.parametrize("modes", [1, 3, 6])
 def test_start_is_the_static_shape_with_the_given_tip(basis, modes):
-    plant = actuator_plant(BEAM, Simulation(basis=basis, modes=modes))
-    b, z = plant.kernel.shapes.a, np.linspace(0, 1, 21)
-    a = static_shape(plant, 5e-3)
+    system = actuator_system(BEAM, Simulation(basis=basis, modes=modes))
+    b, z = system.kernel.shapes.a, np.linspace(0, 1, 21)
+    a = static_shape(system, 5e-3)
     assert b.tip @ a == pytest.approx(5e-3, rel=1e-14)
     exact = 5e-3 * (3 * z**2 - z**3) / 2
     # coefficients fall as 12 / eps^4 of the tip: the tail beyond k is below 0.05 / k^3, twice that once scaled

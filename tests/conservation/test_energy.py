@@ -8,7 +8,7 @@ from tests.runs import balance, paper_robot, run_actuator, run_robot, with_legs
 
 from flexapod import rigid
 from flexapod.model import ServoDrive, override, preset
-from flexapod.solve.actuator_march import actuator_plant
+from flexapod.solve.actuator_march import actuator_system
 from flexapod.solve.modes import robot_modes
 
 RHO, STEPS, PERIODS = 0.9, 200, 10
@@ -29,8 +29,8 @@ def test_free_vibration_of_the_actuator(mode):
     still = study.replace(
         motion=study.motion.replace(rotation={"law": "rate", "rate": 0.0}, extension={"law": "rate", "rate": 0.0})
     )
-    plant = actuator_plant(study.actuator, study.simulation)
-    basis, p = plant.kernel.shapes.a, study.actuator
+    system = actuator_system(study.actuator, study.simulation)
+    basis, p = system.kernel.shapes.a, study.actuator
     omega = basis.shapes[mode].eps ** 2 * np.sqrt(p.EI / p.rhoA) / p.free_length**2
     period = 2 * np.pi / omega
     still = override(still, step=period / STEPS, output_step=period, duration=PERIODS * period)

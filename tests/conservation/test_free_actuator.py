@@ -44,8 +44,8 @@ def test_bent_beam_keeps_energy_and_angular_momentum_to_second_order():
         march = prepare_actuator(study)
         parts = [chunk.recording for chunk in march.chunks]
         q, v = (np.concatenate([getattr(r, name) for r in parts]) for name in ("q", "v"))
-        p, kernel = march.plant.leg_p[0], march.plant.kernel
-        spin = np.array([(kernel.leg_matrices(x[0], np.zeros(3), p)[0] @ y)[0] for x, y in zip(q, v, strict=True)])
+        p, kernel = march.system.leg_p[0], march.system.kernel
+        spin = np.array([(kernel.leg_matrices(x[0], np.zeros(0), p)[0] @ y)[0] for x, y in zip(q, v, strict=True)])
         energy = np.concatenate([r.energy for r in parts]).sum(axis=1)
         drifts.append([np.ptp(spin) / spin[0], np.ptp(energy) / energy[0]])
     order = np.log2(np.array(drifts[:-1]) / np.array(drifts[1:]))

@@ -16,7 +16,7 @@ from flexapod.model import (
     Simulation,
     SineLaw,
 )
-from flexapod.solve.actuator_march import actuator_plant
+from flexapod.solve.actuator_march import actuator_system
 
 RHO, EI, LT, HUB, START = 4.02, 756.65, 3.66, 3.0, 1.83
 TORQUE, FORCE = {"amplitude": 14.0, "frequency": 0.4, "phase": 0.4}, {"amplitude": 9.0, "frequency": 0.7, "phase": -0.5}
@@ -78,9 +78,9 @@ def test_free_flight_keeps_momentum_and_energy(basis):
     k, drift = 3, []
     for step in (2e-3, 1e-3, 5e-4):
         study = driven(k, step=step, duration=0.6, basis=basis, tip_mass=0.2, tip_inertia=0.01)
-        plant = actuator_plant(study.actuator, study.simulation, rotation=False, extension=False)
+        system = actuator_system(study.actuator, study.simulation, rotation=False, extension=False)
         run = run_actuator(study, np.array([4e-3, 3e-4, 0.0]), np.array([0.6, 0.0, 0.0]))
-        M = [plant.kernel.leg_matrices(q[0], np.zeros(3), plant.leg_p[0])[0] for q in run["q"]]
+        M = [system.kernel.leg_matrices(q[0], np.zeros(0), system.leg_p[0])[0] for q in run["q"]]
         momentum = np.array([(m @ v)[0] for m, v in zip(M, run["v"], strict=True)])
         drift.append([np.ptp(momentum) / abs(momentum[0]), np.ptp(run["energy"].sum(axis=1)) / run["energy"][0].sum()])
     assert (np.array(drift[-1]) < 1e-4).all()

@@ -10,9 +10,9 @@ from flexapod import rigid
 from flexapod.model import ForceDrive, PrescribedDrive, ServoDrive, override, preset
 from flexapod.solve import interpreted, native
 from flexapod.solve.actuator_march import prepare_actuator
-from flexapod.solve.plant import Counters
-from flexapod.solve.robot_march import _flow, _plant, _tables, prepare
-from flexapod.solve.tables import command_law
+from flexapod.solve.recording import Counters
+from flexapod.solve.robot_march import prepare
+from flexapod.solve.tables import robot_law
 
 DRIVES = {
     "prescribed": PrescribedDrive(),
@@ -51,13 +51,13 @@ def study_for(fidelity, modes, axial_modes, drive, cylinder):
 def test_elimination_equals_the_dense_system(fidelity, modes, axial_modes, drive, cylinder):
     study = study_for(fidelity, modes, axial_modes, drive, cylinder)
     prepared = prepare(study)
-    plant, flow = _plant(prepared.system), _flow(prepared.start)
-    law = command_law(study.robot, study.load, partial(rigid.poses, study.robot, study.motion))
-    tables = _tables(law(np.arange(11) * 1e-3))
+    system = prepared.system
+    law = robot_law(system, study.robot, study.load, partial(rigid.poses, study.robot, study.motion))
+    tables = law(np.arange(11) * 1e-3)
     method = replace_method(study)
-    flow, _ = native.first_record(plant, flow, *tables)
-    fast = native.advance(plant, method, flow, 1e-3, tables, 1, Counters())
-    slow = interpreted.advance(plant, method, flow, 1e-3, tables, 1, Counters())
+    flow, _ = native.first_record(system, prepared.start, *tables)
+    fast = native.advance(system, method, flow, 1e-3, tables, 1, Counters())
+    slow = interpreted.advance(system, method, flow, 1e-3, tables, 1, Counters())
     assert fast.status == slow.status == 0
     # Both end their Newton iterations at rounding. Where nothing yields (no axial shape, prescribed strokes) gaps of
     # 1e-16 m make forces of M / (beta h^2 sigma^2) times that: 4e8 / 0.03^2 * 1e-16 = 5e-5 N, several times over.
@@ -82,12 +82,12 @@ def test_single_actuator_equals_its_twin(driven):
             load=study.load.replace(torque={"law": "constant", "value": 3.0}, force={"law": "constant", "value": -2.0}),
         )
     prepared = prepare_actuator(study)
-    plant = prepared.plant
+    system = prepared.system
     from flexapod.solve.actuator_march import _tables as actuator_tables
 
     tables = actuator_tables(study)(np.arange(51) * 1e-3)
-    fast = native.advance(plant, replace_method(study), prepared.start, 1e-3, tables, 1, Counters())
-    slow = interpreted.advance(plant, replace_method(study), prepared.start, 1e-3, tables, 1, Counters())
+    fast = native.advance(system, replace_method(study), prepared.start, 1e-3, tables, 1, Counters())
+    slow = interpreted.advance(system, replace_method(study), prepared.start, 1e-3, tables, 1, Counters())
     for name in ("q", "v", "drive"):
         # The free system has no constraint to magnify rounding; Newton ends at 1e-10 of the largest force.
         np.testing.assert_allclose(

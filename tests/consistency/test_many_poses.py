@@ -13,10 +13,11 @@ from flexapod import rigid
 from flexapod.model import ConstantWrench, Cylinder, Load, ServoDrive, Waypoint, WaypointMotion, override
 from flexapod.solve.arrow import arrow_solve
 from flexapod.solve.elimination import solve_each
-from flexapod.solve.equilibrium import equilibria, saddle_solve
+from flexapod.solve.equilibrium import equilibria
 from flexapod.solve.kernel import interpreted_kernel
 from flexapod.solve.many import RestStates, matrices_at_rest, residual_at_rest, rigid_rest
 from flexapod.solve.modes import locked_poses, modes_of, robot_modes
+from flexapod.solve.saddle import saddle_solve
 from flexapod.solve.stiffness import robot_stiffness, stiffness_of, tool_motion
 from flexapod.study.poses import from_home
 
@@ -57,6 +58,17 @@ def robot(name):
 KINDS = ["prescribed", "servo", "mixed", "no stretch", "mixed, no stretch", "lumped", "rigid servo"]
 
 
+def constraints(system, m):
+    """Jacobian of closures and held coordinates."""
+    return np.vstack([m.G, np.eye(system.size)[system.fixed]])
+
+
+def table_at_rest(system, lengths):
+    table = np.zeros((system.legs, system.ports.size, 4))
+    table[:, 0, 0] = lengths
+    return table
+
+
 @pytest.mark.parametrize("kind", KINDS)
 def test_equilibria_balance_and_modes_are_those_of_dense_matrices(kind):
     study = robot(kind)
@@ -67,14 +79,14 @@ def test_equilibria_balance_and_modes_are_those_of_dense_matrices(kind):
     assert locked.at.tolist() == list(range(len(POSES)))
     for k in range(len(POSES)):
         x = locked.equilibria.states.state(k)
-        r, g = system.residual(x, system.command(x, locked.lengths[k], np.zeros(6), np.zeros(6)), WRENCH)
+        r, g, _ = system.residual(x, table_at_rest(system, locked.lengths[k]), WRENCH)
         size = np.abs(x.lam).max()
         assert np.abs(r).max() < 1e-9 * size  # 1e8 N/m on steps of 1e-16 m: 1e-8 N on a kilonewton
         assert np.abs(g).max() < 1e-14
-        assert np.abs(x.q[system.held, 2] - locked.lengths[k][system.held]).max(initial=0) == 0
+        assert np.abs((x.q[:, 2] - locked.lengths[k])[system.held[:, 2]]).max(initial=0) == 0
         m = system.matrices(x, WRENCH)
         scale = 1 / np.sqrt(np.maximum(np.diag(m.M), 1e-12))
-        N = scale[:, None] * null_space(m.G * scale)
+        N = scale[:, None] * null_space(constraints(system, m) * scale)
         M, K = N.T @ m.M @ N, N.T @ m.K @ N
         frequency = np.sqrt(eigh((K + K.T) / 2, M, eigvals_only=True)) / (2 * np.pi)
         # Squares of the frequencies are right to rounding times the square of the highest over the lowest, 200 here.
@@ -93,19 +105,20 @@ def test_a_newton_step_is_that_of_the_saddle_matrix(kind):
     locked = locked_poses(study.robot, study.simulation, from_home(study.robot, POSES), LOAD)
     system, rng = locked.system, np.random.default_rng(5)
     r, payload, g = rng.normal(size=(5, 6, system.n)), rng.normal(size=(5, 6)), 1e-3 * rng.normal(size=(5, 6, 3))
-    gap = np.where(system.held, 1e-3 * rng.normal(size=(5, 6)), 0.0)
+    held = system.held[:, 2]
+    gap = np.where(held, 1e-3 * rng.normal(size=(5, 6)), 0.0)
     step = arrow_solve(system, locked.m, r, payload, g, gap)
     for k in range(5):
         m = system.matrices(locked.equilibria.states.state(k), WRENCH)
-        given = -np.concatenate([g[k].ravel(), gap[k][system.held]])
-        dq, multipliers = saddle_solve(m.K, m.G, -np.concatenate([r[k].ravel(), payload[k]]), given)
+        given = -np.concatenate([g[k].ravel(), gap[k][held]])
+        dq, multipliers = saddle_solve(m.K, constraints(system, m), -np.concatenate([r[k].ravel(), payload[k]]), given)
         # The saddle matrix loses six digits or so: forces of 1e8 N/m springs balance within millinewtons.
         np.testing.assert_allclose(step.dq[k].ravel(), dq[:-6], atol=1e-6 * np.abs(dq).max())
         np.testing.assert_allclose(step.dy[k], dq[-6:], atol=1e-6 * np.abs(dq).max())
         size = np.abs(multipliers).max()
         np.testing.assert_allclose(step.dlam[k].ravel(), multipliers[:18], atol=1e-4 * size)
-        np.testing.assert_allclose(step.drive[k][system.held], -multipliers[18:], atol=1e-4 * size)
-        assert (step.drive[k][~system.held] == 0).all()
+        np.testing.assert_allclose(step.drive[k][held], -multipliers[18:], atol=1e-4 * size)
+        assert (step.drive[k][~held] == 0).all()
 
 
 @pytest.mark.parametrize("kind", ["prescribed", "mixed", "lumped"])

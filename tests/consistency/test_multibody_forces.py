@@ -18,10 +18,11 @@ def test_forces_at_the_rigid_path(kind):
     for t in (0.0, 0.11, 0.23):
         path = rigid.poses(study.robot, motion, np.array([t]))
         x = rigid_state(system, study.robot, path)
-        r, g = system.residual(x, system.command(x, np.zeros(6), np.zeros(6), np.zeros(6)), wrench)
+        r, g, _ = system.residual(x, np.zeros((6, 1, 4)), wrench)
         assert np.abs(g).max() < 1e-15  # metres of order one, to rounding
         # KKT: G^T (lam, -f) = -r, as many equations as the 24 multipliers once the payload's are included.
-        multipliers, *_ = np.linalg.lstsq(system.matrices(x, wrench).G.T, -r, rcond=None)
+        G = np.vstack([system.matrices(x, wrench).G, np.eye(system.size)[system.fixed]])
+        multipliers, *_ = np.linalg.lstsq(G.T, -r, rcond=None)
         forces = rigid.inverse_dynamics(study.robot, path, wrench)
         scale = np.abs(forces.actuator_force).max()
         np.testing.assert_allclose(-multipliers[18:], forces.actuator_force[0], rtol=0, atol=1e-12 * scale)  # 5e-15

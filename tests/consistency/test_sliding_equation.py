@@ -25,7 +25,7 @@ def leg_residual(k, x, v, a, m_e, g):
     """Residual of (theta, L, a_1..a_k) without drives, from (theta, L, a..) and its rates."""
     beam = Actuator(length=LT, rhoA=RHO, EI=EI, free_length=L, tip_mass=m_e, hub_inertia=HUB, gravity=g)
     functions = uncompiled("clamped-free", k, 0, planar=True)
-    return functions.leg_residual(x, v, a, np.zeros(3), np.zeros(4), actuator_parameters(beam)[0])[0]
+    return functions.leg_residual(x, v, a, np.zeros(0), np.zeros(2), actuator_parameters(beam)[0])[0]
 
 
 def substituted(q, q_dot, q_ddot, rates):
@@ -107,6 +107,6 @@ def test_spatial_leg_held_in_a_plane_is_the_planar_one():
         R0=PLANE.T.ravel(),
     )  # fmt: skip
     spread = (np.concatenate([[0.0], x, np.zeros(k)]) for x in flat)
-    ours = space.leg_residual(*spread, np.zeros(3), np.zeros(4), p)[0]
+    ours = space.leg_residual(*spread, np.zeros(3), np.zeros(2), p)[0]
     np.testing.assert_allclose(ours[1 : 3 + k], plane, rtol=1e-12, atol=1e-12 * np.abs(plane).max())
     np.testing.assert_allclose(ours[[0, *range(3 + k, 3 + 2 * k)]], 0, atol=1e-12 * np.abs(plane).max())

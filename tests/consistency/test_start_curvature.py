@@ -10,7 +10,7 @@ from flexapod import rigid
 from flexapod.solve.robot_march import robot_system
 from flexapod.solve.start import accelerations
 from flexapod.solve.system import rigid_state
-from flexapod.solve.tables import command_law
+from flexapod.solve.tables import robot_law
 
 
 @pytest.mark.parametrize("t", [0.2, 0.5, 0.83])
@@ -23,9 +23,10 @@ def test_closures_of_the_rigid_path(t):
     study = fx.preset("paper-robot")
     system = robot_system(study.robot, study.simulation)
     x = rigid_state(system, study.robot, rigid.poses(study.robot, study.motion, np.array([t])))
-    commands = command_law(study.robot, study.load, partial(rigid.poses, study.robot, study.motion))(np.array([t]))
-    found = accelerations(system, x, commands, 0)
-    G = system.matrices(x, np.zeros(6)).G[:18]
+    law = robot_law(system, study.robot, study.load, partial(rigid.poses, study.robot, study.motion))
+    table, wrench = law(np.array([t]))
+    found = accelerations(system, x, table[0], wrench[0])
+    G = system.matrices(x, np.zeros(6)).G
     needed = G @ x.v_dot
     assert np.abs(needed).max() > 0.01  # m/s^2: a wrong sign would show
     np.testing.assert_allclose(G @ found.v_dot, needed, rtol=0, atol=1e-10)

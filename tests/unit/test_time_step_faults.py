@@ -10,9 +10,8 @@ from tests.runs import paper_robot
 import flexapod as fx
 from flexapod.mechanics.layout import LEG_PARAMETERS, columns
 from flexapod.solve import march, native
-from flexapod.solve.equilibrium import saddle_solve
-from flexapod.solve.plant import Flow, Plant
 from flexapod.solve.robot_march import prepare
+from flexapod.solve.saddle import saddle_solve
 
 
 def test_the_message_pairs_the_error_with_the_steps_it_was_measured_with(monkeypatch):
@@ -42,19 +41,13 @@ def test_the_message_pairs_the_error_with_the_steps_it_was_measured_with(monkeyp
 def test_a_step_that_cannot_be_changed_is_told():
     """Legs without any mass: the metric that splits off the normal velocities is singular. Once it went on."""
     ready = prepare(paper_robot(duration=0.01, tolerance=1e-4))
-    system, x = ready.system, ready.start.state
-    plant = Plant(
-        kernel=system.kernel, leg_p=system.leg_p, payload_p=system.payload_p, held_l=system.held,
-        held_beta=np.zeros(6, dtype=bool),
-    )  # fmt: skip
-    drive = np.stack([x.drive, np.zeros(6)], axis=1)
-    flow = Flow(q=x.q, v=x.v, v_dot=x.v_dot, a=ready.start.a, lam=x.lam, drive=drive, pose=x.pose)
-    assert np.isfinite(native.scaled_defect(plant, flow, 4.0).v).all()
-    leg_p = plant.leg_p.copy()
+    system, flow = ready.system, ready.start
+    assert np.isfinite(native.scaled_defect(system, flow, 4.0).v).all()
+    leg_p = system.leg_p.copy()
     for name in ("rhoA", "cylinder_mass", "cylinder_inertia"):
         leg_p[:, columns(LEG_PARAMETERS, name)] = 0.0
     with pytest.raises(fx.ComputationError, match="mass matrix is singular"):
-        native.scaled_defect(replace(plant, leg_p=leg_p), flow, 4.0)
+        native.scaled_defect(replace(system, leg_p=leg_p), flow, 4.0)
 
 
 def test_equations_of_motion_that_are_singular_are_told():

@@ -61,17 +61,16 @@ POSE_PARAMETERS: tuple[tuple[str, int], ...] = (
     ("gamma_home", 3),  # rad
 )
 
-#: Physical parameters of the payload in kernel order (name, size); joints and tool from the CoM, in platform axes.
+#: Physical parameters of the payload in kernel order (name, size); tool from the CoM, in platform axes.
 PAYLOAD_PARAMETERS: tuple[tuple[str, int], ...] = (
     ("mass", 1),  # kg
     ("inertia", 9),  # kg m^2 about the CoM, platform axes, column by column
     ("gravity", 3),  # m/s^2
     ("tool", 3),  # m
-    ("joints", 18),  # m, spherical joints of legs 1..6
 )
 
-#: Commands of one leg: commanded length l_cmd and its rate, force along the leg, torque about beta (planar leg).
-COMMAND_SIZE = 4
+#: Commands that the springs of a leg's drives read: commanded length l_cmd and its rate.
+COMMAND_SIZE = 2
 
 
 def columns(layout: tuple[tuple[str, int], ...], name: str) -> slice:

@@ -12,7 +12,7 @@ from flexapod.paper.claim import axis_motion
 from flexapod.rigid.rotations import quaternion, rotation_vector
 from flexapod.solve.equilibrium import Equilibrium, equilibrium
 from flexapod.solve.rest import rest_load
-from flexapod.solve.system import RobotSystem, State, rigid_state, robot_system
+from flexapod.solve.system import State, System, rigid_state, robot_system
 from flexapod.study.arguments import as_pose
 from flexapod.study.before.checks import path_instants
 from flexapod.study.static import modes
@@ -87,7 +87,7 @@ def _followed(study: model.Study) -> tuple[float, Array]:
     return reached, sag
 
 
-def _near(study: model.Study, system: RobotSystem, share: float, state: State | None) -> tuple[Equilibrium, Array]:
+def _near(study: model.Study, system: System, share: float, state: State | None) -> tuple[Equilibrium, Array]:
     """Equilibrium at a share of the motion, sought from a state (None: the rigid pose); its sag (3,) [m]."""
     robot = study.robot
     path = as_pose(robot, share * axis_motion(study).target)

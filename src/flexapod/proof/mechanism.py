@@ -17,18 +17,29 @@ from flexapod.bases import axial_basis, lateral_basis
 from flexapod.errors import ComputationError
 from flexapod.integration import GeneralizedAlpha
 from flexapod.mechanics.layout import COMMAND_SIZE, LEG_PARAMETERS, Shapes, columns
-from flexapod.solve.kernel import NAMES, SOURCES, Kernel
-from flexapod.solve.march import Problem, Tables, march
-from flexapod.solve.plant import TABLE, Counters, Flow, Plant, Recording
+from flexapod.solve.kernel import NAMES, SOURCES, Kernel, sizes
+from flexapod.solve.march import Problem, march
+from flexapod.solve.recording import Counters, Recording
 from flexapod.solve.start import consistent_start
 from flexapod.solve.stops import Stops
-from flexapod.solve.system import RobotSystem, State
-from flexapod.solve.tables import Commands
+from flexapod.solve.system import COLUMNS, State, System
+from flexapod.solve.tables import Law
 from flexapod.symbolic import lagrange, vocabulary
 from flexapod.symbolic.compiler import CompiledFunction, compiled_library, compiler
 from flexapod.symbolic.functions import NamedFunction
 from flexapod.symbolic.lagrange import Lagrangian, inverse_dynamics, mass_matrix
-from flexapod.symbolic.vocabulary import SX, dot, gradient, hessian, jacobian, substitute, symbol, vertcat, zeros
+from flexapod.symbolic.vocabulary import (
+    SX,
+    dot,
+    gradient,
+    hessian,
+    jacobian,
+    reshape,
+    substitute,
+    symbol,
+    vertcat,
+    zeros,
+)
 from flexapod.typing import Array
 
 __all__ = ["Branch", "Drive", "Hub", "Mechanism", "run"]
@@ -95,28 +106,19 @@ def run(mechanism: Mechanism, q: Array, x: Array, v: Array, u: Array, duration: 
         v=np.concatenate([v.ravel(), u, np.zeros(3)]),
         v_dot=np.zeros(system.size),
         lam=np.zeros((6, 3)),
-        drive=np.zeros(6),
+        drive=np.zeros((6, system.ports.size)),
     )
-    start = consistent_start(system, at, law(np.zeros(1)), method, h)
-    s, drive = start.state, np.stack([start.state.drive, np.zeros(6)], axis=1)
-    flow = Flow(q=s.q, v=s.v, v_dot=s.v_dot, a=start.a, lam=s.lam, drive=drive, pose=s.pose)
-    problem = _problem(system, method, lambda t: _tables(law(t)), duration)
-    return [chunk.recording for chunk in march(problem, flow, h, Counters())]
+    start, _ = consistent_start(system, at, law, 0.0, method, h)
+    problem = _problem(system, method, law, duration)
+    return [chunk.recording for chunk in march(problem, start, h, Counters())]
 
 
-def _problem(system: RobotSystem, method: GeneralizedAlpha, tables: Tables, duration: float) -> Problem:
+def _problem(system: System, method: GeneralizedAlpha, law: Law, duration: float) -> Problem:
     """A fixed step, nothing that jumps, nothing to check."""
-    plant = Plant(
-        kernel=system.kernel,
-        leg_p=system.leg_p,
-        payload_p=system.payload_p,
-        held_l=system.held,
-        held_beta=np.zeros(6, dtype=bool),
-    )
     return Problem(
-        plant=plant,
+        system=system,
         method=method,
-        tables=tables,
+        tables=law,
         output_step=duration / OUTPUTS,
         outputs=OUTPUTS,
         measure=lambda recording: [recording.pose],
@@ -127,32 +129,28 @@ def _problem(system: RobotSystem, method: GeneralizedAlpha, tables: Tables, dura
     )
 
 
-def _law(drive: Drive) -> Callable[[Array], Commands]:
-    def law(t: Array) -> Commands:
-        rows = np.zeros((3, len(t), 6))
-        rows[:, :, 0] = drive(t)
-        none = np.zeros((len(t), 6))
-        return Commands(time=t, length=rows[0], rate=rows[1], accel=rows[2], force=none, wrench=none, law=law)
+def _law(drive: Drive) -> Law:
+    def law(t: Array) -> tuple[Array, Array]:
+        table = np.zeros((len(t), 6, 1, COLUMNS))
+        table[:, :, 0, :3] = np.stack(drive(t), axis=-1)[:, None]
+        return table, np.zeros((len(t), 6))
 
     return law
 
 
-def _tables(c: Commands) -> tuple[Array, Array]:
-    table = np.zeros((len(c.time), 6, TABLE))
-    table[:, :, 0], table[:, :, 1], table[:, :, 2] = c.length, c.rate, c.accel
-    return table.reshape(len(c.time), -1), c.wrench
-
-
-def _system(mechanism: Mechanism) -> RobotSystem:
+def _system(mechanism: Mechanism) -> System:
     lateral = lateral_basis("tip-load", mechanism.shapes)  # for its number of shapes only
     shapes = Shapes(a=lateral, b=lateral, axial=axial_basis(0))
     general = np.zeros((6, sum(size for _, size in LEG_PARAMETERS)))  # what the loop itself asks of a leg
     general[:, columns(LEG_PARAMETERS, "Lp")] = 1.0
-    return RobotSystem(
+    held = np.zeros((6, shapes.size), dtype=bool)
+    held[list(mechanism.driven), shapes.l_index] = True
+    return System(
         kernel=_kernel(mechanism, shapes, general.shape[1]),
         leg_p=np.ascontiguousarray(np.concatenate([general, mechanism.parameters], axis=1)),
+        joint_p=np.eye(6),  # each branch reads its own of the hub's points
         payload_p=np.ones(1),
-        held=np.isin(np.arange(6), mechanism.driven),
+        held=held,
     )
 
 
@@ -169,6 +167,7 @@ def _kernel(mechanism: Mechanism, shapes: Shapes, general: int) -> Kernel:
     library, signatures = compiled_library(
         [*texts, shapes.size, general],
         lambda: [*_branch_functions(mechanism, shapes, general), *_hub_functions(mechanism.hub)],
+        sizes(shapes, general + mechanism.parameters.shape[1], joint=6),
         SOURCES,
         command,
     )
@@ -184,7 +183,6 @@ def _branch_functions(mechanism: Mechanism, shapes: Shapes, general: int) -> lis
     kinetic, potential, point = mechanism.branch(q, v, p[general:])
     e = Lagrangian(q=q, v=v, kinetic=kinetic, potential=potential, dissipation=zeros(1))
     r = inverse_dynamics(e, v_dot) + gradient(dot(point, lam), q)
-    r[shapes.l_index] -= command[2]
     parameters = [("command", command), ("p", p)]
     matrices = [
         ("M", mass_matrix(e)),
@@ -192,53 +190,47 @@ def _branch_functions(mechanism: Mechanism, shapes: Shapes, general: int) -> lis
         ("K", hessian(potential + dot(point, lam), q)),
         ("J", jacobian(point, q)),
     ]
-    powers = vertcat(zeros(1), command[2] * v[shapes.l_index])
+    energies = [("energies", vertcat(kinetic, zeros(1), potential)), ("drive", zeros(1))]
     return [
         NamedFunction(
             "leg_residual",
             [("q", q), ("v", v), ("v_dot", v_dot), ("lam", lam), *parameters],
-            [("r", r), ("tip", point), ("powers", powers)],
+            [("r", r), ("tip", point), ("powers", zeros(2)), ("drive", zeros(1))],
         ),
         NamedFunction("leg_matrices", [("q", q), ("lam", lam), ("p", p)], matrices),
-        NamedFunction(
-            "leg_energies",
-            [("q", q), ("v", v), *parameters],
-            [("energies", vertcat(kinetic, zeros(1), potential))],
-        ),
+        NamedFunction("leg_energies", [("q", q), ("v", v), *parameters], energies),
     ]
 
 
 def _hub_functions(hub: Hub) -> list[NamedFunction]:
     """The same of the hub: three coordinates, and a turn of unit inertia that nothing moves."""
     pose, u, u_dot = symbol("pose", 7), symbol("u", 6), symbol("u_dot", 6)
-    lam, wrench, p = symbol("lam", 18), symbol("wrench", 6), symbol("p", 1)
+    net, wrench, p = symbol("net", 6), symbol("wrench", 6), symbol("p", 1)
+    lam, joint = symbol("lam", 3), symbol("joint", 6)
     x, rate, push = symbol("x", 3), symbol("rate", 3), symbol("push", 3)
     kinetic, potential, points = hub(x, rate)
+    point = reshape(points, 3, 6) @ joint
     e = Lagrangian(q=x, v=rate, kinetic=kinetic, potential=potential, dissipation=zeros(1))
 
     def here(expression: SX) -> SX:
         return substitute(expression, (x, rate, push), (pose[:3], u[:3], u_dot[:3]))
 
-    r = inverse_dynamics(e, push) - gradient(dot(points, lam), x)
-    M, K, P = zeros(6, 6), zeros(6, 6), zeros(18, 6)
+    r = inverse_dynamics(e, push) - net[:3]
+    M, K, P, H = zeros(6, 6), zeros(6, 6), zeros(3, 6), zeros(6, 6)
     for i in (3, 4, 5):
         M[i, i] = 1
-    M[:3, :3], K[:3, :3], P[:, :3] = mass_matrix(e), hessian(potential - dot(points, lam), x), jacobian(points, x)
-    motion = [("pose", pose), ("u", u), ("u_dot", u_dot), ("lam", lam), ("wrench", wrench), ("p", p)]
+    M[:3, :3], K[:3, :3] = mass_matrix(e), hessian(potential, x)
+    P[:, :3], H[:3, :3] = jacobian(point, x), -hessian(dot(point, lam), x)
+    motion = [("pose", pose), ("u", u), ("u_dot", u_dot), ("net", net), ("wrench", wrench), ("p", p)]
+    of_joint = [("pose", pose), ("lam", lam), ("joint", joint)]
+    push_of_joint = vertcat(gradient(dot(point, lam), x), zeros(3))
+    energies = vertcat(here(kinetic), zeros(1), here(potential))
     return [
+        NamedFunction("joint_residual", of_joint, [("point", here(point)), ("wrench", here(push_of_joint))]),
+        NamedFunction("joint_matrices", of_joint, [("P", here(P)), ("H", here(H))]),
+        NamedFunction("payload_residual", motion, [("r", vertcat(here(r), u_dot[3:])), ("power", zeros(1))]),
         NamedFunction(
-            "payload_residual",
-            motion,
-            [("r", vertcat(here(r), u_dot[3:])), ("points", here(points)), ("power", zeros(1))],
+            "payload_matrices", [("pose", pose), ("wrench", wrench), ("p", p)], [("M", here(M)), ("K", here(K))]
         ),
-        NamedFunction(
-            "payload_matrices",
-            [("pose", pose), ("lam", lam), ("wrench", wrench), ("p", p)],
-            [("M", here(M)), ("K", here(K)), ("P", here(P))],
-        ),
-        NamedFunction(
-            "payload_energies",
-            [("pose", pose), ("u", u), ("p", p)],
-            [("energies", vertcat(here(kinetic), zeros(1), here(potential)))],
-        ),
+        NamedFunction("payload_energies", [("pose", pose), ("u", u), ("p", p)], [("energies", energies)]),
     ]

@@ -81,7 +81,7 @@ def turning_matrices(actuator: Actuator, simulation: Simulation, rate: float) ->
     """M, D, K (k, k) of the amplitudes of the beam in steady rotation, Eq. (T9.6)."""
     matrices, tangents = _functions(beam_shapes(actuator, simulation, rate))
     p, size = actuator_parameters(actuator)[0], 2 + simulation.lateral_shapes
-    q, v, none = np.zeros(size), np.zeros(size), np.zeros(3)
+    q, v, none = np.zeros(size), np.zeros(size), np.zeros(0)
     q[:2], v[0] = (actuator.angle, actuator.hub_radius + actuator.free_length), rate
     M = matrices(q, none, p)[0]
     K, D = tangents(q, v, np.zeros(size), none, np.zeros(COMMAND_SIZE), p)  # (T9.6)

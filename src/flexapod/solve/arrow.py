@@ -8,7 +8,7 @@ import numpy as np
 
 from flexapod.solve.elimination import LegBases, Reduced, leg_bases, reduced, solve_each
 from flexapod.solve.many import RestMatrices
-from flexapod.solve.system import RobotSystem
+from flexapod.solve.system import System
 from flexapod.typing import Array
 
 __all__ = ["Step", "arrow_solve"]
@@ -16,7 +16,7 @@ __all__ = ["Step", "arrow_solve"]
 
 @dataclass(frozen=True, kw_only=True)
 class Step:
-    """Change of P states: ``dq`` (P, 6, n), ``dy`` (P, 6), ``dlam`` (P, 6, 3) and ``drive`` (P, 6) forces [N]."""
+    """Change of P states: ``dq`` (P, 6, n), ``dy`` (P, 6), ``dlam`` (P, 6, 3) and ``drive`` (P, legs) forces [N]."""
 
     dq: Array
     dy: Array
@@ -40,12 +40,12 @@ class _Group:
     by_force: Array
 
 
-def arrow_solve(system: RobotSystem, m: RestMatrices, r: Array, r_payload: Array, g: Array, gap: Array) -> Step:
+def arrow_solve(system: System, m: RestMatrices, r: Array, r_payload: Array, g: Array, gap: Array) -> Step:
     """Solve Eq. (T7.1) at P poses; NaN where the stiffness is singular.
 
     Parameters
     ----------
-    system : RobotSystem
+    system : System
     m : RestMatrices
     r, r_payload, g : ndarray, shapes (P, 6, n), (P, 6), (P, 6, 3)
         From `many.residual_at_rest`.
@@ -66,7 +66,7 @@ def arrow_solve(system: RobotSystem, m: RestMatrices, r: Array, r_payload: Array
         lam = -(b.inverse.swapaxes(-1, -2) @ balance[..., b.pivot, None])[..., 0]
         along = balance[..., l_index] + (m.J[:, b.legs][..., l_index] * lam).sum(axis=-1)
         dq[:, b.legs], dlam[:, b.legs] = step, lam
-        drive[:, b.legs] = np.where(system.held[b.legs], along + f, 0.0)
+        drive[:, b.legs] = np.where(system.held[b.legs, l_index], along + f, 0.0)
     return Step(dq=dq, dy=y, dlam=dlam, drive=drive)
 
 

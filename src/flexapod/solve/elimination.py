@@ -11,7 +11,7 @@ from dataclasses import dataclass
 import numpy as np
 
 from flexapod.solve.many import RestMatrices
-from flexapod.solve.system import Index, RobotSystem
+from flexapod.solve.system import Index, System
 from flexapod.typing import Array
 
 __all__ = ["LegBases", "Reduced", "expanded", "leg_bases", "null_space_of_borders", "reduced", "solve_each"]
@@ -35,12 +35,12 @@ class LegBases:
     Y: Array
 
 
-def leg_bases(system: RobotSystem, m: RestMatrices) -> list[LegBases]:
+def leg_bases(system: System, m: RestMatrices) -> list[LegBases]:
     """Bases of all legs at P poses, grouped by their pivots."""
     l_index, n, can_stretch = system.kernel.shapes.l_index, system.n, system.kernel.shapes.axial.count > 0
     found = []
     for held in (True, False):
-        legs = np.flatnonzero(system.held == held)
+        legs = np.flatnonzero(system.held[:, l_index] == held)
         if not legs.size:
             continue
         stroke_out = held and can_stretch
@@ -103,13 +103,13 @@ def expanded(bases: list[LegBases], vectors: Array) -> Array:
     """Flat coordinates (P, 6 n + 6, m) of admissible motions (P, r, m)."""
     P, _, count = vectors.shape
     n = bases[0].N.shape[2]
-    legs, y, at = np.zeros((P, 6, n, count)), vectors[:, -6:], 0
+    legs, y, at = np.zeros((P, sum(b.legs.size for b in bases), n, count)), vectors[:, -6:], 0
     for b in bases:
         width = b.legs.size * b.rest.size
         z = vectors[:, at : at + width].reshape(P, b.legs.size, b.rest.size, count)
         legs[:, b.legs] = b.N @ z + b.Y @ y[:, None]
         at += width
-    return np.concatenate([legs.reshape(P, 6 * n, count), y], axis=1)
+    return np.concatenate([legs.reshape(P, legs.shape[1] * n, count), y], axis=1)
 
 
 def null_space_of_borders(bases: list[LegBases], l_index: int) -> Array | None:

@@ -5,7 +5,6 @@ from dataclasses import dataclass, replace
 import numpy as np
 
 from flexapod import rigid
-from flexapod.bases.eigen import finite
 from flexapod.errors import ComputationError
 from flexapod.mechanics.layout import LEG_PARAMETERS, PAYLOAD_PARAMETERS, columns
 from flexapod.model import Robot
@@ -14,7 +13,7 @@ from flexapod.solve.arrow import arrow_solve
 from flexapod.solve.elimination import leg_bases, null_space_of_borders, reduced, solve_each
 from flexapod.solve.frequencies import cholesky_each
 from flexapod.solve.many import RestMatrices, RestStates, matrices_at_rest, residual_at_rest
-from flexapod.solve.system import RobotSystem, State
+from flexapod.solve.system import State, System
 from flexapod.typing import Array, Mask
 
 FOUND, SINGULAR, GIVES_WAY, NOT_SETTLED, UNSTABLE = range(5)
@@ -75,31 +74,7 @@ def refuse_fallen(robot: Robot, path: rigid.Poses, pose: Array) -> None:
         raise ComputationError(FALLS_THROUGH, next_step="Choose a pose farther from the singularity.")
 
 
-def saddle_solve(A: Array, G: Array, r: Array, g: Array) -> tuple[Array, Array]:
-    """Solve [[A, G^T], [G, 0]] (x, lam) = (r, g) with rows and columns scaled to unit size.
-
-    Raises
-    ------
-    ComputationError
-        The matrix is singular, or a number is not finite.
-    """
-    size = len(A)
-    full = np.block([[A, G.T], [G, np.zeros((len(G), len(G)))]])
-    finite(full, r, g)
-    scale = 1.0 / np.sqrt(np.maximum(np.abs(full).max(axis=1), 1e-300))
-    scale[:size] = 1.0 / np.sqrt(np.maximum(np.abs(np.diag(A)), 1e-12 * np.abs(A).max()))
-    scale[size:] = 1.0 / np.maximum(np.abs(G * scale[:size]).max(axis=1), 1e-300)
-    try:
-        solution = scale * np.linalg.solve(scale[:, None] * full * scale, scale * np.concatenate([r, g]))
-    except np.linalg.LinAlgError:
-        raise ComputationError(
-            "the equations of motion are singular: a leg has next to no mass, or the robot is at a singularity",
-            next_step="Check rhoA of the pistons, mass and inertia of the cylinders, and the pose.",
-        ) from None
-    return solution[:size], solution[size:]
-
-
-def equilibrium(system: RobotSystem, start: State, l_cmd: Array, force: Array, wrench: Array) -> Equilibrium:
+def equilibrium(system: System, start: State, l_cmd: Array, force: Array, wrench: Array) -> Equilibrium:
     """Static equilibrium at commanded lengths (6,) [m] under gravity, drive forces (6,) [N] and a wrench (6,).
 
     See `equilibria`.
@@ -107,7 +82,7 @@ def equilibrium(system: RobotSystem, start: State, l_cmd: Array, force: Array, w
     return equilibria(system, RestStates.of(start), l_cmd[None], force[None], wrench).one(0)
 
 
-def equilibria(system: RobotSystem, start: RestStates, l_cmd: Array, force: Array, wrench: Array) -> Equilibria:
+def equilibria(system: System, start: RestStates, l_cmd: Array, force: Array, wrench: Array) -> Equilibria:
     """Static equilibria at commanded lengths (P, 6) [m] under gravity, drive forces (P, 6) [N] and a wrench (6,).
 
     Newton from ``start`` (undeformed); where that fails, the loads grow in ten steps. An equilibrium from which the
@@ -126,7 +101,7 @@ def equilibria(system: RobotSystem, start: RestStates, l_cmd: Array, force: Arra
 
 
 def _loaded_slowly(
-    system: RobotSystem, x: RestStates, l_cmd: Array, force: Array, wrench: Array
+    system: System, x: RestStates, l_cmd: Array, force: Array, wrench: Array
 ) -> tuple[RestStates, np.ndarray]:
     """Newton with a tenth of the loads more in each of ten steps, as far as each pose gets."""
     code = np.full(len(x), FOUND)
@@ -139,7 +114,7 @@ def _loaded_slowly(
     return x, code
 
 
-def _scaled(system: RobotSystem, share: float) -> RobotSystem:
+def _scaled(system: System, share: float) -> System:
     """Return the same robot in ``share`` of its gravity."""
     leg_p, payload_p = system.leg_p.copy(), system.payload_p.copy()
     leg_p[:, columns(LEG_PARAMETERS, "gravity")] *= share
@@ -147,9 +122,7 @@ def _scaled(system: RobotSystem, share: float) -> RobotSystem:
     return replace(system, leg_p=leg_p, payload_p=payload_p)
 
 
-def _newton(
-    system: RobotSystem, x: RestStates, l_cmd: Array, force: Array, wrench: Array
-) -> tuple[RestStates, np.ndarray]:
+def _newton(system: System, x: RestStates, l_cmd: Array, force: Array, wrench: Array) -> tuple[RestStates, np.ndarray]:
     """Newton at every pose that has neither settled nor failed; states and codes."""
     code, best = np.full(len(x), NOT_SETTLED), np.full(len(x), np.inf)
     on = np.arange(len(x))
@@ -169,19 +142,20 @@ def _newton(
     return x, code
 
 
-def _newton_step(
-    system: RobotSystem, x: RestStates, l_cmd: Array, force: Array, wrench: Array
-) -> tuple[RestStates, Array]:
+def _newton_step(system: System, x: RestStates, l_cmd: Array, force: Array, wrench: Array) -> tuple[RestStates, Array]:
     """States after a step, and the largest coordinate of the step (P,); NaN where the stiffness is singular."""
     r, r_payload, g = residual_at_rest(system, x, l_cmd, force, wrench)
-    gap = np.where(system.held, x.q[:, :, system.kernel.shapes.l_index] - l_cmd, 0.0)
+    l_index = system.kernel.shapes.l_index
+    gap = np.where(system.held[:, l_index], x.q[:, :, l_index] - l_cmd, 0.0)
     step = arrow_solve(system, matrices_at_rest(system, x, wrench), r, r_payload, g, gap)
     largest = np.maximum(np.abs(step.dq).max(axis=(1, 2)), np.abs(step.dy).max(axis=1))
     moved = x.moved(step.dq, np.nan_to_num(step.dy))  # no rotation by NaN
-    return replace(moved, lam=x.lam + step.dlam, drive=x.drive + step.drive), largest
+    drive = x.drive.copy()
+    drive[:, :, 0] += step.drive
+    return replace(moved, lam=x.lam + step.dlam, drive=drive), largest
 
 
-def _stable(system: RobotSystem, m: RestMatrices) -> Mask:
+def _stable(system: System, m: RestMatrices) -> Mask:
     """Whether the stiffness on the constraints is positive, (P,).
 
     By Sylvester's law of inertia it is where B of every leg and the payload's Schur complement are. Factors tell, not

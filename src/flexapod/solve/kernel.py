@@ -12,7 +12,7 @@ import numpy as np
 
 from flexapod import bases, elements, mechanics, symbolic
 from flexapod.bases.lateral import LateralBasis
-from flexapod.mechanics.layout import Shapes
+from flexapod.mechanics.layout import COMMAND_SIZE, LEG_PARAMETERS, Shapes
 from flexapod.symbolic.compiler import CompiledFunction, compiled_library, compiler
 from flexapod.typing import Array
 
@@ -21,7 +21,8 @@ if TYPE_CHECKING:
 
 Function = Callable[..., tuple[Array, ...]]
 NATIVE = Path(__file__).parent / "native"
-SOURCES = tuple(NATIVE / name for name in ("system.h", "lu.c", "legs.c", "arrow.c", "single.c", "state.c", "march.c"))
+SOURCES = tuple(NATIVE / name for name in ("system.h", "lu.c", "legs.c", "arrow.c", "state.c", "march.c"))
+LEG_SIZE = sum(size for _, size in LEG_PARAMETERS)
 _log = logging.getLogger("flexapod")
 
 
@@ -36,13 +37,15 @@ class Kernel:
     leg_residual: Function
     leg_matrices: Function
     leg_energies: Function
+    joint_residual: Function
+    joint_matrices: Function
     payload_residual: Function
     payload_matrices: Function
     payload_energies: Function
     library: ctypes.CDLL | None
 
 
-NAMES = ("leg_residual", "leg_matrices", "leg_energies", "payload_residual", "payload_matrices", "payload_energies")
+NAMES = tuple(field.name for field in fields(Kernel) if field.name not in ("shapes", "library"))
 
 
 @lru_cache(maxsize=32)  # solid pistons and tip bodies of many sizes have shapes of their own
@@ -54,7 +57,9 @@ def kernel(lateral: LateralBasis, axial_modes: int, *, planar: bool = False) -> 
     space = Shapes(a=lateral, b=lateral, axial=bases.axial_basis(axial_modes), planar=False)
     shapes = planar_shapes(lateral, axial_modes) if planar else space
     if command := compiler():
-        library, signatures = compiled_library(_fingerprint(shapes), lambda: _functions(shapes), SOURCES, command)
+        library, signatures = compiled_library(
+            _fingerprint(shapes), lambda: _functions(shapes), sizes(shapes), SOURCES, command
+        )
         compiled = {name: CompiledFunction(library, name, signatures[name]) for name in NAMES}
         return Kernel(shapes=shapes, library=library, **compiled)
     _warn_interpreted()
@@ -83,10 +88,21 @@ def interpreted_kernel(shapes: Shapes) -> Kernel:
     return Kernel(shapes=shapes, library=None, **{f.name: Interpreted(f) for f in _functions(shapes)})
 
 
-def _functions(shapes: Shapes) -> "list[NamedFunction]":
-    from flexapod.mechanics.assembly import leg_functions, payload_functions
+def sizes(shapes: Shapes, leg_p: int = LEG_SIZE, joint: int = 3) -> str:
+    """C text of the sizes of a leg, and of the order of its coordinates in which those found from the closure lead."""
+    n, pivots = shapes.size, shapes.pivots
+    order = [*pivots, *(i for i in range(n) if i not in pivots)]
+    places = sorted(range(n), key=order.__getitem__)
+    values = {"N": n, "ROWS": shapes.rows, "LEG_P": leg_p, "JOINT": joint, "COMMAND": COMMAND_SIZE}
+    lists = (f"{name}[] = {{{', '.join(map(str, x))}}}" for name, x in (("ORDER", order), ("PLACE", places)))
+    constants = ", ".join(f"{name} = {value}" for name, value in values.items())
+    return f"enum {{ {constants} }};\nstatic const int {', '.join(lists)};"
 
-    return [*leg_functions(shapes), *payload_functions()]
+
+def _functions(shapes: Shapes) -> "list[NamedFunction]":
+    from flexapod.mechanics.assembly import joint_functions, leg_functions, payload_functions
+
+    return [*leg_functions(shapes), *joint_functions(), *payload_functions()]
 
 
 def _fingerprint(shapes: Shapes) -> list[object]:

@@ -14,7 +14,7 @@ from flexapod.mechanics.layout import COMMAND_SIZE
 from flexapod.model import Robot
 from flexapod.rigid.rotations import quaternion, turned
 from flexapod.solve.kernel import Kernel
-from flexapod.solve.system import Index, RobotSystem, State
+from flexapod.solve.system import Index, State, System
 from flexapod.typing import Array
 
 __all__ = ["RestMatrices", "RestStates", "evaluate", "matrices_at_rest", "residual_at_rest", "rigid_rest"]
@@ -26,8 +26,8 @@ _Pointer = ctypes.POINTER(c_double)
 class RestStates:
     """P resting states of a robot with n coordinates a leg; the parts of `system.State` that are not zero at rest.
 
-    ``q`` (P, 6, n); ``pose`` (P, 7): CoM [m] and quaternion; ``lam`` (P, 6, 3): joint forces on the platform [N];
-    ``drive`` (P, 6): force of each prescribed drive [N].
+    ``q`` (P, legs, n); ``pose`` (P, 7): CoM [m] and quaternion; ``lam`` (P, legs, rows): closure forces on the platform
+    [N]; ``drive`` (P, legs, ports): forces that hold coordinates [N, N m].
     """
 
     q: Array
@@ -83,55 +83,60 @@ class RestMatrices:
     P: Array
 
 
-def rigid_rest(system: RobotSystem, robot: Robot, path: rigid.Poses) -> RestStates:
+def rigid_rest(system: System, robot: Robot, path: rigid.Poses) -> RestStates:
     """States of the undeformed robot at the poses of a path, without forces; see `system.rigid_state`."""
     legs, P = rigid.inverse_kinematics(robot, path), len(path)
-    q = np.zeros((P, 6, system.n))
+    q = np.zeros((P, system.legs, system.n))
     q[:, :, :3] = np.stack([legs.alpha, legs.beta, legs.length], axis=-1)
     com = path.position + path.rotation @ robot.payload.com
     pose = np.concatenate([com, quaternion(path.rotation)], axis=1)
-    return RestStates(q=q, pose=pose, lam=np.zeros((P, 6, 3)), drive=np.zeros((P, 6)))
+    lam, drive = np.zeros((P, system.legs, system.rows)), np.zeros((P, system.legs, system.ports.size))
+    return RestStates(q=q, pose=pose, lam=lam, drive=drive)
 
 
 def residual_at_rest(
-    system: RobotSystem, x: RestStates, l_cmd: Array, force: Array, wrench: Array
+    system: System, x: RestStates, l_cmd: Array, force: Array, wrench: Array
 ) -> tuple[Array, Array, Array]:
     """Balance of the legs (P, 6, n) and of the payload (P, 6) [N, N m], closures (P, 6, 3) [m], at rest.
 
     ``l_cmd``, ``force`` (P, 6): commanded lengths [m] and feed-forward drive forces [N]; ``wrench`` (6,) at the tool.
     """
     P, n = len(x), system.n
-    commands = np.zeros((P, 6, COMMAND_SIZE))
-    commands[:, :, 0], commands[:, :, 2] = l_cmd, force + x.drive
-    still, shapes = np.zeros(n), [(n,), (3,), (2,)]
+    legs, kernel = system.legs, system.kernel
+    commands = np.zeros((P, legs, COMMAND_SIZE))
+    commands[:, :, 0] = l_cmd
+    still, shapes = np.zeros(n), [(n,), (3,), (2,), (1,)]
     arguments = [x.q, still, still, x.lam, commands, system.leg_p]
-    r, tip, _ = evaluate(system.kernel, "leg_residual", 6 * P, arguments, [n, n, n, 3, COMMAND_SIZE, None], shapes)
-    arguments = [x.pose, np.zeros(6), np.zeros(6), x.lam, wrench, system.payload_p]
-    payload, points, _ = evaluate(
-        system.kernel, "payload_residual", P, arguments, [7, 6, 6, 18, 6, None], [(6,), (18,), (1,)]
-    )
-    return r.reshape(P, 6, n), payload, tip.reshape(P, 6, 3) - points.reshape(P, 6, 3)
+    r, tip, _, _ = evaluate(kernel, "leg_residual", legs * P, arguments, [n, n, n, 3, COMMAND_SIZE, None], shapes)
+    r = r.reshape(P, legs, n)
+    r[:, :, system.ports] -= x.drive
+    r[:, :, kernel.shapes.l_index] -= force
+    points, wrenches = evaluate(kernel, "joint_residual", legs * P, *_joints(system, x), [(3,), (6,)])
+    net = wrenches.reshape(P, legs, 6).sum(axis=1)
+    arguments = [x.pose, np.zeros(6), np.zeros(6), net, wrench, system.payload_p]
+    payload, _ = evaluate(kernel, "payload_residual", P, arguments, [7, 6, 6, 6, 6, None], [(6,), (1,)])
+    return r, payload, (tip - points).reshape(P, legs, 3)
 
 
-def matrices_at_rest(system: RobotSystem, x: RestStates, wrench: Array) -> RestMatrices:
-    """Matrices with geometric stiffness; see `RobotSystem.matrices`."""
-    P, n = len(x), system.n
-    square = (n, n)
-    legs = evaluate(
-        system.kernel, "leg_matrices", 6 * P, [x.q, x.lam, system.leg_p], [n, 3, None], [square] * 3 + [(3, n)]
+def _joints(system: System, x: RestStates) -> tuple[list[Array], list[int | None]]:
+    """Inputs of the joints' functions and their sizes, leg by leg of each state."""
+    return [np.repeat(x.pose, system.legs, axis=0), x.lam, system.joint_p], [7, 3, None]
+
+
+def matrices_at_rest(system: System, x: RestStates, wrench: Array) -> RestMatrices:
+    """Matrices with geometric stiffness; see `System.matrices`."""
+    P, n, legs, kernel = len(x), system.n, system.legs, system.kernel
+    arguments, shapes = [x.q, x.lam, system.leg_p], [(n, n)] * 3 + [(3, n)]
+    of_legs = evaluate(kernel, "leg_matrices", legs * P, arguments, [n, 3, None], shapes)
+    M, D, K, J = (part.reshape(P, legs, *part.shape[1:]) for part in of_legs)
+    points, turned_forces = (
+        part.reshape(P, legs, *part.shape[1:])
+        for part in evaluate(kernel, "joint_matrices", legs * P, *_joints(system, x), [(3, 6), (6, 6)])
     )
-    M, D, K, J = (part.reshape(P, 6, *part.shape[1:]) for part in legs)
-    payload_M, payload_K, points = evaluate(
-        system.kernel,
-        "payload_matrices",
-        P,
-        [x.pose, x.lam, wrench, system.payload_p],
-        [7, 18, 6, None],
-        [(6, 6), (6, 6), (18, 6)],
-    )
-    return RestMatrices(
-        M=M, D=D, K=K, J=J, payload_M=payload_M, payload_K=payload_K, P=points.reshape(P, 6, 3, 6)
-    )  # fmt: skip
+    arguments = [x.pose, wrench, system.payload_p]
+    payload_M, payload_K = evaluate(kernel, "payload_matrices", P, arguments, [7, 6, None], [(6, 6), (6, 6)])
+    payload_K = payload_K + turned_forces.sum(axis=1)
+    return RestMatrices(M=M, D=D, K=K, J=J, payload_M=payload_M, payload_K=payload_K, P=points)
 
 
 def evaluate(

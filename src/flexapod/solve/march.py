@@ -9,11 +9,12 @@ import numpy as np
 from flexapod.errors import ComputationError
 from flexapod.integration import GeneralizedAlpha
 from flexapod.solve import interpreted, native
-from flexapod.solve.plant import Counters, Flow, Plant, Recording, unpack
+from flexapod.solve.recording import Counters, Recording, unpack
 from flexapod.solve.stops import Stop, Stops, after, before
+from flexapod.solve.system import Flow, System
+from flexapod.solve.tables import Law
 from flexapod.typing import Array
 
-Tables = Callable[[Array], tuple[Array, Array]]
 Measure = Callable[[Recording], list[Array]]
 CHUNK = 100  # output intervals between looks at the tolerance, or at progress where steps are slow
 CHUNK_STEPS = 2000  # steps in a chunk of several intervals: tables of fine steps must not outgrow the output
@@ -33,16 +34,16 @@ ADVICE = (
 
 @dataclass(frozen=True, kw_only=True)
 class Problem:
-    """A time integration: plant, commands, method and output grid.
+    """A time integration: system, commands, method and output grid.
 
-    ``tables(t)`` gives (len(t), legs * 8) and (len(t), 6); ``measure`` the quantities whose error is controlled, as
+    ``tables`` see `tables.Law`; ``measure`` gives the quantities whose error is controlled, as
     groups (T, ...) with a common scale each; ``restart(flow, t, h)`` goes on after a jump of a command or a load just
     before t, of which ``stops`` tells the instants.
     """
 
-    plant: Plant
+    system: System
     method: GeneralizedAlpha
-    tables: Tables
+    tables: Law
     output_step: float
     outputs: int
     measure: Measure
@@ -77,11 +78,11 @@ def march(problem: Problem, start: Flow, first_step: float, counters: Counters) 
         A step failed or the tolerance is out of reach; the chunks yielded before hold all outputs up to there.
     """
     table, wrench = problem.tables(np.zeros(1))
-    flow, row = _first_record(problem.plant, start, table, wrench)
-    first = unpack(problem.plant, np.zeros(1), row)
+    flow, row = _first_record(problem.system, start, table, wrench)
+    first = unpack(problem.system, np.zeros(1), row)
     yield Chunk(recording=first, error=0.0, step=first_step)
     control = _Control(problem, counters, first_step, [np.abs(x).max(initial=0.0) for x in problem.measure(first)])
-    longest = CHUNK_STEPS if problem.tolerance is None and problem.plant.kernel.library else CHUNK
+    longest = CHUNK_STEPS if problem.tolerance is None and problem.system.kernel.library else CHUNK
     done, most, stops = 0, longest, problem.stops
     if 0 in stops.ends:
         flow, _ = _restarted(problem, flow, 0.0, stops.ends[0], first_step)
@@ -257,11 +258,11 @@ class _Control:
         """Steps of length h over the rows of a grid, from a flow prepared for another; a record after each `every`."""
         p, t = self.problem, grid[0]
         if abs(h - prepared) > 1e-12 * h:
-            flow = _rescaled(p.plant, flow, prepared, h)
+            flow = _rescaled(p.system, flow, prepared, h)
         tables = (grid[1], grid[2])
-        result = _loop(p.plant).advance(p.plant, p.method, flow, h, tables, every, self.counters)
+        result = _loop(p.system).advance(p.system, p.method, flow, h, tables, every, self.counters)
         if result.status:
-            where = f" in leg {result.leg + 1}" if 0 <= result.leg < p.plant.legs else ""
+            where = f" in leg {result.leg + 1}" if 0 <= result.leg < p.system.legs else ""
             raise ComputationError(
                 f"the integration stopped at t = {t[result.step]:.6g} s (step {h:.3g} s): "
                 f"{CAUSES[result.status]}{where}",
@@ -271,13 +272,13 @@ class _Control:
 
     def _chunk(self, rows: Array, done: int, error: float, per_output: int) -> Chunk:
         time = np.asarray((done + 1 + np.arange(len(rows))) * self.problem.output_step, dtype=float)
-        recording = unpack(self.problem.plant, time, rows)
+        recording = unpack(self.problem.system, time, rows)
         return Chunk(recording=recording, error=error, step=self.problem.output_step / per_output)
 
     def _measured(self, rows: Array, done: int, every: int) -> list[Array]:
         """Quantities whose error is controlled, at each ``every``-th output after ``done``."""
         time = np.asarray((done + every * (1 + np.arange(len(rows)))) * self.problem.output_step, dtype=float)
-        return self.problem.measure(unpack(self.problem.plant, time, rows))
+        return self.problem.measure(unpack(self.problem.system, time, rows))
 
     def _error(self, coarse: list[Array], fine: list[Array]) -> float:
         """Difference over the largest value so far, group by group: three times the fine run's error, Eq. (T6.15)."""
@@ -290,23 +291,23 @@ def _restarted(problem: Problem, flow: Flow, t: float, stop: Stop, h: float) -> 
     """Flow after a jump at time t, prepared for steps h, with the new powers; and what is recorded of it."""
     now = after(max(t, stop.last))
     table, wrench = problem.tables(np.array([now]))
-    flow, row = _first_record(problem.plant, problem.restart(flow, now, h), table, wrench)
-    return flow, unpack(problem.plant, np.array([t]), row)
+    flow, row = _first_record(problem.system, problem.restart(flow, now, h), table, wrench)
+    return flow, unpack(problem.system, np.array([t]), row)
 
 
-def _first_record(plant: Plant, flow: Flow, table: Array, wrench: Array) -> tuple[Flow, Array]:
-    return _loop(plant).first_record(plant, flow, table, wrench)
+def _first_record(system: System, flow: Flow, table: Array, wrench: Array) -> tuple[Flow, Array]:
+    return _loop(system).first_record(system, flow, table, wrench)
 
 
-def _rescaled(plant: Plant, flow: Flow, old: float, new: float) -> Flow:
+def _rescaled(system: System, flow: Flow, old: float, new: float) -> Flow:
     """Auxiliary values for another step, Eqs. (T6.13)-(T6.14): a - v_dot grows with h, the defect with h^2."""
     ratio = new / old
     flow = replace(flow, a=flow.v_dot + ratio * (flow.a - flow.v_dot))
-    return _loop(plant).scaled_defect(plant, flow, ratio**2) if plant.robot else flow
+    return _loop(system).scaled_defect(system, flow, ratio**2) if system.rows else flow
 
 
-def _loop(plant: Plant) -> ModuleType:
-    return native if plant.kernel.library else interpreted
+def _loop(system: System) -> ModuleType:
+    return native if system.kernel.library else interpreted
 
 
 def _finer(steps: int) -> int:

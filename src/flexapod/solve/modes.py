@@ -14,7 +14,7 @@ from flexapod.solve.equilibrium import FOUND, Equilibria, Equilibrium, equilibri
 from flexapod.solve.frequencies import count_real, mass_factor, natural
 from flexapod.solve.many import RestMatrices, matrices_at_rest, rigid_rest
 from flexapod.solve.rest import RestLoad, rest_load
-from flexapod.solve.system import Index, RobotSystem, robot_system
+from flexapod.solve.system import Index, System, robot_system
 from flexapod.typing import Array, Mask
 
 NO_MASS = "the mass matrix is not positive: a piston is shorter than what its leg has outside the cylinder"
@@ -25,7 +25,7 @@ class RobotModes:
     """Modes about an equilibrium, ascending.
 
     ``frequency`` (m,) [Hz] undamped; ``damping_ratio`` (m,) of the damped modes; ``shapes`` (m, N), mass-normalised, in
-    the flat coordinates of `system.RobotSystem` (six legs, then CoM in the world frame and rotation in platform axes);
+    the flat coordinates of `system.System` (six legs, then CoM in the world frame and rotation in platform axes);
     ``wrench`` (6,) at the tool.
     """
 
@@ -33,7 +33,7 @@ class RobotModes:
     damping_ratio: Array
     shapes: Array
     equilibrium: Equilibrium
-    system: RobotSystem
+    system: System
     wrench: Array
 
 
@@ -46,7 +46,7 @@ class LockedPoses:
 
     robot: Robot
     path: rigid.Poses
-    system: RobotSystem
+    system: System
     simulation: Simulation
     lengths: Array
     acts: RestLoad

@@ -27,7 +27,7 @@ def drive_spring(leg: Leg) -> tuple[float, float]:
 
 
 def leg_parameters(robot: Robot) -> Array:
-    """Parameters of the six legs, (6, size of LEG_PARAMETERS)."""
+    """Parameters of the legs, (legs, size of LEG_PARAMETERS)."""
     frames = rigid.home_frames(robot)
     rows = []
     for leg, base, frame in zip(robot.legs, robot.base_joints, frames, strict=True):
@@ -58,8 +58,13 @@ def leg_parameters(robot: Robot) -> Array:
     return np.array(rows)
 
 
+def joint_parameters(robot: Robot) -> Array:
+    """Platform joints of the legs from the payload's CoM, platform axes, (legs, 3) [m]."""
+    return np.ascontiguousarray(robot.platform_joints - robot.payload.com)
+
+
 def payload_parameters(robot: Robot) -> Array:
-    """Parameters of the payload; joints and tool from its CoM."""
+    """Parameters of the payload; tool from its CoM."""
     load = robot.payload
     return _pack(
         PAYLOAD_PARAMETERS,
@@ -68,7 +73,6 @@ def payload_parameters(robot: Robot) -> Array:
             "inertia": load.inertia.T,
             "gravity": robot.gravity,
             "tool": load.tool - load.com,
-            "joints": robot.platform_joints - load.com,
         },
     )
 

@@ -14,12 +14,12 @@ from flexapod.rigid.rotations import matrix
 from flexapod.solve.equilibrium import equilibrium, refuse_fallen
 from flexapod.solve.march import Chunk, Problem, initial_step, march
 from flexapod.solve.modes import refuse_pure_force
-from flexapod.solve.plant import TABLE, Counters, Flow, Plant, Recording
+from flexapod.solve.recording import Counters, Recording
 from flexapod.solve.rest import rest_load
-from flexapod.solve.start import Start, consistent_start
+from flexapod.solve.start import consistent_start
 from flexapod.solve.stops import Stops
-from flexapod.solve.system import RobotSystem, State, rigid_state, robot_system
-from flexapod.solve.tables import Commands, command_law
+from flexapod.solve.system import Flow, State, System, rigid_state, robot_system
+from flexapod.solve.tables import Law, robot_law
 from flexapod.typing import Array
 
 SAME = 1e-10  # instants that differ by less are the same; the shortest steps are a thousand times as long [s]
@@ -32,16 +32,12 @@ class RobotMarch:
     ``impact`` is the step of kinetic energy [J] where the command starts with a jump in rate.
     """
 
-    system: RobotSystem
-    start: Start
+    system: System
+    start: Flow
+    impact: float
     step: float
     chunks: Iterator[Chunk]
     counters: Counters = field(default_factory=Counters)
-
-    @property
-    def impact(self) -> float:
-        """Step of kinetic energy at the start [J]."""
-        return self.start.impact
 
 
 def prepare(study: Study, state: State | None = None) -> RobotMarch:
@@ -63,28 +59,27 @@ def prepare(study: Study, state: State | None = None) -> RobotMarch:
     refuse_massless(study)
     robot, simulation = study.robot, study.simulation
     system, path = robot_system(robot, simulation), _Path(study)
-    law = command_law(robot, study.load, path.poses)
-    commands = law(np.zeros(1))
+    law = robot_law(system, robot, study.load, path.poses)
     method = GeneralizedAlpha(simulation.rho_inf)
     step = initial_step(simulation.step, simulation.output_step)
     state = _configuration(study, system) if state is None else state
-    start = consistent_start(system, state, commands, method, step)
-    plant, counters, output_step = _plant(system), Counters(), simulation.stored_step
+    start, impact = consistent_start(system, state, law, 0.0, method, step)
+    counters, output_step = Counters(), simulation.stored_step
     outputs = simulation.outputs(study.duration)
     problem = Problem(
-        plant=plant,
+        system=system,
         method=method,
-        tables=lambda t: _tables(law(t)),
+        tables=law,
         output_step=output_step,
         outputs=outputs,
-        measure=_Measure(study, plant, path),
-        restart=lambda flow, t, h: _after_impact(system, flow, law(np.array([t])), method, h),
+        measure=_Measure(study, system, path),
+        restart=lambda flow, t, h: after_impact(system, flow, law, t, method, h),
         stops=Stops.of(rigid.robot_breaks(study), output_step, simulation.step, outputs),
-        check=lambda recording: _check(study, plant, recording),
+        check=lambda recording: _check(study, system, recording),
         tolerance=simulation.tolerance,
     )
-    chunks = march(problem, _flow(start), step, counters)
-    return RobotMarch(system=system, start=start, step=step, chunks=chunks, counters=counters)
+    chunks = march(problem, start, step, counters)
+    return RobotMarch(system=system, start=start, impact=impact, step=step, chunks=chunks, counters=counters)
 
 
 def refuse_massless(study: Study) -> None:
@@ -103,7 +98,7 @@ def refuse_massless(study: Study) -> None:
             )
 
 
-def _configuration(study: Study, system: RobotSystem) -> State:
+def _configuration(study: Study, system: System) -> State:
     """Configuration and velocities before the impact projection, by the kind of start and what acts until then."""
     path = rigid.poses(study.robot, study.motion, np.zeros(1))
     straight = rigid_state(system, study.robot, path)
@@ -119,28 +114,6 @@ def _configuration(study: Study, system: RobotSystem) -> State:
         raise ComputationError(f"the robot cannot start at rest: {found.reason}", next_step="See `flexapod check`.")
     refuse_fallen(study.robot, path, found.state.pose)
     return found.state
-
-
-def _plant(system: RobotSystem) -> Plant:
-    return Plant(
-        kernel=system.kernel,
-        leg_p=system.leg_p,
-        payload_p=system.payload_p,
-        held_l=system.held,
-        held_beta=np.zeros(6, dtype=bool),
-    )
-
-
-def _flow(start: Start) -> Flow:
-    x = start.state
-    drive = np.stack([x.drive, np.zeros(6)], axis=1)
-    return Flow(q=x.q, v=x.v, v_dot=x.v_dot, a=start.a, lam=x.lam, drive=drive, pose=x.pose)
-
-
-def _tables(c: Commands) -> tuple[Array, Array]:
-    table = np.zeros((len(c.time), 6, TABLE))
-    table[:, :, 0], table[:, :, 1], table[:, :, 2], table[:, :, 3] = c.length, c.rate, c.accel, c.force
-    return table.reshape(len(c.time), -1), c.wrench
 
 
 class _Path:
@@ -169,8 +142,8 @@ class _Path:
 class _Measure:
     """Deviation of the payload (CoM, and rotation at the joints' radius) and the lateral amplitudes of a recording."""
 
-    def __init__(self, study: Study, plant: Plant, path: _Path) -> None:
-        self.path, self.lateral = path, 3 + plant.kernel.shapes.axial.count
+    def __init__(self, study: Study, system: System, path: _Path) -> None:
+        self.path, self.lateral = path, 3 + system.kernel.shapes.axial.count
         self.radius = np.linalg.norm(study.robot.platform_joints, axis=1).max()
         self.time, self.com, self.rotation = np.zeros(0), np.zeros((0, 3)), np.zeros((0, 3, 3))
 
@@ -187,21 +160,17 @@ class _Measure:
         ]
 
 
-def _after_impact(system: RobotSystem, flow: Flow, commands: Commands, method: GeneralizedAlpha, h: float) -> Flow:
+def after_impact(system: System, flow: Flow, law: Law, now: float, method: GeneralizedAlpha, h: float) -> Flow:
     """Flow after a jump in the commanded rates; the drives do the work of the impact."""
-    start = consistent_start(system, _state(flow), commands, method, h)
-    return replace(_flow(start), sums=flow.sums + np.array([0.0, start.impact, 0.0]))
+    start, impact = consistent_start(system, flow, law, now, method, h)
+    return replace(start, sums=flow.sums + np.array([0.0, impact, 0.0]))
 
 
-def _state(flow: Flow) -> State:
-    return State(q=flow.q, pose=flow.pose, v=flow.v, v_dot=flow.v_dot, lam=flow.lam, drive=flow.drive[:, 0])
-
-
-def _check(study: Study, plant: Plant, recording: Recording) -> None:
+def _check(study: Study, system: System, recording: Recording) -> None:
     """Stop where the model has no meaning: a piston inside or out of its cylinder, a universal joint turned over."""
     mouth = np.array([leg.cylinder.mouth for leg in study.robot.legs])
     guided = np.array([leg.piston.length if leg.cylinder.mouth > 0 else np.inf for leg in study.robot.legs])
-    free = recording.q[:, :, plant.kernel.shapes.l_index] - mouth
+    free = recording.q[:, :, system.kernel.shapes.l_index] - mouth
     for bad, words in (
         (free <= 0, "its piston has slid wholly into the cylinder"),
         (free > guided * (1 + 1e-9), "its piston has been pulled out of the cylinder"),

@@ -12,7 +12,7 @@ from flexapod.rigid.rotations import matrix
 from flexapod.solve.elimination import leg_bases, solve_each
 from flexapod.solve.equilibrium import Equilibrium
 from flexapod.solve.modes import LockedPoses, locked_poses, the_equilibrium
-from flexapod.solve.system import RobotSystem
+from flexapod.solve.system import System
 from flexapod.typing import Array
 
 
@@ -34,7 +34,7 @@ class PoseStiffness(Stiffness):
     """Stiffness at one pose, and the equilibrium that it is about."""
 
     equilibrium: Equilibrium
-    system: RobotSystem
+    system: System
 
 
 def robot_stiffness(
@@ -67,7 +67,7 @@ def stiffness_of(robot: Robot, locked: LockedPoses) -> Stiffness:
         Legs on prescribed strokes that cannot stretch: no compliance.
     """
     system, m = locked.system, locked.m
-    if system.kernel.shapes.axial.count == 0 and system.held.any():
+    if system.kernel.shapes.axial.count == 0 and system.held[:, system.kernel.shapes.l_index].any():
         raise InputError(
             "makes the robot infinitely stiff",
             key="simulation.fidelity",

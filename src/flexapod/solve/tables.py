@@ -1,56 +1,37 @@
 """What the robot is commanded at given instants: strokes with rate and acceleration, feed-forward forces, wrench."""
 
 from collections.abc import Callable
-from dataclasses import dataclass
 
 import numpy as np
 
 from flexapod import rigid
 from flexapod.model import ForceDrive, Load, Robot
+from flexapod.solve.system import COLUMNS, System
 from flexapod.typing import Array
 
+__all__ = ["Law", "feed_forward", "robot_law"]
 
-@dataclass(frozen=True, kw_only=True)
-class Commands:
-    """Commands at T instants: ``length``, ``rate``, ``accel``, ``force``, ``wrench``, all (T, 6)."""
-
-    time: Array
-    length: Array
-    rate: Array
-    accel: Array
-    force: Array
-    wrench: Array
-    law: Callable[[Array], "Commands"]
-
-    def at(self, dt: float) -> "Commands":
-        """Commands at the first instant plus ``dt``."""
-        return self.law(self.time[:1] + dt)
+#: Of instants (T,): the table of the ports (T, legs, ports, 4), and the wrench (T, 6) at the tool in world axes.
+Law = Callable[[Array], tuple[Array, Array]]
 
 
-def command_law(robot: Robot, load: Load, poses: Callable[[Array], rigid.Poses]) -> Callable[[Array], Commands]:
-    """Return the commands as a function of instants (T,) [s]; ``poses`` is the rigid path."""
+def robot_law(system: System, robot: Robot, load: Load, poses: Callable[[Array], rigid.Poses]) -> Law:
+    """Return what a robot is commanded as a function of time; ``poses`` is the rigid path."""
 
-    def law(t: Array) -> Commands:
+    def law(t: Array) -> tuple[Array, Array]:
         path = poses(t)
-        legs = rigid.inverse_kinematics(robot, path)
-        wrench = rigid.wrench(load, t)
-        return Commands(
-            time=t,
-            length=legs.length,
-            rate=legs.rate,
-            accel=legs.accel,
-            force=feed_forward(robot, t, path, wrench),
-            wrench=wrench,
-            law=law,
-        )
+        legs, wrench = rigid.inverse_kinematics(robot, path), rigid.wrench(load, t)
+        table = np.zeros((len(t), system.legs, system.ports.size, COLUMNS))
+        table[:, :, 0] = np.stack([legs.length, legs.rate, legs.accel, feed_forward(robot, t, path, wrench)], axis=-1)
+        return table, wrench
 
     return law
 
 
 def feed_forward(robot: Robot, t: Array, path: rigid.Poses, wrench: Array) -> Array:
-    """Feed-forward forces of force drives on the rigid path at instants (T,), (T, 6) [N]; zero for other drives."""
-    force = np.zeros((len(t), 6))
+    """Feed-forward forces of force drives on the rigid path at instants (T,), (T, legs) [N]; zero for other drives."""
     drives = [leg.drive for leg in robot.legs]
+    force = np.zeros((len(t), len(drives)))
     rigid_force = force
     if any(isinstance(d, ForceDrive) and d.law == "rigid" for d in drives):
         rigid_force = rigid.inverse_dynamics(robot, path, wrench).actuator_force

@@ -7,7 +7,7 @@ from typing import TYPE_CHECKING
 import numpy as np
 from numpy.typing import ArrayLike
 
-from flexapod import model, rigid
+from flexapod import model
 from flexapod.errors import InputError
 from flexapod.solve.actuator_march import ActuatorMarch, prepare_actuator
 from flexapod.study.after.plausibility import actuator_warnings
@@ -84,17 +84,17 @@ def simulate_actuator(
 def _simulated(study: model.ActuatorStudy, progress: Progress | None) -> Dataset:
     remarks = check_actuator_path(study)
     march = prepare_actuator(study)
-    record = collect(march.chunks, march.plant.kernel.shapes.l_index, study.duration, progress)
+    record = collect(march.chunks, march.system.kernel.shapes.l_index, study.duration, progress)
     return finished(lambda: _dataset(study, march, record, remarks), record)
 
 
 def _dataset(study: model.ActuatorStudy, march: ActuatorMarch, record: Record, remarks: list[str]) -> Dataset:
-    warnings = [*study.warnings, *remarks, *actuator_warnings(study.actuator, march.plant.kernel.shapes.a, record)]
+    warnings = [*study.warnings, *remarks, *actuator_warnings(study.actuator, march.system.kernel.shapes.a, record)]
     attrs = {
         **attributes(study, warnings),
-        **march_attributes(study, march.counters, record, compiled=march.plant.kernel.library is not None),
+        **march_attributes(study, march.counters, record, compiled=march.system.kernel.library is not None),
     }
-    count = march.plant.kernel.shapes.a.count
+    count = march.system.kernel.shapes.a.count
     coords: dict[str, ArrayLike] = {"time": record.time}
     if count:
         coords["mode"] = np.arange(1, count + 1)
@@ -129,7 +129,7 @@ def _as_study(
 
 
 def _results(study: model.ActuatorStudy, march: ActuatorMarch, record: Record) -> dict[str, Array]:
-    q, shapes = record.q[:, 0], march.plant.kernel.shapes.a
+    q, shapes = record.q[:, 0], march.system.kernel.shapes.a
     beta, length, amplitudes = q[:, 0], q[:, 1], q[:, 2:]
     deflection = amplitudes @ shapes.tip
     return {
@@ -140,8 +140,8 @@ def _results(study: model.ActuatorStudy, march: ActuatorMarch, record: Record) -
         "angle_rate": record.rate[:, 0, 1],
         **({"mode_amplitude": amplitudes} if shapes.count else {}),
         "tip_position": _tip(beta, length, deflection, amplitudes, shapes.slope_tip, study.actuator.hub_radius),
-        "force": _given_or_reaction(study.load.force, record, 0),
-        "torque": _given_or_reaction(study.load.torque, record, 1),
+        "force": record.drive[:, 0, 0],
+        "torque": record.drive[:, 0, 1],
         **energy_results(record),
     }
 
@@ -151,8 +151,3 @@ def _tip(beta: Array, length: Array, v: Array, a: Array, slopes: Array, hub: flo
     along = length - 0.5 * np.einsum("ti,ij,tj->t", a, slopes, a) / (length - hub)
     c, s = np.cos(beta), np.sin(beta)
     return np.stack([along * c - v * s, along * s + v * c], axis=1)
-
-
-def _given_or_reaction(law: model.LoadLaw | None, record: Record, column: int) -> Array:
-    """The load where it drives the coordinate, else the reaction of the prescribed motion, (T,)."""
-    return record.drive[:, 0, column] if law is None else rigid.load_law(law, record.time)

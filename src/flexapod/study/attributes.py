@@ -9,7 +9,7 @@ from collections.abc import Iterable
 from typing import TYPE_CHECKING
 
 from flexapod import model, version
-from flexapod.solve.plant import Counters
+from flexapod.solve.recording import Counters
 from flexapod.study.record import Record
 
 if TYPE_CHECKING:

@@ -39,7 +39,7 @@ class Record:
     """Quantities at T stored instants, axis 0 = time.
 
     ``q`` (T, legs, n) leg coordinates; ``rate`` (T, legs, 2) rates of l and beta; ``turn`` (T, 3) angular velocity in
-    platform axes; ``lam``, ``drive``, ``pose``, ``energy``, ``sums``, ``closure`` as in `solve.plant.Recording`.
+    platform axes; ``lam``, ``drive``, ``pose``, ``energy``, ``sums``, ``closure`` as in `solve.recording.Recording`.
     ``failure``: why the integration stopped early, in words, or None; ``interrupted``: by the user.
     """
 

@@ -11,7 +11,7 @@ from flexapod import model, rigid
 from flexapod.solve.many import RestStates
 from flexapod.solve.modes import robot_modes
 from flexapod.solve.stiffness import robot_stiffness
-from flexapod.solve.system import RobotSystem, State
+from flexapod.solve.system import State, System
 from flexapod.study.after.mode_shapes import STATIONS, mode_values
 from flexapod.study.after.plausibility import rest_warnings
 from flexapod.study.arguments import LoadLike, PoseLike, RobotLike, as_pose, at_pose
@@ -126,7 +126,7 @@ def _problem(
     return study, as_pose(study.robot, pose)
 
 
-def _attributes(study: model.Study, path: rigid.Poses, system: RobotSystem, state: State) -> dict[str, object]:
+def _attributes(study: model.Study, path: rigid.Poses, system: System, state: State) -> dict[str, object]:
     remarks = [*path_remarks(study.robot, np.zeros(1), path), *rest_warnings(study.robot, system, RestStates.of(state))]
     return _settings(study, remarks)
 

@@ -89,7 +89,7 @@ class CompiledFunction:
 
 
 def compiled_library(
-    key: Sequence[object], functions: Callable[[], list], sources: Sequence[Path], command: list[str]
+    key: Sequence[object], functions: Callable[[], list], sizes: str, sources: Sequence[Path], command: list[str]
 ) -> tuple[ctypes.CDLL, dict[str, dict]]:
     """Load (compiling on first use) the generated functions together with hand-written C ``sources``.
 
@@ -99,6 +99,8 @@ def compiled_library(
         Everything the generated code depends on: bytes, numbers or text.
     functions : callable
         Builds the list of NamedFunction; called only when the cache has no library for ``key``.
+    sizes : str
+        C text that tells the ``sources`` of what size these functions are.
     sources : sequence of Path
         C files appended after the generated code, in this order.
     command : list of str
@@ -110,18 +112,18 @@ def compiled_library(
         The compiler failed (the message carries its words), or its library cannot be loaded.
     """
     with _announced():
-        return _library(key, functions, sources, command)
+        return _library(key, functions, sizes, sources, command)
 
 
 def _library(
-    key: Sequence[object], functions: Callable[[], list], sources: Sequence[Path], command: list[str]
+    key: Sequence[object], functions: Callable[[], list], sizes: str, sources: Sequence[Path], command: list[str]
 ) -> tuple[ctypes.CDLL, dict[str, dict]]:
-    name = _name([*key, *(path.read_bytes() for path in sources)], command)
+    name = _name([*key, sizes, *(path.read_bytes() for path in sources)], command)
     cache = open_cache()
     if cache and (found := _first(intact_libraries(cache, name))):
         return found
     with tempfile.TemporaryDirectory(prefix="flexapod-", ignore_cleanup_errors=True) as folder:
-        built = _build(functions(), sources, command, Path(folder))
+        built = _build(functions(), sizes, sources, command, Path(folder))
         if cache and (found := _first(intact_libraries(cache, name))):
             return found  # another process was faster
         if cache and (stored := store_library(cache, name, built)):
@@ -200,8 +202,8 @@ def _first(paths: Sequence[Path]) -> tuple[ctypes.CDLL, dict[str, dict]] | None:
     return None
 
 
-def _build(functions: list, sources: Sequence[Path], command: list[str], folder: Path) -> Path:
-    """Library of `functions` and `sources`, made in `folder`."""
+def _build(functions: list, sizes: str, sources: Sequence[Path], command: list[str], folder: Path) -> Path:
+    """Library of `functions` and `sources` for their `sizes`, made in `folder`."""
     from flexapod.symbolic.c_source import c_source
 
     signatures = json.dumps(json.dumps({f.name: f.signature() for f in functions}))
@@ -212,7 +214,7 @@ def _build(functions: list, sources: Sequence[Path], command: list[str], folder:
     try:
         tail = f"const char* {SIGNATURES}(void) {{ return {signatures}; }}"
         generated = [c_source(function) for function in functions]
-        texts = [PRELUDE.read_text(), *generated, tail, *(path.read_text() for path in sources)]
+        texts = [PRELUDE.read_text(), *generated, tail, sizes, *(path.read_text() for path in sources)]
         (folder / "kernel.c").write_text("\n".join(texts))
         said, status = call([*line, NATIVE], folder, LONGEST)
         if status:

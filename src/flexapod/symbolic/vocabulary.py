@@ -5,7 +5,7 @@ from types import SimpleNamespace
 
 import casadi
 import numpy as np
-from casadi import SX, cos, dot, gradient, horzcat, jacobian, jtimes, mtimes, sin, sqrt, vertcat
+from casadi import SX, cos, dot, gradient, horzcat, jacobian, jtimes, mtimes, reshape, sin, sqrt, vertcat
 from numpy.typing import ArrayLike
 
 __all__ = [
@@ -23,6 +23,7 @@ __all__ = [
     "matrix33",
     "mtimes",
     "quadratic",
+    "reshape",
     "sin",
     "split",
     "sqrt",
@@ -67,7 +68,7 @@ def hessian(expression: SX, x: SX) -> SX:
 
 def matrix33(columns: SX) -> SX:
     """3 x 3 matrix from its nine entries, column by column."""
-    return casadi.reshape(columns, 3, 3)
+    return reshape(columns, 3, 3)
 
 
 def quadratic(x: SX, matrix: np.ndarray) -> SX:

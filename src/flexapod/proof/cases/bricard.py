@@ -16,7 +16,7 @@ from flexapod.proof.case import Case, Check, checks
 from flexapod.typing import Array
 
 if TYPE_CHECKING:
-    from flexapod.solve.plant import Recording
+    from flexapod.solve.recording import Recording
     from flexapod.symbolic.vocabulary import SX
 
 LENGTH, SIDE, MASS, GRAVITY = 1.0, 0.1, 1.0, 9.81  # m, m, kg, m/s^2

@@ -10,7 +10,7 @@ from flexapod.proof.case import Case, Check
 from flexapod.typing import Array
 
 if TYPE_CHECKING:
-    from flexapod.solve.plant import Recording
+    from flexapod.solve.recording import Recording
     from flexapod.symbolic.vocabulary import SX
 
 LENGTH, MASS, GRAVITY, SPEED = 1.0, 1.0, 9.81, 1.0  # m, kg, m/s^2, m/s

@@ -28,7 +28,7 @@ def roots(rho: float, turn: float) -> NDArray[np.complex128]:
         basis="clamped-free", modes=1, step=step, output_step=step, duration=STEPS * step, rho_inf=rho
     )
     march = prepare_actuator(model.ActuatorStudy(actuator=beam, simulation=settings), np.array([1e-3]), np.zeros(1))
-    a = 1e3 * collect(march.chunks, march.plant.kernel.shapes.l_index, STEPS * step, None).q[:, 0, 2]
+    a = 1e3 * collect(march.chunks, march.system.kernel.shapes.l_index, STEPS * step, None).q[:, 0, 2]
     past = np.stack([a[2:-1], a[1:-2], a[:-3]], axis=1)
     coefficients = np.linalg.lstsq(past, a[3:], rcond=None)[0]
     return np.roots([1.0, *-coefficients]).astype(np.complex128)

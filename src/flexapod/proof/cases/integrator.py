@@ -22,7 +22,7 @@ def _compute() -> list[Check]:
         basis="clamped-free", modes=1, step=period / STEPS, output_step=period, duration=PERIODS * period, rho_inf=0.9
     )
     march = prepare_actuator(model.ActuatorStudy(actuator=beam, simulation=simulation), np.array([1e-3]), np.zeros(1))
-    record = collect(march.chunks, march.plant.kernel.shapes.l_index, PERIODS * period, None)
+    record = collect(march.chunks, march.system.kernel.shapes.l_index, PERIODS * period, None)
     energy = record.energy.sum(axis=1)
     lost = float(1 - energy[-1] / energy[0])
     return [Check(what="share of the energy lost in 10 periods", reference=float(predicted), ours=lost, tolerance=0.2)]

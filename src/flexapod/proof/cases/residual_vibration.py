@@ -34,7 +34,7 @@ def residual(profile: str, s: float) -> float:
         ),
     )
     march = prepare_actuator(study)
-    a = collect(march.chunks, march.plant.kernel.shapes.l_index, 1.1 * duration, None).q[STEPS:, 0, 2]
+    a = collect(march.chunks, march.system.kernel.shapes.l_index, 1.1 * duration, None).q[STEPS:, 0, 2]
     t = omega * duration / STEPS * np.arange(len(a))
     waves = np.linalg.lstsq(np.stack([np.cos(t), np.sin(t)], axis=1), a, rcond=None)[0]
     return float(np.hypot(*waves) / (FIRST * TURN))

@@ -10,7 +10,7 @@ from flexapod.proof.case import Case, Check, checks
 from flexapod.typing import Array
 
 if TYPE_CHECKING:
-    from flexapod.solve.plant import Recording
+    from flexapod.solve.recording import Recording
     from flexapod.symbolic.vocabulary import SX
 
 MASS = (0.04325, 0.00365, 0.02373, 0.00706, 0.07050, 0.00706, 0.05498)  # kg, bodies 1 to 7

@@ -1,21 +1,23 @@
 /* Linear algebra of the robot, Eqs. (T6.6)-(T6.9): each leg is eliminated onto the payload.
 
-   Unknowns of leg i: dq_i (n), dlam_i (3); of the border: dy (6) and one drive force per prescribed leg.
-     A_i dq_i + J_i^T dlam_i - e_l df_i = -r_i
-     J_i dq_i - P_i dy                  = -g_i
-     A_p dy   - sum P_i^T dlam_i        = -r_p
-     e_l^T dq_i                         = 0          (prescribed stroke)
-   Pivot by the closure: J1 = d tip / d(alpha, beta, l) is regular for every leg (det = l^2 cos beta), whatever is
-   massless, rigid or prescribed. The other m = n - 3 coordinates see B = N^T A N, N = [N1; I] with N1 = -J1^-1 J2;
-   the payload moves them through Y = [Y1; 0], Y1 = J1^-1 P. A is symmetric, so Et = N^T A Y is the transpose of E. */
-enum { BORDER = 6 + LEGS, L = 2 };      /* L: position of l in a robot's leg */
+   Unknowns of leg i: dq_i (N), dlam_i (ROWS); of the border: dy (6) and one force for each pivot that is held.
+     A_i dq_i + J_i^T dlam_i - sum e_k df_k = -r_i
+     J_i dq_i - P_i dy                      = -g_i
+     A_p dy   - sum P_i^T dlam_i            = -r_p
+     e_k^T dq_i                             = 0      (coordinate k is held)
+   Pivots are the coordinates found from the closure: J1 = dg/d(pivots) is regular for every leg, whatever is massless,
+   rigid or held. The other M = N - ROWS coordinates z see B = N^T A N, N = [N1; I] with N1 = -J1^-1 J2; the payload
+   moves them through Y = [Y1; 0], Y1 = J1^-1 P. A is symmetric, so Et = N^T A Y is the transpose of E. A held
+   coordinate that is not a pivot drops out of z; its force is what is left in its own row. Legs are in `ORDER` here. */
+enum { M = N - ROWS, BORDER = 6 + LEGS*ROWS };
 
 typedef struct {                        /* of a vector of legs */
-  lanes A[MAXN*MAXN], J[3*MAXN], P[18], J1inv[9], N1[3*MAXN], Y1[18], Binv[MAXN*MAXN], Et[MAXN*6], C[MAXN*6], Bd[MAXN];
-  lanes prescribed;
+  lanes A[N*N], J[ROWS*N], P[ROWS*6], J1inv[ROWS*ROWS], N1[ROWS*M], Y1[ROWS*6], Binv[M*M], Et[M*6], C[M*6], Bd[ROWS*M];
+  lanes held[N];
+  int unknown[ROWS][LANES], any[ROWS];  /* the border's unknown of a held pivot; 0: it is not held; and of any leg */
 } LegBlock;
 
-typedef struct { LegBlock leg[GROUPS]; double border[BORDER*BORDER]; } Arrow;
+typedef struct { LegBlock leg[GROUPS]; long size; double border[BORDER*BORDER]; } Arrow;
 
 static void invert3(const lanes *m, lanes *inv) {        /* column-major */
   lanes c0 = m[4]*m[8] - m[7]*m[5], c1 = m[7]*m[2] - m[1]*m[8], c2 = m[1]*m[5] - m[4]*m[2];
@@ -25,104 +27,159 @@ static void invert3(const lanes *m, lanes *inv) {        /* column-major */
   inv[6] = (m[3]*m[7] - m[6]*m[4])*d; inv[7] = (m[6]*m[1] - m[0]*m[7])*d; inv[8] = (m[0]*m[4] - m[3]*m[1])*d;
 }
 
-/* Inverses of B, leg by leg because each has its own pivots */
-static int invert_each(const Settings *s, int group, long m, const lanes *B, lanes *inverse) {
-  double one[MAXN*MAXN], inv[MAXN*MAXN];
+/* Inverses of the matrices (size, size) of a vector of legs, leg by leg because each has its own pivots */
+static int invert_each(const Settings *s, int group, long size, const lanes *A, lanes *inverse) {
+  double one[N*N], inv[N*N];
   for (int i = 0; i < LANES; i++) {
     if (i < used(s, group)) {
-      for (long j = 0; j < m*m; j++) one[j] = B[j][i];
-      if (m && invert(m, one, inv)) return SINGULAR;
+      for (long j = 0; j < size*size; j++) one[j] = A[j][i];
+      if (size && invert(size, one, inv)) return SINGULAR;
     }
-    for (long j = 0; j < m*m; j++) inverse[j][i] = inv[j];
+    for (long j = 0; j < size*size; j++) inverse[j][i] = inv[j];
   }
   return OK;
 }
 
-/* Everything of a vector of legs that does not depend on residuals; its share of the border */
-static int leg_factor(const Settings *s, int group, LegBlock *b, double *border) {
-  static _Thread_local lanes AN[MAXN*MAXN], B[MAXN*MAXN];
-  long n = s->n, m = n - 3, size = BORDER;
-  lanes AY[MAXN*6];
-  memset(b->N1, 0, sizeof(lanes)*3*m); memset(b->Y1, 0, sizeof b->Y1);
-  invert3(b->J, b->J1inv);
-  for (long j = 0; j < m; j++) lanes_gemv(3, 3, -1, b->J1inv, b->J + 3*(3 + j), b->N1 + 3*j);
-  for (long j = 0; j < 6; j++) lanes_gemv(3, 3, 1, b->J1inv, b->P + 3*j, b->Y1 + 3*j);
-  memcpy(AN, b->A + 3*n, sizeof(lanes)*n*m); memset(AY, 0, sizeof(lanes)*n*6);
-  for (long j = 0; j < m; j++) lanes_gemv(n, 3, 1, b->A, b->N1 + 3*j, AN + j*n);
-  for (long j = 0; j < 6; j++) lanes_gemv(n, 3, 1, b->A, b->Y1 + 3*j, AY + j*n);
-  for (long j = 0; j < m; j++) { memcpy(B + j*m, AN + j*n + 3, sizeof(lanes)*m); lanes_gemv_t(3, m, 1, b->N1, AN + j*n, B + j*m); }
-  for (long j = 0; j < 6; j++) { memcpy(b->Et + j*m, AY + j*n + 3, sizeof(lanes)*m); lanes_gemv_t(3, m, 1, b->N1, AY + j*n, b->Et + j*m); }
-  if (invert_each(s, group, m, B, b->Binv)) return SINGULAR;
-  memset(b->C, 0, sizeof(lanes)*m*6); memset(b->Bd, 0, sizeof(lanes)*m);
-  for (long j = 0; j < 6; j++) lanes_gemv(m, m, 1, b->Binv, b->Et + j*m, b->C + j*m);
-  for (long j = 0; j < m; j++) for (long i = 0; i < m; i++) b->Bd[i] += b->Binv[i + j*m] * b->N1[L + 3*j];
-  for (long j = 0; j < 6; j++) {
-    lanes payload[6] = {0}, force = b->Y1[L + 3*j];
-    lanes_gemv_t(3, 6, 1, b->Y1, AY + j*n, payload);
-    lanes_gemv_t(m, 6, -1, b->Et, b->C + j*m, payload);
-    for (long i = 0; i < m; i++) force -= b->N1[L + 3*i] * b->C[i + j*m];
-    for (int i = 0; i < 6; i++) border[i + j*size] += sum(s, group, payload[i]);
-    for (int i = 0; i < used(s, group); i++) {
-      long f = 6 + group*LANES + i;
-      border[f + j*size] = b->prescribed[i] * force[i];
-      border[j + f*size] = -border[f + j*size];
+/* Which coordinates of the legs are held, and the border's unknowns of those that are pivots */
+static void arrow_hold(Arrow *w, const Settings *s) {
+  w->size = 6;
+  for (int group = 0; group < groups(s); group++) {
+    LegBlock *b = &w->leg[group];
+    lanes held[PORTS];
+    memset(b->held, 0, sizeof b->held); memset(b->unknown, 0, sizeof b->unknown);
+    gather(s, group, s->held, s->ports, s->ports, held);
+    for (long k = 0; k < s->ports; k++) b->held[PLACE[s->port[k]]] = held[k];
+    for (int p = 0; p < ROWS; p++) {
+      b->any[p] = 0;
+      for (int i = 0; i < LANES; i++) {
+        if (b->held[p][i] == 0) continue;
+        b->unknown[p][i] = i < used(s, group) ? (int)w->size++ : b->unknown[p][used(s, group) - 1];
+        b->any[p] = 1;
+      }
     }
   }
-  lanes own = {0};
-  for (long i = 0; i < m; i++) own += b->N1[L + 3*i] * b->Bd[i];
-  for (int i = 0; i < used(s, group); i++) { long f = 6 + group*LANES + i; border[f + f*size] = b->prescribed[i] ? own[i] : 1; }
+}
+
+/* Everything of a vector of legs that does not depend on residuals; its share of the border */
+static int leg_factor(const Settings *s, int group, LegBlock *b, double *border, long size) {
+  static _Thread_local lanes AN[N*M], B[M*M];
+  lanes AY[N*6];
+  memset(b->N1, 0, sizeof b->N1); memset(b->Y1, 0, sizeof b->Y1);
+  if (ROWS == 3) invert3(b->J, b->J1inv);
+  else if (invert_each(s, group, ROWS, b->J, b->J1inv)) return SINGULAR;
+  for (long j = 0; j < M; j++) lanes_gemv(ROWS, ROWS, -1, b->J1inv, b->J + ROWS*(ROWS + j), b->N1 + ROWS*j);
+  for (long j = 0; j < 6; j++) lanes_gemv(ROWS, ROWS, 1, b->J1inv, b->P + ROWS*j, b->Y1 + ROWS*j);
+  for (long j = 0; j < M; j++) for (int p = 0; p < ROWS; p++) b->N1[p + ROWS*j] *= 1.0 - b->held[ROWS + j];
+  memcpy(AN, b->A + ROWS*N, sizeof AN); memset(AY, 0, sizeof AY);
+  for (long j = 0; j < M; j++) lanes_gemv(N, ROWS, 1, b->A, b->N1 + ROWS*j, AN + j*N);
+  for (long j = 0; j < 6; j++) lanes_gemv(N, ROWS, 1, b->A, b->Y1 + ROWS*j, AY + j*N);
+  for (long j = 0; j < M; j++) { memcpy(B + j*M, AN + j*N + ROWS, sizeof(lanes)*M); lanes_gemv_t(ROWS, M, 1, b->N1, AN + j*N, B + j*M); }
+  for (long j = 0; j < 6; j++) { memcpy(b->Et + j*M, AY + j*N + ROWS, sizeof(lanes)*M); lanes_gemv_t(ROWS, M, 1, b->N1, AY + j*N, b->Et + j*M); }
+  for (long k = 0; k < M; k++) {
+    lanes held = b->held[ROWS + k], free = 1.0 - held;
+    for (long j = 0; j < M; j++) { B[k + j*M] *= free; B[j + k*M] *= free; }
+    for (long j = 0; j < 6; j++) b->Et[k + j*M] *= free;
+    B[k + k*M] += held;
+  }
+  if (invert_each(s, group, M, B, b->Binv)) return SINGULAR;
+  memset(b->C, 0, sizeof b->C); memset(b->Bd, 0, sizeof b->Bd);
+  for (long j = 0; j < 6; j++) lanes_gemv(M, M, 1, b->Binv, b->Et + j*M, b->C + j*M);
+  for (long j = 0; j < 6; j++) {
+    lanes payload[6] = {0};
+    lanes_gemv_t(ROWS, 6, 1, b->Y1, AY + j*N, payload);
+    lanes_gemv_t(M, 6, -1, b->Et, b->C + j*M, payload);
+    for (int i = 0; i < 6; i++) border[i + j*size] += sum(s, group, payload[i]);
+  }
+  for (int p = 0; p < ROWS; p++) {
+    if (!b->any[p]) continue;
+    for (long j = 0; j < M; j++) for (long i = 0; i < M; i++) b->Bd[i + p*M] += b->Binv[i + j*M] * b->N1[p + ROWS*j];
+    for (long j = 0; j < 6; j++) {
+      lanes force = b->Y1[p + ROWS*j];
+      for (long i = 0; i < M; i++) force -= b->N1[p + ROWS*i] * b->C[i + j*M];
+      for (int i = 0; i < LANES; i++) {
+        long f = b->unknown[p][i];
+        if (f) { border[f + j*size] = force[i]; border[j + f*size] = -force[i]; }
+      }
+    }
+    for (int o = 0; o < ROWS; o++) {
+      lanes own = {0};
+      if (!b->any[o]) continue;
+      for (long i = 0; i < M; i++) own += b->N1[o + ROWS*i] * b->Bd[i + p*M];
+      for (int i = 0; i < LANES; i++) if (b->unknown[o][i] && b->unknown[p][i]) border[b->unknown[o][i] + b->unknown[p][i]*size] = own[i];
+    }
+  }
   return OK;
 }
 
 static int arrow_factor(Arrow *w, const Settings *s, const double *A_payload) {
-  double border[BORDER*BORDER] = {0};
-  for (int j = 0; j < 6; j++) for (int i = 0; i < 6; i++) border[i + j*BORDER] = A_payload[i + 6*j];
-  for (int group = 0; group < groups(s); group++) if (leg_factor(s, group, &w->leg[group], border)) return SINGULAR;
-  return invert(BORDER, border, w->border);
+  static _Thread_local double border[BORDER*BORDER];
+  long size = w->size;
+  memset(border, 0, sizeof(double)*size*size);
+  for (int j = 0; j < 6; j++) for (int i = 0; i < 6; i++) border[i + j*size] = A_payload[i + 6*j];
+  for (int group = 0; group < groups(s); group++) if (leg_factor(s, group, &w->leg[group], border, size)) return SINGULAR;
+  for (int k = 0; k < 6; k++) {
+    if (s->hub_held[k] == 0) continue;
+    for (long j = 0; j < size; j++) border[k + j*size] = border[j + k*size] = 0;
+    border[k + k*size] = 1;
+  }
+  return invert(size, border, w->border);
 }
 
-/* r, g, dq, dlam, df: a row of n, 3, n, 3, 1 vectors a group; rp, dy: of the payload */
-static void arrow_solve(const Arrow *w, const Settings *s, lanes (*r)[MAXN], lanes (*g)[3], const double *rp,
-                        lanes (*dq)[MAXN], lanes (*dlam)[3], lanes *df, double *dy) {
-  long n = s->n, m = n - 3;
-  lanes g0[GROUPS][3];
+/* r, g, dq, dlam: a row of N, ROWS, N, ROWS vectors a group; df: of a force for each port; rp, dy: of the payload */
+static void arrow_solve(const Arrow *w, const Settings *s, lanes (*r)[N], lanes (*g)[ROWS], const double *rp,
+                        lanes (*dq)[N], lanes (*dlam)[ROWS], lanes (*df)[PORTS], double *dy) {
+  lanes z[GROUPS][N], g0[GROUPS][ROWS + 1];
   double rhs[BORDER] = {0}, x[BORDER] = {0};
   for (int i = 0; i < 6; i++) rhs[i] = -rp[i];
   for (int group = 0; group < groups(s); group++) {
     const LegBlock *b = &w->leg[group];
-    lanes t[MAXN], *z = dq[group] + 3, part[6] = {0}, l;
-    memset(g0[group], 0, sizeof g0[group]);
-    lanes_gemv(3, 3, -1, b->J1inv, g[group], g0[group]);
-    memcpy(t, r[group], sizeof(lanes)*n);
-    lanes_gemv(n, 3, 1, b->A, g0[group], t);                               /* r + A g0 */
-    lanes_gemv_t(3, 6, -1, b->Y1, t, part);
-    lanes_gemv_t(3, m, 1, b->N1, t, t + 3);
-    memset(z, 0, sizeof(lanes)*m);
-    lanes_gemv(m, m, -1, b->Binv, t + 3, z);
-    lanes_gemv_t(m, 6, -1, b->Et, z, part);
-    l = g0[group][L];
-    for (long i = 0; i < m; i++) l += b->N1[L + 3*i] * z[i];
+    lanes t[N], part[6] = {0};
+    memset(g0[group], 0, sizeof g0[group]); memset(z[group], 0, sizeof z[group]);
+    lanes_gemv(ROWS, ROWS, -1, b->J1inv, g[group], g0[group]);
+    for (long j = 0; j < N; j++) t[j] = r[group][ORDER[j]];
+    lanes_gemv(N, ROWS, 1, b->A, g0[group], t);                            /* r + A g0 */
+    lanes_gemv_t(ROWS, 6, -1, b->Y1, t, part);
+    lanes_gemv_t(ROWS, M, 1, b->N1, t, t + ROWS);
+    for (long j = ROWS; j < N; j++) t[j] *= 1.0 - b->held[j];
+    lanes_gemv(M, M, -1, b->Binv, t + ROWS, z[group]);
+    lanes_gemv_t(M, 6, -1, b->Et, z[group], part);
     for (int i = 0; i < 6; i++) rhs[i] += sum(s, group, part[i]);
-    for (int i = 0; i < used(s, group); i++) rhs[6 + group*LANES + i] = -b->prescribed[i] * l[i];
+    for (int p = 0; p < ROWS; p++) {
+      if (!b->any[p]) continue;
+      lanes l = g0[group][p];
+      for (long i = 0; i < M; i++) l += b->N1[p + ROWS*i] * z[group][i];
+      for (int i = 0; i < LANES; i++) if (b->unknown[p][i]) rhs[b->unknown[p][i]] = -l[i];
+    }
   }
-  gemv(BORDER, BORDER, 1, w->border, rhs, x);
+  for (int i = 0; i < 6; i++) if (s->hub_held[i] != 0) rhs[i] = 0;
+  gemv(w->size, w->size, 1, w->border, rhs, x);
   memcpy(dy, x, 6*sizeof(double));
   for (int group = 0; group < groups(s); group++) {
     const LegBlock *b = &w->leg[group];
-    lanes *change = dq[group], *dz = change + 3, t[3], f, y[6];
-    for (int i = 0; i < LANES; i++) f[i] = x[6 + lane_leg(s, group, i)];
+    lanes change[N], t[N], f[ROWS + 1], y[6], *dz = change + ROWS;
     for (int i = 0; i < 6; i++) y[i] = (lanes){0} + x[i];
-    df[group] = f;
-    lanes_gemv(m, 6, -1, b->C, y, dz);
-    for (long i = 0; i < m; i++) dz[i] += b->Bd[i] * f;
-    memcpy(change, g0[group], sizeof g0[group]);
-    lanes_gemv(3, m, 1, b->N1, dz, change);
-    lanes_gemv(3, 6, 1, b->Y1, y, change);
-    change[L] *= 1.0 - b->prescribed;
-    memcpy(t, r[group], sizeof t);                                         /* rows of alpha, beta, l give dlam */
-    for (long j = 0; j < n; j++) for (int i = 0; i < 3; i++) t[i] += b->A[i + j*n] * change[j];
-    t[L] -= f;
-    memset(dlam[group], 0, sizeof dlam[group]);
-    lanes_gemv_t(3, 3, -1, b->J1inv, t, dlam[group]);
+    memcpy(change, g0[group], sizeof(lanes)*ROWS); memcpy(dz, z[group], sizeof(lanes)*M);
+    lanes_gemv(M, 6, -1, b->C, y, dz);
+    for (int p = 0; p < ROWS; p++) {
+      for (int i = 0; i < LANES; i++) f[p][i] = b->unknown[p][i] ? x[b->unknown[p][i]] : 0;
+      if (b->any[p]) for (long i = 0; i < M; i++) dz[i] += b->Bd[i + p*M] * f[p];
+    }
+    lanes_gemv(ROWS, M, 1, b->N1, dz, change);
+    lanes_gemv(ROWS, 6, 1, b->Y1, y, change);
+    for (int p = 0; p < ROWS; p++) change[p] *= 1.0 - b->held[p];
+    for (long j = 0; j < N; j++) t[j] = r[group][ORDER[j]];
+    for (long j = 0; j < N; j++) for (int i = 0; i < ROWS; i++) t[i] += b->A[i + j*N] * change[j];
+    for (int p = 0; p < ROWS; p++) t[p] -= f[p];
+    memset(dlam[group], 0, sizeof(lanes)*ROWS);
+    lanes_gemv_t(ROWS, ROWS, -1, b->J1inv, t, dlam[group]);                /* rows of the pivots give dlam */
+    for (long j = 0; j < N; j++) dq[group][ORDER[j]] = change[j];
+    for (long k = 0; k < s->ports; k++) {
+      long at = PLACE[s->port[k]];
+      if (at < ROWS) { df[group][k] = f[at]; continue; }
+      lanes own = t[at];
+      for (long j = 0; j < N; j++) own += b->A[at + j*N] * change[j];
+      for (int i = 0; i < ROWS; i++) own += b->J[i + ROWS*at] * dlam[group][i];
+      df[group][k] = b->held[at] * own;
+    }
   }
 }

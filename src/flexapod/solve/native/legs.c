@@ -22,12 +22,6 @@ static void scatter(const Settings *s, int group, const lanes *from, long stride
   for (int i = 0; i < used(s, group); i++) for (long j = 0; j < size; j++) rows[(group*LANES + i)*stride + j] = from[j][i];
 }
 
-static lanes mask(const Settings *s, int group, long bits) {
-  lanes m;
-  for (int i = 0; i < LANES; i++) m[i] = (double)(bits >> lane_leg(s, group, i) & 1);
-  return m;
-}
-
 static double sum(const Settings *s, int group, lanes x) {
   double total = 0;
   for (int i = 0; i < used(s, group); i++) total += x[i];

@@ -1,4 +1,6 @@
 /* Small dense systems, column-major. */
+enum { LARGEST = N > 6 + LEGS*ROWS ? N : 6 + LEGS*ROWS };
+
 typedef struct { double *A; long *pivot; long n; } Lu;
 
 /* LU factorisation with partial pivoting */
@@ -36,7 +38,7 @@ static void lu_solve(const Lu *f, double *b) {
 /* Inverse of A (n, n), which is overwritten: the same matrix serves many right-hand sides, and a product has no
    recurrences to wait for. */
 static int invert(long n, double *A, double *inverse) {
-  long pivot[MAXN];
+  long pivot[LARGEST];
   Lu f = {A, pivot, n};
   if (lu_factor(&f)) return SINGULAR;
   memset(inverse, 0, sizeof(double)*n*n);

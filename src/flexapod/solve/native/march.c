@@ -1,53 +1,92 @@
 /* Generalized-alpha for constrained systems on R^n x SE(3), Eqs. (T6.1)-(T6.5), fixed step within a call. */
 
+static void spread(long count, const double *x, lanes *to) { for (long j = 0; j < count; j++) to[j] = (lanes){0} + x[j]; }
+
+/* Residuals of a vector of legs, how far they are from closed, and the wrench that they put on the payload */
+static void residual_of_legs(const Settings *s, int i, const lanes *pose, Work *w, lanes *wrench) {
+  LegState *leg = &w->leg[i];
+  lanes powers[2], drive[SPRINGS], tip[6], point[6];
+#ifdef POSE
+  const lanes *in[] = {leg->q, leg->v, leg->v_dot, leg->lam, w->command[i], w->p[i], pose};
+  lanes *out[] = {w->r[i], w->g[i], wrench, powers, drive};
+  leg_residual_lanes(in, out);
+#else
+  const lanes *in[] = {leg->q, leg->v, leg->v_dot, leg->lam, w->command[i], w->p[i]};
+  lanes *out[] = {w->r[i], tip, powers, drive};
+  leg_residual_lanes(in, out);
+  if (s->hub) {
+    const lanes *joint[] = {pose, leg->lam, w->joint[i]};
+    lanes *at[] = {point, wrench};
+    joint_residual_lanes(joint, at);
+    for (int j = 0; j < ROWS; j++) w->g[i][j] = tip[j] - point[j];
+  }
+#endif
+  for (long k = 0; k < s->ports; k++) {
+    lanes force = port_force(w, i, k);
+    w->r[i][s->port[k]] -= force;
+    powers[1] += force*leg->v[s->port[k]];
+  }
+  for (int j = 0; j < 2; j++) w->powers[j] += sum(s, i, powers[j]);
+}
+
 /* Residual of every equation at the present state; wrench in world axes at the tool. */
 static void residual(const Settings *s, const double *wrench, Work *w) {
-  lanes tip[GROUPS][3], part[GROUPS][2];
+  lanes pose[7], part[6];
+  double net[6] = {0};
   set_commands(s, w);
   memset(w->powers, 0, sizeof w->powers);
+  spread(7, w->payload.pose, pose);
   for (int i = 0; i < groups(s); i++) {
-    const LegState *leg = &w->leg[i];
-    const lanes *in[] = {leg->q, leg->v, leg->v_dot, leg->lam, w->command[i], w->p[i]};
-    lanes *out[] = {w->r[i], tip[i], part[i]};
-    leg_residual_lanes(in, out);
-    for (int j = 0; j < 2; j++) w->powers[j] += sum(s, i, part[i][j]);
+    residual_of_legs(s, i, pose, w, part);
+    if (s->hub) for (int j = 0; j < 6; j++) net[j] += sum(s, i, part[j]);
   }
-  if (!s->payload) return;
-  double lam[3*LEGS], points[3*LEGS];
-  joint_forces(s, w, lam);
-  const double *in[] = {w->payload.pose, w->payload.u, w->payload.u_dot, lam, wrench, s->payload_p};
-  double *out[] = {w->rp, points, w->powers + 2};
+  if (!s->hub) return;
+  const double *in[] = {w->payload.pose, w->payload.u, w->payload.u_dot, net, wrench, s->payload_p};
+  double *out[] = {w->rp, w->powers + 2};
   payload_residual_double(in, out);
-  for (int i = 0; i < groups(s); i++) {
-    gather(s, i, points, 3, 3, w->g[i]);
-    for (int j = 0; j < 3; j++) w->g[i][j] = tip[i][j] - w->g[i][j];
+  for (int j = 0; j < 6; j++) if (s->hub_held[j] != 0) { w->reaction[j] = w->rp[j]; w->rp[j] = 0; }
+}
+
+/* Matrices of a vector of legs at rest, and what their joints add to the payload's stiffness */
+static void matrices_of_legs(const Settings *s, int i, const lanes *pose, const double *c, Work *w, double *Ap) {
+  static _Thread_local lanes A[3][N*N], J[ROWS*N];
+  LegBlock *b = &w->arrow.leg[i];
+  lanes H[36];
+#ifdef POSE
+  lanes X[N*6];
+  const lanes *in[] = {w->leg[i].q, w->leg[i].lam, w->p[i], pose};
+  lanes *out[] = {A[0], A[1], A[2], J, b->P, H, X};
+  leg_matrices_lanes(in, out);
+#else
+  const lanes *in[] = {w->leg[i].q, w->leg[i].lam, w->p[i]};
+  lanes *out[] = {A[0], A[1], A[2], J};
+  leg_matrices_lanes(in, out);
+  if (s->hub) {
+    const lanes *joint[] = {pose, w->leg[i].lam, w->joint[i]};
+    lanes *at[] = {b->P, H};
+    joint_matrices_lanes(joint, at);
   }
+#endif
+  for (long j = 0; j < N; j++) for (long k = 0; k < N; k++) {
+    long at = ORDER[k] + N*ORDER[j];
+    b->A[k + j*N] = c[0]*A[0][at] + c[1]*A[1][at] + c[2]*A[2][at];
+  }
+  for (long j = 0; j < N; j++) for (int k = 0; k < ROWS; k++) b->J[k + ROWS*j] = J[k + ROWS*ORDER[j]];
+  if (s->hub) for (int j = 0; j < 36; j++) Ap[j] += c[2]*sum(s, i, H[j]);
 }
 
 /* Factors of c_a M + c_v D + c_q K with the matrices at rest: the iteration matrix (T6.5), or the mass metric alone. */
 static int factor(const Settings *s, const double *wrench, double c_v, double c_a, double c_q, Work *w) {
-  static _Thread_local lanes M[MAXN*MAXN], D[MAXN*MAXN], K[MAXN*MAXN];
-  static _Thread_local double one[MAXN*MAXN];
-  long n = s->n;
-  for (int i = 0; i < groups(s); i++) {
-    LegBlock *b = &w->arrow.leg[i];
-    const lanes *in[] = {w->leg[i].q, w->leg[i].lam, w->p[i]};
-    lanes *out[] = {M, D, K, b->J};
-    leg_matrices_lanes(in, out);
-    for (long j = 0; j < n*n; j++) b->A[j] = c_a*M[j] + c_v*D[j] + c_q*K[j];
+  double mass[36], stiffness[36], Ap[36] = {0}, c[3] = {c_a, c_v, c_q};
+  lanes pose[7];
+  spread(7, w->payload.pose, pose);
+  for (int i = 0; i < groups(s); i++) matrices_of_legs(s, i, pose, c, w, Ap);
+  if (s->hub) {
+    const double *in[] = {w->payload.pose, wrench, s->payload_p};
+    double *out[] = {mass, stiffness};
+    payload_matrices_double(in, out);
+    for (int j = 0; j < 36; j++) Ap[j] += c_a*mass[j] + c_q*stiffness[j];
   }
-  if (!s->payload) {
-    for (long j = 0; j < n*n; j++) one[j] = w->arrow.leg[0].A[j][0];
-    return single_factor(&w->single, s, one);
-  }
-  double mass[36], stiffness[36], P[3*LEGS*6], Ap[36], lam[3*LEGS], points[LEGS][18];
-  joint_forces(s, w, lam);
-  const double *in[] = {w->payload.pose, lam, wrench, s->payload_p};
-  double *out[] = {mass, stiffness, P};
-  payload_matrices_double(in, out);
-  for (int j = 0; j < 36; j++) Ap[j] = c_a*mass[j] + c_q*stiffness[j];
-  for (int i = 0; i < LEGS; i++) for (int j = 0; j < 6; j++) for (int a = 0; a < 3; a++) points[i][a + 3*j] = P[3*i + a + 3*LEGS*j];
-  for (int i = 0; i < groups(s); i++) gather(s, i, points[0], 18, 18, w->arrow.leg[i].P);
   return arrow_factor(&w->arrow, s, Ap);
 }
 
@@ -82,11 +121,11 @@ static double excess(const Settings *s, Work *w, int *finite) {
   lanes force = {0}, r = {0}, g = {0}, faults = {0};
   double payload = 0, fault = 0;
   for (int i = 0; i < groups(s); i++) {
-    force = magnitude(2, w->leg[i].drive, magnitude(3, w->leg[i].lam, force));
-    r = magnitude(s->n, w->r[i], r); faults += blemish(s->n, w->r[i]);
-    if (s->payload) { g = magnitude(3, w->g[i], g); faults += blemish(3, w->g[i]); }
+    force = magnitude(s->ports, w->leg[i].drive, magnitude(ROWS, w->leg[i].lam, force));
+    r = magnitude(N, w->r[i], r); faults += blemish(N, w->r[i]);
+    g = magnitude(ROWS, w->g[i], g); faults += blemish(ROWS, w->g[i]);
   }
-  if (s->payload) for (int i = 0; i < 6; i++) { payload = fmax(payload, fabs(w->rp[i])); fault += 0*w->rp[i]; }
+  if (s->hub) for (int i = 0; i < 6; i++) { payload = fmax(payload, fabs(w->rp[i])); fault += 0*w->rp[i]; }
   double scale = largest(force), worst = largest(r), gap = largest(g);
   worst = fmax(worst, payload)/(s->tol_force*fmax(scale, 1) + s->force_floor);
   w->closure = gap;
@@ -99,8 +138,8 @@ static double excess(const Settings *s, Work *w, int *finite) {
 static long worst_leg(const Settings *s, const Work *w) {
   double most = 0;
   long leg = s->legs;
-  for (int i = 0; s->payload && i < 6; i++) most = fmax(most, fabs(w->rp[i]));
-  for (long i = 0; i < s->legs; i++) for (long j = 0; j < s->n; j++) {
+  for (int i = 0; i < 6; i++) most = fmax(most, fabs(w->rp[i]));
+  for (long i = 0; i < s->legs; i++) for (long j = 0; j < N; j++) {
     double e = fabs(w->r[i/LANES][j][i%LANES]);
     if (!isfinite(e)) return i;
     if (e > most) { most = e; leg = i; }
@@ -109,26 +148,28 @@ static long worst_leg(const Settings *s, const Work *w) {
 }
 
 static void write_record(const Settings *s, State *x, const Work *w) {
-  long n = s->n, k = s->legs*n, N = k + (s->payload ? 6 : 0);
+  long k = s->legs*N, all = k + (s->hub ? 6 : 0), ports = s->ports;
   double *o = x->record, part[3], e[3] = {0, 0, 0};
   for (int i = 0; i < groups(s); i++) {
     const LegState *leg = &w->leg[i];
     const lanes *in[] = {leg->q, leg->v, w->command[i], w->p[i]};
-    lanes energies[3], *out[] = {energies};
-    leg_energies_lanes(in, out);
+    lanes energies[3], force[PORTS], *out[] = {energies, force};
+    leg_energies_lanes(in, out);                                           /* the springs' forces with them */
     for (int j = 0; j < 3; j++) e[j] += sum(s, i, energies[j]);
-    scatter(s, i, leg->q, n, n, o); scatter(s, i, leg->v, n, n, o + k); scatter(s, i, leg->v_dot, n, n, o + k + N);
-    scatter(s, i, leg->lam, 3, 3, o + k + 2*N); scatter(s, i, leg->drive, 2, 2, o + k + 2*N + 3*s->legs);
+    for (long j = 0; j < ports; j++) force[j] = port_force(w, i, j) + (j < SPRINGS ? force[j] : (lanes){0});
+    scatter(s, i, leg->q, N, N, o); scatter(s, i, leg->v, N, N, o + k); scatter(s, i, leg->v_dot, N, N, o + k + all);
+    scatter(s, i, leg->lam, ROWS, ROWS, o + k + 2*all); scatter(s, i, force, ports, ports, o + k + 2*all + ROWS*s->legs);
   }
-  if (s->payload) {
+  if (s->hub) {
     const double *in[] = {w->payload.pose, w->payload.u, s->payload_p};
     double *out[] = {part};
     payload_energies_double(in, out);
     for (int j = 0; j < 3; j++) e[j] += part[j];
-    memcpy(o + 2*k, w->payload.u, 6*sizeof(double)); memcpy(o + 2*k + N, w->payload.u_dot, 6*sizeof(double));
+    memcpy(o + 2*k, w->payload.u, 6*sizeof(double)); memcpy(o + 2*k + all, w->payload.u_dot, 6*sizeof(double));
   }
-  o += k + 2*N + 5*s->legs;
-  memcpy(o, s->payload ? w->payload.pose : x->pose, 7*sizeof(double)); o += 7;
+  o += k + 2*all + (ROWS + ports)*s->legs;
+  memcpy(o, s->hub ? w->payload.pose : x->pose, 7*sizeof(double)); o += 7;
+  memcpy(o, w->reaction, sizeof w->reaction); o += 6;
   memcpy(o, e, sizeof e); o += 3;
   memcpy(o, x->sums, sizeof(double)*3); o += 3;
   *o++ = w->closure;
@@ -145,7 +186,7 @@ void record_state(const Settings *s, State *x, const double *row, const double *
   Work *w = work();
   int finite;
   load(s, x, w);
-  for (int i = 0; i < groups(s); i++) gather(s, i, row, TABLE, TABLE, w->table[i]);
+  for (int i = 0; i < groups(s); i++) gather(s, i, row, s->ports*COLUMNS, s->ports*COLUMNS, w->table[i]);
   residual(s, wrench, w);
   excess(s, w, &finite);
   x->closure = w->closure;
@@ -179,47 +220,39 @@ static void update(const Settings *s, long count, const double *dq, double *v, d
 }
 
 typedef struct {                        /* of the step before, for the predictor */
-  lanes v_dot[GROUPS][MAXN], lam[GROUPS][3], drive[GROUPS][2];
+  lanes v_dot[GROUPS][N], lam[GROUPS][ROWS], drive[GROUPS][PORTS];
   double u_dot[6];
 } Past;
 
 static void predict_body(const Settings *s, const double *row, Past *past, Work *w, double *pose_step) {
   for (int i = 0; i < groups(s); i++) {
     LegState *leg = &w->leg[i];
-    lanes step[MAXN];
-    extrapolate(3*LANES, (double *)leg->lam, (double *)past->lam[i]);
-    extrapolate(2*LANES, (double *)leg->drive, (double *)past->drive[i]);
-    predict(s, s->n*LANES, (double *)leg->v, (double *)leg->v_dot, (double *)leg->a, (double *)past->v_dot[i], (double *)step);
-    for (long j = 0; j < s->n; j++) leg->q[j] += step[j];
+    lanes step[N];
+    extrapolate(ROWS*LANES, (double *)leg->lam, (double *)past->lam[i]);
+    extrapolate(s->ports*LANES, (double *)leg->drive, (double *)past->drive[i]);
+    predict(s, N*LANES, (double *)leg->v, (double *)leg->v_dot, (double *)leg->a, (double *)past->v_dot[i], (double *)step);
+    for (long j = 0; j < N; j++) leg->q[j] += step[j];
   }
   follow_table(s, row, w);
-  if (s->payload) predict(s, 6, w->payload.u, w->payload.u_dot, w->payload.a, past->u_dot, pose_step);
+  if (s->hub) predict(s, 6, w->payload.u, w->payload.u_dot, w->payload.a, past->u_dot, pose_step);
 }
 
 /* Solve the linear equations and correct the state */
 static void correct(const Settings *s, const double *pose0, double *pose_step, Work *w) {
-  lanes dq[GROUPS][MAXN], dlam[GROUPS][3], df[GROUPS];
+  lanes dq[GROUPS][N], dlam[GROUPS][ROWS], df[GROUPS][PORTS];
   double dy[6];
-  if (s->payload) {
-    arrow_solve(&w->arrow, s, w->r, w->g, w->rp, dq, dlam, df, dy);
+  arrow_solve(&w->arrow, s, w->r, w->g, w->rp, dq, dlam, df, dy);
+  if (s->hub) {
     update(s, 6, dy, w->payload.u, w->payload.u_dot, w->payload.a);
     for (int j = 0; j < 6; j++) pose_step[j] += dy[j];
     turned_pose(pose0, pose_step, w->payload.pose);
-  } else {
-    double r[MAXN], x[MAXN], f[2];
-    for (long j = 0; j < s->n; j++) r[j] = w->r[0][j][0];
-    single_solve(&w->single, s, r, x, f);
-    for (long j = 0; j < s->n; j++) dq[0][j] = (lanes){0} + x[j];
-    memset(dlam, 0, sizeof dlam);
-    df[0] = (lanes){0} + f[0];
-    w->leg[0].drive[1] += f[1];
   }
   for (int i = 0; i < groups(s); i++) {
     LegState *leg = &w->leg[i];
-    update(s, s->n*LANES, (double *)dq[i], (double *)leg->v, (double *)leg->v_dot, (double *)leg->a);
-    for (long j = 0; j < s->n; j++) leg->q[j] += dq[i][j];
-    for (int j = 0; j < 3; j++) leg->lam[j] += dlam[i][j];
-    leg->drive[0] += df[i];
+    update(s, N*LANES, (double *)dq[i], (double *)leg->v, (double *)leg->v_dot, (double *)leg->a);
+    for (long j = 0; j < N; j++) leg->q[j] += dq[i][j];
+    for (int j = 0; j < ROWS; j++) leg->lam[j] += dlam[i][j];
+    for (long j = 0; j < s->ports; j++) leg->drive[j] += df[i][j];
   }
 }
 
@@ -229,7 +262,7 @@ static int iterate(const Settings *s, State *x, const double *wrench, double *po
   double c_v = s->gamma/(s->beta*s->h), c_a = (1 - s->alpha_m)/((1 - s->alpha_f)*s->beta*s->h*s->h);
   double before = INFINITY, pose0[7];
   memcpy(pose0, w->payload.pose, sizeof pose0);
-  if (s->payload) turned_pose(pose0, pose_step, w->payload.pose);
+  if (s->hub) turned_pose(pose0, pose_step, w->payload.pose);
   for (long iteration = 0;; iteration++) {
     int finite;
     residual(s, wrench, w);
@@ -253,7 +286,7 @@ static int iterate(const Settings *s, State *x, const double *wrench, double *po
 int march(const Settings *s, State *x, const double *table, const double *wrench, long steps) {
   static _Thread_local Past past;
   Work *w = work();
-  long width = s->legs*TABLE, age = s->max_age;
+  long width = s->legs*s->ports*COLUMNS, age = s->max_age;
   double pose_step[6];
   load(s, x, w);
   for (int i = 0; i < groups(s); i++) {
@@ -276,22 +309,22 @@ int march(const Settings *s, State *x, const double *table, const double *wrench
 }
 
 /* Add `share` times the part of the velocities that is normal to the closures in the mass metric, Eq. (T6.14):
-   M n + J^T pi = 0, J n - P n_p = J v - P u, prescribed strokes apart. */
+   M n + J^T pi = 0, J n - P n_p = J v - P u, held coordinates apart. */
 int scale_normal_velocity(const Settings *s, State *x, const double *wrench, double share) {
   Work *w = work();
-  long n = s->n;
-  lanes dq[GROUPS][MAXN], dlam[GROUPS][3], df[GROUPS];
+  lanes dq[GROUPS][N], dlam[GROUPS][ROWS], df[GROUPS][PORTS], v[N];
   double still[6] = {0}, dy[6];
   load(s, x, w);
   if (factor(s, wrench, 0, 1, 0, w)) return SINGULAR;
   for (int i = 0; i < groups(s); i++) {
     const LegBlock *b = &w->arrow.leg[i];
-    memset(w->r[i], 0, sizeof(lanes)*n); memset(w->g[i], 0, sizeof w->g[i]);
-    lanes_gemv(3, n, -1, b->J, w->leg[i].v, w->g[i]);
-    for (int j = 0; j < 6; j++) for (int a = 0; a < 3; a++) w->g[i][a] += b->P[a + 3*j] * w->payload.u[j];
+    memset(w->r[i], 0, sizeof w->r[i]); memset(w->g[i], 0, sizeof w->g[i]);
+    for (long j = 0; j < N; j++) v[j] = w->leg[i].v[ORDER[j]];
+    lanes_gemv(ROWS, N, -1, b->J, v, w->g[i]);
+    for (int j = 0; j < 6; j++) for (int a = 0; a < ROWS; a++) w->g[i][a] += b->P[a + ROWS*j] * w->payload.u[j];
   }
   arrow_solve(&w->arrow, s, w->r, w->g, still, dq, dlam, df, dy);
-  for (int i = 0; i < groups(s); i++) for (long j = 0; j < n; j++) w->leg[i].v[j] += share * dq[i][j];
+  for (int i = 0; i < groups(s); i++) for (long j = 0; j < N; j++) w->leg[i].v[j] += share * dq[i][j];
   for (int j = 0; j < 6; j++) w->payload.u[j] += share * dy[j];
   store(s, w, x);
   return OK;

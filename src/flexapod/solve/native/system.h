@@ -1,22 +1,26 @@
-/* Data of the compiled time integration; filled in by Python (ctypes mirrors these structures field by field). */
+/* Data of the compiled time integration; filled in by Python (ctypes mirrors these structures field by field).
+   Before this text stand the generated functions and their sizes: N coordinates of a leg, ROWS equations that close it,
+   LEG_P, JOINT and COMMAND numbers that its functions read; ORDER: its coordinates, those found from the closure first;
+   PLACE: where each of them stands there. */
 #if defined(__GNUC__) && !defined(__clang__)
 #pragma GCC optimize("O3")              /* loops of this size are worth unrolling; the generated code above has none */
 #endif
 
-enum { COMMAND = 4, TABLE = 8 };        /* table row of a leg: l, l', l'', force, beta, beta', beta'', torque */
+enum { LEGS = 16, PORTS = 8 };          /* at most */
+enum { COLUMNS = 4 };                   /* of a port in a table: value, rate, acceleration, force */
 enum { OK = 0, NOT_CONVERGED = 1, NOT_FINITE = 2, SINGULAR = 3 };
-enum { LEGS = 6, MAXN = 64 };           /* coordinates of a leg: 3, up to 4 axial and twice 24 lateral shapes */
 
 typedef struct {
-  long legs, n, l_index, payload;       /* payload: 1 for a robot, 0 for a single planar actuator */
-  long prescribed_l, prescribed_beta;   /* bit i: the coordinate of leg i follows its table */
-  const double *leg_p, *payload_p;      /* (legs, leg_np), (payload_np) */
-  long leg_np;
+  long legs, hub;                       /* hub: 1 where the legs carry a payload */
+  long ports, port[PORTS];              /* coordinates that follow tables or are pushed by them; the springs' first */
+  const double *held;                   /* (legs, ports): 1 where the coordinate follows its table */
+  const double *hub_held;               /* (6): 1 where a coordinate of the payload stays what it is */
+  const double *leg_p, *joint_p, *payload_p;      /* (legs, LEG_P), (legs, JOINT), (any) */
   double h, alpha_m, alpha_f, beta, gamma, tol_closure, tol_force, force_floor;
   long max_iterations, max_age, output_every;
 } Settings;
 
-typedef struct {                        /* flat coordinates: legs * n, then the payload's six */
+typedef struct {                        /* flat coordinates: legs * N, then the payload's six */
   double *q, *v, *v_dot, *a, *lam, *drive, *pose;
   double *sums;                         /* dissipated energy, work of drives, work of the wrench */
   double *powers;                       /* their rates at the present time */

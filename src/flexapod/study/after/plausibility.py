@@ -12,7 +12,7 @@ from flexapod.model import Actuator, Leg, Robot
 from flexapod.model.simulation import SOLID
 from flexapod.rigid.rotations import matrix
 from flexapod.solve.many import RestStates
-from flexapod.solve.system import RobotSystem
+from flexapod.solve.system import System
 from flexapod.study.before.estimates import buckling_load, section_width
 from flexapod.study.before.thick import Section, beam_section, bending_errors, piston_section
 from flexapod.study.record import Record
@@ -47,17 +47,17 @@ class _When:
         return "" if self.time is None else f" at t = {self.time[k]:.6g} s"
 
 
-def robot_warnings(robot: Robot, system: RobotSystem, record: Record) -> list[str]:
+def robot_warnings(robot: Robot, system: System, record: Record) -> list[str]:
     """Remarks on a simulation of a robot, each with leg, instant, value and limit."""
     return _leg_warnings(robot, system, record, _When(record.time))
 
 
-def rest_warnings(robot: Robot, system: RobotSystem, states: RestStates) -> list[str]:
+def rest_warnings(robot: Robot, system: System, states: RestStates) -> list[str]:
     """The same remarks on a robot at rest."""
     return _leg_warnings(robot, system, states, _When())
 
 
-def _leg_warnings(robot: Robot, system: RobotSystem, record: Record | RestStates, when: _When) -> list[str]:
+def _leg_warnings(robot: Robot, system: System, record: Record | RestStates, when: _When) -> list[str]:
     axes = _leg_axes(robot, record)
     compression = np.einsum("tli,tli->tl", record.lam, axes)
     found = []

@@ -11,9 +11,7 @@ from flexapod import rigid
 from flexapod.model import Robot, Study
 from flexapod.rigid.rotations import canonical, difference, matrix, quaternion
 from flexapod.rigid.trajectory import coordinates
-from flexapod.solve.parameters import drive_spring
-from flexapod.solve.system import RobotSystem
-from flexapod.solve.tables import feed_forward
+from flexapod.solve.system import System
 from flexapod.study.after.causes import deviation_by_cause, length_errors
 from flexapod.study.record import Record
 from flexapod.typing import Array
@@ -49,7 +47,7 @@ def rigid_path(study: Study, t: Array) -> RigidPath:
     return RigidPath(time=t, poses=poses, legs=legs, wrench=rigid.wrench(study.load, t))
 
 
-def robot_results(study: Study, system: RobotSystem, record: Record, path: RigidPath | None = None) -> dict[str, Array]:
+def robot_results(study: Study, system: System, record: Record, path: RigidPath | None = None) -> dict[str, Array]:
     """All variables of a robot's simulation but the rigid forces, by name; `path` where it is known already."""
     robot, path = study.robot, path or rigid_path(study, record.time)
     legs = leg_results(robot, system, path, record)
@@ -62,7 +60,7 @@ def robot_results(study: Study, system: RobotSystem, record: Record, path: Rigid
     }
 
 
-def robot_coords(system: RobotSystem, record: Record) -> dict[str, ArrayLike]:
+def robot_coords(system: System, record: Record) -> dict[str, ArrayLike]:
     """Labels of the dimensions whose size depends on the study."""
     shapes = system.kernel.shapes
     labels: dict[str, ArrayLike] = {"time": record.time}
@@ -101,7 +99,7 @@ def _flexible_lengths(robot: Robot, record: Record) -> Array:
     return rigid.leg_lengths(robot.base_joints, joints, record.pose[:, :3], R)
 
 
-def leg_results(robot: Robot, system: RobotSystem, path: RigidPath, record: Record) -> dict[str, Array]:
+def leg_results(robot: Robot, system: System, path: RigidPath, record: Record) -> dict[str, Array]:
     """Lengths, angles, deflections and forces of the legs."""
     shapes, q = system.kernel.shapes, record.q
     k, first = shapes.a.count, 3 + shapes.axial.count
@@ -111,7 +109,7 @@ def leg_results(robot: Robot, system: RobotSystem, path: RigidPath, record: Reco
         "leg_length": _flexible_lengths(robot, record),
         "leg_stroke": q[:, :, shapes.l_index],
         "leg_angle": q[:, :, :2],
-        "actuator_force": _drive_forces(robot, system, path, record),
+        "actuator_force": record.drive[:, :, 0],
         "tip_deflection": lateral @ shapes.a.tip,
         "joint_force": record.lam,
     }
@@ -122,20 +120,7 @@ def leg_results(robot: Robot, system: RobotSystem, path: RigidPath, record: Reco
     return results
 
 
-def _drive_forces(robot: Robot, system: RobotSystem, path: RigidPath, record: Record) -> Array:
-    """Force of every drive on its piston, (T, legs) [N]: constraint, or feed-forward, spring and damper, Eq. (T8.8)."""
-    if system.held.all():
-        return record.drive[:, :, 0]
-    stiffness, damping = np.array([drive_spring(leg) for leg in robot.legs]).T
-    spring = stiffness * (path.legs.length - record.q[:, :, system.kernel.shapes.l_index])
-    spring = spring + damping * (path.legs.rate - record.rate[:, :, 0])
-    forward = feed_forward(robot, path.time, path.poses, path.wrench)
-    return np.where(system.held, record.drive[:, :, 0], forward + spring)
-
-
-def cause_results(
-    robot: Robot, system: RobotSystem, path: RigidPath, record: Record, length: Array
-) -> dict[str, Array]:
+def cause_results(robot: Robot, system: System, path: RigidPath, record: Record, length: Array) -> dict[str, Array]:
     """Deviation of the centre of mass by cause; ``length`` (T, legs): joint to joint [m]."""
     shapes = system.kernel.shapes
     errors = length_errors(

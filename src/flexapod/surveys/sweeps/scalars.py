@@ -14,8 +14,8 @@ from flexapod.errors import InputError
 from flexapod.model import Study
 from flexapod.rigid.rotations import difference, matrix, quaternion
 from flexapod.solve.modes import robot_modes
-from flexapod.solve.plant import Counters
-from flexapod.solve.system import RobotSystem
+from flexapod.solve.recording import Counters
+from flexapod.solve.system import System
 from flexapod.study.after.plausibility import leg_stress
 from flexapod.study.after.results import robot_results
 from flexapod.study.record import Record
@@ -42,7 +42,7 @@ class RobotRun:
     """A finished simulation of a robot; every quantity is computed when it is asked for, once."""
 
     study: Study
-    system: RobotSystem
+    system: System
     record: Record
     counters: Counters
 
@@ -80,9 +80,7 @@ class RobotRun:
     @cached_property
     def actuator_force(self) -> Array:
         """Force of every drive on its piston, (T, legs) [N]."""
-        if self.system.held.all():
-            return self.record.drive[:, :, 0]
-        return robot_results(self.study, self.system, self.record)["actuator_force"]
+        return self.record.drive[:, :, 0]
 
     @cached_property
     def lateral(self) -> Array:

@@ -130,8 +130,9 @@ def _drive_forces(robot: model.Robot, locked: LockedPoses) -> Array:
     """Force of every drive on its piston at rest, (p, legs) [N]: constraint, or given force and spring, Eq. (T8.8)."""
     states, system = locked.equilibria.states[locked.at], locked.system
     stiffness = np.array([drive_spring(leg)[0] for leg in robot.legs])
-    spring = stiffness * (locked.lengths[locked.at] - states.q[:, :, system.kernel.shapes.l_index])
-    return np.where(system.held, states.drive, locked.acts.force[locked.at] + spring)
+    l_index = system.kernel.shapes.l_index
+    spring = stiffness * (locked.lengths[locked.at] - states.q[:, :, l_index])
+    return np.where(system.held[:, l_index], states.drive[:, :, 0], locked.acts.force[locked.at] + spring)
 
 
 def _euler_share(robot: model.Robot, path: rigid.Poses, locked: LockedPoses, force: Array) -> Array:

@@ -1,0 +1,70 @@
+"""What a time integration writes at its output instants, and what it costs."""
+
+from dataclasses import dataclass, fields, replace
+
+import numpy as np
+
+from flexapod.solve.system import System
+from flexapod.typing import Array
+
+__all__ = ["Counters", "Recording", "record_width", "unpack"]
+
+
+@dataclass(kw_only=True)
+class Counters:
+    """What the integration cost."""
+
+    steps: int = 0
+    iterations: int = 0
+    factorisations: int = 0
+    rejected: int = 0
+
+
+@dataclass(frozen=True, kw_only=True)
+class Recording:
+    """States at T output instants (axis 0), see `system.State`.
+
+    ``drive``, (T, legs, ports): the whole force of each port, whatever makes it: held, pushed, a spring [N, N m];
+    ``reaction``, (T, 6): force and moment on what is held of the payload; ``energy``: kinetic, gravity, strain;
+    ``sums``: lost, drives, wrench.
+    """
+
+    time: Array
+    q: Array
+    v: Array
+    v_dot: Array
+    lam: Array
+    drive: Array
+    pose: Array
+    reaction: Array
+    energy: Array
+    sums: Array
+    closure: Array
+
+    def ending(self, last: "Recording") -> "Recording":
+        """The same with another last instant."""
+        names = [field.name for field in fields(self) if field.name != "time"]
+        ends = {name: np.concatenate([getattr(self, name)[:-1], getattr(last, name)]) for name in names}
+        return replace(self, **ends)
+
+
+def _shapes(system: System) -> dict[str, tuple[int, ...]]:
+    """Names and shapes of the parts of an output row, in their order."""
+    legs, N = system.legs, (system.size,)
+    forces = {"lam": (legs, system.rows), "drive": (legs, system.ports.size)}
+    sizes = {"pose": 7, "reaction": 6, "energy": 3, "sums": 3, "closure": 1}
+    return {"q": (legs, system.n), "v": N, "v_dot": N, **forces, **{name: (size,) for name, size in sizes.items()}}
+
+
+def record_width(system: System) -> int:
+    """Numbers in one output row."""
+    return sum(int(np.prod(shape)) for shape in _shapes(system).values())
+
+
+def unpack(system: System, time: Array, rows: Array) -> Recording:
+    """Name the columns of output rows (T, record_width)."""
+    shapes = _shapes(system)
+    ends = np.cumsum([int(np.prod(shape)) for shape in shapes.values()])
+    parts = np.split(rows, ends[:-1], axis=1)
+    named = {name: part.reshape(len(rows), *shape) for (name, shape), part in zip(shapes.items(), parts, strict=True)}
+    return Recording(time=time, **named | {"closure": named["closure"][:, 0]})
