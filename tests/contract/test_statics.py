@@ -112,7 +112,7 @@ def test_energy_and_sweeps_start_from_that_equilibrium(drive):
     springs = 0.5 * SPRING.stiffness * (strokes.values**2).sum()
     springs += 0.5 * piston.EA / piston.length * (stretch**2).sum()
     assert start.energy_strain.item() == pytest.approx(springs, rel=1e-9)
-    run = RobotRun(study=study.replace(motion=held_at({})), system=None, record=None, counters=None)
+    run = RobotRun(study=study.replace(motion=held_at({})), system=None, record=None, counters=None, path=None)
     value = ROBOT_SCALARS["first_frequency"].value(run)
     assert value == pytest.approx(fx.modes(study).frequency[0].item(), rel=1e-12)
 

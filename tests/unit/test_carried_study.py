@@ -1,7 +1,8 @@
 """The study that results carry: handed on in memory while it is known, read from the text of files."""
 
-import flexapod as fx
 import pytest
+
+import flexapod as fx
 from flexapod import model
 from flexapod.study.attributes import KEPT, attributes, robot_of, study_of
 

@@ -6,7 +6,8 @@ from tests.runs import paper_robot, with_legs
 
 import flexapod as fx
 from flexapod.model import AxisMotion, ForceDrive, base_circle, platform_circle
-from flexapod.study.before.checks import check_path, path_instants
+from flexapod.study.before.checks import check_path
+from flexapod.study.path import path_instants
 
 
 def moving(kind, amplitude, **motion):

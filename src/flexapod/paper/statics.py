@@ -14,7 +14,7 @@ from flexapod.solve.equilibrium import Equilibrium, equilibrium
 from flexapod.solve.rest import rest_load
 from flexapod.solve.system import State, System, rigid_state, robot_system
 from flexapod.study.arguments import as_pose
-from flexapod.study.before.checks import path_instants
+from flexapod.study.path import path_instants
 from flexapod.study.static import modes
 from flexapod.typing import Array
 

@@ -12,8 +12,8 @@ from flexapod.errors import ComputationError, InputError
 from flexapod.paper.claim import largest
 from flexapod.scene.robot import robot_study
 from flexapod.study.attributes import attributes
-from flexapod.study.before.checks import path_instants
 from flexapod.study.before.estimates import buckling_load
+from flexapod.study.path import path_instants
 from flexapod.study.record import Share
 from flexapod.study.simulation import simulate
 

@@ -14,12 +14,13 @@ from flexapod.study.arguments import LoadLike, PoseLike, RobotLike, as_pose, as_
 from flexapod.study.attributes import attributes
 from flexapod.study.before.checks import check_geometry
 from flexapod.study.names import dataset
+from flexapod.study.path import RigidPath
 from flexapod.typing import Array
 
 if TYPE_CHECKING:
     from xarray import Dataset
 
-__all__ = ["forward_kinematics", "inverse_dynamics", "inverse_kinematics", "rigid_path"]
+__all__ = ["forward_kinematics", "inverse_dynamics", "inverse_kinematics"]
 
 
 def inverse_kinematics(
@@ -50,10 +51,8 @@ def inverse_kinematics(
     InputError
         The path leaves a stroke, pulls a piston out, folds a universal joint or is singular.
     """
-    study = _study(robot, motion, None, duration, output_step)
-    remarks, t = check_geometry(study), _instants(study)
-    path = rigid.poses(study.robot, study.motion, t)
-    return dataset(rigid_path(study.robot, path), {"time": t}, attributes(study, [*study.warnings, *remarks]))
+    path, remarks = _path(_study(robot, motion, None, duration, output_step))
+    return dataset(_legs_and_payload(path), {"time": path.time}, attributes(path.study, remarks))
 
 
 def inverse_dynamics(
@@ -88,17 +87,14 @@ def inverse_dynamics(
     InputError
         As `inverse_kinematics`.
     """
-    study = _study(robot, motion, load, duration, output_step)
-    remarks, t = check_geometry(study), _instants(study)
-    path = rigid.poses(study.robot, study.motion, t)
-    forces = rigid.inverse_dynamics(study.robot, path, rigid.wrench(study.load, t))
-    values = rigid_path(study.robot, path) | {
-        "actuator_force_rigid": forces.actuator_force,
-        "joint_force_rigid": forces.joint_force,
-        "base_force_rigid": forces.base_force,
-        "base_moment_rigid": forces.base_moment,
+    path, remarks = _path(_study(robot, motion, load, duration, output_step))
+    values = _legs_and_payload(path) | {
+        "actuator_force_rigid": path.forces.actuator_force,
+        "joint_force_rigid": path.forces.joint_force,
+        "base_force_rigid": path.forces.base_force,
+        "base_moment_rigid": path.forces.base_moment,
     }
-    return dataset(values, {"time": t}, attributes(study, [*study.warnings, *remarks]))
+    return dataset(values, {"time": path.time}, attributes(path.study, remarks))
 
 
 def forward_kinematics(
@@ -155,17 +151,17 @@ def forward_kinematics(
     return result.isel(time=0, drop=True) if single else result
 
 
-def rigid_path(robot: model.Robot, path: rigid.Poses) -> dict[str, Array]:
-    """Legs and payload of the rigid robot along T poses, by name."""
-    legs = rigid.inverse_kinematics(robot, path)
+def _legs_and_payload(path: RigidPath) -> dict[str, Array]:
+    """Legs and payload of the rigid robot along its path, by name."""
+    legs, poses, payload = path.legs, path.poses, path.robot.payload
     return {
         "leg_length_command": legs.length,
         "leg_length_rate": legs.rate,
         "leg_length_acceleration": legs.accel,
         "leg_angle_rigid": np.stack([legs.alpha, legs.beta], axis=-1),
-        "com_position_rigid": path.point(robot.payload.com)[0],
-        "tool_position_rigid": path.point(robot.payload.tool)[0],
-        "platform_quaternion_rigid": quaternion(path.rotation),
+        "com_position_rigid": poses.place(payload.com),
+        "tool_position_rigid": poses.place(payload.tool),
+        "platform_quaternion_rigid": quaternion(poses.rotation),
     }
 
 
@@ -187,6 +183,9 @@ def _study(
     return model.override(study, duration=duration, output_step=output_step)
 
 
-def _instants(study: model.Study) -> Array:
-    simulation = study.simulation
-    return np.arange(simulation.outputs(study.duration) + 1, dtype=float) * simulation.stored_step
+def _path(study: model.Study) -> tuple[RigidPath, list[str]]:
+    """The path at the instants of the output, once it has been checked, and remarks."""
+    simulation, path = study.simulation, RigidPath(study)
+    remarks = check_geometry(study, path)
+    instants = np.arange(simulation.outputs(study.duration) + 1, dtype=float) * simulation.stored_step
+    return path.at(instants), [*study.warnings, *remarks]

@@ -9,11 +9,12 @@ from flexapod import model
 from flexapod.solve.robot_march import RobotMarch, prepare
 from flexapod.study.actuator import simulate_actuator
 from flexapod.study.after.plausibility import robot_warnings
-from flexapod.study.after.results import rigid_force_results, rigid_path, robot_coords, robot_results
+from flexapod.study.after.results import rigid_force_results, robot_coords, robot_results
 from flexapod.study.arguments import LoadLike, RobotLike, StartLike, as_study, read
 from flexapod.study.attributes import attributes, march_attributes
 from flexapod.study.before.checks import check_path
 from flexapod.study.names import dataset
+from flexapod.study.path import RigidPath
 from flexapod.study.record import Progress, Record, collect, finished
 from flexapod.typing import Array
 
@@ -25,18 +26,18 @@ __all__ = ["Simulated", "run", "simulate", "simulated"]
 
 @dataclass(frozen=True, kw_only=True)
 class Simulated:
-    """A simulation of a robot before its results have names: study, prepared march, record, remarks on the path."""
+    """A simulation of a robot before its results have names: study, path, prepared march, record, remarks."""
 
     study: model.Study
+    path: RigidPath
     march: RobotMarch
     record: Record
     remarks: list[str]
 
     def values(self) -> dict[str, Array]:
         """The variables of the Dataset as plain arrays; single groups of them are functions of `study.results`."""
-        path = rigid_path(self.study, self.record.time)
-        found = robot_results(self.study, self.march.system, self.record, path)
-        return found | rigid_force_results(self.study.robot, path)
+        path = self.path.at(self.record.time)
+        return robot_results(self.study, self.march.system, self.record, path) | rigid_force_results(path)
 
     def warnings(self) -> list[str]:
         """Remarks on the study, its path and its results."""
@@ -64,10 +65,10 @@ def simulated(study: model.Study, progress: Progress | None = None) -> Simulated
     InputError, ComputationError
         As `simulate`.
     """
-    remarks = check_path(study)
-    march = prepare(study)
+    path = RigidPath(study)
+    remarks, march = check_path(study, path), prepare(study)
     record = collect(march.chunks, march.system.kernel.shapes.l_index, study.duration, progress)
-    return Simulated(study=study, march=march, record=record, remarks=remarks)
+    return Simulated(study=study, path=path, march=march, record=record, remarks=remarks)
 
 
 def simulate(

@@ -14,8 +14,9 @@ from flexapod.fem.reduction import StationModel, reduced_beam
 from flexapod.fem.sliding import HubMotion, SlidingBeam, slide
 from flexapod.study.arguments import FileLike, read
 from flexapod.study.attributes import attributes
-from flexapod.study.before.checks import check_actuator_path, path_instants
+from flexapod.study.before.checks import check_actuator_path
 from flexapod.study.names import ACTUATOR_FORMS, Variable, dataset
+from flexapod.study.path import path_instants
 from flexapod.study.record import Interrupted, Progress
 from flexapod.typing import Array
 

@@ -2,8 +2,6 @@
 
 from __future__ import annotations
 
-from dataclasses import dataclass
-
 import numpy as np
 from numpy.typing import ArrayLike
 
@@ -13,43 +11,25 @@ from flexapod.rigid.rotations import canonical, difference, matrix, quaternion
 from flexapod.rigid.trajectory import coordinates
 from flexapod.solve.system import System
 from flexapod.study.after.causes import deviation_by_cause, length_errors
+from flexapod.study.path import RigidPath
 from flexapod.study.record import Record
 from flexapod.typing import Array
 
 __all__ = [
-    "RigidPath",
     "cause_results",
     "command_results",
     "energy_results",
     "leg_results",
     "payload_results",
     "rigid_force_results",
-    "rigid_path",
     "robot_coords",
     "robot_results",
 ]
 
 
-@dataclass(frozen=True, kw_only=True)
-class RigidPath:
-    """The rigid robot at T instants: poses, legs, and the wrench (T, 6) at the tool, world axes."""
-
-    time: Array
-    poses: rigid.Poses
-    legs: rigid.LegState
-    wrench: Array
-
-
-def rigid_path(study: Study, t: Array) -> RigidPath:
-    """The commanded path of a study at instants (T,) [s]."""
-    poses = rigid.poses(study.robot, study.motion, t)
-    legs = rigid.inverse_kinematics(study.robot, poses)
-    return RigidPath(time=t, poses=poses, legs=legs, wrench=rigid.wrench(study.load, t))
-
-
-def robot_results(study: Study, system: System, record: Record, path: RigidPath | None = None) -> dict[str, Array]:
-    """All variables of a robot's simulation but the rigid forces, by name; `path` where it is known already."""
-    robot, path = study.robot, path or rigid_path(study, record.time)
+def robot_results(study: Study, system: System, record: Record, path: RigidPath) -> dict[str, Array]:
+    """All variables of a robot's simulation but the rigid forces, by name; `path` at the recorded instants."""
+    robot = study.robot
     legs = leg_results(robot, system, path, record)
     return {
         **payload_results(robot, path, record),
@@ -137,10 +117,9 @@ def cause_results(robot: Robot, system: System, path: RigidPath, record: Record,
     }
 
 
-def rigid_force_results(robot: Robot, path: RigidPath) -> dict[str, Array]:
+def rigid_force_results(path: RigidPath) -> dict[str, Array]:
     """Drive and joint forces of the rigid robot."""
-    forces = rigid.inverse_dynamics(robot, path.poses, path.wrench, path.legs)
-    return {"actuator_force_rigid": forces.actuator_force, "joint_force_rigid": forces.joint_force}
+    return {"actuator_force_rigid": path.forces.actuator_force, "joint_force_rigid": path.forces.joint_force}
 
 
 def energy_results(record: Record) -> dict[str, Array]:

@@ -2,8 +2,6 @@
 
 from __future__ import annotations
 
-from dataclasses import dataclass
-
 import numpy as np
 
 from flexapod import rigid
@@ -13,9 +11,10 @@ from flexapod.rigid.kinematics import BETA_LIMIT
 from flexapod.rigid.workspace import LONGEST, PULLED_OUT, SHORTEST
 from flexapod.solve.modes import refuse_pure_force
 from flexapod.study.before.timing import check_outputs
+from flexapod.study.path import RigidPath, path_instants
 from flexapod.typing import Array
 
-__all__ = ["check_actuator_path", "check_geometry", "check_path", "path_instants", "path_remarks"]
+__all__ = ["check_actuator_path", "check_geometry", "check_path", "path_remarks"]
 
 SINGULAR = 1e-8  # smallest singular value of the scaled Jacobian below which a pose is refused
 NEAR_SINGULAR = 0.05  # and below which it is remarked on: leg forces and length errors are magnified about 20 times
@@ -23,29 +22,14 @@ NEAR_SINGULAR = 0.05  # and below which it is remarked on: leg forces and length
 _KEYS = {SHORTEST: "leg.stroke.min", LONGEST: "leg.stroke.max", PULLED_OUT: "leg.piston.length"}
 
 
-@dataclass(frozen=True, kw_only=True)
-class _Path:
-    """A path: instants (T,), lengths and angles beta of base joints (T, legs), the pose nearest to singular."""
-
-    t: Array
-    length: Array
-    beta: Array
-    nearest: rigid.NearestSingularity
-
-    @classmethod
-    def of(cls, robot: Robot, t: Array, poses: rigid.Poses) -> _Path:
-        length, _, beta = rigid.leg_directions(robot, poses)
-        return cls(t=t, length=length, beta=beta, nearest=rigid.nearest_singularity(robot, poses))
-
-
-def path_instants(study: Study | ActuatorStudy) -> Array:
-    """Instants at which a path is looked at [s]: those of the output, at least 2001, at most 50001."""
-    count = int(np.clip(study.duration / study.simulation.output_step, 2000, 50000).round())
-    return np.linspace(0.0, study.duration, count + 1)
-
-
-def check_path(study: Study) -> list[str]:
+def check_path(study: Study, path: RigidPath | None = None) -> list[str]:
     """Refuse a study whose path no robot could follow; return remarks on what is only doubtful.
+
+    Parameters
+    ----------
+    study : Study
+    path : RigidPath, optional
+        Its path at `path_instants`, where it is known.
 
     Raises
     ------
@@ -59,42 +43,43 @@ def check_path(study: Study) -> list[str]:
             refuse_pure_force(study.robot, "the equilibrium start")
     except InputError as error:
         raise error.located(file=study.path) from None
-    return check_geometry(study)
+    return check_geometry(study, path)
 
 
-def check_geometry(study: Study) -> list[str]:
+def check_geometry(study: Study, path: RigidPath | None = None) -> list[str]:
     """The checks of `check_path` that concern the path alone."""
+    path, robot = path or RigidPath(study), study.robot
     try:
         remarks = check_outputs(study)
-        t = path_instants(study)
-        path = _Path.of(study.robot, t, rigid.poses(study.robot, study.motion, t))
-        _refuse_excess(study.robot, path)
-        _refuse_folded(path)
-        _refuse_singular(path)
+        t, (length, _, beta) = path.time, rigid.leg_directions(robot, path.poses)
+        _refuse_excess(robot, t, length)
+        _refuse_folded(t, beta)
+        nearest = rigid.nearest_singularity(robot, path.poses)
+        _refuse_singular(t, nearest)
     except InputError as error:
         raise error.located(file=study.path) from None
-    return remarks + _remarks(study.robot, path)
+    return remarks + _remarks(robot, t, length, nearest)
 
 
 def path_remarks(robot: Robot, t: Array, poses: rigid.Poses) -> list[str]:
     """Remarks on poses near a singularity and pistons that reach behind their universal joint."""
-    return _remarks(robot, _Path.of(robot, t, poses))
+    length = rigid.leg_directions(robot, poses)[0]
+    return _remarks(robot, t, length, rigid.nearest_singularity(robot, poses))
 
 
-def _remarks(robot: Robot, path: _Path) -> list[str]:
-    remarks = [e.message for e in rigid.pull_out(robot, path.t, path.length) if not e.fatal]
-    found = path.nearest
+def _remarks(robot: Robot, t: Array, length: Array, found: rigid.NearestSingularity) -> list[str]:
+    remarks = [e.message for e in rigid.pull_out(robot, t, length) if not e.fatal]
     if found.smallest_singular_value < NEAR_SINGULAR:
         remarks.append(
-            f"the path comes near a singular pose at t = {path.t[found.worst]:.6g} s: smallest singular value "
+            f"the path comes near a singular pose at t = {t[found.worst]:.6g} s: smallest singular value "
             f"{found.smallest_singular_value:.3g} of the scaled Jacobian, condition {found.condition:.3g} "
             f"(remarked on below {NEAR_SINGULAR:g})"
         )
     return remarks
 
 
-def _refuse_excess(robot: Robot, path: _Path) -> None:
-    found = [*rigid.strokes(robot, path.t, path.length), *rigid.pull_out(robot, path.t, path.length)]
+def _refuse_excess(robot: Robot, t: Array, length: Array) -> None:
+    found = [*rigid.strokes(robot, t, length), *rigid.pull_out(robot, t, length)]
     fatal = [e for e in found if e.fatal]
     if not fatal:
         return
@@ -108,28 +93,27 @@ def _refuse_excess(robot: Robot, path: _Path) -> None:
     )
 
 
-def _refuse_folded(path: _Path) -> None:
-    beta = path.beta
+def _refuse_folded(t: Array, beta: Array) -> None:
     if np.abs(beta).max() <= BETA_LIMIT:
         return
     k, leg = np.unravel_index(np.abs(beta).argmax(), beta.shape)
-    first = path.t[np.argmax(np.abs(beta[:, leg]) > BETA_LIMIT)]
+    first = t[np.argmax(np.abs(beta[:, leg]) > BETA_LIMIT)]
     raise InputError(
         f"the universal joint of leg {leg + 1} folds to beta = {np.rad2deg(beta[k, leg]):.1f} deg "
-        f"at t = {path.t[k]:.6g} s (beyond the limit from t = {first:.6g} s on)",
+        f"at t = {t[k]:.6g} s (beyond the limit from t = {first:.6g} s on)",
         key="leg.u_axis",
         allowed="|beta| at most 85 deg",
         next_step="Turn the universal joint's first axis (u_axis), or reduce the motion",
     )
 
 
-def _refuse_singular(path: _Path) -> None:
-    found, words = path.nearest, ""
+def _refuse_singular(t: Array, found: rigid.NearestSingularity) -> None:
+    words = ""
     if found.smallest_singular_value < SINGULAR:
-        words = f"is singular at t = {path.t[found.worst]:.6g} s"
+        words = f"is singular at t = {t[found.worst]:.6g} s"
     elif len(found.sign_changes):
         k = int(found.sign_changes[0])
-        words = f"passes through a singular pose between t = {path.t[k]:.6g} and {path.t[k + 1]:.6g} s"
+        words = f"passes through a singular pose between t = {t[k]:.6g} and {t[k + 1]:.6g} s"
     if words:
         raise InputError(
             f"the path {words}: smallest singular value {found.smallest_singular_value:.2g} of the scaled Jacobian",

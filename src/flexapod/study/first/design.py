@@ -8,13 +8,13 @@ import numpy as np
 
 from flexapod import model, rigid
 from flexapod.errors import InputError
-from flexapod.study.before.checks import path_instants
 from flexapod.study.before.describe.robot import describe_legs
 from flexapod.study.before.estimates import buckling_load
 from flexapod.study.first import sizes
 from flexapod.study.first.request import OPTION, Request
 from flexapod.study.first.sizes import Body, Joints, Leg
 from flexapod.study.first.written import Plan, written
+from flexapod.study.path import RigidPath
 from flexapod.words import text
 
 __all__ = ["first_robot"]
@@ -140,8 +140,7 @@ def _nice(value: float, *, turning: bool) -> float:
 def _safety(plan: Plan) -> float:
     """How many times the loads of the path a leg bears before it yields, or buckles at its longest."""
     study: model.Study = model.loads(written(plan))  # type: ignore[assignment]
-    t = path_instants(study)
-    legs = describe_legs(study, t, rigid.poses(study.robot, study.motion, t))
+    legs = describe_legs(RigidPath(study))
     first = study.robot.legs[0]
     euler = float(buckling_load(first, np.array([plan.leg.longest - plan.leg.mouth]))[0])
     thrust = max(max(leg.force_max.value for leg in legs), 0.0)

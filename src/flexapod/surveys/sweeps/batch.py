@@ -10,14 +10,14 @@ from typing import Any
 
 import numpy as np
 
-from flexapod import rigid
 from flexapod.errors import ComputationError, FlexapodError
 from flexapod.model import ActuatorStudy, Study
 from flexapod.solve.robot_march import prepare
 from flexapod.study.actuator import simulate_actuator
 from flexapod.study.after.plausibility import robot_warnings
-from flexapod.study.after.results import robot_results
+from flexapod.study.after.results import rigid_force_results, robot_results
 from flexapod.study.before.checks import check_path
+from flexapod.study.path import RigidPath
 from flexapod.study.record import Record, collect
 from flexapod.surveys.sweeps.identity import this_version
 from flexapod.surveys.sweeps.kept import ACTUATOR_SCALARS, Kept
@@ -104,11 +104,12 @@ def _remarked(result: PointResult, kept: Kept, absent: Sequence[str]) -> PointRe
 
 
 def _robot(kept: Kept, study: Study) -> PointResult:
-    remarks = [*study.warnings, *check_path(study)]
+    path = RigidPath(study)
+    remarks = [*study.warnings, *check_path(study, path)]
     march = prepare(study)
     record = collect(march.chunks, march.system.kernel.shapes.l_index, study.duration, None)
     _refuse_partial(record.failure, record.interrupted, float(record.time[-1]))
-    run = RobotRun(study, march.system, record, march.counters)
+    run = RobotRun(study, march.system, record, march.counters, path.at(record.time))
     values: dict[str, Array] = {name: np.asarray(ROBOT_SCALARS[name].value(run)) for name in kept.scalars}
     if kept.records:
         whole = _whole(kept, study, run, record)
@@ -119,10 +120,9 @@ def _robot(kept: Kept, study: Study) -> PointResult:
 
 def _whole(kept: Kept, study: Study, run: RobotRun, record: Record) -> dict[str, Array]:
     """All variables over time; rigid forces only where they are kept."""
-    values = robot_results(study, run.system, record)
+    values = robot_results(study, run.system, record, run.path)
     if {"actuator_force_rigid", "joint_force_rigid"} & set(kept.records):
-        forces = rigid.inverse_dynamics(study.robot, run.path, rigid.wrench(study.load, record.time))
-        values |= {"actuator_force_rigid": forces.actuator_force, "joint_force_rigid": forces.joint_force}
+        values |= rigid_force_results(run.path)
     return values
 
 

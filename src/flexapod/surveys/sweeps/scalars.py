@@ -18,6 +18,7 @@ from flexapod.solve.recording import Counters
 from flexapod.solve.system import System
 from flexapod.study.after.plausibility import leg_stress
 from flexapod.study.after.results import robot_results
+from flexapod.study.path import RigidPath
 from flexapod.study.record import Record
 from flexapod.typing import Array
 
@@ -45,16 +46,13 @@ class RobotRun:
     system: System
     record: Record
     counters: Counters
-
-    @cached_property
-    def path(self) -> rigid.Poses:
-        """The rigid path at the stored instants."""
-        return rigid.poses(self.study.robot, self.study.motion, self.record.time)
+    path: RigidPath
+    """At the stored instants."""
 
     @cached_property
     def com_rigid(self) -> Array:
         """Centre of mass on the rigid path, (T, 3) [m]."""
-        return self.path.point(self.study.robot.payload.com)[0]
+        return self.path.poses.place(self.study.robot.payload.com)
 
     @cached_property
     def com_deviation(self) -> Array:
@@ -70,12 +68,12 @@ class RobotRun:
     def tool_deviation(self) -> Array:
         """Deviation of the tool, (T, 3) [m]."""
         load = self.study.robot.payload
-        return self.record.pose[:, :3] + self.turn @ (load.tool - load.com) - self.path.point(load.tool)[0]
+        return self.record.pose[:, :3] + self.turn @ (load.tool - load.com) - self.path.poses.place(load.tool)
 
     @cached_property
     def rotation_deviation(self) -> Array:
         """Angle between flexible and rigid platform, (T,) [rad]."""
-        return np.linalg.norm(difference(self.record.pose[:, 3:], quaternion(self.path.rotation)), axis=1)
+        return np.linalg.norm(difference(self.record.pose[:, 3:], quaternion(self.path.poses.rotation)), axis=1)
 
     @cached_property
     def actuator_force(self) -> Array:
@@ -119,7 +117,9 @@ class RobotRun:
         size = float(deviation[at] @ deviation[at])
         if size == 0.0:
             return np.zeros(3)
-        shares = robot_results(self.study, self.system, _instant(self.record, at))["deviation_by_cause"][0]
+        one = _instant(self.record, at)
+        path = RigidPath(self.study, one.time)
+        shares = robot_results(self.study, self.system, one, path)["deviation_by_cause"][0]
         return shares.sum(axis=1) @ deviation[at] / size
 
     @property

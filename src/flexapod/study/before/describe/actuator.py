@@ -9,7 +9,8 @@ import numpy as np
 from flexapod import model, rigid
 from flexapod.errors import FlexapodError
 from flexapod.solve.actuator_modes import actuator_modes
-from flexapod.study.before.checks import check_actuator_path, path_instants
+from flexapod.study.before.checks import check_actuator_path
+from flexapod.study.path import path_instants
 
 __all__ = ["ActuatorDescription", "BeamDescription", "describe_actuator"]
 

@@ -9,11 +9,12 @@ import numpy as np
 from flexapod import model, rigid
 from flexapod.errors import InputError
 from flexapod.solve.robot_march import refuse_massless
-from flexapod.study.before.checks import check_path, path_instants
+from flexapod.study.before.checks import check_path
 from flexapod.study.before.describe.actuator import ActuatorDescription, describe_actuator
 from flexapod.study.before.describe.leg import LegDescription, describe_leg, load_remarks
 from flexapod.study.before.describe.pose import PoseDescription, VibrationToExpect, describe_pose, vibration_to_expect
 from flexapod.study.before.estimates import bending_moment
+from flexapod.study.path import RigidPath
 from flexapod.study.words import held
 from flexapod.typing import Array
 
@@ -66,9 +67,9 @@ def describe(study: model.Study | model.ActuatorStudy) -> RobotDescription | Act
     """
     if isinstance(study, model.ActuatorStudy):
         return describe_actuator(study)
-    remarks, t = [*check_path(study), *_in_time(study)], path_instants(study)
-    path = rigid.poses(study.robot, study.motion, t)
-    legs, singularity = describe_legs(study, t, path), _singularity(study.robot, t, path)
+    path = RigidPath(study)
+    remarks = [*check_path(study, path), *_in_time(study)]
+    legs, singularity = describe_legs(path), _singularity(study.robot, path.time, path.poses)
     end = min(study.motion.end_time - study.motion.hold, study.duration)
     instants = {"start": 0.0, "end of the motion": end}
     worst = singularity.time
@@ -110,14 +111,11 @@ def _singularity(robot: model.Robot, t: Array, path: rigid.Poses) -> Singularity
     )
 
 
-def describe_legs(study: model.Study, t: Array, path: rigid.Poses) -> tuple[LegDescription, ...]:
-    """Extremes of the legs on the rigid `path` of a study at instants `t` (T,) [s]."""
-    robot = study.robot
-    state = rigid.inverse_kinematics(robot, path)
-    forces = rigid.inverse_dynamics(robot, path, rigid.wrench(study.load, t))
-    axes = (path.point(robot.platform_joints)[0] - robot.base_joints) / state.length[..., None]
-    thrust = np.einsum("tli,tli->tl", forces.joint_force, axes)
-    moment = bending_moment(robot, path, state, forces)
+def describe_legs(path: RigidPath) -> tuple[LegDescription, ...]:
+    """Extremes of the legs on the rigid path of a study."""
+    robot, t, state, forces = path.robot, path.time, path.legs, path.forces
+    thrust = np.einsum("tli,tli->tl", forces.joint_force, path.axes)
+    moment = bending_moment(robot, path.poses, state, forces)
     return tuple(
         describe_leg(
             i + 1, leg, t, state.length[:, i], forces.actuator_force[:, i], thrust[:, i], moment[:, i],

@@ -1,0 +1,76 @@
+"""The rigid robot on its commanded path: computed once, and handed on to checks, estimates and results."""
+
+from __future__ import annotations
+
+from functools import cached_property
+
+import numpy as np
+
+from flexapod import rigid
+from flexapod.model import ActuatorStudy, Study
+from flexapod.typing import Array
+
+__all__ = ["RigidPath", "path_instants"]
+
+FEWEST, MOST = 2000, 50_000  # intervals at which a path is looked at
+SAME = 1e-9  # instants nearer to each other than this part of the step between them are the same
+
+
+def path_instants(study: Study | ActuatorStudy) -> Array:
+    """Instants at which a path is looked at [s]: those of the output, at least 2001, at most 50001."""
+    count = int(np.clip(study.duration / study.simulation.output_step, FEWEST, MOST).round())
+    return np.linspace(0.0, study.duration, count + 1)
+
+
+class RigidPath:
+    """The commanded path of a robot's study at T instants; each part is computed when it is asked for, once.
+
+    Parameters
+    ----------
+    study : Study
+    time : ndarray, shape (T,), optional
+        [s]; default: `path_instants`.
+    poses : Poses, optional
+        Of the platform frame at these instants, where they are known.
+    """
+
+    def __init__(self, study: Study, time: Array | None = None, poses: rigid.Poses | None = None) -> None:
+        self.study, self.robot = study, study.robot
+        self.time = path_instants(study) if time is None else time
+        if poses is not None:
+            self.poses = poses
+
+    @cached_property
+    def poses(self) -> rigid.Poses:
+        """Poses of the platform frame with rates and accelerations."""
+        return rigid.poses(self.robot, self.study.motion, self.time)
+
+    @cached_property
+    def legs(self) -> rigid.LegState:
+        """Legs with rates and accelerations."""
+        return rigid.inverse_kinematics(self.robot, self.poses)
+
+    @cached_property
+    def wrench(self) -> Array:
+        """Load at the tool, world axes, (T, 6)."""
+        return rigid.wrench(self.study.load, self.time)
+
+    @cached_property
+    def forces(self) -> rigid.RigidForces:
+        """Forces of drives and joints."""
+        return rigid.inverse_dynamics(self.robot, self.poses, self.wrench, self.legs)
+
+    @cached_property
+    def axes(self) -> Array:
+        """Unit vectors from base to platform joint, (T, legs, 3)."""
+        return (self.poses.place(self.robot.platform_joints) - self.robot.base_joints) / self.legs.length[..., None]
+
+    def at(self, t: Array) -> RigidPath:
+        """The path at other instants: this one, or what is known of its poses, where it has them."""
+        count = len(t)
+        known = self.time[:count]
+        if len(known) != count or np.abs(known - t).max() > SAME * (self.time[-1] / len(self.time)):
+            return RigidPath(self.study, t)
+        if count == len(self.time):
+            return self
+        return RigidPath(self.study, t, self.poses.part(slice(0, count)))
