@@ -11,7 +11,7 @@ from flexapod.app.view import charts as view_charts
 from flexapod.app.view import legend
 from flexapod.plot.style import LEG_COLORS
 from flexapod.scene import geometry
-from flexapod.scene.robot import STATIONS
+from flexapod.scene.skeleton import STATIONS
 
 
 @cache
@@ -166,11 +166,10 @@ def test_orientation_turns_z_into_a_direction():
         assert rotation(q)[:, 2] == pytest.approx(d / np.linalg.norm(d), abs=1e-12)
 
 
-def test_platform_rotation_of_a_drawn_robot():
+def test_rotation_of_a_drawn_robot():
     study, data = robot_run()
     now = geometry.RobotMotion(study, data).at(0.3, 1.0)
-    found = geometry.platform_rotation(study.robot, now.flexible)
-    assert rotation(found) == pytest.approx(rotation(data.platform_quaternion.values[now.index]), abs=1e-12)
+    assert now.flexible.rotation == pytest.approx(rotation(data.platform_quaternion.values[now.index]), abs=1e-12)
 
 
 def test_paths_are_thinned_and_keep_their_ends():

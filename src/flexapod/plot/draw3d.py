@@ -14,13 +14,15 @@ from mpl_toolkits.mplot3d.art3d import Line3DCollection, Poly3DCollection
 
 from flexapod.plot.style import NOTE, SMALL, ink
 from flexapod.scene.colours import colors_of_legs
-from flexapod.scene.robot import Scene
+from flexapod.scene.skeleton import Scene, around
 
 __all__ = ["draw_ghost", "draw_robot", "head", "space", "view"]
 
 CYLINDER = "#8A8F98"
 BASE = "#4A4F57"
 PLATFORM = "#2F6690"
+#: Size and mark of joints by their letter; hinges are short lines along their axes.
+JOINTS = {"U": (14, "o"), "S": (18, "o"), "F": (16, "s")}
 _FREE: Any = {"axes.titley": None}  # titles go above what is drawn
 _NUMBER: dict[str, Any] = {"fontsize": NOTE, "path_effects": [withStroke(linewidth=2.0, foreground="white")]}
 
@@ -45,7 +47,7 @@ def head(axes: Any, words: str, **style: Any) -> None:
 
 def view(axes: Any, scenes: Sequence[Scene], zoom: float = 1.0) -> None:
     """Limits that hold all scenes, in equal scale, with world axes in mm."""
-    points = np.concatenate([np.vstack([s.base, s.platform, s.com[None]]) for s in scenes])
+    points = np.concatenate([s.points for s in scenes])
     low, high = points.min(axis=0), points.max(axis=0)
     low, high = low - 0.06 * (high - low).max(), high + 0.06 * (high - low).max()
     low[2] = min(low[2], 0.0)
@@ -62,18 +64,28 @@ def view(axes: Any, scenes: Sequence[Scene], zoom: float = 1.0) -> None:
 
 def draw_robot(axes: Any, s: Scene, *, numbers: bool = True, legs: Sequence[str] = ()) -> None:
     """Draw a robot: grey cylinders, coloured pistons, translucent platform, cross-hair at the centre of mass."""
-    _plate(axes, s.base, BASE, 0.12)
+    _plate(axes, s.skeleton.robot.base_joints, BASE, 0.12)
+    _segments(axes, s.guides, BASE, 1.4, 3)
     legs = legs or colors_of_legs(len(s.base))
     for i in range(len(s.base)):
-        _line(axes, s.base[i], s.mouth[i], color=CYLINDER, linewidth=6, zorder=3)
+        if not np.array_equal(s.base[i], s.mouth[i]):
+            _line(axes, s.base[i], s.mouth[i], color=CYLINDER, linewidth=6, zorder=3)
         x, y, z = 1e3 * s.piston[i].T
         axes.plot(x, y, z, color=legs[i], linewidth=2.6, solid_capstyle="round", zorder=4)
         if numbers:
             outward = s.base[i] * np.array([1.2, 1.2, 0.0]) + np.array([0, 0, s.base[i, 2]])
             axes.text(*(1e3 * outward), str(i + 1), color=ink(legs[i]), ha="center", va="center", zorder=9, **_NUMBER)
     _plate(axes, s.platform, PLATFORM, 0.35)
-    _dots(axes, s.base, BASE, 14)
-    _dots(axes, s.platform, PLATFORM, 18)
+    for points, end, color in ((s.base, 0, BASE), (s.platform, 1, PLATFORM)):
+        kinds = np.array([joints[end] for joints in s.skeleton.joints])
+        for kind, (size, marker) in JOINTS.items():
+            if (kinds == kind).any():
+                axes.scatter(
+                    *(1e3 * points[kinds == kind].T), s=size, marker=marker, color=color, depthshade=False, zorder=6
+                )
+    _segments(axes, s.hinges, "#222222", 3.2, 6)
+    if s.skeleton.robot.payload is None:
+        return
     _line(axes, s.centre, s.com, color="#333333", linewidth=1.2, linestyle=(0, (4, 2)), zorder=6)
     x, y, z = 1e3 * s.com
     axes.plot(
@@ -84,32 +96,25 @@ def draw_robot(axes: Any, s: Scene, *, numbers: bool = True, legs: Sequence[str]
 
 def draw_ghost(axes: Any, s: Scene) -> None:
     """Draw a robot in pale lines, for comparison."""
-    segments = [1e3 * np.vstack([s.base[i][None], s.piston[i]]) for i in range(len(s.base))]
-    axes.add_collection3d(Line3DCollection(segments, colors="#BDBDBD", linewidths=1.0, zorder=1))
-    loop = s.platform[_around(s.platform)]
+    _segments(axes, np.concatenate([s.base[:, None], s.piston], axis=1), "#BDBDBD", 1.0, 1)
+    loop = s.platform[around(s.platform)]
     closed = 1e3 * np.vstack([loop, loop[:1]])
     axes.plot(*closed.T, color="#BDBDBD", linewidth=1.0, zorder=1)
     axes.plot(*(1e3 * s.com[:, None]), marker="o", markersize=6, color="#BDBDBD", zorder=1)
     axes.plot(*(1e3 * np.stack([s.centre, s.com]).T), color="#BDBDBD", linewidth=1.0, zorder=1)
 
 
-def _around(points: np.ndarray) -> np.ndarray:
-    """Order of coplanar points around their centre."""
-    arms = points - points.mean(axis=0)
-    _, _, directions = np.linalg.svd(arms)
-    flat = arms @ directions[:2].T
-    return np.argsort(np.arctan2(flat[:, 1], flat[:, 0]))
-
-
 def _plate(axes: Any, points: np.ndarray, color: str, alpha: float) -> None:
-    polygon = 1e3 * points[_around(points)]
+    polygon = 1e3 * points[around(points)]
     axes.add_collection3d(Poly3DCollection([polygon], facecolors=color, alpha=alpha, edgecolors="none", zorder=2))
     closed = np.vstack([polygon, polygon[:1]])
     axes.plot(*closed.T, color=color, linewidth=1.6, zorder=5 if alpha > 0.2 else 2)
 
 
-def _dots(axes: Any, points: np.ndarray, color: str, size: float) -> None:
-    axes.scatter(*(1e3 * points.T), s=size, color=color, depthshade=False, zorder=6)
+def _segments(axes: Any, lines: np.ndarray, color: str, width: float, above: int) -> None:
+    """Straight lines (n, 2, 3)."""
+    if len(lines):
+        axes.add_collection3d(Line3DCollection(list(1e3 * lines), colors=color, linewidths=width, zorder=above))
 
 
 def _line(axes: Any, start: np.ndarray, end: np.ndarray, **style: Any) -> None:

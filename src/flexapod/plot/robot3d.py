@@ -4,7 +4,6 @@ from __future__ import annotations
 
 from collections.abc import Sequence
 
-import numpy as np
 import xarray as xr
 from matplotlib.figure import Figure
 
@@ -70,10 +69,9 @@ def modes_3d(modes: xr.Dataset, show: Sequence[int] | None = None, size: float =
         rows, columns, left=0.0, right=1.0, bottom=0.0, top=1 - 0.11 / rows, hspace=0.14, wspace=0.0
     )
     rest = mode_scene(modes, labels[0], 1.0, phase=0.0)
-    height = float(np.ptp(np.vstack([rest.base, rest.platform])[:, 2]))
     for i, label in enumerate(labels):
         axes = space(fig, places[divmod(i, columns)])
-        moved = mode_scene(modes, label, size * height)
+        moved = mode_scene(modes, label, size * rest.height)
         draw_ghost(axes, rest)
         draw_robot(axes, moved, numbers=True)
         view(axes, [rest, moved], zoom=1.15)

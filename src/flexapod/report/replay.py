@@ -12,10 +12,10 @@ from flexapod import model
 from flexapod.errors import FlexapodError
 from flexapod.plot.style import FLEXIBLE, RIGID
 from flexapod.report.interactive import packed
-from flexapod.rigid.rotations import matrix
 from flexapod.scene.colours import colors_of_legs
-from flexapod.scene.geometry import ActuatorMotion, RobotMotion, platform_rotation
-from flexapod.scene.robot import STATIONS, Scene, mode_scene
+from flexapod.scene.geometry import ActuatorMotion, RobotMotion
+from flexapod.scene.robot import mode_scene
+from flexapod.scene.skeleton import STATIONS, Scene, Skeleton, around
 from flexapod.study.after.summary import POINT_WORDS, tool_apart
 from flexapod.study.words import cleared_lines, number, scale
 from flexapod.typing import Array
@@ -23,7 +23,7 @@ from flexapod.typing import Array
 if TYPE_CHECKING:
     from xarray import Dataset
 
-    from flexapod.model import ActuatorStudy, Robot, Study
+    from flexapod.model import ActuatorStudy, Study
 
 __all__ = ["locked_modes", "replay"]
 
@@ -81,9 +81,9 @@ def _robot(study: Study, data: Dataset, modes: Dataset | None) -> dict[str, Any]
     motion = RobotMotion(study, data)
     chosen, factor = _chosen(len(motion.time)), motion.automatic_scale()
     times = motion.time[chosen]
-    robot, point = study.robot, "tool" if tool_apart(data) else "com"
-    frames = np.array([_points(robot, at.flexible, at.rigid) for at in (motion.at(time, factor) for time in times)])
-    played = [] if modes is None else _modes(robot, modes)
+    point = "tool" if tool_apart(data) else "com"
+    frames = np.array([_points(at.flexible, at.rigid) for at in (motion.at(time, factor) for time in times)])
+    played = [] if modes is None else _modes(modes)
     everything = [frames, *(part for mode in played for part in mode["ends"])]
     deviation = data[f"{point}_deviation"].values[chosen]
     numbers = cleared_lines(np.vstack([deviation.T, np.linalg.norm(deviation, axis=1)])).T
@@ -91,61 +91,68 @@ def _robot(study: Study, data: Dataset, modes: Dataset | None) -> dict[str, Any]
         **_frames(times, frames, f"deflections and deviation drawn {number(factor)} times larger"),
         **_values(f"deviation of the {POINT_WORDS[point]}", numbers, (*"xyz", "distance")),
         "mouse": "Drag to turn, scroll to come nearer",
-        "traces": [*_paths(frames, POINT_WORDS[point]), *_robot_traces(robot, point)],
+        "traces": [*_paths(frames, POINT_WORDS[point]), *_robot_traces(motion.skeleton, point)],
         "layout": _space(np.concatenate([part.reshape(-1, 3) for part in everything])),
         "modes": [{"title": mode["title"], "ends": [packed(part) for part in mode["ends"]]} for mode in played],
     }
 
 
-def _points(robot: Robot, flexible: Scene, rigid: Scene) -> Array:
-    """Points of a frame in mm: bases, pistons, both platforms, centre and centre of mass of both, tool of both.
+def _points(flexible: Scene, rigid: Scene) -> Array:
+    """Points of a frame in mm: base joints, pistons, both platforms, rails, cranks and hinges, centres, tools.
 
-    Of both: of the flexible robot, then of the rigid one.
+    Of both: of the flexible robot, then of the rigid one. Where carriages move them, base joints at home come first.
     """
     pistons = flexible.piston[:, ::EVERY].reshape(-1, 3)
     centres = [flexible.centre, flexible.com, rigid.centre, rigid.com]
-    tools = [at.centre + matrix(platform_rotation(robot, at)) @ robot.payload.tool for at in (flexible, rigid)]
-    return 1e3 * np.vstack([flexible.base, pistons, flexible.platform, rigid.platform, *centres, *tools])
+    tools = [at.centre + at.rotation @ at.skeleton.tool for at in (flexible, rigid)]
+    lines = np.concatenate([flexible.guides, flexible.hinges]).reshape(-1, 3)
+    ring = flexible.skeleton.robot.base_joints[: None if len(flexible.guides) else 0]
+    parts = (ring, flexible.base, pistons, flexible.platform, rigid.platform, lines)
+    return 1e3 * np.vstack([*parts, *centres, *tools])
 
 
-def _modes(robot: Robot, modes: Dataset) -> list[dict[str, Any]]:
+def _modes(modes: Dataset) -> list[dict[str, Any]]:
     """The lowest modes: title, points at rest and displaced."""
     labels = [int(label) for label in modes.mode.values[:MODES]]
     rest = mode_scene(modes, labels[0], 1.0, phase=0.0)
-    size = MODE_SIZE * float(np.ptp(np.vstack([rest.base, rest.platform])[:, 2]))
+    size = MODE_SIZE * rest.height
     found = []
     for label in labels:
         mode = modes.sel(mode=label)
         title = f"Mode {label}: {float(mode.frequency):.4g} Hz, {mode.kind.item()}"
         moved = mode_scene(modes, label, size)
-        found.append({"title": title, "ends": (_points(robot, rest, rest), _points(robot, moved, rest))})
+        found.append({"title": title, "ends": (_points(rest, rest), _points(moved, rest))})
     return found
 
 
-def _around(joints: Array, first: int) -> list[int]:
+def _ring(joints: Array, first: int) -> list[int]:
     """Numbers of the points of a ring of joints (legs, 3), the one after the other; its points begin at `first`."""
-    arms = joints - joints.mean(axis=0)
-    return [first + int(i) for i in np.argsort(np.arctan2(arms[:, 1], arms[:, 0]))]
+    return [first + int(i) for i in around(joints)]
 
 
-def _robot_traces(robot: Robot, point: str) -> Traces:
+def _robot_traces(skeleton: Skeleton, point: str) -> Traces:
     """Lines between the points of `_points`, in its order; the deviation is that of a point: ``com`` or ``tool``."""
-    legs, line = len(robot.legs), len(range(0, STATIONS, EVERY))
-    pistons = [list(range(legs + i * line, legs + (i + 1) * line)) for i in range(legs)]
-    start = legs + legs * line
-    base, platform = _around(robot.base_joints, 0), _around(robot.platform_joints, start)
+    robot, line = skeleton.robot, len(range(0, STATIONS, EVERY))
+    legs, rails, hinges = len(robot.legs), len(skeleton.home.guides), len(skeleton.home.hinges)
+    feet = legs if rails else 0
+    pistons = [list(range(feet + legs + i * line, feet + legs + (i + 1) * line)) for i in range(legs)]
+    start = feet + legs + legs * line
+    base, platform = _ring(robot.base_joints, 0), _ring(robot.platform_joints, start)
     rigid = [point + legs for point in platform]
-    centre, com, rigid_centre, rigid_com, tool, rigid_tool = range(start + 2 * legs, start + 2 * legs + 6)
+    guides, axes = start + 2 * legs, start + 2 * legs + 2 * rails
+    centre, com, rigid_centre, rigid_com, tool, rigid_tool = range(axes + 2 * hinges, axes + 2 * hinges + 6)
     apart = point == "tool"
-    ghost = [point for i in range(legs) for point in (i, start + legs + i, -1)]
+    ghost = [point for i in range(legs) for point in (feet + i, start + legs + i, -1)]
     ghost += [*rigid, rigid[0], -1, rigid_com, rigid_centre, *[rigid_tool] * apart]
-    cylinders = [point for i in range(legs) for point in (i, pistons[i][0], -1)]
+    cylinders = [point for i in range(legs) for point in (feet + i, pistons[i][0], -1)]
     colored = [
         _line(piston, color, 7, name=f"leg {i}", showlegend=False)
         for i, (piston, color) in enumerate(zip(pistons, colors_of_legs(legs), strict=True), start=1)
     ]
     return [
         _line([*base, base[0]], "#4A4F57", 3, name="base", showlegend=False),
+        *([_line(_pairs(guides, rails), "#4A4F57", 3, name="rails and cranks", showlegend=False)] if rails else []),
+        *([_line(_pairs(axes, hinges), "#222222", 8, name="hinges", showlegend=False)] if hinges else []),
         _line(ghost, RIGID, 2, name="rigid legs"),
         _line(cylinders, CYLINDER, 13, name="cylinders", showlegend=False),
         *colored,
@@ -156,9 +163,18 @@ def _robot_traces(robot: Robot, point: str) -> Traces:
         _dots([com], FLEXIBLE, 4, name="centre of mass, flexible"),
         _dots([rigid_com], CYLINDER, 4, name="centre of mass, rigid", symbol="circle-open"),
         *(_tool(tool, rigid_tool) if apart else []),
-        {**_dots(list(range(legs)), "#333333", 3, showlegend=False), "mode": "markers+text", "hoverinfo": "skip"}
+        {
+            **_dots(list(range(feet, feet + legs)), "#333333", 3, showlegend=False),
+            "mode": "markers+text",
+            "hoverinfo": "skip",
+        }
         | {"text": [str(i + 1) for i in range(legs)], "textposition": "bottom center"},
     ]
+
+
+def _pairs(first: int, count: int) -> list[int]:
+    """Lines from a point to the next one, `count` times."""
+    return [point for i in range(first, first + 2 * count, 2) for point in (i, i + 1, -1)]
 
 
 def _tool(flexible: int, rigid: int) -> Traces:

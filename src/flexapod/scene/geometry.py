@@ -9,8 +9,9 @@ import numpy as np
 from numpy.typing import NDArray
 
 from flexapod import model
-from flexapod.rigid.rotations import exponential, matrix, quaternion
-from flexapod.scene.robot import STATIONS, Scene, lateral_values, off_chord, placed
+from flexapod.rigid.rotations import exponential, matrix
+from flexapod.scene.robot import lateral_values
+from flexapod.scene.skeleton import STATIONS, Scene, Skeleton, around
 from flexapod.study.after.summary import tool_apart
 from flexapod.typing import Array
 
@@ -31,7 +32,6 @@ __all__ = [
     "nearest",
     "orientation",
     "plate",
-    "platform_rotation",
     "round_down",
     "strip",
     "tube",
@@ -74,7 +74,7 @@ class RobotMotion:
     """
 
     def __init__(self, study: model.Study, data: Dataset) -> None:
-        self.robot, self.time = study.robot, data.time.values
+        self.skeleton, self.time = Skeleton(study.robot), data.time.values
         self._com, self._deviation = data.com_position_rigid.values, data.com_deviation.values
         self._tool_deviation = data.tool_deviation.values
         self._arm = study.robot.payload.tool - study.robot.payload.com
@@ -100,33 +100,32 @@ class RobotMotion:
 
     def automatic_scale(self) -> float:
         """Factor at which the largest deflection of the motion is seen: 1, 2 or 5 times a power of ten, at least 1."""
-        arms = self.robot.platform_joints - self.robot.payload.com
-        moved = np.einsum("tij,kj->tki", self._rotation, arms)
+        robot = self.skeleton.robot
+        moved = np.einsum("tij,kj->tki", self._rotation, robot.platform_joints - self.skeleton.com)
         moved = self._deviation[:, None] + np.cross(self._turn[:, None], moved)
         sizes = (moved, self._deviation, self._tool_deviation, self._tip)
         largest = max(float(np.linalg.norm(part, axis=-1).max()) for part in sizes)
-        return factor_to_see(largest, float(self.robot.home_lengths.mean()))
+        return factor_to_see(largest, float(robot.home_lengths.mean()))
 
     def at(self, time: float, scale: float, point: str = "com") -> Instant:
         """The robot at the stored instant nearest to `time` [s], deflections drawn `scale` times larger.
 
         `point`: whose deviation is shown, "com" or "tool".
         """
-        i, robot = self.index(time), self.robot
+        i, skeleton = self.index(time), self.skeleton
         R, com = self._rotation[i], self._com[i]
-        turned = exponential(scale * self._turn[i]) @ R
-        moved = com + scale * self._deviation[i]
-        centre = moved - turned @ robot.payload.com
-        length = np.linalg.norm(centre + robot.platform_joints @ turned.T - robot.base_joints, axis=1)
-        offset = None
+        rigid = skeleton.at(com - R @ skeleton.com, R, com)
+        carriages = skeleton.carriages(rigid.platform)
+        turned, moved = exponential(scale * self._turn[i]) @ R, com + scale * self._deviation[i]
+        centre, offset = moved - turned @ skeleton.com, None
         if self._amplitude is not None and self._shapes is not None:
-            line = scale * self._amplitude[i] @ self._shapes
-            offset = off_chord(robot, length, line, scale * self._tip[i])
+            line, length = scale * self._amplitude[i] @ self._shapes, skeleton.lengths(centre, turned, carriages)
+            offset = skeleton.off_chord(line, scale * self._tip[i], length)
         arm = self._arm if point == "tool" else np.zeros(3)
         return Instant(
             index=i,
-            flexible=placed(robot, centre, turned, moved, offset),
-            rigid=placed(robot, com - R @ robot.payload.com, R, com),
+            flexible=skeleton.at(centre, turned, moved, offset, carriages),
+            rigid=rigid,
             start=com + R @ arm,
             end=moved + turned @ arm,
             deviation=(self._tool_deviation if point == "tool" else self._deviation)[i],
@@ -209,14 +208,6 @@ def round_down(factor: float) -> float:
     return float(max(step for step in (1.0, 2.0, 5.0) if step * power <= factor * (1 + 1e-12)) * power)
 
 
-def platform_rotation(robot: model.Robot, scene: Scene) -> Array:
-    """Platform to world (w x y z) of a drawn robot, from its joints and centre of mass."""
-    arms = np.vstack([robot.platform_joints, robot.payload.com])
-    seen = np.vstack([scene.platform, scene.com]) - scene.centre
-    u, _, v = np.linalg.svd(seen.T @ arms)  # the rotation closest to turning arms into what is seen
-    return quaternion(u @ np.diag([1.0, 1.0, np.linalg.det(u @ v)]) @ v)
-
-
 def orientation(direction: Array) -> Array:
     """Quaternions (w x y z) that turn the z axis into directions (..., 3)."""
     d = direction / np.linalg.norm(direction, axis=-1, keepdims=True)
@@ -249,17 +240,22 @@ def tube_faces(count: int, sides: int = 8) -> Faces:
 
 
 def plate(points: Array, thickness: float) -> tuple[Array, Faces]:
-    """A flat body over coplanar points (n, 3), `thickness` [m] across: vertices, triangles."""
+    """A flat body over coplanar points (n, 3), `thickness` [m] across, or a bar along a line: vertices, triangles."""
     arms = points - points.mean(axis=0)
-    first, second, _ = np.linalg.svd(arms)[2]
-    normal = np.cross(first, second)  # the rim runs around it
-    rim = points[np.argsort(np.arctan2(arms @ second, arms @ first))]
+    _, sizes, (first, second, _) = np.linalg.svd(arms)
+    if len(points) < 3 or sizes[1] < 1e-6 * sizes[0]:
+        reach, half = np.abs(arms @ first).max() + thickness, 0.5 * thickness
+        corners = [reach * s * first + half * t * second for s, t in ((1, 1), (-1, 1), (-1, -1), (1, -1))]
+        points = points.mean(axis=0) + np.array(corners)
+        first, second, _ = np.linalg.svd(points - points.mean(axis=0))[2]
+    normal = np.cross(first, second)
+    rim = points[around(points)]  # it runs around the normal
     n, half = len(rim), 0.5 * thickness * normal
     vertices = np.vstack([rim + half, rim - half])
     fan = np.array([[0, i, i + 1] for i in range(1, n - 1)])
-    around = np.arange(n)
-    after = (around + 1) % n
-    side = np.vstack([np.stack([around, around + n, after], 1), np.stack([after, around + n, after + n], 1)])
+    ring = np.arange(n)
+    after = (ring + 1) % n
+    side = np.vstack([np.stack([ring, ring + n, after], 1), np.stack([after, ring + n, after + n], 1)])
     return vertices, np.vstack([fan, fan[:, ::-1] + n, side]).astype(np.uint32)
 
 

@@ -2,14 +2,14 @@
 
 from __future__ import annotations
 
-from dataclasses import dataclass
 from typing import TYPE_CHECKING
 
 import numpy as np
 
-from flexapod import model, rigid
+from flexapod import model
 from flexapod.errors import InputError
 from flexapod.rigid.rotations import exponential, matrix
+from flexapod.scene.skeleton import STATIONS, Scene, Skeleton
 from flexapod.study.attributes import robot_of, study_of
 from flexapod.typing import Array
 
@@ -17,38 +17,13 @@ if TYPE_CHECKING:
     from xarray import Dataset
 
 __all__ = [
-    "STATIONS",
-    "Scene",
     "lateral_values",
     "mode_scene",
     "motion_coordinates",
     "motion_end",
-    "off_chord",
-    "placed",
     "robot_study",
     "scene",
 ]
-
-STATIONS = 25  # points of a drawn piston
-
-
-@dataclass(frozen=True, kw_only=True)
-class Scene:
-    """Points of a robot in the world [m].
-
-    `base`, `platform`: joints (legs, 3); `piston`: lines from cylinder mouth to tip (legs, n, 3); `com`, `centre` (3,).
-    """
-
-    base: Array
-    platform: Array
-    piston: Array
-    com: Array
-    centre: Array
-
-    @property
-    def mouth(self) -> Array:
-        """Mouths of the cylinders, (legs, 3)."""
-        return self.piston[:, 0]
 
 
 def robot_study(data: Dataset) -> model.Study:
@@ -100,14 +75,13 @@ def scene(data: Dataset, time: float = 0.0, magnify: float = 1.0) -> Scene:
     magnify : float
         Factor on lateral deflections of the pistons.
     """
-    robot, at = robot_of(data), data.sel(time=time, method="nearest")
-    R = matrix(at.platform_quaternion.values)
-    com = at.com_position.values
-    centre = com - R @ robot.payload.com
-    length = np.linalg.norm(centre + robot.platform_joints @ R.T - robot.base_joints, axis=1)
+    robot, at = Skeleton(robot_of(data)), data.sel(time=time, method="nearest")
+    R, com = matrix(at.platform_quaternion.values), at.com_position.values
+    centre = com - R @ robot.com
     tip, zeta = magnify * at.tip_deflection.values, np.linspace(0.0, 1.0, STATIONS)
     shape = 0.5 * (3 * zeta**2 - zeta**3)  # of a cantilever under a force at its tip
-    return placed(robot, centre, R, com, off_chord(robot, length, tip[:, :, None] * shape, tip))
+    offset = robot.off_chord(tip[:, :, None] * shape, tip, robot.lengths(centre, R))
+    return robot.at(centre, R, com, offset)
 
 
 def lateral_values(study: model.Study | model.ActuatorStudy, zeta: Array) -> Array:
@@ -117,22 +91,6 @@ def lateral_values(study: model.Study | model.ActuatorStudy, zeta: Array) -> Arr
     if isinstance(study, model.ActuatorStudy):
         return beam_shapes(study.actuator, study.simulation).values(zeta)
     return leg_shapes(study.robot, study.simulation).values(zeta)
-
-
-def off_chord(robot: model.Robot, length: Array, line: Array, tip: Array) -> Array:
-    """Offsets of the pistons from the lines of their joints, (legs, 2, n) [m].
-
-    Parameters
-    ----------
-    robot : Robot
-    length : ndarray, shape (legs,)
-        Joint-to-joint lengths [m].
-    line : ndarray, shape (legs, 2, n)
-        Offsets from the axes of the cylinders at n points spread evenly from mouth to tip [m].
-    tip : ndarray, shape (legs, 2)
-        Those of the tips: every cylinder leans so that its tip meets the platform.
-    """
-    return line - tip[:, :, None] * (_along(robot, length) / length[:, None])[:, None]
 
 
 def mode_scene(modes: Dataset, mode: int, size: float, phase: float = 1.0) -> Scene:
@@ -149,43 +107,20 @@ def mode_scene(modes: Dataset, mode: int, size: float, phase: float = 1.0) -> Sc
     phase : float
         Between -1 and 1; 0 is the robot at rest.
     """
-    robot, shape = robot_of(modes), modes.sel(mode=mode)
+    robot, shape = Skeleton(robot_of(modes)), modes.sel(mode=mode)
     R = matrix(modes.platform_quaternion.values)
     centre = modes.platform_position.values
-    arms = np.vstack([robot.platform_joints, robot.payload.com]) @ R.T
+    arms = np.vstack([robot.robot.platform_joints, robot.com]) @ R.T
     step, turn = shape.platform_shape.values[:3], shape.platform_shape.values[3:]
-    platform = step + np.cross(turn, arms - R @ robot.payload.com)
+    platform = step + np.cross(turn, arms - R @ robot.com)
     lateral = shape.leg_shape.values
     largest = max(np.linalg.norm(platform, axis=1).max(), np.linalg.norm(lateral, axis=1).max(), 1e-30)
     factor = phase * size / largest
     turned = exponential(factor * turn) @ R
-    com = centre + R @ robot.payload.com + factor * step
-    centre = com - turned @ robot.payload.com
-    length = np.linalg.norm(centre + robot.platform_joints @ turned.T - robot.base_joints, axis=1)
-    place = _along(robot, length) / length[:, None]
+    com = centre + R @ robot.com + factor * step
+    centre = com - turned @ robot.com
+    length = robot.lengths(centre, turned)
+    place = robot.along(length) / length[:, None]
     station = modes.station.values
     offset = np.array([[np.interp(place[i], station, row) for row in rows] for i, rows in enumerate(lateral)])
-    return placed(robot, centre, turned, com, factor * offset)
-
-
-def _along(robot: model.Robot, length: Array) -> Array:
-    """Distances of the drawn points from the universal joint, mouth to tip, (legs, n) [m]."""
-    mouth = np.array([leg.cylinder.mouth for leg in robot.legs])
-    return mouth[:, None] + (length - mouth)[:, None] * np.linspace(0.0, 1.0, STATIONS)
-
-
-def placed(robot: model.Robot, centre: Array, R: Array, com: Array, offset: Array | None = None) -> Scene:
-    """The robot with its platform frame's origin at `centre`, turned by `R`, its payload's centre of mass at `com`.
-
-    `offset` (legs, 2, STATIONS): pistons off the lines of their joints [m], see `off_chord`; None: straight legs.
-    """
-    base, platform = robot.base_joints, centre + robot.platform_joints @ R.T
-    chord = platform - base
-    length = np.linalg.norm(chord, axis=1)
-    axis = chord / length[:, None]
-    lines = base[:, None] + _along(robot, length)[:, :, None] * axis[:, None]
-    if offset is not None:
-        frames = rigid.home_frames(robot)
-        turned = rigid.leg_rotations(frames, *rigid.joint_angles(frames, axis[None]))[0]
-        lines = lines + np.einsum("ixd,idn->inx", turned[:, :, :2], offset)
-    return Scene(base=base, platform=platform, piston=lines, com=com, centre=centre)
+    return robot.at(centre, turned, com, factor * offset)

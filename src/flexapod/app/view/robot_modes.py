@@ -11,9 +11,9 @@ from flexapod import model
 from flexapod.app.view import words
 from flexapod.app.view.dial import Dial
 from flexapod.app.view.listed_modes import Listed, ListedModes
-from flexapod.app.view.robot_parts import robot_size
 from flexapod.app.view.robot_scene import pose_words
 from flexapod.app.view.threads import Threads
+from flexapod.scene.skeleton import Skeleton
 from flexapod.study.words import held, number
 
 if TYPE_CHECKING:
@@ -68,7 +68,7 @@ class RobotModes(ListedModes[model.Study]):
             + words.block(f"{held(study.robot)}, about the static equilibrium at the pose above.", "soft")
         )
         names = [f"{m}: {f} Hz, {kind}" for m, f, _, kind in rows]
-        return Listed(found, names, table, pose_words(pose), robot_size(study.robot))
+        return Listed(found, names, table, pose_words(pose), Skeleton(study.robot).size)
 
     def _preview(self, study: model.Study) -> None:
         self.scene.show_pose(self._at())

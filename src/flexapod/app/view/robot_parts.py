@@ -3,40 +3,44 @@
 from __future__ import annotations
 
 from collections.abc import Callable
-from typing import Any, Literal
+from typing import TYPE_CHECKING, Any, Literal
 
 import numpy as np
 
 from flexapod import model
 from flexapod.app.view.legend import rgb
 from flexapod.app.view.nodes import Nodes
+from flexapod.rigid.rotations import quaternion
 from flexapod.scene.colours import colors_of_legs
 from flexapod.scene.geometry import (
     ROUNDING,
     Instant,
     orientation,
     plate,
-    platform_rotation,
     round_down,
     strip,
     tube,
     tube_faces,
 )
-from flexapod.scene.robot import STATIONS, Scene
+from flexapod.scene.skeleton import STATIONS, Scene, Skeleton
 from flexapod.study.words import number, text
 from flexapod.typing import Array
 
-__all__ = ["Deviation", "Ghost", "RobotParts", "add_grid", "robot_size"]
+if TYPE_CHECKING:
+    import viser
+
+__all__ = ["Deviation", "Ghost", "RobotParts", "add_grid"]
 
 Add = Callable[[str, Any], Any]
 
 _CYLINDER, _BASE, _PLATFORM, _PAYLOAD = rgb("#8A8F98"), rgb("#4A4F57"), rgb("#2F6690"), rgb("#F2F2F2")
 _GHOST, _RIGID, _FLEXIBLE = rgb("#9A9A9A"), rgb("#6E6E6E"), rgb("#C2185B")
+_HINGE = rgb("#222222")
 _HERE = (0.0, 0.0, 0.0)
 _NOTHING = np.zeros((1, 2, 3))
 
 
-def add_grid(scene: Nodes, width: float, plane: Literal["xy", "xz"], position: Array) -> Any:
+def add_grid(scene: Nodes | viser.SceneApi, width: float, plane: Literal["xy", "xz"], position: Array) -> Any:
     """A square grid whose lines are 10, 20, 50 mm ... apart."""
     cell = 1e-3 * round_down(1e3 * width / 30)
     return scene.add_grid(
@@ -52,40 +56,45 @@ def add_grid(scene: Nodes, width: float, plane: Literal["xy", "xz"], position: A
     )
 
 
-def robot_size(robot: model.Robot) -> float:
-    """A length that stands for the robot's size [m]: the largest extent of its joints at home."""
-    points = np.vstack([robot.base_joints, robot.base_joints + robot.home_vectors])
-    return float(np.ptp(points, axis=0).max())
-
-
 class RobotParts:
-    """Base, legs, platform with its payload, frames and labels."""
+    """Base, rails and cranks, legs, platform with its payload, frames and labels."""
 
-    def __init__(self, scene: Nodes, add: Add, robot: model.Robot) -> None:
-        self.robot, self.size = robot, robot_size(robot)
+    def __init__(self, scene: Nodes, add: Add, skeleton: Skeleton) -> None:
+        self._skeleton, robot = skeleton, skeleton.robot
         self._colors: Array = np.zeros((len(robot.legs), 3), dtype=int)
         self._mouth = np.array([[leg.cylinder.mouth] for leg in robot.legs])
-        self._radius = _radii(robot, self.size)
-        self._make_base(scene, add)
+        self._radius = _radii(robot, skeleton.size)
+        self._joints = self._make_base(scene, add)
         self._platform = self._make_platform(scene, add)
         self._cylinders, self._pistons = self._make_legs(scene)
+        looks = (("/guides", skeleton.home.guides, _BASE, 3.0), ("/hinges", skeleton.home.hinges, _HINGE, 6.0))
+        self._guides, self._hinges = (
+            scene.add_line_segments(name, _floats(lines), color, thickness=width, thickness_units="screen")
+            if len(lines)
+            else None
+            for name, lines, color, width in looks
+        )
 
     def draw(self, points: Scene, colors: Array) -> None:
         """Move everything to the points of a robot; colours (legs, 3) of the pistons."""
-        self._platform.position, self._platform.wxyz = points.centre, platform_rotation(self.robot, points)
+        self._platform.position, self._platform.wxyz = points.centre, quaternion(points.rotation)
         along = points.piston[:, 0] - points.base
         turns = orientation(np.where(self._mouth > 0, along, points.piston[:, 1] - points.base))
-        vertices = tube(points.piston, 1.0)
-        vertices = _thickened(vertices, points.piston, self._radius)
+        vertices = _thickened(tube(points.piston, 1.0), points.piston, self._radius)
         for i in range(len(self._pistons)):
             self._cylinders[i].wxyz = turns[i]
             self._pistons[i].vertices = vertices[i]
             if (colors[i] != self._colors[i]).any():
                 self._pistons[i].color = tuple(int(c) for c in colors[i])
         self._colors = np.array(colors)
+        for i in self._skeleton.guided:
+            self._joints[i].position = self._cylinders[i].position = points.base[i]
+        for handle, lines in ((self._guides, points.guides), (self._hinges, points.hinges)):
+            if handle is not None:
+                handle.points = _floats(lines)
 
-    def _make_base(self, scene: Nodes, add: Add) -> None:
-        robot, size = self.robot, self.size
+    def _make_base(self, scene: Nodes, add: Add) -> list[Any]:
+        robot, size, joints = self._skeleton.robot, self._skeleton.size, []
         floor = float(robot.base_joints[:, 2].min()) - 0.03 * size
         vertices, faces = plate(robot.base_joints - [0.0, 0.0, 0.02 * size], 0.012 * size)
         scene.add_mesh_simple("/base", vertices, faces, color=_BASE, opacity=0.55, flat_shading=True)
@@ -93,18 +102,25 @@ class RobotParts:
         add("frames", scene.add_frame("/frame", axes_length=0.25 * size, axes_radius=0.006 * size))
         add("frames", scene.add_label("/frame/name", "W (world)", position=_HERE, anchor="top-center"))
         for i, joint in enumerate(robot.base_joints):
+            joints.append(_joint(scene, f"/joint_{i + 1}", self._skeleton.joints[i][0], 1.5 * self._radius[i], _BASE))
+            joints[i].position = joint
             outward = joint * [1.15, 1.15, 1.0]
-            scene.add_icosphere(f"/joint_{i + 1}", 1.5 * float(self._radius[i]), color=_BASE, position=joint)
             add("labels", scene.add_label(f"/leg_{i + 1}", f"leg {i + 1}", position=outward, anchor="top-center"))
+        return joints
 
     def _make_platform(self, scene: Nodes, add: Add) -> Any:
-        robot, size, load = self.robot, self.size, self.robot.payload
+        robot, size, load = self._skeleton.robot, self._skeleton.size, self._skeleton.robot.payload
         frame = scene.add_frame("/platform", show_axes=False)
         vertices, faces = plate(robot.platform_joints, 0.012 * size)
         scene.add_mesh_simple("/platform/plate", vertices, faces, color=_PLATFORM, opacity=0.8, flat_shading=True)
         for i, joint in enumerate(robot.platform_joints):
-            radius = 1.4 * float(self._radius[i])
-            scene.add_icosphere(f"/platform/joint_{i + 1}", radius, color=_PLATFORM, position=joint)
+            letter, radius = self._skeleton.joints[i][1], 1.4 * float(self._radius[i])
+            _joint(scene, f"/platform/joint_{i + 1}", letter, radius, _PLATFORM).position = joint
+        axes = scene.add_frame("/platform/axes", axes_length=0.18 * size, axes_radius=0.005 * size)
+        add("frames", axes)
+        add("frames", scene.add_label("/platform/axes/name", "P (platform)", anchor="top-center"))
+        if load is None:
+            return frame
         stem = np.stack([robot.platform_joints.mean(axis=0), load.com])[None]
         scene.add_line_segments("/platform/stem", stem, _BASE, thickness=2.0, thickness_units="screen")
         scene.add_icosphere("/platform/payload", 0.055 * size, color=_PAYLOAD, opacity=0.2, position=load.com)
@@ -114,24 +130,32 @@ class RobotParts:
         if np.linalg.norm(load.tool - load.com) > 1e-6:
             scene.add_icosphere("/platform/tool", 0.012 * size, color=_FLEXIBLE, position=load.tool)
             add("labels", scene.add_label("/platform/tool_name", "tool", position=load.tool, anchor="top-left"))
-        axes = scene.add_frame("/platform/axes", axes_length=0.18 * size, axes_radius=0.005 * size)
-        add("frames", axes)
-        add("frames", scene.add_label("/platform/axes/name", "P (platform)", anchor="top-center"))
         return frame
 
     def _make_legs(self, scene: Nodes) -> tuple[list[Any], list[Any]]:
         cylinders, pistons, faces = [], [], tube_faces(STATIONS)
-        colors = colors_of_legs(len(self.robot.legs))
-        for i, leg in enumerate(self.robot.legs):
-            node = scene.add_frame(f"/cylinder_{i + 1}", show_axes=False, position=self.robot.base_joints[i])
+        robot, home = self._skeleton.robot, self._skeleton.home
+        for i, (leg, color) in enumerate(zip(robot.legs, colors_of_legs(robot.count), strict=True)):
+            node = scene.add_frame(f"/cylinder_{i + 1}", show_axes=False, position=home.base[i])
             mouth, radius = leg.cylinder.mouth, 1.6 * float(self._radius[i])
             if mouth > 0:
                 place = (0.0, 0.0, 0.5 * mouth)
                 scene.add_cylinder(f"/cylinder_{i + 1}/body", radius, mouth, _CYLINDER, position=place)
             cylinders.append(node)
             empty = np.zeros((STATIONS * 8, 3))
-            pistons.append(scene.add_mesh_simple(f"/piston_{i + 1}", empty, faces, color=rgb(colors[i])))
+            pistons.append(scene.add_mesh_simple(f"/piston_{i + 1}", empty, faces, color=rgb(color)))
         return cylinders, pistons
+
+
+def _joint(scene: Nodes, name: str, letter: str, radius: float, color: tuple[int, int, int]) -> Any:
+    """A joint by its letter: a ball, a block where it is fixed; of a hinge, whose axis is drawn too, a small ball."""
+    if letter == "F":
+        return scene.add_box(name, color, (2 * radius, 2 * radius, 2 * radius))
+    return scene.add_icosphere(name, radius * (0.7 if letter in ("R", "") else 1.0), color=color)
+
+
+def _floats(lines: Array) -> Any:
+    return lines.astype(np.float32)
 
 
 def _radii(robot: model.Robot, size: float) -> Array:
@@ -149,26 +173,25 @@ def _thickened(vertices: Array, lines: Array, radius: Array) -> Array:
 class Ghost:
     """The rigid robot in pale lines."""
 
-    def __init__(self, scene: Nodes, add: Add, robot: model.Robot) -> None:
-        self.robot = robot
-        vertices, faces = plate(robot.platform_joints, 0.004 * robot_size(robot))
+    def __init__(self, scene: Nodes, add: Add, skeleton: Skeleton) -> None:
+        joints, size = skeleton.robot.platform_joints, skeleton.size
+        vertices, faces = plate(joints, 0.004 * size)
         self._frame = scene.add_frame("/ghost", show_axes=False)
         mesh = scene.add_mesh_simple(
             "/ghost/plate", vertices, faces, color=_GHOST, opacity=0.35, flat_shading=True, cast_shadow=False
         )
-        stem = np.stack([robot.platform_joints.mean(axis=0), robot.payload.com])[None]
+        stem = np.stack([joints.mean(axis=0), skeleton.com])[None]
         line = scene.add_line_segments("/ghost/stem", stem, _GHOST, thickness=1.5, thickness_units="screen")
-        radius = 0.007 * robot_size(robot)
-        com = scene.add_icosphere("/ghost/com", radius, color=_GHOST, opacity=0.8, position=robot.payload.com)
-        legs = np.zeros((len(robot.legs), 2, 3))
+        com = scene.add_icosphere("/ghost/com", 0.007 * size, color=_GHOST, opacity=0.8, position=skeleton.com)
+        legs = np.zeros((len(joints), 2, 3))
         self._legs = scene.add_line_segments("/ghost_legs", legs, _GHOST, thickness=2.0, thickness_units="screen")
         for handle in (mesh, line, com, self._legs):
             add("rigid ghost", handle)
 
     def draw(self, points: Scene) -> None:
         """Move it to the points of a rigid robot."""
-        self._frame.position, self._frame.wxyz = points.centre, platform_rotation(self.robot, points)
-        self._legs.points = np.stack([points.base, points.platform], axis=1).astype(np.float32)
+        self._frame.position, self._frame.wxyz = points.centre, quaternion(points.rotation)
+        self._legs.points = _floats(np.stack([points.base, points.platform], axis=1))
 
 
 class Deviation:

@@ -12,12 +12,12 @@ import numpy as np
 from flexapod import model, rigid
 from flexapod.app.view.legend import QUANTITIES, LegColors, leg_colors, plain_legend, rgb
 from flexapod.app.view.nodes import Nodes
-from flexapod.app.view.robot_parts import Deviation, Ghost, RobotParts, robot_size
+from flexapod.app.view.robot_parts import Deviation, Ghost, RobotParts
 from flexapod.app.view.scene import OF_RESULTS, STRAIGHT, Scene, mode_note
 from flexapod.scene.colours import colors_of_legs
 from flexapod.scene.geometry import RobotMotion
-from flexapod.scene.robot import Scene as Points
-from flexapod.scene.robot import mode_scene, placed
+from flexapod.scene.robot import mode_scene
+from flexapod.scene.skeleton import Skeleton
 from flexapod.study.arguments import PoseLike, as_pose
 from flexapod.study.words import number
 from flexapod.typing import Array
@@ -34,6 +34,7 @@ class _Drawn:
     """A study with the nodes that show it."""
 
     study: model.Study
+    skeleton: Skeleton
     robot: RobotParts
     ghost: Ghost
     deviation: Deviation
@@ -75,20 +76,21 @@ class RobotScene(Scene):
                     self._light()
                 self._begin()
                 api = Nodes(self.client.scene)
+                robot = Skeleton(study.robot)
                 drawn = self._drawn = _Drawn(
                     study=study,
-                    robot=RobotParts(api, self._add, study.robot),
-                    ghost=Ghost(api, self._add, study.robot),
-                    deviation=Deviation(api, self._add, robot_size(study.robot)),
+                    skeleton=robot,
+                    robot=RobotParts(api, self._add, robot),
+                    ghost=Ghost(api, self._add, robot),
+                    deviation=Deviation(api, self._add, robot.size),
                 )
                 self._names = api.replaces(self._names)
                 self._only()
-                drawn.robot.draw(
-                    _undeformed(study.robot, rigid.poses(study.robot, study.motion, [self.time])), self._plain
-                )
+                start = rigid.poses(study.robot, study.motion, [self.time])
+                drawn.robot.draw(robot.at(start.position[0], start.rotation[0]), self._plain)
                 self._draws(f"the rigid robot at {number(self.time, 4)} s; no result yet", STRAIGHT)
             if first:
-                self._look_at(study.robot)
+                self._look_at(robot)
 
     def show_pose(self, pose: PoseLike) -> None:
         """As `Scene.show_pose`; a pose as for `flexapod.modes`, in reach or not.
@@ -101,8 +103,8 @@ class RobotScene(Scene):
         with self.lock:
             if self._drawn is None:
                 return
-            robot = self._drawn.study.robot
-            points = _undeformed(robot, as_pose(robot, pose, check=False))
+            path = as_pose(self._drawn.study.robot, pose, check=False)
+            points = self._drawn.skeleton.at(path.position[0], path.rotation[0])
             with self.client.atomic():
                 self._only()
                 self._drawn.robot.draw(points, self._plain)
@@ -128,7 +130,7 @@ class RobotScene(Scene):
         with self.lock:
             if self._drawn is None:
                 return
-            size = amplitude * self._drawn.robot.size
+            size = amplitude * self._drawn.skeleton.size
             with self.client.atomic():
                 self._only("rigid ghost")
                 self._drawn.robot.draw(mode_scene(modes, mode, size, phase), self._plain)
@@ -176,9 +178,8 @@ class RobotScene(Scene):
         if self._motion is not None and self._drawn is not None:
             self._drawn.deviation.paths(*self._motion.paths(self.scale, self.point))
 
-    def _look_at(self, robot: model.Robot) -> None:
-        points = np.vstack([robot.base_joints, robot.base_joints + robot.home_vectors])
-        size = robot_size(robot)
+    def _look_at(self, robot: Skeleton) -> None:
+        points, size = np.vstack([robot.home.base, robot.home.platform]), robot.size
         beside = size * np.array([0.13, 0.16, 0.05])  # the panel covers the right of the page
         self._look(size * np.array([1.1, -0.95, 0.35]), points.mean(axis=0) + beside)
 
@@ -192,8 +193,3 @@ def pose_words(pose: PoseLike) -> str:
         for name, v in moved.items()
     ]
     return ", ".join(words) or ("home" if isinstance(pose, Mapping) else "another pose")
-
-
-def _undeformed(robot: model.Robot, path: rigid.Poses) -> Points:
-    centre, R = path.position[0], path.rotation[0]
-    return placed(robot, centre, R, centre + R @ robot.payload.com)
