@@ -10,14 +10,14 @@ import xarray as xr
 
 import flexapod as fx
 from flexapod import rigid
-from flexapod.rigid import kinematics
+from flexapod.rigid import robot as of_robot
 from flexapod.study.names import COORDINATES, VARIABLES, dataset
 
 
 def test_home_frames_are_computed_once_for_equal_robots(monkeypatch):
     calls = []
-    plain = kinematics.leg_frames
-    monkeypatch.setattr(kinematics, "leg_frames", lambda *given: calls.append(1) or plain(*given))
+    plain = of_robot.limbs
+    monkeypatch.setattr(of_robot, "limbs", lambda *given, **more: calls.append(1) or plain(*given, **more))
     robot = fx.preset("paper-robot").robot.replace(home_height=0.8871)
     path = rigid.home_pose(robot)
     for subject in (robot, robot, pickle.loads(pickle.dumps(robot)), robot.replace(home_height=0.8871)):

@@ -7,7 +7,11 @@ from flexapod.rigid.jacobian import NearestSingularity, SingularityPath, length_
 from flexapod.rigid.kinematics import LegState, joint_angles, leg_frames, leg_lengths, leg_rotations
 from flexapod.rigid.laws import Law
 from flexapod.rigid.limbs import ABSENT, COORDINATES, DRIVEN, FREE, HELD, Limbs, limbs
+from flexapod.rigid.mobility import Mobility, Posture, displaced, mobility
+from flexapod.rigid.motions import independent_axes, mobility_words, motion_names, refuse_loose
 from flexapod.rigid.robot import (
+    drive_jacobian,
+    drive_positions,
     energies,
     forward_kinematics,
     home_frames,
@@ -22,6 +26,7 @@ from flexapod.rigid.robot import (
     postures,
     pull_out,
     reachable,
+    rigid_limbs,
     singularity,
     strokes,
 )
@@ -40,17 +45,23 @@ __all__ = [
     "Law",
     "LegState",
     "Limbs",
+    "Mobility",
     "NearestSingularity",
     "Poses",
+    "Posture",
     "Postures",
     "RigidForces",
     "SingularityPath",
     "WorkspaceMap",
     "actuator_breaks",
+    "displaced",
+    "drive_jacobian",
+    "drive_positions",
     "energies",
     "forward_kinematics",
     "home_frames",
     "home_pose",
+    "independent_axes",
     "inverse_dynamics",
     "inverse_kinematics",
     "joint_angles",
@@ -62,7 +73,10 @@ __all__ = [
     "length_jacobian",
     "limbs",
     "load_law",
+    "mobility",
+    "mobility_words",
     "motion_law",
+    "motion_names",
     "nearest_singularity",
     "payload_body",
     "poses",
@@ -71,6 +85,8 @@ __all__ = [
     "pull_out",
     "reachable",
     "reachable_map",
+    "refuse_loose",
+    "rigid_limbs",
     "robot_breaks",
     "rotation_matrix",
     "singularity",

@@ -14,12 +14,13 @@ from numpy.typing import NDArray
 
 from flexapod.rigid.laws import Law
 from flexapod.rigid.limbs import COORDINATES, Limbs
+from flexapod.rigid.rotations import exponential, quaternion, rotation_vector
 from flexapod.rigid.screws import Screws, screws
 from flexapod.rigid.trajectory import Poses, poses_from_coordinates, turning_axes
 from flexapod.rigid.vectors import blocks
 from flexapod.typing import Array
 
-__all__ = ["Closed", "Motion", "Task", "close", "move"]
+__all__ = ["Closed", "Motion", "Task", "close", "gaps", "move"]
 
 Mask = NDArray[np.bool_]
 
@@ -84,7 +85,7 @@ def _eliminated(limbs: Limbs, task: Task, chain: Screws, columns: Array) -> _Eli
     scale = np.array([1.0, 1.0, 1.0, limbs.L_c, limbs.L_c, limbs.L_c])
     kinds: dict[tuple[int, ...], list[int]] = {}
     for leg, (unknown, pose) in enumerate(zip(task.legs, limbs.pose_closure, strict=True)):
-        kinds.setdefault((6 if pose else 3, *np.flatnonzero(unknown)), []).append(leg)
+        kinds.setdefault((6 if pose else 3, *np.flatnonzero(unknown).tolist()), []).append(leg)
     groups = []
     for (rows, *unknown), legs in kinds.items():
         M = chain.columns[:, legs, :rows][..., unknown] * scale[:rows, None]
@@ -102,12 +103,12 @@ def _eliminated(limbs: Limbs, task: Task, chain: Screws, columns: Array) -> _Eli
 def _inverse(matrices: Array) -> Array:
     """Inverses; the least-squares one where a matrix of the many has none."""
     try:
-        return np.linalg.inv(matrices)
+        return np.asarray(np.linalg.inv(matrices), dtype=np.float64)
     except np.linalg.LinAlgError:
-        return np.linalg.pinv(matrices)
+        return np.asarray(np.linalg.pinv(matrices), dtype=np.float64)
 
 
-def _gaps(limbs: Limbs, chain: Screws, at: Poses) -> Array:
+def gaps(limbs: Limbs, chain: Screws, at: Poses) -> Array:
     """Tip less platform joint [m], and half the rotation vector's sine of their frames, world axes, Eq. (T14.6)."""
     place = chain.tip - at.place(limbs.platform)
     goal = at.rotation[:, None] @ limbs.platform_frames
@@ -132,18 +133,20 @@ def _poses(limbs: Limbs, task: Task, law: Law) -> Poses:
     return poses_from_coordinates(Poses.at_rest(limbs.position, limbs.rotation), law, task.pivot)
 
 
-def close(limbs: Limbs, task: Task, q: Array, x: Array, start: Closed | None = None) -> Closed:
+def close(limbs: Limbs, task: Task, q: Array, goal: Array | Poses, start: Closed | None = None) -> Closed:
     """Unknown coordinates such that the legs meet the platform, Eqs. (T14.6)-(T14.8).
 
-    Newton's method, along the straight way of what is given from `start` (default: home) to `q` and `x`: so the
+    Newton's method, along the straight way of what is given from `start` (default: home) to `q` and `goal`: so the
     solution is the one that the mechanism reaches without taking its legs apart, at whatever instant it is asked for.
 
     Parameters
     ----------
     limbs : Limbs
     task : Task
-    q, x : ndarray, shapes (T, n, 8), (T, 6)
-        What is given; unknowns do not count.
+    q : ndarray, shape (T, n, 8)
+        Coordinates of the legs; unknown ones do not count.
+    goal : ndarray, shape (T, 6), or Poses
+        Platform coordinates, of which unknown ones do not count; or its T poses, if none is unknown.
     start : Closed, optional
         One solution, at which to begin.
 
@@ -152,26 +155,34 @@ def close(limbs: Limbs, task: Task, q: Array, x: Array, start: Closed | None = N
     Closed
         With NaN where no solution is found.
     """
-    q0 = limbs.home if start is None else start.q[0]
-    x0 = np.zeros(6) if start is None else start.x[0]
-    parts = [_close(limbs, task, (q[where], x[where]), q0, x0) for where in blocks(len(q))]
-    return Closed(
-        q=np.concatenate([p.q for p in parts]),
-        x=np.concatenate([p.x for p in parts]),
-        gap=np.concatenate([p.gap for p in parts]),
-    )
+    q0, x0 = (limbs.home, np.zeros(6)) if start is None else (start.q[0], start.x[0])
+    parts = []
+    for where in blocks(len(q)):
+        part = goal.part(where) if isinstance(goal, Poses) else goal[where]
+        parts.append(_close(limbs, task, q[where], part, (q0, x0)))
+    found = (np.concatenate([getattr(p, name) for p in parts]) for name in ("q", "x", "gap"))
+    return Closed(**dict(zip(("q", "x", "gap"), found, strict=True)))
 
 
-def _close(limbs: Limbs, task: Task, goal: tuple[Array, Array], q0: Array, x0: Array) -> Closed:
-    unit = _units(limbs)
-    wayq, wayx = np.where(task.legs, 0.0, goal[0] - q0), np.where(task.platform, 0.0, goal[1] - x0)
-    far = max(np.abs(wayx / unit[:6]).max(initial=0.0), np.abs(wayq / unit[6:]).max(initial=0.0))
-    steps = 1 + int(far / STRIDE)
-    q, x = np.tile(q0, (len(wayq), 1, 1)), np.tile(x0, (len(wayx), 1))
+def _close(limbs: Limbs, task: Task, q: Array, goal: Array | Poses, start: tuple[Array, Array]) -> Closed:
+    unit, (q0, x0) = _units(limbs), start
+    turn = np.zeros((len(q), 3))
+    if isinstance(goal, Poses):
+        turn = rotation_vector(quaternion(goal.rotation @ limbs.rotation.T))
+        way = np.concatenate([goal.position - limbs.position, turn], axis=1)
+    else:
+        way = np.where(task.platform, 0.0, goal - x0)
+    ways = np.where(task.legs, 0.0, q - q0)
+    far = max(np.abs(way / unit[:6]).max(initial=0.0), np.abs(ways / unit[6:]).max(initial=0.0))
+    steps = 1 + int(far / STRIDE) if np.isfinite(far) else 1
+    q, x, gap = np.tile(q0, (len(q), 1, 1)), np.tile(x0, (len(q), 1)), np.zeros(ways.shape[:2])
     for k in range(1, steps + 1):
-        q = np.where(task.legs, q, q0 + k / steps * wayq)
-        x = np.where(task.platform, x, x0 + k / steps * wayx)
-        q, x, gap = _newton(limbs, task, q, x, CLOSE if k == steps else 1e-3)
+        q, at = np.where(task.legs, q, q0 + k / steps * ways), None
+        x = np.where(task.platform, x, x0 + k / steps * way)
+        if isinstance(goal, Poses):
+            at = Poses.at_rest(limbs.position + k / steps * way[:, :3], exponential(k / steps * turn) @ limbs.rotation)
+            at = goal if k == steps else at
+        q, x, gap = _newton(limbs, task, q, x, at, CLOSE if k == steps else 1e-3)
     lost = ~(gap.max(axis=1, initial=0.0) < TAKEN * limbs.L_c)
     q[lost], x[lost] = np.nan, np.nan
     return Closed(q=q, x=x, gap=gap)
@@ -184,19 +195,21 @@ def _units(limbs: Limbs) -> Array:
     return np.array([far] * 3 + [1.0] * 3 + [far if name in lengths else 1.0 for name in COORDINATES])
 
 
-def _newton(limbs: Limbs, task: Task, q: Array, x: Array, enough: float) -> tuple[Array, Array, Array]:
-    """A few Newton steps; q, x and the gaps of the legs [m], rotations times L_c."""
+def _newton(
+    limbs: Limbs, task: Task, q: Array, x: Array, given: Poses | None, enough: float
+) -> tuple[Array, Array, Array]:
+    """Newton steps until nothing but rounding is left; q, x and the gaps of the legs [m], rotations times L_c."""
     still, unit = np.zeros_like(x), _units(limbs)
     weight = np.array([1.0, 1.0, 1.0, limbs.L_c, limbs.L_c, limbs.L_c])
-    last = False
+    last, gap = False, np.zeros(q.shape[:2])
     for _ in range(NEWTON):
-        at, chain = _poses(limbs, task, Law(x, still, still)), screws(limbs, q)
-        gaps = _gaps(limbs, chain, at)
-        gap = np.abs(gaps * weight).max(axis=-1)
+        at, chain = given or _poses(limbs, task, Law(x, still, still)), screws(limbs, q)
+        apart = gaps(limbs, chain, at)
+        gap = np.abs(apart * weight).max(axis=-1)
         if last:
             break
         last = bool(np.all(gap < enough * limbs.L_c))
-        dq, dx = _eliminated(limbs, task, chain, _platform_columns(limbs, task, x, at)).solve(-gaps)
+        dq, dx = _eliminated(limbs, task, chain, _platform_columns(limbs, task, x, at)).solve(-apart)
         longest = np.abs(dx / unit[:6][task.platform]).max(axis=1, initial=0.0)
         short = STRIDE / np.maximum(np.maximum(np.abs(dq / unit[6:]).max(axis=(1, 2)), longest), STRIDE)
         dq, dx = short[:, None, None] * dq, short[:, None] * dx
@@ -214,31 +227,39 @@ class Motion(NamedTuple):
     platform: Law
 
 
-def move(limbs: Limbs, task: Task, found: Closed, given: Law) -> Motion:
+def move(limbs: Limbs, task: Task, found: Closed, given: Law | Poses) -> Motion:
     """Rates and accelerations of a solution, by the matrix of its last Newton step, Eqs. (T14.9)-(T14.10).
 
     Parameters
     ----------
     limbs, task, found
         As for, and of, `close`; no given coordinate of a leg moves.
-    given : Law
-        Platform coordinates (T, 6); rates and accelerations of those that are unknown do not count.
+    given : Law or Poses
+        Platform coordinates (T, 6), where rates and accelerations of unknown ones do not count; or its poses.
     """
-    parts = []
-    for where in blocks(len(found.q)):
-        q, x = found.q[where], found.x[where]
+    parts = [_move(limbs, task, found, given, where) for where in blocks(len(found.q))]
+    q_dot, q_ddot, *rates = (np.concatenate(part) for part in zip(*parts, strict=True))
+    return Motion(found.q, q_dot, q_ddot, Law(found.x, *rates))
+
+
+def _move(limbs: Limbs, task: Task, found: Closed, given: Law | Poses, where: slice) -> tuple[Array, ...]:
+    q, x = found.q[where], found.x[where]
+    x_dot, x_ddot = np.zeros_like(x), np.zeros_like(x)
+    if not isinstance(given, Poses):
         x_dot, x_ddot = (np.where(task.platform, 0.0, part[where]) for part in given[1:])
-        at, chain = _poses(limbs, task, Law(x, x_dot, 0 * x)), screws(limbs, q)
-        matrix = _eliminated(limbs, task, chain, _platform_columns(limbs, task, x, at))
-        q_dot, dx = matrix.solve(np.concatenate([at.point(limbs.platform)[1], _each(at.omega, limbs)], axis=-1))
-        x_dot[:, task.platform] = dx
-        at = _poses(limbs, task, Law(x, x_dot, x_ddot))
-        goal = np.concatenate([at.point(limbs.platform)[2], _each(at.alpha, limbs)], axis=-1)
-        q_ddot, dx = matrix.solve(goal - chain.bias(q_dot))
-        x_ddot[:, task.platform] = dx
-        parts.append((q, q_dot, q_ddot, x, x_dot, x_ddot))
-    q, q_dot, q_ddot, *platform = (np.concatenate(part) for part in zip(*parts, strict=True))
-    return Motion(q, q_dot, q_ddot, Law(*platform))
+
+    def platform() -> Poses:
+        return given.part(where) if isinstance(given, Poses) else _poses(limbs, task, Law(x, x_dot, x_ddot))
+
+    at, chain = platform(), screws(limbs, q)
+    matrix = _eliminated(limbs, task, chain, _platform_columns(limbs, task, x, at))
+    q_dot, x_dot[:, task.platform] = matrix.solve(
+        np.concatenate([at.point(limbs.platform)[1], _each(at.omega, limbs)], axis=-1)
+    )
+    at = platform()
+    goal = np.concatenate([at.point(limbs.platform)[2], _each(at.alpha, limbs)], axis=-1)
+    q_ddot, x_ddot[:, task.platform] = matrix.solve(goal - chain.bias(q_dot))
+    return q_dot, q_ddot, x_dot, x_ddot
 
 
 def _each(vector: Array, limbs: Limbs) -> Array:

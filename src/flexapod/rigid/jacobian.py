@@ -19,6 +19,7 @@ __all__ = [
     "length_jacobian",
     "nearest",
     "scaled",
+    "scaled_path",
     "stiffness",
 ]
 
@@ -114,28 +115,23 @@ def scaled(jacobian: Array, length: float) -> Array:
     return jacobian / np.array([1.0, 1.0, 1.0, length, length, length])
 
 
-def along_path(base_joints: ArrayLike, platform_joints: ArrayLike, poses: Poses) -> SingularityPath:
+def along_path(jacobians: Array) -> SingularityPath:
     """Distance to singularity along a path, Eq. (T2.24).
-
-    The Jacobian is taken at the centroid of the platform joints and scaled with `characteristic_length`: then
-    neither the choice of the platform frame nor the unit of length changes the measures.
 
     Parameters
     ----------
-    base_joints, platform_joints : array_like, shape (6, 3)
-        World axes; platform axes [m].
-    poses : Poses
-        T poses in the order of the path.
+    jacobians : ndarray, shape (T, m, d)
+        Scaled Jacobians of T poses in the order of the path, m at least d; with more rows than columns the determinant
+        is the root of that of ``J^T J``, which has no sign.
 
     Returns
     -------
     SingularityPath
     """
-    j = _scaled_path(base_joints, platform_joints, poses)
-    singular = np.asarray(np.linalg.svd(j, compute_uv=False), dtype=np.float64)
+    singular = np.asarray(np.linalg.svd(jacobians, compute_uv=False), dtype=np.float64)
     smallest = singular[:, -1]
-    condition = np.divide(singular[:, 0], smallest, out=np.full(len(j), np.inf), where=smallest > 0)
-    determinant = np.linalg.det(j)
+    condition = np.divide(singular[:, 0], smallest, out=np.full(len(jacobians), np.inf), where=smallest > 0)
+    determinant = _determinant(jacobians, singular)
     return SingularityPath(
         smallest_singular_value=smallest,
         condition=condition,
@@ -145,22 +141,27 @@ def along_path(base_joints: ArrayLike, platform_joints: ArrayLike, poses: Poses)
     )
 
 
-def nearest(base_joints: ArrayLike, platform_joints: ArrayLike, poses: Poses) -> NearestSingularity:
+def _determinant(jacobians: Array, singular: Array) -> Array:
+    return np.linalg.det(jacobians) if jacobians.shape[1] == jacobians.shape[2] else singular.prod(axis=1)
+
+
+def nearest(jacobians: Array) -> NearestSingularity:
     """What `along_path` finds worst, at a fraction of its cost, Eq. (T2.24).
 
     A singular value moves by no more than the matrix does: ``|sigma(J) - sigma(J_k)| <= |J - J_k|`` in the Frobenius
     norm (Weyl). A pose near one whose smallest singular value is known needs none of its own where this bound keeps
     it at or above the smallest found; and as long as that is positive, the determinant has not changed sign between.
 
-    Parameters and frames as for `along_path`.
+    Parameters as for `along_path`.
     """
-    j = _scaled_path(base_joints, platform_joints, poses)
-    singular, sign = np.full((len(j), 6), np.inf), np.zeros(len(j), dtype=bool)
+    j = jacobians
+    singular, sign = np.full((len(j), j.shape[2]), np.inf), np.zeros(len(j), dtype=bool)
     bound, best = np.full(len(j), -np.inf), np.inf
     for stride in STRIDES:
         at = np.arange(0, len(j), stride)
         at = at[bound[at] < best]
-        singular[at], sign[at] = np.linalg.svd(j[at], compute_uv=False), np.signbit(np.linalg.det(j[at]))
+        singular[at] = np.linalg.svd(j[at], compute_uv=False)
+        sign[at] = np.signbit(_determinant(j[at], singular[at]))
         bound[at], best = singular[at, -1], min(best, float(singular[at, -1].min(initial=np.inf)))
         left = np.flatnonzero(bound < best)
         near = np.maximum.accumulate(np.where(np.isfinite(singular[:, 0]), np.arange(len(j)), 0))[left]
@@ -176,8 +177,11 @@ def nearest(base_joints: ArrayLike, platform_joints: ArrayLike, poses: Poses) ->
     )
 
 
-def _scaled_path(base_joints: ArrayLike, platform_joints: ArrayLike, poses: Poses) -> Array:
-    """Scaled Jacobians about the centroid of the platform joints, (T, 6, 6), Eq. (T2.23)."""
+def scaled_path(base_joints: ArrayLike, platform_joints: ArrayLike, poses: Poses) -> Array:
+    """Scaled Jacobians (T, n, 6) about the centroid of the platform joints, Eq. (T2.23).
+
+    Neither the choice of the platform frame nor the unit of length changes them.
+    """
     joints = np.asarray(platform_joints, dtype=float)
     raw = length_jacobian(base_joints, joints, poses.position, poses.rotation, joints.mean(axis=0))
     return scaled(raw, characteristic_length(joints))

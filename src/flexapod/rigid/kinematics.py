@@ -3,7 +3,7 @@
 from __future__ import annotations
 
 from collections.abc import Sequence
-from dataclasses import dataclass, fields
+from dataclasses import dataclass
 from typing import NamedTuple
 
 import numpy as np
@@ -21,6 +21,7 @@ __all__ = [
     "LegState",
     "directions_of",
     "joint_angles",
+    "leg_frame",
     "leg_frames",
     "leg_lengths",
     "leg_rotations",
@@ -31,19 +32,23 @@ __all__ = [
 BETA_LIMIT = np.deg2rad(85.0)  # 5 deg from the universal joint's own singularity
 
 _NO_LENGTH = 1e-9  # m; below this a leg has no direction
+_PLAIN = "length rate accel alpha beta alpha_dot beta_dot alpha_ddot beta_ddot".split()  # of legs UPS and SPS
 _PARALLEL = 1e-9  # sine of the angle below which a leg counts as parallel to the reference axis
 
 
 @dataclass(frozen=True, kw_only=True)
 class LegState:
-    """Legs of the rigid robot at T instants; each array has shape (T, 6).
+    """Legs of the rigid robot at T instants; each array has shape (T, n), of gamma (T, n, 3).
 
     Attributes
     ----------
     length, rate, accel
         Joint-to-joint length [m] and its time derivatives.
     alpha, beta, alpha_dot, beta_dot, alpha_ddot, beta_ddot
-        Angles of the universal joint [rad] and their time derivatives; zero at home.
+        Angles of the base joint [rad] and their time derivatives; alpha is zero at home, and so is beta but for hinges.
+    chi, spin, gamma, chi_dot, spin_dot, gamma_dot, chi_ddot, spin_ddot, gamma_ddot
+        Way of the carriage [m or rad] from home, turn about the leg's axis and angles of the platform joint [rad], and
+        their time derivatives; None where no leg has one.
     """
 
     length: Array
@@ -55,6 +60,26 @@ class LegState:
     beta_dot: Array
     alpha_ddot: Array
     beta_ddot: Array
+    chi: Array | None = None
+    spin: Array | None = None
+    gamma: Array | None = None
+    chi_dot: Array | None = None
+    spin_dot: Array | None = None
+    gamma_dot: Array | None = None
+    chi_ddot: Array | None = None
+    spin_ddot: Array | None = None
+    gamma_ddot: Array | None = None
+
+    def coordinate(self, name: str) -> tuple[Array, Array, Array]:
+        """One of `limbs.COORDINATES` with its rate and acceleration, (T, n) each; zero where no leg has it."""
+        if name == "l":
+            return self.length, self.rate, self.accel
+        key, place = (name[:-1], int(name[-1]) - 1) if name.startswith("gamma") else (name, None)
+        parts = (getattr(self, key + end) for end in ("", "_dot", "_ddot"))
+        parts = [np.zeros_like(self.length) if part is None else part for part in parts]
+        if place is None or self.gamma is None:
+            return parts[0], parts[1], parts[2]
+        return parts[0][..., place], parts[1][..., place], parts[2][..., place]
 
 
 class LegMap(NamedTuple):
@@ -129,10 +154,11 @@ def leg_frames(
     """
     vectors = np.asarray(platform_joints_home, dtype=float) - np.asarray(base_joints, dtype=float)
     axes = [None] * len(vectors) if u_axes is None else list(u_axes)
-    return np.stack([_leg_frame(i, s, u) for i, (s, u) in enumerate(zip(vectors, axes, strict=True), start=1)])
+    return np.stack([leg_frame(i, s, u) for i, (s, u) in enumerate(zip(vectors, axes, strict=True), start=1)])
 
 
-def _leg_frame(number: int, vector: Array, u_axis: ArrayLike | None) -> Array:
+def leg_frame(number: int, vector: Array, u_axis: ArrayLike | None) -> Array:
+    """Home frame (3, 3) of leg `number` along `vector`, Eq. (T2.14); parameters as for `leg_frames`."""
     length = np.linalg.norm(vector)
     if length < _NO_LENGTH:
         raise InputError("its joints coincide at home", key=f"leg {number}", next_step="Move one of the two joints")
@@ -234,7 +260,7 @@ def leg_state(base_joints: Array, platform_joints: Array, frames: Array, poses: 
 
 def state_of(legs: LegMap, poses: Poses) -> LegState:
     """`leg_state` of a robot whose `LegMap` is known."""
-    state = LegState(**{field.name: np.empty((len(poses), legs.number)) for field in fields(LegState)})
+    state = LegState(**{name: np.empty((len(poses), legs.number)) for name in _PLAIN})
     for where in blocks(len(poses)):
         s, s_dot, s_ddot = _in_home_frames(legs, poses.part(where))
         length, alpha, beta, turn = _directions(s)

@@ -9,9 +9,12 @@ from typing import TYPE_CHECKING, TypeVar, cast
 import numpy as np
 from numpy.typing import ArrayLike
 
-from flexapod.rigid import dynamics, forward, jacobian, kinematics, trajectory, workspace
+from flexapod.errors import InputError
+from flexapod.rigid import dynamics, forward, holding, jacobian, kinematics, mechanism, motions, trajectory, workspace
 from flexapod.rigid.dynamics import LegBodies, PayloadBody, RigidForces
 from flexapod.rigid.kinematics import LegState
+from flexapod.rigid.limbs import COORDINATES, DRIVEN, Limbs, limbs
+from flexapod.rigid.mobility import Mobility, mobility
 from flexapod.rigid.trajectory import Poses
 from flexapod.typing import Array
 
@@ -19,6 +22,8 @@ if TYPE_CHECKING:
     from flexapod.model import Motion, Robot
 
 __all__ = [
+    "drive_jacobian",
+    "drive_positions",
     "energies",
     "forward_kinematics",
     "home_frames",
@@ -33,6 +38,7 @@ __all__ = [
     "postures",
     "pull_out",
     "reachable",
+    "rigid_limbs",
     "singularity",
     "strokes",
 ]
@@ -58,21 +64,27 @@ def _once(compute: Callable[[Robot], T]) -> Callable[[Robot], T]:
 
 def home_pose(robot: Robot) -> Poses:
     """Home pose, at rest: one sample."""
-    return Poses.at_rest([0.0, 0.0, robot.home_height], np.eye(3))
+    return Poses.at_rest(robot.home_position, robot.home_rotation)
+
+
+@_once
+def rigid_limbs(robot: Robot) -> Limbs:
+    """The legs of the rigid path as numbers, see `limbs.limbs`."""
+    return limbs(robot, rigid=True)
 
 
 @_once
 def home_frames(robot: Robot) -> Array:
-    """Home frames [x y z]_i of the legs, leg to world, shape (6, 3, 3), read-only, Eq. (T2.14)."""
-    tips = robot.platform_joints + np.array([0.0, 0.0, robot.home_height])
-    frames = kinematics.leg_frames(robot.base_joints, tips, [leg.u_axis for leg in robot.legs])
-    frames.flags.writeable = False
-    return frames
+    """Home frames [x y z]_i of the legs, leg to world, shape (n, 3, 3), read-only, Eq. (T2.14)."""
+    return rigid_limbs(robot).frames
 
 
 def leg_directions(robot: Robot, path: Poses) -> tuple[Array, Array, Array]:
-    """Lengths, alpha and beta of the legs, (T, 6) each, folded or not; see `kinematics.directions_of`."""
-    return kinematics.directions_of(_leg_map(robot), path)
+    """Lengths, alpha and beta of the legs, (T, n) each, folded or not; NaN where legs do not reach their joints."""
+    if rigid_limbs(robot).plain:
+        return kinematics.directions_of(_leg_map(robot), path)
+    q = mechanism.legs_at(rigid_limbs(robot), path).q
+    return tuple(q[..., COORDINATES.index(name)] for name in ("l", "alpha", "beta"))  # type: ignore[return-value]
 
 
 @_once
@@ -101,13 +113,40 @@ def payload_body(robot: Robot) -> PayloadBody:
 
 
 def poses(robot: Robot, motion: Motion, t: ArrayLike) -> Poses:
-    """Commanded poses at instants `t` [s], shape (T,); see `trajectory.sample`."""
+    """Poses at instants `t` [s], shape (T,): as commanded, and where legs guide the platform as they make it move.
+
+    See `trajectory.sample`, `mechanism.follow`.
+
+    Raises
+    ------
+    InputError
+        The robot does not have a motion that is asked for, or cannot take a pose.
+    """
+    legs = rigid_limbs(robot)
+    if legs.guides:
+        free = motions.commanded(legs, motion, _mobility(robot))
+        if not (free | legs.hub_held).all():
+            law = trajectory.coordinates(motion, trajectory.instants(t))
+            return mechanism.follow(legs, ~(free | legs.hub_held), law, motion.pivot)
     return trajectory.sample(home_pose(robot), motion, t)
 
 
+@_once
+def _mobility(robot: Robot) -> Mobility:
+    return mobility(rigid_limbs(robot))
+
+
 def inverse_kinematics(robot: Robot, path: Poses) -> LegState:
-    """Leg lengths and universal-joint angles with two derivatives, arrays (T, 6); see `kinematics.leg_state`."""
-    return kinematics.state_of(_leg_map(robot), path)
+    """Legs with two derivatives, arrays (T, n); see `kinematics.leg_state`, of legs other than UPS `mechanism`."""
+    if rigid_limbs(robot).plain:
+        return kinematics.state_of(_leg_map(robot), path)
+    return mechanism.leg_state(rigid_limbs(robot), path)
+
+
+def drive_positions(robot: Robot, path: Poses) -> Array:
+    """Positions (T, m) of the driven legs as the study file counts them: lengths, ways [m], angles of cranks [rad]."""
+    legs = rigid_limbs(robot)
+    return mechanism.drives_of(legs, mechanism.legs_at(legs, path).q)
 
 
 def inverse_dynamics(
@@ -137,24 +176,67 @@ def energies(robot: Robot, path: Poses) -> tuple[Array, Array]:
     )
 
 
+def drive_jacobian(robot: Robot, path: Poses, point: ArrayLike = (0.0, 0.0, 0.0)) -> Array:
+    """Rates of the m driven coordinates for twists of a platform point, (T, m, 6); see `holding.drive_jacobian`."""
+    legs, at = rigid_limbs(robot), np.asarray(point, dtype=float)
+    if legs.plain and (legs.state[:, COORDINATES.index("l")] == DRIVEN).all():
+        return jacobian.length_jacobian(robot.base_joints, robot.platform_joints, path.position, path.rotation, at)
+    return holding.drive_jacobian(legs, mechanism.legs_at(legs, path).q, path, at)
+
+
+def _scaled_jacobian(robot: Robot, path: Poses) -> Array:
+    """What the locked legs hold of the platform, (T, m, d) with m at least d, Eqs. (T2.23), (T14.19)."""
+    legs, held = rigid_limbs(robot), rigid_limbs(robot).hub_held
+    if legs.plain and not held.any() and len(legs) == 6:
+        return jacobian.scaled_path(robot.base_joints, robot.platform_joints, path)
+    if held.all():
+        return np.ones((len(path), 1, 1))
+    rows = holding.holding(legs, mechanism.legs_at(legs, path).q, path, legs.platform.mean(axis=0))
+    found = jacobian.scaled(rows, legs.L_c)[..., ~held]
+    short = max(found.shape[2] - found.shape[1], 0)
+    return np.concatenate([found, np.zeros((len(path), short, found.shape[2]))], axis=1)
+
+
 def singularity(robot: Robot, path: Poses) -> jacobian.SingularityPath:
     """Singular values, condition and determinant along a path; see `jacobian.along_path`."""
-    return jacobian.along_path(robot.base_joints, robot.platform_joints, path)
+    return jacobian.along_path(_scaled_jacobian(robot, path))
 
 
 def nearest_singularity(robot: Robot, path: Poses) -> jacobian.NearestSingularity:
     """The pose of a path that is nearest to a singularity; see `jacobian.nearest`."""
-    return jacobian.nearest(robot.base_joints, robot.platform_joints, path)
+    return jacobian.nearest(_scaled_jacobian(robot, path))
 
 
-def forward_kinematics(robot: Robot, lengths: ArrayLike, guess: Poses | None = None) -> Poses:
-    """Poses along a path of leg lengths (T, 6) or (6,) [m]: Newton, the first from `guess` (default: home)."""
-    start = home_pose(robot) if guess is None else guess
-    return forward.newton_path(robot.base_joints, robot.platform_joints, lengths, start)
+def forward_kinematics(robot: Robot, drives: ArrayLike, guess: Poses | None = None) -> Poses:
+    """Poses at positions of the drives, (T, m) or (m,): Newton, from `guess` (default: home).
+
+    Lengths [m], and of carriages what the study file calls their position [m, rad]. Of six legs UPS each pose starts
+    from the one before.
+    """
+    legs = rigid_limbs(robot)
+    if legs.plain and len(legs) == 6 and not legs.guides:
+        start = home_pose(robot) if guess is None else guess
+        return forward.newton_path(robot.base_joints, robot.platform_joints, drives, start)
+    return mechanism.forward(legs, np.asarray(drives, dtype=float), guess)
 
 
 def postures(robot: Robot, lengths: ArrayLike) -> forward.Postures:
-    """All poses that fit the six leg lengths (6,) [m]; see `forward.all_postures`."""
+    """All poses that fit the six leg lengths (6,) [m]; see `forward.all_postures`.
+
+    Raises
+    ------
+    InputError
+        The robot has other legs than six of the kind UPS.
+    """
+    legs = rigid_limbs(robot)
+    if not legs.plain or len(legs) != 6 or legs.guides:
+        raise InputError(
+            "has postures that are not known all at once",
+            key="robot.type",
+            value=robot.type,
+            allowed="six legs UPS: their equations are solved completely",
+            next_step="Use forward_kinematics, which finds the pose next to a guess",
+        )
     return forward.all_postures(robot.base_joints, robot.platform_joints, lengths)
 
 

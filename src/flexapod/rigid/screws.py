@@ -38,13 +38,14 @@ class Screws:
         slides, turns = np.moveaxis(self.columns, (3, 2), (0, 1)).reshape(8, 2, 3, *rates.shape[:2]).swapaxes(0, 1)
         v, w = np.zeros((2, 3, *rates.shape[:2]))
         swing, spin = np.zeros((2, 3, *rates.shape[:2]))
+        tip = swing
         for k, rate in enumerate(np.moveaxis(rates, -1, 0)):
             spin = spin + rate * np.array(cross(w, turns[k]))
             if k < _BODY:  # rate of a screw that the twist (v, w) before it carries along
                 swing = swing + rate * (np.array(cross(w, slides[k])) - np.array(cross(turns[k], v)))
                 v = v + rate * slides[k]
             if k == _BODY - 1:
-                tip = swing + np.array(cross(w + rate * turns[k], v))
+                tip = swing + np.array(cross(w, v))
             w = w + rate * turns[k]
         return np.moveaxis(np.concatenate([tip, spin]), 0, -1)
 
@@ -52,14 +53,14 @@ class Screws:
 def screws(limbs: Limbs, q: Array) -> Screws:
     """Tips, joint frames and velocities of the legs at coordinates `q` (T, n, 8), Eqs. (T14.1)-(T14.4)."""
     chi, alpha, beta, spin, length, *gamma = time_last(q).swapaxes(0, 1)
-    frame = [np.moveaxis(limbs.frames, -1, 0)[k].T[..., None] for k in range(3)]  # columns (3, n, 1)
-    foot, axis = limbs.base.T[..., None], limbs.carriage_axis.T[..., None]
+    frame = [np.asarray(limbs.frames[:, :, k].T[..., None]) for k in range(3)]  # columns (3, n, 1)
+    foot, axis, arm = (x.T[..., None] for x in (limbs.base, limbs.carriage_axis, limbs.carriage_arm))
     slides, turns = np.zeros((2, 8, 3, *chi.shape))
     if limbs.carriage == "slider":
         foot, slides[0] = foot + chi * axis, axis
     elif limbs.carriage == "crank":
-        arm = _about(axis, limbs.carriage_arm.T[..., None], chi)
-        foot, frame = foot - limbs.carriage_arm.T[..., None] + arm, [_about(axis, x, chi) for x in frame]
+        shaft, arm = foot - arm, _about(axis, arm, chi)
+        foot, frame = shaft + arm, [_about(axis, x, chi) for x in frame]
         turns[0] = axis
     for k, (name, angle) in enumerate((("alpha", alpha), ("beta", beta), ("spin", spin))):
         turns[COORDINATES.index(name)] = frame[k]
@@ -71,7 +72,10 @@ def screws(limbs: Limbs, q: Array) -> Screws:
         slides[k] = cross(turns[k], reach)
     if limbs.carriage == "crank":
         slides[0] = cross(axis, arm + reach)
-    frame = [sum(F[:, None] * x for F, x in zip(limbs.leg_frames[:, :, k].T, frame, strict=True)) for k in range(3)]
+    frame = [
+        np.sum([F[:, None] * x for F, x in zip(limbs.leg_frames[:, :, k].T, frame, strict=True)], axis=0)
+        for k in range(3)
+    ]
     for k, angle in enumerate(gamma):
         turns[5 + k] = frame[k]
         frame = _turned(frame, k, angle)

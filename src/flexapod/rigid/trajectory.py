@@ -20,6 +20,7 @@ __all__ = [
     "Poses",
     "angular_motion",
     "coordinates",
+    "instants",
     "poses_from_coordinates",
     "rotation_matrix",
     "sample",
@@ -250,7 +251,12 @@ def sample(home: Poses, motion: Motion, t: ArrayLike) -> Poses:
     InputError
         If an instant is not finite.
     """
+    return poses_from_coordinates(home, coordinates(motion, instants(t)), motion.pivot)
+
+
+def instants(t: ArrayLike) -> Array:
+    """Instants (T,) [s], refused where one is not finite."""
     t = np.atleast_1d(np.asarray(t, dtype=float))
     if not np.all(np.isfinite(t)):
         raise InputError("instants must be finite", key="t", allowed="finite seconds")
-    return poses_from_coordinates(home, coordinates(motion, t), motion.pivot)
+    return t

@@ -1,0 +1,67 @@
+"""Axes of the joints at the two ends of a leg, at home, Eqs. (T2.14), (T14.1)-(T14.2)."""
+
+from __future__ import annotations
+
+import numpy as np
+
+from flexapod.errors import InputError
+from flexapod.rigid.kinematics import leg_frame
+from flexapod.typing import Array
+
+__all__ = ["base_frame", "platform_frame"]
+
+_ALONG = 1e-9  # sine of the angle below which an axis counts as parallel to the leg
+
+
+def base_frame(number: int, letter: str, axis: Array | None, foot: Array, tip: Array) -> tuple[Array, float]:
+    """Frame R0 of leg `number`, leg to world, and beta at home [rad].
+
+    A hinge has its axis exactly as given and beta at what it then is; of a universal joint the part normal to the leg
+    counts, and beta is zero.
+    """
+    if letter != "R" or axis is None:
+        return leg_frame(number, tip - foot, axis), 0.0
+    way = tip - foot
+    return _hinge(number, axis, way, "base_joint.axis"), float(
+        np.arcsin(axis @ way / np.linalg.norm(axis) / np.linalg.norm(way))
+    )
+
+
+def platform_frame(number: int, letter: str, axis: Array | None, axes: Array) -> Array:
+    """Axes of the platform joint at home in the world, `axes` being those of the leg.
+
+    Universal joint: y is fixed to the platform, the part of the axis normal to the leg, by default along the leg's x.
+    Hinge: x is the axis exactly as given. Every other joint has the axes of the leg.
+    """
+    x, _, z = axes.T
+    if letter == "U":
+        y = x if axis is None else axis - (axis @ z) * z
+        size = np.linalg.norm(y)
+        if axis is not None and size <= _ALONG * np.linalg.norm(axis):
+            raise _parallel(number, axis, "platform_joint.axis")
+        y = y / size
+        return np.stack([np.cross(y, z), y, z], axis=-1)
+    if letter == "R":
+        return _hinge(number, x if axis is None else axis, z, "platform_joint.axis")
+    if axis is not None:
+        return _hinge(number, axis, z, "platform_joint.axis")
+    return axes
+
+
+def _hinge(number: int, axis: Array, way: Array, key: str) -> Array:
+    """Frame with x along an axis and z as near to a direction as it can be."""
+    x = axis / np.linalg.norm(axis)
+    z = way - (way @ x) * x
+    if np.linalg.norm(z) <= _ALONG * np.linalg.norm(way):
+        raise _parallel(number, axis, key)
+    z = z / np.linalg.norm(z)
+    return np.stack([x, np.cross(z, x), z], axis=-1)
+
+
+def _parallel(number: int, axis: Array, key: str) -> InputError:
+    return InputError(
+        "is parallel to the leg at home",
+        key=f"leg {number}: {key}",
+        value=axis.tolist(),
+        allowed="a direction across the leg",
+    )

@@ -1,0 +1,190 @@
+"""What a mechanism can do: motions, motions left with all drives locked, drives that fight, Eqs. (T14.11)-(T14.14).
+
+Everything is counted by rank, at one posture: a mechanism may have more motions there than next to it.
+"""
+
+from __future__ import annotations
+
+from dataclasses import dataclass
+from typing import NamedTuple
+
+import numpy as np
+from numpy.typing import NDArray
+
+from flexapod.rigid.closures import gaps
+from flexapod.rigid.limbs import COORDINATES, DRIVEN, FREE, Limbs
+from flexapod.rigid.rotations import exponential
+from flexapod.rigid.screws import screws
+from flexapod.rigid.trajectory import Poses
+from flexapod.typing import Array
+
+Mask = NDArray[np.bool_]
+
+__all__ = ["Mobility", "Posture", "displaced", "mobility"]
+
+RANK = 1e-9  # singular values below this fraction of the largest count as zero
+FAR = 0.05  # rad, or of L_c: how far displaced postures lie from one
+STEPS, SETTLED = 30, 1e-12  # on the way back to the closures; gap [m, rad] at which they are closed
+
+
+@dataclass(frozen=True, kw_only=True)
+class Mobility:
+    """Motions of a mechanism at one posture.
+
+    Attributes
+    ----------
+    freedoms : int
+        Of all joints together, idle turns of legs included.
+    gruebler : int
+        Motions by counting joints and loops alone.
+    mobility : int
+        Motions by rank, internal ones included.
+    redundant : int
+        Closure rows that say what others say: mobility less `gruebler`.
+    locked : int
+        Motions left with all drives locked, internal ones included; of the platform `locked_platform`.
+    self_stress : int
+        Forces that drives and joints can exert against each other, the platform unloaded.
+    internal : tuple of (int, str)
+        Legs that can move while the platform stands, 1 to n, and how.
+    platform : ndarray, shape (6, d)
+        Twists of the platform at its frame's origin, in world axes: orthonormal, translations in units of L_c.
+    locked_platform : ndarray, shape (6, d')
+        The same with all drives locked.
+    """
+
+    freedoms: int
+    gruebler: int
+    mobility: int
+    redundant: int
+    locked: int
+    self_stress: int
+    internal: tuple[tuple[int, str], ...]
+    platform: Array
+    locked_platform: Array
+
+
+class Posture(NamedTuple):
+    """One posture: coordinates of the legs (1, n, 8), place (3,) [m] and attitude (3, 3) of the platform frame."""
+
+    q: Array
+    place: Array
+    turn: Array
+
+    @classmethod
+    def home(cls, limbs: Limbs) -> Posture:
+        """That at home."""
+        return cls(limbs.home[None], limbs.position, limbs.rotation)
+
+
+class _Rank(NamedTuple):
+    rank: int
+    null: Array  # (columns, columns - rank)
+
+
+def mobility(limbs: Limbs, at: Posture | None = None) -> Mobility:
+    """Motions of the mechanism at one posture (default: home), Eqs. (T14.11)-(T14.13)."""
+    at = Posture.home(limbs) if at is None else at
+    matrix, driven = _matrix(limbs, at)
+    free, locked = _rank(matrix), _rank(matrix[:, ~driven])
+    hub = int(6 - limbs.hub_held.sum())
+    return Mobility(
+        freedoms=matrix.shape[1] - hub,
+        gruebler=matrix.shape[1] - matrix.shape[0],
+        mobility=matrix.shape[1] - free.rank,
+        redundant=matrix.shape[0] - free.rank,
+        locked=matrix.shape[1] - int(driven.sum()) - locked.rank,
+        self_stress=matrix.shape[0] - locked.rank,
+        internal=_internal(limbs, at.q),
+        platform=_platform(limbs, free.null),
+        locked_platform=_platform(limbs, locked.null),
+    )
+
+
+def _unknown(limbs: Limbs) -> Mask:
+    """Coordinates that move, (n, 8), the three of a ball joint among them."""
+    moves = np.isin(limbs.state, (FREE, DRIVEN))
+    moves[~limbs.pose_closure, COORDINATES.index("gamma1") :] = True
+    moves[:, COORDINATES.index("spin")] |= limbs.idle
+    return moves
+
+
+def _unit(limbs: Limbs) -> Array:
+    """Units (8,) of the legs' coordinates: L_c or a radian."""
+    slides = {"l", "chi"} if limbs.carriage == "slider" else {"l"}
+    return np.array([limbs.L_c if name in slides else 1.0 for name in COORDINATES])
+
+
+def _matrix(limbs: Limbs, at: Posture) -> tuple[Array, Mask]:
+    """Rates of all moving coordinates to closure rows, six a leg, without units; which columns are driven."""
+    n, moves = len(limbs), _unknown(limbs)
+    columns = screws(limbs, at.q).columns[0] * _rows(limbs)[:, None] * _unit(limbs)
+    arms = limbs.platform @ at.turn.T / limbs.L_c
+    hub = np.tile(np.eye(6), (n, 1, 1))
+    hub[:, :3, 3:] = np.cross(np.eye(3)[None], arms[..., None], axis=1)
+    legs = np.zeros((n, 6, n, 8))
+    legs[np.arange(n), :, np.arange(n)] = columns
+    left = legs.reshape(6 * n, 8 * n)[:, moves.ravel()]
+    right = -hub.reshape(6 * n, 6)[:, ~limbs.hub_held]
+    driven = (limbs.state == DRIVEN).ravel()[moves.ravel()]
+    return np.hstack([left, right]), np.concatenate([driven, np.zeros(right.shape[1], dtype=bool)])
+
+
+def _rank(matrix: Array) -> _Rank:
+    _, values, v = np.linalg.svd(matrix)
+    rank = int(np.sum(values > RANK * values[0]))
+    return _Rank(rank, v[rank:].T)
+
+
+def _platform(limbs: Limbs, null: Array) -> Array:
+    """Orthonormal basis (6, d) of the platform's part of motions."""
+    part = np.zeros((6, null.shape[1]))
+    held = limbs.hub_held
+    part[~held] = null[null.shape[0] - int((~held).sum()) :]
+    u, values, _ = np.linalg.svd(part)
+    return u[:, : int(np.sum(values > np.sqrt(RANK)))]
+
+
+def _internal(limbs: Limbs, q: Array) -> tuple[tuple[int, str], ...]:
+    moves, columns, found = _unknown(limbs), screws(limbs, q).columns[0], []
+    for leg in range(len(limbs)):
+        matrix = (columns[leg] * _rows(limbs)[:, None] * _unit(limbs))[:, moves[leg]]
+        count = matrix.shape[1] - _rank(matrix).rank
+        if count:
+            idle = limbs.idle[leg] and count == 1
+            found.append((leg + 1, "turn about the leg's own axis" if idle else "move while the platform stands"))
+    return tuple(found)
+
+
+def displaced(limbs: Limbs, at: Posture | None = None) -> list[Posture]:
+    """Two postures next to one (default: home) that the mechanism can take, Eq. (T14.14).
+
+    A step along a mixture of all its motions, then back to the closures on the shortest way; fewer, if there is none.
+    """
+    start = Posture.home(limbs) if at is None else at
+    return [found for side in (1, -1) if (found := _displaced(limbs, start, side * FAR)) is not None]
+
+
+def _displaced(limbs: Limbs, at: Posture, far: float) -> Posture | None:
+    null = _rank(_matrix(limbs, at)[0]).null
+    # weights without a pattern, to which a symmetric mechanism could answer with a special posture
+    step = null @ (far * np.cos(1.0 + 2.3 * np.arange(null.shape[1])))
+    for _ in range(STEPS):
+        at = _moved(limbs, at, step)
+        apart = gaps(limbs, screws(limbs, at.q), Poses.at_rest(at.place, at.turn))[0]
+        if np.abs(apart).max() < SETTLED * max(limbs.L_c, 1.0):
+            return at
+        step = -np.linalg.pinv(_matrix(limbs, at)[0], rcond=RANK) @ (apart * _rows(limbs)).ravel()
+    return None
+
+
+def _moved(limbs: Limbs, at: Posture, step: Array) -> Posture:
+    """Posture after a step of all moving coordinates, in their units."""
+    moves, hub, dq, twist = _unknown(limbs), ~limbs.hub_held, np.zeros((len(limbs), 8)), np.zeros(6)
+    dq[moves], twist[hub] = step[: moves.sum()], step[moves.sum() :]
+    return Posture(at.q + dq * _unit(limbs), at.place + limbs.L_c * twist[:3], exponential(twist[3:]) @ at.turn)
+
+
+def _rows(limbs: Limbs) -> Array:
+    """One over the units of the six closure rows of a leg."""
+    return np.array([1 / limbs.L_c] * 3 + [1.0] * 3)

@@ -1,0 +1,202 @@
+"""Motions of a mechanism in words, and which coordinates of the platform can be commanded, Eqs. (T14.15)-(T14.16)."""
+
+from __future__ import annotations
+
+from collections.abc import Sequence
+
+import numpy as np
+from numpy.typing import NDArray
+
+from flexapod.errors import InputError
+from flexapod.model.motion import AXES, CsvMotion, Motion, WaypointMotion
+from flexapod.rigid.limbs import DRIVEN, Limbs
+from flexapod.rigid.mobility import Mobility, Posture, displaced, mobility
+from flexapod.typing import Array
+
+__all__ = ["commanded", "independent_axes", "mobility_words", "motion_names", "refuse_loose"]
+
+PURE = 1e-6  # share of other coordinates, in units of L_c and radians, below which a motion has one name
+
+_BASE = ("move along x", "move along y", "move along z", "turn about base x", "turn about base y", "turn about base z")
+_NUMBERS = ("no", "one", "two", "three", "four", "five", "six")
+
+Mask = NDArray[np.bool_]
+
+
+def motion_names(limbs: Limbs, twists: Array, at: Posture | None = None) -> tuple[str, ...]:
+    """Names of motions whose twists (6, d) are those of `Mobility.platform`, Eq. (T14.15).
+
+    Surge to yaw where each is about the platform frame's origin, else about that of the base, whichever takes fewer
+    names for one motion.
+    """
+    place = limbs.position if at is None else at.place
+    of_platform, of_base = _names(twists, AXES), _names(_about(twists, -place / limbs.L_c), _BASE)
+    return of_platform if sum(map(_mixed, of_platform)) <= sum(map(_mixed, of_base)) else of_base
+
+
+def _mixed(name: str) -> bool:
+    return " with " in name
+
+
+def _about(twists: Array, arm: Array) -> Array:
+    """Twists at a point `arm` away from theirs, in units of L_c."""
+    moved = twists.copy()
+    moved[:3] += np.cross(twists[3:], arm, axis=0)
+    return moved
+
+
+def _names(twists: Array, names: Sequence[str]) -> tuple[str, ...]:
+    basis = np.linalg.qr(twists)[0]
+    shares = basis @ basis.T
+    pure = [k for k in range(6) if np.linalg.norm(shares[:, k] - np.eye(6)[k]) < PURE]
+    rest = np.delete(np.eye(6), pure, axis=1)
+    left = rest.T @ shares @ rest
+    rows = np.linalg.eigh(left)[1][:, ::-1][:, : twists.shape[1] - len(pure)].T @ rest.T
+    return tuple(names[k] for k in pure) + tuple(
+        " with ".join(names[int(k)] for k in np.argsort(-np.abs(row), kind="stable") if abs(row[k]) > PURE)
+        for row in _reduced(rows)
+    )
+
+
+def _reduced(rows: Array) -> Array:
+    """Rows of the same span, each with a one where the others have zeros."""
+    rows = rows.copy()
+    for k in range(len(rows)):
+        pivot = int(np.argmax(np.abs(rows[k:]).max(axis=0)))
+        best = k + int(np.argmax(np.abs(rows[k:, pivot])))
+        rows[[k, best]] = rows[[best, k]]
+        rows[k] /= rows[k, pivot]
+        others = np.arange(len(rows)) != k
+        rows[others] -= rows[others, pivot, None] * rows[k]
+    return rows
+
+
+def independent_axes(
+    limbs: Limbs, moved: Mask, pivot: Array, named: Sequence[str] | None = None, found: Mobility | None = None
+) -> Mask:
+    """Platform coordinates (6,) that a motion commands, the others following from the closures, Eq. (T14.16).
+
+    Parameters
+    ----------
+    limbs : Limbs
+    moved : ndarray of bool, shape (6,)
+        Coordinates that the motion changes.
+    pivot : ndarray, shape (3,)
+        About which the platform turns, platform axes [m].
+    named : sequence of str, optional
+        What `motion.independent` names; without it those that are moved and as many others as there are motions.
+    found : Mobility, optional
+        At home, where it is known.
+
+    Raises
+    ------
+    InputError
+        The robot cannot follow independent commands of these coordinates.
+    """
+    twists = (mobility(limbs) if found is None else found).platform
+    rows = _about(twists, limbs.rotation @ pivot / limbs.L_c)
+    asked = [k for k in range(6) if (moved[k] if named is None else AXES[k] in named)]
+    if _rank(rows[asked]) < len(asked) or (named is not None and len(asked) < twists.shape[1]):
+        raise _beyond(limbs, twists, asked, named)
+    while len(asked) < twists.shape[1]:  # the coordinate that the ones so far say least about
+        left = rows - rows @ np.linalg.pinv(rows[asked]) @ rows[asked] if asked else rows
+        asked.append(int(np.argmax(np.linalg.norm(left, axis=1).round(6))))
+    return np.isin(np.arange(6), asked)
+
+
+def commanded(limbs: Limbs, motion: Motion, found: Mobility) -> Mask:
+    """Platform coordinates (6,) that a motion commands of a mechanism with the motions `found` at home.
+
+    Raises
+    ------
+    InputError
+        It asks for one that the robot does not have.
+    """
+    named = getattr(motion, "independent", None)
+    if isinstance(motion, WaypointMotion | CsvMotion):
+        rows = motion.poses if isinstance(motion, WaypointMotion) else motion.pose
+        moved = (rows != 0).any(axis=0)
+    else:
+        moved = motion.target != 0
+    return independent_axes(limbs, moved, motion.pivot, named, found)
+
+
+def _rank(rows: Array) -> int:
+    return int(np.sum(np.linalg.svd(rows, compute_uv=False) > PURE)) if len(rows) else 0
+
+
+def _beyond(limbs: Limbs, twists: Array, asked: list[int], named: Sequence[str] | None) -> InputError:
+    count, names = twists.shape[1], ", ".join(motion_names(limbs, twists))
+    which = " and ".join(AXES[k] for k in asked)
+    return InputError(
+        f"asks for {which} of a robot with {_count(count, 'motion')}: {names}",
+        key="motion" if named is None else "motion.independent",
+        value=which if named is None else list(named),
+        allowed=f"{_count(count, 'coordinate')} that can be chosen independently of each other",
+        next_step="The other coordinates follow from these; leave them out, and name the chosen ones in "
+        "motion.independent",
+    )
+
+
+def _count(number: int, what: str) -> str:
+    return f"{number} {what}{'' if number == 1 else 's'}"
+
+
+def mobility_words(limbs: Limbs) -> list[str]:
+    """What `check` says about the motions of a mechanism, sentence by sentence without full stops."""
+    home = mobility(limbs)
+    near = [mobility(limbs, at) for at in displaced(limbs)]
+    count = home.platform.shape[1]
+    words = [f"{_count(count, 'motion')}: {', '.join(motion_names(limbs, home.platform))}"] if count else ["no motion"]
+    fewer = [m.platform.shape[1] for m in near if m.platform.shape[1] < count]
+    if fewer:
+        words.append(f"next to home it has {_count(min(fewer), 'motion')} only")
+    more = int((limbs.state == DRIVEN).sum()) - count
+    if more > 0:
+        number = _NUMBERS[more] if more < len(_NUMBERS) else str(more)
+        words.append(f"{number} drive{'s' * (more > 1)} more than motions: forces are shared by stiffness")
+    words += _loose_words(limbs, home, near)
+    if home.redundant:
+        words.append(
+            f"over-constrained: {_count(home.redundant, 'condition')} of its joints "
+            f"{'says' if home.redundant == 1 else 'say'} what others say; forces there are shared by stiffness"
+        )
+    how: dict[str, list[int]] = {}
+    for leg, what in home.internal:
+        how.setdefault(what, []).append(leg)
+    return words + [f"{_legs(legs)} can {what}" for what, legs in how.items()]
+
+
+def _legs(legs: list[int]) -> str:
+    if len(legs) == 1:
+        return f"leg {legs[0]}"
+    return f"legs {', '.join(map(str, legs[:-1]))} and {legs[-1]}"
+
+
+def _loose_words(limbs: Limbs, home: Mobility, near: list[Mobility]) -> list[str]:
+    """What is left free with all drives locked."""
+    loose = home.locked_platform.shape[1]
+    if not loose:
+        return []
+    names = ", ".join(motion_names(limbs, home.locked_platform))
+    at_home = all(m.locked_platform.shape[1] < loose for m in near)
+    return [f"with all drives locked it still has {_count(loose, 'motion')}: {names}{': singular at home' * at_home}"]
+
+
+def refuse_loose(limbs: Limbs) -> None:
+    """Refuse a mechanism whose drives, all locked, do not hold the platform at home.
+
+    Raises
+    ------
+    InputError
+        Motions are left.
+    """
+    home = mobility(limbs)
+    if home.locked_platform.shape[1]:
+        near = [mobility(limbs, at) for at in displaced(limbs)]
+        raise InputError(
+            _loose_words(limbs, home, near)[0],
+            key="robot.type",
+            allowed="drives that hold every motion of the platform",
+            next_step="Drive more legs, or turn the axes of their joints",
+        )
