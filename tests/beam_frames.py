@@ -1,0 +1,73 @@
+"""A robot of the model at home as a platform on beams for the oracle of exact frequencies; drives locked, no weight."""
+
+import numpy as np
+from tests.oracles import frames
+from tests.oracles.mechanisms import _cross as cross_axes
+
+
+def as_frame(robot):
+    """Legs and body; what the plane of a planar robot holds is left out."""
+    turn, home, load = robot.home_rotation, robot.home_position, robot.payload
+    legs = [
+        _leg(robot, leg, foot, tip)
+        for leg, foot, tip in zip(robot.legs, robot.home_bases, robot.home_tips, strict=True)
+    ]
+    free = np.eye(6)
+    if robot.plane:
+        across = robot.normal != 0
+        free = free[~np.concatenate([across, ~across])]
+    com, inertia = home + turn @ load.com, turn @ load.inertia @ turn.T
+    return legs, frames.Body(mass=load.mass, inertia=inertia, com=com, free=free)
+
+
+def _leg(robot, leg, foot, tip):
+    way = (tip - foot) / np.linalg.norm(tip - foot)
+    letters, beam, guided = leg.letters, leg.piston, leg.strut is None
+    base = _axes(letters.base, robot.normal if robot.plane else leg.base_joint.axis, way)
+    axis = leg.platform_joint.axis
+    end = _axes(
+        letters.platform, robot.normal if robot.plane else None if axis is None else robot.home_rotation @ axis, way
+    )
+    parts = {}
+    if robot.plane:
+        base, end = base[:1] if len(base) else base, end[:1] if len(end) else end
+        parts = {"first": np.cross(robot.normal, way), "planes": (0,)}
+    if _twists(base, end, way):
+        parts |= {"GJ": beam.torsional_stiffness, "spin_inertia": beam.axial_inertia}
+    else:  # nothing resists the turn about the leg: it is idle
+        base, end = _without(base, way), _without(end, way)
+    if guided:
+        c = leg.cylinder
+        parts |= {"mouth": c.mouth, "length": beam.length, "inertia": c.inertia + c.mass * c.com**2}
+        parts |= {"axial_inertia": c.axial_inertia}
+    return frames.Leg(
+        base=foot, tip=tip, base_axes=base, tip_axes=end, base_springs=_springs(leg.base_joint, base, way),
+        tip_springs=_springs(leg.platform_joint, end, way), EI=beam.EI, EA=beam.EA, rhoA=beam.rhoA, **parts,
+    )  # fmt: skip
+
+
+def _axes(letter, axis, way):
+    if letter == "R":
+        return np.array([axis]) / np.linalg.norm(axis)
+    if letter in ("U", "S"):
+        first, second = cross_axes(way, axis, False)
+        return np.array([first, second, way] if letter == "S" else [first, second])
+    return frames.NONE
+
+
+def _along(axes, way):
+    return np.array([abs(axis @ way) > 1 - 1e-12 for axis in axes], dtype=bool)
+
+
+def _twists(base, end, way):
+    """Whether one end at least holds the leg against turning about itself and moments about it can act."""
+    return not _along(end, way).any()
+
+
+def _without(axes, way):
+    return axes[~_along(axes, way)] if len(axes) else axes
+
+
+def _springs(joint, axes, way):
+    """Springs of flexures stand at letters F; other joints are free."""
+    return ()

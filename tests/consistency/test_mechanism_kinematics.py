@@ -1,0 +1,68 @@
+"""Motion and mobility of robots of many kinds against products of exponentials with exact rates."""
+
+import numpy as np
+import pytest
+from tests.chains import NAMED, PLANES, as_mechanism
+from tests.mechanisms import ROBOTS
+from tests.oracles import virtual_power
+
+from flexapod import rigid
+from flexapod.model import CombinedMotion
+from flexapod.rigid.limbs import limbs
+from flexapod.rigid.mobility import mobility
+
+AMPLITUDES = {"surge": 0.03, "sway": -0.02, "heave": 0.04, "roll": 0.15, "pitch": -0.12, "yaw": 0.2}
+TILTS, SHIFTS = ("heave", "roll", "pitch"), ("surge", "sway", "heave")
+OWN = {"3-RPS": TILTS, "3-SPR": TILTS, "3-PRS": TILTS, "3-UPS+UP": TILTS, "3-UPU": SHIFTS, "3-PUU": SHIFTS}
+OWN |= {"planar 3-RPR": PLANES["xy"], "planar 3-PRR": PLANES["xy"]}
+MOVING = [name for name in ROBOTS if name != "1-UPS"]
+DURATION = 0.5
+
+
+def quintic(amplitude, t):
+    """Value, rate, acceleration of the law from rest to rest."""
+    s = t / DURATION
+    law = [s**3 * (10 - 15 * s + 6 * s**2), 30 * (s * (1 - s)) ** 2, 60 * s * (1 - s) * (1 - 2 * s)]
+    return amplitude * np.array(law) / DURATION ** np.arange(3)
+
+
+def parts(chain, names, values):
+    return [value for joint, value in zip(chain.joints, values, strict=True) if joint.name in names]
+
+
+@pytest.mark.parametrize("name", MOVING)
+def test_legs_follow_the_platform(name):
+    robot, own = ROBOTS[name](), OWN.get(name, tuple(NAMED))
+    pivot = [0.01, -0.02, 0.03] if own == tuple(NAMED) else [0, 0, 0]
+    motion = CombinedMotion(amplitudes={axis: AMPLITUDES[axis] for axis in own}, duration=DURATION, pivot=pivot)
+    t = np.array([0.12, 0.3])
+    path = rigid.poses(robot, motion, t)
+    legs = rigid.inverse_kinematics(robot, path)
+    mechanism, found = as_mechanism(robot, own, pivot), None
+    for i, instant in enumerate(t):
+        law = np.array([quintic(AMPLITUDES[axis], instant) for axis in own]).T
+        found = virtual_power.follow(mechanism, *law, guess=found)
+        place = virtual_power.placed(mechanism.platform, found.platform[0])[0][-1]
+        # Closed to 1e-14 by both; rates and accelerations (10 rad/s^2) by the condition of the closures.
+        np.testing.assert_allclose(path.rotation[i], place[:3, :3] @ robot.home_rotation, rtol=0, atol=1e-12)
+        at = place[:3, :3] @ robot.home_position + place[:3, 3]
+        np.testing.assert_allclose(path.position[i], at, rtol=0, atol=1e-12)
+        for order in range(3):
+            states = [(leg, q[order]) for leg, q in zip(mechanism.legs, found.legs, strict=True)]
+            for coordinate, joint in (("chi", "carriage"), ("l", "length")):
+                ours = legs.coordinate(coordinate)[order][i]
+                if coordinate == "l" and order == 0:
+                    ours = ours - robot.home_lengths
+                for (leg, q), value in zip(states, ours, strict=True):
+                    np.testing.assert_allclose(
+                        parts(leg, [joint], q), [value][: len(parts(leg, [joint], q))], rtol=0, atol=1e-11
+                    )
+
+
+@pytest.mark.parametrize("name", [name for name in MOVING if not name.startswith("planar")])
+def test_mobility_is_that_of_all_screws(name):
+    robot = ROBOTS[name]()
+    ours, other = mobility(limbs(robot, rigid=True)), virtual_power.mobility(as_mechanism(robot))
+    assert ours.freedoms == other["joints"]
+    for key in ("mobility", "redundant", "locked", "self_stress"):
+        assert getattr(ours, key) == other[key], key
