@@ -17,15 +17,15 @@ import numpy as np
 from scipy.integrate import solve_ivp
 
 from benchmarks.deviation import Curve, rigid_centre
-from flexapod import mechanics, rigid, symbolic
-from flexapod.mechanics.assembly import leg_residual, payload_functions
-from flexapod.mechanics.layout import COMMAND_SIZE, LEG_PARAMETERS, Shapes
+from flexapod import elements, mechanics, rigid, symbolic
+from flexapod.mechanics.assembly import payload_functions
+from flexapod.mechanics.layout import LEG_PARAMETERS, Shapes
 from flexapod.mechanics.leg import leg
 from flexapod.model import Study
 from flexapod.solve.robot_march import prepare
 from flexapod.symbolic.compiler import compiled_library, compiler
 from flexapod.symbolic.functions import NamedFunction
-from flexapod.symbolic.lagrange import mass_matrix
+from flexapod.symbolic.lagrange import inverse_dynamics, mass_matrix
 from flexapod.symbolic.vocabulary import jacobian, symbols, time_derivative, zeros
 from flexapod.typing import Array
 
@@ -68,7 +68,7 @@ def functions(shapes: Shapes) -> list[NamedFunction]:
     q, qs = symbols(shapes.layout, "q")
     v, vs = symbols(shapes.layout, "v")
     body = leg(shapes, p, q, v, qs, vs)
-    h = leg_residual(shapes, body, p, qs, vs, zeros(shapes.size), zeros(3), zeros(COMMAND_SIZE))
+    h = inverse_dynamics(body.lagrangian, zeros(shapes.size))  # strokes are prescribed: no drive has a spring
     J = jacobian(body.tip, q)
     bend = time_derivative(time_derivative(body.tip, (q, v)), (q, v))
     return [
@@ -136,7 +136,7 @@ def ode(study: Study) -> Ode:
     shapes, command = system.kernel.shapes, compiler()
     if command is None:
         raise RuntimeError("there is no C compiler")
-    packages = [Path(str(package.__file__)).parent for package in (mechanics, symbolic)]
+    packages = [Path(str(package.__file__)).parent for package in (elements, mechanics, symbolic)]
     texts = [path.read_bytes() for folder in packages for path in sorted(folder.glob("*.py"))]
     key = ["benchmark ode", *texts, repr(shapes), Path(__file__).read_bytes()]
     library, _ = compiled_library(key, lambda: functions(shapes), "", (SOURCE,), command)

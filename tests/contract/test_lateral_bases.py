@@ -61,6 +61,7 @@ def test_closed_integrals(which, count):
     close(b.slope_tip, (slope * w) @ slope.T)
     close(b.slope_first, (slope * w * (1 - z)) @ slope.T)
     close(b.slope_moment, (slope * w * (1 - z**2) / 2) @ slope.T)
+    close(b.turn, (slope * w) @ curvature.T - (curvature * w) @ slope.T)
 
 
 @every_count
@@ -94,6 +95,20 @@ def test_load_shapes_contain_the_static_ones(which, count):
         z = np.linspace(0, 1, 21)
         for load, shape in ((b.tip, z**2 / 2 - z**3 / 6), (b.tip_slope, z**2 / 2)):
             np.testing.assert_allclose(np.linalg.solve(b.stiffness, load) @ b.values(z), shape, atol=1e-9)
+
+
+@pytest.mark.parametrize("count", [2, 3, 6, 12])
+def test_shapes_for_a_tip_moment_span_every_clamped_polynomial(count):
+    """(T1.18): both static shapes are among them, and so is zeta^(k + 1); only the first moves the tip."""
+    b = lateral_basis("tip-load", count, moment=True)
+    z, w = fine_rule()
+    close(b.tip, np.eye(count)[0])
+    close(b.stiffness / np.sqrt(np.outer(*2 * [np.diag(b.stiffness)])), np.eye(count), 1e-9)
+    for shape in (3 * z**2 - z**3, z**2, z ** (count + 1)):
+        left = shape - np.linalg.lstsq(b.values(z).T, shape)[0] @ b.values(z)
+        assert left @ (w * left) < 1e-20
+    free = lateral_basis("tip-load", count)
+    assert np.linalg.cond(b.mass[:count, :count]) < 2 * np.linalg.cond(free.mass[:count, :count])
 
 
 @every_basis

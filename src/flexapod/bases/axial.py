@@ -10,7 +10,7 @@ from flexapod.bases.lateral import MOMENTS, proportional_damping
 from flexapod.typing import Array
 
 
-@dataclass(frozen=True, kw_only=True)
+@dataclass(frozen=True, kw_only=True, eq=False)
 class AxialBasis:
     """Static shape psi_0 = eta, then psi_n = sin(n pi eta).
 

@@ -18,6 +18,7 @@ def lateral_basis(
     tip_inertia_ratio: float = 0.0,
     speed: float = 0.0,
     hub_ratio: float = 0.0,
+    moment: bool = False,
 ) -> LateralBasis:
     """Lateral basis ``name`` with ``count`` shapes.
 
@@ -32,6 +33,9 @@ def lateral_basis(
     speed, hub_ratio : float
         theta_dot sqrt(rhoA s^4 / EI) and R_h/s of a beam in steady rotation, in ``tip-load`` shapes only.
 
+    moment : bool
+        The tip takes a moment from a joint: ``tip-load`` then spans the static shape under a tip moment too.
+
     Raises
     ------
     ValueError
@@ -45,7 +49,7 @@ def lateral_basis(
         )
         return integrate(name, turning)
     if name == "tip-load":
-        return integrate(name, tip_load_shapes(count))
+        return integrate(name, tip_load_shapes(count, moment=moment))
     if name == "tip-mass":
         return integrate(name, clamped_tip_mass(count, tip_mass_ratio, tip_inertia_ratio))
     if name == "segments":

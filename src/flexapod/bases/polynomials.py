@@ -22,26 +22,26 @@ class PolynomialShape:
         return np.asarray(series(np.asarray(zeta, dtype=float)))
 
 
-def tip_load_shapes(count: int) -> list[PolynomialShape]:
+def tip_load_shapes(count: int, *, moment: bool = False) -> list[PolynomialShape]:
     """Static tip-load shape (3 zeta^2 - zeta^3)/2 first, then ``count - 1`` modes with the tip held, Eq. (T1.5).
 
     The held modes are the Ritz eigenfunctions of the clamped-pinned beam in the polynomials of degree count + 2 without
-    tip moment. Together they span every such polynomial, which converges exponentially for pinned and rotating beams,
-    and the shapes stay well conditioned (their mass block is the identity, the stiffness matrix is diagonal).
+    tip moment; where the tip takes a ``moment``, in all of degree count + 1, Eq. (T1.18). Together they span every such
+    polynomial, which converges exponentially for pinned and rotating beams, and the shapes stay well conditioned (their
+    mass block is the identity, the stiffness matrix is diagonal).
     """
     static = Legendre(
         np.polynomial.Polynomial([0.0, 0.0, 1.5, -0.5]).convert(kind=Legendre, domain=[0, 1]).coef, [0, 1]
     )
-    return [PolynomialShape(series=static), *_held_modes(count)][:count]
+    return [PolynomialShape(series=static), *_held_modes(count, moment)][:count]
 
 
-def _held_modes(count: int) -> list[PolynomialShape]:
+def _held_modes(count: int, moment: bool) -> list[PolynomialShape]:
     if count < 2:
         return []
-    legendre = [Legendre.basis(j, domain=[0, 1]) for j in range(count + 3)]
-    conditions = np.array(
-        [[p(0.0), p.deriv(1)(0.0), p(1.0), p.deriv(2)(1.0)] for p in legendre]
-    ).T  # clamp at 0, held and free of moment at 1
+    legendre = [Legendre.basis(j, domain=[0, 1]) for j in range(count + 2 if moment else count + 3)]
+    ends = [[p(0.0), p.deriv(1)(0.0), p(1.0), p.deriv(2)(1.0)] for p in legendre]
+    conditions = np.array(ends).T[: 3 if moment else 4]  # clamp at 0, held and (without moment) no curvature at 1
     rows = np.linalg.svd(conditions / np.linalg.norm(conditions, axis=1, keepdims=True))[2]
     space = rows[len(conditions) :].T  # what satisfies all conditions
     zeta, weight = gauss_unit()

@@ -3,15 +3,16 @@
 The residuals are exact. The matrices at rest serve equilibria, modes and the iterations of the time integration.
 """
 
-from types import SimpleNamespace
-
-from flexapod.mechanics.layout import COMMAND_SIZE, LEG_PARAMETERS, PAYLOAD_PARAMETERS, Shapes
-from flexapod.mechanics.leg import Leg, leg
+from flexapod.elements.servo import Servo
+from flexapod.mechanics.closure import load_force, pose_closure
+from flexapod.mechanics.layout import LOAD_SIZE, PAYLOAD_PARAMETERS, Shapes, leg_parameters
+from flexapod.mechanics.leg import leg
 from flexapod.mechanics.payload import displaced_pose, joint_point, joint_wrench, newton_euler
 from flexapod.symbolic.functions import NamedFunction
 from flexapod.symbolic.lagrange import inverse_dynamics, mass_matrix
 from flexapod.symbolic.vocabulary import (
     SX,
+    Through,
     cross,
     dot,
     gradient,
@@ -28,77 +29,127 @@ from flexapod.symbolic.vocabulary import (
 
 def leg_functions(shapes: Shapes) -> list[NamedFunction]:
     """Residual, matrices at rest and energies of one leg with the given shapes."""
-    p_vector, p = symbols(LEG_PARAMETERS, "p")
-    q, qs = symbols(shapes.layout, "q")
-    v, vs = symbols(shapes.layout, "v")
-    v_dot, lam, command = symbol("v_dot", shapes.size), symbol("lam", shapes.rows), symbol("command", COMMAND_SIZE)
-    body = leg(shapes, p, q, v, qs, vs)
-    e = body.lagrangian
-    r = leg_residual(shapes, body, p, qs, vs, v_dot, lam, command)
-    lost = dot(v, gradient(e.dissipation, v)) + p.drive_damping * (command[1] - vs.l) ** 2
-    drive = servo_force(p, qs, vs, command)
-    energies = vertcat(e.kinetic, body.gravity, body.strain + 0.5 * p.drive_stiffness * (command[0] - qs.l) ** 2)
-    state = [("q", q), ("v", v)]
-    parameters = [("command", command), ("p", p_vector)]
-    return [
-        NamedFunction(
-            "leg_residual",
-            [*state, ("v_dot", v_dot), ("lam", lam), *parameters],
-            [("r", r), ("tip", body.tip), ("powers", vertcat(lost, drive * command[1])), ("drive", drive)],
-        ),
-        NamedFunction(
-            "leg_matrices",
-            [("q", q), ("lam", lam), ("p", p_vector)],
-            [*matrices_at_rest(shapes, body, p, lam), ("J", jacobian(body.tip[: shapes.rows], q))],
-        ),
-        NamedFunction("leg_energies", [*state, *parameters], [("energies", energies), ("drive", drive)]),
-    ]
-
-
-def matrices_at_rest(shapes: Shapes, body: Leg, p: SimpleNamespace, lam: SX) -> list[tuple[str, SX]]:
-    """Return M, D and K of a leg at rest under the joint force ``lam``, geometric stiffness included, Eq. (T4.8)."""
-    e, drive = body.lagrangian, zeros(shapes.size, shapes.size)
-    drive[shapes.l_index, shapes.l_index] = 1
-    D = hessian(e.dissipation, e.v) + p.drive_damping * drive
-    K = hessian(e.potential + dot(body.tip[: shapes.rows], lam), e.q) + p.drive_stiffness * drive
-    return [("M", mass_matrix(e)), ("D", D), ("K", K)]
+    x = _Leg(shapes)
+    return [x.residual(), x.matrices(), x.energies()]
 
 
 def leg_tangents(shapes: Shapes) -> NamedFunction:
     """dr/dq and dr/dv of a leg in motion (gyroscopic, centrifugal and convective terms included), Eq. (T4.9)."""
-    p_vector, p = symbols(LEG_PARAMETERS, "p")
-    q, qs = symbols(shapes.layout, "q")
-    v, vs = symbols(shapes.layout, "v")
-    v_dot, lam, command = symbol("v_dot", shapes.size), symbol("lam", shapes.rows), symbol("command", COMMAND_SIZE)
-    body = leg(shapes, p, q, v, qs, vs)
-    r = leg_residual(shapes, body, p, qs, vs, v_dot, lam, command)
-    inputs = [("q", q), ("v", v), ("v_dot", v_dot), ("lam", lam), ("command", command), ("p", p_vector)]
-    return NamedFunction("leg_tangents", inputs, [("r_q", jacobian(r, q)), ("r_v", jacobian(r, v))])
+    x = _Leg(shapes)
+    r = x.balance()
+    return NamedFunction("leg_tangents", x.moving(), [("r_q", jacobian(r, x.q)), ("r_v", jacobian(r, x.v))])
 
 
-def leg_residual(
-    shapes: Shapes,
-    body: Leg,
-    p: SimpleNamespace,
-    qs: SimpleNamespace,
-    vs: SimpleNamespace,
-    v_dot: SX,
-    lam: SX,
-    command: SX,
-) -> SX:
-    """Balance of one leg, M v_dot + h + J^T lam - Q, Eq. (T4.7); the joint takes -lam off the leg's tip.
+class _Leg:
+    """The inputs of the functions of a leg, its equations, and the springs of its drives by coordinate."""
 
-    Of the drives only the springs are here: forces on driven and held coordinates are added by who knows them.
-    """
-    r = inverse_dynamics(body.lagrangian, v_dot)
-    r += gradient(dot(body.tip[: shapes.rows], lam), body.lagrangian.q)
-    r[shapes.l_index] -= servo_force(p, qs, vs, command)
-    return r
+    def __init__(self, shapes: Shapes) -> None:
+        self.shapes = shapes
+        self.p_vector, self.p = symbols(leg_parameters(shapes), "p")
+        self.q, self.qs = symbols(shapes.layout, "q")
+        self.v, vs = symbols(shapes.layout, "v")
+        self.v_dot, self.lam = symbol("v_dot", shapes.size), symbol("lam", shapes.rows)
+        self.command, self.pose, self.load = (
+            symbol("command", shapes.commands),
+            symbol("pose", 7),
+            symbol("load", LOAD_SIZE),
+        )
+        self.body = leg(shapes, self.p, self.q, self.v, self.qs, vs)
+        self.by_q = Through(x=self.q, y=self.body.theta, of_x=self.body.turn)
+        self.servos = {
+            shapes.index(name): Servo(
+                stiffness=getattr(self.p, f"{drive}_stiffness"),
+                damping=getattr(self.p, f"{drive}_damping"),
+                q=getattr(self.qs, name),
+                v=getattr(vs, name),
+                q_cmd=self.command[2 * i],
+                v_cmd=self.command[2 * i + 1],
+            )
+            for i, (name, drive) in enumerate(shapes.drives)
+        }
 
+    def moving(self) -> list[tuple[str, SX]]:
+        """Inputs of what a leg in motion does."""
+        state = [("q", self.q), ("v", self.v), ("v_dot", self.v_dot), ("lam", self.lam), ("command", self.command)]
+        return [*state, ("p", self.p_vector), *self.outside()]
 
-def servo_force(p: SimpleNamespace, qs: SimpleNamespace, vs: SimpleNamespace, command: SX) -> SX:
-    """Spring and damper between the commanded and the actual stroke, Eq. (T5.4); zero for a prescribed stroke."""
-    return p.drive_stiffness * (command[0] - qs.l) + p.drive_damping * (command[1] - vs.l)
+    def outside(self) -> list[tuple[str, SX]]:
+        """Inputs from outside the leg: the payload's pose, or the load on a tip without payload."""
+        if self.shapes.closure == "pose":
+            return [("pose", self.pose)]
+        return [("load", self.load)] if self.shapes.loaded else []
+
+    def closed(self, step: SX) -> tuple[SX, SX]:
+        """What the closure asks to vanish (of a point closure: the tip), and the wrench of ``lam`` on the payload."""
+        if self.shapes.closure == "pose":
+            return pose_closure(self.body, self.qs, self.p, self.lam, self.pose, step)
+        return self.body.tip[: self.shapes.rows], zeros(0)
+
+    def balance(self) -> SX:
+        """Balance of one leg, M v_dot + h + J^T lam - Q, Eq. (T4.7); the joint takes -lam off the leg's tip.
+
+        Of the drives only the springs are here: forces on driven and held coordinates are added by who knows them.
+        """
+        r = inverse_dynamics(self.body.lagrangian, self.v_dot)
+        r += self.by_q.gradient(dot(self.closed(zeros(6))[0], self.lam))
+        if self.shapes.loaded:
+            r -= self.load_force()
+        for i, servo in self.servos.items():
+            r[i] -= servo.force
+        return r
+
+    def residual(self) -> NamedFunction:
+        """Balance, closure, powers (lost, given) and forces of the drives' springs."""
+        loss = dot(self.v, gradient(self.body.lagrangian.dissipation, self.v))
+        lost = sum((servo.lost for servo in self.servos.values()), loss)
+        given = sum((servo.given for servo in self.servos.values()), zeros(1))
+        if self.shapes.loaded:
+            given += dot(self.load_force(), self.v)
+        gap, wrench = (self.by_q.value(x) for x in self.closed(zeros(6)))
+        meeting = [("gap", gap), ("wrench", wrench)] if self.shapes.closure == "pose" else [("tip", self.body.tip)]
+        outputs = [("r", self.balance()), *meeting, ("powers", vertcat(lost, given)), ("drive", self.forces())]
+        return NamedFunction("leg_residual", self.moving(), outputs)
+
+    def load_force(self) -> SX:
+        """Generalised force of the load on the tip."""
+        return load_force(self.body, self.by_q, self.load)
+
+    def forces(self) -> SX:
+        """Forces of the drives' springs."""
+        return vertcat(*(servo.force for servo in self.servos.values()))
+
+    def matrices(self) -> NamedFunction:
+        """M, D and K at rest under ``lam``, geometric stiffness included, and the closure's derivatives, Eq. (T4.8)."""
+        e, step = self.body.lagrangian, symbol("step", 6)
+        gap, wrench = self.closed(step)
+        here = _undisplaced(gap, step)
+        D = hessian(e.dissipation, e.v)
+        K = self.by_q.hessian(e.potential + dot(here, self.lam))
+        if self.shapes.loaded:
+            K -= jacobian(self.load_force(), e.q)
+        for i, servo in self.servos.items():
+            D[i, i] += servo.damping
+            K[i, i] += servo.stiffness
+        outputs = [("M", mass_matrix(e)), ("D", D), ("K", K), ("J", self.by_q.jacobian(here))]
+        if self.shapes.closure == "pose":  # (T13.14)-(T13.15)
+            outputs += [
+                (name, self.by_q.value(_undisplaced(-jacobian(y, step), step)))
+                for name, y in (("P", gap), ("H", wrench))
+            ]
+            outputs.append(("X", -self.by_q.jacobian(_undisplaced(wrench, step)).T))
+        return NamedFunction(
+            "leg_matrices", [("q", self.q), ("lam", self.lam), ("p", self.p_vector), *self.outside()], outputs
+        )
+
+    def energies(self) -> NamedFunction:
+        """Kinetic energy, potential of gravity and strain energy, the drives' springs included."""
+        body = self.body
+        strain = sum((servo.energy for servo in self.servos.values()), body.strain)
+        return NamedFunction(
+            "leg_energies",
+            [("q", self.q), ("v", self.v), ("command", self.command), ("p", self.p_vector)],
+            [("energies", vertcat(body.lagrangian.kinetic, body.gravity, strain)), ("drive", self.forces())],
+        )
 
 
 def joint_functions() -> list[NamedFunction]:

@@ -69,8 +69,11 @@ PAYLOAD_PARAMETERS: tuple[tuple[str, int], ...] = (
     ("tool", 3),  # m
 )
 
-#: Commands that the springs of a leg's drives read: commanded length l_cmd and its rate.
+#: Commands that the spring of a drive reads: place and rate.
 COMMAND_SIZE = 2
+
+#: Load on a tip without payload: force and moment in the world's axes, force and moment that follow the tip's axes.
+LOAD_SIZE = 12
 
 
 def columns(layout: tuple[tuple[str, int], ...], name: str) -> slice:
@@ -140,6 +143,21 @@ class Shapes:
         last = "spin" if self.pivot_spin else "gamma3"
         names = {"none": (), "point": ("alpha", "beta", "l"), "pose": ("alpha", "beta", "l", "gamma1", "gamma2", last)}
         return tuple(self.index(name) for name in names[self.closure])
+
+    @property
+    def drives(self) -> tuple[tuple[str, str], ...]:
+        """Coordinates on which drives have springs, and how their parameters are called."""
+        return (("l", "drive"), ("chi", "carriage")) if self.carriage else (("l", "drive"),)
+
+    @property
+    def commands(self) -> int:
+        """Number of commands that these springs read."""
+        return COMMAND_SIZE * len(self.drives)
+
+    @property
+    def loaded(self) -> bool:
+        """Whether a load acts on the tip, in space without a payload."""
+        return self.closure == "none" and not self.planar
 
     @property
     def l_index(self) -> int:

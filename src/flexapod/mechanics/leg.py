@@ -15,18 +15,24 @@ from flexapod.elements.torsion import torsion
 from flexapod.elements.universal import universal
 from flexapod.mechanics.layout import Shapes
 from flexapod.symbolic.lagrange import Lagrangian
-from flexapod.symbolic.vocabulary import SX, vertcat, zeros
+from flexapod.symbolic.vocabulary import SX, symbol, vertcat, zeros
 
 
 @dataclass(frozen=True, kw_only=True)
 class Leg:
-    """One leg as expressions: energies, place of the tip in the world, rotation from the tip's axes to the world."""
+    """One leg as expressions: energies, place of the tip in the world, rotation from the tip's axes to the world.
+
+    ``tip_axes`` is written in ``theta``, symbols for the rotation vector ``turn`` of the tip: derivatives by the many
+    amplitudes go through these three.
+    """
 
     lagrangian: Lagrangian
     gravity: SX
     strain: SX
     tip: SX
     tip_axes: SX
+    theta: SX
+    turn: SX
 
 
 def leg(shapes: Shapes, p: SimpleNamespace, q: SX, v: SX, qs: SimpleNamespace, vs: SimpleNamespace) -> Leg:
@@ -42,13 +48,16 @@ def leg(shapes: Shapes, p: SimpleNamespace, q: SX, v: SX, qs: SimpleNamespace, v
         e += tip_body(motion, p, shapes.planar)
     if shapes.closure == "pose":
         e += _springs(p, qs)
+    theta = symbol("theta", 3)
     lagrangian = Lagrangian(q=q, v=v, kinetic=e.kinetic, potential=e.gravity + e.strain, dissipation=e.dissipation)
     return Leg(
         lagrangian=lagrangian,
         gravity=e.gravity,
         strain=e.strain,
         tip=frame.origin + frame.axes @ tip_place(motion),
-        tip_axes=frame.axes @ small_rotation(tip_turn(motion)),
+        tip_axes=frame.axes @ small_rotation(theta),
+        theta=theta,
+        turn=tip_turn(motion),
     )
 
 

@@ -1,15 +1,17 @@
 """The few words in which the equations are written; the rest of the package never imports casadi."""
 
 from collections.abc import Sequence
+from dataclasses import dataclass
 from types import SimpleNamespace
 
 import casadi
 import numpy as np
-from casadi import SX, cos, dot, gradient, horzcat, jacobian, jtimes, mtimes, reshape, sin, sqrt, vertcat
+from casadi import SX, cos, dot, gradient, horzcat, jacobian, jtimes, mtimes, reshape, sin, sqrt, trace, vertcat
 from numpy.typing import ArrayLike
 
 __all__ = [
     "SX",
+    "Through",
     "bilinear",
     "constant",
     "cos",
@@ -31,6 +33,7 @@ __all__ = [
     "symbol",
     "symbols",
     "time_derivative",
+    "trace",
     "vertcat",
     "zeros",
 ]
@@ -64,6 +67,39 @@ def cross(a: SX, b: SX) -> SX:
 def hessian(expression: SX, x: SX) -> SX:
     """Matrix of second derivatives."""
     return casadi.hessian(expression, x)[0]
+
+
+@dataclass(frozen=True, kw_only=True)
+class Through:
+    """Derivatives by x of expressions that are written in x and in a few symbols y that stand for functions of x."""
+
+    x: SX
+    y: SX
+    of_x: SX
+
+    def value(self, expression: SX) -> SX:
+        """Expression in x alone."""
+        return substitute(expression, (self.y,), (self.of_x,))
+
+    def gradient(self, expression: SX) -> SX:
+        """Column of first derivatives."""
+        inner = self.value(gradient(expression, self.y))
+        return self.value(gradient(expression, self.x)) + jacobian(self.of_x, self.x).T @ inner
+
+    def jacobian(self, expression: SX) -> SX:
+        """Matrix of first derivatives."""
+        return self.value(jacobian(expression, self.x)) + self.value(jacobian(expression, self.y)) @ jacobian(
+            self.of_x, self.x
+        )
+
+    def hessian(self, expression: SX) -> SX:
+        """Matrix of second derivatives."""
+        xx, yy = hessian(expression, self.x), hessian(expression, self.y)
+        by_x, by_y = gradient(expression, self.x), gradient(expression, self.y)
+        inner = jacobian(self.of_x, self.x)
+        mixed = self.value(jacobian(by_x, self.y)) @ inner
+        bend = sum((self.value(by_y)[i] * hessian(self.of_x[i], self.x) for i in range(self.y.numel())), zeros(1))
+        return self.value(xx) + mixed + mixed.T + inner.T @ self.value(yy) @ inner + bend
 
 
 def matrix33(columns: SX) -> SX:

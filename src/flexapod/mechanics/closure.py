@@ -1,0 +1,43 @@
+"""How a leg meets the payload with place and attitude; loads on a tip without payload, Eqs. (T13.12)-(T13.16)."""
+
+from types import SimpleNamespace
+
+from flexapod.elements.platform_joint import gimbal
+from flexapod.elements.rotations import hat
+from flexapod.mechanics.leg import Leg
+from flexapod.mechanics.payload import displaced_pose, joint_point, joint_wrench
+from flexapod.symbolic.vocabulary import SX, Through, dot, matrix33, substitute, symbol, trace, vertcat
+
+
+def pose_closure(body: Leg, qs: SimpleNamespace, p: SimpleNamespace, lam: SX, pose: SX, step: SX) -> tuple[SX, SX]:
+    """Gap between the leg's tip and the joint of the payload (6) [m], and the wrench of ``lam`` on the payload (6).
+
+    ``step`` displaces the payload from ``pose``. The wrench is the force in the world and the moment about the CoM in
+    platform axes.
+    """
+    x, R = displaced_pose(pose, step)
+    in_platform = matrix33(p.platform_frame)
+    Q = (R @ in_platform).T @ body.tip_axes @ matrix33(p.leg_frame) @ gimbal(qs)
+    force, mu = lam[:3], 0.5 * p.L_c * lam[3:]
+    gap = vertcat(body.tip - joint_point(p.joint, x, R), 0.5 * p.L_c * _skew(Q))  # (T13.12)
+    wrench = joint_wrench(p.joint, R, force)
+    wrench[3:] += in_platform @ (trace(Q) * mu - Q.T @ mu)  # (T13.13)
+    return gap, wrench
+
+
+def _skew(Q: SX) -> SX:
+    """Vector of Q - Q^T."""
+    return vertcat(Q[2, 1] - Q[1, 2], Q[0, 2] - Q[2, 0], Q[1, 0] - Q[0, 1])
+
+
+def load_force(body: Leg, by_q: Through, load: SX) -> SX:
+    """Generalised force of a load on the tip, Eq. (T13.16).
+
+    ``load`` (12): force and moment in the world's axes, then force and moment that follow the tip's axes.
+    """
+    A = by_q.value(body.tip_axes)
+    force, moment = load[:3] + A @ load[6:9], load[3:6] + A @ load[9:]
+    frozen = symbol("frozen", 15)
+    turning = dot(hat(frozen[12:]) @ matrix33(frozen[3:12]), body.tip_axes)
+    work = dot(frozen[:3], body.tip) + 0.5 * turning
+    return substitute(by_q.gradient(work), (frozen,), (vertcat(force, A.reshape((9, 1)), moment),))

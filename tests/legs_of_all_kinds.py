@@ -1,0 +1,105 @@
+"""Legs of every kind with numbers, for the tests of elements and of their closures."""
+
+from functools import cache
+
+import numpy as np
+
+from flexapod.bases import axial_basis, lateral_basis
+from flexapod.mechanics.assembly import leg_functions
+from flexapod.mechanics.layout import Shapes, leg_parameters
+from flexapod.rigid.rotations import quaternion
+from flexapod.symbolic.functions import Interpreted
+
+EVERYTHING = {"closure": "pose", "spin": True, "torsion": True}
+KINDS = {
+    "point": {},
+    "slider": {"carriage": "slider"},
+    "crank": {"carriage": "crank"},
+    "pose": {"closure": "pose"},
+    "pose with spin and twist": EVERYTHING,
+    "pose on a slider": EVERYTHING | {"carriage": "slider"},
+    "pose on a crank": EVERYTHING | {"carriage": "crank"},
+    "tip body": {"closure": "none", "torsion": True, "tip_body": True},
+    "planar": {"closure": "none", "planar": True, "tip_body": True},
+}
+
+
+def rotation(rng):
+    """A random rotation."""
+    R, _ = np.linalg.qr(rng.normal(size=(3, 3)))
+    return R * np.sign(np.linalg.det(R))
+
+
+PHYSICS = {
+    "rhoA": 4.466, "EI": 5217.4, "EA": 1.1451e7, "Lp": 0.75, "mouth": 0.315, "piston_axial_inertia": 4e-3,
+    "cylinder_mass": 3.0, "cylinder_com": 0.157, "cylinder_inertia": 0.0248, "cylinder_axial_inertia": 0.002,
+    "zeta": 0.005, "damping_time": 1e-4, "drive_stiffness": 3e5, "drive_damping": 40.0,
+    "gravity": [1.0, 2.0, -9.0], "base": [0.1, 0.2, 0.05], "tip_mass": 0.7, "tip_inertia": 0.02,
+    "carriage_mass": 1.3, "carriage_axis": np.array([2.0, 1.0, 2.0]) / 3, "carriage_stiffness": 2e4,
+    "carriage_damping": 9.0,
+    "carriage_inertia": 0.05, "carriage_com": [0.02, 0.05, -0.03], "carriage_arm": [0.05, 0.1, -0.1],
+    "cylinder_spins": 1.0, "GJ": 900.0, "tip_axial_inertia": 0.01, "joint": [0.1, -0.2, 0.05], "L_c": 0.3,
+    "base_stiffness": [30.0, 40.0, 20.0], "base_home": [0.1, -0.1, 0.05],
+    "gamma_stiffness": [35.0, 25.0, 15.0], "gamma_home": [0.02, 0.01, -0.03],
+}  # fmt: skip
+
+
+@cache
+def shapes(kind, *, modes=3, axial=2, basis="tip-load"):
+    lateral, switches = lateral_basis(basis, modes), KINDS[kind]
+    other = lateral_basis(basis, 0) if switches.get("planar") else lateral
+    return Shapes(a=lateral, b=other, axial=axial_basis(axial), **switches)
+
+
+@cache
+def functions(ours):
+    """The functions of a leg by name, interpreted."""
+    return {
+        f.name: (Interpreted(f), [name for name, _ in f.inputs], [name for name, _ in f.outputs])
+        for f in leg_functions(ours)
+    }
+
+
+def call(ours, name, values):
+    """Outputs of a function of a leg by name; ``values`` by input."""
+    function, inputs, outputs = functions(ours)[name]
+    return dict(zip(outputs, function(*(values[x] for x in inputs)), strict=True))
+
+
+def numbers(seed, **changed):
+    """Physical numbers of a leg with frames of its own."""
+    rng = np.random.default_rng(seed)
+    frames = {name: rotation(rng) for name in ("R0", "platform_frame", "leg_frame")}
+    return PHYSICS | frames | changed
+
+
+def parameters(ours, given):
+    """Numbers as the kernel reads them: matrices column by column."""
+    return np.concatenate([np.asarray(given[name], dtype=float).T.ravel() for name, _ in leg_parameters(ours)])
+
+
+def state(ours, seed, amplitude=1e-3, given=None):
+    """A random state of a leg and all that its functions read."""
+    rng = np.random.default_rng(seed)
+    given = given or numbers(seed)
+    q, v = rng.uniform(-0.5, 0.5, ours.size), rng.normal(size=ours.size)
+    q[ours.l_index] = rng.uniform(0.8, 0.95)
+    for name in ("c", "a", "b", "t"):
+        if ours.has(name):
+            part = slice(ours.index(name), ours.index(name) + dict(ours.layout)[name])
+            q[part] = amplitude * rng.uniform(-1, 1, q[part].shape)
+            v[part] = 30 * amplitude * rng.uniform(-1, 1, q[part].shape)
+    return {
+        "q": q, "v": v, "v_dot": rng.normal(size=ours.size), "lam": 50 * rng.normal(size=ours.rows),
+        "command": np.tile([0.9, 0.1], ours.commands // 2), "p": parameters(ours, given),
+        "pose": np.concatenate([rng.normal(size=3), quaternion(rotation(rng))]), "load": rng.normal(size=12),
+    }  # fmt: skip
+
+
+def pieces(ours, column):
+    """Coordinates by name: numbers, and arrays of amplitudes."""
+    found = {}
+    for name, size in ours.layout:
+        i = ours.index(name)
+        found[name] = column[i : i + size] if name in "abc" else column[i]
+    return found
