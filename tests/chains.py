@@ -7,13 +7,17 @@ NAMED = {"surge": SURGE, "sway": SWAY, "heave": HEAVE, "roll": ROLL, "pitch": PI
 PLANES = {"xy": ("surge", "sway", "yaw"), "yz": ("sway", "heave", "roll"), "zx": ("surge", "heave", "pitch")}
 
 
-def as_mechanism(robot, independent=tuple(NAMED), pivot=(0, 0, 0), exact=False):
+def as_mechanism(robot, independent=tuple(NAMED), pivot=(0, 0, 0)):
     """The oracle's mechanism; `independent`: coordinates by name, the others follow; pivot in the platform frame."""
     turn, home = robot.home_rotation, robot.home_position
     legs = []
     for leg, foot, tip, base in zip(robot.legs, robot.home_bases, robot.home_tips, robot.base_joints, strict=True):
         planar = robot.normal if robot.plane else None
-        parts = {"axis": planar if planar is not None else leg.base_joint.axis, "passive": leg.passive, "exact": exact}
+        parts = {
+            "axis": planar if planar is not None else leg.base_joint.axis,
+            "passive": leg.passive,
+            "exact": not released(leg.chain).endswith("S"),
+        }
         end = leg.platform_joint.axis
         parts["platform_axis"] = planar if planar is not None else None if end is None else turn @ end
         if leg.strut is not None:

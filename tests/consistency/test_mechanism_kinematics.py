@@ -3,7 +3,7 @@
 import numpy as np
 import pytest
 from tests.chains import NAMED, PLANES, as_mechanism
-from tests.mechanisms import ROBOTS
+from tests.mechanisms import ROBOTS, THREE, built, leg, ring
 from tests.oracles import virtual_power
 
 from flexapod import rigid
@@ -53,10 +53,9 @@ def test_legs_follow_the_platform(name):
                 ours = legs.coordinate(coordinate)[order][i]
                 if coordinate == "l" and order == 0:
                     ours = ours - robot.home_lengths
-                for (leg, q), value in zip(states, ours, strict=True):
-                    np.testing.assert_allclose(
-                        parts(leg, [joint], q), [value][: len(parts(leg, [joint], q))], rtol=0, atol=1e-11
-                    )
+                for (way, q), value in zip(states, ours, strict=True):
+                    other = parts(way, [joint], q)
+                    np.testing.assert_allclose(other, [value][: len(other)], rtol=0, atol=1e-11)
 
 
 @pytest.mark.parametrize("name", [name for name in MOVING if not name.startswith("planar")])
@@ -66,3 +65,24 @@ def test_mobility_is_that_of_all_screws(name):
     assert ours.freedoms == other["joints"]
     for key in ("mobility", "redundant", "locked", "self_stress"):
         assert getattr(ours, key) == other[key], key
+
+
+def radial():
+    """3-UPU with its outer axes towards the middle, inclined to the legs: its platform can tilt with locked drives."""
+    legs = [leg("UPU", axis, axis) for axis in ring(1.0, THREE)]
+    return built("3-UPU", ring(0.35, THREE), ring(0.2, THREE), 0.6, legs)
+
+
+def exechon():
+    """Two legs that turn about one axis x, inclined to them, and hinges parallel to y; a third across."""
+    x, y = np.eye(3)[:2]
+    base, top = np.array([[0.4, 0, 0], [-0.4, 0, 0], [0, 0.4, 0]]), np.array([[0.2, 0, 0], [-0.2, 0, 0], [0, 0.2, 0]])
+    return built("2-UPR+SPR", base, top, 0.7, [leg("UPR", x, y), leg("UPR", x, y), leg("SPR", None, x)])
+
+
+@pytest.mark.parametrize(("make", "counts"), [(radial, (15, 5, 2, 2, 2)), (exechon, (13, 3, 2, 0, 2))])
+def test_axes_of_crosses_that_are_not_normal_to_the_leg_count_as_given(make, counts):
+    robot = make()
+    found = mobility(limbs(robot))
+    assert (found.freedoms, found.mobility, found.redundant, found.locked, found.self_stress) == counts
+    assert tuple(virtual_power.mobility(as_mechanism(robot)).values()) == counts

@@ -13,13 +13,13 @@ __all__ = ["base_frame", "platform_frame"]
 _ALONG = 1e-9  # sine of the angle below which an axis counts as parallel to the leg
 
 
-def base_frame(number: int, letter: str, axis: Array | None, foot: Array, tip: Array) -> tuple[Array, float]:
+def base_frame(number: int, axis: Array | None, foot: Array, tip: Array, *, exact: bool) -> tuple[Array, float]:
     """Frame R0 of leg `number`, leg to world, and beta at home [rad].
 
-    A hinge has its axis exactly as given and beta at what it then is; of a universal joint the part normal to the leg
-    counts, and beta is zero.
+    An `exact` axis is as given and beta what it then is: that of a hinge, and that of a universal joint whose axis
+    guides the platform, which no ball joint releases. Else the part normal to the leg counts, and beta is zero.
     """
-    if letter != "R" or axis is None:
+    if not exact or axis is None:
         return leg_frame(number, tip - foot, axis), 0.0
     way = tip - foot
     return _hinge(number, axis, way, "base_joint.axis"), float(
@@ -30,17 +30,18 @@ def base_frame(number: int, letter: str, axis: Array | None, foot: Array, tip: A
 def platform_frame(number: int, letter: str, axis: Array | None, axes: Array) -> Array:
     """Axes of the platform joint at home in the world, `axes` being those of the leg.
 
-    Universal joint: y is fixed to the platform, the part of the axis normal to the leg, by default along the leg's x.
-    Hinge: x is the axis exactly as given. Every other joint has the axes of the leg.
+    Universal joint: y is the axis as given, fixed to the platform, by default along the leg's x. Hinge: x is the axis
+    as given. Every other joint has the axes of the leg.
     """
     x, _, z = axes.T
     if letter == "U":
-        y = x if axis is None else axis - (axis @ z) * z
-        size = np.linalg.norm(y)
-        if axis is not None and size <= _ALONG * np.linalg.norm(axis):
-            raise _parallel(number, axis, "platform_joint.axis")
-        y = y / size
-        return np.stack([np.cross(y, z), y, z], axis=-1)
+        y = x if axis is None else axis / np.linalg.norm(axis)
+        across = np.cross(y, z)
+        size = np.linalg.norm(across)
+        if size <= _ALONG:
+            raise _parallel(number, y if axis is None else axis, "platform_joint.axis")
+        across = across / size
+        return np.stack([across, y, np.cross(across, y)], axis=-1)
     if letter == "R":
         return _hinge(number, x if axis is None else axis, z, "platform_joint.axis")
     if axis is not None:

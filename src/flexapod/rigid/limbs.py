@@ -187,7 +187,8 @@ class _Leg(NamedTuple):
         base, end = letters.base, letters.platform
         if planar:  # what is held by the plane is left to it: hinges become universal and ball joints
             base, end = base.replace("R", "U"), end.replace("R", "S").replace("U", "S")
-        frame, beta = base_frame(number, base, normal if planar else leg.base_joint.axis, foot, tip)
+        exact = base == "R" or end != "S"
+        frame, beta = base_frame(number, normal if planar else leg.base_joint.axis, foot, tip, exact=exact)
         axes = frame @ _about_y(beta)
         axis = None if leg.platform_joint.axis is None else turn @ leg.platform_joint.axis
         joint = platform_frame(number, end, normal if planar else axis, axes)
