@@ -9,6 +9,7 @@ from flexapod.errors import InputError
 from flexapod.exchange.decks import Deck, number
 from flexapod.exchange.decks_robot import Carriers, LegAtPose, PayloadAtPose, drive_shift, write_leg, write_payload
 from flexapod.solve.modes import locked_poses, the_equilibrium
+from flexapod.solve.rest import at_drives
 from flexapod.study.arguments import LoadLike, PoseLike, RobotLike, as_pose, at_pose
 from flexapod.typing import Array
 
@@ -71,7 +72,7 @@ def abaqus_deck(
     the_equilibrium(locked)
     _check_count("elements", elements, 2, _MOST)
     _check_count("modes", modes, 1, _MOST)
-    legs = _legs(robot, path, locked.acts.force[0])
+    legs = _legs(robot, path, at_drives(locked.system, robot, locked.acts.force)[0])
     R = path.rotation[0]
     payload = PayloadAtPose(
         mass=robot.payload.mass, com=path.point(robot.payload.com)[0][0], inertia=R @ robot.payload.inertia @ R.T

@@ -11,7 +11,8 @@ from flexapod.errors import ComputationError
 from flexapod.paper.claim import axis_motion
 from flexapod.rigid.rotations import quaternion, rotation_vector
 from flexapod.solve.equilibrium import Equilibrium, equilibrium
-from flexapod.solve.rest import rest_load
+from flexapod.solve.rest import rest_commands, rest_load
+from flexapod.solve.rigid_motion import rigid_rest
 from flexapod.solve.system import State, System, rigid_state, robot_system
 from flexapod.study.arguments import as_pose
 from flexapod.study.path import path_instants
@@ -92,6 +93,7 @@ def _near(study: model.Study, system: System, share: float, state: State | None)
     robot = study.robot
     path = as_pose(robot, share * axis_motion(study).target)
     start = rigid_state(system, robot, path) if state is None else state
-    acts, lengths = rest_load(robot, path, study.load), rigid.inverse_kinematics(robot, path).length[0]
-    found = equilibrium(system, start, lengths, acts.force[0], acts.wrench)
+    acts = rest_load(system, robot, path, study.load)
+    command = rest_commands(system, robot, rigid_rest(system, robot, path).q)
+    found = equilibrium(system, start, command[0], acts.force[0], acts.wrench)
     return found, found.state.pose[:3] - path.point(robot.payload.com)[0][0]

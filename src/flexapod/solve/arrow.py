@@ -6,7 +6,7 @@ from dataclasses import dataclass
 
 import numpy as np
 
-from flexapod.solve.elimination import LegBases, Reduced, leg_bases, reduced, solve_each
+from flexapod.solve.elimination import LegBases, leg_bases, open_borders, reduced, solve_each
 from flexapod.solve.many import RestMatrices
 from flexapod.solve.system import System
 from flexapod.typing import Array
@@ -16,7 +16,10 @@ __all__ = ["Step", "arrow_solve"]
 
 @dataclass(frozen=True, kw_only=True)
 class Step:
-    """Change of P states: ``dq`` (P, 6, n), ``dy`` (P, 6), ``dlam`` (P, 6, 3) and ``drive`` (P, legs) forces [N]."""
+    """Change of P states: ``dq`` (P, legs, n), ``dy`` (P, 6), ``dlam`` (P, legs, rows) and ``drive`` (P, legs, ports).
+
+    ``drive`` are forces of held coordinates, ``dlam`` those of the closures.
+    """
 
     dq: Array
     dy: Array
@@ -26,14 +29,16 @@ class Step:
 
 @dataclass(frozen=True, kw_only=True)
 class _Group:
-    """Legs that are eliminated alike: z = free - by_payload y + by_force f, columns (P, g, m, 1 or 6).
+    """Legs that are eliminated alike: z = free - by_payload y + by_force f, columns (P, g, m, 1, f or h).
 
-    ``given`` (P, g, n): motion that closes the gaps; ``load`` (P, g, n): residual with it; ``E`` (P, g, 6, m).
+    ``given`` (P, g, n): motion that closes the gaps; ``load`` (P, g, n): residual with it; ``payload`` (P, g, f): what
+    it loads the payload with; ``E`` (P, g, f, m).
     """
 
     bases: LegBases
     given: Array
     load: Array
+    payload: Array
     E: Array
     free: Array
     by_payload: Array
@@ -47,76 +52,94 @@ def arrow_solve(system: System, m: RestMatrices, r: Array, r_payload: Array, g: 
     ----------
     system : System
     m : RestMatrices
-    r, r_payload, g : ndarray, shapes (P, 6, n), (P, 6), (P, 6, 3)
+    r, r_payload, g : ndarray, shapes (P, legs, n), (P, 6), (P, legs, rows)
         From `many.residual_at_rest`.
-    gap : ndarray, shape (P, 6)
-        Of the prescribed strokes [m].
+    gap : ndarray, shape (P, legs, n)
+        Of the held coordinates [m], [rad]; 0 for the others.
+
+    Notes
+    -----
+    Where legs that cannot give way hold the payload more often than it needs, forces are those of least norm.
     """
-    l_index, bases = system.kernel.shapes.l_index, leg_bases(system, m)
-    A = reduced(bases, m.K, m.payload_K)
-    groups = [_eliminated(b, A, k, m, r, _given(b, m, g, gap, l_index), l_index) for k, b in enumerate(bases)]
-    y, forces = _border(groups, A, r_payload, gap, l_index)
-    dq, dlam, drive = np.zeros_like(r), np.zeros_like(g), np.zeros_like(gap)
+    bases = leg_bases(system, m)
+    A = reduced(system, bases, m)
+    groups = [_eliminated(system, b, A.B[k], A.C[k], m, r, g, gap) for k, b in enumerate(bases)]
+    y, forces = _border(groups, A.S, r_payload[:, system.hub_free], gap)
+    dq, dlam, balance, dy = np.zeros_like(r), np.zeros_like(g), r.copy(), np.zeros((len(r), m.P.shape[-1]))
+    dy[:, system.hub_free] = y
     for group, f in zip(groups, forces, strict=True):
         b = group.bases
-        z = group.free - group.by_payload @ y[:, None, :, None] + group.by_force * f[..., None, None]
-        step = group.given + (b.N @ z + b.Y @ y[:, None, :, None])[..., 0]
-        balance = r[:, b.legs] + (m.K[:, b.legs] @ step[..., None])[..., 0]
-        balance[..., l_index] -= f
-        lam = -(b.inverse.swapaxes(-1, -2) @ balance[..., b.pivot, None])[..., 0]
-        along = balance[..., l_index] + (m.J[:, b.legs][..., l_index] * lam).sum(axis=-1)
-        dq[:, b.legs], dlam[:, b.legs] = step, lam
-        drive[:, b.legs] = np.where(system.held[b.legs, l_index], along + f, 0.0)
-    return Step(dq=dq, dy=y, dlam=dlam, drive=drive)
+        z = group.free - group.by_payload @ y[:, None, :, None] + group.by_force @ f[..., None]
+        dq[:, b.legs] = group.given + (b.N @ z + b.Y @ y[:, None, :, None])[..., 0]
+        turning = 0.0 if m.X is None else (m.X[:, b.legs] @ dy[:, None, :, None])[..., 0]
+        balance[:, b.legs] += (m.K[:, b.legs] @ dq[:, b.legs, :, None])[..., 0] + turning
+        left = balance[:, b.legs]
+        left[..., b.border] -= f
+        dlam[:, b.legs] = -(b.inverse.swapaxes(-1, -2) @ left[..., b.pivot, None])[..., 0]
+    force = balance + (m.J.swapaxes(-1, -2) @ dlam[..., None])[..., 0]  # (T6.9)  of what is held
+    return Step(dq=dq, dy=dy, dlam=dlam, drive=np.where(system.held, force, 0.0)[..., system.ports])
 
 
-def _given(b: LegBases, m: RestMatrices, g: Array, gap: Array, l_index: int) -> Array:
-    """Motion of each leg that closes the gaps of closure and stroke by the pivots alone, (P, g, n)."""
-    q = np.zeros((*m.J.shape[:1], b.legs.size, m.J.shape[-1]))
-    closure = g[:, b.legs, :, None]
-    if l_index not in b.pivot:
-        q[..., l_index] = -gap[:, b.legs]
-        closure = closure + m.J[:, b.legs][..., l_index, None] * q[..., l_index, None, None]
+def _eliminated(
+    system: System, b: LegBases, B: Array, C: Array, m: RestMatrices, r: Array, g: Array, gap: Array
+) -> _Group:
+    given = _given(system, b, m, g, gap)
+    load, Nt = r[:, b.legs] + (m.K[:, b.legs] @ given[..., None])[..., 0], b.N.swapaxes(-1, -2)
+    payload = b.Y.swapaxes(-1, -2) @ load[..., None]
+    if m.X is not None:
+        payload = payload + m.X[:, b.legs][..., system.hub_free].swapaxes(-1, -2) @ given[..., None]
+    f = C.shape[-1]
+    z = solve_each(B, np.concatenate([-Nt @ load[..., None], C, Nt[..., b.border]], axis=-1))
+    return _Group(
+        bases=b, given=given, load=load, payload=payload[..., 0], E=C.swapaxes(-1, -2),
+        free=z[..., :1], by_payload=z[..., 1 : 1 + f], by_force=z[..., 1 + f :],
+    )  # fmt: skip
+
+
+def _given(system: System, b: LegBases, m: RestMatrices, g: Array, gap: Array) -> Array:
+    """Motion of each leg that closes the gaps of the closure, and of what is held and no pivot, (P, g, n)."""
+    q, held = np.zeros((len(g), b.legs.size, m.J.shape[-1])), system.held[b.legs[0]].copy()
+    held[b.pivot] = False
+    q[..., held] = -gap[:, b.legs][..., held]
+    closure = g[:, b.legs, :, None] + m.J[:, b.legs] @ q[..., None]
     q[..., b.pivot] = -(b.inverse @ closure)[..., 0]
     return q
 
 
-def _eliminated(b: LegBases, A: Reduced, k: int, m: RestMatrices, r: Array, given: Array, l_index: int) -> _Group:
-    load = r[:, b.legs] + (m.K[:, b.legs] @ given[..., None])[..., 0]
-    sides = [-b.N.swapaxes(-1, -2) @ load[..., None], A.C[k], b.N[..., l_index, :, None]]
-    z = solve_each(A.B[k], np.concatenate(sides, axis=-1))
-    return _Group(
-        bases=b,
-        given=given,
-        load=load,
-        E=A.C[k].swapaxes(-1, -2),
-        free=z[..., :1],
-        by_payload=z[..., 1:7],
-        by_force=z[..., 7:],
-    )
-
-
-def _border(groups: list[_Group], A: Reduced, r_payload: Array, gap: Array, l_index: int) -> tuple[Array, list[Array]]:
-    """Payload step y (P, 6) and the force (P, g) on each prescribed stroke that no pivot took out."""
-    size = 6 + sum(group.bases.legs.size for group in groups if group.bases.border)
-    full, side, at, places = np.zeros((len(gap), size, size)), np.zeros((len(gap), size, 1)), 6, []
-    full[:, :6, :6], side[:, :6, 0] = A.S, -r_payload
+def _border(groups: list[_Group], S: Array, r_payload: Array, gap: Array) -> tuple[Array, list[Array]]:
+    """Payload step y (P, f) and the forces (P, g, h) on the held pivots of each group, Eq. (T6.8)."""
+    f, at, places = S.shape[-1], S.shape[-1], []
+    size = f + sum(group.bases.legs.size * group.bases.border.size for group in groups)
+    full, side = np.zeros((len(S), size, size)), np.zeros((len(S), size))
+    full[:, :f, :f], side[:, :f] = S, -r_payload
     for group in groups:
-        b, E = group.bases, group.E
-        full[:, :6, :6] -= (E @ group.by_payload).sum(axis=1)
-        side[:, :6] -= (b.Y.swapaxes(-1, -2) @ group.load[..., None] + E @ group.free).sum(axis=1)
-        places.append(np.arange(at, at + b.legs.size * b.border))
-        if not b.border:
-            continue
-        d, Y_l, rows = b.N[..., l_index, :], b.Y[..., l_index, :], places[-1]
-        full[:, :6, rows] = ((E @ group.by_force)[..., 0] - Y_l).swapaxes(1, 2)
-        full[:, rows, :6] = Y_l - (d[..., None, :] @ group.by_payload)[..., 0, :]
-        full[:, rows, rows] = (d * group.by_force[..., 0]).sum(axis=-1)
-        side[:, rows, 0] = -gap[:, b.legs] - group.given[..., l_index] - (d * group.free[..., 0]).sum(axis=-1)
+        b, h = group.bases, group.bases.border.size
+        full[:, :f, :f] -= (group.E @ group.by_payload).sum(axis=1)
+        side[:, :f] -= (group.payload + (group.E @ group.free)[..., 0]).sum(axis=1)
+        rows = at + np.arange(b.legs.size * h).reshape(b.legs.size, h)
+        places.append(rows)
         at += rows.size
-    x = solve_each(full, side)[..., 0]
-    forces = [
-        x[:, at] if at.size else np.zeros((len(x), group.bases.legs.size))
-        for group, at in zip(groups, places, strict=True)
-    ]
-    return x[:, :6], forces
+        if not h:
+            continue
+        D, Y = b.N[..., b.border, :], b.Y[..., b.border, :]
+        full[:, :f, rows] = np.moveaxis(group.E @ group.by_force - Y.swapaxes(-1, -2), 2, 1)
+        full[:, rows, :f] = Y - D @ group.by_payload
+        full[:, rows[:, :, None], rows[:, None, :]] = D @ group.by_force
+        side[:, rows] = -gap[:, b.legs][..., b.border] - group.given[..., b.border] - (D @ group.free)[..., 0]
+    if open_borders([group.bases for group in groups]):
+        x = _least_forces(full, side[..., None], f)[..., 0]
+    else:
+        x = solve_each(full, side[..., None])[..., 0]
+    return x[:, :f], [x[:, rows] for rows in places]
+
+
+def _least_forces(full: Array, side: Array, f: int) -> Array:
+    """Solve borders (P, f + h, f + h) whose forces are not determined; those of least norm."""
+    compliance, stiffness = (np.abs(part).max(axis=(1, 2), initial=0.0) for part in (full[:, f:, f:], full[:, :f, :f]))
+    unit = np.maximum(stiffness, np.divide(1.0, compliance, out=np.ones(len(full)), where=compliance > 0))
+    scale = np.ones(full.shape[:2])
+    scale[:, :f], scale[:, f:] = 1.0 / np.sqrt(unit)[:, None], np.sqrt(unit)[:, None]
+    good = np.isfinite(full).all(axis=(1, 2))
+    inverse = np.full(full.shape, np.nan)
+    inverse[good] = np.linalg.pinv((scale[:, :, None] * full * scale[:, None, :])[good], rcond=1e-10)
+    return np.asarray(scale[..., None] * (inverse @ (scale[..., None] * side)), dtype=np.float64)

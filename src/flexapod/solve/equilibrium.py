@@ -10,10 +10,11 @@ from flexapod.mechanics.layout import LEG_PARAMETERS, PAYLOAD_PARAMETERS, column
 from flexapod.model import Robot
 from flexapod.rigid.rotations import matrix
 from flexapod.solve.arrow import arrow_solve
-from flexapod.solve.elimination import leg_bases, null_space_of_borders, reduced, solve_each
+from flexapod.solve.elimination import closed, leg_bases, null_space_of_borders, open_borders, reduced, solve_each
 from flexapod.solve.frequencies import cholesky_each
 from flexapod.solve.many import RestMatrices, RestStates, matrices_at_rest, residual_at_rest
-from flexapod.solve.system import State, System
+from flexapod.solve.shared import least_energy
+from flexapod.solve.system import Index, State, System
 from flexapod.typing import Array, Mask
 
 FOUND, SINGULAR, GIVES_WAY, NOT_SETTLED, UNSTABLE = range(5)
@@ -74,43 +75,79 @@ def refuse_fallen(robot: Robot, path: rigid.Poses, pose: Array) -> None:
         raise ComputationError(FALLS_THROUGH, next_step="Choose a pose farther from the singularity.")
 
 
-def equilibrium(system: System, start: State, l_cmd: Array, force: Array, wrench: Array) -> Equilibrium:
-    """Static equilibrium at commanded lengths (6,) [m] under gravity, drive forces (6,) [N] and a wrench (6,).
+def equilibrium(system: System, start: State, command: Array, force: Array, wrench: Array) -> Equilibrium:
+    """Static equilibrium at commanded values (legs, ports) [m], [rad] under gravity, drive forces and a wrench (6,).
 
     See `equilibria`.
     """
-    return equilibria(system, RestStates.of(start), l_cmd[None], force[None], wrench).one(0)
+    return equilibria(system, RestStates.of(start), command[None], force[None], wrench).one(0)
 
 
-def equilibria(system: System, start: RestStates, l_cmd: Array, force: Array, wrench: Array) -> Equilibria:
-    """Static equilibria at commanded lengths (P, 6) [m] under gravity, drive forces (P, 6) [N] and a wrench (6,).
+def equilibria(system: System, start: RestStates, command: Array, force: Array, wrench: Array) -> Equilibria:
+    """Static equilibria under gravity, forces of drives and a wrench.
 
-    Newton from ``start`` (undeformed); where that fails, the loads grow in ten steps. An equilibrium from which the
-    robot would fall (negative stiffness on the constraints) is none.
+    Newton from ``start`` (undeformed); where that fails, loads grow and gaps close in ten steps. An equilibrium from
+    which the robot would fall (negative stiffness on the constraints) is none. Forces that nothing elastic determines
+    are those of `shared.least_energy`.
+
+    Parameters
+    ----------
+    system : System
+    start : RestStates
+        P states; closures and held coordinates may have gaps, as those of welded legs on a rigid path have.
+    command, force : ndarray, shape (P, legs, ports)
+        Values of held coordinates and of the drives' springs [m], [rad]; feed-forward forces [N], [N m].
+    wrench : ndarray, shape (6,)
+        At the tool.
     """
-    states, code = _newton(system, start, l_cmd, force, wrench)
+    acts = _Acts(command=command, force=force, wrench=wrench, kept=np.zeros_like(start.lam))
+    states, code = _newton(system, start, acts)
     lost = np.flatnonzero(code)
     if lost.size:
-        part, codes = _loaded_slowly(system, start[lost], l_cmd[lost], force[lost], wrench)
+        part, codes = _loaded_slowly(system, start[lost], acts[lost])
         states, code[lost] = states.with_(lost, part), codes
     found = np.flatnonzero(code == FOUND)
     if found.size:
         m = matrices_at_rest(system, states[found], wrench)
         code[found[~_stable(system, m)]] = UNSTABLE
+        if open_borders(leg_bases(system, m)):
+            states = states.with_(found, least_energy(system, states[found], m))
     return Equilibria(states=states, code=code)
 
 
-def _loaded_slowly(
-    system: System, x: RestStates, l_cmd: Array, force: Array, wrench: Array
-) -> tuple[RestStates, np.ndarray]:
-    """Newton with a tenth of the loads more in each of ten steps, as far as each pose gets."""
-    code = np.full(len(x), FOUND)
+@dataclass(frozen=True, kw_only=True)
+class _Acts:
+    """What acts on P states, and the share that a load step leaves of gaps and gravity.
+
+    ``kept`` (P, legs, rows): gaps of the closures that are left.
+    """
+
+    command: Array
+    force: Array
+    wrench: Array
+    kept: Array
+
+    def __getitem__(self, chosen: Index) -> "_Acts":
+        return replace(self, command=self.command[chosen], force=self.force[chosen], kept=self.kept[chosen])
+
+
+def _loaded_slowly(system: System, x: RestStates, acts: _Acts) -> tuple[RestStates, np.ndarray]:
+    """Newton with a tenth of the loads more and of the gaps less in each of ten steps, as far as each pose gets."""
+    code, held = np.full(len(x), FOUND), system.held[:, system.ports]
+    _, _, gap = residual_at_rest(system, x, acts.command, acts.force, acts.wrench)
+    begun = np.where(held, x.q[..., system.ports], acts.command)
     for share in np.linspace(0.1, 1.0, 10):
         on = np.flatnonzero(code == FOUND)
         if not on.size:
             break
-        part, codes = _newton(_scaled(system, share), x[on], l_cmd[on], share * force[on], share * wrench)
-        x, code[on] = x.with_(on, part), codes
+        part = _Acts(
+            command=begun + share * (acts.command - begun),
+            force=share * acts.force,
+            wrench=share * acts.wrench,
+            kept=(1.0 - share) * gap,
+        )
+        states, codes = _newton(_scaled(system, share), x[on], part[on])
+        x, code[on] = x.with_(on, states), codes
     return x, code
 
 
@@ -122,12 +159,12 @@ def _scaled(system: System, share: float) -> System:
     return replace(system, leg_p=leg_p, payload_p=payload_p)
 
 
-def _newton(system: System, x: RestStates, l_cmd: Array, force: Array, wrench: Array) -> tuple[RestStates, np.ndarray]:
+def _newton(system: System, x: RestStates, acts: _Acts) -> tuple[RestStates, np.ndarray]:
     """Newton at every pose that has neither settled nor failed; states and codes."""
     code, best = np.full(len(x), NOT_SETTLED), np.full(len(x), np.inf)
     on = np.arange(len(x))
     for _ in range(40):
-        new, largest = _newton_step(system, x[on], l_cmd[on], force[on], wrench)
+        new, largest = _newton_step(system, x[on], acts[on])
         singular = ~np.isfinite(largest)
         away = ~singular & (largest > 0.5)  # half a radian or half a metre is not an elastic deformation
         code[on[singular]], code[on[away]] = SINGULAR, GIVES_WAY
@@ -142,17 +179,16 @@ def _newton(system: System, x: RestStates, l_cmd: Array, force: Array, wrench: A
     return x, code
 
 
-def _newton_step(system: System, x: RestStates, l_cmd: Array, force: Array, wrench: Array) -> tuple[RestStates, Array]:
+def _newton_step(system: System, x: RestStates, acts: _Acts) -> tuple[RestStates, Array]:
     """States after a step, and the largest coordinate of the step (P,); NaN where the stiffness is singular."""
-    r, r_payload, g = residual_at_rest(system, x, l_cmd, force, wrench)
-    l_index = system.kernel.shapes.l_index
-    gap = np.where(system.held[:, l_index], x.q[:, :, l_index] - l_cmd, 0.0)
-    step = arrow_solve(system, matrices_at_rest(system, x, wrench), r, r_payload, g, gap)
-    largest = np.maximum(np.abs(step.dq).max(axis=(1, 2)), np.abs(step.dy).max(axis=1))
+    r, r_payload, g = residual_at_rest(system, x, acts.command, acts.force, acts.wrench)
+    gap = np.zeros_like(x.q)
+    gap[..., system.ports] = x.q[..., system.ports] - acts.command
+    gap = np.where(system.held, gap, 0.0)
+    step = arrow_solve(system, matrices_at_rest(system, x, acts.wrench), r, r_payload, g - acts.kept, gap)
+    largest = np.maximum(np.abs(step.dq).max(axis=(1, 2)), np.abs(step.dy).max(axis=1, initial=0.0))
     moved = x.moved(step.dq, np.nan_to_num(step.dy))  # no rotation by NaN
-    drive = x.drive.copy()
-    drive[:, :, 0] += step.drive
-    return replace(moved, lam=x.lam + step.dlam, drive=drive), largest
+    return replace(moved, lam=x.lam + step.dlam, drive=x.drive + step.drive), largest
 
 
 def _stable(system: System, m: RestMatrices) -> Mask:
@@ -161,9 +197,8 @@ def _stable(system: System, m: RestMatrices) -> Mask:
     By Sylvester's law of inertia it is where B of every leg and the payload's Schur complement are. Factors tell, not
     eigenvalues: their sign does not depend on how much stiffer another part is.
     """
-    bases = leg_bases(system, m)
-    A = reduced(bases, m.K, m.payload_K)
-    N = null_space_of_borders(bases, system.kernel.shapes.l_index)
+    bases = closed(leg_bases(system, m))
+    A, N = reduced(system, bases, m), null_space_of_borders(bases)
     if N is not None:
         return cholesky_each(N.swapaxes(1, 2) @ A.dense() @ N)[1]
     rest, stable = A.S, np.ones(len(A.S), dtype=bool)

@@ -1,4 +1,4 @@
-"""The robot at rest in many poses at once: states, residuals and matrices with the pose as first axis, Eq. (T7.1)."""
+"""A robot in many states at once: residuals and matrices with the pose as first axis, Eqs. (T4.7)-(T4.8), (T7.1)."""
 
 from __future__ import annotations
 
@@ -9,25 +9,31 @@ from dataclasses import dataclass, fields, replace
 
 import numpy as np
 
-from flexapod import rigid
-from flexapod.mechanics.layout import COMMAND_SIZE
-from flexapod.model import Robot
-from flexapod.rigid.rotations import quaternion, turned
+from flexapod.rigid.rotations import turned
 from flexapod.solve.kernel import Kernel
-from flexapod.solve.system import Index, State, System
+from flexapod.solve.system import Index, State, System, spring_commands
 from flexapod.typing import Array
 
-__all__ = ["RestMatrices", "RestStates", "evaluate", "matrices_at_rest", "residual_at_rest", "rigid_rest"]
+__all__ = [
+    "Rates",
+    "RestMatrices",
+    "RestStates",
+    "evaluate",
+    "matrices_at_rest",
+    "port_forces",
+    "residual",
+    "residual_at_rest",
+]
 
 _Pointer = ctypes.POINTER(c_double)
 
 
 @dataclass(frozen=True, kw_only=True)
 class RestStates:
-    """P resting states of a robot with n coordinates a leg; the parts of `system.State` that are not zero at rest.
+    """P resting states of a robot; the parts of `system.State` that are not zero at rest.
 
-    ``q`` (P, legs, n); ``pose`` (P, 7): CoM [m] and quaternion; ``lam`` (P, legs, rows): closure forces on the platform
-    [N]; ``drive`` (P, legs, ports): forces that hold coordinates [N, N m].
+    ``q`` (P, legs, n); ``pose`` (P, 7): CoM [m] and quaternion; ``lam`` (P, legs, rows): what the closures take;
+    ``drive`` (P, legs, ports): force of each held coordinate [N] or [N m].
     """
 
     q: Array
@@ -50,12 +56,12 @@ class RestStates:
         return RestStates(**new)
 
     def moved(self, dq: Array, step: Array) -> RestStates:
-        """States displaced by dq (P, 6, n) and payload steps (P, 6): q + dq, x + dx, R exp(theta^), Eq. (T4.3)."""
-        return replace(self, q=self.q + dq, pose=turned(self.pose, step))
+        """States displaced by dq (P, legs, n) and payload steps (P, 6): q + dq, x + dx, R exp(theta^), Eq. (T4.3)."""
+        return replace(self, q=self.q + dq, pose=turned(self.pose, step) if step.size else self.pose)
 
     def state(self, k: int) -> State:
         """One of them as the state of a robot."""
-        size = self.q[k].size + 6
+        size = self.q[k].size + (6 if self.pose.size else 0)
         return State(
             q=self.q[k], pose=self.pose[k], v=np.zeros(size), v_dot=np.zeros(size), lam=self.lam[k], drive=self.drive[k]
         )
@@ -70,8 +76,9 @@ class RestStates:
 class RestMatrices:
     """Matrices of P resting states.
 
-    ``M``, ``D``, ``K`` (P, 6, n, n) and ``J`` (P, 6, 3, n), tip Jacobian, of the legs; ``payload_M``, ``payload_K``
-    (P, 6, 6) and ``P`` (P, 6, 3, 6), Jacobian of the joints' points, of the payload.
+    ``M``, ``D``, ``K`` (P, legs, n, n) and ``J`` (P, legs, rows, n) of the legs; ``payload_M``, ``payload_K``
+    (P, 6, 6) of the payload, with what turning the joint forces adds; ``P`` (P, legs, rows, 6): what moves with the
+    payload of each closure; ``X`` (P, legs, n, 6): second derivatives of closures that fix the attitude, None of balls.
     """
 
     M: Array
@@ -81,71 +88,102 @@ class RestMatrices:
     payload_M: Array
     payload_K: Array
     P: Array
-
-
-def rigid_rest(system: System, robot: Robot, path: rigid.Poses) -> RestStates:
-    """States of the undeformed robot at the poses of a path, without forces; see `system.rigid_state`."""
-    legs, P = rigid.inverse_kinematics(robot, path), len(path)
-    q = np.zeros((P, system.legs, system.n))
-    q[:, :, :3] = np.stack([legs.alpha, legs.beta, legs.length], axis=-1)
-    com = path.position + path.rotation @ robot.payload.com
-    pose = np.concatenate([com, quaternion(path.rotation)], axis=1)
-    lam, drive = np.zeros((P, system.legs, system.rows)), np.zeros((P, system.legs, system.ports.size))
-    return RestStates(q=q, pose=pose, lam=lam, drive=drive)
+    X: Array | None
 
 
 def residual_at_rest(
-    system: System, x: RestStates, l_cmd: Array, force: Array, wrench: Array
+    system: System, x: RestStates, command: Array, force: Array, wrench: Array
 ) -> tuple[Array, Array, Array]:
-    """Balance of the legs (P, 6, n) and of the payload (P, 6) [N, N m], closures (P, 6, 3) [m], at rest.
+    """Balance of the legs (P, legs, n) and of the payload (P, 6) [N, N m], closures (P, legs, rows) [m], at rest.
 
-    ``l_cmd``, ``force`` (P, 6): commanded lengths [m] and feed-forward drive forces [N]; ``wrench`` (6,) at the tool.
+    ``command``, ``force`` (P, legs, ports): what springs of the drives are to reach, and feed-forward forces;
+    ``wrench`` (6,) at the tool.
     """
-    P, n = len(x), system.n
-    legs, kernel = system.legs, system.kernel
-    commands = np.zeros((P, legs, COMMAND_SIZE))
-    commands[:, :, 0] = l_cmd
-    still, shapes = np.zeros(n), [(n,), (3,), (2,), (1,)]
-    arguments = [x.q, still, still, x.lam, commands, system.leg_p]
-    r, tip, _, _ = evaluate(kernel, "leg_residual", legs * P, arguments, [n, n, n, 3, COMMAND_SIZE, None], shapes)
-    r = r.reshape(P, legs, n)
-    r[:, :, system.ports] -= x.drive
-    r[:, :, kernel.shapes.l_index] -= force
-    points, wrenches = evaluate(kernel, "joint_residual", legs * P, *_joints(system, x), [(3,), (6,)])
-    net = wrenches.reshape(P, legs, 6).sum(axis=1)
-    arguments = [x.pose, np.zeros(6), np.zeros(6), net, wrench, system.payload_p]
-    payload, _ = evaluate(kernel, "payload_residual", P, arguments, [7, 6, 6, 6, 6, None], [(6,), (1,)])
-    return r, payload, (tip - points).reshape(P, legs, 3)
+    r, payload, g = residual(system, x, command, np.zeros_like(command), wrench)
+    r[..., system.ports] -= force + x.drive
+    return r, payload, g
 
 
-def _joints(system: System, x: RestStates) -> tuple[list[Array], list[int | None]]:
-    """Inputs of the joints' functions and their sizes, leg by leg of each state."""
-    return [np.repeat(x.pose, system.legs, axis=0), x.lam, system.joint_p], [7, 3, None]
+@dataclass(frozen=True, kw_only=True)
+class Rates:
+    """Motion of P states: ``v``, ``v_dot`` (P, legs, n) of the legs, ``u``, ``u_dot`` (P, 6) of the payload."""
+
+    v: Array
+    v_dot: Array
+    u: Array
+    u_dot: Array
+
+    def __getitem__(self, chosen: Index | slice) -> Rates:
+        """Those of some of the states."""
+        return Rates(**{f.name: getattr(self, f.name)[chosen] for f in fields(self)})
+
+
+def residual(
+    system: System, x: RestStates, command: Array, rate: Array, wrench: Array, rates: Rates | None = None
+) -> tuple[Array, Array, Array]:
+    """Balance of legs and payload without the forces of drives and of what is held, and closures; at rest or not.
+
+    ``command``, ``rate`` (P, legs, ports): what springs of the drives follow; ``wrench`` (6,) or (P, 6).
+    """
+    P, legs, pose = len(x), system.legs, np.repeat(x.pose, system.legs, axis=0)
+    at = rates or Rates(v=np.zeros(system.n), v_dot=np.zeros(system.n), u=np.zeros(6), u_dot=np.zeros(6))
+    springs = spring_commands(np.stack([command, rate], axis=-1))
+    arguments, drive = [x.q, at.v, at.v_dot, x.lam, springs, system.leg_p], (springs.shape[-1] // 2,)
+    net = np.zeros((legs * P, 6))
+    if system.kernel.shapes.closure == "pose":
+        outputs = [(system.n,), (6,), (6,), (2,), drive]
+        r, g, net, *_ = evaluate(system.kernel, "leg_residual", legs * P, [*arguments, pose], outputs)
+    else:
+        r, g, *_ = evaluate(system.kernel, "leg_residual", legs * P, arguments, [(system.n,), (3,), (2,), drive])
+    if system.kernel.shapes.closure == "point":
+        points, net = evaluate(system.kernel, "joint_residual", legs * P, [pose, x.lam, system.joint_p], [(3,), (6,)])
+        g = g - points
+    payload = np.zeros((P, 0))
+    if system.hub:
+        arguments = [x.pose, at.u, at.u_dot, net.reshape(P, legs, 6).sum(axis=1), wrench, system.payload_p]
+        payload, _ = evaluate(system.kernel, "payload_residual", P, arguments, [(6,), (1,)])
+    return r.reshape(P, legs, system.n), payload, g[:, : system.rows].reshape(P, legs, system.rows)
+
+
+def port_forces(system: System, x: RestStates, command: Array, force: Array) -> Array:
+    """Whole force of each port at rest, (P, legs, ports): what holds it, feed-forward and spring of the drive."""
+    springs = spring_commands(np.stack([command, np.zeros_like(command)], axis=-1))
+    arguments, width = [x.q, np.zeros(system.n), springs, system.leg_p], springs.shape[-1] // 2
+    _, drive = evaluate(system.kernel, "leg_energies", len(x) * system.legs, arguments, [(3,), (width,)])
+    found = force + x.drive
+    found[..., :width] += drive.reshape(len(x), system.legs, width)
+    return found
 
 
 def matrices_at_rest(system: System, x: RestStates, wrench: Array) -> RestMatrices:
     """Matrices with geometric stiffness; see `System.matrices`."""
-    P, n, legs, kernel = len(x), system.n, system.legs, system.kernel
-    arguments, shapes = [x.q, x.lam, system.leg_p], [(n, n)] * 3 + [(3, n)]
-    of_legs = evaluate(kernel, "leg_matrices", legs * P, arguments, [n, 3, None], shapes)
-    M, D, K, J = (part.reshape(P, legs, *part.shape[1:]) for part in of_legs)
-    points, turned_forces = (
-        part.reshape(P, legs, *part.shape[1:])
-        for part in evaluate(kernel, "joint_matrices", legs * P, *_joints(system, x), [(3, 6), (6, 6)])
-    )
-    arguments = [x.pose, wrench, system.payload_p]
-    payload_M, payload_K = evaluate(kernel, "payload_matrices", P, arguments, [7, 6, None], [(6, 6), (6, 6)])
-    payload_K = payload_K + turned_forces.sum(axis=1)
-    return RestMatrices(M=M, D=D, K=K, J=J, payload_M=payload_M, payload_K=payload_K, P=points)
+    P, legs, n, rows = len(x), system.legs, system.n, system.rows
+    arguments, outputs = [x.q, x.lam, system.leg_p], [(n, n)] * 3 + [(rows, n)]
+    moving, H, X = np.zeros((legs * P, rows, 0)), np.zeros((legs * P, 0, 0)), None
+    pose = np.repeat(x.pose, legs, axis=0)
+    if system.kernel.shapes.closure == "pose":
+        outputs += [(rows, 6), (6, 6), (n, 6)]
+        M, D, K, J, moving, H, X = evaluate(system.kernel, "leg_matrices", legs * P, [*arguments, pose], outputs)
+        X = X.reshape(P, legs, n, 6)
+    else:
+        M, D, K, J = evaluate(system.kernel, "leg_matrices", legs * P, arguments, outputs)
+    if system.kernel.shapes.closure == "point":
+        joints = [pose, x.lam, system.joint_p]
+        moving, H = evaluate(system.kernel, "joint_matrices", legs * P, joints, [(3, 6), (6, 6)])
+    hub = 6 if system.hub else 0
+    payload_M, payload_K = np.zeros((P, hub, hub)), np.zeros((P, hub, hub))
+    if system.hub:
+        arguments = [x.pose, wrench, system.payload_p]
+        payload_M, payload_K = evaluate(system.kernel, "payload_matrices", P, arguments, [(6, 6), (6, 6)])
+    M, D, K, J = (part.reshape(P, legs, *part.shape[1:]) for part in (M, D, K, J))
+    return RestMatrices(
+        M=M, D=D, K=K, J=J, payload_M=payload_M, payload_K=payload_K + H.reshape(P, legs, hub, hub).sum(axis=1),
+        P=moving.reshape(P, legs, rows, hub), X=X,
+    )  # fmt: skip
 
 
 def evaluate(
-    kernel: Kernel,
-    name: str,
-    count: int,
-    inputs: Sequence[Array],
-    sizes: Sequence[int | None],
-    shapes: Sequence[tuple[int, ...]],
+    kernel: Kernel, name: str, count: int, inputs: Sequence[Array], shapes: Sequence[tuple[int, ...]]
 ) -> list[Array]:
     """A kernel function for ``count`` items at once.
 
@@ -156,9 +194,7 @@ def evaluate(
         One of `kernel.NAMES`.
     count : int
     inputs : sequence of ndarray
-        Rows of each input one below the other; with fewer rows than items they repeat.
-    sizes : sequence of int or None
-        Length of a row; None: that of the last axis.
+        Their last axis is one argument of one item; with fewer arguments than items they repeat.
     shapes : sequence of tuple
         Of each output of one item.
 
@@ -166,10 +202,7 @@ def evaluate(
     -------
     list of ndarray, each shape (count, *shape)
     """
-    rows = [
-        np.ascontiguousarray(x, dtype=float).reshape(-1, size or x.shape[-1])
-        for x, size in zip(inputs, sizes, strict=True)
-    ]
+    rows = [np.ascontiguousarray(x, dtype=float).reshape(int(np.prod(x.shape[:-1])), x.shape[-1]) for x in inputs]
     if kernel.library is None:
         return _one_by_one(kernel, name, count, rows, shapes)
     out = [np.zeros((count, *shape[::-1])) for shape in shapes]  # the kernels write column by column

@@ -1,6 +1,7 @@
 """Undamped and damped modes of the locked robot about its static equilibrium, Eqs. (T7.2)-(T7.5), (T7.16)-(T7.17)."""
 
 from dataclasses import dataclass
+from functools import cached_property
 
 import numpy as np
 
@@ -9,11 +10,12 @@ from flexapod.bases.eigen import finite
 from flexapod.errors import ComputationError, InputError
 from flexapod.model import Load, Robot, Simulation
 from flexapod.solve.damped import damping_ratios
-from flexapod.solve.elimination import LegBases, expanded, leg_bases, null_space_of_borders, reduced
+from flexapod.solve.elimination import LegBases, closed, expanded, leg_bases, null_space_of_borders, reduced
 from flexapod.solve.equilibrium import FOUND, Equilibria, Equilibrium, equilibria, refuse_fallen
 from flexapod.solve.frequencies import count_real, mass_factor, natural
-from flexapod.solve.many import RestMatrices, matrices_at_rest, rigid_rest
-from flexapod.solve.rest import RestLoad, rest_load
+from flexapod.solve.many import RestMatrices, matrices_at_rest
+from flexapod.solve.rest import RestLoad, rest_commands, rest_load
+from flexapod.solve.rigid_motion import rigid_rest
 from flexapod.solve.system import Index, System, robot_system
 from flexapod.typing import Array, Mask
 
@@ -25,7 +27,7 @@ class RobotModes:
     """Modes about an equilibrium, ascending.
 
     ``frequency`` (m,) [Hz] undamped; ``damping_ratio`` (m,) of the damped modes; ``shapes`` (m, N), mass-normalised, in
-    the flat coordinates of `system.System` (six legs, then CoM in the world frame and rotation in platform axes);
+    the flat coordinates of `system.System` (legs, then CoM in the world frame and rotation in platform axes);
     ``wrench`` (6,) at the tool.
     """
 
@@ -39,7 +41,7 @@ class RobotModes:
 
 @dataclass(frozen=True, kw_only=True)
 class LockedPoses:
-    """A robot with drives locked at the ``lengths`` (P, 6) of a rigid ``path`` of P poses.
+    """A robot with drives locked at the ``command`` (P, legs, ports) of a rigid ``path`` of P poses.
 
     What ``acts`` on it, equilibria, and the matrices ``m`` of those found, ``at``.
     """
@@ -48,11 +50,16 @@ class LockedPoses:
     path: rigid.Poses
     system: System
     simulation: Simulation
-    lengths: Array
+    command: Array
     acts: RestLoad
     equilibria: Equilibria
     at: Index
     m: RestMatrices
+
+    @cached_property
+    def bases(self) -> list[LegBases]:
+        """Independent motions about the equilibria, as far as legs can give way."""
+        return closed(leg_bases(self.system, self.m))
 
 
 @dataclass(frozen=True, kw_only=True)
@@ -95,10 +102,10 @@ def locked_poses(
         A pure force drive.
     """
     refuse_pure_force(robot, "a static equilibrium")
-    system, acts = robot_system(robot, simulation), rest_load(robot, path, load, time)
-    start = rigid_rest(system, robot, path)
-    lengths = start.q[:, :, system.kernel.shapes.l_index]
-    found = equilibria(system, start, lengths, acts.force, acts.wrench)
+    system = robot_system(robot, simulation)
+    start, acts = rigid_rest(system, robot, path), rest_load(system, robot, path, load, time)
+    command = rest_commands(system, robot, start.q)
+    found = equilibria(system, start, command, acts.force, acts.wrench)
     at = np.flatnonzero(found.code == FOUND)
     m = matrices_at_rest(system, found.states[at], acts.wrench)
     return LockedPoses(
@@ -106,7 +113,7 @@ def locked_poses(
         path=path,
         system=system,
         simulation=simulation,
-        lengths=lengths,
+        command=command,
         acts=acts,
         equilibria=found,
         at=at,
@@ -171,10 +178,10 @@ def modes_of(locked: LockedPoses, *, shapes: bool = False) -> ManyModes:
         Rigid legs on prescribed strokes: nothing can move.
     """
     system, m = locked.system, locked.m
-    bases = leg_bases(system, m)
-    N = null_space_of_borders(bases, system.kernel.shapes.l_index)
-    K = reduced(bases, m.K, m.payload_K).dense()
-    U, positive = _mass_factor(bases, m)
+    bases = locked.bases
+    N = null_space_of_borders(bases)
+    K = reduced(system, bases, m).dense()
+    U, positive = _mass_factor(system, bases, m)
     if N is not None:
         K, U = N.swapaxes(1, 2) @ K @ N, U @ N
     if not K.shape[-1]:
@@ -191,7 +198,7 @@ def modes_of(locked: LockedPoses, *, shapes: bool = False) -> ManyModes:
     if not shapes:
         nothing = np.zeros((0, omega.shape[1]))
         return ManyModes(frequency=frequency, positive=positive, damping_ratio=nothing, shapes=nothing)
-    flat = expanded(bases, z if N is None else N @ z)
+    flat = expanded(system, bases, z if N is None else N @ z)
     return ManyModes(
         frequency=frequency,
         positive=positive,
@@ -200,22 +207,22 @@ def modes_of(locked: LockedPoses, *, shapes: bool = False) -> ManyModes:
     )
 
 
-def _mass_factor(bases: list[LegBases], m: RestMatrices) -> tuple[Array, Mask]:
-    """Factor U (p, 6 n + 6, r) of the mass matrix on admissible motions, body by body, and where it is positive."""
-    p, _, n, _ = m.M.shape
-    size = sum(b.legs.size * b.rest.size for b in bases) + 6
-    motion = expanded(bases, np.broadcast_to(np.eye(size), (p, size, size)))
-    (legs, real), (payload, real_payload) = mass_factor(m.M), mass_factor(m.payload_M)
-    of_legs = (legs @ motion[:, :-6].reshape(p, 6, n, size)).reshape(p, 6 * n, size)
-    U = np.concatenate([of_legs, payload @ motion[:, -6:]], axis=1)
+def _mass_factor(system: System, bases: list[LegBases], m: RestMatrices) -> tuple[Array, Mask]:
+    """Factor U (p, size, r) of the mass matrix on admissible motions, body by body, and where it is positive."""
+    p, legs, n, _ = m.M.shape
+    size = sum(b.legs.size * b.rest.size for b in bases) + system.hub_free.size
+    motion = expanded(system, bases, np.broadcast_to(np.eye(size), (p, size, size)))
+    (of_legs, real), (payload, real_payload) = mass_factor(m.M), mass_factor(m.payload_M)
+    moving = (of_legs @ motion[:, : legs * n].reshape(p, legs, n, size)).reshape(p, legs * n, size)
+    U = np.concatenate([moving, payload @ motion[:, legs * n :]], axis=1)
     positive = real.all(axis=1) & real_payload
     return np.where(positive[:, None, None], U, 0.0), positive
 
 
 def _damping(locked: LockedPoses, omega: Array, flat: Array) -> Array:
     """Damping ratios (p, m) of shapes (p, N, m) of unit stiffness."""
-    p, n = len(flat), locked.system.n
-    legs = flat[:, :-6].reshape(p, 6, n, flat.shape[2])
-    D = (legs.swapaxes(-1, -2) @ locked.m.D @ legs).sum(axis=1)
+    p, legs, n, _ = locked.m.D.shape
+    moving = flat[:, : legs * n].reshape(p, legs, n, flat.shape[2])
+    D = (moving.swapaxes(-1, -2) @ locked.m.D @ moving).sum(axis=1)
     found = [w if np.isnan(w).any() else damping_ratios(w, d) for w, d in zip(omega, D, strict=True)]
     return np.array(found).reshape(omega.shape)

@@ -2,29 +2,62 @@
 
 from __future__ import annotations
 
+from collections.abc import Iterator
 from dataclasses import dataclass
 
 import numpy as np
 
 from flexapod import rigid
 from flexapod.model import Load, Robot
+from flexapod.rigid.limbs import DRIVEN, HELD, limbs
+from flexapod.solve.rigid_motion import leg_coordinates
+from flexapod.solve.system import System
 from flexapod.solve.tables import feed_forward
-from flexapod.typing import Array
+from flexapod.typing import Array, Mask
 
-__all__ = ["RestLoad", "rest_load"]
+__all__ = ["RestLoad", "at_drives", "rest_commands", "rest_load"]
 
 BEFORE = -1e-12  # just before an instant [s]: a load that steps there has not come yet
 
 
 @dataclass(frozen=True, kw_only=True)
 class RestLoad:
-    """Of P poses: ``force`` (P, 6) of each force drive without its feedback [N]; ``wrench`` (6,), tool, world axes."""
+    """Of P poses: ``force`` (P, legs, ports) of force drives without their feedback; ``wrench`` (6,), tool, world."""
 
     force: Array
     wrench: Array
 
 
-def rest_load(robot: Robot, path: rigid.Poses, load: Load | None = None, time: float = 0.0) -> RestLoad:
+def rest_commands(system: System, robot: Robot, q: Array) -> Array:
+    """Values (P, legs, ports) that hold a robot at configurations q (P, legs, n): of joints those at home."""
+    command, found = q[..., system.ports].copy(), limbs(robot)
+    for k, port in _ports(system):
+        fixed = found.state[:, k] == HELD
+        command[:, fixed, port] = found.home[fixed, k]
+    return command
+
+
+def at_drives(system: System, robot: Robot, values: Array) -> Array:
+    """Values (..., legs) of the driven ports out of those of all, (..., legs, ports); 0 of a passive leg."""
+    found = np.zeros(values.shape[:-1])
+    for driven, port in _drives(system, robot):
+        found[..., driven] = values[..., driven, port]
+    return found
+
+
+def _drives(system: System, robot: Robot) -> Iterator[tuple[Mask, int]]:
+    """Legs that are driven at a port, and the port."""
+    state = limbs(robot).state
+    yield from ((state[:, k] == DRIVEN, port) for k, port in _ports(system))
+
+
+def _ports(system: System) -> Iterator[tuple[int, int]]:
+    """Which of `rigid.limbs.COORDINATES` are ports, and which ones."""
+    for k, at in zip(*leg_coordinates(system.kernel.shapes), strict=True):
+        yield from ((k, int(port)) for port in np.flatnonzero(system.ports == at))
+
+
+def rest_load(system: System, robot: Robot, path: rigid.Poses, load: Load | None = None, time: float = 0.0) -> RestLoad:
     """What acts on a robot that rests at poses just before an instant.
 
     Every static quantity takes it from here. A force drive of law "rigid" pushes with what the rigid robot needs at the
@@ -34,6 +67,7 @@ def rest_load(robot: Robot, path: rigid.Poses, load: Load | None = None, time: f
 
     Parameters
     ----------
+    system : System
     robot : Robot
     path : Poses
         P rigid poses; their rates do not matter.
@@ -45,5 +79,8 @@ def rest_load(robot: Robot, path: rigid.Poses, load: Load | None = None, time: f
     before = np.array([min(time + BEFORE, np.nextafter(time, -np.inf))])
     wrench = rigid.wrench(Load() if load is None else load, before)
     still, count = rigid.Poses.at_rest(path.position, path.rotation), len(path)
-    force = feed_forward(robot, np.repeat(before, count), still, np.repeat(wrench, count, axis=0))
+    pushed = feed_forward(robot, np.repeat(before, count), still, np.repeat(wrench, count, axis=0))
+    force = np.zeros((count, system.legs, system.ports.size))
+    for driven, port in _drives(system, robot):
+        force[:, driven, port] = pushed[:, driven]
     return RestLoad(force=force, wrench=wrench[0])

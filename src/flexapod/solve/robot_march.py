@@ -15,7 +15,7 @@ from flexapod.solve.equilibrium import equilibrium, refuse_fallen
 from flexapod.solve.march import Chunk, Problem, initial_step, march
 from flexapod.solve.modes import refuse_pure_force
 from flexapod.solve.recording import Counters, Recording
-from flexapod.solve.rest import rest_load
+from flexapod.solve.rest import rest_commands, rest_load
 from flexapod.solve.start import consistent_start
 from flexapod.solve.stops import Stops
 from flexapod.solve.system import Flow, State, System, rigid_state, robot_system
@@ -108,8 +108,9 @@ def _configuration(study: Study, system: System) -> State:
     if study.initial.start == "straight":
         return at_rest
     refuse_pure_force(study.robot, "the equilibrium start")
-    acts, lengths = rest_load(study.robot, path, study.load), straight.q[:, system.kernel.shapes.l_index]
-    found = equilibrium(system, at_rest, lengths, acts.force[0], acts.wrench)
+    acts = rest_load(system, study.robot, path, study.load)
+    command = rest_commands(system, study.robot, straight.q[None])[0]
+    found = equilibrium(system, at_rest, command, acts.force[0], acts.wrench)
     if not found.found:
         raise ComputationError(f"the robot cannot start at rest: {found.reason}", next_step="See `flexapod check`.")
     refuse_fallen(study.robot, path, found.state.pose)

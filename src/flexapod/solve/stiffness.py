@@ -9,7 +9,7 @@ from flexapod.bases.eigen import finite
 from flexapod.errors import InputError
 from flexapod.model import Load, Robot, Simulation
 from flexapod.rigid.rotations import matrix
-from flexapod.solve.elimination import leg_bases, solve_each
+from flexapod.solve.elimination import reduced_legs, solve_each
 from flexapod.solve.equilibrium import Equilibrium
 from flexapod.solve.modes import LockedPoses, locked_poses, the_equilibrium
 from flexapod.solve.system import System
@@ -20,8 +20,8 @@ from flexapod.typing import Array
 class Stiffness:
     """Stiffness at the tool in world axes, [N/m, N, N m/rad], at one pose or, with a first axis more, at several.
 
-    ``total`` (6, 6) is the sum of ``legs`` (6, 6, 6), the share of each leg, and ``load`` (6, 6), what turning
-    the joint forces adds.
+    ``total`` (6, 6) is the sum of ``legs`` (legs, 6, 6), the share of each leg, and ``load`` (6, 6), what turning
+    the joint forces adds; its diagonal is infinite where something holds the platform itself.
     """
 
     total: Array
@@ -66,36 +66,67 @@ def stiffness_of(robot: Robot, locked: LockedPoses) -> Stiffness:
     InputError
         Legs on prescribed strokes that cannot stretch: no compliance.
     """
-    system, m = locked.system, locked.m
-    if system.kernel.shapes.axial.count == 0 and system.held[:, system.kernel.shapes.l_index].any():
+    system, m, free = locked.system, locked.m, locked.system.hub_free
+    _refuse_rigid(locked)
+    legs = np.zeros((len(locked.at), system.legs, 6, 6))
+    for b in locked.bases:  # (T7.6)  joint forces that a unit step of the payload meets, legs eliminated
+        B, C, own = reduced_legs(system, b, m)
+        legs[:, b.legs[:, None, None], free[:, None], free] = own - C.swapaxes(-1, -2) @ solve_each(B, C)
+    motion = tool_motion(robot, locked.equilibria.states[locked.at].pose)
+    back = np.zeros_like(motion)
+    back[:, free[:, None], free] = np.linalg.inv(motion[:, free[:, None], free])
+    parts = np.concatenate([legs, m.payload_K[:, None]], axis=1)
+    at_tool = back.swapaxes(-1, -2)[:, None] @ parts @ back[:, None]  # (T7.8)
+    total, held = at_tool.sum(axis=1), np.flatnonzero(system.hub_held)
+    total[:, held, held] = np.inf
+    return Stiffness(total=total, legs=at_tool[:, :-1], load=at_tool[:, -1])
+
+
+def _refuse_rigid(locked: LockedPoses) -> None:
+    """Raise InputError where legs cannot give way to the payload."""
+    shapes, held = locked.system.kernel.shapes, locked.system.held
+    cannot_stretch = shapes.axial.count == 0 and held[:, shapes.l_index].any()
+    if cannot_stretch or any(b.border.size for b in locked.bases):
         raise InputError(
-            "makes the robot infinitely stiff",
+            "makes the robot infinitely stiff" + ("" if cannot_stretch else ", across its hinges at least"),
             key="simulation.fidelity",
             value=locked.simulation.fidelity,
-            allowed='"lumped", or a bending fidelity with at least one axial shape',
+            allowed='"lumped", or a bending fidelity with at least one axial shape'
+            if cannot_stretch
+            else "a bending fidelity with at least one axial shape",
         )
-    legs = np.zeros((len(locked.at), 6, 6, 6))
-    for b in leg_bases(system, m):  # (T7.6)  joint forces that a unit step of the payload meets, legs eliminated
-        K, Nt, Yt = m.K[:, b.legs], b.N.swapaxes(-1, -2), b.Y.swapaxes(-1, -2)
-        C = Nt @ K @ b.Y
-        legs[:, b.legs] = Yt @ K @ b.Y - C.swapaxes(-1, -2) @ solve_each(Nt @ K @ b.N, C)
-    back = np.linalg.inv(tool_motion(robot, locked.equilibria.states[locked.at].pose))[:, None]
-    parts = np.concatenate([legs, m.payload_K[:, None]], axis=1)
-    at_tool = back.swapaxes(-1, -2) @ parts @ back  # (T7.8)
-    return Stiffness(total=at_tool.sum(axis=1), legs=at_tool[:, :6], load=at_tool[:, 6])
+
+
+def displacement(locked: LockedPoses, loads: Array, on_payload: Array) -> Array:
+    """Steps of the payload (p, 6, k) that k loads (p, legs, n, k) and (p, 6, k) cause, for legs that give way."""
+    system, m, free = locked.system, locked.m, locked.system.hub_free
+    S, side = m.payload_K[:, free[:, None], free], on_payload[:, free]
+    for b in locked.bases:
+        B, C, own = reduced_legs(system, b, m)
+        f, width = loads[:, b.legs], C.shape[-1]
+        z = solve_each(B, np.concatenate([C, b.N.swapaxes(-1, -2) @ f], axis=-1))
+        less = C.swapaxes(-1, -2) @ z
+        S = S + (own - less[..., :width]).sum(axis=1)
+        side = side + (b.Y.swapaxes(-1, -2) @ f - less[..., width:]).sum(axis=1)
+    y = np.zeros_like(on_payload)
+    y[:, free] = solve_each(S, side)
+    return y
 
 
 def compliance(total: Array) -> Array:
-    """Inverses of stiffness matrices (p, 6, 6), symmetric.
+    """Inverses of stiffness matrices (p, 6, 6), symmetric; zero where a diagonal is infinite.
 
     Raises
     ------
     ComputationError
         A matrix is singular, or a number in it is not finite.
     """
-    found = solve_each(total, np.broadcast_to(np.eye(6), total.shape))
-    finite(total, found)
-    return 0.5 * (found + found.swapaxes(-1, -2))
+    free = np.flatnonzero(~np.isposinf(np.diagonal(total, axis1=1, axis2=2)).any(axis=0))
+    part, found = total[:, free[:, None], free], np.zeros_like(total)
+    inverse = solve_each(part, np.broadcast_to(np.eye(free.size), part.shape))
+    finite(part, inverse)
+    found[:, free[:, None], free] = 0.5 * (inverse + inverse.swapaxes(-1, -2))
+    return found
 
 
 def tool_motion(robot: Robot, pose: Array) -> Array:

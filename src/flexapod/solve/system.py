@@ -108,6 +108,11 @@ class System:
         return self.legs * self.n + 6 * self.hub
 
     @cached_property
+    def hub_free(self) -> Index:
+        """Coordinates of the payload that nothing holds."""
+        return np.flatnonzero(~self.hub_held[: 6 * self.hub])
+
+    @cached_property
     def ports(self) -> Index:
         """Coordinates that follow a table in some leg, or are pushed by it: those with a drive's spring first."""
         shapes = self.kernel.shapes
@@ -188,8 +193,8 @@ class System:
 
 
 def spring_commands(table: Array) -> Array:
-    """Value and rate that the drives' springs follow, (legs, 2 each)."""
-    return table[:, : COMMAND_SIZE // 2, :2].reshape(len(table), -1)
+    """Value and rate that the drives' springs follow, (..., legs, 2 each), of a table (..., legs, ports, any)."""
+    return table[..., : COMMAND_SIZE // 2, :2].reshape(*table.shape[:-2], COMMAND_SIZE)
 
 
 def robot_system(robot: Robot, simulation: Simulation) -> System:

@@ -8,10 +8,11 @@ import numpy as np
 
 from flexapod import model, rigid
 from flexapod.rigid.rotations import matrix
-from flexapod.solve.arrow import arrow_solve
+from flexapod.solve.many import port_forces
 from flexapod.solve.modes import LockedPoses, locked_poses, modes_of
-from flexapod.solve.parameters import drive_spring
-from flexapod.solve.stiffness import compliance, stiffness_of, tool_motion
+from flexapod.solve.rest import at_drives
+from flexapod.solve.rigid_motion import rigid_motion
+from flexapod.solve.stiffness import compliance, displacement, stiffness_of, tool_motion
 from flexapod.study.before.estimates import buckling_load
 from flexapod.study.before.reach import REACHED, Codes, leg_limits, rigid_codes
 from flexapod.study.many_modes import codes_at_rest, poses_of
@@ -128,11 +129,8 @@ def _elastic(robot: model.Robot, path: rigid.Poses, locked: LockedPoses, wanted:
 
 def _drive_forces(robot: model.Robot, locked: LockedPoses) -> Array:
     """Force of every drive on its piston at rest, (p, legs) [N]: constraint, or given force and spring, Eq. (T8.8)."""
-    states, system = locked.equilibria.states[locked.at], locked.system
-    stiffness = np.array([drive_spring(leg)[0] for leg in robot.legs])
-    l_index = system.kernel.shapes.l_index
-    spring = stiffness * (locked.lengths[locked.at] - states.q[:, :, l_index])
-    return np.where(system.held[:, l_index], states.drive[:, :, 0], locked.acts.force[locked.at] + spring)
+    part = locked.equilibria.states[locked.at], locked.command[locked.at], locked.acts.force[locked.at]
+    return at_drives(locked.system, robot, port_forces(locked.system, *part))
 
 
 def _euler_share(robot: model.Robot, path: rigid.Poses, locked: LockedPoses, force: Array) -> Array:
@@ -145,26 +143,23 @@ def _euler_share(robot: model.Robot, path: rigid.Poses, locked: LockedPoses, for
 
 def _dynamic(robot: model.Robot, path: rigid.Poses, locked: LockedPoses, acceleration: Array | None) -> Array:
     """Deviation of the tool under the inertial forces of payload and legs, (p,) [m], Eq. (T7.19)."""
-    columns = [_answer(robot, path, locked, unit) for unit in np.eye(3)]
-    answer = np.stack(columns, axis=2)  # of the tool, per m/s^2 along each axis
+    answer = _answer(robot, path, locked)  # of the tool, per m/s^2 along each axis
     if acceleration is None:
         return np.linalg.norm(answer, ord=2, axis=(1, 2))
     return np.linalg.norm(answer @ acceleration, axis=1)
 
 
-def _answer(robot: model.Robot, path: rigid.Poses, locked: LockedPoses, acceleration: Array) -> Array:
-    """Displacement of the tool while the platform accelerates without turning, from rest, (p, 3) [m]."""
-    p, count, system, m = len(path), len(robot.legs), locked.system, locked.m
-    zero = np.zeros((p, 3))
-    moving = rigid.Poses(
-        position=path.position, rotation=path.rotation, velocity=zero, omega=zero, alpha=zero,
-        acceleration=np.broadcast_to(acceleration, (p, 3)),
-    )  # fmt: skip
-    legs = rigid.inverse_kinematics(robot, moving)
-    v_dot = np.zeros((p, count, system.n))
-    v_dot[:, :, :3] = np.stack([legs.alpha_ddot, legs.beta_ddot, legs.accel], axis=-1)
-    inertia = (m.M @ v_dot[..., None])[..., 0]
-    payload = (m.payload_M @ np.append(acceleration, np.zeros(3))[:, None])[..., 0]
-    step = arrow_solve(system, m, inertia, payload, np.zeros((p, count, 3)), np.zeros((p, count)))
-    pose = locked.equilibria.states.pose[locked.at]
-    return (tool_motion(robot, pose) @ step.dy[..., None])[:, :3, 0]
+def _answer(robot: model.Robot, path: rigid.Poses, locked: LockedPoses) -> Array:
+    """Displacement of the tool while the platform accelerates along x, y, z without turning, from rest, (p, 3, 3)."""
+    zero, m = np.zeros((len(path), 3)), locked.m
+    inertia, payload = [], []
+    for unit in np.eye(3):
+        moving = rigid.Poses(
+            position=path.position, rotation=path.rotation, velocity=zero, omega=zero, alpha=zero,
+            acceleration=np.broadcast_to(unit, zero.shape),
+        )  # fmt: skip
+        rates = rigid_motion(locked.system, robot, moving)[1]
+        inertia.append((m.M @ rates.v_dot[..., None])[..., 0])
+        payload.append((m.payload_M @ rates.u_dot[..., None])[..., 0])
+    y = displacement(locked, -np.stack(inertia, axis=-1), -np.stack(payload, axis=-1))
+    return (tool_motion(robot, locked.equilibria.states.pose[locked.at]) @ y)[:, :3]
