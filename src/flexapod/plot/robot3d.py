@@ -13,6 +13,14 @@ from flexapod.scene.robot import mode_scene, motion_end, scene
 
 __all__ = ["modes_3d", "robot_3d"]
 
+#: Of robots in space and in a plane: a view at an angle, one along an axis, and that axis.
+_VIEWS: dict[str | None, tuple[dict[str, float], dict[str, float], str]] = {
+    None: ({}, {"turn": 0, "tilt": 0}, "x"),
+    "xy": ({"tilt": 40}, {"turn": -90, "tilt": 90}, "z"),
+    "yz": ({"turn": -28}, {"turn": 0, "tilt": 0}, "x"),
+    "zx": ({}, {"turn": -90, "tilt": 0}, "y"),
+}
+
 
 @styled
 def robot_3d(data: xr.Dataset, time: float | None = None) -> Figure:
@@ -32,17 +40,17 @@ def robot_3d(data: xr.Dataset, time: float | None = None) -> Figure:
     fig = figure(PAGE, 4.5)
     fig.set_layout_engine("none")  # 3D axes have no extents that a layout could use
     places = fig.add_gridspec(1, 2, width_ratios=(1.15, 1), left=0.0, right=0.96, bottom=0.07, top=0.93, wspace=0.1)
-    left, right = space(fig, places[0]), space(fig, places[1], turn=0, tilt=0)
+    oblique, straight, along = _VIEWS[now.skeleton.robot.plane]
+    left, right = space(fig, places[0], **oblique), space(fig, places[1], **straight)
     moved = time > float(data.time[0])
     for axes in (left, right):
         if moved:
             draw_ghost(axes, start)
         draw_robot(axes, now, numbers=axes is left)
         view(axes, [now, start], zoom=1.0)
-    right.set_xticks([])
-    right.set_xlabel("")
+    right.set(**{f"{along}ticks": [], f"{along}label": ""})
     head(left, f"At t = {time:.2f} s; pale: at the start" if moved else "At the start")
-    head(right, "Seen along X; deflections to scale")
+    head(right, f"Seen along {along.upper()}; deflections to scale")
     return fig
 
 
@@ -70,7 +78,7 @@ def modes_3d(modes: xr.Dataset, show: Sequence[int] | None = None, size: float =
     )
     rest = mode_scene(modes, labels[0], 1.0, phase=0.0)
     for i, label in enumerate(labels):
-        axes = space(fig, places[divmod(i, columns)])
+        axes = space(fig, places[divmod(i, columns)], **_VIEWS[rest.skeleton.robot.plane][0])
         moved = mode_scene(modes, label, size * rest.height)
         draw_ghost(axes, rest)
         draw_robot(axes, moved, numbers=True)

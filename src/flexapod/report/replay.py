@@ -33,6 +33,8 @@ MODE_SIZE = 0.1  # largest displacement of a mode, as a share of the robot's hei
 EVERY = 3  # of the points of a drawn piston
 FILLED = 1.6  # size of the drawn box, which nearly fills its place
 BELOW = 0.06  # of the box's height, free below the base: numbers of the legs and of the axes stay apart
+#: From where robots in space and in a plane are seen.
+_EYES = {None: (1.5, -1.7, 0.5), "xy": (0.2, -0.9, 2.1), "yz": (2.1, -0.9, 0.4), "zx": (0.9, -2.1, 0.4)}
 CYLINDER, DEVIATION = "#8A8F98", "#D55E00"
 Traces = list[dict[str, Any]]
 
@@ -92,7 +94,7 @@ def _robot(study: Study, data: Dataset, modes: Dataset | None) -> dict[str, Any]
         **_values(f"deviation of the {POINT_WORDS[point]}", numbers, (*"xyz", "distance")),
         "mouse": "Drag to turn, scroll to come nearer",
         "traces": [*_paths(frames, POINT_WORDS[point]), *_robot_traces(motion.skeleton, point)],
-        "layout": _space(np.concatenate([part.reshape(-1, 3) for part in everything])),
+        "layout": _space(np.concatenate([part.reshape(-1, 3) for part in everything]), study.robot.plane),
         "modes": [{"title": mode["title"], "ends": [packed(part) for part in mode["ends"]]} for mode in played],
     }
 
@@ -248,7 +250,7 @@ def _fixed(points: Array, color: str, width: float, **more: Any) -> dict[str, An
     return {**_line([], color, width, **more), "x": x, "y": y, "z": z}
 
 
-def _space(points: Array) -> dict[str, Any]:
+def _space(points: Array, plane: str | None) -> dict[str, Any]:
     """3D axes in mm with equal scales that hold all frames, so that nothing jumps."""
     low, high = _limits(points)
     low[2] -= BELOW * float((high - low)[2])
@@ -259,7 +261,7 @@ def _space(points: Array) -> dict[str, Any]:
         for ends in [_round_ends(float(low[i]), float(high[i]))]
     }
     ratio = {name: FILLED * float(span[i] / span.max()) for i, name in enumerate("xyz")}
-    camera = {"eye": {"x": 1.5, "y": -1.7, "z": 0.5}, "projection": {"type": "orthographic"}}
+    camera = {"eye": dict(zip("xyz", _EYES[plane], strict=True)), "projection": {"type": "orthographic"}}
     return {"scene": {**axes, "aspectmode": "manual", "aspectratio": ratio, "camera": camera, "dragmode": "turntable"}}
 
 

@@ -29,6 +29,10 @@ if TYPE_CHECKING:
 __all__ = ["RobotScene", "pose_words"]
 
 
+#: From where robots in space and in a plane are seen, in their sizes.
+_EYES = {None: (1.1, -0.95, 0.35), "xy": (0.1, -0.6, 1.4), "yz": (1.4, -0.6, 0.3), "zx": (0.6, -1.4, 0.3)}
+
+
 @dataclass(frozen=True, kw_only=True)
 class _Drawn:
     """A study with the nodes that show it."""
@@ -181,7 +185,7 @@ class RobotScene(Scene):
     def _look_at(self, robot: Skeleton) -> None:
         points, size = np.vstack([robot.home.base, robot.home.platform]), robot.size
         beside = size * np.array([0.13, 0.16, 0.05])  # the panel covers the right of the page
-        self._look(size * np.array([1.1, -0.95, 0.35]), points.mean(axis=0) + beside)
+        self._look(size * np.array(_EYES[robot.robot.plane]), points.mean(axis=0) + beside)
 
 
 def pose_words(pose: PoseLike) -> str:

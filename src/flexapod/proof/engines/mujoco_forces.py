@@ -11,7 +11,7 @@ from flexapod.errors import ComputationError
 from flexapod.model import Robot
 from flexapod.proof.engines.engine import MUJOCO
 from flexapod.proof.engines.mujoco_model import mjcf
-from flexapod.rigid import Poses
+from flexapod.rigid import COORDINATES, DRIVEN, Poses, rigid_limbs
 from flexapod.typing import Array
 
 if TYPE_CHECKING:
@@ -21,7 +21,9 @@ if TYPE_CHECKING:
 __all__ = ["MujocoForces", "inverse_dynamics"]
 
 CLOSED = 1e-13  # m; a few units in the last place of a metre
+GIVEN = 1e-10  # m; gap that poses of a guided platform may leave, which are themselves computed
 MOST_ITERATIONS = 30
+BETA, LENGTH = COORDINATES.index("beta"), COORDINATES.index("l")
 
 
 @dataclass(frozen=True, kw_only=True)
@@ -30,11 +32,11 @@ class MujocoForces:
 
     Attributes
     ----------
-    leg_length, leg_angle : ndarray, shape (T, 6) and (T, 6, 2)
-        Joint to joint [m]; alpha and beta of the universal joints [rad].
-    actuator_force : ndarray, shape (T, 6)
-        Of the drive on the piston along the leg [N].
-    joint_force : ndarray, shape (T, 6, 3)
+    leg_length, leg_angle : ndarray, shape (T, legs) and (T, legs, 2)
+        Joint to joint [m]; alpha and beta of the base joints [rad].
+    actuator_force : ndarray, shape (T, legs)
+        Of the drive on piston or carriage [N], of a crank [N m]; 0 in a passive leg.
+    joint_force : ndarray, shape (T, legs, 3)
         Of the legs on the platform [N].
     """
 
@@ -47,10 +49,10 @@ class MujocoForces:
 def inverse_dynamics(robot: Robot, path: Poses, wrench: Array | None = None) -> MujocoForces:
     """Drive and joint forces that move the rigid robot along a path, computed by MuJoCo.
 
-    `mj_inverse` gives the force that each coordinate of the open chains needs. Two of the three equations of a leg have
-    no drive (the universal joint), six are those of the payload: eighteen equations for the eighteen joint forces. The
-    third equation of each leg then gives its drive force. The legs' coordinates and rates are found by closing the
-    chains with MuJoCo's own Jacobians; of ours only the payload's motion is used.
+    `mj_inverse` gives the force that each coordinate of the open chains needs. Those without a drive, and those of the
+    payload, are as many equations as legs and payload exert forces and moments on each other; the others then give the
+    drive forces. The legs' coordinates and rates are found by closing the chains with MuJoCo's own Jacobians; of ours
+    only the payload's motion is used.
 
     Parameters
     ----------
@@ -85,59 +87,80 @@ def _mujoco() -> ModuleType:
 
 
 class _Chains:
-    """Open chains in MuJoCo; coordinates alpha, beta, length of legs 1 to 6, then the payload's."""
+    """Open chains in MuJoCo: coordinates of leg after leg, then the payload's six."""
 
     def __init__(self, robot: Robot) -> None:
-        self.robot, self.mujoco = robot, _mujoco()
+        self.robot, self.mujoco, self.limbs = robot, _mujoco(), rigid_limbs(robot)
         self.model: Any = self.mujoco.MjModel.from_xml_string(mjcf(robot))
         self.data: Any = self.mujoco.MjData(self.model)
-        self.pistons = [self.model.body(f"piston_{i}").id for i in range(1, 7)]
-        self.payload = self.model.body("payload").id
-        self.legs = np.column_stack([np.zeros((6, 2)), robot.home_lengths]).ravel()
+        pose = self.limbs.pose_closure
+        ends = [f"{'tip' if posed else 'piston'}_{i}" for i, posed in enumerate(pose, start=1)]
+        self.ends, self.payload = [self.model.body(name).id for name in ends], self.model.body("payload").id
+        #: Rows of a leg's closure among its six, of all legs.
+        self.rows = np.concatenate([6 * i + np.arange(6 if posed else 3) for i, posed in enumerate(pose)])
+        moves, home = self.limbs.unknown, self.limbs.home.copy()
+        home[:, BETA] = 0.0  # it counts from home
+        self.legs, self.place = home[moves], np.full(moves.shape, -1)
+        self.place[moves] = range(moves.sum())
+        self.driven = self.limbs.state[moves] == DRIVEN
+        self.loose = np.append(~self.driven, ~self.limbs.hub_held)
 
     def forces(self, path: Poses, t: int, load: Array) -> tuple[Array, Array, Array, Array]:
-        """Lengths (6,), angles (6, 2), drive forces (6,) and joint forces (6, 3) at pose t."""
+        """Lengths (legs,), angles (legs, 2), drive forces (legs,) and joint forces (legs, 3) at pose t."""
         self._move(path, t)
-        data, G = self.data, self._closures()
+        data, G, count = self.data, self._closures(), len(self.legs)
         self.mujoco.mj_inverse(self.model, data)
         needed = data.qfrc_inverse - self._jacobian(self.payload, self._world(self.robot.payload.tool)).T @ load
-        loose = np.delete(np.arange(24), np.arange(2, 18, 3))  # no drive: universal joints, payload
-        joint = np.linalg.solve(G.T[loose], -needed[loose])
-        drive = needed + G.T @ joint
-        legs = self.legs.reshape(6, 3)
-        return legs[:, 2].copy(), legs[:, :2].copy(), drive[2:18:3], joint.reshape(6, 3)
+        joint = np.linalg.lstsq(G.T[self.loose], -needed[self.loose])[0]
+        force = np.where(self.driven, (needed + G.T @ joint)[:count], 0.0)
+        each, home = np.zeros(6 * len(self.limbs)), self.limbs.home
+        each[self.rows] = joint
+        moving = np.where(self.place < 0, home, self.legs[self.place])
+        moving[:, BETA] += np.where(self.place[:, BETA] < 0, 0.0, home[:, BETA])
+        drive = np.where(self.place < 0, 0.0, force[self.place]).sum(axis=1)
+        return moving[:, LENGTH], moving[:, BETA - 1 : BETA + 1], drive, each.reshape(-1, 6)[:, :3]
 
     def _move(self, path: Poses, t: int) -> None:
         """Set positions, rates and accelerations: the payload's as given, the legs' so that they follow."""
-        data, R = self.data, path.rotation[t]
-        data.qpos[18:21] = path.position[t]
-        self.mujoco.mju_mat2Quat(data.qpos[21:25], np.ascontiguousarray(R).ravel())
+        data, R, n = self.data, path.rotation[t], len(self.legs)
+        data.qpos[n : n + 3] = path.position[t]
+        self.mujoco.mju_mat2Quat(data.qpos[n + 3 :], np.ascontiguousarray(R).ravel())
         self._close(t)
         rates = np.concatenate([path.velocity[t], R.T @ path.omega[t]])  # turns of a free joint: in its own axes
         pushes = np.concatenate([path.acceleration[t], R.T @ path.alpha[t]])
         G = self._closures()
-        data.qvel[18:] = rates
-        data.qvel[:18] = np.linalg.solve(G[:, :18], -G[:, 18:] @ rates)
+        data.qvel[n:] = rates
+        data.qvel[:n] = np.linalg.lstsq(G[:, :n], -G[:, n:] @ rates)[0]
         self.mujoco.mj_fwdVelocity(self.model, data)
         bend = self._closures(rate=True) @ data.qvel
-        data.qacc[18:] = pushes
-        data.qacc[:18] = np.linalg.solve(G[:, :18], -G[:, 18:] @ pushes - bend)
+        data.qacc[n:] = pushes
+        data.qacc[:n] = np.linalg.lstsq(G[:, :n], -G[:, n:] @ pushes - bend)[0]
 
     def _close(self, t: int) -> None:
         """Newton on the legs' coordinates until their tips meet the payload's joints, from the pose before."""
-        gap = np.full(18, np.inf)
+        gap, n = np.full(len(self.rows), np.inf), len(self.legs)
         for _ in range(MOST_ITERATIONS):
-            self.data.qpos[:18] = self.legs
+            self.data.qpos[:n] = self.legs
             self.mujoco.mj_kinematics(self.model, self.data)
             self.mujoco.mj_comPos(self.model, self.data)
-            gap = (self.data.xpos[self.pistons] - self._world(self.robot.platform_joints)).ravel()
-            if np.abs(gap).max() < CLOSED:
+            gap = self._gaps()
+            if not np.isfinite(gap).all():
+                break
+            step = np.linalg.lstsq(self._closures()[:, :n], gap)[0]
+            if np.abs(step).max() < CLOSED and np.abs(gap).max() < GIVEN:
                 return
-            self.legs = self.legs - np.linalg.solve(self._closures()[:, :18], gap)
+            self.legs = self.legs - step
         raise ComputationError(
             f"MuJoCo's chains do not close at pose {t + 1}: a gap of {np.abs(gap).max():.2g} m is left",
             next_step="Give poses nearer to one another.",
         )
+
+    def _gaps(self) -> Array:
+        """Tips less joints of the payload, and half the sine of the turns between their frames, world axes."""
+        places = self.data.xpos[self.ends] - self._world(self.robot.platform_joints)
+        goal = self.data.xmat[self.payload].reshape(3, 3) @ self.limbs.platform_frames
+        turns = np.cross(goal, self.data.xmat[self.ends].reshape(-1, 3, 3), axis=-2).sum(axis=-1) / 2
+        return np.concatenate([places, turns], axis=1).ravel()[self.rows]
 
     def _world(self, points: Array) -> Array:
         """Points of the payload, (..., 3), in world axes."""
@@ -145,17 +168,17 @@ class _Chains:
         return self.data.xpos[self.payload] + points @ turn.T
 
     def _closures(self, *, rate: bool = False) -> Array:
-        """Jacobian (18, 24) of tips less joints of the payload, or its rate."""
+        """Jacobian (rows, coordinates) of the ends of the legs less those of the payload, or its rate."""
         joints = self._world(self.robot.platform_joints)
         rows = [
-            self._jacobian(body, self.data.xpos[body], rate)[:3] - self._jacobian(self.payload, joint, rate)[:3]
-            for body, joint in zip(self.pistons, joints, strict=True)
+            self._jacobian(body, self.data.xpos[body], rate) - self._jacobian(self.payload, joint, rate)
+            for body, joint in zip(self.ends, joints, strict=True)
         ]
-        return np.concatenate(rows)
+        return np.concatenate(rows)[self.rows]
 
     def _jacobian(self, body: int, point: Array, rate: bool = False) -> Array:
-        """Velocity of a point and turn of its body, (6, 24), or its rate."""
-        place, turn = np.zeros((3, 24)), np.zeros((3, 24))
+        """Velocity of a point and turn of its body, (6, coordinates), or its rate."""
+        place, turn = np.zeros((3, self.model.nv)), np.zeros((3, self.model.nv))
         of = self.mujoco.mj_jacDot if rate else self.mujoco.mj_jac
         of(self.model, self.data, place, turn, point, body)
         return np.concatenate([place, turn])
