@@ -6,6 +6,6 @@ from flexapod.elements.rotations import about_x, about_y, about_z
 from flexapod.symbolic.vocabulary import SX
 
 
-def gimbal(qs: SimpleNamespace) -> SX:
-    """Gamma = Rx(gamma1) Ry(gamma2) Rz(gamma3), from the joint's frame in the platform to that in the leg, (T13.9)."""
-    return about_x(qs.gamma1) @ about_y(qs.gamma2) @ about_z(qs.gamma3)
+def gimbal(axes: SX, qs: SimpleNamespace) -> SX:
+    """Axes behind the joint: those before it, turned by gamma1, gamma2, gamma3 one after the other, Eq. (T13.9)."""
+    return axes @ about_x(qs.gamma1) @ about_y(qs.gamma2) @ about_z(qs.gamma3)

@@ -17,7 +17,7 @@ def pose_closure(body: Leg, qs: SimpleNamespace, p: SimpleNamespace, lam: SX, po
     """
     x, R = displaced_pose(pose, step)
     in_platform = matrix33(p.platform_frame)
-    Q = (R @ in_platform).T @ body.tip_axes @ matrix33(p.leg_frame) @ gimbal(qs)
+    Q = (R @ in_platform).T @ body.tip_axes @ gimbal(matrix33(p.leg_frame), qs)
     force, mu = lam[:3], 0.5 * p.L_c * lam[3:]
     gap = vertcat(body.tip - joint_point(p.joint, x, R), 0.5 * p.L_c * _skew(Q))  # (T13.12)
     wrench = joint_wrench(p.joint, R, force)
