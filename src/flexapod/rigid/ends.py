@@ -36,7 +36,7 @@ def platform_frame(number: int, letter: str, axis: Array | None, axes: Array) ->
     x, _, z = axes.T
     if letter == "U":
         y = x if axis is None else axis / np.linalg.norm(axis)
-        across = np.cross(y, z)
+        across = np.asarray(np.cross(y, z), dtype=float)
         size = np.linalg.norm(across)
         if size <= _ALONG:
             raise _parallel(number, y if axis is None else axis, "platform_joint.axis")
