@@ -64,7 +64,7 @@ def test_a_spoilt_value_is_noticed_and_named(data, path):
     """A turned bit in a number was read as another number."""
     save(data, path)
     content = path.read_bytes()
-    for name in ("com_deviation", "actuator_force", "deviation_by_cause"):
+    for name in ("com_deviation", "joint_force", "deviation_by_cause"):
         value = data[name].values.ravel()
         value = value[np.abs(value).argmax()]  # one that occurs nowhere else
         at = content.find(value.tobytes())

@@ -6,8 +6,12 @@ from scipy.spatial.transform import Rotation
 from tests.runs import paper_robot, with_legs
 
 import flexapod as fx
+from flexapod import model
 from flexapod.model import AxisMotion, ForceDrive, Payload, ServoDrive
-from flexapod.study.after.causes import deviation_by_cause, length_errors
+from flexapod.rigid import COORDINATES
+from flexapod.study.after.causes import Errors, L, deviation_by_cause, errors_of
+from flexapod.study.path import RigidPath
+from flexapod.study.simulation import simulated
 
 STILL = AxisMotion(type="roll", amplitude=0.0, duration=1.0)
 SHORT = {"duration": 0.1, "step": 1e-3}
@@ -38,11 +42,13 @@ def test_shares_and_residual_add_up_to_the_deviation(fidelity, drive):
     np.testing.assert_allclose(whole, data.com_deviation, rtol=0, atol=4 * np.finfo(float).eps)  # metres round at 1e-16
 
 
-def test_length_errors_split_the_length_without_remainder():
-    rng = np.random.default_rng(1)
-    length, command, stroke, stretch = 0.9 + 1e-3 * rng.standard_normal((4, 5, 6))
-    errors = length_errors(length, command, stroke, stretch)
-    np.testing.assert_allclose(errors.total, length - command, atol=4 * np.finfo(float).eps)
+def test_errors_split_the_length_without_remainder():
+    found = simulated(model.override(rolling(drive=SERVO), **SHORT))
+    path, values = found.path.at(found.record.time), found.values()
+    errors = errors_of(found.study.robot, found.march.system, path, found.record)
+    whole = values["leg_length"] - values["leg_length_command"]
+    np.testing.assert_allclose(errors.total[..., L], whole, rtol=0, atol=4 * np.finfo(float).eps)
+    assert not np.delete(errors.total, L, axis=-1).any()
 
 
 def test_the_residual_is_of_second_order():
@@ -70,8 +76,10 @@ def test_shares_against_a_pose_moved_by_hand():
     position = path.point(com)[0][0] + shift - R @ com
     before, after = (fx.rigid.leg_lengths(robot.base_joints, robot.platform_joints, x, A)
                      for x, A in ((path.position[0], path.rotation[0]), (position, R)))  # fmt: skip
-    errors = length_errors(after[None], before[None], before[None], np.zeros((1, 6)))
-    shares = deviation_by_cause(robot, path, errors)
+    bent = np.zeros((1, 6, len(COORDINATES)))
+    bent[..., L] = after - before
+    errors = Errors(axial=0 * bent, bending=bent, drive=0 * bent)
+    shares = deviation_by_cause(robot, RigidPath(study, np.array([0.7])), errors)
     np.testing.assert_allclose(shares.sum(axis=(1, 2))[0], shift, atol=1e-13)  # lengths round at 1e-16, J^-1 at 100
     assert not shares[:, [0, 2]].any()
 

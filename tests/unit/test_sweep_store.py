@@ -127,7 +127,7 @@ def test_a_number_that_is_none_is_a_failure(monkeypatch):
 
 
 def test_a_fault_is_the_failure_of_a_point(monkeypatch):
-    def fault(study):
+    def fault(*_):
         raise ZeroDivisionError("by zero")
 
     monkeypatch.setattr(batch, "check_path", fault)

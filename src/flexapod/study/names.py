@@ -16,9 +16,11 @@ if TYPE_CHECKING:
 
 __all__ = [
     "ACTUATOR_FORMS",
+    "ANGLES",
     "CAUSES",
     "CAUSE_WORDS",
     "COORDINATES",
+    "DRIVES",
     "ONE_POSE_FORMS",
     "VARIABLES",
     "Variable",
@@ -43,13 +45,17 @@ class Variable(NamedTuple):
     long_name: str
 
 
+#: Labels of all angles that a leg may have: of a crank, at the base, about the leg, at the platform.
+ANGLES = ("carriage", "alpha", "beta", "spin", "gamma1", "gamma2", "gamma3")
+
 #: Labels of dimensions that have fixed ones, with what they stand for.
 COORDINATES: dict[str, tuple[object, str]] = {
     "axis": (list("xyz"), "world axis"),
     "direction": (list("ab"), "lateral direction of the leg"),
     "quaternion": (list("wxyz"), "component of the quaternion"),
     "cause": (list(CAUSES), "cause of a leg's length error"),
-    "joint_angle": (["alpha", "beta"], "angle of the universal joint"),
+    "end": (["base", "platform"], "end of the leg"),
+    "joint_angle": (["alpha", "beta"], "angle of a joint"),
     "component": (["x", "y", "z", "rx", "ry", "rz"], "translation along and rotation about the world axes"),
     "wrench": (["Fx", "Fy", "Fz", "Mx", "My", "Mz"], "force and moment, world axes"),
     "plane_axis": (list("XY"), "axis in the plane of motion"),
@@ -85,11 +91,24 @@ _COMMAND = {
     "rotation_command_acceleration": Variable(_TA, "rad s-2", "acceleration of commanded roll, pitch, yaw"),
 }
 
+#: Of the drives, for strokes and sliders; a crank has rad and N m.
+DRIVES = {
+    "drive_position": Variable(_TL, "m", "place of the drive: stroke, or way of the carriage; of a passive leg too"),
+    "drive_command": Variable(_TL, "m", "place of the drive on the rigid path"),
+    "drive_force": Variable(_TL, "N", "force of the drive on what it moves"),
+    "drive_force_rigid": Variable(_TL, "N", "force of the drive on what it moves, rigid robot"),
+}
+
 _LEGS = {
+    **DRIVES,
+    "held_force": Variable(("time", "leg", "coordinate"), "mixed", "force [N] or moment [N m] on what a joint holds"),
+    "joint_moment": Variable(
+        ("time", "leg", "end", "axis"), "N m", "moment of the base on the leg, of the leg on the platform, world axes"
+    ),
     "leg_length_command": Variable(_TL, "m", "joint-to-joint length of the rigid leg"),
     "leg_length": Variable(_TL, "m", "joint-to-joint length of the flexible leg"),
     "leg_stroke": Variable(_TL, "m", "reference length: driven end of the piston plus its unstrained length"),
-    "leg_angle": Variable(("time", "leg", "joint_angle"), "rad", "angles of the universal joint, zero at home"),
+    "leg_angle": Variable(("time", "leg", "joint_angle"), "rad", "angles of the joints, zero at home but for hinges"),
     "actuator_force_rigid": Variable(_TL, "N", "force of the drive on the piston, rigid robot (Newton-Euler)"),
     "actuator_force": Variable(_TL, "N", "force of the drive on the piston, positive pushes out"),
     "tip_deflection": Variable(("time", "leg", "direction"), "m", "tip of the piston from the cylinder's axis"),
@@ -236,5 +255,7 @@ _COORDINATE_ATTRS = {
     "mode": {"long_name": "mode"},
     "shape": {"long_name": "lateral shape"},
     "axial_shape": {"long_name": "axial shape"},
-    "station": {"units": "1", "long_name": "position along the leg: 0 universal joint, 1 tip"},
+    "station": {"units": "1", "long_name": "position along the leg: 0 base joint, 1 tip"},
+    "joint_angle": {"long_name": "angle of a joint"},
+    "coordinate": {"long_name": "coordinate of a leg"},
 }

@@ -8,6 +8,7 @@ from typing import TYPE_CHECKING
 from flexapod import model
 from flexapod.solve.robot_march import RobotMarch, prepare
 from flexapod.study.actuator import simulate_actuator
+from flexapod.study.after.leg_results import drive_forms
 from flexapod.study.after.plausibility import robot_warnings
 from flexapod.study.after.results import rigid_force_results, robot_coords, robot_results
 from flexapod.study.arguments import LoadLike, RobotLike, StartLike, as_study, read
@@ -52,7 +53,8 @@ class Simulated:
             **march_attributes(self.study, march.counters, self.record, compiled=system.kernel.library is not None),
             "impact_energy": march.impact,
         }
-        return dataset(self.values(), robot_coords(system, self.record), attrs)
+        robot = self.study.robot
+        return dataset(self.values(), robot_coords(robot, system, self.record), attrs, drive_forms(robot))
 
 
 def simulated(study: model.Study, progress: Progress | None = None) -> Simulated:

@@ -5,18 +5,32 @@ from __future__ import annotations
 from dataclasses import dataclass
 
 import numpy as np
+from numpy.typing import NDArray
 
 from flexapod import rigid
 from flexapod.errors import ComputationError
 from flexapod.model import Robot
+from flexapod.rigid.closures import Task, close
+from flexapod.rigid.limbs import COORDINATES, DRIVEN, FREE, HELD, Limbs
+from flexapod.rigid.rotations import matrix
+from flexapod.solve.system import System
+from flexapod.study.after.legs import centre, stretch
+from flexapod.study.path import RigidPath
+from flexapod.study.record import Record
 from flexapod.typing import Array
 
-__all__ = ["LengthErrors", "deviation_by_cause", "length_errors"]
+__all__ = ["Errors", "deviation_by_cause", "errors_of"]
+
+CHI, L = COORDINATES.index("chi"), COORDINATES.index("l")
 
 
 @dataclass(frozen=True, kw_only=True)
-class LengthErrors:
-    """Length errors of the legs by cause, each (T, legs) [m]; they add up to ``length - command`` exactly."""
+class Errors:
+    """Errors of the coordinates that drives and joints hold, by cause, each (T, legs, 8) [m, rad]: `COORDINATES`.
+
+    Of a leg UPS that is its length. They add up to what straight legs would need to reach the flexible platform, less
+    what they have on the rigid path, exactly.
+    """
 
     axial: Array
     bending: Array
@@ -24,43 +38,57 @@ class LengthErrors:
 
     @property
     def total(self) -> Array:
-        """Joint-to-joint length minus commanded length, (T, legs) [m], Eq. (T8.5)."""
+        """Their sum, Eq. (T8.5)."""
         return self.axial + self.bending + self.drive
 
     @property
     def stacked(self) -> Array:
-        """The causes in the order of `names.CAUSES`, (T, 3, legs) [m]."""
+        """The causes in the order of `names.CAUSES`, (T, 3, legs, 8)."""
         return np.stack([self.axial, self.bending, self.drive], axis=1)
 
 
-def length_errors(length: Array, command: Array, stroke: Array, stretch: Array) -> LengthErrors:
-    """Length errors of the legs by cause, Eqs. (T8.2)-(T8.4).
-
-    Parameters
-    ----------
-    length, command : ndarray, shape (T, legs)
-        Joint-to-joint lengths of the flexible and of the rigid robot [m].
-    stroke : ndarray, shape (T, legs)
-        Reference length l [m].
-    stretch : ndarray, shape (T, legs)
-        Amplitude of the static axial shape c_0 [m]: stretch of the piston at its tip.
-    """
-    return LengthErrors(
-        axial=stretch,  # (T8.2)
-        bending=length - (stroke + stretch),  # (T8.3)
-        drive=stroke - command,  # (T8.4)
-    )
+def errors_of(robot: Robot, system: System, path: RigidPath, record: Record) -> Errors:
+    """Errors by cause along a recorded path, Eqs. (T8.2)-(T8.4)."""
+    found, shapes = rigid.rigid_limbs(robot), system.kernel.shapes
+    q = np.zeros((*record.q.shape[:2], len(COORDINATES)))
+    for k, name in enumerate(COORDINATES):
+        if shapes.has(name):
+            q[..., k] = record.q[..., shapes.index(name)]
+    command = np.stack([path.legs.coordinate(name)[0] for name in COORDINATES], axis=-1)
+    needed = _straight(robot, found, record, q)
+    counts, own, axial = np.isin(found.state, (HELD, DRIVEN)), command.copy(), np.zeros_like(q)
+    own[..., (CHI, L)] = q[..., (CHI, L)]
+    axial[..., L] = stretch(shapes, record.q)  # (T8.2)
+    bending, drive = needed - (own + axial), own - command  # (T8.3)-(T8.4)
+    return Errors(**{name: np.where(counts, part, 0.0) for name, part in
+                     (("axial", axial), ("bending", bending), ("drive", drive))})  # fmt: skip
 
 
-def deviation_by_cause(robot: Robot, path: rigid.Poses, errors: LengthErrors) -> Array:
+def _straight(robot: Robot, found: Limbs, record: Record, q: Array) -> Array:
+    """Coordinates of straight legs that reach the flexible platform, the carriages where they are, (T, legs, 8)."""
+    R = matrix(record.pose[:, 3:])
+    at = rigid.Poses.at_rest(record.pose[:, :3] - R @ centre(robot), R)
+    if found.plain:
+        q = q.copy()
+        q[..., L] = rigid.leg_lengths(robot.base_joints, robot.platform_joints, at.position, R)
+        return q
+    needed = close(found, Task(_closing(found), np.zeros(6, dtype=bool), np.zeros(3)), q, at).q
+    needed[..., CHI] = q[..., CHI]
+    return needed
+
+
+def _closing(found: Limbs) -> NDArray[np.bool_]:
+    """The coordinates that a closure determines, (legs, 8), whether or not something holds them."""
+    taken = np.zeros(found.state.shape, dtype=bool)
+    taken[:, [COORDINATES.index(name) for name in ("alpha", "beta", "l")]] = True
+    taken[found.pose_closure, COORDINATES.index("gamma1") :] = True
+    spins = found.pose_closure & (found.state[:, COORDINATES.index("spin")] == FREE)
+    taken[spins, COORDINATES.index("spin")], taken[spins, COORDINATES.index("gamma3")] = True, False
+    return taken
+
+
+def deviation_by_cause(robot: Robot, path: RigidPath, errors: Errors) -> Array:
     """Displacement of the payload's centre of mass by cause and leg, to first order, Eqs. (T8.6)-(T8.7).
-
-    Parameters
-    ----------
-    robot : Robot
-    path : Poses
-        The rigid path at T instants.
-    errors : LengthErrors
 
     Returns
     -------
@@ -72,13 +100,21 @@ def deviation_by_cause(robot: Robot, path: rigid.Poses, errors: LengthErrors) ->
     ComputationError
         If a pose is exactly singular.
     """
-    jacobian = rigid.length_jacobian(
-        robot.base_joints, robot.platform_joints, path.position, path.rotation, robot.payload.com
-    )
+    return np.einsum("tclk,tlkx->tclx", errors.stacked, _by_error(robot, path))  # (T8.7)
+
+
+def _by_error(robot: Robot, path: RigidPath) -> Array:
+    """Displacement of the centre of mass for unit errors of what is held, (T, legs, 8, 3), Eq. (T8.6)."""
+    found, poses = rigid.rigid_limbs(robot), path.poses
+    moves = np.zeros((len(poses), *found.state.shape, 3))
+    if found.hub_held.all():
+        return moves
+    jacobian = rigid.drive_jacobian(robot, poses, robot.payload.com)
     try:
-        inverse = np.linalg.solve(jacobian.swapaxes(1, 2), np.eye(6, 3))  # (T8.6), (T, 6, 3): leg, axis
+        inverse = np.linalg.solve(jacobian.swapaxes(1, 2), np.eye(6, 3))
     except np.linalg.LinAlgError:
         raise ComputationError(
             "a pose on the path is singular: lengths do not determine it", next_step="See `flexapod check`."
         ) from None
-    return errors.stacked[..., None] * inverse[:, None]  # (T8.7)
+    moves[:, found.state == DRIVEN] = inverse
+    return moves

@@ -8,6 +8,7 @@ from flexapod import model, rigid
 from flexapod.rigid.rotations import matrix, quaternion
 from flexapod.solve.modes import RobotModes
 from flexapod.study.after.kinds import mode_kinds
+from flexapod.study.after.legs import bending_basis, lateral
 from flexapod.typing import Array
 
 __all__ = ["STATIONS", "mode_values"]
@@ -34,16 +35,15 @@ def mode_values(robot: model.Robot, found: RobotModes, path: rigid.Poses) -> dic
 
 def _leg_shapes(robot: model.Robot, found: RobotModes) -> Array:
     """Lateral displacement of every leg off the line of its joints, (m, legs, 2, stations) [m]."""
-    shapes, n = found.system.kernel.shapes, found.system.n
-    first, k = 3 + shapes.axial.count, shapes.a.count
-    m, count = len(found.shapes), len(robot.legs)
-    legs = found.shapes[:, :-6].reshape(m, count, n)[:, :, first:].reshape(m, count, 2, k)
+    shapes, count = found.system.kernel.shapes, len(robot.legs)
+    basis = bending_basis(shapes)
+    legs = lateral(shapes, found.shapes[:, :-6].reshape(len(found.shapes), count, found.system.n))
     result = np.zeros((*legs.shape[:3], len(STATIONS)))
     for i, leg in enumerate(robot.legs):
         length = found.equilibrium.state.q[i, shapes.l_index]
         zeta = np.clip((STATIONS * length - leg.cylinder.mouth) / (length - leg.cylinder.mouth), 0.0, 1.0)
-        values = shapes.a.values(zeta) if k else np.zeros((0, len(STATIONS)))
-        off_chord = values - np.outer(shapes.a.tip, STATIONS)
+        values = basis.values(zeta) if basis.count else np.zeros((0, len(STATIONS)))
+        off_chord = values - np.outer(basis.tip, STATIONS)
         result[:, i] = legs[:, i] @ off_chord
     return result
 

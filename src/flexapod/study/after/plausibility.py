@@ -13,6 +13,7 @@ from flexapod.model.simulation import SOLID
 from flexapod.rigid.rotations import matrix
 from flexapod.solve.many import RestStates
 from flexapod.solve.system import System
+from flexapod.study.after.legs import bending_basis, lateral
 from flexapod.study.before.estimates import buckling_load, section_width
 from flexapod.study.before.thick import Section, beam_section, bending_errors, piston_section
 from flexapod.study.record import Record
@@ -59,19 +60,19 @@ def rest_warnings(robot: Robot, system: System, states: RestStates) -> list[str]
 
 def _leg_warnings(robot: Robot, system: System, record: Record | RestStates, when: _When) -> list[str]:
     axes = _leg_axes(robot, record)
-    compression = np.einsum("tli,tli->tl", record.lam, axes)
-    found = []
+    compression = np.einsum("tli,tli->tl", record.lam[..., :3], axes)
+    shapes, basis, found = system.kernel.shapes, bending_basis(system.kernel.shapes), []
     for i, leg in enumerate(robot.legs):
-        free = record.q[:, i, system.kernel.shapes.l_index] - leg.cylinder.mouth
-        lateral = record.q[:, i, 3 + system.kernel.shapes.axial.count :].reshape(len(free), 2, -1)
+        length = record.q[:, i, shapes.l_index]
+        free, bent = length - leg.cylinder.mouth, lateral(shapes, record.q[:, i])
         found += [
             (i, *remark)
             for remark in (
-                *_slope(system.kernel.shapes.a, lateral, free, when),
-                *_stroke(leg, record.q[:, i, system.kernel.shapes.l_index], when),
+                *_slope(basis, bent, free, when),
+                *_stroke(leg, length, when),
                 *_axial(leg, free, compression[:, i], when),
-                *_slender(leg, system.kernel.shapes.a, free, when),
-                *_stress(leg, system.kernel.shapes.a, lateral, free, compression[:, i], when),
+                *_slender(leg, basis, free, when),
+                *_stress(leg, basis, bent, free, compression[:, i], when),
             )
         ]
     return _worst_of_each(found)

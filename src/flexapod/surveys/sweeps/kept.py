@@ -10,6 +10,7 @@ import numpy as np
 
 from flexapod.errors import InputError, closest
 from flexapod.model import ActuatorStudy, Study
+from flexapod.study.after.leg_results import absent, leg_labels
 from flexapod.study.names import ACTUATOR_FORMS, VARIABLES, Variable
 from flexapod.surveys.sweeps.plan import Keep
 from flexapod.surveys.sweeps.points import Resolved
@@ -21,7 +22,7 @@ if TYPE_CHECKING:
 
 __all__ = ["ACTUATOR_SCALARS", "Kept", "kept"]
 
-_LABELS = {"axis": 3, "cause": 3, "direction": 2, "quaternion": 4, "joint_angle": 2, "plane_axis": 2}
+_LABELS = {"axis": 3, "cause": 3, "direction": 2, "quaternion": 4, "plane_axis": 2, "end": 2}
 _SHAPES = ("shape", "axial_shape", "mode")  # dimensions whose size is a setting of the study
 
 
@@ -82,7 +83,7 @@ def kept(keep: Keep, study: Study | ActuatorStudy, resolved: Resolved) -> Kept:
     variables = {name: Variable(*table[name][:3]) for name in names} | {name: whole[name] for name in keep.records}
     sizes, every, times = dict(_LABELS), 1, np.zeros(0)
     if isinstance(study, Study):
-        sizes["leg"] = len(study.robot.legs)
+        sizes |= {"leg": study.robot.count, **{dim: np.size(labels) for dim, labels in leg_labels(study.robot).items()}}
     if keep.records:
         every, times = _instants(keep, resolved)
         sizes |= {"time": len(times), **_shape_sizes(resolved, variables)}
@@ -104,8 +105,14 @@ def _records(study: Study | ActuatorStudy) -> dict[str, Variable]:
     shared = ("energy_kinetic", "energy_dissipated", "work_drive", "work_external", "closure_residual")
     if isinstance(study, ActuatorStudy):
         return {name: over_time[name] for name in (*actuator, *shared)} | ACTUATOR_FORMS
-    of_rigid = ("base_force_rigid", "base_moment_rigid", "leg_length_rate", "leg_length_acceleration")
-    others = (*actuator, *of_rigid, "leg_angle_rigid", "platform_position")
+    of_rigid = (
+        "drive_force_rigid",
+        "base_force_rigid",
+        "base_moment_rigid",
+        "leg_length_rate",
+        "leg_length_acceleration",
+    )
+    others = {*actuator, *of_rigid, "leg_angle_rigid", "platform_position", *absent(study.robot)}
     return {name: entry for name, entry in over_time.items() if name not in others}
 
 

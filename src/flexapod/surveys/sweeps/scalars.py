@@ -16,6 +16,7 @@ from flexapod.rigid.rotations import difference, matrix, quaternion
 from flexapod.solve.modes import robot_modes
 from flexapod.solve.recording import Counters
 from flexapod.solve.system import System
+from flexapod.study.after.legs import bending_basis, lateral
 from flexapod.study.after.plausibility import leg_stress
 from flexapod.study.after.results import robot_results
 from flexapod.study.path import RigidPath
@@ -83,24 +84,23 @@ class RobotRun:
     @cached_property
     def lateral(self) -> Array:
         """Lateral amplitudes, (T, legs, 2, k) [m]."""
-        q = self.record.q[:, :, 3 + self.system.kernel.shapes.axial.count :]
-        return q.reshape(*q.shape[:2], 2, self.system.kernel.shapes.a.count)
+        return lateral(self.system.kernel.shapes, self.record.q)
 
     @cached_property
     def tip_deflection(self) -> Array:
         """Distance of the pistons' tips from the cylinders' axes, (T, legs) [m]."""
-        return np.linalg.norm(self.lateral @ self.system.kernel.shapes.a.tip, axis=-1)
+        return np.linalg.norm(self.lateral @ bending_basis(self.system.kernel.shapes).tip, axis=-1)
 
     @cached_property
     def stress(self) -> Array:
         """Largest stress in every piston over time, (legs,) [Pa]; NaN of a piston without section and material."""
         joints = self.study.robot.platform_joints - self.study.robot.payload.com
         legs = self.record.pose[:, None, :3] + joints @ self.turn.transpose(0, 2, 1) - self.study.robot.base_joints
-        compression = np.einsum("tli,tli->tl", self.record.lam, legs) / np.linalg.norm(legs, axis=-1)
+        compression = np.einsum("tli,tli->tl", self.record.lam[..., :3], legs) / np.linalg.norm(legs, axis=-1)
         found, shapes = np.full(legs.shape[1], np.nan), self.system.kernel.shapes
         for i, leg in enumerate(self.study.robot.legs):
             free = self.record.q[:, i, shapes.l_index] - leg.cylinder.mouth
-            stress = leg_stress(leg, shapes.a, self.lateral[:, i], free, compression[:, i])
+            stress = leg_stress(leg, bending_basis(shapes), self.lateral[:, i], free, compression[:, i])
             found[i] = np.nan if stress is None else stress.max()
         return found
 

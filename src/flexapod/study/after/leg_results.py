@@ -1,0 +1,157 @@
+"""Results of the legs by name: lengths, angles, deflections, forces and moments, whatever their kind."""
+
+from __future__ import annotations
+
+import numpy as np
+from numpy.typing import ArrayLike
+
+from flexapod.mechanics.layout import columns, leg_parameters
+from flexapod.model import Robot
+from flexapod.rigid.limbs import COORDINATES, DRIVEN, HELD, Limbs, limbs
+from flexapod.rigid.rotations import exponential, matrix
+from flexapod.solve.system import System
+from flexapod.study.after import legs as by_name
+from flexapod.study.names import DRIVES, Variable
+from flexapod.study.path import RigidPath
+from flexapod.study.record import Record
+from flexapod.typing import Array
+
+__all__ = ["STROKES", "absent", "drive_forms", "flexible_lengths", "leg_labels", "leg_results"]
+
+STROKES = ("leg_length_command", "leg_length", "leg_stroke", "actuator_force")
+"""Variables of robots whose legs have strokes."""
+_BASE_ANGLES = ("alpha", "beta", "spin")
+
+
+def leg_results(robot: Robot, system: System, path: RigidPath, record: Record) -> dict[str, Array]:
+    """Lengths, angles, deflections and forces of the legs."""
+    shapes, q, found = system.kernel.shapes, record.q, limbs(robot)
+    bent, forces = by_name.lateral(shapes, q), _port_forces(system, record)
+    zero = found.carriage_zero * [name == "chi" for name in by_name.drive_names(found)]
+    results = {
+        "leg_angle": np.stack([q[..., shapes.index(name)] for name in by_name.angle_names(found).values()], axis=-1),
+        "drive_position": by_name.of_drives(found, shapes, q) + zero,
+        "drive_command": _commands(found, path) + zero,
+        "drive_force": by_name.of_drives(found, shapes, forces),
+        "tip_deflection": bent @ by_name.bending_basis(shapes).tip,
+        "joint_force": record.lam[..., :3],
+    }
+    if by_name.has_strokes(robot):
+        pushed = found.state[:, COORDINATES.index("l")] == DRIVEN
+        length, force = flexible_lengths(robot, system, record), np.where(pushed, results["drive_force"], 0.0)
+        results |= zip(STROKES, (path.legs.length, length, q[..., shapes.l_index], force), strict=True)
+    if held := by_name.held_names(found):
+        results["held_force"] = _held_forces(found, system, forces, held)
+    if _bears_moments(found):
+        results["joint_moment"] = _joint_moments(found, system, record, forces)
+    if bent.shape[-1]:
+        results["lateral_amplitude"] = bent
+    if shapes.axial.count:
+        results["axial_amplitude"] = q[..., shapes.index("c") :][..., : shapes.axial.count]
+    return results
+
+
+def _port_forces(system: System, record: Record) -> Array:
+    """Forces of what holds, drives or pushes coordinates, (T, legs, n) [N, N m]; 0 on the others."""
+    forces = np.zeros(record.q.shape)
+    forces[..., system.ports] = record.drive
+    return forces
+
+
+def _commands(found: Limbs, path: RigidPath) -> Array:
+    """Places of the drives on the rigid path, (T, legs)."""
+    of = {name: path.legs.coordinate(name)[0] for name in {*by_name.drive_names(found)}}
+    return np.stack([of[name][:, i] for i, name in enumerate(by_name.drive_names(found))], axis=1)
+
+
+def _held_forces(found: Limbs, system: System, forces: Array, held: list[str]) -> Array:
+    at = [system.kernel.shapes.index(name) for name in held]
+    whose = found.state[:, [COORDINATES.index(name) for name in held]] == HELD
+    return np.where(whose, forces[..., at], 0.0)
+
+
+def leg_labels(robot: Robot) -> dict[str, ArrayLike]:
+    """Labels of the dimensions whose size depends on the kinds of legs."""
+    found = limbs(robot)
+    labels: dict[str, ArrayLike] = {"joint_angle": list(by_name.angle_names(found))}
+    held = by_name.held_names(found)
+    return {**labels, "coordinate": held} if held else labels
+
+
+def absent(robot: Robot) -> set[str]:
+    """Variables of the legs that a simulation of this robot does not have."""
+    found = limbs(robot)
+    none = set() if by_name.has_strokes(robot) else {*STROKES, "actuator_force_rigid"}
+    none |= set() if by_name.held_names(found) else {"held_force"}
+    return none if _bears_moments(found) else {*none, "joint_moment"}
+
+
+def drive_forms(robot: Robot) -> dict[str, Variable]:
+    """Variables of drives in the units that they have: a crank has rad and N m."""
+    found = limbs(robot)
+    turns = {name == "chi" and found.carriage == "crank" for name in by_name.drive_names(found)}
+    if True not in turns:
+        return {}
+    units = {"m": "rad", "N": "N m"} if len(turns) == 1 else {"m": "mixed", "N": "mixed"}
+    return {name: form._replace(units=units[form.units]) for name, form in DRIVES.items()}
+
+
+def flexible_lengths(robot: Robot, system: System, record: Record) -> Array:
+    """Joint-to-joint lengths of the flexible robot, (T, legs) [m], Eq. (T8.1)."""
+    R, com = matrix(record.pose[:, 3:]), by_name.centre(robot)
+    tips = record.pose[:, None, :3] + (robot.platform_joints - com) @ R.swapaxes(1, 2)
+    return np.linalg.norm(tips - by_name.base_points(limbs(robot), _carriages(system, record.q)), axis=-1)
+
+
+def _carriages(system: System, q: Array) -> Array | None:
+    shapes = system.kernel.shapes
+    return q[..., shapes.index("chi")] if shapes.carriage else None
+
+
+def _bears_moments(found: Limbs) -> bool:
+    angles = [k for k, name in enumerate(COORDINATES) if name in _BASE_ANGLES]
+    return bool(found.pose_closure.any() or (found.state[:, angles] == HELD).any())
+
+
+def _joint_moments(found: Limbs, system: System, record: Record, forces: Array) -> Array:
+    """Moments of the base on the legs and of the legs on the platform, world axes, (T, legs, 2, 3) [N m].
+
+    About the leg's own axis that of the base counts only where the leg has a turn about it as a coordinate.
+    """
+    base = _base_moments(found, system, record.q, forces)
+    if system.rows < 6:
+        return np.stack([base, np.zeros_like(base)], axis=2)
+    turn = matrix(record.pose[:, 3:])[:, None] @ found.platform_frames
+    return np.stack([base, found.L_c * (turn @ record.lam[..., 3:, None])[..., 0]], axis=2)  # (T13.16)
+
+
+def _base_moments(found: Limbs, system: System, q: Array, forces: Array) -> Array:
+    shapes = system.kernel.shapes
+    turn, axes = _turned_by_cranks(found, system, q), []
+    about = np.zeros((*q.shape[:2], 3))
+    for k, (name, unit) in enumerate(zip(_BASE_ANGLES, np.eye(3), strict=True)):
+        axes.append((turn @ unit[:, None])[..., 0])
+        if not shapes.has(name):
+            continue
+        angle = q[..., shapes.index(name)]
+        about[..., k] = np.where(system.held[:, shapes.index(name)], forces[..., shapes.index(name)], 0.0)
+        about[..., k] -= _springs(system, k, angle)
+        turn = turn @ exponential(angle[..., None] * unit)
+    return np.asarray(np.linalg.solve(np.stack(axes, axis=-2), about[..., None])[..., 0], dtype=np.float64)
+
+
+def _turned_by_cranks(found: Limbs, system: System, q: Array) -> Array:
+    """Frames of the base joints, (T, legs, 3, 3)."""
+    frames = np.broadcast_to(found.frames, (*q.shape[:2], 3, 3))
+    if found.carriage != "crank":
+        return frames
+    return exponential(q[..., system.kernel.shapes.index("chi"), None] * found.carriage_axis) @ frames
+
+
+def _springs(system: System, k: int, angle: Array) -> Array:
+    """Moment with which the spring of a base joint's angle resists, (T, legs)."""
+    if system.kernel.shapes.closure != "pose":
+        return np.zeros_like(angle)
+    layout = leg_parameters(system.kernel.shapes)
+    stiffness, home = (system.leg_p[:, columns(layout, name)][:, k] for name in ("base_stiffness", "base_home"))
+    return stiffness * (angle - home)

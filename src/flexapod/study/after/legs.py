@@ -1,0 +1,100 @@
+"""Coordinates and joints of the legs by name, out of what is known of a robot of any kind."""
+
+from __future__ import annotations
+
+import numpy as np
+
+from flexapod.bases import LateralBasis
+from flexapod.mechanics.layout import Shapes
+from flexapod.model import Robot
+from flexapod.rigid.limbs import ABSENT, COORDINATES, DRIVEN, HELD, Limbs
+from flexapod.rigid.rotations import exponential
+from flexapod.study.names import ANGLES
+from flexapod.typing import Array
+
+__all__ = [
+    "angle_names",
+    "base_points",
+    "bending_basis",
+    "centre",
+    "drive_names",
+    "has_strokes",
+    "held_names",
+    "lateral",
+    "of_drives",
+    "points",
+    "stretch",
+]
+
+
+def bending_basis(shapes: Shapes) -> LateralBasis:
+    """Shapes in which the legs bend; a planar robot's legs bend across one of their axes only."""
+    return shapes.a if shapes.a.count else shapes.b
+
+
+def lateral(shapes: Shapes, q: Array) -> Array:
+    """Lateral amplitudes (..., 2, k) [m] out of coordinates (..., n); zero across an axis about which none bends."""
+    k = bending_basis(shapes).count
+    found = np.zeros((*q.shape[:-1], 2, k))
+    for direction, (name, basis) in enumerate((("a", shapes.a), ("b", shapes.b))):
+        if basis.count:
+            at = shapes.index(name)
+            found[..., direction, :] = q[..., at : at + k]
+    return found
+
+
+def stretch(shapes: Shapes, q: Array) -> Array:
+    """Stretch of the pistons at their tips (...,) [m]: the amplitude of the static axial shape."""
+    return q[..., shapes.index("c")] if shapes.axial.count else np.zeros(q.shape[:-1])
+
+
+def angle_names(limbs: Limbs) -> dict[str, str]:
+    """Angles that legs have, by their label in results: crank, base joint, leg, platform joint."""
+    there = dict(zip(COORDINATES, (limbs.state != ABSENT).any(axis=0), strict=True))
+    there |= {"carriage": limbs.carriage == "crank"}
+    return {label: "chi" if label == "carriage" else label for label in ANGLES if there[label]}
+
+
+def drive_names(limbs: Limbs) -> list[str]:
+    """What is driven in each leg, "l" or "chi"; of a passive leg its length, or its carriage if it has one."""
+    of_passive = np.where(limbs.state[:, COORDINATES.index("chi")] == ABSENT, "l", "chi")
+    driven = limbs.state == DRIVEN
+    return [
+        COORDINATES[int(row.argmax())] if row.any() else str(own) for row, own in zip(driven, of_passive, strict=True)
+    ]
+
+
+def of_drives(limbs: Limbs, shapes: Shapes, values: Array) -> Array:
+    """Of each leg the value that belongs to its drive, (..., legs), out of all (..., legs, n)."""
+    at = [shapes.index(name) for name in drive_names(limbs)]
+    return values[..., np.arange(len(at)), at]
+
+
+def held_names(limbs: Limbs) -> list[str]:
+    """Coordinates that joints or struts hold in any leg."""
+    return [name for name, held in zip(COORDINATES, (limbs.state == HELD).any(axis=0), strict=True) if held]
+
+
+def has_strokes(robot: Robot) -> bool:
+    """Whether any leg of a robot has a stroke."""
+    return any(leg.strut is None for leg in robot.legs)
+
+
+def base_points(limbs: Limbs, chi: Array | None) -> Array:
+    """Base joints (..., n, 3) [m], world axes, where the carriages are at `chi` (..., n) from home."""
+    if not limbs.carriage or chi is None:
+        return limbs.base
+    way = chi[..., None] * limbs.carriage_axis
+    if limbs.carriage == "slider":
+        return limbs.base + way
+    return limbs.base + (exponential(way) @ limbs.carriage_arm[..., None])[..., 0] - limbs.carriage_arm
+
+
+def points(robot: Robot) -> tuple[Array, Array]:
+    """Centre of mass and tool in platform axes, (3,) each [m]; without a payload both are the platform's origin."""
+    return centre(robot), np.zeros(3) if robot.payload is None else robot.payload.tool
+
+
+def centre(robot: Robot) -> Array:
+    """Centre of mass of the payload in platform axes, (3,) [m]; the platform frame's origin where there is none."""
+    return np.zeros(3) if robot.payload is None else robot.payload.com
