@@ -29,7 +29,7 @@ def frame(x, z):
 @cache
 def functions(modes, axial):
     lateral = lateral_basis("tip-load", modes) if modes else lateral_basis("clamped-free", 0)
-    return kernel(lateral, axial)
+    return kernel(space_shapes(lateral, axial))
 
 
 def robot(base, joints, axes, *, height=0.9, modes=2, axial=1, gravity=9.81, com=(0.0, 0.0, 0.1), mass=20.0, legs=None):

@@ -11,7 +11,6 @@ from flexapod.model import Actuator, ActuatorMotion, ActuatorStudy, Damping, Sim
 from flexapod.model.fields import read_fields
 from flexapod.report.study_words import _damping
 from flexapod.solve.actuator_modes import actuator_modes
-from flexapod.solve.parameters import leg_parameters
 from flexapod.solve.robot_march import prepare
 from flexapod.surveys.sweeps.keys import parse_key, put, value_at
 
@@ -44,7 +43,7 @@ def test_matrices_of_a_leg_in_stretch_and_bending():
     """D = time K without gravity and force, in every elastic coordinate: K of another function than D."""
     study = with_legs(paper_robot(), lambda leg: leg.replace(damping=Damping(stiffness=1e-4)))
     system = prepare(override(study, duration=1e-3, step=1e-3)).system
-    p = leg_parameters(study.robot)[0].copy()
+    p = system.leg_p[0].copy()
     p[columns(LEG_PARAMETERS, "gravity")] = 0.0
     q = np.zeros(system.n)
     q[2] = 0.9

@@ -94,7 +94,8 @@ def test_momentum_of_a_payload_pulled_by_free_legs():
     )
     study = override(study, fidelity="lumped", step=5e-4, duration=0.05)
     path = rigid.poses(study.robot, study.motion, np.array([0.5]))
-    from flexapod.solve.system import rigid_state, robot_system
+    from flexapod.solve.rigid_motion import rigid_state
+    from flexapod.solve.robot_system import robot_system
 
     state = rigid_state(robot_system(study.robot, study.simulation), study.robot, path)
     run = run_robot(study, replace(state, v_dot=np.zeros_like(state.v_dot)))

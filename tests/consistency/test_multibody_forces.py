@@ -6,7 +6,8 @@ from tests.runs import paper_robot, run_robot
 
 from flexapod import rigid
 from flexapod.model import AxisMotion
-from flexapod.solve.system import rigid_state, robot_system
+from flexapod.solve.rigid_motion import rigid_state
+from flexapod.solve.robot_system import robot_system
 
 
 @pytest.mark.parametrize("kind", ["surge", "sway", "heave", "roll", "pitch", "yaw"])

@@ -7,9 +7,9 @@ import pytest
 
 import flexapod as fx
 from flexapod import rigid
-from flexapod.solve.robot_march import robot_system
+from flexapod.solve.rigid_motion import rigid_state
+from flexapod.solve.robot_system import robot_system
 from flexapod.solve.start import accelerations
-from flexapod.solve.system import rigid_state
 from flexapod.solve.tables import robot_law
 
 

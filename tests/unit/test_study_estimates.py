@@ -13,10 +13,11 @@ import flexapod as fx
 from flexapod import rigid
 from flexapod.bases import lateral_basis
 from flexapod.mechanics.layout import LEG_PARAMETERS, columns
-from flexapod.model import AxisMotion, Feedback, ForceDrive, Payload, ServoDrive
+from flexapod.model import AxisMotion, Feedback, ForceDrive, Payload, ServoDrive, Simulation
 from flexapod.solve.kernel import kernel
 from flexapod.solve.modes import robot_modes
-from flexapod.solve.parameters import leg_parameters
+from flexapod.solve.robot_system import robot_system
+from flexapod.solve.shapes import space_shapes
 from flexapod.study.before.describe.pose import vibration_to_expect
 from flexapod.study.before.estimates import Vibration, bending_moment, buckling_load, residual_vibration, section_width
 
@@ -40,7 +41,7 @@ def test_buckling_load_makes_the_own_stiffness_of_a_leg_singular(mouth):
     # The model's leg, its tip fixed: N^T K N under a thrust that rises until it is singular.
     robot = paper_robot().robot.replace(gravity=[0, 0, 0])
     axis = robot.home_vectors[0] / robot.home_lengths[0]
-    p, leg = leg_parameters(robot)[0], kernel(lateral_basis("tip-load", 6), 2)
+    p, leg = robot_system(robot, Simulation()).leg_p[0].copy(), kernel(space_shapes(lateral_basis("tip-load", 6), 2))
     p[columns(LEG_PARAMETERS, "mouth")] = mouth
     q, l_index = np.zeros(leg.shapes.size), leg.shapes.l_index
     q[l_index] = mouth + 0.6
@@ -75,7 +76,7 @@ def test_bending_moment_is_that_of_stiff_pistons_in_motion():
     study = with_legs(study, lambda leg: leg.replace(
         piston=leg.piston.replace(EI=100 * EI, EA=100 * leg.piston.EA, E=None, density=None)))  # fmt: skip
     data = fx.simulate(study, modes=6, step=5e-4, output_step=5e-3, duration=0.5)
-    basis = kernel(lateral_basis("tip-load", 6), 2).shapes.a
+    basis = lateral_basis("tip-load", 6)
     free = data.leg_stroke.values - LEG.cylinder.mouth
     bend = np.einsum("tldk,ks->tlds", data.lateral_amplitude.values, basis.values(np.linspace(0, 1, 11), 2))
     found = 100 * EI * np.linalg.norm(bend, axis=2).max(axis=-1) / free**2

@@ -12,8 +12,9 @@ from flexapod.paper.claim import axis_motion
 from flexapod.rigid.rotations import quaternion, rotation_vector
 from flexapod.solve.equilibrium import Equilibrium, equilibrium
 from flexapod.solve.rest import rest_commands, rest_load
-from flexapod.solve.rigid_motion import rigid_rest
-from flexapod.solve.system import State, System, rigid_state, robot_system
+from flexapod.solve.rigid_motion import rigid_rest, rigid_state
+from flexapod.solve.robot_system import robot_system
+from flexapod.solve.system import State, System
 from flexapod.study.arguments import as_pose
 from flexapod.study.path import path_instants
 from flexapod.study.static import modes

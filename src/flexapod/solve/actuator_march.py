@@ -14,7 +14,7 @@ from flexapod.solve.march import Chunk, Problem, initial_step, march
 from flexapod.solve.parameters import actuator_parameters
 from flexapod.solve.recording import Counters, Recording
 from flexapod.solve.robot_march import after_impact
-from flexapod.solve.shapes import beam_shapes
+from flexapod.solve.shapes import beam_shapes, planar_shapes
 from flexapod.solve.start import consistent_start
 from flexapod.solve.stops import Stops
 from flexapod.solve.system import COLUMNS, Flow, State, System
@@ -43,7 +43,7 @@ def actuator_system(
     actuator: Actuator, simulation: Simulation, *, rotation: bool = True, extension: bool = True
 ) -> System:
     """Equations of the planar actuator; ``rotation`` and ``extension`` say whether they are prescribed."""
-    functions = kernel(beam_shapes(actuator, simulation), 0, planar=True)
+    functions = kernel(planar_shapes(beam_shapes(actuator, simulation)))
     held = np.zeros((1, functions.shapes.size), dtype=bool)
     held[0, functions.shapes.l_index], held[0, functions.shapes.index("beta")] = extension, rotation
     none = np.zeros(0)

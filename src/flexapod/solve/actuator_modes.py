@@ -11,9 +11,9 @@ from flexapod.errors import ComputationError, InputError
 from flexapod.mechanics.layout import COMMAND_SIZE
 from flexapod.model import Actuator, Simulation
 from flexapod.solve.damped import damping_ratios
-from flexapod.solve.kernel import Function, planar_shapes
+from flexapod.solve.kernel import Function
 from flexapod.solve.parameters import actuator_parameters
-from flexapod.solve.shapes import beam_shapes
+from flexapod.solve.shapes import beam_shapes, planar_shapes
 from flexapod.typing import Array
 
 
@@ -94,6 +94,6 @@ def _functions(lateral: LateralBasis) -> tuple[Function, Function]:
     from flexapod.mechanics.assembly import leg_functions, leg_tangents
     from flexapod.symbolic.functions import Interpreted
 
-    shapes = planar_shapes(lateral, 0)
+    shapes = planar_shapes(lateral)
     matrices = next(f for f in leg_functions(shapes) if f.name == "leg_matrices")
     return Interpreted(matrices), Interpreted(leg_tangents(shapes))

@@ -10,9 +10,8 @@ from typing import TYPE_CHECKING
 
 import numpy as np
 
-from flexapod import bases, elements, mechanics, symbolic
-from flexapod.bases.lateral import LateralBasis
-from flexapod.mechanics.layout import COMMAND_SIZE, LEG_PARAMETERS, Shapes
+from flexapod import elements, mechanics, symbolic
+from flexapod.mechanics.layout import Shapes, leg_parameters
 from flexapod.symbolic.compiler import CompiledFunction, compiled_library, compiler
 from flexapod.typing import Array
 
@@ -22,7 +21,6 @@ if TYPE_CHECKING:
 Function = Callable[..., tuple[Array, ...]]
 NATIVE = Path(__file__).parent / "native"
 SOURCES = tuple(NATIVE / name for name in ("system.h", "lu.c", "legs.c", "arrow.c", "state.c", "march.c"))
-LEG_SIZE = sum(size for _, size in LEG_PARAMETERS)
 _log = logging.getLogger("flexapod")
 
 
@@ -49,13 +47,8 @@ NAMES = tuple(field.name for field in fields(Kernel) if field.name not in ("shap
 
 
 @lru_cache(maxsize=32)  # solid pistons and tip bodies of many sizes have shapes of their own
-def kernel(lateral: LateralBasis, axial_modes: int, *, planar: bool = False) -> Kernel:
-    """Kernel of legs with the same lateral shapes in both planes and ``axial_modes`` axial ones.
-
-    ``planar``: the single actuator in its plane (one lateral direction, a tip body).
-    """
-    space = Shapes(a=lateral, b=lateral, axial=bases.axial_basis(axial_modes), planar=False)
-    shapes = planar_shapes(lateral, axial_modes) if planar else space
+def kernel(shapes: Shapes) -> Kernel:
+    """Kernel of legs with the given shapes and joints; see `shapes`."""
     if command := compiler():
         library, signatures = compiled_library(
             _fingerprint(shapes), lambda: _functions(shapes), sizes(shapes), SOURCES, command
@@ -64,12 +57,6 @@ def kernel(lateral: LateralBasis, axial_modes: int, *, planar: bool = False) -> 
         return Kernel(shapes=shapes, library=library, **compiled)
     _warn_interpreted()
     return interpreted_kernel(shapes)
-
-
-def planar_shapes(lateral: LateralBasis, axial_modes: int) -> Shapes:
-    """Shapes of a leg that bends in one plane only."""
-    none = bases.lateral_basis("clamped-free", 0)
-    return Shapes(a=lateral, b=none, axial=bases.axial_basis(axial_modes), planar=True, closure="none", tip_body=True)
 
 
 @cache
@@ -88,12 +75,12 @@ def interpreted_kernel(shapes: Shapes) -> Kernel:
     return Kernel(shapes=shapes, library=None, **{f.name: Interpreted(f) for f in _functions(shapes)})
 
 
-def sizes(shapes: Shapes, leg_p: int = LEG_SIZE, joint: int = 3) -> str:
+def sizes(shapes: Shapes, leg_p: int = 0, joint: int = 3) -> str:
     """C text of the sizes of a leg, and of the order of its coordinates in which those found from the closure lead."""
-    n, pivots = shapes.size, shapes.pivots
+    n, pivots, leg_p = shapes.size, shapes.pivots, leg_p or sum(size for _, size in leg_parameters(shapes))
     order = [*pivots, *(i for i in range(n) if i not in pivots)]
     places = sorted(range(n), key=order.__getitem__)
-    values = {"N": n, "ROWS": shapes.rows, "LEG_P": leg_p, "JOINT": joint, "COMMAND": COMMAND_SIZE}
+    values = {"N": n, "ROWS": shapes.rows, "LEG_P": leg_p, "JOINT": joint, "COMMAND": shapes.commands}
     lists = (f"{name}[] = {{{', '.join(map(str, x))}}}" for name, x in (("ORDER", order), ("PLACE", places)))
     constants = ", ".join(f"{name} = {value}" for name, value in values.items())
     return f"enum {{ {constants} }};\nstatic const int {', '.join(lists)};"

@@ -11,7 +11,7 @@ import numpy as np
 
 from flexapod.rigid.rotations import turned
 from flexapod.solve.kernel import Kernel
-from flexapod.solve.system import Index, State, System, spring_commands
+from flexapod.solve.system import Index, State, System
 from flexapod.typing import Array
 
 __all__ = [
@@ -127,7 +127,7 @@ def residual(
     """
     P, legs, pose = len(x), system.legs, np.repeat(x.pose, system.legs, axis=0)
     at = rates or Rates(v=np.zeros(system.n), v_dot=np.zeros(system.n), u=np.zeros(6), u_dot=np.zeros(6))
-    springs = spring_commands(np.stack([command, rate], axis=-1))
+    springs = system.spring_commands(np.stack([command, rate], axis=-1))
     arguments, drive = [x.q, at.v, at.v_dot, x.lam, springs, system.leg_p], (springs.shape[-1] // 2,)
     net = np.zeros((legs * P, 6))
     if system.kernel.shapes.closure == "pose":
@@ -147,7 +147,7 @@ def residual(
 
 def port_forces(system: System, x: RestStates, command: Array, force: Array) -> Array:
     """Whole force of each port at rest, (P, legs, ports): what holds it, feed-forward and spring of the drive."""
-    springs = spring_commands(np.stack([command, np.zeros_like(command)], axis=-1))
+    springs = system.spring_commands(np.stack([command, np.zeros_like(command)], axis=-1))
     arguments, width = [x.q, np.zeros(system.n), springs, system.leg_p], springs.shape[-1] // 2
     _, drive = evaluate(system.kernel, "leg_energies", len(x) * system.legs, arguments, [(3,), (width,)])
     found = force + x.drive

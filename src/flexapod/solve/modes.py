@@ -16,7 +16,8 @@ from flexapod.solve.frequencies import count_real, mass_factor, natural
 from flexapod.solve.many import RestMatrices, matrices_at_rest
 from flexapod.solve.rest import RestLoad, rest_commands, rest_load
 from flexapod.solve.rigid_motion import rigid_rest
-from flexapod.solve.system import Index, System, robot_system
+from flexapod.solve.robot_system import robot_system
+from flexapod.solve.system import Index, System
 from flexapod.typing import Array, Mask
 
 NO_MASS = "the mass matrix is not positive: a piston is shorter than what its leg has outside the cylinder"

@@ -2,9 +2,10 @@
 
 import numpy as np
 
-from flexapod import rigid
-from flexapod.mechanics.layout import LEG_PARAMETERS, PAYLOAD_PARAMETERS
+from flexapod.mechanics import layout
+from flexapod.mechanics.layout import LEG_PARAMETERS, PAYLOAD_PARAMETERS, Shapes
 from flexapod.model import Actuator, ForceDrive, Leg, Robot, ServoDrive, damping_parts
+from flexapod.rigid.limbs import COORDINATES, Limbs
 from flexapod.typing import Array
 
 
@@ -26,46 +27,97 @@ def drive_spring(leg: Leg) -> tuple[float, float]:
     return 0.0, 0.0
 
 
-def leg_parameters(robot: Robot) -> Array:
-    """Parameters of the legs, (legs, size of LEG_PARAMETERS)."""
-    frames = rigid.home_frames(robot)
-    rows = []
-    for leg, base, frame in zip(robot.legs, robot.base_joints, frames, strict=True):
-        stiffness, damping = drive_spring(leg)
-        zeta, damping_time = damping_parts(leg.damping)
-        values: dict[str, object] = {
-            "rhoA": leg.piston.rhoA,
-            "EI": leg.piston.EI,
-            "EA": leg.piston.EA,
-            "Lp": leg.piston.length,
-            "mouth": leg.cylinder.mouth,
-            "piston_axial_inertia": leg.piston.axial_inertia,
-            "cylinder_mass": leg.cylinder.mass,
-            "cylinder_com": leg.cylinder.com,
-            "cylinder_inertia": leg.cylinder.inertia,
-            "cylinder_axial_inertia": leg.cylinder.axial_inertia,
-            "zeta": zeta,
-            "damping_time": damping_time,
-            "drive_stiffness": stiffness,
-            "drive_damping": damping,
-            "gravity": robot.gravity,
-            "base": base,
-            "R0": frame.T,  # column by column
-            "tip_mass": 0.0,
-            "tip_inertia": 0.0,
-        }
-        rows.append(_pack(LEG_PARAMETERS, values))
-    return np.array(rows)
+def leg_parameters(robot: Robot, legs: Limbs, shapes: Shapes) -> Array:
+    """Parameters of the legs in kernel order, (legs, size of `layout.leg_parameters`)."""
+    layout_of_legs = layout.leg_parameters(shapes)
+    rows = (_leg(leg) | _place(robot, legs, i) | _joints(leg, legs, i) for i, leg in enumerate(robot.legs))
+    if shapes.torsion:  # what twists has an inertia: that of a round section where none is given
+        rows = (row | {"piston_axial_inertia": axial_inertia(leg)} for row, leg in zip(rows, robot.legs, strict=True))
+    return np.array([_pack(layout_of_legs, values) for values in rows])
+
+
+def _leg(leg: Leg) -> dict[str, object]:
+    """Bodies and drive of a leg."""
+    zeta, damping_time = damping_parts(leg.damping)
+    spring = drive_spring(leg)
+    stroke, carriage = (spring if leg.driven == what else (0.0, 0.0) for what in ("stroke", "carriage"))
+    foot = leg.carriage
+    return {
+        "rhoA": leg.piston.rhoA,
+        "EI": leg.piston.EI,
+        "EA": leg.piston.EA,
+        "GJ": leg.piston.torsional_stiffness,
+        "Lp": leg.piston.length,
+        "mouth": leg.cylinder.mouth,
+        "piston_axial_inertia": leg.piston.axial_inertia,
+        "cylinder_mass": leg.cylinder.mass,
+        "cylinder_com": leg.cylinder.com,
+        "cylinder_inertia": leg.cylinder.inertia,
+        "cylinder_axial_inertia": leg.cylinder.axial_inertia,
+        "cylinder_spins": float(leg.letters.stroke != "C"),
+        "zeta": zeta,
+        "damping_time": damping_time,
+        "drive_stiffness": stroke[0],
+        "drive_damping": stroke[1],
+        "carriage_mass": 0.0 if foot is None else foot.mass,
+        "carriage_inertia": 0.0 if foot is None else foot.inertia,
+        "carriage_com": np.zeros(3),
+        "carriage_stiffness": carriage[0],
+        "carriage_damping": carriage[1],
+        "tip_mass": 0.0,
+        "tip_inertia": 0.0,
+    }
+
+
+def axial_inertia(leg: Leg) -> float:
+    """Inertia of a piston about its axis, as given or 2 rho I L of a round section [kg m^2]."""
+    piston = leg.piston
+    return piston.axial_inertia or 2 * piston.rhoA * piston.length * piston.EI / piston.EA
+
+
+def _place(robot: Robot, legs: Limbs, i: int) -> dict[str, object]:
+    """Where a leg is at home; frames column by column."""
+    return {
+        "gravity": robot.gravity,
+        "base": legs.base[i],
+        "R0": legs.frames[i].T,
+        "carriage_axis": legs.carriage_axis[i],
+        "carriage_arm": legs.carriage_arm[i],
+        "joint": legs.platform[i] - centre(robot),
+        "platform_frame": legs.platform_frames[i].T,
+        "leg_frame": legs.leg_frames[i].T,
+        "L_c": legs.L_c,
+    }
+
+
+def _joints(leg: Leg, legs: Limbs, i: int) -> dict[str, object]:
+    """Springs at the joints of a leg and where they are slack: at home."""
+    base, end = leg.base_joint, leg.platform_joint
+    home = dict(zip(COORDINATES, legs.home[i], strict=True))
+    springs = ((x.bending or 0.0, x.bending or 0.0, x.torsion or 0.0) for x in (base, end))
+    return {
+        **dict(zip(("base_stiffness", "gamma_stiffness"), springs, strict=True)),
+        "base_home": [home[name] for name in ("alpha", "beta", "spin")],
+        "gamma_home": [home[name] for name in ("gamma1", "gamma2", "gamma3")],
+    }
+
+
+def centre(robot: Robot) -> Array:
+    """Centre of mass of the payload in the platform frame (3,); its origin where there is none."""
+    return np.zeros(3) if robot.payload is None else robot.payload.com
 
 
 def joint_parameters(robot: Robot) -> Array:
     """Platform joints of the legs from the payload's CoM, platform axes, (legs, 3) [m]."""
-    return np.ascontiguousarray(robot.platform_joints - robot.payload.com)
+    return np.ascontiguousarray(robot.platform_joints - centre(robot))
 
 
 def payload_parameters(robot: Robot) -> Array:
     """Parameters of the payload; tool from its CoM."""
     load = robot.payload
+    if load is None:  # of a fixed platform
+        mass = {"mass": 1.0, "inertia": np.eye(3), "gravity": robot.gravity, "tool": np.zeros(3)}
+        return _pack(PAYLOAD_PARAMETERS, mass)
     return _pack(
         PAYLOAD_PARAMETERS,
         {

@@ -2,19 +2,24 @@
 
 from __future__ import annotations
 
+from dataclasses import replace
+
 import numpy as np
 
 from flexapod import rigid
 from flexapod.mechanics.layout import Shapes
 from flexapod.model import Robot
-from flexapod.rigid.kinematics import LegState
-from flexapod.rigid.limbs import COORDINATES
+from flexapod.rigid.limbs import COORDINATES, HELD, Limbs, limbs
 from flexapod.rigid.rotations import quaternion
+from flexapod.rigid.screws import screws
 from flexapod.solve.many import Rates, RestStates
-from flexapod.solve.system import Index, System
+from flexapod.solve.parameters import centre
+from flexapod.solve.system import Index, State, System
 from flexapod.typing import Array
 
-__all__ = ["leg_coordinates", "rigid_motion", "rigid_rest"]
+__all__ = ["leg_coordinates", "rigid_motion", "rigid_rest", "rigid_state"]
+
+GAMMA = slice(COORDINATES.index("gamma1"), None)
 
 
 def leg_coordinates(shapes: Shapes) -> tuple[Index, Index]:
@@ -25,10 +30,9 @@ def leg_coordinates(shapes: Shapes) -> tuple[Index, Index]:
 
 def rigid_motion(system: System, robot: Robot, path: rigid.Poses) -> tuple[RestStates, Rates]:
     """Configurations of the undeformed robot at the instants of a path, without forces, and their rates."""
-    legs, T = rigid.inverse_kinematics(robot, path), len(path)
-    q, v, v_dot = (_in_q(system, legs, order) for order in range(3))
+    T, (q, v, v_dot) = len(path), _undeformed(system, robot, path)
     R, w, w_dot = path.rotation, path.omega, path.alpha
-    arm, inverse = R @ robot.payload.com, R.swapaxes(1, 2)
+    arm, inverse = R @ centre(robot), R.swapaxes(1, 2)
     turning = np.cross(w, arm)
     velocity, acceleration = path.velocity + turning, path.acceleration + np.cross(w_dot, arm) + np.cross(w, turning)
     states = RestStates(
@@ -49,16 +53,45 @@ def rigid_rest(system: System, robot: Robot, path: rigid.Poses) -> RestStates:
     return rigid_motion(system, robot, path)[0]
 
 
-def _in_q(system: System, legs: LegState, order: int) -> Array:
-    """Coordinates (T, legs, n) of the undeformed legs, or their rates (1) or accelerations (2)."""
-    suffix = ("", "_dot", "_ddot")[order]
-    q = np.zeros((*legs.length.shape, system.n))
-    for k, at in zip(*leg_coordinates(system.kernel.shapes), strict=True):
-        name = COORDINATES[k]
-        if name == "l":
-            q[..., at] = (legs.length, legs.rate, legs.accel)[order]
-        elif name.startswith("gamma"):
-            q[..., at] = getattr(legs, "gamma" + suffix)[..., int(name[-1]) - 1]
-        else:
-            q[..., at] = getattr(legs, name + suffix)
+def rigid_state(system: System, robot: Robot, path: rigid.Poses) -> State:
+    """State of the undeformed robot on the commanded path (one sample), with its rates and accelerations; no forces."""
+    states, rates = rigid_motion(system, robot, path)
+    v, v_dot = (np.concatenate([x[0].ravel(), y[0]]) for x, y in ((rates.v, rates.u), (rates.v_dot, rates.u_dot)))
+    return replace(states.state(0), v=v, v_dot=v_dot)
+
+
+def _undeformed(system: System, robot: Robot, path: rigid.Poses) -> Array:
+    """Coordinates of the undeformed legs on a path of T poses, rates and accelerations, (3, T, legs, n)."""
+    found, legs, shapes = rigid.inverse_kinematics(robot, path), limbs(robot), system.kernel.shapes
+    x = np.stack([np.stack(found.coordinate(name)) for name in COORDINATES], axis=-1)
+    held = legs.state == HELD  # welds, which the rigid path releases, too
+    x[:, :, held] = 0.0
+    x[0] += np.where(held, legs.home, 0.0)
+    if shapes.closure == "pose":
+        _turn_balls(legs, x, path)
+    q = np.zeros((*x.shape[:3], system.n))
+    there, at = leg_coordinates(shapes)
+    q[..., at] = x[..., there]
     return q
+
+
+def _turn_balls(legs: Limbs, x: Array, path: rigid.Poses) -> None:
+    """Angles of ideal balls beside joints of other kinds: what turns the end of the leg into the platform."""
+    balls = np.flatnonzero(~legs.pose_closure)
+    left = screws(legs, x[0]).frame.swapaxes(-1, -2) @ path.rotation[:, None] @ legs.platform_frames
+    angles = np.stack(
+        [
+            np.arctan2(-left[..., 1, 2], left[..., 2, 2]),
+            np.arcsin(np.clip(left[..., 0, 2], -1.0, 1.0)),
+            np.arctan2(-left[..., 0, 1], left[..., 0, 0]),
+        ],
+        axis=-1,
+    )
+    x[0][:, balls, GAMMA] = angles[:, balls]
+    chain = screws(legs, x[0])
+    turns = chain.columns[:, :, 3:]
+    for order, whole in ((1, path.omega), (2, path.alpha)):
+        rest = whole[:, None, :, None] - turns @ x[order][..., None]
+        if order == 2:
+            rest = rest - chain.bias(x[1])[..., 3:, None]
+        x[order][:, balls, GAMMA] = np.linalg.solve(turns[:, balls][..., GAMMA], rest[:, balls])[..., 0]

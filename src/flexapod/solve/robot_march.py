@@ -16,9 +16,11 @@ from flexapod.solve.march import Chunk, Problem, initial_step, march
 from flexapod.solve.modes import refuse_pure_force
 from flexapod.solve.recording import Counters, Recording
 from flexapod.solve.rest import rest_commands, rest_load
+from flexapod.solve.rigid_motion import rigid_state
+from flexapod.solve.robot_system import robot_system
 from flexapod.solve.start import consistent_start
 from flexapod.solve.stops import Stops
-from flexapod.solve.system import Flow, State, System, rigid_state, robot_system
+from flexapod.solve.system import Flow, State, System
 from flexapod.solve.tables import Law, robot_law
 from flexapod.typing import Array
 

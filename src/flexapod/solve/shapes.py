@@ -3,20 +3,50 @@
 from __future__ import annotations
 
 from functools import lru_cache
+from typing import Any
 
 import numpy as np
 
 from flexapod import bases, rigid
 from flexapod.bases.lateral import LateralBasis
+from flexapod.mechanics.layout import Shapes
 from flexapod.model import Actuator, Rectangle, Robot, Simulation, Tube
+from flexapod.rigid.limbs import ABSENT, COORDINATES, FREE, HELD, Limbs
 
-__all__ = ["beam_shapes", "leg_shapes"]
+__all__ = ["beam_shapes", "leg_shapes", "planar_shapes", "robot_shapes", "space_shapes"]
 
 SOLID = "solid"
 
 
+def robot_shapes(robot: Robot, simulation: Simulation, legs: Limbs) -> Shapes:
+    """Coordinates of the legs of a robot: those that any of them has."""
+    spin, gamma3 = (legs.state[:, COORDINATES.index(name)] for name in ("spin", "gamma3"))
+    pose = bool(legs.pose_closure.any())
+    return space_shapes(
+        leg_shapes(robot, simulation),
+        simulation.axial_shapes(robot.legs[0].axial_modes),
+        closure="pose" if pose else "point",
+        carriage=legs.carriage,
+        spin=bool((spin != ABSENT).any()),
+        torsion=pose and simulation.lateral_shapes > 0 and all(leg.piston.rhoA > 0 for leg in robot.legs),
+        pivot_spin=bool(((spin == FREE) & (gamma3 == HELD)).any()),
+    )
+
+
+def space_shapes(lateral: LateralBasis, axial_modes: int, **joints: Any) -> Shapes:
+    """Shapes of a leg that bends alike in both planes; ``joints`` as `Shapes` has them, by default of a leg UPS."""
+    return Shapes(a=lateral, b=lateral, axial=bases.axial_basis(axial_modes), **joints)
+
+
+def planar_shapes(lateral: LateralBasis) -> Shapes:
+    """Shapes of the single actuator in its plane."""
+    none = bases.lateral_basis("clamped-free", 0)
+    axial = bases.axial_basis(0)
+    return Shapes(a=lateral, b=none, axial=axial, planar=True, closure="none", tip_body=True)
+
+
 def leg_shapes(robot: Robot, simulation: Simulation) -> LateralBasis:
-    """Shapes of the legs of a robot, the same in both planes of all six; solid pistons are alike (`model.Study`)."""
+    """Shapes of the legs of a robot, the same in both planes of all; solid pistons are alike (`model.Study`)."""
     name, count = simulation.lateral_basis, simulation.lateral_shapes
     if name != SOLID:
         return bases.lateral_basis(name, count)

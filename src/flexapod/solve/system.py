@@ -6,16 +6,12 @@ from functools import cached_property
 import numpy as np
 from numpy.typing import NDArray
 
-from flexapod import rigid
-from flexapod.mechanics.layout import COMMAND_SIZE, LEG_PARAMETERS, columns
-from flexapod.model import Robot, Simulation
-from flexapod.rigid.rotations import quaternion, turned
-from flexapod.solve.kernel import Kernel, kernel
-from flexapod.solve.parameters import joint_parameters, leg_parameters, payload_parameters
-from flexapod.solve.shapes import leg_shapes
+from flexapod.mechanics.layout import LEG_PARAMETERS, LOAD_SIZE, columns
+from flexapod.rigid.rotations import turned
+from flexapod.solve.kernel import Kernel
 from flexapod.typing import Array, Mask
 
-__all__ = ["COLUMNS", "Flow", "Index", "Matrices", "State", "System", "rigid_state", "robot_system"]
+__all__ = ["COLUMNS", "Flow", "Index", "Matrices", "State", "System"]
 
 Index = NDArray[np.intp]
 COLUMNS = 4  # of a port in a table: value, rate, acceleration, force
@@ -116,7 +112,7 @@ class System:
     def ports(self) -> Index:
         """Coordinates that follow a table in some leg, or are pushed by it: those with a drive's spring first."""
         shapes = self.kernel.shapes
-        driven = [shapes.l_index, *([shapes.index("beta")] if shapes.planar else [])]
+        driven = [shapes.index(name) for name, _ in shapes.drives] + [shapes.index("beta")] * shapes.planar
         return np.array([*driven, *(k for k in np.flatnonzero(self.held.any(axis=0)) if k not in driven)])
 
     @cached_property
@@ -143,12 +139,14 @@ class System:
         """
         v, v_dot, force = self.by_leg(x.v), self.by_leg(x.v_dot), table[:, :, 3] + x.drive
         r, gaps, net, powers = np.zeros_like(v), np.zeros((self.legs, self.rows)), np.zeros(6), np.zeros(3)
-        for i, (command, p) in enumerate(zip(spring_commands(table), self.leg_p, strict=True)):
-            r[i], tip, power, _ = self.kernel.leg_residual(x.q[i], v[i], v_dot[i], x.lam[i], command, p)
+        around, commands = self._around(x, wrench), self.spring_commands(table)
+        for i, (command, p) in enumerate(zip(commands, self.leg_p, strict=True)):
+            r[i], gap, *push, power, _ = self.kernel.leg_residual(x.q[i], v[i], v_dot[i], x.lam[i], command, p, *around)
             powers[:2] += power
-            if self.hub:
-                point, wrench_of_leg = self.kernel.joint_residual(x.pose, x.lam[i], self.joint_p[i])
-                gaps[i], net = tip - point, net + wrench_of_leg
+            if self.rows == 3:
+                point, *push = self.kernel.joint_residual(x.pose, x.lam[i], self.joint_p[i])
+                gap = gap - point
+            gaps[i], net = gap[: self.rows], net + sum(push)
         r[:, self.ports] -= force
         powers[1] += (force * v[:, self.ports]).sum()
         if not self.hub:
@@ -164,11 +162,16 @@ class System:
         G = np.zeros((self.legs * rows, self.size))
         for i in range(self.legs):
             at, closed = slice(i * n, (i + 1) * n), slice(i * rows, (i + 1) * rows)
-            M[at, at], D[at, at], K[at, at], G[closed, at] = self.kernel.leg_matrices(x.q[i], x.lam[i], self.leg_p[i])
+            own = self.kernel.leg_matrices(x.q[i], x.lam[i], self.leg_p[i], *self._around(x, wrench))
+            M[at, at], D[at, at], K[at, at], G[closed, at] = own[:4]
             if self.hub:
-                P, H = self.kernel.joint_matrices(x.pose, x.lam[i], self.joint_p[i])
+                P, H, *coupling = (
+                    own[4:] if self.rows == 6 else self.kernel.joint_matrices(x.pose, x.lam[i], self.joint_p[i])
+                )
                 G[closed, k:] = -P
                 K[k:, k:] += H
+                for X in coupling:
+                    K[at, k:], K[k:, at] = X, X.T
         if self.hub:
             mass, stiffness = self.kernel.payload_matrices(x.pose, wrench, self.payload_p)
             M[k:, k:] += mass
@@ -178,7 +181,7 @@ class System:
     def energies(self, x: State, table: Array) -> tuple[Array, Array]:
         """Energies (3,) [J], kinetic, of gravity and of strain; whole force of each port (legs, ports), Eq. (T8.8)."""
         v, force, energy = self.by_leg(x.v), table[:, :, 3] + x.drive, np.zeros(3)
-        for i, (command, p) in enumerate(zip(spring_commands(table), self.leg_p, strict=True)):
+        for i, (command, p) in enumerate(zip(self.spring_commands(table), self.leg_p, strict=True)):
             part, spring = self.kernel.leg_energies(x.q[i], v[i], command, p)
             energy += part
             force[i, : spring.size] += spring
@@ -186,49 +189,19 @@ class System:
             energy += self.kernel.payload_energies(x.pose, x.v[v.size :], self.payload_p)[0]
         return energy, force
 
+    def spring_commands(self, table: Array) -> Array:
+        """Value and rate that the drives' springs follow, (..., legs, 2 each), of a table (..., legs, ports, any)."""
+        count = self.kernel.shapes.commands
+        return table[..., : count // 2, :2].reshape(*table.shape[:-2], count)
+
+    def _around(self, x: State, wrench: Array) -> list[Array]:
+        """What the functions of a leg read from outside it: the payload's pose, or a load on a tip without payload."""
+        shapes = self.kernel.shapes
+        if shapes.closure == "pose":
+            return [x.pose]
+        return [np.concatenate([wrench, np.zeros(LOAD_SIZE - 6)])] if shapes.loaded else []
+
     def moved(self, x: State, step: Array) -> State:
         """State displaced by a step in the flat coordinates: q + dq, x + dx, R exp(theta^)."""
         pose = turned(x.pose, step[self.legs * self.n :]) if self.hub else x.pose
         return replace(x, q=x.q + self.by_leg(step), pose=pose)
-
-
-def spring_commands(table: Array) -> Array:
-    """Value and rate that the drives' springs follow, (..., legs, 2 each), of a table (..., legs, ports, any)."""
-    return table[..., : COMMAND_SIZE // 2, :2].reshape(*table.shape[:-2], COMMAND_SIZE)
-
-
-def robot_system(robot: Robot, simulation: Simulation) -> System:
-    """System of a robot in the fidelity, basis and number of shapes of ``simulation``."""
-    functions = kernel(leg_shapes(robot, simulation), simulation.axial_shapes(robot.legs[0].axial_modes))
-    held = np.zeros((len(robot.legs), functions.shapes.size), dtype=bool)
-    held[:, functions.shapes.l_index] = [leg.drive.type == "prescribed" for leg in robot.legs]
-    return System(
-        kernel=functions,
-        leg_p=leg_parameters(robot),
-        joint_p=joint_parameters(robot),
-        payload_p=payload_parameters(robot),
-        held=held,
-    )
-
-
-def rigid_state(system: System, robot: Robot, path: rigid.Poses) -> State:
-    """State of the undeformed robot on the commanded path (one sample), with its rates and accelerations; no forces."""
-    legs = rigid.inverse_kinematics(robot, path)
-    R, com, parts = path.rotation[0], robot.payload.com, []
-    for angles, length in (("alpha", "length"), ("alpha_dot", "rate"), ("alpha_ddot", "accel")):
-        part = np.zeros((system.legs, system.n))
-        beta = angles.replace("alpha", "beta")
-        part[:, :3] = np.stack([getattr(legs, name)[0] for name in (angles, beta, length)], axis=1)
-        parts.append(part)
-    q, v, v_dot = parts
-    r, w, w_dot = R @ com, path.omega[0], path.alpha[0]
-    u = np.concatenate([path.velocity[0] + np.cross(w, r), R.T @ w])
-    u_dot = np.concatenate([path.acceleration[0] + np.cross(w_dot, r) + np.cross(w, np.cross(w, r)), R.T @ w_dot])
-    return State(
-        q=q,
-        pose=np.concatenate([path.position[0] + r, quaternion(R)]),
-        v=np.concatenate([v.ravel(), u]),
-        v_dot=np.concatenate([v_dot.ravel(), u_dot]),
-        lam=np.zeros((system.legs, system.rows)),
-        drive=np.zeros((system.legs, system.ports.size)),
-    )

@@ -6,6 +6,7 @@ import numpy as np
 
 from flexapod import rigid
 from flexapod.model import ForceDrive, Load, Robot
+from flexapod.rigid.limbs import COORDINATES, DRIVEN, limbs
 from flexapod.solve.system import COLUMNS, System
 from flexapod.typing import Array
 
@@ -16,13 +17,25 @@ Law = Callable[[Array], tuple[Array, Array]]
 
 
 def robot_law(system: System, robot: Robot, load: Load, poses: Callable[[Array], rigid.Poses]) -> Law:
-    """Return what a robot is commanded as a function of time; ``poses`` is the rigid path."""
+    """Return what a robot is commanded as a function of time; ``poses`` is the rigid path.
+
+    Driven coordinates follow the path; what else is held stays where it is at home.
+    """
+    chains, shapes = limbs(robot), system.kernel.shapes
+    names = [next(name for name in COORDINATES if shapes.has(name) and shapes.index(name) == k) for k in system.ports]
+    places = [COORDINATES.index(name) for name in names]
+    driven, home = chains.state[:, places] == DRIVEN, chains.home[:, places]
 
     def law(t: Array) -> tuple[Array, Array]:
         path = poses(t)
         legs, wrench = rigid.inverse_kinematics(robot, path), rigid.wrench(load, t)
         table = np.zeros((len(t), system.legs, system.ports.size, COLUMNS))
-        table[:, :, 0] = np.stack([legs.length, legs.rate, legs.accel, feed_forward(robot, t, path, wrench)], axis=-1)
+        table[..., 0] = home
+        for k, name in enumerate(names):
+            if driven[:, k].any():
+                moved = np.stack(legs.coordinate(name), axis=-1)
+                table[:, driven[:, k], k, :3] = moved[:, driven[:, k]]
+        table[:, driven, 3] = feed_forward(robot, t, path, wrench)[:, driven.any(axis=1)]
         return table, wrench
 
     return law

@@ -1,26 +1,27 @@
 /* Generalized-alpha for constrained systems on R^n x SE(3), Eqs. (T6.1)-(T6.5), fixed step within a call. */
 
-static void spread(long count, const double *x, lanes *to) { for (long j = 0; j < count; j++) to[j] = (lanes){0} + x[j]; }
+/* What the functions of a leg may read from outside it: the payload's pose, or a load on a tip without payload, with
+   zeros for the part of it that would follow the tip's axes */
+enum { OUTSIDE = 12 };
+static void outside(const Settings *s, const Work *w, const double *wrench, lanes *to) {
+  double x[OUTSIDE] = {0};
+  if (s->hub) memcpy(x, w->payload.pose, sizeof w->payload.pose); else memcpy(x, wrench, 6*sizeof(double));
+  for (int j = 0; j < OUTSIDE; j++) to[j] = (lanes){0} + x[j];
+}
 
 /* Residuals of a vector of legs, how far they are from closed, and the wrench that they put on the payload */
-static void residual_of_legs(const Settings *s, int i, const lanes *pose, Work *w, lanes *wrench) {
+static void residual_of_legs(const Settings *s, int i, const lanes *around, Work *w, lanes *wrench) {
   LegState *leg = &w->leg[i];
   lanes powers[2], drive[SPRINGS], tip[6], point[6];
-#ifdef POSE
-  const lanes *in[] = {leg->q, leg->v, leg->v_dot, leg->lam, w->command[i], w->p[i], pose};
-  lanes *out[] = {w->r[i], w->g[i], wrench, powers, drive};
-  leg_residual_lanes(in, out);
-#else
-  const lanes *in[] = {leg->q, leg->v, leg->v_dot, leg->lam, w->command[i], w->p[i]};
-  lanes *out[] = {w->r[i], tip, powers, drive};
-  leg_residual_lanes(in, out);
-  if (s->hub) {
-    const lanes *joint[] = {pose, leg->lam, w->joint[i]};
+  const lanes *in[] = {leg->q, leg->v, leg->v_dot, leg->lam, w->command[i], w->p[i], around};
+  lanes *with_pose[] = {w->r[i], w->g[i], wrench, powers, drive}, *with_point[] = {w->r[i], tip, powers, drive};
+  leg_residual_lanes(in, ROWS == 6 ? with_pose : with_point);
+  if (ROWS == 3) {
+    const lanes *joint[] = {around, leg->lam, w->joint[i]};
     lanes *at[] = {point, wrench};
     joint_residual_lanes(joint, at);
     for (int j = 0; j < ROWS; j++) w->g[i][j] = tip[j] - point[j];
   }
-#endif
   for (long k = 0; k < s->ports; k++) {
     lanes force = port_force(w, i, k);
     w->r[i][s->port[k]] -= force;
@@ -31,13 +32,13 @@ static void residual_of_legs(const Settings *s, int i, const lanes *pose, Work *
 
 /* Residual of every equation at the present state; wrench in world axes at the tool. */
 static void residual(const Settings *s, const double *wrench, Work *w) {
-  lanes pose[7], part[6];
+  lanes around[OUTSIDE], part[6];
   double net[6] = {0};
   set_commands(s, w);
   memset(w->powers, 0, sizeof w->powers);
-  spread(7, w->payload.pose, pose);
+  outside(s, w, wrench, around);
   for (int i = 0; i < groups(s); i++) {
-    residual_of_legs(s, i, pose, w, part);
+    residual_of_legs(s, i, around, w, part);
     if (s->hub) for (int j = 0; j < 6; j++) net[j] += sum(s, i, part[j]);
   }
   if (!s->hub) return;
@@ -48,25 +49,18 @@ static void residual(const Settings *s, const double *wrench, Work *w) {
 }
 
 /* Matrices of a vector of legs at rest, and what their joints add to the payload's stiffness */
-static void matrices_of_legs(const Settings *s, int i, const lanes *pose, const double *c, Work *w, double *Ap) {
+static void matrices_of_legs(const Settings *s, int i, const lanes *around, const double *c, Work *w, double *Ap) {
   static _Thread_local lanes A[3][N*N], J[ROWS*N];
   LegBlock *b = &w->arrow.leg[i];
-  lanes H[36];
-#ifdef POSE
-  lanes X[N*6];
-  const lanes *in[] = {w->leg[i].q, w->leg[i].lam, w->p[i], pose};
+  lanes H[36], X[N*6];                  /* X, by which the payload turns the legs' forces, is left out of the iteration */
+  const lanes *in[] = {w->leg[i].q, w->leg[i].lam, w->p[i], around};
   lanes *out[] = {A[0], A[1], A[2], J, b->P, H, X};
   leg_matrices_lanes(in, out);
-#else
-  const lanes *in[] = {w->leg[i].q, w->leg[i].lam, w->p[i]};
-  lanes *out[] = {A[0], A[1], A[2], J};
-  leg_matrices_lanes(in, out);
-  if (s->hub) {
-    const lanes *joint[] = {pose, w->leg[i].lam, w->joint[i]};
+  if (ROWS == 3) {
+    const lanes *joint[] = {around, w->leg[i].lam, w->joint[i]};
     lanes *at[] = {b->P, H};
     joint_matrices_lanes(joint, at);
   }
-#endif
   for (long j = 0; j < N; j++) for (long k = 0; k < N; k++) {
     long at = ORDER[k] + N*ORDER[j];
     b->A[k + j*N] = c[0]*A[0][at] + c[1]*A[1][at] + c[2]*A[2][at];
@@ -78,9 +72,9 @@ static void matrices_of_legs(const Settings *s, int i, const lanes *pose, const 
 /* Factors of c_a M + c_v D + c_q K with the matrices at rest: the iteration matrix (T6.5), or the mass metric alone. */
 static int factor(const Settings *s, const double *wrench, double c_v, double c_a, double c_q, Work *w) {
   double mass[36], stiffness[36], Ap[36] = {0}, c[3] = {c_a, c_v, c_q};
-  lanes pose[7];
-  spread(7, w->payload.pose, pose);
-  for (int i = 0; i < groups(s); i++) matrices_of_legs(s, i, pose, c, w, Ap);
+  lanes around[OUTSIDE];
+  outside(s, w, wrench, around);
+  for (int i = 0; i < groups(s); i++) matrices_of_legs(s, i, around, c, w, Ap);
   if (s->hub) {
     const double *in[] = {w->payload.pose, wrench, s->payload_p};
     double *out[] = {mass, stiffness};

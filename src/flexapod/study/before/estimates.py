@@ -175,7 +175,7 @@ def _fed_forward(robot: Robot, t: Array, path: rigid.Poses) -> Array:
 
 def _strokes(modes: RobotModes, shapes: Array) -> Array:
     """Travel of the drives in every shape, (m, legs)."""
-    return shapes[:, :-6].reshape(len(shapes), -1, modes.system.n)[:, :, 2]
+    return shapes[:, :-6].reshape(len(shapes), modes.system.legs, modes.system.n)[:, :, 2]
 
 
 def _tool_amplitudes(robot: Robot, modes: RobotModes, shapes: Array) -> Array:

@@ -19,7 +19,7 @@ import numpy as np
 from flexapod.errors import ComputationError, InputError
 from flexapod.model import ActuatorStudy, Study
 from flexapod.solve.actuator_march import prepare_actuator
-from flexapod.solve.system import robot_system
+from flexapod.solve.robot_system import robot_system
 from flexapod.study.arguments import read
 from flexapod.study.before.room import check_memory, check_room
 from flexapod.study.record import Report

@@ -1,0 +1,40 @@
+"""The equations of a robot."""
+
+import numpy as np
+
+from flexapod.mechanics.layout import Shapes
+from flexapod.model import Robot, Simulation
+from flexapod.rigid.limbs import ABSENT, COORDINATES, DRIVEN, HELD, Limbs, limbs
+from flexapod.solve.kernel import kernel
+from flexapod.solve.parameters import joint_parameters, leg_parameters, payload_parameters
+from flexapod.solve.shapes import robot_shapes
+from flexapod.solve.system import System
+from flexapod.typing import Mask
+
+__all__ = ["robot_system"]
+
+
+def robot_system(robot: Robot, simulation: Simulation) -> System:
+    """System of a robot in the fidelity, basis and number of shapes of ``simulation``."""
+    legs = limbs(robot)
+    shapes = robot_shapes(robot, simulation, legs)
+    return System(
+        kernel=kernel(shapes),
+        leg_p=leg_parameters(robot, legs, shapes),
+        joint_p=joint_parameters(robot),
+        payload_p=payload_parameters(robot),
+        held=_held(robot, legs, shapes),
+        hub_held=legs.hub_held,
+    )
+
+
+def _held(robot: Robot, legs: Limbs, shapes: Shapes) -> Mask:
+    """Coordinates that follow a table: held by joints or drives, or those of other legs. A ball's gammas are free."""
+    held = np.zeros((len(legs), shapes.size), dtype=bool)
+    prescribed = np.array([leg.drive.type == "prescribed" for leg in robot.legs])
+    for k, name in enumerate(COORDINATES):
+        if shapes.has(name):
+            state = legs.state[:, k]
+            foreign = (state == ABSENT) & (name in ("chi", "spin"))
+            held[:, shapes.index(name)] = (state == HELD) | ((state == DRIVEN) & prescribed) | foreign
+    return held
