@@ -54,7 +54,7 @@ def assert_fits(study, stroke):
     assert check_path(study) == []
     t = np.linspace(0.0, study.duration, 201)
     path = rigid.poses(robot, study.motion, t)
-    used = np.abs(rigid.leg_directions(robot, path)[0] - robot.home_lengths).max() / (stroke / 2)
+    used = np.abs(rigid.reach(robot, path).length - robot.home_lengths).max() / (stroke / 2)
     assert used <= 0.82
     forces = rigid.inverse_dynamics(robot, path).actuator_force
     assert 4.99 * forces.max() <= buckling_load(leg, ends[1:] - leg.cylinder.mouth)[0]
@@ -114,7 +114,7 @@ def test_motions_use_the_stroke(motion):
     study = designed(f"home=300 mm, payload=20 kg, stroke=20 mm, motion={motion}")
     assert study.motion.type == motion
     t = np.array([study.motion.duration])
-    length = rigid.leg_directions(study.robot, rigid.poses(study.robot, study.motion, t))[0]
+    length = rigid.reach(study.robot, rigid.poses(study.robot, study.motion, t)).length
     assert (
         0.75 < np.abs(length - study.robot.home_lengths).max() / 10e-3 < 0.801
     )  # the stroke itself is rounded outwards

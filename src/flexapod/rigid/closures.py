@@ -18,11 +18,10 @@ from flexapod.rigid.rotations import exponential, quaternion, rotation_vector
 from flexapod.rigid.screws import Screws, screws
 from flexapod.rigid.trajectory import Poses, poses_from_coordinates, turning_axes
 from flexapod.rigid.vectors import blocks
-from flexapod.typing import Array
+from flexapod.typing import Array, Mask
 
 __all__ = ["Closed", "Motion", "Task", "close", "gaps", "move"]
 
-Mask = NDArray[np.bool_]
 
 STRIDE = 0.35  # rad, or of a leg's length: the longest way in one step from home to a pose
 NEWTON = 25

@@ -33,7 +33,7 @@ def platform_frame(number: int, letter: str, axis: Array | None, axes: Array) ->
     Universal joint: y is the axis as given, fixed to the platform, by default along the leg's x. Hinge: x is the axis
     as given. Every other joint has the axes of the leg.
     """
-    x, _, z = axes.T
+    x, z = axes[:, 0], axes[:, 2]
     if letter == "U":
         y = x if axis is None else axis / np.linalg.norm(axis)
         across = np.asarray(np.cross(y, z), dtype=float)

@@ -16,6 +16,7 @@ from flexapod.typing import Array
 
 __all__ = [
     "BETA_LIMIT",
+    "NO_LENGTH",
     "JointTurn",
     "LegMap",
     "LegState",
@@ -31,7 +32,7 @@ __all__ = [
 
 BETA_LIMIT = np.deg2rad(85.0)  # 5 deg from the universal joint's own singularity
 
-_NO_LENGTH = 1e-9  # m; below this a leg has no direction
+NO_LENGTH = 1e-9  # m; below this a leg has no direction
 _PLAIN = "length rate accel alpha beta alpha_dot beta_dot alpha_ddot beta_ddot".split()  # of legs UPS and SPS
 _PARALLEL = 1e-9  # sine of the angle below which a leg counts as parallel to the reference axis
 
@@ -160,7 +161,7 @@ def leg_frames(
 def leg_frame(number: int, vector: Array, u_axis: ArrayLike | None) -> Array:
     """Home frame (3, 3) of leg `number` along `vector`, Eq. (T2.14); parameters as for `leg_frames`."""
     length = np.linalg.norm(vector)
-    if length < _NO_LENGTH:
+    if length < NO_LENGTH:
         raise InputError("its joints coincide at home", key=f"leg {number}", next_step="Move one of the two joints")
     z = vector / length
     if u_axis is None:
@@ -264,6 +265,7 @@ def state_of(legs: LegMap, poses: Poses) -> LegState:
     for where in blocks(len(poses)):
         s, s_dot, s_ddot = _in_home_frames(legs, poses.part(where))
         length, alpha, beta, turn = _directions(s)
+        _refuse_no_length(length)
         _refuse_folded_joint(beta.T, where.start, len(poses))
         rates = _rates(length, turn, turn.into_leg(s_dot), turn.into_leg(s_ddot))
         for name, values in ({"length": length, "alpha": alpha, "beta": beta} | rates).items():
@@ -272,13 +274,7 @@ def state_of(legs: LegMap, poses: Poses) -> LegState:
 
 
 def directions_of(legs: LegMap, poses: Poses) -> tuple[Array, Array, Array]:
-    """Length [m], alpha and beta [rad] of the legs at T poses, (T, n) each, however far their joints fold.
-
-    Raises
-    ------
-    InputError
-        If a leg has no length.
-    """
+    """Length [m], alpha and beta [rad] of the legs at T poses, (T, n) each, however far their joints fold."""
     x = np.concatenate([time_last(poses.rotation).reshape(9, -1), poses.position.T])
     length, alpha, beta, _ = _directions((legs.reach @ x).reshape(3, legs.number, -1) + legs.offset)
     return length.T, alpha.T, beta.T
@@ -302,8 +298,6 @@ def _directions(s: Array) -> tuple[Array, Array, Array, JointTurn]:
     """Length, alpha, beta and their turn of legs along `s` (3, n, T) in their home frames, Eqs. (T2.16)-(T2.17)."""
     across = np.sqrt(s[1] ** 2 + s[2] ** 2)
     length = np.sqrt(s[0] ** 2 + across**2)
-    if np.any(length < _NO_LENGTH):
-        raise InputError("a leg has no length at this pose", key=f"leg {np.argwhere(length < _NO_LENGTH)[0][0] + 1}")
     with np.errstate(divide="ignore", invalid="ignore"):  # a joint folded to 90 deg is refused by its angle
         turn = JointTurn(ca=s[2] / across, sa=-s[1] / across, cb=across / length, sb=s[0] / length)
     return length, np.arctan2(-s[1], s[2]), np.arctan2(s[0], across), turn
@@ -325,6 +319,11 @@ def _rates(length: Array, turn: JointTurn, v: Vector, a: Vector) -> dict[str, Ar
         "alpha_ddot": (wx_dot + alpha_dot * beta_dot * turn.sb) / turn.cb,
         "beta_ddot": wy_dot,
     }
+
+
+def _refuse_no_length(length: Array) -> None:
+    if np.any(length < NO_LENGTH):
+        raise InputError("a leg has no length at this pose", key=f"leg {np.argwhere(length < NO_LENGTH)[0][0] + 1}")
 
 
 def _refuse_folded_joint(beta: Array, first: int, count: int) -> None:

@@ -15,7 +15,7 @@ from numpy.typing import NDArray
 
 from flexapod.rigid.ends import base_frame, platform_frame
 from flexapod.rigid.jacobian import characteristic_length
-from flexapod.typing import Array
+from flexapod.typing import Array, Mask
 
 if TYPE_CHECKING:
     from flexapod.model import Joint, Leg, Robot
@@ -86,9 +86,9 @@ class Limbs:
     leg_frames: Array
     home: Array
     state: States
-    pose_closure: NDArray[np.bool_]
-    idle: NDArray[np.bool_]
-    hub_held: NDArray[np.bool_]
+    pose_closure: Mask
+    idle: Mask
+    hub_held: Mask
     position: Array
     rotation: Array
     L_c: float
@@ -102,7 +102,7 @@ class Limbs:
         return len(self.chain)
 
     @cached_property
-    def unknown(self) -> NDArray[np.bool_]:
+    def unknown(self) -> Mask:
         """Coordinates that move, (n, 8)."""
         return np.isin(self.state, (FREE, DRIVEN))
 
@@ -161,7 +161,7 @@ def limbs(robot: Robot, rigid: bool = False) -> Limbs:
     )
 
 
-def _hub_held(robot: Robot) -> NDArray[np.bool_]:
+def _hub_held(robot: Robot) -> Mask:
     """What the plane holds: along its normal, and about what lies in it; everything of a fixed platform."""
     if robot.platform_fixed:
         return np.ones(6, dtype=bool)

@@ -2,21 +2,33 @@
 
 from __future__ import annotations
 
+from typing import NamedTuple
+
 import numpy as np
-from numpy.typing import NDArray
 
 from flexapod.errors import ComputationError, InputError
 from flexapod.rigid.closures import Closed, Motion, Task, close, move
-from flexapod.rigid.kinematics import BETA_LIMIT, LegState
+from flexapod.rigid.kinematics import BETA_LIMIT, NO_LENGTH, LegState
 from flexapod.rigid.laws import Law
 from flexapod.rigid.limbs import ABSENT, COORDINATES, DRIVEN, FREE, Limbs
 from flexapod.rigid.screws import screws
 from flexapod.rigid.trajectory import Poses, poses_from_coordinates
-from flexapod.typing import Array
+from flexapod.typing import Array, Mask
 
-__all__ = ["angles", "drives_of", "follow", "forward", "leg_state", "legs_at", "sides"]
+__all__ = [
+    "Reach",
+    "angles",
+    "axes",
+    "drives_of",
+    "follow",
+    "forward",
+    "leg_state",
+    "legs_at",
+    "lost_words",
+    "reach",
+    "sides",
+]
 
-Mask = NDArray[np.bool_]
 
 CHI, BETA, L, GAMMA2 = (COORDINATES.index(name) for name in ("chi", "beta", "l", "gamma2"))
 
@@ -42,18 +54,20 @@ def leg_state(limbs: Limbs, path: Poses) -> LegState:
     return _as_state(limbs, move(limbs, task, found, path))
 
 
-def follow(limbs: Limbs, unknown: Mask, law: Law, pivot: Array) -> Poses:
+def follow(limbs: Limbs, unknown: Mask, law: Law, pivot: Array, t: Array | None = None) -> Poses:
     """Poses at T instants of a platform of which some coordinates are commanded, the `unknown` (6,) follow.
 
     Raises
     ------
     InputError
-        The mechanism cannot take a pose with these coordinates.
+        The mechanism cannot take a pose with these coordinates at an instant `t` (T,); without instants such poses
+        are NaN.
     """
     task = Task(limbs.unknown, unknown, pivot)
     given = Law(*(np.where(unknown, 0.0, part) for part in law))
     found = close(limbs, task, _tiled(limbs, len(law.position)), given.position)
-    _refuse_lost(limbs, found)
+    if t is not None:
+        _refuse_lost(limbs, found, t)
     moved = move(limbs, task, found, Law(found.x, *given[1:]))
     return poses_from_coordinates(Poses.at_rest(limbs.position, limbs.rotation), moved.platform, pivot)
 
@@ -99,12 +113,47 @@ def drives_of(limbs: Limbs, q: Array) -> Array:
     return q[:, limbs.state == DRIVEN]
 
 
-def angles(limbs: Limbs, q: Array) -> dict[str, Array]:
-    """Angles (T, n) [rad] that must stay below 85 deg by joint, zero where a leg has no such joint.
+class Reach(NamedTuple):
+    """Legs at T poses, whether they can take them or not.
 
-    Of the base joint beta, of the platform joint gamma2, and of a carriage the angle between its way and the leg;
-    beyond 90 deg of the latter the leg stands on the other side.
+    Attributes
+    ----------
+    length, carriage : ndarray, shape (T, n)
+        From joint to joint [m]; places of the carriages as the study file counts them [m, rad], zero without one. NaN
+        where the legs do not reach.
+    angles : dict of ndarray, shape (T, n)
+        Angles [rad] that must stay below 85 deg, by joint: of the base joint beta, of the platform joint gamma2, and
+        between the way of a carriage and its leg, which beyond 90 deg stands on the other side. Zero without one.
+    gap : ndarray, shape (T, n)
+        By how much the leg misses its platform joint [m].
     """
+
+    length: Array
+    carriage: Array
+    angles: dict[str, Array]
+    gap: Array
+
+    @property
+    def lost(self) -> Mask:
+        """Poses that the legs do not reach, (T,)."""
+        return ~np.all(self.length >= NO_LENGTH, axis=1)
+
+
+def reach(limbs: Limbs, path: Poses) -> Reach:
+    """What T poses ask of the legs."""
+    found = legs_at(limbs, path)
+    place = np.where(limbs.state[:, CHI] != ABSENT, found.q[..., CHI] + limbs.carriage_zero, 0.0)
+    return Reach(found.q[..., L], place, angles(limbs, found.q), found.gap)
+
+
+def axes(limbs: Limbs, legs: LegState) -> Array:
+    """Unit vectors along the legs, (T, n, 3)."""
+    q = np.stack([legs.coordinate(name)[0] for name in COORDINATES], axis=-1)
+    return screws(limbs, q).columns[..., :3, L]
+
+
+def angles(limbs: Limbs, q: Array) -> dict[str, Array]:
+    """Angles (T, n) by joint as of `Reach`."""
     found = {}
     for name, k in (("base joint", BETA), ("platform joint", GAMMA2)):
         free = limbs.state[:, k] == FREE
@@ -146,16 +195,22 @@ def _as_state(limbs: Limbs, moved: Motion) -> LegState:
     return LegState(**values)
 
 
-def _refuse_lost(limbs: Limbs, found: Closed) -> None:
+def lost_words(limbs: Limbs, gap: Array) -> str:
+    """Which leg does not reach its platform joint and by how much; `gap` (n,) [m] of one pose."""
+    gap = np.where(np.isfinite(gap), gap, np.inf)
+    leg = int(np.argmax(gap))
+    off = f" (by {1e3 * gap[leg]:.3g} mm)" if np.isfinite(gap[leg]) else ""
+    return f"leg {leg + 1}, {limbs.chain[leg]}, does not reach its platform joint{off}"
+
+
+def _refuse_lost(limbs: Limbs, found: Closed, t: Array | None = None) -> None:
     lost = np.asarray(np.isnan(found.q).any(axis=(1, 2)))
     if not lost.any():
         return
     k = int(np.argmax(lost))
-    gap = np.where(np.isfinite(found.gap[k]), found.gap[k], np.inf)
-    leg = int(np.argmax(gap))
-    off = f"by {1e3 * gap[leg]:.3g} mm; " if np.isfinite(gap[leg]) else ""
+    where = f"sample {k + 1} of {len(lost)}" if t is None else f"at t = {t[k]:.6g} s"
     raise InputError(
-        f"leg {leg + 1} ({limbs.chain[leg]}) does not reach its platform joint ({off}sample {k + 1} of {len(lost)})",
+        f"{lost_words(limbs, found.gap[k])}: {where}",
         key="motion",
         allowed="poses that all legs can take",
         next_step="Reduce the motion; of a robot with fewer than six motions command only those (motion.independent)",

@@ -9,16 +9,13 @@ from dataclasses import dataclass
 from typing import NamedTuple
 
 import numpy as np
-from numpy.typing import NDArray
 
 from flexapod.rigid.closures import gaps
 from flexapod.rigid.limbs import COORDINATES, DRIVEN, FREE, Limbs
 from flexapod.rigid.rotations import exponential
 from flexapod.rigid.screws import screws
 from flexapod.rigid.trajectory import Poses
-from flexapod.typing import Array
-
-Mask = NDArray[np.bool_]
+from flexapod.typing import Array, Mask
 
 __all__ = ["Mobility", "Posture", "displaced", "mobility"]
 

@@ -5,13 +5,12 @@ from __future__ import annotations
 from collections.abc import Sequence
 
 import numpy as np
-from numpy.typing import NDArray
 
 from flexapod.errors import InputError
 from flexapod.model.motion import AXES, CsvMotion, Motion, WaypointMotion
 from flexapod.rigid.limbs import DRIVEN, Limbs
 from flexapod.rigid.mobility import Mobility, Posture, displaced, mobility
-from flexapod.typing import Array
+from flexapod.typing import Array, Mask
 
 __all__ = ["commanded", "independent_axes", "mobility_words", "motion_names", "refuse_loose"]
 
@@ -19,8 +18,6 @@ PURE = 1e-6  # share of other coordinates, in units of L_c and radians, below wh
 
 _BASE = ("move along x", "move along y", "move along z", "turn about base x", "turn about base y", "turn about base z")
 _NUMBERS = ("no", "one", "two", "three", "four", "five", "six")
-
-Mask = NDArray[np.bool_]
 
 
 def motion_names(limbs: Limbs, twists: Array, at: Posture | None = None) -> tuple[str, ...]:

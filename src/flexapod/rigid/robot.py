@@ -13,15 +13,18 @@ from flexapod.errors import InputError
 from flexapod.rigid import dynamics, forward, holding, jacobian, kinematics, mechanism, motions, trajectory, workspace
 from flexapod.rigid.dynamics import LegBodies, PayloadBody, RigidForces
 from flexapod.rigid.kinematics import LegState
+from flexapod.rigid.laws import Law
 from flexapod.rigid.limbs import COORDINATES, DRIVEN, Limbs, limbs
+from flexapod.rigid.mechanism import Reach
 from flexapod.rigid.mobility import Mobility, mobility
 from flexapod.rigid.trajectory import Poses
-from flexapod.typing import Array
+from flexapod.typing import Array, Mask
 
 if TYPE_CHECKING:
     from flexapod.model import Motion, Robot
 
 __all__ = [
+    "carriages",
     "drive_jacobian",
     "drive_positions",
     "energies",
@@ -30,13 +33,15 @@ __all__ = [
     "home_pose",
     "inverse_dynamics",
     "inverse_kinematics",
+    "leg_axes",
     "leg_bodies",
-    "leg_directions",
     "nearest_singularity",
     "payload_body",
     "poses",
+    "poses_from_home",
     "postures",
     "pull_out",
+    "reach",
     "reachable",
     "rigid_limbs",
     "singularity",
@@ -79,12 +84,21 @@ def home_frames(robot: Robot) -> Array:
     return rigid_limbs(robot).frames
 
 
-def leg_directions(robot: Robot, path: Poses) -> tuple[Array, Array, Array]:
-    """Lengths, alpha and beta of the legs, (T, n) each, folded or not; NaN where legs do not reach their joints."""
+def reach(robot: Robot, path: Poses) -> Reach:
+    """What T poses ask of the legs, whether they can take them or not; see `mechanism.Reach`."""
+    legs = rigid_limbs(robot)
+    if legs.plain:
+        length, _, beta = kinematics.directions_of(_leg_map(robot), path)
+        gap = np.where(length < kinematics.NO_LENGTH, np.inf, 0.0)
+        return Reach(length, np.zeros_like(length), {"universal joint": np.abs(beta)}, gap)
+    return mechanism.reach(legs, path)
+
+
+def leg_axes(robot: Robot, path: Poses, legs: LegState) -> Array:
+    """Unit vectors along the legs, from base to platform joint, (T, n, 3); `legs` of the same poses."""
     if rigid_limbs(robot).plain:
-        return kinematics.directions_of(_leg_map(robot), path)
-    q = mechanism.legs_at(rigid_limbs(robot), path).q
-    return tuple(q[..., COORDINATES.index(name)] for name in ("l", "alpha", "beta"))  # type: ignore[return-value]
+        return (path.place(robot.platform_joints) - robot.base_joints) / legs.length[..., None]
+    return mechanism.axes(rigid_limbs(robot), legs)
 
 
 @_once
@@ -124,11 +138,31 @@ def poses(robot: Robot, motion: Motion, t: ArrayLike) -> Poses:
     """
     legs = rigid_limbs(robot)
     if legs.guides:
+        t = trajectory.instants(t)
         free = motions.commanded(legs, motion, _mobility(robot))
-        if not (free | legs.hub_held).all():
-            law = trajectory.coordinates(motion, trajectory.instants(t))
-            return mechanism.follow(legs, ~(free | legs.hub_held), law, motion.pivot)
+        return _following(robot, free, trajectory.coordinates(motion, t), motion.pivot, t)
     return trajectory.sample(home_pose(robot), motion, t)
+
+
+def poses_from_home(robot: Robot, values: Array, named: Mask | None = None) -> Poses:
+    """Poses at rest from surge, sway, heave [m], roll, pitch, yaw [rad] from home, (P, 6).
+
+    Where legs guide the platform the values of those that are `named` (6,), by default those that are not all zero,
+    count, and the others follow; a pose that the legs cannot take is NaN.
+    """
+    legs, still, pivot = rigid_limbs(robot), np.zeros_like(values), np.zeros(3)
+    law = Law(values, still, still)
+    if not legs.guides:
+        return trajectory.poses_from_coordinates(home_pose(robot), law)
+    moved = (values != 0).any(axis=0) if named is None else named
+    return _following(robot, motions.independent_axes(legs, moved, pivot, found=_mobility(robot)), law, pivot)
+
+
+def _following(robot: Robot, free: Mask, law: Law, pivot: Array, t: Array | None = None) -> Poses:
+    legs = rigid_limbs(robot)
+    if (free | legs.hub_held).all():
+        return trajectory.poses_from_coordinates(home_pose(robot), law, pivot)
+    return mechanism.follow(legs, ~(free | legs.hub_held), law, pivot, t)
 
 
 @_once
@@ -246,10 +280,17 @@ def strokes(robot: Robot, t: ArrayLike, length: Array) -> list[workspace.Excess]
     return workspace.stroke_excess(t, length, np.array(limits))
 
 
+def carriages(robot: Robot, t: ArrayLike, place: Array) -> list[workspace.Excess]:
+    """Carriages that leave their stroke on a path of places (T, n) [m, rad] at instants `t` (T,)."""
+    travels = [leg.carriage.stroke if leg.carriage else None for leg in robot.legs]
+    limits = np.array([(-np.inf, np.inf) if travel is None else (travel.min, travel.max) for travel in travels])
+    return workspace.carriage_excess(t, place, limits, turns=rigid_limbs(robot).carriage == "crank")
+
+
 def pull_out(robot: Robot, t: ArrayLike, length: Array) -> list[workspace.Excess]:
     """Pistons that vanish in their cylinder, leave it or pass the universal joint; see `workspace.piston_excess`."""
     mouth = np.array([leg.cylinder.mouth for leg in robot.legs])
-    piston = np.array([leg.piston.length for leg in robot.legs])
+    piston = np.array([leg.piston.length if leg.strut is None else np.inf for leg in robot.legs])
     return workspace.piston_excess(t, length, mouth, piston)
 
 

@@ -2,7 +2,7 @@
 
 from __future__ import annotations
 
-from dataclasses import dataclass
+from dataclasses import dataclass, replace
 
 import numpy as np
 from numpy.typing import ArrayLike
@@ -11,12 +11,13 @@ from flexapod.errors import InputError
 from flexapod.rigid.kinematics import leg_lengths
 from flexapod.typing import Array
 
-__all__ = ["Excess", "WorkspaceMap", "piston_excess", "reachable", "reachable_map", "stroke_excess"]
+__all__ = ["Excess", "WorkspaceMap", "carriage_excess", "piston_excess", "reachable", "reachable_map", "stroke_excess"]
 
 SHORTEST, LONGEST = "shorter than its stroke allows", "longer than its stroke allows"
 NO_FREE_LENGTH = "has no free length left outside its cylinder"
 PULLED_OUT = "is pulled out of its cylinder"
 BEHIND_JOINT = "reaches behind its universal joint"
+BEFORE, BEYOND = "before the start of its stroke", "beyond the end of its stroke"
 TOO_SHORT = "is shorter than its leg; without a cylinder what is missing counts as negative mass"
 
 
@@ -27,15 +28,17 @@ class Excess:
     Attributes
     ----------
     leg : int
-        1 to 6.
+        1 to n.
     kind : str
         One of this module's constants, a predicate of a sentence.
     fatal : bool
         False for what only deserves a warning: a piston that passes its universal joint or does not reach it.
     value, limit : float
-        Joint-to-joint length reached and its limit [m].
+        Joint-to-joint length, or place of a carriage, that is reached, and its limit [m, of a crank rad].
     time, first : float
         Instant of the largest excess, and the first instant beyond the limit [s].
+    turns : bool
+        Value and limit are angles.
     """
 
     leg: int
@@ -45,16 +48,26 @@ class Excess:
     limit: float
     time: float
     first: float
+    turns: bool = False
 
     @property
     def message(self) -> str:
         """The finding in one sentence."""
+        if self.kind in (BEFORE, BEYOND):
+            value, limit, off = (self._place(x) for x in (self.value, self.limit, abs(self.value - self.limit)))
+            return (
+                f"Leg {self.leg}: the carriage is {self.kind}: at {value}, limit {limit} "
+                f"(by {off} at t = {self.time:.3f} s, first at {self.first:.3f} s)"
+            )
         subject = f"Leg {self.leg}" if self.kind in (SHORTEST, LONGEST) else f"Leg {self.leg}: the piston"
         verb = "is " if self.kind in (SHORTEST, LONGEST) else ""
         return (
             f"{subject} {verb}{self.kind}: length {self.value:.4f} m, limit {self.limit:.4f} m "
             f"(by {1e3 * abs(self.value - self.limit):.2f} mm at t = {self.time:.3f} s, first at {self.first:.3f} s)"
         )
+
+    def _place(self, place: float) -> str:
+        return f"{np.rad2deg(place):.4g} deg" if self.turns else f"{place:.4f} m"
 
 
 def _worst(t: ArrayLike, length: Array, limit: Array, side: int, kind: str, fatal: bool = True) -> list[Excess]:
@@ -95,6 +108,12 @@ def stroke_excess(t: ArrayLike, length: Array, limits: Array) -> list[Excess]:
     list of Excess
     """
     return _worst(t, length, limits[:, 0], -1, SHORTEST) + _worst(t, length, limits[:, 1], 1, LONGEST)
+
+
+def carriage_excess(t: ArrayLike, place: Array, limits: Array, *, turns: bool) -> list[Excess]:
+    """Carriages outside their stroke on a path of places (T, n) [m, or rad if it `turns`], limits (n, 2), (T14.22)."""
+    found = _worst(t, place, limits[:, 0], -1, BEFORE) + _worst(t, place, limits[:, 1], 1, BEYOND)
+    return [replace(excess, turns=turns) for excess in found]
 
 
 def piston_excess(t: ArrayLike, length: Array, mouth: Array, piston_length: Array) -> list[Excess]:

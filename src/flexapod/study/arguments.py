@@ -106,8 +106,8 @@ def as_pose(robot: model.Robot, pose: PoseLike, *, check: bool = True) -> rigid.
         found = rigid.Poses.at_rest(pose.position, pose.rotation)
     else:
         values = _coordinates(pose)
-        home = rigid.home_pose(robot)
-        found = rigid.Poses.at_rest(home.position + values[:3], rigid.rotation_matrix(values[3:]))
+        named = np.isin(POSE_KEYS, list(pose)) if isinstance(pose, Mapping) else None
+        found = rigid.poses_from_home(robot, values[None], named)
     if check:
         _check_reachable(robot, found)
     return found
@@ -134,9 +134,13 @@ def _coordinates(pose: Mapping[str, float] | ArrayLike | None) -> np.ndarray:
 
 
 def _check_reachable(robot: model.Robot, pose: rigid.Poses) -> None:
-    length = rigid.leg_lengths(robot.base_joints, robot.platform_joints, pose.position, pose.rotation)
-    at = np.zeros(1)
-    excess = [e for e in (*rigid.strokes(robot, at, length), *rigid.pull_out(robot, at, length)) if e.fatal]
+    found, at = rigid.reach(robot, pose), np.zeros(1)
+    if found.lost.any():
+        raise InputError(
+            rigid.lost_words(rigid.rigid_limbs(robot), found.gap[0]), key="pose", allowed="poses that all legs reach"
+        )
+    excess = [e for e in (*rigid.strokes(robot, at, found.length), *rigid.pull_out(robot, at, found.length)) if e.fatal]
+    excess += rigid.carriages(robot, at, found.carriage)
     if excess:
         e = excess[0]
         raise InputError(

@@ -63,7 +63,7 @@ class RigidPath:
     @cached_property
     def axes(self) -> Array:
         """Unit vectors from base to platform joint, (T, legs, 3)."""
-        return (self.poses.place(self.robot.platform_joints) - self.robot.base_joints) / self.legs.length[..., None]
+        return rigid.leg_axes(self.robot, self.poses, self.legs)
 
     def at(self, t: Array) -> RigidPath:
         """The path at other instants: this one, or what is known of its poses, where it has them."""

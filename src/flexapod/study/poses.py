@@ -62,14 +62,13 @@ def as_many(robot: model.Robot, pose: PoseLike) -> rigid.Poses:
 
 
 def from_home(robot: model.Robot, values: Array) -> rigid.Poses:
-    """Poses at rest from surge, sway, heave [m], roll, pitch, yaw [rad], shape (P, 6)."""
-    position = rigid.home_pose(robot).position + values[:, :3]
-    return rigid.Poses.at_rest(position, rigid.rotation_matrix(values[:, 3:]))
+    """Poses at rest from surge, sway, heave [m], roll, pitch, yaw [rad], shape (P, 6); see `rigid.poses_from_home`."""
+    return rigid.poses_from_home(robot, values)
 
 
 def coordinates_of(robot: model.Robot, path: rigid.Poses) -> Array:
     """Surge, sway, heave [m], roll, pitch, yaw [rad] of the platform frame from home, (P, 6); inverse of (T2.9)."""
-    R = path.rotation
+    R = path.rotation @ rigid.home_pose(robot).rotation[0].T
     angles = [
         np.arctan2(R[:, 2, 1], R[:, 2, 2]),
         -np.arcsin(np.clip(R[:, 2, 0], -1.0, 1.0)),

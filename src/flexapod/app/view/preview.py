@@ -28,7 +28,7 @@ def preview_html(study: model.Study | model.ActuatorStudy) -> str:
 def _robot(study: model.Study) -> str:
     t = np.linspace(0.0, study.duration, INSTANTS)
     path = rigid.poses(study.robot, study.motion, t)
-    length, _, _ = rigid.leg_directions(study.robot, path)
+    length = rigid.reach(study.robot, path).length
     rows, bad = [], []
     for i, leg in enumerate(study.robot.legs):
         low, high = float(length[:, i].min()), float(length[:, i].max())

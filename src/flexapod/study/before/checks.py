@@ -2,13 +2,15 @@
 
 from __future__ import annotations
 
+from typing import NamedTuple
+
 import numpy as np
 
 from flexapod import rigid
 from flexapod.errors import InputError
 from flexapod.model import ActuatorStudy, Robot, Study
 from flexapod.rigid.kinematics import BETA_LIMIT
-from flexapod.rigid.workspace import LONGEST, PULLED_OUT, SHORTEST
+from flexapod.rigid.workspace import BEFORE, BEYOND, LONGEST, PULLED_OUT, SHORTEST
 from flexapod.solve.modes import refuse_pure_force
 from flexapod.study.before.timing import check_outputs
 from flexapod.study.path import RigidPath, path_instants
@@ -19,7 +21,13 @@ __all__ = ["check_actuator_path", "check_geometry", "check_path", "path_remarks"
 SINGULAR = 1e-8  # smallest singular value of the scaled Jacobian below which a pose is refused
 NEAR_SINGULAR = 0.05  # and below which it is remarked on: leg forces and length errors are magnified about 20 times
 
-_KEYS = {SHORTEST: "leg.stroke.min", LONGEST: "leg.stroke.max", PULLED_OUT: "leg.piston.length"}
+_KEYS = {
+    SHORTEST: "leg.stroke.min",
+    LONGEST: "leg.stroke.max",
+    PULLED_OUT: "leg.piston.length",
+    BEFORE: "leg.carriage.stroke.min",
+    BEYOND: "leg.carriage.stroke.max",
+}
 
 
 def check_path(study: Study, path: RigidPath | None = None) -> list[str]:
@@ -51,20 +59,20 @@ def check_geometry(study: Study, path: RigidPath | None = None) -> list[str]:
     path, robot = path or RigidPath(study), study.robot
     try:
         remarks = check_outputs(study)
-        t, (length, _, beta) = path.time, rigid.leg_directions(robot, path.poses)
-        _refuse_excess(robot, t, length)
-        _refuse_folded(t, beta)
+        t, found = path.time, rigid.reach(robot, path.poses)
+        _refuse_lost(robot, t, found)
+        _refuse_excess(robot, t, found)
+        _refuse_folded(t, found)
         nearest = rigid.nearest_singularity(robot, path.poses)
         _refuse_singular(t, nearest)
     except InputError as error:
         raise error.located(file=study.path) from None
-    return remarks + _remarks(robot, t, length, nearest)
+    return remarks + _remarks(robot, t, found.length, nearest)
 
 
 def path_remarks(robot: Robot, t: Array, poses: rigid.Poses) -> list[str]:
     """Remarks on poses near a singularity and pistons that reach behind their universal joint."""
-    length = rigid.leg_directions(robot, poses)[0]
-    return _remarks(robot, t, length, rigid.nearest_singularity(robot, poses))
+    return _remarks(robot, t, rigid.reach(robot, poses).length, rigid.nearest_singularity(robot, poses))
 
 
 def _remarks(robot: Robot, t: Array, length: Array, found: rigid.NearestSingularity) -> list[str]:
@@ -78,9 +86,20 @@ def _remarks(robot: Robot, t: Array, length: Array, found: rigid.NearestSingular
     return remarks
 
 
-def _refuse_excess(robot: Robot, t: Array, length: Array) -> None:
-    found = [*rigid.strokes(robot, t, length), *rigid.pull_out(robot, t, length)]
-    fatal = [e for e in found if e.fatal]
+def _refuse_lost(robot: Robot, t: Array, found: rigid.Reach) -> None:
+    if found.lost.any():
+        k = int(np.argmax(found.lost))
+        raise InputError(
+            f"{rigid.lost_words(rigid.rigid_limbs(robot), found.gap[k])} at t = {t[k]:.6g} s",
+            key="motion",
+            allowed="poses that all legs reach",
+            next_step="Reduce the motion, or change the places of the joints or the length of the struts",
+        )
+
+
+def _refuse_excess(robot: Robot, t: Array, reach: rigid.Reach) -> None:
+    found = [*rigid.strokes(robot, t, reach.length), *rigid.pull_out(robot, t, reach.length)]
+    fatal = [e for e in (*found, *rigid.carriages(robot, t, reach.carriage)) if e.fatal]
     if not fatal:
         return
     worst = max(fatal, key=lambda e: abs(e.value - e.limit))
@@ -93,18 +112,57 @@ def _refuse_excess(robot: Robot, t: Array, length: Array) -> None:
     )
 
 
-def _refuse_folded(t: Array, beta: Array) -> None:
-    if np.abs(beta).max() <= BETA_LIMIT:
-        return
-    k, leg = np.unravel_index(np.abs(beta).argmax(), beta.shape)
-    first = t[np.argmax(np.abs(beta[:, leg]) > BETA_LIMIT)]
-    raise InputError(
-        f"the universal joint of leg {leg + 1} folds to beta = {np.rad2deg(beta[k, leg]):.1f} deg "
-        f"at t = {t[k]:.6g} s (beyond the limit from t = {first:.6g} s on)",
-        key="leg.u_axis",
-        allowed="|beta| at most 85 deg",
-        next_step="Turn the universal joint's first axis (u_axis), or reduce the motion",
-    )
+class _Fold(NamedTuple):
+    """Words of a refusal: what happens to the joint of a leg, where to look, what is allowed, what to do."""
+
+    what: str
+    key: str
+    allowed: str
+    next_step: str
+
+
+_FOLDS = {
+    "universal joint": _Fold(
+        "the universal joint of leg {} folds to beta =",
+        "leg.u_axis",
+        "|beta| at most 85 deg",
+        "Turn the universal joint's first axis (u_axis), or reduce the motion",
+    ),
+    "base joint": _Fold(
+        "the joint at the base of leg {} folds to",
+        "leg.base_joint.axis",
+        "at most 85 deg",
+        "Turn the axis of the joint, or reduce the motion",
+    ),
+    "platform joint": _Fold(
+        "the joint at the platform of leg {} folds to",
+        "leg.platform_joint.axis",
+        "at most 85 deg",
+        "Turn the axis of the joint, or reduce the motion",
+    ),
+    "carriage": _Fold(
+        "between leg {} and the way of its carriage the angle is",
+        "leg.carriage",
+        "at most 85 deg: at 90 deg the carriage cannot hold the leg, and beyond the leg stands on the other side",
+        "Reduce the motion, or choose the other side (carriage.side)",
+    ),
+}
+
+
+def _refuse_folded(t: Array, found: rigid.Reach) -> None:
+    for joint, angle in found.angles.items():
+        if angle.max() <= BETA_LIMIT:
+            continue
+        words = _FOLDS[joint]
+        k, leg = np.unravel_index(angle.argmax(), angle.shape)
+        first = t[np.argmax(angle[:, leg] > BETA_LIMIT)]
+        raise InputError(
+            f"{words.what.format(leg + 1)} {np.rad2deg(angle[k, leg]):.1f} deg "
+            f"at t = {t[k]:.6g} s (beyond the limit from t = {first:.6g} s on)",
+            key=words.key,
+            allowed=words.allowed,
+            next_step=words.next_step,
+        )
 
 
 def _refuse_singular(t: Array, found: rigid.NearestSingularity) -> None:

@@ -52,6 +52,8 @@ REASONS = (
     Reason("unstable", "no equilibrium: the robot buckles under its load"),
     Reason("falls_through", equilibrium.FALLS_THROUGH),
     Reason("no_mass", "the mass matrix is not positive"),
+    Reason("out_of_reach", "a leg does not reach its platform joint"),
+    Reason("carriage_stops", "a carriage leaves its stroke"),
 )
 """Reasons by code."""
 
@@ -80,7 +82,8 @@ def leg_limits(robot: Robot) -> tuple[Array, Array, Array]:
     """Stroke limits (legs, 2), mouths and piston lengths (legs,) [m]; 0 and inf where a leg has no limits."""
     limits = [(leg.stroke.min, leg.stroke.max) if leg.stroke else (0.0, np.inf) for leg in robot.legs]
     mouth = np.array([leg.cylinder.mouth for leg in robot.legs])
-    return np.array(limits), mouth, np.array([leg.piston.length for leg in robot.legs])
+    piston = [leg.piston.length if leg.strut is None else np.inf for leg in robot.legs]
+    return np.array(limits), mouth, np.array(piston)
 
 
 def rigid_codes(robot: Robot, path: rigid.Poses, *, from_home: bool) -> Codes:
@@ -97,14 +100,17 @@ def rigid_codes(robot: Robot, path: rigid.Poses, *, from_home: bool) -> Codes:
         Whether a pose also counts as out of reach where the scaled Jacobian is singular (smallest singular value
         below 1e-8) or its determinant has not the sign that it has at home: every way there passes a singularity.
     """
-    length = rigid.leg_lengths(robot.base_joints, robot.platform_joints, path.position, path.rotation)
+    found = rigid.reach(robot, path)
+    length = found.length
     limits, mouth, piston = leg_limits(robot)
     short, long = (limits[:, 0] - length).max(axis=1), (length - limits[:, 1]).max(axis=1)
     guided = np.where(mouth > 0, mouth + piston, np.inf)
     code = np.zeros(len(path), dtype=np.int8)
     marks = [  # later ones overrule earlier ones
         ("singular", _cut_off(robot, path) if from_home else np.zeros(len(path), dtype=bool)),
-        ("joint_folds", _folded(robot, path, length)),
+        ("out_of_reach", found.lost),
+        ("joint_folds", np.any([(angle > BETA_LIMIT).any(axis=1) for angle in found.angles.values()], axis=0)),
+        ("carriage_stops", _stopped(robot, found.carriage)),
         ("pulled_out", (length > guided).any(axis=1)),
         ("no_free_length", (length <= mouth).any(axis=1)),
         ("leg_too_long", (long > 0) & (long >= short)),
@@ -121,10 +127,10 @@ def equilibrium_codes(code: NDArray[np.integer]) -> Codes:
     return table[code]
 
 
-def _folded(robot: Robot, path: rigid.Poses, length: Array) -> NDArray[np.bool_]:
-    axes = (path.point(robot.platform_joints)[0] - robot.base_joints) / np.maximum(length, 1e-12)[..., None]
-    _, beta = rigid.joint_angles(rigid.home_frames(robot), axes)
-    return (np.abs(beta) > BETA_LIMIT).any(axis=1)
+def _stopped(robot: Robot, place: Array) -> NDArray[np.bool_]:
+    travels = [leg.carriage.stroke if leg.carriage else None for leg in robot.legs]
+    limits = np.array([(-np.inf, np.inf) if travel is None else (travel.min, travel.max) for travel in travels])
+    return np.any((place < limits[:, 0]) | (place > limits[:, 1]), axis=1)
 
 
 def _cut_off(robot: Robot, path: rigid.Poses) -> NDArray[np.bool_]:

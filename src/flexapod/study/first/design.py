@@ -103,7 +103,7 @@ def _amplitude(request: Request, study: model.Study, leg: Leg) -> float:
     coordinates[:, axis] = amplitudes
     home = rigid.home_pose(robot)
     path = rigid.Poses.at_rest(home.position + coordinates[:, :3], rigid.rotation_matrix(coordinates[:, 3:]))
-    length = rigid.leg_directions(robot, path)[0]
+    length = rigid.reach(robot, path).length
     used = np.abs(length - robot.home_lengths).max(axis=1) / (0.5 * sizes.SHARE * (leg.longest - leg.shortest))
     singular = np.array([_smallest(robot, path, k) for k in range(0, len(amplitudes), 20)])
     if singular[0] < LEAST_SINGULAR:
