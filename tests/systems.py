@@ -1,12 +1,9 @@
 """Robots with balls at the platform as systems of equations, leg by leg, for tests of the solvers alone."""
 
-from functools import cache
-
 import numpy as np
+from tests.runs import uncompiled
 
-from flexapod.bases import lateral_basis
 from flexapod.mechanics.layout import LEG_PARAMETERS, PAYLOAD_PARAMETERS
-from flexapod.solve.kernel import kernel
 from flexapod.solve.many import RestStates
 from flexapod.solve.system import System
 
@@ -26,17 +23,11 @@ def frame(x, z):
     return np.stack([x, np.cross(z, x), z], axis=1)
 
 
-@cache
-def functions(modes, axial):
-    lateral = lateral_basis("tip-load", modes) if modes else lateral_basis("clamped-free", 0)
-    return kernel(space_shapes(lateral, axial))
-
-
 def robot(base, joints, axes, *, height=0.9, modes=2, axial=1, gravity=9.81, com=(0.0, 0.0, 0.1), mass=20.0, legs=None):
     """System at home and its undeformed state: bases (n, 3), platform joints (n, 3), first axes (n, 3) of the legs."""
     base, joints = np.array(base, dtype=float), np.array(joints, dtype=float)
     tips, down, rows, q = joints + np.array([0, 0, height]), np.array([0, 0, -gravity]), [], []
-    f = functions(modes, axial)
+    f = uncompiled("tip-load" if modes else "clamped-free", modes, axial)
     for k, (b, tip, axis) in enumerate(zip(base, tips, axes, strict=True)):
         R0 = frame(np.array(axis, dtype=float), tip - b)
         own = PISTON | CYLINDER | (legs[k] if legs else {})
