@@ -186,7 +186,7 @@ def needed(chain, gravity, q, rates, accelerations):
 def forces(mechanism, motion, wrench=None, weights=None):
     """Forces for a motion; `wrench` (6,) = force, moment at the tool, world axes.
 
-    Where rigid statics leaves forces open, those with the least sum of weights (n,) times squared drive forces.
+    Where rigid statics leaves forces open, those of the least sum of weights (n,) times squared thrusts at the tips.
     """
     legs, count = mechanism.legs, len(mechanism.legs)
     load = needed(mechanism.platform, mechanism.gravity, *motion.platform)[0][0]
@@ -206,21 +206,21 @@ def forces(mechanism, motion, wrench=None, weights=None):
     lam = solved(G, b)
     if np.abs(G @ lam - b).max() > 1e-8 * np.abs(b).max():
         raise ValueError("these drives cannot hold the platform")
-    lam, free = _settled(G, lam, legs, parts, weights)
+    lam, free = _settled(G, lam, mechanism, motion, weights)
     return _named(legs, motion, parts, place, lam.reshape(count, 6), free)
 
 
-def _settled(G, lam, legs, parts, weights):
+def _settled(G, lam, mechanism, motion, weights):
     """The forces of least weighted squares among those that rigid statics allows."""
-    null = null_space(G, rcond=RANK)
-    D, rest = np.zeros((len(legs), lam.size)), np.zeros(len(legs))
-    for i, (leg, (whole, now)) in enumerate(zip(legs, parts, strict=True)):
-        if leg.drive is not None:
-            D[i, 6 * i : 6 * i + 6] = now[leg.drive]
-            rest[i] = now[leg.drive] @ whole[leg.drive + 1]
+    legs, null = mechanism.legs, null_space(G, rcond=RANK)
+    D = np.zeros((len(legs), lam.size))
+    for i, (leg, state) in enumerate(zip(legs, motion.legs, strict=True)):
+        along = (leg.tip - leg.base) / np.linalg.norm(leg.tip - leg.base)
+        rod = leg.bodies[-1].after if leg.bodies else len(leg.joints)
+        D[i, 6 * i + 3 : 6 * i + 6] = placed(leg, state[0])[0][rod][:3, :3] @ along
     root = np.ones(len(legs)) if weights is None else np.sqrt(np.asarray(weights) / np.max(weights))
     U, size, V = np.linalg.svd(root[:, None] * (D @ null), full_matrices=False)
-    share = np.divide(U.T @ (root * (D @ lam + rest)), size, out=np.zeros_like(size), where=size > RANK)
+    share = np.divide(U.T @ (root * (D @ lam)), size, out=np.zeros_like(size), where=size > RANK)
     return lam - null @ (V.T @ share), int((size > RANK).sum())
 
 
