@@ -26,6 +26,7 @@ __all__ = [
     "legs_at",
     "lost_words",
     "reach",
+    "refuse_lost",
     "sides",
 ]
 
@@ -49,7 +50,7 @@ def leg_state(limbs: Limbs, path: Poses) -> LegState:
     """
     task = Task(limbs.unknown, np.zeros(6, dtype=bool), np.zeros(3))
     found = close(limbs, task, _tiled(limbs, len(path)), path)
-    _refuse_lost(limbs, found)
+    refuse_lost(limbs, found)
     _refuse_folded(limbs, found.q)
     return _as_state(limbs, move(limbs, task, found, path))
 
@@ -67,7 +68,7 @@ def follow(limbs: Limbs, unknown: Mask, law: Law, pivot: Array, t: Array | None 
     given = Law(*(np.where(unknown, 0.0, part) for part in law))
     found = close(limbs, task, _tiled(limbs, len(law.position)), given.position)
     if t is not None:
-        _refuse_lost(limbs, found, t)
+        refuse_lost(limbs, found, t)
     moved = move(limbs, task, found, Law(found.x, *given[1:]))
     return poses_from_coordinates(Poses.at_rest(limbs.position, limbs.rotation), moved.platform, pivot)
 
@@ -94,7 +95,7 @@ def forward(limbs: Limbs, drives: Array, guess: Poses | None = None) -> Poses:
     start = None
     if guess is not None:
         start = legs_at(limbs, guess)
-        _refuse_lost(limbs, start)
+        refuse_lost(limbs, start)
     found = close(limbs, task, q, np.zeros((len(drives), 6)), start)
     if np.isnan(found.q).any():
         k = int(np.argmax(np.isnan(found.q).any(axis=(1, 2))))
@@ -203,7 +204,8 @@ def lost_words(limbs: Limbs, gap: Array) -> str:
     return f"leg {leg + 1}, {limbs.chain[leg]}, does not reach its platform joint{off}"
 
 
-def _refuse_lost(limbs: Limbs, found: Closed, t: Array | None = None) -> None:
+def refuse_lost(limbs: Limbs, found: Closed, t: Array | None = None) -> None:
+    """Refuse poses that the legs do not reach, with leg and instant `t` (T,), else with the number of the pose."""
     lost = np.asarray(np.isnan(found.q).any(axis=(1, 2)))
     if not lost.any():
         return

@@ -49,9 +49,9 @@ def _names(twists: Array, names: Sequence[str]) -> tuple[str, ...]:
     rest = np.delete(np.eye(6), pure, axis=1)
     left = rest.T @ shares @ rest
     rows = np.linalg.eigh(left)[1][:, ::-1][:, : twists.shape[1] - len(pure)].T @ rest.T
+    mixed = ([int(k) for k in np.argsort(-np.abs(row), kind="stable") if abs(row[k]) > PURE] for row in _reduced(rows))
     return tuple(names[k] for k in pure) + tuple(
-        " with ".join(names[int(k)] for k in np.argsort(-np.abs(row), kind="stable") if abs(row[k]) > PURE)
-        for row in _reduced(rows)
+        f"{names[first]} with {' and '.join(names[k] for k in others)}" for first, *others in mixed
     )
 
 
@@ -139,20 +139,21 @@ def _count(number: int, what: str) -> str:
     return f"{number} {what}{'' if number == 1 else 's'}"
 
 
-def mobility_words(limbs: Limbs) -> list[str]:
+def mobility_words(limbs: Limbs, at: Posture | None = None) -> list[str]:
     """What `check` says about the motions of a mechanism, sentence by sentence without full stops."""
-    home = mobility(limbs)
-    near = [mobility(limbs, at) for at in displaced(limbs)]
+    home, near = mobility(limbs, at), [mobility(limbs, there) for there in displaced(limbs, at)]
+    here = "home" if at is None else "this pose"
     count = home.platform.shape[1]
-    words = [f"{_count(count, 'motion')}: {', '.join(motion_names(limbs, home.platform))}"] if count else ["no motion"]
+    names = ", ".join(motion_names(limbs, home.platform, at))
+    words = [f"{_count(count, 'motion')}: {names}" if count else "no motion"]
     fewer = [m.platform.shape[1] for m in near if m.platform.shape[1] < count]
     if fewer:
-        words.append(f"next to home it has {_count(min(fewer), 'motion')} only")
+        words.append(f"next to {here} it has {_count(min(fewer), 'motion')} only")
     more = int((limbs.state == DRIVEN).sum()) - count
     if more > 0:
         number = _NUMBERS[more] if more < len(_NUMBERS) else str(more)
         words.append(f"{number} drive{'s' * (more > 1)} more than motions: forces are shared by stiffness")
-    words += _loose_words(limbs, home, near)
+    words += _loose_words(limbs, home, near, at)
     if home.redundant:
         words.append(
             f"over-constrained: {_count(home.redundant, 'condition')} of its joints "
@@ -170,14 +171,15 @@ def _legs(legs: list[int]) -> str:
     return f"legs {', '.join(map(str, legs[:-1]))} and {legs[-1]}"
 
 
-def _loose_words(limbs: Limbs, home: Mobility, near: list[Mobility]) -> list[str]:
+def _loose_words(limbs: Limbs, home: Mobility, near: list[Mobility], at: Posture | None = None) -> list[str]:
     """What is left free with all drives locked."""
     loose = home.locked_platform.shape[1]
     if not loose:
         return []
-    names = ", ".join(motion_names(limbs, home.locked_platform))
-    at_home = all(m.locked_platform.shape[1] < loose for m in near)
-    return [f"with all drives locked it still has {_count(loose, 'motion')}: {names}{': singular at home' * at_home}"]
+    names = ", ".join(motion_names(limbs, home.locked_platform, at))
+    here = f": singular at {'home' if at is None else 'this pose'}"
+    only = all(m.locked_platform.shape[1] < loose for m in near)
+    return [f"with all drives locked it still has {_count(loose, 'motion')}: {names}{here * only}"]
 
 
 def refuse_loose(limbs: Limbs) -> None:

@@ -16,7 +16,7 @@ from flexapod.rigid.kinematics import LegState
 from flexapod.rigid.laws import Law
 from flexapod.rigid.limbs import COORDINATES, DRIVEN, Limbs, limbs
 from flexapod.rigid.mechanism import Reach
-from flexapod.rigid.mobility import Mobility, mobility
+from flexapod.rigid.mobility import Mobility, Posture, mobility
 from flexapod.rigid.trajectory import Poses
 from flexapod.typing import Array, Mask
 
@@ -39,6 +39,7 @@ __all__ = [
     "payload_body",
     "poses",
     "poses_from_home",
+    "posture",
     "postures",
     "pull_out",
     "reach",
@@ -82,6 +83,20 @@ def rigid_limbs(robot: Robot) -> Limbs:
 def home_frames(robot: Robot) -> Array:
     """Home frames [x y z]_i of the legs, leg to world, shape (n, 3, 3), read-only, Eq. (T2.14)."""
     return rigid_limbs(robot).frames
+
+
+def posture(robot: Robot, pose: Poses) -> Posture:
+    """Legs and platform at one pose.
+
+    Raises
+    ------
+    InputError
+        The legs do not reach it.
+    """
+    legs = rigid_limbs(robot)
+    found = mechanism.legs_at(legs, pose)
+    mechanism.refuse_lost(legs, found)
+    return Posture(found.q, pose.position[0], pose.rotation[0])
 
 
 def reach(robot: Robot, path: Poses) -> Reach:

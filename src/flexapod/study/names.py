@@ -159,6 +159,21 @@ _STATIC = {
     "com_sag": Variable(("axis",), "m", "displacement of the centre of mass by gravity and load"),
 }
 
+_MOBILITY = {
+    "mobility": Variable((), "1", "motions of the robot, of legs that move by themselves too"),
+    "locked": Variable((), "1", "motions left with all drives locked"),
+    "redundant": Variable((), "1", "conditions of joints that say what others say"),
+    "self_stress": Variable((), "1", "forces that drives and joints can exert against each other"),
+    "freedoms": Variable((), "1", "freedoms of all joints together"),
+    "gruebler": Variable((), "1", "motions by counting joints and loops"),
+    "motions": Variable(("motion",), "1", "name of a motion of the platform"),
+    "motion_twist": Variable(
+        ("motion_basis", "component"), "mixed", "motions of the platform frame's origin [m] and rotations [rad]"
+    ),
+    "mobility_nearby": Variable(("posture",), "1", "motions at two displaced poses"),
+    "locked_nearby": Variable(("posture",), "1", "motions left with all drives locked at two displaced poses"),
+}
+
 _ACTUATOR = {
     "length": Variable(_T, "m", "length of the beam outside the hub"),
     "angle": Variable(_T, "rad", "angle of the hub from the horizontal"),
@@ -171,7 +186,7 @@ _ACTUATOR = {
 }
 
 #: Every variable of every Dataset, by name.
-VARIABLES: Mapping[str, Variable] = {**_PATH, **_COMMAND, **_LEGS, **_ENERGY, **_STATIC, **_ACTUATOR}
+VARIABLES: Mapping[str, Variable] = {**_PATH, **_COMMAND, **_LEGS, **_ENERGY, **_STATIC, **_MOBILITY, **_ACTUATOR}
 
 #: The actuator's own form of variables that a robot has per leg or with another zero.
 ACTUATOR_FORMS = {
