@@ -87,6 +87,11 @@ class Deck:
         self.elements("SPRINGA", np.array(pairs), name)
         self.write(f"*SPRING, ELSET={name}", "", number(stiffness))
 
+    def grounded(self, node: int, stiffness: float, name: str) -> None:
+        """A spring [N/m] on the displacement of a node along x."""
+        self.elements("SPRING1", np.array([[node]]), name)
+        self.write(f"*SPRING, ELSET={name}", "1", number(stiffness))
+
     def fixed(self, nodes: Iterable[int]) -> None:
         """Nodes that do not move."""
         self.write("*BOUNDARY", *(f"{node}, 1, 3" for node in nodes))

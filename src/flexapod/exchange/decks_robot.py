@@ -11,21 +11,28 @@ from dataclasses import dataclass
 from itertools import pairwise
 
 import numpy as np
+from numpy.typing import NDArray
 from scipy.linalg import qr
 
 from flexapod.exchange.decks import Deck, Term, number
+from flexapod.exchange.decks_legs import LegAtPose, PayloadAtPose
 from flexapod.exchange.decks_ties import Tie, cross_matrix, solved
 from flexapod.fem.mesh import extruded
 from flexapod.fem.section_mesh import section_mesh
 from flexapod.model import Rectangle
 from flexapod.typing import Array
 
-__all__ = ["Carriers", "LegAtPose", "PayloadAtPose", "drive_shift", "point_masses", "write_leg", "write_payload"]
+__all__ = [
+    "Carriers",
+    "drive_shift",
+    "point_masses",
+    "write_leg",
+    "write_payload",
+]
 
 Carriers = dict[Term, Array]
-"""The six displacements in which the payload is free, each with the motion (6,) that it causes, see `write_payload`."""
+"""The displacements in which the payload is free, each with the motion (6,) that it causes, see `write_payload`."""
 
-_STIFF = 1e5  # of a locked drive, in EA / l: adds 1e-5 of a leg's compliance
 _NOTHING = 1e-9  # of a length, of a mass
 _ROUNDING = 1e-13  # of the largest second moment of a body
 _NEAR = 1e-3  # of the leg: a spring that short has no direction to rely on
@@ -33,68 +40,11 @@ _BEHIND = 0.05  # of the leg: where the drive of a piston is anchored that ends 
 
 
 @dataclass(frozen=True, kw_only=True)
-class LegAtPose:
-    """A leg at a pose, SI, world axes.
-
-    `base`, `tip` (3,): its joints; `axes` (3, 3): columns x, y, z of the leg, z towards the tip; `first_axis` (3,) of
-    the universal joint, whose second is y; `mouth`, `piston_length` [m]; `EA`, `EI`, `rhoA` of the piston; `mass`,
-    `com`, `inertia`, `axial_inertia` of the cylinder; `drive` [N/m], inf for a prescribed stroke; `force` [N] that a
-    force drive gives beside that spring.
-    """
-
-    base: Array
-    tip: Array
-    axes: Array
-    first_axis: Array
-    mouth: float
-    piston_length: float
-    EA: float
-    EI: float
-    rhoA: float
-    mass: float
-    com: float
-    inertia: float
-    axial_inertia: float
-    drive: float
-    force: float
-
-    @property
-    def length(self) -> float:
-        """Joint to joint [m]."""
-        return float(np.linalg.norm(self.tip - self.base))
-
-    @property
-    def free_length(self) -> float:
-        """Of the piston, outside the cylinder [m]."""
-        return self.length - self.mouth
-
-    @property
-    def side(self) -> float:
-        """Side of the square bar that has the piston's EI / EA [m]."""
-        return float(np.sqrt(12 * self.EI / self.EA))
-
-    @property
-    def drive_spring(self) -> float:
-        """Stiffness of the spring that holds the piston's end [N/m]."""
-        return min(self.drive, _STIFF * self.EA / self.length)
-
-    def at(self, place: float | Array) -> Array:
-        """Points on the axis at distances from the universal joint, (3,) or (n, 3) [m]."""
-        return self.base + np.multiply.outer(place, self.axes[:, 2])
-
-
-@dataclass(frozen=True, kw_only=True)
-class PayloadAtPose:
-    """The payload at a pose: `mass` [kg], `com` (3,) [m], `inertia` (3, 3) [kg m^2] about it, world axes."""
-
-    mass: float
-    com: Array
-    inertia: Array
-
-
-@dataclass(frozen=True, kw_only=True)
 class _Guided:
-    """A node whose displacement along `directions` (k, 3) is `motion` (k, 3) @ (l alpha, l beta, slide)."""
+    """A node whose displacement along `directions` is `motion` (k, n) @ the motions of its leg.
+
+    `directions` (k, 3), or (1, 1) of a node that moves along x alone.
+    """
 
     node: int
     directions: Array
@@ -130,21 +80,22 @@ def point_masses(mass: float, inertia: Array) -> tuple[Array, Array]:
     return places, np.append(np.full(2 * len(arms), mass / 6), [rest] * (len(places) - 2 * len(arms)))
 
 
-def write_payload(deck: Deck, payload: PayloadAtPose) -> Carriers:
-    """The payload as point masses that move as one body.
+def write_payload(deck: Deck, payload: PayloadAtPose, held: NDArray[np.bool_]) -> Carriers:
+    """The payload as point masses that move as one body; `held` (6,): motions that it does not have, world axes.
 
     Returns
     -------
     dict
-        Six displacements, and of each the motion it causes with the others zero: of the centre of mass [1], and
-        rotation [1/m], world axes.
+        Six displacements, fewer where some motions are held, and of each the motion it causes with the others zero: of
+        the centre of mass [1], and rotation [1/m], world axes.
     """
     places, masses = point_masses(payload.mass, payload.inertia)
     nodes = _masses(deck, payload.com + places, masses, "PAYLOAD")
     motion = np.vstack([np.hstack([np.eye(3), cross_matrix(r)]) for r in places])
     terms = [(node, axis) for node in nodes for axis in (1, 2, 3)]
-    free = np.sort(qr(motion.T, mode="r", pivoting=True)[-1][:6])
-    causes = np.asarray(np.linalg.inv(motion[free]), dtype=np.float64)
+    free = np.sort(qr(motion[:, ~held].T, mode="r", pivoting=True)[-1][: (~held).sum()])
+    causes = np.zeros((6, len(free)))
+    causes[~held] = np.linalg.inv(motion[np.ix_(free, np.flatnonzero(~held))])
     carriers = {terms[j]: causes[:, k] for k, j in enumerate(free)}
     share = motion @ causes
     deck.say("The payload moves as one body:")
@@ -170,26 +121,65 @@ def write_leg(deck: Deck, leg: LegAtPose, name: str, count: int, payload: Payloa
     """A leg, with `count` solid elements along the free piston; `carriers` from `write_payload`."""
     deck.say("", f"{name}: {leg.length:.6g} m from joint to joint, {leg.free_length:.6g} m of the piston free.")
     mouth, tip = _free_piston(deck, leg, name, count)
-    guided = [*mouth, *_inside(deck, leg, name, count), *_cylinder(deck, leg, name)]
+    guided = [*mouth, *_inside(deck, leg, name, count), *_cylinder(deck, leg, name), *_foot(deck, leg, name)]
     deck.say("The cylinder turns about its joint, the piston slides in it, the payload holds the tip:")
-    deck.equations(solved([_guide(guided), _joint(leg, tip, payload, carriers)], keep=carriers.keys()))
+    deck.equations(solved([_guide(guided), _joint(deck, leg, tip, payload, carriers, name)], keep=carriers.keys()))
 
 
 def drive_shift(leg: LegAtPose, name: str) -> list[str]:
     """Lines of *BOUNDARY in a step: the anchor of the drive's spring moves until the spring pushes with its force."""
     shift = leg.force / leg.drive_spring * leg.axes[:, 2] if leg.force else np.zeros(3)
+    if leg.carriage is not None and leg.carriage.force:
+        shift, name = leg.carriage.force / leg.carriage.spring * leg.carriage.direction, f"{name}FOOT"
     return [f"{name}BASE, {axis}, {axis}, {number(x)}" for axis, x in enumerate(shift, start=1) if x]
 
 
 def _turned(leg: LegAtPose, point: Array) -> Array:
-    """Displacement (3, 2) of a point by the two angles of the universal joint times the leg's length."""
-    return cross_matrix(point - leg.base) @ np.column_stack([leg.first_axis, leg.axes[:, 1]]) / leg.length
+    """Displacements (3, k) of a point of the cylinder by the motions of the leg but those of the piston."""
+    return np.column_stack([_carried_along(leg, point), cross_matrix(point - leg.base) @ leg.turns.T / leg.length])
+
+
+def _carried_along(leg: LegAtPose, point: Array) -> Array:
+    """Displacement (3, 1) of a point of the cylinder where the carriage gives way; (3, 0) where nothing does."""
+    foot = leg.carriage
+    return np.zeros((3, 0)) if foot is None else (foot.direction + np.cross(foot.turn, point - leg.base))[:, None]
 
 
 def _carried(leg: LegAtPose, node: int, point: Array, *, slides: bool) -> _Guided:
-    """A node on the cylinder, or on a section of the piston that slides in it without turning."""
-    motion = np.column_stack([_turned(leg, point), leg.axes[:, 2] * slides])
+    """A node on the cylinder, or on a section of the piston that slides in it."""
+    z = leg.axes[:, 2]
+    turn = np.cross(z, point - leg.base)[:, None] / leg.side if leg.piston_turns else np.zeros((3, 0))
+    motion = np.column_stack([_turned(leg, point), z * slides, turn * slides])
     return _Guided(node=node, directions=np.eye(3), motion=motion)
+
+
+def _sprung(deck: Deck, motion: Array, stiffness: float, size: float, name: str) -> _Guided:
+    """A node that moves along x by `size` [m] times an angle, the one motion of `motion` (n,), with its spring."""
+    node = int(deck.nodes(np.zeros(3), name)[0])
+    deck.write("*BOUNDARY", f"{node}, 2, 3")
+    deck.grounded(node, stiffness / size**2, name)
+    return _Guided(node=node, directions=np.eye(1), motion=motion[None])
+
+
+def _foot(deck: Deck, leg: LegAtPose, name: str) -> list[_Guided]:
+    """What gives way at the base: springs of the joint, mass and drive of a carriage."""
+    moves = leg.carriage is not None
+    count = moves + len(leg.turns) + 1 + leg.piston_turns
+    found = [
+        _sprung(deck, np.eye(count)[moves + k], stiffness, leg.length, f"{name}TURN{k + 1}")
+        for k, stiffness in enumerate(leg.turn_springs)
+        if stiffness
+    ]
+    if leg.carriage is not None:
+        place, anchor = leg.base, leg.base - _BEHIND * leg.length * leg.carriage.direction
+        node, held = (int(deck.nodes(at, f"{name}{part}")[0]) for at, part in ((place, "SLIDE"), (anchor, "FOOT")))
+        deck.fixed([held])
+        if leg.carriage.mass:
+            deck.mass([node], leg.carriage.mass, f"{name}CARRIAGE")
+        if leg.carriage.spring:
+            deck.springs([(held, node)], leg.carriage.spring, f"{name}FOOTDRIVE")
+        found.append(_carried(leg, node, place, slides=False))
+    return found
 
 
 def _free_piston(deck: Deck, leg: LegAtPose, name: str, count: int) -> tuple[list[_Guided], list[tuple[int, Array]]]:
@@ -219,16 +209,20 @@ def _inside(deck: Deck, leg: LegAtPose, name: str, count: int) -> list[_Guided]:
         deck.mass(nodes[1::2], 4 * share, f"{name}ODD")
         if pieces > 2:
             deck.mass(nodes[2:-1:2], 2 * share, f"{name}EVEN")
-    anchor = 0.0 if abs(places[-1]) > _NEAR * leg.length else -_BEHIND * leg.length
-    held = int(deck.nodes(leg.at(anchor), f"{name}BASE")[0])
-    deck.fixed([held])
-    deck.springs([(held, nodes[-1])], leg.drive_spring, f"{name}DRIVE")
-    across = leg.axes[:, :2].T
+    across, still, driven = leg.axes[:, :2].T, np.zeros((2, 1 + leg.piston_turns)), []
+    if leg.drive:
+        place = leg.at(0.0 if abs(places[-1]) > _NEAR * leg.length else -_BEHIND * leg.length)
+        held = int(deck.nodes(place, f"{name}BASE")[0])
+        deck.springs([(held, nodes[-1])], leg.drive_spring, f"{name}DRIVE")
+        if leg.carriage is None:
+            deck.fixed([held])
+        else:
+            driven = [_carried(leg, held, place, slides=False)]
     loose = [
-        _Guided(node=node, directions=across, motion=np.column_stack([across @ _turned(leg, point), np.zeros(2)]))
+        _Guided(node=node, directions=across, motion=np.column_stack([across @ _turned(leg, point), still]))
         for node, point in zip(nodes[1:], points[1:], strict=True)
     ]
-    return [_carried(leg, nodes[0], points[0], slides=True), *loose]
+    return [_carried(leg, nodes[0], points[0], slides=True), *loose, *driven]
 
 
 def _cylinder(deck: Deck, leg: LegAtPose, name: str) -> list[_Guided]:
@@ -243,21 +237,33 @@ def _cylinder(deck: Deck, leg: LegAtPose, name: str) -> list[_Guided]:
 
 
 def _guide(guided: Sequence[_Guided]) -> Tie:
-    """All that moves with the cylinder's two angles and the slide of the piston's section at the mouth."""
-    rows = np.zeros((sum(len(g.directions) for g in guided), 3 * len(guided)))
-    row = 0
-    for i, g in enumerate(guided):
-        rows[row : row + len(g.directions), 3 * i : 3 * i + 3] = g.directions
-        row += len(g.directions)
-    terms = tuple((g.node, axis) for g in guided for axis in (1, 2, 3))
-    return Tie(terms=terms, rows=rows, motion=np.vstack([g.motion for g in guided]))
+    """All that moves with carriage, base joint and the slide of the piston's section at the mouth."""
+    terms = [(g.node, axis) for g in guided for axis in ((1, 2, 3) if g.directions.shape[1] == 3 else (1,))]
+    rows = np.zeros((sum(len(g.directions) for g in guided), len(terms)))
+    row = column = 0
+    for g in guided:
+        height, width = g.directions.shape
+        rows[row : row + height, column : column + width] = g.directions
+        row, column = row + height, column + width
+    return Tie(terms=tuple(terms), rows=rows, motion=np.vstack([g.motion for g in guided]))
 
 
-def _joint(leg: LegAtPose, tip: Sequence[tuple[int, Array]], payload: PayloadAtPose, carriers: Carriers) -> Tie:
-    """The section at the tip turns about its middle, which moves with the payload."""
-    arm = np.hstack([np.eye(3), cross_matrix(leg.tip - payload.com)])
-    held = arm @ np.column_stack(list(carriers.values()))
-    rows = np.hstack([np.eye(3 * len(tip)), np.tile(-held, (len(tip), 1))])
-    terms = tuple((node, axis) for node, _ in tip for axis in (1, 2, 3))
-    turns = np.vstack([cross_matrix(point - leg.tip) / leg.side for _, point in tip])
-    return Tie(terms=(*terms, *carriers), rows=rows, motion=turns)
+def _joint(
+    deck: Deck, leg: LegAtPose, tip: Sequence[tuple[int, Array]], payload: PayloadAtPose, carriers: Carriers, name: str
+) -> Tie:
+    """The section at the tip turns about its middle as its joint allows; the middle moves with the payload."""
+    ball = leg.ends is None
+    axes = np.eye(3) if leg.ends is None else leg.ends
+    turns = [cross_matrix(point - leg.tip) @ axes.T / leg.side for _, point in tip]
+    arms = [np.hstack([np.eye(3), cross_matrix((leg.tip if ball else point) - payload.com)]) for _, point in tip]
+    moved = np.column_stack([*carriers.values(), np.zeros((6, 0))])
+    springs = [
+        _sprung(deck, np.eye(len(axes))[k] * leg.length / leg.side, stiffness, leg.length, f"{name}END{k + 1}")
+        for k, stiffness in enumerate(leg.end_springs)
+        if stiffness
+    ]
+    rows = np.zeros((3 * len(tip) + len(springs), 3 * len(tip) + len(springs) + len(carriers)))
+    rows[:, : len(rows)] = np.eye(len(rows))
+    rows[: 3 * len(tip), len(rows) :] = -np.vstack(arms) @ moved
+    terms = [*((node, axis) for node, _ in tip for axis in (1, 2, 3)), *((s.node, 1) for s in springs)]
+    return Tie(terms=(*terms, *carriers), rows=rows, motion=np.vstack([*turns, *(s.motion for s in springs)]))

@@ -7,7 +7,8 @@ import numpy as np
 from flexapod import model, rigid
 from flexapod.errors import InputError
 from flexapod.exchange.decks import Deck, number
-from flexapod.exchange.decks_robot import Carriers, LegAtPose, PayloadAtPose, drive_shift, write_leg, write_payload
+from flexapod.exchange.decks_legs import LegAtPose, PayloadAtPose, axial_inertia, legs_at_pose
+from flexapod.exchange.decks_robot import Carriers, drive_shift, write_leg, write_payload
 from flexapod.solve.modes import locked_poses, the_equilibrium
 from flexapod.solve.rest import at_drives
 from flexapod.study.arguments import LoadLike, PoseLike, RobotLike, as_pose, at_pose
@@ -72,14 +73,14 @@ def abaqus_deck(
     the_equilibrium(locked)
     _check_count("elements", elements, 2, _MOST)
     _check_count("modes", modes, 1, _MOST)
-    legs = _legs(robot, path, at_drives(locked.system, robot, locked.acts.force)[0])
+    legs = legs_at_pose(robot, path, at_drives(locked.system, robot, locked.acts.force)[0])
     R = path.rotation[0]
     payload = PayloadAtPose(
         mass=robot.payload.mass, com=path.point(robot.payload.com)[0][0], inertia=R @ robot.payload.inertia @ R.T
     )
     deck = Deck(title)
     deck.say(*_explanation(robot, path, elements))
-    carriers = write_payload(deck, payload)
+    carriers = write_payload(deck, payload, rigid.rigid_limbs(robot).hub_held)
     for i, leg in enumerate(legs, start=1):
         write_leg(deck, leg, f"LEG{i}", elements, payload, carriers)
     wrench = locked.acts.wrench.copy()
@@ -91,76 +92,9 @@ def abaqus_deck(
 def left_out(robot: model.Robot) -> list[str]:
     """What of the robot the deck does not have, in words."""
     found = ["damping"]
-    if any(leg.piston.axial_inertia and _axial(leg) == leg.cylinder.axial_inertia for leg in robot.legs):
+    if any(leg.piston.axial_inertia and axial_inertia(leg) == leg.cylinder.axial_inertia for leg in robot.legs):
         found.append("leg.piston.axial_inertia, which no cylinder of the given mass and inertia could carry")
     return found
-
-
-def _axial(leg: model.Leg) -> float:
-    """Inertia about the axis of what spins with the cylinder, as far as a body with its transverse one can have it."""
-    whole = leg.cylinder.axial_inertia + leg.piston.axial_inertia
-    return whole if leg.cylinder.mass and whole <= 2 * leg.cylinder.inertia else leg.cylinder.axial_inertia
-
-
-def _legs(robot: model.Robot, path: rigid.Poses, force: Array) -> list[LegAtPose]:
-    state, frames = rigid.inverse_kinematics(robot, path), rigid.home_frames(robot)
-    axes = rigid.leg_rotations(frames, state.alpha, state.beta)[0]
-    tips = path.point(robot.platform_joints)[0][0]
-    legs = []
-    for i, leg in enumerate(robot.legs):
-        cylinder, piston = leg.cylinder, leg.piston
-        _check_leg(i + 1, leg, float(state.length[0, i]))
-        at = LegAtPose(
-            base=robot.base_joints[i],
-            tip=tips[i],
-            axes=axes[i],
-            first_axis=frames[i, :, 0],
-            mouth=cylinder.mouth,
-            piston_length=piston.length,
-            EA=piston.EA,
-            EI=piston.EI,
-            rhoA=piston.rhoA,
-            mass=cylinder.mass,
-            com=cylinder.com,
-            inertia=cylinder.inertia,
-            axial_inertia=_axial(leg),
-            drive=_drive(leg.drive),
-            force=float(force[i]),
-        )
-        legs.append(at)
-    return legs
-
-
-def _drive(drive: model.Drive) -> float:
-    """Stiffness of a locked drive [N/m]."""
-    if drive.type == "servo":
-        return drive.stiffness
-    return drive.feedback.stiffness if drive.type == "force" and drive.feedback else np.inf
-
-
-def _check_leg(i: int, leg: model.Leg, length: float) -> None:
-    free = length - leg.cylinder.mouth
-    if leg.piston.length < free * (1 - 1e-9):
-        raise InputError(
-            f"of leg {i} does not reach back to the mouth of its cylinder at this pose",
-            key="leg.piston.length",
-            value=leg.piston.length,
-            allowed=f"at least {free:.6g} m, the leg's length less leg.cylinder.mouth",
-        )
-    if not leg.piston.rhoA:
-        raise InputError(
-            f"of leg {i} leaves its solid elements without mass: finite element programs want some for frequencies",
-            key="leg.piston.rhoA",
-            value=0,
-            next_step="Give a small rhoA, as 1e-6 kg/m",
-        )
-    if not leg.cylinder.mass and (leg.cylinder.inertia or leg.cylinder.axial_inertia):
-        raise InputError(
-            f"of leg {i} has inertia without mass, which point masses cannot have",
-            key="leg.cylinder.inertia",
-            value=leg.cylinder.inertia,
-            next_step="Give leg.cylinder.mass, or no inertia",
-        )
 
 
 def _check_count(key: str, value: int, least: int, most: int) -> None:
@@ -169,7 +103,7 @@ def _check_count(key: str, value: int, least: int, most: int) -> None:
 
 
 def _explanation(robot: model.Robot, path: rigid.Poses, elements: int) -> list[str]:
-    shift, angles = path.position[0] - [0.0, 0.0, robot.home_height], _roll_pitch_yaw(path.rotation[0])
+    shift, angles = path.position[0] - robot.home_position, _roll_pitch_yaw(path.rotation[0] @ robot.home_rotation.T)
     moved = [f"{1e3 * x + 0.0:.6g} mm" for x in shift] + [f"{np.rad2deg(x) + 0.0:.6g} deg" for x in angles]
     words = ", ".join(f"{name} {value}" for name, value in zip(model.AXES, moved, strict=True))
     return [
@@ -183,7 +117,9 @@ def _explanation(robot: model.Robot, path: rigid.Poses, elements: int) -> list[s
         "end is held by a spring (set DRIVE): the servo's stiffness, or 1e5 EA / l for a locked stroke. Where a force "
         "drive pushes, its spring's anchor (set BASE) is moved until the spring pushes as much.",
         "Cylinders and payload are rigid: point masses with the body's mass, centre and inertia, joined by *EQUATION. "
-        "Universal joints at the base: two free rotations, the leg's twist held. Spherical joints at the platform.",
+        f"Joints at base and platform let turn what their letters allow ({robot.type}), by *EQUATION; springs of "
+        "joints act on nodes that move as their angles do (sets TURN, END). A bar twists as a square one: GJ is "
+        "0.84 EI.",
         f"Left out: {', '.join(left_out(robot))}.",
         "Solids have shear and rotary inertia, beams have not: bending frequencies of slender pistons lie below those "
         "of `flexapod modes`, by parts in ten thousand in the first and some thousandths in the second.",

@@ -1,4 +1,4 @@
-"""The 6-UPS robot by Exudyn: the same legs, joints and drives, with rigid pistons or cables of finite elements."""
+"""Robots on legs UPS and RPS by Exudyn: the same joints and drives, pistons rigid or cables of finite elements."""
 
 from __future__ import annotations
 
@@ -19,6 +19,9 @@ __all__ = ["MESHES", "STEP", "RobotProblem", "RobotResult", "simulate_robot"]
 STEP = 2.5e-4
 #: Elements per piston, distance of the rings [m]: one halved with the other, to extrapolate from.
 MESHES = ((30, 0.01), (60, 0.005))
+
+#: Legs that the model has.
+CHAINS = ("UPS", "RPS")
 
 _AT_REST = 1e-9  # m/s, m/s^2
 
@@ -43,6 +46,10 @@ class RobotProblem:
         if self.elements and self.guide <= 0:
             raise InputError("leaves the piston free to turn", key="guide", value=self.guide, allowed="above 0 m")
         for number, leg in enumerate(self.robot.legs, start=1):
+            if leg.chain not in CHAINS or leg.passive:
+                raise InputError(
+                    "is not modelled in Exudyn", key=f"leg {number}: chain", value=leg.chain, allowed=", ".join(CHAINS)
+                )
             if leg.drive.type != "prescribed":
                 raise InputError(
                     "is not modelled in Exudyn",

@@ -1,8 +1,8 @@
 """The robot in Exudyn's terms. Imports Exudyn: load it in a process of its own (`exudyn_process`).
 
-A leg is a kinematic tree in minimal coordinates: two hinges of the universal joint, then a slide. Its last link is the
-rigid piston, or a carriage of next to no mass that holds the inner end of a chain of ANCF cables; two frictionless
-rings on the cylinder, one of them in its mouth, guide the chain.
+A leg is a kinematic tree in minimal coordinates: one hinge or the two of a universal joint, then a slide. Its last link
+is the rigid piston, or a carriage of next to no mass that holds the inner end of a chain of ANCF cables; two
+frictionless rings on the cylinder, one of them in its mouth, guide the chain.
 """
 
 from __future__ import annotations
@@ -16,6 +16,7 @@ from flexapod import rigid
 from flexapod.model import Leg, Payload, Robot
 from flexapod.proof.engines.exudyn_robot import RobotProblem, RobotResult
 from flexapod.proof.engines.exudyn_system import CARRIAGE_MASS, System, exu, items
+from flexapod.rigid.rotations import exponential, quaternion
 from flexapod.typing import Array
 
 __all__ = ["solve"]
@@ -36,11 +37,9 @@ def solve(problem: RobotProblem) -> RobotResult:
     system = System(plan)
     path = rigid.poses(robot, problem.motion, plan.time)
     lengths = rigid.inverse_kinematics(robot, path).length
-    home = np.array([0.0, 0.0, robot.home_height])
-    start = robot.payload.com + home
-    body = _payload(system, robot.payload, start, robot.gravity)
-    frames = rigid.home_frames(robot)
-    legs = [_leg(system, problem, i, frames[i], lengths[:, i], body) for i in range(len(robot.legs))]
+    start = robot.home_position + robot.home_rotation @ robot.payload.com
+    body = _payload(system, robot.payload, start, robot)
+    legs = [_leg(system, problem, i, lengths[:, i], body) for i in range(robot.count)]
     centre = system.mbs.AddSensor(
         items.SensorBody(
             bodyNumber=body,
@@ -56,42 +55,45 @@ def solve(problem: RobotProblem) -> RobotResult:
         com_deviation=system.records([centre])[:, 0] - (rigid_centre - start),
         actuator_force=-system.records([leg.drive for leg in legs])[..., 0],
         tip_deflection=_tip_deflection(
-            robot, frames, system.records([leg.coordinates for leg in legs]), system.records([leg.tip for leg in legs])
+            robot, [system.records([leg.coordinates])[:, 0] for leg in legs], system.records([leg.tip for leg in legs])
         ),
         seconds=seconds,
     )
 
 
-def _payload(system: System, payload: Payload, place: Array, gravity: Array) -> int:
+def _payload(system: System, payload: Payload, place: Array, robot: Robot) -> int:
     J = payload.inertia
-    node = system.mbs.AddNode(items.NodeRigidBodyEP(referenceCoordinates=[*place, 1.0, 0.0, 0.0, 0.0]))
+    turn = quaternion(robot.home_rotation)
+    node = system.mbs.AddNode(items.NodeRigidBodyEP(referenceCoordinates=[*place, *turn]))
     body = system.mbs.AddObject(
         items.ObjectRigidBody(
             mass=payload.mass, inertia=[J[0, 0], J[1, 1], J[2, 2], J[1, 2], J[0, 2], J[0, 1]], nodeNumber=node
         )
     )
-    system.weigh(body, gravity)
+    system.weigh(body, robot.gravity)
     return body
 
 
-def _leg(system: System, problem: RobotProblem, i: int, frame: Array, length: Array, body: int) -> _LegNumbers:
+def _leg(system: System, problem: RobotProblem, i: int, length: Array, body: int) -> _LegNumbers:
     """One leg with its drive, joined to the platform; `length` (T,) [m] is commanded."""
     mbs, robot = system.mbs, problem.robot
-    leg, base, flexible = robot.legs[i], robot.base_joints[i], problem.elements > 0
+    leg, flexible, turns = robot.legs[i], problem.elements > 0, _turns(robot.legs[i])
     inner = length[0] - leg.piston.length
     slide = inner if flexible else length[0]
     node = mbs.AddNode(
         items.NodeGenericODE2(
-            referenceCoordinates=[0.0, 0.0, slide],
-            initialCoordinates=[0.0] * 3,
-            initialCoordinates_t=[0.0] * 3,
-            numberOfODE2Coordinates=3,
+            referenceCoordinates=[*[0.0] * turns, slide],
+            initialCoordinates=[0.0] * (turns + 1),
+            initialCoordinates_t=[0.0] * (turns + 1),
+            numberOfODE2Coordinates=turns + 1,
         )
     )
-    tree = _tree(system, node, leg, robot, base, frame, flexible=flexible)
-    carried = mbs.AddMarker(items.MarkerKinematicTreeRigid(objectNumber=tree, linkNumber=2, localPosition=[0.0] * 3))
+    tree = _tree(system, node, robot, i, flexible=flexible)
+    carried = mbs.AddMarker(
+        items.MarkerKinematicTreeRigid(objectNumber=tree, linkNumber=turns, localPosition=[0.0] * 3)
+    )
     if flexible:
-        nodes = _piston(system, problem, leg, base + frame[:, 2] * inner, frame[:, 2], tree, inner)
+        nodes = _piston(system, problem, i, tree, inner)
         first, end = (mbs.AddMarker(items.MarkerNodePosition(nodeNumber=nodes[k])) for k in (0, -1))
         mbs.AddObject(items.ObjectJointSpherical(markerNumbers=[carried, first]))
         tip = system.watch_node(nodes[-1], exu.OutputVariableType.Position)
@@ -108,7 +110,7 @@ def _leg(system: System, problem: RobotProblem, i: int, frame: Array, length: Ar
     place = robot.platform_joints[i] - robot.payload.com
     joint = mbs.AddMarker(items.MarkerBodyRigid(bodyNumber=body, localPosition=place))
     mbs.AddObject(items.ObjectJointSpherical(markerNumbers=[joint, end]))
-    drive = system.drive(node, 2, length - length[0])
+    drive = system.drive(node, turns, length - length[0])
     return _LegNumbers(
         coordinates=system.watch_node(node, exu.OutputVariableType.Coordinates),
         drive=system.watch_force(drive),
@@ -116,36 +118,49 @@ def _leg(system: System, problem: RobotProblem, i: int, frame: Array, length: Ar
     )
 
 
-def _tree(system: System, node: int, leg: Leg, robot: Robot, base: Array, frame: Array, *, flexible: bool) -> int:
+def _turns(leg: Leg) -> int:
+    """How many ways the base joint turns: two of a universal joint, one of a hinge."""
+    return 1 if leg.letters.base == "R" else 2
+
+
+def _tilt(limbs: rigid.Limbs, i: int) -> Array:
+    """Axes of a cylinder in its home frame, (3, 3): a hinge need not be square to its leg."""
+    return exponential(np.array([0.0, limbs.home[i, rigid.COORDINATES.index("beta")], 0.0]))
+
+
+def _tree(system: System, node: int, robot: Robot, i: int, *, flexible: bool) -> int:
     """Cross, cylinder and piston or carriage: turns about x and y of the leg's home frame, then a slide along z."""
-    cylinder, piston, none = leg.cylinder, leg.piston, np.zeros((3, 3))
+    leg, limbs, none = robot.legs[i], rigid.rigid_limbs(robot), np.zeros((3, 3))
+    cylinder, piston, tilt, turns = leg.cylinder, leg.piston, _tilt(limbs, i), _turns(leg)
     across = piston.mass * piston.length**2 / 12
     rod = none if flexible else np.diag([across, across, 0.0])
     tube = np.diag([cylinder.inertia, cylinder.inertia, cylinder.axial_inertia + piston.axial_inertia])
-    joint = exu.JointType
+    joint, cross = exu.JointType, turns - 1  # links before the cylinder
     return system.mbs.AddObject(
         items.ObjectKinematicTree(
             nodeNumber=node,
             gravity=robot.gravity,
-            baseOffset=base,
-            jointTypes=[joint.RevoluteX, joint.RevoluteY, joint.PrismaticZ],
-            linkParents=[-1, 0, 1],
-            jointTransformations=exu.Matrix3DList([frame, np.eye(3), np.eye(3)]),
-            jointOffsets=exu.Vector3DList([[0.0] * 3] * 3),
-            linkInertiasCOM=exu.Matrix3DList([none, tube, rod]),
+            baseOffset=robot.base_joints[i],
+            jointTypes=[*[joint.RevoluteX, joint.RevoluteY][:turns], joint.PrismaticZ],
+            linkParents=list(range(-1, turns)),
+            jointTransformations=exu.Matrix3DList([limbs.frames[i], *[np.eye(3)] * cross, tilt]),
+            jointOffsets=exu.Vector3DList([[0.0] * 3] * (turns + 1)),
+            linkInertiasCOM=exu.Matrix3DList([*[none] * cross, tilt @ tube @ tilt.T, rod]),
             linkCOMs=exu.Vector3DList(
-                [[0.0] * 3, [0.0, 0.0, cylinder.com], [0.0, 0.0, 0.0 if flexible else -piston.length / 2]]
+                [*[[0.0] * 3] * cross, cylinder.com * tilt[:, 2], [0.0, 0.0, 0.0 if flexible else -piston.length / 2]]
             ),
-            linkMasses=[0.0, cylinder.mass, CARRIAGE_MASS if flexible else piston.mass],
+            linkMasses=[*[0.0] * cross, cylinder.mass, CARRIAGE_MASS if flexible else piston.mass],
         )
     )
 
 
-def _piston(
-    system: System, problem: RobotProblem, leg: Leg, start: Array, axis: Array, tree: int, inner: float
-) -> list[int]:
+def _piston(system: System, problem: RobotProblem, i: int, tree: int, inner: float) -> list[int]:
     """Chain of cables from the inner end on, with the rings that guide it; its nodes."""
-    mbs, piston, count = system.mbs, leg.piston, problem.elements
+    mbs, robot, count = system.mbs, problem.robot, problem.elements
+    leg, piston, limbs = robot.legs[i], robot.legs[i].piston, rigid.rigid_limbs(robot)
+    along = _tilt(limbs, i)[:, 2]
+    axis = limbs.frames[i] @ along
+    start = robot.base_joints[i] + axis * inner
     size = piston.length / count
     nodes = [
         mbs.AddNode(items.NodePointSlope1(referenceCoordinates=[*(start + axis * k * size), *axis]))
@@ -156,7 +171,7 @@ def _piston(
     shapes = [mbs.AddMarker(items.MarkerBodyBeamShape(bodyNumber=cable)) for cable in cables]
     for place in (leg.cylinder.mouth, leg.cylinder.mouth - problem.guide):
         ring = mbs.AddMarker(
-            items.MarkerKinematicTreeRigid(objectNumber=tree, linkNumber=1, localPosition=[0.0, 0.0, place])
+            items.MarkerKinematicTreeRigid(objectNumber=tree, linkNumber=_turns(leg) - 1, localPosition=place * along)
         )
         element = min(int((place - inner) / size), count - 1)
         mbs.AddObject(
@@ -172,7 +187,12 @@ def _piston(
     return nodes
 
 
-def _tip_deflection(robot: Robot, frames: Array, coordinates: Array, tips: Array) -> Array:
-    """Tips (T, legs, 3) [m] seen from the axes of the cylinders at `coordinates` (T, legs, 3), (T, legs, 2) [m]."""
-    turns = rigid.leg_rotations(frames, coordinates[..., 0], coordinates[..., 1])
+def _tip_deflection(robot: Robot, coordinates: list[Array], tips: Array) -> Array:
+    """Tips (T, legs, 3) [m] seen from the axes of the cylinders at their `coordinates` (T, 2 or 3), (T, legs, 2)."""
+    limbs = rigid.rigid_limbs(robot)
+    beta = np.tile(limbs.home[:, rigid.COORDINATES.index("beta")], (len(tips), 1))
+    for i, leg in enumerate(robot.legs):
+        if _turns(leg) == 2:
+            beta[:, i] = coordinates[i][:, 1]
+    turns = rigid.leg_rotations(limbs.frames, np.column_stack([q[:, 0] for q in coordinates]), beta)
     return np.einsum("tnij,tni->tnj", turns, tips - robot.base_joints)[..., :2]
