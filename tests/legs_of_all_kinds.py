@@ -19,6 +19,7 @@ KINDS = {
     "pose with spin and twist": EVERYTHING,
     "pose on a slider": EVERYTHING | {"carriage": "slider"},
     "pose on a crank": EVERYTHING | {"carriage": "crank"},
+    "flexures on a crank": EVERYTHING | {"carriage": "crank", "flexure": True},
     "tip body": {"closure": "none", "torsion": True, "tip_body": True},
     "planar": {"closure": "none", "planar": True, "tip_body": True},
 }
@@ -42,6 +43,15 @@ PHYSICS = {
     "base_stiffness": [30.0, 40.0, 20.0], "base_home": [0.1, -0.1, 0.05],
     "gamma_stiffness": [35.0, 25.0, 15.0], "gamma_home": [0.02, 0.01, -0.03],
 }  # fmt: skip
+
+
+def springs(seed):
+    """A 6x6 stiffness that couples everything."""
+    root = np.random.default_rng(seed).normal(size=(6, 6)) * [1e3, 1e3, 1e3, 6, 6, 6]
+    return root.T @ root
+
+
+PHYSICS |= {"base_flexure": springs(1), "platform_flexure": springs(2)}
 
 
 @cache
@@ -84,7 +94,7 @@ def state(ours, seed, amplitude=1e-3, given=None):
     given = given or numbers(seed)
     q, v = rng.uniform(-0.5, 0.5, ours.size), rng.normal(size=ours.size)
     q[ours.l_index] = rng.uniform(0.8, 0.95)
-    for name in ("c", "a", "b", "t"):
+    for name in ("c", "a", "b", "t", "u1", "u2", "u3", "e1", "e2", "e3"):
         if ours.has(name):
             part = slice(ours.index(name), ours.index(name) + dict(ours.layout)[name])
             q[part] = amplitude * rng.uniform(-1, 1, q[part].shape)

@@ -13,14 +13,14 @@ HOME = dict.fromkeys(("base_stiffness", "gamma_stiffness", "gravity", "joint", "
 FRAMES = dict.fromkeys(("R0", "platform_frame", "leg_frame"), np.eye(3))
 
 
-def leg(closure, modes, axial=0):
+def leg(closure, modes, axial=0, **switches):
     lateral = lateral_basis("tip-load", modes, moment=closure != "point")
-    more = {"tip_body": True} if closure == "none" else {}
+    more = switches | ({"tip_body": True} if closure == "none" else {})
     return Shapes(a=lateral, b=lateral, axial=axial_basis(axial), closure=closure, torsion=closure != "point", **more)
 
 
-def matrices(ours, lam=(), load=(), **changed):
-    """Matrices of the upright leg whose payload sits at its tip, by the amplitudes alone: the base is clamped."""
+def matrices(ours, lam=(), load=(), moving=("a", "b", "c", "t"), **changed):
+    """Matrices of the upright leg whose payload sits at its tip, by the amplitudes alone: joints and drive are held."""
     given = legs.numbers(1, **HOME, **FRAMES, **changed)
     x = legs.state(ours, 1, 0.0, given)
     x["q"][:] = 0.0
@@ -29,7 +29,7 @@ def matrices(ours, lam=(), load=(), **changed):
     x["lam"], x["load"] = np.resize(lam, ours.rows) if len(lam) else np.zeros(ours.rows), np.array(load or 12 * [0.0])
     found = legs.call(ours, "leg_matrices", x)
     names = [name for name, size in ours.layout for _ in range(size)]
-    kept = [i for i, name in enumerate(names) if name in ("a", "b", "c", "t")]
+    kept = [i for i, name in enumerate(names) if name in moving]
     return found["K"][np.ix_(kept, kept)], found["J"][:, kept], found["M"][np.ix_(kept, kept)]
 
 
@@ -53,6 +53,23 @@ def test_the_tip_gives_way_to_forces_and_moments_as_a_cantilever(modes):
     np.testing.assert_allclose(C[np.ix_([0, 4], [0, 4])], bending, rtol=1e-11)  # force along x turns about +y
     np.testing.assert_allclose(C[np.ix_([1, 3], [1, 3])], bending * [[1, -1], [-1, 1]], rtol=1e-11)
     np.testing.assert_allclose([C[2, 2], C[5, 5]], [p["Lp"] / p["EA"], L**2 * p["Lp"] / p["GJ"]], rtol=1e-12)
+
+
+def test_flexures_at_both_ends_are_in_series_with_the_leg():
+    # Compliances add; that of the base as seen from the tip, a lever of the leg's whole length away.
+    ours = leg("pose", 2, axial=1, spin=True, flexure=True)
+    K, J, _ = matrices(ours)
+    ends = ("u1", "u2", "u3", "alpha", "beta", "spin", "e1", "e2", "e3", "gamma1", "gamma2", "gamma3")
+    K_all, J_all, _ = matrices(ours, moving=("a", "b", "c", "t", *ends))
+    length = legs.PHYSICS["mouth"] + LENGTH
+    lever = np.eye(6)
+    lever[0, 4], lever[1, 3] = length, -length
+    scale = np.diag([1.0, 1.0, 1.0, *3 * [legs.PHYSICS["L_c"]]])
+    seen = zip((scale @ lever, scale), ("base_flexure", "platform_flexure"), strict=True)
+    expected = J @ np.linalg.solve(K, J.T) + sum(A @ np.linalg.inv(legs.PHYSICS[name]) @ A.T for A, name in seen)
+    np.testing.assert_allclose(
+        J_all @ np.linalg.solve(K_all, J_all.T), expected, rtol=1e-9, atol=1e-9 * np.abs(expected).max()
+    )
 
 
 @pytest.mark.parametrize(("closure", "rows", "factor"), [

@@ -1,11 +1,11 @@
 """Energies and tip of one leg of any mechanism, by brute-force quadrature and integration of its exact kinematics.
 
-    carriage chi -> alpha, beta, spin -> cylinder -> l -> piston that bends, stretches and twists -> tip
+    carriage chi -> displacement u of the base joint -> alpha, beta, spin -> cylinder -> l -> flexible piston -> tip
 
 A material point of the piston sits where `nonlinear.position` puts it in the cylinder's frame; the cylinder's frame is
-b(chi) + E(chi) R0 Rx(alpha) Ry(beta) Rz(spin). Everything is a function of the coordinates alone, so rates follow by
-complex step and nothing is dropped. The tip's axes are integrated along the line: a frame that does not spin about its
-tangent (Bishop), then the twist. ``q`` and ``v`` are dictionaries by coordinate (a, b, c arrays), ``p`` of parameters.
+b(chi) + E(chi) R0 u and E(chi) R0 Rx(alpha) Ry(beta) Rz(spin). Everything is a function of the coordinates alone, so
+rates follow by complex step and nothing is dropped. The tip's axes are integrated along the line: a frame that does not
+spin about its tangent (Bishop), then the twist. ``q`` and ``v`` are dictionaries by coordinate (a, b, c arrays), ``p`` of parameters.
 """
 
 from __future__ import annotations
@@ -35,6 +35,8 @@ def cylinder_frame(q: dict, p: dict) -> tuple[np.ndarray, np.ndarray]:
         origin, axes = origin - p["carriage_arm"] + E @ p["carriage_arm"], E @ axes
     elif "carriage_axis" in p:
         origin = origin + q["chi"] * np.asarray(p["carriage_axis"])
+    if "u1" in q:
+        origin = origin + axes @ [q["u1"], q["u2"], q["u3"]]
     x, y, z = np.eye(3)
     return origin, axes @ about(x, q["alpha"]) @ about(y, q["beta"]) @ about(z, q.get("spin", 0.0))
 

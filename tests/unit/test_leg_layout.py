@@ -11,13 +11,22 @@ def shapes(**switches):
     return Shapes(a=lateral, b=lateral, axial=axial_basis(1), **switches)
 
 
-EVERYTHING = {"closure": "pose", "carriage": "crank", "spin": True, "torsion": True}
+FLEXURES = ["u1", "u2", "u3", "e1", "e2", "e3"]
+EVERYTHING = {"closure": "pose", "carriage": "crank", "spin": True, "torsion": True, "flexure": True}
 
 
 def test_what_a_leg_has_beside_stands_after_todays_coordinates():
     ours, bare = shapes(**EVERYTHING), shapes()
     assert ours.layout[: len(bare.layout)] == bare.layout
-    assert [name for name, _ in ours.layout[len(bare.layout) :]] == ["chi", "spin", "t", "gamma1", "gamma2", "gamma3"]
+    assert [name for name, _ in ours.layout[len(bare.layout) :]] == [
+        "chi",
+        "spin",
+        "t",
+        "gamma1",
+        "gamma2",
+        "gamma3",
+        *FLEXURES,
+    ]
     assert leg_parameters(ours)[: len(LEG_PARAMETERS)] == LEG_PARAMETERS == leg_parameters(bare)
 
 

@@ -4,7 +4,7 @@ from __future__ import annotations
 
 from dataclasses import dataclass, field
 
-from flexapod.symbolic.vocabulary import SX, dot, mtimes, zeros
+from flexapod.symbolic.vocabulary import SX, cross, dot, mtimes, zeros
 
 __all__ = ["Energies", "Frame"]
 
@@ -30,6 +30,11 @@ class Frame:
             velocity=R.T @ self.velocity,
             omega=R.T @ self.omega + rate,
         )
+
+    def moved(self, by: SX, rate: SX) -> Frame:
+        """Frame displaced along its own axes."""
+        velocity = self.velocity + rate + cross(self.omega, by)
+        return Frame(origin=self.origin + self.axes @ by, axes=self.axes, velocity=velocity, omega=self.omega)
 
     def weight(self, gravity: SX, mass: SX, moment: SX) -> SX:
         """Potential of gravity of a mass with the first moment int r dm in the frame, zero at the base plane."""

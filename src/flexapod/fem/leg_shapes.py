@@ -19,7 +19,13 @@ _INTERVALS = 24
 
 
 def solid_leg_shapes(
-    section: Tube | Rectangle, length: float, count: int, size: float | None = None, *, poisson: float = 0.0
+    section: Tube | Rectangle,
+    length: float,
+    count: int,
+    size: float | None = None,
+    *,
+    poisson: float = 0.0,
+    moment: bool = False,
 ) -> LateralBasis:
     """Lateral basis of a solid piston held by a guide: static tip-load shape, then modes with the tip held.
 
@@ -37,6 +43,8 @@ def solid_leg_shapes(
         Wanted edge of the elements [m]; default a sixth of the larger side of the section, at most an interval.
     poisson : float
         Poisson's ratio.
+    moment : bool
+        The tip takes a moment from a joint: the static shape under one takes the place of the last mode.
 
     Raises
     ------
@@ -59,7 +67,7 @@ def solid_leg_shapes(
         poisson=poisson,
         spacing=spacing,
     )
-    shapes, stiffness = _shapes(model, length, count)
+    shapes, stiffness = _shapes(model, length, count, moment)
     basis = integrate("solid-fem", shapes, pieces=_INTERVALS)
     damping = proportional_damping(basis.mass[:count, :count], stiffness)
     return replace(basis, stiffness=stiffness, damping=damping)
@@ -70,7 +78,7 @@ def _side(section: Tube | Rectangle) -> float:
     return max(section.width, section.height) if isinstance(section, Rectangle) else section.diameter
 
 
-def _shapes(model: StationModel, length: float, count: int) -> tuple[list[Callable[..., Array]], Array]:
+def _shapes(model: StationModel, length: float, count: int, moment: bool) -> tuple[list[Callable[..., Array]], Array]:
     """Shapes over zeta and their stiffness matrix K^ (count, count), of EI = rhoA = 1."""
     from scipy.linalg import eigh
 
@@ -81,7 +89,12 @@ def _shapes(model: StationModel, length: float, count: int) -> tuple[list[Callab
     load = np.linalg.solve(K, unit)
     vectors = np.zeros((n, count))
     vectors[:, 0] = load / load[0]
-    vectors[1:, 1:] = eigh(K[1:, 1:], M[1:, 1:])[1][:, : count - 1] * np.sqrt(length)
+    K_held, M_held = K[1:, 1:], M[1:, 1:]
+    modes = eigh(K_held, M_held)[1][:, : count - 1]
+    if moment and count > 1:
+        span = np.column_stack([np.linalg.solve(K_held, unit[:-1]), modes[:, :-1]])
+        modes = span @ eigh(span.T @ K_held @ span, span.T @ M_held @ span)[1]
+    vectors[1:, 1:] = modes * np.sqrt(length)
     # The last free station is the one nearest to the mouth: positive there, as in the other bases.
     vectors *= np.sign(vectors[-2])
     stiffness = length**3 * vectors.T @ K @ vectors

@@ -16,10 +16,12 @@ def pose_closure(body: Leg, qs: SimpleNamespace, p: SimpleNamespace, lam: SX, po
     platform axes.
     """
     x, R = displaced_pose(pose, step)
-    in_platform = matrix33(p.platform_frame)
-    Q = (R @ in_platform).T @ body.tip_axes @ gimbal(matrix33(p.leg_frame), qs)
+    in_platform, axes, tip = matrix33(p.platform_frame), body.tip_axes @ matrix33(p.leg_frame), body.tip
+    if hasattr(qs, "e1"):
+        tip += axes @ vertcat(qs.e1, qs.e2, qs.e3)
+    Q = (R @ in_platform).T @ gimbal(axes, qs)
     force, mu = lam[:3], 0.5 * p.L_c * lam[3:]
-    gap = vertcat(body.tip - joint_point(p.joint, x, R), 0.5 * p.L_c * _skew(Q))  # (T13.12)
+    gap = vertcat(tip - joint_point(p.joint, x, R), 0.5 * p.L_c * _skew(Q))  # (T13.12)
     wrench = joint_wrench(p.joint, R, force)
     wrench[3:] += in_platform @ (trace(Q) * mu - Q.T @ mu)  # (T13.13)
     return gap, wrench

@@ -59,6 +59,10 @@ POSE_PARAMETERS: tuple[tuple[str, int], ...] = (
     ("base_home", 3),  # rad, where they are slack
     ("gamma_stiffness", 3),  # N m/rad, springs on gamma1..3
     ("gamma_home", 3),  # rad
+)  #: ... of joints that give way along and about all axes: 6x6 stiffness, displacements [m] first, angles [rad] last.
+FLEXURE_PARAMETERS: tuple[tuple[str, int], ...] = (
+    ("base_flexure", 36),  # u1..3 and alpha, beta, spin less `base_home`, in the axes R0
+    ("platform_flexure", 36),  # e1..3 and gamma1..3 less `gamma_home`, in the axes of the joint in the leg
 )
 
 #: Physical parameters of the payload in kernel order (name, size); tool from the CoM, in platform axes.
@@ -102,6 +106,8 @@ class Shapes:
         Rotation about the leg's axis at the base joint; twist of the piston.
     tip_body : bool
         A body at the tip of a leg without payload.
+    flexure : bool
+        Displacements of the base joint and of the platform joint (pose closures).
     pivot_spin : bool
         A free spin takes the place of gamma3 among the coordinates that the closure determines.
     """
@@ -115,6 +121,7 @@ class Shapes:
     spin: bool = False
     torsion: bool = False
     tip_body: bool = False
+    flexure: bool = False
     pivot_spin: bool = False
 
     @property
@@ -125,7 +132,8 @@ class Shapes:
         gamma = ("gamma1", "gamma2", "gamma3") if self.closure == "pose" else ()
         there = (("chi", bool(self.carriage)), ("spin", self.spin), ("t", self.torsion))
         more = (*(name for name, has in there if has), *gamma)
-        return (*((name, 1) for name in (*angles, "l")), *amplitudes, *((name, 1) for name in more))
+        moved = ("u1", "u2", "u3", "e1", "e2", "e3") if self.flexure else ()
+        return (*((name, 1) for name in (*angles, "l")), *amplitudes, *((name, 1) for name in (*more, *moved)))
 
     @property
     def size(self) -> int:
@@ -183,5 +191,6 @@ def leg_parameters(shapes: Shapes) -> tuple[tuple[str, int], ...]:
         (shapes.torsion, TORSION_PARAMETERS),
         (shapes.tip_body and not shapes.planar, TIP_BODY_PARAMETERS),
         (shapes.closure == "pose", POSE_PARAMETERS),
+        (shapes.flexure, FLEXURE_PARAMETERS),
     )
     return tuple(item for there, table in parts if there for item in table)

@@ -6,7 +6,7 @@ from types import SimpleNamespace
 from flexapod.elements.carriage import carriage
 from flexapod.elements.cylinder import cylinder
 from flexapod.elements.distribution import Motion
-from flexapod.elements.flexure import flexure
+from flexapod.elements.flexure import flexure, springs
 from flexapod.elements.frame import Energies
 from flexapod.elements.rotations import small_rotation
 from flexapod.elements.sliding_piston import sliding_piston, tip_place, tip_turn
@@ -38,6 +38,8 @@ class Leg:
 def leg(shapes: Shapes, p: SimpleNamespace, q: SX, v: SX, qs: SimpleNamespace, vs: SimpleNamespace) -> Leg:
     """Energies and tip of one leg from its coordinates; ``qs`` and ``vs`` are the named pieces of q and v."""
     ground, e = carriage(shapes.carriage, p, qs, vs)
+    if shapes.flexure:
+        ground = ground.moved(vertcat(qs.u1, qs.u2, qs.u3), vertcat(vs.u1, vs.u2, vs.u3))
     frame = universal(ground, qs, vs)
     s = qs.l - p.mouth  # (T3.6)  free length outside the cylinder
     motion = Motion(a=shapes.a, b=shapes.b, axial=shapes.axial, frame=frame, s=s, q=q, v=v, qs=qs, vs=vs)
@@ -47,7 +49,7 @@ def leg(shapes: Shapes, p: SimpleNamespace, q: SX, v: SX, qs: SimpleNamespace, v
     if shapes.tip_body:
         e += tip_body(motion, p, shapes.planar)
     if shapes.closure == "pose":
-        e += _springs(p, qs)
+        e += _joints(shapes, p, qs)
     theta = symbol("theta", 3)
     lagrangian = Lagrangian(q=q, v=v, kinetic=e.kinetic, potential=e.gravity + e.strain, dissipation=e.dissipation)
     return Leg(
@@ -61,7 +63,13 @@ def leg(shapes: Shapes, p: SimpleNamespace, q: SX, v: SX, qs: SimpleNamespace, v
     )
 
 
-def _springs(p: SimpleNamespace, qs: SimpleNamespace) -> Energies:
-    base = vertcat(qs.alpha, qs.beta, qs.spin if hasattr(qs, "spin") else zeros(1))
-    tip = vertcat(qs.gamma1, qs.gamma2, qs.gamma3)
-    return flexure(p.base_stiffness, base, p.base_home) + flexure(p.gamma_stiffness, tip, p.gamma_home)
+def _joints(shapes: Shapes, p: SimpleNamespace, qs: SimpleNamespace) -> Energies:
+    """Springs of the joints at both ends."""
+    spin = qs.spin if shapes.spin else zeros(1)
+    base = vertcat(qs.alpha, qs.beta, spin) - p.base_home
+    end = vertcat(qs.gamma1, qs.gamma2, qs.gamma3) - p.gamma_home
+    e = springs(p.base_stiffness, base) + springs(p.gamma_stiffness, end)
+    if shapes.flexure:
+        e += flexure(p.base_flexure, vertcat(qs.u1, qs.u2, qs.u3, base))
+        e += flexure(p.platform_flexure, vertcat(qs.e1, qs.e2, qs.e3, end))
+    return e
