@@ -4,11 +4,7 @@ from dataclasses import dataclass, replace
 
 import numpy as np
 
-from flexapod import rigid
-from flexapod.errors import ComputationError
 from flexapod.mechanics.layout import LEG_PARAMETERS, PAYLOAD_PARAMETERS, columns
-from flexapod.model import Robot
-from flexapod.rigid.rotations import matrix
 from flexapod.solve.arrow import arrow_solve
 from flexapod.solve.elimination import closed, leg_bases, null_space_of_borders, open_borders, reduced, solve_each
 from flexapod.solve.frequencies import cholesky_each
@@ -25,8 +21,6 @@ REASONS = (
     "Newton's method does not settle; the robot is close to buckling",
     "the balanced pose is unstable, the robot buckles under its load",
 )
-
-FALLS_THROUGH = "no equilibrium: the robot sags through a singularity"
 
 
 @dataclass(frozen=True, kw_only=True)
@@ -50,29 +44,6 @@ class Equilibria:
         code = int(self.code[k])
         reason = f"no equilibrium: {REASONS[code]}" if code else ""
         return Equilibrium(state=self.states.state(k), found=code == FOUND, reason=reason)
-
-
-def platform_poses(robot: Robot, pose: Array) -> rigid.Poses:
-    """Poses of the platform in states (P, 7) of centre of mass and quaternion."""
-    R = matrix(pose[:, 3:])
-    return rigid.Poses.at_rest(pose[:, :3] - R @ robot.payload.com, R)
-
-
-def fallen(robot: Robot, path: rigid.Poses, pose: Array) -> Mask:
-    """Which of the equilibria (P, 7) lie on the other side of a singularity than their rigid poses, (P,).
-
-    The lengths have another assembly there, which the drives do not mean.
-    """
-    if not len(path):
-        return np.zeros(0, dtype=bool)
-    before, after = (rigid.singularity(robot, x).determinant for x in (path, platform_poses(robot, pose)))
-    return np.sign(before) != np.sign(after)
-
-
-def refuse_fallen(robot: Robot, path: rigid.Poses, pose: Array) -> None:
-    """Raise ComputationError where the equilibrium (7,) of one rigid pose is `fallen`."""
-    if fallen(robot, path, pose[None]).any():
-        raise ComputationError(FALLS_THROUGH, next_step="Choose a pose farther from the singularity.")
 
 
 def equilibrium(system: System, start: State, command: Array, force: Array, wrench: Array) -> Equilibrium:

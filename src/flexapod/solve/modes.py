@@ -11,9 +11,10 @@ from flexapod.errors import ComputationError, InputError
 from flexapod.model import Load, Robot, Simulation
 from flexapod.solve.damped import damping_ratios
 from flexapod.solve.elimination import LegBases, closed, expanded, leg_bases, null_space_of_borders, reduced
-from flexapod.solve.equilibrium import FOUND, Equilibria, Equilibrium, equilibria, refuse_fallen
+from flexapod.solve.equilibrium import FOUND, Equilibria, Equilibrium, equilibria
+from flexapod.solve.fallen import refuse_fallen
 from flexapod.solve.frequencies import count_real, mass_factor, natural
-from flexapod.solve.many import RestMatrices, matrices_at_rest
+from flexapod.solve.many import RestMatrices, RestStates, matrices_at_rest
 from flexapod.solve.rest import RestLoad, rest_commands, rest_load
 from flexapod.solve.rigid_motion import rigid_rest
 from flexapod.solve.robot_system import robot_system
@@ -44,13 +45,14 @@ class RobotModes:
 class LockedPoses:
     """A robot with drives locked at the ``command`` (P, legs, ports) of a rigid ``path`` of P poses.
 
-    What ``acts`` on it, equilibria, and the matrices ``m`` of those found, ``at``.
+    Its undeformed states ``start``, what ``acts`` on it, equilibria, and the matrices ``m`` of those found, ``at``.
     """
 
     robot: Robot
     path: rigid.Poses
     system: System
     simulation: Simulation
+    start: RestStates
     command: Array
     acts: RestLoad
     equilibria: Equilibria
@@ -114,6 +116,7 @@ def locked_poses(
         path=path,
         system=system,
         simulation=simulation,
+        start=start,
         command=command,
         acts=acts,
         equilibria=found,
@@ -127,7 +130,7 @@ def the_equilibrium(locked: LockedPoses) -> Equilibrium:
     found = locked.equilibria.one(0)
     if not found.found:
         raise ComputationError(found.reason, next_step="Check the pose for a singularity and the load of the legs.")
-    refuse_fallen(locked.robot, locked.path, found.state.pose)
+    refuse_fallen(locked.system, locked.robot, locked.start, locked.equilibria.states)
     return found
 
 
@@ -190,7 +193,8 @@ def modes_of(locked: LockedPoses, *, shapes: bool = False) -> ManyModes:
             "leaves nothing that could vibrate with the drives locked",
             key="simulation.fidelity",
             value=locked.simulation.fidelity,
-            allowed="lumped, finite-segment, assumed-modes, beam-fem, solid-fem",
+            allowed=("" if system.kernel.shapes.axial.count else "lumped, ")
+            + "finite-segment, assumed-modes, beam-fem, solid-fem",
         )
     omega, z, stable = natural(U, K, shapes=shapes)
     positive = positive & stable

@@ -11,7 +11,9 @@ from flexapod.integration import GeneralizedAlpha
 from flexapod.model import Study
 from flexapod.rigid.kinematics import BETA_LIMIT
 from flexapod.rigid.rotations import matrix
-from flexapod.solve.equilibrium import equilibrium, refuse_fallen
+from flexapod.solve.equilibrium import equilibrium
+from flexapod.solve.fallen import refuse_fallen
+from flexapod.solve.many import RestStates
 from flexapod.solve.march import Chunk, Problem, initial_step, march
 from flexapod.solve.modes import refuse_pure_force
 from flexapod.solve.recording import Counters, Recording
@@ -115,7 +117,7 @@ def _configuration(study: Study, system: System) -> State:
     found = equilibrium(system, at_rest, command, acts.force[0], acts.wrench)
     if not found.found:
         raise ComputationError(f"the robot cannot start at rest: {found.reason}", next_step="See `flexapod check`.")
-    refuse_fallen(study.robot, path, found.state.pose)
+    refuse_fallen(system, study.robot, RestStates.of(straight), RestStates.of(found.state))
     return found.state
 
 

@@ -83,7 +83,15 @@ def stiffness_of(robot: Robot, locked: LockedPoses) -> Stiffness:
 
 
 def _refuse_rigid(locked: LockedPoses) -> None:
-    """Raise InputError where legs cannot give way to the payload."""
+    """Raise InputError where legs cannot give way to the payload, or nothing but the base holds it."""
+    if locked.system.hub_held.all():
+        raise InputError(
+            "leaves no stiffness to ask for: the platform does not move",
+            key="platform.fixed",
+            value=True,
+            allowed="a platform that the legs carry",
+            next_step="`modes` shows the legs of a fixed platform",
+        )
     shapes, held = locked.system.kernel.shapes, locked.system.held
     cannot_stretch = shapes.axial.count == 0 and held[:, shapes.l_index].any()
     if cannot_stretch or any(b.border.size for b in locked.bases):
@@ -131,7 +139,7 @@ def compliance(total: Array) -> Array:
 
 def tool_motion(robot: Robot, pose: Array) -> Array:
     """Tool displacement and rotation (world) per payload step (dx, theta), (P, 6, 6), at poses (P, 7), Eq. (T7.7)."""
-    R, r = matrix(pose[:, 3:]), robot.payload.tool - robot.payload.com
+    R, r = matrix(pose[:, 3:]), np.zeros(3) if robot.payload is None else robot.payload.tool - robot.payload.com
     cross = np.array([[0, -r[2], r[1]], [r[2], 0, -r[0]], [-r[1], r[0], 0]])
     motion = np.zeros((len(pose), 6, 6))
     motion[:, :3, :3], motion[:, :3, 3:], motion[:, 3:, 3:] = np.eye(3), -R @ cross, R

@@ -9,7 +9,7 @@ import numpy as np
 
 from flexapod import model, rigid
 from flexapod.rigid.rotations import quaternion
-from flexapod.solve.equilibrium import fallen, platform_poses
+from flexapod.solve.fallen import fallen, platform_poses
 from flexapod.solve.frequencies import count_real
 from flexapod.solve.modes import LockedPoses, ManyModes, RobotModes, locked_poses, modes_of
 from flexapod.study.after.mode_shapes import STATIONS, mode_values
@@ -91,8 +91,8 @@ def codes_at_rest(locked: LockedPoses, modes: ManyModes) -> Codes:
     """Codes (P,) of what the search for equilibria and modes says of P rigid poses within the legs' reach."""
     codes = equilibrium_codes(locked.equilibria.code)
     codes[locked.at[~modes.positive]] = NO_MASS
-    at_rest = locked.equilibria.states.pose[locked.at]
-    codes[locked.at[fallen(locked.robot, poses_of(locked.path, locked.at), at_rest)]] = FALLS_THROUGH
+    start, at_rest = locked.start[locked.at], locked.equilibria.states[locked.at]
+    codes[locked.at[fallen(locked.system, locked.robot, start, at_rest)]] = FALLS_THROUGH
     return codes
 
 

@@ -10,7 +10,7 @@ from numpy.typing import NDArray
 from flexapod import rigid
 from flexapod.model import Robot
 from flexapod.rigid.kinematics import BETA_LIMIT
-from flexapod.solve import equilibrium
+from flexapod.solve import equilibrium, fallen
 from flexapod.study.before.checks import SINGULAR
 from flexapod.typing import Array
 
@@ -50,7 +50,7 @@ REASONS = (
     Reason("gives_way", "no equilibrium: the legs give way"),
     Reason("not_settled", "no equilibrium found: close to buckling"),
     Reason("unstable", "no equilibrium: the robot buckles under its load"),
-    Reason("falls_through", equilibrium.FALLS_THROUGH),
+    Reason("falls_through", fallen.FALLS_THROUGH),
     Reason("no_mass", "the mass matrix is not positive"),
     Reason("out_of_reach", "a leg does not reach its platform joint"),
     Reason("carriage_stops", "a carriage leaves its stroke"),
