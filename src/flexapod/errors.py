@@ -6,7 +6,7 @@ import difflib
 from collections.abc import Iterable
 from pathlib import Path
 
-__all__ = ["ComputationError", "FlexapodError", "InputError", "closest", "nearest"]
+__all__ = ["ComputationError", "FlexapodError", "InputError", "Malformed", "closest", "nearest"]
 
 
 class FlexapodError(Exception):
@@ -84,7 +84,7 @@ class InputError(FlexapodError):
     def located(self, *, file: str | Path | None = None, prefix: str = "") -> InputError:
         """The same error with its file and the path of the section that holds the key."""
         key = ".".join(part for part in (prefix, self.key) if part) or None
-        return InputError(
+        return type(self)(
             self.what,
             file=self.file or file,
             key=key,
@@ -107,6 +107,10 @@ class InputError(FlexapodError):
 
     def __reduce__(self) -> tuple[object, ...]:
         return _rebuild_input, (type(self), self.what, self.file, self.key, self.value, self.allowed, self.next_step)
+
+
+class Malformed(InputError):
+    """What no study file may hold, whatever its other values: unknown key, wrong unit, no number, no such choice."""
 
 
 def closest(word: str, allowed: Iterable[str]) -> str | None:

@@ -13,11 +13,10 @@ import xarray as xr
 from tests.sweeps import deadly, diameters, quick, start
 
 import flexapod as fx
-from flexapod.errors import ComputationError, InputError
+from flexapod.errors import ComputationError, InputError, Malformed
 from flexapod.surveys.sweeps import batch, executors, open_sweep, run, schedule
 from flexapod.surveys.sweeps.batch import compute_batch, compute_packed
 from flexapod.surveys.sweeps.executors import InProcess, WorkerDied
-from flexapod.surveys.sweeps.reading import Malformed
 
 
 def sweep(count, **settings):

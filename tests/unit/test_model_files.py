@@ -311,7 +311,7 @@ REFUSALS = [
     ('radius = "250 mm"', "radius = -1", "robot.base.radius", ("above 0",)),
     ('radius = "250 mm", half_angle = "10 deg"', "radius = 1, half_angle = 10", "robot.base.half_angle", ("60 deg",)),
     ('radius = "250 mm", half_angle = "10 deg"', "joints = [[0, 0, 0]]", "robot.base.joints", ("6 rows",)),
-    ('type = "6-UPS"', 'type = "3-RPS"', "robot.type", ("6-UPS",)),
+    ('type = "6-UPS"', 'type = "3-RPS"', "robot.base.half_angle", ("3 joints", "odd", "angles = ['0 deg', '120 deg'")),
     ('home_height = "0.9 m"', "home_height = 0.2", "leg.cylinder.mouth", ("leg 1", "no piston is left outside")),
     ('mass = "3 kg"', "mass = -3", "leg.cylinder.mass", ("at least 0",)),
     ('com = "157.5 mm"', 'com = "9 m"', "leg.cylinder.com", ("centre of mass", "beyond the leg's ends")),

@@ -20,14 +20,13 @@ KEYS = "src/flexapod/model/keys.toml"
 DERIVED = {
     "Study", "ActuatorStudy", "Robot", "Load", "ActuatorMotion", "ActuatorLoad",
     ("Material", "name"), ("Actuator", "material"), ("Simulation", "step"),
-    *(("Piston", name) for name in ("E", "density")),
+    *((part, name) for part in ("Piston", "Strut") for name in ("E", "density")),
     *((law, "law") for law in ("RateLaw", "SpinUpLaw", "CsvLaw", "ConstantLaw", "SineLaw", "StepLaw")),
     *((law, "law") for law in ("ConstantWrench", "SineWrench", "StepWrench", "CsvWrench")),
     *((kind, "type") for kind in ("CombinedMotion", "WaypointMotion", "CsvMotion", "PrescribedDrive", "ServoDrive",
                                   "ForceDrive")),
     ("CsvMotion", "profile"),
-    "Carriage", "Home", "Joint", "Strut", "Travel",
-    *(("Leg", name) for name in ("base_joint", "carriage", "chain", "passive", "platform_joint", "strut")),
+    *((motion, "independent") for motion in ("AxisMotion", "WaypointMotion", "CsvMotion")),
 }  # fmt: skip
 
 

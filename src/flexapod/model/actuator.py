@@ -62,16 +62,15 @@ class Actuator(Frozen):
             raise InputError("makes the beam thicker than long", key="section", allowed=f"below {self.length:g} m")
         return self
 
+    @staticmethod
+    def stiffness(section: Tube | Rectangle, material: Material) -> dict[str, float]:
+        """`rhoA` [kg/m] and `EI` [N m^2] of a beam of this section and material."""
+        return {"rhoA": material.density * section.area, "EI": material.E * section.second_moment}
+
     @classmethod
     def from_section(cls, *, section: Tube | Rectangle, material: Material, **fields: float) -> Actuator:
         """An actuator whose rhoA and EI follow from section and material; `fields` are the others."""
-        return cls(
-            rhoA=material.density * section.area,
-            EI=material.E * section.second_moment,
-            section=section,
-            material=material,
-            **fields,
-        )
+        return cls(section=section, material=material, **cls.stiffness(section, material), **fields)
 
 
 class ActuatorMotion(Frozen):

@@ -18,12 +18,13 @@ WORDS = ("tangential", "radial", "vertical")
 _NEAR = 1e-12  # of the axis: a joint nearer to it has no radial direction
 
 
-def plane_order(plane: Plane | None) -> tuple[int, int, int]:
+def plane_order(plane: str | None) -> tuple[int, int, int]:
     """Numbers of the two axes of a plane, in the order of its letters, and of its normal; without a plane x, y, z."""
-    return {None: (0, 1, 2), "xy": (0, 1, 2), "yz": (1, 2, 0), "zx": (2, 0, 1)}[plane]
+    orders: dict[str | None, tuple[int, int, int]] = {"xy": (0, 1, 2), "yz": (1, 2, 0), "zx": (2, 0, 1)}
+    return orders.get(plane, (0, 1, 2))
 
 
-def normal_of(plane: Plane | None) -> Array:
+def normal_of(plane: str | None) -> Array:
     """The normal of a plane, (3,); without a plane z."""
     return np.eye(3)[plane_order(plane)[2]]
 

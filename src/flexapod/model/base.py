@@ -6,7 +6,7 @@ import hashlib
 import re
 from collections.abc import Callable, Mapping
 from html import escape
-from typing import Annotated, Any, Self
+from typing import Annotated, Any, ClassVar, Self
 
 import numpy as np
 from pydantic import (
@@ -101,6 +101,7 @@ def array_of(shape: tuple[int | None, ...]) -> Callable[[object], Array]:
         array.flags.writeable = False
         return array
 
+    convert.shape = shape  # type: ignore[attr-defined]
     return convert
 
 
@@ -126,6 +127,8 @@ Series6 = Annotated[Array, PlainValidator(array_of((None, 6))), PlainSerializer(
 class Frozen(BaseModel):
     """Base of the model: immutable, SI, unknown fields refused, `InputError` on bad values."""
 
+    #: Fields that are no keys of a study file: a table in a file of its own has them, or they follow from the others
+    derived: ClassVar[tuple[str, ...]] = ()
     model_config = ConfigDict(frozen=True, extra="forbid", arbitrary_types_allowed=True, hide_input_in_errors=True)
 
     def __init__(self, **fields: Any) -> None:

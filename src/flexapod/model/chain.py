@@ -44,6 +44,11 @@ class Chain:
             return "stroke"
         return "carriage" if self.carriage else ""
 
+    @property
+    def turning(self) -> bool:
+        """Whether the drive turns something: angles and torques in place of lengths and forces."""
+        return self.driven == "carriage" and self.carriage == "crank"
+
 
 @cache
 def chain_of(letters: str) -> Chain:

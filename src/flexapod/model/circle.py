@@ -9,7 +9,7 @@ import numpy as np
 from pydantic import model_validator
 
 from flexapod.errors import InputError
-from flexapod.model.base import Frozen, Measure, NonNegative, Positive
+from flexapod.model.base import Frozen, Measure, NonNegative, Positive, Series
 from flexapod.typing import Array
 
 __all__ = ["Circle", "base_circle", "platform_circle"]
@@ -19,14 +19,18 @@ _UPPER = ((-60, 1), (60, -1), (60, 1), (180, -1), (180, 1), (300, -1))
 
 
 class Circle(Frozen):
-    """Joints in pairs on a circle: `radius` [m]; `half_angle` [rad], half the angle between the joints of a pair."""
+    """Joints on a circle of a `radius` [m]: at `angles` (n,) [rad], or in pairs.
+
+    `half_angle` [rad]: half the angle between the joints of a pair.
+    """
 
     radius: Annotated[Positive, Measure("length")]
-    half_angle: Annotated[NonNegative, Measure("angle")]
+    half_angle: Annotated[NonNegative, Measure("angle")] | None = None
+    angles: Annotated[Series, Measure("angle")] | None = None
 
     @model_validator(mode="after")
     def _pairs_apart(self) -> Circle:
-        if self.half_angle > math.pi / 3:
+        if self.half_angle is not None and self.half_angle > math.pi / 3:
             raise InputError(
                 "is out of range",
                 key="half_angle",
@@ -35,6 +39,12 @@ class Circle(Frozen):
                 next_step='Write degrees as "10 deg"',
             )
         return self
+
+    @property
+    def places(self) -> Array:
+        """Joints at `angles`, (n, 3) [m], z = 0."""
+        angles = np.asarray(self.angles)
+        return self.radius * np.column_stack([np.cos(angles), np.sin(angles), np.zeros(len(angles))])
 
 
 def base_circle(radius: float, half_angle: float) -> Array:

@@ -9,9 +9,8 @@ from pydantic import Field, PlainSerializer, PlainValidator
 
 from flexapod.errors import InputError
 from flexapod.model.base import Frozen, Measure, NonNegative
-from flexapod.model.section import Section
 
-__all__ = ["BodyDamping", "Damping", "damping_parts", "read_damping"]
+__all__ = ["BodyDamping", "Damping", "damping_parts"]
 
 Ratio = Annotated[float, Field(strict=True, ge=0, lt=1)]
 
@@ -34,16 +33,6 @@ class Damping(Frozen):
 def damping_parts(damping: float | Damping) -> tuple[float, float]:
     """Damping ratio, and time of the part in proportion to stiffness [s]; a plain number is the ratio."""
     return (damping.ratio, damping.stiffness) if isinstance(damping, Damping) else (damping, 0.0)
-
-
-def read_damping(section: Section) -> float | Damping | None:
-    """`damping` of a table of the study file: a ratio, or a table of both; None if absent."""
-    value = section.data.get("damping")
-    if not isinstance(value, Mapping):
-        return section.number("damping", "number")
-    both = section.child(value, "damping")
-    both.only("ratio", "stiffness")
-    return both.build(Damping, ratio=both.number("ratio", "number"), stiffness=both.number("stiffness", "time"))
 
 
 def _checked(value: object) -> float | Damping:

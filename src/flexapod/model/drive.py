@@ -2,7 +2,7 @@
 
 from __future__ import annotations
 
-from typing import Annotated, Literal
+from typing import Annotated, ClassVar, Literal
 
 from pydantic import Field, model_validator
 
@@ -20,18 +20,18 @@ class PrescribedDrive(Frozen):
 
 
 class ServoDrive(Frozen):
-    """A spring [N/m] and a damper [N s/m] between the commanded and the real stroke."""
+    """A spring [N/m] and a damper [N s/m] between command and stroke; of a crank [N m/rad, N m s/rad]."""
 
     type: Literal["servo"] = "servo"
-    stiffness: Annotated[Positive, Measure("stiffness")]
-    damping: Annotated[NonNegative, Measure("damping")] = 0.0
+    stiffness: Annotated[Positive, Measure("stiffness", "rotational stiffness")]
+    damping: Annotated[NonNegative, Measure("damping", "rotational damping")] = 0.0
 
 
 class Feedback(Frozen):
     """Correction of a force drive: gain on stroke [N/m] and on stroke rate [N s/m]."""
 
-    stiffness: Annotated[NonNegative, Measure("stiffness")]
-    damping: Annotated[NonNegative, Measure("damping")] = 0.0
+    stiffness: Annotated[NonNegative, Measure("stiffness", "rotational stiffness")]
+    damping: Annotated[NonNegative, Measure("damping", "rotational damping")] = 0.0
 
 
 class ForceDrive(Frozen):
@@ -42,11 +42,12 @@ class ForceDrive(Frozen):
     instant.
     """
 
+    derived: ClassVar[tuple[str, ...]] = ("time", "force")
     type: Literal["force"] = "force"
     law: Literal["rigid", "csv"] = "rigid"
     file: str | None = None
     time: Annotated[Series, Measure("time")] | None = None
-    force: Annotated[Series, Measure("force")] | None = None
+    force: Annotated[Series, Measure("force", "torque")] | None = None
     feedback: Feedback | None = None
 
     @model_validator(mode="after")

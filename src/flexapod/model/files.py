@@ -11,9 +11,10 @@ from typing import Literal, overload
 
 from flexapod.errors import InputError, closest
 from flexapod.files import LARGEST_TEXT, check_name, read_text
+from flexapod.model.motion import AxisMotion
 from flexapod.model.read_actuator import read_actuator, read_drives, read_release
 from flexapod.model.read_motion import read_initial, read_load, read_motion, read_simulation, unused_settings
-from flexapod.model.read_robot import read_robot
+from flexapod.model.read_robot import platform_fixed, read_robot
 from flexapod.model.robot import Robot
 from flexapod.model.section import Section
 from flexapod.model.simulation import STRAIGHT, Simulation
@@ -33,6 +34,7 @@ __all__ = [
 ]
 
 PRESETS = ("paper-robot", "paper-robot-radii", "paper-actuator")
+AT_REST = AxisMotion(type="heave", amplitude=0.0, duration=1.0)
 _COMMON = ("motion", "load", "initial", "simulation")
 
 
@@ -89,7 +91,6 @@ def read_study(top: Section, text: str) -> Study | ActuatorStudy:
 def loads_robot(text: str, *, path: str | Path | None = None) -> Robot:
     """Read the robot alone from the text of its study: tables of its motion and load need not be there."""
     top = _tables(text, path)
-    top.need("robot", "payload", "leg")
     return read_robot(top)
 
 
@@ -154,13 +155,14 @@ def _lookup(data: object, path: str) -> str:
 
 def _study(top: Section, text: str) -> Study:
     top.only("robot", "payload", "leg", *_COMMON)
-    top.need("robot", "payload", "leg", "motion")
+    fixed = platform_fixed(top)
+    top.need("robot", *(() if fixed else ("payload",)), "leg", *(() if fixed else ("motion",)))
     settings = top.section("simulation")
     simulation = read_simulation(settings, basis="tip-load", bases=("tip-load", "clamped-free"))
     return top.build(
         Study,
         robot=read_robot(top),
-        motion=read_motion(top.child(top.data["motion"], "motion")),
+        motion=read_motion(top.child(top.data["motion"], "motion")) if "motion" in top else AT_REST,
         load=read_load(top.section("load")),
         initial=read_initial(top.section("initial")),
         simulation=simulation,

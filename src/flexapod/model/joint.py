@@ -2,7 +2,7 @@
 
 from __future__ import annotations
 
-from typing import Annotated, Literal
+from typing import Annotated, ClassVar, Literal
 
 import numpy as np
 from pydantic import model_validator
@@ -23,6 +23,8 @@ class Joint(Frozen):
     `stiffness` (6, 6) [N/m, N, N m/rad]: of a flexure, along and about the axes of base or platform, or, with
     `leg_axes`, those of the leg, z along it.
     """
+
+    derived: ClassVar[tuple[str, ...]] = ("leg_axes",)
 
     axis: Annotated[Vec3, Measure("number")] | None = None
     bending: Annotated[NonNegative, Measure("rotational stiffness")] | None = None
@@ -74,6 +76,8 @@ class Carriage(Frozen):
     the platform at home `side` takes the larger (+1) or the smaller one (-1), else it is the one next to `home`
     [m, rad] (default 0). `stroke`: allowed positions.
     """
+
+    derived: ClassVar[tuple[str, ...]] = ("kind", "axis")
 
     kind: Literal["slider", "crank"]
     axis: Annotated[Vec3, Measure("number")]

@@ -2,7 +2,7 @@
 
 from __future__ import annotations
 
-from typing import Annotated, Literal
+from typing import Annotated, ClassVar, Literal
 
 from pydantic import Field, model_validator
 
@@ -42,6 +42,7 @@ class CsvLaw(Frozen):
     A torque or force is linear between the rows and jumps where two rows stand at one instant; a motion is smooth.
     """
 
+    derived: ClassVar[tuple[str, ...]] = ("time", "value")
     law: Literal["csv"] = "csv"
     file: str | None = None
     time: Annotated[Series, Measure("time")]

@@ -2,7 +2,7 @@
 
 from __future__ import annotations
 
-from typing import Annotated, Literal
+from typing import Annotated, ClassVar, Literal
 
 from pydantic import Field, model_validator
 
@@ -42,6 +42,7 @@ class CsvWrench(Frozen):
     The wrench is linear between the rows, jumps where two rows stand at one instant and keeps its last value.
     """
 
+    derived: ClassVar[tuple[str, ...]] = ("time", "wrench")
     law: Literal["csv"] = "csv"
     file: str | None = None
     time: Annotated[Series, Measure("time")]

@@ -3,10 +3,10 @@
 from __future__ import annotations
 
 import math
-from typing import Annotated, Literal, get_args
+from typing import Annotated, ClassVar, Literal, get_args
 
 import numpy as np
-from pydantic import Field, model_validator
+from pydantic import AfterValidator, Field, model_validator
 
 from flexapod.errors import InputError
 from flexapod.model.base import Frozen, Measure, NonNegative, Number, Positive, Series, Series6, Vec3
@@ -15,13 +15,33 @@ from flexapod.typing import Array
 from flexapod.units import DIMENSIONS
 from flexapod.words import number, text
 
-__all__ = ["AXES", "PROFILES", "AxisMotion", "CombinedMotion", "CsvMotion", "Motion", "Waypoint", "WaypointMotion"]
+__all__ = [
+    "AXES",
+    "PROFILES",
+    "AxisMotion",
+    "CombinedMotion",
+    "CsvMotion",
+    "Motion",
+    "Waypoint",
+    "WaypointMotion",
+    "moved_axes",
+]
 
 Axis = Literal["surge", "sway", "heave", "roll", "pitch", "yaw"]
 Profile = Literal["quintic", "cycloidal", "s-curve", "trapezoid", "smooth", "linear"]
 AXES: tuple[Axis, ...] = get_args(Axis)
 PROFILES: tuple[Profile, ...] = get_args(Profile)
 _ORIGIN = (0.0, 0.0, 0.0)
+
+
+def _distinct(axes: tuple[str, ...]) -> tuple[str, ...]:
+    if not axes or len({*axes}) < len(axes):
+        raise ValueError("must name each axis once, and one at least")
+    return axes
+
+
+#: Coordinates that are commanded where a robot has fewer than six motions; the others follow.
+Independent = Annotated[tuple[Axis, ...], AfterValidator(_distinct)]
 
 
 class AxisMotion(Frozen):
@@ -36,6 +56,7 @@ class AxisMotion(Frozen):
     hold: Annotated[NonNegative, Measure("time")] = 0.0
     profile: Profile = "quintic"
     pivot: Annotated[Vec3, Measure("length")] = Field(default=_ORIGIN, validate_default=True)
+    independent: Independent | None = None
 
     def _shown(self) -> dict[str, str]:
         return _in_words(self.target, self.duration, self.hold, self.profile)
@@ -70,6 +91,7 @@ class CombinedMotion(Frozen):
     hold: Annotated[NonNegative, Measure("time")] = 0.0
     profile: Profile = "quintic"
     pivot: Annotated[Vec3, Measure("length")] = Field(default=_ORIGIN, validate_default=True)
+    independent: Independent | None = None
 
     def _shown(self) -> dict[str, str]:
         return _in_words(self.target, self.duration, self.hold, self.profile)
@@ -128,6 +150,7 @@ class WaypointMotion(Frozen):
     hold: Annotated[NonNegative, Measure("time")] = 0.0
     profile: Profile = "quintic"
     pivot: Annotated[Vec3, Measure("length")] = Field(default=_ORIGIN, validate_default=True)
+    independent: Independent | None = None
 
     def _shown(self) -> dict[str, str]:
         return {"to": f"{len(self.points)} points", "in": f"{number(self.end_time, 4)} s", "profile": self.profile}
@@ -175,12 +198,14 @@ class CsvMotion(Frozen):
     Columns of `pose`: surge, sway, heave [m], roll, pitch, yaw [rad].
     """
 
+    derived: ClassVar[tuple[str, ...]] = ("time", "pose")
     type: Literal["csv"] = "csv"
     file: str | None = None
     time: Annotated[Series, Measure("time")]
     pose: Annotated[Series6, Measure("length", "angle")]
     hold: Annotated[NonNegative, Measure("time")] = 0.0
     pivot: Annotated[Vec3, Measure("length")] = Field(default=_ORIGIN, validate_default=True)
+    independent: Independent | None = None
 
     def _shown(self) -> dict[str, str]:
         return {"table": f"{self.file or 'given'}, {len(self.time)} rows", "in": f"{number(self.end_time, 4)} s"}
@@ -202,6 +227,16 @@ class CsvMotion(Frozen):
 
 
 Motion = Annotated[AxisMotion | CombinedMotion | WaypointMotion | CsvMotion, Field(discriminator="type")]
+
+
+def moved_axes(motion: Motion) -> tuple[Axis, ...]:
+    """Axes along or about which a motion leads away from home."""
+    if isinstance(motion, WaypointMotion):
+        poses = motion.poses
+    else:
+        poses = motion.pose if isinstance(motion, CsvMotion) else motion.target
+    columns = np.atleast_2d(poses).T
+    return tuple(axis for axis, column in zip(AXES, columns, strict=True) if column.any())
 
 
 def check_times(time: Array, rows: int, *, key: str = "time", jumps: bool = False) -> None:

@@ -15,21 +15,21 @@ import numpy as np
 from flexapod.model.fields import Field, Notes, listened
 from flexapod.model.material import MATERIALS
 from flexapod.model.reference import Entry, plain_path, reference
-from flexapod.model.tables import FORCES, POSE, WRENCH, header
+from flexapod.model.tables import POSE, WRENCH, forces, header
 from flexapod.units import COMMON_UNITS, DIMENSIONS
 
 __all__ = ["HEAD", "Listed", "Row", "entry_text", "listed", "markdown", "study_data"]
 
 HEAD = ("Key", "What it is", "Unit", "Default", "Allowed")
 _NEEDED = {"robot": ("robot", "payload", "leg", "motion"), "actuator": ("actuator", "simulation")}
-_EXTENDED = ("robot", "leg")  # an example of a part of these leaves the rest as it is
+_EXTENDED = ("robot", "leg")  # an example of a part of these leaves the rest as it is (see _whole)
 _TABLES = {
     '`[motion]` with `type = "csv"`': (POSE, "one at least besides the time; others are 0"),
     '`load.wrench` with `law = "csv"`, of a robot': (
         WRENCH,
         "one at least besides the time; others are 0",
     ),
-    '`leg.drive` with `law = "csv"`': (FORCES, "all columns"),
+    '`leg.drive` with `law = "csv"`': (forces(6), "all columns, one for each leg"),
     "`motion.rotation`": ({"value": "angle"}, "both columns"),
     "`motion.extension`": ({"value": "length"}, "both columns"),
     "`load.torque`": ({"value": "torque"}, "both columns"),
@@ -63,9 +63,18 @@ def study_data(entry: Entry) -> dict[str, Any]:
     for name in _NEEDED[entry.study]:
         first = next(e for e in reference().entries if e.study == entry.study and e.table == name)
         data |= tomllib.loads(first.example)
-    for name, table in tomllib.loads(entry.example).items():
-        data[name] = {**data[name], **table} if name in _EXTENDED else table
+    example = tomllib.loads(entry.example)
+    for name, table in example.items():
+        part = name in _EXTENDED and isinstance(table, dict) and not _whole(table)
+        data[name] = {**data[name], **table} if part else table
+    if data.get("robot", {}).get("platform", {}).get("fixed"):
+        del data["payload"], data["motion"]
     return data
+
+
+def _whole(table: dict[str, Any]) -> bool:
+    """Whether an example of [robot] or [leg] stands for itself: another geometry, a leg of other bodies."""
+    return ("base" in table and "type" in table) or "strut" in table
 
 
 def listed() -> list[Listed]:

@@ -10,7 +10,7 @@ from flexapod.errors import InputError
 from flexapod.model.base import Frozen, Measure, NonNegative, Number, Positive
 from flexapod.model.material import POISSON, Material, Rectangle, Tube
 
-__all__ = ["Cylinder", "Piston", "Strut"]
+__all__ = ["Cylinder", "Piston", "Strip", "Strut"]
 
 
 class Cylinder(Frozen):
@@ -97,28 +97,34 @@ class Piston(Frozen):
         return self.EI / (1 + self.poisson) if self.GJ is None else self.GJ
 
 
+class Strip(Frozen):
+    """Section of a strip that bends across its thickness: `width`, `thickness` [m]."""
+
+    width: Annotated[Positive, Measure("length")]
+    thickness: Annotated[Positive, Measure("length")]
+
+
 class Strut(Piston):
     """A rod of fixed length in place of cylinder and piston: the beam of a piston that nothing guides.
 
-    `width`, `thickness` [m] of a strip, which bends across its thickness in a planar robot.
+    `section`: of a strip, in a planar robot.
     """
 
-    width: Annotated[Positive, Measure("length")] | None = None
-    thickness: Annotated[Positive, Measure("length")] | None = None
+    section: Strip | None = None
 
     @classmethod
-    def strip(cls, *, length: float, section: Rectangle, material: Material) -> Strut:
+    def strip(cls, *, length: float, section: Strip, material: Material) -> Strut:
         """A strip: EA, EI across its thickness and rhoA follow from section and material."""
+        size = Rectangle(width=section.width, height=section.thickness)
         return cls(
             length=length,
-            EA=material.E * section.area,
-            EI=material.E * section.second_moment,
-            rhoA=material.density * section.area,
+            EA=material.E * size.area,
+            EI=material.E * size.second_moment,
+            rhoA=material.density * size.area,
             E=material.E,
             density=material.density,
             yield_stress=material.yield_stress,
-            width=section.width,
-            thickness=section.height,
+            section=section,
         )
 
 

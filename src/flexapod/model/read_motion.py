@@ -6,42 +6,54 @@ from collections.abc import Iterable, Mapping
 
 import numpy as np
 
-from flexapod.model.load import ConstantWrench, CsvWrench, Load, SineWrench, StepWrench, Wrench
-from flexapod.model.motion import (
-    AXES,
-    PROFILES,
-    AxisMotion,
-    CombinedMotion,
-    CsvMotion,
-    Motion,
-    Waypoint,
-    WaypointMotion,
-)
+from flexapod.model.load import ConstantWrench, CsvWrench, Load, SineWrench, StepWrench
+from flexapod.model.motion import AXES, AxisMotion, CombinedMotion, CsvMotion, Motion, Waypoint, WaypointMotion
 from flexapod.model.section import Section
 from flexapod.model.simulation import FIDELITIES, OWN_BASIS, STRAIGHT, Initial, Simulation, own_fidelity
-from flexapod.model.tables import POSE, WRENCH, read_table
+from flexapod.model.tables import POSE, WRENCH
 from flexapod.typing import Array
 
 __all__ = ["read_initial", "read_load", "read_motion", "read_simulation", "unused_settings"]
 
-_KINDS = (*AXES, "combined", "waypoints", "csv")
-_WRENCH = tuple(WRENCH.values())
-
 
 def read_motion(section: Section) -> Motion:
     """The motion of a robot."""
-    section.need("type")
-    kind = section.text("type", _KINDS)
-    if kind == "combined":
-        return _combined(section)
-    if kind == "waypoints":
-        return _waypoints(section)
-    if kind == "csv":
-        return _csv(section)
-    section.only("type", "amplitude", "duration", "hold", "profile", "pivot")
-    return section.build(
-        AxisMotion, type=kind, amplitude=section.number("amplitude", POSE[str(kind)]), **_timing(section)
+    return section.one_of(
+        (AxisMotion, CombinedMotion, WaypointMotion, CsvMotion),
+        readers={
+            AxisMotion: lambda s: s.read(AxisMotion, among=(POSE[str(s.text("type"))],), then=_independent),
+            CombinedMotion: lambda s: s.read(CombinedMotion, then=lambda s: _amplitudes(s) | _independent(s)),
+            WaypointMotion: lambda s: s.read(WaypointMotion, then=lambda s: _points(s) | _independent(s)),
+            CsvMotion: lambda s: s.read(CsvMotion, then=lambda s: _poses(s) | _independent(s)),
+        },
     )
+
+
+def _independent(section: Section) -> dict[str, object]:
+    return {"independent": section.words("independent", AXES)}
+
+
+def _amplitudes(section: Section) -> dict[str, object]:
+    inner = section.section("amplitudes")
+    if inner is None:
+        return {}
+    inner.only(*AXES)
+    return {"amplitudes": {axis: inner.number(axis, POSE[axis]) for axis in AXES if axis in inner}}
+
+
+def _points(section: Section) -> dict[str, object]:
+    value = section.data.get("points")
+    if value is None:
+        return {}
+    if not isinstance(value, list) or not value:
+        raise section.error("is not a list of points", "points", allowed="[{ time = .., roll = .. }, ...]")
+    points = (section.child(item, f"points[{i}]") for i, item in enumerate(value, start=1))
+    return {"points": tuple(point.read(Waypoint) for point in points)}
+
+
+def _poses(section: Section) -> dict[str, object]:
+    table = section.table(POSE)
+    return {"time": table["time"], "pose": _beside(table, AXES)}
 
 
 def read_load(section: Section | None) -> Load:
@@ -52,35 +64,35 @@ def read_load(section: Section | None) -> Load:
     section.need("wrench")
     value = section.data["wrench"]
     if isinstance(value, list):
-        return Load(wrench=section.build(ConstantWrench, value=section.vector("wrench", *_WRENCH)))
-    return Load(wrench=_wrench(section.child(value, "wrench")))
+        return Load(wrench=section.build(ConstantWrench, value=section.vector("wrench", *WRENCH.values())))
+    kinds = (ConstantWrench, SineWrench, StepWrench, CsvWrench)
+    csv = {CsvWrench: lambda s: s.read(CsvWrench, then=_wrenches)}
+    return Load(wrench=section.child(value, "wrench").one_of(kinds, readers=csv))
+
+
+def _wrenches(section: Section) -> dict[str, object]:
+    table = section.table(WRENCH, jumps=True)
+    return {"time": table["time"], "wrench": _beside(table, WRENCH)}
 
 
 def read_initial(section: Section | None) -> Initial:
     """The start of a robot."""
-    if section is None:
-        return Initial()
-    section.only("start")
-    return section.build(Initial, start=section.text("start", ("equilibrium", "straight", "moving")))
+    return Initial() if section is None else section.read(Initial)
 
 
 def read_simulation(section: Section | None, *, basis: str, bases: tuple[str, ...]) -> Simulation:
     """The simulation settings; `basis` is the default and `bases` are the allowed ones."""
     if section is None:
         return Simulation(basis=basis)
-    section.only("fidelity", "basis", "modes", "duration", "tolerance", "step", "output_step", "rho_inf")
-    fidelity = section.text("fidelity", FIDELITIES)
-    return section.build(
-        Simulation,
-        fidelity=fidelity,
-        basis=_basis(section, bases) or (None if fidelity in OWN_BASIS else basis),
-        modes=section.whole("modes"),
-        duration=section.number("duration", "time"),
-        tolerance=section.number("tolerance", "number"),
-        step=section.number("step", "time"),
-        output_step=section.number("output_step", "time"),
-        rho_inf=section.number("rho_inf", "number"),
-    )
+
+    def choices(section: Section) -> dict[str, object]:
+        fidelity = section.text("fidelity", FIDELITIES)
+        return {
+            "fidelity": fidelity,
+            "basis": _basis(section, bases) or (None if fidelity in OWN_BASIS else basis),
+        }
+
+    return section.read(Simulation, then=choices)
 
 
 def _basis(section: Section, bases: tuple[str, ...]) -> str | None:
@@ -98,83 +110,6 @@ def unused_settings(section: Section | None, simulation: Simulation) -> tuple[st
         for name in ("modes", "basis")
         if name in section
     )
-
-
-def _timing(section: Section) -> dict[str, object]:
-    return {"duration": section.number("duration", "time"), **_path(section)}
-
-
-def _path(section: Section) -> dict[str, object]:
-    return {
-        "hold": section.number("hold", "time"),
-        "profile": section.text("profile", PROFILES),
-        "pivot": section.vector("pivot", "length", "length", "length"),
-    }
-
-
-def _combined(section: Section) -> CombinedMotion:
-    section.only("type", "amplitudes", "duration", "hold", "profile", "pivot")
-    section.need("amplitudes")
-    inner = section.child(section.data["amplitudes"], "amplitudes")
-    inner.only(*AXES)
-    amplitudes = {axis: inner.number(axis, POSE[axis]) for axis in AXES if axis in inner}
-    return section.build(CombinedMotion, amplitudes=amplitudes, **_timing(section))
-
-
-def _waypoints(section: Section) -> WaypointMotion:
-    section.only("type", "points", "hold", "profile", "pivot")
-    section.need("points")
-    value = section.data["points"]
-    if not isinstance(value, list) or not value:
-        raise section.error("is not a list of points", "points", allowed="[{ time = .., roll = .. }, ...]")
-    points = []
-    for i, item in enumerate(value, start=1):
-        point = section.child(item, f"points[{i}]")
-        point.only("time", *AXES)
-        poses = {axis: point.number(axis, POSE[axis]) for axis in AXES}
-        points.append(point.build(Waypoint, time=point.number("time", "time"), **poses))
-    return section.build(WaypointMotion, points=tuple(points), **_path(section))
-
-
-def _csv(section: Section) -> CsvMotion:
-    section.only("type", "file", "hold", "pivot")
-    section.need("file")
-    file = str(section.text("file"))
-    table = read_table(section.folder / file, POSE)
-    return section.build(
-        CsvMotion,
-        file=file,
-        time=table["time"],
-        pose=_beside(table, AXES),
-        hold=section.number("hold", "time"),
-        pivot=section.vector("pivot", "length", "length", "length"),
-    )
-
-
-def _wrench(section: Section) -> Wrench:
-    section.need("law")
-    law = section.text("law", ("constant", "sine", "step", "csv"))
-    if law == "constant":
-        section.only("law", "value")
-        return section.build(ConstantWrench, value=section.vector("value", *_WRENCH))
-    if law == "sine":
-        section.only("law", "amplitude", "frequency", "phase")
-        return section.build(
-            SineWrench,
-            amplitude=section.vector("amplitude", *_WRENCH),
-            frequency=section.number("frequency", "frequency"),
-            phase=section.number("phase", "angle"),
-        )
-    if law == "step":
-        section.only("law", "amplitude", "time")
-        return section.build(
-            StepWrench, amplitude=section.vector("amplitude", *_WRENCH), time=section.number("time", "time")
-        )
-    section.only("law", "file")
-    section.need("file")
-    file = str(section.text("file"))
-    table = read_table(section.folder / file, WRENCH, jumps=True)
-    return section.build(CsvWrench, file=file, time=table["time"], wrench=_beside(table, WRENCH))
 
 
 def _beside(table: Mapping[str, Array], names: Iterable[str]) -> Array:

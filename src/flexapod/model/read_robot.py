@@ -2,226 +2,176 @@
 
 from __future__ import annotations
 
-from collections.abc import Callable
+from collections.abc import Mapping
+from typing import cast
+
+import numpy as np
 
 from flexapod.errors import InputError
+from flexapod.model.axes import Plane, normal_of, plane_order
+from flexapod.model.chain import chains_of
 from flexapod.model.circle import Circle, base_circle, platform_circle
-from flexapod.model.damping import read_damping
-from flexapod.model.drive import Drive, Feedback, ForceDrive, PrescribedDrive, ServoDrive
-from flexapod.model.leg import Leg, Stroke
-from flexapod.model.material import MATERIALS, Material, Tube
+from flexapod.model.drive import ForceDrive
+from flexapod.model.home import Home
+from flexapod.model.leg import Leg
 from flexapod.model.payload import Payload
-from flexapod.model.piston import Cylinder, Piston
+from flexapod.model.read_leg import read_leg
 from flexapod.model.robot import Robot
 from flexapod.model.section import Section
-from flexapod.model.tables import FORCES, read_table
 from flexapod.typing import Array
 
-__all__ = ["read_material", "read_robot"]
+__all__ = ["platform_fixed", "read_robot"]
 
 _LENGTHS = ("length", "length", "length")
 _INERTIAS = ("inertia", "inertia", "inertia")
+_ENDS = ("base", "platform")
 
 
 def read_robot(top: Section) -> Robot:
     """The robot of a study file, from its whole-file section."""
-    top.need("robot", "payload", "leg")
+    fixed = platform_fixed(top)
+    top.need("robot", *(() if fixed else ("payload",)), "leg")
     section = top.child(top.data["robot"], "robot")
-    section.only("type", "base", "platform", "home_height", "gravity")
-    section.need("base", "platform", "home_height")
+    section.only("type", "plane", "base", "platform", "home_height", "home", "gravity")
+    section.need(*_ENDS)
+    plane = top.plane = section.plane = section.text("plane", ("xy", "yz", "zx"))
+    kind = section.text("type") or "6-UPS"
+    try:
+        chains = chains_of(kind)
+    except InputError as error:
+        raise error.located(file=top.file, prefix="robot.type") from None
+    tables = _leg_tables(top, chains, kind)
+    base, platform = (_places(section, end, tables) for end in _ENDS)
+    section.child(section.data["platform"], "platform").flag("fixed")
+    legs: list[Leg] = []
+    for i, table in enumerate(tables):
+        same = i > 0 and table is tables[i - 1] and not _turns(table) and not _columns(legs[-1])
+        places = (base[i], platform[i], normal_of(plane))
+        legs.append(legs[-1] if same else read_leg(table, i + 1, len(chains), chains[i], places))
+    payload = top.section("payload")
     return top.build(
         Robot,
-        type=section.text("type", ("6-UPS",)),
-        base_joints=_joints(section, "base", base_circle),
-        platform_joints=_joints(section, "platform", platform_circle),
-        home_height=section.number("home_height", "length"),
-        gravity=section.vector("gravity", "acceleration", "acceleration", "acceleration") or (0.0, 0.0, -9.81),
-        payload=_payload(top.child(top.data["payload"], "payload")),
-        legs=_legs(top),
+        type=kind,
+        base_joints=base,
+        platform_joints=platform,
+        home=_home(section, fixed),
+        gravity=section.vector("gravity", *("acceleration",) * 3) or (0.0, 0.0, -9.81),
+        payload=None if payload is None else payload.read(Payload, then=_inertia),
+        legs=tuple(legs),
+        plane=cast("Plane | None", plane),
+        platform_fixed=fixed,
     )
 
 
-def read_material(section: Section) -> Material:
-    """Material of a section that has `material`, or `E` and `density`; the others may be set in both cases."""
-    own = {"yield_stress": section.number("yield_stress", "stress"), "poisson": section.number("poisson", "number")}
-    if "material" in section:
-        for name in ("E", "density"):
-            if name in section:
-                raise section.error("is given together with material", name, allowed="material, or E and density")
-        name = section.text("material", tuple(MATERIALS))
-        material = MATERIALS[str(name)]
-        given = {key: value for key, value in own.items() if value is not None}
-        return section.build(material.replace, **given) if given else material
-    if "E" not in section and "density" not in section:
+def platform_fixed(top: Section) -> bool:
+    """Whether a study file says that the platform is held."""
+    robot = top.data.get("robot")
+    platform = robot.get("platform") if isinstance(robot, Mapping) else None
+    return isinstance(platform, Mapping) and platform.get("fixed") is True
+
+
+def _leg_tables(top: Section, chains: tuple[str, ...], kind: str) -> list[Section]:
+    """The table of every leg; the same one for legs that share it."""
+    value, count = top.data["leg"], len(chains)
+    single = not isinstance(value, list)
+    sections = [top.child(value, "leg")] if single else [top.child(leg, f"leg[{i}]") for i, leg in enumerate(value, 1)]
+    counts = [section.whole("count") or (count if single else 1) for section in sections]
+    if min(counts, default=0) < 1 or sum(counts) != count:
+        times = f"appears {len(sections)} times"
         raise InputError(
-            "is missing",
-            file=section.file,
-            key=section.key("material"),
-            allowed=f"material ({', '.join(MATERIALS)}), or E and density",
-            next_step=f"Add {section.key('material')}",
+            times if counts == [1] * len(sections) else f"{times}, for {sum(counts)} legs together",
+            file=top.file,
+            key="leg" if single else "[[leg]]",
+            allowed=f"{count} legs ({kind}): [leg] once for all alike, or [[leg]] with count = .. for each kind",
         )
-    section.need("E", "density")
-    return section.build(
-        Material,
-        name="given",
-        E=section.number("E", "stress"),
-        density=section.number("density", "density"),
-        **own,
-    )
+    tables = [section for section, number in zip(sections, counts, strict=True) for _ in range(number)]
+    for section in sections:
+        covered = {chain for chain, table in zip(chains, tables, strict=True) if table is section}
+        if len(covered) > 1:
+            raise InputError(
+                f"stands for legs of several kinds ({', '.join(sorted(covered))})",
+                file=top.file,
+                key=section.path,
+                allowed=f"[[leg]] with count = .. for each kind of {kind}, in its order",
+            )
+    return tables
 
 
-def _joints(robot: Section, name: str, circle: Callable[[float, float], Array]) -> Array | list[list[float]]:
-    section = robot.child(robot.data[name], name)
+def _places(robot: Section, end: str, tables: list[Section]) -> Array:
+    """Joints of all legs at one end, (n, 3); a leg may have its own place, the others share a circle or rows."""
+    joints = [table.section(f"{end}_joint") for table in tables]
+    own = [None if joint is None else joint.vector("at", *_LENGTHS) for joint in joints]
+    shared = iter(_shared(robot.child(robot.data[end], end), end, own.count(None)))
+    return np.array([next(shared) if place is None else place for place in own])
+
+
+def _shared(section: Section, end: str, count: int) -> Array | list[list[float]]:
+    fixed = ("fixed",) if end == "platform" else ()
     if "joints" in section:
-        section.only("joints")
-        return section.rows("joints", 6, *_LENGTHS)
-    section.only("radius", "half_angle", "joints")
-    section.need("radius", "half_angle")
-    found = section.build(
-        Circle, radius=section.number("radius", "length"), half_angle=section.number("half_angle", "angle")
-    )
-    return circle(found.radius, found.half_angle)
+        section.only("joints", *fixed)
+        return section.rows("joints", *(_LENGTHS,) * count)
+    circle = section.read(Circle, also=("joints", *fixed), then=lambda s: _angles(s, count))
+    if circle.half_angle is not None:
+        return (base_circle if end == "base" else platform_circle)(circle.radius, circle.half_angle)
+    return np.roll(circle.places, plane_order(section.plane)[0], axis=1)
 
 
-def _payload(section: Section) -> Payload:
-    section.only("mass", "inertia", "com", "tool")
-    section.need("mass", "inertia", "com")
-    value = section.data["inertia"]
-    nested = isinstance(value, list) and any(isinstance(row, list) for row in value)
-    return section.build(
-        Payload,
-        mass=section.number("mass", "mass"),
-        inertia=section.rows("inertia", 3, *_INERTIAS) if nested else section.vector("inertia", *_INERTIAS),
-        com=section.vector("com", *_LENGTHS),
-        tool=section.vector("tool", *_LENGTHS),
-    )
-
-
-def _legs(top: Section) -> tuple[Leg, ...]:
-    value = top.data["leg"]
-    if not isinstance(value, list):
-        section = top.child(value, "leg")
-        first = _leg(section, 1)
-        apart = isinstance(first.drive, ForceDrive) and first.drive.force is not None  # a column for each leg
-        return (first, *(_leg(section, i) if apart else first for i in range(2, 7)))
-    if len(value) != 6:
-        raise InputError(
-            f"appears {len(value)} times", file=top.file, key="[[leg]]", allowed="[leg] once, or [[leg]] six times"
+def _angles(section: Section, count: int) -> dict[str, object]:
+    if "half_angle" in section and (count != 6 or section.plane):
+        odd = "an odd number of joints has no pairs" if count % 2 else "pairs at 0, 120 and 240 deg are six joints"
+        raise section.error(
+            f"does not place {count} joints{f' in the plane {section.plane}' if section.plane else ''}: {odd}",
+            "half_angle",
+            allowed=f"angles, a list of {count}",
+            next_step=f"For example: angles = {[f'{360 * i // max(count, 1)} deg' for i in range(count)]}",
         )
-    return tuple(_leg(top.child(leg, f"leg[{i}]"), i) for i, leg in enumerate(value, start=1))
+    if "angles" not in section:
+        section.need("radius", "half_angle" if count == 6 and not section.plane else "angles")
+        return {}
+    if "half_angle" in section:
+        raise section.error("is given together with angles", "half_angle", allowed="one of the two")
+    return {"angles": section.vector("angles", *("angle",) * count)}
 
 
-def _leg(section: Section, number: int) -> Leg:
-    section.only("cylinder", "piston", "stroke", "damping", "drive", "axial_modes", "u_axis")
-    section.need("cylinder", "piston")
-    return section.build(
-        Leg,
-        cylinder=_cylinder(section.child(section.data["cylinder"], "cylinder")),
-        piston=_piston(section.child(section.data["piston"], "piston")),
-        stroke=_stroke(section.section("stroke")),
-        damping=read_damping(section),
-        drive=_drive(section.section("drive"), number),
-        axial_modes=section.whole("axial_modes"),
-        u_axis=section.vector("u_axis", "number", "number", "number"),
-    )
+def _home(robot: Section, fixed: bool) -> Home:
+    home = robot.section("home")
+    if home is None:
+        height = robot.number("home_height", "length")
+        if height is None and not (robot.plane or fixed):
+            robot.need("home_height")
+        try:
+            return Home(position=np.array([0.0, 0.0, height or 0.0]))
+        except InputError as error:
+            raise robot.locate(InputError(error.what, key="home_height", allowed=error.allowed)) from None
+    if "home_height" in robot:
+        raise robot.error("is given together with home", "home_height", allowed="one of the two")
+    return home.read(Home, then=_turn if robot.plane else None)
 
 
-def _cylinder(section: Section) -> Cylinder:
-    section.only("mass", "com", "inertia", "mouth", "axial_inertia")
-    return section.build(
-        Cylinder,
-        mass=section.number("mass", "mass"),
-        com=section.number("com", "length"),
-        inertia=section.number("inertia", "inertia"),
-        mouth=section.number("mouth", "length"),
-        axial_inertia=section.number("axial_inertia", "inertia"),
-    )
+def _turn(home: Section) -> dict[str, object]:
+    """Rotation of a planar robot: a number, about the normal."""
+    if isinstance(home.data.get("rotation"), list):
+        return {}
+    angle = home.number("rotation", "angle")
+    return {} if angle is None else {"rotation": angle * normal_of(home.plane)}
 
 
-def _piston(section: Section) -> Piston:
-    stiffness = ("EI", "EA", "rhoA")
-    made_of = ("material", "E", "density", "yield_stress", "poisson")
-    section.only("length", "diameter", "inner_diameter", *made_of, *stiffness, "GJ", "axial_inertia")
-    section.need("length")
-    length, axial_inertia = section.number("length", "length"), section.number("axial_inertia", "inertia")
-    if not any(name in section for name in (*stiffness, "GJ")):
-        section.need("diameter")
-        return section.build(
-            Piston.round,
-            section=_tube(section),
-            material=read_material(section),
-            length=length,
-            axial_inertia=axial_inertia,
-        )
-    section.need(*stiffness)
-    for name in ("material", "E", "density"):
-        if name in section:
-            raise section.error("is given together with EI, EA, rhoA", name, allowed="either of the two")
-    return section.build(
-        Piston,
-        length=length,
-        EI=section.number("EI", "bending stiffness"),
-        EA=section.number("EA", "axial stiffness"),
-        rhoA=section.number("rhoA", "line density"),
-        diameter=section.number("diameter", "length"),
-        inner_diameter=section.number("inner_diameter", "length"),
-        yield_stress=section.number("yield_stress", "stress"),
-        poisson=section.number("poisson", "number"),
-        GJ=section.number("GJ", "bending stiffness"),
-        axial_inertia=axial_inertia,
-    )
+def _inertia(section: Section) -> dict[str, object]:
+    value = section.data.get("inertia")
+    if isinstance(value, list) and any(isinstance(row, list) for row in value):
+        return {"inertia": section.rows("inertia", *(_INERTIAS,) * 3)}
+    if section.plane is None or isinstance(value, list):
+        return {"inertia": section.vector("inertia", *_INERTIAS)}
+    number = section.number("inertia", "inertia")  # of a flat plate in that plane
+    return {} if number is None else {"inertia": number * (1 + normal_of(section.plane)) / 2}
 
 
-def _tube(section: Section) -> Tube:
-    return section.build(
-        Tube,
-        diameter=section.number("diameter", "length"),
-        inner_diameter=section.number("inner_diameter", "length"),
-    )
+def _turns(leg: Section) -> bool:
+    """Whether the leg has directions that depend on where it stands."""
+    tables = [leg.data.get(name) for name in ("base_joint", "platform_joint", "carriage")]
+    return any(isinstance(table, Mapping) and {"slider", "crank", "axis"} & table.keys() for table in tables)
 
 
-def _stroke(section: Section | None) -> Stroke | None:
-    if section is None:
-        return None
-    section.only("min", "max")
-    return section.build(Stroke, min=section.number("min", "length"), max=section.number("max", "length"))
-
-
-def _drive(section: Section | None, number: int) -> Drive:
-    if section is None:
-        return PrescribedDrive()
-    section.need("type")
-    kind = section.text("type", ("prescribed", "servo", "force"))
-    if kind == "prescribed":
-        section.only("type")
-        return PrescribedDrive()
-    if kind == "servo":
-        section.only("type", "stiffness", "damping")
-        return section.build(ServoDrive, **_gains(section))
-    return _force_drive(section, number)
-
-
-def _force_drive(section: Section, number: int) -> ForceDrive:
-    section.only("type", "law", "file", "feedback")
-    law, file = section.text("law", ("rigid", "csv")), section.text("file")
-    feedback = section.section("feedback")
-    if feedback is not None:
-        feedback.only("stiffness", "damping")
-    table: dict[str, Array] = {}
-    if law == "csv" and file is not None:
-        table = read_table(section.folder / file, FORCES, needed=True, jumps=True)
-    return section.build(
-        ForceDrive,
-        law=law,
-        file=file,
-        time=table.get("time"),
-        force=table.get(f"leg {number}"),
-        feedback=None if feedback is None else feedback.build(Feedback, **_gains(feedback)),
-    )
-
-
-def _gains(section: Section) -> dict[str, float | None]:
-    return {
-        "stiffness": section.number("stiffness", "stiffness"),
-        "damping": section.number("damping", "damping"),
-    }
+def _columns(leg: Leg) -> bool:
+    """Whether a table has a column for each leg."""
+    return isinstance(leg.drive, ForceDrive) and leg.drive.force is not None

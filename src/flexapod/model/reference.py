@@ -28,12 +28,13 @@ class Entry:
     study: str = "robot"
 
     @property
-    def data(self) -> Any:
-        """What the example has at its table; of a list of tables, the first."""
-        found: Any = tomllib.loads(self.example)
+    def data(self) -> dict[str, Any]:
+        """What the example has at its table; of a list of tables the keys of all, the first ones first."""
+        found = [tomllib.loads(self.example)]
         for name in self.table.split("."):
-            found = found[name]
-        return found[0] if isinstance(found, list) else found
+            inner = [table[name] for table in found if name in table]
+            found = [item for value in inner for item in (value if isinstance(value, list) else [value])]
+        return {name: value for table in reversed(found) for name, value in table.items()}
 
 
 @dataclass(frozen=True, kw_only=True)

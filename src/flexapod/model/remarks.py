@@ -5,7 +5,7 @@ from __future__ import annotations
 import math
 
 from flexapod.model.actuator import Actuator
-from flexapod.model.drive import Drive, ServoDrive
+from flexapod.model.drive import ServoDrive
 from flexapod.model.leg import Leg
 from flexapod.model.robot import Robot
 from flexapod.words import number
@@ -19,10 +19,11 @@ _RATIO = 0.1  # damping ratio of the advice for a drive without damping
 def robot_remarks(robot: Robot) -> tuple[str, ...]:
     """Remarks on a robot's legs; the same remark for several legs is made once."""
     numbers: dict[str, list[int]] = {}
+    share = 0.0 if robot.payload is None else robot.payload.mass / sum(bool(leg.driven) for leg in robot.legs)
     for i, leg in enumerate(robot.legs, start=1):
-        for remark in (*_leg_remarks(leg), *_undamped(leg.drive, robot.payload.mass)):
+        for remark in (*_leg_remarks(leg), *_undamped(leg, share)):
             numbers.setdefault(remark, []).append(i)
-    return tuple(f"{_legs(which)}: {remark}" for remark, which in numbers.items())
+    return tuple(f"{_legs(which, robot.count)}: {remark}" for remark, which in numbers.items())
 
 
 def actuator_remarks(actuator: Actuator, basis: str | None) -> tuple[str, ...]:
@@ -56,13 +57,16 @@ def _leg_remarks(leg: Leg) -> list[str]:
     return remarks
 
 
-def _undamped(drive: Drive, mass: float) -> list[str]:
-    """A drive that is a spring and no damper: payload and spring go on vibrating."""
+def _undamped(leg: Leg, mass: float) -> list[str]:
+    """A drive that is a spring and no damper: a leg's share of the payload and the spring go on vibrating."""
+    drive = leg.drive
+    if leg.driven == "carriage" or not mass:
+        return []
     spring = drive if isinstance(drive, ServoDrive) else getattr(drive, "feedback", None)
     if spring is None or spring.stiffness == 0 or spring.damping > 0:
         return []
     key = "drive" if isinstance(drive, ServoDrive) else "drive.feedback"
-    good = 2 * _RATIO * math.sqrt(spring.stiffness * mass / 6)  # of a sixth of the payload on this spring
+    good = 2 * _RATIO * math.sqrt(spring.stiffness * mass)
     return [
         f"the {drive.type} drive has stiffness but no damping: what once vibrates on it goes on; "
         f"leg.{key}.damping = {number(good, 2)} N s/m, for example, is {_RATIO:.0%} of the critical one"
@@ -76,7 +80,7 @@ def _fat(depth: float, length: float, name: str) -> str:
     )
 
 
-def _legs(numbers: list[int]) -> str:
-    if len(numbers) == 6:
+def _legs(numbers: list[int], count: int) -> str:
+    if len(numbers) == count:
         return "all legs"
     return ("leg " if len(numbers) == 1 else "legs ") + ", ".join(map(str, numbers))

@@ -69,7 +69,7 @@ def check_plane(robot: Robot) -> None:
     """Refuse places and directions outside the plane of a planar robot, and strips outside of one."""
     if robot.plane is None:
         for i, leg in enumerate(robot.legs, start=1):
-            if leg.strut is not None and leg.strut.thickness is not None:
+            if leg.strut is not None and leg.strut.section is not None:
                 raise InputError(
                     f"leg {i}: a strip bends in a plane only",
                     key="leg.strut",
@@ -90,7 +90,7 @@ def check_plane(robot: Robot) -> None:
     if turns.any() or any(np.abs(np.delete(axis, normal)).max() > 1e-9 * np.abs(axis).max() for axis in axes):
         raise InputError(
             f"turns out of the plane {robot.plane}",
-            key="robot.home.rotation" if turns.any() else "leg",
+            key="robot.home.rotation" if turns.any() else "leg.base_joint.axis",
             allowed=f"axes along {'xyz'[normal]}, the normal: leave them out",
         )
 

@@ -3,17 +3,26 @@
 from __future__ import annotations
 
 from collections.abc import Callable, Mapping
+from math import isfinite
 from pathlib import Path
 from typing import Any, TypeVar
 
-from flexapod.errors import InputError, closest
+import numpy as np
+
+from flexapod.errors import InputError, Malformed, closest
+from flexapod.model.axes import WORDS, axis_of, plane_order
 from flexapod.model.base import Frozen
+from flexapod.model.columns import Column, Kind, columns_of
+from flexapod.model.notes import Notes
 from flexapod.model.reference import advice, example_line
+from flexapod.model.tables import read_table
+from flexapod.typing import Array
 from flexapod.units import to_si
 
 __all__ = ["Section"]
 
 M = TypeVar("M", bound=Frozen)
+_KINDS = ("type", "law")  # keys that say which of several tables it is
 
 
 class Section:
@@ -29,13 +38,25 @@ class Section:
         File name for messages.
     folder : Path
         Files named in the study are relative to it.
+    notes : Notes, optional
+        Takes down what is asked.
+    plane : {"xy", "yz", "zx"}, optional
+        Vectors may have two numbers, along the axes of this plane.
     """
 
-    def __init__(self, data: object, path: str, file: str | None, folder: Path) -> None:
-        self.path, self.file, self.folder = path, file, folder
+    def __init__(
+        self,
+        data: object,
+        path: str,
+        file: str | None,
+        folder: Path,
+        notes: Notes | None = None,
+        plane: str | None = None,
+    ) -> None:
+        self.path, self.file, self.folder, self.notes, self.plane = path, file, folder, notes, plane
         if not isinstance(data, Mapping):
             table, _, name = path.rpartition(".")
-            raise InputError(
+            raise Malformed(
                 "is not a table",
                 file=file,
                 key=path,
@@ -55,11 +76,19 @@ class Section:
             what, file=self.file, key=self.key(name), value=self.data.get(name), allowed=allowed, next_step=next_step
         )
 
+    def malformed(self, what: str, name: str, *, allowed: str | None = None, next_step: str | None = None) -> Malformed:
+        """An error about the value of `name` that no study file may have."""
+        return Malformed(
+            what, file=self.file, key=self.key(name), value=self.data.get(name), allowed=allowed, next_step=next_step
+        )
+
     def only(self, *names: str) -> None:
         """Refuse every key that is not in `names`."""
+        if self.notes is not None:
+            self.notes.allow(self.path, names)
         for name in self.data:
             if name not in names:
-                raise InputError(
+                raise Malformed(
                     "unknown key",
                     file=self.file,
                     key=self.key(name),
@@ -76,43 +105,150 @@ class Section:
     def __contains__(self, name: str) -> bool:
         return name in self.data
 
+    def read(
+        self,
+        model: type[M],
+        *,
+        among: tuple[str, ...] = (),
+        also: tuple[str, ...] = (),
+        then: Callable[[Section], Mapping[str, object]] | None = None,
+    ) -> M:
+        """The model's object that this table describes, key by key (`model.columns`).
+
+        Parameters
+        ----------
+        model : type
+            The class.
+        among : tuple of str
+            Dimensions that count for numbers which may be of several.
+        also : tuple of str
+            Further keys, that the caller reads.
+        then : callable, optional
+            Gives the fields that are not read key by key; asked once the keys are known to be right.
+        """
+        columns = [column for name, column in columns_of(model).items() if name not in model.derived]
+        self.only(*(column.name for column in columns), *also)
+        others = {} if then is None else then(self)
+        values = {column.name: self._value(column, among) for column in columns if column.name not in others}
+        return self.build(model, **values, **others)
+
+    def _value(self, column: Column, among: tuple[str, ...]) -> object:
+        name = column.name
+        if column.kind == "number":
+            return self.number(name, next((kind for kind in among if kind in column.dimensions), column.dimensions[0]))
+        if column.kind == "vector" and column.size:
+            return self.vector(name, *np.repeat(column.dimensions, column.size // len(column.dimensions)).tolist())
+        if column.kind == "text":
+            return self.text(name, column.choices)
+        if column.kind == "whole":
+            return self.whole(name)
+        if column.kind == "flag":
+            return self.flag(name)
+        if column.kind != "table":
+            return None
+        if column.dimensions and not isinstance(self.data.get(name), Mapping):
+            return self.number(name, column.dimensions[0])
+        inner = self.section(name)
+        return inner and inner.one_of(column.models, among=among)
+
+    def one_of(
+        self,
+        models: tuple[type[M], ...],
+        *,
+        among: tuple[str, ...] = (),
+        default: type[M] | None = None,
+        readers: Mapping[type, Callable[[Section], Any]] | None = None,
+    ) -> M:
+        """An object of one of several classes, the one that `type` or `law` names, or the default one.
+
+        `readers`: of classes that are not read key by key.
+        """
+        model = models[0]
+        if len(models) > 1:
+            key = next(name for name in _KINDS if name in columns_of(model))
+            if default is None:
+                self.need(key)
+            kinds = {kind: one for one in models for kind in columns_of(one)[key].choices or ()}
+            model = kinds.get(str(self.text(key, tuple(kinds))), default or model)
+        reader = (readers or {}).get(model)
+        return self.read(model, among=among) if reader is None else reader(self)
+
     def number(self, name: str, dimension: str) -> float | None:
         """Value in SI, or None if absent."""
+        self._note(name, "number", (dimension,))
         return None if name not in self.data else self._si(self.data[name], dimension, self.key(name))
 
     def whole(self, name: str) -> int | None:
         """A whole number, or None if absent."""
+        self._note(name, "whole", ("number",))
         value = self.data.get(name)
         if value is None or (isinstance(value, int) and not isinstance(value, bool)):
             return value
-        raise self.error("is not a whole number", name)
+        raise self.malformed("is not a whole number", name)
+
+    def flag(self, name: str) -> bool | None:
+        """True or false, or None if absent."""
+        self._note(name, "flag")
+        value = self.data.get(name)
+        if value is None or isinstance(value, bool):
+            return value
+        raise self.malformed("is neither true nor false", name, allowed="true, false")
+
+    def words(self, name: str, allowed: tuple[str, ...]) -> tuple[str, ...] | None:
+        """A list of texts, each one of `allowed`, or None if absent."""
+        self._note(name, "words", choices=allowed)
+        value = self.data.get(name)
+        if value is None:
+            return None
+        if not isinstance(value, list) or any(word not in allowed for word in value):
+            raise self.malformed("is not a list of these words", name, allowed=", ".join(allowed))
+        return tuple(value)
 
     def text(self, name: str, allowed: tuple[str, ...] | None = None) -> str | None:
         """A text, one of `allowed` if given, or None if absent."""
+        self._note(name, "text", choices=allowed)
         value = self.data.get(name)
         if value is None:
             return None
         words = ", ".join(allowed) if allowed else "a text in quotes"
         if not isinstance(value, str):
-            raise self.error("is not a text", name, allowed=words)
+            raise self.malformed("is not a text", name, allowed=words)
         if allowed and value not in allowed:
-            raise self.error("is not known", name, allowed=words, next_step=closest(value, allowed))
+            raise self.malformed("is not known", name, allowed=words, next_step=closest(value, allowed))
         return value
 
     def vector(self, name: str, *dimensions: str) -> list[float] | None:
         """As many numbers in SI as `dimensions`, or None if absent."""
-        if name not in self.data:
-            return None
-        return self._vector(self.data[name], dimensions, self.key(name))
+        value = self.data.get(name)
+        self._note(name, "vector", self._in_plane(value, dimensions))
+        return None if value is None else self._vector(value, dimensions, self.key(name))
 
-    def rows(self, name: str, count: int, *dimensions: str) -> list[list[float]]:
-        """`count` rows of numbers in SI."""
-        value = self.data[name]
-        if not isinstance(value, list) or len(value) != count:
-            raise self.error(
-                f"is not a list of {count} rows", name, allowed=f"{count} rows of {len(dimensions)} numbers"
+    def rows(self, name: str, *rows: tuple[str, ...]) -> list[list[float]]:
+        """Rows of numbers in SI, of these dimensions."""
+        value = self.data.get(name)
+        first = value[0] if isinstance(value, list) and value else None
+        self._note(name, "rows", self._in_plane(first, rows[0]))
+        if not isinstance(value, list) or len(value) != len(rows):
+            raise self.malformed(
+                f"is not a list of {len(rows)} rows", name, allowed=f"{len(rows)} rows of {len(rows[0])} numbers"
             )
-        return [self._vector(row, dimensions, f"{self.key(name)}[{i}]") for i, row in enumerate(value, start=1)]
+        places = enumerate(zip(value, rows, strict=True), start=1)
+        return [self._vector(row, dimensions, f"{self.key(name)}[{i}]") for i, (row, dimensions) in places]
+
+    def direction(self, name: str, place: Array, normal: Array) -> Array | None:
+        """A vector, or a word for one as seen from a joint (`model.axes`); None if absent."""
+        if not isinstance(self.data.get(name), str):
+            given = self.vector(name, "number", "number", "number")
+            return None if given is None else np.array(given)
+        found = axis_of(str(self.text(name, WORDS)), place, normal)
+        if found is None:
+            raise self.error("is no direction here: the joint lies on the axis", name, allowed="a vector, or vertical")
+        return found
+
+    def table(self, columns: Mapping[str, str], *, needed: bool = False, jumps: bool = False) -> dict[str, Array]:
+        """Columns of the CSV file under `file` (`model.tables`)."""
+        self.need("file")
+        return read_table(self.folder / str(self.text("file")), columns, needed=needed, jumps=jumps)
 
     def section(self, name: str) -> Section | None:
         """The table under `name`, or None if absent."""
@@ -120,14 +256,20 @@ class Section:
 
     def child(self, data: object, name: str) -> Section:
         """A section for `data` found under `name`."""
-        return Section(data, self.key(name), self.file, self.folder)
+        return Section(data, self.key(name), self.file, self.folder, self.notes, self.plane)
 
     def build(self, model: Callable[..., M], **fields: object) -> M:
         """A model from this section's values; absent ones (None) take the model's default."""
+        given = {name: value for name, value in fields.items() if value is not None}
+        if self.notes is not None:
+            self.notes.fill(self.path, model, given)
         try:
-            return model(**{name: value for name, value in fields.items() if value is not None})
+            built = model(**given)
         except InputError as error:
             raise self.locate(error) from None
+        if self.notes is not None:
+            self.notes.taken(self.path, built)
+        return built
 
     def locate(self, error: InputError) -> InputError:
         """The error with this section's path and file, and the value as the user wrote it."""
@@ -141,26 +283,48 @@ class Section:
         line = example_line(self.path, name, self.data)
         return f"Add {self.key(name)}" + (f", for example: {line}" if line else "")
 
+    def _note(
+        self, name: str, kind: Kind, dimensions: tuple[str, ...] = (), choices: tuple[str, ...] | None = None
+    ) -> None:
+        if self.notes is not None:
+            self.notes.ask(self.key(name), kind, dimensions, choices, self.data.get(name))
+
+    def _in_plane(self, value: object, dimensions: tuple[str, ...]) -> tuple[str, ...]:
+        """Dimensions of a vector as it is written: of two numbers in the plane of a planar robot."""
+        short = self.plane is not None and isinstance(value, list) and len(value) == 2 and len(dimensions) == 3
+        return dimensions[:2] if short else dimensions
+
     def _vector(self, value: object, dimensions: tuple[str, ...], key: str) -> list[float]:
-        if not isinstance(value, list) or len(value) != len(dimensions):
-            raise InputError(
+        written = self._in_plane(value, dimensions)
+        if not isinstance(value, list) or len(value) != len(written):
+            raise Malformed(
                 "is not a vector",
                 file=self.file,
                 key=key,
                 value=value,
-                allowed=f"{len(dimensions)} numbers",
+                allowed=f"{len(dimensions)} numbers" + (f", or two in the plane {self.plane}" if self.plane else ""),
                 next_step=_such_as(self.path, key.rpartition(".")[2], self.data),
             )
-        return [
+        numbers = [
             self._si(item, dimension, f"{key}[{i}]")
-            for i, (item, dimension) in enumerate(zip(value, dimensions, strict=True), start=1)
+            for i, (item, dimension) in enumerate(zip(value, written, strict=True), start=1)
         ]
+        if len(written) == len(dimensions):
+            return numbers
+        found = [0.0] * 3
+        for axis, number in zip(plane_order(self.plane)[:2], numbers, strict=True):
+            found[axis] = number
+        return found
 
     def _si(self, value: object, dimension: str, key: str) -> float:
+        if isinstance(value, float) and isfinite(value):
+            return value
         try:
             return to_si(value, dimension, key=key)
         except InputError as error:
-            raise error.located(file=self.file) from None
+            raise Malformed(
+                error.what, file=self.file, key=key, value=error.value, allowed=error.allowed, next_step=error.next_step
+            ) from None
 
 
 def _such_as(table: str, name: str, like: Mapping[str, Any] | None = None) -> str | None:

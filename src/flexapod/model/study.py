@@ -2,15 +2,17 @@
 
 from __future__ import annotations
 
+from collections.abc import Sequence
 from typing import Any, Self, TypeVar
 
 from pydantic import field_validator, model_validator
 
 from flexapod.errors import InputError
 from flexapod.model.actuator import Actuator, ActuatorInitial, ActuatorLoad, ActuatorMotion
+from flexapod.model.axes import plane_order
 from flexapod.model.base import Frozen
 from flexapod.model.load import Load
-from flexapod.model.motion import Motion
+from flexapod.model.motion import AXES, Motion, moved_axes
 from flexapod.model.remarks import actuator_remarks, robot_remarks
 from flexapod.model.robot import Robot
 from flexapod.model.simulation import FIDELITIES, OWN_BASIS, SOLID, STRAIGHT, Initial, Simulation
@@ -79,6 +81,24 @@ class Study(_Documented):
                 value="tip-mass",
                 allowed="tip-load, clamped-free",
             )
+        return self
+
+    @model_validator(mode="after")
+    def _motion_of_the_robot(self) -> Self:
+        moved, plane, free = moved_axes(self.motion), self.robot.plane, self.motion.independent
+        allowed: dict[str, Sequence[str]] = {} if free is None else {"that motion.independent does not name": free}
+        if plane is not None:
+            first, second, normal = plane_order(plane)
+            allowed[f"out of the plane {plane}"] = (AXES[first], AXES[second], AXES[3 + normal])
+        if self.robot.platform_fixed:
+            allowed = {"of a platform that is fixed": ()}
+        for words, axes in allowed.items():
+            if wrong := [axis for axis in (*moved, *(free or ())) if axis not in axes]:
+                raise InputError(
+                    f"asks for {wrong[0]}, a motion {words}",
+                    key="motion.type",
+                    allowed=", ".join(axes) or "no motion: leave it out",
+                )
         return self
 
     @model_validator(mode="after")

@@ -17,11 +17,10 @@ from flexapod.files import LARGEST_TABLE, read_text
 from flexapod.typing import Array
 from flexapod.units import DIMENSIONS, to_si
 
-__all__ = ["FORCES", "POSE", "WRENCH", "header", "read_table", "wrong_instant"]
+__all__ = ["POSE", "WRENCH", "forces", "header", "read_table", "wrong_instant"]
 
 POSE = {"surge": "length", "sway": "length", "heave": "length", "roll": "angle", "pitch": "angle", "yaw": "angle"}
 WRENCH = {"Fx": "force", "Fy": "force", "Fz": "force", "Mx": "torque", "My": "torque", "Mz": "torque"}
-FORCES = {f"leg {i}": "force" for i in range(1, 7)}
 
 MOST_KEPT = 2_000_000  # letters of a table that is kept for the next time it is read
 _HEADER = re.compile(r"^\s*(.+?)\s*\[\s*(.+?)\s*\]\s*$")
@@ -179,6 +178,11 @@ def _check_times(path: Path, time: Array, lines: list[int], jumps: bool) -> None
             if jumps and now == before
             else "Sort the lines by time and remove doubles",
         )
+
+
+def forces(count: int, dimension: str = "force") -> dict[str, str]:
+    """Columns of a table of the drive forces, or of cranks the torques, of so many legs."""
+    return {f"leg {i}": dimension for i in range(1, count + 1)}
 
 
 def header(columns: Mapping[str, str]) -> str:

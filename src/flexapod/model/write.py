@@ -7,25 +7,17 @@ from collections.abc import Iterator
 import numpy as np
 
 from flexapod.model.actuator import Actuator
+from flexapod.model.axes import word_of
 from flexapod.model.base import Frozen
-from flexapod.model.drive import ForceDrive
-from flexapod.model.laws import CsvLaw
+from flexapod.model.joint import Carriage, Joint
 from flexapod.model.leg import Leg
-from flexapod.model.load import CsvWrench
 from flexapod.model.material import MATERIALS, POISSON, Material, Tube
-from flexapod.model.motion import CsvMotion
-from flexapod.model.piston import Piston
+from flexapod.model.piston import Piston, Strut
 from flexapod.model.robot import Robot
 from flexapod.model.simulation import OWN_BASIS, Simulation
+from flexapod.typing import Array
 
 __all__ = ["to_toml", "toml_value"]
-
-_IN_FILE = {
-    CsvMotion: ("time", "pose"),
-    CsvWrench: ("time", "wrench"),
-    CsvLaw: ("time", "value"),
-    ForceDrive: ("time", "force"),
-}
 
 
 def to_toml(study: Frozen) -> str:
@@ -57,49 +49,80 @@ def to_toml(study: Frozen) -> str:
 
 
 def _robot(robot: Robot) -> Iterator[str]:
+    home, fixed = robot.home, {"fixed": True} if robot.platform_fixed else {}
+    above = not (home.rotation.any() or home.position[:2].any())
     yield from _section(
         "robot",
         {
             "type": robot.type,
+            **({"plane": robot.plane} if robot.plane else {}),
             "base": {"joints": robot.base_joints},
-            "platform": {"joints": robot.platform_joints},
-            "home_height": robot.home_height,
+            "platform": {"joints": robot.platform_joints, **fixed},
+            **({"home_height": robot.home_height} if above else {"home": home}),
             "gravity": robot.gravity,
         },
     )
-    yield from _section("payload", _fields(robot.payload))
-    legs = [_keys(_leg(leg)) for leg in robot.legs]
-    if all(leg == legs[0] for leg in legs):
+    if robot.payload is not None:
+        yield from _section("payload", _fields(robot.payload))
+    places = zip(robot.legs, robot.base_joints, robot.platform_joints, strict=True)
+    legs = [_keys(_leg(leg, base, platform, robot.normal)) for leg, base, platform in places]
+    if all(leg == legs[0] for leg in legs) and len({leg.chain for leg in robot.legs}) == 1:
         yield from ["", "[leg]", *legs[0]]
     else:
         for leg in legs:
             yield from ["", "[[leg]]", *leg]
 
 
-def _leg(leg: Leg) -> dict[str, object]:
+def _leg(leg: Leg, base: Array, platform: Array, normal: Array) -> dict[str, object]:
     fields = _fields(leg)
-    for name in ("chain", "passive", "base_joint", "platform_joint"):
-        if fields[name] == Leg.model_fields[name].default:
+    del fields["chain"]  # the robot's type has it
+    if leg.letters.platform and not leg.passive:
+        del fields["passive"]
+    for name, place in (("base_joint", base), ("platform_joint", platform)):
+        fields[name] = _joint(getattr(leg, name), place, normal)
+        if not fields[name]:
             del fields[name]
-    if leg.u_axis is not None:
-        fields["u_axis"] = leg.u_axis
-        del fields["base_joint"]
-    return fields | {"piston": _piston(leg.piston)}
+    if leg.carriage is not None:
+        fields["carriage"] = _carriage(leg.carriage, base, normal)
+    if leg.strut is None:
+        return fields | {"piston": _beam(leg.piston)}
+    del fields["cylinder"], fields["piston"]
+    return fields | {"strut": _beam(leg.strut)}
 
 
-def _piston(piston: Piston) -> dict[str, object]:
+def _joint(joint: Joint, place: Array, normal: Array) -> dict[str, object]:
+    fields = _fields(joint)
+    if joint.axis is not None:
+        fields["axis"] = word_of(joint.axis, place, normal) or joint.axis
+    if joint.leg_axes and joint.stiffness is not None:
+        fields["stiffness"] = {"axial": float(joint.stiffness[2, 2]), "radial": float(joint.stiffness[0, 0])}
+    return fields
+
+
+def _carriage(carriage: Carriage, place: Array, normal: Array) -> dict[str, object]:
+    unused = "mass" if carriage.kind == "crank" else "inertia"
+    fields = {name: value for name, value in _fields(carriage).items() if name != unused}
+    return {carriage.kind: word_of(carriage.axis, place, normal) or carriage.axis, **fields}
+
+
+def _beam(piston: Piston) -> dict[str, object]:
     fields = _fields(piston)
     made_of = {name: fields.pop(name, None) for name in ("E", "density")}
-    if piston.diameter is None or piston.E is None or piston.density is None:
+    if piston.E is None or piston.density is None:
         return fields
-    material = Material(
-        name="given", E=piston.E, density=piston.density, yield_stress=piston.yield_stress, poisson=piston.poisson
-    )
-    section = Tube(diameter=piston.diameter, inner_diameter=piston.inner_diameter)
-    same = Piston.round(length=piston.length, section=section, material=material, axial_inertia=piston.axial_inertia)
+    own = {"yield_stress": piston.yield_stress, "poisson": piston.poisson}
+    material = Material(name="given", E=piston.E, density=piston.density, **own)
+    same = None
+    if piston.diameter is not None:
+        section = Tube(diameter=piston.diameter, inner_diameter=piston.inner_diameter)
+        axial = piston.axial_inertia
+        same = type(piston).round(length=piston.length, section=section, material=material, axial_inertia=axial)
+    elif isinstance(piston, Strut) and piston.section is not None:
+        same = Strut.strip(length=piston.length, section=piston.section, material=material)
     if same != piston:
         return fields
-    return {name: value for name, value in fields.items() if name not in ("EA", "EI", "rhoA")} | made_of
+    computed = ("EA", "EI", "rhoA", *(() if piston.diameter else ("axial_inertia",)))
+    return {name: value for name, value in fields.items() if name not in computed} | made_of
 
 
 def _actuator(actuator: Actuator) -> dict[str, object]:
@@ -125,9 +148,9 @@ def _material(material: Material) -> dict[str, object]:
 
 
 def _fields(model: Frozen) -> dict[str, object]:
-    skipped = _IN_FILE.get(type(model), ())
+    skipped = model.derived
     if isinstance(model, Simulation) and model.fidelity in OWN_BASIS:
-        skipped = ("basis",)
+        skipped += ("basis",)
     if getattr(model, "poisson", None) == POISSON:
         skipped += ("poisson",)
     fields = {name: getattr(model, name) for name in type(model).model_fields if name not in skipped}

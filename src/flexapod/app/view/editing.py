@@ -55,6 +55,10 @@ def first_value(field: Field) -> object:
         return field.choices[0] if field.choices else ""
     if field.kind == "whole":
         return int(field.default or 1)
+    if field.kind == "flag":
+        return False
+    if field.kind == "words":
+        return list(field.choices or ())
     if field.kind == "rows":
         return [[0.0] * len(field.dimensions) for _ in range(3)]
     if field.kind == "vector":

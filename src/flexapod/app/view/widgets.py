@@ -25,6 +25,7 @@ Left = Callable[[str, bool], None]
 #: Shows another value, as written, without calling back.
 Setter = Callable[[object], None]
 
+_AXES = {2: "12", 3: "xyz"}  # two: in the plane of a planar robot
 EMPTY = "a number, or one with a unit; an emptied field gets its value back"
 
 
@@ -39,6 +40,10 @@ def add_widget(gui: GuiApi, threads: Threads, field: Field, changed: Changed, le
         return _choice(gui, field, changed) if field.choices else _fixed(gui, field)
     if field.kind in ("number", "whole"):
         return _number(gui, threads, field, changed, left)
+    if field.kind == "flag":
+        return _flag(gui, field, changed)
+    if field.kind == "words":
+        return _fixed(gui, field)
     if _rows(field):
         return _vectors(gui, threads, field, changed, left)
     return _written(gui, threads, field, changed, left)
@@ -99,8 +104,18 @@ def _choice(gui: GuiApi, field: Field, changed: Changed) -> Setter:
     return show
 
 
+def _flag(gui: GuiApi, field: Field, changed: Changed) -> Setter:
+    handle = gui.add_checkbox(field.name, field.value is True)
+    handle.on_update(by_user(lambda: changed(field.key, handle.value, True)))
+
+    def show(value: object) -> None:
+        handle.value = value is True
+
+    return show
+
+
 def _fixed(gui: GuiApi, field: Field) -> Setter:
-    """A text that names a file of the person who started the server: shown, not changed."""
+    """A text that names a file of the person who started the server, or a list of texts: shown, not changed."""
     gui.add_text(field.name, str(field.value), disabled=True)
     return lambda value: None
 
@@ -135,7 +150,7 @@ def _triples(field: Field) -> list[tuple[str, str, int]]:
     if field.kind == "rows":
         count = len(field.value) if isinstance(field.value, list) else 0
         return [(f"{field.name} {i}", f"{field.key}[{i}]", 0) for i in range(1, count + 1)]
-    if len(field.dimensions) == 3:
+    if len(field.dimensions) < 6:
         return [(field.name, field.key, 0)]
     return [(f"{field.name} force", field.key, 0), (f"{field.name} moment", field.key, 3)]
 
@@ -173,7 +188,7 @@ def _triple(
         return lambda empty: left(f"{key}[{start + i + 1}]", empty)
 
     def titles() -> list[str]:
-        return [_label(f"{label} {axis}", unit, dimension) for axis in "xyz"]
+        return [_label(f"{label} {axis}", unit, dimension) for axis in _AXES[min(3, len(field.dimensions))]]
 
     texts = numbers(_at(field.value, key, start))
     boxes = [

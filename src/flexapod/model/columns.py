@@ -1,0 +1,109 @@
+"""What a table of a study file may hold, from the fields of the model's class that it fills."""
+
+from __future__ import annotations
+
+from dataclasses import dataclass
+from functools import cache
+from types import NoneType, UnionType
+from typing import Annotated, Any, Literal, Union, get_args, get_origin
+
+import numpy as np
+from annotated_types import Ge, Gt, Le, Lt
+from pydantic.fields import FieldInfo
+
+from flexapod.model.base import Frozen, Measure
+
+__all__ = ["NO_BOUNDS", "Bounds", "Column", "Kind", "columns_of"]
+
+Kind = Literal["number", "vector", "rows", "whole", "text", "words", "flag", "table", "other"]
+
+
+@dataclass(frozen=True, kw_only=True)
+class Bounds:
+    """Smallest and largest value that the model allows, in SI; None where there is none. `words` says them."""
+
+    least: float | None = None
+    most: float | None = None
+    words: str = ""
+
+
+NO_BOUNDS = Bounds()
+
+
+@dataclass(frozen=True, kw_only=True)
+class Column:
+    """One key of a table.
+
+    `kind` of its value; `dimensions` that a number may have, another key deciding which; `size`: numbers of a vector;
+    `choices` of a text; `models`: classes of a table, of which the text under `type` or `law` names one; a number may
+    stand in place of a table where both are possible; `default` where it is a number.
+    """
+
+    name: str
+    kind: Kind
+    dimensions: tuple[str, ...] = ()
+    size: int = 0
+    choices: tuple[str, ...] | None = None
+    models: tuple[type[Frozen], ...] = ()
+    bounds: Bounds = NO_BOUNDS
+    default: float | None = None
+
+
+@cache
+def columns_of(model: type[Frozen]) -> dict[str, Column]:
+    """The keys of a table that fills a class, in their order."""
+    return {name: _column(name, info) for name, info in model.model_fields.items()}
+
+
+def _column(name: str, info: FieldInfo) -> Column:
+    parts = list(_flat([info.annotation, *info.metadata]))
+    kinds = [part for part in parts if isinstance(part, type)]
+    measure = next((part for part in parts if isinstance(part, Measure)), None)
+    dimensions = ("number",) if measure is None else measure.dimensions
+    found: dict[str, Any] = {"name": name, "bounds": _bounds(parts)}
+    if isinstance(info.default, int | float) and not isinstance(info.default, bool):
+        found["default"] = info.default
+    models = tuple(kind for kind in kinds if issubclass(kind, Frozen))
+    shape = next((part.shape for part in parts if hasattr(part, "shape") and not isinstance(part, type)), None)
+    choices = [part for part in parts if isinstance(part, str)]
+    if models:
+        return Column(kind="table", models=models, dimensions=("number",) * (float in kinds), **found)
+    if choices:
+        return Column(kind="text", choices=tuple(choices), **found)
+    if shape is not None:
+        rows = len(shape) == 2
+        return Column(kind="rows" if rows else "vector", dimensions=dimensions, size=shape[-1] or 0, **found)
+    for kind, word in ((bool, "flag"), (int, "whole"), (float, "number"), (str, "text")):
+        if kind in kinds:
+            return Column(kind=word, dimensions=dimensions if kind is float else (), **found)  # type: ignore[arg-type]
+    return Column(kind="other", **found)
+
+
+def _flat(parts: list[Any]) -> Any:
+    """Types, choices and limits of an annotation and its metadata, of whatever is nested in them."""
+    for part in parts:
+        origin = get_origin(part)
+        if origin is Literal:
+            yield from (choice if isinstance(choice, str) else type(choice) for choice in get_args(part))
+        elif origin in (Annotated, Union, UnionType):
+            yield from _flat(list(get_args(part)))
+        elif isinstance(part, FieldInfo):
+            yield from _flat([part.annotation, *part.metadata] if part.annotation else part.metadata)
+        elif hasattr(part, "func"):  # a validator by a function
+            yield part.func
+        elif part is not NoneType:
+            yield np.ndarray if origin is np.ndarray else part
+
+
+def _bounds(parts: list[Any]) -> Bounds:
+    least: float | None = None
+    most: float | None = None
+    words: list[str] = []
+    for limit in parts:
+        if isinstance(limit, Gt | Ge):
+            least = float(limit.gt if isinstance(limit, Gt) else limit.ge)  # type: ignore[arg-type]
+            words.append(f"{'above' if isinstance(limit, Gt) else 'at least'} {least:g}")
+        elif isinstance(limit, Lt | Le):
+            most = float(limit.lt if isinstance(limit, Lt) else limit.le)  # type: ignore[arg-type]
+            words.append(f"{'below' if isinstance(limit, Lt) else 'at most'} {most:g}")
+    return Bounds(least=least, most=most, words=", ".join(words))

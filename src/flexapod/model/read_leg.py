@@ -1,0 +1,215 @@
+"""From a table [leg] of a study file to a Leg: bodies, joints, carriage, drive."""
+
+from __future__ import annotations
+
+from collections.abc import Mapping
+from typing import TypeVar
+
+import numpy as np
+
+from flexapod.errors import InputError
+from flexapod.model.axes import axis_of
+from flexapod.model.chain import chain_of
+from flexapod.model.columns import columns_of
+from flexapod.model.drive import Drive, ForceDrive, PrescribedDrive, ServoDrive
+from flexapod.model.joint import Carriage, Joint
+from flexapod.model.leg import Leg
+from flexapod.model.material import MATERIALS, Material, Tube
+from flexapod.model.piston import Piston, Strip, Strut
+from flexapod.model.section import Section
+from flexapod.model.tables import forces
+from flexapod.typing import Array
+
+__all__ = ["read_leg", "read_material"]
+
+P = TypeVar("P", bound=Piston)
+_STIFFNESS = ("EI", "EA", "rhoA")
+_SLIDING = ("stiffness", "damping", "force")
+_TURNING = ("rotational stiffness", "rotational damping", "torque")
+_TRANSLATIONS, _FORCES = ("stiffness",) * 3, ("force",) * 3
+
+
+def read_leg(section: Section, number: int, count: int, chain: str, places: tuple[Array, Array, Array]) -> Leg:
+    """Leg `number` of `count`, whose letters are `chain`; `places`: its base and platform joint, the normal."""
+    base, platform, normal = places
+
+    def parts(section: Section) -> dict[str, object]:
+        section.text("chain")
+        if (section.data.get("chain") or chain) != chain:
+            raise section.error("is not the chain of this leg", "chain", allowed=f"{chain}, as robot.type says")
+        letters = chain_of(chain)
+        if letters.stroke and not letters.platform and "passive" not in section:
+            raise InputError(
+                f"must be said for {chain}, a leg that is fixed to the platform",
+                file=section.file,
+                key=section.key("passive"),
+                allowed="true if nothing drives it, false if its stroke is driven",
+                next_step=f"Add {section.key('passive')} = true",
+            )
+        section.need(*(("cylinder", "piston") if letters.stroke else ("strut",)))
+        strut, carriage = section.section("strut"), section.section("carriage")
+        return {
+            "chain": chain,
+            "piston": None if "piston" not in section else _piston(section.child(section.data["piston"], "piston")),
+            "strut": None if strut is None else _strut(strut),
+            "carriage": None if carriage is None else _carriage(carriage, base, normal),
+            "base_joint": _joint(section, "base_joint", base, normal),
+            "platform_joint": _joint(section, "platform_joint", platform, normal),
+            "drive": _drive(section.section("drive"), number, count, _TURNING if letters.turning else _SLIDING),
+        }
+
+    return section.read(Leg, also=("count", "u_axis"), then=parts)
+
+
+def _joint(leg: Section, name: str, place: Array, normal: Array) -> Joint | None:
+    axis = leg.vector("u_axis", "number", "number", "number") if name == "base_joint" else None
+    if axis is not None and not any(axis):
+        raise leg.error("has no direction", "u_axis", allowed="a non-zero vector")
+    section = leg.section(name)
+    if section is None:
+        return None if axis is None else Joint(axis=np.array(axis))
+    if axis is not None and "axis" in section:
+        raise leg.error("is given together with base_joint.axis", "u_axis", allowed="one of the two: they are the same")
+
+    def parts(section: Section) -> dict[str, object]:
+        return {"axis": axis or section.direction("axis", place, normal), **_stiffness(section)}
+
+    return section.read(Joint, also=("at",), then=parts)
+
+
+def _stiffness(section: Section) -> dict[str, object]:
+    """Of a flexure: a number, along and across the leg, three or six rows."""
+    value, found = section.data.get("stiffness"), np.zeros((6, 6))
+    if isinstance(value, list) and len(value) == 6:
+        mixed = (*_FORCES, *("rotational stiffness",) * 3)
+        return {"stiffness": section.rows("stiffness", *((*_TRANSLATIONS, *_FORCES),) * 3, *(mixed,) * 3)}
+    if isinstance(value, list):
+        found[:3, :3] = section.rows("stiffness", *(_TRANSLATIONS,) * 3)
+        return {"stiffness": found}
+    if isinstance(value, Mapping):
+        inner = section.child(value, "stiffness")
+        inner.only("axial", "radial")
+        inner.need("axial", "radial")
+        axial, radial = inner.number("axial", "stiffness"), inner.number("radial", "stiffness")
+        return {"stiffness": np.diag([radial, radial, axial, 0, 0, 0]), "leg_axes": True}  # type: ignore[list-item]
+    number = section.number("stiffness", "stiffness")
+    return {} if number is None else {"stiffness": np.diag([number] * 3 + [0.0] * 3)}
+
+
+def _carriage(section: Section, base: Array, normal: Array) -> Carriage:
+    def parts(section: Section) -> dict[str, object]:
+        if kind not in section:
+            section.need("slider")
+        if "crank" in section and "slider" in section:
+            raise section.error("is given together with slider", "crank", allowed="one of the two")
+        axis = section.direction(kind, base, normal)
+        arm = section.vector("arm", "length", "length", "length")
+        radius = section.number("radius", "length")
+        if radius is not None:
+            if arm is not None or axis is None or kind == "slider":
+                raise section.error("does not fit here", "radius", allowed="of a crank, in place of arm")
+            arm = _arm(section, radius, axis, base, normal)
+        return {"kind": kind, "axis": axis, "arm": arm}
+
+    kind = "crank" if "crank" in section else "slider"
+    among = ("length",) if kind == "slider" else ("angle",)
+    return section.read(Carriage, among=among, also=("slider", "crank", "radius"), then=parts)
+
+
+def _arm(section: Section, radius: float, axis: Array, base: Array, normal: Array) -> Array:
+    """Arm of a crank at angle 0: radial as far as the axis lets it, else tangential."""
+    unit = axis / np.linalg.norm(axis)
+    for word in ("radial", "tangential"):
+        if (direction := axis_of(word, base, normal)) is not None:
+            across = direction - (direction @ unit) * unit
+            if (size := float(np.linalg.norm(across))) > 1e-6:
+                return radius * across / size
+    raise section.error("has no direction to begin in", "radius", allowed="arm = [x, y, z] for this crank")
+
+
+def _piston(section: Section) -> Piston:
+    section.only(*columns_of(Piston), "material")
+    if any(name in section for name in (*_STIFFNESS, "GJ")):
+        return _given(section, Piston)
+    section.need("length", "diameter")
+    return section.build(
+        Piston.round,
+        length=section.number("length", "length"),
+        section=section.build(Tube, **_diameters(section)),
+        material=read_material(section),
+        axial_inertia=section.number("axial_inertia", "inertia"),
+    )
+
+
+def _strut(section: Section) -> Strut:
+    section.only(*columns_of(Strut), "material")
+    if any(name in section for name in (*_STIFFNESS, "GJ")):
+        return _given(section, Strut)
+    section.need("length")
+    length, strip = section.number("length", "length"), section.section("section")
+    if strip is None:
+        section.need("diameter")
+        round_section = section.build(Tube, **_diameters(section))
+        axial_inertia = section.number("axial_inertia", "inertia")
+        return section.build(
+            Strut.round,
+            length=length,
+            section=round_section,
+            material=read_material(section),
+            axial_inertia=axial_inertia,
+        )
+    for name in ("diameter", "inner_diameter", "axial_inertia"):
+        if name in section:
+            raise section.error("is given together with section", name, allowed="either of the two")
+    return section.build(Strut.strip, length=length, section=strip.read(Strip), material=read_material(section))
+
+
+def _given(section: Section, model: type[P]) -> P:
+    """A piston or strut by its stiffness."""
+    section.need("length", *_STIFFNESS)
+    for name in ("material", "E", "density"):
+        if name in section:
+            raise section.error("is given together with EI, EA, rhoA", name, allowed="either of the two")
+    return section.read(model, also=("material",))
+
+
+def _diameters(section: Section) -> dict[str, float | None]:
+    return {name: section.number(name, "length") for name in ("diameter", "inner_diameter")}
+
+
+def _drive(section: Section | None, number: int, count: int, among: tuple[str, ...]) -> Drive | None:
+    if section is None:
+        return None
+
+    def table(section: Section) -> dict[str, object]:
+        if section.data.get("law") != "csv" or "file" not in section:
+            return {}
+        found = section.table(forces(count, among[2]), needed=True, jumps=True)
+        return {"time": found["time"], "force": found[f"leg {number}"]}
+
+    kinds = (PrescribedDrive, ServoDrive, ForceDrive)
+    csv = {ForceDrive: lambda s: s.read(ForceDrive, among=among, then=table)}
+    return section.one_of(kinds, among=among, readers=csv)
+
+
+def read_material(section: Section) -> Material:
+    """Material of a section that has `material`, or `E` and `density`; the others may be set in both cases."""
+    own = {"yield_stress": section.number("yield_stress", "stress"), "poisson": section.number("poisson", "number")}
+    if "material" in section:
+        for name in ("E", "density"):
+            if name in section:
+                raise section.error("is given together with material", name, allowed="material, or E and density")
+        material = MATERIALS[str(section.text("material", tuple(MATERIALS)))]
+        given = {key: value for key, value in own.items() if value is not None}
+        return section.build(material.replace, **given) if given else material
+    if "E" not in section and "density" not in section:
+        raise InputError(
+            "is missing",
+            file=section.file,
+            key=section.key("material"),
+            allowed=f"material ({', '.join(MATERIALS)}), or E and density",
+            next_step=f"Add {section.key('material')}",
+        )
+    section.need("E", "density")
+    modulus, density = section.number("E", "stress"), section.number("density", "density")
+    return section.build(Material, name="given", E=modulus, density=density, **own)
