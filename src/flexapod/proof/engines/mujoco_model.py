@@ -81,7 +81,7 @@ def _leg(robot: Robot, limbs: rigid.Limbs, i: int) -> str:
     spun = leg.letters.stroke == "C"
     tip = body("tip", none, limbs.leg_frames[i], ["gamma1", "gamma2", "gamma3"], _inertial(0, 0, 0, 0))
     piston = body(
-        "piston", none if moves["l"] else home["l"] * still[2], still, ["l", *["spin"] * spun],
+        "piston", none if moves["l"] else home["l"] * still[2], still, [*["spin"] * spun, "l"],
         _inertial(rod.mass, -rod.length / 2, across, rod.axial_inertia), *[tip] * bool(limbs.pose_closure[i]),
     )  # fmt: skip
     tube = leg.cylinder
