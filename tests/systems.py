@@ -5,7 +5,6 @@ from tests.runs import uncompiled
 
 from flexapod.mechanics.layout import LEG_PARAMETERS, PAYLOAD_PARAMETERS
 from flexapod.solve.many import RestStates
-from flexapod.solve.shapes import space_shapes
 from flexapod.solve.system import System
 
 PISTON = {"rhoA": 2.0, "EI": 2e3, "EA": 4e7, "Lp": 0.7, "mouth": 0.4, "piston_axial_inertia": 1e-4, "zeta": 0.01}

@@ -5,7 +5,8 @@
 A material point of the piston sits where `nonlinear.position` puts it in the cylinder's frame; the cylinder's frame is
 b(chi) + E(chi) R0 u and E(chi) R0 Rx(alpha) Ry(beta) Rz(spin). Everything is a function of the coordinates alone, so
 rates follow by complex step and nothing is dropped. The tip's axes are integrated along the line: a frame that does not
-spin about its tangent (Bishop), then the twist. ``q`` and ``v`` are dictionaries by coordinate (a, b, c arrays), ``p`` of parameters.
+spin about its tangent (Bishop), then the twist. ``q`` and ``v`` are dictionaries by coordinate (a, b, c arrays), ``p``
+of parameters.
 """
 
 from __future__ import annotations

@@ -194,6 +194,8 @@ class _Leg(NamedTuple):
         joint = platform_frame(number, end, normal if planar else axis, axes)
         base_springs, end_springs = (_springs(x, rigid) for x in (leg.base_joint, leg.platform_joint))
         gammas = _gammas(end, end_springs, rigid, planar)
+        sprung = any(base_springs) or end_springs.moves
+        gammas = (FREE, FREE, FREE) if sprung and gammas[0] == ABSENT else gammas  # seen by springs
         pose = any(g != ABSENT for g in gammas)
         twists = base == "S" or letters.stroke == "C" or (base == "F" and base_springs.torsion)
         state = [
@@ -209,12 +211,15 @@ class _Leg(NamedTuple):
 class _Springs(NamedTuple):
     bending: bool
     torsion: bool
+    moves: bool
 
 
 def _springs(joint: Joint, rigid: bool) -> _Springs:
-    """Whether springs hold a joint across the leg and about it."""
+    """Whether springs hold a joint across the leg and about it, and whether its place gives way."""
+    if rigid:
+        return _Springs(False, False, False)
     whole = joint.stiffness is not None and bool(joint.stiffness[3:, 3:].any())
-    return _Springs(not rigid and (whole or bool(joint.bending)), not rigid and (whole or bool(joint.torsion)))
+    return _Springs(whole or bool(joint.bending), whole or bool(joint.torsion), joint.stiffness is not None)
 
 
 def _angles(base: str, sprung: bool) -> tuple[int, int]:

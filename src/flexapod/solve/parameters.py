@@ -30,7 +30,8 @@ def drive_spring(leg: Leg) -> tuple[float, float]:
 def leg_parameters(robot: Robot, legs: Limbs, shapes: Shapes) -> Array:
     """Parameters of the legs in kernel order, (legs, size of `layout.leg_parameters`)."""
     layout_of_legs = layout.leg_parameters(shapes)
-    rows = (_leg(leg) | _place(robot, legs, i) | _joints(leg, legs, i) for i, leg in enumerate(robot.legs))
+    ends = [dict(zip(("base_flexure", "platform_flexure"), x, strict=True)) for x in flexures(robot, legs)]
+    rows = (_leg(leg) | _place(robot, legs, i) | _joints(leg, legs, i) | ends[i] for i, leg in enumerate(robot.legs))
     if shapes.torsion:  # what twists has an inertia: that of a round section where none is given
         rows = (row | {"piston_axial_inertia": axial_inertia(leg)} for row, leg in zip(rows, robot.legs, strict=True))
     return np.array([_pack(layout_of_legs, values) for values in rows])
@@ -100,6 +101,23 @@ def _joints(leg: Leg, legs: Limbs, i: int) -> dict[str, object]:
         "base_home": [home[name] for name in ("alpha", "beta", "spin")],
         "gamma_home": [home[name] for name in ("gamma1", "gamma2", "gamma3")],
     }
+
+
+def flexures(robot: Robot, legs: Limbs) -> Array:
+    """Stiffness of the joints at both ends of the legs, in the axes in which they give way, (legs, 2, 6, 6)."""
+    found = np.zeros((len(legs), 2, 6, 6))
+    for i, leg in enumerate(robot.legs):
+        beta = legs.home[i, COORDINATES.index("beta")]
+        along = np.array([[np.cos(beta), 0, np.sin(beta)], [0, 1, 0], [-np.sin(beta), 0, np.cos(beta)]])
+        ends = (
+            (leg.base_joint, legs.frames[i].T, along),
+            (leg.platform_joint, legs.platform_frames[i].T, legs.leg_frames[i].T),
+        )
+        for k, (joint, given, leg_axes) in enumerate(ends):
+            if joint.stiffness is not None:
+                turn = np.kron(np.eye(2), leg_axes if joint.leg_axes else given)
+                found[i, k] = turn @ joint.stiffness @ turn.T
+    return found
 
 
 def centre(robot: Robot) -> Array:

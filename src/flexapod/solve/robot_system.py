@@ -6,7 +6,12 @@ from flexapod.mechanics.layout import Shapes
 from flexapod.model import Robot, Simulation
 from flexapod.rigid.limbs import ABSENT, COORDINATES, DRIVEN, HELD, Limbs, limbs
 from flexapod.solve.kernel import kernel
-from flexapod.solve.parameters import joint_parameters, leg_parameters, payload_parameters
+from flexapod.solve.parameters import (
+    flexures,
+    joint_parameters,
+    leg_parameters,
+    payload_parameters,
+)
 from flexapod.solve.shapes import robot_shapes
 from flexapod.solve.system import System
 from flexapod.typing import Mask
@@ -37,4 +42,7 @@ def _held(robot: Robot, legs: Limbs, shapes: Shapes) -> Mask:
             state = legs.state[:, k]
             foreign = (state == ABSENT) & (name in ("chi", "spin"))
             held[:, shapes.index(name)] = (state == HELD) | ((state == DRIVEN) & prescribed) | foreign
+    if shapes.flexure:  # a joint does not give way in directions in which it has no stiffness
+        rigid_ways = ~flexures(robot, legs)[:, :, :3].any(axis=-1)
+        held[:, shapes.index("u1") :] = rigid_ways.reshape(len(legs), 6)
     return held

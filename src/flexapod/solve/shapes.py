@@ -11,7 +11,7 @@ from flexapod import bases, rigid
 from flexapod.bases.lateral import LateralBasis
 from flexapod.mechanics.layout import Shapes
 from flexapod.model import Actuator, Rectangle, Robot, Simulation, Tube
-from flexapod.rigid.limbs import ABSENT, COORDINATES, FREE, HELD, Limbs
+from flexapod.rigid.limbs import ABSENT, COORDINATES, FREE, HELD, Limbs, limbs
 
 __all__ = ["beam_shapes", "leg_shapes", "planar_shapes", "robot_shapes", "space_shapes"]
 
@@ -29,6 +29,7 @@ def robot_shapes(robot: Robot, simulation: Simulation, legs: Limbs) -> Shapes:
         carriage=legs.carriage,
         spin=bool((spin != ABSENT).any()),
         torsion=pose and simulation.lateral_shapes > 0 and all(leg.piston.rhoA > 0 for leg in robot.legs),
+        flexure=any(x.stiffness is not None for leg in robot.legs for x in (leg.base_joint, leg.platform_joint)),
         pivot_spin=bool(((spin == FREE) & (gamma3 == HELD)).any()),
     )
 
@@ -46,14 +47,18 @@ def planar_shapes(lateral: LateralBasis) -> Shapes:
 
 
 def leg_shapes(robot: Robot, simulation: Simulation) -> LateralBasis:
-    """Shapes of the legs of a robot, the same in both planes of all; solid pistons are alike (`model.Study`)."""
+    """Shapes of the legs of a robot, the same in both planes of all; solid pistons are alike (`model.Study`).
+
+    Where a platform joint takes a moment, static answers to one are among them, Eq. (T1.18).
+    """
     name, count = simulation.lateral_basis, simulation.lateral_shapes
+    moment = bool(limbs(robot).pose_closure.any())
     if name != SOLID:
-        return bases.lateral_basis(name, count)
+        return bases.lateral_basis(name, count, moment=moment)
     piston = robot.legs[0].piston
     home = rigid.inverse_kinematics(robot, rigid.home_pose(robot)).length[0]
     free = float(np.mean(home - [leg.cylinder.mouth for leg in robot.legs]))
-    return _solid(Tube(diameter=piston.diameter, inner_diameter=piston.inner_diameter), free, count)  # type: ignore[arg-type]
+    return _solid(Tube(diameter=piston.diameter, inner_diameter=piston.inner_diameter), free, count, moment)  # type: ignore[arg-type]
 
 
 def beam_shapes(actuator: Actuator, simulation: Simulation, rate: float = 0.0) -> LateralBasis:
@@ -82,8 +87,8 @@ def _ratios(actuator: Actuator, basis: str, rate: float) -> tuple[float, ...]:
 
 
 @lru_cache(maxsize=16)
-def _solid(section: Tube | Rectangle, length: float, count: int) -> LateralBasis:
+def _solid(section: Tube | Rectangle, length: float, count: int, moment: bool = False) -> LateralBasis:
     """Without lateral contraction, as a beam: no study file gives Poisson's ratio."""
     from flexapod.fem.leg_shapes import solid_leg_shapes  # scikit-fem loads on use
 
-    return solid_leg_shapes(section, length, count)
+    return solid_leg_shapes(section, length, count, moment=moment)
