@@ -66,7 +66,7 @@ def moments(study, t):
     path = rigid.poses(study.robot, study.motion, t)
     legs = rigid.inverse_kinematics(study.robot, path)
     forces = rigid.inverse_dynamics(study.robot, path, np.zeros((len(t), 6)))
-    return bending_moment(study.robot, path, legs, forces)
+    return bending_moment(study.robot, path, legs, forces.joint_force)
 
 
 def test_bending_moment_is_that_of_stiff_pistons_in_motion():

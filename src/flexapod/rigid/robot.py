@@ -36,6 +36,7 @@ __all__ = [
     "leg_axes",
     "leg_bodies",
     "nearest_singularity",
+    "once",
     "payload_body",
     "poses",
     "poses_from_home",
@@ -53,7 +54,7 @@ __all__ = [
 T = TypeVar("T")
 
 
-def _once(compute: Callable[[Robot], T]) -> Callable[[Robot], T]:
+def once(compute: Callable[[Robot], T]) -> Callable[[Robot], T]:
     """Compute it once for each of the last 64 robots; the same robot again is not compared with its equals."""
     of_equals = cast("Callable[[Robot], T]", lru_cache(maxsize=64)(compute))
     latest: tuple[Robot, T] | None = None
@@ -73,13 +74,13 @@ def home_pose(robot: Robot) -> Poses:
     return Poses.at_rest(robot.home_position, robot.home_rotation)
 
 
-@_once
+@once
 def rigid_limbs(robot: Robot) -> Limbs:
     """The legs of the rigid path as numbers, see `limbs.limbs`."""
     return limbs(robot, rigid=True)
 
 
-@_once
+@once
 def home_frames(robot: Robot) -> Array:
     """Home frames [x y z]_i of the legs, leg to world, shape (n, 3, 3), read-only, Eq. (T2.14)."""
     return rigid_limbs(robot).frames
@@ -116,7 +117,7 @@ def leg_axes(robot: Robot, path: Poses, legs: LegState) -> Array:
     return mechanism.axes(rigid_limbs(robot), legs)
 
 
-@_once
+@once
 def _leg_map(robot: Robot) -> kinematics.LegMap:
     return kinematics.LegMap.of(robot.base_joints, robot.platform_joints, home_frames(robot))
 
@@ -180,7 +181,7 @@ def _following(robot: Robot, free: Mask, law: Law, pivot: Array, t: Array | None
     return mechanism.follow(legs, ~(free | legs.hub_held), law, pivot, t)
 
 
-@_once
+@once
 def _mobility(robot: Robot) -> Mobility:
     return mobility(rigid_limbs(robot))
 
@@ -240,7 +241,7 @@ def _scaled_jacobian(robot: Robot, path: Poses) -> Array:
         return jacobian.scaled_path(robot.base_joints, robot.platform_joints, path)
     if held.all():
         return np.ones((len(path), 1, 1))
-    rows = holding.holding(legs, mechanism.legs_at(legs, path).q, path, legs.platform.mean(axis=0))
+    rows = holding.holding(legs, mechanism.legs_near(legs, path).q, path, legs.platform.mean(axis=0))
     found = jacobian.scaled(rows, legs.L_c)[..., ~held]
     short = max(found.shape[2] - found.shape[1], 0)
     return np.concatenate([found, np.zeros((len(path), short, found.shape[2]))], axis=1)

@@ -7,6 +7,7 @@ import numpy as np
 from flexapod import rigid
 from flexapod.model import ForceDrive, Load, Robot
 from flexapod.rigid.limbs import COORDINATES, DRIVEN, limbs
+from flexapod.solve.released import rigid_forces
 from flexapod.solve.system import COLUMNS, System
 from flexapod.typing import Array
 
@@ -47,7 +48,7 @@ def feed_forward(robot: Robot, t: Array, path: rigid.Poses, wrench: Array) -> Ar
     force = np.zeros((len(t), len(drives)))
     rigid_force = force
     if any(isinstance(d, ForceDrive) and d.law == "rigid" for d in drives):
-        rigid_force = rigid.inverse_dynamics(robot, path, wrench).actuator_force
+        rigid_force = rigid_forces(robot, path, wrench).drive_force
     for i, drive in enumerate(drives):
         if not isinstance(drive, ForceDrive):
             continue

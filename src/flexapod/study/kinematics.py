@@ -10,11 +10,14 @@ from numpy.typing import ArrayLike
 from flexapod import model, rigid
 from flexapod.errors import InputError
 from flexapod.rigid.rotations import quaternion
+from flexapod.study.after.leg_results import drive_forms, leg_labels, rigid_leg_results, rigid_reactions
+from flexapod.study.after.legs import points
+from flexapod.study.after.results import rigid_force_results
 from flexapod.study.arguments import LoadLike, PoseLike, RobotLike, as_pose, as_study, at_pose
 from flexapod.study.attributes import attributes
 from flexapod.study.before.checks import check_geometry
 from flexapod.study.names import dataset
-from flexapod.study.path import RigidPath
+from flexapod.study.path import RigidPath, open_force_words
 from flexapod.typing import Array
 
 if TYPE_CHECKING:
@@ -52,7 +55,7 @@ def inverse_kinematics(
         The path leaves a stroke, pulls a piston out, folds a universal joint or is singular.
     """
     path, remarks = _path(_study(robot, motion, None, duration, output_step))
-    return dataset(_legs_and_payload(path), {"time": path.time}, attributes(path.study, remarks))
+    return _named(path, _legs_and_payload(path), remarks)
 
 
 def inverse_dynamics(
@@ -88,13 +91,8 @@ def inverse_dynamics(
         As `inverse_kinematics`.
     """
     path, remarks = _path(_study(robot, motion, load, duration, output_step))
-    values = _legs_and_payload(path) | {
-        "actuator_force_rigid": path.forces.actuator_force,
-        "joint_force_rigid": path.forces.joint_force,
-        "base_force_rigid": path.forces.base_force,
-        "base_moment_rigid": path.forces.base_moment,
-    }
-    return dataset(values, {"time": path.time}, attributes(path.study, remarks))
+    values = _legs_and_payload(path) | rigid_force_results(path) | rigid_reactions(path.robot, path.forces)
+    return _named(path, values, [*remarks, *open_force_words(path.forces)])
 
 
 def forward_kinematics(
@@ -153,16 +151,18 @@ def forward_kinematics(
 
 def _legs_and_payload(path: RigidPath) -> dict[str, Array]:
     """Legs and payload of the rigid robot along its path, by name."""
-    legs, poses, payload = path.legs, path.poses, path.robot.payload
+    poses, (com, tool) = path.poses, points(path.robot)
     return {
-        "leg_length_command": legs.length,
-        "leg_length_rate": legs.rate,
-        "leg_length_acceleration": legs.accel,
-        "leg_angle_rigid": np.stack([legs.alpha, legs.beta], axis=-1),
-        "com_position_rigid": poses.place(payload.com),
-        "tool_position_rigid": poses.place(payload.tool),
+        **rigid_leg_results(path),
+        "com_position_rigid": poses.place(com),
+        "tool_position_rigid": poses.place(tool),
         "platform_quaternion_rigid": quaternion(poses.rotation),
     }
+
+
+def _named(path: RigidPath, values: dict[str, Array], remarks: list[str]) -> Dataset:
+    labels = {"time": path.time, **leg_labels(path.robot, rigid=True)}
+    return dataset(values, labels, attributes(path.study, remarks), drive_forms(path.robot))
 
 
 def _numbers(values: ArrayLike, key: str, allowed: str) -> Array:

@@ -102,6 +102,12 @@ DRIVES = {
 _LEGS = {
     **DRIVES,
     "held_force": Variable(("time", "leg", "coordinate"), "mixed", "force [N] or moment [N m] on what a joint holds"),
+    "held_force_rigid": Variable(
+        ("time", "leg", "coordinate"), "mixed", "force [N] or moment [N m] on what a joint holds, rigid robot"
+    ),
+    "joint_moment_rigid": Variable(
+        ("time", "leg", "end", "axis"), "N m", "moment of base on leg and leg on platform, world axes, rigid robot"
+    ),
     "joint_moment": Variable(
         ("time", "leg", "end", "axis"), "N m", "moment of the base on the leg, of the leg on the platform, world axes"
     ),

@@ -8,9 +8,10 @@ import numpy as np
 
 from flexapod import rigid
 from flexapod.model import ActuatorStudy, Study
+from flexapod.solve.released import RobotForces, rigid_forces
 from flexapod.typing import Array
 
-__all__ = ["RigidPath", "path_instants"]
+__all__ = ["RigidPath", "open_force_words", "path_instants"]
 
 FEWEST, MOST = 2000, 50_000  # intervals at which a path is looked at
 SAME = 1e-9  # instants nearer to each other than this part of the step between them are the same
@@ -20,6 +21,15 @@ def path_instants(study: Study | ActuatorStudy) -> Array:
     """Instants at which a path is looked at [s]: those of the output, at least 2001, at most 50001."""
     count = int(np.clip(study.duration / study.simulation.output_step, FEWEST, MOST).round())
     return np.linspace(0.0, study.duration, count + 1)
+
+
+def open_force_words(forces: RobotForces) -> list[str]:
+    """That rigid statics does not determine all forces, where it does not."""
+    count = forces.open_forces
+    if not count:
+        return []
+    left = f"{count} force{'s' * (count > 1)}"
+    return [f"rigid statics leaves {left} open; shown are those of least strain energy in the legs"]
 
 
 class RigidPath:
@@ -56,9 +66,9 @@ class RigidPath:
         return rigid.wrench(self.study.load, self.time)
 
     @cached_property
-    def forces(self) -> rigid.RigidForces:
+    def forces(self) -> RobotForces:
         """Forces of drives and joints."""
-        return rigid.inverse_dynamics(self.robot, self.poses, self.wrench, self.legs)
+        return rigid_forces(self.robot, self.poses, self.wrench, self.legs)
 
     @cached_property
     def axes(self) -> Array:

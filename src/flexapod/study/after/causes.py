@@ -13,6 +13,7 @@ from flexapod.model import Robot
 from flexapod.rigid.closures import Task, close
 from flexapod.rigid.limbs import COORDINATES, DRIVEN, FREE, HELD, Limbs
 from flexapod.rigid.rotations import matrix
+from flexapod.solve.released import is_hexapod, rigid_errors
 from flexapod.solve.system import System
 from flexapod.study.after.legs import centre, stretch
 from flexapod.study.path import RigidPath
@@ -106,9 +107,9 @@ def deviation_by_cause(robot: Robot, path: RigidPath, errors: Errors) -> Array:
 def _by_error(robot: Robot, path: RigidPath) -> Array:
     """Displacement of the centre of mass for unit errors of what is held, (T, legs, 8, 3), Eq. (T8.6)."""
     found, poses = rigid.rigid_limbs(robot), path.poses
+    if not is_hexapod(robot):
+        return rigid_errors(robot, poses)[..., :3]
     moves = np.zeros((len(poses), *found.state.shape, 3))
-    if found.hub_held.all():
-        return moves
     jacobian = rigid.drive_jacobian(robot, poses, robot.payload.com)
     try:
         inverse = np.linalg.solve(jacobian.swapaxes(1, 2), np.eye(6, 3))

@@ -2,13 +2,17 @@
 
 from __future__ import annotations
 
+from dataclasses import replace
+
 import numpy as np
 from numpy.typing import ArrayLike
 
 from flexapod.mechanics.layout import columns, leg_parameters
 from flexapod.model import Robot
-from flexapod.rigid.limbs import COORDINATES, DRIVEN, HELD, Limbs, limbs
+from flexapod.rigid.limbs import COORDINATES, HELD, Limbs, limbs
 from flexapod.rigid.rotations import exponential, matrix
+from flexapod.solve.many import RestStates
+from flexapod.solve.released import RobotForces, released, rigid_system
 from flexapod.solve.system import System
 from flexapod.study.after import legs as by_name
 from flexapod.study.names import DRIVES, Variable
@@ -16,7 +20,16 @@ from flexapod.study.path import RigidPath
 from flexapod.study.record import Record
 from flexapod.typing import Array
 
-__all__ = ["STROKES", "absent", "drive_forms", "flexible_lengths", "leg_labels", "leg_results"]
+__all__ = [
+    "STROKES",
+    "absent",
+    "drive_forms",
+    "flexible_lengths",
+    "leg_labels",
+    "leg_results",
+    "rigid_leg_results",
+    "rigid_reactions",
+]
 
 STROKES = ("leg_length_command", "leg_length", "leg_stroke", "actuator_force")
 """Variables of robots whose legs have strokes."""
@@ -27,7 +40,7 @@ def leg_results(robot: Robot, system: System, path: RigidPath, record: Record) -
     """Lengths, angles, deflections and forces of the legs."""
     shapes, q, found = system.kernel.shapes, record.q, limbs(robot)
     bent, forces = by_name.lateral(shapes, q), _port_forces(system, record)
-    zero = found.carriage_zero * [name == "chi" for name in by_name.drive_names(found)]
+    zero = _zero(found)
     results = {
         "leg_angle": np.stack([q[..., shapes.index(name)] for name in by_name.angle_names(found).values()], axis=-1),
         "drive_position": by_name.of_drives(found, shapes, q) + zero,
@@ -37,8 +50,7 @@ def leg_results(robot: Robot, system: System, path: RigidPath, record: Record) -
         "joint_force": record.lam[..., :3],
     }
     if by_name.has_strokes(robot):
-        pushed = found.state[:, COORDINATES.index("l")] == DRIVEN
-        length, force = flexible_lengths(robot, system, record), np.where(pushed, results["drive_force"], 0.0)
+        length, force = flexible_lengths(robot, system, record), by_name.stroke_forces(found, results["drive_force"])
         results |= zip(STROKES, (path.legs.length, length, q[..., shapes.l_index], force), strict=True)
     if held := by_name.held_names(found):
         results["held_force"] = _held_forces(found, system, forces, held)
@@ -49,6 +61,39 @@ def leg_results(robot: Robot, system: System, path: RigidPath, record: Record) -
     if shapes.axial.count:
         results["axial_amplitude"] = q[..., shapes.index("c") :][..., : shapes.axial.count]
     return results
+
+
+def rigid_leg_results(path: RigidPath) -> dict[str, Array]:
+    """Lengths and angles of the rigid legs, and the ways of their drives."""
+    robot, state = path.robot, path.legs
+    found = limbs(robot, rigid=True)
+    angles = [state.coordinate(name)[0] for name in by_name.angle_names(found).values()]
+    values = {
+        "leg_angle_rigid": np.stack(angles, axis=-1),
+        "drive_command": _commands(found, path) + _zero(found),
+    }
+    if by_name.has_strokes(robot):
+        names = ("leg_length_command", "leg_length_rate", "leg_length_acceleration")
+        values |= zip(names, (state.length, state.rate, state.accel), strict=True)
+    return values
+
+
+def rigid_reactions(robot: Robot, forces: RobotForces) -> dict[str, Array]:
+    """Reactions of the rigid robot's joints beside forces on the platform."""
+    if forces.states is None or forces.held is None or forces.closure is None:
+        return {"base_force_rigid": forces.base_force, "base_moment_rigid": forces.base_moment}  # type: ignore[dict-item]
+    system, found, values = rigid_system(robot), limbs(released(robot)), {}
+    if held := by_name.held_names(found):
+        values["held_force_rigid"] = _held_forces(found, system, forces.held, held)
+    if _bears_moments(found):
+        states = replace(forces.states, lam=forces.closure)
+        values["joint_moment_rigid"] = _joint_moments(found, system, states, forces.held)
+    return values
+
+
+def _zero(found: Limbs) -> Array:
+    """What the study file calls the places of the drives where their coordinates are zero, (legs,)."""
+    return found.carriage_zero * [name == "chi" for name in by_name.drive_names(found)]
 
 
 def _port_forces(system: System, record: Record) -> Array:
@@ -70,9 +115,9 @@ def _held_forces(found: Limbs, system: System, forces: Array, held: list[str]) -
     return np.where(whose, forces[..., at], 0.0)
 
 
-def leg_labels(robot: Robot) -> dict[str, ArrayLike]:
-    """Labels of the dimensions whose size depends on the kinds of legs."""
-    found = limbs(robot)
+def leg_labels(robot: Robot, *, rigid: bool = False) -> dict[str, ArrayLike]:
+    """Labels of the dimensions whose size depends on the kinds of legs; with `rigid` those of the rigid path."""
+    found = limbs(robot, rigid=rigid)
     labels: dict[str, ArrayLike] = {"joint_angle": list(by_name.angle_names(found))}
     held = by_name.held_names(found)
     return {**labels, "coordinate": held} if held else labels
@@ -113,7 +158,7 @@ def _bears_moments(found: Limbs) -> bool:
     return bool(found.pose_closure.any() or (found.state[:, angles] == HELD).any())
 
 
-def _joint_moments(found: Limbs, system: System, record: Record, forces: Array) -> Array:
+def _joint_moments(found: Limbs, system: System, record: Record | RestStates, forces: Array) -> Array:
     """Moments of the base on the legs and of the legs on the platform, world axes, (T, legs, 2, 3) [N m].
 
     About the leg's own axis that of the base counts only where the leg has a turn about it as a coordinate.

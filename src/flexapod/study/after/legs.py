@@ -24,6 +24,7 @@ __all__ = [
     "of_drives",
     "points",
     "stretch",
+    "stroke_forces",
 ]
 
 
@@ -68,6 +69,11 @@ def of_drives(limbs: Limbs, shapes: Shapes, values: Array) -> Array:
     """Of each leg the value that belongs to its drive, (..., legs), out of all (..., legs, n)."""
     at = [shapes.index(name) for name in drive_names(limbs)]
     return values[..., np.arange(len(at)), at]
+
+
+def stroke_forces(limbs: Limbs, forces: Array) -> Array:
+    """Forces of drives that move strokes, (..., legs); 0 of other legs."""
+    return np.where(limbs.state[:, COORDINATES.index("l")] == DRIVEN, forces, 0.0)
 
 
 def held_names(limbs: Limbs) -> list[str]:

@@ -6,12 +6,13 @@ import numpy as np
 from numpy.typing import ArrayLike
 
 from flexapod.model import Robot, Study
+from flexapod.rigid.limbs import limbs
 from flexapod.rigid.rotations import canonical, difference, matrix, quaternion
 from flexapod.rigid.trajectory import coordinates
 from flexapod.solve.system import System
 from flexapod.study.after.causes import deviation_by_cause, errors_of
 from flexapod.study.after.leg_results import leg_labels, leg_results
-from flexapod.study.after.legs import bending_basis, centre, points
+from flexapod.study.after.legs import bending_basis, centre, has_strokes, points, stroke_forces
 from flexapod.study.path import RigidPath
 from flexapod.study.record import Record
 from flexapod.typing import Array
@@ -83,7 +84,10 @@ def cause_results(robot: Robot, system: System, path: RigidPath, record: Record)
 
 def rigid_force_results(path: RigidPath) -> dict[str, Array]:
     """Drive and joint forces of the rigid robot."""
-    return {"actuator_force_rigid": path.forces.actuator_force, "joint_force_rigid": path.forces.joint_force}
+    found = {"drive_force_rigid": path.forces.drive_force, "joint_force_rigid": path.forces.joint_force}
+    if has_strokes(path.robot):
+        found["actuator_force_rigid"] = stroke_forces(limbs(path.robot), path.forces.drive_force)
+    return found
 
 
 def energy_results(record: Record) -> dict[str, Array]:

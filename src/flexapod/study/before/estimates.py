@@ -50,7 +50,7 @@ def buckling_load(leg: Leg, free: Array) -> Array:
     return leg.piston.EI * (x / free) ** 2  # (T8.11)
 
 
-def bending_moment(robot: Robot, path: rigid.Poses, legs: LegState, forces: rigid.RigidForces) -> Array:
+def bending_moment(robot: Robot, path: rigid.Poses, legs: LegState, joint_force: Array) -> Array:
     """Largest bending moment in the free part of each piston on the rigid path, (T, legs) [N m], Eqs. (T8.12)-(T8.13).
 
     The piston is loaded by the joint force at its tip, its weight and its inertia as a rigid rod; the leg's own
@@ -72,7 +72,7 @@ def bending_moment(robot: Robot, path: rigid.Poses, legs: LegState, forces: rigi
     largest = np.zeros(legs.length.shape)
     for share in _STATIONS:
         d = (share * (legs.length - mouth))[..., None]
-        moment = -d * across(forces.joint_force) + rhoA * (load * d**2 / 2 + slope * d**3 / 6)  # (T8.13)
+        moment = -d * across(joint_force) + rhoA * (load * d**2 / 2 + slope * d**3 / 6)  # (T8.13)
         largest = np.maximum(largest, np.linalg.norm(moment, axis=-1))
     return largest
 

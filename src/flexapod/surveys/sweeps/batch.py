@@ -121,7 +121,7 @@ def _robot(kept: Kept, study: Study) -> PointResult:
 def _whole(kept: Kept, study: Study, run: RobotRun, record: Record) -> dict[str, Array]:
     """All variables over time; rigid forces only where they are kept."""
     values = robot_results(study, run.system, record, run.path)
-    if {"actuator_force_rigid", "joint_force_rigid"} & set(kept.records):
+    if {"actuator_force_rigid", "drive_force_rigid", "joint_force_rigid"} & set(kept.records):
         values |= rigid_force_results(run.path)
     return values
 

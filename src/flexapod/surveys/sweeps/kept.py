@@ -105,14 +105,9 @@ def _records(study: Study | ActuatorStudy) -> dict[str, Variable]:
     shared = ("energy_kinetic", "energy_dissipated", "work_drive", "work_external", "closure_residual")
     if isinstance(study, ActuatorStudy):
         return {name: over_time[name] for name in (*actuator, *shared)} | ACTUATOR_FORMS
-    of_rigid = (
-        "drive_force_rigid",
-        "base_force_rigid",
-        "base_moment_rigid",
-        "leg_length_rate",
-        "leg_length_acceleration",
-    )
-    others = {*actuator, *of_rigid, "leg_angle_rigid", "platform_position", *absent(study.robot)}
+    kinematics = ("leg_length_rate", "leg_length_acceleration", "leg_angle_rigid", "platform_position")
+    reactions = ("base_force_rigid", "base_moment_rigid", "held_force_rigid", "joint_moment_rigid")
+    others = {*actuator, *kinematics, *reactions, *absent(study.robot)}
     return {name: entry for name, entry in over_time.items() if name not in others}
 
 

@@ -115,10 +115,10 @@ def describe_legs(path: RigidPath) -> tuple[LegDescription, ...]:
     """Extremes of the legs on the rigid path of a study."""
     robot, t, state, forces = path.robot, path.time, path.legs, path.forces
     thrust = np.einsum("tli,tli->tl", forces.joint_force, path.axes)
-    moment = bending_moment(robot, path.poses, state, forces)
+    moment = bending_moment(robot, path.poses, state, forces.joint_force)
     return tuple(
         describe_leg(
-            i + 1, leg, t, state.length[:, i], forces.actuator_force[:, i], thrust[:, i], moment[:, i],
+            i + 1, leg, t, state.length[:, i], forces.drive_force[:, i], thrust[:, i], moment[:, i],
             float(robot.home_lengths[i]),
         )
         for i, leg in enumerate(robot.legs)

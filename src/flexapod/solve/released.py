@@ -1,0 +1,145 @@
+"""The robot of the rigid path: welds and springs of joints released, drives prescribed."""
+
+from __future__ import annotations
+
+from dataclasses import dataclass
+
+import numpy as np
+
+from flexapod import rigid
+from flexapod.model import Leg, PrescribedDrive, Robot, Simulation
+from flexapod.rigid.limbs import COORDINATES, DRIVEN
+from flexapod.rigid.robot import once
+from flexapod.solve.many import RestStates
+from flexapod.solve.rigid_forces import displacement_by_error, joint_forces
+from flexapod.solve.rigid_motion import rigid_motion
+from flexapod.solve.robot_system import robot_system
+from flexapod.solve.system import System
+from flexapod.typing import Array
+
+__all__ = ["RobotForces", "is_hexapod", "released", "rigid_errors", "rigid_forces", "rigid_system"]
+
+
+@once
+def released(robot: Robot) -> Robot:
+    """The same robot with ideal joints: fixed ones universal at the base, balls at the platform; drives prescribed."""
+    legs = tuple(_ideal(leg) for leg in robot.legs)
+    return robot.replace(type="+".join(leg.chain for leg in legs), legs=legs)
+
+
+def _ideal(leg: Leg) -> Leg:
+    letters = leg.letters
+    ends = [letter.replace("F", free) for letter, free in ((letters.base, "U"), (letters.platform, "S"))]
+    first = leg.chain[: 1 if letters.carriage else 0]
+    none = {"stiffness": None, "bending": None, "torsion": None, "leg_axes": False}
+    return leg.replace(
+        chain=first + ends[0] + letters.stroke + ends[1],
+        base_joint=leg.base_joint.replace(**none),
+        platform_joint=leg.platform_joint.replace(**none),
+        drive=PrescribedDrive(),
+    )
+
+
+@once
+def rigid_system(robot: Robot) -> System:
+    """Equations of the robot of the rigid path."""
+    return robot_system(released(robot), Simulation(fidelity="rigid"))
+
+
+@dataclass(frozen=True, kw_only=True)
+class RobotForces:
+    """Forces of the rigid robot at T instants, world axes.
+
+    Attributes
+    ----------
+    drive_force : ndarray, shape (T, legs)
+        Of the drives on what they move [N, of cranks N m]; 0 of passive legs.
+    joint_force : ndarray, shape (T, legs, 3)
+        Of the legs on the platform [N].
+    base_force, base_moment : ndarray, shape (T, legs, 3), or None
+        Of the base on legs UPS, at the universal joints [N], [N m].
+    states, held, closure
+        Configurations, forces on all coordinates that are held (T, legs, n) and forces of the closures (T, legs, rows)
+        of the equations `rigid_system`, where the forces are theirs.
+    open_forces : int
+        How many the rigid statics leaves open: shown are those of the least strain energy of the legs.
+    """
+
+    drive_force: Array
+    joint_force: Array
+    base_force: Array | None = None
+    base_moment: Array | None = None
+    states: RestStates | None = None
+    held: Array | None = None
+    closure: Array | None = None
+    open_forces: int = 0
+
+
+def rigid_forces(robot: Robot, path: rigid.Poses, wrench: Array, legs: rigid.LegState | None = None) -> RobotForces:
+    """Forces of drives and joints of the robot of the rigid path.
+
+    Six legs UPS by Newton and Euler (T2.26)-(T2.36), others by their equations of motion (T7.24).
+
+    Parameters
+    ----------
+    robot : Robot
+    path : Poses
+    wrench : ndarray, shape (T, 6) or (6,)
+        At the tool, world axes.
+    legs : LegState, optional
+        Of the same poses, where they are known.
+
+    Raises
+    ------
+    ComputationError
+        A pose is singular.
+    """
+    if is_hexapod(robot):
+        found = rigid.inverse_dynamics(robot, path, wrench, legs)
+        return RobotForces(
+            drive_force=found.actuator_force,
+            joint_force=found.joint_force,
+            base_force=found.base_force,
+            base_moment=found.base_moment,
+        )
+    system = rigid_system(robot)
+    states, rates = rigid_motion(system, released(robot), path)
+    forces = joint_forces(system, states, rates, wrench)
+    return RobotForces(
+        drive_force=_of_drives(robot, forces.held),
+        joint_force=forces.joint_force,
+        states=states,
+        held=forces.held,
+        closure=forces.closure,
+        open_forces=forces.open_forces,
+    )
+
+
+def is_hexapod(robot: Robot) -> bool:
+    """Whether a robot has six driven legs UPS, ball joints being ideal or released."""
+    legs = rigid.rigid_limbs(robot)
+    driven = (legs.state[:, COORDINATES.index("l")] == DRIVEN).all()
+    return legs.plain and len(legs) == 6 and bool(driven) and not legs.hub_held.any()
+
+
+def _of_drives(robot: Robot, held: Array) -> Array:
+    """Of all held coordinates (T, legs, n) those that drives hold, (T, legs)."""
+    shapes, legs = rigid_system(robot).kernel.shapes, rigid.rigid_limbs(robot)
+    found = np.zeros(held.shape[:2])
+    for k, name in enumerate(COORDINATES):
+        if shapes.has(name):
+            driven = legs.state[:, k] == DRIVEN
+            found[:, driven] = held[:, driven, shapes.index(name)]
+    return found
+
+
+def rigid_errors(robot: Robot, path: rigid.Poses) -> Array:
+    """Displacement of the payload for unit errors of each of `COORDINATES`, (T, legs, 8, 6); see T7.27."""
+    system = rigid_system(robot)
+    states = rigid_motion(system, released(robot), path)[0]
+    steps, shapes = displacement_by_error(system, states), system.kernel.shapes
+    found = np.zeros((*steps.shape[:2], len(COORDINATES), 6))
+    for k, name in enumerate(COORDINATES):
+        if shapes.has(name):
+            found[:, :, k] = steps[:, :, shapes.index(name)]
+    return found
