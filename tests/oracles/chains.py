@@ -77,7 +77,9 @@ def energies(q: dict, v: dict, p: dict, phi: Shapes) -> np.ndarray:
     omega = spin(lambda x: cylinder_frame(x, p)[1], q, v)
     centre = lambda x: (lambda f: f[0] + p["cylinder_com"] * f[1][:, 2])(cylinder_frame(x, p))  # noqa: E731
     T += 0.5 * p["cylinder_mass"] * (rate(centre, q, v) ** 2).sum()
-    T += 0.5 * p["cylinder_inertia"] * (omega[:2] ** 2).sum() + 0.5 * p["cylinder_axial_inertia"] * omega[2] ** 2
+    along = v | {"spin": p["cylinder_spins"] * v["spin"]} if "spin" in v else v
+    turning = spin(lambda x: cylinder_frame(x, p)[1], q, along)
+    T += 0.5 * p["cylinder_inertia"] * (omega[:2] ** 2).sum() + 0.5 * p["cylinder_axial_inertia"] * turning[2] ** 2
     Vg -= p["cylinder_mass"] * float(g @ centre(q))
     eta, w = gauss(POINTS)
     T += 0.5 * p["piston_axial_inertia"] * float(w @ (omega[2] + eta * v.get("t", 0.0)) ** 2)
