@@ -1,10 +1,15 @@
 """Robots with balls at the platform as systems of equations, leg by leg, for tests of the solvers alone."""
 
+from unittest.mock import patch
+
 import numpy as np
 from tests.runs import uncompiled
 
 from flexapod.mechanics.layout import LEG_PARAMETERS, PAYLOAD_PARAMETERS
+from flexapod.model import Simulation
+from flexapod.solve.kernel import interpreted_kernel
 from flexapod.solve.many import RestStates
+from flexapod.solve.robot_system import robot_system
 from flexapod.solve.system import System
 
 PISTON = {"rhoA": 2.0, "EI": 2e3, "EA": 4e7, "Lp": 0.7, "mouth": 0.4, "piston_axial_inertia": 1e-4, "zeta": 0.01}
@@ -57,3 +62,9 @@ def ring(radius, degrees):
 
 def tangents(degrees):
     return ring(1.0, np.asarray(degrees) + 90.0)
+
+
+def of_robot(robot, **simulation):
+    """System of a robot of the model, its kernel interpreted: for a few calls nothing need be compiled."""
+    with patch("flexapod.solve.robot_system.kernel", interpreted_kernel):
+        return robot_system(robot, Simulation(**simulation))

@@ -1,17 +1,22 @@
 """Statics of robots with any number of legs and any held coordinate against dense algebra of the whole system."""
 
 from dataclasses import replace
+from functools import partial
 
 import numpy as np
 import pytest
 from scipy.linalg import block_diag, eigh, null_space
-from tests.systems import ring, robot, tangents
+from tests.mechanisms import ROBOTS as KINDS
+from tests.systems import of_robot, ring, robot, tangents
 
+from flexapod import rigid
+from flexapod.model.payload import Payload
 from flexapod.rigid.rotations import turned
 from flexapod.solve.arrow import arrow_solve
 from flexapod.solve.elimination import closed, expanded, leg_bases, null_space_of_borders, reduced
 from flexapod.solve.equilibrium import _Acts, _loaded_slowly, equilibria
-from flexapod.solve.many import matrices_at_rest
+from flexapod.solve.many import matrices_at_rest, residual_at_rest
+from flexapod.solve.rigid_motion import rigid_rest
 
 THIRDS, EIGHT = [0.0, 120.0, 240.0], np.array([20.0, 70, 110, 160, 200, 250, 290, 340])
 
@@ -56,6 +61,17 @@ ROBOTS = {
     "a shape held": lambda: hold(*hexapod(), "a", slice(2, 4)),
     "planar 3-RPR": lambda: planar(gravity=0.0),
 }
+
+
+def of_kind(name, **simulation):
+    """A robot of another kind, moved away from home a little, its payload light enough for soft joints."""
+    model = KINDS[name]().replace(payload=Payload(mass=10.0, inertia=[0.4, 0.5, 0.6], com=[0.02, 0.01, 0.05]))
+    system = of_robot(model, **{"fidelity": "assumed-modes", "modes": 2} | simulation)
+    return system, rigid_rest(system, model, rigid.home_pose(model))
+
+
+for kind in ("6-UCU", "6-FPF", "3-UPS+UP", "3-PUU", "6-RUS", "planar 3-PRR"):
+    ROBOTS[kind] = partial(of_kind, kind)
 
 
 def solved(system, x, **more):
@@ -120,6 +136,26 @@ def test_independent_motions_are_the_null_space_of_all_constraints(name):
     whole = motions.T @ (dense.K + dense.K.T) / 2 @ motions
     np.testing.assert_allclose(K, whole, atol=1e-10 * np.abs(whole).max())
     assert (N is None) == (name not in ("3-RPS lumped", "3-RPS bending only"))
+
+
+@pytest.mark.parametrize("name", ["3-RPS", "6-UCU", "6-FPF", "3-UPS+UP", "6-RUS"])
+def test_stiffness_is_the_derivative_of_the_balance(name):
+    """Geometric stiffness of legs that carry forces and moments, with what couples them to the payload."""
+    system, x = ROBOTS[name]()
+    states, m, command, wrench = solved(system, x)
+    rng, h = np.random.default_rng(2), 1e-5
+    dq, dy = rng.normal(size=x.q.shape), rng.normal(size=(1, 6))
+    none = np.zeros_like(command)
+    ahead, behind = (residual_at_rest(system, states.moved(t * dq, t * dy), command, none, wrench) for t in (h, -h))
+    of_legs, of_payload, closures = ((a - b) / (2 * h) for a, b in zip(ahead, behind, strict=True))
+    X = np.zeros((*x.q.shape, 6)) if m.X is None else m.X
+    expected = (m.K @ dq[..., None] + X @ dy[:, None, :, None])[..., 0]
+    # Central differences: third derivatives times h^2, 1e-10 of the stiffness of shapes of 1e9 N/m at most.
+    np.testing.assert_allclose(of_legs, expected, atol=1e-8 * np.abs(expected).max())
+    on_payload = (m.payload_K @ dy[..., None])[..., 0] + (X.swapaxes(-1, -2) @ dq[..., None])[..., 0].sum(axis=1)
+    np.testing.assert_allclose(of_payload, on_payload, atol=1e-6 * np.abs(states.lam).max())
+    moved = (m.J @ dq[..., None] - m.P @ dy[:, None, :, None])[..., 0]
+    np.testing.assert_allclose(closures, moved, atol=1e-8)
 
 
 def frequencies(system, m):

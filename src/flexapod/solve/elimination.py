@@ -28,9 +28,8 @@ __all__ = [
     "solve_each",
 ]
 
-YIELDS = (
-    0.01  # of a held pivot's motion with the payload: the least that one of a leg's shapes must move it to replace it
-)
+YIELDS = 0.01  # what a shape must move a held pivot by, for what the payload does, to take its place
+SAME = 1e-9  # share below which what legs hold of the payload counts as the same
 
 
 @dataclass(frozen=True, kw_only=True)
@@ -111,18 +110,18 @@ def _substitutes(D: Array, Y: Array) -> tuple[Index | None, float]:
 
 
 def open_borders(bases: list[LegBases]) -> bool:
-    """Whether legs that cannot give way hold the payload more often than it has coordinates."""
-    if sum(b.legs.size * b.border.size for b in bases) <= bases[0].Y.shape[-1]:
-        return False
-    rigid = 0
+    """Whether legs hold the payload against each other in ways in which none of them gives way, at the first pose."""
+    rows = []
     for b in bases:
         D, Y = b.N[0][..., b.border, :], b.Y[0][..., b.border, :]
         size = np.maximum(np.abs(D).max(axis=-1, initial=0.0), np.abs(Y).max(axis=-1, initial=0.0))[..., None]
-        if not np.isfinite(size).all():
-            return False
-        found = np.linalg.svd(D / size, compute_uv=False) > YIELDS
-        rigid += b.legs.size * b.border.size - int(found.sum())
-    return rigid > bases[0].Y.shape[-1]
+        if not np.isfinite(size).all() or not b.border.size:
+            continue
+        left, share, _ = np.linalg.svd(D / size)
+        rank = (share > YIELDS).sum(axis=-1)
+        rows += [u[:, k:].T @ (y / s) for u, k, y, s in zip(left, rank, Y, size, strict=True)]
+    rigid = np.concatenate(rows) if rows else np.zeros((0, 0))
+    return len(rigid) > np.linalg.matrix_rank(rigid, tol=SAME) if rigid.size else len(rigid) > 0
 
 
 @dataclass(frozen=True, kw_only=True)

@@ -1,0 +1,79 @@
+"""Stiffness of robots of lower mobility against closed forms: tripods on hinges, tables on fixed legs."""
+
+import numpy as np
+import pytest
+from tests.mechanisms import THREE, built, leg, ring, tangents
+
+from flexapod.model import Simulation
+from flexapod.model.payload import Payload
+from flexapod.model.piston import Cylinder, Piston
+from flexapod.solve.modes import robot_modes
+from flexapod.solve.stiffness import robot_stiffness
+
+PISTON = Piston(length=0.75, EA=1.1e8, EI=5e3, rhoA=4.5)
+WEIGHTLESS = Payload(mass=1e-6, inertia=[1e-8, 1e-8, 1e-8], com=[0, 0, 0])
+BASE, TOP, HEIGHT, MOUTH = 0.35, 0.2, 0.6, 0.25
+FLEXIBLE = Simulation(fidelity="assumed-modes", modes=2, basis="tip-load")
+
+
+def tripod(**more):
+    """3-RPS whose legs weigh nothing."""
+    parts = {"cylinder": Cylinder(mass=0, com=0, inertia=0, mouth=MOUTH), "piston": PISTON.replace(rhoA=0.0)}
+    legs = [leg("RPS", axis, **parts) for axis in tangents(THREE)]
+    robot = built("3-RPS", ring(BASE, THREE), ring(TOP, THREE), HEIGHT, legs, payload=WEIGHTLESS, **more)
+    return robot.replace(gravity=[0, 0, 0])
+
+
+def test_a_tripod_is_stiff_sideways_as_its_pistons_bend():
+    """Legs stretch along themselves and bend across the hinges' planes; about the hinges they turn freely."""
+    length = np.hypot(BASE - TOP, HEIGHT)
+    rise, radial = HEIGHT / length, (TOP - BASE) / length
+    k, kb = PISTON.EA / PISTON.length, 3 * PISTON.EI / (length - MOUTH) ** 3
+    sideways, up = 1.5 * (k * radial**2 + kb), 3 * k * rise**2
+    tilt, turn, coupling = 1.5 * k * TOP**2 * rise**2, 3 * kb * TOP**2, -1.5 * k * TOP * rise * radial
+    expected = np.diag([sideways, sideways, up, tilt, tilt, turn])
+    expected[0, 4] = expected[4, 0] = coupling
+    expected[1, 3] = expected[3, 1] = -coupling
+    found = robot_stiffness(tripod(), FLEXIBLE)
+    # No load: no sag. Rounding of sums of 1e8 N/m.
+    np.testing.assert_allclose(found.total, expected, atol=1e-9 * up)
+    np.testing.assert_allclose(found.legs.sum(axis=0), found.total, atol=1e-9 * up)
+    # Without bending the determinant of the x-pitch block would vanish: the tripod's own tilt.
+    assert abs(sideways * tilt - coupling**2) == pytest.approx(1.5 * kb * tilt, rel=1e-12)
+
+
+def test_shares_of_the_legs_turn_with_them():
+    found = robot_stiffness(tripod(), FLEXIBLE)
+    c, s = np.cos(2 * np.pi / 3), np.sin(2 * np.pi / 3)
+    R = np.kron(np.eye(2), np.array([[c, -s, 0], [s, c, 0], [0, 0, 1]]))
+    np.testing.assert_allclose(found.legs[1], R @ found.legs[0] @ R.T, atol=1e-9 * np.abs(found.total).max())
+
+
+@pytest.mark.parametrize("count", [4, 6])
+def test_a_table_on_upright_legs_fixed_at_both_ends(count):
+    """Each leg bends as a clamped beam whose end moves sideways without turning: 12 EI / s^3."""
+    corners, s = np.linspace(0, 360, count, endpoint=False) + 45.0, 0.6
+    parts = {"cylinder": Cylinder(mass=0, com=0, inertia=0, mouth=MOUTH), "piston": PISTON}
+    legs = [leg("FPF", **parts)] * count
+    robot = built(f"{count}-FPF", ring(0.5, corners), ring(0.5, corners), s + MOUTH, legs, payload=WEIGHTLESS)
+    found = robot_stiffness(robot.replace(gravity=[0, 0, 0]), FLEXIBLE).total
+    k = 12 * PISTON.EI / s**3
+    along = PISTON.EA / PISTON.length
+    # The table does not tilt: it is the block of translations and the turn about the vertical that are closed forms.
+    np.testing.assert_allclose(np.diag(found)[:2], count * k, rtol=1e-9)
+    np.testing.assert_allclose(found[2, 2], count * along, rtol=1e-9)
+    tilt = count * (along * 0.5**2 / 2 + 4 * PISTON.EI / s)
+    np.testing.assert_allclose(np.diag(found)[3:5], tilt, rtol=1e-9)
+    twist = count * (k * 0.5**2 + PISTON.torsional_stiffness / PISTON.length)
+    assert found[5, 5] == pytest.approx(twist, rel=1e-9)
+    np.testing.assert_allclose(np.abs(found[0, 4]), count * k * s / 2, rtol=1e-9)
+
+
+def test_the_slowest_modes_of_a_tripod_are_those_of_its_bending():
+    """A heavy payload on light legs: frequencies of the stiffness matrix and the payload's mass alone."""
+    robot = tripod().replace(payload=Payload(mass=100.0, inertia=[4.0, 4.0, 5.0], com=[0, 0, 0]))
+    K = robot_stiffness(robot, FLEXIBLE).total
+    expected = np.sort(np.sqrt(np.linalg.eigvals(np.diag([1 / 100] * 3 + [1 / 4, 1 / 4, 1 / 5]) @ K).real)) / (
+        2 * np.pi
+    )
+    np.testing.assert_allclose(robot_modes(robot, FLEXIBLE).frequency[:6], expected, rtol=1e-7)
