@@ -22,7 +22,7 @@ __all__ = ["STATIONS", "Scene", "Skeleton", "around"]
 STATIONS = 25  # points of a drawn piston
 RAIL = 0.35  # of a strut's length: how far a rail without ends is drawn to either side of home
 FLAT = 0.1  # height over size
-BAR = 0.045  # of the robot's size: half the length of a hinge's axis as it is drawn
+BAR = 0.06  # of the robot's size: half the length of a hinge's axis as it is drawn
 
 
 @dataclass(frozen=True, kw_only=True)

@@ -5,9 +5,10 @@ from __future__ import annotations
 import math
 from typing import TYPE_CHECKING
 
+import numpy as np
 from viser import Icon
 
-from flexapod import model
+from flexapod import model, rigid
 from flexapod.app.view import words
 from flexapod.app.view.dial import Dial
 from flexapod.app.view.listed_modes import Listed, ListedModes
@@ -45,11 +46,16 @@ class RobotModes(ListedModes[model.Study]):
         home.on_click(lambda _: self._go_home())
 
     def _fit(self, study: model.Study) -> None:
-        """The chosen pose stays, within sliders that reach half as far as a leg is long."""
+        """The chosen pose stays, within sliders that reach half as far as a leg is long and that the robot follows."""
         reach = 500.0 * float(study.robot.home_lengths.mean())
         reach = float(f"{reach:.1g}")
         for name in model.AXES[:3]:
             self._pose[name].fit(-reach, reach, reach / 500)
+        limbs = rigid.rigid_limbs(study.robot)
+        free = rigid.independent_axes(limbs, np.zeros(6, dtype=bool), np.zeros(3))
+        for name, moves in zip(model.AXES, free, strict=True):
+            self._pose[name].disabled = not moves
+            self._pose[name].value *= moves
 
     def _listed(self, study: model.Study) -> Listed:
         from flexapod import study as fx
@@ -74,9 +80,9 @@ class RobotModes(ListedModes[model.Study]):
         self.scene.show_pose(self._at())
 
     def _at(self) -> dict[str, float]:
-        """The pose of the sliders in m and rad."""
-        units = [1e-3] * 3 + [math.pi / 180] * 3
-        return {name: unit * self._pose[name].value for name, unit in zip(model.AXES, units, strict=True)}
+        """The pose of the sliders in m and rad; what the robot's legs make of the others follows."""
+        units = dict(zip(model.AXES, [1e-3] * 3 + [math.pi / 180] * 3, strict=True))
+        return {name: units[name] * dial.value for name, dial in self._pose.items() if not dial.disabled}
 
     def _go_home(self) -> None:
         for dial in self._pose.values():

@@ -104,7 +104,7 @@ class RobotParts:
         for i, joint in enumerate(robot.base_joints):
             joints.append(_joint(scene, f"/joint_{i + 1}", self._skeleton.joints[i][0], 1.5 * self._radius[i], _BASE))
             joints[i].position = joint
-            outward = joint * [1.15, 1.15, 1.0]
+            outward = self._skeleton.home.base[i] * [1.15, 1.15, 1.0]
             add("labels", scene.add_label(f"/leg_{i + 1}", f"leg {i + 1}", position=outward, anchor="top-center"))
         return joints
 

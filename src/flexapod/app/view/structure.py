@@ -89,7 +89,7 @@ def _legs(data: dict[str, Any]) -> list[Offer]:
         many = _MANY.get(count, str(count))
         hint = f"[[leg]] {many} times, all as this one at first"
         return [_offer("[leg]", f"{many.capitalize()} different legs", hint, _each_leg)]
-    if isinstance(leg, list) and len(leg) == count:
+    if isinstance(leg, list) and len(leg) == count and "+" not in str(data["robot"].get("type")):
         return [
             _offer("[[leg]] 1", "All legs as this one", "[leg] once, as leg 1 is; the others are taken out", _one_leg)
         ]

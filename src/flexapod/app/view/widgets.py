@@ -2,8 +2,8 @@
 
 from __future__ import annotations
 
-from collections.abc import Callable
-from typing import TYPE_CHECKING
+from collections.abc import Callable, Sequence
+from typing import TYPE_CHECKING, NamedTuple
 
 from flexapod.app.view.document import Quantity, quantity
 from flexapod.app.view.typed import TypedText, by_user, plain, written
@@ -26,6 +26,7 @@ Left = Callable[[str, bool], None]
 Setter = Callable[[object], None]
 
 _AXES = {2: "12", 3: "xyz"}  # two: in the plane of a planar robot
+LETTERS = ("type", "chain")  # texts that say which joints a robot or a leg has
 EMPTY = "a number, or one with a unit; an emptied field gets its value back"
 
 
@@ -37,13 +38,15 @@ def signature(field: Field) -> tuple[object, ...]:
 def add_widget(gui: GuiApi, threads: Threads, field: Field, changed: Changed, left: Left) -> Setter:
     """Add the input of a field that has a value."""
     if field.kind == "text":
-        return _choice(gui, field, changed) if field.choices else _fixed(gui, field)
+        if field.choices:
+            return _choice(gui, field, changed)
+        return (_written if field.name in LETTERS else _fixed)(gui, threads, field, changed, left)
     if field.kind in ("number", "whole"):
         return _number(gui, threads, field, changed, left)
     if field.kind == "flag":
         return _flag(gui, field, changed)
     if field.kind == "words":
-        return _fixed(gui, field)
+        return _fixed(gui, threads, field, changed, left)
     if _rows(field):
         return _vectors(gui, threads, field, changed, left)
     return _written(gui, threads, field, changed, left)
@@ -114,14 +117,14 @@ def _flag(gui: GuiApi, field: Field, changed: Changed) -> Setter:
     return show
 
 
-def _fixed(gui: GuiApi, field: Field) -> Setter:
+def _fixed(gui: GuiApi, _threads: Threads, field: Field, _changed: Changed, _left: Left) -> Setter:
     """A text that names a file of the person who started the server, or a list of texts: shown, not changed."""
     gui.add_text(field.name, str(field.value), disabled=True)
     return lambda value: None
 
 
 def _written(gui: GuiApi, threads: Threads, field: Field, changed: Changed, left: Left) -> Setter:
-    """A list that is none of the numbers that are asked for, as text."""
+    """Letters of a mechanism, or a list that is none of the numbers that are asked for, as text."""
 
     def taken(text: str, done: bool) -> None:
         changed(field.key, text, not done)
@@ -132,42 +135,47 @@ def _written(gui: GuiApi, threads: Threads, field: Field, changed: Changed, left
 
 
 def _vectors(gui: GuiApi, threads: Threads, field: Field, changed: Changed, left: Left) -> Setter:
-    """Inputs of three numbers each: one for a vector, two for a wrench, one a row for rows."""
-    setters = [
-        (start, key, _triple(gui, threads, field, (label, key, start), changed, left))
-        for label, key, start in _triples(field)
-    ]
+    """Inputs for a vector, one a row for rows, two for a wrench; of angles one for each leg."""
+    setters = [(part, _components(gui, threads, field, part, changed, left)) for part in _parts(field)]
 
     def show(value: object) -> None:
-        for start, key, setter in setters:
-            setter(_at(value, key, start))
+        for part, setter in setters:
+            setter(_at(value, part))
 
     return show
 
 
-def _triples(field: Field) -> list[tuple[str, str, int]]:
-    """Label, key of the list, and index of the first component, for each three numbers of a field."""
+class _Part(NamedTuple):
+    """Some numbers of a field: label, key of the list, index of the first, and what each is called."""
+
+    label: str
+    key: str
+    start: int
+    names: Sequence[str]
+
+
+def _parts(field: Field) -> list[_Part]:
+    count = len(field.dimensions)
     if field.kind == "rows":
-        count = len(field.value) if isinstance(field.value, list) else 0
-        return [(f"{field.name} {i}", f"{field.key}[{i}]", 0) for i in range(1, count + 1)]
-    if len(field.dimensions) < 6:
-        return [(field.name, field.key, 0)]
-    return [(f"{field.name} force", field.key, 0), (f"{field.name} moment", field.key, 3)]
+        rows = len(field.value) if isinstance(field.value, list) else 0
+        return [_Part(f"{field.name} {i}", f"{field.key}[{i}]", 0, _AXES[count]) for i in range(1, rows + 1)]
+    if len(set(field.dimensions)) > 1 and count == 6:
+        return [_Part(f"{field.name} {word}", field.key, i, "xyz") for word, i in (("force", 0), ("moment", 3))]
+    numbered = count not in _AXES or field.name == "angles"
+    return [_Part(field.name, field.key, 0, [str(i) for i in range(1, count + 1)] if numbered else _AXES[count])]
 
 
-def _at(value: object, key: str, start: int) -> list[object]:
-    """Three written values of a list, or of the row that `key` ends with."""
+def _at(value: object, part: _Part) -> list[object]:
+    """The written values of a part of a list, or of the row that its key ends with."""
     listed = value if isinstance(value, list) else []
     if listed and isinstance(listed[0], list):
-        listed = listed[int(key.rpartition("[")[2].rstrip("]")) - 1]
-    return listed[start : start + 3]
+        listed = listed[int(part.key.rpartition("[")[2].rstrip("]")) - 1]
+    return listed[part.start : part.start + len(part.names)]
 
 
-def _triple(
-    gui: GuiApi, threads: Threads, field: Field, place: tuple[str, str, int], changed: Changed, left: Left
-) -> Setter:
-    """Three numbers in one unit, that of the first which has one."""
-    label, key, start = place
+def _components(gui: GuiApi, threads: Threads, field: Field, part: _Part, changed: Changed, left: Left) -> Setter:
+    """Numbers in one unit, that of the first which has one."""
+    label, key, start, names = part
     dimension, unit = field.dimensions[start], ""
 
     def numbers(values: list[object]) -> list[str]:
@@ -188,9 +196,9 @@ def _triple(
         return lambda empty: left(f"{key}[{start + i + 1}]", empty)
 
     def titles() -> list[str]:
-        return [_label(f"{label} {axis}", unit, dimension) for axis in _AXES[min(3, len(field.dimensions))]]
+        return [_label(f"{label} {axis}", unit, dimension) for axis in names]
 
-    texts = numbers(_at(field.value, key, start))
+    texts = numbers(_at(field.value, part))
     boxes = [
         TypedText(gui, threads, title, text, taken(i), leave(i), hint=_hint(field, unit))
         for i, (title, text) in enumerate(zip(titles(), texts, strict=True))
