@@ -13,6 +13,7 @@ from functools import cache
 from pathlib import Path
 
 import numpy as np
+from tests import legs_of_all_kinds as legs
 
 import flexapod as fx
 from flexapod.model import preset_text
@@ -160,7 +161,21 @@ def check(name):
     return {key: np.array(values) for key, values in figures.items()}
 
 
+def leg(kind):
+    """What the kernels say of a leg at random states: balance, tip, matrices, energies; no part of a march."""
+    found = {}
+    for seed in range(20):
+        x = legs.state(legs.shapes(kind), seed, 1e-2)
+        for name in ("leg_residual", "leg_matrices", "leg_energies"):
+            for key, value in legs.call(legs.shapes(kind), name, x).items():
+                if key not in ("powers", "drive", "J"):
+                    found.setdefault(key, []).append(value)
+    return found
+
+
 CASES = {
+    "leg-point": lambda: leg("point"),
+    "leg-planar": lambda: leg("planar"),
     **{f"march-{f}": (lambda f=f: march(f)) for f in FIDELITIES},
     **{f"march-{v}": (lambda v=v: marched_variant(v)) for v in VARIANTS},
     "march-radii": radii,
