@@ -32,14 +32,15 @@ def _leg(robot, leg, foot, tip):
     if robot.plane:
         base, end = base[:1] if len(base) else base, end[:1] if len(end) else end
         parts = {"first": np.cross(robot.normal, way), "planes": (0,)}
-    if _twists(base, end, way):
-        parts |= {"GJ": beam.torsional_stiffness, "spin_inertia": beam.axial_inertia}
-    else:  # nothing resists the turn about the leg: it is idle
+    if letters.platform == "S":  # nothing resists the turn about the leg: it is idle
         base, end = _without(base, way), _without(end, way)
+    elif not robot.plane:  # a round section twists with its own inertia where none is given
+        inertia = beam.axial_inertia or 2 * beam.rhoA * beam.length * beam.EI / beam.EA
+        parts |= {"GJ": beam.torsional_stiffness, "spin_inertia": inertia, "spins": letters.stroke == "C"}
     if guided:
         c = leg.cylinder
         parts |= {"mouth": c.mouth, "length": beam.length, "inertia": c.inertia + c.mass * c.com**2}
-        parts |= {"axial_inertia": c.axial_inertia}
+        parts |= {"axial_inertia": c.axial_inertia, "slides": not leg.driven}
     return frames.Leg(
         base=foot, tip=tip, base_axes=base, tip_axes=end, base_springs=_springs(leg.base_joint, base, way),
         tip_springs=_springs(leg.platform_joint, end, way), EI=beam.EI, EA=beam.EA, rhoA=beam.rhoA, **parts,
@@ -57,11 +58,6 @@ def _axes(letter, axis, way):
 
 def _along(axes, way):
     return np.array([abs(axis @ way) > 1 - 1e-12 for axis in axes], dtype=bool)
-
-
-def _twists(base, end, way):
-    """Whether one end at least holds the leg against turning about itself and moments about it can act."""
-    return not _along(end, way).any()
 
 
 def _without(axes, way):

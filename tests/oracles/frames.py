@@ -44,6 +44,8 @@ class Leg:
     length: float | None = None  # of the piston: None: from the mouth to the tip
     inertia: float = 0.0  # of the cylinder about the base joint, across
     axial_inertia: float = 0.0
+    slides: bool = False  # the piston is free to move in the cylinder: a passive leg
+    spins: bool = False  # and to turn in it
     first: np.ndarray | None = None  # direction of bending with EI; the other one has EI_2
     EI_2: float | None = None
     planes: tuple[int, ...] = (0, 1)
@@ -127,6 +129,13 @@ def rod(omega, stiffness, mass, length):
     return K, int(x / np.pi)
 
 
+def _free_inside(k, count):
+    """A rod whose inner end is free: this coordinate is eliminated, and counts where its stiffness is negative."""
+    if k[0, 0] == 0 or k[0, 1] == -k[0, 0]:
+        return 0 * k, count
+    return k - np.outer(k[:, 0], k[0]) / k[0, 0], count + int(k[0, 0] < 0)
+
+
 def _cross(v):
     return np.array([[0, -v[2], v[1]], [v[2], 0, -v[0]], [-v[1], v[0], 0]])
 
@@ -166,10 +175,14 @@ def _leg(omega, leg, body, hub, at, n):
         guided = leg.rhoA / 3 * (leg.mouth**3 - (leg.span - L) ** 3)
         K -= omega**2 * (leg.inertia + guided) * np.outer(slopes[0], slopes[0])
     k, inside = rod(omega, leg.EA, leg.rhoA * L, L)
+    if leg.slides:
+        k, inside = _free_inside(k, inside)
     K, count = K + k[1, 1] * np.outer(moved[2], moved[2]), count + inside
     K -= omega**2 * leg.axial_inertia * np.outer(cylinder[2], cylinder[2])
     if np.isfinite(leg.GJ):
         k, inside = rod(omega, leg.GJ, leg.spin_inertia, L)
+        if leg.spins:
+            k, inside = _free_inside(k, inside)
         ends = np.array([cylinder[2], turned[2]])
         K, count = K + ends.T @ k @ ends, count + inside
     springs = np.zeros(n)

@@ -41,8 +41,20 @@ def leg(shapes: Shapes, p: SimpleNamespace, q: SX, v: SX, qs: SimpleNamespace, v
     if shapes.flexure:
         ground = ground.moved(vertcat(qs.u1, qs.u2, qs.u3), vertcat(vs.u1, vs.u2, vs.u3))
     frame = universal(ground, qs, vs)
+    if shapes.b.count and not shapes.a.count:  # a planar robot's leg does not bend across the plane
+        qs, vs = (SimpleNamespace(**vars(part) | {"a": zeros(shapes.b.count)}) for part in (qs, vs))
     s = qs.l - p.mouth  # (T3.6)  free length outside the cylinder
-    motion = Motion(a=shapes.a, b=shapes.b, axial=shapes.axial, frame=frame, s=s, q=q, v=v, qs=qs, vs=vs)
+    motion = Motion(
+        a=shapes.a if shapes.a.count else shapes.b,
+        b=shapes.b,
+        axial=shapes.axial,
+        frame=frame,
+        s=s,
+        q=q,
+        v=v,
+        qs=qs,
+        vs=vs,
+    )
     e += cylinder(frame, p, vs) + sliding_piston(motion, p)
     if shapes.torsion:
         e += torsion(frame, p, qs, vs)

@@ -22,9 +22,11 @@ def robot_shapes(robot: Robot, simulation: Simulation, legs: Limbs) -> Shapes:
     """Coordinates of the legs of a robot: those that any of them has."""
     spin, gamma3 = (legs.state[:, COORDINATES.index(name)] for name in ("spin", "gamma3"))
     pose = bool(legs.pose_closure.any())
-    return space_shapes(
-        leg_shapes(robot, simulation),
-        simulation.axial_shapes(robot.legs[0].axial_modes),
+    lateral = leg_shapes(robot, simulation)
+    return Shapes(
+        a=bases.lateral_basis("clamped-free", 0) if robot.plane else lateral,  # across the plane nothing bends
+        b=lateral,
+        axial=bases.axial_basis(simulation.axial_shapes(robot.legs[0].axial_modes)),
         closure="pose" if pose else "point",
         carriage=legs.carriage,
         spin=bool((spin != ABSENT).any()),

@@ -1,0 +1,73 @@
+"""Frequencies and stiffness of robots of many kinds: exact dynamic stiffness, and closed forms."""
+
+import numpy as np
+import pytest
+from tests.beam_frames import as_frame
+from tests.mechanisms import PISTON, ROBOTS, THREE, built, hexapod, leg, ring, tangents
+from tests.oracles import frames
+
+import flexapod as fx
+from flexapod.model.payload import Payload
+from flexapod.model.piston import Cylinder, Piston
+from flexapod.solve.kernel import interpreted_kernel
+
+FOUR = np.arange(4) * 90.0
+BARE = {"cylinder": Cylinder(mass=0.0, mouth=0.0), "piston": Piston(length=0.8, EA=1.1e8, EI=5e3, rhoA=4.5)}
+PLATE = Payload(mass=500.0, inertia=[40.0, 50.0, 60.0], com=[0.0, 0.0, 0.0])
+
+
+def table():
+    """Four upright legs welded at both ends."""
+    return built("4-FPF", ring(0.3, FOUR), ring(0.3, FOUR), 0.8, [leg("FPF", **BARE)] * 4, payload=PLATE)
+
+
+CASES = {name: make for name, make in ROBOTS.items() if name != "1-UPS"} | {
+    "table": table,
+    "welded 6-UPF": lambda: hexapod("UPF"),
+}
+
+
+@pytest.fixture(autouse=True)
+def uncompiled(monkeypatch):
+    """A few matrices are no work for a compiler."""
+    monkeypatch.setattr("flexapod.solve.robot_system.kernel", interpreted_kernel)
+
+
+def unloaded(name):
+    return CASES[name]().replace(gravity=[0.0, 0.0, 0.0])
+
+
+@pytest.mark.parametrize("name", CASES)
+def test_more_shapes_fall_onto_the_exact_frequencies(name):
+    robot = unloaded(name)
+    exact = frames.frequencies(*as_frame(robot), 5)
+    few, many = (fx.modes(robot, modes=k, axial_modes=4)["frequency"].values[:5] / exact - 1 for k in (2, 6))
+    # The beams bend once or twice; a polynomial of degree 7 misses that by less than 1e-6 of the frequency.
+    assert np.abs(many).max() < 1e-6
+    # Ritz: from above; soft motions lose digits to stiff axial ones (1e-16 of the ratio of squares).
+    assert few.min() > -1e-9 and many.min() > -1e-9
+    assert np.all(many < few + 1e-9)
+
+
+def test_a_table_sways_with_twelve_EI_a_leg():
+    K, s, EI = fx.stiffness(table().replace(gravity=[0, 0, 0]), modes=2)["stiffness"].values, 0.8, 5e3
+    GJ = BARE["piston"].torsional_stiffness
+    np.testing.assert_allclose(np.diag(K)[:3], [48 * EI / s**3, 48 * EI / s**3, 4 * 1.1e8 / s], rtol=1e-10)
+    assert K[5, 5] == pytest.approx(4 * (GJ / s + 12 * EI / s**3 * 0.3**2), rel=1e-10)
+
+
+def test_closed_forms_of_a_tripod():
+    """kx = 3/2 (k cg^2 + kb), kz = 3 k sg^2, tilt 3/2 k r^2 sg^2, yaw 3 kb r^2, x with pitch -3/2 k r sg cg."""
+    axes, r, height = tangents(THREE), 0.2, 0.6
+    load = Payload(mass=50.0, inertia=[2.0, 2.0, 3.0], com=[0.0, 0.0, 0.0])
+    legs = [leg("RPS", axis, cylinder=Cylinder(mass=3.0, com=0.1, inertia=0.02, mouth=0.25)) for axis in axes]
+    robot = built("3-RPS", ring(0.35, THREE), ring(r, THREE), height, legs, payload=load).replace(gravity=[0, 0, 0])
+    K, span = fx.stiffness(robot, modes=2)["stiffness"].values, np.hypot(0.15, height)
+    k = PISTON.EA / PISTON.length
+    # the cylinder turns in the plane of the leg, and holds the piston's bending across it
+    kb, sg, cg = 3 * PISTON.EI / (span - 0.25) ** 3, height / span, 0.15 / span
+    assert K[0, 0] == pytest.approx(1.5 * (k * cg**2 + kb), rel=1e-10)
+    assert K[2, 2] == pytest.approx(3 * k * sg**2, rel=1e-10)
+    assert K[3, 3] == pytest.approx(1.5 * k * r**2 * sg**2, rel=1e-10)
+    assert K[5, 5] == pytest.approx(3 * kb * r**2, rel=1e-10)
+    assert abs(K[0, 4]) == pytest.approx(1.5 * k * r * sg * cg, rel=1e-10)
