@@ -100,7 +100,7 @@ def _known(name: str, table: Mapping[str, object], key: str) -> None:
 
 def _records(study: Study | ActuatorStudy) -> dict[str, Variable]:
     """Variables over time that a simulation of this kind of study has."""
-    over_time = {name: entry for name, entry in VARIABLES.items() if entry.dims[0] == "time"}
+    over_time = {name: entry for name, entry in VARIABLES.items() if "time" in entry.dims[:1]}
     actuator = ("length", "angle", "length_rate", "angle_rate", "mode_amplitude", "tip_position", "torque", "force")
     shared = ("energy_kinetic", "energy_dissipated", "work_drive", "work_external", "closure_residual")
     if isinstance(study, ActuatorStudy):
