@@ -113,9 +113,11 @@ def open_borders(bases: list[LegBases]) -> bool:
     """Whether legs hold the payload against each other in ways in which none of them gives way, at the first pose."""
     rows = []
     for b in bases:
+        if not len(b.N) or not b.border.size:
+            continue
         D, Y = b.N[0][..., b.border, :], b.Y[0][..., b.border, :]
         size = np.maximum(np.abs(D).max(axis=-1, initial=0.0), np.abs(Y).max(axis=-1, initial=0.0))[..., None]
-        if not np.isfinite(size).all() or not b.border.size:
+        if not np.isfinite(size).all():
             continue
         left, share, _ = np.linalg.svd(D / size)
         rank = (share > YIELDS).sum(axis=-1)
