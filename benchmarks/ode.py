@@ -139,7 +139,7 @@ def ode(study: Study) -> Ode:
     packages = [Path(str(package.__file__)).parent for package in (elements, mechanics, symbolic)]
     texts = [path.read_bytes() for folder in packages for path in sorted(folder.glob("*.py"))]
     key = ["benchmark ode", *texts, repr(shapes), Path(__file__).read_bytes()]
-    library, _ = compiled_library(key, lambda: functions(shapes), "", (SOURCE,), command)
+    library, _ = compiled_library(key, lambda: functions(shapes), (SOURCE,), command)
     library.rates.restype = library.jacobian.restype = None
     library.rates.argtypes = [c_void_p, c_double, c_void_p, c_void_p]
     library.jacobian.argtypes = [c_void_p, c_double, c_void_p, c_long, c_long, c_double, c_double, c_void_p]

@@ -43,15 +43,19 @@ def test_a_failed_run_keeps_what_was_computed(how, caplog):
 @pytest.mark.parametrize("leg", range(6))
 def test_a_number_that_becomes_infinite_names_its_leg(leg, monkeypatch):
     """Legs are computed side by side: a NaN of one must not be lost among the numbers of the others."""
-    whole = robot_march._tables
+    whole = robot_march.robot_law
 
-    def broken(commands):
-        table, wrench = whole(commands)
-        table = table.reshape(len(commands.time), 6, -1).copy()
-        table[np.abs(commands.time - 0.0105) < 1e-9, leg] = np.nan
-        return table.reshape(len(commands.time), -1), wrench
+    def broken(*arguments):
+        law = whole(*arguments)
 
-    monkeypatch.setattr(robot_march, "_tables", broken)
+        def spoilt(t):
+            table, wrench = law(t)
+            table[np.abs(t - 0.0105) < 1e-9, leg] = np.nan
+            return table, wrench
+
+        return spoilt
+
+    monkeypatch.setattr(robot_march, "robot_law", broken)
     data = fx.simulate(paper_robot(fidelity="lumped", step=5e-4), duration=0.02)
     assert data.attrs["time_reached"] == pytest.approx(0.01)
     assert f"numbers became infinite in leg {leg + 1}." in data.attrs["failure"]

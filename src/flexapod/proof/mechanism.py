@@ -167,9 +167,9 @@ def _kernel(mechanism: Mechanism, shapes: Shapes, general: int) -> Kernel:
     library, signatures = compiled_library(
         [*texts, shapes.size, general],
         lambda: [*_branch_functions(mechanism, shapes, general), *_hub_functions(mechanism.hub)],
-        sizes(shapes, general + mechanism.parameters.shape[1], joint=6),
         SOURCES,
         command,
+        sizes(shapes, general + mechanism.parameters.shape[1], joint=6),
     )
     compiled = {name: CompiledFunction(library, name, signatures[name]) for name in NAMES}
     return Kernel(shapes=shapes, library=library, **compiled)

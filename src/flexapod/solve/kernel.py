@@ -51,7 +51,7 @@ def kernel(shapes: Shapes) -> Kernel:
     """Kernel of legs with the given shapes and joints; see `shapes`."""
     if command := compiler():
         library, signatures = compiled_library(
-            _fingerprint(shapes), lambda: _functions(shapes), sizes(shapes), SOURCES, command
+            _fingerprint(shapes), lambda: _functions(shapes), SOURCES, command, sizes(shapes)
         )
         compiled = {name: CompiledFunction(library, name, signatures[name]) for name in NAMES}
         return Kernel(shapes=shapes, library=library, **compiled)

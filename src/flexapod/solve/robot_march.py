@@ -16,6 +16,7 @@ from flexapod.solve.fallen import refuse_fallen
 from flexapod.solve.many import RestStates
 from flexapod.solve.march import Chunk, Problem, initial_step, march
 from flexapod.solve.modes import refuse_pure_force
+from flexapod.solve.parameters import centre
 from flexapod.solve.recording import Counters, Recording
 from flexapod.solve.rest import rest_commands, rest_load
 from flexapod.solve.rigid_motion import rigid_state
@@ -90,7 +91,8 @@ def refuse_massless(study: Study) -> None:
     """Raise InputError if a piston without mass leaves coordinates that nothing but their stiffness determines."""
     simulation = study.simulation
     for i, leg in enumerate(study.robot.legs, start=1):
-        alone = simulation.axial_shapes(study.robot.legs[0].axial_modes) - (leg.drive.type == "prescribed")
+        still = leg.drive.type == "prescribed" or leg.strut is not None
+        alone = simulation.axial_shapes(study.robot.legs[0].axial_modes) - still
         if leg.piston.rhoA == 0 and (simulation.lateral_shapes or alone > 0):
             raise InputError(
                 f"of leg {i} leaves shapes of the piston without mass: they have statics, but no motion in time",
@@ -141,14 +143,16 @@ class _Path:
         else:
             path = self.last
         rotation = path.rotation[at]
-        return path.position[at] + rotation @ self.robot.payload.com, rotation
+        return path.position[at] + rotation @ centre(self.robot), rotation
 
 
 class _Measure:
     """Deviation of the payload (CoM, and rotation at the joints' radius) and the lateral amplitudes of a recording."""
 
     def __init__(self, study: Study, system: System, path: _Path) -> None:
-        self.path, self.lateral = path, 3 + system.kernel.shapes.axial.count
+        shapes = system.kernel.shapes
+        first = shapes.index("a")
+        self.path, self.lateral = path, slice(first, first + shapes.a.count + shapes.b.count)
         self.radius = np.linalg.norm(study.robot.platform_joints, axis=1).max()
         self.time, self.com, self.rotation = np.zeros(0), np.zeros((0, 3)), np.zeros((0, 3, 3))
 
@@ -161,7 +165,7 @@ class _Measure:
         shift = recording.pose[:, :3] - self.com
         return [
             np.concatenate([shift, 0.5 * self.radius * np.stack(skew, axis=1)], axis=1),
-            recording.q[:, :, self.lateral :],
+            recording.q[:, :, self.lateral],
         ]
 
 
@@ -175,11 +179,14 @@ def _check(study: Study, system: System, recording: Recording) -> None:
     """Stop where the model has no meaning: a piston inside or out of its cylinder, a universal joint turned over."""
     mouth = np.array([leg.cylinder.mouth for leg in study.robot.legs])
     guided = np.array([leg.piston.length if leg.cylinder.mouth > 0 else np.inf for leg in study.robot.legs])
-    free = recording.q[:, :, system.kernel.shapes.l_index] - mouth
+    shapes, q = system.kernel.shapes, recording.q
+    free = q[:, :, shapes.l_index] - mouth
+    tilt = q[:, :, shapes.index("gamma2")] if shapes.has("gamma2") else np.zeros_like(free)
     for bad, words in (
         (free <= 0, "its piston has slid wholly into the cylinder"),
         (free > guided * (1 + 1e-9), "its piston has been pulled out of the cylinder"),
-        (np.abs(recording.q[:, :, 1]) > BETA_LIMIT, "its universal joint has turned over"),
+        (np.abs(q[:, :, shapes.index("beta")]) > BETA_LIMIT, "its universal joint has turned over"),
+        (np.abs(tilt) > BETA_LIMIT, "its joint at the platform has turned over"),
     ):
         if bad.any():
             at, leg = np.argwhere(bad)[0]

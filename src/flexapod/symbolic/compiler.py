@@ -89,7 +89,7 @@ class CompiledFunction:
 
 
 def compiled_library(
-    key: Sequence[object], functions: Callable[[], list], sizes: str, sources: Sequence[Path], command: list[str]
+    key: Sequence[object], functions: Callable[[], list], sources: Sequence[Path], command: list[str], sizes: str = ""
 ) -> tuple[ctypes.CDLL, dict[str, dict]]:
     """Load (compiling on first use) the generated functions together with hand-written C ``sources``.
 
@@ -99,12 +99,12 @@ def compiled_library(
         Everything the generated code depends on: bytes, numbers or text.
     functions : callable
         Builds the list of NamedFunction; called only when the cache has no library for ``key``.
-    sizes : str
-        C text that tells the ``sources`` of what size these functions are.
     sources : sequence of Path
         C files appended after the generated code, in this order.
     command : list of str
         C compiler.
+    sizes : str
+        C text that tells the ``sources`` of what size these functions are.
 
     Raises
     ------
@@ -112,11 +112,11 @@ def compiled_library(
         The compiler failed (the message carries its words), or its library cannot be loaded.
     """
     with _announced():
-        return _library(key, functions, sizes, sources, command)
+        return _library(key, functions, sources, command, sizes)
 
 
 def _library(
-    key: Sequence[object], functions: Callable[[], list], sizes: str, sources: Sequence[Path], command: list[str]
+    key: Sequence[object], functions: Callable[[], list], sources: Sequence[Path], command: list[str], sizes: str = ""
 ) -> tuple[ctypes.CDLL, dict[str, dict]]:
     name = _name([*key, sizes, *(path.read_bytes() for path in sources)], command)
     cache = open_cache()

@@ -161,8 +161,10 @@ static void arrow_solve(const Arrow *w, const Settings *s, lanes (*r)[N], lanes 
     memcpy(change, g0[group], sizeof(lanes)*ROWS); memcpy(dz, z[group], sizeof(lanes)*M);
     lanes_gemv(M, 6, -1, b->C, y, dz);
     for (int p = 0; p < ROWS; p++) {
-      for (int i = 0; i < LANES; i++) f[p][i] = b->unknown[p][i] ? x[b->unknown[p][i]] : 0;
-      if (b->any[p]) for (long i = 0; i < M; i++) dz[i] += b->Bd[i + p*M] * f[p];
+      f[p] = (lanes){0};
+      if (!b->any[p]) continue;
+      for (int i = 0; i < LANES; i++) if (b->unknown[p][i]) f[p][i] = x[b->unknown[p][i]];
+      for (long i = 0; i < M; i++) dz[i] += b->Bd[i + p*M] * f[p];
     }
     lanes_gemv(ROWS, M, 1, b->N1, dz, change);
     lanes_gemv(ROWS, 6, 1, b->Y1, y, change);

@@ -1,0 +1,35 @@
+"""Energy and closures of robots of every kind in motion."""
+
+import numpy as np
+import pytest
+from tests.moving import KINDS, SOFT, moving
+from tests.runs import balance, run_robot
+
+from flexapod.solve.robot_march import prepare
+
+
+@pytest.mark.parametrize("kind", KINDS)
+def test_the_balance_closes_at_second_order_and_the_closures_at_rounding(kind):
+    # One shape a plane and soft drives: 40 and 100 Hz, which these steps resolve. A leg welded at both ends needs the
+    # second shape to be able to move at all; its 500 Hz are resolved worse.
+    modes, drift = (2, []) if kind == "6-FPF" else (1, [])
+    for h in (5e-4, 2.5e-4):
+        run = run_robot(moving(kind, SOFT, axial_modes=0, modes=modes, step=h))
+        drift.append(np.ptp(balance(run)))
+        assert run["closure"].max() < 1e-13  # rounding of metres, of turns times L_c
+    assert drift[1] < 2e-4 * np.ptp(run["sums"][:, 1])
+    assert np.log2(drift[0] / drift[1]) == pytest.approx(2.0, abs=0.1)
+
+
+@pytest.mark.parametrize("kind", ["3-RPS", "6-PUS", "3-UPS+UP", "3-PUU"])
+def test_what_joints_hold_does_no_work(kind):
+    """The whole work of the drives is that of their thrusts: hinges, struts and welds have forces and no power."""
+    study, h = moving(kind, step=2.5e-4, output_step=2.5e-4), 2.5e-4
+    system, run = prepare(study).system, run_robot(study)
+    rates = run["v"][:, : system.legs * system.n].reshape(-1, system.legs, system.n)[..., system.ports]
+    still = system.held[:, system.ports] & (np.abs(rates).max(axis=0) == 0)
+    assert (np.abs(run["drive"]).max(axis=0)[still] > 1.0).any()  # N, N m
+    power = (run["drive"] * rates).sum(axis=(1, 2))
+    work = np.concatenate([[0.0], np.cumsum(0.5 * h * (power[1:] + power[:-1]))])
+    # What each step adds is computed from forces that have met their tolerance, 1e-10 of the largest.
+    np.testing.assert_allclose(run["sums"][:, 1], work, atol=1e-9 * np.abs(work).max())
