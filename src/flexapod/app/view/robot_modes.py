@@ -81,7 +81,7 @@ class RobotModes(ListedModes[model.Study]):
 
     def _at(self) -> dict[str, float]:
         """The pose of the sliders in m and rad; what the robot's legs make of the others follows."""
-        units = dict(zip(model.AXES, [1e-3] * 3 + [math.pi / 180] * 3, strict=True))
+        units: dict[str, float] = dict(zip(model.AXES, [1e-3] * 3 + [math.pi / 180] * 3, strict=True))
         return {name: units[name] * dial.value for name, dial in self._pose.items() if not dial.disabled}
 
     def _go_home(self) -> None:
