@@ -11,6 +11,7 @@ from flexapod.rigid.mechanism import Reach, lost_words
 from flexapod.rigid.mobility import Mobility, Posture, displaced, mobility
 from flexapod.rigid.motions import independent_axes, mobility_words, motion_names, refuse_loose
 from flexapod.rigid.robot import (
+    carriage_limits,
     carriages,
     drive_jacobian,
     drive_positions,
@@ -60,6 +61,7 @@ __all__ = [
     "SingularityPath",
     "WorkspaceMap",
     "actuator_breaks",
+    "carriage_limits",
     "carriages",
     "displaced",
     "drive_jacobian",

@@ -172,17 +172,19 @@ def _close(limbs: Limbs, task: Task, q: Array, goal: Array | Poses, start: tuple
     else:
         way = np.where(task.platform, 0.0, goal - x0)
     ways = np.where(task.legs, 0.0, q - q0)
+    asked = np.asarray(np.isfinite(way).all(axis=1))
+    way, turn = np.where(asked[:, None], way, 0.0), np.where(asked[:, None], turn, 0.0)
     far = max(np.abs(way / unit[:6]).max(initial=0.0), np.abs(ways / unit[6:]).max(initial=0.0))
-    steps = 1 + int(far / STRIDE) if np.isfinite(far) else 1
+    steps = 1 + int(far / STRIDE)
     q, x, gap = np.tile(q0, (len(q), 1, 1)), np.tile(x0, (len(q), 1)), np.zeros(ways.shape[:2])
     for k in range(1, steps + 1):
         q, at = np.where(task.legs, q, q0 + k / steps * ways), None
         x = np.where(task.platform, x, x0 + k / steps * way)
         if isinstance(goal, Poses):
             at = Poses.at_rest(limbs.position + k / steps * way[:, :3], exponential(k / steps * turn) @ limbs.rotation)
-            at = goal if k == steps else at
+            at = goal if k == steps and asked.all() else at
         q, x, gap = _newton(limbs, task, q, x, at, CLOSE if k == steps else 1e-3)
-    lost = ~(gap.max(axis=1, initial=0.0) < TAKEN * limbs.L_c)
+    lost = ~(gap.max(axis=1, initial=0.0) < TAKEN * limbs.L_c) | ~asked
     q[lost], x[lost] = np.nan, np.nan
     return Closed(q=q, x=x, gap=gap)
 
@@ -200,7 +202,7 @@ def _newton(
     """Newton steps until nothing but rounding is left; q, x and the gaps of the legs [m], rotations times L_c."""
     still, unit = np.zeros_like(x), _units(limbs)
     weight = np.array([1.0, 1.0, 1.0, limbs.L_c, limbs.L_c, limbs.L_c])
-    last, gap = False, np.zeros(q.shape[:2])
+    last, gap, off = False, np.zeros(q.shape[:2]), np.zeros(len(q), dtype=bool)
     for _ in range(NEWTON):
         at, chain = given or _poses(limbs, task, Law(x, still, still)), screws(limbs, q)
         apart = gaps(limbs, chain, at)
@@ -212,8 +214,10 @@ def _newton(
         longest = np.abs(dx / unit[:6][task.platform]).max(axis=1, initial=0.0)
         short = STRIDE / np.maximum(np.maximum(np.abs(dq / unit[6:]).max(axis=(1, 2)), longest), STRIDE)
         dq, dx = short[:, None, None] * dq, short[:, None] * dx
-        q, x = q + dq, x.copy()
-        x[:, task.platform] += dx
+        off |= ~(np.isfinite(dq).all(axis=(1, 2)) & np.isfinite(dx).all(axis=1))  # off to where nothing is found
+        q, x = q + np.where(off[:, None, None], 0.0, dq), x.copy()
+        x[:, task.platform] += np.where(off[:, None], 0.0, dx)
+    gap[off] = np.inf
     return q, x, gap
 
 
@@ -236,8 +240,14 @@ def move(limbs: Limbs, task: Task, found: Closed, given: Law | Poses) -> Motion:
     given : Law or Poses
         Platform coordinates (T, 6), where rates and accelerations of unknown ones do not count; or its poses.
     """
-    parts = [_move(limbs, task, found, given, where) for where in blocks(len(found.q))]
+    lost = np.asarray(np.isnan(found.q).any(axis=(1, 2)))
+    at = Closed(
+        q=np.where(lost[:, None, None], limbs.home, found.q), x=np.where(lost[:, None], 0, found.x), gap=found.gap
+    )
+    parts = [_move(limbs, task, at, given, where) for where in blocks(len(lost))]
     q_dot, q_ddot, *rates = (np.concatenate(part) for part in zip(*parts, strict=True))
+    for part in (q_dot, q_ddot, *rates):
+        part[lost] = np.nan
     return Motion(found.q, q_dot, q_ddot, Law(found.x, *rates))
 
 

@@ -19,6 +19,7 @@ __all__ = [
     "Reach",
     "angles",
     "axes",
+    "coordinates_of",
     "drives_of",
     "follow",
     "forward",
@@ -165,9 +166,13 @@ def reach(limbs: Limbs, path: Poses) -> Reach:
     return Reach(found.q[..., L], place, angles(limbs, found.q), found.gap)
 
 
-def axes(limbs: Limbs, legs: LegState) -> Array:
-    """Unit vectors along the legs, (T, n, 3)."""
-    q = np.stack([legs.coordinate(name)[0] for name in COORDINATES], axis=-1)
+def coordinates_of(legs: LegState) -> Array:
+    """`COORDINATES` of the legs, (T, n, 8)."""
+    return np.stack([legs.coordinate(name)[0] for name in COORDINATES], axis=-1)
+
+
+def axes(limbs: Limbs, q: Array) -> Array:
+    """Unit vectors along the legs at coordinates (T, n, 8), (T, n, 3)."""
     return screws(limbs, q).columns[..., :3, L]
 
 

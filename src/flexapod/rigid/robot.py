@@ -24,6 +24,7 @@ if TYPE_CHECKING:
     from flexapod.model import Motion, Robot
 
 __all__ = [
+    "carriage_limits",
     "carriages",
     "drive_jacobian",
     "drive_positions",
@@ -110,11 +111,13 @@ def reach(robot: Robot, path: Poses) -> Reach:
     return mechanism.reach(legs, path)
 
 
-def leg_axes(robot: Robot, path: Poses, legs: LegState) -> Array:
-    """Unit vectors along the legs, from base to platform joint, (T, n, 3); `legs` of the same poses."""
+def leg_axes(robot: Robot, path: Poses, legs: LegState | None = None) -> Array:
+    """Unit vectors along the legs, from base to platform joint, (T, n, 3); `legs` of the same poses, if known."""
     if rigid_limbs(robot).plain:
-        return (path.place(robot.platform_joints) - robot.base_joints) / legs.length[..., None]
-    return mechanism.axes(rigid_limbs(robot), legs)
+        vectors = path.place(robot.platform_joints) - robot.base_joints
+        return vectors / (np.linalg.norm(vectors, axis=-1) if legs is None else legs.length)[..., None]
+    limbs = rigid_limbs(robot)
+    return mechanism.axes(limbs, mechanism.legs_at(limbs, path).q if legs is None else mechanism.coordinates_of(legs))
 
 
 @once
@@ -296,11 +299,16 @@ def strokes(robot: Robot, t: ArrayLike, length: Array) -> list[workspace.Excess]
     return workspace.stroke_excess(t, length, np.array(limits))
 
 
+def carriage_limits(robot: Robot) -> Array:
+    """Least and largest place of the carriages (n, 2) [m, of a crank rad]; infinite without a limit."""
+    travels = [leg.carriage.stroke if leg.carriage else None for leg in robot.legs]
+    return np.array([(-np.inf, np.inf) if travel is None else (travel.min, travel.max) for travel in travels])
+
+
 def carriages(robot: Robot, t: ArrayLike, place: Array) -> list[workspace.Excess]:
     """Carriages that leave their stroke on a path of places (T, n) [m, rad] at instants `t` (T,)."""
-    travels = [leg.carriage.stroke if leg.carriage else None for leg in robot.legs]
-    limits = np.array([(-np.inf, np.inf) if travel is None else (travel.min, travel.max) for travel in travels])
-    return workspace.carriage_excess(t, place, limits, turns=rigid_limbs(robot).carriage == "crank")
+    turns = rigid_limbs(robot).carriage == "crank"
+    return workspace.carriage_excess(t, place, carriage_limits(robot), turns=turns)
 
 
 def pull_out(robot: Robot, t: ArrayLike, length: Array) -> list[workspace.Excess]:

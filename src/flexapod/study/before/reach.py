@@ -26,6 +26,7 @@ __all__ = [
     "flags",
     "leg_limits",
     "rigid_codes",
+    "slider_limits",
 ]
 
 Codes = NDArray[np.int8]
@@ -127,9 +128,14 @@ def equilibrium_codes(code: NDArray[np.integer]) -> Codes:
     return table[code]
 
 
+def slider_limits(robot: Robot) -> Array:
+    """Least and largest place of the sliders (legs, 2) [m]; infinite without one, and of cranks."""
+    limits = rigid.carriage_limits(robot)
+    return limits if rigid.rigid_limbs(robot).carriage == "slider" else np.full_like(limits, np.inf) * [-1, 1]
+
+
 def _stopped(robot: Robot, place: Array) -> NDArray[np.bool_]:
-    travels = [leg.carriage.stroke if leg.carriage else None for leg in robot.legs]
-    limits = np.array([(-np.inf, np.inf) if travel is None else (travel.min, travel.max) for travel in travels])
+    limits = rigid.carriage_limits(robot)
     return np.any((place < limits[:, 0]) | (place > limits[:, 1]), axis=1)
 
 

@@ -14,7 +14,7 @@ from flexapod.solve.rest import at_drives
 from flexapod.solve.rigid_motion import rigid_motion
 from flexapod.solve.stiffness import compliance, displacement, stiffness_of, tool_motion
 from flexapod.study.before.estimates import buckling_load
-from flexapod.study.before.reach import REACHED, Codes, leg_limits, rigid_codes
+from flexapod.study.before.reach import REACHED, Codes, leg_limits, rigid_codes, slider_limits
 from flexapod.study.many_modes import codes_at_rest, poses_of
 from flexapod.typing import Array, Mask
 
@@ -66,16 +66,18 @@ def batch_values(study: model.Study, path: rigid.Poses, wanted: Wanted) -> tuple
 
 def _rigid(robot: model.Robot, path: rigid.Poses) -> Values:
     """Margins of strokes, pistons and joints, and distance to a singularity, (P,)."""
-    found, length = rigid.singularity(robot, path), _lengths(robot, path)
+    found, (length, place, *_) = rigid.singularity(robot, path), rigid.reach(robot, path)
     limits, mouth, piston = leg_limits(robot)
+    ways = slider_limits(robot)
     stroke = np.minimum(length - limits[:, 0], limits[:, 1] - length)
+    stroke = np.minimum(stroke, np.minimum(place - ways[:, 0], ways[:, 1] - place))
     inside = np.minimum(piston, mouth + piston - length)
-    axes, home = _leg_axes(robot, path), _leg_axes(robot, rigid.home_pose(robot))
+    axes, home = rigid.leg_axes(robot, path), rigid.leg_axes(robot, rigid.home_pose(robot))
     seen = np.einsum("tji,tlj->tli", path.rotation, axes)  # from the platform
     return {
         "condition": found.condition,
         "smallest_singular_value": found.smallest_singular_value,
-        "stroke_margin": _least_where(np.isfinite(limits[:, 1]), stroke),
+        "stroke_margin": _least_where(np.isfinite(limits[:, 1]) | np.isfinite(ways[:, 1]), stroke),
         "guided_length": _least_where(mouth > 0, inside),
         "base_joint_angle": _largest_angle(axes, home),
         "platform_joint_angle": _largest_angle(seen, home),
@@ -85,16 +87,6 @@ def _rigid(robot: model.Robot, path: rigid.Poses) -> Values:
 def _least_where(legs: Mask, values: Array) -> Array:
     """Least value of the legs that count, (P,); NaN where none does."""
     return values[:, legs].min(axis=1) if legs.any() else np.full(len(values), np.nan)
-
-
-def _lengths(robot: model.Robot, path: rigid.Poses) -> Array:
-    return rigid.leg_lengths(robot.base_joints, robot.platform_joints, path.position, path.rotation)
-
-
-def _leg_axes(robot: model.Robot, path: rigid.Poses) -> Array:
-    """Unit vectors from base to platform joint, (P, legs, 3)."""
-    vectors = path.point(robot.platform_joints)[0] - robot.base_joints
-    return vectors / np.linalg.norm(vectors, axis=-1, keepdims=True)
 
 
 def _largest_angle(a: Array, b: Array) -> Array:
@@ -114,8 +106,10 @@ def _elastic(robot: model.Robot, path: rigid.Poses, locked: LockedPoses, wanted:
     sag = tool - rigid_pose.point(robot.payload.tool)[0]
     force = _drive_forces(robot, locked)
     u = wanted.direction
+    with np.errstate(divide="ignore"):  # out of its plane a planar robot does not give way
+        stiffness = 1 / np.einsum("i,pij,j->p", u, give, u)  # (T7.18)
     return {
-        "stiffness": 1 / np.einsum("i,pij,j->p", u, give, u),  # (T7.18)
+        "stiffness": stiffness,
         "stiffness_least": 1 / principal[:, -1],
         "softest_direction": softest * sign,
         "static_deviation": sag,
@@ -135,8 +129,9 @@ def _drive_forces(robot: model.Robot, locked: LockedPoses) -> Array:
 
 def _euler_share(robot: model.Robot, path: rigid.Poses, locked: LockedPoses, force: Array) -> Array:
     """Largest thrust of a leg over its Euler load (T8.11), (p,); 0 where no leg is pushed."""
-    thrust = np.einsum("pli,pli->pl", locked.equilibria.states.lam[locked.at], _leg_axes(robot, path))
-    pushed, length = np.maximum(force, thrust), _lengths(robot, path)
+    thrust = np.einsum("pli,pli->pl", locked.equilibria.states.lam[locked.at][..., :3], rigid.leg_axes(robot, path))
+    along = np.array([leg.driven == "stroke" for leg in robot.legs])
+    pushed, length = np.where(along, np.maximum(force, thrust), thrust), rigid.reach(robot, path).length
     euler = [buckling_load(leg, length[:, i] - leg.cylinder.mouth) for i, leg in enumerate(robot.legs)]
     return np.maximum(pushed / np.stack(euler, axis=1), 0.0).max(axis=1)
 
