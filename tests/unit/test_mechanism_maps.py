@@ -2,7 +2,7 @@
 
 import numpy as np
 import pytest
-from tests.mechanisms import ROBOTS, THREE, sliders, tangents
+from tests.mechanisms import ROBOTS, THREE, built, leg, ring, sliders, tangents
 
 import flexapod as fx
 from flexapod.model.motion import AxisMotion
@@ -73,6 +73,13 @@ def test_paths_that_no_robot_can_follow_are_refused(name):
         robot = limited(robot, -0.1, 0.1)
     with pytest.raises(fx.InputError, match=words):
         check_geometry(study(robot, axis, amplitude))
+
+
+def test_a_robot_whose_drives_do_not_hold_it_is_refused_before_its_path():
+    legs = [leg("UPU", axis, axis) for axis in ring(1.0, THREE)]
+    robot = built("3-UPU", ring(0.35, THREE), ring(0.2, THREE), 0.6, legs)
+    with pytest.raises(fx.InputError, match=r"with all drives locked it still has 2 motions: .*: singular at home"):
+        check_geometry(study(robot, "heave", 0.01))
 
 
 def test_a_crank_that_leaves_its_stroke_is_named_in_degrees():

@@ -142,6 +142,15 @@ def test_more_axes_than_motions_are_refused():
         rigid.poses(ROBOTS["3-UPS+UP"](), motion, [0.0, 1.0])
 
 
+def test_a_motion_must_not_command_what_it_leaves_to_follow():
+    named = {"duration": 1.0, "independent": ["heave", "roll", "pitch"]}
+    motion = CombinedMotion(amplitudes={"heave": 0.01, "yaw": 0.1}, **named)
+    with pytest.raises(InputError, match="leaves yaw to follow, which the motion commands"):
+        rigid.poses(ROBOTS["3-RPS"](), motion, [0.0, 1.0])
+    path = rigid.poses(ROBOTS["3-RPS"](), CombinedMotion(amplitudes={"heave": 0.01}, **named), [0.0, 1.0])
+    np.testing.assert_allclose(path.position[1], [0, 0, 0.61], atol=1e-15)
+
+
 def test_coordinates_of_a_motion_are_completed():
     tricept = limbs(ROBOTS["3-UPS+UP"](), rigid=True)
     chosen = rigid.independent_axes(tricept, np.eye(6, dtype=bool)[3], np.zeros(3))

@@ -107,14 +107,22 @@ def commanded(limbs: Limbs, motion: Motion, found: Mobility) -> Mask:
     Raises
     ------
     InputError
-        It asks for one that the robot does not have.
+        It asks for one that the robot does not have, or for more than it names as independent.
     """
-    named = getattr(motion, "independent", None)
+    named = motion.independent
     if isinstance(motion, WaypointMotion | CsvMotion):
         rows = motion.poses if isinstance(motion, WaypointMotion) else motion.pose
         moved = (rows != 0).any(axis=0)
     else:
         moved = motion.target != 0
+    others = [axis for k, axis in enumerate(AXES) if named is not None and moved[k] and axis not in named]
+    if others and not isinstance(motion, CsvMotion):  # a table may hold what follows, too
+        raise InputError(
+            f"leaves {' and '.join(others)} to follow, which the motion commands",
+            key="motion.independent",
+            value=list(named or ()),
+            next_step=f"Name {others[0]} as well, or leave it out of the motion",
+        )
     return independent_axes(limbs, moved, motion.pivot, named, found)
 
 

@@ -59,6 +59,8 @@ def check_geometry(study: Study, path: RigidPath | None = None) -> list[str]:
     path, robot = path or RigidPath(study), study.robot
     try:
         remarks = check_outputs(study)
+        if rigid.rigid_limbs(robot).guides:
+            rigid.refuse_loose(rigid.rigid_limbs(robot))
         t, found = path.time, rigid.reach(robot, path.poses)
         _refuse_lost(robot, t, found)
         _refuse_excess(robot, t, found)
