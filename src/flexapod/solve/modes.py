@@ -217,7 +217,10 @@ def _mass_factor(system: System, bases: list[LegBases], m: RestMatrices) -> tupl
     p, legs, n, _ = m.M.shape
     size = sum(b.legs.size * b.rest.size for b in bases) + system.hub_free.size
     motion = expanded(system, bases, np.broadcast_to(np.eye(size), (p, size, size)))
-    (of_legs, real), (payload, real_payload) = mass_factor(m.M), mass_factor(m.payload_M)
+    still = (
+        system.held[:, :, None] | system.held[:, None, :]
+    )  # masses of what does not move: indefinite where legs bend far
+    (of_legs, real), (payload, real_payload) = mass_factor(np.where(still, np.eye(n), m.M)), mass_factor(m.payload_M)
     moving = (of_legs @ motion[:, : legs * n].reshape(p, legs, n, size)).reshape(p, legs * n, size)
     U = np.concatenate([moving, payload @ motion[:, legs * n :]], axis=1)
     positive = real.all(axis=1) & real_payload
