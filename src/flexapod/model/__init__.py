@@ -5,7 +5,17 @@ from flexapod.model.chain import Chain, chain_of, chains_of
 from flexapod.model.circle import base_circle, platform_circle
 from flexapod.model.damping import Damping, damping_parts
 from flexapod.model.drive import Drive, Feedback, ForceDrive, PrescribedDrive, ServoDrive
-from flexapod.model.files import PRESETS, OpenValue, load, loads, loads_robot, open_values, preset, preset_text
+from flexapod.model.files import (
+    PAPER_PRESETS,
+    PRESETS,
+    OpenValue,
+    load,
+    loads,
+    loads_robot,
+    open_values,
+    preset,
+    preset_text,
+)
 from flexapod.model.home import Home
 from flexapod.model.joint import Carriage, Joint, Travel
 from flexapod.model.laws import (
@@ -44,6 +54,7 @@ __all__ = [
     "DEFAULT_TOLERANCE",
     "FIDELITIES",
     "MATERIALS",
+    "PAPER_PRESETS",
     "PRESETS",
     "PROFILES",
     "Actuator",

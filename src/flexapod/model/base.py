@@ -245,7 +245,8 @@ def _input_error(error: ValidationError, model: type[Frozen]) -> InputError:
     if kind == "literal_error":
         names = re.findall(r"'([^']*)'", str(context["expected"]))
         hint = closest(value, names) if isinstance(value, str) else None
-        return InputError("is not known", key=key, value=value, allowed=", ".join(names), next_step=hint)
+        allowed = ", ".join(names) or str(context["expected"])
+        return InputError("is not known", key=key, value=value, allowed=allowed, next_step=hint)
     if kind == "size":
         return InputError(first["msg"], key=key, value=_largest(value), allowed=context["allowed"])
     message = first["msg"].removeprefix("Value error, ").replace("Input should be", "must be")

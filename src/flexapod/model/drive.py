@@ -7,7 +7,7 @@ from typing import Annotated, ClassVar, Literal
 from pydantic import Field, model_validator
 
 from flexapod.errors import InputError
-from flexapod.model.base import Frozen, Measure, NonNegative, Positive, Series
+from flexapod.model.base import Frozen, Measure, NonNegative, Number, Positive, Series
 from flexapod.model.motion import check_times
 
 __all__ = ["Drive", "Feedback", "ForceDrive", "PrescribedDrive", "ServoDrive"]
@@ -35,26 +35,34 @@ class Feedback(Frozen):
 
 
 class ForceDrive(Frozen):
-    """A force along the leg; the stroke is a result.
+    """A force along the leg, of a crank a torque; the stroke is a result.
 
-    ``law = "rigid"`` replays the force that the rigid robot needs; ``law = "csv"`` takes `force` [N] at the
+    ``law = "rigid"`` replays the force that the rigid robot needs, ``law = "constant"`` is `value` [N, N m],
+    ``law = "csv"`` takes `force` [N] at the
     instants `time` [s], from 0, read from `file`: linear between the rows, with a jump where two rows stand at one
     instant.
     """
 
     derived: ClassVar[tuple[str, ...]] = ("time", "force")
     type: Literal["force"] = "force"
-    law: Literal["rigid", "csv"] = "rigid"
+    law: Literal["rigid", "constant", "csv"] = "rigid"
     file: str | None = None
     time: Annotated[Series, Measure("time")] | None = None
     force: Annotated[Series, Measure("force", "torque")] | None = None
+    value: Annotated[Number, Measure("force", "torque")] | None = None
     feedback: Feedback | None = None
 
     @model_validator(mode="after")
     def _complete(self) -> ForceDrive:
         given = [name for name in ("file", "time", "force") if getattr(self, name) is not None]
-        if self.law == "rigid" and given:
-            raise InputError("is not used by law 'rigid'", key=given[0], next_step='Remove it, or set law = "csv"')
+        if self.law != "csv" and given:
+            raise InputError(
+                f"is not used by law {self.law!r}", key=given[0], next_step='Remove it, or set law = "csv"'
+            )
+        if self.law == "constant" and self.value is None:
+            raise InputError("is missing", key="value")
+        if self.law != "constant" and self.value is not None:
+            raise InputError(f"is not used by law {self.law!r}", key="value", value=self.value)
         if self.law == "csv" and (self.time is None or self.force is None):
             raise InputError("is missing", key="file", next_step='Add file = "forces.csv" to the drive')
         if self.time is not None and self.force is not None and self.time.shape != self.force.shape:

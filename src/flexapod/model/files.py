@@ -22,6 +22,7 @@ from flexapod.model.study import ActuatorStudy, Study
 from flexapod.model.toml import parsed
 
 __all__ = [
+    "PAPER_PRESETS",
     "PRESETS",
     "OpenValue",
     "load",
@@ -33,14 +34,15 @@ __all__ = [
     "read_study",
 ]
 
-PRESETS = ("paper-robot", "paper-robot-radii", "paper-actuator")
+PAPER_PRESETS = ("paper-robot", "paper-robot-radii", "paper-actuator")
+PRESETS = (*PAPER_PRESETS, "tripod", "flight-simulator")
 AT_REST = AxisMotion(type="heave", amplitude=0.0, duration=1.0)
 _COMMON = ("motion", "load", "initial", "simulation")
 
 
 @dataclass(frozen=True, kw_only=True)
 class OpenValue:
-    """A value of a preset that the paper leaves open: key path, value as written, why this one."""
+    """A value of a preset that its source leaves open: key path, value as written, why this one."""
 
     key: str
     value: str
@@ -105,7 +107,7 @@ def _tables(text: str, path: str | Path | None) -> Section:
 
 
 @overload
-def preset(name: Literal["paper-robot", "paper-robot-radii"]) -> Study: ...
+def preset(name: Literal["paper-robot", "paper-robot-radii", "tripod", "flight-simulator"]) -> Study: ...
 @overload
 def preset(name: Literal["paper-actuator"]) -> ActuatorStudy: ...
 @overload
@@ -130,7 +132,7 @@ _OURS = re.compile(r"#\s*ours(?:\s+([\w.-]+))?:\s*(.+?)\s*$")
 
 
 def open_values(name: str) -> tuple[OpenValue, ...]:
-    """The values of a preset that the paper leaves open, each with the reason for ours.
+    """The values of a preset that its source leaves open, each with the reason for ours.
 
     A preset marks them with a comment: ``# ours: reason`` at the end of the key's line, or, for a key inside a table
     in braces, ``# ours leg.cylinder.mass: reason`` on a line of its own.

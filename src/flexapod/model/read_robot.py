@@ -77,7 +77,7 @@ def _leg_tables(top: Section, chains: tuple[str, ...], kind: str) -> list[Sectio
     sections = [top.child(value, "leg")] if single else [top.child(leg, f"leg[{i}]") for i, leg in enumerate(value, 1)]
     counts = [section.whole("count") or (count if single else 1) for section in sections]
     if min(counts, default=0) < 1 or sum(counts) != count:
-        times = f"appears {len(sections)} times"
+        times = "appears once" if len(sections) == 1 else f"appears {len(sections)} times"
         raise InputError(
             times if counts == [1] * len(sections) else f"{times}, for {sum(counts)} legs together",
             file=top.file,

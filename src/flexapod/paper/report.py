@@ -196,14 +196,14 @@ def _claims(claims: Sequence[Claim]) -> str:
 def _open_values() -> str:
     """The values of the presets that the paper does not give, each with the reason for ours."""
     parts = [html.paragraph("The paper does not give these values. Each is ours, for the reason beside it.", "soft")]
-    for name in model.PRESETS:
+    for name in model.PAPER_PRESETS:
         rows = [(value.key, value.value, value.reason) for value in model.open_values(name)]
         parts += [html.heading(name), html.table(("Value", "Ours", "Reason"), rows)]
     return html.section("open", "Values that the paper leaves open", *parts)
 
 
 def _studies() -> str:
-    blocks = [html.code(model.preset_text(name), name) for name in model.PRESETS]
+    blocks = [html.code(model.preset_text(name), name) for name in model.PAPER_PRESETS]
     words = "Half-angles, jumps and drives change these presets; each data file carries its own study."
     return html.section("studies", "Studies", html.paragraph(words, "soft"), *blocks)
 

@@ -112,6 +112,7 @@ def _drive(drive: model.Drive) -> str:
         damper = f" and a damper of {number(drive.damping)} N s/m" if drive.damping else ""
         return f"servo, a spring of {text(drive.stiffness, 'N/m')}{damper} between commanded and real stroke"
     force = "that which the rigid robot needs" if drive.law == "rigid" else "from a table"
+    force = force if drive.value is None else f"constant, {text(drive.value, 'N')}"
     back = drive.feedback
     if back is None:
         return f"force, {force}"

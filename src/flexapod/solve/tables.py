@@ -52,7 +52,9 @@ def feed_forward(robot: Robot, t: Array, path: rigid.Poses, wrench: Array) -> Ar
     for i, drive in enumerate(drives):
         if not isinstance(drive, ForceDrive):
             continue
-        if drive.time is None or drive.force is None:  # law "rigid"
+        if drive.value is not None:
+            force[:, i] = drive.value
+        elif drive.time is None or drive.force is None:  # law "rigid"
             force[:, i] = rigid_force[:, i]
         else:
             force[:, i] = np.interp(t, drive.time, drive.force)
