@@ -94,6 +94,16 @@ class Robot(Frozen):
         return float(self.home.position[2])
 
     @property
+    def com(self) -> Array:
+        """Centre of mass of the payload, (3,) [m], platform axes; without a payload the platform frame's origin."""
+        return np.zeros(3) if self.payload is None else self.payload.com
+
+    @property
+    def tool(self) -> Array:
+        """Tool, (3,) [m], platform axes; without a payload the platform frame's origin."""
+        return np.zeros(3) if self.payload is None else self.payload.tool
+
+    @property
     def home_position(self) -> Array:
         """Origin of the platform frame at home, (3,) [m], world axes."""
         return self.home.position

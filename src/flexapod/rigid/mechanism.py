@@ -10,7 +10,7 @@ from flexapod.errors import ComputationError, InputError
 from flexapod.rigid.closures import Closed, Motion, Task, close, move
 from flexapod.rigid.kinematics import BETA_LIMIT, NO_LENGTH, LegState
 from flexapod.rigid.laws import Law
-from flexapod.rigid.limbs import ABSENT, COORDINATES, DRIVEN, FREE, HELD, Limbs
+from flexapod.rigid.limbs import ABSENT, COORDINATES, DRIVEN, FREE, Limbs
 from flexapod.rigid.screws import screws
 from flexapod.rigid.trajectory import Poses, poses_from_coordinates
 from flexapod.typing import Array, Mask
@@ -25,7 +25,6 @@ __all__ = [
     "forward",
     "leg_state",
     "legs_at",
-    "legs_near",
     "lost_words",
     "reach",
     "refuse_lost",
@@ -33,7 +32,6 @@ __all__ = [
 ]
 
 
-_GIVING_WAY = tuple(COORDINATES.index(name) for name in ("beta", "alpha", "gamma3", "gamma2", "gamma1", "l"))
 CHI, BETA, L, GAMMA2 = (COORDINATES.index(name) for name in ("chi", "beta", "l", "gamma2"))
 
 
@@ -41,22 +39,6 @@ def legs_at(limbs: Limbs, path: Poses) -> Closed:
     """Coordinates of the legs at T poses, NaN where the legs do not reach."""
     task = Task(limbs.unknown, np.zeros(6, dtype=bool), np.zeros(3))
     return close(limbs, task, _tiled(limbs, len(path)), path)
-
-
-def legs_near(limbs: Limbs, path: Poses) -> Closed:
-    """As `legs_at` where joints guide the legs to the poses; near those, as of a flexible robot, what they lack."""
-    task = Task(_closing(limbs), np.zeros(6, dtype=bool), np.zeros(3))
-    return close(limbs, task, _tiled(limbs, len(path)), path)
-
-
-def _closing(limbs: Limbs) -> Mask:
-    """Coordinates that move, and of legs that lack some of them to reach any pose held angles as well, (n, 8)."""
-    found = limbs.unknown.copy()
-    for leg, rows in enumerate(np.where(limbs.pose_closure, 6, 3)):
-        for k in _GIVING_WAY:
-            if found[leg].sum() < rows and limbs.state[leg, k] == HELD:
-                found[leg, k] = True
-    return found
 
 
 def leg_state(limbs: Limbs, path: Poses) -> LegState:

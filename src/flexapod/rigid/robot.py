@@ -244,7 +244,7 @@ def _scaled_jacobian(robot: Robot, path: Poses) -> Array:
         return jacobian.scaled_path(robot.base_joints, robot.platform_joints, path)
     if held.all():
         return np.ones((len(path), 1, 1))
-    rows = holding.holding(legs, mechanism.legs_near(legs, path).q, path, legs.platform.mean(axis=0))
+    rows = holding.holding(legs, mechanism.legs_at(legs, path).q, path, legs.platform.mean(axis=0))
     found = jacobian.scaled(rows, legs.L_c)[..., ~held]
     short = max(found.shape[2] - found.shape[1], 0)
     return np.concatenate([found, np.zeros((len(path), short, found.shape[2]))], axis=1)

@@ -77,7 +77,7 @@ class RobotMotion:
         self.skeleton, self.time = Skeleton(study.robot), data.time.values
         self._com, self._deviation = data.com_position_rigid.values, data.com_deviation.values
         self._tool_deviation = data.tool_deviation.values
-        self._arm = study.robot.payload.tool - study.robot.payload.com
+        self._arm = study.robot.tool - study.robot.com
         self.tool_apart = tool_apart(data)
         self._turn = data.rotation_deviation.values
         self._rotation = matrix(data.platform_quaternion_rigid.values)

@@ -11,7 +11,6 @@ from flexapod.rigid.limbs import DRIVEN, HELD
 from flexapod.rigid.rotations import matrix
 from flexapod.solve.elimination import leg_bases
 from flexapod.solve.many import RestStates, matrices_at_rest
-from flexapod.solve.parameters import centre
 from flexapod.solve.rigid_motion import leg_coordinates
 from flexapod.solve.system import System
 from flexapod.typing import Array, Mask
@@ -24,7 +23,7 @@ FALLS_THROUGH = "no equilibrium: the robot sags through a singularity"
 def platform_poses(robot: Robot, pose: Array) -> rigid.Poses:
     """Poses of the platform in states (P, 7) of centre of mass and quaternion."""
     R = matrix(pose[:, 3:])
-    return rigid.Poses.at_rest(pose[:, :3] - R @ centre(robot), R)
+    return rigid.Poses.at_rest(pose[:, :3] - R @ robot.com, R)
 
 
 def fallen(system: System, robot: Robot, start: RestStates, states: RestStates) -> Mask:

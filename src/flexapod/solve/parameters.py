@@ -84,7 +84,7 @@ def _place(robot: Robot, legs: Limbs, i: int) -> dict[str, object]:
         "R0": legs.frames[i].T,
         "carriage_axis": legs.carriage_axis[i],
         "carriage_arm": legs.carriage_arm[i],
-        "joint": legs.platform[i] - centre(robot),
+        "joint": legs.platform[i] - robot.com,
         "platform_frame": legs.platform_frames[i].T,
         "leg_frame": legs.leg_frames[i].T,
         "L_c": legs.L_c,
@@ -120,14 +120,9 @@ def flexures(robot: Robot, legs: Limbs) -> Array:
     return found
 
 
-def centre(robot: Robot) -> Array:
-    """Centre of mass of the payload in the platform frame (3,); its origin where there is none."""
-    return np.zeros(3) if robot.payload is None else robot.payload.com
-
-
 def joint_parameters(robot: Robot) -> Array:
     """Platform joints of the legs from the payload's CoM, platform axes, (legs, 3) [m]."""
-    return np.ascontiguousarray(robot.platform_joints - centre(robot))
+    return np.ascontiguousarray(robot.platform_joints - robot.com)
 
 
 def payload_parameters(robot: Robot) -> Array:

@@ -13,7 +13,6 @@ from flexapod.rigid.limbs import COORDINATES, HELD, Limbs, limbs
 from flexapod.rigid.rotations import quaternion
 from flexapod.rigid.screws import screws
 from flexapod.solve.many import Rates, RestStates
-from flexapod.solve.parameters import centre
 from flexapod.solve.system import Index, State, System
 from flexapod.typing import Array
 
@@ -32,7 +31,7 @@ def rigid_motion(system: System, robot: Robot, path: rigid.Poses) -> tuple[RestS
     """Configurations of the undeformed robot at the instants of a path, without forces, and their rates."""
     T, (q, v, v_dot) = len(path), _undeformed(system, robot, path)
     R, w, w_dot = path.rotation, path.omega, path.alpha
-    arm, inverse = R @ centre(robot), R.swapaxes(1, 2)
+    arm, inverse = R @ robot.com, R.swapaxes(1, 2)
     turning = np.cross(w, arm)
     velocity, acceleration = path.velocity + turning, path.acceleration + np.cross(w_dot, arm) + np.cross(w, turning)
     states = RestStates(

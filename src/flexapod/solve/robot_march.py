@@ -16,7 +16,6 @@ from flexapod.solve.fallen import refuse_fallen
 from flexapod.solve.many import RestStates
 from flexapod.solve.march import Chunk, Problem, initial_step, march
 from flexapod.solve.modes import refuse_pure_force
-from flexapod.solve.parameters import centre
 from flexapod.solve.recording import Counters, Recording
 from flexapod.solve.rest import rest_commands, rest_load
 from flexapod.solve.rigid_motion import rigid_state
@@ -143,7 +142,7 @@ class _Path:
         else:
             path = self.last
         rotation = path.rotation[at]
-        return path.position[at] + rotation @ centre(self.robot), rotation
+        return path.position[at] + rotation @ self.robot.com, rotation
 
 
 class _Measure:

@@ -11,7 +11,6 @@ from flexapod import model, rigid
 from flexapod.errors import InputError
 from flexapod.rigid.rotations import quaternion
 from flexapod.study.after.leg_results import drive_forms, leg_labels, rigid_leg_results, rigid_reactions
-from flexapod.study.after.legs import points
 from flexapod.study.after.results import rigid_force_results
 from flexapod.study.arguments import LoadLike, PoseLike, RobotLike, as_pose, as_study, at_pose
 from flexapod.study.attributes import attributes
@@ -129,7 +128,6 @@ def forward_kinematics(
     study = at_pose(robot)
     given = _numbers(lengths, "lengths", "joint-to-joint lengths [m], (6,) or (T, 6)")
     single = given.ndim == 1
-    payload = study.robot.payload
     found = rigid.forward_kinematics(study.robot, given, as_pose(study.robot, guess, check=False))
     given = np.atleast_2d(given)
     t = np.arange(len(found), dtype=float) if time is None else _numbers(time, "time", "instants [s], (T,)")
@@ -141,8 +139,8 @@ def forward_kinematics(
         "leg_length_command": given,
         "platform_position": found.position,
         "platform_quaternion": quaternion(found.rotation),
-        "com_position": found.point(payload.com)[0],
-        "tool_position": found.point(payload.tool)[0],
+        "com_position": found.place(study.robot.com),
+        "tool_position": found.place(study.robot.tool),
     }
     excess = [*rigid.strokes(study.robot, t, given), *rigid.pull_out(study.robot, t, given)]
     result = dataset(values, {"time": t}, attributes(study, [*study.warnings, *(e.message for e in excess)]))
@@ -151,11 +149,11 @@ def forward_kinematics(
 
 def _legs_and_payload(path: RigidPath) -> dict[str, Array]:
     """Legs and payload of the rigid robot along its path, by name."""
-    poses, (com, tool) = path.poses, points(path.robot)
+    poses, robot = path.poses, path.robot
     return {
         **rigid_leg_results(path),
-        "com_position_rigid": poses.place(com),
-        "tool_position_rigid": poses.place(tool),
+        "com_position_rigid": poses.place(robot.com),
+        "tool_position_rigid": poses.place(robot.tool),
         "platform_quaternion_rigid": quaternion(poses.rotation),
     }
 

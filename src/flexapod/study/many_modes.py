@@ -105,7 +105,7 @@ def _empty(row: Array, count: int) -> Array:
 
 def _rows(robot: model.Robot, locked: LockedPoses, modes: ManyModes, path: rigid.Poses, kept: Mask) -> dict[str, Array]:
     """Frequencies and places of the poses that have modes."""
-    at, com = locked.at[kept], robot.payload.com
+    at, com = locked.at[kept], robot.com
     pose = locked.equilibria.states.pose[at]
     rest = platform_poses(robot, pose)
     return {

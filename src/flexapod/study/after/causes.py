@@ -15,7 +15,7 @@ from flexapod.rigid.limbs import COORDINATES, DRIVEN, FREE, HELD, Limbs
 from flexapod.rigid.rotations import matrix
 from flexapod.solve.released import is_hexapod, rigid_errors
 from flexapod.solve.system import System
-from flexapod.study.after.legs import centre, stretch
+from flexapod.study.after.legs import stretch
 from flexapod.study.path import RigidPath
 from flexapod.study.record import Record
 from flexapod.typing import Array
@@ -68,7 +68,7 @@ def errors_of(robot: Robot, system: System, path: RigidPath, record: Record) -> 
 def _straight(robot: Robot, found: Limbs, record: Record, q: Array) -> Array:
     """Coordinates of straight legs that reach the flexible platform, the carriages where they are, (T, legs, 8)."""
     R = matrix(record.pose[:, 3:])
-    at = rigid.Poses.at_rest(record.pose[:, :3] - R @ centre(robot), R)
+    at = rigid.Poses.at_rest(record.pose[:, :3] - R @ robot.com, R)
     if found.plain:
         q = q.copy()
         q[..., L] = rigid.leg_lengths(robot.base_joints, robot.platform_joints, at.position, R)
@@ -110,7 +110,7 @@ def _by_error(robot: Robot, path: RigidPath) -> Array:
     if not is_hexapod(robot):
         return rigid_errors(robot, poses)[..., :3]
     moves = np.zeros((len(poses), *found.state.shape, 3))
-    jacobian = rigid.drive_jacobian(robot, poses, robot.payload.com)
+    jacobian = rigid.drive_jacobian(robot, poses, robot.com)
     try:
         inverse = np.linalg.solve(jacobian.swapaxes(1, 2), np.eye(6, 3))
     except np.linalg.LinAlgError:

@@ -143,8 +143,8 @@ def drive_forms(robot: Robot) -> dict[str, Variable]:
 
 def flexible_lengths(robot: Robot, system: System, record: Record) -> Array:
     """Joint-to-joint lengths of the flexible robot, (T, legs) [m], Eq. (T8.1)."""
-    R, com = matrix(record.pose[:, 3:]), by_name.centre(robot)
-    tips = record.pose[:, None, :3] + (robot.platform_joints - com) @ R.swapaxes(1, 2)
+    R = matrix(record.pose[:, 3:])
+    tips = record.pose[:, None, :3] + (robot.platform_joints - robot.com) @ R.swapaxes(1, 2)
     return np.linalg.norm(tips - by_name.base_points(limbs(robot), _carriages(system, record.q)), axis=-1)
 
 

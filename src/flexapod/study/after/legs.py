@@ -16,13 +16,11 @@ __all__ = [
     "angle_names",
     "base_points",
     "bending_basis",
-    "centre",
     "drive_names",
     "has_strokes",
     "held_names",
     "lateral",
     "of_drives",
-    "points",
     "stretch",
     "stroke_forces",
 ]
@@ -94,13 +92,3 @@ def base_points(limbs: Limbs, chi: Array | None) -> Array:
     if limbs.carriage == "slider":
         return limbs.base + way
     return limbs.base + (exponential(way) @ limbs.carriage_arm[..., None])[..., 0] - limbs.carriage_arm
-
-
-def points(robot: Robot) -> tuple[Array, Array]:
-    """Centre of mass and tool in platform axes, (3,) each [m]; without a payload both are the platform's origin."""
-    return centre(robot), np.zeros(3) if robot.payload is None else robot.payload.tool
-
-
-def centre(robot: Robot) -> Array:
-    """Centre of mass of the payload in platform axes, (3,) [m]; the platform frame's origin where there is none."""
-    return np.zeros(3) if robot.payload is None else robot.payload.com

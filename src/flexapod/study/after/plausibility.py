@@ -10,10 +10,11 @@ import numpy as np
 from flexapod.bases import LateralBasis
 from flexapod.model import Actuator, Leg, Robot
 from flexapod.model.simulation import SOLID
+from flexapod.rigid.robot import rigid_limbs
 from flexapod.rigid.rotations import matrix
 from flexapod.solve.many import RestStates
 from flexapod.solve.system import System
-from flexapod.study.after.legs import bending_basis, lateral
+from flexapod.study.after.legs import base_points, bending_basis, lateral
 from flexapod.study.before.estimates import buckling_load, section_width
 from flexapod.study.before.thick import Section, beam_section, bending_errors, piston_section
 from flexapod.study.record import Record
@@ -25,6 +26,7 @@ __all__ = [
     "SLOPE",
     "actuator_warnings",
     "buckling_words",
+    "flexible_axes",
     "leg_stress",
     "rest_warnings",
     "robot_warnings",
@@ -59,7 +61,7 @@ def rest_warnings(robot: Robot, system: System, states: RestStates) -> list[str]
 
 
 def _leg_warnings(robot: Robot, system: System, record: Record | RestStates, when: _When) -> list[str]:
-    axes = _leg_axes(robot, record)
+    axes = flexible_axes(robot, system, record)
     compression = np.einsum("tli,tli->tl", record.lam[..., :3], axes)
     shapes, basis, found = system.kernel.shapes, bending_basis(system.kernel.shapes), []
     for i, leg in enumerate(robot.legs):
@@ -115,11 +117,11 @@ def leg_stress(leg: Leg, basis: LateralBasis, lateral: Array, free: Array, compr
     return np.abs(compression) * piston.E / piston.EA + bending
 
 
-def _leg_axes(robot: Robot, record: Record | RestStates) -> Array:
+def flexible_axes(robot: Robot, system: System, record: Record | RestStates) -> Array:
     """Unit vectors from base to platform joint, (T, legs, 3)."""
-    R = matrix(record.pose[:, 3:])
-    tips = record.pose[:, None, :3] + (robot.platform_joints - robot.payload.com) @ R.swapaxes(1, 2)
-    vectors = tips - robot.base_joints
+    R, legs, shapes = matrix(record.pose[:, 3:]), rigid_limbs(robot), system.kernel.shapes
+    tips = record.pose[:, None, :3] + (robot.platform_joints - robot.com) @ R.swapaxes(1, 2)
+    vectors = tips - base_points(legs, record.q[..., shapes.index("chi")] if shapes.carriage else None)
     return vectors / np.linalg.norm(vectors, axis=-1, keepdims=True)
 
 

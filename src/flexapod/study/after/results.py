@@ -12,7 +12,7 @@ from flexapod.rigid.trajectory import coordinates
 from flexapod.solve.system import System
 from flexapod.study.after.causes import deviation_by_cause, errors_of
 from flexapod.study.after.leg_results import leg_labels, leg_results
-from flexapod.study.after.legs import bending_basis, centre, has_strokes, points, stroke_forces
+from flexapod.study.after.legs import bending_basis, has_strokes, stroke_forces
 from flexapod.study.path import RigidPath
 from flexapod.study.record import Record
 from flexapod.typing import Array
@@ -53,11 +53,11 @@ def robot_coords(robot: Robot, system: System, record: Record) -> dict[str, Arra
 
 def payload_results(robot: Robot, path: RigidPath, record: Record) -> dict[str, Array]:
     """Payload and tool against the rigid path."""
-    com, (at_com, at_tool) = record.pose[:, :3], points(robot)
+    com = record.pose[:, :3]
     e, e_rigid = canonical(record.pose[:, 3:]), quaternion(path.poses.rotation)
     R = matrix(e)
-    com_rigid, tool_rigid = path.poses.place(at_com), path.poses.place(at_tool)
-    tool = com + R @ (at_tool - at_com)
+    com_rigid, tool_rigid = path.poses.place(robot.com), path.poses.place(robot.tool)
+    tool = com + R @ (robot.tool - robot.com)
     return {
         "com_position_rigid": com_rigid,
         "com_position": com,
@@ -75,7 +75,7 @@ def payload_results(robot: Robot, path: RigidPath, record: Record) -> dict[str, 
 def cause_results(robot: Robot, system: System, path: RigidPath, record: Record) -> dict[str, Array]:
     """Deviation of the centre of mass by cause."""
     shares = deviation_by_cause(robot, path, errors_of(robot, system, path, record))
-    deviation = record.pose[:, :3] - path.poses.place(centre(robot))
+    deviation = record.pose[:, :3] - path.poses.place(robot.com)
     return {
         "deviation_by_cause": shares,
         "deviation_residual": deviation - shares.reshape(len(shares), -1, 3).sum(axis=1),

@@ -11,7 +11,9 @@ from flexapod.model import Leg, Piston, Robot
 from flexapod.rigid.kinematics import LegState
 from flexapod.rigid.rotations import matrix
 from flexapod.solve.modes import RobotModes
+from flexapod.solve.rigid_motion import rigid_motion
 from flexapod.solve.tables import feed_forward
+from flexapod.study.after.legs import of_drives
 from flexapod.typing import Array
 
 __all__ = ["Vibration", "bending_moment", "buckling_load", "residual_vibration", "section_width"]
@@ -145,7 +147,9 @@ def residual_vibration(
     rates = _rigid_rates(robot, modes, path)
     before = np.zeros(rates.shape[1]) if from_rest else rates[0]
     steps = np.diff(rates, axis=0, prepend=before[None], append=np.zeros((1, rates.shape[1])))
-    impulse = -steps @ (mass @ shapes.T) + _fed_forward(robot, t, path) @ _strokes(modes, shapes).T  # (T8.14)  Q_j dt
+    impulse = (
+        -steps @ (mass @ shapes.T) + _fed_forward(robot, t, path) @ _ways(robot, modes, shapes).T
+    )  # (T8.14)  Q_j dt
     middle = np.concatenate([t[:1], 0.5 * (t[1:] + t[:-1]), t[-1:]])
     kernel = np.exp((1j * damped - ratio * omega) * (t[-1] - middle)[:, None])
     answer = np.abs((impulse * kernel).sum(axis=0)) / damped  # (T8.15)
@@ -157,29 +161,27 @@ def residual_vibration(
 
 def _rigid_rates(robot: Robot, modes: RobotModes, path: rigid.Poses) -> Array:
     """Rates of the rigid path in the flat coordinates of the modes, (T, N)."""
-    legs, n = rigid.inverse_kinematics(robot, path), modes.system.n
-    flat = np.zeros((len(path), len(robot.legs), n))
-    flat[:, :, :3] = np.stack([legs.alpha_dot, legs.beta_dot, legs.rate], axis=-1)
-    com = path.point(robot.payload.com)[1]
-    turn = np.einsum("tij,ti->tj", path.rotation, path.omega)
-    return np.concatenate([flat.reshape(len(path), -1), com, turn], axis=1)
+    rates = rigid_motion(modes.system, robot, path)[1]
+    return np.concatenate([rates.v.reshape(len(path), -1), rates.u], axis=1)
 
 
 def _fed_forward(robot: Robot, t: Array, path: rigid.Poses) -> Array:
     """Impulses (T + 1, legs) [N s] of what drives feed forward of inertia: none at jumps at the start and the end."""
     still = rigid.Poses.at_rest(path.position, path.rotation)
-    none = np.zeros((len(t), 6))
+    none = np.zeros((len(t), 6))  # no wrench
     force = feed_forward(robot, t, path, none) - feed_forward(robot, t, still, none)
     return np.pad(0.5 * (force[1:] + force[:-1]) * np.diff(t)[:, None], ((1, 1), (0, 0)))
 
 
-def _strokes(modes: RobotModes, shapes: Array) -> Array:
-    """Travel of the drives in every shape, (m, legs)."""
-    return shapes[:, :-6].reshape(len(shapes), modes.system.legs, modes.system.n)[:, :, 2]
+def _ways(robot: Robot, modes: RobotModes, shapes: Array) -> Array:
+    """Ways of the drives in every shape, (m, legs)."""
+    system = modes.system
+    of_legs = shapes[:, :-6].reshape(len(shapes), system.legs, system.n)
+    return of_drives(rigid.rigid_limbs(robot), system.kernel.shapes, of_legs)
 
 
 def _tool_amplitudes(robot: Robot, modes: RobotModes, shapes: Array) -> Array:
     """Displacement of the tool per unit of each mode's coordinate, (m,)."""
     R = matrix(modes.equilibrium.state.pose[3:])
-    turn = np.cross(shapes[:, -3:], robot.payload.tool - robot.payload.com)
+    turn = np.cross(shapes[:, -3:], robot.tool - robot.com)
     return np.linalg.norm(shapes[:, -6:-3] + turn @ R.T, axis=1)

@@ -17,7 +17,7 @@ from flexapod.solve.modes import robot_modes
 from flexapod.solve.recording import Counters
 from flexapod.solve.system import System
 from flexapod.study.after.legs import bending_basis, lateral
-from flexapod.study.after.plausibility import leg_stress
+from flexapod.study.after.plausibility import flexible_axes, leg_stress
 from flexapod.study.after.results import robot_results
 from flexapod.study.path import RigidPath
 from flexapod.study.record import Record
@@ -53,7 +53,7 @@ class RobotRun:
     @cached_property
     def com_rigid(self) -> Array:
         """Centre of mass on the rigid path, (T, 3) [m]."""
-        return self.path.poses.place(self.study.robot.payload.com)
+        return self.path.poses.place(self.study.robot.com)
 
     @cached_property
     def com_deviation(self) -> Array:
@@ -68,8 +68,8 @@ class RobotRun:
     @cached_property
     def tool_deviation(self) -> Array:
         """Deviation of the tool, (T, 3) [m]."""
-        load = self.study.robot.payload
-        return self.record.pose[:, :3] + self.turn @ (load.tool - load.com) - self.path.poses.place(load.tool)
+        robot = self.study.robot
+        return self.record.pose[:, :3] + self.turn @ (robot.tool - robot.com) - self.path.poses.place(robot.tool)
 
     @cached_property
     def rotation_deviation(self) -> Array:
@@ -94,10 +94,9 @@ class RobotRun:
     @cached_property
     def stress(self) -> Array:
         """Largest stress in every piston over time, (legs,) [Pa]; NaN of a piston without section and material."""
-        joints = self.study.robot.platform_joints - self.study.robot.payload.com
-        legs = self.record.pose[:, None, :3] + joints @ self.turn.transpose(0, 2, 1) - self.study.robot.base_joints
-        compression = np.einsum("tli,tli->tl", self.record.lam[..., :3], legs) / np.linalg.norm(legs, axis=-1)
-        found, shapes = np.full(legs.shape[1], np.nan), self.system.kernel.shapes
+        axes = flexible_axes(self.study.robot, self.system, self.record)
+        compression = np.einsum("tli,tli->tl", self.record.lam[..., :3], axes)
+        found, shapes = np.full(axes.shape[1], np.nan), self.system.kernel.shapes
         for i, leg in enumerate(self.study.robot.legs):
             free = self.record.q[:, i, shapes.l_index] - leg.cylinder.mouth
             stress = leg_stress(leg, bending_basis(shapes), self.lateral[:, i], free, compression[:, i])

@@ -102,8 +102,8 @@ def _elastic(robot: model.Robot, path: rigid.Poses, locked: LockedPoses, wanted:
     principal, axes = np.linalg.eigh(give)
     softest = axes[:, :, -1]
     sign = np.sign(np.take_along_axis(softest, np.abs(softest).argmax(axis=1)[:, None], axis=1))
-    tool = states.pose[:, :3] + matrix(states.pose[:, 3:]) @ (robot.payload.tool - robot.payload.com)
-    sag = tool - rigid_pose.point(robot.payload.tool)[0]
+    tool = states.pose[:, :3] + matrix(states.pose[:, 3:]) @ (robot.tool - robot.com)
+    sag = tool - rigid_pose.point(robot.tool)[0]
     force = _drive_forces(robot, locked)
     u = wanted.direction
     with np.errstate(divide="ignore"):  # out of its plane a planar robot does not give way
@@ -122,7 +122,7 @@ def _elastic(robot: model.Robot, path: rigid.Poses, locked: LockedPoses, wanted:
 
 
 def _drive_forces(robot: model.Robot, locked: LockedPoses) -> Array:
-    """Force of every drive on its piston at rest, (p, legs) [N]: constraint, or given force and spring, Eq. (T8.8)."""
+    """Force of every drive at rest, (p, legs) [N, N m]: constraint, or given force and spring, Eq. (T8.8)."""
     part = locked.equilibria.states[locked.at], locked.command[locked.at], locked.acts.force[locked.at]
     return at_drives(locked.system, robot, port_forces(locked.system, *part))
 

@@ -94,7 +94,7 @@ def describe_pose(study: model.Study, name: str, time: float) -> PoseDescription
         found, stiffness = the_modes(locked), _stiffness(stiffness_of(robot, locked).total)
     except FlexapodError as error:
         return PoseDescription(name=name, time=time, problem=str(error))
-    sag = found.equilibrium.state.pose[:3] - path.point(robot.payload.com)[0][0]
+    sag = found.equilibrium.state.pose[:3] - path.point(robot.com)[0][0]
     lines = zip(found.frequency, found.damping_ratio, mode_kinds(found), strict=True)
     modes = tuple(ModeLine(frequency=float(f), damping_ratio=float(ratio), kind=kind) for f, ratio, kind in lines)
     return PoseDescription(
