@@ -3,6 +3,7 @@
 import numpy as np
 import pytest
 from scipy.spatial.transform import Rotation
+from tests.mechanisms import ROBOTS
 from tests.runs import paper_robot
 
 import flexapod as fx
@@ -121,3 +122,21 @@ def test_instants_that_do_not_fit_the_lengths_are_refused():
     for time, words in ((["now", "then"], "not numbers"), ([0.0], "does not fit")):
         with pytest.raises(InputError, match=words):
             fx.forward_kinematics(robot, np.tile(lengths, (2, 1)), time=time)
+
+
+@pytest.mark.parametrize("name", ["3-RPS", "3-UPS+UP", "6-PUS", "6-RUS", "planar 3-PRR"])
+def test_forward_kinematics_from_the_drives_of_any_robot(name):
+    robot = ROBOTS[name]()
+    axis = "surge" if "planar" in name else "heave"
+    motion = fx.model.AxisMotion(type=axis, amplitude=0.02, duration=1.0)
+    ours = fx.inverse_kinematics(robot, motion, output_step=0.25)
+    places = ours.drive_command.values[:, [bool(leg.driven) for leg in robot.legs]]
+    data = fx.forward_kinematics(robot, places, time=ours.time)
+    path = fx.rigid.poses(robot, motion, ours.time.values)
+    np.testing.assert_allclose(data.platform_position, path.position, rtol=0, atol=1e-12)
+    np.testing.assert_allclose(
+        data.drive_command if "drive_command" in data else data.leg_length_command,
+        ours.drive_command,
+        rtol=0,
+        atol=1e-12,
+    )

@@ -101,32 +101,34 @@ def forward_kinematics(
     *,
     time: ArrayLike | None = None,
 ) -> Dataset:
-    """Poses of the rigid robot at given leg lengths, each near the one before, Eq. (T2.41).
+    """Poses of the rigid robot at given leg lengths, each near the one before, Eqs. (T2.41), (T14.17).
 
     Parameters
     ----------
     robot : Robot, Study or path
-    lengths : array_like, shape (legs,) or (T, legs)
-        Joint-to-joint lengths [m]; one of each leg gives a single pose.
+    lengths : array_like, shape (drives,) or (T, drives)
+        Joint-to-joint lengths [m] of the driven legs, in their order; of a driven carriage its place as the study file
+        counts it [m, of a crank rad]. One of each gives a single pose.
     guess : pose, optional
-        Near the first one, as for `modes`; default home. All postures of given lengths: `flexapod.rigid.postures`.
+        Near the first one, as for `modes`; default home. All postures of six legs UPS: `flexapod.rigid.postures`.
     time : array_like, shape (T,), optional
         Instants of the lengths [s]; default 0, 1, 2, ...
 
     Returns
     -------
     xarray.Dataset
-        `platform_position`, `platform_quaternion`, `com_position`, `tool_position`, over `time` for a path of lengths.
+        `platform_position`, `platform_quaternion`, `com_position`, `tool_position`, over `time` for a path of lengths;
+        `leg_length_command`, and `drive_command` of legs that are not all driven along their strokes.
 
     Raises
     ------
     InputError
-        Lengths that are not a positive number for each leg, a guess that is not a pose, or instants that do not fit.
+        Lengths that are not a number for each drive, a guess that is not a pose, or instants that do not fit.
     ComputationError
         No pose near the guess fits.
     """
     study = at_pose(robot)
-    given = _numbers(lengths, "lengths", "joint-to-joint lengths [m], (6,) or (T, 6)")
+    given = _numbers(lengths, "lengths", "lengths [m] or places of carriages [m, rad], one for each drive")
     single = given.ndim == 1
     found = rigid.forward_kinematics(study.robot, given, as_pose(study.robot, guess, check=False))
     given = np.atleast_2d(given)
@@ -136,15 +138,26 @@ def forward_kinematics(
     if t.shape != (len(found),):
         raise InputError("does not fit the lengths", key="time", value=t.shape, allowed=f"({len(found)},)")
     values = {
-        "leg_length_command": given,
+        **_drives(study, t, found, given),
         "platform_position": found.position,
         "platform_quaternion": quaternion(found.rotation),
         "com_position": found.place(study.robot.com),
         "tool_position": found.place(study.robot.tool),
     }
-    excess = [*rigid.strokes(study.robot, t, given), *rigid.pull_out(study.robot, t, given)]
-    result = dataset(values, {"time": t}, attributes(study, [*study.warnings, *(e.message for e in excess)]))
+    length, place, *_ = rigid.reach(study.robot, found)
+    excess = [*rigid.strokes(study.robot, t, length), *rigid.pull_out(study.robot, t, length)]
+    excess += rigid.carriages(study.robot, t, place)
+    remarks = [*study.warnings, *(e.message for e in excess)]
+    result = dataset(values, {"time": t}, attributes(study, remarks), drive_forms(study.robot))
     return result.isel(time=0, drop=True) if single else result
+
+
+def _drives(study: model.Study, t: Array, found: rigid.Poses, given: Array) -> dict[str, Array]:
+    """Lengths of all legs as given, or where legs are not all driven along their strokes places of drives as well."""
+    if all(leg.driven == "stroke" for leg in study.robot.legs):
+        return {"leg_length_command": given}
+    values = rigid_leg_results(RigidPath(study, t, found))
+    return {name: values[name] for name in ("leg_length_command", "drive_command") if name in values}
 
 
 def _legs_and_payload(path: RigidPath) -> dict[str, Array]:
