@@ -9,6 +9,7 @@ from tests.moving import KINDS, SOFT, moving
 from tests.runs import run_robot
 
 from flexapod import rigid
+from flexapod.bases import lateral_basis
 from flexapod.integration import GeneralizedAlpha
 from flexapod.mechanics.layout import PAYLOAD_PARAMETERS, columns, leg_parameters
 from flexapod.model import AxisMotion, Cylinder, Load, Piston, Study, override, preset
@@ -20,7 +21,9 @@ from flexapod.solve.many import RestStates
 from flexapod.solve.recording import Counters
 from flexapod.solve.rigid_motion import rigid_state
 from flexapod.solve.robot_march import prepare
+from flexapod.solve.shapes import space_shapes
 from flexapod.solve.start import consistent_start
+from flexapod.solve.system import State, System
 from flexapod.solve.tables import robot_law
 
 METHOD, H = GeneralizedAlpha(0.9), 5e-4
@@ -172,3 +175,43 @@ def test_a_closed_attitude_with_free_angles_is_a_ball():
     np.testing.assert_allclose(angles.lam[:, :3], ball.lam, rtol=0, atol=1e-8 * size)
     assert np.abs(angles.lam[:, 3:]).max() < 1e-8 * size  # no moments
     assert np.abs(angles.q[:, plain.n :]).max() > 1e-3  # though the joints turn
+
+
+@pytest.mark.parametrize("carriage", ["", "slider"])
+def test_a_leg_without_payload_swings_as_the_dense_equations_say(carriage):
+    """In space, with a body and a load at its tip, on a carriage that a spring drives or on none; its stroke held."""
+    shapes = space_shapes(
+        lateral_basis("tip-load", 2), 1, closure="none", tip_body=True, spin=True, torsion=True, carriage=carriage
+    )
+    layout = leg_parameters(shapes)
+    given = {
+        "rhoA": 2.0, "EI": 2e3, "EA": 4e7, "GJ": 1.5e3, "Lp": 0.7, "mouth": 0.2, "piston_axial_inertia": 1e-3,
+        "cylinder_mass": 3.0, "cylinder_com": 0.1, "cylinder_inertia": 0.05, "cylinder_axial_inertia": 2e-3,
+        "cylinder_spins": 1.0, "zeta": 0.01, "gravity": [0, 0, -9.81], "R0": np.eye(3), "tip_mass": 1.0,
+        "tip_inertia": 1e-2, "tip_axial_inertia": 2e-2, "carriage_mass": 4.0, "carriage_axis": [0, 0.6, 0.8],
+        "carriage_stiffness": 1e5, "carriage_damping": 50.0,
+    }  # fmt: skip
+    p = np.concatenate([np.ravel(given.get(name, np.zeros(size))) for name, size in layout])
+    held = np.zeros((1, shapes.size), dtype=bool)
+    held[0, shapes.l_index] = True
+    none = np.zeros(0)
+    system = System(kernel=kernel(shapes), leg_p=p[None], joint_p=none[None], payload_p=none, held=held)
+    ports = system.ports.size
+    table = np.zeros((1, ports, 4))
+    table[0, 0, 0] = 0.6
+    q = np.zeros((1, shapes.size))
+    q[0, :3] = 0.5, 0.3, 0.6
+    start = State(
+        q=q, pose=np.zeros(7), v=np.zeros(shapes.size), v_dot=np.zeros(shapes.size), lam=np.zeros((1, 0)),
+        drive=np.zeros((1, ports)),
+    )  # fmt: skip
+
+    def law(t):
+        return np.repeat(table[None], len(t), axis=0), np.tile(PUSH, (len(t), 1))
+
+    fast, slow = (marched(system, law, start, 200, twin) for twin in (native, interpreted))
+    assert np.abs(fast.q[0, :2] - q[0, :2]).max() > 0.05
+    for name in ("q", "v", "drive"):  # nothing magnifies rounding here; Newton ends at 1e-10 of the largest force
+        np.testing.assert_allclose(getattr(fast, name), getattr(slow, name), rtol=1e-7, atol=1e-8, err_msg=name)
+    energy = [system.energies(x, table)[0].sum() + x.sums[0] - x.sums[1] for x in (fast, slow)]
+    np.testing.assert_allclose(energy, system.energies(start, table)[0].sum(), atol=2e-3 * np.abs(fast.sums[1]))

@@ -56,7 +56,7 @@ def _predict(system: System, method: GeneralizedAlpha, x: Flow, h: float, table:
     a = (x.v_dot - method.alpha_m * x.a) / (1 - method.alpha_m)
     step = h * x.v + h**2 * ((0.5 - method.beta) * x.a + method.beta * a)
     v, v_dot = x.v + h * ((1 - method.gamma) * x.a + method.gamma * a), x.v_dot.copy()
-    q, held = x.q + system.by_leg(step), system.held[:, system.ports]
+    q, held = x.q + system.by_leg(step), system.enforced[:, system.ports]
     for part, column in ((q, 0), (v, 1), (v_dot, 2), (a, 2)):
         legs = part if part is q else system.by_leg(part)
         legs[:, system.ports] = np.where(held, table[:, :, column], legs[:, system.ports])
@@ -96,7 +96,7 @@ def _step(
             v_dot=x.v_dot + c_a * dq,
             a=x.a + c_q * dq,
             lam=x.lam + dlam.reshape(x.lam.shape),
-            drive=x.drive + np.where(system.held, own, 0.0)[:, system.ports],
+            drive=x.drive + np.where(system.enforced, own, 0.0)[:, system.ports],
             pose=turned(old.pose, turn) if system.hub else x.pose,
         )
         if done:  # after a last correction: index 3 magnifies what is left

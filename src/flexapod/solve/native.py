@@ -60,7 +60,7 @@ class _Call:
         self.kept = [
             np.ascontiguousarray(x, dtype=float)
             for x in (
-                system.held[:, system.ports],
+                system.enforced[:, system.ports],
                 system.hub_held if system.hub else np.ones(6),
                 system.leg_p,
                 system.joint_p,

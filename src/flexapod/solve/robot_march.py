@@ -17,6 +17,7 @@ from flexapod.solve.many import RestStates
 from flexapod.solve.march import Chunk, Problem, initial_step, march
 from flexapod.solve.modes import refuse_pure_force
 from flexapod.solve.recording import Counters, Recording
+from flexapod.solve.redundant import independent, shared
 from flexapod.solve.rest import rest_commands, rest_load
 from flexapod.solve.rigid_motion import rigid_state
 from flexapod.solve.robot_system import robot_system
@@ -67,6 +68,7 @@ def prepare(study: Study, state: State | None = None) -> RobotMarch:
     method = GeneralizedAlpha(simulation.rho_inf)
     step = initial_step(simulation.step, simulation.output_step)
     state = _configuration(study, system) if state is None else state
+    system = independent(system, state)
     start, impact = consistent_start(system, state, law, 0.0, method, step)
     counters, output_step = Counters(), simulation.stored_step
     outputs = simulation.outputs(study.duration)
@@ -83,6 +85,8 @@ def prepare(study: Study, state: State | None = None) -> RobotMarch:
         tolerance=simulation.tolerance,
     )
     chunks = march(problem, start, step, counters)
+    if system.slack is not None:
+        chunks = (replace(x, recording=shared(system, x.recording, law(x.recording.time)[0])) for x in chunks)
     return RobotMarch(system=system, start=start, impact=impact, step=step, chunks=chunks, counters=counters)
 
 

@@ -71,7 +71,7 @@ def accelerations(system: System, x: State, table: Array, wrench: Array) -> Stat
     step, lam = constrained(system, m.M, m.G, -r, _constraint_curvature(system, x) - m.G @ given)
     found = replace(rest, v_dot=given + step, lam=lam.reshape(x.lam.shape))
     own = system.by_leg(system.residual(found, table, wrench)[0])
-    return replace(found, drive=np.where(system.held, own, 0.0)[:, system.ports])
+    return replace(found, drive=np.where(system.enforced, own, 0.0)[:, system.ports])
 
 
 def _constraint_curvature(system: System, x: State, step: float = 1e-4) -> Array:

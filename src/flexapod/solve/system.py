@@ -68,7 +68,8 @@ class System:
 
     ``leg_p``, (legs, any): parameters of the legs; ``joint_p``, (legs, 3 or 0): their joints on the platform, from the
     CoM; ``payload_p``: none (size 0) for a leg alone; ``held``, (legs, n): coordinates that follow their table;
-    ``hub_held``, (6,): coordinates of the payload that stay what they are.
+    ``hub_held``, (6,): coordinates of the payload that stay what they are; ``slack``, (legs, n): held coordinates that
+    the closures determine anyway, see `redundant.independent`.
     """
 
     kernel: Kernel
@@ -77,6 +78,7 @@ class System:
     payload_p: Array
     held: Mask
     hub_held: Mask = field(default_factory=lambda: np.zeros(6, dtype=bool))
+    slack: Mask | None = None
 
     @property
     def legs(self) -> int:
@@ -118,7 +120,12 @@ class System:
     @cached_property
     def fixed(self) -> Mask:
         """Mask (size,) of the coordinates that do not follow from the equations of motion."""
-        return np.concatenate([self.held.ravel(), self.hub_held[: 6 * self.hub]])
+        return np.concatenate([self.enforced.ravel(), self.hub_held[: 6 * self.hub]])
+
+    @cached_property
+    def enforced(self) -> Mask:
+        """Mask (legs, n) of the coordinates that follow their table, whatever the closures say."""
+        return self.held if self.slack is None else self.held & ~self.slack
 
     @cached_property
     def force_floor(self) -> float:

@@ -33,9 +33,9 @@ def robot_law(system: System, robot: Robot, load: Load, poses: Callable[[Array],
         table = np.zeros((len(t), system.legs, system.ports.size, COLUMNS))
         table[..., 0] = home
         for k, name in enumerate(names):
-            if driven[:, k].any():
-                moved = np.stack(legs.coordinate(name), axis=-1)
-                table[:, driven[:, k], k, :3] = moved[:, driven[:, k]]
+            which = slice(None) if driven[:, k].all() else driven[:, k]
+            for column, part in enumerate(legs.coordinate(name)):
+                table[:, which, k, column] = part[:, which]
         table[:, driven, 3] = feed_forward(robot, t, path, wrench)[:, driven.any(axis=1)]
         return table, wrench
 

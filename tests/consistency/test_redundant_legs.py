@@ -1,0 +1,35 @@
+"""Rigid robots on more legs than they need, in time."""
+
+import numpy as np
+import pytest
+from tests.moving import moving
+from tests.runs import balance, run_robot
+
+from flexapod import rigid
+from flexapod.errors import ComputationError
+from flexapod.solve.released import rigid_forces
+
+
+def test_forces_of_eight_rigid_legs_are_those_of_the_rigid_robot():
+    """Drives and joints at every instant against the equations of motion on the path, shared by the same rule."""
+    errors = []
+    for h in (1e-3, 5e-4):
+        study = moving("8-UPS", fidelity="rigid", modes=None, step=h)
+        study = study.replace(initial=study.initial.replace(start="moving"))
+        run = run_robot(study)
+        path = rigid.poses(study.robot, study.motion, run["time"])
+        forces = rigid_forces(study.robot, path, np.zeros(6))
+        assert forces.open_forces == 2
+        scale = np.abs(forces.drive_force).max()
+        errors.append(np.abs(run["drive"][..., 0] - forces.drive_force).max() / scale)
+        assert np.abs(run["lam"] - forces.joint_force).max() < 2 * errors[-1] * scale
+        assert run["closure"].max() < 1e-13
+        assert np.ptp(balance(run)) < 2e-3 * np.ptp(run["sums"][:, 1])
+    # Accelerations of second order in a motion of a hundred steps; rounding in forces is ten times below at 0.5 ms.
+    assert errors[1] < 2e-3
+    assert np.log2(errors[0] / errors[1]) == pytest.approx(2.0, abs=0.1)
+
+
+def test_a_welded_robot_of_rigid_legs_cannot_move():
+    with pytest.raises(ComputationError, match=r"rigid legs do not fit at t = .* leg 1 misses what holds it by"):
+        run_robot(moving("6-FPF", fidelity="rigid", modes=None))
