@@ -33,6 +33,7 @@ from flexapod.rigid.robot import (
     reach,
     reachable,
     rigid_limbs,
+    robot_limbs,
     singularity,
     strokes,
 )
@@ -101,6 +102,7 @@ __all__ = [
     "refuse_loose",
     "rigid_limbs",
     "robot_breaks",
+    "robot_limbs",
     "rotation_matrix",
     "singularity",
     "strokes",

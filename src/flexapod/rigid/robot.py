@@ -47,6 +47,7 @@ __all__ = [
     "reach",
     "reachable",
     "rigid_limbs",
+    "robot_limbs",
     "singularity",
     "strokes",
 ]
@@ -73,6 +74,12 @@ def once(compute: Callable[[Robot], T]) -> Callable[[Robot], T]:
 def home_pose(robot: Robot) -> Poses:
     """Home pose, at rest: one sample."""
     return Poses.at_rest(robot.home_position, robot.home_rotation)
+
+
+@once
+def robot_limbs(robot: Robot) -> Limbs:
+    """The legs of a robot as numbers, see `limbs.limbs`."""
+    return limbs(robot)
 
 
 @once

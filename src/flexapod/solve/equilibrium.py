@@ -34,10 +34,14 @@ class Equilibrium:
 
 @dataclass(frozen=True, kw_only=True)
 class Equilibria:
-    """Results of P searches: the states, and for each `FOUND` or why it is none, an index into `REASONS`."""
+    """Results of P searches: the states, and for each `FOUND` or why it is none, an index into `REASONS`.
+
+    ``m``: matrices at those found.
+    """
 
     states: RestStates
     code: np.ndarray
+    m: RestMatrices
 
     def one(self, k: int) -> Equilibrium:
         """One of them, with its reason in words."""
@@ -78,12 +82,13 @@ def equilibria(system: System, start: RestStates, command: Array, force: Array, 
         part, codes = _loaded_slowly(system, start[lost], acts[lost])
         states, code[lost] = states.with_(lost, part), codes
     found = np.flatnonzero(code == FOUND)
-    if found.size:
+    m = matrices_at_rest(system, states[found], wrench)
+    if open_borders(leg_bases(system, m)):
+        states = states.with_(found, least_energy(system, states[found], m))
         m = matrices_at_rest(system, states[found], wrench)
-        code[found[~_stable(system, m)]] = UNSTABLE
-        if open_borders(leg_bases(system, m)):
-            states = states.with_(found, least_energy(system, states[found], m))
-    return Equilibria(states=states, code=code)
+    stable = _stable(system, m)
+    code[found[~stable]] = UNSTABLE
+    return Equilibria(states=states, code=code, m=m[np.flatnonzero(stable)])
 
 
 @dataclass(frozen=True, kw_only=True)

@@ -90,6 +90,11 @@ class RestMatrices:
     P: Array
     X: Array | None
 
+    def __getitem__(self, chosen: Index) -> RestMatrices:
+        """Those of some of the states."""
+        parts = {f.name: getattr(self, f.name)[chosen] for f in fields(self) if f.name != "X"}
+        return RestMatrices(**parts, X=None if self.X is None else self.X[chosen])
+
 
 def residual_at_rest(
     system: System, x: RestStates, command: Array, force: Array, wrench: Array

@@ -14,7 +14,7 @@ from flexapod.solve.elimination import LegBases, closed, expanded, leg_bases, nu
 from flexapod.solve.equilibrium import FOUND, Equilibria, Equilibrium, equilibria
 from flexapod.solve.fallen import refuse_fallen
 from flexapod.solve.frequencies import count_real, mass_factor, natural
-from flexapod.solve.many import RestMatrices, RestStates, matrices_at_rest
+from flexapod.solve.many import RestMatrices, RestStates
 from flexapod.solve.rest import RestLoad, rest_commands, rest_load
 from flexapod.solve.rigid_motion import rigid_rest
 from flexapod.solve.robot_system import robot_system
@@ -109,8 +109,6 @@ def locked_poses(
     start, acts = rigid_rest(system, robot, path), rest_load(system, robot, path, load, time)
     command = rest_commands(system, robot, start.q)
     found = equilibria(system, start, command, acts.force, acts.wrench)
-    at = np.flatnonzero(found.code == FOUND)
-    m = matrices_at_rest(system, found.states[at], acts.wrench)
     return LockedPoses(
         robot=robot,
         path=path,
@@ -120,8 +118,8 @@ def locked_poses(
         command=command,
         acts=acts,
         equilibria=found,
-        at=at,
-        m=m,
+        at=np.flatnonzero(found.code == FOUND),
+        m=found.m,
     )
 
 

@@ -9,7 +9,7 @@ import numpy as np
 
 from flexapod import rigid
 from flexapod.model import Load, Robot
-from flexapod.rigid.limbs import DRIVEN, HELD, limbs
+from flexapod.rigid.limbs import DRIVEN, HELD
 from flexapod.solve.rigid_motion import leg_coordinates
 from flexapod.solve.system import System
 from flexapod.solve.tables import feed_forward
@@ -30,7 +30,7 @@ class RestLoad:
 
 def rest_commands(system: System, robot: Robot, q: Array) -> Array:
     """Values (P, legs, ports) that hold a robot at configurations q (P, legs, n): of joints those at home."""
-    command, found = q[..., system.ports].copy(), limbs(robot)
+    command, found = q[..., system.ports].copy(), rigid.robot_limbs(robot)
     for k, port in _ports(system):
         fixed = found.state[:, k] == HELD
         command[:, fixed, port] = found.home[fixed, k]
@@ -47,7 +47,7 @@ def at_drives(system: System, robot: Robot, values: Array) -> Array:
 
 def _drives(system: System, robot: Robot) -> Iterator[tuple[Mask, int]]:
     """Legs that are driven at a port, and the port."""
-    state = limbs(robot).state
+    state = rigid.robot_limbs(robot).state
     yield from ((state[:, k] == DRIVEN, port) for k, port in _ports(system))
 
 

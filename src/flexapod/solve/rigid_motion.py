@@ -9,7 +9,7 @@ import numpy as np
 from flexapod import rigid
 from flexapod.mechanics.layout import Shapes
 from flexapod.model import Robot
-from flexapod.rigid.limbs import COORDINATES, HELD, Limbs, limbs
+from flexapod.rigid.limbs import COORDINATES, HELD, Limbs
 from flexapod.rigid.rotations import quaternion
 from flexapod.rigid.screws import screws
 from flexapod.solve.many import Rates, RestStates
@@ -61,7 +61,7 @@ def rigid_state(system: System, robot: Robot, path: rigid.Poses) -> State:
 
 def _undeformed(system: System, robot: Robot, path: rigid.Poses) -> Array:
     """Coordinates of the undeformed legs on a path of T poses, rates and accelerations, (3, T, legs, n)."""
-    found, legs, shapes = rigid.inverse_kinematics(robot, path), limbs(robot), system.kernel.shapes
+    found, legs, shapes = rigid.inverse_kinematics(robot, path), rigid.robot_limbs(robot), system.kernel.shapes
     x = np.stack([np.stack(found.coordinate(name)) for name in COORDINATES], axis=-1)
     held = legs.state == HELD  # welds, which the rigid path releases, too
     x[:, :, held] = 0.0

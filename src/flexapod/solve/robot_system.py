@@ -2,9 +2,10 @@
 
 import numpy as np
 
+from flexapod import rigid
 from flexapod.mechanics.layout import Shapes
 from flexapod.model import Robot, Simulation
-from flexapod.rigid.limbs import ABSENT, COORDINATES, DRIVEN, HELD, Limbs, limbs
+from flexapod.rigid.limbs import ABSENT, COORDINATES, DRIVEN, HELD, Limbs
 from flexapod.solve.kernel import kernel
 from flexapod.solve.parameters import (
     flexures,
@@ -21,7 +22,7 @@ __all__ = ["robot_system"]
 
 def robot_system(robot: Robot, simulation: Simulation) -> System:
     """System of a robot in the fidelity, basis and number of shapes of ``simulation``."""
-    legs = limbs(robot)
+    legs = rigid.robot_limbs(robot)
     shapes = robot_shapes(robot, simulation, legs)
     return System(
         kernel=kernel(shapes),

@@ -11,7 +11,7 @@ from flexapod import bases, rigid
 from flexapod.bases.lateral import LateralBasis
 from flexapod.mechanics.layout import Shapes
 from flexapod.model import Actuator, Rectangle, Robot, Simulation, Tube
-from flexapod.rigid.limbs import ABSENT, COORDINATES, FREE, HELD, Limbs, limbs
+from flexapod.rigid.limbs import ABSENT, COORDINATES, FREE, HELD, Limbs
 
 __all__ = ["beam_shapes", "leg_shapes", "planar_shapes", "robot_shapes", "space_shapes"]
 
@@ -54,7 +54,7 @@ def leg_shapes(robot: Robot, simulation: Simulation) -> LateralBasis:
     Where a platform joint takes a moment, static answers to one are among them, Eq. (T1.18).
     """
     name, count = simulation.lateral_basis, simulation.lateral_shapes
-    moment = bool(limbs(robot).pose_closure.any())
+    moment = bool(rigid.robot_limbs(robot).pose_closure.any())
     if name != SOLID:
         return bases.lateral_basis(name, count, moment=moment)
     piston = robot.legs[0].piston

@@ -6,7 +6,7 @@ import numpy as np
 
 from flexapod import rigid
 from flexapod.model import ForceDrive, Load, Robot
-from flexapod.rigid.limbs import COORDINATES, DRIVEN, limbs
+from flexapod.rigid.limbs import COORDINATES, DRIVEN
 from flexapod.solve.released import rigid_forces
 from flexapod.solve.system import COLUMNS, System
 from flexapod.typing import Array
@@ -22,7 +22,7 @@ def robot_law(system: System, robot: Robot, load: Load, poses: Callable[[Array],
 
     Driven coordinates follow the path; what else is held stays where it is at home.
     """
-    chains, shapes = limbs(robot), system.kernel.shapes
+    chains, shapes = rigid.robot_limbs(robot), system.kernel.shapes
     names = [next(name for name in COORDINATES if shapes.has(name) and shapes.index(name) == k) for k in system.ports]
     places = [COORDINATES.index(name) for name in names]
     driven, home = chains.state[:, places] == DRIVEN, chains.home[:, places]
