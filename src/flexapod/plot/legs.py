@@ -8,6 +8,7 @@ import numpy as np
 import xarray as xr
 from matplotlib.axes import Axes
 from matplotlib.figure import Figure
+from numpy.typing import ArrayLike
 
 from flexapod.plot.style import (
     FLEXIBLE,
@@ -24,6 +25,7 @@ from flexapod.plot.style import (
     styled,
 )
 from flexapod.scene.colours import colors_of_legs
+from flexapod.scene.drives import drives
 from flexapod.scene.robot import motion_end
 from flexapod.study.words import NOTHING
 
@@ -33,33 +35,35 @@ _WORDS = {"rigid": "rigid legs", "lumped": "legs that stretch", "assumed-modes":
 
 
 @styled
-@needs("actuator_force_rigid", "actuator_force")
 def actuator_forces(data: xr.Dataset) -> Figure:
-    """Drive forces of the legs: Newton-Euler (rigid) against the multibody model, with their difference below.
+    """Forces of the drives: rigid robot against the multibody model, with their difference below.
 
     Parameters
     ----------
     data : xarray.Dataset
-        With `actuator_force_rigid` and `actuator_force` (time, leg).
+        Result of a simulation; legs without drive are left out.
     """
-    rigid, multibody = data.actuator_force_rigid, data.actuator_force
-    big, small = scale(rigid, "N"), scale(multibody - rigid, "N")
-    fig, panels = force_panels(data, [rigid, multibody], [multibody - rigid], (big, small), (2.2, 1))
+    found = drives(data)
+    rigid, multibody, gap = found.rigid, found.force, found.force - found.rigid
+    big, small = scale(rigid, found.unit), scale(gap, found.unit)
+    fig, panels = force_panels(data, [rigid, multibody], [gap], (big, small), (2.2, 1), found.word)
+    words = "Newton-Euler" if found.plain else "rigid robot"
     time, label = data.time.values, f"multibody model, {_WORDS.get(str(data.attrs.get('fidelity')), 'flexible legs')}"
     for leg, (above, below) in panels.items():
-        above.plot(time, big(rigid.sel(leg=leg)), color=RIGID, linewidth=5, label="Newton-Euler, rigid legs")
+        above.plot(time, big(rigid.sel(leg=leg)), color=RIGID, linewidth=5, label=f"{words}, rigid legs")
         above.plot(time, big(multibody.sel(leg=leg)), color=FLEXIBLE, linewidth=1.1, label=label)
-        below.plot(time, small((multibody - rigid).sel(leg=leg)), color=LEG_COLORS[3], linewidth=0.8)
+        below.plot(time, small(gap.sel(leg=leg)), color=LEG_COLORS[3], linewidth=0.8)
     fig.legend(*next(iter(panels.values()))[0].get_legend_handles_labels(), loc="outside upper center", ncols=2)
     return fig
 
 
 def force_panels(
     data: xr.Dataset,
-    forces: Sequence[np.ndarray],
-    gaps: Sequence[np.ndarray],
+    forces: Sequence[xr.DataArray],
+    gaps: Sequence[ArrayLike],
     units: tuple[Scale, Scale],
     ratios: tuple[float, float],
+    word: str = "force",
 ) -> tuple[Figure, dict[int, tuple[Axes, Axes]]]:
     """A figure with a panel for forces and one for their differences below it for each leg, all on the same scales.
 
@@ -68,20 +72,21 @@ def force_panels(
     data : xarray.Dataset
         Result with its legs and its motion.
     forces, gaps : sequence of arrays, shape (time, leg)
-        All that will be drawn, in newtons; legs that have none of it, as they are not driven, get no panels.
+        All that will be drawn; the legs of `forces` get panels.
     units : tuple of Scale
         Of forces and of differences.
     ratios : tuple of float
         Heights of the two panels.
+    word : str
+        What is drawn.
     """
-    drawn = np.isfinite(np.asarray(forces)).any(axis=(0, 1))
-    legs, (big, small), end = data.leg.values[drawn], units, motion_end(data)
+    legs, (big, small), end = forces[0].leg.values, units, motion_end(data)
     across = columns(len(legs), 3)
     rows = -(-len(legs) // across)
     fig = figure(PAGE, 0.2 + 3.0 * rows)
     grid = fig.subplots(2 * rows, across, sharex=True, squeeze=False, height_ratios=ratios * rows)
-    low, high = limits(big(np.asarray(forces)[..., drawn]))
-    worst = 1.1 * float(np.abs(small(np.asarray(gaps)[..., drawn])).max())
+    low, high = limits(big(np.asarray(forces)))
+    worst = 1.1 * float(np.abs(small(np.asarray(gaps))).max())
     panels = {}
     for place in range(rows * across):
         above, below = grid[2 * (place // across) : 2 * (place // across) + 2, place % across]
@@ -100,7 +105,7 @@ def force_panels(
             below.set_xlabel("time [s]")
             below.tick_params(labelbottom=True)
         if place % across == 0:
-            above.set_ylabel(f"force [{big.name}]")
+            above.set_ylabel(f"{word} [{big.name}]")
             below.set_ylabel(f"difference\n[{small.name}]")
     fig.align_ylabels(grid[:, 0])
     return fig, panels
@@ -113,27 +118,30 @@ def limits(values: np.ndarray) -> tuple[float, float]:
 
 
 @styled
-@needs("leg_length_command", "leg_length")
 def leg_lengths(data: xr.Dataset) -> Figure:
-    """Lengths of the legs, joint to joint: what the drives command, and how far the flexible legs are off.
+    """What the drives command, lengths of legs or places of carriages, and how far the flexible robot is off.
 
     Parameters
     ----------
     data : xarray.Dataset
-        With `leg_length_command` and `leg_length` (time, leg).
+        Result of a simulation; legs without drive are left out.
     """
+    found = drives(data)
     fig = figure(PAGE, 5.0)
     above, below = fig.subplots(2, 1, sharex=True, height_ratios=(1.3, 1))
-    command, error = data.leg_length_command, data.leg_length - data.leg_length_command
-    small, end = scale(error, "m"), motion_end(data)
+    command, error, lengths = found.command, found.position - found.command, found.place == "length"
+    big = Scale(1e3, "mm") if found.place_unit == "m" else scale(command, "rad")
+    small, end = scale(error, found.place_unit), motion_end(data)
     for i, leg in enumerate(data.leg.values):
-        _leg_line(above, data, 1e3 * command.sel(leg=leg).values, i)
-        _leg_line(below, data, small(error.sel(leg=leg)), i)
-    travel = 1e3 * float((command.max("time") - command.min("time")).max())
-    spread = 1e3 * float((command.max("leg") - command.min("leg")).max())
-    above.set_title(f"Commanded length (longest travel {travel:.0f} mm, legs differ by up to {spread:.0f} mm)")
-    below.set_title("Length error of the flexible legs")
-    above.set_ylabel("joint to joint [mm]")
+        if leg in command.leg:
+            _leg_line(above, data, big(command.sel(leg=leg)), i)
+            _leg_line(below, data, small(error.sel(leg=leg)), i)
+    travel = big.factor * float((command.max("time") - command.min("time")).max())
+    spread = big.factor * float((command.max("leg") - command.min("leg")).max())
+    words = f"longest travel {travel:.0f} {big.name}, legs differ by up to {spread:.0f} {big.name}"
+    above.set_title(f"Commanded {found.place} ({words})")
+    below.set_title("Length error of the flexible legs" if lengths else "How far the drives are off")
+    above.set_ylabel("joint to joint [mm]" if lengths else f"{found.place} [{big.name}]")
     below.set_ylabel(f"flexible minus\ncommand [{small.name}]")
     below.set_xlabel("time [s]")
     mark_end(above, end, "motion ends")

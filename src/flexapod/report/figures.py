@@ -102,8 +102,10 @@ def _robot(data: Dataset) -> Iterator[_Plan]:
     import numpy as np
 
     from flexapod import plot
+    from flexapod.scene.drives import drives
     from flexapod.study.after.summary import tool_apart
 
+    found = drives(data)
     elastic = bool(np.abs(data.com_deviation).max() > 0)
     axes = ("x", "y", "z")
     words = "rigid legs against flexible ones, and the deviation on its own scale"
@@ -112,9 +114,13 @@ def _robot(data: Dataset) -> Iterator[_Plan]:
     yield "com-path", f"Path of the centre of mass: {words}", lambda: plot.com_path(data, axes)
     if elastic:
         yield "deviation-by-cause", "Deviation of the centre of mass by cause", lambda: plot.deviation_by_cause(data)
-    forces = "Drive forces: Newton-Euler with rigid legs against the multibody model, and their difference"
+    method = "Newton-Euler" if found.plain else "rigid robot"
+    forces = f"Drive {found.word}s: {method} with rigid legs against the multibody model, and their difference"
     yield "actuator-forces", forces, lambda: plot.actuator_forces(data)
-    yield "leg-lengths", "Leg lengths, and how far the flexible legs are off", lambda: plot.leg_lengths(data)
+    place = found.place
+    words = "Leg lengths, and how far the flexible legs are off"
+    words = words if place == "length" else f"{place[0].upper()}{place[1:]}, and how far the drives are off"
+    yield "leg-lengths", words, lambda: plot.leg_lengths(data)
     if np.abs(data.tip_deflection).max() > 0:
         yield "tip-deflections", "Deflection of the piston tips across the legs", lambda: plot.tip_deflections(data)
     yield "motion", "Commanded motion", lambda: plot.motion_law(data)

@@ -11,6 +11,7 @@ import numpy as np
 from numpy.typing import NDArray
 
 from flexapod.scene.colours import AXIS_COLORS, ENERGIES, colors_of_legs
+from flexapod.scene.drives import drives
 from flexapod.scene.geometry import nearest
 from flexapod.study.after.summary import POINT_WORDS
 from flexapod.study.words import NOTHING, cleared_lines, number, scale
@@ -60,11 +61,19 @@ class Chart:
 def charts(data: Dataset, point: str = "com") -> dict[str, Chart]:
     """The charts of a result by name: a robot's (deviation of its `point`, "com" or "tool"), or a single actuator's."""
     if "com_deviation" in data:
-        colors = colors_of_legs(data.sizes["leg"])
+        colors, driven = colors_of_legs(data.sizes["leg"]), drives(data)
+        pushed = tuple(color for color, leg in zip(colors, data.leg.values, strict=True) if leg in driven.force.leg)
         title, deviation = f"Deviation of the {POINT_WORDS[point]}", data[f"{point}_deviation"]
         return {
             "deviation": _chart(data, title, deviation, "m", list("xyz"), _AXES),
-            "leg forces": _chart(data, "Force of the drives", data.actuator_force, "N", _legs(data), colors),
+            "leg forces": _chart(
+                data,
+                f"{driven.word.capitalize()} of the drives",
+                driven.force,
+                driven.unit,
+                _legs(driven.force),
+                pushed,
+            ),
             "tip deflections": _chart(
                 data, "Piston tips off the cylinders' axes", _sizes(data.tip_deflection), "m", _legs(data), colors
             ),
@@ -79,7 +88,7 @@ def charts(data: Dataset, point: str = "com") -> dict[str, Chart]:
     }
 
 
-def _legs(data: Dataset) -> list[str]:
+def _legs(data: Dataset | DataArray) -> list[str]:
     return [f"leg {leg}" for leg in data.leg.values]
 
 

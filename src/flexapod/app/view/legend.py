@@ -9,6 +9,7 @@ import numpy as np
 
 from flexapod import model
 from flexapod.scene.colours import colors_of_legs
+from flexapod.scene.drives import drives
 from flexapod.study.words import NOTHING, cleared_lines, number, scale
 from flexapod.typing import Array
 
@@ -40,7 +41,8 @@ class LegColors:
     """Values of a quantity in all legs over time, and the colours that stand for them.
 
     `values` (T, legs) in the unit `unit`, NaN for a leg without one (grey); the scale goes from `low` to `high`;
-    `title` and `note`: words of the legend; `below`: colour of values below `low`, None where that of `low` is meant.
+    `title` and `note`: words of the legend; `below`: colour of values below `low`, None where that of `low` is meant; `none`:
+    words of a leg without value.
     """
 
     values: Array
@@ -51,6 +53,7 @@ class LegColors:
     note: str
     anchors: tuple[str, ...]
     below: str | None = None
+    none: str = "no limits"
 
     def colors(self, index: int) -> Array:
         """Colours of the legs at a stored instant, (legs, 3) in 0 to 255."""
@@ -67,7 +70,7 @@ class LegColors:
     def html(self, index: int | None = None) -> str:
         """The scale as a bar with its ends and middle, and the values at a stored instant."""
         ticks = [f"{number(value)} {self.unit}" for value in (self.low, 0.5 * (self.low + self.high), self.high)]
-        values = [] if index is None else [_text(v, self.unit) for v in self.values[index]]
+        values = [] if index is None else [_text(v, self.unit, self.none) for v in self.values[index]]
         now = "" if index is None else _leg_row(self.colors(index), values)
         return (
             f'<div role="img" aria-label="Legend: {self.title}" style="{LEGEND_STYLE}">'
@@ -90,8 +93,8 @@ def plain_legend(legs: int) -> str:
     return f'<div style="{LEGEND_STYLE}"><b>Legs by number</b>{row}</div>'
 
 
-def _text(value: float, unit: str) -> str:
-    return "no limits" if np.isnan(value) else f"{number(value)} {unit}"
+def _text(value: float, unit: str, none: str) -> str:
+    return none if np.isnan(value) else f"{number(value)} {unit}"
 
 
 def _leg_row(colors: Array, values: list[str]) -> str:
@@ -108,30 +111,37 @@ def _leg_row(colors: Array, values: list[str]) -> str:
 
 
 def _force(study: model.Study, data: Dataset) -> LegColors:
-    unit = scale(data.actuator_force, "N")
-    values = unit(data.actuator_force.values)
-    largest = float(np.abs(values).max()) or 1.0
+    found = drives(data)
+    unit = scale(found.force, found.unit)
+    values = unit(found.force.reindex(leg=data.leg).values)  # NaN for legs without drive
+    largest = float(np.nanmax(np.abs(values))) or 1.0
+    stroke = found.place == "length"
     return LegColors(
         values=cleared_lines(values.T).T,
         low=-largest,
         high=largest,
         unit=unit.name,
-        title="Force of the drive along the leg",
-        note="Positive pushes the piston out (the leg is compressed), negative holds it back.",
+        title="Force of the drive along the leg" if stroke else f"{found.word.capitalize()} of the drive",
+        note="Positive pushes the piston out (the leg is compressed), negative holds it back."
+        if stroke
+        else "Positive pushes along the carriage's axis, or about the crank's.",
         anchors=_DIVERGING,
+        none="no drive",
     )
 
 
 def _margin(study: model.Study, data: Dataset) -> LegColors:
-    length = data.leg_length.values
-    limits = [(leg.stroke.min, leg.stroke.max) if leg.stroke else (np.nan, np.nan) for leg in study.robot.legs]
-    low, high = np.array(limits).T
-    values = 1e3 * np.minimum(length - low, high - length)
+    found = drives(data)
+    place = found.position.reindex(leg=data.leg).values
+    travels = [leg.carriage.stroke if leg.carriage is not None else leg.stroke for leg in study.robot.legs]
+    low, high = np.array([(s.min, s.max) if s else (np.nan, np.nan) for s in travels]).T
+    factor, unit = (1e3, "mm") if found.place_unit == "m" else (180 / np.pi, "deg")
+    values = factor * np.minimum(place - low, high - place)
     return LegColors(
         values=values,
         low=0.0,
         high=max(1e-9, float(np.nan_to_num(values).max())),
-        unit="mm",
+        unit=unit,
         title="Stroke left to the nearer end",
         note="0: at an end of leg.stroke; red: beyond it; grey: a leg without stroke.",
         anchors=_SEQUENTIAL,
