@@ -39,7 +39,10 @@ def least_energy(robot, position, turn, lengths):
 def test_a_leg_that_is_too_long(fidelity, monkeypatch):
     monkeypatch.setattr("flexapod.solve.robot_system.kernel", interpreted_kernel)
     robot = eight().replace(gravity=[0, 0, 0])
-    position, turn = robot.home_position + [0.03, -0.02, 0.04], Rotation.from_rotvec([0.2, -0.15, 0.1]).as_matrix()
+    position, turn = (
+        robot.home_position + np.array([0.03, -0.02, 0.04]),
+        Rotation.from_rotvec([0.2, -0.15, 0.1]).as_matrix(),
+    )
     held = locked_poses(robot, Simulation(fidelity=fidelity), Poses.at_rest(position, turn))
     command = held.command.copy()
     command[0, 2, 0] += MISFIT
