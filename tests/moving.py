@@ -19,7 +19,7 @@ def moving(kind, drive=None, axial_modes=2, **simulation):
     changes = {"damping": 0.01, "axial_modes": axial_modes}
     legs = tuple(leg.replace(**changes, **(driven if leg.driven else {})) for leg in robot.legs)
     axis = "surge" if robot.plane else "heave"
-    motion = AxisMotion(type=axis, amplitude=0.03, duration=0.1, profile="smooth")
+    motion = AxisMotion(type=axis, amplitude=0.0 if robot.platform_fixed else 0.03, duration=0.1, profile="smooth")
     study = Study(robot=robot.replace(legs=legs), motion=motion, simulation=preset("paper-robot").simulation)
     study = study.replace(initial=study.initial.replace(start="straight"))
     return override(study, **{"modes": 2, "step": 0.5e-3, "output_step": 2e-3, "duration": 0.12} | simulation)

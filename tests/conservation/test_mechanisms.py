@@ -33,3 +33,11 @@ def test_what_joints_hold_does_no_work(kind):
     work = np.concatenate([[0.0], np.cumsum(0.5 * h * (power[1:] + power[:-1]))])
     # What each step adds is computed from forces that have met their tolerance, 1e-10 of the largest.
     np.testing.assert_allclose(run["sums"][:, 1], work, atol=1e-9 * np.abs(work).max())
+
+
+def test_a_fixed_platform_is_held_by_its_reaction():
+    """One leg between two fixed points: what it does to the platform is what holds the platform, its stroke stands."""
+    run = run_robot(moving("1-UPS", modes=3, step=1e-4, output_step=1e-3, duration=0.05))
+    assert np.ptp(run["pose"], axis=0).max() == 0
+    np.testing.assert_allclose(run["reaction"][:, :3], -run["lam"][:, 0], rtol=0, atol=1e-9)
+    assert np.abs(run["reaction"][:, 3:]).max() < 1e-12  # its joint is at the centre of mass

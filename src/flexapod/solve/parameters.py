@@ -128,8 +128,8 @@ def joint_parameters(robot: Robot) -> Array:
 def payload_parameters(robot: Robot) -> Array:
     """Parameters of the payload; tool from its CoM."""
     load = robot.payload
-    if load is None:  # of a fixed platform
-        mass = {"mass": 1.0, "inertia": np.eye(3), "gravity": robot.gravity, "tool": np.zeros(3)}
+    if load is None:  # a fixed platform: without weight, and what does not move needs no mass
+        mass = {"mass": 1.0, "inertia": np.eye(3), "gravity": np.zeros(3), "tool": np.zeros(3)}
         return _pack(PAYLOAD_PARAMETERS, mass)
     return _pack(
         PAYLOAD_PARAMETERS,
