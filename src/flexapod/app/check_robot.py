@@ -23,6 +23,7 @@ def show_robot(found: RobotDescription) -> None:
         f"The path keeps all limits. The motion takes {found.motion_end:.4g} s, the simulation {found.duration:.4g} s "
         f"({found.fidelity}). Estimates from the rigid path:"
     )
+    _motions(found)
     _lengths(found)
     _singularity(found)
     _loads(found)
@@ -37,6 +38,12 @@ def show_robot(found: RobotDescription) -> None:
 def _heading(title: str) -> None:
     print_text()
     print_text(title)
+
+
+def _motions(found: RobotDescription) -> None:
+    _heading("Motions of the rigid robot")
+    for sentence in found.motions:
+        print_text(f"{sentence[0].upper()}{sentence[1:]}.", indent=2)
 
 
 def _lengths(found: RobotDescription) -> None:

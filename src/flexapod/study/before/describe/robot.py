@@ -34,7 +34,7 @@ class Singularity:
 
 @dataclass(frozen=True, kw_only=True)
 class RobotDescription:
-    """What `describe` finds for a robot; times in s; what poses `held` still and `remarks` of doubt in words."""
+    """What `describe` finds for a robot; times in s; `motions`, what poses `held` still, `remarks` of doubt in words."""
 
     kind: str = "robot"
     file: str | None
@@ -42,6 +42,7 @@ class RobotDescription:
     motion_end: float
     fidelity: str
     held: str
+    motions: tuple[str, ...]
     legs: tuple[LegDescription, ...]
     singularity: Singularity
     poses: tuple[PoseDescription, ...]
@@ -81,6 +82,7 @@ def describe(study: model.Study | model.ActuatorStudy) -> RobotDescription | Act
         motion_end=end,
         fidelity=study.simulation.fidelity,
         held=held(study.robot),
+        motions=tuple(rigid.mobility_words(rigid.rigid_limbs(study.robot))),
         legs=legs,
         singularity=singularity,
         poses=tuple(describe_pose(study, name, instant) for name, instant in instants.items()),
