@@ -1,16 +1,12 @@
 """Fidelities that bring a basis of their own run everywhere: from Python and from a file, robot and single actuator."""
 
-import re
-from pathlib import Path
-
 import numpy as np
 import pytest
 
 import flexapod as fx
 from flexapod.bases import lateral_basis
 from flexapod.errors import InputError
-from flexapod.model import Leg, Simulation, Study, loads, override, preset_text
-from flexapod.model.simulation import MOST_ELEMENT_SHAPES
+from flexapod.model import Simulation, Study, loads, override, preset_text
 
 OWN = [("beam-fem", 6, "hermite"), ("finite-segment", 8, "segments")]
 every_fidelity = pytest.mark.parametrize(("fidelity", "modes", "basis"), OWN)
@@ -98,10 +94,3 @@ def test_beam_elements_take_more_shapes_than_the_others():
             Simulation(fidelity=fidelity, modes=modes)
     with pytest.raises(InputError, match="at most 24"):
         Simulation(fidelity="beam-fem", modes=26)
-
-
-def test_the_compiled_loop_has_room_for_the_largest_leg():
-    source = (Path(fx.__file__).parent / "solve" / "native" / "system.h").read_text(encoding="utf-8")
-    room = int(re.search(r"MAXN = (\d+)", source)[1])
-    leg = Leg.model_json_schema()["properties"]["axial_modes"]["maximum"]
-    assert room >= 3 + leg + 2 * MOST_ELEMENT_SHAPES  # alpha, beta, l, axial and lateral shapes
