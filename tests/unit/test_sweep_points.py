@@ -1,5 +1,7 @@
 """From a plan to studies: products, short forms spelled out, draws, points that are alike."""
 
+from pathlib import Path
+
 import numpy as np
 import pytest
 from tests.sweeps import KEY, diameters, quick
@@ -10,6 +12,8 @@ from flexapod.solve.kernel import kernel
 from flexapod.study.before import room
 from flexapod.surveys.sweeps.plan import read_plan
 from flexapod.surveys.sweeps.points import Points
+
+MECHANISMS = Path(__file__).parents[2] / "examples" / "mechanisms"
 
 
 def points(**sweep):
@@ -176,3 +180,35 @@ def test_draws_beyond_the_memory_are_refused_before_they_are_made(monkeypatch):
     cube = {"count": 10_000_000, "seed": 3, "ranges": {KEY: ["25 mm", "30 mm"]}}
     with pytest.raises(InputError, match=r"latin_hypercube.count.*2.16 GB of memory"):
         points(latin_hypercube=cube)
+
+
+@pytest.mark.parametrize(
+    ("name", "key", "value", "read", "expected"),
+    [
+        ("tripod", "robot.base.joints[2][3]", "5 mm", lambda r: r.base_joints[:, 2], [0, 0.005, 0]),
+        ("tripod", "robot.platform.angles[3]", "270 deg", lambda r: r.platform_joints[2], [0, -0.2, 0]),
+        ("tripod", "leg[3].base_joint.axis", "radial", lambda r: r.legs[2].u_axis @ r.base_joints[2], 0.35),
+        ("tricept", "leg[4].piston.length", "0.72 m", lambda r: [x.piston.length for x in r.legs[2:]], [0.75, 0.72]),
+        ("tricept", "leg[2].piston.EI", 1.0, lambda r: r.count, 4),
+        ("hexaglide", "leg[2].carriage.mass", "4 kg", lambda r: [leg.carriage.mass for leg in r.legs[:3]], [3, 4, 3]),
+        ("planar", "robot.platform.joints[1][2]", "9 mm", lambda r: r.platform_joints[0, 1], 0.009),
+        ("eight-legs", "leg[8].drive.value", "450 N", lambda r: [leg.drive.value for leg in r.legs[6:]], [500, 450]),
+        ("flexures", "leg.base_joint.bending", "20 N m/rad", lambda r: r.legs[4].base_joint.bending, 20),
+    ],
+)  # fmt: skip
+def test_keys_of_other_mechanisms(name, key, value, read, expected):
+    study = loads((MECHANISMS / f"{name}.toml").read_text(encoding="utf-8"))
+    if "EI" in key:  # of a piston by its section: refused as a study file with both is
+        with pytest.raises(InputError, match="EA"):
+            Points(study, read_plan({"vary": [{"key": key, "values": [value]}]})).resolve()
+        return
+    found = Points(study, read_plan({"vary": [{"key": key, "values": [value]}]})).study(0)
+    assert read(found.robot) == pytest.approx(expected, abs=1e-15)
+
+
+def test_tolerances_of_joints_at_angles_and_of_a_carriage():
+    study = loads((MECHANISMS / "hexaglide.toml").read_text(encoding="utf-8"))
+    plan = draws(20, ("robot.base.joints", {"uniform": "0.1 mm"}), ("leg.carriage.mass", {"normal": "1 %"}))
+    joints, masses = Points(study, read_plan(plan)).resolve().scattered
+    assert joints.shape == (20, 18) and masses.shape == (20, 6)
+    assert 0.9e-4 < np.abs(joints.reshape(20, 6, 3) - study.robot.base_joints).max() <= 1e-4

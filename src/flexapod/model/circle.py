@@ -9,6 +9,7 @@ import numpy as np
 from pydantic import model_validator
 
 from flexapod.errors import InputError
+from flexapod.model.axes import plane_order
 from flexapod.model.base import Frozen, Measure, NonNegative, Positive, Series
 from flexapod.typing import Array
 
@@ -40,11 +41,13 @@ class Circle(Frozen):
             )
         return self
 
-    @property
-    def places(self) -> Array:
-        """Joints at `angles`, (n, 3) [m], z = 0."""
+    def joints(self, end: str, plane: str | None) -> Array:
+        """The joints at an end of the legs, "base" or "platform", (n, 3) [m]; angles count in the plane, or in xy."""
+        if self.half_angle is not None:
+            return (base_circle if end == "base" else platform_circle)(self.radius, self.half_angle)
         angles = np.asarray(self.angles)
-        return self.radius * np.column_stack([np.cos(angles), np.sin(angles), np.zeros(len(angles))])
+        flat = np.column_stack([np.cos(angles), np.sin(angles), np.zeros(len(angles))])
+        return self.radius * np.roll(flat, plane_order(plane)[0], axis=1)
 
 
 def base_circle(radius: float, half_angle: float) -> Array:

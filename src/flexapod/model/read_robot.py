@@ -8,9 +8,9 @@ from typing import cast
 import numpy as np
 
 from flexapod.errors import InputError
-from flexapod.model.axes import Plane, normal_of, plane_order
+from flexapod.model.axes import Plane, normal_of
 from flexapod.model.chain import chains_of
-from flexapod.model.circle import Circle, base_circle, platform_circle
+from flexapod.model.circle import Circle
 from flexapod.model.drive import ForceDrive
 from flexapod.model.home import Home
 from flexapod.model.leg import Leg
@@ -111,9 +111,7 @@ def _shared(section: Section, end: str, count: int) -> Array | list[list[float]]
         section.only("joints", *fixed)
         return section.rows("joints", *(_LENGTHS,) * count)
     circle = section.read(Circle, also=("joints", *fixed), then=lambda s: _angles(s, count))
-    if circle.half_angle is not None:
-        return (base_circle if end == "base" else platform_circle)(circle.radius, circle.half_angle)
-    return np.roll(circle.places, plane_order(section.plane)[0], axis=1)
+    return circle.joints(end, section.plane)
 
 
 def _angles(section: Section, count: int) -> dict[str, object]:

@@ -33,7 +33,7 @@ def check_counts(robot: Robot) -> None:
         if len(found) != len(chains):
             words = f"says {len(chains)} legs, and there are {len(found)}"
         raise InputError(words, key="robot.type", value=robot.type, allowed="as many legs as the type says")
-    for name, joints in (("base", robot.home_bases), ("platform", robot.platform_joints)):
+    for name, joints in (("base", robot.base_joints), ("platform", robot.platform_joints)):
         if len(joints) != len(chains):
             raise InputError(
                 f"has {len(joints)} joints for {len(chains)} legs",

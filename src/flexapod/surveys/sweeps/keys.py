@@ -7,7 +7,8 @@ from collections.abc import Iterator, Mapping
 from typing import Any
 
 from flexapod.errors import InputError, closest
-from flexapod.model import MATERIALS, base_circle, platform_circle
+from flexapod.model import MATERIALS
+from flexapod.model.circle import Circle
 from flexapod.units import to_si
 
 __all__ = [
@@ -25,8 +26,14 @@ __all__ = [
 
 Step = str | int
 _NAME = re.compile(r"([A-Za-z_][\w-]*)((?:\[\d+\])*)")
-_SHORT = [{"joints", "radius"}, {"joints", "half_angle"}, {"material", "E"}, {"material", "density"}]
-_CIRCLES = {"base": base_circle, "platform": platform_circle}
+_SHORT = [
+    {"joints", "radius"},
+    {"joints", "half_angle"},
+    {"joints", "angles"},
+    {"material", "E"},
+    {"material", "density"},
+]
+_ENDS = ("base", "platform")
 
 
 def parse_key(key: object, *, what: str) -> tuple[Step, ...]:
@@ -124,10 +131,8 @@ def _spell_out(table: dict[str, Any], steps: tuple[Step, ...], at: int) -> None:
     numbered = at + 1 < len(steps) and isinstance(steps[at + 1], int)
     if at == 0 and step == "leg" and numbered:
         table["leg"] = _each_leg(table)
-    elif step == "joints" and before in _CIRCLES and {"radius", "half_angle"} <= table.keys():
-        radius = to_si(table.pop("radius"), "length", key=f"robot.{before}.radius")
-        half_angle = to_si(table.pop("half_angle"), "angle", key=f"robot.{before}.half_angle")
-        table["joints"] = _CIRCLES[str(before)](radius, half_angle).tolist()
+    elif before == "robot" and step in _ENDS and steps[at + 1 : at + 2] == ("joints",):
+        _place(table.get(str(step)), str(step), table.get("plane"))
     elif step == "damping" and len(steps) == at + 2 and (at == 1 or isinstance(before, int)):
         if not isinstance(table.get("damping", {}), dict):
             table["damping"] = {"ratio": table["damping"]}
@@ -136,6 +141,20 @@ def _spell_out(table: dict[str, Any], steps: tuple[Step, ...], at: int) -> None:
         table |= {"E": material.E, "density": material.density}
         if material.yield_stress is not None:
             table.setdefault("yield_stress", material.yield_stress)
+        table.setdefault("poisson", material.poisson)
+
+
+def _place(circle: Any, end: str, plane: str | None) -> None:
+    """Replace a circle by its joints."""
+    if not isinstance(circle, dict) or "radius" not in circle or not {"half_angle", "angles"} & circle.keys():
+        return
+    given: dict[str, Any] = {"radius": to_si(circle.pop("radius"), "length", key=f"robot.{end}.radius")}
+    if "half_angle" in circle:
+        given["half_angle"] = to_si(circle.pop("half_angle"), "angle", key=f"robot.{end}.half_angle")
+    else:
+        angles = enumerate(circle.pop("angles"), start=1)
+        given["angles"] = [to_si(angle, "angle", key=f"robot.{end}.angles[{i}]") for i, angle in angles]
+    circle["joints"] = Circle(**given).joints(end, plane).tolist()
 
 
 def leg_count(data: Mapping[str, Any]) -> int:
