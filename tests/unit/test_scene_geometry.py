@@ -4,13 +4,16 @@ from functools import cache
 
 import numpy as np
 import pytest
+from tests.mechanisms import ROBOTS
 
 import flexapod as fx
 from flexapod import bases, model, rigid
 from flexapod.app.view import charts as view_charts
 from flexapod.app.view import legend
+from flexapod.model import CombinedMotion
 from flexapod.plot.style import LEG_COLORS
-from flexapod.scene import geometry
+from flexapod.scene import geometry, skeleton
+from flexapod.scene.colours import colors_of_legs
 from flexapod.scene.skeleton import STATIONS
 
 
@@ -237,3 +240,43 @@ def test_charts_keep_extremes_and_values():
     assert 1234 in kept and len(kept) <= view_charts.MOST + 2
     assert kept[0] == 0 and kept[-1] == 4999 and (np.diff(kept) > 0).all()
     assert list(view_charts.charts(actuator_run()[1])) == ["tip deflection", "length", "torque", "force", "energies"]
+
+
+def test_the_hull_of_a_platform_leaves_out_a_joint_in_its_middle():
+    corners = np.array([[0.2, 0, 1.0], [-0.1, 0.17, 1], [-0.1, -0.17, 1], [0, 0, 1], [0.01, 0.02, 1]])
+    assert sorted(skeleton.around(corners)) == [0, 1, 2]
+    hexagon = np.array([[np.cos(a), np.sin(a), 0.3 * np.sin(a)] for a in (0, 2, 1, 4, 3, 5)])
+    order = list(skeleton.around(hexagon))
+    start = order.index(0)
+    ring = order[start:] + order[:start]
+    assert ring in ([0, 2, 1, 4, 3, 5], [0, 5, 3, 4, 1, 2])
+
+
+@pytest.mark.parametrize("name", list(ROBOTS))
+def test_a_rigid_mechanism_at_home_is_drawn_where_its_joints_are(name):
+    robot = ROBOTS[name]()
+    drawn = skeleton.Skeleton(robot).home
+    # Positions of carriages at home are computed twice, by the reader and for the picture: rounding.
+    np.testing.assert_allclose(drawn.base, robot.home_bases, rtol=0, atol=1e-12)
+    np.testing.assert_allclose(drawn.platform, robot.home_tips, rtol=0, atol=1e-15)
+    np.testing.assert_allclose(drawn.piston[:, -1], drawn.platform, rtol=0, atol=1e-12)
+    hinges = sum(
+        "R" in joints for joints in [j for leg in robot.legs for j in (leg.letters.base, leg.letters.platform)]
+    )
+    cranks = sum(leg.letters.carriage == "crank" for leg in robot.legs)
+    assert len(drawn.hinges) == hinges + cranks
+    assert len(drawn.guides) == sum(leg.carriage is not None for leg in robot.legs)
+
+
+@pytest.mark.parametrize("name", ["6-PUS", "6-RUS", "3-PUU", "planar 3-PRR", "3-UPS+UP"])
+def test_struts_keep_their_length_where_the_platform_moves(name):
+    robot = ROBOTS[name]()
+    path = rigid.poses(robot, CombinedMotion(amplitudes={"yaw" if robot.plane else "heave": 0.03}, duration=1.0), [0.7])
+    drawn = skeleton.Skeleton(robot).at(path.position[0], path.rotation[0])
+    legs = rigid.inverse_kinematics(robot, path)
+    lengths = np.linalg.norm(drawn.platform - drawn.base, axis=1)
+    np.testing.assert_allclose(lengths, legs.length[0], rtol=0, atol=1e-9)  # gap of a guided pose
+
+
+def test_colours_of_many_legs_differ():
+    assert colors_of_legs(6) == LEG_COLORS and len(set(colors_of_legs(16))) == 16

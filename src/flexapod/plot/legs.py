@@ -31,6 +31,7 @@ from flexapod.study.words import NOTHING
 
 __all__ = ["actuator_forces", "force_panels", "leg_lengths", "limits", "tip_deflections"]
 
+ROUNDING = 1e-11  # of where drives stand
 _WORDS = {"rigid": "rigid legs", "lumped": "legs that stretch", "assumed-modes": "flexible legs"}
 
 
@@ -130,6 +131,7 @@ def leg_lengths(data: xr.Dataset) -> Figure:
     fig = figure(PAGE, 5.0)
     above, below = fig.subplots(2, 1, sharex=True, height_ratios=(1.3, 1))
     command, error, lengths = found.command, found.position - found.command, found.place == "length"
+    error = error * (float(np.abs(error).max()) > ROUNDING * float(np.abs(command).max()))
     big = Scale(1e3, "mm") if found.place_unit == "m" else scale(command, "rad")
     small, end = scale(error, found.place_unit), motion_end(data)
     for i, leg in enumerate(data.leg.values):
@@ -138,7 +140,7 @@ def leg_lengths(data: xr.Dataset) -> Figure:
             _leg_line(below, data, small(error.sel(leg=leg)), i)
     travel = big.factor * float((command.max("time") - command.min("time")).max())
     spread = big.factor * float((command.max("leg") - command.min("leg")).max())
-    words = f"longest travel {travel:.0f} {big.name}, legs differ by up to {spread:.0f} {big.name}"
+    words = f"longest travel {travel:.0f} {big.name}" + f", legs differ by up to {spread:.0f} mm" * lengths
     above.set_title(f"Commanded {found.place} ({words})")
     below.set_title("Length error of the flexible legs" if lengths else "How far the drives are off")
     above.set_ylabel("joint to joint [mm]" if lengths else f"{found.place} [{big.name}]")
@@ -151,7 +153,7 @@ def leg_lengths(data: xr.Dataset) -> Figure:
 
 
 @styled
-@needs("tip_deflection", "leg_length")
+@needs("tip_deflection", "com_deviation")
 def tip_deflections(data: xr.Dataset) -> Figure:
     """Lateral deflection of each piston's tip from its cylinder's axis, in the two directions of the leg frame.
 

@@ -229,7 +229,15 @@ class Skeleton:
 
 
 def around(points: Array) -> NDArray[np.intp]:
-    """Order of about coplanar points (n, 3) around their centre."""
+    """The corners of the hull of about coplanar points (n, 3) in their order; of points on a line all of them."""
     arms = points - points.mean(axis=0)
     first, second, _ = np.linalg.svd(arms)[2]
-    return np.argsort(np.arctan2(arms @ second, arms @ first))
+    flat = np.stack([arms @ first, arms @ second], axis=1)
+    order = np.argsort(np.arctan2(flat[:, 1], flat[:, 0]))
+    while len(order) > 3:
+        before, after = flat[np.roll(order, 1)] - flat[order], flat[np.roll(order, -1)] - flat[order]
+        inward = before[:, 1] * after[:, 0] - before[:, 0] * after[:, 1] < -1e-9 * np.ptp(flat) ** 2
+        if not inward.any():
+            break
+        order = np.delete(order, inward.argmax())
+    return order

@@ -41,8 +41,8 @@ class LegColors:
     """Values of a quantity in all legs over time, and the colours that stand for them.
 
     `values` (T, legs) in the unit `unit`, NaN for a leg without one (grey); the scale goes from `low` to `high`;
-    `title` and `note`: words of the legend; `below`: colour of values below `low`, None where that of `low` is meant; `none`:
-    words of a leg without value.
+    `title` and `note`: words of the legend; `below`: colour of values below `low`, None where that of `low` is meant;
+    `none`: words of a leg without value.
     """
 
     values: Array
