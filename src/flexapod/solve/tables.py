@@ -20,21 +20,25 @@ Law = Callable[[Array], tuple[Array, Array]]
 def robot_law(system: System, robot: Robot, load: Load, poses: Callable[[Array], rigid.Poses]) -> Law:
     """Return what a robot is commanded as a function of time; ``poses`` is the rigid path.
 
-    Driven coordinates follow the path; what else is held stays where it is at home.
+    Driven coordinates follow the path; what else is held stays where it is at home, of a flexure at zero.
     """
     chains, shapes = rigid.robot_limbs(robot), system.kernel.shapes
-    names = [next(name for name in COORDINATES if shapes.has(name) and shapes.index(name) == k) for k in system.ports]
-    places = [COORDINATES.index(name) for name in names]
-    driven, home = chains.state[:, places] == DRIVEN, chains.home[:, places]
+    names = {shapes.index(name): name for name in COORDINATES if shapes.has(name)}
+    driven, home = np.zeros((2, system.legs, system.ports.size))
+    for k, port in enumerate(system.ports):
+        if port in names:
+            place = COORDINATES.index(names[port])
+            driven[:, k], home[:, k] = chains.state[:, place] == DRIVEN, chains.home[:, place]
+    driven = driven.astype(bool)
 
     def law(t: Array) -> tuple[Array, Array]:
         path = poses(t)
         legs, wrench = rigid.inverse_kinematics(robot, path), rigid.wrench(load, t)
         table = np.zeros((len(t), system.legs, system.ports.size, COLUMNS))
         table[..., 0] = home
-        for k, name in enumerate(names):
+        for k in np.flatnonzero(driven.any(axis=0)):
             which = slice(None) if driven[:, k].all() else driven[:, k]
-            for column, part in enumerate(legs.coordinate(name)):
+            for column, part in enumerate(legs.coordinate(names[system.ports[k]])):
                 table[:, which, k, column] = part[:, which]
         table[:, driven, 3] = feed_forward(robot, t, path, wrench)[:, driven.any(axis=1)]
         return table, wrench
