@@ -3,9 +3,14 @@
 import numpy as np
 import pytest
 from tests.moving import KINDS, SOFT, moving
-from tests.runs import balance, run_robot
+from tests.runs import balance, run_robot, with_legs
 
+from flexapod.model import override
+from flexapod.model.joint import Joint
 from flexapod.solve.robot_march import prepare
+
+#: Stiffness of a flexure in the axes of its leg [N/m, N, N m/rad].
+SIX = np.diag([1.3e7, 1.3e7, 9.4e7, 150.0, 150.0, 200.0])
 
 
 @pytest.mark.parametrize("kind", KINDS)
@@ -18,6 +23,18 @@ def test_the_balance_closes_at_second_order_and_the_closures_at_rounding(kind):
         drift.append(np.ptp(balance(run)))
         assert run["closure"].max() < 1e-13  # rounding of metres, of turns times L_c
     assert drift[1] < 2e-4 * np.ptp(run["sums"][:, 1])
+    assert np.log2(drift[0] / drift[1]) == pytest.approx(2.0, abs=0.1)
+
+
+@pytest.mark.parametrize("joint", [Joint(bending=150.0, torsion=200.0), Joint(stiffness=SIX, leg_axes=True)])
+def test_legs_on_flexures_close_the_balance_as_others_do(joint):
+    # Springs on angles, and places that give way without any mass of their own.
+    study, drift = moving("6-FPF", SOFT, axial_modes=0, modes=2), []
+    for h in (5e-4, 2.5e-4):
+        study = override(with_legs(study, lambda leg: leg.replace(base_joint=joint, platform_joint=joint)), step=h)
+        run = run_robot(study)
+        drift.append(np.ptp(balance(run)))
+        assert run["closure"].max() < 1e-13
     assert np.log2(drift[0] / drift[1]) == pytest.approx(2.0, abs=0.1)
 
 

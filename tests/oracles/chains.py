@@ -19,7 +19,7 @@ from . import nonlinear
 from .ritz import Shapes, gauss
 
 STEP = 1e-30
-POINTS = 24
+POINTS = 16
 
 
 def about(axis: Any, angle: complex) -> np.ndarray:
