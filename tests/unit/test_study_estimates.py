@@ -5,7 +5,7 @@ from dataclasses import replace
 import numpy as np
 import pytest
 from scipy.integrate import quad, solve_ivp
-from scipy.linalg import null_space
+from scipy.linalg import eigh, null_space
 from scipy.optimize import brentq
 from tests.runs import paper_robot, with_legs
 
@@ -20,6 +20,7 @@ from flexapod.solve.robot_system import robot_system
 from flexapod.solve.shapes import space_shapes
 from flexapod.study.before.describe.pose import vibration_to_expect
 from flexapod.study.before.estimates import Vibration, bending_moment, buckling_load, residual_vibration, section_width
+from flexapod.study.path import RigidPath
 
 LEG = paper_robot().robot.legs[0]
 EI = LEG.piston.EI
@@ -56,6 +57,49 @@ def test_buckling_load_makes_the_own_stiffness_of_a_leg_singular(mouth):
     assert found == pytest.approx(expected, rel=1e-8)  # Ritz: error of the load is the square of the shape's, 1e-6
 
 
+def ended(chain, mouth):
+    passive = {"passive": True} if chain == "UP" else {}
+    return with_mouth(mouth).replace(chain=chain, **passive)
+
+
+def hermite_load(mouth, free, base, platform, count=40):
+    """Smallest buckling load of a column of finite elements whose foot is a rigid part of length `mouth`."""
+    h, size = free / count, 2 * (count + 1)
+    K, G = np.zeros((size, size)), np.zeros((size, size))
+    k = EI / h**3 * np.array([[12, 6 * h, -12, 6 * h], [6 * h, 4 * h**2, -6 * h, 2 * h**2],
+                              [-12, -6 * h, 12, -6 * h], [6 * h, 2 * h**2, -6 * h, 4 * h**2]])  # fmt: skip
+    g = np.array([[36, 3 * h, -36, 3 * h], [3 * h, 4 * h**2, -3 * h, -(h**2)],
+                  [-36, -3 * h, 36, -3 * h], [3 * h, -(h**2), -3 * h, 4 * h**2]]) / (30 * h)  # fmt: skip
+    for i in range(count):
+        at = slice(2 * i, 2 * i + 4)
+        K[at, at] += k
+        G[at, at] += g
+    T = np.zeros((size, size - 1))  # the mouth turns with the rigid part: y = m theta
+    T[0, 0], T[1:, :] = mouth, np.eye(size - 1)
+    kept = [0] * (not base) + list(range(1, size - 3)) + [size - 2] * (not platform)
+    reduced = T[:, kept]
+    rigid_part = np.zeros((size - 1, size - 1))
+    rigid_part[0, 0] = mouth  # shortening of the rigid part, m theta^2
+    G = reduced.T @ G @ reduced + rigid_part[np.ix_(kept, kept)]
+    return np.min(eigh(reduced.T @ K @ reduced, G, eigvals_only=True))
+
+
+@pytest.mark.parametrize("mouth", [0.0, 0.05, 0.315, 1.0])
+@pytest.mark.parametrize(
+    ("chain", "base", "platform"),
+    [("UPF", False, True), ("UP", False, True), ("FPS", True, False), ("FPF", True, True), ("RPS", False, False)],
+)
+def test_buckling_loads_of_other_ends_against_finite_elements(chain, base, platform, mouth):
+    found = float(buckling_load(ended(chain, mouth), np.array([0.6]))[0])
+    assert found == pytest.approx(hermite_load(mouth, 0.6, base, platform), rel=1e-5)  # 40 elements: (ks / 40)^4
+
+
+def test_ends_on_springs_count_as_pinned():
+    sprung = LEG.replace(chain="FPF", base_joint={"bending": 20.0}, platform_joint={"bending": 20.0})
+    free = np.array([0.6])
+    assert buckling_load(sprung, free) == buckling_load(LEG, free)
+
+
 def test_width_of_a_piston_without_section():
     assert section_width(LEG.piston) == 0.027
     bare = LEG.piston.replace(diameter=None, E=None, density=None)
@@ -63,10 +107,8 @@ def test_width_of_a_piston_without_section():
 
 
 def moments(study, t):
-    path = rigid.poses(study.robot, study.motion, t)
-    legs = rigid.inverse_kinematics(study.robot, path)
-    forces = rigid.inverse_dynamics(study.robot, path, np.zeros((len(t), 6)))
-    return bending_moment(study.robot, path, legs, forces.joint_force)
+    path = RigidPath(study, t)
+    return bending_moment(path, path.forces.joint_force)
 
 
 def test_bending_moment_is_that_of_stiff_pistons_in_motion():

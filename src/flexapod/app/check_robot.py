@@ -16,6 +16,8 @@ if TYPE_CHECKING:
 
 __all__ = ["show_robot"]
 
+SHOWN_ANGLE = math.radians(60)
+
 
 def show_robot(found: RobotDescription) -> None:
     """Print a description in sections."""
@@ -25,6 +27,8 @@ def show_robot(found: RobotDescription) -> None:
     )
     _motions(found)
     _lengths(found)
+    _carriages(found)
+    _angles(found)
     _singularity(found)
     _loads(found)
     for pose in found.poses:
@@ -54,7 +58,7 @@ def _lengths(found: RobotDescription) -> None:
             _at(leg.shortest),
             _at(leg.longest),
             "no limits" if leg.stroke_margin is None else _at(leg.stroke_margin),
-            f"{1e3 * leg.guided.value:.2f}",
+            "strut" if leg.guided is None else f"{1e3 * leg.guided.value:.2f}",
             f"{leg.slenderness:.1f}",
         ]
         for leg in found.legs
@@ -72,14 +76,41 @@ def _lengths(found: RobotDescription) -> None:
         )
 
 
+def _carriages(found: RobotDescription) -> None:
+    ways = [(leg.leg, leg.carriage) for leg in found.legs if leg.carriage is not None]
+    if not ways:
+        return
+    turns = ways[0][1].kind == "crank"
+    unit, factor = ("deg", 180 / math.pi) if turns else ("mm", 1e3)
+    _heading("Cranks" if turns else "Carriages")
+    rows = []
+    for leg, way in ways:
+        extremes = (way.low, way.high, way.margin)
+        rows.append([f"  leg {leg}", *("no limits" if e is None else _at(e, factor) for e in extremes)])
+    print_table(["", f"least [{unit}]", f"largest [{unit}]", f"travel left [{unit}]"], rows)
+
+
+def _angles(found: RobotDescription) -> None:
+    """Angles of joints that come near their limit of 85 deg; those of universal joints of six legs UPS go unsaid."""
+    least = {"universal joint": SHOWN_ANGLE}
+    shown = [a for a in found.angles if a.largest.value > least.get(a.joint, 1e-3)]
+    if not shown:
+        return
+    _heading("Largest angles (limit 85 deg)")
+    for angle in shown:
+        words = "between carriage and leg" if angle.joint == "carriage" else f"of the {angle.joint}"
+        degrees = math.degrees(angle.largest.value)
+        print_text(f"{degrees:.1f} deg {words} of leg {angle.leg} at t = {angle.largest.time:.3f} s.", indent=2)
+
+
 def _most(values: Sequence[float]) -> int:
     """Number of the largest value: the first of those that differ by rounding."""
     largest = max(values)
     return next(i for i, value in enumerate(values) if value >= largest - 1e-9 * abs(largest))
 
 
-def _at(extreme: Extreme) -> str:
-    return f"{1e3 * extreme.value:.2f} at {extreme.time:.3f} s"
+def _at(extreme: Extreme, factor: float = 1e3) -> str:
+    return f"{factor * extreme.value + 0.0:.2f} at {extreme.time:.3f} s"
 
 
 def _singularity(found: RobotDescription) -> None:
@@ -97,9 +128,8 @@ def _singularity(found: RobotDescription) -> None:
 def _loads(found: RobotDescription) -> None:
     _heading("Loads (+ pushes)")
     count = len(found.legs)
-    unit, forces = column(
-        [*(leg.force_min.value for leg in found.legs), *(leg.force_max.value for leg in found.legs)], "N"
-    )
+    of_drives = [*(leg.force_min.value for leg in found.legs), *(leg.force_max.value for leg in found.legs)]
+    unit, forces = column(of_drives, "N m" if any(leg.drive == "crank" for leg in found.legs) else "N")
     _, shares = column([100 * leg.euler_share.value for leg in found.legs], "", 3)
     times = [f" at {leg.euler_share.time:.3f} s" for leg in found.legs]
     pushed_words = [

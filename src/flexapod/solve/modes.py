@@ -1,6 +1,6 @@
 """Undamped and damped modes of the locked robot about its static equilibrium, Eqs. (T7.2)-(T7.5), (T7.16)-(T7.17)."""
 
-from dataclasses import dataclass
+from dataclasses import dataclass, replace
 from functools import cached_property
 
 import numpy as np
@@ -9,6 +9,7 @@ from flexapod import rigid
 from flexapod.bases.eigen import finite
 from flexapod.errors import ComputationError, InputError
 from flexapod.model import Load, Robot, Simulation
+from flexapod.rigid.limbs import DRIVEN, FREE
 from flexapod.solve.damped import damping_ratios
 from flexapod.solve.elimination import LegBases, closed, expanded, leg_bases, null_space_of_borders, reduced
 from flexapod.solve.equilibrium import FOUND, Equilibria, Equilibrium, equilibria
@@ -80,9 +81,15 @@ class ManyModes:
 
 
 def refuse_pure_force(robot: Robot, what: str) -> None:
-    """Raise InputError if a leg's drive is a force without feedback stiffness: nothing holds its stroke."""
-    for i, leg in enumerate(robot.legs, start=1):
-        if leg.drive.type == "force" and (leg.drive.feedback is None or leg.drive.feedback.stiffness == 0):
+    """Raise InputError if drives that are a force without feedback stiffness leave the platform something to do."""
+    pure = [
+        leg.drive.type == "force" and (leg.drive.feedback is None or leg.drive.feedback.stiffness == 0)
+        for leg in robot.legs
+    ]
+    if not any(pure) or _held_by_others(robot, np.array(pure)):
+        return
+    for i, loose in enumerate(pure, start=1):
+        if loose:
             raise InputError(
                 f"{what} of leg {i} has no meaning: a pure force drive holds no position, so the stroke is free",
                 key="leg.drive",
@@ -90,6 +97,14 @@ def refuse_pure_force(robot: Robot, what: str) -> None:
                 allowed='"prescribed", "servo", or a force drive with feedback stiffness',
                 next_step='A simulation can start with [initial] start = "moving"',
             )
+
+
+def _held_by_others(robot: Robot, pure: Mask) -> bool:
+    """Whether the drives that hold a position leave the platform no motion at home."""
+    legs = rigid.rigid_limbs(robot)
+    loose = pure[:, None] & (legs.state == DRIVEN)
+    others = replace(legs, state=np.where(loose, FREE, legs.state).astype(legs.state.dtype))
+    return rigid.mobility(others).locked_platform.shape[1] == 0
 
 
 def locked_poses(

@@ -56,6 +56,11 @@ class RigidPath:
         return rigid.poses(self.robot, self.study.motion, self.time)
 
     @cached_property
+    def reach(self) -> rigid.Reach:
+        """What the poses ask of the legs, whether they can take them or not."""
+        return rigid.reach(self.robot, self.poses)
+
+    @cached_property
     def legs(self) -> rigid.LegState:
         """Legs with rates and accelerations."""
         return rigid.inverse_kinematics(self.robot, self.poses)

@@ -7,6 +7,7 @@ import numpy as np
 from flexapod.bases import LateralBasis
 from flexapod.mechanics.layout import Shapes
 from flexapod.model import Robot
+from flexapod.rigid.kinematics import LegState
 from flexapod.rigid.limbs import ABSENT, COORDINATES, DRIVEN, HELD, Limbs
 from flexapod.rigid.rotations import exponential
 from flexapod.study.names import ANGLES
@@ -14,6 +15,7 @@ from flexapod.typing import Array
 
 __all__ = [
     "angle_names",
+    "base_motion",
     "base_points",
     "bending_basis",
     "drive_names",
@@ -92,3 +94,15 @@ def base_points(limbs: Limbs, chi: Array | None) -> Array:
     if limbs.carriage == "slider":
         return limbs.base + way
     return limbs.base + (exponential(way) @ limbs.carriage_arm[..., None])[..., 0] - limbs.carriage_arm
+
+
+def base_motion(limbs: Limbs, legs: LegState) -> tuple[Array, Array]:
+    """Velocities and accelerations of the base joints, (T, n, 3) each; zero where nothing moves them."""
+    zero = np.zeros((*legs.length.shape, 3))
+    if not limbs.carriage:
+        return zero, zero
+    chi, rate, change = (part[..., None] for part in legs.coordinate("chi"))
+    if limbs.carriage == "slider":
+        return rate * limbs.carriage_axis, change * limbs.carriage_axis
+    way = np.cross(limbs.carriage_axis, base_points(limbs, chi[..., 0]) - limbs.base + limbs.carriage_arm)
+    return rate * way, change * way + rate**2 * np.cross(limbs.carriage_axis, way)

@@ -61,7 +61,7 @@ def check_geometry(study: Study, path: RigidPath | None = None) -> list[str]:
         remarks = check_outputs(study)
         if rigid.rigid_limbs(robot).guides:
             rigid.refuse_loose(rigid.rigid_limbs(robot))
-        t, found = path.time, rigid.reach(robot, path.poses)
+        t, found = path.time, path.reach
         _refuse_lost(robot, t, found)
         _refuse_excess(robot, t, found)
         _refuse_folded(t, found)

@@ -8,12 +8,12 @@ import numpy as np
 
 from flexapod import rigid
 from flexapod.model import Leg, Piston, Robot
-from flexapod.rigid.kinematics import LegState
 from flexapod.rigid.rotations import matrix
 from flexapod.solve.modes import RobotModes
 from flexapod.solve.rigid_motion import rigid_motion
 from flexapod.solve.tables import feed_forward
-from flexapod.study.after.legs import of_drives
+from flexapod.study.after.legs import base_motion, of_drives
+from flexapod.study.path import RigidPath
 from flexapod.typing import Array
 
 __all__ = ["Vibration", "bending_moment", "buckling_load", "residual_vibration", "section_width"]
@@ -27,7 +27,10 @@ def section_width(piston: Piston) -> float:
 
 
 def buckling_load(leg: Leg, free: Array) -> Array:
-    """Euler load of a leg [N]: elastic over its free length, rigid to the mouth, pinned at both ends, Eq. (T8.11).
+    """Euler load of a leg [N]: elastic over its free length, rigid to the mouth, Eqs. (T8.11) and (T8.22).
+
+    Its ends are pinned, but clamped where they are fixed without a spring. Of a hinge the plane counts in which it
+    turns: there the leg buckles first.
 
     Parameters
     ----------
@@ -38,34 +41,70 @@ def buckling_load(leg: Leg, free: Array) -> Array:
     Returns
     -------
     ndarray, shape (T,)
-        EI k^2 with the smallest root of tan(k s) + k m = 0, m the distance of the mouth from the universal joint.
+        EI k^2 with the smallest root k; for pinned ends of tan(k s) + k m = 0, m from the base joint to the mouth.
     """
     free = np.asarray(free, dtype=float)
-    ratio = leg.cylinder.mouth / free
+    x = _ROOTS[_clamped(leg)](leg.cylinder.mouth / free)
+    return leg.piston.EI * (x / free) ** 2  # (T8.11)
+
+
+def _clamped(leg: Leg) -> tuple[bool, bool]:
+    """Whether base and platform end of a leg are clamped."""
+    letters, joints = leg.letters, (leg.base_joint, leg.platform_joint)
+    base, platform = (
+        letter in ("F", "") and joint.bending is None and joint.stiffness is None
+        for letter, joint in zip((letters.base, letters.platform), joints, strict=True)
+    )
+    return base, platform
+
+
+def _pinned(ratio: Array) -> Array:
+    """Root of tan x + ratio x = 0 between pi/2 and pi."""
     # x + arctan(ratio x) = pi has one root between pi/2 and pi; its left side is concave and rising: Newton converges.
-    x = np.full_like(free, np.pi / 2)
+    x = np.full_like(ratio, np.pi / 2)
     for _ in range(50):
         value = x + np.arctan(ratio * x) - np.pi
         x = x - value / (1 + ratio / (1 + (ratio * x) ** 2))
         if np.abs(value).max(initial=0.0) < 1e-14:
             break
-    return leg.piston.EI * (x / free) ** 2  # (T8.11)
+    return x
 
 
-def bending_moment(robot: Robot, path: rigid.Poses, legs: LegState, joint_force: Array) -> Array:
+def _clamped_at_the_platform(ratio: Array) -> Array:
+    """Root between pi and 4.5 of the leg that is pinned at its base and clamped at its tip."""
+    low, high = np.full_like(ratio, np.pi), np.full_like(ratio, 4.5)
+    for _ in range(60):  # (T8.22)
+        x = 0.5 * (low + high)
+        sine, cosine = np.sin(x), np.cos(x)
+        positive = ratio * x * cosine + sine - (1 + ratio) * x * (cosine - ratio * x * sine) > 0
+        low, high = np.where(positive, x, low), np.where(positive, high, x)
+    return 0.5 * (low + high)
+
+
+_ROOTS = {
+    (False, False): _pinned,
+    (False, True): _clamped_at_the_platform,
+    (True, False): lambda ratio: np.full_like(ratio, 4.493409457909064),  # tan x = x: the mouth does not move
+    (True, True): lambda ratio: np.full_like(ratio, 2 * np.pi),
+}
+"""Smallest root k s by what is clamped, base and platform; of the mouth's distance over the free length."""
+
+
+def bending_moment(path: RigidPath, joint_force: Array) -> Array:
     """Largest bending moment in the free part of each piston on the rigid path, (T, legs) [N m], Eqs. (T8.12)-(T8.13).
 
     The piston is loaded by the joint force at its tip, its weight and its inertia as a rigid rod; the leg's own
     vibration is left out.
     """
-    tip, tip_dot, tip_ddot = path.point(robot.platform_joints)
-    axis = (tip - robot.base_joints) / legs.length[..., None]
-    axis_dot = (tip_dot - legs.rate[..., None] * axis) / legs.length[..., None]
+    robot, legs, axis = path.robot, path.legs, path.axes
+    tip, tip_dot, tip_ddot = path.poses.point(robot.platform_joints)
+    foot_dot, foot_ddot = base_motion(rigid.rigid_limbs(robot), legs)
+    axis_dot = (tip_dot - foot_dot - legs.rate[..., None] * axis) / legs.length[..., None]
 
     def across(vector: Array) -> Array:
         return vector - np.einsum("tni,tni->tn", vector, axis)[..., None] * axis
 
-    base = 2 * legs.rate[..., None] * axis_dot  # (T8.12)  transverse acceleration of a piston point at the U joint
+    base = foot_ddot + 2 * legs.rate[..., None] * axis_dot  # (T8.12)  of a piston point at the base joint, across
     at_tip = across(tip_ddot)
     slope = (at_tip - across(base)) / legs.length[..., None]
     load = across(np.broadcast_to(robot.gravity, tip.shape)) - at_tip

@@ -13,7 +13,7 @@ from flexapod.study.before.estimates import buckling_load, section_width
 from flexapod.study.before.thick import piston_section
 from flexapod.typing import Array
 
-__all__ = ["Extreme", "LegDescription", "Stress", "describe_leg", "load_remarks"]
+__all__ = ["Extreme", "LegDescription", "LegPath", "Stress", "Way", "describe_leg", "load_remarks"]
 
 
 @dataclass(frozen=True, kw_only=True)
@@ -22,6 +22,16 @@ class Extreme:
 
     value: float
     time: float
+
+
+@dataclass(frozen=True, kw_only=True)
+class Way:
+    """Least and largest position of a carriage [m, of a crank rad]; least distance from its limits, None without."""
+
+    kind: str
+    low: Extreme
+    high: Extreme
+    margin: Extreme | None
 
 
 @dataclass(frozen=True, kw_only=True)
@@ -39,19 +49,24 @@ class LegDescription:
     """One leg on the rigid path, SI units.
 
     `home`, `shortest`, `longest`: joint to joint; `stroke`: allowed, None without limits; `stroke_margin`: least
-    distance from them; `guided`: least length of piston in the cylinder; `slenderness`: least free length over width;
-    `force_min`, `force_max`: of the drive, positive pushes out; `euler_share`: largest thrust over Euler load (T8.11),
-    0 if never pushed, `euler_load` there; `stress`: None where section or material is not known.
+    distance from them; `guided`: least length of piston in the cylinder, None of a strut; `slenderness`: least free
+    length over width; `carriage`: where that goes, None without one; `drive`: what drives the leg ("stroke", "slider",
+    "crank", "" of a passive leg); `force_min`, `force_max`: of the drive [N, of cranks N m], positive pushes out;
+    `euler_share`: largest thrust over Euler load (T8.11), 0 if never pushed, `euler_load` there; `stress`: None where
+    section or material is not known.
     """
 
     leg: int
+    chain: str
     home: float
     shortest: Extreme
     longest: Extreme
     stroke: tuple[float, float] | None
     stroke_margin: Extreme | None
-    guided: Extreme
+    guided: Extreme | None
     slenderness: float
+    carriage: Way | None
+    drive: str
     force_min: Extreme
     force_max: Extreme
     euler_share: Extreme
@@ -59,9 +74,23 @@ class LegDescription:
     stress: Stress | None
 
 
-def describe_leg(
-    number: int, leg: Leg, t: Array, length: Array, force: Array, thrust: Array, moment: Array, home: float
-) -> LegDescription:
+@dataclass(frozen=True, kw_only=True)
+class LegPath:
+    """A leg along the rigid path, each shape (T,).
+
+    `time` [s]; `length` joint to joint [m]; `carriage` [m, rad]; `force` of the drive [N, N m] and `thrust` along the
+    leg at its tip [N]; bending `moment` [N m].
+    """
+
+    time: Array
+    length: Array
+    carriage: Array
+    force: Array
+    thrust: Array
+    moment: Array
+
+
+def describe_leg(number: int, leg: Leg, path: LegPath, home: float) -> LegDescription:
     """Extremes of a leg.
 
     Parameters
@@ -69,30 +98,34 @@ def describe_leg(
     number : int
         From 1.
     leg : Leg
-    t, length, force, thrust, moment : ndarray, each shape (T,)
-        Instants [s]; joint-to-joint length [m]; force of the drive and thrust at the tip [N]; bending moment [N m].
+    path : LegPath
     home : float
         Length at home [m].
     """
+    t, length = path.time, path.length
     free = length - leg.cylinder.mouth
-    pushed = np.maximum(force, thrust)  # the axial force goes from the drive's to the tip's along the piston
+    along = path.force if leg.driven == "stroke" else path.thrust
+    pushed = np.maximum(along, path.thrust)  # the axial force goes from the drive's to the tip's along the piston
     euler = buckling_load(leg, free)
     near = int((pushed / euler).argmax())
     inside = np.minimum(leg.piston.length, leg.piston.length - free)
     return LegDescription(
         leg=number,
+        chain=leg.chain,
         home=home,
         shortest=_least(t, length),
         longest=_most(t, length),
         stroke=None if leg.stroke is None else (leg.stroke.min, leg.stroke.max),
         stroke_margin=_margin(leg, t, length),
-        guided=_least(t, inside),
+        guided=None if leg.strut is not None else _least(t, inside),
         slenderness=float(free.min() / section_width(leg.piston)),
-        force_min=_least(t, force),
-        force_max=_most(t, force),
+        carriage=_way(leg, t, path.carriage),
+        drive=leg.carriage.kind if leg.carriage and leg.driven == "carriage" else leg.driven,
+        force_min=_least(t, path.force),
+        force_max=_most(t, path.force),
         euler_share=Extreme(value=max(0.0, float(pushed[near] / euler[near])), time=float(t[near])),
         euler_load=float(euler[near]),
-        stress=_stress(leg, t, np.maximum(np.abs(force), np.abs(thrust)), moment),
+        stress=_stress(leg, t, np.maximum(np.abs(along), np.abs(path.thrust)), path.moment),
     )
 
 
@@ -104,6 +137,14 @@ def _least(t: Array, values: Array) -> Extreme:
 def _most(t: Array, values: Array) -> Extreme:
     k = int(values.argmax())
     return Extreme(value=float(values[k]), time=float(t[k]))
+
+
+def _way(leg: Leg, t: Array, place: Array) -> Way | None:
+    if leg.carriage is None:
+        return None
+    travel = leg.carriage.stroke
+    margin = None if travel is None else _least(t, np.minimum(place - travel.min, travel.max - place))
+    return Way(kind=leg.carriage.kind, low=_least(t, place), high=_most(t, place), margin=margin)
 
 
 def _margin(leg: Leg, t: Array, length: Array) -> Extreme | None:

@@ -24,6 +24,7 @@ __all__ = [
 ]
 
 SHOWN = 6
+ROUNDING = 1e-12  # of the largest compliance: below it a plane holds the platform
 BAND = 1e-6  # amplitude at which the tool counts as settled [m]
 HIGHEST = 2e3  # [Hz]: no motion of a machine excites a mode above
 PER_PERIOD, FEWEST, MOST = 12, 2000, 100_000  # instants of the motion: of a period of the highest mode, of all
@@ -106,13 +107,14 @@ def _stiffness(total: Array) -> StiffnessDescription:
     give = compliance(total)[0]
     shift, vectors = np.linalg.eigh(give[:3, :3])
     turning = np.linalg.eigvalsh(give[3:, 3:])
+    most, turning_most = (values[values > ROUNDING * values[-1]][0] for values in (shift, turning))  # others are held
     softest = vectors[:, -1] * np.sign(vectors[np.abs(vectors[:, -1]).argmax(), -1])
     return StiffnessDescription(
         least=float(1 / shift[-1]),
-        most=float(1 / shift[0]),
+        most=float(1 / most),
         softest=tuple(softest.tolist()),
         turning_least=float(1 / turning[-1]),
-        turning_most=float(1 / turning[0]),
+        turning_most=float(1 / turning_most),
     )
 
 

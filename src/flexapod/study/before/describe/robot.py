@@ -11,7 +11,7 @@ from flexapod.errors import InputError
 from flexapod.solve.robot_march import refuse_massless
 from flexapod.study.before.checks import check_path
 from flexapod.study.before.describe.actuator import ActuatorDescription, describe_actuator
-from flexapod.study.before.describe.leg import LegDescription, describe_leg, load_remarks
+from flexapod.study.before.describe.leg import Extreme, LegDescription, LegPath, describe_leg, load_remarks
 from flexapod.study.before.describe.pose import PoseDescription, VibrationToExpect, describe_pose, vibration_to_expect
 from flexapod.study.before.estimates import bending_moment
 from flexapod.study.path import RigidPath
@@ -33,8 +33,20 @@ class Singularity:
 
 
 @dataclass(frozen=True, kw_only=True)
+class JointAngle:
+    """Largest angle [rad] of those of a kind that must stay below 85 deg, and whose leg it is."""
+
+    joint: str
+    leg: int
+    largest: Extreme
+
+
+@dataclass(frozen=True, kw_only=True)
 class RobotDescription:
-    """What `describe` finds for a robot; times in s; `motions`, what poses `held` still, `remarks` of doubt in words."""
+    """What `describe` finds for a robot; times in s.
+
+    In words: what poses `held` still, `motions` that the mechanism has, `remarks` of doubt.
+    """
 
     kind: str = "robot"
     file: str | None
@@ -44,6 +56,7 @@ class RobotDescription:
     held: str
     motions: tuple[str, ...]
     legs: tuple[LegDescription, ...]
+    angles: tuple[JointAngle, ...]
     singularity: Singularity
     poses: tuple[PoseDescription, ...]
     vibration: VibrationToExpect | None
@@ -84,6 +97,7 @@ def describe(study: model.Study | model.ActuatorStudy) -> RobotDescription | Act
         held=held(study.robot),
         motions=tuple(rigid.mobility_words(rigid.rigid_limbs(study.robot))),
         legs=legs,
+        angles=_angles(path),
         singularity=singularity,
         poses=tuple(describe_pose(study, name, instant) for name, instant in instants.items()),
         vibration=vibration_to_expect(study, end),
@@ -91,6 +105,15 @@ def describe(study: model.Study | model.ActuatorStudy) -> RobotDescription | Act
             dict.fromkeys([*study.warnings, *remarks, *load_remarks(legs, study.robot, study.simulation.fidelity)])
         ),
     )
+
+
+def _angles(path: RigidPath) -> tuple[JointAngle, ...]:
+    found = []
+    for joint, angle in path.reach.angles.items():
+        k, leg = np.unravel_index(angle.argmax(), angle.shape)
+        extreme = Extreme(value=float(angle[k, leg]), time=float(path.time[k]))
+        found.append(JointAngle(joint=joint, leg=int(leg) + 1, largest=extreme))
+    return tuple(found)
 
 
 def _in_time(study: model.Study) -> list[str]:
@@ -115,12 +138,21 @@ def _singularity(robot: model.Robot, t: Array, path: rigid.Poses) -> Singularity
 
 def describe_legs(path: RigidPath) -> tuple[LegDescription, ...]:
     """Extremes of the legs on the rigid path of a study."""
-    robot, t, state, forces = path.robot, path.time, path.legs, path.forces
+    robot, forces = path.robot, path.forces
     thrust = np.einsum("tli,tli->tl", forces.joint_force, path.axes)
-    moment = bending_moment(robot, path.poses, state, forces.joint_force)
+    moment = bending_moment(path, forces.joint_force)
     return tuple(
         describe_leg(
-            i + 1, leg, t, state.length[:, i], forces.drive_force[:, i], thrust[:, i], moment[:, i],
+            i + 1,
+            leg,
+            LegPath(
+                time=path.time,
+                length=path.legs.length[:, i],
+                carriage=path.reach.carriage[:, i],
+                force=forces.drive_force[:, i],
+                thrust=thrust[:, i],
+                moment=moment[:, i],
+            ),
             float(robot.home_lengths[i]),
         )
         for i, leg in enumerate(robot.legs)
