@@ -216,6 +216,42 @@ def test_home_and_general_poses_of_the_base():
     )
 
 
+def test_a_motion_turns_on_top_of_home():
+    """R = R_motion R_home and p = p_home + x + R_home c - R c, (T2.12)."""
+    robot = ROBOTS["6-UPS"]().replace(home={"position": [0.02, -0.03, 0.8], "rotation": [0.1, -0.05, 0.2]})
+    pivot = np.array([0.05, 0.1, 0.2])
+    asked = CombinedMotion(amplitudes={"surge": 0.03, "pitch": 0.2}, duration=1.0, pivot=pivot)
+    start, end = (rigid.poses(robot, asked, [t]) for t in (0.0, 1.0))
+    np.testing.assert_allclose(start.position[0], robot.home_position, rtol=0, atol=1e-15)
+    np.testing.assert_allclose(start.rotation[0], robot.home_rotation, rtol=0, atol=1e-15)
+    turn = rigid.rotation_matrix([0, 0.2, 0])
+    np.testing.assert_allclose(end.rotation[0], turn @ robot.home_rotation, rtol=0, atol=1e-15)
+    np.testing.assert_allclose(
+        end.place(pivot)[0], robot.home_position + robot.home_rotation @ pivot + [0.03, 0, 0], rtol=0, atol=1e-15
+    )
+    by_name = rigid.poses_from_home(robot, np.array([[0.03, 0, 0, 0, 0.2, 0]]))
+    np.testing.assert_allclose(by_name.rotation, end.rotation, rtol=0, atol=1e-15)
+
+
+@pytest.mark.parametrize(("plane", "axes", "third"), [("yz", ("sway", "heave", "roll"), "surge"),
+                                                      ("zx", ("heave", "surge", "pitch"), "sway")])  # fmt: skip
+def test_planes_are_the_same_plane_seen_otherwise(plane, axes, third):
+    flat, t = ROBOTS["planar 3-PRR"](), np.linspace(0, 1, 5)
+    turn = np.roll(np.eye(3), {"yz": 1, "zx": 2}[plane], axis=0)  # x, y, z of the plane xy onto those of this plane
+    legs = tuple(one.replace(carriage=one.carriage.replace(axis=turn @ one.carriage.axis)) for one in flat.legs)
+    robot = built("3-PRR", flat.base_joints @ turn.T, flat.platform_joints @ turn.T, 0.0, legs, plane=plane)
+    sizes = (0.02, 0.03, 0.2)
+    first, other = (
+        rigid.drive_positions(
+            r, rigid.poses(r, CombinedMotion(amplitudes=dict(zip(names, sizes, strict=True)), duration=1.0), t)
+        )
+        for r, names in ((flat, FLAT), (robot, axes))
+    )
+    np.testing.assert_allclose(other, first, rtol=0, atol=1e-14)
+    with pytest.raises(InputError, match=f"asks for {third} of a robot with 3 motions"):
+        rigid.poses(robot, AxisMotion(type=third, amplitude=0.1, duration=1.0), t)
+
+
 def test_limbs_of_the_flexible_robot_keep_what_the_rigid_path_releases():
     robot = ROBOTS["6-FPF"]()
     stiff, free = limbs(robot), limbs(robot, rigid=True)

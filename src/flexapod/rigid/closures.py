@@ -111,14 +111,18 @@ def gaps(limbs: Limbs, chain: Screws, at: Poses) -> Array:
     """Tip less platform joint [m], and half the rotation vector's sine of their frames, world axes, Eq. (T14.6)."""
     place = chain.tip - at.place(limbs.platform)
     goal = at.rotation[:, None] @ limbs.platform_frames
-    turn = np.cross(goal, chain.frame, axis=-2).sum(axis=-1) / 2
-    turn[:, ~limbs.pose_closure] = 0.0
+    turn = np.zeros_like(place)
+    met = limbs.pose_closure
+    if met.any():
+        turn[:, met] = np.cross(goal[:, met], chain.frame[:, met], axis=-2).sum(axis=-1) / 2
     return np.concatenate([place, turn], axis=-1)
 
 
 def _platform_columns(limbs: Limbs, task: Task, x: Array, at: Poses) -> Array:
     """Velocities of the platform joints for the unknown platform coordinates, (T, n, 6, d), Eq. (T14.7)."""
     T, n = len(x), len(limbs)
+    if not task.platform.any():
+        return np.zeros((T, n, 6, 0))
     columns = np.zeros((T, n, 6, 6))
     columns[..., :3, :3] = np.eye(3)
     axes = turning_axes(x[:, 3:])  # (T, 3, 3): of roll, pitch, yaw as columns

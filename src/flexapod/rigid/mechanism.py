@@ -35,10 +35,18 @@ __all__ = [
 CHI, BETA, L, GAMMA2 = (COORDINATES.index(name) for name in ("chi", "beta", "l", "gamma2"))
 
 
+_latest: tuple[Limbs, Poses, Closed] | None = None  # checks, singularities and legs ask for the same path in turn
+
+
 def legs_at(limbs: Limbs, path: Poses) -> Closed:
     """Coordinates of the legs at T poses, NaN where the legs do not reach."""
-    task = Task(limbs.unknown, np.zeros(6, dtype=bool), np.zeros(3))
-    return close(limbs, task, _tiled(limbs, len(path)), path)
+    global _latest
+    known = _latest
+    if known is None or known[0] is not limbs or known[1] is not path:
+        task = Task(limbs.unknown, np.zeros(6, dtype=bool), np.zeros(3))
+        known = _latest = limbs, path, close(limbs, task, _tiled(limbs, len(path)), path)
+        known[2].q.flags.writeable = False
+    return known[2]
 
 
 def leg_state(limbs: Limbs, path: Poses) -> LegState:
@@ -49,8 +57,7 @@ def leg_state(limbs: Limbs, path: Poses) -> LegState:
     InputError
         The legs do not reach a pose, a joint folds beyond 85 deg, or a carriage leaves its side.
     """
-    task = Task(limbs.unknown, np.zeros(6, dtype=bool), np.zeros(3))
-    found = close(limbs, task, _tiled(limbs, len(path)), path)
+    task, found = Task(limbs.unknown, np.zeros(6, dtype=bool), np.zeros(3)), legs_at(limbs, path)
     refuse_lost(limbs, found)
     _refuse_folded(limbs, found.q)
     return _as_state(limbs, move(limbs, task, found, path))

@@ -72,10 +72,9 @@ def screws(limbs: Limbs, q: Array) -> Screws:
         slides[k] = cross(turns[k], reach)
     if limbs.carriage == "crank":
         slides[0] = cross(axis, arm + reach)
-    frame = [
-        np.sum([F[:, None] * x for F, x in zip(limbs.leg_frames[:, :, k].T, frame, strict=True)], axis=0)
-        for k in range(3)
-    ]
+    x, y, z = frame
+    parts = limbs.leg_frames.transpose(2, 1, 0)[..., None]  # (3, 3, n, 1): of each axis of F_L its parts
+    frame = [part[0] * x + part[1] * y + part[2] * z for part in parts]
     for k, angle in enumerate(gamma):
         turns[5 + k] = frame[k]
         frame = _turned(frame, k, angle)
@@ -89,6 +88,8 @@ def screws(limbs: Limbs, q: Array) -> Screws:
 
 def _turned(frame: list[Array], k: int, angle: Array) -> list[Array]:
     """Columns of a frame turned about its own column `k`."""
+    if not angle.any():
+        return frame
     i, j = (k + 1) % 3, (k + 2) % 3
     c, s = np.cos(angle), np.sin(angle)
     out = list(frame)
