@@ -7,7 +7,9 @@ from flexapod.paper.cost import inverse_dynamics_cost
 from flexapod.paper.readings import readings
 from flexapod.paper.study import ACTUATOR_MODES, STEPS, PaperStudy
 from flexapod.paper.trials import trials
+from flexapod.paper.tripod import tripod
 from flexapod.paper.variants import HALF_ANGLES, assumptions, half_angle_sweep, jump_motion, with_half_angle
+from flexapod.paper.welded import welded_map
 from flexapod.study import modes, simulate, simulate_actuator
 
 ROBOT, RADII = "paper-robot", "paper-robot-radii"
@@ -52,6 +54,8 @@ def _parts(angles):
         "half-angles-radii": half_angle_sweep(radii, angles, quiet),
         "assumptions": assumptions(robot, quiet),
         "readings": trials(readings(), quiet),
+        "tripod": simulate(tripod(), step=1e-3),
+        "welded": welded_map(quiet, arms=(0.373, 0.6), rolls=range(0, 31, 3)),
         "cost": inverse_dynamics_cost(robot),
     }
 

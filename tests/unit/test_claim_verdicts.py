@@ -200,10 +200,10 @@ CHANGES: dict[str, tuple[str, str | tuple[str, ...], Callable, str, str]] = {
         REACHES,
         NOT,
     ),
-    "joints that turn little": (
+    "welded legs that bend little": (
         "What would give it: joints",
-        "assumptions",
-        lambda d: scaled(d, "joint_turn", 0.2),
+        "welded",
+        lambda d: scaled(d, "deviation", 0.01),
         REACHES,
         NOT,
     ),

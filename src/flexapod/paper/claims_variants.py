@@ -23,9 +23,9 @@ from flexapod.paper.claim import (
     size,
 )
 from flexapod.paper.claims_readings import SAYS
+from flexapod.paper.claims_welded import tripod_claim, welded_claims
 from flexapod.paper.study import PaperStudy
 from flexapod.scene.robot import robot_study
-from flexapod.study.before.estimates import section_width
 from flexapod.study.words import number, text
 
 if TYPE_CHECKING:
@@ -53,7 +53,13 @@ def variant_claims(result: PaperStudy) -> tuple[Claim, ...]:
 def explanation_claims(result: PaperStudy) -> tuple[Claim, ...]:
     """What would give the paper's figures."""
     robot, other = result["robot"], result["assumptions"]
-    return (_roll_error(robot), _length_errors(other, robot), _drives(other), _joints(other))
+    return (
+        _roll_error(robot),
+        _length_errors(other, robot),
+        _drives(other),
+        *welded_claims(result["welded"]),
+        tripod_claim(result["tripod"], result["robot-radii"]),
+    )
 
 
 def _duration(data: Dataset, robot: Dataset) -> Claim:
@@ -217,35 +223,5 @@ def _drives(data: Dataset) -> Claim:
         reason=(
             f"{100 * sag / z:.0f} % of z is sag. Ball screws have {text(real, 'N/m')} and more: y "
             f"{text(float(real_y), 'm')}, z {text(float(real_z), 'm')}; and the paper's strokes are prescribed."
-        ),
-    )
-
-
-def _joints(data: Dataset) -> Claim:
-    """A piston pinned at one end whose other end is turned by theta: L theta^2 / 10 shorter, stress 3 E theta d / 2 L.
-
-    From its shape w = theta (x^3 / L^2 - x) / 2: half the integral of w'^2, and E d / 2 times w'' at the turned end.
-    """
-    turn, needed = float(data.joint_turn.max()), float(np.abs(data.length_error).max())
-    shortening, enough = ELASTIC_LENGTH * turn**2 / 10, float(np.sqrt(10 * needed / ELASTIC_LENGTH))
-    piston = robot_study(data).robot.legs[0].piston
-    stress = 1.5 * (piston.E or np.nan) * turn * section_width(piston) / ELASTIC_LENGTH
-    above = f"{number(stress / piston.yield_stress, 2)} times its yield stress" if piston.yield_stress else "unbearable"
-    verdict = judged(enough <= turn, best=REACHES)  # a joint may hold any part of the turn
-    return Claim(
-        where="What would give it: joints",
-        says=f"{SAYS}; a visibly bent piston in Fig. 10",
-        ours=(
-            f"Spherical joints that carry moments would shorten legs by up to {1e3 * shortening:.0f} mm (estimate); "
-            f"{1e3 * needed:.1f} mm are needed, that is {np.rad2deg(enough):.0f} deg of turn held back"
-        ),
-        verdict=verdict,
-        reason=explained(
-            verdict,
-            REACHES,
-            f"Legs turn by up to {np.rad2deg(turn):.0f} deg against the platform; a piston held at its end shortens by "
-            f"L theta^2 / 10 and is stressed to {text(stress, 'Pa', 2)}, {above}, to which a linear elastic material "
-            "does not object. Bending only shortens, so it does not match leg by leg; and it is not a property of "
-            "ideal joints.",
         ),
     )

@@ -108,13 +108,22 @@ def _robot(result: PaperStudy) -> Iterator[_Plan]:
 
 def _variants(result: PaperStudy) -> Iterator[_Plan]:
     from flexapod import plot
-    from flexapod.paper import variant_figures
+    from flexapod.paper import variant_figures, welded_figure
 
     title = "Fig. 9 with the circles read as radii, roll of 30 deg"
     yield (VARIANTS, "com-path-radii", title, lambda: plot.com_path(result["robot-radii"]))
     sweeps = {"Circles as diameters": result["half-angles"], "Circles as radii": result["half-angles-radii"]}
     title = "Half-angles of the joint pairs: the road to the architecture singularity at 30 deg"
     yield (VARIANTS, "half-angles", title, lambda: variant_figures.half_angles(sweeps))
+    title = (
+        "Ball joints that carry moments, at rest: roll and place of the centre of mass at which each of the three "
+        "printed figures is reached. Stresses are those of d = 373 mm; steel yields at 0.6 GPa"
+    )
+    yield (VARIANTS, "welded", title, lambda: welded_figure.welded_figure(result["welded"]))
+    title = "A 3-RPS of the same pistons under the same roll, by cause: bending is all of it"
+    yield (VARIANTS, "tripod-by-cause", title, lambda: plot.deviation_by_cause(result["tripod"]))
+    title = "The 3-RPS at the end of the roll; pale: at home"
+    yield (VARIANTS, "tripod-end", title, lambda: plot.robot_3d(result["tripod"]))
     title = "A start and a stop at full rate against the quintic"
     yield (VARIANTS, "velocity-jump", title, lambda: variant_figures.start_jump(result["robot"], result["jump"]))
 

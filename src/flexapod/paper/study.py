@@ -12,7 +12,8 @@ from flexapod.paper.claim import axis_motion
 from flexapod.paper.cost import inverse_dynamics_cost
 from flexapod.paper.engines import check_engine, exudyn_flexible, exudyn_rigid, rigid_same_step, undamped
 from flexapod.paper.readings import readings, robot_preset
-from flexapod.paper.trials import trials
+from flexapod.paper.trials import TRIAL_STEP, trials
+from flexapod.paper.tripod import tripod
 from flexapod.paper.variants import (
     HALF_ANGLES,
     JUMP_STEP,
@@ -21,6 +22,7 @@ from flexapod.paper.variants import (
     jump_motion,
     with_half_angle,
 )
+from flexapod.paper.welded import welded_map
 from flexapod.study.actuator import simulate_actuator
 from flexapod.study.record import Report, Share
 from flexapod.study.simulation import run, simulate
@@ -191,6 +193,13 @@ STEPS: tuple[Step, ...] = (
         compute=lambda r: assumptions(robot_preset("paper-robot"), r),
     ),
     Step(name="readings", words="other readings of the paper", weight=4, compute=lambda r: trials(readings(), r)),
+    Step(
+        name="tripod",
+        words="a tripod of the same pistons",
+        weight=1,
+        compute=lambda report: simulate(tripod(), step=TRIAL_STEP, progress=_over(report)),
+    ),
+    Step(name="welded", words="ball joints that carry moments", weight=8, compute=welded_map),
     Step(
         name="cost",
         words="operations of inverse dynamics",

@@ -105,8 +105,7 @@ def assumptions(study: model.Study, report: Share) -> Dataset:
     xarray.Dataset
         `deviation_by_duration` (duration, axis), `deviation_by_drive` (drive_stiffness, axis) [m]; `sag_by_drive`: the
         part of the latter that is there at rest, before the motion;
-        `length_error` (leg) [m]: what the legs would have to be off for the paper's deviation;
-        `joint_turn` (leg) [rad]: what the spherical joints turn on the path.
+        `length_error` (leg) [m]: what the legs would have to be off for the paper's deviation.
     """
     import xarray as xr
 
@@ -121,14 +120,12 @@ def assumptions(study: model.Study, report: Share) -> Dataset:
         drives.append(largest(data))
         sags.append(np.abs(data.com_deviation.values[0]))
         report((len(durations) + len(drives)) / whole)
-    length_error, turn = _needed_errors(study)
     metre = {"units": "m"}
     values = {
         "deviation_by_duration": (("duration", "axis"), np.array(durations), metre),
         "deviation_by_drive": (("drive_stiffness", "axis"), np.array(drives), metre),
         "sag_by_drive": (("drive_stiffness", "axis"), np.array(sags), metre),
-        "length_error": ("leg", length_error, metre),
-        "joint_turn": ("leg", turn, {"units": "rad"}),
+        "length_error": ("leg", _needed_errors(study), metre),
     }
     coords = {
         "duration": ("duration", np.array(DURATIONS), {"units": "s"}),
@@ -147,15 +144,14 @@ def _with_servo(study: model.Study, stiffness: float) -> model.Study:
     return study.replace(robot=study.robot.replace(legs=legs))
 
 
-def _needed_errors(study: model.Study) -> tuple[Array, Array]:
-    """Leg-length errors (6,) [m] that move the CoM by the paper's deviation; turn (6,) [rad] of the joints above."""
-    robot, target = study.robot, axis_motion(study).target
-    roll, error = target[3], roll_error(float(np.linalg.norm(robot.payload.com)))
+def _needed_errors(study: model.Study) -> Array:
+    """Leg-length errors (n,) [m] that move the CoM by the paper's deviation."""
+    robot, roll = study.robot, axis_motion(study).target[3]
     home = rigid.home_pose(robot)
-    turned = [rigid.rotation_matrix(np.array([[x, 0.0, 0.0]])) for x in (roll, roll + error)]
-    lengths = [rigid.leg_lengths(robot.base_joints, robot.platform_joints, home.position, R)[0] for R in turned]
-    axes = []
-    for R in (np.eye(3), turned[0][0]):
-        vectors = robot.platform_joints @ R.T + home.position[0] - robot.base_joints
-        axes.append(vectors / np.linalg.norm(vectors, axis=1)[:, None] @ R)  # in platform axes
-    return lengths[1] - lengths[0], np.arccos(np.clip((axes[0] * axes[1]).sum(axis=1), -1.0, 1.0))
+    off, there = (
+        rigid.leg_lengths(
+            robot.base_joints, robot.platform_joints, home.position, rigid.rotation_matrix(np.array([[x, 0.0, 0.0]]))[0]
+        )[0]
+        for x in (roll + roll_error(float(np.linalg.norm(robot.payload.com))), roll)
+    )
+    return off - there
