@@ -23,11 +23,11 @@ def as_frame(robot):
 def _leg(robot, leg, foot, tip):
     way = (tip - foot) / np.linalg.norm(tip - foot)
     letters, beam, guided = leg.letters, leg.piston, leg.strut is None
-    base = _axes(letters.base, robot.normal if robot.plane else leg.base_joint.axis, way)
     axis = leg.platform_joint.axis
-    end = _axes(
-        letters.platform, robot.normal if robot.plane else None if axis is None else robot.home_rotation @ axis, way
-    )
+    axes = leg.base_joint.axis, None if axis is None else robot.home_rotation @ axis
+    axes = (robot.normal, robot.normal) if robot.plane else axes
+    base, base_springs = _axes(letters.base, leg.base_joint, axes[0], way)
+    end, tip_springs = _axes(letters.platform, leg.platform_joint, axes[1], way)
     parts = {}
     if robot.plane:
         base, end = base[:1] if len(base) else base, end[:1] if len(end) else end
@@ -42,18 +42,21 @@ def _leg(robot, leg, foot, tip):
         parts |= {"mouth": c.mouth, "length": beam.length, "inertia": c.inertia + c.mass * c.com**2}
         parts |= {"axial_inertia": c.axial_inertia, "slides": not leg.driven}
     return frames.Leg(
-        base=foot, tip=tip, base_axes=base, tip_axes=end, base_springs=_springs(leg.base_joint, base, way),
-        tip_springs=_springs(leg.platform_joint, end, way), EI=beam.EI, EA=beam.EA, rhoA=beam.rhoA, **parts,
+        base=foot, tip=tip, base_axes=base, tip_axes=end, base_springs=base_springs, tip_springs=tip_springs,
+        EI=beam.EI, EA=beam.EA, rhoA=beam.rhoA, **parts,
     )  # fmt: skip
 
 
-def _axes(letter, axis, way):
+def _axes(letter, joint, axis, way):
+    """Axes of a joint, and the springs about them: of a flexure, across the leg and about it."""
     if letter == "R":
-        return np.array([axis]) / np.linalg.norm(axis)
+        return np.array([axis]) / np.linalg.norm(axis), ()
+    first, second = cross_axes(way, axis, False)
     if letter in ("U", "S"):
-        first, second = cross_axes(way, axis, False)
-        return np.array([first, second, way] if letter == "S" else [first, second])
-    return frames.NONE
+        return np.array([first, second, way] if letter == "S" else [first, second]), ()
+    found = [(first, joint.bending), (second, joint.bending), (way, joint.torsion)]
+    held = [(axis, spring) for axis, spring in found if spring is not None]
+    return np.array([axis for axis, _ in held]).reshape(-1, 3), tuple(spring for _, spring in held)
 
 
 def _along(axes, way):
@@ -62,8 +65,3 @@ def _along(axes, way):
 
 def _without(axes, way):
     return axes[~_along(axes, way)] if len(axes) else axes
-
-
-def _springs(joint, axes, way):
-    """Springs of flexures stand at letters F; other joints are free."""
-    return ()

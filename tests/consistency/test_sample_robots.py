@@ -48,7 +48,7 @@ def test_forces_and_moments_of_all_joints(name):
             np.testing.assert_allclose(ours, other.tip_moment, rtol=0, atol=1e-11 * size)
 
 
-@pytest.mark.parametrize("name", [name for name in NAMES if name != "flexures"])
+@pytest.mark.parametrize("name", NAMES)
 def test_first_frequencies(name, monkeypatch):
     monkeypatch.setattr("flexapod.solve.robot_system.kernel", interpreted_kernel)  # a few matrices
     robot = fx.load(FOLDER / f"{name}.toml").robot
