@@ -2,7 +2,8 @@
 
 import ctypes
 import logging
-from collections.abc import Callable
+from collections.abc import Callable, Sequence
+from ctypes import c_double, c_long
 from dataclasses import dataclass, fields
 from functools import cache, lru_cache
 from pathlib import Path
@@ -21,6 +22,7 @@ if TYPE_CHECKING:
 Function = Callable[..., tuple[Array, ...]]
 NATIVE = Path(__file__).parent / "native"
 SOURCES = tuple(NATIVE / name for name in ("system.h", "lu.c", "legs.c", "arrow.c", "state.c", "march.c"))
+_Pointer = ctypes.POINTER(c_double)
 _log = logging.getLogger("flexapod")
 
 
@@ -103,3 +105,50 @@ def _fingerprint(shapes: Shapes) -> list[object]:
     arrays = [np.ascontiguousarray(x).tobytes() for x in numbers if isinstance(x, np.ndarray)]
     switches = [x for x in (getattr(shapes, field.name) for field in fields(shapes)) if isinstance(x, (bool, str))]
     return [*texts, *arrays, shapes.layout, switches]
+
+
+def evaluate(
+    kernel: Kernel, name: str, count: int, inputs: Sequence[Array], shapes: Sequence[tuple[int, ...]]
+) -> list[Array]:
+    """A kernel function for ``count`` items at once.
+
+    Parameters
+    ----------
+    kernel : Kernel
+    name : str
+        One of `NAMES`.
+    count : int
+    inputs : sequence of ndarray
+        Their last axis is one argument of one item; with fewer arguments than items they repeat.
+    shapes : sequence of tuple
+        Of each output of one item.
+
+    Returns
+    -------
+    list of ndarray, each shape (count, *shape)
+    """
+    rows = [np.ascontiguousarray(x, dtype=float).reshape(int(np.prod(x.shape[:-1])), x.shape[-1]) for x in inputs]
+    if kernel.library is None:
+        return _one_by_one(kernel, name, count, rows, shapes)
+    out = [np.zeros((count, *shape[::-1])) for shape in shapes]  # the kernels write column by column
+    _call(kernel.library, name, count, rows, out)
+    return [x.swapaxes(1, 2) if x.ndim == 3 else x for x in out]
+
+
+def _one_by_one(
+    kernel: Kernel, name: str, count: int, rows: list[Array], shapes: Sequence[tuple[int, ...]]
+) -> list[Array]:
+    function = getattr(kernel, name)
+    found = [function(*(x[i % len(x)] for x in rows)) for i in range(count)]
+    return [
+        np.array([values[k] for values in found], dtype=float).reshape(count, *shape) for k, shape in enumerate(shapes)
+    ]
+
+
+def _call(library: ctypes.CDLL, name: str, count: int, rows: list[Array], out: list[Array]) -> None:
+    getattr(library, name)(
+        c_long(count),
+        (_Pointer * len(rows))(*[x.ctypes.data_as(_Pointer) for x in rows]),
+        (c_long * len(rows))(*[len(x) for x in rows]),
+        (_Pointer * len(out))(*[x.ctypes.data_as(_Pointer) for x in out]),
+    )

@@ -2,15 +2,12 @@
 
 from __future__ import annotations
 
-import ctypes
-from collections.abc import Sequence
-from ctypes import c_double, c_long
 from dataclasses import dataclass, fields, replace
 
 import numpy as np
 
 from flexapod.rigid.rotations import turned
-from flexapod.solve.kernel import Kernel
+from flexapod.solve.kernel import evaluate
 from flexapod.solve.system import Index, State, System
 from flexapod.typing import Array
 
@@ -18,14 +15,11 @@ __all__ = [
     "Rates",
     "RestMatrices",
     "RestStates",
-    "evaluate",
     "matrices_at_rest",
     "port_forces",
     "residual",
     "residual_at_rest",
 ]
-
-_Pointer = ctypes.POINTER(c_double)
 
 
 @dataclass(frozen=True, kw_only=True)
@@ -185,50 +179,3 @@ def matrices_at_rest(system: System, x: RestStates, wrench: Array) -> RestMatric
         M=M, D=D, K=K, J=J, payload_M=payload_M, payload_K=payload_K + H.reshape(P, legs, hub, hub).sum(axis=1),
         P=moving.reshape(P, legs, rows, hub), X=X,
     )  # fmt: skip
-
-
-def evaluate(
-    kernel: Kernel, name: str, count: int, inputs: Sequence[Array], shapes: Sequence[tuple[int, ...]]
-) -> list[Array]:
-    """A kernel function for ``count`` items at once.
-
-    Parameters
-    ----------
-    kernel : Kernel
-    name : str
-        One of `kernel.NAMES`.
-    count : int
-    inputs : sequence of ndarray
-        Their last axis is one argument of one item; with fewer arguments than items they repeat.
-    shapes : sequence of tuple
-        Of each output of one item.
-
-    Returns
-    -------
-    list of ndarray, each shape (count, *shape)
-    """
-    rows = [np.ascontiguousarray(x, dtype=float).reshape(int(np.prod(x.shape[:-1])), x.shape[-1]) for x in inputs]
-    if kernel.library is None:
-        return _one_by_one(kernel, name, count, rows, shapes)
-    out = [np.zeros((count, *shape[::-1])) for shape in shapes]  # the kernels write column by column
-    _call(kernel.library, name, count, rows, out)
-    return [x.swapaxes(1, 2) if x.ndim == 3 else x for x in out]
-
-
-def _one_by_one(
-    kernel: Kernel, name: str, count: int, rows: list[Array], shapes: Sequence[tuple[int, ...]]
-) -> list[Array]:
-    function = getattr(kernel, name)
-    found = [function(*(x[i % len(x)] for x in rows)) for i in range(count)]
-    return [
-        np.array([values[k] for values in found], dtype=float).reshape(count, *shape) for k, shape in enumerate(shapes)
-    ]
-
-
-def _call(library: ctypes.CDLL, name: str, count: int, rows: list[Array], out: list[Array]) -> None:
-    getattr(library, name)(
-        c_long(count),
-        (_Pointer * len(rows))(*[x.ctypes.data_as(_Pointer) for x in rows]),
-        (c_long * len(rows))(*[len(x) for x in rows]),
-        (_Pointer * len(out))(*[x.ctypes.data_as(_Pointer) for x in out]),
-    )

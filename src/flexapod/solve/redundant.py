@@ -22,10 +22,12 @@ MISFIT = 1e-9  # m, or rad: by which a coordinate may miss what should hold it, 
 def independent(system: System, x: State) -> System:
     """The same system, of whose held coordinates as many are left to the closures as these determine, Eq. (T6.26)."""
     G = system.matrices(x, np.zeros(6)).G
-    U, size, _ = np.linalg.svd(G[:, ~system.fixed])
-    left = U[:, (size > DEPENDENT * size.max(initial=0.0)).sum() :]
-    if not left.shape[1]:
+    free = G[:, ~system.fixed]
+    size = np.linalg.svd(free, compute_uv=False)
+    rank = int((size > DEPENDENT * size.max(initial=0.0)).sum())
+    if rank == len(G):
         return system
+    left = np.linalg.svd(free)[0][:, rank:]
     held = np.flatnonzero(system.held.ravel())
     slack = np.zeros(system.held.size, dtype=bool)
     slack[held[_independent_columns(left.T @ G[:, held])]] = True
@@ -62,7 +64,8 @@ def shared(system: System, recording: Recording, table: Array) -> Recording:
     ComputationError
         A coordinate that was left to the closures does not stay where it is held: the rigid robot cannot move so.
     """
-    gap = np.where(system.slack[:, system.ports], recording.q[..., system.ports] - table[..., 0], 0.0)
+    slack = (system.held & ~system.enforced)[:, system.ports]
+    gap = np.where(slack, recording.q[..., system.ports] - table[..., 0], 0.0)
     if np.abs(gap).max() > MISFIT:
         k, leg, port = np.argwhere(np.abs(gap) > MISFIT)[0]
         names = [name for name, size in system.kernel.shapes.layout for _ in range(size)]

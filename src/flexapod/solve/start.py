@@ -5,6 +5,7 @@ from dataclasses import replace
 import numpy as np
 
 from flexapod.integration import GeneralizedAlpha
+from flexapod.solve.many import RestStates, matrices_at_rest
 from flexapod.solve.saddle import saddle_solve
 from flexapod.solve.system import Flow, Matrices, State, System
 from flexapod.solve.tables import Law
@@ -79,10 +80,12 @@ def _constraint_curvature(system: System, x: State, step: float = 1e-4) -> Array
     if not x.v.any() or not system.rows:
         return np.zeros(x.lam.size)
 
-    def rate(t: float) -> Array:
-        return system.matrices(system.moved(x, t * x.v), np.zeros(6)).G @ x.v
-
-    return -(8 * (rate(step) - rate(-step)) - (rate(2 * step) - rate(-2 * step))) / (12 * step)
+    t, legs = step * np.array([1.0, -1.0, 2.0, -2.0]), system.by_leg(x.v)
+    payload = x.v[legs.size :]
+    here = RestStates(**{name: np.repeat(getattr(x, name)[None], 4, axis=0) for name in ("q", "pose", "lam", "drive")})
+    m = matrices_at_rest(system, here.moved(t[:, None, None] * legs, t[:, None] * payload), np.zeros(6))
+    rate = ((m.J @ legs[..., None])[..., 0] - m.P @ payload).reshape(4, -1)
+    return -(8 * (rate[0] - rate[1]) - (rate[2] - rate[3])) / (12 * step)
 
 
 def _jerk(system: System, x: State, law: Law, now: float, h: float) -> Array:

@@ -8,7 +8,7 @@ from numpy.typing import NDArray
 
 from flexapod.mechanics.layout import LEG_PARAMETERS, LOAD_SIZE, columns
 from flexapod.rigid.rotations import turned
-from flexapod.solve.kernel import Kernel
+from flexapod.solve.kernel import Kernel, evaluate
 from flexapod.typing import Array, Mask
 
 __all__ = ["COLUMNS", "Flow", "Index", "Matrices", "State", "System"]
@@ -85,7 +85,7 @@ class System:
         """Number of legs."""
         return len(self.leg_p)
 
-    @property
+    @cached_property
     def n(self) -> int:
         """Coordinates of one leg."""
         return self.kernel.shapes.size
@@ -145,55 +145,55 @@ class System:
         payload is left in its row.
         """
         v, v_dot, force = self.by_leg(x.v), self.by_leg(x.v_dot), table[:, :, 3] + x.drive
-        r, gaps, net, powers = np.zeros_like(v), np.zeros((self.legs, self.rows)), np.zeros(6), np.zeros(3)
-        around, commands = self._around(x, wrench), self.spring_commands(table)
-        for i, (command, p) in enumerate(zip(commands, self.leg_p, strict=True)):
-            r[i], gap, *push, power, _ = self.kernel.leg_residual(x.q[i], v[i], v_dot[i], x.lam[i], command, p, *around)
-            powers[:2] += power
-            if self.rows == 3:
-                point, *push = self.kernel.joint_residual(x.pose, x.lam[i], self.joint_p[i])
-                gap = gap - point
-            gaps[i], net = gap[: self.rows], net + sum(push)
+        inputs = [x.q, v, v_dot, x.lam, self.spring_commands(table), self.leg_p, *self._around(x, wrench)]
+        meeting = [(6,), (6,)] if self.rows == 6 else [(3,)]
+        outputs = [(self.n,), *meeting, (2,), (self.kernel.shapes.commands // 2,)]
+        r, gaps, *push, power, _ = evaluate(self.kernel, "leg_residual", self.legs, inputs, outputs)
+        if self.rows == 3:
+            joints = [x.pose, x.lam, self.joint_p]
+            points, *push = evaluate(self.kernel, "joint_residual", self.legs, joints, [(3,), (6,)])
+            gaps -= points
+        gaps, powers = gaps[:, : self.rows], np.append(power.sum(axis=0), 0.0)
         r[:, self.ports] -= force
         powers[1] += (force * v[:, self.ports]).sum()
         if not self.hub:
             return r.ravel(), gaps.ravel(), powers
         u, u_dot = x.v[r.size :], x.v_dot[r.size :]
+        net = push[0].sum(axis=0)
         rest, powers[2:] = self.kernel.payload_residual(x.pose, u, u_dot, net, wrench, self.payload_p)
         return np.concatenate([r.ravel(), rest]), gaps.ravel(), powers
 
     def matrices(self, x: State, wrench: Array) -> Matrices:
         """Matrices at rest with geometric stiffness, and the Jacobian of the closures."""
-        n, k, rows = self.n, self.legs * self.n, self.rows
-        M, D, K = (np.zeros((self.size, self.size)) for _ in range(3))
-        G = np.zeros((self.legs * rows, self.size))
-        for i in range(self.legs):
-            at, closed = slice(i * n, (i + 1) * n), slice(i * rows, (i + 1) * rows)
-            own = self.kernel.leg_matrices(x.q[i], x.lam[i], self.leg_p[i], *self._around(x, wrench))
-            M[at, at], D[at, at], K[at, at], G[closed, at] = own[:4]
-            if self.hub:
-                P, H, *coupling = (
-                    own[4:] if self.rows == 6 else self.kernel.joint_matrices(x.pose, x.lam[i], self.joint_p[i])
-                )
-                G[closed, k:] = -P
-                K[k:, k:] += H
-                for X in coupling:
-                    K[at, k:], K[k:, at] = X, X.T
-        if self.hub:
-            mass, stiffness = self.kernel.payload_matrices(x.pose, wrench, self.payload_p)
-            M[k:, k:] += mass
-            K[k:, k:] += stiffness
+        n, k, legs, rows = self.n, self.legs * self.n, self.legs, self.rows
+        inputs = [x.q, x.lam, self.leg_p, *self._around(x, wrench)]
+        outputs = [(n, n)] * 3 + [(rows, n)] + ([(6, 6), (6, 6), (n, 6)] if rows == 6 else [])
+        found = evaluate(self.kernel, "leg_matrices", legs, inputs, outputs)
+        M, D, K, G = (np.zeros((size, self.size)) for size in (self.size, self.size, self.size, legs * rows))
+        for whole, parts in zip((M, D, K, G), found[:4], strict=True):
+            for i, part in enumerate(parts):
+                whole[i * len(part) : (i + 1) * len(part), i * n : (i + 1) * n] = part
+        if not self.hub:
+            return Matrices(M=M, D=D, K=K, G=G)
+        joints = [x.pose, x.lam, self.joint_p]
+        of_joints = found[4:] or evaluate(self.kernel, "joint_matrices", legs, joints, [(3, 6), (6, 6)])
+        P, H, *coupling = of_joints
+        mass, stiffness = self.kernel.payload_matrices(x.pose, wrench, self.payload_p)
+        G[:, k:], M[k:, k:], K[k:, k:] = -P.reshape(-1, 6), mass, stiffness + H.sum(axis=0)
+        for X in coupling:
+            K[:k, k:] = X.reshape(-1, 6)
+            K[k:, :k] = K[:k, k:].T
         return Matrices(M=M, D=D, K=K, G=G)
 
     def energies(self, x: State, table: Array) -> tuple[Array, Array]:
         """Energies (3,) [J], kinetic, of gravity and of strain; whole force of each port (legs, ports), Eq. (T8.8)."""
-        v, force, energy = self.by_leg(x.v), table[:, :, 3] + x.drive, np.zeros(3)
-        for i, (command, p) in enumerate(zip(self.spring_commands(table), self.leg_p, strict=True)):
-            part, spring = self.kernel.leg_energies(x.q[i], v[i], command, p)
-            energy += part
-            force[i, : spring.size] += spring
+        v, force, springs = self.by_leg(x.v), table[:, :, 3] + x.drive, self.kernel.shapes.commands // 2
+        inputs = [x.q, v, self.spring_commands(table), self.leg_p]
+        parts, spring = evaluate(self.kernel, "leg_energies", self.legs, inputs, [(3,), (springs,)])
+        energy = parts.sum(axis=0)
+        force[:, :springs] += spring
         if self.hub:
-            energy += self.kernel.payload_energies(x.pose, x.v[v.size :], self.payload_p)[0]
+            energy = energy + self.kernel.payload_energies(x.pose, x.v[v.size :], self.payload_p)[0]
         return energy, force
 
     def spring_commands(self, table: Array) -> Array:
