@@ -307,3 +307,8 @@ def test_what_only_python_can_give():
     with pytest.raises(InputError, match="along the axis"):
         crank.replace(arm=[0, 0, 1])
     assert found.replace(home_height=1.0).home.position.tolist() == [0, 0, 1]
+
+
+def test_the_help_of_new_names_every_preset():
+    text = (Path(__file__).parents[2] / "src/flexapod/app/commands_new.py").read_text(encoding="utf-8")
+    assert all(name in text for name in model.PRESETS)

@@ -38,7 +38,7 @@ def test_axial_shapes_that_differ_are_refused_on_reading():
     begin, end = text.index("[leg]"), text.index("[motion]")
     leg = text[begin:end].replace("[leg]", "[[leg]]")
     legs = "axial_modes = 1\n".join([leg, leg * 5])
-    with pytest.raises(fx.InputError, match="one number for all six legs") as error:
+    with pytest.raises(fx.InputError, match="one number for all legs") as error:
         model.loads(text[:begin] + legs + text[end:], path="mine.toml")
     assert (error.value.file, error.value.key) == ("mine.toml", "leg.axial_modes")
 

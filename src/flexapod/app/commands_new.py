@@ -15,7 +15,11 @@ __all__ = ["add"]
 Name = Annotated[Path, typer.Argument(metavar="NAME.toml", help="File to write.")]
 Preset = Annotated[
     str | None,
-    typer.Option("--preset", metavar="P", help="paper-robot (the default), paper-robot-radii or paper-actuator."),
+    typer.Option(
+        "--preset",
+        metavar="P",
+        help="paper-robot (the default), paper-robot-radii, paper-actuator, tripod or flight-simulator.",
+    ),
 ]
 From = Annotated[
     str | None,
