@@ -34,6 +34,8 @@ def test_codes_say_what_stops_a_delta():
     found = codes(robot, surge=[0.0, 0.02, 0.3, 0.9], heave=[0.05, 0.09, 0.0, 0.0])
     # 0.05 m up all three carriages rise by 0.05 m; 0.09 m is beyond their 0.08 m; far out no rod reaches
     assert found == ["reached", "carriage_stops", "carriage_stops", "out_of_reach"]
+    values = np.array([[0, 0, 0.05, 0, 0, 0], [0.02, 0, 0.09, 0, 0, 0], [0.9, 0, 0, 0, 0, 0.0]])
+    assert fx.rigid.reachable(robot, fx.rigid.poses_from_home(robot, values)).tolist() == [True, False, False]
 
 
 def test_margins_of_a_map_are_those_of_the_sliders():

@@ -321,14 +321,18 @@ def carriages(robot: Robot, t: ArrayLike, place: Array) -> list[workspace.Excess
 def pull_out(robot: Robot, t: ArrayLike, length: Array) -> list[workspace.Excess]:
     """Pistons that vanish in their cylinder, leave it or pass the universal joint; see `workspace.piston_excess`."""
     mouth = np.array([leg.cylinder.mouth for leg in robot.legs])
-    piston = np.array([leg.piston.length if leg.strut is None else np.inf for leg in robot.legs])
-    return workspace.piston_excess(t, length, mouth, piston)
+    return workspace.piston_excess(t, length, mouth, _pistons(robot))
 
 
-def reachable(robot: Robot, path: Poses) -> Array:
-    """Whether each of T poses keeps every leg within its stroke and its piston in its cylinder, bool (T,)."""
-    length = kinematics.leg_lengths(robot.base_joints, robot.platform_joints, path.position, path.rotation)
+def reachable(robot: Robot, path: Poses) -> Mask:
+    """Whether each of T poses keeps legs and carriages within their strokes and pistons in their cylinders, (T,)."""
+    found, ways = reach(robot, path), carriage_limits(robot)
     limits = [(leg.stroke.min, leg.stroke.max) if leg.stroke else (0.0, np.inf) for leg in robot.legs]
     mouth = np.array([leg.cylinder.mouth for leg in robot.legs])
-    piston = np.array([leg.piston.length for leg in robot.legs])
-    return workspace.reachable(length, np.array(limits), mouth, piston)
+    within = np.all((found.carriage >= ways[:, 0]) & (found.carriage <= ways[:, 1]), axis=1)
+    return workspace.reachable(found.length, np.array(limits), mouth, _pistons(robot)) & within & ~found.lost
+
+
+def _pistons(robot: Robot) -> Array:
+    """Lengths of the pistons (n,) [m]; a strut leaves no cylinder."""
+    return np.array([leg.piston.length if leg.strut is None else np.inf for leg in robot.legs])
