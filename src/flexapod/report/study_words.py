@@ -52,11 +52,10 @@ def _robot(study: Study) -> list[str]:
     alike = "" if all(leg == robot.legs[0] for leg in robot.legs) else " (leg 1; the legs differ)"
     shapes = simulation.lateral_shapes
     count = f", {shapes} lateral shapes per plane and leg" if shapes else ""
+    beams = "Struts" if robot.legs[0].strut is not None else "Pistons"
     return [
-        f"A robot of type {robot.type} carries {number(robot.payload.mass)} kg on {_legs_of(robot)}; "
-        f"{_gravity(robot.gravity)}.",
-        _points(robot.payload),
-        f"Pistons: {size}{number(1e3 * piston.length)} mm long, EA = {number(1e-6 * piston.EA)} MN, "
+        *_carried(robot),
+        f"{beams}: {size}{number(1e3 * piston.length)} mm long, EA = {number(1e-6 * piston.EA)} MN, "
         f"EI = {number(piston.EI)} N m², {_damping(robot.legs[0].damping, 'piston')}{alike}.",
         f"Drives: {_drives(robot)}.",
         f"Motion: {_motion(study.motion)}.",
@@ -64,6 +63,15 @@ def _robot(study: Study) -> list[str]:
         f"Legs: {_LEGS[simulation.fidelity]} ({simulation.fidelity}{count}); "
         f"{number(study.duration, 4)} s simulated, from {_START[study.initial.start]}.",
     ]
+
+
+def _carried(robot: Robot) -> list[str]:
+    """What the legs carry."""
+    legs, gravity = f"on {_legs_of(robot)}", _gravity(robot.gravity)
+    if robot.payload is None:
+        return [f"A platform that is fixed, {legs} (type {robot.type}); {gravity}."]
+    mass = number(robot.payload.mass)
+    return [f"A robot of type {robot.type} carries {mass} kg {legs}; {gravity}.", _points(robot.payload)]
 
 
 def _legs_of(robot: Robot) -> str:
@@ -99,7 +107,8 @@ def _drives(robot: Robot) -> str:
     """The drives in words, those of a kind together."""
     legs: dict[str, list[str]] = {}
     for i, leg in enumerate(robot.legs, start=1):
-        legs.setdefault(_drive(leg.drive), []).append(str(i))
+        words = _drive(leg.drive) if leg.driven else "none, passive"
+        legs.setdefault(words.replace("stroke", leg.driven or "stroke"), []).append(str(i))
     if len(legs) == 1:
         return next(iter(legs))
     return "; ".join(f"leg{'s' * (len(some) > 1)} {', '.join(some)}: {words}" for words, some in legs.items())
@@ -158,7 +167,7 @@ def _path(found: RobotDescription) -> list[str]:
             f"{leg.leg}",
             f"{1e3 * leg.shortest.value:.1f} to {1e3 * leg.longest.value:.1f} mm",
             "no limits" if leg.stroke_margin is None else f"{1e3 * leg.stroke_margin.value:.1f} mm",
-            f"{leg.force_min.value:.4g} to {leg.force_max.value:.4g} N",
+            f"{leg.force_min.value:.4g} to {leg.force_max.value:.4g} {'N m' if leg.drive == 'crank' else 'N'}",
             "never pushed" if leg.euler_share.value == 0 else f"{100 * leg.euler_share.value:.2g} %",
             "n/a" if leg.stress is None else text(leg.stress.total.value, "Pa"),
         )

@@ -72,15 +72,14 @@ class Skeleton:
     joints : tuple of (str, str)
         Letters of the joints of each leg at base and platform: U, S, R, F, or "" where the leg is part of the platform.
     com, tool : ndarray, shape (3,)
-        Centre of mass and tool of the payload in platform axes; without a payload the middle of the joints.
+        Centre of mass and tool of the payload in platform axes; without a payload the frame's origin.
     guided : ndarray of int
         Legs with a carriage.
     """
 
     def __init__(self, robot: model.Robot) -> None:
         self.robot, self.joints = robot, tuple((leg.letters.base, leg.letters.platform) for leg in robot.legs)
-        load, middle = robot.payload, robot.platform_joints.mean(axis=0)
-        self.com, self.tool = (middle, middle) if load is None else (load.com, load.tool)
+        self.com, self.tool = robot.com, robot.tool
         self.guided = np.array([i for i, leg in enumerate(robot.legs) if leg.carriage is not None], dtype=int)
         self._home_carriages = robot.home_carriages
         self._mouth = np.array([leg.cylinder.mouth for leg in robot.legs])
