@@ -3,6 +3,8 @@
 import numpy as np
 import pytest
 from tests.beam_frames import as_frame
+from tests.chains import NAMED
+from tests.consistency.test_mechanism_kinematics import AMPLITUDES, OWN
 from tests.mechanisms import PISTON, ROBOTS, THREE, built, hexapod, leg, ring, tangents
 from tests.oracles import frames
 
@@ -47,6 +49,15 @@ def test_more_shapes_fall_onto_the_exact_frequencies(name):
     # Ritz: from above; soft motions lose digits to stiff axial ones (1e-16 of the ratio of squares).
     assert few.min() > -1e-9 and many.min() > -1e-9
     assert np.all(many < few + 1e-9)
+
+
+@pytest.mark.parametrize("name", [name for name in ROBOTS if name not in ("1-UPS", "6-FPF")])
+def test_frequencies_away_from_home(name):
+    """Where no weight and no weld strains the legs: a pose in all motions that the robot has."""
+    robot = unloaded(name)
+    pose = {axis: AMPLITUDES[axis] for axis in OWN.get(name, tuple(NAMED))}
+    found = fx.modes(robot, pose, modes=6, axial_modes=4)["frequency"].values[:5]
+    np.testing.assert_allclose(found, frames.frequencies(*as_frame(robot, pose), 5), rtol=1e-6)  # as at home
 
 
 def test_a_table_sways_with_twelve_EI_a_leg():

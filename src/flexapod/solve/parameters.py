@@ -33,7 +33,8 @@ def leg_parameters(robot: Robot, legs: Limbs, shapes: Shapes) -> Array:
     ends = [dict(zip(("base_flexure", "platform_flexure"), x, strict=True)) for x in flexures(robot, legs)]
     rows = (_leg(leg) | _place(robot, legs, i) | _joints(leg, legs, i) | ends[i] for i, leg in enumerate(robot.legs))
     if shapes.torsion:  # what twists has an inertia: that of a round section where none is given
-        rows = (row | {"piston_axial_inertia": axial_inertia(leg)} for row, leg in zip(rows, robot.legs, strict=True))
+        twists = zip(rows, robot.legs, legs.pose_closure, strict=True)
+        rows = (row | {"piston_axial_inertia": axial_inertia(leg)} if twisted else row for row, leg, twisted in twists)
     return np.array([_pack(layout_of_legs, values) for values in rows])
 
 

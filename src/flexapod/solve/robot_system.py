@@ -43,6 +43,8 @@ def _held(robot: Robot, legs: Limbs, shapes: Shapes) -> Mask:
             state = legs.state[:, k]
             foreign = (state == ABSENT) & (name in ("chi", "spin"))
             held[:, shapes.index(name)] = (state == HELD) | ((state == DRIVEN) & prescribed) | foreign
+    if shapes.torsion:  # a ball does not twist its leg
+        held[:, shapes.index("t")] = ~legs.pose_closure
     if shapes.flexure:  # a joint does not give way in directions in which it has no stiffness
         rigid_ways = ~flexures(robot, legs)[:, :, :3].any(axis=-1)
         held[:, shapes.index("u1") :] = rigid_ways.reshape(len(legs), 6)
