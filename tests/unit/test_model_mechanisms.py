@@ -252,6 +252,8 @@ REFUSALS = [
      "leg.stroke", ("does not have", "carriage.stroke")),
     ("hexaglide", [('diameter = "20 mm", inner_diameter = "16 mm"', "section = { width = 0.02, thickness = 0.002 }")],
      "leg.strut", ("bends in a plane only",)),
+    ("hexaglide", [('type = "6-PUS"', 'type = "6-US"'), ('slider = [0, 0, 1], mass = "3 kg", stroke = { min = 0, max = '
+      '"0.6 m" }, side = -1', "slider = [0, 0, 1]")], "leg.carriage", ("is a slider (chain US)",)),
     ("hexapod", [("damping = 0.005", 'damping = 0.005\ncarriage = { slider = "radial" }')],
      "leg.carriage", ("is a slider (chain UPS)", "PUS")),
     ("hexapod", [("damping = 0.005", "damping = 0.005\nplatfrom_joint = {}")], "leg.platfrom_joint",
@@ -304,6 +306,14 @@ def test_what_only_python_can_give():
     with pytest.raises(InputError, match="sliders or cranks"):
         legs = [slider, *[slider.replace(chain="RUS", carriage=crank)] * 5]
         robot("hexaglide").replace(type="PUS+5-RUS", legs=legs)
+    rod = slider.strut
+    with pytest.raises(InputError, match=r"chain: has no drive: no P.*Allowed: passive = true"):
+        model.Leg(chain="SS", strut=rod)
+    assert model.Leg(chain="SS", strut=rod, passive=True).driven == ""
+    with pytest.raises(InputError, match="carriage: is missing: P moves the foot"):
+        model.Leg(chain="PUS", strut=rod)
+    with pytest.raises(InputError, match="strut: is missing"):
+        model.Leg(chain="PUS", piston=found.legs[0].piston, carriage=slider.carriage)
     with pytest.raises(InputError, match="along the axis"):
         crank.replace(arm=[0, 0, 1])
     assert found.replace(home_height=1.0).home.position.tolist() == [0, 0, 1]
