@@ -59,3 +59,9 @@ def uncompiled(basis, modes, axial_modes, *, planar=False):
     other = lateral_basis(basis, 0) if planar else lateral
     meeting = {"planar": True, "closure": "none", "tip_body": True} if planar else {}
     return interpreted_kernel(Shapes(a=lateral, b=other, axial=axial_basis(axial_modes), **meeting))
+
+
+@cache
+def uncompiled_kernel(shapes):
+    """Functions of a robot for tests that need few matrices: no C compiler need run for that."""
+    return interpreted_kernel(shapes)

@@ -7,15 +7,15 @@ import pytest
 from tests.chains import as_mechanism
 from tests.mechanisms import ROBOTS
 from tests.oracles import welded
+from tests.runs import uncompiled_kernel
 
 import flexapod as fx
-from flexapod.solve.kernel import interpreted_kernel
 
 
 @pytest.fixture(autouse=True)
 def uncompiled(monkeypatch):
     """A few matrices are no work for a compiler."""
-    monkeypatch.setattr("flexapod.solve.robot_system.kernel", interpreted_kernel)
+    monkeypatch.setattr("flexapod.solve.robot_system.kernel", uncompiled_kernel)
 
 
 @pytest.mark.parametrize("name", ["3-RPS", "6-PUS"])

@@ -4,11 +4,11 @@ import numpy as np
 import pytest
 from scipy.spatial.transform import Rotation
 from tests.mechanisms import eight
+from tests.runs import uncompiled_kernel
 
 from flexapod.model import Simulation
 from flexapod.rigid import Poses
 from flexapod.solve.equilibrium import equilibria
-from flexapod.solve.kernel import interpreted_kernel
 from flexapod.solve.modes import locked_poses
 
 MISFIT = 1e-4
@@ -37,7 +37,7 @@ def least_energy(robot, position, turn, lengths):
 
 @pytest.mark.parametrize("fidelity", ["lumped", "assumed-modes"])
 def test_a_leg_that_is_too_long(fidelity, monkeypatch):
-    monkeypatch.setattr("flexapod.solve.robot_system.kernel", interpreted_kernel)
+    monkeypatch.setattr("flexapod.solve.robot_system.kernel", uncompiled_kernel)
     robot = eight().replace(gravity=[0, 0, 0])
     position, turn = (
         robot.home_position + np.array([0.03, -0.02, 0.04]),
