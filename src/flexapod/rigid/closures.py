@@ -11,6 +11,7 @@ from typing import NamedTuple
 
 import numpy as np
 from numpy.typing import NDArray
+from scipy.interpolate import CubicSpline
 
 from flexapod.rigid.laws import Law
 from flexapod.rigid.limbs import COORDINATES, Limbs
@@ -25,6 +26,8 @@ __all__ = ["Closed", "Motion", "Task", "close", "gaps", "move"]
 
 STRIDE = 0.35  # rad, or of a leg's length: the longest way in one step from home to a pose
 NEWTON = 25
+APART = 16  # instants of a path from one that is sought from the start to the next
+NEIGHBOURS = 0.05  # rad, or of a leg's length: between these a path is smooth
 TAKEN = 1e-9  # gap relative to L_c at which a pose counts as taken by the legs
 CLOSE = 1e-7  # gap from which one step leaves nothing but rounding
 
@@ -168,6 +171,25 @@ def close(limbs: Limbs, task: Task, q: Array, goal: Array | Poses, start: Closed
 
 
 def _close(limbs: Limbs, task: Task, q: Array, goal: Array | Poses, start: tuple[Array, Array]) -> Closed:
+    """Solution at the instants of a block: from `start`, or from between neighbours where these lie close together."""
+    if len(q) < 4 * APART:
+        return _from_start(limbs, task, q, goal, start)
+    at = np.unique([*range(0, len(q), APART), len(q) - 1])
+    few = _from_start(limbs, task, q[at], goal.part(at) if isinstance(goal, Poses) else goal[at], start)
+    flat = np.concatenate([few.x, few.q.reshape(len(at), -1)], axis=1)
+    unit = np.concatenate([_units(limbs)[:6], np.tile(_units(limbs)[6:], len(limbs))])
+    if not np.abs(np.diff(flat, axis=0) / unit).max(initial=0.0) < NEIGHBOURS:  # NaN neither
+        return _from_start(limbs, task, q, goal, start)
+    between = CubicSpline(at, flat)(np.arange(len(q)))
+    x = between[:, :6] if isinstance(goal, Poses) else np.where(task.platform, between[:, :6], goal)
+    legs = np.where(task.legs, between[:, 6:].reshape(q.shape), q)
+    legs, x, gap = _newton(limbs, task, legs, x, goal if isinstance(goal, Poses) else None, CLOSE)
+    if not (gap.max(initial=0.0) < TAKEN * limbs.L_c):
+        return _from_start(limbs, task, q, goal, start)
+    return Closed(q=legs, x=x, gap=gap)
+
+
+def _from_start(limbs: Limbs, task: Task, q: Array, goal: Array | Poses, start: tuple[Array, Array]) -> Closed:
     unit, (q0, x0) = _units(limbs), start
     turn = np.zeros((len(q), 3))
     if isinstance(goal, Poses):

@@ -8,7 +8,7 @@ from __future__ import annotations
 from dataclasses import dataclass, fields
 
 import numpy as np
-from numpy.typing import ArrayLike
+from numpy.typing import ArrayLike, NDArray
 
 from flexapod.errors import InputError
 from flexapod.model import CsvMotion, Motion, WaypointMotion
@@ -72,8 +72,8 @@ class Poses:
             alpha=np.zeros_like(p),
         )
 
-    def part(self, where: slice) -> Poses:
-        """The poses of a range."""
+    def part(self, where: slice | NDArray[np.intp]) -> Poses:
+        """The poses of a range, or those chosen."""
         return Poses(**{name: getattr(self, name)[where] for name in _PARTS})
 
     def place(self, local: ArrayLike) -> Array:
