@@ -3,12 +3,17 @@
 from dataclasses import replace
 
 import numpy as np
+import pytest
 from tests.consistency.test_mechanism_statics import frequencies, hexapod, solved
 from tests.oracles import beams
-from tests.systems import CYLINDER, PISTON, robot
+from tests.systems import CYLINDER, PISTON, packed, robot
 
+from flexapod.bases import axial_basis, lateral_basis
+from flexapod.mechanics.layout import Shapes, leg_parameters
 from flexapod.solve.equilibrium import equilibria
-from flexapod.solve.many import matrices_at_rest
+from flexapod.solve.kernel import interpreted_kernel
+from flexapod.solve.many import RestStates, matrices_at_rest
+from flexapod.solve.system import System
 
 NOTHING = 1e-14  # share of a leg's mass and stiffness
 
@@ -56,3 +61,27 @@ def test_one_leg_between_two_fixed_points_is_a_beam():
     for frequency in bar:
         assert np.abs(seen / frequency - 1).min() < 1e-3
     assert len(seen) == 2 * 5 + 3 - 1
+
+
+def test_a_leg_without_payload_is_a_cantilever():
+    """Its joint and stroke held, a force at its tip: F s^3 / 3EI across, F Lp / EA along."""
+    lateral, s, force = lateral_basis("tip-load", 3), 0.5, 20.0
+    shapes = Shapes(a=lateral, b=lateral, axial=axial_basis(1), closure="none")
+    values = PISTON | {"R0": np.eye(3).ravel()}
+    system = System(
+        kernel=interpreted_kernel(shapes), leg_p=packed(leg_parameters(shapes), values)[None], joint_p=np.zeros((1, 0)),
+        payload_p=np.zeros(0), held=np.array([[True] * 3 + [False] * 7]),
+    )  # fmt: skip
+    q = np.zeros((1, 1, 10))
+    q[..., 2] = PISTON["mouth"] + s
+    still = RestStates(q=q, pose=np.zeros((1, 7)), lam=np.zeros((1, 1, 0)), drive=np.zeros((1, 1, 3)))
+    command = q[..., system.ports]
+    found = equilibria(system, still, command, np.zeros_like(command), np.array([force, 0, 0, 0, 0, 0]))
+    assert found.code == 0
+    across = found.states.q[0, 0, 4:7] @ lateral.tip
+    assert across == pytest.approx(force * s**3 / (3 * PISTON["EI"]), rel=1e-5)  # 0.4 mm: stretched by nothing
+    beta = list(system.ports).index(1)
+    assert found.states.drive[0, 0, beta] == pytest.approx(-force * (PISTON["mouth"] + s), rel=1e-5)
+    seen = frequencies(system, found.m)[:2] / (2 * np.pi)
+    exact = beams.frequency(beams.beam_roots("clamped", "free", 1), s, PISTON["EI"], PISTON["rhoA"])
+    np.testing.assert_allclose(seen, exact[0], rtol=1e-5)

@@ -6,6 +6,7 @@ from dataclasses import dataclass, fields, replace
 
 import numpy as np
 
+from flexapod.mechanics.layout import LOAD_SIZE
 from flexapod.rigid.rotations import turned
 from flexapod.solve.kernel import evaluate
 from flexapod.solve.system import Index, State, System
@@ -127,11 +128,12 @@ def residual(
     P, legs, pose = len(x), system.legs, np.repeat(x.pose, system.legs, axis=0)
     at = rates or Rates(v=np.zeros(system.n), v_dot=np.zeros(system.n), u=np.zeros(6), u_dot=np.zeros(6))
     springs = system.spring_commands(np.stack([command, rate], axis=-1))
-    arguments, drive = [x.q, at.v, at.v_dot, x.lam, springs, system.leg_p], (springs.shape[-1] // 2,)
+    around = _around(system, pose, wrench)
+    arguments, drive = [x.q, at.v, at.v_dot, x.lam, springs, system.leg_p, *around], (springs.shape[-1] // 2,)
     net = np.zeros((legs * P, 6))
     if system.kernel.shapes.closure == "pose":
         outputs = [(system.n,), (6,), (6,), (2,), drive]
-        r, g, net, *_ = evaluate(system.kernel, "leg_residual", legs * P, [*arguments, pose], outputs)
+        r, g, net, *_ = evaluate(system.kernel, "leg_residual", legs * P, arguments, outputs)
     else:
         r, g, *_ = evaluate(system.kernel, "leg_residual", legs * P, arguments, [(system.n,), (3,), (2,), drive])
     if system.kernel.shapes.closure == "point":
@@ -142,6 +144,15 @@ def residual(
         arguments = [x.pose, at.u, at.u_dot, net.reshape(P, legs, 6).sum(axis=1), wrench, system.payload_p]
         payload, _ = evaluate(system.kernel, "payload_residual", P, arguments, [(6,), (1,)])
     return r.reshape(P, legs, system.n), payload, g[:, : system.rows].reshape(P, legs, system.rows)
+
+
+def _around(system: System, pose: Array, wrench: Array) -> list[Array]:
+    """What the functions of each leg read from outside it: the payload's pose, or a load on a tip without payload."""
+    shapes = system.kernel.shapes
+    if shapes.loaded:
+        load = np.concatenate([wrench, np.zeros((*wrench.shape[:-1], LOAD_SIZE - 6))], axis=-1)
+        return [np.repeat(np.atleast_2d(load), system.legs, axis=0)]
+    return [pose] if shapes.closure == "pose" else []
 
 
 def port_forces(system: System, x: RestStates, command: Array, force: Array) -> Array:
@@ -157,12 +168,12 @@ def port_forces(system: System, x: RestStates, command: Array, force: Array) -> 
 def matrices_at_rest(system: System, x: RestStates, wrench: Array) -> RestMatrices:
     """Matrices with geometric stiffness; see `System.matrices`."""
     P, legs, n, rows = len(x), system.legs, system.n, system.rows
-    arguments, outputs = [x.q, x.lam, system.leg_p], [(n, n)] * 3 + [(rows, n)]
-    moving, H, X = np.zeros((legs * P, rows, 0)), np.zeros((legs * P, 0, 0)), None
     pose = np.repeat(x.pose, legs, axis=0)
+    arguments, outputs = [x.q, x.lam, system.leg_p, *_around(system, pose, wrench)], [(n, n)] * 3 + [(rows, n)]
+    moving, H, X = np.zeros((legs * P, rows, 0)), np.zeros((legs * P, 0, 0)), None
     if system.kernel.shapes.closure == "pose":
         outputs += [(rows, 6), (6, 6), (n, 6)]
-        M, D, K, J, moving, H, X = evaluate(system.kernel, "leg_matrices", legs * P, [*arguments, pose], outputs)
+        M, D, K, J, moving, H, X = evaluate(system.kernel, "leg_matrices", legs * P, arguments, outputs)
         X = X.reshape(P, legs, n, 6)
     else:
         M, D, K, J = evaluate(system.kernel, "leg_matrices", legs * P, arguments, outputs)
