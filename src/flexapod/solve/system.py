@@ -6,7 +6,7 @@ from functools import cached_property
 import numpy as np
 from numpy.typing import NDArray
 
-from flexapod.mechanics.layout import LEG_PARAMETERS, LOAD_SIZE, columns
+from flexapod.mechanics.layout import LOAD_SIZE, columns, leg_parameters
 from flexapod.rigid.rotations import turned
 from flexapod.solve.kernel import Kernel, evaluate
 from flexapod.typing import Array, Mask
@@ -130,9 +130,13 @@ class System:
     @cached_property
     def force_floor(self) -> float:
         """Rounding of the stiffest spring's force [N]: what a residual cannot fall below at lengths of a metre."""
-        EA, Lp, drive = (self.leg_p[:, columns(LEG_PARAMETERS, name)] for name in ("EA", "Lp", "drive_stiffness"))
-        stretch = EA / Lp * (self.kernel.shapes.axial.count > 0)
-        return float(8 * np.finfo(float).eps * np.maximum(stretch, drive).max())
+        layout = leg_parameters(self.kernel.shapes)
+        EA, Lp = (self.leg_p[:, columns(layout, name)] for name in ("EA", "Lp"))
+        stiffest = [(EA / Lp).max() * (self.kernel.shapes.axial.count > 0)]
+        for name in ("drive_stiffness", "carriage_stiffness", "base_flexure", "platform_flexure"):
+            if name in dict(layout):
+                stiffest.append(self.leg_p[:, columns(layout, name)].max())
+        return float(8 * np.finfo(float).eps * max(stiffest))
 
     def by_leg(self, vector: Array) -> Array:
         """Part of the legs of a flat vector, (legs, n)."""

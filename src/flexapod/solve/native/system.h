@@ -6,7 +6,7 @@
 #pragma GCC optimize("O3")              /* loops of this size are worth unrolling; the generated code above has none */
 #endif
 
-enum { LEGS = 16, PORTS = 8 };          /* at most */
+enum { LEGS = 16, PORTS = 16 };         /* at most */
 enum { COLUMNS = 4 };                   /* of a port in a table: value, rate, acceleration, force */
 enum { OK = 0, NOT_CONVERGED = 1, NOT_FINITE = 2, SINGULAR = 3 };
 
