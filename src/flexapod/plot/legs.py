@@ -27,7 +27,7 @@ from flexapod.plot.style import (
 from flexapod.scene.colours import colors_of_legs
 from flexapod.scene.drives import drives
 from flexapod.scene.robot import motion_end
-from flexapod.study.words import NOTHING
+from flexapod.study.words import NOTHING, text
 
 __all__ = ["actuator_forces", "force_panels", "leg_lengths", "limits", "tip_deflections"]
 
@@ -128,28 +128,36 @@ def leg_lengths(data: xr.Dataset) -> Figure:
         Result of a simulation; legs without drive are left out.
     """
     found = drives(data)
-    fig = figure(PAGE, 5.0)
-    above, below = fig.subplots(2, 1, sharex=True, height_ratios=(1.3, 1))
     command, error, lengths = found.command, found.position - found.command, found.place == "length"
     error = error * (float(np.abs(error).max()) > ROUNDING * float(np.abs(command).max()))
     big = Scale(1e3, "mm") if found.place_unit == "m" else scale(command, "rad")
-    small, end = scale(error, found.place_unit), motion_end(data)
+    small, end, off = scale(error, found.place_unit), motion_end(data), lengths or bool(error.any())
+    fig = figure(PAGE, 5.0 if off else 3.0)
+    above, *others = fig.subplots(1 + off, 1, sharex=True, squeeze=False, height_ratios=(1.3, 1)[: 1 + off])[:, 0]
     for i, leg in enumerate(data.leg.values):
         if leg in command.leg:
             _leg_line(above, data, big(command.sel(leg=leg)), i)
-            _leg_line(below, data, small(error.sel(leg=leg)), i)
-    travel = big.factor * float((command.max("time") - command.min("time")).max())
-    spread = big.factor * float((command.max("leg") - command.min("leg")).max())
-    words = f"longest travel {travel:.0f} {big.name}" + f", legs differ by up to {spread:.0f} mm" * lengths
+            for below in others:
+                _leg_line(below, data, small(error.sel(leg=leg)), i)
+    travel = float((command.max("time") - command.min("time")).max())
+    spread = float((command.max("leg") - command.min("leg")).max())
+    words = f"longest travel {_rounded(travel, found.place_unit)}"
+    words += f", legs differ by up to {_rounded(spread, 'm')}" * lengths
     above.set_title(f"Commanded {found.place} ({words})")
-    below.set_title("Length error of the flexible legs" if lengths else "How far the drives are off")
     above.set_ylabel("joint to joint [mm]" if lengths else f"{found.place} [{big.name}]")
-    below.set_ylabel(f"flexible minus\ncommand [{small.name}]")
-    below.set_xlabel("time [s]")
+    for below in others:
+        below.set_title("Length error of the flexible legs" if lengths else "How far the drives are off")
+        below.set_ylabel(f"flexible minus\ncommand [{small.name}]")
+        mark_end(below, end)
+    [above, *others][-1].set_xlabel("time [s]")
     mark_end(above, end, "motion ends")
-    mark_end(below, end)
     _leg_legend(fig, above)
     return fig
+
+
+def _rounded(value: float, unit: str) -> str:
+    """A travel in words: whole millimetres, or what reads well where it is below one."""
+    return f"{1e3 * value:.0f} mm" if unit == "m" and value >= 1e-3 else text(value, unit, 2)
 
 
 @styled

@@ -104,14 +104,16 @@ def _robot(data: Dataset) -> Iterator[_Plan]:
     from flexapod import plot
     from flexapod.scene.drives import drives
     from flexapod.study.after.summary import tool_apart
+    from flexapod.study.attributes import robot_of
 
     found = drives(data)
     elastic = bool(np.abs(data.com_deviation).max() > 0)
-    axes = ("x", "y", "z")
+    axes, held = ("x", "y", "z"), robot_of(data).platform_fixed
     words = "rigid legs against flexible ones, and the deviation on its own scale"
     if tool_apart(data):
         yield "tool-path", f"Path of the tool: {words}", lambda: plot.com_path(data, axes, "tool")
-    yield "com-path", f"Path of the centre of mass: {words}", lambda: plot.com_path(data, axes)
+    if not held:
+        yield "com-path", f"Path of the centre of mass: {words}", lambda: plot.com_path(data, axes)
     if elastic:
         yield "deviation-by-cause", "Deviation of the centre of mass by cause", lambda: plot.deviation_by_cause(data)
     method = "Newton-Euler" if found.plain else "rigid robot"
@@ -119,11 +121,12 @@ def _robot(data: Dataset) -> Iterator[_Plan]:
     yield "actuator-forces", forces, lambda: plot.actuator_forces(data)
     place = found.place
     words = "Leg lengths, and how far the flexible legs are off"
-    words = words if place == "length" else f"{place[0].upper()}{place[1:]}, and how far the drives are off"
+    words = words if place == "length" else f"{place[0].upper()}{place[1:]}, as commanded"
     yield "leg-lengths", words, lambda: plot.leg_lengths(data)
     if np.abs(data.tip_deflection).max() > 0:
         yield "tip-deflections", "Deflection of the piston tips across the legs", lambda: plot.tip_deflections(data)
-    yield "motion", "Commanded motion", lambda: plot.motion_law(data)
+    if not held:
+        yield "motion", "Commanded motion", lambda: plot.motion_law(data)
     yield "energies", "Energies and their balance", lambda: plot.energies(data)
     yield "robot", "The robot at the end of the motion; pale: at the start", lambda: plot.robot_3d(data)
 

@@ -32,6 +32,7 @@ MODES = 6
 MODE_SIZE = 0.1  # largest displacement of a mode, as a share of the robot's height
 EVERY = 3  # of the points of a drawn piston
 FILLED = 1.6  # size of the drawn box, which nearly fills its place
+FLAT = 0.15  # least extent of the box, as a share of the largest
 BELOW = 0.06  # of the box's height, free below the base: numbers of the legs and of the axes stay apart
 #: From where robots in space and in a plane are seen.
 _EYES = {None: (1.5, -1.7, 0.5), "xy": (0.2, -0.9, 2.1), "yz": (2.1, -0.9, 0.4), "zx": (0.9, -2.1, 0.4)}
@@ -254,6 +255,8 @@ def _space(points: Array, plane: str | None) -> dict[str, Any]:
     """3D axes in mm with equal scales that hold all frames, so that nothing jumps."""
     low, high = _limits(points)
     low[2] -= BELOW * float((high - low)[2])
+    thin = np.maximum(FLAT * float((high - low).max()) - (high - low), 0.0) / 2
+    low, high = low - thin, high + thin
     span = high - low
     axes = {
         f"{name}axis": {"title": {"text": f"{name} [mm]"}, "range": [float(low[i]), float(high[i])], "tickvals": ends}

@@ -49,14 +49,14 @@ def study_words(study: Study | ActuatorStudy, found: RobotDescription | Actuator
 def _robot(study: Study) -> list[str]:
     robot, piston, simulation = study.robot, study.robot.legs[0].piston, study.simulation
     size = f"{number(1e3 * piston.diameter)} mm thick, " if piston.diameter else ""
-    alike = "" if all(leg == robot.legs[0] for leg in robot.legs) else " (leg 1; the legs differ)"
+    alike = "" if robot.alike else " (leg 1; the legs differ)"
+    body = "piston" if robot.legs[0].strut is None else "strut"
     shapes = simulation.lateral_shapes
     count = f", {shapes} lateral shapes per plane and leg" if shapes else ""
-    beams = "Struts" if robot.legs[0].strut is not None else "Pistons"
     return [
         *_carried(robot),
-        f"{beams}: {size}{number(1e3 * piston.length)} mm long, EA = {number(1e-6 * piston.EA)} MN, "
-        f"EI = {number(piston.EI)} N m², {_damping(robot.legs[0].damping, 'piston')}{alike}.",
+        f"{body.capitalize()}s: {size}{number(1e3 * piston.length)} mm long, EA = {number(1e-6 * piston.EA)} MN, "
+        f"EI = {number(piston.EI)} N m², {_damping(robot.legs[0].damping, body)}{alike}.",
         f"Drives: {_drives(robot)}.",
         f"Motion: {_motion(study.motion)}.",
         f"Load: {_load(study.load.wrench)}.",
