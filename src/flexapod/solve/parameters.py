@@ -5,7 +5,7 @@ import numpy as np
 from flexapod.mechanics import layout
 from flexapod.mechanics.layout import LEG_PARAMETERS, PAYLOAD_PARAMETERS, Shapes
 from flexapod.model import Actuator, ForceDrive, Leg, Robot, ServoDrive, damping_parts
-from flexapod.rigid.limbs import COORDINATES, Limbs
+from flexapod.rigid.limbs import COORDINATES, FREE, Limbs
 from flexapod.typing import Array
 
 
@@ -32,9 +32,11 @@ def leg_parameters(robot: Robot, legs: Limbs, shapes: Shapes) -> Array:
     layout_of_legs = layout.leg_parameters(shapes)
     ends = [dict(zip(("base_flexure", "platform_flexure"), x, strict=True)) for x in flexures(robot, legs)]
     rows = (_leg(leg) | _place(robot, legs, i) | _joints(leg, legs, i) | ends[i] for i, leg in enumerate(robot.legs))
-    if shapes.torsion:  # what twists has an inertia: that of a round section where none is given
-        twists = zip(rows, robot.legs, legs.pose_closure, strict=True)
-        rows = (row | {"piston_axial_inertia": axial_inertia(leg)} if twisted else row for row, leg, twisted in twists)
+    turns = [COORDINATES.index(name) for name in ("spin", "gamma3")]
+    loose = legs.pose_closure & (shapes.torsion | (legs.state[:, turns] == FREE).all(axis=1))
+    # what twists, or turns between two springs, has an inertia: that of a round section where none is given
+    with_inertia = zip(rows, robot.legs, loose, strict=True)
+    rows = (row | {"piston_axial_inertia": axial_inertia(leg)} if own else row for row, leg, own in with_inertia)
     return np.array([_pack(layout_of_legs, values) for values in rows])
 
 
