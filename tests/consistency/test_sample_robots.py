@@ -14,6 +14,12 @@ from flexapod.model import PrescribedDrive
 
 FOLDER = Path(__file__).parents[2] / "examples" / "mechanisms"
 NAMES = sorted(path.stem for path in FOLDER.glob("*.toml") if path.stem != "strut")  # its platform does not move
+PRESETS = ("flight-simulator", "tripod-preset")
+
+
+def loaded(name):
+    """A sample, or a preset."""
+    return fx.preset(name.removesuffix("-preset")) if name in PRESETS else fx.load(FOLDER / f"{name}.toml")
 
 
 def quintic(amplitude, s, duration):
@@ -22,9 +28,9 @@ def quintic(amplitude, s, duration):
     return amplitude * np.array(law) / duration ** np.arange(3)
 
 
-@pytest.mark.parametrize("name", NAMES)
+@pytest.mark.parametrize("name", [*NAMES, *PRESETS])
 def test_forces_and_moments_of_all_joints(name):
-    study = fx.load(FOLDER / f"{name}.toml")
+    study = loaded(name)
     robot, motion = study.robot, study.motion
     own = motion.independent or (PLANES[robot.plane] if robot.plane else tuple(NAMED))
     wrench = np.array([5.0, -3, 8, 0.3, 0.2, 0.1]) * ([1, 1, 0, 0, 0, 1] if robot.plane else [1] * 6)
@@ -48,10 +54,30 @@ def test_forces_and_moments_of_all_joints(name):
             np.testing.assert_allclose(ours, other.tip_moment, rtol=0, atol=1e-11 * size)
 
 
-@pytest.mark.parametrize("name", NAMES)
+@pytest.mark.parametrize("name", [*NAMES, *PRESETS])
+def test_forces_balance_mujocos_trees(name):
+    pytest.importorskip("mujoco")
+    from tests.oracles.mujoco_trees import Tree
+
+    study, share = loaded(name), 0.6
+    robot, motion = study.robot, study.motion
+    own = motion.independent or (PLANES[robot.plane] if robot.plane else tuple(NAMED))
+    data = fx.inverse_dynamics(robot, motion, duration=motion.duration, output_step=motion.duration / 5).isel(time=3)
+    tree = Tree(as_mechanism(robot, own))
+    law = [quintic(motion.amplitudes.get(axis, 0.0), share, motion.duration) for axis in own]
+    tree.move(*np.array(law).T)
+    drive = data["drive_force_rigid"].values
+    left, tips = tree.forces(None, drive)
+    size = np.abs(tips).max()
+    assert left < 1e-8 * max(size, np.abs(drive).max())  # the asked-for; 1e-12 seen
+    seen = [0, 1] if robot.plane else [0, 1, 2]
+    np.testing.assert_allclose(data["joint_force_rigid"].values[:, seen], tips[:, seen], rtol=0, atol=1e-8 * size)
+
+
+@pytest.mark.parametrize("name", [*NAMES, *PRESETS])
 def test_first_frequencies(name, monkeypatch):
     monkeypatch.setattr("flexapod.solve.robot_system.kernel", uncompiled_kernel)  # a few matrices
-    robot = fx.load(FOLDER / f"{name}.toml").robot
+    robot = loaded(name).robot
     robot = robot.replace(gravity=[0, 0, 0], legs=[leg.replace(drive=PrescribedDrive()) for leg in robot.legs])
     exact = frames.frequencies(*as_frame(robot), 5, digits=1e-10)
     # What polynomials of degree 8 miss of one bow is 1e-8; two of the planar robot.s first five bend its struts twice.
@@ -61,7 +87,7 @@ def test_first_frequencies(name, monkeypatch):
 
 @pytest.mark.parametrize("name", [name for name in NAMES if name != "planar"])
 def test_mobility(name):
-    robot = fx.load(FOLDER / f"{name}.toml").robot
+    robot = loaded(name).robot
     found, other = fx.mobility(robot), virtual_power.mobility(as_mechanism(robot))
     assert {key: int(found[key]) for key in ("mobility", "locked", "redundant", "self_stress")} == {
         key: other[key] for key in ("mobility", "locked", "redundant", "self_stress")
