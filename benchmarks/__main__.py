@@ -20,6 +20,7 @@ def sections() -> dict[str, Callable[[], list[Section]]]:
     """The sections by name, in the order of the page."""
     from benchmarks.many_poses import many_poses
     from benchmarks.many_robots import many_robots
+    from benchmarks.mechanisms import mechanisms
     from benchmarks.one_actuator import one_actuator
     from benchmarks.one_robot import one_robot
     from benchmarks.scaling import scaling
@@ -31,6 +32,7 @@ def sections() -> dict[str, Callable[[], list[Section]]]:
         "scaling": scaling,
         "side-by-side": side_by_side,
         "one-actuator": one_actuator,
+        "mechanisms": mechanisms,
         "many-poses": many_poses,
         "many-robots": many_robots,
         "start-up": startup,

@@ -1,0 +1,105 @@
+"""A step of robots of many kinds beside that of a 6-UPS, operations of their legs, and the first compilation."""
+
+from __future__ import annotations
+
+import os
+import subprocess
+import sys
+import tempfile
+import time
+from pathlib import Path
+
+import flexapod as fx
+from benchmarks.report import Section, goal
+from benchmarks.timing import interleaved
+from flexapod.model import Study
+from flexapod.solve import native
+from flexapod.solve.kernel import Kernel
+from flexapod.solve.robot_march import prepare
+from flexapod.symbolic.functions import operations
+
+__all__ = ["mechanisms"]
+
+COMMAND = "python -m benchmarks mechanisms"
+SAMPLES = Path(__file__).parents[1] / "examples" / "mechanisms"
+NAMES = ("hexapod", "tripod", "tricept", "hexaglide", "eight-legs", "delta", "planar", "flexures")
+SHAPES, REPEATS, STEP = 3, 9, 1e-4
+LANES = 8  # of a vector on this kind of machine; eight legs fill one
+FIRST = "import flexapod as fx, sys; fx.simulate(fx.load(sys.argv[1]), modes=3, step=1e-3, duration=1e-2)"
+
+
+def _study(name: str) -> Study:
+    study = fx.load(SAMPLES / f"{name}.toml")
+    simulation = study.simulation.replace(modes=SHAPES, step=STEP, tolerance=None, duration=0.1)
+    return study.replace(simulation=simulation)
+
+
+def _step(study: Study) -> float:
+    """Seconds of one step in C, without the tables of commands."""
+    spent, steps, plain = 0.0, 0, native.advance
+
+    def timed(*arguments: object) -> native.Advance:
+        nonlocal spent, steps
+        begin = time.process_time()
+        result = plain(*arguments)  # type: ignore[arg-type]
+        spent, steps = spent + time.process_time() - begin, steps + result.step
+        return result
+
+    native.advance = timed  # type: ignore[assignment]
+    try:
+        for _ in prepare(study).chunks:
+            pass
+    finally:
+        native.advance = plain
+    return spent / steps
+
+
+def _count(kernel: Kernel, name: str) -> float:
+    from flexapod.mechanics.assembly import leg_functions
+
+    function = next(f for f in leg_functions(kernel.shapes) if f.name == name)
+    return float(sum(operations(function.build()).values()))
+
+
+def _first(name: str) -> float:
+    """Seconds of the first run ever, as a process."""
+    with tempfile.TemporaryDirectory() as folder:
+        begin = time.perf_counter()
+        environment = os.environ | {"FLEXAPOD_CACHE": folder}
+        subprocess.run([sys.executable, "-c", FIRST, str(SAMPLES / f"{name}.toml")], check=True, env=environment)
+        return time.perf_counter() - begin
+
+
+def mechanisms() -> list[Section]:
+    """One section: a row a robot."""
+    studies = {name: _study(name) for name in NAMES}
+    for study in studies.values():
+        _step(study)
+    steps = interleaved({name: (lambda s=study: _step(s)) for name, study in studies.items()}, REPEATS)
+    first = {name: _first(name) for name in NAMES}
+    rows, base = [], steps[NAMES[0]].median
+    own: list[float] = []
+    for name, study in studies.items():
+        kernel = prepare(study).system.kernel
+        counts = [_count(kernel, function) for function in ("leg_residual", "leg_matrices")]
+        own = own or counts
+        groups = -(-study.robot.count // LANES)
+        ratio = steps[name].median / base / groups
+        rows.append(
+            [
+                study.robot.type,
+                steps[name].text("us", 1e6),
+                f"{ratio:.2f} a group, {goal(ratio, 1.5, 'at most 1.5')}",
+                ", ".join(f"{n:.0f} ({n / most:.2f})" for n, most in zip(counts, own, strict=True)),
+                f"{first[name]:.1f} s, {goal(first[name], 10.0, 'at most 10')}",
+            ]
+        )
+    header = [
+        "Robot",
+        "Step in C",
+        "Of a 6-UPS",
+        "Operations of a leg: residual, matrices (of a 6-UPS)",
+        "First run ever",
+    ]
+    remarks = [f"{SHAPES} shapes per plane; operations of CasADi's list; matrices are made once in some fifteen steps."]
+    return [Section(title="Robots of many kinds", command=COMMAND, header=header, rows=rows, remarks=remarks)]
