@@ -10,6 +10,8 @@ from tests.oracles import frames
 from tests.runs import uncompiled_kernel
 
 import flexapod as fx
+from flexapod.model.joint import Joint
+from flexapod.model.leg import Leg
 from flexapod.model.payload import Payload
 from flexapod.model.piston import Cylinder, Piston
 
@@ -67,6 +69,19 @@ def test_a_table_sways_with_twelve_EI_a_leg():
     GJ = BARE["piston"].torsional_stiffness
     np.testing.assert_allclose(np.diag(K)[:3], [48 * EI / s**3, 48 * EI / s**3, 4 * 1.1e8 / s], rtol=1e-10)
     assert K[5, 5] == pytest.approx(4 * (GJ / s + 12 * EI / s**3 * 0.3**2), rel=1e-10)
+
+
+def test_flexures_with_six_rows_are_springs_in_series_with_the_beam():
+    """At the tip of a cantilever: s/EA + 1/kz along it; its flexibility to a force and a moment plus theirs across."""
+    k = np.array([2e6, 3e6, 4e6, 50.0, 60.0, 70.0])
+    legs = [Leg(chain="FPF", platform_joint=Joint(stiffness=np.diag(k)), **BARE)] * 4
+    robot = built("4-FPF", ring(0.3, FOUR), ring(0.3, FOUR), 0.8, legs, payload=PLATE).replace(gravity=[0, 0, 0])
+    K, EI, s = fx.stiffness(robot, modes=2)["stiffness"].values, 5e3, 0.8
+    beam = np.array([[s**3 / 3, s**2 / 2], [s**2 / 2, s]]) / EI
+    for axis, across in ((0, 4), (1, 3)):  # a push along x bends about y
+        soft = beam + np.diag([1 / k[axis], 1 / k[across]])
+        assert K[axis, axis] == pytest.approx(4 * np.linalg.inv(soft)[0, 0], rel=1e-9)
+    assert K[2, 2] == pytest.approx(4 / (s / 1.1e8 + 1 / k[2]), rel=1e-9)
 
 
 def test_closed_forms_of_a_tripod():
