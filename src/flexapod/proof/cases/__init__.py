@@ -19,7 +19,7 @@ from flexapod.proof.cases.conservation import CONSERVATION
 from flexapod.proof.cases.cubic_hexapod import CUBIC_HEXAPOD
 from flexapod.proof.cases.dietmaier import DIETMAIER
 from flexapod.proof.cases.exudyn_rigid_robot import EXUDYN_RIGID_ROBOT
-from flexapod.proof.cases.exudyn_robot import EXUDYN_ROBOT, EXUDYN_ROBOT_PAPER
+from flexapod.proof.cases.exudyn_robot import EXUDYN_ROBOT, EXUDYN_ROBOT_PAPER, EXUDYN_TRIPOD
 from flexapod.proof.cases.exudyn_sliding_beam import EXUDYN_SLIDING_BEAM, EXUDYN_SLIDING_BEAM_LONG
 from flexapod.proof.cases.exudyn_spin_up import EXUDYN_SPIN_UP
 from flexapod.proof.cases.four_bar import FOUR_BAR
@@ -27,6 +27,7 @@ from flexapod.proof.cases.generalized_alpha import GENERALIZED_ALPHA
 from flexapod.proof.cases.integrator import ENERGY_LOSS
 from flexapod.proof.cases.left_out import NOT_MODELLED
 from flexapod.proof.cases.locked_robot import LOCKED_ROBOT
+from flexapod.proof.cases.mechanism_engines import CALCULIX_MECHANISMS, MUJOCO_MECHANISMS
 from flexapod.proof.cases.mujoco_forces import MUJOCO_FORCES
 from flexapod.proof.cases.pinned_leg import PINNED_LEG
 from flexapod.proof.cases.piston import PISTON
@@ -77,6 +78,7 @@ CASES: tuple[Case, ...] = (
     FOUR_BAR,
     BRICARD,
     MUJOCO_FORCES,
+    MUJOCO_MECHANISMS,
     CALCULIX_BEAM,
     CALCULIX_PISTON,
     CALCULIX_SOLID,
@@ -84,11 +86,13 @@ CASES: tuple[Case, ...] = (
     CALCULIX_RELEASE,
     CALCULIX_ROBOT,
     CALCULIX_PRESTRESS,
+    CALCULIX_MECHANISMS,
     EXUDYN_SPIN_UP,
     EXUDYN_SLIDING_BEAM,
     EXUDYN_SLIDING_BEAM_LONG,
     EXUDYN_RIGID_ROBOT,
     EXUDYN_ROBOT,
     EXUDYN_ROBOT_PAPER,
+    EXUDYN_TRIPOD,
     NOT_MODELLED,
 )
