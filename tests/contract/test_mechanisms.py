@@ -177,3 +177,27 @@ def test_command_line(name, command, tmp_path):
     if command == "check":
         assert found["motions"]
         assert len(found["legs"]) == study(name).robot.count
+
+
+@pytest.mark.parametrize(
+    ("sample", "key", "values"),
+    [
+        ("delta", "leg[2].carriage.mass", '["0.8 kg", "1 kg"]'),
+        ("tricept", "leg[4].piston.diameter", '["60 mm", "70 mm"]'),
+        ("flexures", "leg.base_joint.bending", "[10, 30]"),
+        ("hexaglide", "robot.base.joints[3]", "[[-0.3, 0.4, 0], [-0.31, 0.4, 0]]"),
+    ],
+)
+def test_sweeps_over_tables_of_other_legs(sample, key, values, tmp_path):
+    path, sweep = tmp_path / "robot.toml", tmp_path / "sweep.toml"
+    text = next(file for file in FILES if file.stem == sample).read_text(encoding="utf-8").split("[simulation]")[0]
+    settings = "\n".join(f"{name} = {value}" for name, value in (SHORT | {"modes": 1, "duration": 0.01}).items())
+    path.write_text(f"{text}[simulation]\n{settings}\n", encoding="utf-8")
+    kept = 'scalars = ["com_deviation_peak", "actuator_force_peak", "first_frequency"]\nrecords = ["drive_force"]'
+    sweep.write_text(f'[[vary]]\nkey = "{key}"\nvalues = {values}\n[keep]\n{kept}\n', encoding="utf-8")
+    found = fx.sweep(path, sweep, workers=0)
+    assert not any(found.message.values)
+    assert found.sizes["leg"] == study(sample).robot.count
+    frequency = found.first_frequency.values
+    assert frequency[0] != frequency[1]
+    np.testing.assert_allclose(np.abs(found.drive_force).max(("time", "leg")), found.actuator_force_peak)

@@ -23,6 +23,7 @@ from flexapod.typing import Array
 __all__ = [
     "STROKES",
     "absent",
+    "drive_forces",
     "drive_forms",
     "flexible_lengths",
     "leg_labels",
@@ -101,6 +102,11 @@ def _port_forces(system: System, record: Record) -> Array:
     forces = np.zeros(record.q.shape)
     forces[..., system.ports] = record.drive
     return forces
+
+
+def drive_forces(robot: Robot, system: System, record: Record) -> Array:
+    """Force of every drive on what it moves, (T, legs) [N, of cranks N m]; 0 of passive legs."""
+    return by_name.of_drives(limbs(robot), system.kernel.shapes, _port_forces(system, record))
 
 
 def _commands(found: Limbs, path: RigidPath) -> Array:

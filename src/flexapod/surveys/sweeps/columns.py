@@ -11,6 +11,7 @@ import numpy as np
 from flexapod import version
 from flexapod.errors import InputError
 from flexapod.model import ActuatorStudy
+from flexapod.study.after.leg_results import leg_labels
 from flexapod.study.attributes import attributes
 from flexapod.study.names import fixed_labels
 from flexapod.surveys.sweeps.identity import sources
@@ -80,8 +81,10 @@ def columns(points: Points, kept: Kept, resolved: Resolved) -> tuple[dict[str, C
         for column in (*varied.values(), *made.values())
         for dim, size in zip(column.dims, column.shape, strict=True)
     }
-    for dim, (labels, words) in fixed_labels(used).items():
-        values = np.asarray(labels)
+    robot = getattr(points.nominal, "robot", None)
+    own = {} if robot is None else leg_labels(robot)
+    for dim, (labels, words) in ({dim: (own[dim], dim) for dim in own if dim in used} | fixed_labels(used)).items():
+        values = np.asarray(own.get(dim, labels))
         made[dim] = Column((dim,), values.shape, {"long_name": words}, values)
     if "time" in used:
         made["time"] = Column(("time",), kept.times.shape, {"units": "s", "long_name": "time"}, kept.times)

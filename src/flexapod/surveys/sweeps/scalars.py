@@ -16,6 +16,7 @@ from flexapod.rigid.rotations import difference, matrix, quaternion
 from flexapod.solve.modes import robot_modes
 from flexapod.solve.recording import Counters
 from flexapod.solve.system import System
+from flexapod.study.after.leg_results import drive_forces
 from flexapod.study.after.legs import bending_basis, lateral
 from flexapod.study.after.plausibility import flexible_axes, leg_stress
 from flexapod.study.after.results import robot_results
@@ -78,8 +79,8 @@ class RobotRun:
 
     @cached_property
     def actuator_force(self) -> Array:
-        """Force of every drive on its piston, (T, legs) [N]."""
-        return self.record.drive[:, :, 0]
+        """Force of every drive on what it moves, (T, legs) [N, of cranks N m]."""
+        return drive_forces(self.study.robot, self.system, self.record)
 
     @cached_property
     def lateral(self) -> Array:
