@@ -13,9 +13,10 @@ from flexapod import rigid
 from flexapod.model.payload import Payload
 from flexapod.rigid.rotations import turned
 from flexapod.solve.arrow import arrow_solve
-from flexapod.solve.elimination import closed, expanded, leg_bases, null_space_of_borders, reduced
+from flexapod.solve.elimination import closed, leg_bases
 from flexapod.solve.equilibrium import _Acts, _loaded_slowly, equilibria
 from flexapod.solve.many import matrices_at_rest, residual_at_rest
+from flexapod.solve.reduction import expanded, null_space_of_borders, reduced
 from flexapod.solve.rigid_motion import rigid_rest
 
 THIRDS, EIGHT = [0.0, 120.0, 240.0], np.array([20.0, 70, 110, 160, 200, 250, 290, 340])

@@ -11,7 +11,6 @@ from typing import NamedTuple
 
 import numpy as np
 from numpy.typing import NDArray
-from scipy.interpolate import CubicSpline
 
 from flexapod.rigid.laws import Law
 from flexapod.rigid.limbs import COORDINATES, Limbs
@@ -180,6 +179,8 @@ def _close(limbs: Limbs, task: Task, q: Array, goal: Array | Poses, start: tuple
     unit = np.concatenate([_units(limbs)[:6], np.tile(_units(limbs)[6:], len(limbs))])
     if not np.abs(np.diff(flat, axis=0) / unit).max(initial=0.0) < NEIGHBOURS:  # NaN neither
         return _from_start(limbs, task, q, goal, start)
+    from scipy.interpolate import CubicSpline  # half a second that only long paths of other robots than six UPS need
+
     between = CubicSpline(at, flat)(np.arange(len(q)))
     x = between[:, :6] if isinstance(goal, Poses) else np.where(task.platform, between[:, :6], goal)
     legs = np.where(task.legs, between[:, 6:].reshape(q.shape), q)

@@ -6,8 +6,9 @@ from dataclasses import dataclass
 
 import numpy as np
 
-from flexapod.solve.elimination import LegBases, leg_bases, open_borders, reduced, solve_each
+from flexapod.solve.elimination import LegBases, leg_bases, open_borders, solve_each
 from flexapod.solve.many import RestMatrices
+from flexapod.solve.reduction import reduced
 from flexapod.solve.system import System
 from flexapod.typing import Array
 

@@ -11,11 +11,12 @@ from flexapod.errors import ComputationError, InputError
 from flexapod.model import Load, Robot, Simulation
 from flexapod.rigid.limbs import DRIVEN, FREE
 from flexapod.solve.damped import damping_ratios
-from flexapod.solve.elimination import LegBases, closed, expanded, leg_bases, null_space_of_borders, reduced
+from flexapod.solve.elimination import LegBases, closed, leg_bases
 from flexapod.solve.equilibrium import FOUND, Equilibria, Equilibrium, equilibria
 from flexapod.solve.fallen import refuse_fallen
 from flexapod.solve.frequencies import count_real, mass_factor, natural
 from flexapod.solve.many import RestMatrices, RestStates
+from flexapod.solve.reduction import expanded, null_space_of_borders, reduced
 from flexapod.solve.rest import RestLoad, rest_commands, rest_load
 from flexapod.solve.rigid_motion import rigid_rest
 from flexapod.solve.robot_system import robot_system

@@ -9,9 +9,10 @@ from flexapod.bases.eigen import finite
 from flexapod.errors import InputError
 from flexapod.model import Load, Robot, Simulation
 from flexapod.rigid.rotations import matrix
-from flexapod.solve.elimination import reduced_legs, solve_each
+from flexapod.solve.elimination import solve_each
 from flexapod.solve.equilibrium import Equilibrium
 from flexapod.solve.modes import LockedPoses, locked_poses, the_equilibrium
+from flexapod.solve.reduction import reduced_legs
 from flexapod.solve.system import System
 from flexapod.typing import Array
 
