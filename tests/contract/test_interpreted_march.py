@@ -7,6 +7,7 @@ from pathlib import Path
 
 import numpy as np
 import pytest
+from tests.moving import SOFT, moving
 from tests.runs import FIELDS, paper_robot, run_actuator, run_robot
 
 from flexapod.model import (
@@ -97,3 +98,10 @@ def test_it_is_said_once():
     )  # fmt: skip
     assert done.stderr.count("No C compiler") == 1
     assert "gcc or clang" in done.stderr
+
+
+def test_robot_with_a_passive_guide(interpreted):
+    """Attitudes closed, welds held beside balls that are free."""
+    study = moving("3-UPS+UP", axial_modes=0, modes=1, step=1e-3, output_step=1e-3, duration=5e-3, drive=SOFT)
+    compiled, twin = interpreted(run_robot, study)
+    same(twin, compiled, 1e-3)
