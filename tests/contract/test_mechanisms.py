@@ -182,7 +182,7 @@ def test_command_line(name, command, tmp_path):
 @pytest.mark.parametrize(
     ("sample", "key", "values"),
     [
-        ("delta", "leg[2].carriage.mass", '["0.8 kg", "1 kg"]'),
+        ("delta", "leg[2].strut.diameter", '["10 mm", "11 mm"]'),
         ("tricept", "leg[4].piston.diameter", '["60 mm", "70 mm"]'),
         ("flexures", "leg.base_joint.bending", "[10, 30]"),
         ("hexaglide", "robot.base.joints[3]", "[[-0.3, 0.4, 0], [-0.31, 0.4, 0]]"),
