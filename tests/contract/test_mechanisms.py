@@ -6,6 +6,7 @@ from pathlib import Path
 
 import numpy as np
 import pytest
+from scipy.spatial.transform import Rotation
 from typer.testing import CliRunner
 
 import flexapod as fx
@@ -91,6 +92,40 @@ def test_forces_of_the_legs_carry_the_payload(name):
     )
     total = data.joint_force.values.sum(axis=0) + robot.payload.mass * robot.gravity
     assert np.abs(total * (1 - held)).max() < 1e-7 * robot.payload.mass * 9.81
+
+
+def _moments(data, end):
+    return data.joint_moment.sel(end=end).values if "joint_moment" in data else np.zeros((data.sizes["leg"], 3))
+
+
+def test_moments_of_the_legs_balance_the_payload(name):
+    """At the start, at rest: moments about the centre of mass."""
+    data, robot = run(name).isel(time=0), study(name).robot
+    if robot.payload is None or robot.plane:
+        return
+    R = Rotation.from_quat(data.platform_quaternion.values, scalar_first=True).as_matrix()
+    arms = (robot.platform_joints - robot.com) @ R.T
+    total = (np.cross(arms, data.joint_force.values) + _moments(data, "platform")).sum(axis=0)
+    assert np.abs(total).max() < 1e-7 * np.abs(arms).max() * robot.payload.mass * 9.81
+
+
+def test_moments_at_the_base_balance_the_legs(name):
+    """At the start, at rest, across each leg: straight ones, of which bending leaves a thousandth."""
+    data, robot = run(name).isel(time=0), study(name).robot
+    if robot.plane or study(name).initial.start != "equilibrium":
+        return
+    tips = data.com_position.values + (robot.platform_joints - robot.com)
+    ways = tips - robot.home_bases
+    lengths = np.linalg.norm(ways, axis=1)
+    for i, leg in enumerate(robot.legs):
+        axis, piston = ways[i] / lengths[i], leg.piston
+        mass = piston.rhoA * piston.length
+        weight = (leg.cylinder.mass * leg.cylinder.com + mass * (lengths[i] - piston.length / 2)) * robot.gravity
+        on_platform = np.cross(ways[i], data.joint_force.values[i]) + _moments(data, "platform")[i]
+        total = _moments(data, "base")[i] + np.cross(axis, weight) - on_platform
+        scale = np.linalg.norm(np.cross(axis, weight)) + np.linalg.norm(on_platform) + 1e-3
+        across = total - (total @ axis) * axis
+        assert np.linalg.norm(across) < 5e-3 * scale, (i, across, scale)
 
 
 def test_drives_follow_their_commands(name):

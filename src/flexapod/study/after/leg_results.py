@@ -173,7 +173,8 @@ def _joint_moments(found: Limbs, system: System, record: Record | RestStates, fo
     if system.rows < 6:
         return np.stack([base, np.zeros_like(base)], axis=2)
     turn = matrix(record.pose[:, 3:])[:, None] @ found.platform_frames
-    return np.stack([base, found.L_c * (turn @ record.lam[..., 3:, None])[..., 0]], axis=2)  # (T13.16)
+    on_platform = found.L_c * (turn @ record.lam[..., 3:, None])[..., 0]  # (T13.14) where Q = 1
+    return np.stack([base, on_platform], axis=2)
 
 
 def _base_moments(found: Limbs, system: System, q: Array, forces: Array) -> Array:
