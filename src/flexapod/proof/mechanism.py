@@ -1,6 +1,6 @@
 """Mechanisms of the literature in the time integration of the robot: same start, same compiled loop, other equations.
 
-The loop knows six legs of n coordinates, each closed by three equations to a body that carries them, and strokes that
+The loop knows legs of n coordinates, each closed by three equations to a body that carries them, and strokes that
 may follow a table. Any mechanism of that structure can take their place: `Branch` for the leg, `Hub` for the body.
 Needs casadi: import it where a case is computed.
 """
