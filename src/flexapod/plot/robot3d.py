@@ -4,12 +4,14 @@ from __future__ import annotations
 
 from collections.abc import Sequence
 
+import numpy as np
 import xarray as xr
 from matplotlib.figure import Figure
 
 from flexapod.plot.draw3d import draw_ghost, draw_robot, head, space, view
 from flexapod.plot.style import NOTE, PAGE, figure, needs, styled
 from flexapod.scene.robot import mode_scene, motion_end, scene
+from flexapod.scene.skeleton import Scene
 
 __all__ = ["modes_3d", "robot_3d"]
 
@@ -40,7 +42,7 @@ def robot_3d(data: xr.Dataset, time: float | None = None) -> Figure:
     fig = figure(PAGE, 4.5)
     fig.set_layout_engine("none")  # 3D axes have no extents that a layout could use
     places = fig.add_gridspec(1, 2, width_ratios=(1.15, 1), left=0.0, right=0.96, bottom=0.07, top=0.93, wspace=0.1)
-    oblique, straight, along = _VIEWS[now.skeleton.robot.plane]
+    oblique, straight, along = _VIEWS[_plane(now)]
     left, right = space(fig, places[0], **oblique), space(fig, places[1], **straight)
     moved = time > float(data.time[0])
     for axes in (left, right):
@@ -78,7 +80,7 @@ def modes_3d(modes: xr.Dataset, show: Sequence[int] | None = None, size: float =
     )
     rest = mode_scene(modes, labels[0], 1.0, phase=0.0)
     for i, label in enumerate(labels):
-        axes = space(fig, places[divmod(i, columns)], **_VIEWS[rest.skeleton.robot.plane][0])
+        axes = space(fig, places[divmod(i, columns)], **_VIEWS[_plane(rest)][0])
         moved = mode_scene(modes, label, size * rest.height)
         draw_ghost(axes, rest)
         draw_robot(axes, moved, numbers=True)
@@ -87,6 +89,12 @@ def modes_3d(modes: xr.Dataset, show: Sequence[int] | None = None, size: float =
         axes.tick_params(labelbottom=False, labelleft=False, labelright=False)
         head(axes, _title(modes.sel(mode=label), label), fontsize=NOTE)
     return fig
+
+
+def _plane(s: Scene) -> str | None:
+    """The plane of a planar robot, and that of x and z for legs that lie along x."""
+    x, y, _ = np.ptp(np.vstack([s.base, s.platform]), axis=0)
+    return s.skeleton.robot.plane or ("zx" if y < 1e-6 * x else None)
 
 
 def _title(mode: xr.Dataset, label: int) -> str:

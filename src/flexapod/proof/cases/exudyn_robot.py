@@ -4,6 +4,7 @@ from __future__ import annotations
 
 from collections.abc import Callable, Iterator
 from functools import partial
+from typing import Literal
 
 import numpy as np
 
@@ -46,7 +47,9 @@ def _tripod() -> list[Check]:
     ]
 
 
-def _curve_pairs(preset: str, motion: model.Motion, duration: float) -> Callable[[str], tuple[Array, Array]]:
+def _curve_pairs(
+    preset: Literal["paper-robot", "tripod"], motion: model.Motion, duration: float
+) -> Callable[[str], tuple[Array, Array]]:
     """Results of a preset's undamped robot by name: Exudyn's, extrapolated from two meshes, and ours."""
     study = model.preset(preset)
     robot = study.robot.replace(legs=tuple(leg.replace(damping=0.0) for leg in study.robot.legs))
