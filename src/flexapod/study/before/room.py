@@ -44,7 +44,7 @@ def result_bytes(study: Study | ActuatorStudy) -> float:
     if isinstance(study, ActuatorStudy):
         return 8 * stored_instants(study) * (17 + s.lateral_shapes)
     shapes = 2 * s.lateral_shapes + s.axial_shapes(study.robot.legs[0].axial_modes)
-    return 8 * stored_instants(study) * (61 + study.robot.count * (27 + shapes))
+    return 8 * stored_instants(study) * (61 + study.robot.count * (28 + shapes))
 
 
 def check_memory(study: Study | ActuatorStudy, runs: int = 1) -> list[str]:
