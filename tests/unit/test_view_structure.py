@@ -123,3 +123,19 @@ def test_a_text_that_is_no_toml_offers_nothing():
     for name in PRESETS:
         for offer in offers(Document(preset_text(name), None)):
             assert read(offer.apply(Document(preset_text(name), None))).error is None
+
+
+@pytest.mark.parametrize(
+    ("kind", "label"),
+    [("6-UPS", "Six different legs"), ("3-RPS", "Three different legs"), ("3-UPS+UP", "Four different legs")],
+)
+def test_as_many_legs_are_offered_as_the_type_says(kind, label):
+    text = f'[robot]\ntype = "{kind}"\n[leg]\ndamping = 0.01\n'
+    offer = next(offer for offer in offers(Document(text, None)) if offer.place == "[leg]")
+    assert offer.label == label
+    assert len(tomllib.loads(offer.apply(Document(text, None)).text)["leg"]) == {"S": 6, "T": 3, "F": 4}[label[0]]
+
+
+def test_legs_of_unlike_chains_are_not_made_alike():
+    text = '[robot]\ntype = "3-UPS+UP"\n' + 4 * "[[leg]]\ndamping = 0.01\n"
+    assert not [offer for offer in offers(Document(text, None)) if "All legs" in offer.label]

@@ -29,7 +29,7 @@ from flexapod.scene.drives import drives
 from flexapod.scene.robot import motion_end
 from flexapod.study.words import NOTHING, text
 
-__all__ = ["actuator_forces", "force_panels", "leg_lengths", "limits", "tip_deflections"]
+__all__ = ["actuator_forces", "force_panels", "leg_lengths", "tip_deflections"]
 
 ROUNDING = 1e-11  # of where drives stand
 _WORDS = {"rigid": "rigid legs", "lumped": "legs that stretch", "assumed-modes": "flexible legs"}
@@ -86,7 +86,7 @@ def force_panels(
     rows = -(-len(legs) // across)
     fig = figure(PAGE, 0.2 + 3.0 * rows)
     grid = fig.subplots(2 * rows, across, sharex=True, squeeze=False, height_ratios=ratios * rows)
-    low, high = limits(big(np.asarray(forces)))
+    low, high = _limits(big(np.asarray(forces)))
     worst = 1.1 * float(np.abs(small(np.asarray(gaps))).max())
     panels = {}
     for place in range(rows * across):
@@ -112,8 +112,7 @@ def force_panels(
     return fig, panels
 
 
-def limits(values: np.ndarray) -> tuple[float, float]:
-    """Least and largest value with a margin."""
+def _limits(values: np.ndarray) -> tuple[float, float]:
     margin = 0.07 * max(float(np.ptp(values)), 1e-9)
     return float(values.min()) - margin, float(values.max()) + margin
 
