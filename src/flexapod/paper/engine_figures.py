@@ -68,7 +68,8 @@ def engine_forces(results: Mapping[str, xr.Dataset]) -> Figure:
             largest = text(float(np.abs(gap).max()), "N", 2)
             label = f"{model}; at most {largest} from {'Newton-Euler' if model == name else name}"
             above.plot(time, big(results[model].actuator_force.sel(leg=leg)), label=label, **line)
-            below.plot(time, small(gap[:, i]), **(line | {"linewidth": 0.9}))
+            fine: dict[str, Any] = line | {"linewidth": 0.9}
+            below.plot(time, small(gap[:, i]), **fine)
     fig.legend(*panels[1][0].get_legend_handles_labels(), loc="outside upper center", ncols=4)
     return fig
 
