@@ -61,7 +61,7 @@ def engine_forces(results: Mapping[str, xr.Dataset]) -> Figure:
     rigid, time, gaps = first.actuator_force_rigid, first.time.values, dict(_gaps(results))
     big, small = scale(rigid, "N"), scale(np.array(list(gaps.values())), "N")
     forces = [rigid, *(data.actuator_force for data in results.values())]
-    fig, panels = force_panels(first, forces, list(gaps.values()), (big, small), (2, 1.2))
+    fig, panels = force_panels(forces, list(gaps.values()), (big, small), (2, 1.2))
     for i, (leg, (above, below)) in enumerate(panels.items()):
         above.plot(time, big(rigid.sel(leg=leg)), label="Newton-Euler, rigid legs", **_BAND)
         for (model, gap), line in zip(gaps.items(), _LINES, strict=False):
@@ -70,6 +70,8 @@ def engine_forces(results: Mapping[str, xr.Dataset]) -> Figure:
             above.plot(time, big(results[model].actuator_force.sel(leg=leg)), label=label, **line)
             fine: dict[str, Any] = line | {"linewidth": 0.9}
             below.plot(time, small(gap[:, i]), **fine)
+        mark_end(above, motion_end(first))
+        mark_end(below, motion_end(first))
     fig.legend(*panels[1][0].get_legend_handles_labels(), loc="outside upper center", ncols=4)
     return fig
 

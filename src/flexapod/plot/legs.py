@@ -47,19 +47,20 @@ def actuator_forces(data: xr.Dataset) -> Figure:
     found = drives(data)
     rigid, multibody, gap = found.rigid, found.force, found.force - found.rigid
     big, small = scale(rigid, found.unit), scale(gap, found.unit)
-    fig, panels = force_panels(data, [rigid, multibody], [gap], (big, small), (2.2, 1), found.word)
+    fig, panels = force_panels([rigid, multibody], [gap], (big, small), (2.2, 1), found.word)
     words = "Newton-Euler" if found.plain else "rigid robot"
     time, label = data.time.values, f"multibody model, {_WORDS.get(str(data.attrs.get('fidelity')), 'flexible legs')}"
     for leg, (above, below) in panels.items():
         above.plot(time, big(rigid.sel(leg=leg)), color=RIGID, linewidth=5, label=f"{words}, rigid legs")
         above.plot(time, big(multibody.sel(leg=leg)), color=FLEXIBLE, linewidth=1.1, label=label)
         below.plot(time, small(gap.sel(leg=leg)), color=LEG_COLORS[3], linewidth=0.8)
+        mark_end(above, motion_end(data))
+        mark_end(below, motion_end(data))
     fig.legend(*next(iter(panels.values()))[0].get_legend_handles_labels(), loc="outside upper center", ncols=2)
     return fig
 
 
 def force_panels(
-    data: xr.Dataset,
     forces: Sequence[xr.DataArray],
     gaps: Sequence[ArrayLike],
     units: tuple[Scale, Scale],
@@ -70,8 +71,6 @@ def force_panels(
 
     Parameters
     ----------
-    data : xarray.Dataset
-        Result with its legs and its motion.
     forces, gaps : sequence of arrays, shape (time, leg)
         All that will be drawn; the legs of `forces` get panels.
     units : tuple of Scale
@@ -81,7 +80,7 @@ def force_panels(
     word : str
         What is drawn.
     """
-    legs, (big, small), end = forces[0].leg.values, units, motion_end(data)
+    legs, (big, small) = forces[0].leg.values, units
     across = columns(len(legs), 3)
     rows = -(-len(legs) // across)
     fig = figure(PAGE, 0.2 + 3.0 * rows)
@@ -100,8 +99,6 @@ def force_panels(
         above.set_ylim(low, high)
         if worst > 0:
             below.set_ylim(-worst, worst)
-        mark_end(above, end)
-        mark_end(below, end)
         if place + across >= len(legs):
             below.set_xlabel("time [s]")
             below.tick_params(labelbottom=True)
