@@ -55,7 +55,7 @@ def _parts(angles):
         "assumptions": assumptions(robot, quiet),
         "readings": trials(readings(), quiet),
         "tripod": simulate(tripod(), step=1e-3),
-        "welded": welded_map(quiet, arms=(0.373, 0.6), rolls=range(0, 31, 3)),
+        "welded": welded_map(quiet),
         "cost": inverse_dynamics_cost(robot),
     }
 

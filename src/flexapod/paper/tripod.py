@@ -19,7 +19,7 @@ def tripod() -> model.Study:
     study = robot_preset("paper-robot-radii")
     robot, motion = study.robot, axis_motion(study)
     out = np.column_stack([np.cos(ANGLES), np.sin(ANGLES), np.zeros(3)])
-    hinges = (model.Joint(axis=(-y, x, 0.0)) for x, y, _ in out.tolist())
+    hinges = (model.Joint(axis=np.array([-y, x, 0.0])) for x, y, _ in out)
     legs = tuple(leg.replace(chain="RPS", base_joint=hinge) for leg, hinge in zip(robot.legs, hinges, strict=False))
     base, platform = (np.linalg.norm(joints, axis=1)[0] for joints in (robot.base_joints, robot.platform_joints))
     three = robot.replace(type="3-RPS", base_joints=base * out, platform_joints=platform * out, legs=legs)

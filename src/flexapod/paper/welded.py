@@ -88,13 +88,13 @@ class _Walk:
         free = stroke - np.array([leg.cylinder.mouth for leg in robot.legs])
         slope = lateral @ shapes.a.tip_slope / free[:, None]
         short = 0.5 * np.einsum("idk,kj,idj->i", lateral, shapes.a.slope_tip, lateral) / free
-        thrust = np.abs(x.lam[:, :3]).max(axis=1) if x.lam.shape[1] else np.zeros(len(x.q))
+        thrust = np.abs(x.drive[:, 0])
         return {
             "deviation": np.abs(x.pose[:3] - com),
             "off_axis": np.linalg.norm(lateral @ shapes.a.tip, axis=1).max(),
             "slope": np.linalg.norm(slope, axis=1).max(),
             "shortening": short.max(),
-            "leg_force": np.abs(x.drive[:, 0]).max(),
+            "leg_force": thrust.max(),
             "stress": self._stress(lateral, free, thrust),
         }
 
@@ -106,7 +106,6 @@ class _Walk:
         stress = [
             0.5 * (p.E or np.nan) * (p.diameter or np.nan) * k + f * (p.E or np.nan) / p.EA
             for p, k, f in zip(pistons, bent, thrust, strict=True)
-            if p is not None
         ]
         return float(max(stress))
 
