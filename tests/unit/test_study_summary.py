@@ -1,5 +1,7 @@
 """The answer in a few numbers, and results on disk."""
 
+from pathlib import Path
+
 import numpy as np
 import pytest
 from tests.runs import paper_robot
@@ -74,6 +76,12 @@ def test_rigid_legs_need_no_blame():
     assert found.largest_cause is None
     assert found.worst_leg is None
     assert "rigid" in found.sentence
+
+
+def test_a_leg_that_bends_under_a_fixed_platform_is_not_called_rigid():
+    strut = fx.load(Path(fx.__file__).parents[2] / "examples" / "mechanisms" / "strut.toml")
+    found = summary(fx.simulate(strut, step=1e-3, duration=0.05))
+    assert found.peak == 0 and found.tips > 1e-6 and "tips of legs swing by up to" in found.sentence
 
 
 def test_numbers_of_an_actuator():

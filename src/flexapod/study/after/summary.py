@@ -45,7 +45,8 @@ class RobotSummary:
     `peak`, `rms` [m] of the distance, `time` [s] of the peak; `start`: distance at t = 0; `axes`: x, y, z; `causes`:
     share of each cause in the deviation at the peak, along its direction (they add up to 1 but for second order);
     `worst_leg`, `worst_leg_share`: the leg that the largest cause owes most to, and its part of it; None without
-    deviation, and where legs contribute alike. `partial`: the integration stopped early.
+    deviation, and where legs contribute alike. `tips` [m]: how far tips are from their legs' axes, at most. `partial`:
+    the integration stopped early.
     """
 
     point: str
@@ -57,6 +58,7 @@ class RobotSummary:
     causes: dict[str, float]
     worst_leg: int | None
     worst_leg_share: float | None
+    tips: float
     partial: bool
 
     @property
@@ -77,7 +79,10 @@ class RobotSummary:
         """The deviation and its largest cause, in one sentence."""
         name = POINTS[self.point]
         if self.peak < NOTHING:
-            return f"{name} stays on the path of the rigid robot: its legs are rigid."
+            still = (
+                "its legs are rigid" if self.tips < NOTHING else f"tips of legs swing by up to {text(self.tips, 'm')}"
+            )
+            return f"{name} stays on the path of the rigid robot: {still}."
         by_axis = ", ".join(f"{a.axis} {text(a.peak, 'm')}" for a in self.shown_axes)
         leg = "" if self.worst_leg is None else f", most of it in leg {self.worst_leg}"
         until = " until the computation stopped" if self.partial else ""
@@ -165,6 +170,7 @@ def summary(data: Dataset, point: str = "com") -> RobotSummary | ActuatorSummary
         causes=causes,
         worst_leg=leg,
         worst_leg_share=share,
+        tips=float(np.linalg.norm(data.tip_deflection.values, axis=-1).max(initial=0.0)),
         partial=partial,
     )
 
