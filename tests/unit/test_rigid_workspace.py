@@ -72,3 +72,9 @@ def test_map_margin_is_the_least_distance_to_a_limit():
 def test_map_refuses_what_is_not_finite():
     with pytest.raises(InputError, match="finite"):
         reachable_map(np.zeros((6, 3)), np.zeros((6, 3)), LIMITS, [np.nan], 0, 0)
+
+
+def test_a_leg_as_long_as_its_limit_to_rounding_is_within_it():
+    length, mouth, piston = np.full((1, 1), np.nextafter(1.0, 2.0)), np.array([0.4]), np.array([0.6])
+    assert piston_excess([0.0], length, mouth, piston) == []
+    assert len(piston_excess([0.0], length + 1e-12, mouth, piston)) == 1

@@ -1,4 +1,4 @@
-"""Exact frequencies of a 6-UPS robot with locked drives, undeformed and without prestress, by counting.
+"""Exact frequencies of a parallel robot with locked drives, undeformed and without prestress, by counting.
 
 Dynamic stiffness of uniform members, transcendental in omega, no shape functions. Equations (T7.9)-(T7.15). A second
 road to the frequencies that `flexapod.modes` finds: plain NumPy, nothing of the package is used here.
@@ -14,11 +14,11 @@ Substructures" (1993), ch. 2: the stiffnesses of bar and beam.
 from __future__ import annotations
 
 from collections.abc import Callable, Sequence
-from dataclasses import dataclass
+from dataclasses import dataclass, field
 
 import numpy as np
 
-__all__ = ["Body", "Leg", "bar", "beam", "below", "lateral", "robot", "robot_frequencies", "roots"]
+__all__ = ["Body", "Leg", "bar", "beam", "below", "lateral", "robot", "robot_frequencies", "roots", "shaft"]
 
 Count = Callable[[float], int]
 Stiffness = tuple[np.ndarray, int]
@@ -31,7 +31,11 @@ class Leg:
 
     ``inertia`` [kg m^2]: transverse, of the cylinder about the universal joint; ``axial_inertia``: cylinder and piston;
     ``compliance`` [m/N] of the drive; ``shapes``: of the exact bar keep only so many of the functions eta, sin n pi eta
-    (rigid drives only).
+    (rigid drives only). A passive leg has a drive of infinite compliance.
+
+    ``base_axes``, ``tip_axes`` (k, 3): about which the cylinder turns against the ground, the tip against the platform;
+    none given: a universal joint, a ball. ``GJ`` [N m^2], ``spin_inertia`` [kg m^2]: of a piston whose tip is no ball,
+    twisted from the drive on; ``planes``: those in which the leg bends, x and y.
     """
 
     base: np.ndarray
@@ -46,6 +50,11 @@ class Leg:
     axial_inertia: float = 0.0
     shapes: int | None = None
     compliance: float = 0.0
+    base_axes: np.ndarray | None = None
+    tip_axes: np.ndarray | None = None
+    GJ: float = 0.0
+    spin_inertia: float = 0.0
+    planes: tuple[int, ...] = (0, 1)
 
     @property
     def length(self) -> float:
@@ -67,14 +76,24 @@ class Leg:
         spin = (z @ self.first_axis) / (x @ self.first_axis)  # tan beta
         return total, total + self.axial_inertia * spin**2
 
+    def turns(self) -> tuple[np.ndarray, np.ndarray]:
+        """Axes (k, 3) about which either end turns; the ball's turn about the leg is idle."""
+        x, y, _ = self.axes().T
+        base = np.array([self.first_axis, y]) if self.base_axes is None else self.base_axes
+        return base, np.array([x, y]) if self.tip_axes is None else self.tip_axes
+
 
 @dataclass(frozen=True, kw_only=True)
 class Body:
-    """The payload at the pose: mass, centre of mass (3,) and inertia about it (3, 3), world axes."""
+    """The payload at the pose: mass, centre of mass (3,) and inertia about it (3, 3), world axes.
+
+    ``free`` (k, 6): shifts of the centre of mass and turns that nothing holds.
+    """
 
     mass: float
     com: np.ndarray
     inertia: np.ndarray
+    free: np.ndarray = field(default_factory=lambda: np.eye(6))
 
 
 def bar(omega: float, leg: Leg) -> tuple[float, int]:
@@ -109,24 +128,44 @@ def lateral(omega: float, leg: Leg, inertia: float) -> Stiffness:
     return ends.T @ K @ ends - np.diag([omega**2 * inertia, 0, 0]), count
 
 
+def shaft(omega: float, leg: Leg) -> Stiffness:
+    """Return the stiffness on the turns about the leg at both ends of the piston, as (T7.9) of a bar."""
+    x = omega * np.sqrt(leg.spin_inertia * leg.Lp / leg.GJ)
+    cot, cosec = 1 / np.tan(x), 1 / np.sin(x)
+    return leg.GJ / leg.Lp * x * np.array([[cot, -cosec], [-cosec, cot]]), int(x // np.pi)
+
+
 def robot(omega: float, legs: Sequence[Leg], body: Body) -> Stiffness:
-    """Return the stiffness on the payload's 6 and each leg's 4 inner coordinates, Eq. (T7.13)."""
-    K, count = np.zeros((6 + 4 * len(legs), 6 + 4 * len(legs))), 0
-    K[:3, :3], K[3:6, 3:6] = -(omega**2) * body.mass * np.eye(3), -(omega**2) * body.inertia
-    for i, leg in enumerate(legs):
-        arm = leg.tip - body.com
-        x, y, z = leg.axes().T
-        rows = [np.concatenate([n, np.cross(arm, n)]) for n in (x, y, z)]  # n . (dx + theta x arm)
-        along, held = bar(omega, leg)
-        K[:6, :6] += along * np.outer(rows[2], rows[2])
-        for plane, inertia in enumerate(leg.pivot_inertias()):
-            local, within = lateral(omega, leg, inertia)
-            place = np.zeros((3, len(K)))
-            place[[0, 1], [6 + 4 * i + 2 * plane, 7 + 4 * i + 2 * plane]] = 1
-            place[2, :6] = rows[plane]
-            K += place.T @ local @ place
-            held += within
-        count += held
+    """Return the stiffness on the payload's coordinates and the turns of each leg's ends, Eq. (T7.13)."""
+    free, turns = len(body.free), [sum(map(len, leg.turns())) for leg in legs]
+    twist, mass = np.zeros((6, free + sum(turns))), np.zeros((6, 6))
+    twist[:, :free], mass[:3, :3], mass[3:, 3:] = body.free.T, body.mass * np.eye(3), body.inertia
+    K, count, at = -(omega**2) * twist.T @ mass @ twist, 0, free
+    for leg, own in zip(legs, turns, strict=True):
+        part, held = _leg(omega, leg, leg.tip - body.com, twist, at)
+        K, count, at = K + part, count + held, at + own
+    return K, count
+
+
+def _leg(omega: float, leg: Leg, arm: np.ndarray, twist: np.ndarray, at: int) -> Stiffness:
+    """One leg's part: its ends turn by the coordinates from `at` on, its tip is at `arm` from the centre of mass."""
+    base, tip = leg.turns()
+    middle = at + len(base)
+    cylinder, turn = np.zeros((3, twist.shape[1])), twist[3:].copy()
+    cylinder[:, at:middle], turn[:, middle : middle + len(tip)] = base.T, tip.T
+    moved = twist[:3] + np.cross(twist[3:], arm, axis=0)
+    cylinder, turn, moved = (leg.axes().T @ part for part in (cylinder, turn, moved))
+    along, count = bar(omega, leg)
+    K = along * np.outer(moved[2], moved[2]) - omega**2 * leg.axial_inertia * np.outer(cylinder[2], cylinder[2])
+    slopes = ((cylinder[1], turn[1]), (-cylinder[0], -turn[0]))
+    for plane in leg.planes:
+        local, held = lateral(omega, leg, leg.pivot_inertias()[0])
+        place = np.stack([*slopes[plane], moved[plane]])
+        K, count = K + place.T @ local @ place, count + held
+    if leg.GJ:
+        local, held = shaft(omega, leg)
+        place = np.stack([cylinder[2], turn[2]])
+        K, count = K + place.T @ local @ place, count + held
     return K, count
 
 

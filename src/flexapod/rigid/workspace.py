@@ -13,6 +13,7 @@ from flexapod.typing import Array
 
 __all__ = ["Excess", "WorkspaceMap", "carriage_excess", "piston_excess", "reachable", "reachable_map", "stroke_excess"]
 
+ROUNDING = 1e-14  # of a length; a leg as long as its limit is within it
 SHORTEST, LONGEST = "shorter than its stroke allows", "longer than its stroke allows"
 NO_FREE_LENGTH = "has no free length left outside its cylinder"
 PULLED_OUT = "is pulled out of its cylinder"
@@ -75,7 +76,8 @@ def _worst(t: ArrayLike, length: Array, limit: Array, side: int, kind: str, fata
     t = np.asarray(t, dtype=float)
     over = side * (length - limit)
     found = []
-    for leg in np.flatnonzero(np.any(over > 0, axis=0)):
+    beyond = over > ROUNDING * np.abs(limit)
+    for leg in np.flatnonzero(np.any(beyond, axis=0)):
         k = int(np.argmax(over[:, leg]))
         found.append(
             Excess(
@@ -85,7 +87,7 @@ def _worst(t: ArrayLike, length: Array, limit: Array, side: int, kind: str, fata
                 value=float(length[k, leg]),
                 limit=float(limit[leg]),
                 time=float(t[k]),
-                first=float(t[np.argmax(over[:, leg] > 0)]),
+                first=float(t[np.argmax(beyond[:, leg])]),
             )
         )
     return found

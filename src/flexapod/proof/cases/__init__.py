@@ -15,9 +15,11 @@ from flexapod.proof.cases.calculix_beams import (
 )
 from flexapod.proof.cases.calculix_robot import CALCULIX_PRESTRESS, CALCULIX_ROBOT
 from flexapod.proof.cases.cantilever import CANTILEVER
+from flexapod.proof.cases.carriages import ACCELERATED_CARRIAGES, CARRIAGE_PLACES, LONG_CRANKS
 from flexapod.proof.cases.conservation import CONSERVATION
 from flexapod.proof.cases.cubic_hexapod import CUBIC_HEXAPOD
 from flexapod.proof.cases.dietmaier import DIETMAIER
+from flexapod.proof.cases.eight_legs_misfit import EIGHT_LEGS_MISFIT
 from flexapod.proof.cases.exudyn_rigid_robot import EXUDYN_RIGID_ROBOT
 from flexapod.proof.cases.exudyn_robot import EXUDYN_ROBOT, EXUDYN_ROBOT_PAPER, EXUDYN_TRIPOD
 from flexapod.proof.cases.exudyn_sliding_beam import EXUDYN_SLIDING_BEAM, EXUDYN_SLIDING_BEAM_LONG
@@ -26,9 +28,13 @@ from flexapod.proof.cases.four_bar import FOUR_BAR
 from flexapod.proof.cases.generalized_alpha import GENERALIZED_ALPHA
 from flexapod.proof.cases.integrator import ENERGY_LOSS
 from flexapod.proof.cases.left_out import NOT_MODELLED
+from flexapod.proof.cases.loaded_legs import TABLE_SWAY, THRUST_ON_LEGS
 from flexapod.proof.cases.locked_robot import LOCKED_ROBOT
 from flexapod.proof.cases.mechanism_engines import CALCULIX_MECHANISMS, MUJOCO_MECHANISMS
+from flexapod.proof.cases.mechanism_frequencies import FREQUENCIES
+from flexapod.proof.cases.mobility_table import MOBILITY_TABLE
 from flexapod.proof.cases.mujoco_forces import MUJOCO_FORCES
+from flexapod.proof.cases.orsino import ORSINO
 from flexapod.proof.cases.pinned_leg import PINNED_LEG
 from flexapod.proof.cases.piston import PISTON
 from flexapod.proof.cases.residual_vibration import RESIDUAL_VIBRATION
@@ -44,6 +50,9 @@ from flexapod.proof.cases.spin_up import SPIN_UP
 from flexapod.proof.cases.squeezer import SQUEEZER
 from flexapod.proof.cases.timoshenko import TIMOSHENKO
 from flexapod.proof.cases.tip_body import TIP_BODY
+from flexapod.proof.cases.tricept import TRICEPT_ENERGY, TRICEPT_GUIDE
+from flexapod.proof.cases.tripod_stiffness import TRIPOD_PARASITIC, TRIPOD_STIFFNESS
+from flexapod.proof.cases.welded_hexapod import FLEXURE_HEXAPOD, WELDED_HEXAPOD
 
 __all__ = ["CASES"]
 
@@ -73,6 +82,21 @@ CASES: tuple[Case, ...] = (
     DIETMAIER,
     SINGULARITIES,
     LOCKED_ROBOT,
+    *FREQUENCIES,
+    TRIPOD_STIFFNESS,
+    TRIPOD_PARASITIC,
+    TABLE_SWAY,
+    THRUST_ON_LEGS,
+    WELDED_HEXAPOD,
+    FLEXURE_HEXAPOD,
+    EIGHT_LEGS_MISFIT,
+    MOBILITY_TABLE,
+    ORSINO,
+    CARRIAGE_PLACES,
+    ACCELERATED_CARRIAGES,
+    LONG_CRANKS,
+    TRICEPT_GUIDE,
+    TRICEPT_ENERGY,
     SLIDER_CRANK,
     SQUEEZER,
     FOUR_BAR,
