@@ -2,7 +2,6 @@
 
 import time
 from html import unescape
-from types import SimpleNamespace
 
 import numpy as np
 import pytest
@@ -18,6 +17,7 @@ from flexapod.app.view.document import Document
 from flexapod.app.view.opening import open_source
 from flexapod.app.view.source import Source
 from flexapod.errors import InputError
+from flexapod.model import preset
 from flexapod.study.after.summary import summary
 from flexapod.study.store import save
 
@@ -273,7 +273,11 @@ def test_the_page_says_how_modes_are_drawn_and_sliders_fit_the_robot(visit):
     until(lambda: "drawn at 0.5 Hz" in modes._show._note.content)
     assert "100 % of the robot's size: 900 mm" in unescape(modes._show._note.content)  # base joints to platform joints
     assert (*modes._pose["heave"].ends, modes._pose["heave"].step) == (-500.0, 500.0, 1.0)
-    small = SimpleNamespace(robot=SimpleNamespace(home_lengths=np.full(6, 0.0092)))  # legs of 9.2 mm
+    robot = preset("paper-robot").robot
+    legs = tuple(leg.replace(stroke=None, cylinder=leg.cylinder.replace(mouth=0.0, com=0.0)) for leg in robot.legs)
+    base, platform = 0.01 * robot.base_joints, 0.01 * robot.platform_joints
+    little = robot.replace(base_joints=base, platform_joints=platform, home_height=0.009, legs=legs)
+    small = preset("paper-robot").replace(robot=little)  # legs of 9.2 mm
     modes._pose["heave"].value = 80.0
     modes._fit(small)
     heave = modes._pose["heave"]
