@@ -17,9 +17,10 @@ from flexapod.rigid.screws import screws
 from flexapod.rigid.trajectory import Poses
 from flexapod.typing import Array, Mask
 
-__all__ = ["Mobility", "Posture", "displaced", "mobility"]
+__all__ = ["Mobility", "Posture", "displaced", "mobility", "nearly_redundant"]
 
 RANK = 1e-9  # singular values below this fraction of the largest count as zero
+NEARLY = 5e-3  # ... and below which small errors of axes may have made them of zeros
 FAR = 0.05  # rad, or of L_c: how far displaced postures lie from one
 STEPS, SETTLED = 30, 1e-12  # on the way back to the closures; gap [m, rad] at which they are closed
 
@@ -96,6 +97,12 @@ def mobility(limbs: Limbs, at: Posture | None = None) -> Mobility:
         platform=_platform(limbs, free.null),
         locked_platform=_platform(limbs, locked.null),
     )
+
+
+def nearly_redundant(limbs: Limbs) -> int:
+    """How many closure rows at home almost say what others say, as where axes miss being parallel."""
+    values = np.linalg.svd(_matrix(limbs, Posture.home(limbs))[0], compute_uv=False)
+    return int(((values > RANK * values[0]) & (values < NEARLY * values[0])).sum())
 
 
 def _unknown(limbs: Limbs) -> Mask:

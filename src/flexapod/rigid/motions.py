@@ -9,7 +9,7 @@ import numpy as np
 from flexapod.errors import InputError
 from flexapod.model.motion import AXES, CsvMotion, Motion, WaypointMotion
 from flexapod.rigid.limbs import DRIVEN, Limbs
-from flexapod.rigid.mobility import Mobility, Posture, displaced, mobility
+from flexapod.rigid.mobility import Mobility, Posture, displaced, mobility, nearly_redundant
 from flexapod.typing import Array, Mask
 
 __all__ = ["commanded", "independent_axes", "mobility_words", "motion_names", "refuse_loose"]
@@ -132,9 +132,13 @@ def _rank(rows: Array) -> int:
 
 def _beyond(limbs: Limbs, twists: Array, asked: list[int], named: Sequence[str] | None) -> InputError:
     count, names = twists.shape[1], ", ".join(motion_names(limbs, twists))
-    which = " and ".join(AXES[k] for k in asked)
+    which, nearly = " and ".join(AXES[k] for k in asked), nearly_redundant(limbs)
+    over = (
+        f". It is nearly over-constrained: but for small errors of axes {_count(nearly, 'condition')} of its joints "
+        "would say what others say. Make these axes exactly parallel or normal to each other"
+    )
     return InputError(
-        f"asks for {which} of a robot with {_count(count, 'motion')}: {names}",
+        f"asks for {which} of a robot with {_count(count, 'motion')}: {names}{over if nearly else ''}",
         key="motion" if named is None else "motion.independent",
         value=which if named is None else list(named),
         allowed=f"{_count(count, 'coordinate')} that can be chosen independently of each other",

@@ -28,7 +28,8 @@ def independent(system: System, x: State) -> System:
     if rank == len(G):
         return system
     left = np.linalg.svd(free)[0][:, rank:]
-    held = np.flatnonzero(system.held.ravel())
+    pivots = np.isin(np.arange(system.held.shape[1]), system.kernel.shapes.pivots)  # others would move without mass
+    held = np.flatnonzero((system.held & pivots).ravel())
     slack = np.zeros(system.held.size, dtype=bool)
     slack[held[_independent_columns(left.T @ G[:, held])]] = True
     return replace(system, slack=slack.reshape(system.held.shape))

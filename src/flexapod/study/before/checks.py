@@ -13,13 +13,14 @@ from flexapod.rigid.kinematics import BETA_LIMIT
 from flexapod.rigid.workspace import BEFORE, BEYOND, LONGEST, PULLED_OUT, SHORTEST
 from flexapod.solve.modes import refuse_pure_force
 from flexapod.study.before.timing import check_outputs
-from flexapod.study.path import RigidPath, path_instants
+from flexapod.study.path import RigidPath, open_force_words, path_instants
 from flexapod.typing import Array
 
 __all__ = ["check_actuator_path", "check_geometry", "check_path", "path_remarks"]
 
 SINGULAR = 1e-8  # smallest singular value of the scaled Jacobian below which a pose is refused
 NEAR_SINGULAR = 0.05  # and below which it is remarked on: leg forces and length errors are magnified about 20 times
+MOVED = 1e-9  # m, of cranks rad: what legs that stand move by rounding
 
 _KEYS = {
     SHORTEST: "leg.stroke.min",
@@ -44,14 +45,38 @@ def check_path(study: Study, path: RigidPath | None = None) -> list[str]:
     InputError
         A leg leaves its stroke, a piston its cylinder, a universal joint folds, a pose is singular (smallest singular
         value of the scaled Jacobian, Eq. (T2.24), below 1e-8 or a change of sign of its determinant), a pure force
-        drive is to start from equilibrium, or the study's times do not fit each other.
+        drive is to start from equilibrium, the study's times do not fit each other, or rigid legs are held so often
+        that they cannot move.
     """
     try:
         if study.initial.start == "equilibrium":
             refuse_pure_force(study.robot, "the equilibrium start")
     except InputError as error:
         raise error.located(file=study.path) from None
-    return check_geometry(study, path)
+    path = path or RigidPath(study)
+    return [*check_geometry(study, path), *_rigid_remarks(path)]
+
+
+def _rigid_remarks(path: RigidPath) -> list[str]:
+    """What elastic legs would settle and rigid ones do not: refuse what cannot move, say which forces are open."""
+    study, robot = path.study, path.robot
+    if study.simulation.fidelity != "rigid":
+        return []
+    found, ideal = (rigid.mobility(legs) for legs in (rigid.robot_limbs(robot), rigid.rigid_limbs(robot)))
+    moved = max(np.ptp(way, axis=0).max() for way in (path.reach.length, path.reach.carriage))
+    if found.platform.shape[1] < ideal.platform.shape[1] and moved > MOVED:
+        what = "is over-constrained by its fixed joints: legs that do not give way cannot follow the motion"
+    elif robot.platform_fixed and any(leg.driven and leg.drive.type == "prescribed" for leg in robot.legs):
+        what = "does not say what forces are in legs that drives hold between fixed points: they are open"
+    else:
+        return open_force_words(path.forces)
+    raise InputError(
+        f"robot {robot.type} {what}",
+        file=study.path,
+        key="simulation.fidelity",
+        value="rigid",
+        allowed="a fidelity whose legs give way: lumped, assumed-modes and others",
+    )
 
 
 def check_geometry(study: Study, path: RigidPath | None = None) -> list[str]:
