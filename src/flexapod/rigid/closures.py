@@ -20,7 +20,7 @@ from flexapod.rigid.trajectory import Poses, poses_from_coordinates, turning_axe
 from flexapod.rigid.vectors import blocks
 from flexapod.typing import Array, Mask
 
-__all__ = ["Closed", "Motion", "Task", "close", "gaps", "move"]
+__all__ = ["Closed", "Motion", "Task", "close", "gaps", "move", "turned_over"]
 
 
 STRIDE = 0.35  # rad, or of a leg's length: the longest way in one step from home to a pose
@@ -118,6 +118,12 @@ def gaps(limbs: Limbs, chain: Screws, at: Poses) -> Array:
     if met.any():
         turn[:, met] = np.cross(goal[:, met], chain.frame[:, met], axis=-2).sum(axis=-1) / 2
     return np.concatenate([place, turn], axis=-1)
+
+
+def turned_over(limbs: Limbs, chain: Screws, rotation: Array) -> Mask:
+    """Legs (T, n) that meet platforms of attitude `rotation` (T, 3, 3) half a turn off, the other root of (T14.6)."""
+    goal = rotation[:, None] @ limbs.platform_frames
+    return limbs.pose_closure & (np.einsum("tnij,tnij->tn", goal, chain.frame) < 0)  # (T14.23)
 
 
 def _platform_columns(limbs: Limbs, task: Task, x: Array, at: Poses) -> Array:
@@ -229,6 +235,7 @@ def _newton(
     """Newton steps until nothing but rounding is left; q, x and the gaps of the legs [m], rotations times L_c."""
     still, unit = np.zeros_like(x), _units(limbs)
     weight = np.array([1.0, 1.0, 1.0, limbs.L_c, limbs.L_c, limbs.L_c])
+    at, chain = given or _poses(limbs, task, Law(x, still, still)), screws(limbs, q)
     last, gap, off = False, np.zeros(q.shape[:2]), np.zeros(len(q), dtype=bool)
     for _ in range(NEWTON):
         at, chain = given or _poses(limbs, task, Law(x, still, still)), screws(limbs, q)
@@ -245,6 +252,7 @@ def _newton(
         q, x = q + np.where(off[:, None, None], 0.0, dq), x.copy()
         x[:, task.platform] += np.where(off[:, None], 0.0, dx)
     gap[off] = np.inf
+    gap[turned_over(limbs, chain, at.rotation)] = np.inf
     return q, x, gap
 
 

@@ -1,4 +1,4 @@
-"""Equilibria on the other side of a singularity than the rigid pose: another assembly, which the drives do not mean."""
+"""Another assembly than the drives mean: beyond a singularity, or a platform joint half a turn off."""
 
 from __future__ import annotations
 
@@ -7,15 +7,17 @@ import numpy as np
 from flexapod import rigid
 from flexapod.errors import ComputationError
 from flexapod.model import Robot
+from flexapod.rigid.closures import turned_over
 from flexapod.rigid.limbs import DRIVEN, HELD
 from flexapod.rigid.rotations import matrix
+from flexapod.rigid.screws import screws
 from flexapod.solve.elimination import leg_bases
 from flexapod.solve.many import RestStates, matrices_at_rest
 from flexapod.solve.rigid_motion import leg_coordinates
 from flexapod.solve.system import System
 from flexapod.typing import Array, Mask
 
-__all__ = ["FALLS_THROUGH", "fallen", "platform_poses", "refuse_fallen"]
+__all__ = ["FALLS_THROUGH", "fallen", "flipped", "platform_poses", "refuse_fallen", "refuse_flipped"]
 
 FALLS_THROUGH = "no equilibrium: the robot sags through a singularity"
 
@@ -27,14 +29,25 @@ def platform_poses(robot: Robot, pose: Array) -> rigid.Poses:
 
 
 def fallen(system: System, robot: Robot, start: RestStates, states: RestStates) -> Mask:
-    """Which of P equilibria lie on the other side of a singularity than their undeformed states ``start``, (P,)."""
+    """Which of P equilibria are another assembly than their undeformed states ``start``, (P,)."""
     if not len(start):
         return np.zeros(0, dtype=bool)
     if rigid.rigid_limbs(robot).plain and system.legs == system.hub_free.size == 6:
         before, after = (rigid.singularity(robot, platform_poses(robot, x.pose)).determinant for x in (start, states))
     else:
         before, after = (_determinant(system, robot, x) for x in (start, states))
-    return np.sign(before) != np.sign(after)
+    return (np.sign(before) != np.sign(after)) | flipped(system, robot, states.q, states.pose).any(axis=1)
+
+
+def flipped(system: System, robot: Robot, q: Array, pose: Array) -> Mask:
+    """Legs (P, legs) at the false root of (T13.12), in states of coordinates (P, legs, n) and payload poses (P, 7)."""
+    legs = rigid.robot_limbs(robot)
+    if system.rows < 6:
+        return np.zeros((len(q), len(legs)), dtype=bool)
+    there, at = leg_coordinates(system.kernel.shapes)
+    of_leg = np.tile(legs.home, (len(q), 1, 1))
+    of_leg[..., there] = q[..., at]
+    return turned_over(legs, screws(legs, of_leg), matrix(pose[:, 3:]))
 
 
 def _determinant(system: System, robot: Robot, x: RestStates) -> Array:
@@ -50,7 +63,18 @@ def _determinant(system: System, robot: Robot, x: RestStates) -> Array:
     return np.linalg.det(found) if found.shape[1] == found.shape[2] else np.ones(len(x))
 
 
+def refuse_flipped(system: System, robot: Robot, x: RestStates) -> None:
+    """Raise ComputationError where a leg of one state is `flipped`."""
+    turned = np.argwhere(flipped(system, robot, x.q, x.pose))
+    if len(turned):
+        raise ComputationError(
+            f"leg {turned[0, 1] + 1} meets the platform half a turn off: legs and platform do not fit so",
+            next_step="Check the axes of the leg's joints, or reduce the load.",
+        )
+
+
 def refuse_fallen(system: System, robot: Robot, start: RestStates, states: RestStates) -> None:
     """Raise ComputationError where the equilibrium of one state is `fallen`."""
+    refuse_flipped(system, robot, states)
     if fallen(system, robot, start, states).any():
         raise ComputationError(FALLS_THROUGH, next_step="Choose a pose farther from the singularity.")

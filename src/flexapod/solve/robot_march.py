@@ -12,7 +12,7 @@ from flexapod.model import Study
 from flexapod.rigid.kinematics import BETA_LIMIT
 from flexapod.rigid.rotations import matrix
 from flexapod.solve.equilibrium import equilibrium
-from flexapod.solve.fallen import refuse_fallen
+from flexapod.solve.fallen import flipped, refuse_fallen, refuse_flipped
 from flexapod.solve.many import RestStates
 from flexapod.solve.march import Chunk, Problem, initial_step, march
 from flexapod.solve.modes import refuse_pure_force
@@ -59,7 +59,7 @@ def prepare(study: Study, state: State | None = None) -> RobotMarch:
     InputError
         Equilibrium start of a pure force drive; pistons without mass whose shapes would have none either.
     ComputationError
-        There is no equilibrium at the start.
+        There is no equilibrium at the start, or a platform joint is half a turn off.
     """
     refuse_massless(study)
     robot, simulation = study.robot, study.simulation
@@ -68,6 +68,7 @@ def prepare(study: Study, state: State | None = None) -> RobotMarch:
     method = GeneralizedAlpha(simulation.rho_inf)
     step = initial_step(simulation.step, simulation.output_step)
     state = _configuration(study, system) if state is None else state
+    refuse_flipped(system, robot, RestStates.of(state))
     system = independent(system, state)
     start, impact = consistent_start(system, state, law, 0.0, method, step)
     counters, output_step = Counters(), simulation.stored_step
@@ -185,11 +186,12 @@ def _check(study: Study, system: System, recording: Recording) -> None:
     shapes, q = system.kernel.shapes, recording.q
     free = q[:, :, shapes.l_index] - mouth
     tilt = q[:, :, shapes.index("gamma2")] if shapes.has("gamma2") else np.zeros_like(free)
+    turned = flipped(system, study.robot, q, recording.pose)
     for bad, words in (
         (free <= 0, "its piston has slid wholly into the cylinder"),
         (free > guided * (1 + 1e-9), "its piston has been pulled out of the cylinder"),
         (np.abs(q[:, :, shapes.index("beta")]) > BETA_LIMIT, "its universal joint has turned over"),
-        (np.abs(tilt) > BETA_LIMIT, "its joint at the platform has turned over"),
+        ((np.abs(tilt) > BETA_LIMIT) | turned, "its joint at the platform has turned over"),
     ):
         if bad.any():
             at, leg = np.argwhere(bad)[0]
