@@ -3,13 +3,15 @@
 import numpy as np
 import pytest
 from scipy.linalg import eigh
+from tests.mechanisms import built, leg, ring
 from tests.runs import paper_robot, with_legs
 
 import flexapod as fx
-from flexapod.errors import InputError
-from flexapod.model import Cylinder, ServoDrive
+from flexapod.errors import ComputationError, InputError
+from flexapod.model import Cylinder, Piston, ServoDrive
 from flexapod.study.before.describe.robot import describe
 
+FOUR = np.arange(4) * 90.0
 SERVO = ServoDrive(stiffness=4e7, damping=1e4)
 
 
@@ -112,3 +114,28 @@ def test_damping_beside_overdamped_light_parts(rhoA):
         roots = np.roots([c, k + stiff, scale * k * c, scale * k * stiff])
         slow = roots[np.imag(roots) > 0][0]
         assert ratio == pytest.approx(-slow.real / abs(slow), rel=1e-5)
+
+
+@pytest.mark.parametrize("chain", ["FPF", "UPF"])
+def test_welded_legs_without_mass_are_springs_too(chain):
+    """Their stiffness was refused as infinite, because their twist was left out with their mass."""
+    legs = [leg(chain, piston=Piston(length=0.8, EA=1.1e8, EI=5e3, rhoA=rhoA)) for rhoA in (0.0, 1e-9)]
+    none, light = (built(f"4-{chain}", ring(0.3, FOUR), ring(0.2, FOUR + 20), 0.8, [each] * 4) for each in legs)
+    K = [fx.stiffness(robot).stiffness.values for robot in (none, light)]
+    np.testing.assert_allclose(K[0], K[1], rtol=1e-7, atol=1e-9 * np.abs(K[1]).max())  # a nanogram's weight
+    lowest = [fx.modes(robot).frequency.values[:6] for robot in (none, light)]
+    np.testing.assert_allclose(lowest[0], lowest[1], rtol=1e-7)
+
+
+def test_what_masses_that_no_body_has_come_from():
+    """A rod that hangs through by 5 % of its length was said to be too short."""
+    rod = Piston(length=2.05, EA=1.1e8, EI=20.0, rhoA=1.0)
+    legs = [
+        leg("UPS", cylinder=Cylinder(mass=0.0, mouth=0.0), piston=rod, drive=ServoDrive(stiffness=1e6, damping=1e3))
+    ]
+    parts = {"payload": None, "platform_fixed": True}
+    robot = built("1-UPS", np.zeros((1, 3)), [[2.0, 0, 0]], 0.0, legs, **parts)
+    with pytest.raises(ComputationError, match="not positive: a leg bends so far under its load"):
+        fx.modes(robot, modes=4)
+    with pytest.raises(ComputationError, match="not positive: the piston of leg 1 is shorter than what the leg has"):
+        fx.modes(robot.replace(legs=(legs[0].replace(piston=rod.replace(length=1.5)),)), modes=4)

@@ -8,6 +8,7 @@ import numpy as np
 from flexapod import rigid
 from flexapod.bases.eigen import finite
 from flexapod.errors import ComputationError, InputError
+from flexapod.mechanics.layout import LEG_PARAMETERS, columns
 from flexapod.model import Load, Robot, Simulation
 from flexapod.rigid.limbs import DRIVEN, FREE
 from flexapod.solve.damped import damping_ratios
@@ -22,8 +23,6 @@ from flexapod.solve.rigid_motion import rigid_rest
 from flexapod.solve.robot_system import robot_system
 from flexapod.solve.system import Index, System
 from flexapod.typing import Array, Mask
-
-NO_MASS = "the mass matrix is not positive: a piston is shorter than what its leg has outside the cylinder"
 
 
 @dataclass(frozen=True, kw_only=True)
@@ -173,9 +172,7 @@ def the_modes(locked: LockedPoses) -> RobotModes:
     finite(m.M, m.K, m.D, m.payload_M, m.payload_K)
     modes = modes_of(locked, shapes=True)
     if not modes.positive[0]:
-        raise ComputationError(
-            NO_MASS, next_step="Give leg.piston.length at least the largest leg length less leg.cylinder.mouth."
-        )
+        raise _no_mass(locked.system, found.state.q)
     count = count_real(modes.frequency)
     return RobotModes(
         frequency=modes.frequency[0, :count],
@@ -185,6 +182,21 @@ def the_modes(locked: LockedPoses) -> RobotModes:
         system=locked.system,
         wrench=locked.acts.wrench,
     )
+
+
+def _no_mass(system: System, q: Array) -> ComputationError:
+    """Why the masses at coordinates (legs, n) are those of no body."""
+    at = (columns(LEG_PARAMETERS, name) for name in ("mouth", "Lp"))
+    mouth, whole = (system.leg_p[:, part][:, 0] for part in at)
+    short = q[:, system.kernel.shapes.l_index] - mouth > whole * (1 + 1e-9)
+    what, next_step = (
+        "a leg bends so far under its load that shapes of small slopes no longer describe its motion",
+        "Reduce the load or the weight across the legs, make them stiffer, or take fewer shapes (simulation.modes).",
+    )
+    if short.any():
+        what = f"the piston of leg {int(short.argmax()) + 1} is shorter than what the leg has outside the cylinder"
+        next_step = "Give leg.piston.length at least the largest leg length less leg.cylinder.mouth."
+    return ComputationError(f"the mass matrix is not positive: {what}", next_step=next_step)
 
 
 def modes_of(locked: LockedPoses, *, shapes: bool = False) -> ManyModes:

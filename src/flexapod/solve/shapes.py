@@ -30,7 +30,7 @@ def robot_shapes(robot: Robot, simulation: Simulation, legs: Limbs) -> Shapes:
         closure="pose" if pose else "point",
         carriage=legs.carriage,
         spin=bool((spin != ABSENT).any()),
-        torsion=pose and simulation.lateral_shapes > 0 and all(leg.piston.rhoA > 0 for leg in robot.legs),
+        torsion=pose and simulation.lateral_shapes > 0,
         flexure=any(x.stiffness is not None for leg in robot.legs for x in (leg.base_joint, leg.platform_joint)),
         pivot_spin=bool(((spin == FREE) & (gamma3 == HELD)).any()),
     )
