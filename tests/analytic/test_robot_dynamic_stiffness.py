@@ -16,7 +16,7 @@ from flexapod import modes
 from flexapod.model import ServoDrive, preset
 from flexapod.proof import dynamic_stiffness, locked_robot
 from flexapod.proof.locked_robot import legs_and_body
-from flexapod.proof.unlike import unlike_legs, without_cylinders, without_gravity
+from flexapod.proof.robots import unlike_legs, without_cylinders, without_gravity
 
 PISTON = beams.round_section(0.027, 200e9, 7800.0)
 HOME = (0.0,) * 6

@@ -9,7 +9,7 @@ from flexapod.model import AxisMotion, preset
 from flexapod.proof.cases import mujoco_forces as case
 from flexapod.proof.engines import mujoco_forces
 from flexapod.proof.engines.mujoco_model import mjcf
-from flexapod.proof.unlike import unlike_legs, without_cylinders
+from flexapod.proof.robots import unlike_legs, without_cylinders
 
 mujoco = pytest.importorskip("mujoco")
 ROBOT = preset("paper-robot").robot
@@ -22,7 +22,7 @@ def path(robot, motion=ROLL, duration=0.4):
 
 @pytest.fixture(scope="module")
 def checks():
-    return case.MUJOCO_FORCES.compute()
+    return case.mujoco_forces.compute()
 
 
 def test_forces_on_motions_of_all_degrees_of_freedom(checks):

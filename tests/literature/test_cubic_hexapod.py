@@ -3,7 +3,7 @@
 import numpy as np
 import pytest
 
-from flexapod.proof.cases.cubic_hexapod import EDGES_MM, above_the_centre, at_the_centre, joints
+from flexapod.proof.cases.hexapods import EDGES_MM, above_the_centre, at_the_centre, joints
 from flexapod.rigid.jacobian import length_jacobian, stiffness
 
 

@@ -3,7 +3,7 @@
 import numpy as np
 import pytest
 
-from flexapod.proof.cases.dietmaier import BASE, LENGTHS, PLATFORM
+from flexapod.proof.cases.hexapods import BASE, LENGTHS, PLATFORM
 from flexapod.rigid.forward import all_postures
 from flexapod.rigid.jacobian import length_jacobian
 from flexapod.rigid.kinematics import leg_lengths

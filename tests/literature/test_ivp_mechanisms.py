@@ -17,7 +17,7 @@ def test_squeezer_of_second_order():
 
 
 def test_squeezer_extrapolated():
-    for check in squeezer.SQUEEZER.compute():
+    for check in squeezer.squeezer.compute():
         assert check.passed, check
 
 
@@ -31,7 +31,7 @@ def test_the_squeezer_starts_as_the_test_set_does():
 
 
 def test_slider_crank_extrapolated():
-    for check in slider_crank.SLIDER_CRANK.compute():
+    for check in slider_crank.slider_crank.compute():
         assert check.passed, check
 
 

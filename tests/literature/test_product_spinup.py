@@ -7,7 +7,7 @@ from tests.runs import run_actuator
 
 from flexapod.bases import lateral_basis
 from flexapod.model import Actuator, ActuatorMotion, ActuatorStudy, RateLaw, Simulation, SpinUpLaw
-from flexapod.proof.cases.spin_up import TABLE
+from flexapod.proof.cases.turning import TABLE
 from flexapod.solve.actuator_modes import turning_matrices
 
 TS = 15.0

@@ -3,17 +3,18 @@
 from __future__ import annotations
 
 from collections.abc import Callable, Sequence
-from dataclasses import dataclass
+from dataclasses import dataclass, field
+from typing import Any
 
 import numpy as np
 from numpy.typing import ArrayLike
 
 from flexapod.proof.engines.engine import Engine
 
-__all__ = ["Case", "Check", "checks"]
+__all__ = ["Case", "Check", "case", "checks"]
 
 
-@dataclass(frozen=True, kw_only=True)
+@dataclass(frozen=True)
 class Check:
     """One number: `ours` against `reference`; `tolerance` is relative, or absolute in `unit` if `absolute`.
 
@@ -25,8 +26,8 @@ class Check:
     ours: float
     tolerance: float
     unit: str = "1"
-    absolute: bool = False
-    fault: str = ""
+    absolute: bool = field(default=False, kw_only=True)
+    fault: str = field(default="", kw_only=True)
 
     def __post_init__(self) -> None:
         if self.reference == 0 and not self.absolute:
@@ -74,18 +75,21 @@ class Case:
         return self.not_run
 
 
+def case(**words: Any) -> Callable[[Callable[[], Sequence[Check]]], Case]:
+    """Decorator of a function that computes a case; `words`: the fields of `Case`."""
+    return lambda compute: Case(compute=compute, **words)
+
+
 def checks(
     names: Sequence[str],
     reference: ArrayLike,
     ours: ArrayLike,
-    tolerance: float,
+    tolerance: ArrayLike,
     unit: str = "1",
     *,
     absolute: bool = False,
 ) -> list[Check]:
-    """Checks of several numbers with one tolerance."""
-    rows = zip(names, np.ravel(reference), np.ravel(ours), strict=True)
-    return [
-        Check(what=name, reference=float(a), ours=float(b), tolerance=tolerance, unit=unit, absolute=absolute)
-        for name, a, b in rows
-    ]
+    """Checks of several numbers with one tolerance or one each."""
+    columns = (np.ravel(values).tolist() for values in (reference, ours, np.broadcast_to(tolerance, len(names))))
+    rows = zip(names, *columns, strict=True)
+    return [Check(name, a, b, bound, unit, absolute=absolute) for name, a, b, bound in rows]

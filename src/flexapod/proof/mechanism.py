@@ -46,7 +46,7 @@ __all__ = ["Branch", "Drive", "Hub", "Mechanism", "run"]
 
 #: branch(q, v, p) -> kinetic energy, potential energy, the point (3,) that is closed; p: the branch's own parameters
 Branch = Callable[[SX, SX, SX], tuple[SX, SX, SX]]
-#: hub(x, u) -> kinetic and potential energy, the points (18,) of branches 1 to 6; x: three coordinates, u: their rates
+#: hub(x, u) -> kinetic and potential energy, the points of all branches, stacked; x: three coordinates, u: their rates
 Hub = Callable[[SX, SX], tuple[SX, SX, SX]]
 #: drive(t) -> value, rate and acceleration of the third coordinate of the driven branches, which follows them
 Drive = Callable[[Array], tuple[Array, Array, Array]]
@@ -56,10 +56,10 @@ OUTPUTS = 20
 
 @dataclass(frozen=True, kw_only=True)
 class Mechanism:
-    """Six branches on a hub.
+    """Branches on a hub.
 
     ``shapes``: lateral shapes a direction, which set the number of coordinates of a branch, 3 + 2 ``shapes``; the
-    first three follow from the closed point and the others. ``parameters`` (6, m): those of each branch. ``file``:
+    first three follow from the closed point and the others. ``parameters`` (b, m): those of each branch. ``file``:
     where the equations are written; compiled code is kept as long as it stays the same. ``driven``: branches whose
     third coordinate follows the drive.
     """
@@ -79,7 +79,7 @@ def run(mechanism: Mechanism, q: Array, x: Array, v: Array, u: Array, duration: 
     Parameters
     ----------
     mechanism : Mechanism
-    q, v : ndarray, shape (6, n)
+    q, v : ndarray, shape (b, n)
         Coordinates of the branches at the start, closed, and their rates.
     x, u : ndarray, shape (3,)
         Of the hub.
@@ -99,14 +99,14 @@ def run(mechanism: Mechanism, q: Array, x: Array, v: Array, u: Array, duration: 
         There is no C compiler, or the integration stopped.
     """
     system, h, method = _system(mechanism), duration / steps, GeneralizedAlpha(0.9)
-    law = _law(mechanism.drive)
+    law = _law(mechanism.drive, len(q))
     at = State(
         q=q,
         pose=np.concatenate([x, [1.0, 0.0, 0.0, 0.0]]),
         v=np.concatenate([v.ravel(), u, np.zeros(3)]),
         v_dot=np.zeros(system.size),
-        lam=np.zeros((6, 3)),
-        drive=np.zeros((6, system.ports.size)),
+        lam=np.zeros((len(q), 3)),
+        drive=np.zeros((len(q), system.ports.size)),
     )
     start, _ = consistent_start(system, at, law, 0.0, method, h)
     problem = _problem(system, method, law, duration)
@@ -129,11 +129,11 @@ def _problem(system: System, method: GeneralizedAlpha, law: Law, duration: float
     )
 
 
-def _law(drive: Drive) -> Law:
+def _law(drive: Drive, branches: int) -> Law:
     def law(t: Array) -> tuple[Array, Array]:
-        table = np.zeros((len(t), 6, 1, COLUMNS))
+        table = np.zeros((len(t), branches, 1, COLUMNS))
         table[:, :, 0, :3] = np.stack(drive(t), axis=-1)[:, None]
-        return table, np.zeros((len(t), 6))
+        return table, np.zeros((len(t), 6))  # no wrench
 
     return law
 
@@ -141,14 +141,16 @@ def _law(drive: Drive) -> Law:
 def _system(mechanism: Mechanism) -> System:
     lateral = lateral_basis("tip-load", mechanism.shapes)  # for its number of shapes only
     shapes = Shapes(a=lateral, b=lateral, axial=axial_basis(0))
-    general = np.zeros((6, sum(size for _, size in LEG_PARAMETERS)))  # what the loop itself asks of a leg
+    general = np.zeros(
+        (len(mechanism.parameters), sum(size for _, size in LEG_PARAMETERS))
+    )  # what the loop itself asks of a leg
     general[:, columns(LEG_PARAMETERS, "Lp")] = 1.0
-    held = np.zeros((6, shapes.size), dtype=bool)
+    held = np.zeros((len(general), shapes.size), dtype=bool)
     held[list(mechanism.driven), shapes.l_index] = True
     return System(
         kernel=_kernel(mechanism, shapes, general.shape[1]),
         leg_p=np.ascontiguousarray(np.concatenate([general, mechanism.parameters], axis=1)),
-        joint_p=np.eye(6),  # each branch reads its own of the hub's points
+        joint_p=np.eye(len(general)),  # each branch reads its own of the hub's points
         payload_p=np.ones(1),
         held=held,
     )
@@ -166,10 +168,10 @@ def _kernel(mechanism: Mechanism, shapes: Shapes, general: int) -> Kernel:
     ]
     library, signatures = compiled_library(
         [*texts, shapes.size, general],
-        lambda: [*_branch_functions(mechanism, shapes, general), *_hub_functions(mechanism.hub)],
+        lambda: [*_branch_functions(mechanism, shapes, general), *_hub_functions(mechanism)],
         SOURCES,
         command,
-        sizes(shapes, general + mechanism.parameters.shape[1], joint=6),
+        sizes(shapes, general + mechanism.parameters.shape[1], joint=len(mechanism.parameters)),
     )
     compiled = {name: CompiledFunction(library, name, signatures[name]) for name in NAMES}
     return Kernel(shapes=shapes, library=library, **compiled)
@@ -202,14 +204,15 @@ def _branch_functions(mechanism: Mechanism, shapes: Shapes, general: int) -> lis
     ]
 
 
-def _hub_functions(hub: Hub) -> list[NamedFunction]:
+def _hub_functions(mechanism: Mechanism) -> list[NamedFunction]:
     """The same of the hub: three coordinates, and a turn of unit inertia that nothing moves."""
     pose, u, u_dot = symbol("pose", 7), symbol("u", 6), symbol("u_dot", 6)
     net, wrench, p = symbol("net", 6), symbol("wrench", 6), symbol("p", 1)
-    lam, joint = symbol("lam", 3), symbol("joint", 6)
+    branches = len(mechanism.parameters)
+    lam, joint = symbol("lam", 3), symbol("joint", branches)
     x, rate, push = symbol("x", 3), symbol("rate", 3), symbol("push", 3)
-    kinetic, potential, points = hub(x, rate)
-    point = reshape(points, 3, 6) @ joint
+    kinetic, potential, points = mechanism.hub(x, rate)
+    point = reshape(points, 3, branches) @ joint
     e = Lagrangian(q=x, v=rate, kinetic=kinetic, potential=potential, dissipation=zeros(1))
 
     def here(expression: SX) -> SX:

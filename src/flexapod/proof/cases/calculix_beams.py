@@ -9,7 +9,7 @@ from flexapod.exchange.decks_beam import ELEMENTS, clamped_frequencies, clamped_
 from flexapod.fem.frequencies import frequencies
 from flexapod.fem.mesh import SolidMesh, extruded
 from flexapod.fem.section_mesh import section_mesh
-from flexapod.proof.case import Case, Check, checks
+from flexapod.proof.case import Check, case, checks
 from flexapod.proof.cases.calculix_corrections import ONE_ELEMENT, clamped_thick
 from flexapod.proof.engines import calculix
 from flexapod.proof.engines.engine import CALCULIX
@@ -30,6 +30,7 @@ SAME = 2e-5  # likewise of a body 385 times as long as thick: 5e-6 in either pro
 SHORT, FLATWISE = 0.3, [0, 2]  # m, and the modes across the thickness
 HELD = 9 * 0.005 * 0.5 / 2**2  # of EI: hourglass control of cubes, two across the depth (T10.28)
 STEP, DURATION = 1e-3, 0.22  # s: half a period
+_THREE_MESHES = "CalculiX, C3D20R on three meshes and the limit of two"
 
 
 def _mesh(section: model.Tube | model.Rectangle, size: float, length: float, layers: int, kind: str) -> SolidMesh:
@@ -49,29 +50,11 @@ def _limit(coarse: Array, fine: Array) -> Array:
 
 def _compared(found: dict[str, Array], limit: Array, ours: Array, tolerance: Array) -> list[Check]:
     """Each mesh may be off by what it differs from the limit, and the limit by `tolerance`."""
-    return [
-        Check(
-            what=f"{name}, bending {i + 1}",
-            reference=float(f[i]),
-            ours=float(ours[i]),
-            tolerance=float(tolerance[i] + abs(limit[i] / f[i] - 1)),
-            unit="Hz",
-        )
-        for name, f in {**found, "limit": limit}.items()
-        for i in range(len(ours))
-    ]
-
-
-def _piston() -> list[Check]:
-    meshes = {"12 x 12 elements": (COARSE, 12), "12 x 24 elements": (COARSE, 24), "32 x 24 elements": (FINE, 24)}
-    found = {
-        name: _theirs(_mesh(PISTON, size, LENGTH, layers, "hex20"), STEEL, 0.0, reduced=True)[[0, 2, 4]]
-        for name, (size, layers) in meshes.items()
-    }
-    beam = model.Actuator.from_section(section=PISTON, material=STEEL, length=LENGTH, free_length=LENGTH)
-    ours = clamped_thick(beam, PISTON.diameter / 4, 2 * 7 / 6, 5)[:3]  # E / G = 2; k = 6 / 7 of a circle (Cowper)
-    limit = _limit(found["12 x 12 elements"], found["32 x 24 elements"])
-    return _compared(found, limit, ours, ROUNDING + _correction(beam, ours) ** 2)
+    rows: list[Check] = []
+    for name, f in {**found, "limit": limit}.items():
+        bound = tolerance + np.abs(limit / f - 1)
+        rows += checks([f"{name}, bending {i + 1}" for i in range(len(ours))], f, ours, bound, "Hz")
+    return rows
 
 
 def _correction(beam: model.Actuator, thick: Array) -> Array:
@@ -80,7 +63,15 @@ def _correction(beam: model.Actuator, thick: Array) -> Array:
     return 1 - thick / thin[: len(thick)]
 
 
-def _beam() -> list[Check]:
+@case(
+    name="calculix-beam",
+    statement="Bending frequencies of the paper's Table 2 beam, 1.83 m clamped, Poisson's ratio 0",
+    source=_THREE_MESHES,
+    argument="as calculix-piston; shear and rotary inertia take 1e-4 at most",
+    engine=CALCULIX,
+)
+def calculix_beam() -> list[Check]:
+    """The beam of the paper's Table 2, meshes of 10 to 40 elements."""
     beam = model.Actuator(length=FREE, free_length=FREE, EI=EI, rhoA=RHO_A)
     ours = clamped_thick(beam, FLAT.height / np.sqrt(12), ONE_ELEMENT, 5)[:3]
     found = {}
@@ -92,7 +83,37 @@ def _beam() -> list[Check]:
     return _compared(found, limit, ours, ROUNDING + _correction(beam, ours) ** 2)
 
 
-def _solid() -> list[Check]:
+@case(
+    name="calculix-piston",
+    statement="Bending frequencies of the clamped piston, 27 mm by 600 mm of steel, Poisson's ratio 0",
+    source=_THREE_MESHES,
+    argument="ours with first-order shear and rotary inertia, r / L = 0.011, which take 0.1 to 1.6 %; the square of "
+    "that and rounding, 1e-5; of a mesh what it differs from the limit: a circle of 8 parabolas is not a circle",
+    engine=CALCULIX,
+)
+def calculix_piston() -> list[Check]:
+    """The piston, three meshes."""
+    meshes = {"12 x 12 elements": (COARSE, 12), "12 x 24 elements": (COARSE, 24), "32 x 24 elements": (FINE, 24)}
+    found = {
+        name: _theirs(_mesh(PISTON, size, LENGTH, layers, "hex20"), STEEL, 0.0, reduced=True)[[0, 2, 4]]
+        for name, (size, layers) in meshes.items()
+    }
+    beam = model.Actuator.from_section(section=PISTON, material=STEEL, length=LENGTH, free_length=LENGTH)
+    ours = clamped_thick(beam, PISTON.diameter / 4, 2 * 7 / 6, 5)[:3]  # E / G = 2; k = 6 / 7 of a circle (Cowper)
+    limit = _limit(found["12 x 12 elements"], found["32 x 24 elements"])
+    return _compared(found, limit, ours, ROUNDING + _correction(beam, ours) ** 2)
+
+
+@case(
+    name="calculix-solid",
+    statement="Frequencies of our solid and of CalculiX on the same meshes of Table 2 beam and piston, Poisson's "
+    "ratio 0.3",
+    source="CalculiX, C3D8 and C3D20",
+    argument="the same elements and quadrature: rounding of either, eps (length / thickness)^4 = 5e-6",
+    engine=CALCULIX,
+)
+def calculix_solid() -> list[Check]:
+    """Our solid on the same meshes."""
     rows: list[Check] = []
     for name, material, mesh in (
         ("Table 2 beam, C3D8", ALUMINIUM, _mesh(FLAT, 0.05, 3.66, 73, "hex8")),
@@ -105,7 +126,17 @@ def _solid() -> list[Check]:
     return rows
 
 
-def _linear() -> list[Check]:
+@case(
+    name="calculix-linear",
+    statement="Linear elements by kind: first frequencies across the thickness of the Table 2 beam, 0.3 m clamped, "
+    "two elements of 4.75 mm deep, Poisson's ratio 0",
+    source="CalculiX, C3D8, C3D8I and C3D8R",
+    argument="C3D8 is the same element: rounding, 2e-5; C3D8I of another author: as far as it is itself from "
+    "quadratic elements; C3D8R: half the share of the bending stiffness that its hourglass control has, whose "
+    "constant is each program's own",
+    engine=CALCULIX,
+)
+def calculix_linear() -> list[Check]:
     """Bending across the thickness, two elements of 4.75 mm deep."""
     found = {}
     for kind in ("hex20", "hex8", "hex8i", "hex8r"):
@@ -119,13 +150,21 @@ def _linear() -> list[Check]:
         "hex8r": np.full(2, 0.5 * HELD / (0.75 + HELD)),
     }
     for kind, tolerance in allowed.items():
-        for i, (theirs, ours) in enumerate(zip(*found[kind], strict=True)):
-            what = f"{ELEMENTS[kind, False]}, flatwise {i + 1}"
-            rows.append(Check(what=what, reference=theirs, ours=ours, tolerance=float(tolerance[i]), unit="Hz"))
+        theirs, ours = found[kind]
+        rows += checks([f"{ELEMENTS[kind, False]}, flatwise {i}" for i in (1, 2)], theirs, ours, tolerance, "Hz")
     return rows
 
 
-def _release() -> list[Check]:
+@case(
+    name="calculix-release",
+    statement="Tip of the Table 2 beam, 1.83 m clamped, released from 5 mm, over half a period: our modes and a solid",
+    source="CalculiX, *DYNAMIC, 24 elements C3D20, average acceleration, 1 ms",
+    argument="the method lengthens periods by (omega h)^2 / 12: 0.007 mm in modes 1 to 3; higher ones, of 0.0075 mm "
+    "together, may come with any phase",
+    engine=CALCULIX,
+)
+def calculix_release() -> list[Check]:
+    """The tip over half a period, each 20 ms."""
     mesh = _mesh(FLAT, FLAT.width, FREE, 24, "hex20")
     deck = clamped_release(
         mesh, E=ALUMINIUM.E, density=ALUMINIUM.density, force=3 * EI / FREE**3 * TIP, duration=DURATION, step=STEP
@@ -142,57 +181,3 @@ def _release() -> list[Check]:
     tip = np.interp(time[picks] - 1, ours.time.values, 1e3 * ours.tip_deflection.values)
     names = [f"tip at {1e3 * (t - 1):.0f} ms" for t in time[picks]]
     return checks(names, theirs[picks], tip, 0.022, "mm", absolute=True)
-
-
-_THREE_MESHES = "CalculiX, C3D20R on three meshes and the limit of two"
-
-CALCULIX_PISTON = Case(
-    name="calculix-piston",
-    statement="Bending frequencies of the clamped piston, 27 mm by 600 mm of steel, Poisson's ratio 0",
-    source=_THREE_MESHES,
-    argument="ours with first-order shear and rotary inertia, r / L = 0.011, which take 0.1 to 1.6 %; the square of "
-    "that and rounding, 1e-5; of a mesh what it differs from the limit: a circle of 8 parabolas is not a circle",
-    compute=_piston,
-    engine=CALCULIX,
-)
-
-CALCULIX_BEAM = Case(
-    name="calculix-beam",
-    statement="Bending frequencies of the paper's Table 2 beam, 1.83 m clamped, Poisson's ratio 0",
-    source=_THREE_MESHES,
-    argument="as calculix-piston; shear and rotary inertia take 1e-4 at most",
-    compute=_beam,
-    engine=CALCULIX,
-)
-
-CALCULIX_SOLID = Case(
-    name="calculix-solid",
-    statement="Frequencies of our solid and of CalculiX on the same meshes of Table 2 beam and piston, Poisson's "
-    "ratio 0.3",
-    source="CalculiX, C3D8 and C3D20",
-    argument="the same elements and quadrature: rounding of either, eps (length / thickness)^4 = 5e-6",
-    compute=_solid,
-    engine=CALCULIX,
-)
-
-CALCULIX_LINEAR = Case(
-    name="calculix-linear",
-    statement="Linear elements by kind: first frequencies across the thickness of the Table 2 beam, 0.3 m clamped, two "
-    "elements of 4.75 mm deep, Poisson's ratio 0",
-    source="CalculiX, C3D8, C3D8I and C3D8R",
-    argument="C3D8 is the same element: rounding, 2e-5; C3D8I of another author: as far as it is itself from quadratic "
-    "elements; C3D8R: half the share of the bending stiffness that its hourglass control has, whose constant is each "
-    "program's own",
-    compute=_linear,
-    engine=CALCULIX,
-)
-
-CALCULIX_RELEASE = Case(
-    name="calculix-release",
-    statement="Tip of the Table 2 beam, 1.83 m clamped, released from 5 mm, over half a period: our modes and a solid",
-    source="CalculiX, *DYNAMIC, 24 elements C3D20, average acceleration, 1 ms",
-    argument="the method lengthens periods by (omega h)^2 / 12: 0.007 mm in modes 1 to 3; higher ones, of 0.0075 mm "
-    "together, may come with any phase",
-    compute=_release,
-    engine=CALCULIX,
-)

@@ -2,24 +2,27 @@
 
 from __future__ import annotations
 
+from typing import Any
+
 import numpy as np
 
 from flexapod import model, rigid
-from flexapod.proof.case import Case, Check
+from flexapod.proof.case import Check, case, checks
 from flexapod.proof.engines.engine import MUJOCO
-from flexapod.proof.unlike import unlike_legs
+from flexapod.proof.robots import unlike_legs
 from flexapod.study.kinematics import inverse_dynamics
-from flexapod.typing import Array
 
 PIVOT = (0.02, 0.01, 0.1)
 DURATION, INSTANTS = 0.2, 40
 WRENCH = np.array([30.0, -20.0, 10.0, 5.0, -4.0, 3.0])
 AMPLITUDES: dict[str, float] = {"surge": 0.05, "sway": 0.05, "heave": 0.05, "roll": 0.3, "pitch": 0.3, "yaw": 0.3}
 COMBINED = {"surge": 0.02, "sway": -0.03, "heave": 0.02, "roll": 0.15, "pitch": -0.1, "yaw": 0.2}
-AXIAL = (
-    (0.04, 0.3),
-    (0.02, 0.2),
-)  # of cylinder and piston, odd and even legs [kg m^2]: hardly less than a body can have
+# Of cylinder and piston, odd and even legs [kg m^2]: hardly less than a body can have
+AXIAL = ((0.04, 0.3), (0.02, 0.2))
+MECHANISMS: dict[str, dict[Any, float]] = {
+    "tripod": {"heave": 0.02, "roll": 0.1, "pitch": -0.08},
+    "flight-simulator": {"surge": 0.05, "heave": 0.05, "roll": 0.1, "yaw": -0.1},
+}
 LIGHT = 1.0  # kg, and 0.01 kg m^2: a payload beside which the legs' turn about their axes counts
 
 
@@ -51,37 +54,50 @@ def robots() -> dict[str, model.Robot]:
     }
 
 
-def _gap(ours: Array, theirs: Array) -> float:
-    """Largest difference over the largest value."""
-    return float(np.abs(ours - theirs).max() / np.abs(theirs).max())
+def _gaps(what: str, robot: model.Robot, motion: model.Motion, output_step: float) -> list[Check]:
+    """Largest differences of drive and joint forces over the largest force."""
+    from flexapod.proof.engines.mujoco_forces import inverse_dynamics as by_mujoco
+
+    ours = inverse_dynamics(robot, motion, load=WRENCH, output_step=output_step)
+    theirs = by_mujoco(robot, rigid.poses(robot, motion, ours.time.values), WRENCH)
+    gap = (
+        float(np.abs(a.values - b).max() / np.abs(b).max())
+        for a, b in ((ours.drive_force_rigid, theirs.actuator_force), (ours.joint_force_rigid, theirs.joint_force))
+    )
+    return checks([f"{what}, drives", f"{what}, joints"], [0, 0], list(gap), 1e-8, absolute=True)
 
 
-def _compute() -> list[Check]:
-    from flexapod.proof.engines import mujoco_forces
-
-    found: list[Check] = []
-    for name, robot in robots().items():
-        for axis, motion in motions().items():
-            ours = inverse_dynamics(robot, motion, load=WRENCH, output_step=DURATION / INSTANTS)
-            theirs = mujoco_forces.inverse_dynamics(robot, rigid.poses(robot, motion, ours.time.values), WRENCH)
-            gaps = {
-                "drives": _gap(ours.actuator_force_rigid.values, theirs.actuator_force),
-                "joints": _gap(ours.joint_force_rigid.values, theirs.joint_force),
-            }
-            found += [
-                Check(what=f"{name}, {axis}, {part}", reference=0, ours=gap, tolerance=1e-8, absolute=True)
-                for part, gap in gaps.items()
-            ]
-    return found
-
-
-MUJOCO_FORCES = Case(
+@case(
     name="mujoco-forces",
     statement="Drive and joint forces of the rigid robot that moves along and about every axis, loaded at its tool: "
     "largest difference over the largest force",
-    source="MuJoCo, inverse dynamics of the open chains; the joint forces from the universal joints' and the payload's "
-    "equations",
+    source="MuJoCo, inverse dynamics of the open chains; the joint forces from the universal joints' and the "
+    "payload's equations",
     argument="both are exact: rounding times the condition of the leg Jacobian (below 1e3), twice inverted",
-    compute=_compute,
     engine=MUJOCO,
 )
+def mujoco_forces() -> list[Check]:
+    """Largest differences of drive and joint forces, robot by robot and motion by motion."""
+    return [
+        check
+        for name, robot in robots().items()
+        for axis, motion in motions().items()
+        for check in _gaps(f"{name}, {axis}", robot, motion, DURATION / INSTANTS)
+    ]
+
+
+@case(
+    name="mujoco-mechanisms",
+    statement="Drive and joint forces of the presets tripod (3-RPS) and flight-simulator (6-UCU), rigid, moved and "
+    "loaded at their tools: largest difference over the largest force",
+    source="MuJoCo, inverse dynamics of the open chains; hinges, cylindrical and universal joints as it has them",
+    argument="both are exact: rounding times the condition of the closures (below 1e3), twice inverted",
+    engine=MUJOCO,
+)
+def mujoco_mechanisms() -> list[Check]:
+    """The same of robots of other kinds than six legs UPS."""
+    found: list[Check] = []
+    for name, amplitudes in MECHANISMS.items():
+        robot = model.preset(name).robot  # type: ignore[union-attr]
+        found += _gaps(name, robot, model.CombinedMotion(amplitudes=amplitudes, duration=0.4), 0.02)
+    return found
