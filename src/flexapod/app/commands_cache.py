@@ -10,7 +10,7 @@ from flexapod.app.failures import guarded
 from flexapod.app.options import Json
 
 if TYPE_CHECKING:
-    from flexapod.study.cache import CacheContent
+    from flexapod.symbolic.cache import CacheContent
 
 __all__ = ["add"]
 
@@ -29,7 +29,7 @@ def cache(clear: Clear = False, json: Json = False) -> None:
     FLEXAPOD_CACHE chooses another folder, FLEXAPOD_CACHE_MEGABYTES another bound.
     """
     from flexapod.app.terminal import print_json, print_text
-    from flexapod.study.cache import cache_content, clear_cache
+    from flexapod.symbolic.cache import cache_content, clear_cache
 
     found = clear_cache() if clear else cache_content()
     if json:

@@ -14,8 +14,6 @@ from flexapod.model.material import Material, Rectangle, Tube
 from flexapod.model.motion import check_times
 from flexapod.words import number, text
 
-__all__ = ["Actuator", "ActuatorInitial", "ActuatorLoad", "ActuatorMotion"]
-
 
 class Actuator(Frozen):
     """A uniform beam in a hub, moving in a plane.

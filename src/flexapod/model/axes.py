@@ -11,8 +11,6 @@ from flexapod.typing import Array
 if TYPE_CHECKING:
     from flexapod.model.leg import Leg
 
-__all__ = ["WORDS", "Plane", "axis_of", "normal_of", "own_view", "plane_order", "word_of"]
-
 Plane = Literal["xy", "yz", "zx"]
 WORDS = ("tangential", "radial", "vertical")
 _NEAR = 1e-12  # of the axis: a joint nearer to it has no radial direction

@@ -26,23 +26,6 @@ from flexapod.typing import Array
 from flexapod.units import DIMENSIONS
 from flexapod.words import number
 
-__all__ = [
-    "SHORT",
-    "Frozen",
-    "Joints",
-    "Matrix3",
-    "Matrix6",
-    "Measure",
-    "NonNegative",
-    "Number",
-    "Positive",
-    "Series",
-    "Series6",
-    "Vec3",
-    "Vec6",
-    "array_of",
-]
-
 Number = Annotated[float, Field(strict=True, allow_inf_nan=False)]
 Positive = Annotated[float, Field(strict=True, gt=0, allow_inf_nan=False)]
 NonNegative = Annotated[float, Field(strict=True, ge=0, allow_inf_nan=False)]

@@ -9,8 +9,6 @@ from typing import Literal
 
 from flexapod.errors import InputError
 
-__all__ = ["MOST_LEGS", "Chain", "chain_of", "chains_of"]
-
 MOST_LEGS = 16
 _CHAIN = re.compile(r"(?P<carriage>[PR]?)(?P<base>[RUSF])(?P<stroke>[PC]?)(?P<platform>[RUSF]?)")
 _GROUP = re.compile(r"(?:(\d{1,3})-)?([A-Za-z]+)")

@@ -13,8 +13,6 @@ from flexapod.model.axes import plane_order
 from flexapod.model.base import Frozen, Measure, NonNegative, Positive, Series
 from flexapod.typing import Array
 
-__all__ = ["Circle", "base_circle", "platform_circle"]
-
 _LOWER = ((0, -1), (0, 1), (120, -1), (120, 1), (240, -1), (240, 1))
 _UPPER = ((-60, 1), (60, -1), (60, 1), (180, -1), (180, 1), (300, -1))
 

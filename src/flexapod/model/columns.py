@@ -13,8 +13,6 @@ from pydantic.fields import FieldInfo
 
 from flexapod.model.base import Frozen, Measure
 
-__all__ = ["NO_BOUNDS", "Bounds", "Column", "Kind", "columns_of"]
-
 Kind = Literal["number", "vector", "rows", "whole", "text", "words", "flag", "table", "other"]
 
 

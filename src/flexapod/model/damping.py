@@ -10,8 +10,6 @@ from pydantic import Field, PlainSerializer, PlainValidator
 from flexapod.errors import InputError
 from flexapod.model.base import Frozen, Measure, NonNegative
 
-__all__ = ["BodyDamping", "Damping", "damping_parts"]
-
 Ratio = Annotated[float, Field(strict=True, ge=0, lt=1)]
 
 

@@ -10,8 +10,6 @@ from flexapod.errors import InputError
 from flexapod.model.base import Frozen, Measure, NonNegative, Number, Positive, Series
 from flexapod.model.motion import check_times
 
-__all__ = ["Drive", "Feedback", "ForceDrive", "PrescribedDrive", "ServoDrive"]
-
 
 class PrescribedDrive(Frozen):
     """The stroke follows the command exactly; its force is a result."""

@@ -8,12 +8,9 @@ from pathlib import Path
 from typing import Any
 
 from flexapod.errors import InputError
-from flexapod.model.columns import Bounds
 from flexapod.model.files import read_study
 from flexapod.model.notes import Field, Notes
 from flexapod.model.section import Section
-
-__all__ = ["Bounds", "Field", "Notes", "listened", "read_fields"]
 
 
 def read_fields(text: str, path: str | Path | None) -> list[Field]:

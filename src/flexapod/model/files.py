@@ -21,19 +21,6 @@ from flexapod.model.simulation import STRAIGHT, Simulation
 from flexapod.model.study import ActuatorStudy, Study
 from flexapod.model.toml import parsed
 
-__all__ = [
-    "PAPER_PRESETS",
-    "PRESETS",
-    "OpenValue",
-    "load",
-    "loads",
-    "loads_robot",
-    "open_values",
-    "preset",
-    "preset_text",
-    "read_study",
-]
-
 PAPER_PRESETS = ("paper-robot", "paper-robot-radii", "paper-actuator")
 PRESETS = (*PAPER_PRESETS, "tripod", "flight-simulator")
 AT_REST = AxisMotion(type="heave", amplitude=0.0, duration=1.0)

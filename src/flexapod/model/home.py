@@ -12,8 +12,6 @@ from flexapod.model.base import Frozen, Measure, Vec3
 from flexapod.model.joint import Carriage
 from flexapod.typing import Array
 
-__all__ = ["Home", "carriage_home", "foot"]
-
 
 class Home(Frozen):
     """Pose of the platform frame at home: `position` (3,) [m], `rotation` (3,) [rad], world axes.

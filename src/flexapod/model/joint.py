@@ -10,8 +10,6 @@ from pydantic import model_validator
 from flexapod.errors import InputError
 from flexapod.model.base import Frozen, Matrix6, Measure, NonNegative, Number, Vec3
 
-__all__ = ["Carriage", "Joint", "Travel"]
-
 
 class Joint(Frozen):
     """A joint at an end of a leg.

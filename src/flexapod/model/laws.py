@@ -9,7 +9,6 @@ from pydantic import Field, model_validator
 from flexapod.model.base import Frozen, Measure, NonNegative, Number, Positive, Series
 from flexapod.model.motion import Profile, check_times
 
-__all__ = ["ConstantLaw", "CsvLaw", "LoadLaw", "MotionLaw", "ProfileLaw", "RateLaw", "SineLaw", "SpinUpLaw", "StepLaw"]
 _AMPLITUDE = Measure("angle", "length", "torque", "force")
 
 

@@ -15,9 +15,6 @@ from flexapod.model.joint import Carriage, Joint
 from flexapod.model.piston import Cylinder, Piston, Strut
 from flexapod.words import number, text
 
-__all__ = ["Leg", "Stroke"]
-
-
 NOTHING = Cylinder(mass=0.0, mouth=0.0)  # in place of the cylinder that a strut does not have
 
 

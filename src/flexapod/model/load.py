@@ -9,8 +9,6 @@ from pydantic import Field, model_validator
 from flexapod.model.base import Frozen, Measure, NonNegative, Number, Positive, Series, Series6, Vec6
 from flexapod.model.motion import check_times
 
-__all__ = ["ConstantWrench", "CsvWrench", "Load", "SineWrench", "StepWrench", "Wrench"]
-
 
 class ConstantWrench(Frozen):
     """`value` (6,): Fx Fy Fz [N], Mx My Mz [N m], at the tool, world axes, at all times."""

@@ -11,9 +11,6 @@ from pydantic import Field, model_validator
 from flexapod.errors import InputError
 from flexapod.model.base import Frozen, Measure, Positive
 
-__all__ = ["MATERIALS", "POISSON", "Material", "Rectangle", "Tube"]
-
-
 POISSON = 0.3  # where no other is given
 
 

@@ -15,18 +15,6 @@ from flexapod.typing import Array
 from flexapod.units import DIMENSIONS
 from flexapod.words import number, text
 
-__all__ = [
-    "AXES",
-    "PROFILES",
-    "AxisMotion",
-    "CombinedMotion",
-    "CsvMotion",
-    "Motion",
-    "Waypoint",
-    "WaypointMotion",
-    "moved_axes",
-]
-
 Axis = Literal["surge", "sway", "heave", "roll", "pitch", "yaw"]
 Profile = Literal["quintic", "cycloidal", "s-curve", "trapezoid", "smooth", "linear"]
 AXES: tuple[Axis, ...] = get_args(Axis)

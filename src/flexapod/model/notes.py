@@ -9,8 +9,6 @@ from typing import Any
 from flexapod.model.base import Frozen
 from flexapod.model.columns import NO_BOUNDS, Bounds, Kind, columns_of
 
-__all__ = ["Field", "Notes"]
-
 
 @dataclass(frozen=True, kw_only=True)
 class Field:

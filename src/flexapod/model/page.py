@@ -18,8 +18,6 @@ from flexapod.model.reference import Entry, plain_path, reference
 from flexapod.model.tables import POSE, WRENCH, forces, header
 from flexapod.units import COMMON_UNITS, DIMENSIONS
 
-__all__ = ["HEAD", "Listed", "Row", "entry_text", "listed", "markdown", "study_data"]
-
 HEAD = ("Key", "What it is", "Unit", "Default", "Allowed")
 _NEEDED = {"robot": ("robot", "payload", "leg", "motion"), "actuator": ("actuator", "simulation")}
 _EXTENDED = ("robot", "leg")  # an example of a part of these leaves the rest as it is (see _whole)

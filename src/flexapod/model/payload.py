@@ -12,8 +12,6 @@ from flexapod.model.base import Frozen, Matrix3, Measure, Positive, Vec3
 from flexapod.typing import Array
 from flexapod.words import number
 
-__all__ = ["Payload", "millimetres"]
-
 
 class Payload(Frozen):
     """Platform and everything on it, as one rigid body.

@@ -10,8 +10,6 @@ from flexapod.errors import InputError
 from flexapod.model.base import Frozen, Measure, NonNegative, Number, Positive
 from flexapod.model.material import POISSON, Material, Rectangle, Tube
 
-__all__ = ["Cylinder", "Piston", "Strip", "Strut"]
-
 
 class Cylinder(Frozen):
     """The lower, rigid part of a leg.

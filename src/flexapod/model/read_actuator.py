@@ -12,8 +12,6 @@ from flexapod.model.material import Rectangle, Tube
 from flexapod.model.read_leg import read_material
 from flexapod.model.section import Section
 
-__all__ = ["read_actuator", "read_drives", "read_release"]
-
 _STIFFNESS = ("rhoA", "EI")
 _DRIVEN = {  # what a load drives: the load and its dimension, the dimensions of the motion
     "rotation": ("torque", "torque", ("angle", "angular rate")),

@@ -20,8 +20,6 @@ from flexapod.model.section import Section
 from flexapod.model.tables import forces
 from flexapod.typing import Array
 
-__all__ = ["read_leg", "read_material"]
-
 P = TypeVar("P", bound=Piston)
 _STIFFNESS = ("EI", "EA", "rhoA")
 _SLIDING = ("stiffness", "damping", "force")

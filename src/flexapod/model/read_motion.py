@@ -13,8 +13,6 @@ from flexapod.model.simulation import FIDELITIES, OWN_BASIS, STRAIGHT, Initial, 
 from flexapod.model.tables import POSE, WRENCH
 from flexapod.typing import Array
 
-__all__ = ["read_initial", "read_load", "read_motion", "read_simulation", "unused_settings"]
-
 
 def read_motion(section: Section) -> Motion:
     """The motion of a robot."""

@@ -20,8 +20,6 @@ from flexapod.model.robot import Robot
 from flexapod.model.section import Section
 from flexapod.typing import Array
 
-__all__ = ["platform_fixed", "read_robot"]
-
 _LENGTHS = ("length", "length", "length")
 _INERTIAS = ("inertia", "inertia", "inertia")
 _ENDS = ("base", "platform")

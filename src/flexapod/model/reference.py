@@ -12,8 +12,6 @@ from typing import Any
 
 from flexapod.errors import nearest
 
-__all__ = ["Entry", "Reference", "advice", "example_line", "plain_path", "reference"]
-
 _VARIANT = ("type", "law")
 
 

@@ -10,8 +10,6 @@ from flexapod.model.leg import Leg
 from flexapod.model.robot import Robot
 from flexapod.words import number
 
-__all__ = ["actuator_remarks", "robot_remarks"]
-
 _SLENDER = 0.1
 _RATIO = 0.1  # damping ratio of the advice for a drive without damping
 

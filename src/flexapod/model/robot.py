@@ -18,8 +18,6 @@ from flexapod.model.robot_checks import check_counts, check_leg, check_plane, ch
 from flexapod.typing import Array
 from flexapod.words import number, text
 
-__all__ = ["Robot"]
-
 _NUMBERS = "none one two three four five six seven eight nine ten eleven twelve".split()
 _OR_NONE = WrapValidator(lambda value, check: None if value is None else check(value))
 

@@ -18,8 +18,6 @@ if TYPE_CHECKING:
     from flexapod.model.leg import Leg
     from flexapod.model.robot import Robot
 
-__all__ = ["check_counts", "check_leg", "check_plane", "check_spread"]
-
 
 def check_counts(robot: Robot) -> None:
     """Refuse a number of legs or joints that the type does not have, and legs that one robot cannot have together."""

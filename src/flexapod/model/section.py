@@ -14,8 +14,6 @@ from flexapod.model.tables import read_table
 from flexapod.model.values import Values
 from flexapod.typing import Array
 
-__all__ = ["Section"]
-
 M = TypeVar("M", bound=Frozen)
 _KINDS = ("type", "law")  # keys that say which of several tables it is
 

@@ -11,8 +11,6 @@ from flexapod.errors import InputError, closest
 from flexapod.model.base import Frozen, Measure, Positive
 from flexapod.words import number, text
 
-__all__ = ["DEFAULT_TOLERANCE", "FIDELITIES", "OWN_BASIS", "STRAIGHT", "Initial", "Simulation", "own_fidelity"]
-
 FIDELITIES = ("rigid", "lumped", "finite-segment", "assumed-modes", "beam-fem", "solid-fem")
 SOLID = "solid-fem"  # the fidelity that needs a section
 STRAIGHT = ("rigid", "lumped")  # fidelities without lateral shapes

@@ -18,8 +18,6 @@ from flexapod.model.robot import Robot
 from flexapod.model.simulation import FIDELITIES, OWN_BASIS, SOLID, STRAIGHT, Initial, Simulation
 from flexapod.model.write import to_toml
 
-__all__ = ["ActuatorStudy", "Study", "override"]
-
 
 class _Documented(Frozen):
     """Keeps `source_text` true: it is written anew when content is changed or the study was not read from text."""

@@ -17,8 +17,6 @@ from flexapod.files import LARGEST_TABLE, read_text
 from flexapod.typing import Array
 from flexapod.units import DIMENSIONS, to_si
 
-__all__ = ["POSE", "WRENCH", "forces", "header", "read_table", "wrong_instant"]
-
 POSE = {"surge": "length", "sway": "length", "heave": "length", "roll": "angle", "pitch": "angle", "yaw": "angle"}
 WRENCH = {"Fx": "force", "Fy": "force", "Fz": "force", "Mx": "torque", "My": "torque", "Mz": "torque"}
 

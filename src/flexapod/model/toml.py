@@ -8,8 +8,6 @@ from typing import Any
 
 from flexapod.errors import InputError
 
-__all__ = ["parsed", "refuse_excess"]
-
 DEEPEST = 32
 """Most names in a dotted key and most levels of tables and lists; a study has six. Reading takes the square of it."""
 MOST_DIGITS = 1000

@@ -15,8 +15,6 @@ from flexapod.model.notes import Notes
 from flexapod.model.reference import advice, example_line
 from flexapod.units import to_si
 
-__all__ = ["Values"]
-
 M = TypeVar("M", bound=Frozen)
 
 

@@ -17,8 +17,6 @@ from flexapod.model.robot import Robot
 from flexapod.model.simulation import OWN_BASIS, Simulation
 from flexapod.typing import Array
 
-__all__ = ["to_toml", "toml_value"]
-
 
 def to_toml(study: Frozen) -> str:
     """The study as TOML text in SI units; read again, it is the same study.

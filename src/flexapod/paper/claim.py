@@ -17,34 +17,6 @@ from flexapod.study.words import number, text
 if TYPE_CHECKING:
     from xarray import Dataset
 
-__all__ = [
-    "BREAKS",
-    "ELASTIC_LENGTH",
-    "HOLDS",
-    "IN_PART",
-    "MISPRINT",
-    "NOT",
-    "OPEN",
-    "PAPER_DEVIATION",
-    "REACHES",
-    "SIZE",
-    "Claim",
-    "after_motion",
-    "axis_motion",
-    "by_axis",
-    "explained",
-    "judged",
-    "largest",
-    "left_open",
-    "near",
-    "peaks",
-    "printed_deviation",
-    "roll_and_arm",
-    "roll_error",
-    "size",
-    "times",
-]
-
 HOLDS, IN_PART, NOT = "holds", "holds in part", "does not hold"  # of numbers, by `judged`
 REACHES, BREAKS = "reaches that size", "robot gives way"  # of numbers, too
 OPEN = "cannot be compared"  # of the text: the paper does not give what the preset marks as ours, `left_open`

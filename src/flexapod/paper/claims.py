@@ -12,8 +12,6 @@ from flexapod.paper.claims_robot import robot_claims
 from flexapod.paper.claims_variants import explanation_claims, variant_claims
 from flexapod.paper.study import PaperStudy
 
-__all__ = ["CLAIM_HEAD", "Claim", "claims", "markdown"]
-
 CLAIM_HEAD = ("Where", "The paper", "What we get", "Verdict", "Reason")
 
 

@@ -11,8 +11,6 @@ from flexapod.paper.claim import HOLDS, IN_PART, MISPRINT, NOT, OPEN, Claim, exp
 from flexapod.paper.study import ACTUATOR_MODES, PaperStudy
 from flexapod.study.words import text
 
-__all__ = ["actuator_claims"]
-
 WIDTH, HEIGHT = 0.1524, 0.0095  # Table 2 [m]
 ALUMINIUM = (70e9, 2700.0)  # E [Pa], density [kg/m^3]; its alloys lie within 5 %, steel at three times as much
 ALLOYS = 0.05

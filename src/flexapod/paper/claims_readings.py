@@ -26,8 +26,6 @@ from flexapod.study.words import number, text
 if TYPE_CHECKING:
     from xarray import Dataset
 
-__all__ = ["SAYS", "reading_claims"]
-
 SAYS = "5 mm in Y and 10 mm in Z"
 
 

@@ -28,8 +28,6 @@ from flexapod.study.words import number, text
 if TYPE_CHECKING:
     from xarray import Dataset
 
-__all__ = ["rigid_claims"]
-
 AWAY = 0.05  # distance from the ends of the quintic at which its jump of jerk no longer shows in the forces [s]
 TRAVEL, TRAVEL_ROUNDED = 0.26, 0.005  # of a piston, Fig. 7; printed to 10 mm [m]
 SHEAR = 2.6 / 0.9  # E / kappa G of a round steel section: 2 (1 + 0.3), kappa = 0.9

@@ -31,8 +31,6 @@ from flexapod.study.words import text
 if TYPE_CHECKING:
     from xarray import Dataset
 
-__all__ = ["robot_claims"]
-
 PER_CENT = 6.0  # Abstract
 VISIBLE = 0.01  # deflection over length: the width of a line in a picture
 

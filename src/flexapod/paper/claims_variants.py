@@ -31,8 +31,6 @@ from flexapod.study.words import number, text
 if TYPE_CHECKING:
     from xarray import Dataset
 
-__all__ = ["explanation_claims", "variant_claims"]
-
 FAR = 25.0  # half-angles up to here are one row [deg]
 
 

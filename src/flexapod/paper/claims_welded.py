@@ -25,8 +25,6 @@ from flexapod.study.words import number, text
 if TYPE_CHECKING:
     from xarray import Dataset
 
-__all__ = ["nearest", "tripod_claim", "welded_claims"]
-
 SAYS_MORE = f"{SAYS}, 6 %; a visibly bent piston in Fig. 10"
 
 

@@ -24,8 +24,6 @@ if TYPE_CHECKING:
     from flexapod.symbolic.functions import NamedFunction
     from flexapod.typing import Array
 
-__all__ = ["FORMULATIONS", "inverse_dynamics_cost", "lagrange_leg"]
-
 FORMULATIONS = ("Newton-Euler", "Lagrange")
 
 

@@ -28,8 +28,6 @@ from flexapod.plot.style import (
 from flexapod.scene.robot import motion_end
 from flexapod.study.words import text
 
-__all__ = ["engine_forces", "engine_path"]
-
 # From broad and pale to fine and dark: all show where they coincide.
 _BAND: dict[str, Any] = {"color": RIGID, "linewidth": 6.5, "solid_capstyle": "butt"}
 _LINES: tuple[dict[str, Any], ...] = (

@@ -28,16 +28,6 @@ from flexapod.typing import Array
 if TYPE_CHECKING:
     from xarray import Dataset
 
-__all__ = [
-    "Agreement",
-    "agreements",
-    "check_engine",
-    "exudyn_flexible",
-    "exudyn_rigid",
-    "rigid_same_step",
-    "undamped",
-]
-
 NO_GUIDE = 0.0  # m; of rigid pistons
 RIGID_TOLERANCE = 1e-8  # N; Newton's method
 USUAL = {0: 2.0, 30: 10.0, 60: 15.0}  # s, by elements per piston: for the progress only

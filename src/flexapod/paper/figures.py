@@ -16,8 +16,6 @@ if TYPE_CHECKING:
     from flexapod.paper.study import PaperStudy
     from flexapod.study.record import Report
 
-__all__ = ["ENGINE", "paper_figures"]
-
 _Plan = tuple[str, str, str, Callable[[], "Figure"]]
 ACTUATOR, ROBOT, VARIANTS = "Single actuator", "Robot", "What the deviation depends on"
 ENGINE = "Independent engine"

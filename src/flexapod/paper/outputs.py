@@ -17,8 +17,6 @@ if TYPE_CHECKING:
     from flexapod.paper.study import PaperStudy
     from flexapod.study.record import Report
 
-__all__ = ["replicate", "write"]
-
 
 def replicate(
     folder: str | Path, *, engines: bool = False, figures: bool = True, progress: Report | None = None

@@ -31,8 +31,6 @@ from flexapod.plot.style import (
 from flexapod.scene.robot import mode_scene, motion_end, robot_study
 from flexapod.study.words import number, text
 
-__all__ = ["actuator_free", "actuator_symbols", "forces_overlaid", "path_bands", "piston_mode"]
-
 BENT = 0.18  # of the length of a leg: how far its mode is drawn off the line of its joints
 
 

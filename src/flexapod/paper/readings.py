@@ -12,8 +12,6 @@ from flexapod.paper.claim import ELASTIC_LENGTH, axis_motion
 from flexapod.paper.trials import opened
 from flexapod.typing import Array
 
-__all__ = ["CUBE", "MODULI", "TRAVELS", "about_platform", "cube_edge", "readings", "robot_preset"]
-
 MODULI = (20.0, 4.0, 3.5, 3.1)  # GPa; of 200 a digit lost, then towards and past the load under which legs buckle
 CUBE = "com-cube"
 #: Readings of Fig. 7: preset, turn [deg], and whether it goes to both sides of home. The first is the preset itself.

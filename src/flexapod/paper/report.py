@@ -40,8 +40,6 @@ if TYPE_CHECKING:
     from flexapod.paper.claims import Claim
     from flexapod.paper.study import PaperStudy
 
-__all__ = ["paper_page"]
-
 _MARKS = {HOLDS: "good", IN_PART: "open", NOT: "bad", OPEN: "open", MISPRINT: "bad", REACHES: "open", BREAKS: "bad"}
 SHOWN_MODES = 12
 _SHOWN = {

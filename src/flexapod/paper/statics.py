@@ -20,8 +20,6 @@ from flexapod.study.path import path_instants
 from flexapod.study.static import modes
 from flexapod.typing import Array
 
-__all__ = ["Rest", "at_rest", "singular_turn"]
-
 POSES = 11  # every tenth of the motion: sag and frequency change steadily along it, their extremes are at its ends
 FINEST = 2.0**-8 / (POSES - 1)  # share of the motion to which the end of the equilibrium is found: 0.01 deg of 30 deg
 NEXT = 0.01  # m; two equilibria further apart than this are not taken for neighbours, but tried again at half the step

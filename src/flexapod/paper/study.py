@@ -32,8 +32,6 @@ from flexapod.study.static import modes
 if TYPE_CHECKING:
     from xarray import Dataset
 
-__all__ = ["ACTUATOR_MODES", "ENGINE_STEPS", "STEPS", "PaperStudy", "replicate"]
-
 ACTUATOR_MODES = (1, 2, 3, 4, 5)
 FREE_TIME = 5.0  # s; set free, the beam leaves its hub soon after
 COMPARED_STEP = 1e-4  # s: the time integration's error in 10 s is then about a micrometre, below what is compared

@@ -20,8 +20,6 @@ from flexapod.study.simulation import simulate
 if TYPE_CHECKING:
     from xarray import Dataset
 
-__all__ = ["TRIAL_STEP", "load_share", "opened", "table", "trial", "trials"]
-
 TRIAL_STEP = 5e-4  # s; peaks change by less than 1 % from 1 ms to 0.25 ms
 #: Columns of a table of trials and their units; `verdict` is text.
 COLUMNS = {

@@ -9,8 +9,6 @@ from flexapod.paper.claim import axis_motion
 from flexapod.paper.readings import robot_preset
 from flexapod.paper.trials import opened
 
-__all__ = ["tripod"]
-
 ANGLES = np.deg2rad([0.0, 120.0, 240.0])  # of the hinges, which lie along the circle
 
 

@@ -12,8 +12,6 @@ from matplotlib.figure import Figure
 from flexapod.paper.claim import PAPER_DEVIATION
 from flexapod.plot.style import AXIS_COLORS, COLUMN, PAGE, SMALL, figure, ink, scale, styled
 
-__all__ = ["half_angles", "start_jump"]
-
 _MARKS = {"x": "^", "y": "o", "z": "s"}
 
 

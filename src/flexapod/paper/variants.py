@@ -19,17 +19,6 @@ from flexapod.typing import Array
 if TYPE_CHECKING:
     from xarray import Dataset
 
-__all__ = [
-    "DURATIONS",
-    "HALF_ANGLES",
-    "JUMP_STEP",
-    "SERVO_STIFFNESS",
-    "assumptions",
-    "half_angle_sweep",
-    "jump_motion",
-    "with_half_angle",
-]
-
 HALF_ANGLES = (5.0, 10.0, 15.0, 20.0, 25.0, 27.0, 28.0, 29.0)  # deg
 SWEEP_COLUMNS = {"deviation_peak": "m", "force_peak": "N", "load_share": "1", "lowest_frequency": "Hz", "sag": "m"}
 JUMP_STEP = 3.125e-5  # s; an impact rings the legs at kilohertz: peaks within 4 % of those at a quarter of it

@@ -23,8 +23,6 @@ from flexapod.typing import Array
 if TYPE_CHECKING:
     from xarray import Dataset
 
-__all__ = ["ARMS", "READINGS", "ROLLS", "SHARE", "SLOPE", "travel_share", "welded", "welded_map"]
-
 #: Robots of the map: preset and how many legs are welded to the platform.
 READINGS = {
     "diameters": ("paper-robot", 6),

@@ -11,8 +11,6 @@ from flexapod.paper.claim import PAPER_DEVIATION
 from flexapod.paper.welded import SHARE, SLOPE, travel_share
 from flexapod.plot.style import AXIS_COLORS, COLUMN, SMALL, figure, ink, styled
 
-__all__ = ["welded_figure"]
-
 _TITLES = {
     "diameters": "Circles as diameters, six legs",
     "radii": "Circles as radii, six legs",

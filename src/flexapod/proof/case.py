@@ -11,8 +11,6 @@ from numpy.typing import ArrayLike
 
 from flexapod.proof.engines.engine import Engine
 
-__all__ = ["Case", "Check", "case", "checks"]
-
 
 @dataclass(frozen=True)
 class Check:

@@ -18,8 +18,6 @@ from dataclasses import dataclass, field
 
 import numpy as np
 
-__all__ = ["Body", "Leg", "bar", "beam", "below", "lateral", "robot", "robot_frequencies", "roots", "shaft"]
-
 Count = Callable[[float], int]
 Stiffness = tuple[np.ndarray, int]
 """Dynamic stiffness, and how many frequencies with all its coordinates held lie below omega."""

@@ -13,8 +13,6 @@ from flexapod.model import Leg, Robot
 from flexapod.proof import dynamic_stiffness
 from flexapod.typing import Array
 
-__all__ = ["legs_and_body", "missing_polynomials", "missing_sines", "missing_twist", "wave_number"]
-
 
 def legs_and_body(
     robot: Robot, pose: Sequence[float], shapes: int | None = None, compliance: float = 0.0

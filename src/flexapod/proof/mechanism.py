@@ -42,8 +42,6 @@ from flexapod.symbolic.vocabulary import (
 )
 from flexapod.typing import Array
 
-__all__ = ["Branch", "Drive", "Hub", "Mechanism", "run"]
-
 #: branch(q, v, p) -> kinetic energy, potential energy, the point (3,) that is closed; p: the branch's own parameters
 Branch = Callable[[SX, SX, SX], tuple[SX, SX, SX]]
 #: hub(x, u) -> kinetic and potential energy, the points of all branches, stacked; x: three coordinates, u: their rates

@@ -11,8 +11,6 @@ from flexapod.proof.case import Case, Check
 from flexapod.proof.cases import CASES
 from flexapod.study.record import Report
 
-__all__ = ["Outcome", "verify"]
-
 
 @dataclass(frozen=True, kw_only=True)
 class Outcome:

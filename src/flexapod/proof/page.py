@@ -6,8 +6,6 @@ from collections.abc import Sequence
 
 from flexapod.proof.pack import Outcome
 
-__all__ = ["HEAD", "faults", "markdown", "notes", "rows", "sentence"]
-
 HEAD = ("Case", "Nearest to its tolerance", "Reference", "Ours", "Tolerance", "Verdict", "Time")
 
 

@@ -26,8 +26,6 @@ from flexapod.model import Wrench as WrenchLaw
 from flexapod.rigid.laws import TRAPEZOID_FRACTIONS
 from flexapod.typing import Array
 
-__all__ = ["Breaks", "actuator_breaks", "robot_breaks"]
-
 STRAIGHT = 1e-9  # a row is not a corner where a table's slope changes by less of its largest one: rounding of text
 
 

@@ -20,9 +20,6 @@ from flexapod.rigid.trajectory import Poses, poses_from_coordinates, turning_axe
 from flexapod.rigid.vectors import blocks
 from flexapod.typing import Array, Mask
 
-__all__ = ["Closed", "Motion", "Task", "close", "gaps", "move", "turned_over"]
-
-
 STRIDE = 0.35  # rad, or of a leg's length: the longest way in one step from home to a pose
 NEWTON = 25
 APART = 16  # instants of a path from one that is sought from the start to the next

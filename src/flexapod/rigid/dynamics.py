@@ -22,18 +22,6 @@ from flexapod.rigid.trajectory import Poses
 from flexapod.rigid.vectors import Vector, blocks, cross, time_first, time_last, turned
 from flexapod.typing import Array
 
-__all__ = [
-    "LegArrays",
-    "LegBodies",
-    "PayloadBody",
-    "RigidForces",
-    "across_the_leg",
-    "along_the_leg",
-    "energies",
-    "inverse_dynamics",
-    "leg_motion",
-]
-
 
 @dataclass(frozen=True, kw_only=True)
 class LegBodies:

@@ -8,8 +8,6 @@ from flexapod.errors import InputError
 from flexapod.rigid.kinematics import leg_frame
 from flexapod.typing import Array
 
-__all__ = ["base_frame", "platform_frame"]
-
 _ALONG = 1e-9  # sine of the angle below which an axis counts as parallel to the leg
 
 

@@ -15,8 +15,6 @@ from flexapod.rigid.rotations import exponential
 from flexapod.rigid.trajectory import Poses
 from flexapod.typing import Array
 
-__all__ = ["RESIDUAL", "Postures", "all_postures", "newton", "newton_path", "real_postures"]
-
 RESIDUAL = 1e-12  # largest length error of a pose, relative to the longest leg
 
 _MAX_ITERATIONS = 100

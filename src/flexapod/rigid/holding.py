@@ -9,8 +9,6 @@ from flexapod.rigid.screws import screws
 from flexapod.rigid.trajectory import Poses
 from flexapod.typing import Array
 
-__all__ = ["drive_jacobian", "holding"]
-
 CLEAR = 0.1  # share of a driven coordinate's screw that the free ones must leave for it to name a wrench
 
 

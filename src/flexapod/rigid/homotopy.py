@@ -23,8 +23,6 @@ from numpy.typing import NDArray
 
 from flexapod.errors import ComputationError
 
-__all__ = ["GENERIC_POSTURES", "Platform", "complex_postures", "distinct", "quadrics"]
-
 GENERIC_POSTURES = 40  # complex solutions of a generic platform, Raghavan 1993; Ronga & Vust 1995
 
 _SEED = 1998

@@ -11,18 +11,6 @@ from flexapod.rigid.trajectory import Poses
 from flexapod.rigid.vectors import cross, dot, time_first, time_last
 from flexapod.typing import Array
 
-__all__ = [
-    "NearestSingularity",
-    "SingularityPath",
-    "along_path",
-    "characteristic_length",
-    "length_jacobian",
-    "nearest",
-    "scaled",
-    "scaled_path",
-    "stiffness",
-]
-
 STRIDES = (64, 8, 1)  # every so many poses of a path are looked at, where the last look leaves a doubt
 
 

@@ -14,22 +14,6 @@ from flexapod.rigid.trajectory import Poses
 from flexapod.rigid.vectors import Vector, blocks, cross, time_last
 from flexapod.typing import Array
 
-__all__ = [
-    "BETA_LIMIT",
-    "NO_LENGTH",
-    "JointTurn",
-    "LegMap",
-    "LegState",
-    "directions_of",
-    "joint_angles",
-    "leg_frame",
-    "leg_frames",
-    "leg_lengths",
-    "leg_rotations",
-    "leg_state",
-    "state_of",
-]
-
 BETA_LIMIT = np.deg2rad(85.0)  # 5 deg from the universal joint's own singularity
 
 NO_LENGTH = 1e-9  # m; below this a leg has no direction

@@ -17,8 +17,6 @@ from flexapod.errors import InputError, closest
 if TYPE_CHECKING:
     from scipy.interpolate import BSpline
 
-__all__ = ["PROFILES", "Law", "constant_rate", "rest_to_rest", "spin_up", "spline", "spline_law", "step"]
-
 S_CURVE_FRACTIONS = (1 / 8, 1 / 8, 1 / 8, 1 / 4, 1 / 8, 1 / 8, 1 / 8)  # jerk +, 0, -, 0, -, 0, +
 TRAPEZOID_FRACTIONS = (1 / 4, 1 / 2, 1 / 4)  # accelerate, cruise, brake
 

@@ -20,8 +20,6 @@ from flexapod.typing import Array, Mask
 if TYPE_CHECKING:
     from flexapod.model import Joint, Leg, Robot
 
-__all__ = ["ABSENT", "COORDINATES", "DRIVEN", "FREE", "HELD", "Limbs", "limbs"]
-
 COORDINATES = ("chi", "alpha", "beta", "spin", "l", "gamma1", "gamma2", "gamma3")
 """Carriage, two angles at the base joint, turn about the leg's axis, length, three angles at the platform joint."""
 

@@ -15,23 +15,6 @@ from flexapod.rigid.screws import screws
 from flexapod.rigid.trajectory import Poses, poses_from_coordinates
 from flexapod.typing import Array, Mask
 
-__all__ = [
-    "Reach",
-    "angles",
-    "axes",
-    "coordinates_of",
-    "drives_of",
-    "follow",
-    "forward",
-    "leg_state",
-    "legs_at",
-    "lost_words",
-    "reach",
-    "refuse_lost",
-    "sides",
-]
-
-
 CHI, BETA, L, GAMMA2 = (COORDINATES.index(name) for name in ("chi", "beta", "l", "gamma2"))
 
 

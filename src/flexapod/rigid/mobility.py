@@ -17,8 +17,6 @@ from flexapod.rigid.screws import screws
 from flexapod.rigid.trajectory import Poses
 from flexapod.typing import Array, Mask
 
-__all__ = ["Mobility", "Posture", "displaced", "mobility", "nearly_redundant"]
-
 RANK = 1e-9  # singular values below this fraction of the largest count as zero
 NEARLY = 5e-3  # ... and below which small errors of axes may have made them of zeros
 FAR = 0.05  # rad, or of L_c: how far displaced postures lie from one

@@ -12,8 +12,6 @@ from flexapod.rigid.limbs import DRIVEN, Limbs
 from flexapod.rigid.mobility import Mobility, Posture, displaced, mobility, nearly_redundant
 from flexapod.typing import Array, Mask
 
-__all__ = ["commanded", "independent_axes", "mobility_words", "motion_names", "refuse_loose"]
-
 PURE = 1e-6  # share of other coordinates, in units of L_c and radians, below which a motion has one name
 
 _BASE = ("move along x", "move along y", "move along z", "turn about base x", "turn about base y", "turn about base z")

@@ -23,35 +23,6 @@ from flexapod.typing import Array, Mask
 if TYPE_CHECKING:
     from flexapod.model import Motion, Robot
 
-__all__ = [
-    "carriage_limits",
-    "carriages",
-    "drive_jacobian",
-    "drive_positions",
-    "energies",
-    "forward_kinematics",
-    "home_frames",
-    "home_pose",
-    "inverse_dynamics",
-    "inverse_kinematics",
-    "leg_axes",
-    "leg_bodies",
-    "nearest_singularity",
-    "once",
-    "payload_body",
-    "poses",
-    "poses_from_home",
-    "posture",
-    "postures",
-    "pull_out",
-    "reach",
-    "reachable",
-    "rigid_limbs",
-    "robot_limbs",
-    "singularity",
-    "strokes",
-]
-
 
 T = TypeVar("T")
 

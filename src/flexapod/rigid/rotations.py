@@ -9,8 +9,6 @@ import numpy as np
 
 from flexapod.typing import Array
 
-__all__ = ["canonical", "difference", "exponential", "matrix", "product", "quaternion", "rotation_vector", "turned"]
-
 
 def canonical(e: Array) -> Array:
     """The same rotations by unit quaternions (..., 4) with w >= 0."""

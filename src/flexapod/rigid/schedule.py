@@ -23,8 +23,6 @@ from flexapod.model import (
 from flexapod.rigid.laws import Law, constant_rate, rest_to_rest, spin_up, spline, spline_law
 from flexapod.typing import Array
 
-__all__ = ["load_law", "motion_law", "wrench"]
-
 
 def motion_law(law: MotionLaw, t: ArrayLike) -> Law:
     """Position, rate and acceleration of a scalar motion from 0, each shape (T,).

@@ -10,8 +10,6 @@ from flexapod.rigid.limbs import COORDINATES, Limbs
 from flexapod.rigid.vectors import Vector, cross, dot, time_last
 from flexapod.typing import Array
 
-__all__ = ["Screws", "screws"]
-
 _BODY = COORDINATES.index("l") + 1  # coordinates that move the tip; the later ones turn the joint frame alone
 
 

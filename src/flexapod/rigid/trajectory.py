@@ -16,17 +16,6 @@ from flexapod.rigid.laws import Law, rest_to_rest, spline, spline_law
 from flexapod.rigid.vectors import cross, time_first, time_last
 from flexapod.typing import Array
 
-__all__ = [
-    "Poses",
-    "angular_motion",
-    "coordinates",
-    "instants",
-    "poses_from_coordinates",
-    "rotation_matrix",
-    "sample",
-    "turning_axes",
-]
-
 
 @dataclass(frozen=True, kw_only=True)
 class Poses:

@@ -13,8 +13,6 @@ import numpy as np
 
 from flexapod.typing import Array
 
-__all__ = ["Vector", "blocks", "cross", "dot", "time_first", "time_last", "turned"]
-
 Vector = Sequence[Array] | Array
 
 BLOCK = 1024  # poses; an array of six legs then takes 48 kB, and what a block needs fits the second-level cache

@@ -11,8 +11,6 @@ from flexapod.errors import InputError
 from flexapod.rigid.kinematics import leg_lengths
 from flexapod.typing import Array
 
-__all__ = ["Excess", "WorkspaceMap", "carriage_excess", "piston_excess", "reachable", "reachable_map", "stroke_excess"]
-
 ROUNDING = 1e-14  # of a length; a leg as long as its limit is within it
 SHORTEST, LONGEST = "shorter than its stroke allows", "longer than its stroke allows"
 NO_FREE_LENGTH = "has no free length left outside its cylinder"

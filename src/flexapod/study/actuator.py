@@ -22,8 +22,6 @@ from flexapod.typing import Array
 if TYPE_CHECKING:
     from xarray import Dataset
 
-__all__ = ["simulate_actuator"]
-
 
 def simulate_actuator(
     actuator: model.Actuator | model.ActuatorStudy | FileLike,

@@ -12,8 +12,6 @@ from numpy.typing import ArrayLike
 from flexapod import model, rigid
 from flexapod.errors import InputError
 
-__all__ = ["FileLike", "LoadLike", "PoseLike", "RobotLike", "StartLike", "as_pose", "as_study", "at_pose", "read"]
-
 POSE_KEYS = model.AXES
 FileLike = str | Path
 RobotLike = model.Study | model.Robot | FileLike

@@ -15,8 +15,6 @@ from flexapod.study.record import Record
 if TYPE_CHECKING:
     from xarray import Dataset
 
-__all__ = ["attributes", "march_attributes", "robot_of", "study_of"]
-
 KEPT = 16  # of the last studies, so that their results need not be read as text again
 _log = logging.getLogger("flexapod")
 _known: OrderedDict[str, model.Study | model.ActuatorStudy] = OrderedDict()

@@ -22,8 +22,6 @@ from flexapod.typing import Array
 if TYPE_CHECKING:
     from xarray import Dataset
 
-__all__ = ["forward_kinematics", "inverse_dynamics", "inverse_kinematics"]
-
 
 def inverse_kinematics(
     robot: RobotLike,

@@ -30,8 +30,6 @@ from flexapod.typing import Array, Mask
 if TYPE_CHECKING:
     from xarray import Dataset
 
-__all__ = ["codes_at_rest", "modes_at_poses", "poses_of"]
-
 FORMS = {
     **{name: Variable(("pose", *VARIABLES[name].dims), *VARIABLES[name][1:])
        for name in ("frequency", "damping_ratio", "kind", "platform_shape", "leg_shape", "leg_stretch", "com_sag")},

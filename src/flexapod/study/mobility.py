@@ -14,8 +14,6 @@ from flexapod.study.names import dataset
 if TYPE_CHECKING:
     from xarray import Dataset
 
-__all__ = ["mobility"]
-
 
 def mobility(robot: RobotLike, pose: PoseLike = None) -> Dataset:
     """Motions of the rigid robot at one pose and next to it, by rank, Eqs. (T14.11)-(T14.15).

@@ -14,20 +14,6 @@ if TYPE_CHECKING:
     from xarray import Coordinates, Dataset
     from xarray import Variable as Labelled
 
-__all__ = [
-    "ACTUATOR_FORMS",
-    "ANGLES",
-    "CAUSES",
-    "CAUSE_WORDS",
-    "COORDINATES",
-    "DRIVES",
-    "ONE_POSE_FORMS",
-    "VARIABLES",
-    "Variable",
-    "dataset",
-    "fixed_labels",
-]
-
 #: Causes of a leg's length error, in the order of the `cause` dimension.
 CAUSES = ("axial-strain", "bending", "drive")
 CAUSE_WORDS = {

@@ -11,8 +11,6 @@ from flexapod.model import ActuatorStudy, Study
 from flexapod.solve.released import RobotForces, rigid_forces
 from flexapod.typing import Array
 
-__all__ = ["RigidPath", "open_force_words", "path_instants"]
-
 FEWEST, MOST = 2000, 50_000  # intervals at which a path is looked at
 SAME = 1e-9  # instants nearer to each other than this part of the step between them are the same
 

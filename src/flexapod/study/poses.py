@@ -11,8 +11,6 @@ from flexapod.errors import InputError
 from flexapod.study.arguments import POSE_KEYS, PoseLike
 from flexapod.typing import Array
 
-__all__ = ["BATCH", "as_many", "batches", "coordinates_of", "from_home", "is_many"]
-
 BATCH = 200  # poses computed together: their matrices stay in the processor's cache
 
 

@@ -16,8 +16,6 @@ from flexapod.typing import Array
 if TYPE_CHECKING:
     from xarray import Dataset
 
-__all__ = ["Interrupted", "Progress", "Record", "Report", "Share", "collect", "finished"]
-
 #: Called with the simulated time reached and the whole simulated time [s].
 Progress = Callable[[float, float], None]
 #: Called with what is being done, in words, and the share of the whole that is done (0 to 1).

@@ -22,8 +22,6 @@ from flexapod.typing import Array
 if TYPE_CHECKING:
     from xarray import Dataset
 
-__all__ = ["Simulated", "run", "simulate", "simulated"]
-
 
 @dataclass(frozen=True, kw_only=True)
 class Simulated:

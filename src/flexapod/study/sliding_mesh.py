@@ -21,8 +21,6 @@ from flexapod.typing import Array
 if TYPE_CHECKING:
     from xarray import Dataset
 
-__all__ = ["GUIDES", "sliding_mesh"]
-
 #: Guides that are compared, stiff enough to count as rigid at the meshes of the study, without gap.
 GUIDES: Mapping[str, Guide] = {
     "nodes": NodeContact(stiffness=1e14),

@@ -23,8 +23,6 @@ from flexapod.typing import Array
 if TYPE_CHECKING:
     from xarray import Dataset
 
-__all__ = ["PAPER_SECTION", "simulate_solid"]
-
 #: Section of the paper's beam (Table 2), which bends along its 9.5 mm: 12 ft x 6 in x 3/8 in.
 PAPER_SECTION = model.Rectangle(width=0.1524, height=0.0095)
 

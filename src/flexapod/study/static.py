@@ -24,8 +24,6 @@ from flexapod.study.poses import as_many, is_many
 if TYPE_CHECKING:
     from xarray import Dataset
 
-__all__ = ["modes", "stiffness"]
-
 
 def modes(
     robot: RobotLike,

@@ -20,8 +20,6 @@ if TYPE_CHECKING:
 
 BLOCK = 1 << 20
 AGAIN = "Make it again with `flexapod run FILE`"
-__all__ = ["open_results", "save", "save_csv"]
-
 NUMBER = 8  # bytes of a number in memory
 SUM = "checksum_of_attributes"
 ANY_FILE = 100e6

@@ -15,8 +15,6 @@ from flexapod.study.names import ACTUATOR_FORMS, ANGLES, VARIABLES, Variable, fi
 if TYPE_CHECKING:
     from xarray import Dataset
 
-__all__ = ["check_run"]
-
 _ENERGIES = (
     "energy_kinetic", "energy_potential", "energy_strain", "energy_dissipated", "work_drive", "work_external",
     "closure_residual",

@@ -16,8 +16,6 @@ from flexapod.solve.actuator_modes import actuator_modes
 from flexapod.solve.modes import RobotModes
 from flexapod.typing import Array
 
-__all__ = ["ONE_ELEMENT", "clamped_thick", "robot_thick"]
-
 ONE_ELEMENT = 2.0
 """E / k G of solid elements at Poisson's ratio 0, one across the height: their section stays plane, so k = 1."""
 

@@ -16,8 +16,6 @@ from flexapod.processes import call
 from flexapod.proof.engines.engine import CALCULIX
 from flexapod.typing import Array
 
-__all__ = ["TIME_LIMIT", "Run", "run"]
-
 TIME_LIMIT = 300.0
 """Seconds after which CalculiX is stopped."""
 

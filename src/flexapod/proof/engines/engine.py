@@ -6,8 +6,6 @@ import shutil
 from dataclasses import dataclass
 from importlib.util import find_spec
 
-__all__ = ["CALCULIX", "EXUDYN", "MUJOCO", "Engine"]
-
 
 @dataclass(frozen=True, kw_only=True)
 class Engine:

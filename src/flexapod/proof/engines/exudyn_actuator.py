@@ -11,8 +11,6 @@ from flexapod.proof.engines.exudyn_integration import Integration
 from flexapod.proof.engines.exudyn_process import TIME_LIMIT, ask
 from flexapod.typing import Array
 
-__all__ = ["ActuatorProblem", "ActuatorResult", "simulate_actuator"]
-
 _SMALL = 1e-9  # m/s^2, rad/s^2
 
 

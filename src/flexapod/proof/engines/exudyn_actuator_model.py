@@ -15,8 +15,6 @@ from flexapod.proof.engines.exudyn_actuator import ActuatorProblem, ActuatorResu
 from flexapod.proof.engines.exudyn_system import CARRIAGE_MASS, System, exu, items
 from flexapod.typing import Array
 
-__all__ = ["solve"]
-
 _HUB = 1.0  # kg, kg m^2: of no consequence, its motion is prescribed
 
 

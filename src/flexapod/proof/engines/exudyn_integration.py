@@ -10,8 +10,6 @@ import numpy as np
 from flexapod.errors import InputError
 from flexapod.typing import Array
 
-__all__ = ["Integration", "extrapolated"]
-
 
 @dataclass(frozen=True, kw_only=True)
 class Integration:

@@ -15,8 +15,6 @@ from typing import Any
 from flexapod.errors import ComputationError, FlexapodError
 from flexapod.proof.engines.engine import EXUDYN
 
-__all__ = ["TIME_LIMIT", "ask", "main"]
-
 TIME_LIMIT = 300.0
 """Seconds after which Exudyn is stopped."""
 

@@ -13,8 +13,6 @@ from flexapod.proof.engines.exudyn_integration import Integration
 from flexapod.proof.engines.exudyn_process import TIME_LIMIT, ask
 from flexapod.typing import Array
 
-__all__ = ["MESHES", "STEP", "RobotProblem", "RobotResult", "simulate_robot"]
-
 #: s; longer ones ring more where the jerk jumps, shorter ones carry Newton's tolerance into the forces.
 STEP = 2.5e-4
 #: Elements per piston, distance of the rings [m]: one halved with the other, to extrapolate from.

@@ -19,8 +19,6 @@ from flexapod.proof.engines.exudyn_system import CARRIAGE_MASS, System, exu, ite
 from flexapod.rigid.rotations import exponential, quaternion
 from flexapod.typing import Array
 
-__all__ = ["solve"]
-
 
 @dataclass(frozen=True, kw_only=True)
 class _LegNumbers:

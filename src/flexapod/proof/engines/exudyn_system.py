@@ -12,8 +12,6 @@ import numpy as np
 from flexapod.proof.engines.exudyn_integration import Integration
 from flexapod.typing import Array
 
-__all__ = ["CARRIAGE_MASS", "System", "exu", "items"]
-
 # As untyped modules: their type stubs do not fit their functions.
 exu: Any = importlib.import_module("exudyn")
 items: Any = importlib.import_module("exudyn.itemInterface")

@@ -18,8 +18,6 @@ if TYPE_CHECKING:
     from types import ModuleType
     from typing import Any
 
-__all__ = ["MujocoForces", "inverse_dynamics"]
-
 CLOSED = 1e-13  # m; a few units in the last place of a metre
 GIVEN = 1e-10  # m; gap that poses of a guided platform may leave, which are themselves computed
 MOST_ITERATIONS = 30

@@ -9,8 +9,6 @@ from flexapod.model import Robot
 from flexapod.rigid.rotations import exponential, quaternion
 from flexapod.typing import Array
 
-__all__ = ["mjcf"]
-
 #: kg, kg m^2: MuJoCo takes no body without mass; a million times a million below a real leg.
 LEAST = 1e-12
 

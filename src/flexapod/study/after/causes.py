@@ -20,8 +20,6 @@ from flexapod.study.path import RigidPath
 from flexapod.study.record import Record
 from flexapod.typing import Array
 
-__all__ = ["Errors", "deviation_by_cause", "errors_of"]
-
 CHI, L = COORDINATES.index("chi"), COORDINATES.index("l")
 
 

@@ -8,8 +8,6 @@ from flexapod.mechanics.layout import Shapes
 from flexapod.solve.modes import RobotModes
 from flexapod.typing import Array
 
-__all__ = ["mode_kinds"]
-
 MOSTLY = 0.5  # share of an energy from which a part names the mode
 
 

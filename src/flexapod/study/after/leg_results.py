@@ -20,18 +20,6 @@ from flexapod.study.path import RigidPath
 from flexapod.study.record import Record
 from flexapod.typing import Array
 
-__all__ = [
-    "STROKES",
-    "absent",
-    "drive_forces",
-    "drive_forms",
-    "flexible_lengths",
-    "leg_labels",
-    "leg_results",
-    "rigid_leg_results",
-    "rigid_reactions",
-]
-
 STROKES = ("leg_length_command", "leg_length", "leg_stroke", "actuator_force")
 """Variables of robots whose legs have strokes."""
 _BASE_ANGLES = ("alpha", "beta", "spin")

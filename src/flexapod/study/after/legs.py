@@ -13,20 +13,6 @@ from flexapod.rigid.rotations import exponential
 from flexapod.study.names import ANGLES
 from flexapod.typing import Array
 
-__all__ = [
-    "angle_names",
-    "base_motion",
-    "base_points",
-    "bending_basis",
-    "drive_names",
-    "has_strokes",
-    "held_names",
-    "lateral",
-    "of_drives",
-    "stretch",
-    "stroke_forces",
-]
-
 
 def bending_basis(shapes: Shapes) -> LateralBasis:
     """Shapes in which the legs bend; a planar robot's legs bend across one of their axes only."""

@@ -11,8 +11,6 @@ from flexapod.study.after.kinds import mode_kinds
 from flexapod.study.after.legs import base_points, bending_basis, lateral
 from flexapod.typing import Array
 
-__all__ = ["STATIONS", "mode_values"]
-
 STATIONS = np.linspace(0.0, 1.0, 41)
 
 

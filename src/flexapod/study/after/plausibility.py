@@ -20,19 +20,6 @@ from flexapod.study.before.thick import Section, beam_section, bending_errors, p
 from flexapod.study.record import Record
 from flexapod.typing import Array
 
-__all__ = [
-    "NEAR_BUCKLING",
-    "SLENDERNESS",
-    "SLOPE",
-    "actuator_warnings",
-    "buckling_words",
-    "flexible_axes",
-    "leg_stress",
-    "rest_warnings",
-    "robot_warnings",
-    "thick_words",
-]
-
 SLOPE = 0.1  # tip slope up to which second order in the amplitudes is enough
 SLENDERNESS = 10.0  # free length over width below which shear is no longer small
 STROKE_ROUNDING = 1e-9  # excess over a stroke that is rounding or solver residual [m]

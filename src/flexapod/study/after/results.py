@@ -17,16 +17,6 @@ from flexapod.study.path import RigidPath
 from flexapod.study.record import Record
 from flexapod.typing import Array
 
-__all__ = [
-    "cause_results",
-    "command_results",
-    "energy_results",
-    "payload_results",
-    "rigid_force_results",
-    "robot_coords",
-    "robot_results",
-]
-
 
 def robot_results(study: Study, system: System, record: Record, path: RigidPath) -> dict[str, Array]:
     """All variables of a robot's simulation but the rigid forces, by name; `path` at the recorded instants."""

@@ -15,8 +15,6 @@ from flexapod.typing import Array
 if TYPE_CHECKING:
     from xarray import Dataset
 
-__all__ = ["POINT_WORDS", "ActuatorSummary", "AxisSummary", "RobotSummary", "summaries", "summary", "tool_apart"]
-
 SMALLEST_EXCURSION = 1e-6  # rigid travel below which a percentage says nothing [m]
 POINTS = {"com": "The payload's centre of mass", "tool": "The tool"}
 POINT_WORDS = {"com": "centre of mass", "tool": "tool"}

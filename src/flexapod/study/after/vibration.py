@@ -9,8 +9,6 @@ import numpy as np
 from flexapod.errors import InputError
 from flexapod.typing import Array
 
-__all__ = ["Vibration", "local_vibration"]
-
 
 class Vibration(NamedTuple):
     """At instants `time` [s]: `frequency` [Hz], `envelope` (amplitude) and `sag` (mean) in the unit of the signal."""

@@ -16,8 +16,6 @@ from flexapod.study.before.timing import check_outputs
 from flexapod.study.path import RigidPath, open_force_words, path_instants
 from flexapod.typing import Array
 
-__all__ = ["check_actuator_path", "check_geometry", "check_path", "path_remarks"]
-
 SINGULAR = 1e-8  # smallest singular value of the scaled Jacobian below which a pose is refused
 NEAR_SINGULAR = 0.05  # and below which it is remarked on: leg forces and length errors are magnified about 20 times
 MOVED = 1e-9  # m, of cranks rad: what legs that stand move by rounding

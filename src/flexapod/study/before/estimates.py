@@ -16,8 +16,6 @@ from flexapod.study.after.legs import base_motion, of_drives
 from flexapod.study.path import RigidPath
 from flexapod.typing import Array
 
-__all__ = ["Vibration", "bending_moment", "buckling_load", "residual_vibration", "section_width"]
-
 _STATIONS = np.linspace(0.0, 1.0, 11)
 
 

@@ -14,21 +14,6 @@ from flexapod.solve import equilibrium, fallen
 from flexapod.study.before.checks import SINGULAR
 from flexapod.typing import Array
 
-__all__ = [
-    "CUT_OFF",
-    "FALLS_THROUGH",
-    "NO_MASS",
-    "REACHED",
-    "REASONS",
-    "Codes",
-    "Reason",
-    "equilibrium_codes",
-    "flags",
-    "leg_limits",
-    "rigid_codes",
-    "slider_limits",
-]
-
 Codes = NDArray[np.int8]
 
 

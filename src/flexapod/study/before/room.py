@@ -10,17 +10,6 @@ from pathlib import Path
 from flexapod.errors import InputError
 from flexapod.model import ActuatorStudy, Study
 
-__all__ = [
-    "available_memory",
-    "check_disk",
-    "check_map",
-    "check_memory",
-    "check_room",
-    "free_disk",
-    "gigabytes",
-    "result_bytes",
-]
-
 REMARKED = 1e9  # byte of results from which on their size is worth a remark
 SMALL = 1e8  # byte that every machine has free: below it nothing is asked
 PEAK = 3  # times the results is what they take while they are made: the record, the Dataset, what is written

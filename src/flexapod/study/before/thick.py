@@ -7,8 +7,6 @@ from dataclasses import dataclass
 
 from flexapod.model import Actuator, Piston, Rectangle
 
-__all__ = ["Section", "beam_section", "bending_errors", "piston_section"]
-
 POISSON = 0.3  # of metals; materials give none
 
 

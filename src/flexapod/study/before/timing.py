@@ -6,8 +6,6 @@ from flexapod.errors import InputError
 from flexapod.model import ActuatorStudy, Study
 from flexapod.study.before.room import check_memory
 
-__all__ = ["check_outputs"]
-
 
 def check_outputs(study: Study | ActuatorStudy) -> list[str]:
     """Refuse a study whose results could not be stored even once after the start; remark on what is left out.

@@ -17,8 +17,6 @@ from flexapod.study.first.written import Plan, written
 from flexapod.study.path import RigidPath
 from flexapod.words import text
 
-__all__ = ["first_robot"]
-
 LARGEST = {"m": 0.5, "rad": math.radians(30)}  # amplitude, of the home height along an axis, about one
 LEAST_SINGULAR = 0.1  # singular value of the scaled Jacobian on the path
 ACCELERATION = 1.0  # largest of the platform's joints [m/s^2]

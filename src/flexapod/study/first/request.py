@@ -9,8 +9,6 @@ from flexapod.errors import InputError, closest
 from flexapod.model import AXES, MATERIALS
 from flexapod.units import DIMENSIONS, number_and_unit, to_si
 
-__all__ = ["EXAMPLE", "OPTION", "Request", "parse_request"]
-
 OPTION = "--from"
 EXAMPLE = "home=300 mm, payload=20 kg, stroke=60 mm"
 CHOICES = {"material": tuple(MATERIALS), "motion": AXES}

@@ -13,11 +13,6 @@ from flexapod.study.first.request import OPTION, Request
 from flexapod.typing import Array
 from flexapod.words import text
 
-__all__ = [
-    "HALF_ANGLE", "RODS", "Body", "Joints", "Leg", "body_of", "cylinder_of", "fitting", "joints_of", "leg_of",
-    "longest_stroke", "stroke_of",
-]  # fmt: skip
-
 BASE, PLATFORM = 0.6, 0.6  # base radius over home height, platform radius over base radius
 HALF_ANGLE = 10.0  # between the joints of a pair, half [deg]: far from the singular hexagons at 30 deg
 STROKE = 0.2  # of the home height, where none is given

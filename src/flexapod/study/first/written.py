@@ -12,8 +12,6 @@ from flexapod.study.first import sizes
 from flexapod.study.first.request import Request
 from flexapod.study.first.sizes import Body, Joints, Leg
 
-__all__ = ["Plan", "written"]
-
 WIDTH = 110  # of a comment
 
 

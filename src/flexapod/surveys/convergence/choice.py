@@ -9,8 +9,6 @@ from flexapod.surveys.convergence.findings import Findings
 from flexapod.surveys.convergence.recommend import Discretisation, Step, candidates
 from flexapod.surveys.convergence.trials import Trial, Trials
 
-__all__ = ["choose"]
-
 CHECKS = 3  # candidates that are checked before none is recommended
 ENOUGH = 50  # shapes whose error is this fraction of the accuracy are as good as exact
 

@@ -11,8 +11,6 @@ from flexapod.surveys.convergence.orders import finest_error, observed_order, re
 from flexapod.surveys.convergence.trials import Trial
 from flexapod.typing import Array
 
-__all__ = ["ABOVE", "FAMILIES", "Family"]
-
 #: Families: what is refined, in words, and the order that theory gives.
 FAMILIES = {
     "step": ("step", 2.0),

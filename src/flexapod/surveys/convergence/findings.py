@@ -8,8 +8,6 @@ from flexapod.surveys.convergence.family import Family
 from flexapod.surveys.convergence.orders import relative_difference
 from flexapod.surveys.convergence.trials import Trial
 
-__all__ = ["TYPICAL_FLOOR", "Findings"]
-
 TYPICAL_FLOOR = 1e-9  # where it cannot be measured: Newton's residual test leaves 2e-10 to 4e-10
 LEAST_FLOOR = 1e-12  # rounding of thousands of steps, where two runs happen to round alike
 FLOOR_MARGIN = 3.0  # one difference of two runs is a sample of what rounding does, not its bound

@@ -12,8 +12,6 @@ from flexapod.surveys.convergence.findings import Findings
 from flexapod.surveys.convergence.plan import first_step, largest
 from flexapod.surveys.convergence.trials import Setting, Trials
 
-__all__ = ["FINER", "halve_steps", "step_of_shapes"]
-
 FINER = 20  # the finest step may be wrong by this fraction of the accuracy
 NEAR = 0.3  # and its order must be this near to 2
 FEWEST, MOST = 5, 16  # steps tried

@@ -20,8 +20,6 @@ from flexapod.surveys.convergence.trials import QUANTITIES, Setting, Trial, Tria
 if TYPE_CHECKING:
     from xarray import Dataset
 
-__all__ = ["REFERENCE", "RUNGS", "ladder", "rungs"]
-
 #: Fidelity, basis and lateral shapes per plane of each rung; beam elements have two shapes each.
 RUNGS: tuple[tuple[str, str, int], ...] = (
     ("rigid", "tip-load", 0),

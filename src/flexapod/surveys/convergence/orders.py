@@ -8,8 +8,6 @@ import numpy as np
 
 from flexapod.typing import Array
 
-__all__ = ["finest_error", "observed_order", "relative_difference", "shape_factor"]
-
 HIGHEST = 40.0  # orders beyond it are not orders
 
 

@@ -13,8 +13,6 @@ from flexapod.study.before.checks import check_actuator_path, check_path
 from flexapod.study.record import Report
 from flexapod.surveys.convergence.trials import Setting, Trials, setting_of
 
-__all__ = ["base_setting", "check_accuracy", "checked_trials", "discretisations", "estimate", "first_step", "largest"]
-
 COUNTS = {"shapes": (1, 2, 3, 4, 6, 8, 12), "elements": (1, 2, 3, 4, 6), "segments": (1, 2, 4, 8)}
 COARSEST = 4  # the first step, in output steps
 

@@ -16,8 +16,6 @@ from flexapod.typing import Array
 if TYPE_CHECKING:
     from xarray import Dataset
 
-__all__ = ["SLOW", "Quicker", "quicker"]
-
 SLOW = 2.0  # time integration from which another step is looked for [s]
 SAME = 1e-3  # relative difference up to which two results are the same
 WORTH = 4.0  # times faster, at least; all steps that are tried take half the time of the run together

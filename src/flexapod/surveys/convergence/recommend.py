@@ -7,8 +7,6 @@ from dataclasses import dataclass
 
 from flexapod.surveys.convergence.trials import Setting
 
-__all__ = ["Candidate", "Discretisation", "Step", "candidates"]
-
 ALIKE = 1.10  # costs within 10 % are the same: timings vary by as much
 
 

@@ -18,8 +18,6 @@ from flexapod.surveys.convergence.trials import Trials, setting_of
 if TYPE_CHECKING:
     from xarray import Dataset
 
-__all__ = ["ConvergenceStopped", "converge"]
-
 
 class ConvergenceStopped(KeyboardInterrupt):
     """The user stopped the study; `dataset` holds what was computed, marked as partial."""

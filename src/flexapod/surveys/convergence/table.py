@@ -20,8 +20,6 @@ from flexapod.surveys.convergence.trials import QUANTITIES, Setting, Trial
 if TYPE_CHECKING:
     from xarray import Dataset
 
-__all__ = ["Row", "as_dataset", "reference_words", "rows_dataset", "save_table"]
-
 
 @dataclass(frozen=True, kw_only=True)
 class Row:

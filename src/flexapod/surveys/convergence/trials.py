@@ -22,8 +22,6 @@ from flexapod.typing import Array
 if TYPE_CHECKING:
     from xarray import Dataset
 
-__all__ = ["QUANTITIES", "Setting", "Trial", "Trials", "setting_of"]
-
 #: What is compared, by name, in words. The first that a study has is what the accuracy is asked of.
 QUANTITIES = {"deviation": "deviation of the centre of mass", "tip": "tip deflection"}
 TIMED = 0.5  # a setting is run again until this has been timed [s]

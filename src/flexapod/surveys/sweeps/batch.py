@@ -24,8 +24,6 @@ from flexapod.surveys.sweeps.kept import ACTUATOR_SCALARS, Kept
 from flexapod.surveys.sweeps.scalars import ROBOT_SCALARS, RobotRun
 from flexapod.typing import Array
 
-__all__ = ["BatchResult", "OtherVersion", "PointResult", "compute_batch", "compute_packed", "compute_point"]
-
 
 class OtherVersion(ComputationError):
     """A worker runs another flexapod than the sweep."""

@@ -23,8 +23,6 @@ from flexapod.surveys.sweeps.samples import number
 from flexapod.surveys.sweeps.store import FORMAT, Column, Values
 from flexapod.units import DIMENSIONS
 
-__all__ = ["axes", "columns", "header"]
-
 DRAWN = "_drawn"  # what a tolerance drew about values that vary themselves, and own the name
 
 

@@ -13,8 +13,6 @@ from flexapod.files import whole
 if TYPE_CHECKING:
     from zarr.core.buffer import Buffer
 
-__all__ = ["DurableStore"]
-
 
 class DurableStore(LocalStore):
     """As Zarr's own, but what is written survives that the power goes off, as far as the disk keeps its word."""

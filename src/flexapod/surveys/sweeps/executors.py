@@ -23,8 +23,6 @@ from flexapod.surveys.sweeps.kept import Kept
 if TYPE_CHECKING:
     from distributed import Client, Future
 
-__all__ = ["DaskExecutor", "Executor", "InProcess", "WorkerDied", "check_place", "executor", "local_cores"]
-
 CONNECT = 10.0  # seconds to reach a scheduler
 PATIENCE = 60.0  # seconds without any worker until the sweep gives up
 LOOK = 1.0  # seconds between looks at the cluster

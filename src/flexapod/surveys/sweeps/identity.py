@@ -8,8 +8,6 @@ from pathlib import Path
 
 from flexapod import version
 
-__all__ = ["sources", "this_version"]
-
 _WITHOUT_NUMBERS = ("app", "exchange", "paper", "plot", "proof", "report")
 _KINDS = (".py", ".c", ".h", ".toml")
 

@@ -20,8 +20,6 @@ from flexapod.typing import Array
 if TYPE_CHECKING:
     from xarray import Dataset
 
-__all__ = ["ACTUATOR_SCALARS", "Kept", "kept"]
-
 _LABELS = {"axis": 3, "cause": 3, "direction": 2, "quaternion": 4, "plane_axis": 2, "end": 2}
 _SHAPES = ("shape", "axial_shape", "mode")  # dimensions whose size is a setting of the study
 

@@ -11,19 +11,6 @@ from flexapod.model import MATERIALS
 from flexapod.model.circle import Circle
 from flexapod.units import to_si
 
-__all__ = [
-    "Step",
-    "copied",
-    "key_text",
-    "leaves",
-    "leg_count",
-    "overlap",
-    "parse_key",
-    "put",
-    "similar_key",
-    "value_at",
-]
-
 Step = str | int
 _NAME = re.compile(r"([A-Za-z_][\w-]*)((?:\[\d+\])*)")
 _SHORT = [

@@ -11,8 +11,6 @@ from pathlib import Path
 
 from flexapod.errors import ComputationError, InputError
 
-__all__ = ["locked"]
-
 _TAKEN = (errno.EWOULDBLOCK, errno.EACCES, errno.EDEADLK)
 
 

@@ -8,8 +8,6 @@ import numpy as np
 
 from flexapod.surveys.sweeps.store import COMPUTED, PENDING, TEXTS, SweepStore, Values
 
-__all__ = ["incomplete", "mend"]
-
 
 def mend(store: SweepStore) -> int:
     """Make points pending whose results cannot be read, or are not numbers where every computed point has some.

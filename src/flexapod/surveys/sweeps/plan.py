@@ -20,8 +20,6 @@ from flexapod.model.section import Section
 from flexapod.model.toml import parsed, refuse_excess
 from flexapod.surveys.sweeps.keys import Step, key_text, overlap, parse_key
 
-__all__ = ["Block", "Draws", "Hypercube", "Keep", "Plan", "Range", "Spaced", "Tolerance", "read_plan"]
-
 _PER_CENT = re.compile(r"\s*(\d+\.?\d*(?:[eE][-+]?\d+)?|\.\d+)\s*%\s*")
 MOST_POINTS = 10_000_000  # more is a mistake in a grid: their hashes alone would fill the memory
 

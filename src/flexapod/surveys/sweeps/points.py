@@ -24,8 +24,6 @@ from flexapod.surveys.sweeps.reading import dimension_of, read_with_dimensions, 
 from flexapod.surveys.sweeps.samples import hypercube_values, number, spaced_values, standard_draws
 from flexapod.typing import Array
 
-__all__ = ["Points", "Resolved", "content_hash"]
-
 MEMORY = 64 << 20  # of studies that were read and wait to be computed; others are read again
 POINT = 200  # byte kept of each point while points are read: its hash, its number, their places in lists
 Setting = tuple[str, str, int, tuple[int, ...], tuple[object, ...]]

@@ -12,8 +12,6 @@ from flexapod.model.notes import Notes
 from flexapod.model.section import Section
 from flexapod.surveys.sweeps.keys import Step, key_text
 
-__all__ = ["dimension_of", "read_with_dimensions", "study_of"]
-
 
 def study_of(data: Mapping[str, Any], folder: Path) -> Study | ActuatorStudy:
     """The study of these tables.

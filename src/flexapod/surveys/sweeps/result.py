@@ -16,8 +16,6 @@ from flexapod.surveys.sweeps.store import COMPUTED, FAILED, PENDING, TEXTS, Swee
 if TYPE_CHECKING:
     from xarray import DataArray, Dataset
 
-__all__ = ["as_dataset", "open_sweep", "save_table", "scalar_names", "unstacked"]
-
 STATES = np.array(["pending", "computed", "failed"])
 
 

@@ -40,8 +40,6 @@ from flexapod.surveys.sweeps.writer import Writer
 if TYPE_CHECKING:
     from xarray import Dataset
 
-__all__ = ["SweepStopped", "sweep"]
-
 READING = 0.05  # share of the bar for reading the points
 KERNELS = 8  # compiled before the sweep begins; of more, each has few points, and workers compile side by side
 _log = logging.getLogger("flexapod")

@@ -13,8 +13,6 @@ from flexapod.surveys.sweeps.reading import dimension_of
 from flexapod.typing import Array
 from flexapod.units import to_si
 
-__all__ = ["hypercube_values", "number", "spaced_values", "standard_draws"]
-
 
 def number(value: object, key: tuple[Step, ...], dimensions: Mapping[str, str]) -> float:
     """A value of a key in SI.

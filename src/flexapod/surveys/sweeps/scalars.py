@@ -24,8 +24,6 @@ from flexapod.study.path import RigidPath
 from flexapod.study.record import Record
 from flexapod.typing import Array
 
-__all__ = ["ROBOT_DEFAULTS", "ROBOT_SCALARS", "RobotRun", "Scalar"]
-
 
 class Scalar(NamedTuple):
     """A quantity of a point: dimensions beside `point`, SI unit, meaning, and how it follows from a run.

@@ -8,8 +8,6 @@ from flexapod.surveys.sweeps.batch import BatchResult, PointResult
 from flexapod.surveys.sweeps.executors import Executor, WorkerDied
 from flexapod.surveys.sweeps.kept import Kept
 
-__all__ = ["results"]
-
 TASK = 3.0  # seconds of work that a task should be: it costs Dask some milliseconds
 LEAST = 0.25  # seconds of work of the last tasks: so long a thread may wait for the others
 AHEAD = 2  # batches at a time for every thread, so that none waits for the next

@@ -21,20 +21,6 @@ from flexapod.typing import Array
 if TYPE_CHECKING:
     import zarr
 
-__all__ = [
-    "COMPUTED",
-    "FAILED",
-    "FORMAT",
-    "PENDING",
-    "TEXTS",
-    "Column",
-    "SweepStore",
-    "Values",
-    "check_header",
-    "tidy",
-    "unreadable",
-]
-
 FORMAT = 2
 Values = NDArray[Any]  # numbers of any kind, or texts
 PENDING, COMPUTED, FAILED = 0, 1, 2

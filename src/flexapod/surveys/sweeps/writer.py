@@ -11,8 +11,6 @@ from flexapod.surveys.sweeps.kept import Kept
 from flexapod.surveys.sweeps.store import COMPUTED, FAILED, SweepStore
 from flexapod.typing import Array
 
-__all__ = ["Writer"]
-
 OFTEN = 2.0  # seconds between two looks at the disk at least
 SELDOM = 30.0  # at most, on however slow a disk
 SHARE = 0.02  # of the time that writing may take

@@ -17,18 +17,6 @@ from flexapod.typing import Array
 if TYPE_CHECKING:
     from xarray import DataArray, Dataset
 
-__all__ = [
-    "Finding",
-    "MapFindings",
-    "axis_words",
-    "coordinate_words",
-    "drawn",
-    "map_findings",
-    "name_of",
-    "scalar",
-    "unit_of",
-]
-
 _UNIT_WORDS = {"N m-1": "N/m", "1": ""}
 
 

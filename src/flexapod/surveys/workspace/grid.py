@@ -15,8 +15,6 @@ from flexapod.study.before.reach import REACHED, rigid_codes
 from flexapod.study.poses import from_home
 from flexapod.typing import Array
 
-__all__ = ["COUNT", "LARGEST", "UNITS", "Axes", "Grid", "Range", "grid", "reach_from_home"]
-
 COUNT = {1: 201, 2: 41, 3: 21}  # points of an axis by number of axes, where none are given
 SLICES = 5  # of the third axis
 LARGEST = 2_000_000  # poses: some ten minutes and a gigabyte

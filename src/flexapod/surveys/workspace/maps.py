@@ -29,8 +29,6 @@ if TYPE_CHECKING:
 
     from flexapod.study.record import Report
 
-__all__ = ["DIRECTIONS", "workspace_map"]
-
 DIRECTIONS = {"x": (1.0, 0.0, 0.0), "y": (0.0, 1.0, 0.0), "z": (0.0, 0.0, 1.0)}
 FREQUENCIES = 6
 

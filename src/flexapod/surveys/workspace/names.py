@@ -4,8 +4,6 @@ from __future__ import annotations
 
 from flexapod.study.names import Variable
 
-__all__ = ["GRID_VARIABLES", "SCALARS", "forms"]
-
 #: Variables by name; their dimensions follow those of the grid.
 GRID_VARIABLES = {
     "reason": Variable((), "1", "why a pose is not reached: a code, 0 where it is"),

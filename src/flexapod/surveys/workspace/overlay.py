@@ -15,8 +15,6 @@ from flexapod.typing import Array
 if TYPE_CHECKING:
     from xarray import Dataset
 
-__all__ = ["motion_path"]
-
 POINTS = 400
 
 

@@ -18,8 +18,6 @@ from flexapod.study.before.reach import REACHED, Codes, leg_limits, rigid_codes,
 from flexapod.study.many_modes import codes_at_rest, poses_of
 from flexapod.typing import Array, Mask
 
-__all__ = ["Wanted", "batch_values"]
-
 Values = dict[str, Array]
 
 

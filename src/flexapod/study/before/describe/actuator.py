@@ -12,8 +12,6 @@ from flexapod.solve.actuator_modes import actuator_modes
 from flexapod.study.before.checks import check_actuator_path
 from flexapod.study.path import path_instants
 
-__all__ = ["ActuatorDescription", "BeamDescription", "describe_actuator"]
-
 SHOWN = 4
 
 

@@ -13,8 +13,6 @@ from flexapod.study.before.estimates import buckling_load, section_width
 from flexapod.study.before.thick import piston_section
 from flexapod.typing import Array
 
-__all__ = ["Extreme", "LegDescription", "LegPath", "Stress", "Way", "describe_leg", "load_remarks"]
-
 
 @dataclass(frozen=True, kw_only=True)
 class Extreme:

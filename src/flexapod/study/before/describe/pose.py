@@ -14,15 +14,6 @@ from flexapod.study.after.kinds import mode_kinds
 from flexapod.study.before.estimates import residual_vibration
 from flexapod.typing import Array
 
-__all__ = [
-    "ModeLine",
-    "PoseDescription",
-    "StiffnessDescription",
-    "VibrationToExpect",
-    "describe_pose",
-    "vibration_to_expect",
-]
-
 SHOWN = 6
 ROUNDING = 1e-12  # of the largest compliance: below it a plane holds the platform
 BAND = 1e-6  # amplitude at which the tool counts as settled [m]

@@ -18,8 +18,6 @@ from flexapod.study.path import RigidPath
 from flexapod.study.words import held
 from flexapod.typing import Array
 
-__all__ = ["RobotDescription", "Singularity", "describe", "describe_legs"]
-
 
 @dataclass(frozen=True, kw_only=True)
 class Singularity:
