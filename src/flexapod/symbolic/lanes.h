@@ -23,8 +23,24 @@ static inline lanes lanes_sqrt(lanes x) {
   return x;
 }
 
-static inline void lanes_turn(lanes x, lanes *sine, lanes *cosine) {
-  for (int i = 0; i < LANES; i++) { (*sine)[i] = sin(x[i]); (*cosine)[i] = cos(x[i]); }
+/* Sine and cosine: the angle less a multiple of pi/2, in three parts so that nothing is lost, then Taylor's series to
+   round-off on [-pi/4, pi/4]. Angles of more turns than the parts allow, and what is no number, are left to libm. */
+typedef long long lane_bits __attribute__((vector_size(8 * LANES)));
+static const double FURTHEST = 1e5, ROUND = 0x1.8p52;   /* a sum with ROUND has no digits behind the point */
+static const double QUARTER[] = {0x1.921fb544p+0, 0x1.0b4611a6p-34, 0x1.3198a2e037073p-69};
+static const double ODD[] = {-1.0/6, 1.0/120, -1.0/5040, 1.0/362880, -1.0/39916800, 1.0/6227020800, -1.0/1307674368000, 1.0/355687428096000};
+static const double EVEN[] = {1.0/24, -1.0/720, 1.0/40320, -1.0/3628800, 1.0/479001600, -1.0/87178291200, 1.0/20922789888000, -1.0/6402373705728000};
+
+static void lanes_turn(lanes x, lanes *sine, lanes *cosine) {
+  lanes shifted = x * 0x1.45f306dc9c883p-1 + ROUND, k = shifted - ROUND;
+  lanes r = ((x - k*QUARTER[0]) - k*QUARTER[1]) - k*QUARTER[2], r2 = r*r, s = (lanes){0} + ODD[7], c = (lanes){0} + EVEN[7];
+  for (int i = 6; i >= 0; i--) { s = s*r2 + ODD[i]; c = c*r2 + EVEN[i]; }
+  s = r + r*(r2*s); c = (1.0 - 0.5*r2) + r2*r2*c;
+  lane_bits turns = (lane_bits)shifted, odd = -(turns & 1), flip_s = (turns & 2) << 62, flip_c = ((turns + 1) & 2) << 62;
+  *sine = (lanes)((((lane_bits)c & odd) | ((lane_bits)s & ~odd)) ^ flip_s);
+  *cosine = (lanes)((((lane_bits)s & odd) | ((lane_bits)c & ~odd)) ^ flip_c);
+  for (int i = 0; i < LANES; i++)
+    if (!(fabs(x[i]) < FURTHEST)) { (*sine)[i] = sin(x[i]); (*cosine)[i] = cos(x[i]); }
 }
 
 /* A lane function for `count` bodies. in[k]: rows[k] rows (repeated where fewer than bodies) of in_size[k] numbers;

@@ -39,7 +39,6 @@ static void lanes_gemv_t(long rows, long cols, double s, const lanes *A, const l
 }
 
 /* Larger of m and the magnitudes of x, lane by lane; what is no number passes unseen */
-typedef long long lane_bits __attribute__((vector_size(8 * LANES)));
 static lanes magnitude(long count, const lanes *x, lanes m) {
   for (long j = 0; j < count; j++) {
     lanes a = (lanes)((lane_bits)x[j] & 0x7fffffffffffffff);
