@@ -1,5 +1,6 @@
 """The compiled march with leg-by-leg elimination against the dense twin in NumPy, in every limit of the leg."""
 
+from dataclasses import replace
 from functools import partial
 
 import numpy as np
@@ -7,6 +8,7 @@ import pytest
 from tests.runs import paper_robot, with_legs
 
 from flexapod import rigid
+from flexapod.mechanics.layout import columns, leg_parameters
 from flexapod.model import ForceDrive, PrescribedDrive, ServoDrive, override, preset
 from flexapod.solve import interpreted, native
 from flexapod.solve.actuator_march import prepare_actuator
@@ -62,6 +64,27 @@ def test_elimination_equals_the_dense_system(fidelity, modes, axial_modes, drive
     # Both end their Newton iterations at rounding. Where nothing yields (no axial shape, prescribed strokes) gaps of
     # 1e-16 m make forces of M / (beta h^2 sigma^2) times that: 4e8 / 0.03^2 * 1e-16 = 5e-5 N, several times over.
     for name, atol in (("q", 1e-12), ("pose", 1e-12), ("v", 1e-9), ("lam", 4e-4), ("drive", 4e-4)):
+        np.testing.assert_allclose(
+            getattr(fast.flow, name), getattr(slow.flow, name), rtol=1e-8, atol=atol, err_msg=name
+        )
+
+
+def test_legs_whose_matrix_is_not_positive_seek_pivots():
+    """Pistons of negative mass and stiffness: every second leg has a matrix of its shapes that is negative."""
+    study = study_for("assumed-modes", 2, 2, "servo", True)
+    prepared = prepare(study)
+    leg_p = prepared.system.leg_p.copy()
+    for name in ("rhoA", "EI", "EA"):
+        leg_p[::2, columns(leg_parameters(prepared.system.kernel.shapes), name)] *= -1
+    system = replace(prepared.system, leg_p=leg_p)
+    law = robot_law(system, study.robot, study.load, partial(rigid.poses, study.robot, study.motion))
+    tables = law(np.arange(4) * 1e-3)
+    fast, slow = (
+        twin.advance(system, replace_method(study), prepared.start, 1e-3, tables, 1, Counters())
+        for twin in (native, interpreted)
+    )
+    assert fast.status == slow.status == 0
+    for name, atol in (("q", 1e-12), ("pose", 1e-12), ("v", 1e-9), ("lam", 4e-4)):  # as above
         np.testing.assert_allclose(
             getattr(fast.flow, name), getattr(slow.flow, name), rtol=1e-8, atol=atol, err_msg=name
         )

@@ -27,16 +27,60 @@ static void invert3(const lanes *m, lanes *inv) {        /* column-major */
   inv[6] = (m[3]*m[7] - m[6]*m[4])*d; inv[7] = (m[6]*m[1] - m[0]*m[7])*d; inv[8] = (m[0]*m[4] - m[3]*m[1])*d;
 }
 
-/* Inverses of the matrices (size, size) of a vector of legs, leg by leg because each has its own pivots */
-static int invert_each(const Settings *s, int group, long size, const lanes *A, lanes *inverse) {
+/* y += s A B, all (3, 3); ld_A: from a column of A to the next, as the others */
+static void product3(double s, const lanes *A, long ld_A, const lanes *B, long ld_B, lanes *y, long ld_y) {
+  for (int j = 0; j < 3; j++) for (int k = 0; k < 3; k++) for (int i = 0; i < 3; i++) y[i + ld_y*j] += s * A[i + ld_A*k] * B[k + ld_B*j];
+}
+
+/* Inverse of J1 with three rows or six: place before attitude, and (alpha, beta, l) decide over the place */
+static void invert_pivots(const lanes *m, lanes *inv) {
+  if (ROWS == 3) invert3(m, inv);
+  if (ROWS != 6) return;
+  lanes corner[9], inner[9], first[9], last[9], right[9] = {0}, left[9] = {0};
+  for (int j = 0; j < 3; j++) for (int i = 0; i < 3; i++) { corner[i + 3*j] = m[i + 6*j]; inner[i + 3*j] = m[21 + i + 6*j]; }
+  invert3(corner, first);
+  product3(1, first, 3, m + 18, 6, right, 3);
+  product3(1, m + 3, 6, first, 3, left, 3);
+  product3(-1, m + 3, 6, right, 3, inner, 3);
+  invert3(inner, last);
+  memset(inv, 0, sizeof(lanes)*ROWS*ROWS);
+  product3(-1, right, 3, last, 3, inv + 18, 6);
+  product3(-1, last, 3, left, 3, inv + 3, 6);
+  for (int j = 0; j < 3; j++) for (int i = 0; i < 3; i++) { inv[i + 6*j] = first[i + 3*j]; inv[21 + i + 6*j] = last[i + 3*j]; }
+  product3(-1, inv + 18, 6, left, 3, inv, 6);
+}
+
+/* Inverses of the matrices (M, M) of a vector of legs, leg by leg because each has its own pivots */
+static int invert_each(const Settings *s, int group, const lanes *A, lanes *inverse) {
   double one[N*N], inv[N*N];
   for (int i = 0; i < LANES; i++) {
     if (i < used(s, group)) {
-      for (long j = 0; j < size*size; j++) one[j] = A[j][i];
-      if (size && invert(size, one, inv)) return SINGULAR;
+      for (long j = 0; j < M*M; j++) one[j] = A[j][i];
+      if (M && invert(M, one, inv)) return SINGULAR;
     }
-    for (long j = 0; j < size*size; j++) inverse[j][i] = inv[j];
+    for (long j = 0; j < M*M; j++) inverse[j][i] = inv[j];
   }
+  return OK;
+}
+
+/* The same for all legs at once, without seeking pivots: right where the matrices are positive, as mass and stiffness make
+   them. Where one is not (a pivot vanishes or is negative: a leg buckles), each leg seeks its own. */
+static int invert_legs(const Settings *s, int group, const lanes *A, lanes *inverse) {
+  lane_bits positive = ~(lane_bits){0};
+  memcpy(inverse, A, sizeof(lanes)*M*M);
+  for (long k = 0; k < M; k++) {
+    lanes pivot = inverse[k + k*M], d = 1.0/pivot;
+    positive &= pivot > 1e-12*A[k + k*M];
+    for (long j = 0; j < M; j++) {
+      if (j == k) continue;
+      lanes t = inverse[k + j*M]*d;
+      for (long i = 0; i < M; i++) inverse[i + j*M] -= inverse[i + k*M]*t;
+      inverse[k + j*M] = t;
+    }
+    for (long i = 0; i < M; i++) inverse[i + k*M] *= -d;
+    inverse[k + k*M] = d;
+  }
+  for (int i = 0; i < LANES; i++) if (!positive[i]) return invert_each(s, group, A, inverse);
   return OK;
 }
 
@@ -65,8 +109,7 @@ static int leg_factor(const Settings *s, int group, LegBlock *b, double *border,
   static _Thread_local lanes AN[N*M], B[M*M];
   lanes AY[N*6];
   memset(b->N1, 0, sizeof b->N1); memset(b->Y1, 0, sizeof b->Y1);
-  if (ROWS == 3) invert3(b->J, b->J1inv);
-  else if (invert_each(s, group, ROWS, b->J, b->J1inv)) return SINGULAR;
+  invert_pivots(b->J, b->J1inv);
   for (long j = 0; j < M; j++) lanes_gemv(ROWS, ROWS, -1, b->J1inv, b->J + ROWS*(ROWS + j), b->N1 + ROWS*j);
   for (long j = 0; j < 6; j++) lanes_gemv(ROWS, ROWS, 1, b->J1inv, b->P + ROWS*j, b->Y1 + ROWS*j);
   for (long j = 0; j < M; j++) for (int p = 0; p < ROWS; p++) b->N1[p + ROWS*j] *= 1.0 - b->held[ROWS + j];
@@ -81,7 +124,7 @@ static int leg_factor(const Settings *s, int group, LegBlock *b, double *border,
     for (long j = 0; j < 6; j++) b->Et[k + j*M] *= free;
     B[k + k*M] += held;
   }
-  if (invert_each(s, group, M, B, b->Binv)) return SINGULAR;
+  if (invert_legs(s, group, B, b->Binv)) return SINGULAR;
   memset(b->C, 0, sizeof b->C); memset(b->Bd, 0, sizeof b->Bd);
   for (long j = 0; j < 6; j++) lanes_gemv(M, M, 1, b->Binv, b->Et + j*M, b->C + j*M);
   for (long j = 0; j < 6; j++) {
