@@ -30,7 +30,7 @@ _log = logging.getLogger("flexapod")
 class Kernel:
     """Functions of a leg with given shapes and of the payload; all take and return float arrays.
 
-    ``library`` holds the compiled time loop; None where no C compiler was found and casadi interprets the functions.
+    ``library`` holds functions and time loop as compiled; None where no C compiler was found and casadi interprets them.
     """
 
     shapes: Shapes
@@ -49,11 +49,11 @@ NAMES = tuple(field.name for field in fields(Kernel) if field.name not in ("shap
 
 
 @lru_cache(maxsize=32)  # solid pistons and tip bodies of many sizes have shapes of their own
-def kernel(shapes: Shapes) -> Kernel:
-    """Kernel of legs with the given shapes and joints; see `shapes`."""
+def kernel(shapes: Shapes, march: bool = True) -> Kernel:
+    """Kernel of legs with the given shapes and joints, see `shapes`; without ``march`` its library has no time loop."""
     if command := compiler():
         library, signatures = compiled_library(
-            _fingerprint(shapes), lambda: _functions(shapes), SOURCES, command, sizes(shapes)
+            _fingerprint(shapes), lambda: _functions(shapes), SOURCES if march else (), command, sizes(shapes)
         )
         compiled = {name: CompiledFunction(library, name, signatures[name]) for name in NAMES}
         return Kernel(shapes=shapes, library=library, **compiled)

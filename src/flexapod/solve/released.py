@@ -43,7 +43,7 @@ def _ideal(leg: Leg) -> Leg:
 @once
 def rigid_system(robot: Robot) -> System:
     """Equations of the robot of the rigid path."""
-    return robot_system(released(robot), Simulation(fidelity="rigid"))
+    return robot_system(released(robot), Simulation(fidelity="rigid"), march=False)
 
 
 @dataclass(frozen=True, kw_only=True)

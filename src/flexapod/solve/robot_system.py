@@ -20,12 +20,12 @@ from flexapod.typing import Mask
 __all__ = ["robot_system"]
 
 
-def robot_system(robot: Robot, simulation: Simulation) -> System:
-    """System of a robot in the fidelity, basis and number of shapes of ``simulation``."""
+def robot_system(robot: Robot, simulation: Simulation, march: bool = True) -> System:
+    """System of a robot in the fidelity, basis and number of shapes of ``simulation``; ``march``: with its time loop."""
     legs = rigid.robot_limbs(robot)
     shapes = robot_shapes(robot, simulation, legs)
     return System(
-        kernel=kernel(shapes),
+        kernel=kernel(shapes, march),
         leg_p=leg_parameters(robot, legs, shapes),
         joint_p=joint_parameters(robot),
         payload_p=payload_parameters(robot),
