@@ -1,6 +1,6 @@
 """Closed-form mathematics of the rigid robot: NumPy, vectorised over time."""
 
-from flexapod.rigid.breaks import Breaks, actuator_breaks, robot_breaks
+from flexapod.rigid.breaks import Breaks, actuator_breaks, path_knots, robot_breaks
 from flexapod.rigid.dynamics import RigidForces
 from flexapod.rigid.forward import Postures
 from flexapod.rigid.jacobian import NearestSingularity, SingularityPath, length_jacobian
@@ -89,6 +89,7 @@ __all__ = [
     "motion_law",
     "motion_names",
     "nearest_singularity",
+    "path_knots",
     "payload_body",
     "poses",
     "poses_from_coordinates",

@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+import itertools
 from dataclasses import dataclass
 
 import numpy as np
@@ -11,6 +12,7 @@ from flexapod.model import (
     AxisMotion,
     CombinedMotion,
     CsvLaw,
+    CsvMotion,
     CsvWrench,
     ForceDrive,
     LoadLaw,
@@ -23,9 +25,10 @@ from flexapod.model import (
     WaypointMotion,
 )
 from flexapod.model import Wrench as WrenchLaw
-from flexapod.rigid.laws import TRAPEZOID_FRACTIONS
+from flexapod.rigid.laws import S_CURVE_FRACTIONS, TRAPEZOID_FRACTIONS
 from flexapod.typing import Array
 
+_PHASES = {"trapezoid": TRAPEZOID_FRACTIONS, "s-curve": S_CURVE_FRACTIONS}
 STRAIGHT = 1e-9  # a row is not a corner where a table's slope changes by less of its largest one: rounding of text
 
 
@@ -84,13 +87,25 @@ def _scalar(law: MotionLaw | None) -> Breaks:
 
 def _profile(profile: str, first: float, last: float) -> Breaks:
     """Jumps in the rate of `linear` and in the acceleration of `trapezoid`; the other profiles have none."""
-    if profile == "linear":
-        ends = [first, last]
-    elif profile == "trapezoid":
-        ends = [first, *(first + (last - first) * np.cumsum(TRAPEZOID_FRACTIONS[:-1])).tolist(), last]
-    else:
-        ends = []
+    ends = _phases(profile, first, last) if profile in ("linear", "trapezoid") else []
     return Breaks(jumps=tuple(t for t in ends if t > 0))
+
+
+def _phases(profile: str, first: float, last: float) -> list[float]:
+    """Ends of the phases of a profile."""
+    return [first, *(first + (last - first) * np.cumsum(_PHASES.get(profile, ())[:-1])).tolist(), last]
+
+
+def path_knots(motion: Motion, duration: float) -> Array:
+    """Instants from 0 to `duration` [s] between which a commanded path is one smooth function, ends included."""
+    if isinstance(motion, CsvMotion):
+        inner = motion.time.tolist()
+    elif isinstance(motion, WaypointMotion):
+        times = motion.times.tolist()
+        inner = [t for span in itertools.pairwise(times) for t in _phases(motion.profile, *span)]
+    else:
+        inner = _phases(motion.profile, 0.0, motion.duration)
+    return np.array([0.0, *sorted({t for t in inner if 0 < t < duration}), duration])
 
 
 def _load(law: WrenchLaw | LoadLaw | None, far: float) -> Breaks:

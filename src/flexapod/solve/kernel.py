@@ -30,7 +30,7 @@ _log = logging.getLogger("flexapod")
 class Kernel:
     """Functions of a leg with given shapes and of the payload; all take and return float arrays.
 
-    ``library`` holds functions and time loop as compiled; None where no C compiler was found and casadi interprets them.
+    ``library``: functions and time loop as compiled; None where no C compiler was found and casadi interprets them.
     """
 
     shapes: Shapes

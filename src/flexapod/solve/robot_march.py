@@ -16,6 +16,7 @@ from flexapod.solve.fallen import flipped, refuse_fallen, refuse_flipped
 from flexapod.solve.many import RestStates
 from flexapod.solve.march import Chunk, Problem, initial_step, march
 from flexapod.solve.modes import refuse_pure_force
+from flexapod.solve.pieces import Pieces
 from flexapod.solve.recording import Counters, Recording
 from flexapod.solve.redundant import independent, shared
 from flexapod.solve.rest import rest_commands, rest_load
@@ -64,7 +65,7 @@ def prepare(study: Study, state: State | None = None) -> RobotMarch:
     refuse_massless(study)
     robot, simulation = study.robot, study.simulation
     system, path = robot_system(robot, simulation), _Path(study)
-    law = robot_law(system, robot, study.load, path.poses)
+    law = robot_law(system, robot, study.load, path.poses, path.knots)
     method = GeneralizedAlpha(simulation.rho_inf)
     step = initial_step(simulation.step, simulation.output_step)
     state = _configuration(study, system) if state is None else state
@@ -132,15 +133,21 @@ class _Path:
 
     def __init__(self, study: Study) -> None:
         self.robot, self.motion = study.robot, study.motion
+        self.knots = rigid.path_knots(study.motion, study.duration)
         self.time, self.last = np.zeros(0), None
+        self.guided = Pieces(self._centre, self.knots) if rigid.rigid_limbs(study.robot).guides else None
 
     def poses(self, t: Array) -> rigid.Poses:
         """Poses with rates at instants (T,), ascending."""
-        self.time, self.last = t, rigid.poses(self.robot, self.motion, t)
+        if self.last is None or not np.array_equal(t, self.time):
+            self.time, self.last = t, rigid.poses(self.robot, self.motion, t)
         return self.last
 
     def centre(self, t: Array) -> tuple[Array, Array]:
         """Centre of mass (T, 3) and rotation (T, 3, 3) at instants (T,), if possible out of what is remembered."""
+        if self.guided is not None:
+            place, rotation = self.guided(t)
+            return place, rotation
         at = np.minimum(np.searchsorted(self.time, t - SAME), max(len(self.time) - 1, 0))
         if self.last is None or np.abs(self.time[at] - t).max() > 2 * SAME:
             path, at = rigid.poses(self.robot, self.motion, t), np.arange(len(t))
@@ -148,6 +155,10 @@ class _Path:
             path = self.last
         rotation = path.rotation[at]
         return path.position[at] + rotation @ self.robot.com, rotation
+
+    def _centre(self, t: Array) -> list[Array]:
+        path = rigid.poses(self.robot, self.motion, t)
+        return [path.position + path.rotation @ self.robot.com, path.rotation]
 
 
 class _Measure:

@@ -21,7 +21,7 @@ __all__ = ["robot_system"]
 
 
 def robot_system(robot: Robot, simulation: Simulation, march: bool = True) -> System:
-    """System of a robot in the fidelity, basis and number of shapes of ``simulation``; ``march``: with its time loop."""
+    """System of a robot in the fidelity, basis and number of shapes of ``simulation``; ``march``: to be integrated."""
     legs = rigid.robot_limbs(robot)
     shapes = robot_shapes(robot, simulation, legs)
     return System(

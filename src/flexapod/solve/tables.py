@@ -7,6 +7,7 @@ import numpy as np
 from flexapod import rigid
 from flexapod.model import ForceDrive, Load, Robot
 from flexapod.rigid.limbs import COORDINATES, DRIVEN
+from flexapod.solve.pieces import Groups, Pieces
 from flexapod.solve.released import rigid_forces
 from flexapod.solve.system import COLUMNS, System
 from flexapod.typing import Array
@@ -17,10 +18,13 @@ __all__ = ["Law", "feed_forward", "robot_law"]
 Law = Callable[[Array], tuple[Array, Array]]
 
 
-def robot_law(system: System, robot: Robot, load: Load, poses: Callable[[Array], rigid.Poses]) -> Law:
+def robot_law(
+    system: System, robot: Robot, load: Load, poses: Callable[[Array], rigid.Poses], knots: Array | None = None
+) -> Law:
     """Return what a robot is commanded as a function of time; ``poses`` is the rigid path.
 
-    Driven coordinates follow the path; what else is held stays where it is at home, of a flexure at zero.
+    Driven coordinates follow the path; what else is held stays where it is at home, of a flexure at zero. With the
+    ``knots`` (n,) between which the path is smooth, legs without a closed form are computed at few instants: `pieces`.
     """
     chains, shapes = rigid.robot_limbs(robot), system.kernel.shapes
     names = {shapes.index(name): name for name in COORDINATES if shapes.has(name)}
@@ -31,16 +35,28 @@ def robot_law(system: System, robot: Robot, load: Load, poses: Callable[[Array],
             driven[:, k], home[:, k] = chains.state[:, place] == DRIVEN, chains.home[:, place]
     driven = driven.astype(bool)
 
-    def law(t: Array) -> tuple[Array, Array]:
-        path = poses(t)
-        legs, wrench = rigid.inverse_kinematics(robot, path), rigid.wrench(load, t)
-        table = np.zeros((len(t), system.legs, system.ports.size, COLUMNS))
-        table[..., 0] = home
+    def commanded(t: Array) -> list[Array]:
+        legs = rigid.inverse_kinematics(robot, poses(t))
+        parts = np.zeros((3, len(t), system.legs, system.ports.size))
+        parts[0] = home
         for k in np.flatnonzero(driven.any(axis=0)):
             which = slice(None) if driven[:, k].all() else driven[:, k]
-            for column, part in enumerate(legs.coordinate(names[system.ports[k]])):
-                table[:, which, k, column] = part[:, which]
-        table[:, driven, 3] = feed_forward(robot, t, path, wrench)[:, driven.any(axis=1)]
+            for part, values in zip(parts, legs.coordinate(names[system.ports[k]]), strict=True):
+                part[:, which, k] = values[:, which]
+        return list(parts)
+
+    forces = any(isinstance(leg.drive, ForceDrive) for leg in robot.legs)
+    coordinates: Groups = commanded
+    if knots is not None and not (rigid.rigid_limbs(robot).plain or forces):
+        coordinates = Pieces(commanded, knots)
+
+    def law(t: Array) -> tuple[Array, Array]:
+        wrench = rigid.wrench(load, t)
+        table = np.zeros((len(t), system.legs, system.ports.size, COLUMNS))
+        for column, part in enumerate(coordinates(t)):
+            table[..., column] = part
+        if forces:
+            table[:, driven, 3] = feed_forward(robot, t, poses(t), wrench)[:, driven.any(axis=1)]
         return table, wrench
 
     return law
