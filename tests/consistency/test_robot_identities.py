@@ -76,7 +76,7 @@ def test_a_leg_without_payload_is_a_cantilever():
     q[..., 2] = PISTON["mouth"] + s
     still = RestStates(q=q, pose=np.zeros((1, 7)), lam=np.zeros((1, 1, 0)), drive=np.zeros((1, 1, 3)))
     command = q[..., system.ports]
-    found = equilibria(system, still, command, np.zeros_like(command), np.array([force, 0, 0, 0, 0, 0]))
+    found = equilibria(system, still, command, np.zeros_like(command), np.append(force, np.zeros(11)))
     assert found.code == 0
     across = found.states.q[0, 0, 4:7] @ lateral.tip
     assert across == pytest.approx(force * s**3 / (3 * PISTON["EI"]), rel=1e-5)  # 0.4 mm: stretched by nothing

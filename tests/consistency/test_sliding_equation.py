@@ -25,7 +25,7 @@ def leg_residual(k, x, v, a, m_e, g):
     """Residual of (theta, L, a_1..a_k) without drives, from (theta, L, a..) and its rates."""
     beam = Actuator(length=LT, rhoA=RHO, EI=EI, free_length=L, tip_mass=m_e, hub_inertia=HUB, gravity=g)
     functions = uncompiled("clamped-free", k, 0, planar=True)
-    return functions.leg_residual(x, v, a, np.zeros(0), np.zeros(2), actuator_parameters(beam)[0])[0]
+    return functions.leg_residual(x, v, a, np.zeros(0), np.zeros(2), actuator_parameters(beam, functions.shapes)[0])[0]
 
 
 def substituted(q, q_dot, q_ddot, rates):

@@ -52,6 +52,9 @@ def _motion(found: ActuatorDescription) -> list[str]:
     if found.angles is not None:
         first, last = (math.degrees(angle) for angle in found.angles)
         lines.append(f"The hub turns from {first:.4g} to {last:.4g} deg.")
+    if found.elevations is not None:
+        first, last = (math.degrees(angle) for angle in found.elevations)
+        lines.append(f"Its elevation goes from {first:.4g} to {last:.4g} deg.")
     if found.free_lengths is not None:
         low, high = found.free_lengths
         span = f"lies between {low:.4g} and {high:.4g} m" if high > low else f"stays at {low:.4g} m"
@@ -59,13 +62,17 @@ def _motion(found: ActuatorDescription) -> list[str]:
     names = {
         "rotation": "The hub is driven by a torque: its angle",
         "extension": "The beam is driven by a force: its length",
+        "elevation": "The hub is driven by a torque towards Z: its elevation",
     }
     rates = {"rotation": (found.angle_rate, "rad/s"), "extension": (found.length_rate, "m/s")}
+    rates["elevation"] = (found.elevation_rate, "rad/s")
     for name in found.driven:
         rate, unit = rates[name]
         lines.append(f"{names[name]} is a result{f', starting at {rate:.4g} {unit}' if rate else ''}.")
     if found.tip_displacement:
         lines.append(f"The tip starts {text(found.tip_displacement, 'm')} off the line, released at rest.")
+    if found.elevation_displacement:
+        lines.append(f"The tip starts {text(found.elevation_displacement, 'm')} above the line, released at rest.")
     return lines
 
 

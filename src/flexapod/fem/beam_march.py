@@ -105,6 +105,7 @@ def _check_times(study: ActuatorStudy, step: float, end: float) -> None:
 
 def _path(study: ActuatorStudy, time: Array) -> _Path:
     actuator, motion = study.actuator, study.motion
+    actuator.refuse_space()
     if motion.extension is None or motion.rotation is None:
         raise InputError(
             "is free; a mesh that slides takes prescribed motions only",

@@ -99,15 +99,14 @@ class _Leg:
         return r
 
     def residual(self) -> NamedFunction:
-        """Balance, closure, powers (lost, given) and forces of the drives' springs."""
+        """Balance, closure, powers (lost, given, of a load) and forces of the drives' springs."""
         loss = dot(self.v, gradient(self.body.lagrangian.dissipation, self.v))
         lost = sum((servo.lost for servo in self.servos.values()), loss)
         given = sum((servo.given for servo in self.servos.values()), zeros(1))
-        if self.shapes.loaded:
-            given += dot(self.load_force(), self.v)
+        powers = [lost, given, *([dot(self.load_force(), self.v)] if self.shapes.loaded else [])]
         gap, wrench = (self.by_q.value(x) for x in self.closed(zeros(6)))
         meeting = [("gap", gap), ("wrench", wrench)] if self.shapes.closure == "pose" else [("tip", self.body.tip)]
-        outputs = [("r", self.balance()), *meeting, ("powers", vertcat(lost, given)), ("drive", self.forces())]
+        outputs = [("r", self.balance()), *meeting, ("powers", vertcat(*powers)), ("drive", self.forces())]
         return NamedFunction("leg_residual", self.moving(), outputs)
 
     def load_force(self) -> SX:

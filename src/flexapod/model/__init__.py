@@ -46,12 +46,13 @@ from flexapod.model.payload import Payload
 from flexapod.model.piston import Cylinder, Piston, Strut
 from flexapod.model.robot import Robot
 from flexapod.model.simulation import DEFAULT_TOLERANCE, FIDELITIES, Initial, Simulation
-from flexapod.model.study import ActuatorStudy, Study, override
+from flexapod.model.study import DRIVEN_BY, ActuatorStudy, Study, override
 from flexapod.model.write import to_toml
 
 __all__ = [
     "AXES",
     "DEFAULT_TOLERANCE",
+    "DRIVEN_BY",
     "FIDELITIES",
     "MATERIALS",
     "PAPER_PRESETS",

@@ -2,26 +2,35 @@
 
 from __future__ import annotations
 
-from typing import Annotated
+from typing import Annotated, Any
 
-from pydantic import model_validator
+from pydantic import Field, model_validator
 
 from flexapod.errors import InputError
 from flexapod.model.base import Frozen, Measure, NonNegative, Number, Positive
 from flexapod.model.damping import BodyDamping
 from flexapod.model.laws import CsvLaw, LoadLaw, MotionLaw, RateLaw
+from flexapod.model.load import Wrench
 from flexapod.model.material import Material, Rectangle, Tube
 from flexapod.model.motion import check_times
 from flexapod.words import number, text
 
+#: Fields that only an actuator in space has.
+IN_SPACE = (
+    "elevation", "EA", "GJ", "axial_inertia", "tip_axial_inertia", "hub_axial_inertia", "axial_modes",
+)  # fmt: skip
+
 
 class Actuator(Frozen):
-    """A uniform beam in a hub, moving in a plane.
+    """A uniform beam in a hub, moving in a plane, or in `space`: about two axes, then of round section.
 
     `length` [m], whole beam; `rhoA` [kg/m]; `EI` [N m^2]; `free_length` [m], outside the hub at t = 0; `tip_mass` [kg];
     `tip_inertia`, `hub_inertia` [kg m^2]; `hub_radius` [m], from the pivot to the clamp; `angle` [rad] from the
     horizontal at t = 0; `gravity` [m/s^2], along -Y in the plane; `damping`, modal damping ratio, or
-    `Damping` with a part in proportion to stiffness; `section` and `material` where they are known.
+    `Damping` with a part in proportion to stiffness; `section` and `material` where they are known. In space the hub
+    turns by `angle` about Z and by `elevation` [rad] towards Z, gravity is along -Z, and the beam may stretch
+    (`EA` [N], `axial_modes` shapes) and twist (`GJ` [N m^2], `axial_inertia` [kg m^2] of the whole beam)
+    from its inner end; `tip_axial_inertia`, `hub_axial_inertia` [kg m^2] about its axis.
     """
 
     length: Annotated[Positive, Measure("length")]
@@ -37,6 +46,14 @@ class Actuator(Frozen):
     damping: BodyDamping = 0.0
     section: Tube | Rectangle | None = None
     material: Material | None = None
+    space: bool = False
+    elevation: Annotated[Number, Measure("angle")] = 0.0
+    EA: Annotated[Positive, Measure("axial stiffness")] | None = None
+    GJ: Annotated[Positive, Measure("bending stiffness")] | None = None
+    axial_inertia: Annotated[NonNegative, Measure("inertia")] = 0.0
+    tip_axial_inertia: Annotated[NonNegative, Measure("inertia")] = 0.0
+    hub_axial_inertia: Annotated[NonNegative, Measure("inertia")] = 0.0
+    axial_modes: int = Field(default=2, strict=True, ge=1, le=6)
 
     def _shown(self) -> dict[str, str]:
         tip = {"tip": f"{number(self.tip_mass, 4)} kg"} if self.tip_mass else {}
@@ -60,41 +77,79 @@ class Actuator(Frozen):
             raise InputError("makes the beam thicker than long", key="section", allowed=f"below {self.length:g} m")
         return self
 
+    @model_validator(mode="after")
+    def _in_space(self) -> Actuator:
+        fields = type(self).model_fields
+        for name in () if self.space else IN_SPACE:
+            if getattr(self, name) != fields[name].default:
+                raise InputError(
+                    "belongs to an actuator in space: in its plane the beam neither stretches nor twists",
+                    key=name,
+                    value=getattr(self, name),
+                    next_step="Add space = true to [actuator], or leave it out",
+                )
+        if self.space and isinstance(self.section, Rectangle):
+            raise InputError(
+                "bends differently in two planes", key="section", allowed="in space a round section: diameter"
+            )
+        if self.GJ is not None and not self.axial_inertia:
+            raise InputError(
+                "needs the inertia of what twists", key="GJ", value=self.GJ, next_step="Give axial_inertia, above 0"
+            )
+        return self
+
+    def refuse_space(self) -> None:
+        """Refuse an actuator in space: for models that know the plane alone."""
+        if self.space:
+            raise InputError(
+                "is not modelled here: this reference moves in its plane",
+                key="actuator.space",
+                value=True,
+                allowed="false",
+                next_step="Leave space out, or use flexapod run",
+            )
+
     @staticmethod
     def stiffness(section: Tube | Rectangle, material: Material) -> dict[str, float]:
         """`rhoA` [kg/m] and `EI` [N m^2] of a beam of this section and material."""
         return {"rhoA": material.density * section.area, "EI": material.E * section.second_moment}
 
     @classmethod
-    def from_section(cls, *, section: Tube | Rectangle, material: Material, **fields: float) -> Actuator:
+    def from_section(cls, *, section: Tube | Rectangle, material: Material, **fields: Any) -> Actuator:
         """An actuator whose rhoA and EI follow from section and material; `fields` are the others."""
         return cls(section=section, material=material, **cls.stiffness(section, material), **fields)
 
 
 class ActuatorMotion(Frozen):
-    """Prescribed `rotation` [rad] and `extension` [m] since t = 0; None: that coordinate is free."""
+    """Prescribed `rotation`, in space `elevation` [rad], `extension` [m] since t = 0; None: that coordinate is free."""
 
     rotation: MotionLaw | None = RateLaw(rate=0.0)
     extension: MotionLaw | None = RateLaw(rate=0.0)
+    elevation: MotionLaw | None = RateLaw(rate=0.0)
 
     @model_validator(mode="after")
     def _smooth(self) -> ActuatorMotion:
-        for name, law in (("rotation", self.rotation), ("extension", self.extension)):
+        for name in type(self).model_fields:
+            law = getattr(self, name)
             if isinstance(law, CsvLaw):
                 check_times(law.time, len(law.value), key=f"{name}.time")
         return self
 
     @property
+    def laws(self) -> tuple[MotionLaw | None, ...]:
+        """Of rotation, extension and elevation."""
+        return self.rotation, self.extension, self.elevation
+
+    @property
     def rate_jumps(self) -> tuple[float, ...]:
         """Instants after t = 0 at which a prescribed rate jumps [s]."""
-        laws = (self.rotation, self.extension)
-        return tuple(sorted({law.duration for law in laws if law is not None and law.law == "linear"}))
+        return tuple(sorted({law.duration for law in self.laws if law is not None and law.law == "linear"}))
 
     @property
     def end_time(self) -> float | None:
         """When the last law with an end has reached it [s]; None where a constant rate never ends."""
         ends = []
-        for law in (self.rotation, self.extension):
+        for law in self.laws:
             if law is None or law.law in ("rate", "spin-up"):
                 if law is None or law.rate != 0:  # type: ignore[union-attr]
                     return None
@@ -104,18 +159,35 @@ class ActuatorMotion(Frozen):
 
 
 class ActuatorLoad(Frozen):
-    """Driving `torque` [N m] on the hub and axial `force` [N] on the beam; each frees its coordinate."""
+    """Driving `torque` [N m] on the hub and axial `force` [N] on the beam; each frees its coordinate.
+
+    In space also `elevation_torque` [N m], and a `wrench` at the tip: in world axes, or with `follow` in axes that turn
+    with the tip and are the world's where angle and elevation are 0.
+    """
 
     torque: LoadLaw | None = None
     force: LoadLaw | None = None
+    elevation_torque: LoadLaw | None = None
+    wrench: Wrench | None = None
+    follow: bool | None = None
+
+    @model_validator(mode="after")
+    def _followed(self) -> ActuatorLoad:
+        if self.follow is not None and self.wrench is None:
+            raise InputError("says how load.wrench acts, and there is none", key="follow", next_step="Leave it out")
+        return self
 
 
 class ActuatorInitial(Frozen):
     """State at t = 0: `tip_displacement` [m] of the static shape under a tip force, modal velocities zero.
 
-    `angle_rate` [rad/s] and `length_rate` [m/s] where angle or length are free, that is driven by a load.
+    `angle_rate` [rad/s] and `length_rate` [m/s] where angle or length are free, that is driven by a load. In space
+    `tip_displacement` is towards larger angles, `elevation_displacement` [m] towards larger elevations, and
+    `elevation_rate` [rad/s] that of a free elevation.
     """
 
     tip_displacement: Annotated[Number, Measure("length")] = 0.0
     angle_rate: Annotated[Number, Measure("angular rate")] = 0.0
     length_rate: Annotated[Number, Measure("velocity")] = 0.0
+    elevation_displacement: Annotated[Number, Measure("length")] = 0.0
+    elevation_rate: Annotated[Number, Measure("angular rate")] = 0.0

@@ -20,7 +20,7 @@ from flexapod.units import COMMON_UNITS, DIMENSIONS
 
 HEAD = ("Key", "What it is", "Unit", "Default", "Allowed")
 _NEEDED = {"robot": ("robot", "payload", "leg", "motion"), "actuator": ("actuator", "simulation")}
-_EXTENDED = ("robot", "leg")  # an example of a part of these leaves the rest as it is (see _whole)
+_EXTENDED = ("robot", "leg", "actuator")  # an example of a part of these leaves the rest as it is (see _whole)
 _TABLES = {
     '`[motion]` with `type = "csv"`': (POSE, "one at least besides the time; others are 0"),
     '`load.wrench` with `law = "csv"`, of a robot': (
@@ -71,8 +71,8 @@ def study_data(entry: Entry) -> dict[str, Any]:
 
 
 def _whole(table: dict[str, Any]) -> bool:
-    """Whether an example of [robot] or [leg] stands for itself: another geometry, a leg of other bodies."""
-    return ("base" in table and "type" in table) or "strut" in table
+    """Whether an example of a table stands for itself: another geometry, a leg of other bodies, another beam."""
+    return ("base" in table and "type" in table) or "strut" in table or "length" in table
 
 
 def listed() -> list[Listed]:

@@ -10,12 +10,14 @@ from flexapod.model.columns import columns_of
 from flexapod.model.laws import ConstantLaw, CsvLaw, RateLaw
 from flexapod.model.material import Rectangle, Tube
 from flexapod.model.read_leg import read_material
+from flexapod.model.read_motion import read_wrench
 from flexapod.model.section import Section
 
 _STIFFNESS = ("rhoA", "EI")
 _DRIVEN = {  # what a load drives: the load and its dimension, the dimensions of the motion
     "rotation": ("torque", "torque", ("angle", "angular rate")),
     "extension": ("force", "force", ("length", "velocity")),
+    "elevation": ("elevation_torque", "torque", ("angle", "angular rate")),
 }
 
 
@@ -49,7 +51,11 @@ def read_drives(top: Section) -> tuple[ActuatorMotion, ActuatorLoad]:
     laws: dict[str, Any] = {}
     loads: dict[str, Any] = {}
     if load is not None:
-        load.only("torque", "force")
+        load.only(*columns_of(ActuatorLoad))
+        if "wrench" in load:
+            loads["wrench"] = read_wrench(load)
+        if "follow" in load:
+            loads["follow"] = load.flag("follow")
     if motion is not None:
         motion.only(*_DRIVEN)
     for name, (drive, dimension, moved) in _DRIVEN.items():

@@ -6,7 +6,7 @@ from collections.abc import Iterable, Mapping
 
 import numpy as np
 
-from flexapod.model.load import ConstantWrench, CsvWrench, Load, SineWrench, StepWrench
+from flexapod.model.load import ConstantWrench, CsvWrench, Load, SineWrench, StepWrench, Wrench
 from flexapod.model.motion import AXES, AxisMotion, CombinedMotion, CsvMotion, Motion, Waypoint, WaypointMotion
 from flexapod.model.section import Section
 from flexapod.model.simulation import FIDELITIES, OWN_BASIS, STRAIGHT, Initial, Simulation, own_fidelity
@@ -60,12 +60,17 @@ def read_load(section: Section | None) -> Load:
         return Load()
     section.only("wrench")
     section.need("wrench")
+    return Load(wrench=read_wrench(section))
+
+
+def read_wrench(section: Section) -> Wrench:
+    """The key `wrench` of a table [load]: six numbers, or a law."""
     value = section.data["wrench"]
     if isinstance(value, list):
-        return Load(wrench=section.build(ConstantWrench, value=section.vector("wrench", *WRENCH.values())))
+        return section.build(ConstantWrench, value=section.vector("wrench", *WRENCH.values()))
     kinds = (ConstantWrench, SineWrench, StepWrench, CsvWrench)
     csv = {CsvWrench: lambda s: s.read(CsvWrench, then=_wrenches)}
-    return Load(wrench=section.child(value, "wrench").one_of(kinds, readers=csv))
+    return section.child(value, "wrench").one_of(kinds, readers=csv)
 
 
 def _wrenches(section: Section) -> dict[str, object]:

@@ -18,6 +18,14 @@ from flexapod.model.robot import Robot
 from flexapod.model.simulation import FIDELITIES, OWN_BASIS, SOLID, STRAIGHT, Initial, Simulation
 from flexapod.model.write import to_toml
 
+#: The load that drives a motion of the single actuator where no law does.
+DRIVEN_BY = {"rotation": "torque", "extension": "force", "elevation": "elevation_torque"}
+_OUT_OF_PLANE = {
+    "motion": ("elevation",),
+    "load": ("elevation_torque", "wrench", "follow"),
+    "initial": ("elevation_displacement", "elevation_rate"),
+}
+
 
 class _Documented(Frozen):
     """Keeps `source_text` true: it is written anew when content is changed or the study was not read from text."""
@@ -134,13 +142,14 @@ class ActuatorStudy(_Documented):
 
     @model_validator(mode="after")
     def _consistent(self) -> Self:
-        for law, load in (("rotation", "torque"), ("extension", "force")):
+        self._nothing_out_of_the_plane()
+        for law, load in DRIVEN_BY.items():
             if (getattr(self.motion, law) is None) == (getattr(self.load, load) is None):
                 raise InputError(f"and motion.{law}: exactly one of the two drives this coordinate", key=f"load.{load}")
         self._only_free_ones_start_with_a_rate()
-        if self.simulation.fidelity == "lumped":
+        if self.simulation.fidelity == "lumped" and self.actuator.EA is None:
             raise InputError(
-                "has no meaning for the single actuator, whose beam bends but does not stretch",
+                "has no meaning for a single actuator whose beam bends but does not stretch",
                 key="simulation.fidelity",
                 value="lumped",
                 allowed=", ".join(name for name in FIDELITIES if name != "lumped"),
@@ -161,8 +170,23 @@ class ActuatorStudy(_Documented):
             )
         return self
 
+    def _nothing_out_of_the_plane(self) -> None:
+        """Refuse what moves or loads a planar actuator out of its plane."""
+        for table, names in _OUT_OF_PLANE.items() if not self.actuator.space else ():
+            part = getattr(self, table)
+            for name in names:
+                if getattr(part, name) != type(part).model_fields[name].default:
+                    raise InputError(
+                        "leads out of the plane in which this actuator moves",
+                        key=f"{table}.{name}",
+                        allowed="actuators in space",
+                        next_step="Add space = true to [actuator], or leave it out",
+                    )
+
     def _only_free_ones_start_with_a_rate(self) -> None:
-        for name, law, load in (("angle_rate", "rotation", "torque"), ("length_rate", "extension", "force")):
+        rates = {"rotation": "angle_rate", "extension": "length_rate", "elevation": "elevation_rate"}
+        for law, name in rates.items():
+            load = DRIVEN_BY[law]
             if getattr(self.initial, name) and getattr(self.motion, law) is not None:
                 raise InputError(
                     f"starts a coordinate whose motion is prescribed (motion.{law})",
@@ -185,9 +209,11 @@ class ActuatorStudy(_Documented):
 
     @property
     def _ignored(self) -> tuple[str, ...]:
-        if self.initial.tip_displacement == 0 or self.simulation.lateral_shapes:
-            return ()
-        return (f"initial.tip_displacement = {self.initial.tip_displacement:g} m has no effect on a rigid beam",)
+        given = {name: getattr(self.initial, name) for name in ("tip_displacement", "elevation_displacement")}
+        bent = {} if self.simulation.lateral_shapes else given
+        return tuple(
+            f"initial.{key} = {value:g} m has no effect on a rigid beam" for key, value in bent.items() if value
+        )
 
 
 S = TypeVar("S", bound=Study | ActuatorStudy)
@@ -233,7 +259,11 @@ def override(
     if axial_modes is None:
         return study.replace(simulation=simulation)
     if isinstance(study, ActuatorStudy):
-        raise InputError("has no meaning for the single actuator, whose beam does not stretch", key="axial_modes")
+        raise InputError(
+            "is a setting of legs: a beam in its plane does not stretch",
+            key="axial_modes",
+            next_step="For a beam in space change actuator.axial_modes",
+        )
     legs = tuple(leg.replace(axial_modes=axial_modes) for leg in study.robot.legs)
     return study.replace(simulation=simulation, robot=study.robot.replace(legs=legs))
 

@@ -46,8 +46,8 @@ def actuator_response(data: xr.Dataset | Mapping[int, xr.Dataset]) -> Figure:
     fig = figure(PAGE, 2.2 * rows)
     panels = fig.subplots(rows, 1, sharex=True, height_ratios=(1.6, 1.1, 0.8)[:rows] if rows == 3 else (1.6, 0.8))
     _responses(panels[0], series)
-    if len(series) > 1:
-        fig.legend(*panels[0].get_legend_handles_labels(), loc="outside upper center", ncols=len(series))
+    if len(series) > 1 or "direction" in series[counts[-1]].dims:
+        fig.legend(*panels[0].get_legend_handles_labels(), loc="outside upper center", ncols=max(2, len(series)))
         _differences(panels[1], series)
     length = panels[-1]
     length.plot(finest.time, finest.length, color="#333333")
@@ -58,13 +58,21 @@ def actuator_response(data: xr.Dataset | Mapping[int, xr.Dataset]) -> Figure:
     return fig
 
 
+def _curves(data: xr.Dataset) -> np.ndarray:
+    """Deflection of the tip over time, a column for each direction."""
+    return data.tip_deflection.values.reshape(data.sizes["time"], -1)
+
+
 def _responses(axes: Axes, series: Mapping[int, xr.Dataset]) -> None:
     unit = scale(xr.concat([d.tip_deflection for d in series.values()], dim="k"), "m")
     for i, (count, d) in enumerate(series.items()):
         last = i == len(series) - 1
         style = {"color": RIGID, "linewidth": 5} if last and len(series) > 1 else {"color": LEG_COLORS[i], "zorder": 3}
         style |= {"linestyle": LINE_STYLES[len(series) - 2 - i]} if not last else {}
-        axes.plot(d.time, unit(d.tip_deflection), label=f"{count} shape{'s' if count > 1 else ''}", **style)
+        words = f"{count} shape{'s' if count > 1 else ''}"
+        for k, line in enumerate(unit(_curves(d)).T):
+            towards = f", towards larger {('angles', 'elevations')[k]}" if "direction" in d.dims else ""
+            axes.plot(d.time, line, label=words + towards, **style, alpha=1 - 0.6 * k)
     axes.axhline(0, color="#555555", linewidth=0.7)
     axes.set_title("Lateral deflection of the tip, in the frame of the hub")
     axes.set_ylabel(f"deflection [{unit.name}]")
@@ -74,12 +82,12 @@ def _differences(axes: Axes, series: Mapping[int, xr.Dataset]) -> None:
     from scipy.ndimage import maximum_filter1d
 
     counts = list(series)
-    finest = series[counts[-1]].tip_deflection
+    finest = _curves(series[counts[-1]])
     for i, count in enumerate(counts[:-1]):
-        gap = 1e6 * np.abs((series[count].tip_deflection - finest).values)
+        gap = 1e6 * np.abs(_curves(series[count]) - finest).max(axis=1)
         envelope = maximum_filter1d(gap, max(3, len(gap) // 20))
         style = LINE_STYLES[len(counts) - 2 - i]
-        axes.semilogy(finest.time, np.maximum(envelope, 1e-6), color=LEG_COLORS[i], linestyle=style)
+        axes.semilogy(series[count].time, np.maximum(envelope, 1e-6), color=LEG_COLORS[i], linestyle=style)
         place = {"xycoords": ("axes fraction", "data"), "textcoords": "offset points", "va": "center"}
         level = float(gap[1:].max())
         axes.annotate(
@@ -138,15 +146,19 @@ def actuator_modes(data: xr.Dataset) -> Figure:
     data : xarray.Dataset
         Result of `flexapod.simulate_actuator`, with `mode_amplitude` (time, mode).
     """
-    labels = data.mode.values
+    labels, amplitudes = [f"Shape {mode}" for mode in data.mode.values], data.mode_amplitude
+    if "direction" in amplitudes.dims:
+        labels = [f"{words}, towards larger {x}s" for x in data.direction.values for words in labels]
+        amplitudes = amplitudes.stack(mode_of=("direction", "mode")).rename(mode_of="shape")
+    amplitudes = amplitudes.transpose(..., "time").values.reshape(len(labels), -1)
     fig = figure(PAGE, 1.0 + 1.4 * len(labels))
     panels = np.atleast_1d(fig.subplots(len(labels), 1, sharex=True))
-    lines = cleared_lines(data.mode_amplitude.transpose("mode", "time").values)
+    lines = cleared_lines(amplitudes)
     for axes, label, values in zip(panels, labels, lines, strict=True):
         unit = scale(values if values.any() else lines, "m")
         axes.plot(data.time, unit(values), color=FLEXIBLE, linewidth=1.0)
         axes.axhline(0, color="#555555", linewidth=0.7)
-        axes.set_title(f"Shape {label}")
+        axes.set_title(label)
         axes.set_ylabel(f"amplitude [{unit.name}]")
     flat_on_the_scale_of_others(panels.tolist(), [float(np.abs(values).max()) for values in lines])
     panels[-1].set_xlabel("time [s]")

@@ -135,7 +135,7 @@ def _actuator(data: Dataset) -> Iterator[_Plan]:
     from flexapod import plot
 
     drawn = _seen(data)
-    if drawn is not None:
+    if drawn is not None and "direction" not in data.tip_deflection.dims:
         yield "path", "The tip in the plane of motion", lambda: plot.actuator_path(data, *drawn)
     yield "response", "Deflection of the tip, and the length outside the hub", lambda: plot.actuator_response(data)
     if "mode_amplitude" in data:

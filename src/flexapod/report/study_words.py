@@ -189,10 +189,14 @@ def _actuator(study: ActuatorStudy) -> list[str]:
     tip = f", with {number(beam.tip_mass)} kg at its tip" if beam.tip_mass else ""
     start = study.initial.tip_displacement
     released = f", released from {text(start, 'm')} at the tip" if start else ""
+    there = [words for words, value in (("stretches", beam.EA), ("twists", beam.GJ)) if value is not None]
+    downwards = np.array([0.0, float(not beam.space), float(beam.space)])
+    also = f" and {' and '.join(there)}" if there else ""
+    parts = f" It moves in space: it bends in two planes{also}." if beam.space else ""
     return [
         f"A single actuator: a beam of {number(beam.length)} m, {number(beam.free_length)} m of it outside the hub at "
         f"the start{tip}; rhoA = {number(beam.rhoA)} kg/m, EI = {number(beam.EI, 5)} N m²; "
-        f"{_damping(beam.damping, 'beam')}, {_gravity(np.array([0.0, -beam.gravity, 0.0]))}.",
+        f"{_damping(beam.damping, 'beam')}, {_gravity(-beam.gravity * downwards)}.{parts}",
         f"Driven: {_driven(study)}.",
         f"The beam is {_LEGS[simulation.fidelity]} ({simulation.fidelity}, {shapes} shapes); "
         f"{number(study.duration, 4)} s simulated{released}.",
@@ -201,16 +205,23 @@ def _actuator(study: ActuatorStudy) -> list[str]:
 
 def _driven(study: ActuatorStudy) -> str:
     words = []
-    for name, load, rate, unit in (("rotation", "torque", "rad/s", "N m"), ("extension", "force", "m/s", "N")):
-        law = getattr(study.motion, name)
+    units = {"rotation": ("rad/s", "N m"), "extension": ("m/s", "N"), "elevation": ("rad/s", "N m")}
+    starts = {"rotation": "angle_rate", "extension": "length_rate", "elevation": "elevation_rate"}
+    for name, (rate, unit) in list(units.items())[: 2 + study.actuator.space]:
+        load, law = model.DRIVEN_BY[name], getattr(study.motion, name)
         if law is None:
-            first = getattr(study.initial, "angle_rate" if name == "rotation" else "length_rate")
+            first = getattr(study.initial, starts[name])
             begun = f", from {number(first)} {rate} at the start" if first else ""
-            words.append(f"{name} by a {load}{_law(getattr(study.load, load), unit)}{begun}, so that it is a result")
+            words.append(
+                f"{name} by a {load.rsplit('_')[-1]}{_law(getattr(study.load, load), unit)}{begun}, "
+                "so that it is a result"
+            )
         elif law.law == "rate":
             words.append(f"{name} at {number(law.rate)} {rate}")
         else:
             words.append(f"{name} by the law {law.law}")
+    if study.load.wrench is not None:
+        words.append(f"a load at the tip{' that follows it' if study.load.follow else ''}")
     return " and ".join(words)
 
 

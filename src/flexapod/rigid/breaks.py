@@ -60,12 +60,12 @@ def robot_breaks(study: Study) -> Breaks:
 
 
 def actuator_breaks(study: ActuatorStudy) -> Breaks:
-    """Breaks of the prescribed rotation and extension of an actuator, of its torque and axial force."""
+    """Breaks of the prescribed motion of an actuator and of its loads."""
     far, motion, load = study.simulation.stored_step, study.motion, study.load
     found = Breaks()
-    for law in (motion.rotation, motion.extension):
+    for law in motion.laws:
         found |= _scalar(law)
-    for given in (load.torque, load.force):
+    for given in (load.torque, load.force, load.elevation_torque, load.wrench):
         found |= _load(given, far)
     return found
 

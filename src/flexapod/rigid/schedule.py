@@ -6,6 +6,7 @@ import numpy as np
 from numpy.typing import ArrayLike
 
 from flexapod.model import (
+    ActuatorLoad,
     ConstantLaw,
     ConstantWrench,
     CsvLaw,
@@ -62,12 +63,12 @@ def load_law(law: LoadLaw, t: ArrayLike) -> Array:
     return np.interp(t, law.time, law.value)
 
 
-def wrench(load: Load, t: ArrayLike) -> Array:
+def wrench(load: Load | ActuatorLoad, t: ArrayLike) -> Array:
     """Force [N] and moment [N m] at the tool, world axes, shape (T, 6); a table is interpolated linearly.
 
     Parameters
     ----------
-    load : flexapod.model.Load
+    load : flexapod.model.Load or ActuatorLoad
     t : array_like, shape (T,)
         Instants [s].
     """

@@ -12,7 +12,7 @@ from flexapod import model
 from flexapod.rigid.rotations import exponential, matrix
 from flexapod.scene.robot import lateral_values
 from flexapod.scene.skeleton import STATIONS, Scene, Skeleton, around
-from flexapod.study.after.summary import tool_apart
+from flexapod.study.after.summary import tip_size, tool_apart
 from flexapod.typing import Array
 
 if TYPE_CHECKING:
@@ -133,13 +133,15 @@ class RobotMotion:
 
 
 class ActuatorMotion:
-    """The beam of a single actuator's result over time; the plane of motion X, Y is drawn as x, z."""
+    """The beam of a single actuator's result over time; a plane of motion X, Y is drawn as x, z."""
 
     def __init__(self, study: model.ActuatorStudy, data: Dataset) -> None:
         self.actuator, self.time = study.actuator, data.time.values
-        self.angle, self.length = data.angle.values, data.length.values
-        self.deflection = data.tip_deflection.values
+        self.angle, self.length, space = data.angle.values, data.length.values, study.actuator.space
+        self.elevation = data.elevation.values if space else None
+        self.deflection = tip_size(data)
         self._amplitude = data.mode_amplitude.values if "mode_amplitude" in data else None
+        self._offset = data.tip_deflection.values
         self._zeta = np.linspace(0.0, 1.0, BEAM_POINTS)
         self._shapes = None if self._amplitude is None else lateral_values(as_computed(study, data), self._zeta)
 
@@ -157,14 +159,21 @@ class ActuatorMotion:
         i = self.index(time)
         straight = 0.0 * self._zeta
         bent = straight if self._amplitude is None or self._shapes is None else self._amplitude[i] @ self._shapes
-        line = beam_line(self.actuator, self.angle[i], self.length[i], self._zeta)
-        return i, line + across(self.angle[i], scale * bent), line
+        axes = self.axes(i)
+        line = np.multiply.outer(self.actuator.hub_radius + self.length[i] * self._zeta, axes[0])
+        return i, line + scale * np.atleast_2d(bent).T @ axes[1:][: np.atleast_2d(bent).shape[0]], line
+
+    def axes(self, i: int | slice) -> Array:
+        """Unit vectors along the beam, and of its deflections, (2 or 3, 3); of several instants (2 or 3, T, 3)."""
+        if self.elevation is None:
+            return hub_axes(0.0 * self.angle[i], self.angle[i])[[0, 2]]
+        return hub_axes(self.angle[i], self.elevation[i])
 
     def tips(self, scale: float) -> Array:
         """Path of the drawn tip, (T, 3) [m]."""
-        along, across = self.actuator.hub_radius + self.length, scale * self.deflection
-        c, s = np.cos(self.angle), np.sin(self.angle)
-        return np.stack([along * c - across * s, 0.0 * along, along * s + across * c], axis=1)
+        axes, offset = self.axes(slice(None)), scale * self._offset.reshape(len(self.time), -1)
+        along = (self.actuator.hub_radius + self.length)[:, None] * axes[0]
+        return along + np.einsum("td,dti->ti", offset, axes[1:])
 
 
 def as_computed(study: S, data: Dataset) -> S:
@@ -182,6 +191,13 @@ def nearest(instants: Array, time: float) -> int:
         return 0
     after = int(np.clip(np.searchsorted(instants, time), 1, len(instants) - 1))
     return after - int(time - instants[after - 1] <= instants[after] - time)
+
+
+def hub_axes(angle: Array | float, elevation: Array | float) -> Array:
+    """Along a beam of this angle about z and elevation [rad], towards larger angles, towards larger elevations."""
+    (c, s), (d, e) = (np.cos(angle), np.sin(angle)), (np.cos(elevation), np.sin(elevation))
+    rows = [[c * d, s * d, e], [-s, c, 0.0 * e], [-c * e, -s * e, d]]
+    return np.array([np.stack(np.broadcast_arrays(*row), axis=-1) for row in rows])
 
 
 def beam_line(actuator: model.Actuator, angle: float, length: float, zeta: Array) -> Array:

@@ -1,4 +1,4 @@
-"""A single planar actuator in time: the same leg without payload, Eqs. (T9.1)-(T9.4)."""
+"""A single actuator in time, in its plane or in space: the same leg without payload, Eqs. (T9.1)-(T9.4), (T9.9)."""
 
 from collections.abc import Iterator
 from dataclasses import dataclass, field
@@ -8,19 +8,21 @@ import numpy as np
 from flexapod import rigid
 from flexapod.errors import ComputationError
 from flexapod.integration import GeneralizedAlpha
+from flexapod.mechanics.layout import Shapes, columns
 from flexapod.model import Actuator, ActuatorStudy, Simulation
 from flexapod.solve.kernel import kernel
 from flexapod.solve.march import Chunk, Problem, initial_step, march
-from flexapod.solve.parameters import actuator_parameters
+from flexapod.solve.parameters import SPACE, actuator_parameters
 from flexapod.solve.recording import Counters, Recording
 from flexapod.solve.robot_march import after_impact
-from flexapod.solve.shapes import beam_shapes, planar_shapes
+from flexapod.solve.shapes import actuator_shapes
 from flexapod.solve.start import consistent_start
 from flexapod.solve.stops import Stops
 from flexapod.solve.system import COLUMNS, Flow, State, System
 from flexapod.solve.tables import Law
 from flexapod.typing import Array
 
+SPACE_NAMES = {"extension": "l", "rotation": "alpha", "elevation": "beta"}
 SHORT = 0.1  # of the beam: its frequencies are then a hundred times those of the whole
 
 
@@ -30,7 +32,7 @@ class _NotInHub(ComputationError):
 
 @dataclass(frozen=True, kw_only=True)
 class ActuatorMarch:
-    """A prepared time integration of an actuator study; coordinates (beta, l, a_1..a_k), l from the pivot."""
+    """A prepared time integration of an actuator study; coordinates as `layout.Shapes` has them, l from the pivot."""
 
     system: System
     start: Flow
@@ -40,14 +42,22 @@ class ActuatorMarch:
 
 
 def actuator_system(
-    actuator: Actuator, simulation: Simulation, *, rotation: bool = True, extension: bool = True
+    actuator: Actuator, simulation: Simulation, *, rotation: bool = True, extension: bool = True, elevation: bool = True
 ) -> System:
-    """Equations of the planar actuator; ``rotation`` and ``extension`` say whether they are prescribed."""
-    functions = kernel(planar_shapes(beam_shapes(actuator, simulation)))
+    """Equations of an actuator; ``rotation``, ``extension``, ``elevation`` say whether they are prescribed."""
+    functions = kernel(actuator_shapes(actuator, simulation))
+    given = {"rotation": rotation, "extension": extension, "elevation": elevation}
     held = np.zeros((1, functions.shapes.size), dtype=bool)
-    held[0, functions.shapes.l_index], held[0, functions.shapes.index("beta")] = extension, rotation
-    none = np.zeros(0)
-    return System(kernel=functions, leg_p=actuator_parameters(actuator), joint_p=none[None], payload_p=none, held=held)
+    for name, at in places(functions.shapes).items():
+        held[0, at] = given[name]
+    p, none = actuator_parameters(actuator, functions.shapes), np.zeros(0)
+    return System(kernel=functions, leg_p=p, joint_p=none[None], payload_p=none, held=held)
+
+
+def places(shapes: Shapes) -> dict[str, int]:
+    """Positions of the coordinates that motions and loads drive, in the order of the ports, by name of the motion."""
+    names = {"extension": "l", "rotation": "beta"} if shapes.planar else SPACE_NAMES
+    return {motion: shapes.index(name) for motion, name in names.items()}
 
 
 def prepare_actuator(
@@ -58,8 +68,9 @@ def prepare_actuator(
     Parameters
     ----------
     study : ActuatorStudy
-    amplitudes, rates : (k,) arrays, optional
-        Initial modal amplitudes [m] and rates [m/s] in place of the static shape with ``initial.tip_displacement``.
+    amplitudes, rates : arrays, optional
+        Initial values [m] and rates [m/s] of all coordinates after those of `places`, in place of the static shape with
+        ``initial.tip_displacement``.
 
     Raises
     ------
@@ -67,12 +78,8 @@ def prepare_actuator(
         While iterating: the beam has slid wholly into the hub or out of it.
     """
     simulation, method = study.simulation, GeneralizedAlpha(study.simulation.rho_inf)
-    system = actuator_system(
-        study.actuator,
-        simulation,
-        rotation=study.motion.rotation is not None,
-        extension=study.motion.extension is not None,
-    )
+    prescribed = {name: getattr(study.motion, name) is not None for name in SPACE_NAMES}
+    system = actuator_system(study.actuator, simulation, **prescribed)
     law = _tables(study)
     h = initial_step(simulation.step, simulation.output_step)
     output_step, outputs = simulation.stored_step, simulation.outputs(study.duration)
@@ -87,22 +94,22 @@ def prepare_actuator(
         measure=lambda recording: _measure(system, recording),
         restart=lambda flow, t, h: after_impact(system, flow, law, t, method, h),
         stops=Stops.of(rigid.actuator_breaks(study), output_step, simulation.step, outputs),
-        check=lambda recording: _check(study.actuator, recording),
+        check=lambda recording: _check(system, study.actuator, recording),
         tolerance=simulation.tolerance,
     )
     chunks = march(problem, start, h, counters)
     if study.motion.extension is None:
-        chunks = _retracting(study.actuator, chunks)
+        chunks = _retracting(system, study.actuator, chunks)
     return ActuatorMarch(system=system, start=start, step=h, chunks=chunks, counters=counters)
 
 
-def _retracting(actuator: Actuator, chunks: Iterator[Chunk]) -> Iterator[Chunk]:
+def _retracting(system: System, actuator: Actuator, chunks: Iterator[Chunk]) -> Iterator[Chunk]:
     """The chunks; where they fail because next to nothing of the beam is left outside, that is what is said."""
-    now, free, rate = 0.0, actuator.free_length, 0.0
+    (now, free, rate), at = (0.0, actuator.free_length, 0.0), system.kernel.shapes.l_index
     try:
         for chunk in chunks:
             last = chunk.recording
-            now, free, rate = float(last.time[-1]), float(last.q[-1, 0, 1]) - actuator.hub_radius, float(last.v[-1, 1])
+            now, free, rate = last.time[-1], last.q[-1, 0, at] - actuator.hub_radius, last.v[-1, at]
             yield chunk
     except _NotInHub:
         raise
@@ -126,12 +133,14 @@ def static_shape(system: System, displacement: float) -> Array:
 
 
 def _tables(study: ActuatorStudy) -> Law:
-    """Table of the one leg, whose ports are l and beta, and no wrench."""
+    """Table of the one leg, whose ports are the coordinates of `places`, and the load on its tip."""
     actuator, motion, load = study.actuator, study.motion, study.load
-    commands = (
+    commands = [
         (motion.extension, actuator.hub_radius + actuator.free_length, load.force),
         (motion.rotation, actuator.angle, load.torque),
-    )
+    ]
+    if actuator.space:
+        commands.append((motion.elevation, actuator.elevation, load.elevation_torque))
 
     def law(t: Array) -> tuple[Array, Array]:
         table = np.zeros((len(t), 1, len(commands), COLUMNS))
@@ -141,7 +150,10 @@ def _tables(study: ActuatorStudy) -> Law:
                 table[:, 0, k, :3] = np.stack([x.position + home, x.rate, x.acceleration], axis=-1)
             if push is not None:
                 table[:, 0, k, 3] = rigid.load_law(push, t)
-        return table, np.zeros((len(t), 6))
+        wrench, none = rigid.wrench(load, t), np.zeros((len(t), 6))
+        if load.follow:
+            return table, np.hstack([none, wrench @ np.kron(np.eye(2), SPACE)])
+        return table, np.hstack([wrench, none])
 
     return law
 
@@ -149,27 +161,48 @@ def _tables(study: ActuatorStudy) -> Law:
 def _state(study: ActuatorStudy, system: System, law: Law, amplitudes: Array | None, rates: Array | None) -> State:
     """Static tip shape at rest in x/L(t), given rates; what is prescribed is where its law begins."""
     q, v, initial = np.zeros((1, system.n)), np.zeros(system.n), study.initial
-    q[0, :2] = study.actuator.angle, study.actuator.hub_radius + study.actuator.free_length
-    v[:2] = initial.angle_rate, initial.length_rate
+    shapes, at, actuator = system.kernel.shapes, places(system.kernel.shapes), study.actuator
+    home = {"rotation": actuator.angle, "elevation": actuator.elevation}
+    home["extension"] = actuator.hub_radius + actuator.free_length
+    rates_at = {"rotation": initial.angle_rate, "elevation": initial.elevation_rate, "extension": initial.length_rate}
+    for name, i in at.items():
+        q[0, i], v[i] = home[name], rates_at[name]
     table, held = law(np.zeros(1))[0][0, 0], system.held[0, system.ports]
-    for k, at in enumerate(system.ports):
+    for k, i in enumerate(system.ports):
         if held[k]:
-            q[0, at], v[at] = table[k, :2]
-    q[0, 2:] = static_shape(system, initial.tip_displacement) if amplitudes is None else amplitudes
-    v[2:] = 0.0 if rates is None else rates
-    none = np.zeros((1, 0))
-    return State(q=q, v=v, v_dot=np.zeros(system.n), lam=none, drive=np.zeros((1, 2)), pose=np.zeros(7))
+            q[0, i], v[i] = table[k, :2]
+    if amplitudes is None:
+        for name, displacement in lateral_signs(shapes, initial.tip_displacement, initial.elevation_displacement):
+            q[0, shapes.index(name) :][: shapes.a.count] = static_shape(system, displacement)
+    else:
+        q[0, len(at) :] = amplitudes
+    v[len(at) :] = 0.0 if rates is None else rates
+    none, drive = np.zeros((1, 0)), np.zeros((1, len(at)))
+    return State(q=q, v=v, v_dot=np.zeros(system.n), lam=none, drive=drive, pose=np.zeros(7))
+
+
+def lateral_signs(shapes: Shapes, along: float, up: float) -> list[tuple[str, float]]:
+    """Amplitudes by name, and their parts of a deflection ``along`` the rotation and ``up`` the elevation, (T9.9)."""
+    return [("a", along)] if shapes.planar else [("b", -along), ("a", up)]
 
 
 def _measure(system: System, recording: Recording) -> list[Array]:
-    """Tip deflection, and angle and length where they are free."""
-    groups = [recording.q[:, 0, 2:] @ system.kernel.shapes.a.tip]
-    groups += [recording.q[:, 0, j] for j in (0, 1) if not system.held[0, j]]
+    """Tip deflection, stretch and twist, and angles and length where they are free."""
+    shapes, q = system.kernel.shapes, recording.q[:, 0]
+    bent = [amplitudes(shapes, q, name) @ shapes.a.tip for name, _ in lateral_signs(shapes, 0, 0)]
+    stretch = [q[:, shapes.index("c")]] if shapes.axial.count else []  # counts as far as it does beside the deflection
+    groups = [np.stack([*bent, *stretch], axis=-1)] + ([q[:, shapes.index("t")]] if shapes.torsion else [])
+    groups += [q[:, j] for j in sorted(places(shapes).values()) if not system.held[0, j]]
     return groups
 
 
-def _check(actuator: Actuator, recording: Recording) -> None:
-    free = recording.q[:, 0, 1] - actuator.hub_radius
+def amplitudes(shapes: Shapes, q: Array, name: str) -> Array:
+    """Columns of q (T, n) of the amplitudes called ``name``."""
+    return q[:, columns(shapes.layout, name)]
+
+
+def _check(system: System, actuator: Actuator, recording: Recording) -> None:
+    free = recording.q[:, 0, system.kernel.shapes.l_index] - actuator.hub_radius
     most = actuator.length * (1 + 1e-9)  # with a hub radius the free length is a difference
     for bad, words in ((free <= 0, "has slid wholly into the hub"), (free > most, "has left the hub")):
         if bad.any():

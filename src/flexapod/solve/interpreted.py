@@ -107,5 +107,5 @@ def _step(
 
 def scaled_defect(system: System, flow: Flow, ratio: float) -> Flow:
     """Flow of a robot whose velocities normal to the closures are ``ratio`` times those of ``flow``, Eq. (T6.14)."""
-    m = system.matrices(flow, np.zeros(6))
+    m = system.matrices(flow, np.zeros(system.load_size))
     return replace(flow, v=flow.v + (ratio - 1) * normal_velocity(system, m, flow.v))

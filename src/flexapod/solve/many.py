@@ -6,7 +6,6 @@ from dataclasses import dataclass, fields, replace
 
 import numpy as np
 
-from flexapod.mechanics.layout import LOAD_SIZE
 from flexapod.rigid.rotations import turned
 from flexapod.solve.kernel import evaluate
 from flexapod.solve.system import Index, State, System
@@ -20,6 +19,7 @@ __all__ = [
     "port_forces",
     "residual",
     "residual_at_rest",
+    "tips",
 ]
 
 
@@ -135,7 +135,13 @@ def residual(
         outputs = [(system.n,), (6,), (6,), (2,), drive]
         r, g, net, *_ = evaluate(system.kernel, "leg_residual", legs * P, arguments, outputs)
     else:
-        r, g, *_ = evaluate(system.kernel, "leg_residual", legs * P, arguments, [(system.n,), (3,), (2,), drive])
+        r, g, *_ = evaluate(
+            system.kernel,
+            "leg_residual",
+            legs * P,
+            arguments,
+            [(system.n,), (3,), (2 + system.kernel.shapes.loaded,), drive],
+        )
     if system.kernel.shapes.closure == "point":
         points, net = evaluate(system.kernel, "joint_residual", legs * P, [pose, x.lam, system.joint_p], [(3,), (6,)])
         g = g - points
@@ -150,8 +156,7 @@ def _around(system: System, pose: Array, wrench: Array) -> list[Array]:
     """What the functions of each leg read from outside it: the payload's pose, or a load on a tip without payload."""
     shapes = system.kernel.shapes
     if shapes.loaded:
-        load = np.concatenate([wrench, np.zeros((*wrench.shape[:-1], LOAD_SIZE - 6))], axis=-1)
-        return [np.repeat(np.atleast_2d(load), system.legs, axis=0)]
+        return [np.repeat(np.atleast_2d(wrench), system.legs, axis=0)]
     return [pose] if shapes.closure == "pose" else []
 
 
@@ -190,3 +195,14 @@ def matrices_at_rest(system: System, x: RestStates, wrench: Array) -> RestMatric
         M=M, D=D, K=K, J=J, payload_M=payload_M, payload_K=payload_K + H.reshape(P, legs, hub, hub).sum(axis=1),
         P=moving.reshape(P, legs, rows, hub), X=X,
     )  # fmt: skip
+
+
+def tips(system: System, q: Array) -> Array:
+    """Tips of legs that carry no payload, in the world, of coordinates (P, legs, n): (P, legs, 3) [m]."""
+    n, none = np.zeros(system.n), np.zeros(0)
+    outside = [np.zeros(system.load_size)] if system.kernel.shapes.loaded else []
+    springs = np.zeros(system.kernel.shapes.commands)
+    count, outputs = q.shape[0] * system.legs, [(system.n,), (3,), (2 + system.kernel.shapes.loaded,)]
+    inputs = [q, n, n, none, springs, system.leg_p, *outside]
+    found = evaluate(system.kernel, "leg_residual", count, inputs, [*outputs, (springs.size // 2,)])
+    return found[1].reshape(*q.shape[:-1], 3)

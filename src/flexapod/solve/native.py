@@ -93,7 +93,7 @@ def advance(
     every: int,
     counters: Counters,
 ) -> Advance:
-    """Advance by the rows of ``tables`` ((T, legs, ports, 4), (T, 6)), recording each ``every`` steps."""
+    """Advance by the rows of ``tables`` ((T, legs, ports, 4), (T, load_size)), recording each ``every`` steps."""
     library = _library(system)
     table, wrench = (np.ascontiguousarray(x) for x in tables)
     steps = len(table) - 1
@@ -128,7 +128,7 @@ def scaled_defect(system: System, flow: Flow, ratio: float) -> Flow:
         The mass metric is singular on the closures.
     """
     new = flow.copy()
-    call, none = _Call(system, new, np.zeros(1), GeneralizedAlpha(1.0), 1.0, 1), np.zeros(6)
+    call, none = _Call(system, new, np.zeros(1), GeneralizedAlpha(1.0), 1.0, 1), np.zeros(system.load_size)
     scale = _library(system).scale_normal_velocity
     if scale(byref(call.settings), byref(call.state), _address(none), c_double(ratio - 1)):
         raise ComputationError(

@@ -149,23 +149,31 @@ def payload_parameters(robot: Robot) -> Array:
 PLANE = np.array([[0.0, 0.0, 1.0], [1.0, 0.0, 0.0], [0.0, 1.0, 0.0]])
 
 
-def actuator_parameters(actuator: Actuator) -> Array:
-    """Parameters of the single planar actuator, (1, size of LEG_PARAMETERS); beta is its angle from the horizontal."""
+#: ... in space: alpha turns about Z, beta towards Z, so x_leg = Z, z_leg = X, y_leg = -Y.
+SPACE = np.array([[0.0, 0.0, 1.0], [0.0, -1.0, 0.0], [1.0, 0.0, 0.0]])
+
+
+def actuator_parameters(actuator: Actuator, shapes: Shapes) -> Array:
+    """Parameters of a single actuator in kernel order, (1, any)."""
     values: dict[str, object] = dict.fromkeys((name for name, size in LEG_PARAMETERS if size == 1), 0.0)
     zeta, damping_time = damping_parts(actuator.damping)
     values |= {
         "rhoA": actuator.rhoA,
         "EI": actuator.EI,
-        "EA": 1.0,  # inextensible: no axial shape reads it
+        "EA": actuator.EA or 1.0,  # of an inextensible beam no axial shape reads it
+        "GJ": actuator.GJ,
+        "piston_axial_inertia": actuator.axial_inertia,
         "Lp": actuator.length,
         "mouth": actuator.hub_radius,
         "cylinder_inertia": actuator.hub_inertia,
+        "cylinder_axial_inertia": actuator.hub_axial_inertia,
         "zeta": zeta,
         "damping_time": damping_time,
-        "gravity": [0.0, -actuator.gravity, 0.0],
+        "gravity": -actuator.gravity * np.array([0.0, 0.0, 1.0] if actuator.space else [0.0, 1.0, 0.0]),
         "base": np.zeros(3),
-        "R0": PLANE.T,
+        "R0": (SPACE if actuator.space else PLANE).T,
         "tip_mass": actuator.tip_mass,
         "tip_inertia": actuator.tip_inertia,
+        "tip_axial_inertia": actuator.tip_axial_inertia,
     }
-    return _pack(LEG_PARAMETERS, values)[None, :]
+    return _pack(layout.leg_parameters(shapes), values)[None, :]

@@ -13,7 +13,7 @@ from flexapod.mechanics.layout import Shapes
 from flexapod.model import Actuator, Rectangle, Robot, Simulation, Tube
 from flexapod.rigid.limbs import ABSENT, COORDINATES, FREE, HELD, Limbs
 
-__all__ = ["beam_shapes", "leg_shapes", "planar_shapes", "robot_shapes", "space_shapes"]
+__all__ = ["actuator_shapes", "beam_shapes", "leg_shapes", "planar_shapes", "robot_shapes", "space_shapes"]
 
 SOLID = "solid"
 
@@ -46,6 +46,19 @@ def planar_shapes(lateral: LateralBasis) -> Shapes:
     none = bases.lateral_basis("clamped-free", 0)
     axial = bases.axial_basis(0)
     return Shapes(a=lateral, b=none, axial=axial, planar=True, closure="none", tip_body=True)
+
+
+def actuator_shapes(actuator: Actuator, simulation: Simulation, rate: float = 0.0) -> Shapes:
+    """Shapes of a single actuator: in its plane, or in space with stretch and twist where they have a stiffness.
+
+    ``rate``: see `beam_shapes`.
+    """
+    lateral = beam_shapes(actuator, simulation, rate)
+    if not actuator.space:
+        return planar_shapes(lateral)
+    axial = simulation.axial_shapes(actuator.axial_modes) if actuator.EA is not None else 0
+    torsion = actuator.GJ is not None and simulation.lateral_shapes > 0
+    return space_shapes(lateral, axial, closure="none", torsion=torsion, tip_body=True)
 
 
 def leg_shapes(robot: Robot, simulation: Simulation) -> LateralBasis:
@@ -85,7 +98,7 @@ def _ratios(actuator: Actuator, basis: str, rate: float) -> tuple[float, ...]:
     if basis == "tip-load" and rate:
         speed = abs(rate) * float(np.sqrt(actuator.rhoA * length**4 / actuator.EI))
         return mass, inertia, speed, actuator.hub_radius / length
-    return (0.0, float(inertia > 0)) if basis == "tip-load" else ()
+    return (0.0, float(inertia > 0 or actuator.space)) if basis == "tip-load" else ()
 
 
 @lru_cache(maxsize=16)

@@ -105,6 +105,11 @@ class System:
         """Coordinates of the whole: legs * n, and six of the payload."""
         return self.legs * self.n + 6 * self.hub
 
+    @property
+    def load_size(self) -> int:
+        """Numbers of a load: a wrench on the payload, or what `layout.LOAD_SIZE` counts on a tip without payload."""
+        return 6 if self.hub else LOAD_SIZE
+
     @cached_property
     def hub_free(self) -> Index:
         """Coordinates of the payload that nothing holds."""
@@ -114,7 +119,9 @@ class System:
     def ports(self) -> Index:
         """Coordinates that follow a table in some leg, or are pushed by it: those with a drive's spring first."""
         shapes = self.kernel.shapes
-        driven = [shapes.index(name) for name, _ in shapes.drives] + [shapes.index("beta")] * shapes.planar
+        driven = [shapes.index(name) for name, _ in shapes.drives]
+        if not self.hub:
+            driven += [shapes.index(name) for name in ("alpha", "beta") if shapes.has(name)]
         return np.array([*driven, *(k for k in np.flatnonzero(self.held.any(axis=0)) if k not in driven)])
 
     @cached_property
@@ -145,19 +152,21 @@ class System:
     def residual(self, x: State, table: Array, wrench: Array) -> tuple[Array, Array, Array]:
         """Balance of every coordinate (size,) [N, N m], closures (legs * rows,) [m], powers (3,) [W].
 
-        ``table``, (legs, ports, 4): value, rate, acceleration and force of each port. What holds a coordinate of the
-        payload is left in its row.
+        ``table``, (legs, ports, 4): value, rate, acceleration and force of each port; ``wrench``, (load_size,). What
+        holds a coordinate of the payload is left in its row.
         """
         v, v_dot, force = self.by_leg(x.v), self.by_leg(x.v_dot), table[:, :, 3] + x.drive
         inputs = [x.q, v, v_dot, x.lam, self.spring_commands(table), self.leg_p, *self._around(x, wrench)]
         meeting = [(6,), (6,)] if self.rows == 6 else [(3,)]
-        outputs = [(self.n,), *meeting, (2,), (self.kernel.shapes.commands // 2,)]
+        shapes = self.kernel.shapes
+        outputs = [(self.n,), *meeting, (2 + shapes.loaded,), (shapes.commands // 2,)]
         r, gaps, *push, power, _ = evaluate(self.kernel, "leg_residual", self.legs, inputs, outputs)
         if self.rows == 3:
             joints = [x.pose, x.lam, self.joint_p]
             points, *push = evaluate(self.kernel, "joint_residual", self.legs, joints, [(3,), (6,)])
             gaps -= points
-        gaps, powers = gaps[:, : self.rows], np.append(power.sum(axis=0), 0.0)
+        gaps, powers = gaps[:, : self.rows], np.zeros(3)
+        powers[: power.shape[1]] = power.sum(axis=0)
         r[:, self.ports] -= force
         powers[1] += (force * v[:, self.ports]).sum()
         if not self.hub:
@@ -210,7 +219,7 @@ class System:
         shapes = self.kernel.shapes
         if shapes.closure == "pose":
             return [x.pose]
-        return [np.concatenate([wrench, np.zeros(LOAD_SIZE - 6)])] if shapes.loaded else []
+        return [wrench] if shapes.loaded else []
 
     def moved(self, x: State, step: Array) -> State:
         """State displaced by a step in the flat coordinates: q + dq, x + dx, R exp(theta^)."""

@@ -14,7 +14,8 @@ from flexapod.typing import Array
 
 __all__ = ["Law", "feed_forward", "robot_law"]
 
-#: Of instants (T,): the table of the ports (T, legs, ports, 4), and the wrench (T, 6) at the tool in world axes.
+#: Of instants (T,): the table of the ports (T, legs, ports, 4), and the load (T, load_size), of a payload the wrench
+#: at the tool in world axes.
 Law = Callable[[Array], tuple[Array, Array]]
 
 

@@ -1,4 +1,4 @@
-"""The single planar actuator: a study in, a Dataset out."""
+"""The single actuator, in its plane or in space: a study in, a Dataset out."""
 
 from __future__ import annotations
 
@@ -12,10 +12,11 @@ from flexapod.errors import InputError
 from flexapod.solve.actuator_march import ActuatorMarch, prepare_actuator
 from flexapod.study.after.plausibility import actuator_warnings
 from flexapod.study.after.results import energy_results
+from flexapod.study.after.space import space_results
 from flexapod.study.arguments import FileLike, read
 from flexapod.study.attributes import attributes, march_attributes
 from flexapod.study.before.checks import check_actuator_path
-from flexapod.study.names import ACTUATOR_FORMS, dataset
+from flexapod.study.names import ACTUATOR_FORMS, DIRECTIONS, SPACE_FORMS, dataset
 from flexapod.study.record import Progress, Record, collect, finished
 from flexapod.typing import Array
 
@@ -59,7 +60,8 @@ def simulate_actuator(
     Returns
     -------
     xarray.Dataset
-        `tip_deflection`, `length`, `angle`, `mode_amplitude`, energies, `torque`, `force` over time, SI units.
+        `tip_deflection`, `length`, `angle`, `mode_amplitude`, energies, `torque`, `force` over time, SI units; in space
+        the deflection has a direction, and there are `elevation`, `elevation_torque`, `tip_stretch`, `tip_twist`.
         ``partial = 1`` in the attributes if the integration stopped before its end.
 
     Raises
@@ -87,7 +89,7 @@ def _simulated(study: model.ActuatorStudy, progress: Progress | None) -> Dataset
 
 
 def _dataset(study: model.ActuatorStudy, march: ActuatorMarch, record: Record, remarks: list[str]) -> Dataset:
-    warnings = [*study.warnings, *remarks, *actuator_warnings(study.actuator, march.system.kernel.shapes.a, record)]
+    warnings = [*study.warnings, *remarks, *actuator_warnings(study.actuator, march.system.kernel.shapes, record)]
     attrs = {
         **attributes(study, warnings),
         **march_attributes(study, march.counters, record, compiled=march.system.kernel.library is not None),
@@ -96,7 +98,10 @@ def _dataset(study: model.ActuatorStudy, march: ActuatorMarch, record: Record, r
     coords: dict[str, ArrayLike] = {"time": record.time}
     if count:
         coords["mode"] = np.arange(1, count + 1)
-    return dataset(_results(study, march, record), coords, attrs, ACTUATOR_FORMS)
+    if not study.actuator.space:
+        return dataset(_results(study, march, record), coords, attrs, ACTUATOR_FORMS)
+    coords["direction"] = list(DIRECTIONS)
+    return dataset(space_results(study, march, record), coords, attrs, {**ACTUATOR_FORMS, **SPACE_FORMS})
 
 
 def _as_study(

@@ -175,6 +175,11 @@ _ACTUATOR = {
     "tip_position": Variable(("time", "plane_axis"), "m", "tip in the plane of motion"),
     "torque": Variable(_T, "N m", "torque on the hub"),
     "force": Variable(_T, "N", "axial force on the beam, positive pushes out"),
+    "elevation": Variable(_T, "rad", "angle of the hub towards Z, of an actuator in space"),
+    "elevation_rate": Variable(_T, "rad s-1", "rate of the elevation of the hub"),
+    "elevation_torque": Variable(_T, "N m", "torque on the hub towards Z"),
+    "tip_stretch": Variable(_T, "m", "lengthening of the beam by tension"),
+    "tip_twist": Variable(_T, "rad", "twist of the tip about the beam"),
 }
 
 #: Every variable of every Dataset, by name.
@@ -185,6 +190,16 @@ ACTUATOR_FORMS = {
     "tip_deflection": Variable(_T, "m", "deflection of the tip in the hub frame"),
     "energy_potential": Variable(_T, "J", "potential energy of gravity, zero at the pivot"),
     "energy_strain": Variable(_T, "J", "strain energy of the beam"),
+}
+
+#: Of an actuator in space: towards larger angles, and towards larger elevations.
+DIRECTIONS = ("rotation", "elevation")
+SPACE_FORMS = {
+    "tip_deflection": Variable(("time", "direction"), "m", "deflection of the tip in the hub frame"),
+    "mode_amplitude": Variable(("time", "direction", "mode"), "m", "amplitude of a lateral shape"),
+    "tip_position": Variable(_TA, "m", "tip, world axes"),
+    "angle": Variable(_T, "rad", "angle of the hub about Z"),
+    "torque": Variable(_T, "N m", "torque on the hub about Z"),
 }
 
 #: Of a single pose.

@@ -36,8 +36,9 @@ class Interrupted(KeyboardInterrupt):
 class Record:
     """Quantities at T stored instants, axis 0 = time.
 
-    ``q`` (T, legs, n) leg coordinates; ``rate`` (T, legs, 2) rates of l and beta; ``turn`` (T, 3) angular velocity in
-    platform axes; ``lam``, ``drive``, ``pose``, ``energy``, ``sums``, ``closure`` as in `solve.recording.Recording`.
+    ``q`` (T, legs, n) leg coordinates; ``rate`` (T, legs, any) rates of l and, backwards, of what stands before it
+    (beta, alpha); ``turn`` (T, 3) angular velocity in platform axes;
+    ``lam``, ``drive``, ``pose``, ``energy``, ``sums``, ``closure`` as in `solve.recording.Recording`.
     ``failure``: why the integration stopped early, in words, or None; ``interrupted``: by the user.
     """
 
@@ -100,7 +101,7 @@ def _kept(chunk: Chunk, l_index: int) -> dict[str, Array]:
     legs, n = r.q.shape[1:]
     rates = r.v[:, : legs * n].reshape(len(r.time), legs, n)
     kept = {name: getattr(r, name) for name in ("time", "q", "lam", "drive", "pose", "energy", "sums", "closure")}
-    kept["rate"] = rates[:, :, [l_index, l_index - 1]]
+    kept["rate"] = rates[:, :, l_index::-1]
     kept["turn"] = r.v[:, legs * n + 3 : legs * n + 6]
     return {name: np.array(array) for name, array in kept.items()}  # copies: views would keep the whole chunk
 

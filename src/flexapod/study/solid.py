@@ -158,6 +158,7 @@ def _only_prescribed(study: object) -> model.ActuatorStudy:
         raise InputError(
             "is not the study of a single actuator", key="study", value=type(study).__name__, allowed="[actuator]"
         )
+    study.actuator.refuse_space()
     _laws(study)
     if any(jump < study.duration for jump in study.motion.rate_jumps):
         raise InputError(

@@ -16,6 +16,7 @@ from flexapod.scene.geometry import (
     across,
     beam_line,
     disc,
+    hub_axes,
     strip,
     tube,
     tube_faces,
@@ -71,7 +72,7 @@ class ActuatorScene(Scene):
             line = beam_line(self._study.actuator, pose[0], pose[1], np.linspace(0.0, 1.0, BEAM_POINTS))
             with self.client.atomic():
                 self._only()
-                self._draw(self._study.actuator, line, pose[0], pose[1])
+                self._draw(self._study.actuator, line, hub_axes(0.0, pose[0])[0], pose[1])
                 self._draws(f"the straight beam, {text(pose[1], 'm', 4)} outside the hub", STRAIGHT)
 
     def set_time(self, time: float) -> None:
@@ -83,7 +84,7 @@ class ActuatorScene(Scene):
             i, bent, straight = self._motion.at(time, self.scale)
             with self.client.atomic():
                 self._only(*OF_RESULTS)
-                self._draw(self._motion.actuator, bent, float(self._motion.angle[i]), float(self._motion.length[i]))
+                self._draw(self._motion.actuator, bent, self._motion.axes(i)[0], float(self._motion.length[i]))
                 self._draw_ghost(straight)
                 self._mark(straight[-1], bent[-1], float(self._motion.deflection[i]))
                 self._draws("")
@@ -98,7 +99,7 @@ class ActuatorScene(Scene):
             bent = line + across(actuator.angle, amplitude * length * phase * modes.shape[mode - 1])
             with self.client.atomic():
                 self._only("rigid ghost")
-                self._draw(actuator, bent, actuator.angle, length)
+                self._draw(actuator, bent, hub_axes(0.0, actuator.angle)[0], length)
                 self._draw_ghost(line)
                 self._draws(f"mode {mode}{where and f' at {where}'}", mode_note(amplitude * length))
 
@@ -146,9 +147,8 @@ class ActuatorScene(Scene):
             "words": self._add("deviation arrow", words),
         }
 
-    def _draw(self, actuator: model.Actuator, line: Array, angle: float, length: float) -> None:
+    def _draw(self, actuator: model.Actuator, line: Array, axis: Array, length: float) -> None:
         """The beam outside the hub, and what is left of it behind the mouth along the hub's axis."""
-        axis = np.array([np.cos(angle), 0.0, np.sin(angle)])
         radius = 0.008 * (actuator.hub_radius + actuator.length)
         behind = line[0] - max(actuator.length - length, 1e-3 * actuator.length) * axis
         self._nodes["beam"].vertices = tube(line, radius)

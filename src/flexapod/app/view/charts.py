@@ -13,7 +13,7 @@ from numpy.typing import NDArray
 from flexapod.scene.colours import AXIS_COLORS, ENERGIES, colors_of_legs
 from flexapod.scene.drives import drives
 from flexapod.scene.geometry import nearest
-from flexapod.study.after.summary import POINT_WORDS
+from flexapod.study.after.summary import POINT_WORDS, tip_size
 from flexapod.study.words import NOTHING, cleared_lines, number, scale
 from flexapod.typing import Array
 
@@ -80,7 +80,9 @@ def charts(data: Dataset, point: str = "com") -> dict[str, Chart]:
             "energies": _energies(data),
         }
     return {
-        "tip deflection": _chart(data, "Tip in the frame of the hub", data.tip_deflection, "m", ["tip"], _OTHERS),
+        "tip deflection": _chart(
+            data, "Tip in the frame of the hub", data.length.copy(data=tip_size(data)), "m", ["tip"], _OTHERS
+        ),
         "length": _chart(data, "Length outside the hub", data.length, "m", ["length"], _OTHERS),
         "torque": _chart(data, "Torque on the hub", data.torque, "N m", ["torque"], _OTHERS),
         "force": _chart(data, "Axial force on the beam", data.force, "N", ["force"], _OTHERS),

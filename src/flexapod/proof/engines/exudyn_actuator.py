@@ -36,6 +36,7 @@ class ActuatorProblem:
         for key in ("tip_mass", "tip_inertia", "damping"):
             if getattr(actuator, key):
                 raise InputError("is not modelled in Exudyn", key=key, value=getattr(actuator, key), allowed="0")
+        actuator.refuse_space()
         angle, length = self.rotation, self.extension
         if max(abs(angle.acceleration[0]), abs(length.acceleration[0])) > _SMALL:
             raise InputError("starts with an acceleration, which Exudyn's start leaves out", key="motion")

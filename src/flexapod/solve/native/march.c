@@ -1,18 +1,18 @@
 /* Generalized-alpha for constrained systems on R^n x SE(3), Eqs. (T6.1)-(T6.5), fixed step within a call. */
 
-/* What the functions of a leg may read from outside it: the payload's pose, or a load on a tip without payload, with
-   zeros for the part of it that would follow the tip's axes */
+/* What the functions of a leg may read from outside it: the payload's pose, or a load on a tip without payload */
 enum { OUTSIDE = 12 };
+static int load_size(const Settings *s) { return s->hub ? 6 : OUTSIDE; }
 static void outside(const Settings *s, const Work *w, const double *wrench, lanes *to) {
   double x[OUTSIDE] = {0};
-  if (s->hub) memcpy(x, w->payload.pose, sizeof w->payload.pose); else memcpy(x, wrench, 6*sizeof(double));
+  if (s->hub) memcpy(x, w->payload.pose, sizeof w->payload.pose); else memcpy(x, wrench, sizeof x);
   for (int j = 0; j < OUTSIDE; j++) to[j] = (lanes){0} + x[j];
 }
 
 /* Residuals of a vector of legs, how far they are from closed, and the wrench that they put on the payload */
 static void residual_of_legs(const Settings *s, int i, const lanes *around, Work *w, lanes *wrench) {
   LegState *leg = &w->leg[i];
-  lanes powers[2], drive[SPRINGS], tip[6], point[6];
+  lanes powers[3] = {{0}}, drive[SPRINGS], tip[6], point[6];
   const lanes *in[] = {leg->q, leg->v, leg->v_dot, leg->lam, w->command[i], w->p[i], around};
   lanes *with_pose[] = {w->r[i], w->g[i], wrench, powers, drive}, *with_point[] = {w->r[i], tip, powers, drive};
   leg_residual_lanes(in, ROWS == 6 ? with_pose : with_point);
@@ -27,7 +27,7 @@ static void residual_of_legs(const Settings *s, int i, const lanes *around, Work
     w->r[i][s->port[k]] -= force;
     powers[1] += force*leg->v[s->port[k]];
   }
-  for (int j = 0; j < 2; j++) w->powers[j] += sum(s, i, powers[j]);
+  for (int j = 0; j < 3; j++) w->powers[j] += sum(s, i, powers[j]);
 }
 
 /* Residual of every equation at the present state; wrench in world axes at the tool. */
@@ -291,7 +291,7 @@ int march(const Settings *s, State *x, const double *table, const double *wrench
   memcpy(past.u_dot, w->payload.u_dot, sizeof past.u_dot);
   for (long t = 1; t <= steps; t++) {
     predict_body(s, table + t*width, &past, w, pose_step);
-    int fault = iterate(s, x, wrench + 6*t, pose_step, &age, w);
+    int fault = iterate(s, x, wrench + load_size(s)*t, pose_step, &age, w);
     if (fault) { x->steps += t; x->bad_leg = worst_leg(s, w); return fault; }
     age++;
     for (int j = 0; j < 3; j++) { x->sums[j] += 0.5*s->h*(x->powers[j] + w->powers[j]); x->powers[j] = w->powers[j]; }

@@ -8,10 +8,12 @@ from functools import lru_cache
 import numpy as np
 
 from flexapod.bases import LateralBasis
+from flexapod.mechanics.layout import Shapes
 from flexapod.model import Actuator, Leg, Robot
 from flexapod.model.simulation import SOLID
 from flexapod.rigid.robot import rigid_limbs
 from flexapod.rigid.rotations import matrix
+from flexapod.solve.actuator_march import amplitudes, lateral_signs
 from flexapod.solve.many import RestStates
 from flexapod.solve.system import System
 from flexapod.study.after.legs import base_points, bending_basis, lateral
@@ -67,10 +69,10 @@ def _leg_warnings(robot: Robot, system: System, record: Record | RestStates, whe
     return _worst_of_each(found)
 
 
-def actuator_warnings(actuator: Actuator, basis: LateralBasis, record: Record) -> list[str]:
+def actuator_warnings(actuator: Actuator, shapes: Shapes, record: Record) -> list[str]:
     """Remarks on a simulation of a single actuator."""
-    free = record.q[:, 0, 1] - actuator.hub_radius
-    lateral = record.q[:, :, 2:]
+    basis, free = shapes.a, record.q[:, 0, shapes.l_index] - actuator.hub_radius
+    lateral = np.stack([amplitudes(shapes, record.q[:, 0], name) for name, _ in lateral_signs(shapes, 1, 1)], axis=1)
     when = _When(record.time)
     found = _slope(basis, lateral, free, when)
     if actuator.section is not None and actuator.material is not None:

@@ -144,7 +144,7 @@ def summary(data: Dataset, point: str = "com") -> RobotSummary | ActuatorSummary
         raise InputError("is not a point of the payload", key="point", value=point, allowed=", ".join(POINTS))
     partial = bool(data.attrs.get("partial", 0))
     if "com_deviation" not in data:
-        tip = data.tip_deflection.values
+        tip = tip_size(data)
         at, length = int(np.abs(tip).argmax()), data.length.values
         return ActuatorSummary(
             peak=float(np.abs(tip[at])),
@@ -171,6 +171,12 @@ def summary(data: Dataset, point: str = "com") -> RobotSummary | ActuatorSummary
         tips=float(np.linalg.norm(data.tip_deflection.values, axis=-1).max(initial=0.0)),
         partial=partial,
     )
+
+
+def tip_size(data: Dataset) -> Array:
+    """Deflection of a single actuator's tip over time; in space its size, (T,) [m]."""
+    tip = data.tip_deflection.values
+    return tip if tip.ndim == 1 else np.linalg.norm(tip, axis=1)
 
 
 def summaries(data: Dataset) -> list[RobotSummary | ActuatorSummary]:

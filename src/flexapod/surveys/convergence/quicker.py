@@ -92,4 +92,4 @@ def _curve(data: Dataset) -> Array:
     """What is compared: the deviation of the centre of mass, or of a single actuator the deflection of its tip."""
     if "com_deviation" in data:
         return data["com_deviation"].values
-    return data["tip_deflection"].values[:, None]
+    return data["tip_deflection"].values.reshape(data.sizes["time"], -1)

@@ -216,5 +216,5 @@ def _failed(setting: Setting, why: str) -> Trial:
 
 def _curves(data: Dataset) -> dict[str, Array]:
     if "com_deviation" not in data:
-        return {"tip": data.tip_deflection.values[:, None]}
+        return {"tip": data.tip_deflection.values.reshape(data.sizes["time"], -1)}
     return {"deviation": data.com_deviation.values, "tip": data.tip_deflection.values}

@@ -11,7 +11,8 @@ import numpy as np
 from flexapod.errors import InputError, closest
 from flexapod.model import ActuatorStudy, Study
 from flexapod.study.after.leg_results import absent, leg_labels
-from flexapod.study.names import ACTUATOR_FORMS, VARIABLES, Variable
+from flexapod.study.after.summary import tip_size
+from flexapod.study.names import ACTUATOR_FORMS, SPACE_FORMS, VARIABLES, Variable
 from flexapod.surveys.sweeps.plan import Keep
 from flexapod.surveys.sweeps.points import Resolved
 from flexapod.surveys.sweeps.scalars import ROBOT_DEFAULTS, ROBOT_SCALARS, Scalar
@@ -46,7 +47,7 @@ class Kept:
 
 
 def _tip(data: Dataset) -> Array:
-    return np.abs(data.tip_deflection.values)
+    return np.abs(tip_size(data))
 
 
 #: Scalars of a single actuator's simulation, from its Dataset.
@@ -55,7 +56,7 @@ ACTUATOR_SCALARS: Mapping[str, Scalar] = {
     "tip_deflection_rms": Scalar(
         (), "m", "root mean square deflection of the tip", lambda d: np.sqrt(np.mean(np.square(_tip(d))))
     ),
-    "tip_deflection_end": Scalar((), "m", "deflection of the tip at the end", lambda d: d.tip_deflection.values[-1]),
+    "tip_deflection_end": Scalar((), "m", "deflection of the tip at the end", lambda d: tip_size(d)[-1]),
     "torque_peak": Scalar((), "N m", "largest torque on the hub", lambda d: np.abs(d.torque.values).max()),
     "force_peak": Scalar((), "N", "largest axial force on the beam", lambda d: np.abs(d.force.values).max()),
     "steps": Scalar((), "1", "steps of the time integration", lambda d: float(d.attrs["steps"])),
@@ -100,12 +101,14 @@ def _records(study: Study | ActuatorStudy) -> dict[str, Variable]:
     """Variables over time that a simulation of this kind of study has."""
     over_time = {name: entry for name, entry in VARIABLES.items() if "time" in entry.dims[:1]}
     actuator = ("length", "angle", "length_rate", "angle_rate", "mode_amplitude", "tip_position", "torque", "force")
+    turned = ("elevation", "elevation_rate", "elevation_torque")
     shared = ("energy_kinetic", "energy_dissipated", "work_drive", "work_external", "closure_residual")
     if isinstance(study, ActuatorStudy):
-        return {name: over_time[name] for name in (*actuator, *shared)} | ACTUATOR_FORMS
+        forms = {name: over_time[name] for name in (*actuator, *shared)} | ACTUATOR_FORMS
+        return forms | ({name: over_time[name] for name in turned} | SPACE_FORMS if study.actuator.space else {})
     kinematics = ("leg_length_rate", "leg_length_acceleration", "leg_angle_rigid", "platform_position")
     reactions = ("base_force_rigid", "base_moment_rigid", "held_force_rigid", "joint_moment_rigid")
-    others = {*actuator, *kinematics, *reactions, *absent(study.robot)}
+    others = {*actuator, *turned, "tip_stretch", "tip_twist", *kinematics, *reactions, *absent(study.robot)}
     return {name: entry for name, entry in over_time.items() if name not in others}
 
 

@@ -317,7 +317,7 @@ def _shape_numbers(study: Study | ActuatorStudy) -> tuple[object, ...]:
         return (robot.legs[0].piston, *circles, robot.home_height, mouths) if basis == "solid" else ()
     beam = study.actuator
     if basis == "tip-load":
-        return (beam.tip_inertia > 0,)
+        return (beam.tip_inertia > 0 or beam.space,)
     by_basis = {"tip-mass": (beam.tip_mass, beam.tip_inertia, beam.rhoA), "solid": (beam.section,)}
     return (*by_basis[basis], beam.free_length) if basis in by_basis else ()
 

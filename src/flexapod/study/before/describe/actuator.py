@@ -46,6 +46,9 @@ class ActuatorDescription:
     free_lengths: tuple[float, float] | None
     beam: tuple[BeamDescription, ...]
     tip_displacement: float
+    elevations: tuple[float, float] | None
+    elevation_displacement: float
+    elevation_rate: float
     angle_rate: float
     length_rate: float
     remarks: tuple[str, ...]
@@ -65,7 +68,10 @@ def describe_actuator(study: model.ActuatorStudy) -> ActuatorDescription:
     """
     remarks, actuator, t = check_actuator_path(study), study.actuator, path_instants(study)
     rotation, extension = study.motion.rotation, study.motion.extension
-    angles = lengths = None
+    angles = lengths = elevations = None
+    if actuator.space and study.motion.elevation is not None:
+        raised = actuator.elevation + rigid.motion_law(study.motion.elevation, t).position
+        elevations = (float(raised[0]), float(raised[-1]))
     if rotation is not None:
         turned = actuator.angle + rigid.motion_law(rotation, t).position
         angles = (float(turned[0]), float(turned[-1]))
@@ -82,11 +88,14 @@ def describe_actuator(study: model.ActuatorStudy) -> ActuatorDescription:
         file=study.path,
         duration=study.duration,
         fidelity=study.simulation.fidelity,
-        driven=tuple(name for name, law in (("rotation", rotation), ("extension", extension)) if law is None),
+        driven=tuple(name for name in model.DRIVEN_BY if getattr(study.motion, name) is None),
         angles=angles,
         free_lengths=lengths,
         beam=tuple(_beam(study, name, length) for name, length in places.items()),
         tip_displacement=study.initial.tip_displacement,
+        elevations=elevations,
+        elevation_displacement=study.initial.elevation_displacement,
+        elevation_rate=study.initial.elevation_rate,
         angle_rate=study.initial.angle_rate,
         length_rate=study.initial.length_rate,
         remarks=(*study.warnings, *remarks),
