@@ -137,7 +137,7 @@ def test_files_that_are_none(flexapod, folder, command):
 def test_wrong_kind_of_study(flexapod, study):
     assert refusal(flexapod("actuator", study()), "study.toml: is the study of a robot", "`flexapod run study.toml`")
     actuator = study(preset="paper-actuator")
-    assert refusal(flexapod("modes", actuator), "a single actuator", "`flexapod check study.toml`")
+    assert refusal(flexapod("modes", actuator, "--pose", "roll=1deg"), "--pose", "a single actuator", "Leave it out")
 
 
 def test_actuator_that_leaves_its_hub(flexapod, study):

@@ -124,6 +124,8 @@ def test_check_of_an_actuator(flexapod, study):
     expected = np.array([1.875104068712, 4.694091132974, 7.854757438238]) ** 2 / (2 * np.pi) * (756.65 / 4.02) ** 0.5
     assert beam[0]["frequency"] == pytest.approx(expected / 1.83**2, rel=1e-9)
     assert beam[1]["frequency"] == pytest.approx(expected / 2.83**2, rel=1e-9)
+    found = json.loads(flexapod("modes", file, "--json").stdout)["modes"]
+    assert [mode["frequency"] for mode in found] == pytest.approx(expected / 1.83**2, rel=1e-9)
 
 
 def test_modes_at_a_pose(flexapod, study, folder):

@@ -22,7 +22,7 @@ def show_actuator(found: ActuatorDescription) -> None:
     for line in _motion(found):
         print_text(line, indent=2)
     print_text()
-    print_text("Beam, rotation and extension held")
+    print_text("Beam, hub and extension held")
     unit, sags = column([beam.sag or math.nan for beam in found.beam], "m")
     length, lengths = column([beam.free_length for beam in found.beam], "m")
     header = [
@@ -34,8 +34,9 @@ def show_actuator(found: ActuatorDescription) -> None:
         f"sag if level [{unit}]",
     ]
     rows = [
-        _row(beam, free, "no gravity" if sag == "n/a" else sag)
+        row
         for beam, free, sag in zip(found.beam, lengths, sags, strict=True)
+        for row in _rows(beam, free, "no gravity" if sag == "n/a" else sag)
     ]
     print_table(header, rows)
     for beam in found.beam:
@@ -76,12 +77,11 @@ def _motion(found: ActuatorDescription) -> list[str]:
     return lines
 
 
-def _row(beam: BeamDescription, free: str, sag: str) -> list[str]:
-    return [
-        f"  {beam.name}",
-        free,
-        ", ".join(f"{f:.4g}" for f in beam.frequency) or "n/a",
-        ", ".join(f"{100 * d:.2g}" for d in beam.damping_ratio) or "n/a",
-        "n/a" if beam.slenderness is None else f"{beam.slenderness:.3g}",
-        sag,
-    ]
+def _rows(beam: BeamDescription, free: str, sag: str) -> list[list[str]]:
+    """A row of the table; of a beam with modes of several kinds one more for each kind."""
+    slenderness = "n/a" if beam.slenderness is None else f"{beam.slenderness:.3g}"
+    kinds = [(f"    {kind}", "", *numbers, "", "") for kind, *numbers in beam.by_kind]
+    if len(kinds) > 1:
+        return [[f"  {beam.name}", free, "", "", slenderness, sag], *map(list, kinds)]
+    numbers = kinds[0][2:4] if kinds else ("n/a", "n/a")
+    return [[f"  {beam.name}", free, *numbers, slenderness, sag]]

@@ -13,6 +13,8 @@ from flexapod.app.options import Json, NoFigures, StudyFile, as_options
 if TYPE_CHECKING:
     from xarray import Dataset
 
+    from flexapod.model import ActuatorStudy, Study
+
 __all__ = ["add", "parse_pose"]
 
 Pose = Annotated[
@@ -35,30 +37,25 @@ def modes(
     file: StudyFile, pose: Pose = None, out: Folder = None, count: Count = 12, no_figures: NoFigures = False,
     json: Json = False,
 ) -> None:  # fmt: skip
-    """Frequencies, damping and shapes at a pose, commands of the drives held, about the static equilibrium."""
+    """Frequencies, damping and shapes at a pose, commands of the drives held, about the static equilibrium.
+
+    Of a single actuator those of its straight beam at t = 0.
+    """
     from flexapod import model
     from flexapod.app.outputs import check_writable
     from flexapod.app.terminal import print_json
-    from flexapod.errors import InputError
     from flexapod.study import modes as compute
-    from flexapod.study.words import held
 
     study = model.load(file)
-    if isinstance(study, model.ActuatorStudy):
-        raise InputError(
-            "is the study of a single actuator",
-            file=file,
-            allowed="the study of a robot",
-            next_step=f"`flexapod check {file}` gives the frequencies of its beam",
-        )
     check_writable(out)
     with as_options(pose="--pose"):
         data = compute(study, parse_pose(pose))
-    files = [] if out is None else _write(data, out, figure=not no_figures)
+    of_robot = isinstance(study, model.Study)
+    files = [] if out is None else _write(data, out, figure=of_robot and not no_figures)
     if json:
         print_json(_as_dict(data, files))
     else:
-        _show(data, held(study.robot), pose, count, files)
+        _show(data, _robot_words(study, data, pose) if of_robot else _beam_words(study), count, files)
 
 
 def parse_pose(text: str | None) -> dict[str, float] | None:
@@ -109,21 +106,28 @@ def _as_dict(data: Dataset, files: list[Path]) -> dict[str, object]:
     ]
     return {
         "modes": found,
-        "com_sag": data.com_sag.values.tolist(),
+        **({"com_sag": data.com_sag.values.tolist()} if "com_sag" in data else {}),
         "warnings": [line for line in data.attrs["warnings"].splitlines() if line],
         "files": files,
     }
 
 
-def _show(data: Dataset, held: str, pose: str | None, count: int, files: list[Path]) -> None:
-    from flexapod.app.terminal import print_table, print_text
-    from flexapod.study.words import column, length
+def _robot_words(study: Study, data: Dataset, pose: str | None) -> str:
+    from flexapod.study.words import held, length
 
-    sag = float((data.com_sag**2).sum() ** 0.5)
-    print_text(
-        f"{held}, {f'at {pose} from home' if pose else 'at home'}, about the static equilibrium "
-        f"(the centre of mass sags by {length(sag)})."
-    )
+    where, sag = f"at {pose} from home" if pose else "at home", float((data.com_sag**2).sum() ** 0.5)
+    return f"{held(study.robot)}, {where}, about the static equilibrium (the centre of mass sags by {length(sag)})."
+
+
+def _beam_words(study: ActuatorStudy) -> str:
+    return f"Hub and extension held, about the straight beam, {study.actuator.free_length:.4g} m of it outside the hub."
+
+
+def _show(data: Dataset, words: str, count: int, files: list[Path]) -> None:
+    from flexapod.app.terminal import print_table, print_text
+    from flexapod.study.words import column
+
+    print_text(words)
     print_text()
     shown = data.isel(mode=slice(0, count))
     _, frequencies = column(shown.frequency.values, "Hz", 6)

@@ -96,6 +96,13 @@ class Actuator(Frozen):
             raise InputError(
                 "needs the inertia of what twists", key="GJ", value=self.GJ, next_step="Give axial_inertia, above 0"
             )
+        if self.EA is None and self.axial_modes != fields["axial_modes"].default:
+            raise InputError(
+                "counts shapes of a beam that stretches",
+                key="axial_modes",
+                value=self.axial_modes,
+                next_step="Give EA, or leave it out",
+            )
         return self
 
     def refuse_space(self) -> None:

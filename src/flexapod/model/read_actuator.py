@@ -65,7 +65,7 @@ def read_drives(top: Section) -> tuple[ActuatorMotion, ActuatorLoad]:
                 raise motion.error(f"is prescribed and driven by load.{drive}", name, allowed="one of the two")
         elif motion is not None and name in motion:
             laws[name] = _law(motion.child(motion.data[name], name), ActuatorMotion, name, moved)
-    return ActuatorMotion(**laws), ActuatorLoad(**loads)
+    return ActuatorMotion(**laws), ActuatorLoad() if load is None else load.build(ActuatorLoad, **loads)
 
 
 def read_release(section: Section | None) -> ActuatorInitial:

@@ -271,14 +271,10 @@ def modes_table(modes: Iterable[tuple[float, float, str]]) -> str:
 
 def _beam(found: ActuatorDescription) -> list[str]:
     rows = [
-        (
-            beam.name,
-            f"{beam.free_length:.4g} m",
-            ", ".join(f"{f:.4g}" for f in beam.frequency) or beam.problem or "n/a",
-            ", ".join(f"{100 * d:.2g}" for d in beam.damping_ratio) or "n/a",
-        )
+        (beam.name, f"{beam.free_length:.4g} m", *numbers)
         for beam in found.beam
+        for numbers in beam.by_kind or [("n/a", beam.problem or "n/a", "n/a")]
     ]
-    words = "Rotation and extension held, about the straight beam at rest."
-    head = ("Beam", "Free length", "Frequencies [Hz]", "Damping [%]")
+    words = "Hub and extension held, about the straight beam at rest."
+    head = ("Beam", "Free length", "What moves", "Frequencies [Hz]", "Damping [%]")
     return [html.paragraph(words, "soft"), html.table(head, rows)]

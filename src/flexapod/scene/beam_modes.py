@@ -1,4 +1,4 @@
-"""Modes of a single actuator's beam with rotation and extension held, as lines to draw."""
+"""Modes of a single actuator's beam with hub and extension held, as lines to draw."""
 
 from __future__ import annotations
 

@@ -9,7 +9,7 @@ from flexapod import rigid
 from flexapod.errors import ComputationError
 from flexapod.integration import GeneralizedAlpha
 from flexapod.mechanics.layout import Shapes, columns
-from flexapod.model import Actuator, ActuatorStudy, Simulation
+from flexapod.model import DRIVEN_BY, Actuator, ActuatorStudy, Simulation
 from flexapod.solve.kernel import kernel
 from flexapod.solve.march import Chunk, Problem, initial_step, march
 from flexapod.solve.parameters import SPACE, actuator_parameters
@@ -60,6 +60,12 @@ def places(shapes: Shapes) -> dict[str, int]:
     return {motion: shapes.index(name) for motion, name in names.items()}
 
 
+def home(actuator: Actuator) -> dict[str, float]:
+    """Where an actuator stands at t = 0 [rad, m], by the names of `places`; the extension from the pivot."""
+    begin = {"extension": actuator.hub_radius + actuator.free_length, "rotation": actuator.angle}
+    return begin | ({"elevation": actuator.elevation} if actuator.space else {})
+
+
 def prepare_actuator(
     study: ActuatorStudy, amplitudes: Array | None = None, rates: Array | None = None
 ) -> ActuatorMarch:
@@ -91,7 +97,7 @@ def prepare_actuator(
         tables=law,
         output_step=output_step,
         outputs=outputs,
-        measure=lambda recording: _measure(system, recording),
+        measure=lambda recording: _measure(system, study.actuator, recording),
         restart=lambda flow, t, h: after_impact(system, flow, law, t, method, h),
         stops=Stops.of(rigid.actuator_breaks(study), output_step, simulation.step, outputs),
         check=lambda recording: _check(system, study.actuator, recording),
@@ -134,20 +140,17 @@ def static_shape(system: System, displacement: float) -> Array:
 
 def _tables(study: ActuatorStudy) -> Law:
     """Table of the one leg, whose ports are the coordinates of `places`, and the load on its tip."""
-    actuator, motion, load = study.actuator, study.motion, study.load
+    motion, load = study.motion, study.load
     commands = [
-        (motion.extension, actuator.hub_radius + actuator.free_length, load.force),
-        (motion.rotation, actuator.angle, load.torque),
+        (getattr(motion, name), begin, getattr(load, DRIVEN_BY[name])) for name, begin in home(study.actuator).items()
     ]
-    if actuator.space:
-        commands.append((motion.elevation, actuator.elevation, load.elevation_torque))
 
     def law(t: Array) -> tuple[Array, Array]:
         table = np.zeros((len(t), 1, len(commands), COLUMNS))
-        for k, (path, home, push) in enumerate(commands):
+        for k, (path, begin, push) in enumerate(commands):
             if path is not None:
                 x = rigid.motion_law(path, t)
-                table[:, 0, k, :3] = np.stack([x.position + home, x.rate, x.acceleration], axis=-1)
+                table[:, 0, k, :3] = np.stack([x.position + begin, x.rate, x.acceleration], axis=-1)
             if push is not None:
                 table[:, 0, k, 3] = rigid.load_law(push, t)
         wrench, none = rigid.wrench(load, t), np.zeros((len(t), 6))
@@ -161,12 +164,10 @@ def _tables(study: ActuatorStudy) -> Law:
 def _state(study: ActuatorStudy, system: System, law: Law, amplitudes: Array | None, rates: Array | None) -> State:
     """Static tip shape at rest in x/L(t), given rates; what is prescribed is where its law begins."""
     q, v, initial = np.zeros((1, system.n)), np.zeros(system.n), study.initial
-    shapes, at, actuator = system.kernel.shapes, places(system.kernel.shapes), study.actuator
-    home = {"rotation": actuator.angle, "elevation": actuator.elevation}
-    home["extension"] = actuator.hub_radius + actuator.free_length
+    shapes, at, begin = system.kernel.shapes, places(system.kernel.shapes), home(study.actuator)
     rates_at = {"rotation": initial.angle_rate, "elevation": initial.elevation_rate, "extension": initial.length_rate}
     for name, i in at.items():
-        q[0, i], v[i] = home[name], rates_at[name]
+        q[0, i], v[i] = begin[name], rates_at[name]
     table, held = law(np.zeros(1))[0][0, 0], system.held[0, system.ports]
     for k, i in enumerate(system.ports):
         if held[k]:
@@ -186,14 +187,17 @@ def lateral_signs(shapes: Shapes, along: float, up: float) -> list[tuple[str, fl
     return [("a", along)] if shapes.planar else [("b", -along), ("a", up)]
 
 
-def _measure(system: System, recording: Recording) -> list[Array]:
-    """Tip deflection, stretch and twist, and angles and length where they are free."""
+def _measure(system: System, actuator: Actuator, recording: Recording) -> list[Array]:
+    """How far the tip moves, and angles and length where they are free.
+
+    Stretch, and twist times the length of the beam, count as far as they do beside the deflection (T9.11).
+    """
     shapes, q = system.kernel.shapes, recording.q[:, 0]
-    bent = [amplitudes(shapes, q, name) @ shapes.a.tip for name, _ in lateral_signs(shapes, 0, 0)]
-    stretch = [q[:, shapes.index("c")]] if shapes.axial.count else []  # counts as far as it does beside the deflection
-    groups = [np.stack([*bent, *stretch], axis=-1)] + ([q[:, shapes.index("t")]] if shapes.torsion else [])
-    groups += [q[:, j] for j in sorted(places(shapes).values()) if not system.held[0, j]]
-    return groups
+    moved = [amplitudes(shapes, q, name) @ shapes.a.tip for name, _ in lateral_signs(shapes, 0, 0)]
+    there = dict(shapes.layout)
+    beside = [("c", 1.0), ("t", actuator.length)]
+    moved += [size * q[:, shapes.index(name)] for name, size in beside if there.get(name)]
+    return [np.stack(moved, axis=-1)] + [q[:, j] for j in sorted(places(shapes).values()) if not system.held[0, j]]
 
 
 def amplitudes(shapes: Shapes, q: Array, name: str) -> Array:

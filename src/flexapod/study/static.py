@@ -8,13 +8,15 @@ from typing import TYPE_CHECKING
 import numpy as np
 
 from flexapod import model, rigid
+from flexapod.errors import InputError
+from flexapod.solve.actuator_modes import actuator_modes
 from flexapod.solve.many import RestStates
 from flexapod.solve.modes import robot_modes
 from flexapod.solve.stiffness import robot_stiffness
 from flexapod.solve.system import State, System
 from flexapod.study.after.mode_shapes import STATIONS, mode_values
 from flexapod.study.after.plausibility import rest_warnings
-from flexapod.study.arguments import LoadLike, PoseLike, RobotLike, as_pose, at_pose
+from flexapod.study.arguments import LoadLike, PoseLike, RobotLike, as_pose, at_pose, read
 from flexapod.study.attributes import attributes
 from flexapod.study.before.checks import path_remarks
 from flexapod.study.many_modes import modes_at_poses
@@ -26,7 +28,7 @@ if TYPE_CHECKING:
 
 
 def modes(
-    robot: RobotLike,
+    robot: RobotLike | model.ActuatorStudy,
     pose: PoseLike = None,
     *,
     load: LoadLike = None,
@@ -38,9 +40,12 @@ def modes(
 ) -> Dataset:
     """Undamped and damped modes about the static equilibrium, commands of the drives held, Eqs. (T7.2)-(T7.5).
 
+    Of a single actuator those of its straight beam at t = 0, hub and extension held: `frequency`, `damping_ratio`,
+    `kind`; it takes neither pose nor load.
+
     Parameters
     ----------
-    robot : Robot, Study or path
+    robot : Robot, Study, ActuatorStudy or path
     pose : pose, optional
         Surge, sway, heave [m], roll, pitch, yaw [rad] from home, by name or as (6,); default home. Many poses at once:
         names with arrays, or (P, 6).
@@ -70,6 +75,8 @@ def modes(
         No equilibrium at this pose.
     """
     settings = {"fidelity": fidelity, "modes": modes, "axial_modes": axial_modes, "basis": basis}
+    if isinstance(robot := read(robot), model.ActuatorStudy):
+        return _beam(robot, {"pose": pose, "load": load}, settings)
     if is_many(pose):
         study = model.override(at_pose(robot, load), **settings)  # type: ignore[arg-type]
         return modes_at_poses(study, as_many(study.robot, pose), shapes=shapes, attrs=_settings(study))
@@ -78,6 +85,22 @@ def modes(
     values = mode_values(study.robot, found, path)
     coords = {"mode": np.arange(1, len(values["frequency"]) + 1), "station": STATIONS}
     return dataset(values, coords, _attributes(study, path, found.system, found.equilibrium.state), ONE_POSE_FORMS)
+
+
+def _beam(study: model.ActuatorStudy, given: dict[str, object], settings: dict[str, object]) -> Dataset:
+    """Modes of a single actuator's beam."""
+    for key, value in given.items():
+        if value is not None:
+            raise InputError(
+                "has no meaning for a single actuator, whose straight beam vibrates where it stands at t = 0",
+                key=key,
+                value=str(value),
+                next_step="Leave it out; actuator.free_length and elevation (or angle) say where the beam stands",
+            )
+    study = model.override(study, **settings)  # type: ignore[arg-type]
+    found = actuator_modes(study.actuator, study.simulation)
+    values = {"frequency": found.frequency, "damping_ratio": found.damping_ratio, "kind": list(found.kind)}
+    return dataset(values, {"mode": np.arange(1, len(found.kind) + 1)}, _settings(study))
 
 
 def stiffness(
@@ -129,7 +152,7 @@ def _attributes(study: model.Study, path: rigid.Poses, system: System, state: St
     return _settings(study, remarks)
 
 
-def _settings(study: model.Study, remarks: Iterable[str] = ()) -> dict[str, object]:
+def _settings(study: model.Study | model.ActuatorStudy, remarks: Iterable[str] = ()) -> dict[str, object]:
     s = study.simulation
     basis = s.lateral_basis if s.lateral_shapes else "none"
     settings = {"fidelity": s.fidelity, "basis": basis, "modes": s.lateral_shapes}

@@ -1,4 +1,4 @@
-"""Modes of a single actuator's beam at a free length, rotation and extension held: a list, one of them animated."""
+"""Modes of a single actuator's beam at a free length, hub and extension held: a list, one of them animated."""
 
 from __future__ import annotations
 
@@ -77,5 +77,5 @@ def _table(modes: Modes, study: model.ActuatorStudy) -> str:
     ]
     sag = describe_actuator(study).beam[0].sag
     level = f"The tip sags by {text(sag, 'm')} where the beam lies level. " if sag else ""
-    note = level + "Rotation and extension held, about the straight beam at rest."
+    note = level + "Hub and extension held, about the straight beam at rest."
     return words.table_html(["Mode", "frequency [Hz]", "damping [%]"], rows) + words.block(note, "soft")

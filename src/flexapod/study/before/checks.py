@@ -17,6 +17,7 @@ from flexapod.study.path import RigidPath, open_force_words, path_instants
 from flexapod.typing import Array
 
 SINGULAR = 1e-8  # smallest singular value of the scaled Jacobian below which a pose is refused
+UPRIGHT = 1e-6  # cosine of an elevation: the inertia about Z is its square
 NEAR_SINGULAR = 0.05  # and below which it is remarked on: leg forces and length errors are magnified about 20 times
 MOVED = 1e-9  # m, of cranks rad: what legs that stand move by rounding
 
@@ -212,13 +213,24 @@ def check_actuator_path(study: ActuatorStudy) -> list[str]:
     Raises
     ------
     InputError
-        The free length leaves (0, length] at an instant of the law, or the study's times do not fit each other.
+        The free length leaves (0, length] at an instant of the law, a torque about Z starts to turn a beam without
+        inertia about its axis that stands upright, or the study's times do not fit each other.
     """
     try:
         remarks = check_outputs(study)
     except InputError as error:
         raise error.located(file=study.path) from None
     actuator, law = study.actuator, study.motion.extension
+    spins = actuator.axial_inertia + actuator.tip_axial_inertia + actuator.hub_axial_inertia
+    if study.motion.rotation is None and actuator.space and not spins and abs(np.cos(actuator.elevation)) < UPRIGHT:
+        raise InputError(
+            "stands the beam upright: nothing has an inertia about Z that the torque could turn",
+            file=study.path,
+            key="actuator.elevation",
+            value=actuator.elevation,
+            allowed="other elevations, or a beam with an inertia about its axis",
+            next_step="Give actuator.hub_axial_inertia, or prescribe motion.rotation",
+        )
     if law is None:
         return remarks
     t = path_instants(study)

@@ -17,9 +17,10 @@ SHOWN = 4
 
 @dataclass(frozen=True, kw_only=True)
 class BeamDescription:
-    """The beam at one free length, SI units, rotation and extension held.
+    """The beam at one free length, SI units, hub and extension held.
 
-    `frequency` [Hz] and `damping_ratio` of the lowest modes about the straight beam at rest, or `problem` in words;
+    `frequency` [Hz], `damping_ratio` and `kind` of the lowest modes of each kind about the straight beam at rest, or
+    `problem` in words;
     `slenderness`: free length over depth, None without a section; `sag`: of the tip where the beam lies level, by
     rhoA g s^4 / 8 EI + m g s^3 / 3 EI.
     """
@@ -28,9 +29,20 @@ class BeamDescription:
     free_length: float
     frequency: tuple[float, ...]
     damping_ratio: tuple[float, ...]
+    kind: tuple[str, ...]
     slenderness: float | None
     sag: float
     problem: str | None = None
+
+    @property
+    def by_kind(self) -> list[tuple[str, str, str]]:
+        """Kind, frequencies [Hz] and damping ratios [%] in figures."""
+        rows = []
+        for kind in dict.fromkeys(self.kind):
+            chosen = [i for i, other in enumerate(self.kind) if other == kind]
+            frequency = ", ".join(f"{self.frequency[i]:.4g}" for i in chosen)
+            rows.append((kind, frequency, ", ".join(f"{100 * self.damping_ratio[i]:.2g}" for i in chosen)))
+        return rows
 
 
 @dataclass(frozen=True, kw_only=True)
@@ -104,10 +116,11 @@ def describe_actuator(study: model.ActuatorStudy) -> ActuatorDescription:
 
 def _beam(study: model.ActuatorStudy, name: str, free: float) -> BeamDescription:
     a = study.actuator
-    frequency, ratio, problem = np.zeros(0), np.zeros(0), None
+    frequency, ratio, kinds, problem = np.zeros(0), np.zeros(0), (), None
     try:
         found = actuator_modes(a, study.simulation, free_length=free)
-        frequency, ratio = found.frequency[:SHOWN], found.damping_ratio[:SHOWN]
+        shown = [i for i, kind in enumerate(found.kind) if found.kind[:i].count(kind) < SHOWN]
+        frequency, ratio, kinds = found.frequency[shown], found.damping_ratio[shown], [found.kind[i] for i in shown]
     except FlexapodError as error:
         problem = str(error)
     return BeamDescription(
@@ -115,6 +128,7 @@ def _beam(study: model.ActuatorStudy, name: str, free: float) -> BeamDescription
         free_length=free,
         frequency=tuple(frequency.tolist()),
         damping_ratio=tuple((ratio + 0.0).tolist()),
+        kind=tuple(kinds),
         slenderness=None if a.section is None else free / a.section.depth,
         sag=abs(a.gravity) * (a.rhoA * free**4 / 8 + a.tip_mass * free**3 / 3) / a.EI,
         problem=problem,
