@@ -178,8 +178,8 @@ _ACTUATOR = {
     "elevation": Variable(_T, "rad", "angle of the hub towards Z, of an actuator in space"),
     "elevation_rate": Variable(_T, "rad s-1", "rate of the elevation of the hub"),
     "elevation_torque": Variable(_T, "N m", "torque on the hub towards Z"),
-    "tip_stretch": Variable(_T, "m", "lengthening of the beam by tension"),
-    "tip_twist": Variable(_T, "rad", "twist of the tip about the beam"),
+    "tip_stretch": Variable(_T, "m", "lengthening of the beam by tension, 0 without EA"),
+    "tip_twist": Variable(_T, "rad", "twist of the tip about the beam, 0 without GJ"),
 }
 
 #: Every variable of every Dataset, by name.

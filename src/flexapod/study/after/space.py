@@ -28,6 +28,5 @@ def space_results(study: model.ActuatorStudy, march: ActuatorMarch, record: Reco
     if shapes.a.count:
         results["mode_amplitude"] = bent
     for name, part in (("tip_stretch", "c"), ("tip_twist", "t")):
-        if dict(shapes.layout).get(part):
-            results[name] = q[:, shapes.index(part)]
+        results[name] = q[:, shapes.index(part)] if dict(shapes.layout).get(part) else np.zeros(len(q))
     return results | energy_results(record)

@@ -50,6 +50,13 @@ def _tip(data: Dataset) -> Array:
     return np.abs(tip_size(data))
 
 
+#: Of an actuator in space alone: variables whose largest size can be kept.
+_SPACE_PEAKS = {
+    "elevation_torque": "largest torque on the hub towards Z",
+    "tip_stretch": "largest stretch of the beam",
+    "tip_twist": "largest twist of the tip",
+}
+
 #: Scalars of a single actuator's simulation, from its Dataset.
 ACTUATOR_SCALARS: Mapping[str, Scalar] = {
     "tip_deflection_peak": Scalar((), "m", "largest deflection of the tip", lambda d: _tip(d).max()),
@@ -60,6 +67,10 @@ ACTUATOR_SCALARS: Mapping[str, Scalar] = {
     "torque_peak": Scalar((), "N m", "largest torque on the hub", lambda d: np.abs(d.torque.values).max()),
     "force_peak": Scalar((), "N", "largest axial force on the beam", lambda d: np.abs(d.force.values).max()),
     "steps": Scalar((), "1", "steps of the time integration", lambda d: float(d.attrs["steps"])),
+    **{
+        f"{name}_peak": Scalar((), VARIABLES[name].units, words, lambda d, name=name: np.abs(d[name].values).max())
+        for name, words in _SPACE_PEAKS.items()
+    },
 }
 
 
@@ -71,9 +82,9 @@ def kept(keep: Keep, study: Study | ActuatorStudy, resolved: Resolved) -> Kept:
     InputError
         A name that does not exist, or records of different sizes at different points.
     """
-    robot = isinstance(study, Study)
-    table = ROBOT_SCALARS if robot else ACTUATOR_SCALARS
-    names = keep.scalars or (() if keep.records else ROBOT_DEFAULTS if robot else tuple(ACTUATOR_SCALARS))
+    table = ROBOT_SCALARS if isinstance(study, Study) else _actuator_scalars(study)
+    usual = ROBOT_DEFAULTS if isinstance(study, Study) else tuple(table)
+    names = keep.scalars or (() if keep.records else usual)
     for name in names:
         _known(name, table, "keep.scalars")
     whole = _records(study)
@@ -92,6 +103,12 @@ def kept(keep: Keep, study: Study | ActuatorStudy, resolved: Resolved) -> Kept:
     )
 
 
+def _actuator_scalars(study: ActuatorStudy) -> Mapping[str, Scalar]:
+    """Scalars that a simulation of this actuator has."""
+    absent_here = set() if study.actuator.space else {f"{name}_peak" for name in _SPACE_PEAKS}
+    return {name: entry for name, entry in ACTUATOR_SCALARS.items() if name not in absent_here}
+
+
 def _known(name: str, table: Mapping[str, object], key: str) -> None:
     if name not in table:
         raise InputError("is not known", key=key, value=name, allowed=", ".join(table), next_step=closest(name, table))
@@ -101,14 +118,14 @@ def _records(study: Study | ActuatorStudy) -> dict[str, Variable]:
     """Variables over time that a simulation of this kind of study has."""
     over_time = {name: entry for name, entry in VARIABLES.items() if "time" in entry.dims[:1]}
     actuator = ("length", "angle", "length_rate", "angle_rate", "mode_amplitude", "tip_position", "torque", "force")
-    turned = ("elevation", "elevation_rate", "elevation_torque")
+    space = ("elevation", "elevation_rate", *_SPACE_PEAKS)
     shared = ("energy_kinetic", "energy_dissipated", "work_drive", "work_external", "closure_residual")
     if isinstance(study, ActuatorStudy):
         forms = {name: over_time[name] for name in (*actuator, *shared)} | ACTUATOR_FORMS
-        return forms | ({name: over_time[name] for name in turned} | SPACE_FORMS if study.actuator.space else {})
+        return forms | ({name: over_time[name] for name in space} | SPACE_FORMS if study.actuator.space else {})
     kinematics = ("leg_length_rate", "leg_length_acceleration", "leg_angle_rigid", "platform_position")
     reactions = ("base_force_rigid", "base_moment_rigid", "held_force_rigid", "joint_moment_rigid")
-    others = {*actuator, *turned, "tip_stretch", "tip_twist", *kinematics, *reactions, *absent(study.robot)}
+    others = {*actuator, *space, *kinematics, *reactions, *absent(study.robot)}
     return {name: entry for name, entry in over_time.items() if name not in others}
 
 
