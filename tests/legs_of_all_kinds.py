@@ -42,6 +42,7 @@ PHYSICS = {
     "cylinder_spins": 1.0, "GJ": 900.0, "tip_axial_inertia": 0.01, "joint": [0.1, -0.2, 0.05], "L_c": 0.3,
     "base_stiffness": [30.0, 40.0, 20.0], "base_home": [0.1, -0.1, 0.05],
     "gamma_stiffness": [35.0, 25.0, 15.0], "gamma_home": [0.02, 0.01, -0.03],
+    "base_damping": [0.3, 0.4, 0.2], "gamma_damping": [0.5, 0.1, 0.6],
 }  # fmt: skip
 
 
@@ -51,7 +52,10 @@ def springs(seed):
     return root.T @ root
 
 
-PHYSICS |= {"base_flexure": springs(1), "platform_flexure": springs(2)}
+PHYSICS |= {
+    "base_flexure": springs(1), "platform_flexure": springs(2),
+    "base_flexure_damping": 1e-3 * springs(3), "platform_flexure_damping": 1e-3 * springs(4),
+}  # fmt: skip
 
 
 @cache

@@ -163,7 +163,8 @@ def test_derivatives_of_a_pose_closure(kind, seed):
 @pytest.mark.parametrize("seed", range(20))
 def test_a_pose_closure_without_moments_is_a_point_closure(seed):
     point, pose = legs.shapes("point"), legs.shapes("pose")
-    given = legs.numbers(seed, base_stiffness=np.zeros(3), gamma_stiffness=np.zeros(3))
+    names = (f"{end}_{what}" for end in ("base", "gamma") for what in ("stiffness", "damping"))
+    given = legs.numbers(seed, **dict.fromkeys(names, np.zeros(3)))
     y = legs.state(pose, seed, 1e-2, given)
     n = point.size
     y["lam"][3:] = 0.0

@@ -31,6 +31,10 @@ def show_robot(found: RobotDescription) -> None:
     _angles(found)
     _singularity(found)
     _loads(found)
+    if found.losses:
+        _heading("Loss factors, made viscous at home")
+        for sentence in found.losses:
+            print_text(f"{sentence}.", indent=2)
     for pose in found.poses:
         _pose(pose, found.held)
     _vibration(found.vibration)

@@ -1,14 +1,16 @@
-"""Springs of a joint: on its angles, or a flexure that gives way along and about all axes, Eqs. (T13.6), (T13.17)."""
+"""Springs of a joint: on its angles, or a flexure that gives way along and about all axes; and what damps them."""
 
 from flexapod.elements.frame import Energies
 from flexapod.symbolic.vocabulary import SX, dot, reshape
 
 
-def springs(stiffness: SX, angles: SX) -> Energies:
-    """A spring on each of some successive angles [N m/rad]."""
-    return Energies(strain=0.5 * dot(stiffness, angles**2))  # (T13.6)
+def springs(stiffness: SX, damping: SX, angles: SX, rates: SX) -> Energies:
+    """A spring [N m/rad] and a damper [N m s/rad] on each of some successive angles."""
+    strain = 0.5 * dot(stiffness, angles**2)  # (T13.6)
+    return Energies(strain=strain, dissipation=0.5 * dot(damping, rates**2))  # (T13.18)
 
 
-def flexure(stiffness: SX, moved: SX) -> Energies:
-    """6x6 stiffness, column by column, against displacements and angles."""
-    return Energies(strain=0.5 * dot(moved, reshape(stiffness, 6, 6) @ moved))  # (T13.17)
+def flexure(stiffness: SX, damping: SX, moved: SX, rates: SX) -> Energies:
+    """6x6 stiffness and damping, column by column, against displacements and angles."""
+    K, C = reshape(stiffness, 6, 6), reshape(damping, 6, 6)
+    return Energies(strain=0.5 * dot(moved, K @ moved), dissipation=0.5 * dot(rates, C @ rates))  # (T13.17)-(T13.18)

@@ -59,10 +59,14 @@ POSE_PARAMETERS: tuple[tuple[str, int], ...] = (
     ("base_home", 3),  # rad, where they are slack
     ("gamma_stiffness", 3),  # N m/rad, springs on gamma1..3
     ("gamma_home", 3),  # rad
+    ("base_damping", 3),  # N m s/rad, dampers beside these springs
+    ("gamma_damping", 3),  # N m s/rad
 )  #: ... of joints that give way along and about all axes: 6x6 stiffness, displacements [m] first, angles [rad] last.
 FLEXURE_PARAMETERS: tuple[tuple[str, int], ...] = (
     ("base_flexure", 36),  # u1..3 and alpha, beta, spin less `base_home`, in the axes R0
     ("platform_flexure", 36),  # e1..3 and gamma1..3 less `gamma_home`, in the axes of the joint in the leg
+    ("base_flexure_damping", 36),  # dampers beside them
+    ("platform_flexure_damping", 36),
 )
 
 #: Physical parameters of the payload in kernel order (name, size); tool from the CoM, in platform axes.

@@ -61,7 +61,7 @@ def leg(shapes: Shapes, p: SimpleNamespace, q: SX, v: SX, qs: SimpleNamespace, v
     if shapes.tip_body:
         e += tip_body(motion, p, shapes.planar)
     if shapes.closure == "pose":
-        e += _joints(shapes, p, qs)
+        e += _joints(shapes, p, qs, vs)
     theta = symbol("theta", 3)
     lagrangian = Lagrangian(q=q, v=v, kinetic=e.kinetic, potential=e.gravity + e.strain, dissipation=e.dissipation)
     return Leg(
@@ -75,13 +75,17 @@ def leg(shapes: Shapes, p: SimpleNamespace, q: SX, v: SX, qs: SimpleNamespace, v
     )
 
 
-def _joints(shapes: Shapes, p: SimpleNamespace, qs: SimpleNamespace) -> Energies:
-    """Springs of the joints at both ends."""
-    spin = qs.spin if shapes.spin else zeros(1)
-    base = vertcat(qs.alpha, qs.beta, spin) - p.base_home
-    end = vertcat(qs.gamma1, qs.gamma2, qs.gamma3) - p.gamma_home
-    e = springs(p.base_stiffness, base) + springs(p.gamma_stiffness, end)
+def _joints(shapes: Shapes, p: SimpleNamespace, qs: SimpleNamespace, vs: SimpleNamespace) -> Energies:
+    """Springs and dampers of the joints at both ends."""
+    base, base_rate = (vertcat(x.alpha, x.beta, x.spin if shapes.spin else zeros(1)) for x in (qs, vs))
+    end, end_rate = (vertcat(x.gamma1, x.gamma2, x.gamma3) for x in (qs, vs))
+    base, end = base - p.base_home, end - p.gamma_home
+    e = springs(p.base_stiffness, p.base_damping, base, base_rate)
+    e += springs(p.gamma_stiffness, p.gamma_damping, end, end_rate)
     if shapes.flexure:
-        e += flexure(p.base_flexure, vertcat(qs.u1, qs.u2, qs.u3, base))
-        e += flexure(p.platform_flexure, vertcat(qs.e1, qs.e2, qs.e3, end))
+        of_base, of_end = (vertcat(x.u1, x.u2, x.u3) for x in (qs, vs)), (vertcat(x.e1, x.e2, x.e3) for x in (qs, vs))
+        moved, rate = (vertcat(u, x) for u, x in zip(of_base, (base, base_rate), strict=True))
+        e += flexure(p.base_flexure, p.base_flexure_damping, moved, rate)
+        moved, rate = (vertcat(u, x) for u, x in zip(of_end, (end, end_rate), strict=True))
+        e += flexure(p.platform_flexure, p.platform_flexure_damping, moved, rate)
     return e

@@ -20,15 +20,39 @@ class Joint(Frozen):
     and rigid of a fixed joint.
     `stiffness` (6, 6) [N/m, N, N m/rad]: of a flexure, along and about the axes of base or platform, or, with
     `leg_axes`, those of the leg, z along it.
+    `damping` [N m s/rad] beside `bending` and `torsion`, or `loss`, a loss factor of all springs of the joint, which is
+    made viscous at home (T13.19); `stiffness_damping` [N s/m], `stiffness_loss`: of `stiffness` along the leg's axes by
+    itself.
     """
 
-    derived: ClassVar[tuple[str, ...]] = ("leg_axes",)
+    derived: ClassVar[tuple[str, ...]] = ("leg_axes", "stiffness_damping", "stiffness_loss")
 
     axis: Annotated[Vec3, Measure("number")] | None = None
     bending: Annotated[NonNegative, Measure("rotational stiffness")] | None = None
     torsion: Annotated[NonNegative, Measure("rotational stiffness")] | None = None
     stiffness: Annotated[Matrix6, Measure("stiffness", "force", "rotational stiffness")] | None = None
+    damping: Annotated[NonNegative, Measure("rotational damping")] | None = None
+    loss: Annotated[NonNegative, Measure("number")] | None = None
     leg_axes: bool = False
+    stiffness_damping: Annotated[NonNegative, Measure("damping")] | None = None
+    stiffness_loss: Annotated[NonNegative, Measure("number")] | None = None
+
+    @property
+    def lossy(self) -> bool:
+        """Whether a loss factor damps a spring of it."""
+        return bool(self.loss or self.stiffness_loss)
+
+    @model_validator(mode="after")
+    def _damps_what_is_there(self) -> Joint:
+        turns = self.bending is not None or self.torsion is not None
+        there = {"damping": turns, "loss": turns or self.stiffness is not None}
+        for name, has in there.items():
+            if getattr(self, name) and not has:
+                raise InputError("damps a spring that the joint does not have", key=name, value=getattr(self, name))
+        for damping, loss in (("damping", "loss"), ("stiffness_damping", "stiffness_loss")):
+            if getattr(self, damping) and getattr(self, loss):
+                raise InputError(f"is given together with {loss}", key=damping, allowed="either of the two")
+        return self
 
     @model_validator(mode="after")
     def _sensible(self) -> Joint:

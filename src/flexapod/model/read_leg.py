@@ -86,10 +86,16 @@ def _stiffness(section: Section) -> dict[str, object]:
         return {"stiffness": found}
     if isinstance(value, Mapping):
         inner = section.child(value, "stiffness")
-        inner.only("axial", "radial")
+        inner.only("axial", "radial", "damping", "loss")
         inner.need("axial", "radial")
+        if "damping" in inner and "loss" in inner:
+            raise inner.error("is given together with loss", "damping", allowed="either of the two")
         axial, radial = inner.number("axial", "stiffness"), inner.number("radial", "stiffness")
-        return {"stiffness": np.diag([radial, radial, axial, 0, 0, 0]), "leg_axes": True}  # type: ignore[list-item]
+        own = {
+            "stiffness_damping": inner.number("damping", "damping"),
+            "stiffness_loss": inner.number("loss", "number"),
+        }
+        return {"stiffness": np.diag([radial, radial, axial, 0, 0, 0]), "leg_axes": True, **own}  # type: ignore[list-item]
     number = section.number("stiffness", "stiffness")
     return {} if number is None else {"stiffness": np.diag([number] * 3 + [0.0] * 3)}
 

@@ -93,7 +93,12 @@ def _joint(joint: Joint, place: Array, normal: Array) -> dict[str, object]:
     if joint.axis is not None:
         fields["axis"] = word_of(joint.axis, place, normal) or joint.axis
     if joint.leg_axes and joint.stiffness is not None:
-        fields["stiffness"] = {"axial": float(joint.stiffness[2, 2]), "radial": float(joint.stiffness[0, 0])}
+        own = {"damping": joint.stiffness_damping, "loss": joint.stiffness_loss}
+        fields["stiffness"] = {
+            "axial": float(joint.stiffness[2, 2]),
+            "radial": float(joint.stiffness[0, 0]),
+            **{name: value for name, value in own.items() if value},
+        }
     return fields
 
 

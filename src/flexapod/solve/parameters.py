@@ -1,12 +1,16 @@
 """Physical parameters of a model as the flat vectors that kernels read."""
 
+from typing import TypeVar
+
 import numpy as np
 
 from flexapod.mechanics import layout
 from flexapod.mechanics.layout import LEG_PARAMETERS, PAYLOAD_PARAMETERS, Shapes
-from flexapod.model import Actuator, ForceDrive, Leg, Robot, ServoDrive, damping_parts
+from flexapod.model import Actuator, ForceDrive, Joint, Leg, Robot, ServoDrive, damping_parts
 from flexapod.rigid.limbs import COORDINATES, FREE, Limbs
 from flexapod.typing import Array
+
+T = TypeVar("T", float, Array)
 
 
 def _pack(layout: tuple[tuple[str, int], ...], values: dict[str, object]) -> Array:
@@ -27,11 +31,19 @@ def drive_spring(leg: Leg) -> tuple[float, float]:
     return 0.0, 0.0
 
 
-def leg_parameters(robot: Robot, legs: Limbs, shapes: Shapes) -> Array:
-    """Parameters of the legs in kernel order, (legs, size of `layout.leg_parameters`)."""
+def leg_parameters(robot: Robot, legs: Limbs, shapes: Shapes, per_loss: float = 0.0) -> Array:
+    """Parameters of the legs in kernel order, (legs, size of `layout.leg_parameters`).
+
+    ``per_loss`` [s]: viscous damping over stiffness of a spring of loss factor 1, see `losses`.
+    """
     layout_of_legs = layout.leg_parameters(shapes)
-    ends = [dict(zip(("base_flexure", "platform_flexure"), x, strict=True)) for x in flexures(robot, legs)]
-    rows = (_leg(leg) | _place(robot, legs, i) | _joints(leg, legs, i) | ends[i] for i, leg in enumerate(robot.legs))
+    names = ("base_flexure", "platform_flexure", "base_flexure_damping", "platform_flexure_damping")
+    of_ends = np.concatenate([flexures(robot, legs), flexures(robot, legs, per_loss)], axis=1)
+    ends = [dict(zip(names, x, strict=True)) for x in of_ends]
+    rows = (
+        _leg(leg) | _place(robot, legs, i) | _joints(leg, legs, i, per_loss) | ends[i]
+        for i, leg in enumerate(robot.legs)
+    )
     turns = [COORDINATES.index(name) for name in ("spin", "gamma3")]
     loose = legs.pose_closure & (shapes.torsion | (legs.state[:, turns] == FREE).all(axis=1))
     # what twists, or turns between two springs, has an inertia: that of a round section where none is given
@@ -94,20 +106,33 @@ def _place(robot: Robot, legs: Limbs, i: int) -> dict[str, object]:
     }
 
 
-def _joints(leg: Leg, legs: Limbs, i: int) -> dict[str, object]:
-    """Springs at the joints of a leg and where they are slack: at home."""
-    base, end = leg.base_joint, leg.platform_joint
+def _joints(leg: Leg, legs: Limbs, i: int, per_loss: float) -> dict[str, object]:
+    """Springs at the joints of a leg, where they are slack (at home), and their dampers."""
     home = dict(zip(COORDINATES, legs.home[i], strict=True))
-    springs = ((x.bending or 0.0, x.bending or 0.0, x.torsion or 0.0) for x in (base, end))
+    values: dict[str, object] = {}
+    for end, joint in (("base", leg.base_joint), ("gamma", leg.platform_joint)):
+        springs = (joint.bending, joint.bending, joint.torsion)
+        values[f"{end}_stiffness"] = [k or 0.0 for k in springs]
+        values[f"{end}_damping"] = [
+            viscous(k, joint.damping or 0.0, joint.loss, per_loss) if k else 0.0 for k in springs
+        ]
     return {
-        **dict(zip(("base_stiffness", "gamma_stiffness"), springs, strict=True)),
+        **values,
         "base_home": [home[name] for name in ("alpha", "beta", "spin")],
         "gamma_home": [home[name] for name in ("gamma1", "gamma2", "gamma3")],
     }
 
 
-def flexures(robot: Robot, legs: Limbs) -> Array:
-    """Stiffness of the joints at both ends of the legs, in the axes in which they give way, (legs, 2, 6, 6)."""
+def viscous(stiffness: T, damping: T | float, loss: float | None, per_loss: float) -> T:
+    """Viscous damping of a spring: given, or of its loss factor, Eq. (T13.19)."""
+    return damping + (loss or 0.0) * per_loss * stiffness  # type: ignore[return-value]
+
+
+def flexures(robot: Robot, legs: Limbs, per_loss: float | None = None) -> Array:
+    """Stiffness of the joints at both ends of the legs, in the axes in which they give way, (legs, 2, 6, 6).
+
+    With ``per_loss`` [s], see `leg_parameters`, their damping.
+    """
     found = np.zeros((len(legs), 2, 6, 6))
     for i, leg in enumerate(robot.legs):
         beta = legs.home[i, COORDINATES.index("beta")]
@@ -119,8 +144,16 @@ def flexures(robot: Robot, legs: Limbs) -> Array:
         for k, (joint, given, leg_axes) in enumerate(ends):
             if joint.stiffness is not None:
                 turn = np.kron(np.eye(2), leg_axes if joint.leg_axes else given)
-                found[i, k] = turn @ joint.stiffness @ turn.T
+                found[i, k] = turn @ (joint.stiffness if per_loss is None else _damping(joint, per_loss)) @ turn.T
     return found
+
+
+def _damping(joint: Joint, per_loss: float) -> Array:
+    """Damping of the stiffness of a flexure, (6, 6)."""
+    stiffness = np.zeros((6, 6)) if joint.stiffness is None else joint.stiffness
+    given = np.diag([joint.stiffness_damping or 0.0] * 3 + [0.0] * 3)
+    loss = joint.loss if joint.stiffness_loss is None else joint.stiffness_loss
+    return viscous(stiffness, given, loss, per_loss)
 
 
 def joint_parameters(robot: Robot) -> Array:

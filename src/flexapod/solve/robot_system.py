@@ -7,6 +7,7 @@ from flexapod.mechanics.layout import Shapes
 from flexapod.model import Robot, Simulation
 from flexapod.rigid.limbs import ABSENT, COORDINATES, DRIVEN, HELD, Limbs
 from flexapod.solve.kernel import kernel
+from flexapod.solve.losses import per_loss
 from flexapod.solve.parameters import (
     flexures,
     joint_parameters,
@@ -26,7 +27,7 @@ def robot_system(robot: Robot, simulation: Simulation, march: bool = True) -> Sy
     shapes = robot_shapes(robot, simulation, legs)
     return System(
         kernel=kernel(shapes, march),
-        leg_p=leg_parameters(robot, legs, shapes),
+        leg_p=leg_parameters(robot, legs, shapes, per_loss(robot, simulation)),
         joint_p=joint_parameters(robot),
         payload_p=payload_parameters(robot),
         held=_held(robot, legs, shapes),

@@ -84,7 +84,8 @@ def simulate_actuator(
 def _simulated(study: model.ActuatorStudy, progress: Progress | None) -> Dataset:
     remarks = check_actuator_path(study)
     march = prepare_actuator(study)
-    record = collect(march.chunks, march.system.kernel.shapes.l_index, study.duration, progress)
+    angles = range(march.system.kernel.shapes.l_index, -1, -1)  # l, and backwards the angles of the hub before it
+    record = collect(march.chunks, angles, study.duration, progress)
     return finished(lambda: _dataset(study, march, record, remarks), record)
 
 

@@ -3,7 +3,7 @@
 from __future__ import annotations
 
 import time
-from collections.abc import Callable, Iterable
+from collections.abc import Callable, Iterable, Sequence
 from dataclasses import dataclass
 from typing import TYPE_CHECKING
 
@@ -36,9 +36,9 @@ class Interrupted(KeyboardInterrupt):
 class Record:
     """Quantities at T stored instants, axis 0 = time.
 
-    ``q`` (T, legs, n) leg coordinates; ``rate`` (T, legs, any) rates of l and, backwards, of what stands before it
-    (beta, alpha); ``turn`` (T, 3) angular velocity in platform axes;
-    ``lam``, ``drive``, ``pose``, ``energy``, ``sums``, ``closure`` as in `solve.recording.Recording`.
+    ``q`` (T, legs, n) leg coordinates; ``rate`` (T, legs, n') rates of those that were asked for; ``turn`` (T, 3)
+    angular velocity in platform axes; ``lam``, ``drive``, ``pose``, ``reaction``, ``energy``, ``sums``, ``closure`` as
+    in `solve.recording.Recording`.
     ``failure``: why the integration stopped early, in words, or None; ``interrupted``: by the user.
     """
 
@@ -49,6 +49,7 @@ class Record:
     lam: Array
     drive: Array
     pose: Array
+    reaction: Array
     energy: Array
     sums: Array
     closure: Array
@@ -59,11 +60,13 @@ class Record:
     interrupted: bool
 
 
-_ARRAYS = ("time", "q", "rate", "turn", "lam", "drive", "pose", "energy", "sums", "closure")
+_KEPT = ("time", "q", "lam", "drive", "pose", "reaction", "energy", "sums", "closure")
 
 
-def collect(chunks: Iterable[Chunk], l_index: int, duration: float, progress: Progress | None) -> Record:
+def collect(chunks: Iterable[Chunk], rates: Sequence[int], duration: float, progress: Progress | None) -> Record:
     """Run a time integration to its end, to its failure, or until the user interrupts it.
+
+    ``rates``: coordinates of a leg whose rates are kept.
 
     Raises
     ------
@@ -75,7 +78,7 @@ def collect(chunks: Iterable[Chunk], l_index: int, duration: float, progress: Pr
     failure, interrupted = None, False
     try:
         for chunk in chunks:
-            parts.append(_kept(chunk, l_index))  # whole or not at all, whenever the user interrupts
+            parts.append(_kept(chunk, rates))  # whole or not at all, whenever the user interrupts
             steps.append(chunk.step)
             errors.append(chunk.error)
             if progress is not None:
@@ -87,7 +90,7 @@ def collect(chunks: Iterable[Chunk], l_index: int, duration: float, progress: Pr
     if len(parts) < 2 and (failure or interrupted):
         raise failure or KeyboardInterrupt
     return Record(
-        **{name: np.concatenate([part[name] for part in parts]) for name in _ARRAYS},
+        **{name: np.concatenate([part[name] for part in parts]) for name in parts[0]},
         smallest_step=min(steps),
         largest_error=max(errors),
         wall_time=time.perf_counter() - begin,
@@ -96,12 +99,12 @@ def collect(chunks: Iterable[Chunk], l_index: int, duration: float, progress: Pr
     )
 
 
-def _kept(chunk: Chunk, l_index: int) -> dict[str, Array]:
+def _kept(chunk: Chunk, of: Sequence[int]) -> dict[str, Array]:
     r = chunk.recording
     legs, n = r.q.shape[1:]
     rates = r.v[:, : legs * n].reshape(len(r.time), legs, n)
-    kept = {name: getattr(r, name) for name in ("time", "q", "lam", "drive", "pose", "energy", "sums", "closure")}
-    kept["rate"] = rates[:, :, l_index::-1]
+    kept = {name: getattr(r, name) for name in _KEPT}
+    kept["rate"] = rates[:, :, list(of)]
     kept["turn"] = r.v[:, legs * n + 3 : legs * n + 6]
     return {name: np.array(array) for name, array in kept.items()}  # copies: views would keep the whole chunk
 

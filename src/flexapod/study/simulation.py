@@ -8,7 +8,7 @@ from typing import TYPE_CHECKING
 from flexapod import model
 from flexapod.solve.robot_march import RobotMarch, prepare
 from flexapod.study.actuator import simulate_actuator
-from flexapod.study.after.leg_results import drive_forms
+from flexapod.study.after.leg_results import damped_angles, drive_forms
 from flexapod.study.after.plausibility import robot_warnings
 from flexapod.study.after.results import rigid_force_results, robot_coords, robot_results
 from flexapod.study.arguments import LoadLike, RobotLike, StartLike, as_study, read
@@ -67,7 +67,7 @@ def simulated(study: model.Study, progress: Progress | None = None) -> Simulated
     """
     path = RigidPath(study)
     remarks, march = check_path(study, path), prepare(study)
-    record = collect(march.chunks, march.system.kernel.shapes.l_index, study.duration, progress)
+    record = collect(march.chunks, damped_angles(march.system), study.duration, progress)
     return Simulated(study=study, path=path, march=march, record=record, remarks=remarks)
 
 

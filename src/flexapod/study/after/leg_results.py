@@ -157,7 +157,10 @@ def _joint_moments(found: Limbs, system: System, record: Record | RestStates, fo
 
     About the leg's own axis that of the base counts only where the leg has a turn about it as a coordinate.
     """
-    base = _base_moments(found, system, record.q, forces)
+    rates = {}
+    if isinstance(record, Record):
+        rates = dict(zip(damped_angles(system), np.moveaxis(record.rate, -1, 0), strict=True))
+    base = _base_moments(found, system, record.q, rates, forces)
     if system.rows < 6:
         return np.stack([base, np.zeros_like(base)], axis=2)
     turn = matrix(record.pose[:, 3:])[:, None] @ found.platform_frames
@@ -165,7 +168,15 @@ def _joint_moments(found: Limbs, system: System, record: Record | RestStates, fo
     return np.stack([base, on_platform], axis=2)
 
 
-def _base_moments(found: Limbs, system: System, q: Array, forces: Array) -> Array:
+def damped_angles(system: System) -> list[int]:
+    """Coordinates of a leg, angles at its base joint, whose springs are damped in some leg."""
+    shapes = system.kernel.shapes
+    if shapes.closure != "pose" or not _of_base(system, "damping").any():
+        return []
+    return [shapes.index(name) for name in _BASE_ANGLES if shapes.has(name)]
+
+
+def _base_moments(found: Limbs, system: System, q: Array, rates: dict[int, Array], forces: Array) -> Array:
     shapes = system.kernel.shapes
     turn, axes = _turned_by_cranks(found, system, q), []
     about = np.zeros((*q.shape[:2], 3))
@@ -175,7 +186,7 @@ def _base_moments(found: Limbs, system: System, q: Array, forces: Array) -> Arra
             continue
         angle = q[..., shapes.index(name)]
         about[..., k] = np.where(system.held[:, shapes.index(name)], forces[..., shapes.index(name)], 0.0)
-        about[..., k] -= _springs(system, k, angle)
+        about[..., k] -= _springs(system, k, angle, rates.get(shapes.index(name), 0.0))
         turn = turn @ exponential(angle[..., None] * unit)
     return np.asarray(np.linalg.solve(np.stack(axes, axis=-2), about[..., None])[..., 0], dtype=np.float64)
 
@@ -188,10 +199,14 @@ def _turned_by_cranks(found: Limbs, system: System, q: Array) -> Array:
     return exponential(q[..., system.kernel.shapes.index("chi"), None] * found.carriage_axis) @ frames
 
 
-def _springs(system: System, k: int, angle: Array) -> Array:
-    """Moment with which the spring of a base joint's angle resists, (T, legs)."""
+def _springs(system: System, k: int, angle: Array, rate: Array | float) -> Array:
+    """Moment with which spring and damper of a base joint's angle resist, (T, legs)."""
     if system.kernel.shapes.closure != "pose":
         return np.zeros_like(angle)
-    layout = leg_parameters(system.kernel.shapes)
-    stiffness, home = (system.leg_p[:, columns(layout, name)][:, k] for name in ("base_stiffness", "base_home"))
-    return stiffness * (angle - home)
+    stiffness, home, damping = (_of_base(system, name)[:, k] for name in ("stiffness", "home", "damping"))
+    return stiffness * (angle - home) + damping * rate
+
+
+def _of_base(system: System, name: str) -> Array:
+    """A parameter of the angles at the base joints, (legs, 3)."""
+    return system.leg_p[:, columns(leg_parameters(system.kernel.shapes), f"base_{name}")]

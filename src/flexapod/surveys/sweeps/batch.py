@@ -14,6 +14,7 @@ from flexapod.errors import ComputationError, FlexapodError
 from flexapod.model import ActuatorStudy, Study
 from flexapod.solve.robot_march import prepare
 from flexapod.study.actuator import simulate_actuator
+from flexapod.study.after.leg_results import damped_angles
 from flexapod.study.after.plausibility import robot_warnings
 from flexapod.study.after.results import rigid_force_results, robot_results
 from flexapod.study.before.checks import check_path
@@ -105,7 +106,7 @@ def _robot(kept: Kept, study: Study) -> PointResult:
     path = RigidPath(study)
     remarks = [*study.warnings, *check_path(study, path)]
     march = prepare(study)
-    record = collect(march.chunks, march.system.kernel.shapes.l_index, study.duration, None)
+    record = collect(march.chunks, damped_angles(march.system), study.duration, None)
     _refuse_partial(record.failure, record.interrupted, float(record.time[-1]))
     run = RobotRun(study, march.system, record, march.counters, path.at(record.time))
     values: dict[str, Array] = {name: np.asarray(ROBOT_SCALARS[name].value(run)) for name in kept.scalars}

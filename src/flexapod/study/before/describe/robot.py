@@ -8,6 +8,7 @@ import numpy as np
 
 from flexapod import model, rigid
 from flexapod.errors import InputError
+from flexapod.solve.losses import loss_words
 from flexapod.solve.robot_march import refuse_massless
 from flexapod.study.before.checks import check_path
 from flexapod.study.before.describe.actuator import ActuatorDescription, describe_actuator
@@ -43,7 +44,8 @@ class JointAngle:
 class RobotDescription:
     """What `describe` finds for a robot; times in s.
 
-    In words: what poses `held` still, `motions` that the mechanism has, `remarks` of doubt.
+    In words: what poses `held` still, `motions` that the mechanism has, `losses` that were made viscous, `remarks` of
+    doubt.
     """
 
     kind: str = "robot"
@@ -53,6 +55,7 @@ class RobotDescription:
     fidelity: str
     held: str
     motions: tuple[str, ...]
+    losses: tuple[str, ...]
     legs: tuple[LegDescription, ...]
     angles: tuple[JointAngle, ...]
     singularity: Singularity
@@ -94,6 +97,7 @@ def describe(study: model.Study | model.ActuatorStudy) -> RobotDescription | Act
         fidelity=study.simulation.fidelity,
         held=held(study.robot),
         motions=tuple(rigid.mobility_words(rigid.rigid_limbs(study.robot))),
+        losses=tuple(loss_words(study.robot, study.simulation)),
         legs=legs,
         angles=_angles(path),
         singularity=singularity,
