@@ -1,13 +1,17 @@
 """Paths that no robot could follow are refused before anything is computed, in the user's words."""
 
+from pathlib import Path
+
 import numpy as np
 import pytest
 from tests.runs import paper_robot, with_legs
 
 import flexapod as fx
-from flexapod.model import AxisMotion, ForceDrive, base_circle, platform_circle
+from flexapod.model import AxisMotion, ForceDrive, base_circle, loads, platform_circle
 from flexapod.study.before.checks import check_path
 from flexapod.study.path import path_instants
+
+SAMPLES = Path(__file__).parents[2] / "examples" / "mechanisms"
 
 
 def moving(kind, amplitude, **motion):
@@ -172,3 +176,19 @@ def test_a_path_is_looked_at_often_enough_and_not_too_often():
     assert len(path_instants(study)) == 2001
     assert len(path_instants(paper_robot(duration=2.0, output_step=1e-4))) == 20001
     assert len(path_instants(paper_robot(duration=2.0, output_step=1e-6))) == 50001
+
+
+@pytest.mark.parametrize(
+    ("sample", "old", "new", "left"),
+    [
+        ("tripod", 'type = "3-RPS"', 'type = "3-UPS"', "3 motions"),
+        ("hexapod", "damping = 0.005", "damping = 0.005\npassive = true", "6 motions"),
+        ("hexaglide", "damping = 0.005", "damping = 0.005\npassive = true", "6 motions"),
+    ],
+)
+def test_too_few_drives_are_named_as_such(sample, old, new, left):
+    # Not as a singular path, whose cure would be other joints or another motion.
+    text = (SAMPLES / f"{sample}.toml").read_text(encoding="utf-8")
+    error = refusal(loads(text.replace(old, new)))
+    assert error.key == "robot.type"
+    assert error.what.startswith(f"with all drives locked it still has {left}")

@@ -83,8 +83,9 @@ def check_geometry(study: Study, path: RigidPath | None = None) -> list[str]:
     path, robot = path or RigidPath(study), study.robot
     try:
         remarks = check_outputs(study)
-        if rigid.rigid_limbs(robot).guides:
-            rigid.refuse_loose(rigid.rigid_limbs(robot))
+        limbs = rigid.rigid_limbs(robot)
+        if limbs.guides or np.count_nonzero(limbs.state == rigid.DRIVEN) < 6:
+            rigid.refuse_loose(limbs)
         t, found = path.time, path.reach
         _refuse_lost(robot, t, found)
         _refuse_excess(robot, t, found)
