@@ -6,6 +6,7 @@ from typing import TYPE_CHECKING, Literal
 
 import numpy as np
 
+from flexapod.errors import InputError
 from flexapod.typing import Array
 
 if TYPE_CHECKING:
@@ -77,3 +78,15 @@ def _seen(vector: Array, place: Array, normal: Array) -> Array:
     if radial is None:
         return vector
     return np.round(np.array([radial, np.cross(normal, radial), normal]) @ vector, 12)
+
+
+def within_a_turn(angles: Array | float, key: str) -> None:
+    """Refuse angles [rad] of more than a turn under `key`: they are degrees without their unit."""
+    if np.abs(angles).max(initial=0.0) > 2 * np.pi:
+        raise InputError(
+            "is out of range",
+            key=key,
+            value=np.asarray(angles).tolist(),
+            allowed="-2 pi to 2 pi rad",
+            next_step='A number without a unit is in rad; write degrees as "120 deg"',
+        )

@@ -11,7 +11,7 @@ from flexapod.errors import InputError
 
 MOST_LEGS = 16
 _CHAIN = re.compile(r"(?P<carriage>[PR]?)(?P<base>[RUSF])(?P<stroke>[PC]?)(?P<platform>[RUSF]?)")
-_GROUP = re.compile(r"(?:(\d{1,3})-)?([A-Za-z]+)")
+_GROUP = re.compile(r"(?:([0-9]{1,3})-)?([A-Za-z]+)")
 _KINDS: dict[str, Literal["", "slider", "crank"]] = {"": "", "P": "slider", "R": "crank"}
 _LETTERS = (
     "from base to platform: P or R for a carriage, if there is one; R, U, S or F for the joint at the base; P or C for "

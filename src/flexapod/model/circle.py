@@ -9,7 +9,7 @@ import numpy as np
 from pydantic import model_validator
 
 from flexapod.errors import InputError
-from flexapod.model.axes import plane_order
+from flexapod.model.axes import plane_order, within_a_turn
 from flexapod.model.base import Frozen, Measure, NonNegative, Positive, Series
 from flexapod.typing import Array
 
@@ -29,6 +29,8 @@ class Circle(Frozen):
 
     @model_validator(mode="after")
     def _pairs_apart(self) -> Circle:
+        if self.angles is not None:
+            within_a_turn(self.angles, "angles")
         if self.half_angle is not None and self.half_angle > math.pi / 3:
             raise InputError(
                 "is out of range",

@@ -6,8 +6,9 @@ import math
 from typing import Annotated
 
 import numpy as np
-from pydantic import Field
+from pydantic import Field, model_validator
 
+from flexapod.model.axes import within_a_turn
 from flexapod.model.base import Frozen, Measure, Vec3
 from flexapod.model.joint import Carriage
 from flexapod.typing import Array
@@ -21,6 +22,11 @@ class Home(Frozen):
 
     position: Annotated[Vec3, Measure("length")]
     rotation: Annotated[Vec3, Measure("angle")] = Field(default=(0.0, 0.0, 0.0), validate_default=True)
+
+    @model_validator(mode="after")
+    def _within_a_turn(self) -> Home:
+        within_a_turn(self.rotation, "rotation")
+        return self
 
     def raised(self, height: float) -> Home:
         """The same pose at another height [m]."""

@@ -8,7 +8,10 @@ import numpy as np
 from pydantic import model_validator
 
 from flexapod.errors import InputError
+from flexapod.model.axes import within_a_turn
 from flexapod.model.base import Frozen, Matrix6, Measure, NonNegative, Number, Vec3
+
+NO_DIRECTION = 1e-9  # length of a vector below which it is none
 
 
 class Joint(Frozen):
@@ -113,6 +116,8 @@ class Carriage(Frozen):
     @model_validator(mode="after")
     def _complete(self) -> Carriage:
         _check_direction(self.axis, self.kind)
+        if self.kind == "crank" and self.home is not None:
+            within_a_turn(self.home, "home")
         if self.side is not None and self.home is not None:
             raise InputError("is given together with home", key="side", value=self.side, allowed="either of the two")
         unused = ("mass", "a slider") if self.kind == "crank" else ("inertia", "a crank")
@@ -135,5 +140,5 @@ class Carriage(Frozen):
 
 
 def _check_direction(axis: Vec3 | None, key: str) -> None:
-    if axis is not None and not axis.any():
+    if axis is not None and np.linalg.norm(axis) < NO_DIRECTION:
         raise InputError("has no direction", key=key, value=axis.tolist(), allowed="a non-zero vector")

@@ -108,6 +108,8 @@ class Leg(Frozen):
             raise _misfit(self.chain, "strut", "is missing: without P or C the leg is a rod of fixed length")
         if letters.stroke and self.strut is not None:
             raise _misfit(self.chain, "strut", "does not fit a leg with a stroke", "cylinder and piston")
+        if not letters.stroke and self.cylinder != NOTHING:
+            raise _misfit(self.chain, "cylinder", "does not fit a strut", "strut and carriage")
         if not letters.stroke and self.stroke is not None:
             raise _misfit(self.chain, "stroke", "limits a stroke that the leg does not have", "carriage.stroke")
         if letters.carriage != ("" if self.carriage is None else self.carriage.kind):

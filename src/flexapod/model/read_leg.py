@@ -12,7 +12,7 @@ from flexapod.model.axes import axis_of
 from flexapod.model.chain import chain_of
 from flexapod.model.columns import columns_of
 from flexapod.model.drive import Drive, ForceDrive, PrescribedDrive, ServoDrive
-from flexapod.model.joint import Carriage, Joint
+from flexapod.model.joint import NO_DIRECTION, Carriage, Joint
 from flexapod.model.leg import Leg
 from flexapod.model.material import MATERIALS, Material, Tube
 from flexapod.model.piston import Piston, Strip, Strut
@@ -32,8 +32,7 @@ def read_leg(section: Section, number: int, count: int, chain: str, places: tupl
     base, platform, normal = places
 
     def parts(section: Section) -> dict[str, object]:
-        section.text("chain")
-        if (section.data.get("chain") or chain) != chain:
+        if section.text("chain") not in (None, chain):
             raise section.error("is not the chain of this leg", "chain", allowed=f"{chain}, as robot.type says")
         letters = chain_of(chain)
         if letters.stroke and not letters.platform and "passive" not in section:
@@ -61,7 +60,7 @@ def read_leg(section: Section, number: int, count: int, chain: str, places: tupl
 
 def _joint(leg: Section, name: str, place: Array, normal: Array) -> Joint | None:
     axis = leg.vector("u_axis", "number", "number", "number") if name == "base_joint" else None
-    if axis is not None and not any(axis):
+    if axis is not None and np.linalg.norm(axis) < NO_DIRECTION:
         raise leg.error("has no direction", "u_axis", allowed="a non-zero vector")
     section = leg.section(name)
     if section is None:
@@ -117,7 +116,12 @@ def _carriage(section: Section, base: Array, normal: Array) -> Carriage:
 
     kind = "crank" if "crank" in section else "slider"
     among = ("length",) if kind == "slider" else ("angle",)
-    return section.read(Carriage, among=among, also=("slider", "crank", "radius"), then=parts)
+    try:
+        return section.read(Carriage, among=among, also=("slider", "crank", "radius"), then=parts)
+    except InputError as error:
+        if error.key != section.key("axis"):
+            raise
+        raise section.error(error.what, kind, allowed=error.allowed) from None
 
 
 def _arm(section: Section, radius: float, axis: Array, base: Array, normal: Array) -> Array:

@@ -33,14 +33,14 @@ def read_robot(top: Section) -> Robot:
     section.only("type", "plane", "base", "platform", "home_height", "home", "gravity")
     section.need(*_ENDS)
     plane = top.plane = section.plane = section.text("plane", ("xy", "yz", "zx"))
-    kind = section.text("type") or "6-UPS"
+    kind = section.text("type")
+    kind = "6-UPS" if kind is None else kind
     try:
         chains = chains_of(kind)
     except InputError as error:
         raise error.located(file=top.file, prefix="robot.type") from None
     tables = _leg_tables(top, chains, kind)
-    base, platform = (_places(section, end, tables) for end in _ENDS)
-    section.child(section.data["platform"], "platform").flag("fixed")
+    base, platform = (_places(section, end, tables, kind) for end in _ENDS)
     legs: list[Leg] = []
     for i, table in enumerate(tables):
         same = i > 0 and table is tables[i - 1] and not _turns(table) and not _columns(legs[-1])
@@ -65,7 +65,9 @@ def platform_fixed(top: Section) -> bool:
     """Whether a study file says that the platform is held."""
     robot = top.data.get("robot")
     platform = robot.get("platform") if isinstance(robot, Mapping) else None
-    return isinstance(platform, Mapping) and platform.get("fixed") is True
+    if not isinstance(robot, Mapping) or not isinstance(platform, Mapping):
+        return False
+    return bool(top.child(robot, "robot").child(platform, "platform").flag("fixed"))
 
 
 def _leg_tables(top: Section, chains: tuple[str, ...], kind: str) -> list[Section]:
@@ -95,16 +97,24 @@ def _leg_tables(top: Section, chains: tuple[str, ...], kind: str) -> list[Sectio
     return tables
 
 
-def _places(robot: Section, end: str, tables: list[Section]) -> Array:
+def _places(robot: Section, end: str, tables: list[Section], kind: str) -> Array:
     """Joints of all legs at one end, (n, 3); a leg may have its own place, the others share a circle or rows."""
     joints = [table.section(f"{end}_joint") for table in tables]
     own = [None if joint is None else joint.vector("at", *_LENGTHS) for joint in joints]
-    shared = iter(_shared(robot.child(robot.data[end], end), end, own.count(None)))
+    shared = iter(_shared(robot.child(robot.data[end], end), end, own.count(None), kind))
     return np.array([next(shared) if place is None else place for place in own])
 
 
-def _shared(section: Section, end: str, count: int) -> Array | list[list[float]]:
+def _shared(section: Section, end: str, count: int, kind: str) -> Array | list[list[float]]:
     fixed = ("fixed",) if end == "platform" else ()
+    for name, what in (("joints", "rows"), ("angles", "angles")):
+        given = section.data.get(name)
+        if isinstance(given, list) and len(given) != count:
+            raise section.malformed(
+                f"places {len(given)} joint{'s' * (len(given) != 1)}",
+                name,
+                allowed=f"{count} {what}, one for each leg of {kind} that has no {end}_joint.at",
+            )
     if "joints" in section:
         section.only("joints", *fixed)
         return section.rows("joints", *(_LENGTHS,) * count)
