@@ -154,7 +154,7 @@ def _loads(found: RobotDescription) -> None:
         )
     known = [(leg.stress, leg.leg) for leg in found.legs if leg.stress is not None]
     if not known:
-        print_text("No stresses: the section or the material of the pistons is not given.", indent=2)
+        print_text("No stresses: the section or the material of the legs is not given.", indent=2)
         return
     most, number = known[_most([stress.total.value for stress, _ in known])]
     limit = "" if most.yield_stress is None else f", {100 * most.total.value / most.yield_stress:.2g} % of yield"

@@ -9,7 +9,7 @@ from matplotlib.figure import Figure
 
 from flexapod.plot.style import PAGE, Scale, figure, flat_on_the_scale_of_others, mark_end, needs, scale, styled
 from flexapod.scene.robot import motion_end
-from flexapod.study.names import CAUSE_WORDS
+from flexapod.study.names import cause_words
 from flexapod.study.words import cleared
 
 __all__ = ["deviation_by_cause"]
@@ -35,7 +35,7 @@ def deviation_by_cause(data: xr.Dataset) -> Figure:
     sizes = np.abs(data.deviation_by_cause).max(("time", "leg", "axis"))
     parts = data.deviation_by_cause.sel(cause=np.array([cleared(size, sizes.max()) > 0 for size in sizes], dtype=bool))
     small = scale(total, "m")
-    end, time = motion_end(data), data.time.values
+    end, time, words = motion_end(data), data.time.values, cause_words(data)
     largest, seen = float(np.abs(small(total)).max()), []
     for row, axis in enumerate(data.axis.values):
         left, right = grid[row]
@@ -44,7 +44,7 @@ def deviation_by_cause(data: xr.Dataset) -> Figure:
         seen.append(float(np.abs(lines).max()))
         left.plot(time, lines[0], color="#C8C8C8", linewidth=5, label="whole deviation")
         for cause, values in zip(map(str, parts.cause.values), lines[1:], strict=True):
-            left.plot(time, values, color=_COLORS.get(cause), linewidth=1.2, label=CAUSE_WORDS.get(cause, cause))
+            left.plot(time, values, color=_COLORS.get(cause), linewidth=1.2, label=words.get(cause, cause))
         left.axhline(0, color="#555555", linewidth=0.7)
         left.set_title(f"{str(axis).upper()}, over time")
         left.set_ylabel(f"deviation [{small.name}]")

@@ -124,7 +124,7 @@ def _robot(data: Dataset) -> Iterator[_Plan]:
     words = words if place == "length" else f"{place[0].upper()}{place[1:]}, as commanded"
     yield "leg-lengths", words, lambda: plot.leg_lengths(data)
     if np.abs(data.tip_deflection).max() > 0:
-        yield "tip-deflections", "Deflection of the piston tips across the legs", lambda: plot.tip_deflections(data)
+        yield "tip-deflections", "Deflection of the tips across the legs", lambda: plot.tip_deflections(data)
     if not held:
         yield "motion", "Commanded motion", lambda: plot.motion_law(data)
     yield "energies", "Energies and their balance", lambda: plot.energies(data)

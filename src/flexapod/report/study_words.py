@@ -15,6 +15,7 @@ from flexapod.study.words import held, number, text
 if TYPE_CHECKING:
     from flexapod.model import ActuatorStudy, Robot, Study
     from flexapod.study.before.describe.actuator import ActuatorDescription
+    from flexapod.study.before.describe.leg import LegDescription
     from flexapod.study.before.describe.pose import PoseDescription
     from flexapod.study.before.describe.robot import RobotDescription
     from flexapod.typing import Array
@@ -165,15 +166,21 @@ def _path(found: RobotDescription) -> list[str]:
     rows = [
         (
             f"{leg.leg}",
-            f"{1e3 * leg.shortest.value:.1f} to {1e3 * leg.longest.value:.1f} mm",
-            "no limits" if leg.stroke_margin is None else f"{1e3 * leg.stroke_margin.value:.1f} mm",
-            f"{leg.force_min.value:.4g} to {leg.force_max.value:.4g} {'N m' if leg.drive == 'crank' else 'N'}",
+            *_way(leg),
+            "none: passive"
+            if not leg.drive
+            else f"{leg.force_min.value:.4g} to {leg.force_max.value:.4g} {'N m' if leg.drive == 'crank' else 'N'}",
             "never pushed" if leg.euler_share.value == 0 else f"{100 * leg.euler_share.value:.2g} %",
             "n/a" if leg.stress is None else text(leg.stress.total.value, "Pa"),
         )
         for leg in found.legs
     ]
-    head = ("Leg", "Length", "Stroke left", "Drive force", "Of Euler load", "Largest stress")
+    kinds = {leg.carriage.kind: leg for leg in found.legs if leg.carriage is not None}
+    place, left = {"crank": ("Angle", "Turn left"), "slider": ("Position", "Travel left")}.get(
+        next(iter(kinds), ""), ("Length", "Stroke left")
+    )
+    force = "Drive torque" if "crank" in kinds else "Drive force"
+    head = ("Leg", place, left, force, "Of Euler load", "Largest stress")
     s = found.singularity
     words = (
         f"Estimates from the rigid path, as `flexapod check` gives them. Distance to a singularity: smallest singular "
@@ -181,6 +188,18 @@ def _path(found: RobotDescription) -> list[str]:
         f"{s.condition:.3g}; at home {s.home_smallest_singular_value:.3g} and {s.home_condition:.3g}."
     )
     return [html.heading("What the path asks of the legs"), html.table(head, rows), html.paragraph(words, "soft")]
+
+
+def _way(leg: LegDescription) -> tuple[str, str]:
+    """Where the carriage of a leg goes, else its length, and what is left of what it may."""
+    if (way := leg.carriage) is None:
+        low, high, margin, unit, factor = leg.shortest, leg.longest, leg.stroke_margin, "mm", 1e3
+    else:
+        turns = way.kind == "crank"
+        low, high, margin = way.low, way.high, way.margin
+        unit, factor = ("deg", math.degrees(1.0)) if turns else ("mm", 1e3)
+    left = "no limits" if margin is None else f"{factor * margin.value:.1f} {unit}"
+    return f"{factor * low.value:.1f} to {factor * high.value:.1f} {unit}", left
 
 
 def _actuator(study: ActuatorStudy) -> list[str]:

@@ -16,11 +16,6 @@ if TYPE_CHECKING:
 
 #: Causes of a leg's length error, in the order of the `cause` dimension.
 CAUSES = ("axial-strain", "bending", "drive")
-CAUSE_WORDS = {
-    "axial-strain": "stretch of the pistons",
-    "bending": "bending of the pistons",
-    "drive": "give of the drives",
-}
 
 
 class Variable(NamedTuple):
@@ -207,6 +202,16 @@ ONE_POSE_FORMS = {
     "platform_position": Variable(("axis",), "m", "origin of the platform frame"),
     "platform_quaternion": Variable(("quaternion",), "1", "orientation of the platform, platform to world"),
 }
+
+
+def cause_words(data: Dataset) -> dict[str, str]:
+    """Causes of deviation in words; what bends in legs without stroke is a strut."""
+    what = "pistons" if "leg_length" in data else "struts"
+    return {
+        "axial-strain": f"stretch of the {what}",
+        "bending": f"bending of the {what}",
+        "drive": "give of the drives",
+    }
 
 
 def fixed_labels(sizes: Mapping[str, int]) -> dict[str, tuple[object, str]]:

@@ -8,7 +8,7 @@ from typing import TYPE_CHECKING
 import numpy as np
 
 from flexapod.errors import InputError
-from flexapod.study.names import CAUSE_WORDS
+from flexapod.study.names import cause_words
 from flexapod.study.words import NOTHING, cleared, text
 from flexapod.typing import Array
 
@@ -44,7 +44,7 @@ class RobotSummary:
     share of each cause in the deviation at the peak, along its direction (they add up to 1 but for second order);
     `worst_leg`, `worst_leg_share`: the leg that the largest cause owes most to, and its part of it; None without
     deviation, and where legs contribute alike. `tips` [m]: how far tips are from their legs' axes, at most. `partial`:
-    the integration stopped early.
+    the integration stopped early; `words` for causes.
     """
 
     point: str
@@ -58,6 +58,7 @@ class RobotSummary:
     worst_leg_share: float | None
     tips: float
     partial: bool
+    words: dict[str, str]
 
     @property
     def largest_cause(self) -> str | None:
@@ -89,12 +90,13 @@ class RobotSummary:
             return f"{size}."
         return (
             f"{size}; the largest cause is "
-            f"{CAUSE_WORDS[self.largest_cause]} ({100 * self.causes[self.largest_cause]:.0f} %{leg})."
+            f"{self.words[self.largest_cause]} ({100 * self.causes[self.largest_cause]:.0f} %{leg})."
         )
 
     def as_dict(self) -> dict[str, object]:
         """Everything as plain data."""
-        return {**asdict(self), "largest_cause": self.largest_cause, "sentence": self.sentence}
+        found = {name: value for name, value in asdict(self).items() if name != "words"}
+        return {**found, "largest_cause": self.largest_cause, "sentence": self.sentence}
 
 
 @dataclass(frozen=True, kw_only=True)
@@ -170,6 +172,7 @@ def summary(data: Dataset, point: str = "com") -> RobotSummary | ActuatorSummary
         worst_leg_share=share,
         tips=float(np.linalg.norm(data.tip_deflection.values, axis=-1).max(initial=0.0)),
         partial=partial,
+        words=cause_words(data),
     )
 
 

@@ -10,7 +10,7 @@ import numpy as np
 
 from flexapod.errors import InputError, closest
 from flexapod.model import ActuatorStudy, Study
-from flexapod.study.after.leg_results import absent, leg_labels
+from flexapod.study.after.leg_results import absent, drive_forms, leg_labels
 from flexapod.study.after.summary import tip_size
 from flexapod.study.names import ACTUATOR_FORMS, SPACE_FORMS, VARIABLES, Variable
 from flexapod.surveys.sweeps.plan import Keep
@@ -82,7 +82,7 @@ def kept(keep: Keep, study: Study | ActuatorStudy, resolved: Resolved) -> Kept:
     InputError
         A name that does not exist, or records of different sizes at different points.
     """
-    table = ROBOT_SCALARS if isinstance(study, Study) else _actuator_scalars(study)
+    table = _robot_scalars(study) if isinstance(study, Study) else _actuator_scalars(study)
     usual = ROBOT_DEFAULTS if isinstance(study, Study) else tuple(table)
     names = keep.scalars or (() if keep.records else usual)
     for name in names:
@@ -103,6 +103,14 @@ def kept(keep: Keep, study: Study | ActuatorStudy, resolved: Resolved) -> Kept:
     )
 
 
+def _robot_scalars(study: Study) -> Mapping[str, Scalar]:
+    """Scalars of a robot's simulation; forces of cranks are torques."""
+    if not (forms := drive_forms(study.robot)):
+        return ROBOT_SCALARS
+    names = ("actuator_force_peak", "actuator_force_peak_by_leg")
+    return {**ROBOT_SCALARS, **{n: ROBOT_SCALARS[n]._replace(units=forms["drive_force"].units) for n in names}}
+
+
 def _actuator_scalars(study: ActuatorStudy) -> Mapping[str, Scalar]:
     """Scalars that a simulation of this actuator has."""
     absent_here = set() if study.actuator.space else {f"{name}_peak" for name in _SPACE_PEAKS}
@@ -116,13 +124,14 @@ def _known(name: str, table: Mapping[str, object], key: str) -> None:
 
 def _records(study: Study | ActuatorStudy) -> dict[str, Variable]:
     """Variables over time that a simulation of this kind of study has."""
-    over_time = {name: entry for name, entry in VARIABLES.items() if "time" in entry.dims[:1]}
+    forms = drive_forms(study.robot) if isinstance(study, Study) else {}
+    over_time = {name: forms.get(name, entry) for name, entry in VARIABLES.items() if "time" in entry.dims[:1]}
     actuator = ("length", "angle", "length_rate", "angle_rate", "mode_amplitude", "tip_position", "torque", "force")
     space = ("elevation", "elevation_rate", *_SPACE_PEAKS)
     shared = ("energy_kinetic", "energy_dissipated", "work_drive", "work_external", "closure_residual")
     if isinstance(study, ActuatorStudy):
-        forms = {name: over_time[name] for name in (*actuator, *shared)} | ACTUATOR_FORMS
-        return forms | ({name: over_time[name] for name in space} | SPACE_FORMS if study.actuator.space else {})
+        planar = {name: over_time[name] for name in (*actuator, *shared)} | ACTUATOR_FORMS
+        return planar | ({name: over_time[name] for name in space} | SPACE_FORMS if study.actuator.space else {})
     kinematics = ("leg_length_rate", "leg_length_acceleration", "leg_angle_rigid", "platform_position")
     reactions = ("base_force_rigid", "base_moment_rigid", "held_force_rigid", "joint_moment_rigid")
     others = {*actuator, *space, *kinematics, *reactions, *absent(study.robot)}

@@ -177,7 +177,7 @@ def _by_leg(
     }
 
 
-_NO_SECTION = "a piston is given by EI, EA and rhoA, without section or material"
+_NO_SECTION = "a piston or strut is given by EI, EA and rhoA, without section or material"
 
 
 #: Scalars of a robot's simulation, by name.
@@ -196,9 +196,9 @@ ROBOT_SCALARS: Mapping[str, Scalar] = {
         lambda run: run.cause_share,
     ),
     **_by_leg("actuator_force_peak", "N", "size of the drive force", lambda run: _peak(run.actuator_force)),
-    **_by_leg("tip_deflection_peak", "m", "deflection of the piston's tip", lambda run: _peak(run.tip_deflection)),
-    **_by_leg("stress_peak", "Pa", "axial plus bending stress in the piston", lambda run: run.stress, _NO_SECTION),
-    **_by_leg("strain_peak", "1", "axial plus bending strain in the piston", lambda run: run.strain, _NO_SECTION),
+    **_by_leg("tip_deflection_peak", "m", "deflection of a leg's tip", lambda run: _peak(run.tip_deflection)),
+    **_by_leg("stress_peak", "Pa", "axial plus bending stress in a leg", lambda run: run.stress, _NO_SECTION),
+    **_by_leg("strain_peak", "1", "axial plus bending strain in a leg", lambda run: run.strain, _NO_SECTION),
     "first_frequency": Scalar(
         (), "Hz", "lowest natural frequency at home, commands of the drives held", lambda run: run.first_frequency,
         "rigid legs on held strokes cannot vibrate, a pure force drive cannot be locked",

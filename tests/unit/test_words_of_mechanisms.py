@@ -1,0 +1,50 @@
+"""Words and units of robots whose legs are not pistons: struts, places and angles of carriages, torques."""
+
+import xarray as xr
+from tests.mechanisms import ROBOTS
+
+import flexapod as fx
+from flexapod.model import AxisMotion, Study
+from flexapod.report.study_words import _path
+from flexapod.study.before.describe.robot import Singularity, describe_legs
+from flexapod.study.names import cause_words
+from flexapod.study.path import RigidPath
+from flexapod.surveys.sweeps.kept import _records, _robot_scalars
+
+
+def study(name):
+    motion = AxisMotion(type="heave", amplitude=0.01, duration=0.1)
+    return Study(robot=ROBOTS[name](), motion=motion, simulation=fx.preset("paper-robot").simulation)
+
+
+def table(name):
+    """Head and first row of the report's table of legs."""
+
+    class Found:
+        legs = describe_legs(RigidPath(study(name)))
+        singularity = Singularity(
+            home_smallest_singular_value=1, home_condition=1, smallest_singular_value=1, condition=1, time=0
+        )
+
+    return _path(Found)[1].replace("\xa0", " ")
+
+
+def test_the_report_shows_what_drives_move():
+    slider, crank, piston, passive = (table(name) for name in ("6-PUS", "6-RUS", "6-UPS", "3-UPS+UP"))
+    assert "Position" in slider and "Travel left" in slider and "Drive force" in slider and " mm" in slider
+    assert "Angle" in crank and "Turn left" in crank and "Drive torque" in crank and " deg" in crank and "N m" in crank
+    assert "Length" in piston and "Stroke left" in piston
+    assert "none: passive" in passive
+
+
+def test_sweeps_give_torques_of_cranks_their_unit():
+    scalars = _robot_scalars(study("6-RUS"))
+    assert scalars["actuator_force_peak"].units == scalars["actuator_force_peak_by_leg"].units == "N m"
+    assert _robot_scalars(study("6-PUS"))["actuator_force_peak"].units == "N"
+    records = _records(study("6-RUS"))
+    assert (records["drive_position"].units, records["drive_force"].units) == ("rad", "N m")
+
+
+def test_what_bends_is_a_piston_or_a_strut():
+    assert cause_words(xr.Dataset({"leg_length": 0.0}))["bending"] == "bending of the pistons"
+    assert cause_words(xr.Dataset())["axial-strain"] == "stretch of the struts"
