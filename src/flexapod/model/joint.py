@@ -97,7 +97,8 @@ class Carriage(Frozen):
     """What moves the foot of a leg: a slider along `axis`, or a crank about it.
 
     `axis` (3,), world axes; `arm` (3,) [m], of a crank: from its axis to the base joint at angle 0, world axes;
-    `mass` [kg] of a slider; `inertia` [kg m^2] of a crank about its axis. Of the two positions in which a strut reaches
+    `mass` [kg]; of a crank `inertia` [kg m^2] about its axis and `com` [m], its centre of mass from there towards the
+    base joint. Of the two positions in which a strut reaches
     the platform at home `side` takes the larger (+1) or the smaller one (-1), else it is the one next to `home`
     [m, rad] (default 0). `stroke`: allowed positions.
     """
@@ -109,6 +110,7 @@ class Carriage(Frozen):
     arm: Annotated[Vec3, Measure("length")] | None = None
     mass: Annotated[NonNegative, Measure("mass")] = 0.0
     inertia: Annotated[NonNegative, Measure("inertia")] = 0.0
+    com: Annotated[Number, Measure("length")] | None = None
     home: Annotated[Number, Measure("length", "angle")] | None = None
     side: Literal[1, -1] | None = None
     stroke: Travel | None = None
@@ -120,9 +122,14 @@ class Carriage(Frozen):
             within_a_turn(self.home, "home")
         if self.side is not None and self.home is not None:
             raise InputError("is given together with home", key="side", value=self.side, allowed="either of the two")
-        unused = ("mass", "a slider") if self.kind == "crank" else ("inertia", "a crank")
-        if getattr(self, unused[0]):
-            raise InputError(f"belongs to {unused[1]}", key=unused[0], value=getattr(self, unused[0]))
+        for name in ("inertia", "com"):
+            if self.kind == "slider" and getattr(self, name):
+                raise InputError("belongs to a crank", key=name, value=getattr(self, name))
+        if self.inertia < (least := self.mass * (self.com or 0.0) ** 2) * (1 - 1e-9):
+            raise InputError(
+                "is less than that of the mass at its centre", key="inertia", value=self.inertia,
+                allowed=f"at least mass com^2 = {least:.4g} kg m^2",
+            )  # fmt: skip
         if (self.arm is None) == (self.kind == "crank"):
             raise InputError(
                 "is missing" if self.kind == "crank" else "belongs to a crank",

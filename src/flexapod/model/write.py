@@ -104,7 +104,7 @@ def _joint(joint: Joint, place: Array, normal: Array) -> dict[str, object]:
 
 def _carriage(carriage: Carriage, place: Array, normal: Array) -> dict[str, object]:
     unused = "mass" if carriage.kind == "crank" else "inertia"
-    fields = {name: value for name, value in _fields(carriage).items() if name != unused}
+    fields = {name: value for name, value in _fields(carriage).items() if name != unused or value}
     return {carriage.kind: word_of(carriage.axis, place, normal) or carriage.axis, **fields}
 
 

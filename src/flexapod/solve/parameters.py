@@ -77,7 +77,6 @@ def _leg(leg: Leg) -> dict[str, object]:
         "drive_damping": stroke[1],
         "carriage_mass": 0.0 if foot is None else foot.mass,
         "carriage_inertia": 0.0 if foot is None else foot.inertia,
-        "carriage_com": np.zeros(3),
         "carriage_stiffness": carriage[0],
         "carriage_damping": carriage[1],
         "tip_mass": 0.0,
@@ -99,11 +98,19 @@ def _place(robot: Robot, legs: Limbs, i: int) -> dict[str, object]:
         "R0": legs.frames[i].T,
         "carriage_axis": legs.carriage_axis[i],
         "carriage_arm": legs.carriage_arm[i],
+        "carriage_com": _crank_com(robot.legs[i], legs.carriage_arm[i]),
         "joint": legs.platform[i] - robot.com,
         "platform_frame": legs.platform_frames[i].T,
         "leg_frame": legs.leg_frames[i].T,
         "L_c": legs.L_c,
     }
+
+
+def _crank_com(leg: Leg, arm: Array) -> Array:
+    """Centre of mass of a crank from its shaft at home, (3,)."""
+    if leg.carriage is None or not leg.carriage.com:
+        return np.zeros(3)
+    return leg.carriage.com / np.linalg.norm(arm) * arm
 
 
 def _joints(leg: Leg, legs: Limbs, i: int, per_loss: float) -> dict[str, object]:

@@ -1,0 +1,57 @@
+"""Weight of cranks: its moment on the drives by hand, and the energy that it takes."""
+
+import numpy as np
+import pytest
+from scipy.spatial.transform import Rotation
+from tests.mechanisms import six_rus
+from tests.moving import moving
+from tests.runs import balance, collect
+
+import flexapod as fx
+from flexapod.model.joint import Carriage
+from flexapod.solve.released import rigid_forces
+from flexapod.solve.robot_march import prepare
+
+MASS, COM = 4.0, 0.05
+
+
+def heavy(robot, mass=MASS):
+    legs = tuple(leg.replace(carriage=leg.carriage.replace(mass=mass, com=COM)) for leg in robot.legs)
+    return robot.replace(legs=legs)
+
+
+def test_the_drives_carry_it():
+    """Torque about the shaft: m g times the horizontal distance of the centre of mass, across the shaft."""
+    path = [fx.rigid.poses_from_home(six_rus(), np.array([[0, 0, z, 0, 0, 0]])) for z in (0.0, 0.03)]
+    for pose in path:
+        robots = six_rus(), heavy(six_rus())
+        none, with_mass = (rigid_forces(robot, pose, np.zeros(6)).drive_force[0] for robot in robots)
+        chi = fx.rigid.inverse_kinematics(six_rus(), pose).coordinate("chi")[0][0] + six_rus().home_carriages
+        for i, leg in enumerate(six_rus().legs):
+            arm = Rotation.from_rotvec(chi[i] * leg.carriage.unit).apply(np.array(leg.carriage.arm))
+            centre = COM * arm / np.linalg.norm(arm)
+            lifts = leg.carriage.unit @ np.cross(centre, [0, 0, MASS * 9.81])
+            assert with_mass[i] - none[i] == pytest.approx(lifts, abs=1e-9)
+
+
+def test_its_energy_is_in_the_balance():
+    """Second order: the balance of flexible legs on heavy cranks closes four times as well with half the step."""
+    errors = []
+    for h in (1e-3, 5e-4):
+        study = moving("6-RUS", step=h)
+        run = collect(prepare(study.replace(robot=heavy(study.robot))).chunks)
+        errors.append(np.ptp(balance(run)) / np.ptp(run["energy"][:, 1]))
+    assert errors[1] < 2e-3
+    assert errors[1] < 0.35 * errors[0]
+
+
+@pytest.mark.parametrize(
+    ("parts", "message"),
+    [
+        ({"kind": "slider", "com": 0.1}, "belongs to a crank"),
+        ({"kind": "crank", "arm": [0.1, 0, 0], "mass": 2.0, "com": 0.1, "inertia": 0.01}, "is less than that of the"),
+    ],
+)
+def test_what_no_crank_has_is_refused(parts, message):
+    with pytest.raises(fx.InputError, match=message):
+        Carriage(axis=[0, 0, 1], **parts)
