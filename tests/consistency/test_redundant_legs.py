@@ -1,10 +1,13 @@
 """Rigid robots on more legs than they need, in time."""
 
+from pathlib import Path
+
 import numpy as np
 import pytest
 from tests.moving import moving
 from tests.runs import balance, run_robot
 
+import flexapod as fx
 from flexapod import rigid
 from flexapod.errors import ComputationError
 from flexapod.solve.released import rigid_forces
@@ -33,3 +36,16 @@ def test_forces_of_eight_rigid_legs_are_those_of_the_rigid_robot():
 def test_a_welded_robot_of_rigid_legs_cannot_move():
     with pytest.raises(ComputationError, match=r"rigid legs do not fit at t = .* leg 1 misses what holds it by"):
         run_robot(moving("6-FPF", fidelity="rigid", modes=None))
+
+
+def test_drives_with_a_force_of_their_own_have_it():
+    """Gas springs of 500 N were shown with the 114 N of stiffnesses that share; now no force is left open."""
+    study = fx.load(Path(__file__).parents[2] / "examples" / "mechanisms" / "eight-legs.toml")
+    home = rigid.home_pose(study.robot)
+    forces = rigid_forces(study.robot, home, np.zeros(6))
+    np.testing.assert_allclose(forces.drive_force[0, 6:], 500.0, rtol=1e-12)
+    assert forces.open_forces == 0
+    weight = study.robot.payload.mass * study.robot.gravity
+    np.testing.assert_allclose(forces.joint_force[0].sum(axis=0), -weight, atol=1e-9)
+    arms = study.robot.platform_joints - study.robot.com
+    np.testing.assert_allclose(np.cross(arms, forces.joint_force[0]).sum(axis=0), 0.0, atol=1e-9)

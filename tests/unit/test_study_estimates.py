@@ -7,13 +7,14 @@ import pytest
 from scipy.integrate import quad, solve_ivp
 from scipy.linalg import eigh, null_space
 from scipy.optimize import brentq
+from tests.mechanisms import ROBOTS
 from tests.runs import paper_robot, with_legs
 
 import flexapod as fx
 from flexapod import rigid
 from flexapod.bases import lateral_basis
 from flexapod.mechanics.layout import LEG_PARAMETERS, columns
-from flexapod.model import AxisMotion, Feedback, ForceDrive, Payload, ServoDrive, Simulation
+from flexapod.model import AxisMotion, Feedback, ForceDrive, Payload, ServoDrive, Simulation, Study
 from flexapod.solve.kernel import kernel
 from flexapod.solve.modes import robot_modes
 from flexapod.solve.robot_system import robot_system
@@ -108,7 +109,7 @@ def test_width_of_a_piston_without_section():
 
 def moments(study, t):
     path = RigidPath(study, t)
-    return bending_moment(path, path.forces.joint_force)
+    return bending_moment(path)
 
 
 def test_bending_moment_is_that_of_stiff_pistons_in_motion():
@@ -287,3 +288,17 @@ def test_what_is_fed_forward_does_not_excite():
     assert found["force"] < 0.05 * found["servo"]
     for name in drives:
         assert found[name] < told[name] < 3 * found[name]
+
+
+def test_the_moment_of_the_platform_joint_bends_its_leg():
+    """A passive leg without weight, universal at its base: the moment falls in proportion from the tip to the base."""
+    robot = ROBOTS["3-UPS+UP"]().replace(gravity=[0.0, 0.0, 0.0])
+    still = AxisMotion(type="heave", amplitude=0.0, duration=1.0)
+    path = RigidPath(Study(robot=robot, motion=still, simulation=paper_robot().simulation), np.zeros(1))
+    path.wrench = np.array([[30.0, 20.0, 0.0, 0.0, 0.0, 0.0]])
+    force, moment = path.forces.joint_force[0, 3], path.forces.joint_moment[0, 3]
+    axis, length = path.axes[0, 3], path.legs.length[0, 3]
+    at_tip = np.cross(axis, moment)
+    across = force - (force @ axis) * axis
+    np.testing.assert_allclose(at_tip, length * across, atol=1e-9 * np.abs(moment).max())
+    assert bending_moment(path)[0, 3] == pytest.approx(np.linalg.norm(at_tip), rel=1e-12)

@@ -2,20 +2,21 @@
 
 from __future__ import annotations
 
-from dataclasses import dataclass
+from dataclasses import dataclass, replace
 
 import numpy as np
 
 from flexapod import rigid
-from flexapod.model import Leg, PrescribedDrive, Robot, Simulation
+from flexapod.model import ForceDrive, Leg, PrescribedDrive, Robot, Simulation
 from flexapod.rigid.limbs import COORDINATES, DRIVEN
 from flexapod.rigid.robot import once
 from flexapod.solve.many import RestStates
 from flexapod.solve.rigid_forces import displacement_by_error, joint_forces
 from flexapod.solve.rigid_motion import rigid_motion
 from flexapod.solve.robot_system import robot_system
+from flexapod.solve.shared import open_forces
 from flexapod.solve.system import System
-from flexapod.typing import Array
+from flexapod.typing import Array, Mask
 
 __all__ = ["RobotForces", "is_hexapod", "released", "rigid_errors", "rigid_forces", "rigid_system"]
 
@@ -57,6 +58,8 @@ class RobotForces:
         Of the drives on what they move [N, of cranks N m]; 0 of passive legs.
     joint_force : ndarray, shape (T, legs, 3)
         Of the legs on the platform [N].
+    joint_moment : ndarray, shape (T, legs, 3), or None
+        Of the legs on the platform [N m]; None of legs UPS.
     base_force, base_moment : ndarray, shape (T, legs, 3), or None
         Of the base on legs UPS, at the universal joints [N], [N m].
     states, held, closure
@@ -68,6 +71,7 @@ class RobotForces:
 
     drive_force: Array
     joint_force: Array
+    joint_moment: Array | None = None
     base_force: Array | None = None
     base_moment: Array | None = None
     states: RestStates | None = None
@@ -79,7 +83,8 @@ class RobotForces:
 def rigid_forces(robot: Robot, path: rigid.Poses, wrench: Array, legs: rigid.LegState | None = None) -> RobotForces:
     """Forces of drives and joints of the robot of the rigid path.
 
-    Six legs UPS by Newton and Euler (T2.26)-(T2.36), others by their equations of motion (T7.24).
+    Six legs UPS by Newton and Euler (T2.26)-(T2.36), others by their equations of motion (T7.24). Drives with a
+    constant force have it where the others hold the robot.
 
     Parameters
     ----------
@@ -105,15 +110,34 @@ def rigid_forces(robot: Robot, path: rigid.Poses, wrench: Array, legs: rigid.Leg
         )
     system = rigid_system(robot)
     states, rates = rigid_motion(system, released(robot), path)
-    forces = joint_forces(system, states, rates, wrench)
+    pushed, loose = _constant(robot, system)
+    # drives with a force of their own, where the others hold the robot without them
+    if loose.any() and loose.sum() <= open_forces(system):
+        system = replace(system, held=system.held & ~loose)
+    else:
+        pushed = np.zeros_like(pushed)
+    forces = joint_forces(system, states, rates, wrench, pushed)
     return RobotForces(
         drive_force=_of_drives(robot, forces.held),
         joint_force=forces.joint_force,
+        joint_moment=forces.joint_moment,
         states=states,
         held=forces.held,
         closure=forces.closure,
         open_forces=forces.open_forces,
     )
+
+
+def _constant(robot: Robot, system: System) -> tuple[Array, Mask]:
+    """Constant forces of drives (legs, n), and which coordinates nothing but these drives."""
+    legs, force = rigid.rigid_limbs(robot), np.zeros(system.held.shape)
+    loose = np.zeros(system.held.shape, dtype=bool)
+    for i, leg in enumerate(robot.legs):
+        drive = leg.drive
+        if leg.driven and isinstance(drive, ForceDrive) and drive.value is not None:
+            at = system.kernel.shapes.index(COORDINATES[int((legs.state[i] == DRIVEN).argmax())])
+            force[i, at], loose[i, at] = drive.value, True
+    return force, loose
 
 
 def is_hexapod(robot: Robot) -> bool:

@@ -44,7 +44,9 @@ class JointForces:
     open_forces: int
 
 
-def joint_forces(system: System, x: RestStates, rates: Rates, wrench: Array) -> JointForces:
+def joint_forces(
+    system: System, x: RestStates, rates: Rates, wrench: Array, pushed: Array | float = 0.0
+) -> JointForces:
     """Forces that move a robot without shapes along a path, Eq. (T7.24).
 
     Parameters
@@ -56,6 +58,8 @@ def joint_forces(system: System, x: RestStates, rates: Rates, wrench: Array) -> 
     rates : Rates
     wrench : ndarray, shape (T, 6) or (6,)
         At the tool.
+    pushed : ndarray, shape (legs, n)
+        Forces of drives on coordinates that are not held [N, N m].
 
     Raises
     ------
@@ -64,21 +68,24 @@ def joint_forces(system: System, x: RestStates, rates: Rates, wrench: Array) -> 
     """
     wrench = np.broadcast_to(wrench, (len(x), 6))
     blocks = [slice(at, at + BLOCK) for at in range(0, len(x), BLOCK)]
-    parts = [_joint_forces(system, x[b], rates[b], wrench[b]) for b in blocks]
+    parts = [_joint_forces(system, x[b], rates[b], wrench[b], pushed) for b in blocks]
     found = {name: np.concatenate([part[name] for part in parts]) for name in parts[0]}
     return JointForces(**found, open_forces=open_forces(system))
 
 
-def _joint_forces(system: System, x: RestStates, rates: Rates, wrench: Array) -> dict[str, Array]:
+def _joint_forces(
+    system: System, x: RestStates, rates: Rates, wrench: Array, pushed: Array | float
+) -> dict[str, Array]:
     m, still = matrices_at_rest(system, x, np.zeros(6)), x.q[..., system.ports]
     r, payload, _ = residual(system, x, still, rates.v[..., system.ports], wrench, rates)
+    r = r - pushed
     lam = closure_forces(system, x, m, r[..., None], payload[..., None])
     if not np.isfinite(lam).all():
         raise ComputationError(
             "The legs cannot carry the payload: a pose of the path is singular",
             next_step="Check the path for singular poses and change the layout or the motion",
         )
-    held = np.where(system.held, r + (m.J.swapaxes(-1, -2) @ lam)[..., 0], 0.0)  # (T7.24)
+    held = np.where(system.held, r + (m.J.swapaxes(-1, -2) @ lam)[..., 0], pushed)  # (T7.24)
     on_hub = (m.P.swapaxes(-1, -2) @ lam)[..., 0]
     moment = (matrix(x.pose[:, 3:])[:, None] @ m.P[..., 3:, 3:].swapaxes(-1, -2) @ lam[..., 3:, :])[..., 0]
     hub = np.where(system.hub_held, payload - on_hub.sum(axis=1), 0.0)

@@ -88,11 +88,11 @@ _ROOTS = {
 """Smallest root k s by what is clamped, base and platform; of the mouth's distance over the free length."""
 
 
-def bending_moment(path: RigidPath, joint_force: Array) -> Array:
+def bending_moment(path: RigidPath) -> Array:
     """Largest bending moment in the free part of each piston on the rigid path, (T, legs) [N m], Eqs. (T8.12)-(T8.13).
 
-    The piston is loaded by the joint force at its tip, its weight and its inertia as a rigid rod; the leg's own
-    vibration is left out.
+    The piston is loaded by force and moment of the joint at its tip, its weight and its inertia as a rigid rod; the
+    leg's own vibration is left out.
     """
     robot, legs, axis = path.robot, path.legs, path.axes
     tip, tip_dot, tip_ddot = path.poses.point(robot.platform_joints)
@@ -106,12 +106,15 @@ def bending_moment(path: RigidPath, joint_force: Array) -> Array:
     at_tip = across(tip_ddot)
     slope = (at_tip - across(base)) / legs.length[..., None]
     load = across(np.broadcast_to(robot.gravity, tip.shape)) - at_tip
+    force, tip_moment = across(path.forces.joint_force), np.zeros_like(tip)
+    if path.forces.joint_moment is not None:
+        tip_moment = np.cross(axis, path.forces.joint_moment)
     rhoA = np.array([leg.piston.rhoA for leg in robot.legs])[:, None]
     mouth = np.array([leg.cylinder.mouth for leg in robot.legs])
     largest = np.zeros(legs.length.shape)
     for share in _STATIONS:
         d = (share * (legs.length - mouth))[..., None]
-        moment = -d * across(joint_force) + rhoA * (load * d**2 / 2 + slope * d**3 / 6)  # (T8.13)
+        moment = tip_moment - d * force + rhoA * (load * d**2 / 2 + slope * d**3 / 6)  # (T8.13)
         largest = np.maximum(largest, np.linalg.norm(moment, axis=-1))
     return largest
 

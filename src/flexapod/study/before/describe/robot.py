@@ -142,7 +142,7 @@ def describe_legs(path: RigidPath) -> tuple[LegDescription, ...]:
     """Extremes of the legs on the rigid path of a study."""
     robot, forces = path.robot, path.forces
     thrust = np.einsum("tli,tli->tl", forces.joint_force, path.axes)
-    moment = bending_moment(path, forces.joint_force)
+    moment = bending_moment(path)
     return tuple(
         describe_leg(
             i + 1,
