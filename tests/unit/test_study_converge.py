@@ -1,6 +1,7 @@
 """Orders, rates and recommendation of a convergence study: on tables made up here, and on short runs."""
 
 from dataclasses import replace
+from pathlib import Path
 
 import numpy as np
 import pytest
@@ -233,3 +234,9 @@ def test_a_solid_study_is_compared_with_solids_only():
     base = base_setting(override(preset("paper-robot"), fidelity="solid-fem"))
     assert {(family, setting.fidelity) for family, setting in discretisations(base, 1e-3)} == {("shapes", "solid-fem")}
     assert largest(base).fidelity == "solid-fem"
+
+
+@pytest.mark.parametrize("survey", [fx.converge, fx.ladder])
+def test_a_fixed_platform_has_no_deviation_to_compare(survey):
+    with pytest.raises(fx.InputError, match=r"platform.fixed = True: leaves no deviation of the platform"):
+        survey(Path(__file__).parents[2] / "examples" / "mechanisms" / "strut.toml")

@@ -57,12 +57,21 @@ def checked_trials(
     Raises
     ------
     InputError
-        What `flexapod.run` would refuse.
+        What `flexapod.run` would refuse, or a fixed platform.
     """
     study = read(study) if trials is None else trials.study
     if isinstance(study, ActuatorStudy):
         check_actuator_path(study)
     elif isinstance(study, Study):
+        if study.robot.platform_fixed:
+            raise InputError(
+                "leaves no deviation of the platform whose error could be compared",
+                file=study.path,
+                key="platform.fixed",
+                value=True,
+                allowed="a platform that moves",
+                next_step="`modes` with more shapes, or runs with half the step, show how legs converge",
+            )
         check_path(study)
     else:
         raise InputError(
