@@ -21,8 +21,8 @@ def test_frequencies_and_shapes_of_a_clamped_free_beam():
     ratio = (np.cosh(BETA) + np.cos(BETA)) / (np.sinh(BETA) + np.sin(BETA))
     shape = (np.cosh(x) - np.cos(x) - ratio * (np.sinh(x) - np.sin(x))).T
     # Of all three the tip moves most: the drawn shape is 1 there.
-    assert found.shape == pytest.approx(shape / shape[:, -1:], abs=1e-9)
-    assert np.abs(found.shape).max(axis=1) == pytest.approx(1.0, abs=1e-12)
+    assert found.shape[..., 2] == pytest.approx(shape / shape[:, -1:], abs=1e-9)
+    assert np.abs(found.shape).max(axis=(1, 2)) == pytest.approx(1.0, abs=1e-12)
 
 
 def test_another_length_and_a_damped_beam():

@@ -41,6 +41,10 @@ LONG = (
     ('hold = "1 s" ', 'hold = "999 s" '),
 )
 
+#: An actuator in space, for a second.
+SPACE = (Path(__file__).parents[2] / "examples" / "actuator-in-space.toml").read_text(encoding="utf-8")
+SPACE = SPACE.replace('duration = "2.5 s"', 'duration = "1 s"\ntolerance = 1e-2')
+
 
 def study_text(*changes: tuple[str, str], preset: str = "paper-robot") -> str:
     """The text of a preset with pieces replaced."""
@@ -182,8 +186,9 @@ def reports(tmp_path_factory):
     place = tmp_path_factory.mktemp("reports")
     short = (('duration = "10 s"', 'duration = "1 s"'),)
     found, results = {}, {}
-    for preset, changes in (("paper-robot", SHORT), ("paper-actuator", short)):
-        study = loads(study_text(*changes, preset=preset))
+    studies = {"paper-robot": study_text(*SHORT), "paper-actuator": study_text(*short, preset="paper-actuator")}
+    for preset, text in (studies | {"actuator-in-space": SPACE}).items():
+        study = loads(text)
         results[preset] = run(study)
         found[preset] = place / f"{preset}.html"
         found[preset].write_text(robot_report(study, results[preset]), encoding="utf-8")

@@ -277,6 +277,17 @@ def test_the_actuator_is_replayed_in_its_plane(read):
     assert not part(page, "choice").is_visible()
 
 
+def test_an_actuator_in_space_is_replayed_in_space(read):
+    page = read("actuator-in-space")
+    told, points = stored(page)
+    assert points.shape[2] == 3
+    page.locator(REPLAY).scroll_into_view_if_needed()
+    assert page.locator(f"{REPLAY} .plot").evaluate("plot => plot.data[1].type") == "scatter3d"
+    (tip,) = (i for i, trace in enumerate(told["traces"]) if trace["name"] == "tip")
+    path = points[:, told["traces"][tip]["take"][0]]
+    assert (np.ptp(path, axis=0) > 100).all()  # mm: it slews and rises
+
+
 def test_the_number_is_of_the_instant_that_is_drawn(read):
     """Frames of a run of 10 s are 42 ms apart: a picture between two of them has a number that nobody computed."""
     page = read("paper-actuator")

@@ -5,7 +5,7 @@ import io
 import numpy as np
 import pytest
 from PIL import Image
-from tests.web.conftest import SHORT, study_text
+from tests.web.conftest import SHORT, SPACE, study_text
 from tests.web.guests import until
 
 import flexapod as fx
@@ -250,6 +250,43 @@ def test_the_single_actuator_is_drawn_and_its_frequencies_follow_the_length(show
     write(page, "amplitude", 1)
     moved(page, far)
     assert session.study.actuator.free_length == 1.83  # looking at another length changes no study
+
+
+def test_an_actuator_in_space_is_drawn_about_both_its_axes(show):
+    page, session = start(show, SPACE)
+    page.locator(".u-title", has_text="Tip in the frame of the hub").wait_for()
+
+    def beam(node="beam"):
+        return session.scene._nodes[node].vertices.reshape(-1, 8, 3).mean(axis=1)
+
+    write(page, "time [s]", 0.75)
+    at(page, 0.75)
+    data = session.data.sel(time=0.75, method="nearest")
+    axis = np.array([np.cos(data.elevation) * np.cos(data.angle), np.cos(data.elevation) * np.sin(data.angle)])
+    assert data.angle > 0.9 and abs(data.elevation) < 0.2
+    assert beam("inside")[1, :2] == pytest.approx(0.06 * axis, abs=1e-6)  # the mouth, from the pivot
+    page.get_by_role("tab", name="Modes").click()
+    found = fx.modes(session.study)
+    kinds = [str(kind) for kind in found.kind.values]
+    away = {"bending (elevation)": [np.sin(0.349066), 0, np.cos(0.349066)], "bending (rotation)": [0, 1, 0]}
+    for kind, direction in away.items():  # the first mode is chosen already: to pick it would move nothing
+        place = kinds.index(kind)
+        name = f"{place + 1}: {float(found.frequency[place]):.4g} Hz, {kind}"
+        page.get_by_role("cell", name=kind).first.wait_for()
+        pick(page, "mode", name)
+        page.get_by_role("button", name="Pause", exact=True).wait_for()
+        press(page, "Pause")
+        turn(page, "phase [deg]", 89, beam)
+        write(page, "phase [deg]", 90)
+        until(lambda: session.scene.drawn.startswith(f"mode {place + 1}"))  # noqa: B023
+        moved = beam()[-1] - 1.26 * np.array([np.cos(0.349066), 0, -np.sin(0.349066)])
+        assert np.abs(moved @ direction) == pytest.approx(np.linalg.norm(moved), rel=1e-3)
+        assert np.linalg.norm(moved) > 0.01
+    place = kinds.index("twisting")
+    pick(page, "mode", f"{place + 1}: {float(found.frequency[place]):.4g} Hz, twisting")
+    page.get_by_role("button", name="Pause", exact=True).wait_for()
+    seen = session.scene._nodes["stripe"].points.copy()
+    until(lambda: np.abs(session.scene._nodes["stripe"].points - seen).max() > 1e-3)
 
 
 def test_another_result_is_shown_at_the_same_time_and_factor(show):

@@ -28,6 +28,9 @@ from flexapod.study.words import cleared_lines, number
 __all__ = ["actuator_modes", "actuator_path", "actuator_response"]
 
 
+_LARGER = ("angles", "elevations")  # towards which the tip of an actuator in space is deflected
+
+
 @styled
 @needs("tip_deflection", "length", "angle")
 def actuator_response(data: xr.Dataset | Mapping[int, xr.Dataset]) -> Figure:
@@ -71,7 +74,7 @@ def _responses(axes: Axes, series: Mapping[int, xr.Dataset]) -> None:
         style |= {"linestyle": LINE_STYLES[len(series) - 2 - i]} if not last else {}
         words = f"{count} shape{'s' if count > 1 else ''}"
         for k, line in enumerate(unit(_curves(d)).T):
-            towards = f", towards larger {('angles', 'elevations')[k]}" if "direction" in d.dims else ""
+            towards = f", towards larger {_LARGER[k]}" if "direction" in d.dims else ""
             axes.plot(d.time, line, label=words + towards, **style, alpha=1 - 0.6 * k)
     axes.axhline(0, color="#555555", linewidth=0.7)
     axes.set_title("Lateral deflection of the tip, in the frame of the hub")
@@ -148,7 +151,7 @@ def actuator_modes(data: xr.Dataset) -> Figure:
     """
     labels, amplitudes = [f"Shape {mode}" for mode in data.mode.values], data.mode_amplitude
     if "direction" in amplitudes.dims:
-        labels = [f"{words}, towards larger {x}s" for x in data.direction.values for words in labels]
+        labels = [f"{words}, towards larger {larger}" for larger in _LARGER for words in labels]
         amplitudes = amplitudes.stack(mode_of=("direction", "mode")).rename(mode_of="shape")
     amplitudes = amplitudes.transpose(..., "time").values.reshape(len(labels), -1)
     fig = figure(PAGE, 1.0 + 1.4 * len(labels))

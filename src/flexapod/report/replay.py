@@ -202,7 +202,8 @@ def _actuator(study: ActuatorStudy, data: Dataset) -> dict[str, Any]:
     times = motion.time[chosen]
     shown = [motion.at(time, factor)[1:] for time in times]
     frames = 1e3 * np.array([np.vstack([bent, line[[0, -1]], np.zeros((1, 3))]) for bent, line in shown])
-    frames = _flat(frames, motion.elevation is not None)
+    space = study.actuator.space
+    frames = frames if space else frames[:, :, [0, 2]]
     bent = list(range(frames.shape[1] - 3))
     start, end, pivot = range(len(bent), len(bent) + 3)
     traces = [
@@ -213,14 +214,11 @@ def _actuator(study: ActuatorStudy, data: Dataset) -> dict[str, Any]:
     ]
     words = f"deflection drawn {number(factor)} times larger"
     values = _values("deflection of the", motion.deflection[chosen, None], ("tip",))
-    told = {**_frames(times, frames, words), **values, "mouse": "Drag over it to zoom, double-click to see all again"}
-    return {**told, "traces": traces, "layout": _plane(frames), "modes": []}
-
-
-def _flat(frames: Array, space: bool) -> Array:
-    """The plane of motion; of a beam in space the view from the side, along Y and 30 deg down."""
-    up = 0.5 * frames[..., 1] + 0.866 * frames[..., 2] if space else frames[..., 2]
-    return np.stack([frames[..., 0], up], axis=-1)
+    mouse = "Drag to turn, scroll to come nearer" if space else "Drag over it to zoom, double-click to see all again"
+    if space:
+        traces.append(_fixed(frames[:, bent[-1]], DEVIATION, 2, name="path of the tip"))
+    layout = _space(frames.reshape(-1, 3), None) if space else _plane(frames)
+    return {**_frames(times, frames, words), **values, "mouse": mouse, "traces": traces, "layout": layout, "modes": []}
 
 
 def _frames(times: Array, frames: Array, words: str) -> dict[str, Any]:

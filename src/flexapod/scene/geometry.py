@@ -24,15 +24,15 @@ __all__ = [
     "ActuatorMotion",
     "Instant",
     "RobotMotion",
-    "across",
     "as_computed",
-    "beam_line",
+    "beam_frame",
     "disc",
     "factor_to_see",
     "nearest",
     "orientation",
     "plate",
     "round_down",
+    "straight_beam",
     "strip",
     "tube",
     "tube_faces",
@@ -133,17 +133,22 @@ class RobotMotion:
 
 
 class ActuatorMotion:
-    """The beam of a single actuator's result over time; a plane of motion X, Y is drawn as x, z."""
+    """The beam of a single actuator's result over time, as `beam_frame` places it."""
 
     def __init__(self, study: model.ActuatorStudy, data: Dataset) -> None:
-        self.actuator, self.time = study.actuator, data.time.values
-        self.angle, self.length, space = data.angle.values, data.length.values, study.actuator.space
-        self.elevation = data.elevation.values if space else None
-        self.deflection = tip_size(data)
-        self._amplitude = data.mode_amplitude.values if "mode_amplitude" in data else None
-        self._offset = data.tip_deflection.values
+        self.actuator, self.time, self.length = study.actuator, data.time.values, data.length.values
+        elevation = data.elevation.values if study.actuator.space else 0.0
+        self.axes = beam_frame(study.actuator, data.angle.values, elevation)
+        self.deflection, self.twist = tip_size(data), np.zeros(len(self.time))
+        if study.actuator.space:
+            self.twist = data.tip_twist.values
         self._zeta = np.linspace(0.0, 1.0, BEAM_POINTS)
-        self._shapes = None if self._amplitude is None else lateral_values(as_computed(study, data), self._zeta)
+        self._offset = data.tip_deflection.values.reshape(len(self.time), -1)
+        amplitude = data.mode_amplitude.values if "mode_amplitude" in data else np.zeros((len(self.time), 0))
+        self._amplitude = amplitude.reshape(*self._offset.shape, -1)
+        self._shapes = (
+            lateral_values(as_computed(study, data), self._zeta) if amplitude.size else np.zeros((0, BEAM_POINTS))
+        )
 
     def index(self, time: float) -> int:
         """As `RobotMotion.index`."""
@@ -157,23 +162,18 @@ class ActuatorMotion:
     def at(self, time: float, scale: float) -> tuple[int, Array, Array]:
         """Stored instant; the beam outside the hub, bent `scale` times, and as if rigid: points (n, 3) [m]."""
         i = self.index(time)
-        straight = 0.0 * self._zeta
-        bent = straight if self._amplitude is None or self._shapes is None else self._amplitude[i] @ self._shapes
-        axes = self.axes(i)
-        line = np.multiply.outer(self.actuator.hub_radius + self.length[i] * self._zeta, axes[0])
-        return i, line + scale * np.atleast_2d(bent).T @ axes[1:][: np.atleast_2d(bent).shape[0]], line
+        line = straight_beam(self.actuator, self.axes[i], self.length[i], self._zeta)
+        bent = self._amplitude[i] @ self._shapes
+        return i, line + scale * bent.T @ self._sideways(i), line
 
-    def axes(self, i: int | slice) -> Array:
-        """Unit vectors along the beam, and of its deflections, (2 or 3, 3); of several instants (2 or 3, T, 3)."""
-        if self.elevation is None:
-            return hub_axes(0.0 * self.angle[i], self.angle[i])[[0, 2]]
-        return hub_axes(self.angle[i], self.elevation[i])
+    def _sideways(self, i: int | slice) -> Array:
+        """Directions of the deflections, (..., 1 or 2, 3)."""
+        return self.axes[i][..., -self._offset.shape[1] :, :]
 
     def tips(self, scale: float) -> Array:
         """Path of the drawn tip, (T, 3) [m]."""
-        axes, offset = self.axes(slice(None)), scale * self._offset.reshape(len(self.time), -1)
-        along = (self.actuator.hub_radius + self.length)[:, None] * axes[0]
-        return along + np.einsum("td,dti->ti", offset, axes[1:])
+        along = (self.actuator.hub_radius + self.length)[:, None] * self.axes[:, 0]
+        return along + scale * np.einsum("td,tdi->ti", self._offset, self._sideways(slice(None)))
 
 
 def as_computed(study: S, data: Dataset) -> S:
@@ -193,22 +193,20 @@ def nearest(instants: Array, time: float) -> int:
     return after - int(time - instants[after - 1] <= instants[after] - time)
 
 
-def hub_axes(angle: Array | float, elevation: Array | float) -> Array:
-    """Along a beam of this angle about z and elevation [rad], towards larger angles, towards larger elevations."""
-    (c, s), (d, e) = (np.cos(angle), np.sin(angle)), (np.cos(elevation), np.sin(elevation))
-    rows = [[c * d, s * d, e], [-s, c, 0.0 * e], [-c * e, -s * e, d]]
-    return np.array([np.stack(np.broadcast_arrays(*row), axis=-1) for row in rows])
+def beam_frame(actuator: model.Actuator, angle: Array | float, elevation: Array | float = 0.0) -> Array:
+    """Axes of a beam, (..., 3, 3): along it, towards larger angles, towards larger elevations [rad].
+
+    The plane of motion X, Y of a planar actuator stands upright, as x, z: its angle is drawn as an elevation.
+    """
+    a, e = (angle, elevation) if actuator.space else (0.0 * np.asarray(angle), angle)
+    (c, s), (d, f) = (np.cos(a), np.sin(a)), (np.cos(e), np.sin(e))
+    rows = [[c * d, s * d, f], [-s, c, 0.0 * f], [-c * f, -s * f, d]]
+    return np.stack([np.stack(np.broadcast_arrays(*row), axis=-1) for row in rows], axis=-2)
 
 
-def beam_line(actuator: model.Actuator, angle: float, length: float, zeta: Array) -> Array:
-    """The straight beam outside the hub at an angle [rad] from the horizontal, (n, 3) [m]."""
-    along = actuator.hub_radius + length * zeta
-    return np.stack([along * np.cos(angle), 0.0 * along, along * np.sin(angle)], axis=1)
-
-
-def across(angle: float, offset: Array) -> Array:
-    """Offsets (n,) across a beam at an angle [rad] from the horizontal, in its plane, as vectors (n, 3)."""
-    return np.multiply.outer(offset, np.array([-np.sin(angle), 0.0, np.cos(angle)]))
+def straight_beam(actuator: model.Actuator, axes: Array, length: float, zeta: Array) -> Array:
+    """The straight beam outside the hub, (n, 3) [m], along the first of its `axes`."""
+    return np.multiply.outer(actuator.hub_radius + length * zeta, axes[0])
 
 
 def factor_to_see(largest: float, size: float) -> float:

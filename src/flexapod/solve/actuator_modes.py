@@ -17,8 +17,7 @@ from flexapod.solve.shapes import actuator_shapes
 from flexapod.typing import Array
 
 STEPS = 3  # of Newton to the steady stretch: the equations of the straight beam are linear in it
-#: What amplitudes are called where they vibrate by themselves.
-PLANAR_KINDS = {"a": "bending"}
+#: What amplitudes of an actuator in space are called where they vibrate by themselves.
 SPACE_KINDS = {"b": "bending (rotation)", "a": "bending (elevation)", "c": "axial", "t": "twisting"}
 
 
@@ -67,7 +66,7 @@ def actuator_modes(
         actuator = actuator.replace(free_length=free_length)
     if rate:
         actuator = actuator.replace(gravity=0.0)
-    groups = _groups(actuator_shapes(actuator, simulation, rate))
+    groups = amplitude_groups(actuator_shapes(actuator, simulation, rate))
     if not groups:
         raise InputError(
             "leaves nothing that could vibrate with hub and extension held",
@@ -77,7 +76,7 @@ def actuator_modes(
         )
     M, D, K = turning_matrices(actuator, simulation, rate)
     omega, shapes, ratio, kinds = [np.zeros(0)], [np.zeros((0, len(M)))], [np.zeros(0)], []
-    for kind, at in groups.items():
+    for name, at in groups.items():
         squared, vectors = eigh(K[at, at], M[at, at])  # (T9.7)
         if squared[0] <= 0:
             raise ComputationError(
@@ -88,8 +87,8 @@ def actuator_modes(
         ratio.append(damping_ratios(omega[-1], (vectors / omega[-1]).T @ D[at, at] @ (vectors / omega[-1])))
         shapes.append(np.zeros((len(squared), len(M))))
         shapes[-1][:, at] = vectors.T
-        kinds += [kind] * len(squared)
-    order = np.argsort(np.concatenate(omega), kind="stable")
+        kinds += [SPACE_KINDS[name] if actuator.space else "bending"] * len(squared)
+    order = np.argsort(np.concatenate(omega).astype(np.float32), kind="stable")  # both planes alike but for rounding
     return ActuatorModes(
         frequency=np.concatenate(omega)[order] / (2 * np.pi),
         shapes=np.vstack(shapes)[order],
@@ -98,15 +97,11 @@ def actuator_modes(
     )
 
 
-def _groups(shapes: Shapes) -> dict[str, slice]:
-    """Amplitudes that vibrate by themselves, by kind, among those that follow the coordinates of `places`."""
+def amplitude_groups(shapes: Shapes) -> dict[str, slice]:
+    """Amplitudes that vibrate by themselves, by name, among those that follow the coordinates of `places`."""
     first, sizes = len(places(shapes)), dict(shapes.layout)
-    groups = {}
-    for name, kind in (PLANAR_KINDS if shapes.planar else SPACE_KINDS).items():
-        if sizes.get(name):
-            at = columns(shapes.layout, name)
-            groups[kind] = slice(at.start - first, at.stop - first)
-    return groups
+    columns_of = {name: columns(shapes.layout, name) for name in SPACE_KINDS if sizes.get(name)}
+    return {name: slice(at.start - first, at.stop - first) for name, at in columns_of.items()}
 
 
 def turning_matrices(actuator: Actuator, simulation: Simulation, rate: float) -> tuple[Array, Array, Array]:
@@ -134,8 +129,8 @@ def stretching_lag(actuator: Actuator, simulation: Simulation, rate: float) -> A
 
     Stretch and lag vibrate together by Coriolis forces about the straight beam in its steady stretch.
     """
-    groups = _groups(actuator_shapes(actuator, simulation, rate))
-    moving = np.r_[groups[SPACE_KINDS["c"]], groups[SPACE_KINDS["b"]]]
+    groups = amplitude_groups(actuator_shapes(actuator, simulation, rate))
+    moving = np.r_[groups["c"], groups["b"]]
     M, D, K = (x[np.ix_(moving, moving)] for x in turning_matrices(actuator, simulation, rate))
     first = np.block([[np.zeros_like(M), np.eye(len(M))], [-np.linalg.solve(M, K), -np.linalg.solve(M, D)]])
     return np.unique(np.abs(np.linalg.eigvals(first).imag).round(12))

@@ -1,4 +1,4 @@
-"""A single actuator in the browser: hub, sliding beam bent in its plane, rigid ghost, path of the tip."""
+"""A single actuator in the browser: hub, sliding beam bent in one plane or two, rigid ghost, path of the tip."""
 
 from __future__ import annotations
 
@@ -13,10 +13,9 @@ from flexapod.app.view.scene import OF_RESULTS, STRAIGHT, Scene, mode_note
 from flexapod.scene.geometry import (
     BEAM_POINTS,
     ActuatorMotion,
-    across,
-    beam_line,
+    beam_frame,
     disc,
-    hub_axes,
+    straight_beam,
     strip,
     tube,
     tube_faces,
@@ -33,16 +32,20 @@ if TYPE_CHECKING:
 __all__ = ["ActuatorScene"]
 
 _BEAM, _HUB, _INSIDE, _GHOST, _TIP = rgb("#0072B2"), rgb("#4A4F57"), rgb("#B5BAC1"), rgb("#7A7A7A"), rgb("#C2185B")
+_STRIPE = rgb("#F0E442")
+TURN = 10.0  # rad per share of the free length: as far as what twists is turned in a mode
+TWISTS = "A mode has no size of its own: the stripe shows how the beam turns about its axis."
 _HERE = (0.0, 0.0, 0.0)
 _NOTHING = np.zeros((1, 2, 3))
 
 
 class ActuatorScene(Scene):
-    """One user's view of a single actuator; the plane of motion X, Y stands upright, as world x, z."""
+    """One user's view of a single actuator; a plane of motion X, Y stands upright, as world x, z."""
 
     def __init__(self, client: viser.ClientHandle) -> None:
         super().__init__(client)
         self._study: model.ActuatorStudy | None = None
+        self._actuator: model.Actuator
         self._motion: ActuatorMotion | None = None
         self._nodes: dict[str, Any] = {}
 
@@ -52,28 +55,29 @@ class ActuatorScene(Scene):
             if self._closed:
                 return
             first, actuator = self._study is None, study.actuator
-            self._study, self._motion = study, None
+            self._study, self._actuator, self._motion = study, actuator, None
             with self.client.atomic():
                 if first:
                     self._light()
                 self._begin()
                 self._nodes = self._make(actuator)
-                self.show_pose((actuator.angle, actuator.free_length))
+                self.show_pose(actuator.free_length)
             if first:
                 reach = actuator.hub_radius + actuator.length
                 beside = reach * np.array([0.7, 0.0, 0.0])  # the panel covers the right of the page
-                self._look(reach * np.array([0.0, -1.6, 0.2]), beside)
+                away = [0.5, -1.4, 0.7] if actuator.space else [0.0, -1.6, 0.2]
+                self._look(reach * np.array(away), beside)
 
-    def show_pose(self, pose: tuple[float, float]) -> None:
-        """As `Scene.show_pose`; angle from the horizontal [rad] and length outside the hub [m]."""
+    def show_pose(self, pose: float) -> None:
+        """As `Scene.show_pose`; a length outside the hub [m], the hub as at t = 0."""
         with self.lock:
             if self._study is None:
                 return
-            line = beam_line(self._study.actuator, pose[0], pose[1], np.linspace(0.0, 1.0, BEAM_POINTS))
+            axes, line = self._straight(pose)
             with self.client.atomic():
                 self._only()
-                self._draw(self._study.actuator, line, hub_axes(0.0, pose[0])[0], pose[1])
-                self._draws(f"the straight beam, {text(pose[1], 'm', 4)} outside the hub", STRAIGHT)
+                self._draw(line, axes, pose)
+                self._draws(f"the straight beam, {text(pose, 'm', 4)} outside the hub", STRAIGHT)
 
     def set_time(self, time: float) -> None:
         """As `Scene.set_time`."""
@@ -82,31 +86,46 @@ class ActuatorScene(Scene):
                 return
             self.time = float(time)
             i, bent, straight = self._motion.at(time, self.scale)
+            length, twist = float(self._motion.length[i]), self.scale * self._motion.twist[i]
             with self.client.atomic():
                 self._only(*OF_RESULTS)
-                self._draw(self._motion.actuator, bent, self._motion.axes(i)[0], float(self._motion.length[i]))
+                self._draw(bent, self._motion.axes[i], length, twist * self._eta(length))
                 self._draw_ghost(straight)
                 self._mark(straight[-1], bent[-1], float(self._motion.deflection[i]))
                 self._draws("")
 
     def show_mode(self, modes: BeamModes, mode: int, amplitude: float, phase: float, where: str = "") -> None:
-        """As `Scene.show_mode`; the size is the free length."""
+        """As `Scene.show_mode`; the size is the free length, and what twists turns by ten times the share [rad]."""
         with self.lock:
             if self._study is None:
                 return
-            actuator, length = self._study.actuator, modes.free_length
-            line = beam_line(actuator, actuator.angle, length, np.linspace(0.0, 1.0, BEAM_POINTS))
-            bent = line + across(actuator.angle, amplitude * length * phase * modes.shape[mode - 1])
+            length = modes.free_length
+            axes, line = self._straight(length)
+            bent = line + amplitude * length * phase * modes.shape[mode - 1] @ axes
             with self.client.atomic():
                 self._only("rigid ghost")
-                self._draw(actuator, bent, hub_axes(0.0, actuator.angle)[0], length)
+                self._draw(bent, axes, length, TURN * amplitude * phase * modes.twist[mode - 1])
                 self._draw_ghost(line)
-                self._draws(f"mode {mode}{where and f' at {where}'}", mode_note(amplitude * length))
+                turning = modes.kind[mode - 1] == "twisting"
+                note = TWISTS if turning else mode_note(amplitude * length)
+                self._draws(f"mode {mode}, {modes.kind[mode - 1]}{where and f' at {where}'}", note)
+
+    def _straight(self, length: float) -> tuple[Array, Array]:
+        """Axes of the beam at t = 0, and its straight line."""
+        actuator = self._actuator
+        axes = beam_frame(actuator, actuator.angle, actuator.elevation)
+        return axes, straight_beam(actuator, axes, length, np.linspace(0.0, 1.0, BEAM_POINTS))
+
+    def _eta(self, length: float) -> Array:
+        """Places of the drawn points on the whole beam, from its inner end (0) to the tip (1)."""
+        return 1 - (1 - np.linspace(0.0, 1.0, BEAM_POINTS)) * length / self._actuator.length
 
     def legend(self) -> str:
         """As `Scene.legend`."""
+        space = self._study is not None and self._study.actuator.space
+        title = "<b>The beam</b> (Z up)" if space else "<b>The beam in its plane of motion</b> (X to the right, Y up)"
         return (
-            f'<div style="{LEGEND_STYLE}"><b>The beam in its plane of motion</b> (X to the right, Y up)<br>'
+            f'<div style="{LEGEND_STYLE}">{title}<br>'
             "blue: outside the hub, bent; light grey: inside the hub and behind it; grey line: as if rigid</div>"
         )
 
@@ -121,10 +140,14 @@ class ActuatorScene(Scene):
         scene, reach = self.client.scene, actuator.hub_radius + actuator.length
         radius = 0.008 * reach
         hub = max(actuator.hub_radius, 0.03 * reach)
-        vertices, faces = disc(hub, 3 * radius)
-        scene.add_mesh_simple("/hub", vertices, faces, color=_HUB, opacity=0.6, flat_shading=True)
+        if actuator.space:  # it turns about two axes
+            scene.add_icosphere("/hub", hub, color=_HUB, opacity=0.6)
+        else:
+            vertices, faces = disc(hub, 3 * radius)
+            scene.add_mesh_simple("/hub", vertices, faces, color=_HUB, opacity=0.6, flat_shading=True)
         self._add("labels", scene.add_label("/hub_name", "hub", position=(0, 0, -1.3 * hub), anchor="top-center"))
-        self._add("grid", add_grid(scene, 3 * reach, "xz", np.array([0.0, 0.05 * reach, 0.0])))
+        plane, place = ("xy", [0.0, 0.0, -reach]) if actuator.space else ("xz", [0.0, 0.05 * reach, 0.0])
+        self._add("grid", add_grid(scene, 3 * reach, plane, np.array(place)))
         frame = scene.add_frame("/frame", axes_length=0.15 * reach, axes_radius=0.004 * reach)
         self._add("frames", frame)
         line = {"thickness": 2.0, "thickness_units": "screen"}
@@ -141,19 +164,25 @@ class ActuatorScene(Scene):
             "beam": scene.add_mesh_simple("/beam", empty, tube_faces(BEAM_POINTS), color=_BEAM),
             "inside": inside,
             "tip": tip,
+            "stripe": scene.add_line_segments("/stripe", _NOTHING, _STRIPE, **line),
             "ghost": self._add("rigid ghost", ghost),
             "path": self._add("paths", path),
             "arrow": self._add("deviation arrow", arrow),
             "words": self._add("deviation arrow", words),
         }
 
-    def _draw(self, actuator: model.Actuator, line: Array, axis: Array, length: float) -> None:
-        """The beam outside the hub, and what is left of it behind the mouth along the hub's axis."""
+    def _draw(self, line: Array, axes: Array, length: float, twist: Array | float = 0.0) -> None:
+        """The beam outside the hub, a stripe along it that shows its twist [rad], and what is behind the mouth."""
+        actuator = self._actuator
         radius = 0.008 * (actuator.hub_radius + actuator.length)
-        behind = line[0] - max(actuator.length - length, 1e-3 * actuator.length) * axis
+        behind = line[0] - max(actuator.length - length, 1e-3 * actuator.length) * axes[0]
+        turn = np.broadcast_to(twist, len(line))[:, None]
+        stripe = line + 1.1 * radius * (np.cos(turn) * axes[2] - np.sin(turn) * axes[1])
         self._nodes["beam"].vertices = tube(line, radius)
         self._nodes["inside"].vertices = tube(np.stack([behind, line[0]]), 0.9 * radius)
         self._nodes["tip"].position = line[-1]
+        if actuator.GJ is not None:
+            self._nodes["stripe"].points = np.stack([stripe[:-1], stripe[1:]], axis=1)
 
     def _draw_ghost(self, line: Array) -> None:
         self._nodes["ghost"].points = np.stack([line[:1], line[-1:]], axis=1)

@@ -48,13 +48,16 @@ class BeamModes(ListedModes[model.ActuatorStudy]):
 
         still = _still(study, self._length.value, int(self._count.value))
         found = beam_modes(still, BEAM_POINTS)
-        names = [f"{i}: {number(f, 4)} Hz" for i, f in enumerate(found.frequency, start=1)]
+        kinds = [f", {kind}" if study.actuator.space else "" for kind in found.kind]
+        names = [
+            f"{i}: {number(f, 4)} Hz{kind}" for i, (f, kind) in enumerate(zip(found.frequency, kinds, strict=True), 1)
+        ]
         return Listed(
             found, names, _table(found, still), f"{text(found.free_length, 'm', 4)} of free length", found.free_length
         )
 
     def _preview(self, study: model.ActuatorStudy) -> None:
-        self.scene.show_pose((study.actuator.angle, self._length.value))
+        self.scene.show_pose(self._length.value)
 
 
 def _still(study: model.ActuatorStudy, length: float, count: int) -> model.ActuatorStudy:
@@ -72,10 +75,10 @@ def _table(modes: Modes, study: model.ActuatorStudy) -> str:
     from flexapod.study.before.describe.actuator import describe_actuator
 
     rows = [
-        [str(i), number(f, 4), number(100 * d, 3)]
-        for i, (f, d) in enumerate(zip(modes.frequency, modes.damping_ratio, strict=True), start=1)
+        [str(i), number(f, 4), number(100 * d, 3), kind]
+        for i, (f, d, kind) in enumerate(zip(modes.frequency, modes.damping_ratio, modes.kind, strict=True), start=1)
     ]
     sag = describe_actuator(study).beam[0].sag
     level = f"The tip sags by {text(sag, 'm')} where the beam lies level. " if sag else ""
     note = level + "Hub and extension held, about the straight beam at rest."
-    return words.table_html(["Mode", "frequency [Hz]", "damping [%]"], rows) + words.block(note, "soft")
+    return words.table_html(["Mode", "frequency [Hz]", "damping [%]", "what moves"], rows) + words.block(note, "soft")
