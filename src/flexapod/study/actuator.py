@@ -9,10 +9,10 @@ from numpy.typing import ArrayLike
 
 from flexapod import model
 from flexapod.errors import InputError
-from flexapod.solve.actuator_march import ActuatorMarch, prepare_actuator
+from flexapod.solve.actuator_march import ActuatorMarch, amplitudes, lateral_signs, places, prepare_actuator
+from flexapod.solve.many import tips
 from flexapod.study.after.plausibility import actuator_warnings
 from flexapod.study.after.results import energy_results
-from flexapod.study.after.space import space_results
 from flexapod.study.arguments import FileLike, read
 from flexapod.study.attributes import attributes, march_attributes
 from flexapod.study.before.checks import check_actuator_path
@@ -22,6 +22,10 @@ from flexapod.typing import Array
 
 if TYPE_CHECKING:
     from xarray import Dataset
+
+
+#: What a motion moves, in results.
+_DRIVEN = {"rotation": "angle", "elevation": "elevation", "extension": "length"}
 
 
 def simulate_actuator(
@@ -99,10 +103,10 @@ def _dataset(study: model.ActuatorStudy, march: ActuatorMarch, record: Record, r
     coords: dict[str, ArrayLike] = {"time": record.time}
     if count:
         coords["mode"] = np.arange(1, count + 1)
-    if not study.actuator.space:
-        return dataset(_results(study, march, record), coords, attrs, ACTUATOR_FORMS)
-    coords["direction"] = list(DIRECTIONS)
-    return dataset(space_results(study, march, record), coords, attrs, {**ACTUATOR_FORMS, **SPACE_FORMS})
+    if study.actuator.space:
+        coords["direction"] = list(DIRECTIONS)
+    forms = {**ACTUATOR_FORMS, **(SPACE_FORMS if study.actuator.space else {})}
+    return dataset(_results(study, march, record), coords, attrs, forms)
 
 
 def _as_study(
@@ -133,21 +137,25 @@ def _as_study(
 
 
 def _results(study: model.ActuatorStudy, march: ActuatorMarch, record: Record) -> dict[str, Array]:
-    q, shapes = record.q[:, 0], march.system.kernel.shapes.a
-    beta, length, amplitudes = q[:, 0], q[:, 1], q[:, 2:]
-    deflection = amplitudes @ shapes.tip
-    return {
-        "tip_deflection": deflection,
-        "length": length - study.actuator.hub_radius,
-        "angle": beta,
-        "length_rate": record.rate[:, 0, 0],
-        "angle_rate": record.rate[:, 0, 1],
-        **({"mode_amplitude": amplitudes} if shapes.count else {}),
-        "tip_position": _tip(beta, length, deflection, amplitudes, shapes.slope_tip, study.actuator.hub_radius),
-        "force": record.drive[:, 0, 0],
-        "torque": record.drive[:, 0, 1],
-        **energy_results(record),
-    }
+    """All variables of a simulation; deflections towards larger angles, in space also towards elevations, (T9.9)."""
+    shapes, q, hub = march.system.kernel.shapes, record.q[:, 0], study.actuator.hub_radius
+    bent = np.stack([sign * amplitudes(shapes, q, name) for name, sign in lateral_signs(shapes, 1.0, 1.0)], axis=1)
+    if shapes.planar:
+        bent = bent[:, 0]
+    at = places(shapes)
+    results = {"tip_deflection": bent @ shapes.a.tip} | {_DRIVEN[motion]: q[:, i] for motion, i in at.items()}
+    results |= {f"{_DRIVEN[motion]}_rate": record.rate[:, 0, shapes.l_index - i] for motion, i in at.items()}
+    if shapes.a.count:
+        results["mode_amplitude"] = bent
+    if shapes.planar:
+        place = _tip(results["angle"], results["length"], results["tip_deflection"], bent, shapes.a.slope_tip, hub)
+        results["tip_position"] = place
+    else:
+        results["tip_position"] = tips(march.system, record.q)[:, 0]
+        for name, part in (("tip_stretch", "c"), ("tip_twist", "t")):
+            results[name] = q[:, shapes.index(part)] if dict(shapes.layout).get(part) else np.zeros(len(q))
+    results |= {model.DRIVEN_BY[motion]: record.drive[:, 0, k] for k, motion in enumerate(at)}
+    return results | {"length": results["length"] - hub} | energy_results(record)
 
 
 def _tip(beta: Array, length: Array, v: Array, a: Array, slopes: Array, hub: float) -> Array:
