@@ -1,5 +1,7 @@
 """What `describe` says before a simulation, against closed forms and against simulations."""
 
+from pathlib import Path
+
 import numpy as np
 import pytest
 from tests.runs import paper_robot, with_legs
@@ -17,6 +19,7 @@ from flexapod.model import (
     Tube,
     override,
 )
+from flexapod.study.before.describe.leg import _stress
 from flexapod.study.before.describe.robot import describe
 from flexapod.study.words import held
 
@@ -248,3 +251,25 @@ def test_what_gives_way_is_not_called_locked():
     assert describe(servo).held == "Commands of the drives held, with the springs and dampers of the servo drives"
     force = with_legs(paper_robot(), lambda leg: leg.replace(drive=ForceDrive()))
     assert held(force.robot) == "Drives locked"  # what would have to be: there is no feedback to hold anything
+
+
+def sample(name):
+    return fx.load(Path(__file__).parents[2] / "examples" / "mechanisms" / f"{name}.toml")
+
+
+def test_a_fixed_platform_has_frequencies_and_nothing_that_moves():
+    # 42.66 Hz: of this strut across its weight, `fx.modes` finds the same.
+    found, study = describe(sample("strut")), sample("strut")
+    assert found.singularity is None and found.vibration is None
+    for pose in found.poses:
+        assert pose.problem is None and pose.stiffness is None and pose.sag is None
+        np.testing.assert_allclose([m.frequency for m in pose.modes], fx.modes(study).frequency[:6], rtol=1e-9)
+
+
+def test_a_strip_has_stresses_by_its_thickness():
+    # N / A and 6 M / (w t^2) of a section of 25 by 1.5 mm.
+    study, force, moment = sample("planar"), 3.0, 0.02
+    stress = _stress(study.robot.legs[0], np.zeros(1), np.array([force]), np.array([moment]))
+    np.testing.assert_allclose(stress.axial, force / 37.5e-6)
+    np.testing.assert_allclose(stress.bending, 6 * moment / (25e-3 * 1.5e-3**2))
+    assert all(leg.stress.total.value > 0 and leg.stress.yield_stress == 276e6 for leg in describe(study).legs)

@@ -119,6 +119,8 @@ def _at(extreme: Extreme, factor: float = 1e3) -> str:
 
 def _singularity(found: RobotDescription) -> None:
     s = found.singularity
+    if s is None:
+        return
     _heading("Distance to a singularity (scaled Jacobian)")
     print_text(
         f"Smallest singular value {s.smallest_singular_value:.3g}, condition {s.condition:.3g} at t = {s.time:.3f} s; "

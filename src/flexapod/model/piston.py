@@ -94,6 +94,11 @@ class Piston(Frozen):
         """`GJ`, or that of a round section, E I / (1 + poisson) [N m^2]."""
         return self.EI / (1 + self.poisson) if self.GJ is None else self.GJ
 
+    @property
+    def depth(self) -> float | None:
+        """Size in the direction of bending [m]; None where no section is given."""
+        return self.diameter
+
 
 class Strip(Frozen):
     """Section of a strip that bends across its thickness: `width`, `thickness` [m]."""
@@ -109,6 +114,11 @@ class Strut(Piston):
     """
 
     section: Strip | None = None
+
+    @property
+    def depth(self) -> float | None:
+        """Size in the direction of bending [m], of a strip its thickness."""
+        return self.diameter if self.section is None else self.section.thickness
 
     @classmethod
     def strip(cls, *, length: float, section: Strip, material: Material) -> Strut:

@@ -43,8 +43,7 @@ def _leg_remarks(leg: Leg) -> list[str]:
     remarks = []
     if piston.diameter is not None and piston.diameter > _SLENDER * piston.length:
         remarks.append(f"the piston is {piston.diameter:g} m wide, {_fat(piston.diameter, piston.length, 'length')}")
-    strip = leg.strut is not None and leg.strut.section is not None
-    if piston.yield_stress is not None and not strip and (piston.diameter is None or piston.E is None):
+    if piston.yield_stress is not None and (piston.depth is None or piston.E is None):
         remarks.append("yield_stress has no effect: stress needs the piston's diameter and material, not EI and EA")
     if cylinder.mass > 0 and cylinder.mouth > 0 and not 0 <= cylinder.com <= cylinder.mouth:
         remarks.append(

@@ -154,8 +154,10 @@ def _motion(motion: model.Motion) -> str:
         return f"through {len(motion.points)} points, {motion.profile} between them"
     target = np.asarray(motion.target)
     moved = [_amount(name, value) for name, value in zip(model.AXES, target, strict=True) if value]
+    if not moved:
+        return "none"
     ends = f" in {number(motion.duration, 4)} s, {motion.profile}, then {number(motion.hold, 4)} s of rest"
-    return (" and ".join(moved) or "none") + ends
+    return " and ".join(moved) + ends
 
 
 def _amount(name: str, value: float) -> str:
@@ -181,12 +183,13 @@ def _path(found: RobotDescription) -> list[str]:
     )
     force = "Drive torque" if "crank" in kinds else "Drive force"
     head = ("Leg", place, left, force, "Of Euler load", "Largest stress")
-    s = found.singularity
-    words = (
-        f"Estimates from the rigid path, as `flexapod check` gives them. Distance to a singularity: smallest singular "
-        f"value of the scaled Jacobian {s.smallest_singular_value:.3g} at t = {s.time:.3f} s, condition "
-        f"{s.condition:.3g}; at home {s.home_smallest_singular_value:.3g} and {s.home_condition:.3g}."
-    )
+    words = "Estimates from the rigid path, as `flexapod check` gives them."
+    if (s := found.singularity) is not None:
+        words += (
+            f" Distance to a singularity: smallest singular value of the scaled Jacobian "
+            f"{s.smallest_singular_value:.3g} at t = {s.time:.3f} s, condition {s.condition:.3g}; at home "
+            f"{s.home_smallest_singular_value:.3g} and {s.home_condition:.3g}."
+        )
     return [html.heading("What the path asks of the legs"), html.table(head, rows), html.paragraph(words, "soft")]
 
 

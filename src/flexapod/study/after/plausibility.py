@@ -100,9 +100,9 @@ def leg_stress(leg: Leg, basis: LateralBasis, lateral: Array, free: Array, compr
         Free length [m] and axial force [N].
     """
     piston = leg.piston
-    if piston.diameter is None or piston.E is None:
+    if piston.depth is None or piston.E is None:
         return None
-    bending = _bending(basis, lateral, free) * piston.E * piston.diameter / 2
+    bending = _bending(basis, lateral, free) * piston.E * piston.depth / 2
     return np.abs(compression) * piston.E / piston.EA + bending
 
 

@@ -153,10 +153,10 @@ def _margin(leg: Leg, t: Array, length: Array) -> Extreme | None:
 
 def _stress(leg: Leg, t: Array, force: Array, moment: Array) -> Stress | None:
     piston = leg.piston
-    if piston.diameter is None or piston.E is None:
+    if piston.depth is None or piston.E is None:
         return None
     axial = force * piston.E / piston.EA
-    bending = moment * piston.E * piston.diameter / (2 * piston.EI)
+    bending = moment * piston.E * piston.depth / (2 * piston.EI)
     return Stress(
         axial=float(axial.max()),
         bending=float(bending.max()),

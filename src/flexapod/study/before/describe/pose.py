@@ -83,12 +83,15 @@ def describe_pose(study: model.Study, name: str, time: float) -> PoseDescription
     path = _at_rest(study, time)
     try:
         locked = locked_poses(robot, simulation, path, study.load, time)
-        found, stiffness = the_modes(locked), _stiffness(stiffness_of(robot, locked).total)
+        found = the_modes(locked)
+        stiffness = None if robot.platform_fixed else _stiffness(stiffness_of(robot, locked).total)
     except FlexapodError as error:
         return PoseDescription(name=name, time=time, problem=str(error))
-    sag = found.equilibrium.state.pose[:3] - path.point(robot.com)[0][0]
     lines = zip(found.frequency, found.damping_ratio, mode_kinds(found), strict=True)
     modes = tuple(ModeLine(frequency=float(f), damping_ratio=float(ratio), kind=kind) for f, ratio, kind in lines)
+    if robot.platform_fixed:
+        return PoseDescription(name=name, time=time, modes=modes[:SHOWN])
+    sag = found.equilibrium.state.pose[:3] - path.point(robot.com)[0][0]
     return PoseDescription(
         name=name, time=time, sag=float(np.linalg.norm(sag)), stiffness=stiffness, modes=modes[:SHOWN]
     )
@@ -115,8 +118,10 @@ def _at_rest(study: model.Study, time: float) -> rigid.Poses:
 
 
 def vibration_to_expect(study: model.Study, end: float) -> VibrationToExpect | None:
-    """Residual vibration after the motion that ends at `end` [s]; None where nothing can vibrate."""
+    """Residual vibration after the motion that ends at `end` [s]; None where it cannot vibrate."""
     robot = study.robot
+    if robot.platform_fixed:
+        return None
     try:
         modes = robot_modes(robot, study.simulation, _at_rest(study, end), study.load, end)
     except FlexapodError:

@@ -58,7 +58,7 @@ class RobotDescription:
     losses: tuple[str, ...]
     legs: tuple[LegDescription, ...]
     angles: tuple[JointAngle, ...]
-    singularity: Singularity
+    singularity: Singularity | None  # None of a platform that is fixed
     poses: tuple[PoseDescription, ...]
     vibration: VibrationToExpect | None
     remarks: tuple[str, ...]
@@ -87,7 +87,7 @@ def describe(study: model.Study | model.ActuatorStudy) -> RobotDescription | Act
     legs, singularity = describe_legs(path), _singularity(study.robot, path.time, path.poses)
     end = min(study.motion.end_time - study.motion.hold, study.duration)
     instants = {"start": 0.0, "end of the motion": end}
-    worst = singularity.time
+    worst = singularity.time if singularity else end
     if min(worst, abs(worst - end)) > 0.02 * end and worst < end:
         instants["nearest to a singularity"] = worst
     return RobotDescription(
@@ -127,7 +127,9 @@ def _in_time(study: model.Study) -> list[str]:
     return []
 
 
-def _singularity(robot: model.Robot, t: Array, path: rigid.Poses) -> Singularity:
+def _singularity(robot: model.Robot, t: Array, path: rigid.Poses) -> Singularity | None:
+    if robot.platform_fixed:
+        return None
     home, found = rigid.singularity(robot, rigid.home_pose(robot)), rigid.singularity(robot, path)
     return Singularity(
         home_smallest_singular_value=float(home.smallest_singular_value[0]),
