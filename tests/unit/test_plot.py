@@ -2,6 +2,7 @@
 
 import re
 from itertools import pairwise
+from pathlib import Path
 
 import matplotlib
 import numpy as np
@@ -15,7 +16,7 @@ from matplotlib.text import Text
 from flexapod import plot
 from flexapod.app.view.charts import charts
 from flexapod.errors import InputError
-from flexapod.model import preset
+from flexapod.model import load, preset
 from flexapod.plot.narrow import narrowed
 from flexapod.plot.style import figure as page_figure
 from flexapod.plot.style import ink
@@ -26,6 +27,8 @@ from flexapod.scene.colours import ENERGIES
 from flexapod.scene.robot import mode_scene, motion_end, robot_study, scene
 from flexapod.study import modes, simulate, simulate_actuator
 from flexapod.surveys.workspace import workspace_map
+
+SAMPLES = Path(__file__).parents[2] / "examples" / "mechanisms"
 
 
 @pytest.fixture(scope="module")
@@ -378,3 +381,16 @@ def test_report_of_a_partial_run_says_so(robot, tmp_path):
 def test_text_in_a_report_is_text(robot, tmp_path):
     odd = robot.assign_attrs(warnings="leg 1: <b>1 < 2</b> & more")
     assert "&lt;b&gt;1 &lt; 2&lt;/b&gt; &amp; more" in write_report(odd, tmp_path).read_text(encoding="utf-8")
+
+
+def test_words_and_numbers_of_a_robot_along_one_axis_stand_apart():
+    # One actuator along x: of the other two directions there is no room for numbers.
+    data = simulate(load(SAMPLES / "strut.toml"), fidelity="lumped", duration=0.002, step=1e-3)
+    drawn = plot.robot_3d(data)
+    drawn.canvas.draw()
+    for axes in drawn.axes:
+        assert [axes.get_xlabel(), axes.get_ylabel(), axes.get_zlabel()] == ["x [mm]", "", ""]
+        texts = [axes.xaxis.label, *(label for label in axes.xaxis.get_ticklabels() if label.get_text())]
+        boxes = [text.get_window_extent() for text in texts]
+        assert len(boxes) > 3
+        assert not any(boxes[0].overlaps(box) for box in boxes[1:])

@@ -23,6 +23,8 @@ BASE = "#4A4F57"
 PLATFORM = "#2F6690"
 #: Size and mark of joints by their letter; hinges are short lines along their axes.
 JOINTS = {"U": (14, "o"), "S": (18, "o"), "F": (16, "s")}
+_SHORT = 0.2  # of the longest: axes that have no room for numbers
+_NEEDLE = 45  # distance of the name of the one axis that is left, in a measure that shrinks with the room
 _FREE: Any = {"axes.titley": None}  # titles go above what is drawn
 _NUMBER: dict[str, Any] = {"fontsize": NOTE, "path_effects": [withStroke(linewidth=2.0, foreground="white")]}
 
@@ -54,12 +56,15 @@ def view(axes: Any, scenes: Sequence[Scene], zoom: float = 1.0) -> None:
     axes.set(xlim=1e3 * np.array([low[0], high[0]]), ylim=1e3 * np.array([low[1], high[1]]))
     axes.set_zlim(1e3 * low[2], 1e3 * high[2])
     axes.set_box_aspect(high - low, zoom=zoom)
-    for axis in (axes.xaxis, axes.yaxis, axes.zaxis):
-        axis.get_major_locator().set_params(nbins=4)
     axes.tick_params(labelsize=SMALL, pad=0)
-    axes.set_xlabel("x [mm]", fontsize=NOTE, labelpad=0)
-    axes.set_ylabel("y [mm]", fontsize=NOTE, labelpad=0)
-    axes.set_zlabel("z [mm]", fontsize=NOTE, labelpad=2)
+    short = high - low < _SHORT * (high - low).max()
+    for name, axis, pad, bare in zip("xyz", (axes.xaxis, axes.yaxis, axes.zaxis), (0, 0, 2), short, strict=True):
+        axis.get_major_locator().set_params(nbins=4)
+        if bare:
+            axis.set_ticks([])
+        else:
+            axis.set_label_text(f"{name} [mm]", fontsize=NOTE)
+            axis.labelpad = _NEEDLE if short.sum() == 2 else pad
 
 
 def draw_robot(axes: Any, s: Scene, *, numbers: bool = True, legs: Sequence[str] = ()) -> None:
