@@ -1,5 +1,7 @@
 """What is rounding beside the largest axis is shown as nothing; what `run` remarks on, `modes` remarks on as well."""
 
+from dataclasses import replace
+
 import numpy as np
 import pytest
 from tests.runs import paper_robot, with_legs
@@ -46,6 +48,14 @@ def test_tables_have_no_instant_of_nothing(data):
     assert (x.peak, x.time, x.rms) == (0.0, None, 0.0)
     assert y == summary(data).axes[1]
     assert summary(data).axes[0].peak > 0  # as it was computed
+
+
+def test_tables_have_no_travel_of_nothing(data):
+    """A robot that did not leave a plane once travelled `1.632e-08 nm` across it."""
+    told = summary(data)
+    across = replace(told, axes=(replace(told.axes[0], excursion=1.6e-17), *told.axes[1:]))
+    assert across.shown_axes[0].excursion == 0.0
+    assert [a.excursion for a in across.shown_axes[1:]] == [a.excursion for a in told.axes[1:]]
 
 
 def test_no_leg_is_named_where_legs_are_alike(data):

@@ -67,10 +67,12 @@ class RobotSummary:
 
     @property
     def shown_axes(self) -> tuple[AxisSummary, ...]:
-        """The axes as they are shown: what is rounding beside the largest deviation is 0, at no time."""
+        """The axes as they are shown: what is rounding beside the largest one is 0, a deviation at no time."""
+        travel = max(a.excursion for a in self.axes)
+        axes = [a if cleared(a.excursion, travel) else replace(a, excursion=0.0) for a in self.axes]
         return tuple(
             a if cleared(a.peak, self.peak) else replace(a, peak=0.0, time=None, rms=0.0, per_cent=a.per_cent and 0.0)
-            for a in self.axes
+            for a in axes
         )
 
     @property
