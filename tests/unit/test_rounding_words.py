@@ -8,7 +8,7 @@ from tests.runs import paper_robot, with_legs
 
 import flexapod as fx
 from flexapod import plot
-from flexapod.app.view.charts import charts
+from flexapod.app.view.charts import Chart, _readout, charts
 from flexapod.study.after.summary import summary
 from flexapod.study.before.estimates import buckling_load
 from flexapod.study.words import length
@@ -101,3 +101,11 @@ def test_modes_and_stiffness_remark_on_buckling():
     for found in (fx.modes(near), fx.stiffness(near)):
         assert "of the Euler load" in found.attrs["warnings"]
         assert "at t =" not in found.attrs["warnings"]
+
+
+def test_values_at_the_cursor_hold_no_rounding():
+    """A robot at rest was off by `2.28e-12` of a micrometre, beside 29 later."""
+    lines = np.array([[-2.28e-12, 29.0], [-0.606, -0.99], [np.nan, 1.0]])
+    chart = Chart(title="", unit="um", time=np.arange(2.0), values=lines, names=tuple("xyz"), colors=("#000",) * 3)
+    words = _readout(chart, 0.0)
+    assert "x <b>0</b>" in words and "y <b>-0.606</b>" in words and "z <b>0</b>" not in words

@@ -29,6 +29,7 @@ _AXES = tuple(AXIS_COLORS.values())
 _OTHERS = ("#0072B2", "#009E73", "#D55E00", "#E69F00", "#A23B72", "#56B4E9")
 _DASHES: tuple[tuple[float, ...], ...] = ((), (6, 3), (8, 3, 2, 3), (2, 2), (10, 2), (4, 2, 1, 2))
 _CURSOR = "#888888"
+_NOTHING = 1e-10  # of the largest value of a chart: what is less at an instant is rounding, shown as 0
 
 
 @dataclass(frozen=True, kw_only=True)
@@ -205,6 +206,8 @@ def _axes() -> tuple[Any, ...]:
 def _readout(chart: Chart, time: float) -> str:
     """Names, colours and values of the lines at the instant nearest to a time, as HTML."""
     time, values = chart.at(time)
+    largest = float(np.nanmax(np.abs(chart.values), initial=0.0))
+    values = [0.0 if abs(value) <= _NOTHING * largest else value for value in values]
     cells = "".join(
         f"<span><svg width='22' height='8' aria-hidden='true'><line x1='0' y1='4' x2='22' "
         f"y2='4' stroke='{color}' stroke-width='2.5' stroke-dasharray='{','.join(str(d) for d in dash)}'/></svg> "
