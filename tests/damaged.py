@@ -6,6 +6,7 @@ By hand, more of them than the suite has time for (the first seed may be given t
 """
 
 import dataclasses
+import functools
 import math
 import random
 import re
@@ -31,9 +32,11 @@ from flexapod.surveys.sweeps.kept import kept
 from flexapod.surveys.sweeps.plan import read_plan
 from flexapod.surveys.sweeps.points import Points
 
-WHOLE = tomllib.loads(Path(__file__).with_suffix(".toml").read_text(encoding="utf-8"))
+SAMPLES = Path(__file__).parents[1] / "examples" / "mechanisms"
+MECHANISMS = {path.stem: {"study.toml": path.read_text(encoding="utf-8")} for path in sorted(SAMPLES.glob("*.toml"))}
+WHOLE = tomllib.loads(Path(__file__).with_suffix(".toml").read_text(encoding="utf-8")) | MECHANISMS
 SWEEPS = [name for name, files in WHOLE.items() if "sweep.toml" in files]
-BASES = [name for name in WHOLE if name not in SWEEPS]
+BASES = [name for name in WHOLE if name not in (*SWEEPS, *MECHANISMS)]
 SECONDS = 60  # for one file; the slowest take one, and some more where the first of a kind compiles its kernel
 MARCHED = 100  # one in so many is simulated too
 FEW_POINTS = 30  # of a sweep that is read point by point
@@ -250,7 +253,8 @@ class Damaged:
 def damaged(seed: int) -> Damaged:
     """The damaged files of a seed."""
     r = random.Random(seed)
-    name = r.choice(SWEEPS if r.random() < 0.2 else BASES)
+    share = r.random()
+    name = r.choice(SWEEPS if share < 0.2 else list(MECHANISMS) if share < 0.25 else BASES)
     files = dict(WHOLE[name])
     tables = [file for file in files if file.endswith(".csv")]
     target = (
@@ -313,12 +317,26 @@ def _use(case, folder, march):
     stretch = {leg.axial_modes for leg in study.robot.legs} if isinstance(study, Study) else {AXIAL_MODES}
     if (simulation.fidelity, simulation.lateral_shapes) not in COMPILED or stretch != {AXIAL_MODES}:
         return
+    if isinstance(study, Study) and joints(study) not in known_joints():
+        return
     assert_finite(describe(study).as_dict(), "description")
     if march and study.duration / simulation.stored_step < 1000 and study.duration < 10:
         run = simulate if isinstance(study, Study) else simulate_actuator
         data = run(study, tolerance=1e-2, duration=min(study.duration, 0.01), output_step=0.002)
         for name in ("com_position", "tip_deflection", "actuator_force"):
             assert name not in data or np.isfinite(data[name]).all(), name
+
+
+def joints(study):
+    """What a robot's kernel is made for, besides shapes."""
+    ends = [joint for leg in study.robot.legs for joint in (leg.base_joint, leg.platform_joint)]
+    free = tuple((joint.bending is None, joint.torsion is None, joint.stiffness is None) for joint in ends)
+    return study.robot.type, study.robot.plane, free
+
+
+@functools.cache
+def known_joints():
+    return {joints(loads(files["study.toml"])) for files in MECHANISMS.values()}
 
 
 def bare(study):
