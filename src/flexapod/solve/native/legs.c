@@ -11,14 +11,14 @@ static int groups(const Settings *s) { return (int)((s->legs + LANES - 1)/LANES)
 static int used(const Settings *s, int group) { long k = s->legs - group*LANES; return k < LANES ? (int)k : LANES; }
 
 /* rows of `stride` numbers, one a leg, from and to vectors of `size` */
-static void gather(const Settings *s, int group, const double *rows, long stride, long size, lanes *to) {
+SHARED void gather(const Settings *s, int group, const double *rows, long stride, long size, lanes *to) {
   for (int i = 0; i < LANES; i++) {
     const double *row = rows + lane_leg(s, group, i)*stride;
     for (long j = 0; j < size; j++) to[j][i] = row[j];
   }
 }
 
-static void scatter(const Settings *s, int group, const lanes *from, long stride, long size, double *rows) {
+SHARED void scatter(const Settings *s, int group, const lanes *from, long stride, long size, double *rows) {
   for (int i = 0; i < used(s, group); i++) for (long j = 0; j < size; j++) rows[(group*LANES + i)*stride + j] = from[j][i];
 }
 

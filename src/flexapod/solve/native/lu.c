@@ -37,7 +37,7 @@ static void lu_solve(const Lu *f, double *b) {
 
 /* Inverse of A (n, n), which is overwritten: the same matrix serves many right-hand sides, and a product has no
    recurrences to wait for. */
-static int invert(long n, double *A, double *inverse) {
+SHARED int invert(long n, double *A, double *inverse) {
   long pivot[LARGEST];
   Lu f = {A, pivot, n};
   if (lu_factor(&f)) return SINGULAR;

@@ -5,6 +5,7 @@
 #if defined(__GNUC__) && !defined(__clang__)
 #pragma GCC optimize("O3")              /* loops of this size are worth unrolling; the generated code above has none */
 #endif
+#define SHARED static __attribute__((noinline))  /* called from many places: a copy in each takes the compiler long */
 
 enum { LEGS = 16, PORTS = 16 };         /* at most */
 enum { COLUMNS = 4 };                   /* of a port in a table: value, rate, acceleration, force */
