@@ -5,8 +5,7 @@ from dataclasses import replace
 import numpy as np
 import pytest
 
-from flexapod.fem.elasticity import stiffness
-from flexapod.fem.hexahedra import element_stiffness, integrals
+from flexapod.fem.hexahedra import element_stiffness, integrals, stiffness
 from flexapod.fem.mesh import beam_mesh
 from flexapod.model import Rectangle
 

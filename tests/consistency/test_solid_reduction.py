@@ -6,12 +6,10 @@ from scipy.linalg import null_space
 from scipy.sparse import csc_array, csr_array
 from scipy.sparse.linalg import eigsh
 
-from flexapod.fem.elasticity import mass, slope_stiffness, stiffness
-from flexapod.fem.hexahedra import integrals
+from flexapod.fem.hexahedra import integrals, mass, slope_stiffness, stiffness
 from flexapod.fem.mesh import extruded
 from flexapod.fem.reduction import reduced_beam
-from flexapod.fem.section_average import free_unknowns, section_averages
-from flexapod.fem.section_mesh import section_mesh
+from flexapod.fem.section_mesh import free_unknowns, section_averages, section_mesh
 from flexapod.fem.sliding import HubMotion, SlidingBeam
 from flexapod.model import Rectangle
 

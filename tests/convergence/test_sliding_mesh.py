@@ -12,10 +12,10 @@ from tests.oracles import beams, sliding
 
 import flexapod as fx
 from flexapod.errors import InputError
+from flexapod.fem.beam_contact import frozen_frequencies, static_shape
 from flexapod.fem.beam_guide import ElementContact, InterpolatedClamp, NodeContact, Rollers
 from flexapod.fem.beam_march import march_sliding_beam
 from flexapod.fem.beam_mesh import band_product, beam_mesh
-from flexapod.fem.beam_static import frozen_frequencies, static_shape
 from flexapod.model import ActuatorLoad, ActuatorMotion, preset
 from flexapod.plot.sliding_mesh import sliding_mesh as plot_sliding_mesh
 from flexapod.study.sliding_mesh import sliding_mesh

@@ -5,10 +5,9 @@ import pytest
 
 import flexapod as fx
 from flexapod.fem.frequencies import frequencies
-from flexapod.fem.linear_march import gauss_step
 from flexapod.fem.mesh import beam_mesh
 from flexapod.fem.reduction import reduced_beam
-from flexapod.fem.sliding import HubMotion, SlidingBeam
+from flexapod.fem.sliding import HubMotion, SlidingBeam, gauss_step
 from flexapod.model import Rectangle
 from flexapod.study.solid import simulate_solid
 

@@ -5,14 +5,11 @@ import pytest
 
 import flexapod as fx
 from flexapod.errors import ComputationError, InputError
-from flexapod.fem.banded import banded_solver
-from flexapod.fem.elasticity import mass, stiffness
-from flexapod.fem.frequencies import frequencies
-from flexapod.fem.hexahedra import integrals
+from flexapod.fem.frequencies import banded_solver, frequencies
+from flexapod.fem.hexahedra import integrals, mass, stiffness
 from flexapod.fem.mesh import SolidMesh, beam_mesh
 from flexapod.fem.reduction import reduced_beam
-from flexapod.fem.section_average import section_averages
-from flexapod.fem.section_mesh import section_mesh
+from flexapod.fem.section_mesh import section_averages, section_mesh
 from flexapod.fem.sliding import HubMotion, SlidingBeam, slide
 from flexapod.model import Rectangle, Tube
 from flexapod.plot.solid import solid_comparison, solid_meshes

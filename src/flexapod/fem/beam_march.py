@@ -9,10 +9,9 @@ import numpy as np
 
 from flexapod import rigid
 from flexapod.errors import InputError
-from flexapod.fem.beam_contact import Contact, band_solve, settle
+from flexapod.fem.beam_contact import Contact, band_solve, contact_at, settle, static_shape
 from flexapod.fem.beam_guide import Guide
 from flexapod.fem.beam_mesh import BeamMesh, band_product, beam_mesh
-from flexapod.fem.beam_static import contact_at, static_shape
 from flexapod.integration import GeneralizedAlpha
 from flexapod.model import ActuatorStudy
 from flexapod.typing import Array

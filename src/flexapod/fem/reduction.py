@@ -12,12 +12,10 @@ import numpy as np
 from scipy.sparse import csc_array, csr_array
 
 from flexapod.errors import InputError
-from flexapod.fem.elasticity import field_load, mass, slope_stiffness, stiffness
 from flexapod.fem.frequencies import check_material
-from flexapod.fem.hexahedra import integrals
+from flexapod.fem.hexahedra import field_load, integrals, mass, slope_stiffness, stiffness
 from flexapod.fem.mesh import SolidMesh, check_count, extruded
-from flexapod.fem.section_average import SectionAverages, free_unknowns, section_averages
-from flexapod.fem.section_mesh import section_mesh
+from flexapod.fem.section_mesh import SectionAverages, free_unknowns, section_averages, section_mesh
 from flexapod.model import Rectangle, Tube
 from flexapod.typing import Array
 

@@ -1,4 +1,4 @@
-"""A reduced solid that slides through the mouth of a turning hub, in material coordinates, Eqs. (T10.15)-(T10.18)."""
+"""A reduced solid that slides through the mouth of a turning hub, in material coordinates, Eqs. (T10.15)-(T10.19)."""
 
 from __future__ import annotations
 
@@ -9,12 +9,49 @@ from itertools import pairwise
 import numpy as np
 
 from flexapod.errors import ComputationError
-from flexapod.fem.linear_march import gauss_step
 from flexapod.fem.mouth import Mouth, mouth_of
 from flexapod.fem.reduction import StationModel
 from flexapod.typing import Array
 
-__all__ = ["HubMotion", "SlidingBeam", "slide"]
+_ROOT = np.sqrt(3.0) / 6
+_NODES = np.array([0.5 - _ROOT, 0.5 + _ROOT])
+_WEIGHTS = np.array([[0.25, 0.25 - _ROOT], [0.25 + _ROOT, 0.25]])
+_SQUARED = _WEIGHTS @ _WEIGHTS
+
+
+def gauss_step(
+    mass: Array, stage: Callable[[float], tuple[Array, Array]], t: float, h: float, a: Array, a_dot: Array
+) -> tuple[Array, Array]:
+    """State after one step.
+
+    Parameters
+    ----------
+    mass : (n, n) array
+        Constant over the step.
+    stage : callable
+        Stiffness (n, n) and load (n,) at an instant [s].
+    t, h : float
+        Start and length of the step [s].
+    a, a_dot : (n,) arrays
+
+    Returns
+    -------
+    tuple of (n,) arrays
+        a and a_dot at t + h.
+    """
+    n = len(a)
+    big, right = np.empty((2 * n, 2 * n)), np.empty(2 * n)
+    for i in range(2):
+        K, f = stage(t + _NODES[i] * h)
+        rows = slice(i * n, (i + 1) * n)
+        for j in range(2):
+            big[rows, j * n : (j + 1) * n] = h**2 * _SQUARED[i, j] * K
+        big[rows, rows] += mass
+        right[rows] = f - K @ (a + _NODES[i] * h * a_dot)
+    first, second = np.linalg.solve(big, right).reshape(2, n)
+    # Position weights b A = (b_j (1 - c_j)) of the two stages.
+    place = 0.5 * (1 - _NODES)
+    return a + h * a_dot + h**2 * (place[0] * first + place[1] * second), a_dot + 0.5 * h * (first + second)
 
 
 @dataclass(frozen=True, kw_only=True)

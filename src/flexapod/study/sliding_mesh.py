@@ -9,10 +9,10 @@ import numpy as np
 from numpy.typing import ArrayLike
 
 from flexapod import model
+from flexapod.fem.beam_contact import frozen_frequencies
 from flexapod.fem.beam_guide import ElementContact, Guide, InterpolatedClamp, NodeContact
 from flexapod.fem.beam_march import march_sliding_beam
 from flexapod.fem.beam_mesh import beam_mesh
-from flexapod.fem.beam_static import frozen_frequencies
 from flexapod.study.actuator import simulate_actuator
 from flexapod.study.attributes import attributes
 from flexapod.study.names import Variable, dataset
