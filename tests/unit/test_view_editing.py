@@ -4,8 +4,7 @@ import tomllib
 
 import pytest
 
-from flexapod.app.view.document import Document, Quantity, quantity
-from flexapod.app.view.editing import chosen, edited, first_value, read
+from flexapod.app.view.document import Document, Quantity, chosen, edited, first_value, quantity, read
 from flexapod.app.view.uploads import LARGEST, read_upload, store_table
 from flexapod.errors import InputError
 from flexapod.model import PRESETS, preset_text

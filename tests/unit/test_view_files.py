@@ -9,12 +9,12 @@ import viser
 from viser._messages import FileTransferPart, FileTransferStartUpload
 
 from flexapod import model
-from flexapod.app.view import files_panel, limits, uploads
+from flexapod.app.view import files_panel, uploads
+from flexapod.app.view.background import Threads
 from flexapod.app.view.document import Document
 from flexapod.app.view.files_panel import FilesPanel
 from flexapod.app.view.network import is_expected
 from flexapod.app.view.study_panel import StudyPanel
-from flexapod.app.view.threads import Threads
 from flexapod.app.view.typed import LEFT
 from flexapod.app.view.uploads import LARGEST, MOST_TABLES, Sent, read_upload, store_table
 from flexapod.errors import InputError
@@ -83,7 +83,7 @@ def test_a_download_holds_nobody_up(client, monkeypatch, request):
         assert finish.wait(20)
         return b"PNG"
 
-    monkeypatch.setattr(files_panel.downloads, "figures", figures)
+    monkeypatch.setattr(files_panel, "figures", figures)
     panel = request.getfixturevalue("panel")
     try:
         for _ in range(40):
@@ -102,7 +102,7 @@ def test_a_download_holds_nobody_up(client, monkeypatch, request):
 
 
 def test_a_fault_ends_one_download(client, monkeypatch, request):
-    monkeypatch.setattr(files_panel.downloads, "netcdf", lambda _: 1 / 0)
+    monkeypatch.setattr(files_panel, "netcdf", lambda _: 1 / 0)
     panel = request.getfixturevalue("panel")
     press(client, "Results (NetCDF)")
     until(lambda: panel.faults and not panel._busy)
@@ -113,7 +113,7 @@ def test_a_fault_ends_one_download(client, monkeypatch, request):
 
 
 def test_nothing_is_sent_to_somebody_who_left(client, monkeypatch, request):
-    monkeypatch.setattr(files_panel.downloads, "csv", lambda _: panel.close() or b"1,2")
+    monkeypatch.setattr(files_panel, "csv", lambda _: panel.close() or b"1,2")
     panel = request.getfixturevalue("panel")
     press(client, "Results (CSV)")
     until(lambda: panel._closed and not panel._busy)
@@ -174,7 +174,7 @@ def test_one_transfer_at_a_time(client, panel):
 
 def test_a_page_that_is_built_anew_forgets_what_was_begun(client, panel):
     begin(client, 1)
-    limits.limit_uploads(client, LARGEST, lambda error: None)
+    uploads.limit_uploads(client, LARGEST, lambda error: None)
     assert not client.gui._current_file_upload_states
 
 
@@ -219,16 +219,16 @@ def test_tables_deep_in_a_study_are_looked_for(tmp_path):
 def test_a_study_with_more_instants_than_the_server_holds():
     """A duration of 2e7 s began by itself and filled the memory, 13 MB a second."""
     study = model.preset("paper-robot")
-    limits.refuse_length(study)
-    limits.refuse_length(model.override(study, duration=0.001 * limits.MOST_INSTANTS))
+    uploads.refuse_length(study)
+    uploads.refuse_length(model.override(study, duration=0.001 * uploads.MOST_INSTANTS))
     with pytest.raises(InputError, match="stored instants") as refused:
-        limits.refuse_length(model.override(study, duration=2e7))
+        uploads.refuse_length(model.override(study, duration=2e7))
     assert refused.value.key == "simulation.output_step"
-    limits.refuse_length(model.override(study, duration=2e7, output_step=100.0))
+    uploads.refuse_length(model.override(study, duration=2e7, output_step=100.0))
     actuator = model.preset("paper-actuator")
-    limits.refuse_length(actuator)
+    uploads.refuse_length(actuator)
     with pytest.raises(InputError, match="stored instants"):
-        limits.refuse_length(model.override(actuator, duration=2e7))
+        uploads.refuse_length(model.override(actuator, duration=2e7))
 
 
 @pytest.mark.parametrize(

@@ -4,8 +4,7 @@ import tomllib
 
 import pytest
 
-from flexapod.app.view.document import Document
-from flexapod.app.view.editing import read
+from flexapod.app.view.document import Document, read
 from flexapod.app.view.structure import offers
 from flexapod.errors import InputError
 from flexapod.model import PRESETS, preset_text

@@ -7,11 +7,10 @@ import pytest
 import viser
 
 from flexapod import model
-from flexapod.app.view.dial import Dial
+from flexapod.app.view.background import Threads
 from flexapod.app.view.document import Document
 from flexapod.app.view.study_panel import StudyPanel
-from flexapod.app.view.threads import Threads
-from flexapod.app.view.typed import LEFT, in_unit, plain, written
+from flexapod.app.view.typed import LEFT, Dial, in_unit, plain, written
 from flexapod.errors import InputError
 from flexapod.model import loads
 

@@ -10,10 +10,9 @@ import pytest
 from flexapod.app.commands_verify import _write
 from flexapod.app.view.document import Document
 from flexapod.app.view.network import free_port
-from flexapod.app.view.opening import open_source
+from flexapod.app.view.opening import Source, open_source
 from flexapod.app.view.server import GONE, View
 from flexapod.app.view.session import Session
-from flexapod.app.view.source import Source
 from flexapod.model import loads, preset_text
 from flexapod.paper.claim import BREAKS, HOLDS, IN_PART, MISPRINT, NOT, OPEN, REACHES, Claim
 from flexapod.paper.report import paper_page

@@ -10,16 +10,16 @@ from tests.web.conftest import LONG, SHORT, study_text
 from tests.web.guests import guest, said, until
 
 import flexapod as fx
-from flexapod.app.view import cores
-from flexapod.app.view.cores import Cores, Turn
+from flexapod.app.view import running
 from flexapod.app.view.document import Document
-from flexapod.app.view.source import Source
+from flexapod.app.view.opening import Source
+from flexapod.app.view.running import Cores, Turn
 
 
 def test_long_simulations_take_turns_and_short_ones_pass(monkeypatch):
     """Six long ones that never end of themselves, on one place; now and then somebody wants a moment of it."""
-    monkeypatch.setattr(cores, "SLICE", 0.02)
-    monkeypatch.setattr(cores, "LONG", 0.2)
+    monkeypatch.setattr(running, "SLICE", 0.02)
+    monkeypatch.setattr(running, "LONG", 0.2)
     places, stop, had, waited = Cores(1), threading.Event(), Counter(), []
 
     def long(number):
@@ -54,7 +54,7 @@ def test_long_simulations_take_turns_and_short_ones_pass(monkeypatch):
 
 
 def test_short_simulations_without_end_do_not_starve_a_long_one(monkeypatch):
-    monkeypatch.setattr(cores, "LONG", 0.2)
+    monkeypatch.setattr(running, "LONG", 0.2)
     places, stop, turn = Cores(1), threading.Event(), Turn(used=100.0)
 
     def short():

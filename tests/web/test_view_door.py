@@ -18,8 +18,8 @@ from websockets.sync.client import connect
 from flexapod.app.view import door, logs, visitor
 from flexapod.app.view.document import Document
 from flexapod.app.view.network import is_expected, is_same_site
+from flexapod.app.view.opening import Source
 from flexapod.app.view.server import View
-from flexapod.app.view.source import Source
 from flexapod.model import loads
 
 VERSIONS = [f"viser-v{viser.__version__}"]

@@ -12,10 +12,9 @@ import flexapod as fx
 from flexapod import model
 from flexapod.app.view import quick
 from flexapod.app.view import session as sessions
-from flexapod.app.view.cores import Turn
 from flexapod.app.view.document import Document
-from flexapod.app.view.opening import open_source
-from flexapod.app.view.source import Source
+from flexapod.app.view.opening import Source, open_source
+from flexapod.app.view.running import Turn
 from flexapod.errors import InputError
 from flexapod.model import preset
 from flexapod.study.after.summary import summary

@@ -16,11 +16,10 @@ from viser import _messages
 
 import flexapod as fx
 from flexapod import study as studies
-from flexapod.app.view import cores, downloads, player, time_panel
-from flexapod.app.view.cores import Cores, Turn
-from flexapod.app.view.document import Document
-from flexapod.app.view.editing import read
-from flexapod.app.view.source import Source
+from flexapod.app.view import files_panel, player, running, time_panel
+from flexapod.app.view.document import Document, read
+from flexapod.app.view.opening import Source
+from flexapod.app.view.running import Cores, Turn
 from flexapod.app.view.structure import offers
 from flexapod.scene import beam_modes
 
@@ -137,7 +136,7 @@ def test_no_more_simulations_at_once_than_cores():
 
 
 def test_who_waits_for_a_core_is_told_and_can_cancel(session, monkeypatch):
-    monkeypatch.setattr(cores, "TOLD", 0.05)
+    monkeypatch.setattr(running, "TOLD", 0.05)
     places, before = session._cores, session.data
     taken = []
     while places._free:
@@ -376,7 +375,7 @@ def test_a_study_that_would_fill_the_memory_is_not_begun(session):
 def test_downloads_of_one_hold_nobody_up(view, monkeypatch):
     """40 messages for a report filled the threads that answer everybody; another's Simulate waited for a minute."""
     finish, begun = threading.Event(), []
-    monkeypatch.setattr(downloads, "csv", lambda data: begun.append(data) or finish.wait(60) or b"")
+    monkeypatch.setattr(files_panel, "csv", lambda data: begun.append(data) or finish.wait(60) or b"")
     server = view(study_text(*SHORT))
     with guest(server) as one:
         first = until(lambda: server.sessions)[0]

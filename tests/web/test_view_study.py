@@ -12,7 +12,7 @@ from tests.web.guests import until
 import flexapod as fx
 from flexapod.app.failures import lines_of, parts_of
 from flexapod.app.view import files_panel
-from flexapod.app.view.cores import Turn
+from flexapod.app.view.running import Turn
 from flexapod.app.view.uploads import LARGEST
 from flexapod.errors import InputError
 from flexapod.report import figures
@@ -292,7 +292,7 @@ def test_two_people_have_a_state_each_and_a_fault_stays_with_one(desk, show, mon
     def broken(data):
         raise RuntimeError("the pen is broken")
 
-    monkeypatch.setattr(files_panel.downloads, "figures", broken)
+    monkeypatch.setattr(files_panel, "figures", broken)
     server, visit, _ = desk
     one, first = show(study_text(*SHORT))
     two = visit()

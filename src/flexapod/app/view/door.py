@@ -1,11 +1,12 @@
-"""The door of the page's server: whom it lets in and with which words it refuses; viser stands behind it."""
+"""The door of the page's server: whom it lets in, with which words it refuses, and the headers of every answer."""
 
 from __future__ import annotations
 
 import http
+import re
 import threading
 import traceback
-from collections.abc import Awaitable, Callable, Iterator
+from collections.abc import Awaitable, Callable, Iterator, Sequence
 from contextlib import contextmanager
 from typing import Any, cast
 
@@ -14,12 +15,9 @@ from websockets.asyncio import server as websockets_server
 from websockets.asyncio.server import ServerConnection, serve
 from websockets.http11 import Request, Response
 
-from flexapod.app.view.headers import security_headers
 from flexapod.app.view.logs import CONNECTIONS, LOG
 from flexapod.app.view.network import is_expected, is_same_site, names_in_words
 from flexapod.app.view.visitor import LARGEST_MESSAGE, Visitor
-
-__all__ = ["MOST_VISITORS", "Door"]
 
 MOST_VISITORS = 32
 """Pages that are open at once."""
@@ -134,3 +132,40 @@ class Door:
 def _with_headers(_: ServerConnection, request: Request, response: Response) -> None:
     for name, value in security_headers(request.headers.get_all("Host")).items():
         response.headers[name] = value
+
+
+_PAGE = {
+    "default-src": "'none'",
+    "script-src": "'unsafe-inline' 'unsafe-eval'",  # viser's page is one file that unpacks and compiles its own program
+    "style-src": "'unsafe-inline'",
+    "img-src": "'self' data: blob:",
+    "font-src": "data:",
+    "worker-src": "blob: data:",
+    "connect-src": "'self' data: blob:",
+    "base-uri": "'none'",
+    "form-action": "'none'",
+    "frame-ancestors": "'none'",
+}
+_FEATURES = ("camera", "microphone", "geolocation", "usb", "serial", "midi", "payment", "display-capture")
+_PLAIN = re.compile(r"[a-z0-9.:\[\]-]+", re.IGNORECASE)
+
+
+def security_headers(asked: Sequence[str]) -> dict[str, str]:
+    """What the page may load, who may embed it, and what a browser tells others of it.
+
+    Parameters
+    ----------
+    asked : sequence of str
+        Lines ``Host`` of the request: browsers that do not count websockets as 'self' are told the address.
+    """
+    policy = dict(_PAGE)
+    if len(asked) == 1 and _PLAIN.fullmatch(asked[0]):
+        policy["connect-src"] += f" ws://{asked[0]} wss://{asked[0]}"
+    return {
+        "Content-Security-Policy": "; ".join(f"{name} {value}" for name, value in policy.items()),
+        "Cross-Origin-Resource-Policy": "same-origin",
+        "Permissions-Policy": ", ".join(f"{feature}=()" for feature in _FEATURES),
+        "Referrer-Policy": "no-referrer",
+        "X-Content-Type-Options": "nosniff",
+        "X-Frame-Options": "DENY",
+    }

@@ -1,21 +1,22 @@
-"""Downloads of a study and its results, upload of a study file."""
+"""The tab "Files": downloads of a study and its results, upload of a study file."""
 
 from __future__ import annotations
 
+import io
+import tempfile
 import threading
 import time
+import zipfile
 from collections.abc import Callable
 from pathlib import Path
 from typing import TYPE_CHECKING
 
 from viser import Icon, IconName
 
-from flexapod.app.view import downloads, words
-from flexapod.app.view.document import Document
-from flexapod.app.view.editing import read
-from flexapod.app.view.limits import limit_uploads
-from flexapod.app.view.threads import Threads
-from flexapod.app.view.uploads import LARGEST, Sent, read_upload, store_table
+from flexapod.app.view import words
+from flexapod.app.view.background import Threads
+from flexapod.app.view.document import Document, read
+from flexapod.app.view.uploads import LARGEST, Sent, limit_uploads, read_upload, store_table
 from flexapod.errors import FlexapodError
 
 if TYPE_CHECKING:
@@ -24,7 +25,45 @@ if TYPE_CHECKING:
 
     from flexapod.model import ActuatorStudy, Study
 
-__all__ = ["FilesPanel"]
+_ONE_AT_A_TIME = threading.Lock()  # neither NetCDF nor the drawing of figures promises to work in parallel
+
+
+def netcdf(data: Dataset) -> bytes:
+    """``results.nc``; of the study file it keeps the name, not the folders of whoever runs the server."""
+    from flexapod.study.store import save
+
+    named = data.assign_attrs(study_file=Path(str(data.attrs.get("study_file", ""))).name)
+    with _ONE_AT_A_TIME, tempfile.TemporaryDirectory(prefix="flexapod-") as folder:
+        return save(named, Path(folder) / "results.nc").read_bytes()
+
+
+def csv(data: Dataset) -> bytes:
+    """``results.csv``."""
+    from flexapod.study.store import save_csv
+
+    with tempfile.TemporaryDirectory(prefix="flexapod-") as folder:
+        return save_csv(data, Path(folder) / "results.csv").read_bytes()
+
+
+def figures(data: Dataset) -> bytes:
+    """A ZIP archive of the standard figures, PNG."""
+    from flexapod.report.figures import draw
+
+    with _ONE_AT_A_TIME, tempfile.TemporaryDirectory(prefix="flexapod-") as folder:
+        archive = io.BytesIO()
+        with zipfile.ZipFile(archive, "w", zipfile.ZIP_STORED) as files:
+            for figure in draw(data, folder, ("png",)):
+                files.write(figure.png, figure.png.name)
+        return archive.getvalue()
+
+
+def report(study: Study | ActuatorStudy, data: Dataset) -> bytes:
+    """``report.html``, one file."""
+    from flexapod.report.page import robot_report
+
+    with _ONE_AT_A_TIME:
+        return robot_report(study, data).encode()
+
 
 ACKNOWLEDGED = 0.5  # time in which the browser shows that a file has arrived, before the page is built anew [s]
 _BUSY = "One file at a time: wait until the one before is done."
@@ -67,12 +106,10 @@ class FilesPanel:
         with gui.add_folder("Download"):
             text = gui.add_button("Study (TOML)", icon=Icon.FILE_TEXT)
             text.on_click(lambda _: self._do(self._send_study))
-            self._offer("Results (NetCDF)", Icon.DATABASE, ".nc", downloads.netcdf)
-            self._offer("Results (CSV)", Icon.TABLE, ".csv", downloads.csv)
-            self._offer("Figures (ZIP of PNG)", Icon.PHOTO, "-figures.zip", downloads.figures)
-            self._offer(
-                "Report (HTML)", Icon.REPORT, "-report.html", lambda found: downloads.report(self._study(), found)
-            )
+            self._offer("Results (NetCDF)", Icon.DATABASE, ".nc", netcdf)
+            self._offer("Results (CSV)", Icon.TABLE, ".csv", csv)
+            self._offer("Figures (ZIP of PNG)", Icon.PHOTO, "-figures.zip", figures)
+            self._offer("Report (HTML)", Icon.REPORT, "-report.html", lambda found: report(self._study(), found))
         with gui.add_folder("Upload"):
             gui.add_html(words.block(f"A study file (TOML, UTF-8) of at most {LARGEST / 1e6:g} MB.", "soft"))
             study_file = gui.add_upload_button("Study file", icon=Icon.UPLOAD, mime_type=".toml,text/plain")

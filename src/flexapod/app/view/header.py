@@ -1,8 +1,11 @@
-"""Above the tabs: what is shown, the answer or what is wrong, Simulate, Cancel, progress."""
+"""Above the tabs: the answer or what is wrong, Simulate, progress, what the scene shows; what the page is told."""
 
 from __future__ import annotations
 
+import json
 from collections.abc import Callable
+from functools import cache
+from importlib.resources import files
 from typing import TYPE_CHECKING
 
 from viser import Icon
@@ -10,9 +13,10 @@ from viser import Icon
 from flexapod.app.view import words
 
 if TYPE_CHECKING:
+    import viser
     from viser import ClientHandle
 
-__all__ = ["Header"]
+    from flexapod.app.view.scene import Scene
 
 
 class Header:
@@ -77,3 +81,46 @@ class Header:
     def _update(self) -> None:
         """Nothing comes and goes: what is below stays under the mouse."""
         self._simulate.disabled, self._cancel.disabled = self._runs or not self._ready, not self._runs
+
+
+class Picture:
+    """Words on the scene of one user, and two buttons.
+
+    Parameters
+    ----------
+    gui : viser.GuiApi
+    back, reset : callable
+        What the buttons do.
+    """
+
+    def __init__(self, gui: viser.GuiApi, back: Callable[[], None], reset: Callable[[], None]) -> None:
+        self._words = gui.add_html("")
+        view = gui.add_button("Reset view", color="gray", icon=Icon.CAMERA, hint="See the whole from where it began")
+        view.on_click(lambda _: reset())
+        self._back = gui.add_button(
+            "Back to the motion", color="gray", icon=Icon.ARROW_BACK_UP, visible=False, hint="Show the result over time"
+        )
+        self._back.on_click(lambda _: back())
+
+    def tell(self, scene: Scene) -> None:
+        """Say what a scene shows now."""
+        html = words.block(f"Picture: {scene.picture_words()}.", "soft")
+        if self._words.content != html:
+            self._words.content = html
+        elsewhere = bool(scene.drawn) and scene.data is not None
+        if self._back.visible != elsewhere:
+            self._back.visible = elsewhere
+
+
+def prepare(client: ClientHandle, name: str) -> None:
+    """Call the page of a client after what it shows, and let it mend itself (`assets/view.js`)."""
+    from viser import _messages
+
+    source = f"({_script()})({json.dumps(f'{name} - flexapod')})"
+    client._websock_connection.queue_message(_messages.RunJavascriptMessage(source=source))
+
+
+@cache
+def _script() -> str:
+    text = files("flexapod.app").joinpath("assets", "view.js").read_text(encoding="utf-8")
+    return text[text.index("(title) =>") :].rstrip().rstrip(";")

@@ -8,8 +8,8 @@ from collections.abc import Callable, Sequence
 from typing import TYPE_CHECKING
 
 from flexapod.app.view import words
+from flexapod.app.view.background import Threads
 from flexapod.app.view.document import Quantity, quantity
-from flexapod.app.view.threads import Threads
 from flexapod.app.view.typed import TypedText, by_user, plain, written
 from flexapod.model.fields import Field
 

@@ -2,22 +2,128 @@
 
 from __future__ import annotations
 
+import math
+import threading
+import time
 from abc import ABC, abstractmethod
+from collections.abc import Callable, Sequence
 from typing import TYPE_CHECKING, Any, Generic, NamedTuple, TypeVar
 
+from viser import Icon
+
 from flexapod.app.view import words
-from flexapod.app.view.latest import Latest
-from flexapod.app.view.mode_show import ModeShow
+from flexapod.app.view.background import Latest, Threads
+from flexapod.app.view.player import Player
 from flexapod.app.view.scene import Scene
-from flexapod.app.view.threads import Threads
+from flexapod.app.view.typed import Dial, by_user
 from flexapod.errors import FlexapodError
+from flexapod.study.words import text
 
 if TYPE_CHECKING:
     import viser
 
-__all__ = ["Listed", "ListedModes"]
+SHOWN_FREQUENCY = 0.5  # of the drawn motion, whatever the mode's own [Hz]
+_NONE: str = "none yet"
 
-QUIET = 0.3  # after a change of the study, before its modes are computed [s]
+
+class ModeShow:
+    """Choice of a mode, button, amplitude and phase for one user.
+
+    Parameters
+    ----------
+    gui : viser.GuiApi
+    scene : Scene
+    threads : Threads
+        Of the session.
+    draw : callable
+        Called with the place of the mode in the list (0 is the first), amplitude as a share, phase between -1 and 1.
+    size : str
+        What the amplitude is a share of.
+    """
+
+    def __init__(
+        self,
+        gui: viser.GuiApi,
+        scene: Scene,
+        threads: Threads,
+        draw: Callable[[int, float, float], None],
+        size: str,
+    ) -> None:
+        self._scene, self._draw, self._some = scene, draw, False
+        self._begin, self.lock = 0.0, threading.RLock()
+        self._player = Player(scene, threads, self.lock, self._step, self._label)
+        self._choice = gui.add_dropdown("mode", [_NONE], initial_value=_NONE)
+        self._play = gui.add_button("Animate", icon=Icon.PLAYER_PLAY, disabled=True, hint="Show the chosen mode moving")
+        self._amplitude = Dial(gui, threads, "amplitude", "%", (1.0, 25.0), 0.5, 8.0, self._still)
+        self._phase = Dial(gui, threads, "phase", "deg", (0.0, 360.0), 1.0, 90.0, self._still, dimension="angle")
+        self._size, self._note = size, gui.add_html("")
+        self._choice.on_update(by_user(self.play))
+        self._play.on_click(lambda _: self.pause() if self.playing else self.play())
+
+    @property
+    def playing(self) -> bool:
+        """Whether a mode moves."""
+        return self._player.playing
+
+    def offer(self, modes: Sequence[str], length: float) -> None:
+        """List other modes; the place of the chosen one stays. An empty list: nothing to show, nothing moves.
+
+        `length` [m] that amplitudes are a share of.
+        """
+        if not modes:
+            self.pause()
+        with self.lock:
+            place = self._place()
+            self._some = bool(modes)
+            self._play.disabled = not modes
+            if modes:
+                slowed = f"Whatever its frequency, a mode is drawn at {SHOWN_FREQUENCY:g} Hz."
+                self._note.content = words.block(f"{slowed} 100 % of {self._size}: {text(length, 'm')}.", "soft")
+                self._choice.options = tuple(modes)
+                self._choice.value = modes[min(place, len(modes) - 1)]
+
+    def play(self) -> None:
+        """Show the chosen mode moving."""
+        with self.lock:
+            if self._some:
+                self._begin = time.perf_counter()
+                self._player.start()
+
+    def pause(self) -> None:
+        """Stand still."""
+        self._player.stop()
+
+    def close(self) -> None:
+        """Stop; nothing is drawn any more."""
+        self._player.close()
+        with self.lock:
+            self._some = False
+
+    def _step(self, passed: float) -> bool:
+        turned = 360.0 * SHOWN_FREQUENCY * (time.perf_counter() - self._begin)
+        self._show((self._phase.value + turned) % 360.0)
+        return self._some
+
+    def _still(self) -> None:
+        """Draw the mode at rest in time, at the phase of the slider."""
+        with self.lock:
+            if not self.playing:
+                self._scene.driver = None
+                self._show(self._phase.value)
+
+    def _show(self, phase: float) -> None:
+        if self._some:
+            self._draw(self._place(), 0.01 * self._amplitude.value, math.sin(math.radians(phase)))
+
+    def _place(self) -> int:
+        return self._choice.options.index(self._choice.value)
+
+    def _label(self, playing: bool) -> None:
+        self._play.label = "Pause" if playing else "Animate"
+        self._play.icon = Icon.PLAYER_PAUSE if playing else Icon.PLAYER_PLAY
+
+
+CHANGED = 0.3  # after a change of the study, before its modes are computed [s]
 Study = TypeVar("Study")
 
 
@@ -82,7 +188,7 @@ class ListedModes(ABC, Generic[Study]):
         with self._show.lock:
             self._study, self._modes = study, None
         self._fit(study)
-        self._latest.request(QUIET)
+        self._latest.request(CHANGED)
 
     def pause(self) -> None:
         """Stand still."""

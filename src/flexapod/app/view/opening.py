@@ -1,7 +1,8 @@
-"""From a file to what the page begins with: a study file, or results that carry their study."""
+"""What everybody begins with: a study file, or results that carry their study."""
 
 from __future__ import annotations
 
+from dataclasses import dataclass
 from pathlib import Path
 from typing import TYPE_CHECKING, Any
 
@@ -9,13 +10,20 @@ import numpy as np
 
 from flexapod import model
 from flexapod.app.view.document import Document
-from flexapod.app.view.source import Source
 from flexapod.errors import InputError
 
 if TYPE_CHECKING:
     from xarray import Dataset
 
-__all__ = ["open_source"]
+
+@dataclass(frozen=True, kw_only=True)
+class Source:
+    """What everybody begins with: a study file, its study, and results if there are any."""
+
+    document: Document
+    study: model.Study | model.ActuatorStudy
+    data: Dataset | None = None
+
 
 _RESULTS = (".nc", ".nc4", ".netcdf")
 

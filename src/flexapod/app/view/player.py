@@ -6,8 +6,8 @@ import threading
 import time
 from collections.abc import Callable
 
+from flexapod.app.view.background import Threads
 from flexapod.app.view.scene import Scene
-from flexapod.app.view.threads import Threads
 
 __all__ = ["Player"]
 

@@ -1,16 +1,19 @@
-"""A fast answer after a change: the study at a coarser tolerance; which studies are computed without being asked."""
+"""Fast answers after a change: what the rigid robot says at once, and the study at a coarser tolerance."""
 
 from __future__ import annotations
 
 from typing import TYPE_CHECKING
 
-from flexapod import model
+import numpy as np
+
+from flexapod import model, rigid
+from flexapod.app.view import words
+from flexapod.errors import InputError
+from flexapod.study.before.checks import check_actuator_path, check_path
 from flexapod.study.words import number
 
 if TYPE_CHECKING:
     from xarray import Dataset
-
-__all__ = ["TOLERANCE", "coarse", "is_quick", "preview_words"]
 
 TOLERANCE = 1e-2  # of the fast answer
 MOST = 60_000  # stored instants times lateral shapes that are computed in about a second at that tolerance
@@ -37,4 +40,51 @@ def preview_words(study: model.Study | model.ActuatorStudy, data: Dataset) -> st
     return (
         f"Preview, right to about {number(100 * float(used or 0))} % (tolerance {number(float(used or 0))}; the study "
         f"asks for {asked}, press Simulate). Downloads hold the preview."
+    )
+
+
+INSTANTS = 201
+
+
+def preview_html(study: model.Study | model.ActuatorStudy) -> str:
+    """Leg lengths, stroke margins and singularity on the path, as HTML; and why the path is refused, if it is."""
+    try:
+        remarks = check_path(study) if isinstance(study, model.Study) else check_actuator_path(study)
+        refusal = ""
+    except InputError as error:
+        remarks, refusal = [], words.error_html(error)
+    body = _robot(study) if isinstance(study, model.Study) else _actuator(study)
+    return refusal + body + "".join(words.block(remark, "warning") for remark in remarks)
+
+
+def _robot(study: model.Study) -> str:
+    t = np.linspace(0.0, study.duration, INSTANTS)
+    path = rigid.poses(study.robot, study.motion, t)
+    length = rigid.reach(study.robot, path).length
+    rows, bad = [], []
+    for i, leg in enumerate(study.robot.legs):
+        low, high = float(length[:, i].min()), float(length[:, i].max())
+        margin = None if leg.stroke is None else min(low - leg.stroke.min, leg.stroke.max - high)
+        rows.append([str(i + 1), f"{1e3 * low:.1f}", f"{1e3 * high:.1f}", _millimetres(margin)])
+        bad.append(margin is not None and margin < 0)
+    header = ["Leg", "shortest [mm]", "longest [mm]", "stroke left [mm]"]
+    found = rigid.singularity(study.robot, path)
+    worst = float(found.smallest_singular_value[found.worst])
+    singular = f"Smallest singular value {worst:.3g} at t = {t[found.worst]:.3g} s (0 is singular; scaled Jacobian)."
+    return words.table_html(header, rows, bad) + words.block(singular)
+
+
+def _millimetres(margin: float | None) -> str:
+    return "no limits" if margin is None else f"{1e3 * margin:.1f}"
+
+
+def _actuator(study: model.ActuatorStudy) -> str:
+    actuator, law = study.actuator, study.motion.extension
+    if law is None:
+        return words.block("The extension is driven by a force: the free length is a result.")
+    t = np.linspace(0.0, study.duration, INSTANTS)
+    free = actuator.free_length + rigid.motion_law(law, t).position
+    return words.block(
+        f"Free length {free.min():.4g} to {free.max():.4g} m of {actuator.length:.4g} m; "
+        f"{study.simulation.lateral_shapes} shapes."
     )

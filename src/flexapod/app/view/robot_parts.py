@@ -9,19 +9,9 @@ import numpy as np
 
 from flexapod import model
 from flexapod.app.view.legend import rgb
-from flexapod.app.view.nodes import Nodes
 from flexapod.rigid.rotations import quaternion
 from flexapod.scene.colours import colors_of_legs
-from flexapod.scene.geometry import (
-    ROUNDING,
-    Instant,
-    orientation,
-    plate,
-    round_down,
-    strip,
-    tube,
-    tube_faces,
-)
+from flexapod.scene.geometry import ROUNDING, Instant, orientation, plate, round_down, strip, tube, tube_faces
 from flexapod.scene.skeleton import STATIONS, Scene, Skeleton
 from flexapod.study.words import number, text
 from flexapod.typing import Array
@@ -29,7 +19,28 @@ from flexapod.typing import Array
 if TYPE_CHECKING:
     import viser
 
-__all__ = ["Deviation", "Ghost", "RobotParts", "add_grid"]
+
+class Nodes:
+    """A scene that remembers the names of what is added to it by ``add_...``."""
+
+    def __init__(self, scene: viser.SceneApi) -> None:
+        self._scene, self._names = scene, set[str]()
+
+    def __getattr__(self, method: str) -> Any:
+        def add(name: str, *args: Any, **more: Any) -> Any:
+            self._names.add(name)
+            return getattr(self._scene, method)(name, *args, **more)
+
+        return add
+
+    def replaces(self, before: frozenset[str]) -> frozenset[str]:
+        """Remove those of `before` that were not added again; the names of now."""
+        for name in before - self._names:
+            handle = self._scene.get_handle_by_name(name)
+            if handle is not None:  # it may have gone with its parent
+                handle.remove()
+        return frozenset(self._names)
+
 
 Add = Callable[[str, Any], Any]
 

@@ -11,8 +11,7 @@ import numpy as np
 
 from flexapod import model, rigid
 from flexapod.app.view.legend import QUANTITIES, LegColors, leg_colors, plain_legend, rgb
-from flexapod.app.view.nodes import Nodes
-from flexapod.app.view.robot_parts import Deviation, Ghost, RobotParts
+from flexapod.app.view.robot_parts import Deviation, Ghost, Nodes, RobotParts
 from flexapod.app.view.scene import OF_RESULTS, STRAIGHT, Scene, mode_note
 from flexapod.scene.colours import colors_of_legs
 from flexapod.scene.geometry import RobotMotion

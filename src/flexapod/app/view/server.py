@@ -13,17 +13,16 @@ from typing import TYPE_CHECKING, Any, cast
 
 import viser
 
-from flexapod.app.view.cores import Cores
+from flexapod.app.view.background import Latest, Threads
 from flexapod.app.view.door import Door
-from flexapod.app.view.latest import Latest
 from flexapod.app.view.logs import LOG
-from flexapod.app.view.pool import Pool
-from flexapod.app.view.threads import Threads
+from flexapod.app.view.running import Cores
+from flexapod.app.view.visitor import Pool
 from flexapod.loading import loaded
 
 if TYPE_CHECKING:
+    from flexapod.app.view.opening import Source
     from flexapod.app.view.session import Session
-    from flexapod.app.view.source import Source
     from flexapod.app.view.visitor import Visitor
 
 __all__ = ["GONE", "View"]

@@ -12,23 +12,17 @@ from viser import Icon
 from flexapod import model
 from flexapod.app.view import words
 from flexapod.app.view.actuator_scene import ActuatorScene
-from flexapod.app.view.cores import Cores
-from flexapod.app.view.document import Document
-from flexapod.app.view.editing import Edit, read
+from flexapod.app.view.background import Latest, Threads
+from flexapod.app.view.document import Document, Edit, read
 from flexapod.app.view.files_panel import FilesPanel
-from flexapod.app.view.header import Header
-from flexapod.app.view.latest import Latest
-from flexapod.app.view.limits import refuse_length
+from flexapod.app.view.header import Header, Picture, prepare
 from flexapod.app.view.logs import LOG
-from flexapod.app.view.page import prepare
-from flexapod.app.view.picture import Picture
+from flexapod.app.view.opening import Source
 from flexapod.app.view.quick import coarse, is_quick, preview_words
 from flexapod.app.view.robot_scene import RobotScene
-from flexapod.app.view.running import Run
-from flexapod.app.view.source import Source
+from flexapod.app.view.running import Cores, Run
 from flexapod.app.view.study_panel import StudyPanel
-from flexapod.app.view.threads import Threads
-from flexapod.app.view.uploads import Sent
+from flexapod.app.view.uploads import Sent, refuse_length
 from flexapod.errors import FlexapodError
 
 if TYPE_CHECKING:

@@ -1,18 +1,17 @@
-"""Rows and tables of a study file that can be added and taken out: waypoints, legs, amplitudes, load, start."""
+"""Rows and tables of a study file that can be added and taken out, and lists that are too long for a form."""
 
 from __future__ import annotations
 
+import re
 import tomllib
-from collections.abc import Callable
+from collections.abc import Callable, Sequence
 from dataclasses import dataclass
 from typing import Any
 
 import tomlkit
 
-from flexapod.app.view.blocks import bare, blocks, checked, renamed, replaced
-from flexapod.app.view.document import Document, Quantity, quantity
-
-__all__ = ["Offer", "offers"]
+from flexapod.app.view.document import Document, Quantity, bare, blocks, checked, quantity, renamed, replaced
+from flexapod.model.fields import Field
 
 STARTS: dict[str, dict[str, object]] = {"load": {"wrench": [0] * 6}, "initial": {"start": "equilibrium"}}
 """Tables that a robot's study may leave out, as they are added: they change nothing yet."""
@@ -194,3 +193,30 @@ def _one_leg(document: Document) -> Document:
     for first, after in found[:1]:
         text = replaced(text, first, after, renamed(text.splitlines()[first:after], "leg", "[leg]"))
     return Document(checked(text, expected, "leg"), document.path)
+
+
+MOST_ROWS = 20  # rows of a list that are shown
+
+_ROW = re.compile(r"(.*?)\[(\d+)\]")
+
+
+def parted(fields: Sequence[Field]) -> tuple[list[Field], dict[str, int]]:
+    """Fields but for those of lists with more than `MOST_ROWS` rows, and by key of such a list how many rows it has."""
+    rows: dict[str, int] = {}
+    for field in fields:
+        if found := _ROW.match(field.key):
+            rows[found[1]] = max(int(found[2]), rows.get(found[1], 0))
+        elif field.kind == "rows" and isinstance(field.value, list):
+            rows[field.key] = len(field.value)
+    long = {key: count for key, count in rows.items() if count > MOST_ROWS}
+    return [field for field in fields if _list_of(field.key) not in long], long
+
+
+def without_rows(offers: Sequence[Offer], long: dict[str, int]) -> list[Offer]:
+    """Offers but for those that add a row to a long list or take one out."""
+    return [offer for offer in offers if offer.rows not in long]
+
+
+def _list_of(key: str) -> str:
+    found = _ROW.match(key)
+    return found[1] if found else key

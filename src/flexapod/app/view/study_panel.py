@@ -10,13 +10,11 @@ from typing import TYPE_CHECKING, Any
 from viser import Icon
 
 from flexapod.app.view import words
-from flexapod.app.view.document import Document
-from flexapod.app.view.editing import Edit, chosen, edited, first_value, read
+from flexapod.app.view.background import Threads
+from flexapod.app.view.document import Document, Edit, chosen, edited, first_value, read
 from flexapod.app.view.knob import Knob
-from flexapod.app.view.long_lists import parted, without_rows
-from flexapod.app.view.preview import preview_html
-from flexapod.app.view.structure import Offer, offers
-from flexapod.app.view.threads import Threads
+from flexapod.app.view.quick import preview_html
+from flexapod.app.view.structure import Offer, offers, parted, without_rows
 from flexapod.app.view.widgets import Setter, add_widget, signature
 from flexapod.errors import InputError
 from flexapod.model.fields import Field, read_fields

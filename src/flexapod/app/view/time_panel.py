@@ -9,12 +9,11 @@ from typing import TYPE_CHECKING
 from viser import Icon
 
 from flexapod.app.view import words
+from flexapod.app.view.background import Threads
 from flexapod.app.view.charts import Chart, ChartView, charts
-from flexapod.app.view.dial import Dial
 from flexapod.app.view.player import Player
 from flexapod.app.view.scene import PARTS, Scene
-from flexapod.app.view.threads import Threads
-from flexapod.app.view.typed import TypedText, by_user, in_unit, plain
+from flexapod.app.view.typed import Dial, TypedText, by_user, in_unit, plain
 from flexapod.errors import InputError
 from flexapod.scene.geometry import nearest
 from flexapod.study.after.summary import POINT_WORDS

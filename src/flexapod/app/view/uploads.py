@@ -1,16 +1,19 @@
-"""A study file that somebody sends: limited in size, read as data, refused in the words of the command line."""
+"""Files that somebody sends: limited in size, read as data, refused in the words of the command line."""
 
 from __future__ import annotations
 
 import tempfile
+from collections.abc import Callable
 from pathlib import Path, PurePosixPath
+from typing import TYPE_CHECKING, Any
 
-from flexapod.app.view.document import Document
-from flexapod.app.view.editing import read
+from flexapod import model
+from flexapod.app.view.document import Document, read
 from flexapod.errors import InputError
 from flexapod.model.toml import parsed
 
-__all__ = ["LARGEST", "MOST_BYTES", "MOST_TABLES", "Sent", "read_upload", "refuse_size", "store_table"]
+if TYPE_CHECKING:
+    from viser import ClientHandle
 
 LARGEST = 1_000_000
 """Largest file that is taken [bytes]."""
@@ -136,3 +139,94 @@ def _check_table(name: str, key: str, file: object, folder: Path) -> None:
             allowed="the plain name of a CSV file that was uploaded before; no other file is read",
             next_step="Upload the table first, then the study",
         )
+
+
+MOST_INSTANTS = 500_000
+"""Stored instants of a simulation that the page starts: a robot's take 2 kB each, so that one result is 1 GB."""
+MOST_PARTS = 100
+"""Parts in which a file may come; browsers send half a megabyte at a time."""
+
+
+def refuse_length(study: model.Study | model.ActuatorStudy) -> None:
+    """Refuse to simulate a study whose result would fill the memory of the server.
+
+    Raises
+    ------
+    InputError
+        It has more than `MOST_INSTANTS`.
+    """
+    settings = study.simulation
+    count = study.duration / settings.stored_step
+    if count > MOST_INSTANTS:
+        raise InputError(
+            f"gives {count:.3g} stored instants in {study.duration:g} s: too many for this page",
+            key="simulation.output_step",
+            value=f"{settings.output_step:g} s",
+            allowed=f"at most {MOST_INSTANTS} instants",
+            next_step="Raise output_step, shorten duration, or compute it with `flexapod run`",
+        )
+
+
+def limit_uploads(client: ClientHandle, largest: int, refused: Callable[[InputError], None]) -> None:
+    """Take no file of more than `largest` bytes from a client, and one at a time: the last that was begun.
+
+    viser gathers a file in memory before it tells anybody; this stands before it.
+    """
+    from viser import _messages
+
+    connection: Any = client._websock_connection
+    gui: Any = client.gui
+    taken: dict[str, int] = {}  # bytes of the one transfer that goes on
+    gui._current_file_upload_states.clear()  # what was begun on a page that is built anew now
+
+    def drop() -> None:
+        for transfer in taken:
+            gui._current_file_upload_states.pop(transfer, None)
+        taken.clear()
+
+    def begin(client_id: Any, message: Any) -> None:
+        drop()
+        try:
+            refuse_size(message.filename, message.size_bytes)
+            _refuse_parts(message.part_count)
+        except InputError as error:
+            _finish(connection, message)
+            refused(error)
+            return
+        taken[message.transfer_uuid] = 0
+        gui._handle_file_transfer_start(client_id, message)
+
+    def part(client_id: Any, message: Any) -> None:
+        if message.transfer_uuid not in taken:
+            return
+        taken[message.transfer_uuid] += len(message.content)
+        if taken[message.transfer_uuid] > largest:
+            drop()
+            return
+        gui._handle_file_transfer_part(client_id, message)
+        if message.transfer_uuid not in gui._current_file_upload_states:
+            del taken[message.transfer_uuid]
+
+    connection.unregister_handler(_messages.FileTransferStartUpload)
+    connection.unregister_handler(_messages.FileTransferPart)
+    connection.register_handler(_messages.FileTransferStartUpload, begin)
+    connection.register_handler(_messages.FileTransferPart, part)
+
+
+def _refuse_parts(count: int) -> None:
+    if count > MOST_PARTS:
+        raise InputError(f"comes in {count} parts", key="upload", allowed=f"at most {MOST_PARTS}")
+
+
+def _finish(connection: Any, message: Any) -> None:
+    """Tell the browser that nothing more is wanted, so that its button is free again."""
+    from viser import _messages
+
+    connection.queue_message(
+        _messages.FileTransferPartAck(
+            source_component_uuid=message.source_component_uuid,
+            transfer_uuid=message.transfer_uuid,
+            transferred_bytes=message.size_bytes,
+            total_bytes=message.size_bytes,
+        )
+    )

@@ -14,7 +14,7 @@ from flexapod.units import DIMENSIONS, to_si
 if TYPE_CHECKING:
     from viser import GuiApi
 
-    from flexapod.app.view.threads import Threads
+    from flexapod.app.view.background import Threads
 
 __all__ = ["Changed", "Left", "Setter", "add_widget", "signature"]
 

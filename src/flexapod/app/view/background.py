@@ -1,4 +1,4 @@
-"""Work in the background where only the newest request matters."""
+"""Work of one session in the background: what goes wrong is told to its person; of requests only the newest counts."""
 
 from __future__ import annotations
 
@@ -6,9 +6,29 @@ import threading
 import time
 from collections.abc import Callable
 
-from flexapod.app.view.threads import Threads
 
-__all__ = ["Latest"]
+class Threads:
+    """Starts the threads of a session; an exception ends the thread that raised it, and nothing else.
+
+    Parameters
+    ----------
+    fault : callable
+        Called with the exception, in the thread that raised it.
+    """
+
+    def __init__(self, fault: Callable[[BaseException], None]) -> None:
+        self._fault = fault
+
+    def start(self, name: str, work: Callable[[], None]) -> None:
+        """Do some work in a thread of its own, ``flexapod-name``; it does not keep the program alive."""
+        threading.Thread(target=self.guarded, args=(work,), name=f"flexapod-{name}", daemon=True).start()
+
+    def guarded(self, work: Callable[[], None]) -> None:
+        """Do some work here; what it raises is told."""
+        try:
+            work()
+        except Exception as error:
+            self._fault(error)
 
 
 class Latest:
