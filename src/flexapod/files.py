@@ -23,6 +23,7 @@ __all__ = [
     "replacing",
     "settle",
     "whole",
+    "write_text",
 ]
 
 LARGEST_TEXT = 10_000_000
@@ -130,6 +131,13 @@ def replacing(path: str | Path) -> Iterator[Path]:
             file=str(path),
             next_step="Choose a place that you may write to and that has space",
         ) from error
+
+
+def write_text(path: str | Path, text: str, *, encoding: str = "utf-8", errors: str = "strict") -> Path:
+    """Write a text as `replacing` does; the path."""
+    with replacing(path) as temporary:
+        temporary.write_text(text, encoding=encoding, errors=errors)
+    return Path(path)
 
 
 @contextmanager

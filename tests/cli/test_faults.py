@@ -12,7 +12,7 @@ import pytest
 from tests.cli.conftest import SHORT
 from tests.cli.test_interrupt import heed_interrupts
 
-from flexapod.app import outputs, stopping
+from flexapod.app import failures, options
 from flexapod.app.failures import guarded
 from flexapod.study import open_results, store
 from flexapod.study.before import room
@@ -129,7 +129,7 @@ def test_a_page_of_verify_that_could_not_be_written_is_refused_first(flexapod, f
         done = flexapod("verify", key, "file/page")
         assert done.exit_code == 2
         assert f"{key} = file: cannot be made: {folder}/file is a file" in done.stderr
-    assert outputs.check_writable(None) is None
+    assert options.check_writable(None) is None
 
 
 #: `flexapod run` in a process that gets a signal while results.nc is half written.
@@ -206,7 +206,7 @@ def test_signals_that_are_ignored_stay_so(monkeypatch):
     before = signal.signal(signal.SIGHUP, signal.SIG_IGN)  # as nohup does
     term = signal.getsignal(signal.SIGTERM)
     try:
-        stopping.heed_signals()
+        failures.heed_signals()
         assert signal.getsignal(signal.SIGHUP) is signal.SIG_IGN
     finally:
         signal.signal(signal.SIGHUP, before)

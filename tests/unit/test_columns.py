@@ -40,7 +40,7 @@ def test_tables_of_a_run_and_of_modes(capsys):
     """Peaks of 4.33 µm, 12 mm and 900 nm once stood in one column, each with a unit of its own."""
     from types import SimpleNamespace
 
-    from flexapod.app.run_words import _axes
+    from flexapod.app.commands_run import _axes
 
     axes = [
         SimpleNamespace(axis=a, peak=peak, time=1.0, rms=peak / 3, excursion=0.1, per_cent=None)

@@ -7,7 +7,7 @@ from html.parser import HTMLParser
 import numpy as np
 import pytest
 
-from flexapod.app.run_words import show_run
+from flexapod.app.commands_run import show_run
 from flexapod.model import loads, preset, preset_text
 from flexapod.report import html
 from flexapod.report.html import code

@@ -7,7 +7,7 @@ from pathlib import Path
 
 import pytest
 
-from flexapod.app.commands_verify import _write
+from flexapod.app.commands_proof import _write
 from flexapod.app.view.document import Document
 from flexapod.app.view.network import free_port
 from flexapod.app.view.opening import Source, open_source

@@ -12,23 +12,14 @@ from typing import Annotated, Any
 import typer
 from typer.core import TyperGroup
 
-from flexapod.app import (
-    commands_cache,
-    commands_check,
-    commands_converge,
-    commands_export,
-    commands_keys,
-    commands_map,
-    commands_modes,
-    commands_new,
-    commands_replicate,
-    commands_run,
-    commands_sweep,
-    commands_verify,
-    commands_view,
-)
-from flexapod.app.failures import INTERRUPTED, print_parts, say_full
-from flexapod.app.stopping import heed_signals, stop_code
+from flexapod.app.commands_map import workspace_map
+from flexapod.app.commands_poses import export, modes
+from flexapod.app.commands_proof import replicate, verify
+from flexapod.app.commands_run import actuator, cache, run
+from flexapod.app.commands_study import check, keys, new
+from flexapod.app.commands_surveys import converge, sweep
+from flexapod.app.commands_view import view
+from flexapod.app.failures import INTERRUPTED, heed_signals, print_parts, say_full, stop_code
 from flexapod.version import __version__
 
 __all__ = ["app", "main"]
@@ -98,22 +89,9 @@ def flexapod(
         os.environ["FLEXAPOD_DEBUG"] = "1"
 
 
-for part in (
-    commands_replicate,
-    commands_new,
-    commands_keys,
-    commands_check,
-    commands_run,
-    commands_modes,
-    commands_map,
-    commands_converge,
-    commands_sweep,
-    commands_verify,
-    commands_export,
-    commands_cache,
-    commands_view,
-):
-    part.add(app)
+_ALL = (replicate, new, keys, check, run, actuator, modes, workspace_map, converge, sweep, verify, export, cache, view)
+for command in _ALL:
+    app.command("map" if command is workspace_map else None)(command)
 
 
 def main() -> None:

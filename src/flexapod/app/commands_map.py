@@ -8,15 +8,15 @@ from typing import TYPE_CHECKING, Annotated
 import typer
 
 from flexapod.app.failures import guarded
-from flexapod.app.options import Json, NoFigures, Out, Quiet, StudyFile, as_options
+from flexapod.app.options import Json, NoFigures, Out, Quiet, StudyFile, as_options, results_folder, robot_study
+from flexapod.app.terminal import print_json, print_table, print_text, progress_bar
+from flexapod.errors import InputError
 
 if TYPE_CHECKING:
     from xarray import Dataset
 
     from flexapod.study.record import Report
     from flexapod.surveys.workspace.findings import Finding, MapFindings
-
-__all__ = ["add"]
 
 COMPUTING = 0.7  # share of the bar for the poses; the rest is for figures
 _FORM = '"surge=-100..100mm:41"'
@@ -39,11 +39,6 @@ Mode = Annotated[int, typer.Option("--mode", min=1, help="Which natural frequenc
 Count = Annotated[int | None, typer.Option("--count", min=1, help="Points of an axis that names none.")]
 
 
-def add(app: typer.Typer) -> None:
-    """Give `app` the command."""
-    app.command("map")(workspace_map)
-
-
 @guarded
 def workspace_map(
     file: StudyFile, x: X = None, y: Y = None, z: Z = None, at: At = None, direction: Direction = "z",
@@ -51,20 +46,14 @@ def workspace_map(
     no_figures: NoFigures = False, json: Json = False, quiet: Quiet = False,
 ) -> None:  # fmt: skip
     """Map frequencies, stiffness, deviations, forces and margins over poses: map.nc and figures."""
-    from flexapod import model
     from flexapod.app.map_options import parse_acceleration, parse_at, parse_axes, parse_direction
-    from flexapod.app.outputs import results_folder
-    from flexapod.app.terminal import print_json, progress_bar
-    from flexapod.errors import InputError
     from flexapod.study.before.room import check_map
     from flexapod.surveys.workspace import workspace_map as compute
     from flexapod.surveys.workspace.findings import map_findings
     from flexapod.surveys.workspace.grid import grid
     from flexapod.surveys.workspace.maps import FREQUENCIES
 
-    study = model.load(file)
-    if isinstance(study, model.ActuatorStudy):
-        raise InputError("is the study of a single actuator", file=file, allowed="the study of a robot")
+    study = robot_study(file)
     axes = parse_axes({"--x": x, "--y": y, "--z": z}, count)
     fixed = parse_at(at, axes or ("surge", "heave"))
     settings = {"direction": parse_direction(direction), "acceleration": parse_acceleration(acceleration)}
@@ -104,7 +93,6 @@ def _write(data: Dataset, folder: Path, mode: int, report: Report, *, figures: b
 
 
 def _show(data: Dataset, found: MapFindings, folder: Path, files: list[Path]) -> None:
-    from flexapod.app.terminal import print_table, print_text
     from flexapod.surveys.workspace.findings import axis_words
 
     share = found.reached / found.poses

@@ -1,4 +1,4 @@
-"""`flexapod run` and `flexapod actuator`: simulate, write everything, say the answer."""
+"""Commands that simulate: `run` and `actuator`; `cache` of the kernels that they compile."""
 
 from __future__ import annotations
 
@@ -9,18 +9,30 @@ from typing import TYPE_CHECKING, Annotated
 
 import typer
 
-from flexapod.app.failures import INTERRUPTED, guarded, print_parts, show
-from flexapod.app.options import Json, NoFigures, Out, Quiet, StudyFile
-from flexapod.app.stopping import stopped
+from flexapod.app.failures import INTERRUPTED, guarded, print_parts, show, stopped
+from flexapod.app.options import (
+    FORMATS,
+    Json,
+    NoFigures,
+    Out,
+    Quiet,
+    StudyFile,
+    parse_formats,
+    results_folder,
+    write_all,
+    write_data,
+)
+from flexapod.app.terminal import print_json, print_table, print_text, progress_bar
+from flexapod.errors import ComputationError, InputError
 
 if TYPE_CHECKING:
     from xarray import Dataset
 
     from flexapod.model import ActuatorStudy, Study
+    from flexapod.study.after.summary import RobotSummary
     from flexapod.study.record import Report
     from flexapod.surveys.convergence.quicker import Quicker
-
-__all__ = ["add"]
+    from flexapod.symbolic.cache import CacheContent
 
 COMPUTING = 0.88  # share of the bar for the simulation; the rest is for files
 Format = Annotated[
@@ -29,19 +41,12 @@ Format = Annotated[
 USUAL = "png,svg"
 
 
-def add(app: typer.Typer) -> None:
-    """Give `app` the commands."""
-    app.command("run")(run)
-    app.command("actuator")(actuator)
-
-
 @guarded
 def run(
     file: StudyFile, out: Out = None, formats: Format = USUAL, no_figures: NoFigures = False, json: Json = False,
     quiet: Quiet = False,
 ) -> None:  # fmt: skip
     """Simulate a study, rigid and flexible: results.nc, results.csv, figures, report.html."""
-    from flexapod.app.outputs import parse_formats, results_folder
     from flexapod.model import load
 
     drawn = () if no_figures else parse_formats(formats)
@@ -54,8 +59,6 @@ def actuator(
     quiet: Quiet = False,
 ) -> None:  # fmt: skip
     """Simulate the study of a single actuator; writes what `run` writes."""
-    from flexapod.app.outputs import parse_formats, results_folder
-    from flexapod.errors import InputError
     from flexapod.model import ActuatorStudy, load
 
     study = load(file)
@@ -71,8 +74,6 @@ def actuator(
 
 
 def _run(study: Study | ActuatorStudy, folder: Path, formats: Sequence[str], *, json: bool, quiet: bool) -> None:
-    from flexapod.app.outputs import write_all, write_data
-    from flexapod.app.terminal import progress_bar
     from flexapod.study import Interrupted
     from flexapod.study import run as simulate
     from flexapod.study.before.room import check_disk
@@ -109,8 +110,6 @@ def _quicker(study: Study | ActuatorStudy, data: Dataset, report: Report) -> Qui
 
 
 def _say(data: Dataset, folder: Path, files: list[Path], faster: Quicker | None, *, json: bool) -> None:
-    from flexapod.app.run_words import show_run
-    from flexapod.app.terminal import print_json, print_text
     from flexapod.study.after.summary import summary
 
     warnings = [line for line in data.attrs["warnings"].splitlines() if line]
@@ -142,7 +141,93 @@ def _stopped(data: Dataset, *, json: bool) -> None:
 
 
 def _failed(data: Dataset, *, json: bool) -> None:
-    from flexapod.errors import ComputationError
-
     what = f"the simulation stopped at t = {float(data.time[-1]):.6g} s: {data.attrs['failure']}"
     show(ComputationError(what, next_step="What was computed is kept and marked as partial"), as_json=json)
+
+
+def show_run(data: Dataset, folder: Path, files: Sequence[Path], warnings: Sequence[str]) -> None:
+    """Print what a run found and where it is."""
+    from flexapod.study.after.summary import POINT_WORDS, RobotSummary, summaries
+
+    told = summaries(data)
+    for found in told:
+        print_text(found.sentence)
+    for found in told:
+        if isinstance(found, RobotSummary):
+            print_text()
+            _axes(found, POINT_WORDS[found.point])
+    for line in warnings:
+        print_text(f"Warning: {line}")
+    print_text()
+    formats = list(dict.fromkeys(path.suffix for path in files if path.suffix[1:] in FORMATS))
+    names = ", ".join(path.name for path in files if path.suffix not in formats)
+    names = names.replace("report.html", "report.html (open it in a browser)")
+    figures = sum(path.suffix in formats for path in files) // max(len(formats), 1)
+    kinds = " and ".join(suffix[1:].upper() for suffix in formats)
+    drawn = f", {figures} figure{'s' * (figures > 1)} ({kinds})" if figures else ""
+    seconds = f"{data.attrs['steps']} steps, {data.attrs['wall_time']:.2g} s"
+    print_text(f"In {folder}: {names}{drawn}. ({seconds} of time integration)")
+
+
+def _axes(found: RobotSummary, name: str) -> None:
+    from flexapod.study.words import column
+
+    axes = found.shown_axes
+    length, peaks_and_rms = column([*(a.peak for a in axes), *(a.rms for a in axes)], "m")
+    count = len(axes)
+    travel_unit, travels = column([a.excursion for a in axes], "m")
+    _, shares = column([float("nan") if a.per_cent is None else a.per_cent for a in axes], "", 2)
+    rows = zip(
+        (a.axis for a in axes),
+        peaks_and_rms[:count],
+        ("n/a" if a.time is None else f"{a.time:.3f}" for a in axes),
+        peaks_and_rms[count:],
+        travels,
+        shares,
+        strict=True,
+    )
+    head = [name, f"peak [{length}]", "at [s]", f"rms [{length}]", f"rigid travel [{travel_unit}]", "peak / travel [%]"]
+    print_table(head, [list(row) for row in rows])
+
+
+Clear = Annotated[bool, typer.Option("--clear", help="Remove all kernels; each is compiled again when needed.")]
+
+
+@guarded
+def cache(clear: Clear = False, json: Json = False) -> None:
+    """Where compiled kernels are kept, how many there are, and how to remove them.
+
+    FLEXAPOD_CACHE chooses another folder, FLEXAPOD_CACHE_MEGABYTES another bound.
+    """
+    from flexapod.symbolic.cache import cache_content, clear_cache
+
+    found = clear_cache() if clear else cache_content()
+    if json:
+        print_json(_as_dict(found, cleared=clear))
+    elif clear:
+        print_text(f"Removed {_kernels(found)} ({_megabytes(found.size)}) from {found.folder}.")
+    else:
+        print_text(f"Folder: {found.folder}")
+        print_text(f"{_kernels(found)}, {_megabytes(found.size)} of at most {_megabytes(found.limit)}")
+        if found.unused_because:
+            print_text(f"Not used: {found.unused_because}. Each run compiles its own kernels.")
+
+
+def _as_dict(found: CacheContent, *, cleared: bool) -> dict[str, object]:
+    if cleared:
+        return {"folder": found.folder, "removed": found.kernels, "bytes": found.size}
+    return {
+        "folder": found.folder,
+        "kernels": found.kernels,
+        "bytes": found.size,
+        "limit_bytes": found.limit,
+        "unused_because": found.unused_because,
+    }
+
+
+def _kernels(found: CacheContent) -> str:
+    return "1 compiled kernel" if found.kernels == 1 else f"{found.kernels} compiled kernels"
+
+
+def _megabytes(size: int) -> str:
+    return f"{size / 1e6:.4g} MB"

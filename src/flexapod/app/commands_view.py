@@ -12,8 +12,7 @@ import typer
 
 from flexapod.app.failures import guarded
 from flexapod.app.options import Json
-
-__all__ = ["add"]
+from flexapod.app.terminal import print_json, print_text
 
 LOCAL = "127.0.0.1"
 
@@ -31,11 +30,6 @@ Name = Annotated[
     typer.Option("--name", metavar="NAME", help="Another name under which the page is reached, as through a proxy."),
 ]
 NoBrowser = Annotated[bool, typer.Option("--no-browser", help="Do not open the page in the browser.")]
-
-
-def add(app: typer.Typer) -> None:
-    """Give `app` the command."""
-    app.command("view")(view)
 
 
 @guarded
@@ -100,7 +94,6 @@ def _wait_for_a_signal() -> None:
 
 
 def _say(page: str, host: str, *, json: bool) -> None:
-    from flexapod.app.terminal import print_json, print_text
     from flexapod.app.view.network import is_local
 
     local = is_local(host)

@@ -1,4 +1,4 @@
-"""Errors at the edge: words or JSON on stderr, and an exit code; a traceback only where it is asked for."""
+"""Errors and signals at the edge: words or JSON on stderr, and an exit code; a traceback only where it is asked for."""
 
 from __future__ import annotations
 
@@ -7,19 +7,44 @@ import functools
 import json as _json
 import logging
 import os
+import signal
 import sys
 import traceback
 from collections.abc import Callable, Iterator, Mapping
 from contextlib import contextmanager, suppress
-from typing import ParamSpec
+from types import FrameType
+from typing import NoReturn, ParamSpec
 
 import typer
 
-from flexapod.app.stopping import stopped
 from flexapod.errors import ComputationError, FlexapodError, InputError
 from flexapod.version import __version__
 
-__all__ = ["INTERRUPTED", "guarded", "lines_of", "parts_of", "print_parts", "say_full", "show"]
+_received: list[int] = []
+
+
+def heed_signals() -> None:
+    """From now on they arrive as KeyboardInterrupt; one that is ignored, as after nohup, stays so."""
+    for name in ("SIGTERM", "SIGHUP"):
+        number = getattr(signal, name, None)
+        if number is not None and signal.getsignal(number) is signal.SIG_DFL:
+            signal.signal(number, _stop)
+
+
+def _stop(number: int, _: FrameType | None) -> NoReturn:
+    _received.append(number)
+    raise KeyboardInterrupt
+
+
+def stopped() -> str:
+    """By what the command is being stopped, in words."""
+    return f"stopped by {signal.Signals(_received[0]).name if _received else 'Ctrl-C'}"
+
+
+def stop_code(usual: int) -> int:
+    """The exit code that shells give to a process ended by the signal that came, else the `usual` one."""
+    return 128 + _received[0] if _received else usual
+
 
 P = ParamSpec("P")
 INTERRUPTED = 130

@@ -1,4 +1,4 @@
-"""Axes, fixed coordinates and vectors of `flexapod map` as typed on the command line."""
+"""Poses of `flexapod modes` and `export`, axes, fixed coordinates and vectors of `flexapod map` as they are typed."""
 
 from __future__ import annotations
 
@@ -99,6 +99,27 @@ def parse_at(text: str | None, axes: Collection[str] = ()) -> dict[str, float]:
             raise InputError("varies in this map: it cannot be fixed, too", key="--at", value=part.strip())
         fixed[name] = _si("--at", name, value)
     return fixed
+
+
+def parse_pose(text: str | None) -> dict[str, float] | None:
+    """Surge, sway, heave [m], roll, pitch, yaw [rad] from ``"roll=20deg,heave=10mm"``; None: home.
+
+    Raises
+    ------
+    InputError
+        Unknown axes, something that is not a number with a unit of the right kind.
+    """
+    if not text or not text.strip():
+        return None
+    pose: dict[str, float] = {}
+    for part in text.split(","):
+        name, equals, value = (piece.strip() for piece in part.partition("="))
+        if not equals or name not in AXES or name in pose:
+            what = "is given twice" if name in pose else "is not an axis with its value"
+            hint = closest(name, AXES) or 'Write --pose "roll=20deg,heave=10mm"'
+            raise InputError(what, key="--pose", value=part.strip(), allowed=", ".join(AXES), next_step=hint)
+        pose[name] = _si("--pose", name, value)
+    return pose
 
 
 def parse_direction(text: str) -> str | list[float]:

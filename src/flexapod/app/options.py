@@ -1,17 +1,24 @@
-"""Options and arguments that several commands share."""
+"""Options and arguments that several commands share, what they refuse, and what is written where they say."""
 
 from __future__ import annotations
 
-from collections.abc import Iterator
+import os
+import tempfile
+from collections.abc import Iterator, Sequence
 from contextlib import contextmanager
 from pathlib import Path
-from typing import Annotated
+from typing import TYPE_CHECKING, Annotated
 
 import typer
 
 from flexapod.errors import InputError
+from flexapod.files import check_name
 
-__all__ = ["Json", "NoFigures", "Out", "Quiet", "StudyFile", "as_options"]
+if TYPE_CHECKING:
+    from xarray import Dataset
+
+    from flexapod.model import Study
+    from flexapod.study.record import Report
 
 StudyFile = Annotated[Path, typer.Argument(metavar="FILE", help="Study file (TOML); `flexapod new` writes one.")]
 Json = Annotated[bool, typer.Option("--json", help="Print JSON on stdout and nothing else; errors as JSON on stderr.")]
@@ -22,6 +29,11 @@ Out = Annotated[
 NoFigures = Annotated[bool, typer.Option("--no-figures", help="Draw nothing: data and words only, in less time.")]
 Quiet = Annotated[bool, typer.Option("--quiet", "-q", help="No progress bar.")]
 
+Pose = Annotated[
+    str | None,
+    typer.Option("--pose", metavar='"roll=20deg,heave=10mm"', help="From home; numbers without unit in m and rad."),
+]
+Force = Annotated[bool, typer.Option("--force", help="Replace the file if it exists.")]
 _PARTS = ("what", "file", "value", "allowed", "next_step")
 
 
@@ -33,3 +45,92 @@ def as_options(**options: str) -> Iterator[None]:
     except InputError as error:
         key = options.get(error.key or "", error.key)
         raise InputError(**{name: getattr(error, name) for name in _PARTS}, key=key) from None
+
+
+def robot_study(file: Path) -> Study:
+    """The study of a robot; refuses that of a single actuator."""
+    from flexapod.model import ActuatorStudy, load
+
+    study = load(file)
+    if isinstance(study, ActuatorStudy):
+        raise InputError("is the study of a single actuator", file=file, allowed="the study of a robot")
+    return study
+
+
+def refuse_existing(file: Path, force: bool) -> None:
+    """Refuse to replace a file unasked."""
+    if file.exists() and not force:
+        raise InputError("exists already", file=file, next_step="Choose another name, or replace it with --force")
+
+
+FORMATS = ("png", "svg", "pdf")  # of figures
+
+
+def parse_formats(text: str) -> tuple[str, ...]:
+    """Formats of figures from the text of ``--format``, each once: ``"png, PDF"`` gives ``("png", "pdf")``.
+
+    Raises
+    ------
+    InputError
+        One of them is unknown, or there is none.
+    """
+    names = tuple(dict.fromkeys(name.strip().lower() for name in text.split(",") if name.strip()))
+    unknown = [name for name in names if name not in FORMATS]
+    if unknown or not names:
+        raise InputError(
+            "is not a format of figures",
+            key="--format",
+            value=unknown[0] if unknown else text,
+            allowed=f"{', '.join(FORMATS)}, or several with commas",
+            next_step="For example --format png,pdf",
+        )
+    return names
+
+
+def results_folder(file: Path, command: str, out: Path | None) -> Path:
+    """Where a command's results go: `out`, else a folder of its own beside the study file, ``robot-run``.
+
+    Raises
+    ------
+    InputError
+        It cannot be written to.
+    """
+    folder = file.with_name(f"{file.stem}-{command}") if out is None else out
+    check_writable(folder)
+    return folder
+
+
+def check_writable(folder: Path | None, key: str = "--out") -> None:
+    """Refuse a folder that could not be made or written to, before anything is computed; it is not made yet."""
+    if folder is None:
+        return
+    check_name(folder.absolute(), key)
+    existing = next(place for place in (folder.absolute(), *folder.absolute().parents) if os.path.lexists(place))
+    try:
+        os.rmdir(tempfile.mkdtemp(prefix=".flexapod-", dir=existing))
+    except OSError as error:
+        what = (
+            f"cannot be made: {existing} is a file" if existing.is_file() else f"cannot be written to: {error.strerror}"
+        )
+        raise InputError(what, key=key, value=str(folder), next_step=f"Choose another place with {key}") from None
+
+
+def write_data(data: Dataset, folder: Path) -> list[Path]:
+    """``results.nc`` and ``results.csv``, each whole or not at all."""
+    from flexapod.study.store import save, save_csv
+
+    return [save(data, folder / "results.nc"), save_csv(data, folder / "results.csv")]
+
+
+def write_all(data: Dataset, folder: Path, report: Report, formats: Sequence[str]) -> list[Path]:
+    """Data, figures in the formats asked for (none: no figures), ``report.html``; `report` is told what is written."""
+    report("writing results", 0.90)
+    files = write_data(data, folder)
+    report("drawing figures", 0.92)
+    from flexapod.report.figures import draw
+    from flexapod.report.page import write_report
+
+    figures = draw(data, folder, formats) if formats else []
+    report("writing the report", 0.98)
+    page = write_report(data, folder, figures)
+    return [*files, *(path for figure in figures for path in figure.files), page]

@@ -7,9 +7,9 @@ from pathlib import Path
 from typing import TYPE_CHECKING
 
 from flexapod.errors import InputError
+from flexapod.files import write_text
 from flexapod.paper.figures import paper_figures
 from flexapod.paper.report import paper_page
-from flexapod.report.page import store_page
 
 if TYPE_CHECKING:
     from xarray import Dataset
@@ -95,8 +95,8 @@ def _figures_and_report(result: PaperStudy, folder: Path, progress: Report | Non
 
     groups = paper_figures(result, folder / "figures", progress) if figures else {}
     table = claims(result)
-    store_page(folder / "claims.md", markdown(table))
-    return store_page(folder / "report.html", paper_page(result, table, groups))
+    write_text(folder / "claims.md", markdown(table))
+    return write_text(folder / "report.html", paper_page(result, table, groups))
 
 
 def _remove(path: Path) -> None:

@@ -10,6 +10,7 @@ from tempfile import TemporaryDirectory
 from typing import TYPE_CHECKING
 
 from flexapod.errors import FlexapodError
+from flexapod.files import write_text
 from flexapod.report import html
 from flexapod.report.figures import Drawn, carried_study
 from flexapod.report.interactive import MOST_POINTS
@@ -29,7 +30,6 @@ __all__ = [
     "replay_section",
     "robot_report",
     "solver_table",
-    "store_page",
     "warnings_section",
     "write_report",
 ]
@@ -99,7 +99,7 @@ def write_report(data: Dataset, folder: str | Path, figures: Sequence[Drawn] = (
     InputError
         The folder cannot be written to.
     """
-    return store_page(Path(folder) / "report.html", _page(carried_study(data), data, figures))
+    return write_text(Path(folder) / "report.html", _page(carried_study(data), data, figures))
 
 
 def _page(study: Study | ActuatorStudy | None, data: Dataset, figures: Sequence[Drawn]) -> str:
@@ -164,15 +164,6 @@ def replay_section(data: Dataset, told: Mapping[str, object], still: Drawn | Non
     shown = len(told["time"])  # type: ignore[arg-type]
     title += f", {shown} of {data.sizes['time']} instants; {words}. {told['mouse']}."
     return html.section("replay", "Replay", html.replay(title, told, still and (still.title, still.picture)))
-
-
-def store_page(path: Path, text: str) -> Path:
-    """Write a page; an existing one is replaced when the new one is complete."""
-    from flexapod.files import replacing
-
-    with replacing(path) as temporary:
-        temporary.write_text(text, encoding="utf-8")
-    return path
 
 
 def by_axis(data: Dataset) -> str:

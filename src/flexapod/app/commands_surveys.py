@@ -1,32 +1,107 @@
-"""`flexapod converge`: how results depend on step and shapes, and the cheapest setting for an accuracy."""
+"""Commands of many runs: `sweep` over variants, `converge` over step and shapes."""
 
 from __future__ import annotations
 
+import shlex
+import sys
 from pathlib import Path
 from typing import TYPE_CHECKING, Annotated
 
 import typer
 
-from flexapod.app.failures import INTERRUPTED, guarded, print_parts
-from flexapod.app.options import Json, NoFigures, Out, Quiet, StudyFile, as_options
-from flexapod.app.stopping import stopped
+from flexapod.app.failures import INTERRUPTED, guarded, print_parts, stopped
+from flexapod.app.options import Json, NoFigures, Out, Quiet, StudyFile, as_options, results_folder
+from flexapod.app.terminal import print_json, print_text, progress_bar
 
 if TYPE_CHECKING:
     from xarray import Dataset
 
     from flexapod.surveys.convergence import Trials
 
-__all__ = ["add"]
+SweepFile = Annotated[Path, typer.Argument(metavar="SWEEP", help="Sweep file (TOML): what varies, what is kept.")]
+SweepOut = Annotated[
+    Path | None,
+    typer.Option(
+        "--out", metavar="DIR", help="Folder of the results; default: beside the study, the names of both files."
+    ),
+]
+Scheduler = Annotated[
+    str | None, typer.Option("--scheduler", metavar="ADDRESS", help="A running Dask scheduler, tcp://host:8786.")
+]
+Workers = Annotated[
+    int | None, typer.Option("--workers", metavar="N", help="Local processes; default: one a core; 0: none but this.")
+]
+RetryFailed = Annotated[bool, typer.Option("--retry-failed", help="Compute points again that failed before.")]
+
+
+@guarded
+def sweep(
+    file: StudyFile, sweep_file: SweepFile, out: SweepOut = None, scheduler: Scheduler = None, workers: Workers = None,
+    retry_failed: RetryFailed = False, no_figures: NoFigures = False, json: Json = False, quiet: Quiet = False,
+) -> None:  # fmt: skip
+    """Compute many variants of a study: grids, lists, Latin hypercubes, random tolerances. Run again, it continues."""
+    from flexapod.surveys.sweeps import SweepStopped
+    from flexapod.surveys.sweeps import sweep as compute
+
+    folder = results_folder(file, sweep_file.stem, out)
+    with as_options(workers="--workers", scheduler="--scheduler"), progress_bar(quiet=quiet or json) as report:
+        try:
+            data = compute(
+                file, sweep_file, store=folder / "sweep.zarr", scheduler=scheduler, workers=workers,
+                retry_failed=retry_failed, progress=report,
+            )  # fmt: skip
+            interrupted = False
+        except SweepStopped as stop:
+            data, interrupted = stop.dataset, True
+        files = _write_sweep(data, folder, figure=not no_figures)
+    _say_sweep(data, folder, files, json=json)
+    if interrupted:
+        _stopped_sweep(data, json=json)
+        raise typer.Exit(INTERRUPTED)
+    if not (data.status == "computed").any():
+        raise typer.Exit(1)
+
+
+def _write_sweep(data: Dataset, folder: Path, *, figure: bool) -> list[Path]:
+    """The table, and the figure where it is wanted and there is something to see."""
+    from flexapod import plot
+    from flexapod.plot.sweep import sweep as draw
+    from flexapod.surveys.sweeps import save_table, scalar_names
+
+    files = [save_table(data, folder / "sweep.csv")]
+    if figure and any(data[name].notnull().any() for name in scalar_names(data)):
+        files += plot.save(draw(data), folder / "sweep")
+    return files
+
+
+def _say_sweep(data: Dataset, folder: Path, files: list[Path], *, json: bool) -> None:
+    from flexapod.app.survey_words import show_sweep, sweep_as_dict
+
+    if json:
+        print_json({**sweep_as_dict(data), "folder": folder, "files": [folder / "sweep.zarr", *files]})
+        return
+    show_sweep(data)
+    print_text()
+    print_text(f"In {folder}: sweep.zarr, {', '.join(path.name for path in files)}.")
+
+
+def _stopped_sweep(data: Dataset, *, json: bool) -> None:
+    done = int((data.status != "pending").sum())
+    print_parts(
+        {
+            "kind": "interrupt",
+            "what": f"{stopped()} after {done} of {data.sizes['point']} points, which are stored",
+            "next_step": f"To continue, run the same command again: {shlex.join(['flexapod', *sys.argv[1:]])}",
+        },
+        INTERRUPTED,
+        as_json=json,
+    )
+
 
 Accuracy = Annotated[
     float, typer.Option("--accuracy", metavar="ERROR", help="Relative error that the recommended setting keeps.")
 ]
 Ladder = Annotated[bool, typer.Option("--ladder", help="Also every fidelity, rigid to solid-fem: error against cost.")]
-
-
-def add(app: typer.Typer) -> None:
-    """Give `app` the command."""
-    app.command("converge")(converge)
 
 
 @guarded
@@ -35,8 +110,6 @@ def converge(
     no_figures: NoFigures = False, json: Json = False, quiet: Quiet = False,
 ) -> None:  # fmt: skip
     """Vary step, shapes and elements of a study: errors, orders, cost, and the cheapest setting that will do."""
-    from flexapod.app.outputs import results_folder
-    from flexapod.app.terminal import print_text
     from flexapod.model import load
     from flexapod.surveys.convergence.plan import checked_trials, estimate
 
@@ -59,7 +132,6 @@ def converge(
 
 def _computed(trials: Trials, accuracy: float, *, ladder: bool, quiet: bool) -> tuple[dict[str, Dataset], bool]:
     """Tables by the names of their files, and whether the user stopped."""
-    from flexapod.app.terminal import progress_bar
     from flexapod.surveys.convergence import ConvergenceStopped
     from flexapod.surveys.convergence import converge as compute
     from flexapod.surveys.convergence.ladder import ladder as climb
@@ -100,15 +172,14 @@ def _write(data: Dataset, folder: Path, name: str, *, figure: bool) -> list[Path
 
 
 def _say(tables: dict[str, Dataset], folder: Path, files: list[Path], *, json: bool) -> None:
-    from flexapod.app.converge_words import as_dict, show, show_ladder
-    from flexapod.app.terminal import print_json, print_text
+    from flexapod.app.survey_words import convergence_as_dict, show_convergence, show_ladder
 
     if json:
-        found = {name: as_dict(data) for name, data in tables.items()}
+        found = {name: convergence_as_dict(data) for name, data in tables.items()}
         print_json({**found.get("convergence", {}), "ladder": found.get("ladder"), "folder": folder, "files": files})
         return
     for name, data in tables.items():
-        {"convergence": show, "ladder": show_ladder}[name](data)
+        {"convergence": show_convergence, "ladder": show_ladder}[name](data)
     print_text()
     print_text(f"In {folder}: {', '.join(path.name for path in files)}.")
 

@@ -1,0 +1,178 @@
+"""Commands at a pose of the locked robot: `modes` lists its modes, `export` writes it as a deck."""
+
+from __future__ import annotations
+
+import string
+from pathlib import Path
+from typing import TYPE_CHECKING, Annotated
+
+import typer
+
+from flexapod.app.failures import guarded
+from flexapod.app.options import (
+    Force,
+    Json,
+    NoFigures,
+    Pose,
+    StudyFile,
+    as_options,
+    check_writable,
+    refuse_existing,
+    robot_study,
+)
+from flexapod.app.terminal import print_json, print_table, print_text
+from flexapod.errors import InputError
+from flexapod.files import write_text
+
+if TYPE_CHECKING:
+    from xarray import Dataset
+
+    from flexapod.model import ActuatorStudy, Study
+
+Folder = Annotated[
+    Path | None, typer.Option("--out", metavar="DIR", help="Write modes.nc and the shapes as a figure; default: not.")
+]
+Count = Annotated[int, typer.Option("--count", min=1, help="How many of the lowest modes to show.")]
+
+
+@guarded
+def modes(
+    file: StudyFile, pose: Pose = None, out: Folder = None, count: Count = 12, no_figures: NoFigures = False,
+    json: Json = False,
+) -> None:  # fmt: skip
+    """Frequencies, damping and shapes at a pose, commands of the drives held, about the static equilibrium.
+
+    Of a single actuator those of its straight beam at t = 0.
+    """
+    from flexapod import model
+    from flexapod.app.map_options import parse_pose
+    from flexapod.study import modes as compute
+
+    study = model.load(file)
+    check_writable(out)
+    with as_options(pose="--pose"):
+        data = compute(study, parse_pose(pose))
+    of_robot = isinstance(study, model.Study)
+    files = [] if out is None else _write_modes(data, out, figure=of_robot and not no_figures)
+    if json:
+        print_json(_modes_as_dict(data, files))
+    else:
+        _show_modes(data, _robot_words(study, data, pose) if of_robot else _beam_words(study), count, files)
+
+
+def _write_modes(data: Dataset, folder: Path, *, figure: bool) -> list[Path]:
+    from flexapod import plot
+    from flexapod.study.store import save
+
+    files = [save(data, folder / "modes.nc")]
+    return [*files, *(plot.save(plot.modes_3d(data), folder / "modes") if figure else ())]
+
+
+def _modes_as_dict(data: Dataset, files: list[Path]) -> dict[str, object]:
+    found = [
+        {"mode": int(m), "frequency": float(f), "damping_ratio": float(d), "kind": str(kind)}
+        for m, f, d, kind in zip(data.mode, data.frequency, data.damping_ratio, data.kind.values, strict=True)
+    ]
+    return {
+        "modes": found,
+        **({"com_sag": data.com_sag.values.tolist()} if "com_sag" in data else {}),
+        "warnings": [line for line in data.attrs["warnings"].splitlines() if line],
+        "files": files,
+    }
+
+
+def _robot_words(study: Study, data: Dataset, pose: str | None) -> str:
+    from flexapod.study.words import held, length
+
+    where, sag = f"at {pose} from home" if pose else "at home", float((data.com_sag**2).sum() ** 0.5)
+    return f"{held(study.robot)}, {where}, about the static equilibrium (the centre of mass sags by {length(sag)})."
+
+
+def _beam_words(study: ActuatorStudy) -> str:
+    return f"Hub and extension held, about the straight beam, {study.actuator.free_length:.4g} m of it outside the hub."
+
+
+def _show_modes(data: Dataset, words: str, count: int, files: list[Path]) -> None:
+    from flexapod.study.words import column
+
+    print_text(words)
+    print_text()
+    shown = data.isel(mode=slice(0, count))
+    _, frequencies = column(shown.frequency.values, "Hz", 6)
+    _, ratios = column(100 * shown.damping_ratio.values, "")
+    kinds = map(str, shown.kind.values)
+    rows = [[str(int(m)), *row] for m, *row in zip(shown.mode, frequencies, ratios, kinds, strict=True)]
+    print_table(["mode", "frequency [Hz]", "damping [%]", "what moves most"], rows, left=(3,))
+    if data.sizes["mode"] > count:
+        print_text(f"The lowest {count} of {data.sizes['mode']} modes; more with --count.")
+    for line in data.attrs["warnings"].splitlines():
+        print_text(f"Warning: {line}")
+    for path in files:
+        print_text(f"Written: {path}")
+
+
+NAMES = frozenset(string.ascii_letters + string.digits + "-_")
+
+Format = Annotated[str, typer.Option("--format", metavar="FORMAT", help="abaqus, which CalculiX reads as well.")]
+Elements = Annotated[int, typer.Option("--elements", help="Solid elements along the free part of each piston.")]
+Wanted = Annotated[int, typer.Option("--count", help="How many frequencies the deck asks for.")]
+Deck = Annotated[
+    Path | None, typer.Option("--out", metavar="FILE.inp", help="File to write; default: beside the study, FILE.inp.")
+]
+
+
+@guarded
+def export(
+    file: StudyFile,
+    format: Format = "abaqus",
+    pose: Pose = None,
+    elements: Elements = 20,
+    count: Wanted = 24,
+    out: Deck = None,
+    force: Force = False,
+    json: Json = False,
+) -> None:
+    """Write the robot with locked drives as a deck for Abaqus and CalculiX: sag under gravity, frequencies."""
+    from flexapod.app.map_options import parse_pose
+    from flexapod.exchange.export import FORMATS, abaqus_deck
+
+    if format not in FORMATS:
+        words = "abaqus, a deck that CalculiX reads as well"
+        raise InputError("is not a format", key="--format", value=format, allowed=words)
+    study = robot_study(file)
+    path = file.with_name(file.stem + ".inp") if out is None else out
+    _check_file(path, force)
+    title = f"{file.stem}: robot with locked drives"
+    with as_options(elements="--elements", modes="--count", pose="--pose"):
+        text = abaqus_deck(study, parse_pose(pose), elements=elements, modes=count, title=title)
+    write_text(path, text, encoding="ascii", errors="replace")
+    if json:
+        print_json({"file": path, "format": format, "elements": elements, "modes": count})
+    else:
+        _show_deck(path, file, pose)
+
+
+def _check_file(path: Path, force: bool) -> None:
+    if path.is_dir():
+        raise InputError("is a folder", key="--out", value=str(path), next_step="Give the name of a file")
+    if path.suffix.lower() != ".inp":
+        raise InputError(
+            "is not named as a deck", key="--out", value=str(path), allowed="FILE.inp: both programs ask for it"
+        )
+    if not set(path.stem) <= NAMES:
+        raise InputError(
+            "has a name that CalculiX or Abaqus do not read",
+            key="--out",
+            value=path.name,
+            allowed="letters without accents, digits, - and _",
+            next_step="Name the deck with --out NAME.inp",
+        )
+    refuse_existing(path, force)
+
+
+def _show_deck(path: Path, file: Path, pose: str | None) -> None:
+    at = f' --pose "{pose}"' if pose else ""
+    print_text(f"Written: {path}")
+    print_text(f"Run it with `ccx -i {path.with_suffix('')}` (CalculiX) or `abaqus job={path.stem}` (Abaqus).")
+    print_text(f"Compare its frequencies and its sag with `flexapod modes {file}{at}`.")
+    print_text("Bending of slender pistons lies parts in ten thousand lower: a solid has shear and rotary inertia.")

@@ -1,0 +1,124 @@
+"""Commands about study files: `new` writes one, `keys` says what it may contain, `check` describes it in words."""
+
+from __future__ import annotations
+
+from pathlib import Path
+from typing import Annotated
+
+import typer
+
+from flexapod.app.failures import guarded
+from flexapod.app.options import Force, Json, StudyFile, as_options, refuse_existing
+from flexapod.app.terminal import print_json, print_table, print_text
+from flexapod.errors import InputError, closest
+from flexapod.files import write_text
+
+Name = Annotated[Path, typer.Argument(metavar="NAME.toml", help="File to write.")]
+Preset = Annotated[
+    str | None,
+    typer.Option(
+        "--preset",
+        metavar="P",
+        help="paper-robot (the default), paper-robot-radii, paper-actuator, tripod or flight-simulator.",
+    ),
+]
+From = Annotated[
+    str | None,
+    typer.Option(
+        "--from",
+        metavar='"home=300 mm, payload=20 kg, stroke=60 mm"',
+        help="A first robot with sizes computed to fit; also base, platform (radii), diameter (of pistons), material, "
+        "motion (surge to yaw), duration.",
+    ),
+]
+
+
+@guarded
+def new(name: Name, preset: Preset = None, request: From = None, force: Force = False, json: Json = False) -> None:
+    """Write a commented study file to edit."""
+    path = name if name.suffix or name.is_dir() else name.with_suffix(".toml")
+    if path.is_dir():
+        raise InputError("is a folder", file=path, next_step="Give the name of a file")
+    refuse_existing(path, force)
+    text, source, remarks = _first_robot(request, preset) if request is not None else _preset(preset or "paper-robot")
+    write_text(path, text)
+    if json:
+        print_json({"file": path, **source, **({} if request is None else {"remarks": remarks})})
+        return
+    for line in remarks:
+        print_text(line)
+    words = f", from the preset {source['preset']}" if "preset" in source else ""
+    print_text(f"{path} written{words}. Edit it, then: flexapod check {path}")
+
+
+def _preset(name: str) -> tuple[str, dict[str, object], list[str]]:
+    from flexapod.model import preset_text
+
+    with as_options(preset="--preset"):
+        return preset_text(name), {"preset": name}, []
+
+
+def _first_robot(request: str, preset: str | None) -> tuple[str, dict[str, object], list[str]]:
+    """Text of a first robot, what it is from, and what there is to say about it."""
+    from flexapod.app.first_words import first_words
+    from flexapod.study.first import first_robot, parse_request
+
+    if preset is not None:
+        raise InputError("is given together with --from", key="--preset", value=preset, allowed="one of the two")
+    text = first_robot(parse_request(request))
+    return text, {"from": request}, first_words(text)
+
+
+Table = Annotated[str | None, typer.Argument(metavar="[TABLE]", help="Only this table and those in it: leg.drive")]
+Markdown = Annotated[Path | None, typer.Option("--markdown", metavar="FILE", help="Write the whole page as Markdown.")]
+
+
+@guarded
+def keys(table: Table = None, markdown: Markdown = None, json: Json = False) -> None:
+    """Show every key of a study file: what it is, unit, what it is if left out, what is allowed, an example."""
+    from dataclasses import asdict
+
+    from flexapod.model import page
+
+    if markdown is not None:
+        write_text(markdown, page.markdown())
+    found = [item for item in page.listed() if table is None or f"{item.entry.table}.".startswith(f"{table}.")]
+    if not found:
+        names = list(dict.fromkeys(item.entry.table for item in page.listed()))
+        raise InputError(
+            "is not a table of a study file", key="TABLE", value=table, allowed=", ".join(names),
+            next_step=closest(str(table), names),
+        )  # fmt: skip
+    if json:
+        print_json([asdict(item) for item in found])
+    elif markdown is not None:
+        print_text(f"{markdown} written.")
+    else:
+        for item in found:
+            entry = item.entry
+            print_text(f"[{entry.table}] {entry.title}".rstrip() + (f" ({entry.study})" if table is None else ""))
+            print_text(entry.words, indent=2)
+            if item.rows:
+                print_table([f"  {page.HEAD[0]}", *page.HEAD[1:]], [
+                    [f"  {row.key}", row.what, row.unit, row.default, row.allowed] for row in item.rows
+                ], left=range(len(page.HEAD)))  # fmt: skip
+            print_text()
+            for line in entry.example.strip().splitlines():
+                print_text(line, indent=4)
+            print_text()
+
+
+@guarded
+def check(file: StudyFile, json: Json = False) -> None:
+    """Validate a study and say in words what it asks of its legs: lengths, strokes, loads, stiffness, frequencies."""
+    from flexapod.app.check_words import show_actuator, show_robot
+    from flexapod.model import load
+    from flexapod.study.before.describe.robot import RobotDescription, describe
+
+    found = describe(load(file))
+    if json:
+        print_json(found.as_dict())
+    elif isinstance(found, RobotDescription):
+        show_robot(found)
+    else:
+        show_actuator(found)
