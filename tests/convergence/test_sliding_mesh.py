@@ -17,7 +17,7 @@ from flexapod.fem.beam_guide import ElementContact, InterpolatedClamp, NodeConta
 from flexapod.fem.beam_march import march_sliding_beam
 from flexapod.fem.beam_mesh import band_product, beam_mesh
 from flexapod.model import ActuatorLoad, ActuatorMotion, preset
-from flexapod.plot.sliding_mesh import sliding_mesh as plot_sliding_mesh
+from flexapod.plot.elements import sliding_mesh as plot_sliding_mesh
 from flexapod.study.sliding_mesh import sliding_mesh
 
 STUDY = preset("paper-actuator")

@@ -6,9 +6,8 @@ import numpy as np
 import pytest
 
 from flexapod import InputError
-from flexapod.exchange.decks import Deck
+from flexapod.exchange.decks import Deck, Tie, cross_matrix, solved
 from flexapod.exchange.decks_robot import point_masses
-from flexapod.exchange.decks_ties import Tie, cross_matrix, solved
 from flexapod.exchange.export import abaqus_deck, left_out
 from flexapod.model import ConstantWrench, Cylinder, ForceDrive, Load, ServoDrive, Study, preset
 

@@ -12,7 +12,7 @@ from flexapod.fem.reduction import reduced_beam
 from flexapod.fem.section_mesh import section_averages, section_mesh
 from flexapod.fem.sliding import HubMotion, SlidingBeam, slide
 from flexapod.model import Rectangle, Tube
-from flexapod.plot.solid import solid_comparison, solid_meshes
+from flexapod.plot.elements import solid_comparison, solid_meshes
 from flexapod.study.after.vibration import local_vibration
 from flexapod.study.record import Interrupted
 from flexapod.study.solid import simulate_solid

@@ -21,7 +21,7 @@ from flexapod.app.view.document import Document, read
 from flexapod.app.view.opening import Source
 from flexapod.app.view.running import Cores, Turn
 from flexapod.app.view.structure import offers
-from flexapod.scene import beam_modes
+from flexapod.scene import robot as robots
 
 BEAM = study_text(('duration = "10 s"', 'duration = "0.5 s"'), preset="paper-actuator")
 
@@ -91,7 +91,7 @@ def test_a_fault_in_a_thread_is_told_and_ends_nothing(what, request, monkeypatch
         other = until(lambda: [s for s in session.server.sessions if s is not session])[0]
         until(lambda: other.data is not None and other.modes_panel._inside._modes is not None)
         owner, _, name = place.rpartition(".")
-        target = {"modes": studies, "run": studies, "beam_modes": beam_modes}.get(place, session)
+        target = {"modes": studies, "run": studies, "beam_modes": robots}.get(place, session)
         for step in filter(None, owner.split(".")):
             target = getattr(target, step)
         patch.setattr(target, name, broken)

@@ -14,9 +14,8 @@ import numpy as np
 from numpy.typing import NDArray
 from scipy.linalg import qr
 
-from flexapod.exchange.decks import Deck, Term, number
+from flexapod.exchange.decks import Deck, Term, Tie, cross_matrix, number, solved
 from flexapod.exchange.decks_legs import LegAtPose, PayloadAtPose
-from flexapod.exchange.decks_ties import Tie, cross_matrix, solved
 from flexapod.fem.mesh import extruded
 from flexapod.fem.section_mesh import section_mesh
 from flexapod.model import Rectangle

@@ -10,7 +10,7 @@ import xarray as xr
 from matplotlib.figure import Figure
 from matplotlib.patches import Arc, Circle, Polygon
 
-from flexapod.plot.draw3d import CYLINDER
+from flexapod.plot.robot3d import CYLINDER
 from flexapod.plot.style import (
     AXIS_COLORS,
     COLUMN,

@@ -3,15 +3,11 @@
 from flexapod.loading import loaded
 from flexapod.plot.actuator import actuator_modes, actuator_path, actuator_response
 from flexapod.plot.convergence import convergence, ladder
-from flexapod.plot.deviation import deviation_by_cause
-from flexapod.plot.energy import energies
+from flexapod.plot.elements import sliding_mesh, solid_comparison, solid_meshes
 from flexapod.plot.legs import actuator_forces, leg_lengths, tip_deflections
 from flexapod.plot.maps import workspace_map
-from flexapod.plot.motion import motion_law
-from flexapod.plot.paths import com_path
+from flexapod.plot.payload import com_path, deviation_by_cause, energies, motion_law
 from flexapod.plot.robot3d import modes_3d, robot_3d
-from flexapod.plot.sliding_mesh import sliding_mesh
-from flexapod.plot.solid import solid_comparison, solid_meshes
 from flexapod.plot.style import save
 from flexapod.plot.sweep import sweep
 

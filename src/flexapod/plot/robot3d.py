@@ -1,19 +1,130 @@
-"""The robot in space: at an instant of a result, and in its modes."""
+"""The robot in space: drawn with base, legs, platform and payload, at an instant of a result and in its modes."""
 
 from __future__ import annotations
 
 from collections.abc import Sequence
+from typing import Any
 
+import matplotlib
 import numpy as np
 import xarray as xr
 from matplotlib.figure import Figure
+from matplotlib.gridspec import SubplotSpec
+from matplotlib.patheffects import withStroke
+from mpl_toolkits.mplot3d.art3d import Line3DCollection, Poly3DCollection
 
-from flexapod.plot.draw3d import draw_ghost, draw_robot, head, space, view
-from flexapod.plot.style import NOTE, PAGE, figure, needs, styled
+from flexapod.plot.style import NOTE, PAGE, SMALL, figure, ink, needs, styled
+from flexapod.scene.colours import colors_of_legs
 from flexapod.scene.robot import mode_scene, motion_end, scene
-from flexapod.scene.skeleton import Scene
+from flexapod.scene.skeleton import Scene, around
 
-__all__ = ["modes_3d", "robot_3d"]
+CYLINDER = "#8A8F98"
+BASE = "#4A4F57"
+PLATFORM = "#2F6690"
+#: Size and mark of joints by their letter; hinges are short lines along their axes.
+JOINTS = {"U": (14, "o"), "S": (18, "o"), "F": (16, "s")}
+_SHORT = 0.2  # of the longest: axes that have no room for numbers
+_NEEDLE = 45  # distance of the name of the one axis that is left, in a measure that shrinks with the room
+_FREE: Any = {"axes.titley": None}  # titles go above what is drawn
+_NUMBER: dict[str, Any] = {"fontsize": NOTE, "path_effects": [withStroke(linewidth=2.0, foreground="white")]}
+
+
+def space(fig: Figure, place: SubplotSpec, *, turn: float = -62, tilt: float = 16) -> Any:
+    """3D axes with equal scales on all three directions, seen from `turn` and `tilt` [deg]."""
+    with matplotlib.rc_context(_FREE):
+        made: Any = fig.add_subplot(place, projection="3d", computed_zorder=False)
+    made.set_proj_type("ortho")
+    made.view_init(elev=tilt, azim=turn)
+    for axis in (made.xaxis, made.yaxis, made.zaxis):
+        axis.set_pane_color((1, 1, 1, 0))
+        axis._axinfo["grid"].update(color="#E4E4E4", linewidth=0.6)
+    return made
+
+
+def head(axes: Any, words: str, **style: Any) -> None:
+    """A title clear of what is drawn, which may reach above the axes."""
+    with matplotlib.rc_context(_FREE):
+        axes.set_title(words, **style)
+
+
+def view(axes: Any, scenes: Sequence[Scene], zoom: float = 1.0) -> None:
+    """Limits that hold all scenes, in equal scale, with world axes in mm."""
+    points = np.concatenate([s.points for s in scenes])
+    low, high = points.min(axis=0), points.max(axis=0)
+    low, high = low - 0.06 * (high - low).max(), high + 0.06 * (high - low).max()
+    low[2] = min(low[2], 0.0)
+    axes.set(xlim=1e3 * np.array([low[0], high[0]]), ylim=1e3 * np.array([low[1], high[1]]))
+    axes.set_zlim(1e3 * low[2], 1e3 * high[2])
+    axes.set_box_aspect(high - low, zoom=zoom)
+    axes.tick_params(labelsize=SMALL, pad=0)
+    short = high - low < _SHORT * (high - low).max()
+    for name, axis, pad, bare in zip("xyz", (axes.xaxis, axes.yaxis, axes.zaxis), (0, 0, 2), short, strict=True):
+        axis.get_major_locator().set_params(nbins=4)
+        if bare:
+            axis.set_ticks([])
+        else:
+            axis.set_label_text(f"{name} [mm]", fontsize=NOTE)
+            axis.labelpad = _NEEDLE if short.sum() == 2 else pad
+
+
+def draw_robot(axes: Any, s: Scene, *, numbers: bool = True, legs: Sequence[str] = ()) -> None:
+    """Draw a robot: grey cylinders, coloured pistons, translucent platform, cross-hair at the centre of mass."""
+    _plate(axes, s.skeleton.robot.base_joints, BASE, 0.12)
+    _segments(axes, s.guides, BASE, 2.0, 3)
+    legs = legs or colors_of_legs(len(s.base))
+    for i in range(len(s.base)):
+        if not np.array_equal(s.base[i], s.mouth[i]):
+            _bar(axes, s.base[i], s.mouth[i], color=CYLINDER, linewidth=6, zorder=3)
+        x, y, z = 1e3 * s.piston[i].T
+        axes.plot(x, y, z, color=legs[i], linewidth=2.6, solid_capstyle="round", zorder=4)
+        if numbers:
+            outward = s.base[i] * np.array([1.2, 1.2, 0.0]) + np.array([0, 0, s.base[i, 2]])
+            axes.text(*(1e3 * outward), str(i + 1), color=ink(legs[i]), ha="center", va="center", zorder=9, **_NUMBER)
+    _plate(axes, s.platform, PLATFORM, 0.35)
+    for points, end, color in ((s.base, 0, BASE), (s.platform, 1, PLATFORM)):
+        kinds = np.array([joints[end] for joints in s.skeleton.joints])
+        for kind, (size, marker) in JOINTS.items():
+            if (kinds == kind).any():
+                axes.scatter(
+                    *(1e3 * points[kinds == kind].T), s=size, marker=marker, color=color, depthshade=False, zorder=6
+                )
+    _segments(axes, s.hinges, "#222222", 3.2, 6)
+    if s.skeleton.robot.payload is None:
+        return
+    _bar(axes, s.centre, s.com, color="#333333", linewidth=1.2, linestyle=(0, (4, 2)), zorder=6)
+    x, y, z = 1e3 * s.com
+    axes.plot(
+        [x], [y], [z], marker="o", markersize=10, clip_on=False, color="white", markeredgecolor="#333333", zorder=7
+    )
+    axes.plot([x], [y], [z], marker="+", markersize=9, clip_on=False, color="#333333", zorder=8)
+
+
+def draw_ghost(axes: Any, s: Scene) -> None:
+    """Draw a robot in pale lines, for comparison."""
+    _segments(axes, np.concatenate([s.base[:, None], s.piston], axis=1), "#BDBDBD", 1.0, 1)
+    loop = s.platform[around(s.platform)]
+    closed = 1e3 * np.vstack([loop, loop[:1]])
+    axes.plot(*closed.T, color="#BDBDBD", linewidth=1.0, zorder=1)
+    axes.plot(*(1e3 * s.com[:, None]), marker="o", markersize=6, color="#BDBDBD", zorder=1)
+    axes.plot(*(1e3 * np.stack([s.centre, s.com]).T), color="#BDBDBD", linewidth=1.0, zorder=1)
+
+
+def _plate(axes: Any, points: np.ndarray, color: str, alpha: float) -> None:
+    polygon = 1e3 * points[around(points)]
+    axes.add_collection3d(Poly3DCollection([polygon], facecolors=color, alpha=alpha, edgecolors="none", zorder=2))
+    closed = np.vstack([polygon, polygon[:1]])
+    axes.plot(*closed.T, color=color, linewidth=1.6, zorder=5 if alpha > 0.2 else 2)
+
+
+def _segments(axes: Any, lines: np.ndarray, color: str, width: float, above: int) -> None:
+    """Straight lines (n, 2, 3)."""
+    if len(lines):
+        axes.add_collection3d(Line3DCollection(list(1e3 * lines), colors=color, linewidths=width, zorder=above))
+
+
+def _bar(axes: Any, start: np.ndarray, end: np.ndarray, **style: Any) -> None:
+    axes.plot(*(1e3 * np.stack([start, end]).T), solid_capstyle="butt", **style)
+
 
 #: Of robots in space and in a plane: a view at an angle, one along an axis, and that axis.
 _VIEWS: dict[str | None, tuple[dict[str, float], dict[str, float], str]] = {

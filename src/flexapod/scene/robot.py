@@ -1,7 +1,8 @@
-"""Where things are in space: the robot of a result at an instant, its modes, its motion. For pictures and reports."""
+"""Where things are in space: the robot of a result at an instant, its modes, its motion; the modes of a beam."""
 
 from __future__ import annotations
 
+from dataclasses import dataclass
 from typing import TYPE_CHECKING
 
 import numpy as np
@@ -15,15 +16,6 @@ from flexapod.typing import Array
 
 if TYPE_CHECKING:
     from xarray import Dataset
-
-__all__ = [
-    "lateral_values",
-    "mode_scene",
-    "motion_coordinates",
-    "motion_end",
-    "robot_study",
-    "scene",
-]
 
 
 def robot_study(data: Dataset) -> model.Study:
@@ -124,3 +116,55 @@ def mode_scene(modes: Dataset, mode: int, size: float, phase: float = 1.0) -> Sc
     station = modes.station.values
     offset = np.array([[np.interp(place[i], station, row) for row in rows] for i, rows in enumerate(lateral)])
     return robot.at(centre, turned, com, factor * offset)
+
+
+@dataclass(frozen=True, kw_only=True)
+class BeamModes:
+    """Modes of the beam at one free length, ascending.
+
+    `frequency` (m,) [Hz], `damping_ratio` (m,), `kind` (m,): what moves; `shape` (m, n, 3): displacement in the axes of
+    `geometry.beam_frame` at n points spread evenly from mouth to tip, its largest value 1; `twist` (m, n): turn about
+    the beam, of 1 at the tip where nothing else moves; `free_length` [m].
+    """
+
+    frequency: Array
+    damping_ratio: Array
+    kind: tuple[str, ...]
+    shape: Array
+    twist: Array
+    free_length: float
+
+
+def beam_modes(study: model.ActuatorStudy, points: int) -> BeamModes:
+    """Modes of a study's beam at its free length, about the straight beam at rest, drawn with a number of points.
+
+    Raises
+    ------
+    InputError
+        A rigid beam.
+    ComputationError
+        The straight beam has buckled under its own load.
+    """
+    from flexapod.solve.actuator_modes import actuator_modes, amplitude_groups
+    from flexapod.solve.shapes import actuator_shapes
+
+    actuator, simulation = study.actuator, study.simulation
+    found, zeta = actuator_modes(actuator, simulation), np.linspace(0.0, 1.0, points)
+    eta = 1 - (1 - zeta) * actuator.free_length / actuator.length
+    shapes = actuator_shapes(actuator, simulation)
+    lateral = shapes.a.values(zeta)
+    values = {"c": (0, shapes.axial.values(eta)), "b": (1, -lateral), "a": (2, lateral), "t": (3, eta[None])}
+    moved = np.zeros((len(found.kind), points, 4))
+    for name, at in amplitude_groups(shapes).items():
+        k, shape = values[name]
+        moved[:, :, k] = found.shapes[:, at] @ shape
+    flat = moved.reshape(len(moved), -1)
+    moved /= np.take_along_axis(flat, np.abs(flat).argmax(axis=1)[:, None], axis=1)[:, :, None]
+    return BeamModes(
+        frequency=found.frequency,
+        damping_ratio=found.damping_ratio,
+        kind=found.kind,
+        shape=moved[:, :, :3],
+        twist=moved[:, :, 3],
+        free_length=actuator.free_length,
+    )

@@ -27,7 +27,7 @@ if TYPE_CHECKING:
     import viser
     from xarray import Dataset
 
-    from flexapod.scene.beam_modes import BeamModes
+    from flexapod.scene.robot import BeamModes
 
 __all__ = ["ActuatorScene"]
 

@@ -23,7 +23,7 @@ from flexapod.study.words import held, number, text
 if TYPE_CHECKING:
     import viser
 
-    from flexapod.scene.beam_modes import BeamModes as Shapes
+    from flexapod.scene.robot import BeamModes as Shapes
 
 
 LISTED = 24  # modes in the list
@@ -119,7 +119,7 @@ class BeamModes(ListedModes[model.ActuatorStudy]):
         self._count.value = min(MOST, max(1, study.simulation.modes))
 
     def _listed(self, study: model.ActuatorStudy) -> Listed:
-        from flexapod.scene.beam_modes import beam_modes
+        from flexapod.scene.robot import beam_modes
 
         still = _still(study, self._length.value, int(self._count.value))
         found = beam_modes(still, BEAM_POINTS)

@@ -110,7 +110,7 @@ class Scene(ABC):
     def show_mode(self, modes: Any, mode: int, amplitude: float, phase: float, where: str = "") -> None:
         """Draw a mode: number from 1, largest displacement as a share of the mechanism's size, phase between -1 and 1.
 
-        `modes`: of a robot the result of `flexapod.modes`, of a single actuator `study.beam_modes.BeamModes`; `where`:
+        `modes`: of a robot the result of `flexapod.modes`, of a single actuator `scene.robot.BeamModes`; `where`:
         in words the pose or length that they belong to.
         """
 

@@ -1,4 +1,7 @@
-"""Numbers as text, with a slider or without: they take what study files take, read when the writer pauses or leaves."""
+"""Numbers as text, with a slider or without: they take what study files take, read when the writer pauses or leaves.
+
+viser's own number fields drop what they do not know while it is typed: 2e2 becomes 22, and 1,000 one.
+"""
 
 from __future__ import annotations
 
