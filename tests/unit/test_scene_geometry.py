@@ -11,9 +11,8 @@ from flexapod import bases, model, rigid
 from flexapod.app.view import charts as view_charts
 from flexapod.app.view import legend
 from flexapod.model import CombinedMotion
-from flexapod.plot.style import LEG_COLORS
 from flexapod.scene import geometry, skeleton
-from flexapod.scene.colours import colors_of_legs
+from flexapod.scene.colours import LEG_COLORS, colors_of_legs
 from flexapod.scene.skeleton import STATIONS
 
 

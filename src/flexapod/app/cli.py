@@ -22,9 +22,6 @@ from flexapod.app.commands_view import view
 from flexapod.app.failures import INTERRUPTED, heed_signals, print_parts, say_full, stop_code
 from flexapod.version import __version__
 
-__all__ = ["app", "main"]
-
-
 _USAGE: Any = typer.BadParameter.__mro__[1]  # its base, click's UsageError, of which typer may have a copy of its own
 
 

@@ -7,9 +7,10 @@ from typing import TYPE_CHECKING, Annotated
 
 import typer
 
+from flexapod.app import terminal
 from flexapod.app.failures import guarded
 from flexapod.app.options import Json, NoFigures, Out, Quiet, StudyFile, as_options, results_folder, robot_study
-from flexapod.app.terminal import print_json, print_table, print_text, progress_bar
+from flexapod.app.terminal import print_json, print_table, print_text
 from flexapod.errors import InputError
 
 if TYPE_CHECKING:
@@ -58,7 +59,7 @@ def workspace_map(
     fixed = parse_at(at, axes or ("surge", "heave"))
     settings = {"direction": parse_direction(direction), "acceleration": parse_acceleration(acceleration)}
     folder = results_folder(file, "map", out)
-    with progress_bar(quiet=quiet or json) as report:
+    with terminal.progress_bar(quiet=quiet or json) as report:
         with as_options(axes="--x", at="--at", direction="--direction", acceleration="--acceleration"):
             poses, frequencies = grid(study.robot, axes, fixed), max(mode, FREQUENCIES)
             check_map(poses.size, frequencies, folder)

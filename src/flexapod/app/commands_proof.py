@@ -8,9 +8,10 @@ from typing import TYPE_CHECKING, Annotated
 
 import typer
 
+from flexapod.app import terminal
 from flexapod.app.failures import guarded
 from flexapod.app.options import Json, NoFigures, Quiet, check_writable
-from flexapod.app.terminal import print_json, print_table, print_text, progress_bar
+from flexapod.app.terminal import print_json, print_table, print_text
 from flexapod.files import write_text
 
 if TYPE_CHECKING:
@@ -35,7 +36,7 @@ def replicate(
     from flexapod.study.after.summary import summary
 
     check_writable(out)
-    with progress_bar(quiet=quiet or json) as report:
+    with terminal.progress_bar(quiet=quiet or json) as report:
         result = repeat(out, engines=engines, figures=not no_figures, progress=report)
     found, table, agreed = summary(result["robot"]), claims(result), agreements(result.parts)
     if json:
@@ -88,7 +89,7 @@ def verify(
         check_writable(None if file is None else file.parent, key)
     outcomes: list[Outcome] = []
     interrupted = False
-    with progress_bar(quiet=quiet or json) as report:
+    with terminal.progress_bar(quiet=quiet or json) as report:
         try:
             compute(only or (), slow=slow, progress=report, keep=outcomes.append)
         except KeyboardInterrupt:

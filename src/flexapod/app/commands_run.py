@@ -9,6 +9,7 @@ from typing import TYPE_CHECKING, Annotated
 
 import typer
 
+from flexapod.app import terminal
 from flexapod.app.failures import INTERRUPTED, guarded, print_parts, show, stopped
 from flexapod.app.options import (
     FORMATS,
@@ -22,7 +23,7 @@ from flexapod.app.options import (
     write_all,
     write_data,
 )
-from flexapod.app.terminal import print_json, print_table, print_text, progress_bar
+from flexapod.app.terminal import print_json, print_table, print_text
 from flexapod.errors import ComputationError, InputError
 
 if TYPE_CHECKING:
@@ -80,7 +81,7 @@ def _run(study: Study | ActuatorStudy, folder: Path, formats: Sequence[str], *, 
 
     check_disk(study, folder)
     interrupted, faster = False, None
-    with progress_bar(quiet=quiet or json) as report:
+    with terminal.progress_bar(quiet=quiet or json) as report:
         try:
             data = simulate(study, progress=lambda time, end: report("simulating", COMPUTING * time / end))
         except Interrupted as stop:

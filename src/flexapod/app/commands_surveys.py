@@ -9,9 +9,10 @@ from typing import TYPE_CHECKING, Annotated
 
 import typer
 
+from flexapod.app import terminal
 from flexapod.app.failures import INTERRUPTED, guarded, print_parts, stopped
 from flexapod.app.options import Json, NoFigures, Out, Quiet, StudyFile, as_options, results_folder
-from flexapod.app.terminal import print_json, print_text, progress_bar
+from flexapod.app.terminal import print_json, print_text
 
 if TYPE_CHECKING:
     from xarray import Dataset
@@ -44,7 +45,7 @@ def sweep(
     from flexapod.surveys.sweeps import sweep as compute
 
     folder = results_folder(file, sweep_file.stem, out)
-    with as_options(workers="--workers", scheduler="--scheduler"), progress_bar(quiet=quiet or json) as report:
+    with as_options(workers="--workers", scheduler="--scheduler"), terminal.progress_bar(quiet=quiet or json) as report:
         try:
             data = compute(
                 file, sweep_file, store=folder / "sweep.zarr", scheduler=scheduler, workers=workers,
@@ -138,7 +139,7 @@ def _computed(trials: Trials, accuracy: float, *, ladder: bool, quiet: bool) -> 
 
     tables: dict[str, Dataset] = {}
     name = "convergence"
-    with progress_bar(quiet=quiet) as report:
+    with terminal.progress_bar(quiet=quiet) as report:
         try:
             tables[name] = compute(trials.study, accuracy=accuracy, progress=report, trials=trials)
             if ladder:

@@ -6,8 +6,6 @@ from flexapod import model
 from flexapod.study.before.describe.robot import RobotDescription, describe
 from flexapod.study.words import length, number, text
 
-__all__ = ["first_words"]
-
 HEAVY = 1.0  # mass of the legs over that of the payload above which it is remarked on
 
 

@@ -10,8 +10,6 @@ from flexapod.model import AXES
 from flexapod.surveys.workspace.grid import Range
 from flexapod.units import to_si
 
-__all__ = ["parse_acceleration", "parse_at", "parse_axes", "parse_direction"]
-
 _AXIS = re.compile(
     r"^\s*(?P<name>[^=\s]+)\s*(?:[=\s]\s*(?P<low>.+?)\s*\.\.\s*(?P<high>[^:]+?)\s*)?(?::\s*(?P<count>\S+))?\s*$"
 )

@@ -12,8 +12,6 @@ from typing import TYPE_CHECKING
 if TYPE_CHECKING:
     from flexapod.study.record import Report
 
-__all__ = ["print_json", "print_table", "print_text", "progress_bar"]
-
 
 def print_json(data: object) -> None:
     """One JSON document on stdout, at once; numbers that are not finite become null, paths text."""

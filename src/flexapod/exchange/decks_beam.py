@@ -7,8 +7,6 @@ import numpy as np
 from flexapod.exchange.decks import Deck, Numbers, number
 from flexapod.fem.mesh import SolidMesh
 
-__all__ = ["clamped_frequencies", "clamped_release"]
-
 #: The element of both programs for a kind of ours; R: integrated at 2 x 2 x 2 points.
 ELEMENTS = {
     ("hex8", False): "C3D8",

@@ -13,8 +13,6 @@ from flexapod.rigid.mechanism import legs_at
 from flexapod.rigid.screws import screws
 from flexapod.typing import Array
 
-__all__ = ["CarriageAtPose", "LegAtPose", "PayloadAtPose", "axial_inertia", "legs_at_pose"]
-
 _STIFF = 1e5  # of a locked drive, in EA / l: adds 1e-5 of a leg's compliance
 _NAMES: tuple[str, ...] = ("chi", "alpha", "beta", "spin", "l", "gamma1", "gamma2", "gamma3")
 _HOME = 1e-9  # rad, m

@@ -21,14 +21,6 @@ from flexapod.fem.section_mesh import section_mesh
 from flexapod.model import Rectangle
 from flexapod.typing import Array
 
-__all__ = [
-    "Carriers",
-    "drive_shift",
-    "point_masses",
-    "write_leg",
-    "write_payload",
-]
-
 Carriers = dict[Term, Array]
 """The displacements in which the payload is free, each with the motion (6,) that it causes, see `write_payload`."""
 

@@ -14,8 +14,6 @@ from flexapod.solve.rest import at_drives
 from flexapod.study.arguments import LoadLike, PoseLike, RobotLike, as_pose, at_pose
 from flexapod.typing import Array
 
-__all__ = ["ELEMENTS", "FORMATS", "MODES", "abaqus_deck", "left_out"]
-
 FORMATS = ("abaqus",)
 """What a robot can be written as; CalculiX reads the same deck."""
 

@@ -12,8 +12,6 @@ from flexapod.errors import InputError
 from flexapod.fem.beam_mesh import BeamMesh, Indices, gauss
 from flexapod.typing import Array
 
-__all__ = ["ElementContact", "Guide", "InterpolatedClamp", "NodeContact", "Rollers", "Springs"]
-
 
 @dataclass(frozen=True, kw_only=True)
 class Springs:

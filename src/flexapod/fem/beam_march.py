@@ -16,8 +16,6 @@ from flexapod.integration import GeneralizedAlpha
 from flexapod.model import ActuatorStudy
 from flexapod.typing import Array
 
-__all__ = ["SlidingBeam", "march_sliding_beam"]
-
 #: With a spectral radius below one: the element that leaves the guide strikes vibrations of its own length.
 METHOD = GeneralizedAlpha(rho=0.8)
 

@@ -13,8 +13,6 @@ from flexapod.errors import InputError
 from flexapod.model import Actuator
 from flexapod.typing import Array
 
-__all__ = ["HALF_BAND", "BeamGrid", "BeamMesh", "Indices", "band_product", "beam_mesh", "gauss"]
-
 Indices = NDArray[np.int_]
 
 #: Upper diagonals besides the main one: an element joins displacement and slope of two neighbouring nodes.

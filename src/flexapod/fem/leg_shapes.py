@@ -13,8 +13,6 @@ from flexapod.fem.reduction import StationModel, reduced_beam
 from flexapod.model import Rectangle, Tube
 from flexapod.typing import Array
 
-__all__ = ["solid_leg_shapes"]
-
 _INTERVALS = 24
 
 

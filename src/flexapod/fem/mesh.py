@@ -11,8 +11,6 @@ from flexapod.fem.section_mesh import Indices, SectionMesh, section_mesh
 from flexapod.model import Rectangle, Tube
 from flexapod.typing import Array
 
-__all__ = ["SolidMesh", "beam_mesh", "check_count", "extruded"]
-
 MOST = 1_000_000  # elements: some 10 million unknowns
 
 

@@ -9,8 +9,6 @@ import numpy as np
 from flexapod.fem.reduction import StationModel
 from flexapod.typing import Array
 
-__all__ = ["Mouth", "mouth_of"]
-
 
 @dataclass(frozen=True, kw_only=True)
 class Mouth:

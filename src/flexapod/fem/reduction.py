@@ -19,8 +19,6 @@ from flexapod.fem.section_mesh import SectionAverages, free_unknowns, section_av
 from flexapod.model import Rectangle, Tube
 from flexapod.typing import Array
 
-__all__ = ["StationModel", "reduced_beam"]
-
 MOST = 20_000  # elements of an interval: its condensation is dense, one or two gigabytes there
 
 

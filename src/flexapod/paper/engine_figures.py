@@ -12,21 +12,10 @@ from matplotlib.figure import Figure
 
 from flexapod.errors import InputError
 from flexapod.plot.legs import force_panels
-from flexapod.plot.style import (
-    COLUMN,
-    FLEXIBLE,
-    LEG_COLORS,
-    NOTE,
-    RIGID,
-    Scale,
-    figure,
-    mark_end,
-    needs,
-    scale,
-    styled,
-)
+from flexapod.plot.style import COLUMN, FLEXIBLE, NOTE, RIGID, figure, mark_end, needs, styled
+from flexapod.scene.colours import LEG_COLORS
 from flexapod.scene.robot import motion_end
-from flexapod.study.words import text
+from flexapod.study.words import Scale, scale, text
 
 # From broad and pale to fine and dark: all show where they coincide.
 _BAND: dict[str, Any] = {"color": RIGID, "linewidth": 6.5, "solid_capstyle": "butt"}

@@ -12,10 +12,8 @@ from matplotlib.patches import Arc, Circle, Polygon
 
 from flexapod.plot.robot3d import CYLINDER
 from flexapod.plot.style import (
-    AXIS_COLORS,
     COLUMN,
     FLEXIBLE,
-    LEG_COLORS,
     LINE_STYLES,
     NOTE,
     PAGE,
@@ -25,11 +23,15 @@ from flexapod.plot.style import (
     ink,
     mark_end,
     needs,
-    scale,
     styled,
-)  # fmt: skip
+)
+from flexapod.scene.colours import AXIS_COLORS, LEG_COLORS
 from flexapod.scene.robot import mode_scene, motion_end, robot_study
-from flexapod.study.words import number, text
+from flexapod.study.words import (
+    number,
+    scale,  # fmt: skip
+    text,
+)
 
 BENT = 0.18  # of the length of a leg: how far its mode is drawn off the line of its joints
 

@@ -10,7 +10,9 @@ from matplotlib.axes import Axes
 from matplotlib.figure import Figure
 
 from flexapod.paper.claim import PAPER_DEVIATION
-from flexapod.plot.style import AXIS_COLORS, COLUMN, PAGE, SMALL, figure, ink, scale, styled
+from flexapod.plot.style import COLUMN, PAGE, SMALL, figure, ink, styled
+from flexapod.scene.colours import AXIS_COLORS
+from flexapod.study.words import scale
 
 _MARKS = {"x": "^", "y": "o", "z": "s"}
 

@@ -9,7 +9,8 @@ from matplotlib.figure import Figure
 
 from flexapod.paper.claim import PAPER_DEVIATION
 from flexapod.paper.welded import SHARE, SLOPE, travel_share
-from flexapod.plot.style import AXIS_COLORS, COLUMN, SMALL, figure, ink, styled
+from flexapod.plot.style import COLUMN, SMALL, figure, ink, styled
+from flexapod.scene.colours import AXIS_COLORS
 
 _TITLES = {
     "diameters": "Circles as diameters, six legs",

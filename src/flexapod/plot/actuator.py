@@ -11,7 +11,6 @@ from matplotlib.figure import Figure
 
 from flexapod.plot.style import (
     FLEXIBLE,
-    LEG_COLORS,
     LINE_STYLES,
     NOTE,
     PAGE,
@@ -20,12 +19,10 @@ from flexapod.plot.style import (
     flat_on_the_scale_of_others,
     ink,
     needs,
-    scale,
     styled,
 )
-from flexapod.study.words import cleared_lines, number
-
-__all__ = ["actuator_modes", "actuator_path", "actuator_response"]
+from flexapod.scene.colours import LEG_COLORS
+from flexapod.study.words import cleared_lines, number, scale
 
 
 _LARGER = ("angles", "elevations")  # towards which the tip of an actuator in space is deflected

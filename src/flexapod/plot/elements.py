@@ -9,8 +9,9 @@ import xarray as xr
 from matplotlib.axes import Axes
 from matplotlib.figure import Figure
 
-from flexapod.plot.style import FLEXIBLE, LEG_COLORS, NOTE, PAGE, RIGID, figure, needs, scale, styled
-from flexapod.study.words import number
+from flexapod.plot.style import FLEXIBLE, NOTE, PAGE, RIGID, figure, needs, styled
+from flexapod.scene.colours import LEG_COLORS
+from flexapod.study.words import number, scale
 
 
 @styled

@@ -10,26 +10,11 @@ from matplotlib.axes import Axes
 from matplotlib.figure import Figure
 from numpy.typing import ArrayLike
 
-from flexapod.plot.style import (
-    FLEXIBLE,
-    LEG_COLORS,
-    LINE_STYLES,
-    PAGE,
-    RIGID,
-    Scale,
-    columns,
-    figure,
-    mark_end,
-    needs,
-    scale,
-    styled,
-)
-from flexapod.scene.colours import colors_of_legs
+from flexapod.plot.style import FLEXIBLE, LINE_STYLES, PAGE, RIGID, columns, figure, mark_end, needs, styled
+from flexapod.scene.colours import LEG_COLORS, colors_of_legs
 from flexapod.scene.drives import drives
 from flexapod.scene.robot import motion_end
-from flexapod.study.words import NOTHING, text
-
-__all__ = ["actuator_forces", "force_panels", "leg_lengths", "tip_deflections"]
+from flexapod.study.words import NOTHING, Scale, scale, text
 
 ROUNDING = 1e-11  # of where drives stand
 _WORDS = {"rigid": "rigid legs", "lumped": "legs that stretch", "assumed-modes": "flexible legs"}

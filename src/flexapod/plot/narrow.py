@@ -15,8 +15,6 @@ from matplotlib.figure import Figure
 from matplotlib.legend import Legend
 from matplotlib.text import Annotation, Text
 
-__all__ = ["narrowed"]
-
 MOST = 6  # panels in a column
 TALLEST = 9.2  # of a column: what a page has room for [in]
 FLATTER, SPACE = 0.75, 0.85  # heights against the wide figure: of a panel without a shape of its own, of one in space

@@ -10,27 +10,23 @@ from matplotlib.axes import Axes
 from matplotlib.figure import Figure
 
 from flexapod.plot.style import (
-    AXIS_COLORS,
     COLUMN,
     FLEXIBLE,
-    LEG_COLORS,
     LINE_STYLES,
     NOTE,
     PAGE,
     RIGID,
-    Scale,
     figure,
     flat_on_the_scale_of_others,
     mark_end,
     needs,
-    scale,
     styled,
 )
-from flexapod.scene.colours import ENERGIES
+from flexapod.scene.colours import AXIS_COLORS, ENERGIES, LEG_COLORS
 from flexapod.scene.robot import motion_coordinates, motion_end
 from flexapod.study.after.summary import POINT_WORDS
 from flexapod.study.names import cause_words
-from flexapod.study.words import NOTHING, cleared
+from flexapod.study.words import NOTHING, Scale, cleared, scale
 
 _TURNS = ("roll", "pitch", "yaw")
 _UNITS = {"position": ("m", "rad"), "rate": ("m/s", "rad/s"), "acceleration": ("m/s²", "rad/s²")}

@@ -23,32 +23,6 @@ from matplotlib.layout_engine import ConstrainedLayoutEngine
 from flexapod.errors import InputError
 from flexapod.files import replacing
 from flexapod.plot.narrow import narrowed
-from flexapod.scene.colours import AXIS_COLORS, LEG_COLORS
-from flexapod.study.words import Scale, scale
-
-__all__ = [
-    "AXIS_COLORS",
-    "COLORS",
-    "COLUMN",
-    "FLEXIBLE",
-    "LEG_COLORS",
-    "NOTE",
-    "PAGE",
-    "RIGID",
-    "SMALL",
-    "TEXT",
-    "Scale",
-    "check_formats",
-    "columns",
-    "figure",
-    "flat_on_the_scale_of_others",
-    "ink",
-    "mark_end",
-    "needs",
-    "save",
-    "scale",
-    "styled",
-]
 
 P = ParamSpec("P")
 

@@ -15,9 +15,8 @@ from matplotlib.ticker import MaxNLocator
 from numpy.typing import NDArray
 
 from flexapod.errors import InputError
-from flexapod.plot.style import COLORS, COLUMN, FLEXIBLE, NOTE, PAGE, RIGID, TEXT, figure, scale, styled
-
-__all__ = ["sweep"]
+from flexapod.plot.style import COLORS, COLUMN, FLEXIBLE, NOTE, PAGE, RIGID, TEXT, figure, styled
+from flexapod.study.words import scale
 
 FAILED = "#C44E52"
 MOST_PANELS = 6

@@ -14,8 +14,6 @@ if TYPE_CHECKING:
 
     from flexapod.model import ActuatorStudy, Study
 
-__all__ = ["Drawn", "carried_study", "draw", "store"]
-
 FAST = 3  # level of deflating: half the time of the usual one, a quarter more bytes
 _Plan = tuple[str, str, Callable[[], "Figure"]]
 

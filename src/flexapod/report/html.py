@@ -11,20 +11,6 @@ from collections.abc import Mapping, Sequence
 from functools import cache
 from importlib.resources import files
 
-__all__ = [
-    "bullets",
-    "code",
-    "contents",
-    "figure",
-    "heading",
-    "page",
-    "paragraph",
-    "replay",
-    "section",
-    "table",
-    "values",
-]
-
 # What a browser may do with a page: run and show what is in it, and fetch nothing.
 _POLICY = (
     "default-src 'none'; img-src data: blob:; style-src 'unsafe-inline'; script-src 'unsafe-inline'; font-src data:; "

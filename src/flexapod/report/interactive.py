@@ -26,8 +26,6 @@ if TYPE_CHECKING:
     from matplotlib.figure import Figure
     from matplotlib.lines import Line2D
 
-__all__ = ["MOST_POINTS", "interactive", "packed", "thinned"]
-
 MOST_POINTS = 1500  # of a curve: more than a page is wide
 PIXELS = 96 / 72  # of a point
 _Ends = tuple[float, float]

@@ -23,17 +23,6 @@ if TYPE_CHECKING:
     from flexapod.study.before.describe.actuator import ActuatorDescription
     from flexapod.study.before.describe.robot import RobotDescription
 
-__all__ = [
-    "by_axis",
-    "figures_section",
-    "repeat_section",
-    "replay_section",
-    "robot_report",
-    "solver_table",
-    "warnings_section",
-    "write_report",
-]
-
 SOLVER = {
     "integrator": "Time integration",
     "rho_inf": "Spectral radius at infinite frequency",

@@ -25,8 +25,6 @@ if TYPE_CHECKING:
 
     from flexapod.model import ActuatorStudy, Study
 
-__all__ = ["locked_modes", "replay"]
-
 FRAMES = 241
 MODES = 6
 MODE_SIZE = 0.1  # largest displacement of a mode, as a share of the robot's height

@@ -20,8 +20,6 @@ if TYPE_CHECKING:
     from flexapod.study.before.describe.robot import RobotDescription
     from flexapod.typing import Array
 
-__all__ = ["modes_section", "modes_table", "study_words"]
-
 _LEGS = {
     "rigid": "rigid",
     "lumped": "stretching, without bending",

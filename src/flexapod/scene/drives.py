@@ -13,8 +13,6 @@ from flexapod.study.attributes import robot_of
 if TYPE_CHECKING:
     from xarray import DataArray, Dataset
 
-__all__ = ["Drives", "drives"]
-
 _OF_STROKES = ("actuator_force_rigid", "actuator_force", "leg_length_command", "leg_length")
 _OF_ALL = ("drive_force_rigid", "drive_force", "drive_command", "drive_position")
 

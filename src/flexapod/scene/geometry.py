@@ -18,26 +18,6 @@ from flexapod.typing import Array
 if TYPE_CHECKING:
     from xarray import Dataset
 
-__all__ = [
-    "BEAM_POINTS",
-    "ROUNDING",
-    "ActuatorMotion",
-    "Instant",
-    "RobotMotion",
-    "as_computed",
-    "beam_frame",
-    "disc",
-    "factor_to_see",
-    "nearest",
-    "orientation",
-    "plate",
-    "round_down",
-    "straight_beam",
-    "strip",
-    "tube",
-    "tube_faces",
-]
-
 S = TypeVar("S", model.Study, model.ActuatorStudy)
 Faces = NDArray[np.uint32]
 

@@ -17,8 +17,6 @@ from flexapod.rigid.limbs import limbs
 from flexapod.rigid.rotations import exponential
 from flexapod.typing import Array
 
-__all__ = ["STATIONS", "Scene", "Skeleton", "around"]
-
 STATIONS = 25  # points of a drawn piston
 RAIL = 0.35  # of a strut's length: how far a rail without ends is drawn to either side of home
 FLAT = 0.1  # height over size

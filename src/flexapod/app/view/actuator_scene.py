@@ -29,8 +29,6 @@ if TYPE_CHECKING:
 
     from flexapod.scene.robot import BeamModes
 
-__all__ = ["ActuatorScene"]
-
 _BEAM, _HUB, _INSIDE, _GHOST, _TIP = rgb("#0072B2"), rgb("#4A4F57"), rgb("#B5BAC1"), rgb("#7A7A7A"), rgb("#C2185B")
 _STRIPE = rgb("#F0E442")
 TURN = 10.0  # rad per share of the free length: as far as what twists is turned in a mode

@@ -21,8 +21,6 @@ if TYPE_CHECKING:
     import viser
     from xarray import DataArray, Dataset
 
-__all__ = ["Chart", "ChartView", "charts", "thinned"]
-
 MOST = 900  # instants of a drawn line: the extremes of each piece are kept
 
 _AXES = tuple(AXIS_COLORS.values())

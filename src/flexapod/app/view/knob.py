@@ -16,8 +16,6 @@ from flexapod.model.fields import Field
 if TYPE_CHECKING:
     from viser import ClientHandle, GuiDropdownHandle, GuiSliderHandle
 
-__all__ = ["Knob"]
-
 FIRST = ("leg.piston.diameter", "payload.mass", "actuator.EI")
 PARTS = 200  # steps of the slider
 DIGITS = 12  # of a number that is turned

@@ -16,8 +16,6 @@ from flexapod.typing import Array
 if TYPE_CHECKING:
     from xarray import Dataset
 
-__all__ = ["LEGEND_STYLE", "QUANTITIES", "LegColors", "leg_colors", "plain_legend", "rgb"]
-
 #: What legs can be coloured by.
 QUANTITIES = ("plain", "force", "stroke margin", "bending")
 

@@ -7,8 +7,6 @@ import time
 
 from websockets.exceptions import WebSocketException
 
-__all__ = ["CONNECTIONS", "FEW", "LOG", "Few"]
-
 MOST_LINES = 60
 """Entries at once; after that, one a second."""
 LONGEST = 8_000

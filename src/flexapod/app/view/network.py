@@ -8,8 +8,6 @@ from functools import cache
 
 from flexapod.errors import InputError
 
-__all__ = ["address", "free_port", "is_expected", "is_local", "is_same_site", "names_in_words"]
-
 FIRST, TRIES = 8080, 100
 
 

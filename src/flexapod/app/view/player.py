@@ -9,8 +9,6 @@ from collections.abc import Callable
 from flexapod.app.view.background import Threads
 from flexapod.app.view.scene import Scene
 
-__all__ = ["Player"]
-
 FRAME = 1 / 25  # time between two steps [s]
 
 

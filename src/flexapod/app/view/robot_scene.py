@@ -25,8 +25,6 @@ if TYPE_CHECKING:
     import viser
     from xarray import Dataset
 
-__all__ = ["RobotScene", "pose_words"]
-
 
 #: From where robots in space and in a plane are seen, in their sizes.
 _EYES = {None: (1.1, -0.95, 0.35), "xy": (0.1, -0.6, 1.4), "yz": (1.4, -0.6, 0.3), "zx": (0.6, -1.4, 0.3)}

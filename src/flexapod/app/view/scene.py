@@ -16,8 +16,6 @@ if TYPE_CHECKING:
 
     from flexapod.scene.geometry import ActuatorMotion, RobotMotion
 
-__all__ = ["OF_RESULTS", "PARTS", "STRAIGHT", "Scene", "mode_note"]
-
 STRAIGHT = "Drawn without deflections."
 
 #: What can be shown and hidden, and whether it is shown at first.

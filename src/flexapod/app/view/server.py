@@ -25,8 +25,6 @@ if TYPE_CHECKING:
     from flexapod.app.view.session import Session
     from flexapod.app.view.visitor import Visitor
 
-__all__ = ["GONE", "View"]
-
 GONE = "Queued a .* on a closed connection"
 """What viser remarks where somebody leaves while their page is being drawn: nothing is wrong then."""
 

@@ -29,8 +29,6 @@ if TYPE_CHECKING:
     from viser import ClientHandle
     from xarray import Dataset
 
-__all__ = ["Session"]
-
 QUIET = 0.15  # time without a change after which the study is simulated [s]
 
 

@@ -22,8 +22,6 @@ from flexapod.model.fields import Field, read_fields
 if TYPE_CHECKING:
     from viser import ClientHandle
 
-__all__ = ["StudyPanel"]
-
 OPEN = ("[motion]",)
 _NOTHING = "add a value ..."
 

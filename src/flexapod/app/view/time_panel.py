@@ -22,8 +22,6 @@ if TYPE_CHECKING:
     import viser
     from xarray import Dataset
 
-__all__ = ["TimePanel"]
-
 CHART_FRAMES = 4  # updates of the scene between two of the chart
 _NOTHING: str = "none"
 NONE = "No result yet: press Simulate."

@@ -16,8 +16,6 @@ if TYPE_CHECKING:
 
     from flexapod.app.view.background import Threads
 
-__all__ = ["Changed", "Left", "Setter", "add_widget", "signature"]
-
 #: Called with a field's key, or the key of one component, the value to write, and whether it is still being typed.
 Changed = Callable[[str, object, bool], None]
 #: Called with the key of a field, or of one component, whose input was left, and whether it was empty.

@@ -10,8 +10,6 @@ from flexapod.app.failures import lines_of, parts_of
 from flexapod.errors import FlexapodError
 from flexapod.version import __version__
 
-__all__ = ["block", "error_html", "fault_html", "in_room_of", "lines_html", "table_html", "title"]
-
 _COLOURS = {"error": "#c0392b", "warning": "#9a6700", "good": "#2c6e49", "plain": "inherit", "soft": "#666666"}
 
 
