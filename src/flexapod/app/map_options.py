@@ -18,20 +18,10 @@ FORM = '"surge=-100mm..100mm", "roll=-20..20deg:41", or "heave" for as far as th
 
 
 def parse_axes(options: dict[str, str | None], count: int | None) -> dict[str, Range] | None:
-    """Axes by name from the texts of the options, in their order; None where no option is given.
+    """Axes by name from texts (``"surge=-100mm..100mm:41"``) by option (``"--x"``); None without any.
 
-    Parameters
-    ----------
-    options : dict
-        Text (``"surge=-100mm..100mm:41"``) by the option's name (``"--x"``).
-    count : int, optional
-        Points of each axis that names none.
-
-    Raises
-    ------
-    InputError
-        An unknown coordinate, one that is given twice, ends that are not lengths or angles, ends in the wrong order, no
-        points.
+    `count`: points of each axis that names none. InputError: an unknown coordinate, one that is given twice, ends that
+    are not lengths or angles or in the wrong order, no points.
     """
     axes: dict[str, Range] = {}
     for option, text in options.items():
@@ -79,10 +69,7 @@ def _count(option: str, text: str | None) -> int | None:
 def parse_at(text: str | None, axes: Collection[str] = ()) -> dict[str, float]:
     """Fixed coordinates from ``"roll=20deg,heave=10mm"``.
 
-    Raises
-    ------
-    InputError
-        Unknown coordinates, one given twice or one of the `axes`, something that is not a length or angle.
+    InputError: unknown coordinates, one given twice or one of the `axes`, something that is not a length or angle.
     """
     fixed: dict[str, float] = {}
     for part in (text or "").split(","):
@@ -102,10 +89,7 @@ def parse_at(text: str | None, axes: Collection[str] = ()) -> dict[str, float]:
 def parse_pose(text: str | None) -> dict[str, float] | None:
     """Surge, sway, heave [m], roll, pitch, yaw [rad] from ``"roll=20deg,heave=10mm"``; None: home.
 
-    Raises
-    ------
-    InputError
-        Unknown axes, something that is not a number with a unit of the right kind.
+    InputError: unknown axes, something that is not a number with a unit of the right kind.
     """
     if not text or not text.strip():
         return None

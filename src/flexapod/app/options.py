@@ -67,13 +67,7 @@ FORMATS = ("png", "svg", "pdf")  # of figures
 
 
 def parse_formats(text: str) -> tuple[str, ...]:
-    """Formats of figures from the text of ``--format``, each once: ``"png, PDF"`` gives ``("png", "pdf")``.
-
-    Raises
-    ------
-    InputError
-        One of them is unknown, or there is none.
-    """
+    """Formats of figures, each once, ``"png, PDF"`` gives ``("png", "pdf")``; unknown ones, and none, are refused."""
     names = tuple(dict.fromkeys(name.strip().lower() for name in text.split(",") if name.strip()))
     unknown = [name for name in names if name not in FORMATS]
     if unknown or not names:
@@ -88,13 +82,7 @@ def parse_formats(text: str) -> tuple[str, ...]:
 
 
 def results_folder(file: Path, command: str, out: Path | None) -> Path:
-    """Where a command's results go: `out`, else a folder of its own beside the study file, ``robot-run``.
-
-    Raises
-    ------
-    InputError
-        It cannot be written to.
-    """
+    """Where results go: `out`, else beside the study file, ``robot-run``; refused where it cannot be written to."""
     folder = file.with_name(f"{file.stem}-{command}") if out is None else out
     check_writable(folder)
     return folder

@@ -149,19 +149,9 @@ def cross_matrix(r: Array) -> Array:
 
 
 def solved(ties: Sequence[Tie], keep: Collection[Term] = ()) -> dict[Term, dict[Term, float]]:
-    """The ties without their q, solved for as many displacements as they determine.
+    """The ties without their q, solved for as many displacements as they determine: ``{a: {b: factor}}``.
 
-    Parameters
-    ----------
-    ties : sequence of Tie
-        Independent of each other; each with an unknown motion of its own.
-    keep : collection of Term
-        Displacements that must not be solved for.
-
-    Returns
-    -------
-    dict
-        ``{a: {b: factor}}`` for u_a = sum factor u_b; no a is a b.
+    No a is a b. Ties are independent, each with an unknown motion of its own; those in `keep` are not solved for.
     """
     terms = sorted({term for tie in ties for term in tie.terms})
     place = {term: i for i, term in enumerate(terms)}

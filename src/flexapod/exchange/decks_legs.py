@@ -109,10 +109,7 @@ def axial_inertia(leg: model.Leg) -> float:
 def legs_at_pose(robot: model.Robot, path: rigid.Poses, force: Array) -> list[LegAtPose]:
     """The legs at one pose; `force` (legs,) [N] of force drives.
 
-    Raises
-    ------
-    InputError
-        A leg that solid elements and point masses cannot stand for, or joints with springs away from home.
+    InputError: a leg that solid elements and point masses cannot stand for, or joints with springs away from home.
     """
     real, chains = limbs(robot), rigid.rigid_limbs(robot)
     q = legs_at(chains, path).q

@@ -43,24 +43,11 @@ class _Guided:
 
 
 def point_masses(mass: float, inertia: Array) -> tuple[Array, Array]:
-    """Point masses about the origin with the mass, the centre and the inertia of a body.
+    """Point masses (n,) [kg] at places (n, 3) [m] about the origin, with mass, centre and inertia of a body.
 
     A sixth of the mass at each of +-sqrt(3 c / m) on a principal axis, c the second moment of the mass along it (half
-    the trace of the inertia less the moment about that axis); in the centre what a flat or thin body leaves.
-
-    Parameters
-    ----------
-    mass : float
-        [kg]
-    inertia : ndarray, shape (3, 3)
-        About the centre of mass [kg m^2].
-
-    Returns
-    -------
-    places : ndarray, shape (n, 3)
-        [m]
-    masses : ndarray, shape (n,)
-        [kg]
+    the trace of the inertia (3, 3) about the centre [kg m^2] less the moment about that axis); in the centre what a
+    flat or thin body leaves.
     """
     moments, axes = np.linalg.eigh(0.5 * np.trace(inertia) * np.eye(3) - inertia)
     reach = np.sqrt(3 * np.maximum(moments, 0.0) / mass)

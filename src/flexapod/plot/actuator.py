@@ -51,9 +51,7 @@ def actuator_response(data: xr.Dataset | Mapping[int, xr.Dataset]) -> Figure:
         _differences(panels[1], series)
     length = panels[-1]
     length.plot(finest.time, finest.length, color="#333333")
-    length.set_ylabel("free length [m]")
-    length.set_title("Length outside the hub")
-    length.set_xlabel("time [s]")
+    length.set(ylabel="free length [m]", title="Length outside the hub", xlabel="time [s]")
     fig.align_ylabels(panels)
     return fig
 
@@ -74,8 +72,7 @@ def _responses(axes: Axes, series: Mapping[int, xr.Dataset]) -> None:
             towards = f", towards larger {_LARGER[k]}" if "direction" in d.dims else ""
             axes.plot(d.time, line, label=words + towards, **style, alpha=1 - 0.6 * k)
     axes.axhline(0, color="#555555", linewidth=0.7)
-    axes.set_title("Lateral deflection of the tip, in the frame of the hub")
-    axes.set_ylabel(f"deflection [{unit.name}]")
+    axes.set(title="Lateral deflection of the tip, in the frame of the hub", ylabel=f"deflection [{unit.name}]")
 
 
 def _differences(axes: Axes, series: Mapping[int, xr.Dataset]) -> None:
@@ -158,8 +155,7 @@ def actuator_modes(data: xr.Dataset) -> Figure:
         unit = scale(values if values.any() else lines, "m")
         axes.plot(data.time, unit(values), color=FLEXIBLE, linewidth=1.0)
         axes.axhline(0, color="#555555", linewidth=0.7)
-        axes.set_title(label)
-        axes.set_ylabel(f"amplitude [{unit.name}]")
+        axes.set(title=label, ylabel=f"amplitude [{unit.name}]")
     flat_on_the_scale_of_others(panels.tolist(), [float(np.abs(values).max()) for values in lines])
     panels[-1].set_xlabel("time [s]")
     fig.align_ylabels(panels)

@@ -167,11 +167,9 @@ def ladder(data: xr.Dataset) -> Figure:
     for axes, name in zip(row, names, strict=True):
         for (fidelity, basis), (color, mark, words) in _styles(data).items():
             _rung(axes, data, name, (fidelity, basis), color, mark, words)
-        axes.set_xscale("log")
-        axes.set_yscale("log")
+        axes.set(xscale="log", yscale="log")
         axes.margins(0.12, 0.08)
-        axes.set_xlabel("time of the run [s]")
-        axes.set_title(f"{_WORDS[name].capitalize()}: relative error")
+        axes.set(xlabel="time of the run [s]", title=f"{_WORDS[name].capitalize()}: relative error")
         _plain_times(axes, data)
     handles, labels = row[0].get_legend_handles_labels()
     fig.legend(

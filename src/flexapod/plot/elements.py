@@ -67,8 +67,7 @@ def solid_comparison(results: Mapping[str, xr.Dataset], reference: xr.Dataset) -
         style = {"color": LEG_COLORS[i], "linestyle": ("-", (0, (4, 3)))[i % 2], "linewidth": 1.3}
         above.plot(data.time, unit(data.tip_deflection), label=name, **style)
     above.axhline(0, color="#555555", linewidth=0.7)
-    above.set_title("Lateral deflection of the tip, in the frame of the hub")
-    above.set_ylabel(f"deflection [{unit.name}]")
+    above.set(title="Lateral deflection of the tip, in the frame of the hub", ylabel=f"deflection [{unit.name}]")
     fig.legend(*above.get_legend_handles_labels(), loc="outside upper center", ncols=3)
     _differences(below, results, reference)
     below.set_xlabel("time [s]")
@@ -83,8 +82,7 @@ def _differences(axes: Axes, results: Mapping[str, xr.Dataset], reference: xr.Da
         largest = f"{name}: at most {number(unit.factor * np.abs(gap).max(), 2)} {unit.name}"
         axes.plot(reference.time, unit(gap), color=LEG_COLORS[i], linewidth=1.0, label=largest)
     axes.axhline(0, color="#555555", linewidth=0.7)
-    axes.set_title("Difference from the assumed modes")
-    axes.set_ylabel(f"difference [{unit.name}]")
+    axes.set(title="Difference from the assumed modes", ylabel=f"difference [{unit.name}]")
     axes.legend(ncols=2, loc="upper left")
     axes.margins(y=0.35)
 
@@ -136,8 +134,7 @@ def _tips(axes: Axes, data: xr.Dataset) -> None:
     for name, words, color, _ in _guides(data):
         axes.plot(data.time, unit(data.tip_deflection.sel(guide=name)), color=color, linewidth=1.1, label=words)
     axes.set_title(f"Tip, elements of {number(1e3 * data.attrs['shown_element_length'], 2)} mm fixed to the beam")
-    axes.set_xlabel("time [s]")
-    axes.set_ylabel(f"deflection [{unit.name}]")
+    axes.set(xlabel="time [s]", ylabel=f"deflection [{unit.name}]")
 
 
 def _errors(axes: Axes, data: xr.Dataset) -> None:
@@ -160,8 +157,7 @@ def _errors(axes: Axes, data: xr.Dataset) -> None:
     axes.margins(y=0.12)
     _slope(axes, size.values, 0.45e2 * lowest.values[np.argmax(size.values)], 1)
     axes.set_title("Error of the tip, and order 1")
-    axes.set_xlabel("length of an element [mm]")
-    axes.set_ylabel("root mean square error [%]")
+    axes.set(xlabel="length of an element [mm]", ylabel="root mean square error [%]")
 
 
 def _slope(axes: Axes, sizes: np.ndarray, at_largest: float, order: int) -> None:
@@ -190,16 +186,14 @@ def _shifts(axes: Axes, data: xr.Dataset) -> None:
     axes.annotate("the mouth", (0.0, 0.0), xytext=(0, -3), textcoords="offset points", va="top", fontsize=NOTE)
     axes.margins(y=0.25)
     axes.set_title("Why: where the clamp seems to be")
-    axes.set_xlabel("part of the element at the mouth that is outside")
-    axes.set_ylabel("shift / element length, outwards")
+    axes.set(xlabel="part of the element at the mouth that is outside", ylabel="shift / element length, outwards")
 
 
 def _stiffnesses(axes: Axes, data: xr.Dataset) -> None:
     axes.loglog(data.stiffness, 1e2 * data.error_of_stiffness, _MARKS[1] + "-", color=LEG_COLORS[1], markersize=5)
     axes.margins(y=0.3)
     axes.set_title("Stiffness, for whole elements")
-    axes.set_xlabel("stiffness per length [N/m²]")
-    axes.set_ylabel("root mean square error [%]")
+    axes.set(xlabel="stiffness per length [N/m²]", ylabel="root mean square error [%]")
     place = {"xycoords": "axes fraction", "fontsize": NOTE, "color": "#555555"}
     axes.annotate("too soft: the clamp\nis behind the mouth", (0.02, 0.04), **place)
     axes.annotate("too stiff: the\nelement locks", (0.97, 0.3), ha="right", **place)

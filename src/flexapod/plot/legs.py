@@ -159,8 +159,7 @@ def tip_deflections(data: xr.Dataset) -> Figure:
     for axes, direction in zip(rows, data.direction.values, strict=True):
         for i, leg in enumerate(data.leg.values):
             _leg_line(axes, data, small(off.sel(leg=leg, direction=direction)), i)
-        axes.set_title("Piston tip " + words[str(direction)])
-        axes.set_ylabel(f"deflection [{small.name}]")
+        axes.set(title="Piston tip " + words[str(direction)], ylabel=f"deflection [{small.name}]")
         mark_end(axes, end, "motion ends" if axes is rows[0] else "")
     rows[-1].set_xlabel("time [s]")
     _leg_legend(fig, rows[0])

@@ -119,8 +119,7 @@ def _slices(data: xr.Dataset, values: xr.DataArray, unit: Scale, title: str, qua
 def _label(fig: Figure, grid, x: str, y: str) -> None:
     """Labels of the axes: below each column of slices; at the side once, where there are several."""
     if grid.size == 1:
-        grid[0, 0].set_xlabel(x)
-        grid[0, 0].set_ylabel(y)
+        grid[0, 0].set(xlabel=x, ylabel=y)
         return
     for column in grid.T:
         lowest = [axes for axes in column if axes.get_visible()][-1]
@@ -309,8 +308,7 @@ def _line(data: xr.Dataset, values: xr.DataArray, unit: Scale, title: str, quant
         here = not any(data.attrs.get(f"at_{other}", 0.0) for other in AXES)
         axes.axvline(0, color=OVER, linewidth=1.2, linestyle="-" if here else "--", label="home" if here else None)
     axes.set_xlim(*edges[[0, -1]])
-    axes.set_xlabel(_axis_label(name))
-    axes.set_ylabel(unit.name or WITHOUT_UNIT[quantity])
+    axes.set(xlabel=_axis_label(name), ylabel=unit.name or WITHOUT_UNIT[quantity])
     if np.isfinite(y).any():
         side = SCALARS[quantity]
         k = int(np.nanargmin(y) if side == "least" else np.nanargmax(y))

@@ -123,8 +123,7 @@ def _carry_labels(fig: Figure, stacks: Iterable[Stack]) -> None:
             row, column = _place(axes)
             beside = (other.get_ylabel() for other in panels if _place(other)[0] == row and other.get_ylabel())
             below = (other.get_xlabel() for other in panels if _place(other)[1] == column and other.get_xlabel())
-            axes.set_ylabel(axes.get_ylabel() or next(beside, ""))
-            axes.set_xlabel(axes.get_xlabel() or next(below, ""))
+            axes.set(ylabel=axes.get_ylabel() or next(beside, ""), xlabel=axes.get_xlabel() or next(below, ""))
 
 
 def _outer_labels(columns: Sequence[Stack]) -> None:

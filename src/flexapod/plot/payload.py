@@ -98,8 +98,7 @@ def com_path(data: xr.Dataset, axes: Sequence[str] = ("y", "z"), point: str = "c
         below.axhline(0, color="#555555", linewidth=0.7)
         if sizes[-1]:
             _peak(below, time, values, small.name)
-        below.set_xlabel("time [s]")
-        below.set_title(f"Flexible minus rigid, {axis.upper()}")
+        below.set(xlabel="time [s]", title=f"Flexible minus rigid, {axis.upper()}")
         mark_end(grid[0, column], end, "motion ends")
         mark_end(below, end)
     flat_on_the_scale_of_others(grid[1], sizes)
@@ -172,8 +171,7 @@ def deviation_by_cause(data: xr.Dataset) -> Figure:
         for cause, values in zip(map(str, parts.cause.values), lines[1:], strict=True):
             left.plot(time, values, color=_COLORS.get(cause), linewidth=1.2, label=words.get(cause, cause))
         left.axhline(0, color="#555555", linewidth=0.7)
-        left.set_title(f"{str(axis).upper()}, over time")
-        left.set_ylabel(f"deviation [{small.name}]")
+        left.set(title=f"{str(axis).upper()}, over time", ylabel=f"deviation [{small.name}]")
         mark_end(left, end, "motion ends" if row == 0 else "")
         size = np.abs(total.sel(axis=axis).values) if seen[-1] else np.linalg.norm(total.values, axis=1)
         _by_leg(right, parts.sel(axis=axis).isel(time=int(size.argmax())), small, str(axis))
@@ -198,8 +196,7 @@ def _by_leg(axes: Axes, parts: xr.DataArray, small: Scale, axis: str) -> None:
     axes.axhline(0, color="#555555", linewidth=0.7)
     axes.set_xticks(legs)
     axes.grid(axis="x", visible=False)
-    axes.set_ylabel(f"part [{small.name}]")
-    axes.set_title(f"{axis.upper()}, by leg at {float(parts.time):.2f} s")
+    axes.set(ylabel=f"part [{small.name}]", title=f"{axis.upper()}, by leg at {float(parts.time):.2f} s")
     axes.use_sticky_edges = False
     axes.margins(y=0.1)
 
@@ -235,8 +232,7 @@ def energies(data: xr.Dataset) -> Figure:
         "Balance: energies plus losses minus works, change since the start",
         "balance",
     )
-    rows[0].set_title("Energies and works, change since the start")
-    rows[0].set_ylabel(f"energy [{big.name}]")
+    rows[0].set(title="Energies and works, change since the start", ylabel=f"energy [{big.name}]")
     fig.legend(*rows[0].get_legend_handles_labels(), loc="outside upper center", ncols=3, handlelength=3)
     rows[-1].set_xlabel("time [s]")
     for axes in rows:
@@ -248,5 +244,4 @@ def energies(data: xr.Dataset) -> Figure:
 def _energy_line(axes: Axes, time: np.ndarray, values: xr.DataArray, title: str, label: str) -> None:
     small = scale(values, "J")
     axes.plot(time, small(values), color="#333333", linewidth=1.0)
-    axes.set_title(title)
-    axes.set_ylabel(f"{label} [{small.name}]")
+    axes.set(title=title, ylabel=f"{label} [{small.name}]")

@@ -195,8 +195,7 @@ def _histogram(y: _Shown, data: xr.Dataset) -> Figure:
         axes.annotate(f"{words}\n{value:.4g} {y.unit}", (value, 1.05 * top), **place)
     failed = int(_failed(data).sum())
     axes.set_title(f"{len(values)} draws{f', {failed} failed' if failed else ''}", fontsize=TEXT)
-    axes.set_xlabel(y.words)
-    axes.set_ylabel("points")
+    axes.set(xlabel=y.words, ylabel="points")
     axes.yaxis.set_major_locator(MaxNLocator(6, integer=True))
     return fig
 

@@ -107,13 +107,7 @@ def contents(links: Mapping[str, str]) -> str:
 
 
 def figure(title: str, png: bytes, plot: Mapping[str, object] | None = None) -> str:
-    """A picture with its title, held in the page itself; with `plot` it can be zoomed where scripts run.
-
-    Parameters
-    ----------
-    plot : mapping, optional
-        From `flexapod.report.interactive.interactive`.
-    """
+    """A picture with its title, held in the page itself; with `plot` (from `interactive`) scripts can zoom it."""
     image, caption = _image(title, png), f"<figcaption>{escape(title)}</figcaption>"
     tall = ["tall"] * _is_tall(png)
     if plot is None:
@@ -123,14 +117,9 @@ def figure(title: str, png: bytes, plot: Mapping[str, object] | None = None) -> 
 
 
 def replay(title: str, told: Mapping[str, object], still: tuple[str, bytes] | None = None) -> str:
-    """A moving picture with its controls.
+    """A moving picture with its controls; `told` is from `flexapod.report.replay.replay`.
 
-    Parameters
-    ----------
-    told : mapping
-        From `flexapod.report.replay.replay`.
-    still : tuple of title and picture (PNG), optional
-        What stands in its place on paper and where no scripts run.
+    `still`: title and picture (PNG) that stand in its place on paper and where no scripts run.
     """
     keys = "Space plays and stops, arrow keys step, Home and End go to the ends"
     controls = (

@@ -39,11 +39,8 @@ _UNIT = re.compile(r"\[([^\]]+)\]\s*$")
 def interactive(figure: Figure) -> dict[str, Any] | None:
     """Data and layout of a drawn figure in the form of plotly; None where it has something without a counterpart.
 
-    Parameters
-    ----------
-    figure : matplotlib.figure.Figure
-        Drawn or saved, so that its axes have their places. Curves of more than `MOST_POINTS` points are thinned:
-        of each interval the least and the largest value stay.
+    The figure is drawn or saved, so that its axes have their places. Curves of more than `MOST_POINTS` points are
+    thinned: of each interval the least and the largest value stay.
     """
     panels = [axes for axes in figure.axes if axes.get_visible()]
     if not panels or any(axes.name != "rectilinear" or axes.images or _maps(axes) or _drawn(axes) for axes in panels):

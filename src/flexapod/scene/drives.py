@@ -38,13 +38,7 @@ class Drives:
 
 
 def drives(data: Dataset) -> Drives:
-    """The drives of a robot's result.
-
-    Raises
-    ------
-    InputError
-        The result has none.
-    """
+    """The drives of a robot's result; InputError where the result has none."""
     legs = robot_of(data).legs if "leg" in data.coords else ()
     carried = any(leg.driven == "carriage" for leg in legs)
     names = _OF_ALL if carried else _OF_STROKES

@@ -45,12 +45,7 @@ class Instant:
 class RobotMotion:
     """The arrays of a robot's result that the scene draws, taken out of the Dataset once.
 
-    Attributes
-    ----------
-    time : ndarray, shape (T,)
-        Stored instants [s].
-    tool_apart : bool
-        Whether the tool is another point than the centre of mass.
+    `time` (T,): stored instants [s]; `tool_apart`: whether the tool is another point than the centre of mass.
     """
 
     def __init__(self, study: model.Study, data: Dataset) -> None:

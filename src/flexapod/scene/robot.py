@@ -19,13 +19,7 @@ if TYPE_CHECKING:
 
 
 def robot_study(data: Dataset) -> model.Study:
-    """The study of a robot that a result carries as text in its attributes.
-
-    Raises
-    ------
-    InputError
-        The result is one of a single actuator.
-    """
+    """The study of a robot that a result carries as text; InputError for that of a single actuator."""
     study = study_of(data)
     if not isinstance(study, model.Study):
         raise InputError("is the result of a single actuator", key="data", allowed="results of a robot")
@@ -56,17 +50,7 @@ def motion_coordinates(data: Dataset) -> Dataset:
 
 
 def scene(data: Dataset, time: float = 0.0, magnify: float = 1.0) -> Scene:
-    """The robot of a result at an instant.
-
-    Parameters
-    ----------
-    data : xarray.Dataset
-        Result of a simulation, with its study in the attributes.
-    time : float
-        Instant [s]; the nearest output is taken.
-    magnify : float
-        Factor on lateral deflections of the pistons.
-    """
+    """The robot of a result at the output nearest to `time` [s]; `magnify`: factor on deflections of the pistons."""
     robot, at = Skeleton(robot_of(data)), data.sel(time=time, method="nearest")
     R, com = matrix(at.platform_quaternion.values), at.com_position.values
     centre = com - R @ robot.com
@@ -86,18 +70,9 @@ def lateral_values(study: model.Study | model.ActuatorStudy, zeta: Array) -> Arr
 
 
 def mode_scene(modes: Dataset, mode: int, size: float, phase: float = 1.0) -> Scene:
-    """The robot displaced in one of its modes.
+    """The robot displaced in one of its modes: `mode` is its label in `modes`, a result of `flexapod.modes`.
 
-    Parameters
-    ----------
-    modes : xarray.Dataset
-        Result of `flexapod.modes`.
-    mode : int
-        Label on the `mode` dimension.
-    size : float
-        Largest displacement drawn [m].
-    phase : float
-        Between -1 and 1; 0 is the robot at rest.
+    `size`: largest displacement drawn [m]; `phase` between -1 and 1, 0 is the robot at rest.
     """
     robot, shape = Skeleton(robot_of(modes)), modes.sel(mode=mode)
     R = matrix(modes.platform_quaternion.values)
@@ -138,12 +113,7 @@ class BeamModes:
 def beam_modes(study: model.ActuatorStudy, points: int) -> BeamModes:
     """Modes of a study's beam at its free length, about the straight beam at rest, drawn with a number of points.
 
-    Raises
-    ------
-    InputError
-        A rigid beam.
-    ComputationError
-        The straight beam has buckled under its own load.
+    InputError: a rigid beam; ComputationError: the straight beam has buckled under its own load.
     """
     from flexapod.solve.actuator_modes import actuator_modes, amplitude_groups
     from flexapod.solve.shapes import actuator_shapes

@@ -64,15 +64,9 @@ class Scene:
 class Skeleton:
     """A robot as it is drawn: what does not change with its pose.
 
-    Attributes
-    ----------
-    robot : Robot
-    joints : tuple of (str, str)
-        Letters of the joints of each leg at base and platform: U, S, R, F, or "" where the leg is part of the platform.
-    com, tool : ndarray, shape (3,)
-        Centre of mass and tool of the payload in platform axes; without a payload the frame's origin.
-    guided : ndarray of int
-        Legs with a carriage.
+    `joints`: letters of the joints of each leg at base and platform, U, S, R, F, or "" where the leg is part of the
+    platform; `com`, `tool` (3,): of the payload in platform axes, without one the frame's origin; `guided`: legs with a
+    carriage.
     """
 
     def __init__(self, robot: model.Robot) -> None:
@@ -126,14 +120,9 @@ class Skeleton:
     def off_chord(self, line: Array, tip: Array, length: Array) -> Array:
         """Offsets of the pistons from the lines of their joints, (legs, 2, n) [m].
 
-        Parameters
-        ----------
-        line : ndarray, shape (legs, 2, n)
-            Offsets from the axes of the cylinders at n points spread evenly from mouth to tip [m].
-        tip : ndarray, shape (legs, 2)
-            Those of the tips: every cylinder leans so that its tip meets the platform.
-        length : ndarray, shape (legs,)
-            Joint to joint [m].
+        `line` (legs, 2, n): offsets from the axes of the cylinders at n points spread evenly from mouth to tip [m];
+        `tip` (legs, 2): those of the tips, every cylinder leans so that its tip meets the platform; `length` (legs,):
+        joint to joint [m].
         """
         return line - tip[:, :, None] * (self.along(length) / length[:, None])[:, None]
 

@@ -8,13 +8,7 @@ from collections.abc import Callable
 
 
 class Threads:
-    """Starts the threads of a session; an exception ends the thread that raised it, and nothing else.
-
-    Parameters
-    ----------
-    fault : callable
-        Called with the exception, in the thread that raised it.
-    """
+    """Threads of a session: an exception ends the thread that raised it, no other, and is given to `fault` there."""
 
     def __init__(self, fault: Callable[[BaseException], None]) -> None:
         self._fault = fault
@@ -34,12 +28,7 @@ class Threads:
 class Latest:
     """Calls `work` in a thread for the newest request; requests that come meanwhile lead to one more call.
 
-    Parameters
-    ----------
-    threads : Threads
-        Of the session; they tell what the work raises.
-    work : callable
-        Without arguments.
+    What the work raises is told by the `threads` of the session.
     """
 
     def __init__(self, threads: Threads, work: Callable[[], None]) -> None:

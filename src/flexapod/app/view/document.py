@@ -149,13 +149,7 @@ def bare(lines: Sequence[str]) -> list[str]:
 
 
 def checked(text: str, expected: object, key: str) -> str:
-    """The text where it reads as it should.
-
-    Raises
-    ------
-    InputError
-        The table is written in some other way, which the form does not change.
-    """
+    """The text where it reads as it should, else InputError: it is written in a way that the form does not change."""
     try:
         same = tomllib.loads(text) == expected
     except tomllib.TOMLDecodeError:

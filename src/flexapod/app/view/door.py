@@ -34,16 +34,9 @@ _ONE_AT_A_TIME = threading.Lock()
 
 
 class Door:
-    """What is asked of everybody who connects.
+    """What is asked of everybody who connects to `host`, where the server listens.
 
-    Parameters
-    ----------
-    host : str
-        Where the server listens.
-    name : str or None
-        Another name under which the page is reached.
-    left : callable
-        Called in the event loop when somebody has left.
+    `name`: another one under which the page is reached; `left`: called in the event loop when somebody has left.
     """
 
     def __init__(self, host: str, name: str | None, left: Callable[[], None]) -> None:
@@ -153,10 +146,7 @@ _PLAIN = re.compile(r"[a-z0-9.:\[\]-]+", re.IGNORECASE)
 def security_headers(asked: Sequence[str]) -> dict[str, str]:
     """What the page may load, who may embed it, and what a browser tells others of it.
 
-    Parameters
-    ----------
-    asked : sequence of str
-        Lines ``Host`` of the request: browsers that do not count websockets as 'self' are told the address.
+    `asked`: lines ``Host`` of the request; browsers that do not count websockets as 'self' are told the address.
     """
     policy = dict(_PAGE)
     if len(asked) == 1 and _PLAIN.fullmatch(asked[0]):

@@ -73,19 +73,9 @@ _NO_RESULTS = "There are no results yet: press Simulate, or wait until it is don
 class FilesPanel:
     """The tab "Files" of one client; one file is written or read at a time, in a thread of the session.
 
-    Parameters
-    ----------
-    client : viser.ClientHandle
-    threads : Threads
-        Of the session.
-    sent : Sent
-        The tables that this person has sent.
-    document : callable
-        Gives the study file as it stands.
-    study, data : callable
-        Give the study that is computed, and the results that are shown, or None.
-    on_upload : callable
-        Called with the document of a valid study file that was sent.
+    `sent`: the tables that this person has sent; `document`, `study`, `data` give the study file as it stands, the
+    study that is computed, and the results that are shown, or None; `on_upload` is called with the document of a valid
+    study file that was sent.
     """
 
     def __init__(

@@ -20,20 +20,9 @@ if TYPE_CHECKING:
 
 
 class Header:
-    """The top of the panel of one client.
+    """The top of the panel of one client: the `name` of the study, words, two buttons and what they do.
 
-    Parameters
-    ----------
-    client : viser.ClientHandle
-    name : str
-        Name of the study.
-    simulate, cancel : callable
-        What the two buttons do.
-
-    Attributes
-    ----------
-    said : str
-        The words that are shown (HTML).
+    `said`: the words that are shown (HTML).
     """
 
     def __init__(
@@ -84,14 +73,7 @@ class Header:
 
 
 class Picture:
-    """Words on the scene of one user, and two buttons.
-
-    Parameters
-    ----------
-    gui : viser.GuiApi
-    back, reset : callable
-        What the buttons do.
-    """
+    """Words on the scene of one user, and two buttons with what they do."""
 
     def __init__(self, gui: viser.GuiApi, back: Callable[[], None], reset: Callable[[], None]) -> None:
         self._words = gui.add_html("")

@@ -25,15 +25,8 @@ _NONE: tuple[str, ...] = ("",)
 class Knob:
     """A choice of a number and a slider from zero to twice its value.
 
-    Parameters
-    ----------
-    client : viser.ClientHandle
-    threads : Threads
-        Of the session.
-    turned, entered : callable
-        Called with key and value to write while the slider is dragged, and where a number is typed.
-    left : callable
-        As `widgets.Left`.
+    `turned`, `entered` are called with key and value to write while the slider is dragged, and where a number is typed;
+    `left` as `widgets.Left`.
     """
 
     def __init__(

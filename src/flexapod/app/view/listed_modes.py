@@ -29,16 +29,8 @@ _NONE: str = "none yet"
 class ModeShow:
     """Choice of a mode, button, amplitude and phase for one user.
 
-    Parameters
-    ----------
-    gui : viser.GuiApi
-    scene : Scene
-    threads : Threads
-        Of the session.
-    draw : callable
-        Called with the place of the mode in the list (0 is the first), amplitude as a share, phase between -1 and 1.
-    size : str
-        What the amplitude is a share of.
+    `draw` is called with the place of the mode in the list (0 is the first), amplitude as a share, phase between -1 and
+    1; `size`: what the amplitude is a share of.
     """
 
     def __init__(
@@ -141,16 +133,7 @@ class Listed(NamedTuple):
 
 
 class ListedModes(ABC, Generic[Study]):
-    """Controls of modes for one user.
-
-    Parameters
-    ----------
-    client : viser.ClientHandle
-    scene : Scene
-        It draws the modes.
-    threads : Threads
-        Of the session.
-    """
+    """Controls of modes for one user; the `scene` draws them."""
 
     size: str
     """What amplitudes are a share of."""

@@ -14,10 +14,7 @@ FIRST, TRIES = 8080, 100
 def free_port(host: str, port: int | None) -> int:
     """The port to listen on: `port`, or the first free one from 8080 on; 0 is any.
 
-    Raises
-    ------
-    InputError
-        The port is taken, or the host is none of this machine.
+    InputError: the port is taken, or the host is none of this machine.
     """
     problem = ""
     for number in [port] if port is not None else range(FIRST, FIRST + TRIES):
@@ -47,16 +44,8 @@ def is_expected(asked: str, host: str, name: str | None = None) -> bool:
     """Whether the page was asked for under an address or a name of this machine, which listens on `host`.
 
     A page of another site may have its own name point here (DNS rebinding) and would then count as this site: names
-    that are not this machine's are refused, unless `host` or `name` is that name.
-
-    Parameters
-    ----------
-    asked : str
-        The header ``Host``: name and port.
-    host : str
-        As `free_port`.
-    name : str, optional
-        Another name under which the page is reached, as through a proxy.
+    that are not this machine's are refused, unless `host` or `name` is that name. `asked`: the header ``Host``, name
+    and port; `name`: another one under which the page is reached, as through a proxy.
     """
     known = _parts(asked)[0].rstrip(".")
     if name is not None and known == name.lower().rstrip("."):

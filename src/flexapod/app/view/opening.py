@@ -31,10 +31,7 @@ _RESULTS = (".nc", ".nc4", ".netcdf")
 def open_source(file: Path) -> Source:
     """What a study file or results on disk begin with.
 
-    Raises
-    ------
-    InputError
-        As `flexapod.load`; or the file is not a result of a simulation.
+    InputError as of `flexapod.load`, or where the file is not a result of a simulation.
     """
     if file.suffix.lower() not in _RESULTS:
         study = model.load(file)

@@ -15,18 +15,8 @@ FRAME = 1 / 25  # time between two steps [s]
 class Player:
     """Steps at a fixed rate until it is stopped, the step says so, or something else takes the scene.
 
-    Parameters
-    ----------
-    scene : Scene
-        Its `driver` says who moves it.
-    threads : Threads
-        Of the session; they tell what a step raises, which ends the movement.
-    lock : lock
-        Held during a step.
-    step : callable
-        Called with the time since the step before [s]; returns whether there is more to come.
-    told : callable
-        Called with True at the start and False at the end.
+    The `driver` of the scene says who moves it. `step` is called with the time since the step before [s], under `lock`,
+    and returns whether there is more to come; `told` with True at the start and False at the end.
     """
 
     def __init__(

@@ -94,13 +94,7 @@ class RobotScene(Scene):
                 self._look_at(robot)
 
     def show_pose(self, pose: PoseLike) -> None:
-        """As `Scene.show_pose`; a pose as for `flexapod.modes`, in reach or not.
-
-        Raises
-        ------
-        InputError
-            It is not a pose.
-        """
+        """As `Scene.show_pose`; a pose as for `flexapod.modes`, in reach or not; InputError where it is not a pose."""
         with self.lock:
             if self._drawn is None:
                 return

@@ -33,14 +33,9 @@ class Turn:
 
 
 class Cores:
-    """Places for simulations, shared by all sessions of a server.
+    """Places for simulations, shared by all sessions of a server: `count`, else the cores that this process may use.
 
     Who has computed least comes first, so that short simulations pass long ones; long ones take turns.
-
-    Parameters
-    ----------
-    count : int, optional
-        How many; default: the cores that this process may use.
     """
 
     def __init__(self, count: int | None = None) -> None:
@@ -49,16 +44,9 @@ class Cores:
         self._queue: list[Turn] = []
 
     def take(self, turn: Turn, cancelled: Callable[[], bool], waits: Callable[[], None]) -> bool:
-        """Wait for a place; False where it was cancelled meanwhile. Who has one gives it back.
+        """Wait for a place for `turn`; False where it was `cancelled` meanwhile. Who has one gives it back.
 
-        Parameters
-        ----------
-        turn : Turn
-            Of the simulation that is to begin.
-        cancelled : callable
-            Whether the place is not wanted any more; `wake` makes those who wait look again.
-        waits : callable
-            Called once if it takes a while.
+        `wake` makes those who wait look again whether they are cancelled; `waits` is called once if it takes a while.
         """
         with self._changed:
             turn.since = time.monotonic()
@@ -130,17 +118,7 @@ class Watcher(Protocol):
 
 
 class Run:
-    """One simulation.
-
-    Parameters
-    ----------
-    study : Study or ActuatorStudy
-    threads : Threads
-        Of the session that asks for it.
-    cores : Cores
-        Of the server.
-    watcher : Watcher
-    """
+    """One simulation for a session, on the `cores` of the server; `watcher` is told how it goes."""
 
     def __init__(
         self, study: model.Study | model.ActuatorStudy, threads: Threads, cores: Cores, watcher: Watcher

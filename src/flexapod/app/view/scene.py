@@ -36,22 +36,11 @@ OF_RESULTS = ("rigid ghost", "paths", "deviation arrow")
 class Scene(ABC):
     """One user's scene. Every method may be called from any thread.
 
-    Attributes
-    ----------
-    data : xarray.Dataset or None
-        The result that is shown over time.
-    scale : float
-        Factor on deflections.
-    driver : object or None
-        Who moves the scene by itself (`Player`); who finds another one here stops.
-    quantities : tuple of str
-        What `colour_by` takes.
-    point : str
-        Whose deviation is drawn: ``tool`` of a robot whose tool is apart, unless the user wants ``com``.
-    drawn : str
-        In words what is drawn where that is not the result over time; "" where it is.
-    told : callable
-        Called where what is drawn, or the factor on it, has become another.
+    `data`: the result that is shown over time, or None; `scale`: factor on deflections; `driver`: who moves the scene
+    by itself (`Player`), who finds another one here stops; `quantities`: what `colour_by` takes; `point`: whose
+    deviation is drawn, ``tool`` of a robot whose tool is apart, unless the user wants ``com``; `drawn`: in words what
+    is drawn where that is not the result over time, else ""; `told` is called where what is drawn, or the factor on it,
+    has become another.
     """
 
     quantities: tuple[str, ...] = ("plain",)

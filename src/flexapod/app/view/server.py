@@ -35,16 +35,10 @@ SETTLED = 0.5  # time after somebody has left, when what they leave is collected
 
 
 class View:
-    """A running server.
+    """A running server that begins with `source` for everybody.
 
-    Parameters
-    ----------
-    source : Source
-        What everybody begins with.
-    host, port
-        Where to listen; the port must be free (see `free_port`).
-    name : str, optional
-        Another name under which the page is reached, as through a proxy.
+    It listens on `host` and the free `port` (see `free_port`); `name`: another one under which the page is reached, as
+    through a proxy.
     """
 
     def __init__(self, source: Source, host: str, port: int, name: str | None = None) -> None:

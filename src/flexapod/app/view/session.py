@@ -33,22 +33,9 @@ QUIET = 0.15  # time without a change after which the study is simulated [s]
 
 
 class Session:
-    """What one client sees and does.
+    """What one client sees and does, from `source` on; simulations of all sessions share the `cores` of the server.
 
-    Parameters
-    ----------
-    client : viser.ClientHandle
-    source : Source
-        What to begin with.
-    cores : Cores
-        Of the server: simulations of all sessions share them.
-
-    Attributes
-    ----------
-    study : Study or ActuatorStudy
-        The last valid one.
-    data : xarray.Dataset or None
-        Results of it.
+    `study`: the last valid one; `data`: results of it, or None.
     """
 
     def __init__(self, client: ClientHandle, source: Source, cores: Cores) -> None:

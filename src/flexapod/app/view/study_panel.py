@@ -27,18 +27,7 @@ _NOTHING = "add a value ..."
 
 
 class StudyPanel:
-    """The tab "Study" of one client.
-
-    Parameters
-    ----------
-    client : viser.ClientHandle
-    document : Document
-        The study file to begin with.
-    threads : Threads
-        Of the session.
-    on_edit : callable
-        Called with each `Edit`, valid or refused.
-    """
+    """The tab "Study" of one client; `on_edit` is called with each `Edit`, valid or refused."""
 
     def __init__(
         self, client: ClientHandle, document: Document, threads: Threads, on_edit: Callable[[Edit], None]

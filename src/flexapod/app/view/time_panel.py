@@ -30,17 +30,9 @@ SPEEDS = {"1/100": 0.01, "1/20": 0.05, "1/10": 0.1, "1/4": 0.25, "1/2": 0.5, "re
 
 
 class TimePanel:
-    """Controls of time for one user; made inside the tab that holds them.
+    """Controls of time for one user, which the scene follows; made inside the tab that holds them.
 
-    Parameters
-    ----------
-    client : viser.ClientHandle
-    scene : Scene
-        It follows the time of this panel.
-    threads : Threads
-        Of the session.
-    told_point : callable
-        Called after the user has chosen another point of the payload.
+    `told_point` is called after the user has chosen another point of the payload.
     """
 
     def __init__(

@@ -25,21 +25,10 @@ CROSSED = 2.0  # time after the server has written a text in which letters of a 
 
 
 class TypedText:
-    """A text field.
+    """A text field that shows `text` at first; `look` as `viser.GuiApi.add_text` takes it.
 
-    Parameters
-    ----------
-    gui : viser.GuiApi
-    threads : Threads
-        Of the session.
-    label, text : str
-        What it shows at first.
-    taken : callable
-        Called with a text that is another than the one before, never an empty one, and whether the field was left.
-    left : callable
-        Called after a field was left, with whether it was empty: it may `show` the value that holds.
-    **look
-        As `viser.GuiApi.add_text` takes it.
+    `taken` is called with a text that is another than the one before, never an empty one, and whether the field was
+    left; `left` after a field was left, with whether it was empty: it may `show` the value that holds.
     """
 
     def __init__(
@@ -129,13 +118,7 @@ def written(text: str, unit: str) -> object:
 
 
 def in_unit(text: str, unit: str, dimension: str, key: str) -> float:
-    """A typed text as a number in the unit that is shown.
-
-    Raises
-    ------
-    InputError
-        As `flexapod.units.to_si`.
-    """
+    """A typed text as a number in the unit that is shown; InputError as of `flexapod.units.to_si`."""
     read = number_and_unit(text)
     if read is not None and not read[1]:
         return to_si(float(read[0]), "number", key=key)
@@ -158,21 +141,8 @@ SETTLED = 0.3  # time without another movement after which the browser is told t
 class Dial:
     """Two inputs of one number; what is typed has the units of study files, and is refused beyond the ends.
 
-    Parameters
-    ----------
-    gui : viser.GuiApi
-    threads : Threads
-        Of the session.
-    name, unit : str
-        The unit of the number, "" for one without.
-    ends : tuple of float
-        Of the slider.
-    step, value : float
-        All whole, where the number is whole.
-    moved : callable
-        Called after a user has chosen another value.
-    dimension : str, optional
-        Of typed units (see `flexapod.units`).
+    `unit` of the number, "" for one without, and its `dimension` (see `flexapod.units`); `ends` of the slider; `step`
+    and `value` are whole where the number is; `moved` is called after a user has chosen another value.
     """
 
     def __init__(

@@ -36,13 +36,7 @@ class Sent:
 
 
 def refuse_size(name: str, size: int) -> None:
-    """Refuse a file that is too large, before it is taken in.
-
-    Raises
-    ------
-    InputError
-        It is larger than `LARGEST`.
-    """
+    """Refuse a file of more than `LARGEST` bytes before it is taken in."""
     if size > LARGEST:
         raise InputError(
             f"is too large: {size / 1e6:.3g} MB", file=_plain(name), allowed=f"at most {LARGEST / 1e6:g} MB"
@@ -50,20 +44,10 @@ def refuse_size(name: str, size: int) -> None:
 
 
 def read_upload(name: str, content: bytes, folder: Path) -> Document:
-    """The document of a sent study file.
+    """The document of a sent study file; of its `name` only the last part is used, for messages.
 
-    Parameters
-    ----------
-    name : str
-        Its name, as the browser gives it; only the last part is used, for messages.
-    content : bytes
-    folder : Path
-        Where the tables lie that the same person has sent before; no other file is read.
-
-    Raises
-    ------
-    InputError
-        Too large, no UTF-8, no TOML, no valid study, or it names a table that was not sent.
+    `folder`: where the tables lie that the same person has sent before; no other file is read. InputError: too large,
+    no UTF-8, no TOML, no valid study, or it names a table that was not sent.
     """
     name = _plain(name)
     refuse_size(name, len(content))
@@ -82,10 +66,7 @@ def read_upload(name: str, content: bytes, folder: Path) -> Document:
 def store_table(name: str, content: bytes, folder: Path) -> str:
     """Keep a sent CSV table for a study file that names it; returns the name it goes by.
 
-    Raises
-    ------
-    InputError
-        Too large, or no text; or with it there would be more than `MOST_TABLES` or `MOST_BYTES`.
+    InputError: too large, or no text; or with it there would be more than `MOST_TABLES` or `MOST_BYTES`.
     """
     name = _plain(name)
     refuse_size(name, len(content))
@@ -148,13 +129,7 @@ MOST_PARTS = 100
 
 
 def refuse_length(study: model.Study | model.ActuatorStudy) -> None:
-    """Refuse to simulate a study whose result would fill the memory of the server.
-
-    Raises
-    ------
-    InputError
-        It has more than `MOST_INSTANTS`.
-    """
+    """Refuse to simulate a study of more than `MOST_INSTANTS`, which would fill the memory of the server."""
     settings = study.simulation
     count = study.duration / settings.stored_step
     if count > MOST_INSTANTS:

@@ -49,13 +49,7 @@ class _File(msgspec.Struct, forbid_unknown_fields=True):
 
 
 class Visitor(ServerConnection):
-    """A connection whose messages are looked at before they are decoded.
-
-    Attributes
-    ----------
-    work : set of Future
-        Callbacks that wait or run for it.
-    """
+    """A connection whose messages are looked at before they are decoded; `work`: callbacks that wait or run for it."""
 
     def __init__(self, *args: Any, **options: Any) -> None:
         super().__init__(*args, **options)
@@ -119,12 +113,7 @@ def _kind(message: str | bytes) -> str:
 class Pool(ThreadPoolExecutor):
     """What a callback raises is told to the client that it belongs to; what waits for one holds up that one only.
 
-    Parameters
-    ----------
-    fault : callable
-        Called with the client's number, or None, and the exception.
-    visitor : callable
-        Gives the connection of a client's number, or None.
+    `fault` is called with the client's number, or None, and the exception; `visitor` gives the connection of a number.
     """
 
     def __init__(
