@@ -27,7 +27,7 @@ def _found(study: model.Study, found: RobotDescription) -> list[str]:
     lines = [
         f"Legs of {home} mm at home, {shortest} to {longest} mm; "
         f"pistons {text(leg.piston.diameter or 0.0, 'm')} thick and {text(leg.piston.length, 'm', 4)} long, mouths of "
-        f"the cylinders at {text(leg.cylinder.mouth, 'm', 4)}. Motion: {path}.",
+        f"the cylinders at {text(leg.cylinder.mouth, 'm', 4)}. Motion: {path}."
     ]
     pushed = max(leg.euler_share.value for leg in found.legs)
     bears = f"Pistons bear at most {number(100 * pushed, 2)} % of their Euler load"

@@ -164,10 +164,7 @@ class _Steps:
                 if progress is not None:
                     progress(i * h, count * h)
         return SlidingBeam(
-            mesh=self.mesh,
-            time=np.linspace(0.0, count * h, len(kept)),
-            unknowns=np.array(kept),
-            steps=count,
+            mesh=self.mesh, time=np.linspace(0.0, count * h, len(kept)), unknowns=np.array(kept), steps=count
         )
 
     def _advanced(self, i: int, u_free: Array, factor: float, guess: Array) -> tuple[Array, Array]:

@@ -34,12 +34,7 @@ class ModeShow:
     """
 
     def __init__(
-        self,
-        gui: viser.GuiApi,
-        scene: Scene,
-        threads: Threads,
-        draw: Callable[[int, float, float], None],
-        size: str,
+        self, gui: viser.GuiApi, scene: Scene, threads: Threads, draw: Callable[[int, float, float], None], size: str
     ) -> None:
         self._scene, self._draw, self._some = scene, draw, False
         self._begin, self.lock = 0.0, threading.RLock()

@@ -19,14 +19,7 @@ if TYPE_CHECKING:
 STRAIGHT = "Drawn without deflections."
 
 #: What can be shown and hidden, and whether it is shown at first.
-PARTS = {
-    "rigid ghost": True,
-    "paths": True,
-    "deviation arrow": True,
-    "labels": True,
-    "frames": False,
-    "grid": True,
-}
+PARTS = {"rigid ghost": True, "paths": True, "deviation arrow": True, "labels": True, "frames": False, "grid": True}
 
 
 #: Parts that show a result: hidden while there is none.
