@@ -5,6 +5,7 @@ from __future__ import annotations
 from typing import TYPE_CHECKING, Any
 
 import numpy as np
+import viser
 
 from flexapod import model
 from flexapod.app.view.legend import LEGEND_STYLE, rgb
@@ -24,7 +25,6 @@ from flexapod.study.words import number, text
 from flexapod.typing import Array
 
 if TYPE_CHECKING:
-    import viser
     from xarray import Dataset
 
     from flexapod.scene.robot import BeamModes

@@ -8,6 +8,7 @@ from itertools import cycle
 from typing import TYPE_CHECKING, Any
 
 import numpy as np
+import viser
 from numpy.typing import NDArray
 
 from flexapod.scene.colours import AXIS_COLORS, ENERGIES, colors_of_legs
@@ -18,7 +19,6 @@ from flexapod.study.words import NOTHING, cleared_lines, number, scale
 from flexapod.typing import Array
 
 if TYPE_CHECKING:
-    import viser
     from xarray import DataArray, Dataset
 
 MOST = 900  # instants of a drawn line: the extremes of each piece are kept

@@ -11,7 +11,7 @@ from collections.abc import Callable
 from pathlib import Path
 from typing import TYPE_CHECKING
 
-from viser import Icon, IconName
+from viser import ClientHandle, Icon, IconName
 
 from flexapod.app.view import words
 from flexapod.app.view.background import Threads
@@ -20,7 +20,6 @@ from flexapod.app.view.uploads import LARGEST, Sent, limit_uploads, read_upload,
 from flexapod.errors import FlexapodError
 
 if TYPE_CHECKING:
-    from viser import ClientHandle
     from xarray import Dataset
 
     from flexapod.model import ActuatorStudy, Study

@@ -8,14 +8,12 @@ from functools import cache
 from importlib.resources import files
 from typing import TYPE_CHECKING
 
-from viser import Icon
+import viser
+from viser import ClientHandle, Icon
 
 from flexapod.app.view import words
 
 if TYPE_CHECKING:
-    import viser
-    from viser import ClientHandle
-
     from flexapod.app.view.scene import Scene
 
 

@@ -5,16 +5,14 @@ from __future__ import annotations
 import math
 import threading
 from collections.abc import Callable, Sequence
-from typing import TYPE_CHECKING
+
+from viser import ClientHandle, GuiDropdownHandle, GuiSliderHandle
 
 from flexapod.app.view import words
 from flexapod.app.view.background import Threads
 from flexapod.app.view.document import Quantity, quantity
 from flexapod.app.view.typed import TypedText, by_user, plain, written
 from flexapod.model.fields import Field
-
-if TYPE_CHECKING:
-    from viser import ClientHandle, GuiDropdownHandle, GuiSliderHandle
 
 FIRST = ("leg.piston.diameter", "payload.mass", "actuator.EI")
 PARTS = 200  # steps of the slider

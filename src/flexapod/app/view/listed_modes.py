@@ -7,8 +7,9 @@ import threading
 import time
 from abc import ABC, abstractmethod
 from collections.abc import Callable, Sequence
-from typing import TYPE_CHECKING, Any, Generic, NamedTuple, TypeVar
+from typing import Any, Generic, NamedTuple, TypeVar
 
+import viser
 from viser import Icon
 
 from flexapod.app.view import words
@@ -18,9 +19,6 @@ from flexapod.app.view.scene import Scene
 from flexapod.app.view.typed import Dial, by_user
 from flexapod.errors import FlexapodError
 from flexapod.study.words import text
-
-if TYPE_CHECKING:
-    import viser
 
 SHOWN_FREQUENCY = 0.5  # of the drawn motion, whatever the mode's own [Hz]
 _NONE: str = "none yet"

@@ -7,6 +7,7 @@ import threading
 from typing import TYPE_CHECKING
 
 import numpy as np
+import viser
 from viser import Icon
 
 from flexapod import model, rigid
@@ -21,8 +22,6 @@ from flexapod.scene.skeleton import Skeleton
 from flexapod.study.words import held, number, text
 
 if TYPE_CHECKING:
-    import viser
-
     from flexapod.scene.robot import BeamModes as Shapes
 
 

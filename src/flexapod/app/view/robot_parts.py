@@ -3,9 +3,10 @@
 from __future__ import annotations
 
 from collections.abc import Callable
-from typing import TYPE_CHECKING, Any, Literal
+from typing import Any, Literal
 
 import numpy as np
+import viser
 
 from flexapod import model
 from flexapod.app.view.legend import rgb
@@ -15,9 +16,6 @@ from flexapod.scene.geometry import ROUNDING, Instant, orientation, plate, round
 from flexapod.scene.skeleton import STATIONS, Scene, Skeleton
 from flexapod.study.words import number, text
 from flexapod.typing import Array
-
-if TYPE_CHECKING:
-    import viser
 
 
 class Nodes:

@@ -8,6 +8,7 @@ from dataclasses import dataclass
 from typing import TYPE_CHECKING
 
 import numpy as np
+import viser
 
 from flexapod import model, rigid
 from flexapod.app.view.legend import QUANTITIES, LegColors, leg_colors, plain_legend, rgb
@@ -22,7 +23,6 @@ from flexapod.study.words import number
 from flexapod.typing import Array
 
 if TYPE_CHECKING:
-    import viser
     from xarray import Dataset
 
 

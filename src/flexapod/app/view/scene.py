@@ -7,11 +7,12 @@ from abc import ABC, abstractmethod
 from collections.abc import Callable
 from typing import TYPE_CHECKING, Any
 
+import viser
+
 from flexapod.study.words import number, text
 from flexapod.typing import Array
 
 if TYPE_CHECKING:
-    import viser
     from xarray import Dataset
 
     from flexapod.scene.geometry import ActuatorMotion, RobotMotion

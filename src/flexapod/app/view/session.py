@@ -7,7 +7,7 @@ import traceback
 from pathlib import Path
 from typing import TYPE_CHECKING, Any
 
-from viser import Icon
+from viser import ClientHandle, Icon
 
 from flexapod import model
 from flexapod.app.view import words
@@ -26,7 +26,6 @@ from flexapod.app.view.uploads import Sent, refuse_length
 from flexapod.errors import FlexapodError
 
 if TYPE_CHECKING:
-    from viser import ClientHandle
     from xarray import Dataset
 
 QUIET = 0.15  # time without a change after which the study is simulated [s]

@@ -5,9 +5,9 @@ from __future__ import annotations
 import threading
 import tomllib
 from collections.abc import Callable, Collection
-from typing import TYPE_CHECKING, Any
+from typing import Any
 
-from viser import Icon
+from viser import ClientHandle, Icon
 
 from flexapod.app.view import words
 from flexapod.app.view.background import Threads
@@ -18,9 +18,6 @@ from flexapod.app.view.structure import Offer, offers, parted, without_rows
 from flexapod.app.view.widgets import Setter, add_widget, signature
 from flexapod.errors import InputError
 from flexapod.model.fields import Field, read_fields
-
-if TYPE_CHECKING:
-    from viser import ClientHandle
 
 OPEN = ("[motion]",)
 _NOTHING = "add a value ..."

@@ -6,6 +6,7 @@ import threading
 from collections.abc import Callable
 from typing import TYPE_CHECKING
 
+import viser
 from viser import Icon
 
 from flexapod.app.view import words
@@ -19,7 +20,6 @@ from flexapod.scene.geometry import nearest
 from flexapod.study.after.summary import POINT_WORDS
 
 if TYPE_CHECKING:
-    import viser
     from xarray import Dataset
 
 CHART_FRAMES = 4  # updates of the scene between two of the chart

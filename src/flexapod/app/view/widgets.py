@@ -5,6 +5,8 @@ from __future__ import annotations
 from collections.abc import Callable, Sequence
 from typing import TYPE_CHECKING, NamedTuple
 
+from viser import GuiApi
+
 from flexapod.app.view.document import Quantity, quantity
 from flexapod.app.view.typed import TypedText, by_user, plain, written
 from flexapod.errors import InputError
@@ -12,8 +14,6 @@ from flexapod.model.fields import Field
 from flexapod.units import DIMENSIONS, to_si
 
 if TYPE_CHECKING:
-    from viser import GuiApi
-
     from flexapod.app.view.background import Threads
 
 #: Called with a field's key, or the key of one component, the value to write, and whether it is still being typed.
