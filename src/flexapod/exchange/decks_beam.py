@@ -22,39 +22,19 @@ def clamped_frequencies(
 ) -> str:
     """Deck for the lowest `count` frequencies of a solid whose end x = 0 is clamped at all nodes.
 
-    Parameters
-    ----------
-    mesh : SolidMesh
-        Of the whole section.
-    E, density : float
-        Young's modulus [Pa], density [kg/m^3].
-    poisson : float
-    reduced : bool
-        Reduced integration, of quadratic elements.
-    count : int
+    `mesh` is of the whole section; `E` [Pa], `density` [kg/m^3]; `reduced`: reduced integration, of quadratic elements.
     """
     deck, _ = _clamped(mesh, E, density, poisson, reduced)
     deck.write("*STEP", "*FREQUENCY", str(count), "*END STEP")
     return deck.text
 
 
-def clamped_release(
-    mesh: SolidMesh, *, E: float, density: float, force: float, duration: float, step: float, reduced: bool = False
-) -> str:
-    """Deck for the static shape under a force along y on the end, then free vibration from rest.
+def clamped_release(mesh: SolidMesh, *, E: float, density: float, force: float, duration: float, step: float) -> str:
+    """Deck for the static shape under a `force` [N] along y on the end, then free vibration from rest.
 
-    The force is shared by the nodes of the end face alike, which at Poisson's ratio 0 only moves it within the
-    section. The average acceleration method (ALPHA = 0) keeps the energy. Displacements of set TIP are printed at
-    every step.
-
-    Parameters
-    ----------
-    mesh, E, density
-        As for `clamped_frequencies`, Poisson's ratio 0.
-    force : float
-        [N]
-    duration, step : float
-        [s]
+    The force is shared by the nodes of the end face alike, which at Poisson's ratio 0 only moves it within the section.
+    The average acceleration method (ALPHA = 0) keeps the energy. Displacements of set TIP are printed at every step.
+    `duration`, `step` [s].
     """
     deck, tip = _clamped(mesh, E, density, 0.0, False)
     share = [f"{node}, 2, {number(force / len(tip))}" for node in tip]

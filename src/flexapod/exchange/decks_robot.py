@@ -61,11 +61,8 @@ def point_masses(mass: float, inertia: Array) -> tuple[Array, Array]:
 def write_payload(deck: Deck, payload: PayloadAtPose, held: NDArray[np.bool_]) -> Carriers:
     """The payload as point masses that move as one body; `held` (6,): motions that it does not have, world axes.
 
-    Returns
-    -------
-    dict
-        Six displacements, fewer where some motions are held, and of each the motion it causes with the others zero: of
-        the centre of mass [1], and rotation [1/m], world axes.
+    Gives six displacements, fewer where some motions are held, and of each the motion it causes with the others zero:
+    of the centre of mass [1], and rotation [1/m], world axes.
     """
     places, masses = point_masses(payload.mass, payload.inertia)
     nodes = _masses(deck, payload.com + places, masses, "PAYLOAD")

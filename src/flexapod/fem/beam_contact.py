@@ -54,12 +54,8 @@ def settle(contact: Contact, stiffness: Array, load: Array, u: Array) -> Array:
     """State (N,) with ``stiffness`` u = ``load`` + force of the contact, from the guess ``u``.
 
     The minimum of a convex function of pieces that are quadratic: Newton's method with halved steps ends on the piece
-    of the solution, where a whole step is exact.
-
-    Raises
-    ------
-    ComputationError
-        It does not end, or the matrix is not positive definite.
+    of the solution, where a whole step is exact. ComputationError: it does not end, or the matrix is not positive
+    definite.
     """
     if not contact.gap:
         return band_solve(stiffness + contact.matrix(), load)

@@ -58,23 +58,12 @@ def march_sliding_beam(
 ) -> SlidingBeam:
     """Motion of the study's beam, meshed along its whole length, through ``guide``.
 
-    Parameters
-    ----------
-    study : ActuatorStudy
-        Rotation and extension prescribed, no damping; its fidelity and number of shapes are not used.
-    elements : int
-    guide : Guide
-    step, duration, output_step : float
-        [s]; of the study where not given. ``output_step`` is rounded to whole steps.
-    progress : callable, optional
-        Called with simulated and whole time [s].
+    Rotation and extension are prescribed, without damping; fidelity and number of shapes of the study are not used.
+    `step`, `duration`, `output_step` [s]: of the study where not given, ``output_step`` rounded to whole steps;
+    `progress` is called with simulated and whole time [s].
 
-    Raises
-    ------
-    InputError
-        Free rotation or extension, rates that jump, damping, or a beam that leaves the guide or is wholly in it.
-    ComputationError
-        Contact does not settle, or the matrix of a step is not positive definite.
+    InputError: free rotation or extension, rates that jump, damping, or a beam that leaves the guide or is wholly in
+    it; ComputationError: contact does not settle, or the matrix of a step is not positive definite.
     """
     mesh = beam_mesh(study.actuator, elements)
     end = study.duration if duration is None else duration

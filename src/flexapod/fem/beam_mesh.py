@@ -70,13 +70,10 @@ class BeamGrid:
 class BeamMesh(BeamGrid):
     """A grid with its matrices.
 
-    Attributes
-    ----------
-    mass, transverse, bending, tension, spin : (4, 2 n + 2) arrays
-        Symmetric matrices in upper band form: inertia with and without that of the tip body's rotation,
-        EI u'' u''^T, and the integrals of the two parts of the axial force, Eqs. (T11.3)-(T11.4).
-    push, turn : (2 n + 2,) arrays
-        Lateral loads per uniform acceleration, and what an angular acceleration adds by distance from the tip.
+    `mass`, `transverse`, `bending`, `tension`, `spin` (4, 2 n + 2): symmetric, in upper band form, inertia with and
+    without that of the tip body's rotation, EI u'' u''^T, and the integrals of the two parts of the axial force, Eqs.
+    (T11.3)-(T11.4); `push`, `turn` (2 n + 2,): lateral loads per uniform acceleration, and what an angular acceleration
+    adds by distance from the tip.
     """
 
     mass: Array = field(repr=False)
@@ -107,10 +104,7 @@ def gauss() -> tuple[Array, Array]:
 def beam_mesh(beam: Actuator, elements: int) -> BeamMesh:
     """Mesh of ``elements`` equal elements on the whole ``beam``.
 
-    Raises
-    ------
-    InputError
-        Fewer than four elements, or a beam with damping, which has no meaning at fixed material points.
+    InputError: fewer than four elements, or a beam with damping, which has no meaning at fixed material points.
     """
     if elements < 4:
         raise InputError("is too few for a beam that is partly in its guide", key="elements", value=elements,

@@ -17,10 +17,7 @@ from flexapod.typing import Array
 def banded_solver(matrix: csr_array) -> Callable[[Array], Array]:
     """Cholesky factors of a symmetric positive definite banded matrix, as a function right-hand side -> solution.
 
-    Raises
-    ------
-    ComputationError
-        The matrix is not positive definite: the body is not held.
+    ComputationError: the matrix is not positive definite, the body is not held.
     """
     from scipy.linalg import LinAlgError, cho_solve_banded, cholesky_banded
 
@@ -39,28 +36,10 @@ def banded_solver(matrix: csr_array) -> Callable[[Array], Array]:
 
 
 def frequencies(mesh: SolidMesh, *, E: float, density: float, poisson: float = 0.0, count: int = 6) -> Array:
-    """Lowest natural frequencies of a solid whose end x = 0 is clamped at all nodes.
+    """Lowest `count` natural frequencies [Hz] of a solid whose end x = 0 is clamped at all nodes, ascending.
 
-    Parameters
-    ----------
-    mesh : SolidMesh
-        Of the whole section all kinds of modes, of a half or quarter only bending in the plane of y.
-    E, density : float
-        Young's modulus [Pa], density [kg/m^3].
-    poisson : float
-        Poisson's ratio, -1 < poisson < 0.5.
-    count : int
-        How many.
-
-    Returns
-    -------
-    (count,) array
-        [Hz], ascending.
-
-    Raises
-    ------
-    InputError
-        Material or mesh that are not physical.
+    `mesh` of the whole section: all kinds of modes; of a half or quarter: only bending in the plane of y. `E` [Pa],
+    `density` [kg/m^3], Poisson's ratio `poisson` from 0, below 0.5. InputError: material or mesh that are not physical.
     """
     check_material(E, density, poisson)
     free = free_unknowns(mesh.nodes[:, 1:], mesh.section)

@@ -22,21 +22,9 @@ _EDGES = [(0, 1), (1, 2), (2, 3), (3, 0), (4, 5), (5, 6), (6, 7), (7, 4), (0, 4)
 class Integrals:
     """Shape functions of all elements at their Gauss points, fully integrated (2 or 3 points a direction).
 
-    Attributes
-    ----------
-    mesh : SolidMesh
-    x : (m, q, 3) array
-        Points [m].
-    weight : (m, q) array
-        Volumes [m^3]; those of the symmetric copies are counted in.
-    shape : (q, a) array
-        Shape functions.
-    gradient : (m, q, a, 3) array
-        Their gradients [1/m].
-    places : (q, 3) array
-        The points in the reference cube [0, 1]^3.
-    jacobian : (m, q, 3, 3) array
-        dx_i / dxi_j there [m].
+    `x` (m, q, 3): points [m]; `weight` (m, q): volumes [m^3], those of the symmetric copies counted in; `shape` (q, a)
+    and `gradient` (m, q, a, 3) [1/m] of the shape functions; `places` (q, 3): the points in the reference cube [0,
+    1]^3; `jacobian` (m, q, 3, 3): dx_i / dxi_j there [m].
     """
 
     mesh: SolidMesh
@@ -49,13 +37,7 @@ class Integrals:
 
 
 def integrals(mesh: SolidMesh) -> Integrals:
-    """Shape functions, gradients and volumes at the Gauss points of a mesh.
-
-    Raises
-    ------
-    InputError
-        An element is degenerate or turned inside out.
-    """
+    """Shape functions, gradients and volumes at the Gauss points; refuses elements that are degenerate."""
     from skfem import ElementHex1, ElementHexS2
     from skfem.quadrature import get_quadrature
     from skfem.refdom import RefHex

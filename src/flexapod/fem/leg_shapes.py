@@ -30,24 +30,10 @@ def solid_leg_shapes(
     Shapes are section averages of deflection and rotation at 24 equal intervals, cubic between them; the stiffness is
     the solid's strain energy at ``length``, shear and mouth included. Material cancels but for Poisson's ratio.
 
-    Parameters
-    ----------
-    section : Tube or Rectangle
-    length : float
-        Free length of the piston [m]; the basis is used at other lengths with the stiffness scaled as that of a beam.
-    count : int
-        Shapes, 1 to 12.
-    size : float, optional
-        Wanted edge of the elements [m]; default a sixth of the larger side of the section, at most an interval.
-    poisson : float
-        Poisson's ratio.
-    moment : bool
-        The tip takes a moment from a joint: the static shape under one takes the place of the last mode.
-
-    Raises
-    ------
-    InputError
-        Sizes or counts that do not fit.
+    `length`: free length of the piston [m]; the basis is used at other lengths with the stiffness scaled as that of a
+    beam. `count`: shapes, 1 to 12. `size`: wanted edge of the elements [m], default a sixth of the larger side of the
+    section, at most an interval. `moment`: the tip takes a moment from a joint, the static shape under one takes the
+    place of the last mode. InputError: sizes or counts that do not fit.
     """
     if not 1 <= count <= 12:
         raise InputError("is not a number of shapes", key="count", value=count, allowed="1 to 12")

@@ -16,19 +16,12 @@ MOST = 1_000_000  # elements: some 10 million unknowns
 
 @dataclass(frozen=True, kw_only=True)
 class SolidMesh:
-    """Hexahedra of a straight beam along x, bending along y.
+    """Hexahedra of a straight beam of `length` [m] along x, bending along y.
 
-    Attributes
-    ----------
-    nodes : (n, 3) array
-        Coordinates [m]; numbered from x = 0 to x = length, plane by plane.
-    elements : (m, 8) or (m, 20) array
-        Nodes of each element from 0, in the order of Abaqus and CalculiX (C3D8, C3D20): four corners of the end at
-        smaller x, four of the other end, then the middles of the edges of either end and of those along x.
-    section : SectionMesh
-        What was drawn out; says which halves are meshed.
-    length : float
-        [m]
+    `nodes` (n, 3) [m]: numbered from x = 0 to x = length, plane by plane; `elements` (m, 8) or (m, 20): nodes of each
+    element from 0, in the order of Abaqus and CalculiX (C3D8, C3D20), four corners of the end at smaller x, four of the
+    other end, then the middles of the edges of either end and of those along x; `section`: what was drawn out, says
+    which halves are meshed.
     """
 
     nodes: Array
@@ -57,22 +50,11 @@ def beam_mesh(
 ) -> SolidMesh:
     """Hexahedra with edges near ``size`` [m] in a straight beam of ``length`` [m] along x.
 
-    Parameters
-    ----------
-    section : Tube or Rectangle
-        A rectangle bends along its height, which lies along y.
-    length, size : float
-        Beam and wanted element edge [m].
-    kind : {"hex20", "hex8", "hex8r", "hex8i"}
-        Quadratic serendipity elements, whose edges follow a circle, or linear ones: with full integration, with
-        reduced integration, with incompatible modes.
-    whole : bool
-        Whole section, else the half or quarter that bending in the plane of y leaves independent.
+    A rectangle bends along its height, which lies along y. `kind`: "hex20", quadratic serendipity elements, whose edges
+    follow a circle, or linear ones, "hex8" with full integration, "hex8r" with reduced integration, "hex8i" with
+    incompatible modes. `whole` section, else the half or quarter that bending in the plane of y leaves independent.
 
-    Raises
-    ------
-    InputError
-        A size that is not positive, longer than the beam or too small; an unknown kind; a beam without length.
+    InputError: a size that is not positive, longer than the beam or too small; an unknown kind; a beam without length.
     """
     _check(length, size)
     check_count(section, length, size, MOST)

@@ -12,17 +12,11 @@ from flexapod.typing import Array
 
 @dataclass(frozen=True, kw_only=True)
 class Mouth:
-    """How the flexibility at a station grows with its distance from the mouth, and where the stations are.
+    """How the flexibility at a station of `model` grows with its distance from the mouth.
 
-    Attributes
-    ----------
-    model : StationModel
-    bending : float
-        1 / EI of the solid far from its ends [1/(N m^2)].
-    end_rotation : float
-        Rotation of the mouth region per moment [rad/(N m)], beyond that of a beam; 0 at Poisson's ratio 0.
-    end_deflection : float
-        Deflection per force and per distance, of shear and of the mouth region [1/N].
+    `bending`: 1 / EI of the solid far from its ends [1/(N m^2)]; `end_rotation`: rotation of the mouth region per
+    moment [rad/(N m)], beyond that of a beam, 0 at Poisson's ratio 0; `end_deflection`: deflection per force and per
+    distance, of shear and of the mouth region [1/N].
     """
 
     model: StationModel

@@ -26,25 +26,11 @@ MOST = 20_000  # elements of an interval: its condensation is dense, one or two 
 class StationModel:
     """A whole straight solid beam, not held, in its section averages (w, theta) at n + 1 stations.
 
-    Stations lie at the distances ``xi = spacing * (0, 1, .. n)`` from the tip; unknowns are w [m], theta [rad] of the
-    first, the second, ... Matrices (2n + 2, 2n + 2), Eqs. (T10.9)-(T10.11).
-
-    Attributes
-    ----------
-    spacing : float
-        [m]
-    stiffness, mass : arrays
-        Elastic stiffness and inertia.
-    slopes : (3, 2n + 2, 2n + 2) array
-        Stiffness of axial forces 1, xi and xi^2 [N].
-    loads : (2, 2n + 2) array
-        Loads of lateral forces rhoA and rhoA xi per length.
-    mass_per_length : float
-        [kg/m]
-    section_size : float
-        Largest extent of the section: end effects fade over a few of it [m].
-    unknowns : int
-        Displacements of the solid mesh of the whole beam.
+    Stations lie at the distances ``xi = spacing * (0, 1, .. n)`` [m] from the tip; unknowns are w [m], theta [rad] of
+    the first, the second, ... Matrices (2n + 2, 2n + 2), Eqs. (T10.9)-(T10.11): elastic `stiffness`, `mass`, `slopes`
+    (3, ...), the stiffness of axial forces 1, xi and xi^2 [N]; `loads` (2, 2n + 2) of lateral forces rhoA and rhoA xi
+    per length; `mass_per_length` [kg/m]; `section_size` [m]: largest extent of the section, end effects fade over a few
+    of it; `unknowns`: displacements of the solid mesh of the whole beam.
     """
 
     spacing: float
@@ -80,22 +66,9 @@ def reduced_beam(
 ) -> StationModel:
     """Solid beam of elements near ``size`` [m] condensed onto stations near ``spacing`` [m].
 
-    Parameters
-    ----------
-    section : Tube or Rectangle
-    length, size : float
-        Beam and wanted element edge [m].
-    E, density, poisson : float
-        Young's modulus [Pa], density [kg/m^3], Poisson's ratio.
-    kind : {"hex20", "hex8", "hex8r", "hex8i"}
-        Quadratic hexahedra; linear ones with full integration, reduced integration, incompatible modes.
-    spacing : float, optional
-        Default: a 36th of the beam, at least one element.
-
-    Raises
-    ------
-    InputError
-        Sizes that are not positive or do not fit; material that is not physical.
+    `E` [Pa], `density` [kg/m^3], Poisson's ratio `poisson`; `kind` of elements as of `beam_mesh`; default `spacing`: a
+    36th of the beam, at least one element. InputError: sizes that are not positive or do not fit, material that is not
+    physical.
     """
     check_material(E, density, poisson)
     wanted = max(length / 36, size) if spacing is None else spacing

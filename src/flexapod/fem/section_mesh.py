@@ -28,18 +28,10 @@ _Patch = tuple[Callable[[Array, Array], Array], int, int]
 class SectionMesh:
     """A section, or the half or quarter of it that bending in the plane of y leaves independent.
 
-    Attributes
-    ----------
-    points : (n, 2) array
-        y (direction of bending) and z (across) [m].
-    quads : (m, 4) or (m, 8) array
-        Corners counter-clockwise seen against x, then middles of the edges.
-    corners : (n,) bool array
-        Points that are corners, not middles.
-    half_y, half_z : bool
-        Only y >= 0, only z >= 0 is meshed; the rest follows by symmetry.
-    kind : str
-        Of the solid elements that stand on the quadrilaterals, one of `KINDS`.
+    `points` (n, 2): y (direction of bending) and z (across) [m]; `quads` (m, 4) or (m, 8): corners counter-clockwise
+    seen against x, then middles of the edges; `corners` (n,): points that are corners, not middles; `half_y`, `half_z`:
+    only y >= 0, only z >= 0 is meshed, the rest follows by symmetry; `kind` of the solid elements that stand on the
+    quadrilaterals, one of `KINDS`.
     """
 
     points: Array
@@ -56,23 +48,11 @@ class SectionMesh:
 
 
 def section_mesh(section: Tube | Rectangle, size: float, kind: str, *, whole: bool = True) -> SectionMesh:
-    """Quadrilaterals of edges near ``size`` [m] in a section.
+    """Quadrilaterals of edges near ``size`` [m] in a section; at least one element lies across every thickness.
 
-    Parameters
-    ----------
-    section : Tube or Rectangle
-        A rectangle bends along its height.
-    size : float
-        Wanted length of the edges [m]; at least one element lies across every thickness.
-    kind : {"hex8", "hex8r", "hex8i", "hex20"}
-        Of the solid elements that stand on the quadrilaterals.
-    whole : bool
-        Else the half z >= 0, and of it only y >= 0 where no element lies across y = 0.
-
-    Raises
-    ------
-    InputError
-        Unknown kind, or a size that is not positive.
+    A rectangle bends along its height. `kind` of the solid elements that stand on the quadrilaterals, one of `KINDS`.
+    `whole`, else the half z >= 0, and of it only y >= 0 where no element lies across y = 0. InputError: unknown kind,
+    or a size that is not positive.
     """
     if kind not in KINDS:
         raise InputError("is not a kind of solid element", key="kind", value=kind, allowed=", ".join(KINDS))

@@ -22,22 +22,9 @@ _SQUARED = _WEIGHTS @ _WEIGHTS
 def gauss_step(
     mass: Array, stage: Callable[[float], tuple[Array, Array]], t: float, h: float, a: Array, a_dot: Array
 ) -> tuple[Array, Array]:
-    """State after one step.
+    """State a, a_dot (n,) after one step of length `h` from `t` [s], with a constant `mass` (n, n).
 
-    Parameters
-    ----------
-    mass : (n, n) array
-        Constant over the step.
-    stage : callable
-        Stiffness (n, n) and load (n,) at an instant [s].
-    t, h : float
-        Start and length of the step [s].
-    a, a_dot : (n,) arrays
-
-    Returns
-    -------
-    tuple of (n,) arrays
-        a and a_dot at t + h.
+    `stage` gives stiffness (n, n) and load (n,) at an instant [s].
     """
     n = len(a)
     big, right = np.empty((2 * n, 2 * n)), np.empty(2 * n)
@@ -150,29 +137,12 @@ def slide(
 ) -> Array:
     """Tip deflection [m] at the instants ``output`` [s] of a beam released from its static shape under a tip force.
 
-    Fewer values where the user interrupts it.
+    Fewer values where the user interrupts it. Released with zero rates of the shape at fixed x / L(t): the stations
+    start with what the change of the static shape with the length gives them, Eq. (T10.20).
 
-    Released with zero rates of the shape at fixed x / L(t): the stations start with what the change of the static shape
-    with the length gives them, Eq. (T10.20).
-
-    Parameters
-    ----------
-    beam : SlidingBeam
-    motion : callable
-        Motion of hub and feed at an instant.
-    displacement : float
-        Of the tip at the start [m].
-    output : (T,) array
-        Ascending instants [s], the start first.
-    step : float
-        Largest time step [s].
-    progress : callable, optional
-        Called with simulated and whole time [s].
-
-    Raises
-    ------
-    ComputationError
-        Less than two stations outside the hub, or the beam leaves the hub.
+    `motion` of hub and feed at an instant; `displacement` of the tip at the start [m]; `output` (T,) ascending, the
+    start first; `step`: largest time step [s]; `progress` is called with simulated and whole time [s].
+    ComputationError: less than two stations outside the hub, or the beam leaves the hub.
     """
     state = _released(beam, motion(float(output[0])), displacement, float(output[0]))
     tip = [state.a[0]]

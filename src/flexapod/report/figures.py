@@ -45,26 +45,10 @@ def carried_study(data: Dataset) -> Study | ActuatorStudy | None:
 
 
 def draw(data: Dataset, folder: str | Path, formats: Sequence[str] = ("png", "svg")) -> list[Drawn]:
-    """Draw the standard figures of a robot's or an actuator's run.
+    """Draw the standard figures of a run, whole or partial, in the order of the report.
 
-    Parameters
-    ----------
-    data : xarray.Dataset
-        Result of `flexapod.run`, whole or partial.
-    folder : path
-        Made if needed; figures of the same name are replaced.
-    formats : sequence of str
-        Of png, svg, pdf.
-
-    Returns
-    -------
-    list of Drawn
-        In the order of the report.
-
-    Raises
-    ------
-    InputError
-        The folder cannot be written to, or a format is unknown.
+    `folder` is made if needed, figures of the same name are replaced; `formats` are of png, svg, pdf. InputError: the
+    folder cannot be written to, or a format is unknown.
     """
     plans = _robot(data) if "com_deviation" in data else _actuator(data)
     return [store(make(), title, Path(folder) / name, formats) for name, title, make in plans]

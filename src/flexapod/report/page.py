@@ -52,15 +52,7 @@ _PACKAGES = ("flexapod", "numpy", "scipy", "casadi", "xarray", "matplotlib", "pl
 
 
 def robot_report(study: Study | ActuatorStudy, data: Dataset) -> str:
-    """The report of a robot's or an actuator's run as text, with figures drawn for it.
-
-    Parameters
-    ----------
-    study : Study or ActuatorStudy
-        What was computed.
-    data : xarray.Dataset
-        Result of `flexapod.run`, whole or partial.
-    """
+    """The report of a robot's or an actuator's run, whole or partial, as text, with figures drawn for it."""
     from flexapod.report.figures import draw
 
     with TemporaryDirectory() as folder:
@@ -68,25 +60,10 @@ def robot_report(study: Study | ActuatorStudy, data: Dataset) -> str:
 
 
 def write_report(data: Dataset, folder: str | Path, figures: Sequence[Drawn] = ()) -> Path:
-    """Write ``report.html`` of a robot's or an actuator's run.
+    """Write ``report.html`` of a robot's or an actuator's run, whole or partial, with drawn `figures`; its path.
 
-    Parameters
-    ----------
-    data : xarray.Dataset
-        Result of `flexapod.run`, whole or partial.
-    folder : path
-        Made if needed; an existing report is replaced when the new one is complete.
-    figures : sequence of Drawn
-        From `flexapod.report.figures.draw`.
-
-    Returns
-    -------
-    Path
-
-    Raises
-    ------
-    InputError
-        The folder cannot be written to.
+    The folder is made if needed; an existing report is replaced when the new one is complete. InputError: the folder
+    cannot be written to.
     """
     return write_text(Path(folder) / "report.html", _page(carried_study(data), data, figures))
 

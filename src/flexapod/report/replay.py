@@ -41,22 +41,12 @@ Traces = list[dict[str, Any]]
 def replay(study: Study | ActuatorStudy, data: Dataset, modes: Dataset | None = None) -> dict[str, Any]:
     """Frames and traces of a robot's or an actuator's result, as the page's script reads them.
 
-    Parameters
-    ----------
-    study : Study or ActuatorStudy
-        What was computed.
-    data : xarray.Dataset
-        Result of `flexapod.run`, whole or partial.
-    modes : xarray.Dataset, optional
-        Result of `flexapod.modes` of the same robot; its lowest modes can be played too.
+    With `modes`, a result of `flexapod.modes` of the same robot, its lowest modes can be played too.
 
-    Returns
-    -------
-    dict
-        ``points``: (frame, point, direction) in mm, packed; ``time`` [s] and ``values`` of the frames, of the tool
-        where it is another point than the centre of mass; ``traces`` in the form of plotly, where ``take`` numbers the
-        points that a line joins (-1: a gap); ``modes``: their points at rest and displaced; ``words`` and ``mouse``:
-        what is drawn and how it is looked at.
+    ``points``: (frame, point, direction) in mm, packed; ``time`` [s] and ``values`` of the frames, of the tool where it
+    is another point than the centre of mass; ``traces`` in the form of plotly, where ``take`` numbers the points that a
+    line joins (-1: a gap); ``modes``: their points at rest and displaced; ``words`` and ``mouse``: what is drawn and
+    how it is looked at.
     """
     return _actuator(study, data) if isinstance(study, model.ActuatorStudy) else _robot(study, data, modes)
 
