@@ -72,7 +72,11 @@ def guarded(command: Callable[P, None]) -> Callable[P, None]:
             raise typer.Exit(error.exit_code) from None
         except (KeyboardInterrupt, Exception) as error:
             _trace()
-            parts, code = (_interrupt(), INTERRUPTED) if _by_ctrl_c(error) else (_no_room(error) or _fault(error), 1)
+            parts, code = (
+                ({"kind": "interrupt", "what": f"{stopped()}; files already written are whole"}, INTERRUPTED)
+                if _by_ctrl_c(error)
+                else (_no_room(error) or _fault(error), 1)
+            )
             print_parts(parts, code, as_json=as_json)
             raise typer.Exit(code) from None
 
@@ -151,10 +155,6 @@ def _by_ctrl_c(error: BaseException | None) -> bool:
             return True
         error = error.__cause__ or error.__context__
     return False
-
-
-def _interrupt() -> dict[str, str | None]:
-    return {"kind": "interrupt", "what": f"{stopped()}; files already written are whole"}
 
 
 def _no_room(error: BaseException) -> dict[str, str | None] | None:

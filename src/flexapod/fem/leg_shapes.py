@@ -40,12 +40,14 @@ def solid_leg_shapes(
     if not (np.isfinite(length) and length > 0):
         raise InputError("is not a length", key="length", value=length, allowed="above 0 m")
     spacing = length / _INTERVALS
+    # Quadratic elements need no second one across the smaller side of a section.
+    side = max(section.width, section.height) if isinstance(section, Rectangle) else section.diameter
     # Behind the mouth as much as the section's end effects need to fade.
     held = max(4, int(np.ceil(3 * section.depth / spacing)))
     model = reduced_beam(
         section,
         spacing * (_INTERVALS + held),
-        min(_side(section) / 6, spacing) if size is None else size,
+        min(side / 6, spacing) if size is None else size,
         E=1.0 / section.second_moment,
         density=1.0 / section.area,
         poisson=poisson,
@@ -55,11 +57,6 @@ def solid_leg_shapes(
     basis = integrate("solid-fem", shapes, pieces=_INTERVALS)
     damping = proportional_damping(basis.mass[:count, :count], stiffness)
     return replace(basis, stiffness=stiffness, damping=damping)
-
-
-def _side(section: Tube | Rectangle) -> float:
-    """Larger side of a section [m]; quadratic elements need no second one across the smaller side."""
-    return max(section.width, section.height) if isinstance(section, Rectangle) else section.diameter
 
 
 def _shapes(model: StationModel, length: float, count: int, moment: bool) -> tuple[list[Callable[..., Array]], Array]:

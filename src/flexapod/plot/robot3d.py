@@ -67,11 +67,11 @@ def view(axes: Any, scenes: Sequence[Scene], zoom: float = 1.0) -> None:
             axis.labelpad = _NEEDLE if short.sum() == 2 else pad
 
 
-def draw_robot(axes: Any, s: Scene, *, numbers: bool = True, legs: Sequence[str] = ()) -> None:
+def draw_robot(axes: Any, s: Scene, *, numbers: bool = True) -> None:
     """Draw a robot: grey cylinders, coloured pistons, translucent platform, cross-hair at the centre of mass."""
     _plate(axes, s.skeleton.robot.base_joints, BASE, 0.12)
     _segments(axes, s.guides, BASE, 2.0, 3)
-    legs = legs or colors_of_legs(len(s.base))
+    legs = colors_of_legs(len(s.base))
     for i in range(len(s.base)):
         if not np.array_equal(s.base[i], s.mouth[i]):
             _bar(axes, s.base[i], s.mouth[i], color=CYLINDER, linewidth=6, zorder=3)

@@ -56,7 +56,11 @@ def sweep(data: xr.Dataset, quantity: str | None = None) -> Figure:
     """
     found = _quantity(data, quantity)
     axes: list[dict[str, Any]] = [axis for axis in json.loads(data.attrs["axes"]) if axis["count"] > 1]
-    single = [_owner(data, axis["keys"]) for axis in axes if axis["keys"] and axis["name"] != "sample"]
+    single = [
+        next((key for key in axis["keys"] if data[key].ndim == 1), axis["keys"][0])  # the first with one value a point
+        for axis in axes
+        if axis["keys"] and axis["name"] != "sample"
+    ]
     draws = sum(axis["count"] for axis in axes if axis["name"] == "draw")
     if axes and not single and draws == sum(axis["count"] for axis in axes):
         return _histogram(found, data)
@@ -77,11 +81,6 @@ def _quantity(data: xr.Dataset, name: str | None) -> _Shown:
     if not np.isfinite(data[name].values).any():
         raise InputError("has no computed point", key="quantity", value=name)
     return _shown(data[name], str(data[name].attrs.get("long_name", name)))
-
-
-def _owner(data: xr.Dataset, keys: list[str]) -> str:
-    """Of keys that vary together the one to draw against: the first with a single number or text a point."""
-    return next((key for key in keys if data[key].ndim == 1), keys[0])
 
 
 def _key(data: xr.Dataset, name: str) -> _Shown:

@@ -56,7 +56,7 @@ def interactive(figure: Figure) -> dict[str, Any] | None:
         layout["shapes"] += [*_rules(axes, k), *_bands(axes, k)]
         data += [*_areas(axes, k), *_lines(axes, k), *_bars(axes, k)]  # areas lie below curves
     _label(data, shown)
-    if all(_is_time(axes) for axes in panels if axes.get_xlabel()):
+    if all("[s]" in axes.get_xlabel() and axes.get_xscale() == "linear" for axes in panels if axes.get_xlabel()):
         layout["hovermode"] = "x unified"
     return {"data": data, "layout": layout}
 
@@ -100,10 +100,6 @@ def _drawn(axes: Axes) -> bool:
 
 def _legends(figure: Figure, panels: list[Axes]) -> list[Any]:
     return [*figure.legends, *(legend for axes in panels if (legend := axes.get_legend()) is not None)]
-
-
-def _is_time(axes: Axes) -> bool:
-    return "[s]" in axes.get_xlabel() and axes.get_xscale() == "linear"
 
 
 def _key(letter: str, k: int) -> str:

@@ -155,7 +155,15 @@ class ActuatorScene(Scene):
         words = scene.add_label("/deflection_length", "", position=_HERE, anchor="bottom-left")
         tip_radius = 3.0 * radius if actuator.tip_mass else 1.3 * radius
         tip = scene.add_icosphere("/tip", tip_radius, color=_HUB)
-        self._add("labels", scene.add_label("/tip/name", _tip_words(actuator), position=_HERE, anchor="top-left"))
+        self._add(
+            "labels",
+            scene.add_label(
+                "/tip/name",
+                f"tip, {number(actuator.tip_mass)} kg" if actuator.tip_mass else "tip",
+                position=_HERE,
+                anchor="top-left",
+            ),
+        )
         empty = np.zeros((BEAM_POINTS * 8, 3))
         inside = scene.add_mesh_simple("/beam_inside", np.zeros((16, 3)), tube_faces(2), color=_INSIDE)
         return {
@@ -200,7 +208,3 @@ class ActuatorScene(Scene):
     def _redraw_paths(self) -> None:
         if self._motion is not None:
             self._nodes["path"].points = strip(self._motion.tips(self.scale), most=1500)
-
-
-def _tip_words(actuator: model.Actuator) -> str:
-    return f"tip, {number(actuator.tip_mass)} kg" if actuator.tip_mass else "tip"

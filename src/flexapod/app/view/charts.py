@@ -74,7 +74,12 @@ def charts(data: Dataset, point: str = "com") -> dict[str, Chart]:
                 pushed,
             ),
             "tip deflections": _chart(
-                data, "Piston tips off the cylinders' axes", _sizes(data.tip_deflection), "m", _legs(data), colors
+                data,
+                "Piston tips off the cylinders' axes",
+                (data.tip_deflection**2).sum("direction") ** 0.5,
+                "m",
+                _legs(data),
+                colors,
             ),
             "energies": _energies(data),
         }
@@ -91,10 +96,6 @@ def charts(data: Dataset, point: str = "com") -> dict[str, Chart]:
 
 def _legs(data: Dataset | DataArray) -> list[str]:
     return [f"leg {leg}" for leg in data.leg.values]
-
-
-def _sizes(values: DataArray) -> DataArray:
-    return (values**2).sum("direction") ** 0.5
 
 
 def _chart(data: Dataset, title: str, values: DataArray, unit: str, names: list[str], colors: tuple[str, ...]) -> Chart:
@@ -131,12 +132,8 @@ def thinned(values: Array, most: int = MOST) -> NDArray[np.intp]:
     if count <= most:
         return np.arange(count)
     pieces = np.array_split(np.arange(count), max(1, most // (2 * len(values))))
-    kept = [piece[0] + at for piece in pieces for line in values for at in _extremes(line[piece])]
+    kept = [piece[0] + at for piece in pieces for line in values for at in (line[piece].argmin(), line[piece].argmax())]
     return np.unique([0, *kept, count - 1])
-
-
-def _extremes(line: Array) -> tuple[int, int]:
-    return int(line.argmin()), int(line.argmax())
 
 
 class ChartView:
@@ -164,7 +161,7 @@ class ChartView:
                 _series(chart),
                 title=f"{chart.title} [{chart.unit}]",
                 scales={"x": {"time": False}, "y": {"range": chart.limits}},
-                axes=_axes(),
+                axes=({"label": "time [s]", "labelSize": 18, "size": 30}, {"size": 54}),
                 legend={"show": False},
                 height=230,
                 padding=(4, 12, 0, 0),
@@ -195,10 +192,6 @@ def _series(chart: Chart) -> tuple[Any, ...]:
         for name, color, dash in zip(chart.names, chart.colors, cycle(_DASHES), strict=False)
     ]
     return {"label": "time [s]"}, *lines, {"label": "now", "stroke": _CURSOR, "width": 1.5, **plain}
-
-
-def _axes() -> tuple[Any, ...]:
-    return {"label": "time [s]", "labelSize": 18, "size": 30}, {"size": 54}
 
 
 def _readout(chart: Chart, time: float) -> str:

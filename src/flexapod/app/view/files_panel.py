@@ -106,7 +106,7 @@ class FilesPanel:
             table = gui.add_upload_button("Table", icon=Icon.UPLOAD, mime_type=".csv,text/csv")
         study_file.on_upload(lambda _: self._do(lambda: self._take(study_file.value.name, study_file.value.content)))
         table.on_upload(lambda _: self._do(lambda: self._keep(table.value.name, table.value.content)))
-        limit_uploads(client, LARGEST, self._too_large)
+        limit_uploads(client, LARGEST, self._refused)
 
     def close(self) -> None:
         """Send nothing any more; what is being written is dropped."""
@@ -168,7 +168,7 @@ class FilesPanel:
         try:
             document = read_upload(name, content, self._sent.folder)
         except FlexapodError as error:
-            self._words.content = words.error_html(error)
+            self._refused(error)
             return
         self._words.content = words.block(f"Taken: {name}.", "good")
         time.sleep(ACKNOWLEDGED)
@@ -178,9 +178,9 @@ class FilesPanel:
         try:
             kept = store_table(name, content, self._sent.folder)
         except FlexapodError as error:
-            self._words.content = words.error_html(error)
+            self._refused(error)
             return
         self._words.content = words.block(f"Kept: {kept}. A study may name it as file = {kept!r}.", "good")
 
-    def _too_large(self, error: FlexapodError) -> None:
+    def _refused(self, error: FlexapodError) -> None:
         self._words.content = words.error_html(error)

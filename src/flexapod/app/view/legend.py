@@ -68,7 +68,11 @@ class LegColors:
     def html(self, index: int | None = None) -> str:
         """The scale as a bar with its ends and middle, and the values at a stored instant."""
         ticks = [f"{number(value)} {self.unit}" for value in (self.low, 0.5 * (self.low + self.high), self.high)]
-        values = [] if index is None else [_text(v, self.unit, self.none) for v in self.values[index]]
+        values = (
+            []
+            if index is None
+            else [self.none if np.isnan(v) else f"{number(v)} {self.unit}" for v in self.values[index]]
+        )
         now = "" if index is None else _leg_row(self.colors(index), values)
         return (
             f'<div role="img" aria-label="Legend: {self.title}" style="{LEGEND_STYLE}">'
@@ -89,10 +93,6 @@ def plain_legend(legs: int) -> str:
     """The legend of legs that are coloured by their number."""
     row = _leg_row(np.array([rgb(color) for color in colors_of_legs(legs)]), [])
     return f'<div style="{LEGEND_STYLE}"><b>Legs by number</b>{row}</div>'
-
-
-def _text(value: float, unit: str, none: str) -> str:
-    return none if np.isnan(value) else f"{number(value)} {unit}"
 
 
 def _leg_row(colors: Array, values: list[str]) -> str:

@@ -65,17 +65,14 @@ def _robot(study: model.Study) -> str:
     for i, leg in enumerate(study.robot.legs):
         low, high = float(length[:, i].min()), float(length[:, i].max())
         margin = None if leg.stroke is None else min(low - leg.stroke.min, leg.stroke.max - high)
-        rows.append([str(i + 1), f"{1e3 * low:.1f}", f"{1e3 * high:.1f}", _millimetres(margin)])
+        left = "no limits" if margin is None else f"{1e3 * margin:.1f}"
+        rows.append([str(i + 1), f"{1e3 * low:.1f}", f"{1e3 * high:.1f}", left])
         bad.append(margin is not None and margin < 0)
     header = ["Leg", "shortest [mm]", "longest [mm]", "stroke left [mm]"]
     found = rigid.singularity(study.robot, path)
     worst = float(found.smallest_singular_value[found.worst])
     singular = f"Smallest singular value {worst:.3g} at t = {t[found.worst]:.3g} s (0 is singular; scaled Jacobian)."
     return words.table_html(header, rows, bad) + words.block(singular)
-
-
-def _millimetres(margin: float | None) -> str:
-    return "no limits" if margin is None else f"{1e3 * margin:.1f}"
 
 
 def _actuator(study: model.ActuatorStudy) -> str:
