@@ -24,7 +24,6 @@ from flexapod.plot.style import (
 from flexapod.scene.colours import LEG_COLORS
 from flexapod.study.words import cleared_lines, number, scale
 
-
 _LARGER = ("angles", "elevations")  # towards which the tip of an actuator in space is deflected
 
 
