@@ -27,8 +27,7 @@ from flexapod.model import Study, load, loads, to_toml
 from flexapod.model.base import Frozen
 from flexapod.study import simulate, simulate_actuator
 from flexapod.study.before.describe.robot import describe
-from flexapod.surveys.sweeps.columns import columns
-from flexapod.surveys.sweeps.kept import kept
+from flexapod.surveys.sweeps.kept import columns, kept
 from flexapod.surveys.sweeps.plan import read_plan
 from flexapod.surveys.sweeps.points import Points
 

@@ -4,10 +4,9 @@ from functools import cache
 
 from flexapod.model import preset
 from flexapod.paper.cost import inverse_dynamics_cost
-from flexapod.paper.readings import readings
+from flexapod.paper.readings import readings, tripod
 from flexapod.paper.study import ACTUATOR_MODES, STEPS, PaperStudy
 from flexapod.paper.trials import trials
-from flexapod.paper.tripod import tripod
 from flexapod.paper.variants import HALF_ANGLES, assumptions, half_angle_sweep, jump_motion, with_half_angle
 from flexapod.paper.welded import welded_map
 from flexapod.study import modes, simulate, simulate_actuator

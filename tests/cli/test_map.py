@@ -6,7 +6,7 @@ import pytest
 
 from flexapod.study import open_results
 from flexapod.study.before import room
-from flexapod.surveys.workspace.names import SCALARS
+from flexapod.surveys.workspace.findings import SCALARS
 
 LUMPED = ('fidelity = "assumed-modes"', 'fidelity = "lumped"')
 

@@ -11,9 +11,9 @@ from flexapod import rigid
 from flexapod.errors import ComputationError, InputError
 from flexapod.model.motion import AxisMotion, CombinedMotion
 from flexapod.rigid import mechanism
-from flexapod.rigid.holding import drive_jacobian, holding
 from flexapod.rigid.jacobian import length_jacobian
 from flexapod.rigid.limbs import COORDINATES, DRIVEN, limbs
+from flexapod.rigid.mobility import drive_jacobian, holding
 from flexapod.rigid.screws import screws
 
 SIX = {"surge": 0.03, "sway": 0.02, "heave": 0.04, "roll": 0.15, "pitch": -0.1, "yaw": 0.12}

@@ -20,7 +20,7 @@ from flexapod.model import (
     Waypoint,
     WaypointMotion,
 )
-from flexapod.study.before.describe.pose import describe_pose
+from flexapod.study.before.describe.robot import describe_pose
 from flexapod.surveys.sweeps.scalars import ROBOT_SCALARS, RobotRun
 
 WRENCH = np.array([50.0, -30.0, -200.0, 5.0, 4.0, -3.0])

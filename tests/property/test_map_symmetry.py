@@ -5,7 +5,7 @@ import pytest
 from tests.runs import paper_robot
 
 import flexapod as fx
-from flexapod.surveys.workspace.names import SCALARS
+from flexapod.surveys.workspace.findings import SCALARS
 
 
 @pytest.fixture(scope="module")

@@ -10,7 +10,8 @@ from flexapod import model
 from flexapod.errors import InputError
 from flexapod.model import preset
 from flexapod.model.write import to_toml
-from flexapod.paper import claims_actuator, claims_rigid, claims_robot, claims_variants, readings, statics
+from flexapod.paper import claims_actuator, claims_rigid, claims_robot, claims_variants, readings
+from flexapod.paper import variants as statics
 from flexapod.paper.claim import BREAKS, HOLDS, IN_PART, MISPRINT, NOT, OPEN, REACHES, Claim, judged, size, times
 from flexapod.paper.claims import claims
 from flexapod.paper.study import PaperStudy

@@ -11,11 +11,12 @@ import flexapod as fx
 from flexapod.model import ActuatorInitial, ActuatorMotion, override
 from flexapod.plot.convergence import convergence
 from flexapod.study import open_results, save
-from flexapod.surveys.convergence import ConvergenceStopped, Trials, choice, converge, halving, plan
-from flexapod.surveys.convergence.family import Family
+from flexapod.surveys.convergence import ConvergenceStopped, Trials, converge, plan
+from flexapod.surveys.convergence import search as choice
+from flexapod.surveys.convergence import search as halving
+from flexapod.surveys.convergence.family import Family, finest_error, observed_order, relative_difference, shape_factor
 from flexapod.surveys.convergence.ladder import RUNGS, ladder
-from flexapod.surveys.convergence.orders import finest_error, observed_order, relative_difference, shape_factor
-from flexapod.surveys.convergence.recommend import Candidate, Discretisation, Step, candidates
+from flexapod.surveys.convergence.search import Candidate, Discretisation, Step, candidates
 from flexapod.surveys.convergence.table import save_table
 from flexapod.surveys.convergence.trials import Setting, Trial, setting_of
 

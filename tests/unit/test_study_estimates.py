@@ -19,7 +19,7 @@ from flexapod.solve.kernel import kernel
 from flexapod.solve.modes import robot_modes
 from flexapod.solve.robot_system import robot_system
 from flexapod.solve.shapes import space_shapes
-from flexapod.study.before.describe.pose import vibration_to_expect
+from flexapod.study.before.describe.robot import vibration_to_expect
 from flexapod.study.before.estimates import Vibration, bending_moment, buckling_load, residual_vibration, section_width
 from flexapod.study.path import RigidPath
 

@@ -13,9 +13,10 @@ from tests.sweeps import KEY, diameters, quick, quick_text, start
 
 import flexapod as fx
 from flexapod import version
+from flexapod import version as identity
 from flexapod.errors import ComputationError, InputError
 from flexapod.model import loads, tables
-from flexapod.surveys.sweeps import SweepStopped, batch, identity, open_sweep, result, run, unstacked, writer
+from flexapod.surveys.sweeps import SweepStopped, batch, open_sweep, result, run, unstacked, writer
 from flexapod.surveys.sweeps.batch import compute_batch
 from flexapod.surveys.sweeps.disk import DurableStore
 from flexapod.surveys.sweeps.lock import locked

@@ -11,9 +11,8 @@ from flexapod.rigid.kinematics import BETA_LIMIT
 from flexapod.rigid.workspace import LONGEST, NO_FREE_LENGTH, PULLED_OUT, SHORTEST
 from flexapod.study.before.reach import REASONS, rigid_codes
 from flexapod.study.poses import coordinates_of, from_home
-from flexapod.surveys.workspace.findings import axis_words, map_findings
+from flexapod.surveys.workspace.findings import GRID_VARIABLES, SCALARS, axis_words, map_findings
 from flexapod.surveys.workspace.grid import Range, grid
-from flexapod.surveys.workspace.names import GRID_VARIABLES, SCALARS
 
 FLAG = [reason.flag for reason in REASONS]
 AT = {"sway": 0.02, "pitch": 0.05}

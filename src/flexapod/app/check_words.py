@@ -12,8 +12,7 @@ from flexapod.study.words import column, length, number, scale, text
 if TYPE_CHECKING:
     from flexapod.study.before.describe.actuator import ActuatorDescription, BeamDescription
     from flexapod.study.before.describe.leg import Extreme
-    from flexapod.study.before.describe.pose import PoseDescription, VibrationToExpect
-    from flexapod.study.before.describe.robot import RobotDescription
+    from flexapod.study.before.describe.robot import PoseDescription, RobotDescription, VibrationToExpect
 
 SHOWN_ANGLE = math.radians(60)
 

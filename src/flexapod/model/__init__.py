@@ -20,17 +20,22 @@ from flexapod.model.home import Home
 from flexapod.model.joint import Carriage, Joint, Travel
 from flexapod.model.laws import (
     ConstantLaw,
+    ConstantWrench,
     CsvLaw,
+    CsvWrench,
+    Load,
     LoadLaw,
     MotionLaw,
     ProfileLaw,
     RateLaw,
     SineLaw,
+    SineWrench,
     SpinUpLaw,
     StepLaw,
+    StepWrench,
+    Wrench,
 )
 from flexapod.model.leg import Leg, Stroke
-from flexapod.model.load import ConstantWrench, CsvWrench, Load, SineWrench, StepWrench, Wrench
 from flexapod.model.material import MATERIALS, Material, Rectangle, Tube
 from flexapod.model.motion import (
     AXES,

@@ -9,8 +9,7 @@ from pydantic import Field, model_validator
 from flexapod.errors import InputError
 from flexapod.model.base import Frozen, Measure, NonNegative, Number, Positive
 from flexapod.model.damping import BodyDamping
-from flexapod.model.laws import CsvLaw, LoadLaw, MotionLaw, RateLaw
-from flexapod.model.load import Wrench
+from flexapod.model.laws import CsvLaw, LoadLaw, MotionLaw, RateLaw, Wrench
 from flexapod.model.material import Material, Rectangle, Tube
 from flexapod.model.motion import check_times
 from flexapod.words import number, text

@@ -6,7 +6,7 @@ from collections.abc import Iterable, Mapping
 
 import numpy as np
 
-from flexapod.model.load import ConstantWrench, CsvWrench, Load, SineWrench, StepWrench, Wrench
+from flexapod.model.laws import ConstantWrench, CsvWrench, Load, SineWrench, StepWrench, Wrench
 from flexapod.model.motion import AXES, AxisMotion, CombinedMotion, CsvMotion, Motion, Waypoint, WaypointMotion
 from flexapod.model.section import Section
 from flexapod.model.simulation import FIDELITIES, OWN_BASIS, STRAIGHT, Initial, Simulation, own_fidelity

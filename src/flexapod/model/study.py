@@ -11,7 +11,7 @@ from flexapod.errors import InputError
 from flexapod.model.actuator import Actuator, ActuatorInitial, ActuatorLoad, ActuatorMotion
 from flexapod.model.axes import plane_order
 from flexapod.model.base import Frozen
-from flexapod.model.load import Load
+from flexapod.model.laws import Load
 from flexapod.model.motion import AXES, Motion, moved_axes
 from flexapod.model.remarks import actuator_remarks, robot_remarks
 from flexapod.model.robot import Robot

@@ -11,9 +11,8 @@ from flexapod.errors import ComputationError, InputError
 from flexapod.paper.claim import axis_motion
 from flexapod.paper.cost import inverse_dynamics_cost
 from flexapod.paper.engines import check_engine, exudyn_flexible, exudyn_rigid, rigid_same_step, undamped
-from flexapod.paper.readings import readings, robot_preset
+from flexapod.paper.readings import readings, robot_preset, tripod
 from flexapod.paper.trials import TRIAL_STEP, trials
-from flexapod.paper.tripod import tripod
 from flexapod.paper.variants import (
     HALF_ANGLES,
     JUMP_STEP,

@@ -20,10 +20,8 @@ from flexapod.model import AXES
 from flexapod.plot.style import COLORS, NOTE, PAGE, SMALL, TEXT, figure, needs, styled
 from flexapod.study.before.reach import REACHED, REASONS
 from flexapod.study.words import Scale, number, scale
-from flexapod.surveys.workspace.findings import coordinate_words, drawn, name_of, scalar, unit_of
+from flexapod.surveys.workspace.findings import SCALARS, coordinate_words, drawn, motion_path, name_of, scalar, unit_of
 from flexapod.surveys.workspace.grid import UNITS
-from flexapod.surveys.workspace.names import SCALARS
-from flexapod.surveys.workspace.overlay import motion_path
 from flexapod.typing import Array
 
 # Ground and hatching of what is not reached, by code; codes that rarely meet share one.

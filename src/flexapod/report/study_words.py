@@ -16,8 +16,7 @@ if TYPE_CHECKING:
     from flexapod.model import ActuatorStudy, Robot, Study
     from flexapod.study.before.describe.actuator import ActuatorDescription
     from flexapod.study.before.describe.leg import LegDescription
-    from flexapod.study.before.describe.pose import PoseDescription
-    from flexapod.study.before.describe.robot import RobotDescription
+    from flexapod.study.before.describe.robot import PoseDescription, RobotDescription
     from flexapod.typing import Array
 
 _LEGS = {

@@ -10,13 +10,14 @@ import numpy as np
 from numpy.typing import ArrayLike
 
 from flexapod.errors import InputError
-from flexapod.rigid import dynamics, forward, holding, jacobian, kinematics, mechanism, motions, trajectory, workspace
+from flexapod.rigid import dynamics, forward, jacobian, kinematics, mechanism, motions, trajectory, workspace
 from flexapod.rigid.dynamics import LegBodies, PayloadBody, RigidForces
 from flexapod.rigid.kinematics import LegState
 from flexapod.rigid.laws import Law
 from flexapod.rigid.limbs import COORDINATES, DRIVEN, Limbs, limbs
 from flexapod.rigid.mechanism import Reach
-from flexapod.rigid.mobility import Mobility, Posture, mobility
+from flexapod.rigid.mobility import Mobility, Posture, holding, mobility
+from flexapod.rigid.mobility import drive_jacobian as rates_of_drives
 from flexapod.rigid.trajectory import Poses
 from flexapod.typing import Array, Mask
 
@@ -208,11 +209,11 @@ def energies(robot: Robot, path: Poses) -> tuple[Array, Array]:
 
 
 def drive_jacobian(robot: Robot, path: Poses, point: ArrayLike = (0.0, 0.0, 0.0)) -> Array:
-    """Rates of the m driven coordinates for twists of a platform point, (T, m, 6); see `holding.drive_jacobian`."""
+    """Rates of the m driven coordinates for twists of a platform point, (T, m, 6); see `mobility.drive_jacobian`."""
     legs, at = rigid_limbs(robot), np.asarray(point, dtype=float)
     if legs.plain and (legs.state[:, COORDINATES.index("l")] == DRIVEN).all():
         return jacobian.length_jacobian(robot.base_joints, robot.platform_joints, path.position, path.rotation, at)
-    return holding.drive_jacobian(legs, mechanism.legs_at(legs, path).q, path, at)
+    return rates_of_drives(legs, mechanism.legs_at(legs, path).q, path, at)
 
 
 def _scaled_jacobian(robot: Robot, path: Poses) -> Array:
@@ -222,7 +223,7 @@ def _scaled_jacobian(robot: Robot, path: Poses) -> Array:
         return jacobian.scaled_path(robot.base_joints, robot.platform_joints, path)
     if held.all():
         return np.ones((len(path), 1, 1))
-    rows = holding.holding(legs, mechanism.legs_at(legs, path).q, path, legs.platform.mean(axis=0))
+    rows = holding(legs, mechanism.legs_at(legs, path).q, path, legs.platform.mean(axis=0))
     found = jacobian.scaled(rows, legs.L_c)[..., ~held]
     short = max(found.shape[2] - found.shape[1], 0)
     return np.concatenate([found, np.zeros((len(path), short, found.shape[2]))], axis=1)

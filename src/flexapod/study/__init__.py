@@ -8,8 +8,7 @@ from typing import TYPE_CHECKING
 from flexapod.study.actuator import simulate_actuator
 from flexapod.study.after.summary import summary
 from flexapod.study.before.checks import check_path
-from flexapod.study.kinematics import forward_kinematics, inverse_dynamics, inverse_kinematics
-from flexapod.study.mobility import mobility
+from flexapod.study.kinematics import forward_kinematics, inverse_dynamics, inverse_kinematics, mobility
 from flexapod.study.record import Interrupted
 from flexapod.study.simulation import run, simulate
 from flexapod.study.static import modes, stiffness

@@ -32,7 +32,7 @@ from flexapod.rigid import Poses, inverse_kinematics, poses
 from flexapod.rigid.laws import Law
 from flexapod.rigid.trajectory import poses_from_coordinates
 from flexapod.solve.released import rigid_forces
-from flexapod.study.mobility import mobility
+from flexapod.study.kinematics import mobility
 from flexapod.study.simulation import simulate
 from flexapod.typing import Array
 

@@ -17,8 +17,14 @@ from flexapod.solve.actuator_march import amplitudes, lateral_signs
 from flexapod.solve.many import RestStates
 from flexapod.solve.system import System
 from flexapod.study.after.legs import base_points, bending_basis, lateral
-from flexapod.study.before.estimates import buckling_load, section_width
-from flexapod.study.before.thick import Section, beam_section, bending_errors, piston_section
+from flexapod.study.before.estimates import (
+    Section,
+    beam_section,
+    bending_errors,
+    buckling_load,
+    piston_section,
+    section_width,
+)
 from flexapod.study.record import Record
 from flexapod.typing import Array
 

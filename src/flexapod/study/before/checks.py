@@ -12,7 +12,7 @@ from flexapod.model import ActuatorStudy, Robot, Study
 from flexapod.rigid.kinematics import BETA_LIMIT
 from flexapod.rigid.workspace import BEFORE, BEYOND, LONGEST, PULLED_OUT, SHORTEST
 from flexapod.solve.modes import refuse_pure_force
-from flexapod.study.before.timing import check_outputs
+from flexapod.study.before.room import check_outputs
 from flexapod.study.path import RigidPath, open_force_words, path_instants
 from flexapod.typing import Array
 

@@ -11,8 +11,7 @@ from flexapod.errors import InputError
 from flexapod.study.before.describe.robot import describe_legs
 from flexapod.study.before.estimates import buckling_load
 from flexapod.study.first import sizes
-from flexapod.study.first.request import OPTION, Request
-from flexapod.study.first.sizes import Body, Joints, Leg
+from flexapod.study.first.sizes import OPTION, Body, Joints, Leg, Request
 from flexapod.study.first.written import Plan, written
 from flexapod.study.path import RigidPath
 from flexapod.words import text

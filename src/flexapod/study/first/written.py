@@ -9,8 +9,7 @@ from textwrap import wrap
 from flexapod import model
 from flexapod.model import MATERIALS
 from flexapod.study.first import sizes
-from flexapod.study.first.request import Request
-from flexapod.study.first.sizes import Body, Joints, Leg
+from flexapod.study.first.sizes import Body, Joints, Leg, Request
 
 WIDTH = 110  # of a comment
 

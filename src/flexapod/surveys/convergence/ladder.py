@@ -11,7 +11,7 @@ from flexapod.model import ActuatorStudy, Study
 from flexapod.study.arguments import FileLike
 from flexapod.study.attributes import attributes
 from flexapod.study.record import Report
-from flexapod.surveys.convergence.orders import relative_difference
+from flexapod.surveys.convergence.family import relative_difference
 from flexapod.surveys.convergence.plan import checked_trials
 from flexapod.surveys.convergence.search import ConvergenceStopped
 from flexapod.surveys.convergence.table import Row, reference_words, rows_dataset

@@ -10,7 +10,7 @@ from flexapod.errors import FlexapodError
 from flexapod.study.record import Progress
 from flexapod.study.simulation import run
 from flexapod.study.words import number
-from flexapod.surveys.convergence.orders import relative_difference
+from flexapod.surveys.convergence.family import relative_difference
 from flexapod.typing import Array
 
 if TYPE_CHECKING:

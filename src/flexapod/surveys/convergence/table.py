@@ -13,8 +13,7 @@ import numpy as np
 from flexapod.files import replacing
 from flexapod.model import ActuatorStudy, Study
 from flexapod.study.attributes import attributes
-from flexapod.surveys.convergence.family import FAMILIES, Family
-from flexapod.surveys.convergence.findings import Findings
+from flexapod.surveys.convergence.family import FAMILIES, Family, Findings
 from flexapod.surveys.convergence.trials import QUANTITIES, Setting, Trial
 
 if TYPE_CHECKING:

@@ -20,10 +20,10 @@ from flexapod.study.after.results import rigid_force_results, robot_results
 from flexapod.study.before.checks import check_path
 from flexapod.study.path import RigidPath
 from flexapod.study.record import Record, collect
-from flexapod.surveys.sweeps.identity import this_version
 from flexapod.surveys.sweeps.kept import ACTUATOR_SCALARS, Kept
 from flexapod.surveys.sweeps.scalars import ROBOT_SCALARS, RobotRun
 from flexapod.typing import Array
+from flexapod.version import this_version
 
 
 class OtherVersion(ComputationError):

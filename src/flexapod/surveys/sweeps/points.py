@@ -16,12 +16,18 @@ import numpy as np
 from flexapod.errors import InputError, Malformed
 from flexapod.model import ActuatorStudy, Study
 from flexapod.model.base import SHORT
-from flexapod.study.before.room import check_room, result_bytes
-from flexapod.study.before.timing import check_outputs
+from flexapod.study.before.room import check_outputs, check_room, result_bytes
 from flexapod.surveys.sweeps.keys import Step, copied, key_text, leaves, leg_count, put, similar_key, value_at
 from flexapod.surveys.sweeps.plan import Plan, Tolerance
-from flexapod.surveys.sweeps.reading import dimension_of, read_with_dimensions, study_of
-from flexapod.surveys.sweeps.samples import hypercube_values, number, spaced_values, standard_draws
+from flexapod.surveys.sweeps.reading import (
+    dimension_of,
+    hypercube_values,
+    number,
+    read_with_dimensions,
+    spaced_values,
+    standard_draws,
+    study_of,
+)
 from flexapod.typing import Array
 
 MEMORY = 64 << 20  # of studies that were read and wait to be computed; others are read again

@@ -10,8 +10,8 @@ from typing import TYPE_CHECKING, Any
 import numpy as np
 
 from flexapod.files import replacing
-from flexapod.surveys.sweeps.mending import incomplete
 from flexapod.surveys.sweeps.store import COMPUTED, FAILED, PENDING, TEXTS, SweepStore, Values, unreadable
+from flexapod.surveys.sweeps.writer import incomplete
 
 if TYPE_CHECKING:
     from xarray import DataArray, Dataset

@@ -24,18 +24,16 @@ from flexapod.study.arguments import read
 from flexapod.study.before.room import check_memory, check_room
 from flexapod.study.record import Report
 from flexapod.surveys.sweeps.batch import BatchResult, PointResult
-from flexapod.surveys.sweeps.columns import columns, header
 from flexapod.surveys.sweeps.executors import check_place, executor, local_cores
-from flexapod.surveys.sweeps.identity import this_version
-from flexapod.surveys.sweeps.kept import Kept, kept
+from flexapod.surveys.sweeps.kept import Kept, columns, header, kept
 from flexapod.surveys.sweeps.lock import locked
-from flexapod.surveys.sweeps.mending import mend
 from flexapod.surveys.sweeps.plan import read_plan
 from flexapod.surveys.sweeps.points import Points, Resolved
 from flexapod.surveys.sweeps.result import as_dataset
 from flexapod.surveys.sweeps.schedule import results
 from flexapod.surveys.sweeps.store import COMPUTED, FAILED, SweepStore, check_header, tidy
-from flexapod.surveys.sweeps.writer import Writer
+from flexapod.surveys.sweeps.writer import Writer, mend
+from flexapod.version import this_version
 
 if TYPE_CHECKING:
     from xarray import Dataset

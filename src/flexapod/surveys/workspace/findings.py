@@ -1,4 +1,4 @@
-"""What a map says: where each quantity is least and largest, how much of the grid is reached, and why not the rest."""
+"""Quantities of a map in words: where each is least and largest, how much is reached, and why not the rest."""
 
 from __future__ import annotations
 
@@ -7,15 +7,76 @@ from typing import TYPE_CHECKING
 
 import numpy as np
 
+from flexapod import rigid
+from flexapod.errors import InputError
 from flexapod.model import AXES
+from flexapod.scene.robot import robot_study
 from flexapod.study.before.reach import REACHED, REASONS
+from flexapod.study.names import Variable
+from flexapod.study.poses import coordinates_of
 from flexapod.study.words import number
 from flexapod.surveys.workspace.grid import UNITS
-from flexapod.surveys.workspace.names import SCALARS
 from flexapod.typing import Array
 
 if TYPE_CHECKING:
     from xarray import DataArray, Dataset
+
+#: Variables by name; their dimensions follow those of the grid.
+GRID_VARIABLES = {
+    "reason": Variable((), "1", "why a pose is not reached: a code, 0 where it is"),
+    "frequency": Variable(("mode",), "Hz", "undamped natural frequency, commands of the drives held"),
+    "stiffness": Variable((), "N m-1", "stiffness at the tool against a force in the chosen direction"),
+    "stiffness_least": Variable((), "N m-1", "stiffness at the tool against a force in the weakest direction"),
+    "softest_direction": Variable(("axis",), "1", "weakest direction at the tool, world axes"),
+    "condition": Variable((), "1", "condition of the scaled Jacobian of the rigid robot"),
+    "smallest_singular_value": Variable((), "1", "smallest singular value of the scaled Jacobian of the rigid robot"),
+    "static_deviation": Variable(("axis",), "m", "sag of the tool under gravity and load, flexible minus rigid"),
+    "static_deviation_size": Variable((), "m", "sag of the tool under gravity and load"),
+    "dynamic_deviation": Variable((), "m", "quasi-static deviation of the tool in an acceleration"),
+    "actuator_force": Variable(("leg",), "N", "force of the drive on the piston at rest, positive pushes out"),
+    "largest_force": Variable((), "N", "largest drive force of a leg at rest"),
+    "stroke_margin": Variable((), "m", "least distance of a leg from the ends of its stroke"),
+    "guided_length": Variable((), "m", "least length of a piston in its cylinder"),
+    "base_joint_angle": Variable((), "rad", "largest turn of a leg at its base joint from home"),
+    "platform_joint_angle": Variable((), "rad", "largest turn of a leg at its platform joint from home"),
+    "euler_share": Variable((), "1", "largest axial thrust of a leg at rest over its Euler load"),
+}
+
+#: Scalars of which maps are drawn, in the order of the figures, and which end is the bad one.
+SCALARS = {
+    "frequency": "least",
+    "stiffness": "least",
+    "stiffness_least": "least",
+    "condition": "largest",
+    "static_deviation_size": "largest",
+    "dynamic_deviation": "largest",
+    "largest_force": "largest",
+    "stroke_margin": "least",
+    "guided_length": "least",
+    "base_joint_angle": "largest",
+    "platform_joint_angle": "largest",
+    "euler_share": "largest",
+}
+
+
+def forms(names: tuple[str, ...]) -> dict[str, Variable]:
+    """The variables on a grid with these dimensions."""
+    return {key: Variable((*names, *dims), units, words) for key, (dims, units, words) in GRID_VARIABLES.items()}
+
+
+POINTS = 400
+
+
+def motion_path(data: Dataset) -> Array | None:
+    """Surge ... yaw along the commanded motion, (T, 6) [m, rad]; None where it stays, or its tables are gone."""
+    try:
+        study = robot_study(data)
+    except InputError:
+        return None
+    t = np.linspace(0.0, study.motion.end_time, POINTS)
+    path = coordinates_of(study.robot, rigid.poses(study.robot, study.motion, t))
+    return path if np.ptp(path, axis=0).max() > 1e-9 else None
+
 
 _UNIT_WORDS = {"N m-1": "N/m", "1": ""}
 

@@ -19,8 +19,8 @@ from flexapod.study.before.reach import flags
 from flexapod.study.before.room import check_map
 from flexapod.study.names import dataset
 from flexapod.study.poses import batches, from_home
+from flexapod.surveys.workspace.findings import forms
 from flexapod.surveys.workspace.grid import UNITS, Axes, Grid, grid
-from flexapod.surveys.workspace.names import forms
 from flexapod.surveys.workspace.quantities import Wanted, batch_values
 from flexapod.typing import Array
 

@@ -9,8 +9,7 @@ import numpy as np
 from flexapod.model import Leg, Robot
 from flexapod.model.simulation import SOLID
 from flexapod.study.after.plausibility import NEAR_BUCKLING, SLENDERNESS, buckling_words, thick_words
-from flexapod.study.before.estimates import buckling_load, section_width
-from flexapod.study.before.thick import piston_section
+from flexapod.study.before.estimates import buckling_load, piston_section, section_width
 from flexapod.typing import Array
 
 
