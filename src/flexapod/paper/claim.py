@@ -4,7 +4,7 @@ from __future__ import annotations
 
 import math
 from collections.abc import Sequence
-from dataclasses import dataclass
+from dataclasses import InitVar, dataclass
 from typing import TYPE_CHECKING
 
 import numpy as np
@@ -28,13 +28,18 @@ SIZE = 0.5  # "about 5 mm": from half to one and a half times the printed value 
 
 @dataclass(frozen=True, kw_only=True)
 class Claim:
-    """What the paper says and where, what we get, the verdict, and its reason."""
+    """What the paper says and where, what we get, the verdict, and its reason, which explains the `expected` one."""
 
     where: str
     says: str
     ours: str
     verdict: str
     reason: str
+    expected: InitVar[str] = ""
+
+    def __post_init__(self, expected: str) -> None:
+        if expected and self.verdict != expected:
+            object.__setattr__(self, "reason", f"Not explained: these results were expected to give '{expected}'.")
 
 
 def judged(holds: bool | np.bool_, in_part: bool | np.bool_ = False, best: str = HOLDS) -> str:
@@ -55,11 +60,6 @@ def printed_deviation(y: float, z: float) -> bool:
 def size(*peaks: Sequence[float] | np.ndarray) -> str:
     """Verdict on largest deviations along x, y, z [m] of one or several robots: whether one is of the printed size."""
     return judged(any(printed_deviation(y, z) for _, y, z in peaks), best=REACHES)
-
-
-def explained(verdict: str, expected: str, reason: str) -> str:
-    """The reason, as long as the verdict is the one that it explains."""
-    return reason if verdict == expected else f"Not explained: these results were expected to give '{expected}'."
 
 
 def left_open(preset: str, *keys: str) -> bool:

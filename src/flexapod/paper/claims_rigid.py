@@ -13,7 +13,6 @@ from flexapod.paper.claim import (
     OPEN,
     Claim,
     axis_motion,
-    explained,
     judged,
     left_open,
     roll_and_arm,
@@ -77,17 +76,13 @@ def _lowered(ratio: float) -> float:
 def _figure6(robot: Dataset) -> Claim:
     motion = axis_motion(robot_study(robot))
     open_here = left_open("paper-robot", "motion.amplitude", "motion.duration", "motion.profile")
-    verdict = OPEN if open_here else judged(motion.type == "roll")
     return Claim(
         where="Fig. 6",
         says="Roll about X; no amplitude, time or law in the text",
         ours=f"{motion.profile.capitalize()} law, 0 to {np.rad2deg(motion.target[3]):.1f} deg in {motion.duration:g} s",
-        verdict=verdict,
-        reason=explained(
-            verdict,
-            OPEN,
-            "The amplitude is backed out of Eqs. 11-12 and the printed 5 mm, 10 mm and 6 %; law and time are ours.",
-        ),
+        verdict=OPEN if open_here else judged(motion.type == "roll"),
+        expected=OPEN,
+        reason="The amplitude is backed out of Eqs. 11-12 and the printed 5 mm, 10 mm and 6 %; law and time are ours.",
     )
 
 
@@ -132,11 +127,9 @@ def _cost(cost: Dataset) -> Claim:
         says="Newton-Euler is more efficient than Lagrange, which differentiates, for the inverse dynamics",
         ours=f"A rigid leg in one pose takes {newton_euler} operations by Newton-Euler, {lagrange} by Lagrange",
         verdict=judged(newton_euler < 0.9 * lagrange, newton_euler < lagrange),
-        reason=(
-            f"Lagrange's equations take {number(lagrange / newton_euler, 2)} times as many, even differentiated "
-            "symbolically with common terms computed once. Balances of the payload and the solution for six forces are "
-            "the same for both, and so are the results."
-        ),
+        reason=f"Lagrange's equations take {number(lagrange / newton_euler, 2)} times as many, even differentiated "
+        "symbolically with common terms computed once. Balances of the payload and the solution for six forces are "
+        "the same for both, and so are the results.",
     )
 
 
@@ -151,11 +144,9 @@ def _figure8(rigid_legs: Dataset) -> Claim:
         says="Actuator forces of the rigid robot: Newton-Euler and finite elements agree strongly",
         ours=(f"Newton-Euler and our multibody model differ by {apart:.0e} of the largest force, {largest:.0f} N"),
         verdict=judged(apart < 0.01, apart < 0.1),  # a line's width in the figure; visibly apart
-        reason=(
-            f"Closer than {1e3 * AWAY:.0f} ms to the ends of the quintic, where its jerk jumps, by "
-            f"{100 * float(gap.max()) / largest:.1g} % at a step of {1e3 * rigid_legs.attrs['step']:g} ms; this falls "
-            "with the step."
-        ),
+        reason=f"Closer than {1e3 * AWAY:.0f} ms to the ends of the quintic, where its jerk jumps, by "
+        f"{100 * float(gap.max()) / largest:.1g} % at a step of {1e3 * rigid_legs.attrs['step']:g} ms; this falls "
+        "with the step.",
     )
 
 
@@ -165,17 +156,13 @@ def _equations_11_12(robot: Dataset) -> Claim:
     roll = np.arctan2(R[:, 2, 1], R[:, 2, 2])
     rest = robot.com_position_rigid.values[:, 1:] - arm * np.stack([np.cos(roll), np.sin(roll)], axis=1)
     printed, off = (float(np.abs(rest - [0.0, height]).max()) for height in (0.0, study.robot.home_height))
-    verdict = judged(printed < ROUNDING * arm, off < ROUNDING * arm)
     so = "So it is" if off < ROUNDING * arm else f"Off by {text(off, 'm')}"
     return Claim(
         where="Eqs. 11-12",
         says="Rigid path of the centre of mass: Y = d cos(theta), Z = d sin(theta)",
         ours=f"{so}, with d = {1e3 * arm:.0f} mm along the platform's y and its height added",
-        verdict=verdict,
-        reason=explained(
-            verdict,
-            IN_PART,
-            "A payload on top of the platform would have Y = -d sin(theta), Z = d cos(theta) (T2.13); no height is "
-            f"given, ours is {study.robot.home_height:g} m.",
-        ),
+        verdict=judged(printed < ROUNDING * arm, off < ROUNDING * arm),
+        expected=IN_PART,
+        reason="A payload on top of the platform would have Y = -d sin(theta), Z = d cos(theta) (T2.13); no height is "
+        f"given, ours is {study.robot.home_height:g} m.",
     )

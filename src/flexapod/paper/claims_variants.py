@@ -13,7 +13,6 @@ from flexapod.paper.claim import (
     REACHES,
     Claim,
     by_axis,
-    explained,
     judged,
     largest,
     near,
@@ -73,17 +72,14 @@ def _duration(data: Dataset, robot: Dataset) -> Claim:
         says=f"{SAYS}; no time is given",
         ours="; ".join(parts),
         verdict=size(*rows),
-        reason=(
-            f"At rest it sags by {text(sag, 'm')} in z; to that the motion adds {fast} in {durations.min():g} s and "
-            f"{slow} in {durations.max():g} s."
-        ),
+        reason=f"At rest it sags by {text(sag, 'm')} in z; to that the motion adds {fast} in {durations.min():g} s and "
+        f"{slow} in {durations.max():g} s.",
     )
 
 
 def _half_angles(own: Dataset, other: Dataset) -> Claim:
     angles, rows = own.half_angle.values, own.deviation_peak.values
     forces = np.fmax(own.force_peak, other.force_peak).values / _weight(own)
-    verdict = size(*rows, *other.deviation_peak.values)
     each = "; ".join(
         f"{angle:g} deg: y {text(float(y), 'm')}, z {text(float(z), 'm')}"
         for angle, (_, y, z) in zip(angles, rows, strict=True)
@@ -94,14 +90,11 @@ def _half_angles(own: Dataset, other: Dataset) -> Claim:
         where=f"Half-angles {angles[0]:g}{to} deg",
         says=f"{SAYS}; no joint angles are given",
         ours=f"Diameters: {each}. Radii: at most y {text(float(y), 'm')}, z {text(float(z), 'm')}",
-        verdict=verdict,
-        reason=explained(
-            verdict,
-            NOT,
-            f"Leg forces up to {number(forces[0], 2)} times the payload's weight at {angles[0]:g} deg, "
-            f"{number(forces[-1], 2)} at {angles[-1]:g} deg: the nearer to the architecture singularity at 30 deg, "
-            "where the joints form similar hexagons, the softer the robot.",
-        ),
+        verdict=size(*rows, *other.deviation_peak.values),
+        expected=NOT,
+        reason=f"Leg forces up to {number(forces[0], 2)} times the payload's weight at {angles[0]:g} deg, "
+        f"{number(forces[-1], 2)} at {angles[-1]:g} deg: the nearer to the architecture singularity at 30 deg, "
+        "where the joints form similar hexagons, the softer the robot.",
     )
 
 
@@ -148,11 +141,9 @@ def _jump(diameters: Dataset, radii: Dataset, smooth: Dataset) -> Claim:
         says=f"{SAYS}; no law is given, it might start and stop at full rate",
         ours=f"Diameters: {peaks(diameters, 2)}. Radii: {peaks(radii, 2)}",
         verdict=size(largest(diameters), largest(radii)),
-        reason=(
-            f"The impact of the first instant puts {impact} into the legs; driven on, they ring with a strain energy "
-            f"of up to {text(float(diameters.energy_strain.max()), 'J', 2)} and drive forces of up to "
-            f"{text(force, 'N', 2)}, {number(force / usual, 2)} times those of the quintic: Fig. 8 would show them."
-        ),
+        reason=f"The impact of the first instant puts {impact} into the legs; driven on, they ring with a strain "
+        f"energy of up to {text(float(diameters.energy_strain.max()), 'J', 2)} and drive forces of up to "
+        f"{text(force, 'N', 2)}, {number(force / usual, 2)} times those of the quintic: Fig. 8 would show them.",
     )
 
 
@@ -170,18 +161,14 @@ def _roll_error(robot: Dataset) -> Claim:
     roll, arm = roll_and_arm(robot)
     error = roll_error(arm)
     y, z = (float(arm * f(roll) * error) for f in (np.sin, np.cos))
-    verdict = size([0.0, y, z])
     return Claim(
         where="What would give it: roll",
         says=f"{SAYS}, 6 %",
         ours=f"A roll that is off by {np.rad2deg(error):.2f} deg: y {text(y, 'm')}, z {text(z, 'm')}",
-        verdict=verdict,
-        reason=explained(
-            verdict,
-            REACHES,
-            f"{100 * error / roll:.2g} % of the roll. It fits by construction and shows nothing: this error, d = "
-            f"{1e3 * arm:.0f} mm and the roll are three unknowns, backed out of three printed figures.",
-        ),
+        verdict=size([0.0, y, z]),
+        expected=REACHES,
+        reason=f"{100 * error / roll:.2g} % of the roll. It fits by construction and shows nothing: this error, d = "
+        f"{1e3 * arm:.0f} mm and the roll are three unknowns, backed out of three printed figures.",
     )
 
 
@@ -196,11 +183,9 @@ def _length_errors(data: Dataset, robot: Dataset) -> Claim:
         says=SAYS,
         ours=f"Legs that are off by {1e3 * low:.1f} to {1e3 * high:+.1f} mm",
         verdict=judged(near(given, needed) or near(tips, wave), best=REACHES),
-        reason=(
-            f"To stretch by so much, {1e3 * ELASTIC_LENGTH:.0f} mm of piston need {text(needed, 'N')}, the drive force "
-            f"is {text(given, 'N')}; to shorten by so much they must bend to a half-wave {1e3 * wave:.0f} mm high "
-            f"(shortening pi^2 w^2 / 4 L), tips are {text(tips, 'm', 2)} off."
-        ),
+        reason=f"To stretch by so much, {1e3 * ELASTIC_LENGTH:.0f} mm of piston need {text(needed, 'N')}, the drive "
+        f"force is {text(given, 'N')}; to shorten by so much they must bend to a half-wave {1e3 * wave:.0f} mm high "
+        f"(shortening pi^2 w^2 / 4 L), tips are {text(tips, 'm', 2)} off.",
     )
 
 
@@ -218,8 +203,6 @@ def _drives(data: Dataset) -> Claim:
         says=SAYS,
         ours=f"Drives of {text(soft, 'N/m')}: y {text(float(y), 'm')}, z {text(float(z), 'm')}",
         verdict=size(data.deviation_by_drive.values[0]),
-        reason=(
-            f"{100 * sag / z:.0f} % of z is sag. Ball screws have {text(real, 'N/m')} and more: y "
-            f"{text(float(real_y), 'm')}, z {text(float(real_z), 'm')}; and the paper's strokes are prescribed."
-        ),
+        reason=f"{100 * sag / z:.0f} % of z is sag. Ball screws have {text(real, 'N/m')} and more: y "
+        f"{text(float(real_y), 'm')}, z {text(float(real_z), 'm')}; and the paper's strokes are prescribed.",
     )
