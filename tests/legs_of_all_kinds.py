@@ -20,6 +20,9 @@ KINDS = {
     "pose on a slider": EVERYTHING | {"carriage": "slider"},
     "pose on a crank": EVERYTHING | {"carriage": "crank"},
     "flexures on a crank": EVERYTHING | {"carriage": "crank", "flexure": True},
+    "point between soft joints": {"soft_base": True, "soft_platform": True},
+    "pose between soft joints": EVERYTHING | {"soft_base": True, "soft_platform": True},
+    "soft joints and flexures": {"closure": "pose", "flexure": True, "soft_base": True, "soft_platform": True},
     "tip body": {"closure": "none", "torsion": True, "tip_body": True},
     "planar": {"closure": "none", "planar": True, "tip_body": True},
 }
@@ -52,6 +55,8 @@ def springs(seed):
 
 
 PHYSICS |= {"base_flexure": springs(1), "platform_flexure": springs(2)}
+for end, k in (("base", 1.0), ("platform", 1.3)):
+    PHYSICS |= {f"{end}_soft": [1e6 * k, 3e6 * k], f"{end}_soft_damping": [300.0 * k, 200.0 * k]}
 
 
 @cache

@@ -65,6 +65,10 @@ FLEXURE_PARAMETERS: tuple[tuple[str, int], ...] = (
     ("platform_flexure", 36),  # e1..3 and gamma1..3 less `gamma_home`, in the axes of the joint in the leg
 )
 
+#: ... of joints that are held by springs along and across the leg: stiffness and damping across, along [N/m, N s/m].
+SOFT_BASE: tuple[tuple[str, int], ...] = (("base_soft", 2), ("base_soft_damping", 2))
+SOFT_PLATFORM: tuple[tuple[str, int], ...] = (("platform_soft", 2), ("platform_soft_damping", 2))
+
 #: Physical parameters of the payload in kernel order (name, size); tool from the CoM, in platform axes.
 PAYLOAD_PARAMETERS: tuple[tuple[str, int], ...] = (
     ("mass", 1),  # kg
@@ -110,6 +114,8 @@ class Shapes:
         Displacements of the base joint and of the platform joint (pose closures).
     pivot_spin : bool
         A free spin takes the place of gamma3 among the coordinates that the closure determines.
+    soft_base, soft_platform : bool
+        Displacements of the joints along and across the leg.
     """
 
     a: LateralBasis
@@ -123,6 +129,8 @@ class Shapes:
     tip_body: bool = False
     flexure: bool = False
     pivot_spin: bool = False
+    soft_base: bool = False
+    soft_platform: bool = False
 
     @property
     def layout(self) -> tuple[tuple[str, int], ...]:
@@ -132,7 +140,8 @@ class Shapes:
         gamma = ("gamma1", "gamma2", "gamma3") if self.closure == "pose" else ()
         there = (("chi", bool(self.carriage)), ("spin", self.spin), ("t", self.torsion))
         more = (*(name for name, has in there if has), *gamma)
-        moved = ("u1", "u2", "u3", "e1", "e2", "e3") if self.flexure else ()
+        ends = (("u", self.flexure or self.soft_base), ("e", self.flexure or self.soft_platform))
+        moved = tuple(f"{end}{k}" for end, has in ends if has for k in (1, 2, 3))
         return (*((name, 1) for name in (*angles, "l")), *amplitudes, *((name, 1) for name in (*more, *moved)))
 
     @property
@@ -192,5 +201,7 @@ def leg_parameters(shapes: Shapes) -> tuple[tuple[str, int], ...]:
         (shapes.tip_body and not shapes.planar, TIP_BODY_PARAMETERS),
         (shapes.closure == "pose", POSE_PARAMETERS),
         (shapes.flexure, FLEXURE_PARAMETERS),
+        (shapes.soft_base, SOFT_BASE),
+        (shapes.soft_platform, SOFT_PLATFORM),
     )
     return tuple(item for there, table in parts if there for item in table)

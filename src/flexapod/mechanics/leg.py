@@ -3,6 +3,8 @@
 from dataclasses import dataclass
 from types import SimpleNamespace
 
+import numpy as np
+
 from flexapod.elements.carriage import carriage
 from flexapod.elements.cylinder import cylinder
 from flexapod.elements.distribution import Motion
@@ -10,12 +12,15 @@ from flexapod.elements.flexure import flexure, springs
 from flexapod.elements.frame import Energies
 from flexapod.elements.rotations import small_rotation
 from flexapod.elements.sliding_piston import sliding_piston, tip_place, tip_turn
+from flexapod.elements.soft_joint import soft_joint
 from flexapod.elements.tip_body import tip_body
 from flexapod.elements.torsion import torsion
 from flexapod.elements.universal import universal
 from flexapod.mechanics.layout import Shapes
 from flexapod.symbolic.lagrange import Lagrangian
-from flexapod.symbolic.vocabulary import SX, symbol, vertcat, zeros
+from flexapod.symbolic.vocabulary import SX, constant, matrix33, symbol, vertcat, zeros
+
+ALONG = constant(np.array([[0.0], [0.0], [1.0]]))  # a leg's own direction
 
 
 @dataclass(frozen=True, kw_only=True)
@@ -39,8 +44,12 @@ def leg(shapes: Shapes, p: SimpleNamespace, q: SX, v: SX, qs: SimpleNamespace, v
     """Energies and tip of one leg from its coordinates; ``qs`` and ``vs`` are the named pieces of q and v."""
     ground, e = carriage(shapes.carriage, p, qs, vs)
     if shapes.flexure:
-        ground = ground.moved(vertcat(qs.u1, qs.u2, qs.u3), vertcat(vs.u1, vs.u2, vs.u3))
+        ground = ground.moved(_three(qs, "u"), _three(vs, "u"))
     frame = universal(ground, qs, vs)
+    if shapes.soft_base:
+        along = ground.axes.T @ frame.axes[:, 2] if shapes.flexure else ALONG
+        e += soft_joint(p.base_soft, p.base_soft_damping, _three(qs, "u"), _three(vs, "u"), along)
+        frame = frame if shapes.flexure else frame.moved(_three(qs, "u"), _three(vs, "u"))
     if shapes.b.count and not shapes.a.count:  # a planar robot's leg does not bend across the plane
         qs, vs = (SimpleNamespace(**vars(part) | {"a": zeros(shapes.b.count)}) for part in (qs, vs))
     s = qs.l - p.mouth  # (T3.6)  free length outside the cylinder
@@ -62,13 +71,18 @@ def leg(shapes: Shapes, p: SimpleNamespace, q: SX, v: SX, qs: SimpleNamespace, v
         e += tip_body(motion, p, shapes.planar)
     if shapes.closure == "pose":
         e += _joints(shapes, p, qs)
+    place = tip_place(motion)
+    if shapes.soft_platform:
+        along = matrix33(p.leg_frame).T @ ALONG if shapes.flexure else ALONG
+        e += soft_joint(p.platform_soft, p.platform_soft_damping, _three(qs, "e"), _three(vs, "e"), along)
+        place = place if shapes.flexure else place + _three(qs, "e")
     theta = symbol("theta", 3)
     lagrangian = Lagrangian(q=q, v=v, kinetic=e.kinetic, potential=e.gravity + e.strain, dissipation=e.dissipation)
     return Leg(
         lagrangian=lagrangian,
         gravity=e.gravity,
         strain=e.strain,
-        tip=frame.origin + frame.axes @ tip_place(motion),
+        tip=frame.origin + frame.axes @ place,
         tip_axes=frame.axes @ small_rotation(theta),
         theta=theta,
         turn=tip_turn(motion),
@@ -82,6 +96,11 @@ def _joints(shapes: Shapes, p: SimpleNamespace, qs: SimpleNamespace) -> Energies
     end = vertcat(qs.gamma1, qs.gamma2, qs.gamma3) - p.gamma_home
     e = springs(p.base_stiffness, base) + springs(p.gamma_stiffness, end)
     if shapes.flexure:
-        e += flexure(p.base_flexure, vertcat(qs.u1, qs.u2, qs.u3, base))
-        e += flexure(p.platform_flexure, vertcat(qs.e1, qs.e2, qs.e3, end))
+        e += flexure(p.base_flexure, vertcat(_three(qs, "u"), base))
+        e += flexure(p.platform_flexure, vertcat(_three(qs, "e"), end))
     return e
+
+
+def _three(of: SimpleNamespace, name: str) -> SX:
+    """Displacement of a joint, or its rate."""
+    return vertcat(*(getattr(of, f"{name}{k}") for k in (1, 2, 3)))

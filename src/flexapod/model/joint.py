@@ -2,7 +2,7 @@
 
 from __future__ import annotations
 
-from typing import Annotated, ClassVar, Literal
+from typing import Annotated, Any, ClassVar, Literal
 
 import numpy as np
 from pydantic import model_validator
@@ -21,21 +21,31 @@ class Joint(Frozen):
     `bending`, `torsion` [N m/rad]: of springs across and about the leg; None: free as the letter of the joint says,
     and rigid of a fixed joint.
     `stiffness` (6, 6) [N/m, N, N m/rad]: of a flexure, along and about the axes of base or platform, or, with
-    `leg_axes`, those of the leg, z along it.
+    `leg_axes`, those of the leg, z along it. `damping` [N s/m] or `loss` (loss factor) of a stiffness along and across
+    the leg.
     """
 
-    derived: ClassVar[tuple[str, ...]] = ("leg_axes",)
+    derived: ClassVar[tuple[str, ...]] = ("leg_axes", "damping", "loss")
 
     axis: Annotated[Vec3, Measure("number")] | None = None
     bending: Annotated[NonNegative, Measure("rotational stiffness")] | None = None
     torsion: Annotated[NonNegative, Measure("rotational stiffness")] | None = None
     stiffness: Annotated[Matrix6, Measure("stiffness", "force", "rotational stiffness")] | None = None
     leg_axes: bool = False
+    damping: Annotated[NonNegative, Measure("damping")] | None = None
+    loss: NonNegative | None = None
 
     @model_validator(mode="after")
     def _sensible(self) -> Joint:
         _check_direction(self.axis, "axis")
+        check_lossy(self)
         stiffness = self.stiffness
+        if not self.leg_axes and (self.damping is not None or self.loss is not None):
+            raise InputError(
+                "damps no stiffness along and across the leg",
+                key="loss" if self.damping is None else "damping",
+                allowed="beside a stiffness { axial, radial }",
+            )
         if stiffness is None:
             return self
         size = np.abs(stiffness).max()
@@ -53,6 +63,21 @@ class Joint(Frozen):
                 allowed="either of the two",
             )
         return self
+
+    @property
+    def across_and_along(self) -> tuple[float, float] | None:
+        """Stiffness across and along the leg [N/m], where the joint is held by such springs alone."""
+        if self.stiffness is None or self.stiffness[3:].any():
+            return None
+        place = self.stiffness[:3, :3]
+        across, along = float(place[0, 0]), float(place[2, 2])
+        plain = np.array_equal(place, np.diag([across, across, along])) and (self.leg_axes or across == along)
+        return (across, along) if plain and across > 0 and along > 0 else None
+
+    @property
+    def flexes(self) -> bool:
+        """Whether its place gives way in axes of base or platform, or together with its angles."""
+        return self.stiffness is not None and self.across_and_along is None
 
 
 class Travel(Frozen):
@@ -110,6 +135,12 @@ class Carriage(Frozen):
     def unit(self) -> Vec3:
         """Unit vector of the axis, (3,)."""
         return self.axis / np.linalg.norm(self.axis)
+
+
+def check_lossy(spring: Any) -> None:
+    """Raise InputError if a spring has a damper and a loss factor."""
+    if spring.damping is not None and spring.loss is not None:
+        raise InputError("is given together with damping", key="loss", value=spring.loss, allowed="either of the two")
 
 
 def _check_direction(axis: Vec3 | None, key: str) -> None:

@@ -88,12 +88,24 @@ def _stiffness(section: Section) -> dict[str, object]:
         return {"stiffness": found}
     if isinstance(value, Mapping):
         inner = section.child(value, "stiffness")
-        inner.only("axial", "radial")
+        inner.only("axial", "radial", "damping", "loss")
         inner.need("axial", "radial")
-        axial, radial = inner.number("axial", "stiffness"), inner.number("radial", "stiffness")
-        return {"stiffness": np.diag([radial, radial, axial, 0, 0, 0]), "leg_axes": True}  # type: ignore[list-item]
-    number = section.number("stiffness", "stiffness")
+        axial, radial = (_above_zero(inner, name) for name in ("axial", "radial"))
+        return {
+            "stiffness": np.diag([radial, radial, axial, 0, 0, 0]),
+            "leg_axes": True,
+            "damping": inner.number("damping", "damping"),
+            "loss": inner.number("loss", "number"),
+        }
+    number = _above_zero(section, "stiffness") if "stiffness" in section else section.number("stiffness", "stiffness")
     return {} if number is None else {"stiffness": np.diag([number] * 3 + [0.0] * 3)}
+
+
+def _above_zero(section: Section, name: str) -> float:
+    value = section.number(name, "stiffness")
+    if value is None or not value > 0:
+        raise section.error("holds nothing", name, allowed="above 0 N/m; left out of the joint: rigid")
+    return value
 
 
 def _carriage(section: Section, base: Array, normal: Array) -> Carriage:

@@ -95,7 +95,10 @@ def _joint(joint: Joint, place: Array, normal: Array) -> dict[str, object]:
     if joint.axis is not None:
         fields["axis"] = word_of(joint.axis, place, normal) or joint.axis
     if joint.leg_axes and joint.stiffness is not None:
-        fields["stiffness"] = {"axial": float(joint.stiffness[2, 2]), "radial": float(joint.stiffness[0, 0])}
+        lossy = {name: getattr(joint, name) for name in ("damping", "loss") if getattr(joint, name) is not None}
+        fields["stiffness"] = {"axial": float(joint.stiffness[2, 2]), "radial": float(joint.stiffness[0, 0]), **lossy}
+    elif joint.across_and_along is not None:
+        fields["stiffness"] = joint.across_and_along[0]
     return fields
 
 

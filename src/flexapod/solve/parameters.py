@@ -5,7 +5,9 @@ import numpy as np
 from flexapod.mechanics import layout
 from flexapod.mechanics.layout import LEG_PARAMETERS, PAYLOAD_PARAMETERS, Shapes
 from flexapod.model import Actuator, ForceDrive, Leg, Robot, ServoDrive, damping_parts
+from flexapod.model.joint import Joint
 from flexapod.rigid.limbs import COORDINATES, FREE, Limbs
+from flexapod.solve.springs import Place, in_series, loss_frequency, springs_along, viscous
 from flexapod.typing import Array
 
 
@@ -31,7 +33,10 @@ def leg_parameters(robot: Robot, legs: Limbs, shapes: Shapes) -> Array:
     """Parameters of the legs in kernel order, (legs, size of `layout.leg_parameters`)."""
     layout_of_legs = layout.leg_parameters(shapes)
     ends = [dict(zip(("base_flexure", "platform_flexure"), x, strict=True)) for x in flexures(robot, legs)]
-    rows = (_leg(leg) | _place(robot, legs, i) | _joints(leg, legs, i) | ends[i] for i, leg in enumerate(robot.legs))
+    rows = (
+        _leg(leg) | _place(robot, legs, i) | _joints(leg, legs, i) | ends[i] | _soft(robot, legs, i)
+        for i, leg in enumerate(robot.legs)
+    )
     turns = [COORDINATES.index(name) for name in ("spin", "gamma3")]
     loose = legs.pose_closure & (shapes.torsion | (legs.state[:, turns] == FREE).all(axis=1))
     # what twists, or turns between two springs, has an inertia: that of a round section where none is given
@@ -106,6 +111,19 @@ def _joints(leg: Leg, legs: Limbs, i: int) -> dict[str, object]:
     }
 
 
+def _soft(robot: Robot, legs: Limbs, i: int) -> dict[str, object]:
+    """Springs along and across a leg at its joints."""
+    leg, found = robot.legs[i], {}
+    length, frequency = legs.home[i, COORDINATES.index("l")], loss_frequency(robot)
+    ends: tuple[tuple[Place, Joint], ...] = (("base", leg.base_joint), ("platform", leg.platform_joint))
+    for name, joint in ends:
+        along = in_series((x for x in springs_along(leg) if x.at == name), length, frequency)
+        across = 0.0 if joint.across_and_along is None else joint.across_and_along[0]
+        found[f"{name}_soft"] = [across, along[0]]
+        found[f"{name}_soft_damping"] = [viscous(joint, across, frequency), along[1]]
+    return found
+
+
 def flexures(robot: Robot, legs: Limbs) -> Array:
     """Stiffness of the joints at both ends of the legs, in the axes in which they give way, (legs, 2, 6, 6)."""
     found = np.zeros((len(legs), 2, 6, 6))
@@ -117,7 +135,7 @@ def flexures(robot: Robot, legs: Limbs) -> Array:
             (leg.platform_joint, legs.platform_frames[i].T, legs.leg_frames[i].T),
         )
         for k, (joint, given, leg_axes) in enumerate(ends):
-            if joint.stiffness is not None:
+            if joint.stiffness is not None and joint.flexes:
                 turn = np.kron(np.eye(2), leg_axes if joint.leg_axes else given)
                 found[i, k] = turn @ joint.stiffness @ turn.T
     return found

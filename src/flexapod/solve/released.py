@@ -31,7 +31,7 @@ def _ideal(leg: Leg) -> Leg:
     letters = leg.letters
     ends = [letter.replace("F", free) for letter, free in ((letters.base, "U"), (letters.platform, "S"))]
     first = leg.chain[: 1 if letters.carriage else 0]
-    none = {"stiffness": None, "bending": None, "torsion": None, "leg_axes": False}
+    none = {name: None for name in ("stiffness", "bending", "torsion", "damping", "loss")} | {"leg_axes": False}
     return leg.replace(
         chain=first + ends[0] + letters.stroke + ends[1],
         base_joint=leg.base_joint.replace(**none),

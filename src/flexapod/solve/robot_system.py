@@ -14,6 +14,7 @@ from flexapod.solve.parameters import (
     payload_parameters,
 )
 from flexapod.solve.shapes import robot_shapes
+from flexapod.solve.springs import springs_along
 from flexapod.solve.system import System
 from flexapod.typing import Mask
 
@@ -45,7 +46,17 @@ def _held(robot: Robot, legs: Limbs, shapes: Shapes) -> Mask:
             held[:, shapes.index(name)] = (state == HELD) | ((state == DRIVEN) & prescribed) | foreign
     if shapes.torsion:  # a ball does not twist its leg
         held[:, shapes.index("t")] = ~legs.pose_closure
-    if shapes.flexure:  # a joint does not give way in directions in which it has no stiffness
-        rigid_ways = ~flexures(robot, legs)[:, :, :3].any(axis=-1)
-        held[:, shapes.index("u1") :] = rigid_ways.reshape(len(legs), 6)
+    return held | _held_joints(robot, legs, shapes)
+
+
+def _held_joints(robot: Robot, legs: Limbs, shapes: Shapes) -> Mask:
+    """Displacements of joints in directions in which they have no stiffness: they do not give way."""
+    held: Mask = np.zeros((len(legs), shapes.size), dtype=bool)
+    ways: Mask = (flexures(robot, legs)[:, :, :3] != 0).any(axis=-1)
+    for i, leg in enumerate(robot.legs):
+        soft = {spring.at for spring in springs_along(leg)}
+        for k, (name, end, joint) in enumerate((("base", "u", leg.base_joint), ("platform", "e", leg.platform_joint))):
+            if shapes.has(f"{end}1"):
+                at, across = shapes.index(f"{end}1"), joint.across_and_along is not None
+                held[i, at : at + 3] = np.logical_not(ways[i, k] | [across, across, name in soft])
     return held
