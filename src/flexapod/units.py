@@ -41,6 +41,7 @@ DIMENSIONS = {
     "bending stiffness": Dimension(unit="N m^2", example="756.65 N m^2", least=1e-18, most=1e18),
     "damping": Dimension(unit="N s/m", example="2 kN s/m", least=1e-12, most=1e15),
     "density": Dimension(unit="kg/m^3", example="7800 kg/m^3", least=1e-12, most=1e9),
+    "expansion": Dimension(unit="1/K", example="11.7e-6 1/K", least=1e-12, most=10.0),
     "force": Dimension(unit="N", example="120 N", least=1e-12, most=1e12),
     "frequency": Dimension(unit="Hz", example="5 Hz", least=1e-9, most=1e9),
     "inertia": Dimension(unit="kg m^2", example="17.88 kg m^2", least=1e-18, most=1e15),
@@ -52,6 +53,7 @@ DIMENSIONS = {
     "rotational stiffness": Dimension(unit="N m/rad", example="15 N m/rad", least=1e-12, most=1e15, angle=True),
     "stiffness": Dimension(unit="N/m", example="50 N/um", least=1e-9, most=1e18),
     "stress": Dimension(unit="Pa", example="200 GPa", least=1e-3, most=1e18),
+    "temperature": Dimension(unit="degC", example="25 degC", least=1e-9, most=1e6),
     "time": Dimension(unit="s", example="0.5 ms", least=1e-9, most=1e9),
     "torque": Dimension(unit="N m", example="12 N m", least=1e-12, most=1e12),
     "velocity": Dimension(unit="m/s", example="0.1 m/s", least=1e-12, most=1e6),
@@ -65,6 +67,7 @@ COMMON_UNITS = {
     "bending stiffness": {"N m^2": 1.0},
     "damping": {"N s/m": 1.0, "kN s/m": 1e3},
     "density": {"kg/m^3": 1.0},
+    "expansion": {"1/K": 1.0},
     "force": {"N": 1.0, "kN": 1e3},
     "frequency": {"Hz": 1.0},
     "inertia": {"kg m^2": 1.0},
@@ -75,6 +78,7 @@ COMMON_UNITS = {
     "rotational stiffness": {"N m/rad": 1.0},
     "stiffness": {"N/m": 1.0, "N/um": 1e6},
     "stress": {"Pa": 1.0, "MPa": 1e6, "GPa": 1e9},
+    "temperature": {"degC": 1.0, "°C": 1.0},
     "time": {"s": 1.0, "ms": 1e-3},
     "torque": {"N m": 1.0},
     "velocity": {"m/s": 1.0, "mm/s": 1e-3},
@@ -157,6 +161,8 @@ def _factor(unit: str, dimension: str) -> float | str:
         given = registry.Unit(unit.replace("²", "^2").replace("³", "^3"))
     except Exception:  # pint lets errors of any kind out of its parser, AssertionError among them
         return f"has an unknown unit ({unit})"
+    if dimension == "temperature" and given != registry.Unit(wanted.unit):
+        return f"is not in degrees Celsius ({unit})"  # others count from another zero
     has_angle = any(name.endswith(_ANGLES) or name.startswith("revolution") for name in given._units)
     if not given.is_compatible_with(registry.Unit(wanted.unit)) or has_angle != wanted.angle:
         return f"is not {_article(dimension)}: {unit} does not measure one"

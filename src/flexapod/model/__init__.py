@@ -16,6 +16,8 @@ from flexapod.model.files import (
     preset,
     preset_text,
 )
+from flexapod.model.geometry import Geometry
+from flexapod.model.heat import Expansion, Heat
 from flexapod.model.home import Home
 from flexapod.model.joint import Carriage, Joint, Travel
 from flexapod.model.laws import (
@@ -47,6 +49,7 @@ from flexapod.model.piston import Cylinder, Piston, Strut
 from flexapod.model.robot import Robot
 from flexapod.model.simulation import DEFAULT_TOLERANCE, FIDELITIES, Initial, Simulation
 from flexapod.model.study import ActuatorStudy, Study, override
+from flexapod.model.tolerances import LengthSpread, RatioSpread, Spread, Tolerances
 from flexapod.model.write import to_toml
 
 __all__ = [
@@ -74,12 +77,16 @@ __all__ = [
     "Cylinder",
     "Damping",
     "Drive",
+    "Expansion",
     "Feedback",
     "ForceDrive",
+    "Geometry",
+    "Heat",
     "Home",
     "Initial",
     "Joint",
     "Leg",
+    "LengthSpread",
     "Load",
     "LoadLaw",
     "Material",
@@ -91,6 +98,7 @@ __all__ = [
     "PrescribedDrive",
     "ProfileLaw",
     "RateLaw",
+    "RatioSpread",
     "Rectangle",
     "Robot",
     "ServoDrive",
@@ -98,11 +106,13 @@ __all__ = [
     "SineLaw",
     "SineWrench",
     "SpinUpLaw",
+    "Spread",
     "StepLaw",
     "StepWrench",
     "Stroke",
     "Strut",
     "Study",
+    "Tolerances",
     "Travel",
     "Tube",
     "Waypoint",

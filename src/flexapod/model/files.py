@@ -37,6 +37,7 @@ __all__ = [
 PAPER_PRESETS = ("paper-robot", "paper-robot-radii", "paper-actuator")
 PRESETS = (*PAPER_PRESETS, "tripod", "flight-simulator")
 AT_REST = AxisMotion(type="heave", amplitude=0.0, duration=1.0)
+_AS_BUILT = ("geometry", "heat", "tolerances")
 _COMMON = ("motion", "load", "initial", "simulation")
 
 
@@ -156,7 +157,7 @@ def _lookup(data: object, path: str) -> str:
 
 
 def _study(top: Section, text: str) -> Study:
-    top.only("robot", "payload", "leg", *_COMMON)
+    top.only("robot", "payload", "leg", *_AS_BUILT, *_COMMON)
     fixed = platform_fixed(top)
     top.need("robot", *(() if fixed else ("payload",)), "leg", *(() if fixed else ("motion",)))
     settings = top.section("simulation")

@@ -30,6 +30,10 @@ _TABLES = {
         "one at least besides the time; others are 0",
     ),
     '`leg.drive` with `law = "csv"`': (forces(6), "all columns, one for each leg"),
+    "`heat.file`": (
+        {"piston": "temperature", "cylinder 3": "temperature"},
+        "one at least besides the time: base, platform, piston, cylinder, or one of the last two of a leg",
+    ),
     "`motion.rotation`": ({"value": "angle"}, "both columns"),
     "`motion.extension`": ({"value": "length"}, "both columns"),
     "`load.torque`": ({"value": "torque"}, "both columns"),
@@ -213,10 +217,18 @@ def _choices() -> Iterator[str]:
         yield _table((name, "what it is"), [(f"`{key}`", words) for key, words in choices.items()])
     yield "`material`:"
     rows = [
-        (f"`{name}`", f"{m.E / 1e9:g}", f"{m.density:g}", "" if m.yield_stress is None else f"{m.yield_stress / 1e6:g}")
+        (
+            f"`{name}`",
+            f"{m.E / 1e9:g}",
+            f"{m.density:g}",
+            "" if m.yield_stress is None else f"{m.yield_stress / 1e6:g}",
+            f"{m.poisson:g}",
+            "" if m.expansion is None else f"{m.expansion * 1e6:g}",
+        )
         for name, m in MATERIALS.items()
     ]
-    yield _table(("material", "E [GPa]", "density [kg/m^3]", "yield_stress [MPa]"), rows)
+    head = ("material", "E [GPa]", "density [kg/m^3]", "yield_stress [MPa]", "poisson", "expansion [1e-6/K]")
+    yield _table(head, rows)
 
 
 def _tables() -> Iterator[str]:

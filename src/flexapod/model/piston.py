@@ -37,7 +37,7 @@ class Piston(Frozen):
 
     `length` [m], whole piston; `EA` [N]; `EI` [N m^2]; `rhoA` [kg/m], 0 for a spring without mass; `diameter`,
     `inner_diameter` [m], `E` [Pa], `density` [kg/m^3] and `yield_stress` [Pa] where known; `axial_inertia` [kg m^2];
-    `poisson`, ratio of a round section; `GJ` [N m^2], torsional stiffness, of another one.
+    `poisson`, ratio of a round section; `GJ` [N m^2], torsional stiffness, of another one; `expansion` [1/K] by heat.
     """
 
     length: Annotated[Positive, Measure("length")]
@@ -52,6 +52,7 @@ class Piston(Frozen):
     axial_inertia: Annotated[NonNegative, Measure("inertia")] = 0.0
     poisson: float = Field(default=POISSON, strict=True, ge=-0.5, le=0.5)
     GJ: Annotated[Positive, Measure("bending stiffness")] | None = None
+    expansion: Annotated[Number, Measure("expansion")] | None = None
 
     @model_validator(mode="after")
     def _sensible(self) -> Self:
@@ -84,6 +85,7 @@ class Piston(Frozen):
             yield_stress=material.yield_stress,
             axial_inertia=axial_inertia,
             poisson=material.poisson,
+            expansion=material.expansion,
         )
 
     @property
@@ -124,6 +126,7 @@ class Strut(Piston):
             E=material.E,
             density=material.density,
             yield_stress=material.yield_stress,
+            expansion=material.expansion,
             section=section,
         )
 

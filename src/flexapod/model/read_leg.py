@@ -206,7 +206,11 @@ def _drive(section: Section | None, number: int, count: int, among: tuple[str, .
 
 def read_material(section: Section) -> Material:
     """Material of a section that has `material`, or `E` and `density`; the others may be set in both cases."""
-    own = {"yield_stress": section.number("yield_stress", "stress"), "poisson": section.number("poisson", "number")}
+    own = {
+        "yield_stress": section.number("yield_stress", "stress"),
+        "poisson": section.number("poisson", "number"),
+        "expansion": section.number("expansion", "expansion"),
+    }
     if "material" in section:
         for name in ("E", "density"):
             if name in section:

@@ -18,7 +18,7 @@ if TYPE_CHECKING:
     from flexapod.model.leg import Leg
     from flexapod.model.robot import Robot
 
-__all__ = ["check_counts", "check_leg", "check_plane", "check_spread"]
+__all__ = ["check_built", "check_counts", "check_leg", "check_plane", "check_spread"]
 
 
 def check_counts(robot: Robot) -> None:
@@ -49,6 +49,26 @@ def check_counts(robot: Robot) -> None:
         if len(values) > 1:
             allowed = "one number for all legs" if name == "axial_modes" else "sliders or cranks, not both in one robot"
             raise InputError("differs between legs", key=f"leg.{name}", value=sorted(values), allowed=allowed)
+
+
+def check_built(robot: Robot) -> None:
+    """Refuse errors and temperatures of what the robot does not have."""
+    geometry, heat, count = robot.geometry, robot.heat, robot.count
+    if geometry is not None:
+        geometry.check(count, robot.normal if robot.plane else None)
+        if geometry.lead is not None and not any(_has_lead(leg) for leg in robot.legs):
+            raise InputError(
+                "is of drives that this robot does not have", key="geometry.lead", allowed="driven strokes and sliders"
+            )
+    if heat is not None:
+        heat.check(count)
+        if heat.warms("cylinder") and all(leg.strut is not None for leg in robot.legs):
+            raise InputError("is of a part that no leg has", key="heat.cylinder", next_step="A strut is a piston here")
+
+
+def _has_lead(leg: Leg) -> bool:
+    slides = leg.carriage is not None and leg.carriage.kind == "slider"
+    return leg.driven == "stroke" or (leg.driven == "carriage" and slides)
 
 
 def check_spread(robot: Robot) -> None:

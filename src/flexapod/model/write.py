@@ -71,6 +71,14 @@ def _robot(robot: Robot) -> Iterator[str]:
     else:
         for leg in legs:
             yield from ["", "[[leg]]", *leg]
+    for name in ("geometry", "heat", "tolerances"):
+        if (part := getattr(robot, name)) is not None:
+            yield from _section(name, _per_leg(_fields(part)))
+
+
+def _per_leg(fields: dict[str, object]) -> dict[str, object]:
+    """What is the same for all legs as one number."""
+    return {n: x.item() if isinstance(x, np.ndarray) and x.shape == (1,) else x for n, x in fields.items()}
 
 
 def _leg(leg: Leg, base: Array, platform: Array, normal: Array) -> dict[str, object]:
@@ -113,7 +121,7 @@ def _beam(piston: Piston) -> dict[str, object]:
     made_of = {name: fields.pop(name, None) for name in ("E", "density")}
     if piston.E is None or piston.density is None:
         return fields
-    own = {"yield_stress": piston.yield_stress, "poisson": piston.poisson}
+    own = {"yield_stress": piston.yield_stress, "poisson": piston.poisson, "expansion": piston.expansion}
     material = Material(name="given", E=piston.E, density=piston.density, **own)
     same = None
     if piston.diameter is not None:

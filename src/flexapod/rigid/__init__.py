@@ -1,6 +1,7 @@
 """Closed-form mathematics of the rigid robot: NumPy, vectorised over time."""
 
 from flexapod.rigid.breaks import Breaks, actuator_breaks, robot_breaks
+from flexapod.rigid.built import BuiltPart, added, added_by_all, built_limbs, built_parts, built_poses, nearby, shifts
 from flexapod.rigid.dynamics import RigidForces
 from flexapod.rigid.forward import Postures
 from flexapod.rigid.jacobian import NearestSingularity, SingularityPath, length_jacobian
@@ -48,6 +49,7 @@ __all__ = [
     "FREE",
     "HELD",
     "Breaks",
+    "BuiltPart",
     "Excess",
     "Law",
     "LegState",
@@ -62,6 +64,11 @@ __all__ = [
     "SingularityPath",
     "WorkspaceMap",
     "actuator_breaks",
+    "added",
+    "added_by_all",
+    "built_limbs",
+    "built_parts",
+    "built_poses",
     "carriage_limits",
     "carriages",
     "displaced",
@@ -88,6 +95,7 @@ __all__ = [
     "mobility_words",
     "motion_law",
     "motion_names",
+    "nearby",
     "nearest_singularity",
     "payload_body",
     "poses",
@@ -104,6 +112,7 @@ __all__ = [
     "robot_breaks",
     "robot_limbs",
     "rotation_matrix",
+    "shifts",
     "singularity",
     "strokes",
     "wrench",

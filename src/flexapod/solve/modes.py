@@ -123,7 +123,7 @@ def locked_poses(
     refuse_pure_force(robot, "a static equilibrium")
     system = robot_system(robot, simulation)
     start, acts = rigid_rest(system, robot, path), rest_load(system, robot, path, load, time)
-    command = rest_commands(system, robot, start.q)
+    command = rest_commands(system, robot, start.q, time)
     found = equilibria(system, start, command, acts.force, acts.wrench)
     return LockedPoses(
         robot=robot,

@@ -141,11 +141,6 @@ def flexures(robot: Robot, legs: Limbs) -> Array:
     return found
 
 
-def joint_parameters(robot: Robot) -> Array:
-    """Platform joints of the legs from the payload's CoM, platform axes, (legs, 3) [m]."""
-    return np.ascontiguousarray(robot.platform_joints - robot.com)
-
-
 def payload_parameters(robot: Robot) -> Array:
     """Parameters of the payload; tool from its CoM."""
     load = robot.payload

@@ -22,9 +22,12 @@ __all__ = ["RobotForces", "is_hexapod", "released", "rigid_errors", "rigid_force
 
 @once
 def released(robot: Robot) -> Robot:
-    """The same robot with ideal joints: fixed ones universal at the base, balls at the platform; drives prescribed."""
+    """The same robot as drawn, with ideal joints: fixed ones universal at the base, balls at the platform.
+
+    Its drives are prescribed.
+    """
     legs = tuple(_ideal(leg) for leg in robot.legs)
-    return robot.replace(type="+".join(leg.chain for leg in legs), legs=legs)
+    return robot.replace(type="+".join(leg.chain for leg in legs), legs=legs, geometry=None, heat=None)
 
 
 def _ideal(leg: Leg) -> Leg:

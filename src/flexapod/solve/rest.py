@@ -9,7 +9,7 @@ import numpy as np
 
 from flexapod import rigid
 from flexapod.model import Load, Robot
-from flexapod.rigid.limbs import DRIVEN, HELD
+from flexapod.rigid.limbs import COORDINATES, DRIVEN, HELD
 from flexapod.solve.rigid_motion import leg_coordinates
 from flexapod.solve.system import System
 from flexapod.solve.tables import feed_forward
@@ -28,12 +28,23 @@ class RestLoad:
     wrench: Array
 
 
-def rest_commands(system: System, robot: Robot, q: Array) -> Array:
-    """Values (P, legs, ports) that hold a robot at configurations q (P, legs, n): of joints those at home."""
+def rest_commands(system: System, robot: Robot, q: Array, time: float = 0.0) -> Array:
+    """Values (P, legs, ports) that hold a robot at configurations q (P, legs, n): of joints those at home.
+
+    To them comes what the robot as built adds at a `time` [s], Eq. (T16.5).
+    """
     command, found = q[..., system.ports].copy(), rigid.robot_limbs(robot)
     for k, port in _ports(system):
         fixed = found.state[:, k] == HELD
         command[:, fixed, port] = found.home[fixed, k]
+    if rigid.built_parts(robot):
+        whole = np.zeros((*q.shape[:2], len(COORDINATES)))
+        there, at = leg_coordinates(system.kernel.shapes)
+        whole[..., there] = q[..., at]
+        still = np.zeros_like(whole)
+        more = rigid.added_by_all(robot, np.full(len(q), time), rigid.Law(whole, still, still)).position
+        for k, port in _ports(system):
+            command[..., port] += more[..., k]
     return command
 
 

@@ -19,7 +19,7 @@ from flexapod.solve.modes import refuse_pure_force
 from flexapod.solve.recording import Counters, Recording
 from flexapod.solve.redundant import independent, shared
 from flexapod.solve.rest import rest_commands, rest_load
-from flexapod.solve.rigid_motion import rigid_state
+from flexapod.solve.rigid_motion import built_state, rigid_state
 from flexapod.solve.robot_system import robot_system
 from flexapod.solve.start import consistent_start
 from flexapod.solve.stops import Stops
@@ -62,6 +62,7 @@ def prepare(study: Study, state: State | None = None) -> RobotMarch:
         There is no equilibrium at the start.
     """
     refuse_massless(study)
+    refuse_growing_plates(study)
     robot, simulation = study.robot, study.simulation
     system, path = robot_system(robot, simulation), _Path(study)
     law = robot_law(system, robot, study.load, path.poses)
@@ -107,10 +108,26 @@ def refuse_massless(study: Study) -> None:
             )
 
 
+def refuse_growing_plates(study: Study) -> None:
+    """Raise InputError if base or platform change their temperature during a simulation."""
+    heat = study.robot.heat
+    for plate in ("base", "platform"):
+        if heat is not None and plate in heat.columns:
+            raise InputError(
+                f"has a column {plate!r}: joints that move by heat belong to poses, not to motions",
+                file=study.path,
+                key="heat.file",
+                value=heat.file,
+                allowed="over time the temperatures of pistons, cylinders and screws",
+                next_step=f"Give heat.{plate} a number here; flexapod.accuracy follows the whole table",
+            )
+
+
 def _configuration(study: Study, system: System) -> State:
     """Configuration and velocities before the impact projection, by the kind of start and what acts until then."""
     path = rigid.poses(study.robot, study.motion, np.zeros(1))
-    straight = rigid_state(system, study.robot, path)
+    built = bool(rigid.built_parts(study.robot)) and study.initial.start != "equilibrium"
+    straight = (built_state if built else rigid_state)(system, study.robot, path)
     if study.initial.start == "moving":
         return straight
     at_rest = replace(straight, v=np.zeros(system.size), v_dot=np.zeros(system.size))

@@ -9,7 +9,6 @@ from flexapod.rigid.limbs import ABSENT, COORDINATES, DRIVEN, HELD, Limbs
 from flexapod.solve.kernel import kernel
 from flexapod.solve.parameters import (
     flexures,
-    joint_parameters,
     leg_parameters,
     payload_parameters,
 )
@@ -22,13 +21,13 @@ __all__ = ["robot_system"]
 
 
 def robot_system(robot: Robot, simulation: Simulation) -> System:
-    """System of a robot in the fidelity, basis and number of shapes of ``simulation``."""
-    legs = rigid.robot_limbs(robot)
+    """System of a robot as built, in the fidelity, basis and number of shapes of ``simulation``."""
+    legs = rigid.built_limbs(robot, rigid.robot_limbs(robot))
     shapes = robot_shapes(robot, simulation, legs)
     return System(
         kernel=kernel(shapes),
         leg_p=leg_parameters(robot, legs, shapes),
-        joint_p=joint_parameters(robot),
+        joint_p=np.ascontiguousarray(legs.platform - robot.com),
         payload_p=payload_parameters(robot),
         held=_held(robot, legs, shapes),
         hub_held=legs.hub_held,

@@ -20,7 +20,8 @@ Law = Callable[[Array], tuple[Array, Array]]
 def robot_law(system: System, robot: Robot, load: Load, poses: Callable[[Array], rigid.Poses]) -> Law:
     """Return what a robot is commanded as a function of time; ``poses`` is the rigid path.
 
-    Driven coordinates follow the path; what else is held stays where it is at home, of a flexure at zero.
+    Driven coordinates follow the path; what else is held stays where it is at home, of a flexure at zero; and to both
+    comes what the robot as built adds (T16.5).
     """
     chains, shapes = rigid.robot_limbs(robot), system.kernel.shapes
     names = {shapes.index(name): name for name in COORDINATES if shapes.has(name)}
@@ -29,7 +30,7 @@ def robot_law(system: System, robot: Robot, load: Load, poses: Callable[[Array],
         if port in names:
             place = COORDINATES.index(names[port])
             driven[:, k], home[:, k] = chains.state[:, place] == DRIVEN, chains.home[:, place]
-    driven = driven.astype(bool)
+    driven, ports = driven.astype(bool), list(enumerate(system.ports))
 
     def law(t: Array) -> tuple[Array, Array]:
         path = poses(t)
@@ -40,10 +41,20 @@ def robot_law(system: System, robot: Robot, load: Load, poses: Callable[[Array],
             which = slice(None) if driven[:, k].all() else driven[:, k]
             for column, part in enumerate(legs.coordinate(names[system.ports[k]])):
                 table[:, which, k, column] = part[:, which]
+        if rigid.built_parts(robot):
+            _as_built(robot, t, legs, table, {k: COORDINATES.index(names[port]) for k, port in ports if port in names})
         table[:, driven, 3] = feed_forward(robot, t, path, wrench)[:, driven.any(axis=1)]
         return table, wrench
 
     return law
+
+
+def _as_built(robot: Robot, t: Array, legs: rigid.LegState, table: Array, ports: dict[int, int]) -> None:
+    """Add to the table of a rigid path what the robot as built adds; ``ports``: which coordinate each port is."""
+    q = rigid.Law(*np.stack([legs.coordinate(name) for name in COORDINATES], axis=-1))
+    for column, more in enumerate(rigid.added_by_all(robot, t, q)):
+        for port, place in ports.items():
+            table[:, :, port, column] += more[..., place]
 
 
 def feed_forward(robot: Robot, t: Array, path: rigid.Poses, wrench: Array) -> Array:

@@ -28,12 +28,17 @@ __all__ = [
     "fixed_labels",
 ]
 
-#: Causes of a leg's length error, in the order of the `cause` dimension.
+#: Causes of a leg's length error that every robot has, the first ones of the `cause` dimension.
 CAUSES = ("axial-strain", "bending", "drive")
 CAUSE_WORDS = {
     "axial-strain": "stretch of the pistons",
     "bending": "bending of the pistons",
     "drive": "give of the drives",
+    "geometry": "errors of geometry",
+    "heat_base": "heat of the base",
+    "heat_platform": "heat of the platform",
+    "heat_piston": "heat of the pistons",
+    "heat_cylinder": "heat of the cylinders",
 }
 
 
@@ -279,4 +284,5 @@ _COORDINATE_ATTRS = {
     "station": {"units": "1", "long_name": "position along the leg: 0 base joint, 1 tip"},
     "joint_angle": {"long_name": "angle of a joint"},
     "coordinate": {"long_name": "coordinate of a leg"},
+    "cause": {"long_name": COORDINATES["cause"][1]},
 }

@@ -2,7 +2,8 @@
 
 from __future__ import annotations
 
-from dataclasses import dataclass
+from collections.abc import Mapping
+from dataclasses import dataclass, field
 
 import numpy as np
 from numpy.typing import NDArray
@@ -16,11 +17,12 @@ from flexapod.rigid.rotations import matrix
 from flexapod.solve.released import is_hexapod, rigid_errors
 from flexapod.solve.system import System
 from flexapod.study.after.legs import stretch
+from flexapod.study.names import CAUSES
 from flexapod.study.path import RigidPath
 from flexapod.study.record import Record
 from flexapod.typing import Array
 
-__all__ = ["Errors", "deviation_by_cause", "errors_of"]
+__all__ = ["Errors", "cause_names", "deviation_by_cause", "errors_of"]
 
 CHI, L = COORDINATES.index("chi"), COORDINATES.index("l")
 
@@ -29,23 +31,29 @@ CHI, L = COORDINATES.index("chi"), COORDINATES.index("l")
 class Errors:
     """Errors of the coordinates that drives and joints hold, by cause, each (T, legs, 8) [m, rad]: `COORDINATES`.
 
-    Of a leg UPS that is its length. They add up to what straight legs would need to reach the flexible platform, less
-    what they have on the rigid path, exactly.
+    Of a leg UPS that is its length. `more`: further ones by name, as `cause_names` has them. They add up to what
+    straight legs would need to reach the flexible platform, less what they have on the rigid path, exactly.
     """
 
     axial: Array
     bending: Array
     drive: Array
+    more: Mapping[str, Array] = field(default_factory=dict)
 
     @property
     def total(self) -> Array:
         """Their sum, Eq. (T8.5)."""
-        return self.axial + self.bending + self.drive
+        return self.axial + self.bending + self.drive + sum(self.more.values())
 
     @property
     def stacked(self) -> Array:
-        """The causes in the order of `names.CAUSES`, (T, 3, legs, 8)."""
-        return np.stack([self.axial, self.bending, self.drive], axis=1)
+        """The causes in the order of `cause_names`, (T, causes, legs, 8)."""
+        return np.stack([self.axial, self.bending, self.drive, *self.more.values()], axis=1)
+
+
+def cause_names(robot: Robot) -> tuple[str, ...]:
+    """Causes of a robot's deviation, in the order of the `cause` dimension: those of every robot, then its own."""
+    return (*CAUSES, *dict.fromkeys(part.cause for part in rigid.built_parts(robot)))
 
 
 def errors_of(robot: Robot, system: System, path: RigidPath, record: Record) -> Errors:
@@ -56,13 +64,31 @@ def errors_of(robot: Robot, system: System, path: RigidPath, record: Record) -> 
         if shapes.has(name):
             q[..., k] = record.q[..., shapes.index(name)]
     command = np.stack([path.legs.coordinate(name)[0] for name in COORDINATES], axis=-1)
-    needed = _straight(robot, found, record, q)
+    needed, built = _straight(robot, found, record, q), _built(robot, path.time, command)
+    before, more, done = needed, {}, ()
+    for name, (parts, longer) in built.items():  # joint after joint to its real place
+        done, after = (*done, *parts), before
+        if any(part.base.any() or part.platform.any() for part in parts):
+            after = _straight(robot, rigid.built_limbs(robot, found, done), record, q)
+        more[name], before = before - after + longer, after  # (T16.7)
     counts, own, axial = np.isin(found.state, (HELD, DRIVEN)), command.copy(), np.zeros_like(q)
     own[..., (CHI, L)] = q[..., (CHI, L)]
     axial[..., L] = stretch(shapes, record.q)  # (T8.2)
-    bending, drive = needed - (own + axial), own - command  # (T8.3)-(T8.4)
-    return Errors(**{name: np.where(counts, part, 0.0) for name, part in
-                     (("axial", axial), ("bending", bending), ("drive", drive))})  # fmt: skip
+    bending, drive = before - (own + axial), own - command  # (T8.3)-(T8.4)
+    for _, longer in built.values():
+        drive = drive - longer
+    axial, bending, drive, *others = (np.where(counts, part, 0.0) for part in (axial, bending, drive, *more.values()))
+    return Errors(axial=axial, bending=bending, drive=drive, more=dict(zip(more, others, strict=True)))
+
+
+def _built(robot: Robot, t: Array, command: Array) -> dict[str, tuple[tuple[rigid.BuiltPart, ...], Array]]:
+    """What differs from the drawing, by cause, and what it adds to the commanded coordinates, (T, legs, 8)."""
+    parts, still = rigid.built_parts(robot), np.zeros_like(command)
+    found = {}
+    for cause in dict.fromkeys(part.cause for part in parts):
+        own = tuple(part for part in parts if part.cause == cause)
+        found[cause] = own, sum(rigid.added(part, t, rigid.Law(command, still, still)).position for part in own)
+    return found
 
 
 def _straight(robot: Robot, found: Limbs, record: Record, q: Array) -> Array:
@@ -71,7 +97,7 @@ def _straight(robot: Robot, found: Limbs, record: Record, q: Array) -> Array:
     at = rigid.Poses.at_rest(record.pose[:, :3] - R @ robot.com, R)
     if found.plain:
         q = q.copy()
-        q[..., L] = rigid.leg_lengths(robot.base_joints, robot.platform_joints, at.position, R)
+        q[..., L] = rigid.leg_lengths(found.base, found.platform, at.position, R)
         return q
     needed = close(found, Task(_closing(found), np.zeros(6, dtype=bool), np.zeros(3)), q, at).q
     needed[..., CHI] = q[..., CHI]

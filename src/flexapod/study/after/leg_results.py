@@ -9,12 +9,15 @@ from numpy.typing import ArrayLike
 
 from flexapod.mechanics.layout import columns, leg_parameters
 from flexapod.model import Robot
+from flexapod.rigid.built import built_limbs
 from flexapod.rigid.limbs import COORDINATES, HELD, Limbs, limbs
+from flexapod.rigid.robot import robot_limbs
 from flexapod.rigid.rotations import exponential, matrix
 from flexapod.solve.many import RestStates
 from flexapod.solve.released import RobotForces, released, rigid_system
 from flexapod.solve.system import System
 from flexapod.study.after import legs as by_name
+from flexapod.study.after.causes import cause_names
 from flexapod.study.names import DRIVES, Variable
 from flexapod.study.path import RigidPath
 from flexapod.study.record import Record
@@ -122,9 +125,11 @@ def _held_forces(found: Limbs, system: System, forces: Array, held: list[str]) -
 
 
 def leg_labels(robot: Robot, *, rigid: bool = False) -> dict[str, ArrayLike]:
-    """Labels of the dimensions whose size depends on the kinds of legs; with `rigid` those of the rigid path."""
+    """Labels of the dimensions whose size depends on the robot; with `rigid` those of the rigid path."""
     found = limbs(robot, rigid=rigid)
     labels: dict[str, ArrayLike] = {"joint_angle": list(by_name.angle_names(found))}
+    if not rigid:
+        labels["cause"] = list(cause_names(robot))
     held = by_name.held_names(found)
     return {**labels, "coordinate": held} if held else labels
 
@@ -149,9 +154,9 @@ def drive_forms(robot: Robot) -> dict[str, Variable]:
 
 def flexible_lengths(robot: Robot, system: System, record: Record) -> Array:
     """Joint-to-joint lengths of the flexible robot, (T, legs) [m], Eq. (T8.1)."""
-    R = matrix(record.pose[:, 3:])
-    tips = record.pose[:, None, :3] + (robot.platform_joints - robot.com) @ R.swapaxes(1, 2)
-    return np.linalg.norm(tips - by_name.base_points(limbs(robot), _carriages(system, record.q)), axis=-1)
+    R, built = matrix(record.pose[:, 3:]), built_limbs(robot, robot_limbs(robot))
+    tips = record.pose[:, None, :3] + (built.platform - robot.com) @ R.swapaxes(1, 2)
+    return np.linalg.norm(tips - by_name.base_points(built, _carriages(system, record.q)), axis=-1)
 
 
 def _carriages(system: System, q: Array) -> Array | None:

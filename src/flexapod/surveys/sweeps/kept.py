@@ -22,7 +22,7 @@ if TYPE_CHECKING:
 
 __all__ = ["ACTUATOR_SCALARS", "Kept", "kept"]
 
-_LABELS = {"axis": 3, "cause": 3, "direction": 2, "quaternion": 4, "plane_axis": 2, "end": 2}
+_LABELS = {"axis": 3, "direction": 2, "quaternion": 4, "plane_axis": 2, "end": 2}
 _SHAPES = ("shape", "axial_shape", "mode")  # dimensions whose size is a setting of the study
 
 
