@@ -16,11 +16,13 @@ if TYPE_CHECKING:
     from flexapod.model import ActuatorStudy, Study, load, loads, open_values, preset
     from flexapod.paper.study import replicate
     from flexapod.study import (
+        accuracy,
         forward_kinematics,
         inverse_dynamics,
         inverse_kinematics,
         mobility,
         modes,
+        play,
         run,
         simulate,
         simulate_actuator,
@@ -39,11 +41,13 @@ _HOMES = {
     "flexapod.model": ("ActuatorStudy", "Study", "load", "loads", "open_values", "preset"),
     "flexapod.paper.study": ("replicate",),
     "flexapod.study": (
+        "accuracy",
         "forward_kinematics",
         "inverse_dynamics",
         "inverse_kinematics",
         "mobility",
         "modes",
+        "play",
         "run",
         "simulate",
         "simulate_actuator",
@@ -66,6 +70,7 @@ __all__ = [
     "InputError",
     "Study",
     "__version__",
+    "accuracy",
     "cite",
     "converge",
     "forward_kinematics",
@@ -78,6 +83,7 @@ __all__ = [
     "model",
     "modes",
     "open_values",
+    "play",
     "plot",
     "preset",
     "replicate",

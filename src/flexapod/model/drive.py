@@ -14,17 +14,22 @@ __all__ = ["Drive", "Feedback", "ForceDrive", "PrescribedDrive", "ServoDrive"]
 
 
 class PrescribedDrive(Frozen):
-    """The stroke follows the command exactly; its force is a result."""
+    """The stroke follows the command exactly; its force is a result. `backlash`: free travel [m], of a crank [rad]."""
 
     type: Literal["prescribed"] = "prescribed"
+    backlash: Annotated[NonNegative, Measure("length", "angle")] | None = None
 
 
 class ServoDrive(Frozen):
-    """A spring [N/m] and a damper [N s/m] between command and stroke; of a crank [N m/rad, N m s/rad]."""
+    """A spring [N/m] and a damper [N s/m] between command and stroke; of a crank [N m/rad, N m s/rad].
+
+    `backlash`: free travel [m], of a crank [rad].
+    """
 
     type: Literal["servo"] = "servo"
     stiffness: Annotated[Positive, Measure("stiffness", "rotational stiffness")]
     damping: Annotated[NonNegative, Measure("damping", "rotational damping")] = 0.0
+    backlash: Annotated[NonNegative, Measure("length", "angle")] | None = None
 
 
 class Feedback(Frozen):

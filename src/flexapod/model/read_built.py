@@ -88,4 +88,7 @@ def _spread(section: Section, name: str, model: type[LengthSpread] | type[RatioS
     if isinstance(section.data.get(name), Mapping):
         return section.child(section.data[name], name).read(model)
     number = section.number(name, dimension)
-    return None if number is None else section.build(model, sigma=number)
+    try:
+        return None if number is None else model(sigma=number)
+    except InputError as error:
+        raise section.error(error.what, name, allowed=error.allowed) from None

@@ -24,8 +24,8 @@ __all__ = ["read_leg", "read_material"]
 
 P = TypeVar("P", bound=Piston)
 _STIFFNESS = ("EI", "EA", "rhoA")
-_SLIDING = ("stiffness", "damping", "force")
-_TURNING = ("rotational stiffness", "rotational damping", "torque")
+_SLIDING = ("stiffness", "damping", "force", "length")
+_TURNING = ("rotational stiffness", "rotational damping", "torque", "angle")
 _TRANSLATIONS, _FORCES = ("stiffness",) * 3, ("force",) * 3
 
 

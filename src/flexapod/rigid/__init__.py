@@ -2,6 +2,7 @@
 
 from flexapod.rigid.breaks import Breaks, actuator_breaks, robot_breaks
 from flexapod.rigid.built import BuiltPart, added, added_by_all, built_limbs, built_parts, built_poses, nearby, shifts
+from flexapod.rigid.closures import TAKEN
 from flexapod.rigid.dynamics import RigidForces
 from flexapod.rigid.forward import Postures
 from flexapod.rigid.jacobian import NearestSingularity, SingularityPath, length_jacobian
@@ -48,6 +49,7 @@ __all__ = [
     "DRIVEN",
     "FREE",
     "HELD",
+    "TAKEN",
     "Breaks",
     "BuiltPart",
     "Excess",

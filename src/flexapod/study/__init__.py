@@ -5,6 +5,7 @@ from __future__ import annotations
 from importlib import import_module
 from typing import TYPE_CHECKING
 
+from flexapod.study.accuracy import accuracy, play
 from flexapod.study.actuator import simulate_actuator
 from flexapod.study.after.summary import summary
 from flexapod.study.before.checks import check_path
@@ -20,6 +21,7 @@ if TYPE_CHECKING:
 
 __all__ = [
     "Interrupted",
+    "accuracy",
     "check_path",
     "forward_kinematics",
     "inverse_dynamics",
@@ -27,6 +29,7 @@ __all__ = [
     "mobility",
     "modes",
     "open_results",
+    "play",
     "run",
     "save",
     "simulate",

@@ -17,6 +17,7 @@ if TYPE_CHECKING:
 __all__ = [
     "ACTUATOR_FORMS",
     "ANGLES",
+    "AT_A_POSE",
     "CAUSES",
     "CAUSE_WORDS",
     "COORDINATES",
@@ -53,6 +54,7 @@ class Variable(NamedTuple):
 #: Labels of all angles that a leg may have: of a crank, at the base, about the leg, at the platform.
 ANGLES = ("carriage", "alpha", "beta", "spin", "gamma1", "gamma2", "gamma3")
 
+_TWIST = ["x", "y", "z", "rx", "ry", "rz"]
 #: Labels of dimensions that have fixed ones, with what they stand for.
 COORDINATES: dict[str, tuple[object, str]] = {
     "axis": (list("xyz"), "world axis"),
@@ -61,7 +63,8 @@ COORDINATES: dict[str, tuple[object, str]] = {
     "cause": (list(CAUSES), "cause of a leg's length error"),
     "end": (["base", "platform"], "end of the leg"),
     "joint_angle": (["alpha", "beta"], "angle of a joint"),
-    "component": (["x", "y", "z", "rx", "ry", "rz"], "translation along and rotation about the world axes"),
+    "component": (_TWIST, "translation along and rotation about the world axes"),
+    "component_b": (_TWIST, "translation along and rotation about the world axes"),
     "wrench": (["Fx", "Fy", "Fz", "Mx", "My", "Mz"], "force and moment, world axes"),
     "plane_axis": (list("XY"), "axis in the plane of motion"),
 }
@@ -185,6 +188,44 @@ _MOBILITY = {
     "locked_nearby": Variable(("posture",), "1", "motions left with all drives locked at two displaced poses"),
 }
 
+_C, _CC = ("component",), ("component", "component_b")
+_ACCURACY = {
+    "pose_error": Variable(_C, "mixed", "error of the tool's pose [m, rad], as built and warm, exact kinematics"),
+    "pose_error_first_order": Variable(_C, "mixed", "error of the tool's pose [m, rad] to first order"),
+    "pose_error_by_part": Variable(
+        ("error", "leg", "component"), "mixed", "share of an error of a leg in that of the tool's pose [m, rad]"
+    ),
+    "pose_drift": Variable(("drift_time", "component"), "mixed", "error of the tool's pose [m, rad] as parts warm up"),
+    "pose_sigma": Variable(_C, "mixed", "standard deviation of the tool's pose [m, rad] by tolerances"),
+    "pose_covariance": Variable(_CC, "mixed", "covariance of the tool's pose [m, rad] by tolerances"),
+    "pose_worst": Variable(_C, "mixed", "largest error of the tool's pose [m, rad] by tolerances given as boxes"),
+    "pose_sigma_by_tolerance": Variable(
+        ("tolerance", "leg", "component"), "mixed", "standard deviation of the tool's pose [m, rad]"
+    ),
+    "pose_worst_by_tolerance": Variable(
+        ("tolerance", "leg", "component"), "mixed", "largest error of the tool's pose [m, rad]"
+    ),
+    "sample_mean": Variable(_C, "mixed", "mean error of the tool's pose [m, rad] of the machines drawn"),
+    "sample_covariance": Variable(_CC, "mixed", "covariance of the tool's pose [m, rad] of the machines drawn"),
+    "sample_largest": Variable(_C, "mixed", "largest error of the tool's pose [m, rad] of the machines drawn"),
+    "sample_count": Variable((), "1", "machines drawn"),
+}
+
+_TC = ("time", "component")
+_PLAY = {
+    "pressing_force": Variable(
+        ("time", "place", "leg"), "mixed", "force [N] that presses a leg together; of a carriage that of its drive"
+    ),
+    "play_error": Variable(_TC, "mixed", "error of the tool's pose [m, rad] by play, as the forces press it"),
+    "play_worst": Variable(_TC, "mixed", "largest error of the tool's pose [m, rad] by play, however it lies"),
+    "play_by_place": Variable(("place", "leg", "component"), "mixed", "error of the tool's pose [m, rad] by play"),
+    "sign_changes": Variable(("place", "leg"), "1", "changes of sign of the pressing force"),
+    "jump_time": Variable(("jump",), "s", "instant at which play changes its side"),
+    "jump_place": Variable(("jump",), "1", "where it does"),
+    "jump_leg": Variable(("jump",), "1", "leg in which it does"),
+    "jump_size": Variable(("jump", "component"), "mixed", "jump of the tool's pose [m, rad]"),
+}
+
 _ACTUATOR = {
     "length": Variable(_T, "m", "length of the beam outside the hub"),
     "angle": Variable(_T, "rad", "angle of the hub from the horizontal"),
@@ -197,7 +238,9 @@ _ACTUATOR = {
 }
 
 #: Every variable of every Dataset, by name.
-VARIABLES: Mapping[str, Variable] = {**_PATH, **_COMMAND, **_LEGS, **_ENERGY, **_STATIC, **_MOBILITY, **_ACTUATOR}
+VARIABLES: Mapping[str, Variable] = {
+    **_PATH, **_COMMAND, **_LEGS, **_ENERGY, **_STATIC, **_MOBILITY, **_ACCURACY, **_PLAY, **_ACTUATOR
+}  # fmt: skip
 
 #: The actuator's own form of variables that a robot has per leg or with another zero.
 ACTUATOR_FORMS = {
@@ -210,6 +253,14 @@ ACTUATOR_FORMS = {
 ONE_POSE_FORMS = {
     "platform_position": Variable(("axis",), "m", "origin of the platform frame"),
     "platform_quaternion": Variable(("quaternion",), "1", "orientation of the platform, platform to world"),
+}
+
+
+#: Of a single pose: play.
+AT_A_POSE = {
+    "pressing_force": _PLAY["pressing_force"]._replace(dims=("place", "leg")),
+    "play_error": _PLAY["play_error"]._replace(dims=_C),
+    "play_worst": _PLAY["play_worst"]._replace(dims=_C),
 }
 
 
@@ -284,5 +335,9 @@ _COORDINATE_ATTRS = {
     "station": {"units": "1", "long_name": "position along the leg: 0 base joint, 1 tip"},
     "joint_angle": {"long_name": "angle of a joint"},
     "coordinate": {"long_name": "coordinate of a leg"},
+    "place": {"long_name": "where there is play"},
+    "error": {"long_name": "what is not as drawn"},
+    "tolerance": {"long_name": "what may not be as drawn"},
+    "drift_time": {"units": "s", "long_name": "time of the temperatures"},
     "cause": {"long_name": COORDINATES["cause"][1]},
 }

@@ -22,7 +22,7 @@ from flexapod.study.path import RigidPath
 from flexapod.study.record import Record
 from flexapod.typing import Array
 
-__all__ = ["Errors", "cause_names", "deviation_by_cause", "errors_of"]
+__all__ = ["Errors", "cause_names", "closing", "deviation_by_cause", "errors_of"]
 
 CHI, L = COORDINATES.index("chi"), COORDINATES.index("l")
 
@@ -99,12 +99,12 @@ def _straight(robot: Robot, found: Limbs, record: Record, q: Array) -> Array:
         q = q.copy()
         q[..., L] = rigid.leg_lengths(found.base, found.platform, at.position, R)
         return q
-    needed = close(found, Task(_closing(found), np.zeros(6, dtype=bool), np.zeros(3)), q, at).q
+    needed = close(found, Task(closing(found), np.zeros(6, dtype=bool), np.zeros(3)), q, at).q
     needed[..., CHI] = q[..., CHI]
     return needed
 
 
-def _closing(found: Limbs) -> NDArray[np.bool_]:
+def closing(found: Limbs) -> NDArray[np.bool_]:
     """The coordinates that a closure determines, (legs, 8), whether or not something holds them."""
     taken = np.zeros(found.state.shape, dtype=bool)
     taken[:, [COORDINATES.index(name) for name in ("alpha", "beta", "l")]] = True
