@@ -87,6 +87,24 @@ def test_temperatures_over_time_are_those_of_the_table():
     )
 
 
+def test_legs_that_warm_up_while_they_move_take_the_rates_along():
+    # Tenths of a degree in tenths of a second: growth by a hundred micrometres, at rates of the motion's own size.
+    heat = Heat(time=[0.0, 0.04, 0.1], columns=("piston", "cylinder 3"), table=[[20, 20], [40, 20], [30, 60]])
+    study = paper_robot(fidelity="rigid")
+    robot = study.robot.replace(heat=heat)
+    study = study.replace(robot=robot, motion=study.motion.replace(duration=0.1, hold=0.0))
+    data = fx.simulate(study, duration=0.12, step=1e-3)
+    path = rigid.poses(robot, study.motion, data.time.values)
+    com = rigid.built_poses(robot, path, data.time.values).place(robot.com)
+    np.testing.assert_allclose(data.com_position, com, atol=1e-12)
+    drawn = fx.simulate(study.replace(robot=robot.replace(heat=None)), duration=0.12, step=1e-3)
+    balances = [x.energy_kinetic + x.energy_potential - x.work_drive for x in (data, drawn)]
+    # Work is integrated to second order in the step; growing legs do not make it worse.
+    assert np.ptp(balances[0].values) < 1.5 * np.ptp(balances[1].values)
+    heated = np.abs(data.deviation_by_cause.sel(cause="heat_piston").values)
+    assert heated[0].max() < 1e-15 and heated[-1].max() > 1e-5
+
+
 def with_errors():
     return hexapod().replace(geometry=Geometry(**ERRORS))
 

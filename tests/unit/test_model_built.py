@@ -91,6 +91,14 @@ def test_tables_over_time_with_faults_are_refused(tmp_path, table, words):
         study('\n[heat]\nfile = "heat.csv"\n', tmp_path)
 
 
+def test_a_piston_of_unknown_material_expands_like_steel_and_that_is_said():
+    robot = mechanisms.hexapod().replace(heat=Heat(piston=25.0))  # pistons by EI, EA, rhoA
+    study = loads(TEXT).replace(robot=robot)
+    assert any("steel's is taken" in remark for remark in study.warnings)
+    known = robot.replace(heat=Heat(piston=25.0, expansion=Expansion(piston=1e-6)))
+    assert not any("steel" in remark for remark in study.replace(robot=known).warnings)
+
+
 def test_a_part_has_one_temperature(tmp_path):
     (tmp_path / "heat.csv").write_text("time [s], piston [degC]\n0, 20\n600, 24\n")
     with pytest.raises(InputError, match="together with its column"):

@@ -3,6 +3,7 @@
 from __future__ import annotations
 
 from dataclasses import dataclass, replace
+from functools import cached_property
 from typing import TYPE_CHECKING
 
 import numpy as np
@@ -21,6 +22,8 @@ from flexapod.rigid.trajectory import Poses
 from flexapod.typing import Array
 
 if TYPE_CHECKING:
+    from scipy.interpolate import BSpline
+
     from flexapod.model import Heat, Leg, Robot
 
 __all__ = [
@@ -67,8 +70,11 @@ class BuiltPart:
         if self.time is None:
             still = np.zeros((len(t), self.values.shape[1]))
             return Law(self.values + still, still, still)
-        curve = spline(self.time, self.values)
-        return spline_law(t, curve, first=float(self.time[0]), last=float(self.time[-1]))
+        return spline_law(t, self._curve, first=float(self.time[0]), last=float(self.time[-1]))
+
+    @cached_property
+    def _curve(self) -> BSpline:
+        return spline(self.time, self.values)  # type: ignore[arg-type]
 
 
 @once
