@@ -133,6 +133,16 @@ def test_plates_that_warm_up_do_so_at_poses_not_in_motions(tmp_path):
     assert drift.sizes["drift_time"] == 2 and abs(drift[1]).max() > 1e-6
 
 
+def test_a_check_says_how_far_the_machine_as_built_is_off():
+    from flexapod.study.accuracy.words import accuracy_words
+
+    assert accuracy_words(study("")) == ()
+    text = '\n[geometry]\nleg_offset = "10 um"\n[heat]\npiston = 25\n[tolerances]\nleg_offset = "20 um"\n'
+    found = loads((TEXT + text).replace("\nstroke =", '\nbase_joint = { play = "5 um" }\nstroke =', 1))
+    built, spread, play = accuracy_words(found)
+    assert "most of it by heat_piston" in built and "standard deviations" in spread and "play" in play
+
+
 @pytest.mark.parametrize("draws", [-1, 1.5, True])
 def test_a_number_of_draws_is_a_whole_number(draws):
     import flexapod as fx

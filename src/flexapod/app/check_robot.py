@@ -34,6 +34,10 @@ def show_robot(found: RobotDescription) -> None:
     for pose in found.poses:
         _pose(pose, found.held)
     _vibration(found.vibration)
+    if found.accuracy:
+        _heading("The machine as built")
+        for sentence in found.accuracy:
+            print_text(f"{sentence[0].upper()}{sentence[1:]}.", indent=2)
     _heading("Remarks")
     for remark in found.remarks or ("None.",):
         print_text(remark, indent=2)

@@ -9,6 +9,7 @@ import numpy as np
 from flexapod import model, rigid
 from flexapod.errors import InputError
 from flexapod.solve.robot_march import refuse_massless
+from flexapod.study.accuracy.words import accuracy_words
 from flexapod.study.before.checks import check_path
 from flexapod.study.before.describe.actuator import ActuatorDescription, describe_actuator
 from flexapod.study.before.describe.leg import Extreme, LegDescription, LegPath, describe_leg, load_remarks
@@ -45,7 +46,8 @@ class JointAngle:
 class RobotDescription:
     """What `describe` finds for a robot; times in s.
 
-    In words: what poses `held` still, `motions` that the mechanism has, `remarks` of doubt.
+    In words: what poses `held` still, `motions` that the mechanism has, `accuracy` of the machine as built,
+    `remarks` of doubt.
     """
 
     kind: str = "robot"
@@ -60,6 +62,7 @@ class RobotDescription:
     singularity: Singularity
     poses: tuple[PoseDescription, ...]
     vibration: VibrationToExpect | None
+    accuracy: tuple[str, ...]
     remarks: tuple[str, ...]
 
     def as_dict(self) -> dict[str, object]:
@@ -101,6 +104,7 @@ def describe(study: model.Study | model.ActuatorStudy) -> RobotDescription | Act
         singularity=singularity,
         poses=tuple(describe_pose(study, name, instant) for name, instant in instants.items()),
         vibration=vibration_to_expect(study, end),
+        accuracy=accuracy_words(study),
         remarks=tuple(
             dict.fromkeys([*study.warnings, *remarks, *load_remarks(legs, study.robot, study.simulation.fidelity)])
         ),
