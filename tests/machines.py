@@ -5,7 +5,7 @@ from __future__ import annotations
 import numpy as np
 from tests.mechanisms import LOWER, UPPER, built, ring
 
-from flexapod.model import Study
+from flexapod.model import MATERIALS, Bearing, Nut, Rotor, ScrewDrive, Study
 from flexapod.model.joint import Joint
 from flexapod.model.leg import Leg
 from flexapod.model.motion import AxisMotion
@@ -40,3 +40,11 @@ def study(robot, *, duration=0.2, **simulation):
     """A quick heave of 20 mm, and as long at rest."""
     motion = AxisMotion(type="heave", amplitude=0.02, duration=0.1, hold=0.1)
     return Study(robot=robot, motion=motion, simulation=Simulation(**{"duration": duration, **simulation}))
+
+
+BEARING = Bearing(stiffness=780e6, position=0.06)
+NUT = Nut(stiffness=850e6)
+SCREW = ScrewDrive(
+    lead=0.01, root_diameter=0.02874, length=0.9, material=MATERIALS["steel"], bearing=BEARING, nut=NUT,
+    rotor=Rotor(inertia=2e-3),
+)  # fmt: skip

@@ -3,7 +3,7 @@
 from __future__ import annotations
 
 import math
-from collections.abc import Sequence
+from collections.abc import Mapping, Sequence
 from typing import TYPE_CHECKING
 
 from flexapod.app.terminal import print_table, print_text
@@ -183,9 +183,26 @@ def _pose(pose: PoseDescription, held: str) -> None:
             f"{length(pose.sag or 0.0)}.",
             indent=2,
         )
+    if pose.parts is not None:
+        _parts(pose.parts)
     if pose.modes:
         listed = ", ".join(f"{m.frequency:.4g} Hz ({m.kind}, {100 * m.damping_ratio:.2g} %)" for m in pose.modes)
         print_text(f"Frequencies (what moves, damping): {listed}.", indent=2)
+
+
+def _parts(parts: Mapping[str, tuple[float, ...]]) -> None:
+    """Stiffness of every part along every leg, softest first, and all of a leg in series."""
+    whole = [1 / sum(1 / values[i] for values in parts.values()) for i in range(len(next(iter(parts.values()))))]
+    ranked = sorted(parts.items(), key=lambda item: min(item[1]))
+    print_text("Stiffness along the legs [N/um], softest part first, and its share in the leg's compliance:", indent=2)
+    rows = [[f"  {name}", *(_stiffness_and_share(k, all_) for k, all_ in zip(values, whole, strict=True))]
+            for name, values in ranked]  # fmt: skip
+    print_table(["", *(f"leg {i}" for i in range(1, len(whole) + 1))],
+                [*rows, ["  all in series", *(number(k / 1e6, 4) for k in whole)]])  # fmt: skip
+
+
+def _stiffness_and_share(stiffness: float, whole: float) -> str:
+    return "-" if math.isinf(stiffness) else f"{number(stiffness / 1e6, 4)} ({100 * whole / stiffness:.0f} %)"
 
 
 def _vibration(found: VibrationToExpect | None) -> None:

@@ -11,6 +11,7 @@ from flexapod.elements.distribution import Motion
 from flexapod.elements.flexure import flexure, springs
 from flexapod.elements.frame import Energies
 from flexapod.elements.rotations import small_rotation
+from flexapod.elements.screw import screw
 from flexapod.elements.sliding_piston import sliding_piston, tip_place, tip_turn
 from flexapod.elements.soft_joint import soft_joint
 from flexapod.elements.tip_body import tip_body
@@ -27,6 +28,7 @@ ALONG = constant(np.array([[0.0], [0.0], [1.0]]))  # a leg's own direction
 class Leg:
     """One leg as expressions: energies, place of the tip in the world, rotation from the tip's axes to the world.
 
+    ``series``: energies of the springs between rotor and stroke, which are among the others.
     ``tip_axes`` is written in ``theta``, symbols for the rotation vector ``turn`` of the tip: derivatives by the many
     amplitudes go through these three.
     """
@@ -38,6 +40,7 @@ class Leg:
     tip_axes: SX
     theta: SX
     turn: SX
+    series: Energies
 
 
 def leg(shapes: Shapes, p: SimpleNamespace, q: SX, v: SX, qs: SimpleNamespace, vs: SimpleNamespace) -> Leg:
@@ -67,6 +70,8 @@ def leg(shapes: Shapes, p: SimpleNamespace, q: SX, v: SX, qs: SimpleNamespace, v
     e += cylinder(frame, p, vs) + sliding_piston(motion, p)
     if shapes.torsion:
         e += torsion(frame, p, qs, vs)
+    series = screw(p, qs, vs) if shapes.series else Energies()
+    e += series
     if shapes.tip_body:
         e += tip_body(motion, p, shapes.planar)
     if shapes.closure == "pose":
@@ -86,6 +91,7 @@ def leg(shapes: Shapes, p: SimpleNamespace, q: SX, v: SX, qs: SimpleNamespace, v
         tip_axes=frame.axes @ small_rotation(theta),
         theta=theta,
         turn=tip_turn(motion),
+        series=series,
     )
 
 

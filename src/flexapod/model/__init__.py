@@ -4,7 +4,7 @@ from flexapod.model.actuator import Actuator, ActuatorInitial, ActuatorLoad, Act
 from flexapod.model.chain import Chain, chain_of, chains_of
 from flexapod.model.circle import base_circle, platform_circle
 from flexapod.model.damping import Damping, damping_parts
-from flexapod.model.drive import Drive, Feedback, ForceDrive, PrescribedDrive, ServoDrive
+from flexapod.model.drive import Feedback, ForceDrive, PrescribedDrive, ServoDrive
 from flexapod.model.files import (
     PAPER_PRESETS,
     PRESETS,
@@ -47,7 +47,9 @@ from flexapod.model.motion import (
 from flexapod.model.payload import Payload
 from flexapod.model.piston import Cylinder, Piston, Strut
 from flexapod.model.robot import Robot
+from flexapod.model.screw import Bearing, Drive, Encoder, Nut, Rotor, ScrewDrive
 from flexapod.model.simulation import DEFAULT_TOLERANCE, FIDELITIES, Initial, Simulation
+from flexapod.model.spring import AxialSpring
 from flexapod.model.study import ActuatorStudy, Study, override
 from flexapod.model.tolerances import LengthSpread, RatioSpread, Spread, Tolerances
 from flexapod.model.write import to_toml
@@ -65,7 +67,9 @@ __all__ = [
     "ActuatorLoad",
     "ActuatorMotion",
     "ActuatorStudy",
+    "AxialSpring",
     "AxisMotion",
+    "Bearing",
     "Carriage",
     "Chain",
     "CombinedMotion",
@@ -77,6 +81,7 @@ __all__ = [
     "Cylinder",
     "Damping",
     "Drive",
+    "Encoder",
     "Expansion",
     "Feedback",
     "ForceDrive",
@@ -92,6 +97,7 @@ __all__ = [
     "Material",
     "Motion",
     "MotionLaw",
+    "Nut",
     "OpenValue",
     "Payload",
     "Piston",
@@ -101,6 +107,8 @@ __all__ = [
     "RatioSpread",
     "Rectangle",
     "Robot",
+    "Rotor",
+    "ScrewDrive",
     "ServoDrive",
     "Simulation",
     "SineLaw",

@@ -4,13 +4,13 @@ from __future__ import annotations
 
 from typing import Annotated, ClassVar, Literal
 
-from pydantic import Field, model_validator
+from pydantic import model_validator
 
 from flexapod.errors import InputError
 from flexapod.model.base import Frozen, Measure, NonNegative, Number, Positive, Series
 from flexapod.model.motion import check_times
 
-__all__ = ["Drive", "Feedback", "ForceDrive", "PrescribedDrive", "ServoDrive"]
+__all__ = ["Feedback", "ForceDrive", "PrescribedDrive", "ServoDrive"]
 
 
 class PrescribedDrive(Frozen):
@@ -18,6 +18,16 @@ class PrescribedDrive(Frozen):
 
     type: Literal["prescribed"] = "prescribed"
     backlash: Annotated[NonNegative, Measure("length", "angle")] | None = None
+
+    @property
+    def holds(self) -> bool:
+        """Whether it keeps its command, whatever the force."""
+        return True
+
+    @property
+    def pushes(self) -> bool:
+        """Whether it is a force that keeps no position."""
+        return False
 
 
 class ServoDrive(Frozen):
@@ -30,6 +40,16 @@ class ServoDrive(Frozen):
     stiffness: Annotated[Positive, Measure("stiffness", "rotational stiffness")]
     damping: Annotated[NonNegative, Measure("damping", "rotational damping")] = 0.0
     backlash: Annotated[NonNegative, Measure("length", "angle")] | None = None
+
+    @property
+    def holds(self) -> bool:
+        """Whether it keeps its command, whatever the force."""
+        return False
+
+    @property
+    def pushes(self) -> bool:
+        """Whether it is a force that keeps no position."""
+        return False
 
 
 class Feedback(Frozen):
@@ -57,6 +77,16 @@ class ForceDrive(Frozen):
     value: Annotated[Number, Measure("force", "torque")] | None = None
     feedback: Feedback | None = None
 
+    @property
+    def holds(self) -> bool:
+        """Whether it keeps its command, whatever the force."""
+        return False
+
+    @property
+    def pushes(self) -> bool:
+        """Whether it is a force that keeps no position."""
+        return self.feedback is None or self.feedback.stiffness == 0
+
     @model_validator(mode="after")
     def _complete(self) -> ForceDrive:
         given = [name for name in ("file", "time", "force") if getattr(self, name) is not None]
@@ -75,6 +105,3 @@ class ForceDrive(Frozen):
         if self.time is not None:
             check_times(self.time, len(self.time), jumps=True)
         return self
-
-
-Drive = Annotated[PrescribedDrive | ServoDrive | ForceDrive, Field(discriminator="type")]

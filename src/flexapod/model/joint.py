@@ -2,13 +2,14 @@
 
 from __future__ import annotations
 
-from typing import Annotated, Any, ClassVar, Literal
+from typing import Annotated, ClassVar, Literal
 
 import numpy as np
 from pydantic import model_validator
 
 from flexapod.errors import InputError
 from flexapod.model.base import Frozen, Matrix6, Measure, NonNegative, Number, Vec3
+from flexapod.model.spring import check_lossy
 
 __all__ = ["Carriage", "Joint", "Travel"]
 
@@ -136,12 +137,6 @@ class Carriage(Frozen):
     def unit(self) -> Vec3:
         """Unit vector of the axis, (3,)."""
         return self.axis / np.linalg.norm(self.axis)
-
-
-def check_lossy(spring: Any) -> None:
-    """Raise InputError if a spring has a damper and a loss factor."""
-    if spring.damping is not None and spring.loss is not None:
-        raise InputError("is given together with damping", key="loss", value=spring.loss, allowed="either of the two")
 
 
 def _check_direction(axis: Vec3 | None, key: str) -> None:

@@ -11,12 +11,14 @@ from flexapod.errors import InputError
 from flexapod.model.axes import axis_of
 from flexapod.model.chain import chain_of
 from flexapod.model.columns import columns_of
-from flexapod.model.drive import Drive, ForceDrive, PrescribedDrive, ServoDrive
+from flexapod.model.drive import ForceDrive, PrescribedDrive, ServoDrive
 from flexapod.model.joint import Carriage, Joint
 from flexapod.model.leg import Leg
 from flexapod.model.material import MATERIALS, Material, Tube
 from flexapod.model.piston import Piston, Strip, Strut
+from flexapod.model.screw import Drive, ScrewDrive
 from flexapod.model.section import Section
+from flexapod.model.spring import AxialSpring
 from flexapod.model.tables import forces
 from flexapod.typing import Array
 
@@ -26,6 +28,7 @@ P = TypeVar("P", bound=Piston)
 _STIFFNESS = ("EI", "EA", "rhoA")
 _SLIDING = ("stiffness", "damping", "force", "length")
 _TURNING = ("rotational stiffness", "rotational damping", "torque", "angle")
+_OF_MATERIAL = ("E", "density", "yield_stress", "poisson", "expansion")
 _TRANSLATIONS, _FORCES = ("stiffness",) * 3, ("force",) * 3
 
 
@@ -55,6 +58,7 @@ def read_leg(section: Section, number: int, count: int, chain: str, places: tupl
             "carriage": None if carriage is None else _carriage(carriage, base, normal),
             "base_joint": _joint(section, "base_joint", base, normal),
             "platform_joint": _joint(section, "platform_joint", platform, normal),
+            "springs": _springs(section.section("springs")),
             "drive": _drive(section.section("drive"), number, count, _TURNING if letters.turning else _SLIDING),
         }
 
@@ -104,7 +108,7 @@ def _stiffness(section: Section) -> dict[str, object]:
 def _above_zero(section: Section, name: str) -> float:
     value = section.number(name, "stiffness")
     if value is None or not value > 0:
-        raise section.error("holds nothing", name, allowed="above 0 N/m; left out of the joint: rigid")
+        raise section.error("holds nothing", name, allowed="above 0 N/m; left out: rigid")
     return value
 
 
@@ -199,9 +203,28 @@ def _drive(section: Section | None, number: int, count: int, among: tuple[str, .
         found = section.table(forces(count, among[2]), needed=True, jumps=True)
         return {"time": found["time"], "force": found[f"leg {number}"]}
 
-    kinds = (PrescribedDrive, ServoDrive, ForceDrive)
-    csv = {ForceDrive: lambda s: s.read(ForceDrive, among=among, then=table)}
-    return section.one_of(kinds, among=among, readers=csv)
+    kinds = (PrescribedDrive, ServoDrive, ForceDrive, ScrewDrive)
+    readers = {
+        ForceDrive: lambda s: s.read(ForceDrive, among=among, then=table),
+        ScrewDrive: lambda s: s.read(
+            ScrewDrive, among=_TURNING, also=_OF_MATERIAL, then=lambda s: {"material": read_material(s)}
+        ),
+    }
+    return section.one_of(kinds, among=among, readers=readers)
+
+
+def _springs(section: Section | None) -> tuple[AxialSpring, ...] | None:
+    """Springs along a leg by name: a number, or a table."""
+    if section is None:
+        return None
+    section.only(*section.data)
+    found = []
+    for name, value in section.data.items():
+        if isinstance(value, Mapping):
+            found.append(section.child(value, name).read(AxialSpring, then=lambda _, name=name: {"name": name}))
+        else:
+            found.append(section.build(AxialSpring, name=name, stiffness=_above_zero(section, name)))
+    return tuple(found)
 
 
 def read_material(section: Section) -> Material:

@@ -90,6 +90,12 @@ def _leg(leg: Leg, base: Array, platform: Array, normal: Array) -> dict[str, obj
         fields[name] = _joint(getattr(leg, name), place, normal)
         if not fields[name]:
             del fields[name]
+    if leg.screw is not None:
+        drive = _fields(leg.screw)
+        fields["drive"] = {name: x for name, x in drive.items() if name != "material"} | _material(leg.screw.material)
+    del fields["springs"]
+    if leg.springs:
+        fields["springs"] = {spring.name: spring for spring in leg.springs}
     if leg.carriage is not None:
         fields["carriage"] = _carriage(leg.carriage, base, normal)
     if leg.strut is None:

@@ -83,10 +83,7 @@ class ManyModes:
 
 def refuse_pure_force(robot: Robot, what: str) -> None:
     """Raise InputError if drives that are a force without feedback stiffness leave the platform something to do."""
-    pure = [
-        leg.drive.type == "force" and (leg.drive.feedback is None or leg.drive.feedback.stiffness == 0)
-        for leg in robot.legs
-    ]
+    pure = [leg.drive.pushes for leg in robot.legs]
     if not any(pure) or _held_by_others(robot, np.array(pure)):
         return
     for i, loose in enumerate(pure, start=1):
@@ -94,7 +91,7 @@ def refuse_pure_force(robot: Robot, what: str) -> None:
             raise InputError(
                 f"{what} of leg {i} has no meaning: a pure force drive holds no position, so the stroke is free",
                 key="leg.drive",
-                value="force",
+                value=robot.legs[i - 1].drive.type,
                 allowed='"prescribed", "servo", or a force drive with feedback stiffness',
                 next_step='A simulation can start with [initial] start = "moving"',
             )

@@ -7,7 +7,7 @@ from flexapod.mechanics.layout import LEG_PARAMETERS, PAYLOAD_PARAMETERS, Shapes
 from flexapod.model import Actuator, ForceDrive, Leg, Robot, ServoDrive, damping_parts
 from flexapod.model.joint import Joint
 from flexapod.rigid.limbs import COORDINATES, FREE, Limbs
-from flexapod.solve.springs import Place, in_series, loss_frequency, springs_along, viscous
+from flexapod.solve.springs import Place, in_series, loss_frequency, of_servo, softening, springs_along, viscous
 from flexapod.typing import Array
 
 
@@ -21,6 +21,8 @@ def _pack(layout: tuple[tuple[str, int], ...], values: dict[str, object]) -> Arr
 
 def drive_spring(leg: Leg) -> tuple[float, float]:
     """Stiffness [N/m] and damping [N s/m] between command and stroke; zero where the stroke is prescribed."""
+    if leg.gives:
+        return 0.0, 0.0  # between command and rotor
     match leg.drive:
         case ServoDrive(stiffness=stiffness, damping=damping):
             return stiffness, damping
@@ -121,7 +123,25 @@ def _soft(robot: Robot, legs: Limbs, i: int) -> dict[str, object]:
         across = 0.0 if joint.across_and_along is None else joint.across_and_along[0]
         found[f"{name}_soft"] = [across, along[0]]
         found[f"{name}_soft_damping"] = [viscous(joint, across, frequency), along[1]]
-    return found
+    return found | _series(leg, length, frequency)
+
+
+def _series(leg: Leg, length: float, frequency: float) -> dict[str, object]:
+    """Springs between rotor and stroke, and the rotor."""
+    springs, screw = [x for x in springs_along(leg) if x.at == "nut"], leg.screw
+    if isinstance(leg.drive, ServoDrive):  # nothing has a mass between the servo's spring and these
+        springs.append(of_servo(leg.drive))
+    stiffness, damping = in_series(springs, length, frequency)
+    loop = (0.0, 0.0) if screw is None else screw.loop_spring
+    return {
+        "series_stiffness": stiffness,
+        "series_softening": softening(springs, length) if springs else (0.0, 0.0),
+        "series_home": length,
+        "series_damping": damping,
+        "rotor_mass": 0.0 if screw is None else screw.inertia / screw.per_turn**2,  # (T15.12)
+        "rotor_stiffness": loop[0],
+        "rotor_damping": loop[1],
+    }
 
 
 def flexures(robot: Robot, legs: Limbs) -> Array:

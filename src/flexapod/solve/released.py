@@ -39,6 +39,7 @@ def _ideal(leg: Leg) -> Leg:
         chain=first + ends[0] + letters.stroke + ends[1],
         base_joint=leg.base_joint.replace(**none),
         platform_joint=leg.platform_joint.replace(**none),
+        springs=(),
         drive=PrescribedDrive(),
     )
 

@@ -21,6 +21,7 @@ from flexapod.solve.redundant import independent, shared
 from flexapod.solve.rest import rest_commands, rest_load
 from flexapod.solve.rigid_motion import built_state, rigid_state
 from flexapod.solve.robot_system import robot_system
+from flexapod.solve.springs import springs_along
 from flexapod.solve.start import consistent_start
 from flexapod.solve.stops import Stops
 from flexapod.solve.system import Flow, State, System
@@ -95,8 +96,8 @@ def refuse_massless(study: Study) -> None:
     """Raise InputError if a piston without mass leaves coordinates that nothing but their stiffness determines."""
     simulation = study.simulation
     for i, leg in enumerate(study.robot.legs, start=1):
-        still = leg.drive.type == "prescribed" or leg.strut is not None
-        alone = simulation.axial_shapes(study.robot.legs[0].axial_modes) - still
+        still = leg.drive.holds or leg.strut is not None
+        alone = simulation.axial_shapes(study.robot.legs[0].axial_modes) - still + len(springs_along(leg))
         if leg.piston.rhoA == 0 and (simulation.lateral_shapes or alone > 0):
             raise InputError(
                 f"of leg {i} leaves shapes of the piston without mass: they have statics, but no motion in time",

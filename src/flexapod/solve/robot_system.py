@@ -37,12 +37,14 @@ def robot_system(robot: Robot, simulation: Simulation) -> System:
 def _held(robot: Robot, legs: Limbs, shapes: Shapes) -> Mask:
     """Coordinates that follow a table: held by joints or drives, or those of other legs. A ball's gammas are free."""
     held = np.zeros((len(legs), shapes.size), dtype=bool)
-    prescribed = np.array([leg.drive.type == "prescribed" for leg in robot.legs])
+    prescribed = np.array([leg.drive.holds and leg.holds_stroke for leg in robot.legs])
     for k, name in enumerate(COORDINATES):
         if shapes.has(name):
             state = legs.state[:, k]
             foreign = (state == ABSENT) & (name in ("chi", "spin"))
             held[:, shapes.index(name)] = (state == HELD) | ((state == DRIVEN) & prescribed) | foreign
+    if shapes.series:  # a servo's spring is in series with those behind it
+        held[:, shapes.index("r")] = [leg.drive.holds or leg.screw is None for leg in robot.legs]
     if shapes.torsion:  # a ball does not twist its leg
         held[:, shapes.index("t")] = ~legs.pose_closure
     return held | _held_joints(robot, legs, shapes)

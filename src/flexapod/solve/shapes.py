@@ -36,6 +36,7 @@ def robot_shapes(robot: Robot, simulation: Simulation, legs: Limbs) -> Shapes:
         flexure=any(x.flexes for leg in robot.legs for x in (leg.base_joint, leg.platform_joint)),
         soft_base=any(x.at == "base" for x in springs),
         soft_platform=any(x.at == "platform" for x in springs),
+        series=any(leg.gives for leg in robot.legs),
         pivot_spin=bool(((spin == FREE) & (gamma3 == HELD)).any()),
     )
 

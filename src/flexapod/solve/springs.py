@@ -1,4 +1,4 @@
-"""The springs along a leg as polynomials in its length, and what they are in series, Eqs. (T15.3)-(T15.4)."""
+"""The springs along a leg as polynomials in its length, and what they are in series, Eqs. (T15.3)-(T15.7)."""
 
 from __future__ import annotations
 
@@ -8,15 +8,16 @@ from typing import Literal
 
 import numpy as np
 
-from flexapod.model import Leg, PrescribedDrive, Robot, Simulation
+from flexapod.model import Leg, PrescribedDrive, Robot, ScrewDrive, ServoDrive, Simulation
 from flexapod.model.joint import Joint
+from flexapod.model.screw import Bearing, Nut
+from flexapod.model.spring import AxialSpring
 from flexapod.rigid.robot import once
 from flexapod.typing import Array
 
-__all__ = ["PLACES", "Place", "Spring", "in_series", "loss_frequency", "springs_along"]
+__all__ = ["Place", "Spring", "in_series", "loss_frequency", "of_servo", "softening", "springs_along", "viscous"]
 
 Place = Literal["base", "nut", "platform"]
-PLACES: tuple[Place, ...] = ("base", "nut", "platform")
 
 
 @dataclass(frozen=True, kw_only=True)
@@ -36,19 +37,50 @@ class Spring:
 
 
 def springs_along(leg: Leg) -> list[Spring]:
-    """All springs along a leg in the order in which causes name them: joints first."""
-    joints = (("base_joint", "base", leg.base_joint), ("platform_joint", "platform", leg.platform_joint))
-    return [_of_joint(name, at, joint) for name, at, joint in joints if joint.across_and_along is not None]  # type: ignore[arg-type]
+    """All springs along a leg but its piston, in the order in which causes name them: joints, screw, named ones."""
+    joints: tuple[tuple[str, Place, Joint], ...] = (
+        ("base_joint", "base", leg.base_joint),
+        ("platform_joint", "platform", leg.platform_joint),
+    )
+    found = [_constant(*x, k[1]) for x in joints if (k := x[2].across_and_along) is not None]
+    if leg.screw is not None:
+        found += _of_screw(leg.screw, leg.piston.length + leg.screw.bearing.position)
+    return found + [_constant(spring.name, spring.at, spring, spring.stiffness) for spring in leg.springs]
 
 
-def _of_joint(name: str, at: Place, joint: Joint) -> Spring:
-    return constant_spring(name, at, joint.across_and_along[1], joint)  # type: ignore[index]
+def _constant(name: str, at: Place, lossy: Joint | AxialSpring | Nut | Bearing, stiffness: float) -> Spring:
+    softness = (1.0 / stiffness, 0.0, 0.0)
+    return Spring(name=name, at=at, compliance=softness, damping=lossy.damping, loss=lossy.loss)
 
 
-def constant_spring(name: str, at: Place, stiffness: float, lossy: object = None) -> Spring:
-    """A spring whose stiffness does not depend on the leg's length; `lossy` has its `damping` and `loss`."""
-    damping, loss = (getattr(lossy, key, None) for key in ("damping", "loss"))
-    return Spring(name=name, at=at, compliance=(1.0 / stiffness, 0.0, 0.0), damping=damping, loss=loss)
+def of_servo(drive: ServoDrive) -> Spring:
+    """The spring and damper of a servo, in series with what is behind it."""
+    return Spring(name="drive", at="nut", compliance=(1.0 / drive.stiffness, 0.0, 0.0), damping=drive.damping)
+
+
+def _of_screw(screw: ScrewDrive, begin: float) -> list[Spring]:
+    """Shaft, twist, nut and bearing of a screw; ``begin`` [m]: length of the leg with the nut at the bearing."""
+    E, G = screw.material.E, screw.material.E / (2 * (1 + screw.material.poisson))
+    polar = np.pi / 32 * screw.root_diameter**4
+    stretch, turn = 1.0 / (E * screw.area), screw.per_turn**2 / (G * polar)
+    if screw.mounting == "fixed-fixed":  # (T15.6)  a b / (E A (a + b))
+        along = -begin - begin**2 / screw.length, 1.0 + 2 * begin / screw.length, -1.0 / screw.length
+    else:
+        along = -begin, 1.0, 0.0
+    c0, c1, c2 = (stretch * x for x in along)
+    return [
+        Spring(name="screw", at="nut", compliance=(c0, c1, c2)),  # (T15.5)-(T15.6)
+        Spring(name="twist", at="nut", compliance=(-turn * begin, turn, 0.0)),  # (T15.7)
+        _constant("nut", "nut", screw.nut, screw.nut.k),
+        _constant("bearing", "nut", screw.bearing, screw.bearing.k),
+    ]
+
+
+def softening(springs: Iterable[Spring], length: float) -> tuple[float, float]:
+    """How the compliance of springs in series grows with the leg's length, over itself at a length [1/m, 1/m^2]."""
+    c0, c1, c2 = np.sum([spring.compliance for spring in springs], axis=0)
+    total = c0 + length * (c1 + length * c2)
+    return float((c1 + 2 * c2 * length) / total), float(c2 / total)
 
 
 def in_series(springs: Iterable[Spring], length: float, frequency: float) -> tuple[float, float]:
@@ -78,11 +110,15 @@ def loss_frequency(robot: Robot) -> float:
         return 0.0
     from flexapod.solve.modes import robot_modes  # asks for the system, whose parameters ask here
 
-    legs = tuple(_locked(leg) for leg in robot.legs)
+    legs = tuple(_without_loss(leg) for leg in robot.legs)
     return float(robot_modes(robot.replace(legs=legs), Simulation(fidelity="lumped")).frequency[0])
 
 
-def _locked(leg: Leg) -> Leg:
+def _without_loss(leg: Leg) -> Leg:
     """The same without loss factors and with a locked drive."""
-    ends = {name: getattr(leg, name).replace(loss=None) for name in ("base_joint", "platform_joint")}
-    return leg.replace(drive=PrescribedDrive(), **ends)
+    parts = {name: getattr(leg, name).replace(loss=None) for name in ("base_joint", "platform_joint")}
+    drive: PrescribedDrive | ScrewDrive = PrescribedDrive()
+    if leg.screw is not None:
+        nut, bearing = leg.screw.nut.replace(loss=None), leg.screw.bearing.replace(loss=None)
+        drive = leg.screw.replace(command="position", loop=None, nut=nut, bearing=bearing)
+    return leg.replace(drive=drive, springs=tuple(spring.replace(loss=None) for spring in leg.springs), **parts)

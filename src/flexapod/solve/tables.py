@@ -5,13 +5,13 @@ from collections.abc import Callable
 import numpy as np
 
 from flexapod import rigid
-from flexapod.model import ForceDrive, Load, Robot
+from flexapod.model import Drive, ForceDrive, Load, Robot, ScrewDrive
 from flexapod.rigid.limbs import COORDINATES, DRIVEN
 from flexapod.solve.released import rigid_forces
-from flexapod.solve.system import COLUMNS, System
+from flexapod.solve.system import COLUMNS, Index, System
 from flexapod.typing import Array
 
-__all__ = ["Law", "feed_forward", "robot_law"]
+__all__ = ["Law", "feed_forward", "push_ports", "robot_law"]
 
 #: Of instants (T,): the table of the ports (T, legs, ports, 4), and the wrench (T, 6) at the tool in world axes.
 Law = Callable[[Array], tuple[Array, Array]]
@@ -30,7 +30,11 @@ def robot_law(system: System, robot: Robot, load: Load, poses: Callable[[Array],
         if port in names:
             place = COORDINATES.index(names[port])
             driven[:, k], home[:, k] = chains.state[:, place] == DRIVEN, chains.home[:, place]
+    if shapes.series:  # a rotor's travel follows the length
+        names[shapes.index("r")] = "l"
+        driven[:, system.ports == shapes.index("r")] = np.array([[leg.gives] for leg in robot.legs])
     driven, ports = driven.astype(bool), list(enumerate(system.ports))
+    pushed = driven & (system.ports == push_ports(system, robot)[:, None])
 
     def law(t: Array) -> tuple[Array, Array]:
         path = poses(t)
@@ -43,7 +47,7 @@ def robot_law(system: System, robot: Robot, load: Load, poses: Callable[[Array],
                 table[:, which, k, column] = part[:, which]
         if rigid.built_parts(robot):
             _as_built(robot, t, legs, table, {k: COORDINATES.index(names[port]) for k, port in ports if port in names})
-        table[:, driven, 3] = feed_forward(robot, t, path, wrench)[:, driven.any(axis=1)]
+        table[:, pushed, 3] = feed_forward(robot, t, path, wrench)[:, pushed.any(axis=1)]
         return table, wrench
 
     return law
@@ -57,14 +61,32 @@ def _as_built(robot: Robot, t: Array, legs: rigid.LegState, table: Array, ports:
             table[:, :, port, column] += more[..., place]
 
 
+def push_ports(system: System, robot: Robot) -> Index:
+    """Coordinate on which the drive of each leg acts, (legs,): its rotor, where it has one; -1 of passive legs."""
+    state, shapes = rigid.robot_limbs(robot).state, system.kernel.shapes
+    found = np.full(system.legs, -1)
+    for name in ("l", "chi"):
+        if shapes.has(name):
+            found[state[:, COORDINATES.index(name)] == DRIVEN] = shapes.index(name)
+    if shapes.series:
+        found[[leg.gives for leg in robot.legs]] = shapes.index("r")
+    return found
+
+
 def feed_forward(robot: Robot, t: Array, path: rigid.Poses, wrench: Array) -> Array:
-    """Feed-forward forces of force drives on the rigid path at instants (T,), (T, legs) [N]; zero for other drives."""
+    """Feed-forward forces of drives on the rigid path at instants (T,), (T, legs) [N]; zero for those that have none.
+
+    A torque of a screw is what the rigid robot and the rotor need, Eq. (T15.13).
+    """
     drives = [leg.drive for leg in robot.legs]
     force = np.zeros((len(t), len(drives)))
     rigid_force = force
-    if any(isinstance(d, ForceDrive) and d.law == "rigid" for d in drives):
+    if any((isinstance(d, ForceDrive) and d.law == "rigid") or _turned(d) for d in drives):
         rigid_force = rigid_forces(robot, path, wrench).drive_force
+    change = rigid.inverse_kinematics(robot, path).accel if any(_turned(d) for d in drives) else force
     for i, drive in enumerate(drives):
+        if isinstance(drive, ScrewDrive) and _turned(drive):
+            force[:, i] = rigid_force[:, i] + drive.inertia / drive.per_turn**2 * change[:, i]
         if not isinstance(drive, ForceDrive):
             continue
         if drive.value is not None:
@@ -74,3 +96,8 @@ def feed_forward(robot: Robot, t: Array, path: rigid.Poses, wrench: Array) -> Ar
         else:
             force[:, i] = np.interp(t, drive.time, drive.force)
     return force
+
+
+def _turned(drive: Drive) -> bool:
+    """Whether a drive is a torque on a screw."""
+    return isinstance(drive, ScrewDrive) and drive.command == "torque"

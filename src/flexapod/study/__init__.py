@@ -11,6 +11,7 @@ from flexapod.study.after.summary import summary
 from flexapod.study.before.checks import check_path
 from flexapod.study.kinematics import forward_kinematics, inverse_dynamics, inverse_kinematics
 from flexapod.study.mobility import mobility
+from flexapod.study.parts import parts
 from flexapod.study.record import Interrupted
 from flexapod.study.simulation import run, simulate
 from flexapod.study.static import modes, stiffness
@@ -29,6 +30,7 @@ __all__ = [
     "mobility",
     "modes",
     "open_results",
+    "parts",
     "play",
     "run",
     "save",

@@ -35,6 +35,12 @@ CAUSE_WORDS = {
     "axial-strain": "stretch of the pistons",
     "bending": "bending of the pistons",
     "drive": "give of the drives",
+    "base_joint": "give of the joints at the base",
+    "platform_joint": "give of the joints at the platform",
+    "screw": "stretch of the screws",
+    "twist": "twist of the screws",
+    "nut": "give of the nuts",
+    "bearing": "give of the screws' bearings",
     "geometry": "errors of geometry",
     "heat_base": "heat of the base",
     "heat_platform": "heat of the platform",
@@ -152,6 +158,8 @@ _ENERGY = {
 }
 
 _STATIC = {
+    "part_stiffness": Variable(("leg", "part"), "N/m", "stiffness of a part along its leg"),
+    "leg_stiffness": Variable(("leg",), "N/m", "stiffness of all parts along a leg in series"),
     "frequency": Variable(("mode",), "Hz", "undamped natural frequency"),
     "damping_ratio": Variable(("mode",), "1", "damping ratio"),
     "kind": Variable(("mode",), "1", "what mostly moves"),
@@ -334,10 +342,11 @@ _COORDINATE_ATTRS = {
     "axial_shape": {"long_name": "axial shape"},
     "station": {"units": "1", "long_name": "position along the leg: 0 base joint, 1 tip"},
     "joint_angle": {"long_name": "angle of a joint"},
+    "cause": {"long_name": "cause of a leg's length error"},
+    "part": {"long_name": "part of a leg"},
     "coordinate": {"long_name": "coordinate of a leg"},
     "place": {"long_name": "where there is play"},
     "error": {"long_name": "what is not as drawn"},
     "tolerance": {"long_name": "what may not be as drawn"},
     "drift_time": {"units": "s", "long_name": "time of the temperatures"},
-    "cause": {"long_name": COORDINATES["cause"][1]},
 }

@@ -2,8 +2,8 @@
 
 from __future__ import annotations
 
-from collections.abc import Mapping
-from dataclasses import dataclass, field
+from collections.abc import Mapping, Sequence
+from dataclasses import dataclass
 
 import numpy as np
 from numpy.typing import NDArray
@@ -14,15 +14,18 @@ from flexapod.model import Robot
 from flexapod.rigid.closures import Task, close
 from flexapod.rigid.limbs import COORDINATES, DRIVEN, FREE, HELD, Limbs
 from flexapod.rigid.rotations import matrix
+from flexapod.solve.many import RestStates
 from flexapod.solve.released import is_hexapod, rigid_errors
+from flexapod.solve.springs import Place
 from flexapod.solve.system import System
+from flexapod.study.after.elongations import elongations, part_names
 from flexapod.study.after.legs import stretch
 from flexapod.study.names import CAUSES
 from flexapod.study.path import RigidPath
 from flexapod.study.record import Record
 from flexapod.typing import Array
 
-__all__ = ["Errors", "cause_names", "closing", "deviation_by_cause", "errors_of"]
+__all__ = ["Errors", "cause_names", "closing", "deviation_by_cause", "errors_of", "moved_by_errors"]
 
 CHI, L = COORDINATES.index("chi"), COORDINATES.index("l")
 
@@ -31,33 +34,30 @@ CHI, L = COORDINATES.index("chi"), COORDINATES.index("l")
 class Errors:
     """Errors of the coordinates that drives and joints hold, by cause, each (T, legs, 8) [m, rad]: `COORDINATES`.
 
-    Of a leg UPS that is its length. `more`: further ones by name, as `cause_names` has them. They add up to what
-    straight legs would need to reach the flexible platform, less what they have on the rigid path, exactly.
+    Of a leg UPS that is its length. They add up to what straight legs would need to reach the flexible platform, less
+    what they have on the rigid path, exactly. `by_cause`: in the order of `cause_names`.
     """
 
-    axial: Array
-    bending: Array
-    drive: Array
-    more: Mapping[str, Array] = field(default_factory=dict)
+    by_cause: Mapping[str, Array]
 
     @property
     def total(self) -> Array:
         """Their sum, Eq. (T8.5)."""
-        return self.axial + self.bending + self.drive + sum(self.more.values())
+        return np.sum(list(self.by_cause.values()), axis=0)
 
     @property
     def stacked(self) -> Array:
-        """The causes in the order of `cause_names`, (T, causes, legs, 8)."""
-        return np.stack([self.axial, self.bending, self.drive, *self.more.values()], axis=1)
+        """The causes in their order, (T, causes, legs, 8)."""
+        return np.stack(list(self.by_cause.values()), axis=1)
 
 
 def cause_names(robot: Robot) -> tuple[str, ...]:
-    """Causes of a robot's deviation, in the order of the `cause` dimension: those of every robot, then its own."""
-    return (*CAUSES, *dict.fromkeys(part.cause for part in rigid.built_parts(robot)))
+    """What may be to blame in a robot: its pistons and drives, every part that gives way, what is not as drawn."""
+    return (*CAUSES, *part_names(robot), *dict.fromkeys(part.cause for part in rigid.built_parts(robot)))
 
 
-def errors_of(robot: Robot, system: System, path: RigidPath, record: Record) -> Errors:
-    """Errors by cause along a recorded path, Eqs. (T8.2)-(T8.4)."""
+def errors_of(robot: Robot, system: System, path: RigidPath, record: Record | RestStates) -> Errors:
+    """Errors by cause along a recorded path, or at rest at its instants, Eqs. (T8.2)-(T8.4), (T15.14)."""
     found, shapes = rigid.rigid_limbs(robot), system.kernel.shapes
     q = np.zeros((*record.q.shape[:2], len(COORDINATES)))
     for k, name in enumerate(COORDINATES):
@@ -77,8 +77,13 @@ def errors_of(robot: Robot, system: System, path: RigidPath, record: Record) -> 
     bending, drive = before - (own + axial), own - command  # (T8.3)-(T8.4)
     for _, longer in built.values():
         drive = drive - longer
-    axial, bending, drive, *others = (np.where(counts, part, 0.0) for part in (axial, bending, drive, *more.values()))
-    return Errors(axial=axial, bending=bending, drive=drive, more=dict(zip(more, others, strict=True)))
+    causes: dict[str, Array] = dict(zip(CAUSES, (axial, bending, drive), strict=True))
+    behind: tuple[tuple[Sequence[Place], Array], ...] = ((("nut",), drive), (("base", "platform"), bending))
+    for places, whole in behind:  # (T15.14)
+        for name, give in elongations(robot, system, record.q, places).items():
+            causes.setdefault(name, np.zeros_like(q))[..., L] += give
+            whole[..., L] -= give
+    return Errors(by_cause={name: np.where(counts, part, 0.0) for name, part in (causes | more).items()})
 
 
 def _built(robot: Robot, t: Array, command: Array) -> dict[str, tuple[tuple[rigid.BuiltPart, ...], Array]]:
@@ -91,7 +96,7 @@ def _built(robot: Robot, t: Array, command: Array) -> dict[str, tuple[tuple[rigi
     return found
 
 
-def _straight(robot: Robot, found: Limbs, record: Record, q: Array) -> Array:
+def _straight(robot: Robot, found: Limbs, record: Record | RestStates, q: Array) -> Array:
     """Coordinates of straight legs that reach the flexible platform, the carriages where they are, (T, legs, 8)."""
     R = matrix(record.pose[:, 3:])
     at = rigid.Poses.at_rest(record.pose[:, :3] - R @ robot.com, R)
@@ -119,7 +124,7 @@ def deviation_by_cause(robot: Robot, path: RigidPath, errors: Errors) -> Array:
 
     Returns
     -------
-    ndarray, shape (T, 3, legs, 3)
+    ndarray, shape (T, causes, legs, 3)
         Time, cause, leg, world axis [m].
 
     Raises
@@ -127,18 +132,21 @@ def deviation_by_cause(robot: Robot, path: RigidPath, errors: Errors) -> Array:
     ComputationError
         If a pose is exactly singular.
     """
-    return np.einsum("tclk,tlkx->tclx", errors.stacked, _by_error(robot, path))  # (T8.7)
+    return np.einsum("tclk,tlkx->tclx", errors.stacked, moved_by_errors(robot, path, 3))  # (T8.7)
 
 
-def _by_error(robot: Robot, path: RigidPath) -> Array:
-    """Displacement of the centre of mass for unit errors of what is held, (T, legs, 8, 3), Eq. (T8.6)."""
+def moved_by_errors(robot: Robot, path: RigidPath, components: int = 6) -> Array:
+    """Displacement of the centre of mass, and turn, for unit errors of what is held, (T, legs, 8, 3 or 6), Eq. (T8.6).
+
+    World axes. Times `Errors.stacked` it is what every cause in every leg does to the payload.
+    """
     found, poses = rigid.rigid_limbs(robot), path.poses
     if not is_hexapod(robot):
-        return rigid_errors(robot, poses)[..., :3]
-    moves = np.zeros((len(poses), *found.state.shape, 3))
+        return rigid_errors(robot, poses)[..., :components]
+    moves = np.zeros((len(poses), *found.state.shape, components))
     jacobian = rigid.drive_jacobian(robot, poses, robot.com)
     try:
-        inverse = np.linalg.solve(jacobian.swapaxes(1, 2), np.eye(6, 3))
+        inverse = np.linalg.solve(jacobian.swapaxes(1, 2), np.eye(6, components))
     except np.linalg.LinAlgError:
         raise ComputationError(
             "a pose on the path is singular: lengths do not determine it", next_step="See `flexapod check`."

@@ -23,6 +23,7 @@ __all__ = [
     "held_names",
     "lateral",
     "of_drives",
+    "per_turn",
     "stretch",
     "stroke_forces",
 ]
@@ -69,6 +70,11 @@ def of_drives(limbs: Limbs, shapes: Shapes, values: Array) -> Array:
     """Of each leg the value that belongs to its drive, (..., legs), out of all (..., legs, n)."""
     at = [shapes.index(name) for name in drive_names(limbs)]
     return values[..., np.arange(len(at)), at]
+
+
+def per_turn(robot: Robot) -> Array:
+    """Travel by an angle of each leg's screw, (legs,) [m/rad]; 1 of other drives, whose numbers stay as they are."""
+    return np.array([1.0 if leg.screw is None else leg.screw.per_turn for leg in robot.legs])
 
 
 def stroke_forces(limbs: Limbs, forces: Array) -> Array:

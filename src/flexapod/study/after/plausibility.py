@@ -28,6 +28,7 @@ __all__ = [
     "buckling_words",
     "flexible_axes",
     "leg_stress",
+    "nut_words",
     "rest_warnings",
     "robot_warnings",
     "thick_words",
@@ -73,6 +74,7 @@ def _leg_warnings(robot: Robot, system: System, record: Record | RestStates, whe
                 *_slope(basis, bent, free, when),
                 *_stroke(leg, length, when),
                 *_axial(leg, free, compression[:, i], when),
+                *_nut(leg, compression[:, i], when),
                 *_slender(leg, basis, free, when),
                 *_stress(leg, basis, bent, free, compression[:, i], when),
             )
@@ -162,6 +164,22 @@ def _axial(leg: Leg, free: Array, compression: Array, when: _When) -> list[_Rema
     if share[k] <= NEAR_BUCKLING:
         return []
     return [("buckling", share[k], buckling_words(share[k], compression[k], when[k]))]
+
+
+def _nut(leg: Leg, thrust: Array, when: _When) -> list[_Remark]:
+    if leg.screw is None:
+        return []
+    share, k = np.abs(thrust) / leg.screw.nut.linear_to, int(np.abs(thrust).argmax())
+    return [("nut", share[k], nut_words(leg, float(abs(thrust[k])), when[k]))] if share[k] > 1 else []
+
+
+def nut_words(leg: Leg, thrust: float, when: str) -> str:
+    """That a thrust [N] unloads one half of a preloaded nut (T15.9)."""
+    limit = 0.0 if leg.screw is None else leg.screw.nut.linear_to
+    return (
+        f"the thrust reaches {thrust:.4g} N{when}, beyond {limit:.4g} N (2.83 times the preload of the nut) one half "
+        "of the nut carries nothing, and it is softer than assumed"
+    )
 
 
 def buckling_words(share: float, force: float, when: str) -> str:

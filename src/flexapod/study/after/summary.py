@@ -89,10 +89,9 @@ class RobotSummary:
         size = f"{name} misses its rigid path by up to {text(self.peak, 'm')}{until} ({by_axis})"
         if self.largest_cause is None:
             return f"{size}."
-        return (
-            f"{size}; the largest cause is "
-            f"{CAUSE_WORDS[self.largest_cause]} ({100 * self.causes[self.largest_cause]:.0f} %{leg})."
-        )
+        share = f"{100 * self.causes[self.largest_cause]:.0f} %{leg}"
+        blamed = CAUSE_WORDS.get(self.largest_cause, f"give of {self.largest_cause}")
+        return f"{size}; the largest cause is {blamed} ({share})."
 
     def as_dict(self) -> dict[str, object]:
         """Everything as plain data."""

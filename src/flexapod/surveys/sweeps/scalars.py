@@ -112,7 +112,7 @@ class RobotRun:
 
     @property
     def cause_share(self) -> Array:
-        """Share of every cause in the deviation at its peak, along its direction; zero without deviation."""
+        """Share of every cause in the deviation at its peak, along its direction, (causes,); zero without deviation."""
         deviation = self.com_deviation
         at = int(np.linalg.norm(deviation, axis=1).argmax())
         size = float(deviation[at] @ deviation[at])

@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+from collections.abc import Mapping
 from dataclasses import dataclass
 
 import numpy as np
@@ -9,6 +10,8 @@ import numpy as np
 from flexapod import model, rigid
 from flexapod.errors import FlexapodError
 from flexapod.solve.modes import locked_poses, robot_modes, the_modes
+from flexapod.solve.parts import part_stiffness
+from flexapod.solve.springs import springs_along
 from flexapod.solve.stiffness import compliance, stiffness_of
 from flexapod.study.after.kinds import mode_kinds
 from flexapod.study.before.estimates import residual_vibration
@@ -58,7 +61,7 @@ class PoseDescription:
     """The robot at one pose, drives locked, about its static equilibrium.
 
     `sag` [m] of the centre of mass, `stiffness`, `modes`: the lowest. None and empty where there is no such thing;
-    `problem` then says why.
+    `problem` then says why. `parts`: of legs with more than ideal parts, by name and leg [N/m], inf where it has none.
     """
 
     name: str
@@ -67,6 +70,7 @@ class PoseDescription:
     stiffness: StiffnessDescription | None = None
     modes: tuple[ModeLine, ...] = ()
     problem: str | None = None
+    parts: Mapping[str, tuple[float, ...]] | None = None
 
 
 @dataclass(frozen=True, kw_only=True)
@@ -90,17 +94,25 @@ def describe_pose(study: model.Study, name: str, time: float) -> PoseDescription
     """The robot at rest at an instant of its path."""
     robot, simulation = study.robot, study.simulation
     path = _at_rest(study, time)
+    parts = _parts(robot, path)
     try:
         locked = locked_poses(robot, simulation, path, study.load, time)
         found, stiffness = the_modes(locked), _stiffness(stiffness_of(robot, locked).total)
     except FlexapodError as error:
-        return PoseDescription(name=name, time=time, problem=str(error))
+        return PoseDescription(name=name, time=time, problem=str(error), parts=parts)
     sag = found.equilibrium.state.pose[:3] - path.point(robot.com)[0][0]
     lines = zip(found.frequency, found.damping_ratio, mode_kinds(found), strict=True)
     modes = tuple(ModeLine(frequency=float(f), damping_ratio=float(ratio), kind=kind) for f, ratio, kind in lines)
     return PoseDescription(
-        name=name, time=time, sag=float(np.linalg.norm(sag)), stiffness=stiffness, modes=modes[:SHOWN]
+        name=name, time=time, sag=float(np.linalg.norm(sag)), stiffness=stiffness, modes=modes[:SHOWN], parts=parts
     )
+
+
+def _parts(robot: model.Robot, path: rigid.Poses) -> dict[str, tuple[float, ...]] | None:
+    if not any(springs_along(leg) for leg in robot.legs):
+        return None
+    found = part_stiffness(robot, rigid.inverse_kinematics(robot, path).length[0])
+    return {name: tuple(values.tolist()) for name, values in found.items()}
 
 
 def _stiffness(total: Array) -> StiffnessDescription:
