@@ -9,11 +9,14 @@ from tests.runs import paper_robot, with_legs
 
 import flexapod as fx
 from flexapod import rigid
+from flexapod.errors import ComputationError
 from flexapod.model import Geometry, Heat, Joint, LengthSpread, RatioSpread, Tolerances
+from flexapod.study.accuracy.imperfect import bent
 from flexapod.study.accuracy.play import half_play
 from flexapod.study.accuracy.rows import rows
 from flexapod.study.accuracy.sensitivity import sensitivity
 from flexapod.study.accuracy.spread import spreading
+from flexapod.study.before.estimates import buckling_load
 from flexapod.study.path import RigidPath
 
 POSE = {"surge": 0.02, "heave": 0.03, "roll": 0.1, "yaw": -0.15}
@@ -91,7 +94,7 @@ def test_the_worst_case_is_attained_in_a_corner_of_the_box():
     robot = paper_robot().robot.replace(tolerances=Tolerances(leg_offset=LengthSpread(box=1e-5), base_joints=2e-5))
     found = fx.accuracy(robot, POSE)
     at = sensitivity(robot, rigid.poses_from_home(robot, np.array([[0.02, 0, 0.03, 0.1, 0, -0.15]])))
-    effect = next(one for one in spreading(robot, at) if one.boxed).effect[:, 0]
+    effect = next(one for one in spreading(robot, at, np.zeros(6)) if one.boxed).effect[:, 0]
     corners = np.array([np.array(signs) @ effect for signs in itertools.product((-1, 1), repeat=6)])
     np.testing.assert_allclose(np.abs(corners).max(axis=0), found.pose_worst, rtol=1e-12)
     inside = np.random.default_rng(0).uniform(-1, 1, (1000, 6)) @ effect
@@ -154,6 +157,87 @@ def test_backlash_of_a_slider_counts_along_its_way():
     sign = np.sign(found.pressing_force.sel(place="drive"))
     at = sensitivity(robot, rigid.poses_from_home(robot, np.array([[0.02, 0, 0, 0, 0, 0]])))
     np.testing.assert_allclose(found.play_error, -(sign.values * 5e-6) @ at.coordinate[0, :, 0], atol=1e-19)
+
+
+def crooked(robot, bow=None, eccentricity=None, **piston):
+    legs = tuple(
+        leg.replace(
+            piston=leg.piston.replace(bow=bow, **piston),
+            base_joint=Joint(eccentricity=eccentricity),
+            platform_joint=Joint(eccentricity=eccentricity),
+        )
+        for leg in robot.legs
+    )
+    return robot.replace(legs=legs)
+
+
+def test_bent_legs_grow_and_shorten_as_the_beam_column_does():
+    # y'' EI + P (y + y0) = 0 outside of the mouth by differences, the rigid part turning with the slope there.
+    robot = crooked(mechanisms.hexapod(), bow=1e-3)
+    leg, at = robot.legs[0], sensitivity(robot, rigid.home_pose(robot))
+    m, s, EI = leg.cylinder.mouth, robot.home_lengths[0] - leg.cylinder.mouth, leg.piston.EI
+    euler = buckling_load(leg, np.array([s]))[0]
+    push = 0.3 * euler
+    found = bent(robot, at, np.full(6, push))
+    n = 4000
+    x, h, k = np.linspace(0, s, n + 1), s / n, np.sqrt(euler / EI)
+    start = 1e-3 * np.sin(k * (s - x))
+    A = (np.eye(n + 1, k=1) - 2 * np.eye(n + 1) + np.eye(n + 1, k=-1)) / h**2 + push / EI * np.eye(n + 1)
+    b = -push / EI * start
+    A[0], b[0] = 0, 0.0
+    A[0, :3] = m * np.array([-1.5, 2.0, -0.5]) / h  # y = m y' at the mouth
+    A[0, 0] -= 1.0
+    A[-1], b[-1] = 0, 0.0
+    A[-1, -1] = 1.0
+    y = np.linalg.solve(A, b) + start
+    # Differences are right to (h k)^2 of order 1e-6, and the matrix is worse conditioned by 1 / 0.7.
+    np.testing.assert_allclose(found.deflection[0], np.abs(y).max(), rtol=1e-4)
+    slopes = [np.trapezoid(np.gradient(z, h) ** 2, x) + z[0] ** 2 / m for z in (y, start)]
+    np.testing.assert_allclose(found.shorter[0], 0.5 * (slopes[0] - slopes[1]), rtol=1e-3)
+    np.testing.assert_allclose(found.share, 0.3)
+
+
+def test_eccentric_ends_bend_a_bar_by_the_secant_formula():
+    robot = mechanisms.hexapod()
+    legs = tuple(
+        leg.replace(cylinder=leg.cylinder.replace(mouth=0.0), base_joint=Joint(eccentricity=1e-3),
+                    platform_joint=Joint(eccentricity=1e-3))
+        for leg in robot.legs
+    )  # fmt: skip
+    robot = robot.replace(legs=tuple(leg.replace(piston=leg.piston.replace(length=2.0)) for leg in legs))
+    at = sensitivity(robot, rigid.home_pose(robot))
+    euler = np.pi**2 * robot.legs[0].piston.EI / robot.home_lengths**2
+    for share in (0.05, 0.3, 0.6):
+        found = bent(robot, at, share * euler)
+        secant = 1e-3 / np.cos(np.pi / 2 * np.sqrt(share))
+        np.testing.assert_allclose(found.deflection, secant, rtol=0.015)  # one half wave: 1 % as the theory says
+        k, L = np.pi * np.sqrt(share) / robot.home_lengths, robot.home_lengths
+        bending = 0.5 * (1e-3 * k / np.cos(k * L / 2)) ** 2 * (L / 2 - np.sin(k * L) / (2 * k))
+        exact = bending + 2e-6 * k * np.tan(k * L / 2)  # and the arms at both ends turn
+        assert (found.shorter < exact).all() and (1.24 * found.shorter > exact).all()
+
+
+def test_bent_legs_are_a_row_and_a_thrust_beyond_the_euler_load_is_said():
+    robot = crooked(paper_robot().robot, bow=1e-3, eccentricity=2e-4)
+    found = fx.accuracy(robot)
+    assert list(found.error.values) == ["bent_legs"]
+    assert found.leg_bow.min() > 1e-3 * 0.9 and found.euler_share.max() < 0.05
+    assert np.abs(found.pose_error).max() < 1e-6  # second order, as the theory says
+    soft = crooked(paper_robot().robot, bow=1e-3, EI=5.0, E=None, density=None)
+    with pytest.raises(ComputationError, match="beyond its Euler load"):
+        fx.accuracy(soft)
+
+
+def test_stiffer_pistons_are_longer_under_thrust():
+    robot = paper_robot().robot.replace(tolerances=Tolerances(EA=0.01))
+    found = fx.accuracy(robot)
+    legs = tuple(leg.replace(piston=leg.piston.replace(EA=leg.piston.EA * 1.01, E=None, density=None))
+                 if i == 1 else leg for i, leg in enumerate(robot.legs))  # fmt: skip
+    drawn, other = (fx.modes(x, fidelity="lumped").com_sag for x in (robot, robot.replace(legs=legs)))
+    moved = other - drawn
+    share = found.pose_sigma_by_tolerance[0, 1, :3]
+    # First order in 1 %, and the sag: parts of a thousand; thrust taken as the mean of both ends.
+    np.testing.assert_allclose(np.abs(moved), share, rtol=0.03, atol=1e-12)
 
 
 def test_redundant_legs_share_errors_by_their_compliance_and_say_so():

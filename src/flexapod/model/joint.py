@@ -23,7 +23,8 @@ class Joint(Frozen):
     and rigid of a fixed joint.
     `stiffness` (6, 6) [N/m, N, N m/rad]: of a flexure, along and about the axes of base or platform, or, with
     `leg_axes`, those of the leg, z along it. `damping` [N s/m] or `loss` (loss factor) of a stiffness along and across
-    the leg. `play` [m]: free travel along the leg, from one end to the other.
+    the leg. `play` [m]: free travel along the leg, from one end to the other. `eccentricity`
+    [m]: of its centre from the axis of the leg.
     """
 
     derived: ClassVar[tuple[str, ...]] = ("leg_axes", "damping", "loss")
@@ -35,6 +36,7 @@ class Joint(Frozen):
     leg_axes: bool = False
     damping: Annotated[NonNegative, Measure("damping")] | None = None
     play: Annotated[NonNegative, Measure("length")] | None = None
+    eccentricity: Annotated[NonNegative, Measure("length")] | None = None
     loss: NonNegative | None = None
 
     @model_validator(mode="after")

@@ -141,6 +141,10 @@ class Leg(Frozen):
             raise _misfit(self.chain, "chain", "has no drive: no P, no C, no R before the base joint", "passive = true")
         if self.passive and self.drive != PrescribedDrive():
             raise _misfit(self.chain, "drive", "drives a passive leg", "a drive, or passive = true")
+        crooked = self.piston.bow or self.base_joint.eccentricity or self.platform_joint.eccentricity
+        if crooked and not (letters.base in "US" and letters.platform == "S"):
+            key = "piston.bow" if self.piston.bow else "platform_joint.eccentricity"
+            raise _misfit(self.chain, key, "is of legs that no joint holds across", "legs UPS, SPS and their like")
         return self
 
     @model_validator(mode="after")

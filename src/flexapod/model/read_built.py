@@ -77,10 +77,17 @@ def _tolerances(section: Section) -> dict[str, object]:
         name: _spread(section, name, LengthSpread, "length")
         for name in ("base_joints", "platform_joints", "leg_offset")
     }
+    named = _class(section)
+    ratios = {name: _spread(section, name, RatioSpread, "number") for name in ("lead", "EA") if name not in named}
+    return lengths | ratios | named
+
+
+def _class(section: Section) -> dict[str, object]:
+    """The lead by an accuracy class."""
     grade = section.data.get("lead")
-    if isinstance(grade, str) and grade[:1].isalpha():
-        return lengths | {"lead": RatioSpread(box=CLASSES[str(section.text("lead", tuple(CLASSES)))])}
-    return lengths | {"lead": _spread(section, "lead", RatioSpread, "number")}
+    if not (isinstance(grade, str) and grade[:1].isalpha()):
+        return {}
+    return {"lead": RatioSpread(box=CLASSES[str(section.text("lead", tuple(CLASSES)))])}
 
 
 def _spread(section: Section, name: str, model: type[LengthSpread] | type[RatioSpread], dimension: str) -> object:

@@ -154,6 +154,7 @@ def _piston(section: Section) -> Piston:
         section=section.build(Tube, **_diameters(section)),
         material=read_material(section),
         axial_inertia=section.number("axial_inertia", "inertia"),
+        bow=section.number("bow", "length"),
     )
 
 
@@ -173,11 +174,13 @@ def _strut(section: Section) -> Strut:
             section=round_section,
             material=read_material(section),
             axial_inertia=axial_inertia,
+            bow=section.number("bow", "length"),
         )
     for name in ("diameter", "inner_diameter", "axial_inertia"):
         if name in section:
             raise section.error("is given together with section", name, allowed="either of the two")
-    return section.build(Strut.strip, length=length, section=strip.read(Strip), material=read_material(section))
+    parts = {"section": strip.read(Strip), "material": read_material(section)}
+    return section.build(Strut.strip, length=length, bow=section.number("bow", "length"), **parts)
 
 
 def _given(section: Section, model: type[P]) -> P:

@@ -60,10 +60,11 @@ def _spread(value: Any) -> Any:
 class Tolerances(Frozen):
     """Independent errors of single parts, those of joints along each axis; what is left out has none.
 
-    `base_joints`, `platform_joints`, `leg_offset` and `lead` as of `Geometry`.
+    `base_joints`, `platform_joints`, `leg_offset` and `lead` as of `Geometry`; `EA` of pistons and struts, relative.
     """
 
     base_joints: Annotated[LengthSpread | None, BeforeValidator(_spread)] = None
     platform_joints: Annotated[LengthSpread | None, BeforeValidator(_spread)] = None
     leg_offset: Annotated[LengthSpread | None, BeforeValidator(_spread)] = None
     lead: Annotated[RatioSpread | None, BeforeValidator(_spread)] = None
+    EA: Annotated[RatioSpread | None, BeforeValidator(_spread)] = None

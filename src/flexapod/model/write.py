@@ -136,7 +136,7 @@ def _beam(piston: Piston) -> dict[str, object]:
         same = type(piston).round(length=piston.length, section=section, material=material, axial_inertia=axial)
     elif isinstance(piston, Strut) and piston.section is not None:
         same = Strut.strip(length=piston.length, section=piston.section, material=material)
-    if same != piston:
+    if same != piston.replace(bow=None):
         return fields
     computed = ("EA", "EI", "rhoA", *(() if piston.diameter else ("axial_inertia",)))
     return {name: value for name, value in fields.items() if name not in computed} | made_of

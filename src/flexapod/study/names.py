@@ -213,6 +213,8 @@ _ACCURACY = {
     "pose_worst_by_tolerance": Variable(
         ("tolerance", "leg", "component"), "mixed", "largest error of the tool's pose [m, rad]"
     ),
+    "leg_bow": Variable(("leg",), "m", "largest distance of the leg's axis from the line of its joints, under thrust"),
+    "euler_share": Variable(("leg",), "1", "thrust over Euler load of the leg"),
     "sample_mean": Variable(_C, "mixed", "mean error of the tool's pose [m, rad] of the machines drawn"),
     "sample_covariance": Variable(_CC, "mixed", "covariance of the tool's pose [m, rad] of the machines drawn"),
     "sample_largest": Variable(_C, "mixed", "largest error of the tool's pose [m, rad] of the machines drawn"),

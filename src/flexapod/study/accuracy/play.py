@@ -7,13 +7,12 @@ from dataclasses import dataclass
 import numpy as np
 from numpy.typing import NDArray
 
-from flexapod import rigid
-from flexapod.model import Robot, Study
+from flexapod.model import Robot
 from flexapod.study.accuracy.sensitivity import Sensitivity, sensitivity
 from flexapod.study.path import RigidPath
 from flexapod.typing import Array
 
-__all__ = ["PLACES", "Jumps", "Play", "half_play", "jumps", "play_along", "play_at"]
+__all__ = ["PLACES", "Jumps", "Play", "half_play", "jumps", "play_along"]
 
 PLACES = ("base_joint", "drive", "platform_joint")
 
@@ -74,12 +73,6 @@ def play_along(path: RigidPath, at: Sensitivity | None = None) -> Play:
     effect = np.stack([shorter, behind, shorter], axis=1) * half_play(robot)[..., None]
     force = np.stack([foot, np.where(carried, forces.drive_force, inside), end], axis=1)
     return Play(force=force, effect=effect)
-
-
-def play_at(study: Study, pose: rigid.Poses, at: Sensitivity | None = None) -> Play:
-    """Play at a resting pose, pressed by gravity and the load of the study at t = 0."""
-    still = rigid.Poses.at_rest(pose.position, pose.rotation)
-    return play_along(RigidPath(study, np.zeros(1), still), at)
 
 
 def jumps(found: Play, t: Array) -> Jumps:

@@ -4,12 +4,12 @@ from __future__ import annotations
 
 from typing import NamedTuple
 
+import numpy as np
+
 from flexapod import rigid
 from flexapod.model import Study
-from flexapod.study.accuracy.play import PLACES, play_at
-from flexapod.study.accuracy.sensitivity import sensitivity
-from flexapod.study.accuracy.spread import spreading
-from flexapod.study.accuracy.systematic import systematic
+from flexapod.study.accuracy.at_pose import AtPose
+from flexapod.study.accuracy.play import PLACES
 from flexapod.typing import Array
 
 __all__ = ["Row", "rows"]
@@ -30,21 +30,22 @@ class Row(NamedTuple):
 
 
 def rows(study: Study, pose: rigid.Poses) -> list[Row]:
-    """Rows of geometry, heat, tolerances and play at one pose; of what the study does not name none."""
-    at = sensitivity(study.robot, pose)
-    found = [
-        Row(name, "systematic", "drifting" if name.startswith("heat") else "calibratable", by_leg, "first order")
-        for name, by_leg in systematic(study.robot, at).items()
-    ]
+    """Rows of geometry, heat, bent legs, tolerances and play at one pose; of what the study does not name none."""
+    at = AtPose(study, pose)
+    found = [Row(name, "systematic", _nature(name), by_leg, "first order") for name, by_leg in at.parts.items()]
     found += [
         Row(f"{one.name} tolerance", "random", "", one.sigma, "first order, errors independent of each other")
-        for one in spreading(study.robot, at)
+        for one in at.spreading
     ]
-    effect = abs(play_at(study, pose, at).effect[0])
-    how = "first order, whichever way the play is pressed"
-    found += [
-        Row(f"{place} play", "hysteretic", "", by_leg, how)
-        for place, by_leg in zip(PLACES, effect, strict=True)
-        if by_leg.any()
-    ]
+    if at.is_loose:
+        effect = np.abs(at.play.effect[0])
+        how = "first order, whichever way the play is pressed"
+        table = zip(PLACES, effect, strict=True)
+        found += [Row(f"{place} play", "hysteretic", "", by_leg, how) for place, by_leg in table if by_leg.any()]
     return found
+
+
+def _nature(part: str) -> str:
+    if part.startswith("heat"):
+        return "drifting"
+    return "repeatable" if part == "bent_legs" else "calibratable"

@@ -10,6 +10,7 @@ from flexapod import rigid
 from flexapod.model import Robot
 from flexapod.rigid.limbs import COORDINATES, DRIVEN, HELD
 from flexapod.rigid.rotations import quaternion, rotation_vector
+from flexapod.study.accuracy.imperfect import softness
 from flexapod.study.accuracy.sensitivity import Sensitivity
 from flexapod.typing import Array
 
@@ -47,13 +48,11 @@ class Spreading:
         return np.abs(self.effect).sum(axis=1) * self.boxed
 
 
-def spreading(robot: Robot, at: Sensitivity) -> list[Spreading]:
-    """The tolerances of a robot at the first pose of its sensitivity."""
+def spreading(robot: Robot, at: Sensitivity, push: Array) -> list[Spreading]:
+    """The tolerances of a robot at the first pose of its sensitivity, its pistons under thrusts `push` (n,) [N]."""
     return [
-        Spreading(name=name, effect=size * effect, boxed=boxed)
-        for name, size, boxed, effect in (
-            (name, size, boxed, _effect(robot, at, name)) for name, size, boxed in _given(robot)
-        )
+        Spreading(name=name, effect=size * _effect(robot, at, name, push), boxed=boxed)
+        for name, size, boxed in _given(robot)
     ]
 
 
@@ -68,30 +67,31 @@ def _given(robot: Robot) -> list[tuple[str, float, bool]]:
     return found
 
 
-def _effect(robot: Robot, at: Sensitivity, name: str) -> Array:
+def _effect(robot: Robot, at: Sensitivity, name: str, push: Array) -> Array:
     """What unit errors do to the tool, (n, m, 6)."""
     if name in ("base_joints", "platform_joints"):
         return getattr(at, name.removesuffix("_joints"))[0]
-    weights = _weights(robot, name, at.q[:1])[0]
+    weights = _weights(robot, name, at.q[:1], push)[0]
     return (weights[..., None] * at.coordinate[0]).sum(axis=1, keepdims=True)
 
 
-def _weights(robot: Robot, name: str, q: Array) -> Array:
+def _weights(robot: Robot, name: str, q: Array, push: Array) -> Array:
     """What a unit error adds to held and driven coordinates q (T, n, 8)."""
     legs = rigid.rigid_limbs(robot)
     found = np.zeros_like(q)
-    if name == "leg_offset":
-        found[..., L] = np.isin(legs.state[:, L], (HELD, DRIVEN))
+    if name in ("leg_offset", "EA"):
+        longer = softness(robot, push) if name == "EA" else np.ones(len(legs))
+        found[..., L] = np.where(np.isin(legs.state[:, L], (HELD, DRIVEN)), longer, 0.0)
     else:  # lead
         driven = (legs.state[:, [CHI, L]] == DRIVEN) & [legs.carriage != "crank", True]
         found[..., [CHI, L]] = np.where(driven, (q - legs.home)[..., [CHI, L]], 0.0)
     return found
 
 
-def samples(robot: Robot, path: rigid.Poses, at: Sensitivity, count: int, seed: int) -> Array:
+def samples(robot: Robot, path: rigid.Poses, at: Sensitivity, push: Array, *, count: int, seed: int) -> Array:
     """Displacements of the tool of machines drawn within the tolerances, exact kinematics, (count, 6).
 
-    NaN where legs do not fit together without strain.
+    Of EA as of `spreading`. NaN where legs do not fit together without strain.
     """
     rng, legs = np.random.default_rng(seed), rigid.rigid_limbs(robot)
     parts = []
@@ -105,7 +105,7 @@ def samples(robot: Robot, path: rigid.Poses, at: Sensitivity, count: int, seed: 
             if name.endswith("joints"):
                 shift[name.removesuffix("_joints")] += drawn
             else:
-                q = q + drawn * _weights(robot, name, at.q[:1])
+                q = q + drawn * _weights(robot, name, at.q[:1], push)
         start = path.part(np.zeros(size, dtype=int))
         found, gap = rigid.nearby(legs, q, start, shift["base"], shift["platform"])
         moved = displacement(robot, start, found)

@@ -7,10 +7,9 @@ import numpy as np
 from flexapod import rigid
 from flexapod.errors import ComputationError
 from flexapod.model import Robot, Study
-from flexapod.study.accuracy.play import half_play, play_at
-from flexapod.study.accuracy.sensitivity import sensitivity
-from flexapod.study.accuracy.spread import spreading
-from flexapod.study.accuracy.systematic import systematic
+from flexapod.study.accuracy.at_pose import AtPose
+from flexapod.study.accuracy.imperfect import crookedness
+from flexapod.study.accuracy.play import half_play
 from flexapod.typing import Array
 from flexapod.words import text
 
@@ -22,21 +21,20 @@ def accuracy_words(study: Study) -> tuple[str, ...]:
     robot = study.robot
     if robot.platform_fixed or not _is_real(robot):
         return ()
-    home = rigid.home_pose(robot)
+    at, found = AtPose(study, rigid.home_pose(robot)), []
     try:
-        at, found = sensitivity(robot, home), []
-        if parts := systematic(robot, at):
+        if parts := at.parts:
             whole = np.sum(list(parts.values()), axis=(0, 1))
             largest = max(parts, key=lambda name: float(np.linalg.norm(parts[name][:, :3].sum(axis=0))))
             found.append(
                 f"as built and warm the tool stands {_size(whole)} beside its drawn place at home, most of it by "
                 f"{largest} ({text(float(np.linalg.norm(parts[largest][:, :3].sum(axis=0))), 'm', 3)})"
             )
-        if spread := spreading(robot, at):
+        if spread := at.spreading:
             sigma = np.sqrt(np.diag(np.sum([one.covariance for one in spread], axis=0)))
             found.append(f"tolerances spread the tool at home by {_by_axis(sigma)} (standard deviations)")
-        if half_play(robot).any():
-            found.append(f"play lets the tool move at home by up to {_by_axis(play_at(study, home, at).worst[0])}")
+        if at.is_loose:
+            found.append(f"play lets the tool move at home by up to {_by_axis(at.play.worst[0])}")
     except ComputationError as error:
         return (f"the accuracy at home cannot be said: {error.what}",)
     return tuple(found)
@@ -44,7 +42,8 @@ def accuracy_words(study: Study) -> tuple[str, ...]:
 
 def _is_real(robot: Robot) -> bool:
     """Whether anything is said of how the robot differs from the drawing."""
-    return bool(rigid.built_parts(robot)) or robot.tolerances is not None or bool(half_play(robot).any())
+    some = half_play(robot).any() or crookedness(robot).any()
+    return bool(rigid.built_parts(robot)) or robot.tolerances is not None or bool(some)
 
 
 def _size(moved: Array) -> str:
