@@ -4,7 +4,7 @@ import itertools
 
 import numpy as np
 import pytest
-from tests import mechanisms
+from tests import machines, mechanisms
 from tests.runs import paper_robot, with_legs
 
 import flexapod as fx
@@ -149,6 +149,11 @@ def test_half_the_travel_of_all_places():
     robot = loose(paper_robot().robot, base_joint=1e-5, backlash=4e-6)
     np.testing.assert_allclose(half_play(robot), np.array([5e-6, 2e-6, 0.0])[:, None] * np.ones(6))
     assert "play_error" not in fx.accuracy(paper_robot().robot)
+
+
+def test_backlash_of_a_nut_is_that_of_its_drive():
+    drive = machines.SCREW.replace(nut=machines.NUT.replace(backlash=8e-6))
+    np.testing.assert_allclose(half_play(machines.machine(drive=drive))[1], 4e-6)
 
 
 def test_backlash_of_a_slider_counts_along_its_way():

@@ -2,7 +2,7 @@
 
 import numpy as np
 import pytest
-from tests import mechanisms
+from tests import machines, mechanisms
 from tests.runs import paper_robot
 
 import flexapod as fx
@@ -61,6 +61,34 @@ def test_a_strut_grows_like_a_piston_and_a_slider_carries_it():
     longer = robot.replace(geometry=Geometry(leg_offset=2e-4 * robot.legs[0].strut.length))
     still = np.zeros((1, 6))
     np.testing.assert_allclose(displaced(warm, still)[0], displaced(longer, still)[0], atol=1e-15)
+
+
+def test_a_hot_screw_moves_what_it_drives():
+    robot = machines.machine(drive=machines.SCREW)
+    steel, home = MATERIALS["steel"].expansion, robot.home_lengths
+    heat = Heat(screw=[30.0, *[20.0] * 5], cylinder=22.0)
+    screw, cylinder = 10 * steel * (home[0] - 0.75 - 0.06), 2 * steel * 0.06
+    offset = cylinder * np.ones(6) + screw * np.eye(6)[0]
+    still = np.zeros((1, 6))
+    moved, turned, _ = displaced(robot.replace(heat=heat), still)
+    same, turned_alike, _ = displaced(robot.replace(geometry=Geometry(leg_offset=offset)), still)
+    np.testing.assert_allclose(moved, same, atol=1e-15)
+    np.testing.assert_allclose(turned, turned_alike, atol=1e-15)
+    assert np.abs(moved).max() > 1e-6
+
+
+def test_a_machine_with_screws_runs_and_blames_the_heat():
+    robot = machines.machine(drive=machines.SCREW)
+    warm = robot.replace(heat=Heat(screw=25.0), geometry=Geometry(lead=1e-4, leg_offset=ERRORS["leg_offset"]))
+    drawn, hot = (fx.simulate(machines.study(x), fidelity="lumped", duration=0.03, step=1e-3) for x in (robot, warm))
+    path = rigid.poses(warm, machines.study(warm).motion, hot.time.values)
+    com = rigid.built_poses(warm, path).place(warm.com) - path.place(warm.com)
+    # Beside the vibration, which the same command excites alike: errors of 1e-4 of a leg change it by as much.
+    sag = np.abs(drawn.com_deviation).max().item()
+    np.testing.assert_allclose(hot.com_deviation - drawn.com_deviation, com, atol=5e-3 * sag)
+    assert {"geometry", "heat_screw"} <= set(hot.cause.values)
+    share = hot.deviation_by_cause.sel(cause=["geometry", "heat_screw"]).sum(("cause", "leg"))
+    np.testing.assert_allclose(share, com, atol=1e-3 * np.abs(com).max())
 
 
 def test_lead_and_offset_lengthen_a_leg_as_they_say():

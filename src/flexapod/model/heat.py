@@ -15,7 +15,7 @@ from flexapod.typing import Array
 
 __all__ = ["HEAT_PARTS", "LEG_PARTS", "Expansion", "Heat"]
 
-LEG_PARTS = ("piston", "cylinder")
+LEG_PARTS = ("piston", "cylinder", "screw")
 HEAT_PARTS = ("base", "platform", *LEG_PARTS)
 COLDEST = -273.15
 
@@ -30,12 +30,13 @@ class Expansion(Frozen):
     platform: Annotated[Number, Measure("expansion")] | None = None
     piston: Annotated[Number, Measure("expansion")] | None = None
     cylinder: Annotated[Number, Measure("expansion")] | None = None
+    screw: Annotated[Number, Measure("expansion")] | None = None
 
 
 class Heat(Frozen):
     """Temperatures [degC]: those at which lengths are as drawn, `reference`, and of parts, where they differ.
 
-    `base`, `platform`: the plates between the joints; `piston` (or strut), `cylinder`: for all legs or for
+    `base`, `platform`: the plates between the joints; `piston` (or strut), `cylinder`, `screw`: for all legs or for
     each. `time` [s] and `table` (T, columns) [degC]: temperatures over time from `file`, `columns` their names, a part
     or ``part leg``; they stand in place of the others.
     """
@@ -47,6 +48,7 @@ class Heat(Frozen):
     platform: Warm | None = None
     piston: Annotated[PerLeg, Measure("temperature")] | None = None
     cylinder: Annotated[PerLeg, Measure("temperature")] | None = None
+    screw: Annotated[PerLeg, Measure("temperature")] | None = None
     expansion: Expansion | None = None
     file: str | None = None
     time: Annotated[Series, Measure("time")] | None = None

@@ -32,7 +32,7 @@ _TABLES = {
     '`leg.drive` with `law = "csv"`': (forces(6), "all columns, one for each leg"),
     "`heat.file`": (
         {"piston": "temperature", "cylinder 3": "temperature"},
-        "one at least besides the time: base, platform, piston, cylinder, or one of the last two of a leg",
+        "one at least besides the time: base, platform, piston, cylinder, screw, or one of the last three of a leg",
     ),
     "`motion.rotation`": ({"value": "angle"}, "both columns"),
     "`motion.extension`": ({"value": "length"}, "both columns"),

@@ -140,14 +140,22 @@ def _grows(leg: Leg, part: str) -> tuple[float, float]:
     if part == "piston":
         return leg.piston.length, 0.0
     inner = -leg.piston.length  # from the base joint to the piston's driven end: l + inner
-    return (inner, 1.0) if part == "cylinder" and leg.strut is None else (0.0, 0.0)
+    if leg.strut is not None or part in ("base", "platform"):
+        return 0.0, 0.0
+    if leg.drive.type != "screw":
+        return (inner, 1.0) if part == "cylinder" else (0.0, 0.0)
+    bearing = leg.drive.bearing.position  # up to there the cylinder, from there the screw
+    return (bearing, 0.0) if part == "cylinder" else (inner - bearing, 1.0)
 
 
 def _expansion(robot: Robot, heat: Heat, part: str) -> Array:
     """Expansion of a part of each leg, (n,) [1/K]: as given, of its material, or of steel."""
     given, steel = getattr(heat.expansion, part, None), MATERIALS["steel"].expansion
-    owners = {"piston": [leg.piston for leg in robot.legs], "cylinder": [leg.cylinder for leg in robot.legs]}
-    own = [getattr(owner, "expansion", None) for owner in owners.get(part, [None] * robot.count)]
+    made_of = {
+        "piston": [leg.piston.expansion for leg in robot.legs],
+        "screw": [leg.drive.material.expansion if leg.drive.type == "screw" else None for leg in robot.legs],
+    }
+    own = made_of.get(part, [None] * robot.count)
     return np.array([given if given is not None else steel if value is None else value for value in own])
 
 

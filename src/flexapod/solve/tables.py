@@ -9,7 +9,7 @@ from flexapod.model import Drive, ForceDrive, Load, Robot, ScrewDrive
 from flexapod.rigid.limbs import COORDINATES, DRIVEN
 from flexapod.solve.released import rigid_forces
 from flexapod.solve.system import COLUMNS, Index, System
-from flexapod.typing import Array
+from flexapod.typing import Array, Mask
 
 __all__ = ["Law", "feed_forward", "push_ports", "robot_law"]
 
@@ -34,6 +34,9 @@ def robot_law(system: System, robot: Robot, load: Load, poses: Callable[[Array],
         names[shapes.index("r")] = "l"
         driven[:, system.ports == shapes.index("r")] = np.array([[leg.gives] for leg in robot.legs])
     driven, ports = driven.astype(bool), list(enumerate(system.ports))
+    every = np.ones(system.legs, dtype=bool)
+    turned = {shapes.index("r"): np.array([leg.gives for leg in robot.legs])} if shapes.series else {}
+    places = {k: (COORDINATES.index(names[port]), turned.get(port, every)) for k, port in ports if port in names}
     pushed = driven & (system.ports == push_ports(system, robot)[:, None])
 
     def law(t: Array) -> tuple[Array, Array]:
@@ -46,19 +49,22 @@ def robot_law(system: System, robot: Robot, load: Load, poses: Callable[[Array],
             for column, part in enumerate(legs.coordinate(names[system.ports[k]])):
                 table[:, which, k, column] = part[:, which]
         if rigid.built_parts(robot):
-            _as_built(robot, t, legs, table, {k: COORDINATES.index(names[port]) for k, port in ports if port in names})
+            _as_built(robot, t, legs, table, places)
         table[:, pushed, 3] = feed_forward(robot, t, path, wrench)[:, pushed.any(axis=1)]
         return table, wrench
 
     return law
 
 
-def _as_built(robot: Robot, t: Array, legs: rigid.LegState, table: Array, ports: dict[int, int]) -> None:
-    """Add to the table of a rigid path what the robot as built adds; ``ports``: which coordinate each port is."""
+def _as_built(robot: Robot, t: Array, legs: rigid.LegState, table: Array, ports: dict[int, tuple[int, Mask]]) -> None:
+    """Add to the table of a rigid path what the robot as built adds.
+
+    ``ports``: of each port the coordinate that it follows, and in which legs.
+    """
     q = rigid.Law(*np.stack([legs.coordinate(name) for name in COORDINATES], axis=-1))
     for column, more in enumerate(rigid.added_by_all(robot, t, q)):
-        for port, place in ports.items():
-            table[:, :, port, column] += more[..., place]
+        for port, (place, legs_there) in ports.items():
+            table[:, legs_there, port, column] += more[:, legs_there, place]
 
 
 def push_ports(system: System, robot: Robot) -> Index:

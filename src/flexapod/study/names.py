@@ -46,6 +46,7 @@ CAUSE_WORDS = {
     "heat_platform": "heat of the platform",
     "heat_piston": "heat of the pistons",
     "heat_cylinder": "heat of the cylinders",
+    "heat_screw": "heat of the screws",
 }
 
 
