@@ -35,7 +35,8 @@ __all__ = [
 ]
 
 PAPER_PRESETS = ("paper-robot", "paper-robot-radii", "paper-actuator")
-PRESETS = (*PAPER_PRESETS, "tripod", "flight-simulator")
+PRESETS = (*PAPER_PRESETS, "tripod", "flight-simulator", "machine-hexapod")
+RobotPreset = Literal["paper-robot", "paper-robot-radii", "tripod", "flight-simulator", "machine-hexapod"]
 AT_REST = AxisMotion(type="heave", amplitude=0.0, duration=1.0)
 _AS_BUILT = ("geometry", "heat", "tolerances")
 _COMMON = ("motion", "load", "initial", "simulation")
@@ -108,7 +109,7 @@ def _tables(text: str, path: str | Path | None) -> Section:
 
 
 @overload
-def preset(name: Literal["paper-robot", "paper-robot-radii", "tripod", "flight-simulator"]) -> Study: ...
+def preset(name: RobotPreset) -> Study: ...
 @overload
 def preset(name: Literal["paper-actuator"]) -> ActuatorStudy: ...
 @overload

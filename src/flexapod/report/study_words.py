@@ -120,12 +120,27 @@ def _drive(drive: model.Drive) -> str:
     if isinstance(drive, model.ServoDrive):
         damper = f" and a damper of {number(drive.damping)} N s/m" if drive.damping else ""
         return f"servo, a spring of {text(drive.stiffness, 'N/m')}{damper} between commanded and real stroke"
+    if isinstance(drive, model.ScrewDrive):
+        return _screw(drive)
     force = "that which the rigid robot needs" if drive.law == "rigid" else "from a table"
     force = force if drive.value is None else f"constant, {text(drive.value, 'N')}"
     back = drive.feedback
     if back is None:
         return f"force, {force}"
     return f"force, {force}, corrected by {text(back.stiffness, 'N/m')} and {number(back.damping)} N s/m on the stroke"
+
+
+def _screw(drive: model.ScrewDrive) -> str:
+    held = "stroke" if drive.holds_stroke else "rotor"
+    motors = {
+        "position": f"the {held} held at its command",
+        "servo": "the rotor pulled to its command by a loop",
+        "torque": "driven by the torque that the rigid robot and the rotor need",
+    }
+    return (
+        f"screw of {text(drive.root_diameter, 'm', 4)} with a lead of {text(drive.lead, 'm', 4)}, {drive.mounting}, "
+        f"{motors[drive.command]}"
+    )
 
 
 _WRENCH = (("Fx", "N"), ("Fy", "N"), ("Fz", "N"), ("Mx", "N m"), ("My", "N m"), ("Mz", "N m"))

@@ -38,8 +38,13 @@ def length(value: float) -> str:
 
 def held(robot: Robot) -> str:
     """What modes and stiffness hold still: the drives, or their commands where drives give way."""
-    soft = {leg.drive.type for leg in robot.legs if getattr(leg.drive, "feedback", True)} - {"prescribed"}
+    rigid = [leg for leg in robot.legs if leg.drive.holds or not getattr(leg.drive, "feedback", True)]
+    soft = {leg.drive.type for leg in robot.legs if leg not in rigid}
     if not soft:
         return "Drives locked"
-    parts = {"servo": "springs and dampers of the servo drives", "force": "feedback of the force drives"}
+    parts = {
+        "servo": "springs and dampers of the servo drives",
+        "force": "feedback of the force drives",
+        "screw": "loops of the screw drives",
+    }
     return f"Commands of the drives held, with the {' and the '.join(parts[kind] for kind in sorted(soft))}"
