@@ -54,6 +54,7 @@ DIMENSIONS = {
     "stiffness": Dimension(unit="N/m", example="50 N/um", least=1e-9, most=1e18),
     "stress": Dimension(unit="Pa", example="200 GPa", least=1e-3, most=1e18),
     "temperature": Dimension(unit="degC", example="25 degC", least=1e-9, most=1e6),
+    "temperature difference": Dimension(unit="K", example="1 K", least=1e-9, most=1e6),
     "time": Dimension(unit="s", example="0.5 ms", least=1e-9, most=1e9),
     "torque": Dimension(unit="N m", example="12 N m", least=1e-12, most=1e12),
     "velocity": Dimension(unit="m/s", example="0.1 m/s", least=1e-12, most=1e6),
@@ -79,6 +80,7 @@ COMMON_UNITS = {
     "stiffness": {"N/m": 1.0, "N/um": 1e6},
     "stress": {"Pa": 1.0, "MPa": 1e6, "GPa": 1e9},
     "temperature": {"degC": 1.0, "°C": 1.0},
+    "temperature difference": {"K": 1.0},
     "time": {"s": 1.0, "ms": 1e-3},
     "torque": {"N m": 1.0},
     "velocity": {"m/s": 1.0, "mm/s": 1e-3},
@@ -161,8 +163,8 @@ def _factor(unit: str, dimension: str) -> float | str:
         given = registry.Unit(unit.replace("²", "^2").replace("³", "^3"))
     except Exception:  # pint lets errors of any kind out of its parser, AssertionError among them
         return f"has an unknown unit ({unit})"
-    if dimension == "temperature" and given != registry.Unit(wanted.unit):
-        return f"is not in degrees Celsius ({unit})"  # others count from another zero
+    if dimension.startswith("temperature") and given != registry.Unit(wanted.unit):  # others count from another zero
+        return f"is not in {'kelvin' if wanted.unit == 'K' else 'degrees Celsius'} ({unit})"
     has_angle = any(name.endswith(_ANGLES) or name.startswith("revolution") for name in given._units)
     if not given.is_compatible_with(registry.Unit(wanted.unit)) or has_angle != wanted.angle:
         return f"is not {_article(dimension)}: {unit} does not measure one"

@@ -10,7 +10,7 @@ from tests.runs import paper_robot, with_legs
 import flexapod as fx
 from flexapod import rigid
 from flexapod.errors import ComputationError
-from flexapod.model import Geometry, Heat, Joint, LengthSpread, RatioSpread, Tolerances
+from flexapod.model import Geometry, Gradient, Heat, Joint, LengthSpread, RatioSpread, Tolerances
 from flexapod.study.accuracy.imperfect import bent
 from flexapod.study.accuracy.play import half_play
 from flexapod.study.accuracy.rows import rows
@@ -220,6 +220,22 @@ def test_eccentric_ends_bend_a_bar_by_the_secant_formula():
         bending = 0.5 * (1e-3 * k / np.cos(k * L / 2)) ** 2 * (L / 2 - np.sin(k * L) / (2 * k))
         exact = bending + 2e-6 * k * np.tan(k * L / 2)  # and the arms at both ends turn
         assert (found.shorter < exact).all() and (1.24 * found.shorter > exact).all()
+
+
+def test_a_piston_that_is_warmer_on_one_side_is_bent():
+    # 1 K across 27 mm of steel, 0.6 m long, pinned: 11.8e-6 / 0.027 * 0.36 / 8 = 19.7 um.
+    robot = paper_robot().robot.replace(heat=Heat(gradient=Gradient(piston=1.0)))
+    legs = tuple(leg.replace(cylinder=leg.cylinder.replace(mouth=0.0, com=0.0)) for leg in robot.legs)
+    free = robot.replace(legs=tuple(leg.replace(piston=leg.piston.replace(length=2.0)) for leg in legs))
+    at = sensitivity(free, rigid.home_pose(free))
+    sag = 11.8e-6 / 0.027 * free.home_lengths**2 / 8
+    found = bent(free, at, np.zeros(6))
+    np.testing.assert_allclose(found.deflection, sag, rtol=1e-12)
+    # kappa^2 L^3 / 24: the half wave of the same height has 1 % more slope than the arc.
+    arc = (11.8e-6 / 0.027) ** 2 * free.home_lengths**3 / 24
+    np.testing.assert_allclose(found.shorter, arc, rtol=0.08)
+    data = fx.accuracy(robot)
+    assert list(data.error.values) == ["bent_legs"] and np.abs(data.pose_error[:3]).max() < 1e-7
 
 
 def test_bent_legs_are_a_row_and_a_thrust_beyond_the_euler_load_is_said():

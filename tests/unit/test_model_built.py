@@ -5,7 +5,17 @@ from tests import mechanisms
 
 from flexapod import loads
 from flexapod.errors import InputError
-from flexapod.model import Expansion, Geometry, Heat, LengthSpread, RatioSpread, Tolerances, preset_text, to_toml
+from flexapod.model import (
+    Expansion,
+    Geometry,
+    Gradient,
+    Heat,
+    LengthSpread,
+    RatioSpread,
+    Tolerances,
+    preset_text,
+    to_toml,
+)
 
 TEXT = preset_text("paper-robot")
 
@@ -60,6 +70,7 @@ def test_a_table_over_time_is_read_and_kept(tmp_path):
         ('[heat]\nbase = "300 K"', "heat.base", "degC"),
         ("[heat]\nbase = -274", "heat.base", "at least -273.15"),
         ("[heat]\nexpansion = { frame = 1e-5 }", "heat.expansion.frame", "base, platform"),
+        ('[heat]\ngradient = { piston = "2 degC" }', "heat.gradient.piston", "not in kelvin"),
         ('[tolerances]\nlead = "C6"', "tolerances.lead", "C5, C7, C10"),
         ("[tolerances]\nleg_offset = -1e-6", "tolerances.leg_offset.sigma", "at least 0"),
         ("[tolerances]\nleg_offset = { box = 1e-6, sigma = 1e-6 }", "tolerances.leg_offset.sigma", "box"),
@@ -114,6 +125,7 @@ def test_what_a_robot_does_not_have_has_neither_errors_nor_heat():
     for robot, built, words in (
         (mechanisms.six_rus(), {"geometry": Geometry(lead=1e-5)}, "driven strokes and sliders"),
         (mechanisms.six_rus(), {"heat": Heat(cylinder=25.0)}, "no leg has"),
+        (mechanisms.three_rps(), {"heat": Heat(gradient=Gradient(piston=1.0))}, "carry moments"),
         (mechanisms.planar(), {"geometry": Geometry(base_joints=[[0, 0, 1e-4]] * 3)}, "leaves the plane"),
         (mechanisms.eight(), {"geometry": Geometry(leg_offset=[1e-5] * 6)}, "each of 8 legs"),
         (mechanisms.eight(), {"heat": Heat(piston=[20.0] * 6)}, "each of 8 legs"),

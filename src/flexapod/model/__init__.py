@@ -17,7 +17,7 @@ from flexapod.model.files import (
     preset_text,
 )
 from flexapod.model.geometry import Geometry
-from flexapod.model.heat import Expansion, Heat
+from flexapod.model.heat import Expansion, Gradient, Heat
 from flexapod.model.home import Home
 from flexapod.model.joint import Carriage, Joint, Travel
 from flexapod.model.laws import (
@@ -86,6 +86,7 @@ __all__ = [
     "Feedback",
     "ForceDrive",
     "Geometry",
+    "Gradient",
     "Heat",
     "Home",
     "Initial",

@@ -13,7 +13,7 @@ from flexapod.model.geometry import PerLeg, check_legs
 from flexapod.model.motion import check_times
 from flexapod.typing import Array
 
-__all__ = ["HEAT_PARTS", "LEG_PARTS", "Expansion", "Heat"]
+__all__ = ["HEAT_PARTS", "LEG_PARTS", "Expansion", "Gradient", "Heat"]
 
 LEG_PARTS = ("piston", "cylinder", "screw")
 HEAT_PARTS = ("base", "platform", *LEG_PARTS)
@@ -33,12 +33,18 @@ class Expansion(Frozen):
     screw: Annotated[Number, Measure("expansion")] | None = None
 
 
+class Gradient(Frozen):
+    """Temperature differences across parts [K]: of `piston` (or strut), for all legs or for each."""
+
+    piston: Annotated[PerLeg, Measure("temperature difference")] | None = None
+
+
 class Heat(Frozen):
     """Temperatures [degC]: those at which lengths are as drawn, `reference`, and of parts, where they differ.
 
     `base`, `platform`: the plates between the joints; `piston` (or strut), `cylinder`, `screw`: for all legs or for
-    each. `time` [s] and `table` (T, columns) [degC]: temperatures over time from `file`, `columns` their names, a part
-    or ``part leg``; they stand in place of the others.
+    each; `gradient`: across them. `time` [s] and `table` (T, columns) [degC]: temperatures over time from `file`,
+    `columns` their names, a part or ``part leg``; they stand in place of the others.
     """
 
     derived: ClassVar[tuple[str, ...]] = ("time", "columns", "table")
@@ -50,6 +56,7 @@ class Heat(Frozen):
     cylinder: Annotated[PerLeg, Measure("temperature")] | None = None
     screw: Annotated[PerLeg, Measure("temperature")] | None = None
     expansion: Expansion | None = None
+    gradient: Gradient | None = None
     file: str | None = None
     time: Annotated[Series, Measure("time")] | None = None
     columns: tuple[str, ...] = ()
@@ -71,6 +78,8 @@ class Heat(Frozen):
         """Refuse lists that do not fit a robot of `count` legs."""
         for name in LEG_PARTS:
             check_legs(getattr(self, name), f"heat.{name}", count)
+        if self.gradient is not None:
+            check_legs(self.gradient.piston, "heat.gradient.piston", count)
 
     def warms(self, part: str) -> bool:
         """Whether a part has a temperature of its own."""

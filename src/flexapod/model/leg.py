@@ -87,6 +87,12 @@ class Leg(Frozen):
         return chain_of(self.chain)
 
     @property
+    def swings(self) -> bool:
+        """Whether both its joints turn freely: nothing holds it across."""
+        letters = self.letters
+        return letters.base in ("U", "S") and letters.platform == "S"
+
+    @property
     def driven(self) -> str:
         """What its drive moves: "stroke", "carriage", "" of a passive leg."""
         return "" if self.passive else self.letters.driven
@@ -142,7 +148,7 @@ class Leg(Frozen):
         if self.passive and self.drive != PrescribedDrive():
             raise _misfit(self.chain, "drive", "drives a passive leg", "a drive, or passive = true")
         crooked = self.piston.bow or self.base_joint.eccentricity or self.platform_joint.eccentricity
-        if crooked and not (letters.base in "US" and letters.platform == "S"):
+        if crooked and not self.swings:
             key = "piston.bow" if self.piston.bow else "platform_joint.eccentricity"
             raise _misfit(self.chain, key, "is of legs that no joint holds across", "legs UPS, SPS and their like")
         return self

@@ -6,7 +6,7 @@ from collections.abc import Mapping
 
 from flexapod.errors import InputError
 from flexapod.model.geometry import Geometry
-from flexapod.model.heat import HEAT_PARTS, LEG_PARTS, Expansion, Heat
+from flexapod.model.heat import HEAT_PARTS, LEG_PARTS, Expansion, Gradient, Heat
 from flexapod.model.section import Section
 from flexapod.model.tolerances import CLASSES, LengthSpread, RatioSpread, Tolerances
 
@@ -43,14 +43,19 @@ def _per_leg(section: Section, name: str, dimension: str, count: int) -> object:
 
 def _heat(section: Section, count: int) -> Heat:
     def parts(section: Section) -> dict[str, object]:
-        expansion = section.section("expansion")
+        expansion, gradient = section.section("expansion"), section.section("gradient")
         return {
             **{name: _per_leg(section, name, "temperature", count) for name in LEG_PARTS},
             "expansion": expansion and expansion.read(Expansion),
+            "gradient": gradient and gradient.read(Gradient, then=lambda s: _gradient(s, count)),
             **(_table(section, count) if "file" in section else {}),
         }
 
     return section.read(Heat, then=parts)
+
+
+def _gradient(section: Section, count: int) -> dict[str, object]:
+    return {"piston": _per_leg(section, "piston", "temperature difference", count)}
 
 
 def _table(section: Section, count: int) -> dict[str, object]:

@@ -64,6 +64,12 @@ def check_built(robot: Robot) -> None:
         heat.check(count)
         if heat.warms("cylinder") and all(leg.strut is not None for leg in robot.legs):
             raise InputError("is of a part that no leg has", key="heat.cylinder", next_step="A strut is a piston here")
+        if heat.gradient is not None and not all(leg.swings for leg in robot.legs):
+            raise InputError(
+                "bends legs whose joints carry moments, and what that does is not known here",
+                key="heat.gradient",
+                allowed="legs UPS, SPS and their like",
+            )
         if heat.warms("screw") and all(leg.drive.type != "screw" for leg in robot.legs):
             raise InputError(
                 "is of a part that no leg has", key="heat.screw", allowed='legs whose drive has type = "screw"'

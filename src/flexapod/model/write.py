@@ -78,7 +78,8 @@ def _robot(robot: Robot) -> Iterator[str]:
 
 def _per_leg(fields: dict[str, object]) -> dict[str, object]:
     """What is the same for all legs as one number."""
-    return {n: x.item() if isinstance(x, np.ndarray) and x.shape == (1,) else x for n, x in fields.items()}
+    inner = {n: _per_leg(_fields(x)) if isinstance(x, Frozen) else x for n, x in fields.items()}
+    return {n: x.item() if isinstance(x, np.ndarray) and x.shape == (1,) else x for n, x in inner.items()}
 
 
 def _leg(leg: Leg, base: Array, platform: Array, normal: Array) -> dict[str, object]:

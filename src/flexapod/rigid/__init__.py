@@ -1,7 +1,17 @@
 """Closed-form mathematics of the rigid robot: NumPy, vectorised over time."""
 
 from flexapod.rigid.breaks import Breaks, actuator_breaks, robot_breaks
-from flexapod.rigid.built import BuiltPart, added, added_by_all, built_limbs, built_parts, built_poses, nearby, shifts
+from flexapod.rigid.built import (
+    BuiltPart,
+    added,
+    added_by_all,
+    built_limbs,
+    built_parts,
+    built_poses,
+    expansion,
+    nearby,
+    shifts,
+)
 from flexapod.rigid.closures import TAKEN
 from flexapod.rigid.dynamics import RigidForces
 from flexapod.rigid.forward import Postures
@@ -77,6 +87,7 @@ __all__ = [
     "drive_jacobian",
     "drive_positions",
     "energies",
+    "expansion",
     "forward_kinematics",
     "home_frames",
     "home_pose",

@@ -34,6 +34,7 @@ __all__ = [
     "built_limbs",
     "built_parts",
     "built_poses",
+    "expansion",
     "nearby",
     "shifts",
 ]
@@ -128,7 +129,7 @@ def _heat(robot: Robot) -> list[BuiltPart]:
                 platform=robot.platform_joints if part == "platform" else nothing,
                 fixed=fixed,
                 share=share,
-                values=_expansion(robot, heat, part) * (heat.temperatures(part, n) - heat.reference),  # (T16.3)
+                values=expansion(robot, heat, part) * (heat.temperatures(part, n) - heat.reference),  # (T16.3)
                 time=heat.time if any(name.partition(" ")[0] == part for name in heat.columns) else None,
             )
         )
@@ -148,7 +149,7 @@ def _grows(leg: Leg, part: str) -> tuple[float, float]:
     return (bearing, 0.0) if part == "cylinder" else (inner - bearing, 1.0)
 
 
-def _expansion(robot: Robot, heat: Heat, part: str) -> Array:
+def expansion(robot: Robot, heat: Heat, part: str) -> Array:
     """Expansion of a part of each leg, (n,) [1/K]: as given, of its material, or of steel."""
     given, steel = getattr(heat.expansion, part, None), MATERIALS["steel"].expansion
     made_of = {

@@ -6,15 +6,16 @@ from dataclasses import dataclass
 
 import numpy as np
 
+from flexapod import rigid
 from flexapod.errors import ComputationError
 from flexapod.model import Leg, Robot
 from flexapod.rigid.limbs import COORDINATES
 from flexapod.study.accuracy.play import Play
 from flexapod.study.accuracy.sensitivity import Sensitivity
-from flexapod.study.before.estimates import buckling_load
+from flexapod.study.before.estimates import buckling_load, section_width
 from flexapod.typing import Array
 
-__all__ = ["Bent", "bent", "crookedness", "softness", "thrust"]
+__all__ = ["Bent", "bent", "crookedness", "is_crooked", "softness", "thrust"]
 
 L = COORDINATES.index("l")
 
@@ -49,12 +50,13 @@ def bent(robot: Robot, at: Sensitivity, push: Array) -> Bent | None:
     ComputationError
         A thrust reaches the Euler load.
     """
-    start = crookedness(robot)
-    beside = start + (0.5 - 2 / np.pi) * _eccentricities(robot)
-    if not start.any():
+    if not is_crooked(robot):
         return None
+    cold = crookedness(robot)
     free = at.q[0, :, L] - np.array([leg.cylinder.mouth for leg in robot.legs])
     euler = np.array([buckling_load(leg, s[None])[0] for leg, s in zip(robot.legs, free, strict=True)])
+    start = cold + _by_heat(robot, free)
+    beside = start + (0.5 - 2 / np.pi) * _eccentricities(robot)
     share = push / euler
     if share.max() >= 1:
         leg = int(share.argmax())
@@ -64,8 +66,13 @@ def bent(robot: Robot, at: Sensitivity, push: Array) -> Bent | None:
         )
     grown = 1 / (1 - share)  # (T16.17)
     slopes = np.array([_slopes(leg, s, p) for leg, s, p in zip(robot.legs, free, euler, strict=True)])
-    shorter = 0.5 * slopes * start**2 * (grown**2 - 1)  # (T16.18)
+    shorter = 0.5 * slopes * ((start * grown) ** 2 - cold**2)  # (T16.18)
     return Bent(deflection=beside + start * (grown - 1), shorter=shorter, share=share)
+
+
+def is_crooked(robot: Robot) -> bool:
+    """Whether any leg is not straight."""
+    return bool(crookedness(robot).any() or _curvatures(robot).any())
 
 
 def crookedness(robot: Robot) -> Array:
@@ -77,6 +84,22 @@ def _eccentricities(robot: Robot) -> Array:
     """Of both ends of each leg together, (n,) [m]."""
     ends = ((leg.base_joint.eccentricity, leg.platform_joint.eccentricity) for leg in robot.legs)
     return np.array([(base or 0.0) + (platform or 0.0) for base, platform in ends])
+
+
+def _curvatures(robot: Robot) -> Array:
+    """Curvatures of pistons that are warmer on one side, (n,) [1/m]."""
+    gradient = None if robot.heat is None else robot.heat.gradient
+    if robot.heat is None or gradient is None or gradient.piston is None:
+        return np.zeros(robot.count)
+    width = np.array([section_width(leg.piston) for leg in robot.legs])
+    return rigid.expansion(robot, robot.heat, "piston") * gradient.piston / width
+
+
+def _by_heat(robot: Robot, free: Array) -> Array:
+    """Largest distance of pistons of constant curvature from the line of the joints, (n,) [m], Eq. (T16.20)."""
+    mouth = np.array([leg.cylinder.mouth for leg in robot.legs])
+    at = free**2 / (2 * (free + mouth))  # from the mouth
+    return 0.5 * np.abs(_curvatures(robot)) * at * (at + 2 * mouth)
 
 
 def _slopes(leg: Leg, free: float, euler: float) -> float:

@@ -8,7 +8,7 @@ from flexapod import rigid
 from flexapod.errors import ComputationError
 from flexapod.model import Robot, Study
 from flexapod.study.accuracy.at_pose import AtPose
-from flexapod.study.accuracy.imperfect import crookedness
+from flexapod.study.accuracy.imperfect import is_crooked
 from flexapod.study.accuracy.play import half_play
 from flexapod.typing import Array
 from flexapod.words import text
@@ -42,8 +42,8 @@ def accuracy_words(study: Study) -> tuple[str, ...]:
 
 def _is_real(robot: Robot) -> bool:
     """Whether anything is said of how the robot differs from the drawing."""
-    some = half_play(robot).any() or crookedness(robot).any()
-    return bool(rigid.built_parts(robot)) or robot.tolerances is not None or bool(some)
+    some = bool(half_play(robot).any()) or is_crooked(robot)
+    return bool(rigid.built_parts(robot)) or robot.tolerances is not None or some
 
 
 def _size(moved: Array) -> str:
