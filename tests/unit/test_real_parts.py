@@ -1,11 +1,17 @@
 """Screws, nuts, bearings and springs in study files: catalogue laws, worked examples, refusals; `fx.parts`."""
 
+import re
+
 import numpy as np
 import pytest
 from tests.machines import BEARING, NUT, SCREW, machine, study, symmetric
+from typer.testing import CliRunner
 
 import flexapod as fx
+from flexapod import rigid
+from flexapod.app.cli import app
 from flexapod.errors import InputError
+from flexapod.exchange.decks_legs import legs_at_pose
 from flexapod.model import AxialSpring, Bearing, Material, Nut, to_toml
 from flexapod.solve.springs import in_series, softening, springs_along
 
@@ -194,3 +200,53 @@ def test_a_thrust_beyond_the_preload_is_remarked_on():
     found = fx.modes(symmetric(drive=soft), fidelity="lumped")
     assert "beyond 848.5 N" in found.attrs["warnings"]
     assert "one half" not in fx.modes(symmetric(drive=SCREW), fidelity="lumped").attrs["warnings"]
+
+
+@pytest.fixture
+def file(tmp_path):
+    path = tmp_path / "machine.toml"
+    path.write_text(STUDY.replace('command = "servo"', "").replace('loop = { stiffness = "5 kN m/rad", damping = "20 '
+                                                                   'N m s/rad" }', "") + '[simulation]\nfidelity = '
+                    '"lumped"\nstep = "1 ms"\n', encoding="utf-8")  # fmt: skip
+    return path
+
+
+def test_check_lists_the_stiffness_of_every_part(file):
+    found = CliRunner().invoke(app, ["check", str(file)])
+    assert found.exit_code == 0, found.output
+    out = found.stdout
+    rows = {line.split()[0]: line for line in out.splitlines() if "(" in line and "%" in line}
+    assert {"base_joint", "piston", "screw", "twist", "nut", "bearing", "bracket", "flange"} <= set(rows)
+    assert "all in series" in out
+    assert re.search(r"made viscous at \d\d\.\d+ Hz: base_joint", out)
+    assert "782.8" in rows["nut"]  # N/um: 0.8 x 1130 x (2000 / 3080)^(1/3)
+
+
+def test_a_report_says_what_the_drives_are(file, tmp_path):
+    found = CliRunner().invoke(app, ["run", str(file), "--out", str(tmp_path / "out")])
+    assert found.exit_code == 0, found.output
+    page = next((tmp_path / "out").glob("*.html")).read_text(encoding="utf-8").replace("\N{NO-BREAK SPACE}", " ")
+    assert "with a lead of 10 mm, fixed-fixed, the rotor held at its command" in page
+    assert "give of the nuts" in page
+
+
+def test_a_deck_has_the_springs_before_the_piston():
+    robot = machine(drive=SCREW, springs=(AxialSpring(name="bracket", stiffness=5e8),))
+    found = legs_at_pose(robot, rigid.home_pose(robot), np.zeros(6))[0]
+    parts = fx.parts(robot).isel(leg=0)
+    expected = 1 / (1 / parts.part_stiffness).sel(part=["screw", "twist", "nut", "bearing", "bracket"]).sum()
+    assert found.drive_spring == pytest.approx(float(expected), rel=1e-12)
+    with pytest.raises(InputError, match="not written in decks"):
+        legs_at_pose(
+            machine(springs=(AxialSpring(name="a", stiffness=5e8, at="base"),)), rigid.home_pose(robot), np.zeros(6)
+        )
+
+
+def test_sweeps_vary_parts():
+    given = study(machine(drive=SCREW, springs=(AxialSpring(name="bracket", stiffness=5e8),)), fidelity="lumped",
+                  step=1e-3, duration=0.01)  # fmt: skip
+    data = fx.sweep(given, {"vary": [{"key": "leg.springs.bracket", "values": ["500 N/um", "250 N/um"]}],
+                            "keep": {"scalars": ["cause_share"]}})  # fmt: skip
+    assert data.cause_share.sizes["cause"] == 8
+    shares = data.cause_share.sel(cause="bracket").values.ravel()
+    assert shares[1] > 1.5 * shares[0]

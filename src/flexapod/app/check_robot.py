@@ -185,6 +185,9 @@ def _pose(pose: PoseDescription, held: str) -> None:
         )
     if pose.parts is not None:
         _parts(pose.parts)
+    if pose.dampers and pose.loss_frequency:
+        listed = ", ".join(f"{name} {text(damper, 'N s/m')}" for name, damper in pose.dampers.items())
+        print_text(f"Loss factors as dampers, made viscous at {pose.loss_frequency:.4g} Hz: {listed}.", indent=2)
     if pose.modes:
         listed = ", ".join(f"{m.frequency:.4g} Hz ({m.kind}, {100 * m.damping_ratio:.2g} %)" for m in pose.modes)
         print_text(f"Frequencies (what moves, damping): {listed}.", indent=2)
@@ -194,7 +197,7 @@ def _parts(parts: Mapping[str, tuple[float, ...]]) -> None:
     """Stiffness of every part along every leg, softest first, and all of a leg in series."""
     whole = [1 / sum(1 / values[i] for values in parts.values()) for i in range(len(next(iter(parts.values()))))]
     ranked = sorted(parts.items(), key=lambda item: min(item[1]))
-    print_text("Stiffness along the legs [N/um], softest part first, and its share in the leg's compliance:", indent=2)
+    print_text("Stiffness along the legs [N/µm], softest part first, and its share in the leg's compliance:", indent=2)
     rows = [[f"  {name}", *(_stiffness_and_share(k, all_) for k, all_ in zip(values, whole, strict=True))]
             for name, values in ranked]  # fmt: skip
     print_table(["", *(f"leg {i}" for i in range(1, len(whole) + 1))],

@@ -9,12 +9,13 @@ from matplotlib.figure import Figure
 
 from flexapod.plot.style import PAGE, Scale, figure, flat_on_the_scale_of_others, mark_end, needs, scale, styled
 from flexapod.scene.robot import motion_end
-from flexapod.study.names import CAUSE_WORDS
+from flexapod.study.names import cause_words
 from flexapod.study.words import cleared
 
 __all__ = ["deviation_by_cause"]
 
 _COLORS = {"axial-strain": "#0072B2", "bending": "#D55E00", "drive": "#009E73"}
+_MORE = ("#E69F00", "#56B4E9", "#A23B72", "#7A5195", "#8C6D1F", "#444444", "#BDB76B", "#FF9DA7", "#9C755F", "#76B7B2")
 
 
 @styled
@@ -35,7 +36,7 @@ def deviation_by_cause(data: xr.Dataset) -> Figure:
     sizes = np.abs(data.deviation_by_cause).max(("time", "leg", "axis"))
     parts = data.deviation_by_cause.sel(cause=np.array([cleared(size, sizes.max()) > 0 for size in sizes], dtype=bool))
     small = scale(total, "m")
-    end, time = motion_end(data), data.time.values
+    end, time, colors = motion_end(data), data.time.values, _colors(data.cause.values)
     largest, seen = float(np.abs(small(total)).max()), []
     for row, axis in enumerate(data.axis.values):
         left, right = grid[row]
@@ -44,30 +45,38 @@ def deviation_by_cause(data: xr.Dataset) -> Figure:
         seen.append(float(np.abs(lines).max()))
         left.plot(time, lines[0], color="#C8C8C8", linewidth=5, label="whole deviation")
         for cause, values in zip(map(str, parts.cause.values), lines[1:], strict=True):
-            left.plot(time, values, color=_COLORS.get(cause), linewidth=1.2, label=CAUSE_WORDS.get(cause, cause))
+            left.plot(time, values, color=colors[cause], linewidth=1.2, label=cause_words(cause))
         left.axhline(0, color="#555555", linewidth=0.7)
         left.set_title(f"{str(axis).upper()}, over time")
         left.set_ylabel(f"deviation [{small.name}]")
         mark_end(left, end, "motion ends" if row == 0 else "")
         size = np.abs(total.sel(axis=axis).values) if seen[-1] else np.linalg.norm(total.values, axis=1)
-        _by_leg(right, parts.sel(axis=axis).isel(time=int(size.argmax())), small, str(axis))
+        _by_leg(right, parts.sel(axis=axis).isel(time=int(size.argmax())), small, str(axis), colors)
     flat_on_the_scale_of_others(grid[:, 0], seen)
     grid[-1, 0].set_xlabel("time [s]")
     grid[-1, 1].set_xlabel("leg")
-    fig.legend(*grid[0, 0].get_legend_handles_labels(), loc="outside upper center", ncols=4)
+    fig.legend(
+        *grid[0, 0].get_legend_handles_labels(), loc="outside upper center", ncols=4 if len(parts.cause) < 4 else 3
+    )
     for column in grid.T:
         fig.align_ylabels(column)
     return fig
 
 
-def _by_leg(axes: Axes, parts: xr.DataArray, small: Scale, axis: str) -> None:
+def _colors(causes: np.ndarray) -> dict[str, str]:
+    """A colour for each cause; those that every robot has keep theirs."""
+    others = [str(cause) for cause in causes if str(cause) not in _COLORS]
+    return _COLORS | {cause: _MORE[i % len(_MORE)] for i, cause in enumerate(others)}
+
+
+def _by_leg(axes: Axes, parts: xr.DataArray, small: Scale, axis: str, colors: dict[str, str]) -> None:
     """Stacked bars: what each leg contributes, cause by cause, at one instant."""
     legs = np.arange(1, parts.sizes["leg"] + 1)
     above, below = np.zeros(len(legs)), np.zeros(len(legs))
     for cause in parts.cause.values:
         values = small(parts.sel(cause=cause))
         base = np.where(values >= 0, above, below)
-        axes.bar(legs, values, bottom=base, color=_COLORS.get(str(cause)), width=0.7)
+        axes.bar(legs, values, bottom=base, color=colors[str(cause)], width=0.7)
         above, below = above + np.maximum(values, 0), below + np.minimum(values, 0)
     axes.axhline(0, color="#555555", linewidth=0.7)
     axes.set_xticks(legs)

@@ -264,6 +264,13 @@ def _pose(pose: PoseDescription) -> list[str]:
         s = pose.stiffness
         words = f"Stiffness at the tool: {text(s.least, 'N/m')} to {text(s.most, 'N/m')} along a direction."
         parts.append(html.paragraph(words, "soft"))
+    if pose.parts is not None:
+        head = (
+            "Stiffness along the leg [N/µm]",
+            *(f"leg {i}" for i in range(1, 1 + len(next(iter(pose.parts.values()))))),
+        )
+        rows = [(name, *(f"{k / 1e6:.4g}" for k in values)) for name, values in pose.parts.items()]
+        parts.append(html.table(head, rows))
     return parts
 
 

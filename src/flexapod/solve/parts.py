@@ -5,7 +5,7 @@ from __future__ import annotations
 import numpy as np
 
 from flexapod.model import ForceDrive, Leg, Robot, ServoDrive
-from flexapod.solve.springs import Spring, of_servo, springs_along
+from flexapod.solve.springs import Spring, before_piston, of_servo, springs_along
 from flexapod.typing import Array
 
 __all__ = ["part_stiffness"]
@@ -31,11 +31,7 @@ def part_stiffness(robot: Robot, length: Array) -> dict[str, Array]:
 def _all(leg: Leg) -> list[Spring]:
     """The springs along a leg, its piston's stretch and its drive's position among them."""
     piston = Spring(name="piston", at="nut", compliance=(leg.piston.length / leg.piston.EA, 0.0, 0.0))
-    drive, servo = leg.drive, None
-    if leg.driven == "stroke" and isinstance(drive, ServoDrive):
-        servo = drive
-    elif leg.driven == "stroke" and isinstance(drive, ForceDrive) and drive.feedback and drive.feedback.stiffness:
-        servo = ServoDrive(stiffness=drive.feedback.stiffness)
-    elif leg.screw is not None and leg.screw.loop_spring[0]:
-        servo = ServoDrive(stiffness=leg.screw.loop_spring[0])
-    return [piston, *springs_along(leg), *([of_servo(servo)] if servo else [])]
+    drive = [spring for spring in before_piston(leg) if spring.name == "drive" and leg.driven == "stroke"]
+    if isinstance(leg.drive, ForceDrive) and leg.driven == "stroke" and not leg.drive.pushes:
+        drive = [of_servo(ServoDrive(stiffness=leg.drive.feedback.stiffness))]  # type: ignore[union-attr]
+    return [piston, *springs_along(leg), *drive]

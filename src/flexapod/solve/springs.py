@@ -15,7 +15,17 @@ from flexapod.model.spring import AxialSpring
 from flexapod.rigid.robot import once
 from flexapod.typing import Array
 
-__all__ = ["Place", "Spring", "in_series", "loss_frequency", "of_servo", "softening", "springs_along", "viscous"]
+__all__ = [
+    "Place",
+    "Spring",
+    "before_piston",
+    "in_series",
+    "loss_frequency",
+    "of_servo",
+    "softening",
+    "springs_along",
+    "viscous",
+]
 
 Place = Literal["base", "nut", "platform"]
 
@@ -51,6 +61,16 @@ def springs_along(leg: Leg) -> list[Spring]:
 def _constant(name: str, at: Place, lossy: Joint | AxialSpring | Nut | Bearing, stiffness: float) -> Spring:
     softness = (1.0 / stiffness, 0.0, 0.0)
     return Spring(name=name, at=at, compliance=softness, damping=lossy.damping, loss=lossy.loss)
+
+
+def before_piston(leg: Leg) -> list[Spring]:
+    """The springs between a drive's command and the piston, those of a servo or of a screw's loop among them."""
+    springs = [x for x in springs_along(leg) if x.at == "nut"]
+    if isinstance(leg.drive, ServoDrive):
+        springs.append(of_servo(leg.drive))
+    elif leg.screw is not None and leg.screw.loop_spring[0]:
+        springs.append(of_servo(ServoDrive(stiffness=leg.screw.loop_spring[0])))
+    return springs
 
 
 def of_servo(drive: ServoDrive) -> Spring:

@@ -19,12 +19,12 @@ __all__ = [
     "ANGLES",
     "AT_A_POSE",
     "CAUSES",
-    "CAUSE_WORDS",
     "COORDINATES",
     "DRIVES",
     "ONE_POSE_FORMS",
     "VARIABLES",
     "Variable",
+    "cause_words",
     "dataset",
     "fixed_labels",
 ]
@@ -273,6 +273,11 @@ AT_A_POSE = {
     "play_error": _PLAY["play_error"]._replace(dims=_C),
     "play_worst": _PLAY["play_worst"]._replace(dims=_C),
 }
+
+
+def cause_words(cause: str) -> str:
+    """What a cause stands for; one without words of its own is a spring of that name."""
+    return CAUSE_WORDS.get(cause, f"give of {cause}")
 
 
 def fixed_labels(sizes: Mapping[str, int]) -> dict[str, tuple[object, str]]:

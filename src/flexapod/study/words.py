@@ -38,8 +38,7 @@ def length(value: float) -> str:
 
 def held(robot: Robot) -> str:
     """What modes and stiffness hold still: the drives, or their commands where drives give way."""
-    rigid = [leg for leg in robot.legs if leg.drive.holds or not getattr(leg.drive, "feedback", True)]
-    soft = {leg.drive.type for leg in robot.legs if leg not in rigid}
+    soft = {leg.drive.type for leg in robot.legs if not leg.drive.holds and getattr(leg.drive, "feedback", True)}
     if not soft:
         return "Drives locked"
     parts = {

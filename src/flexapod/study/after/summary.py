@@ -8,7 +8,7 @@ from typing import TYPE_CHECKING
 import numpy as np
 
 from flexapod.errors import InputError
-from flexapod.study.names import CAUSE_WORDS
+from flexapod.study.names import cause_words
 from flexapod.study.words import NOTHING, cleared, text
 from flexapod.typing import Array
 
@@ -90,8 +90,7 @@ class RobotSummary:
         if self.largest_cause is None:
             return f"{size}."
         share = f"{100 * self.causes[self.largest_cause]:.0f} %{leg}"
-        blamed = CAUSE_WORDS.get(self.largest_cause, f"give of {self.largest_cause}")
-        return f"{size}; the largest cause is {blamed} ({share})."
+        return f"{size}; the largest cause is {cause_words(self.largest_cause)} ({share})."
 
     def as_dict(self) -> dict[str, object]:
         """Everything as plain data."""

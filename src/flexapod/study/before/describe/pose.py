@@ -4,6 +4,7 @@ from __future__ import annotations
 
 from collections.abc import Mapping
 from dataclasses import dataclass
+from typing import Any
 
 import numpy as np
 
@@ -11,7 +12,7 @@ from flexapod import model, rigid
 from flexapod.errors import FlexapodError
 from flexapod.solve.modes import locked_poses, robot_modes, the_modes
 from flexapod.solve.parts import part_stiffness
-from flexapod.solve.springs import springs_along
+from flexapod.solve.springs import loss_frequency, springs_along, viscous
 from flexapod.solve.stiffness import compliance, stiffness_of
 from flexapod.study.after.kinds import mode_kinds
 from flexapod.study.before.estimates import residual_vibration
@@ -62,6 +63,7 @@ class PoseDescription:
 
     `sag` [m] of the centre of mass, `stiffness`, `modes`: the lowest. None and empty where there is no such thing;
     `problem` then says why. `parts`: of legs with more than ideal parts, by name and leg [N/m], inf where it has none.
+    `dampers`: of loss factors, by part [N s/m], at `loss_frequency` [Hz].
     """
 
     name: str
@@ -71,6 +73,8 @@ class PoseDescription:
     modes: tuple[ModeLine, ...] = ()
     problem: str | None = None
     parts: Mapping[str, tuple[float, ...]] | None = None
+    dampers: Mapping[str, float] | None = None
+    loss_frequency: float | None = None
 
 
 @dataclass(frozen=True, kw_only=True)
@@ -94,17 +98,19 @@ def describe_pose(study: model.Study, name: str, time: float) -> PoseDescription
     """The robot at rest at an instant of its path."""
     robot, simulation = study.robot, study.simulation
     path = _at_rest(study, time)
-    parts = _parts(robot, path)
+    parts: dict[str, Any] = {"parts": _parts(robot, path)}
     try:
         locked = locked_poses(robot, simulation, path, study.load, time)
+        if frequency := loss_frequency(robot):
+            parts |= {"loss_frequency": frequency, "dampers": _dampers(robot, frequency)}
         found, stiffness = the_modes(locked), _stiffness(stiffness_of(robot, locked).total)
     except FlexapodError as error:
-        return PoseDescription(name=name, time=time, problem=str(error), parts=parts)
+        return PoseDescription(name=name, time=time, problem=str(error), **parts)
     sag = found.equilibrium.state.pose[:3] - path.point(robot.com)[0][0]
     lines = zip(found.frequency, found.damping_ratio, mode_kinds(found), strict=True)
     modes = tuple(ModeLine(frequency=float(f), damping_ratio=float(ratio), kind=kind) for f, ratio, kind in lines)
     return PoseDescription(
-        name=name, time=time, sag=float(np.linalg.norm(sag)), stiffness=stiffness, modes=modes[:SHOWN], parts=parts
+        name=name, time=time, sag=float(np.linalg.norm(sag)), stiffness=stiffness, modes=modes[:SHOWN], **parts
     )
 
 
@@ -113,6 +119,16 @@ def _parts(robot: model.Robot, path: rigid.Poses) -> dict[str, tuple[float, ...]
         return None
     found = part_stiffness(robot, rigid.inverse_kinematics(robot, path).length[0])
     return {name: tuple(values.tolist()) for name, values in found.items()}
+
+
+def _dampers(robot: model.Robot, frequency: float) -> dict[str, float]:
+    """Dampers that stand for loss factors, at home [N s/m], by part; of the first leg that has it."""
+    found: dict[str, float] = {}
+    for leg, length in zip(robot.legs, robot.home_lengths, strict=True):
+        for spring in springs_along(leg):
+            if spring.loss:
+                found.setdefault(spring.name, viscous(spring, 1 / float(spring.at_length(length)), frequency))
+    return found
 
 
 def _stiffness(total: Array) -> StiffnessDescription:
