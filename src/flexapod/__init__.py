@@ -17,6 +17,7 @@ if TYPE_CHECKING:
     from flexapod.paper.study import replicate
     from flexapod.study import (
         accuracy,
+        budget,
         forward_kinematics,
         inverse_dynamics,
         inverse_kinematics,
@@ -43,6 +44,7 @@ _HOMES = {
     "flexapod.paper.study": ("replicate",),
     "flexapod.study": (
         "accuracy",
+        "budget",
         "forward_kinematics",
         "inverse_dynamics",
         "inverse_kinematics",
@@ -73,6 +75,7 @@ __all__ = [
     "Study",
     "__version__",
     "accuracy",
+    "budget",
     "cite",
     "converge",
     "forward_kinematics",

@@ -13,6 +13,7 @@ import typer
 from typer.core import TyperGroup
 
 from flexapod.app import (
+    commands_budget,
     commands_cache,
     commands_check,
     commands_converge,
@@ -105,6 +106,7 @@ for part in (
     commands_check,
     commands_run,
     commands_modes,
+    commands_budget,
     commands_map,
     commands_converge,
     commands_sweep,

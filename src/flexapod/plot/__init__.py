@@ -2,6 +2,7 @@
 
 from flexapod.loading import loaded
 from flexapod.plot.actuator import actuator_modes, actuator_path, actuator_response
+from flexapod.plot.budget import budget
 from flexapod.plot.convergence import convergence, ladder
 from flexapod.plot.deviation import deviation_by_cause
 from flexapod.plot.energy import energies
@@ -20,6 +21,7 @@ __all__ = [
     "actuator_modes",
     "actuator_path",
     "actuator_response",
+    "budget",
     "com_path",
     "convergence",
     "deviation_by_cause",

@@ -9,6 +9,7 @@ from flexapod.study.accuracy import accuracy, play
 from flexapod.study.actuator import simulate_actuator
 from flexapod.study.after.summary import summary
 from flexapod.study.before.checks import check_path
+from flexapod.study.budgets import budget
 from flexapod.study.kinematics import forward_kinematics, inverse_dynamics, inverse_kinematics
 from flexapod.study.mobility import mobility
 from flexapod.study.parts import parts
@@ -23,6 +24,7 @@ if TYPE_CHECKING:
 __all__ = [
     "Interrupted",
     "accuracy",
+    "budget",
     "check_path",
     "forward_kinematics",
     "inverse_dynamics",

@@ -73,6 +73,7 @@ COORDINATES: dict[str, tuple[object, str]] = {
     "component": (_TWIST, "translation along and rotation about the world axes"),
     "component_b": (_TWIST, "translation along and rotation about the world axes"),
     "wrench": (["Fx", "Fy", "Fz", "Mx", "My", "Mz"], "force and moment, world axes"),
+    "state": (["uncalibrated", "calibrated"], "whether the controller knows the errors of the machine"),
     "plane_axis": (list("XY"), "axis in the plane of motion"),
 }
 
@@ -237,6 +238,26 @@ _PLAY = {
     "jump_size": Variable(("jump", "component"), "mixed", "jump of the tool's pose [m, rad]"),
 }
 
+_PK = ("part", "kind", "component")
+_BUDGET = {
+    "budget": Variable(_PK, "mixed", "what a part adds to the error of the tool [m, rad]"),
+    "budget_by_leg": Variable(
+        ("part", "kind", "leg", "component"), "mixed", "share of a leg in what a part adds to the error [m, rad]"
+    ),
+    "budget_total": Variable(_PK[1:], "mixed", "all parts together by the rule of the kind [m, rad]"),
+    "budget_residual": Variable(_PK[1:], "mixed", "what the rows leave of the whole [m, rad]"),
+    "nature": Variable(("part",), "1", "calibratable, repeatable or drifting"),
+    "how": Variable(_PK[:2], "1", "how it was computed"),
+    "share": Variable(("part",), "1", "size of a part's worst error of the tool's place, over the sum of all sizes"),
+    "worst": Variable(_C, "mixed", "largest error of the tool [m, rad], all kinds at their worst at once"),
+    "rss": Variable(_C, "mixed", "root of the sum of the squares of all kinds [m, rad]"),
+    "pose_accuracy": Variable(("state", "component"), "mixed", "systematic error and 3 sigma of tolerances [m, rad]"),
+    "repeatability_unidirectional": Variable(_C, "mixed", "4 standard deviations from approach to approach [m, rad]"),
+    "repeatability_bidirectional": Variable(_C, "mixed", "the same with the reversal value of play [m, rad]"),
+    "worst_time": Variable((), "s", "instant whose pose has the largest static deviation of the tool"),
+    "peak_time": Variable(_C, "s", "instant of the largest dynamic deviation"),
+}
+
 _ACTUATOR = {
     "length": Variable(_T, "m", "length of the beam outside the hub"),
     "angle": Variable(_T, "rad", "angle of the hub from the horizontal"),
@@ -250,7 +271,8 @@ _ACTUATOR = {
 
 #: Every variable of every Dataset, by name.
 VARIABLES: Mapping[str, Variable] = {
-    **_PATH, **_COMMAND, **_LEGS, **_ENERGY, **_STATIC, **_MOBILITY, **_ACCURACY, **_PLAY, **_ACTUATOR
+    **_PATH, **_COMMAND, **_LEGS, **_ENERGY, **_STATIC, **_MOBILITY, **_ACCURACY, **_PLAY, **_BUDGET,
+    **_ACTUATOR,
 }  # fmt: skip
 
 #: The actuator's own form of variables that a robot has per leg or with another zero.
@@ -352,6 +374,7 @@ _COORDINATE_ATTRS = {
     "joint_angle": {"long_name": "angle of a joint"},
     "cause": {"long_name": "cause of a leg's length error"},
     "part": {"long_name": "part of a leg"},
+    "kind": {"long_name": "kind of error"},
     "coordinate": {"long_name": "coordinate of a leg"},
     "place": {"long_name": "where there is play"},
     "error": {"long_name": "what is not as drawn"},

@@ -16,10 +16,12 @@ __all__ = ["Row", "rows"]
 
 
 class Row(NamedTuple):
-    """One part: its `kind` of error (systematic, hysteretic, random), of a systematic one its `nature`.
+    """One part: its `kind` of error (systematic, hysteretic, random, dynamic), and its `nature`.
+
+    `nature`: calibratable, which a tolerance is in a machine that stands; repeatable; drifting; or empty.
 
     `by_leg` (n, 6): displacement [m] and rotation [rad] of the tool, world axes; of a random one standard
-    deviations, of a hysteretic one bounds. `how` it was computed, in words.
+    deviations, of a hysteretic one bounds; (1, 6) of what acts on all legs at once. `how` it was computed, in words.
     """
 
     part: str
@@ -34,7 +36,7 @@ def rows(study: Study, pose: rigid.Poses) -> list[Row]:
     at = AtPose(study, pose)
     found = [Row(name, "systematic", _nature(name), by_leg, "first order") for name, by_leg in at.parts.items()]
     found += [
-        Row(f"{one.name} tolerance", "random", "", one.sigma, "first order, errors independent of each other")
+        Row(f"{one.name} tolerance", "random", "calibratable", one.sigma, "first order, errors independent")
         for one in at.spreading
     ]
     if at.is_loose:
