@@ -4,6 +4,7 @@ import numpy as np
 import pytest
 from tests.consistency.test_soft_joints import light
 from tests.machines import BEARING, NUT, SCREW, SOFT, machine, study, symmetric
+from tests.mechanisms import three_rps
 from tests.runs import balance, run_robot
 
 import flexapod as fx
@@ -191,3 +192,27 @@ def test_maps_and_sweeps_take_them():
     here = fx.modes(robot, fidelity="lumped")
     middle = data.isel(heave=1) if "heave" in data.dims else data.isel(pose=1)
     np.testing.assert_allclose(middle.frequency.values[:6], here.frequency.values[:6], rtol=1e-9)
+
+
+@pytest.mark.parametrize("part", ["base_joint", "platform_joint"])
+def test_a_hinge_made_rigid_takes_its_cause_out_of_the_sag(part):
+    # A tripod under a force across: its hinges hold it, and so give way across their legs. Stiff pistons: bending is
+    # not to hide it.
+    soft = {"base_joint": SOFT, "platform_joint": SOFT}
+
+    def sag(**joints):
+        robot = three_rps()
+        stiff = robot.legs[0].piston.replace(EI=1e7)
+        legs = [
+            leg.replace(piston=stiff, **{name: getattr(leg, name).replace(stiffness=joint.stiffness, leg_axes=True)
+                                         for name, joint in joints.items()})
+            for leg in robot.legs
+        ]  # fmt: skip
+        robot = robot.replace(legs=tuple(legs), gravity=[6.0, 3.0, -7.0])
+        return fx.simulate(study(robot, fidelity="assumed-modes", modes=1, step=1e-3, duration=0.005)).isel(time=0)
+
+    whole, without = sag(**soft), sag(**{name: joint for name, joint in soft.items() if name != part})
+    blamed = whole.deviation_by_cause.sel(cause=part).sum("leg").values
+    change = (whole.com_deviation - without.com_deviation).values
+    np.testing.assert_allclose(change, blamed, atol=2e-2 * np.abs(blamed).max())
+    assert np.abs(blamed[:2]).max() > 1e-7  # m, across

@@ -6,7 +6,9 @@ from tests.machines import SOFT, machine, study, symmetric
 from tests.runs import balance, run_robot
 
 import flexapod as fx
+from flexapod import rigid
 from flexapod.model.joint import Joint
+from flexapod.model.motion import AxisMotion
 from flexapod.solve.robot_system import robot_system
 
 ACROSS, ALONG = 150e6, 200e6
@@ -132,3 +134,18 @@ def test_a_loss_factor_damps_the_first_mode_by_half_of_its_share():
     given = joint(ALONG, ACROSS, damping=0.04 * ALONG / (2 * np.pi * found.frequency.values[0]))
     same = fx.modes(light(symmetric(base_joint=given, damping=0.0), gravity=[0, 0, 0]), fidelity="lumped")
     assert same.damping_ratio.values[0] == pytest.approx(found.damping_ratio.values[0], rel=1e-6)
+
+
+def test_displacements_move_with_the_legs():
+    # Legs that turn by some degrees: displacements along the turning legs, or along axes of base and platform, are the
+    # same motion. Integrated in different unknowns it differs by the square of the step.
+    whole, motion = np.diag([2e8, 2e8, 2e8, 1e-3, 1e-3, 1e-3]), AxisMotion(type="surge", amplitude=0.1, duration=0.1)
+    found = []
+    for step in (5e-4, 2.5e-4):
+        given = study(machine(**ends(joint(2e8))), fidelity="lumped", step=step).replace(motion=motion)
+        other = given.replace(robot=machine(**ends(Joint(stiffness=whole))))
+        ours, theirs = run_robot(given), run_robot(other)
+        miss = ours["pose"][:, :3] - rigid.poses(given.robot, motion, ours["time"]).place(given.robot.com)
+        found.append(np.abs(ours["pose"] - theirs["pose"]).max() / np.abs(miss).max())
+    assert found[1] < 1e-3
+    assert found[0] / found[1] == pytest.approx(4, rel=0.5)

@@ -14,6 +14,7 @@ from flexapod.model import Robot
 from flexapod.rigid.closures import Task, close
 from flexapod.rigid.limbs import COORDINATES, DRIVEN, FREE, HELD, Limbs
 from flexapod.rigid.rotations import matrix
+from flexapod.rigid.screws import screws
 from flexapod.solve.many import RestStates
 from flexapod.solve.released import is_hexapod, rigid_errors
 from flexapod.solve.springs import Place
@@ -83,6 +84,8 @@ def errors_of(robot: Robot, system: System, path: RigidPath, record: Record | Re
         for name, give in elongations(robot, system, record.q, places).items():
             causes.setdefault(name, np.zeros_like(q))[..., L] += give
             whole[..., L] -= give
+    for name, error in _across(found, system, record, q).items():
+        causes[name], bending[:] = causes[name] + error, bending - error
     return Errors(by_cause={name: np.where(counts, part, 0.0) for name, part in (causes | more).items()})
 
 
@@ -94,6 +97,32 @@ def _built(robot: Robot, t: Array, command: Array) -> dict[str, tuple[tuple[rigi
         own = tuple(part for part in parts if part.cause == cause)
         found[cause] = own, sum(rigid.added(part, t, rigid.Law(command, still, still)).position for part in own)
     return found
+
+
+def _across(found: Limbs, system: System, record: Record | RestStates, q: Array) -> dict[str, Array]:
+    """What displacements of soft joints across the legs do to held coordinates, (T, legs, 8) by joint, Eq. (T15.15).
+
+    Of legs UPS that is of second order, and left to bending.
+    """
+    shapes, errors = system.kernel.shapes, {}
+    if found.plain or shapes.flexure:
+        return errors
+    chain, taken = screws(found, q).columns, closing(found)
+    z, y = chain[..., :3, L], chain[..., 3:, COORDINATES.index("beta")]
+    x, spin = np.cross(y, z), q[..., COORDINATES.index("spin"), None]
+    x, y = np.cos(spin) * x + np.sin(spin) * y, np.cos(spin) * y - np.sin(spin) * x
+    for name, end, soft in (("base_joint", "u", shapes.soft_base), ("platform_joint", "e", shapes.soft_platform)):
+        if not soft:
+            continue
+        at = shapes.index(f"{end}1")
+        shift = record.q[..., at, None] * x + record.q[..., at + 1, None] * y
+        error = np.zeros_like(q)
+        for i, own in enumerate(taken):
+            step = np.concatenate([shift[:, i], np.zeros_like(shift[:, i])], axis=-1)[:, : own.sum(), None]
+            error[:, i, own] = np.linalg.solve(chain[:, i, : own.sum()][..., own], step)[..., 0]
+        if error.any():
+            errors[name] = error
+    return errors
 
 
 def _straight(robot: Robot, found: Limbs, record: Record | RestStates, q: Array) -> Array:
