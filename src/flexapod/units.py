@@ -64,7 +64,7 @@ DIMENSIONS = {
 COMMON_UNITS = {
     "acceleration": {"m/s^2": 1.0},
     "angle": {"rad": 1.0, "deg": math.pi / 180},
-    "angular rate": {"rad/s": 1.0, "deg/s": math.pi / 180},
+    "angular rate": {"rad/s": 1.0, "deg/s": math.pi / 180, "rpm": math.pi / 30},
     "bending stiffness": {"N m^2": 1.0},
     "damping": {"N s/m": 1.0, "kN s/m": 1e3},
     "density": {"kg/m^3": 1.0},

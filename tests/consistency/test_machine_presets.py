@@ -30,7 +30,7 @@ def test_a_leg_of_the_machine_hexapod_is_its_catalogue_in_series():
 
 
 def test_shares_of_the_machine_hexapod_are_those_of_real_machines():
-    # What is known of ball-jointed machines: joints 40-60 %, screw, nut and bearing 20-35 %, piston 5-15 %, frame 5-20 %.
+    # Of ball-jointed machines: joints 40-60 %, screw, nut and bearing 20-35 %, piston 5-15 %, frame 5-20 %.
     found = shares("machine-hexapod")
     assert 0.4 < found["base_joint"] + found["platform_joint"] < 0.6
     assert 0.2 < found["screw"] + found["twist"] + found["nut"] + found["bearing"] < 0.35

@@ -31,6 +31,7 @@ def show_robot(found: RobotDescription) -> None:
     _angles(found)
     _singularity(found)
     _loads(found)
+    _screws(found)
     for pose in found.poses:
         _pose(pose, found.held)
     _vibration(found.vibration)
@@ -166,6 +167,30 @@ def _stresses(found: RobotDescription) -> tuple[list[str], list[str], list[str],
     known = [(s.axial, s.bending, s.total.value) if (s := leg.stress) else (math.nan,) * 3 for leg in found.legs]
     unit, flat = column([value for stresses in known for value in stresses], "Pa")
     return [f"axial [{unit}]", f"bending [{unit}]", f"together [{unit}]"], flat[0::3], flat[1::3], flat[2::3]
+
+
+def _screws(found: RobotDescription) -> None:
+    if not found.screws:
+        return
+    _heading("Screws, largest values on the path")
+    rows = [
+        [
+            f"  leg {s.leg}",
+            f"{s.thrust.value:.4g}",
+            f"{100 * s.buckling.value:.3g}",
+            f"{30 / math.pi * s.speed.value:.4g}",
+            f"{100 * s.critical:.3g}",
+            f"{s.torque.value:.3g}",
+            f"{s.rms_torque:.3g}",
+            "-" if s.safety is None else f"{s.safety:.3g}",
+            "-" if s.hours is None else f"{s.hours:.3g}",
+        ]
+        for s in found.screws
+    ]
+    header = ["", "thrust [N]", "of buckling [%]", "motor [rpm]", "of critical speed [%]", "motor [N m]", "rms [N m]",
+              "static safety", "life [h]"]  # fmt: skip
+    print_table(header, rows)
+    print_text(f"{found.back[0].upper()}{found.back[1:]}.", indent=2)
 
 
 def _pose(pose: PoseDescription, held: str) -> None:

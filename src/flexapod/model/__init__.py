@@ -47,7 +47,7 @@ from flexapod.model.motion import (
 from flexapod.model.payload import Payload
 from flexapod.model.piston import Cylinder, Piston, Strut
 from flexapod.model.robot import Robot
-from flexapod.model.screw import Bearing, Drive, Encoder, Nut, Rotor, ScrewDrive
+from flexapod.model.screw import Bearing, Brake, Drive, Encoder, Limits, Nut, Rotor, ScrewDrive
 from flexapod.model.simulation import DEFAULT_TOLERANCE, FIDELITIES, Initial, Simulation
 from flexapod.model.spring import AxialSpring
 from flexapod.model.study import ActuatorStudy, Study, override
@@ -70,6 +70,7 @@ __all__ = [
     "AxialSpring",
     "AxisMotion",
     "Bearing",
+    "Brake",
     "Carriage",
     "Chain",
     "CombinedMotion",
@@ -93,6 +94,7 @@ __all__ = [
     "Joint",
     "Leg",
     "LengthSpread",
+    "Limits",
     "Load",
     "LoadLaw",
     "Material",

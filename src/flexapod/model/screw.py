@@ -14,7 +14,7 @@ from flexapod.model.material import Material
 from flexapod.model.spring import check_lossy
 from flexapod.words import number
 
-__all__ = ["Bearing", "Drive", "Encoder", "Nut", "Rotor", "ScrewDrive"]
+__all__ = ["Bearing", "Brake", "Drive", "Encoder", "Limits", "Nut", "Rotor", "ScrewDrive"]
 
 UNLOADS = 2 * math.sqrt(2)  # thrust over preload beyond which one half of a preloaded nut carries nothing
 HIGHEST = 0.1  # preload over dynamic load rating of a double nut, at most (HIWIN 3.6)
@@ -23,19 +23,21 @@ UM = 1e6  # N/m of an N/um
 Damping = Annotated[NonNegative, Measure("damping")] | None
 Stiffness = Annotated[Positive, Measure("stiffness")] | None
 Force = Annotated[Positive, Measure("force")] | None
+Torque = Annotated[Positive, Measure("torque")] | None
 
 
 class Nut(Frozen):
     """The nut: its `stiffness` [N/m], or the catalogue's.
 
-    `rigidity` [N/m] at a preload of a tenth of the `dynamic_load` [N], and the `preload` [N]. `backlash`: free travel
-    [m].
+    `rigidity` [N/m] at a preload of a tenth of the `dynamic_load` [N], and the `preload` [N]. `dynamic_load` and
+    `static_load` [N]: load ratings, for life and safety. `backlash`: free travel [m].
     """
 
     stiffness: Stiffness = None
     rigidity: Stiffness = None
     preload: Force = None
     dynamic_load: Force = None
+    static_load: Force = None
     damping: Damping = None
     loss: NonNegative | None = None
     backlash: Annotated[NonNegative, Measure("length")] | None = None
@@ -47,7 +49,16 @@ class Nut(Frozen):
             raise InputError(
                 "is none in a preloaded nut", key="backlash", value=self.backlash, allowed="0, or no preload"
             )
-        _one_of(self, "stiffness", ("rigidity", "preload", "dynamic_load"))
+        law = ("rigidity", "preload") if self.stiffness is not None else ("rigidity", "preload", "dynamic_load")
+        _one_of(self, "stiffness", law)
+        if None not in (self.dynamic_load, self.static_load) and self.static_load < self.dynamic_load:  # type: ignore[operator]
+            raise InputError(
+                "is less than dynamic_load",
+                key="static_load",
+                value=self.static_load,
+                allowed=f"at least {number(self.dynamic_load or 0.0)} N, as of all ball screws",
+                next_step="See the catalogue: the two may have changed places",
+            )
         if self.preload is not None and self.dynamic_load is not None and self.preload > HIGHEST * self.dynamic_load:
             raise InputError(
                 "is more than nuts are made for",
@@ -115,6 +126,36 @@ class Rotor(Frozen):
     ratio: Positive = 1.0
 
 
+class Limits(Frozen):
+    """What the drive is made for.
+
+    `force` [N] on the screw; `speed` [rad/s], `torque` and `rms_torque` [N m] of the motor.
+    """
+
+    force: Force = None
+    speed: Annotated[Positive, Measure("angular rate")] | None = None
+    torque: Torque = None
+    rms_torque: Torque = None
+
+    @model_validator(mode="after")
+    def _ordered(self) -> Limits:
+        if self.torque is not None and self.rms_torque is not None and self.rms_torque > self.torque:
+            raise InputError(
+                "is above the largest torque",
+                key="rms_torque",
+                value=self.rms_torque,
+                allowed=f"at most torque = {number(self.torque)} N m",
+                next_step="rms_torque is what the motor bears without end, torque what it gives for a moment",
+            )
+        return self
+
+
+class Brake(Frozen):
+    """A brake at the motor: the `torque` [N m] that it holds."""
+
+    torque: Annotated[Positive, Measure("torque")]
+
+
 class Encoder(Frozen):
     """Where the position is measured: the rotor's angle, or the stroke."""
 
@@ -127,7 +168,8 @@ class ScrewDrive(Frozen):
     `lead` [m] a turn; the shaft between bearing and nut by its `root_diameter` [m], `length` [m] from the bearing and
     `material`; `mounting` of its far end. What the motor does to the rotor: `command` "position" holds it, "servo" has
     a `loop` (spring [N m/rad] and damper [N m s/rad] on the screw's angle), "torque" pushes with what the rigid robot
-    needs, with or without a loop. `efficiency`: thrust times lead over the screw's work.
+    needs, with or without a loop. `efficiency`: thrust times lead over the screw's work; it, `limits` and `brake` are
+    for the checks of a path alone.
     """
 
     type: Literal["screw"] = "screw"
@@ -143,6 +185,8 @@ class ScrewDrive(Frozen):
     command: Literal["position", "servo", "torque"] = "position"
     loop: Feedback | None = None
     encoder: Encoder = Encoder()
+    limits: Limits = Limits()
+    brake: Brake | None = None
 
     @model_validator(mode="after")
     def _sensible(self) -> ScrewDrive:

@@ -32,6 +32,7 @@ __all__ = [
     "rest_warnings",
     "robot_warnings",
     "thick_words",
+    "worst_of_each",
 ]
 
 SLOPE = 0.1  # tip slope up to which second order in the amplitudes is enough
@@ -79,7 +80,7 @@ def _leg_warnings(robot: Robot, system: System, record: Record | RestStates, whe
                 *_stress(leg, basis, bent, free, compression[:, i], when),
             )
         ]
-    return _worst_of_each(found)
+    return worst_of_each(found)
 
 
 def actuator_warnings(actuator: Actuator, basis: LateralBasis, record: Record) -> list[str]:
@@ -249,7 +250,7 @@ def _yield_words(stress: Array, limit: float, when: _When) -> list[_Remark]:
     return [("yield", stress[k] / limit, words)]
 
 
-def _worst_of_each(found: list[tuple[int, str, float, str]]) -> list[str]:
+def worst_of_each(found: list[tuple[int, str, float, str]]) -> list[str]:
     """One sentence for each kind of remark: of the leg where it is worst, and which others share it."""
     texts = []
     for kind in dict.fromkeys(entry[1] for entry in found):

@@ -14,6 +14,7 @@ from flexapod.study.before.checks import check_path
 from flexapod.study.before.describe.actuator import ActuatorDescription, describe_actuator
 from flexapod.study.before.describe.leg import Extreme, LegDescription, LegPath, describe_leg, load_remarks
 from flexapod.study.before.describe.pose import PoseDescription, VibrationToExpect, describe_pose, vibration_to_expect
+from flexapod.study.before.describe.screw import ScrewDescription, back_words, describe_screws, screw_remarks
 from flexapod.study.before.estimates import bending_moment
 from flexapod.study.path import RigidPath
 from flexapod.study.words import held
@@ -46,8 +47,8 @@ class JointAngle:
 class RobotDescription:
     """What `describe` finds for a robot; times in s.
 
-    In words: what poses `held` still, `motions` that the mechanism has, `accuracy` of the machine as built,
-    `remarks` of doubt.
+    In words: what poses `held` still, `motions` that the mechanism has, `back` what happens with the motors of screws
+    off, `accuracy` of the machine as built, `remarks` of doubt.
     """
 
     kind: str = "robot"
@@ -58,6 +59,8 @@ class RobotDescription:
     held: str
     motions: tuple[str, ...]
     legs: tuple[LegDescription, ...]
+    screws: tuple[ScrewDescription, ...]
+    back: str
     angles: tuple[JointAngle, ...]
     singularity: Singularity
     poses: tuple[PoseDescription, ...]
@@ -87,6 +90,7 @@ def describe(study: model.Study | model.ActuatorStudy) -> RobotDescription | Act
     path = RigidPath(study)
     remarks = [*check_path(study, path), *_in_time(study)]
     legs, singularity = describe_legs(path), _singularity(study.robot, path.time, path.poses)
+    screws = describe_screws(path)
     end = min(study.motion.end_time - study.motion.hold, study.duration)
     instants = {"start": 0.0, "end of the motion": end}
     worst = singularity.time
@@ -100,13 +104,22 @@ def describe(study: model.Study | model.ActuatorStudy) -> RobotDescription | Act
         held=held(study.robot),
         motions=tuple(rigid.mobility_words(rigid.rigid_limbs(study.robot))),
         legs=legs,
+        screws=screws,
+        back=back_words(path, screws) if screws else "",
         angles=_angles(path),
         singularity=singularity,
         poses=tuple(describe_pose(study, name, instant) for name, instant in instants.items()),
         vibration=vibration_to_expect(study, end),
         accuracy=accuracy_words(study),
         remarks=tuple(
-            dict.fromkeys([*study.warnings, *remarks, *load_remarks(legs, study.robot, study.simulation.fidelity)])
+            dict.fromkeys(
+                [
+                    *study.warnings,
+                    *remarks,
+                    *load_remarks(legs, study.robot, study.simulation.fidelity),
+                    *screw_remarks(path, screws),
+                ]
+            )
         ),
     )
 
