@@ -7,6 +7,7 @@ from flexapod import model
 from flexapod.errors import InputError
 from flexapod.model import MATERIALS, Bearing, Nut, ScrewDrive
 from flexapod.study.before.describe.robot import describe
+from flexapod.study.before.describe.screw import back_words, describe_screws, screw_remarks
 from flexapod.study.before.screws import (
     back_efficiency,
     buckling_thrust,
@@ -17,6 +18,7 @@ from flexapod.study.before.screws import (
     motor_torque,
     turns_of_life,
 )
+from flexapod.study.path import RigidPath
 
 STEEL = MATERIALS["steel"].replace(E=206e9, density=7850.0)  # of THK's catalogue
 HEXAPOD = model.preset_text("machine-hexapod")
@@ -27,22 +29,23 @@ def screw(**fields):
     return ScrewDrive(**{**given, "bearing": Bearing(position=0.0, stiffness=1e9), **fields})
 
 
-def check(*pairs):
-    """What `check` finds of the machine hexapod, changed."""
+def changed(*pairs):
+    """The path of the machine hexapod, changed, and its screws."""
     text = HEXAPOD
     for old, new in pairs:
         assert text.count(old) == 1, old
         text = text.replace(old, new)
-    return describe(model.loads(text))
+    path = RigidPath(model.loads(text))
+    return path, describe_screws(path)
 
 
 def remarks(*pairs):
-    return [words for words in check(*pairs).remarks if "free length" not in words]
+    return screw_remarks(*changed(*pairs))
 
 
 def refused(*pairs):
     with pytest.raises(InputError) as caught:
-        check(*pairs)
+        changed(*pairs)
     return caught.value
 
 
@@ -128,7 +131,7 @@ class TestCheck:
         assert remarks() == []
 
     def test_numbers_by_hand(self):
-        found = check()
+        found = describe(model.preset("machine-hexapod"))
         worst = max(found.screws, key=lambda leg: leg.thrust.value)
         assert worst.thrust.value == pytest.approx(max(leg.force_max.value for leg in found.legs))
         assert worst.back_torque == pytest.approx(worst.thrust.value * 0.01 / (2 * np.pi) * (2 - 1 / 0.9))
@@ -152,13 +155,13 @@ class TestCheck:
         soft = 'nut = { stiffness = "717 N/um", dynamic_load = "400 N", static_load = "500 N" }'
         found = remarks((nut, soft))
         assert "times its static load rating" in found[0] and "also legs" in found[0]
-        assert check((nut, 'nut = { stiffness = "717 N/um" }')).screws[0].hours is None
+        assert changed((nut, 'nut = { stiffness = "717 N/um" }'))[1][0].hours is None
 
     def test_a_screw_that_holds_itself(self):
-        assert "stay where they are" in check(("efficiency = 0.9 ", "efficiency = 0.4 ")).back
+        assert "stay where they are" in back_words(*changed(("efficiency = 0.9 ", "efficiency = 0.4 ")))
 
     def test_no_brake(self):
-        assert "no brake is given" in check(('brake = { torque = "4 N m" }', "")).back
+        assert "no brake is given" in back_words(*changed(('brake = { torque = "4 N m" }', "")))
 
 
 class TestRefusals:

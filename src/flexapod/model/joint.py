@@ -37,7 +37,7 @@ class Joint(Frozen):
     damping: Annotated[NonNegative, Measure("damping")] | None = None
     play: Annotated[NonNegative, Measure("length")] | None = None
     eccentricity: Annotated[NonNegative, Measure("length")] | None = None
-    loss: NonNegative | None = None
+    loss: Annotated[NonNegative, Measure("number")] | None = None
 
     @model_validator(mode="after")
     def _sensible(self) -> Joint:

@@ -39,7 +39,7 @@ class Nut(Frozen):
     dynamic_load: Force = None
     static_load: Force = None
     damping: Damping = None
-    loss: NonNegative | None = None
+    loss: Annotated[NonNegative, Measure("number")] | None = None
     backlash: Annotated[NonNegative, Measure("length")] | None = None
 
     @model_validator(mode="after")
@@ -98,7 +98,7 @@ class Bearing(Frozen):
     ball_diameter: Annotated[Positive, Measure("length")] | None = None
     contact_angle: Annotated[float, Field(strict=True, gt=0, le=math.pi / 2), Measure("angle")] | None = None
     damping: Damping = None
-    loss: NonNegative | None = None
+    loss: Annotated[NonNegative, Measure("number")] | None = None
 
     @model_validator(mode="after")
     def _one_law(self) -> Bearing:
@@ -123,7 +123,7 @@ class Rotor(Frozen):
     """What turns with the motor: `inertia` [kg m^2] at the motor, which turns `ratio` times as fast as the screw."""
 
     inertia: Annotated[NonNegative, Measure("inertia")] = 0.0
-    ratio: Positive = 1.0
+    ratio: Annotated[Positive, Measure("number")] = 1.0
 
 
 class Limits(Frozen):
@@ -177,7 +177,7 @@ class ScrewDrive(Frozen):
     root_diameter: Annotated[Positive, Measure("length")]
     length: Annotated[Positive, Measure("length")]
     material: Material
-    efficiency: Annotated[float, Field(strict=True, gt=0, le=1)] = 0.9
+    efficiency: Annotated[float, Field(strict=True, gt=0, le=1), Measure("number")] = 0.9
     mounting: Literal["fixed-free", "fixed-supported", "fixed-fixed"] = "fixed-free"
     bearing: Bearing
     nut: Nut

@@ -29,7 +29,7 @@ class AxialSpring(Frozen):
     stiffness: Annotated[Positive, Measure("stiffness")]
     at: Literal["nut", "base", "platform"] = "nut"
     damping: Annotated[NonNegative, Measure("damping")] | None = None
-    loss: NonNegative | None = None
+    loss: Annotated[NonNegative, Measure("number")] | None = None
 
     @model_validator(mode="after")
     def _sensible(self) -> AxialSpring:
