@@ -26,7 +26,7 @@ from flexapod.study.path import RigidPath
 from flexapod.study.record import Record
 from flexapod.typing import Array
 
-__all__ = ["Errors", "cause_names", "closing", "deviation_by_cause", "errors_of", "moved_by_errors"]
+__all__ = ["Errors", "cause_names", "closing", "deviation_by_cause", "errors_of"]
 
 CHI, L = COORDINATES.index("chi"), COORDINATES.index("l")
 
@@ -161,21 +161,18 @@ def deviation_by_cause(robot: Robot, path: RigidPath, errors: Errors) -> Array:
     ComputationError
         If a pose is exactly singular.
     """
-    return np.einsum("tclk,tlkx->tclx", errors.stacked, moved_by_errors(robot, path, 3))  # (T8.7)
+    return np.einsum("tclk,tlkx->tclx", errors.stacked, _by_error(robot, path))  # (T8.7)
 
 
-def moved_by_errors(robot: Robot, path: RigidPath, components: int = 6) -> Array:
-    """Displacement of the centre of mass, and turn, for unit errors of what is held, (T, legs, 8, 3 or 6), Eq. (T8.6).
-
-    World axes. Times `Errors.stacked` it is what every cause in every leg does to the payload.
-    """
+def _by_error(robot: Robot, path: RigidPath) -> Array:
+    """Displacement of the centre of mass for unit errors of what is held, (T, legs, 8, 3), Eq. (T8.6)."""
     found, poses = rigid.rigid_limbs(robot), path.poses
     if not is_hexapod(robot):
-        return rigid_errors(robot, poses)[..., :components]
-    moves = np.zeros((len(poses), *found.state.shape, components))
+        return rigid_errors(robot, poses)[..., :3]
+    moves = np.zeros((len(poses), *found.state.shape, 3))
     jacobian = rigid.drive_jacobian(robot, poses, robot.com)
     try:
-        inverse = np.linalg.solve(jacobian.swapaxes(1, 2), np.eye(6, components))
+        inverse = np.linalg.solve(jacobian.swapaxes(1, 2), np.eye(6, 3))
     except np.linalg.LinAlgError:
         raise ComputationError(
             "a pose on the path is singular: lengths do not determine it", next_step="See `flexapod check`."
