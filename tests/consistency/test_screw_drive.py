@@ -8,6 +8,7 @@ from tests.mechanisms import three_rps
 from tests.runs import balance, run_robot
 
 import flexapod as fx
+from flexapod.errors import InputError
 from flexapod.model import AxialSpring, Feedback, Joint, ServoDrive
 from flexapod.solve.springs import in_series, springs_along
 
@@ -127,6 +128,27 @@ def test_energy_balances(command):
         errors.append(np.abs(found - found[0]).max())
     assert errors[0] / errors[1] == pytest.approx(4, rel=0.25)
     assert errors[1] < 1.0  # of 400 J
+
+
+def test_a_torque_alone_holds_no_position():
+    pushed = study(machine(drive=SCREW.replace(command="torque")), fidelity="lumped", step=5e-4, duration=0.1)
+    with pytest.raises(InputError, match="a screw with a loop"):
+        fx.simulate(pushed)
+    # From the rigid path on it follows the torque of the rigid robot: it leaves the path by what gives way, no more.
+    data = fx.simulate(pushed.replace(initial=pushed.initial.replace(start="moving")))
+    assert 1e-6 < np.abs(data.com_deviation.values).max() < 5e-4
+
+
+def test_pistons_without_mass_are_refused_where_nothing_else_moves():
+    def light(**parts):
+        robot = machine(**parts)
+        legs = [leg.replace(piston=leg.piston.replace(rhoA=0.0, axial_inertia=0.0)) for leg in robot.legs]
+        return study(robot.replace(legs=tuple(legs)), fidelity="lumped", step=1e-3, duration=0.01)
+
+    assert np.isfinite(fx.simulate(light(base_joint=SOFT)).com_deviation.values).all()  # the cylinder stands on it
+    for parts in ({"platform_joint": SOFT}, {"drive": SCREW}):
+        with pytest.raises(InputError, match="without mass"):
+            fx.simulate(light(**parts))
 
 
 def test_torque_and_thrust_of_a_held_rotor():

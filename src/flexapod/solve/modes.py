@@ -92,7 +92,7 @@ def refuse_pure_force(robot: Robot, what: str) -> None:
                 f"{what} of leg {i} has no meaning: a pure force drive holds no position, so the stroke is free",
                 key="leg.drive",
                 value=robot.legs[i - 1].drive.type,
-                allowed='"prescribed", "servo", or a force drive with feedback stiffness',
+                allowed='"prescribed", "servo", or a force drive with feedback stiffness; a screw with a loop',
                 next_step='A simulation can start with [initial] start = "moving"',
             )
 

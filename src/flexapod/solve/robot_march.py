@@ -96,8 +96,9 @@ def refuse_massless(study: Study) -> None:
     """Raise InputError if a piston without mass leaves coordinates that nothing but their stiffness determines."""
     simulation = study.simulation
     for i, leg in enumerate(study.robot.legs, start=1):
-        still = leg.drive.holds or leg.strut is not None
-        alone = simulation.axial_shapes(study.robot.legs[0].axial_modes) - still + len(springs_along(leg))
+        still = leg.strut is not None or (leg.drive.holds and leg.holds_stroke)
+        soft = {spring.at for spring in springs_along(leg)} - ({"base"} if leg.cylinder.mass else set())
+        alone = simulation.axial_shapes(study.robot.legs[0].axial_modes) - still + len(soft & {"base", "platform"})
         if leg.piston.rhoA == 0 and (simulation.lateral_shapes or alone > 0):
             raise InputError(
                 f"of leg {i} leaves shapes of the piston without mass: they have statics, but no motion in time",
