@@ -1,8 +1,11 @@
 """Presets of machines that somebody builds: stiffness of their parts by hand, what they do beside ideal ones."""
 
+import re
+
 import numpy as np
 
 import flexapod as fx
+from flexapod import model
 from flexapod.study.before.describe.robot import describe
 from flexapod.study.words import held
 
@@ -46,3 +49,51 @@ def test_what_check_says_of_the_machine_hexapod():
     assert 40 < start.modes[0].frequency < 70  # machine-tool hexapods: 20 to 60 N/um at the tool, some 50 Hz
     assert 20e6 < start.stiffness.least < 60e6
     assert 10e-6 < start.sag < 40e-6
+
+
+def test_shares_of_the_small_hexapod_are_those_of_real_machines():
+    found = shares("small-hexapod")
+    assert 0.4 < found["base_joint"] + found["platform_joint"] < 0.6
+    assert 0.2 < found["screw"] + found["twist"] + found["nut"] + found["bearing"] < 0.35
+    assert found["piston"] < 0.15
+
+
+class TestNanoHexapod:
+    """Against the frequencies that its public model prints, and scaled from them."""
+
+    PUBLISHED = (780.60, 780.60, 903.89, 1061.43, 1061.43, 1269.66)  # ideal joints, struts of 20 N/um, no gravity [Hz]
+
+    def test_with_ideal_joints_it_has_the_published_frequencies(self):
+        # The public struts are round bars of radius 5 mm; ours have no inertia of their section in the upper half, 3 %
+        # of that half's inertia, which is some hundredth of all that moves: below 3e-4 of a frequency.
+        text = re.sub(r"\n(base|platform)_joint +=.*", "", model.preset_text("nano-hexapod"))
+        changes = {"6-FPF": "6-UPS", "-9.81]": "0]", '"1.846 N/um"': '"20 N/um"', '"15.7 MN"': '"1e6 MN"'}
+        for old, new in changes.items():
+            assert text.count(old) == 1
+            text = text.replace(old, new)
+        robot = model.loads(text).robot
+        found = fx.modes(robot, fidelity="lumped")
+        np.testing.assert_allclose(found.frequency[:6], self.PUBLISHED, rtol=3e-4)
+        np.testing.assert_allclose(
+            found.damping_ratio[:6], 20.0 * 2 * np.pi * found.frequency[:6] / (2 * 20e6), rtol=1e-3
+        )
+        # its printed compliance, all six by six numbers in SI units: 7.558e-6
+        give = np.linalg.inv(fx.stiffness(robot, fidelity="lumped").stiffness)
+        assert abs(np.linalg.norm(give) - 7.558e-6) < 1e-9
+
+    def test_its_flexures_and_piezos_lower_them_by_the_root_of_the_stiffness(self):
+        # 1.846 N/um, two flexures and a steel rod in series: 1.766 N/um. What the flexures add by turning: torsion, two
+        # in series, 6 x 130 N m/rad times the square of the axis' cosine, 0.40 about z: 310 of the 17,300 N m/rad of
+        # yaw, 1.8 % of a stiffness; bending, 10 N m/rad over 0.095 m squared, 1 N/mm of 1.8 N/um: 1 % of a frequency.
+        study = fx.preset("nano-hexapod")
+        along = 1 / (1 / 1.846 + 2 / 93.95 + 0.050 / 15.7)
+        np.testing.assert_allclose(fx.parts(study.robot).leg_stiffness, along * 1e6, rtol=1e-9)
+        found = fx.modes(study.robot, fidelity="lumped").frequency[:6]
+        np.testing.assert_allclose(found, np.array(self.PUBLISHED) * np.sqrt(along / 20), rtol=0.01)
+
+    def test_the_stroke_is_the_actuators(self):
+        robot = fx.preset("nano-hexapod").robot
+        stroke = robot.legs[0].stroke
+        np.testing.assert_allclose(
+            [stroke.min, stroke.max], robot.home_lengths[0] + np.array([-150e-6, 150e-6]), atol=5e-6
+        )

@@ -19,7 +19,7 @@ Preset = Annotated[
         "--preset",
         metavar="P",
         help="paper-robot (the default), paper-robot-radii, paper-actuator, tripod, flight-simulator, "
-        "or machine-hexapod.",
+        "machine-hexapod, small-hexapod or nano-hexapod.",
     ),
 ]
 From = Annotated[

@@ -35,8 +35,16 @@ __all__ = [
 ]
 
 PAPER_PRESETS = ("paper-robot", "paper-robot-radii", "paper-actuator")
-PRESETS = (*PAPER_PRESETS, "tripod", "flight-simulator", "machine-hexapod")
-RobotPreset = Literal["paper-robot", "paper-robot-radii", "tripod", "flight-simulator", "machine-hexapod"]
+PRESETS = (*PAPER_PRESETS, "tripod", "flight-simulator", "machine-hexapod", "small-hexapod", "nano-hexapod")
+RobotPreset = Literal[
+    "paper-robot",
+    "paper-robot-radii",
+    "tripod",
+    "flight-simulator",
+    "machine-hexapod",
+    "small-hexapod",
+    "nano-hexapod",
+]
 AT_REST = AxisMotion(type="heave", amplitude=0.0, duration=1.0)
 _AS_BUILT = ("geometry", "heat", "tolerances")
 _COMMON = ("motion", "load", "initial", "simulation")
