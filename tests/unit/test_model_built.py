@@ -161,3 +161,15 @@ def test_a_number_of_draws_is_a_whole_number(draws):
 
     with pytest.raises(InputError, match="draws"):
         fx.accuracy(study(""), draws=draws)
+
+
+def test_a_sweep_of_parts_that_are_not_in_the_file_keeps_no_causes():
+    from tests.sweeps import quick
+
+    import flexapod as fx
+
+    warm = {"vary": [{"key": "heat.piston", "values": [20, 25]}]}
+    with pytest.raises(InputError, match="other causes at other points"):
+        fx.sweep(quick(), warm | {"keep": {"scalars": ["cause_share"]}}, workers=0)
+    found = fx.sweep(quick(), warm | {"keep": {"scalars": ["com_deviation_start"]}}, workers=0)
+    assert float(found.com_deviation_start[1] - found.com_deviation_start[0]) != 0

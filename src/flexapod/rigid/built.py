@@ -85,10 +85,11 @@ def built_parts(robot: Robot) -> tuple[BuiltPart, ...]:
 
 
 def _geometry(robot: Robot) -> list[BuiltPart]:
-    given, n, legs = robot.geometry, robot.count, rigid_limbs(robot)
+    given, n = robot.geometry, robot.count
     if given is None:
         return []
-    acts, found = np.isin(legs.state, (HELD, DRIVEN)), []
+    legs, found = rigid_limbs(robot), []
+    acts = np.isin(legs.state, (HELD, DRIVEN))
     for name in GEOMETRY:
         value = getattr(given, name)
         if value is None:

@@ -10,6 +10,7 @@ import numpy as np
 
 from flexapod.errors import InputError, closest
 from flexapod.model import ActuatorStudy, Study
+from flexapod.study.after.causes import cause_names
 from flexapod.study.after.leg_results import absent, leg_labels
 from flexapod.study.names import ACTUATOR_FORMS, VARIABLES, Variable
 from flexapod.surveys.sweeps.plan import Keep
@@ -81,6 +82,8 @@ def kept(keep: Keep, study: Study | ActuatorStudy, resolved: Resolved) -> Kept:
     for name in keep.records:
         _known(name, whole, "keep.records")
     variables = {name: Variable(*table[name][:3]) for name in names} | {name: whole[name] for name in keep.records}
+    if isinstance(study, Study):
+        _refuse_other_causes(keep, names, variables, {*resolved.causes, cause_names(study.robot)})
     sizes, every, times = dict(_LABELS), 1, np.zeros(0)
     if isinstance(study, Study):
         sizes |= {"leg": study.robot.count, **{dim: np.size(labels) for dim, labels in leg_labels(study.robot).items()}}
@@ -91,6 +94,21 @@ def kept(keep: Keep, study: Study | ActuatorStudy, resolved: Resolved) -> Kept:
     return Kept(
         scalars=names, records=keep.records, variables=variables, sizes=sizes, every=every, times=times, absent=absent
     )
+
+
+def _refuse_other_causes(
+    keep: Keep, scalars: tuple[str, ...], variables: Mapping[str, Variable], causes: set[tuple[str, ...]]
+) -> None:
+    for key, chosen in (("scalars", scalars), ("records", keep.records)):
+        by_cause = [name for name in chosen if "cause" in variables[name].dims]
+        if by_cause and len(causes) > 1:
+            raise InputError(
+                "would have other causes at other points, or than the robot of the study file",
+                key=f"keep.{key}",
+                value=by_cause[0],
+                allowed="points whose robots are made of the same parts",
+                next_step="Write what varies into the study file, at a value that changes nothing: heat.piston = 20",
+            )
 
 
 def _known(name: str, table: Mapping[str, object], key: str) -> None:
