@@ -205,3 +205,14 @@ def test_what_has_no_budget_is_refused():
         fx.budget(paper_robot(), {"heavy": 0.1})
     with pytest.raises(InputError, match="platform that is fixed"):
         fx.budget(mechanisms.between_points())
+
+
+def test_legs_that_are_not_straight_come_on_top_of_what_is_simulated():
+    straight = real()
+    bent = straight.replace(legs=tuple(leg.replace(piston=leg.piston.replace(bow=5e-4)) for leg in straight.legs))
+    before, after = fx.budget(straight, POSE), fx.budget(bent, POSE)
+    row = after.budget.sel(kind="systematic", part="bent_legs")
+    assert str(after.nature.sel(part="bent_legs").values) == "repeatable"
+    assert np.abs(row).max() > 0
+    np.testing.assert_allclose((after.budget_total - before.budget_total).sel(kind="systematic"), row, atol=1e-15)
+    np.testing.assert_allclose(after.budget_residual, before.budget_residual, atol=1e-15)

@@ -30,7 +30,7 @@ _WORDS = {
     "repeatable": "systematic: by load, repeatable",
     "drifting": "systematic: drifts with heat",
     "hysteretic": "play (bound)",
-    "random": "random (3 sigma)",
+    "random": "random: tolerances, noise (3 sigma)",
     "dynamic": "dynamic (peak)",
 }
 

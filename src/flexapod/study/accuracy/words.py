@@ -13,13 +13,13 @@ from flexapod.study.accuracy.play import half_play
 from flexapod.typing import Array
 from flexapod.words import text
 
-__all__ = ["accuracy_words"]
+__all__ = ["accuracy_words", "is_real"]
 
 
 def accuracy_words(study: Study) -> tuple[str, ...]:
     """What errors of geometry, heat, tolerances and play do to the tool at home; nothing of a robot without them."""
     robot = study.robot
-    if robot.platform_fixed or not _is_real(robot):
+    if robot.platform_fixed or not is_real(robot):
         return ()
     at, found = AtPose(study, rigid.home_pose(robot)), []
     try:
@@ -40,7 +40,7 @@ def accuracy_words(study: Study) -> tuple[str, ...]:
     return tuple(found)
 
 
-def _is_real(robot: Robot) -> bool:
+def is_real(robot: Robot) -> bool:
     """Whether anything is said of how the robot differs from the drawing."""
     some = bool(half_play(robot).any()) or is_crooked(robot)
     return bool(rigid.built_parts(robot)) or robot.tolerances is not None or some

@@ -79,6 +79,15 @@ class Budget:
         sizes = {part: float(np.linalg.norm(found.worst[PLACE])) for part, found in alone.items()}
         return {part: size / (sum(sizes.values()) or 1.0) for part, size in sizes.items()}
 
+    @property
+    def largest(self) -> str:
+        """The part with the largest share."""
+        return max(self.parts, key=lambda part: self.shares[part])
+
+    def without(self, nature: str) -> Budget:
+        """The budget of the rows of other natures, at rest."""
+        return Budget(rows=[row for row in self.rows if row.nature != nature], whole={})
+
     def _only(self, part: str) -> Budget:
         rows = [row for row in self.rows if row.part == part]
         return Budget(rows=rows, whole={k: self.of(part, k) for k in self.whole})

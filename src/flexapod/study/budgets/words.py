@@ -50,13 +50,13 @@ def sentences(found: Budget, where: str) -> list[str]:
     """The answer in a few sentences; the first one names the largest culprit, and what half its error would bring."""
     if not found.parts:
         return [f"Nothing that the study names moves the tool off its place {where}."]
-    shares = found.shares
-    part = max(shares, key=lambda name: shares[name])
+    part = found.largest
     before, after = (_distance(x.worst) for x in (found, found.with_half(part)))
     brings = "bring" if after < before else "raise, as it makes up for others,"
+    share = _per_cent(found.shares[part])
     first = (
-        f"The largest culprit {where} is the {part_words(part)}, {100 * shares[part]:.0f} % of the sizes of all errors"
-        f": half of it would {brings} the worst case of the tool's place from {_m(before)} to {_m(after)}."
+        f"The largest culprit {where} is the {part_words(part)}, {share} of the sizes of all errors: "
+        f"half of it would {brings} the worst case of the tool's place from {_m(before)} to {_m(after)}."
     )
     return [first, *_accuracy(found), *_repeatability(found)]
 
@@ -66,8 +66,10 @@ def _accuracy(found: Budget) -> list[str]:
     drift = _distance(found.rule("systematic", lambda row: row.nature == "drifting"))
     spread = any(row.kind == "random" and row.nature == "calibratable" for row in found.rows)
     warm = f" (heat alone: {_m(drift)})" if drift else ""
+    left = found.without("calibratable")
+    most = f", the largest part of it {part_words(left.largest)}" if left.parts else ""
     more = " with three standard deviations of the tolerances" if spread else ""
-    return [f"Pose accuracy (AP of ISO 9283): {_m(raw)} uncalibrated{more}, {_m(calibrated)} calibrated{warm}."]
+    return [f"Pose accuracy (AP of ISO 9283): {_m(raw)} uncalibrated{more}, {_m(calibrated)} calibrated{most}{warm}."]
 
 
 def _repeatability(found: Budget) -> list[str]:
@@ -90,6 +92,12 @@ def _repeatability(found: Budget) -> list[str]:
 
 def _distance(components: Array) -> float:
     return float(np.linalg.norm(components[PLACE]))
+
+
+def _per_cent(share: float) -> str:
+    if np.isnan(share):
+        return ""
+    return f"{100 * share:.0f} %" if share >= 0.005 else "< 1 %"
 
 
 def _m(size: float) -> str:
@@ -117,6 +125,6 @@ def table(data: Dataset) -> tuple[list[str], list[list[str]]]:
     (unit, places), (angle, turns) = column(numbers[:, PLACE].ravel(), "m"), column(numbers[:, 3:].ravel(), "rad")
     head = ["part", "kind", "share", *(f"{x} [{unit}]" for x in "xyz"), *(f"r{x} [{angle}]" for x in "xyz")]
     return head, [
-        [part, kind, "" if np.isnan(share) else f"{100 * share:.0f} %", *places[at : at + 3], *turns[at : at + 3]]
+        [part, kind, _per_cent(share), *places[at : at + 3], *turns[at : at + 3]]
         for at, (part, kind, share) in zip(range(0, 3 * len(lines), 3), lines, strict=True)
     ]
