@@ -187,7 +187,9 @@ def test_the_repeatability_of_a_distance_is_that_of_many_approaches_at_most():
 
 def test_words_name_the_culprit_and_say_what_is_not_known():
     rigid = paper_robot(fidelity="rigid", modes=None)
-    assert fx.budget(rigid).attrs["summary"] == "Nothing that the study names moves the tool off its place at home."
+    nothing = fx.budget(rigid)
+    assert nothing.attrs["summary"] == "Nothing that the study names moves the tool off its place at home."
+    assert not fx.plot.budget(nothing).axes
     found = fx.budget(paper_robot())
     first, accuracy, repeatability = found.attrs["summary"].splitlines()
     whole = float(np.linalg.norm(found.worst[:3]))
@@ -196,6 +198,8 @@ def test_words_name_the_culprit_and_say_what_is_not_known():
     assert "ISO 9283" in accuracy
     assert repeatability.startswith("Repeatability: the study names neither play nor")
     assert set(np.unique(found.nature)) == {"repeatable"}
+    far = fx.budget(mechanisms.delta()).attrs["summary"].splitlines()  # it gives way by centimetres
+    assert far[1].startswith("The rows, of first order, leave 14.2 mm of the static deviation of 63 mm")
 
 
 def test_what_has_no_budget_is_refused():

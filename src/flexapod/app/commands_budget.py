@@ -96,9 +96,10 @@ def _show(data: Dataset, files: list[Path]) -> None:
     first, *further = data.attrs["summary"].splitlines()
     print_text(first)
     print_text()
-    head, rows = table(data)
-    print_table(head, rows, left=(0, 1))
-    print_text()
+    if data.sizes["part"]:
+        head, rows = table(data)
+        print_table(head, rows, left=(0, 1))
+        print_text()
     for line in further:
         print_text(line)
     for line in data.attrs["warnings"].splitlines():

@@ -58,6 +58,8 @@ def budget(data: xr.Dataset) -> Figure:
         bars.append((f"{len(rest)} smaller parts", _sizes(data, rest), float(data.share[rest].sum())))
     fig = figure(PAGE, 1.9 + 0.25 * max(len(bars), 3))
     fig.suptitle("\n".join(wrap(data.attrs["summary"].splitlines()[0], 105)), x=0.01, ha="left", fontsize=TEXT)
+    if not bars:
+        return fig
     left, right = fig.subplots(1, 2, width_ratios=(2.6, 1), sharey=True)
     used = _bars(left, bars)
     _legs(right, np.array([_by_leg(data, i) for i in shown]).reshape(-1, data.sizes["leg"]), data.leg.values)

@@ -16,6 +16,7 @@ if TYPE_CHECKING:
 
 __all__ = ["KIND_WORDS", "part_words", "sentences", "table"]
 
+MOST_LEFT = 0.05  # of the static deviation, beyond which rows of first order are a hint
 KIND_WORDS = {
     "systematic": "systematic",
     "hysteretic": "play, bound",
@@ -58,7 +59,15 @@ def sentences(found: Budget, where: str) -> list[str]:
         f"The largest culprit {where} is the {part_words(part)}, {share} of the sizes of all errors: "
         f"half of it would {brings} the worst case of the tool's place from {_m(before)} to {_m(after)}."
     )
-    return [first, *_accuracy(found), *_repeatability(found)]
+    return [first, *_left(found), *_accuracy(found), *_repeatability(found)]
+
+
+def _left(found: Budget) -> list[str]:
+    """That rows leave more of the static deviation than they should."""
+    left, whole = (_distance(x("systematic")) for x in (found.residual, found.total))
+    if left <= MOST_LEFT * whole:
+        return []
+    return [f"The rows, of first order, leave {_m(left)} of the static deviation of {_m(whole)}: take them as a hint."]
 
 
 def _accuracy(found: Budget) -> list[str]:
