@@ -194,6 +194,27 @@ def test_modes_and_maps_see_the_machine_as_built():
     np.testing.assert_allclose(many.frequency[0], found.frequency, rtol=1e-9)
 
 
+def test_three_hinged_legs_as_built_stand_where_kinematics_says():
+    robot = mechanisms.three_rps()
+    rng = np.random.default_rng(5)
+    errors = Geometry(**{f"{end}_joints": 1e-4 * rng.normal(size=(3, 3)) for end in ("base", "platform")})
+    drawn, built = (fx.modes(x, fidelity="lumped").com_sag for x in (robot, robot.replace(geometry=errors)))
+    home = rigid.home_pose(robot)
+    com = rigid.built_poses(robot.replace(geometry=errors), home).place(robot.com) - home.place(robot.com)
+    atol = 2 * np.abs(drawn).max().item() * np.linalg.norm(com) / 0.2  # as above; the platform's radius
+    np.testing.assert_allclose(built - drawn, com[0], atol=atol)
+
+
+def test_legs_that_do_not_fit_strain_each_other():
+    robot = mechanisms.eight()
+    longer = robot.replace(geometry=Geometry(leg_offset=[1e-4, *[0.0] * 7]))
+    drawn, built = (fx.modes(x, fidelity="lumped").com_sag for x in (robot, longer))
+    share = fx.accuracy(longer).pose_error.values
+    shift = share[:3] + np.cross(share[3:], robot.com - robot.tool)  # accuracy is of the tool
+    # Legs are alike: the compliance of pistons that only stretch is that of the first order. Sag and error mix by 1e-3.
+    np.testing.assert_allclose(built - drawn, shift, atol=0.02 * np.abs(shift).max())
+
+
 def test_joints_that_hold_too_much_are_said_not_to_fit():
     robot = mechanisms.eight()
     spread = Geometry(leg_offset=[1e-4, *[0.0] * 7])
