@@ -4,12 +4,12 @@ import numpy as np
 import pytest
 from tests.consistency.test_soft_joints import light
 from tests.machines import BEARING, NUT, SCREW, SOFT, machine, study, symmetric
-from tests.mechanisms import three_rps
+from tests.mechanisms import ROBOTS, three_rps
 from tests.runs import balance, run_robot
 
 import flexapod as fx
 from flexapod.errors import InputError
-from flexapod.model import AxialSpring, Feedback, Joint, ServoDrive
+from flexapod.model import AxialSpring, AxisMotion, Feedback, Joint, ServoDrive, Simulation, Study
 from flexapod.solve.springs import in_series, springs_along
 
 STILL = {"gravity": [0, 0, 0]}
@@ -238,3 +238,28 @@ def test_a_hinge_made_rigid_takes_its_cause_out_of_the_sag(part):
     change = (whole.com_deviation - without.com_deviation).values
     np.testing.assert_allclose(change, blamed, atol=2e-2 * np.abs(blamed).max())
     assert np.abs(blamed[:2]).max() > 1e-7  # m, across
+
+
+@pytest.mark.parametrize("name", ["8-UPS", "6-PUS", "3-RPS", "planar 3-RPR"])
+def test_robots_of_other_kinds_take_the_parts(name):
+    # Redundant, with carriages and struts, hinged, in a plane: energy balances to the square of the step, causes add.
+    robot = ROBOTS[name]()
+    at = {"stiffness": SOFT.stiffness, "leg_axes": True}
+
+    def with_parts(leg):
+        springs = [AxialSpring(name="plate", stiffness=1e8, at="base")]
+        springs += [AxialSpring(name="bracket", stiffness=1e8)] * (leg.driven == "stroke")
+        ends = {name: getattr(leg, name).replace(**at) for name in ("base_joint", "platform_joint")}
+        return leg.replace(springs=tuple(springs), **ends)
+
+    robot = robot.replace(legs=tuple(with_parts(leg) for leg in robot.legs))
+    motion = AxisMotion(type="surge" if robot.plane else "heave", amplitude=0.01, duration=0.1)
+    given = Study(robot=robot, motion=motion, simulation=Simulation(fidelity="lumped", step=5e-4, duration=0.1))
+    errors = []
+    for step in (5e-4, 2.5e-4):
+        found = balance(run_robot(given.replace(simulation=given.simulation.replace(step=step))))
+        errors.append(np.abs(found - found[0]).max())
+    assert errors[0] / errors[1] == pytest.approx(4, rel=0.25)
+    data = fx.simulate(given)
+    assert {"base_joint", "platform_joint", "plate"} < set(data.cause.values)
+    assert np.abs(data.deviation_residual).max() < 1e-2 * np.abs(data.com_deviation).max()
