@@ -220,3 +220,16 @@ def test_legs_that_are_not_straight_come_on_top_of_what_is_simulated():
     assert np.abs(row).max() > 0
     np.testing.assert_allclose((after.budget_total - before.budget_total).sel(kind="systematic"), row, atol=1e-15)
     np.testing.assert_allclose(after.budget_residual, before.budget_residual, atol=1e-15)
+
+
+def test_a_map_has_the_budget_of_each_of_its_poses():
+    robot = real(base_joint=LOOSE, drive=BACKLASH).replace(tolerances=Tolerances(leg_offset=1e-5))
+    found = fx.workspace_map(robot, {"heave": np.array([0.0, 0.02, 5.0])}, at={"roll": 0.05}, budget=True)
+    assert found.error_worst.dims == ("heave",)
+    assert np.isnan(found.error_worst[2]) and np.isnan(found.error_by_part[2]).all()
+    one = fx.budget(robot, {"heave": 0.02, "roll": 0.05})
+    assert float(found.error_worst[1]) == pytest.approx(float(np.linalg.norm(one.worst[:3])), rel=1e-9)
+    sizes = found.error_by_part.sel(part=one.part.values)[1]
+    np.testing.assert_allclose(sizes / found.error_by_part[1].sum(), one.share, atol=1e-9)
+    assert fx.plot.workspace_map(found, "error_worst").axes
+    assert "error_worst" not in fx.workspace_map(robot, {"heave": np.array([0.0, 0.02])})

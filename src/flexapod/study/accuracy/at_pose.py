@@ -9,7 +9,7 @@ import numpy as np
 from flexapod import rigid
 from flexapod.errors import InputError
 from flexapod.model import Study
-from flexapod.study.accuracy.imperfect import Bent, bent, thrust
+from flexapod.study.accuracy.imperfect import Bent, bent, is_crooked, thrust
 from flexapod.study.accuracy.play import Play, half_play, play_along
 from flexapod.study.accuracy.sensitivity import Sensitivity, sensitivity
 from flexapod.study.accuracy.spread import Spreading, spreading
@@ -65,7 +65,7 @@ class AtPose:
     @cached_property
     def bent(self) -> Bent | None:
         """Legs that are not straight, if any."""
-        return bent(self.robot, self.sensitivity, self.thrust)
+        return bent(self.robot, self.sensitivity, self.thrust) if is_crooked(self.robot) else None
 
     @cached_property
     def parts(self) -> dict[str, Array]:

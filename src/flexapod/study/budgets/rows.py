@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+from collections.abc import Iterator
 from typing import NamedTuple
 
 import numpy as np
@@ -18,13 +19,14 @@ from flexapod.study.accuracy.rows import Row
 from flexapod.study.accuracy.rows import rows as built_rows
 from flexapod.study.accuracy.sensitivity import sensitivity
 from flexapod.study.after.causes import cause_names, errors_of
+from flexapod.study.many_modes import poses_of
 from flexapod.study.path import RigidPath
 from flexapod.study.poses import batches
 from flexapod.study.record import Record
 from flexapod.study.words import NOTHING
 from flexapod.typing import Array
 
-__all__ = ["Moved", "at_rest", "elastic_causes", "moved", "rows"]
+__all__ = ["Moved", "at_rest", "elastic_causes", "moved", "names_of_rows", "rows", "rows_of_poses", "without_rounding"]
 
 ROUNDING = 1e-9  # of the largest row, in place and in rotation
 
@@ -96,13 +98,33 @@ def rows(study: Study, pose: rigid.Poses) -> tuple[list[Row], Array]:
     """
     locked = locked_poses(study.robot, study.simulation, pose, study.load)
     the_equilibrium(locked)
-    found = _rest(study, locked, pose)
+    found, whole = _with_built(study, pose, *(part[0] for part in _rest(study, locked, pose)))
+    return without_rounding(found), whole
+
+
+def names_of_rows(study: Study) -> tuple[str, ...]:
+    """Names of the parts of `rows_of_poses`, the same at all poses."""
+    built = (row.part for row in built_rows(study, rigid.home_pose(study.robot)))
+    return tuple(dict.fromkeys([*elastic_causes(study.robot), *built]))
+
+
+def rows_of_poses(study: Study, locked: LockedPoses) -> Iterator[tuple[list[Row], Array]]:
+    """Rows of each pose whose equilibrium was found, and what the systematic ones add up to."""
+    poses = poses_of(locked.path, locked.at)
+    path = RigidPath(study, np.zeros(len(poses)), poses)
+    found = moved(study.robot, locked.system, path, locked.equilibria.states[locked.at])
+    for k, (whole, by_leg) in enumerate(zip(*found, strict=True)):
+        yield _with_built(study, poses.part(slice(k, k + 1)), whole, by_leg)
+
+
+def _with_built(study: Study, pose: rigid.Poses, whole: Array, by_leg: Array) -> tuple[list[Row], Array]:
+    """Rows of what gives way and of what differs from the drawing, and what the systematic ones add up to."""
     how = "static equilibrium under gravity and the load at t = 0; of each leg to first order"
-    shares = dict(zip(cause_names(study.robot), found.by_leg[0], strict=True))
+    shares = dict(zip(cause_names(study.robot), by_leg, strict=True))
     table = [Row(name, "systematic", "repeatable", shares[name], how) for name in elastic_causes(study.robot)]
     built, simulated = built_rows(study, pose), {part.name for part in rigid.built_parts(study.robot)}
     beside = [row.by_leg.sum(axis=0) for row in built if row.kind == "systematic" and row.part not in simulated]
-    return without_rounding([*table, *built]), found.whole[0] + np.sum([np.zeros(6), *beside], axis=0)
+    return [*table, *built], whole + np.sum([np.zeros(6), *beside], axis=0)
 
 
 def without_rounding(table: list[Row]) -> list[Row]:

@@ -73,16 +73,19 @@ class Budget:
         return np.sqrt(np.sum([self.total(kind) ** 2 for kind in kinds], axis=0))
 
     @cached_property
+    def sizes(self) -> dict[str, float]:
+        """Size of the worst that each part does to the tool's place [m]."""
+        return {part: float(np.linalg.norm(self._only(part).worst[PLACE])) for part in self.parts}
+
+    @property
     def shares(self) -> dict[str, float]:
-        """Size of the worst that each part does to the tool's place, over the sum of all sizes, Eq. (T17.8)."""
-        alone = {part: self._only(part) for part in self.parts}
-        sizes = {part: float(np.linalg.norm(found.worst[PLACE])) for part, found in alone.items()}
-        return {part: size / (sum(sizes.values()) or 1.0) for part, size in sizes.items()}
+        """Sizes of the parts over the sum of all sizes, Eq. (T17.8)."""
+        return {part: size / (sum(self.sizes.values()) or 1.0) for part, size in self.sizes.items()}
 
     @property
     def largest(self) -> str:
         """The part with the largest share."""
-        return max(self.parts, key=lambda part: self.shares[part])
+        return max(self.parts, key=lambda part: self.sizes[part])
 
     def without(self, nature: str) -> Budget:
         """The budget of the rows of other natures, at rest."""

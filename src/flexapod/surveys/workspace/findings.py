@@ -11,7 +11,7 @@ from flexapod.model import AXES
 from flexapod.study.before.reach import REACHED, REASONS
 from flexapod.study.words import number
 from flexapod.surveys.workspace.grid import UNITS
-from flexapod.surveys.workspace.names import SCALARS
+from flexapod.surveys.workspace.names import scalars
 from flexapod.typing import Array
 
 if TYPE_CHECKING:
@@ -75,7 +75,7 @@ def map_findings(data: Dataset, mode: int = 1) -> MapFindings:
     """
     codes, counts = np.unique(data.reason.values, return_counts=True)
     reasons = {REASONS[code].words: int(n) for code, n in zip(codes, counts, strict=True) if code != REACHED}
-    found = [_finding(data, name, scalar(data, name, mode), mode) for name in SCALARS]
+    found = [_finding(data, name, scalar(data, name, mode), mode) for name in scalars(data)]
     return MapFindings(
         poses=int(data.reason.size),
         reached=int((data.reason.values == REACHED).sum()),
@@ -101,6 +101,7 @@ def name_of(data: Dataset, name: str, mode: int = 1) -> str:
         "stiffness_least": "stiffness at the tool in its weakest direction",
         "condition": "condition of the scaled Jacobian",
         "static_deviation_size": "sag of the tool under gravity and load",
+        "error_worst": "worst case of the tool's place at rest, all parts",
         "largest_force": "largest drive force at rest",
         "stroke_margin": "least stroke left",
         "guided_length": "least length of piston in its cylinder",
@@ -139,7 +140,7 @@ def axis_words(data: Dataset) -> str:
 
 def drawn(data: Dataset) -> list[str]:
     """Quantities that have a value anywhere; the first one in any case."""
-    return [name for name in SCALARS if name == "frequency" or np.isfinite(data[name].values).any()]
+    return [name for name in scalars(data) if name == "frequency" or np.isfinite(data[name].values).any()]
 
 
 def _finding(data: Dataset, name: str, values: DataArray, mode: int) -> Finding | None:

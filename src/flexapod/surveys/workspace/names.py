@@ -2,9 +2,14 @@
 
 from __future__ import annotations
 
+from typing import TYPE_CHECKING
+
 from flexapod.study.names import Variable
 
-__all__ = ["GRID_VARIABLES", "SCALARS", "forms"]
+if TYPE_CHECKING:
+    from xarray import Dataset
+
+__all__ = ["BUDGET_VARIABLES", "GRID_VARIABLES", "SCALARS", "SIDES", "forms", "scalars"]
 
 #: Variables by name; their dimensions follow those of the grid.
 GRID_VARIABLES = {
@@ -27,6 +32,12 @@ GRID_VARIABLES = {
     "euler_share": Variable((), "1", "largest axial thrust of a leg at rest over its Euler load"),
 }
 
+#: Those that are computed only where error budgets are asked for.
+BUDGET_VARIABLES = {
+    "error_worst": Variable((), "m", "worst case of the tool's place at rest, all parts"),
+    "error_by_part": Variable(("part",), "m", "size of the worst that a part does to the tool's place at rest"),
+}
+
 #: Scalars of which maps are drawn, in the order of the figures, and which end is the bad one.
 SCALARS = {
     "frequency": "least",
@@ -42,8 +53,16 @@ SCALARS = {
     "platform_joint_angle": "largest",
     "euler_share": "largest",
 }
+#: The same with those that a map has if they are asked for.
+SIDES = SCALARS | {"error_worst": "largest"}
 
 
 def forms(names: tuple[str, ...]) -> dict[str, Variable]:
     """The variables on a grid with these dimensions."""
-    return {key: Variable((*names, *dims), units, words) for key, (dims, units, words) in GRID_VARIABLES.items()}
+    table = GRID_VARIABLES | BUDGET_VARIABLES
+    return {key: Variable((*names, *dims), units, words) for key, (dims, units, words) in table.items()}
+
+
+def scalars(data: Dataset) -> list[str]:
+    """Scalars of a map of which maps are drawn."""
+    return [name for name in SIDES if name in SCALARS or name in data]
