@@ -4,8 +4,10 @@ import numpy as np
 import pytest
 
 from flexapod import model
+from flexapod.app.check_robot import show_robot
 from flexapod.errors import InputError
 from flexapod.model import MATERIALS, Bearing, Nut, ScrewDrive
+from flexapod.report.study_words import study_words
 from flexapod.study.before.describe.robot import describe
 from flexapod.study.before.describe.screw import back_words, describe_screws, screw_remarks
 from flexapod.study.before.screws import (
@@ -21,6 +23,7 @@ from flexapod.study.before.screws import (
 from flexapod.study.path import RigidPath
 
 STEEL = MATERIALS["steel"].replace(E=206e9, density=7850.0)  # of THK's catalogue
+NUT = 'rigidity = "1130 N/um", preload = "1540 N", dynamic_load = "30.8 kN"'
 HEXAPOD = model.preset_text("machine-hexapod")
 
 
@@ -130,8 +133,13 @@ class TestCheck:
     def test_the_machine_hexapod_is_within_its_catalogue(self):
         assert remarks() == []
 
-    def test_numbers_by_hand(self):
-        found = describe(model.preset("machine-hexapod"))
+    def test_numbers_by_hand(self, capsys):
+        study = model.preset("machine-hexapod")
+        found = describe(study)
+        show_robot(found)
+        assert "Screws, largest values on the path" in capsys.readouterr().out
+        report = "".join(study_words(study, found)).replace("\xa0", " ")
+        assert "Screws, largest values on the path" in report and "screw of 28.74 mm with a lead of 10 mm" in report
         worst = max(found.screws, key=lambda leg: leg.thrust.value)
         assert worst.thrust.value == pytest.approx(max(leg.force_max.value for leg in found.legs))
         assert worst.back_torque == pytest.approx(worst.thrust.value * 0.01 / (2 * np.pi) * (2 - 1 / 0.9))
@@ -151,17 +159,26 @@ class TestCheck:
         assert len(found) == 1 and found[0].startswith("leg ")
 
     def test_static_load_is_compared_with_the_pushed_half(self):
-        nut = 'nut = { rigidity = "1130 N/um", preload = "1540 N", dynamic_load = "30.8 kN", loss = 0.03 }'
-        soft = 'nut = { stiffness = "717 N/um", dynamic_load = "400 N", static_load = "500 N" }'
-        found = remarks((nut, soft))
+        found = remarks((NUT, 'stiffness = "717 N/um", dynamic_load = "400 N", static_load = "500 N"'))
         assert "times its static load rating" in found[0] and "also legs" in found[0]
-        assert changed((nut, 'nut = { stiffness = "717 N/um" }'))[1][0].hours is None
+        assert changed((NUT, 'stiffness = "717 N/um"'))[1][0].hours is None
 
     def test_a_screw_that_holds_itself(self):
         assert "stay where they are" in back_words(*changed(("efficiency = 0.9 ", "efficiency = 0.4 ")))
 
     def test_no_brake(self):
         assert "no brake is given" in back_words(*changed(('brake = { torque = "4 N m" }', "")))
+
+    @pytest.mark.parametrize("nut", ['stiffness = "700 N/um", dynamic_load = "30 kN"', 'stiffness = "700 N/um"'])
+    def test_at_rest_without_gravity_nothing_wears(self, nut):
+        rest = (
+            ("-9.81]", "0]"),
+            ('surge = "80 mm", pitch = "6 deg"', "surge = 0"),
+            (NUT, f'{nut}, static_load = "90 kN"'),
+        )
+        path, screws = changed(*rest)
+        assert screws[0].hours is screws[0].life is screws[0].safety is None
+        assert screw_remarks(path, screws) == [] and "no leg bears a thrust" in back_words(path, screws)
 
 
 class TestRefusals:

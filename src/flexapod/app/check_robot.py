@@ -7,6 +7,7 @@ from collections.abc import Mapping, Sequence
 from typing import TYPE_CHECKING
 
 from flexapod.app.terminal import print_table, print_text
+from flexapod.study.before.describe.screw import screw_table
 from flexapod.study.words import column, length, number, scale, text
 
 if TYPE_CHECKING:
@@ -173,23 +174,8 @@ def _screws(found: RobotDescription) -> None:
     if not found.screws:
         return
     _heading("Screws, largest values on the path")
-    rows = [
-        [
-            f"  leg {s.leg}",
-            f"{s.thrust.value:.4g}",
-            f"{100 * s.buckling.value:.3g}",
-            f"{30 / math.pi * s.speed.value:.4g}",
-            f"{100 * s.critical:.3g}",
-            f"{s.torque.value:.3g}",
-            f"{s.rms_torque:.3g}",
-            "-" if s.safety is None else f"{s.safety:.3g}",
-            "-" if s.hours is None else f"{s.hours:.3g}",
-        ]
-        for s in found.screws
-    ]
-    header = ["", "thrust [N]", "of buckling [%]", "motor [rpm]", "of critical speed [%]", "motor [N m]", "rms [N m]",
-              "static safety", "life [h]"]  # fmt: skip
-    print_table(header, rows)
+    head, rows = screw_table(found.screws)
+    print_table(["", *head], [[f"  leg {s.leg}", *row] for s, row in zip(found.screws, rows, strict=True)])
     print_text(f"{found.back[0].upper()}{found.back[1:]}.", indent=2)
 
 

@@ -10,6 +10,7 @@ import numpy as np
 
 from flexapod import model
 from flexapod.report import html
+from flexapod.study.before.describe.screw import screw_table
 from flexapod.study.words import held, number, text
 
 if TYPE_CHECKING:
@@ -195,7 +196,17 @@ def _path(found: RobotDescription) -> list[str]:
         f"value of the scaled Jacobian {s.smallest_singular_value:.3g} at t = {s.time:.3f} s, condition "
         f"{s.condition:.3g}; at home {s.home_smallest_singular_value:.3g} and {s.home_condition:.3g}."
     )
-    return [html.heading("What the path asks of the legs"), html.table(head, rows), html.paragraph(words, "soft")]
+    asked = [html.heading("What the path asks of the legs"), html.table(head, rows), html.paragraph(words, "soft")]
+    return asked + _screws(found)
+
+
+def _screws(found: RobotDescription) -> list[str]:
+    if not found.screws:
+        return []
+    head, texts = screw_table(found.screws)
+    rows = [(f"{s.leg}", *row) for s, row in zip(found.screws, texts, strict=True)]
+    words = f"{found.back[0].upper()}{found.back[1:]}."
+    return [html.heading("Screws, largest values on the path"), html.table(("Leg", *head), rows), html.paragraph(words)]
 
 
 def _actuator(study: ActuatorStudy) -> list[str]:

@@ -24,9 +24,10 @@ from flexapod.study.path import RigidPath
 from flexapod.study.words import number, text
 from flexapod.typing import Array
 
-__all__ = ["ScrewDescription", "back_words", "describe_screws", "screw_remarks"]
+__all__ = ["ScrewDescription", "back_words", "describe_screws", "screw_remarks", "screw_table"]
 
 SAFE = 1.0  # static load rating over load
+RPM = 30 / math.pi  # per rad/s
 
 
 @dataclass(frozen=True, kw_only=True)
@@ -81,7 +82,7 @@ def _describe(path: RigidPath, i: int, screw: ScrewDrive) -> ScrewDescription:
         back_torque=float(np.abs(thrust).max() * screw.per_turn * back_efficiency(screw) / screw.rotor.ratio),
         life=life,
         hours=hours,
-        safety=None if rating is None else float(rating / load.max()),
+        safety=None if rating is None or not load.any() else float(rating / load.max()),
     )
 
 
@@ -113,10 +114,10 @@ def screw_remarks(path: RigidPath, screws: tuple[ScrewDescription, ...]) -> list
 
 def _excesses(screw: ScrewDrive, found: ScrewDescription) -> Iterator[tuple[str, float, str]]:
     """Kind, value over limit, words."""
-    limits, turns = screw.limits, 30 / math.pi
+    limits = screw.limits
     for kind, what, extreme, limit, unit, factor in (
         ("force", "the thrust", found.thrust, limits.force, "N", 1.0),
-        ("speed", "the motor's speed", found.speed, limits.speed, "rpm", turns),
+        ("speed", "the motor's speed", found.speed, limits.speed, "rpm", RPM),
         ("torque", "the motor's torque", found.torque, limits.torque, "N m", 1.0),
     ):
         if limit is not None:
@@ -175,10 +176,31 @@ def back_words(path: RigidPath, screws: tuple[ScrewDescription, ...]) -> str:
     """What happens with the motors off."""
     most = max(screws, key=lambda found: found.back_torque)
     screw = path.robot.legs[most.leg - 1].screw
-    if screw is None or most.back_torque <= 0:
+    if screw is None or back_efficiency(screw) <= 0:
         return "with the motors off the screws stay where they are: at efficiencies up to 0.5 no thrust turns them back"
+    if most.back_torque == 0:
+        return "with the motors off nothing turns the screws: no leg bears a thrust"
     brake = "no brake is given" if screw.brake is None else f"its brake holds {text(screw.brake.torque, 'N m')}"
     return (
         f"with the motors off the legs give way: the thrust turns the motor of leg {most.leg} back with up to "
         f"{text(most.back_torque, 'N m')} (efficiency {number(back_efficiency(screw), 2)} backwards); {brake}"
     )
+
+
+def screw_table(screws: tuple[ScrewDescription, ...]) -> tuple[list[str], list[list[str]]]:
+    """Heads, and a row of texts for each screw."""
+    head = ["thrust [N]", "of buckling [%]", "motor [rpm]", "of critical speed [%]", "motor [N m]", "rms [N m]",
+            "static safety", "life [h]"]  # fmt: skip
+    return head, [
+        [
+            f"{s.thrust.value:.4g}",
+            f"{100 * s.buckling.value:.3g}",
+            f"{RPM * s.speed.value:.4g}",
+            f"{100 * s.critical:.3g}",
+            f"{s.torque.value:.3g}",
+            f"{s.rms_torque:.3g}",
+            "-" if s.safety is None else f"{s.safety:.3g}",
+            "-" if s.hours is None else f"{s.hours:.3g}",
+        ]
+        for s in screws
+    ]
