@@ -233,3 +233,15 @@ def test_a_map_has_the_budget_of_each_of_its_poses():
     np.testing.assert_allclose(sizes / found.error_by_part[1].sum(), one.share, atol=1e-9)
     assert fx.plot.workspace_map(found, "error_worst").axes
     assert "error_worst" not in fx.workspace_map(robot, {"heave": np.array([0.0, 0.02])})
+
+
+@pytest.mark.parametrize("kind", ["3-RPS", "6-PUS", "3-UPS+UP", "8-UPS"])
+def test_joints_made_ideal_take_their_row_out_of_other_mechanisms(kind):
+    robot, pose = (x() if callable(x) else x for x in ROBOTS[kind])
+    springs = {"stiffness": np.diag([15e6, 15e6, 20e6, 0, 0, 0]), "leg_axes": True}
+    soft = robot.replace(legs=tuple(leg.replace(base_joint=leg.base_joint.replace(**springs)) for leg in robot.legs))
+    before, after = (fx.budget(x, pose) for x in (soft, robot))
+    row = before.budget.sel(kind="systematic", part="base_joint")
+    change = (before.budget_total - after.budget_total).sel(kind="systematic")
+    for axes in (slice(3), slice(3, 6)):
+        np.testing.assert_allclose(change[axes], row[axes], rtol=0, atol=0.02 * float(np.abs(row[axes]).max()))
