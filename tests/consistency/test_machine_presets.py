@@ -1,8 +1,10 @@
 """Presets of machines that somebody builds: stiffness of their parts by hand, what they do beside ideal ones."""
 
 import re
+import tomllib
 
 import numpy as np
+import pytest
 
 import flexapod as fx
 from flexapod import model
@@ -15,6 +17,22 @@ def shares(name):
     found = fx.parts(fx.preset(name).robot)
     give = 1 / found.part_stiffness.sel(leg=1)
     return dict(zip(give.part.values.tolist(), (give / give.sum()).values.tolist(), strict=True))
+
+
+def leaves(table, path=""):
+    for key, value in table.items():
+        yield from leaves(value, f"{path}{key}.") if isinstance(value, dict) else [f"{path}{key}"]
+
+
+@pytest.mark.parametrize("name", ["machine-hexapod", "small-hexapod"])
+def test_every_number_is_out_of_a_catalogue_or_ours_with_a_reason(name):
+    sourced = re.compile(
+        r"(robot|motion|leg\.drive)\.type|robot\.gravity|heat\.reference|simulation\.fidelity|.*\.material"
+        r"|leg\.drive\.(lead|root_diameter|efficiency|bearing\.stiffness|nut\.(rigidity|(dynamic|static)_load))"
+    )
+    ours = {value.key for value in model.open_values(name)}
+    left = [key for key in leaves(tomllib.loads(model.preset_text(name))) if not sourced.fullmatch(key)]
+    assert [key for key in left if not any(key == own or key.startswith(f"{own}.") for own in ours)] == []
 
 
 def test_a_leg_of_the_machine_hexapod_is_its_catalogue_in_series():

@@ -15,6 +15,8 @@ from flexapod.words import text
 
 __all__ = ["accuracy_words", "is_real"]
 
+NOTHING = 1e-12  # turn that is rounding [rad]
+
 
 def accuracy_words(study: Study) -> tuple[str, ...]:
     """What errors of geometry, heat, tolerances and play do to the tool at home; nothing of a robot without them."""
@@ -47,7 +49,9 @@ def is_real(robot: Robot) -> bool:
 
 
 def _size(moved: Array) -> str:
-    return f"{text(float(np.linalg.norm(moved[:3])), 'm', 3)} and {text(float(np.linalg.norm(moved[3:])), 'rad', 3)}"
+    turned = float(np.linalg.norm(moved[3:]))
+    words = text(float(np.linalg.norm(moved[:3])), "m", 3)
+    return words if turned < NOTHING else f"{words} and {text(turned, 'rad', 3)}"
 
 
 def _by_axis(sizes: Array) -> str:
