@@ -30,6 +30,7 @@ if TYPE_CHECKING:
         simulate_actuator,
         simulate_solid,
         stiffness,
+        vibration,
     )
     from flexapod.surveys.convergence import converge
     from flexapod.surveys.convergence.ladder import ladder
@@ -57,6 +58,7 @@ _HOMES = {
         "simulate_actuator",
         "simulate_solid",
         "stiffness",
+        "vibration",
     ),
     "flexapod.surveys.convergence": ("converge",),
     "flexapod.surveys.convergence.ladder": ("ladder",),
@@ -101,6 +103,7 @@ __all__ = [
     "stiffness",
     "study",
     "sweep",
+    "vibration",
     "workspace_map",
 ]
 

@@ -36,9 +36,10 @@ def show_robot(found: RobotDescription) -> None:
     for pose in found.poses:
         _pose(pose, found.held)
     _vibration(found.vibration)
-    if found.accuracy:
-        _heading("The machine as built")
-        for sentence in found.accuracy:
+    for title, sentences in (("The machine as built", found.accuracy), ("Disturbances", found.disturbances)):
+        if sentences:
+            _heading(title)
+        for sentence in sentences:
             print_text(f"{sentence[0].upper()}{sentence[1:]}.", indent=2)
     _heading("Remarks")
     for remark in found.remarks or ("None.",):

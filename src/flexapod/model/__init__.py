@@ -4,6 +4,7 @@ from flexapod.model.actuator import Actuator, ActuatorInitial, ActuatorLoad, Act
 from flexapod.model.chain import Chain, chain_of, chains_of
 from flexapod.model.circle import base_circle, platform_circle
 from flexapod.model.damping import Damping, damping_parts
+from flexapod.model.disturbance import CURVES, Disturbance, Floor, Spectrum
 from flexapod.model.drive import Feedback, ForceDrive, PrescribedDrive, ServoDrive
 from flexapod.model.files import (
     PAPER_PRESETS,
@@ -56,6 +57,7 @@ from flexapod.model.write import to_toml
 
 __all__ = [
     "AXES",
+    "CURVES",
     "DEFAULT_TOLERANCE",
     "FIDELITIES",
     "MATERIALS",
@@ -81,10 +83,12 @@ __all__ = [
     "CsvWrench",
     "Cylinder",
     "Damping",
+    "Disturbance",
     "Drive",
     "Encoder",
     "Expansion",
     "Feedback",
+    "Floor",
     "ForceDrive",
     "Geometry",
     "Gradient",
@@ -116,6 +120,7 @@ __all__ = [
     "Simulation",
     "SineLaw",
     "SineWrench",
+    "Spectrum",
     "SpinUpLaw",
     "Spread",
     "StepLaw",

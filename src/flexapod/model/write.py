@@ -9,6 +9,7 @@ import numpy as np
 from flexapod.model.actuator import Actuator
 from flexapod.model.axes import word_of
 from flexapod.model.base import Frozen
+from flexapod.model.disturbance import Floor, Spectrum
 from flexapod.model.joint import Carriage, Joint
 from flexapod.model.leg import Leg
 from flexapod.model.material import MATERIALS, POISSON, Material, Tube
@@ -174,6 +175,10 @@ def _fields(model: Frozen) -> dict[str, object]:
     fields = {name: getattr(model, name) for name in type(model).model_fields if name not in skipped}
     if "file" in fields and fields["file"] is None and getattr(model, "time", None) is not None:
         fields["file"] = "table.csv"
+    if isinstance(model, Floor) and model.curve is not None:
+        return {"curve": model.curve}
+    if isinstance(model, Floor | Spectrum) and model.spectrum is None:
+        fields["spectrum"] = "table.csv"
     return {name: value for name, value in fields.items() if value is not None}
 
 

@@ -15,6 +15,7 @@ from flexapod.plot.sliding_mesh import sliding_mesh
 from flexapod.plot.solid import solid_comparison, solid_meshes
 from flexapod.plot.style import save
 from flexapod.plot.sweep import sweep
+from flexapod.plot.vibration import vibration
 
 __all__ = [
     "actuator_forces",
@@ -37,6 +38,7 @@ __all__ = [
     "solid_meshes",
     "sweep",
     "tip_deflections",
+    "vibration",
     "workspace_map",
 ]
 

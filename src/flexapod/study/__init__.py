@@ -10,6 +10,7 @@ from flexapod.study.actuator import simulate_actuator
 from flexapod.study.after.summary import summary
 from flexapod.study.before.checks import check_path
 from flexapod.study.budgets import budget
+from flexapod.study.disturbances import vibration
 from flexapod.study.kinematics import forward_kinematics, inverse_dynamics, inverse_kinematics
 from flexapod.study.mobility import mobility
 from flexapod.study.parts import parts
@@ -41,6 +42,7 @@ __all__ = [
     "simulate_solid",
     "stiffness",
     "summary",
+    "vibration",
 ]
 
 

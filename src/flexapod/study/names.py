@@ -223,6 +223,16 @@ _ACCURACY = {
     "sample_count": Variable((), "1", "machines drawn"),
 }
 
+_FC = ("spectrum_frequency", "component")
+_DISTURBED = {
+    "vibration_rms": Variable(_C, "mixed", "rms of the tool's vibration [m, rad] relative to the base"),
+    "vibration_covariance": Variable(_CC, "mixed", "covariance of the tool's vibration [m, rad] relative to the base"),
+    "vibration_psd": Variable(_FC, "mixed", "one-sided spectral density of the tool's vibration [m2 Hz-1, rad2 Hz-1]"),
+    "vibration_cumulative": Variable(_FC, "mixed", "rms [m, rad] of the tool's vibration at this frequency and above"),
+    "vibration_by_source": Variable(("source", "component"), "mixed", "rms [m, rad] by one disturbance alone"),
+    "vibration_by_mode": Variable(("mode", "component"), "mixed", "share [m, rad] of a mode in the rms"),
+}
+
 _TC = ("time", "component")
 _PLAY = {
     "pressing_force": Variable(
@@ -272,7 +282,7 @@ _ACTUATOR = {
 #: Every variable of every Dataset, by name.
 VARIABLES: Mapping[str, Variable] = {
     **_PATH, **_COMMAND, **_LEGS, **_ENERGY, **_STATIC, **_MOBILITY, **_ACCURACY, **_PLAY, **_BUDGET,
-    **_ACTUATOR,
+    **_DISTURBED, **_ACTUATOR,
 }  # fmt: skip
 
 #: The actuator's own form of variables that a robot has per leg or with another zero.
@@ -379,5 +389,7 @@ _COORDINATE_ATTRS = {
     "place": {"long_name": "where there is play"},
     "error": {"long_name": "what is not as drawn"},
     "tolerance": {"long_name": "what may not be as drawn"},
+    "source": {"long_name": "disturbance"},
+    "spectrum_frequency": {"units": "Hz", "long_name": "frequency"},
     "drift_time": {"units": "s", "long_name": "time of the temperatures"},
 }

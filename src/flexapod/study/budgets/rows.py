@@ -19,6 +19,7 @@ from flexapod.study.accuracy.rows import Row
 from flexapod.study.accuracy.rows import rows as built_rows
 from flexapod.study.accuracy.sensitivity import sensitivity
 from flexapod.study.after.causes import cause_names, errors_of
+from flexapod.study.disturbances import vibration_rows
 from flexapod.study.many_modes import poses_of
 from flexapod.study.path import RigidPath
 from flexapod.study.poses import batches
@@ -92,14 +93,14 @@ def rows(study: Study, pose: rigid.Poses) -> tuple[list[Row], Array]:
     Raises
     ------
     InputError
-        A pure force drive.
+        A pure force drive, or disturbances whose vibration has no size.
     ComputationError
         There is no equilibrium, or the pose is singular.
     """
     locked = locked_poses(study.robot, study.simulation, pose, study.load)
     the_equilibrium(locked)
     found, whole = _with_built(study, pose, *(part[0] for part in _rest(study, locked, pose)))
-    return without_rounding(found), whole
+    return without_rounding([*found, *vibration_rows(study, locked)]), whole
 
 
 def names_of_rows(study: Study) -> tuple[str, ...]:

@@ -16,6 +16,7 @@ from flexapod.study.before.describe.leg import Extreme, LegDescription, LegPath,
 from flexapod.study.before.describe.pose import PoseDescription, VibrationToExpect, describe_pose, vibration_to_expect
 from flexapod.study.before.describe.screw import ScrewDescription, back_words, describe_screws, screw_remarks
 from flexapod.study.before.estimates import bending_moment
+from flexapod.study.disturbances import vibration_words
 from flexapod.study.path import RigidPath
 from flexapod.study.words import held
 from flexapod.typing import Array
@@ -48,7 +49,7 @@ class RobotDescription:
     """What `describe` finds for a robot; times in s.
 
     In words: what poses `held` still, `motions` that the mechanism has, `back` what happens with the motors of screws
-    off, `accuracy` of the machine as built, `remarks` of doubt.
+    off, `accuracy` of the machine as built, what `disturbances` do to it, `remarks` of doubt.
     """
 
     kind: str = "robot"
@@ -66,6 +67,7 @@ class RobotDescription:
     poses: tuple[PoseDescription, ...]
     vibration: VibrationToExpect | None
     accuracy: tuple[str, ...]
+    disturbances: tuple[str, ...]
     remarks: tuple[str, ...]
 
     def as_dict(self) -> dict[str, object]:
@@ -111,6 +113,7 @@ def describe(study: model.Study | model.ActuatorStudy) -> RobotDescription | Act
         poses=tuple(describe_pose(study, name, instant) for name, instant in instants.items()),
         vibration=vibration_to_expect(study, end),
         accuracy=accuracy_words(study),
+        disturbances=vibration_words(study),
         remarks=tuple(
             dict.fromkeys(
                 [
