@@ -20,6 +20,7 @@ from flexapod.typing import Array
 
 __all__ = ["AlongMotion", "along_motion"]
 
+SAME = 1e-6  # static deviations that differ by less are alike
 MOST = 400  # intervals at whose ends poses are looked at at rest
 
 
@@ -49,7 +50,8 @@ def along_motion(study: Study, progress: Progress | None = None) -> AlongMotion:
     path = found.path.at(t)
     whole = moved(study.robot, found.march.system, path, found.record)
     still = _static(study, path)
-    worst = int(np.linalg.norm(still.whole[:, :3], axis=1).argmax())
+    size = np.linalg.norm(still.whole[:, :3], axis=1)
+    worst = int(np.argmax(size >= (1 - SAME) * size.max()))  # the first of those alike, as at a motion's end
     pose = path.poses.part(slice(worst, worst + 1))
     table, deviation = rows(study, rigid.Poses.at_rest(pose.position, pose.rotation))
     dynamic = Moved(whole.whole - still.whole, whole.by_leg - still.by_leg)  # (T17.13)
