@@ -13,7 +13,8 @@ from flexapod.solve.random_vibration import Source, random_vibration
 from flexapod.study.accuracy.sensitivity import sensitivity
 from flexapod.study.arguments import as_pose
 from flexapod.study.before.describe.robot import describe
-from flexapod.study.disturbances import vibration_rows
+from flexapod.study.budgets.words import part_words
+from flexapod.study.disturbances import vibration_rows, vibration_words
 
 WHITE = np.array([1e-3, 1e5])
 TILTED = {"surge": 0.03, "heave": -0.02, "roll": 0.1, "yaw": 0.05}
@@ -139,6 +140,7 @@ def test_the_budget_has_rows_of_them(shaken):
     for source in ("floor vibration", "wrench noise", "force noise"):
         found = data.budget.sel(part=source, kind="random").values
         assert found == pytest.approx(alone.vibration_by_source.sel(source=source).values, rel=1e-5)
+        assert part_words(source) == source
     assert data.budget_total.sel(kind="random").values == pytest.approx(alone.vibration_rms.values, rel=1e-5)
 
 
@@ -187,8 +189,9 @@ def test_the_figure_names_the_modes(shaken):
 
 def test_floors_that_end_below_the_first_mode_are_remarked():
     level = model.Floor(frequency=np.array([1.0, 5.0]), density=np.full((2, 3), 1e-6))
-    data = fx.vibration(lumped(disturbance=model.Disturbance(floor=level)))
-    assert "the floor's spectrum ends at 5 Hz" in data.attrs["warnings"]
+    study = lumped(disturbance=model.Disturbance(floor=level))
+    assert "the floor's spectrum ends at 5 Hz" in fx.vibration(study).attrs["warnings"]
+    assert "the floor's spectrum ends at 5 Hz" in vibration_words(study)[1]
 
 
 def test_what_has_no_vibration(shaken):

@@ -30,7 +30,8 @@ def peak_budget(data: Dataset) -> Dataset | None:
     study = carried_study(data)
     if not isinstance(study, model.Study) or study.robot.platform_fixed:
         return None
-    if not is_real(study.robot) and len(cause_names(study.robot)) == len(CAUSES):
+    ideal = not is_real(study.robot) and len(cause_names(study.robot)) == len(CAUSES)
+    if ideal and study.disturbance is None:
         return None
     size = np.linalg.norm(data.tool_deviation.values, axis=1)
     t = data.time.values[[int(size.argmax())]]

@@ -139,10 +139,11 @@ def vibration_words(study: Study) -> tuple[str, ...]:
     modes = alike @ data.vibration_by_mode.values[:, most]
     if not rms[most] > 0:
         return ("disturbances do not move the tool at home",)
-    culprit = int(modes.argmax())
+    culprit, doubts = int(modes.argmax()), _beyond(study, f)
     frequency, kind = float(data.frequency[culprit]), str(data.kind.values[culprit])
     return (
         f"disturbances shake the tool at home by {sizes} (rms, relative to the base), along {'xyz'[most]} most by the "
         f"{data.source.values[int(sources.argmax())]}, {100 * modes[culprit] / rms[most]:.0f} % of it in the mode at "
         f"{frequency:.4g} Hz ({kind})",
+        *doubts,
     )

@@ -38,6 +38,8 @@ def part_words(part: str) -> str:
     name, _, kind = part.rpartition(" ")
     if kind == "tolerance":
         return f"tolerance of {_PARTS.get(name, name)}"
+    if kind in ("vibration", "noise"):
+        return part
     if kind == "play":
         return "play of the drives" if name == "drive" else f"play of the joints at the {name.removesuffix('_joint')}"
     if part == "bent_legs":
