@@ -14,6 +14,8 @@ from flexapod.study.words import cleared
 
 __all__ = ["deviation_by_cause"]
 
+MOST = 9  # causes that colours tell apart
+_SMALLER = " smaller ones together"
 _COLORS = {"axial-strain": "#0072B2", "bending": "#D55E00", "drive": "#009E73"}
 _MORE = ("#E69F00", "#56B4E9", "#A23B72", "#7A5195", "#8C6D1F", "#444444", "#BDB76B", "#FF9DA7", "#9C755F", "#76B7B2")
 
@@ -34,9 +36,10 @@ def deviation_by_cause(data: xr.Dataset) -> Figure:
     grid = fig.subplots(3, 2, width_ratios=(2.1, 1), sharex="col")
     total = data.com_deviation
     sizes = np.abs(data.deviation_by_cause).max(("time", "leg", "axis"))
-    parts = data.deviation_by_cause.sel(cause=np.array([cleared(size, sizes.max()) > 0 for size in sizes], dtype=bool))
+    shown = data.deviation_by_cause.sel(cause=np.array([cleared(size, sizes.max()) > 0 for size in sizes], dtype=bool))
+    parts = _largest(shown)
     small = scale(total, "m")
-    end, time, colors = motion_end(data), data.time.values, _colors(data.cause.values)
+    end, time, colors = motion_end(data), data.time.values, _colors(parts.cause.values)
     largest, seen = float(np.abs(small(total)).max()), []
     for row, axis in enumerate(data.axis.values):
         left, right = grid[row]
@@ -45,7 +48,7 @@ def deviation_by_cause(data: xr.Dataset) -> Figure:
         seen.append(float(np.abs(lines).max()))
         left.plot(time, lines[0], color="#C8C8C8", linewidth=5, label="whole deviation")
         for cause, values in zip(map(str, parts.cause.values), lines[1:], strict=True):
-            left.plot(time, values, color=colors[cause], linewidth=1.2, label=cause_words(cause))
+            left.plot(time, values, color=colors[cause], linewidth=1.2, label=_words(cause))
         left.axhline(0, color="#555555", linewidth=0.7)
         left.set_title(f"{str(axis).upper()}, over time")
         left.set_ylabel(f"deviation [{small.name}]")
@@ -61,6 +64,20 @@ def deviation_by_cause(data: xr.Dataset) -> Figure:
     for column in grid.T:
         fig.align_ylabels(column)
     return fig
+
+
+def _largest(parts: xr.DataArray) -> xr.DataArray:
+    """The largest causes, and all smaller ones as one, where they are more than colours tell apart."""
+    if parts.sizes["cause"] <= MOST:
+        return parts
+    ranked = np.argsort(-np.abs(parts.transpose("cause", ...).values).max(axis=(1, 2, 3)))
+    kept, rest = np.sort(ranked[: MOST - 1]), ranked[MOST - 1 :]
+    others = parts.isel(cause=rest).sum("cause").expand_dims(cause=[f"{len(rest)}{_SMALLER}"])
+    return xr.concat([parts.isel(cause=kept), others], "cause")
+
+
+def _words(cause: str) -> str:
+    return cause if cause.endswith(_SMALLER) else cause_words(cause)
 
 
 def _colors(causes: np.ndarray) -> dict[str, str]:
