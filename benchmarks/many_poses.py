@@ -1,4 +1,4 @@
-"""Many poses at once: modes of the flexible robot, and the closed forms of the rigid one."""
+"""Many poses at once: modes and error budgets of flexible robots, and the closed forms of the rigid one."""
 
 from __future__ import annotations
 
@@ -11,7 +11,8 @@ from benchmarks.report import Section, goal
 from benchmarks.timing import interleaved
 from flexapod import rigid
 from flexapod.model import preset
-from flexapod.study import modes
+from flexapod.study import budget, modes
+from flexapod.surveys.workspace import workspace_map
 
 __all__ = ["many_poses"]
 
@@ -26,8 +27,13 @@ def many_poses() -> list[Section]:
     reach = np.array([0.04, 0.04, 0.04, 0.15, 0.15, 0.15])  # m, rad: well inside the strokes
     some = np.random.default_rng(1).uniform(-reach, reach, size=(POSES, 6))
     path = rigid.poses(robot, study.motion, np.linspace(0.0, 1.0, RIGID_POSES))
+    machine = preset("machine-hexapod").robot
+    slice_ = {"surge": np.linspace(-0.02, 0.02, 40), "heave": np.linspace(-0.02, 0.02, POSES // 40)}
+    budget(machine)  # compiles
     actions: dict[str, Callable[[], object]] = {
         "modes": lambda: modes(robot, some),
+        "budget": lambda: budget(machine),
+        "map": lambda: workspace_map(machine, slice_, budget=True),
         "lengths": lambda: rigid.leg_lengths(robot.base_joints, robot.platform_joints, path.position, path.rotation),
         "state": lambda: rigid.inverse_kinematics(robot, path),
         "forces": lambda: rigid.inverse_dynamics(robot, path),
@@ -36,6 +42,8 @@ def many_poses() -> list[Section]:
     middle = {name: spread.median for name, spread in times.items()}
     rows = [
         [f"modes of {POSES} poses, fx.modes, k = 3", times["modes"].text(), goal(middle["modes"], 2.0, "2 s")],
+        ["error budget of machine-hexapod at a pose", times["budget"].text(), goal(middle["budget"], 0.05, "50 ms")],
+        [f"map of {POSES} poses of it with budgets", times["map"].text(), goal(middle["map"], 10.0, "10 s")],
         _rate("leg lengths, rigid.leg_lengths", middle["lengths"], 1e6),
         _rate("lengths, joint angles, rates, accelerations, rigid.inverse_kinematics", middle["state"], 2e5),
         _rate("drive and joint forces, rigid.inverse_dynamics, kinematics included", middle["forces"], 1e5),

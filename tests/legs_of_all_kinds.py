@@ -20,6 +20,11 @@ KINDS = {
     "pose on a slider": EVERYTHING | {"carriage": "slider"},
     "pose on a crank": EVERYTHING | {"carriage": "crank"},
     "flexures on a crank": EVERYTHING | {"carriage": "crank", "flexure": True},
+    "point between soft joints": {"soft_base": True, "soft_platform": True},
+    "pose between soft joints": EVERYTHING | {"soft_base": True, "soft_platform": True},
+    "soft joints and flexures": {"closure": "pose", "flexure": True, "soft_base": True, "soft_platform": True},
+    "point behind a screw": {"series": True},
+    "pose behind a screw": EVERYTHING | {"series": True, "soft_base": True},
     "tip body": {"closure": "none", "torsion": True, "tip_body": True},
     "planar": {"closure": "none", "planar": True, "tip_body": True},
 }
@@ -56,6 +61,12 @@ PHYSICS |= {
     "base_flexure": springs(1), "platform_flexure": springs(2),
     "base_flexure_damping": 1e-3 * springs(3), "platform_flexure_damping": 1e-3 * springs(4),
 }  # fmt: skip
+PHYSICS |= {
+    "series_stiffness": 4e5, "series_softening": [0.4, -0.3], "series_home": 0.85, "series_damping": 70.0,
+    "rotor_mass": 300.0, "rotor_stiffness": 2e5, "rotor_damping": 30.0,
+}  # fmt: skip
+for end, k in (("base", 1.0), ("platform", 1.3)):
+    PHYSICS |= {f"{end}_soft": [1e6 * k, 3e6 * k], f"{end}_soft_damping": [300.0 * k, 200.0 * k]}
 
 
 @cache

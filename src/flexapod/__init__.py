@@ -16,16 +16,21 @@ if TYPE_CHECKING:
     from flexapod.model import ActuatorStudy, Study, load, loads, open_values, preset
     from flexapod.paper.study import replicate
     from flexapod.study import (
+        accuracy,
+        budget,
         forward_kinematics,
         inverse_dynamics,
         inverse_kinematics,
         mobility,
         modes,
+        parts,
+        play,
         run,
         simulate,
         simulate_actuator,
         simulate_solid,
         stiffness,
+        vibration,
     )
     from flexapod.surveys.convergence import converge
     from flexapod.surveys.convergence.ladder import ladder
@@ -39,16 +44,21 @@ _HOMES = {
     "flexapod.model": ("ActuatorStudy", "Study", "load", "loads", "open_values", "preset"),
     "flexapod.paper.study": ("replicate",),
     "flexapod.study": (
+        "accuracy",
+        "budget",
         "forward_kinematics",
         "inverse_dynamics",
         "inverse_kinematics",
         "mobility",
         "modes",
+        "parts",
+        "play",
         "run",
         "simulate",
         "simulate_actuator",
         "simulate_solid",
         "stiffness",
+        "vibration",
     ),
     "flexapod.surveys.convergence": ("converge",),
     "flexapod.surveys.convergence.ladder": ("ladder",),
@@ -66,6 +76,8 @@ __all__ = [
     "InputError",
     "Study",
     "__version__",
+    "accuracy",
+    "budget",
     "cite",
     "converge",
     "forward_kinematics",
@@ -78,6 +90,8 @@ __all__ = [
     "model",
     "modes",
     "open_values",
+    "parts",
+    "play",
     "plot",
     "preset",
     "replicate",
@@ -89,6 +103,7 @@ __all__ = [
     "stiffness",
     "study",
     "sweep",
+    "vibration",
     "workspace_map",
 ]
 

@@ -35,13 +35,17 @@ class Dimension:
 
 DIMENSIONS = {
     "acceleration": Dimension(unit="m/s^2", example="9.81 m/s^2", least=1e-9, most=1e6),
+    "acceleration spectrum": Dimension(unit="(m/s^2)^2/Hz", example="1e-8 (m/s^2)^2/Hz", least=1e-30, most=1e12),
     "angle": Dimension(unit="rad", example="20 deg", least=1e-12, most=1e6, angle=True),
     "angular rate": Dimension(unit="rad/s", example="45 deg/s", least=1e-12, most=1e6, angle=True),
     "axial stiffness": Dimension(unit="N", example="115 MN", least=1e-6, most=1e18),
     "bending stiffness": Dimension(unit="N m^2", example="756.65 N m^2", least=1e-18, most=1e18),
     "damping": Dimension(unit="N s/m", example="2 kN s/m", least=1e-12, most=1e15),
+    "displacement spectrum": Dimension(unit="m^2/Hz", example="1e-18 m^2/Hz", least=1e-40, most=1e6),
     "density": Dimension(unit="kg/m^3", example="7800 kg/m^3", least=1e-12, most=1e9),
+    "expansion": Dimension(unit="1/K", example="11.7e-6 1/K", least=1e-12, most=10.0),
     "force": Dimension(unit="N", example="120 N", least=1e-12, most=1e12),
+    "force spectrum": Dimension(unit="N^2/Hz", example="1e-4 N^2/Hz", least=1e-30, most=1e18),
     "frequency": Dimension(unit="Hz", example="5 Hz", least=1e-9, most=1e9),
     "inertia": Dimension(unit="kg m^2", example="17.88 kg m^2", least=1e-18, most=1e15),
     "length": Dimension(unit="m", example="27 mm", least=1e-9, most=1e6),
@@ -52,20 +56,28 @@ DIMENSIONS = {
     "rotational stiffness": Dimension(unit="N m/rad", example="15 N m/rad", least=1e-12, most=1e15, angle=True),
     "stiffness": Dimension(unit="N/m", example="50 N/um", least=1e-9, most=1e18),
     "stress": Dimension(unit="Pa", example="200 GPa", least=1e-3, most=1e18),
+    "temperature": Dimension(unit="degC", example="25 degC", least=1e-9, most=1e6),
+    "temperature difference": Dimension(unit="K", example="1 K", least=1e-9, most=1e6),
     "time": Dimension(unit="s", example="0.5 ms", least=1e-9, most=1e9),
     "torque": Dimension(unit="N m", example="12 N m", least=1e-12, most=1e12),
+    "torque spectrum": Dimension(unit="(N m)^2/Hz", example="1e-6 (N m)^2/Hz", least=1e-30, most=1e18),
     "velocity": Dimension(unit="m/s", example="0.1 m/s", least=1e-12, most=1e6),
+    "velocity spectrum": Dimension(unit="(m/s)^2/Hz", example="1e-12 (m/s)^2/Hz", least=1e-35, most=1e12),
 }
 
 #: Factors of the units that most study files use: reading these needs no pint, whose import takes a third of a second.
 COMMON_UNITS = {
     "acceleration": {"m/s^2": 1.0},
+    "acceleration spectrum": {"(m/s^2)^2/Hz": 1.0},
     "angle": {"rad": 1.0, "deg": math.pi / 180},
-    "angular rate": {"rad/s": 1.0, "deg/s": math.pi / 180},
+    "angular rate": {"rad/s": 1.0, "deg/s": math.pi / 180, "rpm": math.pi / 30},
     "bending stiffness": {"N m^2": 1.0},
     "damping": {"N s/m": 1.0, "kN s/m": 1e3},
     "density": {"kg/m^3": 1.0},
+    "displacement spectrum": {"m^2/Hz": 1.0},
+    "expansion": {"1/K": 1.0},
     "force": {"N": 1.0, "kN": 1e3},
+    "force spectrum": {"N^2/Hz": 1.0},
     "frequency": {"Hz": 1.0},
     "inertia": {"kg m^2": 1.0},
     "length": {"m": 1.0, "cm": 1e-2, "mm": 1e-3, "um": 1e-6},
@@ -75,9 +87,13 @@ COMMON_UNITS = {
     "rotational stiffness": {"N m/rad": 1.0},
     "stiffness": {"N/m": 1.0, "N/um": 1e6},
     "stress": {"Pa": 1.0, "MPa": 1e6, "GPa": 1e9},
+    "temperature": {"degC": 1.0, "°C": 1.0},
+    "temperature difference": {"K": 1.0},
     "time": {"s": 1.0, "ms": 1e-3},
     "torque": {"N m": 1.0},
+    "torque spectrum": {"(N m)^2/Hz": 1.0},
     "velocity": {"m/s": 1.0, "mm/s": 1e-3},
+    "velocity spectrum": {"(m/s)^2/Hz": 1.0},
 }
 
 _TEXT = re.compile(r"^\s*([-+]?(?:\d+(?:\.\d*|,\d+)?|[.,]\d+)(?:[eE][-+]?\d+)?)(?![\d.,'])\s*(.*?)\s*$")
@@ -157,6 +173,8 @@ def _factor(unit: str, dimension: str) -> float | str:
         given = registry.Unit(unit.replace("²", "^2").replace("³", "^3"))
     except Exception:  # pint lets errors of any kind out of its parser, AssertionError among them
         return f"has an unknown unit ({unit})"
+    if dimension.startswith("temperature") and given != registry.Unit(wanted.unit):  # others count from another zero
+        return f"is not in {'kelvin' if wanted.unit == 'K' else 'degrees Celsius'} ({unit})"
     has_angle = any(name.endswith(_ANGLES) or name.startswith("revolution") for name in given._units)
     if not given.is_compatible_with(registry.Unit(wanted.unit)) or has_angle != wanted.angle:
         return f"is not {_article(dimension)}: {unit} does not measure one"

@@ -96,4 +96,6 @@ def column(values: ArrayLike, unit: str, digits: int = 4) -> tuple[str, list[str
     finite = np.abs(shown[np.isfinite(shown)])
     largest = float(finite.max(initial=0.0))
     decimals = max(0, digits - 1 - int(np.floor(np.log10(largest)))) if largest > 0 else 0
-    return chosen.name, [f"{value + 0.0:.{decimals}f}" if np.isfinite(value) else "n/a" for value in shown]
+    return chosen.name, [
+        f"{round(value, decimals) + 0.0:.{decimals}f}" if np.isfinite(value) else "n/a" for value in shown
+    ]

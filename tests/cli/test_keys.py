@@ -14,7 +14,7 @@ def test_a_table_with_its_keys_and_examples():
     found = RUN.invoke(app, ["keys", "leg.drive"])
     assert found.exit_code == 0
     assert "[leg.drive] servo" in found.stdout
-    assert 'drive = { type = "servo", stiffness = "50 N/um", damping = "20 kN s/m" }' in found.stdout
+    assert 'drive = { type = "servo", stiffness = "50 N/um", damping = "20 kN s/m"' in found.stdout
     assert "[leg.drive.feedback]" in found.stdout
     assert "[leg.piston]" not in found.stdout
 

@@ -88,13 +88,16 @@ STIFF = {
     "base_stiffness": ("alpha", "beta", "spin"), "gamma_stiffness": ("gamma1", "gamma2", "gamma3"),
     "base_flexure": ("u1", "u2", "u3", "alpha", "beta", "spin"),
     "platform_flexure": ("e1", "e2", "e3", "gamma1", "gamma2", "gamma3"),
+    "rotor_stiffness": ("r",), "base_soft": ("u1", "u2", "u3"), "platform_soft": ("e1", "e2", "e3"),
 }  # fmt: skip
 
 
 @pytest.mark.parametrize("element", STIFF)
 def test_an_endlessly_stiff_element_is_a_rigid_one(element):
     # Compliance of the tip under loads: held coordinates are the limit, and the way there is one over the stiffness.
-    ours = legs.shapes("flexures on a crank" if "flexure" in element else "pose on a slider")
+    first, _, last = element.partition("_")
+    kinds = {"flexure": "flexures on a crank", "soft": "pose between soft joints", "rotor": "pose behind a screw"}
+    ours = legs.shapes(kinds.get(last, kinds.get(first, "pose on a slider")))
     held = [i for i, name in enumerate(n for n, size in ours.layout for _ in range(size)) if name in STIFF[element]]
     free = np.setdiff1d(np.arange(ours.size), held)
     home = {"base_home": np.zeros(3), "gamma_home": np.zeros(3), "gravity": np.zeros(3)}

@@ -12,7 +12,7 @@ from flexapod.model.chain import chain_of, chains_of
 
 FOLDER = Path(__file__).parents[2] / "examples" / "mechanisms"
 SAMPLES = {path.stem: path.read_text(encoding="utf-8") for path in sorted(FOLDER.glob("*.toml"))}
-PRESETS = ("tripod", "flight-simulator")
+PRESETS = ("tripod", "flight-simulator", "machine-hexapod")
 
 
 def content(study):

@@ -7,6 +7,7 @@ from pathlib import Path
 import matplotlib
 import numpy as np
 import pytest
+import xarray as xr
 from matplotlib.colors import to_hex, to_rgb
 from matplotlib.figure import Figure
 from matplotlib.image import imread
@@ -94,6 +95,20 @@ def test_bars_of_the_legs_add_up_and_fit_their_axes(robot):
     assert sum(heights) == pytest.approx(-whole, rel=1e-3)  # causes add up to second order in the deviation
     low, high = bars.get_ylim()
     assert low < min(heights) and high > max(heights)
+
+
+def test_many_causes_have_colours_of_their_own_and_keep_their_sum(robot):
+    names = [f"spring{k}" for k in range(15)]
+    share = xr.DataArray(np.arange(1, 16) / 120, {"cause": names})
+    many = share * robot.deviation_by_cause.sum("cause")
+    data = robot.drop_dims("cause").assign(deviation_by_cause=many.transpose("time", "cause", "leg", "axis"))
+    figure = plot.deviation_by_cause(data)
+    lines = [line for line in figure.axes[4].lines if not str(line.get_label()).startswith("_")]
+    labels, colours = [line.get_label() for line in lines], [line.get_color() for line in lines]
+    assert labels[1:] == [*(f"give of spring{k}" for k in range(7, 15)), "7 smaller ones together"]
+    assert len(set(colours)) == len(lines) == 10
+    whole = 1e6 * many.sel(axis="z").sum(("cause", "leg"))
+    np.testing.assert_allclose(sum(line.get_ydata() for line in lines[1:]), whole, atol=1e-9)
 
 
 def test_nothing_moves_across_gives_no_drama(robot):

@@ -331,3 +331,14 @@ def test_labels_of_the_replayed_axes_have_the_middle_to_themselves(study, robot)
         middle = (low + high) / 2
         assert len(ticks) == 2 and low <= ticks[0] < ticks[1] <= high
         assert min(abs(tick - middle) for tick in ticks) > 0.15 * (high - low)
+
+
+def test_a_machine_with_real_parts_has_its_error_budget():
+    warm = loads(preset_text("paper-robot") + "\n[heat]\nreference = 20\npiston = 22\nexpansion = { piston = 12e-6 }\n")
+    data = simulate(warm, fidelity="lumped", modes=None, step=1e-3, output_step=5e-3, duration=0.1)
+    made = robot_report(warm, data)
+    assert Page(made).sections[:2] == ["deviation", "budget"]
+    assert "The largest culprit at the pose is the heat of the pistons" in made
+    assert "Error budget at rest, at the pose of the largest deviation" in made  # the chart
+    at = data.time.values[int(np.linalg.norm(data.tool_deviation, axis=1).argmax())]
+    assert f"the pose of t = {at:.4g}\N{NO-BREAK SPACE}s" in made

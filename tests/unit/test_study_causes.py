@@ -78,7 +78,7 @@ def test_shares_against_a_pose_moved_by_hand():
                      for x, A in ((path.position[0], path.rotation[0]), (position, R)))  # fmt: skip
     bent = np.zeros((1, 6, len(COORDINATES)))
     bent[..., L] = after - before
-    errors = Errors(axial=0 * bent, bending=bent, drive=0 * bent)
+    errors = Errors(by_cause={"axial-strain": 0 * bent, "bending": bent, "drive": 0 * bent})
     shares = deviation_by_cause(robot, RigidPath(study, np.array([0.7])), errors)
     np.testing.assert_allclose(shares.sum(axis=(1, 2))[0], shift, atol=1e-13)  # lengths round at 1e-16, J^-1 at 100
     assert not shares[:, [0, 2]].any()

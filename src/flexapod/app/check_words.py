@@ -3,10 +3,11 @@
 from __future__ import annotations
 
 import math
-from collections.abc import Sequence
+from collections.abc import Mapping, Sequence
 from typing import TYPE_CHECKING
 
 from flexapod.app.terminal import print_table, print_text
+from flexapod.study.before.describe.screw import screw_table
 from flexapod.study.words import column, length, number, scale, text
 
 if TYPE_CHECKING:
@@ -29,6 +30,7 @@ def show_robot(found: RobotDescription) -> None:
     _angles(found)
     _singularity(found)
     _loads(found)
+    _screws(found)
     if found.losses:
         _heading("Loss factors, made viscous at home")
         for sentence in found.losses:
@@ -36,6 +38,11 @@ def show_robot(found: RobotDescription) -> None:
     for pose in found.poses:
         _pose(pose, found.held)
     _vibration(found.vibration)
+    for title, sentences in (("The machine as built", found.accuracy), ("Disturbances", found.disturbances)):
+        if sentences:
+            _heading(title)
+        for sentence in sentences:
+            print_text(f"{sentence[0].upper()}{sentence[1:]}.", indent=2)
     _heading("Remarks")
     for remark in found.remarks or ("None.",):
         print_text(remark, indent=2)
@@ -168,6 +175,15 @@ def _stresses(found: RobotDescription) -> tuple[list[str], list[str], list[str],
     return [f"axial [{unit}]", f"bending [{unit}]", f"together [{unit}]"], flat[0::3], flat[1::3], flat[2::3]
 
 
+def _screws(found: RobotDescription) -> None:
+    if not found.screws:
+        return
+    _heading("Screws, largest values on the path")
+    head, rows = screw_table(found.screws)
+    print_table(["", *head], [[f"  leg {s.leg}", *row] for s, row in zip(found.screws, rows, strict=True)])
+    print_text(f"{found.back[0].upper()}{found.back[1:]}.", indent=2)
+
+
 def _pose(pose: PoseDescription, held: str) -> None:
     _heading(f"{held}, {pose.name} (t = {pose.time:.3f} s)")
     if pose.problem:
@@ -183,9 +199,26 @@ def _pose(pose: PoseDescription, held: str) -> None:
             f"{length(pose.sag or 0.0)}.",
             indent=2,
         )
+    if pose.parts is not None:
+        _parts(pose.parts)
     if pose.modes:
         listed = ", ".join(f"{m.frequency:.4g} Hz ({m.kind}, {100 * m.damping_ratio:.2g} %)" for m in pose.modes)
         print_text(f"Frequencies (what moves, damping): {listed}.", indent=2)
+
+
+def _parts(parts: Mapping[str, tuple[float, ...]]) -> None:
+    """Stiffness of every part along every leg, softest first, and all of a leg in series."""
+    whole = [1 / sum(1 / values[i] for values in parts.values()) for i in range(len(next(iter(parts.values()))))]
+    ranked = sorted(parts.items(), key=lambda item: min(item[1]))
+    print_text("Stiffness along the legs [N/µm], softest part first, and its share in the leg's compliance:", indent=2)
+    rows = [[f"  {name}", *(_stiffness_and_share(k, all_) for k, all_ in zip(values, whole, strict=True))]
+            for name, values in ranked]  # fmt: skip
+    print_table(["", *(f"leg {i}" for i in range(1, len(whole) + 1))],
+                [*rows, ["  all in series", *(number(k / 1e6, 4) for k in whole)]])  # fmt: skip
+
+
+def _stiffness_and_share(stiffness: float, whole: float) -> str:
+    return "-" if math.isinf(stiffness) else f"{number(stiffness / 1e6, 4)} ({100 * whole / stiffness:.0f} %)"
 
 
 def _vibration(found: VibrationToExpect | None) -> None:

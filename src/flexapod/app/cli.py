@@ -12,6 +12,7 @@ from typing import Annotated, Any
 import typer
 from typer.core import TyperGroup
 
+from flexapod.app.commands_budget import budget
 from flexapod.app.commands_map import workspace_map
 from flexapod.app.commands_poses import export, modes
 from flexapod.app.commands_proof import replicate, verify
@@ -86,7 +87,23 @@ def flexapod(
         os.environ["FLEXAPOD_DEBUG"] = "1"
 
 
-_ALL = (replicate, new, keys, check, run, actuator, modes, workspace_map, converge, sweep, verify, export, cache, view)
+_ALL = (
+    replicate,
+    new,
+    keys,
+    check,
+    run,
+    actuator,
+    modes,
+    budget,
+    workspace_map,
+    converge,
+    sweep,
+    verify,
+    export,
+    cache,
+    view,
+)
 for command in _ALL:
     app.command("map" if command is workspace_map else None)(command)
 

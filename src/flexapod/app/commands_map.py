@@ -36,6 +36,9 @@ Acceleration = Annotated[
         "--acceleration", metavar='"0,0,5"', help="Of the platform, m/s^2; default: 1 m/s^2, worst direction."
     ),
 ]
+Budget = Annotated[
+    bool, typer.Option("--budget", help="Also an error budget of each pose: the worst case, and what each part does.")
+]
 Mode = Annotated[int, typer.Option("--mode", min=1, help="Which natural frequency to show.")]
 Count = Annotated[int | None, typer.Option("--count", min=1, help="Points of an axis that names none.")]
 
@@ -43,7 +46,7 @@ Count = Annotated[int | None, typer.Option("--count", min=1, help="Points of an 
 @guarded
 def workspace_map(
     file: StudyFile, x: X = None, y: Y = None, z: Z = None, at: At = None, direction: Direction = "z",
-    acceleration: Acceleration = None, mode: Mode = 1, count: Count = None, out: Out = None,
+    acceleration: Acceleration = None, budget: Budget = False, mode: Mode = 1, count: Count = None, out: Out = None,
     no_figures: NoFigures = False, json: Json = False, quiet: Quiet = False,
 ) -> None:  # fmt: skip
     """Map frequencies, stiffness, deviations, forces and margins over poses: map.nc and figures."""
@@ -64,7 +67,7 @@ def workspace_map(
             poses, frequencies = grid(study.robot, axes, fixed), max(mode, FREQUENCIES)
             check_map(poses.size, frequencies, folder)
             data = compute(
-                study, poses.values, at=fixed, frequencies=frequencies, **settings,
+                study, poses.values, at=fixed, frequencies=frequencies, budget=budget, **settings,
                 progress=lambda words, share: report(words, COMPUTING * share),
             )  # fmt: skip
         if mode > data.sizes["mode"]:

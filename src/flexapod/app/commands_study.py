@@ -19,7 +19,8 @@ Preset = Annotated[
     typer.Option(
         "--preset",
         metavar="P",
-        help="paper-robot (the default), paper-robot-radii, paper-actuator, tripod or flight-simulator.",
+        help="paper-robot (the default), paper-robot-radii, paper-actuator, tripod, flight-simulator, "
+        "machine-hexapod, small-hexapod or nano-hexapod.",
     ),
 ]
 From = Annotated[

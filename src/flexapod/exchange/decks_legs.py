@@ -11,6 +11,7 @@ from flexapod.errors import InputError
 from flexapod.rigid.limbs import FREE, Limbs, limbs
 from flexapod.rigid.mechanism import legs_at
 from flexapod.rigid.screws import screws
+from flexapod.solve.springs import before_piston
 from flexapod.typing import Array
 
 _STIFF = 1e5  # of a locked drive, in EA / l: adds 1e-5 of a leg's compliance
@@ -132,6 +133,11 @@ def _leg(i: int, leg: model.Leg, real: Limbs, columns: Array, tip: Array, length
     """Leg i; `columns` (6, 8): velocities of its tip and turns of its joints for each coordinate."""
     _check_leg(i + 1, leg, length)
     cylinder, piston, below, above = leg.cylinder, leg.piston, leg.base_joint, leg.platform_joint
+    for spring in leg.springs:
+        if spring.at != "nut":
+            raise InputError("is not written in decks", key=f"springs.{spring.name}", allowed='at = "nut"')
+    if leg.screw is not None and leg.screw.command == "torque":
+        raise InputError("is not written in decks", key="drive.command", value="torque", allowed="position, servo")
     for joint in (below, above):
         if joint.stiffness is not None:
             raise InputError("is not written in decks", key="stiffness", allowed="bending and torsion of the joint")
@@ -166,14 +172,14 @@ def _leg(i: int, leg: model.Leg, real: Limbs, columns: Array, tip: Array, length
         com=cylinder.com,
         inertia=cylinder.inertia,
         axial_inertia=axial_inertia(leg),
-        drive=np.inf if leg.strut is not None or on_carriage else _drive(leg),
+        drive=np.inf if leg.strut is not None or on_carriage else _drive(leg, length),
         force=0.0 if on_carriage else force,
     )
 
 
 def _carriage(leg: model.Leg, twist: Array, reach: Array, force: float) -> CarriageAtPose | None:
     """The carriage of a leg where it gives way; of a crank at the end of its arm. `twist` (6,) of the tip."""
-    spring = _drive(leg)
+    spring = _drive(leg, 0.0)
     if leg.carriage is None or np.isinf(spring):
         return None
     way = twist[:3] - np.cross(twist[3:], reach)  # of the base joint
@@ -184,11 +190,14 @@ def _carriage(leg: model.Leg, twist: Array, reach: Array, force: float) -> Carri
     )
 
 
-def _drive(leg: model.Leg) -> float:
-    """Stiffness of a locked drive [N/m, N m/rad], 0 of a passive leg."""
+def _drive(leg: model.Leg, length: float) -> float:
+    """Stiffness of a locked drive with all springs behind it [N/m, N m/rad], 0 of a passive leg."""
     drive = leg.drive
     if leg.passive:
         return 0.0
+    if leg.gives:
+        softness = sum(float(spring.at_length(np.array(length))) for spring in before_piston(leg))
+        return np.inf if leg.holds_stroke else 1 / softness
     if drive.type == "servo":
         return drive.stiffness
     return drive.feedback.stiffness if drive.type == "force" and drive.feedback else np.inf

@@ -47,21 +47,21 @@ class _Leg:
         self.shapes = shapes
         self.p_vector, self.p = symbols(leg_parameters(shapes), "p")
         self.q, self.qs = symbols(shapes.layout, "q")
-        self.v, vs = symbols(shapes.layout, "v")
+        self.v, self.vs = symbols(shapes.layout, "v")
         self.v_dot, self.lam = symbol("v_dot", shapes.size), symbol("lam", shapes.rows)
         self.command, self.pose, self.load = (
             symbol("command", shapes.commands),
             symbol("pose", 7),
             symbol("load", LOAD_SIZE),
         )
-        self.body = leg(shapes, self.p, self.q, self.v, self.qs, vs)
+        self.body = leg(shapes, self.p, self.q, self.v, self.qs, self.vs)
         self.by_q = Through(x=self.q, y=self.body.theta, of_x=self.body.turn)
         self.servos = {
             shapes.index(name): Servo(
                 stiffness=getattr(self.p, f"{drive}_stiffness"),
                 damping=getattr(self.p, f"{drive}_damping"),
                 q=getattr(self.qs, name),
-                v=getattr(vs, name),
+                v=getattr(self.vs, name),
                 q_cmd=self.command[2 * i],
                 v_cmd=self.command[2 * i + 1],
             )
@@ -114,8 +114,12 @@ class _Leg:
         return load_force(self.body, self.by_q, self.load)
 
     def forces(self) -> SX:
-        """Forces of the drives' springs."""
-        return vertcat(*(servo.force for servo in self.servos.values()))
+        """Forces of the drives' springs; of a stroke that is driven through springs theirs on it, Eq. (T15.11)."""
+        forces = [servo.force for servo in self.servos.values()]
+        if self.shapes.series:
+            series = self.body.series
+            forces[0] -= gradient(series.strain, self.qs.l) + gradient(series.dissipation, self.vs.l)
+        return vertcat(*forces)
 
     def matrices(self) -> NamedFunction:
         """M, D and K at rest under ``lam``, geometric stiffness included, and the closure's derivatives, Eq. (T4.8)."""

@@ -17,7 +17,7 @@ def pose_closure(body: Leg, qs: SimpleNamespace, p: SimpleNamespace, lam: SX, po
     """
     x, R = displaced_pose(pose, step)
     in_platform, axes, tip = matrix33(p.platform_frame), body.tip_axes @ matrix33(p.leg_frame), body.tip
-    if hasattr(qs, "e1"):
+    if hasattr(p, "platform_flexure"):
         tip += axes @ vertcat(qs.e1, qs.e2, qs.e3)
     Q = (R @ in_platform).T @ gimbal(axes, qs)
     force, mu = lam[:3], 0.5 * p.L_c * lam[3:]

@@ -69,6 +69,22 @@ FLEXURE_PARAMETERS: tuple[tuple[str, int], ...] = (
     ("platform_flexure_damping", 36),
 )
 
+#: ... of joints that are held by springs along and across the leg: stiffness and damping across, along [N/m, N s/m].
+SOFT_BASE: tuple[tuple[str, int], ...] = (("base_soft", 2), ("base_soft_damping", 2))
+SOFT_PLATFORM: tuple[tuple[str, int], ...] = (("platform_soft", 2), ("platform_soft_damping", 2))
+
+#: ... of legs whose stroke is driven through springs: these at home, how their compliance grows with the length there
+#: [1/m, 1/m^2], and the rotor with its servo, all by the stroke.
+SERIES_PARAMETERS: tuple[tuple[str, int], ...] = (
+    ("series_stiffness", 1),  # N/m, at home
+    ("series_softening", 2),
+    ("series_home", 1),  # m, length at home
+    ("series_damping", 1),  # N s/m
+    ("rotor_mass", 1),  # kg
+    ("rotor_stiffness", 1),  # N/m, between command and r
+    ("rotor_damping", 1),  # N s/m
+)
+
 #: Physical parameters of the payload in kernel order (name, size); tool from the CoM, in platform axes.
 PAYLOAD_PARAMETERS: tuple[tuple[str, int], ...] = (
     ("mass", 1),  # kg
@@ -114,6 +130,10 @@ class Shapes:
         Displacements of the base joint and of the platform joint (pose closures).
     pivot_spin : bool
         A free spin takes the place of gamma3 among the coordinates that the closure determines.
+    soft_base, soft_platform : bool
+        Displacements of the joints along and across the leg.
+    series : bool
+        Springs between a rotor, whose travel is r, and the stroke l.
     """
 
     a: LateralBasis
@@ -127,6 +147,9 @@ class Shapes:
     tip_body: bool = False
     flexure: bool = False
     pivot_spin: bool = False
+    soft_base: bool = False
+    soft_platform: bool = False
+    series: bool = False
 
     @property
     def layout(self) -> tuple[tuple[str, int], ...]:
@@ -134,9 +157,10 @@ class Shapes:
         angles = ("beta",) if self.planar else ("alpha", "beta")
         amplitudes = (("c", self.axial.count), ("a", self.a.count), ("b", self.b.count))
         gamma = ("gamma1", "gamma2", "gamma3") if self.closure == "pose" else ()
-        there = (("chi", bool(self.carriage)), ("spin", self.spin), ("t", self.torsion))
+        there = (("chi", bool(self.carriage)), ("spin", self.spin), ("t", self.torsion), ("r", self.series))
         more = (*(name for name, has in there if has), *gamma)
-        moved = ("u1", "u2", "u3", "e1", "e2", "e3") if self.flexure else ()
+        ends = (("u", self.flexure or self.soft_base), ("e", self.flexure or self.soft_platform))
+        moved = tuple(f"{end}{k}" for end, has in ends if has for k in (1, 2, 3))
         return (*((name, 1) for name in (*angles, "l")), *amplitudes, *((name, 1) for name in (*more, *moved)))
 
     @property
@@ -159,7 +183,8 @@ class Shapes:
     @property
     def drives(self) -> tuple[tuple[str, str], ...]:
         """Coordinates on which drives have springs, and how their parameters are called."""
-        return (("l", "drive"), ("chi", "carriage")) if self.carriage else (("l", "drive"),)
+        more = (("chi", "carriage", bool(self.carriage)), ("r", "rotor", self.series))
+        return (("l", "drive"), *((name, called) for name, called, there in more if there))
 
     @property
     def commands(self) -> int:
@@ -196,5 +221,8 @@ def leg_parameters(shapes: Shapes) -> tuple[tuple[str, int], ...]:
         (shapes.tip_body and not shapes.planar, TIP_BODY_PARAMETERS),
         (shapes.closure == "pose", POSE_PARAMETERS),
         (shapes.flexure, FLEXURE_PARAMETERS),
+        (shapes.soft_base, SOFT_BASE),
+        (shapes.soft_platform, SOFT_PLATFORM),
+        (shapes.series, SERIES_PARAMETERS),
     )
     return tuple(item for there, table in parts if there for item in table)

@@ -3,25 +3,32 @@
 from dataclasses import dataclass
 from types import SimpleNamespace
 
+import numpy as np
+
 from flexapod.elements.carriage import carriage
 from flexapod.elements.cylinder import cylinder
 from flexapod.elements.distribution import Motion
 from flexapod.elements.flexure import flexure, springs
 from flexapod.elements.frame import Energies
 from flexapod.elements.rotations import small_rotation
+from flexapod.elements.screw import screw
 from flexapod.elements.sliding_piston import sliding_piston, tip_place, tip_turn
+from flexapod.elements.soft_joint import soft_joint
 from flexapod.elements.tip_body import tip_body
 from flexapod.elements.torsion import torsion
 from flexapod.elements.universal import universal
 from flexapod.mechanics.layout import Shapes
 from flexapod.symbolic.lagrange import Lagrangian
-from flexapod.symbolic.vocabulary import SX, symbol, vertcat, zeros
+from flexapod.symbolic.vocabulary import SX, constant, matrix33, symbol, vertcat, zeros
+
+ALONG = constant(np.array([[0.0], [0.0], [1.0]]))  # a leg's own direction
 
 
 @dataclass(frozen=True, kw_only=True)
 class Leg:
     """One leg as expressions: energies, place of the tip in the world, rotation from the tip's axes to the world.
 
+    ``series``: energies of the springs between rotor and stroke, which are among the others.
     ``tip_axes`` is written in ``theta``, symbols for the rotation vector ``turn`` of the tip: derivatives by the many
     amplitudes go through these three.
     """
@@ -33,14 +40,19 @@ class Leg:
     tip_axes: SX
     theta: SX
     turn: SX
+    series: Energies
 
 
 def leg(shapes: Shapes, p: SimpleNamespace, q: SX, v: SX, qs: SimpleNamespace, vs: SimpleNamespace) -> Leg:
     """Energies and tip of one leg from its coordinates; ``qs`` and ``vs`` are the named pieces of q and v."""
     ground, e = carriage(shapes.carriage, p, qs, vs)
     if shapes.flexure:
-        ground = ground.moved(vertcat(qs.u1, qs.u2, qs.u3), vertcat(vs.u1, vs.u2, vs.u3))
+        ground = ground.moved(_three(qs, "u"), _three(vs, "u"))
     frame = universal(ground, qs, vs)
+    if shapes.soft_base:
+        along = ground.axes.T @ frame.axes[:, 2] if shapes.flexure else ALONG
+        e += soft_joint(p.base_soft, p.base_soft_damping, _three(qs, "u"), _three(vs, "u"), along)
+        frame = frame if shapes.flexure else frame.moved(_three(qs, "u"), _three(vs, "u"))
     if shapes.b.count and not shapes.a.count:  # a planar robot's leg does not bend across the plane
         qs, vs = (SimpleNamespace(**vars(part) | {"a": zeros(shapes.b.count)}) for part in (qs, vs))
     s = qs.l - p.mouth  # (T3.6)  free length outside the cylinder
@@ -58,20 +70,28 @@ def leg(shapes: Shapes, p: SimpleNamespace, q: SX, v: SX, qs: SimpleNamespace, v
     e += cylinder(frame, p, vs) + sliding_piston(motion, p)
     if shapes.torsion:
         e += torsion(frame, p, qs, vs)
+    series = screw(p, qs, vs) if shapes.series else Energies()
+    e += series
     if shapes.tip_body:
         e += tip_body(motion, p, shapes.planar)
     if shapes.closure == "pose":
         e += _joints(shapes, p, qs, vs)
+    place = tip_place(motion)
+    if shapes.soft_platform:
+        along = matrix33(p.leg_frame).T @ ALONG if shapes.flexure else ALONG
+        e += soft_joint(p.platform_soft, p.platform_soft_damping, _three(qs, "e"), _three(vs, "e"), along)
+        place = place if shapes.flexure else place + _three(qs, "e")
     theta = symbol("theta", 3)
     lagrangian = Lagrangian(q=q, v=v, kinetic=e.kinetic, potential=e.gravity + e.strain, dissipation=e.dissipation)
     return Leg(
         lagrangian=lagrangian,
         gravity=e.gravity,
         strain=e.strain,
-        tip=frame.origin + frame.axes @ tip_place(motion),
+        tip=frame.origin + frame.axes @ place,
         tip_axes=frame.axes @ small_rotation(theta),
         theta=theta,
         turn=tip_turn(motion),
+        series=series,
     )
 
 
@@ -83,9 +103,13 @@ def _joints(shapes: Shapes, p: SimpleNamespace, qs: SimpleNamespace, vs: SimpleN
     e = springs(p.base_stiffness, p.base_damping, base, base_rate)
     e += springs(p.gamma_stiffness, p.gamma_damping, end, end_rate)
     if shapes.flexure:
-        of_base, of_end = (vertcat(x.u1, x.u2, x.u3) for x in (qs, vs)), (vertcat(x.e1, x.e2, x.e3) for x in (qs, vs))
-        moved, rate = (vertcat(u, x) for u, x in zip(of_base, (base, base_rate), strict=True))
+        moved, rate = vertcat(_three(qs, "u"), base), vertcat(_three(vs, "u"), base_rate)
         e += flexure(p.base_flexure, p.base_flexure_damping, moved, rate)
-        moved, rate = (vertcat(u, x) for u, x in zip(of_end, (end, end_rate), strict=True))
+        moved, rate = vertcat(_three(qs, "e"), end), vertcat(_three(vs, "e"), end_rate)
         e += flexure(p.platform_flexure, p.platform_flexure_damping, moved, rate)
     return e
+
+
+def _three(of: SimpleNamespace, name: str) -> SX:
+    """Displacement of a joint, or its rate."""
+    return vertcat(*(getattr(of, f"{name}{k}") for k in (1, 2, 3)))

@@ -4,7 +4,8 @@ from flexapod.model.actuator import Actuator, ActuatorInitial, ActuatorLoad, Act
 from flexapod.model.chain import Chain, chain_of, chains_of
 from flexapod.model.circle import base_circle, platform_circle
 from flexapod.model.damping import Damping, damping_parts
-from flexapod.model.drive import Drive, Feedback, ForceDrive, PrescribedDrive, ServoDrive
+from flexapod.model.disturbance import CURVES, Disturbance, Floor, Spectrum
+from flexapod.model.drive import Feedback, ForceDrive, PrescribedDrive, ServoDrive
 from flexapod.model.files import (
     PAPER_PRESETS,
     PRESETS,
@@ -16,6 +17,8 @@ from flexapod.model.files import (
     preset,
     preset_text,
 )
+from flexapod.model.geometry import Geometry
+from flexapod.model.heat import Expansion, Gradient, Heat
 from flexapod.model.home import Home
 from flexapod.model.joint import Carriage, Joint, Travel
 from flexapod.model.laws import (
@@ -50,12 +53,16 @@ from flexapod.model.motion import (
 from flexapod.model.payload import Payload
 from flexapod.model.piston import Cylinder, Piston, Strut
 from flexapod.model.robot import Robot
+from flexapod.model.screw import Bearing, Brake, Drive, Encoder, Limits, Nut, Rotor, ScrewDrive
 from flexapod.model.simulation import DEFAULT_TOLERANCE, FIDELITIES, Initial, Simulation
+from flexapod.model.spring import AxialSpring
 from flexapod.model.study import DRIVEN_BY, ActuatorStudy, Study, override
+from flexapod.model.tolerances import LengthSpread, RatioSpread, Spread, Tolerances
 from flexapod.model.write import to_toml
 
 __all__ = [
     "AXES",
+    "CURVES",
     "DEFAULT_TOLERANCE",
     "DRIVEN_BY",
     "FIDELITIES",
@@ -68,7 +75,10 @@ __all__ = [
     "ActuatorLoad",
     "ActuatorMotion",
     "ActuatorStudy",
+    "AxialSpring",
     "AxisMotion",
+    "Bearing",
+    "Brake",
     "Carriage",
     "Chain",
     "CombinedMotion",
@@ -79,36 +89,52 @@ __all__ = [
     "CsvWrench",
     "Cylinder",
     "Damping",
+    "Disturbance",
     "Drive",
+    "Encoder",
+    "Expansion",
     "Feedback",
+    "Floor",
     "ForceDrive",
+    "Geometry",
+    "Gradient",
+    "Heat",
     "Home",
     "Initial",
     "Joint",
     "Leg",
+    "LengthSpread",
+    "Limits",
     "Load",
     "LoadLaw",
     "Material",
     "Motion",
     "MotionLaw",
+    "Nut",
     "OpenValue",
     "Payload",
     "Piston",
     "PrescribedDrive",
     "ProfileLaw",
     "RateLaw",
+    "RatioSpread",
     "Rectangle",
     "Robot",
+    "Rotor",
+    "ScrewDrive",
     "ServoDrive",
     "Simulation",
     "SineLaw",
     "SineWrench",
+    "Spectrum",
     "SpinUpLaw",
+    "Spread",
     "StepLaw",
     "StepWrench",
     "Stroke",
     "Strut",
     "Study",
+    "Tolerances",
     "Travel",
     "Tube",
     "Waypoint",

@@ -4,7 +4,7 @@ from __future__ import annotations
 
 from typing import Annotated, ClassVar, Literal
 
-from pydantic import Field, model_validator
+from pydantic import model_validator
 
 from flexapod.errors import InputError
 from flexapod.model.base import Frozen, Measure, NonNegative, Number, Positive, Series
@@ -12,17 +12,42 @@ from flexapod.model.motion import check_times
 
 
 class PrescribedDrive(Frozen):
-    """The stroke follows the command exactly; its force is a result."""
+    """The stroke follows the command exactly; its force is a result. `backlash`: free travel [m], of a crank [rad]."""
 
     type: Literal["prescribed"] = "prescribed"
+    backlash: Annotated[NonNegative, Measure("length", "angle")] | None = None
+
+    @property
+    def holds(self) -> bool:
+        """Whether it keeps its command, whatever the force."""
+        return True
+
+    @property
+    def pushes(self) -> bool:
+        """Whether it is a force that keeps no position."""
+        return False
 
 
 class ServoDrive(Frozen):
-    """A spring [N/m] and a damper [N s/m] between command and stroke; of a crank [N m/rad, N m s/rad]."""
+    """A spring [N/m] and a damper [N s/m] between command and stroke; of a crank [N m/rad, N m s/rad].
+
+    `backlash`: free travel [m], of a crank [rad].
+    """
 
     type: Literal["servo"] = "servo"
     stiffness: Annotated[Positive, Measure("stiffness", "rotational stiffness")]
     damping: Annotated[NonNegative, Measure("damping", "rotational damping")] = 0.0
+    backlash: Annotated[NonNegative, Measure("length", "angle")] | None = None
+
+    @property
+    def holds(self) -> bool:
+        """Whether it keeps its command, whatever the force."""
+        return False
+
+    @property
+    def pushes(self) -> bool:
+        """Whether it is a force that keeps no position."""
+        return False
 
 
 class Feedback(Frozen):
@@ -50,6 +75,16 @@ class ForceDrive(Frozen):
     value: Annotated[Number, Measure("force", "torque")] | None = None
     feedback: Feedback | None = None
 
+    @property
+    def holds(self) -> bool:
+        """Whether it keeps its command, whatever the force."""
+        return False
+
+    @property
+    def pushes(self) -> bool:
+        """Whether it is a force that keeps no position."""
+        return self.feedback is None or self.feedback.stiffness == 0
+
     @model_validator(mode="after")
     def _complete(self) -> ForceDrive:
         given = [name for name in ("file", "time", "force") if getattr(self, name) is not None]
@@ -68,6 +103,3 @@ class ForceDrive(Frozen):
         if self.time is not None:
             check_times(self.time, len(self.time), jumps=True)
         return self
-
-
-Drive = Annotated[PrescribedDrive | ServoDrive | ForceDrive, Field(discriminator="type")]

@@ -13,6 +13,7 @@ from flexapod.errors import InputError, closest
 from flexapod.files import LARGEST_TEXT, check_name, read_text
 from flexapod.model.motion import AxisMotion
 from flexapod.model.read_actuator import read_actuator, read_drives, read_release
+from flexapod.model.read_disturbance import read_disturbance
 from flexapod.model.read_motion import read_initial, read_load, read_motion, read_simulation, unused_settings
 from flexapod.model.read_robot import platform_fixed, read_robot
 from flexapod.model.robot import Robot
@@ -22,8 +23,18 @@ from flexapod.model.study import ActuatorStudy, Study
 from flexapod.model.toml import parsed
 
 PAPER_PRESETS = ("paper-robot", "paper-robot-radii", "paper-actuator")
-PRESETS = (*PAPER_PRESETS, "tripod", "flight-simulator")
+PRESETS = (*PAPER_PRESETS, "tripod", "flight-simulator", "machine-hexapod", "small-hexapod", "nano-hexapod")
+RobotPreset = Literal[
+    "paper-robot",
+    "paper-robot-radii",
+    "tripod",
+    "flight-simulator",
+    "machine-hexapod",
+    "small-hexapod",
+    "nano-hexapod",
+]
 AT_REST = AxisMotion(type="heave", amplitude=0.0, duration=1.0)
+_AS_BUILT = ("geometry", "heat", "tolerances")
 _COMMON = ("motion", "load", "initial", "simulation")
 
 
@@ -94,7 +105,7 @@ def _tables(text: str, path: str | Path | None) -> Section:
 
 
 @overload
-def preset(name: Literal["paper-robot", "paper-robot-radii", "tripod", "flight-simulator"]) -> Study: ...
+def preset(name: RobotPreset) -> Study: ...
 @overload
 def preset(name: Literal["paper-actuator"]) -> ActuatorStudy: ...
 @overload
@@ -143,18 +154,20 @@ def _lookup(data: object, path: str) -> str:
 
 
 def _study(top: Section, text: str) -> Study:
-    top.only("robot", "payload", "leg", *_COMMON)
+    top.only("robot", "payload", "leg", *_AS_BUILT, *_COMMON, "disturbance")
     fixed = platform_fixed(top)
     top.need("robot", *(() if fixed else ("payload",)), "leg", *(() if fixed else ("motion",)))
     settings = top.section("simulation")
     simulation = read_simulation(settings, basis="tip-load", bases=("tip-load", "clamped-free"))
+    robot = read_robot(top)
     return top.build(
         Study,
-        robot=read_robot(top),
+        robot=robot,
         motion=read_motion(top.child(top.data["motion"], "motion")) if "motion" in top else AT_REST,
         load=read_load(top.section("load")),
         initial=read_initial(top.section("initial")),
         simulation=simulation,
+        disturbance=read_disturbance(top, robot),
         source_text=text,
         path=top.file,
         notes=(*unused_settings(settings, simulation), *_unused_axial_modes(top, simulation)),

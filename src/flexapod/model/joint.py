@@ -26,6 +26,8 @@ class Joint(Frozen):
     `damping` [N m s/rad] beside `bending` and `torsion`, or `loss`, a loss factor of all springs of the joint, which is
     made viscous at home (T13.19); `stiffness_damping` [N s/m], `stiffness_loss`: of `stiffness` along the leg's axes by
     itself.
+    `play` [m]: free travel along the leg, from one end to the other. `eccentricity` [m]: of its centre from the axis of
+    the leg.
     """
 
     derived: ClassVar[tuple[str, ...]] = ("leg_axes", "stiffness_damping", "stiffness_loss")
@@ -37,6 +39,8 @@ class Joint(Frozen):
     damping: Annotated[NonNegative, Measure("rotational damping")] | None = None
     loss: Annotated[NonNegative, Measure("number")] | None = None
     leg_axes: bool = False
+    play: Annotated[NonNegative, Measure("length")] | None = None
+    eccentricity: Annotated[NonNegative, Measure("length")] | None = None
     stiffness_damping: Annotated[NonNegative, Measure("damping")] | None = None
     stiffness_loss: Annotated[NonNegative, Measure("number")] | None = None
 
@@ -44,6 +48,11 @@ class Joint(Frozen):
     def lossy(self) -> bool:
         """Whether a loss factor damps a spring of it."""
         return bool(self.loss or self.stiffness_loss)
+
+    @property
+    def loss_of_stiffness(self) -> float | None:
+        """Loss factor of `stiffness`: its own, or that of the joint."""
+        return self.loss if self.stiffness_loss is None else self.stiffness_loss
 
     @model_validator(mode="after")
     def _damps_what_is_there(self) -> Joint:
@@ -78,6 +87,21 @@ class Joint(Frozen):
                 allowed="either of the two",
             )
         return self
+
+    @property
+    def across_and_along(self) -> tuple[float, float] | None:
+        """Stiffness across and along the leg [N/m], where the joint is held by such springs alone."""
+        if self.stiffness is None or self.stiffness[3:].any():
+            return None
+        place = self.stiffness[:3, :3]
+        across, along = float(place[0, 0]), float(place[2, 2])
+        plain = np.array_equal(place, np.diag([across, across, along])) and (self.leg_axes or across == along)
+        return (across, along) if plain and across > 0 and along > 0 else None
+
+    @property
+    def flexes(self) -> bool:
+        """Whether its place gives way in axes of base or platform, or together with its angles."""
+        return self.stiffness is not None and self.across_and_along is None
 
 
 class Travel(Frozen):

@@ -10,9 +10,11 @@ from flexapod.errors import InputError
 from flexapod.model.base import Frozen, Measure, NonNegative, Positive, Vec3
 from flexapod.model.chain import Chain, chain_of
 from flexapod.model.damping import BodyDamping, damping_parts
-from flexapod.model.drive import Drive, PrescribedDrive
+from flexapod.model.drive import ForceDrive, PrescribedDrive
 from flexapod.model.joint import Carriage, Joint
 from flexapod.model.piston import Cylinder, Piston, Strut
+from flexapod.model.screw import Drive, ScrewDrive
+from flexapod.model.spring import AxialSpring
 from flexapod.words import number, text
 
 NOTHING = Cylinder(mass=0.0, mouth=0.0)  # in place of the cylinder that a strut does not have
@@ -42,8 +44,9 @@ class Leg(Frozen):
 
     `cylinder` and `piston` of a leg with a stroke, or `strut` of fixed length (then `piston` is the strut, `cylinder`
     nothing); `carriage`: what moves the foot, where the letters have one; `base_joint`, `platform_joint`;
-    `passive`: nothing drives it; `damping`: modal damping ratio of the piston, or `Damping` with a part in proportion
-    to its stiffness; `axial_modes`: number of axial shapes, the static one first.
+    `springs` along it, in series with its other parts; `passive`: nothing drives it; `damping`: modal damping ratio of
+    the piston, or `Damping` with a part in proportion to its stiffness; `axial_modes`: number of axial shapes, the
+    static one first.
     `u_axis` stands for the axis of `base_joint`.
     """
 
@@ -55,6 +58,7 @@ class Leg(Frozen):
     carriage: Carriage | None = None
     base_joint: Joint = Joint()
     platform_joint: Joint = Joint()
+    springs: tuple[AxialSpring, ...] = ()
     stroke: Stroke | None = None
     damping: BodyDamping = 0.0
     drive: Drive = PrescribedDrive()
@@ -80,9 +84,30 @@ class Leg(Frozen):
         return chain_of(self.chain)
 
     @property
+    def swings(self) -> bool:
+        """Whether both its joints turn freely: nothing holds it across."""
+        letters = self.letters
+        return letters.base in ("U", "S") and letters.platform == "S"
+
+    @property
     def driven(self) -> str:
         """What its drive moves: "stroke", "carriage", "" of a passive leg."""
         return "" if self.passive else self.letters.driven
+
+    @property
+    def screw(self) -> ScrewDrive | None:
+        """Its drive, if that is a screw."""
+        return self.drive if isinstance(self.drive, ScrewDrive) else None
+
+    @property
+    def gives(self) -> bool:
+        """Whether springs stand between its drive and its piston."""
+        return self.screw is not None or any(spring.at == "nut" for spring in self.springs)
+
+    @property
+    def holds_stroke(self) -> bool:
+        """Whether a drive that holds its command holds the stroke, not a rotor before it."""
+        return self.screw.holds_stroke if self.screw is not None else not self.gives
 
     def _shown(self) -> dict[str, str]:
         letters = {} if self.chain == "UPS" else {"chain": self.chain + (", passive" if self.passive else "")}
@@ -121,6 +146,36 @@ class Leg(Frozen):
             raise _misfit(self.chain, "chain", "has no drive: no P, no C, no R before the base joint", "passive = true")
         if self.passive and self.drive != PrescribedDrive():
             raise _misfit(self.chain, "drive", "drives a passive leg", "a drive, or passive = true")
+        crooked = self.piston.bow or self.base_joint.eccentricity or self.platform_joint.eccentricity
+        if crooked and not self.swings:
+            key = "piston.bow" if self.piston.bow else "platform_joint.eccentricity"
+            raise _misfit(self.chain, key, "is of legs that no joint holds across", "legs UPS, SPS and their like")
+        return self
+
+    @model_validator(mode="after")
+    def _springs_where_they_act(self) -> Leg:
+        names = [spring.name for spring in self.springs]
+        for spring in self.springs:
+            if names.count(spring.name) > 1:
+                raise InputError("stands there twice", key=f"springs.{spring.name}", allowed="each name once")
+            joint = {"base": self.base_joint, "platform": self.platform_joint}.get(spring.at)
+            if joint is not None and joint.flexes:
+                raise InputError(
+                    "is in series with a joint whose stiffness has axes of its own",
+                    key=f"springs.{spring.name}",
+                    allowed='at = "nut", or a joint of stiffness { axial, radial }',
+                )
+        if not self.gives:
+            return self
+        key = "drive" if self.screw is not None else "springs"
+        if self.driven != "stroke":
+            raise _misfit(self.chain, key, "belongs to a driven stroke", 'at = "base" or "platform" of springs')
+        if isinstance(self.drive, ForceDrive):
+            raise InputError(
+                "does nothing behind a force drive: a force is the same at both ends of a spring",
+                key=key,
+                allowed='at = "base" or "platform", or a drive that has a position',
+            )
         return self
 
 

@@ -9,29 +9,36 @@ from typing import Annotated
 from pydantic import Field, model_validator
 
 from flexapod.errors import InputError
-from flexapod.model.base import Frozen, Measure, Positive
+from flexapod.model.base import Frozen, Measure, Number, Positive
 
 POISSON = 0.3  # where no other is given
 
 
 class Material(Frozen):
-    """Elastic modulus E [Pa], density [kg/m^3], yield stress [Pa] and Poisson's ratio of a beam's material."""
+    """Material of a beam.
+
+    `E` [Pa], `density` [kg/m^3], `yield_stress` [Pa], `poisson`'s ratio and thermal `expansion` [1/K]; None: not known.
+    """
 
     name: str
     E: Annotated[Positive, Measure("stress")]
     density: Annotated[Positive, Measure("density")]
     yield_stress: Annotated[Positive, Measure("stress")] | None = None
     poisson: float = Field(default=POISSON, strict=True, ge=-0.5, le=0.5)
+    expansion: Annotated[Number, Measure("expansion")] | None = None
 
 
 # E and density of steel: Table 3 of the paper. The others are handbook values at room temperature
 # (aluminium: 6061-T6; titanium: Ti-6Al-4V annealed; cfrp: standard-modulus tube, fibres mostly along the axis, its
 # "yield" being the compressive strength); the yield stress of steel is that of a quenched and tempered shaft (42CrMo4).
+# Expansion: of steel the middle of the two screw makers' values (HIWIN BS-08-2-EN: 11.6e-6, THK A-715: 12e-6);
+# aluminium and titanium: the producers' data sheets of these alloys, 20 to 100 degC; cfrp: along the fibres of
+# standard-modulus laminates it lies between -1e-6 and 1e-6.
 _TABLE = (
-    Material(name="steel", E=200e9, density=7800.0, yield_stress=650e6),
-    Material(name="aluminium", E=68.9e9, density=2700.0, yield_stress=276e6, poisson=0.33),
-    Material(name="titanium", E=113.8e9, density=4430.0, yield_stress=880e6, poisson=0.34),
-    Material(name="cfrp", E=120e9, density=1600.0, yield_stress=600e6),
+    Material(name="steel", E=200e9, density=7800.0, yield_stress=650e6, expansion=11.8e-6),
+    Material(name="aluminium", E=68.9e9, density=2700.0, yield_stress=276e6, poisson=0.33, expansion=23.6e-6),
+    Material(name="titanium", E=113.8e9, density=4430.0, yield_stress=880e6, poisson=0.34, expansion=8.6e-6),
+    Material(name="cfrp", E=120e9, density=1600.0, yield_stress=600e6, expansion=0.0),
 )
 MATERIALS = MappingProxyType({material.name: material for material in _TABLE})
 

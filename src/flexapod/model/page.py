@@ -14,6 +14,7 @@ import numpy as np
 
 from flexapod.model.fields import Field, Notes, listened
 from flexapod.model.material import MATERIALS
+from flexapod.model.read_disturbance import FLOOR, FORCE_NOISE, WRENCH_NOISE
 from flexapod.model.reference import Entry, plain_path, reference
 from flexapod.model.tables import POSE, WRENCH, forces, header
 from flexapod.units import COMMON_UNITS, DIMENSIONS
@@ -28,6 +29,13 @@ _TABLES = {
         "one at least besides the time; others are 0",
     ),
     '`leg.drive` with `law = "csv"`': (forces(6), "all columns, one for each leg"),
+    "`heat.file`": (
+        {"piston": "temperature", "cylinder 3": "temperature"},
+        "one at least besides the time: base, platform, piston, cylinder, screw, or one of the last three of a leg",
+    ),
+    "`disturbance.floor.spectrum`": (FLOOR["acceleration"], "one at least besides the frequency; others are 0"),
+    "`disturbance.wrench.spectrum`": (WRENCH_NOISE, "one at least besides the frequency; others are 0"),
+    "`disturbance.force_noise.spectrum`": (FORCE_NOISE, "or one for each leg: leg 1, leg 2; others are 0"),
     "`motion.rotation`": ({"value": "angle"}, "both columns"),
     "`motion.extension`": ({"value": "length"}, "both columns"),
     "`load.torque`": ({"value": "torque"}, "both columns"),
@@ -211,10 +219,18 @@ def _choices() -> Iterator[str]:
         yield _table((name, "what it is"), [(f"`{key}`", words) for key, words in choices.items()])
     yield "`material`:"
     rows = [
-        (f"`{name}`", f"{m.E / 1e9:g}", f"{m.density:g}", "" if m.yield_stress is None else f"{m.yield_stress / 1e6:g}")
+        (
+            f"`{name}`",
+            f"{m.E / 1e9:g}",
+            f"{m.density:g}",
+            "" if m.yield_stress is None else f"{m.yield_stress / 1e6:g}",
+            f"{m.poisson:g}",
+            "" if m.expansion is None else f"{m.expansion * 1e6:g}",
+        )
         for name, m in MATERIALS.items()
     ]
-    yield _table(("material", "E [GPa]", "density [kg/m^3]", "yield_stress [MPa]"), rows)
+    head = ("material", "E [GPa]", "density [kg/m^3]", "yield_stress [MPa]", "poisson", "expansion [1e-6/K]")
+    yield _table(head, rows)
 
 
 def _tables() -> Iterator[str]:
@@ -226,7 +242,10 @@ def _tables() -> Iterator[str]:
     )
     yield _table(
         ("Read by", "First line", "Columns"),
-        [(where, f"`{header(columns)}`", needed) for where, (columns, needed) in _TABLES.items()],
+        [
+            (where, f"`{header(columns, 'frequency' if 'spectrum' in where else 'time')}`", needed)
+            for where, (columns, needed) in _TABLES.items()
+        ],
     )
     yield f"```csv\n{reference().files['path.csv'].strip()}\n```"
 

@@ -35,7 +35,8 @@ class Piston(Frozen):
 
     `length` [m], whole piston; `EA` [N]; `EI` [N m^2]; `rhoA` [kg/m], 0 for a spring without mass; `diameter`,
     `inner_diameter` [m], `E` [Pa], `density` [kg/m^3] and `yield_stress` [Pa] where known; `axial_inertia` [kg m^2];
-    `poisson`, ratio of a round section; `GJ` [N m^2], torsional stiffness, of another one.
+    `poisson`, ratio of a round section; `GJ` [N m^2], torsional stiffness, of another one; `expansion` [1/K] by heat;
+    `bow` [m]: of its axis, at rest and without load, from the line of its ends.
     """
 
     length: Annotated[Positive, Measure("length")]
@@ -50,6 +51,8 @@ class Piston(Frozen):
     axial_inertia: Annotated[NonNegative, Measure("inertia")] = 0.0
     poisson: float = Field(default=POISSON, strict=True, ge=-0.5, le=0.5)
     GJ: Annotated[Positive, Measure("bending stiffness")] | None = None
+    expansion: Annotated[Number, Measure("expansion")] | None = None
+    bow: Annotated[NonNegative, Measure("length")] | None = None
 
     @model_validator(mode="after")
     def _sensible(self) -> Self:
@@ -68,7 +71,15 @@ class Piston(Frozen):
         return self
 
     @classmethod
-    def round(cls, *, length: float, section: Tube, material: Material, axial_inertia: float = 0.0) -> Self:
+    def round(
+        cls,
+        *,
+        length: float,
+        section: Tube,
+        material: Material,
+        axial_inertia: float = 0.0,
+        bow: float | None = None,
+    ) -> Self:
         """A piston of round section: EA, EI and rhoA follow from section and material."""
         return cls(
             length=length,
@@ -82,6 +93,8 @@ class Piston(Frozen):
             yield_stress=material.yield_stress,
             axial_inertia=axial_inertia,
             poisson=material.poisson,
+            expansion=material.expansion,
+            bow=bow,
         )
 
     @property
@@ -121,7 +134,7 @@ class Strut(Piston):
         return self.diameter if self.section is None else self.section.thickness
 
     @classmethod
-    def strip(cls, *, length: float, section: Strip, material: Material) -> Strut:
+    def strip(cls, *, length: float, section: Strip, material: Material, bow: float | None = None) -> Strut:
         """A strip: EA, EI across its thickness and rhoA follow from section and material."""
         size = Rectangle(width=section.width, height=section.thickness)
         return cls(
@@ -132,7 +145,9 @@ class Strut(Piston):
             E=material.E,
             density=material.density,
             yield_stress=material.yield_stress,
+            expansion=material.expansion,
             section=section,
+            bow=bow,
         )
 
 

@@ -23,7 +23,7 @@ _DRIVEN = {  # what a load drives: the load and its dimension, the dimensions of
 
 def read_actuator(section: Section) -> Actuator:
     """The beam and its hub."""
-    made_of = ("E", "density", "yield_stress", "poisson")
+    made_of = ("E", "density", "yield_stress", "poisson", "expansion")
     section.only(*columns_of(Actuator), *made_of)
     if "section" not in section:
         section.need(*_STIFFNESS)

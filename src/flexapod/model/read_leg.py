@@ -11,19 +11,22 @@ from flexapod.errors import InputError
 from flexapod.model.axes import axis_of
 from flexapod.model.chain import chain_of
 from flexapod.model.columns import columns_of
-from flexapod.model.drive import Drive, ForceDrive, PrescribedDrive, ServoDrive
+from flexapod.model.drive import ForceDrive, PrescribedDrive, ServoDrive
 from flexapod.model.joint import NO_DIRECTION, Carriage, Joint
 from flexapod.model.leg import Leg
 from flexapod.model.material import MATERIALS, Material, Tube
 from flexapod.model.piston import Piston, Strip, Strut
+from flexapod.model.screw import Drive, ScrewDrive
 from flexapod.model.section import Section
+from flexapod.model.spring import AxialSpring
 from flexapod.model.tables import forces
 from flexapod.typing import Array
 
 P = TypeVar("P", bound=Piston)
 _STIFFNESS = ("EI", "EA", "rhoA")
-_SLIDING = ("stiffness", "damping", "force")
-_TURNING = ("rotational stiffness", "rotational damping", "torque")
+_SLIDING = ("stiffness", "damping", "force", "length")
+_TURNING = ("rotational stiffness", "rotational damping", "torque", "angle")
+_OF_MATERIAL = ("E", "density", "yield_stress", "poisson", "expansion")
 _TRANSLATIONS, _FORCES = ("stiffness",) * 3, ("force",) * 3
 
 
@@ -52,6 +55,7 @@ def read_leg(section: Section, number: int, count: int, chain: str, places: tupl
             "carriage": None if carriage is None else _carriage(carriage, base, normal),
             "base_joint": _joint(section, "base_joint", base, normal),
             "platform_joint": _joint(section, "platform_joint", platform, normal),
+            "springs": _springs(section.section("springs")),
             "drive": _drive(section.section("drive"), number, count, _TURNING if letters.turning else _SLIDING),
         }
 
@@ -89,14 +93,22 @@ def _stiffness(section: Section) -> dict[str, object]:
         inner.need("axial", "radial")
         if "damping" in inner and "loss" in inner:
             raise inner.error("is given together with loss", "damping", allowed="either of the two")
-        axial, radial = inner.number("axial", "stiffness"), inner.number("radial", "stiffness")
-        own = {
+        axial, radial = (_above_zero(inner, name) for name in ("axial", "radial"))
+        return {
+            "stiffness": np.diag([radial, radial, axial, 0, 0, 0]),
+            "leg_axes": True,
             "stiffness_damping": inner.number("damping", "damping"),
             "stiffness_loss": inner.number("loss", "number"),
         }
-        return {"stiffness": np.diag([radial, radial, axial, 0, 0, 0]), "leg_axes": True, **own}  # type: ignore[list-item]
-    number = section.number("stiffness", "stiffness")
+    number = _above_zero(section, "stiffness") if "stiffness" in section else section.number("stiffness", "stiffness")
     return {} if number is None else {"stiffness": np.diag([number] * 3 + [0.0] * 3)}
+
+
+def _above_zero(section: Section, name: str) -> float:
+    value = section.number(name, "stiffness")
+    if value is None or not value > 0:
+        raise section.error("holds nothing", name, allowed="above 0 N/m; left out: rigid")
+    return value
 
 
 def _carriage(section: Section, base: Array, normal: Array) -> Carriage:
@@ -146,6 +158,7 @@ def _piston(section: Section) -> Piston:
         section=section.build(Tube, **_diameters(section)),
         material=read_material(section),
         axial_inertia=section.number("axial_inertia", "inertia"),
+        bow=section.number("bow", "length"),
     )
 
 
@@ -165,11 +178,13 @@ def _strut(section: Section) -> Strut:
             section=round_section,
             material=read_material(section),
             axial_inertia=axial_inertia,
+            bow=section.number("bow", "length"),
         )
     for name in ("diameter", "inner_diameter", "axial_inertia"):
         if name in section:
             raise section.error("is given together with section", name, allowed="either of the two")
-    return section.build(Strut.strip, length=length, section=strip.read(Strip), material=read_material(section))
+    parts = {"section": strip.read(Strip), "material": read_material(section)}
+    return section.build(Strut.strip, length=length, bow=section.number("bow", "length"), **parts)
 
 
 def _given(section: Section, model: type[P]) -> P:
@@ -195,14 +210,37 @@ def _drive(section: Section | None, number: int, count: int, among: tuple[str, .
         found = section.table(forces(count, among[2]), needed=True, jumps=True)
         return {"time": found["time"], "force": found[f"leg {number}"]}
 
-    kinds = (PrescribedDrive, ServoDrive, ForceDrive)
-    csv = {ForceDrive: lambda s: s.read(ForceDrive, among=among, then=table)}
-    return section.one_of(kinds, among=among, readers=csv)
+    kinds = (PrescribedDrive, ServoDrive, ForceDrive, ScrewDrive)
+    readers = {
+        ForceDrive: lambda s: s.read(ForceDrive, among=among, then=table),
+        ScrewDrive: lambda s: s.read(
+            ScrewDrive, among=_TURNING, also=_OF_MATERIAL, then=lambda s: {"material": read_material(s)}
+        ),
+    }
+    return section.one_of(kinds, among=among, readers=readers)
+
+
+def _springs(section: Section | None) -> tuple[AxialSpring, ...] | None:
+    """Springs along a leg by name: a number, or a table."""
+    if section is None:
+        return None
+    section.only(*section.data)
+    found = []
+    for name, value in section.data.items():
+        if isinstance(value, Mapping):
+            found.append(section.child(value, name).read(AxialSpring, then=lambda _, name=name: {"name": name}))
+        else:
+            found.append(section.build(AxialSpring, name=name, stiffness=_above_zero(section, name)))
+    return tuple(found)
 
 
 def read_material(section: Section) -> Material:
     """Material of a section that has `material`, or `E` and `density`; the others may be set in both cases."""
-    own = {"yield_stress": section.number("yield_stress", "stress"), "poisson": section.number("poisson", "number")}
+    own = {
+        "yield_stress": section.number("yield_stress", "stress"),
+        "poisson": section.number("poisson", "number"),
+        "expansion": section.number("expansion", "expansion"),
+    }
     if "material" in section:
         for name in ("E", "density"):
             if name in section:

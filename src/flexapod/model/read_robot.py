@@ -15,6 +15,7 @@ from flexapod.model.drive import ForceDrive
 from flexapod.model.home import Home
 from flexapod.model.leg import Leg
 from flexapod.model.payload import Payload
+from flexapod.model.read_built import read_built
 from flexapod.model.read_leg import read_leg
 from flexapod.model.robot import Robot
 from flexapod.model.section import Section
@@ -58,6 +59,7 @@ def read_robot(top: Section) -> Robot:
         legs=tuple(legs),
         plane=cast("Plane | None", plane),
         platform_fixed=fixed,
+        **read_built(top, len(chains)),
     )
 
 

@@ -6,6 +6,7 @@ import math
 
 from flexapod.model.actuator import Actuator
 from flexapod.model.drive import ServoDrive
+from flexapod.model.heat import Heat
 from flexapod.model.leg import Leg
 from flexapod.model.robot import Robot
 from flexapod.words import number
@@ -21,7 +22,16 @@ def robot_remarks(robot: Robot) -> tuple[str, ...]:
     for i, leg in enumerate(robot.legs, start=1):
         for remark in (*_leg_remarks(leg), *_undamped(leg, share)):
             numbers.setdefault(remark, []).append(i)
+        if robot.heat is not None and robot.heat.warms("piston") and _expands_unknown(robot.heat, leg):
+            numbers.setdefault(_LIKE_STEEL, []).append(i)
     return tuple(f"{_legs(which, robot.count)}: {remark}" for remark, which in numbers.items())
+
+
+_LIKE_STEEL = "the piston's expansion is not known, and steel's is taken: give heat.expansion.piston"
+
+
+def _expands_unknown(heat: Heat, leg: Leg) -> bool:
+    return leg.piston.expansion is None and (heat.expansion is None or heat.expansion.piston is None)
 
 
 def actuator_remarks(actuator: Actuator, basis: str | None) -> tuple[str, ...]:

@@ -11,10 +11,13 @@ from pydantic import Field, WrapValidator, computed_field, model_validator
 from flexapod.errors import InputError
 from flexapod.model.axes import Plane, normal_of, own_view
 from flexapod.model.base import Frozen, Joints, Measure, Vec3
+from flexapod.model.geometry import Geometry
+from flexapod.model.heat import Heat
 from flexapod.model.home import Home, carriage_home, foot
 from flexapod.model.leg import Leg
 from flexapod.model.payload import Payload, millimetres
-from flexapod.model.robot_checks import check_counts, check_leg, check_plane, check_spread
+from flexapod.model.robot_checks import check_built, check_counts, check_leg, check_plane, check_spread
+from flexapod.model.tolerances import Tolerances
 from flexapod.typing import Array
 from flexapod.words import number, text
 
@@ -28,7 +31,8 @@ class Robot(Frozen):
     `base_joints` (n, 3) [m] in world axes, for a leg with a carriage where that is at 0 (slider) or its axis (crank);
     `platform_joints` (n, 3) [m] in the platform frame; `home`: pose of that frame at home, for which `home_height`
     [m] alone stands where the frame is then above the origin and parallel to the world; `gravity` (3,) [m/s^2] in world
-    axes; `plane`: all moves in it; `platform_fixed`: the platform is held, and `payload` may be None.
+    axes; `plane`: all moves in it; `platform_fixed`: the platform is held, and `payload` may be None; `geometry`,
+    `heat`: how it differs from all this as it is built and warm, `tolerances`: as it may.
     """
 
     type: str = "6-UPS"
@@ -40,6 +44,9 @@ class Robot(Frozen):
     legs: tuple[Leg, ...]
     plane: Plane | None = None
     platform_fixed: bool = False
+    geometry: Geometry | None = None
+    heat: Heat | None = None
+    tolerances: Tolerances | None = None
 
     def __init__(self, **fields: Any) -> None:
         if (height := fields.pop("home_height", None)) is not None:
@@ -54,6 +61,7 @@ class Robot(Frozen):
         check_plane(self)
         for i, length in enumerate(self.home_lengths, start=1):
             check_leg(i, self.legs[i - 1], float(length))
+        check_built(self)
         return self
 
     def _shown(self) -> dict[str, str]:

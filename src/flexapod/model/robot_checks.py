@@ -49,6 +49,36 @@ def check_counts(robot: Robot) -> None:
             raise InputError("differs between legs", key=f"leg.{name}", value=sorted(values), allowed=allowed)
 
 
+def check_built(robot: Robot) -> None:
+    """Refuse errors and temperatures of what the robot does not have."""
+    geometry, heat, count = robot.geometry, robot.heat, robot.count
+    if geometry is not None:
+        geometry.check(count, robot.normal if robot.plane else None)
+        if geometry.lead is not None and not any(_has_lead(leg) for leg in robot.legs):
+            raise InputError(
+                "is of drives that this robot does not have", key="geometry.lead", allowed="driven strokes and sliders"
+            )
+    if heat is not None:
+        heat.check(count)
+        if heat.warms("cylinder") and all(leg.strut is not None for leg in robot.legs):
+            raise InputError("is of a part that no leg has", key="heat.cylinder", next_step="A strut is a piston here")
+        if heat.gradient is not None and not all(leg.swings for leg in robot.legs):
+            raise InputError(
+                "bends legs whose joints carry moments, and what that does is not known here",
+                key="heat.gradient",
+                allowed="legs UPS, SPS and their like",
+            )
+        if heat.warms("screw") and all(leg.drive.type != "screw" for leg in robot.legs):
+            raise InputError(
+                "is of a part that no leg has", key="heat.screw", allowed='legs whose drive has type = "screw"'
+            )
+
+
+def _has_lead(leg: Leg) -> bool:
+    slides = leg.carriage is not None and leg.carriage.kind == "slider"
+    return leg.driven == "stroke" or (leg.driven == "carriage" and slides)
+
+
 def check_spread(robot: Robot) -> None:
     """Refuse joints that all lie at one point."""
     if len(robot.legs) == 1 or robot.platform_fixed:

@@ -99,7 +99,15 @@ class Section(Values):
             raise self.error("is no direction here: the joint lies on the axis", name, allowed="a vector, or vertical")
         return found
 
-    def table(self, columns: Mapping[str, str], *, needed: bool = False, jumps: bool = False) -> dict[str, Array]:
-        """Columns of the CSV file under `file` (`model.tables`)."""
-        self.need("file")
-        return read_table(self.folder / str(self.text("file")), columns, needed=needed, jumps=jumps)
+    def table(
+        self,
+        columns: Mapping[str, str],
+        *,
+        needed: bool = False,
+        jumps: bool = False,
+        name: str = "file",
+        along: str = "time",
+    ) -> dict[str, Array]:
+        """Columns of the CSV file under `file` or another name (`model.tables`)."""
+        self.need(name)
+        return read_table(self.folder / str(self.text(name)), columns, needed=needed, jumps=jumps, along=along)

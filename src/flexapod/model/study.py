@@ -11,6 +11,7 @@ from flexapod.errors import InputError
 from flexapod.model.actuator import Actuator, ActuatorInitial, ActuatorLoad, ActuatorMotion
 from flexapod.model.axes import plane_order
 from flexapod.model.base import Frozen
+from flexapod.model.disturbance import Disturbance
 from flexapod.model.laws import Load
 from flexapod.model.motion import AXES, Motion, moved_axes
 from flexapod.model.remarks import actuator_remarks, robot_remarks
@@ -66,7 +67,7 @@ class _Documented(Frozen):
 
 
 class Study(_Documented):
-    """A robot, its motion, load, start and simulation settings.
+    """A robot, its motion, load, start and simulation settings, and what shakes it.
 
     `source_text`: the whole study as TOML, the file as it was read or, where it was built or changed in Python, written
     anew; `path`: where it was read; `notes`: remarks made on reading it.
@@ -77,6 +78,13 @@ class Study(_Documented):
     load: Load = Load()
     initial: Initial = Initial()
     simulation: Simulation = Simulation()
+    disturbance: Disturbance | None = None
+
+    @model_validator(mode="after")
+    def _disturbance(self) -> Self:
+        if self.disturbance is not None:
+            self.disturbance.check(self.robot.count)
+        return self
 
     @model_validator(mode="after")
     def _basis(self) -> Self:

@@ -25,7 +25,7 @@ _HEADER = re.compile(r"^\s*(.+?)\s*\[\s*(.+?)\s*\]\s*$")
 
 
 def read_table(
-    path: Path, columns: Mapping[str, str], *, needed: bool = False, jumps: bool = False
+    path: Path, columns: Mapping[str, str], *, needed: bool = False, jumps: bool = False, along: str = "time"
 ) -> dict[str, Array]:
     """Columns of a CSV file in SI units, by name.
 
@@ -36,46 +36,51 @@ def read_table(
     path : Path
         The file.
     columns : Mapping
-        Allowed columns besides ``time`` and their dimension (see `flexapod.units`).
+        Allowed columns besides the first and their dimension (see `flexapod.units`).
     needed : bool
         Whether all of them must be there; otherwise at least one.
     jumps : bool
         Whether two rows may stand at one instant: before and after a jump.
+    along : str
+        The first column, ``time`` or ``frequency``.
 
     Returns
     -------
     dict
-        ``time`` and the columns found, each (n,), SI.
+        The first and the columns found, each (n,), SI.
 
     Raises
     ------
     InputError
         If the file cannot be read, a column is unknown or missing, a cell is empty or no finite number, or the
-        instants do not start at 0 and increase, apart from ``jumps``; with the line number.
+        instants do not start at 0 and increase, apart from ``jumps``, or a spectrum is none; with the line number.
     """
     try:
         text = read_text(path, LARGEST_TABLE)
     except OSError as error:
         raise _unreadable(path, str(error.strerror)) from None
     read = _read if len(text) < MOST_KEPT else _read.__wrapped__
-    return dict(read(path, text, tuple(columns.items()), needed=needed, jumps=jumps))
+    return dict(read(path, text, tuple(columns.items()), needed=needed, jumps=jumps, along=along))
 
 
 @lru_cache(maxsize=16)  # a sweep reads the tables of its study at every point
 def _read(
-    path: Path, text: str, allowed: tuple[tuple[str, str], ...], *, needed: bool, jumps: bool
+    path: Path, text: str, allowed: tuple[tuple[str, str], ...], *, needed: bool, jumps: bool, along: str
 ) -> dict[str, Array]:
     lines, columns = _lines(path, text), dict(allowed)
     if not lines:
-        raise InputError("is empty", file=path, next_step=f"First line: {header(columns)}")
+        raise InputError("is empty", file=path, next_step=f"First line: {header(columns, along)}")
     number, cells = lines[0]
-    factors = _header(path, number, cells, {"time": "time", **columns})
-    missing = [name for name in ("time", *columns) if name not in factors]
-    if "time" in missing or (needed and missing) or len(missing) == len(columns):
-        raise InputError(f"has no column {missing[0]!r}", file=path, key=f"line {number}", allowed=header(columns))
+    factors = _header(path, number, cells, {along: along, **columns})
+    missing = [name for name in (along, *columns) if name not in factors]
+    if along in missing or (needed and missing) or len(missing) == len(columns):
+        raise InputError(
+            f"has no column {missing[0]!r}", file=path, key=f"line {number}", allowed=header(columns, along)
+        )
     values = np.array([_row(path, n, row, list(factors)) for n, row in lines[1:]]).reshape(-1, len(factors))
     table = {name: values[:, i] * factor for i, (name, factor) in enumerate(factors.items())}
-    _check_times(path, table["time"], [n for n, _ in lines[1:]], jumps)
+    if along == "time":
+        _check_times(path, table["time"], [n for n, _ in lines[1:]], jumps)
     for column in table.values():
         column.flags.writeable = False
     return table
@@ -183,6 +188,6 @@ def forces(count: int, dimension: str = "force") -> dict[str, str]:
     return {f"leg {i}": dimension for i in range(1, count + 1)}
 
 
-def header(columns: Mapping[str, str]) -> str:
+def header(columns: Mapping[str, str], along: str = "time") -> str:
     """First line of a table with these columns, in SI units."""
-    return ", ".join(["time [s]", *(f"{name} [{DIMENSIONS[dimension].unit}]" for name, dimension in columns.items())])
+    return ", ".join(f"{name} [{DIMENSIONS[dimension].unit}]" for name, dimension in {along: along, **columns}.items())

@@ -168,7 +168,7 @@ class Values:
         """A section for `data` found under `name`."""
         return type(self)(data, self.key(name), self.file, self.folder, self.notes, self.plane)
 
-    def build(self, model: Callable[..., M], **fields: object) -> M:
+    def build(self, model: Callable[..., M], /, **fields: object) -> M:
         """A model from this section's values; absent ones (None) take the model's default."""
         given = {name: value for name, value in fields.items() if value is not None}
         if self.notes is not None:

@@ -9,6 +9,7 @@ import numpy as np
 from flexapod.model.actuator import Actuator
 from flexapod.model.axes import word_of
 from flexapod.model.base import Frozen
+from flexapod.model.disturbance import Floor, Spectrum
 from flexapod.model.joint import Carriage, Joint
 from flexapod.model.leg import Leg
 from flexapod.model.material import MATERIALS, POISSON, Material, Tube
@@ -69,6 +70,15 @@ def _robot(robot: Robot) -> Iterator[str]:
     else:
         for leg in legs:
             yield from ["", "[[leg]]", *leg]
+    for name in ("geometry", "heat", "tolerances"):
+        if (part := getattr(robot, name)) is not None:
+            yield from _section(name, _per_leg(_fields(part)))
+
+
+def _per_leg(fields: dict[str, object]) -> dict[str, object]:
+    """What is the same for all legs as one number."""
+    inner = {n: _per_leg(_fields(x)) if isinstance(x, Frozen) else x for n, x in fields.items()}
+    return {n: x.item() if isinstance(x, np.ndarray) and x.shape == (1,) else x for n, x in inner.items()}
 
 
 def _leg(leg: Leg, base: Array, platform: Array, normal: Array) -> dict[str, object]:
@@ -80,6 +90,12 @@ def _leg(leg: Leg, base: Array, platform: Array, normal: Array) -> dict[str, obj
         fields[name] = _joint(getattr(leg, name), place, normal)
         if not fields[name]:
             del fields[name]
+    if leg.screw is not None:
+        drive = _fields(leg.screw)
+        fields["drive"] = {name: x for name, x in drive.items() if name != "material"} | _material(leg.screw.material)
+    del fields["springs"]
+    if leg.springs:
+        fields["springs"] = {spring.name: spring for spring in leg.springs}
     if leg.carriage is not None:
         fields["carriage"] = _carriage(leg.carriage, base, normal)
     if leg.strut is None:
@@ -99,6 +115,8 @@ def _joint(joint: Joint, place: Array, normal: Array) -> dict[str, object]:
             "radial": float(joint.stiffness[0, 0]),
             **{name: value for name, value in own.items() if value},
         }
+    elif joint.across_and_along is not None:
+        fields["stiffness"] = joint.across_and_along[0]
     return fields
 
 
@@ -113,7 +131,7 @@ def _beam(piston: Piston) -> dict[str, object]:
     made_of = {name: fields.pop(name, None) for name in ("E", "density")}
     if piston.E is None or piston.density is None:
         return fields
-    own = {"yield_stress": piston.yield_stress, "poisson": piston.poisson}
+    own = {"yield_stress": piston.yield_stress, "poisson": piston.poisson, "expansion": piston.expansion}
     material = Material(name="given", E=piston.E, density=piston.density, **own)
     same = None
     if piston.diameter is not None:
@@ -122,7 +140,7 @@ def _beam(piston: Piston) -> dict[str, object]:
         same = type(piston).round(length=piston.length, section=section, material=material, axial_inertia=axial)
     elif isinstance(piston, Strut) and piston.section is not None:
         same = Strut.strip(length=piston.length, section=piston.section, material=material)
-    if same != piston:
+    if same != piston.replace(bow=None):
         return fields
     computed = ("EA", "EI", "rhoA", *(() if piston.diameter else ("axial_inertia",)))
     return {name: value for name, value in fields.items() if name not in computed} | made_of
@@ -159,6 +177,10 @@ def _fields(model: Frozen) -> dict[str, object]:
     fields = {name: getattr(model, name) for name in type(model).model_fields if name not in skipped}
     if "file" in fields and fields["file"] is None and getattr(model, "time", None) is not None:
         fields["file"] = "table.csv"
+    if isinstance(model, Floor) and model.curve is not None:
+        return {"curve": model.curve}
+    if isinstance(model, Floor | Spectrum) and model.spectrum is None:
+        fields["spectrum"] = "table.csv"
     return {name: value for name, value in fields.items() if value is not None}
 
 

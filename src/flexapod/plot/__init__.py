@@ -2,6 +2,7 @@
 
 from flexapod.loading import loaded
 from flexapod.plot.actuator import actuator_modes, actuator_path, actuator_response
+from flexapod.plot.budget import budget
 from flexapod.plot.convergence import convergence, ladder
 from flexapod.plot.elements import sliding_mesh, solid_comparison, solid_meshes
 from flexapod.plot.legs import actuator_forces, leg_lengths, tip_deflections
@@ -10,12 +11,14 @@ from flexapod.plot.payload import com_path, deviation_by_cause, energies, motion
 from flexapod.plot.robot3d import modes_3d, robot_3d
 from flexapod.plot.style import save
 from flexapod.plot.sweep import sweep
+from flexapod.plot.vibration import vibration
 
 __all__ = [
     "actuator_forces",
     "actuator_modes",
     "actuator_path",
     "actuator_response",
+    "budget",
     "com_path",
     "convergence",
     "deviation_by_cause",
@@ -31,6 +34,7 @@ __all__ = [
     "solid_meshes",
     "sweep",
     "tip_deflections",
+    "vibration",
     "workspace_map",
 ]
 

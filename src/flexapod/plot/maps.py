@@ -20,7 +20,16 @@ from flexapod.model import AXES
 from flexapod.plot.style import COLORS, NOTE, PAGE, SMALL, TEXT, figure, needs, styled
 from flexapod.study.before.reach import REACHED, REASONS
 from flexapod.study.words import Scale, number, scale
-from flexapod.surveys.workspace.findings import SCALARS, coordinate_words, drawn, motion_path, name_of, scalar, unit_of
+from flexapod.surveys.workspace.findings import (
+    SIDES,
+    coordinate_words,
+    drawn,
+    motion_path,
+    name_of,
+    scalar,
+    scalars,
+    unit_of,
+)
 from flexapod.surveys.workspace.grid import UNITS
 from flexapod.typing import Array
 
@@ -57,8 +66,8 @@ def workspace_map(data: xr.Dataset, quantity: str = "frequency", *, mode: int = 
     InputError
         A quantity that is not in the map, or that no leg of the robot has (margins without strokes or cylinders).
     """
-    if quantity not in SCALARS or quantity not in data:
-        raise InputError("is not in this map", key="quantity", value=quantity, allowed=", ".join(SCALARS))
+    if quantity not in scalars(data):
+        raise InputError("is not in this map", key="quantity", value=quantity, allowed=", ".join(scalars(data)))
     values = scalar(data, quantity, mode)
     if not np.isfinite(values.values).any() and (data.reason.values == REACHED).any():
         allowed = ", ".join(drawn(data))
@@ -262,7 +271,7 @@ def _path(axes: Axes, part: xr.DataArray, path: Array | None, data: xr.Dataset, 
 
 def _mark_worst(grid, values: xr.DataArray, unit: Scale, quantity: str, third: str | None, chosen: Array) -> None:
     """A ring at the least or largest value, whichever is the bad end, where its slice is drawn."""
-    flat, side = values.values, SCALARS[quantity]
+    flat, side = values.values, SIDES[quantity]
     index = np.unravel_index(int(np.nanargmin(flat) if side == "least" else np.nanargmax(flat)), flat.shape)
     if third and int(index[2]) not in chosen:
         return
@@ -308,7 +317,7 @@ def _line(data: xr.Dataset, values: xr.DataArray, unit: Scale, title: str, quant
     axes.set_xlim(*edges[[0, -1]])
     axes.set(xlabel=_axis_label(name), ylabel=unit.name or WITHOUT_UNIT[quantity])
     if np.isfinite(y).any():
-        side = SCALARS[quantity]
+        side = SIDES[quantity]
         k = int(np.nanargmin(y) if side == "least" else np.nanargmax(y))
         ring = {"markerfacecolor": "none", "markeredgecolor": BAD, "markeredgewidth": 1.8, "linestyle": "none"}
         axes.plot(x[k], y[k], "o", markersize=8, label=f"{side}: {unit.text(float(values.values[k])).strip()}", **ring)

@@ -139,7 +139,10 @@ def _peak(axes: Axes, time: np.ndarray, values: np.ndarray, unit: str) -> None:
     )
 
 
+MOST = 9  # causes that colours tell apart
+_SMALLER = " smaller ones together"
 _COLORS = {"axial-strain": "#0072B2", "bending": "#D55E00", "drive": "#009E73"}
+_MORE = ("#E69F00", "#56B4E9", "#A23B72", "#7A5195", "#8C6D1F", "#444444", "#BDB76B", "#FF9DA7", "#9C755F", "#76B7B2")
 
 
 @styled
@@ -158,9 +161,10 @@ def deviation_by_cause(data: xr.Dataset) -> Figure:
     grid = fig.subplots(3, 2, width_ratios=(2.1, 1), sharex="col")
     total = data.com_deviation
     sizes = np.abs(data.deviation_by_cause).max(("time", "leg", "axis"))
-    parts = data.deviation_by_cause.sel(cause=np.array([cleared(size, sizes.max()) > 0 for size in sizes], dtype=bool))
+    shown = data.deviation_by_cause.sel(cause=np.array([cleared(size, sizes.max()) > 0 for size in sizes], dtype=bool))
+    parts = _largest(shown)
     small = scale(total, "m")
-    end, time, words = motion_end(data), data.time.values, cause_words(data)
+    end, time, words, colors = motion_end(data), data.time.values, cause_words(data), _colors(parts.cause.values)
     largest, seen = float(np.abs(small(total)).max()), []
     for row, axis in enumerate(data.axis.values):
         left, right = grid[row]
@@ -169,29 +173,46 @@ def deviation_by_cause(data: xr.Dataset) -> Figure:
         seen.append(float(np.abs(lines).max()))
         left.plot(time, lines[0], color="#C8C8C8", linewidth=5, label="whole deviation")
         for cause, values in zip(map(str, parts.cause.values), lines[1:], strict=True):
-            left.plot(time, values, color=_COLORS.get(cause), linewidth=1.2, label=words.get(cause, cause))
+            left.plot(time, values, color=colors[cause], linewidth=1.2, label=words.get(cause, cause))
         left.axhline(0, color="#555555", linewidth=0.7)
         left.set(title=f"{str(axis).upper()}, over time", ylabel=f"deviation [{small.name}]")
         mark_end(left, end, "motion ends" if row == 0 else "")
         size = np.abs(total.sel(axis=axis).values) if seen[-1] else np.linalg.norm(total.values, axis=1)
-        _by_leg(right, parts.sel(axis=axis).isel(time=int(size.argmax())), small, str(axis))
+        _by_leg(right, parts.sel(axis=axis).isel(time=int(size.argmax())), small, str(axis), colors)
     flat_on_the_scale_of_others(grid[:, 0], seen)
     grid[-1, 0].set_xlabel("time [s]")
     grid[-1, 1].set_xlabel("leg")
-    fig.legend(*grid[0, 0].get_legend_handles_labels(), loc="outside upper center", ncols=4)
+    columns = 4 if len(parts.cause) < 4 else 3
+    fig.legend(*grid[0, 0].get_legend_handles_labels(), loc="outside upper center", ncols=columns)
     for column in grid.T:
         fig.align_ylabels(column)
     return fig
 
 
-def _by_leg(axes: Axes, parts: xr.DataArray, small: Scale, axis: str) -> None:
+def _largest(parts: xr.DataArray) -> xr.DataArray:
+    """The largest causes, and all smaller ones as one, where they are more than colours tell apart."""
+    if parts.sizes["cause"] <= MOST:
+        return parts
+    ranked = np.argsort(-np.abs(parts.transpose("cause", ...).values).max(axis=(1, 2, 3)))
+    kept, rest = np.sort(ranked[: MOST - 1]), ranked[MOST - 1 :]
+    others = parts.isel(cause=rest).sum("cause").expand_dims(cause=[f"{len(rest)}{_SMALLER}"])
+    return xr.concat([parts.isel(cause=kept), others], "cause")
+
+
+def _colors(causes: np.ndarray) -> dict[str, str]:
+    """A colour for each cause; those that every robot has keep theirs."""
+    others = [str(cause) for cause in causes if str(cause) not in _COLORS]
+    return _COLORS | {cause: _MORE[i % len(_MORE)] for i, cause in enumerate(others)}
+
+
+def _by_leg(axes: Axes, parts: xr.DataArray, small: Scale, axis: str, colors: dict[str, str]) -> None:
     """Stacked bars: what each leg contributes, cause by cause, at one instant."""
     legs = np.arange(1, parts.sizes["leg"] + 1)
     above, below = np.zeros(len(legs)), np.zeros(len(legs))
     for cause in parts.cause.values:
         values = small(parts.sel(cause=cause))
         base = np.where(values >= 0, above, below)
-        axes.bar(legs, values, bottom=base, color=_COLORS.get(str(cause)), width=0.7)
+        axes.bar(legs, values, bottom=base, color=colors[str(cause)], width=0.7)
         above, below = above + np.maximum(values, 0), below + np.minimum(values, 0)
     axes.axhline(0, color="#555555", linewidth=0.7)
     axes.set_xticks(legs)

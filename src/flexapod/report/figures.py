@@ -84,6 +84,7 @@ def _robot(data: Dataset) -> Iterator[_Plan]:
     import numpy as np
 
     from flexapod import plot
+    from flexapod.report.budget import peak_budget
     from flexapod.scene.drives import drives
     from flexapod.study.after.summary import tool_apart
     from flexapod.study.attributes import robot_of
@@ -98,6 +99,9 @@ def _robot(data: Dataset) -> Iterator[_Plan]:
         yield "com-path", f"Path of the centre of mass: {words}", lambda: plot.com_path(data, axes)
     if elastic:
         yield "deviation-by-cause", "Deviation of the centre of mass by cause", lambda: plot.deviation_by_cause(data)
+    budget = peak_budget(data)
+    if budget is not None:
+        yield "error-budget", "Error budget at rest, at the pose of the largest deviation", lambda: plot.budget(budget)
     method = "Newton-Euler" if found.plain else "rigid robot"
     forces = f"Drive {found.word}s: {method} with rigid legs against the multibody model, and their difference"
     yield "actuator-forces", forces, lambda: plot.actuator_forces(data)

@@ -69,6 +69,7 @@ def write_report(data: Dataset, folder: str | Path, figures: Sequence[Drawn] = (
 
 
 def _page(study: Study | ActuatorStudy | None, data: Dataset, figures: Sequence[Drawn]) -> str:
+    from flexapod.report.budget import budget_section, peak_budget
     from flexapod.report.study_words import modes_section, study_words
     from flexapod.study.after.summary import RobotSummary, summaries
 
@@ -79,7 +80,13 @@ def _page(study: Study | ActuatorStudy | None, data: Dataset, figures: Sequence[
     moving, others = _replay(study, data, figures)
     parts = {"replay": moving, "figures": others, "modes": modes}
     numbers = {"deviation": "Deviation"} if isinstance(first, RobotSummary) else {"deflection": "Deflection"}
-    links = {**numbers, "warnings": "Warnings", "study": "Study"}
+    budget = peak_budget(data) if isinstance(first, RobotSummary) else None
+    links = {
+        **numbers,
+        **({} if budget is None else {"budget": "Error budget"}),
+        "warnings": "Warnings",
+        "study": "Study",
+    }
     links |= {part: part.capitalize() for part, there in parts.items() if there}
     links |= {"solver": "Solver", "toml": "Study file", "repeat": "Repeat"}
     body = [
@@ -88,6 +95,7 @@ def _page(study: Study | ActuatorStudy | None, data: Dataset, figures: Sequence[
         html.contents(links),
         *_partial(data),
         by_axis(data) if isinstance(first, RobotSummary) else _actuator_numbers(first),
+        *([] if budget is None else [budget_section(budget)]),
         warnings_section(data),
         html.section("study", "What was computed", *([] if study is None else study_words(study, described))),
         *moving,

@@ -10,6 +10,7 @@ import numpy as np
 
 from flexapod import model
 from flexapod.report import html
+from flexapod.study.before.describe.screw import screw_table
 from flexapod.study.words import held, number, text
 
 if TYPE_CHECKING:
@@ -118,12 +119,27 @@ def _drive(drive: model.Drive) -> str:
     if isinstance(drive, model.ServoDrive):
         damper = f" and a damper of {number(drive.damping)} N s/m" if drive.damping else ""
         return f"servo, a spring of {text(drive.stiffness, 'N/m')}{damper} between commanded and real stroke"
+    if isinstance(drive, model.ScrewDrive):
+        return _screw(drive)
     force = "that which the rigid robot needs" if drive.law == "rigid" else "from a table"
     force = force if drive.value is None else f"constant, {text(drive.value, 'N')}"
     back = drive.feedback
     if back is None:
         return f"force, {force}"
     return f"force, {force}, corrected by {text(back.stiffness, 'N/m')} and {number(back.damping)} N s/m on the stroke"
+
+
+def _screw(drive: model.ScrewDrive) -> str:
+    held = "stroke" if drive.holds_stroke else "rotor"
+    motors = {
+        "position": f"the {held} held at its command",
+        "servo": "the rotor pulled to its command by a loop",
+        "torque": "driven by the torque that the rigid robot and the rotor need",
+    }
+    return (
+        f"screw of {text(drive.root_diameter, 'm', 4)} with a lead of {text(drive.lead, 'm', 4)}, {drive.mounting}, "
+        f"{motors[drive.command]}"
+    )
 
 
 _WRENCH = (("Fx", "N"), ("Fy", "N"), ("Fz", "N"), ("Mx", "N m"), ("My", "N m"), ("Mz", "N m"))
@@ -187,7 +203,17 @@ def _path(found: RobotDescription) -> list[str]:
             f"{s.smallest_singular_value:.3g} at t = {s.time:.3f} s, condition {s.condition:.3g}; at home "
             f"{s.home_smallest_singular_value:.3g} and {s.home_condition:.3g}."
         )
-    return [html.heading("What the path asks of the legs"), html.table(head, rows), html.paragraph(words, "soft")]
+    asked = [html.heading("What the path asks of the legs"), html.table(head, rows), html.paragraph(words, "soft")]
+    return asked + _screws(found)
+
+
+def _screws(found: RobotDescription) -> list[str]:
+    if not found.screws:
+        return []
+    head, texts = screw_table(found.screws)
+    rows = [(f"{s.leg}", *row) for s, row in zip(found.screws, texts, strict=True)]
+    words = f"{found.back[0].upper()}{found.back[1:]}."
+    return [html.heading("Screws, largest values on the path"), html.table(("Leg", *head), rows), html.paragraph(words)]
 
 
 def _way(leg: LegDescription) -> tuple[str, str]:
@@ -279,6 +305,13 @@ def _pose(pose: PoseDescription) -> list[str]:
         s = pose.stiffness
         words = f"Stiffness at the tool: {text(s.least, 'N/m')} to {text(s.most, 'N/m')} along a direction."
         parts.append(html.paragraph(words, "soft"))
+    if pose.parts is not None:
+        head = (
+            "Stiffness along the leg [N/µm]",
+            *(f"leg {i}" for i in range(1, 1 + len(next(iter(pose.parts.values()))))),
+        )
+        rows = [(name, *(f"{k / 1e6:.4g}" for k in values)) for name, values in pose.parts.items()]
+        parts.append(html.table(head, rows))
     return parts
 
 

@@ -1,6 +1,18 @@
 """Closed-form mathematics of the rigid robot: NumPy, vectorised over time."""
 
 from flexapod.rigid.breaks import Breaks, actuator_breaks, path_knots, robot_breaks
+from flexapod.rigid.built import (
+    BuiltPart,
+    added,
+    added_by_all,
+    built_limbs,
+    built_parts,
+    built_poses,
+    expansion,
+    nearby,
+    shifts,
+)
+from flexapod.rigid.closures import TAKEN
 from flexapod.rigid.dynamics import RigidForces
 from flexapod.rigid.forward import Postures
 from flexapod.rigid.jacobian import NearestSingularity, SingularityPath, length_jacobian
@@ -47,7 +59,9 @@ __all__ = [
     "DRIVEN",
     "FREE",
     "HELD",
+    "TAKEN",
     "Breaks",
+    "BuiltPart",
     "Excess",
     "Law",
     "LegState",
@@ -62,12 +76,18 @@ __all__ = [
     "SingularityPath",
     "WorkspaceMap",
     "actuator_breaks",
+    "added",
+    "added_by_all",
+    "built_limbs",
+    "built_parts",
+    "built_poses",
     "carriage_limits",
     "carriages",
     "displaced",
     "drive_jacobian",
     "drive_positions",
     "energies",
+    "expansion",
     "forward_kinematics",
     "home_frames",
     "home_pose",
@@ -88,6 +108,7 @@ __all__ = [
     "mobility_words",
     "motion_law",
     "motion_names",
+    "nearby",
     "nearest_singularity",
     "path_knots",
     "payload_body",
@@ -105,6 +126,7 @@ __all__ = [
     "robot_breaks",
     "robot_limbs",
     "rotation_matrix",
+    "shifts",
     "singularity",
     "strokes",
     "wrench",

@@ -79,7 +79,8 @@ class _Eliminated(NamedTuple):
         return dq, dx
 
 
-def _eliminated(limbs: Limbs, task: Task, chain: Screws, columns: Array) -> _Eliminated:
+def eliminated(limbs: Limbs, task: Task, chain: Screws, columns: Array) -> _Eliminated:
+    """Equations of a Newton step, leg by leg; `columns` (T, n, 6, d): what moves the joints of the platform."""
     scale = np.array([1.0, 1.0, 1.0, limbs.L_c, limbs.L_c, limbs.L_c])
     kinds: dict[tuple[int, ...], list[int]] = {}
     for leg, (unknown, pose) in enumerate(zip(task.legs, limbs.pose_closure, strict=True)):
@@ -241,7 +242,7 @@ def _newton(
         if last:
             break
         last = bool(np.all(gap < enough * limbs.L_c))
-        dq, dx = _eliminated(limbs, task, chain, _platform_columns(limbs, task, x, at)).solve(-apart)
+        dq, dx = eliminated(limbs, task, chain, _platform_columns(limbs, task, x, at)).solve(-apart)
         longest = np.abs(dx / unit[:6][task.platform]).max(axis=1, initial=0.0)
         short = STRIDE / np.maximum(np.maximum(np.abs(dq / unit[6:]).max(axis=(1, 2)), longest), STRIDE)
         dq, dx = short[:, None, None] * dq, short[:, None] * dx
@@ -293,7 +294,7 @@ def _move(limbs: Limbs, task: Task, found: Closed, given: Law | Poses, where: sl
         return given.part(where) if isinstance(given, Poses) else _poses(limbs, task, Law(x, x_dot, x_ddot))
 
     at, chain = platform(), screws(limbs, q)
-    matrix = _eliminated(limbs, task, chain, _platform_columns(limbs, task, x, at))
+    matrix = eliminated(limbs, task, chain, _platform_columns(limbs, task, x, at))
     q_dot, x_dot[:, task.platform] = matrix.solve(
         np.concatenate([at.point(limbs.platform)[1], _each(at.omega, limbs)], axis=-1)
     )

@@ -213,11 +213,11 @@ class _Springs(NamedTuple):
 
 
 def _springs(joint: Joint, rigid: bool) -> _Springs:
-    """Whether springs hold a joint across the leg and about it, and whether its place gives way."""
+    """Whether springs hold a joint across the leg and about it, and whether it gives way as a flexure does."""
     if rigid:
         return _Springs(False, False, False)
     whole = joint.stiffness is not None and bool(joint.stiffness[3:, 3:].any())
-    return _Springs(whole or bool(joint.bending), whole or bool(joint.torsion), joint.stiffness is not None)
+    return _Springs(whole or bool(joint.bending), whole or bool(joint.torsion), joint.flexes)
 
 
 def _angles(base: str, sprung: bool) -> tuple[int, int]:

@@ -1,9 +1,12 @@
 """Damping ratios of damped modes, Eqs. (T7.4)-(T7.5), (T7.23)."""
 
 import numpy as np
+from numpy.typing import NDArray
 
 from flexapod.bases.eigen import finite
 from flexapod.typing import Array
+
+__all__ = ["damping_ratios", "poles"]
 
 OSCILLATES = 1e-9  # imaginary part over size of an eigenvalue: less is a pair of real ones, split by rounding
 
@@ -33,12 +36,24 @@ def damping_ratios(omega: Array, D: Array) -> Array:
     from scipy.optimize import linear_sum_assignment  # a twentieth of a second that only damped modes need
 
     # (T7.23)  Eigenvalues 1/mu: the slow modes come out right however fast a light part is.
-    lowest = omega.min()
-    slowness = np.diag(lowest / omega)
-    values, shapes = np.linalg.eig(np.block([[-lowest * D, -slowness], [slowness, np.zeros((size, size))]]))
+    slowness = np.diag(omega.min() / omega)
+    values, shapes = np.linalg.eig(_slow(omega, D))
     oscillating = np.imag(values) < -OSCILLATES * np.abs(values)
     values, share = values[oscillating], slowness @ np.abs(shapes[:size, oscillating])
     mode, column = linear_sum_assignment(-share / np.linalg.norm(share, axis=0))
     clear = share[mode, column] > 0.5 * np.linalg.norm(share[:, column], axis=0)
     ratio[mode[clear]] = (-np.real(values) / np.abs(values))[column[clear]]
     return ratio
+
+
+def poles(omega: Array, D: Array) -> NDArray[np.complex128]:
+    """Eigenvalues [1/s] of damped modes as of `damping_ratios`, without those of what has no mass nor damping."""
+    finite(D)
+    values = np.linalg.eigvals(_slow(omega, D))
+    return omega.min() / values[np.abs(values) > np.finfo(float).eps]
+
+
+def _slow(omega: Array, D: Array) -> Array:
+    """Matrix with the eigenvalues omega_1/mu."""
+    slowness = np.diag(omega.min() / omega)
+    return np.block([[-omega.min() * D, -slowness], [slowness, np.zeros_like(slowness)]])

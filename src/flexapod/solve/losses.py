@@ -9,7 +9,8 @@ from typing import cast
 import numpy as np
 
 from flexapod.errors import ComputationError
-from flexapod.model import ForceDrive, PrescribedDrive, Robot, Simulation
+from flexapod.model import Drive, ForceDrive, PrescribedDrive, Robot, ScrewDrive, Simulation
+from flexapod.solve.springs import springs_along, viscous
 from flexapod.words import number, text
 
 __all__ = ["loss_frequency", "loss_words", "per_loss"]
@@ -31,7 +32,8 @@ def loss_frequency(robot: Robot, simulation: Simulation) -> float:
     ComputationError
         There is no such frequency.
     """
-    if not any(joint.lossy for leg in robot.legs for joint in (leg.base_joint, leg.platform_joint)):
+    joints = (joint.lossy for leg in robot.legs for joint in (leg.base_joint, leg.platform_joint))
+    if not any(joints) and not any(spring.loss for leg in robot.legs for spring in springs_along(leg)):
         return 0.0
     # rigid legs have springs, too, and are locked by prescribed strokes
     return _first(robot, simulation.replace(fidelity="lumped") if simulation.fidelity == "rigid" else simulation)
@@ -49,14 +51,26 @@ def loss_words(robot: Robot, simulation: Simulation) -> list[str]:
             values = [(name, getattr(joint, name), "N m s/rad") for name in ("bending", "torsion")]
             loss = {"bending": joint.loss or 0.0, "torsion": joint.loss or 0.0}
             if joint.stiffness is not None:
-                loss["stiffness"] = (joint.loss if joint.stiffness_loss is None else joint.stiffness_loss) or 0.0
+                loss["stiffness"] = joint.loss_of_stiffness or 0.0
                 values.append(("stiffness", float(np.abs(joint.stiffness[:3, :3]).max()), "N s/m"))
             parts = [f"{name} {text(loss[name] * per * k, unit)}" for name, k, unit in values if k and loss[name]]
             if parts:
                 legs = [str(i) for i, leg in enumerate(robot.legs, start=1) if getattr(leg, end) == joint]
                 which = "" if len(legs) == robot.count else f" of leg{'s' * (len(legs) > 1)} {', '.join(legs)}"
                 found.append(f"{end}{which}: {', '.join(parts)}")
-    return found
+    return found + _of_springs(robot, per)
+
+
+def _of_springs(robot: Robot, per: float) -> list[str]:
+    """Dampers of the springs along the legs beside their joints, from the least to the largest of the legs at home."""
+    dampers: dict[str, list[float]] = {}
+    for leg, length in zip(robot.legs, robot.home_lengths, strict=True):
+        for spring in springs_along(leg):
+            if spring.loss and not spring.name.endswith("_joint"):
+                stiffness = 1.0 / float(spring.at_length(length))
+                dampers.setdefault(spring.name, []).append(viscous(stiffness, 0.0, spring.loss, per))
+    ends = {name: (text(min(c), "N s/m"), text(max(c), "N s/m")) for name, c in dampers.items()}
+    return [f"{name}: {low}" + (f" to {high}" if high != low else "") for name, (low, high) in ends.items()]
 
 
 def _computed(robot: Robot, simulation: Simulation) -> float:
@@ -77,8 +91,20 @@ def _lossless(robot: Robot) -> Robot:
         leg.replace(
             base_joint=leg.base_joint.replace(**none),
             platform_joint=leg.platform_joint.replace(**none),
-            drive=PrescribedDrive() if isinstance(leg.drive, ForceDrive) else leg.drive,
+            springs=tuple(spring.replace(loss=None) for spring in leg.springs),
+            drive=_locked(leg.drive),
         )
         for leg in robot.legs
     )
     return robot.replace(legs=legs)
+
+
+def _locked(drive: Drive) -> Drive:
+    """A drive that holds its place, without loss factors."""
+    if isinstance(drive, ForceDrive):
+        return PrescribedDrive()
+    if not isinstance(drive, ScrewDrive):
+        return drive
+    nut, bearing = drive.nut.replace(loss=None), drive.bearing.replace(loss=None)
+    held = {"command": "position", "loop": None} if drive.command == "torque" else {}
+    return drive.replace(nut=nut, bearing=bearing, **held)

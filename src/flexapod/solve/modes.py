@@ -80,12 +80,22 @@ class ManyModes:
     shapes: Array
 
 
+@dataclass(frozen=True, kw_only=True)
+class UnitModes:
+    """Undamped modes about the equilibria found in `LockedPoses`, p of them, ascending, what has no mass last.
+
+    ``omega`` (p, m) [rad/s], inf of what has no mass, NaN where masses are not ``positive``; ``flat`` (p, N, m): shapes
+    of unit stiffness in flat coordinates, or none of them.
+    """
+
+    omega: Array
+    flat: Array
+    positive: Mask
+
+
 def refuse_pure_force(robot: Robot, what: str) -> None:
     """Raise InputError if drives that are a force without feedback stiffness leave the platform something to do."""
-    pure = [
-        leg.drive.type == "force" and (leg.drive.feedback is None or leg.drive.feedback.stiffness == 0)
-        for leg in robot.legs
-    ]
+    pure = [leg.drive.pushes for leg in robot.legs]
     if not any(pure) or _held_by_others(robot, np.array(pure)):
         return
     for i, loose in enumerate(pure, start=1):
@@ -93,8 +103,8 @@ def refuse_pure_force(robot: Robot, what: str) -> None:
             raise InputError(
                 f"{what} of leg {i} has no meaning: a pure force drive holds no position, so the stroke is free",
                 key="leg.drive",
-                value="force",
-                allowed='"prescribed", "servo", or a force drive with feedback stiffness',
+                value=robot.legs[i - 1].drive.type,
+                allowed='"prescribed", "servo", or a force drive with feedback stiffness; a screw with a loop',
                 next_step='A simulation can start with [initial] start = "moving"',
             )
 
@@ -122,7 +132,7 @@ def locked_poses(
     refuse_pure_force(robot, "a static equilibrium")
     system = robot_system(robot, simulation)
     start, acts = rigid_rest(system, robot, path), rest_load(system, robot, path, load, time)
-    command = rest_commands(system, robot, start.q)
+    command = rest_commands(system, robot, start.q, time)
     found = equilibria(system, start, command, acts.force, acts.wrench)
     return LockedPoses(
         robot=robot,
@@ -172,7 +182,7 @@ def the_modes(locked: LockedPoses) -> RobotModes:
     finite(m.M, m.K, m.D, m.payload_M, m.payload_K)
     modes = modes_of(locked, shapes=True)
     if not modes.positive[0]:
-        raise _no_mass(locked.system, found.state.q)
+        raise no_mass(locked.system, found.state.q)
     count = count_real(modes.frequency)
     return RobotModes(
         frequency=modes.frequency[0, :count],
@@ -184,7 +194,7 @@ def the_modes(locked: LockedPoses) -> RobotModes:
     )
 
 
-def _no_mass(system: System, q: Array) -> ComputationError:
+def no_mass(system: System, q: Array) -> ComputationError:
     """Why the masses at coordinates (legs, n) are those of no body."""
     at = (columns(LEG_PARAMETERS, name) for name in ("mouth", "Lp"))
     mouth, whole = (system.leg_p[:, part][:, 0] for part in at)
@@ -207,6 +217,24 @@ def modes_of(locked: LockedPoses, *, shapes: bool = False) -> ManyModes:
     InputError
         Rigid legs on prescribed strokes: nothing can move.
     """
+    found = unit_modes(locked, shapes=shapes)
+    omega, flat = found.omega, found.flat
+    frequency = np.where(np.isfinite(omega), omega / (2 * np.pi), np.nan)
+    if not shapes:
+        nothing = np.zeros((0, omega.shape[1]))
+        return ManyModes(frequency=frequency, positive=found.positive, damping_ratio=nothing, shapes=nothing)
+    damping = modal_damping(locked, flat)
+    ratio = [w if np.isnan(w).any() else damping_ratios(w, d) for w, d in zip(omega, damping, strict=True)]
+    return ManyModes(
+        frequency=frequency,
+        positive=found.positive,
+        damping_ratio=np.where(np.isfinite(frequency), np.array(ratio).reshape(omega.shape), np.nan),
+        shapes=(flat * (2 * np.pi * frequency)[:, None]).swapaxes(1, 2),
+    )
+
+
+def unit_modes(locked: LockedPoses, *, shapes: bool) -> UnitModes:
+    """All undamped modes of unit stiffness; raises as `modes_of`."""
     system, m = locked.system, locked.m
     bases = locked.bases
     N = null_space_of_borders(bases)
@@ -225,17 +253,8 @@ def modes_of(locked: LockedPoses, *, shapes: bool = False) -> ManyModes:
     omega, z, stable = natural(U, K, shapes=shapes)
     positive = positive & stable
     omega = np.where(positive[:, None], omega, np.nan)
-    frequency = np.where(np.isfinite(omega), omega / (2 * np.pi), np.nan)
-    if not shapes:
-        nothing = np.zeros((0, omega.shape[1]))
-        return ManyModes(frequency=frequency, positive=positive, damping_ratio=nothing, shapes=nothing)
-    flat = expanded(system, bases, z if N is None else N @ z)
-    return ManyModes(
-        frequency=frequency,
-        positive=positive,
-        damping_ratio=np.where(np.isfinite(frequency), _damping(locked, omega, flat), np.nan),
-        shapes=(flat * (2 * np.pi * frequency)[:, None]).swapaxes(1, 2),
-    )
+    flat = expanded(system, bases, z if N is None else N @ z) if shapes else np.zeros((len(omega), system.size, 0))
+    return UnitModes(omega=omega, flat=flat, positive=positive)
 
 
 def _mass_factor(system: System, bases: list[LegBases], m: RestMatrices) -> tuple[Array, Mask]:
@@ -253,10 +272,8 @@ def _mass_factor(system: System, bases: list[LegBases], m: RestMatrices) -> tupl
     return np.where(positive[:, None, None], U, 0.0), positive
 
 
-def _damping(locked: LockedPoses, omega: Array, flat: Array) -> Array:
-    """Damping ratios (p, m) of shapes (p, N, m) of unit stiffness."""
+def modal_damping(locked: LockedPoses, flat: Array) -> Array:
+    """Damping matrices (p, m, m) of shapes (p, N, m)."""
     p, legs, n, _ = locked.m.D.shape
     moving = flat[:, : legs * n].reshape(p, legs, n, flat.shape[2])
-    D = (moving.swapaxes(-1, -2) @ locked.m.D @ moving).sum(axis=1)
-    found = [w if np.isnan(w).any() else damping_ratios(w, d) for w, d in zip(omega, D, strict=True)]
-    return np.array(found).reshape(omega.shape)
+    return np.asarray((moving.swapaxes(-1, -2) @ locked.m.D @ moving).sum(axis=1))

@@ -1,16 +1,13 @@
 """Physical parameters of a model as the flat vectors that kernels read."""
 
-from typing import TypeVar
-
 import numpy as np
 
 from flexapod.mechanics import layout
 from flexapod.mechanics.layout import LEG_PARAMETERS, PAYLOAD_PARAMETERS, Shapes
 from flexapod.model import Actuator, ForceDrive, Joint, Leg, Robot, ServoDrive, damping_parts
 from flexapod.rigid.limbs import COORDINATES, FREE, Limbs
+from flexapod.solve.springs import Place, in_series, of_servo, softening, springs_along, viscous
 from flexapod.typing import Array
-
-T = TypeVar("T", float, Array)
 
 
 def _pack(layout: tuple[tuple[str, int], ...], values: dict[str, object]) -> Array:
@@ -23,6 +20,8 @@ def _pack(layout: tuple[tuple[str, int], ...], values: dict[str, object]) -> Arr
 
 def drive_spring(leg: Leg) -> tuple[float, float]:
     """Stiffness [N/m] and damping [N s/m] between command and stroke; zero where the stroke is prescribed."""
+    if leg.gives:
+        return 0.0, 0.0  # between command and rotor
     match leg.drive:
         case ServoDrive(stiffness=stiffness, damping=damping):
             return stiffness, damping
@@ -41,7 +40,11 @@ def leg_parameters(robot: Robot, legs: Limbs, shapes: Shapes, per_loss: float = 
     of_ends = np.concatenate([flexures(robot, legs), flexures(robot, legs, per_loss)], axis=1)
     ends = [dict(zip(names, x, strict=True)) for x in of_ends]
     rows = (
-        _leg(leg) | _place(robot, legs, i) | _joints(leg, legs, i, per_loss) | ends[i]
+        _leg(leg)
+        | _place(robot, legs, i)
+        | _joints(leg, legs, i, per_loss)
+        | ends[i]
+        | _soft(leg, legs.home[i, COORDINATES.index("l")], per_loss)
         for i, leg in enumerate(robot.legs)
     )
     turns = [COORDINATES.index(name) for name in ("spin", "gamma3")]
@@ -130,9 +133,35 @@ def _joints(leg: Leg, legs: Limbs, i: int, per_loss: float) -> dict[str, object]
     }
 
 
-def viscous(stiffness: T, damping: T | float, loss: float | None, per_loss: float) -> T:
-    """Viscous damping of a spring: given, or of its loss factor, Eq. (T13.19)."""
-    return damping + (loss or 0.0) * per_loss * stiffness  # type: ignore[return-value]
+def _soft(leg: Leg, length: float, per_loss: float) -> dict[str, object]:
+    """Springs along and across a leg at its joints, and those before its piston."""
+    found: dict[str, object] = {}
+    ends: tuple[tuple[Place, Joint], ...] = (("base", leg.base_joint), ("platform", leg.platform_joint))
+    for name, joint in ends:
+        along = in_series((x for x in springs_along(leg) if x.at == name), length, per_loss)
+        across = 0.0 if joint.across_and_along is None else joint.across_and_along[0]
+        found[f"{name}_soft"] = [across, along[0]]
+        damper = viscous(across, joint.stiffness_damping, joint.loss_of_stiffness, per_loss) if across else 0.0
+        found[f"{name}_soft_damping"] = [damper, along[1]]
+    return found | _series(leg, length, per_loss)
+
+
+def _series(leg: Leg, length: float, per_loss: float) -> dict[str, object]:
+    """Springs between rotor and stroke, and the rotor."""
+    springs, screw = [x for x in springs_along(leg) if x.at == "nut"], leg.screw
+    if isinstance(leg.drive, ServoDrive):  # nothing has a mass between the servo's spring and these
+        springs.append(of_servo(leg.drive))
+    stiffness, damping = in_series(springs, length, per_loss)
+    loop = (0.0, 0.0) if screw is None else screw.loop_spring
+    return {
+        "series_stiffness": stiffness,
+        "series_softening": softening(springs, length) if springs else (0.0, 0.0),
+        "series_home": length,
+        "series_damping": damping,
+        "rotor_mass": 0.0 if screw is None else screw.inertia / screw.per_turn**2,  # (T15.12)
+        "rotor_stiffness": loop[0],
+        "rotor_damping": loop[1],
+    }
 
 
 def flexures(robot: Robot, legs: Limbs, per_loss: float | None = None) -> Array:
@@ -149,7 +178,7 @@ def flexures(robot: Robot, legs: Limbs, per_loss: float | None = None) -> Array:
             (leg.platform_joint, legs.platform_frames[i].T, legs.leg_frames[i].T),
         )
         for k, (joint, given, leg_axes) in enumerate(ends):
-            if joint.stiffness is not None:
+            if joint.stiffness is not None and joint.flexes:
                 turn = np.kron(np.eye(2), leg_axes if joint.leg_axes else given)
                 found[i, k] = turn @ (joint.stiffness if per_loss is None else _damping(joint, per_loss)) @ turn.T
     return found
@@ -159,13 +188,7 @@ def _damping(joint: Joint, per_loss: float) -> Array:
     """Damping of the stiffness of a flexure, (6, 6)."""
     stiffness = np.zeros((6, 6)) if joint.stiffness is None else joint.stiffness
     given = np.diag([joint.stiffness_damping or 0.0] * 3 + [0.0] * 3)
-    loss = joint.loss if joint.stiffness_loss is None else joint.stiffness_loss
-    return viscous(stiffness, given, loss, per_loss)
-
-
-def joint_parameters(robot: Robot) -> Array:
-    """Platform joints of the legs from the payload's CoM, platform axes, (legs, 3) [m]."""
-    return np.ascontiguousarray(robot.platform_joints - robot.com)
+    return viscous(stiffness, given, joint.loss_of_stiffness, per_loss)
 
 
 def payload_parameters(robot: Robot) -> Array:

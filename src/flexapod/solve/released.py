@@ -23,9 +23,12 @@ __all__ = ["RobotForces", "is_hexapod", "released", "rigid_errors", "rigid_force
 
 @once
 def released(robot: Robot) -> Robot:
-    """The same robot with ideal joints: fixed ones universal at the base, balls at the platform; drives prescribed."""
+    """The same robot as drawn, with ideal joints: fixed ones universal at the base, balls at the platform.
+
+    Its drives are prescribed.
+    """
     legs = tuple(_ideal(leg) for leg in robot.legs)
-    return robot.replace(type="+".join(leg.chain for leg in legs), legs=legs)
+    return robot.replace(type="+".join(leg.chain for leg in legs), legs=legs, geometry=None, heat=None)
 
 
 def _ideal(leg: Leg) -> Leg:
@@ -38,6 +41,7 @@ def _ideal(leg: Leg) -> Leg:
         chain=first + ends[0] + letters.stroke + ends[1],
         base_joint=leg.base_joint.replace(**none),
         platform_joint=leg.platform_joint.replace(**none),
+        springs=(),
         drive=PrescribedDrive(),
     )
 

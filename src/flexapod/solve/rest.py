@@ -9,11 +9,11 @@ import numpy as np
 
 from flexapod import rigid
 from flexapod.model import Load, Robot
-from flexapod.rigid.limbs import DRIVEN, HELD
+from flexapod.rigid.limbs import COORDINATES, DRIVEN, HELD
 from flexapod.solve.rigid_motion import leg_coordinates
 from flexapod.solve.system import System
-from flexapod.solve.tables import feed_forward
-from flexapod.typing import Array, Mask
+from flexapod.solve.tables import feed_forward, push_ports
+from flexapod.typing import Array
 
 __all__ = ["RestLoad", "at_drives", "rest_commands", "rest_load"]
 
@@ -28,27 +28,37 @@ class RestLoad:
     wrench: Array
 
 
-def rest_commands(system: System, robot: Robot, q: Array) -> Array:
-    """Values (P, legs, ports) that hold a robot at configurations q (P, legs, n): of joints those at home."""
+def rest_commands(system: System, robot: Robot, q: Array, time: float = 0.0) -> Array:
+    """Values (P, legs, ports) that hold a robot at configurations q (P, legs, n): of joints those at home.
+
+    To them comes what the robot as built adds at a `time` [s], Eq. (T16.5).
+    """
     command, found = q[..., system.ports].copy(), rigid.robot_limbs(robot)
     for k, port in _ports(system):
         fixed = found.state[:, k] == HELD
         command[:, fixed, port] = found.home[fixed, k]
+    if rigid.built_parts(robot):
+        whole = np.zeros((*q.shape[:2], len(COORDINATES)))
+        there, at = leg_coordinates(system.kernel.shapes)
+        whole[..., there] = q[..., at]
+        still = np.zeros_like(whole)
+        more = rigid.added_by_all(robot, np.full(len(q), time), rigid.Law(whole, still, still)).position
+        for k, port in _ports(system):
+            command[..., port] += more[..., k]
+        for i, port in enumerate(push_ports(system, robot)):  # a rotor's travel follows the length
+            if robot.legs[i].gives:
+                command[:, i, system.ports == port] += more[:, i, COORDINATES.index("l"), None]
     return command
 
 
 def at_drives(system: System, robot: Robot, values: Array) -> Array:
     """Values (..., legs) of the driven ports out of those of all, (..., legs, ports); 0 of a passive leg."""
     found = np.zeros(values.shape[:-1])
-    for driven, port in _drives(system, robot):
+    state = rigid.robot_limbs(robot).state
+    for k, port in _ports(system):
+        driven = state[:, k] == DRIVEN
         found[..., driven] = values[..., driven, port]
     return found
-
-
-def _drives(system: System, robot: Robot) -> Iterator[tuple[Mask, int]]:
-    """Legs that are driven at a port, and the port."""
-    state = rigid.robot_limbs(robot).state
-    yield from ((state[:, k] == DRIVEN, port) for k, port in _ports(system))
 
 
 def _ports(system: System) -> Iterator[tuple[int, int]]:
@@ -81,6 +91,6 @@ def rest_load(system: System, robot: Robot, path: rigid.Poses, load: Load | None
     still, count = rigid.Poses.at_rest(path.position, path.rotation), len(path)
     pushed = feed_forward(robot, np.repeat(before, count), still, np.repeat(wrench, count, axis=0))
     force = np.zeros((count, system.legs, system.ports.size))
-    for driven, port in _drives(system, robot):
-        force[:, driven, port] = pushed[:, driven]
+    for i, at in enumerate(push_ports(system, robot)):
+        force[:, i, system.ports == at] = pushed[:, i, None]
     return RestLoad(force=force, wrench=wrench[0])

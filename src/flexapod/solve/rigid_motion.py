@@ -10,13 +10,14 @@ from flexapod import rigid
 from flexapod.mechanics.layout import Shapes
 from flexapod.model import Robot
 from flexapod.rigid.limbs import COORDINATES, HELD, Limbs
+from flexapod.rigid.mechanism import leg_state
 from flexapod.rigid.rotations import quaternion
 from flexapod.rigid.screws import screws
 from flexapod.solve.many import Rates, RestStates
 from flexapod.solve.system import Index, State, System
 from flexapod.typing import Array
 
-__all__ = ["leg_coordinates", "rigid_motion", "rigid_rest", "rigid_state"]
+__all__ = ["built_state", "leg_coordinates", "rigid_motion", "rigid_rest", "rigid_state"]
 
 GAMMA = slice(COORDINATES.index("gamma1"), None)
 
@@ -27,9 +28,15 @@ def leg_coordinates(shapes: Shapes) -> tuple[Index, Index]:
     return np.array(there), np.array([shapes.index(COORDINATES[k]) for k in there])
 
 
-def rigid_motion(system: System, robot: Robot, path: rigid.Poses) -> tuple[RestStates, Rates]:
-    """Configurations of the undeformed robot at the instants of a path, without forces, and their rates."""
-    T, (q, v, v_dot) = len(path), _undeformed(system, robot, path)
+def rigid_motion(
+    system: System, robot: Robot, path: rigid.Poses, legs: rigid.LegState | None = None
+) -> tuple[RestStates, Rates]:
+    """Configurations of the undeformed robot at the instants of a path, without forces, and their rates.
+
+    `legs`: at these poses, of a robot that is not as drawn.
+    """
+    legs = rigid.inverse_kinematics(robot, path) if legs is None else legs
+    T, (q, v, v_dot) = len(path), _undeformed(system, robot, path, legs)
     R, w, w_dot = path.rotation, path.omega, path.alpha
     arm, inverse = R @ robot.com, R.swapaxes(1, 2)
     turning = np.cross(w, arm)
@@ -54,14 +61,29 @@ def rigid_rest(system: System, robot: Robot, path: rigid.Poses) -> RestStates:
 
 def rigid_state(system: System, robot: Robot, path: rigid.Poses) -> State:
     """State of the undeformed robot on the commanded path (one sample), with its rates and accelerations; no forces."""
-    states, rates = rigid_motion(system, robot, path)
+    return _with_rates(rigid_motion(system, robot, path))
+
+
+def built_state(system: System, robot: Robot, path: rigid.Poses) -> State:
+    """State of the undeformed robot as built, its drives told to follow the rigid path (one sample), with rates.
+
+    The platform's rates are those of the path; a start makes them fit.
+    """
+    at = rigid.built_poses(robot, path)
+    at = replace(path, position=at.position, rotation=at.rotation)
+    legs = leg_state(rigid.built_limbs(robot, rigid.rigid_limbs(robot)), at)
+    return _with_rates(rigid_motion(system, robot, at, legs))
+
+
+def _with_rates(motion: tuple[RestStates, Rates]) -> State:
+    states, rates = motion
     v, v_dot = (np.concatenate([x[0].ravel(), y[0]]) for x, y in ((rates.v, rates.u), (rates.v_dot, rates.u_dot)))
     return replace(states.state(0), v=v, v_dot=v_dot)
 
 
-def _undeformed(system: System, robot: Robot, path: rigid.Poses) -> Array:
+def _undeformed(system: System, robot: Robot, path: rigid.Poses, found: rigid.LegState) -> Array:
     """Coordinates of the undeformed legs on a path of T poses, rates and accelerations, (3, T, legs, n)."""
-    found, legs, shapes = rigid.inverse_kinematics(robot, path), rigid.robot_limbs(robot), system.kernel.shapes
+    legs, shapes = rigid.built_limbs(robot, rigid.robot_limbs(robot)), system.kernel.shapes
     x = np.stack([np.stack(found.coordinate(name)) for name in COORDINATES], axis=-1)
     held = legs.state == HELD  # welds, which the rigid path releases, too
     x[:, :, held] = 0.0
@@ -71,6 +93,8 @@ def _undeformed(system: System, robot: Robot, path: rigid.Poses) -> Array:
     q = np.zeros((*x.shape[:3], system.n))
     there, at = leg_coordinates(shapes)
     q[..., at] = x[..., there]
+    if shapes.series:
+        q[..., shapes.index("r")] = np.where([leg.gives for leg in robot.legs], q[..., shapes.l_index], 0.0)
     return q
 
 

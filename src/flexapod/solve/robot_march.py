@@ -20,8 +20,9 @@ from flexapod.solve.pieces import Pieces
 from flexapod.solve.recording import Counters, Recording
 from flexapod.solve.redundant import independent, shared
 from flexapod.solve.rest import rest_commands, rest_load
-from flexapod.solve.rigid_motion import rigid_state
+from flexapod.solve.rigid_motion import built_state, rigid_state
 from flexapod.solve.robot_system import robot_system
+from flexapod.solve.springs import springs_along
 from flexapod.solve.start import consistent_start
 from flexapod.solve.stops import Stops
 from flexapod.solve.system import Flow, State, System
@@ -63,6 +64,7 @@ def prepare(study: Study, state: State | None = None) -> RobotMarch:
         There is no equilibrium at the start, or a platform joint is half a turn off.
     """
     refuse_massless(study)
+    refuse_growing_plates(study)
     robot, simulation = study.robot, study.simulation
     system, path = robot_system(robot, simulation), _Path(study)
     law = robot_law(system, robot, study.load, path.poses, path.knots)
@@ -96,8 +98,9 @@ def refuse_massless(study: Study) -> None:
     """Raise InputError if a piston without mass leaves coordinates that nothing but their stiffness determines."""
     simulation = study.simulation
     for i, leg in enumerate(study.robot.legs, start=1):
-        still = leg.drive.type == "prescribed" or leg.strut is not None
-        alone = simulation.axial_shapes(study.robot.legs[0].axial_modes) - still
+        still = leg.strut is not None or (leg.drive.holds and leg.holds_stroke)
+        soft = {spring.at for spring in springs_along(leg)} - ({"base"} if leg.cylinder.mass else set())
+        alone = simulation.axial_shapes(study.robot.legs[0].axial_modes) - still + len(soft & {"base", "platform"})
         if leg.piston.rhoA == 0 and (simulation.lateral_shapes or alone > 0):
             raise InputError(
                 f"of leg {i} leaves shapes of the piston without mass: they have statics, but no motion in time",
@@ -109,10 +112,26 @@ def refuse_massless(study: Study) -> None:
             )
 
 
+def refuse_growing_plates(study: Study) -> None:
+    """Raise InputError if base or platform change their temperature during a simulation."""
+    heat = study.robot.heat
+    for plate in ("base", "platform"):
+        if heat is not None and plate in heat.columns:
+            raise InputError(
+                f"has a column {plate!r}: joints that move by heat belong to poses, not to motions",
+                file=study.path,
+                key="heat.file",
+                value=heat.file,
+                allowed="over time the temperatures of pistons, cylinders and screws",
+                next_step=f"Give heat.{plate} a number here; flexapod.accuracy follows the whole table",
+            )
+
+
 def _configuration(study: Study, system: System) -> State:
     """Configuration and velocities before the impact projection, by the kind of start and what acts until then."""
     path = rigid.poses(study.robot, study.motion, np.zeros(1))
-    straight = rigid_state(system, study.robot, path)
+    built = bool(rigid.built_parts(study.robot)) and study.initial.start != "equilibrium"
+    straight = (built_state if built else rigid_state)(system, study.robot, path)
     if study.initial.start == "moving":
         return straight
     at_rest = replace(straight, v=np.zeros(system.size), v_dot=np.zeros(system.size))

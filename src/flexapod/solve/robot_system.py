@@ -10,11 +10,11 @@ from flexapod.solve.kernel import kernel
 from flexapod.solve.losses import per_loss
 from flexapod.solve.parameters import (
     flexures,
-    joint_parameters,
     leg_parameters,
     payload_parameters,
 )
 from flexapod.solve.shapes import robot_shapes
+from flexapod.solve.springs import springs_along
 from flexapod.solve.system import System
 from flexapod.typing import Mask
 
@@ -22,13 +22,13 @@ __all__ = ["robot_system"]
 
 
 def robot_system(robot: Robot, simulation: Simulation, march: bool = True) -> System:
-    """System of a robot in the fidelity, basis and number of shapes of ``simulation``; ``march``: to be integrated."""
-    legs = rigid.robot_limbs(robot)
+    """System of a robot as built, in the fidelity and shapes of ``simulation``; ``march``: to be integrated."""
+    legs = rigid.built_limbs(robot, rigid.robot_limbs(robot))
     shapes = robot_shapes(robot, simulation, legs)
     return System(
         kernel=kernel(shapes, march),
         leg_p=leg_parameters(robot, legs, shapes, per_loss(robot, simulation)),
-        joint_p=joint_parameters(robot),
+        joint_p=np.ascontiguousarray(legs.platform - robot.com),
         payload_p=payload_parameters(robot),
         held=_held(robot, legs, shapes),
         hub_held=legs.hub_held,
@@ -38,15 +38,27 @@ def robot_system(robot: Robot, simulation: Simulation, march: bool = True) -> Sy
 def _held(robot: Robot, legs: Limbs, shapes: Shapes) -> Mask:
     """Coordinates that follow a table: held by joints or drives, or those of other legs. A ball's gammas are free."""
     held = np.zeros((len(legs), shapes.size), dtype=bool)
-    prescribed = np.array([leg.drive.type == "prescribed" for leg in robot.legs])
+    prescribed = np.array([leg.drive.holds and leg.holds_stroke for leg in robot.legs])
     for k, name in enumerate(COORDINATES):
         if shapes.has(name):
             state = legs.state[:, k]
             foreign = (state == ABSENT) & (name in ("chi", "spin"))
             held[:, shapes.index(name)] = (state == HELD) | ((state == DRIVEN) & prescribed) | foreign
+    if shapes.series:  # a servo's spring is in series with those behind it
+        held[:, shapes.index("r")] = [leg.drive.holds or leg.screw is None for leg in robot.legs]
     if shapes.torsion:  # a ball does not twist its leg
         held[:, shapes.index("t")] = ~legs.pose_closure
-    if shapes.flexure:  # a joint does not give way in directions in which it has no stiffness
-        rigid_ways = ~flexures(robot, legs)[:, :, :3].any(axis=-1)
-        held[:, shapes.index("u1") :] = rigid_ways.reshape(len(legs), 6)
+    return held | _held_joints(robot, legs, shapes)
+
+
+def _held_joints(robot: Robot, legs: Limbs, shapes: Shapes) -> Mask:
+    """Displacements of joints in directions in which they have no stiffness: they do not give way."""
+    held: Mask = np.zeros((len(legs), shapes.size), dtype=bool)
+    ways: Mask = (flexures(robot, legs)[:, :, :3] != 0).any(axis=-1)
+    for i, leg in enumerate(robot.legs):
+        soft = {spring.at for spring in springs_along(leg)}
+        for k, (name, end, joint) in enumerate((("base", "u", leg.base_joint), ("platform", "e", leg.platform_joint))):
+            if shapes.has(f"{end}1"):
+                at, across = shapes.index(f"{end}1"), joint.across_and_along is not None
+                held[i, at : at + 3] = np.logical_not(ways[i, k] | [across, across, name in soft])
     return held

@@ -12,6 +12,7 @@ from flexapod.bases.lateral import LateralBasis
 from flexapod.mechanics.layout import Shapes
 from flexapod.model import Actuator, Rectangle, Robot, Simulation, Tube
 from flexapod.rigid.limbs import ABSENT, COORDINATES, FREE, HELD, Limbs
+from flexapod.solve.springs import springs_along
 
 __all__ = ["actuator_shapes", "beam_shapes", "leg_shapes", "planar_shapes", "robot_shapes", "space_shapes"]
 
@@ -23,6 +24,7 @@ def robot_shapes(robot: Robot, simulation: Simulation, legs: Limbs) -> Shapes:
     spin, gamma3 = (legs.state[:, COORDINATES.index(name)] for name in ("spin", "gamma3"))
     pose = bool(legs.pose_closure.any())
     lateral = leg_shapes(robot, simulation)
+    springs = [spring for leg in robot.legs for spring in springs_along(leg)]
     return Shapes(
         a=bases.lateral_basis("clamped-free", 0) if robot.plane else lateral,  # across the plane nothing bends
         b=lateral,
@@ -31,7 +33,10 @@ def robot_shapes(robot: Robot, simulation: Simulation, legs: Limbs) -> Shapes:
         carriage=legs.carriage,
         spin=bool((spin != ABSENT).any()),
         torsion=pose and simulation.lateral_shapes > 0,
-        flexure=any(x.stiffness is not None for leg in robot.legs for x in (leg.base_joint, leg.platform_joint)),
+        flexure=any(x.flexes for leg in robot.legs for x in (leg.base_joint, leg.platform_joint)),
+        soft_base=any(x.at == "base" for x in springs),
+        soft_platform=any(x.at == "platform" for x in springs),
+        series=any(leg.gives for leg in robot.legs),
         pivot_spin=bool(((spin == FREE) & (gamma3 == HELD)).any()),
     )
 

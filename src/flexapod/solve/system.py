@@ -14,6 +14,7 @@ from flexapod.typing import Array, Mask
 __all__ = ["COLUMNS", "Flow", "Index", "Matrices", "State", "System"]
 
 Index = NDArray[np.intp]
+ENDS = ("base", "platform")
 COLUMNS = 4  # of a port in a table: value, rate, acceleration, force
 
 
@@ -140,7 +141,8 @@ class System:
         layout = leg_parameters(self.kernel.shapes)
         EA, Lp = (self.leg_p[:, columns(layout, name)] for name in ("EA", "Lp"))
         stiffest = [(EA / Lp).max() * (self.kernel.shapes.axial.count > 0)]
-        for name in ("drive_stiffness", "carriage_stiffness", "base_flexure", "platform_flexure"):
+        springs = ("drive_stiffness", "carriage_stiffness", *(f"{x}_{y}" for x in ENDS for y in ("flexure", "soft")))
+        for name in springs:
             if name in dict(layout):
                 stiffest.append(self.leg_p[:, columns(layout, name)].max())
         return float(8 * np.finfo(float).eps * max(stiffest))

@@ -5,14 +5,14 @@ from collections.abc import Callable
 import numpy as np
 
 from flexapod import rigid
-from flexapod.model import ForceDrive, Load, Robot
+from flexapod.model import Drive, ForceDrive, Load, Robot, ScrewDrive
 from flexapod.rigid.limbs import COORDINATES, DRIVEN
 from flexapod.solve.pieces import Groups, Pieces
 from flexapod.solve.released import rigid_forces
-from flexapod.solve.system import COLUMNS, System
-from flexapod.typing import Array
+from flexapod.solve.system import COLUMNS, Index, System
+from flexapod.typing import Array, Mask
 
-__all__ = ["Law", "feed_forward", "robot_law"]
+__all__ = ["Law", "feed_forward", "push_ports", "robot_law"]
 
 #: Of instants (T,): the table of the ports (T, legs, ports, 4), and the load (T, load_size), of a payload the wrench
 #: at the tool in world axes.
@@ -24,8 +24,9 @@ def robot_law(
 ) -> Law:
     """Return what a robot is commanded as a function of time; ``poses`` is the rigid path.
 
-    Driven coordinates follow the path; what else is held stays where it is at home, of a flexure at zero. With the
-    ``knots`` (n,) between which the path is smooth, legs without a closed form are computed at few instants: `pieces`.
+    Driven coordinates follow the path; what else is held stays where it is at home, of a flexure at zero; and to both
+    comes what the robot as built adds (T16.5). With the ``knots`` (n,) between which the path is smooth, legs without
+    a closed form are computed at few instants: `pieces`.
     """
     chains, shapes = rigid.robot_limbs(robot), system.kernel.shapes
     names = {shapes.index(name): name for name in COORDINATES if shapes.has(name)}
@@ -34,7 +35,14 @@ def robot_law(
         if port in names:
             place = COORDINATES.index(names[port])
             driven[:, k], home[:, k] = chains.state[:, place] == DRIVEN, chains.home[:, place]
-    driven = driven.astype(bool)
+    if shapes.series:  # a rotor's travel follows the length
+        names[shapes.index("r")] = "l"
+        driven[:, system.ports == shapes.index("r")] = np.array([[leg.gives] for leg in robot.legs])
+    driven, ports = driven.astype(bool), list(enumerate(system.ports))
+    every = np.ones(system.legs, dtype=bool)
+    turned = {shapes.index("r"): np.array([leg.gives for leg in robot.legs])} if shapes.series else {}
+    places = {k: (COORDINATES.index(names[port]), turned.get(port, every)) for k, port in ports if port in names}
+    pushed = driven & (system.ports == push_ports(system, robot)[:, None])
 
     def commanded(t: Array) -> list[Array]:
         legs = rigid.inverse_kinematics(robot, poses(t))
@@ -44,11 +52,15 @@ def robot_law(
             which = slice(None) if driven[:, k].all() else driven[:, k]
             for part, values in zip(parts, legs.coordinate(names[system.ports[k]]), strict=True):
                 part[:, which, k] = values[:, which]
+        if built:
+            _as_built(robot, t, legs, parts, places)
         return list(parts)
 
-    forces = any(isinstance(leg.drive, ForceDrive) for leg in robot.legs)
+    built = rigid.built_parts(robot)
+    forces = any(isinstance(leg.drive, ForceDrive) or _turned(leg.drive) for leg in robot.legs)
     coordinates: Groups = commanded
-    if knots is not None and not (rigid.rigid_limbs(robot).plain or forces):
+    changing = any(part.time is not None for part in built)
+    if knots is not None and not (rigid.rigid_limbs(robot).plain or forces or changing):
         coordinates = Pieces(commanded, knots)
 
     def law(t: Array) -> tuple[Array, Array]:
@@ -57,20 +69,49 @@ def robot_law(
         for column, part in enumerate(coordinates(t)):
             table[..., column] = part
         if forces:
-            table[:, driven, 3] = feed_forward(robot, t, poses(t), wrench)[:, driven.any(axis=1)]
+            table[:, pushed, 3] = feed_forward(robot, t, poses(t), wrench)[:, pushed.any(axis=1)]
         return table, wrench
 
     return law
 
 
+def _as_built(robot: Robot, t: Array, legs: rigid.LegState, parts: Array, ports: dict[int, tuple[int, Mask]]) -> None:
+    """Add to the places, rates and accelerations (3, T, legs, ports) of a rigid path what the robot as built adds.
+
+    ``ports``: of each port the coordinate that it follows, and in which legs.
+    """
+    q = rigid.Law(*np.stack([legs.coordinate(name) for name in COORDINATES], axis=-1))
+    for column, more in enumerate(rigid.added_by_all(robot, t, q)):
+        for port, (place, legs_there) in ports.items():
+            parts[column][:, legs_there, port] += more[:, legs_there, place]
+
+
+def push_ports(system: System, robot: Robot) -> Index:
+    """Coordinate on which the drive of each leg acts, (legs,): its rotor, where it has one; -1 of passive legs."""
+    state, shapes = rigid.robot_limbs(robot).state, system.kernel.shapes
+    found = np.full(system.legs, -1)
+    for name in ("l", "chi"):
+        if shapes.has(name):
+            found[state[:, COORDINATES.index(name)] == DRIVEN] = shapes.index(name)
+    if shapes.series:
+        found[[leg.gives for leg in robot.legs]] = shapes.index("r")
+    return found
+
+
 def feed_forward(robot: Robot, t: Array, path: rigid.Poses, wrench: Array) -> Array:
-    """Feed-forward forces of force drives on the rigid path at instants (T,), (T, legs) [N]; zero for other drives."""
+    """Feed-forward forces of drives on the rigid path at instants (T,), (T, legs) [N]; zero for those that have none.
+
+    A torque of a screw is what the rigid robot and the rotor need, Eq. (T15.13).
+    """
     drives = [leg.drive for leg in robot.legs]
     force = np.zeros((len(t), len(drives)))
     rigid_force = force
-    if any(isinstance(d, ForceDrive) and d.law == "rigid" for d in drives):
+    if any((isinstance(d, ForceDrive) and d.law == "rigid") or _turned(d) for d in drives):
         rigid_force = rigid_forces(robot, path, wrench).drive_force
+    change = rigid.inverse_kinematics(robot, path).accel if any(_turned(d) for d in drives) else force
     for i, drive in enumerate(drives):
+        if isinstance(drive, ScrewDrive) and _turned(drive):
+            force[:, i] = rigid_force[:, i] + drive.inertia / drive.per_turn**2 * change[:, i]
         if not isinstance(drive, ForceDrive):
             continue
         if drive.value is not None:
@@ -80,3 +121,8 @@ def feed_forward(robot: Robot, t: Array, path: rigid.Poses, wrench: Array) -> Ar
         else:
             force[:, i] = np.interp(t, drive.time, drive.force)
     return force
+
+
+def _turned(drive: Drive) -> bool:
+    """Whether a drive is a torque on a screw."""
+    return isinstance(drive, ScrewDrive) and drive.command == "torque"

@@ -5,10 +5,14 @@ from __future__ import annotations
 from importlib import import_module
 from typing import TYPE_CHECKING
 
+from flexapod.study.accuracy import accuracy, play
 from flexapod.study.actuator import simulate_actuator
 from flexapod.study.after.summary import summary
 from flexapod.study.before.checks import check_path
+from flexapod.study.budgets import budget
+from flexapod.study.disturbances import vibration
 from flexapod.study.kinematics import forward_kinematics, inverse_dynamics, inverse_kinematics, mobility
+from flexapod.study.parts import parts
 from flexapod.study.record import Interrupted
 from flexapod.study.simulation import run, simulate
 from flexapod.study.static import modes, stiffness
@@ -19,6 +23,8 @@ if TYPE_CHECKING:
 
 __all__ = [
     "Interrupted",
+    "accuracy",
+    "budget",
     "check_path",
     "forward_kinematics",
     "inverse_dynamics",
@@ -26,6 +32,8 @@ __all__ = [
     "mobility",
     "modes",
     "open_results",
+    "parts",
+    "play",
     "run",
     "save",
     "simulate",
@@ -33,6 +41,7 @@ __all__ = [
     "simulate_solid",
     "stiffness",
     "summary",
+    "vibration",
 ]
 
 

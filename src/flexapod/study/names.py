@@ -14,8 +14,25 @@ if TYPE_CHECKING:
     from xarray import Coordinates, Dataset
     from xarray import Variable as Labelled
 
-#: Causes of a leg's length error, in the order of the `cause` dimension.
+#: Causes of a leg's length error that every robot has, the first ones of the `cause` dimension.
 CAUSES = ("axial-strain", "bending", "drive")
+CAUSE_WORDS = {
+    "axial-strain": "stretch of the pistons",
+    "bending": "bending of the pistons",
+    "drive": "give of the drives",
+    "base_joint": "give of the joints at the base",
+    "platform_joint": "give of the joints at the platform",
+    "screw": "stretch of the screws",
+    "twist": "twist of the screws",
+    "nut": "give of the nuts",
+    "bearing": "give of the screws' bearings",
+    "geometry": "errors of geometry",
+    "heat_base": "heat of the base",
+    "heat_platform": "heat of the platform",
+    "heat_piston": "heat of the pistons",
+    "heat_cylinder": "heat of the cylinders",
+    "heat_screw": "heat of the screws",
+}
 
 
 class Variable(NamedTuple):
@@ -29,6 +46,7 @@ class Variable(NamedTuple):
 #: Labels of all angles that a leg may have: of a crank, at the base, about the leg, at the platform.
 ANGLES = ("carriage", "alpha", "beta", "spin", "gamma1", "gamma2", "gamma3")
 
+_TWIST = ["x", "y", "z", "rx", "ry", "rz"]
 #: Labels of dimensions that have fixed ones, with what they stand for.
 COORDINATES: dict[str, tuple[object, str]] = {
     "axis": (list("xyz"), "world axis"),
@@ -37,8 +55,10 @@ COORDINATES: dict[str, tuple[object, str]] = {
     "cause": (list(CAUSES), "cause of a leg's length error"),
     "end": (["base", "platform"], "end of the leg"),
     "joint_angle": (["alpha", "beta"], "angle of a joint"),
-    "component": (["x", "y", "z", "rx", "ry", "rz"], "translation along and rotation about the world axes"),
+    "component": (_TWIST, "translation along and rotation about the world axes"),
+    "component_b": (_TWIST, "translation along and rotation about the world axes"),
     "wrench": (["Fx", "Fy", "Fz", "Mx", "My", "Mz"], "force and moment, world axes"),
+    "state": (["uncalibrated", "calibrated"], "whether the controller knows the errors of the machine"),
     "plane_axis": (list("XY"), "axis in the plane of motion"),
 }
 
@@ -125,6 +145,8 @@ _ENERGY = {
 }
 
 _STATIC = {
+    "part_stiffness": Variable(("leg", "part"), "N/m", "stiffness of a part along its leg"),
+    "leg_stiffness": Variable(("leg",), "N/m", "stiffness of all parts along a leg in series"),
     "frequency": Variable(("mode",), "Hz", "undamped natural frequency"),
     "damping_ratio": Variable(("mode",), "1", "damping ratio"),
     "kind": Variable(("mode",), "1", "what mostly moves"),
@@ -161,6 +183,76 @@ _MOBILITY = {
     "locked_nearby": Variable(("posture",), "1", "motions left with all drives locked at two displaced poses"),
 }
 
+_C, _CC = ("component",), ("component", "component_b")
+_ACCURACY = {
+    "pose_error": Variable(_C, "mixed", "error of the tool's pose [m, rad], as built and warm, exact kinematics"),
+    "pose_error_first_order": Variable(_C, "mixed", "error of the tool's pose [m, rad] to first order"),
+    "pose_error_by_part": Variable(
+        ("error", "leg", "component"), "mixed", "share of an error of a leg in that of the tool's pose [m, rad]"
+    ),
+    "pose_drift": Variable(("drift_time", "component"), "mixed", "error of the tool's pose [m, rad] as parts warm up"),
+    "pose_sigma": Variable(_C, "mixed", "standard deviation of the tool's pose [m, rad] by tolerances"),
+    "pose_covariance": Variable(_CC, "mixed", "covariance of the tool's pose [m, rad] by tolerances"),
+    "pose_worst": Variable(_C, "mixed", "largest error of the tool's pose [m, rad] by tolerances given as boxes"),
+    "pose_sigma_by_tolerance": Variable(
+        ("tolerance", "leg", "component"), "mixed", "standard deviation of the tool's pose [m, rad]"
+    ),
+    "pose_worst_by_tolerance": Variable(
+        ("tolerance", "leg", "component"), "mixed", "largest error of the tool's pose [m, rad]"
+    ),
+    "leg_bow": Variable(("leg",), "m", "largest distance of the leg's axis from the line of its joints, under thrust"),
+    "euler_share": Variable(("leg",), "1", "thrust over Euler load of the leg"),
+    "sample_mean": Variable(_C, "mixed", "mean error of the tool's pose [m, rad] of the machines drawn"),
+    "sample_covariance": Variable(_CC, "mixed", "covariance of the tool's pose [m, rad] of the machines drawn"),
+    "sample_largest": Variable(_C, "mixed", "largest error of the tool's pose [m, rad] of the machines drawn"),
+    "sample_count": Variable((), "1", "machines drawn"),
+}
+
+_FC = ("spectrum_frequency", "component")
+_DISTURBED = {
+    "vibration_rms": Variable(_C, "mixed", "rms of the tool's vibration [m, rad] relative to the base"),
+    "vibration_covariance": Variable(_CC, "mixed", "covariance of the tool's vibration [m, rad] relative to the base"),
+    "vibration_psd": Variable(_FC, "mixed", "one-sided spectral density of the tool's vibration [m2 Hz-1, rad2 Hz-1]"),
+    "vibration_cumulative": Variable(_FC, "mixed", "rms [m, rad] of the tool's vibration at this frequency and above"),
+    "vibration_by_source": Variable(("source", "component"), "mixed", "rms [m, rad] by one disturbance alone"),
+    "vibration_by_mode": Variable(("mode", "component"), "mixed", "share [m, rad] of a mode in the rms"),
+}
+
+_TC = ("time", "component")
+_PLAY = {
+    "pressing_force": Variable(
+        ("time", "place", "leg"), "mixed", "force [N] that presses a leg together; of a carriage that of its drive"
+    ),
+    "play_error": Variable(_TC, "mixed", "error of the tool's pose [m, rad] by play, as the forces press it"),
+    "play_worst": Variable(_TC, "mixed", "largest error of the tool's pose [m, rad] by play, however it lies"),
+    "play_by_place": Variable(("place", "leg", "component"), "mixed", "error of the tool's pose [m, rad] by play"),
+    "sign_changes": Variable(("place", "leg"), "1", "changes of sign of the pressing force"),
+    "jump_time": Variable(("jump",), "s", "instant at which play changes its side"),
+    "jump_place": Variable(("jump",), "1", "where it does"),
+    "jump_leg": Variable(("jump",), "1", "leg in which it does"),
+    "jump_size": Variable(("jump", "component"), "mixed", "jump of the tool's pose [m, rad]"),
+}
+
+_PK = ("part", "kind", "component")
+_BUDGET = {
+    "budget": Variable(_PK, "mixed", "what a part adds to the error of the tool [m, rad]"),
+    "budget_by_leg": Variable(
+        ("part", "kind", "leg", "component"), "mixed", "share of a leg in what a part adds to the error [m, rad]"
+    ),
+    "budget_total": Variable(_PK[1:], "mixed", "all parts together by the rule of the kind [m, rad]"),
+    "budget_residual": Variable(_PK[1:], "mixed", "what the rows leave of the whole [m, rad]"),
+    "nature": Variable(("part",), "1", "calibratable, repeatable or drifting"),
+    "how": Variable(_PK[:2], "1", "how it was computed"),
+    "share": Variable(("part",), "1", "size of a part's worst error of the tool's place, over the sum of all sizes"),
+    "worst": Variable(_C, "mixed", "largest error of the tool [m, rad], all kinds at their worst at once"),
+    "rss": Variable(_C, "mixed", "root of the sum of the squares of all kinds [m, rad]"),
+    "pose_accuracy": Variable(("state", "component"), "mixed", "systematic error and 3 sigma of tolerances [m, rad]"),
+    "repeatability_unidirectional": Variable(_C, "mixed", "4 standard deviations from approach to approach [m, rad]"),
+    "repeatability_bidirectional": Variable(_C, "mixed", "the same with the reversal value of play [m, rad]"),
+    "worst_time": Variable((), "s", "instant whose pose has the largest static deviation of the tool"),
+    "peak_time": Variable(_C, "s", "instant of the largest dynamic deviation"),
+}
+
 _ACTUATOR = {
     "length": Variable(_T, "m", "length of the beam outside the hub"),
     "angle": Variable(_T, "rad", "angle of the hub from the horizontal"),
@@ -178,7 +270,10 @@ _ACTUATOR = {
 }
 
 #: Every variable of every Dataset, by name.
-VARIABLES: Mapping[str, Variable] = {**_PATH, **_COMMAND, **_LEGS, **_ENERGY, **_STATIC, **_MOBILITY, **_ACTUATOR}
+VARIABLES: Mapping[str, Variable] = {
+    **_PATH, **_COMMAND, **_LEGS, **_ENERGY, **_STATIC, **_MOBILITY, **_ACCURACY, **_PLAY, **_BUDGET,
+    **_DISTURBED, **_ACTUATOR,
+}  # fmt: skip
 
 #: The actuator's own form of variables that a robot has per leg or with another zero.
 ACTUATOR_FORMS = {
@@ -204,14 +299,23 @@ ONE_POSE_FORMS = {
 }
 
 
+#: Of a single pose: play.
+AT_A_POSE = {
+    "pressing_force": _PLAY["pressing_force"]._replace(dims=("place", "leg")),
+    "play_error": _PLAY["play_error"]._replace(dims=_C),
+    "play_worst": _PLAY["play_worst"]._replace(dims=_C),
+}
+
+
+def cause_in_words(cause: str, bodies: str = "pistons") -> str:
+    """What a cause stands for; one without words of its own is a spring of that name."""
+    return CAUSE_WORDS.get(cause, f"give of {cause}").replace("pistons", bodies)
+
+
 def cause_words(data: Dataset) -> dict[str, str]:
     """Causes of deviation in words; what bends in legs without stroke is a strut."""
-    what = "pistons" if "leg_length" in data else "struts"
-    return {
-        "axial-strain": f"stretch of the {what}",
-        "bending": f"bending of the {what}",
-        "drive": "give of the drives",
-    }
+    causes = map(str, data.cause.values) if "cause" in data.coords else CAUSES
+    return {cause: cause_in_words(cause, "pistons" if "leg_length" in data else "struts") for cause in causes}
 
 
 def fixed_labels(sizes: Mapping[str, int]) -> dict[str, tuple[object, str]]:
@@ -284,5 +388,14 @@ _COORDINATE_ATTRS = {
     "axial_shape": {"long_name": "axial shape"},
     "station": {"units": "1", "long_name": "position along the leg: 0 base joint, 1 tip"},
     "joint_angle": {"long_name": "angle of a joint"},
+    "cause": {"long_name": "cause of a leg's length error"},
+    "part": {"long_name": "part of a leg"},
+    "kind": {"long_name": "kind of error"},
     "coordinate": {"long_name": "coordinate of a leg"},
+    "place": {"long_name": "where there is play"},
+    "error": {"long_name": "what is not as drawn"},
+    "tolerance": {"long_name": "what may not be as drawn"},
+    "source": {"long_name": "disturbance"},
+    "spectrum_frequency": {"units": "Hz", "long_name": "frequency"},
+    "drift_time": {"units": "s", "long_name": "time of the temperatures"},
 }

@@ -38,8 +38,12 @@ def length(value: float) -> str:
 
 def held(robot: Robot) -> str:
     """What modes and stiffness hold still: the drives, or their commands where drives give way."""
-    soft = {leg.drive.type for leg in robot.legs if getattr(leg.drive, "feedback", True)} - {"prescribed"}
+    soft = {leg.drive.type for leg in robot.legs if not leg.drive.holds and getattr(leg.drive, "feedback", True)}
     if not soft:
         return "Drives locked"
-    parts = {"servo": "springs and dampers of the servo drives", "force": "feedback of the force drives"}
+    parts = {
+        "servo": "springs and dampers of the servo drives",
+        "force": "feedback of the force drives",
+        "screw": "loops of the screw drives",
+    }
     return f"Commands of the drives held, with the {' and the '.join(parts[kind] for kind in sorted(soft))}"

@@ -55,6 +55,13 @@ class RobotProblem:
                     value=leg.drive.type,
                     allowed="prescribed",
                 )
+            for key in ("base_joint", "platform_joint"):
+                if getattr(leg, key).stiffness is not None:
+                    raise InputError(
+                        "is not modelled in Exudyn", key=f"leg {number}: {key}.stiffness", allowed="joints without"
+                    )
+            if leg.springs:
+                raise InputError("are not modelled in Exudyn", key=f"leg {number}: springs", allowed="legs without")
             if self.elements and not leg.piston.rhoA:
                 raise InputError(
                     "makes cables without mass, which Exudyn cannot move",

@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+from collections.abc import Mapping, Sequence
 from dataclasses import dataclass
 
 import numpy as np
@@ -13,9 +14,14 @@ from flexapod.model import Robot
 from flexapod.rigid.closures import Task, close
 from flexapod.rigid.limbs import COORDINATES, DRIVEN, FREE, HELD, Limbs
 from flexapod.rigid.rotations import matrix
+from flexapod.rigid.screws import screws
+from flexapod.solve.many import RestStates
 from flexapod.solve.released import is_hexapod, rigid_errors
+from flexapod.solve.springs import Place
 from flexapod.solve.system import System
+from flexapod.study.after.elongations import elongations, part_names
 from flexapod.study.after.legs import stretch
+from flexapod.study.names import CAUSES
 from flexapod.study.path import RigidPath
 from flexapod.study.record import Record
 from flexapod.typing import Array
@@ -28,55 +34,109 @@ class Errors:
     """Errors of the coordinates that drives and joints hold, by cause, each (T, legs, 8) [m, rad]: `COORDINATES`.
 
     Of a leg UPS that is its length. They add up to what straight legs would need to reach the flexible platform, less
-    what they have on the rigid path, exactly.
+    what they have on the rigid path, exactly. `by_cause`: in the order of `cause_names`.
     """
 
-    axial: Array
-    bending: Array
-    drive: Array
+    by_cause: Mapping[str, Array]
 
     @property
     def total(self) -> Array:
         """Their sum, Eq. (T8.5)."""
-        return self.axial + self.bending + self.drive
+        return np.sum(list(self.by_cause.values()), axis=0)
 
     @property
     def stacked(self) -> Array:
-        """The causes in the order of `names.CAUSES`, (T, 3, legs, 8)."""
-        return np.stack([self.axial, self.bending, self.drive], axis=1)
+        """The causes in their order, (T, causes, legs, 8)."""
+        return np.stack(list(self.by_cause.values()), axis=1)
 
 
-def errors_of(robot: Robot, system: System, path: RigidPath, record: Record) -> Errors:
-    """Errors by cause along a recorded path, Eqs. (T8.2)-(T8.4)."""
+def cause_names(robot: Robot) -> tuple[str, ...]:
+    """What may be to blame in a robot: its pistons and drives, every part that gives way, what is not as drawn."""
+    return (*CAUSES, *part_names(robot), *dict.fromkeys(part.cause for part in rigid.built_parts(robot)))
+
+
+def errors_of(robot: Robot, system: System, path: RigidPath, record: Record | RestStates) -> Errors:
+    """Errors by cause along a recorded path, or at rest at its instants, Eqs. (T8.2)-(T8.4), (T15.14)."""
     found, shapes = rigid.rigid_limbs(robot), system.kernel.shapes
     q = np.zeros((*record.q.shape[:2], len(COORDINATES)))
     for k, name in enumerate(COORDINATES):
         if shapes.has(name):
             q[..., k] = record.q[..., shapes.index(name)]
     command = np.stack([path.legs.coordinate(name)[0] for name in COORDINATES], axis=-1)
-    needed = _straight(robot, found, record, q)
+    needed, built = _straight(robot, found, record, q), _built(robot, path.time, command)
+    before, more, done = needed, {}, ()
+    for name, (parts, longer) in built.items():  # joint after joint to its real place
+        done, after = (*done, *parts), before
+        if any(part.base.any() or part.platform.any() for part in parts):
+            after = _straight(robot, rigid.built_limbs(robot, found, done), record, q)
+        more[name], before = before - after + longer, after  # (T16.7)
     counts, own, axial = np.isin(found.state, (HELD, DRIVEN)), command.copy(), np.zeros_like(q)
     own[..., (CHI, L)] = q[..., (CHI, L)]
     axial[..., L] = stretch(shapes, record.q)  # (T8.2)
-    bending, drive = needed - (own + axial), own - command  # (T8.3)-(T8.4)
-    return Errors(**{name: np.where(counts, part, 0.0) for name, part in
-                     (("axial", axial), ("bending", bending), ("drive", drive))})  # fmt: skip
+    bending, drive = before - (own + axial), own - command  # (T8.3)-(T8.4)
+    for _, longer in built.values():
+        drive = drive - longer
+    causes: dict[str, Array] = dict(zip(CAUSES, (axial, bending, drive), strict=True))
+    behind: tuple[tuple[Sequence[Place], Array], ...] = ((("nut",), drive), (("base", "platform"), bending))
+    for places, whole in behind:  # (T15.14)
+        for name, give in elongations(robot, system, record.q, places).items():
+            causes.setdefault(name, np.zeros_like(q))[..., L] += give
+            whole[..., L] -= give
+    for name, error in _across(found, system, record, q).items():
+        causes[name], bending[:] = causes[name] + error, bending - error
+    return Errors(by_cause={name: np.where(counts, part, 0.0) for name, part in (causes | more).items()})
 
 
-def _straight(robot: Robot, found: Limbs, record: Record, q: Array) -> Array:
+def _built(robot: Robot, t: Array, command: Array) -> dict[str, tuple[tuple[rigid.BuiltPart, ...], Array]]:
+    """What differs from the drawing, by cause, and what it adds to the commanded coordinates, (T, legs, 8)."""
+    parts, still = rigid.built_parts(robot), np.zeros_like(command)
+    found = {}
+    for cause in dict.fromkeys(part.cause for part in parts):
+        own = tuple(part for part in parts if part.cause == cause)
+        found[cause] = own, sum(rigid.added(part, t, rigid.Law(command, still, still)).position for part in own)
+    return found
+
+
+def _across(found: Limbs, system: System, record: Record | RestStates, q: Array) -> dict[str, Array]:
+    """What displacements of soft joints across the legs do to held coordinates, (T, legs, 8) by joint, Eq. (T15.15).
+
+    Of legs UPS that is of second order, and left to bending.
+    """
+    shapes, errors = system.kernel.shapes, {}
+    if found.plain or shapes.flexure:
+        return errors
+    chain, taken = screws(found, q).columns, closing(found)
+    z, y = chain[..., :3, L], chain[..., 3:, COORDINATES.index("beta")]
+    x, spin = np.cross(y, z), q[..., COORDINATES.index("spin"), None]
+    x, y = np.cos(spin) * x + np.sin(spin) * y, np.cos(spin) * y - np.sin(spin) * x
+    for name, end, soft in (("base_joint", "u", shapes.soft_base), ("platform_joint", "e", shapes.soft_platform)):
+        if not soft:
+            continue
+        at = shapes.index(f"{end}1")
+        shift = record.q[..., at, None] * x + record.q[..., at + 1, None] * y
+        error = np.zeros_like(q)
+        for i, own in enumerate(taken):
+            step = np.concatenate([shift[:, i], np.zeros_like(shift[:, i])], axis=-1)[:, : own.sum(), None]
+            error[:, i, own] = np.linalg.solve(chain[:, i, : own.sum()][..., own], step)[..., 0]
+        if error.any():
+            errors[name] = error
+    return errors
+
+
+def _straight(robot: Robot, found: Limbs, record: Record | RestStates, q: Array) -> Array:
     """Coordinates of straight legs that reach the flexible platform, the carriages where they are, (T, legs, 8)."""
     R = matrix(record.pose[:, 3:])
     at = rigid.Poses.at_rest(record.pose[:, :3] - R @ robot.com, R)
     if found.plain:
         q = q.copy()
-        q[..., L] = rigid.leg_lengths(robot.base_joints, robot.platform_joints, at.position, R)
+        q[..., L] = rigid.leg_lengths(found.base, found.platform, at.position, R)
         return q
-    needed = close(found, Task(_closing(found), np.zeros(6, dtype=bool), np.zeros(3)), q, at).q
+    needed = close(found, Task(closing(found), np.zeros(6, dtype=bool), np.zeros(3)), q, at).q
     needed[..., CHI] = q[..., CHI]
     return needed
 
 
-def _closing(found: Limbs) -> NDArray[np.bool_]:
+def closing(found: Limbs) -> NDArray[np.bool_]:
     """The coordinates that a closure determines, (legs, 8), whether or not something holds them."""
     taken = np.zeros(found.state.shape, dtype=bool)
     taken[:, [COORDINATES.index(name) for name in ("alpha", "beta", "l")]] = True
@@ -91,7 +151,7 @@ def deviation_by_cause(robot: Robot, path: RigidPath, errors: Errors) -> Array:
 
     Returns
     -------
-    ndarray, shape (T, 3, legs, 3)
+    ndarray, shape (T, causes, legs, 3)
         Time, cause, leg, world axis [m].
 
     Raises

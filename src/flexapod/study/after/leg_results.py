@@ -9,12 +9,16 @@ from numpy.typing import ArrayLike
 
 from flexapod.mechanics.layout import columns, leg_parameters
 from flexapod.model import Robot
+from flexapod.rigid.built import built_limbs
 from flexapod.rigid.limbs import COORDINATES, HELD, Limbs, limbs
+from flexapod.rigid.robot import robot_limbs
 from flexapod.rigid.rotations import exponential, matrix
 from flexapod.solve.many import RestStates
 from flexapod.solve.released import RobotForces, released, rigid_system
 from flexapod.solve.system import System
 from flexapod.study.after import legs as by_name
+from flexapod.study.after.causes import cause_names
+from flexapod.study.after.elongations import elongations
 from flexapod.study.names import DRIVES, Variable
 from flexapod.study.path import RigidPath
 from flexapod.study.record import Record
@@ -29,17 +33,18 @@ def leg_results(robot: Robot, system: System, path: RigidPath, record: Record) -
     """Lengths, angles, deflections and forces of the legs."""
     shapes, q, found = system.kernel.shapes, record.q, limbs(robot)
     bent, forces = by_name.lateral(shapes, q), _port_forces(system, record)
-    zero = _zero(found)
+    zero, turns = _zero(found), by_name.per_turn(robot)
     results = {
         "leg_angle": np.stack([q[..., shapes.index(name)] for name in by_name.angle_names(found).values()], axis=-1),
-        "drive_position": by_name.of_drives(found, shapes, q) + zero,
-        "drive_command": _commands(found, path) + zero,
-        "drive_force": by_name.of_drives(found, shapes, forces),
+        "drive_position": _drive_positions(robot, system, record) / turns + zero,
+        "drive_command": _commands(found, path) / turns + zero,
+        "drive_force": _motor_forces(robot, system, forces) * turns,
         "tip_deflection": bent @ by_name.bending_basis(shapes).tip,
         "joint_force": record.lam[..., :3],
     }
     if by_name.has_strokes(robot):
-        length, force = flexible_lengths(robot, system, record), by_name.stroke_forces(found, results["drive_force"])
+        length = flexible_lengths(robot, system, record)
+        force = by_name.stroke_forces(found, by_name.of_drives(found, shapes, forces))
         results |= zip(STROKES, (path.legs.length, length, q[..., shapes.l_index], force), strict=True)
     if held := by_name.held_names(found):
         results["held_force"] = _held_forces(found, system, forces, held)
@@ -59,7 +64,7 @@ def rigid_leg_results(path: RigidPath) -> dict[str, Array]:
     angles = [state.coordinate(name)[0] for name in by_name.angle_names(found).values()]
     values = {
         "leg_angle_rigid": np.stack(angles, axis=-1),
-        "drive_command": _commands(found, path) + _zero(found),
+        "drive_command": _commands(found, path) / by_name.per_turn(robot) + _zero(found),
     }
     if by_name.has_strokes(robot):
         names = ("leg_length_command", "leg_length_rate", "leg_length_acceleration")
@@ -92,8 +97,27 @@ def _port_forces(system: System, record: Record) -> Array:
     return forces
 
 
+def _drive_positions(robot: Robot, system: System, record: Record) -> Array:
+    """Where the drives are, (T, legs): strokes, carriages, rotors by their travel; of a servo what its spring holds."""
+    shapes, q = system.kernel.shapes, record.q
+    found = by_name.of_drives(limbs(robot), shapes, q)
+    give = np.sum(list(elongations(robot, system, q, ("nut",)).values()), axis=0)
+    return found - give if shapes.series else found
+
+
+def _motor_forces(robot: Robot, system: System, forces: Array) -> Array:
+    """Forces of the drives on what they move, (T, legs): of rotors by their travel."""
+    shapes = system.kernel.shapes
+    found = by_name.of_drives(limbs(robot), shapes, forces)
+    if not shapes.series:
+        return found
+    rotor = forces[..., shapes.index("r")]
+    held = system.held[:, shapes.l_index]  # by the drive, whose rotor turns along
+    return np.where([leg.gives for leg in robot.legs], rotor + np.where(held, found, 0.0), found)
+
+
 def drive_forces(robot: Robot, system: System, record: Record) -> Array:
-    """Force of every drive on what it moves, (T, legs) [N, of cranks N m]; 0 of passive legs."""
+    """Force of every drive on carriage or piston, (T, legs) [N, of cranks N m]; 0 of passive legs."""
     return by_name.of_drives(limbs(robot), system.kernel.shapes, _port_forces(system, record))
 
 
@@ -110,9 +134,11 @@ def _held_forces(found: Limbs, system: System, forces: Array, held: list[str]) -
 
 
 def leg_labels(robot: Robot, *, rigid: bool = False) -> dict[str, ArrayLike]:
-    """Labels of the dimensions whose size depends on the kinds of legs; with `rigid` those of the rigid path."""
+    """Labels of the dimensions whose size depends on the robot; with `rigid` those of the rigid path."""
     found = limbs(robot, rigid=rigid)
     labels: dict[str, ArrayLike] = {"joint_angle": list(by_name.angle_names(found))}
+    if not rigid:
+        labels["cause"] = list(cause_names(robot))
     held = by_name.held_names(found)
     return {**labels, "coordinate": held} if held else labels
 
@@ -126,9 +152,10 @@ def absent(robot: Robot) -> set[str]:
 
 
 def drive_forms(robot: Robot) -> dict[str, Variable]:
-    """Variables of drives in the units that they have: a crank has rad and N m."""
+    """Variables of drives in the units that they have: a crank and a screw have rad and N m."""
     found = limbs(robot)
-    turns = {name == "chi" and found.carriage == "crank" for name in by_name.drive_names(found)}
+    cranks = [name == "chi" and found.carriage == "crank" for name in by_name.drive_names(found)]
+    turns = {crank or leg.screw is not None for crank, leg in zip(cranks, robot.legs, strict=True)}
     if True not in turns:
         return {}
     units = {"m": "rad", "N": "N m"} if len(turns) == 1 else {"m": "mixed", "N": "mixed"}
@@ -137,9 +164,9 @@ def drive_forms(robot: Robot) -> dict[str, Variable]:
 
 def flexible_lengths(robot: Robot, system: System, record: Record) -> Array:
     """Joint-to-joint lengths of the flexible robot, (T, legs) [m], Eq. (T8.1)."""
-    R = matrix(record.pose[:, 3:])
-    tips = record.pose[:, None, :3] + (robot.platform_joints - robot.com) @ R.swapaxes(1, 2)
-    return np.linalg.norm(tips - by_name.base_points(limbs(robot), _carriages(system, record.q)), axis=-1)
+    R, built = matrix(record.pose[:, 3:]), built_limbs(robot, robot_limbs(robot))
+    tips = record.pose[:, None, :3] + (built.platform - robot.com) @ R.swapaxes(1, 2)
+    return np.linalg.norm(tips - by_name.base_points(built, _carriages(system, record.q)), axis=-1)
 
 
 def _carriages(system: System, q: Array) -> Array | None:

@@ -57,6 +57,11 @@ def of_drives(limbs: Limbs, shapes: Shapes, values: Array) -> Array:
     return values[..., np.arange(len(at)), at]
 
 
+def per_turn(robot: Robot) -> Array:
+    """Travel by an angle of each leg's screw, (legs,) [m/rad]; 1 of other drives, whose numbers stay as they are."""
+    return np.array([1.0 if leg.screw is None else leg.screw.per_turn for leg in robot.legs])
+
+
 def stroke_forces(limbs: Limbs, forces: Array) -> Array:
     """Forces of drives that move strokes, (..., legs); 0 of other legs."""
     return np.where(limbs.state[:, COORDINATES.index("l")] == DRIVEN, forces, 0.0)

@@ -68,11 +68,12 @@ def _leg_warnings(robot: Robot, system: System, record: Record | RestStates, whe
                 *_slope(basis, bent, free, when),
                 *_stroke(leg, length, when),
                 *_axial(leg, free, compression[:, i], when),
+                *_nut(leg, compression[:, i], when),
                 *_slender(leg, basis, free, when),
                 *_stress(leg, basis, bent, free, compression[:, i], when),
             )
         ]
-    return _worst_of_each(found)
+    return worst_of_each(found)
 
 
 def actuator_warnings(actuator: Actuator, shapes: Shapes, record: Record) -> list[str]:
@@ -159,6 +160,22 @@ def _axial(leg: Leg, free: Array, compression: Array, when: _When) -> list[_Rema
     return [("buckling", share[k], buckling_words(share[k], compression[k], when[k]))]
 
 
+def _nut(leg: Leg, thrust: Array, when: _When) -> list[_Remark]:
+    if leg.screw is None:
+        return []
+    share, k = np.abs(thrust) / leg.screw.nut.linear_to, int(np.abs(thrust).argmax())
+    return [("nut", share[k], nut_words(leg, float(abs(thrust[k])), when[k]))] if share[k] > 1 else []
+
+
+def nut_words(leg: Leg, thrust: float, when: str) -> str:
+    """That a thrust [N] unloads one half of a preloaded nut (T15.9)."""
+    limit = 0.0 if leg.screw is None else leg.screw.nut.linear_to
+    return (
+        f"the thrust reaches {thrust:.4g} N{when}, beyond {limit:.4g} N (2.83 times the preload of the nut) one half "
+        "of the nut carries nothing, and it is softer than assumed"
+    )
+
+
 def buckling_words(share: float, force: float, when: str) -> str:
     """That an axial force [N] is near the Euler load (T8.11), or above it, and where: for all that remark on it."""
     what = "buckles" if share >= 1 else "is close to buckling"
@@ -226,7 +243,7 @@ def _yield_words(stress: Array, limit: float, when: _When) -> list[_Remark]:
     return [("yield", stress[k] / limit, words)]
 
 
-def _worst_of_each(found: list[tuple[int, str, float, str]]) -> list[str]:
+def worst_of_each(found: list[tuple[int, str, float, str]]) -> list[str]:
     """One sentence for each kind of remark: of the leg where it is worst, and which others share it."""
     texts = []
     for kind in dict.fromkeys(entry[1] for entry in found):

@@ -12,7 +12,7 @@ from flexapod.rigid.trajectory import coordinates
 from flexapod.solve.system import System
 from flexapod.study.after.causes import deviation_by_cause, errors_of
 from flexapod.study.after.leg_results import leg_labels, leg_results
-from flexapod.study.after.legs import bending_basis, has_strokes, stroke_forces
+from flexapod.study.after.legs import bending_basis, has_strokes, per_turn, stroke_forces
 from flexapod.study.path import RigidPath
 from flexapod.study.record import Record
 from flexapod.typing import Array
@@ -74,7 +74,8 @@ def cause_results(robot: Robot, system: System, path: RigidPath, record: Record)
 
 def rigid_force_results(path: RigidPath) -> dict[str, Array]:
     """Drive and joint forces of the rigid robot."""
-    found = {"drive_force_rigid": path.forces.drive_force, "joint_force_rigid": path.forces.joint_force}
+    drive_force = path.forces.drive_force * per_turn(path.robot)
+    found = {"drive_force_rigid": drive_force, "joint_force_rigid": path.forces.joint_force}
     if has_strokes(path.robot):
         found["actuator_force_rigid"] = stroke_forces(limbs(path.robot), path.forces.drive_force)
     return found

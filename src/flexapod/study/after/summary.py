@@ -90,10 +90,8 @@ class RobotSummary:
         size = f"{name} misses its rigid path by up to {text(self.peak, 'm')}{until} ({by_axis})"
         if self.largest_cause is None:
             return f"{size}."
-        return (
-            f"{size}; the largest cause is "
-            f"{self.words[self.largest_cause]} ({100 * self.causes[self.largest_cause]:.0f} %{leg})."
-        )
+        share = f"{100 * self.causes[self.largest_cause]:.0f} %{leg}"
+        return f"{size}; the largest cause is {self.words[self.largest_cause]} ({share})."
 
     def as_dict(self) -> dict[str, object]:
         """Everything as plain data."""

@@ -89,6 +89,7 @@ def check_geometry(study: Study, path: RigidPath | None = None) -> list[str]:
         t, found = path.time, path.reach
         _refuse_lost(robot, t, found)
         _refuse_excess(robot, t, found)
+        _refuse_off_the_screw(robot, t, found.length)
         _refuse_folded(t, found)
         nearest = rigid.nearest_singularity(robot, path.poses)
         _refuse_singular(t, nearest)
@@ -98,8 +99,16 @@ def check_geometry(study: Study, path: RigidPath | None = None) -> list[str]:
 
 
 def path_remarks(robot: Robot, t: Array, poses: rigid.Poses) -> list[str]:
-    """Remarks on poses near a singularity and pistons that reach behind their universal joint."""
-    return _remarks(robot, t, rigid.reach(robot, poses).length, rigid.nearest_singularity(robot, poses))
+    """Remarks on poses near a singularity and pistons that reach behind their universal joint.
+
+    Raises
+    ------
+    InputError
+        The nut of a leg is outside its screw.
+    """
+    length = rigid.reach(robot, poses).length
+    _refuse_off_the_screw(robot, t, length)
+    return _remarks(robot, t, length, rigid.nearest_singularity(robot, poses))
 
 
 def _remarks(robot: Robot, t: Array, length: Array, found: rigid.NearestSingularity) -> list[str]:
@@ -137,6 +146,28 @@ def _refuse_excess(robot: Robot, t: Array, reach: rigid.Reach) -> None:
         key=_KEYS.get(worst.kind, "leg.cylinder.mouth"),
         next_step="Reduce the motion, or change the limit named here",
     )
+
+
+def _refuse_off_the_screw(robot: Robot, t: Array, length: Array) -> None:
+    """The nut, at the piston's inner end, has to stay between bearing and end of the screw."""
+    for i, leg in enumerate(robot.legs):
+        if leg.screw is None:
+            continue
+        along = length[:, i] - leg.piston.length - leg.screw.bearing.position
+        low, high = int(along.argmin()), int(along.argmax())
+        k = low if -along[low] > along[high] - leg.screw.length else high
+        if 0 <= along[k] <= leg.screw.length:
+            continue
+        at = "" if len(t) == 1 else f" at t = {t[k]:.6g} s"
+        raise InputError(
+            f"ends before the nut of leg {i + 1}, which is {along[k]:.4g} m from the bearing{at}"
+            if along[k] > 0
+            else f"begins after the nut of leg {i + 1}, which is {-along[k]:.4g} m behind the bearing{at}",
+            key="leg.drive.length" if along[k] > 0 else "leg.drive.bearing.position",
+            value=leg.screw.length if along[k] > 0 else leg.screw.bearing.position,
+            allowed="a nut (length of the leg - piston.length - bearing.position) between 0 and the screw's length",
+            next_step="Change length, bearing.position or piston.length, or reduce the motion",
+        )
 
 
 class _Fold(NamedTuple):

@@ -12,6 +12,7 @@ import numpy as np
 from flexapod import version
 from flexapod.errors import InputError, closest
 from flexapod.model import ActuatorStudy, Study
+from flexapod.study.after.causes import cause_names
 from flexapod.study.after.leg_results import absent, drive_forms, leg_labels
 from flexapod.study.after.summary import tip_size
 from flexapod.study.attributes import attributes
@@ -28,7 +29,9 @@ from flexapod.units import DIMENSIONS
 if TYPE_CHECKING:
     from xarray import Dataset
 
-_LABELS = {"axis": 3, "cause": 3, "direction": 2, "quaternion": 4, "plane_axis": 2, "end": 2}
+__all__ = ["ACTUATOR_SCALARS", "Kept", "kept"]
+
+_LABELS = {"axis": 3, "direction": 2, "quaternion": 4, "plane_axis": 2, "end": 2}
 _SHAPES = ("shape", "axial_shape", "mode")  # dimensions whose size is a setting of the study
 
 
@@ -98,6 +101,8 @@ def kept(keep: Keep, study: Study | ActuatorStudy, resolved: Resolved) -> Kept:
     for name in keep.records:
         _known(name, whole, "keep.records")
     variables = {name: Variable(*table[name][:3]) for name in names} | {name: whole[name] for name in keep.records}
+    if isinstance(study, Study):
+        _refuse_other_causes(keep, names, variables, {*resolved.causes, cause_names(study.robot)})
     sizes, every, times = dict(_LABELS), 1, np.zeros(0)
     if isinstance(study, Study):
         sizes |= {"leg": study.robot.count, **{dim: np.size(labels) for dim, labels in leg_labels(study.robot).items()}}
@@ -122,6 +127,21 @@ def _actuator_scalars(study: ActuatorStudy) -> Mapping[str, Scalar]:
     """Scalars that a simulation of this actuator has."""
     absent_here = set() if study.actuator.space else {f"{name}_peak" for name in _SPACE_PEAKS}
     return {name: entry for name, entry in ACTUATOR_SCALARS.items() if name not in absent_here}
+
+
+def _refuse_other_causes(
+    keep: Keep, scalars: tuple[str, ...], variables: Mapping[str, Variable], causes: set[tuple[str, ...]]
+) -> None:
+    for key, chosen in (("scalars", scalars), ("records", keep.records)):
+        by_cause = [name for name in chosen if "cause" in variables[name].dims]
+        if by_cause and len(causes) > 1:
+            raise InputError(
+                "would have other causes at other points, or than the robot of the study file",
+                key=f"keep.{key}",
+                value=by_cause[0],
+                allowed="points whose robots are made of the same parts",
+                next_step="Write what varies into the study file, at a value that changes nothing: heat.piston = 20",
+            )
 
 
 def _known(name: str, table: Mapping[str, object], key: str) -> None:

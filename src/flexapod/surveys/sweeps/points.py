@@ -16,6 +16,7 @@ import numpy as np
 from flexapod.errors import InputError, Malformed
 from flexapod.model import ActuatorStudy, Study
 from flexapod.model.base import SHORT
+from flexapod.study.after.causes import cause_names
 from flexapod.study.before.room import check_outputs, check_room, result_bytes
 from flexapod.surveys.sweeps.keys import Step, copied, key_text, leaves, leg_count, put, similar_key, value_at
 from flexapod.surveys.sweeps.plan import Plan, Tolerance
@@ -65,8 +66,8 @@ class Resolved:
 
     ``first`` (N,): the first point with an equal study; ``refused``: message by point whose study cannot be;
     ``scattered``: by tolerance, the values (N, numbers) [SI]; ``hash``: of all studies; ``settings``: one point for
-    every kind of kernel; ``instants``: numbers of stored instants and time between them that occur; ``largest``: the
-    point whose results are the largest.
+    every kind of kernel; ``instants``: numbers of stored instants and time between them that occur; ``causes``: of
+    deviations, that occur together; ``largest``: the point whose results are the largest.
     """
 
     first: Array
@@ -75,6 +76,7 @@ class Resolved:
     hash: str
     settings: Mapping[Setting, int]
     instants: frozenset[tuple[int, float]]
+    causes: frozenset[tuple[str, ...]]
     largest: int
 
 
@@ -85,6 +87,7 @@ class _Found:
     known: dict[bytes, int] = field(default_factory=dict)
     settings: dict[Setting, int] = field(default_factory=dict)
     instants: set[tuple[int, float]] = field(default_factory=set)
+    causes: set[tuple[str, ...]] = field(default_factory=set)
     largest: tuple[float, int] = (0.0, 0)
 
 
@@ -191,6 +194,7 @@ class Points:
             hash=digest.hexdigest()[:16],
             settings=found.settings,
             instants=frozenset(found.instants),
+            causes=frozenset(found.causes),
             largest=found.largest[1],
         )
 
@@ -205,6 +209,8 @@ class Points:
         found.settings.setdefault((s.fidelity, s.lateral_basis, s.lateral_shapes, axial, _shape_numbers(study)), point)
         found.largest = max(found.largest, (result_bytes(study), point))
         found.instants.add((s.outputs(study.duration), s.stored_step))
+        if isinstance(study, Study):
+            found.causes.add(cause_names(study.robot))
 
     def _probe(self) -> dict[str, Any]:
         """Tables with the first value of every key; what is read of them tells the dimensions."""

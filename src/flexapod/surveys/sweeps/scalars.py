@@ -16,6 +16,7 @@ from flexapod.rigid.rotations import difference, matrix, quaternion
 from flexapod.solve.modes import robot_modes
 from flexapod.solve.recording import Counters
 from flexapod.solve.system import System
+from flexapod.study.after.causes import cause_names
 from flexapod.study.after.leg_results import drive_forces
 from flexapod.study.after.legs import bending_basis, lateral
 from flexapod.study.after.plausibility import flexible_axes, leg_stress
@@ -109,12 +110,12 @@ class RobotRun:
 
     @property
     def cause_share(self) -> Array:
-        """Share of every cause in the deviation at its peak, along its direction, (3,); zero without deviation."""
+        """Share of every cause in the deviation at its peak, along its direction, (causes,); zero without deviation."""
         deviation = self.com_deviation
         at = int(np.linalg.norm(deviation, axis=1).argmax())
         size = float(deviation[at] @ deviation[at])
         if size == 0.0:
-            return np.zeros(3)
+            return np.zeros(len(cause_names(self.study.robot)))
         one = _instant(self.record, at)
         path = RigidPath(self.study, one.time)
         shares = robot_results(self.study, self.system, one, path)["deviation_by_cause"][0]

@@ -42,6 +42,12 @@ GRID_VARIABLES = {
     "euler_share": Variable((), "1", "largest axial thrust of a leg at rest over its Euler load"),
 }
 
+#: Those that are computed only where error budgets are asked for.
+BUDGET_VARIABLES = {
+    "error_worst": Variable((), "m", "worst case of the tool's place at rest, all parts"),
+    "error_by_part": Variable(("part",), "m", "size of the worst that a part does to the tool's place at rest"),
+}
+
 #: Scalars of which maps are drawn, in the order of the figures, and which end is the bad one.
 SCALARS = {
     "frequency": "least",
@@ -57,11 +63,19 @@ SCALARS = {
     "platform_joint_angle": "largest",
     "euler_share": "largest",
 }
+#: The same with those that a map has if they are asked for.
+SIDES = SCALARS | {"error_worst": "largest"}
 
 
 def forms(names: tuple[str, ...]) -> dict[str, Variable]:
     """The variables on a grid with these dimensions."""
-    return {key: Variable((*names, *dims), units, words) for key, (dims, units, words) in GRID_VARIABLES.items()}
+    table = GRID_VARIABLES | BUDGET_VARIABLES
+    return {key: Variable((*names, *dims), units, words) for key, (dims, units, words) in table.items()}
+
+
+def scalars(data: Dataset) -> list[str]:
+    """Scalars of a map of which maps are drawn."""
+    return [name for name in SIDES if name in SCALARS or name in data]
 
 
 POINTS = 400
@@ -124,7 +138,7 @@ def map_findings(data: Dataset, mode: int = 1) -> MapFindings:
     """
     codes, counts = np.unique(data.reason.values, return_counts=True)
     reasons = {REASONS[code].words: int(n) for code, n in zip(codes, counts, strict=True) if code != REACHED}
-    found = [_finding(data, name, scalar(data, name, mode), mode) for name in SCALARS]
+    found = [_finding(data, name, scalar(data, name, mode), mode) for name in scalars(data)]
     return MapFindings(
         poses=int(data.reason.size),
         reached=int((data.reason.values == REACHED).sum()),
@@ -150,6 +164,7 @@ def name_of(data: Dataset, name: str, mode: int = 1) -> str:
         "stiffness_least": "stiffness at the tool in its weakest direction",
         "condition": "condition of the scaled Jacobian",
         "static_deviation_size": "sag of the tool under gravity and load",
+        "error_worst": "worst case of the tool's place at rest, all parts",
         "largest_force": "largest drive force at rest",
         "stroke_margin": "least stroke left",
         "guided_length": "least length of piston in its cylinder",
@@ -188,7 +203,7 @@ def axis_words(data: Dataset) -> str:
 
 def drawn(data: Dataset) -> list[str]:
     """Quantities that have a value anywhere; the first one in any case."""
-    return [name for name in SCALARS if name == "frequency" or np.isfinite(data[name].values).any()]
+    return [name for name in scalars(data) if name == "frequency" or np.isfinite(data[name].values).any()]
 
 
 def _finding(data: Dataset, name: str, values: DataArray, mode: int) -> Finding | None:

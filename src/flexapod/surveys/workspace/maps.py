@@ -17,6 +17,7 @@ from flexapod.study.arguments import LoadLike, RobotLike, at_pose
 from flexapod.study.attributes import attributes
 from flexapod.study.before.reach import flags
 from flexapod.study.before.room import check_map
+from flexapod.study.budgets.rows import names_of_rows
 from flexapod.study.names import dataset
 from flexapod.study.poses import batches, from_home
 from flexapod.surveys.workspace.findings import forms
@@ -41,6 +42,7 @@ def workspace_map(
     direction: str | ArrayLike = "z",
     acceleration: ArrayLike | None = None,
     frequencies: int = FREQUENCIES,
+    budget: bool = False,
     load: LoadLike = None,
     fidelity: str | None = None,
     modes: int | None = None,
@@ -64,6 +66,8 @@ def workspace_map(
         Of the platform [m/s^2] for `dynamic_deviation`; default: 1 m/s^2 in whichever direction is worst.
     frequencies : int
         How many of the lowest.
+    budget : bool
+        Also `error_worst` and `error_by_part`, from an error budget of each pose: 5 ms a pose.
     load, fidelity, modes, axial_modes, basis
         As for `flexapod.modes`.
     progress : callable, optional
@@ -81,25 +85,25 @@ def workspace_map(
     """
     study = model.override(at_pose(robot, load), fidelity=fidelity, modes=modes, axial_modes=axial_modes, basis=basis)
     poses = grid(study.robot, axes, at)
-    wanted = Wanted(
-        direction=_unit(direction),
-        acceleration=None if acceleration is None else _vector("acceleration", acceleration),
-        frequencies=_count(frequencies),
-    )
+    a = None if acceleration is None else _vector("acceleration", acceleration)
+    wanted = Wanted(direction=_unit(direction), acceleration=a, frequencies=_count(frequencies), budget=budget)
     check_map(poses.size, wanted.frequencies)
-    began, values = time.perf_counter(), _computed(study, poses, wanted, progress)
+    began = time.perf_counter()
+    data = _described(study, poses, wanted, _computed(study, poses, wanted, progress))
+    data.attrs["wall_time"] = time.perf_counter() - began
+    return data
+
+
+def _described(study: model.Study, poses: Grid, wanted: Wanted, values: dict[str, Array]) -> Dataset:
     count = count_real(values["frequency"])
     values["frequency"] = values["frequency"][..., :count]
     coords = {**poses.values, "mode": np.arange(1, count + 1)}
+    if wanted.budget:
+        coords["part"] = np.array(names_of_rows(study))
     data = dataset(values, coords, _attributes(study, poses, wanted), forms(tuple(poses.values)))
-    return _described(data, poses, time.perf_counter() - began)
-
-
-def _described(data: Dataset, poses: Grid, seconds: float) -> Dataset:
     for name in poses.values:
         data[name].attrs |= {"units": UNITS[name], "long_name": f"{name} from home"}
     data.reason.attrs |= flags()
-    data.attrs["wall_time"] = seconds
     return data
 
 

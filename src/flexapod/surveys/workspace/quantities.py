@@ -15,6 +15,8 @@ from flexapod.solve.rigid_motion import rigid_motion
 from flexapod.solve.stiffness import compliance, displacement, stiffness_of, tool_motion
 from flexapod.study.before.estimates import buckling_load
 from flexapod.study.before.reach import REACHED, Codes, leg_limits, rigid_codes, slider_limits
+from flexapod.study.budgets.rows import names_of_rows, rows_of_poses
+from flexapod.study.budgets.rules import Budget
 from flexapod.study.many_modes import codes_at_rest, poses_of
 from flexapod.typing import Array, Mask
 
@@ -26,12 +28,14 @@ class Wanted:
     """What is asked of each pose.
 
     ``direction`` (3,) unit vector of the stiffness; ``acceleration`` (3,) [m/s^2], None:
-    1 m/s^2 in whichever direction is worst; ``frequencies``: how many of the lowest.
+    1 m/s^2 in whichever direction is worst; ``frequencies``: how many of the lowest;
+    ``budget``: whether error budgets are.
     """
 
     direction: Array
     acceleration: Array | None
     frequencies: int
+    budget: bool = False
 
 
 def batch_values(study: model.Study, path: rigid.Poses, wanted: Wanted) -> tuple[Codes, Values]:
@@ -52,6 +56,8 @@ def batch_values(study: model.Study, path: rigid.Poses, wanted: Wanted) -> tuple
         **_elastic(study.robot, some, locked, wanted),
         **{name: row[locked.at] for name, row in _rigid(study.robot, some).items()},
     }
+    if wanted.budget:
+        values |= _budgets(study, locked)
     if within.size:
         code[within] = codes_at_rest(locked, modes)
     at, result = within[locked.at] if within.size else within, {}
@@ -116,6 +122,16 @@ def _elastic(robot: model.Robot, path: rigid.Poses, locked: LockedPoses, wanted:
         "actuator_force": force,
         "largest_force": np.abs(force).max(axis=1),
         "euler_share": _euler_share(robot, rigid_pose, locked, force),
+    }
+
+
+def _budgets(study: model.Study, locked: LockedPoses) -> Values:
+    """Worst case of the tool's place, and what each part does to it, (p, ...) [m], Eqs. (T17.6) and (T17.8)."""
+    found = [Budget(rows=table, whole={"systematic": whole}) for table, whole in rows_of_poses(study, locked)]
+    parts = names_of_rows(study)
+    return {
+        "error_worst": np.array([float(np.linalg.norm(one.worst[:3])) for one in found]),
+        "error_by_part": np.array([[one.sizes[part] for part in parts] for one in found]).reshape(-1, len(parts)),
     }
 
 

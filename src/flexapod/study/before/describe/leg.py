@@ -8,7 +8,7 @@ import numpy as np
 
 from flexapod.model import Leg, Robot
 from flexapod.model.simulation import SOLID
-from flexapod.study.after.plausibility import NEAR_BUCKLING, SLENDERNESS, buckling_words, thick_words
+from flexapod.study.after.plausibility import NEAR_BUCKLING, SLENDERNESS, buckling_words, nut_words, thick_words
 from flexapod.study.before.estimates import buckling_load, piston_section, section_width
 from flexapod.typing import Array
 
@@ -177,11 +177,24 @@ def load_remarks(legs: tuple[LegDescription, ...], robot: Robot, fidelity: str) 
             f"leg {slender.leg}: the free length falls to {slender.slenderness:.3g} times the width of the piston; "
             + _thick(robot.legs[slender.leg - 1], slender.slenderness, solid=fidelity == SOLID)
         )
-    return remarks + _yielding(legs)
+    return remarks + _unloading(legs, robot) + _yielding(legs)
 
 
 def _thick(leg: Leg, slenderness: float, *, solid: bool) -> str:
     return thick_words(piston_section(leg.piston), slenderness * section_width(leg.piston), solid=solid)
+
+
+def _unloading(legs: tuple[LegDescription, ...], robot: Robot) -> list[str]:
+    """The leg whose thrust goes farthest beyond what the preload of its nut takes, if any does."""
+    over = []
+    for found, leg in zip(legs, robot.legs, strict=True):
+        most = max((found.force_min, found.force_max), key=lambda force: abs(force.value))
+        if leg.screw is not None and abs(most.value) > leg.screw.nut.linear_to:
+            over.append((abs(most.value) / leg.screw.nut.linear_to, found.leg, most))
+    if not over:
+        return []
+    _, number, most = max(over, key=lambda entry: entry[0])
+    return [f"leg {number}: {nut_words(robot.legs[number - 1], abs(most.value), f' at t = {most.time:.6g} s')}"]
 
 
 def _yielding(legs: tuple[LegDescription, ...]) -> list[str]:

@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+from collections.abc import Mapping
 from dataclasses import asdict, dataclass
 
 import numpy as np
@@ -10,13 +11,18 @@ from flexapod import model, rigid
 from flexapod.errors import FlexapodError, InputError
 from flexapod.solve.losses import loss_words
 from flexapod.solve.modes import locked_poses, robot_modes, the_modes
+from flexapod.solve.parts import part_stiffness
 from flexapod.solve.robot_march import refuse_massless
+from flexapod.solve.springs import springs_along
 from flexapod.solve.stiffness import compliance, stiffness_of
+from flexapod.study.accuracy.words import accuracy_words
 from flexapod.study.after.mode_shapes import mode_kinds
 from flexapod.study.before.checks import check_path
 from flexapod.study.before.describe.actuator import ActuatorDescription, describe_actuator
 from flexapod.study.before.describe.leg import Extreme, LegDescription, LegPath, describe_leg, load_remarks
+from flexapod.study.before.describe.screw import ScrewDescription, back_words, describe_screws, screw_remarks
 from flexapod.study.before.estimates import bending_moment, residual_vibration
+from flexapod.study.disturbances import vibration_words
 from flexapod.study.path import RigidPath
 from flexapod.study.words import held
 from flexapod.typing import Array
@@ -56,7 +62,7 @@ class PoseDescription:
     """The robot at one pose, drives locked, about its static equilibrium.
 
     `sag` [m] of the centre of mass, `stiffness`, `modes`: the lowest. None and empty where there is no such thing;
-    `problem` then says why.
+    `problem` then says why. `parts`: of legs with more than ideal parts, by name and leg [N/m], inf where it has none.
     """
 
     name: str
@@ -65,6 +71,7 @@ class PoseDescription:
     stiffness: StiffnessDescription | None = None
     modes: tuple[ModeLine, ...] = ()
     problem: str | None = None
+    parts: Mapping[str, tuple[float, ...]] | None = None
 
 
 @dataclass(frozen=True, kw_only=True)
@@ -88,20 +95,28 @@ def describe_pose(study: model.Study, name: str, time: float) -> PoseDescription
     """The robot at rest at an instant of its path."""
     robot, simulation = study.robot, study.simulation
     path = _at_rest(study, time)
+    parts = _parts(robot, path)
     try:
         locked = locked_poses(robot, simulation, path, study.load, time)
         found = the_modes(locked)
         stiffness = None if robot.platform_fixed else _stiffness(stiffness_of(robot, locked).total)
     except FlexapodError as error:
-        return PoseDescription(name=name, time=time, problem=str(error))
+        return PoseDescription(name=name, time=time, problem=str(error), parts=parts)
     lines = zip(found.frequency, found.damping_ratio, mode_kinds(found), strict=True)
     modes = tuple(ModeLine(frequency=float(f), damping_ratio=float(ratio), kind=kind) for f, ratio, kind in lines)
     if robot.platform_fixed:
-        return PoseDescription(name=name, time=time, modes=modes[:SHOWN])
+        return PoseDescription(name=name, time=time, modes=modes[:SHOWN], parts=parts)
     sag = found.equilibrium.state.pose[:3] - path.point(robot.com)[0][0]
     return PoseDescription(
-        name=name, time=time, sag=float(np.linalg.norm(sag)), stiffness=stiffness, modes=modes[:SHOWN]
+        name=name, time=time, sag=float(np.linalg.norm(sag)), stiffness=stiffness, modes=modes[:SHOWN], parts=parts
     )
+
+
+def _parts(robot: model.Robot, path: rigid.Poses) -> dict[str, tuple[float, ...]] | None:
+    if not any(springs_along(leg) for leg in robot.legs):
+        return None
+    found = part_stiffness(robot, rigid.inverse_kinematics(robot, path).length[0])
+    return {name: tuple(values.tolist()) for name, values in found.items()}
 
 
 def _stiffness(total: Array) -> StiffnessDescription:
@@ -175,8 +190,8 @@ class JointAngle:
 class RobotDescription:
     """What `describe` finds for a robot; times in s.
 
-    In words: what poses `held` still, `motions` that the mechanism has, `losses` that were made viscous, `remarks` of
-    doubt.
+    In words: what poses `held` still, `motions` that the mechanism has, `back` what happens with the motors of screws
+    off, `accuracy` of the machine as built, what `disturbances` do to it, `remarks` of doubt.
     """
 
     kind: str = "robot"
@@ -188,10 +203,14 @@ class RobotDescription:
     motions: tuple[str, ...]
     losses: tuple[str, ...]
     legs: tuple[LegDescription, ...]
+    screws: tuple[ScrewDescription, ...]
+    back: str
     angles: tuple[JointAngle, ...]
     singularity: Singularity | None  # None of a platform that is fixed
     poses: tuple[PoseDescription, ...]
     vibration: VibrationToExpect | None
+    accuracy: tuple[str, ...]
+    disturbances: tuple[str, ...]
     remarks: tuple[str, ...]
 
     def as_dict(self) -> dict[str, object]:
@@ -216,6 +235,7 @@ def describe(study: model.Study | model.ActuatorStudy) -> RobotDescription | Act
     path = RigidPath(study)
     remarks = [*check_path(study, path), *_in_time(study)]
     legs, singularity = describe_legs(path), _singularity(study.robot, path.time, path.poses)
+    screws = describe_screws(path)
     end = min(study.motion.end_time - study.motion.hold, study.duration)
     instants = {"start": 0.0, "end of the motion": end}
     worst = singularity.time if singularity else end
@@ -230,12 +250,23 @@ def describe(study: model.Study | model.ActuatorStudy) -> RobotDescription | Act
         motions=tuple(rigid.mobility_words(rigid.rigid_limbs(study.robot))),
         losses=tuple(loss_words(study.robot, study.simulation)),
         legs=legs,
+        screws=screws,
+        back=back_words(path, screws) if screws else "",
         angles=_angles(path),
         singularity=singularity,
         poses=tuple(describe_pose(study, name, instant) for name, instant in instants.items()),
         vibration=vibration_to_expect(study, end),
+        accuracy=accuracy_words(study),
+        disturbances=vibration_words(study),
         remarks=tuple(
-            dict.fromkeys([*study.warnings, *remarks, *load_remarks(legs, study.robot, study.simulation.fidelity)])
+            dict.fromkeys(
+                [
+                    *study.warnings,
+                    *remarks,
+                    *load_remarks(legs, study.robot, study.simulation.fidelity),
+                    *screw_remarks(path, screws),
+                ]
+            )
         ),
     )
 

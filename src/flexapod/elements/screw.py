@@ -1,0 +1,21 @@
+"""A rotor that drives a stroke through springs in series: screw, nut, bearing, brackets, Eqs. (T15.5), (T15.11)."""
+
+from types import SimpleNamespace
+
+from flexapod.elements.frame import Energies
+
+
+def screw(p: SimpleNamespace, qs: SimpleNamespace, vs: SimpleNamespace) -> Energies:
+    """Energies of springs and dampers between the rotor's travel r and the stroke l, and of what turns with the rotor.
+
+    The compliance of the springs is a polynomial of second degree in l, as that of the shaft depends on the nut's
+    place.
+    """
+    away = qs.l - p.series_home
+    softer = 1 + away * (p.series_softening[0] + away * p.series_softening[1])
+    stiffness = p.series_stiffness / softer  # (T15.5)
+    return Energies(
+        kinetic=0.5 * p.rotor_mass * vs.r**2,  # (T15.12)
+        strain=0.5 * stiffness * (qs.r - qs.l) ** 2,  # (T15.11)
+        dissipation=0.5 * p.series_damping * (vs.r - vs.l) ** 2,
+    )

@@ -1,0 +1,121 @@
+"""What shakes a robot at rest: one-sided power spectral densities of floor, wrench and drives."""
+
+from __future__ import annotations
+
+from typing import Annotated, ClassVar, Literal
+
+import numpy as np
+from pydantic import PlainSerializer, PlainValidator, model_validator
+
+from flexapod.errors import InputError
+from flexapod.model.base import Frozen, Series, array_of
+from flexapod.typing import Array
+
+__all__ = ["CURVES", "Curve", "Disturbance", "Floor", "Spectrum", "check_density"]
+
+Curve = Literal["VC-A", "VC-B", "VC-C", "VC-D", "VC-E", "VC-F", "VC-G"]
+#: Nominal rms velocity in a third of an octave [m/s]: each half of the one before it. Amick, Gendreau, Busch & Gordon,
+#: Evolving criteria for research facilities: I. Vibration (Proc. SPIE 5933, 2005).
+CURVES: dict[str, float] = {f"VC-{name}": 50e-6 / 2**k for k, name in enumerate("ABCDEFG")}
+THIRD = 2 ** (1 / 6) - 2 ** (-1 / 6)  # width of such a band over its middle, (T18.12)
+Densities = Annotated[Array, PlainValidator(array_of((None, None))), PlainSerializer(lambda rows: rows.tolist())]
+
+
+class Spectrum(Frozen):
+    """A one-sided power spectral density over `frequency` (m,) [Hz], its columns `density` (m, any) [unit^2/Hz].
+
+    Between the rows straight lines in logarithms of both, or in the numbers themselves where one end is 0; outside of
+    them nothing. `spectrum`: the file of the table.
+    """
+
+    derived: ClassVar[tuple[str, ...]] = ("frequency", "density")
+    spectrum: str | None = None
+    frequency: Series
+    density: Densities
+
+    @model_validator(mode="after")
+    def _table(self) -> Spectrum:
+        check_density(self.frequency, self.density)
+        return self
+
+
+class Floor(Frozen):
+    """Motion of the floor along x, y, z, each by itself: a `curve`, which all third-octave bands reach, or a spectrum.
+
+    `of`: what `density` (m, 3) is the spectrum of [m/s^2, m/s or m, squared, per Hz]; the rest as of `Spectrum`.
+    """
+
+    derived: ClassVar[tuple[str, ...]] = ("frequency", "density")
+    curve: Curve | None = None
+    spectrum: str | None = None
+    of: Literal["acceleration", "velocity", "displacement"] = "acceleration"
+    frequency: Series
+    density: Densities
+
+    @model_validator(mode="after")
+    def _table(self) -> Floor:
+        check_density(self.frequency, self.density)
+        if self.density.shape[1] != 3:
+            raise InputError("has not a column for each of x, y, z", key="density", value=self.density.shape[1])
+        return self
+
+    @classmethod
+    def by_curve(cls, curve: str) -> Floor:
+        """A floor whose velocity reaches a curve in all bands, Eq. (T18.12)."""
+        if curve not in CURVES:
+            raise InputError("is not known", key="curve", value=curve, allowed=", ".join(CURVES))
+        v = CURVES[curve]
+        if curve in ("VC-A", "VC-B"):  # like constant acceleration below 8 Hz
+            f, v = np.array([4.0, 8.0, 80.0]), np.array([2 * v, v, v])
+        else:
+            f, v = np.array([1.0, 80.0]), np.array([v, v])
+        density = np.repeat((v**2 / (THIRD * f))[:, None], 3, axis=1)
+        return cls(curve=curve, of="velocity", frequency=f, density=density)  # type: ignore[arg-type]
+
+
+class Disturbance(Frozen):
+    """What shakes a robot: floor, wrench at the tool, forces of drives.
+
+    `wrench`: columns Fx Fy Fz [N^2/Hz], Mx My Mz [(N m)^2/Hz], world axes; `force_noise` of the drives [N^2/Hz, of
+    cranks (N m)^2/Hz]: a column for all or one for each leg.
+    """
+
+    floor: Floor | None = None
+    wrench: Spectrum | None = None
+    force_noise: Spectrum | None = None
+
+    def check(self, legs: int) -> None:
+        """Raise InputError if a table has not the columns of a robot with so many legs."""
+        tables = (("wrench", self.wrench, (6,)), ("force_noise", self.force_noise, (1, legs)))
+        for name, table, widths in tables:
+            if table is not None and table.density.shape[1] not in widths:
+                raise InputError(
+                    f"has {table.density.shape[1]} columns",
+                    key=f"disturbance.{name}.density",
+                    allowed=" or ".join(map(str, sorted(set(widths)))),
+                )
+
+
+def check_density(frequency: Array, density: Array) -> None:
+    """Refuse what is not a power spectral density, saying which row."""
+    if len(frequency) < 2 or len(density) != len(frequency):
+        raise InputError("has fewer than two rows, or not one for each frequency", key="density")
+    rising = np.append(frequency[0] > 0, np.diff(frequency) > 0)
+    if not rising.all():
+        at = int(np.argmin(rising))
+        raise InputError(
+            "is not above 0" if at == 0 else f"is not above {frequency[at - 1]:g} Hz, the frequency before it",
+            key=f"frequency[{at + 1}]",
+            value=float(frequency[at]),
+            allowed="frequencies [Hz] above 0 that increase from row to row",
+            next_step="Sort the lines by frequency and remove doubles",
+        )
+    if (wrong := np.argwhere(density < 0)).size:
+        at, column = wrong[0]
+        raise InputError(
+            "is negative",
+            key=f"density[{at + 1}][{column + 1}]",
+            value=float(density[at, column]),
+            allowed="a power spectral density, 0 or more",
+            next_step="A table in decibels or of amplitudes is to be converted first",
+        )

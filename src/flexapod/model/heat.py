@@ -1,0 +1,99 @@
+"""How warm the parts of a robot are."""
+
+from __future__ import annotations
+
+from typing import Annotated, ClassVar
+
+import numpy as np
+from pydantic import Field, PlainSerializer, PlainValidator, model_validator
+
+from flexapod.errors import InputError
+from flexapod.model.base import Frozen, Measure, Number, Series, array_of
+from flexapod.model.geometry import PerLeg, check_legs
+from flexapod.model.motion import check_times
+from flexapod.typing import Array
+
+__all__ = ["HEAT_PARTS", "LEG_PARTS", "Expansion", "Gradient", "Heat"]
+
+LEG_PARTS = ("piston", "cylinder", "screw")
+HEAT_PARTS = ("base", "platform", *LEG_PARTS)
+COLDEST = -273.15
+
+_Rows = Annotated[Array, PlainValidator(array_of((None, None))), PlainSerializer(lambda rows: rows.tolist())]
+Warm = Annotated[Number, Field(ge=COLDEST), Measure("temperature")]
+
+
+class Expansion(Frozen):
+    """Thermal expansion of parts [1/K] in place of that of their material, or of steel where none is known."""
+
+    base: Annotated[Number, Measure("expansion")] | None = None
+    platform: Annotated[Number, Measure("expansion")] | None = None
+    piston: Annotated[Number, Measure("expansion")] | None = None
+    cylinder: Annotated[Number, Measure("expansion")] | None = None
+    screw: Annotated[Number, Measure("expansion")] | None = None
+
+
+class Gradient(Frozen):
+    """Temperature differences across parts [K]: of `piston` (or strut), for all legs or for each."""
+
+    piston: Annotated[PerLeg, Measure("temperature difference")] | None = None
+
+
+class Heat(Frozen):
+    """Temperatures [degC]: those at which lengths are as drawn, `reference`, and of parts, where they differ.
+
+    `base`, `platform`: the plates between the joints; `piston` (or strut), `cylinder`, `screw`: for all legs or for
+    each; `gradient`: across them. `time` [s] and `table` (T, columns) [degC]: temperatures over time from `file`,
+    `columns` their names, a part or ``part leg``; they stand in place of the others.
+    """
+
+    derived: ClassVar[tuple[str, ...]] = ("time", "columns", "table")
+
+    reference: Warm = 20.0
+    base: Warm | None = None
+    platform: Warm | None = None
+    piston: Annotated[PerLeg, Measure("temperature")] | None = None
+    cylinder: Annotated[PerLeg, Measure("temperature")] | None = None
+    screw: Annotated[PerLeg, Measure("temperature")] | None = None
+    expansion: Expansion | None = None
+    gradient: Gradient | None = None
+    file: str | None = None
+    time: Annotated[Series, Measure("time")] | None = None
+    columns: tuple[str, ...] = ()
+    table: Annotated[_Rows, Measure("temperature")] | None = None
+
+    @model_validator(mode="after")
+    def _sensible(self) -> Heat:
+        for name in (*LEG_PARTS, "table"):
+            values = getattr(self, name)
+            if values is not None and values.min(initial=0.0) < COLDEST:
+                raise InputError(
+                    "is below absolute zero", key=name, value=float(values.min()), allowed=f"at least {COLDEST:g} degC"
+                )
+        if self.time is not None:
+            check_times(self.time, 0 if self.table is None else len(self.table))
+        return self
+
+    def check(self, count: int) -> None:
+        """Refuse lists that do not fit a robot of `count` legs."""
+        for name in LEG_PARTS:
+            check_legs(getattr(self, name), f"heat.{name}", count)
+        if self.gradient is not None:
+            check_legs(self.gradient.piston, "heat.gradient.piston", count)
+
+    def warms(self, part: str) -> bool:
+        """Whether a part has a temperature of its own."""
+        return getattr(self, part) is not None or any(name.partition(" ")[0] == part for name in self.columns)
+
+    def temperatures(self, part: str, count: int) -> Array:
+        """Of a part of each of `count` legs, at each instant of the table or at the only one, (T or 1, count)."""
+        given = getattr(self, part)
+        constant = np.broadcast_to(self.reference if given is None else given, count)
+        if self.table is None:
+            return constant[None].astype(float)
+        found = np.tile(constant, (len(self.table), 1)).astype(float)
+        for name, values in zip(self.columns, self.table.T, strict=True):
+            what, _, leg = name.partition(" ")
+            if what == part:
+                found[:, slice(None) if not leg else int(leg) - 1] = values[:, None] if not leg else values
+        return found

@@ -1,0 +1,266 @@
+"""A ball or roller screw: shaft, nut, thrust bearing, rotor; catalogue laws, Eqs. (T15.5)-(T15.10)."""
+
+from __future__ import annotations
+
+import math
+from typing import Annotated, Literal
+
+from pydantic import Field, model_validator
+
+from flexapod.errors import InputError
+from flexapod.model.base import Frozen, Measure, NonNegative, Positive
+from flexapod.model.drive import Feedback, ForceDrive, PrescribedDrive, ServoDrive
+from flexapod.model.material import Material
+from flexapod.model.spring import check_lossy
+from flexapod.words import number
+
+__all__ = ["Bearing", "Brake", "Drive", "Encoder", "Limits", "Nut", "Rotor", "ScrewDrive"]
+
+UNLOADS = 2 * math.sqrt(2)  # thrust over preload beyond which one half of a preloaded nut carries nothing
+HIGHEST = 0.1  # preload over dynamic load rating of a double nut, at most (HIWIN 3.6)
+UM = 1e6  # N/m of an N/um
+
+Damping = Annotated[NonNegative, Measure("damping")] | None
+Stiffness = Annotated[Positive, Measure("stiffness")] | None
+Force = Annotated[Positive, Measure("force")] | None
+Torque = Annotated[Positive, Measure("torque")] | None
+
+
+class Nut(Frozen):
+    """The nut: its `stiffness` [N/m], or the catalogue's.
+
+    `rigidity` [N/m] at a preload of a tenth of the `dynamic_load` [N], and the `preload` [N]. `dynamic_load` and
+    `static_load` [N]: load ratings, for life and safety. `backlash`: free travel [m].
+    """
+
+    stiffness: Stiffness = None
+    rigidity: Stiffness = None
+    preload: Force = None
+    dynamic_load: Force = None
+    static_load: Force = None
+    damping: Damping = None
+    loss: Annotated[NonNegative, Measure("number")] | None = None
+    backlash: Annotated[NonNegative, Measure("length")] | None = None
+
+    @model_validator(mode="after")
+    def _one_law(self) -> Nut:
+        check_lossy(self)
+        if self.backlash and self.preload is not None:
+            raise InputError(
+                "is none in a preloaded nut", key="backlash", value=self.backlash, allowed="0, or no preload"
+            )
+        law = ("rigidity", "preload") if self.stiffness is not None else ("rigidity", "preload", "dynamic_load")
+        _one_of(self, "stiffness", law)
+        if None not in (self.dynamic_load, self.static_load) and self.static_load < self.dynamic_load:  # type: ignore[operator]
+            raise InputError(
+                "is less than dynamic_load",
+                key="static_load",
+                value=self.static_load,
+                allowed=f"at least {number(self.dynamic_load or 0.0)} N, as of all ball screws",
+                next_step="See the catalogue: the two may have changed places",
+            )
+        if self.preload is not None and self.dynamic_load is not None and self.preload > HIGHEST * self.dynamic_load:
+            raise InputError(
+                "is more than nuts are made for",
+                key="preload",
+                value=self.preload,
+                allowed=f"at most a tenth of dynamic_load, {number(HIGHEST * self.dynamic_load)} N; half of it where "
+                "one nut is preloaded by an offset of its lead",
+                next_step="See the catalogue's preload, or give stiffness",
+            )
+        return self
+
+    @property
+    def k(self) -> float:
+        """Stiffness [N/m]: as given, or 0.8 of the rigidity, with the cube root of the preload, Eq. (T15.8)."""
+        if self.stiffness is not None:
+            return self.stiffness
+        return 0.8 * self.rigidity * (self.preload / (HIGHEST * self.dynamic_load)) ** (1 / 3)  # type: ignore[operator]
+
+    @property
+    def linear_to(self) -> float:
+        """Thrust beyond which the nut is softer [N], Eq. (T15.9); infinite of a stiffness that is given."""
+        return math.inf if self.preload is None else UNLOADS * self.preload
+
+
+class Bearing(Frozen):
+    """The thrust bearing of a screw, at `position` [m] along the cylinder from the base joint.
+
+    Its `stiffness` [N/m], or with ``model = "angular-contact"`` that of a preloaded pair: `preload` [N], number of
+    `balls`, `ball_diameter` [m], `contact_angle` [rad].
+    """
+
+    position: Annotated[NonNegative, Measure("length")]
+    stiffness: Stiffness = None
+    model: Literal["given", "angular-contact"] = "given"
+    preload: Force = None
+    balls: Annotated[int, Field(strict=True, ge=3, le=1000)] | None = None
+    ball_diameter: Annotated[Positive, Measure("length")] | None = None
+    contact_angle: Annotated[float, Field(strict=True, gt=0, le=math.pi / 2), Measure("angle")] | None = None
+    damping: Damping = None
+    loss: Annotated[NonNegative, Measure("number")] | None = None
+
+    @model_validator(mode="after")
+    def _one_law(self) -> Bearing:
+        check_lossy(self)
+        if self.model == "given" and self.stiffness is None:
+            raise InputError("is missing", key="stiffness", next_step='Add it, or model = "angular-contact"')
+        _one_of(self, "stiffness", ("preload", "balls", "ball_diameter", "contact_angle"))
+        return self
+
+    @property
+    def k(self) -> float:
+        """Stiffness [N/m]: as given, or 3 F_a0 / delta_a0 of a pair, Eq. (T15.10)."""
+        if self.stiffness is not None:
+            return self.stiffness
+        preload, sine = self.preload or 0.0, math.sin(self.contact_angle or 0.0)
+        ball = preload / ((self.balls or 1) * sine)  # N
+        approach = 0.45 / sine * (ball**2 / (1e3 * (self.ball_diameter or 1.0))) ** (1 / 3)  # um, of balls in mm
+        return 3 * preload / approach * UM
+
+
+class Rotor(Frozen):
+    """What turns with the motor: `inertia` [kg m^2] at the motor, which turns `ratio` times as fast as the screw."""
+
+    inertia: Annotated[NonNegative, Measure("inertia")] = 0.0
+    ratio: Annotated[Positive, Measure("number")] = 1.0
+
+
+class Limits(Frozen):
+    """What the drive is made for.
+
+    `force` [N] on the screw; `speed` [rad/s], `torque` and `rms_torque` [N m] of the motor.
+    """
+
+    force: Force = None
+    speed: Annotated[Positive, Measure("angular rate")] | None = None
+    torque: Torque = None
+    rms_torque: Torque = None
+
+    @model_validator(mode="after")
+    def _ordered(self) -> Limits:
+        if self.torque is not None and self.rms_torque is not None and self.rms_torque > self.torque:
+            raise InputError(
+                "is above the largest torque",
+                key="rms_torque",
+                value=self.rms_torque,
+                allowed=f"at most torque = {number(self.torque)} N m",
+                next_step="rms_torque is what the motor bears without end, torque what it gives for a moment",
+            )
+        return self
+
+
+class Brake(Frozen):
+    """A brake at the motor: the `torque` [N m] that it holds."""
+
+    torque: Annotated[Positive, Measure("torque")]
+
+
+class Encoder(Frozen):
+    """Where the position is measured: the rotor's angle, or the stroke."""
+
+    at: Literal["rotor", "stroke"] = "rotor"
+
+
+class ScrewDrive(Frozen):
+    """A screw that the motor turns in a thrust bearing in the cylinder; its nut is the piston's inner end.
+
+    `lead` [m] a turn; the shaft between bearing and nut by its `root_diameter` [m], `length` [m] from the bearing and
+    `material`; `mounting` of its far end. What the motor does to the rotor: `command` "position" holds it, "servo" has
+    a `loop` (spring [N m/rad] and damper [N m s/rad] on the screw's angle), "torque" pushes with what the rigid robot
+    needs, with or without a loop. `efficiency`: thrust times lead over the screw's work; it, `limits` and `brake` are
+    for the checks of a path alone.
+    """
+
+    type: Literal["screw"] = "screw"
+    lead: Annotated[Positive, Measure("length")]
+    root_diameter: Annotated[Positive, Measure("length")]
+    length: Annotated[Positive, Measure("length")]
+    material: Material
+    efficiency: Annotated[float, Field(strict=True, gt=0, le=1), Measure("number")] = 0.9
+    mounting: Literal["fixed-free", "fixed-supported", "fixed-fixed"] = "fixed-free"
+    bearing: Bearing
+    nut: Nut
+    rotor: Rotor = Rotor()
+    command: Literal["position", "servo", "torque"] = "position"
+    loop: Feedback | None = None
+    encoder: Encoder = Encoder()
+    limits: Limits = Limits()
+    brake: Brake | None = None
+
+    @model_validator(mode="after")
+    def _sensible(self) -> ScrewDrive:
+        if self.command == "position" and self.loop is not None:
+            raise InputError(
+                "has nothing to do where the position is held",
+                key="loop",
+                allowed='with command = "servo" or "torque"',
+            )
+        if self.command == "servo" and (self.loop is None or not self.loop.stiffness > 0):
+            raise InputError("is missing", key="loop", next_step="Add loop = { stiffness, damping }, N m/rad")
+        if self.command != "position" and self.encoder.at != "rotor":
+            raise InputError(
+                "is not what a servo of this version measures",
+                key="encoder",
+                value=self.encoder.at,
+                allowed='at = "rotor", or command = "position"',
+            )
+        return self
+
+    @property
+    def backlash(self) -> float | None:
+        """Free travel of the nut [m]."""
+        return self.nut.backlash
+
+    @property
+    def area(self) -> float:
+        """Of the shaft [m^2]."""
+        return math.pi / 4 * self.root_diameter**2
+
+    @property
+    def per_turn(self) -> float:
+        """Travel of the nut by an angle of the screw [m/rad]."""
+        return self.lead / (2 * math.pi)
+
+    @property
+    def inertia(self) -> float:
+        """Of everything that turns, about the screw's axis [kg m^2], Eq. (T15.12)."""
+        polar = math.pi / 32 * self.root_diameter**4
+        return self.material.density * self.length * polar + self.rotor.ratio**2 * self.rotor.inertia
+
+    @property
+    def loop_spring(self) -> tuple[float, float]:
+        """Stiffness [N/m] and damping [N s/m] of the loop, by the nut's travel."""
+        if self.loop is None:
+            return 0.0, 0.0
+        return self.loop.stiffness / self.per_turn**2, self.loop.damping / self.per_turn**2
+
+    @property
+    def holds(self) -> bool:
+        """Whether it keeps its command, whatever the force."""
+        return self.command == "position"
+
+    @property
+    def pushes(self) -> bool:
+        """Whether it is a torque that keeps no position."""
+        return self.command == "torque" and not (self.loop is not None and self.loop.stiffness > 0)
+
+    @property
+    def holds_stroke(self) -> bool:
+        """Whether the loop is closed where the stroke is measured, ideally."""
+        return self.encoder.at == "stroke"
+
+
+Drive = Annotated[PrescribedDrive | ServoDrive | ForceDrive | ScrewDrive, Field(discriminator="type")]
+
+
+def _one_of(part: Frozen, given: str, law: tuple[str, ...]) -> None:
+    """Raise InputError unless a part has either its stiffness or all numbers of a catalogue's law."""
+    has = [name for name in law if getattr(part, name) is not None]
+    if getattr(part, given) is not None and has:
+        raise InputError(f"is given together with {given}", key=has[0], allowed="either of the two")
+    if getattr(part, given) is None and len(has) < len(law):
+        missing = next(name for name in law if name not in has)
+        raise InputError(
+            "is missing", key=missing if has else given, next_step=f"Add {given}, or all of {', '.join(law)}"
+        )

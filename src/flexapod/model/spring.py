@@ -1,0 +1,49 @@
+"""A spring along a leg, in series with its other parts."""
+
+from __future__ import annotations
+
+import re
+from typing import Annotated, Any, ClassVar, Literal
+
+from pydantic import model_validator
+
+from flexapod.errors import InputError
+from flexapod.model.base import Frozen, Measure, NonNegative, Positive
+
+__all__ = ["RESERVED", "AxialSpring", "check_lossy"]
+
+#: Names of parts that have tables of their own.
+RESERVED = ("axial-strain", "bending", "drive", "base_joint", "platform_joint", "screw", "twist", "nut", "bearing")
+
+
+class AxialSpring(Frozen):
+    """A named spring [N/m] along a leg, with a damper [N s/m] or a loss factor.
+
+    `at`: where it is, between base joint and cylinder ("base"), between nut or drive and piston ("nut"), or between
+    the piston's tip and the platform joint ("platform").
+    """
+
+    derived: ClassVar[tuple[str, ...]] = ("name",)
+
+    name: str
+    stiffness: Annotated[Positive, Measure("stiffness")]
+    at: Literal["nut", "base", "platform"] = "nut"
+    damping: Annotated[NonNegative, Measure("damping")] | None = None
+    loss: Annotated[NonNegative, Measure("number")] | None = None
+
+    @model_validator(mode="after")
+    def _sensible(self) -> AxialSpring:
+        check_lossy(self)
+        if self.name in RESERVED or not re.fullmatch(r"[A-Za-z][\w-]*", self.name):
+            raise InputError(
+                "is no name for a spring",
+                key=self.name,
+                allowed="letters, digits, _ and -, and not " + ", ".join(RESERVED),
+            )
+        return self
+
+
+def check_lossy(spring: Any) -> None:
+    """Raise InputError if a spring has a damper and a loss factor."""
+    if spring.damping is not None and spring.loss is not None:
+        raise InputError("is given together with damping", key="loss", value=spring.loss, allowed="either of the two")

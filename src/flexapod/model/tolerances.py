@@ -1,0 +1,70 @@
+"""How far parts may be from the drawing: standard deviations, boxes, accuracy classes."""
+
+from __future__ import annotations
+
+from typing import Annotated, Any, TypeVar
+
+from pydantic import BeforeValidator, Field, model_validator
+
+from flexapod.errors import InputError
+from flexapod.model.base import Frozen, Measure, NonNegative
+
+__all__ = ["CLASSES", "LengthSpread", "RatioSpread", "Spread", "Tolerances"]
+
+#: Accuracy classes of screws: largest error of the travel over the travel. THK, Ball screw, point of selection:
+#: 0.018, 0.05 and 0.21 mm in 300 mm.
+CLASSES = {"C5": 0.018 / 300, "C7": 0.05 / 300, "C10": 0.21 / 300}
+
+
+class LengthSpread(Frozen):
+    """Spread of a length: its standard deviation `sigma` [m], or up to `box` [m] on either side of the drawing."""
+
+    sigma: Annotated[NonNegative, Measure("length")] | None = None
+    box: Annotated[NonNegative, Measure("length")] | None = None
+
+    @model_validator(mode="after")
+    def _either(self) -> LengthSpread:
+        return _either(self)
+
+
+class RatioSpread(Frozen):
+    """A ratio: standard deviation `sigma`, or up to `box` on either side; of EA, EI and density relative to them."""
+
+    sigma: Annotated[NonNegative, Field(le=1.0)] | None = None
+    box: Annotated[NonNegative, Field(le=1.0)] | None = None
+
+    @model_validator(mode="after")
+    def _either(self) -> RatioSpread:
+        return _either(self)
+
+
+Spread = LengthSpread | RatioSpread
+S = TypeVar("S", LengthSpread, RatioSpread)
+
+
+def _either(spread: S) -> S:
+    if (spread.sigma is None) == (spread.box is None):
+        raise InputError(
+            "is missing" if spread.sigma is None else "is given together with box",
+            key="sigma",
+            allowed="a standard deviation, sigma, or { box = .. }",
+        )
+    return spread
+
+
+def _spread(value: Any) -> Any:
+    """A number is a standard deviation."""
+    return {"sigma": value} if isinstance(value, int | float) and not isinstance(value, bool) else value
+
+
+class Tolerances(Frozen):
+    """Independent errors of single parts, those of joints along each axis; what is left out has none.
+
+    `base_joints`, `platform_joints`, `leg_offset` and `lead` as of `Geometry`; `EA` of pistons and struts, relative.
+    """
+
+    base_joints: Annotated[LengthSpread | None, BeforeValidator(_spread)] = None
+    platform_joints: Annotated[LengthSpread | None, BeforeValidator(_spread)] = None
+    leg_offset: Annotated[LengthSpread | None, BeforeValidator(_spread)] = None
+    lead: Annotated[RatioSpread | None, BeforeValidator(_spread)] = None
+    EA: Annotated[RatioSpread | None, BeforeValidator(_spread)] = None

@@ -1,0 +1,181 @@
+"""Random vibration of a robot about its static equilibrium: spectra integrated over frequency, (T18.6)-(T18.11)."""
+
+from __future__ import annotations
+
+from dataclasses import dataclass
+
+import numpy as np
+
+from flexapod.errors import InputError
+from flexapod.model import Disturbance, Floor, Spectrum
+from flexapod.solve.linear import LinearRobot
+from flexapod.typing import Array
+
+__all__ = ["RandomVibration", "Source", "density_at", "random_vibration", "sources_of"]
+
+NODES, WEIGHTS = (0.5 * x for x in np.polynomial.legendre.leggauss(4))
+PER_DECADE = 12  # panels where nothing resonates
+BLOCK = 256  # frequencies side by side
+UNDAMPED = 1e-9  # damping ratio below which nothing limits a resonance
+FLOOR_RATES = {"acceleration": 0, "velocity": 1, "displacement": 2}
+
+
+@dataclass(frozen=True, kw_only=True)
+class Source:
+    """One disturbance: ``name``, its inputs (r, k) as modal ``forces`` that are independent of each other.
+
+    ``frequency`` (m,) [Hz] and ``density`` (m, k) of its table, to be multiplied by (2 pi f)^(2 ``rates``).
+    """
+
+    name: str
+    forces: Array
+    frequency: Array
+    density: Array
+    rates: int = 0
+
+    def at(self, f: Array) -> Array:
+        """Density (f, k) of the inputs."""
+        return density_at(self.frequency, self.density, f) * (2 * np.pi * f[:, None]) ** (2 * self.rates)
+
+
+@dataclass(frozen=True, kw_only=True)
+class RandomVibration:
+    """Vibration of the tool: displacement [m] along and rotation [rad] about world axes relative to the base.
+
+    ``frequency`` (f,) [Hz] with ``weight`` (f,) of the integral; one-sided ``psd`` (f, 6); ``by_input``: rms by each
+    input of each source, (k, 6); ``by_mode`` (r, 6): shares that add up to the rms; ``covariance`` (6, 6).
+    """
+
+    sources: tuple[str, ...]
+    frequency: Array
+    weight: Array
+    psd: Array
+    by_input: tuple[Array, ...]
+    by_mode: Array
+    covariance: Array
+
+    @property
+    def rms(self) -> Array:
+        """Standard deviations, (6,), Eq. (T18.7)."""
+        return np.sqrt(np.diag(self.covariance))
+
+    @property
+    def by_source(self) -> Array:
+        """Standard deviations by source, whose squares add up, (sources, 6), Eq. (T18.8)."""
+        return np.sqrt([(one**2).sum(axis=0) for one in self.by_input])
+
+    @property
+    def cumulative(self) -> Array:
+        """Rms of what is at each frequency and above, (f, 6), Eq. (T18.10)."""
+        power = self.weight[:, None] * self.psd
+        return np.sqrt(np.cumsum(power[::-1], axis=0)[::-1])
+
+
+def sources_of(given: Disturbance, model: LinearRobot) -> list[Source]:
+    """The disturbances of a study at its linear model.
+
+    Raises
+    ------
+    InputError
+        A noise of drives that hold their positions whatever pushes them.
+    """
+    found = []
+    if given.floor is not None:
+        found.append(_source("floor vibration", model.inputs["floor"], given.floor))
+    if given.wrench is not None:
+        found.append(_source("wrench noise", model.inputs["wrench"], given.wrench))
+    if given.force_noise is not None:
+        if not model.inputs["drive"].any():
+            raise InputError(
+                "moves nothing: the drives hold their positions, whatever pushes them",
+                key="disturbance.force_noise",
+                allowed='drives that give way: "servo", or "screw" commanded by "servo" or "torque"',
+                next_step="Leave force_noise out, or choose another leg.drive",
+            )
+        found.append(_source("force noise", model.inputs["drive"], given.force_noise))
+    return found
+
+
+def _source(name: str, forces: Array, table: Floor | Spectrum) -> Source:
+    rates = FLOOR_RATES[table.of] if isinstance(table, Floor) else 0
+    density = np.broadcast_to(table.density, (len(table.frequency), forces.shape[1]))
+    return Source(name=name, forces=forces, frequency=table.frequency, density=density, rates=rates)
+
+
+def density_at(frequency: Array, density: Array, f: Array) -> Array:
+    """A table's density (f, k) at frequencies, Eq. (T18.6): straight in logarithms, or in numbers beside a 0."""
+    k = np.clip(np.searchsorted(frequency, f, side="right") - 1, 0, len(frequency) - 2)
+    low, high, left, right = frequency[k, None], frequency[k + 1, None], density[k], density[k + 1]
+    straight = left + (right - left) * (f[:, None] - low) / (high - low)
+    power = (left > 0) & (right > 0)
+    ratio = np.divide(right, left, out=np.ones_like(left), where=power)
+    curved = left * ratio ** (np.log(f[:, None] / low) / np.log(high / low))
+    inside = (f >= frequency[0]) & (f <= frequency[-1])
+    return np.where(power, curved, straight) * inside[:, None]
+
+
+def random_vibration(model: LinearRobot, sources: list[Source], *, refine: int = 1) -> RandomVibration:
+    """Response of the tool to independent sources; ``refine``: into how many each panel is cut further.
+
+    Raises
+    ------
+    InputError
+        Something without damping vibrates within the spectra.
+    """
+    edges = panels(model, sources, refine)
+    half = np.diff(edges)
+    f = (0.5 * (edges[1:] + edges[:-1])[:, None] + half[:, None] * NODES).ravel()
+    weight = (half[:, None] * WEIGHTS).ravel()
+    forces = np.concatenate([source.forces for source in sources], axis=1)
+    psd, covariance = np.zeros((len(f), 6)), np.zeros((6, 6))
+    by_mode, by_input = np.zeros((model.omega.size, 6)), np.zeros((forces.shape[1], 6))
+    for start in range(0, len(f), BLOCK):
+        some = slice(start, start + BLOCK)
+        S = np.concatenate([source.at(f[some]) for source in sources], axis=1)
+        eta = model.amplitudes(f[some], forces)
+        H = model.tool @ eta
+        power = np.abs(H) ** 2 * S[:, None]  # (T18.7)
+        psd[some] = power.sum(axis=2)
+        by_input += np.einsum("f,fck->kc", weight[some], power)
+        weighted = np.conj(H) * (weight[some, None] * S)[:, None]
+        covariance += np.tensordot(H, weighted, axes=((0, 2), (0, 2))).real
+        by_mode += np.tensordot(eta, weighted, axes=((0, 2), (0, 2))).real * model.tool.T  # (T18.9)
+    rms = np.sqrt(np.diag(covariance))
+    widths = np.cumsum([source.forces.shape[1] for source in sources])[:-1]
+    return RandomVibration(
+        sources=tuple(source.name for source in sources),
+        frequency=f,
+        weight=weight,
+        psd=psd,
+        by_input=tuple(np.sqrt(one) for one in np.split(by_input, widths)),
+        by_mode=np.divide(by_mode, rms, out=np.zeros_like(by_mode), where=rms > 0),
+        covariance=0.5 * (covariance + covariance.T),
+    )
+
+
+def panels(model: LinearRobot, sources: list[Source], refine: int) -> Array:
+    """Edges [Hz] of panels none of which is longer than its distance from a pole, Eq. (T18.11)."""
+    breaks = np.unique(np.concatenate([source.frequency for source in sources]))
+    low, high = breaks[0], breaks[-1]
+    count = int(np.ceil(PER_DECADE * np.log10(high / low))) + 1
+    found = [breaks, np.geomspace(low, high, count)]
+    for s in model.poles[model.poles.imag > 0]:
+        at, width = s.imag / (2 * np.pi), -s.real / (2 * np.pi)
+        if width <= UNDAMPED * at:
+            if low <= at <= high:
+                raise InputError(
+                    f"leaves the vibration at {at:.4g} Hz without damping: it would grow without end",
+                    key="leg.damping",
+                    allowed="damping of whatever gives way: legs, joints, springs, drives",
+                    next_step="For example: damping = 0.005 in [leg]",
+                )
+            continue
+        away = 0.5 * width * 2.0 ** np.arange(max(1, int(np.ceil(np.log2(4 * high / width)))))
+        found += [[at], at - away, at + away]
+    edges = np.concatenate(found)
+    edges = edges[(edges >= low) & (edges <= high)]
+    _, first = np.unique(np.round(np.log(edges), 9), return_index=True)
+    edges = np.sort(np.append(edges[first], [low, high]))
+    edges = edges[np.append(True, np.diff(edges) > 1e-9 * edges[1:])]
+    cuts = edges[:-1, None] + np.diff(edges)[:, None] * np.arange(refine) / refine
+    return np.append(cuts.ravel(), edges[-1])

@@ -1,0 +1,121 @@
+"""The springs along a leg as polynomials in its length, and what they are in series, Eqs. (T15.3)-(T15.7)."""
+
+from __future__ import annotations
+
+from collections.abc import Iterable
+from dataclasses import dataclass
+from typing import Literal, TypeVar
+
+import numpy as np
+
+from flexapod.model import Leg, ScrewDrive, ServoDrive
+from flexapod.model.joint import Joint
+from flexapod.typing import Array
+
+__all__ = [
+    "Place",
+    "Spring",
+    "before_piston",
+    "in_series",
+    "of_servo",
+    "softening",
+    "springs_along",
+    "viscous",
+]
+
+Place = Literal["base", "nut", "platform"]
+T = TypeVar("T", float, Array)
+
+
+@dataclass(frozen=True, kw_only=True)
+class Spring:
+    """A spring along a leg: where it is, its compliance c0 + c1 l + c2 l^2 [m/N] and damper [N s/m] or loss factor."""
+
+    name: str
+    at: Place
+    compliance: tuple[float, float, float]
+    damping: float | None = None
+    loss: float | None = None
+
+    def at_length(self, length: Array) -> Array:
+        """Compliance [m/N] of legs of some lengths [m]."""
+        c0, c1, c2 = self.compliance
+        return np.asarray(c0 + length * (c1 + length * c2))
+
+
+def springs_along(leg: Leg) -> list[Spring]:
+    """All springs along a leg but its piston, in the order in which causes name them: joints, screw, named ones."""
+    joints: tuple[tuple[str, Place, Joint], ...] = (
+        ("base_joint", "base", leg.base_joint),
+        ("platform_joint", "platform", leg.platform_joint),
+    )
+    found = [
+        _constant(name, at, k[1], joint.stiffness_damping, joint.loss_of_stiffness)
+        for name, at, joint in joints
+        if (k := joint.across_and_along) is not None
+    ]
+    if leg.screw is not None:
+        found += _of_screw(leg.screw, leg.piston.length + leg.screw.bearing.position)
+    return found + [_constant(x.name, x.at, x.stiffness, x.damping, x.loss) for x in leg.springs]
+
+
+def _constant(name: str, at: Place, stiffness: float, damping: float | None, loss: float | None) -> Spring:
+    return Spring(name=name, at=at, compliance=(1.0 / stiffness, 0.0, 0.0), damping=damping, loss=loss)
+
+
+def before_piston(leg: Leg) -> list[Spring]:
+    """The springs between a drive's command and the piston, those of a servo or of a screw's loop among them."""
+    springs = [x for x in springs_along(leg) if x.at == "nut"]
+    if isinstance(leg.drive, ServoDrive):
+        springs.append(of_servo(leg.drive))
+    elif leg.screw is not None and leg.screw.loop_spring[0]:
+        springs.append(of_servo(ServoDrive(stiffness=leg.screw.loop_spring[0])))
+    return springs
+
+
+def of_servo(drive: ServoDrive) -> Spring:
+    """The spring and damper of a servo, in series with what is behind it."""
+    return Spring(name="drive", at="nut", compliance=(1.0 / drive.stiffness, 0.0, 0.0), damping=drive.damping)
+
+
+def _of_screw(screw: ScrewDrive, begin: float) -> list[Spring]:
+    """Shaft, twist, nut and bearing of a screw; ``begin`` [m]: length of the leg with the nut at the bearing."""
+    E, G = screw.material.E, screw.material.E / (2 * (1 + screw.material.poisson))
+    polar = np.pi / 32 * screw.root_diameter**4
+    stretch, turn = 1.0 / (E * screw.area), screw.per_turn**2 / (G * polar)
+    if screw.mounting == "fixed-fixed":  # (T15.6)  a b / (E A (a + b))
+        along = -begin - begin**2 / screw.length, 1.0 + 2 * begin / screw.length, -1.0 / screw.length
+    else:
+        along = -begin, 1.0, 0.0
+    c0, c1, c2 = (stretch * x for x in along)
+    return [
+        Spring(name="screw", at="nut", compliance=(c0, c1, c2)),  # (T15.5)-(T15.6)
+        Spring(name="twist", at="nut", compliance=(-turn * begin, turn, 0.0)),  # (T15.7)
+        _constant("nut", "nut", screw.nut.k, screw.nut.damping, screw.nut.loss),
+        _constant("bearing", "nut", screw.bearing.k, screw.bearing.damping, screw.bearing.loss),
+    ]
+
+
+def softening(springs: Iterable[Spring], length: float) -> tuple[float, float]:
+    """How the compliance of springs in series grows with the leg's length, over itself at a length [1/m, 1/m^2]."""
+    c0, c1, c2 = np.sum([spring.compliance for spring in springs], axis=0)
+    total = c0 + length * (c1 + length * c2)
+    return float((c1 + 2 * c2 * length) / total), float(c2 / total)
+
+
+def in_series(springs: Iterable[Spring], length: float, per_loss: float) -> tuple[float, float]:
+    """Stiffness [N/m] and damping [N s/m] of springs in series, Eqs. (T15.3)-(T15.4); 0, 0 of none.
+
+    ``per_loss`` [s]: viscous damping over stiffness of a spring of loss factor 1, see `losses`.
+    """
+    total = lost = 0.0
+    for spring in springs:
+        softness = float(spring.at_length(np.array(length)))
+        total += softness
+        lost += viscous(1.0 / softness, spring.damping, spring.loss, per_loss) * softness**2
+    return (1.0 / total, lost / total**2) if total else (0.0, 0.0)
+
+
+def viscous(stiffness: T, damping: T | float | None, loss: float | None, per_loss: float) -> T:
+    """Viscous damping of a spring: given, or of its loss factor, Eq. (T13.19)."""
+    return (0.0 if damping is None else damping) + (loss or 0.0) * per_loss * stiffness  # type: ignore[return-value]

@@ -1,0 +1,114 @@
+"""Legs that are not straight: how thrust bends them further, and how much shorter they get, (T16.16)-(T16.19)."""
+
+from __future__ import annotations
+
+from dataclasses import dataclass
+
+import numpy as np
+
+from flexapod import rigid
+from flexapod.errors import ComputationError
+from flexapod.model import Leg, Robot
+from flexapod.rigid.limbs import COORDINATES
+from flexapod.study.accuracy.play import Play
+from flexapod.study.accuracy.sensitivity import Sensitivity
+from flexapod.study.before.estimates import buckling_load, section_width
+from flexapod.typing import Array
+
+__all__ = ["Bent", "bent", "crookedness", "is_crooked", "softness", "thrust"]
+
+L = COORDINATES.index("l")
+
+
+@dataclass(frozen=True, kw_only=True)
+class Bent:
+    """Legs under thrust, (n,).
+
+    `deflection` [m]: largest distance of the bent axis from the line of the joints; `shorter` [m]: than without thrust;
+    `share`: thrust over Euler load.
+    """
+
+    deflection: Array
+    shorter: Array
+    share: Array
+
+    def effect(self, axes: Array, at: Sensitivity) -> Array:
+        """Displacement and rotation of the tool by leg, (n, 6)."""
+        return -np.einsum("n,nj,njx->nx", self.shorter, axes, at.base[0])
+
+
+def thrust(found: Play) -> Array:
+    """Mean thrust along the pistons at the first instant, (n,) [N]."""
+    return 0.5 * (found.force[0, 1] + found.force[0, 2])
+
+
+def bent(robot: Robot, at: Sensitivity, push: Array) -> Bent | None:
+    """Legs with a bow or eccentric joints under the thrusts `push` (n,) [N]; None where all are straight.
+
+    Raises
+    ------
+    ComputationError
+        A thrust reaches the Euler load.
+    """
+    if not is_crooked(robot):
+        return None
+    cold = crookedness(robot)
+    free = at.q[0, :, L] - np.array([leg.cylinder.mouth for leg in robot.legs])
+    euler = np.array([buckling_load(leg, s[None])[0] for leg, s in zip(robot.legs, free, strict=True)])
+    start = cold + _by_heat(robot, free)
+    beside = start + (0.5 - 2 / np.pi) * _eccentricities(robot)
+    share = push / euler
+    if share.max() >= 1:
+        leg = int(share.argmax())
+        raise ComputationError(
+            f"leg {leg + 1} is pushed with {push[leg]:.4g} N, beyond its Euler load of {euler[leg]:.4g} N",
+            next_step="A thicker or shorter piston bears more",
+        )
+    grown = 1 / (1 - share)  # (T16.17)
+    slopes = np.array([_slopes(leg, s, p) for leg, s, p in zip(robot.legs, free, euler, strict=True)])
+    shorter = 0.5 * slopes * ((start * grown) ** 2 - cold**2)  # (T16.18)
+    return Bent(deflection=beside + start * (grown - 1), shorter=shorter, share=share)
+
+
+def is_crooked(robot: Robot) -> bool:
+    """Whether any leg is not straight."""
+    return bool(crookedness(robot).any() or _curvatures(robot).any())
+
+
+def crookedness(robot: Robot) -> Array:
+    """Amplitudes of the legs' axes beside the lines of their joints without thrust, (n,) [m], Eq. (T16.16)."""
+    return np.array([leg.piston.bow or 0.0 for leg in robot.legs]) + 2 / np.pi * _eccentricities(robot)
+
+
+def _eccentricities(robot: Robot) -> Array:
+    """Of both ends of each leg together, (n,) [m]."""
+    ends = ((leg.base_joint.eccentricity, leg.platform_joint.eccentricity) for leg in robot.legs)
+    return np.array([(base or 0.0) + (platform or 0.0) for base, platform in ends])
+
+
+def _curvatures(robot: Robot) -> Array:
+    """Curvatures of pistons that are warmer on one side, (n,) [1/m]."""
+    gradient = None if robot.heat is None else robot.heat.gradient
+    if robot.heat is None or gradient is None or gradient.piston is None:
+        return np.zeros(robot.count)
+    width = np.array([section_width(leg.piston) for leg in robot.legs])
+    return rigid.expansion(robot, robot.heat, "piston") * gradient.piston / width
+
+
+def _by_heat(robot: Robot, free: Array) -> Array:
+    """Largest distance of pistons of constant curvature from the line of the joints, (n,) [m], Eq. (T16.20)."""
+    mouth = np.array([leg.cylinder.mouth for leg in robot.legs])
+    at = free**2 / (2 * (free + mouth))  # from the mouth
+    return 0.5 * np.abs(_curvatures(robot)) * at * (at + 2 * mouth)
+
+
+def _slopes(leg: Leg, free: float, euler: float) -> float:
+    """Int phi'^2 dx of the shape in which a leg buckles, its largest value 1 [1/m]."""
+    k, m = np.sqrt(euler / leg.piston.EI), leg.cylinder.mouth
+    rigid = np.sin(k * free) ** 2 / m if m > 0 else 0.0
+    return float(rigid + k**2 * (free / 2 + np.sin(2 * k * free) / (4 * k)))
+
+
+def softness(robot: Robot, push: Array) -> Array:
+    """By how much more of EA, relative to it, lengthens the pistons under thrust, (n,) [m], Eq. (T16.19)."""
+    return push * np.array([leg.piston.length / leg.piston.EA for leg in robot.legs])

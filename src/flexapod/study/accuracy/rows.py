@@ -1,0 +1,53 @@
+"""What the accuracy of a pose adds to an error budget: a row for each part."""
+
+from __future__ import annotations
+
+from typing import NamedTuple
+
+import numpy as np
+
+from flexapod import rigid
+from flexapod.model import Study
+from flexapod.study.accuracy.at_pose import AtPose
+from flexapod.study.accuracy.play import PLACES
+from flexapod.typing import Array
+
+__all__ = ["Row", "rows"]
+
+
+class Row(NamedTuple):
+    """One part: its `kind` of error (systematic, hysteretic, random, dynamic), and its `nature`.
+
+    `nature`: calibratable, which a tolerance is in a machine that stands; repeatable; drifting; or empty.
+
+    `by_leg` (n, 6): displacement [m] and rotation [rad] of the tool, world axes; of a random one standard
+    deviations, of a hysteretic one bounds; (1, 6) of what acts on all legs at once. `how` it was computed, in words.
+    """
+
+    part: str
+    kind: str
+    nature: str
+    by_leg: Array
+    how: str
+
+
+def rows(study: Study, pose: rigid.Poses) -> list[Row]:
+    """Rows of geometry, heat, bent legs, tolerances and play at one pose; of what the study does not name none."""
+    at = AtPose(study, pose)
+    found = [Row(name, "systematic", _nature(name), by_leg, "first order") for name, by_leg in at.parts.items()]
+    found += [
+        Row(f"{one.name} tolerance", "random", "calibratable", one.sigma, "first order, errors independent")
+        for one in at.spreading
+    ]
+    if at.is_loose:
+        effect = np.abs(at.play.effect[0])
+        how = "first order, whichever way the play is pressed"
+        table = zip(PLACES, effect, strict=True)
+        found += [Row(f"{place} play", "hysteretic", "", by_leg, how) for place, by_leg in table if by_leg.any()]
+    return found
+
+
+def _nature(part: str) -> str:
+    if part.startswith("heat"):
+        return "drifting"
+    return "repeatable" if part == "bent_legs" else "calibratable"

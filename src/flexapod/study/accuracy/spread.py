@@ -1,0 +1,119 @@
+"""Tolerances at the tool: covariance, worst case over a box, samples with exact kinematics, (T16.10)-(T16.12)."""
+
+from __future__ import annotations
+
+from dataclasses import dataclass
+
+import numpy as np
+
+from flexapod import rigid
+from flexapod.model import Robot
+from flexapod.rigid.limbs import COORDINATES, DRIVEN, HELD
+from flexapod.rigid.rotations import quaternion, rotation_vector
+from flexapod.study.accuracy.imperfect import softness
+from flexapod.study.accuracy.sensitivity import Sensitivity
+from flexapod.typing import Array
+
+__all__ = ["Spreading", "displacement", "samples", "spreading"]
+
+CHI, L = COORDINATES.index("chi"), COORDINATES.index("l")
+BLOCK = 2000  # machines whose poses are sought side by side
+
+
+@dataclass(frozen=True, kw_only=True)
+class Spreading:
+    """One tolerance at one pose.
+
+    ``effect`` (n, m, 6): what an error of one standard deviation, or at the edge of the box, of each of m numbers of
+    each leg does to the tool; ``boxed``: which of both.
+    """
+
+    name: str
+    effect: Array
+    boxed: bool
+
+    @property
+    def covariance(self) -> Array:
+        """Covariance of the tool's six components, (6, 6); errors in a box are spread evenly, Eq. (T16.10)."""
+        return np.einsum("nmi,nmj->ij", self.effect, self.effect) / (3 if self.boxed else 1)
+
+    @property
+    def sigma(self) -> Array:
+        """Standard deviations by leg, (n, 6)."""
+        return np.sqrt((self.effect**2).sum(axis=1) / (3 if self.boxed else 1))
+
+    @property
+    def worst(self) -> Array:
+        """Largest size of each component that errors in the box can make, by leg, (n, 6), Eq. (T16.11)."""
+        return np.abs(self.effect).sum(axis=1) * self.boxed
+
+
+def spreading(robot: Robot, at: Sensitivity, push: Array) -> list[Spreading]:
+    """The tolerances of a robot at the first pose of its sensitivity, its pistons under thrusts `push` (n,) [N]."""
+    return [
+        Spreading(name=name, effect=size * _effect(robot, at, name, push), boxed=boxed)
+        for name, size, boxed in _given(robot)
+    ]
+
+
+def _given(robot: Robot) -> list[tuple[str, float, bool]]:
+    """Name and size of the tolerances, and whether it is that of a box."""
+    tolerances, found = robot.tolerances, []
+    for name in () if tolerances is None else type(tolerances).model_fields:
+        spread = getattr(tolerances, name)
+        if spread is not None:
+            boxed = spread.box is not None
+            found.append((name, float(spread.box if boxed else spread.sigma), boxed))
+    return found
+
+
+def _effect(robot: Robot, at: Sensitivity, name: str, push: Array) -> Array:
+    """What unit errors do to the tool, (n, m, 6)."""
+    if name in ("base_joints", "platform_joints"):
+        return getattr(at, name.removesuffix("_joints"))[0]
+    weights = _weights(robot, name, at.q[:1], push)[0]
+    return (weights[..., None] * at.coordinate[0]).sum(axis=1, keepdims=True)
+
+
+def _weights(robot: Robot, name: str, q: Array, push: Array) -> Array:
+    """What a unit error adds to held and driven coordinates q (T, n, 8)."""
+    legs = rigid.rigid_limbs(robot)
+    found = np.zeros_like(q)
+    if name in ("leg_offset", "EA"):
+        longer = softness(robot, push) if name == "EA" else np.ones(len(legs))
+        found[..., L] = np.where(np.isin(legs.state[:, L], (HELD, DRIVEN)), longer, 0.0)
+    else:  # lead
+        driven = (legs.state[:, [CHI, L]] == DRIVEN) & [legs.carriage != "crank", True]
+        found[..., [CHI, L]] = np.where(driven, (q - legs.home)[..., [CHI, L]], 0.0)
+    return found
+
+
+def samples(robot: Robot, path: rigid.Poses, at: Sensitivity, push: Array, *, count: int, seed: int) -> Array:
+    """Displacements of the tool of machines drawn within the tolerances, exact kinematics, (count, 6).
+
+    Of EA as of `spreading`. NaN where legs do not fit together without strain.
+    """
+    rng, legs = np.random.default_rng(seed), rigid.rigid_limbs(robot)
+    parts = []
+    for first in range(0, count, BLOCK):
+        size = min(BLOCK, count - first)
+        q = np.repeat(at.q[:1], size, axis=0)
+        shift = {end: np.zeros((size, len(legs), 3)) for end in ("base", "platform")}
+        for name, spread, boxed in _given(robot):
+            many = (size, len(legs), 3 if name.endswith("joints") else 1)
+            drawn = spread * (rng.uniform(-1, 1, many) if boxed else rng.normal(size=many))
+            if name.endswith("joints"):
+                shift[name.removesuffix("_joints")] += drawn
+            else:
+                q = q + drawn * _weights(robot, name, at.q[:1], push)
+        start = path.part(np.zeros(size, dtype=int))
+        found, gap = rigid.nearby(legs, q, start, shift["base"], shift["platform"])
+        moved = displacement(robot, start, found)
+        parts.append(np.where((gap < rigid.TAKEN * legs.L_c)[:, None], moved, np.nan))
+    return np.concatenate(parts)
+
+
+def displacement(robot: Robot, before: rigid.Poses, after: rigid.Poses) -> Array:
+    """Displacement of the tool and rotation vector from poses to others, world axes, (T, 6)."""
+    turn = rotation_vector(quaternion(after.rotation @ before.rotation.swapaxes(1, 2)))
+    return np.concatenate([after.place(robot.tool) - before.place(robot.tool), turn], axis=1)

@@ -1,0 +1,59 @@
+"""The accuracy at home in sentences."""
+
+from __future__ import annotations
+
+import numpy as np
+
+from flexapod import rigid
+from flexapod.errors import ComputationError
+from flexapod.model import Robot, Study
+from flexapod.study.accuracy.at_pose import AtPose
+from flexapod.study.accuracy.imperfect import is_crooked
+from flexapod.study.accuracy.play import half_play
+from flexapod.typing import Array
+from flexapod.words import text
+
+__all__ = ["accuracy_words", "is_real"]
+
+NOTHING = 1e-12  # turn that is rounding [rad]
+
+
+def accuracy_words(study: Study) -> tuple[str, ...]:
+    """What errors of geometry, heat, tolerances and play do to the tool at home; nothing of a robot without them."""
+    robot = study.robot
+    if robot.platform_fixed or not is_real(robot):
+        return ()
+    at, found = AtPose(study, rigid.home_pose(robot)), []
+    try:
+        if parts := at.parts:
+            whole = np.sum(list(parts.values()), axis=(0, 1))
+            largest = max(parts, key=lambda name: float(np.linalg.norm(parts[name][:, :3].sum(axis=0))))
+            found.append(
+                f"as built and warm the tool stands {_size(whole)} beside its drawn place at home, most of it by "
+                f"{largest} ({text(float(np.linalg.norm(parts[largest][:, :3].sum(axis=0))), 'm', 3)})"
+            )
+        if spread := at.spreading:
+            sigma = np.sqrt(np.diag(np.sum([one.covariance for one in spread], axis=0)))
+            found.append(f"tolerances spread the tool at home by {_by_axis(sigma)} (standard deviations)")
+        if at.is_loose:
+            found.append(f"play lets the tool move at home by up to {_by_axis(at.play.worst[0])}")
+    except ComputationError as error:
+        return (f"the accuracy at home cannot be said: {error.what}",)
+    return tuple(found)
+
+
+def is_real(robot: Robot) -> bool:
+    """Whether anything is said of how the robot differs from the drawing."""
+    some = bool(half_play(robot).any()) or is_crooked(robot)
+    return bool(rigid.built_parts(robot)) or robot.tolerances is not None or some
+
+
+def _size(moved: Array) -> str:
+    turned = float(np.linalg.norm(moved[3:]))
+    words = text(float(np.linalg.norm(moved[:3])), "m", 3)
+    return words if turned < NOTHING else f"{words} and {text(turned, 'rad', 3)}"
+
+
+def _by_axis(sizes: Array) -> str:
+    """Along the three axes."""
+    return ", ".join(f"{axis} {text(float(size), 'm', 3)}" for axis, size in zip("xyz", sizes, strict=False))

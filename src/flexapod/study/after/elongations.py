@@ -1,0 +1,57 @@
+"""How far the parts between the ends of a leg give way, by name, Eqs. (T15.3) and (T15.14)."""
+
+from __future__ import annotations
+
+from collections.abc import Sequence
+
+import numpy as np
+
+from flexapod.model import Robot, ServoDrive
+from flexapod.solve.springs import Place, Spring, of_servo, springs_along
+from flexapod.solve.system import System
+from flexapod.typing import Array
+
+__all__ = ["elongations", "part_names"]
+
+
+def part_names(robot: Robot) -> tuple[str, ...]:
+    """Names of the springs along any leg of a robot, in their order."""
+    return tuple(dict.fromkeys(spring.name for leg in robot.legs for spring in springs_along(leg)))
+
+
+def elongations(
+    robot: Robot, system: System, q: Array, places: Sequence[Place] = ("base", "nut", "platform")
+) -> dict[str, Array]:
+    """What each spring along the legs at some places adds to their lengths, (..., legs) [m], by name.
+
+    Springs in series, a servo's among them, share the elongation of their coordinate by their compliances at the leg's
+    length.
+    """
+    shapes = system.kernel.shapes
+    found = {name: np.zeros(q.shape[:-1]) for name in part_names(robot)}
+    length = q[..., shapes.l_index]
+    for i, leg in enumerate(robot.legs):
+        springs = springs_along(leg)
+        if leg.gives and isinstance(leg.drive, ServoDrive):
+            springs.append(of_servo(leg.drive))
+        for at, give in _gives(system, q[..., i, :]).items():
+            here = [spring for spring in springs if spring.at == at and at in places]
+            for spring, share in zip(here, _shares(here, length[..., i]), strict=True):
+                if spring.name != "drive":
+                    found[spring.name][..., i] += share * give
+    return found
+
+
+def _gives(system: System, q: Array) -> dict[Place, Array]:
+    """What the springs at the three places add to a leg's length, (...,) [m], by place."""
+    shapes = system.kernel.shapes
+    places: dict[Place, str] = {} if shapes.flexure else {"base": "u3", "platform": "e3"}
+    found: dict[Place, Array] = {at: q[..., shapes.index(name)] for at, name in places.items() if shapes.has(name)}
+    if shapes.series:
+        found["nut"] = q[..., shapes.l_index] - q[..., shapes.index("r")]
+    return found
+
+
+def _shares(springs: list[Spring], length: Array) -> list[Array]:
+    softness = [spring.at_length(length) for spring in springs]
+    return [x / np.sum(softness, axis=0) for x in softness]

@@ -1,0 +1,49 @@
+"""What every part of every leg contributes at a pose, as a Dataset."""
+
+from __future__ import annotations
+
+from typing import TYPE_CHECKING
+
+import numpy as np
+
+from flexapod import rigid
+from flexapod.solve.parts import part_stiffness
+from flexapod.study.arguments import PoseLike, RobotLike, as_pose, at_pose
+from flexapod.study.attributes import attributes
+from flexapod.study.before.checks import path_remarks
+from flexapod.study.names import dataset
+
+if TYPE_CHECKING:
+    from xarray import Dataset
+
+__all__ = ["parts"]
+
+
+def parts(robot: RobotLike, pose: PoseLike = None) -> Dataset:
+    """Stiffness along its leg of every part of every leg at a pose, Eq. (T15.3).
+
+    Parameters
+    ----------
+    robot : Robot, Study or path
+    pose : pose, optional
+        As for `modes`; default home.
+
+    Returns
+    -------
+    xarray.Dataset
+        `part_stiffness` (leg, part) [N/m]: of the piston's stretch, of joints, screw, twist, nut, bearing, of named
+        springs, of a drive that has a spring; inf where a leg does not have the part. `leg_stiffness` (leg): all of
+        them in series.
+
+    Raises
+    ------
+    InputError
+        A pose out of reach, or with the nut outside the screw.
+    """
+    study = at_pose(robot)
+    path = as_pose(study.robot, pose)
+    remarks = path_remarks(study.robot, np.zeros(1), path)
+    found = part_stiffness(study.robot, rigid.inverse_kinematics(study.robot, path).length[0])
+    table = np.stack(list(found.values()), axis=1)
+    values = {"part_stiffness": table, "leg_stiffness": 1.0 / (1.0 / table).sum(axis=1)}
+    return dataset(values, {"part": list(found)}, attributes(study, [*study.warnings, *remarks]))

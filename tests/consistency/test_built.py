@@ -1,0 +1,222 @@
+"""The machine as built and warm: similarities, shifts, where simulations end, causes that add up."""
+
+import numpy as np
+import pytest
+from tests import machines, mechanisms
+from tests.runs import paper_robot
+
+import flexapod as fx
+from flexapod import rigid
+from flexapod.errors import ComputationError
+from flexapod.model import MATERIALS, Expansion, Geometry, Heat
+from flexapod.rigid.built import built_parts
+
+RNG = np.random.default_rng(7)
+POSE = np.array([[0.02, -0.03, 0.04, 0.1, -0.05, 0.15]])
+ERRORS = {
+    "base_joints": 1e-4 * RNG.normal(size=(6, 3)),
+    "platform_joints": 1e-4 * RNG.normal(size=(6, 3)),
+    "leg_offset": 5e-5 * RNG.normal(size=6),
+    "lead": 1e-4 * RNG.normal(size=6),
+}
+
+
+def displaced(robot, pose=POSE):
+    path = rigid.poses_from_home(robot, pose)
+    found = rigid.built_poses(robot, path)
+    return found.position - path.position, found.rotation @ path.rotation.swapaxes(1, 2), path
+
+
+def hexapod():
+    return paper_robot().robot
+
+
+@pytest.mark.parametrize("robot", [hexapod, mechanisms.three_rps], ids=["6-UPS", "3-RPS"])
+def test_the_same_shift_of_all_joints_moves_the_platform_and_does_not_turn_it(robot):
+    robot, shift = robot(), np.array([1e-3, -2e-3, 5e-4])
+    pose = POSE if robot.count == 6 else POSE * [0, 0, 1, 1, 1, 0]
+    every = np.tile(shift, (robot.count, 1))
+    moved, turned, _ = displaced(robot.replace(geometry=Geometry(base_joints=every)), pose)
+    np.testing.assert_allclose(moved[0], shift, atol=1e-14)  # rounding of lengths through J^-1, about 10
+    np.testing.assert_allclose(turned[0], np.eye(3), atol=1e-14)
+    if robot.count == 6:  # hinges are turned with the platform's frame, not with its joints
+        moved, turned, path = displaced(robot.replace(geometry=Geometry(platform_joints=every)), pose)
+        np.testing.assert_allclose(moved[0], -path.rotation[0] @ shift, atol=1e-14)
+        np.testing.assert_allclose(turned[0], np.eye(3), atol=1e-14)
+
+
+def test_uniform_heat_is_a_similarity():
+    steel = MATERIALS["steel"].expansion
+    heat = Heat(reference=20.0, base=45.0, platform=45.0, piston=45.0, cylinder=45.0)
+    moved, turned, path = displaced(hexapod().replace(heat=heat))
+    np.testing.assert_allclose(moved, 25 * steel * path.position, atol=1e-14)
+    np.testing.assert_allclose(turned[0], np.eye(3), atol=1e-14)
+    other = heat.replace(reference=45.0)
+    assert np.abs(displaced(hexapod().replace(heat=other))[0]).max() < 1e-15
+
+
+def test_a_strut_grows_like_a_piston_and_a_slider_carries_it():
+    robot = mechanisms.sliders("PUS")
+    warm = robot.replace(heat=Heat(piston=30.0, expansion=Expansion(piston=2e-5)))
+    longer = robot.replace(geometry=Geometry(leg_offset=2e-4 * robot.legs[0].strut.length))
+    still = np.zeros((1, 6))
+    np.testing.assert_allclose(displaced(warm, still)[0], displaced(longer, still)[0], atol=1e-15)
+
+
+def test_a_hot_screw_moves_what_it_drives():
+    robot = machines.machine(drive=machines.SCREW)
+    steel, home = MATERIALS["steel"].expansion, robot.home_lengths
+    heat = Heat(screw=[30.0, *[20.0] * 5], cylinder=22.0)
+    screw, cylinder = 10 * steel * (home[0] - 0.75 - 0.06), 2 * steel * 0.06
+    offset = cylinder * np.ones(6) + screw * np.eye(6)[0]
+    still = np.zeros((1, 6))
+    moved, turned, _ = displaced(robot.replace(heat=heat), still)
+    same, turned_alike, _ = displaced(robot.replace(geometry=Geometry(leg_offset=offset)), still)
+    np.testing.assert_allclose(moved, same, atol=1e-15)
+    np.testing.assert_allclose(turned, turned_alike, atol=1e-15)
+    assert np.abs(moved).max() > 1e-6
+
+
+def test_a_machine_with_screws_runs_and_blames_the_heat():
+    robot = machines.machine(drive=machines.SCREW)
+    warm = robot.replace(heat=Heat(screw=25.0), geometry=Geometry(lead=1e-4, leg_offset=ERRORS["leg_offset"]))
+    drawn, hot = (fx.simulate(machines.study(x), fidelity="lumped", duration=0.03, step=1e-3) for x in (robot, warm))
+    path = rigid.poses(warm, machines.study(warm).motion, hot.time.values)
+    com = rigid.built_poses(warm, path).place(warm.com) - path.place(warm.com)
+    # Beside the vibration, which the same command excites alike: errors of 1e-4 of a leg change it by as much.
+    sag = np.abs(drawn.com_deviation).max().item()
+    np.testing.assert_allclose(hot.com_deviation - drawn.com_deviation, com, atol=5e-3 * sag)
+    assert {"geometry", "heat_screw"} <= set(hot.cause.values)
+    share = hot.deviation_by_cause.sel(cause=["geometry", "heat_screw"]).sum(("cause", "leg"))
+    np.testing.assert_allclose(share, com, atol=1e-3 * np.abs(com).max())
+
+
+def test_lead_and_offset_lengthen_a_leg_as_they_say():
+    robot, path = hexapod(), rigid.poses_from_home(hexapod(), POSE)
+    lengths = rigid.inverse_kinematics(robot, path).length
+    expected = lengths + ERRORS["leg_offset"] + ERRORS["lead"] * (lengths - robot.home_lengths)
+    own = robot.replace(geometry=Geometry(leg_offset=ERRORS["leg_offset"], lead=ERRORS["lead"]))
+    found = rigid.inverse_kinematics(robot, rigid.built_poses(own, path)).length
+    np.testing.assert_allclose(found, expected, atol=1e-15)
+
+
+def test_temperatures_over_time_are_those_of_the_table():
+    table = Heat(time=[0.0, 600.0, 1800.0], columns=("piston", "cylinder 3"), table=[[20, 20], [24, 21], [26, 23]])
+    robot = hexapod().replace(heat=table)
+    t = np.array([0.0, 600.0, 1800.0, 4000.0])
+    piston, cylinder = built_parts(robot)
+    rise = np.array([0, 4, 6, 6])[:, None] * np.ones(6)
+    np.testing.assert_allclose(piston.size(t).position, MATERIALS["steel"].expansion * rise, atol=1e-18)
+    assert not np.delete(cylinder.size(t).position, 2, axis=1).any()
+    found = rigid.built_poses(robot, rigid.poses_from_home(robot, np.repeat(POSE, 4, axis=0)), t)
+    still = hexapod().replace(heat=Heat(piston=26.0, cylinder=[20, 20, 23, 20, 20, 20]))
+    np.testing.assert_allclose(
+        found.position[3], rigid.built_poses(still, rigid.poses_from_home(still, POSE)).position[0]
+    )
+
+
+def test_legs_that_warm_up_while_they_move_take_the_rates_along():
+    # Tenths of a degree in tenths of a second: growth by a hundred micrometres, at rates of the motion's own size.
+    heat = Heat(time=[0.0, 0.04, 0.1], columns=("piston", "cylinder 3"), table=[[20, 20], [40, 20], [30, 60]])
+    study = paper_robot(fidelity="rigid")
+    robot = study.robot.replace(heat=heat)
+    study = study.replace(robot=robot, motion=study.motion.replace(duration=0.1, hold=0.0))
+    data = fx.simulate(study, duration=0.12, step=1e-3)
+    path = rigid.poses(robot, study.motion, data.time.values)
+    com = rigid.built_poses(robot, path, data.time.values).place(robot.com)
+    np.testing.assert_allclose(data.com_position, com, atol=1e-12)
+    drawn = fx.simulate(study.replace(robot=robot.replace(heat=None)), duration=0.12, step=1e-3)
+    balances = [x.energy_kinetic + x.energy_potential - x.work_drive for x in (data, drawn)]
+    # Work is integrated to second order in the step; growing legs do not make it worse.
+    assert np.ptp(balances[0].values) < 1.5 * np.ptp(balances[1].values)
+    heated = np.abs(data.deviation_by_cause.sel(cause="heat_piston").values)
+    assert heated[0].max() < 1e-15 and heated[-1].max() > 1e-5
+
+
+def with_errors():
+    return hexapod().replace(geometry=Geometry(**ERRORS))
+
+
+def run(**built):
+    study = paper_robot(fidelity="lumped")
+    study = study.replace(motion=study.motion.replace(duration=0.1, hold=0.0), robot=study.robot.replace(**built))
+    data = fx.simulate(study, duration=0.1, step=1e-3)
+    path = rigid.poses(study.robot, study.motion, data.time.values)
+    return data, path, study.robot
+
+
+@pytest.mark.parametrize("start", ["equilibrium", "straight", "moving"])
+def test_a_rigid_machine_runs_where_forward_kinematics_says(start):
+    study = paper_robot(fidelity="rigid", start=start)
+    robot = study.robot.replace(geometry=Geometry(**ERRORS), heat=Heat(piston=24.0, base=22.0))
+    study = study.replace(robot=robot, motion=study.motion.replace(duration=0.05, hold=0.0))
+    data = fx.simulate(study, duration=0.05, step=1e-3)
+    path = rigid.poses(robot, study.motion, data.time.values)
+    com = rigid.built_poses(robot, path).place(robot.com)
+    # The legs follow the commands as built exactly; closures leave rounding, through J^-1.
+    np.testing.assert_allclose(data.com_position, com, atol=1e-12)
+    assert np.abs(data.com_deviation).max() > 1e-4
+
+
+def test_an_elastic_machine_differs_from_it_by_the_sag():
+    drawn, built = (fx.modes(robot, POSE[0], fidelity="lumped") for robot in (hexapod(), with_errors()))
+    path = rigid.poses_from_home(hexapod(), POSE)
+    com = rigid.built_poses(with_errors(), path).place(hexapod().com) - path.place(hexapod().com)
+    sag = np.abs(drawn.com_sag).max().item()
+    # The load stands beside the drawn pose by the error, in parts of the platform's radius: so much the sag changes.
+    atol = 2 * sag * np.linalg.norm(com) / 0.15
+    np.testing.assert_allclose(built.com_sag - drawn.com_sag, com[0], atol=atol)
+    assert atol < 0.01 * np.abs(com).max()
+
+
+def test_causes_of_the_machine_as_built_add_up():
+    data, path, robot = run(geometry=Geometry(**ERRORS), heat=Heat(piston=24.0, base=22.0))
+    assert list(data.cause.values) == ["axial-strain", "bending", "drive", "geometry", "heat_base", "heat_piston"]
+    whole = data.deviation_by_cause.sum(("cause", "leg")) + data.deviation_residual
+    np.testing.assert_allclose(whole, data.com_deviation, rtol=0, atol=4 * np.finfo(float).eps)
+    deviation = np.abs(data.com_deviation).max().item()
+    assert np.abs(data.deviation_residual).max() < 10 * deviation**2 / robot.home_lengths.min()  # second order
+    share = data.deviation_by_cause.sel(cause="geometry").sum("leg").values
+    only = robot.replace(heat=None)
+    exact = rigid.built_poses(only, path).place(robot.com) - path.place(robot.com)
+    np.testing.assert_allclose(share, exact, atol=10 * deviation**2 / robot.home_lengths.min())
+    for cause in ("bending", "drive"):
+        assert np.abs(data.deviation_by_cause.sel(cause=cause)).max() < 1e-12
+
+
+def test_modes_and_maps_see_the_machine_as_built():
+    robot = hexapod()
+    longer = robot.replace(geometry=Geometry(leg_offset=2e-3))
+    found, drawn = fx.modes(longer, fidelity="lumped"), fx.modes(robot, fidelity="lumped")
+    up = rigid.built_poses(longer, rigid.home_pose(longer)).position[0, 2] - robot.home_height
+    assert found.platform_position[2] - drawn.platform_position[2] == pytest.approx(up, rel=1e-3)
+    many = fx.modes(longer, np.zeros((2, 6)), fidelity="lumped")
+    np.testing.assert_allclose(many.frequency[0], found.frequency, rtol=1e-9)
+
+
+def test_three_hinged_legs_as_built_stand_where_kinematics_says():
+    robot = mechanisms.three_rps()
+    rng = np.random.default_rng(5)
+    errors = Geometry(**{f"{end}_joints": 1e-4 * rng.normal(size=(3, 3)) for end in ("base", "platform")})
+    drawn, built = (fx.modes(x, fidelity="lumped").com_sag for x in (robot, robot.replace(geometry=errors)))
+    home = rigid.home_pose(robot)
+    com = rigid.built_poses(robot.replace(geometry=errors), home).place(robot.com) - home.place(robot.com)
+    atol = 2 * np.abs(drawn).max().item() * np.linalg.norm(com) / 0.2  # as above; the platform's radius
+    np.testing.assert_allclose(built - drawn, com[0], atol=atol)
+
+
+def test_legs_that_do_not_fit_strain_each_other():
+    robot = mechanisms.eight()
+    longer = robot.replace(geometry=Geometry(leg_offset=[1e-4, *[0.0] * 7]))
+    drawn, built = (fx.modes(x, fidelity="lumped").com_sag for x in (robot, longer))
+    share = fx.accuracy(longer).pose_error.values
+    shift = share[:3] + np.cross(share[3:], robot.com - robot.tool)  # accuracy is of the tool
+    # Legs are alike: the compliance of pistons that only stretch is that of the first order. Sag and error mix by 1e-3.
+    np.testing.assert_allclose(built - drawn, shift, atol=0.02 * np.abs(shift).max())
+
+
+def test_joints_that_hold_too_much_are_said_not_to_fit():
+    robot = mechanisms.eight()
+    spread = Geometry(leg_offset=[1e-4, *[0.0] * 7])
+    with pytest.raises(ComputationError, match="do not fit together without strain"):
+        rigid.built_poses(robot.replace(geometry=spread), rigid.home_pose(robot))

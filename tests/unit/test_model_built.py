@@ -1,0 +1,175 @@
+"""Tables of the machine as built and warm: what is read, what is refused and with which words."""
+
+import pytest
+from tests import mechanisms
+
+from flexapod import loads
+from flexapod.errors import InputError
+from flexapod.model import (
+    Expansion,
+    Geometry,
+    Gradient,
+    Heat,
+    LengthSpread,
+    RatioSpread,
+    Tolerances,
+    preset_text,
+    to_toml,
+)
+
+TEXT = preset_text("paper-robot")
+
+
+def study(text, folder=None):
+    return loads(TEXT + text, path=None if folder is None else folder / "robot.toml")
+
+
+def test_all_forms_are_read_and_written():
+    text = """
+[geometry]
+base_joints = [["1 mm", 0, 0], [0, 0, 0], [0, 0, 0], [0, 0, 0], [0, 0, 0], [0, 0, "-2 um"]]
+leg_offset = [1e-6, 0, 0, 0, 0, 0]
+lead = 6e-5
+[heat]
+reference = "22 degC"
+piston = "25 degC"
+cylinder = [22, 22, 22, 23, 23, 22]
+expansion = { base = "12e-6 1/K" }
+[tolerances]
+base_joints = "20 um"
+platform_joints = { box = "50 um" }
+leg_offset = { sigma = 1e-5 }
+lead = "C5"
+"""
+    robot = study(text).robot
+    assert robot.geometry.base_joints[0, 0] == 1e-3 and robot.geometry.leg_offset.shape == (6,)
+    assert robot.heat.piston.tolist() == [25.0] and robot.heat.expansion == Expansion(base=12e-6)
+    assert robot.tolerances == Tolerances(
+        base_joints=2e-5, platform_joints=LengthSpread(box=5e-5), leg_offset=1e-5, lead=RatioSpread(box=0.018 / 300)
+    )
+    assert loads(to_toml(study(text))).robot == robot
+
+
+def test_a_table_over_time_is_read_and_kept(tmp_path):
+    (tmp_path / "heat.csv").write_text("time [s], piston [degC], cylinder 3 [degC]\n0, 20, 20\n600, 24, 21\n")
+    heat = study('[heat]\nfile = "heat.csv"\n', tmp_path).robot.heat
+    assert heat.columns == ("piston", "cylinder 3")
+    assert heat.temperatures("piston", 6).tolist() == [[20.0] * 6, [24.0] * 6]
+    assert heat.temperatures("cylinder", 6)[1].tolist() == [20, 20, 21, 20, 20, 20]
+
+
+@pytest.mark.parametrize(
+    ("text", "key", "words"),
+    [
+        ("[geometry]\nbase_joints = [[0, 0, 0]]", "geometry.base_joints", "6 rows"),
+        ("[geometry]\nleg_offset = [0, 0]", "geometry.leg_offset", "6 numbers"),
+        ('[geometry]\nleg_offset = "5 deg"', "geometry.leg_offset", "a length"),
+        ("[geometry]\nlengths = 3", "geometry.lengths", "leg_offset"),
+        ("[heat]\npiston = -300", "heat.piston", "at least -273.15"),
+        ("[heat]\npiston = [20, 20]", "heat.piston", "6 numbers"),
+        ('[heat]\nbase = "300 K"', "heat.base", "degC"),
+        ("[heat]\nbase = -274", "heat.base", "at least -273.15"),
+        ("[heat]\nexpansion = { frame = 1e-5 }", "heat.expansion.frame", "base, platform"),
+        ('[heat]\ngradient = { piston = "2 degC" }', "heat.gradient.piston", "not in kelvin"),
+        ('[tolerances]\nlead = "C6"', "tolerances.lead", "C5, C7, C10"),
+        ("[tolerances]\nleg_offset = -1e-6", "tolerances.leg_offset.sigma", "at least 0"),
+        ("[tolerances]\nleg_offset = { box = 1e-6, sigma = 1e-6 }", "tolerances.leg_offset.sigma", "box"),
+        ("[tolerances]\nleg_offset = { }", "tolerances.leg_offset.sigma", "standard deviation"),
+    ],
+)
+def test_wrong_tables_are_refused_where_they_are(text, key, words):
+    with pytest.raises(InputError) as refused:
+        study("\n" + text + "\n")
+    assert refused.value.key.startswith(key.removesuffix(".sigma")), refused.value.key
+    assert words in str(refused.value)
+
+
+@pytest.mark.parametrize(
+    ("table", "words"),
+    [
+        ("time [s], piston [degC]\n0, 20\n10,\n", "Fill the gap"),
+        ("time [s], piston [degC]\n1, 20\n10, 21\n", "does not start at 0"),
+        ("time [s], piston [degC]\n0, 20\n10, 21\n5, 22\n", "goes back in time"),
+        ("time [s], piston [K]\n0, 20\n10, 21\n", "degrees Celsius"),
+        ("time [s], gear [degC]\n0, 20\n10, 21\n", "unknown column"),
+        ("time [s], piston [degC], piston 2 [degC]\n0, 20, 20\n10, 21, 21\n", "a column for each of its legs"),
+        ("time [s], piston [degC]\n0, 20\n10, -280\n", "below absolute zero"),
+    ],
+)
+def test_tables_over_time_with_faults_are_refused(tmp_path, table, words):
+    (tmp_path / "heat.csv").write_text(table)
+    with pytest.raises(InputError, match=words):
+        study('\n[heat]\nfile = "heat.csv"\n', tmp_path)
+
+
+def test_a_piston_of_unknown_material_expands_like_steel_and_that_is_said():
+    robot = mechanisms.hexapod().replace(heat=Heat(piston=25.0))  # pistons by EI, EA, rhoA
+    study = loads(TEXT).replace(robot=robot)
+    assert any("steel's is taken" in remark for remark in study.warnings)
+    known = robot.replace(heat=Heat(piston=25.0, expansion=Expansion(piston=1e-6)))
+    assert not any("steel" in remark for remark in study.replace(robot=known).warnings)
+
+
+def test_a_part_has_one_temperature(tmp_path):
+    (tmp_path / "heat.csv").write_text("time [s], piston [degC]\n0, 20\n600, 24\n")
+    with pytest.raises(InputError, match="together with its column"):
+        study('\n[heat]\nfile = "heat.csv"\npiston = 22\n', tmp_path)
+
+
+def test_negative_play_is_refused():
+    with pytest.raises(InputError, match=r"leg\.base_joint\.play.*at least 0"):
+        loads(TEXT.replace("\nstroke =", '\nbase_joint = { play = "-5 um" }\nstroke =', 1))
+
+
+def test_what_a_robot_does_not_have_has_neither_errors_nor_heat():
+    for robot, built, words in (
+        (mechanisms.six_rus(), {"geometry": Geometry(lead=1e-5)}, "driven strokes and sliders"),
+        (mechanisms.six_rus(), {"heat": Heat(cylinder=25.0)}, "no leg has"),
+        (mechanisms.three_rps(), {"heat": Heat(gradient=Gradient(piston=1.0))}, "carry moments"),
+        (mechanisms.planar(), {"geometry": Geometry(base_joints=[[0, 0, 1e-4]] * 3)}, "leaves the plane"),
+        (mechanisms.eight(), {"geometry": Geometry(leg_offset=[1e-5] * 6)}, "each of 8 legs"),
+        (mechanisms.eight(), {"heat": Heat(piston=[20.0] * 6)}, "each of 8 legs"),
+    ):
+        with pytest.raises(InputError, match=words):
+            robot.replace(**built)
+
+
+def test_plates_that_warm_up_do_so_at_poses_not_in_motions(tmp_path):
+    import flexapod as fx
+
+    (tmp_path / "heat.csv").write_text("time [s], base [degC]\n0, 20\n600, 24\n")
+    found = study('\n[heat]\nfile = "heat.csv"\n', tmp_path)
+    with pytest.raises(InputError, match=r"heat\.base"):
+        fx.run(found)
+    drift = fx.accuracy(found).pose_drift
+    assert drift.sizes["drift_time"] == 2 and abs(drift[1]).max() > 1e-6
+
+
+def test_a_check_says_how_far_the_machine_as_built_is_off():
+    from flexapod.study.accuracy.words import accuracy_words
+
+    assert accuracy_words(study("")) == ()
+    text = '\n[geometry]\nleg_offset = "10 um"\n[heat]\npiston = 25\n[tolerances]\nleg_offset = "20 um"\n'
+    found = loads((TEXT + text).replace("\nstroke =", '\nbase_joint = { play = "5 um" }\nstroke =', 1))
+    built, spread, play = accuracy_words(found)
+    assert "most of it by heat_piston" in built and "standard deviations" in spread and "play" in play
+
+
+@pytest.mark.parametrize("draws", [-1, 1.5, True])
+def test_a_number_of_draws_is_a_whole_number(draws):
+    import flexapod as fx
+
+    with pytest.raises(InputError, match="draws"):
+        fx.accuracy(study(""), draws=draws)
+
+
+def test_a_sweep_of_parts_that_are_not_in_the_file_keeps_no_causes():
+    from tests.sweeps import quick
+
+    import flexapod as fx
+
+    warm = {"vary": [{"key": "heat.piston", "values": [20, 25]}]}
+    with pytest.raises(InputError, match="other causes at other points"):
+        fx.sweep(quick(), warm | {"keep": {"scalars": ["cause_share"]}}, workers=0)
+    found = fx.sweep(quick(), warm | {"keep": {"scalars": ["com_deviation_start"]}}, workers=0)
+    assert float(found.com_deviation_start[1] - found.com_deviation_start[0]) != 0
