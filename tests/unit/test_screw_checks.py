@@ -2,9 +2,9 @@
 
 import numpy as np
 import pytest
-from flexapod.app.check_robot import show_robot
 
 from flexapod import model
+from flexapod.app.check_words import show_robot
 from flexapod.errors import InputError
 from flexapod.model import MATERIALS, Bearing, Nut, ScrewDrive
 from flexapod.report.study_words import study_words

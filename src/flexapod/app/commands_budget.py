@@ -8,7 +8,7 @@ from typing import TYPE_CHECKING, Annotated
 import typer
 
 from flexapod.app.failures import guarded
-from flexapod.app.options import Json, NoFigures, Pose, Quiet, StudyFile, as_options
+from flexapod.app.options import Json, NoFigures, Pose, Quiet, StudyFile, as_options, check_writable
 
 if TYPE_CHECKING:
     from xarray import Dataset
@@ -27,7 +27,6 @@ def budget(
     """Error budget of the tool: which part adds what, and what halving the largest error would bring."""
     from flexapod import model
     from flexapod.app.map_options import parse_pose
-    from flexapod.app.outputs import check_writable
     from flexapod.app.terminal import print_json, progress_bar
     from flexapod.errors import InputError
     from flexapod.study import budget as compute
