@@ -30,7 +30,10 @@ if TYPE_CHECKING:
     from flexapod.model import ActuatorStudy, Study
 
 Folder = Annotated[
-    Path | None, typer.Option("--out", metavar="DIR", help="Write modes.nc and the shapes as a figure; default: not.")
+    Path | None,
+    typer.Option(
+        "--out", metavar="DIR", help="Write modes.nc and figures, with disturbances vibration.nc; default: not."
+    ),
 ]
 Count = Annotated[int, typer.Option("--count", min=1, help="How many of the lowest modes to show.")]
 
@@ -53,22 +56,43 @@ def modes(
     with as_options(pose="--pose"):
         data = compute(study, parse_pose(pose))
     of_robot = isinstance(study, model.Study)
-    files = [] if out is None else _write_modes(data, out, figure=of_robot and not no_figures)
+    shaken, sentences = _shaken(study, parse_pose(pose)) if of_robot else (None, ())
+    files = [] if out is None else _write_modes(data, shaken, out, figure=of_robot and not no_figures)
     if json:
-        print_json(_modes_as_dict(data, files))
+        print_json(_modes_as_dict(data, shaken, files))
     else:
-        _show_modes(data, _robot_words(study, data, pose) if of_robot else _beam_words(study), count, files)
+        _show_modes(data, _robot_words(study, data, pose) if of_robot else _beam_words(study), count)
+        _show_end(data, sentences, files)
 
 
-def _write_modes(data: Dataset, folder: Path, *, figure: bool) -> list[Path]:
+def _shaken(study: Study, pose: dict[str, float] | None) -> tuple[Dataset | None, tuple[str, ...]]:
+    """Vibration by the study's disturbances, and in words, or why it has none."""
+    from flexapod.errors import FlexapodError
+    from flexapod.study import vibration
+    from flexapod.study.disturbances import words_of
+
+    if study.disturbance is None:
+        return None, ()
+    try:
+        data = vibration(study, pose)
+    except FlexapodError as error:
+        return None, (f"vibration by disturbances cannot be said: {error}",)
+    return data, words_of(data, "there")
+
+
+def _write_modes(data: Dataset, shaken: Dataset | None, folder: Path, *, figure: bool) -> list[Path]:
     from flexapod import plot
     from flexapod.study.store import save
 
     files = [save(data, folder / "modes.nc")]
-    return [*files, *(plot.save(plot.modes_3d(data), folder / "modes") if figure else ())]
+    files += plot.save(plot.modes_3d(data), folder / "modes") if figure else ()
+    if shaken is not None:
+        files.append(save(shaken, folder / "vibration.nc"))
+        files += plot.save(plot.vibration(shaken), folder / "vibration") if figure else ()
+    return files
 
 
-def _modes_as_dict(data: Dataset, files: list[Path]) -> dict[str, object]:
+def _modes_as_dict(data: Dataset, shaken: Dataset | None, files: list[Path]) -> dict[str, object]:
     found = [
         {"mode": int(m), "frequency": float(f), "damping_ratio": float(d), "kind": str(kind)}
         for m, f, d, kind in zip(data.mode, data.frequency, data.damping_ratio, data.kind.values, strict=True)
@@ -76,6 +100,7 @@ def _modes_as_dict(data: Dataset, files: list[Path]) -> dict[str, object]:
     return {
         "modes": found,
         **({"com_sag": data.com_sag.values.tolist()} if "com_sag" in data else {}),
+        **({} if shaken is None else {"vibration_rms": shaken.vibration_rms.values.tolist()}),
         "warnings": [line for line in data.attrs["warnings"].splitlines() if line],
         "files": files,
     }
@@ -92,7 +117,7 @@ def _beam_words(study: ActuatorStudy) -> str:
     return f"Hub and extension held, about the straight beam, {study.actuator.free_length:.4g} m of it outside the hub."
 
 
-def _show_modes(data: Dataset, words: str, count: int, files: list[Path]) -> None:
+def _show_modes(data: Dataset, words: str, count: int) -> None:
     from flexapod.study.words import column
 
     print_text(words)
@@ -105,6 +130,12 @@ def _show_modes(data: Dataset, words: str, count: int, files: list[Path]) -> Non
     print_table(["mode", "frequency [Hz]", "damping [%]", "what moves most"], rows, left=(3,))
     if data.sizes["mode"] > count:
         print_text(f"The lowest {count} of {data.sizes['mode']} modes; more with --count.")
+
+
+def _show_end(data: Dataset, sentences: tuple[str, ...], files: list[Path]) -> None:
+    """What disturbances do, warnings, files."""
+    for sentence in sentences:
+        print_text(f"{sentence[0].upper()}{sentence[1:]}.")
     for line in data.attrs["warnings"].splitlines():
         print_text(f"Warning: {line}")
     for path in files:

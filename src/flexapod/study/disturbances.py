@@ -25,8 +25,9 @@ from flexapod.words import text
 if TYPE_CHECKING:
     from xarray import Dataset
 
-__all__ = ["vibration", "vibration_rows", "vibration_words"]
+__all__ = ["vibration", "vibration_rows", "vibration_words", "words_of"]
 
+BEYOND = "the floor's spectrum ends at"
 HOW = "spectra through the linear model about the static equilibrium"
 
 
@@ -106,8 +107,8 @@ def _beyond(study: Study, frequency: Array) -> list[str]:
     if floor is None or frequency[0] <= floor.frequency[-1]:
         return []
     return [
-        f"the lowest mode lies at {frequency[0]:.4g} Hz, but the floor's spectrum ends at {floor.frequency[-1]:.4g} Hz:"
-        " no resonance is in its vibration"
+        f"the lowest mode lies at {frequency[0]:.4g} Hz, but {BEYOND} {floor.frequency[-1]:.4g} Hz: "
+        "no resonance is in its vibration"
     ]
 
 
@@ -128,22 +129,25 @@ def vibration_words(study: Study) -> tuple[str, ...]:
     if study.disturbance is None:
         return ()
     try:
-        data = vibration(study)
+        return words_of(vibration(study), "at home")
     except (InputError, ComputationError) as error:
         return (f"the vibration at home by disturbances cannot be said: {error}",)
+
+
+def words_of(data: Dataset, where: str) -> tuple[str, ...]:
+    """How much the tool shakes, along which axis most, by what and in which mode; doubts."""
     rms = data.vibration_rms.values
     sizes = ", ".join(f"{axis} {text(float(size), 'm', 3)}" for axis, size in zip("xyz", rms, strict=False))
     most = int((rms[:3] > (1 - 1e-6) * rms[:3].max()).argmax())
+    if not rms[most] > 0:
+        return (f"disturbances do not move the tool {where}",)
     sources, f = data.vibration_by_source.values[:, most], data.frequency.values
     alike = np.abs(f - f[:, None]) < 1e-3 * f
     modes = alike @ data.vibration_by_mode.values[:, most]
-    if not rms[most] > 0:
-        return ("disturbances do not move the tool at home",)
-    culprit, doubts = int(modes.argmax()), _beyond(study, f)
-    frequency, kind = float(data.frequency[culprit]), str(data.kind.values[culprit])
+    culprit = int(modes.argmax())
     return (
-        f"disturbances shake the tool at home by {sizes} (rms, relative to the base), along {'xyz'[most]} most by the "
+        f"disturbances shake the tool {where} by {sizes} (rms, relative to the base), along {'xyz'[most]} most by the "
         f"{data.source.values[int(sources.argmax())]}, {100 * modes[culprit] / rms[most]:.0f} % of it in the mode at "
-        f"{frequency:.4g} Hz ({kind})",
-        *doubts,
+        f"{f[culprit]:.4g} Hz ({data.kind.values[culprit]})",
+        *(line for line in data.attrs["warnings"].splitlines() if BEYOND in line),
     )
