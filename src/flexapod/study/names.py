@@ -300,11 +300,7 @@ ONE_POSE_FORMS = {
 
 
 #: Of a single pose: play.
-AT_A_POSE = {
-    "pressing_force": _PLAY["pressing_force"]._replace(dims=("place", "leg")),
-    "play_error": _PLAY["play_error"]._replace(dims=_C),
-    "play_worst": _PLAY["play_worst"]._replace(dims=_C),
-}
+AT_A_POSE = {name: form._replace(dims=form.dims[1:]) for name, form in _PLAY.items() if form.dims[0] == "time"}
 
 
 def cause_in_words(cause: str, bodies: str = "pistons") -> str:
