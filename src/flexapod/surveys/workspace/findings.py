@@ -44,7 +44,7 @@ GRID_VARIABLES = {
 
 #: Those that are computed only where error budgets are asked for.
 BUDGET_VARIABLES = {
-    "error_worst": Variable((), "m", "worst case of the tool's place at rest, all parts"),
+    "error_worst": Variable((), "m", "worst case of the tool's place at rest, all parts, without vibration"),
     "error_by_part": Variable(("part",), "m", "size of the worst that a part does to the tool's place at rest"),
 }
 
