@@ -3,11 +3,10 @@
 from unittest.mock import patch
 
 import numpy as np
-from tests.runs import uncompiled
+from tests.runs import uncompiled, uncompiled_kernel
 
 from flexapod.mechanics.layout import LEG_PARAMETERS, PAYLOAD_PARAMETERS
 from flexapod.model import Simulation
-from flexapod.solve.kernel import interpreted_kernel
 from flexapod.solve.many import RestStates
 from flexapod.solve.robot_system import robot_system
 from flexapod.solve.system import System
@@ -66,5 +65,5 @@ def tangents(degrees):
 
 def of_robot(robot, **simulation):
     """System of a robot of the model, its kernel interpreted: for a few calls nothing need be compiled."""
-    with patch("flexapod.solve.robot_system.kernel", interpreted_kernel):
+    with patch("flexapod.solve.robot_system.kernel", uncompiled_kernel):
         return robot_system(robot, Simulation(**simulation))

@@ -7,13 +7,13 @@ import numpy as np
 import pytest
 from tests.consistency.test_mechanism_statics import hold, solved
 from tests.mechanisms import LOWER, UPPER, built, hexapod, leg, ring, rod, sliders, tricept
+from tests.runs import uncompiled_kernel
 from tests.systems import ring as circle
 from tests.systems import robot, tangents
 
 from flexapod import rigid
 from flexapod.model import Simulation
 from flexapod.model.joint import Carriage, Joint
-from flexapod.solve.kernel import interpreted_kernel
 from flexapod.solve.released import rigid_forces
 from flexapod.solve.stiffness import robot_stiffness
 from flexapod.study.poses import from_home
@@ -23,7 +23,7 @@ FLEXIBLE = Simulation(fidelity="assumed-modes", modes=2)
 
 @pytest.fixture(autouse=True)
 def interpreted():
-    with patch("flexapod.solve.robot_system.kernel", interpreted_kernel):
+    with patch("flexapod.solve.robot_system.kernel", uncompiled_kernel):
         yield
 
 

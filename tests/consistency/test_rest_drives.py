@@ -5,12 +5,12 @@ from unittest.mock import patch
 import numpy as np
 import pytest
 from tests.mechanisms import hexapod, sliders, three_rps
+from tests.runs import uncompiled_kernel
 
 from flexapod import rigid
 from flexapod.model import Feedback, ForceDrive, Simulation
 from flexapod.model.drive import ServoDrive
 from flexapod.rigid.limbs import DRIVEN
-from flexapod.solve.kernel import interpreted_kernel
 from flexapod.solve.many import port_forces
 from flexapod.solve.modes import locked_poses
 from flexapod.solve.released import rigid_forces
@@ -23,7 +23,7 @@ RIGID, LUMPED = Simulation(fidelity="rigid"), Simulation(fidelity="lumped")
 
 @pytest.fixture(autouse=True)
 def interpreted():
-    with patch("flexapod.solve.robot_system.kernel", interpreted_kernel):
+    with patch("flexapod.solve.robot_system.kernel", uncompiled_kernel):
         yield
 
 

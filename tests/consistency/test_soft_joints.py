@@ -131,7 +131,7 @@ def test_a_loss_factor_damps_the_first_mode_by_half_of_its_share():
     leg = 3.3e8 / 0.75
     share = (1 / ALONG) / (1 / ALONG + 1 / leg)
     assert found.damping_ratio.values[0] == pytest.approx(0.02 * share, rel=1e-4)
-    given = joint(ALONG, ACROSS, damping=0.04 * ALONG / (2 * np.pi * found.frequency.values[0]))
+    given = joint(ALONG, ACROSS, stiffness_damping=0.04 * ALONG / (2 * np.pi * found.frequency.values[0]))
     same = fx.modes(light(symmetric(base_joint=given, damping=0.0), gravity=[0, 0, 0]), fidelity="lumped")
     assert same.damping_ratio.values[0] == pytest.approx(found.damping_ratio.values[0], rel=1e-6)
 
