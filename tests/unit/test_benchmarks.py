@@ -2,6 +2,7 @@
 
 import ctypes
 import shutil
+from dataclasses import replace
 
 import casadi
 import numpy as np
@@ -118,4 +119,7 @@ def test_counted_residual_is_what_casadi_lists():
     from flexapod.solve.robot_march import prepare
 
     listed = leg_functions(prepare(fixed(5e-4, 0.9)).system.kernel.shapes)[0]
-    assert counted("benchmarks.counted_runs:residual_of_a_leg") == casadi_count(listed.build())
+    ours, theirs = counted("benchmarks.counted_runs:residual_of_a_leg"), casadi_count(listed.build())
+    turns = theirs.circular / 2  # sine and cosine of an angle: a series in lanes.h of 22 additions, 24 multiplications
+    series = {"additions": theirs.additions + 22 * turns, "multiplications": theirs.multiplications + 24 * turns}
+    assert ours == replace(theirs, **series, circular=0)

@@ -252,7 +252,7 @@ REFUSALS = [
     ("hexaglide", [("slider = [0, 0, 1], ", "")], "leg.carriage.slider", ("is missing", "For example: ".lower())),
     ("hexaglide", [("slider = [0, 0, 1]", "crank = [0, 0, 1], arm = [0.1, 0, 0]"),
       (', stroke = { min = 0, max = "0.6 m" }', "")],
-     "leg.carriage.mass", ("slider",)),
+     "leg.carriage", ("is a crank",)),
     ("hexaglide", [("slider = [0, 0, 1]", "slider = [0, 0, 1e-300]")], "leg.carriage.slider", ("no direction",)),
     ("hexaglide", [("slider = [0, 0, 1]", "slider = [0, 0, 1e300]")], "leg.carriage.slider", ("out of range",)),
     ("hexaglide", [('slider = [0, 0, 1], mass = "3 kg", stroke = { min = 0, max = "0.6 m" }, side = -1',

@@ -84,6 +84,6 @@ def test_a_file_of_the_other_kind_is_told(tmp_path, file):
     path = tmp_path / "beam.toml"
     path.write_text(BEAM, encoding="utf-8")
     with pytest.raises(fx.InputError, match="is neither a robot nor the study of one"):
-        fx.modes(path)
+        fx.stiffness(path)
     with pytest.raises(fx.InputError, match="is neither an actuator nor the study of one"):
         fx.simulate_actuator(file)

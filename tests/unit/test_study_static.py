@@ -220,5 +220,5 @@ def test_a_piston_that_does_not_reach_its_joint_is_refused_in_words():
         paper_robot(),
         lambda leg: leg.replace(cylinder=leg.cylinder.replace(mass=0.0, com=0.0, inertia=0.0, mouth=0.0)),
     )
-    with pytest.raises(ComputationError, match="piston is shorter"):
+    with pytest.raises(ComputationError, match="piston of leg 1 is shorter"):
         fx.modes(study)

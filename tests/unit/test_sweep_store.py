@@ -494,7 +494,7 @@ def test_a_scalar_that_a_point_may_lack():
     )
     assert made.status.values.tolist() == ["computed"]
     assert np.isnan(made.stress_peak_by_leg.values).all()
-    assert "stress_peak has no value: a piston is given by EI, EA and rhoA" in made.remarks.values[0]
+    assert "stress_peak has no value: a piston or strut is given by EI, EA and rhoA" in made.remarks.values[0]
     kinds = {
         "vary": [{"key": "simulation.fidelity", "values": ["rigid", "lumped"]}],
         "keep": {"scalars": ["first_frequency"]},

@@ -21,7 +21,7 @@ def table(name):
     """Head and first row of the report's table of legs."""
 
     class Found:
-        legs = describe_legs(RigidPath(study(name)))
+        legs, screws = describe_legs(RigidPath(study(name))), ()
         singularity = Singularity(
             home_smallest_singular_value=1, home_condition=1, smallest_singular_value=1, condition=1, time=0
         )

@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+from collections.abc import Mapping
 from typing import Annotated, Any
 
 from pydantic import Field, model_validator
@@ -133,6 +134,10 @@ class ActuatorMotion(Frozen):
     extension: MotionLaw | None = RateLaw(rate=0.0)
     elevation: MotionLaw | None = RateLaw(rate=0.0)
 
+    def _shown(self) -> Mapping[str, str]:
+        words = super()._shown()
+        return words if self.elevation != RateLaw(rate=0.0) else {k: v for k, v in words.items() if k != "elevation"}
+
     @model_validator(mode="after")
     def _smooth(self) -> ActuatorMotion:
         for name in type(self).model_fields:
@@ -197,3 +202,6 @@ class ActuatorInitial(Frozen):
     length_rate: Annotated[Number, Measure("velocity")] = 0.0
     elevation_displacement: Annotated[Number, Measure("length")] = 0.0
     elevation_rate: Annotated[Number, Measure("angular rate")] = 0.0
+
+    def _shown(self) -> Mapping[str, str]:
+        return {name: words for name, words in super()._shown().items() if getattr(self, name)}

@@ -8,7 +8,7 @@ import numpy as np
 from pydantic import PlainSerializer, PlainValidator, model_validator
 
 from flexapod.errors import InputError
-from flexapod.model.base import Frozen, Series, array_of
+from flexapod.model.base import Frozen, Measure, Series, array_of
 from flexapod.typing import Array
 
 __all__ = ["CURVES", "Curve", "Disturbance", "Floor", "Spectrum", "check_density"]
@@ -30,8 +30,8 @@ class Spectrum(Frozen):
 
     derived: ClassVar[tuple[str, ...]] = ("frequency", "density")
     spectrum: str | None = None
-    frequency: Series
-    density: Densities
+    frequency: Annotated[Series, Measure("frequency")]
+    density: Annotated[Densities, Measure("force spectrum", "torque spectrum")]
 
     @model_validator(mode="after")
     def _table(self) -> Spectrum:
@@ -49,8 +49,8 @@ class Floor(Frozen):
     curve: Curve | None = None
     spectrum: str | None = None
     of: Literal["acceleration", "velocity", "displacement"] = "acceleration"
-    frequency: Series
-    density: Densities
+    frequency: Annotated[Series, Measure("frequency")]
+    density: Annotated[Densities, Measure("acceleration spectrum", "velocity spectrum", "displacement spectrum")]
 
     @model_validator(mode="after")
     def _table(self) -> Floor:

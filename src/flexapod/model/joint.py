@@ -171,5 +171,5 @@ class Carriage(Frozen):
 
 
 def _check_direction(axis: Vec3 | None, key: str) -> None:
-    if axis is not None and np.linalg.norm(axis) < NO_DIRECTION:
+    if axis is not None and np.abs(axis).max() < NO_DIRECTION:
         raise InputError("has no direction", key=key, value=axis.tolist(), allowed="a non-zero vector")

@@ -64,7 +64,7 @@ def read_leg(section: Section, number: int, count: int, chain: str, places: tupl
 
 def _joint(leg: Section, name: str, place: Array, normal: Array) -> Joint | None:
     axis = leg.vector("u_axis", "number", "number", "number") if name == "base_joint" else None
-    if axis is not None and np.linalg.norm(axis) < NO_DIRECTION:
+    if axis is not None and np.abs(axis).max() < NO_DIRECTION:
         raise leg.error("has no direction", "u_axis", allowed="a non-zero vector")
     section = leg.section(name)
     if section is None:
