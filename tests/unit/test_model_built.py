@@ -152,7 +152,7 @@ def test_a_check_says_how_far_the_machine_as_built_is_off():
     text = '\n[geometry]\nleg_offset = "10 um"\n[heat]\npiston = 25\n[tolerances]\nleg_offset = "20 um"\n'
     found = loads((TEXT + text).replace("\nstroke =", '\nbase_joint = { play = "5 um" }\nstroke =', 1))
     built, spread, play = accuracy_words(found)
-    assert "most of it by heat_piston" in built and "standard deviations" in spread and "play" in play
+    assert "most of it by heat of the pistons" in built and "standard deviations" in spread and "play" in play
 
 
 @pytest.mark.parametrize("draws", [-1, 1.5, True])

@@ -10,6 +10,7 @@ from flexapod.model import Robot, Study
 from flexapod.study.accuracy.at_pose import AtPose
 from flexapod.study.accuracy.imperfect import is_crooked
 from flexapod.study.accuracy.play import half_play
+from flexapod.study.names import cause_in_words
 from flexapod.typing import Array
 from flexapod.words import text
 
@@ -30,7 +31,7 @@ def accuracy_words(study: Study) -> tuple[str, ...]:
             largest = max(parts, key=lambda name: float(np.linalg.norm(parts[name][:, :3].sum(axis=0))))
             found.append(
                 f"as built and warm the tool stands {_size(whole)} beside its drawn place at home, most of it by "
-                f"{largest} ({text(float(np.linalg.norm(parts[largest][:, :3].sum(axis=0))), 'm', 3)})"
+                f"{cause_in_words(largest)} ({text(float(np.linalg.norm(parts[largest][:, :3].sum(axis=0))), 'm', 3)})"
             )
         if spread := at.spreading:
             sigma = np.sqrt(np.diag(np.sum([one.covariance for one in spread], axis=0)))
