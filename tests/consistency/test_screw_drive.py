@@ -9,7 +9,7 @@ from tests.runs import balance, run_robot
 
 import flexapod as fx
 from flexapod.errors import InputError
-from flexapod.model import AxialSpring, AxisMotion, Feedback, Joint, ServoDrive, Simulation, Study
+from flexapod.model import AxialSpring, AxisMotion, Feedback, Joint, PrescribedDrive, ServoDrive, Simulation, Study
 from flexapod.solve.springs import in_series, springs_along
 
 STILL = {"gravity": [0, 0, 0]}
@@ -263,3 +263,25 @@ def test_robots_of_other_kinds_take_the_parts(name):
     data = fx.simulate(given)
     assert {"base_joint", "platform_joint", "plate"} < set(data.cause.values)
     assert np.abs(data.deviation_residual).max() < 1e-2 * np.abs(data.com_deviation).max()
+
+
+def test_legs_that_are_driven_in_different_ways():
+    """A servo beside screws, an offset tool, tilted gravity: the sum of the legs' stiffness along themselves."""
+    drives = (SCREW, ServoDrive(stiffness=3e7, damping=1e4), PrescribedDrive(), SCREW.replace(mounting="fixed-fixed"))
+    robot = machine(**EVERYTHING).replace(gravity=[3.0, -2.0, -8.0])
+    springs = [(), (), (), EVERYTHING["springs"], (), ()]
+    legs = [robot.legs[i].replace(drive=drives[i % 4], springs=springs[i]) for i in range(6)]
+    robot = robot.replace(legs=tuple(legs), payload=robot.payload.replace(tool=[0.2, -0.1, 0.3]))
+    place, along = robot.home_position, np.zeros((6, 6))
+    for i, k in enumerate(fx.parts(robot).leg_stiffness.values):
+        n = place + robot.platform_joints[i] - robot.base_joints[i]
+        n /= np.linalg.norm(n)
+        row = np.r_[n, np.cross(robot.platform_joints[i] - robot.payload.tool, n)]
+        along += k * np.outer(row, row)
+    found, size = fx.stiffness(robot).stiffness.values, np.sqrt(np.diag(along))
+    # A ton on springs of 2e7 N/m in series turns legs by 1e-3, and their thrust adds 2e3 N over 1 m: 1e-4.
+    np.testing.assert_allclose(found / np.outer(size, size), along / np.outer(size, size), rtol=0, atol=2e-3)
+    run = fx.simulate(study(robot, fidelity="lumped", step=1e-3, duration=0.002, output_step=1e-3))
+    # Newton's last step is below 1e-13 m in both.
+    sag = fx.modes(robot, fidelity="lumped").com_sag.values
+    np.testing.assert_allclose(run.com_deviation.values[0], sag, rtol=0, atol=1e-12)

@@ -149,7 +149,7 @@ def _soft(leg: Leg, length: float, per_loss: float) -> dict[str, object]:
 def _series(leg: Leg, length: float, per_loss: float) -> dict[str, object]:
     """Springs between rotor and stroke, and the rotor."""
     springs, screw = [x for x in springs_along(leg) if x.at == "nut"], leg.screw
-    if isinstance(leg.drive, ServoDrive):  # nothing has a mass between the servo's spring and these
+    if springs and isinstance(leg.drive, ServoDrive):  # nothing has a mass between the servo's spring and these
         springs.append(of_servo(leg.drive))
     stiffness, damping = in_series(springs, length, per_loss)
     loop = (0.0, 0.0) if screw is None else screw.loop_spring
