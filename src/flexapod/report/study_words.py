@@ -10,7 +10,9 @@ import numpy as np
 
 from flexapod import model
 from flexapod.report import html
+from flexapod.study.after.causes import cause_names
 from flexapod.study.before.describe.screw import screw_table
+from flexapod.study.names import CAUSES, cause_in_words
 from flexapod.study.words import held, number, text
 
 if TYPE_CHECKING:
@@ -57,11 +59,22 @@ def _robot(study: Study) -> list[str]:
         f"{body.capitalize()}s: {size}{number(1e3 * piston.length)} mm long, EA = {number(1e-6 * piston.EA)} MN, "
         f"EI = {number(piston.EI)} N m², {_damping(robot.legs[0].damping, body)}{alike}.",
         f"Drives: {_drives(robot)}.",
+        *_parts(study),
         f"Motion: {_motion(study.motion)}.",
         f"Load: {_load(study.load.wrench)}.",
         f"Legs: {_LEGS[simulation.fidelity]} ({simulation.fidelity}{count}); "
         f"{number(study.duration, 4)} s simulated, from {_START[study.initial.start]}.",
     ]
+
+
+def _parts(study: Study) -> list[str]:
+    """Parts that are not ideal, what may differ from the drawing, and what shakes the robot."""
+    tables = {"Tolerances": study.robot.tolerances, "Disturbances": study.disturbance}
+    listed = {"Other parts that count": [cause_in_words(name) for name in cause_names(study.robot)[len(CAUSES) :]]}
+    for title, table in tables.items():
+        names = [] if table is None else type(table).model_fields
+        listed[title] = [name.replace("_", " ") for name in names if getattr(table, name) is not None]
+    return [f"{title}: {', '.join(words)}." for title, words in listed.items() if words]
 
 
 def _carried(robot: Robot) -> list[str]:
