@@ -60,21 +60,6 @@ def test_the_integral_converges_whatever_the_damping(ratio):
         assert fine == pytest.approx(band, rel=2 * ratio + 1e-3)
 
 
-def test_the_published_noise_budget():
-    # amplitude density 1e-9 / (1 + s / (2 pi 100)) m / sqrt(Hz) from 1 to 1000 Hz: 12.1 nm; 2e-8 rad: 241.8 nrad
-    # (T. Dehaeze, nano-active stabilisation system, noise budget). A tool that follows: a mode far above.
-    model = one_mode(f0=1e7, ratio=0.5, k=1.0)
-    f = np.geomspace(1.0, 1000.0, 400)
-    for size, printed in ((1e-9, 12.1e-9), (2e-8, 241.8e-9)):
-        source = Source(
-            name="noise",
-            forces=model.inputs["force"],
-            frequency=f,
-            density=(size**2 / (1 + (f / 100) ** 2))[:, None],
-        )
-        assert random_vibration(model, [source]).rms[0] == pytest.approx(printed, rel=1.5e-3)
-
-
 def of_floor(curve: str, rates: int) -> float:
     """Rms of the floor itself: of its velocity, or with -1 its displacement."""
     floor, model = Floor.by_curve(curve), one_mode(f0=1e7, ratio=0.5, k=1.0)

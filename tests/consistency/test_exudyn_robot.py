@@ -81,14 +81,14 @@ def test_records_have_their_shapes(meshes):
     assert run.tip_deflection.shape == (401, 6, 2)
 
 
-def servo(leg):
-    return leg.replace(drive=model.ServoDrive(stiffness=1e8))
+def force(leg):
+    return leg.replace(drive=model.ForceDrive())
 
 
 @pytest.mark.parametrize(
     ("change", "motion", "settings", "key"),
     [
-        (servo, ROLL, {}, "leg 1: drive.type"),
+        (force, ROLL, {}, "leg 1: drive"),
         (lambda leg: leg.replace(damping=0.01), ROLL, {}, "leg 1: damping"),
         (lambda leg: leg, ROLL.replace(profile="linear"), {}, "motion"),
         (lambda leg: leg, ROLL, {"elements": -1}, "elements"),

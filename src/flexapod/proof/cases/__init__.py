@@ -7,12 +7,15 @@ from flexapod.proof.cases import (
     calculix_beams,
     calculix_robots,
     exudyn,
+    exudyn_parts,
     four_bar,
     frequencies,
     hexapods,
     integration,
+    machines,
     mechanisms,
     mujoco_forces,
+    real_parts,
     slider_crank,
     sliding,
     solids,
@@ -25,7 +28,9 @@ __all__ = ["CASES"]
 
 _SUBJECTS = (
     bending, solids, turning, sliding, integration, hexapods, frequencies, stiffness, mechanisms,
-    slider_crank, squeezer, four_bar, bricard, mujoco_forces, calculix_beams, calculix_robots, exudyn,
+    slider_crank, squeezer, four_bar, bricard, real_parts, machines,
+    mujoco_forces, calculix_beams, calculix_robots, exudyn,
+    exudyn_parts,
 )  # fmt: skip
 
 NOT_MODELLED = Case(

@@ -36,8 +36,8 @@ def solve(problem: ActuatorProblem) -> ActuatorResult:
     places = _stations(problem)
     nodes, cables = _beam(system, problem, places)
     _hold(system, problem, places, cables, tree)
-    system.drive(node, 0, rotation.position)
-    system.drive(node, 1, extension.position)
+    system.hold(system.coordinate(node, 0), rotation.position)
+    system.hold(system.coordinate(node, 1), extension.position)
     tip = system.watch_node(nodes[-1], exu.OutputVariableType.Position)
     seconds = system.solve(equilibrium=False)
     x, y, _ = system.records([tip])[:, 0].T

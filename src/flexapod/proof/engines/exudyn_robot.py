@@ -1,4 +1,4 @@
-"""Robots on legs UPS and RPS by Exudyn: the same joints and drives, pistons rigid or cables of finite elements."""
+"""Robots on legs UPS and RPS by Exudyn: the same joints, springs, drives; pistons rigid or cables of elements."""
 
 from __future__ import annotations
 
@@ -8,9 +8,10 @@ import numpy as np
 
 from flexapod import rigid
 from flexapod.errors import InputError
-from flexapod.model import Motion, Robot
+from flexapod.model import Joint, Leg, Motion, Robot
 from flexapod.proof.engines.exudyn_integration import Integration
 from flexapod.proof.engines.exudyn_process import TIME_LIMIT, ask
+from flexapod.solve.springs import springs_along
 from flexapod.typing import Array
 
 #: s; longer ones ring more where the jerk jumps, shorter ones carry Newton's tolerance into the forces.
@@ -43,25 +44,15 @@ class RobotProblem:
             raise InputError("is negative", key="elements", value=self.elements, allowed="0 (rigid pistons), 1, 2 ...")
         if self.elements and self.guide <= 0:
             raise InputError("leaves the piston free to turn", key="guide", value=self.guide, allowed="above 0 m")
+        for key in ("geometry", "heat"):
+            if getattr(self.robot, key) is not None:
+                raise InputError("is not modelled in Exudyn", key=key, allowed="the robot as it is drawn")
         for number, leg in enumerate(self.robot.legs, start=1):
             if leg.chain not in CHAINS or leg.passive:
                 raise InputError(
                     "is not modelled in Exudyn", key=f"leg {number}: chain", value=leg.chain, allowed=", ".join(CHAINS)
                 )
-            if leg.drive.type != "prescribed":
-                raise InputError(
-                    "is not modelled in Exudyn",
-                    key=f"leg {number}: drive.type",
-                    value=leg.drive.type,
-                    allowed="prescribed",
-                )
-            for key in ("base_joint", "platform_joint"):
-                if getattr(leg, key).stiffness is not None:
-                    raise InputError(
-                        "is not modelled in Exudyn", key=f"leg {number}: {key}.stiffness", allowed="joints without"
-                    )
-            if leg.springs:
-                raise InputError("are not modelled in Exudyn", key=f"leg {number}: springs", allowed="legs without")
+            _check_parts(number, leg)
             if self.elements and not leg.piston.rhoA:
                 raise InputError(
                     "makes cables without mass, which Exudyn cannot move",
@@ -100,6 +91,27 @@ class RobotProblem:
                 )
 
 
+def _check_parts(number: int, leg: Leg) -> None:
+    """Raise InputError for what the model of a leg's joints, springs and drive does not have."""
+
+    def refused(key: str, allowed: str) -> InputError:
+        return InputError("is not modelled in Exudyn", key=f"leg {number}: {key}", allowed=allowed)
+
+    if leg.piston.bow or leg.base_joint.eccentricity or leg.platform_joint.eccentricity:
+        raise refused("bow, eccentricity", "straight legs")
+    if leg.drive.type == "force" or (leg.screw is not None and (leg.screw.command == "torque" or leg.holds_stroke)):
+        raise refused("drive", "prescribed, servo, screw with command = 'position' or 'servo' at the rotor")
+    for end in ("base_joint", "platform_joint"):
+        joint: Joint = getattr(leg, end)
+        if joint.flexes or joint.bending is not None or joint.torsion is not None:
+            raise refused(end, "stiffness = { axial, radial } alone")
+        if joint.lossy:
+            raise refused(f"{end}.loss", "damping")
+    for spring in springs_along(leg):
+        if spring.loss:
+            raise refused(f"{spring.name}.loss", "damping")
+
+
 @dataclass(frozen=True, kw_only=True)
 class RobotResult:
     """Motion of the robot as Exudyn finds it, at T instants.
@@ -134,12 +146,12 @@ def simulate_robot(
     guide: float = 0.01,
     time_limit: float = TIME_LIMIT,
 ) -> RobotResult:
-    """Motion of a robot with prescribed strokes from its static equilibrium on, computed by Exudyn.
+    """Motion of a robot from its static equilibrium on, computed by Exudyn.
 
     Parameters
     ----------
     robot, motion : Robot, Motion
-        Drives prescribed, damping zero, no load; the motion starts smoothly from rest.
+        Drives that have a position; pistons without damping, no load; the motion starts smoothly from rest.
     integration : Integration
     elements : int
         ANCF cable elements per piston (Euler-Bernoulli, finite strain and rotation); 0: rigid pistons.

@@ -14,6 +14,7 @@ import numpy as np
 
 from flexapod import rigid
 from flexapod.model import Leg, Payload, Robot
+from flexapod.proof.engines.exudyn_parts import SoftEnd, drive, hold_platform, hold_slides, soft_end
 from flexapod.proof.engines.exudyn_robot import RobotProblem, RobotResult
 from flexapod.proof.engines.exudyn_system import CARRIAGE_MASS, System, exu, items
 from flexapod.rigid.rotations import exponential, quaternion
@@ -76,43 +77,42 @@ def _leg(system: System, problem: RobotProblem, i: int, length: Array, body: int
     """One leg with its drive, joined to the platform; `length` (T,) [m] is commanded."""
     mbs, robot = system.mbs, problem.robot
     leg, flexible, turns = robot.legs[i], problem.elements > 0, _turns(robot.legs[i])
-    inner = length[0] - leg.piston.length
-    slide = inner if flexible else length[0]
+    foot, head = soft_end(leg, "base"), soft_end(leg, "platform")
+    inner, slide = length[0] - leg.piston.length, turns + len(foot.slides)
+    tips = [0.0, 0.0, length[0]] if flexible and head.slides else []
+    rests = [*[0.0] * slide, inner if flexible else length[0], *tips]
     node = mbs.AddNode(
         items.NodeGenericODE2(
-            referenceCoordinates=[*[0.0] * turns, slide],
-            initialCoordinates=[0.0] * (turns + 1),
-            initialCoordinates_t=[0.0] * (turns + 1),
-            numberOfODE2Coordinates=turns + 1,
+            referenceCoordinates=rests,
+            initialCoordinates=[0.0] * len(rests),
+            initialCoordinates_t=[0.0] * len(rests),
+            numberOfODE2Coordinates=len(rests),
         )
     )
-    tree = _tree(system, node, robot, i, flexible=flexible)
-    carried = mbs.AddMarker(
-        items.MarkerKinematicTreeRigid(objectNumber=tree, linkNumber=turns, localPosition=[0.0] * 3)
-    )
+    tree = _tree(system, node, robot, i, foot, flexible=flexible, tips=len(tips))
+    links = [slide, slide + 3] if tips else [slide]
+    ends = [
+        mbs.AddMarker(items.MarkerKinematicTreeRigid(objectNumber=tree, linkNumber=link, localPosition=[0.0] * 3))
+        for link in links
+    ]
     if flexible:
-        nodes = _piston(system, problem, i, tree, inner)
-        first, end = (mbs.AddMarker(items.MarkerNodePosition(nodeNumber=nodes[k])) for k in (0, -1))
-        mbs.AddObject(items.ObjectJointSpherical(markerNumbers=[carried, first]))
-        tip = system.watch_node(nodes[-1], exu.OutputVariableType.Position)
-    else:
-        end = carried
-        tip = mbs.AddSensor(
-            items.SensorMarker(
-                markerNumber=end,
-                outputVariableType=exu.OutputVariableType.Position,
-                storeInternal=True,
-                writeToFile=False,
-            )
-        )
+        nodes = _piston(system, problem, i, tree, inner, slide - 1)
+        cable = [mbs.AddMarker(items.MarkerNodePosition(nodeNumber=nodes[k])) for k in (0, -1)]
+        for of_tree, of_cable in zip(ends, cable, strict=False):
+            mbs.AddObject(items.ObjectJointSpherical(markerNumbers=[of_tree, of_cable]))
+        ends.append(ends[-1] if tips else cable[-1])
+    hold_slides(system, node, turns, foot)
     place = robot.platform_joints[i] - robot.payload.com
     joint = mbs.AddMarker(items.MarkerBodyRigid(bodyNumber=body, localPosition=place))
-    mbs.AddObject(items.ObjectJointSpherical(markerNumbers=[joint, end]))
-    drive = system.drive(node, turns, length - length[0])
+    hold_platform(system, ends[-1], joint, head)
+    pushed = drive(system, leg, system.coordinate(node, slide), length)
+    tip = items.SensorMarker(
+        markerNumber=ends[-1], outputVariableType=exu.OutputVariableType.Position, storeInternal=True, writeToFile=False
+    )
     return _LegNumbers(
         coordinates=system.watch_node(node, exu.OutputVariableType.Coordinates),
-        drive=system.watch_force(drive),
-        tip=tip,
+        drive=system.watch_force(pushed),
+        tip=mbs.AddSensor(tip),
     )
 
 
@@ -126,38 +126,61 @@ def _tilt(limbs: rigid.Limbs, i: int) -> Array:
     return exponential(np.array([0.0, limbs.home[i, rigid.COORDINATES.index("beta")], 0.0]))
 
 
-def _tree(system: System, node: int, robot: Robot, i: int, *, flexible: bool) -> int:
-    """Cross, cylinder and piston or carriage: turns about x and y of the leg's home frame, then a slide along z."""
+def _tree(system: System, node: int, robot: Robot, i: int, foot: SoftEnd, *, flexible: bool, tips: int) -> int:
+    """Cross, cylinder and piston or carriage.
+
+    Turns about x and y of the leg's home frame, slides of the base joint, then a slide along z; where the platform
+    joint gives way, a body of no mass to speak of follows the tip with `tips` slides in the cylinder, to have its axes.
+    """
     leg, limbs, none = robot.legs[i], rigid.rigid_limbs(robot), np.zeros((3, 3))
     cylinder, piston, tilt, turns = leg.cylinder, leg.piston, _tilt(limbs, i), _turns(leg)
     across = piston.mass * piston.length**2 / 12
     rod = none if flexible else np.diag([across, across, 0.0])
     tube = np.diag([cylinder.inertia, cylinder.inertia, cylinder.axial_inertia + piston.axial_inertia])
-    joint, cross = exu.JointType, turns - 1  # links before the cylinder
+    joint, before = exu.JointType, turns + len(foot.slides) - 1  # links before the cylinder
+    slides = [joint.PrismaticX, joint.PrismaticY, joint.PrismaticZ]
+    axes = np.eye(3) if foot.slides else tilt  # of the cylinder's link
+    frames = [limbs.frames[i], *[np.eye(3)] * (turns - 1), tilt, *[np.eye(3)] * len(foot.slides)]
     return system.mbs.AddObject(
         items.ObjectKinematicTree(
             nodeNumber=node,
             gravity=robot.gravity,
             baseOffset=robot.base_joints[i],
-            jointTypes=[*[joint.RevoluteX, joint.RevoluteY][:turns], joint.PrismaticZ],
-            linkParents=list(range(-1, turns)),
-            jointTransformations=exu.Matrix3DList([limbs.frames[i], *[np.eye(3)] * cross, tilt]),
-            jointOffsets=exu.Vector3DList([[0.0] * 3] * (turns + 1)),
-            linkInertiasCOM=exu.Matrix3DList([*[none] * cross, tilt @ tube @ tilt.T, rod]),
+            jointTypes=[
+                *[joint.RevoluteX, joint.RevoluteY][:turns],
+                *(slides[k] for k in foot.slides),
+                joint.PrismaticZ,
+                *slides[:tips],
+            ],
+            linkParents=[*range(-1, before + 1), *[before, before + 2, before + 3][:tips]],
+            jointTransformations=exu.Matrix3DList([*frames, *[axes, np.eye(3), np.eye(3)][:tips]]),
+            jointOffsets=exu.Vector3DList([[0.0] * 3] * (before + 2 + tips)),
+            linkInertiasCOM=exu.Matrix3DList([*[none] * before, axes @ tube @ axes.T, rod, *[none] * tips]),
             linkCOMs=exu.Vector3DList(
-                [*[[0.0] * 3] * cross, cylinder.com * tilt[:, 2], [0.0, 0.0, 0.0 if flexible else -piston.length / 2]]
+                [
+                    *[[0.0] * 3] * before,
+                    cylinder.com * axes[:, 2],
+                    [0.0, 0.0, 0.0 if flexible else -piston.length / 2],
+                    *[[0.0] * 3] * tips,
+                ]
             ),
-            linkMasses=[*[0.0] * cross, cylinder.mass, CARRIAGE_MASS if flexible else piston.mass],
+            linkMasses=[
+                *[0.0] * before,
+                cylinder.mass,
+                CARRIAGE_MASS if flexible else piston.mass,
+                *[0.0, 0.0, CARRIAGE_MASS][:tips],
+            ],
         )
     )
 
 
-def _piston(system: System, problem: RobotProblem, i: int, tree: int, inner: float) -> list[int]:
-    """Chain of cables from the inner end on, with the rings that guide it; its nodes."""
+def _piston(system: System, problem: RobotProblem, i: int, tree: int, inner: float, tube: int) -> list[int]:
+    """Chain of cables from the inner end on, with the rings on the link `tube` that guide it; its nodes."""
     mbs, robot, count = system.mbs, problem.robot, problem.elements
     leg, piston, limbs = robot.legs[i], robot.legs[i].piston, rigid.rigid_limbs(robot)
-    along = _tilt(limbs, i)[:, 2]
-    axis = limbs.frames[i] @ along
+    tilt = _tilt(limbs, i)
+    axis = limbs.frames[i] @ tilt[:, 2]
+    along = np.array([0.0, 0.0, 1.0]) if tube >= _turns(leg) else tilt[:, 2]
     start = robot.base_joints[i] + axis * inner
     size = piston.length / count
     nodes = [
@@ -169,7 +192,7 @@ def _piston(system: System, problem: RobotProblem, i: int, tree: int, inner: flo
     shapes = [mbs.AddMarker(items.MarkerBodyBeamShape(bodyNumber=cable)) for cable in cables]
     for place in (leg.cylinder.mouth, leg.cylinder.mouth - problem.guide):
         ring = mbs.AddMarker(
-            items.MarkerKinematicTreeRigid(objectNumber=tree, linkNumber=_turns(leg) - 1, localPosition=place * along)
+            items.MarkerKinematicTreeRigid(objectNumber=tree, linkNumber=tube, localPosition=place * along)
         )
         element = min(int((place - inner) / size), count - 1)
         mbs.AddObject(
@@ -186,11 +209,15 @@ def _piston(system: System, problem: RobotProblem, i: int, tree: int, inner: flo
 
 
 def _tip_deflection(robot: Robot, coordinates: list[Array], tips: Array) -> Array:
-    """Tips (T, legs, 3) [m] seen from the axes of the cylinders at their `coordinates` (T, 2 or 3), (T, legs, 2)."""
+    """Tips (T, legs, 3) [m] seen from the axes of the cylinders at their `coordinates` (T, any), (T, legs, 2)."""
     limbs = rigid.rigid_limbs(robot)
     beta = np.tile(limbs.home[:, rigid.COORDINATES.index("beta")], (len(tips), 1))
     for i, leg in enumerate(robot.legs):
         if _turns(leg) == 2:
             beta[:, i] = coordinates[i][:, 1]
     turns = rigid.leg_rotations(limbs.frames, np.column_stack([q[:, 0] for q in coordinates]), beta)
-    return np.einsum("tnij,tni->tnj", turns, tips - robot.base_joints)[..., :2]
+    found = np.einsum("tnij,tni->tnj", turns, tips - robot.base_joints)[..., :2]
+    for i, leg in enumerate(robot.legs):
+        if soft_end(leg, "base").across:
+            found[:, i] -= coordinates[i][:, _turns(leg) : _turns(leg) + 2]
+    return found

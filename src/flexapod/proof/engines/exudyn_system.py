@@ -29,18 +29,52 @@ class System:
         ground = self.mbs.AddNode(items.NodePointGround())
         self.ground = self.mbs.AddMarker(items.MarkerNodeCoordinate(nodeNumber=ground, coordinate=0))
 
-    def drive(self, node: int, coordinate: int, displacement: Array) -> int:
-        """Let a coordinate of a node follow `displacement` (T,) at the instants of the integration; its number."""
-        step, last = self.integration.duration / self.integration.steps, self.integration.steps
+    def coordinate(self, node: int, coordinate: int) -> int:
+        """Marker of a coordinate of a node."""
+        return self.mbs.AddMarker(items.MarkerNodeCoordinate(nodeNumber=node, coordinate=coordinate))
+
+    def hold(self, marker: int, displacement: Array) -> int:
+        """Let the coordinate of a marker follow `displacement` (T,) at the instants of the integration; its number."""
 
         def offset(_mbs: object, t: float, _number: int, _offset: float) -> float:
-            # Newton's method asks at the instants only; t comes with round-off and, from the static solver, 1e-12 late.
-            return float(displacement[min(round(t / step), last)])
+            return float(displacement[self._instant(t)])
 
-        marker = self.mbs.AddMarker(items.MarkerNodeCoordinate(nodeNumber=node, coordinate=coordinate))
         return self.mbs.AddObject(
             items.ObjectConnectorCoordinate(markerNumbers=[self.ground, marker], offsetUserFunction=offset)
         )
+
+    def spring(
+        self,
+        markers: tuple[int, int],
+        stiffness: Array | float,
+        damping: Array | float,
+        travel: Array | float = 0.0,
+    ) -> int:
+        """Spring and damper between the coordinates of two markers, slack at `travel`; its number.
+
+        Numbers, or what they are (T,) at the instants of the integration.
+        """
+        if np.ndim(stiffness) == np.ndim(travel) == 0:
+            return self.mbs.AddObject(
+                items.ObjectConnectorCoordinateSpringDamper(
+                    markerNumbers=list(markers), stiffness=stiffness, damping=damping, offset=travel
+                )
+            )
+        k, c, x = (np.broadcast_to(values, self.integration.time.shape) for values in (stiffness, damping, travel))
+        rate = np.gradient(x, self.integration.time)
+
+        def force(_mbs: object, t: float, _number: int, u: float, v: float, *_given: float) -> float:
+            now = self._instant(t)
+            return float(k[now] * (u - x[now]) + c[now] * (v - rate[now]))
+
+        return self.mbs.AddObject(
+            items.ObjectConnectorCoordinateSpringDamper(markerNumbers=list(markers), springForceUserFunction=force)
+        )
+
+    def _instant(self, t: float) -> int:
+        # Newton's method asks at the instants only; t comes with round-off and, from the static solver, 1e-12 late.
+        last = self.integration.steps
+        return min(round(t * last / self.integration.duration), last)
 
     def sliding_data(self, element: int, position: float) -> int:
         """Node that keeps where a guide touches a chain of elements: which one, and the distance from its start."""

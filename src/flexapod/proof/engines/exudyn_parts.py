@@ -1,0 +1,99 @@
+"""Parts of a leg that give way in Exudyn's terms: springs at its joints, screws, servos. Imports Exudyn.
+
+Along and across a leg a joint at the base is two or three slides of the kinematic tree, between hinges and cylinder;
+at the platform a connector of springs in the axes of the cylinder. A screw is a mass that turns, as travel of its nut,
+and a spring whose stiffness follows the commanded length.
+"""
+
+from __future__ import annotations
+
+from dataclasses import dataclass
+
+import numpy as np
+
+from flexapod.model import Leg
+from flexapod.proof.engines.exudyn_system import System, items
+from flexapod.solve.springs import Place, before_piston, in_series, springs_along
+from flexapod.typing import Array
+
+
+@dataclass(frozen=True, kw_only=True)
+class SoftEnd:
+    """Springs [N/m] and dampers [N s/m] at an end of a leg, across and along it; 0 where the end is rigid."""
+
+    across: float
+    along: float
+    across_damping: float
+    along_damping: float
+
+    @property
+    def slides(self) -> list[int]:
+        """Directions in which it gives way, of 0, 1, 2."""
+        return [0, 1] * bool(self.across) + [2] * bool(self.along)
+
+    @property
+    def stiffness(self) -> Array:
+        """Of the three directions, (3,)."""
+        return np.array([self.across, self.across, self.along])
+
+    @property
+    def damping(self) -> Array:
+        """Of the three directions, (3,)."""
+        return np.array([self.across_damping, self.across_damping, self.along_damping])
+
+
+def soft_end(leg: Leg, at: Place) -> SoftEnd:
+    """What gives way at the base or the platform end of a leg."""
+    joint = leg.base_joint if at == "base" else leg.platform_joint
+    across = joint.across_and_along[0] if joint.across_and_along else 0.0
+    along = in_series([x for x in springs_along(leg) if x.at == at], 0.0, 0.0)
+    damping = joint.stiffness_damping or 0.0
+    return SoftEnd(across=across, along=along[0], across_damping=damping * bool(across), along_damping=along[1])
+
+
+def hold_slides(system: System, node: int, first: int, end: SoftEnd) -> None:
+    """Springs on the slides of the base joint, coordinates of a node from the number `first` on."""
+    for k, direction in enumerate(end.slides):
+        system.spring(
+            (system.ground, system.coordinate(node, first + k)), end.stiffness[direction], end.damping[direction]
+        )
+
+
+def hold_platform(system: System, tip: int, joint: int, end: SoftEnd) -> None:
+    """Join the markers of a leg's tip, in axes of the cylinder, and of the platform joint."""
+    mbs, held = system.mbs, [int(k not in end.slides) for k in range(3)]
+    if not end.slides:
+        mbs.AddObject(items.ObjectJointSpherical(markerNumbers=[joint, tip]))
+    elif any(held):
+        mbs.AddObject(items.ObjectJointGeneric(markerNumbers=[tip, joint], constrainedAxes=[*held, 0, 0, 0]))
+    if end.slides:
+        turns = np.zeros(3)
+        mbs.AddObject(
+            items.ObjectConnectorRigidBodySpringDamper(
+                markerNumbers=[tip, joint],
+                stiffness=np.diag([*end.stiffness, *turns]),
+                damping=np.diag([*end.damping, *turns]),
+            )
+        )
+
+
+def drive(system: System, leg: Leg, slide: int, length: Array) -> int:
+    """Let a leg's drive take the marker of its slide along the commanded `length` (T,) [m].
+
+    The connector whose force is that on the piston.
+    """
+    travel, screw, springs = length - length[0], leg.screw, before_piston(leg)
+    if screw is None and not springs:
+        return system.hold(slide, travel)
+    if screw is None:
+        return system.spring((system.ground, slide), *in_series(springs, 0.0, 0.0), travel)
+    node = system.mbs.AddNode(items.Node1D(referenceCoordinates=[0.0]))
+    system.mbs.AddObject(items.ObjectMass1D(physicsMass=screw.inertia / screw.per_turn**2, nodeNumber=node))
+    rotor = system.coordinate(node, 0)
+    if screw.holds:
+        system.hold(rotor, travel)
+    else:
+        system.spring((system.ground, rotor), *screw.loop_spring, travel)
+    along = [x for x in springs_along(leg) if x.at == "nut"]
+    stiffness, damping = np.array([in_series(along, x, 0.0) for x in length]).T
+    return system.spring((rotor, slide), stiffness, damping)
