@@ -4,7 +4,7 @@ import re
 
 import numpy as np
 import pytest
-from tests.machines import BEARING, NUT, SCREW, machine, study, symmetric
+from tests.machines import BEARING, NUT, SCREW, SOFT, machine, study, symmetric
 from typer.testing import CliRunner
 
 import flexapod as fx
@@ -240,10 +240,13 @@ def test_a_deck_has_the_springs_before_the_piston():
     parts = fx.parts(robot).isel(leg=0)
     expected = 1 / (1 / parts.part_stiffness).sel(part=["screw", "twist", "nut", "bearing", "bracket"]).sum()
     assert found.drive_spring == pytest.approx(float(expected), rel=1e-12)
+    ends = tuple(AxialSpring(name=at, stiffness=5e8, at=at) for at in ("base", "platform"))
+    leg = legs_at_pose(machine(springs=ends, base_joint=SOFT), rigid.home_pose(robot), np.zeros(6))[0]
+    np.testing.assert_allclose(leg.base_springs, [150e6, 150e6, 1 / (1 / 200e6 + 1 / 5e8)])
+    np.testing.assert_allclose(leg.base_gives, leg.axes.T)
+    np.testing.assert_allclose((*leg.tip_springs, *leg.tip_gives[0]), (5e8, *leg.axes[:, 2]))
     with pytest.raises(InputError, match="not written in decks"):
-        legs_at_pose(
-            machine(springs=(AxialSpring(name="a", stiffness=5e8, at="base"),)), rigid.home_pose(robot), np.zeros(6)
-        )
+        legs_at_pose(machine(base_joint=SOFT, drive=fx.model.ForceDrive()), rigid.home_pose(robot), np.ones(6))
 
 
 def test_sweeps_vary_parts():

@@ -11,7 +11,7 @@ from flexapod.errors import InputError
 from flexapod.rigid.limbs import FREE, Limbs, limbs
 from flexapod.rigid.mechanism import legs_at
 from flexapod.rigid.screws import screws
-from flexapod.solve.springs import before_piston
+from flexapod.solve.springs import Place, before_piston, in_series, springs_along
 from flexapod.typing import Array
 
 _STIFF = 1e5  # of a locked drive, in EA / l: adds 1e-5 of a leg's compliance
@@ -41,8 +41,9 @@ class LegAtPose:
     `base`, `tip` (3,): its joints; `axes` (3, 3): columns x, y, z of the leg, z towards the tip; `turns` (k, 3): axes
     about which the base joint lets the leg turn, with springs `turn_springs` (k,) [N m/rad]; `piston_turns`: the piston
     may turn in the cylinder; `ends` (m, 3): axes about which the platform joint lets the tip turn, with `end_springs`,
-    None: a ball; `carriage`: what gives way below the base joint, None: nothing does; `mouth`, `piston_length` [m];
-    `EA`, `EI`, `rhoA` of the piston; `mass`, `com`, `inertia`, `axial_inertia` of the cylinder; `drive` [N/m], inf for
+    None: a ball; `base_gives`, `tip_gives` (k, 3): directions in which the joints give way, with springs
+    `base_springs`, `tip_springs` (k,) [N/m]; `carriage`: what gives way below the base joint, None: nothing does;
+    `mouth`, `piston_length` [m]; `EA`, `EI`, `rhoA` of the piston; `mass`, `com`, `inertia`, `axial_inertia` of the cylinder; `drive` [N/m], inf for
     a prescribed stroke, 0 for one without drive; `force` [N] that a force drive gives beside that spring.
     """
 
@@ -54,6 +55,10 @@ class LegAtPose:
     piston_turns: bool
     ends: Array | None
     end_springs: Array
+    base_gives: Array
+    base_springs: Array
+    tip_gives: Array
+    tip_springs: Array
     carriage: CarriageAtPose | None
     mouth: float
     piston_length: float
@@ -133,14 +138,8 @@ def _leg(i: int, leg: model.Leg, real: Limbs, columns: Array, tip: Array, length
     """Leg i; `columns` (6, 8): velocities of its tip and turns of its joints for each coordinate."""
     _check_leg(i + 1, leg, length)
     cylinder, piston, below, above = leg.cylinder, leg.piston, leg.base_joint, leg.platform_joint
-    for spring in leg.springs:
-        if spring.at != "nut":
-            raise InputError("is not written in decks", key=f"springs.{spring.name}", allowed='at = "nut"')
     if leg.screw is not None and leg.screw.command == "torque":
         raise InputError("is not written in decks", key="drive.command", value="torque", allowed="position, servo")
-    for joint in (below, above):
-        if joint.stiffness is not None:
-            raise InputError("is not written in decks", key="stiffness", allowed="bending and torsion of the joint")
     z, y = columns[:3, _LENGTH], columns[3:, _NAMES.index("beta")]
     springs = dict(zip(_NAMES[1:4], (below.bending, below.bending, below.torsion), strict=True))
     springs |= dict(zip(_NAMES[5:], (above.bending, above.bending, above.torsion), strict=True))
@@ -153,15 +152,26 @@ def _leg(i: int, leg: model.Leg, real: Limbs, columns: Array, tip: Array, length
         for part in (dict(zip(_NAMES, columns[3:].T, strict=True)), {k: v or 0.0 for k, v in springs.items()})
     )
     on_carriage = leg.driven == "carriage"
+    own = np.column_stack([np.cross(y, z), y, z])
+    (base_gives, base_springs), (tip_gives, tip_springs) = (_gives(leg, own, at) for at in ("base", "platform"))
+    if force and len(base_gives):
+        raise InputError(
+            "is not written in decks where the base joint gives way", key="drive.type", value=leg.drive.type,
+            allowed="prescribed, servo, screw, or a base joint and springs that do not",
+        )  # fmt: skip
     return LegAtPose(
         base=tip - length * z,
         tip=tip,
-        axes=np.column_stack([np.cross(y, z), y, z]),
+        axes=own,
         turns=axes[0].reshape(-1, 3),
         turn_springs=sprung[0],
         piston_turns=alone and "spin" in loose,
         ends=axes[1].reshape(-1, 3) if real.pose_closure[i] else None,
         end_springs=sprung[1],
+        base_gives=base_gives,
+        base_springs=base_springs,
+        tip_gives=tip_gives,
+        tip_springs=tip_springs,
         carriage=_carriage(leg, columns[:, 0], length * z, force if on_carriage else 0.0),
         mouth=cylinder.mouth,
         piston_length=piston.length,
@@ -175,6 +185,17 @@ def _leg(i: int, leg: model.Leg, real: Limbs, columns: Array, tip: Array, length
         drive=np.inf if leg.strut is not None or on_carriage else _drive(leg, length),
         force=0.0 if on_carriage else force,
     )
+
+
+def _gives(leg: model.Leg, axes: Array, at: Place) -> tuple[Array, Array]:
+    """Directions (k, 3) in which a joint gives way, and springs (k,) [N/m]; `axes` (3, 3): columns, of the leg."""
+    joint = leg.base_joint if at == "base" else leg.platform_joint
+    if joint.flexes:
+        raise InputError("is not written in decks", key="stiffness", allowed="{ axial, radial }, bending and torsion")
+    along = in_series((spring for spring in springs_along(leg) if spring.at == at), 0.0, 0.0)[0]
+    across = joint.across_and_along[0] if joint.across_and_along else 0.0
+    springs = np.array([across, across, along])
+    return axes.T[springs > 0], springs[springs > 0]
 
 
 def _carriage(leg: model.Leg, twist: Array, reach: Array, force: float) -> CarriageAtPose | None:

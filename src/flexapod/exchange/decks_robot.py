@@ -1,4 +1,4 @@
-"""The locked robot at a pose as a deck: flexible pistons, rigid cylinders and payload, ideal joints.
+"""The locked robot at a pose as a deck: flexible pistons, rigid cylinders and payload, springs at joints.
 
 Rigid bodies are point masses joined by equations. The piston outside its cylinder is a square bar of solid elements
 with the piston's EA, EI and rhoA; what is inside can only stretch, so it is springs and masses on the leg's axis.
@@ -111,7 +111,8 @@ def drive_shift(leg: LegAtPose, name: str) -> list[str]:
 
 def _turned(leg: LegAtPose, point: Array) -> Array:
     """Displacements (3, k) of a point of the cylinder by the motions of the leg but those of the piston."""
-    return np.column_stack([_carried_along(leg, point), cross_matrix(point - leg.base) @ leg.turns.T / leg.length])
+    turns = cross_matrix(point - leg.base) @ leg.turns.T / leg.length
+    return np.column_stack([_carried_along(leg, point), turns, leg.base_gives.T])
 
 
 def _carried_along(leg: LegAtPose, point: Array) -> Array:
@@ -129,7 +130,7 @@ def _carried(leg: LegAtPose, node: int, point: Array, *, slides: bool) -> _Guide
 
 
 def _sprung(deck: Deck, motion: Array, stiffness: float, size: float, name: str) -> _Guided:
-    """A node that moves along x by `size` [m] times an angle, the one motion of `motion` (n,), with its spring."""
+    """A node that moves along x by the one motion of `motion` (n,), an angle times `size` [m] or a way, with its spring."""
     node = int(deck.nodes(np.zeros(3), name)[0])
     deck.write("*BOUNDARY", f"{node}, 2, 3")
     deck.grounded(node, stiffness / size**2, name)
@@ -138,12 +139,16 @@ def _sprung(deck: Deck, motion: Array, stiffness: float, size: float, name: str)
 
 def _foot(deck: Deck, leg: LegAtPose, name: str) -> list[_Guided]:
     """What gives way at the base: springs of the joint, mass and drive of a carriage."""
-    moves = leg.carriage is not None
-    count = moves + len(leg.turns) + 1 + leg.piston_turns
+    moves, gives = leg.carriage is not None, len(leg.base_gives)
+    motions = np.eye(moves + len(leg.turns) + gives + 1 + leg.piston_turns)[moves:]
     found = [
-        _sprung(deck, np.eye(count)[moves + k], stiffness, leg.length, f"{name}TURN{k + 1}")
+        _sprung(deck, motions[k], stiffness, leg.length, f"{name}TURN{k + 1}")
         for k, stiffness in enumerate(leg.turn_springs)
         if stiffness
+    ]
+    found += [
+        _sprung(deck, motions[len(leg.turns) + k], stiffness, 1.0, f"{name}GIVES{k + 1}")
+        for k, stiffness in enumerate(leg.base_springs)
     ]
     if leg.carriage is not None:
         place, anchor = leg.base, leg.base - _BEHIND * leg.length * leg.carriage.direction
@@ -189,7 +194,7 @@ def _inside(deck: Deck, leg: LegAtPose, name: str, count: int) -> list[_Guided]:
         place = leg.at(0.0 if abs(places[-1]) > _NEAR * leg.length else -_BEHIND * leg.length)
         held = int(deck.nodes(place, f"{name}BASE")[0])
         deck.springs([(held, nodes[-1])], leg.drive_spring, f"{name}DRIVE")
-        if leg.carriage is None:
+        if leg.carriage is None and not len(leg.base_gives):
             deck.fixed([held])
         else:
             driven = [_carried(leg, held, place, slides=False)]
@@ -229,13 +234,18 @@ def _joint(
     """The section at the tip turns about its middle as its joint allows; the middle moves with the payload."""
     ball = leg.ends is None
     axes = np.eye(3) if leg.ends is None else leg.ends
-    turns = [cross_matrix(point - leg.tip) @ axes.T / leg.side for _, point in tip]
+    turns = [np.column_stack([cross_matrix(point - leg.tip) @ axes.T / leg.side, leg.tip_gives.T]) for _, point in tip]
     arms = [np.hstack([np.eye(3), cross_matrix((leg.tip if ball else point) - payload.com)]) for _, point in tip]
     moved = np.column_stack([*carriers.values(), np.zeros((6, 0))])
+    motions = np.eye(len(axes) + len(leg.tip_gives))
     springs = [
-        _sprung(deck, np.eye(len(axes))[k] * leg.length / leg.side, stiffness, leg.length, f"{name}END{k + 1}")
+        _sprung(deck, motions[k] * leg.length / leg.side, stiffness, leg.length, f"{name}END{k + 1}")
         for k, stiffness in enumerate(leg.end_springs)
         if stiffness
+    ]
+    springs += [
+        _sprung(deck, motions[len(axes) + k], stiffness, 1.0, f"{name}TIPGIVES{k + 1}")
+        for k, stiffness in enumerate(leg.tip_springs)
     ]
     rows = np.zeros((3 * len(tip) + len(springs), 3 * len(tip) + len(springs) + len(carriers)))
     rows[:, : len(rows)] = np.eye(len(rows))

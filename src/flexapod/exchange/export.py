@@ -117,8 +117,8 @@ def _explanation(robot: model.Robot, path: rigid.Poses, elements: int) -> list[s
         "drive pushes, its spring's anchor (set BASE) is moved until the spring pushes as much.",
         "Cylinders and payload are rigid: point masses with the body's mass, centre and inertia, joined by *EQUATION. "
         f"Joints at base and platform let turn what their letters allow ({robot.type}), by *EQUATION; springs of "
-        "joints act on nodes that move as their angles do (sets TURN, END). A bar twists as a square one: GJ is "
-        "0.84 EI.",
+        "joints act on nodes that move as their angles and displacements do (sets TURN, END, GIVES, TIPGIVES). A bar "
+        "twists as a square one: GJ is 0.84 EI.",
         f"Left out: {', '.join(left_out(robot))}.",
         "Solids have shear and rotary inertia, beams have not: bending frequencies of slender pistons lie below those "
         "of `flexapod modes`, by parts in ten thousand in the first and some thousandths in the second.",
