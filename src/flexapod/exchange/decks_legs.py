@@ -43,8 +43,9 @@ class LegAtPose:
     may turn in the cylinder; `ends` (m, 3): axes about which the platform joint lets the tip turn, with `end_springs`,
     None: a ball; `base_gives`, `tip_gives` (k, 3): directions in which the joints give way, with springs
     `base_springs`, `tip_springs` (k,) [N/m]; `carriage`: what gives way below the base joint, None: nothing does;
-    `mouth`, `piston_length` [m]; `EA`, `EI`, `rhoA` of the piston; `mass`, `com`, `inertia`, `axial_inertia` of the cylinder; `drive` [N/m], inf for
-    a prescribed stroke, 0 for one without drive; `force` [N] that a force drive gives beside that spring.
+    `mouth`, `piston_length` [m]; `EA`, `EI`, `rhoA` of the piston; `mass`, `com`, `inertia`, `axial_inertia` of the
+    cylinder; `drive` [N/m], inf for a prescribed stroke, 0 for one without drive; `force` [N] that a force drive gives
+    beside that spring.
     """
 
     base: Array

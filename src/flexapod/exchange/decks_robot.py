@@ -130,7 +130,7 @@ def _carried(leg: LegAtPose, node: int, point: Array, *, slides: bool) -> _Guide
 
 
 def _sprung(deck: Deck, motion: Array, stiffness: float, size: float, name: str) -> _Guided:
-    """A node that moves along x by the one motion of `motion` (n,), an angle times `size` [m] or a way, with its spring."""
+    """A node that moves along x by the one motion of `motion` (n,), `size` [m] times an angle or 1, sprung."""
     node = int(deck.nodes(np.zeros(3), name)[0])
     deck.write("*BOUNDARY", f"{node}, 2, 3")
     deck.grounded(node, stiffness / size**2, name)
