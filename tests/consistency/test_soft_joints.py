@@ -7,6 +7,8 @@ from tests.runs import balance, run_robot
 
 import flexapod as fx
 from flexapod import rigid
+from flexapod.errors import InputError
+from flexapod.model import AxialSpring
 from flexapod.model.joint import Joint
 from flexapod.model.motion import AxisMotion
 from flexapod.solve.robot_system import robot_system
@@ -149,3 +151,29 @@ def test_displacements_move_with_the_legs():
         found.append(np.abs(ours["pose"] - theirs["pose"]).max() / np.abs(miss).max())
     assert found[1] < 1e-3
     assert found[0] / found[1] == pytest.approx(4, rel=0.5)
+
+
+def beside_a_flexure(**more):
+    """A machine whose first leg stands on a flexure, and whose second has other parts."""
+    robot, flexure = machine(), Joint(stiffness=np.diag([1e12, 1.1e12, 1.2e12, 0, 0, 0]))
+    first, second, *others = robot.legs
+    return robot.replace(legs=(first.replace(base_joint=flexure), second.replace(**more), *others))
+
+
+def test_a_spring_at_the_base_beside_flexures_of_other_legs_acts_along_its_leg():
+    # Displacements then have axes of the base. A leg that swings feels of them what is along it, wherever it points;
+    # the joint of the other machine gives way across by 2e8 / 1e13.
+    spring = AxialSpring(name="flange", stiffness=2e8, at="base")
+    robots = beside_a_flexure(springs=(spring,)), beside_a_flexure(base_joint=joint(2e8, 1e13))
+    for pose in (None, {"surge": 0.3}):
+        ours, theirs = (fx.stiffness(x, pose, fidelity="lumped").stiffness.values for x in robots)
+        np.testing.assert_allclose(ours, theirs, atol=1e-6 * np.abs(theirs).max())
+
+
+def test_a_leg_that_is_held_across_takes_no_such_spring_beside_flexures():
+    spring, held = AxialSpring(name="flange", stiffness=2e8, at="base"), Joint(bending=1e3)
+    with pytest.raises(InputError, match=r"leg 2: .* held across") as caught:
+        beside_a_flexure(springs=(spring,), platform_joint=held)
+    assert caught.value.key == "leg.springs.flange"
+    beside_a_flexure(springs=(spring,), base_joint=joint(2e8), platform_joint=held)
+    assert machine(springs=(spring,), platform_joint=held).count == 6

@@ -16,7 +16,7 @@ from flexapod.model.heat import Heat
 from flexapod.model.home import Home, carriage_home, foot
 from flexapod.model.leg import Leg
 from flexapod.model.payload import Payload, millimetres
-from flexapod.model.robot_checks import check_built, check_counts, check_leg, check_plane, check_spread
+from flexapod.model.robot_checks import check_built, check_counts, check_leg, check_plane, check_spread, check_springs
 from flexapod.model.tolerances import Tolerances
 from flexapod.typing import Array
 from flexapod.words import number, text
@@ -62,6 +62,7 @@ class Robot(Frozen):
         for i, length in enumerate(self.home_lengths, start=1):
             check_leg(i, self.legs[i - 1], float(length))
         check_built(self)
+        check_springs(self)
         return self
 
     def _shown(self) -> dict[str, str]:

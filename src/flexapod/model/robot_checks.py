@@ -74,6 +74,23 @@ def check_built(robot: Robot) -> None:
             )
 
 
+def check_springs(robot: Robot) -> None:
+    """Refuse springs along legs that are held across, where flexures of other legs give displacements fixed axes."""
+    if not any(joint.flexes for leg in robot.legs for joint in (leg.base_joint, leg.platform_joint)):
+        return
+    for i, leg in enumerate(robot.legs, start=1):
+        ends = {"base": leg.base_joint, "platform": leg.platform_joint}
+        turns = leg.swings and not any(joint.bending or joint.torsion for joint in ends.values())
+        for spring in leg.springs:
+            if not turns and spring.at in ends and ends[spring.at].across_and_along is None:
+                raise InputError(
+                    f"leg {i}: would give way along the leg's direction at home, for flexures of other legs have axes "
+                    "of base and platform; and this leg is held across",
+                    key=f"leg.springs.{spring.name}",
+                    allowed=f'at = "nut", or {spring.at}_joint.stiffness = {{ axial, radial }} of this leg',
+                )
+
+
 def _has_lead(leg: Leg) -> bool:
     slides = leg.carriage is not None and leg.carriage.kind == "slider"
     return leg.driven == "stroke" or (leg.driven == "carriage" and slides)
