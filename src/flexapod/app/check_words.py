@@ -28,6 +28,7 @@ def show_robot(found: RobotDescription) -> None:
     _lengths(found)
     _carriages(found)
     _angles(found)
+    _bodies(found)
     _singularity(found)
     _loads(found)
     _screws(found)
@@ -110,6 +111,24 @@ def _angles(found: RobotDescription) -> None:
         words = "between carriage and leg" if angle.joint == "carriage" else f"of the {angle.joint}"
         degrees = math.degrees(angle.largest.value)
         print_text(f"{degrees:.1f} deg {words} of leg {angle.leg} at t = {angle.largest.time:.3f} s.", indent=2)
+
+
+def _bodies(found: RobotDescription) -> None:
+    _heading("Joints and room between legs")
+    for turn in found.turns:
+        value, limit = math.degrees(turn.largest.value), turn.limit
+        left = (
+            "" if limit is None else f", of {math.degrees(limit):.4g} deg: {math.degrees(limit) - value:.2f} are left"
+        )
+        at = f"leg {turn.leg} at t = {turn.largest.time:.3f} s"
+        print_text(f"Joints at the {turn.end} turn from home by up to {value:.2f} deg ({at}){left}.", indent=2)
+    if found.clearance is not None:
+        (one, other), least = found.clearance.legs, found.clearance.least
+        print_text(
+            f"Legs {one} and {other} come nearest to each other: {text(least.value, 'm', 3)} are between them at "
+            f"t = {least.time:.3f} s, at home {text(found.clearance.home, 'm', 3)} between the nearest.",
+            indent=2,
+        )
 
 
 def _most(values: Sequence[float]) -> int:

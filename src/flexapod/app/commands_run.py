@@ -149,10 +149,11 @@ def _failed(data: Dataset, *, json: bool) -> None:
 def show_run(data: Dataset, folder: Path, files: Sequence[Path], warnings: Sequence[str]) -> None:
     """Print what a run found and where it is."""
     from flexapod.study.after.summary import POINT_WORDS, RobotSummary, summaries
+    from flexapod.study.bodies import bodies_words
 
     told = summaries(data)
-    for found in told:
-        print_text(found.sentence)
+    for sentence in (*(found.sentence for found in told), *bodies_words(data)):
+        print_text(sentence)
     for found in told:
         if isinstance(found, RobotSummary):
             print_text()

@@ -9,7 +9,7 @@ from pydantic import model_validator
 
 from flexapod.errors import InputError
 from flexapod.model.axes import within_a_turn
-from flexapod.model.base import Frozen, Matrix6, Measure, NonNegative, Number, Vec3
+from flexapod.model.base import Frozen, Matrix6, Measure, NonNegative, Number, Positive, Vec3
 
 NO_DIRECTION = 1e-9  # length of a vector below which it is none
 
@@ -27,7 +27,7 @@ class Joint(Frozen):
     made viscous at home (T13.19); `stiffness_damping` [N s/m], `stiffness_loss`: of `stiffness` along the leg's axes by
     itself.
     `play` [m]: free travel along the leg, from one end to the other. `eccentricity` [m]: of its centre from the axis of
-    the leg.
+    the leg. `max_angle` [rad]: how far the leg may turn there from its direction at home.
     """
 
     derived: ClassVar[tuple[str, ...]] = ("leg_axes", "stiffness_damping", "stiffness_loss")
@@ -41,6 +41,7 @@ class Joint(Frozen):
     leg_axes: bool = False
     play: Annotated[NonNegative, Measure("length")] | None = None
     eccentricity: Annotated[NonNegative, Measure("length")] | None = None
+    max_angle: Annotated[Positive, Measure("angle")] | None = None
     stiffness_damping: Annotated[NonNegative, Measure("damping")] | None = None
     stiffness_loss: Annotated[NonNegative, Measure("number")] | None = None
 
@@ -69,6 +70,10 @@ class Joint(Frozen):
     @model_validator(mode="after")
     def _sensible(self) -> Joint:
         _check_direction(self.axis, "axis")
+        if self.max_angle is not None and self.max_angle > np.pi:
+            raise InputError(
+                "is more than half a turn", key="max_angle", value=self.max_angle, allowed="0 to pi rad (180 deg)"
+            )
         stiffness = self.stiffness
         if stiffness is None:
             return self

@@ -72,6 +72,7 @@ def _page(study: Study | ActuatorStudy | None, data: Dataset, figures: Sequence[
     from flexapod.report.budget import budget_section, peak_budget
     from flexapod.report.study_words import modes_section, study_words
     from flexapod.study.after.summary import RobotSummary, summaries
+    from flexapod.study.bodies import bodies_words
 
     first, *further = summaries(data)
     described = _described(study)
@@ -90,7 +91,7 @@ def _page(study: Study | ActuatorStudy | None, data: Dataset, figures: Sequence[
     links |= {part: part.capitalize() for part, there in parts.items() if there}
     links |= {"solver": "Solver", "toml": "Study file", "repeat": "Repeat"}
     body = [
-        *(html.paragraph(found.sentence) for found in further),
+        *(html.paragraph(sentence) for sentence in (*(found.sentence for found in further), *bodies_words(data))),
         html.paragraph(f"Report of {name}, flexapod {data.attrs['flexapod_version']}.", "soft"),
         html.contents(links),
         *_partial(data),

@@ -1,5 +1,6 @@
 """Closed-form mathematics of the rigid robot: NumPy, vectorised over time."""
 
+from flexapod.rigid.bodies import Nearest, nearest_legs, turned_by
 from flexapod.rigid.breaks import Breaks, actuator_breaks, path_knots, robot_breaks
 from flexapod.rigid.built import (
     BuiltPart,
@@ -67,6 +68,7 @@ __all__ = [
     "LegState",
     "Limbs",
     "Mobility",
+    "Nearest",
     "NearestSingularity",
     "Poses",
     "Posture",
@@ -109,6 +111,7 @@ __all__ = [
     "motion_law",
     "motion_names",
     "nearby",
+    "nearest_legs",
     "nearest_singularity",
     "path_knots",
     "payload_body",
@@ -129,5 +132,6 @@ __all__ = [
     "shifts",
     "singularity",
     "strokes",
+    "turned_by",
     "wrench",
 ]

@@ -118,6 +118,10 @@ _LEGS = {
     "leg_angle": Variable(("time", "leg", "joint_angle"), "rad", "angles of the joints, zero at home but for hinges"),
     "actuator_force_rigid": Variable(_TL, "N", "force of the drive on the piston, rigid robot (Newton-Euler)"),
     "actuator_force": Variable(_TL, "N", "force of the drive on the piston, positive pushes out"),
+    "joint_turn": Variable(("time", "leg", "end"), "rad", "angle of the leg at its joint from home"),
+    "joint_margin": Variable(("time", "leg", "end"), "rad", "angle left of the largest turn of a joint"),
+    "leg_clearance": Variable(_T, "m", "least distance between cylinders and pistons of two legs"),
+    "nearest_legs": Variable(("time", "pair"), "1", "numbers of the two legs"),
     "tip_deflection": Variable(("time", "leg", "direction"), "m", "tip of the piston from the cylinder's axis"),
     "lateral_amplitude": Variable(("time", "leg", "direction", "shape"), "m", "amplitude of a lateral shape"),
     "axial_amplitude": Variable(("time", "leg", "axial_shape"), "m", "amplitude of an axial shape"),
@@ -126,9 +130,7 @@ _LEGS = {
         ("time", "leg", "axis"), "N", "force of the leg on the platform, world axes, rigid robot (Newton-Euler)"
     ),
     "base_force_rigid": Variable(("time", "leg", "axis"), "N", "force of the base on the leg, world axes, rigid robot"),
-    "base_moment_rigid": Variable(
-        ("time", "leg", "axis"), "N m", "moment of the base on the leg at the universal joint, rigid robot"
-    ),
+    "base_moment_rigid": Variable(("time", "leg", "axis"), "N m", "moment of the base on the leg, rigid robot"),
     "leg_length_rate": Variable(_TL, "m s-1", "rate of the joint-to-joint length of the rigid leg"),
     "leg_length_acceleration": Variable(_TL, "m s-2", "acceleration of the joint-to-joint length of the rigid leg"),
     "leg_angle_rigid": Variable(("time", "leg", "joint_angle"), "rad", "angles of the universal joint, rigid robot"),

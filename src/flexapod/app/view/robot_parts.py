@@ -14,6 +14,7 @@ from flexapod.rigid.rotations import quaternion
 from flexapod.scene.colours import colors_of_legs
 from flexapod.scene.geometry import ROUNDING, Instant, orientation, plate, round_down, strip, tube, tube_faces
 from flexapod.scene.skeleton import STATIONS, Scene, Skeleton
+from flexapod.study.bodies import CYLINDER
 from flexapod.study.words import number, text
 from flexapod.typing import Array
 
@@ -146,7 +147,7 @@ class RobotParts:
         robot, home = self._skeleton.robot, self._skeleton.home
         for i, (leg, color) in enumerate(zip(robot.legs, colors_of_legs(robot.count), strict=True)):
             node = scene.add_frame(f"/cylinder_{i + 1}", show_axes=False, position=home.base[i])
-            mouth, radius = leg.cylinder.mouth, 1.6 * float(self._radius[i])
+            mouth, radius = leg.cylinder.mouth, CYLINDER * float(self._radius[i])
             if mouth > 0:
                 place = (0.0, 0.0, 0.5 * mouth)
                 scene.add_cylinder(f"/cylinder_{i + 1}/body", radius, mouth, _CYLINDER, position=place)

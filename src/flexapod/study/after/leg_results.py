@@ -19,6 +19,8 @@ from flexapod.solve.system import System
 from flexapod.study.after import legs as by_name
 from flexapod.study.after.causes import cause_names
 from flexapod.study.after.elongations import elongations
+from flexapod.study.after.plausibility import flexible_axes
+from flexapod.study.bodies import body_results, largest_turns, pairs_of_legs
 from flexapod.study.names import DRIVES, Variable
 from flexapod.study.path import RigidPath
 from flexapod.study.record import Record
@@ -42,8 +44,9 @@ def leg_results(robot: Robot, system: System, path: RigidPath, record: Record) -
         "tip_deflection": bent @ by_name.bending_basis(shapes).tip,
         "joint_force": record.lam[..., :3],
     }
+    length = flexible_lengths(robot, system, record)
+    results |= body_results(robot, record.pose, flexible_axes(robot, system, record), length)
     if by_name.has_strokes(robot):
-        length = flexible_lengths(robot, system, record)
         force = by_name.stroke_forces(found, by_name.of_drives(found, shapes, forces))
         results |= zip(STROKES, (path.legs.length, length, q[..., shapes.l_index], force), strict=True)
     if held := by_name.held_names(found):
@@ -148,6 +151,8 @@ def absent(robot: Robot) -> set[str]:
     found = limbs(robot)
     none = set() if by_name.has_strokes(robot) else {*STROKES, "actuator_force_rigid"}
     none |= set() if by_name.held_names(found) else {"held_force"}
+    none |= set() if np.isfinite(largest_turns(robot)).any() else {"joint_margin"}
+    none |= set() if pairs_of_legs(robot) else {"leg_clearance", "nearest_legs"}
     return none if _bears_moments(found) else {*none, "joint_moment"}
 
 

@@ -13,12 +13,14 @@ from flexapod.rigid.kinematics import BETA_LIMIT
 from flexapod.rigid.workspace import BEFORE, BEYOND, LONGEST, PULLED_OUT, SHORTEST
 from flexapod.solve.modes import refuse_pure_force
 from flexapod.study.before.room import check_outputs
+from flexapod.study.bodies import clearance, gap_words, largest_turns, turns
 from flexapod.study.path import RigidPath, open_force_words, path_instants
 from flexapod.typing import Array
 
 SINGULAR = 1e-8  # smallest singular value of the scaled Jacobian below which a pose is refused
 UPRIGHT = 1e-6  # cosine of an elevation: the inertia about Z is its square
 NEAR_SINGULAR = 0.05  # and below which it is remarked on: leg forces and length errors are magnified about 20 times
+ROUNDING = 1e-9  # rad: of the angle between unit vectors
 MOVED = 1e-9  # m, of cranks rad: what legs that stand move by rounding
 
 _KEYS = {
@@ -91,11 +93,12 @@ def check_geometry(study: Study, path: RigidPath | None = None) -> list[str]:
         _refuse_excess(robot, t, found)
         _refuse_off_the_screw(robot, t, found.length)
         _refuse_folded(t, found)
+        _refuse_turned(path)
         nearest = rigid.nearest_singularity(robot, path.poses)
         _refuse_singular(t, nearest)
     except InputError as error:
         raise error.located(file=study.path) from None
-    return remarks + _remarks(robot, t, found.length, nearest)
+    return remarks + _remarks(robot, t, found.length, nearest) + _touching(path)
 
 
 def path_remarks(robot: Robot, t: Array, poses: rigid.Poses) -> list[str]:
@@ -221,6 +224,35 @@ def _refuse_folded(t: Array, found: rigid.Reach) -> None:
             allowed=words.allowed,
             next_step=words.next_step,
         )
+
+
+def _refuse_turned(path: RigidPath) -> None:
+    largest = largest_turns(path.robot)
+    if not np.isfinite(largest).any():
+        return
+    found = turns(path.robot, path.axes, path.poses.rotation)
+    k, leg, end = np.unravel_index((found - largest).argmax(), found.shape)
+    if found[k, leg, end] <= largest[leg, end] + ROUNDING:
+        return
+    name = ("base", "platform")[end]
+    first = path.time[np.argmax(found[:, leg, end] > largest[leg, end])]
+    raise InputError(
+        f"is left: leg {leg + 1} turns by {np.rad2deg(found[k, leg, end]):.2f} deg from home at its {name} joint "
+        f"at t = {path.time[k]:.6g} s (beyond the limit from t = {first:.6g} s on)",
+        key=f"leg.{name}_joint.max_angle",
+        value=f"{np.rad2deg(largest[leg, end]):.4g} deg",
+        allowed=f"at least {np.rad2deg(found[k, leg, end]):.4g} deg on this path",
+        next_step="Reduce the motion, or choose a joint that turns farther",
+    )
+
+
+def _touching(path: RigidPath) -> list[str]:
+    """Legs that run into each other."""
+    nearest = clearance(path.robot, path.poses.place(path.robot.platform_joints), path.axes, path.legs.length)
+    if nearest is None or nearest.gap.min() >= 0:
+        return []
+    k = int(nearest.gap.argmin())
+    return [gap_words(float(nearest.gap[k]), nearest.legs[k] + 1, float(path.time[k])).rstrip(".")]
 
 
 def _refuse_singular(t: Array, found: rigid.NearestSingularity) -> None:

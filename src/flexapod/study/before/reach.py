@@ -12,6 +12,7 @@ from flexapod.model import Robot
 from flexapod.rigid.kinematics import BETA_LIMIT
 from flexapod.solve import equilibrium, fallen
 from flexapod.study.before.checks import SINGULAR
+from flexapod.study.bodies import largest_turns, turns
 from flexapod.typing import Array
 
 Codes = NDArray[np.int8]
@@ -40,6 +41,7 @@ REASONS = (
     Reason("no_mass", "the mass matrix is not positive"),
     Reason("out_of_reach", "a leg does not reach its platform joint"),
     Reason("carriage_stops", "a carriage leaves its stroke"),
+    Reason("joint_stops", "a joint turns farther than its largest angle"),
 )
 """Reasons by code."""
 
@@ -96,6 +98,7 @@ def rigid_codes(robot: Robot, path: rigid.Poses, *, from_home: bool) -> Codes:
         ("singular", _cut_off(robot, path) if from_home else np.zeros(len(path), dtype=bool)),
         ("out_of_reach", found.lost),
         ("joint_folds", np.any([(angle > BETA_LIMIT).any(axis=1) for angle in found.angles.values()], axis=0)),
+        ("joint_stops", _turned_too_far(robot, path)),
         ("carriage_stops", _stopped(robot, found.carriage)),
         ("pulled_out", (length > guided).any(axis=1)),
         ("no_free_length", (length <= mouth).any(axis=1)),
@@ -122,6 +125,13 @@ def slider_limits(robot: Robot) -> Array:
 def _stopped(robot: Robot, place: Array) -> NDArray[np.bool_]:
     limits = rigid.carriage_limits(robot)
     return np.any((place < limits[:, 0]) | (place > limits[:, 1]), axis=1)
+
+
+def _turned_too_far(robot: Robot, path: rigid.Poses) -> NDArray[np.bool_]:
+    largest = largest_turns(robot)
+    if not np.isfinite(largest).any() or not len(path):
+        return np.zeros(len(path), dtype=bool)
+    return np.any(turns(robot, rigid.leg_axes(robot, path), path.rotation) > largest, axis=(1, 2))
 
 
 def _cut_off(robot: Robot, path: rigid.Poses) -> NDArray[np.bool_]:

@@ -50,7 +50,7 @@ REMARKED = 1e9  # byte of results from which on their size is worth a remark
 SMALL = 1e8  # byte that every machine has free: below it nothing is asked
 PEAK = 3  # times the results is what they take while they are made: the record, the Dataset, what is written
 CSV = 3  # times the results is what NetCDF and CSV take together: a number in letters is twice its 8 bytes
-POSE = 24  # numbers of a pose of a map beside its frequencies
+POSE = 26  # numbers of a pose of a map beside its frequencies
 # Of a control group: most memory, memory in use, and the part of it that files left behind and the kernel gives back.
 _CGROUPS = (
     (Path("/sys/fs/cgroup"), "memory.max", "memory.current", "inactive_file"),
@@ -69,7 +69,7 @@ def result_bytes(study: Study | ActuatorStudy) -> float:
     if isinstance(study, ActuatorStudy):
         return 8 * stored_instants(study) * (17 + s.lateral_shapes)
     shapes = 2 * s.lateral_shapes + s.axial_shapes(study.robot.legs[0].axial_modes)
-    return 8 * stored_instants(study) * (61 + study.robot.count * (28 + shapes))
+    return 8 * stored_instants(study) * (64 + study.robot.count * (32 + shapes))
 
 
 def check_memory(study: Study | ActuatorStudy, runs: int = 1) -> list[str]:

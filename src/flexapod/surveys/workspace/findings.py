@@ -39,11 +39,13 @@ GRID_VARIABLES = {
     "guided_length": Variable((), "m", "least length of a piston in its cylinder"),
     "base_joint_angle": Variable((), "rad", "largest turn of a leg at its base joint from home"),
     "platform_joint_angle": Variable((), "rad", "largest turn of a leg at its platform joint from home"),
+    "leg_clearance": Variable((), "m", "least distance between cylinders and pistons of two legs"),
     "euler_share": Variable((), "1", "largest axial thrust of a leg at rest over its Euler load"),
 }
 
-#: Those that are computed only where error budgets are asked for.
-BUDGET_VARIABLES = {
+#: Those of joints that have a largest angle, and where error budgets are asked for.
+FURTHER_VARIABLES = {
+    "joint_margin": Variable((), "rad", "least angle left at a joint whose largest turn is given"),
     "error_worst": Variable((), "m", "worst case of the tool's place at rest, all parts, without vibration"),
     "error_by_part": Variable(("part",), "m", "size of the worst that a part does to the tool's place at rest"),
 }
@@ -61,15 +63,16 @@ SCALARS = {
     "guided_length": "least",
     "base_joint_angle": "largest",
     "platform_joint_angle": "largest",
+    "leg_clearance": "least",
     "euler_share": "largest",
 }
-#: The same with those that a map has if they are asked for.
-SIDES = SCALARS | {"error_worst": "largest"}
+#: The same with those that a map has if they are asked for, or if joints have a largest angle.
+SIDES = SCALARS | {"error_worst": "largest", "joint_margin": "least"}
 
 
 def forms(names: tuple[str, ...]) -> dict[str, Variable]:
     """The variables on a grid with these dimensions."""
-    table = GRID_VARIABLES | BUDGET_VARIABLES
+    table = GRID_VARIABLES | FURTHER_VARIABLES
     return {key: Variable((*names, *dims), units, words) for key, (dims, units, words) in table.items()}
 
 
@@ -170,6 +173,8 @@ def name_of(data: Dataset, name: str, mode: int = 1) -> str:
         "guided_length": "least length of piston in its cylinder",
         "base_joint_angle": "largest turn of a base joint from home",
         "platform_joint_angle": "largest turn of a platform joint from home",
+        "joint_margin": "least angle left at a joint",
+        "leg_clearance": "least distance between two legs",
         "euler_share": "largest thrust over the Euler load",
     }[name]
 

@@ -15,6 +15,7 @@ from flexapod.solve.rigid_motion import rigid_motion
 from flexapod.solve.stiffness import compliance, displacement, stiffness_of, tool_motion
 from flexapod.study.before.estimates import buckling_load
 from flexapod.study.before.reach import REACHED, Codes, leg_limits, rigid_codes, slider_limits
+from flexapod.study.bodies import clearance, largest_turns, turns
 from flexapod.study.budgets.rows import names_of_rows, rows_of_poses
 from flexapod.study.budgets.rules import Budget
 from flexapod.study.many_modes import codes_at_rest, poses_of
@@ -76,27 +77,25 @@ def _rigid(robot: model.Robot, path: rigid.Poses) -> Values:
     stroke = np.minimum(length - limits[:, 0], limits[:, 1] - length)
     stroke = np.minimum(stroke, np.minimum(place - ways[:, 0], ways[:, 1] - place))
     inside = np.minimum(piston, mouth + piston - length)
-    axes, home = rigid.leg_axes(robot, path), rigid.leg_axes(robot, rigid.home_pose(robot))
-    seen = np.einsum("tji,tlj->tli", path.rotation, axes)  # from the platform
-    return {
+    axes, largest = rigid.leg_axes(robot, path), largest_turns(robot)
+    turned = turns(robot, axes, path.rotation)
+    nearest = clearance(robot, path.place(robot.platform_joints), axes, length)
+    limited = np.isfinite(largest)
+    margin = {"joint_margin": (largest - turned)[:, limited].min(axis=1)} if limited.any() else {}
+    return margin | {
         "condition": found.condition,
         "smallest_singular_value": found.smallest_singular_value,
         "stroke_margin": _least_where(np.isfinite(limits[:, 1]) | np.isfinite(ways[:, 1]), stroke),
         "guided_length": _least_where(mouth > 0, inside),
-        "base_joint_angle": _largest_angle(axes, home),
-        "platform_joint_angle": _largest_angle(seen, home),
+        "base_joint_angle": turned[..., 0].max(axis=1),
+        "platform_joint_angle": turned[..., 1].max(axis=1),
+        "leg_clearance": np.full(len(path), np.nan) if nearest is None else nearest.gap,
     }
 
 
 def _least_where(legs: Mask, values: Array) -> Array:
     """Least value of the legs that count, (P,); NaN where none does."""
     return values[:, legs].min(axis=1) if legs.any() else np.full(len(values), np.nan)
-
-
-def _largest_angle(a: Array, b: Array) -> Array:
-    """Largest angle between unit vectors of the legs, (P,) [rad]; exact for small ones, too."""
-    across = np.linalg.norm(np.cross(a, np.broadcast_to(b, a.shape)), axis=-1)
-    return np.arctan2(across, (a * b).sum(axis=-1)).max(axis=1)
 
 
 def _elastic(robot: model.Robot, path: rigid.Poses, locked: LockedPoses, wanted: Wanted) -> Values:

@@ -1,0 +1,106 @@
+"""Legs as bodies: the angles of their joints and the room between them, along a path and in results."""
+
+from __future__ import annotations
+
+from itertools import combinations
+from typing import TYPE_CHECKING
+
+import numpy as np
+
+from flexapod import rigid
+from flexapod.model import Robot
+from flexapod.rigid.rotations import matrix
+from flexapod.study.before.estimates import section_width
+from flexapod.study.words import text
+from flexapod.typing import Array
+
+if TYPE_CHECKING:
+    from xarray import Dataset
+
+__all__ = ["CYLINDER", "bodies_words", "body_results", "clearance", "largest_turns", "pairs_of_legs", "turns"]
+
+CYLINDER = 1.6  # radius of a cylinder over that of its piston, where it is not known
+
+
+def largest_turns(robot: Robot) -> Array:
+    """How far the legs may turn at base and platform joint, (n, 2) [rad]; inf without a limit."""
+    ends = ((leg.base_joint.max_angle, leg.platform_joint.max_angle) for leg in robot.legs)
+    return np.array([[np.inf if angle is None else angle for angle in pair] for pair in ends])
+
+
+def turns(robot: Robot, axes: Array, rotation: Array) -> Array:
+    """How far legs along `axes` (T, n, 3) under a platform of `rotation` (T, 3, 3) have turned, (T, n, 2) [rad]."""
+    return rigid.turned_by(axes, rotation, robot.home_vectors / robot.home_lengths[:, None], robot.home_rotation)
+
+
+def clearance(robot: Robot, tips: Array, axes: Array, length: Array) -> rigid.Nearest | None:
+    """The two legs nearest to each other, their tips (T, n, 3), axes (T, n, 3) and lengths (T, n) given.
+
+    None where there are no `pairs_of_legs`.
+    """
+    pairs, mouth = pairs_of_legs(robot), np.array([leg.cylinder.mouth for leg in robot.legs])
+    if not pairs:
+        return None
+    return rigid.nearest_legs(tips - length[..., None] * axes, tips, mouth, _radii(robot), np.array(pairs))
+
+
+def pairs_of_legs(robot: Robot) -> list[tuple[int, int]]:
+    """Pairs of legs that do not meet at a joint, numbers from 0; none in a plane, where legs lie in layers.
+
+    Legs meet where the centres of their joints are nearer to each other than the radius of the thinner one.
+    """
+    if robot.plane:
+        return []
+    radii, ends = _radii(robot), np.stack([robot.home_bases, robot.platform_joints], axis=1)
+    pairs = combinations(range(robot.count), 2)
+    return [
+        (i, k) for i, k in pairs if (np.linalg.norm(ends[i] - ends[k], axis=1) > np.minimum(radii[i], radii[k])).all()
+    ]
+
+
+def _radii(robot: Robot) -> Array:
+    """Radii of cylinders and pistons, (n, 2) [m]; a strut is a piston."""
+    pistons = np.array([0.5 * section_width(leg.piston) for leg in robot.legs])
+    return np.stack([np.where([leg.strut is None for leg in robot.legs], CYLINDER, 1.0) * pistons, pistons], axis=1)
+
+
+def body_results(robot: Robot, pose: Array, axes: Array, length: Array) -> dict[str, Array]:
+    """Turns of joints and least distance of legs over time; `pose` (T, 7) of the centre of mass."""
+    R = matrix(pose[:, 3:])
+    tips = pose[:, None, :3] + (robot.platform_joints - robot.com) @ R.swapaxes(1, 2)
+    found, largest = {"joint_turn": turns(robot, axes, R)}, largest_turns(robot)
+    if np.isfinite(largest).any():
+        found["joint_margin"] = largest - found["joint_turn"]
+    nearest = clearance(robot, tips, axes, length)
+    return found if nearest is None else found | {"leg_clearance": nearest.gap, "nearest_legs": nearest.legs + 1}
+
+
+def bodies_words(data: Dataset) -> list[str]:
+    """Sentences on a result: the joint with the least angle left, the least distance between legs."""
+    said = []
+    if "joint_margin" in data:
+        left = data.joint_margin.values
+        k, leg, end = np.unravel_index(left.argmin(), left.shape)
+        said.append(left_words(float(left[k, leg, end]), leg + 1, data.end.values[end], float(data.time[k])))
+    if "leg_clearance" in data:
+        k = int(data.leg_clearance.values.argmin())
+        said.append(gap_words(float(data.leg_clearance[k]), data.nearest_legs.values[k], float(data.time[k])))
+    return said
+
+
+def left_words(left: float, leg: int, end: str, time: float) -> str:
+    """The joint with the least angle left."""
+    what = "are left of" if left >= 0 else "are missing to"
+    return (
+        f"{np.rad2deg(abs(left)):.3g} deg {what} the angle of the {end} joint of leg {leg} at t = {time:.4g} s, "
+        "the least of all joints."
+    )
+
+
+def gap_words(gap: float, legs: Array, time: float) -> str:
+    """The two legs nearest to each other."""
+    one, other = legs
+    at = f"at t = {time:.4g} s"
+    if gap < 0:
+        return f"Legs {one} and {other} run into each other: they overlap by {text(-gap, 'm', 3)} {at}."
+    return f"Legs {one} and {other} come nearest to each other {at}: {text(gap, 'm', 3)} are between them."

@@ -1,0 +1,136 @@
+"""Legs as bodies: angles of joints from home and their limits, room between legs; paths, runs, maps, words."""
+
+import numpy as np
+import pytest
+from scipy.optimize import minimize
+from tests.machines import machine, study
+from tests.mechanisms import built, ring
+from typer.testing import CliRunner
+
+import flexapod as fx
+from flexapod import rigid
+from flexapod.app.cli import app
+from flexapod.errors import InputError
+from flexapod.model import Home, to_toml
+from flexapod.model.joint import Joint
+from flexapod.rigid.rotations import exponential
+from flexapod.study.bodies import CYLINDER, bodies_words, clearance, pairs_of_legs, turns
+
+LIMITED = {"base_joint": Joint(max_angle=0.2), "platform_joint": Joint(max_angle=0.1)}
+
+
+def test_the_distance_of_two_legs_is_that_of_their_axes_less_the_radii():
+    # Two rods of length 1 and one of 0.5 m, thick 0.02 m: crossing at right angles 0.3 m apart; end to end; parallel.
+    feet = np.array([[[0, 0, 0], [0.5, -0.5, 0.3], [2.0, 0, 0]]], dtype=float)
+    tips = np.array([[[1, 0, 0], [0.5, 0.5, 0.3], [2.0, 0.5, 0]]], dtype=float)
+    radii, mouth = np.full((3, 2), 0.01), np.zeros(3)
+    for pair, gap in (((0, 1), 0.28), ((0, 2), 0.98), ((1, 2), np.hypot(1.5, 0.3) - 0.02)):
+        found = rigid.nearest_legs(feet, tips, mouth, radii, np.array([pair]))
+        assert found.gap == pytest.approx([gap], abs=1e-12)
+    assert rigid.nearest_legs(feet, tips, mouth, radii, np.array([(0, 1), (0, 2), (1, 2)])).legs.tolist() == [[0, 1]]
+
+
+def test_distances_are_those_of_a_search():
+    # Any two legs, a cylinder and a piston each: the least distance by a search over both, each from its own start.
+    rng = np.random.default_rng(5)
+    feet, tips = rng.normal(size=(2, 40, 2, 3))
+    mouth, radii = np.array([0.4, 0.0]), np.array([[0.05, 0.03], [0.02, 0.02]])
+    ours = rigid.nearest_legs(feet, tips, mouth, radii, np.array([(0, 1)])).gap
+    for foot, tip, gap in zip(feet, tips, ours, strict=True):
+        share = mouth[0] / np.linalg.norm(tip[0] - foot[0])
+        least = np.inf
+        for (low, high), radius in (((0, min(share, 1)), 0.05), ((share, 1), 0.03)):
+            if high <= low:
+                continue
+            way = tip - foot
+            found = minimize(
+                lambda x, way=way, foot=foot: np.sum((foot[0] + x[0] * way[0] - foot[1] - x[1] * way[1]) ** 2),
+                [0.5 * (low + high), 0.5], bounds=[(low, high), (0, 1)], tol=1e-15,
+            )  # fmt: skip
+            least = min(least, np.sqrt(found.fun) - radius - 0.02)
+        if share < 1:  # a mouth beyond the tip is refused by the checks
+            assert gap == pytest.approx(least, abs=1e-6)
+
+
+def test_turns_are_those_of_the_platform_about_a_leg():
+    # An upright leg, whose platform rolls by 0.3: it turns by that at the platform alone, wherever home points to.
+    for home in ([0, 0, 0], [0.2, -0.1, 0.4]):
+        robot = machine().replace(home=Home(position=[0, 0, 1.0], rotation=home))
+        rotation = exponential(np.array([[0.3, 0, 0]])) @ robot.home_rotation
+        axes = (robot.home_vectors / robot.home_lengths[:, None])[None]
+        found = turns(robot, axes, rotation)
+        np.testing.assert_allclose(found[..., 0], 0.0, atol=1e-12)
+        about = np.arccos(np.clip(0.3**0 - (1 - np.cos(0.3)) * (1 - axes[0, :, 0] ** 2), -1, 1))
+        np.testing.assert_allclose(found[0, :, 1], about, atol=1e-9)
+
+
+def test_legs_that_meet_at_a_joint_and_legs_in_a_plane_are_no_pairs():
+    assert len(pairs_of_legs(machine())) == 15
+    pairs = built("6-UPS", ring(0.7, [0, 0, 120, 120, 240, 240]), ring(0.4, [60, 300, 60, 180, 180, 300]), 1.0,
+                  list(machine().legs), payload=machine().payload)  # fmt: skip
+    assert len(pairs_of_legs(pairs)) == 9
+    assert pairs_of_legs(fx.load("examples/mechanisms/planar.toml").robot) == []
+
+
+def test_a_path_beyond_the_angle_of_a_joint_is_refused():
+    quick = study(machine(**LIMITED))
+    most = fx.simulate(quick, fidelity="rigid").joint_turn
+    assert fx.simulate(quick, fidelity="rigid").joint_margin.values.min() > 0
+    base = float(most.sel(end="base").max())
+    tight = study(machine(base_joint=Joint(max_angle=0.5 * base)))
+    with pytest.raises(InputError, match=r"leg \d turns by .* deg from home at its base joint") as caught:
+        fx.simulate(tight)
+    assert caught.value.key == "leg.base_joint.max_angle"
+    assert f"at least {np.rad2deg(base):.4g} deg" in str(caught.value)
+    for bad in (-0.1, 0.0, 4.0):
+        with pytest.raises(InputError, match="max_angle"):
+            Joint(max_angle=bad)
+
+
+def test_a_run_says_how_much_is_left():
+    data = fx.simulate(study(machine(**LIMITED)))
+    np.testing.assert_allclose(data.joint_margin, [0.2, 0.1] - data.joint_turn, atol=1e-15)
+    words = bodies_words(data)
+    assert "the least of all joints" in words[0]
+    assert "come nearest to each other" in words[1]
+    k = int(data.leg_clearance.values.argmin())
+    assert " and ".join(map(str, data.nearest_legs.values[k])) in words[1]
+    assert "joint_margin" not in fx.simulate(study(machine()))
+
+
+def test_a_map_has_margins_and_leaves_out_what_joints_cannot_reach():
+    axes = {"surge": np.linspace(-0.3, 0.3, 7)}
+    free, tight = (fx.workspace_map(machine(**joints), axes, fidelity="lumped") for joints in ({}, LIMITED))
+    assert (free.reason == 0).all()
+    beyond = (free.base_joint_angle > 0.2) | (free.platform_joint_angle > 0.1)
+    assert 0 < beyond.sum() < 7
+    np.testing.assert_array_equal(tight.reason != 0, beyond)
+    least = np.minimum(0.2 - free.base_joint_angle, 0.1 - free.platform_joint_angle)
+    np.testing.assert_allclose(tight.joint_margin, least.where(~beyond), atol=1e-12)
+    assert "joint_margin" not in free
+    assert float(free.leg_clearance.min()) == pytest.approx(
+        min(_gap(machine(), surge) for surge in axes["surge"]), abs=1e-12
+    )
+
+
+def _gap(robot, surge):
+    pose = rigid.home_pose(robot)
+    pose = rigid.Poses.at_rest(pose.position + np.array([surge, 0, 0]), pose.rotation)
+    legs = rigid.inverse_kinematics(robot, pose)
+    return clearance(robot, pose.place(robot.platform_joints), rigid.leg_axes(robot, pose), legs.length).gap[0]
+
+
+def test_thick_legs_run_into_each_other(tmp_path):
+    # Pistons as thick as half the way between neighbours, cylinders more: said with legs and instant, not refused.
+    robot = machine()
+    thick = robot.legs[0].piston.replace(diameter=0.15)
+    assert 0.15 * CYLINDER > _gap(robot, 0.0)
+    crowded = study(robot.replace(legs=tuple(leg.replace(piston=thick) for leg in robot.legs)))
+    assert any("run into each other" in line for line in fx.simulate(crowded, fidelity="rigid").warnings.splitlines())
+    file = tmp_path / "mine.toml"
+    file.write_text(to_toml(study(machine(**LIMITED))), encoding="utf-8")
+    assert "max_angle" in file.read_text(encoding="utf-8")
+    said = CliRunner().invoke(app, ["check", str(file)])
+    assert said.exit_code == 0
+    assert "of 11.46 deg" in said.output
+    assert "come nearest to each other" in said.output
