@@ -21,8 +21,7 @@ __all__ = ["solve"]
 class Tuned(System):
     """The system with drives that are set at the beginning of a step."""
 
-    def drive(self, node: int, coordinate: int, displacement: Array) -> int:
-        marker = self.mbs.AddMarker(items.MarkerNodeCoordinate(nodeNumber=node, coordinate=coordinate))
+    def hold(self, marker: int, displacement: Array) -> int:
         number = self.mbs.AddObject(
             items.ObjectConnectorCoordinate(markerNumbers=[self.ground, marker], offset=float(displacement[0]))
         )
