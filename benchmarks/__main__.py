@@ -23,6 +23,7 @@ def sections() -> dict[str, Callable[[], list[Section]]]:
     from benchmarks.mechanisms import mechanisms
     from benchmarks.one_actuator import one_actuator
     from benchmarks.one_robot import one_robot
+    from benchmarks.real_parts import real_parts
     from benchmarks.scaling import scaling
     from benchmarks.side_by_side import side_by_side
     from benchmarks.startup import startup
@@ -33,6 +34,7 @@ def sections() -> dict[str, Callable[[], list[Section]]]:
         "side-by-side": side_by_side,
         "one-actuator": one_actuator,
         "mechanisms": mechanisms,
+        "real-parts": real_parts,
         "many-poses": many_poses,
         "many-robots": many_robots,
         "start-up": startup,

@@ -18,23 +18,27 @@ from flexapod.solve.kernel import Kernel
 from flexapod.solve.robot_march import prepare
 from flexapod.symbolic.functions import operations
 
-__all__ = ["mechanisms"]
+__all__ = ["count", "first_run", "least_step", "mechanisms", "with_step"]
 
 COMMAND = "python -m benchmarks mechanisms"
 SAMPLES = Path(__file__).parents[1] / "examples" / "mechanisms"
 NAMES = ("hexapod", "tripod", "tricept", "hexaglide", "eight-legs", "delta", "planar", "flexures")
 SHAPES, REPEATS, RUNS, STEP = 3, 9, 5, 1e-4
 LANES = 8  # of a vector on this kind of machine; eight legs fill one
-FIRST = "import flexapod as fx, sys; fx.simulate(fx.load(sys.argv[1]), modes=3, step=1e-3, duration=1e-2)"
+FIRST = """
+import flexapod as fx, sys, resource
+fx.simulate(fx.load(sys.argv[1]), modes=3, step=1e-3, duration=1e-2)
+print(max(resource.getrusage(who).ru_maxrss for who in (resource.RUSAGE_SELF, resource.RUSAGE_CHILDREN)))
+"""
 
 
-def _study(name: str) -> Study:
-    study = fx.load(SAMPLES / f"{name}.toml")
+def with_step(study: Study) -> Study:
+    """A study with a fixed step and as many shapes as all have."""
     simulation = study.simulation.replace(modes=SHAPES, step=STEP, tolerance=None, duration=0.1)
     return study.replace(simulation=simulation)
 
 
-def _step(study: Study) -> float:
+def least_step(study: Study) -> float:
     """Seconds of one step in C: of some runs the least, without what the machine does beside it."""
     return min(_run(study) for _ in range(RUNS))
 
@@ -59,7 +63,7 @@ def _run(study: Study) -> float:
     return spent / steps
 
 
-def _count(kernel: Kernel, name: str) -> float:
+def count(kernel: Kernel, name: str) -> float:
     from flexapod.mechanics.assembly import leg_functions
 
     function = next(f for f in leg_functions(kernel.shapes) if f.name == name)
@@ -71,27 +75,29 @@ def _of_a_step(counts: list[float]) -> float:
     return 2 * counts[0] + counts[1] / 16
 
 
-def _first(name: str) -> float:
-    """Seconds of the first run ever, as a process."""
+def first_run(file: Path) -> tuple[float, float]:
+    """Seconds and largest memory [MB] of the first run ever of a study, as a process, with the compiler's."""
     with tempfile.TemporaryDirectory() as folder:
         begin = time.perf_counter()
         environment = os.environ | {"FLEXAPOD_CACHE": folder}
-        subprocess.run([sys.executable, "-c", FIRST, str(SAMPLES / f"{name}.toml")], check=True, env=environment)
-        return time.perf_counter() - begin
+        run = subprocess.run(
+            [sys.executable, "-c", FIRST, str(file)], check=True, env=environment, capture_output=True, text=True
+        )
+        return time.perf_counter() - begin, float(run.stdout.split()[-1]) / 1024
 
 
 def mechanisms() -> list[Section]:
     """One section: a row a robot."""
-    studies = {name: _study(name) for name in NAMES}
+    studies = {name: with_step(fx.load(SAMPLES / f"{name}.toml")) for name in NAMES}
     for study in studies.values():
-        _step(study)
-    steps = interleaved({name: (lambda s=study: _step(s)) for name, study in studies.items()}, REPEATS)
-    first = {name: _first(name) for name in NAMES}
+        least_step(study)
+    steps = interleaved({name: (lambda s=study: least_step(s)) for name, study in studies.items()}, REPEATS)
+    first = {name: first_run(SAMPLES / f"{name}.toml")[0] for name in NAMES}
     rows, base = [], steps[NAMES[0]].median
     own: list[float] = []
     for name, study in studies.items():
         kernel = prepare(study).system.kernel
-        counts = [_count(kernel, function) for function in ("leg_residual", "leg_matrices")]
+        counts = [count(kernel, function) for function in ("leg_residual", "leg_matrices")]
         own = own or counts
         share = _of_a_step(counts) / _of_a_step(own)
         groups = -(-study.robot.count // LANES)

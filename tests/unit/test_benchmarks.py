@@ -9,11 +9,17 @@ import numpy as np
 import pytest
 from benchmarks.deviation import Curve, error
 from benchmarks.fitting import fitted_polynomial, fitted_power
+from benchmarks.mechanisms import count
 from benchmarks.one_robot import fixed, largest_step
 from benchmarks.operations import Count, casadi_count, compile_counting, counted, reader
+from benchmarks.real_parts import BEFORE, EVERYTHING
 from benchmarks.report import Section, goal
 from benchmarks.side_by_side import Family, chosen
 from benchmarks.timing import Spread, interleaved
+
+from flexapod.model import load, preset
+from flexapod.solve.robot_march import prepare
+from flexapod.study.after.causes import cause_names
 
 needs_cpp = pytest.mark.skipif(shutil.which("c++") is None, reason="there is no C++ compiler")
 
@@ -123,3 +129,14 @@ def test_counted_residual_is_what_casadi_lists():
     turns = theirs.circular / 2  # sine and cosine of an angle: a series in lanes.h of 22 additions, 24 multiplications
     series = {"additions": theirs.additions + 22 * turns, "multiplications": theirs.multiplications + 24 * turns}
     assert ours == replace(theirs, **series, circular=0)
+
+
+def test_robots_without_real_parts_do_not_pay_for_them():
+    kernel = prepare(preset("paper-robot")).system.kernel
+    for name, before in BEFORE.items():
+        assert count(kernel, name) == pytest.approx(before, rel=0.03)
+
+
+def test_the_robot_with_everything_on_has_every_part():
+    parts = set(cause_names(load(EVERYTHING).robot))
+    assert {"base_joint", "platform_joint", "screw", "nut", "bearing", "base_plate"} <= parts

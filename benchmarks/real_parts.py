@@ -1,0 +1,60 @@
+"""What real parts cost: a step beside that of paper-robot, the first run, memory; operations of robots without them."""
+
+from __future__ import annotations
+
+import tempfile
+from pathlib import Path
+
+from benchmarks.mechanisms import count, first_run, least_step, with_step
+from benchmarks.report import Section, goal
+from benchmarks.timing import interleaved
+from flexapod.model import loads, preset, preset_text
+from flexapod.solve.robot_march import prepare
+
+__all__ = ["EVERYTHING", "real_parts"]
+
+COMMAND = "python -m benchmarks real-parts"
+REPEATS = 9
+#: Operations of a leg of paper-robot before there were real parts: residual, matrices.
+BEFORE = {"leg_residual": 3887, "leg_matrices": 1977}
+EVERYTHING = Path(__file__).with_name("everything.toml")
+
+
+def real_parts() -> list[Section]:
+    """One section: a row a robot, and what those without such parts pay."""
+    texts = {"machine-hexapod": preset_text("machine-hexapod"), "everything on": EVERYTHING.read_text("utf-8")}
+    plain = with_step(preset("paper-robot"))
+    studies = {"paper-robot": plain, **{name: with_step(loads(text)) for name, text in texts.items()}}  # type: ignore[arg-type]
+    for study in studies.values():
+        least_step(study)
+    steps = interleaved({name: (lambda s=study: least_step(s)) for name, study in studies.items()}, REPEATS)
+    base, rows = steps["paper-robot"].median, [["paper-robot", steps["paper-robot"].text("us", 1e6), "1", "", ""]]
+    for (name, text), most in zip(texts.items(), (2.0, 4.0), strict=True):
+        ratio, (seconds, memory) = steps[name].median / base, _first(text)
+        rows.append(
+            [
+                name,
+                steps[name].text("us", 1e6),
+                f"{ratio:.2f}, {goal(ratio, most, f'at most {most:g}')}",
+                f"{seconds:.1f} s, {goal(seconds, 30.0, 'at most 30')}",
+                f"{memory:.0f} MB, {goal(memory, 500.0, 'at most 500')}",
+            ]
+        )
+    kernel = prepare(plain).system.kernel
+    now = {name: count(kernel, name) for name in BEFORE}
+    worst = max(now[name] / before for name, before in BEFORE.items())
+    numbers = ", ".join(f"{value:.0f} for {BEFORE[name]}" for name, value in now.items())
+    remarks = [
+        f"Operations of a leg of paper-robot, residual and matrices, over those without real parts: {numbers}: "
+        + goal(worst, 1.03, "at most 3 % more"),
+        "everything on: benchmarks/everything.toml. Budgets at a pose and in maps: python -m benchmarks many-poses.",
+    ]
+    header = ["Robot", "Step in C", "Of paper-robot", "First run ever", "Memory, of the compiler or the run"]
+    return [Section(title="Real parts", command=COMMAND, header=header, rows=rows, remarks=remarks)]
+
+
+def _first(text: str) -> tuple[float, float]:
+    with tempfile.TemporaryDirectory() as folder:
+        file = Path(folder) / "study.toml"
+        file.write_text(text, encoding="utf-8")
+        return first_run(file)
