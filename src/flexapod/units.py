@@ -44,10 +44,12 @@ DIMENSIONS = {
     "displacement spectrum": Dimension(unit="m^2/Hz", example="1e-18 m^2/Hz", least=1e-40, most=1e6),
     "density": Dimension(unit="kg/m^3", example="7800 kg/m^3", least=1e-12, most=1e9),
     "expansion": Dimension(unit="1/K", example="11.7e-6 1/K", least=1e-12, most=10.0),
+    "flow": Dimension(unit="m^3/s", example="100 l/min", least=1e-15, most=1e6),
     "force": Dimension(unit="N", example="120 N", least=1e-12, most=1e12),
     "force spectrum": Dimension(unit="N^2/Hz", example="1e-4 N^2/Hz", least=1e-30, most=1e18),
     "frequency": Dimension(unit="Hz", example="5 Hz", least=1e-9, most=1e9),
     "inertia": Dimension(unit="kg m^2", example="17.88 kg m^2", least=1e-18, most=1e15),
+    "leakage": Dimension(unit="m^3/(s Pa)", example="1e-12 m^3/(s Pa)", least=1e-24, most=1.0),
     "length": Dimension(unit="m", example="27 mm", least=1e-9, most=1e6),
     "line density": Dimension(unit="kg/m", example="4.02 kg/m", least=1e-15, most=1e9),
     "mass": Dimension(unit="kg", example="100 kg", least=1e-15, most=1e12),
@@ -63,6 +65,7 @@ DIMENSIONS = {
     "torque spectrum": Dimension(unit="(N m)^2/Hz", example="1e-6 (N m)^2/Hz", least=1e-30, most=1e18),
     "velocity": Dimension(unit="m/s", example="0.1 m/s", least=1e-12, most=1e6),
     "velocity spectrum": Dimension(unit="(m/s)^2/Hz", example="1e-12 (m/s)^2/Hz", least=1e-35, most=1e12),
+    "volume": Dimension(unit="m^3", example="0.4 l", least=1e-15, most=1e6),
 }
 
 #: Factors of the units that most study files use: reading these needs no pint, whose import takes a third of a second.
@@ -76,17 +79,19 @@ COMMON_UNITS = {
     "density": {"kg/m^3": 1.0},
     "displacement spectrum": {"m^2/Hz": 1.0},
     "expansion": {"1/K": 1.0},
+    "flow": {"m^3/s": 1.0, "l/min": 1e-3 / 60},
     "force": {"N": 1.0, "kN": 1e3},
     "force spectrum": {"N^2/Hz": 1.0},
     "frequency": {"Hz": 1.0},
     "inertia": {"kg m^2": 1.0},
+    "leakage": {"m^3/(s Pa)": 1.0},
     "length": {"m": 1.0, "cm": 1e-2, "mm": 1e-3, "um": 1e-6},
     "line density": {"kg/m": 1.0},
     "mass": {"kg": 1.0, "g": 1e-3},
     "rotational damping": {"N m s/rad": 1.0},
     "rotational stiffness": {"N m/rad": 1.0},
     "stiffness": {"N/m": 1.0, "N/um": 1e6},
-    "stress": {"Pa": 1.0, "MPa": 1e6, "GPa": 1e9},
+    "stress": {"Pa": 1.0, "bar": 1e5, "MPa": 1e6, "GPa": 1e9},
     "temperature": {"degC": 1.0, "°C": 1.0},
     "temperature difference": {"K": 1.0},
     "time": {"s": 1.0, "ms": 1e-3},
@@ -94,6 +99,7 @@ COMMON_UNITS = {
     "torque spectrum": {"(N m)^2/Hz": 1.0},
     "velocity": {"m/s": 1.0, "mm/s": 1e-3},
     "velocity spectrum": {"(m/s)^2/Hz": 1.0},
+    "volume": {"m^3": 1.0, "l": 1e-3, "cm^3": 1e-6},
 }
 
 _TEXT = re.compile(r"^\s*([-+]?(?:\d+(?:\.\d*|,\d+)?|[.,]\d+)(?:[eE][-+]?\d+)?)(?![\d.,'])\s*(.*?)\s*$")

@@ -325,7 +325,7 @@ REFUSALS = [
     ('material = "steel"', 'material = "steel", E = 2e11', "leg.piston.E", ("together with material",)),
     ('max = "1.05 m"', 'max = "0.6 m"', "leg.stroke.max", ("0.6 m", "above min")),
     ("damping = 0.005", "damping = 1.5", "leg.damping", ("below 1",)),
-    ('type = "prescribed"', 'type = "hydraulic"', "leg.drive.type", ("prescribed, servo, force",)),
+    ('type = "prescribed"', 'type = "pneumatic"', "leg.drive.type", ("prescribed, servo, force",)),
     ('type = "prescribed"', 'type = "servo"', "leg.drive.stiffness", ("is missing",)),
     ('type = "prescribed"', 'type = "prescribed", stiffness = 1', "leg.drive.stiffness", ("unknown key",)),
     ('type = "prescribed"', 'type = "force", law = "csv"', "leg.drive.file", ("is missing",)),

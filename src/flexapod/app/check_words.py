@@ -7,6 +7,7 @@ from collections.abc import Mapping, Sequence
 from typing import TYPE_CHECKING
 
 from flexapod.app.terminal import print_table, print_text
+from flexapod.study.before.describe.hydraulic import hydraulic_table
 from flexapod.study.before.describe.screw import screw_table
 from flexapod.study.words import column, length, number, scale, text
 
@@ -32,6 +33,7 @@ def show_robot(found: RobotDescription) -> None:
     _singularity(found)
     _loads(found)
     _screws(found)
+    _hydraulics(found)
     if found.losses:
         _heading("Loss factors, made viscous at home")
         for sentence in found.losses:
@@ -201,6 +203,16 @@ def _screws(found: RobotDescription) -> None:
     head, rows = screw_table(found.screws)
     print_table(["", *head], [[f"  leg {s.leg}", *row] for s, row in zip(found.screws, rows, strict=True)])
     print_text(f"{found.back[0].upper()}{found.back[1:]}.", indent=2)
+
+
+def _hydraulics(found: RobotDescription) -> None:
+    if not found.hydraulics:
+        return
+    _heading("Hydraulic cylinders, on the path")
+    head, rows = hydraulic_table(found.hydraulics)
+    print_table(["", *head], [[f"  leg {x.leg}", *row] for x, row in zip(found.hydraulics, rows, strict=True)])
+    for sentence in found.oil:
+        print_text(f"{sentence[0].upper()}{sentence[1:]}.", indent=2)
 
 
 def _pose(pose: PoseDescription, held: str) -> None:

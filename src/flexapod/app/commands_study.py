@@ -20,7 +20,7 @@ Preset = Annotated[
         "--preset",
         metavar="P",
         help="paper-robot (the default), paper-robot-radii, paper-actuator, tripod, flight-simulator, "
-        "machine-hexapod, small-hexapod or nano-hexapod.",
+        "machine-hexapod, small-hexapod, nano-hexapod or motion-base.",
     ),
 ]
 From = Annotated[

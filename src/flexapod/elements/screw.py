@@ -3,16 +3,19 @@
 from types import SimpleNamespace
 
 from flexapod.elements.frame import Energies
+from flexapod.elements.oil_column import oil_column
 
 
-def screw(p: SimpleNamespace, qs: SimpleNamespace, vs: SimpleNamespace) -> Energies:
+def screw(p: SimpleNamespace, qs: SimpleNamespace, vs: SimpleNamespace, *, oil: bool = False) -> Energies:
     """Energies of springs and dampers between the rotor's travel r and the stroke l, and of what turns with the rotor.
 
     The compliance of the springs is a polynomial of second degree in l, as that of the shaft depends on the nut's
-    place.
+    place; with `oil` that of a hydraulic cylinder comes to it.
     """
     away = qs.l - p.series_home
     softer = 1 + away * (p.series_softening[0] + away * p.series_softening[1])
+    if oil:
+        softer += oil_column(p, away)
     stiffness = p.series_stiffness / softer  # (T15.5)
     return Energies(
         kinetic=0.5 * p.rotor_mass * vs.r**2,  # (T15.12)

@@ -85,6 +85,10 @@ SERIES_PARAMETERS: tuple[tuple[str, int], ...] = (
     ("rotor_damping", 1),  # N s/m
 )
 
+#: ... of which some are columns of oil: their share in the compliance of these at home; of the two columns the share of
+#: the pushing one in their stiffness there, and one over their lengths [1/m].
+OIL_PARAMETERS: tuple[tuple[str, int], ...] = (("oil", 4),)
+
 #: Physical parameters of the payload in kernel order (name, size); tool from the CoM, in platform axes.
 PAYLOAD_PARAMETERS: tuple[tuple[str, int], ...] = (
     ("mass", 1),  # kg
@@ -134,6 +138,8 @@ class Shapes:
         Displacements of the joints along and across the leg.
     series : bool
         Springs between a rotor, whose travel is r, and the stroke l.
+    oil : bool
+        Columns of oil among these.
     """
 
     a: LateralBasis
@@ -150,6 +156,7 @@ class Shapes:
     soft_base: bool = False
     soft_platform: bool = False
     series: bool = False
+    oil: bool = False
 
     @property
     def layout(self) -> tuple[tuple[str, int], ...]:
@@ -224,5 +231,6 @@ def leg_parameters(shapes: Shapes) -> tuple[tuple[str, int], ...]:
         (shapes.soft_base, SOFT_BASE),
         (shapes.soft_platform, SOFT_PLATFORM),
         (shapes.series, SERIES_PARAMETERS),
+        (shapes.oil, OIL_PARAMETERS),
     )
     return tuple(item for there, table in parts if there for item in table)

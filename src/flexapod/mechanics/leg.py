@@ -70,7 +70,7 @@ def leg(shapes: Shapes, p: SimpleNamespace, q: SX, v: SX, qs: SimpleNamespace, v
     e += cylinder(frame, p, vs) + sliding_piston(motion, p)
     if shapes.torsion:
         e += torsion(frame, p, qs, vs)
-    series = screw(p, qs, vs) if shapes.series else Energies()
+    series = screw(p, qs, vs, oil=shapes.oil) if shapes.series else Energies()
     e += series
     if shapes.tip_body:
         e += tip_body(motion, p, shapes.planar)

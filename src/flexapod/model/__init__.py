@@ -20,6 +20,7 @@ from flexapod.model.files import (
 from flexapod.model.geometry import Geometry
 from flexapod.model.heat import Expansion, Gradient, Heat
 from flexapod.model.home import Home
+from flexapod.model.hydraulic import HydraulicDrive, HydraulicLimits
 from flexapod.model.joint import Carriage, Joint, Travel
 from flexapod.model.laws import (
     ConstantLaw,
@@ -100,6 +101,8 @@ __all__ = [
     "Gradient",
     "Heat",
     "Home",
+    "HydraulicDrive",
+    "HydraulicLimits",
     "Initial",
     "Joint",
     "Leg",

@@ -23,7 +23,8 @@ from flexapod.model.study import ActuatorStudy, Study
 from flexapod.model.toml import parsed
 
 PAPER_PRESETS = ("paper-robot", "paper-robot-radii", "paper-actuator")
-PRESETS = (*PAPER_PRESETS, "tripod", "flight-simulator", "machine-hexapod", "small-hexapod", "nano-hexapod")
+PRESETS = (*PAPER_PRESETS, "tripod", "flight-simulator", "machine-hexapod", "small-hexapod", "nano-hexapod",
+           "motion-base")  # fmt: skip
 RobotPreset = Literal[
     "paper-robot",
     "paper-robot-radii",
@@ -32,6 +33,7 @@ RobotPreset = Literal[
     "machine-hexapod",
     "small-hexapod",
     "nano-hexapod",
+    "motion-base",
 ]
 AT_REST = AxisMotion(type="heave", amplitude=0.0, duration=1.0)
 _AS_BUILT = ("geometry", "heat", "tolerances")

@@ -11,6 +11,7 @@ from flexapod.model.base import Frozen, Measure, NonNegative, Positive, Vec3
 from flexapod.model.chain import Chain, chain_of
 from flexapod.model.damping import BodyDamping, damping_parts
 from flexapod.model.drive import ForceDrive, PrescribedDrive
+from flexapod.model.hydraulic import HydraulicDrive
 from flexapod.model.joint import Carriage, Joint
 from flexapod.model.piston import Cylinder, Piston, Strut
 from flexapod.model.screw import Drive, ScrewDrive
@@ -102,7 +103,23 @@ class Leg(Frozen):
     @property
     def gives(self) -> bool:
         """Whether springs stand between its drive and its piston."""
-        return self.screw is not None or any(spring.at == "nut" for spring in self.springs)
+        driven = self.screw is not None or self.cylinder_of_oil is not None
+        return driven or any(spring.at == "nut" for spring in self.springs)
+
+    @property
+    def cylinder_of_oil(self) -> HydraulicDrive | None:
+        """Its drive, if that is hydraulic."""
+        return self.drive if isinstance(self.drive, HydraulicDrive) else None
+
+    @property
+    def begins(self) -> float:
+        """Length of the leg with the piston's inner end where its screw or its hydraulic stroke begins [m]."""
+        if self.screw is not None:
+            return self.piston.length + self.screw.bearing.position
+        oil = self.cylinder_of_oil
+        if oil is not None and oil.bottom is not None:
+            return self.piston.length + oil.bottom
+        return 0.0 if self.stroke is None else self.stroke.min
 
     @property
     def holds_stroke(self) -> bool:
@@ -167,7 +184,14 @@ class Leg(Frozen):
                 )
         if not self.gives:
             return self
-        key = "drive" if self.screw is not None else "springs"
+        oil = self.cylinder_of_oil
+        if oil is not None and oil.bottom is None and self.stroke is None:
+            raise InputError(
+                "is missing: where the stroke of the hydraulic cylinder begins is not known",
+                key="drive.bottom",
+                next_step="Add drive.bottom, or stroke = { min, max } of the leg: then it begins at min",
+            )
+        key = "drive" if self.screw is not None or oil is not None else "springs"
         if self.driven != "stroke":
             raise _misfit(self.chain, key, "belongs to a driven stroke", 'at = "base" or "platform" of springs')
         if isinstance(self.drive, ForceDrive):

@@ -12,6 +12,7 @@ from flexapod.model.axes import axis_of
 from flexapod.model.chain import chain_of
 from flexapod.model.columns import columns_of
 from flexapod.model.drive import ForceDrive, PrescribedDrive, ServoDrive
+from flexapod.model.hydraulic import HydraulicDrive
 from flexapod.model.joint import NO_DIRECTION, Carriage, Joint
 from flexapod.model.leg import Leg
 from flexapod.model.material import MATERIALS, Material, Tube
@@ -210,9 +211,15 @@ def _drive(section: Section | None, number: int, count: int, among: tuple[str, .
         found = section.table(forces(count, among[2]), needed=True, jumps=True)
         return {"time": found["time"], "force": found[f"leg {number}"]}
 
-    kinds = (PrescribedDrive, ServoDrive, ForceDrive, ScrewDrive)
+    def volumes(section: Section) -> dict[str, object]:
+        both = isinstance(section.data.get("dead_volume"), list)
+        value = section.vector("dead_volume", "volume", "volume") if both else section.number("dead_volume", "volume")
+        return {"dead_volume": value}
+
+    kinds = (PrescribedDrive, ServoDrive, ForceDrive, ScrewDrive, HydraulicDrive)
     readers = {
         ForceDrive: lambda s: s.read(ForceDrive, among=among, then=table),
+        HydraulicDrive: lambda s: s.read(HydraulicDrive, then=volumes),
         ScrewDrive: lambda s: s.read(
             ScrewDrive, among=_TURNING, also=_OF_MATERIAL, then=lambda s: {"material": read_material(s)}
         ),

@@ -9,7 +9,7 @@ from flexapod.model.drive import ServoDrive
 from flexapod.model.heat import Heat
 from flexapod.model.leg import Leg
 from flexapod.model.robot import Robot
-from flexapod.words import number
+from flexapod.words import number, text
 
 _SLENDER = 0.1
 _RATIO = 0.1  # damping ratio of the advice for a drive without damping
@@ -55,6 +55,12 @@ def _leg_remarks(leg: Leg) -> list[str]:
         remarks.append(f"the piston is {piston.diameter:g} m wide, {_fat(piston.diameter, piston.length, 'length')}")
     if piston.yield_stress is not None and (piston.depth is None or piston.E is None):
         remarks.append("yield_stress has no effect: stress needs the piston's diameter and material, not EI and EA")
+    oil = leg.cylinder_of_oil
+    if oil is not None and piston.diameter is not None and abs(oil.rod - piston.diameter) > 1e-9:
+        remarks.append(
+            f"drive.rod is {text(oil.rod, 'm', 4)}, the piston's diameter {text(piston.diameter, 'm', 4)}: one for the "
+            "oil, one for the stretch"
+        )
     if cylinder.mass > 0 and cylinder.mouth > 0 and not 0 <= cylinder.com <= cylinder.mouth:
         remarks.append(
             f"the cylinder's centre of mass ({cylinder.com:g} m) lies outside the cylinder "

@@ -10,6 +10,7 @@ from pydantic import Field, model_validator
 from flexapod.errors import InputError
 from flexapod.model.base import Frozen, Measure, NonNegative, Positive
 from flexapod.model.drive import Feedback, ForceDrive, PrescribedDrive, ServoDrive
+from flexapod.model.hydraulic import HydraulicDrive
 from flexapod.model.material import Material
 from flexapod.model.spring import check_lossy
 from flexapod.words import number
@@ -251,7 +252,7 @@ class ScrewDrive(Frozen):
         return self.encoder.at == "stroke"
 
 
-Drive = Annotated[PrescribedDrive | ServoDrive | ForceDrive | ScrewDrive, Field(discriminator="type")]
+Drive = Annotated[PrescribedDrive | ServoDrive | ForceDrive | ScrewDrive | HydraulicDrive, Field(discriminator="type")]
 
 
 def _one_of(part: Frozen, given: str, law: tuple[str, ...]) -> None:

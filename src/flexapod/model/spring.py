@@ -13,7 +13,9 @@ from flexapod.model.base import Frozen, Measure, NonNegative, Positive
 __all__ = ["RESERVED", "AxialSpring", "check_lossy"]
 
 #: Names of parts that have tables of their own.
-RESERVED = ("axial-strain", "bending", "drive", "base_joint", "platform_joint", "screw", "twist", "nut", "bearing")
+RESERVED = (
+    "axial-strain", "bending", "drive", "base_joint", "platform_joint", "screw", "twist", "nut", "bearing", "oil",
+)  # fmt: skip
 
 
 class AxialSpring(Frozen):

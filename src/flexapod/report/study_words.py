@@ -11,6 +11,7 @@ import numpy as np
 from flexapod import model
 from flexapod.report import html
 from flexapod.study.after.causes import cause_names
+from flexapod.study.before.describe.hydraulic import hydraulic_table
 from flexapod.study.before.describe.screw import screw_table
 from flexapod.study.names import CAUSES, cause_in_words
 from flexapod.study.words import held, number, text
@@ -134,6 +135,12 @@ def _drive(drive: model.Drive) -> str:
         return f"servo, a spring of {text(drive.stiffness, 'N/m')}{damper} between commanded and real stroke"
     if isinstance(drive, model.ScrewDrive):
         return _screw(drive)
+    if isinstance(drive, model.HydraulicDrive):
+        ends = ", at both ends" if drive.double_ended else ""
+        return (
+            f"hydraulic, bore {text(drive.bore, 'm', 4)}, rod {text(drive.rod, 'm', 4)}{ends}, stroke "
+            f"{text(drive.stroke, 'm', 4)}, the valve closed where the stroke is commanded"
+        )
     force = "that which the rigid robot needs" if drive.law == "rigid" else "from a table"
     force = force if drive.value is None else f"constant, {text(drive.value, 'N')}"
     back = drive.feedback
@@ -217,7 +224,7 @@ def _path(found: RobotDescription) -> list[str]:
             f"{s.home_smallest_singular_value:.3g} and {s.home_condition:.3g}."
         )
     asked = [html.heading("What the path asks of the legs"), html.table(head, rows), html.paragraph(words, "soft")]
-    return asked + _screws(found)
+    return asked + _screws(found) + _hydraulics(found)
 
 
 def _screws(found: RobotDescription) -> list[str]:
@@ -227,6 +234,15 @@ def _screws(found: RobotDescription) -> list[str]:
     rows = [(f"{s.leg}", *row) for s, row in zip(found.screws, texts, strict=True)]
     words = f"{found.back[0].upper()}{found.back[1:]}."
     return [html.heading("Screws, largest values on the path"), html.table(("Leg", *head), rows), html.paragraph(words)]
+
+
+def _hydraulics(found: RobotDescription) -> list[str]:
+    if not found.hydraulics:
+        return []
+    head, texts = hydraulic_table(found.hydraulics)
+    rows = [(f"{x.leg}", *row) for x, row in zip(found.hydraulics, texts, strict=True)]
+    words = [html.paragraph(f"{sentence[0].upper()}{sentence[1:]}.") for sentence in found.oil]
+    return [html.heading("Hydraulic cylinders, on the path"), html.table(("Leg", *head), rows), *words]
 
 
 def _way(leg: LegDescription) -> tuple[str, str]:

@@ -9,7 +9,7 @@ from typing import cast
 import numpy as np
 
 from flexapod.errors import ComputationError
-from flexapod.model import Drive, ForceDrive, PrescribedDrive, Robot, ScrewDrive, Simulation
+from flexapod.model import Drive, ForceDrive, HydraulicDrive, PrescribedDrive, Robot, ScrewDrive, Simulation
 from flexapod.solve.springs import springs_along, viscous
 from flexapod.words import number, text
 
@@ -33,7 +33,7 @@ def loss_frequency(robot: Robot, simulation: Simulation) -> float:
         There is no such frequency.
     """
     joints = (joint.lossy for leg in robot.legs for joint in (leg.base_joint, leg.platform_joint))
-    if not any(joints) and not any(spring.loss for leg in robot.legs for spring in springs_along(leg)):
+    if not any(joints) and not any(x.loss or x.leakage for leg in robot.legs for x in springs_along(leg)):
         return 0.0
     # rigid legs have springs, too, and are locked by prescribed strokes
     return _first(robot, simulation.replace(fidelity="lumped") if simulation.fidelity == "rigid" else simulation)
@@ -66,9 +66,10 @@ def _of_springs(robot: Robot, per: float) -> list[str]:
     dampers: dict[str, list[float]] = {}
     for leg, length in zip(robot.legs, robot.home_lengths, strict=True):
         for spring in springs_along(leg):
-            if spring.loss and not spring.name.endswith("_joint"):
+            if (spring.loss or spring.leakage) and not spring.name.endswith("_joint"):
                 stiffness = 1.0 / float(spring.at_length(length))
-                dampers.setdefault(spring.name, []).append(viscous(stiffness, 0.0, spring.loss, per))
+                leaking = float(spring.creep(length)) * (per * stiffness) ** 2  # (T23.5)
+                dampers.setdefault(spring.name, []).append(viscous(stiffness, 0.0, spring.loss, per) + leaking)
     ends = {name: (text(min(c), "N s/m"), text(max(c), "N s/m")) for name, c in dampers.items()}
     return [f"{name}: {low}" + (f" to {high}" if high != low else "") for name, (low, high) in ends.items()]
 
@@ -103,6 +104,8 @@ def _locked(drive: Drive) -> Drive:
     """A drive that holds its place, without loss factors."""
     if isinstance(drive, ForceDrive):
         return PrescribedDrive()
+    if isinstance(drive, HydraulicDrive):
+        return drive.replace(leakage=0.0)
     if not isinstance(drive, ScrewDrive):
         return drive
     nut, bearing = drive.nut.replace(loss=None), drive.bearing.replace(loss=None)

@@ -6,7 +6,7 @@ from flexapod.mechanics import layout
 from flexapod.mechanics.layout import LEG_PARAMETERS, PAYLOAD_PARAMETERS, Shapes
 from flexapod.model import Actuator, ForceDrive, Joint, Leg, Robot, ServoDrive, damping_parts
 from flexapod.rigid.limbs import COORDINATES, FREE, Limbs
-from flexapod.solve.springs import Place, in_series, of_servo, softening, springs_along, viscous
+from flexapod.solve.springs import Place, in_series, of_servo, oil_shares, softening, springs_along, viscous
 from flexapod.typing import Array
 
 
@@ -157,6 +157,7 @@ def _series(leg: Leg, length: float, per_loss: float) -> dict[str, object]:
         "series_stiffness": stiffness,
         "series_softening": softening(springs, length) if springs else (0.0, 0.0),
         "series_home": length,
+        "oil": oil_shares(springs, length),
         "series_damping": damping,
         "rotor_mass": 0.0 if screw is None else screw.inertia / screw.per_turn**2,  # (T15.12)
         "rotor_stiffness": loop[0],

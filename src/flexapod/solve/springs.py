@@ -1,14 +1,14 @@
-"""The springs along a leg as polynomials in its length, and what they are in series, Eqs. (T15.3)-(T15.7)."""
+"""The springs along a leg as functions of its length, and what they are in series, Eqs. (T15.3)-(T15.7), (T23.2)."""
 
 from __future__ import annotations
 
 from collections.abc import Iterable
 from dataclasses import dataclass
-from typing import Literal, TypeVar
+from typing import Literal, NamedTuple, TypeVar
 
 import numpy as np
 
-from flexapod.model import Leg, ScrewDrive, ServoDrive
+from flexapod.model import HydraulicDrive, Leg, ScrewDrive, ServoDrive
 from flexapod.model.joint import Joint
 from flexapod.typing import Array
 
@@ -18,6 +18,7 @@ __all__ = [
     "before_piston",
     "in_series",
     "of_servo",
+    "oil_shares",
     "softening",
     "springs_along",
     "viscous",
@@ -27,20 +28,44 @@ Place = Literal["base", "nut", "platform"]
 T = TypeVar("T", float, Array)
 
 
+class Column(NamedTuple):
+    """A column of oil: its compliance [m/N] at a length l of the leg is ``fixed`` + ``slope`` l; `area` [m^2]."""
+
+    fixed: float
+    slope: float
+    area: float
+
+    def at_length(self, length: Array) -> Array:
+        """Compliance [m/N] at lengths of the leg [m]."""
+        return np.asarray(self.fixed + self.slope * length)
+
+
 @dataclass(frozen=True, kw_only=True)
 class Spring:
-    """A spring along a leg: where it is, its compliance c0 + c1 l + c2 l^2 [m/N] and damper [N s/m] or loss factor."""
+    """A spring along a leg: where it is, its compliance c0 + c1 l + c2 l^2 [m/N] and damper [N s/m] or loss factor.
+
+    Of oil, `columns` side by side, between which there is a `leakage` [m^3/(s Pa)].
+    """
 
     name: str
     at: Place
     compliance: tuple[float, float, float]
     damping: float | None = None
     loss: float | None = None
+    columns: tuple[Column, ...] = ()
+    leakage: float = 0.0
 
     def at_length(self, length: Array) -> Array:
         """Compliance [m/N] of legs of some lengths [m]."""
         c0, c1, c2 = self.compliance
-        return np.asarray(c0 + length * (c1 + length * c2))
+        found = np.asarray(c0 + length * (c1 + length * c2))
+        return found + 1 / sum(1 / x.at_length(length) for x in self.columns) if self.columns else found
+
+    def creep(self, length: Array) -> Array:
+        """Rate at which oil that leaks lets the spring give way, over the force [m/(N s)], Eq. (T23.4)."""
+        stiffness = [1 / x.at_length(length) for x in self.columns]
+        pressure = sum(k / x.area for k, x in zip(stiffness, self.columns, strict=True))
+        return np.asarray(self.leakage * (pressure / sum(stiffness)) ** 2) if self.columns else np.zeros_like(length)
 
 
 def springs_along(leg: Leg) -> list[Spring]:
@@ -55,7 +80,9 @@ def springs_along(leg: Leg) -> list[Spring]:
         if (k := joint.across_and_along) is not None
     ]
     if leg.screw is not None:
-        found += _of_screw(leg.screw, leg.piston.length + leg.screw.bearing.position)
+        found += _of_screw(leg.screw, leg.begins)
+    if leg.cylinder_of_oil is not None:
+        found.append(_of_oil(leg.cylinder_of_oil, leg.begins))
     return found + [_constant(x.name, x.at, x.stiffness, x.damping, x.loss) for x in leg.springs]
 
 
@@ -96,10 +123,36 @@ def _of_screw(screw: ScrewDrive, begin: float) -> list[Spring]:
     ]
 
 
+def _of_oil(drive: HydraulicDrive, begin: float) -> Spring:
+    """The oil on both sides of the piston; ``begin`` [m]: length of the leg with the piston at the bottom."""
+    columns = []
+    for area, at_bottom, way in zip(drive.areas, drive.volumes(np.array(0.0)), (1, -1), strict=True):
+        per_volume = 1 / (drive.bulk_modulus * area**2)  # (T23.2)
+        slope = way * area * per_volume
+        columns.append(Column(fixed=float(at_bottom) * per_volume - slope * begin, slope=slope, area=area))
+    return Spring(name="oil", at="nut", compliance=(0.0, 0.0, 0.0), columns=tuple(columns), leakage=drive.leakage)
+
+
+def oil_shares(springs: Iterable[Spring], length: float) -> tuple[float, ...]:
+    """What `layout.OIL_PARAMETERS` are of springs in series at a length of the leg [m]; 0 without oil."""
+    at, springs = np.array(length), list(springs)
+    oil = next((spring for spring in springs if spring.columns), None)
+    if oil is None:
+        return (0.0,) * 4
+    push, pull = oil.columns
+    softness = oil.at_length(at)
+    whole = sum(spring.at_length(at) for spring in springs)
+    pair = (push.slope / push.at_length(at), -pull.slope / pull.at_length(at))
+    return float(softness / whole), float(softness / push.at_length(at)), float(pair[0]), float(pair[1])
+
+
 def softening(springs: Iterable[Spring], length: float) -> tuple[float, float]:
     """How the compliance of springs in series grows with the leg's length, over itself at a length [1/m, 1/m^2]."""
+    springs = list(springs)
     c0, c1, c2 = np.sum([spring.compliance for spring in springs], axis=0)
     total = c0 + length * (c1 + length * c2)
+    for spring in springs:
+        total += float(spring.at_length(np.array(length))) if spring.columns else 0.0
     return float((c1 + 2 * c2 * length) / total), float(c2 / total)
 
 
@@ -113,6 +166,7 @@ def in_series(springs: Iterable[Spring], length: float, per_loss: float) -> tupl
         softness = float(spring.at_length(np.array(length)))
         total += softness
         lost += viscous(1.0 / softness, spring.damping, spring.loss, per_loss) * softness**2
+        lost += float(spring.creep(np.array(length))) * per_loss**2  # (T23.5)
     return (1.0 / total, lost / total**2) if total else (0.0, 0.0)
 
 

@@ -26,6 +26,7 @@ CAUSE_WORDS = {
     "twist": "twist of the screws",
     "nut": "give of the nuts",
     "bearing": "give of the screws' bearings",
+    "oil": "give of the oil columns",
     "geometry": "errors of geometry",
     "heat_base": "heat of the base",
     "heat_platform": "heat of the platform",

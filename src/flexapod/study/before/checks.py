@@ -8,7 +8,7 @@ import numpy as np
 
 from flexapod import rigid
 from flexapod.errors import InputError
-from flexapod.model import ActuatorStudy, Robot, Study
+from flexapod.model import ActuatorStudy, HydraulicDrive, Robot, Study
 from flexapod.rigid.kinematics import BETA_LIMIT
 from flexapod.rigid.workspace import BEFORE, BEYOND, LONGEST, PULLED_OUT, SHORTEST
 from flexapod.solve.modes import refuse_pure_force
@@ -152,11 +152,13 @@ def _refuse_excess(robot: Robot, t: Array, reach: rigid.Reach) -> None:
 
 
 def _refuse_off_the_screw(robot: Robot, t: Array, length: Array) -> None:
-    """The nut, at the piston's inner end, has to stay between bearing and end of the screw."""
+    """The nut or the head, at the piston's inner end, has to stay on the screw or in the hydraulic cylinder."""
     for i, leg in enumerate(robot.legs):
+        along = length[:, i] - leg.begins
+        if leg.cylinder_of_oil is not None:
+            _refuse_out_of_oil(i, leg.cylinder_of_oil, t, along)
         if leg.screw is None:
             continue
-        along = length[:, i] - leg.piston.length - leg.screw.bearing.position
         low, high = int(along.argmin()), int(along.argmax())
         k = low if -along[low] > along[high] - leg.screw.length else high
         if 0 <= along[k] <= leg.screw.length:
@@ -171,6 +173,23 @@ def _refuse_off_the_screw(robot: Robot, t: Array, length: Array) -> None:
             allowed="a nut (length of the leg - piston.length - bearing.position) between 0 and the screw's length",
             next_step="Change length, bearing.position or piston.length, or reduce the motion",
         )
+
+
+def _refuse_out_of_oil(i: int, drive: HydraulicDrive, t: Array, along: Array) -> None:
+    volumes = drive.volumes(along)
+    outside = np.maximum(-along, along - drive.stroke)
+    k = int(np.where(volumes.min(axis=0) > 0, outside, np.inf).argmax())
+    if outside[k] <= 0 and volumes[:, k].min() > 0:
+        return
+    at = "" if len(t) == 1 else f" at t = {t[k]:.6g} s"
+    raise InputError(
+        f"does not reach as far as the piston of leg {i + 1}, which is {along[k]:.4g} m from the cylinder's bottom{at}",
+        key="leg.drive.stroke",
+        value=drive.stroke,
+        allowed="a piston (length of the leg - piston.length - drive.bottom) between 0 and drive.stroke, and oil on "
+        "both sides",
+        next_step="Change stroke, bottom, dead_volume or piston.length, or reduce the motion",
+    )
 
 
 class _Fold(NamedTuple):

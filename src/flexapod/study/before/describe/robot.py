@@ -19,6 +19,12 @@ from flexapod.study.accuracy.words import accuracy_words
 from flexapod.study.after.mode_shapes import mode_kinds
 from flexapod.study.before.checks import check_path
 from flexapod.study.before.describe.actuator import ActuatorDescription, describe_actuator
+from flexapod.study.before.describe.hydraulic import (
+    HydraulicDescription,
+    describe_hydraulics,
+    hydraulic_remarks,
+    oil_words,
+)
 from flexapod.study.before.describe.leg import Extreme, LegDescription, LegPath, describe_leg, load_remarks
 from flexapod.study.before.describe.screw import ScrewDescription, back_words, describe_screws, screw_remarks
 from flexapod.study.before.estimates import bending_moment, residual_vibration
@@ -214,7 +220,8 @@ class RobotDescription:
     """What `describe` finds for a robot; times in s.
 
     In words: what poses `held` still, `motions` that the mechanism has, `back` what happens with the motors of screws
-    off, `accuracy` of the machine as built, what `disturbances` do to it, `remarks` of doubt.
+    off, `oil` how hydraulic legs give way, `accuracy` of the machine as built, what `disturbances` do to it, `remarks`
+    of doubt.
     """
 
     kind: str = "robot"
@@ -228,6 +235,8 @@ class RobotDescription:
     legs: tuple[LegDescription, ...]
     screws: tuple[ScrewDescription, ...]
     back: str
+    hydraulics: tuple[HydraulicDescription, ...]
+    oil: tuple[str, ...]
     angles: tuple[JointAngle, ...]
     turns: tuple[JointTurn, ...]
     clearance: Clearance | None  # None where no two legs could meet but at a joint
@@ -260,7 +269,7 @@ def describe(study: model.Study | model.ActuatorStudy) -> RobotDescription | Act
     path = RigidPath(study)
     remarks = [*check_path(study, path), *_in_time(study)]
     legs, singularity = describe_legs(path), _singularity(study.robot, path.time, path.poses)
-    screws = describe_screws(path)
+    screws, hydraulics = describe_screws(path), describe_hydraulics(path)
     end = min(study.motion.end_time - study.motion.hold, study.duration)
     instants = {"start": 0.0, "end of the motion": end}
     worst = singularity.time if singularity else end
@@ -277,6 +286,8 @@ def describe(study: model.Study | model.ActuatorStudy) -> RobotDescription | Act
         legs=legs,
         screws=screws,
         back=back_words(path, screws) if screws else "",
+        hydraulics=hydraulics,
+        oil=oil_words(path, hydraulics) if hydraulics else (),
         angles=_angles(path),
         turns=_turns(path),
         clearance=_clearance(path),
@@ -292,6 +303,7 @@ def describe(study: model.Study | model.ActuatorStudy) -> RobotDescription | Act
                     *remarks,
                     *load_remarks(legs, study.robot, study.simulation.fidelity),
                     *screw_remarks(path, screws),
+                    *hydraulic_remarks(path, hydraulics),
                 ]
             )
         ),
