@@ -35,6 +35,7 @@ def alone(**parts):
 
 SOFT = damped(HEXAPOD).legs[0].base_joint
 SPRING = AxialSpring(name="bracket", stiffness=5e7, damping=1e4)
+OIL = model.HydraulicDrive(bore=0.16, rod=0.06, stroke=0.5, bottom=0.1, dead_volume=1e-4, bulk_modulus=1.4e9)
 
 
 @pytest.mark.parametrize(
@@ -47,8 +48,9 @@ SPRING = AxialSpring(name="bracket", stiffness=5e7, damping=1e4)
         alone(springs=(SPRING,), drive=model.ServoDrive(stiffness=1e8, damping=1e4)),
         alone(drive=damped(HEXAPOD).legs[0].screw),
         alone(drive=damped(HEXAPOD, command="servo", loop=LOOP).legs[0].screw),
+        alone(springs=(SPRING,), drive=OIL),
     ],
-    ids=["base", "platform", "nut", "ends", "servo", "screw", "loop"],
+    ids=["base", "platform", "nut", "ends", "servo", "screw", "loop", "oil"],
 )
 def test_a_part_alone_moves_the_robot_alike(robot):
     # Both integrate with the same method and step. Theirs takes rates of commands as central differences, wrong by

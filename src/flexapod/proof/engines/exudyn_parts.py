@@ -86,7 +86,9 @@ def drive(system: System, leg: Leg, slide: int, length: Array) -> int:
     if screw is None and not springs:
         return system.hold(slide, travel)
     if screw is None:
-        return system.spring((system.ground, slide), *in_series(springs, 0.0, 0.0), travel)
+        at = length if leg.cylinder_of_oil is not None else length[:1]  # what else is in series is the same everywhere
+        stiffness, damping = np.array([in_series(springs, x, 0.0) for x in at]).T
+        return system.spring((system.ground, slide), stiffness, damping, travel)
     node = system.mbs.AddNode(items.Node1D(referenceCoordinates=[0.0]))
     system.mbs.AddObject(items.ObjectMass1D(physicsMass=screw.inertia / screw.per_turn**2, nodeNumber=node))
     rotor = system.coordinate(node, 0)
