@@ -126,6 +126,11 @@ class Leg(Frozen):
         """Whether a drive that holds its command holds the stroke, not a rotor before it."""
         return self.screw.holds_stroke if self.screw is not None else not self.gives
 
+    @property
+    def measured(self) -> str:
+        """Where its position is measured: "rotor", "stroke" or "joint-to-joint"; what lies before is made up for."""
+        return "rotor" if self.screw is None else self.screw.encoder.at
+
     def _shown(self) -> dict[str, str]:
         letters = {} if self.chain == "UPS" else {"chain": self.chain + (", passive" if self.passive else "")}
         width = "" if self.piston.diameter is None else f"{text(self.piston.diameter, 'm', 4)} thick, "

@@ -17,7 +17,7 @@ from flexapod.model.joint import NO_DIRECTION, Carriage, Joint
 from flexapod.model.leg import Leg
 from flexapod.model.material import MATERIALS, Material, Tube
 from flexapod.model.piston import Piston, Strip, Strut
-from flexapod.model.screw import Drive, ScrewDrive
+from flexapod.model.screw import Drive, Encoder, ScrewDrive
 from flexapod.model.section import Section
 from flexapod.model.spring import AxialSpring
 from flexapod.model.tables import forces
@@ -220,11 +220,16 @@ def _drive(section: Section | None, number: int, count: int, among: tuple[str, .
     readers = {
         ForceDrive: lambda s: s.read(ForceDrive, among=among, then=table),
         HydraulicDrive: lambda s: s.read(HydraulicDrive, then=volumes),
-        ScrewDrive: lambda s: s.read(
-            ScrewDrive, among=_TURNING, also=_OF_MATERIAL, then=lambda s: {"material": read_material(s)}
-        ),
+        ScrewDrive: lambda s: s.read(ScrewDrive, among=_TURNING, also=_OF_MATERIAL, then=_screw_parts),
     }
     return section.one_of(kinds, among=among, readers=readers)
+
+
+def _screw_parts(section: Section) -> dict[str, object]:
+    encoder = section.section("encoder")
+    turns = encoder is None or encoder.data.get("at", "rotor") == "rotor"
+    measure = ("angle",) if turns else ("length",)
+    return {"material": read_material(section), "encoder": encoder and encoder.read(Encoder, among=measure)}
 
 
 def _springs(section: Section | None) -> tuple[AxialSpring, ...] | None:

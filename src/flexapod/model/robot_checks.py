@@ -79,6 +79,14 @@ def check_springs(robot: Robot) -> None:
     if not any(joint.flexes for leg in robot.legs for joint in (leg.base_joint, leg.platform_joint)):
         return
     for i, leg in enumerate(robot.legs, start=1):
+        if leg.measured == "joint-to-joint":
+            raise InputError(
+                f"leg {i}: holds displacements of joints along the leg, and those of flexures have axes of base and "
+                "platform",
+                key="leg.drive.encoder.at",
+                value=leg.measured,
+                allowed="rotor, stroke; or joints of stiffness { axial, radial } in all legs",
+            )
         ends = {"base": leg.base_joint, "platform": leg.platform_joint}
         turns = leg.swings and not any(joint.bending or joint.torsion for joint in ends.values())
         for spring in leg.springs:

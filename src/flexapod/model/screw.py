@@ -158,9 +158,13 @@ class Brake(Frozen):
 
 
 class Encoder(Frozen):
-    """Where the position is measured: the rotor's angle, or the stroke."""
+    """Where the position is measured: the motor's angle, the stroke, or the distance of both joints of the leg.
 
-    at: Literal["rotor", "stroke"] = "rotor"
+    `resolution`: what it tells apart [m], of the motor's angle [rad].
+    """
+
+    at: Literal["rotor", "stroke", "joint-to-joint"] = "rotor"
+    resolution: Annotated[Positive, Measure("length", "angle")] | None = None
 
 
 class ScrewDrive(Frozen):
@@ -248,8 +252,14 @@ class ScrewDrive(Frozen):
 
     @property
     def holds_stroke(self) -> bool:
-        """Whether the loop is closed where the stroke is measured, ideally."""
-        return self.encoder.at == "stroke"
+        """Whether the loop is closed behind the nut, ideally."""
+        return self.encoder.at != "rotor"
+
+    @property
+    def increment(self) -> float:
+        """Least length that its encoder tells apart [m], 0 where none is given, Eq. (T23.12)."""
+        turns = self.per_turn / self.rotor.ratio if self.encoder.at == "rotor" else 1.0
+        return (self.encoder.resolution or 0.0) * turns
 
 
 Drive = Annotated[PrescribedDrive | ServoDrive | ForceDrive | ScrewDrive | HydraulicDrive, Field(discriminator="type")]

@@ -150,7 +150,7 @@ def _drive(drive: model.Drive) -> str:
 
 
 def _screw(drive: model.ScrewDrive) -> str:
-    held = "stroke" if drive.holds_stroke else "rotor"
+    held = {"joint-to-joint": "distance of its joints"}.get(drive.encoder.at, drive.encoder.at)
     motors = {
         "position": f"the {held} held at its command",
         "servo": "the rotor pulled to its command by a loop",

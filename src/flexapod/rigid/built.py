@@ -104,6 +104,7 @@ def _geometry(robot: Robot) -> list[BuiltPart]:
         else:
             turns = legs.carriage == "crank"
             driven = (legs.state[:, [CHI, L]] == DRIVEN) & [not turns, True]
+            driven &= np.array([[leg.measured == "rotor"] for leg in robot.legs])
             parts["share"][:, [CHI, L]] = np.where(driven, np.broadcast_to(value, n)[:, None], 0.0)  # (T16.2)
             parts["fixed"] = -parts["share"] * legs.home
         found.append(BuiltPart(name=name, **parts, values=np.ones((1, n))))
@@ -138,7 +139,12 @@ def _heat(robot: Robot) -> list[BuiltPart]:
 
 
 def _grows(leg: Leg, part: str) -> tuple[float, float]:
-    """Length of a part of a leg of length l between its joints, a + b l: a and b, Eq. (T16.4)."""
+    """Length of a part of a leg of length l between its joints, a + b l: a and b, Eq. (T16.4).
+
+    What lies before the place of measurement is made up for.
+    """
+    if leg.measured == "joint-to-joint" or (leg.measured == "stroke" and part == "screw"):
+        return 0.0, 0.0
     if part == "piston":
         return leg.piston.length, 0.0
     inner = -leg.piston.length  # from the base joint to the piston's driven end: l + inner

@@ -46,6 +46,10 @@ def _held(robot: Robot, legs: Limbs, shapes: Shapes) -> Mask:
             held[:, shapes.index(name)] = (state == HELD) | ((state == DRIVEN) & prescribed) | foreign
     if shapes.series:  # a servo's spring is in series with those behind it
         held[:, shapes.index("r")] = [leg.drive.holds or leg.screw is None for leg in robot.legs]
+    ends = np.array([leg.measured == "joint-to-joint" for leg in robot.legs])  # what lies between is made up for
+    for name, size in shapes.layout:
+        if name in ("c", "u3", "e3") and ends.any():
+            held[ends, shapes.index(name) : shapes.index(name) + size] = True
     if shapes.torsion:  # a ball does not twist its leg
         held[:, shapes.index("t")] = ~legs.pose_closure
     return held | _held_joints(robot, legs, shapes)

@@ -67,6 +67,7 @@ def bent(robot: Robot, at: Sensitivity, push: Array) -> Bent | None:
     grown = 1 / (1 - share)  # (T16.17)
     slopes = np.array([_slopes(leg, s, p) for leg, s, p in zip(robot.legs, free, euler, strict=True)])
     shorter = 0.5 * slopes * ((start * grown) ** 2 - cold**2)  # (T16.18)
+    shorter *= [leg.measured != "joint-to-joint" for leg in robot.legs]
     return Bent(deflection=beside + start * (grown - 1), shorter=shorter, share=share)
 
 

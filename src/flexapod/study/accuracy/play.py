@@ -50,9 +50,13 @@ class Jumps:
 
 
 def half_play(robot: Robot) -> Array:
-    """Half the free travel at each place of each leg, (3, n) [m], of a crank's drive [rad]."""
+    """Half the free travel at each place of each leg, (3, n) [m], of a crank's drive [rad]; 0 inside a loop."""
     play = [[leg.base_joint.play or 0.0, _backlash(leg.drive), leg.platform_joint.play or 0.0] for leg in robot.legs]
-    return 0.5 * np.array(play).T
+    outside = [
+        [leg.measured != "joint-to-joint", leg.measured == "rotor", leg.measured != "joint-to-joint"]
+        for leg in robot.legs
+    ]
+    return 0.5 * (np.array(play) * outside).T
 
 
 def _backlash(drive: Drive) -> float:

@@ -8,6 +8,7 @@ import numpy as np
 
 from flexapod import rigid
 from flexapod.model import Study
+from flexapod.rigid.limbs import COORDINATES
 from flexapod.study.accuracy.at_pose import AtPose
 from flexapod.study.accuracy.play import PLACES
 from flexapod.typing import Array
@@ -39,6 +40,12 @@ def rows(study: Study, pose: rigid.Poses) -> list[Row]:
         Row(f"{one.name} tolerance", "random", "calibratable", one.sigma, "first order, errors independent")
         for one in at.spreading
     ]
+    increment = np.array([0.0 if leg.screw is None else leg.screw.increment for leg in study.robot.legs])
+    if increment.any():
+        by_leg = (increment / np.sqrt(12))[:, None] * at.sensitivity.coordinate[
+            0, :, COORDINATES.index("l")
+        ]  # (T23.12)
+        found.append(Row("encoder", "random", "repeatable", by_leg, "increment over the root of 12, legs independent"))
     if at.is_loose:
         effect = np.abs(at.play.effect[0])
         how = "first order, whichever way the play is pressed"

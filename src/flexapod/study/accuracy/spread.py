@@ -80,10 +80,12 @@ def _weights(robot: Robot, name: str, q: Array, push: Array) -> Array:
     legs = rigid.rigid_limbs(robot)
     found = np.zeros_like(q)
     if name in ("leg_offset", "EA"):
-        longer = softness(robot, push) if name == "EA" else np.ones(len(legs))
+        outside = np.array([leg.measured != "joint-to-joint" for leg in robot.legs])
+        longer = softness(robot, push) * outside if name == "EA" else np.ones(len(legs))
         found[..., L] = np.where(np.isin(legs.state[:, L], (HELD, DRIVEN)), longer, 0.0)
     else:  # lead
         driven = (legs.state[:, [CHI, L]] == DRIVEN) & [legs.carriage != "crank", True]
+        driven &= np.array([[leg.measured == "rotor"] for leg in robot.legs])
         found[..., [CHI, L]] = np.where(driven, (q - legs.home)[..., [CHI, L]], 0.0)
     return found
 

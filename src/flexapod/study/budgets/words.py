@@ -42,6 +42,8 @@ def part_words(part: str) -> str:
         return part
     if kind == "play":
         return "play of the drives" if name == "drive" else f"play of the joints at the {name.removesuffix('_joint')}"
+    if part == "encoder":
+        return "resolution of the encoders"
     if part == "bent_legs":
         return "bow of the legs"
     if part in _PARTS:
@@ -90,7 +92,7 @@ def _repeatability(found: Budget) -> list[str]:
     increment = (
         f"Smallest increment that surely shows: {_axes(both)} after a reversal"
         + (f", {_axes(one)} going on" if one[PLACE].any() else "; going on nothing named limits it")
-        + "; without what encoders resolve."
+        + ("." if "encoder" in found.parts else "; without what encoders resolve.")
     )
     if not one[PLACE].any():
         return [f"Bidirectional repeatability (ISO 230-2), all of it reversal: {_axes(both)}.", increment]
