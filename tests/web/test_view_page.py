@@ -157,7 +157,7 @@ def test_nothing_of_a_robot_stays_where_an_actuator_is_drawn(show):
 def test_no_serious_finding_of_axe_on_the_page(show, axe, text):
     page, session = show(text)
     until(lambda: session.data is not None and not session.busy)
-    for tab in ("Time", "Study", "Modes", "Files"):
+    for tab in ("Time", "Study", "Modes", "Budget", "Files"):
         page.get_by_role("tab", name=tab).click()
         page.wait_for_timeout(300)
         page.locator("[role=button][aria-expanded=false]").evaluate_all(

@@ -11,29 +11,12 @@ from matplotlib.figure import Figure
 from matplotlib.patches import Patch
 
 from flexapod.plot.style import NOTE, PAGE, SMALL, TEXT, figure, needs, styled
-from flexapod.study.budgets.words import part_words
+from flexapod.scene.colours import ERRORS
+from flexapod.study.budgets.words import Bar, bars
 from flexapod.study.words import scale
 from flexapod.typing import Array
 
 __all__ = ["budget"]
-
-_SMALLEST = 0.005  # share below which parts go into one bar
-_COLORS = {
-    "calibratable": "#56B4E9",
-    "repeatable": "#0072B2",
-    "drifting": "#D55E00",
-    "hysteretic": "#CC79A7",
-    "random": "#8C8C8C",
-    "dynamic": "#009E73",
-}
-_WORDS = {
-    "calibratable": "systematic: calibration takes it out",
-    "repeatable": "systematic: by load, repeatable",
-    "drifting": "systematic: drifts with heat",
-    "hysteretic": "play (bound)",
-    "random": "random: tolerances, noise (3 sigma)",
-    "dynamic": "dynamic (peak)",
-}
 
 
 @styled
@@ -50,53 +33,38 @@ def budget(data: xr.Dataset) -> Figure:
     data : xarray.Dataset
         From `flexapod.budget`.
     """
-    order = np.argsort(-data.share.values, kind="stable")
-    few = int((data.share.values >= _SMALLEST).sum())
-    few += few == len(order) - 1  # a single smaller part has its name
-    shown, rest = [int(i) for i in order[:few]], [int(i) for i in order[few:]]
-    bars = [(part_words(str(data.part.values[i])), _sizes(data, [i]), float(data.share[i])) for i in shown]
-    if rest:
-        bars.append((f"{len(rest)} smaller parts", _sizes(data, rest), float(data.share[rest].sum())))
-    fig = figure(PAGE, 1.9 + 0.25 * max(len(bars), 3))
+    rows = bars(data)
+    fig = figure(PAGE, 1.9 + 0.25 * max(len(rows), 3))
     fig.suptitle("\n".join(wrap(data.attrs["summary"].splitlines()[0], 105)), x=0.01, ha="left", fontsize=TEXT)
-    if not bars:
+    if not rows:
         return fig
     left, right = fig.subplots(1, 2, width_ratios=(2.6, 1), sharey=True)
-    used = _bars(left, bars)
-    _legs(right, np.array([_by_leg(data, i) for i in shown]).reshape(-1, data.sizes["leg"]), data.leg.values)
-    left.set_ylim(len(bars) - 0.5, -0.5)
-    handles = [Patch(color=_COLORS[kind], label=_WORDS[kind]) for kind in _COLORS if kind in used]
+    used = _bars(left, rows)
+    _legs(
+        right,
+        np.array([_by_leg(data, row.at) for row in rows if row.at is not None]).reshape(-1, data.sizes["leg"]),
+        data.leg.values,
+    )
+    left.set_ylim(len(rows) - 0.5, -0.5)
+    handles = [Patch(color=color, label=words) for kind, (words, color) in ERRORS.items() if kind in used]
     fig.legend(handles=handles, loc="outside lower center", ncols=min(3, max(1, len(handles))))
     return fig
 
 
-def _sizes(data: xr.Dataset, chosen: list[int]) -> dict[str, float]:
-    """Sizes [m] of the error of the tool's place by kind, of systematic ones by nature."""
-    found: dict[str, float] = {}
-    for i in chosen:
-        for kind in map(str, data.kind.values):
-            if kind == "dynamic_rms":
-                continue
-            size = float(np.linalg.norm(data.budget.values[i, list(data.kind.values).index(kind), :3]))
-            name = str(data.nature.values[i]) or "repeatable" if kind == "systematic" else kind.removesuffix("_peak")
-            found[name] = found.get(name, 0.0) + (3 if kind == "random" else 1) * size
-    return {name: size for name, size in found.items() if size > 0}
-
-
-def _bars(axes: Axes, bars: list[tuple[str, dict[str, float], float]]) -> set[str]:
-    small, used = scale([sum(sizes.values()) for _, sizes, _ in bars], "m"), set()
-    for row, (_, sizes, share) in enumerate(bars):
+def _bars(axes: Axes, rows: list[Bar]) -> set[str]:
+    small, used = scale([sum(row.sizes.values()) for row in rows], "m"), set()
+    for place, row in enumerate(rows):
         start = 0.0
-        for name in _COLORS:
-            if name in sizes:
-                size = float(small(sizes[name]))
-                axes.barh(row, size, left=start, color=_COLORS[name], height=0.72)
+        for name, (_, color) in ERRORS.items():
+            if name in row.sizes:
+                size = float(small(row.sizes[name]))
+                axes.barh(place, size, left=start, color=color, height=0.72)
                 start, used = start + size, used | {name}
-        label = f"{100 * share:.0f} %" if share >= _SMALLEST else "< 1 %"
         axes.annotate(
-            label, (start, row), xytext=(4, 0), textcoords="offset points", va="center", fontsize=NOTE, weight="bold"
-        )
-    axes.set_yticks(range(len(bars)), [words for words, _, _ in bars])
+            row.share_words, (start, place), xytext=(4, 0), textcoords="offset points", va="center", fontsize=NOTE,
+            weight="bold",
+        )  # fmt: skip
+    axes.set_yticks(range(len(rows)), [row.words for row in rows])
     axes.grid(axis="y", visible=False)
     axes.margins(x=0.12)
     axes.set_xlabel(f"error of the tool's place [{small.name}]")

@@ -14,6 +14,15 @@ ENERGIES = {
     "work_drive": ("work of the drives", "#56B4E9"),
     "work_external": ("work of the load", "#A23B72"),
 }
+#: Words and colour of the kinds of errors in a budget, of systematic ones by what can be done about them.
+ERRORS = {
+    "calibratable": ("systematic: calibration takes it out", "#56B4E9"),
+    "repeatable": ("systematic: by load, repeatable", "#0072B2"),
+    "drifting": ("systematic: drifts with heat", "#D55E00"),
+    "hysteretic": ("play (bound)", "#CC79A7"),
+    "random": ("random: tolerances, noise (3 sigma)", "#8C8C8C"),
+    "dynamic": ("dynamic (peak)", "#009E73"),
+}
 
 
 def colors_of_legs(count: int) -> tuple[str, ...]:

@@ -7,7 +7,7 @@ import traceback
 from pathlib import Path
 from typing import TYPE_CHECKING, Any
 
-from viser import ClientHandle, Icon
+from viser import ClientHandle
 
 from flexapod import model
 from flexapod.app.view import words
@@ -72,6 +72,7 @@ class Session:
             self._build(source.document)
             self.time_panel.show_data(None)
             self.modes_panel.show_study(self.study)
+            self.budget_panel.show(self.study)
             if self.data is None:
                 self._simulate()
             else:
@@ -172,6 +173,7 @@ class Session:
                 self.header.fault(html)
 
     def _build(self, document: Document) -> None:
+        from flexapod.app.view.budget_panel import BudgetPanel
         from flexapod.app.view.modes_panel import ModesPanel
         from flexapod.app.view.time_panel import TimePanel
 
@@ -182,13 +184,15 @@ class Session:
         self.scene.show_study(self.study)  # first of all: it is what takes the browser longest
         self._picture = Picture(gui, self._back, self.scene.reset_view)
         tabs = gui.add_tab_group()
-        with tabs.add_tab("Time", icon=Icon.CLOCK):
+        with tabs.add_tab("Time"):
             self.time_panel = TimePanel(self.client, self.scene, self._threads, self._point_chosen)
-        with tabs.add_tab("Study", icon=Icon.ADJUSTMENTS):
+        with tabs.add_tab("Study"):
             self.study_panel = StudyPanel(self.client, document, self._threads, self._edited)
-        with tabs.add_tab("Modes", icon=Icon.WAVE_SINE):
+        with tabs.add_tab("Modes"):
             self.modes_panel = ModesPanel(self.client, self.scene, self._threads)
-        with tabs.add_tab("Files", icon=Icon.FOLDER):
+        with tabs.add_tab("Budget"):
+            self.budget_panel = BudgetPanel(self.client, self._threads)
+        with tabs.add_tab("Files"):
             self.files_panel = FilesPanel(
                 self.client,
                 self._threads,
@@ -200,7 +204,7 @@ class Session:
             )
         self.scene.told = self._drawn
         self._drawn()
-        self._panels = [self.time_panel, self.modes_panel, self.files_panel, self.scene]
+        self._panels = [self.time_panel, self.modes_panel, self.budget_panel, self.files_panel, self.scene]
 
     def _drop_panels(self) -> None:
         for panel in self._panels:
@@ -234,6 +238,7 @@ class Session:
             if self._closed:
                 return
             self.modes_panel.show_study(self.study)
+            self.budget_panel.show(self.study, self.data)
             if not self._unsettled:
                 return
             self._unsettled = False
@@ -256,6 +261,7 @@ class Session:
             self.scene.show_data(self.data)
             self._show_answer(self.data)
             self.time_panel.show_data(self.data)
+            self.budget_panel.show(self.study, self.data)
 
     def _show_answer(self, data: Dataset, first: str = "") -> None:
         """Show the answer of a result, below other words if there are any."""

@@ -20,7 +20,7 @@ def block(text: str, kind: str = "plain") -> str:
 
 def title(text: str) -> str:
     """A heading."""
-    return _frame(f"<b style='font-size:1.05em'>{escape(text)}</b>")
+    return framed(f"<b style='font-size:1.05em'>{escape(text)}</b>")
 
 
 def lines_html(lines: Sequence[str], kind: str = "plain") -> str:
@@ -63,12 +63,18 @@ def table_html(header: Sequence[str], rows: Sequence[Sequence[str]], marked: Seq
             f"<td style='{cell}{'left' if not i else 'right'}'>{escape(text)}</td>" for i, text in enumerate(row)
         )
         body += f"<tr style='color:{_COLOURS['error'] if mark else 'inherit'}'>{cells}</tr>"
-    return _frame(f"<table style='border-collapse:collapse;font-size:0.95em'><tr>{head}</tr>{body}</table>")
+    return framed(f"<table style='border-collapse:collapse;font-size:0.95em'><tr>{head}</tr>{body}</table>")
+
+
+def wide(html: str) -> str:
+    """HTML that may be wider than the panel."""
+    return f"<div tabindex='0' role='region' aria-label='table' style='overflow-x:auto;white-space:nowrap'>{html}</div>"
 
 
 def _box(inner: str, kind: str) -> str:
-    return _frame(f"<span class='flexapod-{kind}' style='color:{_COLOURS[kind]}'>{inner}</span>")
+    return framed(f"<span class='flexapod-{kind}' style='color:{_COLOURS[kind]}'>{inner}</span>")
 
 
-def _frame(inner: str) -> str:
+def framed(inner: str) -> str:
+    """HTML at the margins and in the size of the panel's other words."""
     return f"<div style='padding:0 0.75em 0.5em;font-size:0.8rem;line-height:1.35;overflow-wrap:anywhere'>{inner}</div>"

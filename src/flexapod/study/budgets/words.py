@@ -2,7 +2,7 @@
 
 from __future__ import annotations
 
-from typing import TYPE_CHECKING
+from typing import TYPE_CHECKING, NamedTuple
 
 import numpy as np
 
@@ -14,8 +14,9 @@ from flexapod.typing import Array
 if TYPE_CHECKING:
     from xarray import Dataset
 
-__all__ = ["KIND_WORDS", "part_words", "sentences", "table"]
+__all__ = ["KIND_WORDS", "Bar", "bars", "part_words", "sentences", "table"]
 
+SMALLEST = 0.005  # share below which parts go into one bar
 MOST_LEFT = 0.05  # of the static deviation, beyond which rows of first order are a hint
 KIND_WORDS = {
     "systematic": "systematic",
@@ -141,3 +142,46 @@ def table(data: Dataset) -> tuple[list[str], list[list[str]]]:
         [part, kind, _per_cent(share), *places[at : at + 3], *turns[at : at + 3]]
         for at, (part, kind, share) in zip(range(0, 3 * len(lines), 3), lines, strict=True)
     ]
+
+
+class Bar(NamedTuple):
+    """A part in a chart: its `words`, its place `at` in the budget, None of several, sizes [m] by kind, share."""
+
+    words: str
+    at: int | None
+    sizes: dict[str, float]
+    share: float
+
+    @property
+    def share_words(self) -> str:
+        """The share in per cent."""
+        return _per_cent(self.share)
+
+
+def bars(data: Dataset) -> list[Bar]:
+    """The parts of a budget, largest first, with the sizes of the tool's place by kind; the smallest as one.
+
+    Systematic ones by their nature; three standard deviations of random ones.
+    """
+    order = np.argsort(-data.share.values, kind="stable")
+    few = int((data.share.values >= SMALLEST).sum())
+    few += few == len(order) - 1  # a single smaller part has its name
+    found = [
+        Bar(part_words(str(data.part.values[i])), int(i), _sizes(data, [i]), float(data.share[i])) for i in order[:few]
+    ]
+    if rest := [int(i) for i in order[few:]]:
+        found.append(Bar(f"{len(rest)} smaller parts", None, _sizes(data, rest), float(data.share[rest].sum())))
+    return found
+
+
+def _sizes(data: Dataset, chosen: list[int]) -> dict[str, float]:
+    """Sizes [m] of the error of the tool's place by kind, of systematic ones by nature."""
+    found: dict[str, float] = {}
+    for i in chosen:
+        for k, kind in enumerate(map(str, data.kind.values)):
+            if kind == "dynamic_rms":
+                continue
+            size = float(np.linalg.norm(data.budget.values[i, k, PLACE]))
+            name = str(data.nature.values[i]) or "repeatable" if kind == "systematic" else kind.removesuffix("_peak")
+            found[name] = found.get(name, 0.0) + (3 if kind == "random" else 1) * size
+    return {name: size for name, size in found.items() if size > 0}
