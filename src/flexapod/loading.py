@@ -4,10 +4,13 @@ from __future__ import annotations
 
 import atexit
 import gc
+import sys
+from collections.abc import Iterator
+from contextlib import contextmanager
 from importlib import import_module
 from types import ModuleType
 
-__all__ = ["loaded"]
+__all__ = ["loaded", "without"]
 
 atexit.register(gc.freeze)  # the search as the interpreter ends would look at every module again
 
@@ -24,3 +27,16 @@ def loaded(name: str) -> ModuleType:
             gc.unfreeze()  # into the oldest generation
         if collecting:
             gc.enable()
+
+
+@contextmanager
+def without(name: str) -> Iterator[None]:
+    """Let a package that is not needed seem absent, so that others do not import it to look for its types."""
+    absent = name not in sys.modules
+    if absent:
+        sys.modules[name] = None  # type: ignore[assignment]  # imports of it then fail at once
+    try:
+        yield
+    finally:
+        if absent:
+            del sys.modules[name]

@@ -1,4 +1,4 @@
-"""Other programs: called with a time limit, stopped with all that they have started."""
+"""Other programs, stopped with all that they have started; work shared with copies of this process."""
 
 from __future__ import annotations
 
@@ -6,10 +6,18 @@ import os
 import signal
 import subprocess
 import sys
-from collections.abc import Mapping, Sequence
+from collections.abc import Callable, Mapping, Sequence
+from contextlib import suppress
 from pathlib import Path
+from typing import TYPE_CHECKING, TypeVar
 
-__all__ = ["call"]
+if TYPE_CHECKING:
+    from multiprocessing.connection import Connection
+
+__all__ = ["call", "side_by_side"]
+
+T = TypeVar("T")
+R = TypeVar("R")
 
 
 def call(
@@ -55,3 +63,47 @@ def _stop(process: subprocess.Popen[bytes]) -> None:
     else:
         os.killpg(process.pid, signal.SIGKILL)
     process.wait()
+
+
+def side_by_side(make: Callable[[T], R], given: Sequence[T], processes: int) -> list[R]:
+    """`make` of each of `given`, in their order, by this process and copies of it, each taking what comes next.
+
+    Parameters
+    ----------
+    make : callable
+        What it returns goes from process to process. What it raises in a copy is raised when this process tries again.
+    given : sequence
+    processes : int
+        This one included; only one works where the system cannot copy processes. Not for processes with other threads
+        at work: their locks would stay closed in the copies.
+    """
+    from multiprocessing import get_all_start_methods, get_context
+
+    copies = min(processes, len(given)) - 1
+    if copies < 1 or "fork" not in get_all_start_methods():
+        return [make(what) for what in given]
+    context = get_context("fork")
+    taken, pipes = context.Value("i", 0), [context.Pipe(duplex=False) for _ in range(copies)]
+
+    def work() -> dict[int, R]:
+        done: dict[int, R] = {}
+        while True:
+            with taken.get_lock():
+                i, taken.value = taken.value, taken.value + 1
+            if i >= len(given):
+                return done
+            done[i] = make(given[i])
+
+    def told(pipe: Connection) -> None:
+        with suppress(BaseException):  # the pipe ends without a word
+            pipe.send(work())
+        os._exit(0)  # nothing that this process has open is closed twice
+
+    for _, send in pipes:
+        context.Process(target=told, args=(send,), daemon=True).start()
+        send.close()
+    done = work()
+    for receive, _ in pipes:
+        with suppress(EOFError):
+            done |= receive.recv()
+    return [done[i] if i in done else make(what) for i, what in enumerate(given)]

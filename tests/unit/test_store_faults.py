@@ -9,7 +9,7 @@ from tests.sweeps import quick
 
 import flexapod as fx
 from flexapod.errors import InputError
-from flexapod.study import open_results, save, store
+from flexapod.study import netcdf, open_results, save, store
 from flexapod.study.before import room
 
 resource = pytest.importorskip("resource")
@@ -27,6 +27,20 @@ def path(tmp_path):
 
 def test_every_variable_comes_back(data, path):
     xr.testing.assert_identical(open_results(save(data, path)), data)
+
+
+def test_what_xarray_writes_and_what_is_written_read_the_same(data, path, tmp_path):
+    """Labels apart from dimensions, truth values, texts of several bytes a letter, numbers without dimension too."""
+    more = data.assign(
+        open=("leg", np.array([True, False] * 3)), words=("leg", np.array(["µm", "", "è", "a b", "x", "y"])), one=2.5
+    ).assign_coords(home=("leg", np.arange(6.0)), place=3)
+    more.attrs["flag"] = np.int64(1)
+    other = tmp_path / "other.nc"
+    more.to_netcdf(other, engine="netcdf4")
+    save(more, path)
+    with xr.open_dataset(other, decode_times=False) as a, xr.open_dataset(path, decode_times=False) as b:
+        assert b.attrs.pop(store.SUM)
+        xr.testing.assert_identical(a.load(), b.load())
 
 
 @pytest.mark.parametrize("size", [1_000, 30_000, 120_000])
@@ -48,7 +62,7 @@ def test_the_reason_is_that_of_the_system(data, path, monkeypatch):
     def silent(*_, **__):
         raise RuntimeError("NetCDF: HDF error")
 
-    monkeypatch.setattr(xr.Dataset, "to_netcdf", silent)
+    monkeypatch.setattr(netcdf, "write", silent)
     with pytest.raises(InputError, match="cannot be written: the NetCDF library says NetCDF: HDF error"):
         save(data, path)  # the disk takes it: nothing else is known
     resource_limits = resource.getrlimit(resource.RLIMIT_FSIZE)

@@ -25,6 +25,7 @@ from flexapod.app.options import (
 )
 from flexapod.app.terminal import print_json, print_table, print_text
 from flexapod.errors import ComputationError, InputError
+from flexapod.loading import without
 
 if TYPE_CHECKING:
     from xarray import Dataset
@@ -81,7 +82,7 @@ def _run(study: Study | ActuatorStudy, folder: Path, formats: Sequence[str], *, 
 
     check_disk(study, folder)
     interrupted, faster = False, None
-    with terminal.progress_bar(quiet=quiet or json) as report:
+    with without("dask"), terminal.progress_bar(quiet=quiet or json) as report:
         try:
             data = simulate(study, progress=lambda time, end: report("simulating", COMPUTING * time / end))
         except Interrupted as stop:

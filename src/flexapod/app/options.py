@@ -64,6 +64,7 @@ def refuse_existing(file: Path, force: bool) -> None:
 
 
 FORMATS = ("png", "svg", "pdf")  # of figures
+PROCESSES = min(os.cpu_count() or 1, 4)  # that draw them
 
 
 def parse_formats(text: str) -> tuple[str, ...]:
@@ -118,7 +119,7 @@ def write_all(data: Dataset, folder: Path, report: Report, formats: Sequence[str
     from flexapod.report.figures import draw
     from flexapod.report.page import write_report
 
-    figures = draw(data, folder, formats) if formats else []
+    figures = draw(data, folder, formats, processes=PROCESSES) if formats else []
     report("writing the report", 0.98)
     page = write_report(data, folder, figures)
     return [*files, *(path for figure in figures for path in figure.files), page]

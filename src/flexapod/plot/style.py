@@ -115,7 +115,8 @@ def styled(draw: Callable[P, Figure]) -> Callable[P, Figure]:
 
 
 def _rc() -> Any:
-    return {**matplotlib.rcParamsDefault, **_RC, "backend": matplotlib.rcParams["backend"]}
+    defaults = {name: value for name, value in matplotlib.rcParamsDefault.items() if name != "backend"}
+    return defaults | _RC  # asked for its backend, matplotlib would import pyplot
 
 
 def flat_on_the_scale_of_others(panels: Sequence[Axes], sizes: Sequence[float]) -> None:

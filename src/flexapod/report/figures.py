@@ -44,14 +44,23 @@ def carried_study(data: Dataset) -> Study | ActuatorStudy | None:
         return None
 
 
-def draw(data: Dataset, folder: str | Path, formats: Sequence[str] = ("png", "svg")) -> list[Drawn]:
+def draw(
+    data: Dataset, folder: str | Path, formats: Sequence[str] = ("png", "svg"), *, processes: int = 1
+) -> list[Drawn]:
     """Draw the standard figures of a run, whole or partial, in the order of the report.
 
-    `folder` is made if needed, figures of the same name are replaced; `formats` are of png, svg, pdf. InputError: the
-    folder cannot be written to, or a format is unknown.
+    `folder` is made if needed, figures of the same name are replaced; `formats` are of png, svg, pdf. With more than
+    one of `processes` they are drawn side by side. InputError: the folder cannot be written to, or a format is unknown.
     """
-    plans = _robot(data) if "com_deviation" in data else _actuator(data)
-    return [store(make(), title, Path(folder) / name, formats) for name, title, make in plans]
+    from flexapod.processes import side_by_side
+
+    plans = list(_robot(data) if "com_deviation" in data else _actuator(data))
+
+    def drawn(plan: _Plan) -> Drawn:
+        name, title, make = plan
+        return store(make(), title, Path(folder) / name, formats)
+
+    return side_by_side(drawn, plans, processes)
 
 
 def store(figure: Figure, title: str, stem: Path, formats: Sequence[str] = ("png", "svg")) -> Drawn:

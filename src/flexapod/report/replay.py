@@ -18,6 +18,7 @@ from flexapod.scene.robot import mode_scene
 from flexapod.scene.skeleton import STATIONS, Scene, Skeleton, around
 from flexapod.study.after.summary import POINT_WORDS, tool_apart
 from flexapod.study.words import cleared_lines, number, scale
+from flexapod.threads import one_thread
 from flexapod.typing import Array
 
 if TYPE_CHECKING:
@@ -51,6 +52,7 @@ def replay(study: Study | ActuatorStudy, data: Dataset, modes: Dataset | None = 
     return _actuator(study, data) if isinstance(study, model.ActuatorStudy) else _robot(study, data, modes)
 
 
+@one_thread()
 def locked_modes(study: Study | ActuatorStudy) -> Dataset | None:
     """Modes of a robot at home while its commands stand still; None for an actuator, and where there are none."""
     if isinstance(study, model.ActuatorStudy):

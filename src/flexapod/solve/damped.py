@@ -33,16 +33,16 @@ def damping_ratios(omega: Array, D: Array) -> Array:
     ratio = 0.5 * np.diag(D) * np.where(np.isfinite(omega), omega, 0.0)
     if not D.any():
         return ratio
-    from scipy.optimize import linear_sum_assignment  # a twentieth of a second that only damped modes need
-
     # (T7.23)  Eigenvalues 1/mu: the slow modes come out right however fast a light part is.
     slowness = np.diag(omega.min() / omega)
     values, shapes = np.linalg.eig(_slow(omega, D))
     oscillating = np.imag(values) < -OSCILLATES * np.abs(values)
     values, share = values[oscillating], slowness @ np.abs(shapes[:size, oscillating])
-    mode, column = linear_sum_assignment(-share / np.linalg.norm(share, axis=0))
-    clear = share[mode, column] > 0.5 * np.linalg.norm(share[:, column], axis=0)
-    ratio[mode[clear]] = (-np.real(values) / np.abs(values))[column[clear]]
+    share /= np.linalg.norm(share, axis=0)
+    while share.size and share.max() > 0.5:  # the clearest pair first
+        mode, column = np.unravel_index(share.argmax(), share.shape)
+        ratio[mode] = -np.real(values[column]) / np.abs(values[column])
+        share[mode, :] = share[:, column] = 0
     return ratio
 
 

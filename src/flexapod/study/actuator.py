@@ -18,6 +18,7 @@ from flexapod.study.attributes import attributes, march_attributes
 from flexapod.study.before.checks import check_actuator_path
 from flexapod.study.names import ACTUATOR_FORMS, DIRECTIONS, SPACE_FORMS, dataset
 from flexapod.study.record import Progress, Record, collect, finished
+from flexapod.threads import one_thread
 from flexapod.typing import Array
 
 if TYPE_CHECKING:
@@ -28,6 +29,7 @@ if TYPE_CHECKING:
 _DRIVEN = {"rotation": "angle", "elevation": "elevation", "extension": "length"}
 
 
+@one_thread()
 def simulate_actuator(
     actuator: model.Actuator | model.ActuatorStudy | FileLike,
     motion: model.ActuatorMotion | None = None,

@@ -19,6 +19,7 @@ from flexapod.study.arguments import PoseLike, RobotLike, as_pose, at_pose
 from flexapod.study.attributes import attributes
 from flexapod.study.before.checks import path_remarks
 from flexapod.study.names import dataset
+from flexapod.threads import one_thread
 from flexapod.typing import Array
 from flexapod.words import text
 
@@ -31,6 +32,7 @@ BEYOND = "the floor's spectrum ends at"
 HOW = "spectra through the linear model about the static equilibrium"
 
 
+@one_thread()
 def vibration(robot: RobotLike, pose: PoseLike = None) -> Dataset:
     """Random vibration of the tool relative to the base at a pose, by the study's disturbances.
 

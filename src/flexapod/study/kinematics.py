@@ -17,12 +17,14 @@ from flexapod.study.attributes import attributes
 from flexapod.study.before.checks import check_geometry
 from flexapod.study.names import dataset
 from flexapod.study.path import RigidPath, open_force_words
+from flexapod.threads import one_thread
 from flexapod.typing import Array
 
 if TYPE_CHECKING:
     from xarray import Dataset
 
 
+@one_thread()
 def mobility(robot: RobotLike, pose: PoseLike = None) -> Dataset:
     """Motions of the rigid robot at one pose and next to it, by rank, Eqs. (T14.11)-(T14.15).
 
@@ -66,6 +68,7 @@ def mobility(robot: RobotLike, pose: PoseLike = None) -> Dataset:
     return dataset(values, attrs=attrs)
 
 
+@one_thread()
 def inverse_kinematics(
     robot: RobotLike,
     motion: model.Motion | None = None,
@@ -98,6 +101,7 @@ def inverse_kinematics(
     return _named(path, _legs_and_payload(path), remarks)
 
 
+@one_thread()
 def inverse_dynamics(
     robot: RobotLike,
     motion: model.Motion | None = None,
@@ -135,6 +139,7 @@ def inverse_dynamics(
     return _named(path, values, [*remarks, *open_force_words(path.forces)])
 
 
+@one_thread()
 def forward_kinematics(
     robot: RobotLike,
     lengths: ArrayLike,

@@ -12,6 +12,7 @@ from flexapod.study.arguments import PoseLike, RobotLike, as_pose, at_pose
 from flexapod.study.attributes import attributes
 from flexapod.study.before.checks import path_remarks
 from flexapod.study.names import dataset
+from flexapod.threads import one_thread
 
 if TYPE_CHECKING:
     from xarray import Dataset
@@ -19,6 +20,7 @@ if TYPE_CHECKING:
 __all__ = ["parts"]
 
 
+@one_thread()
 def parts(robot: RobotLike, pose: PoseLike = None) -> Dataset:
     """Stiffness along its leg of every part of every leg at a pose, Eq. (T15.3).
 

@@ -17,6 +17,7 @@ from flexapod.study.before.checks import check_path
 from flexapod.study.names import dataset
 from flexapod.study.path import RigidPath
 from flexapod.study.record import Progress, Record, collect, finished
+from flexapod.threads import one_thread
 from flexapod.typing import Array
 
 if TYPE_CHECKING:
@@ -55,6 +56,7 @@ class Simulated:
         return dataset(self.values(), robot_coords(robot, system, self.record), attrs, drive_forms(robot))
 
 
+@one_thread()
 def simulated(study: model.Study, progress: Progress | None = None) -> Simulated:
     """Check and integrate a robot study; what `simulate` does, without a Dataset.
 
@@ -71,6 +73,7 @@ def simulated(study: model.Study, progress: Progress | None = None) -> Simulated
     return Simulated(study=study, path=path, march=march, record=record, remarks=remarks)
 
 
+@one_thread()
 def simulate(
     robot: RobotLike,
     motion: model.Motion | None = None,
@@ -129,6 +132,7 @@ def simulate(
     return finished(found.dataset, found.record)
 
 
+@one_thread()
 def run(
     study: RobotLike | model.ActuatorStudy | model.Actuator,
     motion: model.Motion | model.ActuatorMotion | None = None,

@@ -22,11 +22,13 @@ from flexapod.study.before.checks import path_remarks
 from flexapod.study.many_modes import modes_at_poses
 from flexapod.study.names import ONE_POSE_FORMS, dataset
 from flexapod.study.poses import as_many, is_many
+from flexapod.threads import one_thread
 
 if TYPE_CHECKING:
     from xarray import Dataset
 
 
+@one_thread()
 def modes(
     robot: RobotLike | model.ActuatorStudy,
     pose: PoseLike = None,
@@ -103,6 +105,7 @@ def _beam(study: model.ActuatorStudy, given: dict[str, object], settings: dict[s
     return dataset(values, {"mode": np.arange(1, len(found.kind) + 1)}, _settings(study))
 
 
+@one_thread()
 def stiffness(
     robot: RobotLike,
     pose: PoseLike = None,

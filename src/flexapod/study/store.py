@@ -6,7 +6,7 @@ import hashlib
 import json
 import math
 from pathlib import Path
-from typing import TYPE_CHECKING, Any
+from typing import TYPE_CHECKING
 
 import numpy as np
 
@@ -36,16 +36,11 @@ def save(data: Dataset, path: str | Path) -> Path:
     InputError
         The folder cannot be written to, or the disk is full.
     """
-    checked: Any = {
-        name: {"fletcher32": True} | ({"dtype": "S1"} if array.dtype.kind in "UOT" else {})  # texts of letters
-        for name, array in data.variables.items()
-        if array.ndim and array.size
-    }
+    from flexapod.study.netcdf import write
+
     with replacing(path) as temporary:
         try:
-            data.assign_attrs({SUM: _sum(data)}).to_netcdf(
-                temporary, engine="netcdf4", format="NETCDF4", encoding=checked
-            )
+            write(data, temporary, **{SUM: _sum(data)})
         except RuntimeError as error:
             _fill(temporary, data.nbytes)
             raise OSError(f"the NetCDF library says {error}") from None

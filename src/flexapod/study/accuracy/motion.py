@@ -13,6 +13,7 @@ from flexapod.study.attributes import attributes
 from flexapod.study.before.checks import check_geometry
 from flexapod.study.names import dataset
 from flexapod.study.path import RigidPath, open_force_words
+from flexapod.threads import one_thread
 
 if TYPE_CHECKING:
     from xarray import Dataset
@@ -20,6 +21,7 @@ if TYPE_CHECKING:
 __all__ = ["play"]
 
 
+@one_thread()
 def play(robot: RobotLike, motion: model.Motion | None = None, *, load: LoadLike = None) -> Dataset:
     """Play along a motion: how forces press it, what that does to the tool, where it jumps.
 

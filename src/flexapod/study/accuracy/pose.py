@@ -15,6 +15,7 @@ from flexapod.study.accuracy.spread import displacement, samples
 from flexapod.study.arguments import PoseLike, RobotLike, as_pose, at_pose
 from flexapod.study.attributes import attributes
 from flexapod.study.names import AT_A_POSE, dataset
+from flexapod.threads import one_thread
 from flexapod.typing import Array
 
 if TYPE_CHECKING:
@@ -25,6 +26,7 @@ __all__ = ["accuracy"]
 MOST_DRAWS = 10_000_000
 
 
+@one_thread()
 def accuracy(robot: RobotLike, pose: PoseLike = None, *, draws: int = 0, seed: int = 0) -> Dataset:
     """How far the tool is from a pose by errors of geometry, by heat, and how far it may be by tolerances.
 

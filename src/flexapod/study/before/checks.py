@@ -15,6 +15,7 @@ from flexapod.solve.modes import refuse_pure_force
 from flexapod.study.before.room import check_outputs
 from flexapod.study.bodies import clearance, gap_words, largest_turns, turns
 from flexapod.study.path import RigidPath, open_force_words, path_instants
+from flexapod.threads import one_thread
 from flexapod.typing import Array
 
 SINGULAR = 1e-8  # smallest singular value of the scaled Jacobian below which a pose is refused
@@ -32,6 +33,7 @@ _KEYS = {
 }
 
 
+@one_thread()
 def check_path(study: Study, path: RigidPath | None = None) -> list[str]:
     """Refuse a study whose path no robot could follow; return remarks on what is only doubtful.
 

@@ -17,6 +17,7 @@ from flexapod.study.budgets.rules import Budget
 from flexapod.study.budgets.words import sentences
 from flexapod.study.names import dataset
 from flexapod.study.record import Progress
+from flexapod.threads import one_thread
 
 if TYPE_CHECKING:
     from xarray import Dataset
@@ -24,6 +25,7 @@ if TYPE_CHECKING:
 __all__ = ["budget"]
 
 
+@one_thread()
 def budget(
     robot: RobotLike,
     pose: PoseLike = None,

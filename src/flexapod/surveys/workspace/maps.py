@@ -23,6 +23,7 @@ from flexapod.study.poses import batches, from_home
 from flexapod.surveys.workspace.findings import forms
 from flexapod.surveys.workspace.grid import UNITS, Axes, Grid, grid
 from flexapod.surveys.workspace.quantities import Wanted, batch_values
+from flexapod.threads import one_thread
 from flexapod.typing import Array
 
 if TYPE_CHECKING:
@@ -34,6 +35,7 @@ DIRECTIONS = {"x": (1.0, 0.0, 0.0), "y": (0.0, 1.0, 0.0), "z": (0.0, 0.0, 1.0)}
 FREQUENCIES = 6
 
 
+@one_thread()
 def workspace_map(
     robot: RobotLike,
     axes: Axes | None = None,

@@ -32,6 +32,7 @@ from flexapod.study.bodies import clearance, largest_turns, turns
 from flexapod.study.disturbances import vibration_words
 from flexapod.study.path import RigidPath
 from flexapod.study.words import held
+from flexapod.threads import one_thread
 from flexapod.typing import Array
 
 SHOWN = 6
@@ -252,6 +253,7 @@ class RobotDescription:
         return asdict(self)
 
 
+@one_thread()
 def describe(study: model.Study | model.ActuatorStudy) -> RobotDescription | ActuatorDescription:
     """What a study will ask of its robot or actuator, estimated without a simulation.
 
