@@ -264,11 +264,11 @@ def test_folder_where_nobody_may_write(flexapod, study):
 
 
 def test_full_disk_is_told_and_leaves_no_half_file(flexapod, study, folder, monkeypatch):
-    def full(self, path, **_):
+    def full(data, path, **_):
         Path(path).write_bytes(b"half")
         raise OSError(28, "No space left on device")
 
-    monkeypatch.setattr("xarray.Dataset.to_netcdf", full)
+    monkeypatch.setattr("flexapod.study.netcdf.write", full)
     result = flexapod("run", study(*SHORT))
     assert result.exit_code == 2
     assert "No space left on device" in result.stderr
