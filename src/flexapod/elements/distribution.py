@@ -9,10 +9,11 @@ zero-order velocities and is added to second order.
 
 from dataclasses import dataclass, field
 from types import SimpleNamespace
+from typing import Any
 
 import numpy as np
 
-from flexapod.bases import AxialBasis, LateralBasis
+from flexapod.bases import AxialBasis
 from flexapod.elements.frame import Frame
 from flexapod.symbolic.vocabulary import SX, bilinear, quadratic, time_derivative, vertcat, zeros
 
@@ -89,10 +90,13 @@ def _combine(moments: SimpleNamespace, f: Field) -> SX:
 
 @dataclass(frozen=True, kw_only=True)
 class Motion:
-    """A bending leg: its bases, the frame of its cylinder, free length s and coordinates, and the fields they make."""
+    """A bending leg: its bases, the frame of its cylinder, free length s and coordinates, and the fields they make.
 
-    a: LateralBasis
-    b: LateralBasis
+    ``a``, ``b``: `LateralBasis`, or what has its names for the present length (`stepped_piston.SteppedShapes`).
+    """
+
+    a: Any
+    b: Any
     axial: AxialBasis
     frame: Frame
     s: SX

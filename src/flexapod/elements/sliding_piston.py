@@ -51,7 +51,9 @@ def tip_turn(f: Motion) -> SX:
     return vertcat(-w + 0.5 * twist * v, v + 0.5 * twist * w, twist + carried)
 
 
-def _at_tip(values: np.ndarray, amplitudes: SX) -> SX:
+def _at_tip(values: np.ndarray | SX, amplitudes: SX) -> SX:
+    if isinstance(values, SX):
+        return dot(values, amplitudes)
     return dot(constant(values).T, amplitudes) if len(values) else zeros(1)
 
 

@@ -37,7 +37,7 @@ def leg_tangents(shapes: Shapes) -> NamedFunction:
     """dr/dq and dr/dv of a leg in motion (gyroscopic, centrifugal and convective terms included), Eq. (T4.9)."""
     x = _Leg(shapes)
     r = x.balance()
-    return NamedFunction("leg_tangents", x.moving(), [("r_q", jacobian(r, x.q)), ("r_v", jacobian(r, x.v))])
+    return x.named("leg_tangents", x.moving(), [("r_q", jacobian(r, x.q)), ("r_v", jacobian(r, x.v))])
 
 
 class _Leg:
@@ -67,6 +67,11 @@ class _Leg:
             )
             for i, (name, drive) in enumerate(shapes.drives)
         }
+
+    def named(self, name: str, inputs: list[tuple[str, SX]], outputs: list[tuple[str, SX]]) -> NamedFunction:
+        """Function of expressions that are differentiated."""
+        here, value = self.body.present
+        return NamedFunction(name, inputs, [(key, substitute(y, (here,), (value,))) for key, y in outputs])
 
     def moving(self) -> list[tuple[str, SX]]:
         """Inputs of what a leg in motion does."""
@@ -107,7 +112,7 @@ class _Leg:
         gap, wrench = (self.by_q.value(x) for x in self.closed(zeros(6)))
         meeting = [("gap", gap), ("wrench", wrench)] if self.shapes.closure == "pose" else [("tip", self.body.tip)]
         outputs = [("r", self.balance()), *meeting, ("powers", vertcat(*powers)), ("drive", self.forces())]
-        return NamedFunction("leg_residual", self.moving(), outputs)
+        return self.named("leg_residual", self.moving(), outputs)
 
     def load_force(self) -> SX:
         """Generalised force of the load on the tip."""
@@ -140,7 +145,7 @@ class _Leg:
                 for name, y in (("P", gap), ("H", wrench))
             ]
             outputs.append(("X", -self.by_q.jacobian(_undisplaced(wrench, step)).T))
-        return NamedFunction(
+        return self.named(
             "leg_matrices", [("q", self.q), ("lam", self.lam), ("p", self.p_vector), *self.outside()], outputs
         )
 
@@ -148,7 +153,7 @@ class _Leg:
         """Kinetic energy, potential of gravity and strain energy, the drives' springs included."""
         body = self.body
         strain = sum((servo.energy for servo in self.servos.values()), body.strain)
-        return NamedFunction(
+        return self.named(
             "leg_energies",
             [("q", self.q), ("v", self.v), ("command", self.command), ("p", self.p_vector)],
             [("energies", vertcat(body.lagrangian.kinetic, body.gravity, strain)), ("drive", self.forces())],

@@ -89,6 +89,28 @@ SERIES_PARAMETERS: tuple[tuple[str, int], ...] = (
 #: the pushing one in their stiffness there, and one over their lengths [1/m].
 OIL_PARAMETERS: tuple[tuple[str, int], ...] = (("oil", 4),)
 
+
+def _section_parameters(shapes: "Shapes") -> tuple[tuple[str, int], ...]:
+    """... of pistons of several sections, from the tip to the driven end; `rhoA`, `EI`, `EA` are those of the whole."""
+    n, m = shapes.sections, shapes.axial.count
+    lateral = len(shapes.planes) * shapes.b.count
+    return (
+        ("section_cuts", n - 1),  # m, ends of the sections from the tip, ascending; those that are not there at 0
+        ("gland", 1),  # m, length within which the mouth takes a cut up
+        ("section_rhoA", n),  # kg/m
+        ("section_load", n),  # rhoA of the sections over any
+        *((f"section_EI_{plane}", n) for plane in shapes.planes),  # N m^2
+        ("section_place", n),  # tau = place - shrink xi: how much of the stretch lies between driven end and xi
+        ("section_shrink", n),  # 1/m
+        ("piston_moments", 2),  # int (X - inner end)^k dm / mass, k = 1, 2 [m, m^2]
+        ("axial_first", m),  # int psi dm [kg]
+        ("axial_moment", m),  # int (X - inner end) psi dm [kg m]
+        ("axial_mass", m * m),  # int psi psi^T dm [kg]
+        ("axial_damping", m * m),  # N s/m
+        ("lateral_damping", lateral**2),  # N s, over the free length
+    )
+
+
 #: Physical parameters of the payload in kernel order (name, size); tool from the CoM, in platform axes.
 PAYLOAD_PARAMETERS: tuple[tuple[str, int], ...] = (
     ("mass", 1),  # kg
@@ -140,6 +162,10 @@ class Shapes:
         Springs between a rotor, whose travel is r, and the stroke l.
     oil : bool
         Columns of oil among these.
+    sections : int
+        Of the pistons; 0: all are uniform.
+    strips : bool
+        Their two bending stiffnesses are different.
     """
 
     a: LateralBasis
@@ -157,6 +183,13 @@ class Shapes:
     soft_platform: bool = False
     series: bool = False
     oil: bool = False
+    sections: int = 0
+    strips: bool = False
+
+    @property
+    def planes(self) -> tuple[str, ...]:
+        """Directions in which sections have a bending stiffness of their own."""
+        return ("a", "b") if self.strips and self.a.count else ("b",)
 
     @property
     def layout(self) -> tuple[tuple[str, int], ...]:
@@ -232,5 +265,6 @@ def leg_parameters(shapes: Shapes) -> tuple[tuple[str, int], ...]:
         (shapes.soft_platform, SOFT_PLATFORM),
         (shapes.series, SERIES_PARAMETERS),
         (shapes.oil, OIL_PARAMETERS),
+        (shapes.sections > 0, _section_parameters(shapes)),
     )
     return tuple(item for there, table in parts if there for item in table)

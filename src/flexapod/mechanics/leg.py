@@ -14,12 +14,13 @@ from flexapod.elements.rotations import small_rotation
 from flexapod.elements.screw import screw
 from flexapod.elements.sliding_piston import sliding_piston, tip_place, tip_turn
 from flexapod.elements.soft_joint import soft_joint
+from flexapod.elements.stepped_piston import SteppedShapes, of_planes, stepped_piston, stepped_shapes
 from flexapod.elements.tip_body import tip_body
 from flexapod.elements.torsion import torsion
 from flexapod.elements.universal import universal
 from flexapod.mechanics.layout import Shapes
 from flexapod.symbolic.lagrange import Lagrangian
-from flexapod.symbolic.vocabulary import SX, constant, matrix33, symbol, vertcat, zeros
+from flexapod.symbolic.vocabulary import SX, constant, expanded, matrix33, symbol, vertcat, zeros
 
 ALONG = constant(np.array([[0.0], [0.0], [1.0]]))  # a leg's own direction
 
@@ -31,6 +32,7 @@ class Leg:
     ``series``: energies of the springs between rotor and stroke, which are among the others.
     ``tip_axes`` is written in ``theta``, symbols for the rotation vector ``turn`` of the tip: derivatives by the many
     amplitudes go through these three.
+    ``present``: symbols for what depends on the stroke alone, and what to put for them once all is differentiated.
     """
 
     lagrangian: Lagrangian
@@ -41,6 +43,7 @@ class Leg:
     theta: SX
     turn: SX
     series: Energies
+    present: tuple[SX, SX]
 
 
 def leg(shapes: Shapes, p: SimpleNamespace, q: SX, v: SX, qs: SimpleNamespace, vs: SimpleNamespace) -> Leg:
@@ -56,9 +59,15 @@ def leg(shapes: Shapes, p: SimpleNamespace, q: SX, v: SX, qs: SimpleNamespace, v
     if shapes.b.count and not shapes.a.count:  # a planar robot's leg does not bend across the plane
         qs, vs = (SimpleNamespace(**vars(part) | {"a": zeros(shapes.b.count)}) for part in (qs, vs))
     s = qs.l - p.mouth  # (T3.6)  free length outside the cylinder
+    a, b, present = shapes.a if shapes.a.count else shapes.b, shapes.b, (zeros(0), zeros(0))
+    if shapes.sections:
+        qs, vs = (of_planes(shapes.planes, part) for part in (qs, vs))
+        integrals = stepped_shapes(b if b.count else a, shapes.axial, shapes.planes, p, s, qs.l)
+        near, present = expanded(list(integrals.values()), qs.l)
+        a = b = SteppedShapes(count=near[0].numel(), **dict(zip(integrals, near, strict=True)))
     motion = Motion(
-        a=shapes.a if shapes.a.count else shapes.b,
-        b=shapes.b,
+        a=a,
+        b=b,
         axial=shapes.axial,
         frame=frame,
         s=s,
@@ -67,7 +76,7 @@ def leg(shapes: Shapes, p: SimpleNamespace, q: SX, v: SX, qs: SimpleNamespace, v
         qs=qs,
         vs=vs,
     )
-    e += cylinder(frame, p, vs) + sliding_piston(motion, p)
+    e += cylinder(frame, p, vs) + (stepped_piston if shapes.sections else sliding_piston)(motion, p)
     if shapes.torsion:
         e += torsion(frame, p, qs, vs)
     series = screw(p, qs, vs, oil=shapes.oil) if shapes.series else Energies()
@@ -92,6 +101,7 @@ def leg(shapes: Shapes, p: SimpleNamespace, q: SX, v: SX, qs: SimpleNamespace, v
         theta=theta,
         turn=tip_turn(motion),
         series=series,
+        present=present,
     )
 
 

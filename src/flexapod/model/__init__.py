@@ -55,6 +55,7 @@ from flexapod.model.payload import Payload
 from flexapod.model.piston import Cylinder, Piston, Strut
 from flexapod.model.robot import Robot
 from flexapod.model.screw import Bearing, Brake, Drive, Encoder, Limits, Nut, Rotor, ScrewDrive
+from flexapod.model.sections import PistonSection
 from flexapod.model.simulation import DEFAULT_TOLERANCE, FIDELITIES, Initial, Simulation
 from flexapod.model.spring import AxialSpring
 from flexapod.model.study import DRIVEN_BY, ActuatorStudy, Study, override
@@ -117,6 +118,7 @@ __all__ = [
     "OpenValue",
     "Payload",
     "Piston",
+    "PistonSection",
     "PrescribedDrive",
     "ProfileLaw",
     "RateLaw",

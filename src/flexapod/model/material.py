@@ -76,6 +76,12 @@ class Tube(Frozen):
         """Size in the direction of bending [m]."""
         return self.diameter
 
+    def cowper(self, poisson: float) -> float:
+        """Shear coefficient (Cowper 1966)."""
+        hollow = (self.inner_diameter or 0.0) / self.diameter
+        m = (1 + hollow**2) ** 2
+        return 6 * (1 + poisson) * m / ((7 + 6 * poisson) * m + (20 + 12 * poisson) * hollow**2)  # (T8.19)
+
 
 class Rectangle(Frozen):
     """Rectangular section: width across and height along the direction of bending [m]."""
@@ -97,3 +103,7 @@ class Rectangle(Frozen):
     def depth(self) -> float:
         """Size in the direction of bending [m]."""
         return self.height
+
+    def cowper(self, poisson: float) -> float:
+        """Shear coefficient (Cowper 1966)."""
+        return 10 * (1 + poisson) / (12 + 11 * poisson)  # (T8.19)

@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+from collections.abc import Sequence
 from typing import Annotated, Self
 
 from pydantic import Field, model_validator
@@ -9,6 +10,7 @@ from pydantic import Field, model_validator
 from flexapod.errors import InputError
 from flexapod.model.base import Frozen, Measure, NonNegative, Number, Positive
 from flexapod.model.material import POISSON, Material, Rectangle, Tube
+from flexapod.model.sections import PistonSection, Step
 
 
 class Cylinder(Frozen):
@@ -36,7 +38,8 @@ class Piston(Frozen):
     `length` [m], whole piston; `EA` [N]; `EI` [N m^2]; `rhoA` [kg/m], 0 for a spring without mass; `diameter`,
     `inner_diameter` [m], `E` [Pa], `density` [kg/m^3] and `yield_stress` [Pa] where known; `axial_inertia` [kg m^2];
     `poisson`, ratio of a round section; `GJ` [N m^2], torsional stiffness, of another one; `expansion` [1/K] by heat;
-    `bow` [m]: of its axis, at rest and without load, from the line of its ends.
+    `bow` [m]: of its axis, at rest and without load, from the line of its ends. `sections`, from the driven end to the
+    tip, of one that is not uniform: the other values are then those of the whole (`stepped`).
     """
 
     length: Annotated[Positive, Measure("length")]
@@ -53,6 +56,7 @@ class Piston(Frozen):
     GJ: Annotated[Positive, Measure("bending stiffness")] | None = None
     expansion: Annotated[Number, Measure("expansion")] | None = None
     bow: Annotated[NonNegative, Measure("length")] | None = None
+    sections: tuple[PistonSection, ...] = ()
 
     @model_validator(mode="after")
     def _sensible(self) -> Self:
@@ -96,6 +100,37 @@ class Piston(Frozen):
             expansion=material.expansion,
             bow=bow,
         )
+
+    @classmethod
+    def stepped(
+        cls, sections: Sequence[PistonSection], *, axial_inertia: float = 0.0, bow: float | None = None
+    ) -> Self:
+        """A piston of sections, from its driven end to its tip.
+
+        EA, EI and GJ are those of a uniform one that stretches, bends under a constant moment (along leg y) and twists
+        as far; rhoA is the mean, expansion the mean of those that are known.
+        """
+        if not sections:
+            raise InputError("is empty", key="sections", allowed="a section or more, from the driven end to the tip")
+        steps = [step for section in sections for step in section.steps]
+        length = sum(step.length for step in steps)
+        grown = [section.length * section.expansion for section in sections if section.expansion is not None]
+        return cls(
+            length=length,
+            EA=length / sum(step.length / step.EA for step in steps),
+            EI=length / sum(step.length / step.EI[1] for step in steps),
+            GJ=length / sum(step.length / step.GJ for step in steps),
+            rhoA=sum(step.length * step.rhoA for step in steps) / length,
+            axial_inertia=axial_inertia,
+            expansion=sum(grown) / length if len(grown) == len(sections) else None,
+            bow=bow,
+            sections=tuple(sections),
+        )
+
+    @property
+    def steps(self) -> tuple[Step, ...]:
+        """Its uniform pieces, from the driven end to the tip; none of a uniform piston."""
+        return tuple(step for section in self.sections for step in section.steps)
 
     @property
     def mass(self) -> float:

@@ -19,6 +19,7 @@ from flexapod.model.material import MATERIALS, Material, Tube
 from flexapod.model.piston import Piston, Strip, Strut
 from flexapod.model.screw import Drive, Encoder, ScrewDrive
 from flexapod.model.section import Section
+from flexapod.model.sections import PistonSection
 from flexapod.model.spring import AxialSpring
 from flexapod.model.tables import forces
 from flexapod.typing import Array
@@ -148,8 +149,32 @@ def _arm(section: Section, radius: float, axis: Array, base: Array, normal: Arra
     raise section.error("has no direction to begin in", "radius", allowed="arm = [x, y, z] for this crank")
 
 
+def _sections(section: Section, model: type[P]) -> P:
+    """A piston or strut of several sections."""
+    for name in section.data:
+        if name not in ("sections", "axial_inertia", "bow"):
+            raise section.error("is given together with sections", name, allowed="in a section, or without sections")
+    given = section.data["sections"]
+    if not isinstance(given, list):
+        raise section.malformed("is not a list", "sections", allowed="[{ length, diameter, material }, ...]")
+    tables = [section.child(data, f"sections[{k}]") for k, data in enumerate(given, start=1)]
+    return section.build(
+        model.stepped,
+        sections=[table.read(PistonSection, also=("material",), then=_of_material) for table in tables],
+        axial_inertia=section.number("axial_inertia", "inertia"),
+        bow=section.number("bow", "length"),
+    )
+
+
+def _of_material(section: Section) -> dict[str, object]:
+    material = read_material(section)
+    return {name: getattr(material, name) for name in _OF_MATERIAL}
+
+
 def _piston(section: Section) -> Piston:
     section.only(*columns_of(Piston), "material")
+    if "sections" in section:
+        return _sections(section, Piston)
     if any(name in section for name in (*_STIFFNESS, "GJ")):
         return _given(section, Piston)
     section.need("length", "diameter")
@@ -165,6 +190,8 @@ def _piston(section: Section) -> Piston:
 
 def _strut(section: Section) -> Strut:
     section.only(*columns_of(Strut), "material")
+    if "sections" in section:
+        return _sections(section, Strut)
     if any(name in section for name in (*_STIFFNESS, "GJ")):
         return _given(section, Strut)
     section.need("length")

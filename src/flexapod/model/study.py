@@ -116,6 +116,22 @@ class Study(_Documented):
         return self
 
     @model_validator(mode="after")
+    def _sections(self) -> Self:
+        basis = self.simulation.lateral_basis
+        if (
+            any(leg.piston.sections for leg in self.robot.legs)
+            and self.simulation.lateral_shapes
+            and basis != "tip-load"
+        ):
+            raise InputError(
+                "does not know pistons of several sections",
+                key="simulation.fidelity" if basis in OWN_BASIS.values() else "simulation.basis",
+                value=self.simulation.fidelity if basis in OWN_BASIS.values() else basis,
+                allowed='rigid, lumped, or assumed-modes with basis = "tip-load"',
+            )
+        return self
+
+    @model_validator(mode="after")
     def _solid(self) -> Self:
         sections = {(leg.piston.diameter, leg.piston.inner_diameter) for leg in self.robot.legs}
         if self.simulation.fidelity == SOLID and (len(sections) > 1 or None in {outer for outer, _ in sections}):

@@ -128,6 +128,9 @@ def _carriage(carriage: Carriage, place: Array, normal: Array) -> dict[str, obje
 
 def _beam(piston: Piston) -> dict[str, object]:
     fields = _fields(piston)
+    if piston.sections:
+        return {name: value for name, value in fields.items() if name in ("sections", "bow", "axial_inertia") and value}
+    fields.pop("sections")
     made_of = {name: fields.pop(name, None) for name in ("E", "density")}
     if piston.E is None or piston.density is None:
         return fields

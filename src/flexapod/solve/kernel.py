@@ -103,7 +103,7 @@ def _fingerprint(shapes: Shapes) -> list[object]:
     ]
     numbers = [getattr(basis, field.name) for basis in (shapes.a, shapes.b, shapes.axial) for field in fields(basis)]
     arrays = [np.ascontiguousarray(x).tobytes() for x in numbers if isinstance(x, np.ndarray)]
-    switches = [x for x in (getattr(shapes, field.name) for field in fields(shapes)) if isinstance(x, (bool, str))]
+    switches = [x for x in (getattr(shapes, field.name) for field in fields(shapes)) if isinstance(x, (bool, int, str))]
     return [*texts, *arrays, shapes.layout, switches]
 
 

@@ -6,6 +6,7 @@ from flexapod.mechanics import layout
 from flexapod.mechanics.layout import LEG_PARAMETERS, PAYLOAD_PARAMETERS, Shapes
 from flexapod.model import Actuator, ForceDrive, Joint, Leg, Robot, ServoDrive, damping_parts
 from flexapod.rigid.limbs import COORDINATES, FREE, Limbs
+from flexapod.solve.sections import section_parameters
 from flexapod.solve.springs import Place, in_series, of_servo, oil_shares, softening, springs_along, viscous
 from flexapod.typing import Array
 
@@ -45,6 +46,7 @@ def leg_parameters(robot: Robot, legs: Limbs, shapes: Shapes, per_loss: float = 
         | _joints(leg, legs, i, per_loss)
         | ends[i]
         | _soft(leg, legs.home[i, COORDINATES.index("l")], per_loss)
+        | (section_parameters(leg, shapes, legs.home[i, COORDINATES.index("l")]) if shapes.sections else {})
         for i, leg in enumerate(robot.legs)
     )
     turns = [COORDINATES.index(name) for name in ("spin", "gamma3")]
@@ -90,6 +92,8 @@ def _leg(leg: Leg) -> dict[str, object]:
 def axial_inertia(leg: Leg) -> float:
     """Inertia of a piston about its axis, as given or 2 rho I L of a round section [kg m^2]."""
     piston = leg.piston
+    if piston.sections and not piston.axial_inertia:
+        return sum(step.length * step.rhoA * sum(step.EI) / step.EA for step in piston.steps)
     return piston.axial_inertia or 2 * piston.rhoA * piston.length * piston.EI / piston.EA
 
 

@@ -39,6 +39,8 @@ def robot_shapes(robot: Robot, simulation: Simulation, legs: Limbs) -> Shapes:
         series=any(leg.gives for leg in robot.legs),
         oil=any(leg.cylinder_of_oil is not None for leg in robot.legs),
         pivot_spin=bool(((spin == FREE) & (gamma3 == HELD)).any()),
+        sections=max(len(leg.piston.steps) for leg in robot.legs),
+        strips=any(step.EI[0] != step.EI[1] for leg in robot.legs for step in leg.piston.steps),
     )
 
 

@@ -6,7 +6,23 @@ from types import SimpleNamespace
 
 import casadi
 import numpy as np
-from casadi import SX, cos, dot, gradient, horzcat, jacobian, jtimes, mtimes, reshape, sin, sqrt, trace, vertcat
+from casadi import (
+    SX,
+    cos,
+    densify,
+    diagcat,
+    dot,
+    gradient,
+    horzcat,
+    jacobian,
+    jtimes,
+    mtimes,
+    reshape,
+    sin,
+    sqrt,
+    trace,
+    vertcat,
+)
 from numpy.typing import ArrayLike
 
 __all__ = [
@@ -16,7 +32,9 @@ __all__ = [
     "constant",
     "cos",
     "cross",
+    "diagcat",
     "dot",
+    "expanded",
     "gradient",
     "hessian",
     "horzcat",
@@ -107,10 +125,12 @@ def matrix33(columns: SX) -> SX:
     return reshape(columns, 3, 3)
 
 
-def quadratic(x: SX, matrix: np.ndarray) -> SX:
-    """x^T matrix x for a symmetric numeric matrix, summed over one triangle; zero when there are no shapes."""
+def quadratic(x: SX, matrix: np.ndarray | SX) -> SX:
+    """x^T matrix x for a symmetric matrix, summed over one triangle; zero when there are no shapes."""
     if not x.numel():
         return zeros(1)
+    if isinstance(matrix, SX):
+        return dot(x, mtimes(2 * casadi.triu(matrix, False) + casadi.diag(casadi.diag(matrix)), x))
     triangle = 2 * np.triu(matrix, 1) + np.diag(np.diag(matrix))
     return dot(x, mtimes(SX(casadi.sparsify(casadi.DM(triangle))), x))
 
@@ -120,6 +140,25 @@ def bilinear(x: SX, matrix: np.ndarray | SX, y: SX) -> SX:
     if not (x.numel() and y.numel()):
         return zeros(1)
     return dot(x, mtimes(casadi.sparsify(SX(matrix)), y))
+
+
+def expanded(expressions: Sequence[SX], x: SX) -> tuple[list[SX], tuple[SX, SX]]:
+    """Expressions of a symbol as their Taylor series of second order about its value; what stands for that value.
+
+    To be differentiated twice at most, by anything: what is in the expressions is differentiated here, by x alone.
+    Returned are the series, and (symbols, what to put for them in the end).
+    """
+    value = densify(vertcat(*(reshape(e, e.numel(), 1) for e in expressions)))
+    slope = jtimes(value, x, SX(1.0))
+    known = vertcat(x, value, slope, jtimes(slope, x, SX(1.0)))
+    at, n = symbol("at", known.numel()), value.numel()
+    step = x - at[0]
+    series = at[1 : n + 1] + step * (at[n + 1 : 2 * n + 1] + step / 2 * at[2 * n + 1 :])
+    found, start = [], 0
+    for e in expressions:
+        found.append(reshape(series[start : start + e.numel()], *e.shape))
+        start += e.numel()
+    return found, (at, known)
 
 
 def time_derivative(expression: SX, *pairs: tuple[SX, SX]) -> SX:

@@ -8,7 +8,7 @@ from dataclasses import dataclass
 import numpy as np
 
 from flexapod import rigid
-from flexapod.model import Actuator, Leg, Piston, Rectangle, Robot
+from flexapod.model import Actuator, Leg, Piston, Robot, Tube
 from flexapod.rigid.rotations import matrix
 from flexapod.solve.modes import RobotModes
 from flexapod.solve.rigid_motion import rigid_motion
@@ -30,8 +30,8 @@ class Section:
 
 def piston_section(piston: Piston) -> Section:
     """Section of a piston: a tube where its bore is known, else the full round bar with its EI and EA."""
-    hollow = 0.0 if not piston.diameter else (piston.inner_diameter or 0.0) / piston.diameter
-    return Section(gyration=math.sqrt(piston.EI / piston.EA), kappa=_round(hollow))
+    tube = Tube(diameter=piston.diameter or 1.0, inner_diameter=piston.inner_diameter)
+    return Section(gyration=math.sqrt(piston.EI / piston.EA), kappa=tube.cowper(POISSON))
 
 
 def beam_section(actuator: Actuator) -> Section | None:
@@ -40,9 +40,7 @@ def beam_section(actuator: Actuator) -> Section | None:
     if section is None:
         return None
     gyration = math.sqrt(section.second_moment / section.area)
-    if isinstance(section, Rectangle):
-        return Section(gyration=gyration, kappa=10 * (1 + POISSON) / (12 + 11 * POISSON))  # (T8.19)
-    return Section(gyration=gyration, kappa=_round((section.inner_diameter or 0.0) / section.diameter))
+    return Section(gyration=gyration, kappa=section.cowper(POISSON))
 
 
 def bending_errors(section: Section, free: float) -> tuple[float, float, float]:
@@ -62,12 +60,6 @@ def bending_errors(section: Section, free: float) -> tuple[float, float, float]:
     half = 1 + a * (1 + ratio)
     square = 2 / (half + math.sqrt(half**2 - 4 * ratio * a**2))  # (T8.21)
     return deflection, 1 / math.sqrt(square) - 1, math.sqrt(1 + a) - 1
-
-
-def _round(hollow: float) -> float:
-    """Cowper's coefficient of a tube, `hollow` its inner over its outer diameter."""
-    m, nu = (1 + hollow**2) ** 2, POISSON
-    return 6 * (1 + nu) * m / ((7 + 6 * nu) * m + (20 + 12 * nu) * hollow**2)  # (T8.19)
 
 
 _STATIONS = np.linspace(0.0, 1.0, 11)

@@ -7,6 +7,7 @@ from typing import TYPE_CHECKING
 
 import numpy as np
 
+from flexapod.errors import InputError
 from flexapod.model import ActuatorStudy, Study
 from flexapod.study.arguments import FileLike
 from flexapod.study.attributes import attributes
@@ -84,6 +85,12 @@ def ladder(
 
 def rungs(study: Study | ActuatorStudy, step: float | None = None) -> tuple[list[Setting], Setting, Setting]:
     """Settings of the rungs that a study has, of the reference, and of the one that bounds its error."""
+    if isinstance(study, Study) and any(leg.piston.sections for leg in study.robot.legs):
+        raise InputError(
+            "is not known to half of the fidelities",
+            key="leg.piston.sections",
+            allowed="pistons without sections; `flexapod converge` varies steps and shapes of this study",
+        )
     own = setting_of(study)
     base = replace(own, tolerance=None, step=step or own.step or own.output_step / PER_OUTPUT)
 

@@ -1,0 +1,102 @@
+"""Stepped pistons: kinetic energy by material points, equal sections, a robot whose cuts pass the mouths."""
+
+import re
+from itertools import pairwise
+
+import numpy as np
+import pytest
+from tests.stepped import function, leg_of, section, shapes_of, vector
+
+import flexapod as fx
+from flexapod.model.files import preset_text
+from flexapod.solve.sections import numeric_pieces, steps_of
+
+THREE = [section(0.2, 0.05), section(0.25, 0.04, inner_diameter=0.03), section(0.3, 0.03)]
+PISTON = '{{ sections = [{{ length = "200 mm", diameter = "{} mm", material = "steel" }}, ' \
+    '{{ length = "550 mm", diameter = "27 mm", material = "steel" }}] }}'  # fmt: skip
+
+
+def gauss(low, high, count=12):
+    x, w = np.polynomial.legendre.leggauss(count)
+    return low + (high - low) * (x + 1) / 2, w * (high - low) / 2
+
+
+def place(leg, shapes, q, xi):
+    """Material points at distances xi from the tip, in the leg's home frame (n, 3)."""
+    k, m = shapes.b.count, shapes.axial.count
+    (alpha, beta, length), c, amplitudes = q[:3], q[3 : 3 + m], q[3 + m :].reshape(2, k)
+    s = length - leg.cylinder.mouth
+    x, across, short = xi / s, np.zeros((2, xi.size)), np.zeros(xi.size)
+    for direction, a in enumerate(amplitudes):
+        beyond = 0.0
+        for piece in reversed(numeric_pieces(leg, shapes.b, s, direction)):
+            for i in np.flatnonzero((x > piece.start) & (x <= piece.end)):
+                at, w = gauss(x[i], piece.end)
+                across[direction, i] = (a @ piece.value(x[i : i + 1]))[0]
+                short[i] -= 0.5 / s * (beyond + w @ (a @ piece.value(at, 1)) ** 2)
+            at, w = gauss(piece.start, piece.end)
+            beyond += w @ (a @ piece.value(at, 1)) ** 2
+    ends = np.cumsum([0.0, *(step.length for step in steps_of(leg))])
+    soft = np.cumsum([0.0, *(step.length / step.EA for step in steps_of(leg))])
+    along = length - xi + short + c @ shapes.axial.values(1 - np.interp(xi, ends, soft) / soft[-1])
+    (ca, sa), (cb, sb) = ((np.cos(angle), np.sin(angle)) for angle in (alpha, beta))
+    R = np.array([[cb, 0, sb], [sa * sb, ca, -sa * cb], [-ca * sb, sa, ca * cb]])
+    return (R @ np.array([*across, along])).T
+
+
+def kinetic_energy(leg, shapes, q, v, step=1e-5):
+    """By velocities of material points, as differences of their places."""
+    ends = np.cumsum([0.0, *(part.length for part in steps_of(leg))])
+    breaks = np.unique([*ends, q[2] - leg.cylinder.mouth])
+    total = 0.0
+    for low, high in pairwise(breaks):
+        xi, w = gauss(low, high, 16)
+        at = [place(leg, shapes, q + h * step * v, xi) for h in (1, -1, 2, -2)]
+        velocity = (8 * (at[0] - at[1]) - (at[2] - at[3])) / (12 * step)
+        rhoA = steps_of(leg)[np.searchsorted(ends, (low + high) / 2) - 1].rhoA
+        total += 0.5 * rhoA * w @ (velocity**2).sum(axis=1)
+    return total
+
+
+@pytest.mark.parametrize("length", [1.1, 0.8])  # two cuts outside; one outside, one inside
+def test_kinetic_energy_is_right_to_second_order(length):
+    leg, shapes = leg_of(THREE, mass=0.0), shapes_of(3, 2, 3)
+    rng = np.random.default_rng(1)
+    q, v = rng.uniform(-1, 1, shapes.size), rng.uniform(-1, 1, shapes.size)
+    q[:3], v[:3] = [0.3, -0.2, length], [0.7, -1.1, 0.4]
+    energies, gaps = function(shapes, 2), []
+    for amplitude in (1e-3, 1e-4):
+        here, rate = (np.array([*x[:3], *(size * x[3:])]) for x, size in ((q, amplitude), (v, 30 * amplitude)))
+        T = energies(here, rate, np.zeros(2), vector(leg, shapes, 0.9))[0][0]
+        gaps.append(abs(T - kinetic_energy(leg, shapes, here, rate)))
+    assert gaps[0] / gaps[1] == pytest.approx(1000, rel=0.4)  # what is left is of third order
+    assert gaps[1] < 1e-5
+
+
+def study(diameter):
+    return fx.loads(
+        re.sub(r"piston = \{.*?\}", "piston = " + PISTON.format(diameter), preset_text("paper-robot"), count=1)
+    )
+
+
+def test_equal_sections_are_a_uniform_piston():
+    # The same shapes, other sums: rounding of some 1e-14 of forces and frequencies
+    uniform, cut = fx.preset("paper-robot"), study(27)
+    np.testing.assert_allclose(fx.modes(cut).frequency, fx.modes(uniform).frequency, rtol=1e-11)
+    a, b = (fx.simulate(x, duration=0.1, step=1e-3) for x in (uniform, cut))
+    for name in ("com_deviation", "tip_deflection", "actuator_force"):
+        np.testing.assert_allclose(b[name], a[name], rtol=0, atol=1e-8 * float(np.abs(a[name]).max()))
+
+
+def test_energy_is_kept_while_cuts_pass_the_mouths():
+    # Strokes of 0.855 to 0.979 m: the cut at 0.55 m of the piston is in the cylinder below 0.865 m. Order two.
+    gaps = []
+    for step in (1e-3, 5e-4):
+        data = fx.simulate(study(40), step=step, duration=1.0)
+        free = data.leg_length.values - 0.31518
+        assert free.min() < 0.55 < free.max()
+        energy = data.energy_kinetic + data.energy_potential + data.energy_strain + data.energy_dissipated
+        energy = energy - data.work_drive - data.work_external
+        gaps.append(float(energy.max() - energy.min()))
+    assert gaps[0] / gaps[1] == pytest.approx(4, rel=0.15)
+    assert gaps[1] < 1e-4 * float(data.energy_kinetic.max())
