@@ -54,6 +54,7 @@ from flexapod.model.motion import (
 from flexapod.model.payload import Payload
 from flexapod.model.piston import Cylinder, Piston, Strut
 from flexapod.model.robot import Robot
+from flexapod.model.rolling import RollingLaw
 from flexapod.model.screw import Bearing, Brake, Drive, Encoder, Limits, Nut, Rotor, ScrewDrive
 from flexapod.model.sections import PistonSection
 from flexapod.model.simulation import DEFAULT_TOLERANCE, FIDELITIES, Initial, Simulation
@@ -125,6 +126,7 @@ __all__ = [
     "RatioSpread",
     "Rectangle",
     "Robot",
+    "RollingLaw",
     "Rotor",
     "ScrewDrive",
     "ServoDrive",

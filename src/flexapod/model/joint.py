@@ -2,7 +2,7 @@
 
 from __future__ import annotations
 
-from typing import Annotated, ClassVar, Literal
+from typing import Annotated, Any, ClassVar, Literal
 
 import numpy as np
 from pydantic import model_validator
@@ -10,6 +10,7 @@ from pydantic import model_validator
 from flexapod.errors import InputError
 from flexapod.model.axes import within_a_turn
 from flexapod.model.base import Frozen, Matrix6, Measure, NonNegative, Number, Positive, Vec3
+from flexapod.model.rolling import RollingLaw
 
 NO_DIRECTION = 1e-9  # length of a vector below which it is none
 
@@ -28,9 +29,10 @@ class Joint(Frozen):
     itself.
     `play` [m]: free travel along the leg, from one end to the other. `eccentricity` [m]: of its centre from the axis of
     the leg. `max_angle` [rad]: how far the leg may turn there from its direction at home.
+    `rolling`: the law that gives `stiffness`, `stiffness_damping` and `stiffness_loss`.
     """
 
-    derived: ClassVar[tuple[str, ...]] = ("leg_axes", "stiffness_damping", "stiffness_loss")
+    derived: ClassVar[tuple[str, ...]] = ("leg_axes", "stiffness_damping", "stiffness_loss", "rolling")
 
     axis: Annotated[Vec3, Measure("number")] | None = None
     bending: Annotated[NonNegative, Measure("rotational stiffness")] | None = None
@@ -44,6 +46,20 @@ class Joint(Frozen):
     max_angle: Annotated[Positive, Measure("angle")] | None = None
     stiffness_damping: Annotated[NonNegative, Measure("damping")] | None = None
     stiffness_loss: Annotated[NonNegative, Measure("number")] | None = None
+    rolling: RollingLaw | None = None
+
+    def __init__(self, **fields: Any) -> None:
+        if (law := fields.get("rolling")) is not None:
+            across = law.radial or law.k
+            fields |= {"stiffness": np.diag([across, across, law.k, 0.0, 0.0, 0.0]), "leg_axes": True}
+            fields |= {"stiffness_damping": law.damping, "stiffness_loss": law.loss}
+        super().__init__(**fields)
+
+    def replace(self, **changes: Any) -> Joint:
+        """A copy with some fields changed; with another stiffness it is no longer that of a law."""
+        if not {"stiffness", "leg_axes", "stiffness_damping", "stiffness_loss"}.isdisjoint(changes):
+            changes = {"rolling": None, **changes}
+        return super().replace(**changes)
 
     @property
     def lossy(self) -> bool:

@@ -17,6 +17,7 @@ from flexapod.model.joint import NO_DIRECTION, Carriage, Joint
 from flexapod.model.leg import Leg
 from flexapod.model.material import MATERIALS, Material, Tube
 from flexapod.model.piston import Piston, Strip, Strut
+from flexapod.model.rolling import RollingLaw
 from flexapod.model.screw import Drive, Encoder, ScrewDrive
 from flexapod.model.section import Section
 from flexapod.model.sections import PistonSection
@@ -81,7 +82,7 @@ def _joint(leg: Section, name: str, place: Array, normal: Array) -> Joint | None
 
 
 def _stiffness(section: Section) -> dict[str, object]:
-    """Of a flexure: a number, along and across the leg, three or six rows."""
+    """A number, along and across the leg, a law, three or six rows."""
     value, found = section.data.get("stiffness"), np.zeros((6, 6))
     if isinstance(value, list) and len(value) == 6:
         mixed = (*_FORCES, *("rotational stiffness",) * 3)
@@ -91,6 +92,8 @@ def _stiffness(section: Section) -> dict[str, object]:
         return {"stiffness": found}
     if isinstance(value, Mapping):
         inner = section.child(value, "stiffness")
+        if "law" in inner:
+            return {"rolling": inner.read(RollingLaw)}
         inner.only("axial", "radial", "damping", "loss")
         inner.need("axial", "radial")
         if "damping" in inner and "loss" in inner:

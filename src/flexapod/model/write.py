@@ -108,7 +108,9 @@ def _joint(joint: Joint, place: Array, normal: Array) -> dict[str, object]:
     fields = _fields(joint)
     if joint.axis is not None:
         fields["axis"] = word_of(joint.axis, place, normal) or joint.axis
-    if joint.leg_axes and joint.stiffness is not None:
+    if joint.rolling is not None:
+        fields["stiffness"] = joint.rolling
+    elif joint.leg_axes and joint.stiffness is not None:
         own = {"damping": joint.stiffness_damping, "loss": joint.stiffness_loss}
         fields["stiffness"] = {
             "axial": float(joint.stiffness[2, 2]),

@@ -10,7 +10,11 @@ from flexapod.model import Leg, Robot
 from flexapod.model.simulation import SOLID
 from flexapod.study.after.plausibility import NEAR_BUCKLING, SLENDERNESS, buckling_words, nut_words, thick_words
 from flexapod.study.before.estimates import buckling_load, piston_section, section_width
+from flexapod.study.path import RigidPath
+from flexapod.study.words import text
 from flexapod.typing import Array
+
+OFF_LOAD = 2.0  # times another load: 12 % of stiffness
 
 
 @dataclass(frozen=True, kw_only=True)
@@ -178,6 +182,25 @@ def load_remarks(legs: tuple[LegDescription, ...], robot: Robot, fidelity: str) 
             + _thick(robot.legs[slender.leg - 1], slender.slenderness, solid=fidelity == SOLID)
         )
     return remarks + _unloading(legs, robot) + _yielding(legs)
+
+
+def bearing_remarks(path: RigidPath) -> list[str]:
+    """Joints on rolling bearings that bear another load at the start than that about which their law is taken."""
+    at_start = np.abs(np.einsum("li,li->l", path.forces.joint_force[0], path.axes[0]))
+    found: dict[str, list[tuple[float, int, float]]] = {}
+    for i, leg in enumerate(path.robot.legs):
+        for end, joint in (("base", leg.base_joint), ("platform", leg.platform_joint)):
+            if joint.rolling is not None:
+                given = joint.rolling.load + (joint.rolling.preload or 0.0)
+                here = float(at_start[i]) + (joint.rolling.preload or 0.0)
+                found.setdefault(end, []).append((max(here / given, given / max(here, 1e-300)), i + 1, at_start[i]))
+    return [
+        f"leg {leg}: its {end} joint bears {text(float(load), 'N', 4)} at the start, and its stiffness is taken about "
+        f"{text(getattr(path.robot.legs[leg - 1], f'{end}_joint').rolling.load, 'N', 4)}: it grows as load^0.16"
+        for end, joints in found.items()
+        for off, leg, load in [max(joints)]
+        if off > OFF_LOAD
+    ]
 
 
 def _thick(leg: Leg, slenderness: float, *, solid: bool) -> str:

@@ -19,16 +19,23 @@ from flexapod.study.accuracy.words import accuracy_words
 from flexapod.study.after.mode_shapes import mode_kinds
 from flexapod.study.before.checks import check_path
 from flexapod.study.before.describe.actuator import ActuatorDescription, describe_actuator
+from flexapod.study.before.describe.bodies import Clearance, JointTurn, joint_turns, leg_clearance
 from flexapod.study.before.describe.hydraulic import (
     HydraulicDescription,
     describe_hydraulics,
     hydraulic_remarks,
     oil_words,
 )
-from flexapod.study.before.describe.leg import Extreme, LegDescription, LegPath, describe_leg, load_remarks
+from flexapod.study.before.describe.leg import (
+    Extreme,
+    LegDescription,
+    LegPath,
+    bearing_remarks,
+    describe_leg,
+    load_remarks,
+)
 from flexapod.study.before.describe.screw import ScrewDescription, back_words, describe_screws, screw_remarks
 from flexapod.study.before.estimates import bending_moment, residual_vibration
-from flexapod.study.bodies import clearance, largest_turns, turns
 from flexapod.study.disturbances import vibration_words
 from flexapod.study.path import RigidPath
 from flexapod.study.words import held
@@ -195,28 +202,6 @@ class JointAngle:
 
 
 @dataclass(frozen=True, kw_only=True)
-class JointTurn:
-    """Of the joints at an `end` of the legs that which has least left of its `limit` [rad], or turns farthest.
-
-    `largest`: its largest turn since home [rad]; `limit` None: none of them has one.
-    """
-
-    end: str
-    leg: int
-    largest: Extreme
-    limit: float | None
-
-
-@dataclass(frozen=True, kw_only=True)
-class Clearance:
-    """Least distance of two `legs` as cylinders and pistons [m], on the path and at `home`."""
-
-    legs: tuple[int, int]
-    least: Extreme
-    home: float
-
-
-@dataclass(frozen=True, kw_only=True)
 class RobotDescription:
     """What `describe` finds for a robot; times in s.
 
@@ -291,8 +276,8 @@ def describe(study: model.Study | model.ActuatorStudy) -> RobotDescription | Act
         hydraulics=hydraulics,
         oil=oil_words(path, hydraulics) if hydraulics else (),
         angles=_angles(path),
-        turns=_turns(path),
-        clearance=_clearance(path),
+        turns=joint_turns(path),
+        clearance=leg_clearance(path),
         singularity=singularity,
         poses=tuple(describe_pose(study, name, instant) for name, instant in instants.items()),
         vibration=vibration_to_expect(study, end),
@@ -303,6 +288,7 @@ def describe(study: model.Study | model.ActuatorStudy) -> RobotDescription | Act
                 [
                     *study.warnings,
                     *remarks,
+                    *bearing_remarks(path),
                     *load_remarks(legs, study.robot, study.simulation.fidelity),
                     *screw_remarks(path, screws),
                     *hydraulic_remarks(path, hydraulics),
@@ -319,33 +305,6 @@ def _angles(path: RigidPath) -> tuple[JointAngle, ...]:
         extreme = Extreme(value=float(angle[k, leg]), time=float(path.time[k]))
         found.append(JointAngle(joint=joint, leg=int(leg) + 1, largest=extreme))
     return tuple(found)
-
-
-def _turns(path: RigidPath) -> tuple[JointTurn, ...]:
-    found, limits = turns(path.robot, path.axes, path.poses.rotation), largest_turns(path.robot)
-    lines = []
-    for end, name in enumerate(("base", "platform")):
-        limited = np.isfinite(limits[:, end])
-        over = found[..., end] - (limits[:, end] if limited.any() else 0.0)
-        k, leg = np.unravel_index(over.argmax(), over.shape)
-        extreme = Extreme(value=float(found[k, leg, end]), time=float(path.time[k]))
-        limit = float(limits[leg, end]) if limited.any() else None
-        lines.append(JointTurn(end=name, leg=int(leg) + 1, largest=extreme, limit=limit))
-    return tuple(lines)
-
-
-def _clearance(path: RigidPath) -> Clearance | None:
-    robot = path.robot
-    home = RigidPath(path.study, np.zeros(1), rigid.home_pose(robot))
-    nearest, there = (
-        clearance(robot, x.poses.place(robot.platform_joints), x.axes, x.legs.length) for x in (path, home)
-    )
-    if nearest is None or there is None:
-        return None
-    k = int(nearest.gap.argmin())
-    one, other = (int(leg) + 1 for leg in nearest.legs[k])
-    least = Extreme(value=float(nearest.gap[k]), time=float(path.time[k]))
-    return Clearance(legs=(one, other), least=least, home=float(there.gap[0]))
 
 
 def _in_time(study: model.Study) -> list[str]:

@@ -1,0 +1,65 @@
+"""Angles of the joints and room between legs on the rigid path."""
+
+from __future__ import annotations
+
+from dataclasses import dataclass
+
+import numpy as np
+
+from flexapod import rigid
+from flexapod.study.before.describe.leg import Extreme
+from flexapod.study.bodies import clearance, largest_turns, turns
+from flexapod.study.path import RigidPath
+
+__all__ = ["Clearance", "JointTurn", "joint_turns", "leg_clearance"]
+
+
+@dataclass(frozen=True, kw_only=True)
+class JointTurn:
+    """Of the joints at an `end` of the legs that which has least left of its `limit` [rad], or turns farthest.
+
+    `largest`: its largest turn since home [rad]; `limit` None: none of them has one.
+    """
+
+    end: str
+    leg: int
+    largest: Extreme
+    limit: float | None
+
+
+@dataclass(frozen=True, kw_only=True)
+class Clearance:
+    """Least distance of two `legs` as cylinders and pistons [m], on the path and at `home`."""
+
+    legs: tuple[int, int]
+    least: Extreme
+    home: float
+
+
+def joint_turns(path: RigidPath) -> tuple[JointTurn, ...]:
+    """Angles of the joints at base and platform on a path."""
+    found, limits = turns(path.robot, path.axes, path.poses.rotation), largest_turns(path.robot)
+    lines = []
+    for end, name in enumerate(("base", "platform")):
+        limited = np.isfinite(limits[:, end])
+        over = found[..., end] - (limits[:, end] if limited.any() else 0.0)
+        k, leg = np.unravel_index(over.argmax(), over.shape)
+        extreme = Extreme(value=float(found[k, leg, end]), time=float(path.time[k]))
+        limit = float(limits[leg, end]) if limited.any() else None
+        lines.append(JointTurn(end=name, leg=int(leg) + 1, largest=extreme, limit=limit))
+    return tuple(lines)
+
+
+def leg_clearance(path: RigidPath) -> Clearance | None:
+    """The two legs that come nearest to each other on a path."""
+    robot = path.robot
+    home = RigidPath(path.study, np.zeros(1), rigid.home_pose(robot))
+    nearest, there = (
+        clearance(robot, x.poses.place(robot.platform_joints), x.axes, x.legs.length) for x in (path, home)
+    )
+    if nearest is None or there is None:
+        return None
+    k = int(nearest.gap.argmin())
+    one, other = (int(leg) + 1 for leg in nearest.legs[k])
+    least = Extreme(value=float(nearest.gap[k]), time=float(path.time[k]))
+    return Clearance(legs=(one, other), least=least, home=float(there.gap[0]))
