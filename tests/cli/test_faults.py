@@ -99,21 +99,19 @@ def test_a_disk_too_small_is_told_before(flexapod, study, folder, monkeypatch):
     monkeypatch.setattr(room, "free_disk", lambda folder: 1000.0)
     done = flexapod("run", study(*SHORT))
     assert done.exit_code == 2
-    assert "more results than can be kept: 201 instants, 1.13 MB on the disk, where 0.001 MB is free" in done.stderr
+    assert "more results than can be kept: 201 instants, 1.19 MB on the disk, where 0.001 MB is free" in done.stderr
     assert sorted(os.listdir(folder)) == ["study.toml"]
 
 
 def test_a_disk_that_fills_while_modes_are_written(flexapod, study, folder, monkeypatch):
-    import xarray as xr
-
-    def full(self, path, **_):
+    def full(data, path, **_):
         Path(path).write_bytes(b"half")
         raise RuntimeError("NetCDF: HDF error")
 
     def say(path, size):
         raise OSError(28, "No space left on device")
 
-    monkeypatch.setattr(xr.Dataset, "to_netcdf", full)
+    monkeypatch.setattr("flexapod.study.netcdf.write", full)
     monkeypatch.setattr(store, "_fill", say)
     for arguments in (["modes", study(*SHORT), "--out", "m"], ["run", study(*SHORT), "--out", "m"]):
         done = flexapod(*arguments)
@@ -134,15 +132,16 @@ def test_a_page_of_verify_that_could_not_be_written_is_refused_first(flexapod, f
 
 #: `flexapod run` in a process that gets a signal while results.nc is half written.
 WRITING = """
-import os, signal, sys, xarray as xr
+import os, signal, sys
 from flexapod.app import cli
+from flexapod.study import netcdf
 
-whole = xr.Dataset.to_netcdf
-def half(self, path, **more):
+whole = netcdf.write
+def half(data, path, **more):
     open(path, "wb").write(b"half")
     os.kill(os.getpid(), signal.{name})
-    return whole(self, path, **more)
-xr.Dataset.to_netcdf = half
+    return whole(data, path, **more)
+netcdf.write = half
 sys.argv = ["flexapod", "run", sys.argv[1]]
 cli.main()
 """

@@ -140,7 +140,7 @@ def test_results_beyond_the_memory_are_refused_before_they_are_computed(monkeypa
 def test_results_of_gigabytes_are_remarked_on(monkeypatch):
     monkeypatch.setattr(room, "available_memory", lambda: 1e12)
     study = fx.model.override(fx.preset("paper-robot"), **LONG)
-    assert room.check_memory(study) == ["the results take 4.43 GB, and 3 times as much while they are made"]
+    assert room.check_memory(study) == ["the results take 4.67 GB, and 3 times as much while they are made"]
 
 
 def test_a_control_group_gives_back_what_files_left_in_memory(monkeypatch, tmp_path):
@@ -166,7 +166,7 @@ def test_the_advised_output_step_will_do(monkeypatch):
 def test_results_beyond_the_disk_are_refused(tmp_path, monkeypatch):
     study = fx.model.override(fx.preset("paper-robot"), **LONG)
     monkeypatch.setattr(room, "free_disk", lambda folder: 1e9)
-    with pytest.raises(InputError, match=r"13.3 GB on the disk, where 1 GB is free at .*Give output_step"):
+    with pytest.raises(InputError, match=r"14 GB on the disk, where 1 GB is free at .*Give output_step"):
         room.check_disk(study, tmp_path)
     assert room.free_disk(tmp_path / "not" / "there") > 0
 

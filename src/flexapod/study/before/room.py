@@ -69,7 +69,9 @@ def result_bytes(study: Study | ActuatorStudy) -> float:
     if isinstance(study, ActuatorStudy):
         return 8 * stored_instants(study) * (17 + s.lateral_shapes)
     shapes = 2 * s.lateral_shapes + s.axial_shapes(study.robot.legs[0].axial_modes)
-    return 8 * stored_instants(study) * (64 + study.robot.count * (32 + shapes))
+    joints = (joint for leg in study.robot.legs for joint in (leg.base_joint, leg.platform_joint))
+    margins = 2 * any(joint.max_angle is not None for joint in joints)
+    return 8 * stored_instants(study) * (64 + study.robot.count * (30 + shapes + margins))
 
 
 def check_memory(study: Study | ActuatorStudy, runs: int = 1) -> list[str]:
