@@ -99,7 +99,7 @@ def test_a_disk_too_small_is_told_before(flexapod, study, folder, monkeypatch):
     monkeypatch.setattr(room, "free_disk", lambda folder: 1000.0)
     done = flexapod("run", study(*SHORT))
     assert done.exit_code == 2
-    assert "more results than can be kept: 201 instants, 1.19 MB on the disk, where 0.001 MB is free" in done.stderr
+    assert "more results than can be kept: 201 instants, 1.21 MB on the disk, where 0.001 MB is free" in done.stderr
     assert sorted(os.listdir(folder)) == ["study.toml"]
 
 
