@@ -11,7 +11,7 @@ from flexapod.solve.actuator_march import prepare_actuator
 from flexapod.solve.kernel import interpreted_kernel
 from flexapod.solve.robot_march import prepare
 
-FIELDS = ("time", "q", "v", "v_dot", "lam", "drive", "pose", "reaction", "energy", "sums", "closure")
+FIELDS = ("time", "q", "v", "v_dot", "lam", "drive", "pose", "reaction", "energy", "sums", "closure", "friction")
 
 
 def collect(chunks):

@@ -6,7 +6,7 @@ import pytest
 from flexapod.symbolic import compiler
 from flexapod.symbolic.compiler import CompiledFunction, compiled_library
 from flexapod.symbolic.functions import NamedFunction
-from flexapod.symbolic.vocabulary import cos, sin, symbol
+from flexapod.symbolic.vocabulary import cos, exp, sin, symbol
 
 pytestmark = pytest.mark.skipif(compiler.compiler() is None, reason="there is no C compiler")
 
@@ -42,3 +42,17 @@ def test_what_is_no_number_stays_none(turn):
     for bad in (np.inf, -np.inf, np.nan):
         assert np.isnan(turn(np.where(ANGLES == 1e22, bad, ANGLES))).any(axis=1).all()
         assert np.isnan(turn(np.where(ANGLES == 1e22, bad, ANGLES))).sum() == 2
+
+
+def test_the_exponential_is_that_of_the_library():
+    x = np.concatenate(
+        [np.linspace(-720, 720, 2001), np.linspace(-2, 2, 400), [0.0, 1e-300, -800.0, 800.0, np.inf, -np.inf]]
+    )
+    argument = symbol("x", len(x))
+    functions = [NamedFunction("power", [("x", argument)], [("y", exp(argument))])]
+    library, signatures = compiled_library(["power"], lambda: functions, (), compiler.compiler())
+    # Reduction, sum and product round once each, and the library: less than four units in the last place.
+    with np.errstate(over="ignore"):
+        expected = np.exp(x)
+    (found,) = CompiledFunction(library, "power", signatures["power"])(x)
+    np.testing.assert_allclose(found, expected, rtol=9e-16, atol=0)

@@ -88,6 +88,11 @@ SERIES_PARAMETERS: tuple[tuple[str, int], ...] = (
 #: ... of which some are columns of oil: their share in the compliance of these at home; of the two columns the share of
 #: the pushing one in their stiffness there, and one over their lengths [1/m].
 OIL_PARAMETERS: tuple[tuple[str, int], ...] = (("oil", 4),)
+#: ... of joints and drives with friction, see `elements.friction`.
+BASE_FRICTION: tuple[tuple[str, int], ...] = (("base_friction", 8),)
+PLATFORM_FRICTION: tuple[tuple[str, int], ...] = (("platform_friction", 8),)
+#: ... of a drive along its travel, and of a rotor the share of the stroke in what slides.
+DRIVE_FRICTION: tuple[tuple[str, int], ...] = (("drive_friction", 8), ("drive_friction_at_stroke", 1))
 
 
 def _section_parameters(shapes: "Shapes") -> tuple[tuple[str, int], ...]:
@@ -166,6 +171,8 @@ class Shapes:
         Of the pistons; 0: all are uniform.
     strips : bool
         Their two bending stiffnesses are different.
+    base_friction, platform_friction, drive_friction : bool
+        What slides and has bristles: angles at the base joint, those at the platform joint (pose closures), a drive.
     """
 
     a: LateralBasis
@@ -185,6 +192,9 @@ class Shapes:
     oil: bool = False
     sections: int = 0
     strips: bool = False
+    base_friction: bool = False
+    platform_friction: bool = False
+    drive_friction: bool = False
 
     @property
     def planes(self) -> tuple[str, ...]:
@@ -237,6 +247,19 @@ class Shapes:
         return self.closure == "none" and not self.planar
 
     @property
+    def sliding(self) -> tuple[tuple[str, int], ...]:
+        """Where there is friction, and the number of bristles there: one for each direction in which it slides."""
+        base = ("base_friction", 3 if self.spin else 2, self.base_friction)
+        platform = ("platform_friction", 3, self.platform_friction)
+        places = (base, platform, ("drive_friction", 1, self.drive_friction))
+        return tuple((name, count) for name, count, has in places if has)
+
+    @property
+    def bristles(self) -> int:
+        """Number of bristles of the leg."""
+        return sum(count for _, count in self.sliding)
+
+    @property
     def l_index(self) -> int:
         """Position of the reference length l in q."""
         return self.index("l")
@@ -266,5 +289,8 @@ def leg_parameters(shapes: Shapes) -> tuple[tuple[str, int], ...]:
         (shapes.series, SERIES_PARAMETERS),
         (shapes.oil, OIL_PARAMETERS),
         (shapes.sections > 0, _section_parameters(shapes)),
+        (shapes.base_friction, BASE_FRICTION),
+        (shapes.platform_friction, PLATFORM_FRICTION),
+        (shapes.drive_friction, DRIVE_FRICTION),
     )
     return tuple(item for there, table in parts if there for item in table)

@@ -17,6 +17,7 @@ from flexapod.model.files import (
     preset,
     preset_text,
 )
+from flexapod.model.friction import JointFriction, ScrewFriction, StrokeFriction
 from flexapod.model.geometry import Geometry
 from flexapod.model.heat import Expansion, Gradient, Heat
 from flexapod.model.home import Home
@@ -107,6 +108,7 @@ __all__ = [
     "HydraulicLimits",
     "Initial",
     "Joint",
+    "JointFriction",
     "Leg",
     "LengthSpread",
     "Limits",
@@ -129,6 +131,7 @@ __all__ = [
     "RollingLaw",
     "Rotor",
     "ScrewDrive",
+    "ScrewFriction",
     "ServoDrive",
     "Simulation",
     "SineLaw",
@@ -139,6 +142,7 @@ __all__ = [
     "StepLaw",
     "StepWrench",
     "Stroke",
+    "StrokeFriction",
     "Strut",
     "Study",
     "Tolerances",

@@ -8,14 +8,19 @@ from pydantic import model_validator
 
 from flexapod.errors import InputError
 from flexapod.model.base import Frozen, Measure, NonNegative, Number, Positive, Series
+from flexapod.model.friction import StrokeFriction
 from flexapod.model.motion import check_times
 
 
 class PrescribedDrive(Frozen):
-    """The stroke follows the command exactly; its force is a result. `backlash`: free travel [m], of a crank [rad]."""
+    """The stroke follows the command exactly; its force is a result.
+
+    `backlash`: free travel [m], of a crank [rad]. `friction` of the stroke.
+    """
 
     type: Literal["prescribed"] = "prescribed"
     backlash: Annotated[NonNegative, Measure("length", "angle")] | None = None
+    friction: StrokeFriction | None = None
 
     @property
     def holds(self) -> bool:
@@ -31,13 +36,14 @@ class PrescribedDrive(Frozen):
 class ServoDrive(Frozen):
     """A spring [N/m] and a damper [N s/m] between command and stroke; of a crank [N m/rad, N m s/rad].
 
-    `backlash`: free travel [m], of a crank [rad].
+    `backlash`: free travel [m], of a crank [rad]. `friction` of the stroke.
     """
 
     type: Literal["servo"] = "servo"
     stiffness: Annotated[Positive, Measure("stiffness", "rotational stiffness")]
     damping: Annotated[NonNegative, Measure("damping", "rotational damping")] = 0.0
     backlash: Annotated[NonNegative, Measure("length", "angle")] | None = None
+    friction: StrokeFriction | None = None
 
     @property
     def holds(self) -> bool:
@@ -63,7 +69,7 @@ class ForceDrive(Frozen):
     ``law = "rigid"`` replays the force that the rigid robot needs, ``law = "constant"`` is `value` [N, N m],
     ``law = "csv"`` takes `force` [N] at the
     instants `time` [s], from 0, read from `file`: linear between the rows, with a jump where two rows stand at one
-    instant.
+    instant. `friction` of the stroke.
     """
 
     derived: ClassVar[tuple[str, ...]] = ("time", "force")
@@ -74,6 +80,7 @@ class ForceDrive(Frozen):
     force: Annotated[Series, Measure("force", "torque")] | None = None
     value: Annotated[Number, Measure("force", "torque")] | None = None
     feedback: Feedback | None = None
+    friction: StrokeFriction | None = None
 
     @property
     def holds(self) -> bool:

@@ -10,6 +10,7 @@ from pydantic import PlainSerializer, PlainValidator, model_validator
 
 from flexapod.errors import InputError
 from flexapod.model.base import Frozen, Measure, NonNegative, Positive, array_of
+from flexapod.model.friction import StrokeFriction
 from flexapod.typing import Array
 from flexapod.words import text
 
@@ -41,7 +42,7 @@ class HydraulicDrive(Frozen):
     are alike; `stroke` [m] of the head, from the cylinder's bottom at `bottom` [m] along the cylinder from the base
     joint (default: where the leg is as short as its `stroke` allows); `dead_volume` [m^3]: oil beyond the stroke on the
     side of the bottom and on that of the rod; `bulk_modulus` [Pa] of the oil with its air and hoses; `leakage`
-    [m^3/(s Pa)] past the head. `limits` are for the checks of a path alone.
+    [m^3/(s Pa)] past the head. `friction` of its seals, along the stroke. `limits` are for the checks of a path alone.
     """
 
     type: Literal["hydraulic"] = "hydraulic"
@@ -53,6 +54,7 @@ class HydraulicDrive(Frozen):
     bulk_modulus: Annotated[Positive, Measure("stress")]
     leakage: Annotated[NonNegative, Measure("leakage")] = 0.0
     double_ended: bool = False
+    friction: StrokeFriction | None = None
     limits: HydraulicLimits = HydraulicLimits()
 
     @model_validator(mode="after")

@@ -10,6 +10,7 @@ from pydantic import model_validator
 from flexapod.errors import InputError
 from flexapod.model.axes import within_a_turn
 from flexapod.model.base import Frozen, Matrix6, Measure, NonNegative, Number, Positive, Vec3
+from flexapod.model.friction import JointFriction
 from flexapod.model.rolling import RollingLaw
 
 NO_DIRECTION = 1e-9  # length of a vector below which it is none
@@ -27,8 +28,8 @@ class Joint(Frozen):
     `damping` [N m s/rad] beside `bending` and `torsion`, or `loss`, a loss factor of all springs of the joint, which is
     made viscous at home (T13.19); `stiffness_damping` [N s/m], `stiffness_loss`: of `stiffness` along the leg's axes by
     itself.
-    `play` [m]: free travel along the leg, from one end to the other. `eccentricity` [m]: of its centre from the axis of
-    the leg. `max_angle` [rad]: how far the leg may turn there from its direction at home.
+    `friction` in it. `play` [m]: free travel along the leg, from one end to the other. `eccentricity` [m]: of its
+    centre from the axis of the leg. `max_angle` [rad]: how far the leg may turn there from its direction at home.
     `rolling`: the law that gives `stiffness`, `stiffness_damping` and `stiffness_loss`.
     """
 
@@ -41,6 +42,7 @@ class Joint(Frozen):
     damping: Annotated[NonNegative, Measure("rotational damping")] | None = None
     loss: Annotated[NonNegative, Measure("number")] | None = None
     leg_axes: bool = False
+    friction: JointFriction | None = None
     play: Annotated[NonNegative, Measure("length")] | None = None
     eccentricity: Annotated[NonNegative, Measure("length")] | None = None
     max_angle: Annotated[Positive, Measure("angle")] | None = None

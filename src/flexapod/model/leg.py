@@ -175,6 +175,20 @@ class Leg(Frozen):
         return self
 
     @model_validator(mode="after")
+    def _friction_where_something_slides(self) -> Leg:
+        letters = self.letters
+        ends = (
+            ("base_joint", self.base_joint, letters.base),
+            ("platform_joint", self.platform_joint, letters.platform),
+        )
+        for name, joint, letter in ends:
+            if joint.friction is not None and letter in ("F", ""):
+                raise _misfit(self.chain, f"{name}.friction", "is of a joint that does not turn", "U, S or R there")
+        if self.drive.friction is not None and self.driven != "stroke":
+            raise _misfit(self.chain, "drive.friction", "belongs to a driven stroke")
+        return self
+
+    @model_validator(mode="after")
     def _springs_where_they_act(self) -> Leg:
         names = [spring.name for spring in self.springs]
         for spring in self.springs:

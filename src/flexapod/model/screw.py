@@ -10,6 +10,7 @@ from pydantic import Field, model_validator
 from flexapod.errors import InputError
 from flexapod.model.base import Frozen, Measure, NonNegative, Positive
 from flexapod.model.drive import Feedback, ForceDrive, PrescribedDrive, ServoDrive
+from flexapod.model.friction import ScrewFriction
 from flexapod.model.hydraulic import HydraulicDrive
 from flexapod.model.material import Material
 from flexapod.model.spring import check_lossy
@@ -174,7 +175,7 @@ class ScrewDrive(Frozen):
     `material`; `mounting` of its far end. What the motor does to the rotor: `command` "position" holds it, "servo" has
     a `loop` (spring [N m/rad] and damper [N m s/rad] on the screw's angle), "torque" pushes with what the rigid robot
     needs, with or without a loop. `efficiency`: thrust times lead over the screw's work; it, `limits` and `brake` are
-    for the checks of a path alone.
+    for the checks of a path alone. `friction` at the nut.
     """
 
     type: Literal["screw"] = "screw"
@@ -192,6 +193,7 @@ class ScrewDrive(Frozen):
     encoder: Encoder = Encoder()
     limits: Limits = Limits()
     brake: Brake | None = None
+    friction: ScrewFriction | None = None
 
     @model_validator(mode="after")
     def _sensible(self) -> ScrewDrive:

@@ -192,7 +192,8 @@ class _Leg(NamedTuple):
         joint = platform_frame(number, end, normal if planar else axis, axes)
         base_springs, end_springs = (_springs(x, rigid) for x in (leg.base_joint, leg.platform_joint))
         gammas = _gammas(end, end_springs, rigid, planar)
-        sprung = any(base_springs) or end_springs.moves
+        rubs = not rigid and leg.platform_joint.friction is not None  # on the angles there
+        sprung = any(base_springs) or end_springs.moves or rubs
         gammas = (FREE, FREE, FREE) if sprung and gammas[0] == ABSENT else gammas  # seen by springs
         pose = any(g != ABSENT for g in gammas)
         twists = base == "S" or letters.stroke == "C" or (base == "F" and base_springs.torsion)

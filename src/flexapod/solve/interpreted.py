@@ -19,14 +19,20 @@ def _row(system: System, x: Flow, table: Array, wrench: Array) -> Array:
     r, gaps, _ = system.residual(x, table, wrench)
     energy, force = system.energies(x, table)
     reaction = np.where(system.hub_held, r[-6:], 0.0) if system.hub else np.zeros(6)
-    closure = np.array([np.abs(gaps).max(initial=0.0)])
-    parts = [x.q, x.v, x.v_dot, x.lam, force, x.pose, reaction, energy, x.sums, closure]
+    closure, rubs, stored = np.array([np.abs(gaps).max(initial=0.0)]), np.zeros(0), 0.0
+    if system.kernel.shapes.bristles:
+        friction = system.friction(x)
+        rubs, stored = friction.force, friction.energies[:, 1].sum()
+    energy, sums = energy + np.array([0.0, 0.0, stored]), x.sums - np.array([stored, 0.0, 0.0])
+    parts = [x.q, x.v, x.v_dot, x.lam, force, x.pose, reaction, energy, sums, closure, rubs]
     return np.concatenate([p.ravel() for p in parts])
 
 
 def first_record(system: System, flow: Flow, table: Array, wrench: Array) -> tuple[Flow, Array]:
     """Output row of the start, and the flow with its powers set."""
     flow = replace(flow, powers=system.residual(flow, table[0], wrench[0])[2])
+    if system.kernel.shapes.bristles:
+        flow = replace(flow, bristles=system.friction(flow).state)
     return flow, _row(system, flow, table[0], wrench[0])[None, :]
 
 
@@ -71,7 +77,7 @@ def _step(
     c_a = (1 - method.alpha_m) / (1 - method.alpha_f) * c_q
     x, turn = _predict(system, method, old, h, table)
     for iteration in range(MAX_ITERATIONS + 1):
-        r, g, powers = system.residual(x, table, wrench)
+        r, g, powers = system.residual(x, table, wrench, h)
         r[k:][system.fixed[k:]] = 0.0
         force = max(1.0, np.abs(x.lam).max(initial=0.0), np.abs(x.drive).max(initial=0.0))
         tolerable = TOL_FORCE * force + system.force_floor
@@ -81,6 +87,9 @@ def _step(
             break
         m = system.matrices(x, wrench)
         A = c_a * m.M + c_v * m.D + m.K
+        if system.kernel.shapes.bristles:
+            for i, D in enumerate(system.friction_matrix(x, h)):
+                A[i * system.n : (i + 1) * system.n, i * system.n : (i + 1) * system.n] += c_v * D
         counters.iterations += 1
         counters.factorisations += 1
         try:
@@ -101,7 +110,8 @@ def _step(
         )
         if done:  # after a last correction: index 3 magnifies what is left
             counters.steps += 1
-            return replace(x, sums=x.sums + 0.5 * h * (old.powers + powers), powers=powers)
+            bent = system.friction(x, h).state if system.kernel.shapes.bristles else x.bristles
+            return replace(x, sums=x.sums + 0.5 * h * (old.powers + powers), powers=powers, bristles=bent)
     return None
 
 

@@ -30,7 +30,8 @@ _log = logging.getLogger("flexapod")
 class Kernel:
     """Functions of a leg with given shapes and of the payload; all take and return float arrays.
 
-    ``library``: functions and time loop as compiled; None where no C compiler was found and casadi interprets them.
+    ``leg_friction``, ``leg_friction_matrix``: of legs with friction. ``library``: functions and time loop as compiled;
+    None where no C compiler was found and casadi interprets them.
     """
 
     shapes: Shapes
@@ -43,6 +44,8 @@ class Kernel:
     payload_matrices: Function
     payload_energies: Function
     library: ctypes.CDLL | None
+    leg_friction: Function | None = None
+    leg_friction_matrix: Function | None = None
 
 
 NAMES = tuple(field.name for field in fields(Kernel) if field.name not in ("shapes", "library"))
@@ -55,7 +58,7 @@ def kernel(shapes: Shapes, march: bool = True) -> Kernel:
         library, signatures = compiled_library(
             _fingerprint(shapes), lambda: _functions(shapes), SOURCES if march else (), command, sizes(shapes)
         )
-        compiled = {name: CompiledFunction(library, name, signatures[name]) for name in NAMES}
+        compiled = {name: CompiledFunction(library, name, signatures[name]) for name in NAMES if name in signatures}
         return Kernel(shapes=shapes, library=library, **compiled)
     _warn_interpreted()
     return interpreted_kernel(shapes)
@@ -85,13 +88,15 @@ def sizes(shapes: Shapes, leg_p: int = 0, joint: int = 3) -> str:
     values = {"N": n, "ROWS": shapes.rows, "LEG_P": leg_p, "JOINT": joint, "COMMAND": shapes.commands}
     lists = (f"{name}[] = {{{', '.join(map(str, x))}}}" for name, x in (("ORDER", order), ("PLACE", places)))
     constants = ", ".join(f"{name} = {value}" for name, value in values.items())
-    return f"enum {{ {constants} }};\nstatic const int {', '.join(lists)};"
+    friction = f"#define BRISTLES {shapes.bristles}\n" if shapes.bristles else ""
+    return f"{friction}enum {{ {constants} }};\nstatic const int {', '.join(lists)};"
 
 
 def _functions(shapes: Shapes) -> "list[NamedFunction]":
     from flexapod.mechanics.assembly import joint_functions, leg_functions, payload_functions
+    from flexapod.mechanics.sliding import friction_functions
 
-    return [*leg_functions(shapes), *joint_functions(), *payload_functions()]
+    return [*leg_functions(shapes), *friction_functions(shapes), *joint_functions(), *payload_functions()]
 
 
 def _fingerprint(shapes: Shapes) -> list[object]:

@@ -32,7 +32,8 @@ class _Settings(Structure):
 
 class _State(Structure):
     _fields_ = [
-        *[(name, c_void_p) for name in ("q", "v", "v_dot", "a", "lam", "drive", "pose", "sums", "powers", "record")],
+        *[(name, c_void_p) for name in ("q", "v", "v_dot", "a", "lam", "drive", "pose", "bristles")],
+        *[(name, c_void_p) for name in ("sums", "powers", "record")],
         ("closure", c_double),
         *[(name, c_long) for name in ("steps", "iterations", "factorisations", "bad_leg")],
     ]
@@ -73,7 +74,8 @@ class _Call:
             h, method.alpha_m, method.alpha_f, method.beta, method.gamma, TOL_CLOSURE, TOL_FORCE, system.force_floor,
             MAX_ITERATIONS, MAX_AGE, every,
         )  # fmt: skip
-        arrays = (flow.q, flow.v, flow.v_dot, flow.a, flow.lam, flow.drive, flow.pose, flow.sums, flow.powers, rows)
+        arrays = (flow.q, flow.v, flow.v_dot, flow.a, flow.lam, flow.drive, flow.pose, flow.bristles)
+        arrays += (flow.sums, flow.powers, rows)
         self.state = _State(*[_address(x) for x in arrays])
 
 

@@ -7,8 +7,20 @@ from flexapod.mechanics.layout import LEG_PARAMETERS, PAYLOAD_PARAMETERS, Shapes
 from flexapod.model import Actuator, ForceDrive, Joint, Leg, Robot, ServoDrive, damping_parts
 from flexapod.rigid.limbs import COORDINATES, FREE, Limbs
 from flexapod.solve.sections import section_parameters
-from flexapod.solve.springs import Place, in_series, of_servo, oil_shares, softening, springs_along, viscous
+from flexapod.solve.springs import (
+    Place,
+    in_series,
+    of_servo,
+    oil_shares,
+    softening,
+    springs_along,
+    twist_share,
+    viscous,
+)
 from flexapod.typing import Array
+
+#: Of a place without friction: nothing rubs, and what could bend is a unit long.
+NO_FRICTION = (0.0, 0.0, 1.0, 0.0, 0.0, 0.0, 0.0)
 
 
 def _pack(layout: tuple[tuple[str, int], ...], values: dict[str, object]) -> Array:
@@ -47,6 +59,7 @@ def leg_parameters(robot: Robot, legs: Limbs, shapes: Shapes, per_loss: float = 
         | ends[i]
         | _soft(leg, legs.home[i, COORDINATES.index("l")], per_loss)
         | (section_parameters(leg, shapes, legs.home[i, COORDINATES.index("l")]) if shapes.sections else {})
+        | _friction(leg, float(legs.home[i, COORDINATES.index("l")]))
         for i, leg in enumerate(robot.legs)
     )
     turns = [COORDINATES.index(name) for name in ("spin", "gamma3")]
@@ -167,6 +180,23 @@ def _series(leg: Leg, length: float, per_loss: float) -> dict[str, object]:
         "rotor_stiffness": loop[0],
         "rotor_damping": loop[1],
     }
+
+
+def _friction(leg: Leg, length: float) -> dict[str, object]:
+    """Friction of joints and drive; that of a screw by the nut's travel, Eq. (T19.12)."""
+    found: dict[str, object] = {}
+    for name, joint, letter in (
+        ("base", leg.base_joint, leg.letters.base),
+        ("platform", leg.platform_joint, leg.letters.platform),
+    ):
+        numbers = NO_FRICTION if joint.friction is None else joint.friction.numbers
+        found[f"{name}_friction"] = (*numbers, float(letter == "S"))
+    drive, screw = leg.drive.friction, leg.screw
+    numbers, at_stroke = NO_FRICTION if drive is None else drive.numbers, 1.0
+    if screw is not None:
+        per_turn = np.array([1 / screw.per_turn, 0.0, screw.per_turn, 1.0, 1 / screw.per_turn, screw.per_turn**-2, 1.0])
+        numbers, at_stroke = tuple(numbers * per_turn), twist_share(leg, length)
+    return found | {"drive_friction": (*numbers, 0.0), "drive_friction_at_stroke": at_stroke}
 
 
 def flexures(robot: Robot, legs: Limbs, per_loss: float | None = None) -> Array:

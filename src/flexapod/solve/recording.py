@@ -26,7 +26,7 @@ class Recording:
 
     ``drive``, (T, legs, ports): the whole force of each port, whatever makes it: held, pushed, a spring [N, N m];
     ``reaction``, (T, 6): force and moment on what is held of the payload; ``energy``: kinetic, gravity, strain;
-    ``sums``: lost, drives, wrench.
+    ``sums``: lost, drives, wrench; ``friction``, (T, legs, bristles): force or moment of what slides.
     """
 
     time: Array
@@ -40,6 +40,7 @@ class Recording:
     energy: Array
     sums: Array
     closure: Array
+    friction: Array
 
     def ending(self, last: "Recording") -> "Recording":
         """The same with another last instant."""
@@ -53,7 +54,15 @@ def _shapes(system: System) -> dict[str, tuple[int, ...]]:
     legs, N = system.legs, (system.size,)
     forces = {"lam": (legs, system.rows), "drive": (legs, system.ports.size)}
     sizes = {"pose": 7, "reaction": 6, "energy": 3, "sums": 3, "closure": 1}
-    return {"q": (legs, system.n), "v": N, "v_dot": N, **forces, **{name: (size,) for name, size in sizes.items()}}
+    last = {"friction": (legs, system.kernel.shapes.bristles)}
+    return {
+        "q": (legs, system.n),
+        "v": N,
+        "v_dot": N,
+        **forces,
+        **{name: (size,) for name, size in sizes.items()},
+        **last,
+    }
 
 
 def record_width(system: System) -> int:

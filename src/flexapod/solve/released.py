@@ -36,7 +36,7 @@ def _ideal(leg: Leg) -> Leg:
     ends = [letter.replace("F", free) for letter, free in ((letters.base, "U"), (letters.platform, "S"))]
     first = leg.chain[: 1 if letters.carriage else 0]
     none = {"stiffness": None, "bending": None, "torsion": None, "leg_axes": False, "damping": None, "loss": None}
-    none |= {"stiffness_damping": None, "stiffness_loss": None}
+    none |= {"stiffness_damping": None, "stiffness_loss": None, "friction": None}
     return leg.replace(
         chain=first + ends[0] + letters.stroke + ends[1],
         base_joint=leg.base_joint.replace(**none),

@@ -21,6 +21,7 @@ __all__ = [
     "oil_shares",
     "softening",
     "springs_along",
+    "twist_share",
     "viscous",
 ]
 
@@ -144,6 +145,12 @@ def oil_shares(springs: Iterable[Spring], length: float) -> tuple[float, ...]:
     whole = sum(spring.at_length(at) for spring in springs)
     pair = (push.slope / push.at_length(at), -pull.slope / pull.at_length(at))
     return float(softness / whole), float(softness / push.at_length(at)), float(pair[0]), float(pair[1])
+
+
+def twist_share(leg: Leg, length: float) -> float:
+    """Share of a screw's twist in the give of what stands before its piston, at a length [m], Eq. (T19.12)."""
+    softness = {x.name: float(x.at_length(np.array(length))) for x in springs_along(leg) if x.at == "nut"}
+    return softness["twist"] / sum(softness.values())
 
 
 def softening(springs: Iterable[Spring], length: float) -> tuple[float, float]:

@@ -34,7 +34,9 @@ def consistent_start(
         jerk = _resolved(system, m, jerk, h)
     a = np.where(system.fixed, x.v_dot, x.v_dot + method.delta * h * jerk)  # (T6.13)
     v = x.v + method.velocity_defect * h**2 * normal_velocity(system, m, jerk)  # (T6.14)
-    parts = {name: getattr(x, name) for name in ("q", "pose", "v_dot", "lam", "drive")}
+    parts = {name: getattr(x, name) for name in ("q", "pose", "v_dot", "lam", "drive", "bristles")}
+    if not x.bristles.size:
+        parts["bristles"] = np.zeros((system.legs, 2 * system.kernel.shapes.bristles))
     return Flow(v=v, a=a, **parts), impact
 
 
@@ -63,15 +65,18 @@ def _impact(system: System, x: State, m: Matrices, table: Array) -> tuple[State,
     return replace(x, v=v), float(0.5 * v @ m.M @ v - 0.5 * x.v @ m.M @ x.v)
 
 
-def accelerations(system: System, x: State, table: Array, wrench: Array) -> State:
-    """Accelerations, closure forces and forces of held coordinates at a consistent state, Eq. (T6.11)."""
+def accelerations(system: System, x: State, table: Array, wrench: Array, h: float = 0.0) -> State:
+    """Accelerations, closure forces and forces of held coordinates at a consistent state, Eq. (T6.11).
+
+    ``h`` [s]: time since the bristles of its friction were as they are said to be.
+    """
     given = _given(system, table, 2)
     rest = replace(x, v_dot=given, lam=np.zeros_like(x.lam), drive=np.zeros_like(x.drive))
-    r, _, _ = system.residual(rest, table, wrench)
+    r, _, _ = system.residual(rest, table, wrench, h)
     m = system.matrices(x, wrench)
     step, lam = constrained(system, m.M, m.G, -r, _constraint_curvature(system, x) - m.G @ given)
     found = replace(rest, v_dot=given + step, lam=lam.reshape(x.lam.shape))
-    own = system.by_leg(system.residual(found, table, wrench)[0])
+    own = system.by_leg(system.residual(found, table, wrench, h)[0])
     return replace(found, drive=np.where(system.enforced, own, 0.0)[:, system.ports])
 
 
@@ -93,7 +98,7 @@ def _jerk(system: System, x: State, law: Law, now: float, h: float) -> Array:
     t = min(1e-3 * h, 1e-6)
     ahead = system.moved(x, t * x.v + 0.5 * t**2 * x.v_dot)
     table, wrench = (part[0] for part in law(np.array([now + t])))
-    later = accelerations(system, replace(ahead, v=x.v + t * x.v_dot), table, wrench)
+    later = accelerations(system, replace(ahead, v=x.v + t * x.v_dot), table, wrench, t)
     return (later.v_dot - x.v_dot) / t
 
 

@@ -2,6 +2,7 @@
 
 from dataclasses import dataclass, field, replace
 from functools import cached_property
+from typing import NamedTuple
 
 import numpy as np
 from numpy.typing import NDArray
@@ -11,7 +12,7 @@ from flexapod.rigid.rotations import turned
 from flexapod.solve.kernel import Kernel, evaluate
 from flexapod.typing import Array, Mask
 
-__all__ = ["COLUMNS", "Flow", "Index", "Matrices", "State", "System"]
+__all__ = ["COLUMNS", "Flow", "Friction", "Index", "Matrices", "State", "System"]
 
 Index = NDArray[np.intp]
 ENDS = ("base", "platform")
@@ -25,7 +26,7 @@ class State:
     ``q``, (legs, n): leg coordinates; ``pose``, (7,): CoM [m] and quaternion (w x y z); ``v``, ``v_dot``, (size,):
     rates of the legs, then CoM velocity (world) and angular velocity (platform axes); ``lam``, (legs, rows): closure
     forces on the platform, world axes [N]; ``drive``, (legs, ports): forces that hold coordinates [N, N m], zero where
-    nothing is held.
+    nothing is held; ``bristles``, (legs, 2 each): how far they are bent, and how fast what they are at slides.
     """
 
     q: Array
@@ -34,6 +35,7 @@ class State:
     v_dot: Array
     lam: Array
     drive: Array
+    bristles: Array = field(default_factory=lambda: np.zeros((0, 0)))
 
 
 @dataclass(frozen=True, kw_only=True)
@@ -61,6 +63,20 @@ class Matrices:
     D: Array
     K: Array
     G: Array
+
+
+class Friction(NamedTuple):
+    """Friction of the legs.
+
+    ``r`` (legs, n): on their coordinates; ``state`` (legs, 2 bristles): bristles and rates of sliding; ``force``,
+    ``rate`` (legs, bristles) of each; ``energies`` (legs, 2): power lost and stored [W], and what bristles store [J].
+    """
+
+    r: Array
+    state: Array
+    force: Array
+    rate: Array
+    energies: Array
 
 
 @dataclass(frozen=True, kw_only=True)
@@ -151,11 +167,11 @@ class System:
         """Part of the legs of a flat vector, (legs, n)."""
         return vector[: self.legs * self.n].reshape(self.legs, self.n)
 
-    def residual(self, x: State, table: Array, wrench: Array) -> tuple[Array, Array, Array]:
+    def residual(self, x: State, table: Array, wrench: Array, h: float = 0.0) -> tuple[Array, Array, Array]:
         """Balance of every coordinate (size,) [N, N m], closures (legs * rows,) [m], powers (3,) [W].
 
         ``table``, (legs, ports, 4): value, rate, acceleration and force of each port; ``wrench``, (load_size,). What
-        holds a coordinate of the payload is left in its row.
+        holds a coordinate of the payload is left in its row. ``h``: time since its bristles were so.
         """
         v, v_dot, force = self.by_leg(x.v), self.by_leg(x.v_dot), table[:, :, 3] + x.drive
         inputs = [x.q, v, v_dot, x.lam, self.spring_commands(table), self.leg_p, *self._around(x, wrench)]
@@ -169,6 +185,9 @@ class System:
             gaps -= points
         gaps, powers = gaps[:, : self.rows], np.zeros(3)
         powers[: power.shape[1]] = power.sum(axis=0)
+        if self.kernel.shapes.bristles:
+            rubbed = self.friction(x, h)
+            r, powers[0] = r + rubbed.r, powers[0] + rubbed.energies[:, 0].sum()
         r[:, self.ports] -= force
         powers[1] += (force * v[:, self.ports]).sum()
         if not self.hub:
@@ -177,6 +196,20 @@ class System:
         net = push[0].sum(axis=0)
         rest, powers[2:] = self.kernel.payload_residual(x.pose, u, u_dot, net, wrench, self.payload_p)
         return np.concatenate([r.ravel(), rest]), gaps.ravel(), powers
+
+    def friction(self, x: State, h: float = 0.0) -> "Friction":
+        """Friction of the legs a time ``h`` [s] after their bristles were as the state says."""
+        count, b = self.legs, self.kernel.shapes.bristles
+        outputs = [(self.n,), (2 * b,), (b,), (b,), (2,)]
+        return Friction(*evaluate(self.kernel, "leg_friction", count, self._sliding(x, h), outputs))
+
+    def friction_matrix(self, x: State, h: float) -> Array:
+        """How the friction of the legs grows with their rates, (legs, n, n)."""
+        return evaluate(self.kernel, "leg_friction_matrix", self.legs, self._sliding(x, h), [(self.n, self.n)])[0]
+
+    def _sliding(self, x: State, h: float) -> list[Array]:
+        state = x.bristles if x.bristles.size else np.zeros((self.legs, 2 * self.kernel.shapes.bristles))
+        return [x.q, self.by_leg(x.v), x.lam, state, np.array([h]), self.leg_p]
 
     def matrices(self, x: State, wrench: Array) -> Matrices:
         """Matrices at rest with geometric stiffness, and the Jacobian of the closures."""

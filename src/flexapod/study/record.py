@@ -37,8 +37,8 @@ class Record:
     """Quantities at T stored instants, axis 0 = time.
 
     ``q`` (T, legs, n) leg coordinates; ``rate`` (T, legs, n') rates of those that were asked for; ``turn`` (T, 3)
-    angular velocity in platform axes; ``lam``, ``drive``, ``pose``, ``reaction``, ``energy``, ``sums``, ``closure`` as
-    in `solve.recording.Recording`.
+    angular velocity in platform axes; ``lam``, ``drive``, ``pose``, ``reaction``, ``energy``, ``sums``, ``closure``,
+    ``friction`` as in `solve.recording.Recording`.
     ``failure``: why the integration stopped early, in words, or None; ``interrupted``: by the user.
     """
 
@@ -53,6 +53,7 @@ class Record:
     energy: Array
     sums: Array
     closure: Array
+    friction: Array
     smallest_step: float
     largest_error: float
     wall_time: float
@@ -60,7 +61,7 @@ class Record:
     interrupted: bool
 
 
-_KEPT = ("time", "q", "lam", "drive", "pose", "reaction", "energy", "sums", "closure")
+_KEPT = ("time", "q", "lam", "drive", "pose", "reaction", "energy", "sums", "closure", "friction")
 
 
 def collect(chunks: Iterable[Chunk], rates: Sequence[int], duration: float, progress: Progress | None) -> Record:

@@ -17,6 +17,7 @@ _UNARY = {
     casadi.OP_TWICE: "{0} + {0}",
     casadi.OP_INV: "1.0 / {0}",
     casadi.OP_SQRT: "{1}_sqrt({0})",
+    casadi.OP_EXP: "{1}_exp({0})",
     casadi.OP_ASSIGN: "{0}",
 }
 
@@ -27,7 +28,7 @@ def c_source(function: NamedFunction) -> str:
     Parameters
     ----------
     function : NamedFunction
-        Made of sums, products, quotients, square roots, sines and cosines.
+        Made of sums, products, quotients, square roots, exponentials, sines and cosines.
 
     Raises
     ------

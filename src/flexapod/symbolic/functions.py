@@ -57,6 +57,7 @@ _KINDS = {
     casadi.OP_DIV: "divisions",
     casadi.OP_INV: "divisions",
     casadi.OP_SQRT: "roots",
+    casadi.OP_EXP: "exponentials",
     casadi.OP_SIN: "circular",
     casadi.OP_COS: "circular",
 }
@@ -64,7 +65,9 @@ _MOVES = {casadi.OP_CONST, casadi.OP_INPUT, casadi.OP_OUTPUT, casadi.OP_NEG, cas
 
 
 def operations(function: casadi.Function) -> dict[str, int]:
-    """Floating-point operations of one call by kind: additions, multiplications, divisions, roots, circular.
+    """Floating-point operations of one call by kind.
+
+    Additions, multiplications, divisions, roots, exponentials, circular.
 
     Raises
     ------

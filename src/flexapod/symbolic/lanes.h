@@ -16,6 +16,7 @@ typedef double lanes __attribute__((vector_size(8 * LANES), may_alias));
 typedef void (*LaneFunction)(const lanes *const *in, lanes *const *out);
 
 static inline double double_sqrt(double x) { return sqrt(x); }
+static inline double double_exp(double x) { return exp(x); }
 static inline void double_turn(double x, double *sine, double *cosine) { *sine = sin(x); *cosine = cos(x); }
 
 static inline lanes lanes_sqrt(lanes x) {
@@ -41,6 +42,21 @@ static void lanes_turn(lanes x, lanes *sine, lanes *cosine) {
   *cosine = (lanes)((((lane_bits)s & odd) | ((lane_bits)c & ~odd)) ^ flip_c);
   for (int i = 0; i < LANES; i++)
     if (!(fabs(x[i]) < FURTHEST)) { (*sine)[i] = sin(x[i]); (*cosine)[i] = cos(x[i]); }
+}
+
+/* The exponential: a power of two, and Taylor's series to round-off on [-ln 2 / 2, ln 2 / 2]. Outside of what normal numbers
+   allow, and what is no number, is left to libm. */
+static const double LN2[] = {0x1.62e42fefa0000p-1, 0x1.cf79abc9e3b39p-40};
+static const double POWERS[] = {1.0/2, 1.0/6, 1.0/24, 1.0/120, 1.0/720, 1.0/5040, 1.0/40320, 1.0/362880, 1.0/3628800,
+                                1.0/39916800, 1.0/479001600, 1.0/6227020800, 1.0/87178291200};
+
+static inline lanes lanes_exp(lanes x) {
+  lanes shifted = x * 0x1.71547652b82fep+0 + ROUND, k = shifted - ROUND;
+  lanes r = (x - k*LN2[0]) - k*LN2[1], s = (lanes){0} + POWERS[12];
+  for (int i = 11; i >= 0; i--) s = s*r + POWERS[i];
+  lanes whole = (lanes)((((lane_bits)shifted - 0x4338000000000000 + 1023) << 52)), result = whole * (1.0 + (r + r*r*s));
+  for (int i = 0; i < LANES; i++) if (!(fabs(x[i]) < 700)) result[i] = exp(x[i]);
+  return result;
 }
 
 /* A lane function for `count` bodies. in[k]: rows[k] rows (repeated where fewer than bodies) of in_size[k] numbers;

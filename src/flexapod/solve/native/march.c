@@ -9,6 +9,33 @@ static void outside(const Settings *s, const Work *w, const double *wrench, lane
   for (int j = 0; j < OUTSIDE; j++) to[j] = (lanes){0} + x[j];
 }
 
+/* Friction at the end of the step, and the bristles there */
+static void add_friction(const Settings *s, int i, Work *w, lanes *powers) {
+#ifdef FRICTION
+  LegState *leg = &w->leg[i];
+  lanes force[N], rate[BRISTLES], energies[2], h = (lanes){0} + w->h;
+  const lanes *in[] = {leg->q, leg->v, leg->lam, w->bristles[i], &h, w->p[i]};
+  lanes *out[] = {force, w->bent[i], w->rubs[i], rate, energies};
+  leg_friction_lanes(in, out);
+  for (long j = 0; j < N; j++) w->r[i][j] += force[j];
+  powers[0] += energies[0];
+  w->stored += sum(s, i, energies[1]);
+#endif
+}
+
+/* How friction grows with the rates, for the iteration matrix */
+static void add_friction_matrix(int i, double c_v, Work *w) {
+#ifdef FRICTION
+  static _Thread_local lanes D[N*N];
+  LegState *leg = &w->leg[i];
+  lanes h = (lanes){0} + w->h;
+  const lanes *in[] = {leg->q, leg->v, leg->lam, w->bristles[i], &h, w->p[i]};
+  lanes *out[] = {D};
+  leg_friction_matrix_lanes(in, out);
+  for (long j = 0; j < N; j++) for (long k = 0; k < N; k++) w->arrow.leg[i].A[k + j*N] += c_v*D[ORDER[k] + N*ORDER[j]];
+#endif
+}
+
 /* Residuals of a vector of legs, how far they are from closed, and the wrench that they put on the payload */
 static void residual_of_legs(const Settings *s, int i, const lanes *around, Work *w, lanes *wrench) {
   LegState *leg = &w->leg[i];
@@ -27,6 +54,7 @@ static void residual_of_legs(const Settings *s, int i, const lanes *around, Work
     w->r[i][s->port[k]] -= force;
     powers[1] += force*leg->v[s->port[k]];
   }
+  add_friction(s, i, w, powers);
   for (int j = 0; j < 3; j++) w->powers[j] += sum(s, i, powers[j]);
 }
 
@@ -36,6 +64,7 @@ static void residual(const Settings *s, const double *wrench, Work *w) {
   double net[6] = {0};
   set_commands(s, w);
   memset(w->powers, 0, sizeof w->powers);
+  w->stored = 0;
   outside(s, w, wrench, around);
   for (int i = 0; i < groups(s); i++) {
     residual_of_legs(s, i, around, w, part);
@@ -65,6 +94,7 @@ static void matrices_of_legs(const Settings *s, int i, const lanes *around, cons
     long at = ORDER[k] + N*ORDER[j];
     b->A[k + j*N] = c[0]*A[0][at] + c[1]*A[1][at] + c[2]*A[2][at];
   }
+  if (c[1] != 0) add_friction_matrix(i, c[1], w);
   for (long j = 0; j < N; j++) for (int k = 0; k < ROWS; k++) b->J[k + ROWS*j] = J[k + ROWS*ORDER[j]];
   if (s->hub) for (int j = 0; j < 36; j++) Ap[j] += c[2]*sum(s, i, H[j]);
 }
@@ -164,9 +194,12 @@ static void write_record(const Settings *s, State *x, const Work *w) {
   o += k + 2*all + (ROWS + ports)*s->legs;
   memcpy(o, s->hub ? w->payload.pose : x->pose, 7*sizeof(double)); o += 7;
   memcpy(o, w->reaction, sizeof w->reaction); o += 6;
+  e[2] += w->stored;
   memcpy(o, e, sizeof e); o += 3;
-  memcpy(o, x->sums, sizeof(double)*3); o += 3;
+  memcpy(o, x->sums, sizeof(double)*3); o[0] -= w->stored; o += 3;
   *o++ = w->closure;
+  for (int i = 0; i < groups(s); i++) scatter(s, i, w->rubs[i], BRISTLES, BRISTLES, o);
+  o += BRISTLES*s->legs;
   x->record = o;
 }
 
@@ -180,11 +213,13 @@ void record_state(const Settings *s, State *x, const double *row, const double *
   Work *w = work();
   int finite;
   load(s, x, w);
+  w->h = 0;
   for (int i = 0; i < groups(s); i++) gather(s, i, row, s->ports*COLUMNS, s->ports*COLUMNS, w->table[i]);
   residual(s, wrench, w);
   excess(s, w, &finite);
   x->closure = w->closure;
   memcpy(x->powers, w->powers, sizeof w->powers);
+  for (int i = 0; i < groups(s); i++) scatter(s, i, w->bent[i], 2*BRISTLES, 2*BRISTLES, x->bristles);
   write_record(s, x, w);
 }
 
@@ -283,6 +318,7 @@ int march(const Settings *s, State *x, const double *table, const double *wrench
   long width = s->legs*s->ports*COLUMNS, age = s->max_age;
   double pose_step[6];
   load(s, x, w);
+  w->h = s->h;
   for (int i = 0; i < groups(s); i++) {
     memcpy(past.v_dot[i], w->leg[i].v_dot, sizeof past.v_dot[i]);
     memcpy(past.lam[i], w->leg[i].lam, sizeof past.lam[i]);
@@ -294,6 +330,7 @@ int march(const Settings *s, State *x, const double *table, const double *wrench
     int fault = iterate(s, x, wrench + load_size(s)*t, pose_step, &age, w);
     if (fault) { x->steps += t; x->bad_leg = worst_leg(s, w); return fault; }
     age++;
+    memcpy(w->bristles, w->bent, sizeof w->bent);
     for (int j = 0; j < 3; j++) { x->sums[j] += 0.5*s->h*(x->powers[j] + w->powers[j]); x->powers[j] = w->powers[j]; }
     if (t % s->output_every == 0) { set_commands(s, w); write_record(s, x, w); }
   }

@@ -8,6 +8,8 @@ typedef struct {
   LegState leg[GROUPS]; PayloadState payload;
   lanes p[GROUPS][LEG_P], joint[GROUPS][JOINT], table[GROUPS][PORTS*COLUMNS], hold[GROUPS][PORTS];
   lanes command[GROUPS][COMMAND], r[GROUPS][N], g[GROUPS][ROWS];
+  lanes bristles[GROUPS][2*BRISTLES], bent[GROUPS][2*BRISTLES], rubs[GROUPS][BRISTLES];  /* at the step's begin, its end; forces */
+  double h, stored;                     /* length of the step, energy of the bristles */
   double rp[6], reaction[6], powers[3], closure;
   Arrow arrow;
 } Work;
@@ -20,6 +22,7 @@ static void load(const Settings *s, const State *x, Work *w) {
     gather(s, i, x->v_dot, N, N, leg->v_dot); gather(s, i, x->a, N, N, leg->a);
     gather(s, i, x->lam, ROWS, ROWS, leg->lam); gather(s, i, x->drive, s->ports, s->ports, leg->drive);
     gather(s, i, s->leg_p, LEG_P, LEG_P, w->p[i]);
+    gather(s, i, x->bristles, 2*BRISTLES, 2*BRISTLES, w->bristles[i]);
     gather(s, i, s->held, s->ports, s->ports, w->hold[i]);
     if (s->hub) gather(s, i, s->joint_p, JOINT, JOINT, w->joint[i]);
   }
@@ -39,6 +42,7 @@ static void store(const Settings *s, const Work *w, State *x) {
     scatter(s, i, leg->q, N, N, x->q); scatter(s, i, leg->v, N, N, x->v);
     scatter(s, i, leg->v_dot, N, N, x->v_dot); scatter(s, i, leg->a, N, N, x->a);
     scatter(s, i, leg->lam, ROWS, ROWS, x->lam); scatter(s, i, leg->drive, s->ports, s->ports, x->drive);
+    scatter(s, i, w->bristles[i], 2*BRISTLES, 2*BRISTLES, x->bristles);
   }
   x->closure = w->closure;
   if (!s->hub) return;

@@ -1,0 +1,64 @@
+"""What slides with friction in a leg, and the named functions of it, Eqs. (T19.7)-(T19.8)."""
+
+from types import SimpleNamespace
+
+from flexapod.elements.friction import Rubbing, rubbing, turning
+from flexapod.mechanics.layout import Shapes, leg_parameters
+from flexapod.symbolic.functions import NamedFunction
+from flexapod.symbolic.vocabulary import SX, dot, jacobian, split, sqrt, symbol, symbols, vertcat, zeros
+
+FORCELESS = 1e-12  # N^2, added to the square of a joint's force: a root has no slope at zero
+
+
+def friction_functions(shapes: Shapes) -> list[NamedFunction]:
+    """Friction of one leg at the end of a step of length h, and how it grows with the rates; none of legs without."""
+    if not shapes.sliding:
+        return []
+    p_vector, p = symbols(leg_parameters(shapes), "p")
+    q, qs = symbols(shapes.layout, "q")
+    v, vs = symbols(shapes.layout, "v")
+    lam, h, begin = symbol("lam", shapes.rows), symbol("h"), symbol("begin", 2 * shapes.bristles)
+    z, before = (split(part, shapes.sliding) for part in (begin[: shapes.bristles], begin[shapes.bristles :]))
+    rates = _rates(shapes, p, qs, vs)
+    load = sqrt(dot(lam[:3], lam[:3]) + FORCELESS) if shapes.rows else zeros(1)
+    found = {
+        name: rubbing(getattr(p, name), load, rate, getattr(before, name), getattr(z, name), h)
+        for name, rate in rates.items()
+    }
+    sliding, force = vertcat(*rates.values()), _all(found, "force")
+    on_leg = jacobian(sliding, v).T @ force  # (T19.7)
+    inputs = [("q", q), ("v", v), ("lam", lam), ("begin", begin), ("h", h), ("p", p_vector)]
+    outputs = [
+        ("r", on_leg),
+        ("state", vertcat(_all(found, "bristles"), sliding)),
+        ("force", force),
+        ("rate", _all(found, "rate")),
+        ("energies", vertcat(dot(sliding, force), sum((x.stored for x in found.values()), zeros(1)))),  # (T19.8)
+    ]
+    return [
+        NamedFunction("leg_friction", inputs, outputs),
+        NamedFunction("leg_friction_matrix", inputs, [("D", jacobian(on_leg, v))]),
+    ]
+
+
+def _all(found: dict[str, Rubbing], name: str) -> SX:
+    return vertcat(*(getattr(x, name) for x in found.values()))
+
+
+def _rates(shapes: Shapes, p: SimpleNamespace, qs: SimpleNamespace, vs: SimpleNamespace) -> dict[str, SX]:
+    """How fast what slides does so, by place."""
+    found = {}
+    for name, count in shapes.sliding:
+        if name == "drive_friction":
+            at_stroke = p.drive_friction_at_stroke
+            found[name] = at_stroke * vs.l + (1 - at_stroke) * vs.r if shapes.series else vs.l
+        elif name == "platform_friction":
+            angles, rates = (vertcat(x.gamma1, x.gamma2, x.gamma3) for x in (qs, vs))
+            found[name] = turning(angles, rates, p.platform_friction[7])
+        elif count == 2:
+            found[name] = vertcat(vs.alpha, vs.beta)
+        else:
+            angles = vertcat(qs.alpha, qs.beta, qs.spin)
+            rates = vertcat(vs.alpha, vs.beta, p.cylinder_spins * vs.spin)  # else the piston spins in its cylinder
+            found[name] = turning(angles, rates, p.base_friction[7])
+    return found

@@ -1,0 +1,154 @@
+"""Friction of joints, screws and strokes, with what bends before it slides, Eqs. (T19.9)-(T19.11)."""
+
+from __future__ import annotations
+
+from typing import Annotated
+
+from pydantic import model_validator
+
+from flexapod.errors import InputError
+from flexapod.model.base import Frozen, Measure, NonNegative, Positive
+from flexapod.words import number
+
+__all__ = ["JointFriction", "ScrewFriction", "StrokeFriction"]
+
+DampingTime = Annotated[NonNegative, Measure("time")]
+Viscous = Annotated[NonNegative, Measure("rotational damping")]
+
+
+class TurningStribeck(Frozen):
+    """More friction at low rates: the `moment` [N m] of breaking away, and the `rate` [rad/s] at which it is lost."""
+
+    moment: Annotated[Positive, Measure("torque")]
+    rate: Annotated[Positive, Measure("angular rate")]
+
+
+class SlidingStribeck(Frozen):
+    """More friction at low rates: the `force` [N] of breaking away, and the `rate` [m/s] at which it is lost."""
+
+    force: Annotated[Positive, Measure("force")]
+    rate: Annotated[Positive, Measure("velocity")]
+
+
+class JointFriction(Frozen):
+    """Friction in a joint, about each of its axes; of a ball about that about which it turns.
+
+    `moment` [N m]; or `mu`, the coefficient of a plain joint of mean `diameter` [m]; or of a rolling one `M0` [N m]
+    and `f1` times load times `diameter`. `viscous` [N m s/rad]; `presliding` [rad]: angle over which it builds up;
+    `damping_time` [s]: damping over stiffness of what bends before it slides.
+    """
+
+    moment: Annotated[Positive, Measure("torque")] | None = None
+    mu: Annotated[Positive, Measure("number")] | None = None
+    M0: Annotated[NonNegative, Measure("torque")] | None = None
+    f1: Annotated[NonNegative, Measure("number")] | None = None
+    diameter: Annotated[Positive, Measure("length")] | None = None
+    viscous: Viscous = 0.0
+    stribeck: TurningStribeck | None = None
+    presliding: Annotated[Positive, Measure("angle")] = 1e-3
+    damping_time: DampingTime = 0.0
+
+    @model_validator(mode="after")
+    def _one_law(self) -> JointFriction:
+        given = [name for name in ("moment", "mu", "M0") if getattr(self, name) is not None]
+        if len(given) != 1:
+            raise InputError(
+                "is given together with " + given[0] if given else "is missing",
+                key=given[1] if given else "moment",
+                allowed="one of moment; mu and diameter; M0, with or without f1 and diameter",
+            )
+        if self.f1 is not None and given != ["M0"]:
+            raise InputError("belongs to M0", key="f1", value=self.f1, allowed="M0, f1 and diameter of a rolling joint")
+        needed = self.mu is not None or bool(self.f1)
+        if needed != (self.diameter is not None):
+            what = "is missing: with it the moment grows with the load" if needed else "is of no use without mu or f1"
+            raise InputError(what, key="diameter", value=self.diameter)
+        if given == ["M0"] and not (self.M0 or self.f1):
+            raise InputError("and f1 leave no friction", key="M0", value=self.M0, allowed="one of them above 0")
+        if self.stribeck is not None and self.moment is None:
+            raise InputError("belongs to a constant moment", key="stribeck", allowed="together with moment")
+        _breaks_away(self.moment, self.stribeck and self.stribeck.moment, "moment", "N m")
+        return self
+
+    @property
+    def constant(self) -> float:
+        """Moment without load [N m]."""
+        return self.moment or self.M0 or 0.0
+
+    @property
+    def arm(self) -> float:
+        """Moment by load [m], Eqs. (T19.9)-(T19.10)."""
+        if self.mu is not None:
+            return 0.5 * self.mu * (self.diameter or 0.0)  # (T19.9)
+        return (self.f1 or 0.0) * (self.diameter or 0.0)  # (T19.10)
+
+    @property
+    def numbers(self) -> tuple[float, ...]:
+        """What the equations read, see `elements.friction.rubbing`; by angles."""
+        return _numbers(self, self.constant, self.arm, self.stribeck and self.stribeck.moment)
+
+
+class ScrewFriction(Frozen):
+    """Friction of a screw at its nut, by the screw's angle, whatever the thrust: preload, seals, bearing.
+
+    `torque` [N m]; `viscous` [N m s/rad]; `presliding` [rad]; `damping_time` [s] as of a joint.
+    """
+
+    torque: Annotated[Positive, Measure("torque")]
+    viscous: Viscous = 0.0
+    stribeck: TurningStribeck | None = None
+    presliding: Annotated[Positive, Measure("angle")] = 0.01
+    damping_time: DampingTime = 0.0
+
+    @model_validator(mode="after")
+    def _sensible(self) -> ScrewFriction:
+        _breaks_away(self.torque, self.stribeck and self.stribeck.moment, "moment", "N m")
+        return self
+
+    @property
+    def numbers(self) -> tuple[float, ...]:
+        """What the equations read, by the screw's angle."""
+        return _numbers(self, self.torque, 0.0, self.stribeck and self.stribeck.moment)
+
+
+class StrokeFriction(Frozen):
+    """Friction of a stroke, along it: seals, guide.
+
+    `force` [N]; `viscous` [N s/m]; `presliding` [m]; `damping_time` [s] as of a joint.
+    """
+
+    force: Annotated[Positive, Measure("force")]
+    viscous: Annotated[NonNegative, Measure("damping")] = 0.0
+    stribeck: SlidingStribeck | None = None
+    presliding: Annotated[Positive, Measure("length")] = 1e-5
+    damping_time: DampingTime = 0.0
+
+    @model_validator(mode="after")
+    def _sensible(self) -> StrokeFriction:
+        _breaks_away(self.force, self.stribeck and self.stribeck.force, "force", "N")
+        return self
+
+    @property
+    def numbers(self) -> tuple[float, ...]:
+        """What the equations read, along the stroke."""
+        return _numbers(self, self.force, 0.0, self.stribeck and self.stribeck.force)
+
+
+def _numbers(
+    friction: JointFriction | ScrewFriction | StrokeFriction, sliding: float, arm: float, static: float | None
+) -> tuple[float, ...]:
+    excess, slower = 0.0, 0.0
+    if static is not None and friction.stribeck is not None:
+        excess, slower = static / sliding - 1, 1 / friction.stribeck.rate  # (T19.11)
+    return sliding, arm, friction.presliding, excess, slower, friction.viscous, friction.damping_time
+
+
+def _breaks_away(sliding: float | None, static: float | None, key: str, unit: str) -> None:
+    """Raise InputError if what breaks away is less than what slides."""
+    if sliding is not None and static is not None and static < sliding:
+        raise InputError(
+            "is less than what it falls to when sliding",
+            key=f"stribeck.{key}",
+            value=static,
+            allowed=f"at least {number(sliding)} {unit}",
+        )

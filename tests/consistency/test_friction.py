@@ -1,0 +1,224 @@
+"""Friction: public and closed-form cases, limits, passivity, energy, lost motion, Eqs. (T19.1)-(T19.12)."""
+
+from functools import cache
+from itertools import pairwise
+
+import casadi
+import numpy as np
+import pytest
+from scipy.integrate import solve_ivp
+from tests.machines import BODY, SCREW, TUBE, machine, study
+from tests.runs import balance, run_robot
+
+from flexapod.bases import lateral_basis
+from flexapod.elements.friction import rubbing
+from flexapod.model import Feedback, Joint, JointFriction, ScrewFriction, ServoDrive, StrokeFriction
+from flexapod.solve.kernel import kernel
+from flexapod.solve.springs import springs_along
+from flexapod.symbolic.vocabulary import constant, symbol, zeros
+
+RUBS = Joint(friction=JointFriction(moment=2.0))
+PLAIN = Joint(friction=JointFriction(mu=0.1, diameter=0.04))
+SERVO = SCREW.replace(command="servo", loop=Feedback(stiffness=5e3, damping=20.0))
+EVERYWHERE = {"base_joint": RUBS, "platform_joint": PLAIN, "drive": SERVO.replace(friction=ScrewFriction(torque=0.5))}
+# Table I of the paper: sigma0 1e5 N/m, sigma1 sqrt(1e5), sigma2 0.4, Fc 1 N, Fs 1.5 N, vs 1 mm/s
+PAPER = np.array([1.0, 0.0, 1e-5, 0.5, 1e3, 0.4, np.sqrt(1e5) / 1e5, 0.0])
+
+
+@cache
+def rubber(numbers=tuple(PAPER), *, falling=False, directions=1):
+    """Force, bristle and its rate at a step's end, of rates there and at its begin, a bristle, the step."""
+    x = [symbol(name, directions) for name in ("v", "before", "z")] + [symbol("h")]
+    found = rubbing(constant(np.array(numbers)), zeros(1), *x, falling=falling)
+    return casadi.Function("rubbing", x, [found.force, found.bristles, found.rate, found.stored])
+
+
+def at(v, z, **more):
+    """Force and rate of the bristle at a state."""
+    force, _, rate, _ = rubber(**more)(v, v, z, 0.0)
+    return float(force), float(rate)
+
+
+def test_stick_slip_of_the_public_case():
+    # Exudyn's Examples/lugreFrictionTest.py: 1 kg pulled through 2 N/m at 0.1 m/s; x and z after 25 s, some ten slips.
+    def rates(t, y):
+        force, z_rate = at(y[1], y[2])
+        return [y[1], 2 * (0.1 * t - y[0]) - force, z_rate]
+
+    x, _, z = solve_ivp(rates, (0, 25), [0, 0, 0], method="LSODA", rtol=1e-12, atol=1e-14).y[:, -1]
+    assert x == pytest.approx(1.908839199226505, abs=1e-8)
+    assert z == pytest.approx(1.1816795455868868e-05, abs=1e-8)
+
+
+def breakaway(rate):
+    """Force at which 1 kg breaks away under a force that grows [N], of a rate [N/s]: friction at its largest."""
+
+    def rates(t, y):
+        force, z_rate = at(y[1], y[2])
+        return [y[1], rate * t - force, z_rate]
+
+    found = solve_ivp(rates, (0, 2.0 / rate), [0, 0, 0], method="LSODA", rtol=1e-9, atol=1e-12, max_step=0.02 / rate)
+    return max(at(v, z)[0] for v, z in found.y[1:].T if v < 0.01)
+
+
+def test_break_away_force_falls_with_the_force_rate():
+    # Canudas de Wit et al. (1995), Fig. 4: from Fs at slow growth towards Fc.
+    found = [breakaway(rate) for rate in (0.1, 5.0, 50.0)]
+    assert found[0] == pytest.approx(1.5, abs=0.02)
+    assert found[0] > found[1] > found[2] > 1.0
+
+
+def walked(path, **more):
+    """Forces along a path of places, steps of a second, from rest."""
+    z, forces, step = 0.0, [], rubber(**more)
+    for way in np.diff(path):
+        force, z, *_ = step(way, way, z, 1.0)
+        forces.append(float(force))
+    return np.array(forces)
+
+
+DAHL = (1.0, 0.0, 1e-3, 0.0, 0.0, 0.0, 0.0, 0.0)
+
+
+def test_presliding_does_not_depend_on_rate_and_is_a_loop():
+    path = 2e-3 * np.sin(np.linspace(0, 4 * np.pi, 401))
+    step = rubber(DAHL)
+    z, slow, h = 0.0, [], 7.0  # the same path, seven times as slow
+    for way in np.diff(path):
+        force, z, *_ = step(way / h, way / h, z, h)
+        slow.append(float(force))
+    force = walked(path, numbers=DAHL)
+    np.testing.assert_allclose(slow, force, rtol=0, atol=1e-12)
+    np.testing.assert_allclose(force[200:], force[:200] + (force[200:] - force[:200]), atol=0)
+    # the steady loop encloses what one cycle loses: less than 4 Fc times the amplitude, more than half of it
+    assert 0.5 < (force[200:] @ np.diff(path)[200:]) / (4 * 1.0 * 2e-3) < 1.0
+
+
+@pytest.mark.parametrize("step", [1e-5, 1e-3, 1.0])
+def test_steps_of_any_length_keep_bristles_within_what_they_bend_to(step):
+    assert np.abs(walked(np.arange(0, 2000 * step, step), numbers=DAHL)).max() <= 1.0 + 1e-15
+    # small steps along a straight path: the exact exponential, to the third order of a step over the presliding
+    if step == 1e-5:
+        exact = 1 - np.exp(-np.arange(1, 1999) * step / 1e-3)
+        np.testing.assert_allclose(walked(np.arange(0, 1999 * step, step), numbers=DAHL), exact, atol=1e-6)
+
+
+def test_it_is_passive_whatever_the_rates():
+    # Bristles' damper with its fall, static friction twice that of sliding: the energy taken is never less than what
+    # is stored. Steps are short beside the bristles' time, so that the sum of v F h is the integral.
+    numbers = (1.0, 0.0, 1e-3, 1.0, 1 / 0.05, 0.0, 0.05, 0.0)
+    step, h, rng = rubber(numbers, falling=True), 1e-4, np.random.default_rng(3)
+    for scale in (0.01, 0.1, 1.0):
+        tones = [(a, f) for a, f in zip(rng.normal(size=4), rng.uniform(1, 40, 4), strict=True)]
+        v = scale * sum(a * np.sin(2 * np.pi * f * h * np.arange(4001)) for a, f in tones)
+        z, taken = 0.0, 0.0
+        for before, now in pairwise(v):
+            force, z, _, stored = step(now, before, z, h)
+            taken += float(force) * 0.5 * (now + before) * h
+            assert taken >= float(stored) - 1e-3 * scale
+
+
+def test_a_ball_has_the_same_friction_about_every_axis():
+    numbers = (*DAHL[:7], 1.0)
+    turn = np.linalg.qr(np.random.default_rng(1).normal(size=(3, 3)))[0]
+    step, z = rubber(numbers, directions=3), np.array([2e-4, -3e-4, 1e-4])
+    v, before = np.array([0.3, -0.2, 0.5]), np.array([0.1, 0.4, -0.2])
+    here, there = (step(R @ v, R @ before, R @ z, 1e-3) for R in (np.eye(3), turn))
+    for ours, theirs in zip(here[:3], there[:3], strict=True):
+        np.testing.assert_allclose(turn @ np.array(ours), theirs, atol=1e-12)
+    force = np.array(step(v, v, 0 * z, 1.0)[0]).ravel()  # far: it slides
+    np.testing.assert_allclose(np.linalg.norm(force), 1.0, atol=2e-6)
+
+
+@cache
+def run(step, fidelity="lumped", *, where="everywhere"):
+    constant = EVERYWHERE | {"platform_joint": RUBS}
+    parts = {"everywhere": EVERYWHERE, "whatever the load": constant, "nowhere": {"drive": SERVO}}[where]
+    return run_robot(study(machine(**parts), fidelity=fidelity, step=step, output_step=1e-3))
+
+
+def test_energy_balances_to_the_order_of_the_method():
+    # Second order: a half of the step leaves a quarter, here within a tenth of the order.
+    left = [np.ptp(balance(run(h))) for h in (1e-3, 5e-4)]
+    assert np.log2(left[0] / left[1]) == pytest.approx(2.0, abs=0.1)
+    assert left[0] < 2e-2 * run(1e-3)["sums"][-1, 0]
+    # What is lost does not come back; bristles whose stiffness changes with the load are another matter (T19.8).
+    assert (np.diff(run(5e-4, where="whatever the load")["sums"][:, 0]) > 0).all()
+
+
+def test_the_path_is_of_second_order():
+    poses = [run(h)["pose"] for h in (1e-3, 5e-4, 2.5e-4)]
+    gaps = [np.abs(a - b).max() for a, b in pairwise(poses)]
+    assert np.log2(gaps[0] / gaps[1]) == pytest.approx(2.0, abs=0.3)
+
+
+def test_the_readable_twin_marches_alike(monkeypatch):
+    robot = study(machine(**EVERYWHERE), fidelity="lumped", step=1e-3, duration=0.02)
+    compiled = run_robot(robot)
+    kernel.cache_clear()
+    monkeypatch.setenv("FLEXAPOD_COMPILER", "none")
+    twin = run_robot(robot)
+    kernel.cache_clear()
+    # Closures at 1e-13 m, rates and forces as in the contract of the twin: h / 2 and h^2 / 4, 1000 kg.
+    np.testing.assert_allclose(twin["pose"], compiled["pose"], rtol=0, atol=1e-12)
+    np.testing.assert_allclose(twin["friction"], compiled["friction"], rtol=0, atol=1e-6)
+    np.testing.assert_allclose(balance(twin), balance(compiled), rtol=0, atol=1e-6)
+
+
+def test_next_to_no_friction_is_none():
+    # Forces of 1e-9 N m and N; the closure of six rows counts rounding otherwise.
+    little = Joint(friction=JointFriction(moment=1e-9))
+    parts = {
+        "base_joint": little,
+        "platform_joint": little,
+        "drive": SERVO.replace(friction=ScrewFriction(torque=1e-9)),
+    }
+    found = run_robot(study(machine(**parts), fidelity="lumped", step=1e-3, output_step=1e-3))
+    np.testing.assert_allclose(found["pose"], run(1e-3, where="nowhere")["pose"], rtol=0, atol=1e-10)
+
+
+def slow(**parts):
+    """A heave of 20 mm in a second without weight, at the middle: leg coordinates there."""
+    robot = machine(**parts)
+    robot = robot.replace(gravity=[0, 0, 0])
+    one = study(robot, duration=0.5, fidelity="assumed-modes", step=1e-3, output_step=1e-2)
+    return run_robot(one.replace(motion=one.motion.replace(duration=1.0)))["q"][-1], robot
+
+
+def test_a_joint_that_rubs_bends_its_leg():
+    # A pinned leg with the moment M at one end: M L^2 / (9 sqrt(3) E I), from the line of its ends.
+    moment = 50.0
+    thin = {"cylinder": BODY.replace(mouth=0.0, com=0.0), "piston": TUBE.replace(length=1.3)}
+    rubs, _ = slow(base_joint=Joint(friction=JointFriction(moment=moment, presliding=1e-5)), **thin)
+    free, _ = slow(**thin)
+    bent, length = (
+        (rubs - free)[0, 5:11].reshape(2, 3),
+        free[0, 2],
+    )  # behind two axial shapes: amplitudes of both planes
+    along = np.linspace(0, 1, 401)
+    across = bent @ lateral_basis("tip-load", 3).values(along)
+    across -= along * across[:, -1:]
+    # In heave one angle slides, the other has none. Inertia of what moves: the same in both runs.
+    expected = moment * length**2 / (9 * np.sqrt(3) * TUBE.EI)
+    assert np.abs(across).max() == pytest.approx(expected, rel=0.005)
+
+
+@pytest.mark.parametrize("command", ["position", "servo"])
+def test_a_screw_loses_what_its_friction_winds_up(command):
+    torque = 5.0
+    drive = SCREW if command == "position" else SERVO
+    (rubs, robot), (free, _) = (slow(drive=drive.replace(friction=x)) for x in (ScrewFriction(torque=torque), None))
+    force = torque / SCREW.per_turn
+    twist = next(x for x in springs_along(robot.legs[0]) if x.name == "twist")
+    expected = force * twist.at_length(free[:, 2])
+    if command == "servo":
+        expected = expected + torque / 5e3 * SCREW.per_turn
+    # the whole platform lags; its inertia is that of a second and 20 mm. The share is that at home, 3 % off at 10 mm.
+    np.testing.assert_allclose(free[:, 2] - rubs[:, 2], expected, rtol=0.03)
+
+
+def test_a_servo_lags_by_the_friction_of_its_stroke():
+    servo = ServoDrive(stiffness=1e7, damping=1e4)
+    rubs, _ = slow(drive=servo.replace(friction=StrokeFriction(force=100.0)))
+    free, _ = slow(drive=servo)
+    np.testing.assert_allclose(free[:, 2] - rubs[:, 2], 100.0 / 1e7, rtol=1e-2)
