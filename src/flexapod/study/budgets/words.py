@@ -8,7 +8,7 @@ import numpy as np
 
 from flexapod.study.budgets.rules import PLACE, Budget
 from flexapod.study.names import cause_in_words
-from flexapod.study.words import column, text
+from flexapod.study.words import cleared, column, text
 from flexapod.typing import Array
 
 if TYPE_CHECKING:
@@ -136,7 +136,8 @@ def table(data: Dataset) -> tuple[list[str], list[list[str]]]:
             values += [data.budget_residual.values[k]] * left + [data.budget_total.values[k]]
     lines += [("worst case of all kinds", "", np.nan), ("root of the sum of squares", "", np.nan)]
     numbers = np.array([*values, data.worst.values, data.rss.values])
-    (unit, places), (angle, turns) = column(numbers[:, PLACE].ravel(), "m"), column(numbers[:, 3:].ravel(), "rad")
+    turned = cleared(numbers[:, 3:].ravel(), np.abs(numbers[:, PLACE]).max())  # beside what they move a metre away
+    (unit, places), (angle, turns) = column(numbers[:, PLACE].ravel(), "m"), column(turned, "rad")
     head = ["part", "kind", "share", *(f"{x} [{unit}]" for x in "xyz"), *(f"r{x} [{angle}]" for x in "xyz")]
     return head, [
         [part, kind, _per_cent(share), *places[at : at + 3], *turns[at : at + 3]]
