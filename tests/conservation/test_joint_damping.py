@@ -9,8 +9,10 @@ from tests.mechanisms import built, leg
 from tests.runs import balance, collect
 
 import flexapod as fx
-from flexapod.model import AxisMotion, Joint, Payload, Simulation, override, preset
+from flexapod.model import AxisMotion, Joint, Payload, Simulation, loads, override, preset, preset_text, to_toml
 from flexapod.model.piston import Cylinder, Piston
+from flexapod.rigid.limbs import limbs
+from flexapod.solve import parameters
 from flexapod.solve.losses import loss_frequency, loss_words
 from flexapod.solve.robot_march import prepare
 
@@ -132,3 +134,30 @@ def test_loss_factors_of_a_study_file_are_said(tmp_path):
     again = tmp_path / "again.toml"
     again.write_text(fx.model.to_toml(study))
     assert fx.load(again).robot == study.robot
+
+
+ROWS = {3: np.diag([1.3e7, 1.4e7, 9.4e7]), 6: np.diag([1.3e7, 1.4e7, 9.4e7, 15.0, 15.0, 20.0])}
+
+
+@pytest.mark.parametrize("count", ROWS)
+@pytest.mark.parametrize("own", ["damping = 2000.0", "loss = 0.05"])
+def test_rows_of_a_stiffness_have_dampers_of_their_own(count, own):
+    text = f"{{ rows = {ROWS[count].tolist()}, {own} }}"
+    text = preset_text("paper-robot").replace("[leg] ", f"[leg]\nbase_joint = {{ stiffness = {text} }} ")
+    study = loads(text)
+    joint = study.robot.legs[0].base_joint
+    np.testing.assert_array_equal(joint.stiffness[:count, :count], ROWS[count])
+    again = loads(to_toml(study))
+    assert again.robot == study.robot
+    found = flexures_of(study.robot)
+    if "loss" in own:
+        np.testing.assert_allclose(found[1], 0.05 * 1e-3 * found[0], atol=1e-9)
+    else:
+        np.testing.assert_allclose(found[1][:3, :3], 2000.0 * np.eye(3), atol=1e-9)
+        assert not found[1][3:].any()
+
+
+def flexures_of(robot):
+    """Stiffness and damping of the first base joint, per_loss 1 ms."""
+    legs = limbs(robot)
+    return parameters.flexures(robot, legs)[0, 0], parameters.flexures(robot, legs, 1e-3)[0, 0]

@@ -82,37 +82,47 @@ def _joint(leg: Section, name: str, place: Array, normal: Array) -> Joint | None
 
 
 def _stiffness(section: Section) -> dict[str, object]:
-    """A number, along and across the leg, a law, three or six rows."""
-    value, found = section.data.get("stiffness"), np.zeros((6, 6))
-    if isinstance(value, list) and len(value) == 6:
-        mixed = (*_FORCES, *("rotational stiffness",) * 3)
-        return {"stiffness": section.rows("stiffness", *((*_TRANSLATIONS, *_FORCES),) * 3, *(mixed,) * 3)}
+    """A number, along and across the leg, a law, three or six rows; the latter with dampers as a table."""
+    value = section.data.get("stiffness")
     if isinstance(value, list):
-        found[:3, :3] = section.rows("stiffness", *(_TRANSLATIONS,) * 3)
-        return {"stiffness": found}
+        return {"stiffness": _rows(section, "stiffness")}
     if isinstance(value, Mapping):
         inner = section.child(value, "stiffness")
         if "law" in inner:
             return {"rolling": inner.read(RollingLaw)}
-        inner.only("axial", "radial", "damping", "loss")
-        inner.need("axial", "radial")
+        rows = "rows" in inner
+        inner.only(*(("rows",) if rows else ("axial", "radial")), "damping", "loss")
         if "damping" in inner and "loss" in inner:
             raise inner.error("is given together with loss", "damping", allowed="either of the two")
-        axial, radial = (_above_zero(inner, name) for name in ("axial", "radial"))
-        return {
-            "stiffness": np.diag([radial, radial, axial, 0, 0, 0]),
-            "leg_axes": True,
+        own = {
             "stiffness_damping": inner.number("damping", "damping"),
             "stiffness_loss": inner.number("loss", "number"),
         }
+        if rows:
+            return {"stiffness": _rows(inner, "rows"), **own}
+        inner.need("axial", "radial")
+        axial, radial = (_above_zero(inner, name) for name in ("axial", "radial"))
+        return {"stiffness": np.diag([radial, radial, axial, 0, 0, 0]), "leg_axes": True, **own}
     number = _above_zero(section, "stiffness") if "stiffness" in section else section.number("stiffness", "stiffness")
     return {} if number is None else {"stiffness": np.diag([number] * 3 + [0.0] * 3)}
+
+
+def _rows(section: Section, name: str) -> Array:
+    """Three or six rows of a stiffness, (6, 6)."""
+    value, found = section.data.get(name), np.zeros((6, 6))
+    if isinstance(value, list) and len(value) == 6:
+        mixed = (*_FORCES, *("rotational stiffness",) * 3)
+        return np.array(section.rows(name, *((*_TRANSLATIONS, *_FORCES),) * 3, *(mixed,) * 3))
+    found[:3, :3] = section.rows(name, *(_TRANSLATIONS,) * 3)
+    return found
 
 
 def _above_zero(section: Section, name: str) -> float:
     value = section.number(name, "stiffness")
     if value is None or not value > 0:
-        raise section.error("holds nothing", name, allowed="above 0 N/m; left out: rigid")
+        raise section.error(
+            "is not above zero: such a spring holds nothing", name, allowed="above 0 N/m; a joint without it is rigid"
+        )
     return value
 
 

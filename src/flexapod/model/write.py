@@ -108,15 +108,16 @@ def _joint(joint: Joint, place: Array, normal: Array) -> dict[str, object]:
     fields = _fields(joint)
     if joint.axis is not None:
         fields["axis"] = word_of(joint.axis, place, normal) or joint.axis
+    given = {"damping": joint.stiffness_damping, "loss": joint.stiffness_loss}
+    own = {name: value for name, value in given.items() if value}
     if joint.rolling is not None:
         fields["stiffness"] = joint.rolling
     elif joint.leg_axes and joint.stiffness is not None:
-        own = {"damping": joint.stiffness_damping, "loss": joint.stiffness_loss}
-        fields["stiffness"] = {
-            "axial": float(joint.stiffness[2, 2]),
-            "radial": float(joint.stiffness[0, 0]),
-            **{name: value for name, value in own.items() if value},
-        }
+        along, across = float(joint.stiffness[2, 2]), float(joint.stiffness[0, 0])
+        fields["stiffness"] = {"axial": along, "radial": across, **own}
+    elif joint.stiffness is not None and own:
+        turns = joint.stiffness[3:].any()
+        fields["stiffness"] = {"rows": joint.stiffness if turns else joint.stiffness[:3, :3], **own}
     elif joint.across_and_along is not None:
         fields["stiffness"] = joint.across_and_along[0]
     return fields
