@@ -311,8 +311,8 @@ class TestMotionBase:
         force, rate = path.forces.drive_force[:, 0], path.legs.rate[:, 0]
         assert one.pressure.value == pytest.approx(max((force / push).max(), (-force / pull).max()))
         assert one.flow.value == pytest.approx(max((rate * push).max(), (-rate * pull).max()))
-        assert hydraulic_remarks(path, describe_hydraulics(path)) == []
+        assert hydraulic_remarks(path.robot, describe_hydraulics(path)) == []
         low = study.robot.legs[0].drive.replace(limits=HydraulicLimits(pressure=1e5))
         legs = tuple(leg.replace(drive=low) for leg in study.robot.legs)
         path = RigidPath(study.replace(robot=study.robot.replace(legs=legs)))
-        assert "above the limit of 1 bar" in hydraulic_remarks(path, describe_hydraulics(path))[0]
+        assert "above the limit of 1 bar" in hydraulic_remarks(path.robot, describe_hydraulics(path))[0]

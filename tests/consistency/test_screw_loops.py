@@ -8,7 +8,7 @@ from tests.machines import NUT, SCREW, machine, study
 import flexapod as fx
 from flexapod import model
 from flexapod.errors import InputError
-from flexapod.model import Encoder, Geometry, Heat, LengthSpread, RatioSpread, Rotor, Tolerances
+from flexapod.model import Encoder, Feedback, Geometry, Heat, LengthSpread, RatioSpread, Rotor, Tolerances
 
 TEXT = model.preset_text("machine-hexapod")
 PARTS = {"rotor": [], "stroke": ["screw", "twist", "nut", "bearing", "bracket"],
@@ -130,3 +130,87 @@ class TestResolution:
             with pytest.raises(InputError) as caught:
                 changed((old, f"encoder = {text}\n{old}"))
             assert caught.value.key.startswith("leg.drive.encoder")
+
+
+class TestTorque:
+    def moving(self, drive, **more):
+        given = study(machine(drive=drive), fidelity="lumped", step=5e-4, duration=0.05, **more)
+        return given.replace(initial=model.Initial(start="moving"))
+
+    def test_a_table_of_the_rigid_torque_is_that_torque(self):
+        drive = SCREW.replace(command="torque", rotor=Rotor(inertia=1e-3, ratio=2))
+        given = self.moving(drive)
+        rigid, t = fx.inverse_dynamics(given, output_step=5e-4), np.arange(0, 0.05001, 5e-4)
+        # What the motor gives: of the thrust and of all that turns, by hand (T15.12)-(T15.13), over its ratio.
+        inertia = 2.0**2 * 1e-3 + SCREW.material.density * 0.9 * np.pi / 32 * 0.02874**4
+        thrust = rigid.actuator_force_rigid.interp(time=t).values * 0.01 / (2 * np.pi)
+        turns = inertia * rigid.leg_length_acceleration.interp(time=t).values * 2 * np.pi / 0.01
+        torque = (thrust + turns) / 2
+        replay = fx.simulate(given)
+        legs = [
+            leg.replace(drive=drive.replace(law="csv", file="t.csv", time=t, torque=torque[:, i]))
+            for i, leg in enumerate(given.robot.legs)
+        ]
+        table = fx.simulate(given.replace(robot=given.robot.replace(legs=tuple(legs))))
+        # Between its rows a table is linear.
+        difference = np.abs(table.com_position - replay.com_position).max()
+        assert float(difference) < 2e-3 * float(np.ptp(replay.com_position.values[:, 2]))
+
+    def test_a_constant_torque_with_a_loop_lifts_by_its_share(self):
+        # The loop's spring carries what the constant torque leaves: its angle is the torque's over its stiffness.
+        loop = Feedback(stiffness=2e4, damping=20.0)
+        found = []
+        for value in (0.0, 1.0):
+            drive = SCREW.replace(command="torque", law="constant", value=value, loop=loop)
+            rest = fx.simulate(study(machine(drive=drive), fidelity="lumped", step=1e-3, duration=0.002)).isel(time=0)
+            found.append(rest.drive_position.values)
+        np.testing.assert_allclose(found[1] - found[0], 1.0 / 2e4, rtol=2e-3)
+
+    def test_without_a_loop_there_is_no_rest(self):
+        drive = SCREW.replace(command="torque", law="constant", value=1.0)
+        with pytest.raises(InputError, match="holds no position"):
+            fx.modes(machine(drive=drive))
+
+    @pytest.mark.parametrize(("text", "key", "words"), [
+        ('command = "torque"\nlaw = "constant"', "leg.drive.value", "is missing"),
+        ('command = "torque"\nvalue = "1 N m"', "leg.drive.value", "not used by law 'rigid'"),
+        ('command = "torque"\nlaw = "csv"', "leg.drive.file", "is missing"),
+        ('law = "constant"\nvalue = "1 N m"', "leg.drive.value", "torque"),
+        ('command = "torque"\nlaw = "constant"\nvalue = "1 N"', "leg.drive.value", "N m"),
+    ])  # fmt: skip
+    def test_refused(self, text, key, words):
+        old = 'command = "position"         # ours'
+        with pytest.raises(InputError) as caught:
+            changed((old, f"{text} # ours"))
+        assert caught.value.key == key and words in str(caught.value)
+
+    def test_files(self, tmp_path):
+        head = "time [s], " + ", ".join(f"leg {i} [N m]" for i in range(1, 7))
+        (tmp_path / "torques.csv").write_text(f"{head}\n0, 1, 2, 3, 4, 5, 6\n1, 2, 2, 3, 4, 5, 6\n")
+        old = 'command = "position"         # ours'
+        text = TEXT.replace(old, 'command = "torque"\nlaw = "csv"\nfile = "torques.csv" # ours')
+        file = tmp_path / "machine.toml"
+        file.write_text(text)
+        given = fx.load(file)
+        np.testing.assert_array_equal(given.robot.legs[0].screw.torque, [1.0, 2.0])
+        np.testing.assert_array_equal(given.robot.legs[5].screw.torque, [6.0, 6.0])
+
+
+class TestLimitsInARun:
+    def test_what_is_exceeded_is_said(self):
+        given = changed(('limits = { speed = "3000 rpm", torque = "10 N m", rms_torque = "3.5 N m" }',
+                         'limits = { speed = "500 rpm", torque = "1 N m", rms_torque = "0.5 N m", force = "500 N" }'),
+                        ('brake = { torque = "4 N m" }', 'brake = { torque = "0.5 N m" }'))  # fmt: skip
+        data = fx.simulate(model.override(given, fidelity="rigid", step=1e-3))
+        words = data.attrs["warnings"]
+        for part in ("the thrust reaches", "above the limit of 500 N", "the motor's speed reaches", "500 rpm",
+                     "the motor's torque reaches", "(root mean square), above the limit of 0.5 N m",
+                     "the brake holds 500 mN m"):  # fmt: skip
+            assert part in words.replace("\N{NO-BREAK SPACE}", " "), part
+        within = fx.simulate(model.override(model.loads(TEXT), fidelity="rigid", step=1e-3))
+        assert "limit" not in within.attrs["warnings"] and "brake" not in within.attrs["warnings"]
+
+    def test_hydraulic(self):
+        text = model.preset_text("motion-base").replace('"140 bar", flow = "470 l/min"', '"30 bar", flow = "200 l/min"')
+        words = fx.simulate(model.override(model.loads(text), fidelity="rigid", step=2e-3)).attrs["warnings"]
+        assert "needs a pressure of" in words and "needs a flow of" in words

@@ -43,7 +43,8 @@ def changed(*pairs):
 
 
 def remarks(*pairs):
-    return screw_remarks(*changed(*pairs))
+    path, screws = changed(*pairs)
+    return screw_remarks(path.robot, screws)
 
 
 def refused(*pairs):
@@ -178,7 +179,7 @@ class TestCheck:
         )
         path, screws = changed(*rest)
         assert screws[0].hours is screws[0].life is screws[0].safety is None
-        assert screw_remarks(path, screws) == [] and "no leg bears a thrust" in back_words(path, screws)
+        assert screw_remarks(path.robot, screws) == [] and "no leg bears a thrust" in back_words(path, screws)
 
 
 class TestRefusals:

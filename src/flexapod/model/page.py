@@ -29,6 +29,7 @@ _TABLES = {
         "one at least besides the time; others are 0",
     ),
     '`leg.drive` with `law = "csv"`': (forces(6), "all columns, one for each leg"),
+    '`leg.drive` of a screw with `law = "csv"`': (forces(6, "torque"), "all columns, one for each leg"),
     "`heat.file`": (
         {"piston": "temperature", "cylinder 3": "temperature"},
         "one at least besides the time: base, platform, piston, cylinder, screw, or one of the last three of a leg",

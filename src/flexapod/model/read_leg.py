@@ -251,6 +251,13 @@ def _drive(section: Section | None, number: int, count: int, among: tuple[str, .
         found = section.table(forces(count, among[2]), needed=True, jumps=True)
         return {"time": found["time"], "force": found[f"leg {number}"]}
 
+    def turned(section: Section) -> dict[str, object]:
+        parts = _screw_parts(section)
+        if section.data.get("law") != "csv" or "file" not in section:
+            return parts
+        found = section.table(forces(count, "torque"), needed=True, jumps=True)
+        return parts | {"time": found["time"], "torque": found[f"leg {number}"]}
+
     def volumes(section: Section) -> dict[str, object]:
         both = isinstance(section.data.get("dead_volume"), list)
         value = section.vector("dead_volume", "volume", "volume") if both else section.number("dead_volume", "volume")
@@ -260,7 +267,7 @@ def _drive(section: Section | None, number: int, count: int, among: tuple[str, .
     readers = {
         ForceDrive: lambda s: s.read(ForceDrive, among=among, then=table),
         HydraulicDrive: lambda s: s.read(HydraulicDrive, then=volumes),
-        ScrewDrive: lambda s: s.read(ScrewDrive, among=_TURNING, also=_OF_MATERIAL, then=_screw_parts),
+        ScrewDrive: lambda s: s.read(ScrewDrive, among=_TURNING, also=_OF_MATERIAL, then=turned),
     }
     return section.one_of(kinds, among=among, readers=readers)
 

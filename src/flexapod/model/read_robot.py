@@ -11,7 +11,6 @@ from flexapod.errors import InputError
 from flexapod.model.axes import Plane, normal_of
 from flexapod.model.chain import chains_of
 from flexapod.model.circle import Circle
-from flexapod.model.drive import ForceDrive
 from flexapod.model.home import Home
 from flexapod.model.leg import Leg
 from flexapod.model.payload import Payload
@@ -182,4 +181,4 @@ def _turns(leg: Section) -> bool:
 
 def _columns(leg: Leg) -> bool:
     """Whether a table has a column for each leg."""
-    return isinstance(leg.drive, ForceDrive) and leg.drive.force is not None
+    return getattr(leg.drive, "time", None) is not None

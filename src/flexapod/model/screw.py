@@ -3,16 +3,17 @@
 from __future__ import annotations
 
 import math
-from typing import Annotated, Literal
+from typing import Annotated, ClassVar, Literal
 
 from pydantic import Field, model_validator
 
 from flexapod.errors import InputError
-from flexapod.model.base import Frozen, Measure, NonNegative, Positive
+from flexapod.model.base import Frozen, Measure, NonNegative, Number, Positive, Series
 from flexapod.model.drive import Feedback, ForceDrive, PrescribedDrive, ServoDrive
 from flexapod.model.friction import ScrewFriction
 from flexapod.model.hydraulic import HydraulicDrive
 from flexapod.model.material import Material
+from flexapod.model.motion import check_times
 from flexapod.model.spring import check_lossy
 from flexapod.words import number
 
@@ -173,10 +174,13 @@ class ScrewDrive(Frozen):
 
     `lead` [m] a turn; the shaft between bearing and nut by its `root_diameter` [m], `length` [m] from the bearing and
     `material`; `mounting` of its far end. What the motor does to the rotor: `command` "position" holds it, "servo" has
-    a `loop` (spring [N m/rad] and damper [N m s/rad] on the screw's angle), "torque" pushes with what the rigid robot
-    needs, with or without a loop. `efficiency`: thrust times lead over the screw's work; it, `limits` and `brake` are
-    for the checks of a path alone. `friction` at the nut.
+    a `loop` (spring [N m/rad] and damper [N m s/rad] on the screw's angle), "torque" pushes, with or without a loop:
+    by ``law = "rigid"`` with what the rigid robot and the rotor need, "constant" with the motor's torque `value` [N m],
+    "csv" with its `torque` at the instants `time` [s] read from `file`. `efficiency`: thrust times lead over the
+    screw's work; it, `limits` and `brake` are for checks and remarks alone. `friction` at the nut.
     """
+
+    derived: ClassVar[tuple[str, ...]] = ("time", "torque")
 
     type: Literal["screw"] = "screw"
     lead: Annotated[Positive, Measure("length")]
@@ -189,6 +193,11 @@ class ScrewDrive(Frozen):
     nut: Nut
     rotor: Rotor = Rotor()
     command: Literal["position", "servo", "torque"] = "position"
+    law: Literal["rigid", "constant", "csv"] = "rigid"
+    value: Annotated[Number, Measure("torque")] | None = None
+    file: str | None = None
+    time: Annotated[Series, Measure("time")] | None = None
+    torque: Annotated[Series, Measure("torque")] | None = None
     loop: Feedback | None = None
     encoder: Encoder = Encoder()
     limits: Limits = Limits()
@@ -212,6 +221,24 @@ class ScrewDrive(Frozen):
                 value=self.encoder.at,
                 allowed='at = "rotor", or command = "position"',
             )
+        return self
+
+    @model_validator(mode="after")
+    def _torque_law(self) -> ScrewDrive:
+        given = [name for name in ("value", "file", "time", "torque") if getattr(self, name) is not None]
+        if self.command != "torque" and (given or self.law != "rigid"):
+            raise InputError("is of a torque", key=given[0] if given else "law", allowed='with command = "torque"')
+        wanted = {"rigid": (), "constant": ("value",), "csv": ("file", "time", "torque")}[self.law]
+        if foreign := [name for name in given if name not in wanted]:
+            raise InputError(f"is not used by law {self.law!r}", key=foreign[0])
+        if self.law == "constant" and self.value is None:
+            raise InputError("is missing", key="value")
+        if self.law == "csv" and (self.time is None or self.torque is None):
+            raise InputError("is missing", key="file", next_step='Add file = "torques.csv" to the drive')
+        if self.time is not None and self.torque is not None:
+            if self.time.shape != self.torque.shape:
+                raise InputError("has another length than time", key="torque", value=self.torque.shape)
+            check_times(self.time, len(self.time), jumps=True)
         return self
 
     @property

@@ -154,7 +154,11 @@ def _screw(drive: model.ScrewDrive) -> str:
     motors = {
         "position": f"the {held} held at its command",
         "servo": "the rotor pulled to its command by a loop",
-        "torque": "driven by the torque that the rigid robot and the rotor need",
+        "torque": {
+            "rigid": "driven by the torque that the rigid robot and the rotor need",
+            "constant": f"driven by a constant torque of the motor, {text(drive.value or 0.0, 'N m')}",
+            "csv": "driven by a torque of the motor from a table",
+        }[drive.law],
     }
     return (
         f"screw of {text(drive.root_diameter, 'm', 4)} with a lead of {text(drive.lead, 'm', 4)}, {drive.mounting}, "

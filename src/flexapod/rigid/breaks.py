@@ -54,8 +54,9 @@ def robot_breaks(study: Study) -> Breaks:
     far = study.simulation.stored_step
     found = _motion(study.motion) | _load(study.load.wrench, far)
     for drive in {id(leg.drive): leg.drive for leg in study.robot.legs}.values():
-        if isinstance(drive, ForceDrive) and drive.time is not None and drive.force is not None:
-            found |= _table(drive.time, drive.force, far)
+        values = drive.force if isinstance(drive, ForceDrive) else getattr(drive, "torque", None)
+        if values is not None and drive.time is not None:  # type: ignore[union-attr]
+            found |= _table(drive.time, values, far)  # type: ignore[union-attr]
     return found
 
 

@@ -101,17 +101,24 @@ def push_ports(system: System, robot: Robot) -> Index:
 def feed_forward(robot: Robot, t: Array, path: rigid.Poses, wrench: Array) -> Array:
     """Feed-forward forces of drives on the rigid path at instants (T,), (T, legs) [N]; zero for those that have none.
 
-    A torque of a screw is what the rigid robot and the rotor need, Eq. (T15.13).
+    A torque of a screw is what the rigid robot and the rotor need, Eq. (T15.13), or the motor's by its law,
+    Eq. (T23.13).
     """
     drives = [leg.drive for leg in robot.legs]
     force = np.zeros((len(t), len(drives)))
     rigid_force = force
-    if any((isinstance(d, ForceDrive) and d.law == "rigid") or _turned(d) for d in drives):
+    replay = [_turned(d) and getattr(d, "law", "") == "rigid" for d in drives]
+    if any((isinstance(d, ForceDrive) and d.law == "rigid") for d in drives) or any(replay):
         rigid_force = rigid_forces(robot, path, wrench).drive_force
-    change = rigid.inverse_kinematics(robot, path).accel if any(_turned(d) for d in drives) else force
+    change = rigid.inverse_kinematics(robot, path).accel if any(replay) else force
     for i, drive in enumerate(drives):
         if isinstance(drive, ScrewDrive) and _turned(drive):
             force[:, i] = rigid_force[:, i] + drive.inertia / drive.per_turn**2 * change[:, i]
+            given = (
+                drive.value if drive.time is None or drive.torque is None else np.interp(t, drive.time, drive.torque)
+            )
+            if given is not None:
+                force[:, i] = given * drive.rotor.ratio / drive.per_turn
         if not isinstance(drive, ForceDrive):
             continue
         if drive.value is not None:

@@ -9,6 +9,7 @@ from flexapod import model
 from flexapod.solve.robot_march import RobotMarch, prepare
 from flexapod.study.actuator import simulate_actuator
 from flexapod.study.after.leg_results import damped_angles, drive_forms
+from flexapod.study.after.limits import drive_warnings
 from flexapod.study.after.plausibility import robot_warnings
 from flexapod.study.after.results import rigid_force_results, robot_coords, robot_results
 from flexapod.study.arguments import LoadLike, RobotLike, StartLike, as_study, read
@@ -42,6 +43,7 @@ class Simulated:
     def warnings(self) -> list[str]:
         """Remarks on the study, its path and its results."""
         found = robot_warnings(self.study.robot, self.march.system, self.record)
+        found += drive_warnings(self.study.robot, self.march.system, self.record)
         return [*self.study.warnings, *self.remarks, *found]
 
     def dataset(self) -> Dataset:

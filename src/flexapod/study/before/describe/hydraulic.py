@@ -6,7 +6,7 @@ from dataclasses import dataclass
 
 import numpy as np
 
-from flexapod.model import HydraulicDrive
+from flexapod.model import Leg, Robot
 from flexapod.rigid.limbs import COORDINATES
 from flexapod.rigid.rotations import matrix, quaternion
 from flexapod.solve.springs import springs_along
@@ -17,7 +17,10 @@ from flexapod.study.path import RigidPath
 from flexapod.study.words import number
 from flexapod.typing import Array
 
-__all__ = ["HydraulicDescription", "describe_hydraulics", "hydraulic_remarks", "hydraulic_table", "oil_words"]
+__all__ = [
+    "HydraulicDescription", "describe_hydraulic", "describe_hydraulics", "hydraulic_remarks", "hydraulic_table",
+    "oil_words",
+]  # fmt: skip
 
 BAR, LITRES = 1e-5, 6e4  # bar per Pa, l/min per m^3/s
 INSTANTS = 200  # at which the frequency on the oil is sought
@@ -42,14 +45,18 @@ class HydraulicDescription:
 
 def describe_hydraulics(path: RigidPath) -> tuple[HydraulicDescription, ...]:
     """The hydraulic cylinders of a robot on the rigid path of its study."""
-    drives = ((i, leg.cylinder_of_oil) for i, leg in enumerate(path.robot.legs))
-    return tuple(_describe(path, i, drive) for i, drive in drives if drive is not None)
+    legs, thrust = path.legs, path.forces.drive_force
+    return tuple(
+        describe_hydraulic(i, leg, path.time, legs.length[:, i], thrust[:, i], legs.rate[:, i])
+        for i, leg in enumerate(path.robot.legs)
+        if leg.cylinder_of_oil is not None
+    )
 
 
-def _describe(path: RigidPath, i: int, drive: HydraulicDrive) -> HydraulicDescription:
-    t, length, rate = path.time, path.legs.length[:, i], path.legs.rate[:, i]
-    thrust, (push, pull) = path.forces.drive_force[:, i], drive.areas
-    oil = next(spring for spring in springs_along(path.robot.legs[i]) if spring.columns)
+def describe_hydraulic(i: int, leg: Leg, t: Array, length: Array, thrust: Array, rate: Array) -> HydraulicDescription:
+    """The cylinder of leg i at instants `t`, each shape (T,): length [m], thrust on the piston [N], rate [m/s]."""
+    push, pull = leg.cylinder_of_oil.areas  # type: ignore[union-attr]
+    oil = next(spring for spring in springs_along(leg) if spring.columns)
     k = 1 / oil.at_length(length)
     return HydraulicDescription(
         leg=i + 1,
@@ -106,11 +113,11 @@ def oil_words(path: RigidPath, found: tuple[HydraulicDescription, ...]) -> tuple
     return tuple(words)
 
 
-def hydraulic_remarks(path: RigidPath, found: tuple[HydraulicDescription, ...]) -> list[str]:
-    """What the path asks beyond the supply: one sentence of a kind, of the leg that is worst."""
+def hydraulic_remarks(robot: Robot, found: tuple[HydraulicDescription, ...]) -> list[str]:
+    """What a motion asks beyond the supply: one sentence of a kind, of the leg that is worst."""
     remarks = []
     for one in found:
-        limits = path.robot.legs[one.leg - 1].cylinder_of_oil.limits  # type: ignore[union-attr]
+        limits = robot.legs[one.leg - 1].cylinder_of_oil.limits  # type: ignore[union-attr]
         for kind, what, extreme, limit, unit, factor in (
             ("pressure", "the thrust needs a pressure of", one.pressure, limits.pressure, "bar", BAR),
             ("flow", "the motion needs a flow of", one.flow, limits.flow, "l/min", LITRES),

@@ -290,8 +290,8 @@ def describe(study: model.Study | model.ActuatorStudy) -> RobotDescription | Act
                     *remarks,
                     *bearing_remarks(path),
                     *load_remarks(legs, study.robot, study.simulation.fidelity),
-                    *screw_remarks(path, screws),
-                    *hydraulic_remarks(path, hydraulics),
+                    *screw_remarks(study.robot, screws),
+                    *hydraulic_remarks(study.robot, hydraulics),
                 ]
             )
         ),

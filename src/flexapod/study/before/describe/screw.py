@@ -8,7 +8,7 @@ from dataclasses import dataclass
 
 import numpy as np
 
-from flexapod.model import ScrewDrive
+from flexapod.model import Leg, Robot, ScrewDrive
 from flexapod.study.after.plausibility import worst_of_each
 from flexapod.study.before.describe.leg import Extreme
 from flexapod.study.before.screws import (
@@ -24,7 +24,7 @@ from flexapod.study.path import RigidPath
 from flexapod.study.words import number, text
 from flexapod.typing import Array
 
-__all__ = ["ScrewDescription", "back_words", "describe_screws", "screw_remarks", "screw_table"]
+__all__ = ["ScrewDescription", "back_words", "describe_screw", "describe_screws", "screw_remarks", "screw_table"]
 
 SAFE = 1.0  # static load rating over load
 RPM = 30 / math.pi  # per rad/s
@@ -57,17 +57,27 @@ class ScrewDescription:
 
 def describe_screws(path: RigidPath) -> tuple[ScrewDescription, ...]:
     """The screws of a robot on the rigid path of its study."""
-    return tuple(_describe(path, i, leg.screw) for i, leg in enumerate(path.robot.legs) if leg.screw is not None)
+    legs, thrust = path.legs, path.forces.drive_force
+    return tuple(
+        describe_screw(i, leg, path.time, legs.length[:, i], thrust[:, i], legs.rate[:, i], legs.accel[:, i])
+        for i, leg in enumerate(path.robot.legs)
+        if leg.screw is not None
+    )
 
 
-def _describe(path: RigidPath, i: int, screw: ScrewDrive) -> ScrewDescription:
-    t, legs, leg = path.time, path.legs, path.robot.legs[i]
-    thrust, rate = path.forces.drive_force[:, i], legs.rate[:, i]
-    along = legs.length[:, i] - leg.piston.length - screw.bearing.position
+def describe_screw(
+    i: int, leg: Leg, t: Array, length: Array, thrust: Array, rate: Array, accel: Array
+) -> ScrewDescription:
+    """The screw of leg i at instants `t`, each shape (T,).
+
+    `length` of the leg [m], `thrust` on its piston [N], `rate` and `accel` of the nut's travel by the rotor.
+    """
+    screw: ScrewDrive = leg.screw  # type: ignore[assignment]
+    along = length - leg.begins
     allowed = buckling_thrust(screw, along)
     pushed = np.abs(thrust) if screw.mounting == "fixed-fixed" else np.maximum(thrust, 0.0)
     buckling = _largest(t, pushed / allowed)
-    speed, torque = np.abs(rate) / screw.per_turn, motor_torque(screw, thrust, rate, legs.accel[:, i])
+    speed, torque = np.abs(rate) / screw.per_turn, motor_torque(screw, thrust, rate, accel)
     load, rating = half_loads(screw.nut, thrust), screw.nut.static_load
     life, hours = _life(screw, load, t, rate)
     return ScrewDescription(
@@ -99,13 +109,13 @@ def _largest(t: Array, values: Array) -> Extreme:
     return Extreme(value=float(values[k]), time=float(t[k]))
 
 
-def screw_remarks(path: RigidPath, screws: tuple[ScrewDescription, ...]) -> list[str]:
-    """What the path asks of screws beyond their catalogue: one sentence of a kind, of the leg that is worst."""
+def screw_remarks(robot: Robot, screws: tuple[ScrewDescription, ...]) -> list[str]:
+    """What a motion asks of screws beyond their catalogue: one sentence of a kind, of the leg that is worst."""
     return worst_of_each(
         [
             (found.leg - 1, *excess)
             for found in screws
-            if (screw := path.robot.legs[found.leg - 1].screw) is not None
+            if (screw := robot.legs[found.leg - 1].screw) is not None
             for excess in _excesses(screw, found)
             if excess[1] > 1
         ]
