@@ -9,7 +9,7 @@ from tests.runs import paper_robot, with_legs
 
 import flexapod as fx
 from flexapod import rigid
-from flexapod.errors import ComputationError
+from flexapod.errors import ComputationError, InputError
 from flexapod.model import Geometry, Gradient, Heat, Joint, LengthSpread, RatioSpread, Tolerances
 from flexapod.study.accuracy.imperfect import bent
 from flexapod.study.accuracy.play import half_play
@@ -94,7 +94,7 @@ def test_the_worst_case_is_attained_in_a_corner_of_the_box():
     robot = paper_robot().robot.replace(tolerances=Tolerances(leg_offset=LengthSpread(box=1e-5), base_joints=2e-5))
     found = fx.accuracy(robot, POSE)
     at = sensitivity(robot, rigid.poses_from_home(robot, np.array([[0.02, 0, 0.03, 0.1, 0, -0.15]])))
-    effect = next(one for one in spreading(robot, at, np.zeros(6)) if one.boxed).effect[:, 0]
+    effect = next(one for one in spreading(robot, at, np.zeros(6), lambda: np.zeros((6, 6))) if one.boxed).effect[:, 0]
     corners = np.array([np.array(signs) @ effect for signs in itertools.product((-1, 1), repeat=6)])
     np.testing.assert_allclose(np.abs(corners).max(axis=0), found.pose_worst, rtol=1e-12)
     inside = np.random.default_rng(0).uniform(-1, 1, (1000, 6)) @ effect
@@ -259,6 +259,56 @@ def test_stiffer_pistons_are_longer_under_thrust():
     share = found.pose_sigma_by_tolerance[0, 1, :3]
     # First order in 1 %, and the sag: parts of a thousand; thrust taken as the mean of both ends.
     np.testing.assert_allclose(np.abs(moved), share, rtol=0.03, atol=1e-12)
+
+
+@pytest.mark.parametrize("name", ["bow", "EI", "density"])
+def test_scatter_of_pistons_is_that_of_pistons_which_differ(name):
+    # One leg 1 % off: first order in it, so parts of a hundred beside the square, which only the bow has.
+    robot = crooked(machines.machine(), bow=1e-3).replace(
+        tolerances=Tolerances(**{name: 1e-5 if name == "bow" else 0.01})
+    )
+    found = fx.accuracy(robot).pose_sigma_by_tolerance[0, 1]
+    leg = robot.legs[1]
+    field = {"bow": "bow", "EI": "EI", "density": "rhoA"}[name]
+    piston = leg.piston.replace(**{field: 1.01 * getattr(leg.piston, field)})
+    other = robot.replace(legs=(robot.legs[0], leg.replace(piston=piston), *robot.legs[2:]))
+    if name == "density":
+        drawn, heavier = (fx.modes(x, fidelity="assumed-modes").com_sag.values for x in (robot, other))
+        still = robot.replace(payload=robot.payload.replace(tool=robot.payload.com))
+        moved = heavier - drawn
+        found = fx.accuracy(still).pose_sigma_by_tolerance[0, 1]
+    else:
+        moved = (fx.accuracy(other).pose_error - fx.accuracy(robot).pose_error).values[:3]
+    np.testing.assert_allclose(np.abs(moved), found[:3], rtol=0.02, atol=1e-13)
+
+
+@pytest.mark.parametrize("boxed", [False, True])
+@pytest.mark.parametrize("bow", [None, 2e-4])
+def test_scatter_of_pistons_is_that_of_machines_drawn(bow, boxed):
+    # The square of a bow counts alone where legs are straight: its variance is known to 1 %, that of chi-square.
+    def spread(size, kind):
+        return kind(box=size) if boxed else kind(sigma=size)
+
+    robot = crooked(machines.machine(), bow=bow)
+    given = Tolerances(bow=spread(1e-4, LengthSpread), EI=spread(0.05, RatioSpread))
+    heavy = Tolerances(density=spread(0.05, RatioSpread))
+    for tolerances in (given, heavy):
+        data = fx.accuracy(robot.replace(tolerances=tolerances), draws=10_000, seed=2)
+        drawn = np.sqrt(np.diag(data.sample_covariance))
+        kept = data.pose_sigma.values > 1e-15  # of bows some picometres
+        assert kept[:3].all()
+        np.testing.assert_allclose(drawn[kept], data.pose_sigma.values[kept], rtol=0.03)
+        if boxed:
+            assert (data.sample_largest <= 1.001 * data.pose_worst + 1e-15).all()
+
+
+def test_scatter_of_bending_where_joints_carry_moments_is_refused():
+    robot = mechanisms.three_rps()
+    for name, size in (("EI", 0.01), ("bow", 1e-5)):
+        with pytest.raises(InputError, match="carry moments") as caught:
+            robot.replace(tolerances=Tolerances(**{name: size}))
+        assert caught.value.key == f"tolerances.{name}"
+    assert fx.accuracy(robot.replace(tolerances=Tolerances(density=0.01))).pose_sigma[2] > 0
 
 
 def test_redundant_legs_share_errors_by_their_compliance_and_say_so():

@@ -40,13 +40,17 @@ base_joints = "20 um"
 platform_joints = { box = "50 um" }
 leg_offset = { sigma = 1e-5 }
 lead = "C5"
+EI = 0.03
+density = { box = 0.02 }
+bow = "30 um"
 """
     robot = study(text).robot
     assert robot.geometry.base_joints[0, 0] == 1e-3 and robot.geometry.leg_offset.shape == (6,)
     assert robot.heat.piston.tolist() == [25.0] and robot.heat.expansion == Expansion(base=12e-6)
     assert robot.tolerances == Tolerances(
-        base_joints=2e-5, platform_joints=LengthSpread(box=5e-5), leg_offset=1e-5, lead=RatioSpread(box=0.018 / 300)
-    )
+        base_joints=2e-5, platform_joints=LengthSpread(box=5e-5), leg_offset=1e-5, lead=RatioSpread(box=0.018 / 300),
+        EI=0.03, density=RatioSpread(box=0.02), bow=3e-5,
+    )  # fmt: skip
     assert loads(to_toml(study(text))).robot == robot
 
 

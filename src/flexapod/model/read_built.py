@@ -13,6 +13,7 @@ from flexapod.model.tolerances import CLASSES, LengthSpread, RatioSpread, Tolera
 __all__ = ["read_built"]
 
 _LENGTHS = ("length",) * 3
+_RATIOS = ("lead", "EA", "EI", "density")
 
 
 def read_built(top: Section, count: int) -> dict[str, object]:
@@ -80,10 +81,10 @@ def _table(section: Section, count: int) -> dict[str, object]:
 def _tolerances(section: Section) -> dict[str, object]:
     lengths = {
         name: _spread(section, name, LengthSpread, "length")
-        for name in ("base_joints", "platform_joints", "leg_offset")
+        for name in ("base_joints", "platform_joints", "leg_offset", "bow")
     }
     named = _class(section)
-    ratios = {name: _spread(section, name, RatioSpread, "number") for name in ("lead", "EA") if name not in named}
+    ratios = {name: _spread(section, name, RatioSpread, "number") for name in _RATIOS if name not in named}
     return lengths | ratios | named
 
 

@@ -16,7 +16,15 @@ from flexapod.model.heat import Heat
 from flexapod.model.home import Home, carriage_home, foot
 from flexapod.model.leg import Leg
 from flexapod.model.payload import Payload, millimetres
-from flexapod.model.robot_checks import check_built, check_counts, check_leg, check_plane, check_spread, check_springs
+from flexapod.model.robot_checks import (
+    check_built,
+    check_counts,
+    check_leg,
+    check_plane,
+    check_spread,
+    check_springs,
+    check_tolerances,
+)
 from flexapod.model.tolerances import Tolerances
 from flexapod.typing import Array
 from flexapod.words import number, text
@@ -63,6 +71,7 @@ class Robot(Frozen):
             check_leg(i, self.legs[i - 1], float(length))
         check_built(self)
         check_springs(self)
+        check_tolerances(self)
         return self
 
     def _shown(self) -> dict[str, str]:

@@ -74,6 +74,18 @@ def check_built(robot: Robot) -> None:
             )
 
 
+def check_tolerances(robot: Robot) -> None:
+    """Refuse scatter of bending where joints carry moments."""
+    given = robot.tolerances
+    for name in ("EI", "bow") if given is not None else ():
+        if getattr(given, name) is not None and not all(leg.swings for leg in robot.legs):
+            raise InputError(
+                "is of legs whose joints carry moments, and what that does is not known here",
+                key=f"tolerances.{name}",
+                allowed="legs UPS, SPS and their like",
+            )
+
+
 def check_springs(robot: Robot) -> None:
     """Refuse springs along legs that are held across, where flexures of other legs give displacements fixed axes."""
     if not any(joint.flexes for leg in robot.legs for joint in (leg.base_joint, leg.platform_joint)):

@@ -60,7 +60,8 @@ def _spread(value: Any) -> Any:
 class Tolerances(Frozen):
     """Independent errors of single parts, those of joints along each axis; what is left out has none.
 
-    `base_joints`, `platform_joints`, `leg_offset` and `lead` as of `Geometry`; `EA` of pistons and struts, relative.
+    `base_joints`, `platform_joints`, `leg_offset` and `lead` as of `Geometry`; `EA`, `EI` and `density` of pistons and
+    struts, relative; `bow` of them, on either side of that which is given.
     """
 
     base_joints: Annotated[LengthSpread | None, BeforeValidator(_spread)] = None
@@ -68,3 +69,6 @@ class Tolerances(Frozen):
     leg_offset: Annotated[LengthSpread | None, BeforeValidator(_spread)] = None
     lead: Annotated[RatioSpread | None, BeforeValidator(_spread)] = None
     EA: Annotated[RatioSpread | None, BeforeValidator(_spread)] = None
+    EI: Annotated[RatioSpread | None, BeforeValidator(_spread)] = None
+    density: Annotated[RatioSpread | None, BeforeValidator(_spread)] = None
+    bow: Annotated[LengthSpread | None, BeforeValidator(_spread)] = None

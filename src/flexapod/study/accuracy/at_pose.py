@@ -14,6 +14,7 @@ from flexapod.study.accuracy.play import Play, half_play, play_along
 from flexapod.study.accuracy.sensitivity import Sensitivity, sensitivity
 from flexapod.study.accuracy.spread import Spreading, spreading
 from flexapod.study.accuracy.systematic import systematic
+from flexapod.study.accuracy.weight import by_density
 from flexapod.study.path import RigidPath
 from flexapod.typing import Array
 
@@ -77,8 +78,14 @@ class AtPose:
     @cached_property
     def spreading(self) -> list[Spreading]:
         """Its tolerances."""
-        return spreading(self.robot, self.sensitivity, self.thrust if self._by_thrust else np.zeros(self.robot.count))
+        push = self.thrust if self._by_thrust else np.zeros(self.robot.count)
+        return spreading(self.robot, self.sensitivity, push, lambda: self.weight)
 
     @property
     def _by_thrust(self) -> bool:
-        return self.robot.tolerances is not None and self.robot.tolerances.EA is not None
+        return any(getattr(self.robot.tolerances, name, None) is not None for name in ("EA", "EI", "bow"))
+
+    @cached_property
+    def weight(self) -> Array:
+        """What more density of the piston of each leg, relative to it, does to the tool at rest, (n, 6)."""
+        return by_density(self.study, self.pose)

@@ -3,6 +3,7 @@
 from __future__ import annotations
 
 from dataclasses import dataclass
+from typing import NamedTuple
 
 import numpy as np
 
@@ -15,7 +16,7 @@ from flexapod.study.accuracy.sensitivity import Sensitivity
 from flexapod.study.before.estimates import buckling_load, section_width
 from flexapod.typing import Array
 
-__all__ = ["Bent", "bent", "crookedness", "is_crooked", "softness", "thrust"]
+__all__ = ["Bent", "bent", "by_bending_stiffness", "by_bow", "crookedness", "is_crooked", "softness", "thrust"]
 
 L = COORDINATES.index("l")
 
@@ -52,11 +53,26 @@ def bent(robot: Robot, at: Sensitivity, push: Array) -> Bent | None:
     """
     if not is_crooked(robot):
         return None
+    at_rest = _under(robot, at, push)
+    beside = at_rest.start + (0.5 - 2 / np.pi) * _eccentricities(robot)
+    shorter = 0.5 * at_rest.slopes * ((at_rest.start * at_rest.grown) ** 2 - at_rest.cold**2)  # (T16.18)
+    return Bent(deflection=beside + at_rest.start * (at_rest.grown - 1), shorter=shorter, share=at_rest.share)
+
+
+class _Under(NamedTuple):
+    """Legs under thrust, (n,): amplitudes without it, cold and as they are; share, growth, and slopes of the shape."""
+
+    cold: Array
+    start: Array
+    share: Array
+    grown: Array
+    slopes: Array
+
+
+def _under(robot: Robot, at: Sensitivity, push: Array) -> _Under:
     cold = crookedness(robot)
     free = at.q[0, :, L] - np.array([leg.cylinder.mouth for leg in robot.legs])
     euler = np.array([buckling_load(leg, s[None])[0] for leg, s in zip(robot.legs, free, strict=True)])
-    start = cold + _by_heat(robot, free)
-    beside = start + (0.5 - 2 / np.pi) * _eccentricities(robot)
     share = push / euler
     if share.max() >= 1:
         leg = int(share.argmax())
@@ -64,11 +80,20 @@ def bent(robot: Robot, at: Sensitivity, push: Array) -> Bent | None:
             f"leg {leg + 1} is pushed with {push[leg]:.4g} N, beyond its Euler load of {euler[leg]:.4g} N",
             next_step="A thicker or shorter piston bears more",
         )
-    grown = 1 / (1 - share)  # (T16.17)
     slopes = np.array([_slopes(leg, s, p) for leg, s, p in zip(robot.legs, free, euler, strict=True)])
-    shorter = 0.5 * slopes * ((start * grown) ** 2 - cold**2)  # (T16.18)
-    shorter *= [leg.measured != "joint-to-joint" for leg in robot.legs]
-    return Bent(deflection=beside + start * (grown - 1), shorter=shorter, share=share)
+    return _Under(cold, cold + _by_heat(robot, free), share, 1 / (1 - share), slopes)  # (T16.17)
+
+
+def by_bow(robot: Robot, at: Sensitivity, push: Array) -> tuple[Array, Array]:
+    """How much longer a further bow x makes legs under thrust, c1 x + c2 x^2: c1 [1], c2 [1/m], (n,), Eq. (T16.21)."""
+    x = _under(robot, at, push)
+    return -x.slopes * (x.grown**2 * x.start - x.cold), -0.5 * x.slopes * (x.grown**2 - 1)
+
+
+def by_bending_stiffness(robot: Robot, at: Sensitivity, push: Array) -> Array:
+    """How much longer more EI, relative to it, makes crooked legs under thrust, (n,) [m], Eq. (T16.22)."""
+    x = _under(robot, at, push)
+    return x.slopes * x.start**2 * x.grown**3 * x.share
 
 
 def is_crooked(robot: Robot) -> bool:

@@ -126,7 +126,7 @@ def _forces(at: AtPose) -> tuple[_Named, _Named]:
 def _samples(at: AtPose, draws: int, seed: int) -> tuple[_Named, _Named]:
     if not draws:
         return {}, {}
-    found: Array = samples(at.robot, at.pose, at.sensitivity, at.thrust, count=draws, seed=seed)
+    found: Array = samples(at.robot, at.pose, at.sensitivity, at.thrust, lambda: at.weight, count=draws, seed=seed)
     fits = np.isfinite(found).all(axis=1)
     if not fits.any():
         raise ComputationError(

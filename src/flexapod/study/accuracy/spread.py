@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+from collections.abc import Callable
 from dataclasses import dataclass
 
 import numpy as np
@@ -10,7 +11,7 @@ from flexapod import rigid
 from flexapod.model import Robot
 from flexapod.rigid.limbs import COORDINATES, DRIVEN, HELD
 from flexapod.rigid.rotations import quaternion, rotation_vector
-from flexapod.study.accuracy.imperfect import softness
+from flexapod.study.accuracy.imperfect import by_bending_stiffness, by_bow, softness
 from flexapod.study.accuracy.sensitivity import Sensitivity
 from flexapod.typing import Array
 
@@ -25,35 +26,50 @@ class Spreading:
     """One tolerance at one pose.
 
     ``effect`` (n, m, 6): what an error of one standard deviation, or at the edge of the box, of each of m numbers of
-    each leg does to the tool; ``boxed``: which of both.
+    each leg does to the tool; ``boxed``: which of both. ``square`` (n, 6): what it does by its square beside that.
     """
 
     name: str
     effect: Array
     boxed: bool
+    square: Array
 
     @property
     def covariance(self) -> Array:
         """Covariance of the tool's six components, (6, 6); errors in a box are spread evenly, Eq. (T16.10)."""
-        return np.einsum("nmi,nmj->ij", self.effect, self.effect) / (3 if self.boxed else 1)
+        by_square = self._of_squares * np.einsum("ni,nj->ij", self.square, self.square)
+        return np.einsum("nmi,nmj->ij", self.effect, self.effect) / (3 if self.boxed else 1) + by_square
 
     @property
     def sigma(self) -> Array:
         """Standard deviations by leg, (n, 6)."""
-        return np.sqrt((self.effect**2).sum(axis=1) / (3 if self.boxed else 1))
+        linear = (self.effect**2).sum(axis=1) / (3 if self.boxed else 1)
+        return np.sqrt(linear + self._of_squares * self.square**2)
+
+    @property
+    def _of_squares(self) -> float:
+        """Variance of x^2: of x even in [-1, 1], or normal with the standard deviation 1."""
+        return 4 / 45 if self.boxed else 2.0
 
     @property
     def worst(self) -> Array:
         """Largest size of each component that errors in the box can make, by leg, (n, 6), Eq. (T16.11)."""
-        return np.abs(self.effect).sum(axis=1) * self.boxed
+        return (np.abs(self.effect).sum(axis=1) + np.abs(self.square)) * self.boxed
 
 
-def spreading(robot: Robot, at: Sensitivity, push: Array) -> list[Spreading]:
-    """The tolerances of a robot at the first pose of its sensitivity, its pistons under thrusts `push` (n,) [N]."""
-    return [
-        Spreading(name=name, effect=size * _effect(robot, at, name, push), boxed=boxed)
-        for name, size, boxed in _given(robot)
-    ]
+def spreading(robot: Robot, at: Sensitivity, push: Array, weigh: Callable[[], Array]) -> list[Spreading]:
+    """The tolerances of a robot at the first pose of its sensitivity, its pistons under thrusts `push` (n,) [N].
+
+    `weigh`: what more density of the pistons of each leg, relative to it, does to the tool, (n, 6).
+    """
+    found = []
+    for name, size, boxed in _given(robot):
+        square = np.zeros((robot.count, 6))
+        effect = weigh()[:, None] if name == "density" else _effect(robot, at, name, push)
+        if name == "bow":
+            square = size**2 * _longer(robot, at, name, push)[1][:, None] * at.coordinate[0, :, L]
+        found.append(Spreading(name=name, effect=size * effect, boxed=boxed, square=square))
+    return found
 
 
 def _given(robot: Robot) -> list[tuple[str, float, bool]]:
@@ -71,46 +87,69 @@ def _effect(robot: Robot, at: Sensitivity, name: str, push: Array) -> Array:
     """What unit errors do to the tool, (n, m, 6)."""
     if name in ("base_joints", "platform_joints"):
         return getattr(at, name.removesuffix("_joints"))[0]
-    weights = _weights(robot, name, at.q[:1], push)[0]
+    weights = _weights(robot, name, at, push)[0]
     return (weights[..., None] * at.coordinate[0]).sum(axis=1, keepdims=True)
 
 
-def _weights(robot: Robot, name: str, q: Array, push: Array) -> Array:
-    """What a unit error adds to held and driven coordinates q (T, n, 8)."""
-    legs = rigid.rigid_limbs(robot)
+def _weights(robot: Robot, name: str, at: Sensitivity, push: Array) -> Array:
+    """What a unit error adds to held and driven coordinates, (1, n, 8)."""
+    legs, q = rigid.rigid_limbs(robot), at.q[:1]
     found = np.zeros_like(q)
-    if name in ("leg_offset", "EA"):
-        outside = np.array([leg.measured != "joint-to-joint" for leg in robot.legs])
-        longer = softness(robot, push) * outside if name == "EA" else np.ones(len(legs))
+    if name != "lead":
+        longer = _longer(robot, at, name, push)[0]
         found[..., L] = np.where(np.isin(legs.state[:, L], (HELD, DRIVEN)), longer, 0.0)
-    else:  # lead
+    else:
         driven = (legs.state[:, [CHI, L]] == DRIVEN) & [legs.carriage != "crank", True]
         driven &= np.array([[leg.measured == "rotor"] for leg in robot.legs])
         found[..., [CHI, L]] = np.where(driven, (q - legs.home)[..., [CHI, L]], 0.0)
     return found
 
 
-def samples(robot: Robot, path: rigid.Poses, at: Sensitivity, push: Array, *, count: int, seed: int) -> Array:
+def _longer(robot: Robot, at: Sensitivity, name: str, push: Array) -> tuple[Array, Array]:
+    """By how much an error x makes the legs longer, c1 x + c2 x^2: c1, c2, (n,)."""
+    outside, none = np.array([leg.measured != "joint-to-joint" for leg in robot.legs]), np.zeros(robot.count)
+    if name == "leg_offset":
+        return np.ones(robot.count), none
+    if name == "bow":
+        first, second = by_bow(robot, at, push)
+        return outside * first, outside * second
+    return outside * (softness(robot, push) if name == "EA" else by_bending_stiffness(robot, at, push)), none
+
+
+def samples(
+    robot: Robot,
+    path: rigid.Poses,
+    at: Sensitivity,
+    push: Array,
+    weigh: Callable[[], Array],
+    *,
+    count: int,
+    seed: int,
+) -> Array:
     """Displacements of the tool of machines drawn within the tolerances, exact kinematics, (count, 6).
 
-    Of EA as of `spreading`. NaN where legs do not fit together without strain.
+    Of EA, EI, bow and density as of `spreading`. NaN where legs do not fit together without strain.
     """
     rng, legs = np.random.default_rng(seed), rigid.rigid_limbs(robot)
     parts = []
     for first in range(0, count, BLOCK):
         size = min(BLOCK, count - first)
         q = np.repeat(at.q[:1], size, axis=0)
-        shift = {end: np.zeros((size, len(legs), 3)) for end in ("base", "platform")}
+        shift, more = {end: np.zeros((size, len(legs), 3)) for end in ("base", "platform")}, np.zeros((size, 6))
         for name, spread, boxed in _given(robot):
             many = (size, len(legs), 3 if name.endswith("joints") else 1)
             drawn = spread * (rng.uniform(-1, 1, many) if boxed else rng.normal(size=many))
             if name.endswith("joints"):
                 shift[name.removesuffix("_joints")] += drawn
+            elif name == "density":
+                more = more + drawn[..., 0] @ weigh()
             else:
-                q = q + drawn * _weights(robot, name, at.q[:1], push)
+                if name == "bow":
+                    q[..., L] += drawn[..., 0] ** 2 * _longer(robot, at, name, push)[1]
+                q = q + drawn * _weights(robot, name, at, push)
         start = path.part(np.zeros(size, dtype=int))
         found, gap = rigid.nearby(legs, q, start, shift["base"], shift["platform"])
-        moved = displacement(robot, start, found)
+        moved = displacement(robot, start, found) + more
         parts.append(np.where((gap < rigid.TAKEN * legs.L_c)[:, None], moved, np.nan))
     return np.concatenate(parts)
 
