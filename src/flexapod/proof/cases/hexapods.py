@@ -99,6 +99,36 @@ def dietmaier() -> list[Check]:
     ]
 
 
+# Of the camera hexapod of the Rubin Observatory [m]: the mirror set stays, the base set moves about a pivot far below.
+MIRROR = np.array([
+    [0.47055, 0.51351], [-0.47055, 0.51351], [-0.67999, 0.15075], [-0.20944, -0.66426], [0.20944, -0.66426],
+    [0.67999, 0.15075],
+])  # fmt: skip
+MOVED = np.array([
+    [0.20944, 0.66426], [-0.20944, 0.66426], [-0.67999, -0.15075], [-0.47055, -0.51351], [0.47055, -0.51351],
+    [0.67999, -0.15075],
+])  # fmt: skip
+PIVOT, TRANSLATION, TURN = (0, 0, -2.7584), (-0.0603, 0.1045, -0.0109), (-0.0355, -0.0205, -0.0004)
+STRUTS = (0.15205, 0.07204, -0.04667, 0.13381, 0.02959, -0.07292)
+
+
+@case(
+    name="observatory-hexapod",
+    statement="Struts of the camera hexapod of the Rubin Observatory, moved by 0.12 m and turned about a distant pivot",
+    source="github.com/lsst-ts/ts_mthexapod, simple_hexapod.py and its test: translation in m, successive angles about "
+    "x, y, z in rad (R = Rx Ry Rz), changes of the struts",
+    argument="half a unit of the last digit that is printed of a strut",
+)
+def observatory_hexapod() -> list[Check]:
+    """Inverse kinematics of a hexapod whose control software is public."""
+    mirror, moved = (np.column_stack([plane, np.full(6, z)]) for plane, z in ((MIRROR, -0.125), (MOVED, -0.555)))
+    turns = np.diag(TURN)
+    rotation = rotation_matrix(turns[0]) @ rotation_matrix(turns[1]) @ rotation_matrix(turns[2])
+    lengths = leg_lengths(mirror, moved - PIVOT, np.add(PIVOT, TRANSLATION), rotation)
+    names = [f"strut {i}" for i in range(1, 7)]
+    return checks(names, STRUTS, lengths - np.linalg.norm(moved - mirror, axis=1), 5e-6, "m", absolute=True)
+
+
 ABOVE_BASE = np.array([0.0, 0.0, 0.9])
 TURNS = (17.0, 60.0, 133.0)  # deg, of similar hexagons in their plane
 
