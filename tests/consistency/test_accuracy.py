@@ -65,7 +65,7 @@ def test_parts_add_up_and_rows_of_a_budget_are_theirs():
     assert kinds == [
         ("leg_offset", "systematic", "calibratable"), ("lead", "systematic", "calibratable"),
         ("heat_base", "systematic", "drifting"), ("heat_piston", "systematic", "drifting"),
-        ("base_joints tolerance", "random", "calibratable"), ("lead tolerance", "random", "calibratable"),
+        ("base_joints tolerance", "random", ""), ("lead tolerance", "random", ""),
     ]  # fmt: skip
     np.testing.assert_allclose([row.by_leg for row in table[:4]], found.pose_error_by_part, atol=1e-18)
     np.testing.assert_allclose([row.by_leg for row in table[4:]], found.pose_sigma_by_tolerance, atol=1e-18)

@@ -140,10 +140,10 @@ def test_along_a_motion_dynamic_rows_add_exactly_and_with_the_static_ones_make_t
 
 
 def test_rules_of_addition_by_hand():
-    def row(part, kind, nature, *values):
+    def row(part, kind, nature, *values, stands=False):
         by_leg = np.zeros((2, 6))
         by_leg[:, 0] = values
-        return Row(part, kind, nature, by_leg, "by hand")
+        return Row(part, kind, nature, by_leg, "by hand", stands)
 
     found = Budget(
         rows=[
@@ -151,7 +151,7 @@ def test_rules_of_addition_by_hand():
             row("b", "systematic", "repeatable", 1.0, 1.0),
             row("c", "systematic", "drifting", -1.0, 0.0),
             row("d", "hysteretic", "", 1.0, -1.0),
-            row("e", "random", "calibratable", 3.0, 4.0),
+            row("e", "random", "", 3.0, 4.0, stands=True),
             row("f", "random", "", 0.6, 0.8),
         ],
         whole={"systematic": np.array([3.5, 0, 0, 0, 0, 0])},
@@ -256,3 +256,50 @@ def test_what_acts_on_all_legs_at_once_has_no_shares_of_legs():
     np.testing.assert_allclose(found.repeatability_unidirectional, 4 * row, rtol=1e-12)
     labels = [label.get_text() for label in fx.plot.budget(found).axes[0].get_yticklabels()]
     assert "floor vibration" in labels
+
+
+def shaken(text="", **legs):
+    study = fx.loads(fx.model.preset_text("machine-hexapod") + f'\n[disturbance]\nfloor = "VC-C"\n{text}')
+    if not legs:
+        return study
+    robot = study.robot.replace(legs=tuple(leg.replace(**legs) for leg in study.robot.legs))
+    return study.replace(robot=robot)
+
+
+def test_a_vibration_without_size_is_missing_and_said_to_be():
+    # Nothing is damped: the floor's vibration at a resonance grows without end. All other rows are there.
+    springs = {"stiffness": np.diag([150e6, 150e6, 200e6, 0, 0, 0]), "leg_axes": True}
+    undamped = shaken(damping=0.0, base_joint=Joint(**springs), platform_joint=Joint(**springs), springs=())
+    robot = undamped.robot
+    still = {"loss": None, "damping": None}
+    drives = [
+        leg.drive.replace(nut=leg.drive.nut.replace(**still), bearing=leg.drive.bearing.replace(**still))
+        for leg in robot.legs
+    ]
+    legs = tuple(leg.replace(drive=drive) for leg, drive in zip(robot.legs, drives, strict=True))
+    undamped = undamped.replace(robot=robot.replace(legs=legs))
+    found, still = fx.budget(undamped), fx.budget(undamped.replace(disturbance=None))
+    assert "vibration by disturbances has no row" in found.attrs["warnings"]
+    assert "without damping" in found.attrs["warnings"]
+    assert list(found.part.values) == list(still.part.values)
+    np.testing.assert_array_equal(found.worst, still.worst)
+    data = fx.workspace_map(undamped, {"heave": np.array([0.0, 0.01])}, budget=True)
+    assert np.isnan(data.error_by_part.sel(part="floor vibration")).all() and np.isfinite(data.error_worst).all()
+
+
+def test_a_map_has_vibration_among_its_parts():
+    study = shaken()
+    data = fx.workspace_map(study, {"heave": np.array([0.0, 0.01])}, budget=True)
+    one = fx.budget(study, {"heave": 0.01})
+    assert float(data.error_worst[1]) == pytest.approx(float(np.linalg.norm(one.worst[:3])), rel=1e-6)
+    size = 3 * np.linalg.norm(one.budget.sel(part="floor vibration", kind="random")[:3])
+    assert float(data.error_by_part.sel(part="floor vibration")[1]) == pytest.approx(float(size), rel=1e-6)
+
+
+def test_natures_are_those_of_systematic_errors():
+    found = fx.budget(real(base_joint=LOOSE).replace(tolerances=Tolerances(leg_offset=1e-5)))
+    natures = dict(zip(found.part.values, found.nature.values, strict=True))
+    assert natures["leg_offset tolerance"] == "" and natures["base_joint play"] == ""
+    assert set(natures.values()) <= {"", "calibratable", "repeatable", "drifting"}
+    # A tolerance is the same at each approach: in the accuracy, and nothing of the repeatability.
+    assert found.pose_accuracy[0, 0] > found.pose_accuracy[1, 0] and not found.repeatability_unidirectional.any()

@@ -71,6 +71,10 @@ class RandomVibration:
         return np.sqrt(np.cumsum(power[::-1], axis=0)[::-1])
 
 
+#: What shakes a robot by the field of its disturbance.
+SOURCES = {"floor": "floor vibration", "wrench": "wrench noise", "force_noise": "force noise"}
+
+
 def sources_of(given: Disturbance, model: LinearRobot) -> list[Source]:
     """The disturbances of a study at its linear model.
 
@@ -81,9 +85,9 @@ def sources_of(given: Disturbance, model: LinearRobot) -> list[Source]:
     """
     found = []
     if given.floor is not None:
-        found.append(_source("floor vibration", model.inputs["floor"], given.floor))
+        found.append(_source(SOURCES["floor"], model.inputs["floor"], given.floor))
     if given.wrench is not None:
-        found.append(_source("wrench noise", model.inputs["wrench"], given.wrench))
+        found.append(_source(SOURCES["wrench"], model.inputs["wrench"], given.wrench))
     if given.force_noise is not None:
         if not model.inputs["drive"].any():
             raise InputError(
@@ -92,7 +96,7 @@ def sources_of(given: Disturbance, model: LinearRobot) -> list[Source]:
                 allowed='drives that give way: "servo", or "screw" commanded by "servo" or "torque"',
                 next_step="Leave force_noise out, or choose another leg.drive",
             )
-        found.append(_source("force noise", model.inputs["drive"], given.force_noise))
+        found.append(_source(SOURCES["force_noise"], model.inputs["drive"], given.force_noise))
     return found
 
 

@@ -244,7 +244,7 @@ _BUDGET = {
     ),
     "budget_total": Variable(_PK[1:], "mixed", "all parts together by the rule of the kind [m, rad]"),
     "budget_residual": Variable(_PK[1:], "mixed", "what the rows leave of the whole [m, rad]"),
-    "nature": Variable(("part",), "1", "calibratable, repeatable or drifting"),
+    "nature": Variable(("part",), "1", "calibratable, repeatable or drifting, of parts with a systematic error"),
     "how": Variable(_PK[:2], "1", "how it was computed"),
     "share": Variable(("part",), "1", "size of a part's worst error of the tool's place, over the sum of all sizes"),
     "worst": Variable(_C, "mixed", "largest error of the tool [m, rad], all kinds at their worst at once"),

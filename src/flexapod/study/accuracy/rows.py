@@ -19,7 +19,8 @@ __all__ = ["Row", "rows"]
 class Row(NamedTuple):
     """One part: its `kind` of error (systematic, hysteretic, random, dynamic), and its `nature`.
 
-    `nature`: calibratable, which a tolerance is in a machine that stands; repeatable; drifting; or empty.
+    `nature`: of a systematic one calibratable, repeatable or drifting; empty of others. `stands`: of a random one, that
+    it is the same at each approach of one machine.
 
     `by_leg` (n, 6): displacement [m] and rotation [rad] of the tool, world axes; of a random one standard
     deviations, of a hysteretic one bounds; (1, 6) of what acts on all legs at once. `how` it was computed, in words.
@@ -30,6 +31,7 @@ class Row(NamedTuple):
     nature: str
     by_leg: Array
     how: str
+    stands: bool = False
 
 
 def rows(study: Study, pose: rigid.Poses) -> list[Row]:
@@ -37,7 +39,7 @@ def rows(study: Study, pose: rigid.Poses) -> list[Row]:
     at = AtPose(study, pose)
     found = [Row(name, "systematic", _nature(name), by_leg, "first order") for name, by_leg in at.parts.items()]
     found += [
-        Row(f"{one.name} tolerance", "random", "calibratable", one.sigma, "first order, errors independent")
+        Row(f"{one.name} tolerance", "random", "", one.sigma, "first order, errors independent", stands=True)
         for one in at.spreading
     ]
     increment = np.array([0.0 if leg.screw is None else leg.screw.increment for leg in study.robot.legs])
@@ -45,7 +47,7 @@ def rows(study: Study, pose: rigid.Poses) -> list[Row]:
         by_leg = (increment / np.sqrt(12))[:, None] * at.sensitivity.coordinate[
             0, :, COORDINATES.index("l")
         ]  # (T23.12)
-        found.append(Row("encoder", "random", "repeatable", by_leg, "increment over the root of 12, legs independent"))
+        found.append(Row("encoder", "random", "", by_leg, "increment over the root of 12, legs independent"))
     if at.is_loose:
         effect = np.abs(at.play.effect[0])
         how = "first order, whichever way the play is pressed"

@@ -78,7 +78,8 @@ def budget(
     else:
         path, times = as_pose(study.robot, pose), {}
         remarks = [*study.warnings, *path_remarks(study.robot, np.zeros(1), path)]
-        table, whole = rows(study, path)
+        table, whole, missing = rows(study, path)
+        remarks += missing
         table, where = Budget(rows=table, whole={"systematic": whole}), "at home" if pose is None else "at the pose"
     return _named(study, table, times, {"where": where, "summary": "\n".join(sentences(table, where))}, remarks)
 

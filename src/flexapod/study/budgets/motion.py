@@ -53,12 +53,12 @@ def along_motion(study: Study, progress: Progress | None = None) -> AlongMotion:
     size = np.linalg.norm(still.whole[:, :3], axis=1)
     worst = int(np.argmax(size >= (1 - SAME) * size.max()))  # the first of those alike, as at a motion's end
     pose = path.poses.part(slice(worst, worst + 1))
-    table, deviation = rows(study, rigid.Poses.at_rest(pose.position, pose.rotation))
+    table, deviation, missing = rows(study, rigid.Poses.at_rest(pose.position, pose.rotation))
     dynamic = Moved(whole.whole - still.whole, whole.by_leg - still.by_leg)  # (T17.13)
     at: Index = np.abs(dynamic.whole).argmax(axis=0)
     more, sums = _dynamic_rows(study, dynamic, at)
     budget = Budget(rows=[*table, *more], whole={"systematic": deviation, **sums})
-    return AlongMotion(budget, float(t[worst]), t[at], found.warnings())
+    return AlongMotion(budget, float(t[worst]), t[at], [*found.warnings(), *missing])
 
 
 def _static(study: Study, path: RigidPath) -> Moved:

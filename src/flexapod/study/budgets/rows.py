@@ -3,17 +3,19 @@
 from __future__ import annotations
 
 from collections.abc import Iterator
+from contextlib import suppress
 from typing import NamedTuple
 
 import numpy as np
 
 from flexapod import rigid
-from flexapod.errors import ComputationError
+from flexapod.errors import ComputationError, InputError
 from flexapod.model import Robot, Study
 from flexapod.rigid.rotations import difference, matrix, quaternion
 from flexapod.solve.equilibrium import FOUND
 from flexapod.solve.many import RestStates
 from flexapod.solve.modes import LockedPoses, locked_poses, the_equilibrium
+from flexapod.solve.random_vibration import SOURCES
 from flexapod.solve.system import System
 from flexapod.study.accuracy.rows import Row
 from flexapod.study.accuracy.rows import rows as built_rows
@@ -85,28 +87,34 @@ def _rest(study: Study, locked: LockedPoses, poses: rigid.Poses) -> Moved:
     return moved(study.robot, locked.system, path, locked.equilibria.states)
 
 
-def rows(study: Study, pose: rigid.Poses) -> tuple[list[Row], Array]:
-    """Rows at one pose, and what the systematic ones add up to (6,).
+def rows(study: Study, pose: rigid.Poses) -> tuple[list[Row], Array, list[str]]:
+    """Rows at one pose, what the systematic ones add up to (6,), and why a row is missing.
 
     That is the static deviation of the tool, and what simulations leave out: legs that are not straight.
 
     Raises
     ------
     InputError
-        A pure force drive, or disturbances whose vibration has no size.
+        A pure force drive.
     ComputationError
         There is no equilibrium, or the pose is singular.
     """
     locked = locked_poses(study.robot, study.simulation, pose, study.load)
     the_equilibrium(locked)
     found, whole = _with_built(study, pose, *(part[0] for part in _rest(study, locked, pose)))
-    return without_rounding([*found, *vibration_rows(study, locked)]), whole
+    try:
+        shaken, remarks = vibration_rows(study, locked), []
+    except InputError as error:  # without damping no size, of drives that hold no noise: the rest is as before
+        shaken, remarks = [], [f"vibration by disturbances has no row: {error}"]
+    return without_rounding([*found, *shaken]), whole, remarks
 
 
 def names_of_rows(study: Study) -> tuple[str, ...]:
     """Names of the parts of `rows_of_poses`, the same at all poses."""
     built = (row.part for row in built_rows(study, rigid.home_pose(study.robot)))
-    return tuple(dict.fromkeys([*elastic_causes(study.robot), *built]))
+    given = study.disturbance
+    shaken = [words for name, words in SOURCES.items() if getattr(given, name, None) is not None]
+    return tuple(dict.fromkeys([*elastic_causes(study.robot), *built, *shaken]))
 
 
 def rows_of_poses(study: Study, locked: LockedPoses) -> Iterator[tuple[list[Row], Array]]:
@@ -115,7 +123,12 @@ def rows_of_poses(study: Study, locked: LockedPoses) -> Iterator[tuple[list[Row]
     path = RigidPath(study, np.zeros(len(poses)), poses)
     found = moved(study.robot, locked.system, path, locked.equilibria.states[locked.at])
     for k, (whole, by_leg) in enumerate(zip(*found, strict=True)):
-        yield _with_built(study, poses.part(slice(k, k + 1)), whole, by_leg)
+        pose = poses.part(slice(k, k + 1))
+        table, systematic = _with_built(study, pose, whole, by_leg)
+        if study.disturbance is not None:
+            with suppress(InputError):  # vibration without a size
+                table += vibration_rows(study, locked_poses(study.robot, study.simulation, pose, study.load))
+        yield table, systematic
 
 
 def _with_built(study: Study, pose: rigid.Poses, whole: Array, by_leg: Array) -> tuple[list[Row], Array]:

@@ -87,9 +87,10 @@ class Budget:
         """The part with the largest share."""
         return max(self.parts, key=lambda part: self.sizes[part])
 
-    def without(self, nature: str) -> Budget:
-        """The budget of the rows of other natures, at rest."""
-        return Budget(rows=[row for row in self.rows if row.nature != nature], whole={})
+    @property
+    def calibrated(self) -> Budget:
+        """The budget of a machine whose constant errors are known and taken out, at rest."""
+        return Budget(rows=[row for row in self.rows if row.nature != "calibratable" and not row.stands], whole={})
 
     def _only(self, part: str) -> Budget:
         rows = [row for row in self.rows if row.part == part]
@@ -103,14 +104,14 @@ class Budget:
     def accuracy(self, *, calibrated: bool) -> Array:
         """Systematic error and 3 standard deviations of what is fixed in a machine but unknown, (6,), Eq. (T17.9)."""
         known = self.rule("systematic", lambda row: row.nature == "calibratable")
-        fixed = self.rule("random", lambda row: row.nature == "calibratable")
+        fixed = self.rule("random", lambda row: row.stands)
         whole = self.total("systematic")
         return np.abs(whole - known) if calibrated else np.abs(whole) + SIGMAS * fixed
 
     @property
     def cycles(self) -> Array:
         """Standard deviation from one approach to the next, (6,)."""
-        return self.rule("random", lambda row: row.nature != "calibratable")
+        return self.rule("random", lambda row: not row.stands)
 
     @property
     def unidirectional(self) -> Array:

@@ -31,6 +31,9 @@ _PARTS = {
     "leg_offset": "leg offsets",
     "lead": "leads",
     "EA": "the stiffness of the pistons",
+    "EI": "the bending stiffness of the pistons",
+    "density": "the density of the pistons",
+    "bow": "the bow of the pistons",
 }
 
 
@@ -78,9 +81,9 @@ def _left(found: Budget) -> list[str]:
 def _accuracy(found: Budget) -> list[str]:
     raw, calibrated = (_distance(found.accuracy(calibrated=x)) for x in (False, True))
     drift = _distance(found.rule("systematic", lambda row: row.nature == "drifting"))
-    spread = any(row.kind == "random" and row.nature == "calibratable" for row in found.rows)
+    spread = any(row.stands for row in found.rows)
     warm = f" (heat alone: {_m(drift)})" if drift else ""
-    left = found.without("calibratable")
+    left = found.calibrated
     most = f", the largest part of it {part_words(left.largest)}" if left.parts else ""
     more = " with three standard deviations of the tolerances" if spread else ""
     return [f"Pose accuracy (AP of ISO 9283): {_m(raw)} uncalibrated{more}, {_m(calibrated)} calibrated{most}{warm}."]

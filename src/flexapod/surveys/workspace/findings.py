@@ -46,7 +46,7 @@ GRID_VARIABLES = {
 #: Those of joints that have a largest angle, and where error budgets are asked for.
 FURTHER_VARIABLES = {
     "joint_margin": Variable((), "rad", "least angle left at a joint whose largest turn is given"),
-    "error_worst": Variable((), "m", "worst case of the tool's place at rest, all parts, without vibration"),
+    "error_worst": Variable((), "m", "worst case of the tool's place at rest, all parts that have a size"),
     "error_by_part": Variable(("part",), "m", "size of the worst that a part does to the tool's place at rest"),
 }
 

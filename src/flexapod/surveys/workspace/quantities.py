@@ -130,7 +130,9 @@ def _budgets(study: model.Study, locked: LockedPoses) -> Values:
     parts = names_of_rows(study)
     return {
         "error_worst": np.array([float(np.linalg.norm(one.worst[:3])) for one in found]),
-        "error_by_part": np.array([[one.sizes[part] for part in parts] for one in found]).reshape(-1, len(parts)),
+        "error_by_part": np.array([[one.sizes.get(part, np.nan) for part in parts] for one in found]).reshape(
+            -1, len(parts)
+        ),
     }
 
 
