@@ -4,6 +4,8 @@ import numpy as np
 import pytest
 from tests.stepped import leg_of, misfit, root_near, section, squared_frequencies
 
+from flexapod.study.before.estimates import buckling_load
+
 TWO = [section(0.3, 0.04), section(0.45, 0.03)]
 HOLLOW = [section(0.25, 0.04), section(0.5, 0.04, inner_diameter=0.03)]
 THREE = [section(0.2, 0.05), section(0.25, 0.04, inner_diameter=0.03), section(0.3, 0.03)]
@@ -46,10 +48,20 @@ def test_a_strut_of_two_sections_is_a_stepped_column():
             euler = np.pi**2 * leg.piston.steps[1].EI[0] / 0.6**2
             exact = root_near(lambda P, leg=leg: misfit(leg, 0.6, thrust=P), K1 * euler)
             assert exact / euler == pytest.approx(K1, abs=6e-6)
+            assert buckling_load(leg, np.array([0.6]))[0] == pytest.approx(exact, rel=1e-9)
     leg = leg_of([section(0.3, 0.02 * 2**0.25), section(0.3, 0.02)], 0.0, 0.0)
     euler = 1.29847 * np.pi**2 * leg.piston.steps[1].EI[0] / 0.6**2
     below, above = (squared_frequencies(leg, 0.6, thrust=x * euler)[0] for x in (1 - 1e-4, 1 + 1e-4))
     assert below > 0 > above
+
+
+@pytest.mark.parametrize("free", [0.6, 0.4])
+@pytest.mark.parametrize("sections", [TWO, HOLLOW, TWO[::-1]])
+def test_a_leg_of_sections_buckles_at_its_exact_load(sections, free):
+    leg = leg_of(sections)
+    load = buckling_load(leg, np.array([free]))[0]
+    assert root_near(lambda P: misfit(leg, free, thrust=P), load) == pytest.approx(load, rel=1e-9)
+    assert min(misfit(leg, free, thrust=share * load) for share in np.linspace(0.01, 0.99, 50)) > 0  # the least
 
 
 def test_a_strip_bends_in_each_plane_with_its_own_stiffness():

@@ -8,6 +8,7 @@ import pytest
 from tests.stepped import function, leg_of, section, shapes_of, vector
 
 import flexapod as fx
+from flexapod.elements.steps import held
 from flexapod.model.files import preset_text
 from flexapod.solve.sections import numeric_pieces, steps_of
 
@@ -29,7 +30,9 @@ def place(leg, shapes, q, xi):
     x, across, short = xi / s, np.zeros((2, xi.size)), np.zeros(xi.size)
     for direction, a in enumerate(amplitudes):
         beyond = 0.0
-        for piece in reversed(numeric_pieces(leg, shapes.b, s, direction)):
+        parts = numeric_pieces(leg, shapes.b, s, direction)
+        a = a - np.eye(k)[0] * (held(parts[0].value(np.zeros(1)))[:, 0] @ a)
+        for piece in reversed(parts):
             for i in np.flatnonzero((x > piece.start) & (x <= piece.end)):
                 at, w = gauss(x[i], piece.end)
                 across[direction, i] = (a @ piece.value(x[i : i + 1]))[0]

@@ -8,6 +8,7 @@ from __future__ import annotations
 
 from collections.abc import Sequence
 from dataclasses import dataclass, fields
+from functools import cached_property
 from itertools import pairwise
 from types import SimpleNamespace
 
@@ -17,7 +18,7 @@ from flexapod.bases import AxialBasis, LateralBasis
 from flexapod.bases.beam_functions import gauss_unit
 from flexapod.elements.distribution import Distribution, Motion, gravity_energy, kinetic_energy
 from flexapod.elements.frame import Energies
-from flexapod.elements.steps import Piece, Uniform, pieces
+from flexapod.elements.steps import Piece, Uniform, held, pieces
 from flexapod.symbolic.vocabulary import SX, diagcat, horzcat, jtimes, quadratic, reshape, sin, sqrt, vertcat, zeros
 
 _MORE = 3  # Gauss points of a piece beyond its shapes: exact for the moment of the foreshortening, the highest power
@@ -47,7 +48,7 @@ class SteppedShapes:
     """
 
     count: int
-    tip: SX
+    tip: np.ndarray
     tip_slope: SX
     stiffness: SX
     slope_tip: SX
@@ -97,7 +98,7 @@ def stepped_shapes(  # the arguments are those of one leg's beam
     x = horzcat(*(a + (b - a) * t[None, :] for a, b in pairwise(ends)))
     length = horzcat(*((b - a) * w[None, :] for a, b in pairwise(ends)))
     beams = [_Beam(p, s, l, ends, Uniform(basis=basis), name) for name in planes]
-    shown, inner = [beam.shown(x, section) for beam in beams], [beam.tip() for beam in beams]
+    shown = [beam.shown(x, section) for beam in beams]
     at = Shown(**{f.name: vertcat(*(getattr(one, f.name) for one in shown)) for f in fields(Shown)})
     own = [_stiffness(p, one, length, section, name) for one, name in zip(shown, planes, strict=True)]
     beyond, moment = _beyond(p, ends, x, section, s, l)
@@ -106,8 +107,7 @@ def stepped_shapes(  # the arguments are those of one leg's beam
     psi = vertcat(*(sin(k * np.pi * tau) if k else tau for k in range(axial.count)), zeros(0, x.numel()))
     X, one = l - s * x, SX.ones(1, x.numel())
     return {
-        "tip": vertcat(*(value for value, _ in inner)),
-        "tip_slope": vertcat(*(-slope for _, slope in inner)),
+        "tip_slope": vertcat(*(-beam.tip_slope for beam in beams)),
         "stiffness": diagcat(*own),
         "slope_tip": _gram(at.slope, length, at.slope),
         "slope_first": _gram(at.slope, length * beyond, at.slope),
@@ -136,7 +136,7 @@ class _Beam:
     uniform: Uniform
     plane: str
 
-    @property
+    @cached_property
     def pieces(self) -> list[Piece]:
         """Its pieces from tip to mouth."""
         EI = getattr(self.p, f"section_EI_{self.plane}")
@@ -150,11 +150,21 @@ class _Beam:
 
     def shown(self, x: SX, section: list[int]) -> Shown:
         """Its shapes at the points."""
-        parts = self.pieces
-        columns = [self._point(parts[j], x[k], j) for k, j in enumerate(section)]
-        return Shown(**{f.name: horzcat(*(getattr(column, f.name) for column in columns)) for f in fields(Shown)})
+        columns = [self._point(self.pieces[j], x[k]) for k, j in enumerate(section)]
+        E = held(self.pieces[0].value(SX(0.0)))
+        return _held(
+            Shown(**{f.name: horzcat(*(getattr(column, f.name) for column in columns)) for f in fields(Shown)}),
+            E,
+            self.rate(E),
+        )
 
-    def _point(self, piece: Piece, x: SX, j: int) -> Shown:
+    @property
+    def tip_slope(self) -> SX:
+        """Slopes at the tip."""
+        value, slope = (self.pieces[0].value(SX(0.0), n) for n in (0, 1))
+        return slope - held(value) @ slope[0]
+
+    def _point(self, piece: Piece, x: SX) -> Shown:
         d, start = x - piece.start, self.rate(piece.start)
         value, slope, bend = piece.value(x), piece.value(x, 1), piece.give * piece.moment(x)
         r0, r1, r2, r3 = (self.rate(part) for part in piece.cubic)
@@ -163,10 +173,13 @@ class _Beam:
         slid_turn = r1 + d * (2 * r2 + 3 * r3 * d) - start * (2 * p2 + 6 * p3 * d) - x * bend
         return Shown(value=value, slope=slope, turn=slope, bend=bend, slid=slid, slid_turn=slid_turn)
 
-    def tip(self) -> tuple[SX, SX]:
-        """Deflections and slopes at the tip."""
-        first = self.pieces[0]
-        return first.value(SX(0.0)), first.value(SX(0.0), 1)
+
+def _held(at: Shown, E: SX, rate: SX) -> Shown:
+    """Shapes of which the first alone moves the tip, Eq. (T1.22)."""
+    kept = {f.name: getattr(at, f.name) - E @ getattr(at, f.name)[0, :] for f in fields(Shown)}
+    kept["slid"] -= rate @ at.value[0, :]
+    kept["slid_turn"] -= rate @ at.turn[0, :]
+    return Shown(**kept)
 
 
 def _stiffness(p: SimpleNamespace, at: Shown, length: SX, section: list[int], plane: str) -> SX:

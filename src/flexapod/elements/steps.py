@@ -17,7 +17,7 @@ from numpy.polynomial import Chebyshev
 from flexapod.bases import LateralBasis
 from flexapod.typing import Array
 
-__all__ = ["Piece", "Uniform", "pieces"]
+__all__ = ["Piece", "Uniform", "held", "pieces"]
 
 
 @dataclass(frozen=True, kw_only=True)
@@ -114,3 +114,8 @@ def pieces(uniform: Uniform, places: Sequence[Any], loads: Sequence[Any], gives:
         done.append(Piece(uniform=uniform, **piece, p0=p0, p1=p1))
         value, slope = done[-1].value(piece["start"]), done[-1].value(piece["start"], 1)
     return done[::-1]
+
+
+def held(tip: Any) -> Any:
+    """Column E: of v - E v_1 the first is 1 at the tip and all others 0, Eq. (T1.22); from the values at the tip."""
+    return (tip - np.eye(tip.shape[0], 1)) / tip[0]

@@ -226,6 +226,12 @@ def _drive(leg: model.Leg, length: float) -> float:
 
 
 def _check_leg(i: int, leg: model.Leg, length: float) -> None:
+    if leg.piston.sections:
+        raise InputError(
+            "is not written in decks",
+            key="leg.piston.sections",
+            next_step="Give one diameter: that of the section whose stiffness counts most",
+        )
     free = length - leg.cylinder.mouth
     if leg.piston.length < free * (1 - 1e-9):
         raise InputError(

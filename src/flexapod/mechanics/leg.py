@@ -64,7 +64,8 @@ def leg(shapes: Shapes, p: SimpleNamespace, q: SX, v: SX, qs: SimpleNamespace, v
         qs, vs = (of_planes(shapes.planes, part) for part in (qs, vs))
         integrals = stepped_shapes(b if b.count else a, shapes.axial, shapes.planes, p, s, qs.l)
         near, present = expanded(list(integrals.values()), qs.l)
-        a = b = SteppedShapes(count=near[0].numel(), **dict(zip(integrals, near, strict=True)))
+        tip = np.tile((b if b.count else a).tip, len(shapes.planes))
+        a = b = SteppedShapes(count=tip.size, tip=tip, **dict(zip(integrals, near, strict=True)))
     motion = Motion(
         a=a,
         b=b,

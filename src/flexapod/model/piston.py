@@ -108,13 +108,14 @@ class Piston(Frozen):
         """A piston of sections, from its driven end to its tip.
 
         EA, EI and GJ are those of a uniform one that stretches, bends under a constant moment (along leg y) and twists
-        as far; rhoA is the mean, expansion the mean of those that are known.
+        as far; rhoA is the mean, expansion the mean and yield_stress the least where all have one.
         """
         if not sections:
             raise InputError("is empty", key="sections", allowed="a section or more, from the driven end to the tip")
         steps = [step for section in sections for step in section.steps]
         length = sum(step.length for step in steps)
         grown = [section.length * section.expansion for section in sections if section.expansion is not None]
+        limits = [section.yield_stress for section in sections if section.yield_stress is not None]
         return cls(
             length=length,
             EA=length / sum(step.length / step.EA for step in steps),
@@ -123,6 +124,7 @@ class Piston(Frozen):
             rhoA=sum(step.length * step.rhoA for step in steps) / length,
             axial_inertia=axial_inertia,
             expansion=sum(grown) / length if len(grown) == len(sections) else None,
+            yield_stress=min(limits) if len(limits) == len(sections) else None,
             bow=bow,
             sections=tuple(sections),
         )
@@ -131,6 +133,28 @@ class Piston(Frozen):
     def steps(self) -> tuple[Step, ...]:
         """Its uniform pieces, from the driven end to the tip; none of a uniform piston."""
         return tuple(step for section in self.sections for step in section.steps)
+
+    @property
+    def steps_or_one(self) -> tuple[Step, ...]:
+        """`steps`, of a uniform piston one; its depth is 0 where it is not known."""
+        depth = self.depth or 0.0
+        one = Step(
+            length=self.length,
+            EA=self.EA,
+            EI=(self.EI, self.EI),
+            rhoA=self.rhoA,
+            GJ=self.torsional_stiffness,
+            E=self.E or 0.0,
+            depth=(depth, depth),
+            shear=0.0,
+            round=True,
+        )
+        return self.steps or (one,)
+
+    @property
+    def least_EI(self) -> float:
+        """Least bending stiffness of its sections, in any direction [N m^2]."""
+        return min(min(step.EI) for step in self.steps_or_one)
 
     @property
     def mass(self) -> float:

@@ -25,7 +25,7 @@ class Step(NamedTuple):
     E: float
     depth: tuple[float, float]
     shear: float
-    yield_stress: float | None
+    round: bool
 
 
 class PistonSection(Frozen):
@@ -102,5 +102,5 @@ class PistonSection(Frozen):
             E=self.E,
             depth=depth,
             shear=shape * G * area,
-            yield_stress=self.yield_stress,
+            round=diameter is not None,
         )

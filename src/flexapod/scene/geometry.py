@@ -10,7 +10,7 @@ from numpy.typing import NDArray
 
 from flexapod import model
 from flexapod.rigid.rotations import exponential, matrix
-from flexapod.scene.robot import lateral_values
+from flexapod.scene.robot import beam_values, leg_lines
 from flexapod.scene.skeleton import STATIONS, Scene, Skeleton, around
 from flexapod.study.after.summary import tip_size, tool_apart
 from flexapod.typing import Array
@@ -58,8 +58,7 @@ class RobotMotion:
         self._rotation = matrix(data.platform_quaternion_rigid.values)
         self._tip = data.tip_deflection.values
         self._amplitude = data.lateral_amplitude.values if "lateral_amplitude" in data else None
-        zeta = np.linspace(0.0, 1.0, STATIONS)
-        self._shapes = None if self._amplitude is None else lateral_values(as_computed(study, data), zeta)
+        self._study = as_computed(study, data)
 
     def paths(self, scale: float, point: str = "com") -> tuple[Array, Array]:
         """Paths of a point ("com", "tool"), (T, 3) [m] each: of the rigid robot, and as drawn `scale` times off it."""
@@ -93,8 +92,9 @@ class RobotMotion:
         carriages = skeleton.carriages(rigid.platform)
         turned, moved = exponential(scale * self._turn[i]) @ R, com + scale * self._deviation[i]
         centre, offset = moved - turned @ skeleton.com, None
-        if self._amplitude is not None and self._shapes is not None:
-            line, length = scale * self._amplitude[i] @ self._shapes, skeleton.lengths(centre, turned, carriages)
+        if self._amplitude is not None:
+            length, zeta = skeleton.lengths(centre, turned, carriages), np.linspace(0.0, 1.0, STATIONS)
+            line = scale * leg_lines(self._study, self._amplitude[i], length, zeta)
             offset = skeleton.off_chord(line, scale * self._tip[i], length)
         arm = self._arm if point == "tool" else np.zeros(3)
         return Instant(
@@ -122,7 +122,7 @@ class ActuatorMotion:
         amplitude = data.mode_amplitude.values if "mode_amplitude" in data else np.zeros((len(self.time), 0))
         self._amplitude = amplitude.reshape(*self._offset.shape, -1)
         self._shapes = (
-            lateral_values(as_computed(study, data), self._zeta) if amplitude.size else np.zeros((0, BEAM_POINTS))
+            beam_values(as_computed(study, data), self._zeta) if amplitude.size else np.zeros((0, BEAM_POINTS))
         )
 
     def index(self, time: float) -> int:

@@ -60,13 +60,25 @@ def scene(data: Dataset, time: float = 0.0, magnify: float = 1.0) -> Scene:
     return robot.at(centre, R, com, offset)
 
 
-def lateral_values(study: model.Study | model.ActuatorStudy, zeta: Array) -> Array:
-    """Lateral shapes of a study's pistons (or of its beam) from mouth (0) to tip (1), (k, n)."""
-    from flexapod.solve.shapes import beam_shapes, leg_shapes
+def beam_values(study: model.ActuatorStudy, zeta: Array) -> Array:
+    """Lateral shapes of a study's beam from mouth (0) to tip (1), (k, n)."""
+    from flexapod.solve.shapes import beam_shapes
 
-    if isinstance(study, model.ActuatorStudy):
-        return beam_shapes(study.actuator, study.simulation).values(zeta)
-    return leg_shapes(study.robot, study.simulation).values(zeta)
+    return beam_shapes(study.actuator, study.simulation).values(zeta)
+
+
+def leg_lines(study: model.Study, amplitude: Array, lengths: Array, zeta: Array) -> Array:
+    """Deflection of the pistons from mouth (0) to tip (1), (legs, 2, n) [m]; amplitudes (legs, 2, k), lengths [m]."""
+    from flexapod.solve.sections import leg_values
+    from flexapod.solve.shapes import leg_shapes
+
+    basis, free = (
+        leg_shapes(study.robot, study.simulation),
+        lengths - np.array([leg.cylinder.mouth for leg in study.robot.legs]),
+    )
+    legs = zip(study.robot.legs, free, amplitude, strict=True)
+    lines = [(a[:, None] @ leg_values(leg, basis, s[None], zeta)[..., 0])[:, 0] for leg, s, a in legs]
+    return np.array(lines)
 
 
 def mode_scene(modes: Dataset, mode: int, size: float, phase: float = 1.0) -> Scene:

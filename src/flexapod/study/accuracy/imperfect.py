@@ -13,7 +13,7 @@ from flexapod.model import Leg, Robot
 from flexapod.rigid.limbs import COORDINATES
 from flexapod.study.accuracy.play import Play
 from flexapod.study.accuracy.sensitivity import Sensitivity
-from flexapod.study.before.estimates import buckling_load, section_width
+from flexapod.study.before.estimates import buckling_load, pinned_root, section_width
 from flexapod.typing import Array
 
 __all__ = ["Bent", "bent", "by_bending_stiffness", "by_bow", "crookedness", "is_crooked", "softness", "thrust"]
@@ -80,7 +80,7 @@ def _under(robot: Robot, at: Sensitivity, push: Array) -> _Under:
             f"leg {leg + 1} is pushed with {push[leg]:.4g} N, beyond its Euler load of {euler[leg]:.4g} N",
             next_step="A thicker or shorter piston bears more",
         )
-    slopes = np.array([_slopes(leg, s, p) for leg, s, p in zip(robot.legs, free, euler, strict=True)])
+    slopes = np.array([_slopes(leg, s) for leg, s in zip(robot.legs, free, strict=True)])
     return _Under(cold, cold + _by_heat(robot, free), share, 1 / (1 - share), slopes)  # (T16.17)
 
 
@@ -128,9 +128,10 @@ def _by_heat(robot: Robot, free: Array) -> Array:
     return 0.5 * np.abs(_curvatures(robot)) * at * (at + 2 * mouth)
 
 
-def _slopes(leg: Leg, free: float, euler: float) -> float:
-    """Int phi'^2 dx of the shape in which a leg buckles, its largest value 1 [1/m]."""
-    k, m = np.sqrt(euler / leg.piston.EI), leg.cylinder.mouth
+def _slopes(leg: Leg, free: float) -> float:
+    """Int phi'^2 dx of the shape in which a leg of uniform section buckles, its largest value 1 [1/m]."""
+    m = leg.cylinder.mouth
+    k = pinned_root(np.array(m / free)) / free
     rigid = np.sin(k * free) ** 2 / m if m > 0 else 0.0
     return float(rigid + k**2 * (free / 2 + np.sin(2 * k * free) / (4 * k)))
 

@@ -8,6 +8,7 @@ from flexapod import model, rigid
 from flexapod.mechanics.layout import Shapes
 from flexapod.rigid.rotations import matrix, quaternion
 from flexapod.solve.modes import RobotModes
+from flexapod.solve.sections import leg_values
 from flexapod.study.after.legs import base_points, bending_basis, lateral
 from flexapod.typing import Array
 
@@ -100,9 +101,8 @@ def _leg_shapes(robot: model.Robot, found: RobotModes) -> Array:
     for i, leg in enumerate(robot.legs):
         length = found.equilibrium.state.q[i, shapes.l_index]
         zeta = np.clip((STATIONS * length - leg.cylinder.mouth) / (length - leg.cylinder.mouth), 0.0, 1.0)
-        values = basis.values(zeta) if basis.count else np.zeros((0, len(STATIONS)))
-        off_chord = values - np.outer(basis.tip, STATIONS)
-        result[:, i] = legs[:, i] @ off_chord
+        values = leg_values(leg, basis, np.array([length - leg.cylinder.mouth]), zeta)[..., 0]
+        result[:, i] = (legs[:, i, :, None] @ (values - np.outer(basis.tip, STATIONS)))[..., 0, :]
     return result
 
 

@@ -15,6 +15,7 @@ from flexapod.rigid.robot import rigid_limbs
 from flexapod.rigid.rotations import matrix
 from flexapod.solve.actuator_march import amplitudes, lateral_signs
 from flexapod.solve.many import RestStates
+from flexapod.solve.sections import leg_values, stepped_stress
 from flexapod.solve.system import System
 from flexapod.study.after.legs import base_points, bending_basis, lateral
 from flexapod.study.before.estimates import (
@@ -65,7 +66,7 @@ def _leg_warnings(robot: Robot, system: System, record: Record | RestStates, whe
         found += [
             (i, *remark)
             for remark in (
-                *_slope(basis, bent, free, when),
+                *_slope(leg_values(leg, basis, free, np.ones(1), 1)[:, :, 0] / free, bent, when),
                 *_stroke(leg, length, when),
                 *_axial(leg, free, compression[:, i], when),
                 *_nut(leg, compression[:, i], when),
@@ -81,7 +82,7 @@ def actuator_warnings(actuator: Actuator, shapes: Shapes, record: Record) -> lis
     basis, free = shapes.a, record.q[:, 0, shapes.l_index] - actuator.hub_radius
     lateral = np.stack([amplitudes(shapes, record.q[:, 0], name) for name, _ in lateral_signs(shapes, 1, 1)], axis=1)
     when = _When(record.time)
-    found = _slope(basis, lateral, free, when)
+    found = _slope(basis.tip_slope[None, :, None] / free, lateral, when)
     if actuator.section is not None and actuator.material is not None:
         depth, material = actuator.section.depth, actuator.material
         section = beam_section(actuator)
@@ -107,6 +108,8 @@ def leg_stress(leg: Leg, basis: LateralBasis, lateral: Array, free: Array, compr
         Free length [m] and axial force [N].
     """
     piston = leg.piston
+    if piston.sections:
+        return stepped_stress(leg, basis, lateral, free, compression)
     if piston.depth is None or piston.E is None:
         return None
     bending = _bending(basis, lateral, free) * piston.E * piston.depth / 2
@@ -124,10 +127,11 @@ def flexible_axes(robot: Robot, system: System, record: Record | RestStates) -> 
 _Remark = tuple[str, float, str]  # kind, severity (value over limit), words
 
 
-def _slope(basis: LateralBasis, lateral: Array, free: Array, when: _When) -> list[_Remark]:
-    if not basis.count:
+def _slope(slopes: Array, lateral: Array, when: _When) -> list[_Remark]:
+    """By the slopes of the shapes at the tip, (directions, k, T) [1/m]."""
+    if not lateral.shape[-1]:
         return []
-    slope = np.linalg.norm(lateral @ basis.tip_slope, axis=1) / free
+    slope = np.linalg.norm((np.moveaxis(slopes, -1, 0) * lateral).sum(axis=-1), axis=1)
     k = int(slope.argmax())
     if slope[k] <= SLOPE:
         return []
@@ -151,7 +155,7 @@ def _stroke(leg: Leg, length: Array, when: _When) -> list[_Remark]:
 
 
 def _axial(leg: Leg, free: Array, compression: Array, when: _When) -> list[_Remark]:
-    if (compression * free**2).max() <= NEAR_BUCKLING * leg.piston.EI * (np.pi / 2) ** 2:
+    if (compression * free**2).max() <= NEAR_BUCKLING * leg.piston.least_EI * (np.pi / 2) ** 2:
         return []  # even with the least root that (T8.11) can have
     share = compression / buckling_load(leg, free)
     k = int(share.argmax())

@@ -14,6 +14,7 @@ from flexapod.solve.modes import RobotModes
 from flexapod.solve.rigid_motion import rigid_motion
 from flexapod.solve.tables import feed_forward
 from flexapod.study.after.legs import base_motion, of_drives
+from flexapod.study.before.columns import stepped_buckling
 from flexapod.study.path import RigidPath
 from flexapod.typing import Array
 
@@ -62,11 +63,13 @@ def bending_errors(section: Section, free: float) -> tuple[float, float, float]:
     return deflection, 1 / math.sqrt(square) - 1, math.sqrt(1 + a) - 1
 
 
-_STATIONS = np.linspace(0.0, 1.0, 11)
+STATIONS = np.linspace(0.0, 1.0, 11)
 
 
 def section_width(piston: Piston) -> float:
-    """Width of a piston [m]: its diameter, or that of the full round bar with its EI and EA, 4 sqrt(EI / EA)."""
+    """Width of a piston [m]: the largest diameter, or that of a full round bar with its EI and EA, 4 sqrt(EI / EA)."""
+    if piston.sections:
+        return max(max(step.depth) for step in piston.steps)
     return piston.diameter if piston.diameter is not None else 4.0 * float(np.sqrt(piston.EI / piston.EA))
 
 
@@ -85,9 +88,12 @@ def buckling_load(leg: Leg, free: Array) -> Array:
     Returns
     -------
     ndarray, shape (T,)
-        EI k^2 with the smallest root k; for pinned ends of tan(k s) + k m = 0, m from the base joint to the mouth.
+        EI k^2 with the smallest root k; for pinned ends of tan(k s) + k m = 0, m from the base joint to the mouth. Of
+        a piston of several sections that of pinned ends, which is less than what clamped ones bear.
     """
     free = np.asarray(free, dtype=float)
+    if leg.piston.sections:
+        return stepped_buckling(leg, free)
     x = _ROOTS[_clamped(leg)](leg.cylinder.mouth / free)
     return leg.piston.EI * (x / free) ** 2  # (T8.11)
 
@@ -102,7 +108,7 @@ def _clamped(leg: Leg) -> tuple[bool, bool]:
     return base, platform
 
 
-def _pinned(ratio: Array) -> Array:
+def pinned_root(ratio: Array) -> Array:
     """Root of tan x + ratio x = 0 between pi/2 and pi."""
     # x + arctan(ratio x) = pi has one root between pi/2 and pi; its left side is concave and rising: Newton converges.
     x = np.full_like(ratio, np.pi / 2)
@@ -126,7 +132,7 @@ def _clamped_at_the_platform(ratio: Array) -> Array:
 
 
 _ROOTS = {
-    (False, False): _pinned,
+    (False, False): pinned_root,
     (False, True): _clamped_at_the_platform,
     (True, False): lambda ratio: np.full_like(ratio, 4.493409457909064),  # tan x = x: the mouth does not move
     (True, True): lambda ratio: np.full_like(ratio, 2 * np.pi),
@@ -135,7 +141,14 @@ _ROOTS = {
 
 
 def bending_moment(path: RigidPath) -> Array:
-    """Largest bending moment in the free part of each piston on the rigid path, (T, legs) [N m], Eqs. (T8.12)-(T8.13).
+    """Largest bending moment in the free part of each piston on the rigid path, (T, legs) [N m]."""
+    return bending_moments(path).max(axis=0)
+
+
+def bending_moments(path: RigidPath) -> Array:
+    """Bending moments at `STATIONS` of the free part of each piston on the rigid path, (stations, T, legs) [N m].
+
+    Eqs. (T8.12)-(T8.13), stations from the tip.
 
     The piston is loaded by force and moment of the joint at its tip, its weight and its inertia as a rigid rod; the
     leg's own vibration is left out.
@@ -157,12 +170,12 @@ def bending_moment(path: RigidPath) -> Array:
         tip_moment = np.cross(axis, path.forces.joint_moment)
     rhoA = np.array([leg.piston.rhoA for leg in robot.legs])[:, None]
     mouth = np.array([leg.cylinder.mouth for leg in robot.legs])
-    largest = np.zeros(legs.length.shape)
-    for share in _STATIONS:
+    found = np.zeros((len(STATIONS), *legs.length.shape))
+    for k, share in enumerate(STATIONS):
         d = (share * (legs.length - mouth))[..., None]
         moment = tip_moment - d * force + rhoA * (load * d**2 / 2 + slope * d**3 / 6)  # (T8.13)
-        largest = np.maximum(largest, np.linalg.norm(moment, axis=-1))
-    return largest
+        found[k] = np.linalg.norm(moment, axis=-1)
+    return found
 
 
 @dataclass(frozen=True, kw_only=True)

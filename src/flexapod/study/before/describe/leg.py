@@ -9,7 +9,7 @@ import numpy as np
 from flexapod.model import Leg, Robot
 from flexapod.model.simulation import SOLID
 from flexapod.study.after.plausibility import NEAR_BUCKLING, SLENDERNESS, buckling_words, nut_words, thick_words
-from flexapod.study.before.estimates import buckling_load, piston_section, section_width
+from flexapod.study.before.estimates import STATIONS, buckling_load, piston_section, section_width
 from flexapod.study.path import RigidPath
 from flexapod.study.words import text
 from flexapod.typing import Array
@@ -77,7 +77,7 @@ class LegDescription:
 
 @dataclass(frozen=True, kw_only=True)
 class LegPath:
-    """A leg along the rigid path, each shape (T,).
+    """A leg along the rigid path, each shape (T,), `moment` at `STATIONS` from the tip (stations, T).
 
     `time` [s]; `length` joint to joint [m]; `carriage` [m, rad]; `force` of the drive [N, N m] and `thrust` along the
     leg at its tip [N]; bending `moment` [N m].
@@ -126,7 +126,7 @@ def describe_leg(number: int, leg: Leg, path: LegPath, home: float) -> LegDescri
         force_max=_most(t, path.force),
         euler_share=Extreme(value=max(0.0, float(pushed[near] / euler[near])), time=float(t[near])),
         euler_load=float(euler[near]),
-        stress=_stress(leg, t, np.maximum(np.abs(along), np.abs(path.thrust)), path.moment),
+        stress=_stress(leg, t, np.maximum(np.abs(along), np.abs(path.thrust)), path.moment, free),
     )
 
 
@@ -154,12 +154,20 @@ def _margin(leg: Leg, t: Array, length: Array) -> Extreme | None:
     return _least(t, np.minimum(length - leg.stroke.min, leg.stroke.max - length))
 
 
-def _stress(leg: Leg, t: Array, force: Array, moment: Array) -> Stress | None:
+def _stress(leg: Leg, t: Array, force: Array, moment: Array, free: Array) -> Stress | None:
     piston = leg.piston
-    if piston.depth is None or piston.E is None:
+    if not piston.sections and (piston.depth is None or piston.E is None):
         return None
-    axial = force * piston.E / piston.EA
-    bending = moment * piston.E * piston.depth / (2 * piston.EI)
+    # by section: axial stress of a force, bending stress of a moment, of a strip about its weak axis
+    steps = piston.steps_or_one[::-1]
+    per_force = np.array([step.E / step.EA for step in steps])
+    per_moment = np.array(
+        [max(step.E * d / (2 * EI) for d, EI in zip(step.depth, step.EI, strict=True)) for step in steps]
+    )
+    ends = np.cumsum([step.length for step in steps])[:-1]
+    section = np.searchsorted(ends, np.multiply.outer(STATIONS, free))
+    axial = force * per_force.max()
+    bending = (moment * per_moment[section]).max(axis=0)
     return Stress(
         axial=float(axial.max()),
         bending=float(bending.max()),

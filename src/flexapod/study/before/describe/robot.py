@@ -35,7 +35,7 @@ from flexapod.study.before.describe.leg import (
     load_remarks,
 )
 from flexapod.study.before.describe.screw import ScrewDescription, back_words, describe_screws, screw_remarks
-from flexapod.study.before.estimates import bending_moment, residual_vibration
+from flexapod.study.before.estimates import bending_moments, residual_vibration
 from flexapod.study.disturbances import vibration_words
 from flexapod.study.path import RigidPath
 from flexapod.study.words import held
@@ -333,7 +333,7 @@ def describe_legs(path: RigidPath) -> tuple[LegDescription, ...]:
     """Extremes of the legs on the rigid path of a study."""
     robot, forces = path.robot, path.forces
     thrust = np.einsum("tli,tli->tl", forces.joint_force, path.axes)
-    moment = bending_moment(path)
+    moment = bending_moments(path)
     return tuple(
         describe_leg(
             i + 1,
@@ -344,7 +344,7 @@ def describe_legs(path: RigidPath) -> tuple[LegDescription, ...]:
                 carriage=path.reach.carriage[:, i],
                 force=forces.drive_force[:, i],
                 thrust=thrust[:, i],
-                moment=moment[:, i],
+                moment=moment[:, :, i],
             ),
             float(robot.home_lengths[i]),
         )
