@@ -2,13 +2,16 @@
 
 import numpy as np
 import pytest
+from scipy.integrate import solve_ivp
 from tests.consistency.test_screw_drive import EVERYTHING
-from tests.machines import NUT, SCREW, machine, study
+from tests.consistency.test_soft_joints import light
+from tests.machines import NUT, SCREW, machine, study, symmetric
+from tests.runs import balance, run_robot
 
 import flexapod as fx
 from flexapod import model
 from flexapod.errors import InputError
-from flexapod.model import Encoder, Feedback, Geometry, Heat, LengthSpread, RatioSpread, Rotor, Tolerances
+from flexapod.model import Encoder, Feedback, Geometry, Heat, LengthSpread, Loop, RatioSpread, Rotor, Tolerances
 
 TEXT = model.preset_text("machine-hexapod")
 PARTS = {"rotor": [], "stroke": ["screw", "twist", "nut", "bearing", "bracket"],
@@ -214,3 +217,115 @@ class TestLimitsInARun:
         text = model.preset_text("motion-base").replace('"140 bar", flow = "470 l/min"', '"30 bar", flow = "200 l/min"')
         words = fx.simulate(model.override(model.loads(text), fidelity="rigid", step=2e-3)).attrs["warnings"]
         assert "needs a pressure of" in words and "needs a flow of" in words
+
+
+LOOP = Loop(stiffness=5e3, damping=60.0, integral=2e4)
+SUMS = SCREW.replace(command="servo", loop=LOOP)
+
+
+class TestIntegral:
+    def test_at_rest_it_is_a_held_rotor(self):
+        ours, theirs = (machine(drive=x, **EVERYTHING) for x in (SUMS, SCREW))
+        sag = [fx.modes(x, fidelity="lumped").com_sag.values for x in (ours, theirs)]
+        np.testing.assert_allclose(sag[0], sag[1], rtol=0, atol=1e-13)
+        stiff = [fx.stiffness(x, fidelity="lumped").stiffness.values for x in (ours, theirs)]
+        np.testing.assert_allclose(stiff[0], stiff[1], rtol=1e-12, atol=1e-12 * np.abs(stiff[1]).max())
+        rows = [fx.budget(study(x, fidelity="lumped")) for x in (ours, theirs)]
+        assert "drive" not in rows[0].part.values
+        np.testing.assert_allclose(rows[0].budget_total, rows[1].budget_total, rtol=0, atol=1e-12)
+        assert "drive" not in fx.parts(ours).part.values
+        still = study(ours, fidelity="lumped", step=1e-3, duration=0.02)
+        run = fx.simulate(still.replace(motion=still.motion.replace(amplitude=0.0)))
+        np.testing.assert_allclose(run.com_deviation.values[0], sag[0], rtol=0, atol=1e-12)
+        # It has summed what holds the rotor, and stays where it is.
+        np.testing.assert_allclose(run.drive_force[-1], run.drive_force[0], rtol=1e-8)
+
+    def test_modes_are_those_of_spring_and_damper(self):
+        # About another rest, higher by what the loop gives: 1e-6 m of a metre.
+        ours, theirs = (fx.modes(machine(drive=SUMS.replace(loop=LOOP.replace(integral=x))), fidelity="lumped")
+                        for x in (2e4, 0.0))  # fmt: skip
+        np.testing.assert_allclose(ours.frequency[:6], theirs.frequency[:6], rtol=1e-5)
+        np.testing.assert_allclose(ours.damping_ratio[:6], theirs.damping_ratio[:6], rtol=1e-4)
+
+    def test_path_of_one_equation(self):
+        """Legs without mass, rigid but for their loops, lift a payload straight up: one coordinate, by itself."""
+        loop = Loop(stiffness=50.0, damping=2.0, integral=200.0)
+        ends = {"bearing": SCREW.bearing.replace(stiffness=1e12), "nut": NUT.replace(stiffness=1e12)}
+        steel = SCREW.material.replace(E=1e15, density=1e-3)
+        drive = SUMS.replace(**ends, loop=loop, rotor=Rotor(inertia=4e-3), material=steel)
+        robot = light(symmetric(drive=drive))
+        given = study(robot, fidelity="rigid", step=2.5e-4, duration=0.2, output_step=1e-3)
+        data = fx.simulate(given)
+        z0, reach = robot.home_position[2], np.linalg.norm((robot.platform_joints - robot.base_joints)[0, :2])
+        mass, turns = robot.payload.mass, drive.inertia / drive.per_turn**2
+        k, c, gain = (x / drive.per_turn**2 for x in (loop.stiffness, loop.damping, loop.integral))
+
+        def length(z):
+            return np.hypot(z, reach)
+
+        def commanded(t):
+            s = np.clip(t / 0.1, 0, 1)  # quintic, by hand
+            z = z0 + 0.02 * (10 * s**3 - 15 * s**4 + 6 * s**5)
+            rate = 0.02 * (30 * s**2 - 60 * s**3 + 30 * s**4) / 0.1
+            return length(z), rate * z / length(z)
+
+        def rates(t, x):
+            z, v, total = x
+            slope, bend = z / length(z), reach**2 / length(z) ** 3
+            command, rate = commanded(t)
+            force = k * (command - length(z)) + c * (rate - slope * v) + gain * total
+            push = 6 * slope * (force - turns * bend * v**2) - 9.81 * mass
+            return [v, push / (mass + 6 * turns * slope**2), command - length(z)]
+
+        start = [z0, 0.0, 9.81 * mass / (6 * z0 / length(z0)) / gain]
+        found = solve_ivp(rates, (0, 0.2), start, rtol=1e-11, atol=1e-13, dense_output=True, max_step=1e-3)
+        rigid = data.com_position_rigid.values[:, 2]
+        beside = found.sol(data.time.values)[0] - z0 - (rigid - rigid[0])
+        lag = data.com_deviation.values[:, 2]
+        assert np.abs(lag).max() > 1e-6
+        # Second order in the step, 1e-4 of the largest here; gravity is 9.81.
+        np.testing.assert_allclose(lag, beside, rtol=0, atol=1e-3 * np.abs(beside).max())
+
+    def test_a_load_that_comes_is_made_up_for(self):
+        def after(integral):
+            drive = SUMS.replace(loop=LOOP.replace(integral=integral, damping=120.0))
+            wrench = model.StepWrench(amplitude=[0, 0, -2000, 0, 0, 0], time=0.01)
+            still = study(machine(drive=drive), fidelity="rigid", step=2e-3, duration=2.0)
+            still = still.replace(motion=still.motion.replace(amplitude=0.0), load=model.Load(wrench=wrench))
+            return fx.simulate(still).deviation_by_cause.sel(cause="drive", axis="z").sum("leg").values
+
+        with_it, without = after(2e4), after(0.0)
+        assert np.abs(with_it[-1]) < 0.01 * np.abs(without[-1] - without[0])
+        assert np.abs(with_it).max() > 0.3 * np.abs(without[-1] - without[0])
+
+    def test_energy_closes_to_second_order(self):
+        errors = []
+        for step in (1e-3, 5e-4):
+            found = balance(run_robot(study(machine(drive=SUMS), fidelity="lumped", step=step, duration=0.1)))
+            errors.append(np.abs(found - found[0]).max())
+        assert errors[0] / errors[1] == pytest.approx(4, rel=0.25)
+
+    def test_beside_legs_that_sum_nothing(self):
+        robot = machine(drive=SCREW)
+        drives = (SUMS, SCREW, SUMS.replace(loop=LOOP.replace(integral=0.0)))
+        legs = tuple(leg.replace(drive=drives[i % 3]) for i, leg in enumerate(robot.legs))
+        given = study(robot.replace(legs=legs), fidelity="lumped", step=1e-3, duration=0.01)
+        sag = fx.modes(given.robot, fidelity="lumped").com_sag.values
+        np.testing.assert_allclose(fx.simulate(given).com_deviation.values[0], sag, rtol=0, atol=1e-12)
+
+    def test_files(self):
+        old = 'command = "position"         # ours'
+        loop = 'loop = { stiffness = "5 kN m/rad", damping = "20 N m s/rad", integral = "20 kN m/(rad s)" }'
+        given = changed((old, f'command = "servo"\n{loop} # ours'))
+        assert given.robot.legs[0].screw.loop.integral == 2e4
+        assert model.loads(model.to_toml(given)).robot == given.robot
+        for bad in ("-1 N m/(rad s)", "1e9 N m/(rad s)", "5 N m/rad"):
+            with pytest.raises(InputError) as caught:
+                changed((old, f'command = "servo"\n{loop.replace("20 kN m/(rad s)", bad)} # ours'))
+            assert caught.value.key == "leg.drive.loop.integral"
+        assert "stiffness * damping / inertia" in str(self.refused(old, loop))
+
+    def refused(self, old, loop):
+        with pytest.raises(InputError) as caught:
+            changed((old, f'command = "servo"\n{loop.replace("20 kN m/(rad s)", "1e9 N m/(rad s)")} # ours'))
+        return caught.value

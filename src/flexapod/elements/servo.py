@@ -1,4 +1,4 @@
-"""The spring and damper of a drive between its command and its coordinate, Eqs. (T5.4)-(T5.5)."""
+"""The spring and damper of a drive between its command and its coordinate, Eqs. (T5.4)-(T5.5), and its integral."""
 
 from dataclasses import dataclass
 
@@ -7,7 +7,10 @@ from flexapod.symbolic.vocabulary import SX
 
 @dataclass(frozen=True, kw_only=True)
 class Servo:
-    """A drive on the coordinate ``q``; stiffness and damping are zero where the coordinate is prescribed."""
+    """A drive on the coordinate ``q``; stiffness and damping are zero where the coordinate is prescribed.
+
+    ``summed``: force of the summed error, Eq. (T23.15).
+    """
 
     stiffness: SX
     damping: SX
@@ -15,10 +18,15 @@ class Servo:
     v: SX
     q_cmd: SX
     v_cmd: SX
+    summed: SX | None = None
 
     @property
     def force(self) -> SX:
-        """Force on the coordinate, Eq. (T5.4)."""
+        """Force on the coordinate, Eqs. (T5.4) and (T23.15)."""
+        return self._held if self.summed is None else self._held + self.summed
+
+    @property
+    def _held(self) -> SX:
         return self.stiffness * (self.q_cmd - self.q) + self.damping * (self.v_cmd - self.v)
 
     @property
@@ -33,5 +41,6 @@ class Servo:
 
     @property
     def given(self) -> SX:
-        """Power that comes in at the commanded end, Eq. (T5.5)."""
-        return self.force * self.v_cmd
+        """Power that comes in at the commanded end, Eq. (T5.5), and by the summed error."""
+        power = self._held * self.v_cmd
+        return power if self.summed is None else power + self.summed * self.v

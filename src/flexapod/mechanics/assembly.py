@@ -64,6 +64,7 @@ class _Leg:
                 v=getattr(self.vs, name),
                 q_cmd=self.command[2 * i],
                 v_cmd=self.command[2 * i + 1],
+                summed=self.p.rotor_integral * self.qs.w if drive == "rotor" and shapes.integral else None,
             )
             for i, (name, drive) in enumerate(shapes.drives)
         }
@@ -101,6 +102,9 @@ class _Leg:
             r -= self.load_force()
         for i, servo in self.servos.items():
             r[i] -= servo.force
+        if self.shapes.integral:  # a coordinate of mass 1 whose rate is the error, (T23.16)
+            rotor, w = self.servos[self.shapes.index("r")], self.shapes.index("w")
+            r[w] += self.v_dot[w] - (rotor.v_cmd - rotor.v)
         return r
 
     def residual(self) -> NamedFunction:
@@ -138,7 +142,10 @@ class _Leg:
         for i, servo in self.servos.items():
             D[i, i] += servo.damping
             K[i, i] += servo.stiffness
-        outputs = [("M", mass_matrix(e)), ("D", D), ("K", K), ("J", self.by_q.jacobian(here))]
+        M = mass_matrix(e)
+        if self.shapes.integral:  # what couples it to the rotor is slow, and left out of the iterations
+            M[self.shapes.index("w"), self.shapes.index("w")] += 1.0
+        outputs = [("M", M), ("D", D), ("K", K), ("J", self.by_q.jacobian(here))]
         if self.shapes.closure == "pose":  # (T13.14)-(T13.15)
             outputs += [
                 (name, self.by_q.value(_undisplaced(-jacobian(y, step), step)))

@@ -85,6 +85,9 @@ SERIES_PARAMETERS: tuple[tuple[str, int], ...] = (
     ("rotor_damping", 1),  # N s/m
 )
 
+#: ... whose loop sums its error.
+INTEGRAL_PARAMETERS: tuple[tuple[str, int], ...] = (("rotor_integral", 1),)  # N/(m s)
+
 #: ... of which some are columns of oil: their share in the compliance of these at home; of the two columns the share of
 #: the pushing one in their stiffness there, and one over their lengths [1/m].
 OIL_PARAMETERS: tuple[tuple[str, int], ...] = (("oil", 4),)
@@ -165,6 +168,8 @@ class Shapes:
         Displacements of the joints along and across the leg.
     series : bool
         Springs between a rotor, whose travel is r, and the stroke l.
+    integral : bool
+        The rotor's servo sums its error: w.
     oil : bool
         Columns of oil among these.
     sections : int
@@ -189,6 +194,7 @@ class Shapes:
     soft_base: bool = False
     soft_platform: bool = False
     series: bool = False
+    integral: bool = False
     oil: bool = False
     sections: int = 0
     strips: bool = False
@@ -207,7 +213,13 @@ class Shapes:
         angles = ("beta",) if self.planar else ("alpha", "beta")
         amplitudes = (("c", self.axial.count), ("a", self.a.count), ("b", self.b.count))
         gamma = ("gamma1", "gamma2", "gamma3") if self.closure == "pose" else ()
-        there = (("chi", bool(self.carriage)), ("spin", self.spin), ("t", self.torsion), ("r", self.series))
+        there = (
+            ("chi", bool(self.carriage)),
+            ("spin", self.spin),
+            ("t", self.torsion),
+            ("r", self.series),
+            ("w", self.integral),
+        )
         more = (*(name for name, has in there if has), *gamma)
         ends = (("u", self.flexure or self.soft_base), ("e", self.flexure or self.soft_platform))
         moved = tuple(f"{end}{k}" for end, has in ends if has for k in (1, 2, 3))
@@ -287,6 +299,7 @@ def leg_parameters(shapes: Shapes) -> tuple[tuple[str, int], ...]:
         (shapes.soft_base, SOFT_BASE),
         (shapes.soft_platform, SOFT_PLATFORM),
         (shapes.series, SERIES_PARAMETERS),
+        (shapes.integral, INTEGRAL_PARAMETERS),
         (shapes.oil, OIL_PARAMETERS),
         (shapes.sections > 0, _section_parameters(shapes)),
         (shapes.base_friction, BASE_FRICTION),

@@ -56,7 +56,7 @@ from flexapod.model.payload import Payload
 from flexapod.model.piston import Cylinder, Piston, Strut
 from flexapod.model.robot import Robot
 from flexapod.model.rolling import RollingLaw
-from flexapod.model.screw import Bearing, Brake, Drive, Encoder, Limits, Nut, Rotor, ScrewDrive
+from flexapod.model.screw import Bearing, Brake, Drive, Encoder, Limits, Loop, Nut, Rotor, ScrewDrive
 from flexapod.model.sections import PistonSection
 from flexapod.model.simulation import DEFAULT_TOLERANCE, FIDELITIES, Initial, Simulation
 from flexapod.model.spring import AxialSpring
@@ -114,6 +114,7 @@ __all__ = [
     "Limits",
     "Load",
     "LoadLaw",
+    "Loop",
     "Material",
     "Motion",
     "MotionLaw",

@@ -5,7 +5,7 @@ from __future__ import annotations
 import math
 from typing import Annotated, ClassVar, Literal
 
-from pydantic import Field, model_validator
+from pydantic import BeforeValidator, Field, model_validator
 
 from flexapod.errors import InputError
 from flexapod.model.base import Frozen, Measure, NonNegative, Number, Positive, Series
@@ -17,7 +17,7 @@ from flexapod.model.motion import check_times
 from flexapod.model.spring import check_lossy
 from flexapod.words import number
 
-__all__ = ["Bearing", "Brake", "Drive", "Encoder", "Limits", "Nut", "Rotor", "ScrewDrive"]
+__all__ = ["Bearing", "Brake", "Drive", "Encoder", "Limits", "Loop", "Nut", "Rotor", "ScrewDrive"]
 
 UNLOADS = 2 * math.sqrt(2)  # thrust over preload beyond which one half of a preloaded nut carries nothing
 HIGHEST = 0.1  # preload over dynamic load rating of a double nut, at most (HIWIN 3.6)
@@ -169,15 +169,28 @@ class Encoder(Frozen):
     resolution: Annotated[Positive, Measure("length", "angle")] | None = None
 
 
+class Loop(Feedback):
+    """A loop about the angle of the screw, that also sums its error: gain of the `integral` [N m/(rad s)]."""
+
+    integral: Annotated[NonNegative, Measure("integral gain")] = 0.0
+
+
+def _summing(loop: object) -> object:
+    """A loop out of a correction that sums nothing."""
+    plain = isinstance(loop, Feedback) and not isinstance(loop, Loop)
+    return Loop(stiffness=loop.stiffness, damping=loop.damping) if plain else loop  # type: ignore[union-attr]
+
+
 class ScrewDrive(Frozen):
     """A screw that the motor turns in a thrust bearing in the cylinder; its nut is the piston's inner end.
 
     `lead` [m] a turn; the shaft between bearing and nut by its `root_diameter` [m], `length` [m] from the bearing and
     `material`; `mounting` of its far end. What the motor does to the rotor: `command` "position" holds it, "servo" has
-    a `loop` (spring [N m/rad] and damper [N m s/rad] on the screw's angle), "torque" pushes, with or without a loop:
-    by ``law = "rigid"`` with what the rigid robot and the rotor need, "constant" with the motor's torque `value` [N m],
-    "csv" with its `torque` at the instants `time` [s] read from `file`. `efficiency`: thrust times lead over the
-    screw's work; it, `limits` and `brake` are for checks and remarks alone. `friction` at the nut.
+    a `loop` (spring [N m/rad] and damper [N m s/rad] on the screw's angle, and what sums the error), "torque" pushes,
+    with or without a loop: by ``law = "rigid"`` with what the rigid robot and the rotor need, "constant" with the
+    motor's torque `value` [N m], "csv" with its `torque` at the instants `time` [s] read from `file`. `efficiency`:
+    thrust times lead over the screw's work; it, `limits` and `brake` are for checks and remarks alone. `friction` at
+    the nut.
     """
 
     derived: ClassVar[tuple[str, ...]] = ("time", "torque")
@@ -198,7 +211,7 @@ class ScrewDrive(Frozen):
     file: str | None = None
     time: Annotated[Series, Measure("time")] | None = None
     torque: Annotated[Series, Measure("torque")] | None = None
-    loop: Feedback | None = None
+    loop: Annotated[Loop | None, BeforeValidator(_summing)] = None
     encoder: Encoder = Encoder()
     limits: Limits = Limits()
     brake: Brake | None = None
@@ -220,6 +233,20 @@ class ScrewDrive(Frozen):
                 key="encoder",
                 value=self.encoder.at,
                 allowed='at = "rotor", or command = "position"',
+            )
+        return self
+
+    @model_validator(mode="after")
+    def _steady(self) -> ScrewDrive:
+        loop = self.loop  # (T23.17)
+        if loop is not None and loop.integral > 0 and self.inertia * loop.integral >= loop.stiffness * loop.damping:
+            most = loop.stiffness * loop.damping / self.inertia
+            raise InputError(
+                "makes the loop unstable, whatever it drives",
+                key="loop.integral",
+                value=loop.integral,
+                allowed=f"below stiffness * damping / inertia of all that turns = {number(most)} N m/(rad s)",
+                next_step="With a payload a third of that leaves some margin",
             )
         return self
 
@@ -270,9 +297,19 @@ class ScrewDrive(Frozen):
         return self.loop.stiffness / self.per_turn**2, self.loop.damping / self.per_turn**2
 
     @property
+    def integral(self) -> float:
+        """Gain of the summed error, by the nut's travel [N/(m s)]."""
+        return 0.0 if self.loop is None else self.loop.integral / self.per_turn**2
+
+    @property
     def holds(self) -> bool:
         """Whether it keeps its command, whatever the force."""
         return self.command == "position"
+
+    @property
+    def rests(self) -> bool:
+        """Whether it keeps its command at rest: a loop that sums its error leaves none."""
+        return self.holds or self.integral > 0
 
     @property
     def pushes(self) -> bool:

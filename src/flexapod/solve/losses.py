@@ -109,5 +109,14 @@ def _locked(drive: Drive) -> Drive:
     if not isinstance(drive, ScrewDrive):
         return drive
     nut, bearing = drive.nut.replace(loss=None), drive.bearing.replace(loss=None)
-    held = {"command": "position", "loop": None} if drive.command == "torque" else {}
+    held = {
+        "command": "position",
+        "law": "rigid",
+        "value": None,
+        "file": None,
+        "time": None,
+        "torque": None,
+        "loop": None,
+    }
+    held = held if drive.command == "torque" else {}
     return drive.replace(nut=nut, bearing=bearing, **held)

@@ -61,6 +61,16 @@ class LockedPoses:
     m: RestMatrices
 
     @cached_property
+    def shaken(self) -> "LockedPoses":
+        """The same about which to vibrate: a rotor whose loop sums its error is at rest, and has its spring beside."""
+        if not self.system.kernel.shapes.integral:
+            return self
+        held, shapes = self.system.held.copy(), self.system.kernel.shapes
+        rests = [leg.screw is not None and leg.screw.rests and not leg.screw.holds for leg in self.robot.legs]
+        held[rests, shapes.index("r")] = False
+        return replace(self, system=replace(self.system, held=held))
+
+    @cached_property
     def bases(self) -> list[LegBases]:
         """Independent motions about the equilibria, as far as legs can give way."""
         return closed(leg_bases(self.system, self.m))
@@ -130,7 +140,7 @@ def locked_poses(
         A pure force drive.
     """
     refuse_pure_force(robot, "a static equilibrium")
-    system = robot_system(robot, simulation)
+    system = robot_system(robot, simulation, at_rest=True)
     start, acts = rigid_rest(system, robot, path), rest_load(system, robot, path, load, time)
     command = rest_commands(system, robot, start.q, time)
     found = equilibria(system, start, command, acts.force, acts.wrench)
@@ -235,6 +245,7 @@ def modes_of(locked: LockedPoses, *, shapes: bool = False) -> ManyModes:
 
 def unit_modes(locked: LockedPoses, *, shapes: bool) -> UnitModes:
     """All undamped modes of unit stiffness; raises as `modes_of`."""
+    locked = locked.shaken
     system, m = locked.system, locked.m
     bases = locked.bases
     N = null_space_of_borders(bases)

@@ -174,6 +174,7 @@ def _series(leg: Leg, length: float, per_loss: float) -> dict[str, object]:
         "series_stiffness": stiffness,
         "series_softening": softening(springs, length) if springs else (0.0, 0.0),
         "series_home": length,
+        "rotor_integral": 0.0 if screw is None else screw.integral,
         "oil": oil_shares(springs, length),
         "series_damping": damping,
         "rotor_mass": 0.0 if screw is None else screw.inertia / screw.per_turn**2,  # (T15.12)

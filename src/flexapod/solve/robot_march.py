@@ -8,7 +8,7 @@ import numpy as np
 from flexapod import rigid
 from flexapod.errors import ComputationError, InputError
 from flexapod.integration import GeneralizedAlpha
-from flexapod.model import Study
+from flexapod.model import Robot, Study
 from flexapod.rigid.kinematics import BETA_LIMIT
 from flexapod.rigid.rotations import matrix
 from flexapod.solve.equilibrium import equilibrium
@@ -138,13 +138,26 @@ def _configuration(study: Study, system: System) -> State:
     if study.initial.start == "straight":
         return at_rest
     refuse_pure_force(study.robot, "the equilibrium start")
-    acts = rest_load(system, study.robot, path, study.load)
-    command = rest_commands(system, study.robot, straight.q[None])[0]
-    found = equilibrium(system, at_rest, command, acts.force[0], acts.wrench)
+    still = system
+    if system.kernel.shapes.integral:
+        still = robot_system(study.robot, study.simulation, at_rest=True)
+        at_rest = replace(at_rest, drive=np.zeros((still.legs, still.ports.size)))
+    acts = rest_load(still, study.robot, path, study.load)
+    command = rest_commands(still, study.robot, straight.q[None])[0]
+    found = equilibrium(still, at_rest, command, acts.force[0], acts.wrench)
     if not found.found:
         raise ComputationError(f"the robot cannot start at rest: {found.reason}", next_step="See `flexapod check`.")
-    refuse_fallen(system, study.robot, RestStates.of(straight), RestStates.of(found.state))
-    return found.state
+    refuse_fallen(still, study.robot, RestStates.of(straight), RestStates.of(found.state))
+    return found.state if still is system else _summed(study.robot, system, still, found.state)
+
+
+def _summed(robot: Robot, system: System, still: System, state: State) -> State:
+    """A state at rest whose loops have summed what holds their rotors, Eq. (T23.16)."""
+    shapes, q = system.kernel.shapes, state.q.copy()
+    force = state.drive[:, still.ports == shapes.index("r")][:, 0]
+    gain = np.array([leg.screw.integral if leg.screw is not None else 0.0 for leg in robot.legs])
+    q[:, shapes.index("w")] = np.divide(force, gain, out=np.zeros_like(gain), where=gain > 0)
+    return replace(state, q=q, drive=np.zeros((system.legs, system.ports.size)))
 
 
 class _Path:

@@ -21,8 +21,11 @@ from flexapod.typing import Mask
 __all__ = ["robot_system"]
 
 
-def robot_system(robot: Robot, simulation: Simulation, march: bool = True) -> System:
-    """System of a robot as built, in the fidelity and shapes of ``simulation``; ``march``: to be integrated."""
+def robot_system(robot: Robot, simulation: Simulation, march: bool = True, *, at_rest: bool = False) -> System:
+    """System of a robot as built, in the fidelity and shapes of ``simulation``; ``march``: to be integrated.
+
+    ``at_rest``: loops that sum their errors have left none, Eq. (T23.16).
+    """
     legs = rigid.built_limbs(robot, rigid.robot_limbs(robot))
     shapes = robot_shapes(robot, simulation, legs)
     return System(
@@ -30,7 +33,7 @@ def robot_system(robot: Robot, simulation: Simulation, march: bool = True) -> Sy
         leg_p=leg_parameters(robot, legs, shapes, per_loss(robot, simulation)),
         joint_p=np.ascontiguousarray(legs.platform - robot.com),
         payload_p=payload_parameters(robot),
-        held=_held(robot, legs, shapes),
+        held=_held(robot, legs, shapes) | _summed(robot, shapes, at_rest=at_rest),
         hub_held=legs.hub_held,
     )
 
@@ -53,6 +56,16 @@ def _held(robot: Robot, legs: Limbs, shapes: Shapes) -> Mask:
     if shapes.torsion:  # a ball does not twist its leg
         held[:, shapes.index("t")] = ~legs.pose_closure
     return held | _held_joints(robot, legs, shapes)
+
+
+def _summed(robot: Robot, shapes: Shapes, *, at_rest: bool) -> Mask:
+    """Rotors and summed errors that loops hold at rest; summed errors of legs that have none."""
+    held: Mask = np.zeros((len(robot.legs), shapes.size), dtype=bool)
+    if shapes.integral:
+        sums = np.array([leg.screw is not None and leg.screw.integral > 0 for leg in robot.legs])
+        held[:, shapes.index("w")] = ~sums | at_rest
+        held[sums, shapes.index("r")] = at_rest
+    return held
 
 
 def _held_joints(robot: Robot, legs: Limbs, shapes: Shapes) -> Mask:

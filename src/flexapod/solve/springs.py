@@ -96,7 +96,7 @@ def before_piston(leg: Leg) -> list[Spring]:
     springs = [x for x in springs_along(leg) if x.at == "nut"]
     if isinstance(leg.drive, ServoDrive):
         springs.append(of_servo(leg.drive))
-    elif leg.screw is not None and leg.screw.loop_spring[0]:
+    elif leg.screw is not None and leg.screw.loop_spring[0] and not leg.screw.rests:
         springs.append(of_servo(ServoDrive(stiffness=leg.screw.loop_spring[0])))
     return springs
 

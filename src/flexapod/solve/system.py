@@ -157,7 +157,8 @@ class System:
         layout = leg_parameters(self.kernel.shapes)
         EA, Lp = (self.leg_p[:, columns(layout, name)] for name in ("EA", "Lp"))
         stiffest = [(EA / Lp).max() * (self.kernel.shapes.axial.count > 0)]
-        springs = ("drive_stiffness", "carriage_stiffness", *(f"{x}_{y}" for x in ENDS for y in ("flexure", "soft")))
+        ends = (f"{x}_{y}" for x in ENDS for y in ("flexure", "soft"))
+        springs = ("drive_stiffness", "carriage_stiffness", "series_stiffness", "rotor_stiffness", *ends)
         for name in springs:
             if name in dict(layout):
                 stiffest.append(self.leg_p[:, columns(layout, name)].max())
