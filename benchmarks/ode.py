@@ -78,7 +78,7 @@ def functions(shapes: Shapes) -> list[NamedFunction]:
             [("q", q), ("v", v), ("p", p_vector)],
             [("M", mass_matrix(body.lagrangian)), ("h", h), ("J", J), ("bend", bend)],
         ),
-        payload_functions()[0],
+        payload_functions(shapes)[0],
     ]
 
 

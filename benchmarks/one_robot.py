@@ -151,7 +151,7 @@ def _generated(run: Marched) -> tuple[Count, list[list[str]]]:
     from flexapod.mechanics.assembly import leg_functions, payload_functions
 
     shapes = prepare(roll()).system.kernel.shapes
-    counts = {f.name: casadi_count(f.build()) for f in [*leg_functions(shapes), *payload_functions()]}
+    counts = {f.name: casadi_count(f.build()) for f in [*leg_functions(shapes), *payload_functions(shapes)]}
     calls = run.counters
     total, rows = Count(), []
     for kind, name, times in (

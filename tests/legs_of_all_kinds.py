@@ -25,6 +25,10 @@ KINDS = {
     "soft joints and flexures": {"closure": "pose", "flexure": True, "soft_base": True, "soft_platform": True},
     "point behind a screw": {"series": True},
     "pose behind a screw": EVERYTHING | {"series": True, "soft_base": True},
+    "point on frames that move": {"base_motion": True, "base_mount": True, "platform_mount": True},
+    "slider on a base that moves": {"base_motion": True, "carriage": "slider"},
+    "pose on a crank on frames that move": EVERYTHING
+    | {"carriage": "crank", "base_mount": True, "platform_mount": True},
     "tip body": {"closure": "none", "torsion": True, "tip_body": True},
     "planar": {"closure": "none", "planar": True, "tip_body": True},
 }
@@ -66,7 +70,12 @@ PHYSICS |= {
     "rotor_mass": 300.0, "rotor_stiffness": 2e5, "rotor_damping": 30.0,
 }  # fmt: skip
 for end, k in (("base", 1.0), ("platform", 1.3)):
+    PHYSICS |= {f"{end}_mount_stiffness": k * springs(5), f"{end}_mount_damping": 1e-3 * k * springs(6)}
     PHYSICS |= {f"{end}_soft": [1e6 * k, 3e6 * k], f"{end}_soft_damping": [300.0 * k, 200.0 * k]}
+PHYSICS |= {
+    "base_motion_at": [0.03, -0.02, 0.1], "base_mount_at": [0.1, 0.04, -0.1], "platform_mount_at": [-0.02, 0.05, -0.1],
+    "base_plate_mass": 4.0, "base_plate_inertia": np.diag([0.2, 0.3, 0.4]) + 0.02,
+}  # fmt: skip
 
 
 @cache

@@ -43,7 +43,7 @@ def with_legs(study, change):
 
 def balance(run):
     """Constant of the energy balance, (T,) [J]."""
-    return run["energy"].sum(axis=1) + run["sums"][:, 0] - run["sums"][:, 1] - run["sums"][:, 2]
+    return run["energy"].sum(axis=1) + run["sums"][:, 0] - run["sums"][:, 1:].sum(axis=1)
 
 
 def leg_vector(**values):

@@ -7,7 +7,7 @@ import flexapod as fx
 from flexapod.model import AxisMotion, Study
 from flexapod.report.study_words import _path
 from flexapod.study.before.describe.robot import Singularity, describe_legs
-from flexapod.study.names import cause_words
+from flexapod.study.cause_words import cause_words
 from flexapod.study.path import RigidPath
 from flexapod.surveys.sweeps.kept import _records, _robot_scalars
 

@@ -3,11 +3,19 @@
 The residuals are exact. The matrices at rest serve equilibria, modes and the iterations of the time integration.
 """
 
+from flexapod.elements.mount import plate
 from flexapod.elements.servo import Servo
-from flexapod.mechanics.closure import load_force, pose_closure
-from flexapod.mechanics.layout import LOAD_SIZE, PAYLOAD_PARAMETERS, Shapes, leg_parameters
+from flexapod.mechanics.closure import ball_closure, load_force, pose_closure
+from flexapod.mechanics.layout import LOAD_SIZE, Shapes, leg_parameters, payload_parameters
 from flexapod.mechanics.leg import leg
-from flexapod.mechanics.payload import displaced_pose, joint_point, joint_wrench, newton_euler
+from flexapod.mechanics.payload import (
+    displaced_pose,
+    joint_point,
+    joint_wrench,
+    newton_euler,
+    plate_balance,
+    plate_frame,
+)
 from flexapod.symbolic.functions import NamedFunction
 from flexapod.symbolic.lagrange import inverse_dynamics, mass_matrix
 from flexapod.symbolic.vocabulary import (
@@ -81,7 +89,7 @@ class _Leg:
 
     def outside(self) -> list[tuple[str, SX]]:
         """Inputs from outside the leg: the payload's pose, or the load on a tip without payload."""
-        if self.shapes.closure == "pose":
+        if self.shapes.posed:
             return [("pose", self.pose)]
         return [("load", self.load)] if self.shapes.loaded else []
 
@@ -89,6 +97,8 @@ class _Leg:
         """What the closure asks to vanish (of a point closure: the tip), and the wrench of ``lam`` on the payload."""
         if self.shapes.closure == "pose":
             return pose_closure(self.body, self.qs, self.p, self.lam, self.pose, step)
+        if self.shapes.posed:
+            return ball_closure(self.body, self.qs, self.p, self.lam, self.pose, step)
         return self.body.tip[: self.shapes.rows], zeros(0)
 
     def balance(self) -> SX:
@@ -114,7 +124,7 @@ class _Leg:
         given = sum((servo.given for servo in self.servos.values()), zeros(1))
         powers = [lost, given, *([dot(self.load_force(), self.v)] if self.shapes.loaded else [])]
         gap, wrench = (self.by_q.value(x) for x in self.closed(zeros(6)))
-        meeting = [("gap", gap), ("wrench", wrench)] if self.shapes.closure == "pose" else [("tip", self.body.tip)]
+        meeting = [("gap", gap), ("wrench", wrench)] if self.shapes.posed else [("tip", self.body.tip)]
         outputs = [("r", self.balance()), *meeting, ("powers", vertcat(*powers)), ("drive", self.forces())]
         return self.named("leg_residual", self.moving(), outputs)
 
@@ -146,7 +156,7 @@ class _Leg:
         if self.shapes.integral:  # what couples it to the rotor is slow, and left out of the iterations
             M[self.shapes.index("w"), self.shapes.index("w")] += 1.0
         outputs = [("M", M), ("D", D), ("K", K), ("J", self.by_q.jacobian(here))]
-        if self.shapes.closure == "pose":  # (T13.14)-(T13.15)
+        if self.shapes.posed:  # (T13.14)-(T13.15)
             outputs += [
                 (name, self.by_q.value(_undisplaced(-jacobian(y, step), step)))
                 for name, y in (("P", gap), ("H", wrench))
@@ -185,29 +195,42 @@ def _undisplaced(expression: SX, step: SX) -> SX:
     return substitute(expression, (step,), (zeros(6),))
 
 
-def payload_functions() -> list[NamedFunction]:
-    """Residual, matrices at rest and energies of the payload."""
-    p_vector, p = symbols(PAYLOAD_PARAMETERS, "p")
+def payload_functions(shapes: Shapes) -> list[NamedFunction]:
+    """Residual, matrices at rest and energies of the payload, with the plate below it where it stands on a mount."""
+    p_vector, p = symbols(payload_parameters(shapes), "p")
     pose, step = symbol("pose", 7), symbol("step", 6)
     u, u_dot, net, wrench = (symbol(name, 6) for name in ("u", "u_dot", "net", "wrench"))
+    m = tuple(symbol(name, shapes.plate) for name in ("m", "m_rate", "m_acceleration"))
+    names, still = ("m", "m_rate", "m_acceleration"), [zeros(shapes.plate)] * 2
     _, R = displaced_pose(pose, step)
     r = newton_euler(p, R, u, u_dot, net, wrench)
-    at_rest = substitute(r, (u, u_dot), (zeros(6), zeros(6)))
     T = 0.5 * p.mass * dot(u[:3], u[:3]) + 0.5 * dot(u[3:], matrix33(p.inertia) @ u[3:])
+    weight = -p.mass * dot(p.gravity, pose[:3])
+    if shapes.plate:
+        r = vertcat(r, zeros(6)) + plate_balance(p, R, u, u_dot, m)
+        below = plate(plate_frame(p, R, u, *m[:2]), zeros(3), p.plate_mass, p.plate_inertia, p.gravity)
+        T, weight = T + below.kinetic, weight + below.gravity - p.plate_mass * dot(p.gravity, pose[:3])
+    at_rest = substitute(r, (u, u_dot, *m[1:]), (zeros(6), zeros(6), *still))
     tool_velocity = u[:3] + R @ cross(u[3:], p.tool)
     power = dot(wrench[:3], tool_velocity) + dot(wrench[3:], R @ u[3:])
     motion = [("pose", pose), ("u", u), ("u_dot", u_dot), ("net", net), ("wrench", wrench), ("p", p_vector)]
-    matrices = [("M", jacobian(r, u_dot)), ("K", jacobian(at_rest, step))]
+    plates = list(zip(names, m, strict=True)) if shapes.plate else []
+    matrices = [("M", jacobian(r, vertcat(u_dot, m[2]))), ("K", jacobian(at_rest, vertcat(step, m[0])))]
+    energies = _undisplaced(vertcat(T, weight, 0), step)
     return [
-        NamedFunction("payload_residual", motion, [("r", _undisplaced(r, step)), ("power", _undisplaced(power, step))]),
+        NamedFunction(
+            "payload_residual",
+            [*motion, *plates],
+            [("r", _undisplaced(r, step)), ("power", _undisplaced(power, step))],
+        ),
         NamedFunction(
             "payload_matrices",
-            [("pose", pose), ("wrench", wrench), ("p", p_vector)],
-            [(name, _undisplaced(y, step)) for name, y in matrices],
+            [("pose", pose), ("wrench", wrench), ("p", p_vector), *plates[:1]],
+            [(name, _undisplaced(substitute(y, m[1:], still), step)) for name, y in matrices],
         ),
         NamedFunction(
             "payload_energies",
-            [("pose", pose), ("u", u), ("p", p_vector)],
-            [("energies", vertcat(T, -p.mass * dot(p.gravity, pose[:3]), 0))],
+            [("pose", pose), ("u", u), ("p", p_vector), *plates[:2]],
+            [("energies", energies)],
         ),
     ]

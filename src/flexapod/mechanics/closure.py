@@ -1,7 +1,8 @@
-"""How a leg meets the payload with place and attitude; loads on a tip without payload, Eqs. (T13.12)-(T13.16)."""
+"""How a leg meets the payload where it knows its pose; loads on a tip without payload, Eqs. (T13.12)-(T13.16)."""
 
 from types import SimpleNamespace
 
+from flexapod.elements.mount import turn
 from flexapod.elements.platform_joint import gimbal
 from flexapod.elements.rotations import hat
 from flexapod.mechanics.leg import Leg
@@ -17,14 +18,31 @@ def pose_closure(body: Leg, qs: SimpleNamespace, p: SimpleNamespace, lam: SX, po
     """
     x, R = displaced_pose(pose, step)
     in_platform, axes, tip = matrix33(p.platform_frame), body.tip_axes @ matrix33(p.leg_frame), body.tip
+    joint = _joint(qs, p)
+    if hasattr(qs, "m"):
+        in_platform = turn(qs.m[3:]) @ in_platform
     if hasattr(p, "platform_flexure"):
         tip += axes @ vertcat(qs.e1, qs.e2, qs.e3)
     Q = (R @ in_platform).T @ gimbal(axes, qs)
     force, mu = lam[:3], 0.5 * p.L_c * lam[3:]
-    gap = vertcat(tip - joint_point(p.joint, x, R), 0.5 * p.L_c * _skew(Q))  # (T13.12)
-    wrench = joint_wrench(p.joint, R, force)
+    gap = vertcat(tip - joint_point(joint, x, R), 0.5 * p.L_c * _skew(Q))  # (T13.12)
+    wrench = joint_wrench(joint, R, force)
     wrench[3:] += in_platform @ (trace(Q) * mu - Q.T @ mu)  # (T13.13)
     return gap, wrench
+
+
+def ball_closure(body: Leg, qs: SimpleNamespace, p: SimpleNamespace, lam: SX, pose: SX, step: SX) -> tuple[SX, SX]:
+    """Of a ball on a plate below the payload, on a mount: gap (3) and wrench (6) as of `pose_closure`."""
+    x, R = displaced_pose(pose, step)
+    joint = _joint(qs, p)
+    return body.tip - joint_point(joint, x, R), joint_wrench(joint, R, lam)
+
+
+def _joint(qs: SimpleNamespace, p: SimpleNamespace) -> SX:
+    """Place of the joint from the payload's CoM in platform axes, moved by the mount of its plate, Eq. (T24.5)."""
+    if not hasattr(qs, "m"):
+        return p.joint
+    return p.platform_mount_at + qs.m[:3] + turn(qs.m[3:]) @ (p.joint - p.platform_mount_at)
 
 
 def _skew(Q: SX) -> SX:

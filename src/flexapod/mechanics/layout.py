@@ -119,12 +119,36 @@ def _section_parameters(shapes: "Shapes") -> tuple[tuple[str, int], ...]:
     )
 
 
+#: ... of legs whose base is moved: the point about which it turns.
+BASE_MOTION_PARAMETERS: tuple[tuple[str, int], ...] = (("base_motion_at", 3),)  # m
+#: ... of legs whose base stands on a mount; mass and springs are a leg's share of them.
+BASE_MOUNT_PARAMETERS: tuple[tuple[str, int], ...] = (
+    ("base_mount_at", 3),  # m, world axes: where springs and the plate's centre of mass are
+    ("base_mount_stiffness", 36),  # N/m, N m/rad, column by column, displacements first
+    ("base_mount_damping", 36),
+    ("base_plate_mass", 1),  # kg
+    ("base_plate_inertia", 9),  # kg m^2, about that point
+)
+#: ... of legs that carry a plate on which the payload stands on a mount; springs as above.
+PLATFORM_MOUNT_PARAMETERS: tuple[tuple[str, int], ...] = (
+    ("platform_mount_at", 3),  # m, from the CoM in platform axes
+    ("platform_mount_stiffness", 36),
+    ("platform_mount_damping", 36),
+)
+PLATFORM_JOINT: tuple[tuple[str, int], ...] = (("joint", 3),)  # of legs with a ball, as in `POSE_PARAMETERS`
+
 #: Physical parameters of the payload in kernel order (name, size); tool from the CoM, in platform axes.
 PAYLOAD_PARAMETERS: tuple[tuple[str, int], ...] = (
     ("mass", 1),  # kg
     ("inertia", 9),  # kg m^2 about the CoM, platform axes, column by column
     ("gravity", 3),  # m/s^2
     ("tool", 3),  # m
+)
+#: ... of one on a mount: the plate below it.
+PLATE_PARAMETERS: tuple[tuple[str, int], ...] = (
+    ("plate_mass", 1),  # kg
+    ("plate_inertia", 9),  # kg m^2, about its centre of mass
+    ("plate_at", 3),  # m, this point, where the mount is, from the payload's CoM
 )
 
 #: Commands that the spring of a drive reads: place and rate.
@@ -178,6 +202,9 @@ class Shapes:
         Their two bending stiffnesses are different.
     base_friction, platform_friction, drive_friction : bool
         What slides and has bristles: angles at the base joint, those at the platform joint (pose closures), a drive.
+    base_motion, base_mount, platform_mount : bool
+        Displacement and angles g of a base that is moved, f of a base plate on a mount, m of the plate with the
+        platform joints below the payload, on a mount. All legs share f and m.
     """
 
     a: LateralBasis
@@ -207,6 +234,10 @@ class Shapes:
         """Directions in which sections have a bending stiffness of their own."""
         return ("a", "b") if self.strips and self.a.count else ("b",)
 
+    base_motion: bool = False
+    base_mount: bool = False
+    platform_mount: bool = False
+
     @property
     def layout(self) -> tuple[tuple[str, int], ...]:
         """Coordinates q of the leg (name, size); a planar leg has no alpha and no direction b."""
@@ -223,7 +254,9 @@ class Shapes:
         more = (*(name for name, has in there if has), *gamma)
         ends = (("u", self.flexure or self.soft_base), ("e", self.flexure or self.soft_platform))
         moved = tuple(f"{end}{k}" for end, has in ends if has for k in (1, 2, 3))
-        return (*((name, 1) for name in (*angles, "l")), *amplitudes, *((name, 1) for name in (*more, *moved)))
+        frames = (("g", self.base_motion), ("m", self.platform_mount), ("f", self.base_mount))
+        single = (*((name, 1) for name in (*angles, "l")), *amplitudes, *((name, 1) for name in (*more, *moved)))
+        return (*single, *((name, 6) for name, has in frames if has))
 
     @property
     def size(self) -> int:
@@ -234,6 +267,22 @@ class Shapes:
     def rows(self) -> int:
         """Rows of the closure: 0, 3 or 6."""
         return {"none": 0, "point": 3, "pose": 6}[self.closure]
+
+    @property
+    def shared(self) -> tuple[int, ...]:
+        """Positions of the coordinates that all legs share: those of the plates on mounts, the payload's first."""
+        names = (name for name, has in (("m", self.platform_mount), ("f", self.base_mount)) if has)
+        return tuple(self.index(name) + k for name in names for k in range(6))
+
+    @property
+    def plate(self) -> int:
+        """How many of them the payload's functions know."""
+        return 6 * self.platform_mount
+
+    @property
+    def posed(self) -> bool:
+        """Whether the functions of a leg read the payload's pose; otherwise those of a ball on the payload do."""
+        return self.closure == "pose" or self.platform_mount
 
     @property
     def pivots(self) -> tuple[int, ...]:
@@ -305,5 +354,14 @@ def leg_parameters(shapes: Shapes) -> tuple[tuple[str, int], ...]:
         (shapes.base_friction, BASE_FRICTION),
         (shapes.platform_friction, PLATFORM_FRICTION),
         (shapes.drive_friction, DRIVE_FRICTION),
+        (shapes.base_motion, BASE_MOTION_PARAMETERS),
+        (shapes.base_mount, BASE_MOUNT_PARAMETERS),
+        (shapes.platform_mount, PLATFORM_MOUNT_PARAMETERS),
+        (shapes.platform_mount and shapes.closure == "point", PLATFORM_JOINT),
     )
     return tuple(item for there, table in parts if there for item in table)
+
+
+def payload_parameters(shapes: Shapes) -> tuple[tuple[str, int], ...]:
+    """Physical parameters of the payload in kernel order (name, size)."""
+    return PAYLOAD_PARAMETERS + PLATE_PARAMETERS * shapes.platform_mount

@@ -9,7 +9,8 @@ from flexapod.elements.carriage import carriage
 from flexapod.elements.cylinder import cylinder
 from flexapod.elements.distribution import Motion
 from flexapod.elements.flexure import flexure, springs
-from flexapod.elements.frame import Energies
+from flexapod.elements.frame import Energies, Frame
+from flexapod.elements.mount import WORLD, displaced, mount, plate
 from flexapod.elements.rotations import small_rotation
 from flexapod.elements.screw import screw
 from flexapod.elements.sliding_piston import sliding_piston, tip_place, tip_turn
@@ -48,7 +49,9 @@ class Leg:
 
 def leg(shapes: Shapes, p: SimpleNamespace, q: SX, v: SX, qs: SimpleNamespace, vs: SimpleNamespace) -> Leg:
     """Energies and tip of one leg from its coordinates; ``qs`` and ``vs`` are the named pieces of q and v."""
-    ground, e = carriage(shapes.carriage, p, qs, vs)
+    base, standing = _base(shapes, p, qs, vs)
+    ground, e = carriage(shapes.carriage, p, qs, vs, base)
+    e += standing
     if shapes.flexure:
         ground = ground.moved(_three(qs, "u"), _three(vs, "u"))
     frame = universal(ground, qs, vs)
@@ -104,6 +107,22 @@ def leg(shapes: Shapes, p: SimpleNamespace, q: SX, v: SX, qs: SimpleNamespace, v
         series=series,
         present=present,
     )
+
+
+def _base(
+    shapes: Shapes, p: SimpleNamespace, qs: SimpleNamespace, vs: SimpleNamespace
+) -> tuple[Frame | None, Energies]:
+    """Frame of a base that moves, None of one that stands still; the leg's share of mounts and plate."""
+    base, e = None, Energies()
+    if shapes.base_motion:
+        base = displaced(WORLD, p.base_motion_at, qs.g, vs.g)
+    if shapes.base_mount:
+        base = displaced(base or WORLD, p.base_mount_at, qs.f, vs.f)
+        e += mount(p.base_mount_stiffness, p.base_mount_damping, qs.f, vs.f)
+        e += plate(base, p.base_mount_at, p.base_plate_mass, p.base_plate_inertia, p.gravity)
+    if shapes.platform_mount:
+        e += mount(p.platform_mount_stiffness, p.platform_mount_damping, qs.m, vs.m)
+    return base, e
 
 
 def _joints(shapes: Shapes, p: SimpleNamespace, qs: SimpleNamespace, vs: SimpleNamespace) -> Energies:

@@ -2,8 +2,10 @@
 
 from types import SimpleNamespace
 
+from flexapod.elements.frame import Frame
+from flexapod.elements.mount import displaced
 from flexapod.elements.rotations import from_quaternion, small_rotation
-from flexapod.symbolic.vocabulary import SX, cross, matrix33, vertcat
+from flexapod.symbolic.vocabulary import SX, cross, jacobian, matrix33, time_derivative, vertcat, zeros
 
 
 def displaced_pose(pose: SX, step: SX) -> tuple[SX, SX]:
@@ -35,3 +37,33 @@ def newton_euler(p: SimpleNamespace, R: SX, u: SX, u_dot: SX, net: SX, wrench: S
         p.mass * u_dot[:3] - force,  # (T4.5)
         J @ Omega_dot + cross(Omega, J @ Omega) - moment,  # (T4.6)
     )
+
+
+def plate_frame(p: SimpleNamespace, R: SX, u: SX, moved: SX, rate: SX) -> Frame:
+    """Frame of the plate below a payload on a mount, at the plate's centre of mass; its origin from the payload's CoM.
+
+    ``moved``, ``rate`` (6): displacement along platform axes and roll, pitch, yaw of the plate against the payload.
+    """
+    payload = Frame(origin=zeros(3), axes=R, velocity=R.T @ u[:3], omega=u[3:])
+    return displaced(payload, p.plate_at, moved, rate).moved(p.plate_at, zeros(3))
+
+
+def plate_balance(p: SimpleNamespace, R: SX, u: SX, u_dot: SX, m: tuple[SX, ...]) -> SX:
+    """What the plate adds to the balances of the payload (6) and of the mount's coordinates (6), Eq. (T24.6).
+
+    ``m``: the mount's coordinates, rates and accelerations. Momentum and spin projected on the motions that the
+    coordinates allow.
+    """
+    q, v, v_dot = m
+    frame, J = plate_frame(p, R, u, q, v), matrix33(p.plate_inertia)
+    w = frame.omega
+    moving = vertcat(u, v)
+
+    def rate(x: SX) -> SX:
+        return time_derivative(x, (q, v), (moving, vertcat(u_dot, v_dot)))
+
+    acceleration = rate(frame.velocity) + cross(w, frame.velocity) - frame.axes.T @ p.gravity
+    # platform axes turn while they are differentiated: R enters by the linear velocity alone
+    acceleration -= jacobian(frame.velocity, u[:3]) @ (R @ cross(u[3:], R.T @ u[:3]))
+    spin = J @ rate(w) + cross(w, J @ w)
+    return jacobian(frame.velocity, moving).T @ (p.plate_mass * acceleration) + jacobian(w, moving).T @ spin

@@ -16,6 +16,7 @@ from flexapod.model.leg import Leg
 from flexapod.model.payload import Payload
 from flexapod.model.read_built import read_built
 from flexapod.model.read_leg import read_leg
+from flexapod.model.read_mount import read_mounts
 from flexapod.model.robot import Robot
 from flexapod.model.section import Section
 from flexapod.typing import Array
@@ -23,6 +24,7 @@ from flexapod.typing import Array
 _LENGTHS = ("length", "length", "length")
 _INERTIAS = ("inertia", "inertia", "inertia")
 _ENDS = ("base", "platform")
+_MOUNTS = ("base_mount", "platform_mount", "base_motion")
 
 
 def read_robot(top: Section) -> Robot:
@@ -30,7 +32,7 @@ def read_robot(top: Section) -> Robot:
     fixed = platform_fixed(top)
     top.need("robot", *(() if fixed else ("payload",)), "leg")
     section = top.child(top.data["robot"], "robot")
-    section.only("type", "plane", "base", "platform", "home_height", "home", "gravity")
+    section.only("type", "plane", "base", "platform", "home_height", "home", "gravity", *_MOUNTS)
     section.need(*_ENDS)
     plane = top.plane = section.plane = section.text("plane", ("xy", "yz", "zx"))
     kind = section.text("type")
@@ -59,6 +61,7 @@ def read_robot(top: Section) -> Robot:
         plane=cast("Plane | None", plane),
         platform_fixed=fixed,
         **read_built(top, len(chains)),
+        **read_mounts(section),
     )
 
 

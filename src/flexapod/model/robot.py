@@ -15,11 +15,13 @@ from flexapod.model.geometry import Geometry
 from flexapod.model.heat import Heat
 from flexapod.model.home import Home, carriage_home, foot
 from flexapod.model.leg import Leg
+from flexapod.model.mount import BaseMotion, Mount
 from flexapod.model.payload import Payload, millimetres
 from flexapod.model.robot_checks import (
     check_built,
     check_counts,
     check_leg,
+    check_mounts,
     check_plane,
     check_spread,
     check_springs,
@@ -40,7 +42,8 @@ class Robot(Frozen):
     `platform_joints` (n, 3) [m] in the platform frame; `home`: pose of that frame at home, for which `home_height`
     [m] alone stands where the frame is then above the origin and parallel to the world; `gravity` (3,) [m/s^2] in world
     axes; `plane`: all moves in it; `platform_fixed`: the platform is held, and `payload` may be None; `geometry`,
-    `heat`: how it differs from all this as it is built and warm, `tolerances`: as it may.
+    `heat`: how it differs from all this as it is built and warm, `tolerances`: as it may; `base_mount`,
+    `platform_mount`: springs on which base and payload stand, `base_motion`: how the base is moved.
     """
 
     type: str = "6-UPS"
@@ -55,6 +58,9 @@ class Robot(Frozen):
     geometry: Geometry | None = None
     heat: Heat | None = None
     tolerances: Tolerances | None = None
+    base_mount: Mount | None = None
+    platform_mount: Mount | None = None
+    base_motion: BaseMotion | None = None
 
     def __init__(self, **fields: Any) -> None:
         if (height := fields.pop("home_height", None)) is not None:
@@ -72,6 +78,7 @@ class Robot(Frozen):
         check_built(self)
         check_springs(self)
         check_tolerances(self)
+        check_mounts(self)
         return self
 
     def _shown(self) -> dict[str, str]:

@@ -111,6 +111,20 @@ def check_springs(robot: Robot) -> None:
                 )
 
 
+def check_mounts(robot: Robot) -> None:
+    """Refuse frames that move where the robot's equations hold them still."""
+    for name in ("base_mount", "platform_mount", "base_motion"):
+        fixed = name == "platform_mount" and robot.platform_fixed
+        if getattr(robot, name) is not None and (robot.plane or fixed):
+            raise InputError(
+                f"moves a {name.partition('_')[0]} that "
+                + ("is held" if fixed else f"cannot leave the plane {robot.plane}"),
+                key=f"robot.{name}",
+                allowed="a platform that the legs carry" if fixed else "robots in space",
+                next_step="Leave it out, or leave platform.fixed out" if fixed else "Leave it out, or robot.plane",
+            )
+
+
 def _has_lead(leg: Leg) -> bool:
     slides = leg.carriage is not None and leg.carriage.kind == "slider"
     return leg.driven == "stroke" or (leg.driven == "carriage" and slides)

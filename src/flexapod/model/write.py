@@ -59,6 +59,7 @@ def _robot(robot: Robot) -> Iterator[str]:
             "platform": {"joints": robot.platform_joints, **fixed},
             **({"home_height": robot.home_height} if above else {"home": home}),
             "gravity": robot.gravity,
+            **{name: mount for name, mount in _mounts(robot)},
         },
     )
     if robot.payload is not None:
@@ -73,6 +74,21 @@ def _robot(robot: Robot) -> Iterator[str]:
     for name in ("geometry", "heat", "tolerances"):
         if (part := getattr(robot, name)) is not None:
             yield from _section(name, _per_leg(_fields(part)))
+
+
+def _mounts(robot: Robot) -> Iterator[tuple[str, object]]:
+    for name in ("base_mount", "platform_mount"):
+        if (mount := getattr(robot, name)) is not None:
+            short = {key: _diagonal(value) for key, value in _fields(mount).items()}
+            yield name, {key: value for key, value in short.items() if np.any(value) or key == "loss"}
+    if robot.base_motion is not None:
+        yield "base_motion", robot.base_motion
+
+
+def _diagonal(value: object) -> object:
+    """A diagonal matrix as its diagonal."""
+    square = isinstance(value, np.ndarray) and value.ndim == 2
+    return np.diag(value) if square and not (value - np.diag(np.diag(value))).any() else value
 
 
 def _per_leg(fields: dict[str, object]) -> dict[str, object]:

@@ -25,7 +25,7 @@ from flexapod.plot.style import (
 from flexapod.scene.colours import AXIS_COLORS, ENERGIES, LEG_COLORS
 from flexapod.scene.robot import motion_coordinates, motion_end
 from flexapod.study.after.summary import POINT_WORDS
-from flexapod.study.names import cause_words
+from flexapod.study.cause_words import cause_words
 from flexapod.study.words import NOTHING, Scale, cleared, scale
 
 _TURNS = ("roll", "pitch", "yaw")

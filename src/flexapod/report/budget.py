@@ -25,7 +25,7 @@ def peak_budget(data: Dataset) -> Dataset | None:
     from flexapod.study import budget
     from flexapod.study.accuracy.words import is_real
     from flexapod.study.after.causes import cause_names
-    from flexapod.study.names import CAUSES
+    from flexapod.study.cause_words import CAUSES
 
     study = carried_study(data)
     if not isinstance(study, model.Study) or study.robot.platform_fixed:

@@ -13,7 +13,7 @@ from flexapod.report import html
 from flexapod.study.after.causes import cause_names
 from flexapod.study.before.describe.hydraulic import hydraulic_table
 from flexapod.study.before.describe.screw import screw_table
-from flexapod.study.names import CAUSES, cause_in_words
+from flexapod.study.cause_words import CAUSES, cause_in_words
 from flexapod.study.words import held, number, text
 
 if TYPE_CHECKING:

@@ -16,6 +16,7 @@ from flexapod.rigid.built import (
 from flexapod.rigid.closures import TAKEN
 from flexapod.rigid.dynamics import RigidForces
 from flexapod.rigid.forward import Postures
+from flexapod.rigid.frames import Placed, base_law, base_placed, placed
 from flexapod.rigid.jacobian import NearestSingularity, SingularityPath, length_jacobian
 from flexapod.rigid.kinematics import LegState, joint_angles, leg_frames, leg_lengths, leg_rotations
 from flexapod.rigid.laws import Law
@@ -70,6 +71,7 @@ __all__ = [
     "Mobility",
     "Nearest",
     "NearestSingularity",
+    "Placed",
     "Poses",
     "Posture",
     "Postures",
@@ -80,6 +82,8 @@ __all__ = [
     "actuator_breaks",
     "added",
     "added_by_all",
+    "base_law",
+    "base_placed",
     "built_limbs",
     "built_parts",
     "built_poses",
@@ -115,6 +119,7 @@ __all__ = [
     "nearest_singularity",
     "path_knots",
     "payload_body",
+    "placed",
     "poses",
     "poses_from_coordinates",
     "poses_from_home",

@@ -57,6 +57,10 @@ def robot_breaks(study: Study) -> Breaks:
         values = drive.force if isinstance(drive, ForceDrive) else getattr(drive, "torque", None)
         if values is not None and drive.time is not None:  # type: ignore[union-attr]
             found |= _table(drive.time, values, far)  # type: ignore[union-attr]
+    moved = study.robot.base_motion
+    if moved is not None and moved.of == "acceleration":
+        ends = Breaks(jumps=(float(moved.time[-1]),)) if moved.values[-1].any() else Breaks()
+        found |= _table(moved.time, moved.values, far) | ends
     return found
 
 

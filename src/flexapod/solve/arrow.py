@@ -8,7 +8,7 @@ import numpy as np
 
 from flexapod.solve.elimination import LegBases, leg_bases, open_borders, solve_each
 from flexapod.solve.many import RestMatrices
-from flexapod.solve.reduction import reduced
+from flexapod.solve.reduction import of_border, reduced
 from flexapod.solve.system import System
 from flexapod.typing import Array
 
@@ -65,9 +65,9 @@ def arrow_solve(system: System, m: RestMatrices, r: Array, r_payload: Array, g: 
     bases = leg_bases(system, m)
     A = reduced(system, bases, m)
     groups = [_eliminated(system, b, A.B[k], A.C[k], m, r, g, gap) for k, b in enumerate(bases)]
-    y, forces = _border(groups, A.S, r_payload[:, system.hub_free], gap)
+    y, forces = _border(groups, A.S, np.pad(r_payload, ((0, 0), (0, system.shared.size)))[:, system.border], gap)
     dq, dlam, balance, dy = np.zeros_like(r), np.zeros_like(g), r.copy(), np.zeros((len(r), m.P.shape[-1]))
-    dy[:, system.hub_free] = y
+    dy[:, system.hub_free] = y[:, : system.hub_free.size]
     for group, f in zip(groups, forces, strict=True):
         b = group.bases
         z = group.free - group.by_payload @ y[:, None, :, None] + group.by_force @ f[..., None]
@@ -88,7 +88,7 @@ def _eliminated(
     load, Nt = r[:, b.legs] + (m.K[:, b.legs] @ given[..., None])[..., 0], b.N.swapaxes(-1, -2)
     payload = b.Y.swapaxes(-1, -2) @ load[..., None]
     if m.X is not None:
-        payload = payload + m.X[:, b.legs][..., system.hub_free].swapaxes(-1, -2) @ given[..., None]
+        payload = payload + of_border(system, m.X[:, b.legs]).swapaxes(-1, -2) @ given[..., None]
     f = C.shape[-1]
     z = solve_each(B, np.concatenate([-Nt @ load[..., None], C, Nt[..., b.border]], axis=-1))
     return _Group(

@@ -28,7 +28,7 @@ class LegBases:
     ``legs`` (g,): which; ``pivot`` (rows,): coordinates found from the closure; ``rest`` (m,): those kept in z;
     ``border`` (h,): pivots that are held but free here, so that each leg has h rows q_k = 0 more; ``inverse``
     (P, g, rows, rows): of the pivots' columns of J; ``N`` (P, g, n, m); ``Y`` (P, g, n, f) for the f coordinates of
-    the payload that are not held.
+    the payload that are not held and those that all legs share.
     """
 
     legs: Index
@@ -48,13 +48,15 @@ def leg_bases(system: System, m: RestMatrices) -> list[LegBases]:
 
 def _bases(system: System, m: RestMatrices, legs: Index, held: Mask) -> LegBases:
     pivot, n = np.array(system.kernel.shapes.pivots, dtype=np.intp), system.n
-    rest = np.setdiff1d(np.flatnonzero(~held), pivot)
-    J, P = m.J[:, legs], m.P[:, legs][..., system.hub_free]
+    rest = np.setdiff1d(np.flatnonzero(~held), [*pivot, *system.shared])
+    J = m.J[:, legs]
+    P = np.concatenate([m.P[:, legs][..., system.hub_free], -J[..., system.shared]], axis=-1)
     inverse = solve_each(J[..., pivot], np.broadcast_to(np.eye(pivot.size), (*J.shape[:2], pivot.size, pivot.size)))
     N, Y = np.zeros((*J.shape[:2], n, rest.size)), np.zeros((*J.shape[:2], n, P.shape[-1]))
     N[..., pivot, :] = -inverse @ J[..., rest]
     N[..., rest, np.arange(rest.size)] = 1.0
     Y[..., pivot, :] = inverse @ P
+    Y[..., system.shared, P.shape[-1] - system.shared.size + np.arange(system.shared.size)] = 1.0
     return LegBases(legs=legs, pivot=pivot, rest=rest, border=pivot[held[pivot]], inverse=inverse, N=N, Y=Y)
 
 

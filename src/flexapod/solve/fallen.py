@@ -12,6 +12,7 @@ from flexapod.rigid.limbs import DRIVEN, HELD
 from flexapod.rigid.rotations import matrix
 from flexapod.rigid.screws import screws
 from flexapod.solve.elimination import leg_bases
+from flexapod.solve.frames import on_plates
 from flexapod.solve.many import RestStates, matrices_at_rest
 from flexapod.solve.rigid_motion import leg_coordinates
 from flexapod.solve.system import System
@@ -47,7 +48,7 @@ def flipped(system: System, robot: Robot, q: Array, pose: Array) -> Mask:
     there, at = leg_coordinates(system.kernel.shapes)
     of_leg = np.tile(legs.home, (len(q), 1, 1))
     of_leg[..., there] = q[..., at]
-    return turned_over(legs, screws(legs, of_leg), matrix(pose[:, 3:]))
+    return turned_over(legs, screws(legs, of_leg), on_plates(system, robot, q, pose)[-1][2])
 
 
 def _determinant(system: System, robot: Robot, x: RestStates) -> Array:
@@ -58,7 +59,7 @@ def _determinant(system: System, robot: Robot, x: RestStates) -> Array:
     rows = []
     for b in leg_bases(system, matrices_at_rest(system, x, np.zeros(6))):
         for i, leg in enumerate(b.legs):
-            rows.append(b.Y[:, i, b.pivot[holds[leg, b.pivot]]])
+            rows.append(b.Y[:, i, b.pivot[holds[leg, b.pivot]], : system.hub_free.size])
     found = np.concatenate(rows, axis=1)
     return np.linalg.det(found) if found.shape[1] == found.shape[2] else np.ones(len(x))
 

@@ -9,6 +9,7 @@ from flexapod.typing import Array, Mask
 
 __all__ = ["cholesky_each", "count_real", "mass_factor", "natural"]
 
+ROUNDED = 1e-10  # eigenvalue of a mass matrix with a unit diagonal that may be rounding
 LIGHTEST = 1e-9  # lowest frequency over the highest that counts: beyond, a mass is lost in rounding
 
 
@@ -23,13 +24,19 @@ def cholesky_each(A: Array) -> tuple[Array, Mask]:
     return np.stack([root for root, _ in found]), np.stack([positive for _, positive in found])
 
 
-def mass_factor(M: Array) -> tuple[Array, Mask]:
+def mass_factor(M: Array, *, carried: bool = False) -> tuple[Array, Mask]:
     """Factors U, M = U^T U, of mass matrices (..., n, n), and which of these no mass or a real one has.
 
     A coordinate without mass has a row of zeros. Taken of one body by itself, each row is right to rounding of its own
-    size, however much heavier other bodies are.
+    size, however much heavier other bodies are. `carried`: a base moves the body in ways in which it moves by itself,
+    so that the matrix is singular.
     """
     massless = np.diagonal(M, axis1=-2, axis2=-1) == 0
+    if carried:
+        scale = np.sqrt(np.where(massless, 1.0, np.abs(np.diagonal(M, axis1=-2, axis2=-1))))
+        values, vectors = np.linalg.eigh(M / scale[..., None] / scale[..., None, :])
+        root = np.sqrt(np.maximum(values, 0.0))[..., None] * vectors.swapaxes(-1, -2) * scale[..., None, :]
+        return root, values[..., 0] > -ROUNDED
     filled = M + massless[..., None] * np.eye(M.shape[-1])
     root, positive = cholesky_each(filled)
     return root.swapaxes(-1, -2) * ~massless[..., None], positive

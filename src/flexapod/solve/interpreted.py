@@ -23,7 +23,7 @@ def _row(system: System, x: Flow, table: Array, wrench: Array) -> Array:
     if system.kernel.shapes.bristles:
         friction = system.friction(x)
         rubs, stored = friction.force, friction.energies[:, 1].sum()
-    energy, sums = energy + np.array([0.0, 0.0, stored]), x.sums - np.array([stored, 0.0, 0.0])
+    energy, sums = energy + np.array([0.0, 0.0, stored]), x.sums - np.array([stored, 0.0, 0.0, 0.0])
     parts = [x.q, x.v, x.v_dot, x.lam, force, x.pose, reaction, energy, sums, closure, rubs]
     return np.concatenate([p.ravel() for p in parts])
 
@@ -81,7 +81,8 @@ def _step(
         r[k:][system.fixed[k:]] = 0.0
         force = max(1.0, np.abs(x.lam).max(initial=0.0), np.abs(x.drive).max(initial=0.0))
         tolerable = TOL_FORCE * force + system.force_floor
-        worst = max(np.abs(r).max() / tolerable, np.abs(g).max(initial=0.0) / TOL_CLOSURE)
+        balance = r if system.tie is None else system.tie.T @ r
+        worst = max(np.abs(balance).max() / tolerable, np.abs(g).max(initial=0.0) / TOL_CLOSURE)
         done = worst <= 1 or (iteration == MAX_ITERATIONS and worst < 100)
         if not np.isfinite(worst) or (iteration == MAX_ITERATIONS and not done):
             break

@@ -81,11 +81,13 @@ def interpreted_kernel(shapes: Shapes) -> Kernel:
 
 
 def sizes(shapes: Shapes, leg_p: int = 0, joint: int = 3) -> str:
-    """C text of the sizes of a leg, and of the order of its coordinates in which those found from the closure lead."""
+    """C text of the sizes of a leg, and of the order of its coordinates: from the closure first, shared ones last."""
     n, pivots, leg_p = shapes.size, shapes.pivots, leg_p or sum(size for _, size in leg_parameters(shapes))
-    order = [*pivots, *(i for i in range(n) if i not in pivots)]
+    order = [*pivots, *(i for i in range(n) if i not in (*pivots, *shapes.shared)), *shapes.shared]
     places = sorted(range(n), key=order.__getitem__)
     values = {"N": n, "ROWS": shapes.rows, "LEG_P": leg_p, "JOINT": joint, "COMMAND": shapes.commands}
+    values |= {"COMMON": len(shapes.shared), "PLATE": shapes.plate, "POSED": int(shapes.posed)}
+    values["FLOOR"] = shapes.index("g") if shapes.base_motion else n
     lists = (f"{name}[] = {{{', '.join(map(str, x))}}}" for name, x in (("ORDER", order), ("PLACE", places)))
     constants = ", ".join(f"{name} = {value}" for name, value in values.items())
     friction = f"#define BRISTLES {shapes.bristles}\n" if shapes.bristles else ""
@@ -96,7 +98,7 @@ def _functions(shapes: Shapes) -> "list[NamedFunction]":
     from flexapod.mechanics.assembly import joint_functions, leg_functions, payload_functions
     from flexapod.mechanics.sliding import friction_functions
 
-    return [*leg_functions(shapes), *friction_functions(shapes), *joint_functions(), *payload_functions()]
+    return [*leg_functions(shapes), *friction_functions(shapes), *joint_functions(), *payload_functions(shapes)]
 
 
 def _fingerprint(shapes: Shapes) -> list[object]:

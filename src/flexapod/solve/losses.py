@@ -33,7 +33,8 @@ def loss_frequency(robot: Robot, simulation: Simulation) -> float:
         There is no such frequency.
     """
     joints = (joint.lossy for leg in robot.legs for joint in (leg.base_joint, leg.platform_joint))
-    if not any(joints) and not any(x.loss or x.leakage for leg in robot.legs for x in springs_along(leg)):
+    mounts = any(mount is not None and mount.loss for mount in (robot.base_mount, robot.platform_mount))
+    if not (mounts or any(joints) or any(x.loss or x.leakage for leg in robot.legs for x in springs_along(leg))):
         return 0.0
     # rigid legs have springs, too, and are locked by prescribed strokes
     return _first(robot, simulation.replace(fidelity="lumped") if simulation.fidelity == "rigid" else simulation)
@@ -97,7 +98,9 @@ def _lossless(robot: Robot) -> Robot:
         )
         for leg in robot.legs
     )
-    return robot.replace(legs=legs)
+    mounts = {name: getattr(robot, name) for name in ("base_mount", "platform_mount")}
+    still = {name: mount and mount.replace(loss=None) for name, mount in mounts.items()}
+    return robot.replace(legs=legs, base_motion=None, **still)
 
 
 def _locked(drive: Drive) -> Drive:

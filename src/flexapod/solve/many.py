@@ -72,8 +72,9 @@ class RestMatrices:
     """Matrices of P resting states.
 
     ``M``, ``D``, ``K`` (P, legs, n, n) and ``J`` (P, legs, rows, n) of the legs; ``payload_M``, ``payload_K``
-    (P, 6, 6) of the payload, with what turning the joint forces adds; ``P`` (P, legs, rows, 6): what moves with the
-    payload of each closure; ``X`` (P, legs, n, 6): second derivatives of closures that fix the attitude, None of balls.
+    (P, 6, 6) of the payload, with what turning the joint forces adds, followed by the coordinates that legs share;
+    ``P`` (P, legs, rows, 6): what moves with the payload of each closure; ``X`` (P, legs, n, 6): second derivatives of
+    closures that know the payload's pose, None of others.
     """
 
     M: Array
@@ -125,14 +126,15 @@ def residual(
 
     ``command``, ``rate`` (P, legs, ports): what springs of the drives follow; ``wrench`` (6,) or (P, 6).
     """
-    P, legs, pose = len(x), system.legs, np.repeat(x.pose, system.legs, axis=0)
+    P, legs, shapes = len(x), system.legs, system.kernel.shapes
+    pose = np.repeat(x.pose, system.legs, axis=0)
     at = rates or Rates(v=np.zeros(system.n), v_dot=np.zeros(system.n), u=np.zeros(6), u_dot=np.zeros(6))
     springs = system.spring_commands(np.stack([command, rate], axis=-1))
     around = _around(system, pose, wrench)
     arguments, drive = [x.q, at.v, at.v_dot, x.lam, springs, system.leg_p, *around], (springs.shape[-1] // 2,)
     net = np.zeros((legs * P, 6))
-    if system.kernel.shapes.closure == "pose":
-        outputs = [(system.n,), (6,), (6,), (2,), drive]
+    if shapes.posed:
+        outputs = [(system.n,), (system.rows,), (6,), (2,), drive]
         r, g, net, *_ = evaluate(system.kernel, "leg_residual", legs * P, arguments, outputs)
     else:
         r, g, *_ = evaluate(
@@ -140,16 +142,26 @@ def residual(
             "leg_residual",
             legs * P,
             arguments,
-            [(system.n,), (3,), (2 + system.kernel.shapes.loaded,), drive],
+            [(system.n,), (3,), (2 + shapes.loaded,), drive],
         )
-    if system.kernel.shapes.closure == "point":
+    if shapes.closure == "point" and not shapes.posed:
         points, net = evaluate(system.kernel, "joint_residual", legs * P, [pose, x.lam, system.joint_p], [(3,), (6,)])
         g = g - points
     payload = np.zeros((P, 0))
     if system.hub:
         arguments = [x.pose, at.u, at.u_dot, net.reshape(P, legs, 6).sum(axis=1), wrench, system.payload_p]
-        payload, _ = evaluate(system.kernel, "payload_residual", P, arguments, [(6,), (1,)])
-    return r.reshape(P, legs, system.n), payload, g[:, : system.rows].reshape(P, legs, system.rows)
+        arguments += [_of_plate(system, y) for y in (x.q, at.v, at.v_dot)] if shapes.plate else []
+        payload, _ = evaluate(system.kernel, "payload_residual", P, arguments, [(6 + shapes.plate,), (1,)])
+    r = r.reshape(P, legs, system.n)
+    if shapes.plate:
+        r[:, 0, system.plate] += payload[:, 6:]
+        payload = payload[:, :6]
+    return r, payload, g[:, : system.rows].reshape(P, legs, system.rows)
+
+
+def _of_plate(system: System, values: Array) -> Array:
+    """Of values (P or 1, legs, n) those of the plate below the payload, (P or 1, 6)."""
+    return values[:, 0, system.plate] if values.ndim == 3 else values[None, system.plate]
 
 
 def _around(system: System, pose: Array, wrench: Array) -> list[Array]:
@@ -157,7 +169,7 @@ def _around(system: System, pose: Array, wrench: Array) -> list[Array]:
     shapes = system.kernel.shapes
     if shapes.loaded:
         return [np.repeat(np.atleast_2d(wrench), system.legs, axis=0)]
-    return [pose] if shapes.closure == "pose" else []
+    return [pose] if shapes.posed else []
 
 
 def port_forces(system: System, x: RestStates, command: Array, force: Array) -> Array:
@@ -176,24 +188,26 @@ def matrices_at_rest(system: System, x: RestStates, wrench: Array) -> RestMatric
     pose = np.repeat(x.pose, legs, axis=0)
     arguments, outputs = [x.q, x.lam, system.leg_p, *_around(system, pose, wrench)], [(n, n)] * 3 + [(rows, n)]
     moving, H, X = np.zeros((legs * P, rows, 0)), np.zeros((legs * P, 0, 0)), None
-    if system.kernel.shapes.closure == "pose":
+    if system.kernel.shapes.posed:
         outputs += [(rows, 6), (6, 6), (n, 6)]
         M, D, K, J, moving, H, X = evaluate(system.kernel, "leg_matrices", legs * P, arguments, outputs)
         X = X.reshape(P, legs, n, 6)
     else:
         M, D, K, J = evaluate(system.kernel, "leg_matrices", legs * P, arguments, outputs)
-    if system.kernel.shapes.closure == "point":
+    if system.kernel.shapes.closure == "point" and not system.kernel.shapes.posed:
         joints = [pose, x.lam, system.joint_p]
         moving, H = evaluate(system.kernel, "joint_matrices", legs * P, joints, [(3, 6), (6, 6)])
-    hub = 6 if system.hub else 0
-    payload_M, payload_K = np.zeros((P, hub, hub)), np.zeros((P, hub, hub))
+    hub, plate = 6 if system.hub else 0, system.kernel.shapes.plate
+    border = hub + system.shared.size
+    payload_M, payload_K = np.zeros((P, border, border)), np.zeros((P, border, border))
     if system.hub:
-        arguments = [x.pose, wrench, system.payload_p]
-        payload_M, payload_K = evaluate(system.kernel, "payload_matrices", P, arguments, [(6, 6), (6, 6)])
+        arguments = [x.pose, wrench, system.payload_p, *([_of_plate(system, x.q)] if plate else [])]
+        found = evaluate(system.kernel, "payload_matrices", P, arguments, [(6 + plate, 6 + plate)] * 2)
+        payload_M[:, : 6 + plate, : 6 + plate], payload_K[:, : 6 + plate, : 6 + plate] = found
+        payload_K[:, :6, :6] += H.reshape(P, legs, 6, 6).sum(axis=1)
     M, D, K, J = (part.reshape(P, legs, *part.shape[1:]) for part in (M, D, K, J))
     return RestMatrices(
-        M=M, D=D, K=K, J=J, payload_M=payload_M, payload_K=payload_K + H.reshape(P, legs, hub, hub).sum(axis=1),
-        P=moving.reshape(P, legs, rows, hub), X=X,
+        M=M, D=D, K=K, J=J, payload_M=payload_M, payload_K=payload_K, P=moving.reshape(P, legs, rows, hub), X=X,
     )  # fmt: skip
 
 

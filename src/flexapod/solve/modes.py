@@ -17,7 +17,7 @@ from flexapod.solve.equilibrium import FOUND, Equilibria, Equilibrium, equilibri
 from flexapod.solve.fallen import refuse_fallen
 from flexapod.solve.frequencies import count_real, mass_factor, natural
 from flexapod.solve.many import RestMatrices, RestStates
-from flexapod.solve.reduction import expanded, null_space_of_borders, reduced
+from flexapod.solve.reduction import expanded, hub_motion, null_space_of_borders, reduced
 from flexapod.solve.rest import RestLoad, rest_commands, rest_load
 from flexapod.solve.rigid_motion import rigid_rest
 from flexapod.solve.robot_system import robot_system
@@ -140,6 +140,7 @@ def locked_poses(
         A pure force drive.
     """
     refuse_pure_force(robot, "a static equilibrium")
+    robot = robot if robot.base_motion is None else robot.replace(base_motion=None)  # poses are those of a base at rest
     system = robot_system(robot, simulation, at_rest=True)
     start, acts = rigid_rest(system, robot, path), rest_load(system, robot, path, load, time)
     command = rest_commands(system, robot, start.q, time)
@@ -271,14 +272,16 @@ def unit_modes(locked: LockedPoses, *, shapes: bool) -> UnitModes:
 def _mass_factor(system: System, bases: list[LegBases], m: RestMatrices) -> tuple[Array, Mask]:
     """Factor U (p, size, r) of the mass matrix on admissible motions, body by body, and where it is positive."""
     p, legs, n, _ = m.M.shape
-    size = sum(b.legs.size * b.rest.size for b in bases) + system.hub_free.size
+    size = sum(b.legs.size * b.rest.size for b in bases) + system.border.size
     motion = expanded(system, bases, np.broadcast_to(np.eye(size), (p, size, size)))
     still = (
         system.held[:, :, None] | system.held[:, None, :]
     )  # masses of what does not move: indefinite where legs bend far
-    (of_legs, real), (payload, real_payload) = mass_factor(np.where(still, np.eye(n), m.M)), mass_factor(m.payload_M)
+    carried = system.kernel.shapes.base_mount
+    of_legs, real = mass_factor(np.where(still, np.eye(n), m.M), carried=carried)
+    payload, real_payload = mass_factor(m.payload_M)
     moving = (of_legs @ motion[:, : legs * n].reshape(p, legs, n, size)).reshape(p, legs * n, size)
-    U = np.concatenate([moving, payload @ motion[:, legs * n :]], axis=1)
+    U = np.concatenate([moving, payload @ hub_motion(system, motion)], axis=1)
     positive = real.all(axis=1) & real_payload
     return np.where(positive[:, None, None], U, 0.0), positive
 

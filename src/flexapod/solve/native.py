@@ -12,7 +12,7 @@ from flexapod.solve.recording import Counters, record_width
 from flexapod.solve.system import Flow, System
 from flexapod.typing import Array
 
-PORTS = 16  # as in system.h
+PORTS = 24  # as in system.h
 TOL_CLOSURE, TOL_FORCE = 1e-14, 1e-10  # m; relative to the largest force: rounding floors of metres and kilonewtons
 MAX_ITERATIONS, MAX_AGE = 12, 16
 

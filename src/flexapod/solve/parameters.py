@@ -52,6 +52,7 @@ def leg_parameters(robot: Robot, legs: Limbs, shapes: Shapes, per_loss: float = 
     names = ("base_flexure", "platform_flexure", "base_flexure_damping", "platform_flexure_damping")
     of_ends = np.concatenate([flexures(robot, legs), flexures(robot, legs, per_loss)], axis=1)
     ends = [dict(zip(names, x, strict=True)) for x in of_ends]
+    frames = _frames(robot, per_loss)
     rows = (
         _leg(leg)
         | _place(robot, legs, i)
@@ -60,6 +61,7 @@ def leg_parameters(robot: Robot, legs: Limbs, shapes: Shapes, per_loss: float = 
         | _soft(leg, legs.home[i, COORDINATES.index("l")], per_loss)
         | (section_parameters(leg, shapes, legs.home[i, COORDINATES.index("l")]) if shapes.sections else {})
         | _friction(leg, float(legs.home[i, COORDINATES.index("l")]))
+        | frames
         for i, leg in enumerate(robot.legs)
     )
     turns = [COORDINATES.index(name) for name in ("spin", "gamma3")]
@@ -131,6 +133,24 @@ def _crank_com(leg: Leg, arm: Array) -> Array:
     if leg.carriage is None or not leg.carriage.com:
         return np.zeros(3)
     return leg.carriage.com / np.linalg.norm(arm) * arm
+
+
+def _frames(robot: Robot, per_loss: float) -> dict[str, object]:
+    """A leg's share of the mounts, and of the base plate."""
+    found: dict[str, object] = {}
+    for end, mount in (("base", robot.base_mount), ("platform", robot.platform_mount)):
+        if mount is not None:
+            damping = viscous(mount.stiffness, mount.damping, mount.loss, per_loss)
+            found |= {
+                f"{end}_mount_at": mount.at - (robot.com if end == "platform" else 0.0),
+                f"{end}_mount_stiffness": mount.stiffness / robot.count,
+                f"{end}_mount_damping": damping / robot.count,
+                f"{end}_plate_mass": mount.mass / robot.count,
+                f"{end}_plate_inertia": mount.inertia / robot.count,
+            }
+    if robot.base_motion is not None:
+        found["base_motion_at"] = robot.base_motion.at
+    return found
 
 
 def _joints(leg: Leg, legs: Limbs, i: int, per_loss: float) -> dict[str, object]:
@@ -227,19 +247,22 @@ def _damping(joint: Joint, per_loss: float) -> Array:
     return viscous(stiffness, given, joint.loss_of_stiffness, per_loss)
 
 
-def payload_parameters(robot: Robot) -> Array:
-    """Parameters of the payload; tool from its CoM."""
-    load = robot.payload
+def payload_parameters(robot: Robot, shapes: Shapes) -> Array:
+    """Parameters of the payload, and of the plate below it where it stands on a mount; tool from its CoM."""
+    load, below = robot.payload, robot.platform_mount
     if load is None:  # a fixed platform: without weight, and what does not move needs no mass
         mass = {"mass": 1.0, "inertia": np.eye(3), "gravity": np.zeros(3), "tool": np.zeros(3)}
         return _pack(PAYLOAD_PARAMETERS, mass)
     return _pack(
-        PAYLOAD_PARAMETERS,
+        layout.payload_parameters(shapes),
         {
             "mass": load.mass,
             "inertia": load.inertia.T,
             "gravity": robot.gravity,
             "tool": load.tool - load.com,
+            "plate_mass": 0.0 if below is None else below.mass,
+            "plate_inertia": 0.0 if below is None else below.inertia,
+            "plate_at": 0.0 if below is None else below.at - robot.com,
         },
     )
 

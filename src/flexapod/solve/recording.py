@@ -26,7 +26,7 @@ class Recording:
 
     ``drive``, (T, legs, ports): the whole force of each port, whatever makes it: held, pushed, a spring [N, N m];
     ``reaction``, (T, 6): force and moment on what is held of the payload; ``energy``: kinetic, gravity, strain;
-    ``sums``: lost, drives, wrench; ``friction``, (T, legs, bristles): force or moment of what slides.
+    ``sums``: lost, drives, wrench, base; ``friction``, (T, legs, bristles): force or moment of what slides.
     """
 
     time: Array
@@ -53,7 +53,7 @@ def _shapes(system: System) -> dict[str, tuple[int, ...]]:
     """Names and shapes of the parts of an output row, in their order."""
     legs, N = system.legs, (system.size,)
     forces = {"lam": (legs, system.rows), "drive": (legs, system.ports.size)}
-    sizes = {"pose": 7, "reaction": 6, "energy": 3, "sums": 3, "closure": 1}
+    sizes = {"pose": 7, "reaction": 6, "energy": 3, "sums": 4, "closure": 1}
     last = {"friction": (legs, system.kernel.shapes.bristles)}
     return {
         "q": (legs, system.n),

@@ -11,7 +11,7 @@ from flexapod.solve.many import RestMatrices
 from flexapod.solve.system import System
 from flexapod.typing import Array
 
-__all__ = ["Reduced", "expanded", "null_space_of_borders", "reduced", "reduced_legs"]
+__all__ = ["Reduced", "expanded", "hub_motion", "null_space_of_borders", "of_border", "reduced", "reduced_legs"]
 
 
 @dataclass(frozen=True, kw_only=True)
@@ -43,7 +43,7 @@ class Reduced:
 
 def reduced(system: System, bases: list[LegBases], m: RestMatrices) -> Reduced:
     """Stiffness on admissible motions; ``bases`` from `leg_bases` or `closed`."""
-    free = system.hub_free
+    free = system.border
     B, C, S = [], [], m.payload_K[:, free[:, None], free]
     for b in bases:
         b_part, c_part, s_part = reduced_legs(system, b, m)
@@ -59,8 +59,19 @@ def reduced_legs(system: System, b: LegBases, m: RestMatrices) -> tuple[Array, A
     KY = K @ b.Y
     if m.X is None:
         return Nt @ (K @ b.N), Nt @ KY, Yt @ KY
-    X = m.X[:, b.legs][..., system.hub_free]
+    X = of_border(system, m.X[:, b.legs])
     return Nt @ (K @ b.N), Nt @ (KY + X), Yt @ (KY + X) + X.swapaxes(-1, -2) @ b.Y
+
+
+def of_border(system: System, x: Array) -> Array:
+    """Columns (..., 6) by the payload's steps as columns by the border's coordinates, (..., f)."""
+    more = np.zeros((*x.shape[:-1], system.shared.size))
+    return np.concatenate([x[..., system.hub_free], more], axis=-1)
+
+
+def hub_motion(system: System, flat: Array) -> Array:
+    """Rows of the payload's steps and of shared coordinates (..., 6 + shared, m) of flat coordinates (..., size, m)."""
+    return np.concatenate([flat[..., system.legs * system.n :, :], flat[..., system.shared, :]], axis=-2)
 
 
 def expanded(system: System, bases: list[LegBases], vectors: Array) -> Array:
@@ -68,8 +79,8 @@ def expanded(system: System, bases: list[LegBases], vectors: Array) -> Array:
     P, _, count = vectors.shape
     flat = np.zeros((P, system.size, count))
     legs = flat[:, : system.legs * system.n].reshape(P, system.legs, system.n, count)
-    y, at = vectors[:, vectors.shape[1] - system.hub_free.size :], 0
-    flat[:, system.legs * system.n + system.hub_free] = y
+    y, at = vectors[:, vectors.shape[1] - system.border.size :], 0
+    flat[:, system.legs * system.n + system.hub_free] = y[:, : system.hub_free.size]
     for b in bases:
         width = b.legs.size * b.rest.size
         z = vectors[:, at : at + width].reshape(P, b.legs.size, b.rest.size, count)

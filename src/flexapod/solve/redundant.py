@@ -22,7 +22,7 @@ MISFIT = 1e-9  # m, or rad: by which a coordinate may miss what should hold it, 
 def independent(system: System, x: State) -> System:
     """The same system, of whose held coordinates as many are left to the closures as these determine, Eq. (T6.26)."""
     G = system.matrices(x, np.zeros(6)).G
-    free = G[:, ~system.fixed]
+    free = G[:, ~system.fixed] if system.independent is None else G @ system.independent
     size = np.linalg.svd(free, compute_uv=False)
     rank = int((size > DEPENDENT * size.max(initial=0.0)).sum())
     if rank == len(G):

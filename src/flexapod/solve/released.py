@@ -21,6 +21,10 @@ from flexapod.typing import Array, Mask
 __all__ = ["RobotForces", "is_hexapod", "released", "rigid_errors", "rigid_forces", "rigid_system"]
 
 
+#: Frames of an ideal robot
+STILL = {"base_mount": None, "platform_mount": None, "base_motion": None}
+
+
 @once
 def released(robot: Robot) -> Robot:
     """The same robot as drawn, with ideal joints: fixed ones universal at the base, balls at the platform.
@@ -28,7 +32,7 @@ def released(robot: Robot) -> Robot:
     Its drives are prescribed.
     """
     legs = tuple(_ideal(leg) for leg in robot.legs)
-    return robot.replace(type="+".join(leg.chain for leg in legs), legs=legs, geometry=None, heat=None)
+    return robot.replace(type="+".join(leg.chain for leg in legs), legs=legs, geometry=None, heat=None, **STILL)
 
 
 def _ideal(leg: Leg) -> Leg:

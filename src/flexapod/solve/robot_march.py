@@ -13,6 +13,7 @@ from flexapod.rigid.kinematics import BETA_LIMIT
 from flexapod.rigid.rotations import matrix
 from flexapod.solve.equilibrium import equilibrium
 from flexapod.solve.fallen import flipped, refuse_fallen, refuse_flipped
+from flexapod.solve.frames import floor
 from flexapod.solve.many import RestStates
 from flexapod.solve.march import Chunk, Problem, initial_step, march
 from flexapod.solve.modes import refuse_pure_force
@@ -199,6 +200,7 @@ class _Measure:
     def __init__(self, study: Study, system: System, path: _Path) -> None:
         shapes = system.kernel.shapes
         first = shapes.index("a")
+        self.system, self.robot = system, study.robot
         self.path, self.lateral = path, slice(first, first + shapes.a.count + shapes.b.count)
         self.radius = np.linalg.norm(study.robot.platform_joints, axis=1).max()
         self.time, self.com, self.rotation = np.zeros(0), np.zeros((0, 3)), np.zeros((0, 3, 3))
@@ -207,9 +209,12 @@ class _Measure:
         if not np.array_equal(recording.time, self.time):  # a chunk is measured twice, with two steps
             self.time = recording.time
             self.com, self.rotation = self.path.centre(self.time)
-        turn = self.rotation.swapaxes(1, 2) @ matrix(recording.pose[:, 3:])
+        place, rotation = recording.pose[:, :3], matrix(recording.pose[:, 3:])
+        if self.robot.base_motion is not None:
+            place, rotation = floor(self.system, self.robot, recording.q).seen(place, rotation)
+        turn = self.rotation.swapaxes(1, 2) @ rotation
         skew = [turn[:, 2, 1] - turn[:, 1, 2], turn[:, 0, 2] - turn[:, 2, 0], turn[:, 1, 0] - turn[:, 0, 1]]
-        shift = recording.pose[:, :3] - self.com
+        shift = place - self.com
         return [
             np.concatenate([shift, 0.5 * self.radius * np.stack(skew, axis=1)], axis=1),
             recording.q[:, :, self.lateral],
@@ -219,7 +224,7 @@ class _Measure:
 def after_impact(system: System, flow: Flow, law: Law, now: float, method: GeneralizedAlpha, h: float) -> Flow:
     """Flow after a jump in the commanded rates; the drives do the work of the impact."""
     start, impact = consistent_start(system, flow, law, now, method, h)
-    return replace(start, sums=flow.sums + np.array([0.0, impact, 0.0]))
+    return replace(start, sums=flow.sums + np.array([0.0, impact, 0.0, 0.0]))
 
 
 def _check(study: Study, system: System, recording: Recording) -> None:

@@ -32,7 +32,7 @@ def robot_system(robot: Robot, simulation: Simulation, march: bool = True, *, at
         kernel=kernel(shapes, march),
         leg_p=leg_parameters(robot, legs, shapes, per_loss(robot, simulation)),
         joint_p=np.ascontiguousarray(legs.platform - robot.com),
-        payload_p=payload_parameters(robot),
+        payload_p=payload_parameters(robot, shapes),
         held=_held(robot, legs, shapes) | _summed(robot, shapes, at_rest=at_rest),
         hub_held=legs.hub_held,
     )
@@ -53,6 +53,8 @@ def _held(robot: Robot, legs: Limbs, shapes: Shapes) -> Mask:
     for name, size in shapes.layout:
         if name in ("c", "u3", "e3") and ends.any():
             held[ends, shapes.index(name) : shapes.index(name) + size] = True
+    if shapes.base_motion:
+        held[:, shapes.index("g") :][:, :6] = True
     if shapes.torsion:  # a ball does not twist its leg
         held[:, shapes.index("t")] = ~legs.pose_closure
     return held | _held_joints(robot, legs, shapes)

@@ -45,6 +45,9 @@ def robot_shapes(robot: Robot, simulation: Simulation, legs: Limbs) -> Shapes:
         pivot_spin=bool(((spin == FREE) & (gamma3 == HELD)).any()),
         sections=max(len(leg.piston.steps) for leg in robot.legs),
         strips=any(step.EI[0] != step.EI[1] for leg in robot.legs for step in leg.piston.steps),
+        base_motion=robot.base_motion is not None,
+        base_mount=robot.base_mount is not None,
+        platform_mount=robot.platform_mount is not None,
     )
 
 

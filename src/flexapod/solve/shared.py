@@ -24,7 +24,7 @@ def open_forces(system: System) -> int:
 
 
 def _balances(system: System) -> int:
-    return int((~system.held).sum()) + system.hub_free.size
+    return int((~system.held).sum()) - (system.legs - 1) * system.shared.size + system.hub_free.size
 
 
 def closure_forces(system: System, x: RestStates, m: RestMatrices, r: Array, r_payload: Array) -> Array:
@@ -71,9 +71,11 @@ def _rows(system: System, m: RestMatrices) -> Array:
     T, legs, rows, _ = m.J.shape
     A, at = np.zeros((T, _balances(system), legs, rows)), 0
     for i, held in enumerate(system.held):
-        free = np.flatnonzero(~held)
+        free = np.setdiff1d(np.flatnonzero(~held), system.shared)
         A[:, at : at + free.size, i] = m.J[:, i][..., free].swapaxes(-1, -2)
         at += free.size
+    A[:, at : at + system.shared.size] = np.moveaxis(m.J[..., system.shared], -1, 1)
+    at += system.shared.size
     A[:, at:] = np.moveaxis(m.P[..., system.hub_free], -1, 1)
     return A.reshape(T, -1, legs * rows)
 

@@ -49,7 +49,10 @@ def _given(system: System, table: Array, column: int) -> Array:
 
 def constrained(system: System, A: Array, G: Array, r: Array, g: Array) -> tuple[Array, Array]:
     """Solve A x + G^T lam = r, G x = g for the coordinates that are not fixed; x is zero for those that are."""
-    free, x = ~system.fixed, np.zeros(system.size)
+    free, x, tie = ~system.fixed, np.zeros(system.size), system.independent
+    if tie is not None:  # what legs share is one coordinate
+        y, lam = saddle_solve(tie.T @ A @ tie, G @ tie, tie.T @ r, g)
+        return tie @ y, lam
     x[free], lam = saddle_solve(A[np.ix_(free, free)], G[:, free], r[free], g)
     return x, lam
 

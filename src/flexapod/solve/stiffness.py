@@ -69,18 +69,30 @@ def stiffness_of(robot: Robot, locked: LockedPoses) -> Stiffness:
     """
     system, m, free = locked.system, locked.m, locked.system.hub_free
     _refuse_rigid(locked)
-    legs = np.zeros((len(locked.at), system.legs, 6, 6))
+    border = system.border
+    legs = np.zeros((len(locked.at), system.legs, 6 + system.shared.size, 6 + system.shared.size))
     for b in locked.bases:  # (T7.6)  joint forces that a unit step of the payload meets, legs eliminated
         B, C, own = reduced_legs(system, b, m)
-        legs[:, b.legs[:, None, None], free[:, None], free] = own - C.swapaxes(-1, -2) @ solve_each(B, C)
+        legs[:, b.legs[:, None, None], border[:, None], border] = own - C.swapaxes(-1, -2) @ solve_each(B, C)
     motion = tool_motion(robot, locked.equilibria.states[locked.at].pose)
     back = np.zeros_like(motion)
     back[:, free[:, None], free] = np.linalg.inv(motion[:, free[:, None], free])
-    parts = np.concatenate([legs, m.payload_K[:, None]], axis=1)
+    parts = _with_mounts(system, np.concatenate([legs, m.payload_K[:, None]], axis=1))
     at_tool = back.swapaxes(-1, -2)[:, None] @ parts @ back[:, None]  # (T7.8)
     total, held = at_tool.sum(axis=1), np.flatnonzero(system.hub_held)
     total[:, held, held] = np.inf
     return Stiffness(total=total, legs=at_tool[:, :-1], load=at_tool[:, -1])
+
+
+def _with_mounts(system: System, parts: Array) -> Array:
+    """Shares (p, any, 6, 6) in the stiffness against steps of the payload that plates on mounts follow, Eq. (T24.7)."""
+    if not system.shared.size:
+        return parts
+    whole = parts.sum(axis=1)
+    follow = np.zeros((len(parts), parts.shape[-1], 6))
+    follow[:, :6] = np.eye(6)
+    follow[:, 6:] = -np.linalg.solve(whole[:, 6:, 6:], whole[:, 6:, :6])
+    return np.asarray(follow.swapaxes(1, 2)[:, None] @ parts @ follow[:, None], dtype=np.float64)
 
 
 def _refuse_rigid(locked: LockedPoses) -> None:
@@ -109,8 +121,9 @@ def _refuse_rigid(locked: LockedPoses) -> None:
 
 def displacement(locked: LockedPoses, loads: Array, on_payload: Array) -> Array:
     """Steps of the payload (p, 6, k) that k loads (p, legs, n, k) and (p, 6, k) cause, for legs that give way."""
-    system, m, free = locked.system, locked.m, locked.system.hub_free
-    S, side = m.payload_K[:, free[:, None], free], on_payload[:, free]
+    system, m, free = locked.system, locked.m, locked.system.border
+    S = m.payload_K[:, free[:, None], free]
+    side = np.pad(on_payload, ((0, 0), (0, system.shared.size), (0, 0)))[:, free]
     for b in locked.bases:
         B, C, own = reduced_legs(system, b, m)
         f, width = loads[:, b.legs], C.shape[-1]
@@ -118,9 +131,9 @@ def displacement(locked: LockedPoses, loads: Array, on_payload: Array) -> Array:
         less = C.swapaxes(-1, -2) @ z
         S = S + (own - less[..., :width]).sum(axis=1)
         side = side + (b.Y.swapaxes(-1, -2) @ f - less[..., width:]).sum(axis=1)
-    y = np.zeros_like(on_payload)
+    y = np.zeros((len(side), 6 + system.shared.size, side.shape[2]))
     y[:, free] = solve_each(S, side)
-    return y
+    return y[:, :6]
 
 
 def compliance(total: Array) -> Array:

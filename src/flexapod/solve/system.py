@@ -42,13 +42,13 @@ class State:
 class Flow(State):
     """A state and what the time integration remembers with it.
 
-    ``a``, (size,): auxiliary acceleration; ``sums``, (3,): dissipated energy, work of drives, work of the wrench [J];
-    ``powers``, (3,): their rates.
+    ``a``, (size,): auxiliary acceleration; ``sums``, (4,): dissipated energy, works of drives, of the wrench and
+    on the base [J]; ``powers``, (4,): their rates.
     """
 
     a: Array
-    sums: Array = field(default_factory=lambda: np.zeros(3))
-    powers: Array = field(default_factory=lambda: np.zeros(3))
+    sums: Array = field(default_factory=lambda: np.zeros(4))
+    powers: Array = field(default_factory=lambda: np.zeros(4))
 
     def copy(self) -> "Flow":
         """Independent copy."""
@@ -128,6 +128,43 @@ class System:
         return 6 if self.hub else LOAD_SIZE
 
     @cached_property
+    def floor(self) -> Mask:
+        """Ports that move the base."""
+        shapes = self.kernel.shapes
+        return self.ports >= (shapes.index("g") if shapes.base_motion else self.n)
+
+    @cached_property
+    def shared(self) -> Index:
+        """Coordinates of a leg that are one coordinate of all legs, those that the payload's functions know first."""
+        return np.array(self.kernel.shapes.shared, dtype=np.intp)
+
+    @cached_property
+    def border(self) -> Index:
+        """Coordinates onto which legs are eliminated, of the payload (0 to 5) and shared (6 on): the free ones."""
+        return np.append(self.hub_free, 6 + np.arange(self.shared.size)).astype(np.intp)
+
+    @property
+    def plate(self) -> Index:
+        """Those of them that the payload's functions know."""
+        return self.shared[: self.kernel.shapes.plate]
+
+    @cached_property
+    def tie(self) -> Array | None:
+        """Flat coordinates by those that are not copies, (size, any); None where legs share nothing."""
+        if not self.shared.size:
+            return None
+        copies = (np.arange(1, self.legs)[:, None] * self.n + self.shared).ravel()
+        tie = np.eye(self.size)
+        for i in range(1, self.legs):
+            tie[i * self.n + self.shared, self.shared] = 1.0
+        return np.delete(tie, copies, axis=1)
+
+    @cached_property
+    def independent(self) -> Array | None:
+        """Those columns of `tie` that are not `fixed`."""
+        return None if self.tie is None else self.tie[:, ~self.fixed[self.tie.argmax(axis=0)]]
+
+    @cached_property
     def hub_free(self) -> Index:
         """Coordinates of the payload that nothing holds."""
         return np.flatnonzero(~self.hub_held[: 6 * self.hub])
@@ -169,34 +206,37 @@ class System:
         return vector[: self.legs * self.n].reshape(self.legs, self.n)
 
     def residual(self, x: State, table: Array, wrench: Array, h: float = 0.0) -> tuple[Array, Array, Array]:
-        """Balance of every coordinate (size,) [N, N m], closures (legs * rows,) [m], powers (3,) [W].
+        """Balance of every coordinate (size,) [N, N m], closures (legs * rows,) [m], powers (4,) [W].
 
         ``table``, (legs, ports, 4): value, rate, acceleration and force of each port; ``wrench``, (load_size,). What
         holds a coordinate of the payload is left in its row. ``h``: time since its bristles were so.
         """
         v, v_dot, force = self.by_leg(x.v), self.by_leg(x.v_dot), table[:, :, 3] + x.drive
         inputs = [x.q, v, v_dot, x.lam, self.spring_commands(table), self.leg_p, *self._around(x, wrench)]
-        meeting = [(6,), (6,)] if self.rows == 6 else [(3,)]
         shapes = self.kernel.shapes
+        meeting = [(self.rows,), (6,)] if shapes.posed else [(3,)]
         outputs = [(self.n,), *meeting, (2 + shapes.loaded,), (shapes.commands // 2,)]
         r, gaps, *push, power, _ = evaluate(self.kernel, "leg_residual", self.legs, inputs, outputs)
-        if self.rows == 3:
+        if self.rows == 3 and not shapes.posed:
             joints = [x.pose, x.lam, self.joint_p]
             points, *push = evaluate(self.kernel, "joint_residual", self.legs, joints, [(3,), (6,)])
             gaps -= points
-        gaps, powers = gaps[:, : self.rows], np.zeros(3)
+        gaps, powers = gaps[:, : self.rows], np.zeros(4)
         powers[: power.shape[1]] = power.sum(axis=0)
         if self.kernel.shapes.bristles:
             rubbed = self.friction(x, h)
             r, powers[0] = r + rubbed.r, powers[0] + rubbed.energies[:, 0].sum()
         r[:, self.ports] -= force
-        powers[1] += (force * v[:, self.ports]).sum()
+        work = force * v[:, self.ports]
+        powers[1], powers[3] = powers[1] + work[:, ~self.floor].sum(), work[:, self.floor].sum()
         if not self.hub:
             return r.ravel(), gaps.ravel(), powers
         u, u_dot = x.v[r.size :], x.v_dot[r.size :]
         net = push[0].sum(axis=0)
-        rest, powers[2:] = self.kernel.payload_residual(x.pose, u, u_dot, net, wrench, self.payload_p)
-        return np.concatenate([r.ravel(), rest]), gaps.ravel(), powers
+        plate = [y[0, self.plate] for y in (x.q, v, v_dot)] if shapes.plate else []
+        rest, powers[2:3] = self.kernel.payload_residual(x.pose, u, u_dot, net, wrench, self.payload_p, *plate)
+        r[0, self.plate] += rest[6:]
+        return np.concatenate([r.ravel(), rest[:6]]), gaps.ravel(), powers
 
     def friction(self, x: State, h: float = 0.0) -> "Friction":
         """Friction of the legs a time ``h`` [s] after their bristles were as the state says."""
@@ -216,7 +256,7 @@ class System:
         """Matrices at rest with geometric stiffness, and the Jacobian of the closures."""
         n, k, legs, rows = self.n, self.legs * self.n, self.legs, self.rows
         inputs = [x.q, x.lam, self.leg_p, *self._around(x, wrench)]
-        outputs = [(n, n)] * 3 + [(rows, n)] + ([(6, 6), (6, 6), (n, 6)] if rows == 6 else [])
+        outputs = [(n, n)] * 3 + [(rows, n)] + ([(rows, 6), (6, 6), (n, 6)] if self.kernel.shapes.posed else [])
         found = evaluate(self.kernel, "leg_matrices", legs, inputs, outputs)
         M, D, K, G = (np.zeros((size, self.size)) for size in (self.size, self.size, self.size, legs * rows))
         for whole, parts in zip((M, D, K, G), found[:4], strict=True):
@@ -227,11 +267,14 @@ class System:
         joints = [x.pose, x.lam, self.joint_p]
         of_joints = found[4:] or evaluate(self.kernel, "joint_matrices", legs, joints, [(3, 6), (6, 6)])
         P, H, *coupling = of_joints
-        mass, stiffness = self.kernel.payload_matrices(x.pose, wrench, self.payload_p)
-        G[:, k:], M[k:, k:], K[k:, k:] = -P.reshape(-1, 6), mass, stiffness + H.sum(axis=0)
+        body = np.append(np.arange(k, k + 6), self.plate)
+        mass, stiffness = self.kernel.payload_matrices(x.pose, wrench, self.payload_p, *_some(x.q[0, self.plate]))
+        G[:, k:], K[k:, k:] = -P.reshape(-1, 6), H.sum(axis=0)
+        M[np.ix_(body, body)] += mass
         for X in coupling:
             K[:k, k:] = X.reshape(-1, 6)
             K[k:, :k] = K[:k, k:].T
+        K[np.ix_(body, body)] += stiffness
         return Matrices(M=M, D=D, K=K, G=G)
 
     def energies(self, x: State, table: Array) -> tuple[Array, Array]:
@@ -242,7 +285,8 @@ class System:
         energy = parts.sum(axis=0)
         force[:, :springs] += spring
         if self.hub:
-            energy = energy + self.kernel.payload_energies(x.pose, x.v[v.size :], self.payload_p)[0]
+            plate = [x.q[0, self.plate], v[0, self.plate]] if self.plate.size else []
+            energy = energy + self.kernel.payload_energies(x.pose, x.v[v.size :], self.payload_p, *plate)[0]
         return energy, force
 
     def spring_commands(self, table: Array) -> Array:
@@ -253,7 +297,7 @@ class System:
     def _around(self, x: State, wrench: Array) -> list[Array]:
         """What the functions of a leg read from outside it: the payload's pose, or a load on a tip without payload."""
         shapes = self.kernel.shapes
-        if shapes.closure == "pose":
+        if shapes.posed:
             return [x.pose]
         return [wrench] if shapes.loaded else []
 
@@ -261,3 +305,7 @@ class System:
         """State displaced by a step in the flat coordinates: q + dq, x + dx, R exp(theta^)."""
         pose = turned(x.pose, step[self.legs * self.n :]) if self.hub else x.pose
         return replace(x, q=x.q + self.by_leg(step), pose=pose)
+
+
+def _some(x: Array) -> list[Array]:
+    return [x] if x.size else []

@@ -68,6 +68,9 @@ def robot_law(
         table = np.zeros((len(t), system.legs, system.ports.size, COLUMNS))
         for column, part in enumerate(coordinates(t)):
             table[..., column] = part
+        if system.floor.any():
+            for column, part in enumerate(rigid.base_law(robot, t)):
+                table[:, :, system.floor, column] = part[:, None]
         if forces:
             table[:, pushed, 3] = feed_forward(robot, t, poses(t), wrench)[:, pushed.any(axis=1)]
         return table, wrench

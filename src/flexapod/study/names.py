@@ -9,31 +9,11 @@ import numpy as np
 from numpy.typing import ArrayLike
 
 from flexapod.loading import loaded
+from flexapod.study.cause_words import CAUSES
 
 if TYPE_CHECKING:
     from xarray import Coordinates, Dataset
     from xarray import Variable as Labelled
-
-#: Causes of a leg's length error that every robot has, the first ones of the `cause` dimension.
-CAUSES = ("axial-strain", "bending", "drive")
-CAUSE_WORDS = {
-    "axial-strain": "stretch of the pistons",
-    "bending": "bending of the pistons",
-    "drive": "give of the drives",
-    "base_joint": "give of the joints at the base",
-    "platform_joint": "give of the joints at the platform",
-    "screw": "stretch of the screws",
-    "twist": "twist of the screws",
-    "nut": "give of the nuts",
-    "bearing": "give of the screws' bearings",
-    "oil": "give of the oil columns",
-    "geometry": "errors of geometry",
-    "heat_base": "heat of the base",
-    "heat_platform": "heat of the platform",
-    "heat_piston": "heat of the pistons",
-    "heat_cylinder": "heat of the cylinders",
-    "heat_screw": "heat of the screws",
-}
 
 
 class Variable(NamedTuple):
@@ -78,6 +58,24 @@ _PATH = {
         ("time", "quaternion"), "1", "orientation of the platform on the rigid path, platform to world"
     ),
     "platform_angular_velocity": Variable(_TA, "rad s-1", "angular velocity of the platform, world axes"),
+    **{
+        name: Variable(_TA, unit, words)
+        for what, frame in (
+            ("base_motion", "base that is moved, against the world"),
+            ("base_mount", "base plate on its mount, against the floor"),
+            ("platform_mount", "plate with the platform joints against the payload, platform axes"),
+        )
+        for name, unit, words in (
+            (f"{what}_displacement", "m", f"displacement of the {frame}"),
+            (f"{what}_rotation", "rad", f"roll, pitch, yaw of the {frame}"),
+        )
+    },
+    "base_force": Variable(_TA, "N", "force that moves the base, on it, world axes"),
+    "base_moment": Variable(_TA, "N m", "moment that moves the base, about the point base_motion.at of it, world axes"),
+    "tool_deviation_base": Variable(_TA, "m", "deviation of the tool point as seen from the base plate, in its axes"),
+    "rotation_deviation_base": Variable(
+        _TA, "rad", "rotation vector from the rigid to the flexible platform as seen from the base plate, in its axes"
+    ),
     "deviation_by_cause": Variable(
         ("time", "cause", "leg", "axis"), "m", "share of a cause in a leg in the deviation of the centre of mass"
     ),
@@ -143,6 +141,7 @@ _ENERGY = {
     "energy_strain": Variable(_T, "J", "strain energy of legs and drive springs"),
     "energy_dissipated": Variable(_T, "J", "energy dissipated since the start"),
     "work_drive": Variable(_T, "J", "work of the drives since the start"),
+    "work_base": Variable(_T, "J", "work on a base that is moved since the start"),
     "work_external": Variable(_T, "J", "work of the external load since the start"),
     "closure_residual": Variable(_T, "m", "largest gap between a leg's tip and its joint on the platform"),
 }
@@ -304,17 +303,6 @@ ONE_POSE_FORMS = {
 
 #: Of a single pose: play.
 AT_A_POSE = {name: form._replace(dims=form.dims[1:]) for name, form in _PLAY.items() if form.dims[0] == "time"}
-
-
-def cause_in_words(cause: str, bodies: str = "pistons") -> str:
-    """What a cause stands for; one without words of its own is a spring of that name."""
-    return CAUSE_WORDS.get(cause, f"give of {cause}").replace("pistons", bodies)
-
-
-def cause_words(data: Dataset) -> dict[str, str]:
-    """Causes of deviation in words; what bends in legs without stroke is a strut."""
-    causes = map(str, data.cause.values) if "cause" in data.coords else CAUSES
-    return {cause: cause_in_words(cause, "pistons" if "leg_length" in data else "struts") for cause in causes}
 
 
 def fixed_labels(sizes: Mapping[str, int]) -> dict[str, tuple[object, str]]:

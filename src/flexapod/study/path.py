@@ -54,6 +54,11 @@ class RigidPath:
         return rigid.poses(self.robot, self.study.motion, self.time)
 
     @cached_property
+    def base(self) -> rigid.Placed | None:
+        """Where a base that is moved stands; the path is as seen from there."""
+        return rigid.base_placed(self.robot, self.time)
+
+    @cached_property
     def reach(self) -> rigid.Reach:
         """What the poses ask of the legs, whether they can take them or not."""
         return rigid.reach(self.robot, self.poses)

@@ -1,18 +1,19 @@
 /* Linear algebra of the robot, Eqs. (T6.6)-(T6.9): each leg is eliminated onto the payload.
 
-   Unknowns of leg i: dq_i (N), dlam_i (ROWS); of the border: dy (6) and one force for each pivot that is held.
+   Unknowns of leg i: dq_i (N), dlam_i (ROWS); of the border: dy (HUB) and one force for each pivot that is held.
      A_i dq_i + J_i^T dlam_i - sum e_k df_k = -r_i
      J_i dq_i - P_i dy                      = -g_i
      A_p dy   - sum P_i^T dlam_i            = -r_p
      e_k^T dq_i                             = 0      (coordinate k is held)
    Pivots are the coordinates found from the closure: J1 = dg/d(pivots) is regular for every leg, whatever is massless,
-   rigid or held. The other M = N - ROWS coordinates z see B = N^T A N, N = [N1; I] with N1 = -J1^-1 J2; the payload
+   rigid or held. The other M coordinates z see B = N^T A N, N = [N1; I] with N1 = -J1^-1 J2; the payload
    moves them through Y = [Y1; 0], Y1 = J1^-1 P. A is symmetric, so Et = N^T A Y is the transpose of E. A held
-   coordinate that is not a pivot drops out of z; its force is what is left in its own row. Legs are in `ORDER` here. */
-enum { M = N - ROWS, BORDER = 6 + LEGS*ROWS };
+   coordinate that is not a pivot drops out of z; its force is what is left in its own row. Legs are in `ORDER` here.
+   Coordinates that all legs share belong to y: Y = [Y1; 0; 1] with Y1 = J1^-1 [P, -J_shared], and y has HUB of them. */
+enum { M = N - ROWS - COMMON, BORDER = HUB + LEGS*ROWS };
 
 typedef struct {                        /* of a vector of legs */
-  lanes A[N*N], J[ROWS*N], P[ROWS*6], J1inv[ROWS*ROWS], N1[ROWS*M], Y1[ROWS*6], Binv[M*M], Et[M*6], C[M*6], Bd[ROWS*M];
+  lanes A[N*N], J[ROWS*N], P[ROWS*6], J1inv[ROWS*ROWS], N1[ROWS*M], Y1[ROWS*HUB], Binv[M*M], Et[M*HUB], C[M*HUB], Bd[ROWS*M];
   lanes held[N];
   int unknown[ROWS][LANES], any[ROWS];  /* the border's unknown of a held pivot; 0: it is not held; and of any leg */
 } LegBlock;
@@ -86,7 +87,7 @@ static int invert_legs(const Settings *s, int group, const lanes *A, lanes *inve
 
 /* Which coordinates of the legs are held, and the border's unknowns of those that are pivots */
 static void arrow_hold(Arrow *w, const Settings *s) {
-  w->size = 6;
+  w->size = HUB;
   for (int group = 0; group < groups(s); group++) {
     LegBlock *b = &w->leg[group];
     lanes held[PORTS];
@@ -107,36 +108,39 @@ static void arrow_hold(Arrow *w, const Settings *s) {
 /* Everything of a vector of legs that does not depend on residuals; its share of the border */
 static int leg_factor(const Settings *s, int group, LegBlock *b, double *border, long size) {
   static _Thread_local lanes AN[N*M], B[M*M];
-  lanes AY[N*6];
+  lanes AY[N*HUB];
   memset(b->N1, 0, sizeof b->N1); memset(b->Y1, 0, sizeof b->Y1);
   invert_pivots(b->J, b->J1inv);
   for (long j = 0; j < M; j++) lanes_gemv(ROWS, ROWS, -1, b->J1inv, b->J + ROWS*(ROWS + j), b->N1 + ROWS*j);
   for (long j = 0; j < 6; j++) lanes_gemv(ROWS, ROWS, 1, b->J1inv, b->P + ROWS*j, b->Y1 + ROWS*j);
+  for (long j = 6; j < HUB; j++) lanes_gemv(ROWS, ROWS, -1, b->J1inv, b->J + ROWS*(ROWS + M + j - 6), b->Y1 + ROWS*j);
   for (long j = 0; j < M; j++) for (int p = 0; p < ROWS; p++) b->N1[p + ROWS*j] *= 1.0 - b->held[ROWS + j];
   memcpy(AN, b->A + ROWS*N, sizeof AN); memset(AY, 0, sizeof AY);
+  memcpy(AY + 6*N, b->A + (ROWS + M)*N, sizeof(lanes)*COMMON*N);
   for (long j = 0; j < M; j++) lanes_gemv(N, ROWS, 1, b->A, b->N1 + ROWS*j, AN + j*N);
-  for (long j = 0; j < 6; j++) lanes_gemv(N, ROWS, 1, b->A, b->Y1 + ROWS*j, AY + j*N);
+  for (long j = 0; j < HUB; j++) lanes_gemv(N, ROWS, 1, b->A, b->Y1 + ROWS*j, AY + j*N);
   for (long j = 0; j < M; j++) { memcpy(B + j*M, AN + j*N + ROWS, sizeof(lanes)*M); lanes_gemv_t(ROWS, M, 1, b->N1, AN + j*N, B + j*M); }
-  for (long j = 0; j < 6; j++) { memcpy(b->Et + j*M, AY + j*N + ROWS, sizeof(lanes)*M); lanes_gemv_t(ROWS, M, 1, b->N1, AY + j*N, b->Et + j*M); }
+  for (long j = 0; j < HUB; j++) { memcpy(b->Et + j*M, AY + j*N + ROWS, sizeof(lanes)*M); lanes_gemv_t(ROWS, M, 1, b->N1, AY + j*N, b->Et + j*M); }
   for (long k = 0; k < M; k++) {
     lanes held = b->held[ROWS + k], free = 1.0 - held;
     for (long j = 0; j < M; j++) { B[k + j*M] *= free; B[j + k*M] *= free; }
-    for (long j = 0; j < 6; j++) b->Et[k + j*M] *= free;
+    for (long j = 0; j < HUB; j++) b->Et[k + j*M] *= free;
     B[k + k*M] += held;
   }
   if (invert_legs(s, group, B, b->Binv)) return SINGULAR;
   memset(b->C, 0, sizeof b->C); memset(b->Bd, 0, sizeof b->Bd);
-  for (long j = 0; j < 6; j++) lanes_gemv(M, M, 1, b->Binv, b->Et + j*M, b->C + j*M);
-  for (long j = 0; j < 6; j++) {
-    lanes payload[6] = {0};
-    lanes_gemv_t(ROWS, 6, 1, b->Y1, AY + j*N, payload);
-    lanes_gemv_t(M, 6, -1, b->Et, b->C + j*M, payload);
-    for (int i = 0; i < 6; i++) border[i + j*size] += sum(s, group, payload[i]);
+  for (long j = 0; j < HUB; j++) lanes_gemv(M, M, 1, b->Binv, b->Et + j*M, b->C + j*M);
+  for (long j = 0; j < HUB; j++) {
+    lanes payload[HUB] = {0};
+    for (int i = 6; i < HUB; i++) payload[i] = AY[ROWS + M + i - 6 + j*N];
+    lanes_gemv_t(ROWS, HUB, 1, b->Y1, AY + j*N, payload);
+    lanes_gemv_t(M, HUB, -1, b->Et, b->C + j*M, payload);
+    for (int i = 0; i < HUB; i++) border[i + j*size] += sum(s, group, payload[i]);
   }
   for (int p = 0; p < ROWS; p++) {
     if (!b->any[p]) continue;
     for (long j = 0; j < M; j++) for (long i = 0; i < M; i++) b->Bd[i + p*M] += b->Binv[i + j*M] * b->N1[p + ROWS*j];
-    for (long j = 0; j < 6; j++) {
+    for (long j = 0; j < HUB; j++) {
       lanes force = b->Y1[p + ROWS*j];
       for (long i = 0; i < M; i++) force -= b->N1[p + ROWS*i] * b->C[i + j*M];
       for (int i = 0; i < LANES; i++) {
@@ -158,7 +162,7 @@ static int arrow_factor(Arrow *w, const Settings *s, const double *A_payload) {
   static _Thread_local double border[BORDER*BORDER];
   long size = w->size;
   memset(border, 0, sizeof(double)*size*size);
-  for (int j = 0; j < 6; j++) for (int i = 0; i < 6; i++) border[i + j*size] = A_payload[i + 6*j];
+  for (int j = 0; j < HUB; j++) for (int i = 0; i < HUB; i++) border[i + j*size] = A_payload[i + HUB*j];
   for (int group = 0; group < groups(s); group++) if (leg_factor(s, group, &w->leg[group], border, size)) return SINGULAR;
   for (int k = 0; k < 6; k++) {
     if (s->hub_held[k] == 0) continue;
@@ -168,25 +172,27 @@ static int arrow_factor(Arrow *w, const Settings *s, const double *A_payload) {
   return invert(size, border, w->border);
 }
 
-/* r, g, dq, dlam: a row of N, ROWS, N, ROWS vectors a group; df: of a force for each port; rp, dy: of the payload */
+/* r, g, dq, dlam: a row of N, ROWS, N, ROWS vectors a group; df: of a force for each port; rp (HUB), dy (6): of the payload.
+   In r and rp those of shared coordinates are in rp alone. */
 static void arrow_solve(const Arrow *w, const Settings *s, lanes (*r)[N], lanes (*g)[ROWS], const double *rp,
                         lanes (*dq)[N], lanes (*dlam)[ROWS], lanes (*df)[PORTS], double *dy) {
   lanes z[GROUPS][N], g0[GROUPS][ROWS + 1];
   double rhs[BORDER] = {0}, x[BORDER] = {0};
-  for (int i = 0; i < 6; i++) rhs[i] = -rp[i];
+  for (int i = 0; i < HUB; i++) rhs[i] = -rp[i];
   for (int group = 0; group < groups(s); group++) {
     const LegBlock *b = &w->leg[group];
-    lanes t[N], part[6] = {0};
+    lanes t[N], part[HUB] = {0};
     memset(g0[group], 0, sizeof g0[group]); memset(z[group], 0, sizeof z[group]);
     lanes_gemv(ROWS, ROWS, -1, b->J1inv, g[group], g0[group]);
     for (long j = 0; j < N; j++) t[j] = r[group][ORDER[j]];
     lanes_gemv(N, ROWS, 1, b->A, g0[group], t);                            /* r + A g0 */
-    lanes_gemv_t(ROWS, 6, -1, b->Y1, t, part);
+    for (int i = 6; i < HUB; i++) part[i] = -t[ROWS + M + i - 6];
+    lanes_gemv_t(ROWS, HUB, -1, b->Y1, t, part);
     lanes_gemv_t(ROWS, M, 1, b->N1, t, t + ROWS);
     for (long j = ROWS; j < N; j++) t[j] *= 1.0 - b->held[j];
     lanes_gemv(M, M, -1, b->Binv, t + ROWS, z[group]);
-    lanes_gemv_t(M, 6, -1, b->Et, z[group], part);
-    for (int i = 0; i < 6; i++) rhs[i] += sum(s, group, part[i]);
+    lanes_gemv_t(M, HUB, -1, b->Et, z[group], part);
+    for (int i = 0; i < HUB; i++) rhs[i] += sum(s, group, part[i]);
     for (int p = 0; p < ROWS; p++) {
       if (!b->any[p]) continue;
       lanes l = g0[group][p];
@@ -199,10 +205,11 @@ static void arrow_solve(const Arrow *w, const Settings *s, lanes (*r)[N], lanes 
   memcpy(dy, x, 6*sizeof(double));
   for (int group = 0; group < groups(s); group++) {
     const LegBlock *b = &w->leg[group];
-    lanes change[N], t[N], f[ROWS + 1], y[6], *dz = change + ROWS;
-    for (int i = 0; i < 6; i++) y[i] = (lanes){0} + x[i];
+    lanes change[N], t[N], f[ROWS + 1], y[HUB], *dz = change + ROWS;
+    for (int i = 0; i < HUB; i++) y[i] = (lanes){0} + x[i];
+    memcpy(change + ROWS + M, y + 6, sizeof(lanes)*COMMON);
     memcpy(change, g0[group], sizeof(lanes)*ROWS); memcpy(dz, z[group], sizeof(lanes)*M);
-    lanes_gemv(M, 6, -1, b->C, y, dz);
+    lanes_gemv(M, HUB, -1, b->C, y, dz);
     for (int p = 0; p < ROWS; p++) {
       f[p] = (lanes){0};
       if (!b->any[p]) continue;
@@ -210,7 +217,7 @@ static void arrow_solve(const Arrow *w, const Settings *s, lanes (*r)[N], lanes 
       for (long i = 0; i < M; i++) dz[i] += b->Bd[i + p*M] * f[p];
     }
     lanes_gemv(ROWS, M, 1, b->N1, dz, change);
-    lanes_gemv(ROWS, 6, 1, b->Y1, y, change);
+    lanes_gemv(ROWS, HUB, 1, b->Y1, y, change);
     for (int p = 0; p < ROWS; p++) change[p] *= 1.0 - b->held[p];
     for (long j = 0; j < N; j++) t[j] = r[group][ORDER[j]];
     for (long j = 0; j < N; j++) for (int i = 0; i < ROWS; i++) t[i] += b->A[i + j*N] * change[j];

@@ -1,5 +1,6 @@
 /* Small dense systems, column-major. */
-enum { LARGEST = N > 6 + LEGS*ROWS ? N : 6 + LEGS*ROWS };
+enum { HUB = 6 + COMMON };              /* coordinates of the payload, and those that all legs share */
+enum { LARGEST = N > HUB + LEGS*ROWS ? N : HUB + LEGS*ROWS };
 
 typedef struct { double *A; long *pivot; long n; } Lu;
 

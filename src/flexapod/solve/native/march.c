@@ -39,11 +39,11 @@ static void add_friction_matrix(int i, double c_v, Work *w) {
 /* Residuals of a vector of legs, how far they are from closed, and the wrench that they put on the payload */
 static void residual_of_legs(const Settings *s, int i, const lanes *around, Work *w, lanes *wrench) {
   LegState *leg = &w->leg[i];
-  lanes powers[3] = {{0}}, drive[SPRINGS], tip[6], point[6];
+  lanes powers[WORKS] = {{0}}, drive[SPRINGS], tip[6], point[6];
   const lanes *in[] = {leg->q, leg->v, leg->v_dot, leg->lam, w->command[i], w->p[i], around};
   lanes *with_pose[] = {w->r[i], w->g[i], wrench, powers, drive}, *with_point[] = {w->r[i], tip, powers, drive};
-  leg_residual_lanes(in, ROWS == 6 ? with_pose : with_point);
-  if (ROWS == 3) {
+  leg_residual_lanes(in, POSED ? with_pose : with_point);
+  if (ROWS && !POSED) {
     const lanes *joint[] = {around, leg->lam, w->joint[i]};
     lanes *at[] = {point, wrench};
     joint_residual_lanes(joint, at);
@@ -52,10 +52,25 @@ static void residual_of_legs(const Settings *s, int i, const lanes *around, Work
   for (long k = 0; k < s->ports; k++) {
     lanes force = port_force(w, i, k);
     w->r[i][s->port[k]] -= force;
-    powers[1] += force*leg->v[s->port[k]];
+    powers[FLOOR < N && s->port[k] >= FLOOR ? 3 : 1] += force*leg->v[s->port[k]];
   }
   add_friction(s, i, w, powers);
-  for (int j = 0; j < 3; j++) w->powers[j] += sum(s, i, powers[j]);
+  for (int j = 0; j < WORKS; j++) w->powers[j] += sum(s, i, powers[j]);
+}
+
+/* Coordinates that all legs share, the payload's first: those of the first leg, their rates and accelerations */
+static void shared_state(const Work *w, double x[3][COMMON + 1]) {
+  const lanes *of_leg[] = {w->leg[0].q, w->leg[0].v, w->leg[0].v_dot};
+  for (int i = 0; i < 3; i++) for (int k = 0; k < COMMON; k++) x[i][k] = of_leg[i][ORDER[N - COMMON + k]][0];
+}
+
+/* Residuals of shared coordinates from the legs to the border */
+static void fold_shared(const Settings *s, Work *w) {
+  for (int k = 0; k < COMMON; k++) for (int i = 0; i < groups(s); i++) {
+    lanes *r = &w->r[i][ORDER[N - COMMON + k]];
+    w->rp[6 + k] += sum(s, i, *r);
+    *r = (lanes){0};
+  }
 }
 
 /* Residual of every equation at the present state; wrench in world axes at the tool. */
@@ -71,9 +86,13 @@ static void residual(const Settings *s, const double *wrench, Work *w) {
     if (s->hub) for (int j = 0; j < 6; j++) net[j] += sum(s, i, part[j]);
   }
   if (!s->hub) return;
-  const double *in[] = {w->payload.pose, w->payload.u, w->payload.u_dot, net, wrench, s->payload_p};
+  double shared[3][COMMON + 1];
+  shared_state(w, shared);
+  memset(w->rp + 6, 0, sizeof(double)*COMMON);
+  const double *in[] = {w->payload.pose, w->payload.u, w->payload.u_dot, net, wrench, s->payload_p, shared[0], shared[1], shared[2]};
   double *out[] = {w->rp, w->powers + 2};
   payload_residual_double(in, out);
+  fold_shared(s, w);
   for (int j = 0; j < 6; j++) if (s->hub_held[j] != 0) { w->reaction[j] = w->rp[j]; w->rp[j] = 0; }
 }
 
@@ -85,7 +104,7 @@ static void matrices_of_legs(const Settings *s, int i, const lanes *around, cons
   const lanes *in[] = {w->leg[i].q, w->leg[i].lam, w->p[i], around};
   lanes *out[] = {A[0], A[1], A[2], J, b->P, H, X};
   leg_matrices_lanes(in, out);
-  if (ROWS == 3) {
+  if (ROWS && !POSED) {
     const lanes *joint[] = {around, w->leg[i].lam, w->joint[i]};
     lanes *at[] = {b->P, H};
     joint_matrices_lanes(joint, at);
@@ -96,20 +115,22 @@ static void matrices_of_legs(const Settings *s, int i, const lanes *around, cons
   }
   if (c[1] != 0) add_friction_matrix(i, c[1], w);
   for (long j = 0; j < N; j++) for (int k = 0; k < ROWS; k++) b->J[k + ROWS*j] = J[k + ROWS*ORDER[j]];
-  if (s->hub) for (int j = 0; j < 36; j++) Ap[j] += c[2]*sum(s, i, H[j]);
+  if (s->hub) for (int j = 0; j < 36; j++) Ap[j%6 + j/6*HUB] += c[2]*sum(s, i, H[j]);
 }
 
 /* Factors of c_a M + c_v D + c_q K with the matrices at rest: the iteration matrix (T6.5), or the mass metric alone. */
 static int factor(const Settings *s, const double *wrench, double c_v, double c_a, double c_q, Work *w) {
-  double mass[36], stiffness[36], Ap[36] = {0}, c[3] = {c_a, c_v, c_q};
+  enum { BODY = 6 + PLATE };
+  double mass[BODY*BODY], stiffness[BODY*BODY], Ap[HUB*HUB] = {0}, shared[3][COMMON + 1], c[3] = {c_a, c_v, c_q};
   lanes around[OUTSIDE];
   outside(s, w, wrench, around);
   for (int i = 0; i < groups(s); i++) matrices_of_legs(s, i, around, c, w, Ap);
   if (s->hub) {
-    const double *in[] = {w->payload.pose, wrench, s->payload_p};
+    shared_state(w, shared);
+    const double *in[] = {w->payload.pose, wrench, s->payload_p, shared[0]};
     double *out[] = {mass, stiffness};
     payload_matrices_double(in, out);
-    for (int j = 0; j < 36; j++) Ap[j] += c_a*mass[j] + c_q*stiffness[j];
+    for (int j = 0; j < BODY; j++) for (int i = 0; i < BODY; i++) Ap[i + HUB*j] += c_a*mass[i + BODY*j] + c_q*stiffness[i + BODY*j];
   }
   return arrow_factor(&w->arrow, s, Ap);
 }
@@ -149,7 +170,7 @@ static double excess(const Settings *s, Work *w, int *finite) {
     r = magnitude(N, w->r[i], r); faults += blemish(N, w->r[i]);
     g = magnitude(ROWS, w->g[i], g); faults += blemish(ROWS, w->g[i]);
   }
-  if (s->hub) for (int i = 0; i < 6; i++) { payload = fmax(payload, fabs(w->rp[i])); fault += 0*w->rp[i]; }
+  if (s->hub) for (int i = 0; i < HUB; i++) { payload = fmax(payload, fabs(w->rp[i])); fault += 0*w->rp[i]; }
   double scale = largest(force), worst = largest(r), gap = largest(g);
   worst = fmax(worst, payload)/(s->tol_force*fmax(scale, 1) + s->force_floor);
   w->closure = gap;
@@ -162,7 +183,7 @@ static double excess(const Settings *s, Work *w, int *finite) {
 static long worst_leg(const Settings *s, const Work *w) {
   double most = 0;
   long leg = s->legs;
-  for (int i = 0; i < 6; i++) most = fmax(most, fabs(w->rp[i]));
+  for (int i = 0; i < HUB; i++) most = fmax(most, fabs(w->rp[i]));
   for (long i = 0; i < s->legs; i++) for (long j = 0; j < N; j++) {
     double e = fabs(w->r[i/LANES][j][i%LANES]);
     if (!isfinite(e)) return i;
@@ -185,7 +206,9 @@ static void write_record(const Settings *s, State *x, const Work *w) {
     scatter(s, i, leg->lam, ROWS, ROWS, o + k + 2*all); scatter(s, i, force, ports, ports, o + k + 2*all + ROWS*s->legs);
   }
   if (s->hub) {
-    const double *in[] = {w->payload.pose, w->payload.u, s->payload_p};
+    double shared[3][COMMON + 1];
+    shared_state(w, shared);
+    const double *in[] = {w->payload.pose, w->payload.u, s->payload_p, shared[0], shared[1]};
     double *out[] = {part};
     payload_energies_double(in, out);
     for (int j = 0; j < 3; j++) e[j] += part[j];
@@ -196,7 +219,7 @@ static void write_record(const Settings *s, State *x, const Work *w) {
   memcpy(o, w->reaction, sizeof w->reaction); o += 6;
   e[2] += w->stored;
   memcpy(o, e, sizeof e); o += 3;
-  memcpy(o, x->sums, sizeof(double)*3); o[0] -= w->stored; o += 3;
+  memcpy(o, x->sums, sizeof(double)*WORKS); o[0] -= w->stored; o += WORKS;
   *o++ = w->closure;
   for (int i = 0; i < groups(s); i++) scatter(s, i, w->rubs[i], BRISTLES, BRISTLES, o);
   o += BRISTLES*s->legs;
@@ -331,7 +354,7 @@ int march(const Settings *s, State *x, const double *table, const double *wrench
     if (fault) { x->steps += t; x->bad_leg = worst_leg(s, w); return fault; }
     age++;
     memcpy(w->bristles, w->bent, sizeof w->bent);
-    for (int j = 0; j < 3; j++) { x->sums[j] += 0.5*s->h*(x->powers[j] + w->powers[j]); x->powers[j] = w->powers[j]; }
+    for (int j = 0; j < WORKS; j++) { x->sums[j] += 0.5*s->h*(x->powers[j] + w->powers[j]); x->powers[j] = w->powers[j]; }
     if (t % s->output_every == 0) { set_commands(s, w); write_record(s, x, w); }
   }
   x->steps += steps;
@@ -344,7 +367,7 @@ int march(const Settings *s, State *x, const double *table, const double *wrench
 int scale_normal_velocity(const Settings *s, State *x, const double *wrench, double share) {
   Work *w = work();
   lanes dq[GROUPS][N], dlam[GROUPS][ROWS], df[GROUPS][PORTS], v[N];
-  double still[6] = {0}, dy[6];
+  double still[HUB] = {0}, dy[6];
   load(s, x, w);
   if (factor(s, wrench, 0, 1, 0, w)) return SINGULAR;
   for (int i = 0; i < groups(s); i++) {

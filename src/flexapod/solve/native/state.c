@@ -10,7 +10,7 @@ typedef struct {
   lanes command[GROUPS][COMMAND], r[GROUPS][N], g[GROUPS][ROWS];
   lanes bristles[GROUPS][2*BRISTLES], bent[GROUPS][2*BRISTLES], rubs[GROUPS][BRISTLES];  /* at the step's begin, its end; forces */
   double h, stored;                     /* length of the step, energy of the bristles */
-  double rp[6], reaction[6], powers[3], closure;
+  double rp[HUB], reaction[6], powers[WORKS], closure;
   Arrow arrow;
 } Work;
 

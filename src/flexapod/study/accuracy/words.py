@@ -10,7 +10,7 @@ from flexapod.model import Robot, Study
 from flexapod.study.accuracy.at_pose import AtPose
 from flexapod.study.accuracy.imperfect import is_crooked
 from flexapod.study.accuracy.play import half_play
-from flexapod.study.names import cause_in_words
+from flexapod.study.cause_words import cause_in_words
 from flexapod.typing import Array
 from flexapod.words import text
 

@@ -13,15 +13,15 @@ from flexapod.errors import ComputationError
 from flexapod.model import Robot
 from flexapod.rigid.closures import Task, close
 from flexapod.rigid.limbs import COORDINATES, DRIVEN, FREE, HELD, Limbs
-from flexapod.rigid.rotations import matrix
 from flexapod.rigid.screws import screws
+from flexapod.solve.frames import on_plates
 from flexapod.solve.many import RestStates
 from flexapod.solve.released import is_hexapod, rigid_errors
 from flexapod.solve.springs import Place
 from flexapod.solve.system import System
-from flexapod.study.after.elongations import elongations, part_names
+from flexapod.study.after.elongations import elongations, frame_names, part_names
 from flexapod.study.after.legs import stretch
-from flexapod.study.names import CAUSES
+from flexapod.study.cause_words import CAUSES
 from flexapod.study.path import RigidPath
 from flexapod.study.record import Record
 from flexapod.typing import Array
@@ -52,7 +52,12 @@ class Errors:
 
 def cause_names(robot: Robot) -> tuple[str, ...]:
     """What may be to blame in a robot: its pistons and drives, every part that gives way, what is not as drawn."""
-    return (*CAUSES, *part_names(robot), *dict.fromkeys(part.cause for part in rigid.built_parts(robot)))
+    return (
+        *CAUSES,
+        *part_names(robot),
+        *frame_names(robot),
+        *dict.fromkeys(part.cause for part in rigid.built_parts(robot)),
+    )
 
 
 def errors_of(robot: Robot, system: System, path: RigidPath, record: Record | RestStates) -> Errors:
@@ -63,12 +68,16 @@ def errors_of(robot: Robot, system: System, path: RigidPath, record: Record | Re
         if shapes.has(name):
             q[..., k] = record.q[..., shapes.index(name)]
     command = np.stack([path.legs.coordinate(name)[0] for name in COORDINATES], axis=-1)
-    needed, built = _straight(robot, found, record, q), _built(robot, path.time, command)
-    before, more, done = needed, {}, ()
+    (_, *at), *frames = on_plates(system, robot, record.q, record.pose)
+    before, built = _straight(robot, found, at, q), _built(robot, path.time, command)
+    more, done = {}, ()
+    for name, *at in frames:  # frame after frame to where the legs have it
+        after = _straight(robot, found, at, q)
+        more[name], before = before - after, after  # (T24.9)
     for name, (parts, longer) in built.items():  # joint after joint to its real place
         done, after = (*done, *parts), before
         if any(part.base.any() or part.platform.any() for part in parts):
-            after = _straight(robot, rigid.built_limbs(robot, found, done), record, q)
+            after = _straight(robot, rigid.built_limbs(robot, found, done), at, q)
         more[name], before = before - after + longer, after  # (T16.7)
     counts, own, axial = np.isin(found.state, (HELD, DRIVEN)), command.copy(), np.zeros_like(q)
     own[..., (CHI, L)] = q[..., (CHI, L)]
@@ -123,13 +132,12 @@ def _across(found: Limbs, system: System, record: Record | RestStates, q: Array)
     return errors
 
 
-def _straight(robot: Robot, found: Limbs, record: Record | RestStates, q: Array) -> Array:
-    """Coordinates of straight legs that reach the flexible platform, the carriages where they are, (T, legs, 8)."""
-    R = matrix(record.pose[:, 3:])
-    at = rigid.Poses.at_rest(record.pose[:, :3] - R @ robot.com, R)
+def _straight(robot: Robot, found: Limbs, platform: Sequence[Array], q: Array) -> Array:
+    """Coordinates of straight legs that reach a platform, (T, 3) and (T, 3, 3), the carriages where they are."""
+    at = rigid.Poses.at_rest(*platform)
     if found.plain:
         q = q.copy()
-        q[..., L] = rigid.leg_lengths(found.base, found.platform, at.position, R)
+        q[..., L] = rigid.leg_lengths(found.base, found.platform, at.position, at.rotation)
         return q
     needed = close(found, Task(closing(found), np.zeros(6, dtype=bool), np.zeros(3)), q, at).q
     needed[..., CHI] = q[..., CHI]

@@ -11,12 +11,17 @@ from flexapod.solve.springs import Place, Spring, of_servo, springs_along
 from flexapod.solve.system import System
 from flexapod.typing import Array
 
-__all__ = ["elongations", "part_names"]
+__all__ = ["elongations", "frame_names", "part_names"]
 
 
 def part_names(robot: Robot) -> tuple[str, ...]:
     """Names of the springs along any leg of a robot, in their order."""
     return tuple(dict.fromkeys(spring.name for leg in robot.legs for spring in springs_along(leg)))
+
+
+def frame_names(robot: Robot) -> tuple[str, ...]:
+    """Names of the mounts on which frames of a robot stand."""
+    return tuple(name for name in ("platform_mount", "base_mount") if getattr(robot, name) is not None)
 
 
 def elongations(

@@ -8,7 +8,8 @@ from numpy.typing import ArrayLike
 from flexapod.model import Robot, Study
 from flexapod.rigid.limbs import limbs
 from flexapod.rigid.rotations import canonical, difference, matrix, quaternion
-from flexapod.rigid.trajectory import coordinates
+from flexapod.rigid.trajectory import coordinates, turning_axes
+from flexapod.solve.frames import base_on_mount, floor, shared_by_legs
 from flexapod.solve.system import System
 from flexapod.study.after.causes import deviation_by_cause, errors_of
 from flexapod.study.after.leg_results import leg_labels, leg_results
@@ -25,7 +26,8 @@ def robot_results(study: Study, system: System, record: Record, path: RigidPath)
         **payload_results(robot, path, record),
         **leg_results(robot, system, path, record),
         **cause_results(robot, system, path, record),
-        **energy_results(record),
+        **energy_results(record, robot.base_motion is not None),
+        **frame_results(robot, system, path, record),
         **command_results(study, record.time),
     }
 
@@ -47,6 +49,11 @@ def payload_results(robot: Robot, path: RigidPath, record: Record) -> dict[str, 
     e, e_rigid = canonical(record.pose[:, 3:]), quaternion(path.poses.rotation)
     R = matrix(e)
     com_rigid, tool_rigid = path.poses.place(robot.com), path.poses.place(robot.tool)
+    if path.base is not None:  # the rigid robot moves with its base
+        (com_rigid, R_rigid), (tool_rigid, _) = (
+            path.base.carried(x, path.poses.rotation) for x in (com_rigid, tool_rigid)
+        )
+        e_rigid = quaternion(R_rigid)
     tool = com + R @ (robot.tool - robot.com)
     return {
         "com_position_rigid": com_rigid,
@@ -66,6 +73,9 @@ def cause_results(robot: Robot, system: System, path: RigidPath, record: Record)
     """Deviation of the centre of mass by cause."""
     shares = deviation_by_cause(robot, path, errors_of(robot, system, path, record))
     deviation = record.pose[:, :3] - path.poses.place(robot.com)
+    if path.base is not None:
+        shares = np.einsum("txy,tcly->tclx", path.base.rotation, shares)
+        deviation = record.pose[:, :3] - path.base.carried(path.poses.place(robot.com), path.poses.rotation)[0]
     return {
         "deviation_by_cause": shares,
         "deviation_residual": deviation - shares.reshape(len(shares), -1, 3).sum(axis=1),
@@ -81,8 +91,11 @@ def rigid_force_results(path: RigidPath) -> dict[str, Array]:
     return found
 
 
-def energy_results(record: Record) -> dict[str, Array]:
-    """Energies, works and closure residual; kinetic + potential + strain + dissipated - works is constant."""
+def energy_results(record: Record, moved: bool = False) -> dict[str, Array]:
+    """Energies, works and closure residual; kinetic + potential + strain + dissipated - works is constant.
+
+    `moved`: the base, on which that does work.
+    """
     return {
         "energy_kinetic": record.energy[:, 0],
         "energy_potential": record.energy[:, 1],
@@ -91,7 +104,30 @@ def energy_results(record: Record) -> dict[str, Array]:
         "work_drive": record.sums[:, 1],
         "work_external": record.sums[:, 2],
         "closure_residual": record.closure,
+        **({"work_base": record.sums[:, 3]} if moved else {}),
     }
+
+
+def frame_results(robot: Robot, system: System, path: RigidPath, record: Record) -> dict[str, Array]:
+    """Where base and plates on mounts are, forces on the floor, and the deviation as seen from the base plate."""
+    found: dict[str, Array] = {}
+    for name, what in (("g", "base_motion"), ("f", "base_mount"), ("m", "platform_mount")):
+        if system.kernel.shapes.has(name):
+            moved = shared_by_legs(system, record.q, name)
+            found |= {f"{what}_displacement": moved[:, :3], f"{what}_rotation": moved[:, 3:]}
+    if system.floor.any():  # (T24.10)
+        held = record.drive[:, :, system.floor].sum(axis=1)
+        axes = turning_axes(shared_by_legs(system, record.q, "g")[:, 3:])
+        moment = np.linalg.solve(axes.swapaxes(1, 2), held[:, 3:, None])[..., 0]
+        found |= {"base_force": held[:, :3], "base_moment": moment}
+    if system.kernel.shapes.has("f"):
+        floor_frame, plate = floor(system, robot, record.q), base_on_mount(system, robot, record.q)
+        tool = record.pose[:, :3] + matrix(record.pose[:, 3:]) @ (robot.tool - robot.com)
+        seen = plate.seen(*floor_frame.seen(tool, matrix(record.pose[:, 3:])))
+        found["tool_deviation_base"] = seen[0] - path.poses.place(robot.tool)
+        e, e_rigid = quaternion(seen[1]), quaternion(path.poses.rotation)
+        found["rotation_deviation_base"] = difference(e, e_rigid)
+    return found
 
 
 def command_results(study: Study, t: Array) -> dict[str, Array]:

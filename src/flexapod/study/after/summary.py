@@ -8,7 +8,7 @@ from typing import TYPE_CHECKING
 import numpy as np
 
 from flexapod.errors import InputError
-from flexapod.study.names import cause_words
+from flexapod.study.cause_words import cause_words
 from flexapod.study.words import NOTHING, cleared, text
 from flexapod.typing import Array
 

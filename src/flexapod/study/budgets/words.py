@@ -7,7 +7,7 @@ from typing import TYPE_CHECKING, NamedTuple
 import numpy as np
 
 from flexapod.study.budgets.rules import PLACE, Budget
-from flexapod.study.names import cause_in_words
+from flexapod.study.cause_words import cause_in_words
 from flexapod.study.words import cleared, column, text
 from flexapod.typing import Array
 

@@ -1,0 +1,94 @@
+"""What base and platform stand on, and how the base is moved."""
+
+from __future__ import annotations
+
+from typing import Annotated, ClassVar, Literal
+
+import numpy as np
+from pydantic import Field, model_validator
+
+from flexapod.errors import InputError
+from flexapod.model.base import Frozen, Matrix3, Matrix6, Measure, NonNegative, Series, Series6, Vec3
+from flexapod.model.motion import check_times
+from flexapod.model.spring import check_lossy
+
+__all__ = ["BaseMotion", "Mount"]
+
+ORIGIN = np.zeros(3)
+LEVEL = 1e-9  # of the largest number of a matrix, by which it may miss being one of a spring
+
+
+class Mount(Frozen):
+    """Springs between a plate and what it stands on, along and about the axes through a point.
+
+    `at` (3,) [m]: of the base from the origin of the world, of the platform from that of the platform frame; there is
+    the plate's centre of mass as well. `stiffness` (6, 6) [N/m, N, N m/rad], displacements first, along world axes at
+    the base and platform axes at the platform; `damping` (6, 6) [N s/m, N s, N m s/rad] or `loss`, a loss factor;
+    `mass` [kg] and `inertia` (3, 3) [kg m^2] of the plate with the joints.
+    """
+
+    at: Annotated[Vec3, Measure("length")] = Field(default=ORIGIN, validate_default=True)
+    stiffness: Annotated[Matrix6, Measure("stiffness", "force", "rotational stiffness")]
+    damping: Annotated[Matrix6, Measure("damping", "rotational damping")] | None = None
+    loss: Annotated[NonNegative, Measure("number")] | None = None
+    mass: Annotated[NonNegative, Measure("mass")] = 0.0
+    inertia: Annotated[Matrix3, Measure("inertia")] = Field(default=np.zeros((3, 3)), validate_default=True)
+
+    @model_validator(mode="after")
+    def _sensible(self) -> Mount:
+        check_lossy(self)
+        _of_a_spring(self.stiffness, "stiffness", least=1e-15, words="positive")
+        if self.damping is not None:
+            _of_a_spring(self.damping, "damping", least=-LEVEL, words="not negative")
+        size = np.abs(self.inertia).max()
+        if (
+            np.abs(self.inertia - self.inertia.T).max() > LEVEL * size
+            or np.linalg.eigvalsh(self.inertia)[0] < -1e-9 * size
+        ):
+            raise InputError(
+                "is of no body", key="inertia", value=self.inertia.tolist(), allowed="a symmetric matrix, not negative"
+            )
+        return self
+
+
+def _of_a_spring(matrix: Matrix6, key: str, least: float, words: str) -> None:
+    """Refuse what is not symmetric or has eigenvalues, once scaled to a unit diagonal, below the least."""
+    scale = np.sqrt(np.maximum(np.abs(np.diag(matrix)), 1e-300))
+    scaled = matrix / scale[:, None] / scale
+    if np.diag(matrix).min() < 0 or np.abs(scaled - scaled.T).max() > LEVEL or np.linalg.eigvalsh(scaled)[0] < least:
+        raise InputError(
+            "is of no mount",
+            key=key,
+            value=np.diag(matrix).tolist(),
+            allowed=f"six numbers or a symmetric 6x6 matrix, {words}",
+            next_step="A direction that does not give way takes a large number" if key == "stiffness" else None,
+        )
+
+
+class BaseMotion(Frozen):
+    """How the base, or the floor under its mount, is moved from t = 0 on: a table from `file`.
+
+    `time` (n,) [s], from 0; `values` (n, 6): along x, y, z of the world and roll, pitch, yaw about them through the
+    point `at` (3,) [m]; as `of` says displacements [m, rad] or their second derivatives [m/s^2, rad/s^2].
+    """
+
+    derived: ClassVar[tuple[str, ...]] = ("time", "values")
+
+    file: str | None = None
+    of: Literal["acceleration", "displacement"] = "acceleration"
+    at: Annotated[Vec3, Measure("length")] = Field(default=ORIGIN, validate_default=True)
+    time: Annotated[Series, Measure("time")]
+    values: Annotated[Series6, Measure("acceleration", "length", "angle")]
+
+    @model_validator(mode="after")
+    def _table(self) -> BaseMotion:
+        check_times(self.time, len(self.values), jumps=self.of == "acceleration")
+        if self.of == "displacement" and self.values[0].any():
+            raise InputError(
+                "does not start where the base is drawn",
+                key="values",
+                value=self.values[0].tolist(),
+                allowed="zeros in the first row",
+                next_step="Subtract the first row from all",
+            )
+        return self

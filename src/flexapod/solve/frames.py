@@ -1,0 +1,56 @@
+"""Where base and platform plate stand in a state of the robot, Eqs. (T24.1), (T24.5)."""
+
+from __future__ import annotations
+
+import numpy as np
+
+from flexapod import rigid
+from flexapod.model import Robot
+from flexapod.rigid.rotations import matrix
+from flexapod.solve.system import System
+from flexapod.typing import Array
+
+__all__ = ["base_on_mount", "floor", "of_platform", "on_plates", "shared_by_legs"]
+
+
+def shared_by_legs(system: System, q: Array, name: str) -> Array:
+    """Displacement and angles (..., 6) of a frame, "g", "f" or "m", in coordinates (..., legs, n); zeros without it."""
+    if not system.kernel.shapes.has(name):
+        return np.zeros((*q.shape[:-2], 6))
+    first = system.kernel.shapes.index(name)
+    return q[..., 0, first : first + 6]
+
+
+def floor(system: System, robot: Robot, q: Array) -> rigid.Placed:
+    """Where a base that is moved stands, without its mount."""
+    at = np.zeros(3) if robot.base_motion is None else robot.base_motion.at
+    return rigid.placed(shared_by_legs(system, q, "g"), at)
+
+
+def base_on_mount(system: System, robot: Robot, q: Array) -> rigid.Placed:
+    """Where the base plate stands on its mount, as seen from the floor."""
+    at = np.zeros(3) if robot.base_mount is None else robot.base_mount.at
+    return rigid.placed(shared_by_legs(system, q, "f"), at)
+
+
+def of_platform(robot: Robot, pose: Array) -> tuple[Array, Array]:
+    """Origin (..., 3) and axes (..., 3, 3) of the platform frame of payload poses (..., 7)."""
+    R = matrix(pose[..., 3:])
+    return pose[..., :3] - R @ robot.com, R
+
+
+def on_plates(system: System, robot: Robot, q: Array, pose: Array) -> list[tuple[str, Array, Array]]:
+    """Platform frame, origin (..., 3) and axes (..., 3, 3), as ever more of the moving frames are taken away.
+
+    By cause: seen from the floor, where it is below the mount of the platform, as seen from the base plate.
+    """
+    place, R = floor(system, robot, q).seen(*of_platform(robot, pose))
+    found = [("", place, R)]
+    if robot.platform_mount is not None:
+        below = rigid.placed(shared_by_legs(system, q, "m"), robot.platform_mount.at)
+        place, R = rigid.Placed(place, R).carried(*below)
+        found.append(("platform_mount", place, R))
+    if robot.base_mount is not None:
+        place, R = base_on_mount(system, robot, q).seen(place, R)
+        found.append(("base_mount", place, R))
+    return found

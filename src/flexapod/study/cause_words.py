@@ -1,0 +1,42 @@
+"""What causes of deviation are called in words."""
+
+from __future__ import annotations
+
+from typing import TYPE_CHECKING
+
+if TYPE_CHECKING:
+    from xarray import Dataset
+
+#: Causes of a leg's length error that every robot has, the first ones of the `cause` dimension.
+CAUSES = ("axial-strain", "bending", "drive")
+CAUSE_WORDS = {
+    "axial-strain": "stretch of the pistons",
+    "bending": "bending of the pistons",
+    "drive": "give of the drives",
+    "base_joint": "give of the joints at the base",
+    "platform_joint": "give of the joints at the platform",
+    "screw": "stretch of the screws",
+    "twist": "twist of the screws",
+    "nut": "give of the nuts",
+    "bearing": "give of the screws' bearings",
+    "oil": "give of the oil columns",
+    "platform_mount": "give of the platform's mount",
+    "base_mount": "give of the base's mount",
+    "geometry": "errors of geometry",
+    "heat_base": "heat of the base",
+    "heat_platform": "heat of the platform",
+    "heat_piston": "heat of the pistons",
+    "heat_cylinder": "heat of the cylinders",
+    "heat_screw": "heat of the screws",
+}
+
+
+def cause_in_words(cause: str, bodies: str = "pistons") -> str:
+    """What a cause stands for; one without words of its own is a spring of that name."""
+    return CAUSE_WORDS.get(cause, f"give of {cause}").replace("pistons", bodies)
+
+
+def cause_words(data: Dataset) -> dict[str, str]:
+    """Causes of deviation in words; what bends in legs without stroke is a strut."""
+    causes = map(str, data.cause.values) if "cause" in data.coords else CAUSES
+    return {cause: cause_in_words(cause, "pistons" if "leg_length" in data else "struts") for cause in causes}

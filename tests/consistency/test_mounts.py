@@ -1,0 +1,241 @@
+"""Base and platform on springs: closed forms, limits, compliances that add up, plates without mass, energy, causes."""
+
+import numpy as np
+import pytest
+from scipy.linalg import eigh
+from tests.legs_of_all_kinds import rotation
+from tests.machines import machine, study
+from tests.mechanisms import ROBOTS
+from tests.runs import balance, run_robot
+
+import flexapod as fx
+from flexapod.bases import axial_basis, lateral_basis
+from flexapod.errors import InputError
+from flexapod.mechanics.assembly import payload_functions
+from flexapod.mechanics.layout import Shapes
+from flexapod.model import loads, preset
+from flexapod.model.mount import Mount
+from flexapod.model.write import to_toml
+from flexapod.rigid.rotations import quaternion, turned
+from flexapod.symbolic.functions import Interpreted
+
+NONE = lateral_basis("clamped-free", 0)
+
+K = np.diag([3e8, 2e8, 5e8, 3e7, 2e7, 4e7]) + 0.0
+K[0, 4] = K[4, 0] = 2e7
+K[1, 2] = K[2, 1] = -5e7
+BASE = Mount(at=[0.05, -0.02, -0.1], stiffness=K, mass=150.0, inertia=np.diag([6.0, 7.0, 10.0]))
+TOP = Mount(at=[0.01, 0.03, 0.04], stiffness=0.6 * K, mass=30.0, inertia=np.diag([1.0, 1.5, 2.0]))
+
+
+def light(robot, **more):
+    """The robot without gravity and without masses in its legs."""
+    legs = tuple(
+        leg.replace(piston=leg.piston.replace(rhoA=0.0, axial_inertia=0.0),
+                    cylinder=leg.cylinder.replace(mass=0.0, inertia=0.0, axial_inertia=0.0, com=0.0))
+        for leg in robot.legs
+    )  # fmt: skip
+    return robot.replace(legs=legs, gravity=[0, 0, 0], **more)
+
+
+def cross(x):
+    return np.array([[0, -x[2], x[1]], [x[2], 0, -x[0]], [-x[1], x[0], 0]])
+
+
+def carried(points):
+    """Displacement of points by that of a frame and its turn about the origin, (n, 3, 6)."""
+    return np.array([np.hstack([np.eye(3), -cross(x)]) for x in points])
+
+
+def closed_form(robot, mounts):
+    """Frequencies [Hz] of payload and plates on springs: three bodies, the legs' stretch between the plates."""
+    base, top = robot.home_bases, robot.home_tips
+    com = robot.home_position + robot.com
+    n = robot.home_vectors / robot.home_lengths[:, None]
+    k = [leg.piston.EA / leg.piston.length for leg in robot.legs]
+    bodies = [("payload", com), *((name, mount.at) for name, mount in mounts.items())]
+    at = {name: slice(6 * i, 6 * i + 6) for i, (name, _) in enumerate(bodies)}
+    M, S = np.zeros((2, 6 * len(bodies), 6 * len(bodies)))
+    M[:3, :3], M[3:6, 3:6] = robot.payload.mass * np.eye(3), robot.payload.inertia
+    stretch = np.zeros((6, len(M)))
+    whole = np.zeros((6, 3, len(M)))
+    if "base" in mounts:
+        whole[..., at["base"]] -= carried(base - mounts["base"].at)
+        S[at["base"], at["base"]] = mounts["base"].stiffness
+        M[at["base"], at["base"]] = inertia(mounts["base"])
+    whole[..., :6] += carried(top - com)
+    if "top" in mounts:  # displaced from the payload: its joints move with both
+        point = robot.home_position + mounts["top"].at
+        whole[..., at["top"]] += carried(top - point)
+        both = np.zeros((6, len(M)))
+        both[:3, :6], both[3:, 3:6], both[:, at["top"]] = carried([point - com])[0], np.eye(6)[3:, 3:], np.eye(6)
+        M += both.T @ inertia(mounts["top"]) @ both
+        S[at["top"], at["top"]] = mounts["top"].stiffness
+    stretch = np.einsum("ix,ixk->ik", n, whole)
+    return np.sqrt(eigh(S + stretch.T @ np.diag(k) @ stretch, M, eigvals_only=True)) / (2 * np.pi)
+
+
+def inertia(mount):
+    return np.block([[mount.mass * np.eye(3), np.zeros((3, 3))], [np.zeros((3, 3)), mount.inertia]])
+
+
+@pytest.mark.parametrize(("names", "count"), [(("base",), 12), (("top",), 12), (("base", "top"), 18)])
+def test_bodies_in_series_have_the_frequencies_of_the_closed_form(names, count):
+    # Eigenvalues of the same matrices in other coordinates. Those of the dense ones have the rounding of the largest:
+    # eps (f / f_1)^2, with f up to 70 times f_1 for two bodies and 150 times for three.
+    mounts = {name: {"base": BASE, "top": TOP}[name] for name in names}
+    robot = light(machine(), base_mount=mounts.get("base"), platform_mount=mounts.get("top"))
+    found = fx.modes(robot, fidelity="lumped").frequency.values
+    assert len(found) == count
+    np.testing.assert_allclose(found, closed_form(robot, mounts), rtol=1e-12 if count == 12 else 5e-12)
+
+
+def test_compliances_of_mounts_and_legs_add_up_at_the_tool():
+    robot = light(machine())
+    tool = robot.home_position + robot.tool
+    ours = np.linalg.inv(fx.stiffness(robot.replace(base_mount=BASE, platform_mount=TOP), fidelity="lumped").stiffness)
+    legs = np.linalg.inv(fx.stiffness(robot, fidelity="lumped").stiffness)
+    for mount, point in ((BASE, BASE.at), (TOP, robot.home_position + TOP.at)):
+        T = np.eye(6)
+        T[:3, 3:] = -cross(tool - point)
+        legs = legs + T @ np.linalg.inv(mount.stiffness) @ T.T
+    size = np.sqrt(np.outer(np.diag(legs), np.diag(legs)))
+    np.testing.assert_allclose(ours / size, legs / size, atol=1e-12)
+
+
+@pytest.mark.parametrize("name", ["base_mount", "platform_mount"])
+def test_endlessly_stiff_mounts_are_rigid_frames(name):
+    # Legs of 4e8 N/m a metre away from a spring of 1e15 N m/rad, the largest that a study takes: 4e-7 each.
+    stiff = Mount(stiffness=np.diag([1e17] * 3 + [1e15] * 3))
+    ideal, held = machine(), machine().replace(**{name: stiff})
+    for compute, value in ((fx.stiffness, "stiffness"), (fx.modes, "frequency")):
+        ours, theirs = (compute(robot, fidelity="lumped")[value].values for robot in (held, ideal))
+        size = np.sqrt(np.outer(np.diag(theirs), np.diag(theirs))) if theirs.ndim == 2 else theirs
+        np.testing.assert_allclose(ours[: len(theirs)] / size, theirs / size, atol=2e-6)
+
+
+def test_rigid_legs_on_a_mount_are_one_body():
+    # Without masses in the legs: the payload and the plate, one rigid body on six springs.
+    robot = light(machine(), base_mount=BASE)
+    T = np.eye(6)
+    T[:3, 3:] = -cross(robot.home_position + robot.com - BASE.at)
+    payload = np.zeros((6, 6))
+    payload[:3, :3], payload[3:, 3:] = robot.payload.mass * np.eye(3), robot.payload.inertia
+    expected = np.sqrt(eigh(BASE.stiffness, inertia(BASE) + T.T @ payload @ T, eigvals_only=True)) / (2 * np.pi)
+    np.testing.assert_allclose(fx.modes(robot, fidelity="rigid").frequency.values, expected, rtol=1e-11)
+
+
+@pytest.fixture(scope="module")
+def shaken():
+    """A run on both mounts by name of its step, the plate below the payload without mass."""
+    damped = {"loss": 0.02}
+    robot = machine().replace(
+        base_mount=BASE.replace(**damped), platform_mount=TOP.replace(mass=0.0, inertia=np.zeros((3, 3)), **damped)
+    )
+    return {h: fx.run(study(robot, fidelity="lumped", step=h)) for h in (1e-3, 5e-4, 2.5e-4)}
+
+
+def test_energy_is_kept_to_the_second_order(shaken):
+    misses = []
+    for data in shaken.values():
+        kept = data.energy_kinetic + data.energy_potential + data.energy_strain + data.energy_dissipated
+        kept = kept - data.work_drive - data.work_external
+        misses.append(float(np.abs(kept - kept[0]).max()))
+    assert misses[0] / misses[1] > 3
+    assert misses[1] / misses[2] > 3
+    assert float(shaken[5e-4].energy_dissipated[-1]) > 0
+
+
+def test_causes_add_up_and_name_the_mounts(shaken):
+    data = shaken[2.5e-4]
+    assert {"base_mount", "platform_mount"} < set(data.cause.values)
+    # Of first order in 100 um of 1 m: what is left is 1e-4 of the whole.
+    assert np.abs(data.deviation_residual).max() < 1e-3 * np.abs(data.com_deviation).max()
+    at = data.com_position_rigid.values - BASE.at
+    moved = data.base_mount_displacement.values + np.cross(data.base_mount_rotation.values, at)
+    share = data.deviation_by_cause.sel(cause="base_mount").sum("leg").values
+    np.testing.assert_allclose(share, moved, atol=2e-3 * np.abs(moved).max())
+
+
+def test_a_plate_without_mass_is_the_limit_of_a_light_one(shaken):
+    h = 1e-3
+    light_one = shaken[h].attrs and fx.run(
+        study(machine().replace(base_mount=BASE.replace(loss=0.02), platform_mount=TOP.replace(
+            mass=1e-3, inertia=1e-4 * np.eye(3), loss=0.02)), fidelity="lumped", step=h)
+    )  # fmt: skip
+    # A gram beside a ton.
+    np.testing.assert_allclose(light_one.com_position, shaken[h].com_position, atol=1e-5 * 20e-6)
+
+
+def test_the_readable_time_loop_does_the_same(shaken, monkeypatch):
+    from flexapod.solve import march
+
+    monkeypatch.setattr(march, "_loop", lambda _: march.interpreted)
+    start = study(machine().replace(base_mount=BASE, platform_mount=TOP), fidelity="lumped", step=1e-3, duration=0.01)
+    slow = run_robot(start)
+    monkeypatch.undo()
+    quick = run_robot(start)
+    # Newton's method ends at other roundings: a few of the stiffest force over the softest spring.
+    np.testing.assert_allclose(slow["pose"], quick["pose"], atol=1e-11)
+    np.testing.assert_allclose(balance(slow), balance(quick), rtol=1e-9)
+
+
+@pytest.mark.parametrize("kind", ["3-RPS", "6-RUS"])
+def test_robots_of_other_kinds_stand_on_mounts(kind):
+    ideal = ROBOTS[kind]()
+    robot = ideal.replace(base_mount=BASE, platform_mount=TOP.replace(mass=0.0, inertia=np.zeros((3, 3))))
+    soft, stiff = (fx.modes(x, fidelity="lumped").frequency.values for x in (robot, ideal))
+    assert soft[0] < stiff[0]
+    data = fx.run(study(robot, fidelity="lumped", step=1e-3, duration=0.05))
+    kept = data.energy_kinetic + data.energy_potential + data.energy_strain + data.energy_dissipated
+    kept = kept - data.work_drive - data.work_external
+    assert float(np.abs(kept - kept[0]).max()) < 1e-3 * float(data.energy_kinetic.max() + data.energy_strain.max())
+    assert float(data.closure_residual.max()) < 1e-13
+
+
+@pytest.mark.parametrize(
+    ("fields", "words"),
+    [
+        ({"stiffness": np.diag([1e8, 1e8, 0, 1e6, 1e6, 1e6])}, "is of no mount"),
+        ({"stiffness": K + np.triu(K, 1)}, "is of no mount"),
+        ({"stiffness": K, "damping": -K}, "is of no mount"),
+        ({"stiffness": K, "loss": 0.1, "damping": 1e-4 * np.diag(np.diag(K))}, "together with damping"),
+        ({"stiffness": K, "inertia": -np.eye(3)}, "is of no body"),
+    ],
+)
+def test_what_is_no_mount_is_refused(fields, words):
+    with pytest.raises(InputError, match=words):
+        Mount(**fields)
+
+
+def test_frames_do_not_leave_the_plane_of_a_robot():
+    with pytest.raises(InputError, match="cannot leave the plane"):
+        ROBOTS["planar 3-RPR"]().replace(base_mount=BASE)
+
+
+@pytest.mark.parametrize("seed", range(3))
+def test_the_plate_below_the_payload_keeps_the_balance_of_power(seed):
+    # d(T + V)/dt is the power of what is left of the balances; differences of fourth order leave 1e-9.
+    ours, rng = Shapes(a=NONE, b=NONE, axial=axial_basis(0), platform_mount=True), np.random.default_rng(seed)
+    residual, _, energies = (Interpreted(f) for f in payload_functions(ours))
+    J = rng.normal(size=(2, 3, 3))
+    p = np.concatenate([[7.0], (J[0] @ J[0].T).ravel(), [1, 2, -9], [0.1, 0.2, 0.3], [3.0], (J[1] @ J[1].T).ravel(),
+                        [0.1, -0.2, 0.3]])  # fmt: skip
+    u, u_dot, m, v, a = rng.normal(size=(5, 6))
+    pose = np.concatenate([rng.normal(size=3), quaternion(rotation(rng))])
+
+    def energy(h):
+        now = u + h * u_dot
+        step = np.concatenate([h * u[:3] + h**2 / 2 * u_dot[:3], h * u[3:] + h**2 / 2 * u_dot[3:]])
+        return energies(turned(pose, step), now, p, m + h * v + h**2 / 2 * a, v + h * a)[0].sum()
+
+    r, _ = residual(pose, u, u_dot, np.zeros(6), np.zeros(6), p, m, v, a)
+    h = 1e-3
+    change = (8 * (energy(h) - energy(-h)) - (energy(2 * h) - energy(-2 * h))) / (12 * h)
+    assert change == pytest.approx(np.concatenate([u, v]) @ r, rel=1e-7)
+
+
+def test_a_mount_is_the_same_when_read_again():
+    given = preset("paper-robot")
+    given = given.replace(robot=given.robot.replace(base_mount=BASE, platform_mount=TOP.replace(loss=0.01)))
+    assert loads(to_toml(given)).robot == given.robot
