@@ -196,7 +196,7 @@ def test_words_name_the_culprit_and_say_what_is_not_known():
     assert first.startswith("The largest culprit at home is the stretch of the pistons, 100 % of the sizes")
     assert f"from {1e6 * whole:.3g} µm to {0.5e6 * whole:.3g} µm" in first
     assert "ISO 9283" in accuracy
-    assert repeatability.startswith("Repeatability: the study names neither play nor")
+    assert repeatability.startswith("Repeatability: the study names neither play nor friction nor")
     assert set(np.unique(found.nature)) == {"repeatable"}
     far = fx.budget(mechanisms.delta()).attrs["summary"].splitlines()  # it gives way by centimetres
     assert far[1].startswith("The rows, of first order, leave 14.2 mm of the static deviation of 63 mm")

@@ -10,11 +10,18 @@ from scipy.integrate import solve_ivp
 from tests.machines import BODY, SCREW, TUBE, machine, study
 from tests.runs import balance, run_robot
 
+import flexapod as fx
+from flexapod import rigid
 from flexapod.bases import lateral_basis
 from flexapod.elements.friction import rubbing
-from flexapod.model import Feedback, Joint, JointFriction, ScrewFriction, ServoDrive, StrokeFriction
+from flexapod.model import Feedback, Joint, JointFriction, ScrewFriction, ServoDrive, StrokeFriction, override
+from flexapod.solve.friction import numbers, sliding
 from flexapod.solve.kernel import kernel
+from flexapod.solve.lost_motion import lost_motion, reversal
+from flexapod.solve.modes import locked_poses
 from flexapod.solve.springs import springs_along
+from flexapod.solve.stiffness import displacement, tool_motion
+from flexapod.study.budgets.words import part_words
 from flexapod.symbolic.vocabulary import constant, symbol, zeros
 
 RUBS = Joint(friction=JointFriction(moment=2.0))
@@ -178,11 +185,11 @@ def test_next_to_no_friction_is_none():
 
 
 def slow(**parts):
-    """A heave of 20 mm in a second without weight, at the middle: leg coordinates there."""
-    robot = machine(**parts)
-    robot = robot.replace(gravity=[0, 0, 0])
+    """A heave of 20 mm in a second without weight, at the middle: leg coordinates there, and the whole run."""
+    robot = machine(**parts).replace(gravity=[0, 0, 0])
     one = study(robot, duration=0.5, fidelity="assumed-modes", step=1e-3, output_step=1e-2)
-    return run_robot(one.replace(motion=one.motion.replace(duration=1.0)))["q"][-1], robot
+    found = run_robot(one.replace(motion=one.motion.replace(duration=1.0)))
+    return found["q"][-1], (found, robot)
 
 
 def test_a_joint_that_rubs_bends_its_leg():
@@ -207,7 +214,9 @@ def test_a_joint_that_rubs_bends_its_leg():
 def test_a_screw_loses_what_its_friction_winds_up(command):
     torque = 5.0
     drive = SCREW if command == "position" else SERVO
-    (rubs, robot), (free, _) = (slow(drive=drive.replace(friction=x)) for x in (ScrewFriction(torque=torque), None))
+    (rubs, (_, robot)), (free, _) = (
+        slow(drive=drive.replace(friction=x)) for x in (ScrewFriction(torque=torque), None)
+    )
     force = torque / SCREW.per_turn
     twist = next(x for x in springs_along(robot.legs[0]) if x.name == "twist")
     expected = force * twist.at_length(free[:, 2])
@@ -215,6 +224,7 @@ def test_a_screw_loses_what_its_friction_winds_up(command):
         expected = expected + torque / 5e3 * SCREW.per_turn
     # the whole platform lags; its inertia is that of a second and 20 mm. The share is that at home, 3 % off at 10 mm.
     np.testing.assert_allclose(free[:, 2] - rubs[:, 2], expected, rtol=0.03)
+    np.testing.assert_allclose(lost_motion(robot, free[:, 2]), expected, rtol=1e-12)
 
 
 def test_a_servo_lags_by_the_friction_of_its_stroke():
@@ -222,3 +232,82 @@ def test_a_servo_lags_by_the_friction_of_its_stroke():
     rubs, _ = slow(drive=servo.replace(friction=StrokeFriction(force=100.0)))
     free, _ = slow(drive=servo)
     np.testing.assert_allclose(free[:, 2] - rubs[:, 2], 100.0 / 1e7, rtol=1e-2)
+
+
+def locked(robot, **simulation):
+    one = override(study(robot), **simulation)
+    return locked_poses(robot, one.simulation, rigid.home_pose(robot))
+
+
+def test_lost_motion_is_what_a_slow_approach_shows():
+    # Friction as it was at the middle of a slow motion, on the robot at rest there: it moves the platform by what the
+    # two motions, with friction and without, differ. Their inertia is the same but for what friction changes.
+    parts = {"base_joint": RUBS, "platform_joint": PLAIN, "drive": SERVO}
+    (_, (rubs, robot)), (_, (free, _)) = (
+        slow(**parts | {"drive": SERVO.replace(friction=ScrewFriction(torque=5.0))}),
+        slow(drive=SERVO),
+    )
+    here = locked(robot)
+    at = here.equilibria.states[here.at]
+    force = -sliding(here.system, at.q).swapaxes(-1, -2) @ rubs["friction"][-1][None, :, :, None]
+    moved = displacement(here, force, np.zeros((1, 6, 1)))[0, :3, 0]
+    np.testing.assert_allclose(rubs["pose"][-1, :3] - free["pose"][-1, :3], moved, atol=0.03 * np.abs(moved).max())
+
+
+def test_the_reversal_error_is_a_bound_of_every_way_to_slide():
+    robot = machine(**EVERYWHERE)
+    here, found = locked(robot, fidelity="lumped"), reversal(locked(robot, fidelity="lumped"))
+    at, rng = here.equilibria.states[here.at], np.random.default_rng(4)
+    J, (_, limit) = sliding(here.system, at.q), numbers(here.system, at.lam)
+    tool, most = tool_motion(robot, at.pose)[0], np.zeros(6)
+    for _ in range(300):  # crosses and screws to either side, balls about any axis
+        way = np.sign(rng.normal(size=limit.shape))
+        ball = rng.normal(size=(*limit.shape[:2], 3))
+        way[..., 2:5] = ball / np.linalg.norm(ball, axis=-1, keepdims=True)
+        force = J.swapaxes(-1, -2) @ (limit * way)[..., None]
+        most = np.maximum(most, np.abs(tool @ displacement(here, force, np.zeros((1, 6, 1)))[0, :, 0]))
+    bound = sum(x[0].sum(axis=0) for x in found.values())
+    assert (most < bound).all()
+    assert (most > 0.3 * bound).all()
+
+
+def test_rows_of_the_budget():
+    rubs = fx.budget(study(machine(**EVERYWHERE), fidelity="lumped"))
+    table = rubs.budget.sel(kind="hysteretic").to_pandas().abs().sum(axis=1)
+    assert set(table[table > 0].index) == {"base_joint friction", "platform_joint friction", "drive friction"}
+    bound = rubs.budget_total.sel(kind="hysteretic").values
+    np.testing.assert_allclose(rubs.repeatability_bidirectional.values, 2 * bound, rtol=1e-12)
+    without = fx.budget(study(machine(**EVERYWHERE | {"platform_joint": Joint()}), fidelity="lumped"))
+    row = rubs.budget.sel(kind="hysteretic", part="platform_joint friction").values
+    np.testing.assert_allclose(without.budget_total.sel(kind="hysteretic").values, bound - row, rtol=1e-6, atol=1e-15)
+    assert "friction of the drives" in [part_words(str(part)) for part in rubs.part.values]
+
+
+def test_what_sticks_is_a_spring():
+    spring, still = 2.0 / 1e-3, {"fidelity": "assumed-modes"}
+    robots = (
+        machine(base_joint=RUBS, platform_joint=PLAIN),
+        machine(base_joint=Joint(bending=spring), platform_joint=PLAIN),
+    )
+    plain = locked(robots[0], **still).m.K
+    stuck, springs = (
+        locked(robot, friction=x, **still).m.K for robot, x in zip(robots, ("stuck", "sliding"), strict=True)
+    )
+    angles = np.zeros_like(plain)
+    angles[..., 0, 0] = angles[..., 1, 1] = spring
+    # Springs move the equilibrium, and with it what legs' weight adds: 1e-5 of the springs.
+    np.testing.assert_allclose((springs - plain)[..., :2, :2], angles[..., :2, :2], atol=1e-4 * spring)
+    np.testing.assert_allclose((stuck - plain)[..., :2, :2], angles[..., :2, :2], atol=1e-6)
+    found = [fx.modes(robots[0], friction=x).frequency.values[0] for x in ("sliding", "stuck")]
+    assert found[1] > found[0]
+
+
+def test_causes_with_friction_add_up():
+    found = fx.simulate(study(machine(**EVERYWHERE), fidelity="lumped", step=1e-3, output_step=1e-2))
+    assert np.abs(found.deviation_residual).max() < 1e-4 * np.abs(found.com_deviation).max()
+    # a screw at sliding friction lags by its lost motion
+    lag = np.abs(found.deviation_by_cause.sel(cause="friction")).max(("time", "axis")).values
+    assert (lag > 0.1 * lost_motion(machine(**EVERYWHERE), machine().home_lengths)).all()
+    rubs = found.friction.sel(slide="drive").values
+    assert np.abs(rubs).max() == pytest.approx(0.5, rel=1e-6)
+    assert list(found.slide.values[:2]) == ["base_joint alpha", "base_joint beta"]

@@ -110,6 +110,11 @@ class ScrewFriction(Frozen):
         """What the equations read, by the screw's angle."""
         return _numbers(self, self.torque, 0.0, self.stribeck and self.stribeck.moment)
 
+    @property
+    def static(self) -> float:
+        """Torque of breaking away [N m]."""
+        return self.torque if self.stribeck is None else self.stribeck.moment
+
 
 class StrokeFriction(Frozen):
     """Friction of a stroke, along it: seals, guide.
@@ -132,6 +137,11 @@ class StrokeFriction(Frozen):
     def numbers(self) -> tuple[float, ...]:
         """What the equations read, along the stroke."""
         return _numbers(self, self.force, 0.0, self.stribeck and self.stribeck.force)
+
+    @property
+    def static(self) -> float:
+        """Force of breaking away [N]."""
+        return self.force if self.stribeck is None else self.stribeck.force
 
 
 def _numbers(

@@ -255,6 +255,7 @@ def override(
     duration: float | None = None,
     output_step: float | None = None,
     rho_inf: float | None = None,
+    friction: str | None = None,
 ) -> S:
     """The study with settings of a Python call in place of those of the file; None keeps the file's.
 
@@ -272,6 +273,7 @@ def override(
         "step": step,
         "output_step": output_step,
         "rho_inf": rho_inf,
+        "friction": friction,
     }
     changes = {name: value for name, value in given.items() if value is not None}
     _refuse_unused(fidelity or study.simulation.fidelity, changes, axial_modes)

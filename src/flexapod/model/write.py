@@ -194,6 +194,8 @@ def _fields(model: Frozen) -> dict[str, object]:
     skipped = model.derived
     if isinstance(model, Simulation) and model.fidelity in OWN_BASIS:
         skipped += ("basis",)
+    if isinstance(model, Simulation) and model.friction == "sliding":
+        skipped += ("friction",)
     if getattr(model, "poisson", None) == POISSON:
         skipped += ("poisson",)
     fields = {name: getattr(model, name) for name in type(model).model_fields if name not in skipped}

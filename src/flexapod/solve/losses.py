@@ -37,7 +37,8 @@ def loss_frequency(robot: Robot, simulation: Simulation) -> float:
     if not (mounts or any(joints) or any(x.loss or x.leakage for leg in robot.legs for x in springs_along(leg))):
         return 0.0
     # rigid legs have springs, too, and are locked by prescribed strokes
-    return _first(robot, simulation.replace(fidelity="lumped") if simulation.fidelity == "rigid" else simulation)
+    sliding = simulation.replace(friction="sliding")
+    return _first(robot, sliding.replace(fidelity="lumped") if simulation.fidelity == "rigid" else sliding)
 
 
 def loss_words(robot: Robot, simulation: Simulation) -> list[str]:

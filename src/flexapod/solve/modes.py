@@ -16,6 +16,7 @@ from flexapod.solve.elimination import LegBases, closed, leg_bases
 from flexapod.solve.equilibrium import FOUND, Equilibria, Equilibrium, equilibria
 from flexapod.solve.fallen import refuse_fallen
 from flexapod.solve.frequencies import count_real, mass_factor, natural
+from flexapod.solve.friction import with_friction
 from flexapod.solve.many import RestMatrices, RestStates
 from flexapod.solve.reduction import expanded, hub_motion, null_space_of_borders, reduced
 from flexapod.solve.rest import RestLoad, rest_commands, rest_load
@@ -145,6 +146,7 @@ def locked_poses(
     start, acts = rigid_rest(system, robot, path), rest_load(system, robot, path, load, time)
     command = rest_commands(system, robot, start.q, time)
     found = equilibria(system, start, command, acts.force, acts.wrench)
+    at = np.flatnonzero(found.code == FOUND)
     return LockedPoses(
         robot=robot,
         path=path,
@@ -154,8 +156,8 @@ def locked_poses(
         command=command,
         acts=acts,
         equilibria=found,
-        at=np.flatnonzero(found.code == FOUND),
-        m=found.m,
+        at=at,
+        m=with_friction(system, found.states[at], found.m, stuck=simulation.friction == "stuck"),
     )
 
 

@@ -124,6 +124,7 @@ _LEGS = {
     "tip_deflection": Variable(("time", "leg", "direction"), "m", "tip of the piston from the cylinder's axis"),
     "lateral_amplitude": Variable(("time", "leg", "direction", "shape"), "m", "amplitude of a lateral shape"),
     "axial_amplitude": Variable(("time", "leg", "axial_shape"), "m", "amplitude of an axial shape"),
+    "friction": Variable(("time", "leg", "slide"), "mixed", "friction against what slides [N m], of strokes [N]"),
     "joint_force": Variable(("time", "leg", "axis"), "N", "force of the leg on the platform, world axes"),
     "joint_force_rigid": Variable(
         ("time", "leg", "axis"), "N", "force of the leg on the platform, world axes, rigid robot (Newton-Euler)"
@@ -149,6 +150,7 @@ _ENERGY = {
 _STATIC = {
     "part_stiffness": Variable(("leg", "part"), "N/m", "stiffness of a part along its leg"),
     "leg_stiffness": Variable(("leg",), "N/m", "stiffness of all parts along a leg in series"),
+    "lost_motion": Variable(("leg",), "m", "what the leg lags by the friction of its drive, half of it to and fro"),
     "frequency": Variable(("mode",), "Hz", "undamped natural frequency"),
     "damping_ratio": Variable(("mode",), "1", "damping ratio"),
     "kind": Variable(("mode",), "1", "what mostly moves"),
@@ -250,7 +252,7 @@ _BUDGET = {
     "rss": Variable(_C, "mixed", "root of the sum of the squares of all kinds [m, rad]"),
     "pose_accuracy": Variable(("state", "component"), "mixed", "systematic error and 3 sigma of tolerances [m, rad]"),
     "repeatability_unidirectional": Variable(_C, "mixed", "4 standard deviations from approach to approach [m, rad]"),
-    "repeatability_bidirectional": Variable(_C, "mixed", "the same with the reversal value of play [m, rad]"),
+    "repeatability_bidirectional": Variable(_C, "mixed", "the same with the reversal value [m, rad]"),
     "worst_time": Variable((), "s", "instant whose pose has the largest static deviation of the tool"),
     "peak_time": Variable(_C, "s", "instant of the largest dynamic deviation"),
 }
@@ -379,6 +381,7 @@ _COORDINATE_ATTRS = {
     "part": {"long_name": "part of a leg"},
     "kind": {"long_name": "kind of error"},
     "coordinate": {"long_name": "coordinate of a leg"},
+    "slide": {"long_name": "where friction is, and in which direction"},
     "place": {"long_name": "where there is play"},
     "error": {"long_name": "what is not as drawn"},
     "tolerance": {"long_name": "what may not be as drawn"},

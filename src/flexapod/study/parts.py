@@ -7,6 +7,7 @@ from typing import TYPE_CHECKING
 import numpy as np
 
 from flexapod import rigid
+from flexapod.solve.lost_motion import lost_motion, places_with_friction
 from flexapod.solve.parts import part_stiffness
 from flexapod.study.arguments import PoseLike, RobotLike, as_pose, at_pose
 from flexapod.study.attributes import attributes
@@ -35,7 +36,8 @@ def parts(robot: RobotLike, pose: PoseLike = None) -> Dataset:
     xarray.Dataset
         `part_stiffness` (leg, part) [N/m]: of the piston's stretch, of joints, screw, twist, nut, bearing, of named
         springs, of a drive that has a spring; inf where a leg does not have the part. `leg_stiffness` (leg): all of
-        them in series.
+        them in series. `lost_motion` (leg) [m], of robots whose drives have friction: half of what a leg lags by it
+        to and fro.
 
     Raises
     ------
@@ -45,7 +47,10 @@ def parts(robot: RobotLike, pose: PoseLike = None) -> Dataset:
     study = at_pose(robot)
     path = as_pose(study.robot, pose)
     remarks = path_remarks(study.robot, np.zeros(1), path)
-    found = part_stiffness(study.robot, rigid.inverse_kinematics(study.robot, path).length[0])
+    length = rigid.inverse_kinematics(study.robot, path).length[0]
+    found = part_stiffness(study.robot, length)
     table = np.stack(list(found.values()), axis=1)
     values = {"part_stiffness": table, "leg_stiffness": 1.0 / (1.0 / table).sum(axis=1)}
+    if "drive" in places_with_friction(study.robot):
+        values["lost_motion"] = lost_motion(study.robot, length)
     return dataset(values, {"part": list(found)}, attributes(study, [*study.warnings, *remarks]))

@@ -38,6 +38,7 @@ def modes(
     modes: int | None = None,
     axial_modes: int | None = None,
     basis: str | None = None,
+    friction: str | None = None,
     shapes: bool = False,
 ) -> Dataset:
     """Undamped and damped modes about the static equilibrium, commands of the drives held, Eqs. (T7.2)-(T7.5).
@@ -55,8 +56,8 @@ def modes(
         Fx Fy Fz [N], Mx My Mz [N m] at the tool, world axes; in place of the study's; a law is
         taken just before t = 0, where a simulation from equilibrium starts: a step at t = 0 has not come yet. So is the
         table of a force drive; law "rigid" pushes as the rigid robot needs at rest in the pose.
-    fidelity, modes, axial_modes, basis : optional
-        In place of those of the study; a bare robot has assumed-modes, 3 per plane, tip-load.
+    fidelity, modes, axial_modes, basis, friction : optional
+        In place of those of the study; a bare robot has assumed-modes, 3 per plane, tip-load, friction "sliding".
     shapes : bool
         Of many poses also damping ratios, kinds and shapes: ten times the time, and much memory.
 
@@ -76,7 +77,7 @@ def modes(
     ComputationError
         No equilibrium at this pose.
     """
-    settings = {"fidelity": fidelity, "modes": modes, "axial_modes": axial_modes, "basis": basis}
+    settings = {"fidelity": fidelity, "modes": modes, "axial_modes": axial_modes, "basis": basis, "friction": friction}
     if isinstance(robot := read(robot), model.ActuatorStudy):
         return _beam(robot, {"pose": pose, "load": load}, settings)
     if is_many(pose):
@@ -115,12 +116,13 @@ def stiffness(
     modes: int | None = None,
     axial_modes: int | None = None,
     basis: str | None = None,
+    friction: str | None = None,
 ) -> Dataset:
     """Stiffness at the tool about the static equilibrium, commands of the drives held, Eqs. (T7.6)-(T7.8).
 
     Parameters
     ----------
-    robot, pose, load, fidelity, modes, axial_modes, basis
+    robot, pose, load, fidelity, modes, axial_modes, basis, friction
         As for `modes`.
 
     Returns
@@ -136,7 +138,7 @@ def stiffness(
     ComputationError
         No equilibrium at this pose.
     """
-    settings = {"fidelity": fidelity, "modes": modes, "axial_modes": axial_modes, "basis": basis}
+    settings = {"fidelity": fidelity, "modes": modes, "axial_modes": axial_modes, "basis": basis, "friction": friction}
     study, path = _problem(robot, pose, load, settings)
     found = robot_stiffness(study.robot, study.simulation, path, study.load)
     values = {"stiffness": found.total, "stiffness_share": found.legs, "stiffness_turning": found.load}

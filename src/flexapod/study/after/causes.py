@@ -15,6 +15,7 @@ from flexapod.rigid.closures import Task, close
 from flexapod.rigid.limbs import COORDINATES, DRIVEN, FREE, HELD, Limbs
 from flexapod.rigid.screws import screws
 from flexapod.solve.frames import on_plates
+from flexapod.solve.lost_motion import before_friction, places_with_friction
 from flexapod.solve.many import RestStates
 from flexapod.solve.released import is_hexapod, rigid_errors
 from flexapod.solve.springs import Place
@@ -52,12 +53,9 @@ class Errors:
 
 def cause_names(robot: Robot) -> tuple[str, ...]:
     """What may be to blame in a robot: its pistons and drives, every part that gives way, what is not as drawn."""
-    return (
-        *CAUSES,
-        *part_names(robot),
-        *frame_names(robot),
-        *dict.fromkeys(part.cause for part in rigid.built_parts(robot)),
-    )
+    rubs = ("friction",) * ("drive" in places_with_friction(robot))
+    built = dict.fromkeys(part.cause for part in rigid.built_parts(robot))
+    return (*CAUSES, *part_names(robot), *rubs, *frame_names(robot), *built)
 
 
 def errors_of(robot: Robot, system: System, path: RigidPath, record: Record | RestStates) -> Errors:
@@ -91,9 +89,24 @@ def errors_of(robot: Robot, system: System, path: RigidPath, record: Record | Re
         for name, give in elongations(robot, system, record.q, places).items():
             causes.setdefault(name, np.zeros_like(q))[..., L] += give
             whole[..., L] -= give
+    if "drive" in places_with_friction(robot):
+        _of_friction(robot, system, record, causes)
     for name, error in _across(found, system, record, q).items():
         causes[name], bending[:] = causes[name] + error, bending - error
     return Errors(by_cause={name: np.where(counts, part, 0.0) for name, part in (causes | more).items()})
+
+
+def _of_friction(robot: Robot, system: System, record: Record | RestStates, causes: dict[str, Array]) -> None:
+    """Take what the friction of drives makes the parts before it give from their causes to its own, Eq. (T19.17)."""
+    causes["friction"] = np.zeros_like(causes["drive"])
+    if isinstance(record, RestStates):  # bristles are straight
+        return
+    length = record.q[..., system.kernel.shapes.l_index]
+    for i, leg in enumerate(robot.legs):
+        for name, softness in before_friction(leg, length[:, i]).items():
+            lag = record.friction[:, i, -1] * softness
+            causes[name][:, i, L] += lag
+            causes["friction"][:, i, L] -= lag
 
 
 def _built(robot: Robot, t: Array, command: Array) -> dict[str, tuple[tuple[rigid.BuiltPart, ...], Array]]:

@@ -13,6 +13,8 @@ from flexapod.rigid.built import built_limbs
 from flexapod.rigid.limbs import COORDINATES, HELD, Limbs, limbs
 from flexapod.rigid.robot import robot_limbs
 from flexapod.rigid.rotations import exponential, matrix
+from flexapod.solve.friction import sliding
+from flexapod.solve.lost_motion import PLACES, places_with_friction
 from flexapod.solve.many import RestStates
 from flexapod.solve.released import RobotForces, released, rigid_system
 from flexapod.solve.system import System
@@ -53,6 +55,8 @@ def leg_results(robot: Robot, system: System, path: RigidPath, record: Record) -
         results["held_force"] = _held_forces(found, system, forces, held)
     if _bears_moments(found):
         results["joint_moment"] = _joint_moments(found, system, record, forces)
+    if shapes.bristles:
+        results["friction"] = record.friction * _by_angle(robot, system)
     if bent.shape[-1]:
         results["lateral_amplitude"] = bent
     if shapes.axial.count:
@@ -119,6 +123,23 @@ def _motor_forces(robot: Robot, system: System, forces: Array) -> Array:
     return np.where([leg.gives for leg in robot.legs], rotor + np.where(held, found, 0.0), found)
 
 
+def slides(system: System) -> list[str]:
+    """What slides in a leg, in words: joints about their angles or, balls, axes; the drive."""
+    shapes, found = system.kernel.shapes, []
+    for name, count in shapes.sliding:
+        ends = {"base_friction": ("alpha", "beta", "spin"), "platform_friction": ("gamma1", "gamma2", "gamma3")}
+        found += [f"{PLACES[name]} {angle}" for angle in ends[name][:count]] if name in ends else [PLACES[name]]
+    return found
+
+
+def _by_angle(robot: Robot, system: System) -> Array:
+    """Factors (legs, bristles) by which friction is that of the study file: of screws by their angle."""
+    found = np.ones((robot.count, system.kernel.shapes.bristles))
+    if system.kernel.shapes.drive_friction:
+        found[:, -1] = [1.0 if leg.screw is None else leg.screw.per_turn for leg in robot.legs]
+    return found
+
+
 def drive_forces(robot: Robot, system: System, record: Record) -> Array:
     """Force of every drive on carriage or piston, (T, legs) [N, of cranks N m]; 0 of passive legs."""
     return by_name.of_drives(limbs(robot), system.kernel.shapes, _port_forces(system, record))
@@ -153,6 +174,7 @@ def absent(robot: Robot) -> set[str]:
     none |= set() if by_name.held_names(found) else {"held_force"}
     none |= set() if np.isfinite(largest_turns(robot)).any() else {"joint_margin"}
     none |= set() if pairs_of_legs(robot) else {"leg_clearance", "nearest_legs"}
+    none |= set() if places_with_friction(robot) else {"friction"}
     return none if _bears_moments(found) else {*none, "joint_moment"}
 
 
@@ -192,7 +214,8 @@ def _joint_moments(found: Limbs, system: System, record: Record | RestStates, fo
     rates = {}
     if isinstance(record, Record):
         rates = dict(zip(damped_angles(system), np.moveaxis(record.rate, -1, 0), strict=True))
-    base = _base_moments(found, system, record.q, rates, forces)
+    rubs = record.friction if isinstance(record, Record) else None
+    base = _base_moments(found, system, record.q, rates, forces, rubs)
     if system.rows < 6:
         return np.stack([base, np.zeros_like(base)], axis=2)
     turn = matrix(record.pose[:, 3:])[:, None] @ found.platform_frames
@@ -208,10 +231,13 @@ def damped_angles(system: System) -> list[int]:
     return [shapes.index(name) for name in _BASE_ANGLES if shapes.has(name)]
 
 
-def _base_moments(found: Limbs, system: System, q: Array, rates: dict[int, Array], forces: Array) -> Array:
+def _base_moments(
+    found: Limbs, system: System, q: Array, rates: dict[int, Array], forces: Array, rubs: Array | None
+) -> Array:
     shapes = system.kernel.shapes
     turn, axes = _turned_by_cranks(found, system, q), []
     about = np.zeros((*q.shape[:2], 3))
+    on_angles = None if rubs is None or not shapes.base_friction else _on_coordinates(system, q, rubs)
     for k, (name, unit) in enumerate(zip(_BASE_ANGLES, np.eye(3), strict=True)):
         axes.append((turn @ unit[:, None])[..., 0])
         if not shapes.has(name):
@@ -219,8 +245,19 @@ def _base_moments(found: Limbs, system: System, q: Array, rates: dict[int, Array
         angle = q[..., shapes.index(name)]
         about[..., k] = np.where(system.held[:, shapes.index(name)], forces[..., shapes.index(name)], 0.0)
         about[..., k] -= _springs(system, k, angle, rates.get(shapes.index(name), 0.0))
+        if on_angles is not None:
+            about[..., k] -= on_angles[..., shapes.index(name)]
         turn = turn @ exponential(angle[..., None] * unit)
     return np.asarray(np.linalg.solve(np.stack(axes, axis=-2), about[..., None])[..., 0], dtype=np.float64)
+
+
+def _on_coordinates(system: System, q: Array, rubs: Array) -> Array:
+    """Friction (T, legs, bristles) on the coordinates of the legs, (T, legs, n)."""
+    parts = [
+        (sliding(system, part).swapaxes(-1, -2) @ force[..., None])[..., 0]
+        for part, force in zip(*(np.array_split(x, len(x) // 500 + 1) for x in (q, rubs)), strict=True)
+    ]
+    return np.concatenate(parts)
 
 
 def _turned_by_cranks(found: Limbs, system: System, q: Array) -> Array:

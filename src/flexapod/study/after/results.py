@@ -12,7 +12,7 @@ from flexapod.rigid.trajectory import coordinates, turning_axes
 from flexapod.solve.frames import base_on_mount, floor, shared_by_legs
 from flexapod.solve.system import System
 from flexapod.study.after.causes import deviation_by_cause, errors_of
-from flexapod.study.after.leg_results import leg_labels, leg_results
+from flexapod.study.after.leg_results import leg_labels, leg_results, slides
 from flexapod.study.after.legs import bending_basis, has_strokes, per_turn, stroke_forces
 from flexapod.study.path import RigidPath
 from flexapod.study.record import Record
@@ -38,6 +38,8 @@ def robot_coords(robot: Robot, system: System, record: Record) -> dict[str, Arra
     labels: dict[str, ArrayLike] = {"time": record.time, **leg_labels(robot)}
     if count := bending_basis(shapes).count:
         labels["shape"] = np.arange(1, count + 1)
+    if shapes.bristles:
+        labels["slide"] = slides(system)
     if shapes.axial.count:
         labels["axial_shape"] = np.arange(shapes.axial.count)
     return labels

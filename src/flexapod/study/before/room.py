@@ -9,6 +9,7 @@ from pathlib import Path
 
 from flexapod.errors import InputError
 from flexapod.model import ActuatorStudy, Study
+from flexapod.solve.lost_motion import places_with_friction
 
 
 def check_outputs(study: Study | ActuatorStudy) -> list[str]:
@@ -71,7 +72,8 @@ def result_bytes(study: Study | ActuatorStudy) -> float:
     shapes = 2 * s.lateral_shapes + s.axial_shapes(study.robot.legs[0].axial_modes)
     joints = (joint for leg in study.robot.legs for joint in (leg.base_joint, leg.platform_joint))
     margins = 2 * any(joint.max_angle is not None for joint in joints)
-    return 8 * stored_instants(study) * (64 + study.robot.count * (30 + shapes + margins))
+    rubs = 3 * len(places_with_friction(study.robot))
+    return 8 * stored_instants(study) * (64 + study.robot.count * (30 + shapes + margins + rubs))
 
 
 def check_memory(study: Study | ActuatorStudy, runs: int = 1) -> list[str]:

@@ -2,7 +2,7 @@
 
 from __future__ import annotations
 
-from collections.abc import Iterator
+from collections.abc import Iterator, Mapping
 from contextlib import suppress
 from typing import NamedTuple
 
@@ -13,6 +13,7 @@ from flexapod.errors import ComputationError, InputError
 from flexapod.model import Robot, Study
 from flexapod.rigid.rotations import difference, matrix, quaternion
 from flexapod.solve.equilibrium import FOUND
+from flexapod.solve.lost_motion import places_with_friction, reversal
 from flexapod.solve.many import RestStates
 from flexapod.solve.modes import LockedPoses, locked_poses, the_equilibrium
 from flexapod.solve.random_vibration import SOURCES
@@ -106,7 +107,7 @@ def rows(study: Study, pose: rigid.Poses) -> tuple[list[Row], Array, list[str]]:
         shaken, remarks = vibration_rows(study, locked), []
     except InputError as error:  # without damping no size, of drives that hold no noise: the rest is as before
         shaken, remarks = [], [f"vibration by disturbances has no row: {error}"]
-    return without_rounding([*found, *shaken]), whole, remarks
+    return without_rounding([*found, *_friction_rows(reversal(locked), 0), *shaken]), whole, remarks
 
 
 def names_of_rows(study: Study) -> tuple[str, ...]:
@@ -114,7 +115,8 @@ def names_of_rows(study: Study) -> tuple[str, ...]:
     built = (row.part for row in built_rows(study, rigid.home_pose(study.robot)))
     given = study.disturbance
     shaken = [words for name, words in SOURCES.items() if getattr(given, name, None) is not None]
-    return tuple(dict.fromkeys([*elastic_causes(study.robot), *built, *shaken]))
+    rubs = (f"{place} friction" for place in places_with_friction(study.robot))
+    return tuple(dict.fromkeys([*elastic_causes(study.robot), *built, *rubs, *shaken]))
 
 
 def rows_of_poses(study: Study, locked: LockedPoses) -> Iterator[tuple[list[Row], Array]]:
@@ -122,13 +124,20 @@ def rows_of_poses(study: Study, locked: LockedPoses) -> Iterator[tuple[list[Row]
     poses = poses_of(locked.path, locked.at)
     path = RigidPath(study, np.zeros(len(poses)), poses)
     found = moved(study.robot, locked.system, path, locked.equilibria.states[locked.at])
+    rubs = reversal(locked)
     for k, (whole, by_leg) in enumerate(zip(*found, strict=True)):
         pose = poses.part(slice(k, k + 1))
         table, systematic = _with_built(study, pose, whole, by_leg)
         if study.disturbance is not None:
             with suppress(InputError):  # vibration without a size
                 table += vibration_rows(study, locked_poses(study.robot, study.simulation, pose, study.load))
-        yield table, systematic
+        yield [*table, *_friction_rows(rubs, k)], systematic
+
+
+def _friction_rows(found: Mapping[str, Array], k: int) -> list[Row]:
+    """What friction leaves open at one of some poses."""
+    how = "friction at its limits on the flexible robot at rest, whichever way things slide"
+    return [Row(f"{place} friction", "hysteretic", "", by_leg[k], how) for place, by_leg in found.items()]
 
 
 def _with_built(study: Study, pose: rigid.Poses, whole: Array, by_leg: Array) -> tuple[list[Row], Array]:

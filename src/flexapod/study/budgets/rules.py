@@ -120,7 +120,7 @@ class Budget:
 
     @property
     def bidirectional(self) -> Array:
-        """The same with the reversal value, twice the bound of play, (6,), Eq. (T17.11)."""
+        """The same with the reversal value, twice the bound of play and friction, (6,), Eq. (T17.11)."""
         return self.unidirectional + 2 * self.rule("hysteretic")
 
     @property

@@ -20,7 +20,7 @@ SMALLEST = 0.005  # share below which parts go into one bar
 MOST_LEFT = 0.05  # of the static deviation, beyond which rows of first order are a hint
 KIND_WORDS = {
     "systematic": "systematic",
-    "hysteretic": "play, bound",
+    "hysteretic": "play and friction, bound",
     "random": "random, 1 sigma",
     "dynamic_peak": "dynamic, at the peak",
     "dynamic_rms": "dynamic, share of rms",
@@ -44,8 +44,9 @@ def part_words(part: str) -> str:
         return f"tolerance of {_PARTS.get(name, name)}"
     if kind in ("vibration", "noise"):
         return part
-    if kind == "play":
-        return "play of the drives" if name == "drive" else f"play of the joints at the {name.removesuffix('_joint')}"
+    if kind in ("play", "friction"):
+        where = "drives" if name == "drive" else f"joints at the {name.removesuffix('_joint')}"
+        return f"{kind} of the {where}"
     if part == "encoder":
         return "resolution of the encoders"
     if part == "bent_legs":
@@ -92,7 +93,8 @@ def _accuracy(found: Budget) -> list[str]:
 def _repeatability(found: Budget) -> list[str]:
     one, both = found.unidirectional, found.bidirectional
     if not both[PLACE].any():
-        return ["Repeatability: the study names neither play nor anything that differs from one approach to the next."]
+        nothing = "neither play nor friction nor anything that differs from one approach to the next"
+        return [f"Repeatability: the study names {nothing}."]
     increment = (
         f"Smallest increment that surely shows: {_axes(both)} after a reversal"
         + (f", {_axes(one)} going on" if one[PLACE].any() else "; going on nothing named limits it")
