@@ -12,9 +12,12 @@ from dataclasses import dataclass
 import numpy as np
 
 from flexapod.model import Leg
+from flexapod.proof.engines.exudyn_friction import rub_coordinate
 from flexapod.proof.engines.exudyn_system import System, items
 from flexapod.solve.springs import Place, before_piston, in_series, springs_along
 from flexapod.typing import Array
+
+SCREW_END = 1e-2  # kg, of the screw at its nut, as travel: next to nothing beside a rotor of hundreds
 
 
 @dataclass(frozen=True, kw_only=True)
@@ -59,22 +62,23 @@ def hold_slides(system: System, node: int, first: int, end: SoftEnd) -> None:
         )
 
 
-def hold_platform(system: System, tip: int, joint: int, end: SoftEnd) -> None:
-    """Join the markers of a leg's tip, in axes of the cylinder, and of the platform joint."""
+def hold_platform(system: System, tip: int, joint: int, end: SoftEnd) -> int | None:
+    """Join the markers of a leg's tip, in axes of the cylinder, and of the platform joint; its springs, if any."""
     mbs, held = system.mbs, [int(k not in end.slides) for k in range(3)]
     if not end.slides:
         mbs.AddObject(items.ObjectJointSpherical(markerNumbers=[joint, tip]))
     elif any(held):
         mbs.AddObject(items.ObjectJointGeneric(markerNumbers=[tip, joint], constrainedAxes=[*held, 0, 0, 0]))
-    if end.slides:
-        turns = np.zeros(3)
-        mbs.AddObject(
-            items.ObjectConnectorRigidBodySpringDamper(
-                markerNumbers=[tip, joint],
-                stiffness=np.diag([*end.stiffness, *turns]),
-                damping=np.diag([*end.damping, *turns]),
-            )
+    if not end.slides:
+        return None
+    turns = np.zeros(3)
+    return mbs.AddObject(
+        items.ObjectConnectorRigidBodySpringDamper(
+            markerNumbers=[tip, joint],
+            stiffness=np.diag([*end.stiffness, *turns]),
+            damping=np.diag([*end.damping, *turns]),
         )
+    )
 
 
 def drive(system: System, leg: Leg, slide: int, length: Array) -> int:
@@ -83,19 +87,35 @@ def drive(system: System, leg: Leg, slide: int, length: Array) -> int:
     The connector whose force is that on the piston.
     """
     travel, screw, springs = length - length[0], leg.screw, before_piston(leg)
+    if leg.drive.friction is not None and screw is None:
+        rub_coordinate(system, slide, leg.drive.friction.numbers)
     if screw is None and not springs:
         return system.hold(slide, travel)
     if screw is None:
         at = length if leg.cylinder_of_oil is not None else length[:1]  # what else is in series is the same everywhere
         stiffness, damping = np.array([in_series(springs, x, 0.0) for x in at]).T
         return system.spring((system.ground, slide), stiffness, damping, travel)
-    node = system.mbs.AddNode(items.Node1D(referenceCoordinates=[0.0]))
-    system.mbs.AddObject(items.ObjectMass1D(physicsMass=screw.inertia / screw.per_turn**2, nodeNumber=node))
-    rotor = system.coordinate(node, 0)
+    rotor = _mass(system, screw.inertia / screw.per_turn**2)
     if screw.holds:
         system.hold(rotor, travel)
     else:
         system.spring((system.ground, rotor), *screw.loop_spring, travel)
-    along = [x for x in springs_along(leg) if x.at == "nut"]
+    along, end = [x for x in springs_along(leg) if x.at == "nut"], rotor
+    if screw.friction is not None:  # it acts where the shaft is wound up, at the nut
+        twist = [x for x in along if x.name == "twist"]
+        along, end = [x for x in along if x.name != "twist"], _mass(system, SCREW_END)
+        system.spring((rotor, end), *np.array([in_series(twist, x, 0.0) for x in length]).T)
+        torque, _, presliding, excess, slower, viscous, time = screw.friction.numbers
+        turn = screw.per_turn
+        rub_coordinate(
+            system, end, (torque / turn, 0.0, presliding * turn, excess, slower / turn, viscous / turn**2, time)
+        )
     stiffness, damping = np.array([in_series(along, x, 0.0) for x in length]).T
-    return system.spring((rotor, slide), stiffness, damping)
+    return system.spring((end, slide), stiffness, damping)
+
+
+def _mass(system: System, mass: float) -> int:
+    """The coordinate of a mass that moves along a line."""
+    node = system.mbs.AddNode(items.Node1D(referenceCoordinates=[0.0]))
+    system.mbs.AddObject(items.ObjectMass1D(physicsMass=mass, nodeNumber=node))
+    return system.coordinate(node, 0)

@@ -111,6 +111,8 @@ def _check_parts(number: int, leg: Leg) -> None:
         joint: Joint = getattr(leg, end)
         if joint.flexes or joint.bending is not None or joint.torsion is not None:
             raise refused(end, "stiffness = { axial, radial } alone")
+        if joint.friction is not None and joint.friction.arm and leg.platform_joint.stiffness is None:
+            raise refused(f"{end}.friction", "a moment, or a platform joint with stiffness, whose force presses")
         if joint.lossy:
             raise refused(f"{end}.loss", "damping")
     for spring in springs_along(leg):

@@ -14,6 +14,7 @@ import numpy as np
 
 from flexapod import rigid
 from flexapod.model import Leg, Payload, Robot
+from flexapod.proof.engines.exudyn_friction import pressing, rub
 from flexapod.proof.engines.exudyn_parts import SoftEnd, drive, hold_platform, hold_slides, soft_end
 from flexapod.proof.engines.exudyn_robot import RobotProblem, RobotResult
 from flexapod.proof.engines.exudyn_system import CARRIAGE_MASS, System, exu, items
@@ -79,7 +80,7 @@ def _leg(system: System, problem: RobotProblem, i: int, length: Array, body: int
     leg, flexible, turns = robot.legs[i], problem.elements > 0, _turns(robot.legs[i])
     foot, head = soft_end(leg, "base"), soft_end(leg, "platform")
     inner, slide = length[0] - leg.piston.length, turns + len(foot.slides)
-    tips = [0.0, 0.0, length[0]] if flexible and head.slides else []
+    tips = [0.0, 0.0, length[0]] if flexible and (head.slides or leg.platform_joint.friction) else []
     rests = [*[0.0] * slide, inner if flexible else length[0], *tips]
     node = mbs.AddNode(
         items.NodeGenericODE2(
@@ -104,7 +105,9 @@ def _leg(system: System, problem: RobotProblem, i: int, length: Array, body: int
     hold_slides(system, node, turns, foot)
     place = robot.platform_joints[i] - robot.payload.com
     joint = mbs.AddMarker(items.MarkerBodyRigid(bodyNumber=body, localPosition=place))
-    hold_platform(system, ends[-1], joint, head)
+    springs = hold_platform(system, ends[-1], joint, head)
+    angles = [system.coordinate(node, k) for k in range(turns)]
+    rub(system, leg, angles, [ends[-1], joint], pressing(system, springs))
     pushed = drive(system, leg, system.coordinate(node, slide), length)
     tip = items.SensorMarker(
         markerNumber=ends[-1], outputVariableType=exu.OutputVariableType.Position, storeInternal=True, writeToFile=False

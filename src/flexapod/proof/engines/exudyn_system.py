@@ -4,7 +4,7 @@ from __future__ import annotations
 
 import importlib
 import time
-from collections.abc import Sequence
+from collections.abc import Callable, Sequence
 from typing import Any
 
 import numpy as np
@@ -24,10 +24,17 @@ class System:
 
     def __init__(self, integration: Integration) -> None:
         self.integration = integration
+        #: Called before each step, at the state with which it begins.
+        self.before_step: list[Callable[[], None]] = []
         self.container = exu.SystemContainer()  # owns the system
         self.mbs = self.container.AddSystem()
         ground = self.mbs.AddNode(items.NodePointGround())
         self.ground = self.mbs.AddMarker(items.MarkerNodeCoordinate(nodeNumber=ground, coordinate=0))
+
+    @property
+    def step(self) -> float:
+        """Of the integration [s]."""
+        return self.integration.duration / self.integration.steps
 
     def coordinate(self, node: int, coordinate: int) -> int:
         """Marker of a coordinate of a node."""
@@ -70,6 +77,11 @@ class System:
         return self.mbs.AddObject(
             items.ObjectConnectorCoordinateSpringDamper(markerNumbers=list(markers), springForceUserFunction=force)
         )
+
+    def _prepared(self, _mbs: object, _t: float) -> bool:
+        for action in self.before_step:
+            action()
+        return True
 
     def _instant(self, t: float) -> int:
         # Newton's method asks at the instants only; t comes with round-off and, from the static solver, 1e-12 late.
@@ -121,6 +133,8 @@ class System:
         settings = self._settings()
         if equilibrium:
             self.mbs.SolveStatic(settings, updateInitialValues=True)
+        if self.before_step:
+            self.mbs.SetPreStepUserFunction(self._prepared)
         begin = time.perf_counter()
         self.mbs.SolveDynamic(settings)
         return time.perf_counter() - begin

@@ -17,6 +17,7 @@ from flexapod.solve.friction import sliding
 from flexapod.solve.lost_motion import PLACES, places_with_friction
 from flexapod.solve.many import RestStates
 from flexapod.solve.released import RobotForces, released, rigid_system
+from flexapod.solve.springs import twist_share
 from flexapod.solve.system import System
 from flexapod.study.after import legs as by_name
 from flexapod.study.after.causes import cause_names
@@ -49,7 +50,7 @@ def leg_results(robot: Robot, system: System, path: RigidPath, record: Record) -
     length = flexible_lengths(robot, system, record)
     results |= body_results(robot, record.pose, flexible_axes(robot, system, record), length)
     if by_name.has_strokes(robot):
-        force = by_name.stroke_forces(found, by_name.of_drives(found, shapes, forces))
+        force = by_name.stroke_forces(found, drive_forces(robot, system, record))
         results |= zip(STROKES, (path.legs.length, length, q[..., shapes.l_index], force), strict=True)
     if held := by_name.held_names(found):
         results["held_force"] = _held_forces(found, system, forces, held)
@@ -142,7 +143,11 @@ def _by_angle(robot: Robot, system: System) -> Array:
 
 def drive_forces(robot: Robot, system: System, record: Record) -> Array:
     """Force of every drive on carriage or piston, (T, legs) [N, of cranks N m]; 0 of passive legs."""
-    return by_name.of_drives(limbs(robot), system.kernel.shapes, _port_forces(system, record))
+    found = by_name.of_drives(limbs(robot), system.kernel.shapes, _port_forces(system, record))
+    rubbing = [i for i, leg in enumerate(robot.legs) if leg.screw is not None and leg.screw.friction is not None]
+    for i in rubbing:  # what a screw's friction takes of the springs' force before it reaches the piston, Eq. (T19.12)
+        found[:, i] -= twist_share(robot.legs[i], float(robot.home_lengths[i])) * record.friction[:, i, -1]
+    return found
 
 
 def _commands(found: Limbs, path: RigidPath) -> Array:
