@@ -7,9 +7,10 @@ from tests.runs import paper_robot
 
 import flexapod as fx
 from flexapod import rigid
-from flexapod.errors import ComputationError
+from flexapod.errors import ComputationError, InputError
 from flexapod.model import MATERIALS, Expansion, Geometry, Heat
 from flexapod.rigid.built import built_parts
+from flexapod.solve.robot_march import prepare
 
 RNG = np.random.default_rng(7)
 POSE = np.array([[0.02, -0.03, 0.04, 0.1, -0.05, 0.15]])
@@ -131,6 +132,50 @@ def test_legs_that_warm_up_while_they_move_take_the_rates_along():
     assert np.ptp(balances[0].values) < 1.5 * np.ptp(balances[1].values)
     heated = np.abs(data.deviation_by_cause.sel(cause="heat_piston").values)
     assert heated[0].max() < 1e-15 and heated[-1].max() > 1e-5
+
+
+def test_plates_that_warm_up_move_the_platform_as_kinematics_says():
+    # Legs take the growth of the plates as a length: what that leaves is its square over the length of a leg, through
+    # J^-1. Both plates have started elsewhere than at the reference, so that joints of the kernel are shifted, too.
+    heat = Heat(time=[0.0, 0.04, 0.1], columns=("base", "platform"), table=[[23, 20], [26, 22], [25, 30]])
+    study = paper_robot(fidelity="rigid")
+    robot = study.robot.replace(heat=heat)
+    study = study.replace(robot=robot, motion=study.motion.replace(duration=0.1, hold=0.0))
+    data = fx.simulate(study, duration=0.12, step=1e-3)
+    path = rigid.poses(robot, study.motion, data.time.values)
+    com = rigid.built_poses(robot, path, data.time.values).place(robot.com)
+    grown = 12e-6 * 10 * 0.5
+    assert np.abs(com - path.place(robot.com)).max() > 0.3 * grown
+    np.testing.assert_allclose(data.com_position, com, atol=20 * grown**2 / robot.home_lengths.min())
+    drawn = fx.simulate(study.replace(robot=robot.replace(heat=None)), duration=0.12, step=1e-3)
+    balances = [x.energy_kinetic + x.energy_potential - x.work_drive for x in (data, drawn)]
+    assert np.ptp(balances[0].values) < 1.5 * np.ptp(balances[1].values)  # rates fit values
+    causes = data.deviation_by_cause.sum("leg")
+    assert np.abs(causes.sel(cause=["heat_base", "heat_platform"])[-1]).max() > 1e-5
+    left = 20 * grown**2 / robot.home_lengths.min()
+    np.testing.assert_allclose(causes.sel(cause=["axial-strain", "bending", "drive"]), 0.0, atol=left)
+    assert np.abs(data.deviation_residual).max() < left
+
+
+def test_growth_of_plates_has_the_rates_of_its_values():
+    study = paper_robot()
+    heat = Heat(time=[0.0, 0.04, 0.1], columns=("base", "platform"), table=[[23, 20], [26, 22], [25, 30]])
+    robot, t, h = study.robot.replace(heat=heat), np.array([0.02, 0.05, 0.09]), 1e-5
+    for part in built_parts(robot):
+        at = [rigid.plate_grows(part, x, rigid.poses(robot, study.motion, x), robot) for x in (t - h, t, t + h)]
+        # Central differences leave h^2 of the third derivative, 1e-7 of values, and rounding of 1e-20 m over h^2.
+        np.testing.assert_allclose((at[2].position - at[0].position) / (2 * h), at[1].rate, rtol=1e-5, atol=1e-12)
+        np.testing.assert_allclose((at[2].rate - at[0].rate) / (2 * h), at[1].acceleration, rtol=1e-4, atol=1e-9)
+
+
+def test_plates_that_warm_up_under_other_legs_are_refused_in_motions(tmp_path):
+    heat = Heat(time=[0.0, 600.0], columns=("base",), table=[[20], [24]])
+    for robot in (mechanisms.three_rps(), mechanisms.sliders("PUS")):
+        study = fx.model.Study(robot=robot.replace(heat=heat), motion=paper_robot().motion)
+        with pytest.raises(InputError, match="legs UPS alone") as caught:
+            prepare(study)
+        assert caught.value.key == "heat.file"
+    assert np.abs(fx.accuracy(mechanisms.sliders("PUS").replace(heat=heat)).pose_drift[1]).max() > 1e-6
 
 
 def with_errors():

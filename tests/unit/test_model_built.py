@@ -138,17 +138,6 @@ def test_what_a_robot_does_not_have_has_neither_errors_nor_heat():
             robot.replace(**built)
 
 
-def test_plates_that_warm_up_do_so_at_poses_not_in_motions(tmp_path):
-    import flexapod as fx
-
-    (tmp_path / "heat.csv").write_text("time [s], base [degC]\n0, 20\n600, 24\n")
-    found = study('\n[heat]\nfile = "heat.csv"\n', tmp_path)
-    with pytest.raises(InputError, match=r"heat\.base"):
-        fx.run(found)
-    drift = fx.accuracy(found).pose_drift
-    assert drift.sizes["drift_time"] == 2 and abs(drift[1]).max() > 1e-6
-
-
 def test_a_check_says_how_far_the_machine_as_built_is_off():
     from flexapod.study.accuracy.words import accuracy_words
 

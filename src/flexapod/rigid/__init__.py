@@ -10,7 +10,9 @@ from flexapod.rigid.built import (
     built_parts,
     built_poses,
     expansion,
+    is_plate,
     nearby,
+    plate_grows,
     shifts,
 )
 from flexapod.rigid.closures import TAKEN
@@ -100,6 +102,7 @@ __all__ = [
     "independent_axes",
     "inverse_dynamics",
     "inverse_kinematics",
+    "is_plate",
     "joint_angles",
     "leg_axes",
     "leg_bodies",
@@ -120,6 +123,7 @@ __all__ = [
     "path_knots",
     "payload_body",
     "placed",
+    "plate_grows",
     "poses",
     "poses_from_coordinates",
     "poses_from_home",

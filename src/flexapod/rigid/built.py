@@ -35,7 +35,9 @@ __all__ = [
     "built_parts",
     "built_poses",
     "expansion",
+    "is_plate",
     "nearby",
+    "plate_grows",
     "shifts",
 ]
 
@@ -188,6 +190,51 @@ def added_by_all(robot: Robot, t: Array, q: Law) -> Law:
     """What all parts together add to coordinates q (T, n, 8)."""
     every = [added(part, t, q) for part in built_parts(robot)]
     return Law(*(np.sum(column, axis=0) for column in zip(*every, strict=True)))
+
+
+def plate_grows(part: BuiltPart, t: Array, path: Poses, robot: Robot) -> Law:
+    """Lengths (T, n) that legs UPS need more where a plate has grown since t = 0, with rates, Eq. (T16.25).
+
+    `path`: poses at the instants (T,).
+    """
+    size = part.size(t)
+    first = part.size(np.zeros(1)).position
+    more = Law(size.position - first, size.rate, size.acceleration)
+    R, w, change = path.rotation, path.omega[:, None], path.alpha[:, None]
+    arm, tip = robot.platform_joints @ R.swapaxes(1, 2), part.platform @ R.swapaxes(1, 2)
+
+    def turning(x: Array) -> tuple[Array, Array, Array]:
+        rate = np.cross(w, x)
+        return x, rate, np.cross(change, x) + np.cross(w, rate)
+
+    s, v, a = (
+        x + y[:, None] for x, y in zip(turning(arm), (path.position, path.velocity, path.acceleration), strict=True)
+    )
+    s = s - robot.base_joints
+    length = np.linalg.norm(s, axis=-1, keepdims=True)
+    n = s / length
+    rate = _dots(n, v)
+    n1 = (v - n * rate) / length
+    n2 = (a - 2 * n1 * rate - n * (_dots(n, a) + _dots(n1, v))) / length
+    z, z1, z2 = turning(tip)
+    z, z1, z2 = part.base - z, -z1, -z2
+    along = _dots(n, z)[..., 0]
+    along1 = (_dots(n1, z) + _dots(n, z1))[..., 0]
+    along2 = (_dots(n2, z) + 2 * _dots(n1, z1) + _dots(n, z2))[..., 0]
+    return Law(
+        more.position * along,
+        more.rate * along + more.position * along1,
+        more.acceleration * along + 2 * more.rate * along1 + more.position * along2,
+    )
+
+
+def _dots(x: Array, y: Array) -> Array:
+    return (x * y).sum(axis=-1, keepdims=True)
+
+
+def is_plate(part: BuiltPart) -> bool:
+    """Whether it moves joints of base or platform over time."""
+    return part.time is not None and bool(part.base.any() or part.platform.any())
 
 
 def built_limbs(robot: Robot, limbs: Limbs, parts: tuple[BuiltPart, ...] | None = None) -> Limbs:

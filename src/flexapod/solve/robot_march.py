@@ -8,7 +8,7 @@ import numpy as np
 from flexapod import rigid
 from flexapod.errors import ComputationError, InputError
 from flexapod.integration import GeneralizedAlpha
-from flexapod.model import Robot, Study
+from flexapod.model import ForceDrive, Robot, Study
 from flexapod.rigid.kinematics import BETA_LIMIT
 from flexapod.rigid.rotations import matrix
 from flexapod.solve.equilibrium import equilibrium
@@ -114,12 +114,14 @@ def refuse_massless(study: Study) -> None:
 
 
 def refuse_growing_plates(study: Study) -> None:
-    """Raise InputError if base or platform change their temperature during a simulation."""
-    heat = study.robot.heat
+    """Raise InputError if plates grow during a simulation under legs that cannot take that as a length."""
+    heat, legs = study.robot.heat, study.robot.legs
+    follows = rigid.rigid_limbs(study.robot).plain and not any(isinstance(leg.drive, ForceDrive) for leg in legs)
     for plate in ("base", "platform"):
-        if heat is not None and plate in heat.columns:
+        if heat is not None and plate in heat.columns and not follows:
             raise InputError(
-                f"has a column {plate!r}: joints that move by heat belong to poses, not to motions",
+                f"has a column {plate!r}: joints that move by heat during a motion are known of legs UPS alone, whose "
+                "drives have a position",
                 file=study.path,
                 key="heat.file",
                 value=heat.file,

@@ -53,7 +53,7 @@ def robot_law(
             for part, values in zip(parts, legs.coordinate(names[system.ports[k]]), strict=True):
                 part[:, which, k] = values[:, which]
         if built:
-            _as_built(robot, t, legs, parts, places)
+            _as_built(robot, t, legs, poses, parts, places)
         return list(parts)
 
     built = rigid.built_parts(robot)
@@ -78,13 +78,24 @@ def robot_law(
     return law
 
 
-def _as_built(robot: Robot, t: Array, legs: rigid.LegState, parts: Array, ports: dict[int, tuple[int, Mask]]) -> None:
+def _as_built(
+    robot: Robot,
+    t: Array,
+    legs: rigid.LegState,
+    poses: Callable[[Array], rigid.Poses],
+    parts: Array,
+    ports: dict[int, tuple[int, Mask]],
+) -> None:
     """Add to the places, rates and accelerations (3, T, legs, ports) of a rigid path what the robot as built adds.
 
     ``ports``: of each port the coordinate that it follows, and in which legs.
     """
     q = rigid.Law(*np.stack([legs.coordinate(name) for name in COORDINATES], axis=-1))
-    for column, more in enumerate(rigid.added_by_all(robot, t, q)):
+    added = rigid.added_by_all(robot, t, q)
+    for part in filter(rigid.is_plate, rigid.built_parts(robot)):
+        for more, longer in zip(added, rigid.plate_grows(part, t, poses(t), robot), strict=True):
+            more[..., COORDINATES.index("l")] += longer
+    for column, more in enumerate(added):
         for port, (place, legs_there) in ports.items():
             parts[column][:, legs_there, port] += more[:, legs_there, place]
 

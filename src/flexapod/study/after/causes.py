@@ -67,7 +67,7 @@ def errors_of(robot: Robot, system: System, path: RigidPath, record: Record | Re
             q[..., k] = record.q[..., shapes.index(name)]
     command = np.stack([path.legs.coordinate(name)[0] for name in COORDINATES], axis=-1)
     (_, *at), *frames = on_plates(system, robot, record.q, record.pose)
-    before, built = _straight(robot, found, at, q), _built(robot, path.time, command)
+    before, built = _straight(robot, found, at, q), _built(robot, path, command)
     more, done = {}, ()
     for name, *at in frames:  # frame after frame to where the legs have it
         after = _straight(robot, found, at, q)
@@ -109,13 +109,15 @@ def _of_friction(robot: Robot, system: System, record: Record | RestStates, caus
             causes["friction"][:, i, L] -= lag
 
 
-def _built(robot: Robot, t: Array, command: Array) -> dict[str, tuple[tuple[rigid.BuiltPart, ...], Array]]:
+def _built(robot: Robot, path: RigidPath, command: Array) -> dict[str, tuple[tuple[rigid.BuiltPart, ...], Array]]:
     """What differs from the drawing, by cause, and what it adds to the commanded coordinates, (T, legs, 8)."""
-    parts, still = rigid.built_parts(robot), np.zeros_like(command)
+    parts, still, t = rigid.built_parts(robot), np.zeros_like(command), path.time
     found = {}
     for cause in dict.fromkeys(part.cause for part in parts):
         own = tuple(part for part in parts if part.cause == cause)
         found[cause] = own, sum(rigid.added(part, t, rigid.Law(command, still, still)).position for part in own)
+        for part in filter(rigid.is_plate, own):
+            found[cause][1][..., L] += rigid.plate_grows(part, t, path.poses, robot).position
     return found
 
 
