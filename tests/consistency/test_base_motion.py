@@ -82,13 +82,13 @@ def test_the_work_on_the_base_closes_the_balance_to_the_second_order(shaken):
 def test_the_force_on_the_base_is_the_weight_and_what_all_masses_take(shaken):
     # On its mount nothing has moved yet at the start; a rigid robot moves with its base.
     legs = 6 * (28.0 + 12.3 * 0.75)
-    start = shaken[1e-3].base_force.values[0]
+    start = shaken[1e-3].base_motion_force.values[0]
     np.testing.assert_allclose(start, [0, 0, 9.81 * (1150.0 + legs)], rtol=1e-9, atol=1e-6)
     ours = given(machine().replace(base_motion=moved(z=[3.0, 3.0], x=[1.0, 1.0])), step=1e-3, fidelity="rigid")
     data = fx.run(ours.replace(motion=ours.motion.replace(amplitude=0.0)))
     expected = (1000.0 + legs) * np.array([1.0, 0.0, 12.81])
     np.testing.assert_allclose(
-        data.base_force.values[1:], np.tile(expected, (len(data.time) - 1, 1)), rtol=1e-6, atol=1e-2
+        data.base_motion_force.values[1:], np.tile(expected, (len(data.time) - 1, 1)), rtol=1e-6, atol=1e-2
     )
 
 

@@ -11,9 +11,11 @@ from tests.runs import balance, run_robot
 import flexapod as fx
 from flexapod.bases import axial_basis, lateral_basis
 from flexapod.errors import InputError
+from flexapod.exchange.export import abaqus_deck
 from flexapod.mechanics.assembly import payload_functions
 from flexapod.mechanics.layout import Shapes
-from flexapod.model import loads, preset
+from flexapod.model import AxialSpring, loads, preset
+from flexapod.model.joint import Joint
 from flexapod.model.mount import Mount
 from flexapod.model.write import to_toml
 from flexapod.rigid.rotations import quaternion, turned
@@ -239,3 +241,60 @@ def test_a_mount_is_the_same_when_read_again():
     given = preset("paper-robot")
     given = given.replace(robot=given.robot.replace(base_mount=BASE, platform_mount=TOP.replace(loss=0.01)))
     assert loads(to_toml(given)).robot == given.robot
+
+
+def test_parts_list_what_a_mount_gives_along_each_leg():
+    robot = machine().replace(base_mount=BASE, platform_mount=TOP)
+    data = fx.parts(robot)
+    n = robot.home_vectors / robot.home_lengths[:, None]
+    C = np.linalg.inv(BASE.stiffness)
+    for i, joint in enumerate(robot.home_bases):
+        wrench = np.concatenate([n[i], np.cross(joint - BASE.at, n[i])])
+        moved = C @ wrench
+        give = n[i] @ (moved[:3] + np.cross(moved[3:], joint - BASE.at))
+        assert 1 / float(data.part_stiffness.sel(part="base_mount")[i]) == pytest.approx(give, rel=1e-12)
+    assert (data.part_stiffness.sel(part="platform_mount") > 0).all()
+
+
+def test_modes_of_a_heavy_plate_are_those_of_the_base():
+    robot = machine().replace(base_mount=BASE.replace(mass=1e5, inertia=1e4 * np.eye(3)))
+    found = fx.modes(robot, fidelity="lumped")
+    assert list(found.kind.values[:6]).count("base") >= 5
+    # Legs follow base and payload: their stretch over the first modes is what both leave between the joints.
+    assert "payload" in found.kind.values
+
+
+def test_the_static_budget_has_a_row_for_each_mount():
+    robot = machine().replace(base_mount=BASE, platform_mount=TOP)
+    ours = study(robot, fidelity="lumped")
+    data = fx.budget(ours)
+    assert {"base_mount", "platform_mount"} <= set(data.part.values)
+    whole = data.budget_total.sel(kind="systematic").values
+    ideal = fx.budget(ours.replace(robot=robot.replace(base_mount=None)))
+    row = data.budget.sel(part="base_mount", kind="systematic").values
+    rest = ideal.budget_total.sel(kind="systematic").values
+    assert np.abs(whole - row - rest)[:3].max() < 0.02 * np.abs(row[:3]).max()
+    # The same sag by modes, and by the run's start.
+    assert fx.modes(robot, fidelity="lumped").com_sag.values == pytest.approx(
+        fx.run(ours.replace(simulation=ours.simulation.replace(step=1e-3, tolerance=None, duration=2e-3)))
+        .com_deviation.values[0], abs=1e-12)  # fmt: skip
+
+
+def test_a_frame_that_gives_way_joint_by_joint_is_a_spring_of_the_joints():
+    # Compliance c of each base joint in world axes: in the leg 1/k = n^T c n, to first order in what it gives.
+    stiffness = np.diag([3e8, 2e8, 5e8, 0, 0, 0])
+    robot = light(machine())
+    n = robot.home_vectors / robot.home_lengths[:, None]
+    soft = [leg.replace(base_joint=Joint(stiffness=stiffness)) for leg in robot.legs]
+    k = 1 / np.einsum("ix,x,ix->i", n, 1 / np.diag(stiffness)[:3], n)
+    springs = [leg.replace(springs=(AxialSpring(name="frame", stiffness=float(x), at="base"),))
+               for leg, x in zip(robot.legs, k, strict=True)]  # fmt: skip
+    ours, theirs = (fx.stiffness(robot.replace(legs=tuple(x)), fidelity="lumped").stiffness for x in (soft, springs))
+    np.testing.assert_allclose(ours, theirs, atol=1e-9 * float(np.abs(theirs).max()))
+
+
+@pytest.mark.parametrize("name", ["base_mount", "platform_mount"])
+def test_decks_and_engines_do_not_take_mounts(name):
+    robot = machine().replace(**{name: BASE})
+    with pytest.raises(InputError, match="not written to decks"):
+        abaqus_deck(robot)

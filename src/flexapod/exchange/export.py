@@ -66,6 +66,7 @@ def abaqus_deck(
     """
     study = at_pose(robot, load)
     robot = study.robot
+    _refuse_mounts(robot)
     path = as_pose(robot, pose)
     locked = locked_poses(robot, model.Simulation(), path, study.load)
     the_equilibrium(locked)
@@ -94,6 +95,17 @@ def left_out(robot: model.Robot) -> list[str]:
     if any(leg.piston.axial_inertia and axial_inertia(leg) == leg.cylinder.axial_inertia for leg in robot.legs):
         found.append("leg.piston.axial_inertia, which no cylinder of the given mass and inertia could carry")
     return found
+
+
+def _refuse_mounts(robot: model.Robot) -> None:
+    for name in ("base_mount", "platform_mount"):
+        if getattr(robot, name) is not None:
+            raise InputError(
+                "is not written to decks",
+                key=f"robot.{name}",
+                allowed="rigid frames",
+                next_step="Leave it out, and add springs to the deck",
+            )
 
 
 def _check_count(key: str, value: int, least: int, most: int) -> None:

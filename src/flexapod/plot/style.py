@@ -26,7 +26,7 @@ from flexapod.plot.narrow import narrowed
 
 P = ParamSpec("P")
 
-LINE_STYLES = ("-", "--", "-.", ":", (0, (5, 1, 1, 1, 1, 1)), (0, (3, 1)))
+LINE_STYLES = ("-", "--", "-.", ":", (0, (5, 1, 1, 1, 1, 1)), (0, (3, 1)), (0, (1, 3)))
 RIGID = "#B8B8B8"
 FLEXIBLE = "#0B3C5D"
 GRID = "#DDDDDD"

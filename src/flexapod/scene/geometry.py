@@ -8,7 +8,7 @@ from typing import TYPE_CHECKING, TypeVar
 import numpy as np
 from numpy.typing import NDArray
 
-from flexapod import model
+from flexapod import model, rigid
 from flexapod.rigid.rotations import exponential, matrix
 from flexapod.scene.robot import beam_values, leg_lines
 from flexapod.scene.skeleton import STATIONS, Scene, Skeleton, around
@@ -56,9 +56,22 @@ class RobotMotion:
         self.tool_apart = tool_apart(data)
         self._turn = data.rotation_deviation.values
         self._rotation = matrix(data.platform_quaternion_rigid.values)
+        if "base_motion_displacement" in data:
+            self._seen_from_base(data)
         self._tip = data.tip_deflection.values
         self._amplitude = data.lateral_amplitude.values if "lateral_amplitude" in data else None
         self._study = as_computed(study, data)
+
+    def _seen_from_base(self, data: Dataset) -> None:
+        """Draw all as it is seen from a base that is moved."""
+        moved = np.concatenate([data.base_motion_displacement.values, data.base_motion_rotation.values], axis=1)
+        given = self.skeleton.robot.base_motion
+        base = rigid.placed(moved, np.zeros(3) if given is None else given.at)
+        self._com, self._rotation = base.seen(self._com, self._rotation)
+        back = base.rotation.swapaxes(1, 2)
+        self._deviation, self._tool_deviation, self._turn = (
+            (back @ x[..., None])[..., 0] for x in (self._deviation, self._tool_deviation, self._turn)
+        )
 
     def paths(self, scale: float, point: str = "com") -> tuple[Array, Array]:
         """Paths of a point ("com", "tool"), (T, 3) [m] each: of the rigid robot, and as drawn `scale` times off it."""

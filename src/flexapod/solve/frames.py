@@ -10,7 +10,7 @@ from flexapod.rigid.rotations import matrix
 from flexapod.solve.system import System
 from flexapod.typing import Array
 
-__all__ = ["base_on_mount", "floor", "of_platform", "on_plates", "shared_by_legs"]
+__all__ = ["as_drawn", "base_on_mount", "floor", "in_world", "of_platform", "on_plates", "shared_by_legs"]
 
 
 def shared_by_legs(system: System, q: Array, name: str) -> Array:
@@ -54,3 +54,24 @@ def on_plates(system: System, robot: Robot, q: Array, pose: Array) -> list[tuple
         place, R = base_on_mount(system, robot, q).seen(place, R)
         found.append(("base_mount", place, R))
     return found
+
+
+def as_drawn(system: System, robot: Robot, q: Array, pose: Array) -> tuple[Array, Array]:
+    """Centre of mass (..., 3) and attitude (..., 3, 3) of a payload on rigid frames at rest between the same joints."""
+    if not _moves(system):
+        return pose[..., :3], matrix(pose[..., 3:])
+    _, place, R = on_plates(system, robot, q, pose)[-1]
+    return place + R @ robot.com, R
+
+
+def in_world(system: System, robot: Robot, q: Array, vectors: Array) -> Array:
+    """Vectors (..., legs, 3) of the base plate in world axes."""
+    if not _moves(system):
+        return vectors
+    turn = floor(system, robot, q).rotation @ base_on_mount(system, robot, q).rotation
+    return np.asarray(vectors @ turn.swapaxes(-1, -2), dtype=np.float64)
+
+
+def _moves(system: System) -> bool:
+    shapes = system.kernel.shapes
+    return shapes.base_motion or shapes.base_mount or shapes.platform_mount

@@ -4,11 +4,12 @@ from __future__ import annotations
 
 import numpy as np
 
+from flexapod import rigid
 from flexapod.model import ForceDrive, Leg, Robot, ServoDrive
 from flexapod.solve.springs import Spring, before_piston, of_servo, springs_along
 from flexapod.typing import Array
 
-__all__ = ["part_stiffness"]
+__all__ = ["mount_stiffness", "part_stiffness"]
 
 
 def part_stiffness(robot: Robot, length: Array) -> dict[str, Array]:
@@ -26,6 +27,26 @@ def part_stiffness(robot: Robot, length: Array) -> dict[str, Array]:
             of_part = found.setdefault(spring.name, np.full(length.shape, np.inf))
             of_part[..., i] = 1.0 / spring.at_length(length[..., i])
     return found
+
+
+def mount_stiffness(robot: Robot, path: rigid.Poses) -> dict[str, Array]:
+    """Stiffness of the mounts against a force along each leg alone at its joint, (T, legs) [N/m], Eq. (T24.11)."""
+    legs = rigid.inverse_kinematics(robot, path)
+    axes, found = rigid.leg_axes(robot, path, legs), {}
+    tips = path.position[:, None] + np.einsum("tij,kj->tki", path.rotation, robot.platform_joints)
+    if (mount := robot.platform_mount) is not None:
+        inverse = path.rotation[:, None].swapaxes(-1, -2)
+        along, arm = (inverse @ axes[..., None])[..., 0], robot.platform_joints - mount.at
+        found["platform_mount"] = _against(mount.stiffness, along, np.broadcast_to(arm, along.shape))
+    if (mount := robot.base_mount) is not None:
+        feet = tips - axes * legs.length[..., None]
+        found["base_mount"] = _against(mount.stiffness, axes, feet - mount.at)
+    return found
+
+
+def _against(stiffness: Array, along: Array, arm: Array) -> Array:
+    wrench = np.concatenate([along, np.cross(arm, along)], axis=-1)
+    return 1.0 / np.einsum("...i,...i", wrench, np.linalg.solve(stiffness, wrench[..., None])[..., 0])
 
 
 def _all(leg: Leg) -> list[Spring]:

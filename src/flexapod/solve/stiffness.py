@@ -120,10 +120,13 @@ def _refuse_rigid(locked: LockedPoses) -> None:
 
 
 def displacement(locked: LockedPoses, loads: Array, on_payload: Array) -> Array:
-    """Steps of the payload (p, 6, k) that k loads (p, legs, n, k) and (p, 6, k) cause, for legs that give way."""
+    """Steps of the payload (p, 6, k) that k loads (p, legs, n, k) and (p, 6, k) cause, for legs that give way.
+
+    Behind the loads on the payload may stand those on the coordinates that legs share.
+    """
     system, m, free = locked.system, locked.m, locked.system.border
     S = m.payload_K[:, free[:, None], free]
-    side = np.pad(on_payload, ((0, 0), (0, system.shared.size), (0, 0)))[:, free]
+    side = np.pad(on_payload, ((0, 0), (0, 6 + system.shared.size - on_payload.shape[1]), (0, 0)))[:, free]
     for b in locked.bases:
         B, C, own = reduced_legs(system, b, m)
         f, width = loads[:, b.legs], C.shape[-1]

@@ -9,7 +9,6 @@ import numpy as np
 
 from flexapod import rigid
 from flexapod.model import Robot
-from flexapod.rigid.rotations import matrix
 from flexapod.study.before.estimates import section_width
 from flexapod.study.words import text
 from flexapod.typing import Array
@@ -64,10 +63,10 @@ def _radii(robot: Robot) -> Array:
     return np.stack([np.where([leg.strut is None for leg in robot.legs], CYLINDER, 1.0) * pistons, pistons], axis=1)
 
 
-def body_results(robot: Robot, pose: Array, axes: Array, length: Array) -> dict[str, Array]:
-    """Turns of joints and least distance of legs over time; `pose` (T, 7) of the centre of mass."""
-    R = matrix(pose[:, 3:])
-    tips = pose[:, None, :3] + (robot.platform_joints - robot.com) @ R.swapaxes(1, 2)
+def body_results(robot: Robot, payload: tuple[Array, Array], axes: Array, length: Array) -> dict[str, Array]:
+    """Turns of joints and least distance of legs over time; `payload`: its centre (T, 3) and attitude (T, 3, 3)."""
+    place, R = payload
+    tips = place[:, None] + (robot.platform_joints - robot.com) @ R.swapaxes(1, 2)
     found, largest = {"joint_turn": turns(robot, axes, R)}, largest_turns(robot)
     if np.isfinite(largest).any():
         found["joint_margin"] = largest - found["joint_turn"]

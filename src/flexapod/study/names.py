@@ -70,8 +70,10 @@ _PATH = {
             (f"{what}_rotation", "rad", f"roll, pitch, yaw of the {frame}"),
         )
     },
-    "base_force": Variable(_TA, "N", "force that moves the base, on it, world axes"),
-    "base_moment": Variable(_TA, "N m", "moment that moves the base, about the point base_motion.at of it, world axes"),
+    "base_motion_force": Variable(_TA, "N", "force that moves the base, on it, world axes"),
+    "base_motion_moment": Variable(
+        _TA, "N m", "moment that moves the base, about its point base_motion.at, world axes"
+    ),
     "tool_deviation_base": Variable(_TA, "m", "deviation of the tool point as seen from the base plate, in its axes"),
     "rotation_deviation_base": Variable(
         _TA, "rad", "rotation vector from the rigid to the flexible platform as seen from the base plate, in its axes"

@@ -8,7 +8,7 @@ import numpy as np
 
 from flexapod import rigid
 from flexapod.solve.lost_motion import lost_motion, places_with_friction
-from flexapod.solve.parts import part_stiffness
+from flexapod.solve.parts import mount_stiffness, part_stiffness
 from flexapod.study.arguments import PoseLike, RobotLike, as_pose, at_pose
 from flexapod.study.attributes import attributes
 from flexapod.study.before.checks import path_remarks
@@ -35,9 +35,9 @@ def parts(robot: RobotLike, pose: PoseLike = None) -> Dataset:
     -------
     xarray.Dataset
         `part_stiffness` (leg, part) [N/m]: of the piston's stretch, of joints, screw, twist, nut, bearing, of named
-        springs, of a drive that has a spring; inf where a leg does not have the part. `leg_stiffness` (leg): all of
-        them in series. `lost_motion` (leg) [m], of robots whose drives have friction: half of what a leg lags by it
-        to and fro.
+        springs, of a drive that has a spring, of mounts at the leg's joint against a force along that leg alone; inf
+        where a leg does not have the part. `leg_stiffness` (leg): all of them in series. `lost_motion` (leg) [m], of
+        robots whose drives have friction: half of what a leg lags by it to and fro.
 
     Raises
     ------
@@ -49,6 +49,7 @@ def parts(robot: RobotLike, pose: PoseLike = None) -> Dataset:
     remarks = path_remarks(study.robot, np.zeros(1), path)
     length = rigid.inverse_kinematics(study.robot, path).length[0]
     found = part_stiffness(study.robot, length)
+    found |= {name: x[0] for name, x in mount_stiffness(study.robot, path).items()}
     table = np.stack(list(found.values()), axis=1)
     values = {"part_stiffness": table, "leg_stiffness": 1.0 / (1.0 / table).sum(axis=1)}
     if "drive" in places_with_friction(study.robot):

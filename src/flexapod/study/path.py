@@ -55,8 +55,18 @@ class RigidPath:
 
     @cached_property
     def base(self) -> rigid.Placed | None:
-        """Where a base that is moved stands; the path is as seen from there."""
+        """Where a base that is moved stands; poses are as seen from there, and the rigid robot moves with it."""
         return rigid.base_placed(self.robot, self.time)
+
+    def place(self, point: Array) -> Array:
+        """A point (3,) of the platform frame in the world, (T, 3)."""
+        at = self.poses.place(point)
+        return at if self.base is None else self.base.carried(at, self.poses.rotation)[0]
+
+    @cached_property
+    def rotation(self) -> Array:
+        """Platform axes to world axes, (T, 3, 3)."""
+        return self.poses.rotation if self.base is None else self.base.rotation @ self.poses.rotation
 
     @cached_property
     def reach(self) -> rigid.Reach:

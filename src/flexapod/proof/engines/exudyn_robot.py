@@ -74,6 +74,9 @@ class RobotProblem:
                     allowed="0",
                     next_step="Compare without damping",
                 )
+        for name in ("base_mount", "platform_mount", "base_motion"):
+            if getattr(self.robot, name) is not None:
+                raise InputError("is not modelled in Exudyn", key=f"robot.{name}", allowed="rigid frames at rest")
         self._check_path()
 
     def _check_path(self) -> None:

@@ -13,6 +13,7 @@ from flexapod.rigid.built import built_limbs
 from flexapod.rigid.limbs import COORDINATES, HELD, Limbs, limbs
 from flexapod.rigid.robot import robot_limbs
 from flexapod.rigid.rotations import exponential, matrix
+from flexapod.solve.frames import as_drawn, in_world
 from flexapod.solve.friction import sliding
 from flexapod.solve.lost_motion import PLACES, places_with_friction
 from flexapod.solve.many import RestStates
@@ -22,7 +23,7 @@ from flexapod.solve.system import System
 from flexapod.study.after import legs as by_name
 from flexapod.study.after.causes import cause_names
 from flexapod.study.after.elongations import elongations
-from flexapod.study.after.plausibility import flexible_axes
+from flexapod.study.after.plausibility import axes_as_drawn
 from flexapod.study.bodies import body_results, largest_turns, pairs_of_legs
 from flexapod.study.names import DRIVES, Variable
 from flexapod.study.path import RigidPath
@@ -48,14 +49,15 @@ def leg_results(robot: Robot, system: System, path: RigidPath, record: Record) -
         "joint_force": record.lam[..., :3],
     }
     length = flexible_lengths(robot, system, record)
-    results |= body_results(robot, record.pose, flexible_axes(robot, system, record), length)
+    payload = as_drawn(system, robot, q, record.pose)
+    results |= body_results(robot, payload, axes_as_drawn(robot, system, record), length)
     if by_name.has_strokes(robot):
         force = by_name.stroke_forces(found, drive_forces(robot, system, record))
         results |= zip(STROKES, (path.legs.length, length, q[..., shapes.l_index], force), strict=True)
     if held := by_name.held_names(found):
         results["held_force"] = _held_forces(found, system, forces, held)
     if _bears_moments(found):
-        results["joint_moment"] = _joint_moments(found, system, record, forces)
+        results["joint_moment"] = _joint_moments(robot, found, system, record, forces)
     if shapes.bristles:
         results["friction"] = record.friction * _by_angle(robot, system)
     if bent.shape[-1]:
@@ -89,7 +91,7 @@ def rigid_reactions(robot: Robot, forces: RobotForces) -> dict[str, Array]:
         values["held_force_rigid"] = _held_forces(found, system, forces.held, held)
     if _bears_moments(found):
         states = replace(forces.states, lam=forces.closure)
-        values["joint_moment_rigid"] = _joint_moments(found, system, states, forces.held)
+        values["joint_moment_rigid"] = _joint_moments(released(robot), found, system, states, forces.held)
     return values
 
 
@@ -173,14 +175,23 @@ def leg_labels(robot: Robot, *, rigid: bool = False) -> dict[str, ArrayLike]:
 
 
 def absent(robot: Robot) -> set[str]:
-    """Variables of the legs that a simulation of this robot does not have."""
+    """Variables of legs and frames that a simulation of this robot does not have."""
     found = limbs(robot)
     none = set() if by_name.has_strokes(robot) else {*STROKES, "actuator_force_rigid"}
     none |= set() if by_name.held_names(found) else {"held_force"}
     none |= set() if np.isfinite(largest_turns(robot)).any() else {"joint_margin"}
     none |= set() if pairs_of_legs(robot) else {"leg_clearance", "nearest_legs"}
     none |= set() if places_with_friction(robot) else {"friction"}
+    none |= _absent_frames(robot)
     return none if _bears_moments(found) else {*none, "joint_moment"}
+
+
+def _absent_frames(robot: Robot) -> set[str]:
+    frames = ("base_motion", "base_mount", "platform_mount")
+    none = {f"{x}_{of}" for x in frames if getattr(robot, x) is None for of in ("displacement", "rotation")}
+    if robot.base_motion is None:
+        none |= {"work_base", "base_motion_force", "base_motion_moment"}
+    return none if robot.base_mount is not None else none | {"tool_deviation_base", "rotation_deviation_base"}
 
 
 def drive_forms(robot: Robot) -> dict[str, Variable]:
@@ -196,8 +207,8 @@ def drive_forms(robot: Robot) -> dict[str, Variable]:
 
 def flexible_lengths(robot: Robot, system: System, record: Record) -> Array:
     """Joint-to-joint lengths of the flexible robot, (T, legs) [m], Eq. (T8.1)."""
-    R, built = matrix(record.pose[:, 3:]), built_limbs(robot, robot_limbs(robot))
-    tips = record.pose[:, None, :3] + (built.platform - robot.com) @ R.swapaxes(1, 2)
+    (place, R), built = as_drawn(system, robot, record.q, record.pose), built_limbs(robot, robot_limbs(robot))
+    tips = place[:, None] + (built.platform - robot.com) @ R.swapaxes(1, 2)
     return np.linalg.norm(tips - by_name.base_points(built, _carriages(system, record.q)), axis=-1)
 
 
@@ -211,7 +222,7 @@ def _bears_moments(found: Limbs) -> bool:
     return bool(found.pose_closure.any() or (found.state[:, angles] == HELD).any())
 
 
-def _joint_moments(found: Limbs, system: System, record: Record | RestStates, forces: Array) -> Array:
+def _joint_moments(robot: Robot, found: Limbs, system: System, record: Record | RestStates, forces: Array) -> Array:
     """Moments of the base on the legs and of the legs on the platform, world axes, (T, legs, 2, 3) [N m].
 
     About the leg's own axis that of the base counts only where the leg has a turn about it as a coordinate.
@@ -221,6 +232,7 @@ def _joint_moments(found: Limbs, system: System, record: Record | RestStates, fo
         rates = dict(zip(damped_angles(system), np.moveaxis(record.rate, -1, 0), strict=True))
     rubs = record.friction if isinstance(record, Record) else None
     base = _base_moments(found, system, record.q, rates, forces, rubs)
+    base = in_world(system, robot, record.q, base)
     if system.rows < 6:
         return np.stack([base, np.zeros_like(base)], axis=2)
     turn = matrix(record.pose[:, 3:])[:, None] @ found.platform_frames

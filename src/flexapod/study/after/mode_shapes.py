@@ -5,7 +5,7 @@ from __future__ import annotations
 import numpy as np
 
 from flexapod import model, rigid
-from flexapod.mechanics.layout import Shapes
+from flexapod.mechanics.layout import Shapes, columns, leg_parameters
 from flexapod.rigid.rotations import matrix, quaternion
 from flexapod.solve.modes import RobotModes
 from flexapod.solve.sections import leg_values
@@ -16,11 +16,11 @@ MOSTLY = 0.5  # share of an energy from which a part names the mode
 
 
 def mode_kinds(found: RobotModes) -> list[str]:
-    """``payload``, ``leg n bending``, ``legs bending``, ``leg n axial``, ``legs axial`` ... for each mode.
+    """``payload``, ``base``, ``leg n bending``, ``legs bending``, ``leg n axial``, ``legs axial`` ... for each mode.
 
-    The kinetic energy says whether payload or legs; that of the legs, which leg; the strain energy of its coordinates,
-    how: bending, axial, twisting (of the leg about its axis), carriage (on the spring of its drive), turning (on
-    springs of joints).
+    The kinetic energy says whether payload, base plate or legs; that of the legs, which leg; the strain energy of its
+    coordinates, how: bending, axial, twisting (of the leg about its axis), carriage (on the spring of its drive),
+    turning (on springs of joints).
 
     Parameters
     ----------
@@ -30,12 +30,31 @@ def mode_kinds(found: RobotModes) -> list[str]:
     matrices, n = system.matrices(state, found.wrench), system.n
     legs = found.shapes[:, :-6].reshape(len(found.shapes), -1, n)
     blocks = [slice(i * n, (i + 1) * n) for i in range(legs.shape[1])]
-    kinetic = np.stack([_form(legs[:, i], matrices.M[at, at]) for i, at in enumerate(blocks)], axis=1)
+    own = [k for k in range(n) if k not in system.plate]  # the plate below the payload counts with it
+    kinetic = np.stack(
+        [_form(legs[:, i, own], matrices.M[at, at][np.ix_(own, own)]) for i, at in enumerate(blocks)], axis=1
+    )
+    plate = _base_plate(found, legs)
+    kinetic = kinetic - plate[:, None] / len(blocks)
     energies = {}
     for name, chosen in _groups(system.kernel.shapes).items():
         parts = [_form(legs[:, i, chosen], matrices.K[at, at][np.ix_(chosen, chosen)]) for i, at in enumerate(blocks)]
         energies[name] = np.sum(parts, axis=0)
-    return [_kind(row, {name: of[k] for name, of in energies.items()}) for k, row in enumerate(kinetic)]
+    return [
+        "base" if plate[k] > MOSTLY else _kind(row, {name: of[k] for name, of in energies.items()})
+        for k, row in enumerate(kinetic)
+    ]
+
+
+def _base_plate(found: RobotModes, legs: Array) -> Array:
+    """Kinetic energy of the base plate in each mode, (m,), of those with unit mass twice that."""
+    shapes, p = found.system.kernel.shapes, found.system.leg_p
+    if not shapes.base_mount:
+        return np.zeros(len(legs))
+    layout, first = leg_parameters(shapes), shapes.index("f")
+    mass, inertia = (p[:, columns(layout, f"base_plate_{name}")].sum(axis=0) for name in ("mass", "inertia"))
+    moved = legs[:, 0, first : first + 6]
+    return mass[0] * (moved[:, :3] ** 2).sum(axis=1) + _form(moved[:, 3:], inertia.reshape(3, 3))
 
 
 def _groups(shapes: Shapes) -> dict[str, list[int]]:
@@ -112,7 +131,10 @@ def _stretch(robot: model.Robot, found: RobotModes, platform: Array) -> Array:
     at = state.pose
     if not legs.carriage:
         joints = robot.platform_joints - robot.com
-        return platform @ rigid.length_jacobian(legs.base, joints, at[:3], matrix(at[3:]), np.zeros(3)).T
+        return (
+            _of_frames(robot, found)
+            + platform @ rigid.length_jacobian(legs.base, joints, at[:3], matrix(at[3:]), np.zeros(3)).T
+        )
     chi = system.kernel.shapes.index("chi")
     by_leg = found.shapes[:, :-6].reshape(len(found.shapes), system.legs, system.n)[..., chi]
     feet = base_points(legs, state.q[:, chi])
@@ -122,6 +144,24 @@ def _stretch(robot: model.Robot, found: RobotModes, platform: Array) -> Array:
     tips = platform[:, None, :3] + np.cross(platform[:, None, 3:], arms)
     moved = by_leg[..., None] * _ways(legs, feet)
     return ((tips - moved) * axes).sum(axis=-1)
+
+
+def _of_frames(robot: model.Robot, found: RobotModes) -> Array:
+    """What plates on mounts add to the joint-to-joint lengths, (m, legs) [m]."""
+    system, at = found.system, found.equilibrium.state.pose
+    shapes, R = system.kernel.shapes, matrix(at[3:])
+    tips = at[:3] + (robot.platform_joints - robot.com) @ R.T
+    axes, more = tips - robot.home_bases, np.zeros((len(found.shapes), len(robot.legs)))
+    axes /= np.linalg.norm(axes, axis=1, keepdims=True)
+    for name, mount, axes_there, joints in (
+        ("m", robot.platform_mount, axes @ R, robot.platform_joints),
+        ("f", robot.base_mount, -axes, robot.home_bases),
+    ):
+        if mount is not None:
+            step = found.shapes[:, shapes.index(name) : shapes.index(name) + 6]
+            moved = step[:, None, :3] + np.cross(step[:, None, 3:], joints - mount.at)
+            more += (moved * axes_there).sum(axis=-1)
+    return more
 
 
 def _ways(legs: rigid.Limbs, feet: Array) -> Array:

@@ -12,8 +12,8 @@ from flexapod.mechanics.layout import Shapes
 from flexapod.model import Actuator, Leg, Robot
 from flexapod.model.simulation import SOLID
 from flexapod.rigid.robot import rigid_limbs
-from flexapod.rigid.rotations import matrix
 from flexapod.solve.actuator_march import amplitudes, lateral_signs
+from flexapod.solve.frames import as_drawn, in_world
 from flexapod.solve.many import RestStates
 from flexapod.solve.sections import leg_values, stepped_stress
 from flexapod.solve.system import System
@@ -117,9 +117,14 @@ def leg_stress(leg: Leg, basis: LateralBasis, lateral: Array, free: Array, compr
 
 
 def flexible_axes(robot: Robot, system: System, record: Record | RestStates) -> Array:
-    """Unit vectors from base to platform joint, (T, legs, 3)."""
-    R, legs, shapes = matrix(record.pose[:, 3:]), rigid_limbs(robot), system.kernel.shapes
-    tips = record.pose[:, None, :3] + (robot.platform_joints - robot.com) @ R.swapaxes(1, 2)
+    """Unit vectors from base to platform joint, world axes, (T, legs, 3)."""
+    return in_world(system, robot, record.q, axes_as_drawn(robot, system, record))
+
+
+def axes_as_drawn(robot: Robot, system: System, record: Record | RestStates) -> Array:
+    """Unit vectors from base to platform joint in the axes of the base, (T, legs, 3)."""
+    (place, R), legs, shapes = as_drawn(system, robot, record.q, record.pose), rigid_limbs(robot), system.kernel.shapes
+    tips = place[:, None] + (robot.platform_joints - robot.com) @ R.swapaxes(1, 2)
     vectors = tips - base_points(legs, record.q[..., shapes.index("chi")] if shapes.carriage else None)
     return vectors / np.linalg.norm(vectors, axis=-1, keepdims=True)
 

@@ -48,14 +48,9 @@ def robot_coords(robot: Robot, system: System, record: Record) -> dict[str, Arra
 def payload_results(robot: Robot, path: RigidPath, record: Record) -> dict[str, Array]:
     """Payload and tool against the rigid path."""
     com = record.pose[:, :3]
-    e, e_rigid = canonical(record.pose[:, 3:]), quaternion(path.poses.rotation)
+    e, e_rigid = canonical(record.pose[:, 3:]), quaternion(path.rotation)
     R = matrix(e)
-    com_rigid, tool_rigid = path.poses.place(robot.com), path.poses.place(robot.tool)
-    if path.base is not None:  # the rigid robot moves with its base
-        (com_rigid, R_rigid), (tool_rigid, _) = (
-            path.base.carried(x, path.poses.rotation) for x in (com_rigid, tool_rigid)
-        )
-        e_rigid = quaternion(R_rigid)
+    com_rigid, tool_rigid = path.place(robot.com), path.place(robot.tool)
     tool = com + R @ (robot.tool - robot.com)
     return {
         "com_position_rigid": com_rigid,
@@ -74,10 +69,9 @@ def payload_results(robot: Robot, path: RigidPath, record: Record) -> dict[str, 
 def cause_results(robot: Robot, system: System, path: RigidPath, record: Record) -> dict[str, Array]:
     """Deviation of the centre of mass by cause."""
     shares = deviation_by_cause(robot, path, errors_of(robot, system, path, record))
-    deviation = record.pose[:, :3] - path.poses.place(robot.com)
+    deviation = record.pose[:, :3] - path.place(robot.com)
     if path.base is not None:
         shares = np.einsum("txy,tcly->tclx", path.base.rotation, shares)
-        deviation = record.pose[:, :3] - path.base.carried(path.poses.place(robot.com), path.poses.rotation)[0]
     return {
         "deviation_by_cause": shares,
         "deviation_residual": deviation - shares.reshape(len(shares), -1, 3).sum(axis=1),
@@ -121,7 +115,7 @@ def frame_results(robot: Robot, system: System, path: RigidPath, record: Record)
         held = record.drive[:, :, system.floor].sum(axis=1)
         axes = turning_axes(shared_by_legs(system, record.q, "g")[:, 3:])
         moment = np.linalg.solve(axes.swapaxes(1, 2), held[:, 3:, None])[..., 0]
-        found |= {"base_force": held[:, :3], "base_moment": moment}
+        found |= {"base_motion_force": held[:, :3], "base_motion_moment": moment}
     if system.kernel.shapes.has("f"):
         floor_frame, plate = floor(system, robot, record.q), base_on_mount(system, robot, record.q)
         tool = record.pose[:, :3] + matrix(record.pose[:, 3:]) @ (robot.tool - robot.com)

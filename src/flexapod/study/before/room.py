@@ -73,7 +73,10 @@ def result_bytes(study: Study | ActuatorStudy) -> float:
     joints = (joint for leg in study.robot.legs for joint in (leg.base_joint, leg.platform_joint))
     margins = 2 * any(joint.max_angle is not None for joint in joints)
     rubs = 3 * len(places_with_friction(study.robot))
-    return 8 * stored_instants(study) * (64 + study.robot.count * (30 + shapes + margins + rubs))
+    robot = study.robot
+    frames = 13 * (robot.base_motion is not None) + 12 * (robot.base_mount is not None)
+    frames += 6 * (robot.platform_mount is not None)
+    return 8 * stored_instants(study) * (64 + frames + robot.count * (30 + shapes + margins + rubs))
 
 
 def check_memory(study: Study | ActuatorStudy, runs: int = 1) -> list[str]:

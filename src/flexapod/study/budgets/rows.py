@@ -13,6 +13,7 @@ from flexapod.errors import ComputationError, InputError
 from flexapod.model import Robot, Study
 from flexapod.rigid.rotations import difference, matrix, quaternion
 from flexapod.solve.equilibrium import FOUND
+from flexapod.solve.frames import floor
 from flexapod.solve.lost_motion import places_with_friction, reversal
 from flexapod.solve.many import RestStates
 from flexapod.solve.modes import LockedPoses, locked_poses, the_equilibrium
@@ -57,7 +58,10 @@ def moved(robot: Robot, system: System, path: RigidPath, states: Record | RestSt
     columns = sensitivity(robot, path.poses).coordinate
     R = matrix(states.pose[:, 3:])
     tool = states.pose[:, :3] + R @ (robot.tool - robot.com)
-    turn = difference(states.pose[:, 3:], quaternion(path.poses.rotation))
+    if robot.base_motion is not None:  # as seen from the base that is moved
+        tool, R = floor(system, robot, states.q).seen(tool, R)
+    attitude = states.pose[:, 3:] if robot.base_motion is None else quaternion(R)
+    turn = difference(attitude, quaternion(path.poses.rotation))
     return Moved(
         whole=np.concatenate([tool - path.poses.place(robot.tool), turn], axis=1),
         by_leg=np.einsum("tclk,tlkx->tclx", errors.stacked, columns),

@@ -53,7 +53,7 @@ class RobotRun:
     @cached_property
     def com_rigid(self) -> Array:
         """Centre of mass on the rigid path, (T, 3) [m]."""
-        return self.path.poses.place(self.study.robot.com)
+        return self.path.place(self.study.robot.com)
 
     @cached_property
     def com_deviation(self) -> Array:
@@ -69,12 +69,12 @@ class RobotRun:
     def tool_deviation(self) -> Array:
         """Deviation of the tool, (T, 3) [m]."""
         robot = self.study.robot
-        return self.record.pose[:, :3] + self.turn @ (robot.tool - robot.com) - self.path.poses.place(robot.tool)
+        return self.record.pose[:, :3] + self.turn @ (robot.tool - robot.com) - self.path.place(robot.tool)
 
     @cached_property
     def rotation_deviation(self) -> Array:
         """Angle between flexible and rigid platform, (T,) [rad]."""
-        return np.linalg.norm(difference(self.record.pose[:, 3:], quaternion(self.path.poses.rotation)), axis=1)
+        return np.linalg.norm(difference(self.record.pose[:, 3:], quaternion(self.path.rotation)), axis=1)
 
     @cached_property
     def actuator_force(self) -> Array:

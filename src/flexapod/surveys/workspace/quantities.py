@@ -170,6 +170,6 @@ def _answer(robot: model.Robot, path: rigid.Poses, locked: LockedPoses) -> Array
         )  # fmt: skip
         rates = rigid_motion(locked.system, robot, moving)[1]
         inertia.append((m.M @ rates.v_dot[..., None])[..., 0])
-        payload.append((m.payload_M @ rates.u_dot[..., None])[..., 0])
+        payload.append((m.payload_M[..., :6] @ rates.u_dot[..., None])[..., 0])
     y = displacement(locked, -np.stack(inertia, axis=-1), -np.stack(payload, axis=-1))
     return (tool_motion(robot, locked.equilibria.states.pose[locked.at]) @ y)[:, :3]
