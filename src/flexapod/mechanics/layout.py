@@ -85,6 +85,9 @@ SERIES_PARAMETERS: tuple[tuple[str, int], ...] = (
     ("rotor_damping", 1),  # N s/m
 )
 
+#: ... whose motor has a ripple: angle of its first harmonic by travel [rad/m], energies of all [J].
+RIPPLE_PARAMETERS: tuple[tuple[str, int], ...] = (("ripple_wave", 1), ("ripple", 4))
+
 #: ... whose loop sums its error.
 INTEGRAL_PARAMETERS: tuple[tuple[str, int], ...] = (("rotor_integral", 1),)  # N/(m s)
 
@@ -192,6 +195,8 @@ class Shapes:
         Displacements of the joints along and across the leg.
     series : bool
         Springs between a rotor, whose travel is r, and the stroke l.
+    ripple : bool
+        A torque that returns with the turns of the rotor.
     integral : bool
         The rotor's servo sums its error: w.
     oil : bool
@@ -221,6 +226,7 @@ class Shapes:
     soft_base: bool = False
     soft_platform: bool = False
     series: bool = False
+    ripple: bool = False
     integral: bool = False
     oil: bool = False
     sections: int = 0
@@ -348,6 +354,7 @@ def leg_parameters(shapes: Shapes) -> tuple[tuple[str, int], ...]:
         (shapes.soft_base, SOFT_BASE),
         (shapes.soft_platform, SOFT_PLATFORM),
         (shapes.series, SERIES_PARAMETERS),
+        (shapes.ripple, RIPPLE_PARAMETERS),
         (shapes.integral, INTEGRAL_PARAMETERS),
         (shapes.oil, OIL_PARAMETERS),
         (shapes.sections > 0, _section_parameters(shapes)),

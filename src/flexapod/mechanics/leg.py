@@ -11,6 +11,7 @@ from flexapod.elements.distribution import Motion
 from flexapod.elements.flexure import flexure, springs
 from flexapod.elements.frame import Energies, Frame
 from flexapod.elements.mount import WORLD, displaced, mount, plate
+from flexapod.elements.ripple import ripple
 from flexapod.elements.rotations import small_rotation
 from flexapod.elements.screw import screw
 from flexapod.elements.sliding_piston import sliding_piston, tip_place, tip_turn
@@ -85,6 +86,8 @@ def leg(shapes: Shapes, p: SimpleNamespace, q: SX, v: SX, qs: SimpleNamespace, v
         e += torsion(frame, p, qs, vs)
     series = screw(p, qs, vs, oil=shapes.oil) if shapes.series else Energies()
     e += series
+    if shapes.ripple:
+        e += Energies(strain=ripple(p, qs))
     if shapes.tip_body:
         e += tip_body(motion, p, shapes.planar)
     if shapes.closure == "pose":

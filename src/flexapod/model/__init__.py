@@ -56,7 +56,7 @@ from flexapod.model.payload import Payload
 from flexapod.model.piston import Cylinder, Piston, Strut
 from flexapod.model.robot import Robot
 from flexapod.model.rolling import RollingLaw
-from flexapod.model.screw import Bearing, Brake, Drive, Encoder, Limits, Loop, Nut, Rotor, ScrewDrive
+from flexapod.model.screw import Bearing, Brake, Drive, Encoder, Limits, Loop, Motor, Nut, Ripple, Rotor, ScrewDrive
 from flexapod.model.sections import PistonSection
 from flexapod.model.simulation import DEFAULT_TOLERANCE, FIDELITIES, Initial, Simulation
 from flexapod.model.spring import AxialSpring
@@ -118,6 +118,7 @@ __all__ = [
     "Material",
     "Motion",
     "MotionLaw",
+    "Motor",
     "Nut",
     "OpenValue",
     "Payload",
@@ -128,6 +129,7 @@ __all__ = [
     "RateLaw",
     "RatioSpread",
     "Rectangle",
+    "Ripple",
     "Robot",
     "RollingLaw",
     "Rotor",

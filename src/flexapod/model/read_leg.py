@@ -18,7 +18,7 @@ from flexapod.model.leg import Leg
 from flexapod.model.material import MATERIALS, Material, Tube
 from flexapod.model.piston import Piston, Strip, Strut
 from flexapod.model.rolling import RollingLaw
-from flexapod.model.screw import Drive, Encoder, ScrewDrive
+from flexapod.model.screw import Drive, Encoder, Motor, Ripple, ScrewDrive
 from flexapod.model.section import Section
 from flexapod.model.sections import PistonSection
 from flexapod.model.spring import AxialSpring
@@ -276,7 +276,22 @@ def _screw_parts(section: Section) -> dict[str, object]:
     encoder = section.section("encoder")
     turns = encoder is None or encoder.data.get("at", "rotor") == "rotor"
     measure = ("angle",) if turns else ("length",)
-    return {"material": read_material(section), "encoder": encoder and encoder.read(Encoder, among=measure)}
+    motor = section.section("motor")
+    return {
+        "material": read_material(section),
+        "encoder": encoder and encoder.read(Encoder, among=measure),
+        "motor": motor and motor.read(Motor, then=_ripple),
+    }
+
+
+def _ripple(motor: Section) -> dict[str, object]:
+    section = motor.section("ripple")
+    return {"ripple": section and section.read(Ripple, then=_harmonics)}
+
+
+def _harmonics(section: Section) -> dict[str, object]:
+    given = section.data.get("harmonics")
+    return {"harmonics": section.vector("harmonics", *("number",) * (len(given) if isinstance(given, list) else 1))}
 
 
 def _springs(section: Section | None) -> tuple[AxialSpring, ...] | None:

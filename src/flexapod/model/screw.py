@@ -5,23 +5,26 @@ from __future__ import annotations
 import math
 from typing import Annotated, ClassVar, Literal
 
+import numpy as np
 from pydantic import BeforeValidator, Field, model_validator
 
 from flexapod.errors import InputError
-from flexapod.model.base import Frozen, Measure, NonNegative, Number, Positive, Series
+from flexapod.model.base import Frozen, Measure, NonNegative, Number, Positive, Series, array_of
 from flexapod.model.drive import Feedback, ForceDrive, PrescribedDrive, ServoDrive
 from flexapod.model.friction import ScrewFriction
 from flexapod.model.hydraulic import HydraulicDrive
 from flexapod.model.material import Material
 from flexapod.model.motion import check_times
 from flexapod.model.spring import check_lossy
+from flexapod.typing import Array
 from flexapod.words import number
 
-__all__ = ["Bearing", "Brake", "Drive", "Encoder", "Limits", "Loop", "Nut", "Rotor", "ScrewDrive"]
+__all__ = ["Bearing", "Brake", "Drive", "Encoder", "Limits", "Loop", "Motor", "Nut", "Ripple", "Rotor", "ScrewDrive"]
 
 UNLOADS = 2 * math.sqrt(2)  # thrust over preload beyond which one half of a preloaded nut carries nothing
 HIGHEST = 0.1  # preload over dynamic load rating of a double nut, at most (HIWIN 3.6)
 UM = 1e6  # N/m of an N/um
+HARMONICS = 4  # of a ripple, at most
 
 Damping = Annotated[NonNegative, Measure("damping")] | None
 Stiffness = Annotated[Positive, Measure("stiffness")] | None
@@ -129,6 +132,33 @@ class Rotor(Frozen):
     ratio: Annotated[Positive, Measure("number")] = 1.0
 
 
+class Ripple(Frozen):
+    """What a motor's torque changes by as it turns: cogging and ripple, `torque` [N m] times `harmonics`.
+
+    `per_turn`: how often the first of these returns in a turn of the motor; `harmonics`: sizes of the first one and of
+    its multiples, up to four.
+    """
+
+    torque: Annotated[Positive, Measure("torque")]
+    per_turn: Annotated[int, Field(strict=True, ge=1, le=1000)]
+    harmonics: Annotated[Series, Measure("number")] = array_of((None,))([1.0])
+
+    @model_validator(mode="after")
+    def _few(self) -> Ripple:
+        if not 1 <= len(self.harmonics) <= HARMONICS:
+            raise InputError(
+                "has too many or none", key="harmonics", value=len(self.harmonics), allowed=f"1 to {HARMONICS} numbers"
+            )
+        return self
+
+
+class Motor(Frozen):
+    """The motor: its `torque_constant` [N m/A], and its `ripple`."""
+
+    torque_constant: Annotated[Positive, Measure("torque constant")] | None = None
+    ripple: Ripple | None = None
+
+
 class Limits(Frozen):
     """What the drive is made for.
 
@@ -205,6 +235,7 @@ class ScrewDrive(Frozen):
     bearing: Bearing
     nut: Nut
     rotor: Rotor = Rotor()
+    motor: Motor = Motor()
     command: Literal["position", "servo", "torque"] = "position"
     law: Literal["rigid", "constant", "csv"] = "rigid"
     value: Annotated[Number, Measure("torque")] | None = None
@@ -295,6 +326,27 @@ class ScrewDrive(Frozen):
         if self.loop is None:
             return 0.0, 0.0
         return self.loop.stiffness / self.per_turn**2, self.loop.damping / self.per_turn**2
+
+    @property
+    def wave(self) -> float:
+        """Angle of the first harmonic of its ripple by the nut's travel [rad/m]; 0 without one."""
+        ripple = self.motor.ripple
+        return 0.0 if ripple is None else ripple.per_turn * self.rotor.ratio / self.per_turn
+
+    @property
+    def rippling(self) -> Array:
+        """Amplitudes of the harmonics of its ripple, by the nut's travel, (4,) [N], Eq. (T23.21)."""
+        found, ripple = np.zeros(HARMONICS), self.motor.ripple
+        if ripple is not None:
+            found[: len(ripple.harmonics)] = ripple.torque * ripple.harmonics * self.rotor.ratio / self.per_turn
+        return found
+
+    @property
+    def rippled(self) -> float:
+        """Standard deviation of the rotor's travel at rest by its ripple [m]: none where that is held, Eq. (T23.22)."""
+        if self.rests or not self.loop_spring[0] or self.holds_stroke:
+            return 0.0
+        return float(np.sqrt(0.5 * (self.rippling**2).sum()) / self.loop_spring[0])
 
     @property
     def integral(self) -> float:

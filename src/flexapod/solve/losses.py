@@ -9,7 +9,7 @@ from typing import cast
 import numpy as np
 
 from flexapod.errors import ComputationError
-from flexapod.model import Drive, ForceDrive, HydraulicDrive, PrescribedDrive, Robot, ScrewDrive, Simulation
+from flexapod.model import Drive, ForceDrive, HydraulicDrive, Motor, PrescribedDrive, Robot, ScrewDrive, Simulation
 from flexapod.solve.springs import springs_along, viscous
 from flexapod.words import number, text
 
@@ -112,6 +112,7 @@ def _locked(drive: Drive) -> Drive:
         return drive.replace(leakage=0.0)
     if not isinstance(drive, ScrewDrive):
         return drive
+    drive = drive.replace(motor=Motor())
     nut, bearing = drive.nut.replace(loss=None), drive.bearing.replace(loss=None)
     held = {
         "command": "position",

@@ -21,7 +21,7 @@ from flexapod.solve.many import RestMatrices, RestStates
 from flexapod.solve.reduction import expanded, hub_motion, null_space_of_borders, reduced
 from flexapod.solve.rest import RestLoad, rest_commands, rest_load
 from flexapod.solve.rigid_motion import rigid_rest
-from flexapod.solve.robot_system import robot_system
+from flexapod.solve.robot_system import robot_system, smooth
 from flexapod.solve.system import Index, System
 from flexapod.typing import Array, Mask
 
@@ -142,7 +142,7 @@ def locked_poses(
     """
     refuse_pure_force(robot, "a static equilibrium")
     robot = robot if robot.base_motion is None else robot.replace(base_motion=None)  # poses are those of a base at rest
-    system = robot_system(robot, simulation, at_rest=True)
+    system = robot_system(smooth(robot), simulation, at_rest=True)
     start, acts = rigid_rest(system, robot, path), rest_load(system, robot, path, load, time)
     command = rest_commands(system, robot, start.q, time)
     found = equilibria(system, start, command, acts.force, acts.wrench)

@@ -4,7 +4,7 @@ import numpy as np
 
 from flexapod import rigid
 from flexapod.mechanics.layout import Shapes
-from flexapod.model import Robot, Simulation
+from flexapod.model import Motor, Robot, Simulation
 from flexapod.rigid.limbs import ABSENT, COORDINATES, DRIVEN, HELD, Limbs
 from flexapod.solve.kernel import kernel
 from flexapod.solve.losses import per_loss
@@ -18,7 +18,7 @@ from flexapod.solve.springs import springs_along
 from flexapod.solve.system import System
 from flexapod.typing import Mask
 
-__all__ = ["robot_system"]
+__all__ = ["robot_system", "smooth"]
 
 
 def robot_system(robot: Robot, simulation: Simulation, march: bool = True, *, at_rest: bool = False) -> System:
@@ -36,6 +36,14 @@ def robot_system(robot: Robot, simulation: Simulation, march: bool = True, *, at
         held=_held(robot, legs, shapes) | _summed(robot, shapes, at_rest=at_rest),
         hub_held=legs.hub_held,
     )
+
+
+def smooth(robot: Robot) -> Robot:
+    """The robot without ripple of its motors: where in a period it rests is not known."""
+    if not any(leg.screw is not None and leg.screw.wave for leg in robot.legs):
+        return robot
+    drives = [leg.drive if leg.screw is None else leg.screw.replace(motor=Motor()) for leg in robot.legs]
+    return robot.replace(legs=tuple(leg.replace(drive=x) for leg, x in zip(robot.legs, drives, strict=True)))
 
 
 def _held(robot: Robot, legs: Limbs, shapes: Shapes) -> Mask:

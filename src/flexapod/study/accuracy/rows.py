@@ -48,6 +48,11 @@ def rows(study: Study, pose: rigid.Poses) -> list[Row]:
             0, :, COORDINATES.index("l")
         ]  # (T23.12)
         found.append(Row("encoder", "random", "", by_leg, "increment over the root of 12, legs independent"))
+    rippling = np.array([0.0 if leg.screw is None else leg.screw.rippled for leg in study.robot.legs])
+    if rippling.any():
+        by_leg = rippling[:, None] * at.sensitivity.coordinate[0, :, COORDINATES.index("l")]
+        how = "standard deviation over a period, against the loop's stiffness, legs independent"
+        found.append(Row("ripple", "random", "calibratable", by_leg, how))
     if at.is_loose:
         effect = np.abs(at.play.effect[0])
         how = "first order, whichever way the play is pressed"

@@ -49,6 +49,8 @@ def part_words(part: str) -> str:
         return f"{kind} of the {where}"
     if part == "encoder":
         return "resolution of the encoders"
+    if part == "ripple":
+        return "ripple of the motors"
     if part == "bent_legs":
         return "bow of the legs"
     if part in _PARTS:

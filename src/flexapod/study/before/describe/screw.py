@@ -38,7 +38,8 @@ class ScrewDescription:
     [rad/s] and `torque` [N m] of the motor, largest sizes; `critical`: largest speed of the screw over what it may turn
     at; `rms_torque` over the study's duration; `back_torque`: of the motor, by which the
     largest thrust turns it back, not positive where friction holds; `life` in turns and `hours` of the motion repeated,
-    `safety`: static rating over the largest load; None where the rating is not given or nothing turns.
+    `safety`: static rating over the largest load; `current`, `rms_current` of the motor [A]; None where ratings or
+    torque constant are not given or nothing turns.
     """
 
     leg: int
@@ -53,6 +54,8 @@ class ScrewDescription:
     life: float | None
     hours: float | None
     safety: float | None
+    current: float | None
+    rms_current: float | None
 
 
 def describe_screws(path: RigidPath) -> tuple[ScrewDescription, ...]:
@@ -78,6 +81,7 @@ def describe_screw(
     pushed = np.abs(thrust) if screw.mounting == "fixed-fixed" else np.maximum(thrust, 0.0)
     buckling = _largest(t, pushed / allowed)
     speed, torque = np.abs(rate) / screw.per_turn, motor_torque(screw, thrust, rate, accel)
+    rms, constant = float(np.sqrt(np.trapezoid(torque**2, t) / (t[-1] - t[0]))), screw.motor.torque_constant
     load, rating = half_loads(screw.nut, thrust), screw.nut.static_load
     life, hours = _life(screw, load, t, rate)
     return ScrewDescription(
@@ -88,7 +92,9 @@ def describe_screw(
         speed=_largest(t, speed * screw.rotor.ratio),
         critical=float(speed.max() / critical_speed(screw)),
         torque=_largest(t, np.abs(torque)),
-        rms_torque=float(np.sqrt(np.trapezoid(torque**2, t) / (t[-1] - t[0]))),
+        rms_torque=rms,
+        current=None if constant is None else float(np.abs(torque).max()) / constant,
+        rms_current=None if constant is None else rms / constant,
         back_torque=float(np.abs(thrust).max() * screw.per_turn * back_efficiency(screw) / screw.rotor.ratio),
         life=life,
         hours=hours,
@@ -201,6 +207,8 @@ def screw_table(screws: tuple[ScrewDescription, ...]) -> tuple[list[str], list[l
     """Heads, and a row of texts for each screw."""
     head = ["thrust [N]", "of buckling [%]", "motor [rpm]", "of critical speed [%]", "motor [N m]", "rms [N m]",
             "static safety", "life [h]"]  # fmt: skip
+    known = any(s.current is not None for s in screws)
+    head += ["current [A]", "rms [A]"] if known else []
     return head, [
         [
             f"{s.thrust.value:.4g}",
@@ -211,6 +219,7 @@ def screw_table(screws: tuple[ScrewDescription, ...]) -> tuple[list[str], list[l
             f"{s.rms_torque:.3g}",
             "-" if s.safety is None else f"{s.safety:.3g}",
             "-" if s.hours is None else f"{s.hours:.3g}",
+            *("-" if x is None else f"{x:.3g}" for x in (s.current, s.rms_current) if known),
         ]
         for s in screws
     ]
