@@ -13,8 +13,10 @@ from flexapod.app.cli import app
 from flexapod.errors import InputError
 from flexapod.model import Home, to_toml
 from flexapod.model.joint import Joint
+from flexapod.model.leg import Stroke
 from flexapod.rigid.rotations import exponential
-from flexapod.study.bodies import CYLINDER, bodies_words, clearance, pairs_of_legs, turns
+from flexapod.study.before.describe.bodies import stroke_ends
+from flexapod.study.bodies import CYLINDER, bodies_words, clearance, first_least, pairs_of_legs, turns
 
 LIMITED = {"base_joint": Joint(max_angle=0.2), "platform_joint": Joint(max_angle=0.1)}
 
@@ -93,7 +95,7 @@ def test_a_run_says_how_much_is_left():
     words = bodies_words(data)
     assert "the least of all joints" in words[0]
     assert "come nearest to each other" in words[1]
-    k = int(data.leg_clearance.values.argmin())
+    k = first_least(data.leg_clearance.values)
     assert " and ".join(map(str, data.nearest_legs.values[k])) in words[1]
     assert "joint_margin" not in fx.simulate(study(machine()))
 
@@ -118,6 +120,22 @@ def _gap(robot, surge):
     pose = rigid.Poses.at_rest(pose.position + np.array([surge, 0, 0]), pose.rotation)
     legs = rigid.inverse_kinematics(robot, pose)
     return clearance(robot, pose.place(robot.platform_joints), rigid.leg_axes(robot, pose), legs.length).gap[0]
+
+
+def test_all_legs_at_the_ends_of_their_strokes():
+    # Alike legs: the platform rises and sinks without turning, and joints at both ends turn by the same angle.
+    robot = machine(**LIMITED, stroke=Stroke(min=0.95, max=1.2))
+    short, long = stroke_ends(robot)
+    assert short.shortest and not long.shortest
+    for end, length in ((short, 0.95), (long, 1.2)):
+        flat = robot.home_vectors[0, :2] @ robot.home_vectors[0, :2]
+        turn = abs(np.arccos(np.sqrt(flat) / robot.home_lengths[0]) - np.arccos(np.sqrt(flat) / length))
+        assert (end.base, end.platform) == pytest.approx((turn, turn), abs=1e-9)
+        assert end.margin == pytest.approx(0.1 - turn, abs=1e-9)
+        assert end.gap > 0
+    assert stroke_ends(machine()) == ()
+    apart = robot.legs[0].replace(stroke=Stroke(min=0.95, max=3.0))
+    assert stroke_ends(robot.replace(legs=(apart, *robot.legs[1:])))[-1].shortest  # the others do not meet it
 
 
 def test_thick_legs_run_into_each_other(tmp_path):

@@ -131,6 +131,12 @@ def _bodies(found: RobotDescription) -> None:
             f"t = {least.time:.3f} s, at home {text(found.clearance.home, 'm', 3)} between the nearest.",
             indent=2,
         )
+    for end in found.stroke_ends:
+        words = (f"base {math.degrees(end.base):.2f} deg", f"platform {math.degrees(end.platform):.2f} deg")
+        left = () if end.margin is None else (f"{math.degrees(end.margin):.2f} deg are left at least",)
+        room = () if end.gap is None else (f"{text(end.gap, 'm', 3)} between the nearest legs",)
+        name = "shortest" if end.shortest else "longest"
+        print_text(f"With all legs at their {name}: {', '.join((*words, *left, *room))}.", indent=2)
 
 
 def _most(values: Sequence[float]) -> int:

@@ -16,7 +16,16 @@ from flexapod.typing import Array
 if TYPE_CHECKING:
     from xarray import Dataset
 
-__all__ = ["CYLINDER", "bodies_words", "body_results", "clearance", "largest_turns", "pairs_of_legs", "turns"]
+__all__ = [
+    "CYLINDER",
+    "bodies_words",
+    "body_results",
+    "clearance",
+    "first_least",
+    "largest_turns",
+    "pairs_of_legs",
+    "turns",
+]
 
 CYLINDER = 1.6  # radius of a cylinder over that of its piston, where it is not known
 
@@ -82,9 +91,14 @@ def bodies_words(data: Dataset) -> list[str]:
         k, leg, end = np.unravel_index(left.argmin(), left.shape)
         said.append(left_words(float(left[k, leg, end]), leg + 1, data.end.values[end], float(data.time[k])))
     if "leg_clearance" in data:
-        k = int(data.leg_clearance.values.argmin())
+        k = first_least(data.leg_clearance.values)
         said.append(gap_words(float(data.leg_clearance[k]), data.nearest_legs.values[k], float(data.time[k])))
     return said
+
+
+def first_least(gap: Array) -> int:
+    """The first of the least of distances (T,), rounding aside."""
+    return int(np.argmax(gap <= gap.min() + 1e-9))
 
 
 def left_words(left: float, leg: int, end: str, time: float) -> str:

@@ -13,7 +13,7 @@ from flexapod.rigid.kinematics import BETA_LIMIT
 from flexapod.rigid.workspace import BEFORE, BEYOND, LONGEST, PULLED_OUT, SHORTEST
 from flexapod.solve.modes import refuse_pure_force
 from flexapod.study.before.room import check_outputs
-from flexapod.study.bodies import clearance, gap_words, largest_turns, turns
+from flexapod.study.bodies import clearance, first_least, gap_words, largest_turns, turns
 from flexapod.study.path import RigidPath, open_force_words, path_instants
 from flexapod.threads import one_thread
 from flexapod.typing import Array
@@ -272,7 +272,7 @@ def _touching(path: RigidPath) -> list[str]:
     nearest = clearance(path.robot, path.poses.place(path.robot.platform_joints), path.axes, path.legs.length)
     if nearest is None or nearest.gap.min() >= 0:
         return []
-    k = int(nearest.gap.argmin())
+    k = first_least(nearest.gap)
     return [gap_words(float(nearest.gap[k]), nearest.legs[k] + 1, float(path.time[k])).rstrip(".")]
 
 

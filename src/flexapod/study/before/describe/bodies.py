@@ -7,11 +7,13 @@ from dataclasses import dataclass
 import numpy as np
 
 from flexapod import rigid
+from flexapod.errors import FlexapodError
+from flexapod.model import Robot
 from flexapod.study.before.describe.leg import Extreme
-from flexapod.study.bodies import clearance, largest_turns, turns
+from flexapod.study.bodies import clearance, first_least, largest_turns, turns
 from flexapod.study.path import RigidPath
 
-__all__ = ["Clearance", "JointTurn", "joint_turns", "leg_clearance"]
+__all__ = ["Clearance", "JointTurn", "StrokeEnd", "joint_turns", "leg_clearance", "stroke_ends"]
 
 
 @dataclass(frozen=True, kw_only=True)
@@ -34,6 +36,49 @@ class Clearance:
     legs: tuple[int, int]
     least: Extreme
     home: float
+
+
+@dataclass(frozen=True, kw_only=True)
+class StrokeEnd:
+    """All legs at an end of their strokes, `shortest` or longest: largest turns of joints [rad], least distance [m].
+
+    `margin`: least angle left of joints that have a limit; None where none has. `gap` None: no legs could meet.
+    """
+
+    shortest: bool
+    base: float
+    platform: float
+    margin: float | None
+    gap: float | None
+
+
+def stroke_ends(robot: Robot) -> tuple[StrokeEnd, ...]:
+    """Joints and room between legs with all strokes at their ends; nothing where strokes have none, or do not meet."""
+    strokes = [leg.stroke for leg in robot.legs if leg.driven]
+    if not strokes or any(stroke is None for stroke in strokes) or any(leg.driven == "carriage" for leg in robot.legs):
+        return ()
+    found = []
+    for shortest in (True, False):
+        lengths = np.array([stroke.min if shortest else stroke.max for stroke in strokes if stroke is not None])
+        try:
+            pose = rigid.forward_kinematics(robot, lengths)
+            legs = rigid.inverse_kinematics(robot, pose)
+        except FlexapodError:
+            continue
+        axes = rigid.leg_axes(robot, pose, legs)
+        turned = turns(robot, axes, pose.rotation)[0]
+        left = (largest_turns(robot) - turned).min()
+        nearest = clearance(robot, pose.place(robot.platform_joints), axes, legs.length)
+        found.append(
+            StrokeEnd(
+                shortest=shortest,
+                base=float(turned[:, 0].max()),
+                platform=float(turned[:, 1].max()),
+                margin=float(left) if np.isfinite(left) else None,
+                gap=None if nearest is None else float(nearest.gap[0]),
+            )
+        )
+    return tuple(found)
 
 
 def joint_turns(path: RigidPath) -> tuple[JointTurn, ...]:
@@ -59,7 +104,7 @@ def leg_clearance(path: RigidPath) -> Clearance | None:
     )
     if nearest is None or there is None:
         return None
-    k = int(nearest.gap.argmin())
+    k = first_least(nearest.gap)
     one, other = (int(leg) + 1 for leg in nearest.legs[k])
     least = Extreme(value=float(nearest.gap[k]), time=float(path.time[k]))
     return Clearance(legs=(one, other), least=least, home=float(there.gap[0]))

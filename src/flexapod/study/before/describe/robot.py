@@ -19,7 +19,14 @@ from flexapod.study.accuracy.words import accuracy_words
 from flexapod.study.after.mode_shapes import mode_kinds
 from flexapod.study.before.checks import check_path
 from flexapod.study.before.describe.actuator import ActuatorDescription, describe_actuator
-from flexapod.study.before.describe.bodies import Clearance, JointTurn, joint_turns, leg_clearance
+from flexapod.study.before.describe.bodies import (
+    Clearance,
+    JointTurn,
+    StrokeEnd,
+    joint_turns,
+    leg_clearance,
+    stroke_ends,
+)
 from flexapod.study.before.describe.hydraulic import (
     HydraulicDescription,
     describe_hydraulics,
@@ -225,6 +232,7 @@ class RobotDescription:
     oil: tuple[str, ...]
     angles: tuple[JointAngle, ...]
     turns: tuple[JointTurn, ...]
+    stroke_ends: tuple[StrokeEnd, ...]
     clearance: Clearance | None  # None where no two legs could meet but at a joint
     singularity: Singularity | None  # None of a platform that is fixed
     poses: tuple[PoseDescription, ...]
@@ -278,6 +286,7 @@ def describe(study: model.Study | model.ActuatorStudy) -> RobotDescription | Act
         angles=_angles(path),
         turns=joint_turns(path),
         clearance=leg_clearance(path),
+        stroke_ends=stroke_ends(study.robot),
         singularity=singularity,
         poses=tuple(describe_pose(study, name, instant) for name, instant in instants.items()),
         vibration=vibration_to_expect(study, end),
