@@ -110,6 +110,7 @@ def test_a_map_has_margins_and_leaves_out_what_joints_cannot_reach():
     least = np.minimum(0.2 - free.base_joint_angle, 0.1 - free.platform_joint_angle)
     np.testing.assert_allclose(tight.joint_margin, least.where(~beyond), atol=1e-12)
     assert "joint_margin" not in free
+    assert free.nearest_legs.dims == ("surge", "pair") and (free.nearest_legs[:, 0] < free.nearest_legs[:, 1]).all()
     assert float(free.leg_clearance.min()) == pytest.approx(
         min(_gap(machine(), surge) for surge in axes["surge"]), abs=1e-12
     )

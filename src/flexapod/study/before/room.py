@@ -51,7 +51,7 @@ REMARKED = 1e9  # byte of results from which on their size is worth a remark
 SMALL = 1e8  # byte that every machine has free: below it nothing is asked
 PEAK = 3  # times the results is what they take while they are made: the record, the Dataset, what is written
 CSV = 3  # times the results is what NetCDF and CSV take together: a number in letters is twice its 8 bytes
-POSE = 26  # numbers of a pose of a map beside its frequencies
+POSE = 28  # numbers of a pose of a map beside its frequencies
 # Of a control group: most memory, memory in use, and the part of it that files left behind and the kernel gives back.
 _CGROUPS = (
     (Path("/sys/fs/cgroup"), "memory.max", "memory.current", "inactive_file"),

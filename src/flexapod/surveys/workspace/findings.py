@@ -40,6 +40,7 @@ GRID_VARIABLES = {
     "base_joint_angle": Variable((), "rad", "largest turn of a leg at its base joint from home"),
     "platform_joint_angle": Variable((), "rad", "largest turn of a leg at its platform joint from home"),
     "leg_clearance": Variable((), "m", "least distance between cylinders and pistons of two legs"),
+    "nearest_legs": Variable(("pair",), "1", "numbers of the two legs"),
     "euler_share": Variable((), "1", "largest axial thrust of a leg at rest over its Euler load"),
 }
 

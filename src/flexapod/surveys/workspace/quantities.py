@@ -90,6 +90,7 @@ def _rigid(robot: model.Robot, path: rigid.Poses) -> Values:
         "base_joint_angle": turned[..., 0].max(axis=1),
         "platform_joint_angle": turned[..., 1].max(axis=1),
         "leg_clearance": np.full(len(path), np.nan) if nearest is None else nearest.gap,
+        "nearest_legs": np.full((len(path), 2), np.nan) if nearest is None else nearest.legs + 1.0,
     }
 
 
