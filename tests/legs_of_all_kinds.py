@@ -10,6 +10,8 @@ from flexapod.mechanics.layout import Shapes, leg_parameters
 from flexapod.rigid.rotations import quaternion
 from flexapod.symbolic.functions import Interpreted
 
+GUIDE, CYLINDER = lateral_basis("tip-load", 2), lateral_basis("tip-load", 3, moment=True)
+INSIDE = ("ga", "gb", "ha", "hb", "ka", "kb")
 EVERYTHING = {"closure": "pose", "spin": True, "torsion": True}
 KINDS = {
     "point": {},
@@ -29,6 +31,10 @@ KINDS = {
     "slider on a base that moves": {"base_motion": True, "carriage": "slider"},
     "pose on a crank on frames that move": EVERYTHING
     | {"carriage": "crank", "base_mount": True, "platform_mount": True},
+    "point in a guide": {"guide": GUIDE},
+    "point in a cylinder that bends": {"cylinder": CYLINDER},
+    "point in a guide of a cylinder": {"guide": GUIDE, "cylinder": CYLINDER},
+    "pose in a guide of a cylinder": EVERYTHING | {"guide": GUIDE, "cylinder": CYLINDER, "soft_base": True},
     "tip body": {"closure": "none", "torsion": True, "tip_body": True},
     "planar": {"closure": "none", "planar": True, "tip_body": True},
 }
@@ -68,6 +74,11 @@ PHYSICS |= {
 PHYSICS |= {
     "series_stiffness": 4e5, "series_softening": [0.4, -0.3], "series_home": 0.85, "series_damping": 70.0,
     "rotor_mass": 300.0, "rotor_stiffness": 2e5, "rotor_damping": 30.0,
+}  # fmt: skip
+PHYSICS |= {
+    "guide_reach": 1.065, "guide_rhoA": 4.466, "guide_EI": 5217.4, "guide_stiffness": [3e5, 4e5],
+    "guide_damping": [30.0, 50.0], "cylinder_length": 0.315, "cylinder_EI": 2e4, "cylinder_rhoA": 4.0,
+    "mounted_mass": 1.2, "mounted_com": 0.12, "mounted_inertia": 0.006,
 }  # fmt: skip
 for end, k in (("base", 1.0), ("platform", 1.3)):
     PHYSICS |= {f"{end}_mount_stiffness": k * springs(5), f"{end}_mount_damping": 1e-3 * k * springs(6)}
@@ -118,11 +129,12 @@ def state(ours, seed, amplitude=1e-3, given=None):
     given = given or numbers(seed)
     q, v = rng.uniform(-0.5, 0.5, ours.size), rng.normal(size=ours.size)
     q[ours.l_index] = rng.uniform(0.8, 0.95)
-    for name in ("c", "a", "b", "t", "u1", "u2", "u3", "e1", "e2", "e3"):
+    for name in ("c", "a", "b", "t", "u1", "u2", "u3", "e1", "e2", "e3", *INSIDE):
         if ours.has(name):
             part = slice(ours.index(name), ours.index(name) + dict(ours.layout)[name])
-            q[part] = amplitude * rng.uniform(-1, 1, q[part].shape)
-            v[part] = 30 * amplitude * rng.uniform(-1, 1, q[part].shape)
+            size = amplitude / (50 if name in INSIDE else 1)  # which lean the whole piston
+            q[part] = size * rng.uniform(-1, 1, q[part].shape)
+            v[part] = 30 * size * rng.uniform(-1, 1, q[part].shape)
     return {
         "q": q, "v": v, "v_dot": rng.normal(size=ours.size), "lam": 50 * rng.normal(size=ours.rows),
         "command": np.tile([0.9, 0.1], ours.commands // 2), "p": parameters(ours, given),
@@ -135,5 +147,5 @@ def pieces(ours, column):
     found = {}
     for name, size in ours.layout:
         i = ours.index(name)
-        found[name] = column[i : i + size] if name in "abc" else column[i]
+        found[name] = column[i : i + size] if name in ("a", "b", "c", *INSIDE) else column[i]
     return found

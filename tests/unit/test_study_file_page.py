@@ -21,6 +21,7 @@ DERIVED = {
     "Study", "ActuatorStudy", "Robot", "Load", "ActuatorMotion", "ActuatorLoad",
     ("Material", "name"), ("Actuator", "material"), ("Simulation", "step"),
     *((part, name) for part in ("Piston", "Strut") for name in ("E", "density")),
+    ("Cylinder", "diameter"), ("Cylinder", "inner_diameter"),
     *((law, "law") for law in ("RateLaw", "SpinUpLaw", "CsvLaw", "ConstantLaw", "SineLaw", "StepLaw")),
     *((law, "law") for law in ("ConstantWrench", "SineWrench", "StepWrench", "CsvWrench")),
     *((kind, "type") for kind in ("CombinedMotion", "WaypointMotion", "CsvMotion", "PrescribedDrive", "ServoDrive",

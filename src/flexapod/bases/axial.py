@@ -36,6 +36,13 @@ class AxialBasis:
         """Number of axial shapes m."""
         return len(self.first)
 
+    @property
+    def from_inside(self) -> Array:
+        """The same as `series` in eta, the distance from the driven end: sin(n pi eta) is odd about either end."""
+        return np.concatenate(
+            [np.eye(1, MOMENTS, 1), *(-((-1.0) ** n) * self.series[n : n + 1] for n in range(1, self.count))]
+        )[: self.count]
+
     def values(self, eta: Array) -> Array:
         """Shapes at ``eta`` of shape (n,): (m, n)."""
         rows = [np.asarray(eta, dtype=float)] + [np.sin(n * np.pi * np.asarray(eta)) for n in range(1, self.count)]

@@ -13,9 +13,9 @@ from typing import Any
 
 import numpy as np
 
-from flexapod.bases import AxialBasis
+from flexapod.bases import AxialBasis, LateralBasis
 from flexapod.elements.frame import Frame
-from flexapod.symbolic.vocabulary import SX, bilinear, quadratic, time_derivative, vertcat, zeros
+from flexapod.symbolic.vocabulary import SX, bilinear, constant, quadratic, time_derivative, vertcat, zeros
 
 
 def _none() -> SX:
@@ -88,6 +88,52 @@ def _combine(moments: SimpleNamespace, f: Field) -> SX:
     return sum((c.T @ m for m, c in pairs if c.numel()), zeros(1))
 
 
+def bent_part(basis: LateralBasis, mass: SX, start: SX, step: SX, phi_psi: SX, sliding_psi: SX) -> Distribution:
+    """What bending of a uniform part, from X = start on by step zeta, adds to its mass as a straight one, Eq. (T25.4).
+
+    ``mass`` [kg] of the part; the last two as in `Distribution`. Its foreshortening is left to the caller.
+    """
+    k, none = basis.count, zeros(1)
+    first, moment = mass * constant(basis.first).T, mass * constant(basis.moment).T
+    along, still = start * first + step * moment, zeros(phi_psi.shape[1])
+    return Distribution(
+        first=SimpleNamespace(one=none, X=none, phi=first[:k], sliding=first[k:], psi=still),
+        moment=SimpleNamespace(one=none, X=none, phi=along[:k], sliding=along[k:], psi=still),
+        lateral_mass=mass,
+        phi_phi=basis.mass[:k, :k],
+        phi_sliding=basis.mass[:k, k:],
+        sliding_sliding=basis.mass[k:, k:],
+        axial_mass=none,
+        psi_psi=np.zeros((phi_psi.shape[1],) * 2),
+        phi_psi=phi_psi,
+        sliding_psi=sliding_psi,
+        short=none,
+        short_X=none,
+    )
+
+
+@dataclass(frozen=True, kw_only=True)
+class Line:
+    """Straight line on which a piston's bending stands: displacement and slope (a, b) at the mouth, and their rates.
+
+    ``mouth`` [m] from the base joint. Where nothing gives way there, it is the leg's axis.
+    """
+
+    mouth: SX
+    place: SX = field(default_factory=lambda: zeros(2))
+    slope: SX = field(default_factory=lambda: zeros(2))
+    place_rate: SX = field(default_factory=lambda: zeros(2))
+    slope_rate: SX = field(default_factory=lambda: zeros(2))
+
+    def foot(self) -> SX:
+        """Where it meets the plane of the base joint (a, b)."""
+        return self.place - self.mouth * self.slope
+
+    def foot_rate(self, l_dot: SX) -> SX:
+        """Velocity there of points that move out with the piston, Eq. (T25.2)."""
+        return self.place_rate - self.mouth * self.slope_rate + self.slope * l_dot
+
+
 @dataclass(frozen=True, kw_only=True)
 class Motion:
     """A bending leg: its bases, the frame of its cylinder, free length s and coordinates, and the fields they make.
@@ -99,6 +145,7 @@ class Motion:
     b: Any
     axial: AxialBasis
     frame: Frame
+    line: Line
     s: SX
     q: SX
     v: SX
@@ -111,13 +158,35 @@ class Motion:
 
     def velocity(self) -> tuple[Field, Field, Field]:
         """Velocity r_dot + omega x r in leg coordinates, without foreshortening, Eqs. (T3.7)-(T3.8), (T13.5)."""
-        q, v, r, u = self.qs, self.vs, self.vs.l / self.s, self.frame.velocity
+        return self.bending(self.qs.a, self.qs.b, self.vs.a, self.vs.b, self.vs.l / self.s)
+
+    def bending(self, a: SX, b: SX, a_rate: SX, b_rate: SX, r: SX) -> tuple[Field, Field, Field]:
+        """The same of a part of the piston with amplitudes of its own, whose length grows at the rate ``r`` [1/s]."""
+        q, v, u, line = self.qs, self.vs, self.frame.velocity, self.line
         w1, w2, w3 = self.frame.omega[0], self.frame.omega[1], self.frame.omega[2]
-        has_b = bool(q.b.numel())
+        foot, slope, tilt = line.foot(), line.slope, line.slope_rate
+        moved, has_b = line.foot_rate(v.l), bool(b.numel())
         return (
-            Field(one=u[0], X=w2, phi=v.a - w3 * q.b if has_b else v.a, sliding=r * q.a, psi=w2 * q.c),
-            Field(one=u[1], X=-w1, phi=v.b + w3 * q.a if has_b else v.b, sliding=r * q.b, psi=-w1 * q.c),
-            Field(one=v.l + u[2], phi=w1 * q.b - w2 * q.a if has_b else -w2 * q.a, psi=v.c),
+            Field(
+                one=u[0] + moved[0] - w3 * foot[1],
+                X=w2 + tilt[0] - w3 * slope[1],
+                phi=a_rate - w3 * b if has_b else a_rate,
+                sliding=r * a,
+                psi=w2 * q.c,
+            ),
+            Field(
+                one=u[1] + moved[1] + w3 * foot[0],
+                X=-w1 + tilt[1] + w3 * slope[0],
+                phi=b_rate + w3 * a if has_b else b_rate,
+                sliding=r * b,
+                psi=-w1 * q.c,
+            ),
+            Field(
+                one=v.l + u[2] + w1 * foot[1] - w2 * foot[0],
+                X=w1 * slope[1] - w2 * slope[0],
+                phi=w1 * b - w2 * a if has_b else -w2 * a,
+                psi=v.c,
+            ),
         )
 
     def foreshortening(self, kind: str) -> SX:
@@ -128,13 +197,23 @@ class Motion:
 def kinetic_energy(f: Motion, body: Distribution) -> SX:
     """Kinetic energy to second order in the amplitudes, Eqs. (T3.10) and (T13.5)."""
     square = sum((body.square(component) for component in f.velocity()), zeros(1))
+    return 0.5 * square + shortening_energy(f, f.vs.l, body.short, body.short_X)
+
+
+def shortening_energy(f: Motion, along: SX, short: SX, short_X: SX) -> SX:
+    """Part of a foreshortening, int e dm and int X e dm, in the kinetic energy of mass that slides out at a rate."""
     w, u = f.frame.omega, f.frame.velocity
-    turning = (w[0] ** 2 + w[1] ** 2) * body.short_X + (w[1] * u[0] - w[0] * u[1]) * body.short
-    return 0.5 * square + turning + (f.vs.l + u[2]) * f.rate(body.short)
+    turning = (w[0] ** 2 + w[1] ** 2) * short_X + (w[1] * u[0] - w[0] * u[1]) * short
+    return turning + (along + u[2]) * f.rate(short)
 
 
 def gravity_energy(f: Motion, body: Distribution, gravity: SX) -> SX:
     """- int g . r dm with the foreshortening's fall, Eq. (T3.14)."""
     height = body.integral(Field(X=SX(1), psi=f.qs.c)) + body.short
-    moment = vertcat(body.integral(Field(phi=f.qs.a)), body.integral(Field(phi=f.qs.b)), height)
+    foot, slope = f.line.foot(), f.line.slope
+    moment = vertcat(
+        body.integral(Field(one=foot[0], X=slope[0], phi=f.qs.a)),
+        body.integral(Field(one=foot[1], X=slope[1], phi=f.qs.b)),
+        height,
+    )
     return f.frame.weight(gravity, body.first.one, moment)

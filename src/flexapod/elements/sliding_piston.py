@@ -37,17 +37,20 @@ def _modal_damping(f: Motion, p: SimpleNamespace) -> SX:
 
 
 def tip_place(f: Motion) -> SX:
-    """Tip (v(1), w(1), l + c_0 + e(1)) in leg coordinates, Eq. (T3.11)."""
-    v, w = _at_tip(f.a.tip, f.qs.a), _at_tip(f.b.tip, f.qs.b)
+    """Tip (v(1), w(1), l + c_0 + e(1)) in leg coordinates, Eqs. (T3.11), (T25.1)."""
+    straight = f.line.place + f.s * f.line.slope
+    v, w = straight[0] + _at_tip(f.a.tip, f.qs.a), straight[1] + _at_tip(f.b.tip, f.qs.b)
     stretch = f.qs.c[0] if f.axial.count else zeros(1)
     return vertcat(v, w, f.qs.l + stretch + f.foreshortening("slope_tip") / f.s)
 
 
 def tip_turn(f: Motion) -> SX:
-    """Rotation vector of the tip in leg coordinates to second order in the amplitudes, Eq. (T13.10)."""
+    """Rotation vector of the tip in leg coordinates to second order in the amplitudes, Eqs. (T13.10), (T25.7)."""
     v, w = _at_tip(f.a.tip_slope, f.qs.a) / f.s, _at_tip(f.b.tip_slope, f.qs.b) / f.s
     twist = f.qs.t if hasattr(f.qs, "t") else zeros(1)
-    carried = bilinear(f.qs.a, f.a.turn, f.qs.b) / (2 * f.s**2)
+    slope = f.line.slope
+    carried = bilinear(f.qs.a, f.a.turn, f.qs.b) / (2 * f.s**2) + 0.5 * (slope[0] * w - slope[1] * v)
+    v, w = slope[0] + v, slope[1] + w
     return vertcat(-w + 0.5 * twist * v, v + 0.5 * twist * w, twist + carried)
 
 
@@ -64,7 +67,7 @@ def _mass(f: Motion, p: SimpleNamespace) -> Distribution:
     first, moment = constant(basis.first).T, constant(basis.moment).T
     p0, p1 = constant(axial.first).T, constant(axial.moment).T
     along = m * s * (p.mouth * first + s * moment) if k else zeros(0)
-    coupling = _coupling(axial.series, basis.powers, s / p.Lp) if k and axial.count else zeros(2 * k, axial.count)
+    bent = coupling(axial.series, basis.powers, s / p.Lp) if k and axial.count else zeros(2 * k, axial.count)
     short = m * f.foreshortening("slope_first")
     return Distribution(
         first=SimpleNamespace(
@@ -87,14 +90,14 @@ def _mass(f: Motion, p: SimpleNamespace) -> Distribution:
         sliding_sliding=basis.mass[k:, k:],
         axial_mass=m * p.Lp,
         psi_psi=axial.mass,
-        phi_psi=m * s * coupling[:k, :],
-        sliding_psi=m * s * coupling[k:, :],
+        phi_psi=m * s * bent[:k, :],
+        sliding_psi=m * s * bent[k:, :],
         short=short,
         short_X=p.mouth * short + m * s * f.foreshortening("slope_moment"),
     )
 
 
-def _coupling(series: np.ndarray, powers: np.ndarray, sigma: SX) -> SX:
+def coupling(series: np.ndarray, powers: np.ndarray, sigma: SX) -> SX:
     """Int Phi psi dzeta as polynomials in sigma = s/Lp: psi_n = sum_j c_nj (sigma (1 - zeta))^j, Eq. (T1.12)."""
     total = zeros(powers.shape[1], series.shape[0])
     for n, coefficients in enumerate(series):

@@ -4,6 +4,7 @@ from dataclasses import dataclass
 from typing import Literal
 
 from flexapod.bases import AxialBasis, LateralBasis
+from flexapod.mechanics.guide_layout import CYLINDER_PARAMETERS, GUIDE_PARAMETERS
 
 #: Physical parameters of one leg, in the order in which kernels read them (name, size). SI; vectors in the world frame.
 LEG_PARAMETERS: tuple[tuple[str, int], ...] = (
@@ -139,7 +140,6 @@ PLATFORM_MOUNT_PARAMETERS: tuple[tuple[str, int], ...] = (
     ("platform_mount_damping", 36),
 )
 PLATFORM_JOINT: tuple[tuple[str, int], ...] = (("joint", 3),)  # of legs with a ball, as in `POSE_PARAMETERS`
-
 #: Physical parameters of the payload in kernel order (name, size); tool from the CoM, in platform axes.
 PAYLOAD_PARAMETERS: tuple[tuple[str, int], ...] = (
     ("mass", 1),  # kg
@@ -210,6 +210,10 @@ class Shapes:
     base_motion, base_mount, platform_mount : bool
         Displacement and angles g of a base that is moved, f of a base plate on a mount, m of the plate with the
         platform joints below the payload, on a mount. All legs share f and m.
+    guide : LateralBasis, optional
+        Shapes of the piston between two bushings, which give way across the leg; None: clamped at the mouth.
+    cylinder : LateralBasis, optional
+        Shapes of a cylinder that bends.
     """
 
     a: LateralBasis
@@ -243,6 +247,8 @@ class Shapes:
     base_motion: bool = False
     base_mount: bool = False
     platform_mount: bool = False
+    guide: LateralBasis | None = None
+    cylinder: LateralBasis | None = None
 
     @property
     def layout(self) -> tuple[tuple[str, int], ...]:
@@ -262,7 +268,14 @@ class Shapes:
         moved = tuple(f"{end}{k}" for end, has in ends if has for k in (1, 2, 3))
         frames = (("g", self.base_motion), ("m", self.platform_mount), ("f", self.base_mount))
         single = (*((name, 1) for name in (*angles, "l")), *amplitudes, *((name, 1) for name in (*more, *moved)))
-        return (*single, *((name, 6) for name, has in frames if has))
+        return (*single, *self._inside, *((name, 6) for name, has in frames if has))
+
+    @property
+    def _inside(self) -> tuple[tuple[str, int], ...]:
+        """Coordinates at the mouth and inwards of it: displacement and slope there, inner part, cylinder."""
+        guide = () if self.guide is None else (("g", 2), ("h", self.guide.count))
+        bend = () if self.cylinder is None else (("k", self.cylinder.count),)
+        return tuple((f"{name}{way}", size) for name, size in (*guide, *bend) for way in "ab")
 
     @property
     def size(self) -> int:
@@ -365,6 +378,8 @@ def leg_parameters(shapes: Shapes) -> tuple[tuple[str, int], ...]:
         (shapes.base_mount, BASE_MOUNT_PARAMETERS),
         (shapes.platform_mount, PLATFORM_MOUNT_PARAMETERS),
         (shapes.platform_mount and shapes.closure == "point", PLATFORM_JOINT),
+        (shapes.guide is not None, GUIDE_PARAMETERS),
+        (shapes.cylinder is not None, CYLINDER_PARAMETERS),
     )
     return tuple(item for there, table in parts if there for item in table)
 

@@ -2,14 +2,18 @@
 
 from dataclasses import dataclass
 from types import SimpleNamespace
+from typing import Any
 
 import numpy as np
 
+from flexapod.bases import LateralBasis
 from flexapod.elements.carriage import carriage
 from flexapod.elements.cylinder import cylinder
-from flexapod.elements.distribution import Motion
+from flexapod.elements.distribution import Line, Motion
+from flexapod.elements.flexible_cylinder import Bend, bend, flexible_cylinder
 from flexapod.elements.flexure import flexure, springs
 from flexapod.elements.frame import Energies, Frame
+from flexapod.elements.guide import bushings, inner_end, inner_part, inner_turn, lean, shortening
 from flexapod.elements.mount import WORLD, displaced, mount, plate
 from flexapod.elements.ripple import ripple
 from flexapod.elements.rotations import small_rotation
@@ -66,22 +70,13 @@ def leg(shapes: Shapes, p: SimpleNamespace, q: SX, v: SX, qs: SimpleNamespace, v
     a, b, present = shapes.a if shapes.a.count else shapes.b, shapes.b, (zeros(0), zeros(0))
     if shapes.sections:
         qs, vs = (of_planes(shapes.planes, part) for part in (qs, vs))
-        integrals = stepped_shapes(b if b.count else a, shapes.axial, shapes.planes, p, s, qs.l)
-        near, present = expanded(list(integrals.values()), qs.l)
-        tip = np.tile((b if b.count else a).tip, len(shapes.planes))
-        a = b = SteppedShapes(count=tip.size, tip=tip, **dict(zip(integrals, near, strict=True)))
-    motion = Motion(
-        a=a,
-        b=b,
-        axial=shapes.axial,
-        frame=frame,
-        s=s,
-        q=q,
-        v=v,
-        qs=qs,
-        vs=vs,
-    )
+        a, present = _of_sections(shapes, b if b.count else a, p, s, qs.l)
+        b = a
+    line = _line(shapes, p, qs, vs)
+    motion = Motion(a=a, b=b, axial=shapes.axial, frame=frame, line=line, s=s, q=q, v=v, qs=qs, vs=vs)
     e += cylinder(frame, p, vs) + (stepped_piston if shapes.sections else sliding_piston)(motion, p)
+    inside, shift, turn = _inside(shapes, motion, p)
+    e += inside
     if shapes.torsion:
         e += torsion(frame, p, qs, vs)
     series = screw(p, qs, vs, oil=shapes.oil) if shapes.series else Energies()
@@ -92,7 +87,7 @@ def leg(shapes: Shapes, p: SimpleNamespace, q: SX, v: SX, qs: SimpleNamespace, v
         e += tip_body(motion, p, shapes.planar)
     if shapes.closure == "pose":
         e += _joints(shapes, p, qs, vs)
-    place = tip_place(motion)
+    place = tip_place(motion) + shift
     if shapes.soft_platform:
         along = matrix33(p.leg_frame).T @ ALONG if shapes.flexure else ALONG
         e += soft_joint(p.platform_soft, p.platform_soft_damping, _three(qs, "e"), _three(vs, "e"), along)
@@ -106,7 +101,7 @@ def leg(shapes: Shapes, p: SimpleNamespace, q: SX, v: SX, qs: SimpleNamespace, v
         tip=frame.origin + frame.axes @ place,
         tip_axes=frame.axes @ small_rotation(theta),
         theta=theta,
-        turn=tip_turn(motion),
+        turn=tip_turn(motion) + turn,
         series=series,
         present=present,
     )
@@ -126,6 +121,51 @@ def _base(
     if shapes.platform_mount:
         e += mount(p.platform_mount_stiffness, p.platform_mount_damping, qs.m, vs.m)
     return base, e
+
+
+def _of_sections(shapes: Shapes, basis: LateralBasis, p: SimpleNamespace, s: SX, l: SX) -> tuple[Any, tuple[SX, SX]]:  # noqa: E741
+    """Shapes of a piston of several sections near a length, and what is there of them."""
+    integrals = stepped_shapes(basis, shapes.axial, shapes.planes, p, s, l)
+    near, present = expanded(list(integrals.values()), l)
+    tip = np.tile(basis.tip, len(shapes.planes))
+    return SteppedShapes(count=tip.size, tip=tip, **dict(zip(integrals, near, strict=True))), present
+
+
+def _bends(shapes: Shapes, p: SimpleNamespace, qs: SimpleNamespace, vs: SimpleNamespace) -> tuple[Bend, Bend] | None:
+    """Bending of the cylinder and its rate."""
+    return None if shapes.cylinder is None else (bend(shapes.cylinder, p, qs), bend(shapes.cylinder, p, vs))
+
+
+def _line(shapes: Shapes, p: SimpleNamespace, qs: SimpleNamespace, vs: SimpleNamespace) -> Line:
+    """Line of the piston through the mouth: that of a cylinder that bends, and what the gland gives way to it."""
+    place, slope, place_rate, slope_rate = (zeros(2) for _ in range(4))
+    if (bends := _bends(shapes, p, qs, vs)) is not None:
+        (place, place_rate), (slope, slope_rate) = (
+            [x.place(p.mouth) for x in bends],
+            [x.slope(p.mouth) for x in bends],
+        )
+    if shapes.guide is not None:
+        place, slope = (x + vertcat(qs.ga[i], qs.gb[i]) for i, x in enumerate((place, slope)))
+        place_rate, slope_rate = (x + vertcat(vs.ga[i], vs.gb[i]) for i, x in enumerate((place_rate, slope_rate)))
+    return Line(mouth=p.mouth, place=place, slope=slope, place_rate=place_rate, slope_rate=slope_rate)
+
+
+def _inside(shapes: Shapes, f: Motion, p: SimpleNamespace) -> tuple[Energies, SX, SX]:
+    """What is inside of a mouth that gives way: energies, shift and turn of the tip beyond those of the piston."""
+    e, from_base, turn, bends = Energies(), zeros(1), zeros(1), _bends(shapes, p, f.qs, f.vs)
+    if shapes.guide is None and bends is None:
+        return e, zeros(3), zeros(3)
+    head, inner = f.qs.l - p.Lp, shapes.guide
+    hole = zeros(2)
+    if shapes.cylinder is not None and bends is not None:
+        e += flexible_cylinder(f, shapes.cylinder, p, *bends)
+        from_base, hole = bends[0].shortening(head), bends[0].place(head)
+    if inner is not None:
+        gap = inner_end(f, p, inner) - hole
+        e += inner_part(f, p, inner) + bushings(f, p, gap, f.rate(gap))
+        turn = inner_turn(f, p, inner)
+    at_tip, short, short_X = shortening(f, p, inner, from_base)
+    return e + lean(f, p, short, short_X), vertcat(0, 0, at_tip), vertcat(0, 0, turn)
 
 
 def _joints(shapes: Shapes, p: SimpleNamespace, qs: SimpleNamespace, vs: SimpleNamespace) -> Energies:

@@ -53,7 +53,7 @@ from flexapod.model.motion import (
     WaypointMotion,
 )
 from flexapod.model.payload import Payload
-from flexapod.model.piston import Cylinder, Piston, Strut
+from flexapod.model.piston import Cylinder, Guide, Mounted, Piston, Strut
 from flexapod.model.robot import Robot
 from flexapod.model.rolling import RollingLaw
 from flexapod.model.screw import Bearing, Brake, Drive, Encoder, Limits, Loop, Motor, Nut, Ripple, Rotor, ScrewDrive
@@ -102,6 +102,7 @@ __all__ = [
     "ForceDrive",
     "Geometry",
     "Gradient",
+    "Guide",
     "Heat",
     "Home",
     "HydraulicDrive",
@@ -119,6 +120,7 @@ __all__ = [
     "Motion",
     "MotionLaw",
     "Motor",
+    "Mounted",
     "Nut",
     "OpenValue",
     "Payload",

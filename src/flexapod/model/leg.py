@@ -13,7 +13,7 @@ from flexapod.model.damping import BodyDamping, damping_parts
 from flexapod.model.drive import ForceDrive, PrescribedDrive
 from flexapod.model.hydraulic import HydraulicDrive
 from flexapod.model.joint import Carriage, Joint
-from flexapod.model.piston import Cylinder, Piston, Strut
+from flexapod.model.piston import Cylinder, Guide, Piston, Strut
 from flexapod.model.screw import Drive, ScrewDrive
 from flexapod.model.spring import AxialSpring
 from flexapod.words import number, text
@@ -44,7 +44,8 @@ class Leg(Frozen):
     """A leg between base and platform: a chain of joints, of letters "UPS" unless others are given (`model.chain`).
 
     `cylinder` and `piston` of a leg with a stroke, or `strut` of fixed length (then `piston` is the strut, `cylinder`
-    nothing); `carriage`: what moves the foot, where the letters have one; `base_joint`, `platform_joint`;
+    nothing); `guide`: bushings of the piston, which is clamped at the mouth without it; `carriage`: what moves the
+    foot, where the letters have one; `base_joint`, `platform_joint`;
     `springs` along it, in series with its other parts; `passive`: nothing drives it; `damping`: modal damping ratio of
     the piston, or `Damping` with a part in proportion to its stiffness; `axial_modes`: number of axial shapes, the
     static one first.
@@ -56,6 +57,7 @@ class Leg(Frozen):
     cylinder: Cylinder = NOTHING
     piston: Piston
     strut: Strut | None = None
+    guide: Guide | None = None
     carriage: Carriage | None = None
     base_joint: Joint = Joint()
     platform_joint: Joint = Joint()
@@ -187,6 +189,29 @@ class Leg(Frozen):
         if self.drive.friction is not None and self.driven != "stroke":
             raise _misfit(self.chain, "drive.friction", "belongs to a driven stroke")
         return self
+
+    @model_validator(mode="after")
+    def _guided(self) -> Leg:
+        if self.guide is None:
+            return self
+        if self.strut is not None:
+            raise _misfit(self.chain, "guide", "does not fit a strut: nothing slides", "cylinder and piston")
+        if self.guide.clearance and not self.swings:
+            raise _misfit(
+                self.chain, "guide.clearance", "is of legs that no joint holds across", "legs UPS, SPS and their like"
+            )
+        if self.stroke is not None and (overlap := self.overlap(self.stroke.max)) <= 0:
+            raise InputError(
+                f"leaves no overlap of the bushings at the longest leg of {self.stroke.max:g} m ({overlap:g} m)",
+                key="guide",
+                allowed=f"a leg below cylinder.mouth + piston.length = {self.cylinder.mouth + self.piston.length:g} m",
+                next_step="A longer piston, or a shorter stroke.max",
+            )
+        return self
+
+    def overlap(self, length: float) -> float:
+        """Distance of gland and head of a leg of some length [m]."""
+        return self.cylinder.mouth + self.piston.length - length
 
     @model_validator(mode="after")
     def _springs_where_they_act(self) -> Leg:

@@ -11,13 +11,24 @@ from flexapod.errors import InputError
 from flexapod.model.base import Frozen, Measure, NonNegative, Number, Positive
 from flexapod.model.material import POISSON, Material, Rectangle, Tube
 from flexapod.model.sections import PistonSection, Step
+from flexapod.model.spring import check_lossy
+
+
+class Mounted(Frozen):
+    """A body on a cylinder: `mass` [kg], `com` [m] from the base joint, transverse `inertia` [kg m^2] about it."""
+
+    mass: Annotated[NonNegative, Measure("mass")]
+    com: Annotated[Number, Measure("length")] = 0.0
+    inertia: Annotated[NonNegative, Measure("inertia")] = 0.0
 
 
 class Cylinder(Frozen):
-    """The lower, rigid part of a leg.
+    """The lower part of a leg, rigid unless its section is known.
 
     `mass` [kg]; `com` [m], centre of mass from the universal joint along the axis; `inertia` [kg m^2], transverse,
     about that centre; `mouth` [m], where the piston comes out, from the universal joint; `axial_inertia` [kg m^2].
+    A tube of `diameter`, `inner_diameter` [m] and `material` from the joint to the mouth bends and stretches; with
+    what is mounted on it, `body`, it has the masses above.
     """
 
     mass: Annotated[NonNegative, Measure("mass")]
@@ -25,10 +36,78 @@ class Cylinder(Frozen):
     inertia: Annotated[NonNegative, Measure("inertia")] = 0.0
     mouth: Annotated[NonNegative, Measure("length")]
     axial_inertia: Annotated[NonNegative, Measure("inertia")] = 0.0
+    diameter: Annotated[Positive, Measure("length")] | None = None
+    inner_diameter: Annotated[Positive, Measure("length")] | None = None
+    material: Material | None = None
+    body: Mounted | None = None
 
     @model_validator(mode="after")
     def _real_body(self) -> Cylinder:
         _check_axial(self.axial_inertia, self.inertia, "inertia")
+        if (self.diameter is None) != (self.material is None) or (self.body is not None and self.diameter is None):
+            missing = "diameter" if self.diameter is None else "material"
+            raise InputError("is missing", key=missing, next_step=f"Add {missing}, or mass, com and inertia alone")
+        if self.diameter is not None and self.diameter >= self.mouth:
+            raise InputError(
+                "makes the cylinder wider than long: it is not a beam",
+                key="diameter",
+                value=self.diameter,
+                allowed=f"below its length of {self.mouth:g} m, from the base joint to the mouth",
+                next_step="Leave the section out for a rigid cylinder",
+            )
+        return self
+
+    @classmethod
+    def tube(cls, *, mouth: float, section: Tube, material: Material, body: Mounted | None = None) -> Cylinder:
+        """A cylinder that bends and stretches: its masses follow from section, material and what is mounted on it."""
+        on = body or Mounted(mass=0.0)
+        own = material.density * section.area * mouth
+        mass = own + on.mass
+        com = (own * mouth / 2 + on.mass * on.com) / mass
+        about = section.second_moment / section.area
+        inertia = own * (mouth**2 / 12 + about + (mouth / 2 - com) ** 2) + on.inertia + on.mass * (on.com - com) ** 2
+        return cls(
+            mass=mass,
+            com=com,
+            inertia=inertia,
+            mouth=mouth,
+            axial_inertia=2 * own * about,
+            diameter=section.diameter,
+            inner_diameter=section.inner_diameter,
+            material=material,
+            body=body,
+        )
+
+    @property
+    def section(self) -> Tube | None:
+        """Of one that bends."""
+        return None if self.diameter is None else Tube(diameter=self.diameter, inner_diameter=self.inner_diameter)
+
+    @property
+    def beam(self) -> tuple[float, float, float]:
+        """EI [N m^2], EA [N], rhoA [kg/m] of one that bends; zeros of a rigid one."""
+        section, material = self.section, self.material
+        if section is None or material is None:
+            return 0.0, 0.0, 0.0
+        return material.E * section.second_moment, material.E * section.area, material.density * section.area
+
+
+class Guide(Frozen):
+    """Two bushings in which a piston slides: in the cylinder's mouth (`gland`), on the piston's inner end (`head`).
+
+    Stiffness [N/m] of each across the leg, with a damper [N s/m] or a loss factor for both; `clearance` [m]: the free
+    travel across, of each.
+    """
+
+    gland: Annotated[Positive, Measure("stiffness")]
+    head: Annotated[Positive, Measure("stiffness")]
+    clearance: Annotated[NonNegative, Measure("length")] | None = None
+    damping: Annotated[NonNegative, Measure("damping")] | None = None
+    loss: Annotated[NonNegative, Measure("number")] | None = None
+
+    @model_validator(mode="after")
+    def _sensible(self) -> Guide:
+        check_lossy(self)
         return self
 
 

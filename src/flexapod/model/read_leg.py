@@ -16,7 +16,7 @@ from flexapod.model.hydraulic import HydraulicDrive
 from flexapod.model.joint import NO_DIRECTION, Carriage, Joint
 from flexapod.model.leg import Leg
 from flexapod.model.material import MATERIALS, Material, Tube
-from flexapod.model.piston import Piston, Strip, Strut
+from flexapod.model.piston import Cylinder, Mounted, Piston, Strip, Strut
 from flexapod.model.rolling import RollingLaw
 from flexapod.model.screw import Drive, Encoder, Motor, Ripple, ScrewDrive
 from flexapod.model.section import Section
@@ -51,8 +51,10 @@ def read_leg(section: Section, number: int, count: int, chain: str, places: tupl
             )
         section.need(*(("cylinder", "piston") if letters.stroke else ("strut",)))
         strut, carriage = section.section("strut"), section.section("carriage")
+        cylinder = section.section("cylinder")
         return {
             "chain": chain,
+            "cylinder": None if cylinder is None else _cylinder(cylinder),
             "piston": None if "piston" not in section else _piston(section.child(section.data["piston"], "piston")),
             "strut": None if strut is None else _strut(strut),
             "carriage": None if carriage is None else _carriage(carriage, base, normal),
@@ -198,6 +200,28 @@ def _piston(section: Section) -> Piston:
         material=read_material(section),
         axial_inertia=section.number("axial_inertia", "inertia"),
         bow=section.number("bow", "length"),
+    )
+
+
+def _cylinder(section: Section) -> Cylinder:
+    """A rigid cylinder, or one whose section is given."""
+    section.only(*columns_of(Cylinder), *_OF_MATERIAL)
+    tube: dict[str, object] = {name: None for name in ("diameter", "inner_diameter", "material", "body")}
+    if not any(name in section for name in (*tube, *_OF_MATERIAL)):
+        return section.read(Cylinder, also=_OF_MATERIAL, then=lambda _: tube)
+    for name in ("mass", "com", "inertia", "axial_inertia"):
+        if name in section:
+            raise section.error(
+                "follows from section and material of the cylinder", name, allowed="body, for what is mounted on it"
+            )
+    section.need("mouth", "diameter")
+    body = section.section("body")
+    return section.build(
+        Cylinder.tube,
+        mouth=section.number("mouth", "length"),
+        section=section.build(Tube, **_diameters(section)),
+        material=read_material(section),
+        body=None if body is None else body.read(Mounted),
     )
 
 

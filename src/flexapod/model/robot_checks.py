@@ -47,6 +47,17 @@ def check_counts(robot: Robot) -> None:
         if len(values) > 1:
             allowed = "one number for all legs" if name == "axial_modes" else "sliders or cranks, not both in one robot"
             raise InputError("differs between legs", key=f"leg.{name}", value=sorted(values), allowed=allowed)
+    inside = {
+        "guide": [leg.guide for leg in robot.legs],
+        "cylinder.diameter": [leg.cylinder.section for leg in robot.legs],
+    }
+    for name, parts in inside.items():
+        if any(part is not None for part in parts) and any(leg.piston.sections for leg in robot.legs):
+            raise InputError(
+                "does not go together with pistons of several sections",
+                key=f"leg.{name}",
+                allowed="pistons of one section throughout, or clamped at the mouths of rigid cylinders",
+            )
 
 
 def check_built(robot: Robot) -> None:

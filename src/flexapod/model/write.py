@@ -13,7 +13,7 @@ from flexapod.model.disturbance import Floor, Spectrum
 from flexapod.model.joint import Carriage, Joint
 from flexapod.model.leg import Leg
 from flexapod.model.material import MATERIALS, POISSON, Material, Tube
-from flexapod.model.piston import Piston, Strut
+from flexapod.model.piston import Cylinder, Piston, Strut
 from flexapod.model.robot import Robot
 from flexapod.model.simulation import OWN_BASIS, Simulation
 from flexapod.typing import Array
@@ -109,6 +109,7 @@ def _leg(leg: Leg, base: Array, platform: Array, normal: Array) -> dict[str, obj
     if leg.screw is not None:
         drive = _fields(leg.screw)
         fields["drive"] = {name: x for name, x in drive.items() if name != "material"} | _material(leg.screw.material)
+    fields["cylinder"] = _cylinder(leg.cylinder)
     del fields["springs"]
     if leg.springs:
         fields["springs"] = {spring.name: spring for spring in leg.springs}
@@ -143,6 +144,14 @@ def _carriage(carriage: Carriage, place: Array, normal: Array) -> dict[str, obje
     unused = "mass" if carriage.kind == "crank" else "inertia"
     fields = {name: value for name, value in _fields(carriage).items() if name != unused or value}
     return {carriage.kind: word_of(carriage.axis, place, normal) or carriage.axis, **fields}
+
+
+def _cylinder(cylinder: Cylinder) -> dict[str, object]:
+    fields, section, material = _fields(cylinder), cylinder.section, cylinder.material
+    if section is None or material is None:
+        return fields
+    computed = ("mass", "com", "inertia", "axial_inertia", "material")
+    return {name: x for name, x in fields.items() if name not in computed} | _material(material)
 
 
 def _beam(piston: Piston) -> dict[str, object]:

@@ -163,6 +163,7 @@ def expansion(robot: Robot, heat: Heat, part: str) -> Array:
     given, steel = getattr(heat.expansion, part, None), MATERIALS["steel"].expansion
     made_of = {
         "piston": [leg.piston.expansion for leg in robot.legs],
+        "cylinder": [leg.cylinder.material and leg.cylinder.material.expansion for leg in robot.legs],
         "screw": [leg.drive.material.expansion if leg.drive.type == "screw" else None for leg in robot.legs],
     }
     own = made_of.get(part, [None] * robot.count)

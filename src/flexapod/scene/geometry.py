@@ -107,8 +107,10 @@ class RobotMotion:
         centre, offset = moved - turned @ skeleton.com, None
         if self._amplitude is not None:
             length, zeta = skeleton.lengths(centre, turned, carriages), np.linspace(0.0, 1.0, STATIONS)
-            line = scale * leg_lines(self._study, self._amplitude[i], length, zeta)
-            offset = skeleton.off_chord(line, scale * self._tip[i], length)
+            line = leg_lines(self._study, self._amplitude[i], length, zeta)
+            leaning = self._tip[i] - line[..., -1]  # in bushings, or in a cylinder that bends
+            line = line + leaning[..., None] * zeta
+            offset = skeleton.off_chord(scale * line, scale * self._tip[i], length)
         arm = self._arm if point == "tool" else np.zeros(3)
         return Instant(
             index=i,

@@ -108,7 +108,8 @@ def _fingerprint(shapes: Shapes) -> list[object]:
         for package in (elements, mechanics, symbolic)
         for path in sorted(Path(str(package.__file__)).parent.glob("*.py"))
     ]
-    numbers = [getattr(basis, field.name) for basis in (shapes.a, shapes.b, shapes.axial) for field in fields(basis)]
+    bases = [x for x in (shapes.a, shapes.b, shapes.axial, shapes.guide, shapes.cylinder) if x is not None]
+    numbers = [getattr(basis, field.name) for basis in bases for field in fields(basis)]
     arrays = [np.ascontiguousarray(x).tobytes() for x in numbers if isinstance(x, np.ndarray)]
     switches = [x for x in (getattr(shapes, field.name) for field in fields(shapes)) if isinstance(x, (bool, int, str))]
     return [*texts, *arrays, shapes.layout, switches]

@@ -33,8 +33,10 @@ def loss_frequency(robot: Robot, simulation: Simulation) -> float:
         There is no such frequency.
     """
     joints = (joint.lossy for leg in robot.legs for joint in (leg.base_joint, leg.platform_joint))
-    mounts = any(mount is not None and mount.loss for mount in (robot.base_mount, robot.platform_mount))
-    if not (mounts or any(joints) or any(x.loss or x.leakage for leg in robot.legs for x in springs_along(leg))):
+    mounts = (mount.loss for mount in (robot.base_mount, robot.platform_mount) if mount is not None)
+    guides = (leg.guide.loss for leg in robot.legs if leg.guide is not None)
+    lossy = any(x.loss or x.leakage for leg in robot.legs for x in springs_along(leg))
+    if not (lossy or any(joints) or any(guides) or any(mounts)):
         return 0.0
     # rigid legs have springs, too, and are locked by prescribed strokes
     sliding = simulation.replace(friction="sliding")
@@ -96,6 +98,7 @@ def _lossless(robot: Robot) -> Robot:
             platform_joint=leg.platform_joint.replace(**none),
             springs=tuple(spring.replace(loss=None) for spring in leg.springs),
             drive=_locked(leg.drive),
+            guide=leg.guide and leg.guide.replace(loss=None),
         )
         for leg in robot.legs
     )

@@ -4,7 +4,7 @@ import numpy as np
 
 from flexapod.mechanics import layout
 from flexapod.mechanics.layout import LEG_PARAMETERS, PAYLOAD_PARAMETERS, Shapes
-from flexapod.model import Actuator, ForceDrive, Joint, Leg, Robot, ServoDrive, damping_parts
+from flexapod.model import Actuator, ForceDrive, Joint, Leg, Mounted, Robot, ServoDrive, damping_parts
 from flexapod.rigid.limbs import COORDINATES, FREE, Limbs
 from flexapod.solve.sections import section_parameters
 from flexapod.solve.springs import (
@@ -21,6 +21,7 @@ from flexapod.typing import Array
 
 #: Of a place without friction: nothing rubs, and what could bend is a unit long.
 NO_FRICTION = (0.0, 0.0, 1.0, 0.0, 0.0, 0.0, 0.0)
+ENDLESS = 1e4  # m, beyond the reach of any leg
 
 
 def _pack(layout: tuple[tuple[str, int], ...], values: dict[str, object]) -> Array:
@@ -62,6 +63,7 @@ def leg_parameters(robot: Robot, legs: Limbs, shapes: Shapes, per_loss: float = 
         | (section_parameters(leg, shapes, legs.home[i, COORDINATES.index("l")]) if shapes.sections else {})
         | _friction(leg, float(legs.home[i, COORDINATES.index("l")]))
         | frames
+        | _inside(leg, per_loss)
         for i, leg in enumerate(robot.legs)
     )
     turns = [COORDINATES.index(name) for name in ("spin", "gamma3")]
@@ -220,6 +222,28 @@ def _friction(leg: Leg, length: float) -> dict[str, object]:
         per_turn = np.array([1 / screw.per_turn, 0.0, screw.per_turn, 1.0, 1 / screw.per_turn, screw.per_turn**-2, 1.0])
         numbers, at_stroke = tuple(numbers * per_turn), twist_share(leg, length)
     return found | {"drive_friction": (*numbers, 0.0), "drive_friction_at_stroke": at_stroke}
+
+
+def _inside(leg: Leg, per_loss: float) -> dict[str, object]:
+    """Bushings of the piston and bending of the cylinder; without them a piece of no mass that never ends."""
+    guide, cylinder, piston = leg.guide, leg.cylinder, leg.piston
+    EI, _, rhoA = cylinder.beam
+    body = cylinder.body or Mounted(mass=0.0)
+    springs = [] if guide is None else [guide.gland, guide.head]
+    return {
+        "guide_reach": cylinder.mouth + piston.length if guide is not None else ENDLESS,
+        "guide_rhoA": piston.rhoA if guide is not None else 0.0,
+        "guide_EI": piston.EI if guide is not None else 0.0,
+        "guide_stiffness": springs or [0.0, 0.0],
+        "guide_damping": [viscous(k, guide and guide.damping, guide and guide.loss, per_loss) for k in springs]
+        or [0.0, 0.0],
+        "cylinder_length": cylinder.mouth if EI else 1.0,
+        "cylinder_EI": EI,
+        "cylinder_rhoA": rhoA,
+        "mounted_mass": body.mass,
+        "mounted_com": body.com,
+        "mounted_inertia": body.inertia,
+    }
 
 
 def flexures(robot: Robot, legs: Limbs, per_loss: float | None = None) -> Array:

@@ -46,6 +46,8 @@ def _ideal(leg: Leg) -> Leg:
         base_joint=leg.base_joint.replace(**none),
         platform_joint=leg.platform_joint.replace(**none),
         springs=(),
+        guide=None,
+        cylinder=leg.cylinder.replace(diameter=None, inner_diameter=None, material=None, body=None),
         drive=PrescribedDrive(),
     )
 

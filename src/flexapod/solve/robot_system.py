@@ -65,7 +65,19 @@ def _held(robot: Robot, legs: Limbs, shapes: Shapes) -> Mask:
         held[:, shapes.index("g") :][:, :6] = True
     if shapes.torsion:  # a ball does not twist its leg
         held[:, shapes.index("t")] = ~legs.pose_closure
-    return held | _held_joints(robot, legs, shapes)
+    return held | _held_joints(robot, legs, shapes) | _held_inside(robot, shapes)
+
+
+def _held_inside(robot: Robot, shapes: Shapes) -> Mask:
+    """Coordinates at and within the mouth of legs without bushings, of rigid cylinders, and across a planar robot."""
+    held: Mask = np.zeros((len(robot.legs), shapes.size), dtype=bool)
+    for i, leg in enumerate(robot.legs):
+        there = {"g": leg.guide is not None, "h": leg.guide is not None, "k": leg.cylinder.section is not None}
+        for name, size in shapes.layout:
+            if name[0] in there and name[1:] in ("a", "b"):
+                at = shapes.index(name)
+                held[i, at : at + size] = not there[name[0]] or (robot.plane is not None and name[1] == "a")
+    return held
 
 
 def _summed(robot: Robot, shapes: Shapes, *, at_rest: bool) -> Mask:

@@ -82,6 +82,8 @@ def springs_along(leg: Leg) -> list[Spring]:
     ]
     if leg.screw is not None:
         found += _of_screw(leg.screw, leg.begins)
+        if (EA := leg.cylinder.beam[1]) and leg.screw.bearing.position > 0:  # under thrust up to the bearing
+            found.append(_constant("cylinder", "nut", EA / leg.screw.bearing.position, None, None))  # (T25.14)
     if leg.cylinder_of_oil is not None:
         found.append(_of_oil(leg.cylinder_of_oil, leg.begins))
     return found + [_constant(x.name, x.at, x.stiffness, x.damping, x.loss) for x in leg.springs]

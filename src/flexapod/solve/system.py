@@ -196,6 +196,7 @@ class System:
         stiffest = [(EA / Lp).max() * (self.kernel.shapes.axial.count > 0)]
         ends = (f"{x}_{y}" for x in ENDS for y in ("flexure", "soft"))
         springs = ("drive_stiffness", "carriage_stiffness", "series_stiffness", "rotor_stiffness", *ends)
+        springs += ("guide_stiffness",)
         for name in springs:
             if name in dict(layout):
                 stiffest.append(self.leg_p[:, columns(layout, name)].max())

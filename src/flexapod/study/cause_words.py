@@ -23,6 +23,8 @@ CAUSE_WORDS = {
     "friction": "friction of the drives",
     "platform_mount": "give of the platform's mount",
     "base_mount": "give of the base's mount",
+    "cylinder": "stretch and bending of the cylinders",
+    "guide": "give of the bushings",
     "geometry": "errors of geometry",
     "heat_base": "heat of the base",
     "heat_platform": "heat of the platform",

@@ -35,6 +35,7 @@ COORDINATES: dict[str, tuple[object, str]] = {
     "quaternion": (list("wxyz"), "component of the quaternion"),
     "cause": (list(CAUSES), "cause of a leg's length error"),
     "end": (["base", "platform"], "end of the leg"),
+    "bushing": (["gland", "head"], "bushing: in the cylinder's mouth, on the piston's inner end"),
     "joint_angle": (["alpha", "beta"], "angle of a joint"),
     "component": (_TWIST, "translation along and rotation about the world axes"),
     "component_b": (_TWIST, "translation along and rotation about the world axes"),
@@ -113,6 +114,10 @@ _LEGS = {
     "joint_moment": Variable(
         ("time", "leg", "end", "axis"), "N m", "moment of the base on the leg, of the leg on the platform, world axes"
     ),
+    "guide_force": Variable(
+        ("time", "leg", "bushing", "direction"), "N", "force of a bushing on the piston across the leg, its spring's"
+    ),
+    "guide_overlap": Variable(_TL, "m", "distance of the bushings of the piston"),
     "leg_length_command": Variable(_TL, "m", "joint-to-joint length of the rigid leg"),
     "leg_length": Variable(_TL, "m", "joint-to-joint length of the flexible leg"),
     "leg_stroke": Variable(_TL, "m", "reference length: driven end of the piston plus its unstrained length"),

@@ -13,7 +13,7 @@ from flexapod.model import Leg, Robot
 from flexapod.rigid.limbs import COORDINATES
 from flexapod.study.accuracy.play import Play
 from flexapod.study.accuracy.sensitivity import Sensitivity
-from flexapod.study.before.estimates import buckling_load, pinned_root, section_width
+from flexapod.study.before.estimates import buckling_loads, pinned_root, section_width
 from flexapod.typing import Array
 
 __all__ = ["Bent", "bent", "by_bending_stiffness", "by_bow", "crookedness", "is_crooked", "softness", "thrust"]
@@ -72,7 +72,7 @@ class _Under(NamedTuple):
 def _under(robot: Robot, at: Sensitivity, push: Array) -> _Under:
     cold = crookedness(robot)
     free = at.q[0, :, L] - np.array([leg.cylinder.mouth for leg in robot.legs])
-    euler = np.array([buckling_load(leg, s[None])[0] for leg, s in zip(robot.legs, free, strict=True)])
+    euler = buckling_loads(robot, at.q[:1, :, L])[0]
     share = push / euler
     if share.max() >= 1:
         leg = int(share.argmax())

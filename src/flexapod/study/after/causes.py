@@ -21,6 +21,7 @@ from flexapod.solve.released import is_hexapod, rigid_errors
 from flexapod.solve.springs import Place
 from flexapod.solve.system import System
 from flexapod.study.after.elongations import elongations, frame_names, part_names
+from flexapod.study.after.inside import tip_moves
 from flexapod.study.after.legs import stretch
 from flexapod.study.cause_words import CAUSES
 from flexapod.study.path import RigidPath
@@ -91,7 +92,7 @@ def errors_of(robot: Robot, system: System, path: RigidPath, record: Record | Re
             whole[..., L] -= give
     if "drive" in places_with_friction(robot):
         _of_friction(robot, system, record, causes)
-    for name, error in _across(found, system, record, q).items():
+    for name, error in _across(robot, found, system, record, q).items():
         causes[name], bending[:] = causes[name] + error, bending - error
     return Errors(by_cause={name: np.where(counts, part, 0.0) for name, part in (causes | more).items()})
 
@@ -121,26 +122,29 @@ def _built(robot: Robot, path: RigidPath, command: Array) -> dict[str, tuple[tup
     return found
 
 
-def _across(found: Limbs, system: System, record: Record | RestStates, q: Array) -> dict[str, Array]:
-    """What displacements of soft joints across the legs do to held coordinates, (T, legs, 8) by joint, Eq. (T15.15).
+def _across(robot: Robot, found: Limbs, system: System, record: Record | RestStates, q: Array) -> dict[str, Array]:
+    """What parts that give way across the legs do to held coordinates, (T, legs, 8) by part, Eqs. (T15.15), (T25.15).
 
     Of legs UPS that is of second order, and left to bending.
     """
     shapes, errors = system.kernel.shapes, {}
-    if found.plain or shapes.flexure:
+    moves = tip_moves(robot, system, record.q)
+    for name, end, soft in (("base_joint", "u", shapes.soft_base), ("platform_joint", "e", shapes.soft_platform)):
+        if soft and not shapes.flexure:
+            at = shapes.index(f"{end}1")
+            moves[name] = record.q[..., at : at + 2], np.zeros((*record.q.shape[:-1], 2))
+    if found.plain or not moves:
         return errors
     chain, taken = screws(found, q).columns, closing(found)
     z, y = chain[..., :3, L], chain[..., 3:, COORDINATES.index("beta")]
     x, spin = np.cross(y, z), q[..., COORDINATES.index("spin"), None]
     x, y = np.cos(spin) * x + np.sin(spin) * y, np.cos(spin) * y - np.sin(spin) * x
-    for name, end, soft in (("base_joint", "u", shapes.soft_base), ("platform_joint", "e", shapes.soft_platform)):
-        if not soft:
-            continue
-        at = shapes.index(f"{end}1")
-        shift = record.q[..., at, None] * x + record.q[..., at + 1, None] * y
+    for name, (shift, slope) in moves.items():
+        moved = shift[..., :1] * x + shift[..., 1:] * y
+        turned = slope[..., :1] * y - slope[..., 1:] * x
         error = np.zeros_like(q)
         for i, own in enumerate(taken):
-            step = np.concatenate([shift[:, i], np.zeros_like(shift[:, i])], axis=-1)[:, : own.sum(), None]
+            step = np.concatenate([moved[:, i], turned[:, i]], axis=-1)[:, : own.sum(), None]
             error[:, i, own] = np.linalg.solve(chain[:, i, : own.sum()][..., own], step)[..., 0]
         if error.any():
             errors[name] = error

@@ -9,14 +9,16 @@ import numpy as np
 from flexapod.model import Robot, ServoDrive
 from flexapod.solve.springs import Place, Spring, of_servo, springs_along
 from flexapod.solve.system import System
+from flexapod.study.after.inside import part_names_inside
 from flexapod.typing import Array
 
 __all__ = ["elongations", "frame_names", "part_names"]
 
 
 def part_names(robot: Robot) -> tuple[str, ...]:
-    """Names of the springs along any leg of a robot, in their order."""
-    return tuple(dict.fromkeys(spring.name for leg in robot.legs for spring in springs_along(leg)))
+    """Names of what gives way in any leg of a robot, in their order: springs along it, cylinder and guide."""
+    springs = dict.fromkeys(spring.name for leg in robot.legs for spring in springs_along(leg))
+    return tuple(dict.fromkeys([*springs, *part_names_inside(robot)]))
 
 
 def frame_names(robot: Robot) -> tuple[str, ...]:

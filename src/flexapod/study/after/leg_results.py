@@ -23,6 +23,7 @@ from flexapod.solve.system import System
 from flexapod.study.after import legs as by_name
 from flexapod.study.after.causes import cause_names
 from flexapod.study.after.elongations import elongations
+from flexapod.study.after.inside import guide_results, is_guided, tip_moves
 from flexapod.study.after.plausibility import axes_as_drawn
 from flexapod.study.bodies import body_results, largest_turns, pairs_of_legs
 from flexapod.study.names import DRIVES, Variable
@@ -45,7 +46,8 @@ def leg_results(robot: Robot, system: System, path: RigidPath, record: Record) -
         "drive_position": _drive_positions(robot, system, record) / turns + zero,
         "drive_command": _commands(found, path) / turns + zero,
         "drive_force": _motor_forces(robot, system, forces) * turns,
-        "tip_deflection": bent @ by_name.bending_basis(shapes).tip,
+        "tip_deflection": bent @ by_name.bending_basis(shapes).tip
+        + sum(place for place, _ in tip_moves(robot, system, q).values()),
         "joint_force": record.lam[..., :3],
     }
     length = flexible_lengths(robot, system, record)
@@ -54,6 +56,7 @@ def leg_results(robot: Robot, system: System, path: RigidPath, record: Record) -
     if by_name.has_strokes(robot):
         force = by_name.stroke_forces(found, drive_forces(robot, system, record))
         results |= zip(STROKES, (path.legs.length, length, q[..., shapes.l_index], force), strict=True)
+    results |= guide_results(robot, system, q)
     if held := by_name.held_names(found):
         results["held_force"] = _held_forces(found, system, forces, held)
     if _bears_moments(found):
@@ -180,6 +183,7 @@ def absent(robot: Robot) -> set[str]:
     none = set() if by_name.has_strokes(robot) else {*STROKES, "actuator_force_rigid"}
     none |= set() if by_name.held_names(found) else {"held_force"}
     none |= set() if np.isfinite(largest_turns(robot)).any() else {"joint_margin"}
+    none |= set() if is_guided(robot) else {"guide_force", "guide_overlap"}
     none |= set() if pairs_of_legs(robot) else {"leg_clearance", "nearest_legs"}
     none |= set() if places_with_friction(robot) else {"friction"}
     none |= _absent_frames(robot)

@@ -9,6 +9,7 @@ from flexapod.mechanics.layout import Shapes, columns, leg_parameters
 from flexapod.rigid.rotations import matrix, quaternion
 from flexapod.solve.modes import RobotModes
 from flexapod.solve.sections import leg_values
+from flexapod.study.after.inside import off_axis
 from flexapod.study.after.legs import base_points, bending_basis, lateral
 from flexapod.typing import Array
 
@@ -60,7 +61,7 @@ def _base_plate(found: RobotModes, legs: Array) -> Array:
 def _groups(shapes: Shapes) -> dict[str, list[int]]:
     """Coordinates of a leg by what their strain energy is called."""
     names = {
-        "bending": ("a", "b"),
+        "bending": ("a", "b", "ga", "gb", "ha", "hb", "ka", "kb"),
         "axial": ("l", "c"),
         "twisting": ("spin", "t"),
         "carriage": ("chi",),
@@ -115,13 +116,15 @@ def _leg_shapes(robot: model.Robot, found: RobotModes) -> Array:
     """Lateral displacement of every leg off the line of its joints, (m, legs, 2, stations) [m]."""
     shapes, count = found.system.kernel.shapes, len(robot.legs)
     basis = bending_basis(shapes)
-    legs = lateral(shapes, found.shapes[:, :-6].reshape(len(found.shapes), count, found.system.n))
-    result = np.zeros((*legs.shape[:3], len(STATIONS)))
+    q = found.shapes[:, :-6].reshape(len(found.shapes), count, found.system.n)
+    legs = lateral(shapes, q)
+    line = off_axis(robot, found.system, q, found.equilibrium.state.q[:, shapes.l_index], STATIONS)
+    result = line - line[..., -1:] * STATIONS
     for i, leg in enumerate(robot.legs):
         length = found.equilibrium.state.q[i, shapes.l_index]
         zeta = np.clip((STATIONS * length - leg.cylinder.mouth) / (length - leg.cylinder.mouth), 0.0, 1.0)
         values = leg_values(leg, basis, np.array([length - leg.cylinder.mouth]), zeta)[..., 0]
-        result[:, i] = (legs[:, i, :, None] @ (values - np.outer(basis.tip, STATIONS)))[..., 0, :]
+        result[:, i] += (legs[:, i, :, None] @ (values - np.outer(basis.tip, STATIONS)))[..., 0, :]
     return result
 
 

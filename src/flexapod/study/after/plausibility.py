@@ -23,6 +23,8 @@ from flexapod.study.before.estimates import (
     beam_section,
     bending_errors,
     buckling_load,
+    buckling_loads,
+    gives_inside,
     piston_section,
     section_width,
 )
@@ -60,6 +62,9 @@ def _leg_warnings(robot: Robot, system: System, record: Record | RestStates, whe
     axes = flexible_axes(robot, system, record)
     compression = np.einsum("tli,tli->tl", record.lam[..., :3], axes)
     shapes, basis, found = system.kernel.shapes, bending_basis(system.kernel.shapes), []
+    inside = gives_inside(robot)
+    own = system if shapes.a.count or shapes.b.count else None
+    loads = buckling_loads(robot, record.q[..., shapes.l_index], own) if inside.any() else None
     for i, leg in enumerate(robot.legs):
         length = record.q[:, i, shapes.l_index]
         free, bent = length - leg.cylinder.mouth, lateral(shapes, record.q[:, i])
@@ -68,7 +73,7 @@ def _leg_warnings(robot: Robot, system: System, record: Record | RestStates, whe
             for remark in (
                 *_slope(leg_values(leg, basis, free, np.ones(1), 1)[:, :, 0] / free, bent, when),
                 *_stroke(leg, length, when),
-                *_axial(leg, free, compression[:, i], when),
+                *_axial(leg, free, compression[:, i], when, None if loads is None else loads[:, i]),
                 *_nut(leg, compression[:, i], when),
                 *_slender(leg, basis, free, when),
                 *_stress(leg, basis, bent, free, compression[:, i], when),
@@ -159,10 +164,10 @@ def _stroke(leg: Leg, length: Array, when: _When) -> list[_Remark]:
     return [("stroke", excess[k], words)]
 
 
-def _axial(leg: Leg, free: Array, compression: Array, when: _When) -> list[_Remark]:
-    if (compression * free**2).max() <= NEAR_BUCKLING * leg.piston.least_EI * (np.pi / 2) ** 2:
+def _axial(leg: Leg, free: Array, compression: Array, when: _When, load: Array | None) -> list[_Remark]:
+    if load is None and (compression * free**2).max() <= NEAR_BUCKLING * leg.piston.least_EI * (np.pi / 2) ** 2:
         return []  # even with the least root that (T8.11) can have
-    share = compression / buckling_load(leg, free)
+    share = compression / (buckling_load(leg, free) if load is None else load)
     k = int(share.argmax())
     if share[k] <= NEAR_BUCKLING:
         return []

@@ -10,13 +10,15 @@ import numpy as np
 from flexapod import rigid
 from flexapod.model import Actuator, Leg, Piston, Robot, Tube
 from flexapod.rigid.rotations import matrix
+from flexapod.solve.buckling import leg_loads
 from flexapod.solve.modes import RobotModes
 from flexapod.solve.rigid_motion import rigid_motion
+from flexapod.solve.system import System
 from flexapod.solve.tables import feed_forward
 from flexapod.study.after.legs import base_motion, of_drives
 from flexapod.study.before.columns import stepped_buckling
 from flexapod.study.path import RigidPath
-from flexapod.typing import Array
+from flexapod.typing import Array, Mask
 
 POISSON = 0.3  # of metals; materials give none
 
@@ -96,6 +98,21 @@ def buckling_load(leg: Leg, free: Array) -> Array:
         return stepped_buckling(leg, free)
     x = _ROOTS[_clamped(leg)](leg.cylinder.mouth / free)
     return leg.piston.EI * (x / free) ** 2  # (T8.11)
+
+
+def buckling_loads(robot: Robot, length: Array, system: System | None = None) -> Array:
+    """Euler loads of all legs at lengths (T, n), with bushings and cylinders that bend where they have them, [N].
+
+    ``system``: see `solve.buckling`.
+    """
+    found = np.stack([buckling_load(leg, x - leg.cylinder.mouth) for leg, x in zip(robot.legs, length.T, strict=True)])
+    inside = gives_inside(robot)
+    return np.where(inside, leg_loads(robot, length, system), found.T) if inside.any() else found.T
+
+
+def gives_inside(robot: Robot) -> Mask:
+    """Which legs have bushings or a cylinder that bends, (n,)."""
+    return np.array([leg.guide is not None or leg.cylinder.section is not None for leg in robot.legs])
 
 
 def _clamped(leg: Leg) -> tuple[bool, bool]:

@@ -13,7 +13,7 @@ from flexapod.solve.modes import LockedPoses, locked_poses, modes_of
 from flexapod.solve.rest import at_drives
 from flexapod.solve.rigid_motion import rigid_motion
 from flexapod.solve.stiffness import compliance, displacement, stiffness_of, tool_motion
-from flexapod.study.before.estimates import buckling_load
+from flexapod.study.before.estimates import buckling_loads
 from flexapod.study.before.reach import REACHED, Codes, leg_limits, rigid_codes, slider_limits
 from flexapod.study.bodies import clearance, largest_turns, turns
 from flexapod.study.budgets.rows import names_of_rows, rows_of_poses
@@ -148,8 +148,7 @@ def _euler_share(robot: model.Robot, path: rigid.Poses, locked: LockedPoses, for
     thrust = np.einsum("pli,pli->pl", locked.equilibria.states.lam[locked.at][..., :3], rigid.leg_axes(robot, path))
     along = np.array([leg.driven == "stroke" for leg in robot.legs])
     pushed, length = np.where(along, np.maximum(force, thrust), thrust), rigid.reach(robot, path).length
-    euler = [buckling_load(leg, length[:, i] - leg.cylinder.mouth) for i, leg in enumerate(robot.legs)]
-    return np.maximum(pushed / np.stack(euler, axis=1), 0.0).max(axis=1)
+    return np.maximum(pushed / buckling_loads(robot, length), 0.0).max(axis=1)
 
 
 def _dynamic(robot: model.Robot, path: rigid.Poses, locked: LockedPoses, acceleration: Array | None) -> Array:

@@ -9,7 +9,7 @@ import numpy as np
 from flexapod.model import Leg, Robot
 from flexapod.model.simulation import SOLID
 from flexapod.study.after.plausibility import NEAR_BUCKLING, SLENDERNESS, buckling_words, nut_words, thick_words
-from flexapod.study.before.estimates import STATIONS, buckling_load, piston_section, section_width
+from flexapod.study.before.estimates import STATIONS, piston_section, section_width
 from flexapod.study.path import RigidPath
 from flexapod.study.words import text
 from flexapod.typing import Array
@@ -80,7 +80,7 @@ class LegPath:
     """A leg along the rigid path, each shape (T,), `moment` at `STATIONS` from the tip (stations, T).
 
     `time` [s]; `length` joint to joint [m]; `carriage` [m, rad]; `force` of the drive [N, N m] and `thrust` along the
-    leg at its tip [N]; bending `moment` [N m].
+    leg at its tip [N]; bending `moment` [N m]; `euler`: thrust at which it buckles [N].
     """
 
     time: Array
@@ -89,6 +89,7 @@ class LegPath:
     force: Array
     thrust: Array
     moment: Array
+    euler: Array
 
 
 def describe_leg(number: int, leg: Leg, path: LegPath, home: float) -> LegDescription:
@@ -107,7 +108,7 @@ def describe_leg(number: int, leg: Leg, path: LegPath, home: float) -> LegDescri
     free = length - leg.cylinder.mouth
     along = path.force if leg.driven == "stroke" else path.thrust
     pushed = np.maximum(along, path.thrust)  # the axial force goes from the drive's to the tip's along the piston
-    euler = buckling_load(leg, free)
+    euler = path.euler
     near = int((pushed / euler).argmax())
     inside = np.minimum(leg.piston.length, leg.piston.length - free)
     return LegDescription(

@@ -42,7 +42,7 @@ from flexapod.study.before.describe.leg import (
     load_remarks,
 )
 from flexapod.study.before.describe.screw import ScrewDescription, back_words, describe_screws, screw_remarks
-from flexapod.study.before.estimates import bending_moments, residual_vibration
+from flexapod.study.before.estimates import bending_moments, buckling_loads, residual_vibration
 from flexapod.study.disturbances import vibration_words
 from flexapod.study.path import RigidPath
 from flexapod.study.words import held
@@ -342,7 +342,7 @@ def describe_legs(path: RigidPath) -> tuple[LegDescription, ...]:
     """Extremes of the legs on the rigid path of a study."""
     robot, forces = path.robot, path.forces
     thrust = np.einsum("tli,tli->tl", forces.joint_force, path.axes)
-    moment = bending_moments(path)
+    moment, euler = bending_moments(path), buckling_loads(robot, path.legs.length)
     return tuple(
         describe_leg(
             i + 1,
@@ -354,6 +354,7 @@ def describe_legs(path: RigidPath) -> tuple[LegDescription, ...]:
                 force=forces.drive_force[:, i],
                 thrust=thrust[:, i],
                 moment=moment[:, :, i],
+                euler=euler[:, i],
             ),
             float(robot.home_lengths[i]),
         )

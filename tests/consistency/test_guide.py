@@ -1,0 +1,321 @@
+"""Pistons in two bushings and cylinders that bend: exact kinematics, limits, exact beams."""
+
+import numpy as np
+import pytest
+from scipy.linalg import eigh
+from scipy.optimize import brentq
+from tests import legs_of_all_kinds as legs
+from tests.machines import SCREW, machine, study
+from tests.mechanisms import planar, three_rps
+from tests.oracles.guided import Guided
+from tests.runs import balance, run_robot
+
+import flexapod as fx
+from flexapod.bases import axial_basis, lateral_basis
+from flexapod.errors import InputError
+from flexapod.mechanics.layout import Shapes
+from flexapod.model import MATERIALS, Cylinder, Guide, Mounted
+from flexapod.model.material import Tube
+from flexapod.solve.buckling import leg_loads
+from flexapod.study.before.describe.robot import describe
+from flexapod.study.before.estimates import buckling_load
+
+L_P, MOUTH, LENGTH = 0.75, 0.315, 0.91
+TUBE = 4.0
+
+
+def bare(**more):
+    """Numbers of a leg of piston and cylinder alone, whose cylinder is its beam."""
+    mass = TUBE * MOUTH
+    still = {"piston_axial_inertia": 0.0, "cylinder_axial_inertia": 0.0, "mounted_mass": 0.0, "mounted_inertia": 0.0,
+             "zeta": 0.0, "damping_time": 0.0, "base": np.zeros(3), "R0": np.eye(3), "guide_reach": L_P + MOUTH,
+             "drive_stiffness": 0.0, "drive_damping": 0.0, "gravity": [1.0, 2.0, -9.0], "Lp": L_P, "mouth": MOUTH,
+             "cylinder_mass": mass, "cylinder_com": MOUTH / 2, "cylinder_inertia": mass * MOUTH**2 / 12,
+             "cylinder_rhoA": TUBE, "cylinder_length": MOUTH}  # fmt: skip
+    return legs.numbers(0, **still | more)
+
+
+def test_energies_are_right_to_second_order():
+    # Closed forms keep terms up to second order in the amplitudes: the gap falls as their cube.
+    ours, given = legs.shapes("point in a guide of a cylinder"), bare()
+    exact = Guided(ours.layout, given, ours.a.values, ours.guide.values, ours.cylinder.values)
+    rng = np.random.default_rng(3)
+    gaps = []
+    for amplitude in (1e-3, 1e-4):
+        rng = np.random.default_rng(3)
+        q, v = amplitude * rng.uniform(-1, 1, ours.size), 30 * amplitude * rng.uniform(-1, 1, ours.size)
+        for name in ("ka", "kb"):  # whose stiff shapes are steep
+            q[ours.index(name) :][:3] *= [1, 0.1, 0.1]
+            v[ours.index(name) :][:3] *= [1, 0.1, 0.1]
+        q[:3], v[:3] = [0.3, -0.2, LENGTH], [0.7, -1.1, 0.4]
+        x = legs.state(ours, 0, given=given) | {"q": q, "v": v}
+        found = legs.call(ours, "leg_energies", x)["energies"]
+        T, V = exact.energies(q, v, np.array(given["gravity"]))
+        gaps.append(abs(found[0] - T))
+        # Potentials are exact in these kinematics.
+        assert found[1] == pytest.approx(V, rel=1e-12)
+    assert gaps[0] / gaps[1] == pytest.approx(1000, rel=0.2)
+
+
+EI, RHO = 5217.4, 4.466
+GLAND, HEAD = 4e6, 3e6
+
+
+def leg_of(overlap, modes=6, **more):
+    """A pinned leg without gravity, 0.6 m free, and its numbers."""
+    s = 0.6
+    length = MOUTH + s
+    given = bare(Lp=s + overlap, guide_reach=length + overlap, gravity=np.zeros(3), guide_stiffness=[GLAND, HEAD],
+                 EI=EI, guide_EI=EI, rhoA=RHO, guide_rhoA=RHO, **more)  # fmt: skip
+    ours = Shapes(a=lateral_basis("tip-load", modes), b=lateral_basis("tip-load", modes), axial=axial_basis(0),
+                  guide=lateral_basis("tip-load", modes // 2))  # fmt: skip
+    return ours, given, length
+
+
+def pinned(ours, given, length, thrust=0.0):
+    """M and K of a leg whose ends do not move across it, at rest under a thrust."""
+    x = legs.state(ours, 0, given=given)
+    x["q"], x["lam"] = np.zeros(ours.size), np.array([0, 0, thrust])
+    x["q"][ours.l_index] = length
+    found = legs.call(ours, "leg_matrices", x)
+    J = np.vstack([found["J"][:2], np.eye(ours.size)[ours.l_index]])
+    N = np.linalg.svd(J)[2][3:].T
+    return N.T @ found["M"] @ N, N.T @ found["K"] @ N
+
+
+def beam(x, rate, P, order):
+    """Four solutions of EI v'''' + P v'' = rhoA rate^2 v at x, or their derivatives."""
+    if not rate:
+        k = np.sqrt(P / EI)
+        turn = k**order * np.array([np.cos(k * x + order * np.pi / 2), np.sin(k * x + order * np.pi / 2)])
+        return np.array([*([1.0, x] if order == 0 else [0.0, float(order == 1)]), *turn])
+    k = (RHO * rate**2 / EI) ** 0.25
+    turn = [np.cos(k * x + order * np.pi / 2), np.sin(k * x + order * np.pi / 2)]
+    return k**order * np.array(
+        [*turn, *((np.sinh(k * x), np.cosh(k * x)) if order % 2 else (np.cosh(k * x), np.sinh(k * x)))]
+    )
+
+
+def exact(given, length, rate=0.0, P=0.0):
+    """Determinant of a beam in two bushings of a rigid cylinder: shears, moments, slopes, places; scaled."""
+    head, mouth = length - given["Lp"], given["mouth"]
+    J = given["cylinder_inertia"] + given["cylinder_mass"] * given["cylinder_com"] ** 2
+    A = np.zeros((9, 9))  # inner part, outer part, cylinder's angle
+
+    def v(x, order):
+        return beam(x - mouth, rate, P, order)
+
+    def shear(x):
+        return EI * v(x, 3) + P * v(x, 1)
+
+    gap_h, gap_g = np.array([*v(head, 0), *np.zeros(4), -head]), np.array([*v(mouth, 0), *np.zeros(4), -mouth])
+    A[0, :4] = v(head, 2)
+    A[1, :4] = shear(head)
+    A[1] += HEAD * gap_h
+    A[1, 8] -= P  # the thrust acts along the cylinder, wherever in it the head is
+    for row, order in ((2, 0), (3, 1), (4, 2)):
+        A[row, :4], A[row, 4:8] = v(mouth, order), -v(mouth, order)
+    A[5, :4], A[5, 4:8] = -shear(mouth), shear(mouth)
+    A[5] += GLAND * gap_g
+    A[6, 4:8], A[7, 4:8] = v(length, 0), v(length, 2)
+    A[8] = -HEAD * head * gap_h - GLAND * mouth * gap_g
+    A[8, :4] -= P * v(head, 0)
+    A[8, 8] += P * head - rate**2 * J
+    A /= np.abs(A).max(axis=0)
+    A /= np.abs(A).max(axis=1)[:, None]
+    return np.linalg.det(A)
+
+
+def root_near(f, x, width):
+    """The root of f within a relative width of x."""
+    return brentq(f, x * (1 - width), x * (1 + width), xtol=1e-12 * x)
+
+
+@pytest.mark.parametrize(("overlap", "modes", "count"), [(0.12, 6, 2), (0.12, 8, 3), (0.3, 8, 3)])
+def test_frequencies_of_a_piston_in_two_bushings(overlap, modes, count):
+    # Overlaps of a fifth of the free length and of half of it; the third frequency asks for more than six shapes of
+    # the free length, as it does without a guide.
+    ours, given, length = leg_of(overlap, modes)
+    M, K = pinned(ours, given, length)
+    found = np.sqrt(eigh(K, M, eigvals_only=True)[::2][:count])  # both planes alike
+    theirs = [root_near(lambda w: exact(given, length, rate=w), w, 1e-3) for w in found]
+    np.testing.assert_allclose(found, theirs, rtol=1e-6)
+
+
+@pytest.mark.parametrize("overlap", [0.12, 0.3])
+def test_the_thrust_at_which_a_guided_piston_buckles(overlap):
+    ours, given, length = leg_of(overlap)
+    K = pinned(ours, given, length)[1]
+    G = K - pinned(ours, given, length, 1.0)[1]
+    found = 1 / eigh(G, K, eigvals_only=True)[-1]
+    assert found == pytest.approx(root_near(lambda P: exact(given, length, P=P), found, 1e-3), rel=1e-6)
+
+
+TUBE_SECTION = Tube(diameter=0.09, inner_diameter=0.07)
+MOTOR = Mounted(mass=3.0, com=0.2, inertia=0.01)
+BENDING = Cylinder.tube(mouth=0.6, section=TUBE_SECTION, material=MATERIALS["steel"], body=MOTOR)
+
+
+def bushings(k, **more):
+    return Guide(gland=k, head=k, **more)
+
+
+def with_legs(robot, **parts):
+    return robot.replace(legs=tuple(leg.replace(**parts) for leg in robot.legs))
+
+
+def test_the_rotation_that_stiff_bushings_leave():
+    # (T25.8): the gland's slope per moment at the gland, by the rod between the bushings and by the springs.
+    for k, overlap in ((1e12, 0.12), (3e6, 0.12), (3e6, 0.3)):
+        ours, given, length = leg_of(overlap)
+        x = legs.state(ours, 0, given=given | {"guide_stiffness": [k, 1.3 * k]})
+        x["q"], x["lam"] = np.zeros(ours.size), np.zeros(3)
+        x["q"][ours.l_index] = length
+        own = [ours.index("ga"), ours.index("ga") + 1, *range(ours.index("ha"), ours.index("ha") + 3)]
+        K = legs.call(ours, "leg_matrices", x)["K"][np.ix_(own, own)]
+        theirs = overlap / (3 * EI) + (1 / k + 1 / (1.3 * k)) / overlap**2
+        assert np.linalg.inv(K)[1, 1] == pytest.approx(theirs, rel=1e-9 if k < 1e9 else 1e-6)
+
+
+def test_stiff_bushings_of_a_stiff_rod_between_them_are_the_clamp():
+    # d / (3 EI) of a rod 1e7 times as stiff is 1e-7 of what the rod outside gives.
+    ours, given, length = leg_of(0.12, 4)
+    stiff = given | {"guide_EI": 1e7 * EI, "guide_stiffness": [1e14, 1e14]}
+    clamped = Shapes(a=ours.a, b=ours.b, axial=ours.axial)
+    found, theirs = (
+        np.sqrt(eigh(*pinned(shapes, x, length)[::-1], eigvals_only=True))
+        for shapes, x in ((ours, stiff), (clamped, given))
+    )
+    np.testing.assert_allclose(found[: len(theirs)], theirs, rtol=1e-6)
+
+
+def test_short_overlaps_in_springs_are_a_hinge():
+    # Their rotation grows as 1 / d^2: what a pinned leg bears falls with it.
+    loads = []
+    for overlap in (0.02, 0.01):
+        ours, given, length = leg_of(overlap, 3)
+        K = pinned(ours, given, length)[1]
+        loads.append(1 / eigh(K - pinned(ours, given, length, 1.0)[1], K, eigvals_only=True)[-1])
+    assert loads[0] / loads[1] == pytest.approx(4, rel=0.05)
+
+
+def test_a_cylinder_without_end_of_stiffness_is_rigid():
+    stiff = Cylinder.tube(
+        mouth=0.6, section=TUBE_SECTION, material=MATERIALS["steel"].replace(name="given", E=2e17), body=MOTOR
+    )
+    masses = {name: getattr(stiff, name) for name in ("mass", "com", "inertia", "axial_inertia", "mouth")}
+    robots = machine(cylinder=stiff), machine(cylinder=Cylinder(**masses))
+    ours, theirs = (fx.modes(robot, fidelity="assumed-modes").frequency.values[:30] for robot in robots)
+    np.testing.assert_allclose(ours, theirs, rtol=1e-6)
+
+
+def test_legs_without_a_guide_beside_others():
+    plain = machine()
+    mixed = plain.replace(legs=(plain.legs[0].replace(guide=bushings(1e8), cylinder=BENDING), *plain.legs[1:]))
+    ours, theirs = (fx.stiffness(robot).stiffness_share.values[1:] for robot in (mixed, plain))
+    size = np.sqrt(np.einsum("nii,njj->nij", theirs, theirs))
+    np.testing.assert_allclose(ours / size, theirs / size, atol=1e-3)  # the platform sags a little otherwise
+
+
+@pytest.mark.parametrize("fidelity", ["rigid", "assumed-modes"])
+def test_energy_balances(fidelity):
+    # The error of the balance falls with the square of the step.
+    robot = machine(guide=bushings(2e8, loss=0.02), cylinder=BENDING, drive=SCREW)
+    errors = []
+    for step in (5e-4, 2.5e-4):
+        found = balance(run_robot(study(robot, fidelity=fidelity, step=step)))
+        errors.append(np.abs(found - found[0]).max())
+    assert errors[0] / errors[1] == pytest.approx(4, rel=0.2)
+
+
+def test_forces_of_the_bushings_balance_the_piston():
+    # At rest, across a leg between ideal joints: bushings, weight and the platform's force; their moments about the
+    # gland. A thrust of 2 kN at deflections of 0.1 mm is 0.2 N m of 30.
+    robot = machine(guide=bushings(2e8), cylinder=BENDING)
+    data = fx.run(study(robot, step=1e-3, duration=0.01)).isel(time=0)
+    piston, length = robot.legs[0].piston, data.leg_length.values
+    limbs = fx.rigid.rigid_limbs(robot)
+    for i in range(6):
+        base, tip = limbs.base[i], limbs.platform[i]
+        R = fx.rigid.rotations.matrix(data.platform_quaternion.values)
+        centre = data.com_position.values - R @ robot.com
+        axis = centre + R @ tip - base
+        axis /= np.linalg.norm(axis)
+        turn = limbs.frames[i]
+        alpha, beta = data.leg_angle.values[i]
+        x = turn @ [np.cos(beta), np.sin(alpha) * np.sin(beta), -np.cos(alpha) * np.sin(beta)]
+        y = turn @ [0.0, np.cos(alpha), np.sin(alpha)]
+        weight = piston.mass * robot.gravity
+        gland, head = data.guide_force.values[i]
+        d, s = float(data.guide_overlap[i]), length[i] - 0.6
+        for k, way in enumerate((x, y)):
+            end = -data.joint_force.values[i] @ way
+            assert gland[k] + head[k] + end + weight @ way == pytest.approx(0, abs=0.05)
+            assert -d * head[k] + s * end + (s - piston.length / 2) * (weight @ way) == pytest.approx(0, abs=0.2)
+
+
+@pytest.mark.parametrize("part", ["guide", "cylinder"])
+def test_a_part_made_ideal_takes_its_row_along(part):
+    # 3-RPS: hinges load their legs across, so both parts count at first order. What is left but second order is the
+    # bending of the rod between the bushings, which turns the thrust: below 2 % of the row.
+    alone = {"guide": bushings(2e7)}
+    if part == "cylinder":
+        tube, rigid = Tube(diameter=0.05, inner_diameter=0.045), three_rps().legs[0].cylinder
+        alone["cylinder"] = Cylinder.tube(mouth=rigid.mouth, section=tube, material=MATERIALS["aluminium"])
+    robot = with_legs(three_rps(), **alone)
+    off = alone["cylinder"].replace(diameter=None, inner_diameter=None, material=None) if part == "cylinder" else None
+    whole, without = (fx.budget(x).budget.sel(kind="systematic") for x in (robot, with_legs(robot, **{part: off})))
+    gone = whole.sel(part=part).values[:3]
+    np.testing.assert_allclose(
+        whole.sum("part").values[:3] - gone, without.sum("part").values[:3], atol=0.02 * np.abs(gone).max()
+    )
+
+
+def test_whole_legs_buckle_as_their_parts_say():
+    # Clamped in a rigid cylinder: the closed form of (T8.11), at three shapes to 2e-5.
+    plain = machine()
+    length = plain.home_lengths[None]
+    theirs = np.array(
+        [buckling_load(leg, x - np.array([0.6]))[0] for leg, x in zip(plain.legs, length[0], strict=True)]
+    )
+    np.testing.assert_allclose(leg_loads(plain, length)[0], theirs, rtol=2e-5)
+    loads = [leg_loads(machine(**more), length)[0, 0] for more in (
+        {"guide": bushings(1e12)}, {"guide": bushings(1e8)}, {"guide": bushings(1e8), "cylinder": BENDING},
+    )]  # fmt: skip
+    assert theirs[0] > loads[0] > loads[1] > loads[2]
+    described = describe(study(machine(guide=bushings(1e8), cylinder=BENDING)))
+    assert described.legs[0].euler_load == pytest.approx(loads[2], rel=0.1)  # along the path, legs get longer
+
+
+def test_a_planar_robot_in_bushings_runs():
+    robot = with_legs(planar(), guide=bushings(2e7), cylinder=Cylinder.tube(
+        mouth=0.1, section=Tube(diameter=0.04, inner_diameter=0.03), material=MATERIALS["steel"]))  # fmt: skip
+    found = fx.modes(robot).frequency.values
+    assert np.isfinite(found).all() and found[0] > 0
+
+
+@pytest.mark.parametrize(("table", "key"), [
+    ('guide = { gland = "-1 N/um", head = "1 N/um" }', "guide.gland"),
+    ('guide = { gland = "1 N/um" }', "guide.head"),
+    ('guide = { gland = "1 N/um", head = "1 N/um", damping = 1, loss = 0.1 }', "guide.loss"),
+    ('guide = { gland = "1 N/um", head = "1 N/um", clearance = "-1 um" }', "guide.clearance"),
+    ('cylinder = { mass = "3 kg", mouth = "315 mm", diameter = "60 mm", material = "steel" }', "cylinder.mass"),
+    ('cylinder = { mouth = "315 mm", diameter = "60 mm", inner_diameter = "60 mm", material = "steel" }',
+     "cylinder.inner_diameter"),
+    ('cylinder = { mouth = "50 mm", diameter = "60 mm", material = "steel" }', "cylinder.diameter"),
+    ('cylinder = { mouth = "315 mm", material = "steel" }', "cylinder.diameter"),
+])  # fmt: skip
+def test_bad_input_is_refused(tmp_path, table, key):
+    text = fx.model.preset_text("paper-robot")
+    lines = [line for line in text.splitlines() if not line.startswith(table.split(" =")[0])]
+    at = next(i for i, line in enumerate(lines) if line.startswith("[leg]"))
+    path = tmp_path / "robot.toml"
+    path.write_text("\n".join([*lines[: at + 1], table, *lines[at + 1 :]]), encoding="utf-8")
+    with pytest.raises(InputError, match=key.split(".")[1]):
+        fx.load(path)
+
+
+def test_an_overlap_that_is_gone_at_full_stroke_is_refused():
+    leg = machine().legs[0]
+    with pytest.raises(InputError, match=r"-0\.05 m"):
+        leg.replace(guide=bushings(1e8), stroke=fx.model.Stroke(min=0.9, max=1.4))
