@@ -29,6 +29,7 @@ def test_every_number_is_out_of_a_catalogue_or_ours_with_a_reason(name):
     sourced = re.compile(
         r"(robot|motion|leg\.drive)\.type|robot\.gravity|heat\.reference|simulation\.fidelity|.*\.material"
         r"|payload\.mass|leg\.drive\.(bulk_modulus|lead|root_diameter|efficiency|bearing\.stiffness|nut\.(rigidity|(dynamic|static)_load))"
+        r"|leg\.base_joint\.friction\.f1"
     )
     ours = {value.key for value in model.open_values(name)}
     left = [key for key in leaves(tomllib.loads(model.preset_text(name))) if not sourced.fullmatch(key)]

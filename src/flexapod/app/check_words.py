@@ -238,6 +238,9 @@ def _pose(pose: PoseDescription, held: str) -> None:
         )
     if pose.parts is not None:
         _parts(pose.parts)
+    if any(pose.lost_motion):
+        lags = " to ".join(dict.fromkeys(text(lag(pose.lost_motion), "m") for lag in (min, max)))
+        print_text(f"Friction of the drives lets the legs lag by {lags}, to and fro by twice as much.", indent=2)
     if pose.modes:
         listed = ", ".join(f"{m.frequency:.4g} Hz ({m.kind}, {100 * m.damping_ratio:.2g} %)" for m in pose.modes)
         print_text(f"Frequencies (what moves, damping): {listed}.", indent=2)

@@ -10,6 +10,7 @@ import numpy as np
 
 from flexapod import model
 from flexapod.report import html
+from flexapod.solve.lost_motion import places_with_friction
 from flexapod.study.after.causes import cause_names
 from flexapod.study.before.describe.hydraulic import hydraulic_table
 from flexapod.study.before.describe.screw import screw_table
@@ -71,7 +72,9 @@ def _robot(study: Study) -> list[str]:
 def _parts(study: Study) -> list[str]:
     """Parts that are not ideal, what may differ from the drawing, and what shakes the robot."""
     tables = {"Tolerances": study.robot.tolerances, "Disturbances": study.disturbance}
-    listed = {"Other parts that count": [cause_in_words(name) for name in cause_names(study.robot)[len(CAUSES) :]]}
+    parts = [cause_in_words(name) for name in cause_names(study.robot)[len(CAUSES) :]]
+    rubs = [f"friction of the joints at the {x[:-6]}" for x in places_with_friction(study.robot) if x != "drive"]
+    listed = {"Other parts that count": [*parts, *rubs]}
     for title, table in tables.items():
         names = [] if table is None else type(table).model_fields
         listed[title] = [name.replace("_", " ") for name in names if getattr(table, name) is not None]

@@ -31,8 +31,8 @@ MOTION = model.CombinedMotion(
 
 
 def damped(robot: model.Robot, **drive: Any) -> model.Robot:
-    """A robot on screws with a damper for every loss factor, as drawn, without damping of its pistons."""
-    none = {"stiffness_loss": None, "stiffness_damping": DAMPER}
+    """A robot on screws with a damper for every loss factor, as drawn, without friction and damping of its pistons."""
+    none = {"stiffness_loss": None, "stiffness_damping": DAMPER, "friction": None}
 
     def leg(old: model.Leg) -> model.Leg:
         screw = old.screw
@@ -44,7 +44,7 @@ def damped(robot: model.Robot, **drive: Any) -> model.Robot:
             base_joint=old.base_joint.replace(**none),
             platform_joint=old.platform_joint.replace(**none),
             springs=tuple(spring.replace(loss=None, damping=DAMPER) for spring in old.springs),
-            drive=screw.replace(**lossy, **drive),
+            drive=screw.replace(friction=None, **lossy, **drive),
         )
 
     return robot.replace(heat=None, tolerances=None, legs=tuple(leg(old) for old in robot.legs))

@@ -49,7 +49,9 @@ def critical_speed(screw: ScrewDrive) -> float:
 
 
 def drag_torque(screw: ScrewDrive) -> float:
-    """Torque at the screw by the preload of its nut [N m], Eq. (T15.43); 0 without a preload that is given."""
+    """Torque at the screw by its friction, or by the preload of its nut, Eq. (T15.43) [N m]; 0 where none is given."""
+    if screw.friction is not None:
+        return screw.friction.torque
     slope = screw.lead / (np.pi * screw.root_diameter)
     return 0.05 / np.sqrt(slope) * (screw.nut.preload or 0.0) * screw.per_turn
 

@@ -10,6 +10,7 @@ import numpy as np
 from flexapod import model, rigid
 from flexapod.errors import FlexapodError, InputError
 from flexapod.solve.losses import loss_words
+from flexapod.solve.lost_motion import lost_motion, places_with_friction
 from flexapod.solve.modes import locked_poses, robot_modes, the_modes
 from flexapod.solve.parts import part_stiffness
 from flexapod.solve.robot_march import refuse_massless
@@ -85,6 +86,7 @@ class PoseDescription:
 
     `sag` [m] of the centre of mass, `stiffness`, `modes`: the lowest. None and empty where there is no such thing;
     `problem` then says why. `parts`: of legs with more than ideal parts, by name and leg [N/m], inf where it has none.
+    `lost_motion` [m] of each leg by friction of its drive, half of it to and fro.
     """
 
     name: str
@@ -94,6 +96,7 @@ class PoseDescription:
     modes: tuple[ModeLine, ...] = ()
     problem: str | None = None
     parts: Mapping[str, tuple[float, ...]] | None = None
+    lost_motion: tuple[float, ...] = ()
 
 
 @dataclass(frozen=True, kw_only=True)
@@ -117,21 +120,22 @@ def describe_pose(study: model.Study, name: str, time: float) -> PoseDescription
     """The robot at rest at an instant of its path."""
     robot, simulation = study.robot, study.simulation
     path = _at_rest(study, time)
-    parts = _parts(robot, path)
+    parts, lost = _parts(robot, path), _lost_motion(robot, path)
     try:
         locked = locked_poses(robot, simulation, path, study.load, time)
         found = the_modes(locked)
         stiffness = None if robot.platform_fixed else _stiffness(stiffness_of(robot, locked).total)
     except FlexapodError as error:
-        return PoseDescription(name=name, time=time, problem=str(error), parts=parts)
+        return PoseDescription(name=name, time=time, problem=str(error), parts=parts, lost_motion=lost)
     lines = zip(found.frequency, found.damping_ratio, mode_kinds(found), strict=True)
     modes = tuple(ModeLine(frequency=float(f), damping_ratio=float(ratio), kind=kind) for f, ratio, kind in lines)
     if robot.platform_fixed:
-        return PoseDescription(name=name, time=time, modes=modes[:SHOWN], parts=parts)
+        return PoseDescription(name=name, time=time, modes=modes[:SHOWN], parts=parts, lost_motion=lost)
     sag = found.equilibrium.state.pose[:3] - path.point(robot.com)[0][0]
     return PoseDescription(
-        name=name, time=time, sag=float(np.linalg.norm(sag)), stiffness=stiffness, modes=modes[:SHOWN], parts=parts
-    )
+        name=name, time=time, sag=float(np.linalg.norm(sag)), stiffness=stiffness, modes=modes[:SHOWN], parts=parts,
+        lost_motion=lost,
+    )  # fmt: skip
 
 
 def _parts(robot: model.Robot, path: rigid.Poses) -> dict[str, tuple[float, ...]] | None:
@@ -139,6 +143,12 @@ def _parts(robot: model.Robot, path: rigid.Poses) -> dict[str, tuple[float, ...]
         return None
     found = part_stiffness(robot, rigid.inverse_kinematics(robot, path).length[0])
     return {name: tuple(values.tolist()) for name, values in found.items()}
+
+
+def _lost_motion(robot: model.Robot, path: rigid.Poses) -> tuple[float, ...]:
+    if "drive" not in places_with_friction(robot):
+        return ()
+    return tuple(lost_motion(robot, rigid.inverse_kinematics(robot, path).length[0]).tolist())
 
 
 def _stiffness(total: Array) -> StiffnessDescription:
