@@ -143,10 +143,11 @@ def test_the_robot_in_space_says_that_nothing_is_magnified(robot):
 
 
 def test_energies_have_the_same_words_and_colours_and_values_on_the_page(robot):
-    lines = plot.energies(robot).axes[0].lines[: len(ENERGIES)]
+    lines = plot.energies(robot).axes[0].lines[: sum(name in robot for name in ENERGIES)]
     chart = charts(robot)["energies"]
     shown = [(line.get_label(), line.get_color()) for line in lines]
-    assert shown == list(zip(chart.names, chart.colors, strict=True)) == list(ENERGIES.values())
+    there = [words for name, words in ENERGIES.items() if name in robot]
+    assert shown == list(zip(chart.names, chart.colors, strict=True)) == there
     assert chart.unit in plot.energies(robot).axes[0].get_ylabel()
     for line, values in zip(lines, chart.values, strict=True):
         np.testing.assert_allclose(line.get_ydata(), values, rtol=1e-12, atol=1e-12 * np.abs(chart.values).max())

@@ -21,7 +21,7 @@ def table(name):
     """Head and first row of the report's table of legs."""
 
     class Found:
-        legs, screws = describe_legs(RigidPath(study(name))), ()
+        legs, screws, hydraulics = describe_legs(RigidPath(study(name))), (), ()
         singularity = Singularity(
             home_smallest_singular_value=1, home_condition=1, smallest_singular_value=1, condition=1, time=0
         )
@@ -41,6 +41,8 @@ def test_sweeps_give_torques_of_cranks_their_unit():
     scalars = _robot_scalars(study("6-RUS"))
     assert scalars["actuator_force_peak"].units == scalars["actuator_force_peak_by_leg"].units == "N m"
     assert _robot_scalars(study("6-PUS"))["actuator_force_peak"].units == "N"
+    screws = _robot_scalars(fx.preset("machine-hexapod"))  # the thrust on the piston, not the motor's torque
+    assert screws["actuator_force_peak"].units == "N"
     records = _records(study("6-RUS"))
     assert (records["drive_position"].units, records["drive_force"].units) == ("rad", "N m")
 

@@ -91,6 +91,8 @@ def abaqus_deck(
 def left_out(robot: model.Robot) -> list[str]:
     """What of the robot the deck does not have, in words."""
     found = ["damping"]
+    rubs = any(x.friction for leg in robot.legs for x in (leg.base_joint, leg.platform_joint, leg.drive))
+    found += ["friction"] * rubs
     found += [f"[{name}]: the machine is as drawn" for name in ("geometry", "heat") if getattr(robot, name) is not None]
     if any(leg.piston.axial_inertia and axial_inertia(leg) == leg.cylinder.axial_inertia for leg in robot.legs):
         found.append("leg.piston.axial_inertia, which no cylinder of the given mass and inertia could carry")

@@ -117,10 +117,11 @@ def kept(keep: Keep, study: Study | ActuatorStudy, resolved: Resolved) -> Kept:
 
 def _robot_scalars(study: Study) -> Mapping[str, Scalar]:
     """Scalars of a robot's simulation; forces of cranks are torques."""
-    if not (forms := drive_forms(study.robot)):
+    turns = {leg.carriage is not None and leg.carriage.kind == "crank" for leg in study.robot.legs}
+    if True not in turns:
         return ROBOT_SCALARS
-    names = ("actuator_force_peak", "actuator_force_peak_by_leg")
-    return {**ROBOT_SCALARS, **{n: ROBOT_SCALARS[n]._replace(units=forms["drive_force"].units) for n in names}}
+    names, units = ("actuator_force_peak", "actuator_force_peak_by_leg"), "mixed" if len(turns) > 1 else "N m"
+    return {**ROBOT_SCALARS, **{name: ROBOT_SCALARS[name]._replace(units=units) for name in names}}
 
 
 def _actuator_scalars(study: ActuatorStudy) -> Mapping[str, Scalar]:
