@@ -85,7 +85,7 @@ for end, k in (("base", 1.0), ("platform", 1.3)):
     PHYSICS |= {f"{end}_soft": [1e6 * k, 3e6 * k], f"{end}_soft_damping": [300.0 * k, 200.0 * k]}
 PHYSICS |= {
     "base_motion_at": [0.03, -0.02, 0.1], "base_mount_at": [0.1, 0.04, -0.1], "platform_mount_at": [-0.02, 0.05, -0.1],
-    "base_plate_mass": 4.0, "base_plate_inertia": np.diag([0.2, 0.3, 0.4]) + 0.02,
+    "base_plate_mass": 4.0, "base_plate_weighs": 3.0, "base_plate_inertia": np.diag([0.2, 0.3, 0.4]) + 0.02,
 }  # fmt: skip
 
 

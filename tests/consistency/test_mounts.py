@@ -4,7 +4,7 @@ import numpy as np
 import pytest
 from scipy.linalg import eigh
 from tests.legs_of_all_kinds import rotation
-from tests.machines import machine, study
+from tests.machines import SOFT, machine, study
 from tests.mechanisms import ROBOTS
 from tests.runs import balance, run_robot
 
@@ -221,8 +221,8 @@ def test_the_plate_below_the_payload_keeps_the_balance_of_power(seed):
     ours, rng = Shapes(a=NONE, b=NONE, axial=axial_basis(0), platform_mount=True), np.random.default_rng(seed)
     residual, _, energies = (Interpreted(f) for f in payload_functions(ours))
     J = rng.normal(size=(2, 3, 3))
-    p = np.concatenate([[7.0], (J[0] @ J[0].T).ravel(), [1, 2, -9], [0.1, 0.2, 0.3], [3.0], (J[1] @ J[1].T).ravel(),
-                        [0.1, -0.2, 0.3]])  # fmt: skip
+    p = np.concatenate([[7.0], (J[0] @ J[0].T).ravel(), [1, 2, -9], [0.1, 0.2, 0.3], [3.0], [2.0],
+                        (J[1] @ J[1].T).ravel(), [0.1, -0.2, 0.3]])  # fmt: skip
     u, u_dot, m, v, a = rng.normal(size=(5, 6))
     pose = np.concatenate([rng.normal(size=3), quaternion(rotation(rng))])
 
@@ -298,3 +298,21 @@ def test_decks_and_engines_do_not_take_mounts(name):
     robot = machine().replace(**{name: BASE})
     with pytest.raises(InputError, match="not written to decks"):
         abaqus_deck(robot)
+
+
+def test_a_plate_without_mass_between_joints_and_mount_that_give_way():
+    # Nothing has a mass between the springs of the joints and those of the mounts.
+    bare = {"mass": 0.0, "inertia": np.zeros((3, 3))}
+    soft = machine(base_joint=SOFT, platform_joint=SOFT)
+    robot = soft.replace(base_mount=BASE.replace(**bare), platform_mount=TOP.replace(**bare))
+    heavy = soft.replace(
+        base_mount=BASE.replace(mass=1e-4, inertia=1e-4 * np.eye(3)),
+        platform_mount=TOP.replace(mass=1e-4, inertia=1e-4 * np.eye(3)),
+    )
+    ours, theirs = (fx.modes(x, fidelity="lumped").frequency.values[:6] for x in (robot, heavy))
+    np.testing.assert_allclose(ours, theirs, rtol=1e-6)  # 1e-4 kg of a ton
+    data, other = (fx.run(study(x, fidelity="lumped", step=1e-3, duration=0.05)) for x in (robot, heavy))
+    assert data.com_deviation.values[0] == pytest.approx(fx.modes(robot, fidelity="lumped").com_sag.values, abs=1e-12)
+    np.testing.assert_allclose(
+        data.com_deviation, other.com_deviation, atol=1e-5 * float(np.abs(other.com_deviation).max())
+    )

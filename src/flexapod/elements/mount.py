@@ -29,9 +29,9 @@ def mount(stiffness: SX, damping: SX, moved: SX, rate: SX) -> Energies:
     return flexure(stiffness, damping, moved, rate)
 
 
-def plate(frame: Frame, at: SX, mass: SX, inertia: SX, gravity: SX) -> Energies:
-    """Energies of a rigid plate whose centre of mass is at a point of its frame, Eq. (T24.3)."""
+def plate(frame: Frame, at: SX, mass: SX, inertia: SX, weight: SX) -> Energies:
+    """Energies of a rigid plate whose centre of mass, on which its weight acts, is at a point of its frame, (T24.3)."""
     centre = frame.moved(at, zeros(3))
     turning = dot(centre.omega, matrix33(inertia) @ centre.omega)
     kinetic = 0.5 * (mass * dot(centre.velocity, centre.velocity) + turning)
-    return Energies(kinetic=kinetic, gravity=-mass * dot(gravity, centre.origin))
+    return Energies(kinetic=kinetic, gravity=-dot(weight, centre.origin))

@@ -208,8 +208,8 @@ def payload_functions(shapes: Shapes) -> list[NamedFunction]:
     weight = -p.mass * dot(p.gravity, pose[:3])
     if shapes.plate:
         r = vertcat(r, zeros(6)) + plate_balance(p, R, u, u_dot, m)
-        below = plate(plate_frame(p, R, u, *m[:2]), zeros(3), p.plate_mass, p.plate_inertia, p.gravity)
-        T, weight = T + below.kinetic, weight + below.gravity - p.plate_mass * dot(p.gravity, pose[:3])
+        below = plate(plate_frame(p, R, u, *m[:2]), zeros(3), p.plate_mass, p.plate_inertia, p.plate_weighs * p.gravity)
+        T, weight = T + below.kinetic, weight + below.gravity - p.plate_weighs * dot(p.gravity, pose[:3])
     at_rest = substitute(r, (u, u_dot, *m[1:]), (zeros(6), zeros(6), *still))
     tool_velocity = u[:3] + R @ cross(u[3:], p.tool)
     power = dot(wrench[:3], tool_velocity) + dot(wrench[3:], R @ u[3:])

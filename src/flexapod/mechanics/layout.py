@@ -131,6 +131,7 @@ BASE_MOUNT_PARAMETERS: tuple[tuple[str, int], ...] = (
     ("base_mount_stiffness", 36),  # N/m, N m/rad, column by column, displacements first
     ("base_mount_damping", 36),
     ("base_plate_mass", 1),  # kg
+    ("base_plate_weighs", 1),  # kg, of it
     ("base_plate_inertia", 9),  # kg m^2, about that point
 )
 #: ... of legs that carry a plate on which the payload stands on a mount; springs as above.
@@ -150,6 +151,7 @@ PAYLOAD_PARAMETERS: tuple[tuple[str, int], ...] = (
 #: ... of one on a mount: the plate below it.
 PLATE_PARAMETERS: tuple[tuple[str, int], ...] = (
     ("plate_mass", 1),  # kg
+    ("plate_weighs", 1),  # kg, of it
     ("plate_inertia", 9),  # kg m^2, about its centre of mass
     ("plate_at", 3),  # m, this point, where the mount is, from the payload's CoM
 )

@@ -54,9 +54,7 @@ class Leg:
 
 def leg(shapes: Shapes, p: SimpleNamespace, q: SX, v: SX, qs: SimpleNamespace, vs: SimpleNamespace) -> Leg:
     """Energies and tip of one leg from its coordinates; ``qs`` and ``vs`` are the named pieces of q and v."""
-    base, standing = _base(shapes, p, qs, vs)
-    ground, e = carriage(shapes.carriage, p, qs, vs, base)
-    e += standing
+    ground, e = _ground(shapes, p, qs, vs)
     if shapes.flexure:
         ground = ground.moved(_three(qs, "u"), _three(vs, "u"))
     frame = universal(ground, qs, vs)
@@ -107,20 +105,19 @@ def leg(shapes: Shapes, p: SimpleNamespace, q: SX, v: SX, qs: SimpleNamespace, v
     )
 
 
-def _base(
-    shapes: Shapes, p: SimpleNamespace, qs: SimpleNamespace, vs: SimpleNamespace
-) -> tuple[Frame | None, Energies]:
-    """Frame of a base that moves, None of one that stands still; the leg's share of mounts and plate."""
+def _ground(shapes: Shapes, p: SimpleNamespace, qs: SimpleNamespace, vs: SimpleNamespace) -> tuple[Frame, Energies]:
+    """Frame in which the base joint stands; energies of what carries it, with the leg's share of mounts and plate."""
     base, e = None, Energies()
     if shapes.base_motion:
         base = displaced(WORLD, p.base_motion_at, qs.g, vs.g)
     if shapes.base_mount:
         base = displaced(base or WORLD, p.base_mount_at, qs.f, vs.f)
         e += mount(p.base_mount_stiffness, p.base_mount_damping, qs.f, vs.f)
-        e += plate(base, p.base_mount_at, p.base_plate_mass, p.base_plate_inertia, p.gravity)
+        e += plate(base, p.base_mount_at, p.base_plate_mass, p.base_plate_inertia, p.base_plate_weighs * p.gravity)
     if shapes.platform_mount:
         e += mount(p.platform_mount_stiffness, p.platform_mount_damping, qs.m, vs.m)
-    return base, e
+    ground, carried = carriage(shapes.carriage, p, qs, vs, base)
+    return ground, carried + e
 
 
 def _of_sections(shapes: Shapes, basis: LateralBasis, p: SimpleNamespace, s: SX, l: SX) -> tuple[Any, tuple[SX, SX]]:  # noqa: E741

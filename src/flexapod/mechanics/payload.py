@@ -62,8 +62,11 @@ def plate_balance(p: SimpleNamespace, R: SX, u: SX, u_dot: SX, m: tuple[SX, ...]
     def rate(x: SX) -> SX:
         return time_derivative(x, (q, v), (moving, vertcat(u_dot, v_dot)))
 
-    acceleration = rate(frame.velocity) + cross(w, frame.velocity) - frame.axes.T @ p.gravity
+    acceleration = rate(frame.velocity) + cross(w, frame.velocity)
     # platform axes turn while they are differentiated: R enters by the linear velocity alone
     acceleration -= jacobian(frame.velocity, u[:3]) @ (R @ cross(u[3:], R.T @ u[:3]))
     spin = J @ rate(w) + cross(w, J @ w)
-    return jacobian(frame.velocity, moving).T @ (p.plate_mass * acceleration) + jacobian(w, moving).T @ spin
+    return (
+        jacobian(frame.velocity, moving).T @ (p.plate_mass * acceleration - p.plate_weighs * (frame.axes.T @ p.gravity))
+        + jacobian(w, moving).T @ spin
+    )

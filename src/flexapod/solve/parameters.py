@@ -5,6 +5,7 @@ import numpy as np
 from flexapod.mechanics import layout
 from flexapod.mechanics.layout import LEG_PARAMETERS, PAYLOAD_PARAMETERS, Shapes
 from flexapod.model import Actuator, ForceDrive, Joint, Leg, Mounted, Robot, ServoDrive, damping_parts
+from flexapod.model.mount import Mount
 from flexapod.rigid.limbs import COORDINATES, FREE, Limbs
 from flexapod.solve.sections import section_parameters
 from flexapod.solve.springs import (
@@ -22,6 +23,9 @@ from flexapod.typing import Array
 #: Of a place without friction: nothing rubs, and what could bend is a unit long.
 NO_FRICTION = (0.0, 0.0, 1.0, 0.0, 0.0, 0.0, 0.0)
 ENDLESS = 1e4  # m, beyond the reach of any leg
+
+#: Mass of a plate in motion, over that of the payload, at least: between springs nothing else says how it moves
+LIGHT = 1e-6
 
 
 def _pack(layout: tuple[tuple[str, int], ...], values: dict[str, object]) -> Array:
@@ -44,7 +48,7 @@ def drive_spring(leg: Leg) -> tuple[float, float]:
     return 0.0, 0.0
 
 
-def leg_parameters(robot: Robot, legs: Limbs, shapes: Shapes, per_loss: float = 0.0) -> Array:
+def leg_parameters(robot: Robot, legs: Limbs, shapes: Shapes, per_loss: float = 0.0, *, at_rest: bool = False) -> Array:
     """Parameters of the legs in kernel order, (legs, size of `layout.leg_parameters`).
 
     ``per_loss`` [s]: viscous damping over stiffness of a spring of loss factor 1, see `losses`.
@@ -53,7 +57,7 @@ def leg_parameters(robot: Robot, legs: Limbs, shapes: Shapes, per_loss: float = 
     names = ("base_flexure", "platform_flexure", "base_flexure_damping", "platform_flexure_damping")
     of_ends = np.concatenate([flexures(robot, legs), flexures(robot, legs, per_loss)], axis=1)
     ends = [dict(zip(names, x, strict=True)) for x in of_ends]
-    frames = _frames(robot, per_loss)
+    frames = _frames(robot, per_loss, at_rest=at_rest)
     rows = (
         _leg(leg)
         | _place(robot, legs, i)
@@ -137,7 +141,7 @@ def _crank_com(leg: Leg, arm: Array) -> Array:
     return leg.carriage.com / np.linalg.norm(arm) * arm
 
 
-def _frames(robot: Robot, per_loss: float) -> dict[str, object]:
+def _frames(robot: Robot, per_loss: float, *, at_rest: bool) -> dict[str, object]:
     """A leg's share of the mounts, and of the base plate."""
     found: dict[str, object] = {}
     for end, mount in (("base", robot.base_mount), ("platform", robot.platform_mount)):
@@ -147,9 +151,11 @@ def _frames(robot: Robot, per_loss: float) -> dict[str, object]:
                 f"{end}_mount_at": mount.at - (robot.com if end == "platform" else 0.0),
                 f"{end}_mount_stiffness": mount.stiffness / robot.count,
                 f"{end}_mount_damping": damping / robot.count,
-                f"{end}_plate_mass": mount.mass / robot.count,
-                f"{end}_plate_inertia": mount.inertia / robot.count,
             }
+    if robot.base_mount is not None:
+        mass, inertia = _plate(robot, robot.base_mount, at_rest=at_rest)
+        found |= {"base_plate_mass": mass / robot.count, "base_plate_inertia": inertia / robot.count}
+        found["base_plate_weighs"] = robot.base_mount.mass / robot.count
     if robot.base_motion is not None:
         found["base_motion_at"] = robot.base_motion.at
     return found
@@ -273,9 +279,21 @@ def _damping(joint: Joint, per_loss: float) -> Array:
     return viscous(stiffness, given, joint.loss_of_stiffness, per_loss)
 
 
-def payload_parameters(robot: Robot, shapes: Shapes) -> Array:
+def _plate(robot: Robot, mount: Mount, *, at_rest: bool) -> tuple[float, Array]:
+    """Mass [kg] and inertia (3, 3) of a plate; in motion none has nothing, Eq. (T24.12)."""
+    load = robot.payload
+    mass, size = (1.0, 1.0) if load is None else (load.mass, float(np.trace(load.inertia)) / 3)
+    if at_rest:
+        return mount.mass, mount.inertia
+    least = LIGHT * size
+    more = least * np.eye(3) if np.linalg.eigvalsh(mount.inertia)[0] < least else 0.0
+    return max(mount.mass, LIGHT * mass), mount.inertia + more
+
+
+def payload_parameters(robot: Robot, shapes: Shapes, *, at_rest: bool = False) -> Array:
     """Parameters of the payload, and of the plate below it where it stands on a mount; tool from its CoM."""
     load, below = robot.payload, robot.platform_mount
+    mass, inertia = (0.0, np.zeros((3, 3))) if below is None else _plate(robot, below, at_rest=at_rest)
     if load is None:  # a fixed platform: without weight, and what does not move needs no mass
         mass = {"mass": 1.0, "inertia": np.eye(3), "gravity": np.zeros(3), "tool": np.zeros(3)}
         return _pack(PAYLOAD_PARAMETERS, mass)
@@ -286,8 +304,9 @@ def payload_parameters(robot: Robot, shapes: Shapes) -> Array:
             "inertia": load.inertia.T,
             "gravity": robot.gravity,
             "tool": load.tool - load.com,
-            "plate_mass": 0.0 if below is None else below.mass,
-            "plate_inertia": 0.0 if below is None else below.inertia,
+            "plate_mass": mass,
+            "plate_inertia": inertia,
+            "plate_weighs": 0.0 if below is None else below.mass,
             "plate_at": 0.0 if below is None else below.at - robot.com,
         },
     )

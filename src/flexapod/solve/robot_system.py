@@ -30,9 +30,9 @@ def robot_system(robot: Robot, simulation: Simulation, march: bool = True, *, at
     shapes = robot_shapes(robot, simulation, legs)
     return System(
         kernel=kernel(shapes, march),
-        leg_p=leg_parameters(robot, legs, shapes, per_loss(robot, simulation)),
+        leg_p=leg_parameters(robot, legs, shapes, per_loss(robot, simulation), at_rest=at_rest),
         joint_p=np.ascontiguousarray(legs.platform - robot.com),
-        payload_p=payload_parameters(robot, shapes),
+        payload_p=payload_parameters(robot, shapes, at_rest=at_rest),
         held=_held(robot, legs, shapes) | _summed(robot, shapes, at_rest=at_rest),
         hub_held=legs.hub_held,
     )
