@@ -192,15 +192,16 @@ class _Leg(NamedTuple):
         joint = platform_frame(number, end, normal if planar else axis, axes)
         base_springs, end_springs = (_springs(x, rigid) for x in (leg.base_joint, leg.platform_joint))
         gammas = _gammas(end, end_springs, rigid, planar)
-        rubs = not rigid and leg.platform_joint.friction is not None  # on the angles there
-        sprung = any(base_springs) or end_springs.moves or rubs
-        gammas = (FREE, FREE, FREE) if sprung and gammas[0] == ABSENT else gammas  # seen by springs
+        rubs = not rigid and leg.platform_joint.friction is not None
+        sprung = any(base_springs) or end_springs.moves
+        seen = sprung or rubs  # by springs or friction
+        gammas = (FREE, FREE, FREE) if seen and gammas[0] == ABSENT else gammas
         pose = any(g != ABSENT for g in gammas)
         twists = base == "S" or letters.stroke == "C" or (base == "F" and base_springs.torsion)
         state = [
             ABSENT if leg.carriage is None else DRIVEN if leg.driven == "carriage" else FREE,
             *_angles(base, base_springs.bending or rigid),
-            FREE if twists and pose else ABSENT,
+            (FREE if sprung or end != "S" else HELD) if twists and pose else ABSENT,  # held: between balls it is idle
             HELD if leg.strut is not None else DRIVEN if leg.driven == "stroke" else FREE,
             *gammas,
         ]
