@@ -110,12 +110,8 @@ def _check_parts(number: int, leg: Leg) -> None:
         raise refused("bow, eccentricity", "straight legs")
     if leg.drive.type == "force" or (leg.screw is not None and (leg.screw.command == "torque" or leg.holds_stroke)):
         raise refused("drive", "prescribed, servo, screw with command = 'position' or 'servo' at the rotor")
-    if leg.drive.friction is not None:
-        raise refused("drive.friction", "no friction, or viscous damping")
     for end in ("base_joint", "platform_joint"):
         joint: Joint = getattr(leg, end)
-        if joint.friction is not None:
-            raise refused(f"{end}.friction", "no friction")
         if joint.flexes or joint.bending is not None or joint.torsion is not None:
             raise refused(end, "stiffness = { axial, radial } alone")
         if joint.friction is not None and joint.friction.arm and leg.platform_joint.stiffness is None:
