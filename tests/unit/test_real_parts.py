@@ -12,7 +12,9 @@ from flexapod import rigid
 from flexapod.app.cli import app
 from flexapod.errors import InputError
 from flexapod.exchange.decks_legs import legs_at_pose
-from flexapod.model import AxialSpring, Bearing, Material, Nut, to_toml
+from flexapod.model import MATERIALS, AxialSpring, Bearing, Material, Nut, to_toml
+from flexapod.model.material import Tube
+from flexapod.model.piston import Cylinder, Guide
 from flexapod.solve.springs import in_series, softening, springs_along
 
 UM = 1e6  # N/m
@@ -232,6 +234,14 @@ def test_a_report_says_what_the_drives_are(file, tmp_path):
     page = next((tmp_path / "out").glob("*.html")).read_text(encoding="utf-8").replace("\N{NO-BREAK SPACE}", " ")
     assert "with a lead of 10 mm, fixed-fixed, the rotor held at its command" in page
     assert "give of the nuts" in page
+
+
+@pytest.mark.parametrize("key", ["guide", "cylinder"])
+def test_decks_refuse_what_they_do_not_have(key):
+    tube = Cylinder.tube(mouth=0.6, section=Tube(diameter=0.09, inner_diameter=0.07), material=MATERIALS["steel"])
+    parts = {"guide": Guide(gland=2e8, head=2e8), "cylinder": tube}
+    with pytest.raises(InputError, match="not written in decks"):
+        legs_at_pose(machine(**{key: parts[key]}), rigid.home_pose(machine()), np.zeros(6))
 
 
 def test_a_deck_has_the_springs_before_the_piston():

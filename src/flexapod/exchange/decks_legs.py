@@ -232,6 +232,11 @@ def _check_leg(i: int, leg: model.Leg, length: float) -> None:
             key="leg.piston.sections",
             next_step="Give one diameter: that of the section whose stiffness counts most",
         )
+    for key, there in (("leg.guide", leg.guide), ("leg.cylinder.diameter", leg.cylinder.section)):
+        if there is not None:
+            raise InputError(
+                "is not written in decks", key=key, allowed="a piston clamped in the mouth of a rigid cylinder"
+            )
     free = length - leg.cylinder.mouth
     if leg.piston.length < free * (1 - 1e-9):
         raise InputError(

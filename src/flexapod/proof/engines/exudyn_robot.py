@@ -106,10 +106,17 @@ def _check_parts(number: int, leg: Leg) -> None:
     def refused(key: str, allowed: str) -> InputError:
         return InputError("is not modelled in Exudyn", key=f"leg {number}: {key}", allowed=allowed)
 
+    for key, there in (("guide", leg.guide), ("cylinder.diameter", leg.cylinder.section)):
+        if there is not None:
+            raise refused(key, "a piston clamped in the mouth of a rigid cylinder")
+    if leg.screw is not None and leg.screw.motor.ripple is not None:
+        raise refused("drive.motor.ripple", "a motor without")
     if leg.piston.bow or leg.base_joint.eccentricity or leg.platform_joint.eccentricity:
         raise refused("bow, eccentricity", "straight legs")
     if leg.drive.type == "force" or (leg.screw is not None and (leg.screw.command == "torque" or leg.holds_stroke)):
         raise refused("drive", "prescribed, servo, screw with command = 'position' or 'servo' at the rotor")
+    if leg.screw is not None and leg.screw.loop is not None and leg.screw.loop.integral:
+        raise refused("drive.loop.integral", "stiffness and damping")
     for end in ("base_joint", "platform_joint"):
         joint: Joint = getattr(leg, end)
         if joint.flexes or joint.bending is not None or joint.torsion is not None:
