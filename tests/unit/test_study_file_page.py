@@ -28,6 +28,7 @@ DERIVED = {
                                   "ForceDrive")),
     ("CsvMotion", "profile"),
     *((motion, "independent") for motion in ("AxisMotion", "WaypointMotion", "CsvMotion")),
+    ("Strut", "keyed"),
 }  # fmt: skip
 
 

@@ -139,6 +139,8 @@ def _leg(i: int, leg: model.Leg, real: Limbs, columns: Array, tip: Array, length
     """Leg i; `columns` (6, 8): velocities of its tip and turns of its joints for each coordinate."""
     _check_leg(i + 1, leg, length)
     cylinder, piston, below, above = leg.cylinder, leg.piston, leg.base_joint, leg.platform_joint
+    if leg.turning:
+        raise InputError("is not written in decks", key="piston.keyed", value=False, allowed="true")
     if leg.screw is not None and leg.screw.command == "torque":
         raise InputError("is not written in decks", key="drive.command", value="torque", allowed="position, servo")
     z, y = columns[:3, _LENGTH], columns[3:, _NAMES.index("beta")]

@@ -86,6 +86,9 @@ SERIES_PARAMETERS: tuple[tuple[str, int], ...] = (
     ("rotor_damping", 1),  # N s/m
 )
 
+#: ... whose pistons turn in their cylinders and take the nut along: travel by that angle [m/rad].
+TURNING_PARAMETERS: tuple[tuple[str, int], ...] = (("series_turn", 1),)
+
 #: ... whose motor has a ripple: angle of its first harmonic by travel [rad/m], energies of all [J].
 RIPPLE_PARAMETERS: tuple[tuple[str, int], ...] = (("ripple_wave", 1), ("ripple", 4))
 
@@ -197,6 +200,8 @@ class Shapes:
         Displacements of the joints along and across the leg.
     series : bool
         Springs between a rotor, whose travel is r, and the stroke l.
+    turning : bool
+        Pistons that turn in their cylinders take the nut along (with spin and series).
     ripple : bool
         A torque that returns with the turns of the rotor.
     integral : bool
@@ -232,6 +237,7 @@ class Shapes:
     soft_base: bool = False
     soft_platform: bool = False
     series: bool = False
+    turning: bool = False
     ripple: bool = False
     integral: bool = False
     oil: bool = False
@@ -369,6 +375,7 @@ def leg_parameters(shapes: Shapes) -> tuple[tuple[str, int], ...]:
         (shapes.soft_base, SOFT_BASE),
         (shapes.soft_platform, SOFT_PLATFORM),
         (shapes.series, SERIES_PARAMETERS),
+        (shapes.turning, TURNING_PARAMETERS),
         (shapes.ripple, RIPPLE_PARAMETERS),
         (shapes.integral, INTEGRAL_PARAMETERS),
         (shapes.oil, OIL_PARAMETERS),

@@ -77,7 +77,7 @@ def leg(shapes: Shapes, p: SimpleNamespace, q: SX, v: SX, qs: SimpleNamespace, v
     e += inside
     if shapes.torsion:
         e += torsion(frame, p, qs, vs)
-    series = screw(p, qs, vs, oil=shapes.oil) if shapes.series else Energies()
+    series = screw(p, qs, vs, oil=shapes.oil, turning=shapes.turning) if shapes.series else Energies()
     e += series
     if shapes.ripple:
         e += Energies(strain=ripple(p, qs))

@@ -129,6 +129,12 @@ class Leg(Frozen):
         return self.screw.holds_stroke if self.screw is not None else not self.gives
 
     @property
+    def turning(self) -> float:
+        """What a turn of the piston in its cylinder adds to the length [m/rad], Eq. (T23.41); 0 inside a loop."""
+        unkeyed = self.screw is not None and not self.piston.keyed and self.measured == "rotor"
+        return self.screw.per_turn if unkeyed else 0.0  # type: ignore[union-attr]
+
+    @property
     def measured(self) -> str:
         """Where its position is measured: "rotor", "stroke" or "joint-to-joint"; what lies before is made up for."""
         return "rotor" if self.screw is None else self.screw.encoder.at
@@ -212,6 +218,17 @@ class Leg(Frozen):
     def overlap(self, length: float) -> float:
         """Distance of gland and head of a leg of some length [m]."""
         return self.cylinder.mouth + self.piston.length - length
+
+    @model_validator(mode="after")
+    def _keyed(self) -> Leg:
+        if self.piston.keyed or (self.screw is not None and self.letters.stroke == "C"):
+            return self
+        raise _misfit(
+            self.chain,
+            "piston.keyed",
+            "lets a piston turn that a key or its joints hold, or that no screw drives",
+            "of legs with C for their stroke (UCU) and a screw as their drive; true elsewhere",
+        )
 
     @model_validator(mode="after")
     def _springs_where_they_act(self) -> Leg:

@@ -3,7 +3,7 @@
 from __future__ import annotations
 
 from collections.abc import Sequence
-from typing import Annotated, Self
+from typing import Annotated, ClassVar, Self
 
 from pydantic import Field, model_validator
 
@@ -118,7 +118,8 @@ class Piston(Frozen):
     `inner_diameter` [m], `E` [Pa], `density` [kg/m^3] and `yield_stress` [Pa] where known; `axial_inertia` [kg m^2];
     `poisson`, ratio of a round section; `GJ` [N m^2], torsional stiffness, of another one; `expansion` [1/K] by heat;
     `bow` [m]: of its axis, at rest and without load, from the line of its ends. `sections`, from the driven end to the
-    tip, of one that is not uniform: the other values are then those of the whole (`stepped`).
+    tip, of one that is not uniform: the other values are then those of the whole (`stepped`). `keyed`: false of one
+    that turns in its cylinder (C) and takes the nut of its screw along.
     """
 
     length: Annotated[Positive, Measure("length")]
@@ -136,6 +137,7 @@ class Piston(Frozen):
     expansion: Annotated[Number, Measure("expansion")] | None = None
     bow: Annotated[NonNegative, Measure("length")] | None = None
     sections: tuple[PistonSection, ...] = ()
+    keyed: bool = True
 
     @model_validator(mode="after")
     def _sensible(self) -> Self:
@@ -263,6 +265,8 @@ class Strut(Piston):
 
     `section`: of a strip, in a planar robot.
     """
+
+    derived: ClassVar[tuple[str, ...]] = ("keyed",)  # of pistons alone
 
     section: Strip | None = None
 

@@ -167,7 +167,7 @@ def _arm(section: Section, radius: float, axis: Array, base: Array, normal: Arra
 def _sections(section: Section, model: type[P]) -> P:
     """A piston or strut of several sections."""
     for name in section.data:
-        if name not in ("sections", "axial_inertia", "bow"):
+        if name not in ("sections", "axial_inertia", "bow", "keyed"):
             raise section.error("is given together with sections", name, allowed="in a section, or without sections")
     given = section.data["sections"]
     if not isinstance(given, list):
@@ -187,6 +187,11 @@ def _of_material(section: Section) -> dict[str, object]:
 
 
 def _piston(section: Section) -> Piston:
+    keyed = section.flag("keyed")
+    return _beam(section).replace(**({} if keyed is None else {"keyed": keyed}))
+
+
+def _beam(section: Section) -> Piston:
     section.only(*columns_of(Piston), "material")
     if "sections" in section:
         return _sections(section, Piston)
@@ -226,7 +231,7 @@ def _cylinder(section: Section) -> Cylinder:
 
 
 def _strut(section: Section) -> Strut:
-    section.only(*columns_of(Strut), "material")
+    section.only(*(name for name in columns_of(Strut) if name not in Strut.derived), "material")
     if "sections" in section:
         return _sections(section, Strut)
     if any(name in section for name in (*_STIFFNESS, "GJ")):

@@ -15,7 +15,7 @@ __all__ = ["RESERVED", "AxialSpring", "check_lossy"]
 #: Names of parts that have tables of their own.
 RESERVED = (
     "axial-strain", "bending", "drive", "base_joint", "platform_joint", "screw", "twist", "nut", "bearing", "oil",
-    "friction", "cylinder", "guide",
+    "friction", "cylinder", "guide", "unkeyed",
 )  # fmt: skip
 
 

@@ -156,8 +156,11 @@ def _cylinder(cylinder: Cylinder) -> dict[str, object]:
 
 def _beam(piston: Piston) -> dict[str, object]:
     fields = _fields(piston)
+    if piston.keyed:
+        fields.pop("keyed", None)
     if piston.sections:
-        return {name: value for name, value in fields.items() if name in ("sections", "bow", "axial_inertia") and value}
+        kept = ("sections", "bow", "axial_inertia")
+        return {name: value for name, value in fields.items() if (name in kept and value) or name == "keyed"}
     fields.pop("sections")
     made_of = {name: fields.pop(name, None) for name in ("E", "density")}
     if piston.E is None or piston.density is None:
@@ -171,7 +174,7 @@ def _beam(piston: Piston) -> dict[str, object]:
         same = type(piston).round(length=piston.length, section=section, material=material, axial_inertia=axial)
     elif isinstance(piston, Strut) and piston.section is not None:
         same = Strut.strip(length=piston.length, section=piston.section, material=material)
-    if same != piston.replace(bow=None):
+    if same != piston.replace(bow=None, keyed=True):
         return fields
     computed = ("EA", "EI", "rhoA", *(() if piston.diameter else ("axial_inertia",)))
     return {name: value for name, value in fields.items() if name not in computed} | made_of

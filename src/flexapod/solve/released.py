@@ -49,6 +49,7 @@ def _ideal(leg: Leg) -> Leg:
         guide=None,
         cylinder=leg.cylinder.replace(diameter=None, inner_diameter=None, material=None, body=None),
         drive=PrescribedDrive(),
+        **({} if leg.piston.keyed else {"piston": leg.piston.replace(keyed=True)}),
     )
 
 

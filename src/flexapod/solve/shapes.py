@@ -37,6 +37,7 @@ def robot_shapes(robot: Robot, simulation: Simulation, legs: Limbs) -> Shapes:
         soft_base=any(x.at == "base" for x in springs),
         soft_platform=any(x.at == "platform" for x in springs),
         series=any(leg.gives for leg in robot.legs),
+        turning=any(leg.turning for leg in robot.legs),
         ripple=any(leg.screw is not None and leg.screw.motor.ripple is not None for leg in robot.legs),
         integral=any(leg.screw is not None and leg.screw.integral > 0 for leg in robot.legs),
         oil=any(leg.cylinder_of_oil is not None for leg in robot.legs),

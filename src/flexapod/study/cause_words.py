@@ -20,6 +20,7 @@ CAUSE_WORDS = {
     "nut": "give of the nuts",
     "bearing": "give of the screws' bearings",
     "oil": "give of the oil columns",
+    "unkeyed": "turning of pistons that are not keyed",
     "friction": "friction of the drives",
     "platform_mount": "give of the platform's mount",
     "base_mount": "give of the base's mount",

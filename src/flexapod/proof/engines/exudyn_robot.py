@@ -113,6 +113,8 @@ def _check_parts(number: int, leg: Leg) -> None:
         raise refused("drive.motor.ripple", "a motor without")
     if leg.piston.bow or leg.base_joint.eccentricity or leg.platform_joint.eccentricity:
         raise refused("bow, eccentricity", "straight legs")
+    if leg.turning:
+        raise refused("piston.keyed", "true")
     if leg.drive.type == "force" or (leg.screw is not None and (leg.screw.command == "torque" or leg.holds_stroke)):
         raise refused("drive", "prescribed, servo, screw with command = 'position' or 'servo' at the rotor")
     if leg.screw is not None and leg.screw.loop is not None and leg.screw.loop.integral:

@@ -16,9 +16,10 @@ __all__ = ["elongations", "frame_names", "part_names"]
 
 
 def part_names(robot: Robot) -> tuple[str, ...]:
-    """Names of what gives way in any leg of a robot, in their order: springs along it, cylinder and guide."""
+    """Names of what gives way in any leg, in their order: springs along it, cylinder and guide; and turning nuts."""
     springs = dict.fromkeys(spring.name for leg in robot.legs for spring in springs_along(leg))
-    return tuple(dict.fromkeys([*springs, *part_names_inside(robot)]))
+    turning = ("unkeyed",) if any(leg.turning for leg in robot.legs) else ()
+    return tuple(dict.fromkeys([*springs, *part_names_inside(robot), *turning]))
 
 
 def frame_names(robot: Robot) -> tuple[str, ...]:
@@ -41,7 +42,11 @@ def elongations(
         springs = springs_along(leg)
         if leg.gives and isinstance(leg.drive, ServoDrive):
             springs.append(of_servo(leg.drive))
-        for at, give in _gives(system, q[..., i, :]).items():
+        gives = _gives(system, q[..., i, :])
+        if leg.turning and "nut" in places:  # (T23.41)
+            found["unkeyed"][..., i] = leg.turning * q[..., i, shapes.index("spin")]
+            gives["nut"] = gives["nut"] - found["unkeyed"][..., i]
+        for at, give in gives.items():
             here = [spring for spring in springs if spring.at == at and at in places]
             for spring, share in zip(here, _shares(here, length[..., i]), strict=True):
                 if spring.name != "drive":
