@@ -316,3 +316,15 @@ def test_a_plate_without_mass_between_joints_and_mount_that_give_way():
     np.testing.assert_allclose(
         data.com_deviation, other.com_deviation, atol=1e-5 * float(np.abs(other.com_deviation).max())
     )
+
+
+def test_maps_take_the_plates_along():
+    # The stiffness of a map is that of a pose; most of what accelerates is the payload, whose centre is the tool.
+    robot = machine().replace(base_mount=BASE, platform_mount=TOP.replace(mass=0.0, inertia=np.zeros((3, 3))))
+    found = fx.workspace_map(robot, {"heave": [0.0, 0.02]}, fidelity="lumped", acceleration=[0, 0, 1.0])
+    here = fx.stiffness(robot, fidelity="lumped")
+    C = np.linalg.inv(here.stiffness.values)
+    assert float(found.stiffness[0]) == pytest.approx(1 / C[2, 2], rel=1e-9)
+    payload = robot.payload.mass * np.linalg.norm(C[:3, 2])
+    assert float(found.dynamic_deviation[0]) == pytest.approx(payload, rel=0.2)
+    assert float(found.dynamic_deviation[0]) > payload

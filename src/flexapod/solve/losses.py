@@ -62,6 +62,12 @@ def loss_words(robot: Robot, simulation: Simulation) -> list[str]:
                 legs = [str(i) for i, leg in enumerate(robot.legs, start=1) if getattr(leg, end) == joint]
                 which = "" if len(legs) == robot.count else f" of leg{'s' * (len(legs) > 1)} {', '.join(legs)}"
                 found.append(f"{end}{which}: {', '.join(parts)}")
+    for name in ("base_mount", "platform_mount"):
+        mount = getattr(robot, name)
+        if mount is not None and mount.loss:
+            c = mount.loss * per * np.diag(mount.stiffness)
+            along, about = text(float(c[:3].max()), "N s/m"), text(float(c[3:].max()), "N m s/rad")
+            found.append(f"{name}: up to {along} along and {about} about its axes")
     return found + _of_springs(robot, per)
 
 

@@ -36,7 +36,7 @@ def parts(robot: RobotLike, pose: PoseLike = None) -> Dataset:
     xarray.Dataset
         `part_stiffness` (leg, part) [N/m]: of the piston's stretch, of joints, screw, twist, nut, bearing, of named
         springs, of a drive that has a spring, of mounts at the leg's joint against a force along that leg alone; inf
-        where a leg does not have the part. `leg_stiffness` (leg): all of them in series. `lost_motion` (leg) [m], of
+        where a leg does not have the part. `leg_stiffness` (leg): all but mounts in series. `lost_motion` (leg) [m], of
         robots whose drives have friction: half of what a leg lags by it to and fro.
 
     Raises
@@ -49,9 +49,9 @@ def parts(robot: RobotLike, pose: PoseLike = None) -> Dataset:
     remarks = path_remarks(study.robot, np.zeros(1), path)
     length = rigid.inverse_kinematics(study.robot, path).length[0]
     found = part_stiffness(study.robot, length)
+    whole = 1.0 / np.sum([1.0 / x for x in found.values()], axis=0)
     found |= {name: x[0] for name, x in mount_stiffness(study.robot, path).items()}
-    table = np.stack(list(found.values()), axis=1)
-    values = {"part_stiffness": table, "leg_stiffness": 1.0 / (1.0 / table).sum(axis=1)}
+    values = {"part_stiffness": np.stack(list(found.values()), axis=1), "leg_stiffness": whole}
     if "drive" in places_with_friction(study.robot):
         values["lost_motion"] = lost_motion(study.robot, length)
     return dataset(values, {"part": list(found)}, attributes(study, [*study.warnings, *remarks]))
