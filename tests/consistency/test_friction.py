@@ -1,5 +1,6 @@
 """Friction: public and closed-form cases, limits, passivity, energy, lost motion, Eqs. (T19.1)-(T19.12)."""
 
+import dataclasses
 from functools import cache
 from itertools import pairwise
 
@@ -7,6 +8,7 @@ import casadi
 import numpy as np
 import pytest
 from scipy.integrate import solve_ivp
+from tests import legs_of_all_kinds
 from tests.machines import BODY, SCREW, TUBE, machine, study
 from tests.mechanisms import ROBOTS
 from tests.runs import balance, run_robot
@@ -14,8 +16,11 @@ from tests.runs import balance, run_robot
 import flexapod as fx
 from flexapod import rigid
 from flexapod.bases import lateral_basis
-from flexapod.elements.friction import rubbing
+from flexapod.elements.friction import rubbing, turning
+from flexapod.mechanics.layout import columns, leg_parameters
+from flexapod.mechanics.sliding import friction_functions
 from flexapod.model import Feedback, Joint, JointFriction, ScrewFriction, ServoDrive, StrokeFriction, override
+from flexapod.rigid.rotations import exponential
 from flexapod.solve.friction import numbers, sliding
 from flexapod.solve.kernel import kernel
 from flexapod.solve.lost_motion import lost_motion, reversal
@@ -23,6 +28,7 @@ from flexapod.solve.modes import locked_poses
 from flexapod.solve.springs import springs_along
 from flexapod.solve.stiffness import displacement, tool_motion
 from flexapod.study.budgets.words import part_words
+from flexapod.symbolic.functions import Interpreted
 from flexapod.symbolic.vocabulary import constant, symbol, zeros
 
 RUBS = Joint(friction=JointFriction(moment=2.0))
@@ -323,3 +329,47 @@ def test_legs_between_balls_rub_as_those_on_crosses():
         found = run_robot(study(robot.replace(legs=tuple(legs)), fidelity="lumped", step=1e-3, duration=0.1))
         lost.append(found["sums"][-1, 0])
     assert lost[0] == pytest.approx(lost[1], rel=1e-4)
+
+
+def test_a_ball_turns_as_its_axes_do():
+    # Rates against the rotation between two instants: R(t + h) R(t)^T is the turn h v, in the axes before the joint.
+    rng = np.random.default_rng(5)
+    angles, rates, h = rng.normal(size=3), rng.normal(size=3), 1e-5
+    symbols = [symbol("angles", 3), symbol("rates", 3), symbol("together")]
+    rate = casadi.Function("turning", symbols, [turning(*symbols)])
+
+    def axes(by):
+        return [exponential(x * unit) for x, unit in zip(angles + by * rates, np.eye(3), strict=True)]
+
+    (a, b, c), (d, e, f) = axes(h), axes(-h)
+    change = (a @ b @ c) @ (d @ e @ f).T
+    expected = np.array([change[2, 1] - change[1, 2], change[0, 2] - change[2, 0], change[1, 0] - change[0, 1]]) / (
+        4 * h
+    )
+    np.testing.assert_allclose(np.array(rate(angles, rates, 1.0)).ravel(), expected, atol=1e-8)
+    np.testing.assert_allclose(np.array(rate(angles, rates, 0.0)).ravel(), rates, atol=0)
+
+
+@pytest.mark.parametrize("together", [0.0, 1.0])
+def test_forces_do_the_power_and_grow_with_the_rates(together):
+    ours = dataclasses.replace(
+        legs_of_all_kinds.shapes("pose with spin and twist"),
+        base_friction=True,
+        platform_friction=True,
+        drive_friction=True,
+    )
+    force, matrix = (Interpreted(x) for x in friction_functions(ours))
+    rng, b = np.random.default_rng(6), ours.bristles
+    p = np.zeros(sum(size for _, size in leg_parameters(ours)))
+    for name, _ in ours.sliding:
+        p[columns(leg_parameters(ours), name)] = (2.0, 1e-3, 1e-3, 0.3, 2.0, 0.4, 1e-3, together)
+    p[columns(leg_parameters(ours), "cylinder_spins")] = p[
+        columns(leg_parameters(ours), "drive_friction_at_stroke")
+    ] = 1.0
+    q, v, lam = (rng.normal(size=n) for n in (ours.size, ours.size, ours.rows))
+    state, h = np.concatenate([5e-4 * rng.normal(size=b), rng.normal(size=b)]), np.array([1e-3])
+    r, _, _, _, energies = force(q, v, lam, state, h, p)
+    assert r @ v == pytest.approx(energies[0], rel=1e-12)
+    steps = 1e-6 * np.eye(ours.size)
+    slopes = [(force(q, v + x, lam, state, h, p)[0] - force(q, v - x, lam, state, h, p)[0]) / 2e-6 for x in steps]
+    np.testing.assert_allclose(matrix(q, v, lam, state, h, p)[0], np.array(slopes).T, atol=1e-6)
