@@ -17,6 +17,7 @@ from flexapod.solve.springs import springs_along
 from flexapod.study.before.screws import buckling_thrust
 from flexapod.study.parts import parts
 from flexapod.study.static import modes
+from flexapod.typing import Array
 
 UM = 1e6  # N/m of an N/um
 
@@ -124,3 +125,35 @@ def screws_and_rotors() -> list[Check]:
         ours = frequencies.frequency.values
         found.append(Check(f"rotors {name}", exact, float(ours[np.abs(ours - exact).argmin()]), 1e-6, "Hz"))
     return found
+
+
+@case(
+    name="stick-slip",
+    statement="A kilogram on a rough table, pulled through a spring at 0.1 m/s: place and bristle after 25 s of slips",
+    source="Exudyn, Examples/lugreFrictionTest.py, with the parameters of Canudas de Wit, Olsson, Åström & Lischinsky, "
+    "IEEE Trans. Automatic Control 40 (1995) 419, Table I",
+    argument="SciPy's LSODA with a relative tolerance of 1e-12: 3e-10 m",
+)
+def stick_slip() -> list[Check]:
+    """Friction alone, its equation integrated beside that of a mass."""
+    from scipy.integrate import solve_ivp
+
+    from flexapod.elements.friction import rubbing
+    from flexapod.symbolic.functions import Interpreted, NamedFunction
+    from flexapod.symbolic.vocabulary import constant, substitute, symbol, zeros
+
+    table = constant(np.array([1.0, 0.0, 1e-5, 0.5, 1e3, 0.4, np.sqrt(1e5) / 1e5, 0.0]))
+    v, z, h = symbol("v"), symbol("z"), symbol("h")
+    found = rubbing(table, zeros(1), v, v, z, h, falling=False)
+    parts = [(name, substitute(getattr(found, name), (h,), (zeros(1),))) for name in ("force", "rate")]
+    friction = Interpreted(NamedFunction("friction", [("v", v), ("z", z)], parts))
+
+    def rates(t: float, y: Array) -> list[float]:
+        force, rate = friction(y[1:2], y[2:])
+        return [y[1], 2 * (0.1 * t - y[0]) - float(force[0]), float(rate[0])]
+
+    x, _, bristle = solve_ivp(rates, (0, 25), [0, 0, 0], method="LSODA", rtol=1e-12, atol=1e-14).y[:, -1]
+    return [
+        Check("place", 1.908839199226505, x, 1e-8, "m", absolute=True),
+        Check("bristle", 1.1816795455868868e-05, bristle, 1e-8, "m", absolute=True),
+    ]
