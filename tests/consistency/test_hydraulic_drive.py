@@ -316,3 +316,13 @@ class TestMotionBase:
         legs = tuple(leg.replace(drive=low) for leg in study.robot.legs)
         path = RigidPath(study.replace(robot=study.robot.replace(legs=legs)))
         assert "above the limit of 1 bar" in hydraulic_remarks(path.robot, describe_hydraulics(path))[0]
+
+
+def test_a_cylinder_with_a_section_stretches_up_to_its_bottom():
+    old = next(line for line in TEXT.splitlines() if line.startswith("cylinder = "))
+    given = changed(
+        (old, 'cylinder = { mouth = "1.9 m", diameter = "120 mm", inner_diameter = "100 mm", material = "steel" }')
+    )
+    steel = model.MATERIALS["steel"].E
+    found = fx.parts(given).part_stiffness.sel(part="cylinder").values
+    np.testing.assert_allclose(found, steel * np.pi / 4 * (0.12**2 - 0.1**2) / 0.5, rtol=1e-12)

@@ -200,3 +200,24 @@ class TestRefusals:
         assert refused(('preload = "1540 N", dynamic', "dynamic")).key == "leg.drive.nut.preload"
         error = refused(('rigidity = "1130 N/um"', 'rigidity = "1130 N/um", stiffness = "700 N/um"'))
         assert error.key == "leg.drive.nut.rigidity"
+
+
+class TestNutOnTheScrew:
+    @pytest.mark.parametrize(("change", "key", "words"), [
+        (('length = "400 mm"            #', 'length = "250 mm" #'), "leg.drive.length", "ends before the nut of leg"),
+        (('position = "60 mm"', 'position = "300 mm"'), "leg.drive.bearing.position", "behind the bearing at t = "),
+    ])  # fmt: skip
+    def test_a_nut_that_leaves_its_screw_is_refused_on_the_path(self, change, key, words):
+        study = model.loads(HEXAPOD.replace(*change))  # a file may name it: the path decides
+        with pytest.raises(InputError) as caught:
+            describe(study)
+        assert caught.value.key == key and words in str(caught.value) and "between 0 and the screw" in str(caught.value)
+
+    def test_a_preload_above_the_catalogue_is_refused_with_its_limit(self):
+        error = refused(('preload = "1540 N"', 'preload = "4 kN"'))
+        assert error.key == "leg.drive.nut.preload" and "3080 N" in str(error)
+
+    def test_a_thrust_that_unloads_half_a_nut_is_remarked(self):
+        path, _ = changed(('preload = "1540 N"', 'preload = "100 N"'))
+        found = describe(path.study)
+        assert any("2.83 times the preload of the nut" in remark for remark in found.remarks)

@@ -260,10 +260,10 @@ class ScrewDrive(Frozen):
             raise InputError("is missing", key="loop", next_step="Add loop = { stiffness, damping }, N m/rad")
         if self.command != "position" and self.encoder.at != "rotor":
             raise InputError(
-                "is not what a servo of this version measures",
-                key="encoder",
+                "is not where loops and torques act: they are about the rotor's angle",
+                key="encoder.at",
                 value=self.encoder.at,
-                allowed='at = "rotor", or command = "position"',
+                allowed='rotor; or command = "position", an ideal loop about what is measured',
             )
         return self
 
