@@ -3,17 +3,24 @@
 from types import SimpleNamespace
 
 from flexapod.elements.frame import Energies
+from flexapod.elements.gap import past_gap, touching
 from flexapod.elements.oil_column import oil_column
 
 
 def screw(
-    p: SimpleNamespace, qs: SimpleNamespace, vs: SimpleNamespace, *, oil: bool = False, turning: bool = False
+    p: SimpleNamespace,
+    qs: SimpleNamespace,
+    vs: SimpleNamespace,
+    *,
+    oil: bool = False,
+    turning: bool = False,
+    gap: bool = False,
 ) -> Energies:
     """Energies of springs and dampers between the rotor's travel r and the stroke l, and of what turns with the rotor.
 
     The compliance of the springs is a polynomial of second degree in l, as that of the shaft depends on the nut's
     place; with `oil` that of a hydraulic cylinder comes to it. ``turning``: a piston that is not keyed takes the nut
-    along as it turns.
+    along as it turns. ``gap``: the springs touch past the play only.
     """
     away = qs.l - p.series_home
     softer = 1 + away * (p.series_softening[0] + away * p.series_softening[1])
@@ -23,8 +30,11 @@ def screw(
     nut, rate = qs.l, vs.l
     if turning:  # (T23.41)
         nut, rate = nut - p.series_turn * qs.spin, rate - p.series_turn * vs.spin
+    x, rate = qs.r - nut, vs.r - rate
+    if gap:
+        x, rate = past_gap(x, p.half_play), touching(x, p.half_play) * rate  # (T16.26)-(T16.27)
     return Energies(
         kinetic=0.5 * p.rotor_mass * vs.r**2,  # (T15.12)
-        strain=0.5 * stiffness * (qs.r - nut) ** 2,  # (T15.11)
-        dissipation=0.5 * p.series_damping * (vs.r - rate) ** 2,
+        strain=0.5 * stiffness * x**2,  # (T15.11)
+        dissipation=0.5 * p.series_damping * rate**2,
     )

@@ -42,10 +42,8 @@ CRANK_PARAMETERS: tuple[tuple[str, int], ...] = (
     ("carriage_com", 3),  # m, from the shaft
     ("carriage_arm", 3),  # m, from the shaft to the base joint; `base` is the base joint
 )
-#: ... of legs that turn about their axis at the base joint.
-SPIN_PARAMETERS: tuple[tuple[str, int], ...] = (
-    ("cylinder_spins", 1),  # 1: the cylinder turns along (S, F), 0: the piston alone (C)
-)
+#: ... of legs that turn about their axis at the base joint; 1: the cylinder turns along (S, F), 0: the piston alone (C).
+SPIN_PARAMETERS: tuple[tuple[str, int], ...] = (("cylinder_spins", 1),)
 #: ... of pistons that twist: from the driven end to the tip, as they stretch.
 TORSION_PARAMETERS: tuple[tuple[str, int], ...] = (("GJ", 1),)  # N m^2
 #: ... of a leg in space with a body at its tip, beside mass and transverse inertia.
@@ -88,13 +86,12 @@ SERIES_PARAMETERS: tuple[tuple[str, int], ...] = (
 
 #: ... whose pistons turn in their cylinders and take the nut along: travel by that angle [m/rad].
 TURNING_PARAMETERS: tuple[tuple[str, int], ...] = (("series_turn", 1),)
-
+#: ... whose play is a gap in them: half of it [m].
+GAP_PARAMETERS: tuple[tuple[str, int], ...] = (("half_play", 1),)
 #: ... whose motor has a ripple: angle of its first harmonic by travel [rad/m], energies of all [J].
 RIPPLE_PARAMETERS: tuple[tuple[str, int], ...] = (("ripple_wave", 1), ("ripple", 4))
-
 #: ... whose loop sums its error.
 INTEGRAL_PARAMETERS: tuple[tuple[str, int], ...] = (("rotor_integral", 1),)  # N/(m s)
-
 #: ... of which some are columns of oil: their share in the compliance of these at home; of the two columns the share of
 #: the pushing one in their stiffness there, and one over their lengths [1/m].
 OIL_PARAMETERS: tuple[tuple[str, int], ...] = (("oil", 4),)
@@ -202,6 +199,8 @@ class Shapes:
         Springs between a rotor, whose travel is r, and the stroke l.
     turning : bool
         Pistons that turn in their cylinders take the nut along (with spin and series).
+    gap : bool
+        Play of the leg between the springs of the stroke and the piston.
     ripple : bool
         A torque that returns with the turns of the rotor.
     integral : bool
@@ -239,6 +238,7 @@ class Shapes:
     series: bool = False
     turning: bool = False
     ripple: bool = False
+    gap: bool = False
     integral: bool = False
     oil: bool = False
     sections: int = 0
@@ -376,6 +376,7 @@ def leg_parameters(shapes: Shapes) -> tuple[tuple[str, int], ...]:
         (shapes.soft_platform, SOFT_PLATFORM),
         (shapes.series, SERIES_PARAMETERS),
         (shapes.turning, TURNING_PARAMETERS),
+        (shapes.gap, GAP_PARAMETERS),
         (shapes.ripple, RIPPLE_PARAMETERS),
         (shapes.integral, INTEGRAL_PARAMETERS),
         (shapes.oil, OIL_PARAMETERS),

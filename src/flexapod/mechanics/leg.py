@@ -77,7 +77,7 @@ def leg(shapes: Shapes, p: SimpleNamespace, q: SX, v: SX, qs: SimpleNamespace, v
     e += inside
     if shapes.torsion:
         e += torsion(frame, p, qs, vs)
-    series = screw(p, qs, vs, oil=shapes.oil, turning=shapes.turning) if shapes.series else Energies()
+    series = _series(shapes, p, qs, vs)
     e += series
     if shapes.ripple:
         e += Energies(strain=ripple(p, qs))
@@ -163,6 +163,13 @@ def _inside(shapes: Shapes, f: Motion, p: SimpleNamespace) -> tuple[Energies, SX
         turn = inner_turn(f, p, inner)
     at_tip, short, short_X = shortening(f, p, inner, from_base)
     return e + lean(f, p, short, short_X), vertcat(0, 0, at_tip), vertcat(0, 0, turn)
+
+
+def _series(shapes: Shapes, p: SimpleNamespace, qs: SimpleNamespace, vs: SimpleNamespace) -> Energies:
+    """Springs between rotor and stroke."""
+    if not shapes.series:
+        return Energies()
+    return screw(p, qs, vs, oil=shapes.oil, turning=shapes.turning, gap=shapes.gap)
 
 
 def _joints(shapes: Shapes, p: SimpleNamespace, qs: SimpleNamespace, vs: SimpleNamespace) -> Energies:

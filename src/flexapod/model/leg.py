@@ -124,6 +124,17 @@ class Leg(Frozen):
         return 0.0 if self.stroke is None else self.stroke.min
 
     @property
+    def backlash(self) -> float:
+        """Free travel of its drive, from one end to the other [m], of a crank [rad]."""
+        holder = self.drive if self.screw is None else self.screw.nut
+        return getattr(holder, "backlash", None) or 0.0
+
+    @property
+    def half_play(self) -> float:
+        """Half of all free travel along a leg that is driven by its stroke [m]."""
+        return 0.5 * ((self.base_joint.play or 0.0) + (self.platform_joint.play or 0.0) + self.backlash)
+
+    @property
     def holds_stroke(self) -> bool:
         """Whether a drive that holds its command holds the stroke, not a rotor before it."""
         return self.screw.holds_stroke if self.screw is not None else not self.gives

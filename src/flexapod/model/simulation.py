@@ -34,7 +34,8 @@ class Simulation(Frozen):
     of `beam-fem` two per element, of `solid-fem` those of the reduced solid piston);
     `duration` [s] (None: the motion with its hold);
     `tolerance` (relative, of the step control) or fixed `step` [s]; `output_step` [s]; `rho_inf`, spectral radius of
-    the integrator at infinite frequency; `friction` about rest, in modes and stiffness: what rubs slides, or sticks.
+    the integrator at infinite frequency; `friction` about rest, in modes and stiffness: what rubs slides, or sticks;
+    `play`: left to `flexapod.play`, or a gap in the motion.
     """
 
     fidelity: str = "assumed-modes"
@@ -46,6 +47,7 @@ class Simulation(Frozen):
     output_step: Annotated[Positive, Measure("time")] = 1e-3
     rho_inf: float = Field(default=0.9, strict=True, ge=0, le=1)
     friction: Literal["sliding", "stuck"] = "sliding"
+    play: Literal["static", "gap"] = "static"
 
     def __init__(self, **fields: object) -> None:
         if fields.get("tolerance") is None and fields.get("step") is None:

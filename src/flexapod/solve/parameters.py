@@ -203,6 +203,7 @@ def _series(leg: Leg, length: float, per_loss: float) -> dict[str, object]:
         "series_softening": softening(springs, length) if springs else (0.0, 0.0),
         "series_home": length,
         "series_turn": leg.turning,
+        "half_play": leg.half_play,
         "ripple_wave": 0.0 if screw is None else screw.wave,
         "ripple": np.zeros(4) if screw is None or not screw.wave else screw.rippling / (screw.wave * np.arange(1, 5)),
         "rotor_integral": 0.0 if screw is None else screw.integral,

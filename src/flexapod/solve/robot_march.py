@@ -66,6 +66,7 @@ def prepare(study: Study, state: State | None = None) -> RobotMarch:
     """
     refuse_massless(study)
     refuse_growing_plates(study)
+    refuse_gaps(study)
     robot, simulation = study.robot, study.simulation
     system, path = robot_system(robot, simulation), _Path(study)
     law = robot_law(system, robot, study.load, path.poses, path.knots)
@@ -110,6 +111,20 @@ def refuse_massless(study: Study) -> None:
                 value=0,
                 allowed='0 in modes, stiffness, maps; in time with "rigid", or "lumped" and prescribed strokes',
                 next_step="Give a small rhoA, as 1e-6 kg/m: steps need not follow what is that light",
+            )
+
+
+def refuse_gaps(study: Study) -> None:
+    """Raise InputError if play is to be a gap in legs without springs before their piston."""
+    for i, leg in enumerate(study.robot.legs if study.simulation.play == "gap" else (), start=1):
+        if leg.half_play and not (leg.gives and leg.driven == "stroke"):
+            raise InputError(
+                f"is a gap in the springs between drive and piston, of which leg {i} has none",
+                file=study.path,
+                key="simulation.play",
+                value="gap",
+                allowed='legs whose drive is a screw, or with springs at = "nut"',
+                next_step="Give leg.springs, or leave simulation.play out: flexapod.play follows play without a motion",
             )
 
 

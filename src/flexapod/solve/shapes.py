@@ -38,6 +38,7 @@ def robot_shapes(robot: Robot, simulation: Simulation, legs: Limbs) -> Shapes:
         soft_platform=any(x.at == "platform" for x in springs),
         series=any(leg.gives for leg in robot.legs),
         turning=any(leg.turning for leg in robot.legs),
+        gap=simulation.play == "gap" and any(leg.half_play and leg.gives for leg in robot.legs),
         ripple=any(leg.screw is not None and leg.screw.motor.ripple is not None for leg in robot.legs),
         integral=any(leg.screw is not None and leg.screw.integral > 0 for leg in robot.legs),
         oil=any(leg.cylinder_of_oil is not None for leg in robot.legs),

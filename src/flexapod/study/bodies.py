@@ -69,7 +69,7 @@ def pairs_of_legs(robot: Robot) -> list[tuple[int, int]]:
 def _radii(robot: Robot) -> Array:
     """Radii of cylinders and pistons, (n, 2) [m]; a strut is a piston."""
     pistons = np.array([0.5 * section_width(leg.piston) for leg in robot.legs])
-    given = [getattr(leg.cylinder, "diameter", None) for leg in robot.legs]
+    given = [leg.cylinder.diameter for leg in robot.legs]
     around = np.where([leg.strut is None for leg in robot.legs], CYLINDER, 1.0) * pistons
     cylinders = [size if wide is None else 0.5 * wide for wide, size in zip(given, around, strict=True)]
     return np.stack([cylinders, pistons], axis=1)

@@ -7,7 +7,7 @@ from dataclasses import dataclass
 import numpy as np
 from numpy.typing import NDArray
 
-from flexapod.model import Drive, Robot, ScrewDrive
+from flexapod.model import Robot
 from flexapod.study.accuracy.sensitivity import Sensitivity, sensitivity
 from flexapod.study.path import RigidPath
 from flexapod.typing import Array
@@ -51,17 +51,12 @@ class Jumps:
 
 def half_play(robot: Robot) -> Array:
     """Half the free travel at each place of each leg, (3, n) [m], of a crank's drive [rad]; 0 inside a loop."""
-    play = [[leg.base_joint.play or 0.0, _backlash(leg.drive), leg.platform_joint.play or 0.0] for leg in robot.legs]
+    play = [[leg.base_joint.play or 0.0, leg.backlash, leg.platform_joint.play or 0.0] for leg in robot.legs]
     outside = [
         [leg.measured != "joint-to-joint", leg.measured == "rotor", leg.measured != "joint-to-joint"]
         for leg in robot.legs
     ]
     return 0.5 * (np.array(play) * outside).T
-
-
-def _backlash(drive: Drive) -> float:
-    holder = drive.nut if isinstance(drive, ScrewDrive) else drive
-    return getattr(holder, "backlash", None) or 0.0
 
 
 def play_along(path: RigidPath, at: Sensitivity | None = None) -> Play:

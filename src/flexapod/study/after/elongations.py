@@ -6,6 +6,7 @@ from collections.abc import Sequence
 
 import numpy as np
 
+from flexapod.elements.gap import past_gap
 from flexapod.model import Robot, ServoDrive
 from flexapod.solve.springs import Place, Spring, of_servo, springs_along
 from flexapod.solve.system import System
@@ -46,6 +47,8 @@ def elongations(
         if leg.turning and "nut" in places:  # (T23.41)
             found["unkeyed"][..., i] = leg.turning * q[..., i, shapes.index("spin")]
             gives["nut"] = gives["nut"] - found["unkeyed"][..., i]
+        if shapes.gap:
+            gives["nut"] = past_gap(gives["nut"], leg.half_play)
         for at, give in gives.items():
             here = [spring for spring in springs if spring.at == at and at in places]
             for spring, share in zip(here, _shares(here, length[..., i]), strict=True):

@@ -7,6 +7,7 @@ from dataclasses import replace
 import numpy as np
 from numpy.typing import ArrayLike
 
+from flexapod.elements.gap import past_gap
 from flexapod.mechanics.layout import columns, leg_parameters
 from flexapod.model import Robot
 from flexapod.rigid.built import built_limbs
@@ -114,7 +115,12 @@ def _drive_positions(robot: Robot, system: System, record: Record) -> Array:
     """Where the drives are, (T, legs): strokes, carriages, rotors by their travel; of a servo what its spring holds."""
     shapes, q = system.kernel.shapes, record.q
     found = by_name.of_drives(limbs(robot), shapes, q)
-    give = np.sum(list(elongations(robot, system, q, ("nut",)).values()), axis=0)
+    gives = elongations(robot, system, q, ("nut",))
+    give = np.sum(list(gives.values()), axis=0)
+    if shapes.gap:
+        apart = q[..., shapes.l_index] - q[..., shapes.index("r")] - gives.get("unkeyed", 0.0)
+        half = [leg.half_play for leg in robot.legs]
+        give = give + apart - past_gap(apart, np.array(half))
     return found - give if shapes.series else found
 
 

@@ -1,0 +1,82 @@
+"""Play as a gap in motions: against the map of signs, energy, limits, refusals, files."""
+
+import numpy as np
+import pytest
+from tests.machines import SCREW, machine, study
+
+import flexapod as fx
+from flexapod.elements.gap import past_gap, touching
+from flexapod.errors import InputError
+from flexapod.model import AxialSpring, Load, SineWrench, to_toml
+from flexapod.model.joint import Joint
+
+PLAY = {"base_joint": Joint(play=10e-6)}
+
+
+def loose(damping, *, period=1.0, backlash=10e-6, joints=PLAY, **simulation):
+    """A machine at rest whose tool is pulled up and pushed down by 2.5 times its weight; 20 um of play a leg."""
+    nut = SCREW.nut.replace(backlash=backlash, damping=damping)
+    robot = machine(drive=SCREW.replace(nut=nut), damping=0.02 if damping else 0.0, **joints)
+    found = study(robot, fidelity="lumped", play="gap", **simulation)
+    load = Load(wrench=SineWrench(amplitude=[0, 0, 25e3, 0, 0, 0], frequency=1 / period))
+    return found.replace(motion=found.motion.replace(amplitude=1e-9), load=load)
+
+
+def static(found):
+    return found.replace(simulation=found.simulation.replace(play="static"))
+
+
+def test_the_gap_is_a_dead_band_with_rounded_edges():
+    half = 5e-6
+    x = np.linspace(-50e-6, 50e-6, 2001)
+    sharp = np.sign(x) * np.maximum(np.abs(x) - half, 0.0)
+    assert np.abs(past_gap(x, half) - sharp).max() < 0.11 * half  # half of the width of the rounding
+    assert past_gap(1e-3, half) == pytest.approx(1e-3 - half, abs=1e-6 * half)
+    np.testing.assert_allclose(np.gradient(past_gap(x, half), x)[1:-1], touching(x, half)[1:-1], atol=2e-3)
+    np.testing.assert_array_equal(past_gap(x, 0.0), x)
+
+
+def test_a_slow_motion_lies_where_the_signs_of_the_forces_say():
+    found = loose(1.5e6, duration=1.0, step=5e-4)
+    gap, without = fx.simulate(found), fx.simulate(static(found))
+    moved = (gap.tool_deviation - without.tool_deviation).sel(axis="z").values
+    signs = fx.play(found)
+    said = signs.play_error.sel(component="z").interp(time=gap.time).values
+    at_rest, pulled, pushed = (gap.time.values.searchsorted(t) for t in (0.0, 0.3, 0.8))
+    assert said[pulled] > 5e-6 > -5e-6 > said[pushed]
+    for k in (at_rest, pulled, pushed):
+        # The edges are rounded: by 2 % of the play over the square of the spring's share in the displacement.
+        assert moved[k] == pytest.approx(said[k], abs=0.03 * abs(said[k]))
+    # What the drives hold is their command; the play is in the cause "drive".
+    cause = gap.deviation_by_cause.sel(cause="drive").sum("leg").sel(axis="z").values
+    assert cause[pushed] == pytest.approx(said[pushed], abs=0.03 * abs(said[pushed]))
+
+
+def test_energy_is_kept_to_the_order_of_the_method():
+    drifts = []
+    for step in (2e-4, 1e-4):
+        x = fx.simulate(loose(0.0, period=0.1, duration=0.06, step=step))
+        balance = x.energy_kinetic + x.energy_potential + x.energy_strain + x.energy_dissipated
+        drifts.append(np.ptp((balance - x.work_drive - x.work_external).values))
+    assert drifts[0] / drifts[1] == pytest.approx(4.0, rel=0.1)  # second order through the gap
+    assert drifts[1] < 2e-4 * np.ptp(x.work_external.values)
+
+
+def test_without_play_a_gap_is_none():
+    found = loose(1e5, backlash=None, joints={}, duration=0.02, step=5e-4)
+    np.testing.assert_array_equal(fx.simulate(found).tool_position, fx.simulate(static(found)).tool_position)
+    # Poses at rest leave play to its bounds, whatever motions do.
+    here = loose(1e5, duration=0.02)
+    for compute, name in ((fx.modes, "frequency"), (fx.budget, "worst")):
+        np.testing.assert_array_equal(compute(here)[name], compute(static(here))[name])
+
+
+def test_a_gap_needs_springs_before_the_piston():
+    found = study(machine(**PLAY), play="gap")
+    with pytest.raises(InputError, match="leg 1 has none") as caught:
+        fx.simulate(found)
+    assert caught.value.key == "simulation.play"
+    springs = (AxialSpring(name="bracket", stiffness=5e8, damping=1e5),)
+    whole = study(machine(**PLAY, springs=springs), play="gap", duration=0.01, fidelity="lumped", step=5e-4)
+    assert fx.simulate(whole).attrs["steps"] > 0
+    assert fx.loads(to_toml(whole)).simulation.play == "gap"
