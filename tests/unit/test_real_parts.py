@@ -167,6 +167,12 @@ def test_the_parts_of_a_machine():
         ([('bearing = { stiffness = "780 N/um",', "bearing = {")], "leg.drive.bearing.stiffness", "is missing"),
         ([('axial = "200 N/um"', 'axial = "0 N/um"')], "leg.base_joint.stiffness.axial", "above 0"),
         (
+            [('radial = "150 N/um", loss = 0.01 }', 'radial = "150 N/um", loss = 0.01 }, play = "1 m"')],
+            "leg.base_joint.play",
+            "at most 5 %",
+        ),
+        ([('axial = "200 N/um"', "axial = 1e-300")], "leg.base_joint.stiffness.axial", "1e-09 to"),
+        (
             [("loss = 0.01 }", 'loss = 0.01, damping = "1 N s/m" }')],
             "leg.base_joint.stiffness.damping",
             "either of the two",

@@ -30,6 +30,7 @@ _STIFFNESS = ("EI", "EA", "rhoA")
 _SLIDING = ("stiffness", "damping", "force", "length")
 _TURNING = ("rotational stiffness", "rotational damping", "torque", "angle")
 _OF_MATERIAL = ("E", "density", "yield_stress", "poisson", "expansion")
+LEAST_STIFFNESS = 1e-9  # N/m, as of other springs
 _TRANSLATIONS, _FORCES = ("stiffness",) * 3, ("force",) * 3
 
 
@@ -125,6 +126,8 @@ def _above_zero(section: Section, name: str) -> float:
         raise section.error(
             "is not above zero: such a spring holds nothing", name, allowed="above 0 N/m; a joint without it is rigid"
         )
+    if value < LEAST_STIFFNESS:
+        raise section.error("is out of range", name, allowed=f"{LEAST_STIFFNESS:g} to 1e+18 N/m")
     return value
 
 

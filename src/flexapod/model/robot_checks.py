@@ -199,6 +199,9 @@ def _hinges(leg: Leg) -> list[Array]:
     return [axis for axis in (crank, leg.base_joint.axis, leg.platform_joint.axis) if axis is not None]
 
 
+MOST_ERROR = 0.05  # of a leg's length: what plays or is crooked by more is made otherwise
+
+
 def check_leg(number: int, leg: Leg, length: float) -> None:
     """Refuse a leg that cannot stand at home, where it is `length` [m] long (nan: its strut does not reach)."""
     where = f"leg {number}"
@@ -222,6 +225,21 @@ def check_leg(number: int, leg: Leg, length: float) -> None:
             value=leg.cylinder.mouth,
             allowed=f"below {length:.6g} m",
         )
+    small = (
+        ("base_joint.play", leg.base_joint.play),
+        ("platform_joint.play", leg.platform_joint.play),
+        ("base_joint.eccentricity", leg.base_joint.eccentricity),
+        ("platform_joint.eccentricity", leg.platform_joint.eccentricity),
+        ("piston.bow", leg.piston.bow),
+    )
+    for key, value in small:
+        if value is not None and value > MOST_ERROR * length:
+            raise InputError(
+                f"{where}: is no error of a leg that is {length:.4g} m long at home",
+                key=f"leg.{key}",
+                value=value,
+                allowed=f"at most {100 * MOST_ERROR:g} % of that, {MOST_ERROR * length:.4g} m",
+            )
     if abs(leg.cylinder.com) > length:
         raise InputError(
             f"{where}: the cylinder's centre of mass lies beyond the leg's ends at home",
