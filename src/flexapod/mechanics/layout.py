@@ -42,7 +42,7 @@ CRANK_PARAMETERS: tuple[tuple[str, int], ...] = (
     ("carriage_com", 3),  # m, from the shaft
     ("carriage_arm", 3),  # m, from the shaft to the base joint; `base` is the base joint
 )
-#: ... of legs that turn about their axis at the base joint; 1: the cylinder turns along (S, F), 0: the piston alone (C).
+#: ... of legs that turn about their axis at the base joint; 1: with the cylinder (S, F), 0: the piston alone (C).
 SPIN_PARAMETERS: tuple[tuple[str, int], ...] = (("cylinder_spins", 1),)
 #: ... of pistons that twist: from the driven end to the tip, as they stretch.
 TORSION_PARAMETERS: tuple[tuple[str, int], ...] = (("GJ", 1),)  # N m^2
