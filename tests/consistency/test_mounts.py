@@ -19,6 +19,7 @@ from flexapod.model.joint import Joint
 from flexapod.model.mount import Mount
 from flexapod.model.write import to_toml
 from flexapod.rigid.rotations import quaternion, turned
+from flexapod.solve.buckling import leg_loads
 from flexapod.symbolic.functions import Interpreted
 
 NONE = lateral_basis("clamped-free", 0)
@@ -328,3 +329,13 @@ def test_maps_take_the_plates_along():
     payload = robot.payload.mass * np.linalg.norm(C[:3, 2])
     assert float(found.dynamic_deviation[0]) == pytest.approx(payload, rel=0.2)
     assert float(found.dynamic_deviation[0]) > payload
+
+
+def test_legs_buckle_as_without_mounts():
+    """Their matrices have the coordinates of the plates, which read more; that was forgotten once."""
+    robot = machine()
+    length = robot.home_lengths[None]
+    alone = leg_loads(robot, length)
+    assert np.isfinite(alone).all()
+    assert leg_loads(robot.replace(base_mount=BASE), length) == pytest.approx(alone, rel=1e-9)
+    assert leg_loads(robot.replace(base_mount=BASE, platform_mount=TOP), length) == pytest.approx(alone, rel=1e-9)

@@ -58,7 +58,7 @@ def _loads(system: System, legs: Limbs, length: Array) -> Array:
     lam[:, :3] = axes
     pushed = K - _matrices(system, q, lam, p, legs)[0]
     locked = system.held.copy()
-    locked[:, shapes.l_index] = True
+    locked[:, [shapes.l_index, *shapes.shared]] = True
     loads = np.full(system.legs, np.inf)
     for i, (own, less, rows) in enumerate(zip(K, pushed, J, strict=True)):
         rows = rows.copy()
@@ -70,11 +70,11 @@ def _loads(system: System, legs: Limbs, length: Array) -> Array:
 
 
 def _matrices(system: System, q: Array, lam: Array, p: Array, legs: Limbs) -> tuple[Array, Array]:
-    n, rows = system.n, system.rows
+    n, rows, posed = system.n, system.rows, system.kernel.shapes.posed
     R = np.eye(3) if rows == 3 else legs.rotation
     pose = np.concatenate([np.zeros(3), quaternion(R)])
-    outputs = [(n, n)] * 3 + [(rows, n)] + ([(6, 6), (6, 6), (n, 6)] if rows == 6 else [])
-    inputs = [q, lam, p, *([pose] if rows == 6 else [])]
+    outputs = [(n, n)] * 3 + [(rows, n)] + ([(rows, 6), (6, 6), (n, 6)] if posed else [])
+    inputs = [q, lam, p, *([pose] if posed else [])]
     found = evaluate(system.kernel, "leg_matrices", system.legs, inputs, outputs)
     return found[2], found[3]
 
