@@ -13,10 +13,13 @@ from tests.runs import balance, run_robot
 import flexapod as fx
 from flexapod.bases import axial_basis, lateral_basis
 from flexapod.errors import InputError
+from flexapod.exchange.export import abaqus_deck
 from flexapod.mechanics.layout import Shapes
 from flexapod.model import MATERIALS, Cylinder, Guide, Mounted
 from flexapod.model.material import Tube
+from flexapod.proof.engines.exudyn_robot import RobotProblem
 from flexapod.solve.buckling import leg_loads
+from flexapod.study.accuracy.play import guide_play
 from flexapod.study.before.describe.robot import describe
 from flexapod.study.before.estimates import buckling_load
 
@@ -269,6 +272,30 @@ def test_a_part_made_ideal_takes_its_row_along(part):
     np.testing.assert_allclose(
         whole.sum("part").values[:3] - gone, without.sum("part").values[:3], atol=0.02 * np.abs(gone).max()
     )
+
+
+def test_clearance_lets_a_pinned_leg_lean():
+    # (T25.17) against the exact distance of the joints of two rigid bodies with a kink; and its row of the budget.
+    robot = machine(guide=bushings(1e8, clearance=1e-3))
+    leg, length = robot.legs[0], robot.home_lengths[0]
+    d, m = leg.overlap(length), leg.cylinder.mouth
+    lean = np.arcsin(1e-3 / d)
+    tip = np.array([-0.5e-3, length - leg.piston.length]) + leg.piston.length * np.array([np.sin(lean), np.cos(lean)])
+    exact = np.linalg.norm(tip) - length
+    assert abs(exact) == pytest.approx(guide_play(robot, robot.home_lengths)[0], rel=1e-3)
+    assert m - d == pytest.approx(length - leg.piston.length)
+    row = fx.budget(robot).budget.sel(part="guide play", kind="hysteretic").values
+    assert 0 < np.abs(row[:3]).max() < 10 * 6 * abs(exact)
+    with pytest.raises(InputError, match="across"):
+        with_legs(three_rps(), guide=bushings(1e8, clearance=1e-5))
+
+
+@pytest.mark.parametrize("parts", [{"guide": bushings(1e8)}, {"cylinder": BENDING}])
+def test_decks_and_engines_refuse_what_they_do_not_write(parts):
+    with pytest.raises(InputError, match="decks"):
+        abaqus_deck(machine(**parts))
+    with pytest.raises(InputError, match="Exudyn"):
+        RobotProblem(robot=machine(**parts), motion=None, integration=None, elements=0, guide=0.0)
 
 
 def test_whole_legs_buckle_as_their_parts_say():

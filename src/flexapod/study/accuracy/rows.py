@@ -10,7 +10,7 @@ from flexapod import rigid
 from flexapod.model import Study
 from flexapod.rigid.limbs import COORDINATES
 from flexapod.study.accuracy.at_pose import AtPose
-from flexapod.study.accuracy.play import PLACES
+from flexapod.study.accuracy.play import PLACES, guide_play
 from flexapod.typing import Array
 
 __all__ = ["Row", "rows"]
@@ -53,6 +53,9 @@ def rows(study: Study, pose: rigid.Poses) -> list[Row]:
         by_leg = rippling[:, None] * at.sensitivity.coordinate[0, :, COORDINATES.index("l")]
         how = "standard deviation over a period, against the loop's stiffness, legs independent"
         found.append(Row("ripple", "random", "calibratable", by_leg, how))
+    if (shorter := guide_play(study.robot, at.sensitivity.q[0, :, COORDINATES.index("l")])).any():
+        by_leg = np.abs(shorter[:, None] * at.sensitivity.coordinate[0, :, COORDINATES.index("l")])
+        found.append(Row("guide play", "hysteretic", "", by_leg, "second order in the kink: legs that lean or do not"))
     if at.is_loose:
         effect = np.abs(at.play.effect[0])
         how = "first order, whichever way the play is pressed"
