@@ -26,11 +26,14 @@ from flexapod.symbolic.vocabulary import SX, constant, cross, dot, quadratic, sq
 class Bend:
     """Bending of a cylinder of some length as polynomials of the distance from the base joint.
 
-    ``along`` (2): coefficients of the slopes times the length in powers of X / length, by direction a, b.
+    ``along`` (2): coefficients of the slopes times the length in powers of X / length, by direction a, b; ``mouth``,
+    ``tangent`` (2): displacement and slope at the mouth.
     """
 
     length: SX
     along: tuple[SX, SX]
+    mouth: SX
+    tangent: SX
 
     def place(self, X: SX) -> SX:
         """Displacement (a, b)."""
@@ -66,7 +69,13 @@ def bend(basis: LateralBasis, p: SimpleNamespace, qs: SimpleNamespace) -> Bend:
     table = np.zeros((basis.count, max(len(c) for c in slopes)))
     for row, c in zip(table, slopes, strict=True):
         row[: len(c)] = np.where(np.abs(c) < 1e-12 * np.abs(c).max(), 0.0, c)
-    return Bend(length=p.cylinder_length, along=(constant(table).T @ qs.ka, constant(table).T @ qs.kb))
+    mouth, tangent = (vertcat(*(constant(x) @ k for k in (qs.ka, qs.kb))) for x in (basis.tip, basis.tip_slope))
+    return Bend(
+        length=p.cylinder_length,
+        along=(constant(table).T @ qs.ka, constant(table).T @ qs.kb),
+        mouth=mouth,
+        tangent=tangent / p.cylinder_length,
+    )
 
 
 def flexible_cylinder(f: Motion, basis: LateralBasis, p: SimpleNamespace, now: Bend, rate: Bend) -> Energies:

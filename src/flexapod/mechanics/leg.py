@@ -137,10 +137,7 @@ def _line(shapes: Shapes, p: SimpleNamespace, qs: SimpleNamespace, vs: SimpleNam
     """Line of the piston through the mouth: that of a cylinder that bends, and what the gland gives way to it."""
     place, slope, place_rate, slope_rate = (zeros(2) for _ in range(4))
     if (bends := _bends(shapes, p, qs, vs)) is not None:
-        (place, place_rate), (slope, slope_rate) = (
-            [x.place(p.mouth) for x in bends],
-            [x.slope(p.mouth) for x in bends],
-        )
+        (place, place_rate), (slope, slope_rate) = ([x.mouth for x in bends], [x.tangent for x in bends])
     if shapes.guide is not None:
         place, slope = (x + vertcat(qs.ga[i], qs.gb[i]) for i, x in enumerate((place, slope)))
         place_rate, slope_rate = (x + vertcat(vs.ga[i], vs.gb[i]) for i, x in enumerate((place_rate, slope_rate)))

@@ -65,7 +65,7 @@ def _cylinder(count: int, robot: Robot) -> LateralBasis | None:
     """Shapes of cylinders that bend, under forces and moments at the mouth and the head's force."""
     if not count or all(leg.cylinder.section is None for leg in robot.legs):
         return None
-    return bases.lateral_basis("tip-load", min((count + 1) // 2 + 1, 5), moment=True)
+    return bases.lateral_basis("tip-load", min((count + 1) // 2, 5), moment=True)
 
 
 def space_shapes(lateral: LateralBasis, axial_modes: int, **joints: Any) -> Shapes:

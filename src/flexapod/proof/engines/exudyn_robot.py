@@ -53,9 +53,6 @@ class RobotProblem:
                     "is not modelled in Exudyn", key=f"leg {number}: chain", value=leg.chain, allowed=", ".join(CHAINS)
                 )
             _check_parts(number, leg)
-            for key, part in (("guide", leg.guide), ("cylinder.diameter", leg.cylinder.section)):
-                if part is not None:
-                    raise InputError("is not modelled in Exudyn", key=f"leg {number}: {key}", next_step="Leave it out")
             if self.elements and leg.piston.sections:
                 raise InputError(
                     "is not modelled in Exudyn",
