@@ -10,7 +10,7 @@ ENERGIES = {
     "energy_kinetic": ("kinetic", "#0072B2"),
     "energy_potential": ("gravity", "#E69F00"),
     "energy_strain": ("strain and springs", "#009E73"),
-    "energy_dissipated": ("lost in damping", "#D55E00"),
+    "energy_dissipated": ("lost in damping and friction", "#D55E00"),
     "work_drive": ("work of the drives", "#56B4E9"),
     "work_base": ("work on the base", "#8C6D31"),
     "work_external": ("work of the load", "#A23B72"),
