@@ -171,7 +171,7 @@ def _kernel(mechanism: Mechanism, shapes: Shapes, general: int) -> Kernel:
         command,
         sizes(shapes, general + mechanism.parameters.shape[1], joint=len(mechanism.parameters)),
     )
-    compiled = {name: CompiledFunction(library, name, signatures[name]) for name in NAMES}
+    compiled = {name: CompiledFunction(library, name, signatures[name]) for name in NAMES if name in signatures}
     return Kernel(shapes=shapes, library=library, **compiled)
 
 
