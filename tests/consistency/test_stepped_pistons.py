@@ -17,6 +17,9 @@ PISTON = '{{ sections = [{{ length = "200 mm", diameter = "{} mm", material = "s
     '{{ length = "550 mm", diameter = "27 mm", material = "steel" }}] }}'  # fmt: skip
 
 
+THICK = 'piston = { diameter = "60 mm", length = "750 mm", material = "steel", shear = true }'
+
+
 def gauss(low, high, count=12):
     x, w = np.polynomial.legendre.leggauss(count)
     return low + (high - low) * (x + 1) / 2, w * (high - low) / 2
@@ -82,6 +85,19 @@ def study(diameter):
     )
 
 
+def test_energy_of_thick_pistons_is_kept():
+    thick = fx.loads(re.sub(r"piston = \{ dia.*?\}", THICK, preset_text("paper-robot"), count=1))
+    gaps = []
+    for step in (1e-3, 5e-4):
+        data = fx.simulate(thick, step=step, duration=0.6)
+        energy = data.energy_kinetic + data.energy_potential + data.energy_strain + data.energy_dissipated
+        energy = energy - data.work_drive - data.work_external
+        gaps.append(float(energy.max() - energy.min()))
+    assert gaps[0] / gaps[1] == pytest.approx(4, rel=0.05)
+    assert "shear" not in data.attrs["warnings"]
+    assert fx.loads(fx.model.to_toml(thick)).robot.legs[0].piston == thick.robot.legs[0].piston
+
+
 def test_equal_sections_are_a_uniform_piston():
     # The same shapes, other sums: rounding of some 1e-14 of forces and frequencies
     uniform, cut = fx.preset("paper-robot"), study(27)
@@ -103,3 +119,36 @@ def test_energy_is_kept_while_cuts_pass_the_mouths():
         gaps.append(float(energy.max() - energy.min()))
     assert gaps[0] / gaps[1] == pytest.approx(4, rel=0.15)
     assert gaps[1] < 1e-4 * float(data.energy_kinetic.max())
+
+
+def test_fidelities_that_know_sections():
+    # Lumped: one spring of the whole compliance, and the same mass; others are refused before anything is computed
+    data = fx.modes(study(40), fidelity="lumped")
+    assert data.frequency[0] > 0
+    with pytest.raises(fx.InputError, match="does not know pistons of several sections"):
+        fx.simulate(study(40), fidelity="beam-fem", modes=4)
+    with pytest.raises(fx.InputError, match=r"leg.piston.sections.*not known to half"):
+        fx.ladder(study(40))
+
+
+@pytest.mark.parametrize(("piston", "words"), [
+    ('{ sections = [], bow = 0 }', r"leg\.piston\.sections.*is empty"),
+    ('{ sections = [{ length = 1, diameter = 0.03, material = "steel" }], diameter = 0.03 }', "together with sections"),
+    ('{ sections = [{ length = 1, material = "steel" }] }', r"sections\[1\]\.diameter.*is missing"),
+    ('{ sections = [{ length = 1, width = 0.03, material = "steel" }] }', "does not fit the other sizes"),
+    ('{ sections = [{ length = 1, diameter = 0.03, inner_diameter = 0.04, material = "steel" }] }', "leaves no wall"),
+    ('{ length = 1, EI = 1, EA = 1, rhoA = 1, shear = true }', r"leg\.piston\.shear.*needs a section and a material"),
+])  # fmt: skip
+def test_bad_sections_are_refused(piston, words):
+    with pytest.raises(fx.InputError, match=words):
+        fx.loads(re.sub(r"piston = \{ dia.*?\}", "piston = " + piston, preset_text("paper-robot"), count=1))
+
+
+def test_sections_go_through_a_file_and_a_sweep():
+    of = study(40)
+    assert fx.loads(fx.model.to_toml(of)).robot == of.robot
+    from flexapod.surveys.sweeps.keys import parse_key, put
+
+    data = {"leg": {"piston": {"sections": [{"diameter": 0.04}, {"diameter": 0.027}]}}}
+    put(data, parse_key("leg.piston.sections[2].diameter", what="key"), 0.03)
+    assert data["leg"]["piston"]["sections"][1]["diameter"] == 0.03

@@ -17,7 +17,7 @@ from numpy.polynomial import Chebyshev
 from flexapod.bases import LateralBasis
 from flexapod.typing import Array
 
-__all__ = ["Piece", "Uniform", "held", "pieces"]
+__all__ = ["Piece", "Sheared", "Uniform", "held", "pieces", "sheared"]
 
 
 @dataclass(frozen=True, kw_only=True)
@@ -113,6 +113,34 @@ def pieces(uniform: Uniform, places: Sequence[Any], loads: Sequence[Any], gives:
         p0 = value - loose.value(piece["end"]) - p1 * d
         done.append(Piece(uniform=uniform, **piece, p0=p0, p1=p1))
         value, slope = done[-1].value(piece["start"]), done[-1].value(piece["start"], 1)
+    return done[::-1]
+
+
+@dataclass(frozen=True, kw_only=True)
+class Sheared:
+    """Deflection by shear between two cuts, of what has the forces of a `Piece`: soft (M - m0) + q0, Eq. (T1.23)."""
+
+    piece: Piece
+    soft: Any
+    q0: Any
+
+    def value(self, x: Any) -> Any:
+        """Deflection of every shape."""
+        return self.soft * (self.piece.moment(x) - self.piece.m0) + self.q0
+
+    def slope(self, x: Any) -> Any:
+        """Its derivative by x."""
+        return self.soft * self.piece.shear(x)
+
+
+def sheared(bent: Sequence[Piece], softs: Sequence[Any]) -> list[Sheared]:
+    """Shear of pieces from tip to mouth; `softs`: 1 / (kappa G A) of each, relative to any value."""
+    done: list[Sheared] = []
+    value: Any = 0.0
+    for piece, soft in zip(reversed(bent), reversed(softs), strict=True):
+        loose = Sheared(piece=piece, soft=soft, q0=0.0)
+        done.append(Sheared(piece=piece, soft=soft, q0=value - loose.value(piece.end)))
+        value = done[-1].value(piece.start)
     return done[::-1]
 
 

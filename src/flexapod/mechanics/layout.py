@@ -3,8 +3,9 @@
 from dataclasses import dataclass
 from typing import Literal
 
-from flexapod.bases import AxialBasis, LateralBasis
+from flexapod.bases import AxialBasis, LateralBasis, lateral_basis
 from flexapod.mechanics.guide_layout import CYLINDER_PARAMETERS, GUIDE_PARAMETERS
+from flexapod.mechanics.section_layout import section_parameters
 
 #: Physical parameters of one leg, in the order in which kernels read them (name, size). SI; vectors in the world frame.
 LEG_PARAMETERS: tuple[tuple[str, int], ...] = (
@@ -101,28 +102,6 @@ PLATFORM_FRICTION: tuple[tuple[str, int], ...] = (("platform_friction", 8),)
 #: ... of a drive along its travel, and of a rotor the share of the stroke in what slides.
 DRIVE_FRICTION: tuple[tuple[str, int], ...] = (("drive_friction", 8), ("drive_friction_at_stroke", 1))
 
-
-def _section_parameters(shapes: "Shapes") -> tuple[tuple[str, int], ...]:
-    """... of pistons of several sections, from the tip to the driven end; `rhoA`, `EI`, `EA` are those of the whole."""
-    n, m = shapes.sections, shapes.axial.count
-    lateral = len(shapes.planes) * shapes.b.count
-    return (
-        ("section_cuts", n - 1),  # m, ends of the sections from the tip, ascending; those that are not there at 0
-        ("gland", 1),  # m, length within which the mouth takes a cut up
-        ("section_rhoA", n),  # kg/m
-        ("section_load", n),  # rhoA of the sections over any
-        *((f"section_EI_{plane}", n) for plane in shapes.planes),  # N m^2
-        ("section_place", n),  # tau = place - shrink xi: how much of the stretch lies between driven end and xi
-        ("section_shrink", n),  # 1/m
-        ("piston_moments", 2),  # int (X - inner end)^k dm / mass, k = 1, 2 [m, m^2]
-        ("axial_first", m),  # int psi dm [kg]
-        ("axial_moment", m),  # int (X - inner end) psi dm [kg m]
-        ("axial_mass", m * m),  # int psi psi^T dm [kg]
-        ("axial_damping", m * m),  # N s/m
-        ("lateral_damping", lateral**2),  # N s, over the free length
-    )
-
-
 #: ... of legs whose base is moved: the point about which it turns.
 BASE_MOTION_PARAMETERS: tuple[tuple[str, int], ...] = (("base_motion_at", 3),)  # m
 #: ... of legs whose base stands on a mount; mass and springs are a leg's share of them.
@@ -141,6 +120,7 @@ PLATFORM_MOUNT_PARAMETERS: tuple[tuple[str, int], ...] = (
     ("platform_mount_damping", 36),
 )
 PLATFORM_JOINT: tuple[tuple[str, int], ...] = (("joint", 3),)  # of legs with a ball, as in `POSE_PARAMETERS`
+
 #: Physical parameters of the payload in kernel order (name, size); tool from the CoM, in platform axes.
 PAYLOAD_PARAMETERS: tuple[tuple[str, int], ...] = (
     ("mass", 1),  # kg
@@ -211,6 +191,8 @@ class Shapes:
         Of the pistons; 0: all are uniform.
     strips : bool
         Their two bending stiffnesses are different.
+    shear : bool
+        They shear, and their sections have rotary inertia.
     base_friction, platform_friction, drive_friction : bool
         What slides and has bristles: angles at the base joint, those at the platform joint (pose closures), a drive.
     base_motion, base_mount, platform_mount : bool
@@ -243,9 +225,15 @@ class Shapes:
     oil: bool = False
     sections: int = 0
     strips: bool = False
+    shear: bool = False
     base_friction: bool = False
     platform_friction: bool = False
     drive_friction: bool = False
+
+    @property
+    def sheared(self) -> LateralBasis | None:
+        """Shapes by whose forces pistons shear: those without a moment at the tip, whose forces are independent."""
+        return lateral_basis("tip-load", self.b.count) if self.shear else None
 
     @property
     def planes(self) -> tuple[str, ...]:
@@ -273,10 +261,12 @@ class Shapes:
         )
         more = (*(name for name, has in there if has), *gamma)
         ends = (("u", self.flexure or self.soft_base), ("e", self.flexure or self.soft_platform))
+        sheared = (("shear_a", self.shear * self.a.count), ("shear_b", self.shear * self.b.count))
         moved = tuple(f"{end}{k}" for end, has in ends if has for k in (1, 2, 3))
         frames = (("g", self.base_motion), ("m", self.platform_mount), ("f", self.base_mount))
         single = (*((name, 1) for name in (*angles, "l")), *amplitudes, *((name, 1) for name in (*more, *moved)))
-        return (*single, *self._inside, *((name, 6) for name, has in frames if has))
+        thick = (part for part in sheared if part[1])
+        return (*single, *thick, *self._inside, *((name, 6) for name, has in frames if has))
 
     @property
     def _inside(self) -> tuple[tuple[str, int], ...]:
@@ -361,6 +351,10 @@ class Shapes:
         return columns(self.layout, name).start
 
 
+def _of_sections(shapes: Shapes) -> tuple[tuple[str, int], ...]:
+    return section_parameters(shapes.sections, shapes.planes, shapes.b.count, shapes.axial.count, shear=shapes.shear)
+
+
 def leg_parameters(shapes: Shapes) -> tuple[tuple[str, int], ...]:
     """Physical parameters of one leg in kernel order (name, size)."""
     parts = (
@@ -380,7 +374,7 @@ def leg_parameters(shapes: Shapes) -> tuple[tuple[str, int], ...]:
         (shapes.ripple, RIPPLE_PARAMETERS),
         (shapes.integral, INTEGRAL_PARAMETERS),
         (shapes.oil, OIL_PARAMETERS),
-        (shapes.sections > 0, _section_parameters(shapes)),
+        (shapes.sections > 0, _of_sections(shapes)),
         (shapes.base_friction, BASE_FRICTION),
         (shapes.platform_friction, PLATFORM_FRICTION),
         (shapes.drive_friction, DRIVE_FRICTION),

@@ -2,11 +2,9 @@
 
 from dataclasses import dataclass
 from types import SimpleNamespace
-from typing import Any
 
 import numpy as np
 
-from flexapod.bases import LateralBasis
 from flexapod.elements.carriage import carriage
 from flexapod.elements.cylinder import cylinder
 from flexapod.elements.distribution import Line, Motion
@@ -20,7 +18,7 @@ from flexapod.elements.rotations import small_rotation
 from flexapod.elements.screw import screw
 from flexapod.elements.sliding_piston import sliding_piston, tip_place, tip_turn
 from flexapod.elements.soft_joint import soft_joint
-from flexapod.elements.stepped_piston import SteppedShapes, of_planes, stepped_piston, stepped_shapes
+from flexapod.elements.stepped_piston import SteppedShapes, of_planes, stepped_piston, stepped_shapes, straight
 from flexapod.elements.tip_body import tip_body
 from flexapod.elements.torsion import torsion
 from flexapod.elements.universal import universal
@@ -68,7 +66,7 @@ def leg(shapes: Shapes, p: SimpleNamespace, q: SX, v: SX, qs: SimpleNamespace, v
     a, b, present = shapes.a if shapes.a.count else shapes.b, shapes.b, (zeros(0), zeros(0))
     if shapes.sections:
         qs, vs = (of_planes(shapes.planes, part) for part in (qs, vs))
-        a, present = _of_sections(shapes, b if b.count else a, p, s, qs.l)
+        a, present = _of_sections(shapes, p, s, qs.l)
         b = a
     line = _line(shapes, p, qs, vs)
     motion = Motion(a=a, b=b, axial=shapes.axial, frame=frame, line=line, s=s, q=q, v=v, qs=qs, vs=vs)
@@ -120,11 +118,14 @@ def _ground(shapes: Shapes, p: SimpleNamespace, qs: SimpleNamespace, vs: SimpleN
     return ground, carried + e
 
 
-def _of_sections(shapes: Shapes, basis: LateralBasis, p: SimpleNamespace, s: SX, l: SX) -> tuple[Any, tuple[SX, SX]]:  # noqa: E741
-    """Shapes of a piston of several sections near a length, and what is there of them."""
-    integrals = stepped_shapes(basis, shapes.axial, shapes.planes, p, s, l)
+def _of_sections(shapes: Shapes, p: SimpleNamespace, s: SX, l: SX) -> tuple[SteppedShapes, tuple[SX, SX]]:  # noqa: E741
+    """Shapes of a piston of several sections near its present length; symbols for that, and what to put for them."""
+    of_plane = np.concatenate([shapes.b.tip, np.zeros(shapes.shear * shapes.b.count)])
+    tip = np.tile(of_plane, len(shapes.planes))
+    if not tip.size:
+        return straight(shapes.axial.count), (zeros(0), zeros(0))
+    integrals = stepped_shapes(shapes.b, shapes.sheared, shapes.axial, shapes.planes, p, s, l)
     near, present = expanded(list(integrals.values()), l)
-    tip = np.tile(basis.tip, len(shapes.planes))
     return SteppedShapes(count=tip.size, tip=tip, **dict(zip(integrals, near, strict=True))), present
 
 

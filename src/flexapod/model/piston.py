@@ -119,7 +119,8 @@ class Piston(Frozen):
     `poisson`, ratio of a round section; `GJ` [N m^2], torsional stiffness, of another one; `expansion` [1/K] by heat;
     `bow` [m]: of its axis, at rest and without load, from the line of its ends. `sections`, from the driven end to the
     tip, of one that is not uniform: the other values are then those of the whole (`stepped`). `keyed`: false of one
-    that turns in its cylinder (C) and takes the nut of its screw along.
+    that turns in its cylinder (C) and takes the nut of its screw along. `shear`: whether it shears and its sections
+    have rotary inertia (Timoshenko's beam).
     """
 
     length: Annotated[Positive, Measure("length")]
@@ -138,11 +139,16 @@ class Piston(Frozen):
     bow: Annotated[NonNegative, Measure("length")] | None = None
     sections: tuple[PistonSection, ...] = ()
     keyed: bool = True
+    shear: bool = False
 
     @model_validator(mode="after")
     def _sensible(self) -> Self:
         if self.inner_diameter is not None and self.diameter is None:
             raise InputError("needs the outer diameter too", key="diameter", next_step="Add diameter")
+        if self.shear and not self.sections and (self.diameter is None or self.E is None):
+            raise InputError(
+                "needs a section and a material", key="shear", value=True, allowed="diameter and material, or sections"
+            )
         if self.diameter is not None:
             Tube(diameter=self.diameter, inner_diameter=self.inner_diameter)
             if self.diameter >= self.length:
@@ -164,6 +170,7 @@ class Piston(Frozen):
         material: Material,
         axial_inertia: float = 0.0,
         bow: float | None = None,
+        shear: bool = False,
     ) -> Self:
         """A piston of round section: EA, EI and rhoA follow from section and material."""
         return cls(
@@ -180,11 +187,17 @@ class Piston(Frozen):
             poisson=material.poisson,
             expansion=material.expansion,
             bow=bow,
+            shear=shear,
         )
 
     @classmethod
     def stepped(
-        cls, sections: Sequence[PistonSection], *, axial_inertia: float = 0.0, bow: float | None = None
+        cls,
+        sections: Sequence[PistonSection],
+        *,
+        axial_inertia: float = 0.0,
+        bow: float | None = None,
+        shear: bool = False,
     ) -> Self:
         """A piston of sections, from its driven end to its tip.
 
@@ -196,6 +209,7 @@ class Piston(Frozen):
         steps = [step for section in sections for step in section.steps]
         length = sum(step.length for step in steps)
         grown = [section.length * section.expansion for section in sections if section.expansion is not None]
+        moduli = {section.E for section in sections}
         limits = [section.yield_stress for section in sections if section.yield_stress is not None]
         return cls(
             length=length,
@@ -205,9 +219,11 @@ class Piston(Frozen):
             rhoA=sum(step.length * step.rhoA for step in steps) / length,
             axial_inertia=axial_inertia,
             expansion=sum(grown) / length if len(grown) == len(sections) else None,
+            E=moduli.pop() if len(moduli) == 1 else None,
             yield_stress=min(limits) if len(limits) == len(sections) else None,
             bow=bow,
             sections=tuple(sections),
+            shear=shear,
         )
 
     @property
@@ -219,6 +235,11 @@ class Piston(Frozen):
     def steps_or_one(self) -> tuple[Step, ...]:
         """`steps`, of a uniform piston one; its depth is 0 where it is not known."""
         depth = self.depth or 0.0
+        if self.diameter is not None and self.E is not None:
+            tube = Tube(diameter=self.diameter, inner_diameter=self.inner_diameter)
+            shear = tube.cowper(self.poisson) * self.EA / (2 * (1 + self.poisson))
+        else:
+            shear = self.EA  # never read
         one = Step(
             length=self.length,
             EA=self.EA,
@@ -227,7 +248,7 @@ class Piston(Frozen):
             GJ=self.torsional_stiffness,
             E=self.E or 0.0,
             depth=(depth, depth),
-            shear=0.0,
+            shear=shear,
             round=True,
         )
         return self.steps or (one,)

@@ -170,7 +170,7 @@ def _arm(section: Section, radius: float, axis: Array, base: Array, normal: Arra
 def _sections(section: Section, model: type[P]) -> P:
     """A piston or strut of several sections."""
     for name in section.data:
-        if name not in ("sections", "axial_inertia", "bow", "keyed"):
+        if name not in ("sections", "axial_inertia", "bow", "keyed", "shear"):
             raise section.error("is given together with sections", name, allowed="in a section, or without sections")
     given = section.data["sections"]
     if not isinstance(given, list):
@@ -181,6 +181,7 @@ def _sections(section: Section, model: type[P]) -> P:
         sections=[table.read(PistonSection, also=("material",), then=_of_material) for table in tables],
         axial_inertia=section.number("axial_inertia", "inertia"),
         bow=section.number("bow", "length"),
+        shear=section.flag("shear"),
     )
 
 
@@ -208,6 +209,7 @@ def _beam(section: Section) -> Piston:
         material=read_material(section),
         axial_inertia=section.number("axial_inertia", "inertia"),
         bow=section.number("bow", "length"),
+        shear=section.flag("shear"),
     )
 
 
@@ -252,6 +254,7 @@ def _strut(section: Section) -> Strut:
             material=read_material(section),
             axial_inertia=axial_inertia,
             bow=section.number("bow", "length"),
+            shear=section.flag("shear"),
         )
     for name in ("diameter", "inner_diameter", "axial_inertia"):
         if name in section:

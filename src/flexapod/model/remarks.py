@@ -51,9 +51,10 @@ def actuator_remarks(actuator: Actuator, basis: str | None) -> tuple[str, ...]:
 def _leg_remarks(leg: Leg) -> list[str]:
     piston, cylinder = leg.piston, leg.cylinder
     remarks = []
-    if piston.diameter is not None and piston.diameter > _SLENDER * piston.length:
+    if piston.diameter is not None and piston.diameter > _SLENDER * piston.length and not piston.shear:
         remarks.append(f"the piston is {piston.diameter:g} m wide, {_fat(piston.diameter, piston.length, 'length')}")
-    if piston.yield_stress is not None and (piston.depth is None or piston.E is None):
+    known = piston.sections or (piston.depth is not None and piston.E is not None)
+    if piston.yield_stress is not None and not known:
         remarks.append("yield_stress has no effect: stress needs the piston's diameter and material, not EI and EA")
     oil = leg.cylinder_of_oil
     if oil is not None and piston.diameter is not None and abs(oil.rod - piston.diameter) > 1e-9:

@@ -52,11 +52,13 @@ def check_counts(robot: Robot) -> None:
         "cylinder.diameter": [leg.cylinder.section for leg in robot.legs],
     }
     for name, parts in inside.items():
-        if any(part is not None for part in parts) and any(leg.piston.sections for leg in robot.legs):
+        if any(part is not None for part in parts) and any(
+            leg.piston.sections or leg.piston.shear for leg in robot.legs
+        ):
             raise InputError(
-                "does not go together with pistons of several sections",
+                "does not go together with pistons of several sections, or that shear",
                 key=f"leg.{name}",
-                allowed="pistons of one section throughout, or clamped at the mouths of rigid cylinders",
+                allowed="slender pistons of one section throughout, or clamped at the mouths of rigid cylinders",
             )
 
 

@@ -159,9 +159,11 @@ def _beam(piston: Piston) -> dict[str, object]:
     if piston.keyed:
         fields.pop("keyed", None)
     if piston.sections:
-        kept = ("sections", "bow", "axial_inertia")
+        kept = ("sections", "bow", "axial_inertia", "shear")
         return {name: value for name, value in fields.items() if (name in kept and value) or name == "keyed"}
     fields.pop("sections")
+    if not piston.shear:
+        fields.pop("shear")
     made_of = {name: fields.pop(name, None) for name in ("E", "density")}
     if piston.E is None or piston.density is None:
         return fields
@@ -174,7 +176,7 @@ def _beam(piston: Piston) -> dict[str, object]:
         same = type(piston).round(length=piston.length, section=section, material=material, axial_inertia=axial)
     elif isinstance(piston, Strut) and piston.section is not None:
         same = Strut.strip(length=piston.length, section=piston.section, material=material)
-    if same != piston.replace(bow=None, keyed=True):
+    if same != piston.replace(bow=None, keyed=True, shear=False):
         return fields
     computed = ("EA", "EI", "rhoA", *(() if piston.diameter else ("axial_inertia",)))
     return {name: value for name, value in fields.items() if name not in computed} | made_of

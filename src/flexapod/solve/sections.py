@@ -9,7 +9,7 @@ import numpy as np
 from flexapod.bases import LateralBasis
 from flexapod.bases.beam_functions import gauss_unit
 from flexapod.bases.lateral import proportional_damping
-from flexapod.elements.steps import Piece, Uniform, held, pieces
+from flexapod.elements.steps import Piece, Uniform, held, pieces, sheared
 from flexapod.mechanics.layout import Shapes
 from flexapod.model import Leg, damping_parts
 from flexapod.model.sections import Step
@@ -53,6 +53,10 @@ def section_parameters(leg: Leg, shapes: Shapes, home: float) -> dict[str, objec
         "section_load": loads(rhoA),
         "section_EI_a": EI[0],
         "section_EI_b": EI[1],
+        "section_shear": np.array([step.shear for step in padded]),
+        "section_turning_a": np.array([turning(step, 0) for step in padded]),
+        "section_turning_b": np.array([turning(step, 1) for step in padded]),
+        "piston_turning": np.array([sum(turning(step, k) * step.length for step in steps) for k in (0, 1)]),
         "section_place": place,
         "section_shrink": shrink,
         "piston_moments": np.array([dm @ along, dm @ along**2]) / whole if whole else np.zeros(2),
@@ -118,6 +122,24 @@ def _derivative(piece: Piece, x: float, derivative: int) -> Array:
     return piece.give * piece.moment(at) if derivative == 2 else (-1.0) ** derivative * piece.value(at, derivative)
 
 
+def shear_tips(leg: Leg, shapes: Shapes, free: Array) -> Array:
+    """Deflections at the tip of the shapes of shear before (T1.22), at free lengths (N,), (k, N)."""
+    softs = [steps_of(leg)[0].shear / step.shear for step in steps_of(leg)]
+    return sheared(numeric_pieces(leg, shapes.sheared or shapes.b, free, 1), softs)[0].value(0 * free)
+
+
+def bending_amplitudes(leg: Leg, shapes: Shapes, q: Array) -> Array:
+    """Amplitudes of bending alone out of coordinates (T, n) of a leg whose piston shears, (T, 2, k) [m]."""
+    k, free = shapes.b.count, q[:, shapes.l_index] - leg.cylinder.mouth
+    found, tips = np.zeros((len(q), 2, k)), shear_tips(leg, shapes, free)
+    for direction, name in enumerate(("a", "b")):
+        if shapes.has(f"shear_{name}"):
+            own, by_shear = (q[:, shapes.index(x) :][:, :k] for x in (name, f"shear_{name}"))
+            found[:, direction] = own
+            found[:, direction, 0] -= (tips.T * by_shear).sum(axis=1)
+    return found
+
+
 def stepped_stress(leg: Leg, basis: LateralBasis, lateral: Array, free: Array, compression: Array) -> Array:
     """Largest axial plus bending stress in a piston of several sections, (T,) [Pa]; arguments of `leg_stress`."""
     largest = np.zeros(len(free))
@@ -139,16 +161,37 @@ def stepped_stress(leg: Leg, basis: LateralBasis, lateral: Array, free: Array, c
 
 
 def _damping(leg: Leg, shapes: Shapes, free: float, direction: int) -> Array:
-    """Damping of ratio 1 in every mode of the bare piston at a free length, (k, k) [N s/m]."""
-    basis = shapes.b
-    M, K = np.zeros((basis.count, basis.count)), np.zeros((basis.count, basis.count))
-    if not basis.count:
+    """Damping of ratio 1 in every mode of the bare piston at a free length, of bending and shear (K, K) [N s/m]."""
+    basis, steps = shapes.b, steps_of(leg)
+    size = basis.count * (1 + shapes.shear)
+    M, K = np.zeros((size, size)), np.zeros((size, size))
+    if not size:
         return M
-    parts = numeric_pieces(leg, basis, free, direction)
-    E = held(parts[0].value(np.zeros(1)))
-    for piece, step in zip(parts, steps_of(leg), strict=True):
-        x, w = piece.start + (piece.end - piece.start) * _POINTS, (piece.end - piece.start) * _WEIGHTS
-        value, bend = (y - E @ y[:1] for y in (piece.value(x), piece.give * piece.moment(x)))
+    bent = numeric_pieces(leg, basis, np.array([free]), direction)
+    E = held(bent[0].value(np.zeros(1)))
+    softs = [steps[0].shear / step.shear for step in steps] if shapes.shear else []
+    loads = numeric_pieces(leg, shapes.sheared, np.array([free]), direction) if shapes.sheared else []
+    thick = sheared(loads, softs) if loads else []
+    for j, step in enumerate(steps):
+        long = bent[j].end - bent[j].start
+        x, w = bent[j].start + long * _POINTS, long * _WEIGHTS
+        value, turn, bend = (
+            y - E * y[:1] for y in (bent[j].value(x), bent[j].value(x, 1), bent[j].give * bent[j].moment(x))
+        )
+        slope = 0 * turn
+        if thick:
+            tip = thick[0].value(np.zeros(1))
+            turn, bend = (np.vstack([y, -tip * y[:1]]) for y in (turn, bend))
+            value = np.vstack([value, thick[j].value(x) - tip * value[:1]])
+            slope = np.vstack([slope, thick[j].slope(x)])
         M += step.rhoA * free * (value * w) @ value.T
         K += step.EI[direction] / free**3 * (bend * w) @ bend.T
+        if thick:
+            M += turning(step, direction) / free * (turn * w) @ turn.T
+            K += step.shear / free * (slope * w) @ slope.T
     return proportional_damping(M, K) if M.any() else M
+
+
+def turning(step: Step, direction: int) -> float:
+    """Rotary inertia of a homogeneous section, rho I [kg m]."""
+    return step.rhoA * step.EI[direction] / step.EA

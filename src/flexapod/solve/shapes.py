@@ -25,6 +25,7 @@ def robot_shapes(robot: Robot, simulation: Simulation, legs: Limbs) -> Shapes:
     pose = bool(legs.pose_closure.any())
     lateral = leg_shapes(robot, simulation)
     springs = [spring for leg in robot.legs for spring in springs_along(leg)]
+    shear = simulation.lateral_shapes > 0 and any(leg.piston.shear for leg in robot.legs)
     return Shapes(
         a=bases.lateral_basis("clamped-free", 0) if robot.plane else lateral,  # across the plane nothing bends
         b=lateral,
@@ -46,7 +47,8 @@ def robot_shapes(robot: Robot, simulation: Simulation, legs: Limbs) -> Shapes:
         platform_friction=any(leg.platform_joint.friction is not None for leg in robot.legs),
         drive_friction=any(leg.drive.friction is not None for leg in robot.legs),
         pivot_spin=bool(((spin == FREE) & (gamma3 == HELD)).any()),
-        sections=max(len(leg.piston.steps) for leg in robot.legs),
+        sections=max(len(leg.piston.steps) for leg in robot.legs) or int(shear),
+        shear=shear,
         strips=any(step.EI[0] != step.EI[1] for leg in robot.legs for step in leg.piston.steps),
         base_motion=robot.base_motion is not None,
         base_mount=robot.base_mount is not None,

@@ -6,10 +6,11 @@ import numpy as np
 
 from flexapod.bases import LateralBasis
 from flexapod.mechanics.layout import Shapes
-from flexapod.model import Robot
+from flexapod.model import Leg, Robot
 from flexapod.rigid.kinematics import LegState
 from flexapod.rigid.limbs import ABSENT, COORDINATES, DRIVEN, HELD, Limbs
 from flexapod.rigid.rotations import exponential
+from flexapod.solve.sections import bending_amplitudes
 from flexapod.study.names import ANGLES
 from flexapod.typing import Array
 
@@ -28,6 +29,11 @@ def lateral(shapes: Shapes, q: Array) -> Array:
             at = shapes.index(name)
             found[..., direction, :] = q[..., at : at + k]
     return found
+
+
+def bending(leg: Leg, shapes: Shapes, q: Array) -> Array:
+    """Lateral amplitudes of a leg, (T, 2, k) [m], out of its coordinates (T, n): those of bending without shear."""
+    return bending_amplitudes(leg, shapes, q) if shapes.shear else lateral(shapes, q)
 
 
 def stretch(shapes: Shapes, q: Array) -> Array:

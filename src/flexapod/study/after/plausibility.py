@@ -17,7 +17,7 @@ from flexapod.solve.frames import as_drawn, in_world
 from flexapod.solve.many import RestStates
 from flexapod.solve.sections import leg_values, stepped_stress
 from flexapod.solve.system import System
-from flexapod.study.after.legs import base_points, bending_basis, lateral
+from flexapod.study.after.legs import base_points, bending, bending_basis
 from flexapod.study.before.estimates import (
     Section,
     beam_section,
@@ -67,7 +67,7 @@ def _leg_warnings(robot: Robot, system: System, record: Record | RestStates, whe
     loads = buckling_loads(robot, record.q[..., shapes.l_index], own) if inside.any() else None
     for i, leg in enumerate(robot.legs):
         length = record.q[:, i, shapes.l_index]
-        free, bent = length - leg.cylinder.mouth, lateral(shapes, record.q[:, i])
+        free, bent = length - leg.cylinder.mouth, bending(leg, shapes, record.q[:, i])
         found += [
             (i, *remark)
             for remark in (
@@ -198,7 +198,7 @@ def buckling_words(share: float, force: float, when: str) -> str:
 
 def _slender(leg: Leg, basis: LateralBasis, free: Array, when: _When) -> list[_Remark]:
     width, k = section_width(leg.piston), int(free.argmin())
-    if free[k] >= SLENDERNESS * width:
+    if free[k] >= SLENDERNESS * width or leg.piston.shear:
         return []
     return [_slender_remark(free[k], width, piston_section(leg.piston), basis, when[k])]
 

@@ -18,7 +18,7 @@ from flexapod.solve.recording import Counters
 from flexapod.solve.system import System
 from flexapod.study.after.causes import cause_names
 from flexapod.study.after.leg_results import drive_forces
-from flexapod.study.after.legs import bending_basis, lateral
+from flexapod.study.after.legs import bending, bending_basis, lateral
 from flexapod.study.after.plausibility import flexible_axes, leg_stress
 from flexapod.study.after.results import robot_results
 from flexapod.study.path import RigidPath
@@ -99,7 +99,8 @@ class RobotRun:
         found, shapes = np.full(axes.shape[1], np.nan), self.system.kernel.shapes
         for i, leg in enumerate(self.study.robot.legs):
             free = self.record.q[:, i, shapes.l_index] - leg.cylinder.mouth
-            stress = leg_stress(leg, bending_basis(shapes), self.lateral[:, i], free, compression[:, i])
+            bent = bending(leg, shapes, self.record.q[:, i])
+            stress = leg_stress(leg, bending_basis(shapes), bent, free, compression[:, i])
             found[i] = np.nan if stress is None else stress.max()
         return found
 

@@ -181,14 +181,16 @@ def load_remarks(legs: tuple[LegDescription, ...], robot: Robot, fidelity: str) 
     """Doubts about loads and about legs too thick for the `fidelity`, each of the leg where it is worst."""
     remarks = []
     worst = max(legs, key=lambda leg: leg.euler_share.value)
-    share, slender = worst.euler_share, min(legs, key=lambda leg: leg.slenderness)
+    slim = [found for found, leg in zip(legs, robot.legs, strict=True) if not leg.piston.shear]
+    share, slender = worst.euler_share, min(slim, key=lambda leg: leg.slenderness, default=None)
     if share.value > NEAR_BUCKLING:
         words = buckling_words(share.value, share.value * worst.euler_load, f" at t = {share.time:.6g} s")
         remarks.append(f"leg {worst.leg}: {words}")
-    if slender.slenderness < SLENDERNESS:
+    if slender is not None and slender.slenderness < SLENDERNESS:
         remarks.append(
             f"leg {slender.leg}: the free length falls to {slender.slenderness:.3g} times the width of the piston; "
             + _thick(robot.legs[slender.leg - 1], slender.slenderness, solid=fidelity == SOLID)
+            + ("" if fidelity == SOLID else "; leg.piston.shear = true takes it in")
         )
     return remarks + _unloading(legs, robot) + _yielding(legs)
 

@@ -1,0 +1,33 @@
+"""What a kernel reads of pistons of several sections, or that shear."""
+
+
+def section_parameters(
+    sections: int, planes: tuple[str, ...], lateral: int, axial: int, *, shear: bool
+) -> tuple[tuple[str, int], ...]:
+    """Parameters of a leg (name, size), sections from the tip to the driven end.
+
+    `rhoA`, `EI`, `EA` are then those of the whole. ``lateral``, ``axial``: shapes of a plane and along the leg;
+    ``planes``: directions that bend in their own way.
+    """
+    coordinates = len(planes) * lateral * (1 + shear)
+    thick = (
+        ("section_shear", sections),  # kappa G A [N]
+        *((f"section_turning_{plane}", sections) for plane in planes),  # rotary inertia rho I [kg m]
+        ("piston_turning", 2),  # of the whole along leg x and y [kg m^2]
+    )
+    return (
+        ("section_cuts", sections - 1),  # m, ends of the sections from the tip, ascending; 0: not there
+        ("gland", 1),  # m, length within which the mouth takes a cut up
+        ("section_rhoA", sections),  # kg/m
+        ("section_load", sections),  # rhoA over its mean
+        *((f"section_EI_{plane}", sections) for plane in planes),  # N m^2
+        ("section_place", sections),  # tau = place - shrink xi: share of the compliance between driven end and xi
+        ("section_shrink", sections),  # 1/m
+        ("piston_moments", 2),  # int (X - inner end)^k dm / mass, k = 1, 2 [m, m^2]
+        ("axial_first", axial),  # int psi dm [kg]
+        ("axial_moment", axial),  # int (X - inner end) psi dm [kg m]
+        ("axial_mass", axial * axial),  # int psi psi^T dm [kg]
+        ("axial_damping", axial * axial),  # N s/m
+        ("lateral_damping", coordinates**2),  # N s, over the free length
+        *(thick if shear else ()),
+    )
