@@ -80,3 +80,9 @@ def test_a_gap_needs_springs_before_the_piston():
     whole = study(machine(**PLAY, springs=springs), play="gap", duration=0.01, fidelity="lumped", step=5e-4)
     assert fx.simulate(whole).attrs["steps"] > 0
     assert fx.loads(to_toml(whole)).simulation.play == "gap"
+
+
+def test_drives_stand_where_their_rotors_are():
+    # The play lies between rotor and stroke: held rotors stay at their command, as without play.
+    data = fx.simulate(loose(1.5e6, duration=0.05, step=5e-4))
+    np.testing.assert_allclose(data.drive_position, data.drive_command, atol=1e-9)
