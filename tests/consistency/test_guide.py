@@ -24,6 +24,7 @@ from flexapod.solve.buckling import leg_loads
 from flexapod.study.accuracy.play import guide_play
 from flexapod.study.before.describe.robot import describe
 from flexapod.study.before.estimates import buckling_load
+from flexapod.study.budgets.words import part_words
 
 L_P, MOUTH, LENGTH = 0.75, 0.315, 0.91
 TUBE = 4.0
@@ -288,6 +289,7 @@ def test_clearance_lets_a_pinned_leg_lean():
     assert m - d == pytest.approx(length - leg.piston.length)
     row = fx.budget(robot).budget.sel(part="guide play", kind="hysteretic").values
     assert 0 < np.abs(row[:3]).max() < 10 * 6 * abs(exact)
+    assert part_words("guide play") == "play of the guides"
     with pytest.raises(InputError, match="across"):
         with_legs(three_rps(), guide=bushings(1e8, clearance=1e-5))
 

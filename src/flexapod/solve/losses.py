@@ -80,6 +80,10 @@ def _of_springs(robot: Robot, per: float) -> list[str]:
                 stiffness = 1.0 / float(spring.at_length(length))
                 leaking = float(spring.creep(length)) * (per * stiffness) ** 2  # (T23.5)
                 dampers.setdefault(spring.name, []).append(viscous(stiffness, 0.0, spring.loss, per) + leaking)
+    for guide in (leg.guide for leg in robot.legs if leg.guide is not None and leg.guide.loss):
+        found = (("gland", guide.gland), ("head", guide.head))
+        for name, stiffness in found:
+            dampers.setdefault(name, []).append(viscous(stiffness, 0.0, guide.loss, per))
     ends = {name: (text(min(c), "N s/m"), text(max(c), "N s/m")) for name, c in dampers.items()}
     return [f"{name}: {low}" + (f" to {high}" if high != low else "") for name, (low, high) in ends.items()]
 

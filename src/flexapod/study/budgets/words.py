@@ -45,8 +45,8 @@ def part_words(part: str) -> str:
     if kind in ("vibration", "noise"):
         return part
     if kind in ("play", "friction"):
-        where = "drives" if name == "drive" else f"joints at the {name.removesuffix('_joint')}"
-        return f"{kind} of the {where}"
+        places = {"drive": "drives", "guide": "guides"}
+        return f"{kind} of the {places.get(name) or 'joints at the ' + name.removesuffix('_joint')}"
     if part == "encoder":
         return "resolution of the encoders"
     if part == "ripple":
