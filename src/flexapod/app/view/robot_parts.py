@@ -170,7 +170,10 @@ def _floats(lines: Array) -> Any:
 
 def _radii(robot: model.Robot, size: float) -> Array:
     """Radii of the pistons (legs,) [m]; a thickness to see by where the study gives no diameter."""
-    given = [leg.piston.diameter for leg in robot.legs]
+    given = [
+        max(max(step.depth) for step in leg.piston.steps) if leg.piston.sections else leg.piston.diameter
+        for leg in robot.legs
+    ]
     return np.array([0.012 * size if d is None else max(0.5 * d, 0.004 * size) for d in given])
 
 
