@@ -52,7 +52,7 @@ DIMENSIONS = {
     "impulse": Dimension(unit="N s", example="10 N s", least=1e-12, most=1e15),
     "inertia": Dimension(unit="kg m^2", example="17.88 kg m^2", least=1e-18, most=1e15),
     "integral gain": Dimension(unit="N m/(rad s)", example="500 N m/(rad s)", least=1e-12, most=1e15, angle=True),
-    "leakage": Dimension(unit="m^3/(s Pa)", example="1e-12 m^3/(s Pa)", least=1e-24, most=1.0),
+    "leakage": Dimension(unit="m^3/(s Pa)", example="1e-12 m^3/(s Pa)", least=1e-20, most=10.0),
     "length": Dimension(unit="m", example="27 mm", least=1e-9, most=1e6),
     "line density": Dimension(unit="kg/m", example="4.02 kg/m", least=1e-15, most=1e9),
     "mass": Dimension(unit="kg", example="100 kg", least=1e-15, most=1e12),

@@ -269,7 +269,7 @@ def test_a_fixed_platform_has_frequencies_and_nothing_that_moves():
 def test_a_strip_has_stresses_by_its_thickness():
     # N / A and 6 M / (w t^2) of a section of 25 by 1.5 mm.
     study, force, moment = sample("planar"), 3.0, 0.02
-    stress = _stress(study.robot.legs[0], np.zeros(1), np.array([force]), np.array([moment]))
+    stress = _stress(study.robot.legs[0], np.zeros(1), np.array([force]), np.array([moment]), np.array([0.3]))
     np.testing.assert_allclose(stress.axial, force / 37.5e-6)
     np.testing.assert_allclose(stress.bending, 6 * moment / (25e-3 * 1.5e-3**2))
     assert all(leg.stress.total.value > 0 and leg.stress.yield_stress == 276e6 for leg in describe(study).legs)

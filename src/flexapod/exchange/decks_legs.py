@@ -234,6 +234,12 @@ def _check_leg(i: int, leg: model.Leg, length: float) -> None:
             key="leg.piston.sections",
             next_step="Give one diameter: that of the section whose stiffness counts most",
         )
+    if leg.piston.shear:
+        raise InputError(
+            "is not written in decks: their pistons are Euler-Bernoulli beams",
+            key="leg.piston.shear",
+            next_step="Leave it out; `check` says by how much shear counts",
+        )
     for key, there in (("leg.guide", leg.guide), ("leg.cylinder.diameter", leg.cylinder.section)):
         if there is not None:
             raise InputError(

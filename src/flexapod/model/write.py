@@ -80,15 +80,16 @@ def _mounts(robot: Robot) -> Iterator[tuple[str, object]]:
     for name in ("base_mount", "platform_mount"):
         if (mount := getattr(robot, name)) is not None:
             short = {key: _diagonal(value) for key, value in _fields(mount).items()}
-            yield name, {key: value for key, value in short.items() if np.any(value) or key == "loss"}
+            yield name, {key: value for key, value in short.items() if key == "loss" or np.asarray(value).any()}
     if robot.base_motion is not None:
         yield "base_motion", robot.base_motion
 
 
 def _diagonal(value: object) -> object:
     """A diagonal matrix as its diagonal."""
-    square = isinstance(value, np.ndarray) and value.ndim == 2
-    return np.diag(value) if square and not (value - np.diag(np.diag(value))).any() else value
+    if not isinstance(value, np.ndarray) or value.ndim != 2:
+        return value
+    return np.diag(value) if not (value - np.diag(np.diag(value))).any() else value
 
 
 def _per_leg(fields: dict[str, object]) -> dict[str, object]:

@@ -104,7 +104,8 @@ def planar() -> Robot:
 
 def table(chain: str, *, mass: float, inertia: float, height: float = 0.8, **rod: Any) -> Robot:
     """A platform, its centre of mass among the tips, on four upright legs all of which is piston."""
-    piston = Piston(**({"length": height, "EA": 1.1e8, "EI": 5e3, "rhoA": 4.5} | rod))
+    sizes: dict[str, Any] = {"length": height, "EA": 1.1e8, "EI": 5e3, "rhoA": 4.5}
+    piston = Piston(**(sizes | rod))
     own = leg(chain, cylinder=Cylinder(mass=0.0, mouth=0.0), piston=piston)
     load = Payload(mass=mass, inertia=[inertia] * 3, com=[0.0, 0.0, 0.0])
     return built(f"4-{chain}", ring(0.3, FOUR), ring(0.3, FOUR), height, [own] * 4, payload=load)

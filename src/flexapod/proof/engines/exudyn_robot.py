@@ -53,12 +53,13 @@ class RobotProblem:
                     "is not modelled in Exudyn", key=f"leg {number}: chain", value=leg.chain, allowed=", ".join(CHAINS)
                 )
             _check_parts(number, leg)
-            if self.elements and leg.piston.sections:
-                raise InputError(
-                    "is not modelled in Exudyn",
-                    key=f"leg {number}: piston.sections",
-                    next_step="Compare uniform pistons, or take rigid ones (elements=0)",
-                )
+            for key, there in (("sections", leg.piston.sections), ("shear", leg.piston.shear)):
+                if self.elements and there:
+                    raise InputError(
+                        "is not modelled in Exudyn",
+                        key=f"leg {number}: piston.{key}",
+                        next_step="Compare uniform, slender pistons, or take rigid ones (elements=0)",
+                    )
             if self.elements and not leg.piston.rhoA:
                 raise InputError(
                     "makes cables without mass, which Exudyn cannot move",

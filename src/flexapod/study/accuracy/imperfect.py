@@ -81,6 +81,7 @@ def _under(robot: Robot, at: Sensitivity, push: Array) -> _Under:
             next_step="A thicker or shorter piston bears more",
         )
     slopes = np.array([_slopes(leg, s) for leg, s in zip(robot.legs, free, strict=True)])
+    slopes *= [leg.measured != "joint-to-joint" for leg in robot.legs]  # what shortens a leg is seen there
     return _Under(cold, cold + _by_heat(robot, free), share, 1 / (1 - share), slopes)  # (T16.17)
 
 
