@@ -20,7 +20,7 @@ ERRORS = {
     "calibratable": ("systematic: calibration takes it out", "#56B4E9"),
     "repeatable": ("systematic: by load, repeatable", "#0072B2"),
     "drifting": ("systematic: drifts with heat", "#D55E00"),
-    "hysteretic": ("play (bound)", "#CC79A7"),
+    "hysteretic": ("play and friction (bound)", "#CC79A7"),
     "random": ("random: tolerances, noise (3 sigma)", "#8C8C8C"),
     "dynamic": ("dynamic (peak)", "#009E73"),
 }
