@@ -3,8 +3,8 @@
 #include <stdlib.h>
 #include <string.h>
 
-extern "C" { __attribute__((visibility("default"))) long long operation_counts[5]; }
-enum { ADDITIONS, MULTIPLICATIONS, DIVISIONS, ROOTS, CIRCULAR };
+extern "C" { __attribute__((visibility("default"))) long long operation_counts[6]; }
+enum { ADDITIONS, MULTIPLICATIONS, DIVISIONS, ROOTS, EXPONENTIALS, CIRCULAR };
 
 struct Counted {
   double value;
@@ -34,6 +34,7 @@ inline bool operator>=(Counted a, Counted b) { return a.value >= b.value; }
 inline bool operator==(Counted a, Counted b) { return a.value == b.value; }
 inline bool operator!=(Counted a, Counted b) { return a.value != b.value; }
 inline Counted sqrt(Counted a) { return counted(ROOTS, sqrt(a.value)); }
+inline Counted exp(Counted a) { return counted(EXPONENTIALS, exp(a.value)); }
 inline Counted sin(Counted a) { return counted(CIRCULAR, sin(a.value)); }
 inline Counted cos(Counted a) { return counted(CIRCULAR, cos(a.value)); }
 inline Counted fabs(Counted a) { return Counted(fabs(a.value)); }

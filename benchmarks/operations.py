@@ -32,17 +32,19 @@ REWRITTEN = (
     (r"enum \{ LANES = \d+ \};", "enum { LANES = 1 };"),
     (r"\((lanes|double)\)\{0\} \+ ", r"(\1)"),
 )
-KINDS = ("additions", "multiplications", "divisions", "roots", "circular")
+KINDS = ("additions", "multiplications", "divisions", "roots", "exponentials", "circular")
 
 
 @dataclass(frozen=True, kw_only=True)
 class Count:
-    """Operations: additions (and subtractions), multiplications, divisions, square roots, sines and cosines."""
+    """Operations: additions (and subtractions), multiplications, divisions, square roots, exponentials, sines and
+    cosines."""
 
     additions: float = 0
     multiplications: float = 0
     divisions: float = 0
     roots: float = 0
+    exponentials: float = 0
     circular: float = 0
 
     @property
@@ -65,7 +67,7 @@ def counted(action: str) -> Count:
     Parameters
     ----------
     action : str
-        ``module:function``; the function takes a callable that reads the counters, (5,) int, and returns a Count.
+        ``module:function``; the function takes a callable that reads the counters, (6,) int, and returns a Count.
 
     Raises
     ------
@@ -86,7 +88,7 @@ def counted(action: str) -> Count:
 
 
 def reader(library: ctypes.CDLL) -> np.ndarray:
-    """The counters of a counting library, a view (5,)."""
+    """The counters of a counting library, a view (6,)."""
     return np.ctypeslib.as_array((ctypes.c_longlong * len(KINDS)).in_dll(library, "operation_counts"))
 
 

@@ -273,7 +273,7 @@ def test_a_vibration_without_size_is_missing_and_said_to_be():
     robot = undamped.robot
     still = {"loss": None, "damping": None}
     drives = [
-        leg.drive.replace(nut=leg.drive.nut.replace(**still), bearing=leg.drive.bearing.replace(**still))
+        leg.drive.replace(nut=leg.drive.nut.replace(**still), bearing=leg.drive.bearing.replace(**still), friction=None)
         for leg in robot.legs
     ]
     legs = tuple(leg.replace(drive=drive) for leg, drive in zip(robot.legs, drives, strict=True))

@@ -103,7 +103,7 @@ def test_operations_of_a_casadi_function():
     f = casadi.Function("f", [x, y], [x * y + casadi.sqrt(x) / y - casadi.sin(x), 2 * x, x**2])
     assert casadi_count(f) == Count(additions=3, multiplications=2, divisions=1, roots=1, circular=1)
     with pytest.raises(ValueError, match="not counted"):
-        casadi_count(casadi.Function("g", [x], [casadi.exp(x)]))
+        casadi_count(casadi.Function("g", [x], [casadi.tan(x)]))
 
 
 @needs_cpp
@@ -116,7 +116,7 @@ def test_compiled_code_counts_itself(tmp_path, monkeypatch):
     numbers = (ctypes.c_double * 5)(1, 2, 3, 4, 5)
     library.f(numbers, ctypes.c_long(5))
     # Additions: five and 1 - cos; t = 55, and its root is above 2 (1 - cos), so that a sign follows, which is none.
-    assert reader(library).tolist() == [6, 5, 1, 1, 1]
+    assert reader(library).tolist() == [6, 5, 1, 1, 0, 1]
 
 
 @needs_cpp
