@@ -37,7 +37,7 @@ def test_second_order_with_assumed_modes():
 
 
 def test_tolerance_is_kept():
-    # The estimated error of the step doubling bounds the true one (measured against a fine fixed step).
+    # The tolerance bounds the true error (measured against a fine fixed step).
     study = paper_robot(duration=0.5, modes=2)
     reference = run_robot(override(study, step=2e-5, output_step=1e-3))
     path = rigid.poses(study.robot, study.motion, reference["time"])
@@ -48,14 +48,13 @@ def test_tolerance_is_kept():
         assert np.abs(run["pose"][:, :3] - reference["pose"][:, :3]).max() < tolerance * peak
 
 
-def test_a_coarse_step_may_span_two_outputs():
-    """A slow motion with dense outputs: one kept step an output, also where the number of outputs to a jump is odd."""
+def test_a_step_may_span_many_outputs():
+    """A slow motion with dense outputs."""
     study = paper_robot(profile="linear", start="moving", fidelity="lumped", output_step=2e-4, duration=0.1414)
     study = study.replace(motion=study.motion.replace(duration=0.1002, amplitude=0.01))
     chunks = list(prepare(override(study, tolerance=0.5)).chunks)
     run, reference = collect(chunks), run_robot(override(study, step=2e-5))
-    assert min(round(chunk.step / 2e-4, 6) for chunk in chunks[1:]) < 1  # the single output before the jump
-    assert max(round(chunk.step / 2e-4, 6) for chunk in chunks[1:]) == 1
+    assert max(chunk.step for chunk in chunks[1:]) > 5 * 2e-4
     np.testing.assert_allclose(run["time"], reference["time"], atol=1e-12)
     path = rigid.poses(study.robot, study.motion, reference["time"])
     com = path.position + path.rotation @ study.robot.payload.com

@@ -117,15 +117,15 @@ class Stop:
 @pytest.mark.parametrize("preset", ["paper-robot", "paper-actuator"])
 def test_an_interrupt_brings_what_was_computed(preset, caplog):
     study, stop = fx.preset(preset), Stop(0.15)
-    with pytest.raises(Interrupted, match=r"stopped at t = 0\.2 s") as error:
+    with pytest.raises(Interrupted, match=r"stopped at t = 0\.34 s") as error:
         fx.run(study, progress=stop)
     data = error.value.dataset
     assert isinstance(error.value, KeyboardInterrupt)
     assert data.attrs["partial"] == 1
     assert data.attrs["failure"] == "stopped by the user"
-    assert data.attrs["time_reached"] == pytest.approx(0.2)
-    assert data.sizes["time"] == 201
-    assert [reached for reached, _ in stop.calls] == pytest.approx([0.0, 0.1, 0.2])
+    assert data.attrs["time_reached"] == pytest.approx(0.34)
+    assert data.sizes["time"] == 341
+    assert [reached for reached, _ in stop.calls] == pytest.approx([0.0, 0.004, 0.02, 0.084, 0.34])
     assert {whole for _, whole in stop.calls} == {study.duration}
     assert "stopped by the user" in caplog.text
 

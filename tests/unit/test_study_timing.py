@@ -62,11 +62,10 @@ def test_the_single_actuator_is_treated_alike():
 
 
 def test_a_tolerance_out_of_reach_is_found_without_minutes_of_work():
-    """1e-9 once took 4.8 million steps to refuse: chunks of 100 outputs were refined whole, seven times over."""
-    found = prepare(paper_robot(fidelity="lumped", duration=0.2, tolerance=1e-10))
-    with pytest.raises(fx.ComputationError, match="tolerance 1e-10 is out of reach at t = 0 s"):
+    """1e-14 of 20 um is far below what rounding leaves of a metre."""
+    found = prepare(paper_robot(fidelity="lumped", duration=0.2, tolerance=1e-14))
+    with pytest.raises(fx.ComputationError, match="tolerance 1e-14 is out of reach at t = 0"):
         list(found.chunks)
-    # Seven tries (100, 50, .. 1 outputs); each doubles to 8192 steps of one output and their double: about 4e4 steps.
     assert found.counters.steps < 3e5
 
 

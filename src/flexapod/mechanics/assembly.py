@@ -36,9 +36,9 @@ from flexapod.symbolic.vocabulary import (
 
 
 def leg_functions(shapes: Shapes) -> list[NamedFunction]:
-    """Residual, matrices at rest and energies of one leg with the given shapes."""
+    """Residual, matrices at rest, energies and rates of the closure of one leg with the given shapes."""
     x = _Leg(shapes)
-    return [x.residual(), x.matrices(), x.energies()]
+    return [x.residual(), x.matrices(), x.energies(), x.closing()]
 
 
 def leg_tangents(shapes: Shapes) -> NamedFunction:
@@ -166,6 +166,18 @@ class _Leg:
             "leg_matrices", [("q", self.q), ("lam", self.lam), ("p", self.p_vector), *self.outside()], outputs
         )
 
+    def closing(self) -> NamedFunction:
+        """What the closure asks to vanish, and its rate (of a point closure: those of the tip)."""
+        step, u = symbol("step", 6), symbol("u", 6)
+        gap = self.closed(step)[0]
+        here = _undisplaced(gap, step)
+        rate = self.by_q.jacobian(here) @ self.v
+        inputs = [("q", self.q), ("v", self.v), ("p", self.p_vector), *self.outside()]
+        if self.shapes.posed:
+            rate += self.by_q.value(_undisplaced(jacobian(gap, step), step)) @ u
+            inputs.append(("u", u))
+        return self.named("leg_closing", inputs, [("gap", self.by_q.value(here)), ("rate", rate)])
+
     def energies(self) -> NamedFunction:
         """Kinetic energy, potential of gravity and strain energy, the drives' springs included."""
         body = self.body
@@ -178,7 +190,8 @@ class _Leg:
 
 
 def joint_functions() -> list[NamedFunction]:
-    """Point and wrench of a spherical joint of the platform, and their derivatives by the payload's step."""
+    """Point and wrench of a spherical joint of the platform, their derivatives by its step, and the point's rate."""
+    u = symbol("u", 6)
     pose, step, lam, joint = symbol("pose", 7), symbol("step", 6), symbol("lam", 3), symbol("joint", 3)
     centre, R = displaced_pose(pose, step)
     point, wrench = joint_point(joint, centre, R), joint_wrench(joint, R, lam)
@@ -188,6 +201,11 @@ def joint_functions() -> list[NamedFunction]:
     return [
         NamedFunction("joint_residual", inputs, [(name, _undisplaced(y, step)) for name, y in outputs]),
         NamedFunction("joint_matrices", inputs, [(name, _undisplaced(y, step)) for name, y in matrices]),
+        NamedFunction(
+            "joint_closing",
+            [("pose", pose), ("u", u), ("joint", joint)],
+            [("point", _undisplaced(point, step)), ("rate", _undisplaced(jacobian(point, step), step) @ u)],
+        ),
     ]
 
 

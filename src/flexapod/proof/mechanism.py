@@ -18,7 +18,8 @@ from flexapod.errors import ComputationError
 from flexapod.integration import GeneralizedAlpha
 from flexapod.mechanics.layout import COMMAND_SIZE, LEG_PARAMETERS, Shapes, columns
 from flexapod.solve.kernel import NAMES, SOURCES, Kernel, sizes
-from flexapod.solve.march import Problem, march
+from flexapod.solve.march import march
+from flexapod.solve.problem import Problem
 from flexapod.solve.recording import Counters, Recording
 from flexapod.solve.start import consistent_start
 from flexapod.solve.stops import Stops

@@ -11,8 +11,9 @@ from flexapod.integration import GeneralizedAlpha
 from flexapod.mechanics.layout import Shapes, columns
 from flexapod.model import DRIVEN_BY, Actuator, ActuatorStudy, Simulation
 from flexapod.solve.kernel import kernel
-from flexapod.solve.march import Chunk, Problem, initial_step, march
+from flexapod.solve.march import initial_step, march
 from flexapod.solve.parameters import SPACE, actuator_parameters
+from flexapod.solve.problem import Chunk, Problem, Weight
 from flexapod.solve.recording import Counters, Recording
 from flexapod.solve.robot_march import after_impact
 from flexapod.solve.shapes import actuator_shapes
@@ -87,10 +88,8 @@ def prepare_actuator(
     prescribed = {name: getattr(study.motion, name) is not None for name in SPACE_NAMES}
     system = actuator_system(study.actuator, simulation, **prescribed)
     law = _tables(study)
-    h = initial_step(simulation.step, simulation.output_step)
     output_step, outputs = simulation.stored_step, simulation.outputs(study.duration)
     state, counters = _state(study, system, law, amplitudes, rates), Counters()
-    start, _ = consistent_start(system, state, law, 0.0, method, h)
     problem = Problem(
         system=system,
         method=method,
@@ -102,7 +101,11 @@ def prepare_actuator(
         stops=Stops.of(rigid.actuator_breaks(study), output_step, simulation.step, outputs),
         check=lambda recording: _check(system, study.actuator, recording),
         tolerance=simulation.tolerance,
+        weights=_weights(system, study.actuator),
+        knots=np.array([0.0, outputs * output_step]),
     )
+    h = initial_step(problem, simulation.step)
+    start, _ = consistent_start(system, state, law, 0.0, method, h)
     chunks = march(problem, start, h, counters)
     if study.motion.extension is None:
         chunks = _retracting(system, study.actuator, chunks)
@@ -198,6 +201,18 @@ def _measure(system: System, actuator: Actuator, recording: Recording) -> list[A
     beside = [("c", 1.0), ("t", actuator.length)]
     moved += [size * q[:, shapes.index(name)] for name, size in beside if there.get(name)]
     return [np.stack(moved, axis=-1)] + [q[:, j] for j in sorted(places(shapes).values()) if not system.held[0, j]]
+
+
+def _weights(system: System, actuator: Actuator) -> tuple[Weight, ...]:
+    """What moves each group of `_measure`."""
+    shapes, n = system.kernel.shapes, system.n
+    there, none = dict(shapes.layout), np.zeros(6)
+    tip = np.zeros(n)
+    for name, size in (("a", np.abs(shapes.a.tip)), ("b", np.abs(shapes.a.tip)), ("c", 1.0), ("t", actuator.length)):
+        if there.get(name):
+            tip[columns(shapes.layout, name)] = size
+    free = [j for j in sorted(places(shapes).values()) if not system.held[0, j]]
+    return Weight(leg=tip, hub=none), *(Weight(leg=np.eye(n)[j], hub=none) for j in free)
 
 
 def amplitudes(shapes: Shapes, q: Array, name: str) -> Array:

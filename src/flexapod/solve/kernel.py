@@ -21,7 +21,9 @@ if TYPE_CHECKING:
 
 Function = Callable[..., tuple[Array, ...]]
 NATIVE = Path(__file__).parent / "native"
-SOURCES = tuple(NATIVE / name for name in ("system.h", "lu.c", "legs.c", "arrow.c", "state.c", "march.c"))
+SOURCES = tuple(
+    NATIVE / name for name in ("system.h", "lu.c", "legs.c", "arrow.c", "state.c", "march.c", "complex.c", "radau.c")
+)
 _Pointer = ctypes.POINTER(c_double)
 _log = logging.getLogger("flexapod")
 
@@ -38,8 +40,10 @@ class Kernel:
     leg_residual: Function
     leg_matrices: Function
     leg_energies: Function
+    leg_closing: Function
     joint_residual: Function
     joint_matrices: Function
+    joint_closing: Function
     payload_residual: Function
     payload_matrices: Function
     payload_energies: Function

@@ -1,69 +1,35 @@
 """Time integration in chunks: fixed step or tolerance, failures as words, Eq. (T6.15)."""
 
-from collections.abc import Callable, Iterator, Sequence
+from collections.abc import Iterator, Sequence
 from dataclasses import dataclass, replace
 from types import ModuleType
 
 import numpy as np
 
 from flexapod.errors import ComputationError
-from flexapod.integration import GeneralizedAlpha
 from flexapod.solve import interpreted, native
+from flexapod.solve.adaptive import adaptive_march
+from flexapod.solve.problem import ADVICE, CAUSES, Chunk, Problem
 from flexapod.solve.recording import Counters, Recording, unpack
-from flexapod.solve.stops import Stop, Stops, after, before
+from flexapod.solve.stops import Stop, after, before
 from flexapod.solve.system import Flow, System
-from flexapod.solve.tables import Law
 from flexapod.typing import Array
 
-Measure = Callable[[Recording], list[Array]]
 CHUNK = 100  # output intervals between looks at the tolerance, or at progress where steps are slow
 CHUNK_STEPS = 2000  # steps in a chunk of several intervals: tables of fine steps must not outgrow the output
 SAFETY = 1.5  # in the error, for the next chunk's step
 FINEST = 8192  # steps per output interval before the tolerance is called out of reach
 SHORT = 8  # steps per output interval: when a run with longer ones fails, this many are tried before giving up
-CAUSES = {
-    1: "the step's equations were not solved",
-    2: "numbers became infinite",
-    3: "the linear equations are singular",
-}
-ADVICE = (
-    "Reduce the step, check for a singular pose, a leg near buckling or a piston almost inside its cylinder, "
-    "or start from equilibrium."
-)
 
 
-@dataclass(frozen=True, kw_only=True)
-class Problem:
-    """A time integration: system, commands, method and output grid.
+def initial_step(problem: Problem, step: float | None) -> float:
+    """Step for which a start is prepared: the fixed one made to divide the output step (never larger than asked).
 
-    ``tables`` see `tables.Law`; ``measure`` gives the quantities whose error is controlled, as
-    groups (T, ...) with a common scale each; ``restart(flow, t, h)`` goes on after a jump of a command or a load just
-    before t, of which ``stops`` tells the instants.
+    Zero where steps follow the tolerance one by one; half the output step where chunks are compared.
     """
-
-    system: System
-    method: GeneralizedAlpha
-    tables: Law
-    output_step: float
-    outputs: int
-    measure: Measure
-    restart: Callable[[Flow, float, float], Flow]
-    stops: Stops
-    check: Callable[[Recording], None]
-    tolerance: float | None
-
-
-@dataclass(frozen=True, kw_only=True)
-class Chunk:
-    """Piece of a result: recording, largest estimated relative error, step used."""
-
-    recording: Recording
-    error: float
-    step: float
-
-
-def initial_step(step: float | None, output_step: float) -> float:
-    """Fixed step made to divide the output step (never larger than asked), or half the output step to begin with."""
+    if problem.adaptive:
+        return 0.0
+    output_step = problem.output_step
     if step is None:
         return output_step / 2
     return step if step >= output_step else output_step / np.ceil(output_step / step - 1e-9)
@@ -77,6 +43,9 @@ def march(problem: Problem, start: Flow, first_step: float, counters: Counters) 
     ComputationError
         A step failed or the tolerance is out of reach; the chunks yielded before hold all outputs up to there.
     """
+    if problem.adaptive:
+        yield from adaptive_march(problem, start, counters)
+        return
     table, wrench = problem.tables(np.zeros(1))
     flow, row = _first_record(problem.system, start, table, wrench)
     first = unpack(problem.system, np.zeros(1), row)

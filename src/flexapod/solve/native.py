@@ -50,11 +50,12 @@ class Advance:
     leg: int
 
 
-def _address(array: Array) -> c_void_p:
+def address(array: Array) -> c_void_p:
+    """Where an array begins, for C."""
     return c_void_p(array.ctypes.data)
 
 
-class _Call:
+class Call:
     """Structures of one call, and the arrays that they point to."""
 
     def __init__(self, system: System, flow: Flow, rows: Array, method: GeneralizedAlpha, h: float, every: int) -> None:
@@ -70,16 +71,17 @@ class _Call:
         ]
         self.settings = _Settings(
             system.legs, int(system.hub), system.ports.size, (c_long * PORTS)(*system.ports.tolist()),
-            *[_address(x) for x in self.kept],
+            *[address(x) for x in self.kept],
             h, method.alpha_m, method.alpha_f, method.beta, method.gamma, TOL_CLOSURE, TOL_FORCE, system.force_floor,
             MAX_ITERATIONS, MAX_AGE, every,
         )  # fmt: skip
         arrays = (flow.q, flow.v, flow.v_dot, flow.a, flow.lam, flow.drive, flow.pose, flow.bristles)
         arrays += (flow.sums, flow.powers, rows)
-        self.state = _State(*[_address(x) for x in arrays])
+        self.state = _State(*[address(x) for x in arrays])
 
 
-def _library(system: System) -> ctypes.CDLL:
+def compiled(system: System) -> ctypes.CDLL:
+    """The library of a system's kernel."""
     library = system.kernel.library
     if library is None:
         raise RuntimeError("this kernel is not compiled: its steps are those of solve.interpreted")
@@ -96,13 +98,13 @@ def advance(
     counters: Counters,
 ) -> Advance:
     """Advance by the rows of ``tables`` ((T, legs, ports, 4), (T, load_size)), recording each ``every`` steps."""
-    library = _library(system)
+    library = compiled(system)
     table, wrench = (np.ascontiguousarray(x) for x in tables)
     steps = len(table) - 1
     new, rows = flow.copy(), np.zeros((steps // every, record_width(system)))
-    call = _Call(system, new, rows, method, h, every)
+    call = Call(system, new, rows, method, h, every)
     state = call.state
-    status = library.march(byref(call.settings), byref(state), _address(table), _address(wrench), c_long(steps))
+    status = library.march(byref(call.settings), byref(state), address(table), address(wrench), c_long(steps))
     counters.steps += state.steps
     counters.iterations += state.iterations
     counters.factorisations += state.factorisations
@@ -112,12 +114,12 @@ def advance(
 
 def first_record(system: System, flow: Flow, table: Array, wrench: Array) -> tuple[Flow, Array]:
     """Output row of the start, and the flow with its powers set."""
-    library = _library(system)
+    library = compiled(system)
     new, rows = flow.copy(), np.zeros((1, record_width(system)))
-    call = _Call(system, new, rows, GeneralizedAlpha(1.0), 1.0, 1)
+    call = Call(system, new, rows, GeneralizedAlpha(1.0), 1.0, 1)
     table, wrench = (np.ascontiguousarray(x) for x in (table, wrench))
     library.record_state.restype = None
-    library.record_state(byref(call.settings), byref(call.state), _address(table), _address(wrench))
+    library.record_state(byref(call.settings), byref(call.state), address(table), address(wrench))
     return new, rows
 
 
@@ -130,9 +132,9 @@ def scaled_defect(system: System, flow: Flow, ratio: float) -> Flow:
         The mass metric is singular on the closures.
     """
     new = flow.copy()
-    call, none = _Call(system, new, np.zeros(1), GeneralizedAlpha(1.0), 1.0, 1), np.zeros(system.load_size)
-    scale = _library(system).scale_normal_velocity
-    if scale(byref(call.settings), byref(call.state), _address(none), c_double(ratio - 1)):
+    call, none = Call(system, new, np.zeros(1), GeneralizedAlpha(1.0), 1.0, 1), np.zeros(system.load_size)
+    scale = compiled(system).scale_normal_velocity
+    if scale(byref(call.settings), byref(call.state), address(none), c_double(ratio - 1)):
         raise ComputationError(
             "the step cannot be changed here: the mass matrix is singular on the joints",
             next_step="Check for a leg without mass, or give a fixed simulation.step in place of a tolerance",

@@ -42,6 +42,10 @@ class Recording:
     closure: Array
     friction: Array
 
+    def part(self, which: slice) -> "Recording":
+        """Some of the instants."""
+        return replace(self, **{field.name: getattr(self, field.name)[which] for field in fields(self)})
+
     def ending(self, last: "Recording") -> "Recording":
         """The same with another last instant."""
         names = [field.name for field in fields(self) if field.name != "time"]

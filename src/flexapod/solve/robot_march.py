@@ -15,9 +15,10 @@ from flexapod.solve.equilibrium import equilibrium
 from flexapod.solve.fallen import flipped, refuse_fallen, refuse_flipped
 from flexapod.solve.frames import floor
 from flexapod.solve.many import RestStates
-from flexapod.solve.march import Chunk, Problem, initial_step, march
+from flexapod.solve.march import initial_step, march
 from flexapod.solve.modes import refuse_pure_force
 from flexapod.solve.pieces import Pieces
+from flexapod.solve.problem import Chunk, Problem, Weight
 from flexapod.solve.recording import Counters, Recording
 from flexapod.solve.redundant import independent, shared
 from flexapod.solve.rest import rest_commands, rest_load
@@ -71,25 +72,28 @@ def prepare(study: Study, state: State | None = None) -> RobotMarch:
     system, path = robot_system(robot, simulation), _Path(study)
     law = robot_law(system, robot, study.load, path.poses, path.knots)
     method = GeneralizedAlpha(simulation.rho_inf)
-    step = initial_step(simulation.step, simulation.output_step)
     state = _configuration(study, system) if state is None else state
     refuse_flipped(system, robot, RestStates.of(state))
     system = independent(system, state)
-    start, impact = consistent_start(system, state, law, 0.0, method, step)
     counters, output_step = Counters(), simulation.stored_step
     outputs = simulation.outputs(study.duration)
+    measure = _Measure(study, system, path)
     problem = Problem(
         system=system,
         method=method,
         tables=law,
         output_step=output_step,
         outputs=outputs,
-        measure=_Measure(study, system, path),
+        measure=measure,
+        weights=measure.weights(),
+        knots=path.knots,
         restart=lambda flow, t, h: after_impact(system, flow, law, t, method, h),
         stops=Stops.of(rigid.robot_breaks(study), output_step, simulation.step, outputs),
         check=lambda recording: _check(study, system, recording),
         tolerance=simulation.tolerance,
     )
+    step = initial_step(problem, simulation.step)
+    start, impact = consistent_start(system, state, law, 0.0, method, step)
     chunks = march(problem, start, step, counters)
     if system.slack is not None:
         chunks = (replace(x, recording=shared(system, x.recording, law(x.recording.time)[0])) for x in chunks)
@@ -221,6 +225,13 @@ class _Measure:
         self.path, self.lateral = path, slice(first, first + shapes.a.count + shapes.b.count)
         self.radius = np.linalg.norm(study.robot.platform_joints, axis=1).max()
         self.time, self.com, self.rotation = np.zeros(0), np.zeros((0, 3)), np.zeros((0, 3, 3))
+
+    def weights(self) -> tuple[Weight, ...]:
+        """What moves the deviation, and the lateral amplitudes: these may have ten times the error."""
+        still, lateral = np.zeros(self.system.n), np.zeros(self.system.n)
+        lateral[self.lateral] = 0.1
+        hub = np.array([1.0, 1.0, 1.0, self.radius, self.radius, self.radius])
+        return Weight(leg=still, hub=hub), Weight(leg=lateral, hub=np.zeros(6))
 
     def __call__(self, recording: Recording) -> list[Array]:
         if not np.array_equal(recording.time, self.time):  # a chunk is measured twice, with two steps

@@ -29,14 +29,16 @@ def consistent_start(
     m = system.matrices(state, wrench)
     moving, impact = _impact(system, state, m, table)
     x = accelerations(system, moving, table, wrench)
+    parts = {name: getattr(x, name) for name in ("q", "pose", "v_dot", "lam", "drive", "bristles")}
+    if not x.bristles.size:
+        parts["bristles"] = np.zeros((system.legs, 2 * system.kernel.shapes.bristles))
+    if h == 0:
+        return Flow(v=x.v, a=x.v_dot, **parts), impact
     jerk = _jerk(system, x, law, now, h)
     if system.hub:
         jerk = _resolved(system, m, jerk, h)
     a = np.where(system.fixed, x.v_dot, x.v_dot + method.delta * h * jerk)  # (T6.13)
     v = x.v + method.velocity_defect * h**2 * normal_velocity(system, m, jerk)  # (T6.14)
-    parts = {name: getattr(x, name) for name in ("q", "pose", "v_dot", "lam", "drive", "bristles")}
-    if not x.bristles.size:
-        parts["bristles"] = np.zeros((system.legs, 2 * system.kernel.shapes.bristles))
     return Flow(v=v, a=a, **parts), impact
 
 

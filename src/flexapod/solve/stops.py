@@ -27,19 +27,21 @@ class Stops:
     """Breaks sorted by the output intervals in which they lie.
 
     ``ends``: stops on output instants, by the number of the interval that ends there (0: at the start). ``inside``:
-    those within an interval, by its number from 0, ascending in time.
+    those within an interval, by its number from 0, ascending in time. ``every``: all of them, corners on
+    output instants included.
     """
 
     output_step: float
     ends: dict[int, Stop] = field(default_factory=dict)
     inside: dict[int, list[Stop]] = field(default_factory=dict)
+    every: tuple[Stop, ...] = ()
 
     @classmethod
     def of(cls, breaks: Breaks, output_step: float, step: float | None, outputs: int) -> "Stops":
         """Sort breaks up to the last output; a corner on an output instant needs nothing."""
         near = min(NEAR, SHARE * (step or output_step))
-        stops = cls(output_step=output_step)
-        for stop in _joined(breaks, near):
+        stops = cls(output_step=output_step, every=tuple(_joined(breaks, near)))
+        for stop in stops.every:
             k = round(stop.first / output_step)
             if max(abs(stop.first - k * output_step), abs(stop.last - k * output_step)) <= near:
                 if stop.jumps and k <= outputs:

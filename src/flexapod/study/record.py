@@ -10,7 +10,7 @@ from typing import TYPE_CHECKING
 import numpy as np
 
 from flexapod.errors import ComputationError
-from flexapod.solve.march import Chunk
+from flexapod.solve.problem import Chunk
 from flexapod.typing import Array
 
 if TYPE_CHECKING:

@@ -39,7 +39,7 @@ static void lu_solve(const Lu *f, double *b) {
 /* Inverse of A (n, n), which is overwritten: the same matrix serves many right-hand sides, and a product has no
    recurrences to wait for. */
 SHARED int invert(long n, double *A, double *inverse) {
-  long pivot[LARGEST];
+  long pivot[2*LARGEST];                /* twice: complex systems as real ones */
   Lu f = {A, pivot, n};
   if (lu_factor(&f)) return SINGULAR;
   memset(inverse, 0, sizeof(double)*n*n);

@@ -1,0 +1,193 @@
+"""Time integration within a tolerance, chunk by chunk: ends of steps, scales of errors, failures as words."""
+
+from collections.abc import Iterator, Sequence
+from dataclasses import replace
+
+import numpy as np
+
+from flexapod.errors import ComputationError
+from flexapod.solve import native
+from flexapod.solve.problem import ADVICE, CAUSES, Chunk, Problem
+from flexapod.solve.recording import Counters, Recording, unpack
+from flexapod.solve.series import Series
+from flexapod.solve.stops import NEAR, Stop, after
+from flexapod.solve.system import Flow
+from flexapod.solve.within import MOST, OUT_OF_REACH, SHORTEST, Advanced, Within
+from flexapod.typing import Array
+
+__all__ = ["adaptive_march"]
+
+FEW, MANY = 4, 500  # outputs of a chunk: of the first ones, which tell the scales; between looks at progress
+CHUNK_STEPS = 2000  # steps in a chunk of several outputs
+SMALLEST = 1e-9  # scale of an error [m]: what is smaller is rounding
+ROUNDING, SEEN = 1e-15, 1e-7  # of lengths of a metre [m]; what is larger is no longer the start from rest [m]
+SAMPLES = 50  # instants of a chunk that tell its scales
+SPARSE = 10  # output steps: knots of a path that are nearer to each other are rows of a dense table
+
+
+def adaptive_march(problem: Problem, start: Flow, counters: Counters) -> Iterator[Chunk]:
+    """Integrate from ``start`` and yield chunks, the first holding the start alone.
+
+    Raises
+    ------
+    ComputationError
+        A step failed or the tolerance is out of reach; the chunks yielded before hold all outputs up to there.
+    """
+    flow, first = _recorded(problem, start, 0.0)
+    yield Chunk(recording=first, error=0.0, step=problem.output_step)
+    run = _Run(problem, counters, first)
+    done, count, stops = 0, FEW, problem.stops
+    if 0 in stops.ends:
+        flow, _ = run.restarted(flow, 0.0, stops.ends[0])
+    while done < problem.outputs:
+        chunk, flow, failure = run.chunk(flow, done, _chunk_end(problem, done, count))
+        sound, fault = _sound(problem, chunk.recording)
+        done += sound
+        if sound:
+            yield chunk if fault is None else replace(chunk, recording=chunk.recording.part(slice(sound)))
+        if (failure := fault or failure) is not None:
+            raise failure
+        count = run.next_count(count)
+
+
+def _chunk_end(problem: Problem, done: int, count: int) -> int:
+    """Number of outputs up to which a chunk goes: at most to the next output at which something jumps."""
+    ends = sorted(k for k in problem.stops.ends if k > done)
+    return min(done + count, problem.outputs, *ends[:1])
+
+
+def _recorded(problem: Problem, flow: Flow, t: float) -> tuple[Flow, Recording]:
+    """Flow with its powers, and its record, stored as that of time t; commands are those at t."""
+    table, load = problem.tables(np.array([t]))
+    flow, row = native.first_record(problem.system, flow, table, load)
+    return flow, unpack(problem.system, np.array([t]), row)
+
+
+def _sound(problem: Problem, recording: Recording) -> tuple[int, ComputationError | None]:
+    """Number of instants before the first one at which the model has no meaning, and what is wrong there."""
+    fault: ComputationError | None = None
+    sound, failing = 0, len(recording.time) + 1
+    while failing - sound > 1:
+        some = len(recording.time) if failing > len(recording.time) else (sound + failing) // 2
+        try:
+            problem.check(recording.part(slice(some)))
+            sound = some
+        except ComputationError as error:
+            failing, fault = some, error
+    return sound, fault
+
+
+class _Run:
+    """What is remembered between chunks."""
+
+    def __init__(self, problem: Problem, counters: Counters, first: Recording) -> None:
+        self.problem, self.counters = problem, counters
+        self.ends = _ends(problem)
+        self.scales = [SMALLEST] * len(problem.weights)
+        edges = [0.0, *(stop.first for stop in self.ends), problem.outputs * problem.output_step]
+        knots = problem.knots[(problem.knots > 0) & (problem.knots < edges[-1])]
+        edges = _apart(sorted([*edges, *knots]))
+        series = Series(problem.tables, edges, problem.output_step)
+        self.within = Within(problem.system, series, edges[-1], problem.tolerance or 0.0)
+        self.steps = 0  # of the last chunk
+        self._scale(first)
+
+    def chunk(self, flow: Flow, done: int, to: int) -> tuple[Chunk, Flow, ComputationError | None]:
+        """Outputs after `done` up to `to`, or as far as it goes, the flow at their end, and what went wrong."""
+        p, rows, before = self.problem, [], self.counters.steps
+        begin, end, failure = done * p.output_step, to * p.output_step, None
+        inside = [stop for stop in self.ends if begin + NEAR < stop.first < end - NEAR]
+        for stop in [*inside, Stop(first=end, last=end, jumps=False)]:
+            at = done + sum(map(len, rows))
+            outputs = ((at + 1) * p.output_step, p.output_step, to - at)
+            found = self.within.advance(flow, stop.first, self._weights(), outputs, self.counters)
+            flow = found.flow
+            rows.append(found.rows)
+            if found.status:
+                failure = self._failure(found)
+                break
+            if stop.jumps:
+                try:
+                    flow, _ = self.restarted(flow, stop.first, stop)
+                except ComputationError as error:
+                    failure = error
+                    break
+        whole = np.concatenate(rows)
+        time = np.asarray((done + 1 + np.arange(len(whole))) * p.output_step, dtype=float)
+        recording = unpack(p.system, time, whole)
+        if failure is None and to in p.stops.ends:  # what is stored there is the value after the jump
+            flow, last = self.restarted(flow, end, p.stops.ends[to])
+            recording = recording.ending(last)
+        self.steps = self.counters.steps - before
+        self._scale(recording)
+        if failure is None and ROUNDING > self.scales[0] * self.within.tolerance and self.scales[0] > SEEN:
+            why = f"rounding leaves {ROUNDING / self.scales[0]:.1g} of the largest value"
+            failure = self._out_of_reach(begin, why)
+        step = (end - begin) / max(self.steps, 1)
+        return Chunk(recording=recording, error=self.within.spent, step=step), flow, failure
+
+    def restarted(self, flow: Flow, t: float, stop: Stop) -> tuple[Flow, Recording]:
+        """Flow after a jump at time t, and its record."""
+        now = after(max(t, stop.last))
+        self.within.jumped()
+        flow, row = _recorded(self.problem, self.problem.restart(flow, now, 0.0), now)
+        return flow, replace(row, time=np.array([t]))
+
+    def next_count(self, count: int) -> int:
+        """Outputs of the next chunk."""
+        affordable = count * CHUNK_STEPS // max(self.steps, 1)
+        return max(1, min(4 * count, MANY, affordable))
+
+    def _failure(self, found: Advanced) -> ComputationError:
+        if found.status == OUT_OF_REACH:
+            return self._out_of_reach(
+                found.time, f"it would take more than {MOST} steps per output, or steps below {1e6 * SHORTEST:g} us"
+            )
+        where = f" in leg {found.leg + 1}" if 0 <= found.leg < self.problem.system.legs else ""
+        return ComputationError(
+            f"the integration stopped at t = {found.time:.6g} s (step {self.within.step:.3g} s): "
+            f"{CAUSES[found.status]}{where}",
+            next_step=ADVICE,
+        )
+
+    def _out_of_reach(self, now: float, why: str) -> ComputationError:
+        return ComputationError(
+            f"tolerance {self.problem.tolerance:g} is out of reach at t = {now:.6g} s: {why}",
+            next_step="Loosen simulation.tolerance, or give a fixed simulation.step.",
+        )
+
+    def _scale(self, recording: Recording) -> None:
+        """Take the largest values of a recording into the scales of the errors."""
+        if not len(recording.time):
+            return
+        before = self.scales[0] if self.scales else 1.0
+        some = recording.part(slice(None, None, max(1, len(recording.time) // SAMPLES)))
+        groups = zip(self.scales, self.problem.measure(some), strict=True)
+        self.scales = [max(scale, float(np.abs(x).max(initial=0.0))) for scale, x in groups]
+        self.within.weigh(before / self.scales[0] if self.scales else 1.0)
+
+    def _weights(self) -> tuple[Array, Array]:
+        """One over the displacements that count as an error of one, of a leg's coordinates and of the payload's."""
+        pairs = list(zip(self.problem.weights, self.scales, strict=True))
+        leg = np.max([weight.leg / scale for weight, scale in pairs], axis=0)
+        return leg, np.max([weight.hub / scale for weight, scale in pairs], axis=0)
+
+
+def _ends(problem: Problem) -> list[Stop]:
+    """Where steps end: breaks, and knots of the path that are not rows of a dense table."""
+    found = [stop for stop in problem.stops.every if stop.first > NEAR]
+    knots = problem.knots[1:-1]
+    gaps = np.diff(problem.knots)
+    for t, gap in zip(knots, np.maximum(gaps[:-1], gaps[1:]), strict=True):
+        if gap >= SPARSE * problem.output_step and not any(abs(t - stop.first) <= NEAR for stop in found):
+            found.append(Stop(first=float(t), last=float(t), jumps=False))
+    return sorted((stop for stop in found if stop.first < problem.outputs * problem.output_step - NEAR), key=_first)
+
+
+def _first(stop: Stop) -> float:
+    return stop.first
+
+
+def _apart(instants: Sequence[float]) -> list[float]:
+    """Ascending instants without those that repeat another."""
+    return [x for i, x in enumerate(instants) if i == 0 or x - instants[i - 1] > NEAR]

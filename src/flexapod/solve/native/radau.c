@@ -1,0 +1,519 @@
+/* Radau IIA of order 5: the closures' rates vanish at each stage, the closures themselves at each step's end. */
+enum { STAGES = 3, BODY = 6 + PLATE, LOAD = 12, WIDTH = LEGS*PORTS*COLUMNS + LOAD };
+
+#define CLOSED 1e-14 /* m: what rounding leaves */
+
+typedef struct {
+  double end, horizon, tolerance;       /* of this call, of the whole; sum of the local errors that is allowed until the horizon */
+  const double *weight, *hub_weight;    /* (N), (6): of displacements in errors, one over what is their unit */
+  double longest, shortest;             /* step */
+  double output_first, output_step;     /* instants of records: those after the start, up to the end */
+  long outputs, pieces, terms, most;    /* most: steps of this call */
+  const double *edges, *series;         /* (pieces + 1), (pieces, terms, width): Chebyshev series of the tables */
+} Control;
+
+typedef struct {                        /* from call to call */
+  double time, h, spent, last_h, peak;  /* spent: sum of the local errors; peak: error over h^6, decaying */
+  double rate, stages, rejected, recorded;      /* rate: of Newton's iteration; stages: whether those of the last step are there */
+  Vector A[STAGES]; Forces F[STAGES];
+} Memory;
+
+typedef struct {
+  Vector q, Z[STAGES], V[STAGES], A[STAGES], R[STAGES], v0, a0;
+  Forces F[STAGES], f0;
+  lanes gap[STAGES][GROUPS][ROWS + 1];
+  double pose[7], row[STAGES][WIDTH], powers[STAGES][WORKS];
+  lanes M[GROUPS][N*N], D[GROUPS][N*N], K[GROUPS][N*N];
+  double hub_M[BODY*BODY], hub_K[BODY*BODY];
+  ComplexArrow complex;
+} Radau;
+
+static const double NODE[STAGES] = {0.15505102572168219018, 0.64494897427831780982, 1};
+static const double RK[STAGES][STAGES] = {
+  {0.19681547722366042587, -0.065535425850198383804, 0.023770974348220152415},
+  {0.39442431473908727700, 0.29207341166522846303, -0.041548752125997930220},
+  {0.37640306270046727506, 0.51248582618842161384, 0.11111111111111111111}};
+/* its inverse, with eigenvalues REAL and PAIR[0] +- i PAIR[1]; INTO: to the parts of each, FROM: back */
+static const double INVERSE[STAGES][STAGES] = {{3.2247448713915885, 1.1678400846904056, -0.25319726474218102}, {-3.5678400846904053, 0.77525512860841106, 1.053197264742181}, {5.5319726474218109, -7.5319726474218092, 5}};
+static const double REAL = 3.6378342527444958, PAIR[2] = {2.6810828736277541, 3.0504301992474123};
+static const double INTO[STAGES][STAGES] = {{4.3255798900631568, 0.33919925181580912, 0.54177053993587432}, {4.5950103671960703, 0.36032719733585505, -0.52410568603675955}, {0.55296974905815688, -2.8281471315512685, 0.65541774719600132}};
+static const double FROM[STAGES][STAGES] = {{0.091232394870893047, 0.12845806217830086, 0.027308654751321399}, {0.2417179327071072, -0.18563595103095715, -0.34824890439657519}, {0.96604818261509273, -0.909403517646862, -0}};
+static const double EMBEDDED[STAGES] = {-10.048809399827414, 1.3821427331607481, -0.33333333333333331};
+
+/* Values of a series at an instant */
+static void evaluate_series(const Control *c, long width, double t, double *row) {
+  long k = 0;
+  while (k < c->pieces - 1 && t >= c->edges[k + 1]) k++;
+  double a = c->edges[k], b = c->edges[k + 1], x = (2*t - a - b)/(b - a), before = 1, now = x;
+  const double *term = c->series + k*c->terms*width;
+  memcpy(row, term, sizeof(double)*width);
+  for (long j = 1; j < c->terms; j++) {
+    term += width;
+    for (long i = 0; i < width; i++) row[i] += now*term[i];
+    double next = 2*x*now - before;
+    before = now; now = next;
+  }
+}
+
+/* omega from the rate of a rotation vector */
+static void spin(const double *theta, const double *rate, double *omega) {
+  double t2 = theta[0]*theta[0] + theta[1]*theta[1] + theta[2]*theta[2], t = sqrt(t2);
+  double a = t > 1e-2 ? (1 - cos(t))/t2 : 0.5 - t2/24, b = t > 1e-2 ? (t - sin(t))/(t*t2) : 1.0/6 - t2/120;
+  double c[3] = {theta[1]*rate[2] - theta[2]*rate[1], theta[2]*rate[0] - theta[0]*rate[2], theta[0]*rate[1] - theta[1]*rate[0]};
+  double d[3] = {theta[1]*c[2] - theta[2]*c[1], theta[2]*c[0] - theta[0]*c[2], theta[0]*c[1] - theta[1]*c[0]};
+  for (int i = 0; i < 3; i++) omega[i] = rate[i] - a*c[i] + b*d[i];
+}
+
+/* y = sum over stages of c x */
+static void combine(const Settings *s, const double *c, const Vector *x, double scale, const Vector *shift, Vector *y) {
+  double k[STAGES] = {scale*c[0], scale*c[1], scale*c[2]};
+  for (int i = 0; i < groups(s); i++) for (int j = 0; j < N; j++) {
+    lanes t = k[0]*x[0].leg[i][j] + k[1]*x[1].leg[i][j] + k[2]*x[2].leg[i][j];
+    if (shift) t += shift->leg[i][j];
+    y->leg[i][j] = t;
+  }
+  for (int j = 0; j < HUB; j++) {
+    double t = k[0]*x[0].hub[j] + k[1]*x[1].hub[j] + k[2]*x[2].hub[j];
+    y->hub[j] = shift ? t + shift->hub[j] : t;
+  }
+}
+
+/* The same of forces; c has a fourth entry for what is at the start, if there is one */
+static void combine_forces(const Settings *s, const double *c, const Forces *f, const Forces *start, Forces *y) {
+  for (int i = 0; i < groups(s); i++) {
+    for (int j = 0; j < ROWS; j++) {
+      lanes t = c[0]*f[0].lam[i][j] + c[1]*f[1].lam[i][j] + c[2]*f[2].lam[i][j];
+      if (start) t += c[3]*start->lam[i][j];
+      y->lam[i][j] = t;
+    }
+    for (long j = 0; j < s->ports; j++) {
+      lanes t = c[0]*f[0].drive[i][j] + c[1]*f[1].drive[i][j] + c[2]*f[2].drive[i][j];
+      if (start) t += c[3]*start->drive[i][j];
+      y->drive[i][j] = t;
+    }
+  }
+}
+
+static void changes_of_rates(const Settings *s, const Radau *r, Vector *change) {
+  for (int k = 0; k < STAGES; k++) {
+    for (int i = 0; i < groups(s); i++) for (int j = 0; j < N; j++) change[k].leg[i][j] = r->V[k].leg[i][j] - r->v0.leg[i][j];
+    for (int j = 0; j < 6; j++) change[k].hub[j] = r->V[k].hub[j] - r->v0.hub[j];
+  }
+}
+
+/* Rates and accelerations of the stages out of their displacements */
+static void rates_of_stages(const Settings *s, double h, Radau *r) {
+  Vector change[STAGES];
+  for (int k = 0; k < STAGES; k++) {
+    combine(s, INVERSE[k], r->Z, 1/h, 0, &r->V[k]);
+    double rate[3];
+    memcpy(rate, r->V[k].hub + 3, sizeof rate);
+    spin(r->Z[k].hub + 3, rate, r->V[k].hub + 3);
+  }
+  changes_of_rates(s, r, change);
+  for (int k = 0; k < STAGES; k++) combine(s, INVERSE[k], change, 1/h, 0, &r->A[k]);
+}
+
+/* The state of a displacement from the step's start, with given rates, accelerations and forces, in the work space */
+static void place(const Settings *s, const Radau *r, const Vector *Z, const Vector *V, const Vector *A, const Forces *F,
+                  const double *row, Work *w) {
+  for (int i = 0; i < groups(s); i++) {
+    LegState *leg = &w->leg[i];
+    for (int j = 0; j < N; j++) leg->q[j] = r->q.leg[i][j] + Z->leg[i][j];
+    memcpy(leg->v, V->leg[i], sizeof leg->v); memcpy(leg->v_dot, A->leg[i], sizeof leg->v_dot);
+    memcpy(leg->lam, F->lam[i], sizeof leg->lam); memcpy(leg->drive, F->drive[i], sizeof(lanes)*s->ports);
+  }
+  follow_table(s, row, w);
+  if (!s->hub) return;
+  turned_pose(r->pose, Z->hub, w->payload.pose);
+  memcpy(w->payload.u, V->hub, sizeof w->payload.u); memcpy(w->payload.u_dot, A->hub, sizeof w->payload.u_dot);
+}
+
+/* How far legs are from closed, and how fast that changes */
+static void closing(const Settings *s, const double *load, Work *w, lanes (*gap)[ROWS + 1], lanes (*rate)[ROWS + 1]) {
+  lanes around[OUTSIDE], u[6];
+  if (!ROWS) return;
+  outside(s, w, load, around);
+  for (int j = 0; j < 6; j++) u[j] = (lanes){0} + w->payload.u[j];
+  for (int i = 0; i < groups(s); i++) {
+    const lanes *in[] = {w->leg[i].q, w->leg[i].v, w->p[i], around, u};
+    lanes *out[] = {gap[i], rate[i]};
+    leg_closing_lanes(in, out);
+    if (ROWS && !POSED) {
+      lanes point[3], change[3];
+      const lanes *joint[] = {around, u, w->joint[i]};
+      lanes *at[] = {point, change};
+      joint_closing_lanes(joint, at);
+      for (int j = 0; j < 3; j++) { gap[i][j] -= point[j]; rate[i][j] -= change[j]; }
+    }
+  }
+}
+
+static void rest(const Settings *s, const double *load, Radau *r, Work *w) {
+  static _Thread_local lanes A[3][N*N], J[ROWS*N + 1];
+  lanes around[OUTSIDE];
+  outside(s, w, load, around);
+  memset(r->hub_K, 0, sizeof r->hub_K);
+  for (int g = 0; g < groups(s); g++) {
+    LegBlock *b = &w->arrow.leg[g];
+    lanes H[36] = {{0}}, X[N*6];
+    const lanes *in[] = {w->leg[g].q, w->leg[g].lam, w->p[g], around};
+    lanes *out[] = {A[0], A[1], A[2], J, b->P, H, X};
+    leg_matrices_lanes(in, out);
+    if (ROWS && !POSED) {
+      const lanes *joint[] = {around, w->leg[g].lam, w->joint[g]};
+      lanes *at[] = {b->P, H};
+      joint_matrices_lanes(joint, at);
+    }
+    for (int j = 0; j < N; j++) for (int k = 0; k < N; k++) {
+      int at = ORDER[k] + N*ORDER[j], to = k + N*j;
+      r->M[g][to] = A[0][at]; r->D[g][to] = A[1][at]; r->K[g][to] = A[2][at];
+    }
+    for (int j = 0; j < N; j++) for (int k = 0; k < ROWS; k++) b->J[k + ROWS*j] = J[k + ROWS*ORDER[j]];
+    if (s->hub) for (int j = 0; j < 36; j++) r->hub_K[j%6 + j/6*BODY] += sum(s, g, H[j]);
+  }
+  if (!s->hub) return;
+  double stiffness[BODY*BODY], shared[3][COMMON + 1];
+  shared_state(w, shared);
+  const double *in[] = {w->payload.pose, load, s->payload_p, shared[0]};
+  double *out[] = {r->hub_M, stiffness};
+  payload_matrices_double(in, out);
+  for (int j = 0; j < BODY*BODY; j++) r->hub_K[j] += stiffness[j];
+}
+
+static int factor_stages(const Settings *s, double h, Radau *r, Work *w) {
+  double c[3][3] = {{REAL*REAL/(h*h), REAL/h, 1}, {(PAIR[0]*PAIR[0] - PAIR[1]*PAIR[1])/(h*h), PAIR[0]/h, 1}, {2*PAIR[0]*PAIR[1]/(h*h), PAIR[1]/h, 0}};
+  double hub[3][HUB*HUB] = {{0}};
+  for (int g = 0; g < groups(s); g++) {
+    lanes *to[3] = {w->arrow.leg[g].A, r->complex.leg[g].A[0], r->complex.leg[g].A[1]};
+    for (int k = 0; k < 3; k++) for (int j = 0; j < N*N; j++) to[k][j] = c[k][0]*r->M[g][j] + c[k][1]*r->D[g][j] + c[k][2]*r->K[g][j];
+  }
+  for (int k = 0; k < 3; k++) for (int j = 0; j < BODY; j++) for (int i = 0; i < BODY; i++)
+    hub[k][i + HUB*j] = c[k][0]*r->hub_M[i + BODY*j] + c[k][2]*r->hub_K[i + BODY*j];
+  if (arrow_factor(&w->arrow, s, hub[0])) return SINGULAR;
+  return complex_factor(&r->complex, &w->arrow, s, (const double (*)[HUB*HUB])hub[1]);
+}
+
+/* y += s A x with the matrices of all coordinates */
+static void multiply(const Settings *s, double scale, lanes (*A)[N*N], const double *hub, const Vector *x, Vector *y) {
+  for (int g = 0; g < groups(s); g++) {
+    lanes from[N], to[N];
+    for (int j = 0; j < N; j++) { from[j] = x->leg[g][ORDER[j]]; to[j] = (lanes){0}; }
+    lanes_gemv(N, N, scale, A[g], from, to);
+    for (int j = 0; j < N; j++) y->leg[g][ORDER[j]] += to[j];
+  }
+  if (hub) gemv(6, 6, scale, hub, x->hub, y->hub);
+}
+
+/* Largest displacement in units of what counts, infinite where it is no number */
+static double norm(const Settings *s, const Control *c, const Vector *x) {
+  lanes m = {0}, faults = {0};
+  double most = 0, fault = 0;
+  for (int g = 0; g < groups(s); g++) {
+    lanes y[N];
+    for (int j = 0; j < N; j++) y[j] = c->weight[j]*x->leg[g][j];
+    m = magnitude(N, y, m); faults += blemish(N, x->leg[g]);
+  }
+  if (s->hub) for (int j = 0; j < 6; j++) { most = fmax(most, fabs(c->hub_weight[j]*x->hub[j])); fault += 0*x->hub[j]; }
+  return isfinite(fault + blemished(faults)) ? fmax(most, largest(m)) : INFINITY;
+}
+
+static void arrow_solve_vector(const Settings *s, Work *w, Vector *r, lanes (*g)[ROWS + 1], Vector *dq, Forces *df) {
+  lanes gap[GROUPS][ROWS], dlam[GROUPS][ROWS];
+  for (int i = 0; i < groups(s); i++) memcpy(gap[i], g[i], sizeof(lanes)*ROWS);
+  arrow_solve(&w->arrow, s, r->leg, gap, r->hub, dq->leg, dlam, df->drive, dq->hub);
+  for (int i = 0; i < groups(s); i++) memcpy(df->lam[i], dlam[i], sizeof(lanes)*ROWS);
+}
+
+/* Residuals of a stage */
+static void evaluate_stage(const Settings *s, int k, Radau *r, Work *w) {
+  static _Thread_local lanes gap[GROUPS][ROWS + 1];
+  const double *row = r->row[k], *load = row + s->legs*s->ports*COLUMNS;
+  place(s, r, &r->Z[k], &r->V[k], &r->A[k], &r->F[k], row, w);
+  residual(s, load, w);
+  closing(s, load, w, gap, r->gap[k]);
+  for (int i = 0; i < groups(s); i++) memcpy(r->R[k].leg[i], w->r[i], sizeof w->r[i]);
+  memcpy(r->R[k].hub, w->rp, sizeof w->rp);
+  memcpy(r->powers[k], w->powers, sizeof w->powers);
+}
+
+/* One correction of all stages; its size in the units of errors */
+static double correct_stages(const Settings *s, const Control *c, double h, Radau *r, Work *w) {
+  static _Thread_local Vector part[STAGES], change[STAGES];
+  static _Thread_local Forces force[STAGES];
+  static _Thread_local lanes gap[STAGES][GROUPS][ROWS + 1];
+  double most = 0, size = PAIR[0]*PAIR[0] + PAIR[1]*PAIR[1];
+  for (int k = 0; k < STAGES; k++) {
+    combine(s, INTO[k], r->R, 1, 0, &part[k]);
+    for (int i = 0; i < groups(s); i++) for (int j = 0; j < ROWS; j++)
+      gap[k][i][j] = h*(INTO[k][0]*r->gap[0][i][j] + INTO[k][1]*r->gap[1][i][j] + INTO[k][2]*r->gap[2][i][j]);
+  }
+  for (int i = 0; i < groups(s); i++) for (int j = 0; j < ROWS; j++) {          /* over the eigenvalues: dq stands for dv */
+    lanes re = gap[1][i][j], im = gap[2][i][j];
+    gap[0][i][j] *= 1/REAL;
+    gap[1][i][j] = (PAIR[0]*re + PAIR[1]*im)/size; gap[2][i][j] = (PAIR[0]*im - PAIR[1]*re)/size;
+  }
+  arrow_solve_vector(s, w, &part[0], gap[0], &change[0], &force[0]);
+  complex_solve(&r->complex, &w->arrow, s, part + 1, gap + 1, change + 1, force + 1);
+  for (int k = 0; k < STAGES; k++) {
+    Vector x;
+    double parts[4] = {FROM[k][0], FROM[k][1], FROM[k][2], 1};
+    combine(s, FROM[k], change, 1, 0, &x);
+    combine_forces(s, parts, force, &r->F[k], &r->F[k]);
+    for (int i = 0; i < groups(s); i++) for (int j = 0; j < N; j++) r->Z[k].leg[i][j] += x.leg[i][j];
+    for (int j = 0; j < 6; j++) r->Z[k].hub[j] += x.hub[j];
+    most = fmax(most, norm(s, c, &x));
+  }
+  return most;
+}
+
+/* Values at theta (of the step; 0: its start) of the polynomial through start and stages, or through the stages alone */
+static void through(double theta, int start, double *c) {
+  double x[4] = {NODE[0], NODE[1], NODE[2], 0};
+  for (int i = 0; i < 3 + start; i++) {
+    c[i] = 1;
+    for (int j = 0; j < 3 + start; j++) if (j != i) c[i] *= (theta - x[j])/(x[i] - x[j]);
+  }
+}
+
+/* Accelerations and forces of the stages extrapolated from those of the last step (none: as at the start), and what follows */
+static void predict_stages(const Settings *s, const Memory *m, double h, Radau *r) {
+  for (int k = 0; k < STAGES; k++) {
+    double c[4];
+    if (m->stages == 0) { r->A[k] = r->a0; r->F[k] = r->f0; continue; }
+    through(1 + NODE[k]*h/m->last_h, 0, c);
+    combine(s, c, m->A, 1, 0, &r->A[k]);
+    combine_forces(s, c, m->F, 0, &r->F[k]);
+  }
+  for (int k = 0; k < STAGES; k++) combine(s, RK[k], r->A, h, &r->v0, &r->V[k]);
+  for (int k = 0; k < STAGES; k++) combine(s, RK[k], r->V, h, 0, &r->Z[k]);
+}
+
+/* Newton's iteration of all stages */
+static int iterate_stages(const Settings *s, State *x, const Control *c, double h, double goal, double rounding, double *rate, Radau *r,
+                          Work *w) {
+  double before = 0;
+  for (int iteration = 0; iteration < 8; iteration++) {
+    rates_of_stages(s, h, r);
+    for (int k = 0; k < STAGES; k++) evaluate_stage(s, k, r, w);
+    x->iterations++;
+    double size = correct_stages(s, c, h, r, w);
+    if (!isfinite(size)) return NOT_FINITE;
+    if (iteration) {
+      double now = size/fmax(before, 1e-300);
+      *rate = fmax(now, 0.1 * *rate);
+      if (now > 0.9 && size < rounding) { rates_of_stages(s, h, r); return OK; }
+      if (now > 0.9 && size > goal) return NOT_CONVERGED;
+    }
+    if (size <= 1e-3*goal || (*rate < 1 && (iteration || *rate > 0) && *rate/(1 - *rate)*size <= goal)) { rates_of_stages(s, h, r); return OK; }
+    before = size;
+  }
+  return NOT_CONVERGED;
+}
+
+/* Estimate of the local error, of order 6 in h: that of order 4 of the embedded formula, times h^2 K, twice filtered */
+static double estimate(const Settings *s, const Control *c, double h, Radau *r, Work *w) {
+  static _Thread_local Vector speed, change[STAGES], acceleration, rhs, error, second;
+  static _Thread_local Forces unused;
+  static const lanes none[GROUPS][ROWS + 1];
+  changes_of_rates(s, r, change);
+  combine(s, EMBEDDED, r->Z, 1/h, &r->v0, &speed);
+  combine(s, EMBEDDED, change, 1/h, &r->a0, &acceleration);
+  for (int g = 0; g < groups(s); g++) for (long k = 0; k < s->ports; k++) {      /* what is given has no error */
+    lanes free = 1.0 - w->hold[g][k];
+    speed.leg[g][s->port[k]] *= free; acceleration.leg[g][s->port[k]] *= free;
+  }
+  memset(&rhs, 0, sizeof rhs);
+  for (int g = 0; g < groups(s); g++) for (int j = 0; j < N; j++) acceleration.leg[g][j] += REAL/h*speed.leg[g][j];
+  for (int j = 0; j < 6; j++) acceleration.hub[j] += REAL/h*speed.hub[j];
+  multiply(s, -1, r->M, s->hub ? r->hub_M : 0, &acceleration, &rhs);
+  multiply(s, -1, r->D, 0, &speed, &rhs);
+  arrow_solve_vector(s, w, &rhs, (lanes (*)[ROWS + 1])none, &error, &unused);
+  memset(&rhs, 0, sizeof rhs);
+  multiply(s, -1, r->K, s->hub ? r->hub_K : 0, &error, &rhs);
+  arrow_solve_vector(s, w, &rhs, (lanes (*)[ROWS + 1])none, &second, &unused);
+  return norm(s, c, &second);
+}
+
+/* Correct the places of the state in the work space by how far legs are from closed, with the last matrices */
+static void close_places(const Settings *s, lanes (*gap)[ROWS + 1], Work *w) {
+  static _Thread_local Vector zero, change;
+  static _Thread_local Forces unused;
+  double before[7];
+  arrow_solve_vector(s, w, &zero, gap, &change, &unused);
+  for (int i = 0; i < groups(s); i++) for (int j = 0; j < N; j++) w->leg[i].q[j] += change.leg[i][j];
+  memcpy(before, w->payload.pose, sizeof before);
+  turned_pose(before, change.hub, w->payload.pose);
+}
+
+/* The same for a record, until rounding is left, and of its rates */
+static void close_record(const Settings *s, const double *load, Work *w) {
+  static _Thread_local lanes gap[GROUPS][ROWS + 1], rate[GROUPS][ROWS + 1];
+  static _Thread_local Vector zero, change;
+  static _Thread_local Forces unused;
+  closing(s, load, w, gap, rate);
+  arrow_solve_vector(s, w, &zero, rate, &change, &unused);
+  for (int i = 0; i < groups(s); i++) for (int j = 0; j < N; j++) w->leg[i].v[j] += change.leg[i][j];
+  for (int j = 0; j < 6; j++) w->payload.u[j] += change.hub[j];
+  for (int round = 0; round < 3; round++) {
+    lanes most = {0};
+    for (int i = 0; i < groups(s); i++) most = magnitude(ROWS, gap[i], most);
+    w->closure = largest(most);
+    if (w->closure < CLOSED) break;
+    close_places(s, gap, w);
+    closing(s, load, w, gap, rate);
+  }
+}
+
+/* The accepted state becomes the start of a step */
+static void start_step(const Settings *s, const Work *w, Radau *r) {
+  for (int i = 0; i < groups(s); i++) {
+    memcpy(r->q.leg[i], w->leg[i].q, sizeof r->q.leg[i]); memcpy(r->v0.leg[i], w->leg[i].v, sizeof r->q.leg[i]);
+    memcpy(r->a0.leg[i], w->leg[i].v_dot, sizeof r->q.leg[i]);
+    memcpy(r->f0.lam[i], w->leg[i].lam, sizeof(lanes)*ROWS); memcpy(r->f0.drive[i], w->leg[i].drive, sizeof(lanes)*s->ports);
+  }
+  memcpy(r->pose, w->payload.pose, sizeof r->pose);
+  memcpy(r->v0.hub, w->payload.u, sizeof r->v0.hub); memcpy(r->a0.hub, w->payload.u_dot, sizeof r->a0.hub);
+}
+
+static void blend(const Settings *s, const double *c, const Vector *x, const Vector *start, Vector *y) {
+  combine(s, c, x, 1, 0, y);
+  if (!start) return;
+  for (int i = 0; i < groups(s); i++) for (int j = 0; j < N; j++) y->leg[i][j] += c[3]*start->leg[i][j];
+  for (int j = 0; j < 6; j++) y->hub[j] += c[3]*start->hub[j];
+}
+
+/* Displacements at theta: the integral of the rates' polynomial, which is of one degree more than that of the stages, and
+   what it misses at the end */
+static void places_at(const Settings *s, double theta, double h, const Radau *r, Vector *Z) {
+  static const double at[3] = {0.11270166537925831148, 0.5, 0.88729833462074168852}, weight[3] = {5.0/18, 8.0/18, 5.0/18};
+  static _Thread_local Vector rates[STAGES];
+  double part[4] = {0}, all[4] = {0}, c[4], share = theta*theta*theta;
+  memcpy(rates, r->V, sizeof rates);
+  for (int k = 0; k < STAGES; k++) for (int j = 3; j < 6; j++)                  /* of the rotation vector */
+    rates[k].hub[j] = (INVERSE[k][0]*r->Z[0].hub[j] + INVERSE[k][1]*r->Z[1].hub[j] + INVERSE[k][2]*r->Z[2].hub[j])/h;
+  for (int i = 0; i < 3; i++) {
+    through(at[i]*theta, 1, c);
+    for (int j = 0; j < 4; j++) part[j] += h*theta*weight[i]*c[j];
+    through(at[i], 1, c);
+    for (int j = 0; j < 4; j++) all[j] += h*weight[i]*c[j];
+  }
+  for (int j = 0; j < 4; j++) part[j] -= share*all[j];
+  blend(s, part, rates, &r->v0, Z);
+  for (int i = 0; i < groups(s); i++) for (int j = 0; j < N; j++) Z->leg[i][j] += share*r->Z[2].leg[i][j];
+  for (int j = 0; j < 6; j++) Z->hub[j] += share*r->Z[2].hub[j];
+}
+
+/* Energies up to theta of a step, over its length: integrals of the polynomial of the powers */
+static void powers_until(double theta, double h, const Radau *r, double *sums) {
+  static const double at[3] = {0.11270166537925831148, 0.5, 0.88729833462074168852}, weight[3] = {5.0/18, 8.0/18, 5.0/18};
+  for (int i = 0; i < 3; i++) {
+    double c[4];
+    through(at[i]*theta, 0, c);
+    for (int j = 0; j < WORKS; j++) sums[j] += h*theta*weight[i]*(c[0]*r->powers[0][j] + c[1]*r->powers[1][j] + c[2]*r->powers[2][j]);
+  }
+}
+
+/* Record of an instant within a step */
+static void record_within(const Settings *s, State *x, const Control *c, double t, double theta, double h, Radau *r, Work *w) {
+  static _Thread_local Vector Z, V, A;
+  static _Thread_local Forces F;
+  double at[4], row[WIDTH], sums[WORKS];
+  long width = s->legs*s->ports*COLUMNS;
+  through(theta, 1, at);
+  places_at(s, theta, h, r, &Z);
+  blend(s, at, r->V, &r->v0, &V); blend(s, at, r->A, &r->a0, &A);
+  combine_forces(s, at, r->F, &r->f0, &F);
+  evaluate_series(c, width + load_size(s), t, row);
+  place(s, r, &Z, &V, &A, &F, row, w);
+  w->closure = 0;
+  if (ROWS) close_record(s, row + width, w);
+  set_commands(s, w);
+  for (int j = 0; j < 6; j++) if (s->hub_held[j] != 0) { residual(s, row + width, w); break; }    /* for what holds it */
+  memcpy(sums, x->sums, sizeof sums);
+  powers_until(theta, h, r, x->sums);
+  write_record(s, x, w);
+  memcpy(x->sums, sums, sizeof sums);
+}
+
+/* Back to the start of the step */
+static void step_back(const Settings *s, const Radau *r, const double *row, Work *w) {
+  static const Vector none;
+  place(s, r, &none, &r->v0, &r->a0, &r->f0, row, w);
+  memcpy(w->payload.pose, r->pose, sizeof r->pose);
+}
+
+long radau_memory(void) { return (long)(sizeof(Memory)/sizeof(double)) + 1; }
+
+enum { OUT_OF_REACH = 4, OLDEST = 16 }; /* steps for which the matrices at rest are kept */
+
+/* Advance to c->end with steps of their own, recording the instants asked for. The memory is the caller's; zero but for the
+   present time and the step to try, it begins anew. */
+int radau(const Settings *s, State *x, const Control *c, double *memory) {
+  static _Thread_local Radau r;
+  static _Thread_local Memory m;
+  static _Thread_local lanes gap[GROUPS][ROWS + 1], rate[GROUPS][ROWS + 1];
+  Work *w = work();
+  long tables = s->legs*s->ports*COLUMNS, width = tables + load_size(s), age = OLDEST, fresh = 0, next = 0;
+  int status = OK;
+  double factored = 0, row[WIDTH], unit = fmax(c->hub_weight[0], 0);
+  for (int j = 0; j < N; j++) unit = fmax(unit, c->weight[j]);
+  memcpy(&m, memory, sizeof m);
+  load(s, x, w);
+  evaluate_series(c, width, m.time, row);
+  start_step(s, w, &r);
+  while (m.time < c->end && status == OK) {
+    double left = c->end - m.time, h = fmin(m.h, c->longest), rest_of_it = fmax(c->tolerance - m.spent, 0.1*c->tolerance);
+    double allowed = fmin(rest_of_it/fmax(c->horizon - m.time, left), 3*c->tolerance/c->horizon), rounding = 1e-15*unit;
+    if (h >= left*(1 - 1e-9)) h = left; else if (h > 0.5*left) h = 0.5*left;
+    if (age >= OLDEST) { rest(s, row + tables, &r, w); age = 0; fresh = 1; factored = 0; }
+    if (factored != h) {
+      x->factorisations++;
+      m.rate = 0;
+      if (factor_stages(s, h, &r, w)) { x->bad_leg = s->legs; status = SINGULAR; break; }
+      factored = h;
+    }
+    double until = h < left ? m.time + h : c->end;
+    for (int k = 0; k < STAGES; k++) evaluate_series(c, width, k < 2 ? m.time + NODE[k]*h : until, r.row[k]);
+    predict_stages(s, &m, h, &r);
+    int fault = iterate_stages(s, x, c, h, 1e-3*allowed*h, rounding, &m.rate, &r, w);
+    if (++x->steps > c->most) { step_back(s, &r, row, w); x->bad_leg = s->legs; status = OUT_OF_REACH; break; }
+    if (fault) {                        /* with newer matrices, then with shorter steps */
+      long leg = worst_leg(s, w);
+      step_back(s, &r, row, w);
+      if (!fresh) { age = OLDEST; continue; }
+      m.h = 0.5*h; m.stages = 0;
+      if (m.h < c->shortest) { x->bad_leg = leg; status = fault; }
+      continue;
+    }
+    double error = estimate(s, c, h, &r, w), h5 = h*h*h*h*h, peak = fmax(error/(h5*h), 0.9*m.peak);
+    if (error > fmax(2*allowed*h, rounding)) {
+      step_back(s, &r, row, w);
+      m.rejected++;
+      m.h = h*fmin(0.8, fmax(0.2, 0.9*pow(allowed*h/error, 0.2)));
+      if (m.h < c->shortest) { x->bad_leg = s->legs; status = OUT_OF_REACH; }
+      continue;
+    }
+    for (; next < c->outputs; next++) {
+      double t = c->output_first + (double)next*c->output_step;
+      if (t > until + 1e-9*c->output_step) break;
+      record_within(s, x, c, fmin(t, until), fmin((t - m.time)/h, 1), h, &r, w);
+    }
+    memcpy(row, r.row[2], sizeof row);
+    place(s, &r, &r.Z[2], &r.V[2], &r.A[2], &r.F[2], row, w);
+    if (ROWS) { closing(s, row + tables, w, gap, rate); close_places(s, gap, w); }
+    powers_until(1, h, &r, x->sums);
+    memcpy(x->powers, r.powers[2], sizeof r.powers[2]);
+    memcpy(m.A, r.A, sizeof m.A); memcpy(m.F, r.F, sizeof m.F);
+    m.stages = 1; m.last_h = h; m.time = until; m.spent += error; m.peak = peak;
+    start_step(s, w, &r);
+    age++; fresh = 0;
+    double wanted = h*fmin(4, fmax(0.2, 0.9*pow(allowed/fmax(peak*h5, 1e-300), 0.2)));
+    if (h < left && (wanted < 0.9*h || wanted > 1.2*h)) m.h = wanted;      /* another step costs another factorisation */
+    if (h == left && wanted > m.h) m.h = wanted;
+  }
+  m.recorded = (double)next;
+  memcpy(memory, &m, sizeof m);
+  store(s, w, x);
+  return status;
+}

@@ -1,0 +1,117 @@
+"""Time integration within a tolerance: Radau's method of order 5 with steps of its own, Eqs. (T6.28)-(T6.33)."""
+
+from ctypes import Structure, byref, c_double, c_long, c_void_p
+from dataclasses import dataclass
+
+import numpy as np
+
+from flexapod.integration import GeneralizedAlpha
+from flexapod.solve.native import Call, address, compiled
+from flexapod.solve.recording import Counters, record_width
+from flexapod.solve.series import TERMS, Series
+from flexapod.solve.system import Flow, System
+from flexapod.typing import Array
+
+__all__ = ["OUT_OF_REACH", "Advanced", "Within"]
+
+OUT_OF_REACH = 4  # as in radau.c
+FIRST = 1e-5  # of the first step, and after a jump [s]; it grows four times a step
+LONGEST, SHORTEST = np.inf, 1e-7  # s
+MOST = 8192  # steps per output before the tolerance is called out of reach
+TIME, STEP, SPENT, PEAK, STAGES, REJECTED, RECORDED = (
+    0,
+    1,
+    2,
+    4,
+    6,
+    7,
+    8,
+)  # places in the memory; what follows is C's own
+
+
+class _Control(Structure):
+    _fields_ = [
+        *[(name, c_double) for name in ("end", "horizon", "tolerance")],
+        ("weight", c_void_p),
+        ("hub_weight", c_void_p),
+        *[(name, c_double) for name in ("longest", "shortest", "output_first", "output_step")],
+        *[(name, c_long) for name in ("outputs", "pieces", "terms", "most")],
+        ("edges", c_void_p),
+        ("series", c_void_p),
+    ]
+
+
+@dataclass(frozen=True, kw_only=True)
+class Advanced:
+    """Outcome of a call: new flow, output rows so far, status (0: done), where it failed and when."""
+
+    flow: Flow
+    rows: Array
+    status: int
+    leg: int
+    time: float
+
+
+class Within:
+    """The method's memory from call to call: time, step, local errors so far.
+
+    Parameters
+    ----------
+    system : System
+    series : Series
+        Commands and loads.
+    horizon : float
+        When the run ends [s]: the local errors up to there may add up to the tolerance.
+    tolerance : float
+    """
+
+    def __init__(self, system: System, series: Series, horizon: float, tolerance: float) -> None:
+        self.system, self.series, self.horizon, self.tolerance = system, series, horizon, tolerance
+        self._memory = np.zeros(compiled(system).radau_memory())
+        self._memory[STEP] = FIRST
+
+    @property
+    def spent(self) -> float:
+        """Sum of the local errors, an estimate of the error: relative to what the weights say."""
+        return float(self._memory[SPENT])
+
+    @property
+    def step(self) -> float:
+        """Step that is to be tried next [s]."""
+        return float(self._memory[STEP])
+
+    def weigh(self, ratio: float) -> None:
+        """Go on with weights that are `ratio` times those before."""
+        self._memory[SPENT] *= ratio
+
+    def jumped(self) -> None:
+        """Forget what is extrapolated from: commands have jumped."""
+        self._memory[[STEP, PEAK, STAGES]] = FIRST, 0.0, 0.0
+
+    def advance(
+        self,
+        flow: Flow,
+        end: float,
+        weights: tuple[Array, Array],
+        outputs: tuple[float, float, int],
+        counters: Counters,
+    ) -> Advanced:
+        """Advance to an instant; `outputs`: first instant, distance and number of the records on the way."""
+        new, rows = flow.copy(), np.zeros((outputs[2], record_width(self.system)))
+        call = Call(self.system, new, rows, GeneralizedAlpha(1.0), 1.0, 1)
+        edges, series = (np.ascontiguousarray(x) for x in self.series.between(float(self._memory[TIME]), end))
+        leg, hub = (np.ascontiguousarray(x) for x in weights)
+        control = _Control(
+            end, self.horizon, self.tolerance, address(leg), address(hub), LONGEST, SHORTEST,
+            *outputs, len(series), TERMS, MOST * max(outputs[2], 1), address(edges), address(series),
+        )  # fmt: skip
+        before = self._memory[REJECTED]
+        status = compiled(self.system).radau(
+            byref(call.settings), byref(call.state), byref(control), address(self._memory)
+        )
+        counters.steps += call.state.steps
+        counters.iterations += call.state.iterations
+        counters.factorisations += call.state.factorisations
+        counters.rejected += int(self._memory[REJECTED] - before)
+        rows = rows[: int(self._memory[RECORDED])]
+        return Advanced(flow=new, rows=rows, status=status, leg=call.state.bad_leg, time=float(self._memory[TIME]))

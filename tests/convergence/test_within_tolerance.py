@@ -1,0 +1,161 @@
+"""Radau's method within a tolerance: the tolerance is kept, and not by far; orders, drift, jumps, stiff limits."""
+
+from functools import cache
+
+import numpy as np
+import pytest
+from tests.runs import balance, paper_robot, run_actuator, run_robot, with_legs
+
+from flexapod import rigid
+from flexapod.model import override, preset
+from flexapod.rigid.rotations import matrix
+from flexapod.solve import within
+from flexapod.solve.robot_march import prepare
+
+TOLERANCES = (1e-2, 1e-3, 1e-4, 1e-5, 1e-6)
+
+
+def moved(**motion):
+    study = paper_robot(duration=2 * motion["duration"])
+    return study.replace(motion=study.motion.replace(hold=motion["duration"], **motion))
+
+
+STUDIES = {
+    "roll": (lambda: paper_robot(duration=1.5), 2.5e-5),
+    "fast move": (lambda: moved(amplitude=np.radians(5.0), duration=0.1), 5e-6),
+    "machine": (lambda: override(preset("machine-hexapod"), duration=0.8), 2e-5),
+}
+
+
+def deviation(study, run):
+    """Deviation of the payload (T, 6) [m]: of its centre of mass, and of its turning at the joints' radius."""
+    path = rigid.poses(study.robot, study.motion, run["time"])
+    turn = path.rotation.swapaxes(1, 2) @ matrix(run["pose"][:, 3:])
+    skew = np.stack([turn[:, 2, 1] - turn[:, 1, 2], turn[:, 0, 2] - turn[:, 2, 0], turn[:, 1, 0] - turn[:, 0, 1]], 1)
+    radius = np.linalg.norm(study.robot.platform_joints, axis=1).max()
+    centre = path.position + path.rotation @ study.robot.payload.com
+    return np.concatenate([run["pose"][:, :3] - centre, 0.5 * radius * skew], axis=1)
+
+
+def lateral(study, run):
+    first = prepare(study).system.kernel.shapes.index("a")
+    return run["q"][:, :, first:]
+
+
+@cache
+def reference(name):
+    """Deviation and lateral amplitudes of a study: generalized-alpha with a step and its half, extrapolated."""
+    make, step = STUDIES[name]
+    study = make()
+    coarse, fine = (run_robot(override(study, step=step / k, output_step=1e-3)) for k in (1, 2))
+    pairs = [(f(study, coarse), f(study, fine)) for f in (deviation, lateral)]
+    return study, [b + (b - a) / 3 for a, b in pairs]
+
+
+def errors(name, tolerance):
+    """Of the deviation and of the lateral amplitudes, over their peaks, and the number of steps."""
+    study, true = reference(name)
+    march = prepare(override(study, tolerance=tolerance))
+    parts = [chunk.recording for chunk in march.chunks]
+    run = {key: np.concatenate([getattr(r, key) for r in parts]) for key in ("time", "pose", "q")}
+    found = [deviation(study, run), lateral(study, run)]
+    return [np.abs(x - y).max() / np.abs(y).max() for x, y in zip(found, true, strict=True)] + [march.counters.steps]
+
+
+@pytest.mark.parametrize("name", STUDIES)
+@pytest.mark.parametrize("tolerance", TOLERANCES)
+def test_the_error_is_what_the_tolerance_says(name, tolerance):
+    """At most the tolerance, and not below a fiftieth of it; of the lateral amplitudes ten times as much."""
+    of_deviation, of_lateral, _ = errors(name, tolerance)
+    assert tolerance / 50 < of_deviation < tolerance
+    assert of_lateral < 10 * tolerance
+
+
+def test_errors_fall_with_more_than_the_fourth_power_of_the_step(monkeypatch):
+    """Five for what steps resolve; axial vibrations of kilohertz, which they do not, take half an order from it."""
+    study, found = moved(amplitude=np.radians(5.0), duration=0.1), []
+    true = deviation(study, run_robot(override(study, tolerance=1e-9)))
+    for tolerance, longest in ((1e-3, 1e-3), (1e-7, 2e-4)):  # tolerances that ask for longer steps
+        monkeypatch.setattr(within, "LONGEST", longest)
+        found.append(np.abs(deviation(study, run_robot(override(study, tolerance=tolerance))) - true).max())
+    assert np.log(found[0] / found[1]) / np.log(5) > 4.0
+
+
+def test_a_vibration_without_damping_keeps_its_phase():
+    """Twelve periods of a beam that grows; the frequency falls to a third."""
+    study = preset("paper-actuator")
+    study = override(study, duration=10.0, output_step=5e-3)
+    coarse, fine = (run_actuator(override(study, step=h))["q"][:, 0, 2:] for h in (5e-5, 2.5e-5))
+    true = fine + (fine - coarse) / 3
+    for tolerance in (1e-2, 1e-3, 1e-4):
+        found = run_actuator(override(study, tolerance=tolerance))["q"][:, 0, 2:]
+        assert tolerance / 50 < np.abs(found - true).max() / np.abs(true).max() < tolerance
+
+
+def test_closures_and_balance_do_not_drift(monkeypatch):
+    """Over 1e5 steps; a step between outputs, where records are put back onto the closures, included."""
+    monkeypatch.setattr(within, "LONGEST", 9e-6)
+    march = prepare(paper_robot(duration=1.0, tolerance=1e-4, output_step=7e-4, modes=1))
+    parts = [chunk.recording for chunk in march.chunks]
+    run = {key: np.concatenate([getattr(r, key) for r in parts]) for key in ("closure", "energy", "sums")}
+    assert march.counters.steps > 1e5
+    assert run["closure"].max() < 1e-12
+    kept = balance(run)
+    assert np.ptp(kept) < 1e-7 * np.ptp(run["sums"][:, 1])
+
+
+def test_rates_of_records_close_the_legs():
+    march = prepare(paper_robot(duration=0.3, tolerance=1e-2))
+    last = [chunk.recording for chunk in march.chunks][-1]
+    system, at = march.system, len(last.time) // 2
+    state = march.start.__class__(
+        q=last.q[at], pose=last.pose[at], v=last.v[at], v_dot=last.v_dot[at], lam=last.lam[at],
+        drive=last.drive[at], a=last.v_dot[at],
+    )  # fmt: skip
+    # In one correction with matrices that are up to 16 steps old, of rates that are wrong by 1e-6.
+    assert np.abs(system.matrices(state, np.zeros(6)).G @ state.v).max() < 1e-8
+
+
+def test_work_of_the_drives_is_the_energy(monkeypatch):
+    """The balance closes as far as the tolerance goes."""
+    for tolerance in (1e-3, 1e-5):
+        run = run_robot(paper_robot(duration=0.6, tolerance=tolerance))
+        assert np.ptp(balance(run)) < tolerance * np.ptp(run["sums"][:, 1])
+
+
+@pytest.mark.parametrize("profile", ["trapezoid", "linear"])
+def test_steps_end_on_jumps(profile):
+    """The command's acceleration or rate jumps between two outputs."""
+    study = paper_robot(profile=profile, start="moving", fidelity="lumped", duration=0.3)
+    study = study.replace(motion=study.motion.replace(duration=0.2003, amplitude=np.radians(2.0)))
+    true = deviation(study, run_robot(override(study, step=5e-6, output_step=1e-3)))
+    found = deviation(study, run_robot(override(study, tolerance=1e-4)))
+    assert np.abs(found - true).max() < 1e-4 * np.abs(true).max()
+
+
+def test_a_platform_that_tumbles():
+    """Turning about three axes at once, by 20 degrees each in 0.3 s."""
+    study = paper_robot(duration=0.4, modes=1)
+    amplitudes = {"roll": 0.3, "pitch": 0.3, "yaw": 0.3}
+    study = study.replace(motion={"type": "combined", "amplitudes": amplitudes, "duration": 0.3, "hold": 0.1})
+    coarse, fine = (deviation(study, run_robot(override(study, step=h, output_step=1e-3))) for h in (2e-5, 1e-5))
+    true = fine + (fine - coarse) / 3
+    for tolerance in (1e-3, 1e-5):
+        found = deviation(study, run_robot(override(study, tolerance=tolerance)))
+        assert np.abs(found - true).max() < tolerance * np.abs(true).max()
+
+
+def test_stiff_pistons_do_not_shorten_the_steps(monkeypatch):
+    """Pistons ten thousand times as stiff along their axis vibrate at 350 kHz: steps pass over that."""
+    monkeypatch.setattr(within, "LONGEST", 1e-3)
+    runs = []
+    for factor in (1e3, 1e4):
+        stiff = with_legs(
+            paper_robot(duration=0.2, tolerance=0.3),
+            lambda leg, k=factor: leg.replace(piston=leg.piston.replace(EA=k * leg.piston.EA)),
+        )
+        march = prepare(stiff)
+        runs.append(np.concatenate([chunk.recording.drive for chunk in march.chunks]))
+        assert march.counters.steps < 300
+    # What the first ones stretch, 2e-8 m, moves forces by less than 1e-4 of them.
+    assert np.abs(runs[1] - runs[0]).max() < 1e-3 * np.abs(runs[0]).max()
