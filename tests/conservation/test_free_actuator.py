@@ -79,7 +79,7 @@ def test_a_beam_that_slides_into_its_hub_is_told_so(settings):
 
 
 def test_a_beam_that_vibrates_is_thrown_back_before_it_has_slid_into_its_hub():
-    """Its frequency rises with 1 / free^2 and its energy with it: at 12 mm they are the 85 J that 50 N have put in."""
+    """Its frequency rises with 1 / free^2 and its energy with it: at 11 mm they are the 85 J that 50 N have put in."""
     march = prepare_actuator(free(force=-50.0, duration=1.1))
     parts = [chunk.recording for chunk in march.chunks]
     length, energy, sums = (

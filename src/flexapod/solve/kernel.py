@@ -21,9 +21,8 @@ if TYPE_CHECKING:
 
 Function = Callable[..., tuple[Array, ...]]
 NATIVE = Path(__file__).parent / "native"
-SOURCES = tuple(
-    NATIVE / name for name in ("system.h", "lu.c", "legs.c", "arrow.c", "state.c", "march.c", "complex.c", "radau.c")
-)
+SOURCES = tuple(NATIVE / name for name in ("system.h", "lu.c", "legs.c", "arrow.c", "state.c", "march.c"))
+RADAU = tuple(NATIVE / name for name in ("complex.c", "radau.c"))
 _Pointer = ctypes.POINTER(c_double)
 _log = logging.getLogger("flexapod")
 
@@ -32,7 +31,8 @@ _log = logging.getLogger("flexapod")
 class Kernel:
     """Functions of a leg with given shapes and of the payload; all take and return float arrays.
 
-    ``leg_friction``, ``leg_friction_matrix``: of legs with friction. ``library``: functions and time loop as compiled;
+    ``leg_closing``, ``joint_closing``: for steps within a tolerance. ``leg_friction``, ``leg_friction_matrix``: of legs
+    with friction. ``library``: functions and time loop as compiled;
     None where no C compiler was found and casadi interprets them.
     """
 
@@ -40,14 +40,14 @@ class Kernel:
     leg_residual: Function
     leg_matrices: Function
     leg_energies: Function
-    leg_closing: Function
     joint_residual: Function
     joint_matrices: Function
-    joint_closing: Function
     payload_residual: Function
     payload_matrices: Function
     payload_energies: Function
     library: ctypes.CDLL | None
+    leg_closing: Function | None = None
+    joint_closing: Function | None = None
     leg_friction: Function | None = None
     leg_friction_matrix: Function | None = None
 
@@ -56,11 +56,15 @@ NAMES = tuple(field.name for field in fields(Kernel) if field.name not in ("shap
 
 
 @lru_cache(maxsize=32)  # solid pistons and tip bodies of many sizes have shapes of their own
-def kernel(shapes: Shapes, march: bool = True) -> Kernel:
-    """Kernel of legs with the given shapes and joints, see `shapes`; without ``march`` its library has no time loop."""
+def kernel(shapes: Shapes, march: bool = True, within: bool = False) -> Kernel:
+    """Kernel of legs with the given shapes and joints, see `shapes`; without ``march`` its library has no time loop.
+
+    ``within``: with the time loop whose steps follow a tolerance, too; it takes as long to compile as all else.
+    """
     if command := compiler():
+        sources = (SOURCES if march else ()) + (RADAU if within else ())
         library, signatures = compiled_library(
-            _fingerprint(shapes), lambda: _functions(shapes), SOURCES if march else (), command, sizes(shapes)
+            _fingerprint(shapes), lambda: _functions(shapes), sources, command, sizes(shapes)
         )
         compiled = {name: CompiledFunction(library, name, signatures[name]) for name in NAMES if name in signatures}
         return Kernel(shapes=shapes, library=library, **compiled)

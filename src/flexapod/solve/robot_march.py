@@ -69,7 +69,7 @@ def prepare(study: Study, state: State | None = None) -> RobotMarch:
     refuse_growing_plates(study)
     refuse_gaps(study)
     robot, simulation = study.robot, study.simulation
-    system, path = robot_system(robot, simulation), _Path(study)
+    system, path = robot_system(robot, simulation, within=simulation.tolerance is not None), _Path(study)
     law = robot_law(system, robot, study.load, path.poses, path.knots)
     method = GeneralizedAlpha(simulation.rho_inf)
     state = _configuration(study, system) if state is None else state

@@ -21,15 +21,18 @@ from flexapod.typing import Mask
 __all__ = ["robot_system", "smooth"]
 
 
-def robot_system(robot: Robot, simulation: Simulation, march: bool = True, *, at_rest: bool = False) -> System:
+def robot_system(
+    robot: Robot, simulation: Simulation, march: bool = True, *, at_rest: bool = False, within: bool = False
+) -> System:
     """System of a robot as built, in the fidelity and shapes of ``simulation``; ``march``: to be integrated.
 
-    ``at_rest``: loops that sum their errors have left none, Eq. (T23.16).
+    ``within``: with steps that follow a tolerance, too. ``at_rest``: loops that sum their errors have left none,
+    Eq. (T23.16).
     """
     legs = rigid.built_limbs(robot, rigid.robot_limbs(robot))
     shapes = robot_shapes(robot, simulation, legs)
     return System(
-        kernel=kernel(shapes, march),
+        kernel=kernel(shapes, march, within),
         leg_p=leg_parameters(robot, legs, shapes, per_loss(robot, simulation), at_rest=at_rest),
         joint_p=np.ascontiguousarray(legs.platform - robot.com),
         payload_p=payload_parameters(robot, shapes, at_rest=at_rest),
