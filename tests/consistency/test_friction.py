@@ -358,7 +358,7 @@ def test_forces_do_the_power_and_grow_with_the_rates(together):
         platform_friction=True,
         drive_friction=True,
     )
-    force, matrix = (Interpreted(x) for x in friction_functions(ours))
+    force, matrix, _ = (Interpreted(x) for x in friction_functions(ours))
     rng, b = np.random.default_rng(6), ours.bristles
     p = np.zeros(sum(size for _, size in leg_parameters(ours)))
     for name, _ in ours.sliding:

@@ -4,10 +4,12 @@ from functools import cache
 
 import numpy as np
 import pytest
+from tests.machines import SCREW, machine
+from tests.machines import study as moved_machine
 from tests.runs import balance, paper_robot, run_actuator, run_robot, with_legs
 
 from flexapod import rigid
-from flexapod.model import override, preset
+from flexapod.model import Feedback, Joint, JointFriction, ScrewFriction, override, preset
 from flexapod.rigid.rotations import matrix
 from flexapod.solve import within
 from flexapod.solve.robot_march import prepare
@@ -66,9 +68,47 @@ def errors(name, tolerance):
 @pytest.mark.parametrize("tolerance", TOLERANCES)
 def test_the_error_is_what_the_tolerance_says(name, tolerance):
     """At most the tolerance, and not below a fiftieth of it; of the lateral amplitudes ten times as much."""
-    of_deviation, of_lateral, _ = errors(name, tolerance)
+    of_deviation, of_lateral, steps = errors(name, tolerance)
     assert tolerance / 50 < of_deviation < tolerance
     assert of_lateral < 10 * tolerance
+    assert steps < 20_000  # doubled chunks of second order took 127,000 for the roll at 1e-4
+
+
+def rubbing(moment=2.0, torque=0.5, **waypoints):
+    """Six cylinders with servo drives, which rub at their joints and screws; bristles bend by 1e-5."""
+    joint = Joint(friction=JointFriction(moment=moment, presliding=1e-5))
+    drive = SCREW.replace(
+        command="servo", loop=Feedback(stiffness=5e3, damping=20.0), friction=ScrewFriction(torque=torque)
+    )
+    study = moved_machine(machine(base_joint=joint, drive=drive), fidelity="lumped", output_step=1e-3)
+    return study.replace(motion={"type": "waypoints", **waypoints}) if waypoints else study
+
+
+def test_reversals_with_friction():
+    """To, fro and to rest: bristles turn over within a thousandth of the way."""
+    points = [{"time": 0.1, "heave": 0.01}, {"time": 0.2, "heave": -5e-3}]
+    study = rubbing(points=points)
+    runs = [run_robot(override(study, step=h, output_step=1e-3)) for h in (2e-5, 1e-5)]
+    coarse, fine = (deviation(study, run) for run in runs)
+    true = fine + (fine - coarse) / 3
+    for tolerance in (1e-2, 1e-3, 1e-4):
+        run = run_robot(override(study, tolerance=tolerance))
+        assert tolerance / 50 < np.abs(deviation(study, run) - true).max() / np.abs(true).max() < tolerance
+        # Nearly all work ends as friction: it and the balance are right as far as the path is.
+        assert run["sums"][-1, 0] == pytest.approx(runs[1]["sums"][-1, 0], rel=tolerance)
+        assert np.ptp(balance(run)) < tolerance * np.ptp(run["sums"][:, 1])
+        # Moments jump at a reversal, within steps: a hundredth of them is what fixed steps of 20 us leave there.
+        assert np.abs(run["friction"] - runs[1]["friction"]).max() < 1e-2 * np.abs(runs[1]["friction"]).max()
+
+
+def test_next_to_no_friction_is_none():
+    """Forces of 1e-9 N m and N: steps are the same, and so is the path but for rounding."""
+    little = rubbing(moment=1e-9, torque=1e-9)
+    none = rubbing()
+    legs = (leg.replace(base_joint=Joint(), drive=leg.drive.replace(friction=None)) for leg in none.robot.legs)
+    none = none.replace(robot=none.robot.replace(legs=tuple(legs)))
+    found, true = (run_robot(override(x, tolerance=1e-4))["pose"] for x in (little, none))
+    np.testing.assert_allclose(found, true, rtol=0, atol=1e-10)
 
 
 def test_errors_fall_with_more_than_the_fourth_power_of_the_step(monkeypatch):

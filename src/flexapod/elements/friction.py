@@ -4,7 +4,7 @@ from dataclasses import dataclass
 
 from flexapod.symbolic.vocabulary import SX, cos, dot, exp, sin, sqrt, vertcat
 
-__all__ = ["Rubbing", "rubbing", "turning"]
+__all__ = ["Rubbing", "forgetting", "rubbing", "turning"]
 
 STILL = 1e-60  # added to squares: a root has no slope at zero
 
@@ -54,6 +54,11 @@ def rubbing(p: SX, load: SX, v: SX, before: SX, z: SX, h: SX, *, falling: bool =
         rate=rate,
         stored=0.5 * sliding / reach * dot(bent, bent),
     )
+
+
+def forgetting(p: SX, v: SX) -> SX:
+    """Share of their bending that bristles lose in a second at a rate of sliding, Eq. (T19.1) [1/s]."""
+    return _size(v, p[7]) / _limit(p, v)
 
 
 def _limit(p: SX, v: SX) -> SX:

@@ -2,7 +2,7 @@
 
 from types import SimpleNamespace
 
-from flexapod.elements.friction import Rubbing, rubbing, turning
+from flexapod.elements.friction import Rubbing, forgetting, rubbing, turning
 from flexapod.mechanics.layout import Shapes, leg_parameters
 from flexapod.symbolic.functions import NamedFunction
 from flexapod.symbolic.vocabulary import SX, dot, jacobian, split, sqrt, symbol, symbols, vertcat, zeros
@@ -11,7 +11,7 @@ FORCELESS = 1e-12  # N^2, added to the square of a joint's force: a root has no 
 
 
 def friction_functions(shapes: Shapes) -> list[NamedFunction]:
-    """Friction of one leg at the end of a step of length h, and how it grows with the rates; none of legs without."""
+    """Friction of a leg at the end of a step of length h, how it grows with the rates, what slides; none without."""
     if not shapes.sliding:
         return []
     p_vector, p = symbols(leg_parameters(shapes), "p")
@@ -35,9 +35,11 @@ def friction_functions(shapes: Shapes) -> list[NamedFunction]:
         ("rate", _all(found, "rate")),
         ("energies", vertcat(dot(sliding, force), sum((x.stored for x in found.values()), zeros(1)))),  # (T19.8)
     ]
+    lost = vertcat(*(forgetting(getattr(p, name), rate) for name, rate in rates.items()))
     return [
         NamedFunction("leg_friction", inputs, outputs),
         NamedFunction("leg_friction_matrix", inputs, [("D", jacobian(on_leg, v))]),
+        NamedFunction("leg_sliding", [("q", q), ("v", v), ("p", p_vector)], [("rates", sliding), ("forgetting", lost)]),
     ]
 
 

@@ -31,8 +31,8 @@ _log = logging.getLogger("flexapod")
 class Kernel:
     """Functions of a leg with given shapes and of the payload; all take and return float arrays.
 
-    ``leg_closing``, ``joint_closing``: for steps within a tolerance. ``leg_friction``, ``leg_friction_matrix``: of legs
-    with friction. ``library``: functions and time loop as compiled;
+    ``leg_closing``, ``joint_closing``: for steps within a tolerance. ``leg_friction``,
+    ``leg_friction_matrix``, ``leg_sliding``: of legs with friction. ``library``: functions and time loop as compiled;
     None where no C compiler was found and casadi interprets them.
     """
 
@@ -50,6 +50,7 @@ class Kernel:
     joint_closing: Function | None = None
     leg_friction: Function | None = None
     leg_friction_matrix: Function | None = None
+    leg_sliding: Function | None = None
 
 
 NAMES = tuple(field.name for field in fields(Kernel) if field.name not in ("shapes", "library"))

@@ -59,10 +59,9 @@ class Problem:
 
     @property
     def adaptive(self) -> bool:
-        """Whether steps follow the tolerance one by one: compiled equations, without friction or mounts."""
+        """Whether steps follow the tolerance one by one: compiled equations, without mounts."""
         kernel = self.system.kernel
-        plain = not kernel.shapes.bristles and not kernel.shapes.shared
-        return self.tolerance is not None and kernel.library is not None and plain
+        return self.tolerance is not None and kernel.library is not None and not kernel.shapes.shared
 
 
 @dataclass(frozen=True, kw_only=True)

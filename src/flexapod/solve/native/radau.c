@@ -22,6 +22,7 @@ typedef struct {
   Vector q, Z[STAGES], V[STAGES], A[STAGES], R[STAGES], v0, a0;
   Forces F[STAGES], f0;
   lanes gap[STAGES][GROUPS][ROWS + 1];
+  lanes bristles[STAGES + 1][GROUPS][2*BRISTLES];     /* the last: at the start */
   double pose[7], row[STAGES][WIDTH], powers[STAGES][WORKS];
   lanes M[GROUPS][N*N], D[GROUPS][N*N], K[GROUPS][N*N];
   double hub_M[BODY*BODY], hub_K[BODY*BODY];
@@ -149,7 +150,49 @@ static void closing(const Settings *s, const double *load, Work *w, lanes (*gap)
   }
 }
 
-static void rest(const Settings *s, const double *load, Radau *r, Work *w) {
+/* Bristles at the stages by the rates of sliding there, Eq. (T19.18) */
+static void bend(const Settings *s, double h, Radau *r, Work *w) {
+#ifdef FRICTION
+  static _Thread_local lanes rate[STAGES][GROUPS][BRISTLES], lost[STAGES][GROUPS][BRISTLES];
+  for (int k = 0; k < STAGES; k++) {
+    place(s, r, &r->Z[k], &r->V[k], &r->A[k], &r->F[k], r->row[k], w);
+    for (int i = 0; i < groups(s); i++) {
+      const lanes *in[] = {w->leg[i].q, w->leg[i].v, w->p[i]};
+      lanes *out[] = {rate[k][i], lost[k][i]};
+      leg_sliding_lanes(in, out);
+      memcpy(r->bristles[k][i] + BRISTLES, rate[k][i], sizeof rate[k][i]);
+    }
+  }
+  for (int i = 0; i < groups(s); i++) for (int b = 0; b < BRISTLES; b++) {
+    lanes A[9], inverse[9], bent[3];
+    for (int k = 0; k < STAGES; k++) {
+      bent[k] = r->bristles[STAGES][i][b];
+      for (int j = 0; j < STAGES; j++) {
+        A[k + 3*j] = h*RK[k][j]*lost[j][i][b] + (k == j);
+        bent[k] += h*RK[k][j]*rate[j][i][b];
+      }
+    }
+    invert3(A, inverse);
+    for (int k = 0; k < STAGES; k++)
+      r->bristles[k][i][b] = inverse[k]*bent[0] + inverse[k + 3]*bent[1] + inverse[k + 6]*bent[2];
+  }
+#endif
+}
+
+/* Stiffness of the bristles at the start of a step: their growth with the rates over a while in which a stage's rate is new */
+static void stiffen(int i, double h, Radau *r, Work *w) {
+#ifdef FRICTION
+  static _Thread_local lanes D[N*N];
+  LegState *leg = &w->leg[i];
+  lanes span = (lanes){0} + 2*h/REAL;
+  const lanes *in[] = {leg->q, leg->v, leg->lam, w->bristles[i], &span, w->p[i]};
+  lanes *out[] = {D};
+  leg_friction_matrix_lanes(in, out);
+  for (int j = 0; j < N; j++) for (int k = 0; k < N; k++) r->K[i][k + N*j] += REAL/h*D[ORDER[k] + N*ORDER[j]];
+#endif
+}
+
+static void rest(const Settings *s, const double *load, double h, Radau *r, Work *w) {
   static _Thread_local lanes A[3][N*N], J[ROWS*N + 1];
   lanes around[OUTSIDE];
   outside(s, w, load, around);
@@ -169,6 +212,7 @@ static void rest(const Settings *s, const double *load, Radau *r, Work *w) {
       int at = ORDER[k] + N*ORDER[j], to = k + N*j;
       r->M[g][to] = A[0][at]; r->D[g][to] = A[1][at]; r->K[g][to] = A[2][at];
     }
+    stiffen(g, h, r, w);
     for (int j = 0; j < N; j++) for (int k = 0; k < ROWS; k++) b->J[k + ROWS*j] = J[k + ROWS*ORDER[j]];
     if (s->hub) for (int j = 0; j < 36; j++) r->hub_K[j%6 + j/6*BODY] += sum(s, g, H[j]);
   }
@@ -230,6 +274,7 @@ static void evaluate_stage(const Settings *s, int k, Radau *r, Work *w) {
   static _Thread_local lanes gap[GROUPS][ROWS + 1];
   const double *row = r->row[k], *load = row + s->legs*s->ports*COLUMNS;
   place(s, r, &r->Z[k], &r->V[k], &r->A[k], &r->F[k], row, w);
+  memcpy(w->bristles, r->bristles[k], sizeof w->bristles);
   residual(s, load, w);
   closing(s, load, w, gap, r->gap[k]);
   for (int i = 0; i < groups(s); i++) memcpy(r->R[k].leg[i], w->r[i], sizeof w->r[i]);
@@ -295,6 +340,7 @@ static int iterate_stages(const Settings *s, State *x, const Control *c, double 
   double before = 0;
   for (int iteration = 0; iteration < 8; iteration++) {
     rates_of_stages(s, h, r);
+    bend(s, h, r, w);
     for (int k = 0; k < STAGES; k++) evaluate_stage(s, k, r, w);
     x->iterations++;
     double size = correct_stages(s, c, h, r, w);
@@ -372,6 +418,7 @@ static void start_step(const Settings *s, const Work *w, Radau *r) {
     memcpy(r->a0.leg[i], w->leg[i].v_dot, sizeof r->q.leg[i]);
     memcpy(r->f0.lam[i], w->leg[i].lam, sizeof(lanes)*ROWS); memcpy(r->f0.drive[i], w->leg[i].drive, sizeof(lanes)*s->ports);
   }
+  memcpy(r->bristles[STAGES], w->bristles, sizeof w->bristles);
   memcpy(r->pose, w->payload.pose, sizeof r->pose);
   memcpy(r->v0.hub, w->payload.u, sizeof r->v0.hub); memcpy(r->a0.hub, w->payload.u_dot, sizeof r->a0.hub);
 }
@@ -426,10 +473,16 @@ static void record_within(const Settings *s, State *x, const Control *c, double 
   combine_forces(s, at, r->F, &r->f0, &F);
   evaluate_series(c, width + load_size(s), t, row);
   place(s, r, &Z, &V, &A, &F, row, w);
+  for (int i = 0; i < groups(s); i++) for (int b = 0; b < 2*BRISTLES; b++) {
+    w->bristles[i][b] = at[3]*r->bristles[STAGES][i][b];
+    for (int k = 0; k < STAGES; k++) w->bristles[i][b] += at[k]*r->bristles[k][i][b];
+  }
   w->closure = 0;
   if (ROWS) close_record(s, row + width, w);
   set_commands(s, w);
-  for (int j = 0; j < 6; j++) if (s->hub_held[j] != 0) { residual(s, row + width, w); break; }    /* for what holds it */
+  int more = BRISTLES > 0;                                          /* for friction, and for what holds the payload */
+  for (int j = 0; j < 6; j++) more |= s->hub_held[j] != 0;
+  if (more) residual(s, row + width, w);
   memcpy(sums, x->sums, sizeof sums);
   powers_until(theta, h, r, x->sums);
   write_record(s, x, w);
@@ -440,6 +493,7 @@ static void record_within(const Settings *s, State *x, const Control *c, double 
 static void step_back(const Settings *s, const Radau *r, const double *row, Work *w) {
   static const Vector none;
   place(s, r, &none, &r->v0, &r->a0, &r->f0, row, w);
+  memcpy(w->bristles, r->bristles[STAGES], sizeof w->bristles);
   memcpy(w->payload.pose, r->pose, sizeof r->pose);
 }
 
@@ -460,13 +514,14 @@ int radau(const Settings *s, State *x, const Control *c, double *memory) {
   for (int j = 0; j < N; j++) unit = fmax(unit, c->weight[j]);
   memcpy(&m, memory, sizeof m);
   load(s, x, w);
+  w->h = w->stored = 0;
   evaluate_series(c, width, m.time, row);
   start_step(s, w, &r);
   while (m.time < c->end && status == OK) {
     double left = c->end - m.time, h = fmin(m.h, c->longest), rest_of_it = fmax(c->tolerance - m.spent, 0.1*c->tolerance);
     double allowed = fmin(rest_of_it/fmax(c->horizon - m.time, left), 3*c->tolerance/c->horizon), rounding = 1e-15*unit;
     if (h >= left*(1 - 1e-9)) h = left; else if (h > 0.5*left) h = 0.5*left;
-    if (age >= OLDEST) { rest(s, row + tables, &r, w); age = 0; fresh = 1; factored = 0; }
+    if (age >= OLDEST) { rest(s, row + tables, h, &r, w); age = 0; fresh = 1; factored = 0; }
     if (factored != h) {
       x->factorisations++;
       m.rate = 0;
@@ -501,6 +556,7 @@ int radau(const Settings *s, State *x, const Control *c, double *memory) {
     }
     memcpy(row, r.row[2], sizeof row);
     place(s, &r, &r.Z[2], &r.V[2], &r.A[2], &r.F[2], row, w);
+    memcpy(w->bristles, r.bristles[2], sizeof w->bristles);
     if (ROWS) { closing(s, row + tables, w, gap, rate); close_places(s, gap, w); }
     powers_until(1, h, &r, x->sums);
     memcpy(x->powers, r.powers[2], sizeof r.powers[2]);
