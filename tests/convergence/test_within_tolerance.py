@@ -8,8 +8,10 @@ from tests.machines import SCREW, machine
 from tests.machines import study as moved_machine
 from tests.runs import balance, paper_robot, run_actuator, run_robot, with_legs
 
+import flexapod as fx
 from flexapod import rigid
 from flexapod.model import Feedback, Joint, JointFriction, ScrewFriction, override, preset
+from flexapod.model.mount import BaseMotion, Mount
 from flexapod.rigid.rotations import matrix
 from flexapod.solve import within
 from flexapod.solve.robot_march import prepare
@@ -99,6 +101,35 @@ def test_reversals_with_friction():
         assert np.ptp(balance(run)) < tolerance * np.ptp(run["sums"][:, 1])
         # Moments jump at a reversal, within steps: a hundredth of them is what fixed steps of 20 us leave there.
         assert np.abs(run["friction"] - runs[1]["friction"]).max() < 1e-2 * np.abs(runs[1]["friction"]).max()
+
+
+def mounted(**more):
+    """Six cylinders between plates on springs."""
+    K = np.diag([3e8, 2e8, 5e8, 3e7, 2e7, 4e7])
+    base = Mount(at=[0.05, -0.02, -0.1], stiffness=K, mass=150.0, inertia=np.diag([6.0, 7.0, 10.0]))
+    top = Mount(at=[0.01, 0.03, 0.04], stiffness=0.6 * K, mass=30.0, inertia=np.diag([1.0, 1.5, 2.0]))
+    return moved_machine(machine().replace(base_mount=base, platform_mount=top, **more), fidelity="lumped")
+
+
+def shaken():
+    """A floor whose acceleration is random every 10 ms, and jumps at 50.3 ms."""
+    values, time = np.zeros((23, 6)), np.sort(np.concatenate([np.linspace(0, 0.2, 21), [0.0503, 0.0503]]))
+    values[:, [0, 2, 4]] = np.random.default_rng(0).normal(size=(23, 3)) * [2.0, 3.0, 1.0]
+    return BaseMotion(of="acceleration", time=time, values=values, at=[0.1, 0.0, -0.2])
+
+
+@pytest.mark.parametrize("base_motion", [None, shaken()], ids=["still", "shaken"])
+def test_plates_on_mounts(base_motion):
+    """Coordinates that legs share, and those that move the base; the deviation is seen from there."""
+    study = mounted(base_motion=base_motion)
+    coarse, fine = (fx.run(override(study, step=h, output_step=1e-3)).com_deviation for h in (2e-5, 1e-5))
+    true = fine + (fine - coarse) / 3
+    for tolerance in (1e-2, 1e-4, 1e-6):
+        found = fx.run(override(study, tolerance=tolerance, output_step=1e-3)).com_deviation
+        assert tolerance / 50 < np.abs(found - true).max() / np.abs(true).max() < tolerance
+    run = run_robot(override(study, tolerance=1e-6, output_step=1e-3))
+    assert run["closure"].max() < 1e-12
+    assert np.ptp(balance(run)) < 1e-4 * np.ptp(run["sums"][:, 1])
 
 
 def test_next_to_no_friction_is_none():

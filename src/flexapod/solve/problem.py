@@ -59,9 +59,8 @@ class Problem:
 
     @property
     def adaptive(self) -> bool:
-        """Whether steps follow the tolerance one by one: compiled equations, without mounts."""
-        kernel = self.system.kernel
-        return self.tolerance is not None and kernel.library is not None and not kernel.shapes.shared
+        """Whether steps follow the tolerance one by one: compiled equations."""
+        return self.tolerance is not None and self.system.kernel.library is not None
 
 
 @dataclass(frozen=True, kw_only=True)

@@ -238,7 +238,7 @@ static int factor_stages(const Settings *s, double h, Radau *r, Work *w) {
   return complex_factor(&r->complex, &w->arrow, s, (const double (*)[HUB*HUB])hub[1]);
 }
 
-/* y += s A x with the matrices of all coordinates */
+/* y += s A x with the matrices of all coordinates; those that legs share have their row in the payload's */
 static void multiply(const Settings *s, double scale, lanes (*A)[N*N], const double *hub, const Vector *x, Vector *y) {
   for (int g = 0; g < groups(s); g++) {
     lanes from[N], to[N];
@@ -246,7 +246,15 @@ static void multiply(const Settings *s, double scale, lanes (*A)[N*N], const dou
     lanes_gemv(N, N, scale, A[g], from, to);
     for (int j = 0; j < N; j++) y->leg[g][ORDER[j]] += to[j];
   }
-  if (hub) gemv(6, 6, scale, hub, x->hub, y->hub);
+  double body[BODY];
+  memcpy(body, x->hub, 6*sizeof(double));
+  for (int k = 0; k < PLATE; k++) body[6 + k] = x->leg[0][ORDER[N - COMMON + k]][0];
+  if (hub) gemv(BODY, BODY, scale, hub, body, y->hub);
+  for (int k = 0; k < COMMON; k++) for (int g = 0; g < groups(s); g++) {
+    lanes *row = &y->leg[g][ORDER[N - COMMON + k]];
+    y->hub[6 + k] += sum(s, g, *row);
+    *row = (lanes){0};
+  }
 }
 
 /* Largest displacement in units of what counts, infinite where it is no number */
@@ -420,7 +428,7 @@ static void start_step(const Settings *s, const Work *w, Radau *r) {
   }
   memcpy(r->bristles[STAGES], w->bristles, sizeof w->bristles);
   memcpy(r->pose, w->payload.pose, sizeof r->pose);
-  memcpy(r->v0.hub, w->payload.u, sizeof r->v0.hub); memcpy(r->a0.hub, w->payload.u_dot, sizeof r->a0.hub);
+  memcpy(r->v0.hub, w->payload.u, sizeof w->payload.u); memcpy(r->a0.hub, w->payload.u_dot, sizeof w->payload.u_dot);
 }
 
 static void blend(const Settings *s, const double *c, const Vector *x, const Vector *start, Vector *y) {
