@@ -3,7 +3,6 @@
 from __future__ import annotations
 
 from collections.abc import Sequence
-from dataclasses import asdict
 from pathlib import Path
 from typing import TYPE_CHECKING, Annotated
 
@@ -32,8 +31,6 @@ if TYPE_CHECKING:
 
     from flexapod.model import ActuatorStudy, Study
     from flexapod.study.after.summary import RobotSummary
-    from flexapod.study.record import Report
-    from flexapod.surveys.convergence.quicker import Quicker
     from flexapod.symbolic.cache import CacheContent
 
 COMPUTING = 0.88  # share of the bar for the simulation; the rest is for files
@@ -81,7 +78,7 @@ def _run(study: Study | ActuatorStudy, folder: Path, formats: Sequence[str], *, 
     from flexapod.study.before.room import check_disk
 
     check_disk(study, folder)
-    interrupted, faster = False, None
+    interrupted = False
     with without("dask"), terminal.progress_bar(quiet=quiet or json) as report:
         try:
             data = simulate(study, progress=lambda time, end: report("simulating", COMPUTING * time / end))
@@ -89,10 +86,9 @@ def _run(study: Study | ActuatorStudy, folder: Path, formats: Sequence[str], *, 
             data, interrupted = stop.dataset, True
         try:
             files = write_data(data, folder) if interrupted else write_all(data, folder, report, formats)
-            faster = None if interrupted else _quicker(study, data, report)
         except KeyboardInterrupt:  # a second one ends it
             files, interrupted = write_data(data, folder), True
-    _say(data, folder, files, faster, json=json)
+    _say(data, folder, files, json=json)
     if interrupted:
         _stopped(data, json=json)
         raise typer.Exit(INTERRUPTED)
@@ -101,24 +97,12 @@ def _run(study: Study | ActuatorStudy, folder: Path, formats: Sequence[str], *, 
         raise typer.Exit(1)
 
 
-def _quicker(study: Study | ActuatorStudy, data: Dataset, report: Report) -> Quicker | None:
-    """A step that would have done, where the tolerance made the run slow; all files are written by now."""
-    from flexapod.surveys.convergence.quicker import quicker
-
-    try:
-        return quicker(study, data, progress=lambda time, end: report("trying a fixed step", 0.99))
-    except KeyboardInterrupt:
-        return None
-
-
-def _say(data: Dataset, folder: Path, files: list[Path], faster: Quicker | None, *, json: bool) -> None:
+def _say(data: Dataset, folder: Path, files: list[Path], *, json: bool) -> None:
     from flexapod.study.after.summary import summary
 
     warnings = [line for line in data.attrs["warnings"].splitlines() if line]
     if not json:
         show_run(data, folder, files, warnings)
-        if faster is not None:
-            print_text(f"Slow? In [simulation], {faster.words}.")
         return
     state = {name: data.attrs[name] for name in ("failure", "time_reached") if name in data.attrs}
     print_json(
@@ -129,7 +113,6 @@ def _say(data: Dataset, folder: Path, files: list[Path], faster: Quicker | None,
             "warnings": warnings,
             "wall_time": data.attrs["wall_time"],
             "steps": int(data.attrs["steps"]),
-            "quicker": None if faster is None else asdict(faster),
             "folder": folder,
             "files": files,
         }
