@@ -13,7 +13,7 @@ from flexapod.solve.system import System
 from flexapod.study.after.inside import part_names_inside
 from flexapod.typing import Array
 
-__all__ = ["elongations", "frame_names", "part_names"]
+__all__ = ["elongations", "frame_names", "in_gap", "part_names"]
 
 
 def part_names(robot: Robot) -> tuple[str, ...]:
@@ -38,7 +38,7 @@ def elongations(
     """
     shapes = system.kernel.shapes
     found = {name: np.zeros(q.shape[:-1]) for name in part_names(robot)}
-    length = q[..., shapes.l_index]
+    length, played = q[..., shapes.l_index], in_gap(robot, system, q)
     for i, leg in enumerate(robot.legs):
         springs = springs_along(leg)
         if leg.gives and isinstance(leg.drive, ServoDrive):
@@ -48,13 +48,24 @@ def elongations(
             found["unkeyed"][..., i] = leg.turning * q[..., i, shapes.index("spin")]
             gives["nut"] = gives["nut"] - found["unkeyed"][..., i]
         if shapes.gap:
-            gives["nut"] = past_gap(gives["nut"], leg.half_play)
+            gives["nut"] = gives["nut"] - played[..., i]
         for at, give in gives.items():
             here = [spring for spring in springs if spring.at == at and at in places]
             for spring, share in zip(here, _shares(here, length[..., i]), strict=True):
                 if spring.name != "drive":
                     found[spring.name][..., i] += share * give
     return found
+
+
+def in_gap(robot: Robot, system: System, q: Array) -> Array:
+    """How far the play of legs that is a gap has let them go, (..., legs) [m], at most half of it; Eq. (T16.26)."""
+    shapes = system.kernel.shapes
+    if not shapes.gap:
+        return np.zeros(q.shape[:-1])
+    apart = q[..., shapes.l_index] - q[..., shapes.index("r")]
+    if shapes.turning:
+        apart = apart - np.array([leg.turning for leg in robot.legs]) * q[..., shapes.index("spin")]
+    return apart - past_gap(apart, np.array([leg.half_play for leg in robot.legs]))
 
 
 def _gives(system: System, q: Array) -> dict[Place, Array]:

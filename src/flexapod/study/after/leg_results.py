@@ -7,7 +7,6 @@ from dataclasses import replace
 import numpy as np
 from numpy.typing import ArrayLike
 
-from flexapod.elements.gap import past_gap
 from flexapod.mechanics.layout import columns, leg_parameters
 from flexapod.model import Robot
 from flexapod.rigid.built import built_limbs
@@ -23,7 +22,7 @@ from flexapod.solve.springs import twist_share
 from flexapod.solve.system import System
 from flexapod.study.after import legs as by_name
 from flexapod.study.after.causes import cause_names
-from flexapod.study.after.elongations import elongations
+from flexapod.study.after.elongations import elongations, in_gap
 from flexapod.study.after.inside import guide_results, is_guided, tip_moves
 from flexapod.study.after.plausibility import axes_as_drawn
 from flexapod.study.bodies import body_results, largest_turns, pairs_of_legs
@@ -117,10 +116,7 @@ def _drive_positions(robot: Robot, system: System, record: Record) -> Array:
     found = by_name.of_drives(limbs(robot), shapes, q)
     gives = elongations(robot, system, q, ("nut",))
     give = np.sum(list(gives.values()), axis=0)
-    if shapes.gap:
-        apart = q[..., shapes.l_index] - q[..., shapes.index("r")] - gives.get("unkeyed", 0.0)
-        half = [leg.half_play for leg in robot.legs]
-        give = give + apart - past_gap(apart, np.array(half))
+    give = give + in_gap(robot, system, q)
     return found - give if shapes.series else found
 
 

@@ -7,14 +7,17 @@ from typing import NamedTuple
 import numpy as np
 
 from flexapod import rigid
-from flexapod.model import Study
-from flexapod.solve.system import Index
+from flexapod.model import Robot, Study
+from flexapod.rigid.limbs import COORDINATES
+from flexapod.solve.system import Index, System
 from flexapod.study.accuracy.rows import Row
+from flexapod.study.accuracy.sensitivity import sensitivity
 from flexapod.study.after.causes import cause_names
+from flexapod.study.after.elongations import in_gap
 from flexapod.study.budgets.rows import Moved, at_rest, moved, rows, without_rounding
 from flexapod.study.budgets.rules import Budget
 from flexapod.study.path import RigidPath
-from flexapod.study.record import Progress
+from flexapod.study.record import Progress, Record
 from flexapod.study.simulation import simulated
 from flexapod.typing import Array
 
@@ -48,7 +51,7 @@ def along_motion(study: Study, progress: Progress | None = None) -> AlongMotion:
         raise found.record.failure
     t = found.record.time
     path = found.path.at(t)
-    whole = moved(study.robot, found.march.system, path, found.record)
+    whole = _without_play(study.robot, found.march.system, path, found.record)
     still = _static(study, path)
     size = np.linalg.norm(still.whole[:, :3], axis=1)
     worst = int(np.argmax(size >= (1 - SAME) * size.max()))  # the first of those alike, as at a motion's end
@@ -59,6 +62,16 @@ def along_motion(study: Study, progress: Progress | None = None) -> AlongMotion:
     more, sums = _dynamic_rows(study, dynamic, at)
     budget = Budget(rows=[*table, *more], whole={"systematic": deviation, **sums})
     return AlongMotion(budget, float(t[worst]), t[at], [*found.warnings(), *missing])
+
+
+def _without_play(robot: Robot, system: System, path: RigidPath, record: Record) -> Moved:
+    """The tool at the instants of a simulation but for the play that is a gap in it, which has rows of its own."""
+    found, played = moved(robot, system, path, record), in_gap(robot, system, record.q)
+    if played.any():
+        shift = played[..., None] * sensitivity(robot, path.poses).coordinate[:, :, COORDINATES.index("l")]
+        found.by_leg[:, cause_names(robot).index("drive")] -= shift
+        found = found._replace(whole=found.whole - shift.sum(axis=1))  # (T17.16)
+    return found
 
 
 def _static(study: Study, path: RigidPath) -> Moved:
