@@ -11,12 +11,12 @@ from tests.runs import balance, run_robot
 import flexapod as fx
 from flexapod.bases import axial_basis, lateral_basis
 from flexapod.errors import InputError
-from flexapod.exchange.export import abaqus_deck
+from flexapod.exchange.export import abaqus_deck, left_out
 from flexapod.mechanics.assembly import payload_functions
 from flexapod.mechanics.layout import Shapes
 from flexapod.model import AxialSpring, loads, preset
 from flexapod.model.joint import Joint
-from flexapod.model.mount import Mount
+from flexapod.model.mount import BaseMotion, Mount
 from flexapod.model.write import to_toml
 from flexapod.rigid.rotations import quaternion, turned
 from flexapod.solve.buckling import leg_loads
@@ -297,8 +297,14 @@ def test_a_frame_that_gives_way_joint_by_joint_is_a_spring_of_the_joints():
 @pytest.mark.parametrize("name", ["base_mount", "platform_mount"])
 def test_decks_and_engines_do_not_take_mounts(name):
     robot = machine().replace(**{name: BASE})
-    with pytest.raises(InputError, match="not written to decks"):
+    with pytest.raises(InputError, match=f"not written to decks.*leg.{name[:-6]}_joint.stiffness"):
         abaqus_deck(robot)
+
+
+def test_decks_say_what_they_leave_out():
+    shake = BaseMotion(time=np.array([0.0, 1.0]), values=np.zeros((2, 6)))
+    robot = machine(base_joint=SOFT.replace(play=1e-5)).replace(base_motion=shake)
+    assert left_out(robot) == ["damping", "play", "robot.base_motion: the base is at rest"]
 
 
 def test_a_plate_without_mass_between_joints_and_mount_that_give_way():

@@ -92,7 +92,8 @@ def left_out(robot: model.Robot) -> list[str]:
     """What of the robot the deck does not have, in words."""
     found = ["damping"]
     rubs = any(x.friction for leg in robot.legs for x in (leg.base_joint, leg.platform_joint, leg.drive))
-    found += ["friction"] * rubs
+    found += ["friction"] * rubs + ["play"] * any(leg.half_play for leg in robot.legs)
+    found += ["robot.base_motion: the base is at rest"] * (robot.base_motion is not None)
     found += [f"[{name}]: the machine is as drawn" for name in ("geometry", "heat") if getattr(robot, name) is not None]
     if any(leg.piston.axial_inertia and axial_inertia(leg) == leg.cylinder.axial_inertia for leg in robot.legs):
         found.append("leg.piston.axial_inertia, which no cylinder of the given mass and inertia could carry")
@@ -105,8 +106,9 @@ def _refuse_mounts(robot: model.Robot) -> None:
             raise InputError(
                 "is not written to decks",
                 key=f"robot.{name}",
-                allowed="rigid frames",
-                next_step="Leave it out, and add springs to the deck",
+                allowed="frames that do not move, joints that give way",
+                next_step=f"Leave it out for the deck, or share it out to leg.{name[:-6]}_joint.stiffness, "
+                "{ axial, radial }: `flexapod modes` with the one and the other says what that changes",
             )
 
 
