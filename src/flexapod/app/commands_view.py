@@ -103,7 +103,8 @@ def _say(page: str, host: str, *, json: bool) -> None:
     said = f"The page is at {page} ; Ctrl-C ends it."
     if not local:
         said += (
-            f"\nIt listens on {host}: everyone on the network who reaches this machine can open the page, see the study, "
-            "download its results, upload studies of their own and have them computed here. There is no password."
+            f"\nIt listens on {host}: everyone on the network who reaches this machine can open the page, see the "
+            "study, download its results, upload studies of their own and have them computed here. "
+            "There is no password."
         )
     print_text(said)  # at once: whoever reads the address may end it before another line is written
