@@ -74,6 +74,32 @@ def test_typed_numbers_mean_what_they_mean_in_a_file(opened):
     until(lambda: session.scene.scale == 1000.0)
 
 
+def test_what_is_being_typed_is_not_overwritten_by_an_answer_to_what_was_typed_before(opened):
+    """Letters went where a late answer came between them: 1.5e2 became another number."""
+    page, session = opened
+    page.get_by_role("tab", name="Study").click()
+    page.get_by_role("button", name="[payload]").press("Enter")
+    mass = page.get_by_label("mass [kg]", exact=True).first
+    mass.fill("27.5")
+    mass.press("Enter")
+    until(lambda: session.study.robot.payload.mass == 27.5)
+    handles = session.client.gui._gui_input_handle_from_uuid.values()
+    handle = next(x for x in handles if getattr(x, "label", "") == "mass [kg]")
+    until(lambda: handle.value == mass.input_value() == "27.5")
+    mass.click()
+    mass.fill("")
+    for letter in "1.5e2":
+        mass.press(letter)
+        session.client._websock_connection.queue_message(_late(handle._impl.uuid, "27.5"))
+        page.wait_for_timeout(100)  # it has come
+    assert mass.input_value() == "1.5e2"
+    mass.press("Enter")
+    until(lambda: session.study.robot.payload.mass == 150.0 and mass.input_value() == "150")
+    # What is left takes the text of the server.
+    session.client._websock_connection.queue_message(_late(handle._impl.uuid, "151"))
+    until(lambda: mass.input_value() == "151")
+
+
 def test_keys_in_the_panel_do_not_move_the_camera_and_a_button_brings_it_back(opened):
     page, session = opened
     session.table = page
@@ -110,7 +136,7 @@ def test_slider_and_picture_agree_after_pause_and_arrow_keys(opened):
     slider.focus()
     panel.pause()
     slider.press("ArrowRight")
-    session.client._websock_connection.queue_message(_late(panel, 0.123))
+    session.client._websock_connection.queue_message(_late(panel._dial._slider._impl.uuid, 0.123))
     page.wait_for_timeout(1e3 * SETTLED + 500)
     until(lambda: float(slider.get_attribute("aria-valuenow")) == pytest.approx(session.scene.time, abs=6e-4))
     assert panel._dial.value == pytest.approx(session.scene.time, abs=6e-4)
@@ -118,11 +144,11 @@ def test_slider_and_picture_agree_after_pause_and_arrow_keys(opened):
     assert float(page.get_by_label("time [s]", exact=True).first.input_value()) == panel._dial.value
 
 
-def _late(panel, value):
-    """A value of the slider that was sent before the user moved it."""
+def _late(uuid, value):
+    """A value of an input that was sent before the user changed it."""
     from viser._messages import GuiUpdateMessage
 
-    return GuiUpdateMessage(panel._dial._slider._impl.uuid, {"value": value})
+    return GuiUpdateMessage(uuid, {"value": value})
 
 
 def test_the_tab_is_called_after_the_study_and_a_refused_upload_is_not_called_successful(opened):

@@ -36,9 +36,14 @@
   const setText = Object.getOwnPropertyDescriptor(HTMLInputElement.prototype, "value").set;
   const isField = (part) => part instanceof HTMLInputElement && part.dataset.flexapod === "field";
 
+  // What somebody is writing, and where: nobody else puts a text in its place before the field is left. An answer to
+  // what was written before may still be on its way.
+  let writing = null;
+
   // Tell the server that a field was left: it reads the text at once, and answers with the text to show, the value
   // before where the field is empty. viser drops what is sent within 50 ms of something else: it is told again then.
   function tell(field, text, times = 1) {
+    writing = null;
     const told = text + LEFT.repeat(times); // another text each time, or nobody is told
     setText.call(field, told);
     field.dispatchEvent(new Event("input", { bubbles: true }));
@@ -55,9 +60,16 @@
     if (isField(target) && (!text || text !== target.dataset.before)) tell(target, text);
   });
   document.addEventListener("input", ({ isTrusted, target }) => {
-    if (!isTrusted || !isField(target) || !target.value.includes(LEFT)) return;
-    setText.call(target, target.value.replaceAll(LEFT, "")); // somebody writes on
+    if (!isTrusted || !isField(target)) return;
+    const text = target.value.replaceAll(LEFT, "");
+    if (text !== target.value) setText.call(target, text); // somebody writes on
+    writing = { field: target, text };
   }, true);
+  new MutationObserver(() => {
+    if (!writing || writing.field !== document.activeElement || writing.field.value === writing.text) return;
+    setText.call(writing.field, writing.text);
+    writing.field.dispatchEvent(new Event("input", { bubbles: true }));
+  }).observe(document.body, { attributes: true, attributeFilter: ["value"], subtree: true });
   document.addEventListener("keydown", ({ key, target }) => {
     if (!isField(target) || !["Enter", "Escape"].includes(key)) return;
     tell(target, key === "Enter" ? target.value.trim() : "");
