@@ -54,6 +54,30 @@ def test_item_of_a_vector():
     ]  # fmt: skip
 
 
+def test_values_in_the_tables_of_real_parts():
+    mount = 'base_mount = { stiffness = ["300 N/um", 3e8, 5e8, 3e7, 3e7, 4e7], mass = "150 kg" }'
+    text = preset_text("machine-hexapod").replace("[payload]", f"{mount}\n[payload]", 1)
+    text = text.replace("damping = 0.005", 'guide = { gland = "200 N/um", head = "150 N/um" }\ndamping = 0.005', 1)
+    vary = {
+        "leg.base_joint.friction.M0": ["0.2 N m"],
+        "leg.drive.friction.torque": ["0.6 N m"],
+        "leg.drive.encoder.resolution": ["0.18 deg"],
+        "leg.guide.gland": ["250 N/um"],
+        "robot.base_mount.stiffness[1]": ["400 N/um"],
+        "robot.base_mount.loss": [0.03],
+    }
+    found = Points(loads(text), read_plan({"vary": [{"together": vary}]})).study(0).robot
+    leg = found.legs[4]
+    assert (leg.base_joint.friction.M0, leg.drive.friction.torque, leg.guide.gland) == (0.2, 0.6, 250e6)
+    assert leg.drive.encoder.resolution == pytest.approx(np.pi / 1000)
+    assert (found.base_mount.stiffness[0, 0], found.base_mount.loss) == (4e8, 0.03)
+    steps = '{ sections = [{ length = "700 mm", diameter = "35 mm", material = "steel" }] }'
+    text = preset_text("paper-robot").replace('{ diameter = "27 mm", length = "750 mm", material = "steel" }', steps)
+    vary = [{"key": "leg.piston.sections[1].length", "values": ["750 mm"]}]
+    found = Points(loads(text), read_plan({"vary": vary})).study(0).robot
+    assert found.legs[2].piston.sections[0].length == 0.75
+
+
 def test_spacing():
     entry = {"key": KEY, "start": "10 mm", "stop": "40 mm", "count": 3, "spacing": "logarithmic"}
     assert points(vary=[entry]).columns[0][0] == pytest.approx((0.01, 0.02, 0.04))
