@@ -2,18 +2,19 @@
 
 import json
 import re
+from dataclasses import replace
 from html.parser import HTMLParser
 
 import numpy as np
 import pytest
 
-from flexapod.app.commands_run import show_run
+from flexapod.app.commands_run import _axes, show_run
 from flexapod.model import loads, preset, preset_text
 from flexapod.report import html
 from flexapod.report.html import code
 from flexapod.report.html import replay as replay_figure
 from flexapod.report.interactive import MOST_POINTS
-from flexapod.report.page import robot_report, write_report
+from flexapod.report.page import _axis_table, robot_report, write_report
 from flexapod.report.replay import FRAMES, locked_modes, replay
 from flexapod.report.study_words import modes_section, study_words
 from flexapod.rigid.rotations import exponential, matrix
@@ -315,6 +316,19 @@ def test_the_terminal_tells_of_the_tool_first(tool, tmp_path, capsys):
     lines = capsys.readouterr().out
     assert lines.startswith("The tool misses its rigid path")
     assert lines.index("The payload's centre of mass") < lines.index("peak / travel")
+
+
+def test_small_shares_of_the_travel_keep_their_digits(tool, capsys):
+    # They stood with the decimals of the largest: 0.0 beside 2.3.
+    found = summary(tool[1], "com")
+    shares = (None, 0.0123, 234.0)
+    axes = [replace(axis, per_cent=share) for axis, share in zip(found.axes, shares, strict=True)]
+    found = replace(found, axes=axes)
+    _axes(found, "")
+    lines = capsys.readouterr().out.splitlines()
+    assert [line.split()[-1] for line in lines if line.split()[:1] in (["x"], ["y"], ["z"])] == ["n/a", "0.012", "230"]
+    table = _axis_table(found)
+    assert all(words in table for words in ("n/a", "0.012\N{NO-BREAK SPACE}%", "230\N{NO-BREAK SPACE}%"))
 
 
 def test_an_axis_stays_with_its_number():

@@ -156,20 +156,19 @@ def show_run(data: Dataset, folder: Path, files: Sequence[Path], warnings: Seque
 
 
 def _axes(found: RobotSummary, name: str) -> None:
-    from flexapod.study.words import column
+    from flexapod.study.words import column, number
 
     axes = found.shown_axes
     length, peaks_and_rms = column([*(a.peak for a in axes), *(a.rms for a in axes)], "m")
     count = len(axes)
     travel_unit, travels = column([a.excursion for a in axes], "m")
-    _, shares = column([float("nan") if a.per_cent is None else a.per_cent for a in axes], "", 2)
     rows = zip(
         (a.axis for a in axes),
         peaks_and_rms[:count],
         ("n/a" if a.time is None else f"{a.time:.3f}" for a in axes),
         peaks_and_rms[count:],
         travels,
-        shares,
+        ("n/a" if a.per_cent is None else number(a.per_cent, 2) for a in axes),
         strict=True,
     )
     head = [name, f"peak [{length}]", "at [s]", f"rms [{length}]", f"rigid travel [{travel_unit}]", "peak / travel [%]"]

@@ -155,7 +155,7 @@ def by_axis(data: Dataset) -> str:
 
 
 def _axis_table(found: RobotSummary) -> str:
-    from flexapod.study.words import text
+    from flexapod.study.words import number, text
 
     head = ("Axis", "Largest", "at", "rms", "Rigid travel", "Per cent of the travel")
     rows = [
@@ -165,7 +165,7 @@ def _axis_table(found: RobotSummary) -> str:
             "n/a" if a.time is None else f"{a.time:.3f} s",
             text(a.rms, "m"),
             text(a.excursion, "m", 4),
-            "n/a" if a.per_cent is None else f"{a.per_cent:.2g} %",
+            "n/a" if a.per_cent is None else f"{number(a.per_cent, 2)} %",
         )
         for a in found.shown_axes
     ]
