@@ -14,7 +14,7 @@ from typing import TYPE_CHECKING, TypeVar
 if TYPE_CHECKING:
     from multiprocessing.connection import Connection
 
-__all__ = ["call", "side_by_side"]
+__all__ = ["call", "side_by_side", "started"]
 
 T = TypeVar("T")
 R = TypeVar("R")
@@ -66,7 +66,14 @@ def _stop(process: subprocess.Popen[bytes]) -> None:
 
 
 def side_by_side(make: Callable[[T], R], given: Sequence[T], processes: int) -> list[R]:
-    """`make` of each of `given`, in their order, by this process and copies of it, each taking what comes next.
+    """`make` of each of `given`, in their order: `started`, and waited for at once."""
+    return started(make, given, processes)()
+
+
+def started(make: Callable[[T], R], given: Sequence[T], processes: int) -> Callable[[], list[R]]:
+    """Begin with `make` of each of `given`, in copies of this process, each taking what comes next.
+
+    What is returned, once called, takes part, and returns all of it in its order.
 
     Parameters
     ----------
@@ -81,7 +88,7 @@ def side_by_side(make: Callable[[T], R], given: Sequence[T], processes: int) -> 
 
     copies = min(processes, len(given)) - 1
     if copies < 1 or "fork" not in get_all_start_methods():
-        return [make(what) for what in given]
+        return lambda: [make(what) for what in given]
     context = get_context("fork")
     taken, pipes = context.Value("i", 0), [context.Pipe(duplex=False) for _ in range(copies)]
 
@@ -102,8 +109,12 @@ def side_by_side(make: Callable[[T], R], given: Sequence[T], processes: int) -> 
     for _, send in pipes:
         context.Process(target=told, args=(send,), daemon=True).start()
         send.close()
-    done = work()
-    for receive, _ in pipes:
-        with suppress(EOFError):
-            done |= receive.recv()
-    return [done[i] if i in done else make(what) for i, what in enumerate(given)]
+
+    def joined() -> list[R]:
+        done = work()
+        for receive, _ in pipes:
+            with suppress(EOFError):
+                done |= receive.recv()
+        return [done[i] if i in done else make(what) for i, what in enumerate(given)]
+
+    return joined

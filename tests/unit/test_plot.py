@@ -373,7 +373,7 @@ def test_folder_that_is_a_file_is_refused(robot, tmp_path):
 
 def test_report_of_a_run_has_its_figures_and_its_answer(actuator, tmp_path):
     figures = draw(actuator[3], tmp_path)
-    text = write_report(actuator[3], tmp_path, figures).read_text(encoding="utf-8")
+    text = write_report(actuator[3], tmp_path, lambda: figures).read_text(encoding="utf-8")
     assert text.count("<figure") == len(figures) == 3  # one of them stands for the replay on paper
     assert "The tip leaves the hub" in text.split("</h1>")[0]
     assert "[motion]" in text and "Newton iterations" in text and "flexapod run study.toml" in text

@@ -5,7 +5,7 @@ import time
 
 import pytest
 
-from flexapod.processes import side_by_side
+from flexapod.processes import side_by_side, started
 
 
 def slow_square(x):
@@ -40,6 +40,12 @@ def test_a_copy_that_dies_is_made_good():
         return x
 
     assert side_by_side(dies, range(5), 2) == list(range(5))
+
+
+def test_copies_work_before_they_are_waited_for():
+    joined = started(slow_square, range(3), 2)
+    time.sleep(1.5)  # ten times what the copy needs
+    assert os.getpid() not in {process for _, process in joined()}
 
 
 def test_nothing_to_do():

@@ -113,13 +113,21 @@ def write_data(data: Dataset, folder: Path) -> list[Path]:
 
 def write_all(data: Dataset, folder: Path, report: Report, formats: Sequence[str]) -> list[Path]:
     """Data, figures in the formats asked for (none: no figures), ``report.html``; `report` is told what is written."""
-    report("writing results", 0.90)
-    files = write_data(data, folder)
-    report("drawing figures", 0.92)
-    from flexapod.report.figures import draw
+    from flexapod.report import html
+    from flexapod.report.figures import Drawn, drawing
     from flexapod.report.page import write_report
 
-    figures = draw(data, folder, formats, processes=PROCESSES) if formats else []
-    report("writing the report", 0.98)
-    page = write_report(data, folder, figures)
+    drawn = drawing(data, folder, formats, PROCESSES) if formats else list[Drawn]
+    report("writing results", 0.90)
+    files = write_data(data, folder)
+    figures: list[Drawn] = []
+
+    def waited() -> list[Drawn]:
+        if formats:
+            html.library()  # while others draw
+        report("drawing figures", 0.94)
+        figures.extend(drawn())
+        return figures
+
+    page = write_report(data, folder, waited)
     return [*files, *(path for figure in figures for path in figure.files), page]

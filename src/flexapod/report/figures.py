@@ -44,15 +44,18 @@ def carried_study(data: Dataset) -> Study | ActuatorStudy | None:
         return None
 
 
-def draw(
-    data: Dataset, folder: str | Path, formats: Sequence[str] = ("png", "svg"), *, processes: int = 1
-) -> list[Drawn]:
+def draw(data: Dataset, folder: str | Path, formats: Sequence[str] = ("png", "svg")) -> list[Drawn]:
     """Draw the standard figures of a run, whole or partial, in the order of the report.
 
-    `folder` is made if needed, figures of the same name are replaced; `formats` are of png, svg, pdf. With more than
-    one of `processes` they are drawn side by side. InputError: the folder cannot be written to, or a format is unknown.
+    `folder` is made if needed, figures of the same name are replaced; `formats` are of png, svg, pdf. InputError: the
+    folder cannot be written to, or a format is unknown.
     """
-    from flexapod.processes import side_by_side
+    return drawing(data, folder, formats, 1)()
+
+
+def drawing(data: Dataset, folder: str | Path, formats: Sequence[str], processes: int) -> Callable[[], list[Drawn]]:
+    """The same begun in copies of this process; what is returned takes part, and waits for them."""
+    from flexapod.processes import started
 
     plans = list(_robot(data) if "com_deviation" in data else _actuator(data))
 
@@ -60,7 +63,7 @@ def draw(
         name, title, make = plan
         return store(make(), title, Path(folder) / name, formats)
 
-    return side_by_side(drawn, plans, processes)
+    return started(drawn, plans, processes)
 
 
 def store(figure: Figure, title: str, stem: Path, formats: Sequence[str] = ("png", "svg")) -> Drawn:
@@ -81,9 +84,10 @@ def store(figure: Figure, title: str, stem: Path, formats: Sequence[str] = ("png
 def _picture(png: Path) -> bytes:
     """A drawing in 128 colours: a third of its size, and no difference to the eye."""
     from PIL import Image
+    from PIL.PngImagePlugin import PngImageFile  # `Image.open` would load the readers of five other formats
 
     made = BytesIO()
-    with Image.open(png) as image:
+    with PngImageFile(png) as image:
         few = image.convert("RGB").quantize(128, method=Image.Quantize.FASTOCTREE, dither=Image.Dither.NONE)
     few.save(made, "PNG", compress_level=FAST)
     return made.getvalue()

@@ -2,7 +2,7 @@
 
 from __future__ import annotations
 
-from collections.abc import Mapping, Sequence
+from collections.abc import Callable, Mapping, Sequence
 from importlib.metadata import version
 from pathlib import Path
 from platform import python_version
@@ -56,19 +56,19 @@ def robot_report(study: Study | ActuatorStudy, data: Dataset) -> str:
     from flexapod.report.figures import draw
 
     with TemporaryDirectory() as folder:
-        return _page(study, data, draw(data, folder, ("png",)))
+        return _page(study, data, lambda: draw(data, folder, ("png",)))
 
 
-def write_report(data: Dataset, folder: str | Path, figures: Sequence[Drawn] = ()) -> Path:
+def write_report(data: Dataset, folder: str | Path, figures: Callable[[], Sequence[Drawn]] = tuple) -> Path:
     """Write ``report.html`` of a robot's or an actuator's run, whole or partial, with drawn `figures`; its path.
 
-    The folder is made if needed; an existing report is replaced when the new one is complete. InputError: the folder
-    cannot be written to.
+    The figures are asked for last. The folder is made if needed; an existing report is replaced when the new one is
+    complete. InputError: the folder cannot be written to.
     """
     return write_text(Path(folder) / "report.html", _page(carried_study(data), data, figures))
 
 
-def _page(study: Study | ActuatorStudy | None, data: Dataset, figures: Sequence[Drawn]) -> str:
+def _page(study: Study | ActuatorStudy | None, data: Dataset, figures: Callable[[], Sequence[Drawn]]) -> str:
     from flexapod.report.budget import budget_section, peak_budget
     from flexapod.report.study_words import modes_section, study_words
     from flexapod.study.after.summary import RobotSummary, summaries
@@ -78,10 +78,10 @@ def _page(study: Study | ActuatorStudy | None, data: Dataset, figures: Sequence[
     described = _described(study)
     name = Path(str(data.attrs.get("study_file") or "study")).name
     modes = modes_section(study, described)
+    budget = peak_budget(data) if isinstance(first, RobotSummary) else None
     moving, others = _replay(study, data, figures)
     parts = {"replay": moving, "figures": others, "modes": modes}
     numbers = {"deviation": "Deviation"} if isinstance(first, RobotSummary) else {"deflection": "Deflection"}
-    budget = peak_budget(data) if isinstance(first, RobotSummary) else None
     links = {
         **numbers,
         **({} if budget is None else {"budget": "Error budget"}),
@@ -120,16 +120,17 @@ def _described(study: Study | ActuatorStudy | None) -> RobotDescription | Actuat
 
 
 def _replay(
-    study: Study | ActuatorStudy | None, data: Dataset, figures: Sequence[Drawn]
+    study: Study | ActuatorStudy | None, data: Dataset, figures: Callable[[], Sequence[Drawn]]
 ) -> tuple[list[str], list[Drawn]]:
     """The replay, with the figure that stands for it on paper, and the other figures."""
     if study is None:
-        return [], list(figures)
+        return [], list(figures())
     from flexapod.report.replay import locked_modes, replay
 
-    still = next((figure for figure in figures if figure.name in STILLS), None)
-    part = replay_section(data, replay(study, data, locked_modes(study)), still)
-    return [part], [figure for figure in figures if figure is not still]
+    told = replay(study, data, locked_modes(study))
+    drawn = figures()
+    still = next((figure for figure in drawn if figure.name in STILLS), None)
+    return [replay_section(data, told, still)], [figure for figure in drawn if figure is not still]
 
 
 def replay_section(data: Dataset, told: Mapping[str, object], still: Drawn | None) -> str:

@@ -112,7 +112,7 @@ class _Run:
                 except ComputationError as error:
                     failure = error
                     break
-        whole = np.concatenate(rows)
+        whole = rows[0] if len(rows) == 1 else np.concatenate(rows)
         time = np.asarray((done + 1 + np.arange(len(whole))) * p.output_step, dtype=float)
         recording = unpack(p.system, time, whole)
         if failure is None and to in p.stops.ends:  # what is stored there is the value after the jump
