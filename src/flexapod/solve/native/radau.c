@@ -2,6 +2,7 @@
 enum { STAGES = 3, BODY = 6 + PLATE, LOAD = 12, WIDTH = LEGS*PORTS*COLUMNS + LOAD };
 
 #define CLOSED 1e-14 /* m: what rounding leaves */
+#define CLOSINGS 10
 
 typedef struct {
   double end, horizon, tolerance;       /* of this call, of the whole; sum of the local errors that is allowed until the horizon */
@@ -409,11 +410,12 @@ static void close_record(const Settings *s, const double *load, Work *w) {
   arrow_solve_vector(s, w, &zero, rate, &change, &unused);
   for (int i = 0; i < groups(s); i++) for (int j = 0; j < N; j++) w->leg[i].v[j] += change.leg[i][j];
   for (int j = 0; j < 6; j++) w->payload.u[j] += change.hub[j];
-  for (int round = 0; round < 3; round++) {
+  double before = INFINITY;                             /* matrices of an earlier place close by a share each time */
+  for (int round = 0; round < CLOSINGS; round++, before = w->closure) {
     lanes most = {0};
     for (int i = 0; i < groups(s); i++) most = magnitude(ROWS, gap[i], most);
     w->closure = largest(most);
-    if (w->closure < CLOSED) break;
+    if (w->closure < CLOSED || w->closure > before/2) break;
     close_places(s, gap, w);
     closing(s, load, w, gap, rate);
   }
