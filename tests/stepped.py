@@ -52,7 +52,7 @@ def _shapes(*arguments, **others):
 
 def squared_frequencies(leg, free, modes=6, thrust=0.0, **others):
     """omega^2 of a leg with its stroke locked and its tip pinned, both planes."""
-    shapes = _shapes(modes, 0, len(leg.piston.steps), **others)
+    shapes = _shapes(modes, 0, len(leg.piston.sections), tapers=any(s.tapered for s in leg.piston.sections), **others)
     length, unit = leg.cylinder.mouth + free, np.eye(shapes.size)
     inputs = length * unit[2], np.array([0.0, 0.0, thrust]), vector(leg, shapes, length)
     M, _, K, J = function(shapes, 1)(*inputs)

@@ -2,7 +2,8 @@
 
 import numpy as np
 import pytest
-from tests.stepped import leg_of, misfit, root_near, section, squared_frequencies
+from scipy.integrate import solve_ivp
+from tests.stepped import STEEL, leg_of, misfit, root_near, section, squared_frequencies
 
 from flexapod.study.before.estimates import buckling_load
 
@@ -69,3 +70,60 @@ def test_a_strip_bends_in_each_plane_with_its_own_stiffness():
     found = np.sqrt(squared_frequencies(leg, 0.6, modes=5, strips=True)[:2])
     exact = [root_near(lambda w, k=k: misfit(leg, 0.6, w, direction=k), x) for k, x in zip((1, 0), found, strict=True)]
     np.testing.assert_allclose(found, exact, rtol=1e-6)
+
+
+def taper_misfit(leg, free, omega=0.0, thrust=0.0):
+    """As `tests.stepped.misfit`, of full round sections that taper, by integration along the leg outside."""
+    mouth, sections = leg.cylinder.mouth, leg.piston.sections
+    ends = mouth + free - leg.piston.length + np.cumsum([0.0, *(one.length for one in sections)])
+    diameters = [one.diameter for one in sections], [one.tip_diameter or one.diameter for one in sections]
+
+    def diameter(X, j):
+        share = (X - ends[j]) / sections[j].length
+        return diameters[0][j] * (1 - share) + diameters[1][j] * share
+
+    inertia = leg.cylinder.inertia + leg.cylinder.mass * leg.cylinder.com**2
+    x, w = np.polynomial.legendre.leggauss(8)
+    for j, low in enumerate(ends[:-1]):
+        high = min(ends[j + 1], mouth)
+        X = (low + high) / 2 + (high - low) / 2 * x
+        if high > low:
+            inertia += (high - low) / 2 * w @ (STEEL["density"] * np.pi / 4 * diameter(X, j) ** 2 * X**2)
+    state = np.zeros((4, 2))
+    for k, (slope, force) in enumerate(((1.0, 0.0), (0.0, 1.0))):
+        state[:, k] = mouth * slope, slope, force * mouth - (thrust * mouth + inertia * omega**2) * slope, force
+
+    def rate(X, y, j):
+        v, turn, moment, across = y.reshape(4, 2)
+        d = diameter(X, j)
+        load = STEEL["density"] * np.pi / 4 * d**2 * omega**2 * v
+        return np.array([turn, moment / (STEEL["E"] * np.pi / 64 * d**4), across - thrust * turn, load]).ravel()
+
+    for j, end in enumerate(ends[1:]):
+        low = max(ends[j], mouth)
+        if end > low:
+            found = solve_ivp(rate, (low, end), state.ravel(), "DOP853", rtol=1e-10, atol=1e-12, args=(j,))
+            state = found.y[:, -1].reshape(4, 2)
+    return np.linalg.det(state[[0, 2]])
+
+
+TAPER, CONE = section(0.35, 0.05, tip_diameter=0.03), section(0.75, 0.05, tip_diameter=0.03)
+
+
+@pytest.mark.parametrize(("sections", "free", "mouth"), [
+    ([section(0.6, 0.06, tip_diameter=0.02)], 0.6, 0.0),  # a strut
+    ([CONE], 0.6, 0.4),
+    ([TAPER, section(0.4, 0.03)], 0.6, 0.4),  # the cut outside
+    ([section(0.4, 0.05), TAPER], 0.3, 0.4),  # the cut inside
+])  # fmt: skip
+def test_tapers_against_beams_integrated_along_them(sections, free, mouth):
+    # (T1.24): each section is one piece whatever its taper; shapes miss what their loads, of mean mass, leave: 1e-5.
+    # Buckling loads come from steps, 64 a taper, one of which the mouth cuts: (1 / 64)^2 of what changes along it.
+    leg = leg_of(sections, mouth, 5.0 if mouth else 0.0)
+    found = np.sqrt(squared_frequencies(leg, free)[::2][:2])
+    exact = [root_near(lambda w: taper_misfit(leg, free, w), x) for x in found]
+    np.testing.assert_allclose(found, exact, rtol=1e-4)
+    load = buckling_load(leg, np.array([free]))[0]
+    assert root_near(lambda P: taper_misfit(leg, free, thrust=P), load) == pytest.approx(load, rel=1e-4)
+    below, above = (squared_frequencies(leg, free, thrust=x * load)[0] for x in (1 - 1e-4, 1 + 1e-4))
+    assert below > 0 > above

@@ -94,7 +94,7 @@ def test_kinetic_energy_of_turning_sections():
         parts = numeric_pieces(leg, thin.b, np.array([s]), 0)
         piece = next(part for part in parts if xi / s <= part.end[0])
         shapes = piece.value(np.array([xi / s]), 1)
-        return -a @ (shapes - held(parts[0].value(np.zeros(1))) * shapes[:1])[:, 0] / s
+        return -a @ (shapes - held(parts[0].value_start) * shapes[:1])[:, 0] / s
 
     x, w = np.polynomial.legendre.leggauss(12)
     total, h = 0.0, 1e-5

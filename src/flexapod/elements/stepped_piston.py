@@ -7,7 +7,7 @@ these polynomials. The shapes depend on the free length, and what sliding does t
 from __future__ import annotations
 
 from collections.abc import Sequence
-from dataclasses import dataclass, fields
+from dataclasses import dataclass, fields, replace
 from functools import cached_property
 from itertools import pairwise
 from types import SimpleNamespace
@@ -16,14 +16,15 @@ from typing import Any
 import numpy as np
 
 from flexapod.bases import AxialBasis, LateralBasis
-from flexapod.bases.beam_functions import gauss_unit
 from flexapod.elements.distribution import Distribution, Motion, gravity_energy, kinetic_energy
 from flexapod.elements.frame import Energies
 from flexapod.elements.shear import rotary_energy, shear_energy
-from flexapod.elements.steps import Piece, Sheared, Uniform, held, pieces, sheared
+from flexapod.elements.steps import Nodes, Piece, Uniform, held, law, nodes, pieces, sheared
 from flexapod.symbolic.vocabulary import SX, diagcat, horzcat, jtimes, quadratic, reshape, sin, sqrt, vertcat, zeros
 
 _MORE = 3  # Gauss points of a piece beyond its shapes: exact for the moment of the foreshortening, the highest power
+_TAPERED = 2  # more where a section tapers: frequencies to 1e-6 with diameters of 3 to 1
+_SHOWN = ("value", "slope", "bend")
 _TINY = 1e-18  # under the root of |x|: its derivative is not 0 / 0
 
 
@@ -83,82 +84,105 @@ def straight(axial: int) -> SteppedShapes:
     return SteppedShapes(**found)
 
 
-def places(p: SimpleNamespace, s: SX) -> list[SX]:
-    """Ends of the pieces from tip to mouth: 0, the cuts over s, 1; cuts in the cylinder are at the mouth.
+@dataclass(frozen=True, kw_only=True)
+class Part:
+    """Part of a piston that is clamped at the mouth: the outer one to the tip, or the inner one to the other end.
 
-    The mouth takes a cut up within the length `gland` on either side, with two continuous derivatives, Eq. (T3.17).
+    ``p``: `section_...` from the free end; ``s``: length; ``end``: of the free one from the base joint; ``way``: 1 of
+    the outer, -1 of the inner one, which gets shorter as l grows; ``tapers``: whether sections may.
     """
-    found = [SX(0.0)]
-    for k in range(p.section_cuts.numel()):
-        t = (p.section_cuts[k] - s) / p.gland
-        low, high = sqrt((t + 1) ** 2 + _TINY), sqrt((t - 1) ** 2 + _TINY)
-        near = (low - high) / 2  # t, between -1 and 1
-        found.append(1 + p.gland / s * ((t + 1 - low) / 2 - (1 - near) ** 3 * (3 + near) / 16))
-    return [*found, SX(1.0)]
+
+    p: SimpleNamespace
+    s: SX
+    l: SX  # noqa: E741
+    end: SX
+    way: int = 1
+    tapers: bool = False
+
+    @property
+    def count(self) -> int:
+        """Number of sections."""
+        return self.p.section_load.numel()
+
+    def rate(self, expression: SX) -> SX:
+        """Derivative by s, times s."""
+        return self.way * self.s * jtimes(expression, self.l, SX(1.0))
+
+    def place(self, x: SX) -> SX:
+        """Distances from the base joint."""
+        return self.end - self.way * self.s * x
+
+    def law(self, name: str, section: int, x: Any, start: SX) -> SX:
+        """Value on a section at x, by its distance from the start there."""
+        values = getattr(self.p, f"section_{name}")
+        size = values.numel() // self.count
+        return law([values[section * size + k] for k in range(size)], self.s * (x - start))
+
+    @cached_property
+    def ends(self) -> list[SX]:
+        """Ends of the pieces from the free end: 0, the cuts over s, 1; cuts beyond are at the mouth.
+
+        The mouth takes a cut up within the length `gland` on either side, with two continuous derivatives, Eq. (T3.17).
+        """
+        found = [SX(0.0)]
+        for k in range(self.p.section_cuts.numel()):
+            t = (self.p.section_cuts[k] - self.s) / self.p.gland
+            low, high = sqrt((t + 1) ** 2 + _TINY), sqrt((t - 1) ** 2 + _TINY)
+            near = (low - high) / 2  # t, between -1 and 1
+            found.append(1 + self.p.gland / self.s * ((t + 1 - low) / 2 - (1 - near) ** 3 * (3 + near) / 16))
+        return [*found, SX(1.0)]
 
 
-def stepped_shapes(  # the arguments are those of one leg's beam
-    basis: LateralBasis,
-    shear: LateralBasis | None,
-    axial: AxialBasis,
-    planes: Sequence[str],
-    p: SimpleNamespace,
-    s: SX,
-    l: SX,  # noqa: E741
+def stepped_shapes(
+    part: Part, basis: LateralBasis, shear: LateralBasis | None, axial: AxialBasis, planes: Sequence[str]
 ) -> dict[str, SX]:
-    """What depends on the free length s = l - mouth alone, by the names of `SteppedShapes`.
+    """What depends on the length of a part alone, by the names of `SteppedShapes`.
 
     ``shear``: shapes by whose forces the piston shears; none of a slender one.
     ``planes``: directions that bend in their own way, a before b; one stands for both.
     """
-    ends, count = places(p, s), p.section_rhoA.numel()
-    t, w = gauss_unit(basis.count + _MORE)
-    section = [j for j in range(count) for _ in t]
-    x = horzcat(*(a + (b - a) * t[None, :] for a, b in pairwise(ends)))
-    length = horzcat(*((b - a) * w[None, :] for a, b in pairwise(ends)))
+    at = nodes(basis.count + _MORE + _TAPERED * part.tapers)
     loads = None if shear is None else Uniform(basis=shear)
-    beams = [_Beam(p, s, l, ends, Uniform(basis=basis), loads, name) for name in planes]
-    shown = [beam.shown(x, section) for beam in beams]
-    at = Shown(**{f.name: vertcat(*(getattr(one, f.name) for one in shown)) for f in fields(Shown)})
-    own = [_stiffness(p, one, length, section, name) for one, name in zip(shown, planes, strict=True)]
-    beyond, moment = _beyond(p, ends, x, section, s, l)
-    bent, dm = _gram(at.turn, length, at.bend), _by_point(p.section_rhoA, section) * length * s
-    tau = _by_point(p.section_place, section) - _by_point(p.section_shrink, section) * s * x
-    psi = vertcat(*(sin(k * np.pi * tau) if k else tau for k in range(axial.count)), zeros(0, x.numel()))
-    X, one = l - s * x, SX.ones(1, x.numel())
-    thick = {} if shear is None else _thick(p, at, shown, planes, length, section, s)
+    beams = [_Beam(part, at, Uniform(basis=basis), loads, name) for name in planes]
+    shown = [beam.shown for beam in beams]
+    all_ = Shown(**{f.name: vertcat(*(getattr(one, f.name) for one in shown)) for f in fields(Shown)})
+    own = [_gram(one.bend, beam.weighed(f"EI_{beam.plane}"), one.bend) for one, beam in zip(shown, beams, strict=True)]
+    beam = beams[0]
+    length, (beyond, moment), X = beam.lengths, beam.beyond, part.place(beam.x)
+    bent, dm, tau = _gram(all_.turn, length, all_.bend), part.s * beam.weighed("rhoA"), beam.shares
+    psi = vertcat(*(sin(k * np.pi * tau) if k else tau for k in range(axial.count)), zeros(0, tau.numel()))
+    one = SX.ones(1, tau.numel())
+    thick = {} if shear is None else _thick(part, all_, shown, beams)
     return thick | {
         "tip_slope": vertcat(*(-beam.tip_slope for beam in beams)),
         "stiffness": diagcat(*own),
-        "slope_tip": _gram(at.slope, length, at.slope),
-        "slope_first": _gram(at.slope, length * beyond, at.slope),
-        "slope_moment": _gram(at.slope, length * moment, at.slope),
+        "slope_tip": _gram(all_.slope, length, all_.slope),
+        "slope_first": _gram(all_.slope, length * beyond, all_.slope),
+        "slope_moment": _gram(all_.slope, length * moment, all_.slope),
         "turn": bent.T - bent,
-        "phi": _gram(at.value, dm, one),
-        "phi_X": _gram(at.value, dm, X),
-        "sliding": _gram(at.slid, dm, one),
-        "sliding_X": _gram(at.slid, dm, X),
-        "phi_phi": _gram(at.value, dm, at.value),
-        "phi_sliding": _gram(at.value, dm, at.slid),
-        "sliding_sliding": _gram(at.slid, dm, at.slid),
-        "phi_psi": _gram(at.value, dm, psi),
-        "sliding_psi": _gram(at.slid, dm, psi),
+        "phi": _gram(all_.value, dm, one),
+        "phi_X": _gram(all_.value, dm, X),
+        "sliding": _gram(all_.slid, dm, one),
+        "sliding_X": _gram(all_.slid, dm, X),
+        "phi_phi": _gram(all_.value, dm, all_.value),
+        "phi_sliding": _gram(all_.value, dm, all_.slid),
+        "sliding_sliding": _gram(all_.slid, dm, all_.slid),
+        "phi_psi": _gram(all_.value, dm, psi),
+        "sliding_psi": _gram(all_.slid, dm, psi),
     }
 
 
-def _thick(
-    p: SimpleNamespace, at: Shown, shown: list[Shown], planes: Sequence[str], length: SX, section: list[int], s: SX
-) -> dict[str, SX]:
+def _thick(part: Part, at: Shown, shown: list[Shown], beams: list[_Beam]) -> dict[str, SX]:
     """Integrals of shear and of turning sections, by name."""
-    turning = [_by_point(getattr(p, f"section_turning_{plane}"), section) * length * s for plane in planes]
-    one = SX.ones(1, length.numel())
+    turning = [beam.weighed(f"turning_{beam.plane}") * part.s for beam in beams]
+    one = SX.ones(1, turning[0].numel())
     pairs = {"turn_turn": ("turn", "turn"), "turn_slid": ("turn", "slid"), "slid_slid": ("slid", "slid")}
     parts = [
         {"turn": plane.turn, "slid": plane.slid_turn - plane.turn, "weight": weight}
         for plane, weight in zip(shown, turning, strict=True)
     ]
     return {
-        "shear_stiffness": _gram(at.sheared, length * _by_point(p.section_shear, section), at.sheared),
+        "shear_stiffness": _gram(at.sheared, beams[0].weighed("shear"), at.sheared),
         "turned": vertcat(*(_gram(x["turn"], x["weight"], one) for x in parts)),
         "turned_slid": vertcat(*(_gram(x["slid"], x["weight"], one) for x in parts)),
         **{name: diagcat(*(_gram(x[a], x["weight"], x[b]) for x in parts)) for name, (a, b) in pairs.items()},
@@ -167,79 +191,108 @@ def _thick(
 
 @dataclass(frozen=True)
 class _Beam:
-    """The stepped beam of one plane."""
+    """The stepped beam of one plane, at its Gauss points."""
 
-    p: SimpleNamespace
-    s: SX
-    l: SX  # noqa: E741
-    ends: list[SX]
+    part: Part
+    nodes: Nodes
     uniform: Uniform
     loads: Uniform | None
     plane: str
 
     @cached_property
     def pieces(self) -> list[Piece]:
-        """Its pieces from tip to mouth."""
+        """Its pieces from free end to mouth."""
         return self._pieces(self.uniform)
 
     @cached_property
-    def sheared(self) -> list[Sheared]:
+    def sheared(self) -> list[Piece]:
         """The same of its shear."""
-        if self.loads is None:
-            return []
-        shear = self.p.section_shear
-        return sheared(self._pieces(self.loads), [shear[0] / shear[j] for j in range(shear.numel())])
+        return [] if self.loads is None else sheared(self._pieces(self.loads), self._over("shear"))
 
     def _pieces(self, uniform: Uniform) -> list[Piece]:
-        EI = getattr(self.p, f"section_EI_{self.plane}")
-        count = EI.numel()
-        loads = [self.p.section_load[j] for j in range(count)]
-        return pieces(uniform, self.ends, loads, [EI[0] / EI[j] for j in range(count)])
+        loads = [self.part.p.section_load[j] for j in range(self.part.count)]
+        return pieces(uniform, self.nodes, self.part.ends, loads, self._over(f"EI_{self.plane}"))
 
-    def rate(self, expression: SX) -> SX:
-        """Derivative by s, times s, of an expression of the free length alone."""
-        return self.s * jtimes(expression, self.l, SX(1.0))
+    def _on(self, name: str) -> list[list[SX]]:
+        """Values of the sections at the points."""
+        starts = self.part.ends[:-1]
+        return [
+            [self.part.law(name, j, x, start) for x in self._at(start, self.part.ends[j + 1])]
+            for j, start in enumerate(starts)
+        ]
 
-    def shown(self, x: SX, section: list[int]) -> Shown:
+    def _at(self, start: SX, end: SX) -> list[SX]:
+        return [start + (end - start) * t for t in self.nodes.t.tolist()]
+
+    def _over(self, name: str) -> list[list[SX]]:
+        """That at the free end over them."""
+        first = getattr(self.part.p, f"section_{name}")[0]
+        return [[first / value for value in row] for row in self._on(name)]
+
+    @cached_property
+    def x(self) -> SX:
+        """The points."""
+        return horzcat(*(x for piece in self.pieces for x in piece.x))
+
+    @cached_property
+    def lengths(self) -> SX:
+        """Lengths that they stand for."""
+        return horzcat(*((b - a) * w for a, b in pairwise(self.part.ends) for w in self.nodes.w.tolist()))
+
+    def weighed(self, name: str) -> SX:
+        """What the sections have there, times these lengths."""
+        return self.lengths * horzcat(*(value for row in self._on(name) for value in row))
+
+    @cached_property
+    def beyond(self) -> tuple[SX, SX]:
+        """Mass between points and free end, and its moment about the base joint, over s; (1, points) each."""
+        mass, moment, masses, moments = SX(0.0), SX(0.0), [], []
+        for piece, rhoA in zip(self.pieces, self._on("rhoA"), strict=True):
+            long = piece.end - piece.start
+            by = [m * self.part.place(x) for m, x in zip(rhoA, piece.x, strict=True)]
+            here, there = long * self.nodes.whole(rhoA), long * self.nodes.whole(by)
+            masses += [mass + here - long * y for y in self.nodes.rest(rhoA)]
+            moments += [moment + there - long * y for y in self.nodes.rest(by)]
+            mass, moment = mass + here, moment + there
+        return horzcat(*masses), horzcat(*moments)
+
+    @cached_property
+    def shares(self) -> SX:
+        """Shares tau of the compliance between driven end and points."""
+        p, found = self.part.p, []
+        for j, (piece, rhoA) in enumerate(zip(self.pieces, self._on("rhoA"), strict=True)):
+            long, first = piece.end - piece.start, self.part.law("rhoA", j, piece.start, piece.start)
+            soft = [first / m for m in rhoA] if self.part.tapers else [SX(1.0) for _ in rhoA]  # EA is as rho A
+            along = [self.nodes.whole(soft) - y for y in self.nodes.rest(soft)]
+            found += [p.section_place[j] - p.section_shrink[j] * self.part.s * long * y for y in along]
+        return horzcat(*found)
+
+    @cached_property
+    def shown(self) -> Shown:
         """Its shapes at the points: of bending, then of shear."""
-        bent = _beside([self._bent(self.pieces[j], x[k]) for k, j in enumerate(section)])
-        E = held(self.pieces[0].value(SX(0.0)))
-        bent = _held(bent, bent, E, self.rate(E))
+        bent, E = self._moved(self.pieces), held(self.pieces[0].value_start)
+        bent = _held(bent, bent, E, self.part.rate(E))
         if not self.sheared:
             return bent
-        own, tip = (
-            _beside([self._by_shear(self.sheared[j], x[k]) for k, j in enumerate(section)]),
-            self.sheared[0].value(SX(0.0)),
-        )
-        own = _held(own, bent, tip, self.rate(tip))
+        tip, own = self.sheared[0].value_start, self._moved(self.sheared)
+        own = replace(own, turn=0 * own.slope, sheared=own.slope, slid_turn=0 * own.slope)
+        own = _held(own, bent, tip, self.part.rate(tip))
         return Shown(**{f.name: vertcat(getattr(bent, f.name), getattr(own, f.name)) for f in fields(Shown)})
 
     @property
     def tip_slope(self) -> SX:
-        """Slopes of bending at the tip."""
-        value, slope = (self.pieces[0].value(SX(0.0), n) for n in (0, 1))
+        """Slopes of bending at the free end."""
+        value, slope = self.pieces[0].value_start, self.pieces[0].slope_start
         slope -= held(value) @ slope[0]
-        return vertcat(slope, -self.sheared[0].value(SX(0.0)) @ slope[0]) if self.sheared else slope
+        return vertcat(slope, -self.sheared[0].value_start @ slope[0]) if self.sheared else slope
 
-    def _bent(self, piece: Piece, x: SX) -> Shown:
-        d, start = x - piece.start, self.rate(piece.start)
-        value, slope, bend = piece.value(x), piece.value(x, 1), piece.give * piece.moment(x)
-        r0, r1, r2, r3 = (self.rate(part) for part in piece.cubic)
-        _, p1, p2, p3 = piece.cubic
-        slid = r0 + d * (r1 + d * (r2 + d * r3)) - start * (p1 + d * (2 * p2 + 3 * p3 * d)) - x * slope
-        slid_turn = r1 + d * (2 * r2 + 3 * r3 * d) - start * (2 * p2 + 6 * p3 * d) - x * bend
-        none = 0 * slope
-        return Shown(value=value, slope=slope, turn=slope, bend=bend, sheared=none, slid=slid, slid_turn=slid_turn)
-
-    def _by_shear(self, part: Sheared, x: SX) -> Shown:
-        piece, value, slope = part.piece, part.value(x), part.slope(x)
-        linear = self.rate(piece.m1) * (x - piece.start) - piece.m1 * self.rate(piece.start)
-        slid, none = part.soft * linear + self.rate(part.q0) - x * slope, 0 * slope
-        return Shown(value=value, slope=slope, turn=none, bend=none, sheared=slope, slid=slid, slid_turn=none)
-
-
-def _beside(columns: list[Shown]) -> Shown:
-    return Shown(**{f.name: horzcat(*(getattr(column, f.name) for column in columns)) for f in fields(Shown)})
+    def _moved(self, parts: list[Piece]) -> Shown:
+        """Shapes at the points, which slide along the piston: it moves by rate x + x over them."""
+        value, slope, bend = (horzcat(*(y for one in parts for y in getattr(one, f"{x}s"))) for x in _SHOWN)
+        past = self.part.rate(self.x) + self.x
+        slid = self.part.rate(value) - _each(past, slope) * slope
+        slid_turn = self.part.rate(slope) - _each(past, bend) * bend
+        return Shown(value=value, slope=slope, turn=slope, bend=bend, sheared=0 * slope, slid=slid, slid_turn=slid_turn)
 
 
 def _held(at: Shown, first: Shown, E: SX, rate: SX) -> Shown:
@@ -248,34 +301,6 @@ def _held(at: Shown, first: Shown, E: SX, rate: SX) -> Shown:
     kept["slid"] -= rate @ first.value[0, :]
     kept["slid_turn"] -= rate @ first.turn[0, :]
     return Shown(**kept)
-
-
-def _stiffness(p: SimpleNamespace, at: Shown, length: SX, section: list[int], plane: str) -> SX:
-    """Of a plane: int EI v''^2, to be divided by s^3."""
-    return _gram(at.bend, length * _by_point(getattr(p, f"section_EI_{plane}"), section), at.bend)
-
-
-def _beyond(
-    p: SimpleNamespace,
-    ends: list[SX],
-    x: SX,
-    section: list[int],
-    s: SX,
-    l: SX,  # noqa: E741
-) -> tuple[SX, SX]:
-    """Mass between points and tip, and its moment about the base joint, over s; (1, points) each."""
-    mass, moment, masses, moments = SX(0.0), SX(0.0), [], []
-    for j, (a, b) in enumerate(pairwise(ends)):
-        m = p.section_rhoA[j]
-        for k in (k for k, at in enumerate(section) if at == j):
-            masses.append(mass + m * (x[k] - a))
-            moments.append(moment + m * (x[k] - a) * (l - s * (x[k] + a) / 2))
-        mass, moment = mass + m * (b - a), moment + m * (b - a) * (l - s * (a + b) / 2)
-    return horzcat(*masses), horzcat(*moments)
-
-
-def _by_point(values: SX, section: list[int]) -> SX:
-    return horzcat(*(values[j] for j in section))
 
 
 def _gram(left: SX, weight: SX, right: SX) -> SX:

@@ -1,23 +1,25 @@
 """Shapes of a stepped beam: its deflections under the loads that give a uniform one those of a basis, (T1.19)-(T1.21).
 
 Plain arithmetic, for numbers and for symbols alike. Places x = 1 - zeta = xi / s run from the tip to the mouth, pieces
-between cuts likewise; values at a place are columns, a row for each shape.
+between cuts likewise; values at a place are columns, a row for each shape. Pieces are known at Gauss points: integrals
+from point to point are sums, exact for polynomials and of tapers as good as the points (T1.24).
 """
 
 from __future__ import annotations
 
 from collections.abc import Sequence
 from dataclasses import dataclass
-from functools import cached_property
+from functools import cache, cached_property
 from typing import Any
 
 import numpy as np
-from numpy.polynomial import Chebyshev
+from numpy.polynomial import Chebyshev, Legendre
 
 from flexapod.bases import LateralBasis
+from flexapod.bases.beam_functions import gauss_unit
 from flexapod.typing import Array
 
-__all__ = ["Piece", "Sheared", "Uniform", "held", "pieces", "sheared"]
+__all__ = ["Nodes", "Piece", "Uniform", "held", "law", "nodes", "pieces", "sheared"]
 
 
 @dataclass(frozen=True, kw_only=True)
@@ -50,97 +52,143 @@ def _rows(series: Sequence[Chebyshev]) -> Array:
 
 
 @dataclass(frozen=True, kw_only=True)
-class Piece:
-    """Between two cuts, from `start` to `end`: M = m0 + m1 d + load g'', d = x - start, in `give` the curvature.
+class Nodes:
+    """Gauss points on [0, 1] and integrals of what is known there; `beyond[n]`: weights of that from point n to 1."""
 
-    The deflection is give load g + p0 + p1 d + p2 d^2 + p3 d^3.
+    t: Array
+    w: Array
+    beyond: Array
+    legendre: Array
+
+    def whole(self, f: Sequence[Any]) -> Any:
+        """Integral from 0 to 1."""
+        return sum(w * y for w, y in zip(self.w.tolist(), f, strict=True))
+
+    def rest(self, f: Sequence[Any]) -> list[Any]:
+        """Integrals from each point to 1."""
+        return [sum(w * y for w, y in zip(row, f, strict=True)) for row in self.beyond.tolist()]
+
+    def between(self, f: Sequence[Any], t: Any) -> Any:
+        """Value at any place of the polynomial through the points."""
+        terms = [1.0 + 0 * t, 2 * t - 1]
+        for n in range(2, self.t.size):
+            terms.append(((2 * n - 1) * (2 * t - 1) * terms[-1] - (n - 1) * terms[-2]) / n)
+        rows = [sum(w * y for w, y in zip(row, f, strict=True)) for row in self.legendre.tolist()]
+        return sum(c * x for c, x in zip(rows, terms, strict=False))
+
+
+@cache
+def nodes(count: int) -> Nodes:
+    """Some Gauss points."""
+    t, w = gauss_unit(count)
+    legendre = np.array([(2 * n + 1) * Legendre.basis(n)(2 * t - 1) * w for n in range(count)])
+    rest = np.array([Legendre.basis(n).integ(lbnd=1.0)(2 * t - 1) / -2 for n in range(count)])
+    return Nodes(t=t, w=w, beyond=rest.T @ legendre, legendre=legendre)
+
+
+def law(coefficients: Sequence[Any], offset: Any) -> Any:
+    """Value on a section at a distance from its end at the tip; powers of this ascending."""
+    total = coefficients[-1]
+    for c in coefficients[-2::-1]:
+        total = total * offset + c
+    return total
+
+
+@dataclass(frozen=True, kw_only=True)
+class Piece:
+    """Between two cuts, from `start` to `end`: columns at its nodes, at the places `x`, and those at its start.
+
+    `values`: deflections; `slopes`, `bends`: their derivatives by x; `shears`: dM/dx; of what shears `bends` are none.
     """
 
-    uniform: Uniform
+    nodes: Nodes
     start: Any
     end: Any
-    load: Any
-    give: Any
-    m0: Any
-    m1: Any
-    p0: Any
-    p1: Any
-
-    @property
-    def cubic(self) -> tuple[Any, Any, Any, Any]:
-        """p0 to p3."""
-        return self.p0, self.p1, self.give * self.m0 / 2, self.give * self.m1 / 6
-
-    def moment(self, x: Any) -> Any:
-        """Bending moment M = v'' / give of every shape."""
-        return self.m0 + self.m1 * (x - self.start) + self.load * self.uniform.at(x, 2)
-
-    def shear(self, x: Any) -> Any:
-        """dM/dx."""
-        return self.m1 + self.load * self.uniform.at(x, 3)
+    x: list[Any]
+    values: list[Any]
+    slopes: list[Any]
+    bends: list[Any]
+    shears: list[Any]
+    value_start: Any
+    slope_start: Any
 
     def value(self, x: Any, derivative: int = 0) -> Any:
-        """Deflection of every shape, or its first derivative by x."""
-        d, (p0, p1, p2, p3) = x - self.start, self.cubic
-        bent = self.give * self.load * self.uniform.at(x, derivative)
-        return bent + (p1 + d * (2 * p2 + 3 * p3 * d) if derivative else p0 + d * (p1 + d * (p2 + p3 * d)))
+        """Deflection of every shape at numbers x, or a derivative by x."""
+        long = self.end - self.start
+        t = (x - self.start) / np.where(long > 0, long, 1.0)
+        return self.nodes.between((self.values, self.slopes, self.bends)[derivative], t)
 
 
-def pieces(uniform: Uniform, places: Sequence[Any], loads: Sequence[Any], gives: Sequence[Any]) -> list[Piece]:
+def pieces(
+    uniform: Uniform, at: Nodes, places: Sequence[Any], loads: Sequence[Any], gives: Sequence[Sequence[Any]]
+) -> list[Piece]:
     """Pieces from tip to mouth.
 
     Parameters
     ----------
     uniform : Uniform
+    at : Nodes
+        Of every piece.
     places : sequence
         Ends of the pieces: 0, the cuts, 1.
-    loads, gives : sequence
-        Mass per length and 1 / EI of each, relative to any values of them.
+    loads : sequence
+        Mass per length of each, relative to any value of it.
+    gives : sequence
+        1 / EI of each at its nodes, likewise.
     """
-    found: list[dict[str, Any]] = []
+    bends, shears = [], []
     M, S = uniform.at(0.0, 2), uniform.at(0.0, 3)
     for start, end, load, give in zip(places[:-1], places[1:], loads, gives, strict=True):
         m0, m1 = M - load * uniform.at(start, 2), S - load * uniform.at(start, 3)  # (T1.20)
+        x = _places(at, start, end)
+        bends.append([c * (m0 + m1 * (u - start) + load * uniform.at(u, 2)) for u, c in zip(x, give, strict=True)])
+        shears.append([m1 + load * uniform.at(u, 3) for u in x])
         M = m0 + m1 * (end - start) + load * uniform.at(end, 2)
         S = m1 + load * uniform.at(end, 3)
-        found.append({"start": start, "end": end, "load": load, "give": give, "m0": m0, "m1": m1})
-    value = slope = 0 * M
+    return _held_at_mouth(at, places, shears, bends)
+
+
+def sheared(bent: Sequence[Piece], softs: Sequence[Sequence[Any]]) -> list[Piece]:
+    """Shear of what has the forces of pieces from tip to mouth, Eq. (T1.23).
+
+    ``softs``: 1 / (kappa G A) of each at its nodes, relative to any value.
+    """
+    places = [*(piece.start for piece in bent), bent[-1].end]
+    slopes = [[c * y for c, y in zip(soft, one.shears, strict=True)] for one, soft in zip(bent, softs, strict=True)]
+    return _held_at_mouth(bent[0].nodes, places, [one.shears for one in bent], None, slopes)
+
+
+def _places(at: Nodes, start: Any, end: Any) -> list[Any]:
+    return [start + (end - start) * t for t in at.t.tolist()]
+
+
+def _held_at_mouth(
+    at: Nodes, places: Sequence[Any], shears: list[Any], bends: list[Any] | None, slopes: list[Any] | None = None
+) -> list[Piece]:
+    """Pieces of given curvatures, or slopes: the mouth holds place and slope."""
+    value = slope = 0.0 * shears[0][0]
     done: list[Piece] = []
-    for piece in reversed(found):  # the mouth holds place and slope
-        loose = Piece(uniform=uniform, **piece, p0=0.0, p1=0.0)
-        d = piece["end"] - piece["start"]
-        p1 = slope - loose.value(piece["end"], 1)
-        p0 = value - loose.value(piece["end"]) - p1 * d
-        done.append(Piece(uniform=uniform, **piece, p0=p0, p1=p1))
-        value, slope = done[-1].value(piece["start"]), done[-1].value(piece["start"], 1)
-    return done[::-1]
-
-
-@dataclass(frozen=True, kw_only=True)
-class Sheared:
-    """Deflection by shear between two cuts, of what has the forces of a `Piece`: soft (M - m0) + q0, Eq. (T1.23)."""
-
-    piece: Piece
-    soft: Any
-    q0: Any
-
-    def value(self, x: Any) -> Any:
-        """Deflection of every shape."""
-        return self.soft * (self.piece.moment(x) - self.piece.m0) + self.q0
-
-    def slope(self, x: Any) -> Any:
-        """Its derivative by x."""
-        return self.soft * self.piece.shear(x)
-
-
-def sheared(bent: Sequence[Piece], softs: Sequence[Any]) -> list[Sheared]:
-    """Shear of pieces from tip to mouth; `softs`: 1 / (kappa G A) of each, relative to any value."""
-    done: list[Sheared] = []
-    value: Any = 0.0
-    for piece, soft in zip(reversed(bent), reversed(softs), strict=True):
-        loose = Sheared(piece=piece, soft=soft, q0=0.0)
-        done.append(Sheared(piece=piece, soft=soft, q0=value - loose.value(piece.end)))
-        value = done[-1].value(piece.start)
+    for j in reversed(range(len(shears))):
+        start, end = places[j], places[j + 1]
+        long = end - start
+        bend = [0.0 * y for y in shears[j]] if bends is None else bends[j]
+        turned = [slope - long * y for y in at.rest(bend)] if slopes is None else slopes[j]
+        slope = slope - long * at.whole(bend)
+        values = [value - long * y for y in at.rest(turned)]
+        value = value - long * at.whole(turned)
+        one = Piece(
+            nodes=at,
+            start=start,
+            end=end,
+            x=_places(at, start, end),
+            values=values,
+            slopes=turned,
+            bends=bend,
+            shears=shears[j],
+            value_start=value,
+            slope_start=slope,
+        )
+        done.append(one)
     return done[::-1]
 
 

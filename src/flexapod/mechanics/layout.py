@@ -191,6 +191,8 @@ class Shapes:
         Of the pistons; 0: all are uniform.
     strips : bool
         Their two bending stiffnesses are different.
+    tapers : bool
+        Sections of theirs may taper.
     shear : bool
         They shear, and their sections have rotary inertia.
     base_friction, platform_friction, drive_friction : bool
@@ -225,6 +227,7 @@ class Shapes:
     oil: bool = False
     sections: int = 0
     strips: bool = False
+    tapers: bool = False
     shear: bool = False
     base_friction: bool = False
     platform_friction: bool = False
@@ -352,7 +355,8 @@ class Shapes:
 
 
 def _of_sections(shapes: Shapes) -> tuple[tuple[str, int], ...]:
-    return section_parameters(shapes.sections, shapes.planes, shapes.b.count, shapes.axial.count, shear=shapes.shear)
+    sizes = shapes.sections, shapes.planes, shapes.b.count, shapes.axial.count
+    return section_parameters(*sizes, shear=shapes.shear, tapers=shapes.tapers)
 
 
 def leg_parameters(shapes: Shapes) -> tuple[tuple[str, int], ...]:

@@ -18,7 +18,7 @@ from flexapod.elements.rotations import small_rotation
 from flexapod.elements.screw import screw
 from flexapod.elements.sliding_piston import sliding_piston, tip_place, tip_turn
 from flexapod.elements.soft_joint import soft_joint
-from flexapod.elements.stepped_piston import SteppedShapes, of_planes, stepped_piston, stepped_shapes, straight
+from flexapod.elements.stepped_piston import Part, SteppedShapes, of_planes, stepped_piston, stepped_shapes, straight
 from flexapod.elements.tip_body import tip_body
 from flexapod.elements.torsion import torsion
 from flexapod.elements.universal import universal
@@ -124,7 +124,8 @@ def _of_sections(shapes: Shapes, p: SimpleNamespace, s: SX, l: SX) -> tuple[Step
     tip = np.tile(of_plane, len(shapes.planes))
     if not tip.size:
         return straight(shapes.axial.count), (zeros(0), zeros(0))
-    integrals = stepped_shapes(shapes.b, shapes.sheared, shapes.axial, shapes.planes, p, s, l)
+    part = Part(p=p, s=s, l=l, end=l, tapers=shapes.tapers)
+    integrals = stepped_shapes(part, shapes.b, shapes.sheared, shapes.axial, shapes.planes)
     near, present = expanded(list(integrals.values()), l)
     return SteppedShapes(count=tip.size, tip=tip, **dict(zip(integrals, near, strict=True))), present
 

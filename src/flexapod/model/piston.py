@@ -10,7 +10,7 @@ from pydantic import Field, model_validator
 from flexapod.errors import InputError
 from flexapod.model.base import Frozen, Measure, NonNegative, Number, Positive
 from flexapod.model.material import POISSON, Material, Rectangle, Tube
-from flexapod.model.sections import PistonSection, Step
+from flexapod.model.sections import SHARES, PistonSection, Step
 from flexapod.model.spring import check_lossy
 
 
@@ -230,6 +230,12 @@ class Piston(Frozen):
     def steps(self) -> tuple[Step, ...]:
         """Its uniform pieces, from the driven end to the tip; none of a uniform piston."""
         return tuple(step for section in self.sections for step in section.steps)
+
+    @property
+    def parts(self) -> tuple[tuple[float, tuple[Step, ...]], ...]:
+        """Length of its sections, or of all, from the driven end to the tip, and what they are at `sections.SHARES`."""
+        found = tuple((section.length, section.samples) for section in self.sections)
+        return found or ((self.length, self.steps_or_one * len(SHARES)),)
 
     @property
     def steps_or_one(self) -> tuple[Step, ...]:

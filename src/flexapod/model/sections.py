@@ -2,7 +2,7 @@
 
 from __future__ import annotations
 
-from collections.abc import Iterator
+from collections.abc import Iterable, Iterator, Sequence
 from typing import Annotated, NamedTuple
 
 from pydantic import Field, model_validator
@@ -11,7 +11,8 @@ from flexapod.errors import InputError
 from flexapod.model.base import Frozen, Measure, Number, Positive
 from flexapod.model.material import POISSON, Rectangle, Tube
 
-STEPS = 8  # uniform pieces in place of a taper
+STEPS = 64  # uniform pieces in place of a taper where formulas know no tapers, in pairs
+SHARES = (0.0, 0.25, 0.5, 0.75, 1.0)  # of a length: they tell EI of a taper, which is of fourth order
 
 
 class Step(NamedTuple):
@@ -67,14 +68,36 @@ class PistonSection(Frozen):
         return self
 
     @property
+    def tapered(self) -> bool:
+        """Whether its diameter changes along it."""
+        return self.tip_diameter not in (None, self.diameter)
+
+    @property
+    def samples(self) -> tuple[Step, ...]:
+        """The section at `SHARES` of its length from the driven end."""
+        return tuple(self._step(self.length, self._diameter(share)) for share in SHARES)
+
+    @property
     def steps(self) -> Iterator[Step]:
-        """Uniform pieces, from the driven end: one, or of a taper `STEPS` with the sizes at their middles."""
-        if self.diameter is None or self.tip_diameter in (None, self.diameter):
+        """Uniform pieces, from the driven end: one, or `STEPS` of a taper.
+
+        Each pair has mass and compliance of its piece of the taper, and their first moments: what is left is of the
+        fourth order of a step's length.
+        """
+        if not self.tapered:
             yield self._step(self.length, self.diameter)
             return
-        for k in range(STEPS):
-            share = (k + 0.5) / STEPS
-            yield self._step(self.length / STEPS, self.diameter + share * (self.tip_diameter - self.diameter))  # type: ignore[operator]
+        points = [0.5 - 0.15**0.5, 0.5, 0.5 + 0.15**0.5]
+        for pair in range(STEPS // 2):
+            at = [self._step(self.length / STEPS, self._diameter((pair + x) * 2 / STEPS)) for x in points]
+            for way in (-1, 1):
+                w = [5 / 18 + way * 5 / 9 * (points[0] * 2 - 1), 8 / 18, 5 / 18 + way * 5 / 9 * (points[2] * 2 - 1)]
+                yield _mean(at, w)
+
+    def _diameter(self, share: float) -> float | None:
+        if self.diameter is None or self.tip_diameter is None:
+            return self.diameter
+        return self.diameter + share * (self.tip_diameter - self.diameter)
 
     def _step(self, length: float, diameter: float | None) -> Step:
         if diameter is not None:
@@ -104,3 +127,18 @@ class PistonSection(Frozen):
             shear=shape * G * area,
             round=diameter is not None,
         )
+
+
+def _mean(steps: Sequence[Step], weights: Sequence[float]) -> Step:
+    """A step with the weighted mass and compliances of some."""
+
+    def soft(values: Iterable[float]) -> float:
+        return 1.0 / sum(w / x for w, x in zip(weights, values, strict=True))
+
+    return steps[1]._replace(
+        EA=soft(x.EA for x in steps),
+        EI=(soft(x.EI[0] for x in steps), soft(x.EI[1] for x in steps)),
+        rhoA=sum(w * x.rhoA for w, x in zip(weights, steps, strict=True)),
+        GJ=soft(x.GJ for x in steps),
+        shear=soft(x.shear for x in steps),
+    )

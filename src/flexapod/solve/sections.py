@@ -2,6 +2,8 @@
 
 from __future__ import annotations
 
+from dataclasses import dataclass
+from itertools import pairwise
 from typing import Any
 
 import numpy as np
@@ -9,15 +11,37 @@ import numpy as np
 from flexapod.bases import LateralBasis
 from flexapod.bases.beam_functions import gauss_unit
 from flexapod.bases.lateral import proportional_damping
-from flexapod.elements.steps import Piece, Uniform, held, pieces, sheared
+from flexapod.elements.steps import Nodes, Piece, Uniform, held, law, nodes, pieces, sheared
 from flexapod.mechanics.layout import Shapes
+from flexapod.mechanics.section_layout import POWERS
 from flexapod.model import Leg, damping_parts
-from flexapod.model.sections import Step
+from flexapod.model.sections import SHARES, Step
 from flexapod.typing import Array
 
 _GLAND = 0.01  # of the piston's length: within which the mouth takes a cut up
+_MORE = 7  # points on a section more than shapes, as in kernels of tapers
 _POINTS, _WEIGHTS = gauss_unit(24)
+_UP_TO = (_WEIGHTS - nodes(24).beyond).T  # of a row: integrals from 0 to the points
+_ALONG = ("EA", "rhoA", "turning_a", "turning_b")
 _STRESS_POINTS = 6  # on a section
+
+
+@dataclass(frozen=True, kw_only=True)
+class Laws:
+    """What the sections of a piston are along them, from the tip to the driven end.
+
+    Lengths (n,), and of each value the coefficients of the powers of the distance from a section's end at the tip.
+    """
+
+    length: Array
+    values: dict[str, Array]
+    E: Array
+    round: bool
+
+    def over(self, name: str, x: list[Any], start: Any, section: int, free: Any) -> list[Any]:
+        """1 over a value at places x of a free length, times that at the tip."""
+        values = self.values[name]
+        return [values[0, 0] / law(values[section].tolist(), free * (y - start)) for y in x]
 
 
 def steps_of(leg: Leg) -> tuple[Step, ...]:
@@ -25,46 +49,71 @@ def steps_of(leg: Leg) -> tuple[Step, ...]:
     return leg.piston.steps_or_one[::-1]
 
 
+def laws_of(leg: Leg, sections: int = 0) -> Laws:
+    """Sections of a leg, with sections without length before them where there are to be more."""
+    parts = leg.piston.parts[::-1]
+    parts = ((0.0, parts[0][1][-1:] * POWERS),) * (sections - len(parts)) + parts
+    names = {
+        "rhoA": lambda x: x.rhoA,
+        "EA": lambda x: x.EA,
+        "EI_a": lambda x: x.EI[0],
+        "EI_b": lambda x: x.EI[1],
+        "shear": lambda x: x.shear,
+        "turning_a": lambda x: turning(x, 0),
+        "turning_b": lambda x: turning(x, 1),
+        "depth_a": lambda x: x.depth[0],
+        "depth_b": lambda x: x.depth[1],
+    }
+    return Laws(
+        length=np.array([length for length, _ in parts]),
+        values={name: np.array([_powers(length, [of(x) for x in at[::-1]]) for length, at in parts])
+                for name, of in names.items()},
+        E=np.array([at[0].E for _, at in parts]),
+        round=parts[-1][1][0].round,
+    )  # fmt: skip
+
+
+def _powers(length: float, values: list[float]) -> Array:
+    """Coefficients of the polynomial through values at `SHARES` of a length."""
+    if len(set(values)) == 1:
+        return np.array([values[0], *np.zeros(POWERS - 1)])
+    return np.linalg.solve(np.vander(SHARES, POWERS, increasing=True), values) / length ** np.arange(POWERS)
+
+
 def section_parameters(leg: Leg, shapes: Shapes, home: float) -> dict[str, object]:
     """Parameters of the sections of a leg whose length at home is given [m], by name."""
-    steps, piston = steps_of(leg), leg.piston
-    n, m, zeta = shapes.sections, shapes.axial.count, damping_parts(leg.damping)[0]
-    padded = (steps[0]._replace(length=0.0),) * (n - len(steps)) + steps
-    length, EA, rhoA = (np.array([getattr(step, name) for step in padded]) for name in ("length", "EA", "rhoA"))
-    EI = np.array([step.EI for step in padded]).T
+    piston, n, m, zeta = leg.piston, shapes.sections, shapes.axial.count, damping_parts(leg.damping)[0]
+    laws = laws_of(leg, n)
+    length, powers = laws.length, POWERS if shapes.tapers else 1
     ends = np.concatenate([[0.0], np.cumsum(length)])
-    soft = np.concatenate([[0.0], np.cumsum(length / EA)])
-    place, shrink = 1 - (soft[:-1] - ends[:-1] / EA) / soft[-1], 1 / (EA * soft[-1])
-    xi = ends[:-1, None] + length[:, None] * _POINTS
-    dm = (rhoA * length)[:, None] * _WEIGHTS
-    psi = shapes.axial.values((place[:, None] - shrink[:, None] * xi).ravel())
-    along, dm = piston.length - xi.ravel(), dm.ravel()
-    mass = (psi * dm) @ psi.T
-    whole = rhoA @ length
+    offset = length[:, None] * _POINTS
+    at = {name: np.array([law(c, x) for c, x in zip(laws.values[name], offset, strict=True)]) for name in _ALONG}
+    soft = length[:, None] / at["EA"]
+    before, whole = np.concatenate([[0.0], np.cumsum(soft @ _WEIGHTS)]), (soft @ _WEIGHTS).sum()
+    tau = 1 - (before[:-1, None] + soft @ _UP_TO) / whole
+    dm = at["rhoA"] * length[:, None] * _WEIGHTS
+    psi = shapes.axial.values(tau.ravel())
+    along, dm, mean = piston.length - (ends[:-1, None] + offset).ravel(), dm.ravel(), at["rhoA"] @ _WEIGHTS
+    mass, whole_mass = (psi * dm) @ psi.T, dm.sum()
     free = home - leg.cylinder.mouth
     found = [_damping(leg, shapes, free, 1 if plane == "b" else 0) for plane in shapes.planes]
     lateral = np.zeros((sum(map(len, found)),) * 2)
     for k, part in enumerate(found):
         lateral[k * len(part) : (k + 1) * len(part), k * len(part) : (k + 1) * len(part)] = part
     return {
+        **{f"section_{name}": laws.values[name][:, :powers] for name in laws.values},
         "section_cuts": ends[1:-1],
         "gland": piston.length * (_GLAND if leg.cylinder.mouth > 0 else 1e-6),
-        "section_rhoA": rhoA,
-        "section_load": loads(rhoA),
-        "section_EI_a": EI[0],
-        "section_EI_b": EI[1],
-        "section_shear": np.array([step.shear for step in padded]),
-        "section_turning_a": np.array([turning(step, 0) for step in padded]),
-        "section_turning_b": np.array([turning(step, 1) for step in padded]),
-        "piston_turning": np.array([sum(turning(step, k) * step.length for step in steps) for k in (0, 1)]),
-        "section_place": place,
-        "section_shrink": shrink,
-        "piston_moments": np.array([dm @ along, dm @ along**2]) / whole if whole else np.zeros(2),
+        "section_load": loads(mean),
+        "piston_turning": np.array([(at[f"turning_{way}"] @ _WEIGHTS) @ length for way in "ab"]),
+        "section_place": 1 - before[:-1] / whole,
+        "section_shrink": 1 / (laws.values["EA"][:, 0] * whole),
+        "piston_moments": np.array([dm @ along, dm @ along**2]) / whole_mass if whole_mass else np.zeros(2),
         "axial_first": psi @ dm,
         "axial_moment": psi @ (dm * along),
         "axial_mass": mass,
         "axial_damping": 2 * zeta * proportional_damping(mass, piston.EA / piston.length * shapes.axial.stiffness)
-        if whole
+        if whole_mass
         else np.zeros((m, m)),
         "lateral_damping": 2 * zeta * free * lateral,
     }
@@ -77,11 +126,24 @@ def loads(rhoA: Array) -> Array:
 
 def numeric_pieces(leg: Leg, basis: LateralBasis, free: Any, direction: int) -> list[Piece]:
     """Shapes of a leg at free lengths [m], a number or (N,), along leg x (0) or y (1), before (T1.22)."""
-    steps = steps_of(leg)
-    rhoA, EI = np.array([step.rhoA for step in steps]), np.array([step.EI[direction] for step in steps])
-    cuts = [np.minimum(cut / free, 1.0) for cut in np.cumsum([step.length for step in steps])[:-1]]
-    one = np.ones_like(cuts[0]) if cuts else 1.0
-    return pieces(Uniform(basis=basis), [0 * one, *cuts, one], loads(rhoA).tolist(), (EI[0] / EI).tolist())
+    laws, at, name = laws_of(leg), nodes(basis.count + _MORE), f"EI_{'ab'[direction]}"
+    cuts = [np.minimum(cut / free, 1.0) for cut in np.cumsum(laws.length)[:-1]]
+    places = [0.0 * np.asarray(free), *cuts, 1.0 + 0.0 * np.asarray(free)]
+    over = _gives(laws, at, places, name, free)
+    mean = [law(c, length * _POINTS) @ _WEIGHTS for c, length in zip(laws.values["rhoA"], laws.length, strict=True)]
+    return pieces(Uniform(basis=basis), at, places, loads(np.array(mean)).tolist(), over)
+
+
+def _gives(laws: Laws, at: Nodes, places: list[Any], name: str, free: Any) -> list[list[Any]]:
+    points = [(a, [a + (b - a) * t for t in at.t.tolist()]) for a, b in pairwise(places)]
+    return [laws.over(name, x, start, j, free) for j, (start, x) in enumerate(points)]
+
+
+def _thick(leg: Leg, shapes: Shapes, free: Any, direction: int) -> list[Piece]:
+    """The same of what shears."""
+    bent = numeric_pieces(leg, shapes.sheared or shapes.b, free, direction)
+    places = [*(piece.start for piece in bent), bent[-1].end]
+    return sheared(bent, _gives(laws_of(leg), bent[0].nodes, places, "shear", free))
 
 
 def leg_values(leg: Leg, basis: LateralBasis, free: Array, zeta: Array, derivative: int = 0) -> Array:
@@ -110,22 +172,16 @@ def leg_values(leg: Leg, basis: LateralBasis, free: Array, zeta: Array, derivati
 def _along(parts: list[Piece], zeta: Array, derivative: int) -> Array:
     found = []
     for x in 1.0 - zeta:
-        part = np.array([_derivative(piece, x, derivative) for piece in parts])
+        part = np.array([(1, -1, 1)[derivative] * piece.value(x, derivative) for piece in parts])
         there = sum(x > piece.end for piece in parts[:-1]) if len(parts) > 1 else np.zeros(part.shape[-1], dtype=int)
         found.append(np.take_along_axis(part, np.broadcast_to(there, part.shape[1:])[None], axis=0)[0])
     values = np.stack(found, axis=1)
-    return values - held(parts[0].value(0 * parts[0].start))[:, None] * values[:1]
-
-
-def _derivative(piece: Piece, x: float, derivative: int) -> Array:
-    at = x + 0 * piece.start
-    return piece.give * piece.moment(at) if derivative == 2 else (-1.0) ** derivative * piece.value(at, derivative)
+    return values - held(parts[0].value_start)[:, None] * values[:1]
 
 
 def shear_tips(leg: Leg, shapes: Shapes, free: Array) -> Array:
     """Deflections at the tip of the shapes of shear before (T1.22), at free lengths (N,), (k, N)."""
-    softs = [steps_of(leg)[0].shear / step.shear for step in steps_of(leg)]
-    return sheared(numeric_pieces(leg, shapes.sheared or shapes.b, free, 1), softs)[0].value(0 * free)
+    return _thick(leg, shapes, free, 1)[0].value_start
 
 
 def bending_amplitudes(leg: Leg, shapes: Shapes, q: Array) -> Array:
@@ -142,53 +198,53 @@ def bending_amplitudes(leg: Leg, shapes: Shapes, q: Array) -> Array:
 
 def stepped_stress(leg: Leg, basis: LateralBasis, lateral: Array, free: Array, compression: Array) -> Array:
     """Largest axial plus bending stress in a piston of several sections, (T,) [Pa]; arguments of `leg_stress`."""
-    largest = np.zeros(len(free))
+    largest, laws = np.zeros(len(free)), laws_of(leg)
     planes = [numeric_pieces(leg, basis, free, k) for k in (0, 1)] if basis.count else []
-    tips = [held(parts[0].value(0 * parts[0].start)) for parts in planes]
-    for j, step in enumerate(steps_of(leg)):
-        bending = np.zeros(len(free))
-        for share in np.linspace(0.0, 1.0, _STRESS_POINTS if basis.count else 0):
-            bent = []
-            for k, (parts, E) in enumerate(zip(planes, tips, strict=True)):
-                x = parts[j].start + share * (parts[j].end - parts[j].start)
-                curvature = parts[j].give * parts[j].moment(x)
-                curvature = curvature - E * curvature[:1]
-                outside = parts[j].end > parts[j].start
-                bent.append(outside * (lateral[:, k].T * curvature).sum(axis=0) / free**2 * step.E * step.depth[k] / 2)
-            bending = np.maximum(bending, np.hypot(*bent) if step.round else np.abs(bent).sum(axis=0))
-        largest = np.maximum(largest, bending + np.abs(compression) * step.E / step.EA)
+    tips = [held(parts[0].value_start) for parts in planes]
+    for j, E in enumerate(laws.E):
+        for share in np.linspace(0.0, 1.0, _STRESS_POINTS):
+            bent = [np.zeros(len(free))]
+            for k, (parts, first) in enumerate(zip(planes, tips, strict=True)):
+                piece = parts[j]
+                x, outside = piece.start + share * (piece.end - piece.start), piece.end > piece.start
+                curvature = piece.value(x, 2)
+                curvature = curvature - first * curvature[:1]
+                depth = law(laws.values[f"depth_{'ab'[k]}"][j].tolist(), free * (x - piece.start))
+                bent.append(outside * (lateral[:, k].T * curvature).sum(axis=0) / free**2 * E * depth / 2)
+            bending = np.hypot(*bent[-2:]) if laws.round and len(bent) > 2 else np.abs(bent).sum(axis=0)
+            pressed = np.abs(compression) * E / law(laws.values["EA"][j].tolist(), share * laws.length[j])
+            largest = np.maximum(largest, bending + pressed)
     return largest
 
 
 def _damping(leg: Leg, shapes: Shapes, free: float, direction: int) -> Array:
     """Damping of ratio 1 in every mode of the bare piston at a free length, of bending and shear (K, K) [N s/m]."""
-    basis, steps = shapes.b, steps_of(leg)
+    basis, laws, way = shapes.b, laws_of(leg), "ab"[direction]
     size = basis.count * (1 + shapes.shear)
     M, K = np.zeros((size, size)), np.zeros((size, size))
     if not size:
         return M
     bent = numeric_pieces(leg, basis, np.array([free]), direction)
-    E = held(bent[0].value(np.zeros(1)))
-    softs = [steps[0].shear / step.shear for step in steps] if shapes.shear else []
-    loads = numeric_pieces(leg, shapes.sheared, np.array([free]), direction) if shapes.sheared else []
-    thick = sheared(loads, softs) if loads else []
-    for j, step in enumerate(steps):
-        long = bent[j].end - bent[j].start
-        x, w = bent[j].start + long * _POINTS, long * _WEIGHTS
-        value, turn, bend = (
-            y - E * y[:1] for y in (bent[j].value(x), bent[j].value(x, 1), bent[j].give * bent[j].moment(x))
-        )
+    thick = _thick(leg, shapes, np.array([free]), direction) if shapes.shear else []
+    E = held(bent[0].value_start)
+    for j, piece in enumerate(bent):
+        w = (piece.end - piece.start) * piece.nodes.w
+        offset = free * (np.concatenate(piece.x) - piece.start)
+        rhoA, EI, shear, turn_mass = (w * law(laws.values[name][j].tolist(), offset) for name in
+                                      ("rhoA", f"EI_{way}", "shear", f"turning_{way}"))  # fmt: skip
+        value, turn, bend = (np.hstack(y) for y in (piece.values, piece.slopes, piece.bends))
+        value, turn, bend = (y - E * y[:1] for y in (value, turn, bend))
         slope = 0 * turn
         if thick:
-            tip = thick[0].value(np.zeros(1))
+            tip, own = thick[0].value_start, thick[j]
             turn, bend = (np.vstack([y, -tip * y[:1]]) for y in (turn, bend))
-            value = np.vstack([value, thick[j].value(x) - tip * value[:1]])
-            slope = np.vstack([slope, thick[j].slope(x)])
-        M += step.rhoA * free * (value * w) @ value.T
-        K += step.EI[direction] / free**3 * (bend * w) @ bend.T
+            value = np.vstack([value, np.hstack(own.values) - tip * value[:1]])
+            slope = np.vstack([slope, np.hstack(own.slopes)])
+        M += free * (value * rhoA) @ value.T
+        K += (bend * EI) @ bend.T / free**3
         if thick:
-            M += turning(step, direction) / free * (turn * w) @ turn.T
-            K += step.shear / free * (slope * w) @ slope.T
+            M += (turn * turn_mass) @ turn.T / free
+            K += (slope * shear) @ slope.T / free
     return proportional_damping(M, K) if M.any() else M
 
 

@@ -71,7 +71,7 @@ STATIONS = np.linspace(0.0, 1.0, 11)
 def section_width(piston: Piston) -> float:
     """Width of a piston [m]: the largest diameter, or that of a full round bar with its EI and EA, 4 sqrt(EI / EA)."""
     if piston.sections:
-        return max(max(step.depth) for step in piston.steps)
+        return max(max(at.depth) for _, samples in piston.parts for at in samples)
     return piston.diameter if piston.diameter is not None else 4.0 * float(np.sqrt(piston.EI / piston.EA))
 
 
