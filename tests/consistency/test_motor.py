@@ -75,6 +75,10 @@ def test_row_of_the_budget_is_the_spread_over_phases():
     np.testing.assert_allclose(
         found.budget.sel(part="ripple", kind="random"), other.budget.sel(part="encoder", kind="random"), rtol=1e-9
     )
+    # It returns with the stroke: the same at each approach of a pose, and nothing of the repeatability.
+    assert str(found.nature.sel(part="ripple").values) == "" and not found.repeatability_unidirectional.any()
+    assert found.pose_accuracy[0, 2] > found.pose_accuracy[1, 2] + 2 * found.budget.sel(part="ripple")[2, 2]
+    assert "standard deviations of ripple" in found.attrs["summary"]
     # What is systematic is not touched by it, nor are modes.
     plain = machine(drive=drive.replace(motor=Motor()))
     np.testing.assert_array_equal(fx.modes(robot).frequency, fx.modes(plain).frequency)

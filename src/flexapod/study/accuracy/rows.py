@@ -52,7 +52,7 @@ def rows(study: Study, pose: rigid.Poses) -> list[Row]:
     if rippling.any():
         by_leg = rippling[:, None] * at.sensitivity.coordinate[0, :, COORDINATES.index("l")]
         how = "standard deviation over a period, against the loop's stiffness, legs independent"
-        found.append(Row("ripple", "random", "calibratable", by_leg, how))
+        found.append(Row("ripple", "random", "", by_leg, how, stands=True))
     if (shorter := guide_play(study.robot, at.sensitivity.q[0, :, COORDINATES.index("l")])).any():
         by_leg = np.abs(shorter[:, None] * at.sensitivity.coordinate[0, :, COORDINATES.index("l")])
         found.append(Row("guide play", "hysteretic", "", by_leg, "second order in the kink: legs that lean or do not"))

@@ -84,11 +84,11 @@ def _left(found: Budget) -> list[str]:
 def _accuracy(found: Budget) -> list[str]:
     raw, calibrated = (_distance(found.accuracy(calibrated=x)) for x in (False, True))
     drift = _distance(found.rule("systematic", lambda row: row.nature == "drifting"))
-    spread = any(row.stands for row in found.rows)
+    spread = dict.fromkeys("ripple" if row.part == "ripple" else "tolerances" for row in found.rows if row.stands)
     warm = f" (heat alone: {_m(drift)})" if drift else ""
     left = found.calibrated
     most = f", the largest part of it {part_words(left.largest)}" if left.parts else ""
-    more = " with three standard deviations of the tolerances" if spread else ""
+    more = f" with three standard deviations of {' and '.join(spread)}" if spread else ""
     return [f"Pose accuracy (AP of ISO 9283): {_m(raw)} uncalibrated{more}, {_m(calibrated)} calibrated{most}{warm}."]
 
 
