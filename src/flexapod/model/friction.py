@@ -45,7 +45,7 @@ class JointFriction(Frozen):
     diameter: Annotated[Positive, Measure("length")] | None = None
     viscous: Viscous = 0.0
     stribeck: TurningStribeck | None = None
-    presliding: Annotated[Positive, Measure("angle")] = 1e-3
+    presliding: Annotated[Positive, Measure("angle")] = 1e-3  # defaults: see T19
     damping_time: DampingTime = 0.0
 
     @model_validator(mode="after")
