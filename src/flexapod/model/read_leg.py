@@ -50,6 +50,13 @@ def read_leg(section: Section, number: int, count: int, chain: str, places: tupl
                 allowed="true if nothing drives it, false if its stroke is driven",
                 next_step=f"Add {section.key('passive')} = true",
             )
+        if section.data.get("passive") is True and "drive" in section:
+            raise section.error(
+                f"drives a passive leg (chain {chain})",
+                "drive",
+                allowed="a drive, or passive = true",
+                next_step="Leave it out",
+            )
         section.need(*(("cylinder", "piston") if letters.stroke else ("strut",)))
         strut, carriage = section.section("strut"), section.section("carriage")
         cylinder = section.section("cylinder")

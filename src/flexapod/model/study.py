@@ -116,6 +116,17 @@ class Study(_Documented):
         return self
 
     @model_validator(mode="after")
+    def _load_that_acts(self) -> Self:
+        if self.robot.platform_fixed and self.load.wrench is not None:
+            raise InputError(
+                "acts on a platform that is fixed: nothing feels it",
+                key="load.wrench",
+                allowed="a platform that the legs carry",
+                next_step="Leave it out, or robot.platform.fixed",
+            )
+        return self
+
+    @model_validator(mode="after")
     def _sections(self) -> Self:
         basis = self.simulation.lateral_basis
         if (

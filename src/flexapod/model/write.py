@@ -103,6 +103,8 @@ def _leg(leg: Leg, base: Array, platform: Array, normal: Array) -> dict[str, obj
     del fields["chain"]  # the robot's type has it
     if leg.letters.platform and not leg.passive:
         del fields["passive"]
+    if leg.passive:
+        del fields["drive"]
     for name, place in (("base_joint", base), ("platform_joint", platform)):
         fields[name] = _joint(getattr(leg, name), place, normal)
         if not fields[name]:
