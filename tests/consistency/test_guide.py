@@ -15,8 +15,9 @@ from flexapod.bases import axial_basis, lateral_basis
 from flexapod.errors import InputError
 from flexapod.exchange.export import abaqus_deck
 from flexapod.mechanics.layout import Shapes
-from flexapod.model import MATERIALS, Cylinder, Guide, Mounted
+from flexapod.model import MATERIALS, Cylinder, ForceDrive, Guide, Mounted, PrescribedDrive, ServoDrive
 from flexapod.model.material import Tube
+from flexapod.model.spring import AxialSpring
 from flexapod.proof.engines import calculix
 from flexapod.proof.engines.engine import CALCULIX
 from flexapod.proof.engines.exudyn_robot import RobotProblem
@@ -350,6 +351,19 @@ def test_an_overlap_that_is_gone_at_full_stroke_is_refused():
     leg = machine().legs[0]
     with pytest.raises(InputError, match=r"-0\.05 m"):
         leg.replace(guide=bushings(1e8), stroke=fx.model.Stroke(min=0.9, max=1.4))
+
+
+@pytest.mark.parametrize("drive", [PrescribedDrive(), ServoDrive(stiffness=2e8)])
+def test_a_tube_stretches_up_to_where_its_drive_pushes(drive):
+    # Its bottom is where the piston's inner end is at the least stroke: 0.9 less 0.75 m. As a spring of E A / 0.15 m.
+    robot = machine(drive=drive, cylinder=BENDING, stroke=fx.model.Stroke(min=0.9, max=1.4))
+    stiffness = MATERIALS["steel"].E * TUBE_SECTION.area / 0.15
+    np.testing.assert_allclose(fx.parts(robot).part_stiffness.sel(part="cylinder"), stiffness, rtol=1e-12)
+    spring = AxialSpring(name="tube", stiffness=stiffness)
+    same = machine(drive=drive, cylinder=BENDING, springs=(spring,))
+    found, theirs = (fx.stiffness(study(x, fidelity="lumped")).stiffness for x in (robot, same))
+    np.testing.assert_allclose(found, theirs, rtol=1e-9, atol=1e-9 * float(np.abs(theirs).max()))
+    assert machine(drive=ForceDrive(feedback=None), cylinder=BENDING, stroke=robot.legs[0].stroke).legs[0].pressed == 0
 
 
 TUBE_EI, TUBE_RHO = 3e4, 6.0

@@ -106,7 +106,16 @@ class Leg(Frozen):
     def gives(self) -> bool:
         """Whether springs stand between its drive and its piston."""
         driven = self.screw is not None or self.cylinder_of_oil is not None
-        return driven or any(spring.at == "nut" for spring in self.springs)
+        return driven or any(spring.at == "nut" for spring in self.springs) or self.pressed > 0
+
+    @property
+    def pressed(self) -> float:
+        """Length of a cylinder with a section that the thrust of its drive stretches, from the base joint [m].
+
+        Up to the bearing of a screw, or to the bottom: where the piston's inner end is at the least stroke.
+        """
+        held = self.driven == "stroke" and not isinstance(self.drive, ForceDrive)
+        return max(self.begins - self.piston.length, 0.0) if held and self.cylinder.section is not None else 0.0
 
     @property
     def cylinder_of_oil(self) -> HydraulicDrive | None:
@@ -115,7 +124,7 @@ class Leg(Frozen):
 
     @property
     def begins(self) -> float:
-        """Length of the leg with the piston's inner end where its screw or its hydraulic stroke begins [m]."""
+        """Length of the leg with the piston's inner end where its screw or its stroke begins [m]."""
         if self.screw is not None:
             return self.piston.length + self.screw.bearing.position
         oil = self.cylinder_of_oil

@@ -82,13 +82,10 @@ def springs_along(leg: Leg) -> list[Spring]:
     ]
     if leg.screw is not None:
         found += _of_screw(leg.screw, leg.begins)
-        if (EA := leg.cylinder.beam[1]) and leg.screw.bearing.position > 0:  # under thrust up to the bearing
-            found.append(_constant("cylinder", "nut", EA / leg.screw.bearing.position, None, None))  # (T25.14)
     if leg.cylinder_of_oil is not None:
         found.append(_of_oil(leg.cylinder_of_oil, leg.begins))
-        bottom = leg.begins - leg.piston.length
-        if (EA := leg.cylinder.beam[1]) and bottom > 0:  # the oil pushes its bottom
-            found.append(_constant("cylinder", "nut", EA / bottom, None, None))  # (T25.14)
+    if leg.pressed:
+        found.append(_constant("cylinder", "nut", leg.cylinder.beam[1] / leg.pressed, None, None))  # (T25.14)
     return found + [_constant(x.name, x.at, x.stiffness, x.damping, x.loss) for x in leg.springs]
 
 
