@@ -14,9 +14,11 @@ from flexapod.errors import InputError
 from flexapod.model import Home, to_toml
 from flexapod.model.joint import Joint
 from flexapod.model.leg import Stroke
+from flexapod.rigid import bodies
 from flexapod.rigid.rotations import exponential
 from flexapod.study.before.describe.bodies import stroke_ends
 from flexapod.study.bodies import CYLINDER, bodies_words, clearance, first_least, pairs_of_legs, turns
+from flexapod.study.path import RigidPath
 
 LIMITED = {"base_joint": Joint(max_angle=0.2), "platform_joint": Joint(max_angle=0.1)}
 
@@ -52,6 +54,19 @@ def test_distances_are_those_of_a_search():
             least = min(least, np.sqrt(found.fun) - radius - 0.02)
         if share < 1:  # a mouth beyond the tip is refused by the checks
             assert gap == pytest.approx(least, abs=1e-6)
+
+
+def test_along_a_path_few_pairs_of_bodies_are_looked_at(monkeypatch):
+    # Every instant for itself has the same bits, on a path and in any order of its poses.
+    path = RigidPath(fx.preset("paper-robot"), np.linspace(0.0, 0.5, 301))
+    tips, length = path.place(path.robot.platform_joints), path.legs.length
+    looked, apart = [], bodies._apart
+    monkeypatch.setattr(bodies, "_apart", lambda *ends: looked.append(ends[0][0].size) or apart(*ends))
+    found = clearance(path.robot, tips, path.axes, length)
+    assert sum(looked) < 0.25 * len(tips) * 4 * len(pairs_of_legs(path.robot))
+    for some in (*(slice(k, k + 1) for k in (0, 31, 32, 150, 300)), np.random.default_rng(1).permutation(301)):
+        here = clearance(path.robot, tips[some], path.axes[some], length[some])
+        assert np.array_equal(here.gap, found.gap[some]) and np.array_equal(here.legs, found.legs[some])
 
 
 def test_turns_are_those_of_the_platform_about_a_leg():

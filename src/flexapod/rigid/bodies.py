@@ -12,6 +12,10 @@ from flexapod.typing import Array
 
 __all__ = ["Nearest", "nearest_legs", "turned_by"]
 
+HALVES = (0, 0, 1, 1), (0, 1, 0, 1)  # of two legs: cylinder (0) or piston (1)
+SPAN = 32  # poses between which legs that follow a path move little
+ROUNDING = 1e-9  # of distances [m], far above what it is
+
 
 class Nearest(NamedTuple):
     """Least gap between two legs at T instants [m], negative where they overlap; numbers of the two from 0, (T, 2)."""
@@ -59,23 +63,39 @@ def nearest_legs(feet: Array, tips: Array, mouth: Array, radii: Array, pairs: Ar
         Numbers of the legs, m >= 1.
     """
     found = Nearest(np.empty(len(feet)), np.empty((len(feet), 2), dtype=int))
-    one, other = pairs.T
+    count, width = feet.shape[1], radii.T.ravel()
+    one, other = ((pairs[:, k, None] + count * np.array(half)).ravel() for k, half in enumerate(HALVES))
     for where in blocks(len(feet)):
-        start, end = (np.moveaxis(x[where], (0, 1, 2), (2, 1, 0)) for x in (feet, tips))  # (3, n, T)
-        share = mouth[:, None] / np.sqrt(((end - start) ** 2).sum(axis=0))
-        middle = start + share * (end - start)
-        bodies = ((start, middle), (middle, end))
-        gaps = [
-            _apart(a[0][:, one], a[1][:, one], b[0][:, other], b[1][:, other])
-            - (radii[one, i] + radii[other, k])[:, None]
-            for i, a in enumerate(bodies)
-            for k, b in enumerate(bodies)
-        ]
-        gap = np.min(gaps, axis=0)
-        least = gap.argmin(axis=0)
-        found.gap[where] = gap[least, np.arange(gap.shape[1])]
-        found.legs[where] = pairs[least]
+        a, b = _bodies(feet[where], tips[where], mouth)
+        span, body = np.nonzero(_may_be_nearest(a, b, width, one, other).T)
+        i, k = one[body], other[body]
+        gap = _apart(a[:, i, span], b[:, i, span], a[:, k, span], b[:, k, span]) - (width[i] + width[k])[:, None]
+        firsts = np.searchsorted(span, np.arange(a.shape[2]))
+        least = np.minimum.reduceat(gap, firsts)
+        pair = np.where(gap > least[span], len(pairs), body[:, None] // len(HALVES[0]))
+        size = len(found.gap[where])
+        found.gap[where] = least.ravel()[:size]
+        found.legs[where] = pairs[np.minimum.reduceat(pair, firsts).ravel()[:size]]
     return found
+
+
+def _bodies(feet: Array, tips: Array, mouth: Array) -> tuple[Array, Array]:
+    """Begins and ends of the axes of cylinders, then of pistons, (3, 2 n, spans, `SPAN`); the last pose is repeated."""
+    more = ((0, 0), (0, 0), (0, -len(feet) % SPAN))
+    start, end = (np.pad(np.moveaxis(x, (0, 1, 2), (2, 1, 0)), more, mode="edge") for x in (feet, tips))
+    share = mouth[:, None] / np.sqrt(((end - start) ** 2).sum(axis=0))
+    middle = start + share * (end - start)
+    a, b = (np.concatenate(pair, axis=1) for pair in ((start, middle), (middle, end)))
+    return a.reshape(*a.shape[:2], -1, SPAN), b.reshape(*b.shape[:2], -1, SPAN)
+
+
+def _may_be_nearest(a: Array, b: Array, width: Array, one: Array, other: Array) -> NDArray[np.bool_]:
+    """Which two may be the nearest somewhere in a span, (m, spans): a gap changes at most by what its bodies move."""
+    begins, ends = a[..., SPAN // 2], b[..., SPAN // 2]
+    way = np.maximum(*(((x - x[..., SPAN // 2, None]) ** 2).sum(axis=0).max(axis=-1) for x in (a, b)))
+    moved = np.sqrt(way)[one] + np.sqrt(way)[other]
+    gap = _apart(begins[:, one], ends[:, one], begins[:, other], ends[:, other]) - (width[one] + width[other])[:, None]
+    return ~(gap - moved > (gap + moved).min(axis=0) + ROUNDING)
 
 
 def _apart(a: Array, b: Array, c: Array, d: Array) -> Array:
