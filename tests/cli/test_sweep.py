@@ -58,6 +58,16 @@ def test_what_it_prints_and_writes(flexapod, files, folder):
         assert words in run.stdout
     names = {path.name for path in (folder / "study-sweep").iterdir()}
     assert names == {"sweep.zarr", "sweep.csv", "sweep.png", "sweep.svg"}
+
+
+def test_without_arrays_of_dask(files, folder):
+    """To look for them xarray would import them, scipy's transforms and sparse matrices with them: a second."""
+    seen = "print([m for m in ('dask.array', 'scipy.fft', 'scipy.sparse') if sys.modules.get(m)])"
+    code = f"import sys\nfrom flexapod.app.cli import main\ntry:\n    main()\nfinally:\n    {seen}"
+    process = start("-c", code, "sweep", *files(), "--workers", "0", "--json", cwd=folder)
+    out, err = process.communicate(timeout=100)
+    assert process.returncode == 0, err
+    assert out.splitlines()[-1] == "[]"
     with (folder / "study-sweep" / "sweep.csv").open(encoding="utf-8") as file:
         table = list(csv.DictReader(file))
     data = result(folder)

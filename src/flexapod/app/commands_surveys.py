@@ -13,6 +13,7 @@ from flexapod.app import terminal
 from flexapod.app.failures import INTERRUPTED, guarded, print_parts, stopped
 from flexapod.app.options import Json, NoFigures, Out, Quiet, StudyFile, as_options, results_folder
 from flexapod.app.terminal import print_json, print_text
+from flexapod.loading import without
 
 if TYPE_CHECKING:
     from xarray import Dataset
@@ -45,7 +46,8 @@ def sweep(
     from flexapod.surveys.sweeps import sweep as compute
 
     folder = results_folder(file, sweep_file.stem, out)
-    with as_options(workers="--workers", scheduler="--scheduler"), terminal.progress_bar(quiet=quiet or json) as report:
+    options = as_options(workers="--workers", scheduler="--scheduler")
+    with without("dask.array"), options, terminal.progress_bar(quiet=quiet or json) as report:
         try:
             data = compute(
                 file, sweep_file, store=folder / "sweep.zarr", scheduler=scheduler, workers=workers,
