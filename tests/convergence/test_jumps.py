@@ -6,6 +6,7 @@ from tests.runs import balance, paper_robot, run_actuator, run_robot, with_legs
 
 import flexapod as fx
 from flexapod.model import CsvLaw, CsvWrench, ForceDrive, Load, ServoDrive, StepWrench, override
+from flexapod.solve import march
 
 STEPS = (4e-4, 2e-4, 1e-4)
 FINE = 2.5e-5  # error of the reference: 1/16 of the finest run's, which moves its order by 0.09 at most
@@ -142,3 +143,14 @@ def test_the_default_tolerance_is_kept_across_a_step():
     reference, run = (run_robot(override(study, **how)) for how in ({"step": 1.25e-5}, {"tolerance": 1e-4}))
     deviation = reference["pose"] - reference["pose"][0]
     assert np.abs(run["pose"] - reference["pose"]).max() < 1e-4 * np.abs(deviation).max()
+
+
+@pytest.mark.parametrize("name", ["half-sine", "two-steps-between-outputs"])
+def test_tables_made_in_parts_change_no_bit(name, monkeypatch):
+    """Of more steps than a chunk's in an output interval, also between breaks."""
+    study = override(robot().replace(load=Load(wrench=LOADS[name])), duration=0.036, output_step=0.012, step=1e-4)
+    found = []
+    for most in (120, 17):  # a chunk is an output interval in both
+        monkeypatch.setattr(march, "CHUNK_STEPS", most)
+        found.append(run_robot(study))
+    assert all(np.array_equal(found[0][name], found[1][name]) for name in ("pose", "lam", "sums"))

@@ -9,7 +9,7 @@ import pytest
 from tests.runs import paper_robot, with_legs
 
 import flexapod as fx
-from flexapod.model import ActuatorLoad, ForceDrive
+from flexapod.model import ActuatorLoad, ForceDrive, override
 from flexapod.solve import robot_march
 from flexapod.study import Interrupted
 
@@ -168,6 +168,23 @@ def test_memory_does_not_grow_with_the_simulated_time():
     (short, a), (long, b) = kept
     assert a == b
     assert long - short < 3.0
+
+
+def test_memory_does_not_grow_with_the_steps_between_two_outputs():
+    """Tables of commands were made for all of them: 1.2 kB a step, 60 MB here."""
+    study = paper_robot(fidelity="lumped", duration=0.2, output_step=0.1, step=5e-5)
+    fx.run(study)
+    few, many = memory(study), memory(override(study, step=2e-6))
+    assert few[1] == many[1]
+    assert many[0] - few[0] < 3.0  # 8 bytes a step for its instant
+
+
+def test_memory_within_a_tolerance_does_not_grow_with_the_simulated_time():
+    study = paper_robot(duration=2.0, output_step=2e-2, tolerance=1e-4)
+    fx.run(study)
+    (short, a), (long, b) = memory(study), memory(override(study, duration=16.0, output_step=0.16))
+    assert a == b
+    assert long - short < 1.0
 
 
 def test_memory_is_a_small_multiple_of_what_is_stored():

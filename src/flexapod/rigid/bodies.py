@@ -8,9 +8,11 @@ import numpy as np
 from numpy.typing import NDArray
 
 from flexapod.rigid.vectors import blocks, dot
-from flexapod.typing import Array
+from flexapod.typing import Array, Mask
 
 __all__ = ["Nearest", "nearest_legs", "turned_by"]
+
+Index = NDArray[np.intp]
 
 HALVES = (0, 0, 1, 1), (0, 1, 0, 1)  # of two legs: cylinder (0) or piston (1)
 SPAN = 32  # poses between which legs that follow a path move little
@@ -89,7 +91,7 @@ def _bodies(feet: Array, tips: Array, mouth: Array) -> tuple[Array, Array]:
     return a.reshape(*a.shape[:2], -1, SPAN), b.reshape(*b.shape[:2], -1, SPAN)
 
 
-def _may_be_nearest(a: Array, b: Array, width: Array, one: Array, other: Array) -> NDArray[np.bool_]:
+def _may_be_nearest(a: Array, b: Array, width: Array, one: Index, other: Index) -> Mask:
     """Which two may be the nearest somewhere in a span, (m, spans): a gap changes at most by what its bodies move."""
     begins, ends = a[..., SPAN // 2], b[..., SPAN // 2]
     way = np.maximum(*(((x - x[..., SPAN // 2, None]) ** 2).sum(axis=0).max(axis=-1) for x in (a, b)))

@@ -176,7 +176,10 @@ class _Control:
         stops, per_output = self.problem.stops.within(done, self.coarse), self.coarse * parts
         if stops:
             return self._through(flow, done, stops, parts)
-        grid = [x[:: round(self.per_output / per_output)] for x in self._grid(done, count, self.per_output)]
+        if self.problem.tolerance is None and per_output > CHUNK_STEPS:
+            grid = [self._instants(done, count, self.per_output)]
+        else:
+            grid = [x[:: round(self.per_output / per_output)] for x in self._grid(done, count, self.per_output)]
         return self._run(flow, grid, per_output), self.problem.output_step / per_output
 
     def _through(self, flow: Flow, done: int, stops: Sequence[Stop], parts: int) -> tuple[native.Advance, float]:
@@ -185,23 +188,13 @@ class _Control:
         edges = [done * p.output_step, *(stop.first for stop in stops), (done + 1) * p.output_step]
         spans = np.diff(edges)
         counts = [parts * max(1, int(np.ceil(x / p.output_step * self.coarse - 1e-6))) for x in spans]
-        steps, grids = spans / counts, self._pieces(edges, counts, [*stops, p.stops.ends.get(done + 1)])
+        steps, times = spans / counts, _pieces(edges, counts, [*stops, p.stops.ends.get(done + 1)])
         for i, stop in enumerate(stops):
-            flow, prepared = self._steps(flow, prepared, steps[i], grids[i], counts[i]).flow, steps[i]
+            flow, prepared = self._steps(flow, prepared, steps[i], [times[i]], counts[i]).flow, steps[i]
             if stop.jumps:
                 prepared = steps[i + 1]
                 flow, _ = _restarted(p, flow, stop.first, stop, prepared)
-        return self._steps(flow, prepared, steps[-1], grids[-1], counts[-1]), steps[-1]
-
-    def _pieces(self, edges: list[float], counts: list[int], ends: Sequence[Stop | None]) -> list[list[Array]]:
-        """Instants, commands and wrenches of even steps from edge to edge, each up to just before its break."""
-        times = [np.linspace(a, b, n + 1) for a, b, n in zip(edges[:-1], edges[1:], counts, strict=True)]
-        for t, stop in zip(times, ends, strict=True):
-            if stop is not None:
-                t[-1] = before(min(t[-1], stop.first))
-        cuts = np.cumsum([len(t) for t in times])[:-1]
-        table, wrench = (np.split(x, cuts) for x in self.problem.tables(np.concatenate(times)))
-        return [list(piece) for piece in zip(times, table, wrench, strict=True)]
+        return self._steps(flow, prepared, steps[-1], [times[-1]], counts[-1]), steps[-1]
 
     def _grid(self, done: int, count: int, per_output: int) -> list[Array]:
         """Instants of the steps of a chunk, and the tables of commands and wrench there."""
@@ -213,30 +206,43 @@ class _Control:
         return self.window.part(done, count)
 
     def _window(self, done: int, count: int, per_output: int) -> _Window:
+        t = self._instants(done, count, per_output)
+        return _Window(done=done, count=count, per_output=per_output, rows=(t, *self.problem.tables(t)))
+
+    def _instants(self, done: int, count: int, per_output: int) -> Array:
         p = self.problem
         steps = done * per_output + np.arange(count * per_output + 1)
         t = np.asarray(steps * (p.output_step / per_output), dtype=float)
         if (stop := p.stops.ends.get(done + count)) is not None:
             t[-1] = before(min(t[-1], stop.first))
-        return _Window(done=done, count=count, per_output=per_output, rows=(t, *p.tables(t)))
+        return t
 
     def _run(self, flow: Flow, grid: list[Array], per_output: float) -> native.Advance:
         return self._steps(flow, self.h, self.problem.output_step / per_output, grid, max(1, int(per_output)))
 
     def _steps(self, flow: Flow, prepared: float, h: float, grid: list[Array], every: int) -> native.Advance:
-        """Steps of length h over the rows of a grid, from a flow prepared for another; a record after each `every`."""
+        """Steps of length h over the rows of a grid, from a flow prepared for another; a record after each `every`.
+
+        A grid of instants alone has its tables made for some steps at a time, and one record, at its end.
+        """
         p, t = self.problem, grid[0]
         if abs(h - prepared) > 1e-12 * h:
             flow = _rescaled(p.system, flow, prepared, h)
-        tables = (grid[1], grid[2])
-        result = _loop(p.system).advance(p.system, p.method, flow, h, tables, every, self.counters)
-        if result.status:
-            where = f" in leg {result.leg + 1}" if 0 <= result.leg < p.system.legs else ""
-            raise ComputationError(
-                f"the integration stopped at t = {t[result.step]:.6g} s (step {h:.3g} s): "
-                f"{CAUSES[result.status]}{where}",
-                next_step=ADVICE,
+        result, first = None, 0
+        while result is None or first < len(t) - 1:
+            tables = (grid[1], grid[2]) if grid[1:] else p.tables(t[first : first + CHUNK_STEPS + 1])
+            many = min(every, len(tables[0]) - 1)
+            result = _loop(p.system).advance(
+                p.system, p.method, flow, h, tables, many, self.counters, resumed=first > 0
             )
+            if result.status:
+                where = f" in leg {result.leg + 1}" if 0 <= result.leg < p.system.legs else ""
+                raise ComputationError(
+                    f"the integration stopped at t = {t[first + result.step]:.6g} s (step {h:.3g} s): "
+                    f"{CAUSES[result.status]}{where}",
+                    next_step=ADVICE,
+                )
+            flow, first = result.flow, first + len(tables[0]) - 1
         return result
 
     def _chunk(self, rows: Array, done: int, error: float, per_output: int) -> Chunk:
@@ -254,6 +260,15 @@ class _Control:
         self.scales = [max(s, float(np.abs(x).max(initial=0.0))) for s, x in zip(self.scales, fine, strict=True)]
         groups = zip(coarse, fine, self.scales, strict=True)
         return max(float(np.abs(x - y).max(initial=0.0)) / max(s, 1e-9) for x, y, s in groups)
+
+
+def _pieces(edges: list[float], counts: list[int], ends: Sequence[Stop | None]) -> list[Array]:
+    """Instants of even steps from edge to edge, each up to just before its break."""
+    times = [np.linspace(a, b, n + 1) for a, b, n in zip(edges[:-1], edges[1:], counts, strict=True)]
+    for t, stop in zip(times, ends, strict=True):
+        if stop is not None:
+            t[-1] = before(min(t[-1], stop.first))
+    return times
 
 
 def _restarted(problem: Problem, flow: Flow, t: float, stop: Stop, h: float) -> tuple[Flow, Recording]:

@@ -96,15 +96,21 @@ def advance(
     tables: tuple[Array, Array],
     every: int,
     counters: Counters,
+    resumed: bool = False,
 ) -> Advance:
-    """Advance by the rows of ``tables`` ((T, legs, ports, 4), (T, load_size)), recording each ``every`` steps."""
+    """Advance by the rows of ``tables`` ((T, legs, ports, 4), (T, load_size)), recording each ``every`` steps.
+
+    ``resumed``: from where the call before ended, with the bits of a single call for both.
+    """
     library = compiled(system)
     table, wrench = (np.ascontiguousarray(x) for x in tables)
     steps = len(table) - 1
     new, rows = flow.copy(), np.zeros((steps // every, record_width(system)))
     call = Call(system, new, rows, method, h, every)
     state = call.state
-    status = library.march(byref(call.settings), byref(state), address(table), address(wrench), c_long(steps))
+    status = library.march(
+        byref(call.settings), byref(state), address(table), address(wrench), c_long(steps), c_long(resumed)
+    )
     counters.steps += state.steps
     counters.iterations += state.iterations
     counters.factorisations += state.factorisations

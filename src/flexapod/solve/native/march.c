@@ -334,20 +334,25 @@ static int iterate(const Settings *s, State *x, const double *wrench, double *po
   }
 }
 
-/* Advance `steps` steps; tables have steps + 1 rows (row 0 is the present time). */
-int march(const Settings *s, State *x, const double *table, const double *wrench, long steps) {
+/* Advance `steps` steps; tables have steps + 1 rows (row 0 is the present time). `resumed`: the call before, in this
+   thread, ended there: all goes on from what it left, as if it were one. */
+int march(const Settings *s, State *x, const double *table, const double *wrench, long steps, long resumed) {
   static _Thread_local Past past;
+  static _Thread_local long age;
   Work *w = work();
-  long width = s->legs*s->ports*COLUMNS, age = s->max_age;
+  long width = s->legs*s->ports*COLUMNS;
   double pose_step[6];
-  load(s, x, w);
-  w->h = s->h;
-  for (int i = 0; i < groups(s); i++) {
-    memcpy(past.v_dot[i], w->leg[i].v_dot, sizeof past.v_dot[i]);
-    memcpy(past.lam[i], w->leg[i].lam, sizeof past.lam[i]);
-    memcpy(past.drive[i], w->leg[i].drive, sizeof past.drive[i]);
+  if (!resumed) {
+    age = s->max_age;
+    load(s, x, w);
+    w->h = s->h;
+    for (int i = 0; i < groups(s); i++) {
+      memcpy(past.v_dot[i], w->leg[i].v_dot, sizeof past.v_dot[i]);
+      memcpy(past.lam[i], w->leg[i].lam, sizeof past.lam[i]);
+      memcpy(past.drive[i], w->leg[i].drive, sizeof past.drive[i]);
+    }
+    memcpy(past.u_dot, w->payload.u_dot, sizeof past.u_dot);
   }
-  memcpy(past.u_dot, w->payload.u_dot, sizeof past.u_dot);
   for (long t = 1; t <= steps; t++) {
     predict_body(s, table + t*width, &past, w, pose_step);
     int fault = iterate(s, x, wrench + load_size(s)*t, pose_step, &age, w);
