@@ -1,6 +1,6 @@
 """`python -m benchmarks [names] [--write]`: measured speed, printed; all of it, or the sections named.
 
-With `--write` and no names the page `RESULTS.md` is rewritten.
+With `--write` figures are stored beside the page `RESULTS.md`, and without names the page is rewritten.
 """
 
 from __future__ import annotations
@@ -9,6 +9,7 @@ import sys
 from collections.abc import Callable
 from datetime import date
 from pathlib import Path
+from time import perf_counter
 
 from benchmarks.machine import machine, one_core, peak
 from benchmarks.report import Section
@@ -27,8 +28,10 @@ def sections() -> dict[str, Callable[[], list[Section]]]:
     from benchmarks.scaling import scaling
     from benchmarks.side_by_side import side_by_side
     from benchmarks.startup import startup
+    from benchmarks.tolerances import tolerances
 
     return {
+        "tolerances": tolerances,
         "one-robot": one_robot,
         "scaling": scaling,
         "side-by-side": side_by_side,
@@ -54,9 +57,17 @@ def main(arguments: list[str]) -> int:
     print("\n".join(about), end="\n\n", flush=True)
     measured = []
     for name in names or known:
+        begin = perf_counter()
         for section in known[name]():
             measured.append(section)
             print(section.text(), end="\n\n", flush=True)
+        print(f"  {name}: {perf_counter() - begin:.0f} s", file=sys.stderr, flush=True)
+    if "--write" in arguments:
+        from flexapod.plot.style import save
+
+        for section in measured:
+            for name, picture in section.pictures.items():
+                save(picture, PAGE.with_name(name), formats=("svg",))
     if "--write" in arguments and not names:
         PAGE.write_text(page(about, measured), encoding="utf-8")
     return 0

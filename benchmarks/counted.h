@@ -27,6 +27,7 @@ inline Counted &Counted::operator+=(Counted b) { return *this = *this + b; }
 inline Counted &Counted::operator-=(Counted b) { return *this = *this - b; }
 inline Counted &Counted::operator*=(Counted b) { return *this = *this*b; }
 inline Counted &Counted::operator/=(Counted b) { return *this = *this/b; }
+inline void operator++(Counted &a, int) { a = a + 1; }
 inline bool operator<(Counted a, Counted b) { return a.value < b.value; }
 inline bool operator>(Counted a, Counted b) { return a.value > b.value; }
 inline bool operator<=(Counted a, Counted b) { return a.value <= b.value; }
@@ -66,6 +67,7 @@ inline lanes operator/(lanes a, lanes b) { return a.value/b.value; }
 inline lanes operator-(lanes a) { return -a.value; }
 inline LaneBits operator<(lanes a, lanes b) { return LaneBits{a.value < b.value ? -1 : 0}; }
 inline LaneBits operator>(lanes a, lanes b) { return LaneBits{a.value > b.value ? -1 : 0}; }
+struct Parts { lanes *at[2]; operator lanes *const *() const { return at; } };  // two addresses for one call
 
 #define pow casadi_power
 #define _Thread_local thread_local

@@ -11,7 +11,7 @@ from benchmarks.operations import KINDS, Count, reader
 from flexapod.model import override
 from flexapod.solve.robot_march import RobotMarch, prepare
 
-__all__ = ["residual_of_a_leg", "roll_step"]
+__all__ = ["residual_of_a_leg", "roll_step", "step_within"]
 
 STEPS = 400
 
@@ -21,6 +21,17 @@ def roll_step() -> Count:
     run = prepare(override(roll(), step=5e-4, duration=STEPS * 5e-4, output_step=STEPS * 5e-4))
     counters = reader(_library(run))
     chunks = iter(run.chunks)
+    next(chunks)  # the start
+    before = counters.copy()
+    for _ in chunks:
+        pass
+    return _count((counters - before) / run.counters.steps)
+
+
+def step_within() -> Count:
+    """Mean of a step of the roll within the default tolerance, records included, to the end of the motion."""
+    run = prepare(override(roll(), output_step=1e-2, duration=1.0))
+    counters, chunks = reader(_library(run)), iter(run.chunks)
     next(chunks)  # the start
     before = counters.copy()
     for _ in chunks:

@@ -1,4 +1,4 @@
-"""The quantity that is compared: deviation of the centre of mass of the robot's payload, and its error."""
+"""The quantity that is compared: deviation of the payload's centre of mass, an actuator's deflection; its error."""
 
 from __future__ import annotations
 
@@ -8,9 +8,11 @@ from dataclasses import dataclass
 import numpy as np
 
 from flexapod import rigid
-from flexapod.model import Study, override, preset
+from flexapod.model import ActuatorStudy, Study, override, preset
+from flexapod.solve.actuator_march import prepare_actuator
 from flexapod.solve.recording import Counters
 from flexapod.solve.robot_march import prepare
+from flexapod.solve.shapes import actuator_shapes
 from flexapod.typing import Array
 
 __all__ = ["GRID", "Curve", "Marched", "error", "marched", "reference", "rigid_centre", "roll", "undamped"]
@@ -20,7 +22,7 @@ GRID = 5e-5  # s, of reference curves: every step that is measured is a multiple
 
 @dataclass(frozen=True)
 class Curve:
-    """Deviation (T, 3) [m], world axes, at instants (T,) [s]."""
+    """Deviation (T, 3) [m], world axes, or deflection (T, 1) of an actuator's tip, at instants (T,) [s]."""
 
     time: Array
     deviation: Array
@@ -53,17 +55,26 @@ def rigid_centre(study: Study, t: Array) -> Array:
     return path.position + np.einsum("tij,j->ti", path.rotation, study.robot.payload.com)
 
 
-def marched(study: Study) -> Marched:
-    """Integrate a robot study; the start (equilibrium, kernel) is prepared before the clocks run."""
-    run = prepare(study)
-    times, poses = [], []
+def deflection(study: ActuatorStudy, amplitudes: Array) -> Array:
+    """Deflection of the tip of a planar actuator of amplitudes (T, k), (T, 1) [m]."""
+    return (amplitudes @ actuator_shapes(study.actuator, study.simulation).a.tip)[:, None]
+
+
+def marched(study: Study | ActuatorStudy) -> Marched:
+    """Integrate a study; the start (equilibrium, kernel) is prepared before the clocks run."""
+    run = prepare(study) if isinstance(study, Study) else prepare_actuator(study)
+    times, found = [], []
     wall, process = time.perf_counter(), time.process_time()
     for chunk in run.chunks:
         times.append(chunk.recording.time)
-        poses.append(chunk.recording.pose[:, :3].copy())
+        found.append(
+            chunk.recording.pose[:, :3].copy() if isinstance(study, Study) else chunk.recording.q[:, 0, 2:].copy()
+        )
     wall, process = time.perf_counter() - wall, time.process_time() - process
     t = np.concatenate(times)
-    curve = Curve(t, np.concatenate(poses) - rigid_centre(study, t))
+    values = np.concatenate(found)
+    values = values - rigid_centre(study, t) if isinstance(study, Study) else deflection(study, values)
+    curve = Curve(t, values)
     return Marched(curve=curve, counters=run.counters, wall=wall, process=process)
 
 

@@ -31,6 +31,7 @@ REWRITTEN = (
     (r"typedef double lanes __attribute__\(\(.*\)\);", ""),
     (r"enum \{ LANES = \d+ \};", "enum { LANES = 1 };"),
     (r"\((lanes|double)\)\{0\} \+ ", r"(\1)"),
+    (r"\(lanes \*const\[\]\)\{", "Parts{"),
 )
 KINDS = ("additions", "multiplications", "divisions", "roots", "exponentials", "circular")
 

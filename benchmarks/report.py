@@ -2,21 +2,26 @@
 
 from __future__ import annotations
 
-from collections.abc import Sequence
+from collections.abc import Mapping, Sequence
 from dataclasses import dataclass, field
+from typing import TYPE_CHECKING
+
+if TYPE_CHECKING:
+    from matplotlib.figure import Figure
 
 __all__ = ["Section", "goal"]
 
 
 @dataclass(frozen=True, kw_only=True)
 class Section:
-    """One table with the command that repeats it, and remarks below."""
+    """One table with the command that repeats it, remarks and figures, by the names of their files, below."""
 
     title: str
     command: str
     header: Sequence[str]
     rows: Sequence[Sequence[str]]
     remarks: Sequence[str] = field(default_factory=tuple)
+    pictures: Mapping[str, Figure] = field(default_factory=dict)
 
     def markdown(self) -> str:
         """As a chapter of a page."""
@@ -24,6 +29,7 @@ class Section:
         parts = [f"## {self.title}", f"`{self.command}`", "\n".join(lines)]
         if self.remarks:
             parts.append("\n".join(f"- {remark}" for remark in self.remarks))
+        parts += [f"![{self.title}]({name}.svg)" for name in self.pictures]
         return "\n\n".join(parts)
 
     def text(self) -> str:

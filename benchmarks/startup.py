@@ -1,4 +1,4 @@
-"""From nothing to a result: import, help, cold and warm start as whole processes, the paper's study."""
+"""From nothing to a result: import, help, check, run with its report, cold and warm, the paper's study."""
 
 from __future__ import annotations
 
@@ -9,8 +9,11 @@ import sys
 import tempfile
 import time
 from collections.abc import Callable
+from pathlib import Path
 
+from benchmarks.machine import all_cores, one_core
 from benchmarks.report import Section, goal
+from flexapod.model import preset_text
 
 __all__ = ["startup"]
 
@@ -37,12 +40,16 @@ NO_COMPILER = (
 def startup() -> list[Section]:
     """One section, times of the clock on the wall."""
     imported = _median(lambda: _seconds("-c", "import flexapod") - _seconds("-c", "pass"))
+    study = _median(lambda: _seconds("-c", "import flexapod.study") - _seconds("-c", "pass"))
     helped = _median(lambda: _seconds("-m", "flexapod", "--help"))
     cold, warm = _median(_cold, 3), _median(lambda: _seconds("-c", ROLL))
-    step, paper = _interpreted(), _replicate()
+    (check, ran), step, paper = _commands(), _interpreted(), _replicate()
     rows = [
         ["import flexapod", f"{imported:.3f} s", goal(imported, 0.3, "0.3 s")],
+        ["import flexapod.study", f"{study:.2f} s", ""],
         ["flexapod --help", f"{helped:.3f} s", goal(helped, 0.5, "0.5 s")],
+        ["flexapod check, preset paper-robot", f"{check:.2f} s", ""],
+        ["flexapod run of it: figures, report, all cores", f"{ran:.2f} s", goal(ran, 3.5, "3.5 s")],
         ["first roll ever, kernel compiled, whole process", f"{cold:.2f} s", goal(cold, 10.0, "10 s")],
         ["2 s roll at 0.5 ms, warm, whole process", f"{warm:.2f} s", goal(warm, 1.0, "1 s")],
         ["a step without a C compiler, k = 3", f"{1e3 * step:.2f} ms", ""],
@@ -68,6 +75,20 @@ def _seconds(*arguments: str, **environment: str) -> float:
 def _cold() -> float:
     with tempfile.TemporaryDirectory() as folder:
         return _seconds("-c", ROLL, FLEXAPOD_CACHE=folder)
+
+
+def _commands() -> tuple[float, float]:
+    """Seconds of `check` on one core, and of `run` on all."""
+    with tempfile.TemporaryDirectory() as folder:
+        file = Path(folder) / "robot.toml"
+        file.write_text(preset_text("paper-robot"), encoding="utf-8")
+        command = ("-m", "flexapod", "run", str(file), "--quiet")
+        check = _median(lambda: _seconds("-m", "flexapod", "check", str(file)), 5)
+        all_cores()
+        _seconds(*command)
+        ran = _median(lambda: _seconds(*command), 5)
+        one_core()
+    return check, ran
 
 
 def _replicate() -> float:

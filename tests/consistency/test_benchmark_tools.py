@@ -4,11 +4,12 @@ import os
 
 import numpy as np
 import pytest
-from benchmarks.deviation import error, reference, roll, undamped
+from benchmarks.deviation import error, marched, reference, roll, undamped
 from benchmarks.ode import ode
 from benchmarks.side_by_side import _with_this
+from benchmarks.tolerances import cases
 
-from flexapod.model import AxisMotion
+from flexapod.model import AxisMotion, override
 from flexapod.proof.engines.exudyn_integration import Integration
 from flexapod.proof.engines.exudyn_process import ask
 from flexapod.proof.engines.exudyn_robot import RobotProblem, simulate_robot
@@ -20,10 +21,24 @@ def test_independent_coordinates_give_the_motion_of_the_time_loop():
     equations = ode(study)
     # In equilibrium: of forces of 1e3 N and masses of grams what rounding and the equilibrium's tolerance leave.
     assert np.abs(equations.rates(0.0, equations.start)).max() < 1e-6
-    found, _, _, _ = equations.solve("DOP853", 1e-5, 4e-3, np.linspace(0.0, 0.1, 11))
+    found, _, _ = equations.solve("DOP853", 1e-5, 4e-3, np.linspace(0.0, 0.1, 11))
     # The march's error of second order, 3e-5 at 12.5 us, is extrapolated away; the next term is smaller by (omega h)^2,
     # 0.06 for 3.5 kHz. Without the closures' curvature the difference is 1e-3.
     assert error(found, reference(study)) < 5e-6
+
+
+def test_other_studies_as_ordinary_equations():
+    """Springs, soft joints and screws; a beam alone: our curve within 1e-7, and SciPy's of the same equations."""
+    hexapod, beam = (case.study for case in cases()[1:])
+    motion = AxisMotion(type="surge", amplitude=5e-3, duration=0.05)
+    for study, method in (
+        (override(hexapod.replace(motion=motion), duration=0.1), "Radau"),
+        (override(beam, duration=2.0), "DOP853"),
+    ):
+        ours = marched(override(study, tolerance=1e-7)).curve
+        found, _, _ = ode(study).solve(method, 1e-7, 1e-2, ours.time)
+        # SciPy's tolerance holds for each of some hundred steps.
+        assert error(ours, found) < 1e-5
 
 
 def test_tuned_exudyn_moves_as_the_untuned(monkeypatch):

@@ -14,8 +14,10 @@ from benchmarks.one_robot import fixed, largest_step
 from benchmarks.operations import Count, casadi_count, compile_counting, counted, reader
 from benchmarks.real_parts import BEFORE, EVERYTHING
 from benchmarks.report import Section, goal
+from benchmarks.scaling import Law, with_legs
 from benchmarks.side_by_side import Family, chosen
 from benchmarks.timing import Spread, interleaved
+from benchmarks.tolerances import at_error
 
 from flexapod.model import load, preset
 from flexapod.solve.robot_march import prepare
@@ -82,6 +84,27 @@ def test_the_cheapest_setting_that_also_holds_when_refined():
     never = family("B", [0.02, float("inf")], [1, 2])
     best = chosen([lucky, steady, never], 0.01)
     assert lucky.cheapest(0.01) is None and best == {"A": (steady, 1)}
+
+
+def test_cost_at_an_error_lies_between_the_settings_tried():
+    found = [(1e-2, 1.0), (1e-4, 4.0), (1e-3, 9.0), (float("inf"), 0.1)]  # the third is worse than the second
+    assert at_error(found, 1e-3) == pytest.approx(2.0)  # half-way in the logarithms
+    assert at_error(found, 1e-1) == 1.0 and at_error(found, 1e-5) is None and at_error([], 1.0) is None
+
+
+def test_cost_laws_are_fitted_where_they_say():
+    law = Law(against="x", words="w", unit="ms", x=[1, 2, 4, 8], cost=[9, 4, 16, 64], of=slice(1, None), most=2.0)
+    assert law.power.exponent == pytest.approx(2.0) and law.row()[-1] == "at most 2: met"
+
+
+def test_six_legs_in_pairs_are_those_of_the_paper():
+    made, paper = with_legs(6).robot, preset("paper-robot").robot
+    np.testing.assert_allclose(made.base_joints, paper.base_joints, atol=1e-12)
+    np.testing.assert_allclose(made.platform_joints, paper.platform_joints, atol=1e-12)
+    # On more legs each still stands upright: the platform's joint is as far round as on six, or nearer.
+    many = with_legs(12).robot
+    turn = np.cross(many.base_joints, many.platform_joints)[:, 2] / (0.25 * 0.15)
+    assert np.abs(np.degrees(np.arcsin(turn))).max() < 40.01
 
 
 def test_interleaved_calls_take_turns():
