@@ -1,5 +1,7 @@
 """Pistons in two bushings and cylinders that bend: exact kinematics, limits, exact beams."""
 
+import re
+
 import numpy as np
 import pytest
 from scipy.linalg import eigh
@@ -25,6 +27,7 @@ from flexapod.solve.buckling import leg_loads
 from flexapod.study.accuracy.play import guide_play
 from flexapod.study.before.describe.robot import describe
 from flexapod.study.before.estimates import buckling_load
+from flexapod.study.bodies import bodies_words
 from flexapod.study.budgets.words import part_words
 
 L_P, MOUTH, LENGTH = 0.75, 0.315, 0.91
@@ -239,7 +242,16 @@ def test_forces_of_the_bushings_balance_the_piston():
     # At rest, across a leg between ideal joints: bushings, weight and the platform's force; their moments about the
     # gland. A thrust of 2 kN at deflections of 0.1 mm is 0.2 N m of 30.
     robot = machine(guide=bushings(2e8), cylinder=BENDING)
-    data = fx.run(study(robot, step=1e-3, duration=0.01)).isel(time=0)
+    run = fx.run(study(robot, step=1e-3, duration=0.01))
+    data = run.isel(time=0)
+    # What check says of the pose is what a run begins with, and both find the largest of them
+    pressed = np.linalg.norm(data.guide_force.values, axis=-1)
+    np.testing.assert_allclose(describe(study(robot)).poses[0].bushings, pressed, rtol=1e-6)
+    words = bodies_words(run)[-1]
+    assert re.fullmatch(r"The glands bear up to [\d.]+ k?N across \(leg \d at t = .*?\), heads bear .*\.", words)
+    turning = fx.parts(robot).guide_turning.values[0]
+    d, EI = float(data.guide_overlap[0]), robot.legs[0].piston.EI
+    assert turning == pytest.approx(1 / (d / (3 * EI) + 2 / 2e8 / d**2), rel=1e-3)  # the leg sags by some micrometres
     piston, length = robot.legs[0].piston, data.leg_length.values
     limbs = fx.rigid.rigid_limbs(robot)
     for i in range(6):

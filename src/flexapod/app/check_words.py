@@ -6,7 +6,10 @@ import math
 from collections.abc import Mapping, Sequence
 from typing import TYPE_CHECKING
 
+import numpy as np
+
 from flexapod.app.terminal import print_table, print_text
+from flexapod.study.after.inside import bushing_words
 from flexapod.study.before.describe.hydraulic import hydraulic_table
 from flexapod.study.before.describe.screw import screw_table
 from flexapod.study.words import column, length, number, scale, text
@@ -241,6 +244,8 @@ def _pose(pose: PoseDescription, held: str) -> None:
     if any(pose.lost_motion):
         lags = " to ".join(dict.fromkeys(text(lag(pose.lost_motion), "m") for lag in (min, max)))
         print_text(f"Friction of the drives lets the legs lag by {lags}, to and fro by twice as much.", indent=2)
+    if pose.bushings:
+        print_text(bushing_words(np.array([pose.bushings])), indent=2)
     if pose.modes:
         listed = ", ".join(f"{m.frequency:.4g} Hz ({m.kind}, {100 * m.damping_ratio:.2g} %)" for m in pose.modes)
         print_text(f"Frequencies (what moves, damping): {listed}.", indent=2)

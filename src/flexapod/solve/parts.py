@@ -9,7 +9,7 @@ from flexapod.model import ForceDrive, Leg, Robot, ServoDrive
 from flexapod.solve.springs import Spring, before_piston, of_servo, springs_along
 from flexapod.typing import Array
 
-__all__ = ["mount_stiffness", "part_stiffness"]
+__all__ = ["guide_turning", "mount_stiffness", "part_stiffness"]
 
 
 def part_stiffness(robot: Robot, length: Array) -> dict[str, Array]:
@@ -41,6 +41,16 @@ def mount_stiffness(robot: Robot, path: rigid.Poses) -> dict[str, Array]:
     if (mount := robot.base_mount) is not None:
         feet = tips - axes * legs.length[..., None]
         found["base_mount"] = _against(mount.stiffness, axes, feet - mount.at)
+    return found
+
+
+def guide_turning(robot: Robot, length: Array) -> Array:
+    """Moment at the gland over the turn that it gives guided pistons there, (legs,) [N m/rad], Eq. (T25.8)."""
+    found = np.full(robot.count, np.inf)
+    for i, leg in enumerate(robot.legs):
+        if leg.guide is not None:
+            d = leg.cylinder.mouth + leg.piston.length - length[i]
+            found[i] = 1 / (d / (3 * leg.piston.EI) + (1 / leg.guide.gland + 1 / leg.guide.head) / d**2)
     return found
 
 

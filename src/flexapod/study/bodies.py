@@ -9,6 +9,7 @@ import numpy as np
 
 from flexapod import rigid
 from flexapod.model import Robot
+from flexapod.study.after.inside import bushing_words
 from flexapod.study.before.estimates import section_width
 from flexapod.study.words import text
 from flexapod.typing import Array
@@ -87,7 +88,7 @@ def body_results(robot: Robot, payload: tuple[Array, Array], axes: Array, length
 
 
 def bodies_words(data: Dataset) -> list[str]:
-    """Sentences on a result: the joint with the least angle left, the least distance between legs."""
+    """Sentences on a result: the joint with the least angle left, the least distance of legs, what bushings bear."""
     said = []
     if "joint_margin" in data:
         left = data.joint_margin.values
@@ -96,6 +97,8 @@ def bodies_words(data: Dataset) -> list[str]:
     if "leg_clearance" in data:
         k = first_least(data.leg_clearance.values)
         said.append(gap_words(float(data.leg_clearance[k]), data.nearest_legs.values[k], float(data.time[k])))
+    if "guide_force" in data:
+        said.append(bushing_words(np.linalg.norm(data.guide_force.values, axis=-1), data.time.values))
     return said
 
 

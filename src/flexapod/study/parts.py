@@ -8,7 +8,8 @@ import numpy as np
 
 from flexapod import rigid
 from flexapod.solve.lost_motion import lost_motion, places_with_friction
-from flexapod.solve.parts import mount_stiffness, part_stiffness
+from flexapod.solve.parts import guide_turning, mount_stiffness, part_stiffness
+from flexapod.study.after.inside import is_guided
 from flexapod.study.arguments import PoseLike, RobotLike, as_pose, at_pose
 from flexapod.study.attributes import attributes
 from flexapod.study.before.checks import path_remarks
@@ -36,7 +37,9 @@ def parts(robot: RobotLike, pose: PoseLike = None) -> Dataset:
     xarray.Dataset
         `part_stiffness` (leg, part) [N/m]: of the piston's stretch, of joints, screw, twist, nut, bearing, of named
         springs, of a drive that has a spring, of mounts at the leg's joint against a force along that leg alone; inf
-        where a leg does not have the part. `leg_stiffness` (leg): all but mounts in series. `lost_motion` (leg) [m], of
+        where a leg does not have the part. `leg_stiffness` (leg): all but mounts in series. Of guided pistons
+        `guide_stiffness` (leg, bushing) [N/m] across the leg and `guide_turning` (leg) [N m/rad], of bushings and the
+        piston between them against a moment at the gland; inf of a clamped one. `lost_motion` (leg) [m], of
         robots whose drives have friction: half of what a leg lags by it to and fro.
 
     Raises
@@ -52,6 +55,11 @@ def parts(robot: RobotLike, pose: PoseLike = None) -> Dataset:
     whole = 1.0 / np.sum([1.0 / x for x in found.values()], axis=0)
     found |= {name: x[0] for name, x in mount_stiffness(study.robot, path).items()}
     values = {"part_stiffness": np.stack(list(found.values()), axis=1), "leg_stiffness": whole}
+    if is_guided(study.robot):
+        bushings = np.array(
+            [[leg.guide.gland, leg.guide.head] if leg.guide else [np.inf] * 2 for leg in study.robot.legs]
+        )
+        values |= {"guide_stiffness": bushings, "guide_turning": guide_turning(study.robot, length)}
     if "drive" in places_with_friction(study.robot):
         values["lost_motion"] = lost_motion(study.robot, length)
     return dataset(values, {"part": list(found)}, attributes(study, [*study.warnings, *remarks]))

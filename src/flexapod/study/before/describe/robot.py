@@ -17,6 +17,7 @@ from flexapod.solve.robot_march import refuse_massless
 from flexapod.solve.springs import springs_along
 from flexapod.solve.stiffness import compliance, stiffness_of
 from flexapod.study.accuracy.words import accuracy_words
+from flexapod.study.after.inside import guide_results
 from flexapod.study.after.mode_shapes import mode_kinds
 from flexapod.study.before.checks import check_path
 from flexapod.study.before.describe.actuator import ActuatorDescription, describe_actuator
@@ -86,7 +87,8 @@ class PoseDescription:
 
     `sag` [m] of the centre of mass, `stiffness`, `modes`: the lowest. None and empty where there is no such thing;
     `problem` then says why. `parts`: of legs with more than ideal parts, by name and leg [N/m], inf where it has none.
-    `lost_motion` [m] of each leg by friction of its drive, half of it to and fro.
+    `lost_motion` [m] of each leg by friction of its drive, half of it to and fro. `bushings` [N]: what gland and
+    head of each leg bear across it.
     """
 
     name: str
@@ -97,6 +99,7 @@ class PoseDescription:
     problem: str | None = None
     parts: Mapping[str, tuple[float, ...]] | None = None
     lost_motion: tuple[float, ...] = ()
+    bushings: tuple[tuple[float, ...], ...] = ()
 
 
 @dataclass(frozen=True, kw_only=True)
@@ -129,12 +132,17 @@ def describe_pose(study: model.Study, name: str, time: float) -> PoseDescription
         return PoseDescription(name=name, time=time, problem=str(error), parts=parts, lost_motion=lost)
     lines = zip(found.frequency, found.damping_ratio, mode_kinds(found), strict=True)
     modes = tuple(ModeLine(frequency=float(f), damping_ratio=float(ratio), kind=kind) for f, ratio, kind in lines)
+    inside = guide_results(robot, locked.system, found.equilibrium.state.q)
+    pressed = np.linalg.norm(inside["guide_force"], axis=-1).tolist() if inside else []
+    bushings = tuple(tuple(pair) for pair in pressed)
     if robot.platform_fixed:
-        return PoseDescription(name=name, time=time, modes=modes[:SHOWN], parts=parts, lost_motion=lost)
+        return PoseDescription(
+            name=name, time=time, modes=modes[:SHOWN], parts=parts, lost_motion=lost, bushings=bushings
+        )
     sag = found.equilibrium.state.pose[:3] - path.point(robot.com)[0][0]
     return PoseDescription(
         name=name, time=time, sag=float(np.linalg.norm(sag)), stiffness=stiffness, modes=modes[:SHOWN], parts=parts,
-        lost_motion=lost,
+        lost_motion=lost, bushings=bushings,
     )  # fmt: skip
 
 
