@@ -8,6 +8,8 @@ import sys
 import time
 from dataclasses import replace
 
+from tests.texts import replaced
+
 from flexapod.model import loads, preset_text
 from flexapod.surveys.sweeps.batch import compute_batch
 
@@ -31,11 +33,7 @@ def quick():
 
 def quick_text(*changes):
     """Its file, with pieces replaced."""
-    text = preset_text("paper-robot")
-    for old, new in (*QUICK, *changes):
-        assert text.count(old) == 1, f"{old!r} is {text.count(old)} times in the text"
-        text = text.replace(old, new)
-    return text
+    return replaced(preset_text("paper-robot"), *QUICK, *changes)
 
 
 def diameters(count, *, more=(), **kept):

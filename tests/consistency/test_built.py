@@ -116,18 +116,22 @@ def test_temperatures_over_time_are_those_of_the_table():
     )
 
 
-def test_legs_that_warm_up_while_they_move_take_the_rates_along():
-    # Tenths of a degree in tenths of a second: growth by a hundred micrometres, at rates of the motion's own size.
-    heat = Heat(time=[0.0, 0.04, 0.1], columns=("piston", "cylinder 3"), table=[[20, 20], [40, 20], [30, 60]])
+def warming(heat):
+    """A rigid robot that warms up as it rolls: it, its simulation, its drawn path, the way of its centre of mass."""
     study = paper_robot(fidelity="rigid")
     robot = study.robot.replace(heat=heat)
     study = study.replace(robot=robot, motion=study.motion.replace(duration=0.1, hold=0.0))
     data = fx.simulate(study, duration=0.12, step=1e-3)
     path = rigid.poses(robot, study.motion, data.time.values)
-    com = rigid.built_poses(robot, path, data.time.values).place(robot.com)
+    return robot, data, path, rigid.built_poses(robot, path, data.time.values).place(robot.com)
+
+
+def test_legs_that_warm_up_while_they_move_take_the_rates_along():
+    # Tenths of a degree in tenths of a second: growth by a hundred micrometres, at rates of the motion's own size.
+    heat = Heat(time=[0.0, 0.04, 0.1], columns=("piston", "cylinder 3"), table=[[20, 20], [40, 20], [30, 60]])
+    _, data, _, com = warming(heat)
     np.testing.assert_allclose(data.com_position, com, atol=1e-12)
-    drawn = fx.simulate(study.replace(robot=robot.replace(heat=None)), duration=0.12, step=1e-3)
-    balances = [x.energy_kinetic + x.energy_potential - x.work_drive for x in (data, drawn)]
+    balances = [x.energy_kinetic + x.energy_potential - x.work_drive for x in (data, warming(None)[1])]
     # Work is integrated to second order in the step; growing legs do not make it worse.
     assert np.ptp(balances[0].values) < 1.5 * np.ptp(balances[1].values)
     heated = np.abs(data.deviation_by_cause.sel(cause="heat_piston").values)
@@ -138,17 +142,11 @@ def test_plates_that_warm_up_move_the_platform_as_kinematics_says():
     # Legs take the growth of the plates as a length: what that leaves is its square over the length of a leg, through
     # J^-1. Both plates have started elsewhere than at the reference, so that joints of the kernel are shifted, too.
     heat = Heat(time=[0.0, 0.04, 0.1], columns=("base", "platform"), table=[[23, 20], [26, 22], [25, 30]])
-    study = paper_robot(fidelity="rigid")
-    robot = study.robot.replace(heat=heat)
-    study = study.replace(robot=robot, motion=study.motion.replace(duration=0.1, hold=0.0))
-    data = fx.simulate(study, duration=0.12, step=1e-3)
-    path = rigid.poses(robot, study.motion, data.time.values)
-    com = rigid.built_poses(robot, path, data.time.values).place(robot.com)
+    robot, data, path, com = warming(heat)
     grown = 12e-6 * 10 * 0.5
     assert np.abs(com - path.place(robot.com)).max() > 0.3 * grown
     np.testing.assert_allclose(data.com_position, com, atol=20 * grown**2 / robot.home_lengths.min())
-    drawn = fx.simulate(study.replace(robot=robot.replace(heat=None)), duration=0.12, step=1e-3)
-    balances = [x.energy_kinetic + x.energy_potential - x.work_drive for x in (data, drawn)]
+    balances = [x.energy_kinetic + x.energy_potential - x.work_drive for x in (data, warming(None)[1])]
     assert np.ptp(balances[0].values) < 1.5 * np.ptp(balances[1].values)  # rates fit values
     causes = data.deviation_by_cause.sum("leg")
     assert np.abs(causes.sel(cause=["heat_base", "heat_platform"])[-1]).max() > 1e-5

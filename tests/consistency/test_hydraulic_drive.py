@@ -7,6 +7,7 @@ from scipy.optimize import minimize_scalar
 from tests.consistency.test_soft_joints import light
 from tests.machines import SCREW, machine, study, symmetric
 from tests.runs import balance, run_robot
+from tests.texts import replaced
 
 import flexapod as fx
 from flexapod import model
@@ -207,11 +208,7 @@ TEXT = model.preset_text("motion-base")
 
 
 def changed(*pairs):
-    text = TEXT
-    for old, new in pairs:
-        assert text.count(old) == 1, old
-        text = text.replace(old, new)
-    return model.loads(text)
+    return model.loads(replaced(TEXT, *pairs))
 
 
 class TestFile:

@@ -5,6 +5,7 @@ import tomllib
 
 import numpy as np
 import pytest
+from tests.texts import replaced
 
 import flexapod as fx
 from flexapod import model
@@ -102,10 +103,7 @@ class TestNanoHexapod:
         # of that half's inertia, which is some hundredth of all that moves: below 3e-4 of a frequency.
         text = re.sub(r"\n(base|platform)_joint +=.*", "", model.preset_text("nano-hexapod"))
         changes = {"6-FPF": "6-UPS", "-9.81]": "0]", '"1.846 N/um"': '"20 N/um"', '"15.7 MN"': '"1e6 MN"'}
-        for old, new in changes.items():
-            assert text.count(old) == 1
-            text = text.replace(old, new)
-        robot = model.loads(text).robot
+        robot = model.loads(replaced(text, *changes.items())).robot
         found = fx.modes(robot, fidelity="lumped")
         np.testing.assert_allclose(found.frequency[:6], self.PUBLISHED, rtol=3e-4)
         np.testing.assert_allclose(

@@ -7,6 +7,7 @@ from tests.consistency.test_screw_drive import EVERYTHING
 from tests.consistency.test_soft_joints import light
 from tests.machines import NUT, SCREW, machine, study, symmetric
 from tests.runs import balance, run_robot
+from tests.texts import replaced
 
 import flexapod as fx
 from flexapod import model
@@ -25,11 +26,7 @@ def at(place, **more):
 
 
 def changed(*pairs):
-    text = TEXT
-    for old, new in pairs:
-        assert text.count(old) == 1, old
-        text = text.replace(old, new)
-    return model.loads(text)
+    return model.loads(replaced(TEXT, *pairs))
 
 
 class TestMeasured:

@@ -5,6 +5,7 @@ from pathlib import Path
 
 import numpy as np
 import pytest
+from tests.texts import replaced
 
 from flexapod import model
 from flexapod.errors import InputError
@@ -20,11 +21,7 @@ def content(study):
 
 
 def changed(name, *pairs):
-    text = SAMPLES[name]
-    for old, new in pairs:
-        assert text.count(old) == 1, f"{old!r} appears {text.count(old)} times"
-        text = text.replace(old, new)
-    return text
+    return replaced(SAMPLES[name], *pairs)
 
 
 def robot(name, *pairs):

@@ -7,6 +7,7 @@ from html.parser import HTMLParser
 
 import numpy as np
 import pytest
+from tests.texts import replaced
 
 from flexapod.app.commands_run import _axes, show_run
 from flexapod.model import loads, preset, preset_text
@@ -43,11 +44,7 @@ def page(study, robot):
 
 def changed(*changes, name="paper-robot"):
     """A preset with pieces of its text replaced."""
-    text = preset_text(name)
-    for old, new in changes:
-        assert text.count(old) == 1
-        text = text.replace(old, new)
-    return loads(text)
+    return loads(replaced(preset_text(name), *changes))
 
 
 @pytest.fixture(scope="module")

@@ -2,6 +2,7 @@
 
 import numpy as np
 import pytest
+from tests.texts import replaced
 
 from flexapod import model
 from flexapod.app.check_words import show_robot
@@ -34,11 +35,7 @@ def screw(**fields):
 
 def changed(*pairs):
     """The path of the machine hexapod, changed, and its screws."""
-    text = HEXAPOD
-    for old, new in pairs:
-        assert text.count(old) == 1, old
-        text = text.replace(old, new)
-    path = RigidPath(model.loads(text))
+    path = RigidPath(model.loads(replaced(HEXAPOD, *pairs)))
     return path, describe_screws(path)
 
 

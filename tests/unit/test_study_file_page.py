@@ -4,6 +4,7 @@ import tomllib
 from pathlib import Path
 
 import pytest
+from tests.texts import replaced
 from tests.unit.test_model_ranges import classes
 
 from flexapod.errors import InputError
@@ -137,9 +138,7 @@ REFUSED = (
 
 @pytest.mark.parametrize(("old", "new", "key", "words"), REFUSED, ids=[case[2] for case in REFUSED])
 def test_a_wrong_key_is_refused_with_the_right_form(old, new, key, words):
-    text = preset_text("paper-robot")
-    assert text.count(old) == 1
     with pytest.raises(InputError) as caught:
-        loads(text.replace(old, new), path="robot.toml")
+        loads(replaced(preset_text("paper-robot"), (old, new)), path="robot.toml")
     assert caught.value.key == key
     assert words in str(caught.value)

@@ -6,6 +6,7 @@ from collections.abc import Callable, Iterator
 from pathlib import Path
 
 import pytest
+from tests.texts import replaced
 
 from flexapod.app.commands_proof import _write
 from flexapod.app.view.document import Document
@@ -47,11 +48,7 @@ SPACE = SPACE.replace('duration = "2.5 s"', 'duration = "1 s"\ntolerance = 1e-2'
 
 def study_text(*changes: tuple[str, str], preset: str = "paper-robot") -> str:
     """The text of a preset with pieces replaced."""
-    text = preset_text(preset)
-    for old, new in changes:
-        assert text.count(old) == 1, f"{old!r} is {text.count(old)} times in {preset}"
-        text = text.replace(old, new)
-    return text
+    return replaced(preset_text(preset), *changes)
 
 
 def pytest_collection_modifyitems(items: list[pytest.Item]) -> None:

@@ -15,22 +15,15 @@ from flexapod.model.motion import check_times
 class PrescribedDrive(Frozen):
     """The stroke follows the command exactly; its force is a result.
 
-    `backlash`: free travel [m], of a crank [rad]. `friction` of the stroke.
+    `backlash`: free travel [m], of a crank [rad]. `friction` of the stroke. Of every drive: `holds`, whether it keeps
+    its command, whatever the force; `pushes`, whether it is a force that keeps no position.
     """
 
+    holds: ClassVar[bool] = True
+    pushes: ClassVar[bool] = False
     type: Literal["prescribed"] = "prescribed"
     backlash: Annotated[NonNegative, Measure("length", "angle")] | None = None
     friction: StrokeFriction | None = None
-
-    @property
-    def holds(self) -> bool:
-        """Whether it keeps its command, whatever the force."""
-        return True
-
-    @property
-    def pushes(self) -> bool:
-        """Whether it is a force that keeps no position."""
-        return False
 
 
 class ServoDrive(Frozen):
@@ -39,21 +32,13 @@ class ServoDrive(Frozen):
     `backlash`: free travel [m], of a crank [rad]. `friction` of the stroke.
     """
 
+    holds: ClassVar[bool] = False
+    pushes: ClassVar[bool] = False
     type: Literal["servo"] = "servo"
     stiffness: Annotated[Positive, Measure("stiffness", "rotational stiffness")]
     damping: Annotated[NonNegative, Measure("damping", "rotational damping")] = 0.0
     backlash: Annotated[NonNegative, Measure("length", "angle")] | None = None
     friction: StrokeFriction | None = None
-
-    @property
-    def holds(self) -> bool:
-        """Whether it keeps its command, whatever the force."""
-        return False
-
-    @property
-    def pushes(self) -> bool:
-        """Whether it is a force that keeps no position."""
-        return False
 
 
 class Feedback(Frozen):
@@ -73,6 +58,7 @@ class ForceDrive(Frozen):
     """
 
     derived: ClassVar[tuple[str, ...]] = ("time", "force")
+    holds: ClassVar[bool] = False
     type: Literal["force"] = "force"
     law: Literal["rigid", "constant", "csv"] = "rigid"
     file: str | None = None
@@ -81,11 +67,6 @@ class ForceDrive(Frozen):
     value: Annotated[Number, Measure("force", "torque")] | None = None
     feedback: Feedback | None = None
     friction: StrokeFriction | None = None
-
-    @property
-    def holds(self) -> bool:
-        """Whether it keeps its command, whatever the force."""
-        return False
 
     @property
     def pushes(self) -> bool:

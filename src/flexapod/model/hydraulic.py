@@ -3,7 +3,7 @@
 from __future__ import annotations
 
 import math
-from typing import Annotated, Literal
+from typing import Annotated, ClassVar, Literal
 
 import numpy as np
 from pydantic import PlainSerializer, PlainValidator, model_validator
@@ -45,6 +45,8 @@ class HydraulicDrive(Frozen):
     [m^3/(s Pa)] past the head. `friction` of its seals, along the stroke. `limits` are for the checks of a path alone.
     """
 
+    holds: ClassVar[bool] = True
+    pushes: ClassVar[bool] = False
     type: Literal["hydraulic"] = "hydraulic"
     bore: Annotated[Positive, Measure("length")]
     rod: Annotated[Positive, Measure("length")]
@@ -67,16 +69,6 @@ class HydraulicDrive(Frozen):
                 allowed=f"below bore = {text(self.bore, 'm')}",
             )
         return self
-
-    @property
-    def holds(self) -> bool:
-        """Whether it keeps its command, whatever the force."""
-        return True
-
-    @property
-    def pushes(self) -> bool:
-        """Whether it is a force that keeps no position."""
-        return False
 
     @property
     def areas(self) -> tuple[float, float]:
