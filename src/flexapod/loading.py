@@ -31,8 +31,11 @@ def loaded(name: str) -> ModuleType:
 
 @contextmanager
 def without(name: str) -> Iterator[None]:
-    """Let a package that is not needed seem absent, so that others do not import it to look for its types."""
-    absent = name not in sys.modules
+    """Let a package that is not needed seem absent, so that xarray does not import it to look for its types.
+
+    Where xarray is there already it may have found the package, and would not look again.
+    """
+    absent = name not in sys.modules and "xarray" not in sys.modules
     if absent:
         sys.modules[name] = None  # type: ignore[assignment]  # imports of it then fail at once
     try:

@@ -164,7 +164,7 @@ def test_a_signal_while_results_are_written_leaves_nothing_half(study, folder, n
 @pytest.mark.skipif(sys.platform == "win32", reason="signals")
 @pytest.mark.parametrize(
     ("module", "name"),
-    [("study.simulation", "Simulated.values"), ("study.store", "save_csv"), ("report.figures", "draw")],
+    [("study.simulation", "Simulated.values"), ("study.store", "save_csv"), ("report.figures", "drawing")],
 )
 def test_a_signal_after_the_last_step_loses_nothing(study, folder, module, name):
     """The results were made and written once, and gone with a signal that came meanwhile."""
