@@ -221,7 +221,7 @@ def _drive(leg: model.Leg, length: float) -> float:
         return 0.0
     if leg.gives:
         softness = sum(float(spring.at_length(np.array(length))) for spring in before_piston(leg))
-        return np.inf if leg.holds_stroke else 1 / softness
+        return np.inf if (leg.drive.holds and leg.holds_stroke) or not softness else 1 / softness
     if drive.type == "servo":
         return drive.stiffness
     return drive.feedback.stiffness if drive.type == "force" and drive.feedback else np.inf

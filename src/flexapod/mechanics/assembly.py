@@ -3,6 +3,7 @@
 The residuals are exact. The matrices at rest serve equilibria, modes and the iterations of the time integration.
 """
 
+from flexapod.elements.loop import Loop
 from flexapod.elements.mount import plate
 from flexapod.elements.servo import Servo
 from flexapod.mechanics.closure import ball_closure, load_force, pose_closure
@@ -27,6 +28,7 @@ from flexapod.symbolic.vocabulary import (
     hessian,
     jacobian,
     matrix33,
+    sqrt,
     substitute,
     symbol,
     symbols,
@@ -38,7 +40,7 @@ from flexapod.symbolic.vocabulary import (
 def leg_functions(shapes: Shapes) -> list[NamedFunction]:
     """Residual, matrices at rest, energies and rates of the closure of one leg with the given shapes."""
     x = _Leg(shapes)
-    return [x.residual(), x.matrices(), x.energies(), x.closing()]
+    return [x.residual(), x.matrices(), x.energies(), x.closing(), *([x.looping()] if shapes.loop else [])]
 
 
 def leg_tangents(shapes: Shapes) -> NamedFunction:
@@ -72,10 +74,23 @@ class _Leg:
                 v=getattr(self.vs, name),
                 q_cmd=self.command[2 * i],
                 v_cmd=self.command[2 * i + 1],
-                summed=self.p.rotor_integral * self.qs.w if drive == "rotor" and shapes.integral else None,
+                summed=self._summed() if drive == "rotor" and not shapes.loop else None,
             )
             for i, (name, drive) in enumerate(shapes.drives)
         }
+
+    def _summed(self) -> SX | None:
+        return self.p.rotor_integral * self.qs.w if self.shapes.integral else None
+
+    def loop(self) -> Loop:
+        """Of legs whose motors lag, or whose loops are closed about another place than the rotor."""
+        along, (at_stroke, at_joints) = self.body.tip - self.body.foot, (self.p.loop_at[0], self.p.loop_at[1])
+        place = self.qs.r + at_stroke * (self.qs.l - self.qs.r) + at_joints * (sqrt(dot(along, along)) - self.qs.r)
+        rotor = self.servos[self.shapes.index("r")]
+        return Loop(
+            p=self.p, place=place, rate=jacobian(place, self.q) @ self.v, turns=self.vs.r, q_cmd=rotor.q_cmd,
+            v_cmd=rotor.v_cmd, summed=self._summed(), j=self.vs.j,
+        )  # fmt: skip
 
     def named(self, name: str, inputs: list[tuple[str, SX]], outputs: list[tuple[str, SX]]) -> NamedFunction:
         """Function of expressions that are differentiated."""
@@ -112,16 +127,34 @@ class _Leg:
             r -= self.load_force()
         for i, servo in self.servos.items():
             r[i] -= servo.force
+        loop = self.loop() if self.shapes.loop else None
+        if loop is not None:
+            j = self.shapes.index("j")
+            r[self.shapes.index("r")] -= loop.force
+            r[j] += loop.lag(self.v_dot[j])
         if self.shapes.integral:  # a coordinate of mass 1 whose rate is the error, (T23.16)
             rotor, w = self.servos[self.shapes.index("r")], self.shapes.index("w")
-            r[w] += self.v_dot[w] - (rotor.v_cmd - rotor.v)
+            r[w] += self.v_dot[w] - (rotor.v_cmd - (rotor.v if loop is None else loop.rate))
         return r
+
+    def looping(self) -> NamedFunction:
+        """What loops about other places, and lags, add to D and K, not symmetric; what is measured, and its slope."""
+        loop, rows = self.loop(), zeros(self.shapes.size)
+        rows[self.shapes.index("r")], rows[self.shapes.index("j")] = -loop.force, -loop.asked
+        if self.shapes.integral:
+            rows[self.shapes.index("w")] = loop.rate
+        still = zeros(self.shapes.size)
+        D, K = jacobian(rows, self.v), substitute(jacobian(rows, self.q), (self.v,), (still,))
+        outputs = [("D", D), ("K", K), ("place", loop.place), ("slope", jacobian(loop.place, self.q).T)]
+        return self.named("leg_loop", [("q", self.q), ("p", self.p_vector)], outputs)
 
     def residual(self) -> NamedFunction:
         """Balance, closure, powers (lost, given, of a load) and forces of the drives' springs."""
         loss = dot(self.v, gradient(self.body.lagrangian.dissipation, self.v))
         lost = sum((servo.lost for servo in self.servos.values()), loss)
         given = sum((servo.given for servo in self.servos.values()), zeros(1))
+        if self.shapes.loop:
+            given += self.loop().force * self.vs.r
         powers = [lost, given, *([dot(self.load_force(), self.v)] if self.shapes.loaded else [])]
         gap, wrench = (self.by_q.value(x) for x in self.closed(zeros(6)))
         meeting = [("gap", gap), ("wrench", wrench)] if self.shapes.posed else [("tip", self.body.tip)]
@@ -135,6 +168,8 @@ class _Leg:
     def forces(self) -> SX:
         """Forces of the drives' springs; of a stroke that is driven through springs theirs on it, Eq. (T15.11)."""
         forces = [servo.force for servo in self.servos.values()]
+        if self.shapes.loop:
+            forces[-1] += self.loop().force
         if self.shapes.series:
             series = self.body.series
             forces[0] -= gradient(series.strain, self.qs.l) + gradient(series.dissipation, self.vs.l)
@@ -155,6 +190,9 @@ class _Leg:
         M = mass_matrix(e)
         if self.shapes.integral:  # what couples it to the rotor is slow, and left out of the iterations
             M[self.shapes.index("w"), self.shapes.index("w")] += 1.0
+        if self.shapes.loop:
+            j = self.shapes.index("j")
+            M[j, j], D[j, j] = M[j, j] + self.p.loop_lag, D[j, j] + 1.0
         outputs = [("M", M), ("D", D), ("K", K), ("J", self.by_q.jacobian(here))]
         if self.shapes.posed:  # (T13.14)-(T13.15)
             outputs += [

@@ -4,6 +4,15 @@ from dataclasses import dataclass
 from typing import Literal
 
 from flexapod.bases import AxialBasis, LateralBasis, lateral_basis
+from flexapod.mechanics.drive_layout import (
+    GAP_PARAMETERS,
+    INTEGRAL_PARAMETERS,
+    LOOP_PARAMETERS,
+    OIL_PARAMETERS,
+    RIPPLE_PARAMETERS,
+    SERIES_PARAMETERS,
+    TURNING_PARAMETERS,
+)
 from flexapod.mechanics.guide_layout import CYLINDER_PARAMETERS, GUIDE_PARAMETERS
 from flexapod.mechanics.section_layout import section_parameters
 
@@ -73,29 +82,6 @@ FLEXURE_PARAMETERS: tuple[tuple[str, int], ...] = (
 SOFT_BASE: tuple[tuple[str, int], ...] = (("base_soft", 2), ("base_soft_damping", 2))
 SOFT_PLATFORM: tuple[tuple[str, int], ...] = (("platform_soft", 2), ("platform_soft_damping", 2))
 
-#: ... of legs whose stroke is driven through springs: these at home, how their compliance grows with the length there
-#: [1/m, 1/m^2], and the rotor with its servo, all by the stroke.
-SERIES_PARAMETERS: tuple[tuple[str, int], ...] = (
-    ("series_stiffness", 1),  # N/m, at home
-    ("series_softening", 2),
-    ("series_home", 1),  # m, length at home
-    ("series_damping", 1),  # N s/m
-    ("rotor_mass", 1),  # kg
-    ("rotor_stiffness", 1),  # N/m, between command and r
-    ("rotor_damping", 1),  # N s/m
-)
-
-#: ... whose pistons turn in their cylinders and take the nut along: travel by that angle [m/rad].
-TURNING_PARAMETERS: tuple[tuple[str, int], ...] = (("series_turn", 1),)
-#: ... whose play is a gap in them: half of it [m].
-GAP_PARAMETERS: tuple[tuple[str, int], ...] = (("half_play", 1),)
-#: ... whose motor has a ripple: angle of its first harmonic by travel [rad/m], energies of all [J].
-RIPPLE_PARAMETERS: tuple[tuple[str, int], ...] = (("ripple_wave", 1), ("ripple", 4))
-#: ... whose loop sums its error.
-INTEGRAL_PARAMETERS: tuple[tuple[str, int], ...] = (("rotor_integral", 1),)  # N/(m s)
-#: ... of which some are columns of oil: their share in the compliance of these at home; of the two columns the share of
-#: the pushing one in their stiffness there, and one over their lengths [1/m].
-OIL_PARAMETERS: tuple[tuple[str, int], ...] = (("oil", 4),)
 #: ... of joints and drives with friction, see `elements.friction`.
 BASE_FRICTION: tuple[tuple[str, int], ...] = (("base_friction", 8),)
 PLATFORM_FRICTION: tuple[tuple[str, int], ...] = (("platform_friction", 8),)
@@ -185,6 +171,8 @@ class Shapes:
         A torque that returns with the turns of the rotor.
     integral : bool
         The rotor's servo sums its error: w.
+    loop : bool
+        Motors lag, or loops are closed about the stroke or the distance of the joints: j, the impulse of the motor.
     oil : bool
         Columns of oil among these.
     sections : int
@@ -224,6 +212,7 @@ class Shapes:
     ripple: bool = False
     gap: bool = False
     integral: bool = False
+    loop: bool = False
     oil: bool = False
     sections: int = 0
     strips: bool = False
@@ -261,6 +250,7 @@ class Shapes:
             ("t", self.torsion),
             ("r", self.series),
             ("w", self.integral),
+            ("j", self.loop),
         )
         more = (*(name for name, has in there if has), *gamma)
         ends = (("u", self.flexure or self.soft_base), ("e", self.flexure or self.soft_platform))
@@ -377,6 +367,7 @@ def leg_parameters(shapes: Shapes) -> tuple[tuple[str, int], ...]:
         (shapes.gap, GAP_PARAMETERS),
         (shapes.ripple, RIPPLE_PARAMETERS),
         (shapes.integral, INTEGRAL_PARAMETERS),
+        (shapes.loop, LOOP_PARAMETERS),
         (shapes.oil, OIL_PARAMETERS),
         (shapes.sections > 0, _of_sections(shapes)),
         (shapes.base_friction, BASE_FRICTION),

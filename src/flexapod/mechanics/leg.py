@@ -33,7 +33,8 @@ ALONG = constant(np.array([[0.0], [0.0], [1.0]]))  # a leg's own direction
 class Leg:
     """One leg as expressions: energies, place of the tip in the world, rotation from the tip's axes to the world.
 
-    ``series``: energies of the springs between rotor and stroke, which are among the others.
+    ``foot``: place of the base joint, as the base carries it. ``series``: energies of the springs between rotor and
+    stroke, which are among the others.
     ``tip_axes`` is written in ``theta``, symbols for the rotation vector ``turn`` of the tip: derivatives by the many
     amplitudes go through these three.
     ``present``: symbols for what depends on the stroke alone, and what to put for them once all is differentiated.
@@ -48,11 +49,13 @@ class Leg:
     turn: SX
     series: Energies
     present: tuple[SX, SX]
+    foot: SX
 
 
 def leg(shapes: Shapes, p: SimpleNamespace, q: SX, v: SX, qs: SimpleNamespace, vs: SimpleNamespace) -> Leg:
     """Energies and tip of one leg from its coordinates; ``qs`` and ``vs`` are the named pieces of q and v."""
     ground, e = _ground(shapes, p, qs, vs)
+    foot = ground.origin
     if shapes.flexure:
         ground = ground.moved(_three(qs, "u"), _three(vs, "u"))
     frame = universal(ground, qs, vs)
@@ -100,6 +103,7 @@ def leg(shapes: Shapes, p: SimpleNamespace, q: SX, v: SX, qs: SimpleNamespace, v
         turn=tip_turn(motion) + turn,
         series=series,
         present=present,
+        foot=foot,
     )
 
 

@@ -133,6 +133,11 @@ class Leg(Frozen):
         return 0.0 if self.stroke is None else self.stroke.min
 
     @property
+    def closed_about(self) -> str:
+        """Where the loop of its motor is closed if that is not the rotor: "stroke", "joint-to-joint"; "" otherwise."""
+        return self.measured if self.screw is not None and self.screw.closes_elsewhere else ""
+
+    @property
     def backlash(self) -> float:
         """Free travel of its drive, from one end to the other [m], of a crank [rad]."""
         holder = self.drive if self.screw is None else self.screw.nut

@@ -9,12 +9,13 @@ import numpy as np
 from pydantic import BeforeValidator, Field, model_validator
 
 from flexapod.errors import InputError
-from flexapod.model.base import Frozen, Measure, NonNegative, Number, Positive, Series, array_of
-from flexapod.model.drive import Feedback, ForceDrive, PrescribedDrive, ServoDrive
+from flexapod.model.base import Frozen, Measure, NonNegative, Number, Positive, Series
+from flexapod.model.drive import ForceDrive, PrescribedDrive, ServoDrive
 from flexapod.model.friction import ScrewFriction
 from flexapod.model.hydraulic import HydraulicDrive
 from flexapod.model.material import Material
 from flexapod.model.motion import check_times
+from flexapod.model.motor import HARMONICS, Brake, Encoder, Limits, Loop, Motor, Ripple, Rotor, summing
 from flexapod.model.spring import check_lossy
 from flexapod.typing import Array
 from flexapod.words import number
@@ -24,7 +25,6 @@ __all__ = ["Bearing", "Brake", "Drive", "Encoder", "Limits", "Loop", "Motor", "N
 UNLOADS = 2 * math.sqrt(2)  # thrust over preload beyond which one half of a preloaded nut carries nothing
 HIGHEST = 0.1  # preload over dynamic load rating of a double nut, at most (HIWIN 3.6)
 UM = 1e6  # N/m of an N/um
-HARMONICS = 4  # of a ripple, at most
 
 Damping = Annotated[NonNegative, Measure("damping")] | None
 Stiffness = Annotated[Positive, Measure("stiffness")] | None
@@ -125,92 +125,6 @@ class Bearing(Frozen):
         return 3 * preload / approach * UM
 
 
-class Rotor(Frozen):
-    """What turns with the motor: `inertia` [kg m^2] at the motor, which turns `ratio` times as fast as the screw."""
-
-    inertia: Annotated[NonNegative, Measure("inertia")] = 0.0
-    ratio: Annotated[Positive, Measure("number")] = 1.0
-
-
-class Ripple(Frozen):
-    """What a motor's torque changes by as it turns: cogging and ripple, `torque` [N m] times `harmonics`.
-
-    `per_turn`: how often the first of these returns in a turn of the motor; `harmonics`: sizes of the first one and of
-    its multiples, up to four.
-    """
-
-    torque: Annotated[Positive, Measure("torque")]
-    per_turn: Annotated[int, Field(strict=True, ge=1, le=1000)]
-    harmonics: Annotated[Series, Measure("number")] = array_of((None,))([1.0])
-
-    @model_validator(mode="after")
-    def _few(self) -> Ripple:
-        if not 1 <= len(self.harmonics) <= HARMONICS:
-            raise InputError(
-                "has too many or none", key="harmonics", value=len(self.harmonics), allowed=f"1 to {HARMONICS} numbers"
-            )
-        return self
-
-
-class Motor(Frozen):
-    """The motor: its `torque_constant` [N m/A], and its `ripple`."""
-
-    torque_constant: Annotated[Positive, Measure("torque constant")] | None = None
-    ripple: Ripple | None = None
-
-
-class Limits(Frozen):
-    """What the drive is made for.
-
-    `force` [N] on the screw; `speed` [rad/s], `torque` and `rms_torque` [N m] of the motor.
-    """
-
-    force: Force = None
-    speed: Annotated[Positive, Measure("angular rate")] | None = None
-    torque: Torque = None
-    rms_torque: Torque = None
-
-    @model_validator(mode="after")
-    def _ordered(self) -> Limits:
-        if self.torque is not None and self.rms_torque is not None and self.rms_torque > self.torque:
-            raise InputError(
-                "is above the largest torque",
-                key="rms_torque",
-                value=self.rms_torque,
-                allowed=f"at most torque = {number(self.torque)} N m",
-                next_step="rms_torque is what the motor bears without end, torque what it gives for a moment",
-            )
-        return self
-
-
-class Brake(Frozen):
-    """A brake at the motor: the `torque` [N m] that it holds."""
-
-    torque: Annotated[Positive, Measure("torque")]
-
-
-class Encoder(Frozen):
-    """Where the position is measured: the motor's angle, the stroke, or the distance of both joints of the leg.
-
-    `resolution`: what it tells apart [m], of the motor's angle [rad].
-    """
-
-    at: Literal["rotor", "stroke", "joint-to-joint"] = "rotor"
-    resolution: Annotated[Positive, Measure("length", "angle")] | None = None
-
-
-class Loop(Feedback):
-    """A loop about the angle of the screw, that also sums its error: gain of the `integral` [N m/(rad s)]."""
-
-    integral: Annotated[NonNegative, Measure("integral gain")] = 0.0
-
-
-def _summing(loop: object) -> object:
-    """A loop out of a correction that sums nothing."""
-    plain = isinstance(loop, Feedback) and not isinstance(loop, Loop)
-    return Loop(stiffness=loop.stiffness, damping=loop.damping) if plain else loop  # type: ignore[union-attr]
-
-
 class ScrewDrive(Frozen):
     """A screw that the motor turns in a thrust bearing in the cylinder; its nut is the piston's inner end.
 
@@ -242,7 +156,7 @@ class ScrewDrive(Frozen):
     file: str | None = None
     time: Annotated[Series, Measure("time")] | None = None
     torque: Annotated[Series, Measure("torque")] | None = None
-    loop: Annotated[Loop | None, BeforeValidator(_summing)] = None
+    loop: Annotated[Loop | None, BeforeValidator(summing)] = None
     encoder: Encoder = Encoder()
     limits: Limits = Limits()
     brake: Brake | None = None
@@ -258,25 +172,34 @@ class ScrewDrive(Frozen):
             )
         if self.command == "servo" and (self.loop is None or not self.loop.stiffness > 0):
             raise InputError("is missing", key="loop", next_step="Add loop = { stiffness, damping }, N m/rad")
-        if self.command != "position" and self.encoder.at != "rotor":
+        if self.command == "torque" and self.encoder.at != "rotor" and not any(self.loop_spring):
             raise InputError(
-                "is not where loops and torques act: they are about the rotor's angle",
+                "measures what no loop asks for",
                 key="encoder.at",
                 value=self.encoder.at,
-                allowed='rotor; or command = "position", an ideal loop about what is measured',
+                allowed="rotor; or a loop beside the torque",
             )
+        for key, given in (("motor.bandwidth", self.motor.bandwidth), ("encoder.rate", self.encoder.rate == "rotor")):
+            if self.command == "position" and given:
+                raise InputError(
+                    "has nothing to do where the position is held",
+                    key=key,
+                    allowed='with command = "servo" or "torque"',
+                )
         return self
 
     @model_validator(mode="after")
     def _steady(self) -> ScrewDrive:
-        loop = self.loop  # (T23.17)
-        if loop is not None and loop.integral > 0 and self.inertia * loop.integral >= loop.stiffness * loop.damping:
-            most = loop.stiffness * loop.damping / self.inertia
+        loop = self.loop  # (T23.17), (T23.57)
+        left = 0.0 if loop is None else loop.stiffness * max(loop.damping - self.lag * loop.stiffness, 0.0)
+        if loop is not None and loop.integral > 0 and self.inertia * loop.integral >= left:
+            most = left / self.inertia
             raise InputError(
                 "makes the loop unstable, whatever it drives",
                 key="loop.integral",
                 value=loop.integral,
-                allowed=f"below stiffness * damping / inertia of all that turns = {number(most)} N m/(rad s)",
+                allowed=f"below stiffness * {'(damping - lag * stiffness)' if self.lag else 'damping'} / inertia "
+                f"of all that turns = {number(most)} N m/(rad s)",
                 next_step="With a payload a third of that leaves some margin",
             )
         return self
@@ -344,7 +267,7 @@ class ScrewDrive(Frozen):
     @property
     def rippled(self) -> float:
         """Standard deviation of the rotor's travel at rest by its ripple [m]: none where that is held, Eq. (T23.22)."""
-        if self.rests or not self.loop_spring[0] or self.holds_stroke:
+        if self.rests or not self.loop_spring[0]:
             return 0.0
         return float(np.sqrt(0.5 * (self.rippling**2).sum()) / self.loop_spring[0])
 
@@ -370,8 +293,23 @@ class ScrewDrive(Frozen):
 
     @property
     def holds_stroke(self) -> bool:
-        """Whether the loop is closed behind the nut, ideally."""
+        """Whether the loop is closed behind the nut."""
         return self.encoder.at != "rotor"
+
+    @property
+    def lag(self) -> float:
+        """Time by which the motor's torque lags behind what is asked of it [s], Eq. (T23.51)."""
+        return 0.0 if self.motor.bandwidth is None else 1 / (2 * math.pi * self.motor.bandwidth)
+
+    @property
+    def closes_elsewhere(self) -> bool:
+        """Whether its loop is closed about another place than the rotor on which the motor acts."""
+        return self.holds_stroke and not self.holds
+
+    @property
+    def loops(self) -> bool:
+        """Whether its motor is more than a spring and a damper on its rotor."""
+        return self.lag > 0 or self.closes_elsewhere
 
     @property
     def increment(self) -> float:

@@ -156,16 +156,17 @@ def _screw(drive: model.ScrewDrive) -> str:
     held = {"joint-to-joint": "distance of its joints"}.get(drive.encoder.at, drive.encoder.at)
     motors = {
         "position": f"the {held} held at its command",
-        "servo": "the rotor pulled to its command by a loop",
+        "servo": f"the {held} pulled to its command by a loop",
         "torque": {
             "rigid": "driven by the torque that the rigid robot and the rotor need",
             "constant": f"driven by a constant torque of the motor, {text(drive.value or 0.0, 'N m')}",
             "csv": "driven by a torque of the motor from a table",
         }[drive.law],
     }
+    late = f", its torque behind by {text(drive.lag, 's')}" if drive.lag else ""
     return (
         f"screw of {text(drive.root_diameter, 'm', 4)} with a lead of {text(drive.lead, 'm', 4)}, {drive.mounting}, "
-        f"{motors[drive.command]}"
+        f"{motors[drive.command]}{late}"
     )
 
 

@@ -6,7 +6,7 @@ from numpy.typing import NDArray
 from flexapod.bases.eigen import finite
 from flexapod.typing import Array
 
-__all__ = ["damping_ratios", "poles"]
+__all__ = ["OSCILLATES", "damping_ratios", "poles"]
 
 OSCILLATES = 1e-9  # imaginary part over size of an eigenvalue: less is a pair of real ones, split by rounding
 

@@ -32,8 +32,8 @@ class Kernel:
     """Functions of a leg with given shapes and of the payload; all take and return float arrays.
 
     ``leg_closing``, ``joint_closing``: for steps within a tolerance. ``leg_friction``,
-    ``leg_friction_matrix``, ``leg_sliding``: of legs with friction. ``library``: functions and time loop as compiled;
-    None where no C compiler was found and casadi interprets them.
+    ``leg_friction_matrix``, ``leg_sliding``: of legs with friction. ``leg_loop``: of those with loops not symmetric.
+    ``library``: functions and time loop as compiled; None where no C compiler was found and casadi interprets them.
     """
 
     shapes: Shapes
@@ -51,6 +51,7 @@ class Kernel:
     leg_friction: Function | None = None
     leg_friction_matrix: Function | None = None
     leg_sliding: Function | None = None
+    leg_loop: Function | None = None
 
 
 NAMES = tuple(field.name for field in fields(Kernel) if field.name not in ("shapes", "library"))
@@ -100,7 +101,8 @@ def sizes(shapes: Shapes, leg_p: int = 0, joint: int = 3) -> str:
     lists = (f"{name}[] = {{{', '.join(map(str, x))}}}" for name, x in (("ORDER", order), ("PLACE", places)))
     constants = ", ".join(f"{name} = {value}" for name, value in values.items())
     friction = f"#define BRISTLES {shapes.bristles}\n" if shapes.bristles else ""
-    return f"{friction}enum {{ {constants} }};\nstatic const int {', '.join(lists)};"
+    loop = f"#define LOOP {shapes.index('j')}\n" if shapes.loop else ""
+    return f"{friction}{loop}enum {{ {constants} }};\nstatic const int {', '.join(lists)};"
 
 
 def _functions(shapes: Shapes) -> "list[NamedFunction]":

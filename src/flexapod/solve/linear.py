@@ -9,10 +9,12 @@ from functools import cached_property
 import numpy as np
 from numpy.typing import NDArray
 
+from flexapod.errors import InputError
 from flexapod.mechanics.layout import LEG_PARAMETERS, PAYLOAD_PARAMETERS, columns
 from flexapod.solve.damped import poles
 from flexapod.solve.many import RestStates, residual
-from flexapod.solve.modes import LockedPoses, modal_damping, no_mass, the_equilibrium, unit_modes
+from flexapod.solve.modal_loops import ModalLoops, growth, unstable_words
+from flexapod.solve.modes import LockedPoses, loops_of, modal_damping, no_mass, the_equilibrium, unit_modes
 from flexapod.solve.stiffness import tool_motion
 from flexapod.solve.system import System
 from flexapod.solve.tables import push_ports
@@ -29,18 +31,19 @@ class LinearRobot:
 
     ``omega`` (r,) [rad/s], inf of what has no mass; ``damping`` (r, r) [s]; ``tool`` (6, r): displacement and rotation
     of the tool, world axes; ``inputs``: modal forces (r, any) of unit inputs by name: ``floor`` [per m/s^2], ``wrench``
-    and ``drive`` [per N, N m].
+    and ``drive`` [per N, N m]; ``loops``: those that are not symmetric.
     """
 
     omega: Array
     damping: Array
     tool: Array
     inputs: Mapping[str, Array]
+    loops: ModalLoops | None = None
 
     @cached_property
     def poles(self) -> Complex:
         """Eigenvalues [1/s]."""
-        return poles(self.omega, self.damping)
+        return poles(self.omega, self.damping) if self.loops is None else self.loops.eigen(self.omega, self.damping)[0]
 
     def amplitudes(self, frequency: Array, forces: Array) -> Complex:
         """Modes (f, r, any) at frequencies (f,) [Hz] under modal forces (r, any), Eq. (T18.2)."""
@@ -48,6 +51,8 @@ class LinearRobot:
         dynamic = s[..., None] * self.damping
         each = np.arange(self.omega.size)
         dynamic[:, each, each] += 1.0 + (s / self.omega) ** 2
+        if self.loops is not None:
+            dynamic = dynamic + self.loops.dynamic(s[:, 0])
         given = np.broadcast_to(forces.astype(complex), (len(s), *forces.shape))
         return np.asarray(np.linalg.solve(dynamic, given), dtype=np.complex128)
 
@@ -58,7 +63,7 @@ def linear_robot(locked: LockedPoses) -> LinearRobot:
     Raises
     ------
     InputError
-        Nothing can move.
+        Nothing can move, or loops are unstable.
     ComputationError
         No equilibrium at this pose, or masses that no body can have.
     """
@@ -74,7 +79,11 @@ def linear_robot(locked: LockedPoses) -> LinearRobot:
         "wrench": tool.T,
         "drive": flat.T @ _drive_forces(locked),
     }
-    return LinearRobot(omega=found.omega[0], damping=modal_damping(locked, found.flat)[0], tool=tool, inputs=inputs)
+    damping, loops = modal_damping(locked, found.flat)[0], [*loops_of(locked), None]
+    model = LinearRobot(omega=found.omega[0], damping=damping, tool=tool, inputs=inputs, loops=loops[0])
+    if model.loops is not None and (words := unstable_words(growth(model.poles))):
+        raise InputError(words[0], key="leg.drive.loop", allowed="loops whose deviations decay")
+    return model
 
 
 def floor_forces(locked: LockedPoses) -> Array:

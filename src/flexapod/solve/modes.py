@@ -11,13 +11,15 @@ from flexapod.errors import ComputationError, InputError
 from flexapod.mechanics.layout import LEG_PARAMETERS, columns
 from flexapod.model import Load, Robot, Simulation
 from flexapod.rigid.limbs import DRIVEN, FREE
-from flexapod.solve.damped import damping_ratios
+from flexapod.solve.damped import OSCILLATES, damping_ratios
 from flexapod.solve.elimination import LegBases, closed, leg_bases
 from flexapod.solve.equilibrium import FOUND, Equilibria, Equilibrium, equilibria
 from flexapod.solve.fallen import refuse_fallen
 from flexapod.solve.frequencies import count_real, mass_factor, natural
 from flexapod.solve.friction import with_friction
-from flexapod.solve.many import RestMatrices, RestStates
+from flexapod.solve.loops import at_rotors, modal_loops
+from flexapod.solve.many import RestMatrices, RestStates, matrices_at_rest
+from flexapod.solve.modal_loops import ModalLoops, growth
 from flexapod.solve.reduction import expanded, hub_motion, null_space_of_borders, reduced
 from flexapod.solve.rest import RestLoad, rest_commands, rest_load
 from flexapod.solve.rigid_motion import rigid_rest
@@ -32,7 +34,7 @@ class RobotModes:
 
     ``frequency`` (m,) [Hz] undamped; ``damping_ratio`` (m,) of the damped modes; ``shapes`` (m, N), mass-normalised, in
     the flat coordinates of `system.System` (legs, then CoM in the world frame and rotation in platform axes);
-    ``wrench`` (6,) at the tool.
+    ``wrench`` (6,) at the tool; ``growth``: rate at which the fastest of them grows, if any does [1/s].
     """
 
     frequency: Array
@@ -41,6 +43,7 @@ class RobotModes:
     equilibrium: Equilibrium
     system: System
     wrench: Array
+    growth: float = 0.0
 
 
 @dataclass(frozen=True, kw_only=True)
@@ -64,6 +67,11 @@ class LockedPoses:
     @cached_property
     def shaken(self) -> "LockedPoses":
         """The same about which to vibrate: a rotor whose loop sums its error is at rest, and has its spring beside."""
+        if self.system.kernel.shapes.loop:
+            system = at_rotors(smooth(self.robot), self.simulation.replace(play="static"))
+            at, stuck = self.equilibria.states[self.at], self.simulation.friction == "stuck"
+            m = with_friction(system, at, matrices_at_rest(system, at, self.acts.wrench), stuck=stuck)
+            return replace(self, system=system, m=m)
         if not self.system.kernel.shapes.integral:
             return self
         held, shapes = self.system.held.copy(), self.system.kernel.shapes
@@ -82,13 +90,15 @@ class ManyModes:
     """Modes about the equilibria found in `LockedPoses`, p of them, ascending; NaN where masses are not `positive`.
 
     ``frequency`` (p, m) [Hz], NaN last for what has no mass; ``positive`` (p,); ``damping_ratio`` (p, m) and ``shapes``
-    (p, m, N) as in `RobotModes`, empty unless asked for.
+    (p, m, N) as in `RobotModes`, empty unless asked for; ``growth`` (p,): rate at which the fastest of them grows
+    [1/s], None of robots without loops that can.
     """
 
     frequency: Array
     positive: Mask
     damping_ratio: Array
     shapes: Array
+    growth: Array | None = None
 
 
 @dataclass(frozen=True, kw_only=True)
@@ -189,11 +199,11 @@ def robot_modes(
     return the_modes(locked_poses(robot, simulation, rigid.home_pose(robot) if path is None else path, load, time))
 
 
-def the_modes(locked: LockedPoses) -> RobotModes:
-    """Modes at a single pose; raises as `robot_modes`."""
+def the_modes(locked: LockedPoses, *, loops: bool = True) -> RobotModes:
+    """Modes at a single pose; raises as `robot_modes`. ``loops``: as of `modes_of`."""
     found, m = the_equilibrium(locked), locked.m
     finite(m.M, m.K, m.D, m.payload_M, m.payload_K)
-    modes = modes_of(locked, shapes=True)
+    modes = modes_of(locked, shapes=True, loops=loops)
     if not modes.positive[0]:
         raise no_mass(locked.system, found.state.q)
     count = count_real(modes.frequency)
@@ -204,6 +214,7 @@ def the_modes(locked: LockedPoses) -> RobotModes:
         equilibrium=found,
         system=locked.system,
         wrench=locked.acts.wrench,
+        growth=0.0 if modes.growth is None else float(modes.growth[0]),
     )
 
 
@@ -222,14 +233,18 @@ def no_mass(system: System, q: Array) -> ComputationError:
     return ComputationError(f"the mass matrix is not positive: {what}", next_step=next_step)
 
 
-def modes_of(locked: LockedPoses, *, shapes: bool = False) -> ManyModes:
+def modes_of(locked: LockedPoses, *, shapes: bool = False, loops: bool = True) -> ManyModes:
     """Modes at all equilibria, Eq. (T7.3), on the admissible motions (T7.16), by (T7.21); with ``shapes`` if asked.
+
+    Without ``loops``, those that are not symmetric are springs and dampers on their rotors.
 
     Raises
     ------
     InputError
         Rigid legs on prescribed strokes: nothing can move.
     """
+    if loops and locked.system.kernel.shapes.loop:
+        return _looping(locked)
     found = unit_modes(locked, shapes=shapes)
     omega, flat = found.omega, found.flat
     frequency = np.where(np.isfinite(omega), omega / (2 * np.pi), np.nan)
@@ -244,6 +259,40 @@ def modes_of(locked: LockedPoses, *, shapes: bool = False) -> ManyModes:
         damping_ratio=np.where(np.isfinite(frequency), np.array(ratio).reshape(omega.shape), np.nan),
         shapes=(flat * (2 * np.pi * frequency)[:, None]).swapaxes(1, 2),
     )
+
+
+def _looping(locked: LockedPoses) -> ManyModes:
+    """Modes of robots whose loops are not symmetric: the oscillating eigenvalues, Eq. (T23.60)."""
+    found, loops = unit_modes(locked, shapes=True), loops_of(locked)
+    damping, (p, r) = modal_damping(locked, found.flat), found.omega.shape
+    size = 0 if not p else r + loops[0].lag.size
+    frequency, ratio = np.full((2, p, size), np.nan)
+    flat, rates = np.zeros((p, size, locked.system.size)), np.zeros(p)
+    for k in np.flatnonzero(found.positive):
+        values, z = loops[k].eigen(found.omega[k], damping[k])
+        rates[k] = growth(values)
+        chosen = np.flatnonzero(values.imag > OSCILLATES * np.abs(values))
+        chosen = chosen[np.argsort(np.abs(values[chosen]))]
+        values, z = values[chosen], z[:, chosen]
+        frequency[k, : values.size], ratio[k, : values.size] = (
+            np.abs(values) / (2 * np.pi),
+            -values.real / np.abs(values),
+        )
+        slow = z / found.omega[k][:, None]  # as large as it is, of unit mass
+        z = (z * np.exp(-0.5j * np.angle((slow**2).sum(axis=0)))).real
+        mass = np.sqrt(((z / found.omega[k][:, None]) ** 2).sum(axis=0))
+        flat[k, : values.size] = (found.flat[k] @ (z / mass)).T
+    return ManyModes(
+        frequency=frequency, positive=found.positive, damping_ratio=ratio, shapes=flat, growth=rates
+    )  # fmt: skip
+
+
+def loops_of(locked: LockedPoses) -> list[ModalLoops]:
+    """Loops that are not symmetric in the modes of `unit_modes` at each equilibrium; none of them of other robots."""
+    if not locked.system.kernel.shapes.loop:
+        return []
+    found = unit_modes(locked, shapes=True)
+    return modal_loops(locked.robot, locked.shaken.system, locked.equilibria.states[locked.at], found.flat)
 
 
 def unit_modes(locked: LockedPoses, *, shapes: bool) -> UnitModes:
@@ -290,6 +339,7 @@ def _mass_factor(system: System, bases: list[LegBases], m: RestMatrices) -> tupl
 
 def modal_damping(locked: LockedPoses, flat: Array) -> Array:
     """Damping matrices (p, m, m) of shapes (p, N, m)."""
+    locked = locked.shaken
     p, legs, n, _ = locked.m.D.shape
     moving = flat[:, : legs * n].reshape(p, legs, n, flat.shape[2])
     return np.asarray((moving.swapaxes(-1, -2) @ locked.m.D @ moving).sum(axis=1))

@@ -36,8 +36,13 @@ def _pack(layout: tuple[tuple[str, int], ...], values: dict[str, object]) -> Arr
     return np.concatenate(parts)
 
 
-def drive_spring(leg: Leg) -> tuple[float, float]:
-    """Stiffness [N/m] and damping [N s/m] between command and stroke; zero where the stroke is prescribed."""
+def drive_spring(leg: Leg, *, at_rest: bool = False) -> tuple[float, float]:
+    """Stiffness [N/m] and damping [N s/m] between command and stroke; zero where the stroke is prescribed.
+
+    ``at_rest``: a loop about the stroke is a spring on that, Eq. (T23.55).
+    """
+    if at_rest and leg.closed_about and leg.screw is not None and not leg.screw.rests:
+        return leg.screw.loop_spring
     if leg.gives:
         return 0.0, 0.0  # between command and rotor
     match leg.drive:
@@ -59,13 +64,14 @@ def leg_parameters(robot: Robot, legs: Limbs, shapes: Shapes, per_loss: float = 
     ends = [dict(zip(names, x, strict=True)) for x in of_ends]
     frames = _frames(robot, per_loss, at_rest=at_rest)
     rows = (
-        _leg(leg)
+        _leg(leg, at_rest=at_rest)
         | _place(robot, legs, i)
         | _joints(leg, legs, i, per_loss)
         | ends[i]
         | _soft(leg, legs.home[i, COORDINATES.index("l")], per_loss)
         | (section_parameters(leg, shapes, legs.home[i, COORDINATES.index("l")]) if shapes.sections else {})
         | _friction(leg, float(legs.home[i, COORDINATES.index("l")]))
+        | _loop(leg, at_rest=at_rest)
         | frames
         | _inside(leg, per_loss)
         for i, leg in enumerate(robot.legs)
@@ -78,10 +84,10 @@ def leg_parameters(robot: Robot, legs: Limbs, shapes: Shapes, per_loss: float = 
     return np.array([_pack(layout_of_legs, values) for values in rows])
 
 
-def _leg(leg: Leg) -> dict[str, object]:
+def _leg(leg: Leg, *, at_rest: bool) -> dict[str, object]:
     """Bodies and drive of a leg."""
     zeta, damping_time = damping_parts(leg.damping)
-    spring = drive_spring(leg)
+    spring = drive_spring(leg, at_rest=at_rest)
     stroke, carriage = (spring if leg.driven == what else (0.0, 0.0) for what in ("stroke", "carriage"))
     foot = leg.carriage
     return {
@@ -213,6 +219,22 @@ def _series(leg: Leg, length: float, per_loss: float) -> dict[str, object]:
         "rotor_stiffness": loop[0],
         "rotor_damping": loop[1],
     }
+
+
+def _loop(leg: Leg, *, at_rest: bool) -> dict[str, object]:
+    """The loop of a motor that lags, or about another place than its rotor; at rest it is a spring, Eq. (T23.55)."""
+    screw = leg.screw
+    found: dict[str, object] = dict.fromkeys(("loop_stiffness", "loop_damping", "loop_rate_at_rotor"), 0.0)
+    at = [float(leg.closed_about == place) for place in ("stroke", "joint-to-joint")]
+    found |= {"loop_lag": 1.0, "loop_at_once": 1.0, "loop_at": at}
+    if screw is None or not screw.loops or (at_rest and not leg.closed_about):
+        return found
+    found |= {"rotor_stiffness": 0.0, "rotor_damping": 0.0}
+    if at_rest:
+        return found | {"series_stiffness": 0.0, "drive_friction_at_stroke": 1.0}
+    found |= {"loop_rate_at_rotor": float(screw.encoder.rate == "rotor"), "loop_stiffness": screw.loop_spring[0]}
+    late = {"loop_lag": screw.lag, "loop_at_once": 0.0} if screw.lag else {}
+    return found | {"loop_damping": screw.loop_spring[1]} | late
 
 
 def _friction(leg: Leg, length: float) -> dict[str, object]:

@@ -12,7 +12,7 @@ from flexapod.model import Load, Robot
 from flexapod.rigid.limbs import COORDINATES, DRIVEN, HELD
 from flexapod.solve.rigid_motion import leg_coordinates
 from flexapod.solve.system import System
-from flexapod.solve.tables import feed_forward, push_ports
+from flexapod.solve.tables import feed_forward, force_ports, push_ports
 from flexapod.typing import Array
 
 __all__ = ["RestLoad", "at_drives", "rest_commands", "rest_load"]
@@ -91,6 +91,6 @@ def rest_load(system: System, robot: Robot, path: rigid.Poses, load: Load | None
     still, count = rigid.Poses.at_rest(path.position, path.rotation), len(path)
     pushed = feed_forward(robot, np.repeat(before, count), still, np.repeat(wrench, count, axis=0))
     force = np.zeros((count, system.legs, system.ports.size))
-    for i, at in enumerate(push_ports(system, robot)):
+    for i, at in enumerate(force_ports(system, robot)):
         force[:, i, system.ports == at] = pushed[:, i, None]
     return RestLoad(force=force, wrench=wrench[0])

@@ -14,6 +14,7 @@ from flexapod.rigid.rotations import matrix
 from flexapod.solve.equilibrium import equilibrium
 from flexapod.solve.fallen import flipped, refuse_fallen, refuse_flipped
 from flexapod.solve.frames import floor
+from flexapod.solve.loops import settled
 from flexapod.solve.many import RestStates
 from flexapod.solve.march import initial_step, march
 from flexapod.solve.modes import refuse_pure_force
@@ -72,7 +73,13 @@ def prepare(study: Study, state: State | None = None) -> RobotMarch:
     system, path = robot_system(robot, simulation, within=simulation.tolerance is not None), _Path(study)
     law = robot_law(system, robot, study.load, path.poses, path.knots)
     method = GeneralizedAlpha(simulation.rho_inf)
-    state = _configuration(study, system) if state is None else state
+    if state is None:
+        state = _configuration(study, system)
+        if system.kernel.shapes.loop:
+            rests = study.initial.start == "equilibrium"
+            table, wrench = (part[0] for part in law(np.zeros(1)))
+            table[..., 1:3] *= not rests
+            state = settled(system, state, table, wrench, rests=rests)
     refuse_flipped(system, robot, RestStates.of(state))
     system = independent(system, state)
     counters, output_step = Counters(), simulation.stored_step
@@ -161,7 +168,7 @@ def _configuration(study: Study, system: System) -> State:
         return at_rest
     refuse_pure_force(study.robot, "the equilibrium start")
     still = system
-    if system.kernel.shapes.integral:
+    if system.kernel.shapes.integral or system.kernel.shapes.loop:
         still = robot_system(study.robot, study.simulation, at_rest=True)
         at_rest = replace(at_rest, drive=np.zeros((still.legs, still.ports.size)))
     acts = rest_load(still, study.robot, path, study.load)
@@ -170,6 +177,8 @@ def _configuration(study: Study, system: System) -> State:
     if not found.found:
         raise ComputationError(f"the robot cannot start at rest: {found.reason}", next_step="See `flexapod check`.")
     refuse_fallen(still, study.robot, RestStates.of(straight), RestStates.of(found.state))
+    if system.kernel.shapes.loop:
+        return replace(found.state, drive=np.zeros((system.legs, system.ports.size)))
     return found.state if still is system else _summed(study.robot, system, still, found.state)
 
 

@@ -36,7 +36,7 @@ def robot_system(
         leg_p=leg_parameters(robot, legs, shapes, per_loss(robot, simulation), at_rest=at_rest),
         joint_p=np.ascontiguousarray(legs.platform - robot.com),
         payload_p=payload_parameters(robot, shapes, at_rest=at_rest),
-        held=_held(robot, legs, shapes) | _summed(robot, shapes, at_rest=at_rest),
+        held=_held(robot, legs, shapes, at_rest=at_rest) | _summed(robot, shapes, at_rest=at_rest),
         hub_held=legs.hub_held,
     )
 
@@ -49,7 +49,7 @@ def smooth(robot: Robot) -> Robot:
     return robot.replace(legs=tuple(leg.replace(drive=x) for leg, x in zip(robot.legs, drives, strict=True)))
 
 
-def _held(robot: Robot, legs: Limbs, shapes: Shapes) -> Mask:
+def _held(robot: Robot, legs: Limbs, shapes: Shapes, *, at_rest: bool) -> Mask:
     """Coordinates that follow a table: held by joints or drives, or those of other legs. A ball's gammas are free."""
     held = np.zeros((len(legs), shapes.size), dtype=bool)
     prescribed = np.array([leg.drive.holds and leg.holds_stroke for leg in robot.legs])
@@ -60,7 +60,8 @@ def _held(robot: Robot, legs: Limbs, shapes: Shapes) -> Mask:
             held[:, shapes.index(name)] = (state == HELD) | ((state == DRIVEN) & prescribed) | foreign
     if shapes.series:  # a servo's spring is in series with those behind it
         held[:, shapes.index("r")] = [leg.drive.holds or leg.screw is None for leg in robot.legs]
-    ends = np.array([leg.measured == "joint-to-joint" for leg in robot.legs])  # what lies between is made up for
+    made_up = [leg.drive.holds or at_rest for leg in robot.legs]  # ideally, or at rest
+    ends = np.array([leg.measured == "joint-to-joint" for leg in robot.legs]) & made_up
     for name, size in shapes.layout:
         if name in ("c", "u3", "e3") and ends.any():
             held[ends, shapes.index(name) : shapes.index(name) + size] = True
@@ -84,12 +85,18 @@ def _held_inside(robot: Robot, shapes: Shapes) -> Mask:
 
 
 def _summed(robot: Robot, shapes: Shapes, *, at_rest: bool) -> Mask:
-    """Rotors and summed errors that loops hold at rest; summed errors of legs that have none."""
+    """Rotors, strokes and summed errors that loops hold at rest; summed errors and lags of legs that have none."""
     held: Mask = np.zeros((len(robot.legs), shapes.size), dtype=bool)
     if shapes.integral:
         sums = np.array([leg.screw is not None and leg.screw.integral > 0 for leg in robot.legs])
         held[:, shapes.index("w")] = ~sums | at_rest
         held[sums, shapes.index("r")] = at_rest
+    if shapes.loop:
+        screws, elsewhere = [leg.screw for leg in robot.legs], np.array([bool(leg.closed_about) for leg in robot.legs])
+        held[:, shapes.index("j")] = [at_rest or x is None or not x.lag for x in screws]
+        if at_rest:  # (T23.55)
+            held[elsewhere, shapes.index("r")] = True
+            held[elsewhere & [x is not None and x.rests for x in screws], shapes.l_index] = True
     return held
 
 

@@ -42,6 +42,7 @@ def robot_shapes(robot: Robot, simulation: Simulation, legs: Limbs) -> Shapes:
         gap=simulation.play == "gap" and any(leg.half_play and leg.gives for leg in robot.legs),
         ripple=any(leg.screw is not None and leg.screw.motor.ripple is not None for leg in robot.legs),
         integral=any(leg.screw is not None and leg.screw.integral > 0 for leg in robot.legs),
+        loop=any(leg.screw is not None and leg.screw.loops for leg in robot.legs),
         oil=any(leg.cylinder_of_oil is not None for leg in robot.legs),
         base_friction=any(leg.base_joint.friction is not None for leg in robot.legs),
         platform_friction=any(leg.platform_joint.friction is not None for leg in robot.legs),

@@ -94,8 +94,11 @@ def _constant(name: str, at: Place, stiffness: float, damping: float | None, los
 
 
 def before_piston(leg: Leg) -> list[Spring]:
-    """The springs between a drive's command and the piston, those of a servo or of a screw's loop among them."""
-    springs = [x for x in springs_along(leg) if x.at == "nut"]
+    """The springs between a drive's command and the piston, those of a servo or of a screw's loop among them.
+
+    What is inside of a loop is not.
+    """
+    springs = [x for x in springs_along(leg) if x.at == "nut" and not leg.closed_about]
     if isinstance(leg.drive, ServoDrive):
         springs.append(of_servo(leg.drive))
     elif leg.screw is not None and leg.screw.loop_spring[0] and not leg.screw.rests:

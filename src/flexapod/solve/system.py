@@ -176,6 +176,8 @@ class System:
         driven = [shapes.index(name) for name, _ in shapes.drives]
         if not self.hub:
             driven += [shapes.index(name) for name in ("alpha", "beta") if shapes.has(name)]
+        if shapes.loop:
+            driven.append(shapes.index("j"))
         return np.array([*driven, *(k for k in np.flatnonzero(self.held.any(axis=0)) if k not in driven)])
 
     @cached_property
@@ -196,7 +198,7 @@ class System:
         stiffest = [(EA / Lp).max() * (self.kernel.shapes.axial.count > 0)]
         ends = (f"{x}_{y}" for x in ENDS for y in ("flexure", "soft"))
         springs = ("drive_stiffness", "carriage_stiffness", "series_stiffness", "rotor_stiffness", *ends)
-        springs += ("guide_stiffness",)
+        springs += ("guide_stiffness", "loop_stiffness")
         for name in springs:
             if name in dict(layout):
                 stiffest.append(self.leg_p[:, columns(layout, name)].max())
@@ -229,6 +231,8 @@ class System:
             r, powers[0] = r + rubbed.r, powers[0] + rubbed.energies[:, 0].sum()
         r[:, self.ports] -= force
         work = force * v[:, self.ports]
+        if shapes.loop:
+            work[:, self.ports == shapes.index("j")] = 0.0
         powers[1], powers[3] = powers[1] + work[:, ~self.floor].sum(), work[:, self.floor].sum()
         if not self.hub:
             return r.ravel(), gaps.ravel(), powers
@@ -263,6 +267,10 @@ class System:
         for whole, parts in zip((M, D, K, G), found[:4], strict=True):
             for i, part in enumerate(parts):
                 whole[i * len(part) : (i + 1) * len(part), i * n : (i + 1) * n] = part
+        if self.kernel.shapes.loop:
+            for i, parts in enumerate(zip(*self.loops(x)[:2], strict=True)):
+                for whole, part in zip((D, K), parts, strict=True):
+                    whole[i * n : (i + 1) * n, i * n : (i + 1) * n] += part
         if not self.hub:
             return Matrices(M=M, D=D, K=K, G=G)
         joints = [x.pose, x.lam, self.joint_p]
@@ -277,6 +285,11 @@ class System:
             K[k:, :k] = K[:k, k:].T
         K[np.ix_(body, body)] += stiffness
         return Matrices(M=M, D=D, K=K, G=G)
+
+    def loops(self, x: State) -> list[Array]:
+        """What loops add to D and K (legs, n, n), what they measure (legs, 1), and how that grows (legs, n, 1)."""
+        n = self.n
+        return evaluate(self.kernel, "leg_loop", self.legs, [x.q, self.leg_p], [(n, n), (n, n), (1,), (n,)])
 
     def energies(self, x: State, table: Array) -> tuple[Array, Array]:
         """Energies (3,) [J], kinetic, of gravity and of strain; whole force of each port (legs, ports), Eq. (T8.8)."""

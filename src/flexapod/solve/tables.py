@@ -12,7 +12,7 @@ from flexapod.solve.released import rigid_forces
 from flexapod.solve.system import COLUMNS, Index, System
 from flexapod.typing import Array, Mask
 
-__all__ = ["Law", "feed_forward", "push_ports", "robot_law"]
+__all__ = ["Law", "feed_forward", "force_ports", "push_ports", "robot_law"]
 
 #: Of instants (T,): the table of the ports (T, legs, ports, 4), and the load (T, load_size), of a payload the wrench
 #: at the tool in world axes.
@@ -42,7 +42,7 @@ def robot_law(
     every = np.ones(system.legs, dtype=bool)
     turned = {shapes.index("r"): np.array([leg.gives for leg in robot.legs])} if shapes.series else {}
     places = {k: (COORDINATES.index(names[port]), turned.get(port, every)) for k, port in ports if port in names}
-    pushed = driven & (system.ports == push_ports(system, robot)[:, None])
+    pushed = system.ports == force_ports(system, robot)[:, None]
 
     def commanded(t: Array) -> list[Array]:
         legs = rigid.inverse_kinematics(robot, poses(t))
@@ -109,6 +109,21 @@ def push_ports(system: System, robot: Robot) -> Index:
             found[state[:, COORDINATES.index(name)] == DRIVEN] = shapes.index(name)
     if shapes.series:
         found[[leg.gives for leg in robot.legs]] = shapes.index("r")
+    return found
+
+
+def force_ports(system: System, robot: Robot) -> Index:
+    """Coordinates on which given forces of the drives act, (legs,): where motors lag, what they ask for.
+
+    At rest, about a loop that is closed elsewhere than at the rotor, the stroke, Eq. (T23.55).
+    """
+    found, shapes = push_ports(system, robot), system.kernel.shapes
+    if shapes.loop:
+        r, j = (system.held[:, shapes.index(name)] for name in ("r", "j"))
+        found[~j] = shapes.index("j")
+        found[[bool(leg.closed_about) and bool(still) for leg, still in zip(robot.legs, r, strict=True)]] = (
+            shapes.l_index
+        )
     return found
 
 

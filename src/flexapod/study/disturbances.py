@@ -69,7 +69,7 @@ def vibration(robot: RobotLike, pose: PoseLike = None) -> Dataset:
     model, sources = _linear(study, locked)
     found, coarse = random_vibration(model, sources, refine=2), random_vibration(model, sources)
     count = count_real(model.omega[None])
-    modes = mode_values(study.robot, the_modes(locked), path)
+    modes = mode_values(study.robot, the_modes(locked, loops=False), path)
     values = {
         "vibration_rms": found.rms,
         "vibration_covariance": found.covariance,

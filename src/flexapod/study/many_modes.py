@@ -11,6 +11,7 @@ from flexapod import model, rigid
 from flexapod.rigid.rotations import quaternion
 from flexapod.solve.fallen import fallen, platform_poses
 from flexapod.solve.frequencies import count_real
+from flexapod.solve.modal_loops import unstable_words
 from flexapod.solve.modes import LockedPoses, ManyModes, RobotModes, locked_poses, modes_of
 from flexapod.study.after.mode_shapes import STATIONS, mode_values
 from flexapod.study.before.reach import (
@@ -59,11 +60,13 @@ def modes_at_poses(study: model.Study, path: rigid.Poses, *, shapes: bool, attrs
     reason[cut_off] = REACHED
     within = np.flatnonzero(reason == REACHED)
     values: dict[str, Array | Codes | Mask] = {}
+    fastest = 0.0
     for part in batches(len(within)) if within.size else [slice(0, 0)]:
         chosen = within[part]
         some = poses_of(path, chosen)
         locked = locked_poses(robot, study.simulation, some, study.load)
         modes = modes_of(locked, shapes=shapes)
+        fastest = max(fastest, 0.0 if modes.growth is None else float(modes.growth.max(initial=0.0)))
         reason[chosen] = codes = codes_at_rest(locked, modes)
         kept = codes[locked.at] == REACHED
         rows = (_shape_rows if shapes else _rows)(robot, locked, modes, some, kept)
@@ -77,6 +80,8 @@ def modes_at_poses(study: model.Study, path: rigid.Poses, *, shapes: bool, attrs
     coords |= {"mode": np.arange(1, count + 1)}
     data = dataset(values, coords | ({"station": STATIONS} if shapes else {}), attrs, FORMS)
     data.reason.attrs |= flags()
+    said = [data.attrs["warnings"], *(f"at some of the poses {words}" for words in unstable_words(fastest))]
+    data.attrs["warnings"] = "\n".join(filter(None, said))
     return data
 
 

@@ -11,6 +11,7 @@ from flexapod import model, rigid
 from flexapod.errors import InputError
 from flexapod.solve.actuator_modes import actuator_modes
 from flexapod.solve.many import RestStates
+from flexapod.solve.modal_loops import unstable_words
 from flexapod.solve.modes import robot_modes
 from flexapod.solve.stiffness import robot_stiffness
 from flexapod.solve.system import State, System
@@ -87,7 +88,8 @@ def modes(
     found = robot_modes(study.robot, study.simulation, path, study.load)
     values = mode_values(study.robot, found, path)
     coords = {"mode": np.arange(1, len(values["frequency"]) + 1), "station": STATIONS}
-    return dataset(values, coords, _attributes(study, path, found.system, found.equilibrium.state), ONE_POSE_FORMS)
+    state, loops = found.equilibrium.state, unstable_words(found.growth)
+    return dataset(values, coords, _attributes(study, path, found.system, state, loops), ONE_POSE_FORMS)
 
 
 def _beam(study: model.ActuatorStudy, given: dict[str, object], settings: dict[str, object]) -> Dataset:
@@ -152,8 +154,14 @@ def _problem(
     return study, as_pose(study.robot, pose)
 
 
-def _attributes(study: model.Study, path: rigid.Poses, system: System, state: State) -> dict[str, object]:
-    remarks = [*path_remarks(study.robot, np.zeros(1), path), *rest_warnings(study.robot, system, RestStates.of(state))]
+def _attributes(
+    study: model.Study, path: rigid.Poses, system: System, state: State, loops: Iterable[str] = ()
+) -> dict[str, object]:
+    remarks = [
+        *loops,
+        *path_remarks(study.robot, np.zeros(1), path),
+        *rest_warnings(study.robot, system, RestStates.of(state)),
+    ]
     return _settings(study, remarks)
 
 

@@ -112,6 +112,8 @@ def _check_parts(number: int, leg: Leg) -> None:
             raise refused(key, "a piston clamped in the mouth of a rigid cylinder")
     if leg.screw is not None and leg.screw.motor.ripple is not None:
         raise refused("drive.motor.ripple", "a motor without")
+    if leg.screw is not None and leg.screw.lag:
+        raise refused("drive.motor.bandwidth", "a motor without")
     if leg.piston.bow or leg.base_joint.eccentricity or leg.platform_joint.eccentricity:
         raise refused("bow, eccentricity", "straight legs")
     if leg.turning:

@@ -7,13 +7,19 @@
      e_k^T dq_i                             = 0      (coordinate k is held)
    Pivots are the coordinates found from the closure: J1 = dg/d(pivots) is regular for every leg, whatever is massless,
    rigid or held. The other M coordinates z see B = N^T A N, N = [N1; I] with N1 = -J1^-1 J2; the payload
-   moves them through Y = [Y1; 0], Y1 = J1^-1 P. A is symmetric, so Et = N^T A Y is the transpose of E. A held
+   moves them through Y = [Y1; 0], Y1 = J1^-1 P. A is symmetric, so Et = N^T A Y is the transpose of E = Y^T A N; where
+   loops are closed about other places than their rotors it is not, and E has its own, Er. A held
    coordinate that is not a pivot drops out of z; its force is what is left in its own row. Legs are in `ORDER` here.
    Coordinates that all legs share belong to y: Y = [Y1; 0; 1] with Y1 = J1^-1 [P, -J_shared], and y has HUB of them. */
 enum { M = N - ROWS - COMMON, BORDER = HUB + LEGS*ROWS };
 
 typedef struct {                        /* of a vector of legs */
   lanes A[N*N], J[ROWS*N], P[ROWS*6], J1inv[ROWS*ROWS], N1[ROWS*M], Y1[ROWS*HUB], Binv[M*M], Et[M*HUB], C[M*HUB], Bd[ROWS*M];
+#ifdef LOOPING
+  lanes Er[M*HUB];
+#else
+#define Er Et
+#endif
   lanes held[N];
   int unknown[ROWS][LANES], any[ROWS];  /* the border's unknown of a held pivot; 0: it is not held; and of any leg */
 } LegBlock;
@@ -127,6 +133,14 @@ static int leg_factor(const Settings *s, int group, LegBlock *b, double *border,
     for (long j = 0; j < HUB; j++) b->Et[k + j*M] *= free;
     B[k + k*M] += held;
   }
+#ifdef LOOPING
+  for (long j = 0; j < HUB; j++) for (long k = 0; k < M; k++) {
+    lanes t = {0};
+    for (int p = 0; p < ROWS; p++) t += b->Y1[p + ROWS*j]*AN[p + k*N];
+    if (j >= 6) t += AN[ROWS + M + j - 6 + k*N];
+    b->Er[k + j*M] = t*(1.0 - b->held[ROWS + k]);
+  }
+#endif
   if (invert_legs(s, group, B, b->Binv)) return SINGULAR;
   memset(b->C, 0, sizeof b->C); memset(b->Bd, 0, sizeof b->Bd);
   for (long j = 0; j < HUB; j++) lanes_gemv(M, M, 1, b->Binv, b->Et + j*M, b->C + j*M);
@@ -134,7 +148,7 @@ static int leg_factor(const Settings *s, int group, LegBlock *b, double *border,
     lanes payload[HUB] = {0};
     for (int i = 6; i < HUB; i++) payload[i] = AY[ROWS + M + i - 6 + j*N];
     lanes_gemv_t(ROWS, HUB, 1, b->Y1, AY + j*N, payload);
-    lanes_gemv_t(M, HUB, -1, b->Et, b->C + j*M, payload);
+    lanes_gemv_t(M, HUB, -1, b->Er, b->C + j*M, payload);
     for (int i = 0; i < HUB; i++) border[i + j*size] += sum(s, group, payload[i]);
   }
   for (int p = 0; p < ROWS; p++) {
@@ -143,9 +157,15 @@ static int leg_factor(const Settings *s, int group, LegBlock *b, double *border,
     for (long j = 0; j < HUB; j++) {
       lanes force = b->Y1[p + ROWS*j];
       for (long i = 0; i < M; i++) force -= b->N1[p + ROWS*i] * b->C[i + j*M];
+#ifdef LOOPING
+      lanes back = -b->Y1[p + ROWS*j];
+      for (long i = 0; i < M; i++) back += b->Er[i + j*M] * b->Bd[i + p*M];
+#else
+      lanes back = -force;
+#endif
       for (int i = 0; i < LANES; i++) {
         long f = b->unknown[p][i];
-        if (f) { border[f + j*size] = force[i]; border[j + f*size] = -force[i]; }
+        if (f) { border[f + j*size] = force[i]; border[j + f*size] = back[i]; }
       }
     }
     for (int o = 0; o < ROWS; o++) {
@@ -191,7 +211,7 @@ static void arrow_solve(const Arrow *w, const Settings *s, lanes (*r)[N], lanes 
     lanes_gemv_t(ROWS, M, 1, b->N1, t, t + ROWS);
     for (long j = ROWS; j < N; j++) t[j] *= 1.0 - b->held[j];
     lanes_gemv(M, M, -1, b->Binv, t + ROWS, z[group]);
-    lanes_gemv_t(M, HUB, -1, b->Et, z[group], part);
+    lanes_gemv_t(M, HUB, -1, b->Er, z[group], part);
     for (int i = 0; i < HUB; i++) rhs[i] += sum(s, group, part[i]);
     for (int p = 0; p < ROWS; p++) {
       if (!b->any[p]) continue;

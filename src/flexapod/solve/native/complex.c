@@ -1,7 +1,12 @@
 /* The arrow of `arrow.c` with a complex matrix A = A[0] + i A[1]: one pair of conjugate eigenvalues of an implicit
    Runge-Kutta method. The closures are real: J1inv, N1, Y1, what is held and the border's unknowns are those of the real
    arrow. Mass and stiffness are positive, so that A has its numerical range in a half-plane and needs no pivoting. */
-typedef struct { lanes A[2][N*N], Binv[2][M*M], Et[2][M*HUB], C[2][M*HUB], Bd[2][ROWS*M + 1]; } ComplexBlock;
+typedef struct {
+  lanes A[2][N*N], Binv[2][M*M], Et[2][M*HUB], C[2][M*HUB], Bd[2][ROWS*M + 1];
+#ifdef LOOPING
+  lanes Er[2][M*HUB];
+#endif
+} ComplexBlock;
 typedef struct { ComplexBlock leg[GROUPS]; double border[4*BORDER*BORDER]; } ComplexArrow;
 
 /* y += s A x and y += s A^T x, both complex, and with a real A */
@@ -60,6 +65,14 @@ static void complex_leg(const Settings *s, int group, const LegBlock *b, Complex
       for (long j = 0; j < HUB; j++) Et[k + j*M] *= free;
       if (part == 0) B[k + k*M] += held;
     }
+#ifdef LOOPING
+    for (long j = 0; j < HUB; j++) for (long k = 0; k < M; k++) {
+      lanes t = {0};
+      for (int p = 0; p < ROWS; p++) t += b->Y1[p + ROWS*j]*AN[part][p + k*N];
+      if (j >= 6) t += AN[part][ROWS + M + j - 6 + k*N];
+      c->Er[part][k + j*M] = t*(1.0 - b->held[ROWS + k]);
+    }
+#endif
   }
   complex_invert(M, c->Binv[0], c->Binv[1]);
   memset(c->C, 0, sizeof c->C); memset(c->Bd, 0, sizeof c->Bd);
@@ -68,7 +81,7 @@ static void complex_leg(const Settings *s, int group, const LegBlock *b, Complex
     lanes payload[2][HUB] = {{{0}}};
     for (int part = 0; part < 2; part++) for (int i = 6; i < HUB; i++) payload[part][i] = AY[part][ROWS + M + i - 6 + j*N];
     for (int part = 0; part < 2; part++) lanes_gemv_t(ROWS, HUB, 1, b->Y1, AY[part] + j*N, payload[part]);
-    complex_gemv_t(M, HUB, -1, PARTS(c->Et, 0), PARTS(c->C, j*M), PARTS(payload, 0));
+    complex_gemv_t(M, HUB, -1, PARTS(c->Er, 0), PARTS(c->C, j*M), PARTS(payload, 0));
     for (int i = 0; i < HUB; i++) add_complex(border, size, i, j, sum(s, group, payload[0][i]), sum(s, group, payload[1][i]));
   }
   for (int p = 0; p < ROWS; p++) {
@@ -78,10 +91,15 @@ static void complex_leg(const Settings *s, int group, const LegBlock *b, Complex
     for (long j = 0; j < HUB; j++) {
       lanes force[2] = {b->Y1[p + ROWS*j], zero};
       for (int part = 0; part < 2; part++) for (long i = 0; i < M; i++) force[part] -= b->N1[p + ROWS*i] * c->C[part][i + j*M];
+      lanes back[2][1] = {{-force[0]}, {-force[1]}};
+#ifdef LOOPING
+      back[0][0] = -b->Y1[p + ROWS*j]; back[1][0] = zero;
+      complex_gemv_t(M, 1, 1, PARTS(c->Er, j*M), PARTS(c->Bd, p*M), PARTS(back, 0));
+#endif
       for (int i = 0; i < LANES; i++) {
         long f = b->unknown[p][i];
         if (!f || i >= used(s, group)) continue;
-        add_complex(border, size, f, j, force[0][i], force[1][i]); add_complex(border, size, j, f, -force[0][i], -force[1][i]);
+        add_complex(border, size, f, j, force[0][i], force[1][i]); add_complex(border, size, j, f, back[0][0][i], back[1][0][i]);
       }
     }
     for (int o = 0; o < ROWS; o++) {
@@ -139,7 +157,7 @@ static void complex_solve(const ComplexArrow *c, const Arrow *w, const Settings 
       for (long j = ROWS; j < N; j++) t[part][j] *= 1.0 - b->held[j];
     }
     complex_gemv(M, M, -1, PARTS(a->Binv, 0), PARTS(t, ROWS), PARTS(z[group], 0));
-    complex_gemv_t(M, HUB, -1, PARTS(a->Et, 0), PARTS(z[group], 0), PARTS(part6, 0));
+    complex_gemv_t(M, HUB, -1, PARTS(a->Er, 0), PARTS(z[group], 0), PARTS(part6, 0));
     for (int part = 0; part < 2; part++) {
       for (int i = 0; i < HUB; i++) rhs[part*size + i] += sum(s, group, part6[part][i]);
       for (int p = 0; p < ROWS; p++) {

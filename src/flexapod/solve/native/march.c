@@ -36,6 +36,20 @@ static void add_friction_matrix(int i, double c_v, Work *w) {
 #endif
 }
 
+/* What loops add to the matrices in the order of the arrow, times factors */
+static void add_loop(const Work *w, int i, double c_v, double c_q, lanes *of_D, lanes *of_K) {
+#ifdef LOOPING
+  static _Thread_local lanes D[N*N], K[N*N];
+  lanes place[1], slope[N];
+  const lanes *in[] = {w->leg[i].q, w->p[i]};
+  lanes *out[] = {D, K, place, slope};
+  leg_loop_lanes(in, out);
+  for (long j = 0; j < N; j++) for (long k = 0; k < N; k++) {
+    of_D[k + j*N] += c_v*D[ORDER[k] + N*ORDER[j]]; of_K[k + j*N] += c_q*K[ORDER[k] + N*ORDER[j]];
+  }
+#endif
+}
+
 /* Residuals of a vector of legs, how far they are from closed, and the wrench that they put on the payload */
 static void residual_of_legs(const Settings *s, int i, const lanes *around, Work *w, lanes *wrench) {
   LegState *leg = &w->leg[i];
@@ -52,7 +66,7 @@ static void residual_of_legs(const Settings *s, int i, const lanes *around, Work
   for (long k = 0; k < s->ports; k++) {
     lanes force = port_force(w, i, k);
     w->r[i][s->port[k]] -= force;
-    powers[FLOOR < N && s->port[k] >= FLOOR ? 3 : 1] += force*leg->v[s->port[k]];
+    if (s->port[k] != LOOP) powers[FLOOR < N && s->port[k] >= FLOOR ? 3 : 1] += force*leg->v[s->port[k]];
   }
   add_friction(s, i, w, powers);
   for (int j = 0; j < WORKS; j++) w->powers[j] += sum(s, i, powers[j]);
@@ -113,7 +127,7 @@ static void matrices_of_legs(const Settings *s, int i, const lanes *around, cons
     long at = ORDER[k] + N*ORDER[j];
     b->A[k + j*N] = c[0]*A[0][at] + c[1]*A[1][at] + c[2]*A[2][at];
   }
-  if (c[1] != 0) add_friction_matrix(i, c[1], w);
+  if (c[1] != 0) { add_friction_matrix(i, c[1], w); add_loop(w, i, c[1], c[2], b->A, b->A); }
   for (long j = 0; j < N; j++) for (int k = 0; k < ROWS; k++) b->J[k + ROWS*j] = J[k + ROWS*ORDER[j]];
   if (s->hub) for (int j = 0; j < 36; j++) Ap[j%6 + j/6*HUB] += c[2]*sum(s, i, H[j]);
 }

@@ -214,6 +214,7 @@ static void rest(const Settings *s, const double *load, double h, Radau *r, Work
       r->M[g][to] = A[0][at]; r->D[g][to] = A[1][at]; r->K[g][to] = A[2][at];
     }
     stiffen(g, h, r, w);
+    add_loop(w, g, 1, 1, r->D[g], r->K[g]);
     for (int j = 0; j < N; j++) for (int k = 0; k < ROWS; k++) b->J[k + ROWS*j] = J[k + ROWS*ORDER[j]];
     if (s->hub) for (int j = 0; j < 36; j++) r->hub_K[j%6 + j/6*BODY] += sum(s, g, H[j]);
   }

@@ -4,7 +4,7 @@
    PLACE: where each of them stands there; COMMON: how many of them, the last there, are one coordinate of all legs;
    FLOOR: the first of six, the last ports, that move the base (N: none moves it);
    POSED: whether a leg's functions know the payload; PLATE: how many shared coordinates the payload's know;
-   BRISTLES of a leg, where it has friction. */
+   BRISTLES of a leg, where it has friction; LOOP: the impulse of its motor, where loops are not symmetric. */
 #if defined(__GNUC__) && !defined(__clang__)
 #pragma GCC optimize("O3")              /* loops of this size are worth unrolling; the generated code above has none */
 #endif
@@ -16,6 +16,11 @@ enum { COLUMNS = 4 };                   /* of a port in a table: value, rate, ac
 #define BRISTLES 0
 #else
 #define FRICTION
+#endif
+#ifndef LOOP
+#define LOOP N                          /* its coordinate of an impulse, on which forces do no work; N: none */
+#else
+#define LOOPING
 #endif
 enum { WORKS = 4 };                     /* energies that are summed over time */
 enum { OK = 0, NOT_CONVERGED = 1, NOT_FINITE = 2, SINGULAR = 3 };

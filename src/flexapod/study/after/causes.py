@@ -86,10 +86,18 @@ def errors_of(robot: Robot, system: System, path: RigidPath, record: Record | Re
         drive = drive - longer
     causes: dict[str, Array] = dict(zip(CAUSES, (axial, bending, drive), strict=True))
     behind: tuple[tuple[Sequence[Place], Array], ...] = ((("nut",), drive), (("base", "platform"), bending))
+    inside = {
+        place: np.array([leg.closed_about == place for leg in robot.legs]) for place in ("stroke", "joint-to-joint")
+    }
+    ends = inside["joint-to-joint"]  # (T23.56)
+    drive[..., L] += axial[..., L] * ends
+    axial[..., L] *= ~ends
     for places, whole in behind:  # (T15.14)
         for name, give in elongations(robot, system, record.q, places).items():
-            causes.setdefault(name, np.zeros_like(q))[..., L] += give
+            seen = ends if whole is bending else ends | inside["stroke"]
+            causes.setdefault(name, np.zeros_like(q))[..., L] += give * ~seen
             whole[..., L] -= give
+            drive[..., L] += give * seen
     if "drive" in places_with_friction(robot):
         _of_friction(robot, system, record, causes)
     for name, error in _across(robot, found, system, record, q).items():

@@ -11,6 +11,7 @@ from flexapod import model, rigid
 from flexapod.errors import FlexapodError, InputError
 from flexapod.solve.losses import loss_words
 from flexapod.solve.lost_motion import lost_motion, places_with_friction
+from flexapod.solve.modal_loops import unstable_words
 from flexapod.solve.modes import locked_poses, robot_modes, the_modes
 from flexapod.solve.parts import part_stiffness
 from flexapod.solve.robot_march import refuse_massless
@@ -86,9 +87,9 @@ class PoseDescription:
     """The robot at one pose, drives locked, about its static equilibrium.
 
     `sag` [m] of the centre of mass, `stiffness`, `modes`: the lowest. None and empty where there is no such thing;
-    `problem` then says why. `parts`: of legs with more than ideal parts, by name and leg [N/m], inf where it has none.
-    `lost_motion` [m] of each leg by friction of its drive, half of it to and fro. `bushings` [N]: what gland and
-    head of each leg bear across it.
+    `problem` then says why, or that loops are unstable. `parts`: of legs with more than ideal parts, by name and leg
+    [N/m], inf where it has none. `lost_motion` [m] of each leg by friction of its drive, half of it to and fro.
+    `bushings` [N]: what gland and head of each leg bear across it.
     """
 
     name: str
@@ -143,6 +144,7 @@ def describe_pose(study: model.Study, name: str, time: float) -> PoseDescription
     return PoseDescription(
         name=name, time=time, sag=float(np.linalg.norm(sag)), stiffness=stiffness, modes=modes[:SHOWN], parts=parts,
         lost_motion=lost, bushings=bushings,
+        problem=next((f"{x[0].upper()}{x[1:]}." for x in unstable_words(found.growth)), None),
     )  # fmt: skip
 
 
@@ -187,6 +189,8 @@ def vibration_to_expect(study: model.Study, end: float) -> VibrationToExpect | N
     try:
         modes = robot_modes(robot, study.simulation, _at_rest(study, end), study.load, end)
     except FlexapodError:
+        return None
+    if modes.growth:
         return None
     wanted = modes.frequency[(modes.frequency > 0) & (modes.frequency <= HIGHEST) & (modes.damping_ratio < 1)]
     count = int(np.clip(np.ceil(PER_PERIOD * wanted.max(initial=0.0) * end), FEWEST, MOST))
