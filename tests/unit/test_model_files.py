@@ -373,6 +373,8 @@ def test_bad_robots_are_refused_in_words(old, new, key, words):
         ("{ rate = 0.785 }", '{ law = "sin" }', "motion.rotation.law", ("spin-up",)),
         ("[initial]", "[load]\ntorque = 1\n[initial]", "motion.rotation", ("prescribed and driven by load.torque",)),
         ("modes = 3", 'modes = 3\nfidelity = "lumped"', "simulation.fidelity", ("does not stretch",)),
+        ("modes = 3", 'modes = 3\nfriction = "stuck"', "simulation.friction", ("nothing in it rubs",)),
+        ("modes = 3", 'modes = 3\nplay = "gap"', "simulation.play", ("nothing in it rubs or has play",)),
         ('duration = "10 s"', "", "simulation.duration", ("is missing", "no end of its own")),
         ("[actuator] ", "[robot] ", "payload", ("is missing",)),
     ],

@@ -182,6 +182,15 @@ class ActuatorStudy(_Documented):
             if (getattr(self.motion, law) is None) == (getattr(self.load, load) is None):
                 raise InputError(f"and motion.{law}: exactly one of the two drives this coordinate", key=f"load.{load}")
         self._only_free_ones_start_with_a_rate()
+        for key, none in (("friction", "sliding"), ("play", "static")):
+            if getattr(self.simulation, key) != none:
+                raise InputError(
+                    "has no meaning for a single actuator: nothing in it rubs or has play",
+                    key=f"simulation.{key}",
+                    value=getattr(self.simulation, key),
+                    allowed=none,
+                    next_step="Leave it out",
+                )
         if self.simulation.fidelity == "lumped" and self.actuator.EA is None:
             raise InputError(
                 "has no meaning for a single actuator whose beam bends but does not stretch",
