@@ -55,6 +55,9 @@ def test_moments_by_load():
         ("leg.base_joint.friction", "{ mu = 0.1, diameter = 0.04, stribeck = { moment = 1, rate = 1.0 } }", "constant"),
         ("leg.base_joint.friction", "{ moment = -1.0 }", "above 0"),
         ("leg.base_joint.friction", "{ moment = 1.0, presliding = 0 }", "above 0"),
+        ("leg.base_joint.friction", "{ moment = 1.0, presliding = 1e-9 }", "at least 1e-08 rad"),
+        ("leg.base_joint.friction", "{ mu = 1000, diameter = 0.04 }", "plain joints have 0.02 to 0.25"),
+        ("leg.drive.friction", "{ torque = 1.0, presliding = 1e-9 }", "less than an atom"),
         ("leg.drive.friction", "{ force = '10 N' }", "torque"),
     ],
 )

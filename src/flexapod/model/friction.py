@@ -14,6 +14,8 @@ __all__ = ["JointFriction", "ScrewFriction", "StrokeFriction"]
 
 DampingTime = Annotated[NonNegative, Measure("time")]
 Viscous = Annotated[NonNegative, Measure("rotational damping")]
+SHORTEST, LEAST = 1e-10, 1e-8  # m, less than an atom; rad, that on a radius of 10 mm
+STICKIEST = 2.0  # coefficient of friction: plain joints have 0.02 to 0.25
 
 
 class TurningStribeck(Frozen):
@@ -65,6 +67,12 @@ class JointFriction(Frozen):
             raise InputError(what, key="diameter", value=self.diameter)
         if given == ["M0"] and not (self.M0 or self.f1):
             raise InputError("and f1 leave no friction", key="M0", value=self.M0, allowed="one of them above 0")
+        if self.mu is not None and self.mu > STICKIEST:
+            raise InputError(
+                "is more than what slides has", key="mu", value=self.mu,
+                allowed=f"at most {STICKIEST:g}; plain joints have 0.02 to 0.25",
+            )  # fmt: skip
+        _bends(self.presliding, LEAST, "rad")
         if self.stribeck is not None and self.moment is None:
             raise InputError("belongs to a constant moment", key="stribeck", allowed="together with moment")
         _breaks_away(self.moment, self.stribeck and self.stribeck.moment, "moment", "N m")
@@ -102,6 +110,7 @@ class ScrewFriction(Frozen):
 
     @model_validator(mode="after")
     def _sensible(self) -> ScrewFriction:
+        _bends(self.presliding, LEAST, "rad")
         _breaks_away(self.torque, self.stribeck and self.stribeck.moment, "moment", "N m")
         return self
 
@@ -130,6 +139,7 @@ class StrokeFriction(Frozen):
 
     @model_validator(mode="after")
     def _sensible(self) -> StrokeFriction:
+        _bends(self.presliding, SHORTEST, "m")
         _breaks_away(self.force, self.stribeck and self.stribeck.force, "force", "N")
         return self
 
@@ -151,6 +161,18 @@ def _numbers(
     if static is not None and friction.stribeck is not None:
         excess, slower = static / sliding - 1, 1 / friction.stribeck.rate  # (T19.11)
     return sliding, arm, friction.presliding, excess, slower, friction.viscous, friction.damping_time
+
+
+def _bends(presliding: float, least: float, unit: str) -> None:
+    """Raise InputError if what bends before it slides is shorter than an atom."""
+    if presliding < least:
+        raise InputError(
+            "is less than an atom, as a way: contacts bend by micrometres before they slide",
+            key="presliding",
+            value=presliding,
+            allowed=f"at least {least:g} {unit}",
+            next_step="Leave it out, or take a tenth of the smallest motion that matters",
+        )
 
 
 def _breaks_away(sliding: float | None, static: float | None, key: str, unit: str) -> None:
