@@ -49,9 +49,13 @@ class Breaks:
         return Breaks(jumps=tuple(sorted(jumps)), corners=tuple(sorted(corners)))
 
 
-def robot_breaks(study: Study) -> Breaks:
-    """Breaks of a robot's commanded motion, of its load and of the force tables of its drives."""
-    far = study.simulation.stored_step
+def robot_breaks(study: Study, far: float | None = None) -> Breaks:
+    """Breaks of a robot's commanded motion, of its load and of the force tables of its drives.
+
+    Rows of a table with neighbours nearer than `far` [s] on both sides are samples of a curve and not corners; None:
+    nearer than an output step.
+    """
+    far = study.simulation.stored_step if far is None else far
     found = _motion(study.motion) | _load(study.load.wrench, far)
     for drive in {id(leg.drive): leg.drive for leg in study.robot.legs}.values():
         values = drive.force if isinstance(drive, ForceDrive) else getattr(drive, "torque", None)
@@ -64,9 +68,9 @@ def robot_breaks(study: Study) -> Breaks:
     return found
 
 
-def actuator_breaks(study: ActuatorStudy) -> Breaks:
-    """Breaks of the prescribed motion of an actuator and of its loads."""
-    far, motion, load = study.simulation.stored_step, study.motion, study.load
+def actuator_breaks(study: ActuatorStudy, far: float | None = None) -> Breaks:
+    """Breaks of the prescribed motion of an actuator and of its loads; `far` as above."""
+    far, motion, load = study.simulation.stored_step if far is None else far, study.motion, study.load
     found = Breaks()
     for law in motion.laws:
         found |= _scalar(law)

@@ -90,6 +90,7 @@ def prepare_actuator(
     law = _tables(study)
     output_step, outputs = simulation.stored_step, simulation.outputs(study.duration)
     state, counters = _state(study, system, law, amplitudes, rates), Counters()
+    far = 0.0 if simulation.tolerance is not None and system.kernel.library else None  # steps end on every row
     problem = Problem(
         system=system,
         method=method,
@@ -98,7 +99,7 @@ def prepare_actuator(
         outputs=outputs,
         measure=lambda recording: _measure(system, study.actuator, recording),
         restart=lambda flow, t, h: after_impact(system, flow, law, t, method, h),
-        stops=Stops.of(rigid.actuator_breaks(study), output_step, simulation.step, outputs),
+        stops=Stops.of(rigid.actuator_breaks(study, far), output_step, simulation.step, outputs),
         check=lambda recording: _check(system, study.actuator, recording),
         tolerance=simulation.tolerance,
         weights=_weights(system, study.actuator),

@@ -1,7 +1,9 @@
 """Time integration within a tolerance, chunk by chunk: ends of steps, scales of errors, failures as words."""
 
+from bisect import bisect_right
 from collections.abc import Iterator, Sequence
 from dataclasses import replace
+from itertools import pairwise
 
 import numpy as np
 
@@ -22,7 +24,7 @@ CHUNK_STEPS = 2000  # steps in a chunk of several outputs
 SMALLEST = 1e-9  # scale of an error [m]: what is smaller is rounding
 ROUNDING, SEEN = 1e-15, 1e-7  # of lengths of a metre [m]; what is larger is no longer the start from rest [m]
 SAMPLES = 50  # instants of a chunk that tell its scales
-SPARSE = 10  # output steps: knots of a path that are nearer to each other are rows of a dense table
+FINEST = 1e-3  # pieces of series are no shorter for what bends without being told [s]
 
 
 def adaptive_march(problem: Problem, start: Flow, counters: Counters) -> Iterator[Chunk]:
@@ -87,7 +89,7 @@ class _Run:
         edges = [0.0, *(stop.first for stop in self.ends), problem.outputs * problem.output_step]
         knots = problem.knots[(problem.knots > 0) & (problem.knots < edges[-1])]
         edges = _apart(sorted([*edges, *knots]))
-        series = Series(problem.tables, edges, problem.output_step)
+        series = Series(problem.tables, edges, min(FINEST, problem.output_step))
         self.within = Within(problem.system, series, edges[-1], problem.tolerance or 0.0)
         self.steps = 0  # of the last chunk
         self._scale(first)
@@ -96,11 +98,16 @@ class _Run:
         """Outputs after `done` up to `to`, or as far as it goes, the flow at their end, and what went wrong."""
         p, rows, before = self.problem, [], self.counters.steps
         begin, end, failure = done * p.output_step, to * p.output_step, None
-        inside = [stop for stop in self.ends if begin + NEAR < stop.first < end - NEAR]
-        for stop in [*inside, Stop(first=end, last=end, jumps=False)]:
+        first, last = (bisect_right(self.ends, t, key=_first) for t in (begin + NEAR, end - NEAR))
+        passed: list[float] = []
+        for stop in [*self.ends[first:last], Stop(first=end, last=end, jumps=False)]:
+            passed.append(stop.first)
+            if not stop.jumps and stop.first < end:
+                continue
             at = done + sum(map(len, rows))
             outputs = ((at + 1) * p.output_step, p.output_step, to - at)
-            found = self.within.advance(flow, stop.first, self._weights(), outputs, self.counters)
+            found = self.within.advance(flow, np.array(passed), self._weights(), outputs, self.counters)
+            passed.clear()
             flow = found.flow
             rows.append(found.rows)
             if found.status:
@@ -174,14 +181,14 @@ class _Run:
 
 
 def _ends(problem: Problem) -> list[Stop]:
-    """Where steps end: breaks, and knots of the path that are not rows of a dense table."""
-    found = [stop for stop in problem.stops.every if stop.first > NEAR]
-    knots = problem.knots[1:-1]
-    gaps = np.diff(problem.knots)
-    for t, gap in zip(knots, np.maximum(gaps[:-1], gaps[1:]), strict=True):
-        if gap >= SPARSE * problem.output_step and not any(abs(t - stop.first) <= NEAR for stop in found):
-            found.append(Stop(first=float(t), last=float(t), jumps=False))
-    return sorted((stop for stop in found if stop.first < problem.outputs * problem.output_step - NEAR), key=_first)
+    """Where steps end: breaks, and knots of the path."""
+    found = list(problem.stops.every)
+    at = np.array([-np.inf, *(stop.first for stop in found), np.inf])
+    after = np.searchsorted(at, problem.knots)
+    apart = np.minimum(problem.knots - at[after - 1], at[after] - problem.knots) > NEAR
+    found += [Stop(first=t, last=t, jumps=False) for t in problem.knots[apart].tolist()]
+    last = problem.outputs * problem.output_step - NEAR
+    return sorted((stop for stop in found if NEAR < stop.first < last), key=_first)
 
 
 def _first(stop: Stop) -> float:
@@ -189,5 +196,6 @@ def _first(stop: Stop) -> float:
 
 
 def _apart(instants: Sequence[float]) -> list[float]:
-    """Ascending instants without those that repeat another."""
-    return [x for i, x in enumerate(instants) if i == 0 or x - instants[i - 1] > NEAR]
+    """Ascending instants without those that repeat another; the last one stays."""
+    first, last = instants[0], instants[-1]
+    return [first, *(b for a, b in pairwise(instants[:-1]) if b - a > NEAR and last - b > NEAR), last]

@@ -85,6 +85,7 @@ def prepare(study: Study, state: State | None = None) -> RobotMarch:
     counters, output_step = Counters(), simulation.stored_step
     outputs = simulation.outputs(study.duration)
     measure = _Measure(study, system, path)
+    far = 0.0 if simulation.tolerance is not None and system.kernel.library else None  # steps end on every row
     problem = Problem(
         system=system,
         method=method,
@@ -95,7 +96,7 @@ def prepare(study: Study, state: State | None = None) -> RobotMarch:
         weights=measure.weights(),
         knots=path.knots,
         restart=lambda flow, t, h: after_impact(system, flow, law, t, method, h),
-        stops=Stops.of(rigid.robot_breaks(study), output_step, simulation.step, outputs),
+        stops=Stops.of(rigid.robot_breaks(study, far), output_step, simulation.step, outputs),
         check=lambda recording: _check(study, system, recording),
         tolerance=simulation.tolerance,
     )

@@ -17,6 +17,7 @@ __all__ = ["OUT_OF_REACH", "Advanced", "Within"]
 OUT_OF_REACH = 4  # as in radau.c
 FIRST = 1e-5  # of the first step, and after a jump [s]; it grows four times a step
 LONGEST, SHORTEST = np.inf, 1e-7  # s
+UNSOLVED = 1e-3  # share of a step's error that corrections may leave: of rates it is more, and adds up
 MOST = 8192  # steps per output before the tolerance is called out of reach
 TIME, STEP, SPENT, PEAK, STAGES, REJECTED, RECORDED = (
     0,
@@ -31,13 +32,12 @@ TIME, STEP, SPENT, PEAK, STAGES, REJECTED, RECORDED = (
 
 class _Control(Structure):
     _fields_ = [
-        *[(name, c_double) for name in ("end", "horizon", "tolerance")],
+        *[(name, c_double) for name in ("horizon", "tolerance")],
         ("weight", c_void_p),
         ("hub_weight", c_void_p),
-        *[(name, c_double) for name in ("longest", "shortest", "output_first", "output_step")],
-        *[(name, c_long) for name in ("outputs", "pieces", "terms", "most")],
-        ("edges", c_void_p),
-        ("series", c_void_p),
+        *[(name, c_double) for name in ("longest", "shortest", "unsolved", "output_first", "output_step")],
+        *[(name, c_long) for name in ("outputs", "pieces", "terms", "most", "stops")],
+        *[(name, c_void_p) for name in ("edges", "series", "stop")],
     ]
 
 
@@ -91,19 +91,23 @@ class Within:
     def advance(
         self,
         flow: Flow,
-        end: float,
+        stops: Array,
         weights: tuple[Array, Array],
         outputs: tuple[float, float, int],
         counters: Counters,
     ) -> Advanced:
-        """Advance to an instant; `outputs`: first instant, distance and number of the records on the way."""
+        """Advance to the last of `stops`, ascending instants on which steps end.
+
+        `outputs`: first instant, distance and number of the records on the way.
+        """
         new, rows = flow.copy(), np.zeros((outputs[2], record_width(self.system)))
         call = Call(self.system, new, rows, GeneralizedAlpha(1.0), 1.0, 1)
-        edges, series = (np.ascontiguousarray(x) for x in self.series.between(float(self._memory[TIME]), end))
+        edges, series = (np.ascontiguousarray(x) for x in self.series.between(float(self._memory[TIME]), stops[-1]))
         leg, hub = (np.ascontiguousarray(x) for x in weights)
         control = _Control(
-            end, self.horizon, self.tolerance, address(leg), address(hub), LONGEST, SHORTEST,
-            *outputs, len(series), TERMS, MOST * max(outputs[2], 1), address(edges), address(series),
+            self.horizon, self.tolerance, address(leg), address(hub), LONGEST, SHORTEST,
+            UNSOLVED, *outputs, len(series), TERMS, MOST * max(outputs[2], 1), len(stops),
+            address(edges), address(series), address(stops),
         )  # fmt: skip
         before = self._memory[REJECTED]
         status = compiled(self.system).radau(

@@ -1,16 +1,19 @@
 /* Radau IIA of order 5: the closures' rates vanish at each stage, the closures themselves at each step's end. */
 enum { STAGES = 3, BODY = 6 + PLATE, LOAD = 12, WIDTH = LEGS*PORTS*COLUMNS + LOAD };
 
+#define FREE 400.0     /* 1/s^2: square of the frequency that a motion without stiffness counts as */
+#define NOISE 3e-16  /* m: what it adds to the estimate of a step's error */
 #define CLOSED 1e-14 /* m: what rounding leaves */
 #define CLOSINGS 10
 
 typedef struct {
-  double end, horizon, tolerance;       /* of this call, of the whole; sum of the local errors that is allowed until the horizon */
+  double horizon, tolerance;            /* of the whole; sum of the local errors that is allowed until the horizon */
   const double *weight, *hub_weight;    /* (N), (6): of displacements in errors, one over what is their unit */
-  double longest, shortest;             /* step */
+  double longest, shortest, unsolved;   /* step; share of the local error allowed that corrections may leave */
   double output_first, output_step;     /* instants of records: those after the start, up to the end */
-  long outputs, pieces, terms, most;    /* most: steps of this call */
+  long outputs, pieces, terms, most, stops;     /* most: steps of this call */
   const double *edges, *series;         /* (pieces + 1), (pieces, terms, width): Chebyshev series of the tables */
+  const double *stop;                   /* (stops), ascending: instants on which steps end; the last ends the call */
 } Control;
 
 typedef struct {                        /* from call to call */
@@ -367,7 +370,7 @@ static int iterate_stages(const Settings *s, State *x, const Control *c, double 
   return NOT_CONVERGED;
 }
 
-/* Estimate of the local error, of order 6 in h: that of order 4 of the embedded formula, times h^2 K, twice filtered */
+/* Estimate of the local error, of order 6 in h: that of order 4 of the embedded formula, times h^2 (K + FREE M), twice filtered */
 static double estimate(const Settings *s, const Control *c, double h, Radau *r, Work *w) {
   static _Thread_local Vector speed, change[STAGES], acceleration, rhs, error, second;
   static _Thread_local Forces unused;
@@ -387,6 +390,7 @@ static double estimate(const Settings *s, const Control *c, double h, Radau *r, 
   arrow_solve_vector(s, w, &rhs, (lanes (*)[ROWS + 1])none, &error, &unused);
   memset(&rhs, 0, sizeof rhs);
   multiply(s, -1, r->K, s->hub ? r->hub_K : 0, &error, &rhs);
+  multiply(s, -FREE, r->M, s->hub ? r->hub_M : 0, &error, &rhs);
   arrow_solve_vector(s, w, &rhs, (lanes (*)[ROWS + 1])none, &second, &unused);
   return norm(s, c, &second);
 }
@@ -512,14 +516,14 @@ long radau_memory(void) { return (long)(sizeof(Memory)/sizeof(double)) + 1; }
 
 enum { OUT_OF_REACH = 4, OLDEST = 16 }; /* steps for which the matrices at rest are kept */
 
-/* Advance to c->end with steps of their own, recording the instants asked for. The memory is the caller's; zero but for the
+/* Advance to the last stop with steps of their own, recording the instants asked for. The memory is the caller's; zero but for the
    present time and the step to try, it begins anew. */
 int radau(const Settings *s, State *x, const Control *c, double *memory) {
   static _Thread_local Radau r;
   static _Thread_local Memory m;
   static _Thread_local lanes gap[GROUPS][ROWS + 1], rate[GROUPS][ROWS + 1];
   Work *w = work();
-  long tables = s->legs*s->ports*COLUMNS, width = tables + load_size(s), age = OLDEST, fresh = 0, next = 0;
+  long tables = s->legs*s->ports*COLUMNS, width = tables + load_size(s), age = OLDEST, fresh = 0, next = 0, stop = 0;
   int status = OK;
   double factored = 0, row[WIDTH], unit = fmax(c->hub_weight[0], 0);
   for (int j = 0; j < N; j++) unit = fmax(unit, c->weight[j]);
@@ -528,21 +532,23 @@ int radau(const Settings *s, State *x, const Control *c, double *memory) {
   w->h = w->stored = 0;
   evaluate_series(c, width, m.time, row);
   start_step(s, w, &r);
-  while (m.time < c->end && status == OK) {
-    double left = c->end - m.time, h = fmin(m.h, c->longest), rest_of_it = fmax(c->tolerance - m.spent, 0.1*c->tolerance);
+  while (status == OK) {
+    while (stop < c->stops && c->stop[stop] <= m.time) stop++;
+    if (stop == c->stops) break;
+    double left = c->stop[stop] - m.time, h = fmin(m.h, c->longest), rest_of_it = fmax(c->tolerance - m.spent, 0.1*c->tolerance);
     double allowed = fmin(rest_of_it/fmax(c->horizon - m.time, left), 3*c->tolerance/c->horizon), rounding = 1e-15*unit;
     if (h >= left*(1 - 1e-9)) h = left; else if (h > 0.5*left) h = 0.5*left;
     if (age >= OLDEST) { rest(s, row + tables, h, &r, w); age = 0; fresh = 1; factored = 0; }
-    if (factored != h) {
+    if (fabs(factored - h) > 1e-9*h) {
       x->factorisations++;
       m.rate = 0;
       if (factor_stages(s, h, &r, w)) { x->bad_leg = s->legs; status = SINGULAR; break; }
       factored = h;
     }
-    double until = h < left ? m.time + h : c->end;
+    double until = h < left ? m.time + h : c->stop[stop];
     for (int k = 0; k < STAGES; k++) evaluate_series(c, width, k < 2 ? m.time + NODE[k]*h : until, r.row[k]);
     predict_stages(s, &m, h, &r);
-    int fault = iterate_stages(s, x, c, h, 1e-3*allowed*h, rounding, &m.rate, &r, w);
+    int fault = iterate_stages(s, x, c, h, c->unsolved*allowed*h, rounding, &m.rate, &r, w);
     if (++x->steps > c->most) { step_back(s, &r, row, w); x->bad_leg = s->legs; status = OUT_OF_REACH; break; }
     if (fault) {                        /* with newer matrices, then with shorter steps */
       long leg = worst_leg(s, w);
@@ -562,7 +568,7 @@ int radau(const Settings *s, State *x, const Control *c, double *memory) {
     }
     for (; next < c->outputs; next++) {
       double t = c->output_first + (double)next*c->output_step;
-      if (t > until + 1e-9*c->output_step) break;
+      if (t > until + 1e-6*c->output_step) break;
       record_within(s, x, c, fmin(t, until), fmin((t - m.time)/h, 1), h, &r, w);
     }
     memcpy(row, r.row[2], sizeof row);
@@ -575,7 +581,8 @@ int radau(const Settings *s, State *x, const Control *c, double *memory) {
     m.stages = 1; m.last_h = h; m.time = until; m.spent += error; m.peak = peak;
     start_step(s, w, &r);
     age++; fresh = 0;
-    double wanted = h*fmin(4, fmax(0.2, 0.9*pow(allowed/fmax(peak*h5, 1e-300), 0.2)));
+    double share = fmax(allowed, NOISE*unit/h);   /* shorter steps have no less rounding */
+    double wanted = h*fmin(4, fmax(0.2, 0.9*pow(share/fmax(peak*h5, 1e-300), 0.2)));
     if (h < left && (wanted < 0.9*h || wanted > 1.2*h)) m.h = wanted;      /* another step costs another factorisation */
     if (h == left && wanted > m.h) m.h = wanted;
   }

@@ -1,0 +1,76 @@
+"""Radau's method at its limits: what it is of without a tolerance, stiff and free motions, horizons, dense tables."""
+
+from itertools import pairwise
+
+import numpy as np
+import pytest
+from tests.conservation.test_free_actuator import free, inertia
+from tests.runs import paper_robot, run_actuator, run_robot, with_legs
+
+from flexapod.model import CsvWrench, Load, override, preset
+from flexapod.solve import within
+from flexapod.solve.robot_march import prepare
+
+
+def stretching(study, factor, damping=0.01):
+    """The study with pistons that many times as stiff along their axis."""
+    return with_legs(
+        study, lambda leg: leg.replace(damping=damping, piston=leg.piston.replace(EA=factor * leg.piston.EA))
+    )
+
+
+def test_orders_of_a_platform_that_tumbles(monkeypatch):
+    """Steps of one length, solved to the end; vibrations of 100 Hz, which they resolve. Multipliers: of stages."""
+    study = stretching(paper_robot(fidelity="lumped", duration=0.4, output_step=8e-3, tolerance=0.9), 1e-3, 0.05)
+    turns = {"roll": 0.3, "pitch": 0.3, "yaw": 0.3}
+    study = study.replace(motion={"type": "combined", "amplitudes": turns, "duration": 0.4, "profile": "smooth"})
+    monkeypatch.setattr(within, "UNSOLVED", 1e-13)
+    runs = []
+    for h in (8e-3, 4e-3, 2e-3, 1e-3):
+        monkeypatch.setattr(within, "FIRST", h)
+        monkeypatch.setattr(within, "LONGEST", h)
+        runs.append(run_robot(study))
+    for name, order in (("pose", 5.0), ("v", 5.0), ("lam", 3.0)):
+        changes = [np.abs(a[name] - b[name]).max() for a, b in pairwise(runs)]
+        np.testing.assert_allclose(np.log2(np.array(changes[:-1]) / changes[1:]), order, atol=0.2)
+
+
+def test_pistons_that_hardly_stretch_at_all():
+    """A million times as stiff: the deviation is rounding, which shorter steps do not reduce; steps fell to 0.1 us."""
+    found = []
+    for factor in (1e5, 1e6):
+        march = prepare(stretching(paper_robot(fidelity="lumped", duration=0.2, tolerance=1e-3), factor))
+        found.append(np.concatenate([chunk.recording.drive for chunk in march.chunks]))
+        assert march.counters.steps < 50_000
+    # Errors of 1e-13 m, a ten-thousandth of the least deviation that counts, are 1 of 1900 N in them.
+    np.testing.assert_allclose(found[1], found[0], rtol=0, atol=1e-3 * np.ptp(found[0]))
+
+
+@pytest.mark.parametrize("tolerance", [1e-2, 1e-4, 1e-6])
+def test_what_has_no_stiffness_is_within_the_tolerance_too(tolerance):
+    """A stiff beam that turns and slides freely: its local errors have no stiffness that would tell them."""
+    run = run_actuator(free(tip=0.0, fidelity="rigid", tolerance=tolerance, output_step=2e-2))
+    length, turn, feed = run["q"][:, 0, 1], run["v"][:, 0], run["v"][:, 1]
+    np.testing.assert_allclose(inertia(length) * turn, inertia(1.83) * 0.785, rtol=tolerance)
+    energy = 0.5 * inertia(length) * turn**2 + 0.5 * 4.02 * 3.66 * feed**2
+    np.testing.assert_allclose(energy, energy[0], rtol=tolerance)
+
+
+@pytest.mark.parametrize("duration", [1e-6, 1e-5])
+def test_horizons_of_a_microsecond(duration):
+    for run, name in ((run_robot, "paper-robot"), (run_actuator, "paper-actuator")):
+        found = run(override(preset(name), duration=duration, output_step=1e-6))
+        assert found["time"][-1] == pytest.approx(duration)
+
+
+@pytest.mark.parametrize("output_step", [0.05, 1e-3])
+def test_rows_of_a_table_that_are_nearer_than_outputs(output_step):
+    """A random load each millisecond: of two outputs 50 ms apart, it was lost between them."""
+    force = np.random.default_rng(1).normal(size=201) * np.hanning(201)
+    load = CsvWrench(time=np.linspace(0, 0.2, 201), wrench=force[:, None] * [60.0, -40.0, 30.0, 5.0, 4.0, -3.0])
+    study = paper_robot(fidelity="lumped", duration=0.2).replace(load=Load(wrench=load))
+    study = study.replace(motion=study.motion.replace(amplitude=0.0, duration=0.2))
+    coarse, fine = (run_robot(override(study, step=h, output_step=0.05))["pose"] for h in (2e-5, 1e-5))
+    found = run_robot(override(study, tolerance=1e-4, output_step=output_step))["pose"][:: round(0.05 / output_step)]
+    true = fine + (fine - coarse) / 3
+    assert np.abs(found - true).max() < 1e-4 * np.abs(true - true[0]).max()
