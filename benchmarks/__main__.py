@@ -5,6 +5,7 @@ With `--write` figures are stored beside the page `RESULTS.md`, and without name
 
 from __future__ import annotations
 
+import os
 import sys
 from collections.abc import Callable
 from datetime import date
@@ -57,11 +58,12 @@ def main(arguments: list[str]) -> int:
     print("\n".join(about), end="\n\n", flush=True)
     measured = []
     for name in names or known:
-        begin = perf_counter()
+        begin, before = perf_counter(), _processor()
         for section in known[name]():
             measured.append(section)
             print(section.text(), end="\n\n", flush=True)
-        print(f"  {name}: {perf_counter() - begin:.0f} s", file=sys.stderr, flush=True)
+        wall, processor = perf_counter() - begin, _processor() - before
+        print(f"  {name}: {wall:.0f} s, {processor:.0f} s of the processor", file=sys.stderr, flush=True)
     if "--write" in arguments:
         from flexapod.plot.style import save
 
@@ -71,6 +73,11 @@ def main(arguments: list[str]) -> int:
     if "--write" in arguments and not names:
         PAGE.write_text(page(about, measured), encoding="utf-8")
     return 0
+
+
+def _processor() -> float:
+    """Seconds of the processor, of this process and of those that it waited for."""
+    return sum(os.times()[:4])
 
 
 def page(about: list[str], measured: list[Section]) -> str:

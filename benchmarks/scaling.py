@@ -216,7 +216,12 @@ def _figure(laws: Sequence[Law]) -> Figure:
                 panel.loglog(law.x, law.cost, ".-", color=color, linewidth=0.8, label=label)
                 panel.loglog(x, power.factor * x**power.exponent, "--", color=color, linewidth=0.8)
             panel.set_xlabel(name)
-            panel.legend(fontsize=5.5)
+            panel.minorticks_off()
+            first = next(law for law in laws if law.against == name)
+            if max(first.x) < 50 * min(first.x):
+                ticks = first.x[:: 1 + len(first.x) // 5]
+                panel.set_xticks(ticks, [f"{x:g}" for x in ticks])
+            panel.legend(fontsize=6.0, loc="lower left", bbox_to_anchor=(0.0, 1.0), borderaxespad=0.0)
         for panel in panels[len(against) :]:
             panel.remove()
         return fig
