@@ -140,7 +140,7 @@ def test_slider_and_picture_agree_after_pause_and_arrow_keys(opened):
     page.wait_for_timeout(1e3 * SETTLED + 500)
     until(lambda: float(slider.get_attribute("aria-valuenow")) == pytest.approx(session.scene.time, abs=6e-4))
     assert panel._dial.value == pytest.approx(session.scene.time, abs=6e-4)
-    assert f"At {panel._dial.value:.4g} s" in page.locator(".flexapod-readout").inner_text()
+    until(lambda: f"At {panel._dial.value:.4g} s" in page.locator(".flexapod-readout").inner_text())
     assert float(page.get_by_label("time [s]", exact=True).first.input_value()) == panel._dial.value
 
 

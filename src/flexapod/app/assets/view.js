@@ -123,7 +123,10 @@
     for (const button of document.querySelectorAll("button:not([aria-label])")) {
       if (!button.textContent.trim()) button.setAttribute("aria-label", named(button));
     }
-    document.querySelector(".mantine-Progress-section")?.setAttribute("aria-label", "Progress of the simulation");
+    for (const bar of document.querySelectorAll(".mantine-Progress-section:not([aria-label])")) {
+      const what = bar.closest(".mantine-Notification-root") ? "upload" : "simulation";
+      bar.setAttribute("aria-label", `Progress of the ${what}`);
+    }
     for (const words of document.querySelectorAll(".mantine-Notification-description")) {
       if (words.firstChild?.data === "File uploaded successfully.") {
         words.firstChild.data = "Sent. The tab Files says whether it is taken.";
