@@ -10,7 +10,7 @@ from flexapod.bases import axial_basis, lateral_basis
 from flexapod.mechanics.assembly import leg_functions
 from flexapod.mechanics.layout import Shapes, leg_parameters
 from flexapod.model import Cylinder, Leg, Piston, PistonSection
-from flexapod.solve.parameters import _leg
+from flexapod.solve.parameters import _inside, _leg
 from flexapod.solve.sections import section_parameters, steps_of
 from flexapod.symbolic.functions import Interpreted
 
@@ -30,7 +30,11 @@ def leg_of(sections, mouth=0.4, mass=5.0, **others):
 def vector(leg, shapes, home):
     """Its parameters as kernels read them; length at home [m]."""
     values = {"R0": np.eye(3).ravel(), "gravity": np.zeros(3), "base": np.zeros(3)}
-    values |= _leg(leg) | (section_parameters(leg, shapes, home) if shapes.sections else {})
+    values |= (
+        (_inside(leg, 0.0) if shapes.guide else {})
+        | _leg(leg)
+        | (section_parameters(leg, shapes, home) if shapes.sections else {})
+    )
     return np.concatenate([np.ravel(values[name]) for name, _ in leg_parameters(shapes)])
 
 

@@ -112,6 +112,25 @@ def bent_part(basis: LateralBasis, mass: SX, start: SX, step: SX, phi_psi: SX, s
     )
 
 
+def bending_mass(b: Any, axial: int) -> Distribution:
+    """The same of a part of several sections, by its integrals (`stepped_piston.SteppedShapes`)."""
+    none, still = zeros(1), zeros(axial)
+    return Distribution(
+        first=SimpleNamespace(one=none, X=none, phi=b.phi, sliding=b.sliding, psi=still),
+        moment=SimpleNamespace(one=none, X=none, phi=b.phi_X, sliding=b.sliding_X, psi=still),
+        lateral_mass=SX(1.0),
+        phi_phi=b.phi_phi,
+        phi_sliding=b.phi_sliding,
+        sliding_sliding=b.sliding_sliding,
+        axial_mass=none,
+        psi_psi=np.zeros((axial, axial)),
+        phi_psi=b.phi_psi,
+        sliding_psi=b.sliding_psi,
+        short=none,
+        short_X=none,
+    )
+
+
 @dataclass(frozen=True, kw_only=True)
 class Line:
     """Straight line on which a piston's bending stands: displacement and slope (a, b) at the mouth, and their rates.

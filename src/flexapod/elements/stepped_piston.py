@@ -90,6 +90,7 @@ class Part:
 
     ``p``: `section_...` from the free end; ``s``: length; ``end``: of the free one from the base joint; ``way``: 1 of
     the outer, -1 of the inner one, which gets shorter as l grows; ``tapers``: whether sections may.
+    ``there``: 0 where it has no mass.
     """
 
     p: SimpleNamespace
@@ -98,6 +99,7 @@ class Part:
     end: SX
     way: int = 1
     tapers: bool = False
+    there: SX | float = 1.0
 
     @property
     def count(self) -> int:
@@ -241,7 +243,8 @@ class _Beam:
 
     def weighed(self, name: str) -> SX:
         """What the sections have there, times these lengths."""
-        return self.lengths * horzcat(*(value for row in self._on(name) for value in row))
+        mass = self.part.there if name == "rhoA" else 1.0
+        return mass * self.lengths * horzcat(*(value for row in self._on(name) for value in row))
 
     @cached_property
     def beyond(self) -> tuple[SX, SX]:
@@ -254,7 +257,7 @@ class _Beam:
             masses += [mass + here - long * y for y in self.nodes.rest(rhoA)]
             moments += [moment + there - long * y for y in self.nodes.rest(by)]
             mass, moment = mass + here, moment + there
-        return horzcat(*masses), horzcat(*moments)
+        return self.part.there * horzcat(*masses), self.part.there * horzcat(*moments)
 
     @cached_property
     def shares(self) -> SX:

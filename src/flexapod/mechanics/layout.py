@@ -14,7 +14,7 @@ from flexapod.mechanics.drive_layout import (
     TURNING_PARAMETERS,
 )
 from flexapod.mechanics.guide_layout import CYLINDER_PARAMETERS, GUIDE_PARAMETERS
-from flexapod.mechanics.section_layout import section_parameters
+from flexapod.mechanics.section_layout import inner_parameters, section_parameters
 
 #: Physical parameters of one leg, in the order in which kernels read them (name, size). SI; vectors in the world frame.
 LEG_PARAMETERS: tuple[tuple[str, int], ...] = (
@@ -346,7 +346,8 @@ class Shapes:
 
 def _of_sections(shapes: Shapes) -> tuple[tuple[str, int], ...]:
     sizes = shapes.sections, shapes.planes, shapes.b.count, shapes.axial.count
-    return section_parameters(*sizes, shear=shapes.shear, tapers=shapes.tapers)
+    inner = inner_parameters(shapes.sections, shapes.guide.count, tapers=shapes.tapers) if shapes.guide else ()
+    return section_parameters(*sizes, shear=shapes.shear, tapers=shapes.tapers) + inner
 
 
 def leg_parameters(shapes: Shapes) -> tuple[tuple[str, int], ...]:

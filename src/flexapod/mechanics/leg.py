@@ -2,16 +2,27 @@
 
 from dataclasses import dataclass
 from types import SimpleNamespace
+from typing import cast
 
 import numpy as np
 
+from flexapod.bases import LateralBasis
 from flexapod.elements.carriage import carriage
 from flexapod.elements.cylinder import cylinder
 from flexapod.elements.distribution import Line, Motion
 from flexapod.elements.flexible_cylinder import Bend, bend, flexible_cylinder
 from flexapod.elements.flexure import flexure, springs
 from flexapod.elements.frame import Energies, Frame
-from flexapod.elements.guide import bushings, inner_end, inner_part, inner_turn, lean, shortening
+from flexapod.elements.guide import (
+    bushings,
+    inner_end,
+    inner_part,
+    inner_turn,
+    lean,
+    shortening,
+    stepped_inner_part,
+    stepped_shortening,
+)
 from flexapod.elements.mount import WORLD, displaced, mount, plate
 from flexapod.elements.ripple import ripple
 from flexapod.elements.rotations import small_rotation
@@ -26,6 +37,7 @@ from flexapod.mechanics.layout import Shapes
 from flexapod.symbolic.lagrange import Lagrangian
 from flexapod.symbolic.vocabulary import SX, constant, expanded, matrix33, symbol, vertcat, zeros
 
+INNER = ("cuts", "rhoA", "load", "EI_b", "place", "shrink")
 ALONG = constant(np.array([[0.0], [0.0], [1.0]]))  # a leg's own direction
 
 
@@ -67,14 +79,15 @@ def leg(shapes: Shapes, p: SimpleNamespace, q: SX, v: SX, qs: SimpleNamespace, v
         qs, vs = (SimpleNamespace(**vars(part) | {"a": zeros(shapes.b.count)}) for part in (qs, vs))
     s = qs.l - p.mouth  # (T3.6)  free length outside the cylinder
     a, b, present = shapes.a if shapes.a.count else shapes.b, shapes.b, (zeros(0), zeros(0))
+    inner: LateralBasis | SteppedShapes | None = shapes.guide
     if shapes.sections:
         qs, vs = (of_planes(shapes.planes, part) for part in (qs, vs))
-        a, present = _of_sections(shapes, p, s, qs.l)
+        a, inner, present = _of_sections(shapes, p, s, qs.l)
         b = a
     line = _line(shapes, p, qs, vs)
     motion = Motion(a=a, b=b, axial=shapes.axial, frame=frame, line=line, s=s, q=q, v=v, qs=qs, vs=vs)
     e += cylinder(frame, p, vs) + (stepped_piston if shapes.sections else sliding_piston)(motion, p)
-    inside, shift, turn = _inside(shapes, motion, p)
+    inside, shift, turn = _inside(shapes, motion, p, inner)
     e += inside
     if shapes.torsion:
         e += torsion(frame, p, qs, vs)
@@ -122,16 +135,39 @@ def _ground(shapes: Shapes, p: SimpleNamespace, qs: SimpleNamespace, vs: SimpleN
     return ground, carried + e
 
 
-def _of_sections(shapes: Shapes, p: SimpleNamespace, s: SX, l: SX) -> tuple[SteppedShapes, tuple[SX, SX]]:  # noqa: E741
-    """Shapes of a piston of several sections near its present length; symbols for that, and what to put for them."""
+def _of_sections(
+    shapes: Shapes,
+    p: SimpleNamespace,
+    s: SX,
+    l: SX,  # noqa: E741
+) -> tuple[SteppedShapes, SteppedShapes | None, tuple[SX, SX]]:
+    """Shapes of a piston of several sections near its present length, outside and inside of the mouth.
+
+    Returned are also the symbols for what depends on that length, and what to put for them.
+    """
     of_plane = np.concatenate([shapes.b.tip, np.zeros(shapes.shear * shapes.b.count)])
     tip = np.tile(of_plane, len(shapes.planes))
     if not tip.size:
-        return straight(shapes.axial.count), (zeros(0), zeros(0))
+        none = straight(shapes.axial.count)
+        return none, None if shapes.guide is None else none, (zeros(0), zeros(0))
     part = Part(p=p, s=s, l=l, end=l, tapers=shapes.tapers)
     integrals = stepped_shapes(part, shapes.b, shapes.sheared, shapes.axial, shapes.planes)
-    near, present = expanded(list(integrals.values()), l)
-    return SteppedShapes(count=tip.size, tip=tip, **dict(zip(integrals, near, strict=True))), present
+    if shapes.guide is None:
+        near, present = expanded(list(integrals.values()), l)
+        return SteppedShapes(count=tip.size, tip=tip, **dict(zip(integrals, near, strict=True))), None, present
+    own = {f"section_{name}": getattr(p, f"inner_{name}") for name in INNER}
+    within = Part(
+        p=SimpleNamespace(gland=p.gland, **own), s=p.guide_reach - l, l=l, end=l - p.Lp, way=-1,
+        tapers=shapes.tapers, there=p.inner_there,
+    )  # fmt: skip
+    inside = stepped_shapes(within, shapes.guide, None, shapes.axial, shapes.planes)
+    near, present = expanded([*integrals.values(), *inside.values()], l)
+    outer, inner = near[: len(integrals)], near[len(integrals) :]
+    return (
+        SteppedShapes(count=tip.size, tip=tip, **dict(zip(integrals, outer, strict=True))),
+        SteppedShapes(count=shapes.guide.count, tip=shapes.guide.tip, **dict(zip(inside, inner, strict=True))),
+        present,
+    )
 
 
 def _bends(shapes: Shapes, p: SimpleNamespace, qs: SimpleNamespace, vs: SimpleNamespace) -> tuple[Bend, Bend] | None:
@@ -150,21 +186,26 @@ def _line(shapes: Shapes, p: SimpleNamespace, qs: SimpleNamespace, vs: SimpleNam
     return Line(mouth=p.mouth, place=place, slope=slope, place_rate=place_rate, slope_rate=slope_rate)
 
 
-def _inside(shapes: Shapes, f: Motion, p: SimpleNamespace) -> tuple[Energies, SX, SX]:
+def _inside(
+    shapes: Shapes, f: Motion, p: SimpleNamespace, inner: LateralBasis | SteppedShapes | None
+) -> tuple[Energies, SX, SX]:
     """What is inside of a mouth that gives way: energies, shift and turn of the tip beyond those of the piston."""
     e, from_base, turn, bends = Energies(), zeros(1), zeros(1), _bends(shapes, p, f.qs, f.vs)
-    if shapes.guide is None and bends is None:
+    if inner is None and bends is None:
         return e, zeros(3), zeros(3)
-    head, inner = f.qs.l - p.Lp, shapes.guide
-    hole = zeros(2)
+    head, hole = f.qs.l - p.Lp, zeros(2)
     if shapes.cylinder is not None and bends is not None:
         e += flexible_cylinder(f, shapes.cylinder, p, *bends)
         from_base, hole = bends[0].shortening(head), bends[0].place(head)
     if inner is not None:
         gap = inner_end(f, p, inner) - hole
-        e += inner_part(f, p, inner) + bushings(f, p, gap, f.rate(gap))
+        part = stepped_inner_part(f, p, inner) if isinstance(inner, SteppedShapes) else inner_part(f, p, inner)
+        e += part + bushings(f, p, gap, f.rate(gap))
         turn = inner_turn(f, p, inner)
-    at_tip, short, short_X = shortening(f, p, inner, from_base)
+    if isinstance(f.a, SteppedShapes):
+        at_tip, short, short_X = stepped_shortening(f, p, cast("SteppedShapes | None", inner), from_base)
+    else:
+        at_tip, short, short_X = shortening(f, p, cast("LateralBasis | None", inner), from_base)
     return e + lean(f, p, short, short_X), vertcat(0, 0, at_tip), vertcat(0, 0, turn)
 
 

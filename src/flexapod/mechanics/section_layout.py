@@ -3,6 +3,21 @@
 POWERS = 5  # of a section that tapers: its EI is of fourth order
 
 
+def inner_parameters(sections: int, count: int, *, tapers: bool) -> tuple[tuple[str, int], ...]:
+    """The same of guided pistons for the part inwards of the mouth, sections from its end there; ``count`` shapes."""
+    powers = POWERS if tapers else 1
+    return (
+        ("inner_there", 1),  # 1 of guided legs, 0 of others
+        ("inner_cuts", sections - 1),
+        ("inner_rhoA", sections * powers),
+        ("inner_load", sections),
+        ("inner_EI_b", sections * powers),
+        ("inner_place", sections),
+        ("inner_shrink", sections),
+        ("inner_damping", count**2),
+    )
+
+
 def section_parameters(
     sections: int, planes: tuple[str, ...], lateral: int, axial: int, *, shear: bool, tapers: bool
 ) -> tuple[tuple[str, int], ...]:

@@ -52,13 +52,12 @@ def check_counts(robot: Robot) -> None:
         "cylinder.diameter": [leg.cylinder.section for leg in robot.legs],
     }
     for name, parts in inside.items():
-        if any(part is not None for part in parts) and any(
-            leg.piston.sections or leg.piston.shear for leg in robot.legs
-        ):
+        strips = name == "guide" and any(section.width for leg in robot.legs for section in leg.piston.sections)
+        if any(part is not None for part in parts) and (strips or any(leg.piston.shear for leg in robot.legs)):
             raise InputError(
-                "does not go together with pistons of several sections, or that shear",
+                f"does not go together with pistons that {'are strips' if strips else 'shear'}",
                 key=f"leg.{name}",
-                allowed="slender pistons of one section throughout, or clamped at the mouths of rigid cylinders",
+                allowed="slender pistons of round sections, or clamped at the mouths of rigid cylinders",
             )
 
 

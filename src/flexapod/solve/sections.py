@@ -49,10 +49,13 @@ def steps_of(leg: Leg) -> tuple[Step, ...]:
     return leg.piston.steps_or_one[::-1]
 
 
-def laws_of(leg: Leg, sections: int = 0) -> Laws:
-    """Sections of a leg, with sections without length before them where there are to be more."""
-    parts = leg.piston.parts[::-1]
-    parts = ((0.0, parts[0][1][-1:] * POWERS),) * (sections - len(parts)) + parts
+def laws_of(leg: Leg, sections: int = 0, *, inwards: bool = False) -> Laws:
+    """Sections of a leg, with sections without length before them where there are to be more.
+
+    ``inwards``: from the driven end to the tip, as the part inside of the mouth sees them.
+    """
+    parts = leg.piston.parts if inwards else tuple((length, at[::-1]) for length, at in leg.piston.parts[::-1])
+    parts = ((0.0, parts[0][1][:1] * POWERS),) * (sections - len(parts)) + parts
     names = {
         "rhoA": lambda x: x.rhoA,
         "EA": lambda x: x.EA,
@@ -66,7 +69,7 @@ def laws_of(leg: Leg, sections: int = 0) -> Laws:
     }
     return Laws(
         length=np.array([length for length, _ in parts]),
-        values={name: np.array([_powers(length, [of(x) for x in at[::-1]]) for length, at in parts])
+        values={name: np.array([_powers(length, [of(x) for x in at]) for length, at in parts])
                 for name, of in names.items()},
         E=np.array([at[0].E for _, at in parts]),
         round=parts[-1][1][0].round,
@@ -96,11 +99,12 @@ def section_parameters(leg: Leg, shapes: Shapes, home: float) -> dict[str, objec
     along, dm, mean = piston.length - (ends[:-1, None] + offset).ravel(), dm.ravel(), at["rhoA"] @ _WEIGHTS
     mass, whole_mass = (psi * dm) @ psi.T, dm.sum()
     free = home - leg.cylinder.mouth
-    found = [_damping(leg, shapes, free, 1 if plane == "b" else 0) for plane in shapes.planes]
-    lateral = np.zeros((sum(map(len, found)),) * 2)
-    for k, part in enumerate(found):
+    damped = [_damping(laws_of(leg), shapes.b, shapes.sheared, free, plane) for plane in shapes.planes]
+    lateral = np.zeros((sum(map(len, damped)),) * 2)
+    for k, part in enumerate(damped):
         lateral[k * len(part) : (k + 1) * len(part), k * len(part) : (k + 1) * len(part)] = part
-    return {
+    inner = {} if shapes.guide is None else _inner(leg, shapes, shapes.guide, home)
+    return inner | {
         **{f"section_{name}": laws.values[name][:, :powers] for name in laws.values},
         "section_cuts": ends[1:-1],
         "gland": piston.length * (_GLAND if leg.cylinder.mouth > 0 else 1e-6),
@@ -119,6 +123,26 @@ def section_parameters(leg: Leg, shapes: Shapes, home: float) -> dict[str, objec
     }
 
 
+def _inner(leg: Leg, shapes: Shapes, basis: LateralBasis, home: float) -> dict[str, object]:
+    """The same for the part inside of the mouth."""
+    laws, powers, overlap = laws_of(leg, shapes.sections, inwards=True), POWERS if shapes.tapers else 1, 0.0
+    at = {name: np.array([law(c, x) for c, x in zip(laws.values[name], laws.length[:, None] * _POINTS, strict=True)])
+          for name in ("EA", "rhoA")}  # fmt: skip
+    soft = laws.length * ((1 / at["EA"]) @ _WEIGHTS)
+    if leg.guide is not None:
+        overlap = leg.overlap(home)
+    damping = _damping(laws_of(leg, inwards=True), basis, None, overlap, "b") if overlap > 0 else 0.0
+    return {
+        **{f"inner_{name}": laws.values[name][:, :powers] for name in ("rhoA", "EI_b")},
+        "inner_there": float(leg.guide is not None),
+        "inner_cuts": np.cumsum(laws.length)[:-1],
+        "inner_load": loads(at["rhoA"] @ _WEIGHTS),
+        "inner_place": (np.cumsum(soft) - soft) / soft.sum(),
+        "inner_shrink": -1 / (laws.values["EA"][:, 0] * soft.sum()),
+        "inner_damping": 2 * damping_parts(leg.damping)[0] * overlap * damping * np.ones((basis.count, basis.count)),
+    }
+
+
 def loads(rhoA: Array) -> Array:
     """Mass per length over its mean, of pistons without mass 1."""
     return rhoA / rhoA.mean() if rhoA.any() else np.ones_like(rhoA)
@@ -126,7 +150,11 @@ def loads(rhoA: Array) -> Array:
 
 def numeric_pieces(leg: Leg, basis: LateralBasis, free: Any, direction: int) -> list[Piece]:
     """Shapes of a leg at free lengths [m], a number or (N,), along leg x (0) or y (1), before (T1.22)."""
-    laws, at, name = laws_of(leg), nodes(basis.count + _MORE), f"EI_{'ab'[direction]}"
+    return _pieces(laws_of(leg), basis, free, f"EI_{'ab'[direction]}")
+
+
+def _pieces(laws: Laws, basis: LateralBasis, free: Any, name: str) -> list[Piece]:
+    at = nodes(basis.count + _MORE)
     cuts = [np.minimum(cut / free, 1.0) for cut in np.cumsum(laws.length)[:-1]]
     places = [0.0 * np.asarray(free), *cuts, 1.0 + 0.0 * np.asarray(free)]
     over = _gives(laws, at, places, name, free)
@@ -139,11 +167,11 @@ def _gives(laws: Laws, at: Nodes, places: list[Any], name: str, free: Any) -> li
     return [laws.over(name, x, start, j, free) for j, (start, x) in enumerate(points)]
 
 
-def _thick(leg: Leg, shapes: Shapes, free: Any, direction: int) -> list[Piece]:
+def _thick(laws: Laws, basis: LateralBasis, free: Any, name: str) -> list[Piece]:
     """The same of what shears."""
-    bent = numeric_pieces(leg, shapes.sheared or shapes.b, free, direction)
+    bent = _pieces(laws, basis, free, name)
     places = [*(piece.start for piece in bent), bent[-1].end]
-    return sheared(bent, _gives(laws_of(leg), bent[0].nodes, places, "shear", free))
+    return sheared(bent, _gives(laws, bent[0].nodes, places, "shear", free))
 
 
 def leg_values(leg: Leg, basis: LateralBasis, free: Array, zeta: Array, derivative: int = 0) -> Array:
@@ -181,7 +209,7 @@ def _along(parts: list[Piece], zeta: Array, derivative: int) -> Array:
 
 def shear_tips(leg: Leg, shapes: Shapes, free: Array) -> Array:
     """Deflections at the tip of the shapes of shear before (T1.22), at free lengths (N,), (k, N)."""
-    return _thick(leg, shapes, free, 1)[0].value_start
+    return _thick(laws_of(leg), shapes.sheared or shapes.b, free, "EI_b")[0].value_start
 
 
 def bending_amplitudes(leg: Leg, shapes: Shapes, q: Array) -> Array:
@@ -217,15 +245,14 @@ def stepped_stress(leg: Leg, basis: LateralBasis, lateral: Array, free: Array, c
     return largest
 
 
-def _damping(leg: Leg, shapes: Shapes, free: float, direction: int) -> Array:
-    """Damping of ratio 1 in every mode of the bare piston at a free length, of bending and shear (K, K) [N s/m]."""
-    basis, laws, way = shapes.b, laws_of(leg), "ab"[direction]
-    size = basis.count * (1 + shapes.shear)
+def _damping(laws: Laws, basis: LateralBasis, shear: LateralBasis | None, free: float, way: str) -> Array:
+    """Damping of ratio 1 in every mode of the bare part of a length, of bending and shear (K, K) [N s/m]."""
+    size = basis.count * (1 + (shear is not None))
     M, K = np.zeros((size, size)), np.zeros((size, size))
     if not size:
         return M
-    bent = numeric_pieces(leg, basis, np.array([free]), direction)
-    thick = _thick(leg, shapes, np.array([free]), direction) if shapes.shear else []
+    bent = _pieces(laws, basis, np.array([free]), f"EI_{way}")
+    thick = _thick(laws, shear, np.array([free]), f"EI_{way}") if shear else []
     E = held(bent[0].value_start)
     for j, piece in enumerate(bent):
         w = (piece.end - piece.start) * piece.nodes.w
