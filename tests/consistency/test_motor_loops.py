@@ -14,9 +14,14 @@ from tests.runs import balance, run_robot
 import flexapod as fx
 from flexapod import model, rigid
 from flexapod.errors import InputError
+from flexapod.integration import GeneralizedAlpha
 from flexapod.model import Encoder, Loop, Motor, Rotor
+from flexapod.solve import interpreted, native
 from flexapod.solve.linear import linear_robot
 from flexapod.solve.modes import locked_poses
+from flexapod.solve.recording import Counters
+from flexapod.solve.robot_march import prepare
+from flexapod.solve.tables import robot_law
 
 LOOP = Loop(stiffness=50.0, damping=0.5)
 STEEL = SCREW.material.replace(E=1e15, density=1e-3)
@@ -270,3 +275,18 @@ class TestFiles:
         with pytest.raises(InputError) as caught:
             self.loaded(text)
         assert caught.value.key == key and words in str(caught.value)
+
+
+def test_elimination_without_symmetry_equals_the_dense_system():
+    given = study(mixed(), fidelity="lumped", step=1e-3, duration=0.02)
+    prepared = prepare(given)
+    law = robot_law(prepared.system, given.robot, given.load, partial(rigid.poses, given.robot, given.motion))
+    tables, method = law(np.arange(9) * 1e-3), GeneralizedAlpha(given.simulation.rho_inf)
+    flow, _ = native.first_record(prepared.system, prepared.start, *tables)
+    ours, theirs = (
+        solver.advance(prepared.system, method, flow, 1e-3, tables, 8, Counters()) for solver in (native, interpreted)
+    )
+    assert ours.status == theirs.status == 0
+    # Both stop where residuals are 1e-10 of the largest force, 1e4 N beside springs of 1e8 N/m.
+    np.testing.assert_allclose(ours.flow.pose, theirs.flow.pose, rtol=0, atol=1e-12)
+    np.testing.assert_allclose(ours.flow.sums, theirs.flow.sums, rtol=1e-9, atol=1e-9)
