@@ -14,10 +14,13 @@ from tests.runs import balance, run_robot
 import flexapod as fx
 from flexapod import model, rigid
 from flexapod.errors import InputError
+from flexapod.exchange.export import abaqus_deck
 from flexapod.integration import GeneralizedAlpha
 from flexapod.model import Encoder, Loop, Motor, Rotor
+from flexapod.proof.engines.exudyn_robot import RobotProblem
 from flexapod.solve import interpreted, native
 from flexapod.solve.linear import linear_robot
+from flexapod.solve.losses import loss_frequency
 from flexapod.solve.modes import locked_poses
 from flexapod.solve.recording import Counters
 from flexapod.solve.robot_march import prepare
@@ -241,6 +244,26 @@ class TestAtRest:
                 assert np.abs(causes.sel(cause=name).isel(leg=leg)).max() < 1e-15
         total = causes.sum(["cause", "leg"]) + rest.deviation_residual
         np.testing.assert_allclose(total, rest.com_deviation, rtol=0, atol=1e-15)
+
+
+def test_loss_factors_are_made_viscous_with_the_loop_about_the_rotor():
+    lossy = SCREW.replace(nut=NUT.replace(loss=0.01), loop=GAINS.replace(integral=0.0), command="servo")
+    elsewhere = {"encoder": BOTH, "motor": LAGS}
+    drives = (
+        lossy,
+        lossy.replace(**elsewhere),
+        lossy.replace(command="torque", **elsewhere),
+    )
+    found = [loss_frequency(machine(drive=drive), model.Simulation(fidelity="lumped")) for drive in drives]
+    assert found[2] > found[1] == found[0] > 10  # a torque is locked
+
+
+@pytest.mark.parametrize(("drive", "key"), [(with_loop(), "bandwidth"), (with_loop(Motor()), "encoder.at")])
+def test_decks_and_engines_refuse_them(drive, key):
+    with pytest.raises(InputError, match=f"{key}.*decks"):
+        abaqus_deck(machine(drive=drive))
+    with pytest.raises(InputError, match="Exudyn"):
+        RobotProblem(robot=machine(drive=drive), motion=None, integration=None, elements=0, guide=0.0)
 
 
 class TestFiles:

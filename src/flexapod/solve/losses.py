@@ -9,7 +9,17 @@ from typing import cast
 import numpy as np
 
 from flexapod.errors import ComputationError
-from flexapod.model import Drive, ForceDrive, HydraulicDrive, Motor, PrescribedDrive, Robot, ScrewDrive, Simulation
+from flexapod.model import (
+    Drive,
+    Encoder,
+    ForceDrive,
+    HydraulicDrive,
+    Motor,
+    PrescribedDrive,
+    Robot,
+    ScrewDrive,
+    Simulation,
+)
 from flexapod.solve.springs import springs_along, viscous
 from flexapod.words import number, text
 
@@ -125,7 +135,7 @@ def _locked(drive: Drive) -> Drive:
         return drive.replace(leakage=0.0)
     if not isinstance(drive, ScrewDrive):
         return drive
-    drive = drive.replace(motor=Motor())
+    drive = drive.replace(motor=Motor(), encoder=Encoder() if drive.closes_elsewhere else drive.encoder)
     nut, bearing = drive.nut.replace(loss=None), drive.bearing.replace(loss=None)
     held = {
         "command": "position",
