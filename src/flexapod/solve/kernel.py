@@ -3,7 +3,6 @@
 import ctypes
 import logging
 from collections.abc import Callable, Sequence
-from ctypes import c_double, c_long
 from dataclasses import dataclass, fields
 from functools import cache, lru_cache
 from pathlib import Path
@@ -23,7 +22,6 @@ Function = Callable[..., tuple[Array, ...]]
 NATIVE = Path(__file__).parent / "native"
 SOURCES = tuple(NATIVE / name for name in ("system.h", "lu.c", "legs.c", "arrow.c", "state.c", "march.c"))
 RADAU = tuple(NATIVE / name for name in ("complex.c", "radau.c"))
-_Pointer = ctypes.POINTER(c_double)
 _log = logging.getLogger("flexapod")
 
 
@@ -145,12 +143,16 @@ def evaluate(
     Returns
     -------
     list of ndarray, each shape (count, *shape)
+
+    Raises
+    ------
+    ValueError
+        Sizes are not those of the function.
     """
     rows = [np.ascontiguousarray(x, dtype=float).reshape(int(np.prod(x.shape[:-1])), x.shape[-1]) for x in inputs]
     if kernel.library is None:
         return _one_by_one(kernel, name, count, rows, shapes)
-    out = [np.zeros((count, *shape[::-1])) for shape in shapes]  # the kernels write column by column
-    _call(kernel.library, name, count, rows, out)
+    out = getattr(kernel, name).each(count, rows, shapes)  # the kernels write column by column
     return [x.swapaxes(1, 2) if x.ndim == 3 else x for x in out]
 
 
@@ -162,12 +164,3 @@ def _one_by_one(
     return [
         np.array([values[k] for values in found], dtype=float).reshape(count, *shape) for k, shape in enumerate(shapes)
     ]
-
-
-def _call(library: ctypes.CDLL, name: str, count: int, rows: list[Array], out: list[Array]) -> None:
-    getattr(library, name)(
-        c_long(count),
-        (_Pointer * len(rows))(*[x.ctypes.data_as(_Pointer) for x in rows]),
-        (c_long * len(rows))(*[len(x) for x in rows]),
-        (_Pointer * len(out))(*[x.ctypes.data_as(_Pointer) for x in out]),
-    )

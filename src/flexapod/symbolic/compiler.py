@@ -4,6 +4,7 @@ import ctypes
 import hashlib
 import json
 import logging
+import math
 import os
 import platform
 import shlex
@@ -86,6 +87,31 @@ class CompiledFunction:
         rows = (ctypes.c_long * len(inputs))(*[1] * len(inputs))
         self._function(ctypes.c_long(1), pointers[0], rows, pointers[1])
         return tuple(y[:, 0] if y.shape[1] == 1 else y for y in outputs)
+
+    def each(self, count: int, rows: Sequence[Array], shapes: Sequence[tuple[int, ...]]) -> list[Array]:
+        """Outputs of ``count`` bodies, (count, *shape), as C writes them: column by column.
+
+        Parameters
+        ----------
+        count : int
+        rows : sequence of ndarray, shape (any, size)
+            Arguments; with fewer rows than bodies they repeat.
+        shapes : sequence of tuple
+            Of each output of one body.
+
+        Raises
+        ------
+        ValueError
+            Sizes are not those of the function: C would read and write beyond them.
+        """
+        given = [x.shape[1] if len(x) or not count else 0 for x in rows], [math.prod(shape) for shape in shapes]
+        known = self._sizes, [rows * columns for rows, columns in self._shapes]
+        if given != known:
+            raise ValueError(f"expected sizes of inputs and outputs {known}, got {given}")
+        out = [np.zeros((count, *shape[::-1])) for shape in shapes]
+        pointers = [(ctypes.c_void_p * max(len(x), 1))(*[a.ctypes.data for a in x]) for x in (rows, out)]
+        self._function(ctypes.c_long(count), pointers[0], (ctypes.c_long * len(rows))(*map(len, rows)), pointers[1])
+        return out
 
 
 def compiled_library(
