@@ -3,10 +3,10 @@
 import numpy as np
 import pytest
 
-from flexapod.symbolic import compiler
+from flexapod.symbolic import c_source, compiler
 from flexapod.symbolic.compiler import CompiledFunction, compiled_library
 from flexapod.symbolic.functions import NamedFunction
-from flexapod.symbolic.vocabulary import cos, exp, sin, symbol
+from flexapod.symbolic.vocabulary import SX, cos, dot, exp, sin, sqrt, symbol, vertcat
 
 pytestmark = pytest.mark.skipif(compiler.compiler() is None, reason="there is no C compiler")
 
@@ -56,3 +56,40 @@ def test_the_exponential_is_that_of_the_library():
         expected = np.exp(x)
     (found,) = CompiledFunction(library, "power", signatures["power"])(x)
     np.testing.assert_allclose(found, expected, rtol=9e-16, atol=0)
+
+
+def _chain() -> NamedFunction:
+    x = symbol("x", 3)
+    y = [sin(x[0]) + sqrt(x[1]), cos(x[0]) * x[2]]
+    for k in range(40):
+        y.append(y[-1] * y[-2] + y[k // 2] / (k + 1.5))
+    return NamedFunction("chain", [("x", x)], [("y", vertcat(*y)), ("yy", dot(SX(vertcat(*y)), vertcat(*y)))])
+
+
+def test_a_function_in_parts_gives_the_same_bits(monkeypatch):
+    x, found = np.array([0.3, 0.7, -0.2]), []
+    for most in (5000, 7):
+        monkeypatch.setattr(c_source, "LONGEST", most)
+        library, signatures = compiled_library(["chain", most], lambda: [_chain()], (), compiler.compiler())
+        found.append(CompiledFunction(library, "chain", signatures["chain"])(x))
+        assert ("chain_lanes_1" in c_source.c_source(_chain())) == (most == 7)
+    for whole, parts in zip(*found, strict=True):
+        np.testing.assert_array_equal(parts, whole)
+
+
+@pytest.mark.parametrize(
+    ("rows", "shapes"),
+    [
+        ([np.ones((2, 2))], [(42,), (1,)]),  # an argument that is too short
+        ([np.ones((2, 3))], [(41,), (1,)]),  # room for too few numbers
+        ([np.ones((2, 3))], [(42,)]),
+        ([np.ones((2, 3)), np.ones((1, 1))], [(42,), (1,)]),
+        ([np.ones((0, 3))], [(42,), (1,)]),
+    ],
+)
+def test_wrong_sizes_are_refused_before_c_sees_them(rows, shapes):
+    library, signatures = compiled_library(["chain", 5000], lambda: [_chain()], (), compiler.compiler())
+    chain = CompiledFunction(library, "chain", signatures["chain"])
+    assert [x.shape for x in chain.each(2, [np.ones((1, 3))], [(42,), (1,)])] == [(2, 42), (2, 1)]
+    with pytest.raises(ValueError, match="expected sizes of inputs and outputs"):
+        chain.each(2, rows, shapes)

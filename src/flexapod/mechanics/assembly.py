@@ -278,15 +278,18 @@ def payload_functions(shapes: Shapes) -> list[NamedFunction]:
             "payload_residual",
             [*motion, *plates],
             [("r", _undisplaced(r, step)), ("power", _undisplaced(power, step))],
+            alone=True,
         ),
         NamedFunction(
             "payload_matrices",
             [("pose", pose), ("wrench", wrench), ("p", p_vector), *plates[:1]],
             [(name, _undisplaced(substitute(y, m[1:], still), step)) for name, y in matrices],
+            alone=True,
         ),
         NamedFunction(
             "payload_energies",
             [("pose", pose), ("u", u), ("p", p_vector), *plates[:2]],
             [("energies", energies)],
+            alone=True,
         ),
     ]

@@ -1,5 +1,6 @@
 """Generated functions as C: every operation once, for several bodies at a time."""
 
+import re
 from collections.abc import Iterator
 
 import casadi
@@ -8,8 +9,9 @@ from flexapod.symbolic.functions import NamedFunction
 
 __all__ = ["c_source"]
 
-#: What a value may be: one number, or a vector with a lane for each body.
-KINDS = ("double", "lanes")
+#: Statements of a C function at most: beyond that the compiler's time and memory grow faster than the text.
+LONGEST = 5000
+_VALUE = re.compile(r"\b[tsc]\d+\b")
 _BINARY = {casadi.OP_ADD: "+", casadi.OP_SUB: "-", casadi.OP_MUL: "*", casadi.OP_DIV: "/"}
 _UNARY = {
     casadi.OP_NEG: "-{0}",
@@ -23,7 +25,9 @@ _UNARY = {
 
 
 def c_source(function: NamedFunction) -> str:
-    """C text of a function: ``NAME_double`` (one body), ``NAME_lanes`` (a vector of bodies), ``NAME`` (any number).
+    """C text of a function: ``NAME_lanes`` (a vector of bodies), ``NAME`` (any number), ``NAME_double`` (one body).
+
+    The last where it is called alone: what nobody calls takes the compiler a third of its memory.
 
     Parameters
     ----------
@@ -38,10 +42,10 @@ def c_source(function: NamedFunction) -> str:
     name, built = function.name, function.build()
     sizes = [built.numel_in(k) for k in range(built.n_in())], [built.numel_out(k) for k in range(built.n_out())]
     inputs, outputs = (", ".join(map(str, x)) for x in sizes)
-    head = "static void {0}_{1}(const {1} *const *in, {1} *const *out) {{"
+    kinds = ("double", "lanes") if function.alone else ("lanes",)
     return "\n".join(
         [
-            *(line for kind in KINDS for line in (head.format(name, kind), *_statements(built, kind), "}")),
+            *(line for kind in kinds for line in _definition(f"{name}_{kind}", kind, list(_statements(built, kind)))),
             f"void {name}(long count, const double *const *in, const long *rows, double *const *out) {{",
             f"  static const long in_size[] = {{{inputs}}}, out_size[] = {{{outputs}}};",
             f"  lanes work[{sum(map(sum, sizes))}];",
@@ -50,6 +54,30 @@ def c_source(function: NamedFunction) -> str:
             "}\n",
         ]
     )
+
+
+def _definition(name: str, kind: str, statements: list[str]) -> Iterator[str]:
+    """A function of these statements, in parts where they are many; `w` holds what a later part needs."""
+    taken = f"const {kind} *const *in, {kind} *const *out"
+    if len(statements) <= LONGEST:
+        yield from (f"static void {name}({taken}) {{", *statements, "}")
+        return
+    parts = [statements[k : k + LONGEST] for k in range(0, len(statements), LONGEST)]
+    found = [set(_VALUE.findall("\n".join(part))) for part in parts]
+    places: dict[str, int] = {}
+    for k, part in enumerate(parts):
+        later = set().union(*found[k + 1 :])
+        here = {value: f"w[{place}]" for value, place in places.items() if value in found[k]}
+        yield f"static __attribute__((noinline)) void {name}_{k}({taken}, {kind} *restrict w) {{"
+        for line in part:
+            yield _VALUE.sub(lambda match, here=here: here.get(match[0], match[0]), line)
+            for value in line.split("=")[0].split(";")[0].replace(",", " ").split()[1:]:  # what it declares
+                if _VALUE.fullmatch(value) and value in later:
+                    places[value] = len(places)
+                    yield f"  w[{places[value]}] = {value};"
+        yield "}"
+    calls = (f"  {name}_{k}(in, out, w);" for k in range(len(parts)))
+    yield from (f"static void {name}({taken}) {{", f"  {kind} w[{len(places)}];", *calls, "}")
 
 
 def _statements(f: casadi.Function, kind: str) -> Iterator[str]:

@@ -12,11 +12,15 @@ from flexapod.typing import Array
 
 @dataclass(frozen=True)
 class NamedFunction:
-    """A function by name with (name, expression) inputs and outputs."""
+    """A function by name with (name, expression) inputs and outputs.
+
+    ``alone``: it is called from C for one body, too, not only for a vector of bodies.
+    """
 
     name: str
     inputs: Sequence[tuple[str, SX]]
     outputs: Sequence[tuple[str, SX]]
+    alone: bool = False
 
     def build(self) -> casadi.Function:
         """CasADi function with dense outputs."""
