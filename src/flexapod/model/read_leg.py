@@ -30,6 +30,7 @@ _STIFFNESS = ("EI", "EA", "rhoA")
 _SLIDING = ("stiffness", "damping", "force", "length")
 _TURNING = ("rotational stiffness", "rotational damping", "torque", "angle")
 _OF_MATERIAL = ("E", "density", "yield_stress", "poisson", "expansion")
+IDLE = {"type": "prescribed"}
 LEAST_STIFFNESS = 1e-9  # N/m, as of other springs
 _TRANSLATIONS, _FORCES = ("stiffness",) * 3, ("force",) * 3
 
@@ -50,7 +51,8 @@ def read_leg(section: Section, number: int, count: int, chain: str, places: tupl
                 allowed="true if nothing drives it, false if its stroke is driven",
                 next_step=f"Add {section.key('passive')} = true",
             )
-        if section.data.get("passive") is True and "drive" in section:
+        written = section.data.get("drive", IDLE)  # files of earlier versions have the drive of all legs there
+        if section.data.get("passive") is True and written != IDLE:
             raise section.error(
                 f"drives a passive leg (chain {chain})",
                 "drive",
