@@ -143,14 +143,6 @@ def _leg(i: int, leg: model.Leg, real: Limbs, columns: Array, tip: Array, length
         raise InputError("is not written in decks", key="piston.keyed", value=False, allowed="true")
     if leg.screw is not None and leg.screw.command == "torque":
         raise InputError("is not written in decks", key="drive.command", value="torque", allowed="position, servo")
-    if leg.screw is not None and leg.screw.loops:
-        late = leg.screw.lag > 0
-        raise InputError(
-            "is not written in decks, whose loops are springs on the rotor",
-            key="drive.motor.bandwidth" if late else "drive.encoder.at",
-            value=leg.screw.motor.bandwidth if late else leg.measured,
-            allowed="none" if late else 'rotor; or command = "position"',
-        )
     z, y = columns[:3, _LENGTH], columns[3:, _NAMES.index("beta")]
     springs = dict(zip(_NAMES[1:4], (below.bending, below.bending, below.torsion), strict=True))
     springs |= dict(zip(_NAMES[5:], (above.bending, above.bending, above.torsion), strict=True))
@@ -236,6 +228,14 @@ def _drive(leg: model.Leg, length: float) -> float:
 
 
 def _check_leg(i: int, leg: model.Leg, length: float) -> None:
+    if leg.screw is not None and leg.screw.loops:
+        late = leg.screw.lag > 0
+        raise InputError(
+            "is not written in decks, whose loops are springs on the rotor",
+            key="drive.motor.bandwidth" if late else "drive.encoder.at",
+            value=leg.screw.motor.bandwidth if late else leg.measured,
+            allowed="none" if late else 'rotor; or command = "position"',
+        )
     if leg.piston.sections:
         raise InputError(
             "is not written in decks",

@@ -15,6 +15,7 @@ from flexapod.study.after.results import rigid_force_results, robot_coords, robo
 from flexapod.study.arguments import LoadLike, RobotLike, StartLike, as_study, read
 from flexapod.study.attributes import attributes, march_attributes
 from flexapod.study.before.checks import check_path
+from flexapod.study.before.loops import loop_remarks
 from flexapod.study.names import dataset
 from flexapod.study.path import RigidPath
 from flexapod.study.record import Progress, Record, collect, finished
@@ -70,7 +71,7 @@ def simulated(study: model.Study, progress: Progress | None = None) -> Simulated
         As `simulate`.
     """
     path = RigidPath(study)
-    remarks, march = check_path(study, path), prepare(study)
+    remarks, march = [*check_path(study, path), *loop_remarks(study)], prepare(study)
     record = collect(march.chunks, damped_angles(march.system), study.duration, progress)
     return Simulated(study=study, path=path, march=march, record=record, remarks=remarks)
 
