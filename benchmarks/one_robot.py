@@ -92,8 +92,10 @@ def _costs(best: dict[float, float | None], true: Curve) -> Section:
 
 def _cost_row(name: str, run: Marched, march: Spread, call: Spread, reached: float) -> list[str]:
     step, speed = 1e6 * march.median / run.counters.steps, 2.0 / march.median
-    wanted = 30.0 if "default" in name else 50.0
-    goals = [goal(step, 20.0, "20 us a step"), goal(speed, wanted, f"{wanted:g} times", at_least=True)]
+    within = "default" in name  # whose steps have three stages each
+    wanted = 30.0 if within else 50.0
+    goals = [] if within else [goal(step, 20.0, "20 us a step")]
+    goals.append(goal(speed, wanted, f"{wanted:g} times", at_least=True))
     return [
         name,
         f"{100 * reached:.3g} %",
@@ -130,7 +132,7 @@ def _operations(run: Marched) -> Section:
     rest = whole.plus(generated.times(-1))
     rows = [
         *parts,
-        ["elimination, solution, update", *_numbers(rest)],
+        ["elimination, solution, update; series for sines", *_numbers(rest)],
         ["a step of 0.5 ms", *_numbers(whole)],
         [f"a step within {DEFAULT_TOLERANCE:g}, three stages", *_numbers(radau)],
     ]
@@ -145,7 +147,7 @@ def _operations(run: Marched) -> Section:
             + " Commands, scales of errors and 100 records, which Python shares in, are in its time.",
             "Peaks: multiply-adds on 1, 2, 4, 8 doubles at a time, measured on the same core with the same compiler.",
             "Generated functions from CasADi's instructions times calls; the whole by compiling the same C with a "
-            "number that counts; the rest is the difference.",
+            "number that counts; the rest is the difference. Sines of several legs at once are series, + - * /.",
         ],
     )
 
@@ -176,4 +178,4 @@ def _generated(run: Marched) -> tuple[Count, list[list[str]]]:
 
 
 def _numbers(count: Count) -> list[str]:
-    return [f"{count.arithmetic:.0f}", f"{count.roots:.0f}", f"{count.circular:.0f}"]
+    return [f"{count.arithmetic:.0f}", f"{count.roots:.0f}", f"{max(count.circular, 0.0):.0f}"]
