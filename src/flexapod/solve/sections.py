@@ -21,7 +21,6 @@ from flexapod.typing import Array
 _GLAND = 0.01  # of the piston's length: within which the mouth takes a cut up
 _MORE = 7  # points on a section more than shapes, as in kernels of tapers
 _POINTS, _WEIGHTS = gauss_unit(24)
-_UP_TO = (_WEIGHTS - nodes(24).beyond).T  # of a row: integrals from 0 to the points
 _ALONG = ("EA", "rhoA", "turning_a", "turning_b")
 _STRESS_POINTS = 6  # on a section
 
@@ -93,7 +92,8 @@ def section_parameters(leg: Leg, shapes: Shapes, home: float) -> dict[str, objec
     at = {name: np.array([law(c, x) for c, x in zip(laws.values[name], offset, strict=True)]) for name in _ALONG}
     soft = length[:, None] / at["EA"]
     before, whole = np.concatenate([[0.0], np.cumsum(soft @ _WEIGHTS)]), (soft @ _WEIGHTS).sum()
-    tau = 1 - (before[:-1, None] + soft @ _UP_TO) / whole
+    up_to = (_WEIGHTS - nodes(len(_POINTS)).beyond).T  # of a row: integrals from 0 to the points
+    tau = 1 - (before[:-1, None] + soft @ up_to) / whole
     dm = at["rhoA"] * length[:, None] * _WEIGHTS
     psi = shapes.axial.values(tau.ravel())
     along, dm, mean = piston.length - (ends[:-1, None] + offset).ravel(), dm.ravel(), at["rhoA"] @ _WEIGHTS
