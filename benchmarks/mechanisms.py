@@ -47,10 +47,10 @@ def _run(study: Study) -> float:
     """Seconds of a step of one run, without the tables of commands."""
     spent, steps, plain = 0.0, 0, native.advance
 
-    def timed(*arguments: object) -> native.Advance:
+    def timed(*arguments: object, **more: object) -> native.Advance:
         nonlocal spent, steps
         begin = time.process_time()
-        result = plain(*arguments)  # type: ignore[arg-type]
+        result = plain(*arguments, **more)  # type: ignore[arg-type]
         spent, steps = spent + time.process_time() - begin, steps + result.step
         return result
 

@@ -32,7 +32,7 @@ def vector(leg, shapes, home):
     values = {"R0": np.eye(3).ravel(), "gravity": np.zeros(3), "base": np.zeros(3)}
     values |= (
         (_inside(leg, 0.0) if shapes.guide else {})
-        | _leg(leg)
+        | _leg(leg, at_rest=False)
         | (section_parameters(leg, shapes, home) if shapes.sections else {})
     )
     return np.concatenate([np.ravel(values[name]) for name, _ in leg_parameters(shapes)])
