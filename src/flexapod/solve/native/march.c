@@ -110,11 +110,12 @@ static void residual(const Settings *s, const double *wrench, Work *w) {
   for (int j = 0; j < 6; j++) if (s->hub_held[j] != 0) { w->reaction[j] = w->rp[j]; w->rp[j] = 0; }
 }
 
-/* Matrices of a vector of legs at rest, and what their joints add to the payload's stiffness */
-static void matrices_of_legs(const Settings *s, int i, const lanes *around, const double *c, Work *w, double *Ap) {
-  static _Thread_local lanes A[3][N*N], J[ROWS*N];
+/* Matrices of a vector of legs at rest, in the kernel's order: A of mass, damping, stiffness; H is what joints add to the
+   payload's stiffness; closures' Jacobians go to the arrow */
+static void legs_at_rest(const Settings *s, int i, const lanes *around, Work *w, lanes (*A)[N*N], lanes *H) {
+  static _Thread_local lanes J[ROWS*N + 1];
   LegBlock *b = &w->arrow.leg[i];
-  lanes H[36], X[N*6];                  /* X, by which the payload turns the legs' forces, is left out of the iteration */
+  lanes X[N*6];                         /* by which the payload turns the legs' forces: left out of the iteration */
   const lanes *in[] = {w->leg[i].q, w->leg[i].lam, w->p[i], around};
   lanes *out[] = {A[0], A[1], A[2], J, b->P, H, X};
   leg_matrices_lanes(in, out);
@@ -123,12 +124,19 @@ static void matrices_of_legs(const Settings *s, int i, const lanes *around, cons
     lanes *at[] = {b->P, H};
     joint_matrices_lanes(joint, at);
   }
+  for (long j = 0; j < N; j++) for (int k = 0; k < ROWS; k++) b->J[k + ROWS*j] = J[k + ROWS*ORDER[j]];
+}
+
+/* Their part of the matrix that is to be factored, and of the payload's */
+static void matrices_of_legs(const Settings *s, int i, const lanes *around, const double *c, Work *w, double *Ap) {
+  static _Thread_local lanes A[3][N*N];
+  lanes H[36];
+  legs_at_rest(s, i, around, w, A, H);
   for (long j = 0; j < N; j++) for (long k = 0; k < N; k++) {
     long at = ORDER[k] + N*ORDER[j];
-    b->A[k + j*N] = c[0]*A[0][at] + c[1]*A[1][at] + c[2]*A[2][at];
+    w->arrow.leg[i].A[k + j*N] = c[0]*A[0][at] + c[1]*A[1][at] + c[2]*A[2][at];
   }
-  if (c[1] != 0) { add_friction_matrix(i, c[1], w); add_loop(w, i, c[1], c[2], b->A, b->A); }
-  for (long j = 0; j < N; j++) for (int k = 0; k < ROWS; k++) b->J[k + ROWS*j] = J[k + ROWS*ORDER[j]];
+  if (c[1] != 0) { add_friction_matrix(i, c[1], w); add_loop(w, i, c[1], c[2], w->arrow.leg[i].A, w->arrow.leg[i].A); }
   if (s->hub) for (int j = 0; j < 36; j++) Ap[j%6 + j/6*HUB] += c[2]*sum(s, i, H[j]);
 }
 

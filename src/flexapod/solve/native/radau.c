@@ -196,29 +196,20 @@ static void stiffen(int i, double h, Radau *r, Work *w) {
 #endif
 }
 
+/* Mass, damping and stiffness at rest of legs and payload; closures' Jacobians go to the arrow */
 static void rest(const Settings *s, const double *load, double h, Radau *r, Work *w) {
-  static _Thread_local lanes A[3][N*N], J[ROWS*N + 1];
-  lanes around[OUTSIDE];
+  static _Thread_local lanes A[3][N*N];
+  lanes around[OUTSIDE], H[36];
   outside(s, w, load, around);
   memset(r->hub_K, 0, sizeof r->hub_K);
   for (int g = 0; g < groups(s); g++) {
-    LegBlock *b = &w->arrow.leg[g];
-    lanes H[36] = {{0}}, X[N*6];
-    const lanes *in[] = {w->leg[g].q, w->leg[g].lam, w->p[g], around};
-    lanes *out[] = {A[0], A[1], A[2], J, b->P, H, X};
-    leg_matrices_lanes(in, out);
-    if (ROWS && !POSED) {
-      const lanes *joint[] = {around, w->leg[g].lam, w->joint[g]};
-      lanes *at[] = {b->P, H};
-      joint_matrices_lanes(joint, at);
-    }
+    legs_at_rest(s, g, around, w, A, H);
     for (int j = 0; j < N; j++) for (int k = 0; k < N; k++) {
       int at = ORDER[k] + N*ORDER[j], to = k + N*j;
       r->M[g][to] = A[0][at]; r->D[g][to] = A[1][at]; r->K[g][to] = A[2][at];
     }
     stiffen(g, h, r, w);
     add_loop(w, g, 1, 1, r->D[g], r->K[g]);
-    for (int j = 0; j < N; j++) for (int k = 0; k < ROWS; k++) b->J[k + ROWS*j] = J[k + ROWS*ORDER[j]];
     if (s->hub) for (int j = 0; j < 36; j++) r->hub_K[j%6 + j/6*BODY] += sum(s, g, H[j]);
   }
   if (!s->hub) return;
