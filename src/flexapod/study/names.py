@@ -147,7 +147,7 @@ _ENERGY = {
     "energy_kinetic": Variable(_T, "J", "kinetic energy"),
     "energy_potential": Variable(_T, "J", "potential energy of gravity, zero at the base plane"),
     "energy_strain": Variable(_T, "J", "strain energy of legs and drive springs"),
-    "energy_dissipated": Variable(_T, "J", "energy dissipated since the start"),
+    "energy_dissipated": Variable(_T, "J", "energy dissipated since the start, as exact as the balance closes"),
     "work_drive": Variable(_T, "J", "work of the drives since the start"),
     "work_base": Variable(_T, "J", "work on a base that is moved since the start"),
     "work_external": Variable(_T, "J", "work of the external load since the start"),
