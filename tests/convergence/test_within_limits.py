@@ -25,14 +25,21 @@ def test_orders_of_a_platform_that_tumbles(monkeypatch):
     turns = {"roll": 0.3, "pitch": 0.3, "yaw": 0.3}
     study = study.replace(motion={"type": "combined", "amplitudes": turns, "duration": 0.4, "profile": "smooth"})
     monkeypatch.setattr(within, "UNSOLVED", 1e-13)
-    runs = []
-    for h in (8e-3, 4e-3, 2e-3, 1e-3):
+
+    def run(h, **how):
         monkeypatch.setattr(within, "FIRST", h)
         monkeypatch.setattr(within, "LONGEST", h)
-        runs.append(run_robot(study))
+        return run_robot(override(study, **how))
+
+    runs = [run(h) for h in (8e-3, 4e-3, 2e-3, 1e-3)]
     for name, order in (("pose", 5.0), ("v", 5.0), ("lam", 3.0)):
         changes = [np.abs(a[name] - b[name]).max() for a, b in pairwise(runs)]
         np.testing.assert_allclose(np.log2(np.array(changes[:-1]) / changes[1:]), order, atol=0.2)
+    # Between the ends of steps places are as exact as there, rates of one order less.
+    found, true = (run(h, output_step=1e-3) for h in (4e-3, 1e-3))
+    for name, more in (("pose", 1.1), ("v", 5.0)):
+        error = np.abs(found[name] - true[name]).max(axis=1)
+        assert error.max() < more * error[::4].max()
 
 
 def test_pistons_that_hardly_stretch_at_all():
@@ -54,6 +61,12 @@ def test_what_has_no_stiffness_is_within_the_tolerance_too(tolerance):
     np.testing.assert_allclose(inertia(length) * turn, inertia(1.83) * 0.785, rtol=tolerance)
     energy = 0.5 * inertia(length) * turn**2 + 0.5 * 4.02 * 3.66 * feed**2
     np.testing.assert_allclose(energy, energy[0], rtol=tolerance)
+
+
+def test_energy_of_a_beam_that_is_free_and_bent():
+    for tolerance in (1e-2, 1e-4):
+        energy = run_actuator(free(tolerance=tolerance, output_step=2e-2))["energy"].sum(axis=1)
+        assert np.ptp(energy) < tolerance * energy[0]
 
 
 @pytest.mark.parametrize("duration", [1e-6, 1e-5])

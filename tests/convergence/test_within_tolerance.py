@@ -24,9 +24,20 @@ def moved(**motion):
     return study.replace(motion=study.motion.replace(hold=motion["duration"], **motion))
 
 
+def thin():
+    """The roll on pistons of 10 in place of 27 mm, which buckle at 9 mm."""
+    ratio = 10 / 27
+    size = {"EA": ratio**2, "rhoA": ratio**2, "EI": ratio**4}
+    return with_legs(
+        paper_robot(duration=1.5),
+        lambda leg: leg.replace(piston=leg.piston.replace(**{k: f * getattr(leg.piston, k) for k, f in size.items()})),
+    )
+
+
 STUDIES = {
     "roll": (lambda: paper_robot(duration=1.5), 2.5e-5),
     "fast move": (lambda: moved(amplitude=np.radians(5.0), duration=0.1), 5e-6),
+    "near buckling": (thin, 2.5e-5),
     "machine": (lambda: override(preset("machine-hexapod"), duration=0.8), 2e-5),
 }
 
@@ -126,7 +137,11 @@ def test_plates_on_mounts(base_motion):
     true = fine + (fine - coarse) / 3
     for tolerance in (1e-2, 1e-4, 1e-6):
         found = fx.run(override(study, tolerance=tolerance, output_step=1e-3)).com_deviation
-        assert tolerance / 50 < np.abs(found - true).max() / np.abs(true).max() < tolerance
+        error = float(np.abs(found - true).max() / np.abs(true).max())
+        assert tolerance / 50 < error < tolerance
+        if tolerance > 1e-5:  # below, the error is in part the reference's
+            *_, last = prepare(override(study, tolerance=tolerance, output_step=1e-3)).chunks
+            assert error < last.error < 5 * error  # the estimate: plates' rows are summed over the legs
     run = run_robot(override(study, tolerance=1e-6, output_step=1e-3))
     assert run["closure"].max() < 1e-12
     assert np.ptp(balance(run)) < 1e-4 * np.ptp(run["sums"][:, 1])

@@ -17,7 +17,7 @@ __all__ = ["OUT_OF_REACH", "Advanced", "Within"]
 OUT_OF_REACH = 4  # as in radau.c
 FIRST = 1e-5  # of the first step, and after a jump [s]; it grows four times a step
 LONGEST, SHORTEST = np.inf, 1e-7  # s
-UNSOLVED = 1e-3  # share of a step's error that corrections may leave: of rates it is more, and adds up
+UNSOLVED = 0.05  # share of a step's error that corrections may leave, in the displacements that its rates bring
 MOST = 8192  # steps per output before the tolerance is called out of reach
 TIME, STEP, SPENT, PEAK, STAGES, REJECTED, RECORDED = (
     0,

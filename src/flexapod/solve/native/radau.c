@@ -539,7 +539,8 @@ int radau(const Settings *s, State *x, const Control *c, double *memory) {
     double until = h < left ? m.time + h : c->stop[stop];
     for (int k = 0; k < STAGES; k++) evaluate_series(c, width, k < 2 ? m.time + NODE[k]*h : until, r.row[k]);
     predict_stages(s, &m, h, &r);
-    int fault = iterate_stages(s, x, c, h, c->unsolved*allowed*h, rounding, &m.rate, &r, w);
+    double goal = c->unsolved*allowed*h/(1 + REAL/(h*sqrt(FREE)));          /* rates are off by REAL/h of it, for 1/sqrt(FREE) */
+    int fault = iterate_stages(s, x, c, h, goal, rounding, &m.rate, &r, w);
     if (++x->steps > c->most) { step_back(s, &r, row, w); x->bad_leg = s->legs; status = OUT_OF_REACH; break; }
     if (fault) {                        /* with newer matrices, then with shorter steps */
       long leg = worst_leg(s, w);
