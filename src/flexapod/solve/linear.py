@@ -4,7 +4,6 @@ from __future__ import annotations
 
 from collections.abc import Mapping
 from dataclasses import dataclass, replace
-from functools import cached_property
 
 import numpy as np
 from numpy.typing import NDArray
@@ -21,6 +20,8 @@ from flexapod.solve.tables import push_ports
 from flexapod.typing import Array
 
 __all__ = ["LinearRobot", "linear_robot"]
+
+FAR = 5.0
 
 Complex = NDArray[np.complex128]
 
@@ -40,10 +41,18 @@ class LinearRobot:
     inputs: Mapping[str, Array]
     loops: ModalLoops | None = None
 
-    @cached_property
-    def poles(self) -> Complex:
-        """Eigenvalues [1/s]."""
-        return poles(self.omega, self.damping) if self.loops is None else self.loops.eigen(self.omega, self.damping)[0]
+    def poles(self, rate: float) -> Complex:
+        """Eigenvalues [1/s] up to a `rate` [rad/s], near enough to tell where responses change, see (T18.11).
+
+        What is `FAR` times as fast and damped little below the rate gives way as at rest: the others' damping to it
+        moves a pole by less than its distance from the imaginary axis over `FAR`.
+        """
+        if self.loops is not None:
+            return self.loops.eigen(self.omega, self.damping)[0]
+        near = (self.omega <= FAR * rate) | (np.diag(self.damping) * rate >= 1.0 / FAR)
+        if not near.any():
+            return np.zeros(0, dtype=complex)
+        return poles(self.omega[near], self.damping[np.ix_(near, near)])
 
     def amplitudes(self, frequency: Array, forces: Array) -> Complex:
         """Modes (f, r, any) at frequencies (f,) [Hz] under modal forces (r, any), Eq. (T18.2)."""
@@ -81,7 +90,7 @@ def linear_robot(locked: LockedPoses) -> LinearRobot:
     }
     damping, loops = modal_damping(locked, found.flat)[0], [*loops_of(locked), None]
     model = LinearRobot(omega=found.omega[0], damping=damping, tool=tool, inputs=inputs, loops=loops[0])
-    if model.loops is not None and (words := unstable_words(growth(model.poles))):
+    if model.loops is not None and (words := unstable_words(growth(model.poles(np.inf)))):
         raise InputError(words[0], key="leg.drive.loop", allowed="loops whose deviations decay")
     return model
 

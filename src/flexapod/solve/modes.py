@@ -79,6 +79,21 @@ class LockedPoses:
         held[rests, shapes.index("r")] = False
         return replace(self, system=replace(self.system, held=held))
 
+    def one(self, k: int) -> "LockedPoses":
+        """The k-th pose of those whose equilibrium was found, by itself."""
+        at, found = self.at[k : k + 1], self.equilibria
+        alone = Equilibria(states=found.states[at], code=found.code[at], m=found.m[np.array([k])])
+        return replace(
+            self,
+            path=self.path.part(slice(at[0], at[0] + 1)),
+            start=self.start[at],
+            command=self.command[at],
+            acts=replace(self.acts, force=self.acts.force[at]),
+            equilibria=alone,
+            at=np.zeros(1, dtype=np.intp),
+            m=self.m[np.array([k])],
+        )
+
     @cached_property
     def bases(self) -> list[LegBases]:
         """Independent motions about the equilibria, as far as legs can give way."""

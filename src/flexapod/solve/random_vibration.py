@@ -5,6 +5,7 @@ from __future__ import annotations
 from dataclasses import dataclass
 
 import numpy as np
+from numpy.typing import NDArray
 
 from flexapod.errors import InputError
 from flexapod.model import Disturbance, Floor, Spectrum
@@ -15,6 +16,8 @@ __all__ = ["RandomVibration", "Source", "density_at", "random_vibration", "sourc
 
 NODES, WEIGHTS = (0.5 * x for x in np.polynomial.legendre.leggauss(4))
 PER_DECADE = 12  # panels where nothing resonates
+ELLIPSE = 3 + np.sqrt(8)  # half axes of an ellipse without a pole, added, over half a panel
+SHARES = 2.0 ** -np.arange(0.0, 32.0, 0.5)  # of the widest panel
 BLOCK = 256  # frequencies side by side
 UNDAMPED = 1e-9  # damping ratio below which nothing limits a resonance
 FLOOR_RATES = {"acceleration": 0, "velocity": 1, "displacement": 2}
@@ -158,28 +161,40 @@ def random_vibration(model: LinearRobot, sources: list[Source], *, refine: int =
 
 
 def panels(model: LinearRobot, sources: list[Source], refine: int) -> Array:
-    """Edges [Hz] of panels none of which is longer than its distance from a pole, Eq. (T18.11)."""
+    """Edges [Hz] of panels each as long as rows of the tables and poles let it be, Eq. (T18.11)."""
     breaks = np.unique(np.concatenate([source.frequency for source in sources]))
-    low, high = breaks[0], breaks[-1]
-    count = int(np.ceil(PER_DECADE * np.log10(high / low))) + 1
-    found = [breaks, np.geomspace(low, high, count)]
-    for s in model.poles[model.poles.imag > 0]:
-        at, width = s.imag / (2 * np.pi), -s.real / (2 * np.pi)
-        if width <= UNDAMPED * at:
-            if low <= at <= high:
-                raise InputError(
-                    f"leaves the vibration at {at:.4g} Hz without damping: it would grow without end",
-                    key="leg.damping",
-                    allowed="damping of whatever gives way: legs, joints, springs, drives",
-                    next_step="For example: damping = 0.005 in [leg]",
-                )
-            continue
-        away = 0.5 * width * 2.0 ** np.arange(max(1, int(np.ceil(np.log2(4 * high / width)))))
-        found += [[at], at - away, at + away]
-    edges = np.concatenate(found)
-    edges = edges[(edges >= low) & (edges <= high)]
-    _, first = np.unique(np.round(np.log(edges), 9), return_index=True)
-    edges = np.sort(np.append(edges[first], [low, high]))
-    edges = edges[np.append(True, np.diff(edges) > 1e-9 * edges[1:])]
-    cuts = edges[:-1, None] + np.diff(edges)[:, None] * np.arange(refine) / refine
+    z = _poles(model, breaks[0], breaks[-1])
+    edges = [breaks[0]]
+    for end in breaks[1:]:
+        while (left := end - edges[-1]) > 0:
+            widest = min(left, edges[-1] * (10 ** (1 / PER_DECADE) - 1))
+            half = 0.5 * widest * SHARES[:, None]
+            x = (z - edges[-1] - half) / half
+            root = np.sqrt(x**2 - 1)
+            found = (np.maximum(np.abs(x + root), np.abs(x - root)) >= ELLIPSE).all(axis=1)
+            share = SHARES[found.argmax() if found.any() else -1]
+            reached = edges[-1] + widest * share
+            edges.append(reached if end - reached > 1e-9 * end else end)
+    cuts = np.array(edges[:-1])[:, None] + np.diff(edges)[:, None] * np.arange(refine) / refine
     return np.append(cuts.ravel(), edges[-1])
+
+
+def _poles(model: LinearRobot, low: float, high: float) -> NDArray[np.complex128]:
+    """Frequencies [Hz] at which responses are infinite, above the real axis.
+
+    Raises
+    ------
+    InputError
+        One of them is real.
+    """
+    z = model.poles(2 * np.pi * high) / (2j * np.pi)
+    z = z[z.real > 0]
+    lasting = z.imag <= UNDAMPED * z.real
+    if (within := z.real[lasting & (z.real >= low) & (z.real <= high)]).size:
+        raise InputError(
+            f"leaves the vibration at {within[0]:.4g} Hz without damping: it would grow without end",
+            key="leg.damping",
+            allowed="damping of whatever gives way: legs, joints, springs, drives",
+            next_step="For example: damping = 0.005 in [leg]",
+        )
+    return z[~lasting]

@@ -137,7 +137,7 @@ def rows_of_poses(study: Study, locked: LockedPoses) -> Iterator[tuple[list[Row]
         table, systematic = _with_built(study, pose, whole, by_leg)
         if study.disturbance is not None:
             with suppress(InputError):  # vibration without a size
-                table += vibration_rows(study, locked_poses(study.robot, study.simulation, pose, study.load))
+                table += vibration_rows(study, locked.one(k))
         yield [*table, *_friction_rows(rubs, k)], systematic
 
 
