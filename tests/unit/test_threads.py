@@ -14,10 +14,11 @@ import time
 import flexapod as fx
 
 study = fx.preset("paper-robot")
-settings = {"modes": 6, "step": 1e-3, "duration": 0.05}
-fx.simulate(study, **settings)
+counts = [{"modes": modes, "step": 1e-3, "duration": 0.05} for modes in (4, 6)]
+for settings in counts:
+    fx.simulate(study, **settings)
 wall, cpu = time.perf_counter(), time.process_time()
-for _ in range(10):
+for settings in 5 * counts:
     fx.simulate(study, **settings)
     fx.modes(study)
 print(time.process_time() - cpu, time.perf_counter() - wall)
