@@ -10,10 +10,10 @@ import flexapod as fx
 from flexapod import bases, model, rigid
 from flexapod.app.view import charts as view_charts
 from flexapod.app.view import legend
-from flexapod.model import CombinedMotion
+from flexapod.model import CombinedMotion, Guide, Piston, PistonSection, preset
 from flexapod.scene import geometry, skeleton
 from flexapod.scene.colours import LEG_COLORS, colors_of_legs
-from flexapod.scene.skeleton import STATIONS
+from flexapod.scene.skeleton import STATIONS, Skeleton
 
 
 @cache
@@ -279,3 +279,19 @@ def test_struts_keep_their_length_where_the_platform_moves(name):
 
 def test_colours_of_many_legs_differ():
     assert colors_of_legs(6) == LEG_COLORS and len(set(colors_of_legs(16))) == 16
+
+
+def test_pistons_are_as_thick_as_their_sections_and_end_at_their_heads():
+    steel = {"E": 2e11, "density": 7800.0}
+    thick = PistonSection(length=0.35, diameter=0.04, **steel)
+    cone = PistonSection(length=0.5, diameter=0.04, tip_diameter=0.02, **steel)
+    robot = preset("paper-robot").robot
+    leg = robot.legs[0].replace(piston=Piston.stepped([thick, cone]), guide=Guide(gland=1e8, head=1e8))
+    home = Skeleton(robot.replace(legs=(leg, *robot.legs[1:]))).home
+    assert home.radii[0, -1] == pytest.approx(0.01) and home.radii[0, 0] == pytest.approx(0.02)
+    free = np.linalg.norm(home.piston[0, -1] - home.piston[0, 0])
+    np.testing.assert_allclose(home.radii[0, 12], 0.01 + 0.01 * (free / 2) / 0.5)
+    assert home.radii[1] == pytest.approx(0.5 * robot.legs[1].piston.diameter)
+    assert home.heads.shape == (1, 2, 3)
+    np.testing.assert_allclose(home.heads[0, 0], home.mouth[0])
+    np.testing.assert_allclose(np.linalg.norm(home.heads[0, 1] - home.platform[0]), 0.85)

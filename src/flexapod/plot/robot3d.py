@@ -20,9 +20,11 @@ from flexapod.scene.skeleton import Scene, around
 
 CYLINDER = "#8A8F98"
 BASE = "#4A4F57"
+INSIDE = "#222222"
 PLATFORM = "#2F6690"
 #: Size and mark of joints by their letter; hinges are short lines along their axes.
 JOINTS = {"U": (14, "o"), "S": (18, "o"), "F": (16, "s")}
+_WIDTH = 2.6  # of pistons, where they are thickest
 _SHORT = 0.2  # of the longest: axes that have no room for numbers
 _NEEDLE = 45  # distance of the name of the one axis that is left, in a measure that shrinks with the room
 _FREE: Any = {"axes.titley": None}  # titles go above what is drawn
@@ -71,15 +73,17 @@ def draw_robot(axes: Any, s: Scene, *, numbers: bool = True) -> None:
     """Draw a robot: grey cylinders, coloured pistons, translucent platform, cross-hair at the centre of mass."""
     _plate(axes, s.skeleton.robot.base_joints, BASE, 0.12)
     _segments(axes, s.guides, BASE, 2.0, 3)
-    legs = colors_of_legs(len(s.base))
+    legs, radii = colors_of_legs(len(s.base)), s.radii
     for i in range(len(s.base)):
         if not np.array_equal(s.base[i], s.mouth[i]):
             _bar(axes, s.base[i], s.mouth[i], color=CYLINDER, linewidth=6, zorder=3)
-        x, y, z = 1e3 * s.piston[i].T
-        axes.plot(x, y, z, color=legs[i], linewidth=2.6, solid_capstyle="round", zorder=4)
+        axes.add_collection3d(_piston(s.piston[i], radii[i], legs[i]))
         if numbers:
             outward = s.base[i] * np.array([1.2, 1.2, 0.0]) + np.array([0, 0, s.base[i, 2]])
             axes.text(*(1e3 * outward), str(i + 1), color=ink(legs[i]), ha="center", va="center", zorder=9, **_NUMBER)
+    _segments(axes, s.heads, INSIDE, 1.2, 4)  # pistons in bushings, inside of their cylinders
+    if len(s.heads):
+        axes.scatter(*(1e3 * s.heads[:, 1].T), s=16, marker="D", color=INSIDE, depthshade=False, zorder=5)
     _plate(axes, s.platform, PLATFORM, 0.35)
     for points, end, color in ((s.base, 0, BASE), (s.platform, 1, PLATFORM)):
         kinds = np.array([joints[end] for joints in s.skeleton.joints])
@@ -120,6 +124,14 @@ def _segments(axes: Any, lines: np.ndarray, color: str, width: float, above: int
     """Straight lines (n, 2, 3)."""
     if len(lines):
         axes.add_collection3d(Line3DCollection(list(1e3 * lines), colors=color, linewidths=width, zorder=above))
+
+
+def _piston(line: np.ndarray, radii: np.ndarray, color: str) -> Line3DCollection:
+    """A piston, thinner where its sections are."""
+    share = np.nan_to_num(radii / radii.max(), nan=1.0)
+    widths = _WIDTH * (share[:-1] + share[1:]) / 2
+    pairs = 1e3 * np.stack([line[:-1], line[1:]], axis=1)
+    return Line3DCollection(list(pairs), colors=color, linewidths=widths, capstyle="round", zorder=4)
 
 
 def _bar(axes: Any, start: np.ndarray, end: np.ndarray, **style: Any) -> None:

@@ -30,7 +30,8 @@ class Scene:
     `base`, `platform`: joints (legs, 3); `piston`: lines from the mouth of the cylinder, of a strut from the base
     joint, to the tip (legs, n, 3); `com`, `centre` (3,): of the payload's mass, of the platform's frame; `rotation`
     (3, 3): platform to world; `guides` (carriages, 2, 3): rails from end to end, cranks from shaft to base joint;
-    `hinges` (hinges, 2, 3): short lines along the axes of revolute joints and shafts.
+    `hinges` (hinges, 2, 3): short lines along the axes of revolute joints and shafts. `heads` (guided legs, 2, 3):
+    pistons in bushings from gland to head.
     """
 
     skeleton: Skeleton
@@ -42,6 +43,15 @@ class Scene:
     rotation: Array
     guides: Array
     hinges: Array
+    heads: Array
+
+    @property
+    def radii(self) -> Array:
+        """Radii of the pistons at the points of `piston`, (legs, n) [m]; nan where no section is given."""
+        lines = np.linalg.norm(np.diff(self.piston, axis=1), axis=2)
+        from_tip = np.cumsum(lines[:, ::-1], axis=1)[:, ::-1]
+        legs = zip(self.skeleton.robot.legs, np.pad(from_tip, ((0, 0), (0, 1))), strict=True)
+        return np.array([_radius(leg.piston, xi) for leg, xi in legs])
 
     @property
     def mouth(self) -> Array:
@@ -172,7 +182,14 @@ class Skeleton:
             rotation=R,
             guides=self._guides(base, carriages),
             hinges=self._hinges(base, frames, tips, R),
+            heads=self._heads(base, axis, length),
         )
+
+    def _heads(self, base: Array, axis: Array, length: Array) -> Array:
+        legs = self.robot.legs
+        ends = [(leg.cylinder.mouth, length[i] - leg.piston.length) for i, leg in enumerate(legs)]
+        found = [base[i] + np.outer(ends[i], axis[i]) for i, leg in enumerate(legs) if leg.guide is not None]
+        return np.array(found).reshape(-1, 2, 3)
 
     def _frames(self, carriages: Array) -> Array:
         """Axes of the base joints, (legs, 3, 3): cranks turn them."""
@@ -212,6 +229,16 @@ class Skeleton:
                 found.append((tips[i], R @ self._limbs.platform_frames[i][:, 0]))
         half = BAR * self.size
         return np.array([[place - half * axis, place + half * axis] for place, axis in found]).reshape(-1, 2, 3)
+
+
+def _radius(piston: model.Piston, xi: Array) -> Array:
+    """Radii of a piston at distances from its tip [m]."""
+    parts = piston.parts[::-1]
+    ends = np.cumsum([0.0, *(length for length, _ in parts)])
+    places = [end - piston.length * 1e-9 * side for k, end in enumerate(ends) for side in (1, -1)][1:-1]
+    depths = [max(at.depth) for _, samples in parts for at in (samples[-1], samples[0])]
+    found = 0.5 * np.interp(xi, places, depths)
+    return found if min(depths) > 0 else np.full_like(found, np.nan)
 
 
 def around(points: Array) -> NDArray[np.intp]:

@@ -14,6 +14,7 @@ from flexapod.rigid.rotations import quaternion
 from flexapod.scene.colours import colors_of_legs
 from flexapod.scene.geometry import ROUNDING, Instant, orientation, plate, round_down, strip, tube, tube_faces
 from flexapod.scene.skeleton import STATIONS, Scene, Skeleton
+from flexapod.study.before.estimates import section_width
 from flexapod.study.bodies import CYLINDER
 from flexapod.study.words import number, text
 from flexapod.typing import Array
@@ -46,6 +47,7 @@ Add = Callable[[str, Any], Any]
 _CYLINDER, _BASE, _PLATFORM, _PAYLOAD = rgb("#8A8F98"), rgb("#4A4F57"), rgb("#2F6690"), rgb("#F2F2F2")
 _GHOST, _RIGID, _FLEXIBLE = rgb("#9A9A9A"), rgb("#6E6E6E"), rgb("#C2185B")
 _HINGE = rgb("#222222")
+_LEAST = 0.004  # of the robot's size: least radius of a drawn piston
 _HERE = (0.0, 0.0, 0.0)
 _NOTHING = np.zeros((1, 2, 3))
 
@@ -73,12 +75,16 @@ class RobotParts:
         self._skeleton, robot = skeleton, skeleton.robot
         self._colors: Array = np.zeros((len(robot.legs), 3), dtype=int)
         self._mouth = np.array([[leg.cylinder.mouth] for leg in robot.legs])
-        self._radius = _radii(robot, skeleton.size)
+        self._radius, self._least = _radii(robot, skeleton.size), _LEAST * skeleton.size
         self._joints = self._make_base(scene, add)
         self._platform = self._make_platform(scene, add)
         self._cylinders, self._pistons = self._make_legs(scene)
-        looks = (("/guides", skeleton.home.guides, _BASE, 3.0), ("/hinges", skeleton.home.hinges, _HINGE, 6.0))
-        self._guides, self._hinges = (
+        looks = (
+            ("/guides", skeleton.home.guides, _BASE, 3.0),
+            ("/hinges", skeleton.home.hinges, _HINGE, 6.0),
+            ("/heads", skeleton.home.heads, _HINGE, 5.0),
+        )
+        self._guides, self._hinges, self._heads = (
             scene.add_line_segments(name, _floats(lines), color, thickness=width, thickness_units="screen")
             if len(lines)
             else None
@@ -90,7 +96,8 @@ class RobotParts:
         self._platform.position, self._platform.wxyz = points.centre, quaternion(points.rotation)
         along = points.piston[:, 0] - points.base
         turns = orientation(np.where(self._mouth > 0, along, points.piston[:, 1] - points.base))
-        vertices = _thickened(tube(points.piston, 1.0), points.piston, self._radius)
+        thick = np.where(np.isnan(points.radii), self._radius[:, None], np.maximum(points.radii, self._least))
+        vertices = _thickened(tube(points.piston, 1.0), points.piston, thick)
         for i in range(len(self._pistons)):
             self._cylinders[i].wxyz = turns[i]
             self._pistons[i].vertices = vertices[i]
@@ -99,7 +106,8 @@ class RobotParts:
         self._colors = np.array(colors)
         for i in self._skeleton.guided:
             self._joints[i].position = self._cylinders[i].position = points.base[i]
-        for handle, lines in ((self._guides, points.guides), (self._hinges, points.hinges)):
+        lines_of = (self._guides, points.guides), (self._hinges, points.hinges), (self._heads, points.heads)
+        for handle, lines in lines_of:
             if handle is not None:
                 handle.points = _floats(lines)
 
@@ -149,8 +157,10 @@ class RobotParts:
             node = scene.add_frame(f"/cylinder_{i + 1}", show_axes=False, position=home.base[i])
             mouth, radius = leg.cylinder.mouth, CYLINDER * float(self._radius[i])
             if mouth > 0:
+                seen = None if leg.guide is None else 0.45  # into it, where a piston stands in bushings
+                size = radius if leg.cylinder.diameter is None else 0.5 * leg.cylinder.diameter
                 place = (0.0, 0.0, 0.5 * mouth)
-                scene.add_cylinder(f"/cylinder_{i + 1}/body", radius, mouth, _CYLINDER, position=place)
+                scene.add_cylinder(f"/cylinder_{i + 1}/body", size, mouth, _CYLINDER, opacity=seen, position=place)
             cylinders.append(node)
             empty = np.zeros((STATIONS * 8, 3))
             pistons.append(scene.add_mesh_simple(f"/piston_{i + 1}", empty, faces, color=rgb(color)))
@@ -170,17 +180,15 @@ def _floats(lines: Array) -> Any:
 
 def _radii(robot: model.Robot, size: float) -> Array:
     """Radii of the pistons (legs,) [m]; a thickness to see by where the study gives no diameter."""
-    given = [
-        max(max(step.depth) for step in leg.piston.steps) if leg.piston.sections else leg.piston.diameter
-        for leg in robot.legs
-    ]
-    return np.array([0.012 * size if d is None else max(0.5 * d, 0.004 * size) for d in given])
+    given = [section_width(leg.piston) if leg.piston.sections or leg.piston.diameter else None for leg in robot.legs]
+    return np.array([0.012 * size if d is None else max(0.5 * d, _LEAST * size) for d in given])
 
 
 def _thickened(vertices: Array, lines: Array, radius: Array) -> Array:
-    """Tubes of radius 1 around lines (legs, n, 3), made as thick as `radius` (legs,)."""
-    centre = np.repeat(lines, vertices.shape[1] // lines.shape[1], axis=1)
-    return centre + radius[:, None, None] * (vertices - centre)
+    """Tubes of radius 1 around lines (legs, n, 3), made as thick as `radius` (legs, n)."""
+    sides = vertices.shape[1] // lines.shape[1]
+    centre = np.repeat(lines, sides, axis=1)
+    return centre + np.repeat(radius, sides, axis=1)[:, :, None] * (vertices - centre)
 
 
 class Ghost:
