@@ -24,6 +24,7 @@ CHUNK_STEPS = 2000  # steps in a chunk of several outputs
 SMALLEST = 1e-9  # scale of an error [m]: what is smaller is rounding
 ROUNDING, SEEN = 1e-15, 1e-7  # of lengths of a metre [m]; what is larger is no longer the start from rest [m]
 SAMPLES = 50  # instants of a chunk that tell its scales
+FEWEST = 1e-6  # mean step below which a tolerance is called out of reach [s]
 FINEST = 1e-3  # pieces of series are no shorter for what bends without being told [s]
 
 
@@ -104,12 +105,11 @@ class _Run:
             passed.append(stop.first)
             if not stop.jumps and stop.first < end:
                 continue
-            at = done + sum(map(len, rows))
-            outputs = ((at + 1) * p.output_step, p.output_step, to - at)
-            found = self.within.advance(flow, np.array(passed), self._weights(), outputs, self.counters)
+            found = self._advance(flow, passed, done, to)
             passed.clear()
             flow = found.flow
             rows.append(found.rows)
+            done += len(found.rows)
             if found.status:
                 failure = self._failure(found)
                 break
@@ -120,7 +120,7 @@ class _Run:
                     failure = error
                     break
         whole = rows[0] if len(rows) == 1 else np.concatenate(rows)
-        time = np.asarray((done + 1 + np.arange(len(whole))) * p.output_step, dtype=float)
+        time = np.asarray((done - len(whole) + 1 + np.arange(len(whole))) * p.output_step, dtype=float)
         recording = unpack(p.system, time, whole)
         if failure is None and to in p.stops.ends:  # what is stored there is the value after the jump
             flow, last = self.restarted(flow, end, p.stops.ends[to])
@@ -132,6 +132,19 @@ class _Run:
             failure = self._out_of_reach(begin, why)
         step = (end - begin) / max(self.steps, 1)
         return Chunk(recording=recording, error=self.within.spent, step=step), flow, failure
+
+    def _advance(self, flow: Flow, stops: Sequence[float], done: int, to: int) -> Advanced:
+        """Advance to the last of `stops`; where many steps lie between outputs, with looks at the scales on the way."""
+        rows, now, step = [], self.within.time, self.problem.output_step
+        while True:
+            at = done + sum(map(len, rows))
+            outputs, ahead = ((at + 1) * step, step, to - at), np.array([t for t in stops if t > now])
+            found = self.within.advance(flow, ahead, self._weights(), outputs, self.counters)
+            rows.append(found.rows)
+            if found.status != OUT_OF_REACH or found.time - now < MOST * FEWEST:
+                return found if len(rows) == 1 else replace(found, rows=np.concatenate(rows))
+            flow, now = found.flow, found.time
+            self._scale(_recorded(self.problem, flow, now)[1])
 
     def restarted(self, flow: Flow, t: float, stop: Stop) -> tuple[Flow, Recording]:
         """Flow after a jump at time t, and its record."""
@@ -148,7 +161,9 @@ class _Run:
     def _failure(self, found: Advanced) -> ComputationError:
         if found.status == OUT_OF_REACH:
             return self._out_of_reach(
-                found.time, f"it would take more than {MOST} steps per output, or steps below {1e6 * SHORTEST:g} us"
+                found.time,
+                f"it would take more than {MOST} steps per output and one per microsecond, or steps below "
+                f"{1e6 * SHORTEST:g} us",
             )
         where = f" in leg {found.leg + 1}" if 0 <= found.leg < self.problem.system.legs else ""
         return ComputationError(

@@ -18,7 +18,7 @@ OUT_OF_REACH = 4  # as in radau.c
 FIRST = 1e-5  # of the first step, and after a jump [s]; it grows four times a step
 LONGEST, SHORTEST = np.inf, 1e-7  # s
 UNSOLVED = 0.05  # share of a step's error that corrections may leave, in the displacements that its rates bring
-MOST = 8192  # steps per output before the tolerance is called out of reach
+MOST = 8192  # steps per output in a call
 TIME, STEP, SPENT, PEAK, STAGES, REJECTED, RECORDED = (
     0,
     1,
@@ -74,6 +74,11 @@ class Within:
     def spent(self) -> float:
         """Sum of the local errors, an estimate of the error: relative to what the weights say."""
         return float(self._memory[SPENT])
+
+    @property
+    def time(self) -> float:
+        """Instant reached [s]."""
+        return float(self._memory[TIME])
 
     @property
     def step(self) -> float:
