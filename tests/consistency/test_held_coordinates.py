@@ -163,7 +163,7 @@ def test_a_closed_attitude_with_free_angles_is_a_ball():
         plain,
         kernel=kernel(shapes),
         leg_p=parameters.leg_parameters(robot, legs, shapes),
-        held=robot_system._held(robot, legs, shapes),
+        held=robot_system._held(robot, legs, shapes, at_rest=False),
     )
     path = rigid.poses(robot, study.motion, np.zeros(1))
     ball, angles = (

@@ -230,9 +230,14 @@ def _hub_functions(mechanism: Mechanism) -> list[NamedFunction]:
     return [
         NamedFunction("joint_residual", of_joint, [("point", here(point)), ("wrench", here(push_of_joint))]),
         NamedFunction("joint_matrices", of_joint, [("P", here(P)), ("H", here(H))]),
-        NamedFunction("payload_residual", motion, [("r", vertcat(here(r), u_dot[3:])), ("power", zeros(1))]),
         NamedFunction(
-            "payload_matrices", [("pose", pose), ("wrench", wrench), ("p", p)], [("M", here(M)), ("K", here(K))]
+            "payload_residual", motion, [("r", vertcat(here(r), u_dot[3:])), ("power", zeros(1))], alone=True
         ),
-        NamedFunction("payload_energies", [("pose", pose), ("u", u), ("p", p)], [("energies", energies)]),
+        NamedFunction(
+            "payload_matrices",
+            [("pose", pose), ("wrench", wrench), ("p", p)],
+            [("M", here(M)), ("K", here(K))],
+            alone=True,
+        ),
+        NamedFunction("payload_energies", [("pose", pose), ("u", u), ("p", p)], [("energies", energies)], alone=True),
     ]
