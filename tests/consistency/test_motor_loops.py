@@ -16,7 +16,7 @@ from flexapod import model, rigid
 from flexapod.errors import InputError
 from flexapod.exchange.export import abaqus_deck
 from flexapod.integration import GeneralizedAlpha
-from flexapod.model import Encoder, Loop, Motor, Rotor
+from flexapod.model import Encoder, Loop, Motor, Ripple, Rotor
 from flexapod.proof.engines.exudyn_robot import RobotProblem
 from flexapod.solve import interpreted, native
 from flexapod.solve.linear import linear_robot
@@ -245,6 +245,13 @@ class TestAtRest:
                 assert np.abs(causes.sel(cause=name).isel(leg=leg)).max() < 1e-15
         total = causes.sum(["cause", "leg"]) + rest.deviation_residual
         np.testing.assert_allclose(total, rest.com_deviation, rtol=0, atol=1e-15)
+
+
+def test_ripple_does_not_hide_that_a_motor_lags():
+    rippling = LAGS.replace(ripple=Ripple(torque=0.01, per_turn=24))
+    lagging, both = (fx.modes(symmetric(drive=with_loop(motor, ROTOR))) for motor in (LAGS, rippling))
+    np.testing.assert_array_equal(both.frequency, lagging.frequency)
+    np.testing.assert_array_equal(both.damping_ratio, lagging.damping_ratio)
 
 
 def test_loss_factors_are_made_viscous_with_the_loop_about_the_rotor():

@@ -4,7 +4,7 @@ import numpy as np
 
 from flexapod import rigid
 from flexapod.mechanics.layout import Shapes
-from flexapod.model import Motor, Robot, Simulation
+from flexapod.model import Robot, Simulation
 from flexapod.rigid.limbs import ABSENT, COORDINATES, DRIVEN, HELD, Limbs
 from flexapod.solve.kernel import kernel
 from flexapod.solve.losses import per_loss
@@ -45,8 +45,9 @@ def smooth(robot: Robot) -> Robot:
     """The robot without ripple of its motors: where in a period it rests is not known."""
     if not any(leg.screw is not None and leg.screw.wave for leg in robot.legs):
         return robot
-    drives = [leg.drive if leg.screw is None else leg.screw.replace(motor=Motor()) for leg in robot.legs]
-    return robot.replace(legs=tuple(leg.replace(drive=x) for leg, x in zip(robot.legs, drives, strict=True)))
+    screws = [leg.screw and leg.screw.replace(motor=leg.screw.motor.replace(ripple=None)) for leg in robot.legs]
+    pairs = zip(robot.legs, screws, strict=True)
+    return robot.replace(legs=tuple(leg.replace(drive=screw or leg.drive) for leg, screw in pairs))
 
 
 def _held(robot: Robot, legs: Limbs, shapes: Shapes, *, at_rest: bool) -> Mask:
