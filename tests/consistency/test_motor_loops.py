@@ -261,9 +261,10 @@ def test_loss_factors_are_made_viscous_with_the_loop_about_the_rotor():
         lossy,
         lossy.replace(**elsewhere),
         lossy.replace(command="torque", **elsewhere),
+        lossy.replace(command="torque", encoder=Encoder(rate="rotor")),
     )
     found = [loss_frequency(machine(drive=drive), model.Simulation(fidelity="lumped")) for drive in drives]
-    assert found[2] > found[1] == found[0] > 10  # a torque is locked
+    assert found[3] == found[2] > found[1] == found[0] > 10  # a torque is locked
 
 
 @pytest.mark.parametrize(("drive", "key"), [(with_loop(), "bandwidth"), (with_loop(Motor()), "encoder.at")])

@@ -135,7 +135,7 @@ def _locked(drive: Drive) -> Drive:
         return drive.replace(leakage=0.0)
     if not isinstance(drive, ScrewDrive):
         return drive
-    drive = drive.replace(motor=Motor(), encoder=Encoder() if drive.closes_elsewhere else drive.encoder)
+    drive = drive.replace(motor=Motor(), encoder=drive.encoder if drive.holds else Encoder())
     nut, bearing = drive.nut.replace(loss=None), drive.bearing.replace(loss=None)
     held = {
         "command": "position",
