@@ -14,7 +14,7 @@ from typing import TYPE_CHECKING, TypeVar
 if TYPE_CHECKING:
     from multiprocessing.connection import Connection
 
-__all__ = ["call", "side_by_side", "started"]
+__all__ = ["call", "started"]
 
 T = TypeVar("T")
 R = TypeVar("R")
@@ -63,11 +63,6 @@ def _stop(process: subprocess.Popen[bytes]) -> None:
     else:
         os.killpg(process.pid, signal.SIGKILL)
     process.wait()
-
-
-def side_by_side(make: Callable[[T], R], given: Sequence[T], processes: int) -> list[R]:
-    """`make` of each of `given`, in their order: `started`, and waited for at once."""
-    return started(make, given, processes)()
 
 
 def started(make: Callable[[T], R], given: Sequence[T], processes: int) -> Callable[[], list[R]]:

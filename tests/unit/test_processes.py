@@ -5,7 +5,7 @@ import time
 
 import pytest
 
-from flexapod.processes import side_by_side, started
+from flexapod.processes import started
 
 
 def slow_square(x):
@@ -14,7 +14,7 @@ def slow_square(x):
 
 
 def test_results_keep_their_order_and_several_processes_work():
-    found = side_by_side(slow_square, range(8), 2)
+    found = started(slow_square, range(8), 2)()
     assert [square for square, _ in found] == [x * x for x in range(8)]
     assert len({process for _, process in found}) == 2
 
@@ -27,7 +27,7 @@ def test_what_fails_is_raised_here(processes):
         return x
 
     with pytest.raises(ValueError, match="two"):
-        side_by_side(fails, range(4), processes)
+        started(fails, range(4), processes)()
 
 
 def test_a_copy_that_dies_is_made_good():
@@ -39,7 +39,7 @@ def test_a_copy_that_dies_is_made_good():
             os._exit(9)
         return x
 
-    assert side_by_side(dies, range(5), 2) == list(range(5))
+    assert started(dies, range(5), 2)() == list(range(5))
 
 
 def test_copies_work_before_they_are_waited_for():
@@ -49,4 +49,4 @@ def test_copies_work_before_they_are_waited_for():
 
 
 def test_nothing_to_do():
-    assert side_by_side(slow_square, (), 2) == []
+    assert started(slow_square, (), 2)() == []

@@ -29,7 +29,6 @@ UM = 1e6  # N/m of an N/um
 Damping = Annotated[NonNegative, Measure("damping")] | None
 Stiffness = Annotated[Positive, Measure("stiffness")] | None
 Force = Annotated[Positive, Measure("force")] | None
-Torque = Annotated[Positive, Measure("torque")] | None
 
 
 class Nut(Frozen):
