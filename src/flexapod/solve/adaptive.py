@@ -99,9 +99,9 @@ class _Run:
         """Outputs after `done` up to `to`, or as far as it goes, the flow at their end, and what went wrong."""
         p, rows, before = self.problem, [], self.counters.steps
         begin, end, failure = done * p.output_step, to * p.output_step, None
-        first, last = (bisect_right(self.ends, t, key=_first) for t in (begin + NEAR, end - NEAR))
+        between = slice(*(bisect_right(self.ends, t, key=_first) for t in (begin + NEAR, end - NEAR)))
         passed: list[float] = []
-        for stop in [*self.ends[first:last], Stop(first=end, last=end, jumps=False)]:
+        for stop in [*self.ends[between], Stop(first=end, last=end, jumps=False)]:
             passed.append(stop.first)
             if not stop.jumps and stop.first < end:
                 continue
@@ -182,11 +182,11 @@ class _Run:
         """Take the largest values of a recording into the scales of the errors."""
         if not len(recording.time):
             return
-        before = self.scales[0] if self.scales else 1.0
+        before = self.scales[0]
         some = recording.part(slice(None, None, max(1, len(recording.time) // SAMPLES)))
         groups = zip(self.scales, self.problem.measure(some), strict=True)
         self.scales = [max(scale, float(np.abs(x).max(initial=0.0))) for scale, x in groups]
-        self.within.weigh(before / self.scales[0] if self.scales else 1.0)
+        self.within.weigh(before / self.scales[0])
 
     def _weights(self) -> tuple[Array, Array]:
         """One over the displacements that count as an error of one, of a leg's coordinates and of the payload's."""

@@ -89,13 +89,12 @@ def at_rotors(robot: Robot, simulation: Simulation) -> System:
 def modal_loops(robot: Robot, system: System, x: RestStates, flat: Array) -> list[ModalLoops]:
     """The loops of a robot at each of p states, by its modes there in flat coordinates (p, N, r)."""
     n, legs, r = system.n, system.legs, system.kernel.shapes.index("r")
-    slope = evaluate(system.kernel, "leg_loop", len(x) * legs, [x.q, system.leg_p], [(n, n), (n, n), (1,), (n,)])[
-        3
-    ].reshape(len(x), legs, n)
+    sizes = [(n, n), (n, n), (1,), (n,)]
+    *_, slope = evaluate(system.kernel, "leg_loop", len(x) * legs, [x.q, system.leg_p], sizes)
     which = [i for i, leg in enumerate(robot.legs) if leg.screw is not None and leg.screw.loops]
     screws = [leg.screw for leg in robot.legs if leg.screw is not None and leg.screw.loops]
     by_leg = flat[:, : legs * n].reshape(len(x), legs, n, -1)
-    measured = (slope[..., None] * by_leg).sum(axis=2)[:, which]
+    measured = (slope.reshape(len(x), legs, n, 1) * by_leg).sum(axis=2)[:, which]
     rotor = by_leg[:, which, r]
     turns = np.array([screw.encoder.rate == "rotor" for screw in screws])[:, None]
     damped = np.where(turns, rotor, measured)

@@ -289,17 +289,13 @@ def _looping(locked: LockedPoses) -> ManyModes:
         chosen = np.flatnonzero(values.imag > OSCILLATES * np.abs(values))
         chosen = chosen[np.argsort(np.abs(values[chosen]))]
         values, z = values[chosen], z[:, chosen]
-        frequency[k, : values.size], ratio[k, : values.size] = (
-            np.abs(values) / (2 * np.pi),
-            -values.real / np.abs(values),
-        )
+        n, rate = values.size, np.abs(values)
+        frequency[k, :n], ratio[k, :n] = rate / (2 * np.pi), -values.real / rate
         slow = z / found.omega[k][:, None]  # as large as it is, of unit mass
         z = (z * np.exp(-0.5j * np.angle((slow**2).sum(axis=0)))).real
         mass = np.sqrt(((z / found.omega[k][:, None]) ** 2).sum(axis=0))
-        flat[k, : values.size] = (found.flat[k] @ (z / mass)).T
-    return ManyModes(
-        frequency=frequency, positive=found.positive, damping_ratio=ratio, shapes=flat, growth=rates
-    )  # fmt: skip
+        flat[k, :n] = (found.flat[k] @ (z / mass)).T
+    return ManyModes(frequency=frequency, positive=found.positive, damping_ratio=ratio, shapes=flat, growth=rates)
 
 
 def loops_of(locked: LockedPoses) -> list[ModalLoops]:

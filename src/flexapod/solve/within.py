@@ -19,15 +19,8 @@ FIRST = 1e-5  # of the first step, and after a jump [s]; it grows four times a s
 LONGEST, SHORTEST = np.inf, 1e-7  # s
 UNSOLVED = 0.05  # share of a step's error that corrections may leave, in the displacements that its rates bring
 MOST = 8192  # steps per output in a call
-TIME, STEP, SPENT, PEAK, STAGES, REJECTED, RECORDED = (
-    0,
-    1,
-    2,
-    4,
-    6,
-    7,
-    8,
-)  # places in the memory; what follows is C's own
+#: Places in the memory, as in `Memory` of radau.c; what follows is C's own.
+TIME, STEP, SPENT, PEAK, STAGES, REJECTED, RECORDED = 0, 1, 2, 4, 6, 7, 8
 
 
 class _Control(Structure):
