@@ -5,11 +5,13 @@ import re
 import numpy as np
 import pytest
 from tests.runs import paper_robot, with_legs
+from tests.stepped import STEEL, leg_of, section
 
 import flexapod as fx
 from flexapod.bases import lateral_basis
 from flexapod.model import AxisMotion, Rectangle, Tube
 from flexapod.model.material import MATERIALS
+from flexapod.solve.sections import leg_values
 from flexapod.study.after.plausibility import leg_stress
 from flexapod.study.before.estimates import buckling_load
 
@@ -133,6 +135,24 @@ def test_stress_of_a_bent_piston_is_that_of_a_cantilever():
     area, inertia = np.pi / 4 * 0.027**2, np.pi / 64 * 0.027**4
     moment = 3 * 200e9 * inertia * v / s**2
     np.testing.assert_allclose(found, N / area + moment * 0.0135 / inertia, rtol=1e-12)
+
+
+@pytest.mark.parametrize(("sections", "depth"), [
+    ([section(0.75, 0.05, tip_diameter=0.03)], lambda xi: 0.03 + 0.02 * xi / 0.75),
+    ([section(0.4, 0.05), section(0.35, width=0.02, thickness=0.02)], lambda xi: np.where(xi <= 0.35, 0.02, 0.05)),
+])  # fmt: skip
+def test_stress_of_sections_is_that_of_each_place(sections, depth):
+    # Bending where the piston is outside and the thrust there; of a strip the stresses of both planes at its corners.
+    leg, free, N = leg_of(sections), np.array([0.4]), 2e4
+    basis, zeta, amplitudes = lateral_basis("tip-load", 3), np.linspace(0.0, 1.0, 4001), np.zeros((1, 2, 3))
+    amplitudes[0, :, 0] = 1e-3, 5e-4
+    bend = np.einsum("ak,akpn->ap", amplitudes[0], leg_values(leg, basis, free, zeta, 2)) / free**2
+    xi = (1 - zeta) * free
+    d, strip = depth(xi), (xi <= 0.35) & (len(sections) > 1)
+    area = np.where(strip, d**2, np.pi / 4 * d**2)
+    both = np.where(strip, np.abs(bend).sum(axis=0), np.hypot(*bend)) * STEEL["E"] * d / 2
+    found = leg_stress(leg, basis, amplitudes, free, np.array([-N]))
+    assert found[0] == pytest.approx((both + N / area).max(), rel=1e-3)
 
 
 def test_no_stress_without_a_section():

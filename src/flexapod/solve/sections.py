@@ -29,13 +29,14 @@ _STRESS_POINTS = 6  # on a section
 class Laws:
     """What the sections of a piston are along them, from the tip to the driven end.
 
-    Lengths (n,), and of each value the coefficients of the powers of the distance from a section's end at the tip.
+    Lengths (n,) [m], and of each value the coefficients of the powers of the distance from a section's end at the tip;
+    E (n,) [Pa], and which of them are round.
     """
 
     length: Array
     values: dict[str, Array]
     E: Array
-    round: bool
+    round: tuple[bool, ...]
 
     def over(self, name: str, x: list[Any], start: Any, section: int, free: Any) -> list[Any]:
         """1 over a value at places x of a free length, times that at the tip."""
@@ -71,7 +72,7 @@ def laws_of(leg: Leg, sections: int = 0, *, inwards: bool = False) -> Laws:
         values={name: np.array([_powers(length, [of(x) for x in at]) for length, at in parts])
                 for name, of in names.items()},
         E=np.array([at[0].E for _, at in parts]),
-        round=parts[-1][1][0].round,
+        round=tuple(at[0].round for _, at in parts),
     )  # fmt: skip
 
 
@@ -226,22 +227,24 @@ def bending_amplitudes(leg: Leg, shapes: Shapes, q: Array) -> Array:
 
 def stepped_stress(leg: Leg, basis: LateralBasis, lateral: Array, free: Array, compression: Array) -> Array:
     """Largest axial plus bending stress in a piston of several sections, (T,) [Pa]; arguments of `leg_stress`."""
-    largest, laws = np.zeros(len(free)), laws_of(leg)
+    largest, laws, thrust = np.zeros(len(free)), laws_of(leg), np.abs(compression)
     planes = [numeric_pieces(leg, basis, free, k) for k in (0, 1)] if basis.count else []
     tips = [held(parts[0].value_start) for parts in planes]
     for j, E in enumerate(laws.E):
+        EA = laws.values["EA"][j].tolist()
         for share in np.linspace(0.0, 1.0, _STRESS_POINTS):
-            bent = [np.zeros(len(free))]
+            largest = np.maximum(largest, thrust * E / law(EA, share * laws.length[j]))
+            bent, offset = [], np.zeros(len(free))
             for k, (parts, first) in enumerate(zip(planes, tips, strict=True)):
                 piece = parts[j]
                 x, outside = piece.start + share * (piece.end - piece.start), piece.end > piece.start
-                curvature = piece.value(x, 2)
+                curvature, offset = piece.value(x, 2), free * (x - piece.start)
                 curvature = curvature - first * curvature[:1]
-                depth = law(laws.values[f"depth_{'ab'[k]}"][j].tolist(), free * (x - piece.start))
+                depth = law(laws.values[f"depth_{'ab'[k]}"][j].tolist(), offset)
                 bent.append(outside * (lateral[:, k].T * curvature).sum(axis=0) / free**2 * E * depth / 2)
-            bending = np.hypot(*bent[-2:]) if laws.round and len(bent) > 2 else np.abs(bent).sum(axis=0)
-            pressed = np.abs(compression) * E / law(laws.values["EA"][j].tolist(), share * laws.length[j])
-            largest = np.maximum(largest, bending + pressed)
+            if bent:
+                bending = np.hypot(*bent) if laws.round[j] else np.abs(bent).sum(axis=0)
+                largest = np.maximum(largest, bending + thrust * E / law(EA, offset))
     return largest
 
 
@@ -257,7 +260,7 @@ def _damping(laws: Laws, basis: LateralBasis, shear: LateralBasis | None, free: 
     for j, piece in enumerate(bent):
         w = (piece.end - piece.start) * piece.nodes.w
         offset = free * (np.concatenate(piece.x) - piece.start)
-        rhoA, EI, shear, turn_mass = (w * law(laws.values[name][j].tolist(), offset) for name in
+        rhoA, EI, GA, turn_mass = (w * law(laws.values[name][j].tolist(), offset) for name in
                                       ("rhoA", f"EI_{way}", "shear", f"turning_{way}"))  # fmt: skip
         value, turn, bend = (np.hstack(y) for y in (piece.values, piece.slopes, piece.bends))
         value, turn, bend = (y - E * y[:1] for y in (value, turn, bend))
@@ -271,7 +274,7 @@ def _damping(laws: Laws, basis: LateralBasis, shear: LateralBasis | None, free: 
         K += (bend * EI) @ bend.T / free**3
         if thick:
             M += (turn * turn_mass) @ turn.T / free
-            K += (slope * shear) @ slope.T / free
+            K += (slope * GA) @ slope.T / free
     return proportional_damping(M, K) if M.any() else M
 
 
