@@ -170,7 +170,7 @@ def _configuration(study: Study, system: System) -> State:
     refuse_pure_force(study.robot, "the equilibrium start")
     still = system
     if system.kernel.shapes.integral or system.kernel.shapes.loop:
-        still = robot_system(study.robot, study.simulation, at_rest=True)
+        still = robot_system(study.robot, study.simulation, at_rest=True, within=study.simulation.tolerance is not None)
         at_rest = replace(at_rest, drive=np.zeros((still.legs, still.ports.size)))
     acts = rest_load(still, study.robot, path, study.load)
     command = rest_commands(still, study.robot, straight.q[None])[0]
