@@ -8,7 +8,7 @@ from tests.conservation.test_free_actuator import free, inertia
 from tests.runs import paper_robot, run_actuator, run_robot, with_legs
 
 from flexapod import simulate
-from flexapod.model import CsvWrench, Load, override, preset
+from flexapod.model import CsvWrench, Load, StepWrench, override, preset
 from flexapod.solve import within
 from flexapod.solve.robot_march import prepare
 
@@ -99,3 +99,13 @@ def test_many_steps_between_two_outputs():
 
 def deviations(study):
     return simulate(study)["com_deviation"].values
+
+
+@pytest.mark.parametrize("away", [0.0, -2e-7])
+def test_jumps_next_to_an_output(away):
+    # 3 * 0.05 is the next number after 0.15: a step that ends there is still one before the jump.
+    study = paper_robot(fidelity="lumped", duration=0.25, output_step=0.05)
+    wrench = StepWrench(amplitude=[60.0, -40.0, 30.0, 5.0, 4.0, -3.0], time=0.15 + away)
+    study = study.replace(motion=study.motion.replace(amplitude=0.0), load=Load(wrench=wrench))
+    rough, fine = (run_robot(override(study, tolerance=tolerance))["pose"][:, :3] for tolerance in (1e-4, 1e-8))
+    assert np.abs(rough - fine).max() < 1e-4 * np.abs(fine[:, 2] - study.robot.home_position[2]).max()

@@ -7,6 +7,7 @@ from collections.abc import Sequence
 import numpy as np
 from numpy.polynomial.chebyshev import chebvander
 
+from flexapod.solve.stops import NEAR
 from flexapod.solve.system import COLUMNS
 from flexapod.solve.tables import Law
 from flexapod.typing import Array
@@ -41,12 +42,16 @@ class Series:
         self._pieces: deque[tuple[float, float, Array]] = deque()
 
     def between(self, first: float, last: float) -> tuple[Array, Array]:
-        """Edges (n + 1,) and series (n, TERMS, width) of the pieces that cover an interval; none before it again."""
-        while self._pieces and self._pieces[0][1] <= first:
+        """Edges (n + 1,) and series (n, TERMS, width) of the pieces that cover an interval; none before it again.
+
+        An end of the interval within `NEAR` of an edge is that edge: beyond it nothing is taken.
+        """
+        near = min(NEAR, (last - first) / 2)
+        while self._pieces and self._pieces[0][1] <= first + near:
             self._pieces.popleft()
-        while self._todo and (not self._pieces or self._pieces[-1][1] < last):
+        while self._todo and (not self._pieces or self._pieces[-1][1] < last - near):
             self._make()
-        found = [piece for piece in self._pieces if piece[0] < last]
+        found = [piece for piece in self._pieces if piece[0] < last - near]
         return np.array([found[0][0], *(end for _, end, _ in found)]), np.array([x for _, _, x in found])
 
     def _make(self) -> None:
