@@ -52,7 +52,7 @@ LABELS = {
     "quaternion": ["w", "x", "y", "z"],
     "cause": ["axial-strain", "bending", "drive"],
 }
-SETTINGS = ("integrator", "rho_inf", "fidelity", "basis", "modes", "output_step", "step")
+SETTINGS = ("integrator", "fidelity", "basis", "modes", "output_step", "step")
 COUNTERS = ("steps", "newton_iterations", "factorisations", "rejected_steps", "wall_time")
 DRIVES = {
     "prescribed": PrescribedDrive(),
@@ -244,3 +244,12 @@ def test_results_survive_the_file(tmp_path):
         np.testing.assert_array_equal(found[name].values, data[name].values)
         assert found[name].attrs == data[name].attrs
     assert [path.name for path in (tmp_path / "deep").iterdir()] == ["results.nc"]
+
+
+@pytest.mark.parametrize(("setting", "method"), [
+    ({"step": 1e-3, "tolerance": None}, "generalized-alpha"), ({"step": None, "tolerance": 1e-2}, "Radau"),
+])  # fmt: skip
+def test_the_method_of_a_run_is_named(setting, method):
+    attrs = fx.simulate(paper_robot(), fidelity="lumped", duration=0.03, **setting).attrs
+    assert method in attrs["integrator"]
+    assert ("rho_inf" in attrs) == (method == "generalized-alpha")  # nothing else depends on it

@@ -34,8 +34,8 @@ class Simulation(Frozen):
     of `beam-fem` two per element, of `solid-fem` those of the reduced solid piston);
     `duration` [s] (None: the motion with its hold);
     `tolerance` (relative, of the step control) or fixed `step` [s]; `output_step` [s]; `rho_inf`, spectral radius of
-    the integrator at infinite frequency; `friction` about rest, in modes and stiffness: what rubs slides, or sticks;
-    `play`: left to `flexapod.play`, or a gap in the motion.
+    the integrator of fixed steps at infinite frequency; `friction` about rest, in modes and stiffness: what rubs
+    slides, or sticks; `play`: left to `flexapod.play`, or a gap in the motion.
     """
 
     fidelity: str = "assumed-modes"

@@ -19,7 +19,7 @@ from flexapod.model.sections import SHARES, Step
 from flexapod.typing import Array
 
 _GLAND = 0.01  # of the piston's length: within which the mouth takes a cut up
-_MORE = 7  # points on a section more than shapes, as in kernels of tapers
+_MORE = 7  # points on a section more than shapes; kernels have fewer
 _POINTS, _WEIGHTS = gauss_unit(24)
 _ALONG = ("EA", "rhoA", "turning_a", "turning_b")
 _STRESS_POINTS = 6  # on a section

@@ -77,9 +77,11 @@ def march_attributes(
     """Solver settings and counters of a time integration, and whether it reached its end."""
     s = study.simulation
     error = {} if s.tolerance is None else {"tolerance": s.tolerance, "estimated_error": record.largest_error}
+    method = {"integrator": "generalized-alpha, index-3 constraints", "rho_inf": s.rho_inf}
+    if s.tolerance is not None and compiled:
+        method = {"integrator": "Radau IIA of order 5, rates of the constraints"}
     settings: dict[str, object] = {
-        "integrator": "generalized-alpha, index-3 constraints",
-        "rho_inf": s.rho_inf,
+        **method,
         "fidelity": s.fidelity,
         "basis": s.lateral_basis if s.lateral_shapes else "none",
         "modes": s.lateral_shapes,
