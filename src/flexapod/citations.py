@@ -75,6 +75,12 @@ _WORKS = {
         "systems",
         source="Numerische Mathematik 129(1), 149-179",
     ),
+    "hairer-wanner": Citation(
+        authors="E. Hairer, G. Wanner",
+        year=1996,
+        title="Solving Ordinary Differential Equations II: Stiff and Differential-Algebraic Problems",
+        source="Springer, 2nd edition",
+    ),
     "casadi": Citation(
         authors="J. A. E. Andersson, J. Gillis, G. Horn, J. B. Rawlings, M. Diehl",
         year=2019,
