@@ -15,7 +15,8 @@ from flexapod.typing import Array
 PORTS = 24  # as in system.h
 TOL_CLOSURE, TOL_FORCE = 1e-14, 1e-10  # m; relative to the largest force: rounding floors of metres and kilonewtons
 MAX_ITERATIONS, MAX_AGE = 12, 16
-#: Matrices of legs with more coordinates than this serve twice as many steps: they cost more than what their age does.
+#: Matrices of legs with more coordinates than this serve eight times as many steps: they cost more than what their age
+#: does. As in march.c.
 LARGE = 30
 
 
@@ -75,7 +76,7 @@ class Call:
             system.legs, int(system.hub), system.ports.size, (c_long * PORTS)(*system.ports.tolist()),
             *[address(x) for x in self.kept],
             h, method.alpha_m, method.alpha_f, method.beta, method.gamma, TOL_CLOSURE, TOL_FORCE, system.force_floor,
-            MAX_ITERATIONS, MAX_AGE * (1 + (system.n > LARGE)), every,
+            MAX_ITERATIONS, MAX_AGE * (8 if system.n > LARGE else 1), every,
         )  # fmt: skip
         arrays = (flow.q, flow.v, flow.v_dot, flow.a, flow.lam, flow.drive, flow.pose, flow.bristles)
         arrays += (flow.sums, flow.powers, rows)

@@ -270,15 +270,24 @@ void record_state(const Settings *s, State *x, const double *row, const double *
 
 /* Legs' vectors are rows of numbers as well: what follows is the same for legs and payload. */
 
-/* x and its value before, one step on along the straight line through them */
-static void extrapolate(long count, double *x, double *before) {
-  for (long j = 0; j < count; j++) { double now = x[j]; x[j] += now - before[j]; before[j] = now; }
+/* Whether a leg has so many coordinates that its functions and matrices cost more than a better start and steps counted */
+enum { LARGE = N > 30 };
+
+/* x one step on, along the straight line through it and its value before; for large legs along the cubic through the last
+   four values, that of the step before last in before[gap], and so on */
+static void extrapolate(long count, double *x, double *before, long gap) {
+  for (long j = 0; j < count; j++) {
+    double now = x[j], *old = before + j;
+    x[j] += LARGE ? 3*now - 6*old[0] + 4*old[gap] - old[2*gap] : now - old[0];
+    if (LARGE) { old[2*gap] = old[gap]; old[gap] = old[0]; }
+    old[0] = now;
+  }
 }
 
 /* Predictor with extrapolated v_dot, Eqs. (T6.1)-(T6.3); `step` is the change of the coordinates */
-static void predict(const Settings *s, long count, double *v, double *v_dot, double *a, double *before, double *step) {
+static void predict(const Settings *s, long count, double *v, double *v_dot, double *a, double *before, long gap, double *step) {
   double h = s->h, am = s->alpha_m, af = s->alpha_f;
-  extrapolate(count, v_dot, before);
+  extrapolate(count, v_dot, before, gap);
   for (long j = 0; j < count; j++) {
     double a1 = ((1 - af)*v_dot[j] + af*before[j] - am*a[j])/(1 - am);
     step[j] = h*v[j] + h*h*((0.5 - s->beta)*a[j] + s->beta*a1);
@@ -293,22 +302,23 @@ static void update(const Settings *s, long count, const double *dq, double *v, d
   for (long j = 0; j < count; j++) { v[j] += c_v*dq[j]; v_dot[j] += c_a*dq[j]; a[j] += c_q*dq[j]; }
 }
 
-typedef struct {                        /* of the step before, for the predictor */
+typedef struct {                        /* of a step before, for the predictor */
   lanes v_dot[GROUPS][N], lam[GROUPS][ROWS], drive[GROUPS][PORTS];
   double u_dot[6];
 } Past;
+enum { GAP = sizeof(Past)/sizeof(double) };
 
 static void predict_body(const Settings *s, const double *row, Past *past, Work *w, double *pose_step) {
   for (int i = 0; i < groups(s); i++) {
     LegState *leg = &w->leg[i];
     lanes step[N];
-    extrapolate(ROWS*LANES, (double *)leg->lam, (double *)past->lam[i]);
-    extrapolate(s->ports*LANES, (double *)leg->drive, (double *)past->drive[i]);
-    predict(s, N*LANES, (double *)leg->v, (double *)leg->v_dot, (double *)leg->a, (double *)past->v_dot[i], (double *)step);
+    extrapolate(ROWS*LANES, (double *)leg->lam, (double *)past->lam[i], GAP);
+    extrapolate(s->ports*LANES, (double *)leg->drive, (double *)past->drive[i], GAP);
+    predict(s, N*LANES, (double *)leg->v, (double *)leg->v_dot, (double *)leg->a, (double *)past->v_dot[i], GAP, (double *)step);
     for (long j = 0; j < N; j++) leg->q[j] += step[j];
   }
   follow_table(s, row, w);
-  if (s->hub) predict(s, 6, w->payload.u, w->payload.u_dot, w->payload.a, past->u_dot, pose_step);
+  if (s->hub) predict(s, 6, w->payload.u, w->payload.u_dot, w->payload.a, past->u_dot, GAP, pose_step);
 }
 
 /* Solve the linear equations and correct the state */
@@ -330,7 +340,8 @@ static void correct(const Settings *s, const double *pose0, double *pose_step, W
   }
 }
 
-/* Newton's iteration of one step; `age` counts the steps since the matrix was made. After the residuals are tolerable one
+/* Newton's iteration of one step; `age` counts the steps since the matrix was made, and of large legs, whose matrix serves
+   longer, each iteration above two as four. After the residuals are tolerable one
    more correction is made: index 3 magnifies what is left. */
 static int iterate(const Settings *s, State *x, const double *wrench, double *pose_step, long *age, Work *w) {
   double c_v = s->gamma/(s->beta*s->h), c_a = (1 - s->alpha_m)/((1 - s->alpha_f)*s->beta*s->h*s->h);
@@ -351,6 +362,7 @@ static int iterate(const Settings *s, State *x, const double *wrench, double *po
     }
     before = worst;
     x->iterations++;
+    if (LARGE && iteration > 1) *age += 4;
     correct(s, pose0, pose_step, w);
     if (done) return OK;
   }
@@ -359,7 +371,7 @@ static int iterate(const Settings *s, State *x, const double *wrench, double *po
 /* Advance `steps` steps; tables have steps + 1 rows (row 0 is the present time). `resumed`: the call before, in this
    thread, ended there: all goes on from what it left, as if it were one. */
 int march(const Settings *s, State *x, const double *table, const double *wrench, long steps, long resumed) {
-  static _Thread_local Past past;
+  static _Thread_local Past past[1 + 2*LARGE];
   static _Thread_local long age;
   Work *w = work();
   long width = s->legs*s->ports*COLUMNS;
@@ -369,14 +381,15 @@ int march(const Settings *s, State *x, const double *table, const double *wrench
     load(s, x, w);
     w->h = s->h;
     for (int i = 0; i < groups(s); i++) {
-      memcpy(past.v_dot[i], w->leg[i].v_dot, sizeof past.v_dot[i]);
-      memcpy(past.lam[i], w->leg[i].lam, sizeof past.lam[i]);
-      memcpy(past.drive[i], w->leg[i].drive, sizeof past.drive[i]);
+      memcpy(past->v_dot[i], w->leg[i].v_dot, sizeof past->v_dot[i]);
+      memcpy(past->lam[i], w->leg[i].lam, sizeof past->lam[i]);
+      memcpy(past->drive[i], w->leg[i].drive, sizeof past->drive[i]);
     }
-    memcpy(past.u_dot, w->payload.u_dot, sizeof past.u_dot);
+    memcpy(past->u_dot, w->payload.u_dot, sizeof w->payload.u_dot);
+    for (int k = 1; k <= 2*LARGE; k++) past[k] = past[0];
   }
   for (long t = 1; t <= steps; t++) {
-    predict_body(s, table + t*width, &past, w, pose_step);
+    predict_body(s, table + t*width, past, w, pose_step);
     int fault = iterate(s, x, wrench + load_size(s)*t, pose_step, &age, w);
     if (fault) { x->steps += t; x->bad_leg = worst_leg(s, w); return fault; }
     age++;
