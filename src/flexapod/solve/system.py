@@ -287,7 +287,7 @@ class System:
         return Matrices(M=M, D=D, K=K, G=G)
 
     def loops(self, x: State) -> list[Array]:
-        """What loops add to D and K (legs, n, n), what they measure (legs, 1), and how that grows (legs, n, 1)."""
+        """What loops add to D and K (legs, n, n), what they measure (legs, 1), and how that grows (legs, n)."""
         n = self.n
         return evaluate(self.kernel, "leg_loop", self.legs, [x.q, self.leg_p], [(n, n), (n, n), (1,), (n,)])
 
