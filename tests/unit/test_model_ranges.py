@@ -89,6 +89,13 @@ def test_a_file_says_which_key_is_out_of_range():
         assert str(caught.value) == f"robot.toml: {key}: is out of range. Allowed: {words}."
 
 
+@pytest.mark.parametrize("mouth", [1e160, 1e308])
+def test_a_tube_is_not_computed_before_its_length_is_in_range(mouth):
+    section = model.Tube(diameter=0.06, inner_diameter=0.045)
+    with pytest.raises(InputError, match=r"mouth.*is out of range"):
+        model.Cylinder.tube(mouth=mouth, section=section, material=model.MATERIALS["steel"])
+
+
 def test_instants_of_a_table_do_not_come_as_near_as_no_time_that_is_computed_with():
     # A spline through instants 1e-300 s apart has no coefficients.
     with pytest.raises(InputError, match=r"does not increase at row 2.*at least 1e-09 s above 0 s"):

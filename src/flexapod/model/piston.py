@@ -60,7 +60,7 @@ class Cylinder(Frozen):
     @classmethod
     def tube(cls, *, mouth: float, section: Tube, material: Material, body: Mounted | None = None) -> Cylinder:
         """A cylinder that bends and stretches: its masses follow from section, material and what is mounted on it."""
-        on = body or Mounted(mass=0.0)
+        on, mouth = body or Mounted(mass=0.0), cls(mass=0.0, mouth=mouth).mouth  # within its bounds: it is squared here
         own = material.density * section.area * mouth
         mass = own + on.mass
         com = (own * mouth / 2 + on.mass * on.com) / mass
