@@ -60,6 +60,8 @@ STUDIES = {
     "section": sectioned(model.MATERIALS["aluminium"].replace(name="given")),
     "material by name": sectioned(model.MATERIALS["aluminium"]),
     "with another yield stress": sectioned(model.MATERIALS["aluminium"].replace(yield_stress=1e8)),
+    "with another Poisson's ratio": sectioned(model.MATERIALS["aluminium"].replace(poisson=0.3, expansion=2e-5)),
+    "not known where it yields": sectioned(model.MATERIALS["aluminium"].replace(name="given", yield_stress=None)),
 }
 
 

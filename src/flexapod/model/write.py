@@ -199,12 +199,13 @@ def _actuator(actuator: Actuator) -> dict[str, object]:
 
 
 def _material(material: Material) -> dict[str, object]:
-    """Its name where that says what it is made of, else its values."""
-    known, fields = MATERIALS.get(material.name), _fields(material)
-    if known is None or known != material.replace(name=known.name, yield_stress=known.yield_stress):
-        return {name: value for name, value in fields.items() if name != "name"}
-    named: dict[str, object] = {"material": material.name}
-    return named if known == material else named | {"yield_stress": material.yield_stress}
+    """Its name and what differs from that material, where it is one; else its values."""
+    own = {name: getattr(material, name) for name in ("yield_stress", "poisson", "expansion")}
+    known = MATERIALS.get(material.name)
+    if known is None or None in own.values() or known.replace(**own) != material:
+        return {name: value for name, value in _fields(material).items() if name != "name"}
+    named: dict[str, object] = {"material": known.name}
+    return named | {name: value for name, value in own.items() if value != getattr(known, name)}
 
 
 def _fields(model: Frozen) -> dict[str, object]:
