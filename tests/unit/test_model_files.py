@@ -289,7 +289,7 @@ class TestTables:
 
     def test_missing_file(self, tmp_path):
         error = refusal(with_motion('type = "csv"\nfile = "none.csv"'), path=tmp_path / "s.toml")
-        assert "none.csv" in str(error)
+        assert error.file == str(tmp_path / "s.toml") and error.key == "motion.file" and error.value == "none.csv"
         assert "cannot be read" in str(error)
 
 

@@ -10,7 +10,7 @@ import numpy as np
 from flexapod.model.axes import WORDS, axis_of
 from flexapod.model.base import Frozen
 from flexapod.model.columns import Column, columns_of
-from flexapod.model.tables import read_table
+from flexapod.model.tables import Unreadable, read_table
 from flexapod.model.values import Values
 from flexapod.typing import Array
 
@@ -110,4 +110,7 @@ class Section(Values):
     ) -> dict[str, Array]:
         """Columns of the CSV file under `file` or another name (`model.tables`)."""
         self.need(name)
-        return read_table(self.folder / str(self.text(name)), columns, needed=needed, jumps=jumps, along=along)
+        try:
+            return read_table(self.folder / str(self.text(name)), columns, needed=needed, jumps=jumps, along=along)
+        except Unreadable as error:
+            raise self.error(error.what, name, next_step=error.next_step) from None

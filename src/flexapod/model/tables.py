@@ -24,6 +24,10 @@ MOST_KEPT = 2_000_000  # letters of a table that is kept for the next time it is
 _HEADER = re.compile(r"^\s*(.+?)\s*\[\s*(.+?)\s*\]\s*$")
 
 
+class Unreadable(InputError):
+    """A file that cannot be read as a table, whatever is in it."""
+
+
 def read_table(
     path: Path, columns: Mapping[str, str], *, needed: bool = False, jumps: bool = False, along: str = "time"
 ) -> dict[str, Array]:
@@ -94,8 +98,8 @@ def _lines(path: Path, text: str) -> list[tuple[int, list[str]]]:
     return [(n, row) for n, row in rows if any(cell.strip() for cell in row) and not row[0].lstrip().startswith("#")]
 
 
-def _unreadable(path: Path, why: str) -> InputError:
-    return InputError(f"cannot be read: {why}", file=path, next_step="Give its place relative to the study file")
+def _unreadable(path: Path, why: str) -> Unreadable:
+    return Unreadable(f"cannot be read: {why}", file=path, next_step="Give its place relative to the study file")
 
 
 def _header(path: Path, line: int, cells: list[str], dimensions: Mapping[str, str]) -> dict[str, float]:
