@@ -228,9 +228,8 @@ class Leg(Frozen):
         if self.strut is not None:
             raise _misfit(self.chain, "guide", "does not fit a strut: nothing slides", "cylinder and piston")
         if self.guide.clearance and not self.swings:
-            raise _misfit(
-                self.chain, "guide.clearance", "is of legs that no joint holds across", "legs UPS, SPS and their like"
-            )
+            what = "is of legs that no joint holds across"
+            raise _misfit(self.chain, "guide.clearance", what, "legs UPS, SPS and their like", "Leave clearance out")
         if self.stroke is not None and (overlap := self.overlap(self.stroke.max)) <= 0:
             raise InputError(
                 f"leaves no overlap of the bushings at the longest leg of {self.stroke.max:g} m ({overlap:g} m)",
@@ -289,8 +288,8 @@ class Leg(Frozen):
         return self
 
 
-def _misfit(chain: str, key: str, what: str, allowed: str | None = None) -> InputError:
-    return InputError(f"{what} (chain {chain})", key=key, allowed=allowed)
+def _misfit(chain: str, key: str, what: str, allowed: str | None = None, next_step: str | None = None) -> InputError:
+    return InputError(f"{what} (chain {chain})", key=key, allowed=allowed, next_step=next_step)
 
 
 def _damped(damping: BodyDamping) -> str:

@@ -15,6 +15,7 @@ import numpy as np
 from flexapod.model.fields import Field, Notes, listened
 from flexapod.model.material import MATERIALS
 from flexapod.model.read_disturbance import FLOOR, FORCE_NOISE, WRENCH_NOISE
+from flexapod.model.read_mount import BASE_ACCELERATION
 from flexapod.model.reference import Entry, plain_path, reference
 from flexapod.model.tables import POSE, WRENCH, forces, header
 from flexapod.units import COMMON_UNITS, DIMENSIONS
@@ -28,6 +29,8 @@ _TABLES = {
         WRENCH,
         "one at least besides the time; others are 0",
     ),
+    "`robot.base_motion`": (BASE_ACCELERATION, "one at least besides the time; others are 0"),
+    '`robot.base_motion` with `of = "displacement"`': (POSE, "one at least besides the time; others are 0"),
     '`leg.drive` with `law = "csv"`': (forces(6), "all columns, one for each leg"),
     '`leg.drive` of a screw with `law = "csv"`': (forces(6, "torque"), "all columns, one for each leg"),
     "`heat.file`": (
@@ -239,7 +242,7 @@ def _tables() -> Iterator[str]:
         "The path of a CSV file is relative to the study file. The first line names each column with its "
         "unit; any unit of the right kind will do. The first instant is 0, the others increase. Lines that "
         "begin with # are comments. Between its instants a motion is a quintic spline that rests at both "
-        "ends; loads and forces are linear, and held at the end."
+        "ends; accelerations, loads and forces are linear, the last two held at the end."
     )
     yield _table(
         ("Read by", "First line", "Columns"),
