@@ -229,7 +229,7 @@ class TestFile:
             ('rod = "70 mm" ', 'rod = "100 mm" ', "leg.drive.rod", "below bore = 100 mm"),
             ('bulk_modulus = "1.4 GPa"', 'bulk_modulus = "-1 GPa"', "leg.drive.bulk_modulus", "above 0"),
             ('bulk_modulus = "1.4 GPa"', 'bulk_modulus = "1.4 mm"', "leg.drive.bulk_modulus", "Pa"),
-            ('dead_volume = ["0.5 l", "0.9 l"]', 'dead_volume = "-1 l"', "leg.drive.dead_volume", "negative"),
+            ('dead_volume = ["0.5 l", "0.9 l"]', 'dead_volume = "-1 l"', "leg.drive.dead_volume", "0 or more"),
             ('leakage = "2e-12', 'leakage = "-2e-12', "leg.drive.leakage", "at least 0"),
             ('bore = "100 mm"', 'boer = "100 mm"', "leg.drive.boer", "bore"),
         ],

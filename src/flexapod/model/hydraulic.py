@@ -21,7 +21,9 @@ def _pair(value: object) -> Array:
     """One volume for both sides, or two."""
     found = array_of((2,))([value, value] if isinstance(value, int | float) else value)
     if found.min() < 0:
-        raise ValueError("must not be negative")
+        raise InputError(
+            "is negative", key="dead_volume", value=found.tolist(), allowed="one volume, or two; 0 or more"
+        )
     return found
 
 
