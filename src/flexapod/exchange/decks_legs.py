@@ -140,9 +140,9 @@ def _leg(i: int, leg: model.Leg, real: Limbs, columns: Array, tip: Array, length
     _check_leg(i + 1, leg, length)
     cylinder, piston, below, above = leg.cylinder, leg.piston, leg.base_joint, leg.platform_joint
     if leg.turning:
-        raise InputError("is not written in decks", key="piston.keyed", value=False, allowed="true")
+        raise InputError("is not written in decks", key="leg.piston.keyed", value=False, allowed="true")
     if leg.screw is not None and leg.screw.command == "torque":
-        raise InputError("is not written in decks", key="drive.command", value="torque", allowed="position, servo")
+        raise InputError("is not written in decks", key="leg.drive.command", value="torque", allowed="position, servo")
     z, y = columns[:3, _LENGTH], columns[3:, _NAMES.index("beta")]
     springs = dict(zip(_NAMES[1:4], (below.bending, below.bending, below.torsion), strict=True))
     springs |= dict(zip(_NAMES[5:], (above.bending, above.bending, above.torsion), strict=True))
@@ -159,7 +159,7 @@ def _leg(i: int, leg: model.Leg, real: Limbs, columns: Array, tip: Array, length
     (base_gives, base_springs), (tip_gives, tip_springs) = (_gives(leg, own, at) for at in ("base", "platform"))
     if force and len(base_gives):
         raise InputError(
-            "is not written in decks where the base joint gives way", key="drive.type", value=leg.drive.type,
+            "is not written in decks where the base joint gives way", key="leg.drive.type", value=leg.drive.type,
             allowed="prescribed, servo, screw, or a base joint and springs that do not",
         )  # fmt: skip
     return LegAtPose(
@@ -232,9 +232,10 @@ def _check_leg(i: int, leg: model.Leg, length: float) -> None:
         late = leg.screw.lag > 0
         raise InputError(
             "is not written in decks, whose loops are springs on the rotor",
-            key="drive.motor.bandwidth" if late else "drive.encoder.at",
+            key="leg.drive.motor.bandwidth" if late else "leg.drive.encoder.at",
             value=leg.screw.motor.bandwidth if late else leg.measured,
             allowed="none" if late else 'rotor; or command = "position"',
+            next_step="Leave it out for the deck: `flexapod modes` with it and without says what that changes",
         )
     if leg.piston.sections:
         raise InputError(
@@ -251,7 +252,10 @@ def _check_leg(i: int, leg: model.Leg, length: float) -> None:
     for key, there in (("leg.guide", leg.guide), ("leg.cylinder.diameter", leg.cylinder.section)):
         if there is not None:
             raise InputError(
-                "is not written in decks", key=key, allowed="a piston clamped in the mouth of a rigid cylinder"
+                "is not written in decks",
+                key=key,
+                allowed="a piston clamped in the mouth of a rigid cylinder",
+                next_step="Leave it out for the deck: `flexapod modes` with it and without says what that changes",
             )
     free = length - leg.cylinder.mouth
     if leg.piston.length < free * (1 - 1e-9):
