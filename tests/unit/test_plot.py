@@ -8,7 +8,7 @@ import matplotlib
 import numpy as np
 import pytest
 import xarray as xr
-from matplotlib.colors import to_hex, to_rgb
+from matplotlib.colors import to_hex, to_rgb, to_rgba
 from matplotlib.figure import Figure
 from matplotlib.image import imread
 from matplotlib.legend import Legend
@@ -139,7 +139,9 @@ def test_robot_in_space_stands_where_the_data_say(robot):
 
 
 def test_the_robot_in_space_says_that_nothing_is_magnified(robot):
-    assert "deflections to scale" in plot.robot_3d(robot).axes[1].get_title()
+    right = plot.robot_3d(robot).axes[1]
+    assert "deflections to scale" in right.get_title()
+    assert to_rgba(right.get_facecolor())[3] == 0  # nothing of the left picture is behind it
 
 
 def test_energies_have_the_same_words_and_colours_and_values_on_the_page(robot):

@@ -37,6 +37,7 @@ def space(fig: Figure, place: SubplotSpec, *, turn: float = -62, tilt: float = 1
         made: Any = fig.add_subplot(place, projection="3d", computed_zorder=False)
     made.set_proj_type("ortho")
     made.view_init(elev=tilt, azim=turn)
+    made.set_facecolor("none")  # names of axes reach into the next place
     for axis in (made.xaxis, made.yaxis, made.zaxis):
         axis.set_pane_color((1, 1, 1, 0))
         axis._axinfo["grid"].update(color="#E4E4E4", linewidth=0.6)
