@@ -101,7 +101,8 @@ def test_modes_are_those_of_two_masses(motor, encoder, integral):
     # Others are of the payload's rotations and its motion aside.
     grows = bool((ratio < 0).any())
     assert grows or (theirs.real < 0).all()
-    assert ("unstable" in found.attrs["warnings"]) == grows
+    for words in ("unstable", 'encoder.rate = "rotor"'):
+        assert (words in found.attrs["warnings"]) == grows
 
 
 def test_response_to_a_force_is_that_of_two_masses():

@@ -75,5 +75,5 @@ def unstable_words(rate: float) -> list[str]:
         return []
     return [
         f"the loops of the drives are unstable: deviations grow by a factor of 2.7 in {text(1 / rate, 's')}; "
-        "smaller gains, a motor of more bandwidth, or damping by the rotor's rate (encoder.rate) may help"
+        'smaller gains, a motor of more bandwidth, or damping by the rotor\'s rate (encoder.rate = "rotor") may help'
     ]
