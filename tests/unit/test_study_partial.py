@@ -202,3 +202,11 @@ def test_a_piston_pulled_out_by_its_drive_is_told():
     assert (data.leg_stroke <= 0.31518 + 0.75).all()
     # On the way the legs leave their strokes: no command did, so it is a remark.
     assert "its drive leaves the stroke of 0.7 to 1.05 m by 1" in data.attrs["warnings"]
+
+
+def test_a_run_that_is_whole_but_less_exact_than_asked_says_so(caplog):
+    """It once said that only 0.004 s of 0.004 s were computed."""
+    with caplog.at_level(logging.WARNING, logger="flexapod"):
+        data = fx.simulate(paper_robot(fidelity="lumped", duration=0.004, output_step=0.002, tolerance=1e-15))
+    assert data.attrs["partial"] == 1 and data.sizes["time"] == 3
+    assert "All 0.004 s were computed, but not as exactly as was asked: tolerance 1e-15" in caplog.text
