@@ -9,6 +9,7 @@ from tests.stepped import function, leg_of, section, shapes_of, vector
 
 import flexapod as fx
 from flexapod.elements.steps import held
+from flexapod.errors import InputError
 from flexapod.model.files import preset_text
 from flexapod.solve.sections import numeric_pieces
 
@@ -169,3 +170,11 @@ def test_sections_go_through_a_file_and_a_sweep():
     data = {"leg": {"piston": {"sections": [{"diameter": 0.04}, {"diameter": 0.027}]}}}
     put(data, parse_key("leg.piston.sections[2].diameter", what="key"), 0.03)
     assert data["leg"]["piston"]["sections"][1]["diameter"] == 0.03
+
+
+def test_a_taper_without_pieces_that_stand_for_it_is_refused():
+    # A tube whose EI changes tenfold within a 32nd of its length: (T8.23) once took the root of a negative number.
+    with pytest.raises(InputError, match=r"tip_diameter = 0.01: tapers too steeply.*Divide the section"):
+        section(0.2, 0.44, tip_diameter=0.01, inner_diameter=0.009)
+    half = section(0.1, 0.44, tip_diameter=0.225, inner_diameter=0.009)
+    assert min(min(step.EI) for step in half.steps) > 0

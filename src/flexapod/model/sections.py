@@ -65,6 +65,14 @@ class PistonSection(Frozen):
         if self.diameter is not None:
             for outer in (self.diameter, self.tip_diameter or self.diameter):
                 Tube(diameter=outer, inner_diameter=self.inner_diameter)
+        if self.tapered and min(min(step.EI) for step in self.steps) <= 0:
+            raise InputError(
+                "tapers too steeply",
+                key="tip_diameter",
+                value=self.tip_diameter,
+                allowed=f"nearer to the diameter of {self.diameter:g} m at the other end, or thicker walls",
+                next_step="Divide the section into shorter ones that taper one after the other",
+            )
         return self
 
     @property
