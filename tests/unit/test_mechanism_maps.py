@@ -8,6 +8,7 @@ import flexapod as fx
 from flexapod.model.motion import AxisMotion
 from flexapod.study.before.checks import check_geometry
 from flexapod.study.before.reach import REASONS, rigid_codes
+from flexapod.surveys.workspace.grid import usual_axes
 
 
 def codes(robot, **values):
@@ -55,6 +56,13 @@ def test_a_map_of_a_tripod_has_the_poses_that_it_can_take():
 def test_a_map_of_a_motion_that_the_robot_does_not_have_is_refused():
     with pytest.raises(fx.InputError, match="asks for surge of a robot with 3 motions: heave, roll, pitch"):
         fx.workspace_map(ROBOTS["3-RPS"](), {"surge": np.array([0.0, 0.1])})
+
+
+def test_a_map_varies_what_the_robot_can_do_unless_told():
+    given = {"3-RPS": ["heave", "roll"], "6-PUS": ["surge", "heave"]}
+    assert {name: usual_axes(ROBOTS[name]()) for name in given} == given
+    with pytest.raises(fx.InputError, match=r"platform\.fixed.*nothing to map.*flexapod modes"):
+        fx.workspace_map(fx.load("examples/mechanisms/strut.toml"))
 
 
 def study(robot, kind, amplitude):

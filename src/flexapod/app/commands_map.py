@@ -22,7 +22,10 @@ if TYPE_CHECKING:
 COMPUTING = 0.7  # share of the bar for the poses; the rest is for figures
 _FORM = '"surge=-100..100mm:41"'
 X = Annotated[str | None, typer.Option("--x", metavar=_FORM, help="First axis; without range: as far as is reached.")]
-Y = Annotated[str | None, typer.Option("--y", metavar="AXIS", help="Second axis; default of both: surge and heave.")]
+Y = Annotated[
+    str | None,
+    typer.Option("--y", metavar="AXIS", help="Second axis; default: surge and heave, or what can be."),
+]
 Z = Annotated[str | None, typer.Option("--z", metavar="AXIS", help="Third axis of a volume: one panel per value.")]
 At = Annotated[
     str | None, typer.Option("--at", metavar='"roll=10deg"', help="Fixed coordinates; the others as at home.")
@@ -54,12 +57,12 @@ def workspace_map(
     from flexapod.study.before.room import check_map
     from flexapod.surveys.workspace import workspace_map as compute
     from flexapod.surveys.workspace.findings import map_findings
-    from flexapod.surveys.workspace.grid import grid
+    from flexapod.surveys.workspace.grid import grid, usual_axes
     from flexapod.surveys.workspace.maps import FREQUENCIES
 
     study = robot_study(file)
-    axes = parse_axes({"--x": x, "--y": y, "--z": z}, count)
-    fixed = parse_at(at, axes or ("surge", "heave"))
+    axes = parse_axes({"--x": x, "--y": y, "--z": z}, count, usual_axes(study.robot))
+    fixed = parse_at(at, axes)
     settings = {"direction": parse_direction(direction), "acceleration": parse_acceleration(acceleration)}
     folder = results_folder(file, "map", out)
     with terminal.progress_bar(quiet=quiet or json) as report:

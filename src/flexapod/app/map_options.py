@@ -3,7 +3,7 @@
 from __future__ import annotations
 
 import re
-from collections.abc import Collection
+from collections.abc import Collection, Sequence
 
 from flexapod.errors import InputError, closest
 from flexapod.model import AXES
@@ -17,8 +17,8 @@ _UNIT = re.compile(r"[a-zA-Z°µ\"'].*$")
 FORM = '"surge=-100mm..100mm", "roll=-20..20deg:41", or "heave" for as far as the robot reaches'
 
 
-def parse_axes(options: dict[str, str | None], count: int | None) -> dict[str, Range] | None:
-    """Axes by name from texts (``"surge=-100mm..100mm:41"``) by option (``"--x"``); None without any.
+def parse_axes(options: dict[str, str | None], count: int | None, usual: Sequence[str]) -> dict[str, Range]:
+    """Axes by name from texts (``"surge=-100mm..100mm:41"``) by option (``"--x"``); the `usual` ones without any.
 
     `count`: points of each axis that names none. InputError: an unknown coordinate, one that is given twice, ends that
     are not lengths or angles or in the wrong order, no points.
@@ -31,9 +31,7 @@ def parse_axes(options: dict[str, str | None], count: int | None) -> dict[str, R
         if name in axes:
             raise InputError("is given twice", key=option, value=text, next_step="Give each coordinate one axis")
         axes[name] = Range(low=found.low, high=found.high, count=count if found.count is None else found.count)
-    if not axes and count is not None:
-        return {"surge": Range(count=count), "heave": Range(count=count)}
-    return axes or None
+    return axes or {name: Range(count=count) for name in usual}
 
 
 def _axis(option: str, text: str) -> tuple[str, Range]:

@@ -8,7 +8,7 @@ from dataclasses import dataclass
 import numpy as np
 from numpy.typing import ArrayLike
 
-from flexapod import model
+from flexapod import model, rigid
 from flexapod.errors import InputError, closest
 from flexapod.model import AXES
 from flexapod.study.before.reach import REACHED, rigid_codes
@@ -21,6 +21,7 @@ LARGEST = 2_000_000  # poses: some ten minutes and a gigabyte
 UNITS = {name: "m" if name in AXES[:3] else "rad" for name in AXES}
 FARTHEST = {"m": 5.0, "rad": np.pi}  # how far `reach_from_home` looks, in shares of the home height and in rad
 STEPS = 400
+USUAL = ("surge", "heave", "sway", "roll", "pitch", "yaw")  # the first ones that a robot can do
 
 
 @dataclass(frozen=True, kw_only=True)
@@ -68,7 +69,7 @@ def grid(robot: model.Robot, axes: Axes | None, at: Mapping[str, float] | None) 
     robot : Robot
     axes : mapping, optional
         Names of one to three of surge, sway, heave, roll, pitch, yaw with ascending values [m, rad], a `Range`, or None
-        for as far as the robot reaches; default: surge and heave.
+        for as far as the robot reaches; default: `usual_axes`.
     at : mapping, optional
         Fixed coordinates by name; the others are those of home.
 
@@ -78,7 +79,14 @@ def grid(robot: model.Robot, axes: Axes | None, at: Mapping[str, float] | None) 
         Something else than names with values, unknown or too many names, no points, values that do not ascend, a
         coordinate both fixed and varying, or more than two million poses.
     """
-    axes = {"surge": None, "heave": None} if axes is None else axes
+    if robot.platform_fixed:
+        raise InputError(
+            "is a platform that stays where it is: there is nothing to map",
+            key="platform.fixed",
+            value=True,
+            next_step="Use `flexapod modes`, or `flexapod check`",
+        )
+    axes = dict.fromkeys(usual_axes(robot)) if axes is None else axes
     at = {} if at is None else at
     _check_names(axes, "axes", 'axes = {"surge": [-0.1, 0.0, 0.1], "heave": None}')
     _check_names(at, "at", 'at = {"roll": 0.1}')
@@ -92,6 +100,13 @@ def grid(robot: model.Robot, axes: Axes | None, at: Mapping[str, float] | None) 
     if size > LARGEST:
         raise InputError("are too many poses", key="axes", value=size, allowed=f"at most {LARGEST} poses")
     return Grid(values=values, at=fixed)
+
+
+def usual_axes(robot: model.Robot) -> list[str]:
+    """Coordinates that a map varies unless told: surge and heave, or the first two that the robot can do."""
+    limbs = rigid.rigid_limbs(robot)
+    free = rigid.independent_axes(limbs, np.zeros(6, dtype=bool), np.zeros(3)) if limbs.guides else ~limbs.hub_held
+    return [name for name in USUAL if free[AXES.index(name)]][:2]
 
 
 def _fixed(at: Mapping[str, float], axes: Axes) -> Array:

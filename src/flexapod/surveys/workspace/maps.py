@@ -59,7 +59,7 @@ def workspace_map(
     robot : Robot, Study or path
     axes : mapping, optional
         One to three of surge, sway, heave [m], roll, pitch, yaw [rad] from home, each with its values, or None for as
-        far as the robot reaches; default: surge and heave.
+        far as the robot reaches; default: surge and heave, or the first two that the robot can do.
     at : mapping, optional
         Fixed coordinates by name.
     direction : str or array_like (3,)
