@@ -74,6 +74,12 @@ def press(page, name):
     page.get_by_role("button", name=name, exact=True).click()
 
 
+def pause(page) -> None:
+    """Press Pause, and wait until nothing moves by itself: what is written before that counts only for the still."""
+    press(page, "Pause")
+    page.get_by_role("button", name="Animate", exact=True).wait_for()
+
+
 def at(page, time) -> None:
     """Wait until the chart has its cursor at a time, and the numbers below it are of that time."""
     page.get_by_text(f"At {time:g} s, in").wait_for()
@@ -177,8 +183,7 @@ def test_modes_are_listed_drawn_and_recomputed_at_another_pose(show):
     page.get_by_role("button", name="Pause", exact=True).wait_for()
     moving = moved(page, before)
     moved(page, moving)
-    press(page, "Pause")
-    page.get_by_role("button", name="Animate", exact=True).wait_for()
+    pause(page)
     still = settled(page)
     up = turn(page, "phase [deg]", 89, lambda: session.scene._drawn.robot._platform.position)
     write(page, "phase [deg]", 271)
@@ -233,7 +238,7 @@ def test_the_single_actuator_is_drawn_and_its_frequencies_follow_the_length(show
     page.get_by_role("button", name="Pause", exact=True).wait_for()
     moving = moved(page, straight)
     moved(page, moving)
-    press(page, "Pause")
+    pause(page)
 
     def beam():
         return session.scene._nodes["beam"].vertices
@@ -275,9 +280,9 @@ def test_an_actuator_in_space_is_drawn_about_both_its_axes(show):
         page.get_by_role("cell", name=kind).first.wait_for()
         pick(page, "mode", name)
         page.get_by_role("button", name="Pause", exact=True).wait_for()
-        press(page, "Pause")
+        pause(page)
         turn(page, "phase [deg]", 89, beam)
-        write(page, "phase [deg]", 90)
+        turn(page, "phase [deg]", 90, beam)  # seen, before the next mode: a text is read when the writer pauses
         until(lambda: session.scene.drawn.startswith(f"mode {place + 1}"))  # noqa: B023
         moved = beam()[-1] - 1.26 * np.array([np.cos(0.349066), 0, -np.sin(0.349066)])
         assert np.abs(moved @ direction) == pytest.approx(np.linalg.norm(moved), rel=1e-3)
