@@ -25,6 +25,7 @@ from flexapod.solve.modes import locked_poses
 from flexapod.solve.recording import Counters
 from flexapod.solve.robot_march import prepare
 from flexapod.solve.tables import robot_law
+from flexapod.study.before.describe.robot import describe
 
 LOOP = Loop(stiffness=50.0, damping=0.5)
 STEEL = SCREW.material.replace(E=1e15, density=1e-3)
@@ -103,6 +104,30 @@ def test_modes_are_those_of_two_masses(motor, encoder, integral):
     assert grows or (theirs.real < 0).all()
     for words in ("unstable", 'encoder.rate = "rotor"'):
         assert (words in found.attrs["warnings"]) == grows
+
+
+def test_loops_unstable_at_some_poses_alone_are_said_with_the_pose_or_the_instant():
+    robot = Hand(with_loop(), gravity=[0, 0, 0]).robot
+    rising = model.WaypointMotion(points=[model.Waypoint(time=0.0, heave=-0.1), model.Waypoint(time=0.02, heave=0.1)])
+    given = study(robot, fidelity="rigid", duration=0.02).replace(motion=rising)
+    heave = np.array([-0.1, 0.0, 0.1])
+    mapped, many = fx.workspace_map(given, {"heave": heave}), fx.modes(given, {"heave": heave})
+    poses = [fx.modes(given, {"heave": h}) for h in heave]
+    rates = [(-2 * np.pi * one.frequency * one.damping_ratio).values.max() for one in poses]
+    assert rates[0] < 0 < rates[1] < rates[2]
+    np.testing.assert_allclose(mapped.loop_growth, np.maximum(rates, 0.0), rtol=1e-6)
+    for data in (mapped, many):
+        assert "unstable at 2 of 3 poses, most at heave 100 mm from home" in data.attrs["warnings"]
+    for said in (fx.budget(given, motion=True), fx.run(given), fx.simulate(given)):
+        assert said.attrs["warnings"].count("unstable") == 1
+        assert "of 11 instants, most at t = 20 ms: deviations grow" in said.attrs["warnings"]
+    for h, one in zip(heave, poses, strict=True):
+        for data in (one, fx.budget(given, {"heave": h})):
+            assert data.attrs["warnings"].count("unstable") == (h > -0.1)
+    found = describe(given)
+    assert [bool(pose.problem) for pose in found.poses] == [False, True]
+    assert any("most at t = 20 ms" in line for line in found.remarks)
+    assert "loop_growth" not in fx.workspace_map(Hand(with_loop(Motor(), ROTOR)).robot, {"heave": heave[1:2]})
 
 
 def test_response_to_a_force_is_that_of_two_masses():

@@ -123,8 +123,8 @@ def _show(data: Dataset, found: MapFindings, folder: Path, files: list[Path]) ->
 
 
 def _sentence(found: Finding) -> str:
+    from flexapod.study.poses import coordinate_words
     from flexapod.study.words import text
-    from flexapod.surveys.workspace.findings import coordinate_words
 
     words = found.words[0].upper() + found.words[1:]
     return (
@@ -134,8 +134,8 @@ def _sentence(found: Finding) -> str:
 
 
 def _row(found: Finding) -> list[str]:
+    from flexapod.study.poses import coordinate_words
     from flexapod.study.words import column
-    from flexapod.surveys.workspace.findings import coordinate_words
 
     home = float("nan") if found.home is None else found.home
     unit, (least, largest, at_home) = column([found.least, found.largest, home], found.unit)

@@ -19,10 +19,10 @@ from flexapod.errors import InputError
 from flexapod.model import AXES
 from flexapod.plot.style import COLORS, NOTE, PAGE, SMALL, TEXT, figure, needs, styled
 from flexapod.study.before.reach import REACHED, REASONS
+from flexapod.study.poses import coordinate_words
 from flexapod.study.words import Scale, number, scale
 from flexapod.surveys.workspace.findings import (
     SIDES,
-    coordinate_words,
     drawn,
     motion_path,
     name_of,

@@ -69,11 +69,11 @@ def growth(values: Complex) -> float:
     return float(values.real[grows].max(initial=0.0))
 
 
-def unstable_words(rate: float) -> list[str]:
-    """That loops are unstable, whose deviations grow at a rate [1/s]; nothing at 0."""
+def unstable_words(rate: float, where: str = "") -> list[str]:
+    """That loops are unstable, whose deviations grow at a rate [1/s] at a place in words; nothing at 0."""
     if not rate:
         return []
     return [
-        f"the loops of the drives are unstable: deviations grow by a factor of 2.7 in {text(1 / rate, 's')}; "
+        f"the loops of the drives are unstable{where}: deviations grow by a factor of 2.7 in {text(1 / rate, 's')}; "
         'smaller gains, a motor of more bandwidth, or damping by the rotor\'s rate (encoder.rate = "rotor") may help'
     ]

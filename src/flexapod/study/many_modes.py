@@ -11,9 +11,9 @@ from flexapod import model, rigid
 from flexapod.rigid.rotations import quaternion
 from flexapod.solve.fallen import fallen, platform_poses
 from flexapod.solve.frequencies import count_real
-from flexapod.solve.modal_loops import unstable_words
 from flexapod.solve.modes import LockedPoses, ManyModes, RobotModes, locked_poses, modes_of
 from flexapod.study.after.mode_shapes import STATIONS, mode_values
+from flexapod.study.before.loops import unstable_at
 from flexapod.study.before.reach import (
     CUT_OFF,
     FALLS_THROUGH,
@@ -60,13 +60,13 @@ def modes_at_poses(study: model.Study, path: rigid.Poses, *, shapes: bool, attrs
     reason[cut_off] = REACHED
     within = np.flatnonzero(reason == REACHED)
     values: dict[str, Array | Codes | Mask] = {}
-    fastest = 0.0
+    growth = np.zeros(P)
     for part in batches(len(within)) if within.size else [slice(0, 0)]:
         chosen = within[part]
         some = poses_of(path, chosen)
         locked = locked_poses(robot, study.simulation, some, study.load)
         modes = modes_of(locked, shapes=shapes)
-        fastest = max(fastest, 0.0 if modes.growth is None else float(modes.growth.max(initial=0.0)))
+        growth[chosen[locked.at]] = 0.0 if modes.growth is None else modes.growth
         reason[chosen] = codes = codes_at_rest(locked, modes)
         kept = codes[locked.at] == REACHED
         rows = (_shape_rows if shapes else _rows)(robot, locked, modes, some, kept)
@@ -80,7 +80,7 @@ def modes_at_poses(study: model.Study, path: rigid.Poses, *, shapes: bool, attrs
     coords |= {"mode": np.arange(1, count + 1)}
     data = dataset(values, coords | ({"station": STATIONS} if shapes else {}), attrs, FORMS)
     data.reason.attrs |= flags()
-    said = [data.attrs["warnings"], *(f"at some of the poses {words}" for words in unstable_words(fastest))]
+    said = [data.attrs["warnings"], *unstable_at(robot, path, np.where(reason == REACHED, growth, 0.0))]
     data.attrs["warnings"] = "\n".join(filter(None, said))
     return data
 

@@ -9,6 +9,7 @@ import numpy as np
 from flexapod import model, rigid
 from flexapod.errors import InputError
 from flexapod.study.arguments import POSE_KEYS, PoseLike
+from flexapod.study.words import number
 from flexapod.typing import Array
 
 BATCH = 200  # poses computed together: their matrices stay in the processor's cache
@@ -73,6 +74,17 @@ def coordinates_of(robot: model.Robot, path: rigid.Poses) -> Array:
         np.arctan2(R[:, 1, 0], R[:, 0, 0]),
     ]
     return np.concatenate([path.position - rigid.home_pose(robot).position, np.stack(angles, axis=1)], axis=1)
+
+
+def coordinate_words(at: Mapping[str, float]) -> str:
+    """A pose from home: "surge 12 mm, roll 5 deg"."""
+    return ", ".join(f"{name} {in_shown_unit(name, value)}" for name, value in at.items())
+
+
+def in_shown_unit(name: str, value: float) -> str:
+    """A coordinate of a pose, in mm or deg."""
+    shown, unit = (1e3 * value, "mm") if name in model.AXES[:3] else (np.rad2deg(value), "deg")
+    return f"{number(round(shown, 9), 4)} {unit}"
 
 
 def batches(count: int) -> Iterator[slice]:

@@ -1,4 +1,4 @@
-"""Loops of drives that are unstable where a motion starts."""
+"""Loops of drives that are unstable at poses, or on the way of a motion."""
 
 from __future__ import annotations
 
@@ -7,20 +7,50 @@ import numpy as np
 from flexapod import model, rigid
 from flexapod.errors import FlexapodError
 from flexapod.solve.modal_loops import unstable_words
-from flexapod.solve.modes import robot_modes
+from flexapod.solve.modes import locked_poses, modes_of
+from flexapod.study.poses import coordinate_words, coordinates_of
+from flexapod.study.words import text
+from flexapod.typing import Array
 
-__all__ = ["loop_remarks"]
+__all__ = ["loop_remarks", "loops", "unstable_at"]
+
+INSTANTS = 11
 
 
-def loop_remarks(study: model.Study) -> list[str]:
-    """That they are, where the motion starts; nothing where they are not, or where there are no modes."""
-    if not any(leg.screw is not None and leg.screw.loops for leg in study.robot.legs):
+def loops(robot: model.Robot) -> bool:
+    """Whether a robot has loops that can be unstable."""
+    return any(leg.screw is not None and leg.screw.loops for leg in robot.legs)
+
+
+def loop_remarks(study: model.Study, poses: rigid.Poses | None = None) -> list[str]:
+    """That they are, at poses or at some instants of the motion, of which the worst is named.
+
+    Nothing where they are not, or where there are no modes.
+    """
+    if not loops(study.robot):
         return []
-    start = rigid.poses(study.robot, study.motion, np.zeros(1))
+    t = np.linspace(0.0, min(study.duration, study.motion.end_time - study.motion.hold), INSTANTS)
+    poses = rigid.poses(study.robot, study.motion, t) if (moving := poses is None) else poses
+    at_rest = rigid.Poses.at_rest(poses.position, poses.rotation)
     try:
-        found = robot_modes(
-            study.robot, study.simulation, rigid.Poses.at_rest(start.position, start.rotation), study.load
-        )
+        locked = locked_poses(study.robot, study.simulation, at_rest, study.load)
+        rates = modes_of(locked).growth
     except FlexapodError:
         return []
-    return unstable_words(found.growth)
+    if rates is None or not rates.any():
+        return []
+    worst, count = int(rates.argmax()), int((rates > 0).sum())
+    last = text(float(t[locked.at[worst]]), "s")
+    where = f" at {count} of {INSTANTS} instants, most at t = {last}" if moving else ""
+    return unstable_words(float(rates[worst]), where)
+
+
+def unstable_at(robot: model.Robot, poses: rigid.Poses, rates: Array) -> list[str]:
+    """At how many of P poses they are, and at which one most; ``rates`` (P,): growth there [1/s]."""
+    if not (count := int((rates > 0).sum())):
+        return []
+    worst = int(rates.argmax())
+    at = coordinates_of(robot, poses.part(slice(worst, worst + 1)))[0]
+    moved = {name: x for name, x in zip(model.AXES, at.tolist(), strict=True) if abs(x) > 1e-9}
+    where = f"at {coordinate_words(moved)} from home" if moved else "at home"
+    return unstable_words(float(rates[worst]), f" at {count} of {rates.size} poses, most {where}")

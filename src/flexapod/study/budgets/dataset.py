@@ -11,6 +11,7 @@ from flexapod.model import Study
 from flexapod.study.arguments import LoadLike, PoseLike, RobotLike, as_pose, as_study, at_pose
 from flexapod.study.attributes import attributes
 from flexapod.study.before.checks import path_remarks
+from flexapod.study.before.loops import loop_remarks
 from flexapod.study.budgets.motion import along_motion
 from flexapod.study.budgets.rows import rows
 from flexapod.study.budgets.rules import Budget
@@ -79,7 +80,7 @@ def budget(
         path, times = as_pose(study.robot, pose), {}
         remarks = [*study.warnings, *path_remarks(study.robot, np.zeros(1), path)]
         table, whole, missing = rows(study, path)
-        remarks += missing
+        remarks += [*missing, *loop_remarks(study, path)]
         table, where = Budget(rows=table, whole={"systematic": whole}), "at home" if pose is None else "at the pose"
     return _named(study, table, times, {"where": where, "summary": "\n".join(sentences(table, where))}, remarks)
 

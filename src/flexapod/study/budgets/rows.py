@@ -16,8 +16,7 @@ from flexapod.solve.equilibrium import FOUND
 from flexapod.solve.frames import floor
 from flexapod.solve.lost_motion import places_with_friction, reversal
 from flexapod.solve.many import RestStates
-from flexapod.solve.modal_loops import unstable_words
-from flexapod.solve.modes import LockedPoses, locked_poses, modes_of, the_equilibrium
+from flexapod.solve.modes import LockedPoses, locked_poses, the_equilibrium
 from flexapod.solve.random_vibration import SOURCES
 from flexapod.solve.system import System
 from flexapod.study.accuracy.rows import Row
@@ -112,8 +111,6 @@ def rows(study: Study, pose: rigid.Poses) -> tuple[list[Row], Array, list[str]]:
         shaken, remarks = vibration_rows(study, locked), []
     except InputError as error:  # without damping no size, of drives that hold no noise: the rest is as before
         shaken, remarks = [], [f"vibration by disturbances has no row: {error}"]
-    if (growth := modes_of(locked).growth if locked.system.kernel.shapes.loop else None) is not None:
-        remarks += unstable_words(float(growth.max(initial=0.0)))
     return without_rounding([*found, *_friction_rows(reversal(locked), 0), *shaken]), whole, remarks
 
 

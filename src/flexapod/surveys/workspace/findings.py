@@ -13,9 +13,7 @@ from flexapod.model import AXES
 from flexapod.scene.robot import robot_study
 from flexapod.study.before.reach import REACHED, REASONS
 from flexapod.study.names import Variable
-from flexapod.study.poses import coordinates_of
-from flexapod.study.words import number
-from flexapod.surveys.workspace.grid import UNITS
+from flexapod.study.poses import coordinate_words, coordinates_of, in_shown_unit
 from flexapod.typing import Array
 
 if TYPE_CHECKING:
@@ -44,9 +42,10 @@ GRID_VARIABLES = {
     "euler_share": Variable((), "1", "largest axial thrust of a leg at rest over its Euler load"),
 }
 
-#: Those of joints that have a largest angle, and where error budgets are asked for.
+#: Those of joints that have a largest angle, of loops that can be unstable, and where error budgets are asked for.
 FURTHER_VARIABLES = {
     "joint_margin": Variable((), "rad", "least angle left at a joint whose largest turn is given"),
+    "loop_growth": Variable((), "s-1", "rate at which deviations by unstable loops of drives grow, 0 where none does"),
     "error_worst": Variable((), "m", "worst case of the tool's place at rest, all parts that have a size"),
     "error_by_part": Variable(("part",), "m", "size of the worst that a part does to the tool's place at rest"),
 }
@@ -67,8 +66,8 @@ SCALARS = {
     "leg_clearance": "least",
     "euler_share": "largest",
 }
-#: The same with those that a map has if they are asked for, or if joints have a largest angle.
-SIDES = SCALARS | {"error_worst": "largest", "joint_margin": "least"}
+#: The same with those that only some maps have.
+SIDES = SCALARS | {"loop_growth": "largest", "error_worst": "largest", "joint_margin": "least"}
 
 
 def forms(names: tuple[str, ...]) -> dict[str, Variable]:
@@ -96,7 +95,7 @@ def motion_path(data: Dataset) -> Array | None:
     return path if np.ptp(path, axis=0).max() > 1e-9 else None
 
 
-_UNIT_WORDS = {"N m-1": "N/m", "1": ""}
+_UNIT_WORDS = {"N m-1": "N/m", "s-1": "1/s", "1": ""}
 
 
 @dataclass(frozen=True, kw_only=True)
@@ -168,6 +167,7 @@ def name_of(data: Dataset, name: str, mode: int = 1) -> str:
         "stiffness_least": "stiffness at the tool in its weakest direction",
         "condition": "condition of the scaled Jacobian",
         "static_deviation_size": "sag of the tool under gravity and load",
+        "loop_growth": "growth of deviations by unstable loops",
         "error_worst": "worst case of the tool's place at rest, all parts",
         "largest_force": "largest drive force at rest",
         "stroke_margin": "least stroke left",
@@ -186,22 +186,12 @@ def unit_of(values: DataArray) -> str:
     return _UNIT_WORDS.get(unit, unit)
 
 
-def coordinate_words(at: dict[str, float]) -> str:
-    """A place of the grid: "surge 12 mm, roll 5 deg"."""
-    return ", ".join(f"{name} {_in_shown_unit(name, value)}" for name, value in at.items())
-
-
-def _in_shown_unit(name: str, value: float) -> str:
-    shown, unit = (1e3 * value, "mm") if UNITS[name] == "m" else (np.rad2deg(value), "deg")
-    return f"{number(round(shown, 9), 4)} {unit}"
-
-
 def axis_words(data: Dataset) -> str:
     """The grid: "surge -120 to 120 mm (41), heave ... at roll 5 deg"."""
     parts = []
     for name in data.attrs["axes"].split():
         values = data[name].values
-        ends = " to ".join(_in_shown_unit(name, end) for end in dict.fromkeys(values[[0, -1]].tolist()))
+        ends = " to ".join(in_shown_unit(name, end) for end in dict.fromkeys(values[[0, -1]].tolist()))
         parts.append(f"{name} {ends} ({len(values)})")
     fixed = {name: float(data.attrs[f"at_{name}"]) for name in AXES if data.attrs.get(f"at_{name}", 0.0)}
     return ", ".join(parts) + (f", at {coordinate_words(fixed)}" if fixed else "")

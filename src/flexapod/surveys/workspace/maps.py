@@ -15,6 +15,7 @@ from flexapod.errors import InputError
 from flexapod.solve.frequencies import count_real
 from flexapod.study.arguments import LoadLike, RobotLike, at_pose
 from flexapod.study.attributes import attributes
+from flexapod.study.before.loops import unstable_at
 from flexapod.study.before.reach import flags
 from flexapod.study.before.room import check_map
 from flexapod.study.budgets.rows import names_of_rows
@@ -107,6 +108,9 @@ def _described(study: model.Study, poses: Grid, wanted: Wanted, values: dict[str
     for name in poses.values:
         data[name].attrs |= {"units": UNITS[name], "long_name": f"{name} from home"}
     data.reason.attrs |= flags()
+    if "loop_growth" in data:
+        path, rates = from_home(study.robot, poses.coordinates()), np.nan_to_num(data.loop_growth.values.ravel())
+        data.attrs["warnings"] = "\n".join([*study.warnings, *unstable_at(study.robot, path, rates)])
     return data
 
 

@@ -57,6 +57,8 @@ def batch_values(study: model.Study, path: rigid.Poses, wanted: Wanted) -> tuple
         **_elastic(study.robot, some, locked, wanted),
         **{name: row[locked.at] for name, row in _rigid(study.robot, some).items()},
     }
+    if modes.growth is not None:
+        values["loop_growth"] = modes.growth
     if wanted.budget:
         values |= _budgets(study, locked)
     if within.size:

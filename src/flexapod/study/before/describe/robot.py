@@ -46,6 +46,7 @@ from flexapod.study.before.describe.leg import (
 )
 from flexapod.study.before.describe.screw import ScrewDescription, back_words, describe_screws, screw_remarks
 from flexapod.study.before.estimates import bending_moments, buckling_loads, residual_vibration
+from flexapod.study.before.loops import loop_remarks
 from flexapod.study.disturbances import vibration_words
 from flexapod.study.path import RigidPath
 from flexapod.study.words import held
@@ -319,6 +320,7 @@ def describe(study: model.Study | model.ActuatorStudy) -> RobotDescription | Act
                 [
                     *study.warnings,
                     *remarks,
+                    *loop_remarks(study),
                     *bearing_remarks(path),
                     *load_remarks(legs, study.robot, study.simulation.fidelity),
                     *screw_remarks(study.robot, screws),
