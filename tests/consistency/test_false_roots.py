@@ -17,7 +17,7 @@ from flexapod.rigid.screws import screws
 from flexapod.solve.fallen import fallen, refuse_fallen
 from flexapod.solve.many import RestStates
 from flexapod.solve.rigid_motion import rigid_state
-from flexapod.solve.robot_march import _check, prepare
+from flexapod.solve.robot_march import _Range, prepare
 from flexapod.solve.robot_system import robot_system
 
 SPIN, GAMMA3 = COORDINATES.index("spin"), COORDINATES.index("gamma3")
@@ -61,7 +61,7 @@ def test_a_march_stops_there(turned):
     ):
         recorded = SimpleNamespace(time=np.array([0.5]), q=state.q[None], pose=state.pose[None])
         with pytest.raises(ComputationError, match=message) if message else nullcontext():
-            _check(study, system, recorded)
+            _Range(study, system)(recorded)
 
 
 def test_it_is_not_an_equilibrium(turned):

@@ -1,6 +1,7 @@
 """What kernels read and in which order: coordinates and parameters of a leg and of the payload. No casadi here."""
 
 from dataclasses import dataclass
+from functools import cached_property
 from typing import Literal
 
 from flexapod.bases import AxialBasis, LateralBasis, lateral_basis
@@ -238,7 +239,7 @@ class Shapes:
     guide: LateralBasis | None = None
     cylinder: LateralBasis | None = None
 
-    @property
+    @cached_property
     def layout(self) -> tuple[tuple[str, int], ...]:
         """Coordinates q of the leg (name, size); a planar leg has no alpha and no direction b."""
         angles = ("beta",) if self.planar else ("alpha", "beta")
@@ -268,7 +269,7 @@ class Shapes:
         bend = () if self.cylinder is None else (("k", self.cylinder.count),)
         return tuple((f"{name}{way}", size) for name, size in (*guide, *bend) for way in "ab")
 
-    @property
+    @cached_property
     def size(self) -> int:
         """Number of coordinates of the leg."""
         return sum(size for _, size in self.layout)
@@ -294,7 +295,7 @@ class Shapes:
         """Whether the functions of a leg read the payload's pose; otherwise those of a ball on the payload do."""
         return self.closure == "pose" or self.platform_mount
 
-    @property
+    @cached_property
     def pivots(self) -> tuple[int, ...]:
         """Positions of the coordinates that the closure determines, one for each of its rows."""
         last = "spin" if self.pivot_spin else "gamma3"
@@ -337,11 +338,15 @@ class Shapes:
 
     def has(self, name: str) -> bool:
         """Whether the leg has a coordinate of this name."""
-        return name in dict(self.layout)
+        return name in self._first
 
     def index(self, name: str) -> int:
         """Position of a coordinate in q; of amplitudes that of the first."""
-        return columns(self.layout, name).start
+        return self._first[name]
+
+    @cached_property
+    def _first(self) -> dict[str, int]:
+        return {name: columns(self.layout, name).start for name, _ in self.layout}
 
 
 def _of_sections(shapes: Shapes) -> tuple[tuple[str, int], ...]:

@@ -43,6 +43,7 @@ def once(compute: Callable[[Robot], T]) -> Callable[[Robot], T]:
     return wraps(compute)(recalled)
 
 
+@once
 def home_pose(robot: Robot) -> Poses:
     """Home pose, at rest: one sample."""
     return Poses.at_rest(robot.home_position, robot.home_rotation)
@@ -140,6 +141,14 @@ def poses(robot: Robot, motion: Motion, t: ArrayLike) -> Poses:
         free = motions.commanded(legs, motion, _mobility(robot))
         return _following(robot, free, trajectory.coordinates(motion, t), motion.pivot, t)
     return trajectory.sample(home_pose(robot), motion, t)
+
+
+def places(robot: Robot, motion: Motion, t: ArrayLike) -> tuple[Array, Array]:
+    """Position (T, 3) and rotation (T, 3, 3) of `poses` alone."""
+    if rigid_limbs(robot).guides:
+        path = poses(robot, motion, t)
+        return path.position, path.rotation
+    return trajectory.places(home_pose(robot), trajectory.coordinates(motion, trajectory.instants(t)), motion.pivot)
 
 
 def poses_from_home(robot: Robot, values: Array, named: Mask | None = None) -> Poses:

@@ -179,20 +179,26 @@ def poses_from_coordinates(home: Poses, law: Law, pivot: ArrayLike = (0.0, 0.0, 
     -------
     Poses
     """
-    rotation = rotation_matrix(law.position[:, 3:]) @ home.rotation[0]
-    omega, alpha = angular_motion(Law(*(part[:, 3:] for part in law)))
     pivot = np.asarray(pivot, dtype=float)
+    position, rotation = places(home, law, pivot)
+    omega, alpha = angular_motion(Law(*(part[:, 3:] for part in law)))
     arm = rotation @ pivot
     spin = np.stack(cross(omega.T, arm.T), axis=-1)
     bend = np.stack(cross(alpha.T, arm.T), axis=-1) + np.stack(cross(omega.T, spin.T), axis=-1)
     return Poses(
-        position=home.position[0] + home.rotation[0] @ pivot + law.position[:, :3] - arm,
+        position=position,
         rotation=rotation,
         velocity=law.rate[:, :3] - spin,
         omega=omega,
         acceleration=law.acceleration[:, :3] - bend,
         alpha=alpha,
     )
+
+
+def places(home: Poses, law: Law, pivot: Array) -> tuple[Array, Array]:
+    """Position (T, 3) and rotation (T, 3, 3) of `poses_from_coordinates` alone."""
+    rotation = rotation_matrix(law.position[:, 3:]) @ home.rotation[0]
+    return home.position[0] + home.rotation[0] @ pivot + law.position[:, :3] - rotation @ pivot, rotation
 
 
 def _waypoints(motion: WaypointMotion, t: Array) -> Law:

@@ -108,7 +108,7 @@ def advance(
     library = compiled(system)
     table, wrench = (np.ascontiguousarray(x) for x in tables)
     steps = len(table) - 1
-    new, rows = flow.copy(), np.zeros((steps // every, record_width(system)))
+    new, rows = flow.copy(), np.empty((steps // every, record_width(system)))
     call = Call(system, new, rows, method, h, every)
     state = call.state
     status = library.march(

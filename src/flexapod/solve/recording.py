@@ -1,5 +1,6 @@
 """What a time integration writes at its output instants, and what it costs."""
 
+import math
 from dataclasses import dataclass, fields, replace
 
 import numpy as np
@@ -55,29 +56,31 @@ class Recording:
 
 def _shapes(system: System) -> dict[str, tuple[int, ...]]:
     """Names and shapes of the parts of an output row, in their order."""
-    legs, N = system.legs, (system.size,)
-    forces = {"lam": (legs, system.rows), "drive": (legs, system.ports.size)}
-    sizes = {"pose": 7, "reaction": 6, "energy": 3, "sums": 4, "closure": 1}
-    last = {"friction": (legs, system.kernel.shapes.bristles)}
+    legs, every = system.legs, (system.size,)
     return {
         "q": (legs, system.n),
-        "v": N,
-        "v_dot": N,
-        **forces,
-        **{name: (size,) for name, size in sizes.items()},
-        **last,
+        "v": every,
+        "v_dot": every,
+        "lam": (legs, system.rows),
+        "drive": (legs, system.ports.size),
+        "pose": (7,),
+        "reaction": (6,),
+        "energy": (3,),
+        "sums": (4,),
+        "closure": (),
+        "friction": (legs, system.kernel.shapes.bristles),
     }
 
 
 def record_width(system: System) -> int:
     """Numbers in one output row."""
-    return sum(int(np.prod(shape)) for shape in _shapes(system).values())
+    return sum(map(math.prod, _shapes(system).values()))
 
 
 def unpack(system: System, time: Array, rows: Array) -> Recording:
     """Name the columns of output rows (T, record_width)."""
-    shapes = _shapes(system)
-    ends = np.cumsum([int(np.prod(shape)) for shape in shapes.values()])
-    parts = np.split(rows, ends[:-1], axis=1)
-    named = {name: part.reshape(len(rows), *shape) for (name, shape), part in zip(shapes.items(), parts, strict=True)}
-    return Recording(time=time, **named | {"closure": named["closure"][:, 0]})
+    parts, end = {}, 0
+    for name, shape in _shapes(system).items():
+        begin, end = end, end + math.prod(shape)
+        parts[name] = rows[:, begin:end].reshape(len(rows), *shape)
+    return Recording(time=time, **parts)

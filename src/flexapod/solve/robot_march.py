@@ -97,7 +97,7 @@ def prepare(study: Study, state: State | None = None) -> RobotMarch:
         knots=path.knots,
         restart=lambda flow, t, h: after_impact(system, flow, law, t, method, h),
         stops=Stops.of(rigid.robot_breaks(study, far), output_step, simulation.step, outputs),
-        check=lambda recording: _check(study, system, recording),
+        check=_Range(study, system),
         tolerance=simulation.tolerance,
     )
     step = initial_step(problem, simulation.step)
@@ -214,15 +214,14 @@ class _Path:
             return place, rotation
         at = np.minimum(np.searchsorted(self.time, t - SAME), max(len(self.time) - 1, 0))
         if self.last is None or np.abs(self.time[at] - t).max() > 2 * SAME:
-            path, at = rigid.poses(self.robot, self.motion, t), np.arange(len(t))
-        else:
-            path = self.last
-        rotation = path.rotation[at]
-        return path.position[at] + rotation @ self.robot.com, rotation
+            place, rotation = self._centre(t)
+            return place, rotation
+        rotation = self.last.rotation[at]
+        return self.last.position[at] + rotation @ self.robot.com, rotation
 
     def _centre(self, t: Array) -> list[Array]:
-        path = rigid.poses(self.robot, self.motion, t)
-        return [path.position + path.rotation @ self.robot.com, path.rotation]
+        place, rotation = rigid.places(self.robot, self.motion, t)
+        return [place + rotation @ self.robot.com, rotation]
 
 
 class _Measure:
@@ -265,23 +264,33 @@ def after_impact(system: System, flow: Flow, law: Law, now: float, method: Gener
     return replace(start, sums=flow.sums + np.array([0.0, impact, 0.0, 0.0]))
 
 
-def _check(study: Study, system: System, recording: Recording) -> None:
+class _Range:
     """Stop where the model has no meaning: a piston inside or out of its cylinder, a universal joint turned over."""
-    mouth = np.array([leg.cylinder.mouth for leg in study.robot.legs])
-    guided = np.array([leg.piston.length if leg.cylinder.mouth > 0 else np.inf for leg in study.robot.legs])
-    shapes, q = system.kernel.shapes, recording.q
-    free = q[:, :, shapes.l_index] - mouth
-    tilt = q[:, :, shapes.index("gamma2")] if shapes.has("gamma2") else np.zeros_like(free)
-    turned = flipped(system, study.robot, q, recording.pose)
-    for bad, words in (
-        (free <= 0, "its piston has slid wholly into the cylinder"),
-        (free > guided * (1 + 1e-9), "its piston has been pulled out of the cylinder"),
-        (np.abs(q[:, :, shapes.index("beta")]) > BETA_LIMIT, "its universal joint has turned over"),
-        ((np.abs(tilt) > BETA_LIMIT) | turned, "its joint at the platform has turned over"),
-    ):
-        if bad.any():
-            at, leg = np.argwhere(bad)[0]
-            raise ComputationError(
-                f"leg {leg + 1} left the range of the model at t = {recording.time[at]:.6g} s: {words}",
-                next_step="Check drive forces and feedback of this leg, or the start.",
-            )
+
+    def __init__(self, study: Study, system: System) -> None:
+        legs, shapes = study.robot.legs, system.kernel.shapes
+        self.system, self.robot = system, study.robot
+        self.mouth = np.array([leg.cylinder.mouth for leg in legs])
+        self.guided = np.array([leg.piston.length if leg.cylinder.mouth > 0 else np.inf for leg in legs]) * (1 + 1e-9)
+        self.l, self.beta = shapes.l_index, shapes.index("beta")
+        self.tilt = shapes.index("gamma2") if shapes.has("gamma2") else None
+
+    def __call__(self, recording: Recording) -> None:
+        """Raise ComputationError at the first instant of a recording at which it has none."""
+        q = recording.q
+        free = q[:, :, self.l] - self.mouth
+        found = [
+            (free <= 0, "its piston has slid wholly into the cylinder"),
+            (free > self.guided, "its piston has been pulled out of the cylinder"),
+            (np.abs(q[:, :, self.beta]) > BETA_LIMIT, "its universal joint has turned over"),
+        ]
+        if self.tilt is not None:
+            turned = flipped(self.system, self.robot, q, recording.pose) | (np.abs(q[:, :, self.tilt]) > BETA_LIMIT)
+            found.append((turned, "its joint at the platform has turned over"))
+        for bad, words in found:
+            if bad.any():
+                at, leg = np.argwhere(bad)[0]
+                raise ComputationError(
+                    f"leg {leg + 1} left the range of the model at t = {recording.time[at]:.6g} s: {words}",
+                    next_step="Check drive forces and feedback of this leg, or the start.",
+                )

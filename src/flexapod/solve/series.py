@@ -15,7 +15,7 @@ from flexapod.typing import Array
 __all__ = ["Series"]
 
 TERMS = 20  # of a series
-AHEAD = 4  # pieces that are made at once
+AHEAD = 8  # pieces that are made at once
 #: Last coefficients over the largest value of their kind: those that are left out go on falling.
 ENOUGH = 1e-13
 SMALL = 1e-3  # the least value of a kind that is worth its digits, in SI units
@@ -55,7 +55,7 @@ class Series:
         return np.array([found[0][0], *(end for _, end, _ in found)]), np.array([x for _, _, x in found])
 
     def _make(self) -> None:
-        """The next pieces; those that would be too rough are halved instead, and what comes after them waits."""
+        """The next pieces; those that would be too rough are quartered instead, and what comes after them waits."""
         spans = [self._todo.popleft() for _ in range(min(AHEAD, len(self._todo)))]
         first, last = np.array(spans).T
         times = first[:, None] + (last - first)[:, None] * (_NODES + 1) / 2
@@ -68,11 +68,12 @@ class Series:
         rough = (np.abs(series[:, -3:]) > ENOUGH * scale).any(axis=(1, 2)) & (last - first > self._finest)
         smooth = len(spans) if not rough.any() else int(np.argmax(rough))
         self._pieces.extend((*spans[k], series[k]) for k in range(smooth))
-        waiting = [half for k in range(smooth, len(spans)) for half in _halves(*spans[k], rough[k])]
+        waiting = [part for k in range(smooth, len(spans)) for part in _parts(*spans[k], rough[k])]
         self._todo.extendleft(reversed(waiting))
 
 
-def _halves(first: float, last: float, rough: bool) -> list[tuple[float, float]]:
-    """A span, or its halves."""
+def _parts(first: float, last: float, rough: bool) -> list[tuple[float, float]]:
+    """A span, or its quarters."""
     middle = (first + last) / 2
-    return [(first, middle), (middle, last)] if rough else [(first, last)]
+    edges = [first, (first + middle) / 2, middle, (middle + last) / 2, last] if rough else [first, last]
+    return list(itertools.pairwise(edges))

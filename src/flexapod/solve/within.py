@@ -98,7 +98,7 @@ class Within:
 
         `outputs`: first instant, distance and number of the records on the way.
         """
-        new, rows = flow.copy(), np.zeros((outputs[2], record_width(self.system)))
+        new, rows = flow.copy(), np.empty((outputs[2], record_width(self.system)))
         call = Call(self.system, new, rows, GeneralizedAlpha(1.0), 1.0, 1)
         edges, series = (np.ascontiguousarray(x) for x in self.series.between(float(self._memory[TIME]), stops[-1]))
         leg, hub = (np.ascontiguousarray(x) for x in weights)
