@@ -321,6 +321,7 @@ class TestFiles:
     @pytest.mark.parametrize(("text", "key", "words"), [
         ('command = "position"\nmotor = { bandwidth = "300 Hz" }', "leg.drive.motor.bandwidth", "held"),
         ('command = "torque"\nencoder = { at = "stroke" }', "leg.drive.encoder.at", "no loop"),
+        ('command = "torque"\nencoder = { rate = "rotor" }', "leg.drive.encoder.rate", "no loop"),
         ('encoder = { at = "stroke", rate = "rotor" }', "leg.drive.encoder.rate", "held"),
         ('command = "servo"\nloop = { stiffness = 500, damping = 6 }\nmotor = { bandwidth = 0 }',
          "leg.drive.motor.bandwidth", "above 0"),

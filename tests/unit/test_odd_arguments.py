@@ -84,6 +84,14 @@ def test_keys_without_effect_are_told():
     start = text.index('diameter = "27 mm"')
     given = text[:start] + stiff + text[text.index("}", start) + 1 :]
     assert any("yield_stress has no effect" in warning for warning in model.loads(given).warnings)
+    for preset in ("paper-robot", "paper-actuator"):
+        study = fx.preset(preset)
+        odd = study.replace(simulation=study.simulation.replace(rho_inf=0.8))
+        assert [line for line in odd.warnings if line not in study.warnings] == [
+            "simulation.rho_inf = 0.8 is of fixed steps (simulation.step): within a tolerance compiled runs do not use it"
+        ]
+        fixed = odd.simulation.replace(step=1e-3, tolerance=None)
+        assert odd.replace(simulation=fixed).warnings == study.warnings
 
 
 def test_an_integer_beyond_all_floats_is_not_finite():

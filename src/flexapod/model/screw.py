@@ -171,13 +171,16 @@ class ScrewDrive(Frozen):
             )
         if self.command == "servo" and (self.loop is None or not self.loop.stiffness > 0):
             raise InputError("is missing", key="loop", next_step="Add loop = { stiffness, damping }, N m/rad")
-        if self.command == "torque" and self.encoder.at != "rotor" and not any(self.loop_spring):
-            raise InputError(
-                "measures what no loop asks for",
-                key="encoder.at",
-                value=self.encoder.at,
-                allowed="rotor; or a loop beside the torque",
-            )
+        for key, given in (("encoder.at", self.encoder.at), ("encoder.rate", self.encoder.rate)):
+            usual = Encoder.model_fields[key.split(".")[1]].default
+            if self.command == "torque" and given != usual and not any(self.loop_spring):
+                raise InputError(
+                    "measures what no loop asks for",
+                    key=key,
+                    value=given,
+                    allowed=f"{usual}; or a loop beside the torque",
+                    next_step="Add loop = { stiffness, damping }, N m/rad, or leave the key out",
+                )
         for key, given in (("motor.bandwidth", self.motor.bandwidth), ("encoder.rate", self.encoder.rate == "rotor")):
             if self.command == "position" and given:
                 raise InputError(

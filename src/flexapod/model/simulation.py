@@ -129,6 +129,16 @@ class Simulation(Frozen):
             )
 
     @property
+    def unused(self) -> tuple[str, ...]:
+        """What of these settings has no effect, in words."""
+        if self.tolerance is None or self.rho_inf == type(self).model_fields["rho_inf"].default:
+            return ()
+        return (
+            f"simulation.rho_inf = {self.rho_inf:g} is of fixed steps (simulation.step): within a tolerance compiled "
+            "runs do not use it",
+        )
+
+    @property
     def lateral_basis(self) -> str:
         """Name of the lateral basis that the fidelity uses."""
         return OWN_BASIS.get(self.fidelity, self.basis)

@@ -163,7 +163,7 @@ class Study(_Documented):
     @property
     def warnings(self) -> tuple[str, ...]:
         """What is legal but doubtful, in words."""
-        return (*robot_remarks(self.robot), *self.notes)
+        return (*robot_remarks(self.robot), *self.simulation.unused, *self.notes)
 
 
 class ActuatorStudy(_Documented):
@@ -249,7 +249,7 @@ class ActuatorStudy(_Documented):
     def warnings(self) -> tuple[str, ...]:
         """What is legal but doubtful, in words."""
         basis = self.simulation.lateral_basis if self.simulation.lateral_shapes else None
-        return (*actuator_remarks(self.actuator, basis), *self._ignored, *self.notes)
+        return (*actuator_remarks(self.actuator, basis), *self._ignored, *self.simulation.unused, *self.notes)
 
     @property
     def _ignored(self) -> tuple[str, ...]:
