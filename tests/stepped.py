@@ -11,7 +11,7 @@ from flexapod.mechanics.assembly import leg_functions
 from flexapod.mechanics.layout import Shapes, leg_parameters
 from flexapod.model import Cylinder, Leg, Piston, PistonSection
 from flexapod.solve.parameters import _inside, _leg
-from flexapod.solve.sections import section_parameters, steps_of
+from flexapod.solve.sections import section_parameters
 from flexapod.symbolic.functions import Interpreted
 
 STEEL = {"E": 200e9, "density": 7800.0}
@@ -62,6 +62,11 @@ def squared_frequencies(leg, free, modes=6, thrust=0.0, **others):
     M, _, K, J = function(shapes, 1)(*inputs)
     N = null_space(np.vstack([unit[2], J]))
     return eigh(N.T @ K @ N, N.T @ M @ N, eigvals_only=True)
+
+
+def steps_of(leg):
+    """Uniform pieces of a piston from the tip to the driven end."""
+    return leg.piston.steps_or_one[::-1]
 
 
 def outside(leg, free):

@@ -3,10 +3,20 @@
 import numpy as np
 import pytest
 from scipy.linalg import expm
-from tests.stepped import function, leg_of, outside, root_near, section, shapes_of, squared_frequencies, vector
+from tests.stepped import (
+    function,
+    leg_of,
+    outside,
+    root_near,
+    section,
+    shapes_of,
+    squared_frequencies,
+    steps_of,
+    vector,
+)
 
 from flexapod.elements.steps import held
-from flexapod.solve.sections import numeric_pieces, steps_of, turning
+from flexapod.solve.sections import numeric_pieces, turning
 from flexapod.study.before.estimates import bending_errors, piston_section
 
 

@@ -8,7 +8,7 @@ from numpy.typing import NDArray
 
 from flexapod.typing import Array
 
-__all__ = ["Groups", "Pieces"]
+__all__ = ["ENOUGH", "NODES", "Groups", "Pieces", "instants", "series_of"]
 
 #: Of instants (T,): arrays (T, ...), each of numbers with a common scale.
 Groups = Callable[[Array], Sequence[Array]]
@@ -19,6 +19,16 @@ NODES = 20  # of a polynomial
 ENOUGH = 1e-13
 _NODES = -np.cos(np.pi * (np.arange(NODES) + 0.5) / NODES)
 _TO_SERIES = np.linalg.inv(chebvander(_NODES, NODES - 1))
+
+
+def instants(first: Array, last: Array) -> Array:
+    """Instants (pieces, NODES) at which pieces from `first` to `last` (pieces,) are computed."""
+    return first[:, None] + (last - first)[:, None] * (_NODES + 1) / 2
+
+
+def series_of(values: Array, pieces: int) -> Array:
+    """Coefficients (pieces, NODES, n) of values (pieces * NODES, ...) at their `instants`."""
+    return _TO_SERIES @ values.reshape(pieces, NODES, int(np.prod(values.shape[1:])))
 
 
 class Pieces:
@@ -52,14 +62,13 @@ class Pieces:
     def _make(self, missing: list[int]) -> None:
         """Series of pieces; those that would be too rough are halved instead."""
         first, last = self._edges[missing], self._edges[[k + 1 for k in missing]]
-        t = first[:, None] + (last - first)[:, None] * (_NODES + 1) / 2
-        found = self._compute(t.ravel())
+        found = self._compute(instants(first, last).ravel())
         self._shapes = [x.shape[1:] for x in found]
         self._scales = [
             max(known, float(np.abs(x).max(initial=0.0)))
             for known, x in zip(self._scales or [0.0] * len(found), found, strict=True)
         ]
-        series = [_TO_SERIES @ x.reshape(len(missing), NODES, int(np.prod(x.shape[1:]))) for x in found]
+        series = [series_of(x, len(missing)) for x in found]
         rough = np.zeros(len(missing), dtype=bool)
         for scale, x in zip(self._scales, series, strict=True):
             rough |= ~(np.abs(x[:, -3:]).max(axis=(1, 2), initial=0.0) <= ENOUGH * scale)

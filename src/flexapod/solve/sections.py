@@ -44,11 +44,6 @@ class Laws:
         return [values[0, 0] / law(values[section].tolist(), free * (y - start)) for y in x]
 
 
-def steps_of(leg: Leg) -> tuple[Step, ...]:
-    """Uniform pieces of a piston from the tip to the driven end."""
-    return leg.piston.steps_or_one[::-1]
-
-
 def laws_of(leg: Leg, sections: int = 0, *, inwards: bool = False) -> Laws:
     """Sections of a leg, with sections without length before them where there are to be more.
 

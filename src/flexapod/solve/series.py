@@ -5,8 +5,8 @@ from collections import deque
 from collections.abc import Sequence
 
 import numpy as np
-from numpy.polynomial.chebyshev import chebvander
 
+from flexapod.solve.pieces import ENOUGH, instants, series_of
 from flexapod.solve.stops import NEAR
 from flexapod.solve.system import COLUMNS
 from flexapod.solve.tables import Law
@@ -14,13 +14,8 @@ from flexapod.typing import Array
 
 __all__ = ["Series"]
 
-TERMS = 20  # of a series
 AHEAD = 8  # pieces that are made at once
-#: Last coefficients over the largest value of their kind: those that are left out go on falling.
-ENOUGH = 1e-13
 SMALL = 1e-3  # the least value of a kind that is worth its digits, in SI units
-_NODES = -np.cos(np.pi * (np.arange(TERMS) + 0.5) / TERMS)
-_TO_SERIES = np.linalg.inv(chebvander(_NODES, TERMS - 1))
 
 
 class Series:
@@ -42,7 +37,7 @@ class Series:
         self._pieces: deque[tuple[float, float, Array]] = deque()
 
     def between(self, first: float, last: float) -> tuple[Array, Array]:
-        """Edges (n + 1,) and series (n, TERMS, width) of the pieces that cover an interval; none before it again.
+        """Edges (n + 1,) and series (n, NODES, width) of the pieces that cover an interval; none before it again.
 
         An end of the interval within `NEAR` of an edge is that edge: beyond it nothing is taken.
         """
@@ -58,13 +53,13 @@ class Series:
         """The next pieces; those that would be too rough are quartered instead, and what comes after them waits."""
         spans = [self._todo.popleft() for _ in range(min(AHEAD, len(self._todo)))]
         first, last = np.array(spans).T
-        times = first[:, None] + (last - first)[:, None] * (_NODES + 1) / 2
+        times = instants(first, last)
         table, load = self._law(times.ravel())
         values = np.concatenate([table.reshape(times.size, -1), load], axis=1)
         kinds = np.concatenate([np.tile(np.arange(COLUMNS), table[0].size // COLUMNS), np.full(load.shape[1], COLUMNS)])
         most = np.abs(values).max(axis=0, initial=0.0)
         scale = np.array([most[kinds == kind].max(initial=SMALL) for kind in range(COLUMNS + 1)])[kinds]
-        series = _TO_SERIES @ values.reshape(len(spans), TERMS, -1)
+        series = series_of(values, len(spans))
         rough = (np.abs(series[:, -3:]) > ENOUGH * scale).any(axis=(1, 2)) & (last - first > self._finest)
         smooth = len(spans) if not rough.any() else int(np.argmax(rough))
         self._pieces.extend((*spans[k], series[k]) for k in range(smooth))

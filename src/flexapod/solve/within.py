@@ -7,8 +7,9 @@ import numpy as np
 
 from flexapod.integration import GeneralizedAlpha
 from flexapod.solve.native import Call, address, compiled
+from flexapod.solve.pieces import NODES
 from flexapod.solve.recording import Counters, record_width
-from flexapod.solve.series import TERMS, Series
+from flexapod.solve.series import Series
 from flexapod.solve.system import Flow, System
 from flexapod.typing import Array
 
@@ -104,7 +105,7 @@ class Within:
         leg, hub = (np.ascontiguousarray(x) for x in weights)
         control = _Control(
             self.horizon, self.tolerance, address(leg), address(hub), LONGEST, SHORTEST,
-            UNSOLVED, *outputs, len(series), TERMS, MOST * max(outputs[2], 1), len(stops),
+            UNSOLVED, *outputs, len(series), NODES, MOST * max(outputs[2], 1), len(stops),
             address(edges), address(series), address(stops),
         )  # fmt: skip
         before = self._memory[REJECTED]

@@ -157,11 +157,6 @@ _ROOTS = {
 """Smallest root k s by what is clamped, base and platform; of the mouth's distance over the free length."""
 
 
-def bending_moment(path: RigidPath) -> Array:
-    """Largest bending moment in the free part of each piston on the rigid path, (T, legs) [N m]."""
-    return bending_moments(path).max(axis=0)
-
-
 def bending_moments(path: RigidPath) -> Array:
     """Bending moments at `STATIONS` of the free part of each piston on the rigid path, (stations, T, legs) [N m].
 
