@@ -24,7 +24,7 @@ _FORM = '"surge=-100..100mm:41"'
 X = Annotated[str | None, typer.Option("--x", metavar=_FORM, help="First axis; without range: as far as is reached.")]
 Y = Annotated[
     str | None,
-    typer.Option("--y", metavar="AXIS", help="Second axis; default: surge and heave, or what can be."),
+    typer.Option("--y", metavar="AXIS", help="Second axis; of neither: surge and heave, or what the robot can do."),
 ]
 Z = Annotated[str | None, typer.Option("--z", metavar="AXIS", help="Third axis of a volume: one panel per value.")]
 At = Annotated[

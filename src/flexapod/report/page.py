@@ -34,7 +34,7 @@ SOLVER = {
     "compiled": "Compiled equations",
     "tolerance": "Tolerance of the step control",
     "estimated_error": "Largest estimated error",
-    "step": "Smallest step, with a tolerance the mean of some outputs [s]",
+    "step": "Smallest step (with a tolerance: least mean over some outputs) [s]",
     "output_step": "Output step [s]",
     "steps": "Steps",
     "newton_iterations": "Newton iterations",
