@@ -84,6 +84,16 @@ def test_keys_without_effect_are_told():
     start = text.index('diameter = "27 mm"')
     given = text[:start] + stiff + text[text.index("}", start) + 1 :]
     assert any("yield_stress has no effect" in warning for warning in model.loads(given).warnings)
+    whole = text[start:].split("}")[0]
+    one = '{ length = "375 mm", diameter = "27 mm", E = "200 GPa", density = 7800'
+    for limits, said in (
+        (("", ""), False),
+        ((", yield_stress = 4e8", ""), True),
+        ((", yield_stress = 4e8",) * 2, False),
+    ):
+        sections = ", ".join(f"{one}{limit} }}" for limit in limits)
+        warnings = model.loads(text.replace(whole, f"sections = [{sections}] ")).warnings
+        assert any("yield_stress of some sections has no effect: sections without: 2" in x for x in warnings) == said
     for preset in ("paper-robot", "paper-actuator"):
         study = fx.preset(preset)
         odd = study.replace(simulation=study.simulation.replace(rho_inf=0.8))

@@ -11,6 +11,7 @@ import flexapod as fx
 from flexapod.errors import InputError
 from flexapod.study import netcdf, open_results, save, store
 from flexapod.study.before import room
+from flexapod.study.before.describe.robot import describe
 
 resource = pytest.importorskip("resource")
 
@@ -140,7 +141,20 @@ def test_results_beyond_the_memory_are_refused_before_they_are_computed(monkeypa
 def test_results_of_gigabytes_are_remarked_on(monkeypatch):
     monkeypatch.setattr(room, "available_memory", lambda: 1e12)
     study = fx.model.override(fx.preset("paper-robot"), **LONG)
-    assert room.check_memory(study) == ["the results take 4.67 GB, and 3 times as much while they are made"]
+    takes = "take 4.67 GB, and 3 times as much while they are made"
+    assert room.check_memory(study) == [
+        f"the results are of 2e+06 instants: they {takes}, and most of the time goes into them; "
+        "output_step = 0.4 (s) keeps some 5000"
+    ]
+
+
+@pytest.mark.parametrize("preset", ["paper-robot", "paper-actuator"])
+def test_very_many_instants_are_remarked_on(preset):
+    fine = fx.model.override(fx.preset(preset), duration=0.004, output_step=3e-8)
+    (said,) = room.check_memory(fine)
+    assert "1.33e+05 instants" in said and "output_step = 8e-07" in said
+    assert room.check_memory(fx.model.override(fine, output_step=8e-7)) == []
+    assert said in describe(fine).remarks
 
 
 def test_a_control_group_gives_back_what_files_left_in_memory(monkeypatch, tmp_path):

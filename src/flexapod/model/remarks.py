@@ -56,6 +56,9 @@ def _leg_remarks(leg: Leg) -> list[str]:
     known = piston.sections or (piston.depth is not None and piston.E is not None)
     if piston.yield_stress is not None and not known:
         remarks.append("yield_stress has no effect: stress needs the piston's diameter and material, not EI and EA")
+    unknown = [str(j) for j, section in enumerate(piston.sections, start=1) if section.yield_stress is None]
+    if 0 < len(unknown) < len(piston.sections):
+        remarks.append(f"yield_stress of some sections has no effect: sections without: {', '.join(unknown)}")
     oil = leg.cylinder_of_oil
     if oil is not None and piston.diameter is not None and abs(oil.rod - piston.diameter) > 1e-9:
         remarks.append(

@@ -48,6 +48,8 @@ def check_outputs(study: Study | ActuatorStudy) -> list[str]:
 
 
 REMARKED = 1e9  # byte of results from which on their size is worth a remark
+MANY = 100_000  # instants from which on it is worth one how many they are: some seconds to compute, a minute to write
+FEW = 5000  # instants that show what there is to see
 SMALL = 1e8  # byte that every machine has free: below it nothing is asked
 PEAK = 3  # times the results is what they take while they are made: the record, the Dataset, what is written
 CSV = 3  # times the results is what NetCDF and CSV take together: a number in letters is twice its 8 bytes
@@ -98,7 +100,11 @@ def check_memory(study: Study | ActuatorStudy, runs: int = 1) -> list[str]:
     if needed > SMALL and needed > (free := available_memory()):
         at_once = f", {runs} of them at a time" if runs > 1 else ""
         raise _too_much(study, f"{gigabytes(needed)} of memory{at_once}", "is free", free, needed)
-    return [f"the results take {gigabytes(size)}, and {PEAK} times as much while they are made"] * (size > REMARKED)
+    count, takes = stored_instants(study), f"take {gigabytes(size)}, and {PEAK} times as much while they are made"
+    if count > MANY:
+        step = f"output_step = {study.duration / FEW:.1g} (s) keeps some {FEW}"
+        return [f"the results are of {count:.3g} instants: they {takes}, and most of the time goes into them; {step}"]
+    return [f"the results {takes}"] * (size > REMARKED)
 
 
 def check_disk(study: Study | ActuatorStudy, folder: Path) -> None:
