@@ -237,18 +237,15 @@ def _fast(rows: list[list[str]]) -> Section:
 
 
 def _equal(rows: list[list[str]], apart: list[str]) -> Section:
-    return Section(
-        title="SciPy on the same equations at equal error",
-        command=COMMAND,
-        header=["study", "error", "flexapod", "SciPy's Radau (times)", "SciPy's best (times)", "goal"],
-        rows=rows,
-        remarks=[
-            f"Medians of {REPEATS} interleaved runs in the same run as the table above; what takes longer than "
-            f"{LONG:g} s once. Between the errors that settings reach, straight lines in the logarithms, for both.",
-            "SciPy gets our equations in independent coordinates (no drift), right-hand sides and Jacobians by "
-            "differences compiled to C, absolute tolerances in the units of the deviation, the first step, and "
-            "longest steps that do not pass over the motion. Its tolerance is that of a step; errors are a run's.",
-            "It stores states at the instants at which flexapod stores these, forces, accelerations and energies.",
-            f"Converged: flexapod at {CONVERGED:g}. SciPy differs from it by {'; '.join(apart)}.",
-        ],
-    )
+    header = ["study", "error", "flexapod", "SciPy's Radau (times)", "SciPy's best (times)", "goal"]
+    remarks = [
+        f"Medians of {REPEATS} interleaved runs in the same run as the table above; what takes longer than {LONG:g} s "
+        "once. Between the errors that settings reach, straight lines in the logarithms, for both.",
+        "SciPy gets our equations in independent coordinates (no drift), right-hand sides and Jacobians by differences "
+        "compiled to C, absolute tolerances in the units of the deviation, the first step, and longest steps that do "
+        "not pass over the motion. Its tolerance is that of a step; errors are a run's.",
+        "It stores states at the instants at which flexapod stores these, forces, accelerations and energies.",
+        f"Converged: flexapod at {CONVERGED:g}. SciPy differs from it by {'; '.join(apart)}.",
+    ]
+    title = "SciPy on the same equations at equal error"
+    return Section(title=title, command=COMMAND, header=header, rows=rows, remarks=remarks)

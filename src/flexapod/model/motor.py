@@ -97,7 +97,7 @@ class Encoder(Frozen):
 
 
 class Loop(Feedback):
-    """A loop about the angle of the screw, that also sums its error: gain of the `integral` [N m/(rad s)]."""
+    """A loop about what the encoder measures, that also sums its error: gain of the `integral` [N m/(rad s)]."""
 
     integral: Annotated[NonNegative, Measure("integral gain")] = 0.0
 

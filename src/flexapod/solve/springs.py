@@ -140,7 +140,7 @@ def _of_oil(drive: HydraulicDrive, begin: float) -> Spring:
 
 
 def oil_shares(springs: Iterable[Spring], length: float) -> tuple[float, ...]:
-    """What `layout.OIL_PARAMETERS` are of springs in series at a length of the leg [m]; 0 without oil."""
+    """What `drive_layout.OIL_PARAMETERS` are of springs in series at a length of the leg [m]; 0 without oil."""
     at, springs = np.array(length), list(springs)
     oil = next((spring for spring in springs if spring.columns), None)
     if oil is None:
