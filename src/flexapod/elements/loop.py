@@ -10,8 +10,8 @@ from flexapod.symbolic.vocabulary import SX
 class Loop:
     """Force of a motor on its rotor.
 
-    ``p``: `drive_layout.LOOP_PARAMETERS`; ``place`` and ``rate``: what is measured, ``q_cmd`` and ``v_cmd`` what it is to be,
-    ``turns``: rate of the rotor; ``summed``: force of the summed error, None without; ``j``: rate of the motor's
+    ``p``: `drive_layout.LOOP_PARAMETERS`; ``place`` and ``rate``: what is measured, ``q_cmd`` and ``v_cmd`` what it is
+    to be, ``turns``: rate of the rotor; ``summed``: force of the summed error, None without; ``j``: rate of the motor's
     impulse, the force that lags.
     """
 
