@@ -12,10 +12,25 @@ from flexapod import rigid
 from flexapod.app.cli import app
 from flexapod.errors import InputError
 from flexapod.exchange.decks_legs import legs_at_pose
-from flexapod.model import MATERIALS, AxialSpring, Bearing, Material, Nut, to_toml
+from flexapod.model import (
+    MATERIALS,
+    AxialSpring,
+    Bearing,
+    Geometry,
+    Heat,
+    Material,
+    Nut,
+    ScrewFriction,
+    to_toml,
+)
+from flexapod.model.heat import HEAT_PARTS
 from flexapod.model.material import Tube
+from flexapod.model.mount import Mount
 from flexapod.model.piston import Cylinder, Guide
+from flexapod.solve.parts import part_stiffness
 from flexapod.solve.springs import in_series, softening, springs_along
+from flexapod.study.after.causes import cause_names
+from flexapod.study.budgets.rows import names_of_rows
 
 UM = 1e6  # N/m
 STUDY = """
@@ -188,6 +203,17 @@ def test_refusals(pairs, key, words):
     error = refused(*pairs)
     assert error.key == key
     assert words in str(error)
+
+
+def test_a_spring_has_no_name_of_another_part_or_cause():
+    heat, mount = Heat(**dict.fromkeys(HEAT_PARTS, 22.0)), Mount(stiffness=np.eye(6) * 1e9)
+    drive = SCREW.replace(friction=ScrewFriction(torque=1.0))
+    robot = machine(drive=drive, base_joint=SOFT, platform_joint=SOFT).replace(base_mount=mount, platform_mount=mount)
+    robot = robot.replace(heat=heat, geometry=Geometry(leg_offset=1e-5, lead=1e-5))
+    names = {*cause_names(robot), *part_stiffness(robot, robot.home_lengths), *names_of_rows(study(robot))}
+    for name in (name for name in names if " " not in name):
+        with pytest.raises(InputError, match="is no name for a spring"):
+            AxialSpring(name=name, stiffness=1e8)
 
 
 @pytest.mark.parametrize("compute", [fx.simulate, fx.parts, fx.modes])

@@ -9,13 +9,16 @@ from pydantic import model_validator
 
 from flexapod.errors import InputError
 from flexapod.model.base import Frozen, Measure, NonNegative, Positive
+from flexapod.model.heat import HEAT_PARTS
 
 __all__ = ["RESERVED", "AxialSpring", "check_lossy"]
 
-#: Names of parts that have tables of their own.
+#: Names of other parts, and of other causes and rows of a budget.
 RESERVED = (
     "axial-strain", "bending", "drive", "base_joint", "platform_joint", "screw", "twist", "nut", "bearing", "oil",
-    "friction", "cylinder", "guide", "unkeyed",
+    "friction", "cylinder", "guide", "unkeyed", "piston", "base_mount", "platform_mount", "geometry", "base_joints",
+    "platform_joints", "leg_offset", "lead", "bent_legs", "encoder", "ripple",
+    *(f"heat_{part}" for part in HEAT_PARTS),
 )  # fmt: skip
 
 
