@@ -186,6 +186,12 @@ def test_the_parts_of_a_machine():
             "leg.base_joint.play",
             "at most 5 %",
         ),
+        (
+            [('rigidity = "1130 N/um", preload = "2 kN", dynamic_load = "30.8 kN"', "stiffness = 1e9, backlash = 1")],
+            "leg.drive.nut.backlash", "at most 5 %",
+        ),
+        ([("base_joint = {", "guide = { gland = 1e8, head = 1e8, clearance = 1 }\nbase_joint = {")],
+         "leg.guide.clearance", "at most 5 %"),
         ([('axial = "200 N/um"', "axial = 1e-300")], "leg.base_joint.stiffness.axial", "1e-09 to"),
         (
             [("loss = 0.01 }", 'loss = 0.01, damping = "1 N s/m" }')],

@@ -232,6 +232,8 @@ def check_leg(number: int, leg: Leg, length: float) -> None:
         ("base_joint.eccentricity", leg.base_joint.eccentricity),
         ("platform_joint.eccentricity", leg.platform_joint.eccentricity),
         ("piston.bow", leg.piston.bow),
+        ("guide.clearance", None if leg.guide is None else leg.guide.clearance),
+        ("drive.nut.backlash" if leg.screw is not None else "drive.backlash", leg.backlash * (leg.driven == "stroke")),
     )
     for key, value in small:
         if value is not None and value > MOST_ERROR * length:
