@@ -73,7 +73,7 @@ def outside(leg, free):
     """(length, step) of the pieces outside the cylinder, from mouth to tip; inertia of the rest about the joint."""
     found, start, tip, mouth = [], 0.0, leg.cylinder.mouth + free, leg.cylinder.mouth
     inertia = leg.cylinder.inertia + leg.cylinder.mass * leg.cylinder.com**2
-    for step in leg.piston.steps_or_one[::-1]:
+    for step in steps_of(leg):
         out = min(max(free - start, 0.0), step.length)
         if out > 0:
             found.append((out, step))

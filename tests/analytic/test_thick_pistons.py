@@ -31,7 +31,7 @@ def misfit(leg, free, omega):
     """Vanishes at frequencies of the leg with pinned ends, by transfer matrices of Timoshenko's beam."""
     pieces, inertia = outside(leg, free)
     mouth, out = leg.cylinder.mouth, {step: length for length, step in pieces}
-    inertia += sum(turning(step, 0) * (step.length - out.get(step, 0.0)) for step in leg.piston.steps_or_one)
+    inertia += sum(turning(step, 0) * (step.length - out.get(step, 0.0)) for step in steps_of(leg))
     ends = []
     for slope, force in ((1.0, 0.0), (0.0, 1.0)):
         ends.append([mouth * slope, slope, force * mouth - inertia * omega**2 * slope, force])

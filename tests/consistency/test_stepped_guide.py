@@ -3,7 +3,7 @@
 import numpy as np
 import pytest
 from scipy.linalg import eigh, expm, null_space
-from tests.stepped import function, leg_of, root_near, section, shapes_of, vector
+from tests.stepped import function, leg_of, root_near, section, shapes_of, steps_of, vector
 
 from flexapod.bases import lateral_basis
 from flexapod.model import Guide
@@ -47,7 +47,7 @@ def misfit(leg, omega=0.0, thrust=0.0):
     state[3] = -k_h * gap_head + thrust * np.array([0.0, 0.0, 1.0])
     at, cylinder = head, -k_h * head * gap_head
     cylinder = cylinder + np.array([-thrust, 0.0, thrust * head - omega**2 * J])
-    for step in leg.piston.steps_or_one:
+    for step in steps_of(leg)[::-1]:
         for low, high in ((at, min(at + step.length, MOUTH)), (max(at, MOUTH), at + step.length)):
             A = np.zeros((4, 4))
             A[0, 1], A[1, 2], A[2, 1], A[2, 3], A[3, 0] = 1, 1 / step.EI[0], -thrust, 1, step.rhoA * omega**2
