@@ -9,7 +9,7 @@ from flexapod import InputError
 from flexapod.exchange.decks import Deck, Tie, cross_matrix, solved
 from flexapod.exchange.decks_robot import point_masses
 from flexapod.exchange.export import abaqus_deck, left_out
-from flexapod.model import ConstantWrench, Cylinder, ForceDrive, Load, ServoDrive, Study, preset
+from flexapod.model import ConstantWrench, Cylinder, ForceDrive, Joint, Load, ServoDrive, Study, preset
 
 SHARED = {
     "HEADING", "NODE", "ELEMENT", "MASS", "MATERIAL", "ELASTIC", "DENSITY", "SOLID SECTION", "SPRING", "BOUNDARY",
@@ -176,6 +176,7 @@ def test_what_is_left_out_is_said(robot):
         ({}, {"modes": 0}, "modes"),
         ({}, {"pose": {"heave": 1.0}}, "pose"),
         ({"drive": ForceDrive()}, {}, "leg.drive"),
+        ({"base_joint": Joint(stiffness=np.diag([1e8, 2e8, 3e8, 0, 0, 0]))}, {}, "leg.base_joint.stiffness"),
         ({"cylinder": Cylinder(mass=0.0, com=0.0, inertia=0.1, mouth=0.3)}, {}, "leg.cylinder.inertia"),
     ],
 )
@@ -183,6 +184,10 @@ def test_refusals(robot, change, arguments, key):
     with pytest.raises(InputError) as caught:
         abaqus_deck(with_legs(robot, **change) if change else robot, **arguments)
     assert caught.value.key == key
+    study = preset("paper-robot").replace(robot=with_legs(robot, **change) if change else robot, path="mine.toml")
+    with pytest.raises(InputError) as caught:
+        abaqus_deck(study, **arguments)
+    assert caught.value.file == ("mine.toml" if key.startswith("leg") else None)
 
 
 def test_a_piston_that_does_not_reach_the_mouth_is_refused(robot):

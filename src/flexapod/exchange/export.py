@@ -65,6 +65,15 @@ def abaqus_deck(
         cylinder with inertia and no mass, numbers of elements or modes out of range.
     """
     study = at_pose(robot, load)
+    try:
+        return _written(study, pose, elements, modes, title)
+    except InputError as error:
+        if (error.key or "").startswith(("leg", "robot")):
+            raise error.located(file=study.path) from None
+        raise
+
+
+def _written(study: model.Study, pose: PoseLike, elements: int, modes: int, title: str) -> str:
     robot = study.robot
     _refuse_mounts(robot)
     path = as_pose(robot, pose)
