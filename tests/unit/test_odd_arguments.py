@@ -94,6 +94,10 @@ def test_keys_without_effect_are_told():
         sections = ", ".join(f"{one}{limit} }}" for limit in limits)
         warnings = model.loads(text.replace(whole, f"sections = [{sections}] ")).warnings
         assert any("yield_stress of some sections has no effect: sections without: 2" in x for x in warnings) == said
+    machine = preset_text("machine-hexapod")
+    given = machine.replace('length = "400 mm" ', 'length = "400 mm"\nyield_stress = "400 MPa" ')
+    told = [x for x in model.loads(given).warnings if x not in model.loads(machine).warnings]
+    assert told == ["all legs: drive.yield_stress has no effect: stress is looked at in pistons and struts"]
     for preset in ("paper-robot", "paper-actuator"):
         study = fx.preset(preset)
         odd = study.replace(simulation=study.simulation.replace(rho_inf=0.8))

@@ -8,6 +8,7 @@ from flexapod.model.actuator import Actuator
 from flexapod.model.drive import ServoDrive
 from flexapod.model.heat import Heat
 from flexapod.model.leg import Leg
+from flexapod.model.material import MATERIALS
 from flexapod.model.robot import Robot
 from flexapod.words import number, text
 
@@ -59,6 +60,11 @@ def _leg_remarks(leg: Leg) -> list[str]:
     unknown = [str(j) for j, section in enumerate(piston.sections, start=1) if section.yield_stress is None]
     if 0 < len(unknown) < len(piston.sections):
         remarks.append(f"yield_stress of some sections has no effect: sections without: {', '.join(unknown)}")
+    bodies = {"cylinder": cylinder.material, "drive": None if leg.screw is None else leg.screw.material}
+    for key, material in bodies.items():
+        usual = None if material is None else MATERIALS.get(material.name)
+        if material is not None and material.yield_stress != (usual and usual.yield_stress):
+            remarks.append(f"{key}.yield_stress has no effect: stress is looked at in pistons and struts")
     oil = leg.cylinder_of_oil
     if oil is not None and piston.diameter is not None and abs(oil.rod - piston.diameter) > 1e-9:
         remarks.append(
