@@ -6,6 +6,7 @@ from tests.runs import paper_robot
 import flexapod as fx
 from flexapod import model
 from flexapod.model import preset_text
+from flexapod.model.remarks import robot_remarks
 
 
 @pytest.mark.parametrize("load", ["x", [1, 2], [[1] * 6], [0, 0, float("nan"), 0, 0, 0]])
@@ -98,6 +99,11 @@ def test_keys_without_effect_are_told():
     given = machine.replace('length = "400 mm" ', 'length = "400 mm"\nyield_stress = "400 MPa" ')
     told = [x for x in model.loads(given).warnings if x not in model.loads(machine).warnings]
     assert told == ["all legs: drive.yield_stress has no effect: stress is looked at in pistons and struts"]
+    heat = fx.preset("paper-robot").robot.replace(
+        heat=model.Heat(base=21.0, gradient={"piston": 1.0}, expansion={"base": 1e-5, "piston": 1e-5, "platform": 1e-5})
+    )
+    (said,) = (line for line in robot_remarks(heat) if "expansion" in line)
+    assert said.startswith("heat.expansion.platform has no effect: without heat.platform")
     for preset in ("paper-robot", "paper-actuator"):
         study = fx.preset(preset)
         odd = study.replace(simulation=study.simulation.replace(rho_inf=0.8))

@@ -6,7 +6,7 @@ import math
 
 from flexapod.model.actuator import Actuator
 from flexapod.model.drive import ServoDrive
-from flexapod.model.heat import Heat
+from flexapod.model.heat import HEAT_PARTS, Heat
 from flexapod.model.leg import Leg
 from flexapod.model.material import MATERIALS
 from flexapod.model.robot import Robot
@@ -25,7 +25,20 @@ def robot_remarks(robot: Robot) -> tuple[str, ...]:
             numbers.setdefault(remark, []).append(i)
         if robot.heat is not None and robot.heat.warms("piston") and _expands_unknown(robot.heat, leg):
             numbers.setdefault(_LIKE_STEEL, []).append(i)
-    return tuple(f"{_legs(which, robot.count)}: {remark}" for remark, which in numbers.items())
+    told = (f"{_legs(which, robot.count)}: {remark}" for remark, which in numbers.items())
+    return (*told, *(() if robot.heat is None else _cold(robot.heat)))
+
+
+def _cold(heat: Heat) -> list[str]:
+    """Parts whose expansion is given and whose temperature is not."""
+    across = heat.gradient is not None and heat.gradient.piston is not None
+    warm = [part for part in HEAT_PARTS if heat.warms(part)] + ["piston"] * across
+    given = [part for part in HEAT_PARTS if getattr(heat.expansion, part, None) is not None]
+    return [
+        f"heat.expansion.{part} has no effect: without heat.{part} it is as warm as heat.reference"
+        for part in given
+        if part not in warm
+    ]
 
 
 _LIKE_STEEL = "the piston's expansion is not known, and steel's is taken: give heat.expansion.piston"
