@@ -99,11 +99,16 @@ def test_keys_without_effect_are_told():
     given = machine.replace('length = "400 mm" ', 'length = "400 mm"\nyield_stress = "400 MPa" ')
     told = [x for x in model.loads(given).warnings if x not in model.loads(machine).warnings]
     assert told == ["all legs: drive.yield_stress has no effect: stress is looked at in pistons and struts"]
-    heat = fx.preset("paper-robot").robot.replace(
+    robot = fx.preset("paper-robot").robot
+    heat = robot.replace(
         heat=model.Heat(base=21.0, gradient={"piston": 1.0}, expansion={"base": 1e-5, "piston": 1e-5, "platform": 1e-5})
     )
     (said,) = (line for line in robot_remarks(heat) if "expansion" in line)
     assert said.startswith("heat.expansion.platform has no effect: without heat.platform")
+    for bow in (None, 1e-4):
+        leg = robot.legs[0].replace(piston=robot.legs[0].piston.replace(bow=bow))
+        scattered = robot.replace(legs=(leg,) * 6, tolerances=model.Tolerances(EI=0.03))
+        assert any("tolerances.EI has no effect" in line for line in robot_remarks(scattered)) == (bow is None)
     for preset in ("paper-robot", "paper-actuator"):
         study = fx.preset(preset)
         odd = study.replace(simulation=study.simulation.replace(rho_inf=0.8))

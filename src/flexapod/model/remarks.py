@@ -26,7 +26,17 @@ def robot_remarks(robot: Robot) -> tuple[str, ...]:
         if robot.heat is not None and robot.heat.warms("piston") and _expands_unknown(robot.heat, leg):
             numbers.setdefault(_LIKE_STEEL, []).append(i)
     told = (f"{_legs(which, robot.count)}: {remark}" for remark, which in numbers.items())
-    return (*told, *(() if robot.heat is None else _cold(robot.heat)))
+    return (*told, *(() if robot.heat is None else _cold(robot.heat)), *_straight(robot))
+
+
+def _straight(robot: Robot) -> list[str]:
+    """Scatter of bending stiffness of legs that are straight."""
+    joints = (joint for leg in robot.legs for joint in (leg.base_joint, leg.platform_joint))
+    bent = any(leg.piston.bow for leg in robot.legs) or any(joint.eccentricity for joint in joints)
+    bent = bent or (robot.heat is not None and robot.heat.gradient is not None)
+    if robot.tolerances is None or robot.tolerances.EI is None or bent:
+        return []
+    return ["tolerances.EI has no effect: it counts in legs under thrust with a bow, an eccentricity or heat.gradient"]
 
 
 def _cold(heat: Heat) -> list[str]:
