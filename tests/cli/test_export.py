@@ -104,3 +104,12 @@ def test_names_and_poses_that_the_other_programs_cannot_take_are_refused(flexapo
     assert run.exit_code == 2 and "letters" in run.stderr
     run = flexapod("export", "r.toml", "--pose", "yaw=90deg")
     assert run.exit_code != 0 and not list(folder.glob("*.inp"))
+
+
+def test_what_decks_do_not_have_is_refused_with_the_study_file(flexapod, study):
+    file = study(("[leg] ", '[leg]\nguide = { gland = "200 N/um", head = "200 N/um" } '))
+    error = json.loads(flexapod("export", file, "--json").stderr)["error"]
+    assert (error["key"], error["file"]) == ("leg.guide", str(file))
+    assert error["allowed"] and error["next_step"]
+    option = json.loads(flexapod("map", file, "--x", "surge=5..3mm", "--json").stderr)["error"]
+    assert (option["key"], option["file"]) == ("--x", None)

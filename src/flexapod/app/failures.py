@@ -7,11 +7,13 @@ import functools
 import json as _json
 import logging
 import os
+import re
 import signal
 import sys
 import traceback
 from collections.abc import Callable, Iterator, Mapping
 from contextlib import contextmanager, suppress
+from pathlib import Path
 from types import FrameType
 from typing import NoReturn, ParamSpec
 
@@ -50,6 +52,11 @@ P = ParamSpec("P")
 INTERRUPTED = 130
 #: What says that there is no more room for what is written, wherever it goes.
 _FULL = (errno.ENOSPC, errno.EDQUOT, errno.EFBIG, errno.EIO)
+#: Tables of study files: what is below one of them stands in the file that the command was given.
+_TABLES = {
+    "robot", "payload", "leg", "motion", "simulation", "load", "initial", "geometry", "heat", "tolerances",
+    "disturbance", "actuator",
+}  # fmt: skip
 
 
 def guarded(command: Callable[P, None]) -> Callable[P, None]:
@@ -68,7 +75,7 @@ def guarded(command: Callable[P, None]) -> Callable[P, None]:
             raise
         except FlexapodError as error:
             _trace()
-            show(error, as_json=as_json)
+            show(_placed(error, kwargs), as_json=as_json)
             raise typer.Exit(error.exit_code) from None
         except (KeyboardInterrupt, Exception) as error:
             _trace()
@@ -81,6 +88,14 @@ def guarded(command: Callable[P, None]) -> Callable[P, None]:
             raise typer.Exit(code) from None
 
     return run
+
+
+def _placed(error: FlexapodError, given: Mapping[str, object]) -> FlexapodError:
+    """The error with the command's study file, where its key is one of that file and no file is named."""
+    file = given.get("file")
+    if not isinstance(error, InputError) or error.file or not isinstance(file, Path) or "sweep_file" in given:
+        return error
+    return error.located(file=file) if re.split(r"[.\[]", error.key or "")[0] in _TABLES else error
 
 
 def show(error: FlexapodError, *, as_json: bool) -> None:

@@ -140,9 +140,9 @@ def _leg(i: int, leg: model.Leg, real: Limbs, columns: Array, tip: Array, length
     _check_leg(i + 1, leg, length)
     cylinder, piston, below, above = leg.cylinder, leg.piston, leg.base_joint, leg.platform_joint
     if leg.turning:
-        raise InputError("is not written in decks", key="leg.piston.keyed", value=False, allowed="true")
+        raise _refused("leg.piston.keyed", "true", value=False)
     if leg.screw is not None and leg.screw.command == "torque":
-        raise InputError("is not written in decks", key="leg.drive.command", value="torque", allowed="position, servo")
+        raise _refused("leg.drive.command", "position, servo", value="torque", next_step='Take "position" for the deck')
     z, y = columns[:3, _LENGTH], columns[3:, _NAMES.index("beta")]
     springs = dict(zip(_NAMES[1:4], (below.bending, below.bending, below.torsion), strict=True))
     springs |= dict(zip(_NAMES[5:], (above.bending, above.bending, above.torsion), strict=True))
@@ -158,10 +158,8 @@ def _leg(i: int, leg: model.Leg, real: Limbs, columns: Array, tip: Array, length
     own = np.column_stack([np.cross(y, z), y, z])
     (base_gives, base_springs), (tip_gives, tip_springs) = (_gives(leg, own, at) for at in ("base", "platform"))
     if force and len(base_gives):
-        raise InputError(
-            "is not written in decks where the base joint gives way", key="leg.drive.type", value=leg.drive.type,
-            allowed="prescribed, servo, screw, or a base joint and springs that do not",
-        )  # fmt: skip
+        allowed = "prescribed, servo, screw, or a base joint and springs that do not give way"
+        raise _refused("leg.drive.type", allowed, value=leg.drive.type, next_step='Take "prescribed" for the deck')
     return LegAtPose(
         base=tip - length * z,
         tip=tip,
@@ -229,36 +227,27 @@ def _drive(leg: model.Leg, length: float) -> float:
     return drive.feedback.stiffness if drive.type == "force" and drive.feedback else np.inf
 
 
+def _refused(
+    key: str, allowed: str, *, value: object = None,
+    next_step: str = "Leave it out for the deck: `flexapod modes` with it and without says what that changes",
+) -> InputError:  # fmt: skip
+    return InputError("is not written in decks", key=key, value=value, allowed=allowed, next_step=next_step)
+
+
 def _check_leg(i: int, leg: model.Leg, length: float) -> None:
     if leg.screw is not None and leg.screw.loops:
-        late = leg.screw.lag > 0
-        raise InputError(
-            "is not written in decks, whose loops are springs on the rotor",
-            key="leg.drive.motor.bandwidth" if late else "leg.drive.encoder.at",
-            value=leg.screw.motor.bandwidth if late else leg.measured,
-            allowed="none" if late else 'rotor; or command = "position"',
-            next_step="Leave it out for the deck: `flexapod modes` with it and without says what that changes",
-        )
+        if leg.screw.lag:
+            raise _refused("leg.drive.motor.bandwidth", "torques that come at once", value=leg.screw.motor.bandwidth)
+        raise _refused("leg.drive.encoder.at", 'rotor; or command = "position"', value=leg.measured)
     if leg.piston.sections:
-        raise InputError(
-            "is not written in decks",
-            key="leg.piston.sections",
-            next_step="Give one diameter: that of the section whose stiffness counts most",
-        )
+        one = "Give one diameter: that of the section whose stiffness counts most"
+        raise _refused("leg.piston.sections", "one section", next_step=one)
     if leg.piston.shear:
-        raise InputError(
-            "is not written in decks: their pistons are Euler-Bernoulli beams",
-            key="leg.piston.shear",
-            next_step="Leave it out; `check` says by how much shear counts",
-        )
+        said = "Leave it out; `check` says by how much shear counts"
+        raise _refused("leg.piston.shear", "false: Euler-Bernoulli beams", value=True, next_step=said)
     for key, there in (("leg.guide", leg.guide), ("leg.cylinder.diameter", leg.cylinder.section)):
         if there is not None:
-            raise InputError(
-                "is not written in decks",
-                key=key,
-                allowed="a piston clamped in the mouth of a rigid cylinder",
-                next_step="Leave it out for the deck: `flexapod modes` with it and without says what that changes",
-            )
+            raise _refused(key, "a piston clamped in the mouth of a rigid cylinder")
     free = length - leg.cylinder.mouth
     if leg.piston.length < free * (1 - 1e-9):
         raise InputError(
@@ -266,6 +255,7 @@ def _check_leg(i: int, leg: model.Leg, length: float) -> None:
             key="leg.piston.length",
             value=leg.piston.length,
             allowed=f"at least {free:.6g} m, the leg's length less leg.cylinder.mouth",
+            next_step="Choose another pose, or a longer piston",
         )
     if not leg.piston.rhoA:
         raise InputError(

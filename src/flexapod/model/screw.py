@@ -187,6 +187,7 @@ class ScrewDrive(Frozen):
                     "has nothing to do where the position is held",
                     key=key,
                     allowed='with command = "servo" or "torque"',
+                    next_step="Leave it out, or give a loop",
                 )
         return self
 

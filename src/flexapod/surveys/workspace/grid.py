@@ -81,8 +81,8 @@ def grid(robot: model.Robot, axes: Axes | None, at: Mapping[str, float] | None) 
     """
     if robot.platform_fixed:
         raise InputError(
-            "is a platform that stays where it is: there is nothing to map",
-            key="platform.fixed",
+            "holds the platform where it is: there is nothing to map",
+            key="robot.platform.fixed",
             value=True,
             next_step="Use `flexapod modes`, or `flexapod check`",
         )
