@@ -6,6 +6,7 @@ import pytest
 from tests.cli.conftest import SHORT
 
 import flexapod as fx
+from flexapod.report.budget import peak_budget
 from flexapod.study import open_results
 from flexapod.study.budgets import words
 
@@ -30,6 +31,18 @@ def test_a_pose_in_words_numbers_and_a_chart(flexapod, study, folder):
     assert told["summary"][0] == first
     assert {part["part"] for part in told["parts"]} == {"axial-strain", "heat_piston", "leg_offset tolerance"}
     assert sum(part["share"] for part in told["parts"]) == pytest.approx(1.0)
+
+
+def test_heat_that_lifts_a_machine_is_not_called_a_sag(flexapod, study):
+    path = study(*SHORT, more=PLAY)
+    assert fx.modes(fx.load(path)).com_sag[2] > 0
+    assert "(the centre of mass is off by" in flexapod("modes", path).stdout
+    assert "sag" not in flexapod("map", path, "--count", "2", "--no-figures").stdout
+
+
+def test_the_budget_of_a_run_names_its_instant(study):
+    found = peak_budget(fx.simulate(fx.load(study(*SHORT, more=PLAY))))
+    assert f"at the pose of t = {found.attrs['pose_time']:.4g} s is the" in found.attrs["summary"]
 
 
 def test_along_the_motion(flexapod, study):

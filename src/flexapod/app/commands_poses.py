@@ -109,8 +109,8 @@ def _modes_as_dict(data: Dataset, shaken: Dataset | None, files: list[Path]) -> 
 def _robot_words(study: Study, data: Dataset, pose: str | None) -> str:
     from flexapod.study.words import held, length
 
-    where, sag = f"at {pose} from home" if pose else "at home", float((data.com_sag**2).sum() ** 0.5)
-    return f"{held(study.robot)}, {where}, about the static equilibrium (the centre of mass sags by {length(sag)})."
+    where, off = f"at {pose} from home" if pose else "at home", float((data.com_sag**2).sum() ** 0.5)
+    return f"{held(study.robot)}, {where}, about the static equilibrium (the centre of mass is off by {length(off)})."
 
 
 def _beam_words(study: ActuatorStudy) -> str:

@@ -81,12 +81,13 @@ def _leg_tables(top: Section, chains: tuple[str, ...], kind: str) -> list[Sectio
     sections = [top.child(value, "leg")] if single else [top.child(leg, f"leg[{i}]") for i, leg in enumerate(value, 1)]
     counts = [section.whole("count") or (count if single else 1) for section in sections]
     if min(counts, default=0) < 1 or sum(counts) != count:
+        legs = "1 leg" if count == 1 else f"{count} legs"
         times = "appears once" if len(sections) == 1 else f"appears {len(sections)} times"
         raise InputError(
             times if counts == [1] * len(sections) else f"{times}, for {sum(counts)} legs together",
             file=top.file,
             key="leg" if single else "[[leg]]",
-            allowed=f"{count} legs ({kind}): [leg] once for all alike, or [[leg]] with count = .. for each kind",
+            allowed=f"{legs} ({kind}): [leg] once for all alike, or [[leg]] with count = .. for each kind",
         )
     tables = [section for section, number in zip(sections, counts, strict=True) for _ in range(number)]
     for section in sections:

@@ -37,9 +37,12 @@ def peak_budget(data: Dataset) -> Dataset | None:
     t = data.time.values[[int(size.argmax())]]
     path = rigid.poses(study.robot, study.motion, t)
     try:
-        return budget(study, rigid.Poses.at_rest(path.position, path.rotation)).assign_attrs(pose_time=float(t[0]))
+        found = budget(study, rigid.Poses.at_rest(path.position, path.rotation))
     except FlexapodError:
         return None
+    where = f"at the pose of t = {t[0]:.4g} s"
+    summary = found.attrs["summary"].replace(found.attrs["where"], where, 1)
+    return found.assign_attrs(pose_time=float(t[0]), where=where, summary=summary)
 
 
 def budget_section(found: Dataset) -> str:
