@@ -166,3 +166,33 @@ def test_a_sweep_of_parts_that_are_not_in_the_file_keeps_no_causes():
         fx.sweep(quick(), warm | {"keep": {"scalars": ["cause_share"]}}, workers=0)
     found = fx.sweep(quick(), warm | {"keep": {"scalars": ["com_deviation_start"]}}, workers=0)
     assert float(found.com_deviation_start[1] - found.com_deviation_start[0]) != 0
+
+
+@pytest.mark.parametrize(
+    ("old", "new", "key", "allowed"),
+    [
+        ('root_diameter = "28.744 mm"', 'root_diameter = "45 mm"', "leg.piston.inner_diameter", "at least 0.045 m"),
+        ('position = "60 mm", loss = 0.03', 'position = "60 mm", loss = 3', "leg.drive.bearing.loss", "at most 2"),
+        ('command = "position" ', 'encoder = { at = "stroke", resolution = "1 m" } ', 
+         "leg.drive.encoder.resolution", "5 %"),
+        ('damping = 0.005 ', 'guide = { gland = 1e8, head = 1e8, clearance = "9 cm" } ', "leg.guide.clearance", "5 %"),
+        ('base_joints = "20 um"', 'base_joints = "0.3 m"', "tolerances.base_joints", "0.04529 m"),
+        ('lead = "C5"', 'lead = { box = 0.5 }', "tolerances.lead", "at most 0.05"),
+        ('[heat]', '[geometry]\nlead = 5\n[heat]', "geometry.lead", "at most 0.05"),
+        ('springs = { base_plate', 'springs = { piston', "leg.springs.piston", "not axial-strain"),
+        ('gravity =', 'base_mount = { stiffness = [1e8, 1e8, 1e8, 1e7, 1e7, 1e7], inertia = [1, 1, 5] }\ngravity =',
+         "robot.base_mount.inertia", "the sum of the other two"),
+        ('cylinder = { mass = "24 kg", com = "160 mm", inertia = 0.75, mouth = "450 mm", axial_inertia = 0.04 }',
+         'cylinder = { mouth = "450 mm", diameter = "50 mm", inner_diameter = "40 mm", material = "steel" }',
+         "leg.cylinder.inner_diameter", "at least 0.06 m"),
+        ('nut = { rigidity = "1130 N/um", preload = "1540 N", dynamic_load = "30.8 kN", loss = 0.03 }',
+         'nut = { stiffness = "700 N/um", backlash = "5 cm" }', "leg.drive.nut.backlash", "5 %"),
+    ],
+)  # fmt: skip
+def test_parts_that_contradict_each_other_or_themselves_are_refused(old, new, key, allowed):
+    text = preset_text("machine-hexapod")
+    assert text.count(old) == 1
+    with pytest.raises(InputError) as caught:
+        loads(text.replace(old, new))
+    assert caught.value.key == key
+    assert allowed in str(caught.value)

@@ -29,6 +29,8 @@ from flexapod.words import number
 Number = Annotated[float, Field(strict=True, allow_inf_nan=False)]
 Positive = Annotated[float, Field(strict=True, gt=0, allow_inf_nan=False)]
 NonNegative = Annotated[float, Field(strict=True, ge=0, allow_inf_nan=False)]
+#: A loss factor; metals have 1e-4 to 0.01, joints 0.01 to 0.1, layers made for damping up to about 1.
+Loss = Annotated[float, Field(strict=True, ge=0, le=2, allow_inf_nan=False)]
 
 _HASH = "hash"  # where an object keeps its hash; no field can have this name, which would hide the built-in
 

@@ -9,7 +9,7 @@ from pydantic import model_validator
 
 from flexapod.errors import InputError
 from flexapod.model.axes import within_a_turn
-from flexapod.model.base import Frozen, Matrix6, Measure, NonNegative, Number, Positive, Vec3
+from flexapod.model.base import Frozen, Loss, Matrix6, Measure, NonNegative, Number, Positive, Vec3
 from flexapod.model.friction import JointFriction
 from flexapod.model.rolling import RollingLaw
 
@@ -40,14 +40,14 @@ class Joint(Frozen):
     torsion: Annotated[NonNegative, Measure("rotational stiffness")] | None = None
     stiffness: Annotated[Matrix6, Measure("stiffness", "force", "rotational stiffness")] | None = None
     damping: Annotated[NonNegative, Measure("rotational damping")] | None = None
-    loss: Annotated[NonNegative, Measure("number")] | None = None
+    loss: Loss | None = None
     leg_axes: bool = False
     friction: JointFriction | None = None
     play: Annotated[NonNegative, Measure("length")] | None = None
     eccentricity: Annotated[NonNegative, Measure("length")] | None = None
     max_angle: Annotated[Positive, Measure("angle")] | None = None
     stiffness_damping: Annotated[NonNegative, Measure("damping")] | None = None
-    stiffness_loss: Annotated[NonNegative, Measure("number")] | None = None
+    stiffness_loss: Loss | None = None
     rolling: RollingLaw | None = None
 
     def __init__(self, **fields: Any) -> None:

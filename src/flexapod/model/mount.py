@@ -8,7 +8,7 @@ import numpy as np
 from pydantic import Field, model_validator
 
 from flexapod.errors import InputError
-from flexapod.model.base import Frozen, Matrix3, Matrix6, Measure, NonNegative, Series, Series6, Vec3
+from flexapod.model.base import Frozen, Loss, Matrix3, Matrix6, Measure, NonNegative, Series, Series6, Vec3
 from flexapod.model.motion import check_times
 from flexapod.model.spring import check_lossy
 
@@ -30,7 +30,7 @@ class Mount(Frozen):
     at: Annotated[Vec3, Measure("length")] = Field(default=ORIGIN, validate_default=True)
     stiffness: Annotated[Matrix6, Measure("stiffness", "force", "rotational stiffness")]
     damping: Annotated[Matrix6, Measure("damping", "rotational damping")] | None = None
-    loss: Annotated[NonNegative, Measure("number")] | None = None
+    loss: Loss | None = None
     mass: Annotated[NonNegative, Measure("mass")] = 0.0
     inertia: Annotated[Matrix3, Measure("inertia")] = Field(default=np.zeros((3, 3)), validate_default=True)
 
@@ -40,13 +40,16 @@ class Mount(Frozen):
         _of_a_spring(self.stiffness, "stiffness", least=1e-15, words="positive")
         if self.damping is not None:
             _of_a_spring(self.damping, "damping", least=-LEVEL, words="not negative")
-        size = np.abs(self.inertia).max()
+        size, moments = np.abs(self.inertia).max(), np.linalg.eigvalsh(self.inertia)
         if (
             np.abs(self.inertia - self.inertia.T).max() > LEVEL * size
-            or np.linalg.eigvalsh(self.inertia)[0] < -1e-9 * size
+            or min(moments[0], moments[0] + moments[1] - moments[2]) < -1e-9 * size
         ):
             raise InputError(
-                "is of no body", key="inertia", value=self.inertia.tolist(), allowed="a symmetric matrix, not negative"
+                "is of no body",
+                key="inertia",
+                value=self.inertia.tolist(),
+                allowed="a symmetric matrix, not negative, no principal moment above the sum of the other two",
             )
         return self
 

@@ -8,7 +8,7 @@ from typing import Annotated, ClassVar, Self
 from pydantic import Field, model_validator
 
 from flexapod.errors import InputError
-from flexapod.model.base import Frozen, Measure, NonNegative, Number, Positive
+from flexapod.model.base import Frozen, Loss, Measure, NonNegative, Number, Positive
 from flexapod.model.material import POISSON, Material, Rectangle, Tube
 from flexapod.model.sections import SHARES, PistonSection, Step
 from flexapod.model.spring import check_lossy
@@ -103,7 +103,7 @@ class Guide(Frozen):
     head: Annotated[Positive, Measure("stiffness")]
     clearance: Annotated[NonNegative, Measure("length")] | None = None
     damping: Annotated[NonNegative, Measure("damping")] | None = None
-    loss: Annotated[NonNegative, Measure("number")] | None = None
+    loss: Loss | None = None
 
     @model_validator(mode="after")
     def _sensible(self) -> Guide:

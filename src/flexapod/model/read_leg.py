@@ -345,10 +345,11 @@ def _springs(section: Section | None) -> tuple[AxialSpring, ...] | None:
     section.only(*section.data)
     found = []
     for name, value in section.data.items():
+        spring = section.child(value if isinstance(value, Mapping) else {}, name)
         if isinstance(value, Mapping):
-            found.append(section.child(value, name).read(AxialSpring, then=lambda _, name=name: {"name": name}))
+            found.append(spring.read(AxialSpring, then=lambda _, name=name: {"name": name}))
         else:
-            found.append(section.build(AxialSpring, name=name, stiffness=_above_zero(section, name)))
+            found.append(spring.build(AxialSpring, name=name, stiffness=_above_zero(section, name)))
     return tuple(found)
 
 

@@ -66,6 +66,11 @@ def check_built(robot: Robot) -> None:
     geometry, heat, count = robot.geometry, robot.heat, robot.count
     if geometry is not None:
         geometry.check(count, robot.normal if robot.plane else None)
+        if geometry.lead is not None and np.abs(geometry.lead).max() > MOST_ERROR:
+            raise InputError(
+                "is no error of a lead: real over called travel, less 1", key="geometry.lead",
+                value=geometry.lead.tolist(), allowed=f"at most {MOST_ERROR:g} in size; class C10 is 7e-4",
+            )  # fmt: skip
         if geometry.lead is not None and not any(_has_lead(leg) for leg in robot.legs):
             raise InputError(
                 "is of drives that this robot does not have", key="geometry.lead", allowed="driven strokes and sliders"
@@ -96,6 +101,16 @@ def check_tolerances(robot: Robot) -> None:
                 key=f"tolerances.{name}",
                 allowed="legs UPS, SPS and their like",
             )
+    most = MOST_ERROR * float(np.min(robot.home_lengths))
+    lengths = {name: (most, f"{most:.4g} m") for name in ("base_joints", "platform_joints", "leg_offset", "bow")}
+    for name, (bound, words) in {**lengths, "lead": (MOST_ERROR, f"{MOST_ERROR:g}")}.items():
+        spread = getattr(given, name, None)
+        size = 0.0 if spread is None else max(spread.sigma or 0.0, spread.box or 0.0)
+        if size > bound:
+            raise InputError(
+                "is no error of a machine: another one would be built", key=f"tolerances.{name}", value=size,
+                allowed=f"at most {words}, {100 * MOST_ERROR:g} % of the shortest leg at home or of the travel",
+            )  # fmt: skip
 
 
 def check_springs(robot: Robot) -> None:
@@ -200,6 +215,23 @@ def _hinges(leg: Leg) -> list[Array]:
     return [axis for axis in (crank, leg.base_joint.axis, leg.platform_joint.axis) if axis is not None]
 
 
+def _check_bores(where: str, leg: Leg) -> None:
+    """Refuse a piston that does not go into its cylinder, and a screw that does not go into its piston."""
+    inner = leg.piston.sections[0] if leg.piston.sections else leg.piston
+    bores = (
+        ("cylinder.inner_diameter", leg.cylinder.inner_diameter, "piston", inner.diameter),
+        ("piston.inner_diameter", inner.inner_diameter, "screw", leg.screw.root_diameter if leg.screw else None),
+    )
+    for key, bore, body, width in bores:
+        if bore is not None and width is not None and width > bore:
+            raise InputError(
+                f"{where}: is too narrow for the {body} of {1e3 * width:.4g} mm that moves in it",
+                key=f"leg.{key}",
+                value=bore,
+                allowed=f"at least {width:.6g} m",
+            )
+
+
 MOST_ERROR = 0.05  # of a leg's length: what plays or is crooked by more is made otherwise
 
 
@@ -234,6 +266,7 @@ def check_leg(number: int, leg: Leg, length: float) -> None:
         ("piston.bow", leg.piston.bow),
         ("guide.clearance", None if leg.guide is None else leg.guide.clearance),
         ("drive.nut.backlash" if leg.screw is not None else "drive.backlash", leg.backlash * (leg.driven == "stroke")),
+        ("drive.encoder.resolution", leg.screw.encoder.resolution if leg.screw and leg.measured != "rotor" else None),
     )
     for key, value in small:
         if value is not None and value > MOST_ERROR * length:
@@ -243,6 +276,7 @@ def check_leg(number: int, leg: Leg, length: float) -> None:
                 value=value,
                 allowed=f"at most {100 * MOST_ERROR:g} % of that, {MOST_ERROR * length:.4g} m",
             )
+    _check_bores(where, leg)
     if abs(leg.cylinder.com) > length:
         raise InputError(
             f"{where}: the cylinder's centre of mass lies beyond the leg's ends at home",

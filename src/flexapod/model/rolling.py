@@ -7,7 +7,7 @@ from typing import Annotated, Literal
 from pydantic import Field, model_validator
 
 from flexapod.errors import InputError
-from flexapod.model.base import Frozen, Measure, NonNegative, Positive
+from flexapod.model.base import Frozen, Loss, Measure, NonNegative, Positive
 
 __all__ = ["AXIAL", "RollingLaw"]
 
@@ -46,7 +46,7 @@ class RollingLaw(Frozen):
     yokes: Annotated[int, Field(strict=True, ge=1, le=10)] | None = None
     radial: Annotated[Positive, Measure("stiffness")] | None = None
     damping: Annotated[NonNegative, Measure("damping")] | None = None
-    loss: Annotated[NonNegative, Measure("number")] | None = None
+    loss: Loss | None = None
 
     @model_validator(mode="after")
     def _complete(self) -> RollingLaw:

@@ -9,7 +9,7 @@ import numpy as np
 from pydantic import BeforeValidator, Field, model_validator
 
 from flexapod.errors import InputError
-from flexapod.model.base import Frozen, Measure, NonNegative, Number, Positive, Series
+from flexapod.model.base import Frozen, Loss, Measure, NonNegative, Number, Positive, Series
 from flexapod.model.drive import ForceDrive, PrescribedDrive, ServoDrive
 from flexapod.model.friction import ScrewFriction
 from flexapod.model.hydraulic import HydraulicDrive
@@ -44,7 +44,7 @@ class Nut(Frozen):
     dynamic_load: Force = None
     static_load: Force = None
     damping: Damping = None
-    loss: Annotated[NonNegative, Measure("number")] | None = None
+    loss: Loss | None = None
     backlash: Annotated[NonNegative, Measure("length")] | None = None
 
     @model_validator(mode="after")
@@ -103,7 +103,7 @@ class Bearing(Frozen):
     ball_diameter: Annotated[Positive, Measure("length")] | None = None
     contact_angle: Annotated[float, Field(strict=True, gt=0, le=math.pi / 2), Measure("angle")] | None = None
     damping: Damping = None
-    loss: Annotated[NonNegative, Measure("number")] | None = None
+    loss: Loss | None = None
 
     @model_validator(mode="after")
     def _one_law(self) -> Bearing:

@@ -8,7 +8,7 @@ from typing import Annotated, Any, ClassVar, Literal
 from pydantic import model_validator
 
 from flexapod.errors import InputError
-from flexapod.model.base import Frozen, Measure, NonNegative, Positive
+from flexapod.model.base import Frozen, Loss, Measure, NonNegative, Positive
 from flexapod.model.heat import HEAT_PARTS
 
 __all__ = ["RESERVED", "AxialSpring", "check_lossy"]
@@ -35,7 +35,7 @@ class AxialSpring(Frozen):
     stiffness: Annotated[Positive, Measure("stiffness")]
     at: Literal["nut", "base", "platform"] = "nut"
     damping: Annotated[NonNegative, Measure("damping")] | None = None
-    loss: Annotated[NonNegative, Measure("number")] | None = None
+    loss: Loss | None = None
 
     @model_validator(mode="after")
     def _sensible(self) -> AxialSpring:
@@ -43,7 +43,7 @@ class AxialSpring(Frozen):
         if self.name in RESERVED or not re.fullmatch(r"[A-Za-z][\w-]*", self.name):
             raise InputError(
                 "is no name for a spring",
-                key=self.name,
+                value=self.name,
                 allowed="letters, digits, _ and -, and not " + ", ".join(RESERVED),
             )
         return self
