@@ -127,6 +127,8 @@ def test_loss_factors_of_a_study_file_are_said(tmp_path):
     f = fx.modes(study).frequency.values[0]
     first, second = loss_words(study.robot, study.simulation)
     assert first == f"at the first frequency there, {f:.4g} Hz (undamped, drives locked)"
+    rigid = loss_words(study.robot, override(study, fidelity="rigid").simulation)[0]
+    assert rigid == f"{first[:-1]}, pistons that stretch)"
     values = [0.01 * 15, 0.01 * 20, 0.02 * 9e7]
     assert [
         float(part.split()[1]) for part in second.split(": ")[1].replace("kN", "e3 N").split(", ")

@@ -58,7 +58,8 @@ def loss_words(robot: Robot, simulation: Simulation) -> list[str]:
     frequency = loss_frequency(robot, simulation)
     if not frequency:
         return []
-    found = [f"at the first frequency there, {number(frequency, 4)} Hz (undamped, drives locked)"]
+    stretched = ", pistons that stretch" if simulation.fidelity == "rigid" else ""
+    found = [f"at the first frequency there, {number(frequency, 4)} Hz (undamped, drives locked{stretched})"]
     per = per_loss(robot, simulation)
     for end in ("base_joint", "platform_joint"):
         for joint in dict.fromkeys(getattr(leg, end) for leg in robot.legs):
