@@ -309,6 +309,13 @@ class TestMotionBase:
         assert one.pressure.value == pytest.approx(max((force / push).max(), (-force / pull).max()))
         assert one.flow.value == pytest.approx(max((rate * push).max(), (-rate * pull).max()))
         assert hydraulic_remarks(path.robot, describe_hydraulics(path)) == []
+        legs = study.robot.legs
+        rubs = legs[0].drive.replace(friction=model.StrokeFriction(force=2e3, viscous=500.0))
+        path = RigidPath(study.replace(robot=study.robot.replace(legs=tuple(leg.replace(drive=rubs) for leg in legs))))
+        force = force + 2e3 * np.sign(rate) + 500.0 * rate  # its seals
+        assert describe_hydraulics(path)[0].pressure.value == pytest.approx(
+            max((force / push).max(), (-force / pull).max())
+        )
         low = study.robot.legs[0].drive.replace(limits=HydraulicLimits(pressure=1e5))
         legs = tuple(leg.replace(drive=low) for leg in study.robot.legs)
         path = RigidPath(study.replace(robot=study.robot.replace(legs=legs)))

@@ -81,7 +81,7 @@ def test_critical_speeds_of_the_catalogue(mounting, coefficient):
 def test_drag_of_a_preload_in_the_catalogue():
     # THK A-689: 3000 N, lead 10 mm on a circle of balls of 41.75 mm: 865 N mm, printed to 1
     drive = screw(root_diameter=0.04175, nut=Nut(rigidity=1e9, preload=3000.0, dynamic_load=60e3))
-    np.testing.assert_allclose(drag_torque(drive), 0.865, atol=1e-3)
+    np.testing.assert_allclose(drag_torque(drive, np.array([3.0, 0.0, -2.0])), [0.865, 0.0, -0.865], atol=1e-3)
 
 
 class TestTorque:
@@ -91,6 +91,15 @@ class TestTorque:
         ideal = 1e3 * 0.01 / (2 * np.pi)
         np.testing.assert_allclose([out, in_, rest], ideal * np.array([1.25, 0.75, 1.0]), rtol=1e-14)
         np.testing.assert_allclose(out - ideal, ideal - in_, rtol=1e-13)
+
+    def test_friction_grows_with_the_speed_and_is_largest_before_it_slides(self):
+        # By hand: 0.5 N m that slide, 0.8 at least speed, 20 rad/s; e^-1 of the excess there, and 0.002 N m s/rad
+        rubs = model.ScrewFriction(torque=0.5, viscous=0.002, stribeck={"moment": 0.8, "rate": 20.0})
+        drive = screw(friction=rubs, rotor=model.Rotor(ratio=2.0))
+        speed = np.array([20.0, -20.0, 0.0, 400.0])
+        torque = motor_torque(drive, np.zeros(4), speed * drive.per_turn, np.zeros(4))
+        at_20 = 0.5 + 0.3 / np.e + 0.04
+        np.testing.assert_allclose(torque, np.array([at_20, -at_20, 0.0, 1.3]) / 2, rtol=1e-12)
 
     def test_half_is_where_a_screw_holds_itself(self):
         assert back_efficiency(screw(efficiency=0.5)) == 0

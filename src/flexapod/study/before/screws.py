@@ -6,6 +6,7 @@ import numpy as np
 
 from flexapod.model import Nut, ScrewDrive
 from flexapod.model.screw import UNLOADS
+from flexapod.study.before.sliding import steady_friction
 from flexapod.typing import Array
 
 __all__ = [
@@ -48,12 +49,15 @@ def critical_speed(screw: ScrewDrive) -> float:
     return float(_ALLOWED_SPEED * (_ROOT[screw.mounting] / screw.length) ** 2 * wave)
 
 
-def drag_torque(screw: ScrewDrive) -> float:
-    """Torque at the screw by its friction, or by the preload of its nut, Eq. (T15.43) [N m]; 0 where none is given."""
+def drag_torque(screw: ScrewDrive, speed: Array) -> Array:
+    """Torque at the screw by its friction at speeds [rad/s], Eq. (T19.19), or by the preload of its nut, Eq. (T15.43).
+
+    In N m, with the sign of the speed; 0 where neither is given.
+    """
     if screw.friction is not None:
-        return screw.friction.torque
+        return steady_friction(screw.friction, speed)
     slope = screw.lead / (np.pi * screw.root_diameter)
-    return 0.05 / np.sqrt(slope) * (screw.nut.preload or 0.0) * screw.per_turn
+    return np.asarray(np.sign(speed) * 0.05 / np.sqrt(slope) * (screw.nut.preload or 0.0) * screw.per_turn)
 
 
 def back_efficiency(screw: ScrewDrive) -> float:
@@ -70,10 +74,10 @@ def motor_torque(screw: ScrewDrive, thrust: Array, rate: Array, accel: Array) ->
     thrust, rate, accel : ndarray, shape (T,)
         Thrust on the piston [N], rate [m/s] and acceleration [m/s^2] of the stroke. Where it rests nothing rubs.
     """
-    moves = np.sign(np.where(np.abs(rate) > 1e-9 * np.abs(rate).max(initial=0.0), rate, 0.0))
-    driving = np.choose((np.sign(thrust) * moves + 1).astype(int), [back_efficiency(screw), 1.0, 1 / screw.efficiency])
-    of_thrust = thrust * screw.per_turn * driving
-    return (of_thrust + drag_torque(screw) * moves + screw.inertia * accel / screw.per_turn) / screw.rotor.ratio
+    speed = np.where(np.abs(rate) > 1e-9 * np.abs(rate).max(initial=0.0), rate, 0.0) / screw.per_turn
+    way = (np.sign(thrust) * np.sign(speed) + 1).astype(int)
+    of_thrust = thrust * screw.per_turn * np.choose(way, [back_efficiency(screw), 1.0, 1 / screw.efficiency])
+    return (of_thrust + drag_torque(screw, speed) + screw.inertia * accel / screw.per_turn) / screw.rotor.ratio
 
 
 def half_loads(nut: Nut, thrust: Array) -> Array:

@@ -13,6 +13,7 @@ from flexapod.solve.springs import springs_along
 from flexapod.study.accuracy.sensitivity import sensitivity
 from flexapod.study.after.plausibility import worst_of_each
 from flexapod.study.before.describe.leg import Extreme
+from flexapod.study.before.sliding import steady_friction
 from flexapod.study.path import RigidPath
 from flexapod.study.words import number
 from flexapod.typing import Array
@@ -30,9 +31,9 @@ INSTANTS = 200  # at which the frequency on the oil is sought
 class HydraulicDescription:
     """One cylinder on the rigid path, SI units.
 
-    `thrust`: largest size; `pressure`: least of the supply over the return that bears it, Eq. (T23.7); `flow` into the
-    cylinder; `stiffness` of the oil, where it is least; `creep`: largest rate at which leakage lets the leg give way
-    [m/s].
+    `thrust`: largest force of the oil, that on its seals included; `pressure`: least of the supply over the return that
+    gives it, Eq. (T23.7); `flow` into the cylinder; `stiffness` of the oil, where it is least; `creep`: largest rate at
+    which leakage lets the leg give way [m/s].
     """
 
     leg: int
@@ -45,16 +46,18 @@ class HydraulicDescription:
 
 def describe_hydraulics(path: RigidPath) -> tuple[HydraulicDescription, ...]:
     """The hydraulic cylinders of a robot on the rigid path of its study."""
-    legs, thrust = path.legs, path.forces.drive_force
-    return tuple(
-        describe_hydraulic(i, leg, path.time, legs.length[:, i], thrust[:, i], legs.rate[:, i])
-        for i, leg in enumerate(path.robot.legs)
-        if leg.cylinder_of_oil is not None
-    )
+    legs, found = path.legs, []
+    for i, leg in enumerate(path.robot.legs):
+        if leg.cylinder_of_oil is not None:
+            rate, force = legs.rate[:, i], path.forces.drive_force[:, i]
+            if (friction := leg.cylinder_of_oil.friction) is not None:
+                force = force + steady_friction(friction, rate)
+            found.append(describe_hydraulic(i, leg, path.time, legs.length[:, i], force, rate))
+    return tuple(found)
 
 
 def describe_hydraulic(i: int, leg: Leg, t: Array, length: Array, thrust: Array, rate: Array) -> HydraulicDescription:
-    """The cylinder of leg i at instants `t`, each shape (T,): length [m], thrust on the piston [N], rate [m/s]."""
+    """The cylinder of leg i at instants `t`, each shape (T,): length [m], force of the oil on it [N], rate [m/s]."""
     push, pull = leg.cylinder_of_oil.areas  # type: ignore[union-attr]
     oil = next(spring for spring in springs_along(leg) if spring.columns)
     k = 1 / oil.at_length(length)
