@@ -54,14 +54,29 @@ def _shapes(*arguments, **others):
     return shapes_of(*arguments, **others)
 
 
-def squared_frequencies(leg, free, modes=6, thrust=0.0, **others):
-    """omega^2 of a leg with its stroke locked and its tip pinned, both planes."""
-    shapes = _shapes(modes, 0, len(leg.piston.sections), tapers=any(s.tapered for s in leg.piston.sections), **others)
+def pinned(leg, free, modes=6, thrust=0.0, **others):
+    """M and K of a leg at rest under a thrust with its stroke locked and its tip pinned, both planes."""
+    tapers = any(s.tapered for s in leg.piston.sections)
+    count = max(len(leg.piston.sections), 2)  # one kernel for all of them
+    shapes = _shapes(modes, 0, count, tapers=tapers, **others)
     length, unit = leg.cylinder.mouth + free, np.eye(shapes.size)
     inputs = length * unit[2], np.array([0.0, 0.0, thrust]), vector(leg, shapes, length)
     M, _, K, J = function(shapes, 1)(*inputs)
     N = null_space(np.vstack([unit[2], J]))
-    return eigh(N.T @ K @ N, N.T @ M @ N, eigvals_only=True)
+    return N.T @ M @ N, N.T @ K @ N
+
+
+def squared_frequencies(leg, free, *arguments, **others):
+    """omega^2 of a pinned leg."""
+    M, K = pinned(leg, free, *arguments, **others)
+    return eigh(K, M, eigvals_only=True)
+
+
+def thrust_of_shapes(leg, free, *arguments, **others):
+    """The thrust at which a pinned leg has no stiffness left [N]."""
+    K = pinned(leg, free, *arguments, **others)[1]
+    less = K - pinned(leg, free, *arguments, thrust=1.0, **others)[1]
+    return 1 / eigh(less, K, eigvals_only=True)[-1]
 
 
 def steps_of(leg):

@@ -16,6 +16,7 @@ from typing import Any
 import numpy as np
 
 from flexapod.bases import AxialBasis, LateralBasis
+from flexapod.elements.chains import chain, is_chain
 from flexapod.elements.distribution import Distribution, Motion, gravity_energy, kinetic_energy
 from flexapod.elements.frame import Energies
 from flexapod.elements.shear import rotary_energy, shear_energy
@@ -104,7 +105,7 @@ class Part:
     @property
     def count(self) -> int:
         """Number of sections."""
-        return self.p.section_load.numel()
+        return self.p.section_place.numel()
 
     def rate(self, expression: SX) -> SX:
         """Derivative by s, times s."""
@@ -144,8 +145,7 @@ def stepped_shapes(
     ``planes``: directions that bend in their own way, a before b; one stands for both.
     """
     at = nodes(basis.count + _MORE + _TAPERED * part.tapers)
-    loads = None if shear is None else Uniform(basis=shear)
-    beams = [_Beam(part, at, Uniform(basis=basis), loads, name) for name in planes]
+    beams = [_Beam(part, at, basis, shear, name) for name in planes]
     shown = [beam.shown for beam in beams]
     all_ = Shown(**{f.name: vertcat(*(getattr(one, f.name) for one in shown)) for f in fields(Shown)})
     own = [_gram(one.bend, beam.weighed(f"EI_{beam.plane}"), one.bend) for one, beam in zip(shown, beams, strict=True)]
@@ -197,23 +197,26 @@ class _Beam:
 
     part: Part
     nodes: Nodes
-    uniform: Uniform
-    loads: Uniform | None
+    basis: LateralBasis
+    shear: LateralBasis | None
     plane: str
 
     @cached_property
     def pieces(self) -> list[Piece]:
         """Its pieces from free end to mouth."""
-        return self._pieces(self.uniform)
+        return self._pieces(self.basis)
 
     @cached_property
     def sheared(self) -> list[Piece]:
         """The same of its shear."""
-        return [] if self.loads is None else sheared(self._pieces(self.loads), self._over("shear"))
+        return [] if self.shear is None else sheared(self._pieces(self.shear), self._over("shear"))
 
-    def _pieces(self, uniform: Uniform) -> list[Piece]:
-        loads = [self.part.p.section_load[j] for j in range(self.part.count)]
-        return pieces(uniform, self.nodes, self.part.ends, loads, self._over(f"EI_{self.plane}"))
+    def _pieces(self, basis: LateralBasis) -> list[Piece]:
+        ends, gives = self.part.ends, self._over(f"EI_{self.plane}")
+        if is_chain(self.basis):
+            return chain(basis, self.nodes, ends, self._on("load"), gives, self.part.l / self.part.s - 1)
+        loads, size = self.part.p.section_load, self.part.p.section_load.numel() // self.part.count
+        return pieces(Uniform(basis=basis), self.nodes, ends, [loads[j * size] for j in range(self.part.count)], gives)
 
     def _on(self, name: str) -> list[list[SX]]:
         """Values of the sections at the points."""

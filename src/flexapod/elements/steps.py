@@ -10,6 +10,7 @@ from __future__ import annotations
 from collections.abc import Sequence
 from dataclasses import dataclass
 from functools import cache, cached_property
+from itertools import pairwise
 from typing import Any
 
 import numpy as np
@@ -19,7 +20,7 @@ from flexapod.bases import LateralBasis
 from flexapod.bases.beam_functions import gauss_unit
 from flexapod.typing import Array
 
-__all__ = ["Nodes", "Piece", "Uniform", "held", "law", "nodes", "pieces", "sheared"]
+__all__ = ["Nodes", "Piece", "Uniform", "held", "law", "nodes", "on_pieces", "pieces", "pieces_of", "sheared"]
 
 
 @dataclass(frozen=True, kw_only=True)
@@ -67,6 +68,14 @@ class Nodes:
     def rest(self, f: Sequence[Any]) -> list[Any]:
         """Integrals from each point to 1."""
         return [sum(w * y for w, y in zip(row, f, strict=True)) for row in self.beyond.tolist()]
+
+    def parabola(self, long: Any, f: Sequence[Any], value: Any, slope: Any) -> list[Any]:
+        """Values at the points, and at 0, of what has a second derivative f on a length; value and slope at its end."""
+        twice = np.vstack([self.beyond @ self.beyond, self.w @ self.beyond]).tolist()
+        return [
+            value - long * ((1 - t) * slope - long * sum(b * y for b, y in zip(row, f, strict=True)))
+            for t, row in zip([*self.t.tolist(), 0.0], twice, strict=True)
+        ]
 
     def between(self, f: Sequence[Any], t: Any) -> Any:
         """Value at any place of the polynomial through the points."""
@@ -145,7 +154,7 @@ def pieces(
         shears.append([m1 + load * uniform.at(u, 3) for u in x])
         M = m0 + m1 * (end - start) + load * uniform.at(end, 2)
         S = m1 + load * uniform.at(end, 3)
-    return _held_at_mouth(at, places, shears, bends)
+    return pieces_of(at, places, shears, bends)
 
 
 def sheared(bent: Sequence[Piece], softs: Sequence[Sequence[Any]]) -> list[Piece]:
@@ -155,14 +164,19 @@ def sheared(bent: Sequence[Piece], softs: Sequence[Sequence[Any]]) -> list[Piece
     """
     places = [*(piece.start for piece in bent), bent[-1].end]
     slopes = [[c * y for c, y in zip(soft, one.shears, strict=True)] for one, soft in zip(bent, softs, strict=True)]
-    return _held_at_mouth(bent[0].nodes, places, [one.shears for one in bent], None, slopes)
+    return pieces_of(bent[0].nodes, places, [one.shears for one in bent], None, slopes)
 
 
 def _places(at: Nodes, start: Any, end: Any) -> list[Any]:
     return [start + (end - start) * t for t in at.t.tolist()]
 
 
-def _held_at_mouth(
+def on_pieces(at: Nodes, places: Sequence[Any]) -> list[list[Any]]:
+    """Places of the nodes of every piece between ends."""
+    return [_places(at, start, end) for start, end in pairwise(places)]
+
+
+def pieces_of(
     at: Nodes, places: Sequence[Any], shears: list[Any], bends: list[Any] | None, slopes: list[Any] | None = None
 ) -> list[Piece]:
     """Pieces of given curvatures, or slopes: the mouth holds place and slope."""

@@ -38,7 +38,7 @@ def section_parameters(
         ("section_cuts", sections - 1),  # m, ends of the sections from the tip, ascending; 0: not there
         ("gland", 1),  # m, length within which the mouth takes a cut up
         ("section_rhoA", sections * powers),  # kg/m
-        ("section_load", sections),  # mean rhoA over its mean
+        ("section_load", sections * powers),  # rhoA over its mean, of few shapes its mean on a section alone
         *((f"section_EI_{plane}", sections * powers) for plane in planes),  # N m^2
         ("section_place", sections),  # tau at their tip ends: share of the compliance from the driven end
         ("section_shrink", sections),  # 1/m, how it falls from there

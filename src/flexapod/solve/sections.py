@@ -11,7 +11,8 @@ import numpy as np
 from flexapod.bases import LateralBasis
 from flexapod.bases.beam_functions import gauss_unit
 from flexapod.bases.lateral import proportional_damping
-from flexapod.elements.steps import Nodes, Piece, Uniform, held, law, nodes, pieces, sheared
+from flexapod.elements.chains import chain, is_chain
+from flexapod.elements.steps import Nodes, Piece, Uniform, held, law, nodes, on_pieces, pieces, sheared
 from flexapod.mechanics.layout import Shapes
 from flexapod.mechanics.section_layout import POWERS
 from flexapod.model import Leg, damping_parts
@@ -30,13 +31,14 @@ class Laws:
     """What the sections of a piston are along them, from the tip to the driven end.
 
     Lengths (n,) [m], and of each value the coefficients of the powers of the distance from a section's end at the tip;
-    E (n,) [Pa], and which of them are round.
+    E (n,) [Pa], which of them are round, and the length of the leg inside of the mouth [m].
     """
 
     length: Array
     values: dict[str, Array]
     E: Array
     round: tuple[bool, ...]
+    mouth: float
 
     def over(self, name: str, x: list[Any], start: Any, section: int, free: Any) -> list[Any]:
         """1 over a value at places x of a free length, times that at the tip."""
@@ -68,6 +70,7 @@ def laws_of(leg: Leg, sections: int = 0, *, inwards: bool = False) -> Laws:
                 for name, of in names.items()},
         E=np.array([at[0].E for _, at in parts]),
         round=tuple(at[0].round for _, at in parts),
+        mouth=leg.cylinder.mouth,
     )  # fmt: skip
 
 
@@ -92,7 +95,7 @@ def section_parameters(leg: Leg, shapes: Shapes, home: float) -> dict[str, objec
     tau = 1 - (before[:-1, None] + soft @ up_to) / whole
     dm = at["rhoA"] * length[:, None] * _WEIGHTS
     psi = shapes.axial.values(tau.ravel())
-    along, dm, mean = piston.length - (ends[:-1, None] + offset).ravel(), dm.ravel(), at["rhoA"] @ _WEIGHTS
+    along, dm = piston.length - (ends[:-1, None] + offset).ravel(), dm.ravel()
     mass, whole_mass = (psi * dm) @ psi.T, dm.sum()
     free = home - leg.cylinder.mouth
     damped = [_damping(laws_of(leg), shapes.b, shapes.sheared, free, plane) for plane in shapes.planes]
@@ -104,7 +107,7 @@ def section_parameters(leg: Leg, shapes: Shapes, home: float) -> dict[str, objec
         **{f"section_{name}": laws.values[name][:, :powers] for name in laws.values},
         "section_cuts": ends[1:-1],
         "gland": piston.length * (_GLAND if leg.cylinder.mouth > 0 else 1e-6),
-        "section_load": loads(mean),
+        "section_load": loads(laws, of_points=is_chain(shapes.b))[:, :powers],
         "piston_turning": np.array([(at[f"turning_{way}"] @ _WEIGHTS) @ length for way in "ab"]),
         "section_place": 1 - before[:-1] / whole,
         "section_shrink": 1 / (laws.values["EA"][:, 0] * whole),
@@ -132,16 +135,20 @@ def _inner(leg: Leg, shapes: Shapes, basis: LateralBasis, home: float) -> dict[s
         **{f"inner_{name}": laws.values[name][:, :powers] for name in ("rhoA", "EI_b")},
         "inner_there": float(leg.guide is not None),
         "inner_cuts": np.cumsum(laws.length)[:-1],
-        "inner_load": loads(at["rhoA"] @ _WEIGHTS),
+        "inner_load": loads(laws)[:, 0],
         "inner_place": (np.cumsum(soft) - soft) / soft.sum(),
         "inner_shrink": -1 / (laws.values["EA"][:, 0] * soft.sum()),
         "inner_damping": 2 * damping_parts(leg.damping)[0] * overlap * damping * np.ones((basis.count, basis.count)),
     }
 
 
-def loads(rhoA: Array) -> Array:
-    """Mass per length over its mean, of pistons without mass 1."""
-    return rhoA / rhoA.mean() if rhoA.any() else np.ones_like(rhoA)
+def loads(laws: Laws, *, of_points: bool = False) -> Array:
+    """Mass per length over its mean, of pistons without mass 1, as `Laws.values`; else its mean on every section."""
+    rhoA = laws.values["rhoA"]
+    mean = np.array([law(c, length * _POINTS) @ _WEIGHTS for c, length in zip(rhoA, laws.length, strict=True)])
+    if not of_points or not mean.any():
+        rhoA = (mean if mean.any() else np.ones_like(mean))[:, None] * np.eye(1, POWERS)
+    return rhoA / (mean.mean() or 1.0)
 
 
 def numeric_pieces(leg: Leg, basis: LateralBasis, free: Any, direction: int) -> list[Piece]:
@@ -150,12 +157,17 @@ def numeric_pieces(leg: Leg, basis: LateralBasis, free: Any, direction: int) -> 
 
 
 def _pieces(laws: Laws, basis: LateralBasis, free: Any, name: str) -> list[Piece]:
-    at = nodes(basis.count + _MORE)
+    at, chained = nodes(basis.count + _MORE), is_chain(basis)
     cuts = [np.minimum(cut / free, 1.0) for cut in np.cumsum(laws.length)[:-1]]
     places = [0.0 * np.asarray(free), *cuts, 1.0 + 0.0 * np.asarray(free)]
-    over = _gives(laws, at, places, name, free)
-    mean = [law(c, length * _POINTS) @ _WEIGHTS for c, length in zip(laws.values["rhoA"], laws.length, strict=True)]
-    return pieces(Uniform(basis=basis), at, places, loads(np.array(mean)).tolist(), over)
+    gives, by_mass = _gives(laws, at, places, name, free), loads(laws, of_points=chained)
+    if not chained:
+        return pieces(Uniform(basis=basis), at, places, by_mass[:, 0].tolist(), gives)
+    at_points = [
+        [law(by_mass[j].tolist(), free * (x - start)) for x in row]
+        for j, (row, start) in enumerate(zip(on_pieces(at, places), places, strict=False))
+    ]
+    return chain(basis, at, places, at_points, gives, laws.mouth / free)
 
 
 def _gives(laws: Laws, at: Nodes, places: list[Any], name: str, free: Any) -> list[list[Any]]:
