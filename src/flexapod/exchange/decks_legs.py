@@ -192,9 +192,7 @@ def _gives(leg: model.Leg, axes: Array, at: Place) -> tuple[Array, Array]:
     """Directions (k, 3) in which a joint gives way, and springs (k,) [N/m]; `axes` (3, 3): columns, of the leg."""
     joint = leg.base_joint if at == "base" else leg.platform_joint
     if joint.flexes:
-        raise InputError(
-            "is not written in decks", key=f"leg.{at}_joint.stiffness", allowed="{ axial, radial }, bending and torsion"
-        )
+        raise _refused(f"leg.{at}_joint.stiffness", "{ axial, radial }, bending and torsion")
     along = in_series((spring for spring in springs_along(leg) if spring.at == at), 0.0, 0.0)[0]
     across = joint.across_and_along[0] if joint.across_and_along else 0.0
     springs = np.array([across, across, along])
