@@ -93,8 +93,8 @@ def test_spin_up_formula_and_derivatives():
 
 
 def test_constant_rate():
-    law = laws.constant_rate([0.0, 2.0], rate=0.1, offset=1.83)
-    np.testing.assert_allclose(law, [[1.83, 2.03], [0.1, 0.1], [0, 0]])
+    law = laws.constant_rate([0.0, 2.0], rate=0.1)
+    np.testing.assert_allclose(law, [[0.0, 0.2], [0.1, 0.1], [0, 0]])
 
 
 def test_spline_interpolates_and_rests_at_its_ends():

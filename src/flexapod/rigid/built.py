@@ -251,7 +251,7 @@ def built_limbs(robot: Robot, limbs: Limbs, parts: tuple[BuiltPart, ...] | None 
     return replace(limbs, base=limbs.base + base, platform=limbs.platform + platform, home=home)
 
 
-def built_poses(robot: Robot, path: Poses, t: Array | None = None, parts: tuple[BuiltPart, ...] | None = None) -> Poses:
+def built_poses(robot: Robot, path: Poses, t: Array | None = None) -> Poses:
     """Poses at rest of the rigid robot as built, its drives told what brings the drawn one to `path`, Eq. (T16.6).
 
     Parameters
@@ -261,8 +261,6 @@ def built_poses(robot: Robot, path: Poses, t: Array | None = None, parts: tuple[
         T poses of the rigid path.
     t : ndarray, shape (T,), optional
         Instants at which they are taken [s], for temperatures over time; default 0.
-    parts : tuple of BuiltPart, optional
-        Those that count; default all.
 
     Raises
     ------
@@ -274,7 +272,7 @@ def built_poses(robot: Robot, path: Poses, t: Array | None = None, parts: tuple[
     q = coordinates_of(inverse_kinematics(robot, rest))
     none = np.zeros_like(q)
     base, platform = np.zeros((2, len(t), len(legs), 3))
-    for part in built_parts(robot) if parts is None else parts:
+    for part in built_parts(robot):
         size = part.size(t).position[..., None]
         base, platform = base + size * part.base, platform + size * part.platform
         none = none + added(part, t, Law(q, np.zeros_like(q), np.zeros_like(q))).position

@@ -167,10 +167,10 @@ def rest_to_rest(t: ArrayLike, *, profile: str, amplitude: float, duration: floa
     return Law(amplitude * s, amplitude / duration * s_1, amplitude / duration**2 * s_2)
 
 
-def constant_rate(t: ArrayLike, *, rate: float, offset: float = 0.0) -> Law:
-    """Uniform motion ``offset + rate t``, shape (T,)."""
+def constant_rate(t: ArrayLike, *, rate: float) -> Law:
+    """Uniform motion ``rate t``, shape (T,)."""
     t = np.asarray(t, dtype=float)
-    return Law(offset + rate * t, np.full_like(t, rate), np.zeros_like(t))
+    return Law(rate * t, np.full_like(t, rate), np.zeros_like(t))
 
 
 def spin_up(t: ArrayLike, *, rate: float, duration: float) -> Law:

@@ -11,9 +11,8 @@ from flexapod.errors import InputError
 from flexapod.model import Study
 from flexapod.study.accuracy.imperfect import Bent, bent, is_crooked, thrust
 from flexapod.study.accuracy.play import Play, half_play, play_along
-from flexapod.study.accuracy.sensitivity import Sensitivity, sensitivity
+from flexapod.study.accuracy.sensitivity import Sensitivity, sensitivity, systematic
 from flexapod.study.accuracy.spread import Spreading, spreading
-from flexapod.study.accuracy.systematic import systematic
 from flexapod.study.accuracy.weight import by_density
 from flexapod.study.path import RigidPath
 from flexapod.typing import Array
@@ -33,8 +32,9 @@ class AtPose:
     def __init__(self, study: Study, pose: rigid.Poses) -> None:
         if study.robot.platform_fixed:
             raise InputError(
-                "has no pose that could be wrong: the platform is fixed", key="robot.platform.fixed", value=True
-            )
+                "leaves no pose that could be wrong", key="robot.platform.fixed", value=True,
+                next_step="Use `flexapod modes`, or `flexapod check`",
+            )  # fmt: skip
         self.study, self.robot = study, study.robot
         self.pose = rigid.Poses.at_rest(pose.position, pose.rotation)
 

@@ -16,7 +16,7 @@ from flexapod.solve.released import is_hexapod, rigid_errors
 from flexapod.study.after.causes import closing
 from flexapod.typing import Array
 
-__all__ = ["Sensitivity", "sensitivity"]
+__all__ = ["Sensitivity", "sensitivity", "systematic"]
 
 
 @dataclass(frozen=True, kw_only=True)
@@ -74,3 +74,17 @@ def _by_coordinate(robot: Robot, path: rigid.Poses) -> Array:
     turn = (R @ found[..., 3:, None])[..., 0]
     shift = found[..., :3] + np.cross(turn, arm[:, None, None])
     return np.concatenate([shift, turn], axis=-1)
+
+
+def systematic(robot: Robot, at: Sensitivity) -> dict[str, Array]:
+    """Displacement and rotation of the tool by part as built and warm, and leg, (n, 6), at the first pose at t = 0."""
+    found, still, start = {}, np.zeros_like(at.q[:1]), np.zeros(1)
+    for part in rigid.built_parts(robot):
+        size = part.size(start).position[0, :, None]
+        more = rigid.added(part, start, rigid.Law(at.q[:1], still, still)).position[0]
+        found[part.name] = (
+            np.einsum("nj,njx->nx", size * part.base, at.base[0])
+            + np.einsum("nj,njx->nx", size * part.platform, at.platform[0])
+            + np.einsum("nk,nkx->nx", more, at.coordinate[0])
+        )
+    return found
