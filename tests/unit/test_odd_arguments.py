@@ -109,6 +109,17 @@ def test_keys_without_effect_are_told():
         leg = robot.legs[0].replace(piston=robot.legs[0].piston.replace(bow=bow))
         scattered = robot.replace(legs=(leg,) * 6, tolerances=model.Tolerances(EI=0.03))
         assert any("tolerances.EI has no effect" in line for line in robot_remarks(scattered)) == (bow is None)
+    heated = robot_remarks(robot.replace(heat=model.Heat(reference=25.0)))
+    assert "heat has no effect: every part is as warm as heat.reference" in heated
+    leg = robot.legs[0].replace(platform_joint=model.Joint(axis=[1.0, 0.0, 0.0]))
+    ball = robot_remarks(robot.replace(legs=(leg, *robot.legs[1:])))
+    assert "leg 1: platform_joint.axis has no effect: a joint S has none" in ball
+    idle = fx.model.override(fx.preset("paper-robot"), friction="stuck").warnings
+    assert "simulation.friction = 'stuck' has no effect: no joint and no drive has friction" in idle
+    played = fx.preset("machine-hexapod")
+    assert not [x for x in fx.model.override(played, friction="stuck").warnings if "has no effect" in x]
+    played = played.replace(simulation=played.simulation.replace(play="gap"))
+    assert "simulation.play = 'gap' has no effect: no joint and no drive has play" in played.warnings
     for preset in ("paper-robot", "paper-actuator"):
         study = fx.preset(preset)
         odd = study.replace(simulation=study.simulation.replace(rho_inf=0.8))

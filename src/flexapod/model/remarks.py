@@ -10,6 +10,7 @@ from flexapod.model.heat import HEAT_PARTS, Heat
 from flexapod.model.leg import Leg
 from flexapod.model.material import MATERIALS
 from flexapod.model.robot import Robot
+from flexapod.model.simulation import Simulation
 from flexapod.words import number, text
 
 _SLENDER = 0.1
@@ -39,10 +40,24 @@ def _straight(robot: Robot) -> list[str]:
     return ["tolerances.EI has no effect: it counts in legs under thrust with a bow, an eccentricity or heat.gradient"]
 
 
+def settings_remarks(robot: Robot, simulation: Simulation) -> tuple[str, ...]:
+    """Settings about friction and play of robots in which nothing rubs or has play."""
+    rubs = any(x.friction for leg in robot.legs for x in (leg.base_joint, leg.platform_joint, leg.drive))
+    slack = any(leg.half_play for leg in robot.legs)
+    found = {"friction": simulation.friction == "stuck" and not rubs, "play": simulation.play == "gap" and not slack}
+    return tuple(
+        f"simulation.{name} = {getattr(simulation, name)!r} has no effect: no joint and no drive has {name}"
+        for name, idle in found.items()
+        if idle
+    )
+
+
 def _cold(heat: Heat) -> list[str]:
-    """Parts whose expansion is given and whose temperature is not."""
+    """Temperatures that warm nothing: parts whose expansion is given and whose temperature is not."""
     across = heat.gradient is not None and heat.gradient.piston is not None
     warm = [part for part in HEAT_PARTS if heat.warms(part)] + ["piston"] * across
+    if not warm:
+        return ["heat has no effect: every part is as warm as heat.reference"]
     given = [part for part in HEAT_PARTS if getattr(heat.expansion, part, None) is not None]
     return [
         f"heat.expansion.{part} has no effect: without heat.{part} it is as warm as heat.reference"
@@ -83,6 +98,10 @@ def _leg_remarks(leg: Leg) -> list[str]:
     unknown = [str(j) for j, section in enumerate(piston.sections, start=1) if section.yield_stress is None]
     if 0 < len(unknown) < len(piston.sections):
         remarks.append(f"yield_stress of some sections has no effect: sections without: {', '.join(unknown)}")
+    ball, springs = leg.platform_joint, ("stiffness", "bending", "torsion")
+    sprung = any(getattr(ball, name) is not None for name in springs)
+    if leg.letters.platform == "S" and ball.axis is not None and not sprung:
+        remarks.append("platform_joint.axis has no effect: a joint S has none")
     bodies = {"cylinder": cylinder.material, "drive": None if leg.screw is None else leg.screw.material}
     for key, material in bodies.items():
         usual = None if material is None else MATERIALS.get(material.name)

@@ -14,7 +14,7 @@ from flexapod.model.base import Frozen
 from flexapod.model.disturbance import Disturbance
 from flexapod.model.laws import Load
 from flexapod.model.motion import AXES, Motion, moved_axes
-from flexapod.model.remarks import actuator_remarks, robot_remarks
+from flexapod.model.remarks import actuator_remarks, robot_remarks, settings_remarks
 from flexapod.model.robot import Robot
 from flexapod.model.simulation import FIDELITIES, OWN_BASIS, SOLID, STRAIGHT, Initial, Simulation
 from flexapod.model.write import to_toml
@@ -163,7 +163,12 @@ class Study(_Documented):
     @property
     def warnings(self) -> tuple[str, ...]:
         """What is legal but doubtful, in words."""
-        return (*robot_remarks(self.robot), *self.simulation.unused, *self.notes)
+        return (
+            *robot_remarks(self.robot),
+            *settings_remarks(self.robot, self.simulation),
+            *self.simulation.unused,
+            *self.notes,
+        )
 
 
 class ActuatorStudy(_Documented):
