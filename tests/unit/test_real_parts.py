@@ -218,7 +218,7 @@ def test_a_spring_has_no_name_of_another_part_or_cause():
     robot = robot.replace(heat=heat, geometry=Geometry(leg_offset=1e-5, lead=1e-5))
     names = {*cause_names(robot), *part_stiffness(robot, robot.home_lengths), *names_of_rows(study(robot))}
     for name in (name for name in names if " " not in name):
-        with pytest.raises(InputError, match="is no name for a spring"):
+        with pytest.raises(InputError, match="is not a name for a spring"):
             AxialSpring(name=name, stiffness=1e8)
 
 

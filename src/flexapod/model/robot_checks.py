@@ -68,7 +68,7 @@ def check_built(robot: Robot) -> None:
         geometry.check(count, robot.normal if robot.plane else None)
         if geometry.lead is not None and np.abs(geometry.lead).max() > MOST_ERROR:
             raise InputError(
-                "is no error of a lead: real over called travel, less 1", key="geometry.lead",
+                "is not an error of a lead: real over called travel, less 1", key="geometry.lead",
                 value=geometry.lead.tolist(), allowed=f"at most {MOST_ERROR:g} in size; class C10 is 7e-4",
             )  # fmt: skip
         if geometry.lead is not None and not any(_has_lead(leg) for leg in robot.legs):
@@ -108,7 +108,7 @@ def check_tolerances(robot: Robot) -> None:
         size = 0.0 if spread is None else max(spread.sigma or 0.0, spread.box or 0.0)
         if size > bound:
             raise InputError(
-                "is no error of a machine: another one would be built", key=f"tolerances.{name}", value=size,
+                "is not an error of a machine: another one would be built", key=f"tolerances.{name}", value=size,
                 allowed=f"at most {words}, {100 * MOST_ERROR:g} % of the shortest leg at home or of the travel",
             )  # fmt: skip
 
@@ -229,6 +229,7 @@ def _check_bores(where: str, leg: Leg) -> None:
                 key=f"leg.{key}",
                 value=bore,
                 allowed=f"at least {width:.6g} m",
+                next_step="Choose a wider bore, or a thinner body",
             )
 
 
@@ -271,7 +272,7 @@ def check_leg(number: int, leg: Leg, length: float) -> None:
     for key, value in small:
         if value is not None and value > MOST_ERROR * length:
             raise InputError(
-                f"{where}: is no error of a leg that is {length:.4g} m long at home",
+                f"{where}: is not an error of a leg that is {length:.4g} m long at home",
                 key=f"leg.{key}",
                 value=value,
                 allowed=f"at most {100 * MOST_ERROR:g} % of that, {MOST_ERROR * length:.4g} m",

@@ -96,7 +96,8 @@ class Section(Values):
             return None if given is None else np.array(given)
         found = axis_of(str(self.text(name, WORDS)), place, normal)
         if found is None:
-            raise self.error("is no direction here: the joint lies on the axis", name, allowed="a vector, or vertical")
+            what = "is not a direction here: the joint lies on the axis"
+            raise self.error(what, name, allowed="a vector, or vertical")
         return found
 
     def table(

@@ -42,7 +42,7 @@ class AxialSpring(Frozen):
         check_lossy(self)
         if self.name in RESERVED or not re.fullmatch(r"[A-Za-z][\w-]*", self.name):
             raise InputError(
-                "is no name for a spring",
+                "is not a name for a spring",
                 value=self.name,
                 allowed="letters, digits, _ and -, and not " + ", ".join(RESERVED),
             )
