@@ -27,7 +27,7 @@ SHAPES, REPEATS, RUNS, STEP = 3, 9, 5, 1e-4
 LANES = 8  # of a vector on this kind of machine; eight legs fill one
 FIRST = """
 import flexapod as fx, sys, resource
-fx.simulate(fx.load(sys.argv[1]), modes=3, **{sys.argv[2]: float(sys.argv[3])}, duration=1e-2)
+fx.simulate(fx.load(sys.argv[1]), modes=int(sys.argv[4]), **{sys.argv[2]: float(sys.argv[3])}, duration=1e-2)
 print(max(resource.getrusage(who).ru_maxrss for who in (resource.RUSAGE_SELF, resource.RUSAGE_CHILDREN)))
 """
 
@@ -75,15 +75,15 @@ def _of_a_step(counts: list[float]) -> float:
     return 2 * counts[0] + counts[1] / 16
 
 
-def first_run(file: Path, *how: str) -> tuple[float, float]:
+def first_run(file: Path, *how: str, modes: int = SHAPES) -> tuple[float, float]:
     """Seconds and largest memory [MB] of the first run ever of a study, as a process, with the compiler's.
 
-    ``how``: ``step`` or ``tolerance`` and its value; without, a fixed step.
+    ``how``: ``step`` or ``tolerance`` and its value; without, a fixed step. ``modes``: shapes of a plane.
     """
     with tempfile.TemporaryDirectory() as folder:
         begin = time.perf_counter()
         environment = os.environ | {"FLEXAPOD_CACHE": folder}
-        line = [sys.executable, "-c", FIRST, str(file), *(how or ("step", "1e-3"))]
+        line = [sys.executable, "-c", FIRST, str(file), *(how or ("step", "1e-3")), str(modes)]
         run = subprocess.run(line, check=True, env=environment, capture_output=True, text=True)
         return time.perf_counter() - begin, float(run.stdout.split()[-1]) / 1024
 

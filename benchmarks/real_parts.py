@@ -11,13 +11,20 @@ from benchmarks.timing import interleaved
 from flexapod.model import loads, preset, preset_text
 from flexapod.solve.robot_march import prepare
 
-__all__ = ["EVERYTHING", "real_parts"]
+__all__ = ["EVERYTHING", "real_parts", "tapered"]
 
 COMMAND = "python -m benchmarks real-parts"
 REPEATS = 9
 #: Operations of a leg of paper-robot before there were real parts: residual, matrices.
 BEFORE = {"leg_residual": 3887, "leg_matrices": 1977}
 EVERYTHING = Path(__file__).with_name("everything.toml")
+#: Pistons as everything.toml has them, and in two parts of which one tapers.
+UNIFORM = '{ diameter = "60 mm", inner_diameter = "40 mm", length = "600 mm", material = "steel" }'
+TAPERED = """{ sections = [
+  { length = "400 mm", diameter = "60 mm", tip_diameter = "50 mm", material = "steel" },
+  { length = "200 mm", diameter = "60 mm", material = "steel" },
+] }"""
+MOST_SHAPES = 6
 
 
 def real_parts() -> list[Section]:
@@ -41,10 +48,25 @@ def real_parts() -> list[Section]:
     remarks = [
         f"Operations of a leg of paper-robot, residual and matrices, over those without real parts: {numbers}: "
         + goal(worst, 1.03, "at most 3 % more"),
+        f"First run ever with pistons that taper and {MOST_SHAPES} shapes a plane, within a tolerance: "
+        + _first_tapered(),
         "everything on: benchmarks/everything.toml. Budgets at a pose and in maps: python -m benchmarks many-poses.",
     ]
     header = ["Robot", "Step in C", "Of paper-robot", "First run ever", "Memory, of the compiler or the run"]
     return [Section(title="Real parts", command=COMMAND, header=header, rows=rows, remarks=remarks)]
+
+
+def tapered() -> str:
+    """Everything on, with guided pistons of two sections, one a taper: the longest compilation."""
+    return EVERYTHING.read_text("utf-8").replace(UNIFORM, TAPERED)
+
+
+def _first_tapered() -> str:
+    with tempfile.TemporaryDirectory() as folder:
+        file = Path(folder) / "study.toml"
+        file.write_text(tapered(), encoding="utf-8")
+        seconds, memory = first_run(file, "tolerance", "1e-4", modes=MOST_SHAPES)
+    return f"{seconds:.1f} s, {goal(seconds, 30.0, 'at most 30')}; {memory:.0f} MB"
 
 
 def _first(text: str) -> list[str]:

@@ -12,14 +12,14 @@ from benchmarks.fitting import fitted_polynomial, fitted_power
 from benchmarks.mechanisms import count
 from benchmarks.one_robot import fixed, largest_step
 from benchmarks.operations import Count, casadi_count, compile_counting, counted, reader
-from benchmarks.real_parts import BEFORE, EVERYTHING
+from benchmarks.real_parts import BEFORE, EVERYTHING, tapered
 from benchmarks.report import Section, goal
 from benchmarks.scaling import Law, with_legs
 from benchmarks.side_by_side import Family, chosen
 from benchmarks.timing import Spread, interleaved
 from benchmarks.tolerances import at_error
 
-from flexapod.model import load, preset
+from flexapod.model import load, loads, preset
 from flexapod.solve.robot_march import prepare
 from flexapod.study.after.causes import cause_names
 
@@ -163,3 +163,9 @@ def test_robots_without_real_parts_do_not_pay_for_them():
 def test_the_robot_with_everything_on_has_every_part():
     parts = set(cause_names(load(EVERYTHING).robot))
     assert {"base_joint", "platform_joint", "screw", "nut", "bearing", "base_plate"} <= parts
+
+
+def test_the_longest_compilation_has_a_taper_in_bushings():
+    study = loads(tapered())
+    for leg in study.robot.legs:
+        assert leg.guide is not None and [section.tapered for section in leg.piston.sections] == [True, False]

@@ -77,6 +77,33 @@ def test_a_function_in_parts_gives_the_same_bits(monkeypatch):
         np.testing.assert_array_equal(parts, whole)
 
 
+def _of_every_kind() -> NamedFunction:
+    """Sums and products of any length, in any order, with all other operations between them."""
+    rng, x = np.random.default_rng(8), symbol("x", 6)
+    y = [x[k] for k in range(6)]
+    y += [-x[0], 2 * x[1], 1 / x[2], x[3] / x[4], sqrt(x[1]), exp(x[2]), sin(x[3]), cos(x[3]), sin(x[5]), 0 - x[0]]
+    for _ in range(60):
+        a, b, c, d = (y[k] for k in rng.integers(0, len(y), 4))
+        y += [a * b + c * d, (a - b * c) * 0.3, dot(vertcat(*y[-5:]), vertcat(*y[2:7])) / (2 + a * a), a - b + 2 * d]
+    many = sum((rng.normal() * y[k % len(y)] * y[3 * k % len(y)] for k in range(150)), x[0])
+    return NamedFunction("kinds", [("x", x)], [("y", vertcat(*y, 7.0, x[5])), ("many", many)])
+
+
+def test_a_function_as_a_table_gives_the_same_bits(monkeypatch):
+    x = np.random.default_rng(9).uniform(0.1, 1.0, (19, 6))
+    x[3], x[7, 0], x[8, 3] = np.inf, -0.0, 1e7
+    found = []
+    for most in (10**6, 0):
+        monkeypatch.setattr(c_source, "TABLED", most)
+        library, signatures = compiled_library(["kinds", most], lambda: [_of_every_kind()], (), compiler.compiler())
+        kinds = CompiledFunction(library, "kinds", signatures["kinds"])
+        found.append(kinds.each(19, [x], [(258,), (1,)]))
+        assert ("RowInput" in c_source.c_source(_of_every_kind())) == (most == 0)
+    for statements, table in zip(*found, strict=True):
+        bits = np.isnan(statements), np.nan_to_num(statements).tobytes()  # of what is no number the sign is any
+        assert (np.isnan(table) == bits[0]).all() and np.nan_to_num(table).tobytes() == bits[1]
+
+
 @pytest.mark.parametrize(
     ("rows", "shapes"),
     [

@@ -5,12 +5,15 @@ from collections.abc import Iterator
 
 import casadi
 
+from flexapod.symbolic.c_rows import row_table
 from flexapod.symbolic.functions import NamedFunction
 
 __all__ = ["c_source"]
 
 #: Statements of a C function at most: beyond that the compiler's time and memory grow faster than the text.
 LONGEST = 5000
+#: Operations beyond which a function is a table: as statements each costs a compiler 0.2 ms.
+TABLED = 30_000
 _VALUE = re.compile(r"\b[tsc]\d+\b")
 _BINARY = {casadi.OP_ADD: "+", casadi.OP_SUB: "-", casadi.OP_MUL: "*", casadi.OP_DIV: "/"}
 _UNARY = {
@@ -45,7 +48,7 @@ def c_source(function: NamedFunction) -> str:
     kinds = ("double", "lanes") if function.alone else ("lanes",)
     return "\n".join(
         [
-            *(line for kind in kinds for line in _definition(f"{name}_{kind}", kind, list(_statements(built, kind)))),
+            *(line for kind in kinds for line in _lines(f"{name}_{kind}", kind, built)),
             f"void {name}(long count, const double *const *in, const long *rows, double *const *out) {{",
             f"  static const long in_size[] = {{{inputs}}}, out_size[] = {{{outputs}}};",
             f"  lanes work[{sum(map(sum, sizes))}];",
@@ -54,6 +57,12 @@ def c_source(function: NamedFunction) -> str:
             "}\n",
         ]
     )
+
+
+def _lines(name: str, kind: str, built: casadi.Function) -> Iterator[str]:
+    if kind == "lanes" and built.n_instructions() > TABLED:
+        return row_table(name, built)
+    return _definition(name, kind, list(_statements(built, kind)))
 
 
 def _definition(name: str, kind: str, statements: list[str]) -> Iterator[str]:

@@ -66,6 +66,45 @@ static inline lanes lanes_exp(lanes x) {
   return result;
 }
 
+/* A function as a table: batches of a kind, a number of rows, and for each the places in w that it reads and that it writes;
+   0 ends it. Below 100 kinds are sums of so many products, others one of `c_rows.py`. */
+typedef struct { int of, at; double constant; } RowInput;   /* of an input, or a constant where `of` is -1 */
+typedef struct { unsigned of, at, from; } RowOutput;
+
+static void rows(const unsigned *t, long inputs, const RowInput *known, long outputs, const RowOutput *results,
+                 const lanes *const *in, lanes *const *out, lanes *w) {
+  for (long i = 0; i < inputs; i++) {
+    if (known[i].of < 0) w[i] = (lanes){0} + known[i].constant; else w[i] = in[known[i].of][known[i].at];
+  }
+  for (unsigned kind, left; (kind = *t++);) {
+    left = *t++;
+#define PRODUCT(i) w[t[2*(i)]]*w[t[2*(i) + 1]]
+#define EACH(size, value) do { w[t[size]] = value; t += (size) + 1; } while (--left)
+    switch (kind) {
+      case 1: EACH(2, PRODUCT(0)); break;
+      case 2: EACH(4, PRODUCT(0) + PRODUCT(1)); break;
+      case 3: EACH(6, PRODUCT(0) + PRODUCT(1) + PRODUCT(2)); break;
+      case 4: EACH(8, PRODUCT(0) + PRODUCT(1) + PRODUCT(2) + PRODUCT(3)); break;
+      case 100: EACH(2, w[t[0]]/w[t[1]]); break;
+      case 101: EACH(2, lanes_sqrt(w[t[0]])); break;
+      case 102: EACH(2, lanes_exp(w[t[0]])); break;
+      case 103: case 104: do {
+        lanes turned[2];
+        lanes_turn(w[t[0]], turned, turned + 1);
+        w[t[2]] = turned[kind - 103];
+        t += 3;
+      } while (--left); break;
+      default: do {
+        lanes sum = PRODUCT(0);
+        for (unsigned i = 1; i < kind; i++) sum += PRODUCT(i);
+        w[t[2*kind]] = sum;
+        t += 2*kind + 1;
+      } while (--left);
+    }
+  }
+  for (long i = 0; i < outputs; i++) out[results[i].of][results[i].at] = (lanes){0} + w[results[i].from];
+}
+
 /* A lane function for `count` bodies. in[k]: rows[k] rows (repeated where fewer than bodies) of in_size[k] numbers;
    out[k]: count rows of out_size[k] numbers. Lanes beyond the last body repeat it. `work` holds a row of everything. */
 static inline void each_body(LaneFunction f, long count, int inputs, const long *in_size, const double *const *in,
