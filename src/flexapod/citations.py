@@ -92,7 +92,17 @@ CITATIONS = MappingProxyType(_WORKS)
 
 
 def cite(*names: str) -> tuple[str, ...]:
-    """Works in full, by short name; all of them without a name.
+    """Works that flexapod builds on, in full.
+
+    Parameters
+    ----------
+    *names : str
+        Short names, keys of `CITATIONS`; none for all of them.
+
+    Returns
+    -------
+    tuple of str
+        Authors, year, title and source of each.
 
     Raises
     ------

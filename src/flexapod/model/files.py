@@ -81,7 +81,25 @@ def load(path: str | Path) -> Study | ActuatorStudy:
 
 
 def loads(text: str, *, path: str | Path | None = None) -> Study | ActuatorStudy:
-    """Read a study from its text; `path` is for messages and for the tables it names."""
+    """Read a study from its text.
+
+    Parameters
+    ----------
+    text : str
+        TOML.
+    path : str or Path, optional
+        Named in messages; tables (CSV) are found relative to its folder. Nothing is read from it.
+
+    Returns
+    -------
+    Study or ActuatorStudy
+        As of `load`.
+
+    Raises
+    ------
+    InputError
+        As of `load`.
+    """
     return read_study(_tables(text, path), text)
 
 
@@ -113,7 +131,23 @@ def preset(name: Literal["paper-actuator"]) -> ActuatorStudy: ...
 @overload
 def preset(name: str) -> Study | ActuatorStudy: ...
 def preset(name: str) -> Study | ActuatorStudy:
-    """A study that comes with flexapod, by name (see `PRESETS`)."""
+    """A study that comes with flexapod.
+
+    Parameters
+    ----------
+    name : str
+        One of `PRESETS`.
+
+    Returns
+    -------
+    Study or ActuatorStudy
+        Of the preset's file, which `flexapod new NAME.toml --preset` writes; its comments say where values are from.
+
+    Raises
+    ------
+    InputError
+        A name that is not known.
+    """
     return loads(preset_text(name), path=f"{name}.toml")
 
 
@@ -136,6 +170,21 @@ def open_values(name: str) -> tuple[OpenValue, ...]:
 
     A preset marks them with a comment: ``# ours: reason`` at the end of the key's line, or, for a key inside a table
     in braces, ``# ours leg.cylinder.mass: reason`` on a line of its own.
+
+    Parameters
+    ----------
+    name : str
+        Of the preset.
+
+    Returns
+    -------
+    tuple of OpenValue
+        In the order of the file.
+
+    Raises
+    ------
+    InputError
+        A name that is not known.
     """
     text = preset_text(name)
     data, found, section = tomllib.loads(text), [], ""
