@@ -1,6 +1,7 @@
 """Polynomial shapes of the ``tip-load`` basis: the static shape under a tip force and modes with the tip held."""
 
 from dataclasses import dataclass
+from functools import cached_property
 
 import numpy as np
 from numpy.polynomial import Legendre
@@ -18,8 +19,11 @@ class PolynomialShape:
 
     def __call__(self, zeta: Array, derivative: int = 0) -> Array:
         """Value (or ``derivative``-th derivative in zeta) at ``zeta`` (any shape), dimensionless."""
-        series = self.series.deriv(derivative) if derivative else self.series
-        return np.asarray(series(np.asarray(zeta, dtype=float)))
+        return np.asarray(self._derivatives[derivative](np.asarray(zeta, dtype=float)))
+
+    @cached_property
+    def _derivatives(self) -> list[Legendre]:
+        return [self.series, *(self.series.deriv(k) for k in (1, 2, 3))]
 
 
 def tip_load_shapes(count: int, *, moment: bool = False) -> list[PolynomialShape]:

@@ -274,7 +274,7 @@ class Shapes:
         """Number of coordinates of the leg."""
         return sum(size for _, size in self.layout)
 
-    @property
+    @cached_property
     def rows(self) -> int:
         """Rows of the closure: 0, 3 or 6."""
         return {"none": 0, "point": 3, "pose": 6}[self.closure]
@@ -326,7 +326,7 @@ class Shapes:
         places = (base, platform, ("drive_friction", 1, self.drive_friction))
         return tuple((name, count) for name, count, has in places if has)
 
-    @property
+    @cached_property
     def bristles(self) -> int:
         """Number of bristles of the leg."""
         return sum(count for _, count in self.sliding)

@@ -62,16 +62,7 @@ class Call:
     """Structures of one call, and the arrays that they point to."""
 
     def __init__(self, system: System, flow: Flow, rows: Array, method: GeneralizedAlpha, h: float, every: int) -> None:
-        self.kept = [
-            np.ascontiguousarray(x, dtype=float)
-            for x in (
-                system.enforced[:, system.ports],
-                system.hub_held if system.hub else np.ones(6),
-                system.leg_p,
-                system.joint_p,
-                system.payload_p,
-            )
-        ]
+        self.kept = system.as_read_by_c
         self.settings = _Settings(
             system.legs, int(system.hub), system.ports.size, (c_long * PORTS)(*system.ports.tolist()),
             *[address(x) for x in self.kept],

@@ -52,7 +52,7 @@ class Flow(State):
 
     def copy(self) -> "Flow":
         """Independent copy."""
-        return replace(self, **{name: getattr(self, name).copy() for name in self.__dataclass_fields__})
+        return Flow(**{name: getattr(self, name).copy() for name in self.__dataclass_fields__})
 
 
 @dataclass(frozen=True, kw_only=True)
@@ -203,6 +203,13 @@ class System:
             if name in dict(layout):
                 stiffest.append(self.leg_p[:, columns(layout, name)].max())
         return float(8 * np.finfo(float).eps * max(stiffest))
+
+    @cached_property
+    def as_read_by_c(self) -> tuple[Array, ...]:
+        """What of it the compiled loops read, row by row: which ports are held, what of the payload, parameters."""
+        hub_held = self.hub_held if self.hub else np.ones(6)
+        read = (self.enforced[:, self.ports], hub_held, self.leg_p, self.joint_p, self.payload_p)
+        return tuple(np.ascontiguousarray(x, dtype=float) for x in read)
 
     def by_leg(self, vector: Array) -> Array:
         """Part of the legs of a flat vector, (legs, n)."""

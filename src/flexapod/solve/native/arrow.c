@@ -193,7 +193,7 @@ static int arrow_factor(Arrow *w, const Settings *s, const double *A_payload) {
 }
 
 /* r, g, dq, dlam: a row of N, ROWS, N, ROWS vectors a group; df: of a force for each port; rp (HUB), dy (6): of the payload.
-   In r and rp those of shared coordinates are in rp alone. */
+   In r and rp those of shared coordinates are in rp alone. Without dlam no forces are sought. */
 static void arrow_solve(const Arrow *w, const Settings *s, lanes (*r)[N], lanes (*g)[ROWS], const double *rp,
                         lanes (*dq)[N], lanes (*dlam)[ROWS], lanes (*df)[PORTS], double *dy) {
   lanes z[GROUPS][N], g0[GROUPS][ROWS + 1];
@@ -239,12 +239,13 @@ static void arrow_solve(const Arrow *w, const Settings *s, lanes (*r)[N], lanes 
     lanes_gemv(ROWS, M, 1, b->N1, dz, change);
     lanes_gemv(ROWS, HUB, 1, b->Y1, y, change);
     for (int p = 0; p < ROWS; p++) change[p] *= 1.0 - b->held[p];
+    for (long j = 0; j < N; j++) dq[group][ORDER[j]] = change[j];
+    if (!dlam) continue;
     for (long j = 0; j < N; j++) t[j] = r[group][ORDER[j]];
     for (long j = 0; j < N; j++) for (int i = 0; i < ROWS; i++) t[i] += b->A[i + j*N] * change[j];
     for (int p = 0; p < ROWS; p++) t[p] -= f[p];
     memset(dlam[group], 0, sizeof(lanes)*ROWS);
     lanes_gemv_t(ROWS, ROWS, -1, b->J1inv, t, dlam[group]);                /* rows of the pivots give dlam */
-    for (long j = 0; j < N; j++) dq[group][ORDER[j]] = change[j];
     for (long k = 0; k < s->ports; k++) {
       long at = PLACE[s->port[k]];
       if (at < ROWS) { df[group][k] = f[at]; continue; }

@@ -269,8 +269,8 @@ static double norm(const Settings *s, const Control *c, const Vector *x) {
 static void arrow_solve_vector(const Settings *s, Work *w, Vector *r, lanes (*g)[ROWS + 1], Vector *dq, Forces *df) {
   lanes gap[GROUPS][ROWS], dlam[GROUPS][ROWS];
   for (int i = 0; i < groups(s); i++) memcpy(gap[i], g[i], sizeof(lanes)*ROWS);
-  arrow_solve(&w->arrow, s, r->leg, gap, r->hub, dq->leg, dlam, df->drive, dq->hub);
-  for (int i = 0; i < groups(s); i++) memcpy(df->lam[i], dlam[i], sizeof(lanes)*ROWS);
+  arrow_solve(&w->arrow, s, r->leg, gap, r->hub, dq->leg, df ? dlam : 0, df ? df->drive : 0, dq->hub);
+  for (int i = 0; df && i < groups(s); i++) memcpy(df->lam[i], dlam[i], sizeof(lanes)*ROWS);
 }
 
 /* Residuals of a stage */
@@ -364,7 +364,6 @@ static int iterate_stages(const Settings *s, State *x, const Control *c, double 
 /* Estimate of the local error, of order 6 in h: that of order 4 of the embedded formula, times h^2 (K + FREE M), twice filtered */
 static double estimate(const Settings *s, const Control *c, double h, Radau *r, Work *w) {
   static _Thread_local Vector speed, change[STAGES], acceleration, rhs, error, second;
-  static _Thread_local Forces unused;
   static const lanes none[GROUPS][ROWS + 1];
   changes_of_rates(s, r, change);
   combine(s, EMBEDDED, r->Z, 1/h, &r->v0, &speed);
@@ -378,20 +377,19 @@ static double estimate(const Settings *s, const Control *c, double h, Radau *r, 
   for (int j = 0; j < 6; j++) acceleration.hub[j] += REAL/h*speed.hub[j];
   multiply(s, -1, r->M, s->hub ? r->hub_M : 0, &acceleration, &rhs);
   multiply(s, -1, r->D, 0, &speed, &rhs);
-  arrow_solve_vector(s, w, &rhs, (lanes (*)[ROWS + 1])none, &error, &unused);
+  arrow_solve_vector(s, w, &rhs, (lanes (*)[ROWS + 1])none, &error, 0);
   memset(&rhs, 0, sizeof rhs);
   multiply(s, -1, r->K, s->hub ? r->hub_K : 0, &error, &rhs);
   multiply(s, -FREE, r->M, s->hub ? r->hub_M : 0, &error, &rhs);
-  arrow_solve_vector(s, w, &rhs, (lanes (*)[ROWS + 1])none, &second, &unused);
+  arrow_solve_vector(s, w, &rhs, (lanes (*)[ROWS + 1])none, &second, 0);
   return norm(s, c, &second);
 }
 
 /* Correct the places of the state in the work space by how far legs are from closed, with the last matrices */
 static void close_places(const Settings *s, lanes (*gap)[ROWS + 1], Work *w) {
   static _Thread_local Vector zero, change;
-  static _Thread_local Forces unused;
   double before[7];
-  arrow_solve_vector(s, w, &zero, gap, &change, &unused);
+  arrow_solve_vector(s, w, &zero, gap, &change, 0);
   for (int i = 0; i < groups(s); i++) for (int j = 0; j < N; j++) w->leg[i].q[j] += change.leg[i][j];
   memcpy(before, w->payload.pose, sizeof before);
   turned_pose(before, change.hub, w->payload.pose);
@@ -401,9 +399,8 @@ static void close_places(const Settings *s, lanes (*gap)[ROWS + 1], Work *w) {
 static void close_record(const Settings *s, const double *load, Work *w) {
   static _Thread_local lanes gap[GROUPS][ROWS + 1], rate[GROUPS][ROWS + 1];
   static _Thread_local Vector zero, change;
-  static _Thread_local Forces unused;
   closing(s, load, w, gap, rate);
-  arrow_solve_vector(s, w, &zero, rate, &change, &unused);
+  arrow_solve_vector(s, w, &zero, rate, &change, 0);
   for (int i = 0; i < groups(s); i++) for (int j = 0; j < N; j++) w->leg[i].v[j] += change.leg[i][j];
   for (int j = 0; j < 6; j++) w->payload.u[j] += change.hub[j];
   double before = INFINITY;                             /* matrices of an earlier place close by a share each time */
@@ -429,32 +426,47 @@ static void start_step(const Settings *s, const Work *w, Radau *r) {
   memcpy(r->v0.hub, w->payload.u, sizeof w->payload.u); memcpy(r->a0.hub, w->payload.u_dot, sizeof w->payload.u_dot);
 }
 
-static void blend(const Settings *s, const double *c, const Vector *x, const Vector *start, Vector *y) {
-  combine(s, c, x, 1, 0, y);
-  if (!start) return;
-  for (int i = 0; i < groups(s); i++) for (int j = 0; j < N; j++) y->leg[i][j] += c[3]*start->leg[i][j];
-  for (int j = 0; j < 6; j++) y->hub[j] += c[3]*start->hub[j];
-}
-
-/* Displacements at theta: the integral of the rates' polynomial, which is of one degree more than that of the stages, and
-   what it misses at the end */
-static void places_at(const Settings *s, double theta, double h, const Radau *r, Vector *Z) {
-  static const double at[3] = {0.11270166537925831148, 0.5, 0.88729833462074168852}, weight[3] = {5.0/18, 8.0/18, 5.0/18};
-  static _Thread_local Vector rates[STAGES];
-  double part[4] = {0}, all[4] = {0}, c[4], share = theta*theta*theta;
-  memcpy(rates, r->V, sizeof rates);
-  for (int k = 0; k < STAGES; k++) for (int j = 3; j < 6; j++)                  /* of the rotation vector */
-    rates[k].hub[j] = (INVERSE[k][0]*r->Z[0].hub[j] + INVERSE[k][1]*r->Z[1].hub[j] + INVERSE[k][2]*r->Z[2].hub[j])/h;
+/* The state at theta in the work space. Displacements are the integral of the rates' polynomial, which is of one degree more
+   than that of the stages, and what it misses at the end. */
+static void state_at(const Settings *s, double theta, double h, const Radau *r, const double *row, Work *w) {
+  static const double node[3] = {0.11270166537925831148, 0.5, 0.88729833462074168852}, weight[3] = {5.0/18, 8.0/18, 5.0/18};
+  double part[4] = {0}, all[4] = {0}, c[4], share = theta*theta*theta, moved[6];
   for (int i = 0; i < 3; i++) {
-    through(at[i]*theta, 1, c);
+    through(node[i]*theta, 1, c);
     for (int j = 0; j < 4; j++) part[j] += h*theta*weight[i]*c[j];
-    through(at[i], 1, c);
+    through(node[i], 1, c);
     for (int j = 0; j < 4; j++) all[j] += h*weight[i]*c[j];
   }
   for (int j = 0; j < 4; j++) part[j] -= share*all[j];
-  blend(s, part, rates, &r->v0, Z);
-  for (int i = 0; i < groups(s); i++) for (int j = 0; j < N; j++) Z->leg[i][j] += share*r->Z[2].leg[i][j];
-  for (int j = 0; j < 6; j++) Z->hub[j] += share*r->Z[2].hub[j];
+  through(theta, 1, c);
+#define BLEND(c, x, start, of) (c[0]*x[0].of + c[1]*x[1].of + c[2]*x[2].of + c[3]*start.of)
+  for (int i = 0; i < groups(s); i++) {
+    LegState *leg = &w->leg[i];
+    for (int j = 0; j < N; j++) {
+      leg->q[j] = r->q.leg[i][j] + (BLEND(part, r->V, r->v0, leg[i][j]) + share*r->Z[2].leg[i][j]);
+      leg->v[j] = BLEND(c, r->V, r->v0, leg[i][j]);
+      leg->v_dot[j] = BLEND(c, r->A, r->a0, leg[i][j]);
+    }
+    for (int j = 0; j < ROWS; j++) leg->lam[j] = BLEND(c, r->F, r->f0, lam[i][j]);
+    for (long j = 0; j < s->ports; j++) leg->drive[j] = BLEND(c, r->F, r->f0, drive[i][j]);
+    for (int b = 0; b < 2*BRISTLES; b++) {
+      w->bristles[i][b] = c[3]*r->bristles[STAGES][i][b];
+      for (int k = 0; k < STAGES; k++) w->bristles[i][b] += c[k]*r->bristles[k][i][b];
+    }
+  }
+  follow_table(s, row, w);
+  if (!s->hub) return;
+  for (int j = 0; j < 6; j++) {
+    double rate[STAGES], start = r->v0.hub[j];
+    for (int k = 0; k < STAGES; k++) {                                          /* those of the rotation vector in displacements */
+      rate[k] = j < 3 ? r->V[k].hub[j] : (INVERSE[k][0]*r->Z[0].hub[j] + INVERSE[k][1]*r->Z[1].hub[j] + INVERSE[k][2]*r->Z[2].hub[j])/h;
+    }
+    moved[j] = part[0]*rate[0] + part[1]*rate[1] + part[2]*rate[2] + part[3]*start + share*r->Z[2].hub[j];
+    w->payload.u[j] = BLEND(c, r->V, r->v0, hub[j]);
+    w->payload.u_dot[j] = BLEND(c, r->A, r->a0, hub[j]);
+  }
+#undef BLEND
+  turned_pose(r->pose, moved, w->payload.pose);
 }
 
 /* Energies up to theta of a step, over its length: integrals of the polynomial of the powers */
@@ -469,20 +481,10 @@ static void powers_until(double theta, double h, const Radau *r, double *sums) {
 
 /* Record of an instant within a step */
 static void record_within(const Settings *s, State *x, const Control *c, double t, double theta, double h, Radau *r, Work *w) {
-  static _Thread_local Vector Z, V, A;
-  static _Thread_local Forces F;
-  double at[4], row[WIDTH], sums[WORKS];
+  double row[WIDTH], sums[WORKS];
   long width = s->legs*s->ports*COLUMNS;
-  through(theta, 1, at);
-  places_at(s, theta, h, r, &Z);
-  blend(s, at, r->V, &r->v0, &V); blend(s, at, r->A, &r->a0, &A);
-  combine_forces(s, at, r->F, &r->f0, &F);
   evaluate_series(c, width + load_size(s), t, row);
-  place(s, r, &Z, &V, &A, &F, row, w);
-  for (int i = 0; i < groups(s); i++) for (int b = 0; b < 2*BRISTLES; b++) {
-    w->bristles[i][b] = at[3]*r->bristles[STAGES][i][b];
-    for (int k = 0; k < STAGES; k++) w->bristles[i][b] += at[k]*r->bristles[k][i][b];
-  }
+  state_at(s, theta, h, r, row, w);
   w->closure = 0;
   if (ROWS) close_record(s, row + width, w);
   set_commands(s, w);

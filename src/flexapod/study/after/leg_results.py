@@ -10,8 +10,8 @@ from numpy.typing import ArrayLike
 from flexapod.mechanics.layout import columns, leg_parameters
 from flexapod.model import Robot
 from flexapod.rigid.built import built_limbs
-from flexapod.rigid.limbs import COORDINATES, HELD, Limbs, limbs
-from flexapod.rigid.robot import robot_limbs
+from flexapod.rigid.limbs import COORDINATES, HELD, Limbs
+from flexapod.rigid.robot import rigid_limbs, robot_limbs
 from flexapod.rigid.rotations import exponential, matrix
 from flexapod.solve.frames import as_drawn, in_world
 from flexapod.solve.friction import sliding
@@ -38,7 +38,7 @@ _BASE_ANGLES = ("alpha", "beta", "spin")
 
 def leg_results(robot: Robot, system: System, path: RigidPath, record: Record) -> dict[str, Array]:
     """Lengths, angles, deflections and forces of the legs."""
-    shapes, q, found = system.kernel.shapes, record.q, limbs(robot)
+    shapes, q, found = system.kernel.shapes, record.q, robot_limbs(robot)
     bent, forces = by_name.lateral(shapes, q), _port_forces(system, record)
     zero, turns = _zero(found), by_name.per_turn(robot)
     results = {
@@ -73,7 +73,7 @@ def leg_results(robot: Robot, system: System, path: RigidPath, record: Record) -
 def rigid_leg_results(path: RigidPath) -> dict[str, Array]:
     """Lengths and angles of the rigid legs, and the ways of their drives."""
     robot, state = path.robot, path.legs
-    found = limbs(robot, rigid=True)
+    found = rigid_limbs(robot)
     angles = [state.coordinate(name)[0] for name in by_name.angle_names(found).values()]
     values = {
         "leg_angle_rigid": np.stack(angles, axis=-1),
@@ -89,7 +89,7 @@ def rigid_reactions(robot: Robot, forces: RobotForces) -> dict[str, Array]:
     """Reactions of the rigid robot's joints beside forces on the platform."""
     if forces.states is None or forces.held is None or forces.closure is None:
         return {"base_force_rigid": forces.base_force, "base_moment_rigid": forces.base_moment}  # type: ignore[dict-item]
-    system, found, values = rigid_system(robot), limbs(released(robot)), {}
+    system, found, values = rigid_system(robot), robot_limbs(released(robot)), {}
     if held := by_name.held_names(found):
         values["held_force_rigid"] = _held_forces(found, system, forces.held, held)
     if _bears_moments(found):
@@ -113,7 +113,7 @@ def _port_forces(system: System, record: Record) -> Array:
 def _drive_positions(robot: Robot, system: System, record: Record) -> Array:
     """Where the drives are, (T, legs): strokes, carriages, rotors by their travel; of a servo what its spring holds."""
     shapes, q = system.kernel.shapes, record.q
-    found = by_name.of_drives(limbs(robot), shapes, q)
+    found = by_name.of_drives(robot_limbs(robot), shapes, q)
     gives = elongations(robot, system, q, ("nut",))
     give = np.sum(list(gives.values()), axis=0)
     give = give + in_gap(robot, system, q)
@@ -123,7 +123,7 @@ def _drive_positions(robot: Robot, system: System, record: Record) -> Array:
 def _motor_forces(robot: Robot, system: System, forces: Array) -> Array:
     """Forces of the drives on what they move, (T, legs): of rotors by their travel."""
     shapes = system.kernel.shapes
-    found = by_name.of_drives(limbs(robot), shapes, forces)
+    found = by_name.of_drives(robot_limbs(robot), shapes, forces)
     if not shapes.series:
         return found
     rotor = forces[..., shapes.index("r")]
@@ -150,7 +150,7 @@ def _by_angle(robot: Robot, system: System) -> Array:
 
 def drive_forces(robot: Robot, system: System, record: Record) -> Array:
     """Force of every drive on carriage or piston, (T, legs) [N, of cranks N m]; 0 of passive legs."""
-    found = by_name.of_drives(limbs(robot), system.kernel.shapes, _port_forces(system, record))
+    found = by_name.of_drives(robot_limbs(robot), system.kernel.shapes, _port_forces(system, record))
     rubbing = [i for i, leg in enumerate(robot.legs) if leg.screw is not None and leg.screw.friction is not None]
     for i in rubbing:  # what a screw's friction takes of the springs' force before it reaches the piston, Eq. (T19.12)
         found[:, i] -= twist_share(robot.legs[i], float(robot.home_lengths[i])) * record.friction[:, i, -1]
@@ -171,7 +171,7 @@ def _held_forces(found: Limbs, system: System, forces: Array, held: list[str]) -
 
 def leg_labels(robot: Robot, *, rigid: bool = False) -> dict[str, ArrayLike]:
     """Labels of the dimensions whose size depends on the robot; with `rigid` those of the rigid path."""
-    found = limbs(robot, rigid=rigid)
+    found = (rigid_limbs if rigid else robot_limbs)(robot)
     labels: dict[str, ArrayLike] = {"joint_angle": list(by_name.angle_names(found))}
     if not rigid:
         labels["cause"] = list(cause_names(robot))
@@ -181,7 +181,7 @@ def leg_labels(robot: Robot, *, rigid: bool = False) -> dict[str, ArrayLike]:
 
 def absent(robot: Robot) -> set[str]:
     """Variables of legs and frames that a simulation of this robot does not have."""
-    found = limbs(robot)
+    found = robot_limbs(robot)
     none = set() if by_name.has_strokes(robot) else {*STROKES, "actuator_force_rigid"}
     none |= set() if by_name.held_names(found) else {"held_force"}
     none |= set() if np.isfinite(largest_turns(robot)).any() else {"joint_margin"}
@@ -202,7 +202,7 @@ def _absent_frames(robot: Robot) -> set[str]:
 
 def drive_forms(robot: Robot) -> dict[str, Variable]:
     """Variables of drives in the units that they have: a crank and a screw have rad and N m."""
-    found = limbs(robot)
+    found = robot_limbs(robot)
     cranks = [name == "chi" and found.carriage == "crank" for name in by_name.drive_names(found)]
     turns = {crank or leg.screw is not None for crank, leg in zip(cranks, robot.legs, strict=True)}
     if True not in turns:

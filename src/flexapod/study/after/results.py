@@ -6,7 +6,7 @@ import numpy as np
 from numpy.typing import ArrayLike
 
 from flexapod.model import Robot, Study
-from flexapod.rigid.limbs import limbs
+from flexapod.rigid.robot import robot_limbs
 from flexapod.rigid.rotations import canonical, difference, matrix, quaternion
 from flexapod.rigid.trajectory import coordinates, turning_axes
 from flexapod.solve.frames import base_on_mount, floor, shared_by_legs
@@ -83,7 +83,7 @@ def rigid_force_results(path: RigidPath) -> dict[str, Array]:
     drive_force = path.forces.drive_force * per_turn(path.robot)
     found = {"drive_force_rigid": drive_force, "joint_force_rigid": path.forces.joint_force}
     if has_strokes(path.robot):
-        found["actuator_force_rigid"] = stroke_forces(limbs(path.robot), path.forces.drive_force)
+        found["actuator_force_rigid"] = stroke_forces(robot_limbs(path.robot), path.forces.drive_force)
     return found
 
 
