@@ -32,7 +32,7 @@ from flexapod.solve.system import Flow, State, System
 from flexapod.solve.tables import Law, robot_law
 from flexapod.typing import Array
 
-SAME = 1e-10  # instants that differ by less are the same; the shortest steps are a thousand times as long [s]
+AHEAD = 2000  # outputs whose rigid places are made at once
 
 
 @dataclass(frozen=True, kw_only=True)
@@ -193,13 +193,15 @@ def _summed(robot: Robot, system: System, still: System, state: State) -> State:
 
 
 class _Path:
-    """Rigid path, which commands and error measure share: the last poses asked for are remembered."""
+    """Rigid path, for commands and error measure: the last poses are remembered, and places of outputs."""
 
     def __init__(self, study: Study) -> None:
         self.robot, self.motion = study.robot, study.motion
         self.knots = rigid.path_knots(study.motion, study.duration)
         self.time, self.last = np.zeros(0), None
         self.guided = Pieces(self._centre, self.knots) if rigid.rigid_limbs(study.robot).guides else None
+        self.output_step, self.outputs = study.simulation.stored_step, study.simulation.outputs(study.duration)
+        self.stored, self.centres = np.zeros(0), (np.zeros((0, 3)), np.zeros((0, 3, 3)))
 
     def poses(self, t: Array) -> rigid.Poses:
         """Poses with rates at instants (T,), ascending."""
@@ -208,20 +210,23 @@ class _Path:
         return self.last
 
     def centre(self, t: Array) -> tuple[Array, Array]:
-        """Centre of mass (T, 3) and rotation (T, 3, 3) at instants (T,), if possible out of what is remembered."""
+        """Centre of mass (T, 3) and rotation (T, 3, 3) at instants (T,), ascending: many outputs are made at once."""
         if self.guided is not None:
             place, rotation = self.guided(t)
             return place, rotation
-        at = np.minimum(np.searchsorted(self.time, t - SAME), max(len(self.time) - 1, 0))
-        if self.last is None or np.abs(self.time[at] - t).max() > 2 * SAME:
-            place, rotation = self._centre(t)
-            return place, rotation
-        rotation = self.last.rotation[at]
-        return self.last.position[at] + rotation @ self.robot.com, rotation
+        if len(t) > 1 and not (len(self.stored) and self.stored[0] <= t[0] and t[-1] <= self.stored[-1]):
+            first = round(t[0] / self.output_step)
+            self.stored = np.arange(first, min(first + AHEAD, self.outputs) + 1) * self.output_step
+            self.centres = self._centre(self.stored)
+        at = np.minimum(np.searchsorted(self.stored, t), max(len(self.stored) - 1, 0))
+        if not len(self.stored) or (self.stored[at] != t).any():
+            return self._centre(t)
+        place, rotation = self.centres
+        return place[at], rotation[at]
 
-    def _centre(self, t: Array) -> list[Array]:
+    def _centre(self, t: Array) -> tuple[Array, Array]:
         place, rotation = rigid.places(self.robot, self.motion, t)
-        return [place + rotation @ self.robot.com, rotation]
+        return place + rotation @ self.robot.com, rotation
 
 
 class _Measure:
@@ -233,7 +238,6 @@ class _Measure:
         self.system, self.robot = system, study.robot
         self.path, self.lateral = path, slice(first, first + shapes.a.count + shapes.b.count)
         self.radius = np.linalg.norm(study.robot.platform_joints, axis=1).max()
-        self.time, self.com, self.rotation = np.zeros(0), np.zeros((0, 3)), np.zeros((0, 3, 3))
 
     def weights(self) -> tuple[Weight, ...]:
         """What moves the deviation, and the lateral amplitudes: these may have ten times the error."""
@@ -243,15 +247,13 @@ class _Measure:
         return Weight(leg=still, hub=hub), Weight(leg=lateral, hub=np.zeros(6))
 
     def __call__(self, recording: Recording) -> list[Array]:
-        if not np.array_equal(recording.time, self.time):  # a chunk is measured twice, with two steps
-            self.time = recording.time
-            self.com, self.rotation = self.path.centre(self.time)
+        com, rigid_rotation = self.path.centre(recording.time)
         place, rotation = recording.pose[:, :3], matrix(recording.pose[:, 3:])
         if self.robot.base_motion is not None:
             place, rotation = floor(self.system, self.robot, recording.q).seen(place, rotation)
-        turn = self.rotation.swapaxes(1, 2) @ rotation
+        turn = rigid_rotation.swapaxes(1, 2) @ rotation
         skew = [turn[:, 2, 1] - turn[:, 1, 2], turn[:, 0, 2] - turn[:, 2, 0], turn[:, 1, 0] - turn[:, 0, 1]]
-        shift = place - self.com
+        shift = place - com
         return [
             np.concatenate([shift, 0.5 * self.radius * np.stack(skew, axis=1)], axis=1),
             recording.q[:, :, self.lateral],
