@@ -101,6 +101,15 @@ def deviations(study):
     return simulate(study)["com_deviation"].values
 
 
+def test_outputs_far_apart_cost_no_steps():
+    """From straight legs nothing tells the scales before they sag: every 0.1 s took five times the steps."""
+    study = paper_robot(start="straight", duration=0.2, tolerance=1e-2)
+    near, far = (simulate(override(study, output_step=step)) for step in (1e-3, 0.1))
+    assert far.attrs["steps"] < 1.2 * near.attrs["steps"]
+    apart = (far.com_deviation - near.com_deviation.sel(time=far.time, method="nearest")).values
+    assert np.abs(apart).max() < 2e-2 * np.abs(near.com_deviation).max()  # both may be off by the tolerance
+
+
 @pytest.mark.parametrize("away", [0.0, -2e-7])
 def test_jumps_next_to_an_output(away):
     # 3 * 0.05 is the next number after 0.15: a step that ends there is still one before the jump.

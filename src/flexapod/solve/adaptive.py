@@ -23,6 +23,7 @@ FEW, MANY = 4, 500  # outputs of a chunk: of the first ones, which tell the scal
 CHUNK_STEPS = 2000  # steps in a chunk of several outputs
 SMALLEST = 1e-9  # scale of an error [m]: what is smaller is rounding
 ROUNDING, SEEN = 1e-15, 1e-7  # of lengths of a metre [m]; what is larger is no longer the start from rest [m]
+LOOK = 32  # steps to the next look at scales that are unknown at the start and grow; else twice as many as to the last
 SAMPLES = 50  # instants of a chunk that tell its scales
 FEWEST = 1e-6  # mean step below which a tolerance is called out of reach [s]
 FINEST = 1e-3  # pieces of series are no shorter for what bends without being told [s]
@@ -93,7 +94,10 @@ class _Run:
         series = Series(problem.tables, edges, min(FINEST, problem.output_step))
         self.within = Within(problem.system, series, edges[-1], problem.tolerance or 0.0)
         self.steps = 0  # of the last chunk
+        self.look = MOST  # steps to the next look at the scales
         self._scale(first)
+        if self.scales[0] < SEEN:
+            self.look = LOOK
 
     def chunk(self, flow: Flow, done: int, to: int) -> tuple[Chunk, Flow, ComputationError | None]:
         """Outputs after `done` up to `to`, or as far as it goes, the flow at their end, and what went wrong."""
@@ -139,9 +143,10 @@ class _Run:
         while True:
             at = done + sum(map(len, rows))
             outputs, ahead = ((at + 1) * step, step, to - at), np.array([t for t in stops if t > now])
-            found = self.within.advance(flow, ahead, self._weights(), outputs, self.counters)
+            most = self.look if self.look < MOST else MOST * max(to - at, 1)
+            found = self.within.advance(flow, ahead, self._weights(), outputs, most, self.counters)
             rows.append(found.rows)
-            if found.status != OUT_OF_REACH or found.time - now < MOST * FEWEST:
+            if found.status != OUT_OF_REACH or found.time - now <= (0.0 if most < MOST else MOST * FEWEST):
                 return found if len(rows) == 1 else replace(found, rows=np.concatenate(rows))
             flow, now = found.flow, found.time
             self._scale(_recorded(self.problem, flow, now)[1])
@@ -187,6 +192,8 @@ class _Run:
         groups = zip(self.scales, self.problem.measure(some), strict=True)
         self.scales = [max(scale, float(np.abs(x).max(initial=0.0))) for scale, x in groups]
         self.within.weigh(before / self.scales[0])
+        if self.look < MOST:
+            self.look = LOOK if 2 * before < self.scales[0] else 2 * self.look
 
     def _weights(self) -> tuple[Array, Array]:
         """One over the displacements that count as an error of one, of a leg's coordinates and of the payload's."""

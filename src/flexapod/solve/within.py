@@ -80,8 +80,8 @@ class Within:
         return float(self._memory[STEP])
 
     def weigh(self, ratio: float) -> None:
-        """Go on with weights that are `ratio` times those before."""
-        self._memory[SPENT] *= ratio
+        """Go on with weights that are `ratio` times those before: what is remembered of errors is in their units."""
+        self._memory[[SPENT, PEAK]] *= ratio
 
     def jumped(self) -> None:
         """Forget what is extrapolated from: commands have jumped."""
@@ -93,9 +93,10 @@ class Within:
         stops: Array,
         weights: tuple[Array, Array],
         outputs: tuple[float, float, int],
+        most: int,
         counters: Counters,
     ) -> Advanced:
-        """Advance to the last of `stops`, ascending instants on which steps end.
+        """Advance to the last of `stops`, ascending instants on which steps end, or by `most` steps.
 
         `outputs`: first instant, distance and number of the records on the way.
         """
@@ -105,7 +106,7 @@ class Within:
         leg, hub = (np.ascontiguousarray(x) for x in weights)
         control = _Control(
             self.horizon, self.tolerance, address(leg), address(hub), LONGEST, SHORTEST,
-            UNSOLVED, *outputs, len(series), NODES, MOST * max(outputs[2], 1), len(stops),
+            UNSOLVED, *outputs, len(series), NODES, most, len(stops),
             address(edges), address(series), address(stops),
         )  # fmt: skip
         before = self._memory[REJECTED]
