@@ -149,7 +149,7 @@ def leg_frame(number: int, vector: Array, u_axis: ArrayLike | None) -> Array:
         raise InputError("its joints coincide at home", key=f"leg {number}", next_step="Move one of the two joints")
     z = vector / length
     if u_axis is None:
-        x = np.array(cross((0.0, 0.0, 1.0), z))
+        x = np.array(cross(np.array([0.0, 0.0, 1.0]), z))
         x = np.array([1.0, 0.0, 0.0]) if np.linalg.norm(x) < _PARALLEL else x
     else:
         u = np.asarray(u_axis, dtype=float)
