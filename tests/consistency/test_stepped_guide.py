@@ -3,6 +3,7 @@
 import numpy as np
 import pytest
 from scipy.linalg import expm
+from tests.machines import machine
 from tests.stepped import (
     function,
     leg_of,
@@ -16,7 +17,9 @@ from tests.stepped import (
 )
 
 from flexapod.bases import lateral_basis
-from flexapod.model import Guide
+from flexapod.errors import InputError
+from flexapod.model import MATERIALS, Cylinder, Guide, Piston
+from flexapod.model.material import Tube
 
 BUSHINGS = Guide(gland=4e6, head=3e6)
 FREE, MOUTH = 0.6, 0.4
@@ -46,7 +49,7 @@ def test_equal_sections_are_a_uniform_guided_piston():
         np.testing.assert_allclose(ours, theirs, rtol=1e-8, atol=1e-9 * float(np.abs(theirs).max()))
 
 
-def misfit(leg, omega=0.0, thrust=0.0):
+def misfit(leg, omega=0.0, thrust=0.0, direction=0):
     """Determinant of a stepped beam in two bushings of a rigid cylinder, pinned at the tip, by transfer matrices."""
     k_g, k_h, head = leg.guide.gland, leg.guide.head, MOUTH + FREE - leg.piston.length
     J = leg.cylinder.inertia + leg.cylinder.mass * leg.cylinder.com**2
@@ -60,7 +63,7 @@ def misfit(leg, omega=0.0, thrust=0.0):
     for step in steps_of(leg)[::-1]:
         for low, high in ((at, min(at + step.length, MOUTH)), (max(at, MOUTH), at + step.length)):
             A = np.zeros((4, 4))
-            A[0, 1], A[1, 2], A[2, 1], A[2, 3], A[3, 0] = 1, 1 / step.EI[0], -thrust, 1, step.rhoA * omega**2
+            A[0, 1], A[1, 2], A[2, 1], A[2, 3], A[3, 0] = 1, 1 / step.EI[direction], -thrust, 1, step.rhoA * omega**2
             if high > low:
                 state = expm(A * (high - low)) @ state
             if high == MOUTH and low < MOUTH:
@@ -91,3 +94,25 @@ def test_cuts_between_bushings_that_overlap_by_half():
     leg, inner = guided([section(0.2, 0.04), section(0.7, 0.03)])
     load = thrust_of_shapes(leg, FREE, guide=inner)
     assert load == pytest.approx(root_near(lambda P: misfit(leg, thrust=P), load), rel=2e-6)
+
+
+def test_strips_in_bushings_bend_in_each_plane_with_their_own_stiffness():
+    # The cut between the bushings. The softer plane buckles.
+    leg, inner = guided([section(0.06, width=0.06, thickness=0.03), section(0.66, width=0.04, thickness=0.02)])
+    both = {"strips": True, "guide": inner}
+    found = np.sqrt(squared_frequencies(leg, FREE, 5, **both)[:4])
+    planes = 1, 0, 1, 0
+    exact = [root_near(lambda w, k=k: misfit(leg, w, direction=k), x) for x, k in zip(found, planes, strict=True)]
+    np.testing.assert_allclose(found, exact, rtol=1e-6)
+    load = thrust_of_shapes(leg, FREE, 5, **both)
+    assert load == pytest.approx(root_near(lambda P: misfit(leg, thrust=P, direction=1), load), rel=1e-6)
+
+
+@pytest.mark.parametrize(("part", "key"), [
+    ({"guide": BUSHINGS}, "guide"),
+    ({"cylinder": Cylinder.tube(mouth=0.6, section=Tube(diameter=0.09), material=MATERIALS["steel"])}, "diameter"),
+])  # fmt: skip
+def test_thick_pistons_in_what_gives_way_are_refused(part, key):
+    piston = Piston.stepped([section(0.75, 0.06)]).replace(shear=True)
+    with pytest.raises(InputError, match=rf"leg\..*{key}.*does not go together with pistons that shear"):
+        machine(piston=piston, **part)

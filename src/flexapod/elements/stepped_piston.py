@@ -323,9 +323,10 @@ def of_planes(planes: Sequence[str], x: SimpleNamespace) -> SimpleNamespace:
     if hasattr(x, "shear_b"):
         b = vertcat(b, x.shear_b)
         a = vertcat(a, x.shear_a) if hasattr(x, "shear_a") else 0 * b
+    found = {"a": a, "b": b} | ({"ha": x.ha, "hb": x.hb} if hasattr(x, "ha") else {})
     if len(planes) > 1:
-        a, b = vertcat(a, 0 * b), vertcat(0 * a, b)
-    return SimpleNamespace(**vars(x) | {"a": a, "b": b})
+        found = {name: vertcat(*(y if name.endswith(of) else 0 * y for of in planes)) for name, y in found.items()}
+    return SimpleNamespace(**vars(x) | found)
 
 
 def stepped_piston(f: Motion, p: SimpleNamespace) -> Energies:

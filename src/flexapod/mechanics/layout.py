@@ -351,8 +351,9 @@ class Shapes:
 
 def _of_sections(shapes: Shapes) -> tuple[tuple[str, int], ...]:
     sizes = shapes.sections, shapes.planes, shapes.b.count, shapes.axial.count
-    inner = inner_parameters(shapes.sections, shapes.guide.count, tapers=shapes.tapers) if shapes.guide else ()
-    return section_parameters(*sizes, shear=shapes.shear, tapers=shapes.tapers) + inner
+    own, tapers = section_parameters(*sizes, shear=shapes.shear, tapers=shapes.tapers), shapes.tapers
+    guide = shapes.guide
+    return own if guide is None else own + inner_parameters(*sizes[:2], guide.count, tapers=tapers)
 
 
 def leg_parameters(shapes: Shapes) -> tuple[tuple[str, int], ...]:

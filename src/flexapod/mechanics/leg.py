@@ -37,7 +37,7 @@ from flexapod.mechanics.layout import Shapes
 from flexapod.symbolic.lagrange import Lagrangian
 from flexapod.symbolic.vocabulary import SX, constant, expanded, matrix33, symbol, vertcat, zeros
 
-INNER = ("cuts", "rhoA", "load", "EI_b", "place", "shrink")
+INNER = ("cuts", "rhoA", "load", "place", "shrink")
 ALONG = constant(np.array([[0.0], [0.0], [1.0]]))  # a leg's own direction
 
 
@@ -155,7 +155,7 @@ def _of_sections(
     if shapes.guide is None:
         near, present = expanded(list(integrals.values()), l)
         return SteppedShapes(count=tip.size, tip=tip, **dict(zip(integrals, near, strict=True))), None, present
-    own = {f"section_{name}": getattr(p, f"inner_{name}") for name in INNER}
+    own = {f"section_{name}": getattr(p, f"inner_{name}") for name in (*INNER, *(f"EI_{k}" for k in shapes.planes))}
     within = Part(
         p=SimpleNamespace(gland=p.gland, **own), s=p.guide_reach - l, l=l, end=l - p.Lp, way=-1,
         tapers=shapes.tapers, there=p.inner_there,
@@ -163,9 +163,10 @@ def _of_sections(
     inside = stepped_shapes(within, shapes.guide, None, shapes.axial, shapes.planes)
     near, present = expanded([*integrals.values(), *inside.values()], l)
     outer, inner = near[: len(integrals)], near[len(integrals) :]
+    head = np.tile(shapes.guide.tip, len(shapes.planes))
     return (
         SteppedShapes(count=tip.size, tip=tip, **dict(zip(integrals, outer, strict=True))),
-        SteppedShapes(count=shapes.guide.count, tip=shapes.guide.tip, **dict(zip(inside, inner, strict=True))),
+        SteppedShapes(count=head.size, tip=head, **dict(zip(inside, inner, strict=True))),
         present,
     )
 

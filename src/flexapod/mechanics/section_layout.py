@@ -3,7 +3,9 @@
 POWERS = 5  # of a section that tapers: its EI is of fourth order
 
 
-def inner_parameters(sections: int, count: int, *, tapers: bool) -> tuple[tuple[str, int], ...]:
+def inner_parameters(
+    sections: int, planes: tuple[str, ...], count: int, *, tapers: bool
+) -> tuple[tuple[str, int], ...]:
     """The same of guided pistons for the part inwards of the mouth, sections from its end there; ``count`` shapes."""
     powers = POWERS if tapers else 1
     return (
@@ -11,10 +13,10 @@ def inner_parameters(sections: int, count: int, *, tapers: bool) -> tuple[tuple[
         ("inner_cuts", sections - 1),
         ("inner_rhoA", sections * powers),
         ("inner_load", sections),
-        ("inner_EI_b", sections * powers),
+        *((f"inner_EI_{plane}", sections * powers) for plane in planes),
         ("inner_place", sections),
         ("inner_shrink", sections),
-        ("inner_damping", count**2),
+        ("inner_damping", (len(planes) * count) ** 2),
     )
 
 

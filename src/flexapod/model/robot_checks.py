@@ -52,12 +52,11 @@ def check_counts(robot: Robot) -> None:
         "cylinder.diameter": [leg.cylinder.section for leg in robot.legs],
     }
     for name, parts in inside.items():
-        strips = name == "guide" and any(section.width for leg in robot.legs for section in leg.piston.sections)
-        if any(part is not None for part in parts) and (strips or any(leg.piston.shear for leg in robot.legs)):
+        if any(part is not None for part in parts) and any(leg.piston.shear for leg in robot.legs):
             raise InputError(
-                f"does not go together with pistons that {'are strips' if strips else 'shear'}",
+                "does not go together with pistons that shear",
                 key=f"leg.{name}",
-                allowed="slender pistons of round sections, or clamped at the mouths of rigid cylinders",
+                allowed="slender pistons, or thick ones clamped at the mouths of rigid cylinders",
             )
 
 

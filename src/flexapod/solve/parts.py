@@ -49,11 +49,11 @@ def guide_turning(robot: Robot, length: Array) -> Array:
     found = np.full(robot.count, np.inf)
     for i, leg in enumerate(robot.legs):
         if leg.guide is not None:
-            d, give, start = leg.overlap(length[i]), 0.0, 0.0
+            d, give, start = leg.overlap(length[i]), np.zeros(2), 0.0
             for step in leg.piston.steps_or_one:  # int (x / d)^2 / EI dx from the head
                 end = min(start + step.length, d)
-                give, start = give + (end**3 - start**3) / (3 * max(step.EI) * d**2), end
-            found[i] = 1 / (give + (1 / leg.guide.gland + 1 / leg.guide.head) / d**2)
+                give, start = give + (end**3 - start**3) / (3 * np.array(step.EI) * d**2), end
+            found[i] = 1 / (give.max() + (1 / leg.guide.gland + 1 / leg.guide.head) / d**2)
     return found
 
 

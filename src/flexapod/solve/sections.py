@@ -98,10 +98,7 @@ def section_parameters(leg: Leg, shapes: Shapes, home: float) -> dict[str, objec
     along, dm = piston.length - (ends[:-1, None] + offset).ravel(), dm.ravel()
     mass, whole_mass = (psi * dm) @ psi.T, dm.sum()
     free = home - leg.cylinder.mouth
-    damped = [_damping(laws_of(leg), shapes.b, shapes.sheared, free, plane) for plane in shapes.planes]
-    lateral = np.zeros((sum(map(len, damped)),) * 2)
-    for k, part in enumerate(damped):
-        lateral[k * len(part) : (k + 1) * len(part), k * len(part) : (k + 1) * len(part)] = part
+    lateral = _diagonal([_damping(laws_of(leg), shapes.b, shapes.sheared, free, way) for way in shapes.planes])
     inner = {} if shapes.guide is None else _inner(leg, shapes, shapes.guide, home)
     return inner | {
         **{f"section_{name}": laws.values[name][:, :powers] for name in laws.values},
@@ -130,15 +127,20 @@ def _inner(leg: Leg, shapes: Shapes, basis: LateralBasis, home: float) -> dict[s
     soft = laws.length * ((1 / at["EA"]) @ _WEIGHTS)
     if leg.guide is not None:
         overlap = leg.overlap(home)
-    damping = _damping(laws_of(leg, inwards=True), basis, None, overlap, "b") if overlap > 0 else 0.0
+    damping = np.zeros((len(shapes.planes) * basis.count,) * 2)
+    if overlap > 0:
+        own = laws_of(leg, inwards=True)
+        damping = _diagonal([_damping(own, basis, None, overlap, way) for way in shapes.planes])
     return {
-        **{f"inner_{name}": laws.values[name][:, :powers] for name in ("rhoA", "EI_b")},
+        **{
+            f"inner_{name}": laws.values[name][:, :powers] for name in ("rhoA", *(f"EI_{way}" for way in shapes.planes))
+        },
         "inner_there": float(leg.guide is not None),
         "inner_cuts": np.cumsum(laws.length)[:-1],
         "inner_load": loads(laws)[:, 0],
         "inner_place": (np.cumsum(soft) - soft) / soft.sum(),
         "inner_shrink": -1 / (laws.values["EA"][:, 0] * soft.sum()),
-        "inner_damping": 2 * damping_parts(leg.damping)[0] * overlap * damping * np.ones((basis.count, basis.count)),
+        "inner_damping": 2 * damping_parts(leg.damping)[0] * overlap * damping,
     }
 
 
@@ -283,6 +285,15 @@ def _damping(laws: Laws, basis: LateralBasis, shear: LateralBasis | None, free: 
             M += (turn * turn_mass) @ turn.T / free
             K += (slope * GA) @ slope.T / free
     return proportional_damping(M, K) if M.any() else M
+
+
+def _diagonal(parts: list[Array]) -> Array:
+    """Matrices of one size on the diagonal of another."""
+    n, size = len(parts), len(parts[0])
+    found = np.zeros((n, size, n, size))
+    for k, part in enumerate(parts):
+        found[k, :, k] = part
+    return found.reshape(n * size, n * size)
 
 
 def turning(step: Step, direction: int) -> float:
