@@ -1,9 +1,10 @@
 """Tables of the machine as built and warm: what is read, what is refused and with which words."""
 
+import numpy as np
 import pytest
 from tests import mechanisms
 
-from flexapod import loads
+from flexapod import accuracy, loads
 from flexapod.errors import InputError
 from flexapod.model import (
     Expansion,
@@ -16,6 +17,7 @@ from flexapod.model import (
     preset_text,
     to_toml,
 )
+from flexapod.words import text as text_of
 
 TEXT = preset_text("paper-robot")
 
@@ -146,6 +148,20 @@ def test_a_check_says_how_far_the_machine_as_built_is_off():
     found = loads((TEXT + text).replace("\nstroke =", '\nbase_joint = { play = "5 um" }\nstroke =', 1))
     built, spread, play = accuracy_words(found)
     assert "most of it by heat of the pistons" in built and "standard deviations" in spread and "play" in play
+
+
+def test_what_check_says_of_temperatures_over_time(tmp_path):
+    from flexapod.study.accuracy.words import accuracy_words
+
+    (tmp_path / "heat.csv").write_text("time [s], piston [degC]\n0, 20\n600, 26\n1200, 24\n")
+    more = '[heat]\nfile = "heat.csv"\nexpansion = { piston = 1.2e-5 }\n'
+    found = study(more, tmp_path)
+    (words,) = accuracy_words(found)  # as drawn at the start
+    moved = float(np.linalg.norm(accuracy(found).pose_drift[1, :3]))
+    assert words.startswith(
+        f"the temperatures of heat.file move the tool at home by up to {text_of(moved, 'm', 3)} from"
+    )
+    assert words.endswith("at t = 600 s")
 
 
 @pytest.mark.parametrize("draws", [-1, 1.5, True])

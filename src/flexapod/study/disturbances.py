@@ -19,6 +19,7 @@ from flexapod.study.arguments import PoseLike, RobotLike, as_pose, at_pose
 from flexapod.study.attributes import attributes
 from flexapod.study.before.checks import path_remarks
 from flexapod.study.names import dataset
+from flexapod.study.words import cleared
 from flexapod.threads import one_thread
 from flexapod.typing import Array
 from flexapod.words import text
@@ -139,7 +140,8 @@ def vibration_words(study: Study) -> tuple[str, ...]:
 def words_of(data: Dataset, where: str) -> tuple[str, ...]:
     """How much the tool shakes, along which axis most, by what and in which mode; doubts."""
     rms = data.vibration_rms.values
-    sizes = ", ".join(f"{axis} {text(float(size), 'm', 3)}" for axis, size in zip("xyz", rms, strict=False))
+    shown = [cleared(size, rms[:3].max()) for size in rms[:3]]
+    sizes = ", ".join(f"{axis} {text(float(size), 'm', 3)}" for axis, size in zip("xyz", shown, strict=True))
     most = int((rms[:3] > (1 - 1e-6) * rms[:3].max()).argmax())
     if not rms[most] > 0:
         return (f"disturbances do not move the tool {where}",)

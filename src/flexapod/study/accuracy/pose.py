@@ -11,7 +11,7 @@ from flexapod import rigid
 from flexapod.errors import ComputationError, InputError
 from flexapod.study.accuracy.at_pose import AtPose
 from flexapod.study.accuracy.play import PLACES
-from flexapod.study.accuracy.spread import displacement, samples
+from flexapod.study.accuracy.spread import displacement, drift, samples
 from flexapod.study.arguments import PoseLike, RobotLike, as_pose, at_pose
 from flexapod.study.attributes import attributes
 from flexapod.study.names import AT_A_POSE, dataset
@@ -85,10 +85,7 @@ def _errors(at: AtPose) -> tuple[_Named, _Named, list[str]]:
     try:
         values["pose_error"] = displacement(robot, at.pose, rigid.built_poses(robot, at.pose))[0] + bent
         if robot.heat is not None and robot.heat.time is not None:
-            t = robot.heat.time
-            many = at.pose.part(np.zeros(len(t), dtype=int))
-            values["pose_drift"] = displacement(robot, many, rigid.built_poses(robot, many, t)) + bent
-            labels["drift_time"] = t
+            values["pose_drift"], labels["drift_time"] = drift(robot, at.pose, robot.heat.time) + bent, robot.heat.time
     except ComputationError as error:
         remarks.append(f"pose_error is of first order, shared by the compliance of the legs: {error.what}")
     return values, labels, remarks

@@ -15,7 +15,7 @@ from flexapod.study.accuracy.imperfect import by_bending_stiffness, by_bow, soft
 from flexapod.study.accuracy.sensitivity import Sensitivity
 from flexapod.typing import Array
 
-__all__ = ["Spreading", "displacement", "samples", "spreading"]
+__all__ = ["Spreading", "displacement", "drift", "samples", "spreading"]
 
 CHI, L = COORDINATES.index("chi"), COORDINATES.index("l")
 BLOCK = 2000  # machines whose poses are sought side by side
@@ -158,3 +158,9 @@ def displacement(robot: Robot, before: rigid.Poses, after: rigid.Poses) -> Array
     """Displacement of the tool and rotation vector from poses to others, world axes, (T, 6)."""
     turn = rotation_vector(quaternion(after.rotation @ before.rotation.swapaxes(1, 2)))
     return np.concatenate([after.place(robot.tool) - before.place(robot.tool), turn], axis=1)
+
+
+def drift(robot: Robot, pose: rigid.Poses, times: Array) -> Array:
+    """Displacement of the tool at a pose by errors and by the temperatures of instants, (t, 6)."""
+    many = pose.part(np.zeros(len(times), dtype=int))
+    return displacement(robot, many, rigid.built_poses(robot, many, times))

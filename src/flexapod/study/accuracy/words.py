@@ -10,6 +10,7 @@ from flexapod.model import Robot, Study
 from flexapod.study.accuracy.at_pose import AtPose
 from flexapod.study.accuracy.imperfect import is_crooked
 from flexapod.study.accuracy.play import half_play
+from flexapod.study.accuracy.spread import drift
 from flexapod.study.cause_words import cause_in_words
 from flexapod.typing import Array
 from flexapod.words import text
@@ -26,13 +27,16 @@ def accuracy_words(study: Study) -> tuple[str, ...]:
         return ()
     at, found = AtPose(study, rigid.home_pose(robot)), []
     try:
-        if parts := at.parts:
-            whole = np.sum(list(parts.values()), axis=(0, 1))
+        parts = at.parts
+        whole = np.sum([*parts.values(), np.zeros((robot.count, 6))], axis=(0, 1))
+        if whole.any():
             largest = max(parts, key=lambda name: float(np.linalg.norm(parts[name][:, :3].sum(axis=0))))
             found.append(
                 f"as built and warm the tool stands {_size(whole)} beside its drawn place at home, most of it by "
                 f"{cause_in_words(largest)} ({text(float(np.linalg.norm(parts[largest][:, :3].sum(axis=0))), 'm', 3)})"
             )
+        if robot.heat is not None and robot.heat.time is not None:
+            found += _drift_words(at, robot.heat.time)
         if spread := at.spreading:
             sigma = np.sqrt(np.diag(np.sum([one.covariance for one in spread], axis=0)))
             found.append(f"tolerances spread the tool at home by {_by_axis(sigma)} (standard deviations)")
@@ -41,6 +45,20 @@ def accuracy_words(study: Study) -> tuple[str, ...]:
     except ComputationError as error:
         return (f"the accuracy at home cannot be said: {error.what}",)
     return tuple(found)
+
+
+def _drift_words(at: AtPose, times: Array) -> list[str]:
+    """How far the temperatures of a table move the tool from where it is at its start."""
+    try:
+        moved = drift(at.robot, at.pose, times)
+    except ComputationError:  # held more often than it needs: strained by heat, which only forces tell
+        return []
+    far = np.linalg.norm((moved - moved[0])[:, :3], axis=1)
+    last = int(far.argmax())
+    return [
+        f"the temperatures of heat.file move the tool at home by up to {text(float(far[last]), 'm', 3)} from where it "
+        f"stands at the start, at t = {times[last]:.4g} s"
+    ]
 
 
 def is_real(robot: Robot) -> bool:
