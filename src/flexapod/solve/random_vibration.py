@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+from collections.abc import Callable
 from dataclasses import dataclass
 
 import numpy as np
@@ -9,7 +10,7 @@ from numpy.typing import NDArray
 
 from flexapod.errors import InputError
 from flexapod.model import Disturbance, Floor, Spectrum
-from flexapod.solve.linear import LinearRobot
+from flexapod.solve.linear import Complex, LinearRobot
 from flexapod.typing import Array
 
 __all__ = ["RandomVibration", "Source", "density_at", "random_vibration", "sources_of"]
@@ -19,6 +20,7 @@ PER_DECADE = 12  # panels where nothing resonates
 ELLIPSE = 3 + np.sqrt(8)  # half axes of an ellipse without a pole, added, over half a panel
 SHARES = 2.0 ** -np.arange(0.0, 32.0, 0.5)  # of the widest panel
 BLOCK = 256  # frequencies side by side
+POINTS = 8  # of a polynomial through a response, on a panel whose ellipse holds no pole; error below 5.8**-16
 UNDAMPED = 1e-9  # damping ratio below which nothing limits a resonance
 FLOOR_RATES = {"acceleration": 0, "velocity": 1, "displacement": 2}
 
@@ -134,12 +136,13 @@ def random_vibration(model: LinearRobot, sources: list[Source], *, refine: int =
     f = (0.5 * (edges[1:] + edges[:-1])[:, None] + half[:, None] * NODES).ravel()
     weight = (half[:, None] * WEIGHTS).ravel()
     forces = np.concatenate([source.forces for source in sources], axis=1)
+    response = _response(model, forces, f, refine)
     psd, covariance = np.zeros((len(f), 6)), np.zeros((6, 6))
     by_mode, by_input = np.zeros((model.omega.size, 6)), np.zeros((forces.shape[1], 6))
     for start in range(0, len(f), BLOCK):
         some = slice(start, start + BLOCK)
         S = np.concatenate([source.at(f[some]) for source in sources], axis=1)
-        eta = model.amplitudes(f[some], forces)
+        eta = response(f[some])
         H = model.tool @ eta
         power = np.abs(H) ** 2 * S[:, None]  # (T18.7)
         psd[some] = power.sum(axis=2)
@@ -160,6 +163,32 @@ def random_vibration(model: LinearRobot, sources: list[Source], *, refine: int =
     )
 
 
+def _response(model: LinearRobot, forces: Array, f: Array, refine: int) -> Callable[[Array], Complex]:
+    """Amplitudes (f, r, k) at frequencies: solved for, or where tables have many rows polynomials on wider panels."""
+    span = Source(name="", forces=forces, frequency=f[[0, -1]], density=np.zeros((2, 1)))
+    edges = panels(model, [span], 2 * refine)
+    if len(f) <= 4 * POINTS * (len(edges) - 1):
+        return lambda some: model.amplitudes(some, forces)
+    angle = np.pi * (np.arange(POINTS) + 0.5) / POINTS
+    nodes = 0.5 - 0.5 * np.cos(angle)
+    at = (edges[:-1, None] + np.diff(edges)[:, None] * nodes).ravel()
+    known = [model.amplitudes(at[i : i + BLOCK], forces) for i in range(0, len(at), BLOCK)]
+    values = np.concatenate(known).reshape(len(edges) - 1, POINTS, -1)
+    weights = np.sin(angle) * (-1.0) ** np.arange(POINTS)  # barycentric, of the zeros of Chebyshev's polynomial
+
+    def between(some: Array) -> Complex:
+        panel = np.clip(np.searchsorted(edges, some, side="right") - 1, 0, len(edges) - 2)
+        away = (some - edges[panel])[:, None] / np.diff(edges)[panel, None] - nodes
+        share = weights / np.where(away == 0, 1e-300, away)
+        share /= share.sum(axis=1, keepdims=True)
+        found = np.empty((len(some), values.shape[2]), dtype=complex)
+        for p in np.unique(panel):
+            found[panel == p] = share[panel == p] @ values[p]
+        return found.reshape(len(some), *forces.shape)
+
+    return between
+
+
 def panels(model: LinearRobot, sources: list[Source], refine: int) -> Array:
     """Edges [Hz] of panels each as long as rows of the tables and poles let it be, Eq. (T18.11)."""
     breaks = np.unique(np.concatenate([source.frequency for source in sources]))
@@ -168,18 +197,25 @@ def panels(model: LinearRobot, sources: list[Source], refine: int) -> Array:
     for end in breaks[1:]:
         while (left := end - edges[-1]) > 0:
             widest = min(left, edges[-1] * (10 ** (1 / PER_DECADE) - 1))
-            half = 0.5 * widest * SHARES[:, None]
-            x = (z - edges[-1] - half) / half
-            root = np.sqrt(x**2 - 1)
-            found = (np.maximum(np.abs(x + root), np.abs(x - root)) >= ELLIPSE).all(axis=1)
-            share = SHARES[found.argmax() if found.any() else -1]
+            share = 1.0 if _free(z, edges[-1], widest, SHARES[:1])[0] else None
+            if share is None:
+                found = _free(z, edges[-1], widest, SHARES)
+                share = SHARES[found.argmax() if found.any() else -1]
             reached = edges[-1] + widest * share
             edges.append(reached if end - reached > 1e-9 * end else end)
     cuts = np.array(edges[:-1])[:, None] + np.diff(edges)[:, None] * np.arange(refine) / refine
     return np.append(cuts.ravel(), edges[-1])
 
 
-def _poles(model: LinearRobot, low: float, high: float) -> NDArray[np.complex128]:
+def _free(z: Complex, start: float, widest: float, shares: Array) -> NDArray[np.bool_]:
+    """Whether an ellipse about a panel holds none of the poles, for panels of shares of the widest."""
+    half = 0.5 * widest * shares[:, None]
+    x = (z - start - half) / half
+    root = np.sqrt(x**2 - 1)
+    return (np.maximum(np.abs(x + root), np.abs(x - root)) >= ELLIPSE).all(axis=1)
+
+
+def _poles(model: LinearRobot, low: float, high: float) -> Complex:
     """Frequencies [Hz] at which responses are infinite, above the real axis.
 
     Raises
