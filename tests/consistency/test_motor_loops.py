@@ -238,11 +238,18 @@ class TestAtRest:
         left = {str(part) for part in fx.budget(study(loop, fidelity="lumped")).part.values}
         assert left - {"bending"} == ALL - INSIDE[encoder.at]
         if encoder is JOINTS:
+            assert np.isinf(fx.parts(held).leg_stiffness).all()
             with pytest.raises(InputError, match="infinitely stiff"):
                 fx.stiffness(loop, fidelity="lumped")
             run = fx.simulate(study(loop, fidelity="lumped", step=1e-3, duration=0.002))
             np.testing.assert_allclose(run.leg_length[0], run.leg_length_command[0], rtol=0, atol=1e-12)
             return
+        parts = fx.parts(held)
+        assert {str(name) for name in parts.part[np.isinf(parts.part_stiffness[0])].values} == INSIDE["stroke"]
+        # Six such springs along the legs; as they turn, a ton on 5e7 N/m adds its thrust over their length: 1e-3.
+        lift = float(fx.stiffness(held, fidelity="lumped").stiffness[2, 2])
+        slope = (held.home_position[2] + held.platform_joints[:, 2] - held.base_joints[:, 2]) / held.home_lengths
+        assert lift == pytest.approx(float((parts.leg_stiffness.values * slope**2).sum()), rel=2e-3)
         stiff = [fx.stiffness(x, fidelity="lumped").stiffness.values for x in (loop, held)]
         np.testing.assert_allclose(stiff[0], stiff[1], rtol=1e-12, atol=1e-12 * np.abs(stiff[1]).max())
 

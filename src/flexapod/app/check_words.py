@@ -253,13 +253,17 @@ def _pose(pose: PoseDescription, held: str) -> None:
 
 def _parts(parts: Mapping[str, tuple[float, ...]]) -> None:
     """Stiffness of every part along every leg, softest first, and all of a leg in series."""
-    whole = [1 / sum(1 / values[i] for values in parts.values()) for i in range(len(next(iter(parts.values()))))]
+    legs = range(len(next(iter(parts.values()))))
+    softness = [sum(1 / values[i] for values in parts.values()) for i in legs]
+    whole = [1 / x if x else math.inf for x in softness]
     ranked = sorted(parts.items(), key=lambda item: min(item[1]))
     print_text("Stiffness along the legs [N/µm], softest part first, and its share in the leg's compliance:", indent=2)
     rows = [[f"  {name}", *(_stiffness_and_share(k, all_) for k, all_ in zip(values, whole, strict=True))]
             for name, values in ranked]  # fmt: skip
-    print_table(["", *(f"leg {i}" for i in range(1, len(whole) + 1))],
-                [*rows, ["  all in series", *(number(k / 1e6, 4) for k in whole)]])  # fmt: skip
+    rows.append(["  all in series", *("-" if math.isinf(k) else number(k / 1e6, 4) for k in whole)])
+    print_table(["", *(f"leg {i}" for i in range(1, len(whole) + 1))], rows)
+    if any(math.isinf(k) for values in parts.values() for k in values):
+        print_text("-: a part that the leg does not have, or that its encoder makes up for.", indent=2)
 
 
 def _stiffness_and_share(stiffness: float, whole: float) -> str:

@@ -347,7 +347,9 @@ def _pose(pose: PoseDescription) -> list[str]:
             "Stiffness along the leg [N/µm]",
             *(f"leg {i}" for i in range(1, 1 + len(next(iter(pose.parts.values()))))),
         )
-        rows = [(name, *(f"{k / 1e6:.4g}" for k in values)) for name, values in pose.parts.items()]
+        rows = [
+            (name, *("-" if math.isinf(k) else f"{k / 1e6:.4g}" for k in values)) for name, values in pose.parts.items()
+        ]
         parts.append(html.table(head, rows))
     return parts
 

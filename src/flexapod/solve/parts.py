@@ -13,7 +13,9 @@ __all__ = ["guide_turning", "mount_stiffness", "part_stiffness"]
 
 
 def part_stiffness(robot: Robot, length: Array) -> dict[str, Array]:
-    """Stiffness along the legs of every part, (..., legs) [N/m], by name; infinite where a leg does not have it.
+    """Stiffness along the legs of every part, (..., legs) [N/m], by name.
+
+    Infinite where a leg does not have it, or where its drive makes up for it: inside of what an encoder measures.
 
     Parameters
     ----------
@@ -25,8 +27,16 @@ def part_stiffness(robot: Robot, length: Array) -> dict[str, Array]:
     for i, leg in enumerate(robot.legs):
         for spring in _all(leg):
             of_part = found.setdefault(spring.name, np.full(length.shape, np.inf))
-            of_part[..., i] = 1.0 / spring.at_length(length[..., i])
+            if not _inside(leg, spring):
+                of_part[..., i] = 1.0 / spring.at_length(length[..., i])
     return found
+
+
+def _inside(leg: Leg, spring: Spring) -> bool:
+    """Whether a part gives way inside of what the leg's encoder measures, Eq. (T23.11)."""
+    if leg.screw is None or leg.measured == "rotor" or spring.name == "drive":
+        return False
+    return leg.measured == "joint-to-joint" or (spring.at == "nut" and spring.name != "piston")
 
 
 def mount_stiffness(robot: Robot, path: rigid.Poses) -> dict[str, Array]:

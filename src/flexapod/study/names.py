@@ -155,7 +155,7 @@ _ENERGY = {
 }
 
 _STATIC = {
-    "part_stiffness": Variable(("leg", "part"), "N/m", "stiffness of a part along its leg"),
+    "part_stiffness": Variable(("leg", "part"), "N/m", "stiffness of a part that counts along its leg"),
     "leg_stiffness": Variable(("leg",), "N/m", "stiffness of all parts along a leg in series"),
     "guide_stiffness": Variable(("leg", "bushing"), "N/m", "stiffness of a bushing of the piston across the leg"),
     "guide_turning": Variable(("leg",), "N m/rad", "moment at the gland over the turn of the piston there"),

@@ -37,7 +37,8 @@ def parts(robot: RobotLike, pose: PoseLike = None) -> Dataset:
     xarray.Dataset
         `part_stiffness` (leg, part) [N/m]: of the piston's stretch, of joints, screw, twist, nut, bearing, of named
         springs, of a drive that has a spring, of mounts at the leg's joint against a force along that leg alone; inf
-        where a leg does not have the part. `leg_stiffness` (leg): all but mounts in series. Of guided pistons
+        where a leg does not have the part, or where its drive makes up for it: inside of what an encoder at the stroke,
+        or from joint to joint, measures. `leg_stiffness` (leg): all but mounts in series. Of guided pistons
         `guide_stiffness` (leg, bushing) [N/m] across the leg and `guide_turning` (leg) [N m/rad], of bushings and the
         piston between them against a moment at the gland; inf of a clamped one. `lost_motion` (leg) [m], of
         robots whose drives have friction: half of what a leg lags by it to and fro.
@@ -52,7 +53,8 @@ def parts(robot: RobotLike, pose: PoseLike = None) -> Dataset:
     remarks = path_remarks(study.robot, np.zeros(1), path)
     length = rigid.inverse_kinematics(study.robot, path).length[0]
     found = part_stiffness(study.robot, length)
-    whole = 1.0 / np.sum([1.0 / x for x in found.values()], axis=0)
+    softness = np.sum([1.0 / x for x in found.values()], axis=0)
+    whole = np.divide(1.0, softness, out=np.full_like(softness, np.inf), where=softness > 0)
     found |= {name: x[0] for name, x in mount_stiffness(study.robot, path).items()}
     values = {"part_stiffness": np.stack(list(found.values()), axis=1), "leg_stiffness": whole}
     if is_guided(study.robot):

@@ -89,8 +89,8 @@ class PoseDescription:
 
     `sag` [m] of the centre of mass, `stiffness`, `modes`: the lowest. None and empty where there is no such thing;
     `problem` then says why, or that loops are unstable. `parts`: of legs with more than ideal parts, by name and leg
-    [N/m], inf where it has none. `lost_motion` [m] of each leg by friction of its drive, half of it to and fro.
-    `bushings` [N]: what gland and head of each leg bear across it.
+    [N/m], inf where it has none, or where its drive makes up for it. `lost_motion` [m] of each leg by friction of its
+    drive, half of it to and fro. `bushings` [N]: what gland and head of each leg bear across it.
     """
 
     name: str
