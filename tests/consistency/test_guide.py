@@ -1,5 +1,6 @@
 """Pistons in two bushings and cylinders that bend: exact kinematics, limits, exact beams."""
 
+import base64
 import re
 
 import numpy as np
@@ -23,6 +24,8 @@ from flexapod.model.spring import AxialSpring
 from flexapod.proof.engines import calculix
 from flexapod.proof.engines.engine import CALCULIX
 from flexapod.proof.engines.exudyn_robot import RobotProblem
+from flexapod.report.replay import replay
+from flexapod.scene.geometry import RobotMotion
 from flexapod.solve.buckling import leg_loads
 from flexapod.study.accuracy.play import guide_play
 from flexapod.study.before.describe.robot import describe
@@ -249,6 +252,14 @@ def test_forces_of_the_bushings_balance_the_piston():
     np.testing.assert_allclose(describe(study(robot)).poses[0].bushings, pressed, rtol=1e-6)
     words = bodies_words(run)[-1]
     assert re.fullmatch(r"The glands bear up to [\d.]+ k?N across \(leg \d at t = .*?\), heads bear .*\.", words)
+    told = replay(study(robot, step=1e-3, duration=0.01), run)
+    (heads,) = (trace["take"] for trace in told["traces"] if trace.get("name") == "pistons in bushings")
+    shape = [int(n) for n in told["points"]["shape"].split(",")]
+    rows = np.frombuffer(base64.b64decode(told["points"]["bdata"]), dtype="<f4").reshape(shape)
+    ends = rows[0, [take for take in heads if take >= 0]].reshape(6, 2, 3)
+    motion = RobotMotion(study(robot), run)
+    drawn = motion.at(0.0, motion.automatic_scale()).flexible.heads
+    np.testing.assert_allclose(ends, 1e3 * drawn, atol=1e-3)  # 32 bit floats of 1 m in mm
     turning = fx.parts(robot).guide_turning.values[0]
     d, EI = float(data.guide_overlap[0]), robot.legs[0].piston.EI
     assert turning == pytest.approx(1 / (d / (3 * EI) + 2 / 2e8 / d**2), rel=1e-3)  # the leg sags by some micrometres

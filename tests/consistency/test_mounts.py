@@ -1,5 +1,7 @@
 """Base and platform on springs: closed forms, limits, compliances that add up, plates without mass, energy, causes."""
 
+import base64
+
 import numpy as np
 import pytest
 from scipy.linalg import eigh
@@ -18,8 +20,11 @@ from flexapod.model import AxialSpring, loads, preset
 from flexapod.model.joint import Joint
 from flexapod.model.mount import BaseMotion, Mount
 from flexapod.model.write import to_toml
+from flexapod.report.replay import replay
 from flexapod.rigid.rotations import quaternion, turned
+from flexapod.scene.geometry import RobotMotion
 from flexapod.solve.buckling import leg_loads
+from flexapod.study.attributes import study_of
 from flexapod.symbolic.functions import Interpreted
 
 NONE = lateral_basis("clamped-free", 0)
@@ -292,6 +297,25 @@ def test_a_frame_that_gives_way_joint_by_joint_is_a_spring_of_the_joints():
                for leg, x in zip(robot.legs, k, strict=True)]  # fmt: skip
     ours, theirs = (fx.stiffness(robot.replace(legs=tuple(x)), fidelity="lumped").stiffness for x in (soft, springs))
     np.testing.assert_allclose(ours, theirs, atol=1e-9 * float(np.abs(theirs).max()))
+
+
+def test_plates_are_drawn_where_the_legs_end(shaken):
+    data = shaken[5e-4]
+    given = study_of(data)
+    motion = RobotMotion(given, data)
+    for time in data.time.values[[0, 80, -1]]:
+        drawn, at = motion.at(float(time), 1.0), data.sel(time=time)
+        far = np.linalg.norm(drawn.flexible.platform - drawn.flexible.base, axis=1)
+        # Pistons are as long as they are; turns of 1e-5 rad, squared, and what joints give way: nothing here.
+        np.testing.assert_allclose(far, at.leg_length, rtol=0, atol=1e-9)
+        assert not drawn.rigid.plates.any()
+    first, moved = motion.at(0.1, 1.0).flexible, motion.at(0.1, 100.0).flexible
+    np.testing.assert_allclose(moved.plates, 100 * first.plates)
+    told = replay(given, data)
+    base = next(trace for trace in told["traces"] if trace.get("name") == "base")["take"]
+    shape = [int(n) for n in told["points"]["shape"].split(",")]
+    rows = np.frombuffer(base64.b64decode(told["points"]["bdata"]), dtype="<f4").reshape(shape)
+    assert np.ptp(rows[:, base], axis=0).max() > 1.0  # mm, as drawn
 
 
 @pytest.mark.parametrize("name", ["base_mount", "platform_mount"])

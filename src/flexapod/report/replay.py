@@ -35,7 +35,7 @@ FLAT = 0.15  # least extent of the box, as a share of the largest
 BELOW = 0.06  # of the box's height, free below the base: numbers of the legs and of the axes stay apart
 #: From where robots in space and in a plane are seen.
 _EYES = {None: (1.5, -1.7, 0.5), "xy": (0.2, -0.9, 2.1), "yz": (2.1, -0.9, 0.4), "zx": (0.9, -2.1, 0.4)}
-CYLINDER, DEVIATION = "#8A8F98", "#D55E00"
+CYLINDER, DEVIATION, INSIDE = "#8A8F98", "#D55E00", "#222222"
 Traces = list[dict[str, Any]]
 
 
@@ -91,15 +91,17 @@ def _robot(study: Study, data: Dataset, modes: Dataset | None) -> dict[str, Any]
 
 
 def _points(flexible: Scene, rigid: Scene) -> Array:
-    """Points of a frame in mm: base joints, pistons, both platforms, rails, cranks and hinges, centres, tools.
+    """Points of a frame in mm: base joints, pistons, both platforms, rails, cranks, hinges, heads, centres, tools.
 
-    Of both: of the flexible robot, then of the rigid one. Where carriages move them, base joints at home come first.
+    Of both: of the flexible robot, then of the rigid one. Where carriages or a mount move base joints, those at home
+    come first.
     """
     pistons = flexible.piston[:, ::EVERY].reshape(-1, 3)
     centres = [flexible.centre, flexible.com, rigid.centre, rigid.com]
     tools = [at.centre + at.rotation @ at.skeleton.tool for at in (flexible, rigid)]
-    lines = np.concatenate([flexible.guides, flexible.hinges]).reshape(-1, 3)
-    ring = flexible.skeleton.robot.base_joints[: None if len(flexible.guides) else 0]
+    lines = np.concatenate([flexible.guides, flexible.hinges, flexible.heads]).reshape(-1, 3)
+    robot = flexible.skeleton.robot
+    ring = robot.base_joints[: None if len(flexible.guides) or robot.base_mount else 0]
     parts = (ring, flexible.base, pistons, flexible.platform, rigid.platform, lines)
     return 1e3 * np.vstack([*parts, *centres, *tools])
 
@@ -126,16 +128,19 @@ def _ring(joints: Array, first: int) -> list[int]:
 def _robot_traces(skeleton: Skeleton, point: str) -> Traces:
     """Lines between the points of `_points`, in its order; the deviation is that of a point: ``com`` or ``tool``."""
     robot, line = skeleton.robot, len(range(0, STATIONS, EVERY))
-    legs, rails, hinges = len(robot.legs), len(skeleton.home.guides), len(skeleton.home.hinges)
-    feet = legs if rails else 0
+    legs, home = len(robot.legs), skeleton.home
+    rails, hinges, heads = len(home.guides), len(home.hinges), len(home.heads)
+    feet = legs if rails or robot.base_mount else 0
+    still, ring = (feet, 0) if rails else (0, feet)  # feet of rigid legs, and the base as it is drawn
     pistons = [list(range(feet + legs + i * line, feet + legs + (i + 1) * line)) for i in range(legs)]
     start = feet + legs + legs * line
-    base, platform = _ring(robot.base_joints, 0), _ring(robot.platform_joints, start)
+    base, platform = _ring(robot.base_joints, ring), _ring(robot.platform_joints, start)
     rigid = [point + legs for point in platform]
     guides, axes = start + 2 * legs, start + 2 * legs + 2 * rails
-    centre, com, rigid_centre, rigid_com, tool, rigid_tool = range(axes + 2 * hinges, axes + 2 * hinges + 6)
+    inside = axes + 2 * hinges
+    centre, com, rigid_centre, rigid_com, tool, rigid_tool = range(inside + 2 * heads, inside + 2 * heads + 6)
     apart = point == "tool"
-    ghost = [point for i in range(legs) for point in (feet + i, start + legs + i, -1)]
+    ghost = [point for i in range(legs) for point in (still + i, start + legs + i, -1)]
     ghost += [*rigid, rigid[0], -1, rigid_com, rigid_centre, *[rigid_tool] * apart]
     cylinders = [point for i in range(legs) for point in (feet + i, pistons[i][0], -1)]
     colored = [
@@ -148,6 +153,12 @@ def _robot_traces(skeleton: Skeleton, point: str) -> Traces:
         *([_line(_pairs(axes, hinges), "#222222", 8, name="hinges", showlegend=False)] if hinges else []),
         _line(ghost, RIGID, 2, name="rigid legs"),
         _line(cylinders, CYLINDER, 13, name="cylinders", showlegend=False),
+        *([_line(_pairs(inside, heads), INSIDE, 4, name="pistons in bushings", showlegend=False)] if heads else []),
+        *(
+            [_dots(list(range(inside + 1, inside + 2 * heads, 2)), INSIDE, 4, symbol="diamond", showlegend=False)]
+            if heads
+            else []
+        ),
         *colored,
         _plate(platform),
         _line([*platform, platform[0]], "#2F6690", 4, name="platform", showlegend=False),

@@ -58,6 +58,7 @@ class RobotMotion:
         self._rotation = matrix(data.platform_quaternion_rigid.values)
         if "base_motion_displacement" in data:
             self._seen_from_base(data)
+        self._plates = np.stack([_plate(data, "base", study.robot), _plate(data, "platform", study.robot)], axis=1)
         self._tip = data.tip_deflection.values
         self._amplitude = data.lateral_amplitude.values if "lateral_amplitude" in data else None
         self._study = as_computed(study, data)
@@ -114,12 +115,22 @@ class RobotMotion:
         arm = self._arm if point == "tool" else np.zeros(3)
         return Instant(
             index=i,
-            flexible=skeleton.at(centre, turned, moved, offset, carriages),
+            flexible=skeleton.at(centre, turned, moved, offset, carriages, scale * self._plates[i]),
             rigid=rigid,
             start=com + R @ arm,
             end=moved + turned @ arm,
             deviation=(self._tool_deviation if point == "tool" else self._deviation)[i],
         )
+
+
+def _plate(data: Dataset, end: str, robot: model.Robot) -> Array:
+    """Displacement and turn of a plate about the origin of its axes, (T, 6) [m, rad]; zero without a mount."""
+    mount = robot.base_mount if end == "base" else robot.platform_mount
+    if mount is None:
+        return np.zeros((data.sizes["time"], 6))
+    turn = data[f"{end}_mount_rotation"].values
+    moved = data[f"{end}_mount_displacement"].values - np.cross(turn, mount.at)
+    return np.concatenate([moved, turn], axis=1)
 
 
 class ActuatorMotion:

@@ -31,7 +31,8 @@ class Scene:
     joint, to the tip (legs, n, 3); `com`, `centre` (3,): of the payload's mass, of the platform's frame; `rotation`
     (3, 3): platform to world; `guides` (carriages, 2, 3): rails from end to end, cranks from shaft to base joint;
     `hinges` (hinges, 2, 3): short lines along the axes of revolute joints and shafts. `heads` (guided legs, 2, 3):
-    pistons in bushings from gland to head.
+    pistons in bushings from gland to head. `plates` (2, 6): displacement and turn, about the origin, of the base plate
+    on its mount, world axes, and of the joints' plate against the payload, platform axes.
     """
 
     skeleton: Skeleton
@@ -44,6 +45,7 @@ class Scene:
     guides: Array
     hinges: Array
     heads: Array
+    plates: Array
 
     @property
     def radii(self) -> Array:
@@ -154,16 +156,18 @@ class Skeleton:
         com: Array | None = None,
         offset: Array | None = None,
         carriages: Array | None = None,
+        plates: Array | None = None,
     ) -> Scene:
         """The robot with its platform frame's origin at `centre`, turned by `R`.
 
         `com` (3,) of the payload, None: where a rigid platform carries it; `offset` (legs, 2, STATIONS): pistons off
         the lines of their joints [m], see `off_chord`, None: straight legs; `carriages` (legs,), None: where rigid legs
-        put them.
+        put them; `plates` (2, 6), see `Scene`, None: on mounts that do not move.
         """
-        tips = centre + self.robot.platform_joints @ R.T
+        plates = np.zeros((2, 6)) if plates is None else plates
+        tips = centre + _on_plate(self.robot.platform_joints, plates[1]) @ R.T
         carriages = self.carriages(tips) if carriages is None else carriages
-        base = self.bases(carriages)
+        base = _on_plate(self.bases(carriages), plates[0])
         chord = tips - base
         length = np.linalg.norm(chord, axis=1)
         axis = chord / length[:, None]
@@ -183,6 +187,7 @@ class Skeleton:
             guides=self._guides(base, carriages),
             hinges=self._hinges(base, frames, tips, R),
             heads=self._heads(base, axis, length),
+            plates=plates,
         )
 
     def _heads(self, base: Array, axis: Array, length: Array) -> Array:
@@ -229,6 +234,11 @@ class Skeleton:
                 found.append((tips[i], R @ self._limbs.platform_frames[i][:, 0]))
         half = BAR * self.size
         return np.array([[place - half * axis, place + half * axis] for place, axis in found]).reshape(-1, 2, 3)
+
+
+def _on_plate(points: Array, plate: Array) -> Array:
+    """Points (n, 3) of a plate that is displaced and turned (6,)."""
+    return points @ exponential(plate[3:]).T + plate[:3] if plate.any() else points
 
 
 def _radius(piston: model.Piston, xi: Array) -> Array:

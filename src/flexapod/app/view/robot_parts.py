@@ -10,7 +10,7 @@ import viser
 
 from flexapod import model
 from flexapod.app.view.legend import rgb
-from flexapod.rigid.rotations import quaternion
+from flexapod.rigid.rotations import exponential, quaternion
 from flexapod.scene.colours import colors_of_legs
 from flexapod.scene.geometry import ROUNDING, Instant, orientation, plate, round_down, strip, tube, tube_faces
 from flexapod.scene.skeleton import STATIONS, Scene, Skeleton
@@ -76,6 +76,8 @@ class RobotParts:
         self._colors: Array = np.zeros((len(robot.legs), 3), dtype=int)
         self._mouth = np.array([[leg.cylinder.mouth] for leg in robot.legs])
         self._radius, self._least = _radii(robot, skeleton.size), _LEAST * skeleton.size
+        self._moving = self._skeleton.guided if robot.base_mount is None else range(len(robot.legs))
+        self._plates: list[Any] = [None, None]  # on mounts
         self._joints = self._make_base(scene, add)
         self._platform = self._make_platform(scene, add)
         self._cylinders, self._pistons = self._make_legs(scene)
@@ -104,8 +106,11 @@ class RobotParts:
             if (colors[i] != self._colors[i]).any():
                 self._pistons[i].color = tuple(int(c) for c in colors[i])
         self._colors = np.array(colors)
-        for i in self._skeleton.guided:
+        for i in self._moving:
             self._joints[i].position = self._cylinders[i].position = points.base[i]
+        for mesh, moved in zip(self._plates, points.plates, strict=True):
+            if mesh is not None:
+                mesh.position, mesh.wxyz = moved[:3], quaternion(exponential(moved[3:]))
         lines_of = (self._guides, points.guides), (self._hinges, points.hinges), (self._heads, points.heads)
         for handle, lines in lines_of:
             if handle is not None:
@@ -115,7 +120,8 @@ class RobotParts:
         robot, size, joints = self._skeleton.robot, self._skeleton.size, []
         floor = float(robot.base_joints[:, 2].min()) - 0.03 * size
         vertices, faces = plate(robot.base_joints - [0.0, 0.0, 0.02 * size], 0.012 * size)
-        scene.add_mesh_simple("/base", vertices, faces, color=_BASE, opacity=0.55, flat_shading=True)
+        base = scene.add_mesh_simple("/base", vertices, faces, color=_BASE, opacity=0.55, flat_shading=True)
+        self._plates[0] = base if robot.base_mount is not None else None
         add("grid", add_grid(scene, 4 * size, "xy", np.array([0.0, 0.0, floor])))
         add("frames", scene.add_frame("/frame", axes_length=0.25 * size, axes_radius=0.006 * size))
         add("frames", scene.add_label("/frame/name", "W (world)", position=_HERE, anchor="top-center"))
@@ -130,10 +136,12 @@ class RobotParts:
         robot, size, load = self._skeleton.robot, self._skeleton.size, self._skeleton.robot.payload
         frame = scene.add_frame("/platform", show_axes=False)
         vertices, faces = plate(robot.platform_joints, 0.012 * size)
-        scene.add_mesh_simple("/platform/plate", vertices, faces, color=_PLATFORM, opacity=0.8, flat_shading=True)
+        mounted = "/platform" if robot.platform_mount is None else "/platform/mounted"
+        self._plates[1] = scene.add_frame(mounted, show_axes=False) if robot.platform_mount is not None else None
+        scene.add_mesh_simple(f"{mounted}/plate", vertices, faces, color=_PLATFORM, opacity=0.8, flat_shading=True)
         for i, joint in enumerate(robot.platform_joints):
             letter, radius = self._skeleton.joints[i][1], 1.4 * float(self._radius[i])
-            _joint(scene, f"/platform/joint_{i + 1}", letter, radius, _PLATFORM).position = joint
+            _joint(scene, f"{mounted}/joint_{i + 1}", letter, radius, _PLATFORM).position = joint
         axes = scene.add_frame("/platform/axes", axes_length=0.18 * size, axes_radius=0.005 * size)
         add("frames", axes)
         add("frames", scene.add_label("/platform/axes/name", "P (platform)", anchor="top-center"))
