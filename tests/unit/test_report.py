@@ -349,7 +349,7 @@ def test_a_machine_with_real_parts_has_its_error_budget():
     data = simulate(warm, fidelity="lumped", modes=None, step=1e-3, output_step=5e-3, duration=0.1)
     made = robot_report(warm, data)
     assert Page(made).sections[:2] == ["deviation", "budget"]
-    assert "The largest culprit at the pose is the heat of the pistons" in made
+    assert re.search(r"The largest culprit at the pose of t = 0.1\ss is the heat of the pistons", made)
     assert "Error budget at rest, at the pose of the largest deviation" in made  # the chart
     at = data.time.values[int(np.linalg.norm(data.tool_deviation, axis=1).argmax())]
     assert f"the pose of t = {at:.4g}\N{NO-BREAK SPACE}s" in made
