@@ -6,6 +6,7 @@ import hashlib
 import re
 from collections.abc import Callable, Mapping
 from html import escape
+from threading import RLock
 from typing import Annotated, Any, ClassVar, Self
 
 import numpy as np
@@ -33,6 +34,8 @@ NonNegative = Annotated[float, Field(strict=True, ge=0, allow_inf_nan=False)]
 Loss = Annotated[float, Field(strict=True, ge=0, le=2, allow_inf_nan=False)]
 
 _HASH = "hash"  # where an object keeps its hash; no field can have this name, which would hide the built-in
+
+_building = RLock()  # classes need those of their fields
 
 _LIMIT_WORDS = {
     "greater_than": ("gt", "above"),
@@ -114,9 +117,14 @@ class Frozen(BaseModel):
 
     #: Fields that are no keys of a study file: a table in a file of its own has them, or they follow from the others
     derived: ClassVar[tuple[str, ...]] = ()
-    model_config = ConfigDict(frozen=True, extra="forbid", arbitrary_types_allowed=True, hide_input_in_errors=True)
+    model_config = ConfigDict(
+        frozen=True, extra="forbid", arbitrary_types_allowed=True, hide_input_in_errors=True, defer_build=True
+    )  # what checks a class is built with its first object: most studies have few of the tables
 
     def __init__(self, **fields: Any) -> None:
+        if not self.__pydantic_complete__:
+            with _building:  # of several threads one builds
+                type(self).model_rebuild()
         try:
             super().__init__(**fields)
         except ValidationError as error:

@@ -1,5 +1,9 @@
 """Figures from Datasets: each call takes a result and returns a matplotlib figure; `save` writes PNG, SVG, PDF."""
 
+from __future__ import annotations
+
+from typing import TYPE_CHECKING
+
 from flexapod.loading import loaded
 from flexapod.plot.actuator import actuator_modes, actuator_path, actuator_response
 from flexapod.plot.budget import budget
@@ -8,10 +12,12 @@ from flexapod.plot.elements import sliding_mesh, solid_comparison, solid_meshes
 from flexapod.plot.legs import actuator_forces, leg_lengths, tip_deflections
 from flexapod.plot.maps import workspace_map
 from flexapod.plot.payload import com_path, deviation_by_cause, energies, motion_law
-from flexapod.plot.robot3d import modes_3d, robot_3d
 from flexapod.plot.style import save
 from flexapod.plot.sweep import sweep
 from flexapod.plot.vibration import vibration
+
+if TYPE_CHECKING:
+    from flexapod.plot.robot3d import modes_3d, robot_3d
 
 __all__ = [
     "actuator_forces",
@@ -38,8 +44,10 @@ __all__ = [
     "workspace_map",
 ]
 
-#: Figures of the paper's study: they live with it and keep their names here.
-_PAPER = {
+#: Figures of the paper's study: they live with it and keep their names here. And those in space, which take axes of
+#: their own from matplotlib.
+_LATER = {
+    "flexapod.plot.robot3d": ("modes_3d", "robot_3d"),
     "flexapod.paper.engine_figures": ("engine_forces", "engine_path"),
     "flexapod.paper.printed": ("actuator_free", "actuator_symbols", "forces_overlaid", "path_bands", "piston_mode"),
     "flexapod.paper.variant_figures": ("half_angles", "start_jump"),
@@ -47,7 +55,7 @@ _PAPER = {
 
 
 def __getattr__(name: str) -> object:
-    for module, names in _PAPER.items():
+    for module, names in _LATER.items():
         if name in names:
             return getattr(loaded(module), name)
     raise AttributeError(f"module 'flexapod.plot' has no attribute {name!r}")

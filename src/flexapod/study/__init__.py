@@ -7,19 +7,32 @@ from typing import TYPE_CHECKING
 
 from flexapod.study.accuracy import accuracy, play
 from flexapod.study.actuator import simulate_actuator
-from flexapod.study.after.summary import summary
 from flexapod.study.before.checks import check_path
-from flexapod.study.budgets import budget
-from flexapod.study.disturbances import vibration
-from flexapod.study.kinematics import forward_kinematics, inverse_dynamics, inverse_kinematics, mobility
 from flexapod.study.parts import parts
 from flexapod.study.record import Interrupted
 from flexapod.study.simulation import run, simulate
-from flexapod.study.static import modes, stiffness
 from flexapod.study.store import open_results, save
 
 if TYPE_CHECKING:
+    from flexapod.study.after.summary import summary
+    from flexapod.study.budgets import budget
+    from flexapod.study.disturbances import vibration
+    from flexapod.study.kinematics import forward_kinematics, inverse_dynamics, inverse_kinematics, mobility
     from flexapod.study.solid import simulate_solid
+    from flexapod.study.static import modes, stiffness
+
+_LATER = {  # what simulations do without loads on first use
+    "budget": "budgets",
+    "forward_kinematics": "kinematics",
+    "inverse_dynamics": "kinematics",
+    "inverse_kinematics": "kinematics",
+    "mobility": "kinematics",
+    "modes": "static",
+    "simulate_solid": "solid",
+    "stiffness": "static",
+    "summary": "after.summary",
+    "vibration": "disturbances",
+}
 
 __all__ = [
     "Interrupted",
@@ -46,7 +59,11 @@ __all__ = [
 
 
 def __getattr__(name: str) -> object:
-    if name != "simulate_solid":  # solid elements load on first use
+    if name not in _LATER:
         raise AttributeError(f"module 'flexapod.study' has no attribute {name!r}")
-    value = globals()[name] = import_module("flexapod.study.solid").simulate_solid
+    value = globals()[name] = getattr(import_module(f"flexapod.study.{_LATER[name]}"), name)
     return value
+
+
+def __dir__() -> list[str]:
+    return sorted({*globals(), *_LATER})
