@@ -401,6 +401,25 @@ def test_text_in_a_report_is_text(robot, tmp_path):
     assert "&lt;b&gt;1 &lt; 2&lt;/b&gt; &amp; more" in write_report(odd, tmp_path).read_text(encoding="utf-8")
 
 
+@pytest.mark.parametrize("width", [None, 0.085])
+@pytest.mark.parametrize("name", ["flight-simulator", "nano-hexapod"])
+def test_words_of_a_wide_robot_stay_in_its_picture(name, width):
+    made = plot.robot_3d(simulate(preset(name), fidelity="lumped", duration=0.002, step=1e-3))
+    drawn = made if width is None else narrowed(made, width / 0.0254)
+    drawn.canvas.draw()
+    names = []
+    for axes in drawn.axes:
+        names.append([axis.label for axis in (axes.xaxis, axes.yaxis, axes.zaxis) if axis.label.get_text()])
+        for axis in (axes.xaxis, axes.yaxis, axes.zaxis):
+            low, high = axis.get_view_interval()
+            ticks = [tick.label1 for tick in axis.get_major_ticks() if low <= tick.get_loc() <= high]
+            for text in (part for part in (axis.label, *ticks) if part.get_text()):
+                box = text.get_window_extent()
+                assert drawn.bbox.x0 <= box.x0 and box.x1 <= drawn.bbox.x1, text.get_text()
+    left, right = ([label.get_window_extent() for label in labels] for labels in names)
+    assert not any(one.overlaps(other) for one in left for other in right)
+
+
 def test_words_and_numbers_of_a_robot_along_one_axis_stand_apart():
     # One actuator along x: of the other two directions there is no room for numbers.
     data = simulate(load(SAMPLES / "strut.toml"), fidelity="lumped", duration=0.002, step=1e-3)

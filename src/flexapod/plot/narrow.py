@@ -22,7 +22,7 @@ WIDE, HIGHER, HIGHEST = 0.1, 1.6, 2.4  # margins above which a panel has words i
 FINE = 200  # dots per inch at which letters are as wide as they are on paper
 INSET = 0.04  # clear of the right edge [in]
 BESIDE = 1.25  # length of a label beside a panel against the panel's height: it may reach into the gaps
-_EDGES = {"left": 0.04, "right": 0.93, "bottom": 0.04, "top": 0.91, "hspace": 0.3}  # of a column of pictures in space
+_EDGES = {"left": 0.02, "right": 0.91, "bottom": 0.04, "top": 0.91, "hspace": 0.3}  # of a column of pictures in space
 
 Stack = list[Axes]
 

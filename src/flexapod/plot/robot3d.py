@@ -26,6 +26,10 @@ PLATFORM = "#2F6690"
 JOINTS = {"U": (14, "o"), "S": (18, "o"), "F": (16, "s")}
 _WIDTH = 2.6  # of pistons, where they are thickest
 _SHORT = 0.2  # of the longest: axes that have no room for numbers
+#: Widths of robots against their diagonals, at an angle and along an axis: wider ones are drawn smaller, as their words
+#: would run over the edge.
+_WIDEST = (0.75, 0.65)
+_LOW = 0.6  # heights against widths: names of axes keep a distance that shrinks with them
 _NEEDLE = 45  # distance of the name of the one axis that is left, in a measure that shrinks with the room
 _FREE: Any = {"axes.titley": None}  # titles go above what is drawn
 _NUMBER: dict[str, Any] = {"fontsize": NOTE, "path_effects": [withStroke(linewidth=2.0, foreground="white")]}
@@ -58,10 +62,14 @@ def view(axes: Any, scenes: Sequence[Scene], zoom: float = 1.0) -> None:
     low[2] = min(low[2], 0.0)
     axes.set(xlim=1e3 * np.array([low[0], high[0]]), ylim=1e3 * np.array([low[1], high[1]]))
     axes.set_zlim(1e3 * low[2], 1e3 * high[2])
-    axes.set_box_aspect(high - low, zoom=zoom)
+    size, turn = high - low, np.radians(axes.azim)
+    short = size < _SHORT * size.max()
+    across = abs(size[0] * np.sin(turn)) + abs(size[1] * np.cos(turn))  # as it is seen
+    least = 1.0 if short.any() else min(1.0, _WIDEST[axes.elev == 0] * np.linalg.norm(size) / across)
+    axes.set_box_aspect(size, zoom=least * zoom)
     axes.tick_params(labelsize=SMALL, pad=0)
-    short = high - low < _SHORT * (high - low).max()
-    for name, axis, pad, bare in zip("xyz", (axes.xaxis, axes.yaxis, axes.zaxis), (0, 0, 2), short, strict=True):
+    pads = (0, 0, 2) if short.any() or size[2] > _LOW * size.max() else (10, 10, 2 if axes.elev else 7)
+    for name, axis, pad, bare in zip("xyz", (axes.xaxis, axes.yaxis, axes.zaxis), pads, short, strict=True):
         axis.get_major_locator().set_params(nbins=4)
         if bare:
             axis.set_ticks([])
