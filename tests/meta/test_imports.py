@@ -55,6 +55,16 @@ def test_a_simulation_needs_no_scipy():
     assert python(f"{roll}print([m for m in ('scipy', 'casadi', 'dask', 'matplotlib') if m in sys.modules])") == "[]"
 
 
+def test_a_simulation_loads_no_budgets_and_builds_no_tables_that_its_study_lacks():
+    code = (
+        "import sys, flexapod as fx, flexapod.study as study; fx.preset('paper-robot'); "
+        "later = [m for m in ('budgets', 'kinematics', 'static') if f'flexapod.study.{m}' in sys.modules]; "
+        "print(later, fx.model.ScrewDrive.__pydantic_complete__, fx.model.Robot.__pydantic_complete__, "
+        "all(getattr(study, name) for name in study.__all__))"
+    )
+    assert python(code) == "[] False True True"
+
+
 def test_garbage_is_looked_for_as_before():
     """Imports go without; what is thrown away later, and what was there before, is found."""
     code = (
