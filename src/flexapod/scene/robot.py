@@ -3,6 +3,7 @@
 from __future__ import annotations
 
 from dataclasses import dataclass
+from functools import lru_cache
 from typing import TYPE_CHECKING
 
 import numpy as np
@@ -72,13 +73,20 @@ def leg_lines(study: model.Study, amplitude: Array, lengths: Array, zeta: Array)
     from flexapod.solve.sections import leg_values
     from flexapod.solve.shapes import leg_shapes
 
-    basis, free = (
-        leg_shapes(study.robot, study.simulation),
-        lengths - np.array([leg.cylinder.mouth for leg in study.robot.legs]),
-    )
-    legs = zip(study.robot.legs, free, amplitude, strict=True)
-    lines = [(a[:, None] @ leg_values(leg, basis, s[None], zeta)[..., 0])[:, 0] for leg, s, a in legs]
-    return np.array(lines)
+    basis, legs = leg_shapes(study.robot, study.simulation), study.robot.legs
+    free, lines = lengths - np.array([leg.cylinder.mouth for leg in legs]), np.empty((len(legs), 2, len(zeta)))
+    for leg, alike in _alike(legs):
+        lines[alike] = np.einsum("ndk,dkpn->ndp", amplitude[alike], leg_values(leg, basis, free[alike], zeta))
+    return lines
+
+
+@lru_cache(maxsize=4)
+def _alike(legs: tuple[model.Leg, ...]) -> list[tuple[model.Leg, list[int]]]:
+    """The different legs, and which ones are like each."""
+    places: dict[model.Leg, list[int]] = {}
+    for i, leg in enumerate(legs):
+        places.setdefault(leg, []).append(i)
+    return list(places.items())
 
 
 def mode_scene(modes: Dataset, mode: int, size: float, phase: float = 1.0) -> Scene:

@@ -5,6 +5,7 @@ from __future__ import annotations
 import hashlib
 import json
 import math
+from itertools import product
 from pathlib import Path
 from typing import TYPE_CHECKING
 
@@ -156,8 +157,6 @@ def save_csv(data: Dataset, path: str | Path) -> Path:
     InputError
         The folder cannot be written to.
     """
-    import numpy as np
-
     columns = {"time [s]": data.time.values}
     for name, values in data.data_vars.items():
         if "time" in values.dims:
@@ -176,6 +175,6 @@ def _columns(name: str, values: DataArray) -> dict[str, Array]:
     unit = values.attrs.get("units", "1")
     if not dims:
         return {f"{name} [{unit}]": values.values}
-    flat = values.stack(all_labels=dims).transpose("time", "all_labels")
-    labels = [".".join(str(part) for part in label) for label in flat.all_labels.values]
-    return {f"{name}.{label} [{unit}]": column for label, column in zip(labels, flat.values.T, strict=True)}
+    flat = values.transpose("time", *dims).values.reshape(values.sizes["time"], -1)
+    labels = [".".join(str(part) for part in label) for label in product(*(values[dim].values for dim in dims))]
+    return {f"{name}.{label} [{unit}]": column for label, column in zip(labels, flat.T, strict=True)}
