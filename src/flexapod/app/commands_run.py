@@ -79,7 +79,7 @@ def _run(study: Study | ActuatorStudy, folder: Path, formats: Sequence[str], *, 
 
     check_disk(study, folder)
     interrupted = False
-    with without("dask"), terminal.progress_bar(quiet=quiet or json) as report:
+    with without("dask"), without("pint"), terminal.progress_bar(quiet=quiet or json) as report:
         try:
             data = simulate(study, progress=lambda time, end: report("simulating", COMPUTING * time / end))
         except Interrupted as stop:
