@@ -14,6 +14,10 @@ import numpy as np
 import pytest
 
 from flexapod.errors import ComputationError, InputError
+from flexapod.model import preset
+from flexapod.rigid.robot import home_pose
+from flexapod.solve.modes import locked_poses
+from flexapod.solve.robot_system import robot_system
 from flexapod.symbolic import cache, compiler
 from flexapod.symbolic.compiler import CompiledFunction, compiled_library
 from flexapod.symbolic.functions import NamedFunction
@@ -389,3 +393,14 @@ def test_a_compiler_that_fails_says_why(folder, tmp_path):
     (tmp_path / "text").write_text("not a program")
     with pytest.raises(ComputationError, match=r"Permission denied|Exec format"):
         compiled_library([1.0], lambda: functions(1.0), (), [str(tmp_path / "text")])
+
+
+def test_modes_after_steps_within_a_tolerance_compile_nothing_more(monkeypatch):
+    study = preset("paper-robot")
+    made = robot_system(study.robot, study.simulation, within=True).kernel
+    after = locked_poses(study.robot, study.simulation, home_pose(study.robot))
+    assert after.system.kernel is made
+    monkeypatch.setattr("flexapod.solve.kernel._within", {})
+    alone = locked_poses(study.robot, study.simulation, home_pose(study.robot))
+    assert alone.system.kernel.library is not made.library
+    assert np.array_equal(after.m.K, alone.m.K) and np.array_equal(after.m.M, alone.m.M)

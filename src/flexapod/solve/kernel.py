@@ -7,6 +7,7 @@ from dataclasses import dataclass, fields
 from functools import cache, lru_cache
 from pathlib import Path
 from typing import TYPE_CHECKING
+from weakref import WeakValueDictionary
 
 import numpy as np
 
@@ -67,9 +68,20 @@ def kernel(shapes: Shapes, march: bool = True, within: bool = False) -> Kernel:
             _fingerprint(shapes), lambda: _functions(shapes), sources, command, sizes(shapes)
         )
         compiled = {name: CompiledFunction(library, name, signatures[name]) for name in NAMES if name in signatures}
-        return Kernel(shapes=shapes, library=library, **compiled)
+        made = Kernel(shapes=shapes, library=library, **compiled)
+        if within:
+            _within[shapes] = made
+        return made
     _warn_interpreted()
     return interpreted_kernel(shapes)
+
+
+_within: WeakValueDictionary[Shapes, Kernel] = WeakValueDictionary()
+
+
+def kernel_at_hand(shapes: Shapes) -> Kernel:
+    """Kernel for single evaluations, the same bits in all: that of steps within a tolerance once it is there."""
+    return _within.get(shapes) or kernel(shapes)
 
 
 @cache

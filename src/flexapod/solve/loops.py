@@ -74,7 +74,7 @@ def _at_force(system: System, x: State, table: Array, wrench: Array) -> State:
 
 def at_rotors(robot: Robot, simulation: Simulation) -> System:
     """The robot's equations in motion with loops as springs and dampers on their rotors, which act at once."""
-    system = robot_system(robot, simulation)
+    system = robot_system(robot, simulation, evaluated=True)
     layout, leg_p, held = leg_parameters(system.kernel.shapes), system.leg_p.copy(), system.held.copy()
     for i, leg in enumerate(robot.legs):
         if leg.screw is not None and leg.screw.loops:

@@ -167,7 +167,7 @@ def locked_poses(
     """
     refuse_pure_force(robot, "a static equilibrium")
     robot = robot if robot.base_motion is None else robot.replace(base_motion=None)  # poses are those of a base at rest
-    system = robot_system(smooth(robot), simulation.replace(play="static"), at_rest=True)
+    system = robot_system(smooth(robot), simulation.replace(play="static"), at_rest=True, evaluated=True)
     start, acts = rigid_rest(system, robot, path), rest_load(system, robot, path, load, time)
     command = rest_commands(system, robot, start.q, time)
     found = equilibria(system, start, command, acts.force, acts.wrench)

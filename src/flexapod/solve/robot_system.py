@@ -6,7 +6,7 @@ from flexapod import rigid
 from flexapod.mechanics.layout import Shapes
 from flexapod.model import Robot, Simulation
 from flexapod.rigid.limbs import ABSENT, COORDINATES, DRIVEN, HELD, Limbs
-from flexapod.solve.kernel import kernel
+from flexapod.solve.kernel import kernel, kernel_at_hand
 from flexapod.solve.losses import per_loss
 from flexapod.solve.parameters import (
     flexures,
@@ -22,17 +22,23 @@ __all__ = ["robot_system", "smooth"]
 
 
 def robot_system(
-    robot: Robot, simulation: Simulation, march: bool = True, *, at_rest: bool = False, within: bool = False
+    robot: Robot,
+    simulation: Simulation,
+    march: bool = True,
+    *,
+    at_rest: bool = False,
+    within: bool = False,
+    evaluated: bool = False,
 ) -> System:
     """System of a robot as built, in the fidelity and shapes of ``simulation``; ``march``: to be integrated.
 
-    ``within``: with steps that follow a tolerance, too. ``at_rest``: loops that sum their errors have left none,
-    Eq. (T23.16).
+    ``within``: with steps that follow a tolerance, too. ``evaluated``: not to be integrated, see `kernel_at_hand`.
+    ``at_rest``: loops that sum their errors have left none, Eq. (T23.16).
     """
     legs = rigid.built_limbs(robot, rigid.robot_limbs(robot))
     shapes = robot_shapes(robot, simulation, legs)
     return System(
-        kernel=kernel(shapes, march, within),
+        kernel=kernel_at_hand(shapes) if evaluated else kernel(shapes, march, within),
         leg_p=leg_parameters(robot, legs, shapes, per_loss(robot, simulation), at_rest=at_rest),
         joint_p=np.ascontiguousarray(legs.platform - robot.com),
         payload_p=payload_parameters(robot, shapes, at_rest=at_rest),
