@@ -42,13 +42,11 @@ class LegBases:
 
 def leg_bases(system: System, m: RestMatrices) -> list[LegBases]:
     """Bases of all legs at P poses, grouped by what they hold."""
-    kinds, of = np.unique(system.held, axis=0, return_inverse=True)
-    return [_bases(system, m, np.flatnonzero(of.ravel() == k), held) for k, held in enumerate(kinds)]
+    return [_bases(system, m, *kind) for kind in system.kinds]
 
 
-def _bases(system: System, m: RestMatrices, legs: Index, held: Mask) -> LegBases:
+def _bases(system: System, m: RestMatrices, legs: Index, held: Mask, rest: Index) -> LegBases:
     pivot, n = np.array(system.kernel.shapes.pivots, dtype=np.intp), system.n
-    rest = np.setdiff1d(np.flatnonzero(~held), [*pivot, *system.shared])
     J = m.J[:, legs]
     P = np.concatenate([m.P[:, legs][..., system.hub_free], -J[..., system.shared]], axis=-1)
     inverse = solve_each(J[..., pivot], np.broadcast_to(np.eye(pivot.size), (*J.shape[:2], pivot.size, pivot.size)))

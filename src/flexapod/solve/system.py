@@ -165,6 +165,14 @@ class System:
         return None if self.tie is None else self.tie[:, ~self.fixed[self.tie.argmax(axis=0)]]
 
     @cached_property
+    def kinds(self) -> list[tuple[Index, Mask, Index]]:
+        """Legs that hold the same coordinates: which, what they hold, and what is neither held nor from closures."""
+        kinds, of = np.unique(self.held, axis=0, return_inverse=True)
+        gone = [*self.kernel.shapes.pivots, *self.shared]
+        rest = (np.setdiff1d(np.flatnonzero(~held), gone) for held in kinds)
+        return [(np.flatnonzero(of.ravel() == k), *kind) for k, kind in enumerate(zip(kinds, rest, strict=True))]
+
+    @cached_property
     def hub_free(self) -> Index:
         """Coordinates of the payload that nothing holds."""
         return np.flatnonzero(~self.hub_held[: 6 * self.hub])
