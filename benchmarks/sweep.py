@@ -17,10 +17,7 @@ os.environ.setdefault("OPENBLAS_NUM_THREADS", "1")
 from benchmarks.report import goal
 from flexapod import sweep
 from flexapod.model import override, preset
-from flexapod.solve.robot_march import prepare
-from flexapod.study.after.plausibility import robot_warnings
-from flexapod.study.before.checks import check_path
-from flexapod.study.record import collect
+from flexapod.study.simulation import simulated
 from flexapod.surveys.sweeps import schedule
 from flexapod.surveys.sweeps.batch import compute_point
 from flexapod.surveys.sweeps.kept import kept
@@ -47,10 +44,7 @@ def plan(count):
 
 def bare(one):
     """The part of `flexapod.simulate` that nobody can do without: checks, integration, remarks."""
-    check_path(one)
-    march = prepare(one)
-    record = collect(march.chunks, march.system.kernel.shapes.l_index, one.duration, None)
-    robot_warnings(one.robot, march.system, record)
+    simulated(one).warnings()
 
 
 def measured(action):
@@ -61,13 +55,13 @@ def measured(action):
 
 def in_one_process(points, keep, count):
     """Processor seconds of a point: the bare simulation, and what a sweep adds to it in the worker."""
-    simulated, kept_too = [], []
+    bare_times, kept_too = [], []
     for number in range(count):
         one = points.study(number)
-        simulated.append(measured(lambda one=one: bare(one)))
+        bare_times.append(measured(lambda one=one: bare(one)))
         kept_too.append(measured(lambda one=one: compute_point(keep, one)))
-    added = statistics.median(b - a for a, b in zip(simulated, kept_too, strict=True))
-    return statistics.median(simulated), added
+    added = statistics.median(b - a for a, b in zip(bare_times, kept_too, strict=True))
+    return statistics.median(bare_times), added
 
 
 def swept(settings, count, workers, store):
@@ -132,8 +126,8 @@ def main():
     keep = kept(points.plan.keep, points.nominal, points.resolve())
     read = measured(Points(points.nominal, points.plan).resolve) / given.points  # as a sweep does, all in a row
     compute_point(keep, points.study(0))
-    simulated, added = in_one_process(points, keep, 30)
-    print(f"a simulation, without a Dataset {1e3 * simulated:26.1f} ms of one core")
+    bare_time, added = in_one_process(points, keep, 30)
+    print(f"a simulation, without a Dataset {1e3 * bare_time:26.1f} ms of one core")
     print(f"reading its study               {1e3 * read:26.2f} ms")
     print(f"scalars from its record         {1e3 * added:26.2f} ms")
     ratios, client, rates = [], [], []
