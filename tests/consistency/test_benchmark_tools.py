@@ -4,6 +4,7 @@ import os
 
 import numpy as np
 import pytest
+from benchmarks import sweep
 from benchmarks.deviation import error, marched, reference, roll, undamped
 from benchmarks.ode import ode
 from benchmarks.side_by_side import _with_this
@@ -53,3 +54,7 @@ def test_tuned_exudyn_moves_as_the_untuned(monkeypatch):
     # The same equations at the same instants; Newton's tolerance of 1e-6 N leaves less than 1e-6 of forces of 1e3 N.
     scale = np.abs(plain.com_deviation).max()
     assert np.abs(tuned.com_deviation - plain.com_deviation).max() < 1e-6 * scale
+
+
+def test_a_point_of_a_sweep_is_simulated_bare():
+    sweep.bare(sweep.study({"step": 2e-3, "duration": 0.02, "output_step": 2e-3}))
