@@ -70,6 +70,7 @@ def test_a_function_in_parts_gives_the_same_bits(monkeypatch):
     x, found = np.array([0.3, 0.7, -0.2]), []
     for most in (5000, 7):
         monkeypatch.setattr(c_source, "LONGEST", most)
+        monkeypatch.setattr(c_source, "WHOLE", most)
         library, signatures = compiled_library(["chain", most], lambda: [_chain()], (), compiler.compiler())
         found.append(CompiledFunction(library, "chain", signatures["chain"])(x))
         assert ("chain_lanes_1" in c_source.c_source(_chain())) == (most == 7)

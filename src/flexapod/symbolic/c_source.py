@@ -10,8 +10,9 @@ from flexapod.symbolic.functions import NamedFunction
 
 __all__ = ["c_source"]
 
-#: Statements of a C function at most: beyond that the compiler's time and memory grow faster than the text.
-LONGEST = 5000
+#: Statements beyond which a C function is written in parts, and those of a part: the time and memory of a compiler grow
+#: faster than the text, while a function in parts is slower, by how much depends on where the stack begins.
+WHOLE, LONGEST = 15_000, 5000
 #: Operations beyond which a function is a table: as statements each costs a compiler 0.2 ms.
 TABLED = 30_000
 _VALUE = re.compile(r"\b[tsc]\d+\b")
@@ -68,7 +69,7 @@ def _lines(name: str, kind: str, built: casadi.Function) -> Iterator[str]:
 def _definition(name: str, kind: str, statements: list[str]) -> Iterator[str]:
     """A function of these statements, in parts where they are many; `w` holds what a later part needs."""
     taken = f"const {kind} *const *in, {kind} *const *out"
-    if len(statements) <= LONGEST:
+    if len(statements) <= WHOLE:
         yield from (f"static void {name}({taken}) {{", *statements, "}")
         return
     parts = [statements[k : k + LONGEST] for k in range(0, len(statements), LONGEST)]
