@@ -301,6 +301,15 @@ def test_a_part_made_ideal_takes_its_row_along(part):
     )
 
 
+@pytest.mark.parametrize("stale", [{"mouth": 0.3}, {"diameter": 0.055}, {"body": Mounted(mass=1.0)}, {"mass": 3.0}])
+def test_a_tube_has_the_masses_of_its_section(stale):
+    tube = Tube(diameter=0.05, inner_diameter=0.045)
+    whole = Cylinder.tube(mouth=0.25, section=tube, material=MATERIALS["aluminium"], body=Mounted(mass=2.0, com=0.1))
+    assert Cylinder(**{name: getattr(whole, name) for name in type(whole).model_fields}) == whole
+    with pytest.raises(InputError, match="the section, with what is mounted"):
+        whole.replace(**stale)
+
+
 def test_clearance_lets_a_pinned_leg_lean():
     # (T25.17) against the exact distance of the joints of two rigid bodies with a kink; and its row of the budget.
     robot = machine(guide=bushings(1e8, clearance=1e-3))

@@ -13,6 +13,8 @@ from flexapod.model.material import POISSON, Material, Rectangle, Tube
 from flexapod.model.sections import SHARES, PistonSection, Step
 from flexapod.model.spring import check_lossy
 
+SAME = 1e-9  # relative; rounding leaves less
+
 
 class Mounted(Frozen):
     """A body on a cylinder: `mass` [kg], `com` [m] from the base joint, transverse `inertia` [kg m^2] about it."""
@@ -55,23 +57,26 @@ class Cylinder(Frozen):
                 allowed=f"below its length of {self.mouth:g} m, from the base joint to the mouth",
                 next_step="Leave the section out for a rigid cylinder",
             )
+        if self.section is not None and self.material is not None:
+            found = _tube_masses(self.mouth, self.section, self.material, self.body)
+            for key, value in found.items():
+                if abs(getattr(self, key) - value) > SAME * abs(value):
+                    raise InputError(
+                        "is not that of the section, with what is mounted on it",
+                        key=key,
+                        value=getattr(self, key),
+                        allowed=f"{value:g}",
+                        next_step="Make it by Cylinder.tube(mouth=, section=, material=, body=)",
+                    )
         return self
 
     @classmethod
     def tube(cls, *, mouth: float, section: Tube, material: Material, body: Mounted | None = None) -> Cylinder:
         """A cylinder that bends and stretches: its masses follow from section, material and what is mounted on it."""
-        on, mouth = body or Mounted(mass=0.0), cls(mass=0.0, mouth=mouth).mouth  # within its bounds: it is squared here
-        own = material.density * section.area * mouth
-        mass = own + on.mass
-        com = (own * mouth / 2 + on.mass * on.com) / mass
-        about = section.second_moment / section.area
-        inertia = own * (mouth**2 / 12 + about + (mouth / 2 - com) ** 2) + on.inertia + on.mass * (on.com - com) ** 2
+        mouth = cls(mass=0.0, mouth=mouth).mouth  # within its bounds: it is squared here
         return cls(
-            mass=mass,
-            com=com,
-            inertia=inertia,
+            **_tube_masses(mouth, section, material, body),
             mouth=mouth,
-            axial_inertia=2 * own * about,
             diameter=section.diameter,
             inner_diameter=section.inner_diameter,
             material=material,
@@ -90,6 +95,17 @@ class Cylinder(Frozen):
         if section is None or material is None:
             return 0.0, 0.0, 0.0
         return material.E * section.second_moment, material.E * section.area, material.density * section.area
+
+
+def _tube_masses(mouth: float, section: Tube, material: Material, body: Mounted | None) -> dict[str, float]:
+    """Mass, its centre and inertias of a tube and what is mounted on it, Eq. (T25.13)."""
+    on = body or Mounted(mass=0.0)
+    own = material.density * section.area * mouth
+    mass = own + on.mass
+    com = (own * mouth / 2 + on.mass * on.com) / mass
+    about = section.second_moment / section.area
+    inertia = own * (mouth**2 / 12 + about + (mouth / 2 - com) ** 2) + on.inertia + on.mass * (on.com - com) ** 2
+    return {"mass": mass, "com": com, "inertia": inertia, "axial_inertia": 2 * own * about}
 
 
 class Guide(Frozen):
