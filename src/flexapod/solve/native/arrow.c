@@ -12,6 +12,8 @@
    coordinate that is not a pivot drops out of z; its force is what is left in its own row. Legs are in `ORDER` here.
    Coordinates that all legs share belong to y: Y = [Y1; 0; 1] with Y1 = J1^-1 [P, -J_shared], and y has HUB of them. */
 enum { M = N - ROWS - COMMON, BORDER = HUB + LEGS*ROWS };
+/* Whether a leg has so many coordinates that its functions and matrices cost more than a better start and steps counted */
+enum { LARGE = N > 30 };
 
 typedef struct {                        /* of a vector of legs */
   lanes A[N*N], J[ROWS*N], P[ROWS*6], J1inv[ROWS*ROWS], N1[ROWS*M], Y1[ROWS*HUB], Binv[M*M], Et[M*HUB], C[M*HUB], Bd[ROWS*M];
@@ -19,6 +21,7 @@ typedef struct {                        /* of a vector of legs */
   lanes Er[M*HUB];
 #else
 #define Er Et
+  lanes half[LARGE ? M*(M + 1)/2 : 1];  /* of Binv, column by column */
 #endif
   lanes held[N];
   int unknown[ROWS][LANES], any[ROWS];  /* the border's unknown of a held pivot; 0: it is not held; and of any leg */
@@ -142,6 +145,9 @@ static int leg_factor(const Settings *s, int group, LegBlock *b, double *border,
   }
 #endif
   if (invert_legs(s, group, B, b->Binv)) return SINGULAR;
+#ifndef LOOPING
+  if (LARGE) for (long j = 0; j < M; j++) memcpy(b->half + j*(j + 1)/2, b->Binv + j*M, sizeof(lanes)*(j + 1));
+#endif
   memset(b->C, 0, sizeof b->C); memset(b->Bd, 0, sizeof b->Bd);
   for (long j = 0; j < HUB; j++) lanes_gemv(M, M, 1, b->Binv, b->Et + j*M, b->C + j*M);
   for (long j = 0; j < HUB; j++) {
@@ -192,6 +198,22 @@ static int arrow_factor(Arrow *w, const Settings *s, const double *A_payload) {
   return invert(size, border, w->border);
 }
 
+/* z -= B^-1 t. Of large legs, whose inverse does not fit into the nearest cache, half of it is read */
+static void times_inverse(const LegBlock *b, const lanes *restrict t, lanes *restrict z) {
+#ifndef LOOPING
+  if (LARGE) {
+    const lanes *a = b->half;
+    for (long j = 0; j < M; j++) {
+      lanes along = {0}, own = t[j];
+      for (long i = 0; i < j; i++, a++) { z[i] -= *a*own; along += *a*t[i]; }
+      z[j] -= along + *a++*own;
+    }
+    return;
+  }
+#endif
+  lanes_gemv(M, M, -1, b->Binv, t, z);
+}
+
 /* r, g, dq, dlam: a row of N, ROWS, N, ROWS vectors a group; df: of a force for each port; rp (HUB), dy (6): of the payload.
    In r and rp those of shared coordinates are in rp alone. Without dlam no forces are sought. */
 static void arrow_solve(const Arrow *w, const Settings *s, lanes (*r)[N], lanes (*g)[ROWS], const double *rp,
@@ -210,7 +232,7 @@ static void arrow_solve(const Arrow *w, const Settings *s, lanes (*r)[N], lanes 
     lanes_gemv_t(ROWS, HUB, -1, b->Y1, t, part);
     lanes_gemv_t(ROWS, M, 1, b->N1, t, t + ROWS);
     for (long j = ROWS; j < N; j++) t[j] *= 1.0 - b->held[j];
-    lanes_gemv(M, M, -1, b->Binv, t + ROWS, z[group]);
+    times_inverse(b, t + ROWS, z[group]);
     lanes_gemv_t(M, HUB, -1, b->Er, z[group], part);
     for (int i = 0; i < HUB; i++) rhs[i] += sum(s, group, part[i]);
     for (int p = 0; p < ROWS; p++) {

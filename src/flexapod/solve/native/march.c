@@ -270,9 +270,6 @@ void record_state(const Settings *s, State *x, const double *row, const double *
 
 /* Legs' vectors are rows of numbers as well: what follows is the same for legs and payload. */
 
-/* Whether a leg has so many coordinates that its functions and matrices cost more than a better start and steps counted */
-enum { LARGE = N > 30 };
-
 /* x one step on, along the straight line through it and its value before; for large legs along the cubic through the last
    four values, that of the step before last in before[gap], and so on */
 static void extrapolate(long count, double *x, double *before, long gap) {
