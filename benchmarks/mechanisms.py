@@ -17,7 +17,6 @@ from flexapod.solve import native
 from flexapod.solve.kernel import Kernel
 from flexapod.solve.robot_march import prepare
 from flexapod.symbolic.functions import operations
-from flexapod.threads import one_thread
 
 __all__ = ["count", "first_run", "least_step", "mechanisms", "with_step"]
 
@@ -57,9 +56,8 @@ def _run(study: Study) -> float:
 
     native.advance = timed  # type: ignore[assignment]
     try:
-        with one_thread():  # as in runs: threads that spin beside it would count
-            for _ in prepare(study).chunks:
-                pass
+        for _ in prepare(study).chunks:
+            pass
     finally:
         native.advance = plain
     return spent / steps
