@@ -161,6 +161,15 @@ def test_the_replay_plays_and_is_scrubbed(read):
     assert look(page) != start
 
 
+def test_buttons_of_the_replay_stand_clear_of_its_legend(read):
+    page = read()
+    page.locator(f"{REPLAY} .modebar-btn").first.wait_for()
+    buttons = [b.bounding_box() for b in page.locator(f"{REPLAY} .modebar-btn").all()]
+    names = [t.bounding_box() for t in page.locator(f"{REPLAY} .legendtext").all()]
+    assert len(names) > 3
+    assert max(b["y"] + b["height"] for b in buttons) <= min(t["y"] for t in names)
+
+
 def test_the_keys_reach_every_control_in_order(read):
     page = read()
     page.keyboard.press("Tab")

@@ -204,12 +204,19 @@
   }
 
   // In the plane as high as what moves in it asks for, so that equal scales leave no empty sides.
+  // The legend stands below the buttons, which take the right end of the first row.
+  const BUTTONS = 26;
+
   function replaySize(layout, width) {
-    if (layout.scene) return { width, height: 560, margin: { l: 0, r: 0, t: 56, b: 0 } };
-    const margin = { l: 64, r: 12, t: 56, b: 48 };
+    const placed = (height, margin) => {
+      const legend = { orientation: "h", x: 0, y: 1 - BUTTONS / height, yref: "container", yanchor: "top" };
+      return { width, height, margin, legend };
+    };
+    if (layout.scene) return placed(560 + BUTTONS, { l: 0, r: 0, t: 56 + BUTTONS, b: 0 });
+    const margin = { l: 64, r: 12, t: 56 + BUTTONS, b: 48 };
     const [across, up] = [layout.xaxis, layout.yaxis].map(({ range }) => range[1] - range[0]);
     const high = ((width - margin.l - margin.r) * up) / across;
-    return { width, height: Math.min(Math.max(high, 240), 540) + margin.t + margin.b, margin };
+    return placed(Math.min(Math.max(high, 240), 540) + margin.t + margin.b, margin);
   }
 
   function replay() {
@@ -363,8 +370,7 @@
     moving.forEach((i, j) => Object.keys(first).forEach((letter) => (data[i][letter] = first[letter][j])));
     figure.classList.add("live");
     plot.hidden = false;
-    const legend = { orientation: "h", x: 0, y: 1, yref: "container", yanchor: "top" };
-    const made = { data, replay: true, layout: { ...told.layout, ...replaySize(told.layout, plot.clientWidth), legend } };
+    const made = { data, replay: true, layout: { ...told.layout, ...replaySize(told.layout, plot.clientWidth) } };
     drawn.set(plot, made);
     paint(plot, made).then(say);
   }
