@@ -115,6 +115,13 @@ def sizes(shapes: Shapes, leg_p: int = 0, joint: int = 3) -> str:
     return f"{friction}{loop}enum {{ {constants} }};\nstatic const int {', '.join(lists)};"
 
 
+def generated_text(shapes: Shapes) -> dict[str, str]:
+    """C text of each function of the equations, by name, and of their sizes."""
+    from flexapod.symbolic.c_source import c_source
+
+    return {function.name: c_source(function) for function in _functions(shapes)} | {"sizes": sizes(shapes)}
+
+
 def _functions(shapes: Shapes) -> "list[NamedFunction]":
     from flexapod.mechanics.assembly import joint_functions, leg_functions, payload_functions
     from flexapod.mechanics.sliding import friction_functions
