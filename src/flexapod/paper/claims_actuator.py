@@ -7,11 +7,10 @@ import numpy as np
 from flexapod import model
 from flexapod.bases.beam_functions import clamped_free
 from flexapod.errors import InputError
-from flexapod.paper.claim import HOLDS, IN_PART, MISPRINT, NOT, OPEN, Claim, judged, left_open
+from flexapod.paper.claim import HEIGHT, HOLDS, IN_PART, MISPRINT, NOT, OPEN, WIDTH, Claim, judged, left_open
 from flexapod.paper.study import ACTUATOR_MODES, PaperStudy
 from flexapod.study.words import text
 
-WIDTH, HEIGHT = 0.1524, 0.0095  # Table 2 [m]
 ALUMINIUM = (70e9, 2700.0)  # E [Pa], density [kg/m^3]; its alloys lie within 5 %, steel at three times as much
 ALLOYS = 0.05
 CLOSE, CONVERGED = 0.01, 0.1  # of the largest deflection: curves one sees as one; curves one tells apart

@@ -8,11 +8,13 @@ import numpy as np
 
 from flexapod import rigid
 from flexapod.paper.claim import (
+    AWAY,
     ELASTIC_LENGTH,
     IN_PART,
     OPEN,
     Claim,
     axis_motion,
+    force_gaps,
     judged,
     left_open,
     roll_and_arm,
@@ -20,14 +22,13 @@ from flexapod.paper.claim import (
 from flexapod.paper.cost import FORMULATIONS
 from flexapod.paper.readings import TRAVELS
 from flexapod.paper.study import PaperStudy
-from flexapod.scene.robot import motion_end, robot_study
+from flexapod.scene.robot import robot_study
 from flexapod.study.before.estimates import section_width
 from flexapod.study.words import number, text
 
 if TYPE_CHECKING:
     from xarray import Dataset
 
-AWAY = 0.05  # distance from the ends of the quintic at which its jump of jerk no longer shows in the forces [s]
 TRAVEL, TRAVEL_ROUNDED = 0.26, 0.005  # of a piston, Fig. 7; printed to 10 mm [m]
 SHEAR = 2.6 / 0.9  # E / kappa G of a round steel section: 2 (1 + 0.3), kappa = 0.9
 ROUNDING = 1e-9  # of a path computed in double precision, relative
@@ -134,18 +135,15 @@ def _cost(cost: Dataset) -> Claim:
 
 
 def _figure8(rigid_legs: Dataset) -> Claim:
-    gap = np.abs(rigid_legs.actuator_force - rigid_legs.actuator_force_rigid).max("leg")
     largest = float(np.abs(rigid_legs.actuator_force_rigid).max())
-    end = motion_end(rigid_legs) or np.inf
-    near = (rigid_legs.time < AWAY) | (np.abs(rigid_legs.time - end) < AWAY)
-    apart = float(gap.where(~near).max()) / largest
+    apart, anywhere = (gap / largest for gap in force_gaps(rigid_legs))
     return Claim(
         where="Fig. 8",
         says="Actuator forces of the rigid robot: Newton-Euler and finite elements agree strongly",
         ours=(f"Newton-Euler and our multibody model differ by {apart:.0e} of the largest force, {largest:.0f} N"),
         verdict=judged(apart < 0.01, apart < 0.1),  # a line's width in the figure; visibly apart
         reason=f"Closer than {1e3 * AWAY:.0f} ms to the ends of the quintic, where its jerk jumps, by "
-        f"{100 * float(gap.max()) / largest:.1g} % at a step of {1e3 * rigid_legs.attrs['step']:g} ms; this falls "
+        f"{100 * anywhere:.1g} % at a step of {1e3 * rigid_legs.attrs['step']:g} ms; this falls "
         "with the step.",
     )
 

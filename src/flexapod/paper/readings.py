@@ -8,7 +8,7 @@ import numpy as np
 
 from flexapod import model
 from flexapod.errors import InputError
-from flexapod.paper.claim import ELASTIC_LENGTH, axis_motion
+from flexapod.paper.claim import ELASTIC_LENGTH, HEIGHT, axis_motion
 from flexapod.paper.trials import opened
 from flexapod.typing import Array
 
@@ -22,7 +22,6 @@ TRAVELS = {
     "radii-both-sides": ("paper-robot-radii", 30.0, True),
     "radii-60-deg": ("paper-robot-radii", 60.0, False),
 }
-BEAM_DEPTH = 0.0095  # of the single actuator's beam, Table 2 [m]
 GUIDED = 0.15  # of a piston at home, as in the preset [m]
 
 
@@ -80,7 +79,7 @@ def with_modulus(study: model.Study, E: float) -> model.Study:
 def _beam_of_table_2(length: float) -> model.Piston:
     """A piston with the bending stiffness and mass of the single actuator's beam, about its weak axis."""
     beam = model.preset("paper-actuator").actuator
-    return model.Piston(length=length, EI=beam.EI, EA=12 * beam.EI / BEAM_DEPTH**2, rhoA=beam.rhoA)
+    return model.Piston(length=length, EI=beam.EI, EA=12 * beam.EI / HEIGHT**2, rhoA=beam.rhoA)
 
 
 def _travelling(preset: str, turn: float, both_sides: bool) -> model.Study:
@@ -128,6 +127,20 @@ def robot_preset(name: str) -> model.Study:
     if isinstance(study, model.Study):
         return study
     raise InputError("is the preset of a single actuator", key="preset", value=name, allowed="presets of robots")
+
+
+def actuator_preset() -> model.ActuatorStudy:
+    """The preset of the single actuator.
+
+    Raises
+    ------
+    InputError
+        It is that of a robot.
+    """
+    study = model.preset("paper-actuator")
+    if isinstance(study, model.ActuatorStudy):
+        return study
+    raise InputError("is the preset of a robot", key="preset", value="paper-actuator")
 
 
 ANGLES = np.deg2rad([0.0, 120.0, 240.0])  # of the hinges, which lie along the circle

@@ -7,11 +7,11 @@ from dataclasses import dataclass, field
 from typing import TYPE_CHECKING
 
 from flexapod import model
-from flexapod.errors import ComputationError, InputError
+from flexapod.errors import ComputationError
 from flexapod.paper.claim import axis_motion
 from flexapod.paper.cost import inverse_dynamics_cost
 from flexapod.paper.engines import check_engine, exudyn_flexible, exudyn_rigid, rigid_same_step, undamped
-from flexapod.paper.readings import readings, robot_preset, tripod
+from flexapod.paper.readings import actuator_preset, readings, robot_preset, tripod
 from flexapod.paper.trials import TRIAL_STEP, trials
 from flexapod.paper.variants import (
     HALF_ANGLES,
@@ -77,25 +77,18 @@ class Step:
     compute: Callable[[Share], Dataset]
 
 
-def _actuator_preset() -> model.ActuatorStudy:
-    study = model.preset("paper-actuator")
-    if isinstance(study, model.ActuatorStudy):
-        return study
-    raise InputError("is the preset of a robot", key="preset", value="paper-actuator")
-
-
 def _over(report: Share) -> Callable[[float, float], None]:
     """Progress of one simulation as a share."""
     return lambda time, end: report(time / end)
 
 
 def _actuator(count: int) -> Callable[[Share], Dataset]:
-    return lambda report: simulate_actuator(_actuator_preset(), modes=count, progress=_over(report))
+    return lambda report: simulate_actuator(actuator_preset(), modes=count, progress=_over(report))
 
 
 def _free_actuator(report: Share) -> Dataset:
     """The same beam set free on a hub without friction or inertia, with the printed velocities at the start."""
-    study, none = _actuator_preset(), model.ConstantLaw(value=0.0)
+    study, none = actuator_preset(), model.ConstantLaw(value=0.0)
     laws = study.motion.rotation, study.motion.extension
     turn, feed = (law.rate if isinstance(law, model.RateLaw) else 0.0 for law in laws)
     free = study.replace(
@@ -108,7 +101,7 @@ def _free_actuator(report: Share) -> Dataset:
 
 def _finest_actuator(fidelity: str, count: int) -> Callable[[Share], Dataset]:
     def compute(report: Share) -> Dataset:
-        study = _actuator_preset()
+        study = actuator_preset()
         return simulate_actuator(
             study,
             fidelity=fidelity,
@@ -123,7 +116,7 @@ def _finest_actuator(fidelity: str, count: int) -> Callable[[Share], Dataset]:
 
 def _solid(size: float, kind: str) -> Callable[[Share], Dataset]:
     def compute(report: Share) -> Dataset:
-        study = _actuator_preset()
+        study = actuator_preset()
         return simulate_solid(study, size=size, kind=kind, output_step=COMPARED_OUTPUT, progress=_over(report))
 
     return compute
