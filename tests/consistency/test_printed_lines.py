@@ -35,7 +35,7 @@ def equation(change):
 
 def derived():
     """M, C, K, rest in amplitudes a at constant rates: (T9.5) with q = sqrt(rho L) a, multiplied by sqrt(rho L)."""
-    e, f, b, E4, B, C2, G0, G1, Gt = oracle()
+    e, _f, b, E4, B, C2, G0, G1, Gt = oracle()
     L, feed, angle, turn = AT.values()
     r, m, bb = feed / L, RHO * L, np.outer(b, b)
     # q' = sqrt(m) (a' + r/2 a), q'' = sqrt(m) (a'' + r a' - r^2/4 a), as r' = -r^2
@@ -55,7 +55,7 @@ def test_derived_lines_give_the_published_equation():
 
 def by_hand():
     """What each line adds to M, C, K and rest, written down by hand; what is not named stays."""
-    e, f, b, E4, B, C2, G0, G1, Gt = oracle()
+    e, _f, b, E4, _B, _C2, G0, _G1, Gt = oracle()
     L, feed, angle, turn = AT.values()
     m, bb, m_e = RHO * L, np.outer(b, b), TIP_MASS
     eps = np.sqrt(np.sqrt(np.diag(E4)))
@@ -85,7 +85,7 @@ def test_each_line_changes_what_it_says(line):
     own, found = equation(lambda _: {}), equation(line.change)
     if line.name == "4, without sliding":
         # u_t alone at fixed x / L: no convective matrices, so C and K keep only what L' in rho L does to M a'.
-        e, f, b, _, B, C2, *_ = oracle()
+        e, f, _b, _, B, C2, *_ = oracle()
         L, feed, _, turn = AT.values()
         m, r = RHO * L, feed / L
         A = B + 0.5 * np.eye(SHAPES)  # int phi (1 - xi) phi'^T = B + 1/2
