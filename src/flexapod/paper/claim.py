@@ -18,9 +18,12 @@ if TYPE_CHECKING:
     from xarray import Dataset
 
 HOLDS, IN_PART, NOT = "holds", "holds in part", "does not hold"  # of numbers, by `judged`
+HERE = "holds here"  # of numbers that are those of one example
 REACHES, BREAKS = "reaches that size", "robot gives way"  # of numbers, too
 OPEN = "cannot be compared"  # of the text: the paper does not give what the preset marks as ours, `left_open`
 MISPRINT = "misprint"  # of the text: a printed formula against the derived one, in the last table of chapter T9
+COPY = "in the text that we have"  # made from pages: what a lost dot, power or letter can explain is said so
+FIGURE = " The figure itself was not at hand."  # that text has none
 PAPER_DEVIATION = {"y": 5e-3, "z": 10e-3}  # of the centre of mass, Fig. 9 [m]
 ELASTIC_LENGTH = 0.6  # of a piston, Table 3 [m]
 WIDTH, HEIGHT = 0.1524, 0.0095  # of the single actuator's beam, Table 2 [m]

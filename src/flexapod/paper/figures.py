@@ -131,6 +131,8 @@ def _variants(result: PaperStudy) -> Iterator[_Plan]:
     sweeps = {"Circles as diameters": result["half-angles"], "Circles as radii": result["half-angles-radii"]}
     title = "Half-angles of the joint pairs: the road to the architecture singularity at 30 deg"
     yield (VARIANTS, "half-angles", title, lambda: variant_figures.half_angles(sweeps))
+    title = "Section 1: lighter pistons, hollow or thinner, vibrate more; the heaviest is the paper's"
+    yield (VARIANTS, "light-pistons", title, lambda: variant_figures.light_pistons(result["light"]))
     title = (
         "Ball joints that carry moments, at rest: roll and place of the centre of mass at which each of the three "
         "printed figures is reached. Stresses are those of d = 373 mm; steel yields at 0.6 GPa"

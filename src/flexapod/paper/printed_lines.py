@@ -155,7 +155,7 @@ def printed_lines(_: Share) -> Dataset:
     Returns
     -------
     xarray.Dataset
-        Over `line`: `tip_deflection` (line, time) with that line as printed, `derived` (line, time) with none, in the
+        Over `line`: `tip_deflection` (time, line) with that line as printed, `derived` (time, line) with none, in the
         same case; `tip_error` and `largest` (line): largest distance of the two, and largest deflection as derived
         [m]; `upright` (line): 1 where gravity acts.
     """
@@ -165,8 +165,8 @@ def printed_lines(_: Share) -> Dataset:
     paths, own = found[2:], found[[int(line.upright) for line in LINES]]
     metre, time = {"units": "m"}, OUTPUT * np.arange(found.shape[1])
     values = {
-        "tip_deflection": (("line", "time"), paths, metre),
-        "derived": (("line", "time"), own, metre),
+        "tip_deflection": (("time", "line"), paths.T, metre),
+        "derived": (("time", "line"), own.T, metre),
         "tip_error": ("line", np.abs(paths - own).max(axis=1), metre),
         "largest": ("line", np.abs(own).max(axis=1), metre),
         "upright": ("line", [int(line.upright) for line in LINES], {"units": "1"}),

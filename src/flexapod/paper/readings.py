@@ -31,9 +31,9 @@ def readings() -> dict[str, model.Study]:
     payload = study.robot.payload
     edge = cube_edge(payload)
     return {
-        "inextensible": _with_legs(study, lambda leg: leg.replace(axial_modes=0)),
+        "inextensible": with_legs(study, lambda leg: leg.replace(axial_modes=0)),
         "elastic-length": with_whole_piston(study, ELASTIC_LENGTH),
-        "table-2": _with_legs(study, lambda leg: leg.replace(piston=_beam_of_table_2(leg.piston.length))),
+        "table-2": with_legs(study, lambda leg: leg.replace(piston=_beam_of_table_2(leg.piston.length))),
         **{f"modulus-{E:g}": with_modulus(study, 1e9 * E) for E in MODULI},
         "com-on-top": _with_com(study, float(np.linalg.norm(payload.com))),
         CUBE: _with_com(study, edge / 2),
@@ -62,7 +62,7 @@ def with_whole_piston(study: model.Study, length: float) -> model.Study:
         rod = leg.cylinder.replace(mouth=mouth, com=mouth / 2, inertia=leg.cylinder.mass * mouth**2 / 12)
         return leg.replace(piston=leg.piston.replace(length=length), cylinder=rod, stroke=None)
 
-    return _with_legs(study, changed)
+    return with_legs(study, changed)
 
 
 def with_modulus(study: model.Study, E: float) -> model.Study:
@@ -73,7 +73,7 @@ def with_modulus(study: model.Study, E: float) -> model.Study:
         factor = E / piston.E if piston.E else np.nan
         return leg.replace(piston=piston.replace(E=E, EA=factor * piston.EA, EI=factor * piston.EI))
 
-    return _with_legs(study, changed)
+    return with_legs(study, changed)
 
 
 def _beam_of_table_2(length: float) -> model.Piston:
@@ -111,7 +111,8 @@ def _with_payload(study: model.Study, payload: model.Payload) -> model.Study:
     return study.replace(robot=study.robot.replace(payload=payload))
 
 
-def _with_legs(study: model.Study, change: Callable[[model.Leg], model.Leg]) -> model.Study:
+def with_legs(study: model.Study, change: Callable[[model.Leg], model.Leg]) -> model.Study:
+    """The same robot with every leg changed."""
     return study.replace(robot=study.robot.replace(legs=tuple(change(leg) for leg in study.robot.legs)))
 
 

@@ -11,6 +11,8 @@ from flexapod.errors import ComputationError
 from flexapod.paper.claim import axis_motion
 from flexapod.paper.cost import inverse_dynamics_cost
 from flexapod.paper.engines import check_engine, exudyn_flexible, exudyn_rigid, rigid_same_step, undamped
+from flexapod.paper.light import light_pistons
+from flexapod.paper.printed_lines import printed_lines
 from flexapod.paper.readings import actuator_preset, readings, robot_preset, tripod
 from flexapod.paper.trials import TRIAL_STEP, trials
 from flexapod.paper.variants import (
@@ -32,6 +34,7 @@ if TYPE_CHECKING:
     from xarray import Dataset
 
 ACTUATOR_MODES = (1, 2, 3, 4, 5)
+BEAM_SHAPES = 8  # four beam elements a piston
 FREE_TIME = 5.0  # s; set free, the beam leaves its hub soon after
 COMPARED_STEP = 1e-4  # s: the time integration's error in 10 s is then about a micrometre, below what is compared
 COMPARED_OUTPUT = 1e-2  # s: a fortieth of the first period at the start
@@ -166,9 +169,18 @@ STEPS: tuple[Step, ...] = (
         Step(name=f"actuator-solid-{name}", words=f"solid elements, {words}", weight=weight, compute=_solid(size, kind))
         for name, words, weight, size, kind in SOLIDS
     ),
+    Step(name="printed-lines", words="energies as printed", weight=2, compute=printed_lines),
     Step(name="robot", words="robot with flexible legs", weight=4, compute=_robot("paper-robot")),
     Step(name="robot-rigid", words="robot with rigid legs", weight=0.3, compute=_fidelity("rigid", 5e-4)),
     Step(name="robot-lumped", words="robot whose legs only stretch", weight=0.3, compute=_fidelity("lumped", 2.5e-4)),
+    Step(
+        name="robot-fem",
+        words="robot whose legs are beam elements",
+        weight=0.5,
+        compute=lambda report: simulate(
+            robot_preset("paper-robot"), fidelity="beam-fem", modes=BEAM_SHAPES, progress=_over(report)
+        ),
+    ),
     Step(name="modes", words="modes at the largest roll", weight=0.2, compute=_modes),
     Step(name="robot-radii", words="circles read as radii", weight=4, compute=_robot("paper-robot-radii")),
     Step(name="jump", words="start with a jump of the velocity", weight=2, compute=_jump("paper-robot")),
@@ -189,6 +201,7 @@ STEPS: tuple[Step, ...] = (
         weight=1,
         compute=lambda report: simulate(tripod(), step=TRIAL_STEP, progress=_over(report)),
     ),
+    Step(name="light", words="lighter pistons", weight=1, compute=light_pistons),
     Step(name="welded", words="ball joints that carry moments", weight=8, compute=welded_map),
     Step(
         name="cost",
