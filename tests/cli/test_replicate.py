@@ -60,7 +60,8 @@ def folder(tmp_path_factory):
 
 def test_figures_of_the_paper_are_there_as_png_and_svg(folder):
     names = {"actuator-response", "roll-law", "robot-end", "leg-lengths", "forces-rigid", "com-path", "modes-bending"}
-    names |= {"deviation-by-cause", "tip-deflections", "energies", "half-angles", "velocity-jump"}
+    names |= {"deviation-by-cause", "tip-deflections", "energies", "half-angles", "velocity-jump", "actuator-solid"}
+    names |= {"light-pistons", "welded"}
     for name in names:
         assert (folder / "figures" / f"{name}.png").read_bytes().startswith(b"\x89PNG")
         assert "</svg>" in (folder / "figures" / f"{name}.svg").read_text(encoding="utf-8")

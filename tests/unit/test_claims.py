@@ -12,7 +12,7 @@ from flexapod.paper.claims import claims, markdown
 from flexapod.paper.study import STEPS, PaperStudy
 
 pytestmark = pytest.mark.xdist_group("claims")  # one process computes the parts
-PAGE = Path(__file__).parents[2] / "docs" / "paper.md"
+PAGE, README = (Path(__file__).parents[2] / name for name in ("docs/paper.md", "README.md"))
 NUMBER = re.compile(r"-?\d+(?:\.\d+)?(?:e[-+]\d+)?")
 
 
@@ -59,6 +59,31 @@ def test_page_says_what_the_program_says():
             printed, *found = (NUMBER.findall(row) for row in (theirs, mine, *(table[mine] for table in around)))
             for number, *choices in zip(printed, *found, strict=True):
                 assert number in choices
+
+
+def test_words_of_page_and_readme_have_the_numbers_of_the_run():
+    """Largest deviations, sag, vibration, stiffness, price of the welded joints: as they are rounded in the words."""
+    page, readme = (" ".join(path.read_text(encoding="utf-8").split()) for path in (PAGE, README))
+    robot, welded = study_parts()["robot"], study_parts()["welded"].sel(reading="radii", arm=0.373, roll=17.0)
+    deviation = 1e6 * robot.com_deviation.values
+    _, y, z = np.abs(deviation).max(axis=0)
+    rest = robot.time >= 1.0
+    tips, payload = (
+        1e6 * float((robot[name][rest].max("time") - robot[name][rest].min("time")).max())
+        for name in ("tip_deflection", "com_deviation")
+    )
+    hang = 1e6 * float(np.abs(robot.tip_deflection[0]).max())
+    assert f"{y:.1f} µm in Y and {z:.1f} µm in Z" in page
+    assert f"{abs(deviation[0, 2]):.1f} of {z:.1f} µm in Z are there at rest" in page
+    assert (
+        f"by {tips:.1f} µm from peak to peak (at rest they hang {hang:.0f} µm off), the payload by {payload:.2f}"
+        in page
+    )
+    assert f"EA / 750 mm = {2e11 * np.pi / 4 * 0.027**2 / 0.75 / 1e6:.0f} N/µm" in page
+    off = np.linalg.norm(deviation, axis=1)
+    assert f"by up to {off.max():.0f} µm" in readme and f"{off[0]:.0f} µm are sag at rest" in readme
+    price = f"{1e-9 * float(welded.stress):.1f} GPa in the pistons, slopes of {float(welded.slope):.1f}"
+    assert price in readme
 
 
 def test_headline_is_micrometres(table):

@@ -130,8 +130,8 @@ def test_what_welded_robots_do_not_reach_is_said():
     for found, said in ((data, True), (reached, False)):
         figure = welded_figure.welded_figure(found)
         words = " ".join(text.get_text() for text in figure.axes[-1].texts)
-        assert ("y 5 mm: not reached, at most 90 % of that" in words) == said
-        assert ("z 10 mm: not reached, at most 30 % of that" in words) == said
+        assert ("y 5 mm: not reached,\nat most 90 % of that" in words) == said
+        assert ("z 10 mm: not reached,\nat most 30 % of that" in words) == said
 
 
 def test_figure_2_has_the_solid_and_its_hub():

@@ -136,8 +136,8 @@ def matrices(change: Change, gravity: float) -> Any:
     energies = {name: make(p) for name, make in (KINETIC | POTENTIAL).items()}
     energies |= change(p)
     found = Lagrangian(
-        q=q, v=v, kinetic=sum(energies[name] for name in KINETIC), dissipation=zeros(1),
-        potential=sum(energies[name] for name in POTENTIAL),
+        q=q, v=v, kinetic=sum((energies[name] for name in KINETIC), zeros(1)), dissipation=zeros(1),
+        potential=sum((energies[name] for name in POTENTIAL), zeros(1)),
     )  # fmt: skip
     r = inverse_dynamics(found, vertcat(a_ddot, 0, 0))[:SHAPES]
     none = zeros(SHAPES)

@@ -57,12 +57,12 @@ def _curves(axes: Axes, found: xr.Dataset) -> None:
     for label, values, color, style in wanted:
         known = np.isfinite(values) & (roll[None, :] > 0)
         if not (values[known] >= 1).any():
-            missing.append(f"{label}: not reached, at most {number(100 * float(values[known].max()), 2)} % of that")
+            missing.append(f"{label}: not reached,\nat most {number(100 * float(values[known].max()), 2)} % of that")
         axes.contour(roll, arm, np.where(known, values, np.nan), levels=[1.0], colors=[color], linestyles=style)
         axes.plot([], [], color=color, linestyle=style, label=label)
     if missing:
-        axes.annotate("\n".join(missing), (0.5, 0.97), xycoords="axes fraction", ha="center", va="top", fontsize=SMALL,
-                      color=ink("#333333"), backgroundcolor="#FFFFFFCC")  # fmt: skip
+        axes.annotate("\n".join(missing), (0.03, 0.97), xycoords="axes fraction", va="top", fontsize=SMALL,
+                      color=ink("#333333"), backgroundcolor="#F7F7F7")  # fmt: skip
     steep = float(roll[np.argmax((found.slope.values > SLOPE).any(axis=0))])
     axes.axvspan(steep, roll[-1], color="#999999", alpha=0.12, linewidth=0)
     axes.plot([], [], color="#999999", alpha=0.4, linewidth=6, label=f"slopes of the legs above {SLOPE:g}")

@@ -187,6 +187,6 @@ def _band(axes: Axes, time: np.ndarray, values: np.ndarray, turns: np.ndarray) -
     above = turns[values[turns] >= middle[turns]]
     below = turns[values[turns] <= middle[turns]]
     edges = [np.interp(time, time[side], values[side]) for side in (below, above)]
-    axes.fill_between(time, *edges, color=FLEXIBLE, alpha=0.25, linewidth=0)
+    axes.fill_between(time, edges[0], edges[1], color=FLEXIBLE, alpha=0.25, linewidth=0)
     for edge in edges:
         axes.plot(time, edge, color=FLEXIBLE, linewidth=0.8)
