@@ -34,7 +34,7 @@ __all__ = ["CompiledFunction", "compiled_library", "compiler"]
 #: -O1 runs straight-line code as fast as -O2 and compiles it in half the time. Without contraction of products and sums
 #: numbers do not depend on the processor.
 FLAGS = ("-O1", "-fPIC", "-shared", "-std=gnu11", "-fno-math-errno", "-fno-trapping-math", "-ffp-contract=off")
-#: Vectors as wide as the processor has them; left out where the compiler does not know it.
+#: Vectors as wide as the processor has them; left out where the compiler does not know it, or `CC` names a target.
 NATIVE = "-march=native"
 LONGEST = 300.0  # seconds that a compiler may take: usual are 2 to 20
 SILENT = 2.0  # seconds after which it is told that there is a compiler at work
@@ -242,8 +242,9 @@ def _build(functions: list, sizes: str, sources: Sequence[Path], command: list[s
         generated = [c_source(function) for function in functions]
         texts = [PRELUDE.read_text(), *generated, tail, sizes, *(path.read_text() for path in sources)]
         (folder / "kernel.c").write_text("\n".join(texts))
-        said, status = call([*line, NATIVE], folder, LONGEST)
-        if status:
+        target = [] if any(word.startswith(("-march=", "-mcpu=")) for word in command) else [NATIVE]
+        said, status = call([*line, *target], folder, LONGEST)
+        if status and target:
             said, status = call(line, folder, LONGEST)
     except OSError as error:
         raise _failed(command, f"{error.filename or folder}: {error.strerror}") from None
