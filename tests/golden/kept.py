@@ -21,7 +21,7 @@ DIFFERENCES = ("deviation", "sag", "amplitude", "tip_deflection", "leg_angle", "
 
 # Runs within a tolerance choose their steps by estimates of the error, and the last bits, which differ between
 # processors, may turn such a decision: a step more moves the result by part of the tolerance. So a hundredth of it is
-# compared. What the tolerance is a share of is the largest deviation (of the actuator: each quantity's own peak): places,
+# compared. What the tolerance is a share of is the largest deviation (actuator: the peak of each quantity): places,
 # lengths and angles err as the deviation does, whatever their own size. Forces follow it by the stiffness of a leg,
 # 5.2e8 N/m of paper-robot, each part of the energy by its own size, and what little is lost by the strain that is lost.
 TOLERANCE = {"march-tolerance": 1e-4, "actuator-tolerance": 1e-5}
