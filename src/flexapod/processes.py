@@ -15,6 +15,7 @@ from typing import TYPE_CHECKING, TypeVar
 
 if TYPE_CHECKING:
     from multiprocessing.connection import Connection
+    from multiprocessing.process import BaseProcess
 
 __all__ = ["call", "started"]
 
@@ -160,10 +161,15 @@ def started(make: Callable[[T], R], given: Sequence[T], processes: int) -> Itera
             send.close()
         yield joined
     finally:
-        for copy in (c for c in copies if c.pid is not None):
-            copy.terminate()
-            copy.join(GENTLE)
-            copy.kill()
-            copy.join()
+        _end(copies)
         for end in (end for pipe in pipes for end in pipe):
             end.close()
+
+
+def _end(copies: Sequence[BaseProcess]) -> None:
+    """End copies that have been started, with time to put their files away."""
+    for copy in (copy for copy in copies if copy.pid is not None):
+        copy.terminate()
+        copy.join(GENTLE)
+        copy.kill()
+        copy.join()

@@ -125,7 +125,7 @@ def test_nothing_is_left_of_a_process_that_is_killed(what, tmp_path):
     script += f"def told(): print('begun', flush=True)\n{KILLED[what]}\n"
     with started_by([sys.executable, "-c", script, str(tmp_path)]) as (process, others):
         assert process.stdout.readline() == b"begun\n"
-        until(lambda: len(others()) >= 3)
+        until(lambda: len(others()) >= (1 if what == "in a pipe" else 3))  # a copy that came too late has ended
         process.kill()
         process.wait()
         none_left(others)
