@@ -17,8 +17,9 @@ from flexapod.model.leg import Stroke
 from flexapod.rigid import bodies
 from flexapod.rigid.rotations import exponential
 from flexapod.study.before.describe.bodies import stroke_ends
-from flexapod.study.bodies import CYLINDER, bodies_words, clearance, first_least, pairs_of_legs, turns
+from flexapod.study.bodies import CYLINDER, bodies_words, clearance, pairs_of_legs, turns
 from flexapod.study.path import RigidPath
+from flexapod.ties import first_least
 
 LIMITED = {"base_joint": Joint(max_angle=0.2), "platform_joint": Joint(max_angle=0.1)}
 
