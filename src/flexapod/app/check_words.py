@@ -3,7 +3,7 @@
 from __future__ import annotations
 
 import math
-from collections.abc import Mapping, Sequence
+from collections.abc import Mapping
 from typing import TYPE_CHECKING
 
 import numpy as np
@@ -13,6 +13,7 @@ from flexapod.study.after.inside import bushing_words
 from flexapod.study.before.describe.hydraulic import hydraulic_table
 from flexapod.study.before.describe.screw import screw_table
 from flexapod.study.words import column, length, number, scale, text
+from flexapod.ties import most, ranked
 
 if TYPE_CHECKING:
     from flexapod.study.before.describe.actuator import ActuatorDescription, BeamDescription
@@ -82,7 +83,7 @@ def _lengths(found: RobotDescription) -> None:
     print_table(header, rows)
     limited = [(leg.stroke_margin.value, leg) for leg in found.legs if leg.stroke_margin is not None]
     if limited:
-        margin, leg = limited[_most([-margin for margin, _ in limited])]
+        margin, leg = most(limited, key=lambda entry: -entry[0])
         low, high = leg.stroke or (0.0, 0.0)
         print_text(
             f"Leg {leg.leg} comes nearest to its limits of {1e3 * low:.4g} and {1e3 * high:.4g} mm: {1e3 * margin:.2f} "
@@ -142,12 +143,6 @@ def _bodies(found: RobotDescription) -> None:
         print_text(f"With all legs at their {name}: {', '.join((*words, *left, *room))}.", indent=2)
 
 
-def _most(values: Sequence[float]) -> int:
-    """Number of the largest value: the first of those that differ by rounding."""
-    largest = max(values)
-    return next(i for i, value in enumerate(values) if value >= largest - 1e-9 * abs(largest))
-
-
 def _at(extreme: Extreme, factor: float = 1e3) -> str:
     return f"{factor * extreme.value + 0.0:.2f} at {extreme.time:.3f} s"
 
@@ -182,7 +177,7 @@ def _loads(found: RobotDescription) -> None:
     rows = zip(names, forces[:count], forces[count:], pushed_words, *stresses, strict=True)
     header = ["", f"least [{unit}]", f"largest [{unit}]", "of Euler load [%]", *pressure]
     print_table(header, [list(row) for row in rows])
-    pushed = found.legs[_most([leg.euler_share.value for leg in found.legs])]
+    pushed = most(found.legs, key=lambda leg: leg.euler_share.value)
     if pushed.euler_share.value > 0:
         print_text(
             f"Leg {pushed.leg} comes nearest to buckling: {1 / pushed.euler_share.value:.3g} times its load would "
@@ -193,9 +188,9 @@ def _loads(found: RobotDescription) -> None:
     if not known:
         print_text("No stresses: the section or the material of the legs is not given.", indent=2)
         return
-    most, number = known[_most([stress.total.value for stress, _ in known])]
-    limit = "" if most.yield_stress is None else f", {100 * most.total.value / most.yield_stress:.2g} % of yield"
-    print_text(f"Leg {number} is stressed most: {text(most.total.value, 'Pa')}{limit}.", indent=2)
+    stress, number = most(known, key=lambda entry: entry[0].total.value)
+    limit = "" if stress.yield_stress is None else f", {100 * stress.total.value / stress.yield_stress:.2g} % of yield"
+    print_text(f"Leg {number} is stressed most: {text(stress.total.value, 'Pa')}{limit}.", indent=2)
 
 
 def _stresses(found: RobotDescription) -> tuple[list[str], list[str], list[str], list[str]]:
@@ -256,10 +251,10 @@ def _parts(parts: Mapping[str, tuple[float, ...]]) -> None:
     legs = range(len(next(iter(parts.values()))))
     softness = [sum(1 / values[i] for values in parts.values()) for i in legs]
     whole = [1 / x if x else math.inf for x in softness]
-    ranked = sorted(parts.items(), key=lambda item: min(item[1]))
+    softest, names = ranked(-np.array([min(values) for values in parts.values()])), list(parts)
     print_text("Stiffness along the legs [N/µm], softest part first, and its share in the leg's compliance:", indent=2)
-    rows = [[f"  {name}", *(_stiffness_and_share(k, all_) for k, all_ in zip(values, whole, strict=True))]
-            for name, values in ranked]  # fmt: skip
+    rows = [[f"  {name}", *(_stiffness_and_share(k, all_) for k, all_ in zip(parts[name], whole, strict=True))]
+            for name in (names[i] for i in softest)]  # fmt: skip
     rows.append(["  all in series", *("-" if math.isinf(k) else number(k / 1e6, 4) for k in whole)])
     print_table(["", *(f"leg {i}" for i in range(1, len(whole) + 1))], rows)
     if any(math.isinf(k) for values in parts.values() for k in values):

@@ -6,11 +6,10 @@ from collections.abc import Callable, Mapping, Sequence
 from importlib.metadata import version
 from pathlib import Path
 from platform import python_version
-from tempfile import TemporaryDirectory
 from typing import TYPE_CHECKING
 
 from flexapod.errors import FlexapodError
-from flexapod.files import write_text
+from flexapod.files import scratch, write_text
 from flexapod.report import html
 from flexapod.report.figures import Drawn, carried_study
 from flexapod.report.interactive import MOST_POINTS
@@ -55,7 +54,7 @@ def robot_report(study: Study | ActuatorStudy, data: Dataset) -> str:
     """The report of a robot's or an actuator's run, whole or partial, as text, with figures drawn for it."""
     from flexapod.report.figures import draw
 
-    with TemporaryDirectory() as folder:
+    with scratch() as folder:
         return _page(study, data, lambda: draw(data, folder, ("png",)))
 
 

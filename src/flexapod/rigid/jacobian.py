@@ -9,6 +9,7 @@ from numpy.typing import ArrayLike
 
 from flexapod.rigid.trajectory import Poses
 from flexapod.rigid.vectors import cross, dot, time_first, time_last
+from flexapod.ties import first_least
 from flexapod.typing import Array
 
 STRIDES = (64, 8, 1)  # every so many poses of a path are looked at, where the last look leaves a doubt
@@ -124,7 +125,7 @@ def along_path(jacobians: Array) -> SingularityPath:
         smallest_singular_value=smallest,
         condition=condition,
         determinant=determinant,
-        worst=int(np.argmin(smallest)),
+        worst=first_least(smallest),
         sign_changes=np.flatnonzero(np.signbit(determinant[:-1]) != np.signbit(determinant[1:])),
     )
 
@@ -155,7 +156,7 @@ def nearest(jacobians: Array) -> NearestSingularity:
         near = np.maximum.accumulate(np.where(np.isfinite(singular[:, 0]), np.arange(len(j)), 0))[left]
         bound[left] = singular[near, -1] - np.sqrt(np.sum((j[left] - j[near]) ** 2, axis=(1, 2)))
         sign[left] = sign[near]
-    worst = int(np.argmin(singular[:, -1]))
+    worst = first_least(singular[:, -1])
     smallest = float(singular[worst, -1])
     return NearestSingularity(
         worst=worst,

@@ -21,6 +21,7 @@ from flexapod.study.before.checks import path_remarks
 from flexapod.study.names import dataset
 from flexapod.study.words import cleared
 from flexapod.threads import one_thread
+from flexapod.ties import EQUALS, first_largest
 from flexapod.typing import Array
 from flexapod.words import text
 
@@ -148,10 +149,10 @@ def words_of(data: Dataset, where: str) -> tuple[str, ...]:
     sources, f = data.vibration_by_source.values[:, most], data.frequency.values
     alike = np.abs(f - f[:, None]) < 1e-3 * f
     modes = alike @ data.vibration_by_mode.values[:, most]
-    culprit = int(modes.argmax())
+    culprit = first_largest(modes, EQUALS)
     return (
         f"disturbances shake the tool {where} by {sizes} (rms, relative to the base), along {'xyz'[most]} most by the "
-        f"{data.source.values[int(sources.argmax())]}, {100 * modes[culprit] / rms[most]:.0f} % of it in the mode at "
-        f"{f[culprit]:.4g} Hz ({data.kind.values[culprit]})",
+        f"{data.source.values[first_largest(sources, EQUALS)]}, {100 * modes[culprit] / rms[most]:.0f} % of it in "
+        f"the mode at {f[culprit]:.4g} Hz ({data.kind.values[culprit]})",
         *(line for line in data.attrs["warnings"].splitlines() if BEYOND in line),
     )

@@ -572,11 +572,12 @@ int radau(const Settings *s, State *x, const Control *c, double *memory) {
     powers_until(1, h, &r, x->sums);
     memcpy(x->powers, r.powers[2], sizeof r.powers[2]);
     memcpy(m.A, r.A, sizeof m.A); memcpy(m.F, r.F, sizeof m.F);
-    m.stages = 1; m.last_h = h; m.time = until; m.spent += error; m.peak = peak;
+    m.stages = 1; m.last_h = h; m.time = until; m.spent += error;
     start_step(s, w, &r);
     age++; fresh = 0;
     double share = fmax(allowed, NOISE*unit/h);   /* shorter steps have no less rounding */
     double wanted = h*fmin(4, fmax(0.2, 0.9*pow(share/fmax(peak*h5, 1e-300), 0.2)));
+    m.peak = wanted < 4*h ? peak : 0;              /* what limits no step is not remembered: it may be rounding */
     if (h < left && (wanted < 0.9*h || wanted > 1.2*h)) m.h = wanted;      /* another step costs another factorisation */
     if (h == left && wanted > m.h) m.h = wanted;
   }

@@ -12,6 +12,7 @@ from flexapod.study.accuracy.imperfect import is_crooked
 from flexapod.study.accuracy.play import half_play
 from flexapod.study.accuracy.spread import drift
 from flexapod.study.cause_words import cause_in_words
+from flexapod.ties import first_largest, most
 from flexapod.typing import Array
 from flexapod.words import text
 
@@ -30,7 +31,7 @@ def accuracy_words(study: Study) -> tuple[str, ...]:
         parts = at.parts
         whole = np.sum([*parts.values(), np.zeros((robot.count, 6))], axis=(0, 1))
         if whole.any():
-            largest = max(parts, key=lambda name: float(np.linalg.norm(parts[name][:, :3].sum(axis=0))))
+            largest = most(parts, key=lambda name: float(np.linalg.norm(parts[name][:, :3].sum(axis=0))))
             found.append(
                 f"as built and warm the tool stands {_size(whole)} beside its drawn place at home, most of it by "
                 f"{cause_in_words(largest)} ({text(float(np.linalg.norm(parts[largest][:, :3].sum(axis=0))), 'm', 3)})"
@@ -54,7 +55,7 @@ def _drift_words(at: AtPose, times: Array) -> list[str]:
     except ComputationError:  # held more often than it needs: strained by heat, which only forces tell
         return []
     far = np.linalg.norm((moved - moved[0])[:, :3], axis=1)
-    last = int(far.argmax())
+    last = first_largest(far)
     return [
         f"the temperatures of heat.file move the tool at home by up to {text(float(far[last]), 'm', 3)} from where it "
         f"stands at the start, at t = {times[last]:.4g} s"

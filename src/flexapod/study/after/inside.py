@@ -8,6 +8,7 @@ from flexapod.mechanics.layout import columns, leg_parameters
 from flexapod.model import Robot
 from flexapod.solve.system import System
 from flexapod.study.words import text
+from flexapod.ties import first_largest
 from flexapod.typing import Array
 
 __all__ = ["PARTS", "bushing_words", "guide_results", "is_guided", "off_axis", "part_names_inside", "tip_moves"]
@@ -118,7 +119,7 @@ def bushing_words(force: Array, time: Array | None = None) -> str:
     """What glands and heads bear most, of forces (T, legs, 2) [N]; without ``time`` [s] of a single pose."""
     parts = []
     for k, name in enumerate(("glands", "heads")):
-        at, leg = np.unravel_index(force[..., k].argmax(), force.shape[:-1])
+        at, leg = np.unravel_index(first_largest(force[..., k]), force.shape[:-1])
         when = "" if time is None else f" at t = {time[at]:.4g} s"
         parts.append(f"{name} bear up to {text(float(force[at, leg, k]), 'N')} across (leg {leg + 1}{when})")
     return f"The {', '.join(parts)}."

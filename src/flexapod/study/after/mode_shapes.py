@@ -11,6 +11,7 @@ from flexapod.solve.modes import RobotModes
 from flexapod.solve.sections import leg_values
 from flexapod.study.after.inside import off_axis
 from flexapod.study.after.legs import base_points, bending_basis, lateral
+from flexapod.ties import EQUALS, first_largest, most
 from flexapod.typing import Array
 
 MOSTLY = 0.5  # share of an energy from which a part names the mode
@@ -87,9 +88,9 @@ def _kind(kinetic: Array, energies: dict[str, float]) -> str:
         return ""
     if whole < MOSTLY:
         return "payload"
-    first = int(kinetic.argmax())
+    first = first_largest(kinetic, EQUALS)
     name = f"leg {first + 1}" if kinetic[first] > MOSTLY * whole else "legs"
-    return f"{name} {max(energies, key=energies.__getitem__)}"
+    return f"{name} {most(energies, key=energies.__getitem__)}"
 
 
 STATIONS = np.linspace(0.0, 1.0, 41)

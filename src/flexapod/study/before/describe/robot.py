@@ -51,6 +51,7 @@ from flexapod.study.disturbances import vibration_words
 from flexapod.study.path import RigidPath
 from flexapod.study.words import held
 from flexapod.threads import one_thread
+from flexapod.ties import EQUALS, first_largest
 from flexapod.typing import Array
 
 SHOWN = 6
@@ -167,7 +168,7 @@ def _stiffness(total: Array) -> StiffnessDescription:
     shift, vectors = np.linalg.eigh(give[:3, :3])
     turning = np.linalg.eigvalsh(give[3:, 3:])
     most, turning_most = (values[values > ROUNDING * values[-1]][0] for values in (shift, turning))  # others are held
-    softest = vectors[:, -1] * np.sign(vectors[np.abs(vectors[:, -1]).argmax(), -1])
+    softest = vectors[:, -1] * np.sign(vectors[first_largest(np.abs(vectors[:, -1]), EQUALS), -1])
     return StiffnessDescription(
         least=float(1 / shift[-1]),
         most=float(1 / most),
@@ -200,7 +201,7 @@ def vibration_to_expect(study: model.Study, end: float) -> VibrationToExpect | N
     found = residual_vibration(robot, modes, t, path, BAND, from_rest=study.initial.start != "moving")
     if not found.frequency.size:
         return None
-    largest = int(found.amplitude.argmax())
+    largest = first_largest(found.amplitude, EQUALS)
     return VibrationToExpect(
         amplitude=found.total,
         frequency=float(found.frequency[largest]),
@@ -334,7 +335,7 @@ def describe(study: model.Study | model.ActuatorStudy) -> RobotDescription | Act
 def _angles(path: RigidPath) -> tuple[JointAngle, ...]:
     found = []
     for joint, angle in path.reach.angles.items():
-        k, leg = np.unravel_index(angle.argmax(), angle.shape)
+        k, leg = np.unravel_index(first_largest(angle), angle.shape)
         extreme = Extreme(value=float(angle[k, leg]), time=float(path.time[k]))
         found.append(JointAngle(joint=joint, leg=int(leg) + 1, largest=extreme))
     return tuple(found)
