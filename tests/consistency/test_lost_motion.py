@@ -1,4 +1,4 @@
-"""Friction of drives away from home: parts of the leg, the budget's row and the equations say the same, Eq. (T19.15)."""
+"""Friction of drives away from home: parts and the budget's row say the same, Eq. (T19.15)."""
 
 import numpy as np
 import pytest
@@ -28,7 +28,7 @@ DRIVES = {
 
 def placed(robot, pose):
     """Lengths of straight legs (6,), of a pose [m, rad] from home about the origin of the platform."""
-    x, turn = np.array(pose[:3]) + [0.0, 0.0, robot.home_height], pose[3:]
+    x, turn = np.add(pose[:3], [0.0, 0.0, robot.home_height]), pose[3:]
     (cr, cp, cy), (sr, sp, sy) = np.cos(turn), np.sin(turn)
     R = np.array([[cy, -sy, 0], [sy, cy, 0], [0, 0, 1]])
     R = R @ np.array([[cp, 0, sp], [0, 1, 0], [-sp, 0, cp]]) @ np.array([[1, 0, 0], [0, cr, -sr], [0, sr, cr]])

@@ -86,7 +86,7 @@ SOFT_PLATFORM: tuple[tuple[str, int], ...] = (("platform_soft", 2), ("platform_s
 #: ... of joints and drives with friction, see `elements.friction`.
 BASE_FRICTION: tuple[tuple[str, int], ...] = (("base_friction", 8),)
 PLATFORM_FRICTION: tuple[tuple[str, int], ...] = (("platform_friction", 8),)
-#: ... of a drive along its travel; 1 where it acts on the stroke, else, of a rotor, the share of the twist of its shaft in
+#: ... of a drive along its travel; 1 where it acts on the stroke, else, of a rotor, the share of its shaft's twist in
 #: what the springs before the stroke give way, at home, and what a longer leg adds to it [1/m].
 DRIVE_FRICTION: tuple[tuple[str, int], ...] = (
     ("drive_friction", 8),
