@@ -155,8 +155,8 @@ _ENERGY = {
 }
 
 _STATIC = {
-    "part_stiffness": Variable(("leg", "part"), "N/m", "stiffness of a part that counts along its leg"),
-    "leg_stiffness": Variable(("leg",), "N/m", "stiffness of all parts along a leg in series"),
+    "part_stiffness": Variable(("leg", "part"), "N/m", "stiffness of a part along its leg; of a mount as if alone"),
+    "leg_stiffness": Variable(("leg",), "N/m", "stiffness along a leg: all its parts in series, mounts left out"),
     "guide_stiffness": Variable(("leg", "bushing"), "N/m", "stiffness of a bushing of the piston across the leg"),
     "guide_turning": Variable(("leg",), "N m/rad", "moment at the gland over the turn of the piston there"),
     "lost_motion": Variable(("leg",), "m", "what the leg lags by the friction of its drive, half of it to and fro"),

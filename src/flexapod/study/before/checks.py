@@ -279,7 +279,7 @@ def _touching(path: RigidPath) -> list[str]:
 def _refuse_singular(t: Array, found: rigid.NearestSingularity) -> None:
     words = ""
     if found.smallest_singular_value < SINGULAR:
-        words = f"is singular at t = {t[found.worst]:.6g} s"
+        words = f"is singular at t = {t[found.worst]:.6g} s" + ", from the start" * (found.worst == 0)
     elif len(found.sign_changes):
         k = int(found.sign_changes[0])
         words = f"passes through a singular pose between t = {t[k]:.6g} and {t[k + 1]:.6g} s"
