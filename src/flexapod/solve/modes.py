@@ -8,7 +8,7 @@ import numpy as np
 from flexapod import rigid
 from flexapod.bases.eigen import finite
 from flexapod.errors import ComputationError, InputError
-from flexapod.mechanics.layout import LEG_PARAMETERS, columns
+from flexapod.mechanics.layout import LEG_PARAMETERS, columns, leg_parameters
 from flexapod.model import Load, Robot, Simulation
 from flexapod.rigid.limbs import DRIVEN, FREE
 from flexapod.solve.damped import OSCILLATES, damping_ratios
@@ -242,10 +242,23 @@ def no_mass(system: System, q: Array) -> ComputationError:
         "a leg bends so far under its load that shapes of small slopes no longer describe its motion",
         "Reduce the load or the weight across the legs, make them stiffer, or take fewer shapes (simulation.modes).",
     )
-    if short.any():
+    if (light := _turns_for_nothing(system)).any():
+        what = f"the cylinder of leg {int(light.argmax()) + 1} has no mass, and turns in its guide beside its piston"
+        next_step = "Give leg.cylinder a mass and an inertia."
+    elif short.any():
         what = f"the piston of leg {int(short.argmax()) + 1} is shorter than what the leg has outside the cylinder"
         next_step = "Give leg.piston.length at least the largest leg length less leg.cylinder.mouth."
     return ComputationError(f"the mass matrix is not positive: {what}", next_step=next_step)
+
+
+def _turns_for_nothing(system: System) -> Mask:
+    """Legs (n,) whose cylinder has no inertia about its joint, and a piston that only bushings take along."""
+    if system.kernel.shapes.guide is None:
+        return np.zeros(system.legs, dtype=bool)
+    layout = leg_parameters(system.kernel.shapes)
+    names = ("cylinder_mass", "cylinder_com", "cylinder_inertia", "guide_stiffness")
+    mass, com, inertia, guide = (system.leg_p[:, columns(layout, name)] for name in names)
+    return np.asarray((guide > 0).all(axis=1) & ((inertia + mass * com**2)[:, 0] == 0))
 
 
 def modes_of(locked: LockedPoses, *, shapes: bool = False, loops: bool = True) -> ManyModes:
@@ -344,7 +357,7 @@ def _mass_factor(system: System, bases: list[LegBases], m: RestMatrices) -> tupl
     payload, real_payload = mass_factor(m.payload_M)
     moving = (of_legs @ motion[:, : legs * n].reshape(p, legs, n, size)).reshape(p, legs * n, size)
     U = np.concatenate([moving, payload @ hub_motion(system, motion)], axis=1)
-    positive = real.all(axis=1) & real_payload
+    positive = real.all(axis=1) & real_payload & ~_turns_for_nothing(system).any()
     return np.where(positive[:, None, None], U, 0.0), positive
 
 

@@ -163,9 +163,9 @@ _STATIC = {
     "frequency": Variable(("mode",), "Hz", "undamped natural frequency"),
     "damping_ratio": Variable(("mode",), "1", "damping ratio"),
     "kind": Variable(("mode",), "1", "what mostly moves"),
-    "platform_shape": Variable(
-        ("mode", "component"), "1", "motion of the centre of mass [m] and rotation [rad] of the platform"
-    ),
+    "payload_share": Variable(("mode",), "1", "share of the payload in the kinetic energy of the mode"),
+    "leg_share": Variable(("mode", "leg"), "1", "share of the leg in the kinetic energy of the mode"),
+    "platform_shape": Variable(("mode", "component"), "1", "motion of centre of mass [m] and platform [rad]"),
     "leg_shape": Variable(
         ("mode", "leg", "direction", "station"), "1", "lateral displacement of the leg from the line of its joints [m]"
     ),
