@@ -24,6 +24,7 @@ from flexapod.solve.reduction import expanded, hub_motion, null_space_of_borders
 from flexapod.solve.rest import RestLoad, rest_commands, rest_load
 from flexapod.solve.rigid_motion import rigid_rest
 from flexapod.solve.robot_system import robot_system, smooth
+from flexapod.solve.springs import springs_along
 from flexapod.solve.system import Index, System
 from flexapod.typing import Array, Mask
 
@@ -145,6 +146,22 @@ def refuse_pure_force(robot: Robot, what: str) -> None:
             )
 
 
+def refuse_taut(robot: Robot, simulation: Simulation) -> None:
+    """Raise InputError if a leg bends between two fixed points and cannot stretch: it would have to get longer."""
+    if not robot.platform_fixed or not simulation.lateral_shapes:
+        return
+    for i, leg in enumerate(robot.legs, start=1):
+        held = leg.drive.holds and leg.driven in ("stroke", "carriage") if leg.driven else leg.strut is not None
+        gives = leg.gives or springs_along(leg) or leg.base_joint.flexes or leg.platform_joint.flexes
+        if held and not gives and not simulation.axial_shapes(leg.axial_modes):
+            raise InputError(
+                f"leg {i} is held at both ends and cannot stretch: it could not bend either, but for getting longer",
+                key="leg.axial_modes",
+                value=leg.axial_modes,
+                allowed="1 to 4; or a drive that gives way (servo)",
+            )
+
+
 def _held_by_others(robot: Robot, pure: Mask) -> bool:
     """Whether the drives that hold a position leave the platform no motion at home."""
     legs = rigid.rigid_limbs(robot)
@@ -166,6 +183,7 @@ def locked_poses(
         A pure force drive.
     """
     refuse_pure_force(robot, "a static equilibrium")
+    refuse_taut(robot, simulation)
     robot = robot if robot.base_motion is None else robot.replace(base_motion=None)  # poses are those of a base at rest
     system = robot_system(smooth(robot), simulation.replace(play="static"), at_rest=True, evaluated=True)
     start, acts = rigid_rest(system, robot, path), rest_load(system, robot, path, load, time)

@@ -11,7 +11,7 @@ from flexapod.errors import InputError
 from flexapod.model import ActuatorStudy, HydraulicDrive, Robot, Study
 from flexapod.rigid.kinematics import BETA_LIMIT
 from flexapod.rigid.workspace import BEFORE, BEYOND, LONGEST, PULLED_OUT, SHORTEST
-from flexapod.solve.modes import refuse_pure_force
+from flexapod.solve.modes import refuse_pure_force, refuse_taut
 from flexapod.study.before.room import check_outputs
 from flexapod.study.bodies import clearance, first_least, gap_words, largest_turns, turns
 from flexapod.study.path import RigidPath, open_force_words, path_instants
@@ -54,6 +54,7 @@ def check_path(study: Study, path: RigidPath | None = None) -> list[str]:
     try:
         if study.initial.start == "equilibrium":
             refuse_pure_force(study.robot, "the equilibrium start")
+            refuse_taut(study.robot, study.simulation)
     except InputError as error:
         raise error.located(file=study.path) from None
     path = path or RigidPath(study)
@@ -90,6 +91,9 @@ def check_geometry(study: Study, path: RigidPath | None = None) -> list[str]:
         limbs = rigid.rigid_limbs(robot)
         if limbs.guides or np.count_nonzero(limbs.state == rigid.DRIVEN) < 6:
             rigid.refuse_loose(limbs)
+        for early in path.first_looks:
+            _refuse_lost(robot, early.time, early.reach)
+            _refuse_excess(robot, early.time, early.reach)
         t, found = path.time, path.reach
         _refuse_lost(robot, t, found)
         _refuse_excess(robot, t, found)
