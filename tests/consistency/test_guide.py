@@ -437,3 +437,17 @@ def test_a_cylinder_that_bends_by_calculix(overlap):
     ours = Shapes(a=lateral, b=lateral, axial=axial_basis(0), guide=lateral_basis("tip-load", 3), cylinder=tube)
     found = np.sqrt(eigh(*pinned(ours, given, length)[::-1], eigvals_only=True)[::2][:4]) / (2 * np.pi)
     np.testing.assert_allclose(found, calculix.run(deck(given, length, 60)).frequencies()[:4], rtol=1e-3)
+
+
+def test_a_cylinder_without_mass_in_its_guides_is_named():
+    """It turns beside its piston: modes said that "a leg bends so far under its load", of a leg that hardly does."""
+    light = Cylinder(mass=0.0, inertia=0.0, com=0.0, mouth=0.6)
+    robot = machine(guide=Guide(gland=2e8, head=2e8), cylinder=light)
+    with pytest.raises(
+        fx.ComputationError, match="the cylinder of leg 1 has no mass, and turns in its guide"
+    ) as refused:
+        fx.modes(study(robot))
+    assert "leg.cylinder a mass and an inertia" in refused.value.next_step
+    many = fx.modes(study(robot), {"heave": [0.0, 0.02]})
+    assert set(many.reason.values) == {many.reason.attrs["flag_meanings"].split().index("no_mass")}
+    assert np.isfinite(fx.modes(study(machine(guide=Guide(gland=2e8, head=2e8)))).frequency).all()

@@ -260,6 +260,10 @@ def test_parts_list_what_a_mount_gives_along_each_leg():
         give = n[i] @ (moved[:3] + np.cross(moved[3:], joint - BASE.at))
         assert 1 / float(data.part_stiffness.sel(part="base_mount")[i]) == pytest.approx(give, rel=1e-12)
     assert (data.part_stiffness.sel(part="platform_mount") > 0).all()
+    # All legs share a mount: what a leg has in series is without them, and the words of both say so.
+    np.testing.assert_allclose(data.leg_stiffness, fx.parts(machine()).leg_stiffness, rtol=1e-12)
+    assert "mounts left out" in data.leg_stiffness.attrs["long_name"]
+    assert "mount as if alone" in data.part_stiffness.attrs["long_name"]
 
 
 def test_modes_of_a_heavy_plate_are_those_of_the_base():

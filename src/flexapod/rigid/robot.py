@@ -2,7 +2,7 @@
 
 from __future__ import annotations
 
-from collections.abc import Callable
+from collections.abc import Callable, Iterator
 from functools import lru_cache, wraps
 from typing import TYPE_CHECKING, TypeVar, cast
 
@@ -128,19 +128,32 @@ def payload_body(robot: Robot) -> PayloadBody:
 def poses(robot: Robot, motion: Motion, t: ArrayLike) -> Poses:
     """Poses at instants `t` [s], shape (T,): as commanded, and where legs guide the platform as they make it move.
 
-    See `trajectory.sample`, `mechanism.follow`.
+    See `trajectory.poses_from_coordinates`, `mechanism.follow`.
 
     Raises
     ------
     InputError
         The robot does not have a motion that is asked for, or cannot take a pose.
     """
-    legs = rigid_limbs(robot)
+    legs, t = rigid_limbs(robot), trajectory.instants(t)
+    law, free = trajectory.coordinates(motion, t), np.ones(6, dtype=bool)
     if legs.guides:
-        t = trajectory.instants(t)
         free = motions.commanded(legs, motion, _mobility(robot))
-        return _following(robot, free, trajectory.coordinates(motion, t), motion.pivot, t)
-    return trajectory.sample(home_pose(robot), motion, t)
+    mechanism.refuse_far(legs, law, motion.pivot, t)
+    return _following(robot, free, law, motion.pivot, t)
+
+
+def first_looks(robot: Robot, motion: Motion, t: Array) -> Iterator[Array]:
+    """Indices of few instants `t` (T,) at which to see first whether legs follow; see `mechanism.first_looks`.
+
+    Raises
+    ------
+    InputError
+        The motion leads beyond all robots.
+    """
+    legs, law = rigid_limbs(robot), trajectory.coordinates(motion, t)
+    mechanism.refuse_far(legs, law, motion.pivot, t)
+    return mechanism.first_looks(legs, law, motion.pivot)
 
 
 def places(robot: Robot, motion: Motion, t: ArrayLike) -> tuple[Array, Array]:

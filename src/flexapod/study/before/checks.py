@@ -11,7 +11,7 @@ from flexapod.errors import InputError
 from flexapod.model import ActuatorStudy, HydraulicDrive, Robot, Study
 from flexapod.rigid.kinematics import BETA_LIMIT
 from flexapod.rigid.workspace import BEFORE, BEYOND, LONGEST, PULLED_OUT, SHORTEST
-from flexapod.solve.modes import refuse_pure_force
+from flexapod.solve.modes import refuse_pure_force, refuse_taut
 from flexapod.study.before.room import check_outputs
 from flexapod.study.bodies import clearance, gap_words, largest_turns, turns
 from flexapod.study.path import RigidPath, open_force_words, path_instants
@@ -55,6 +55,7 @@ def check_path(study: Study, path: RigidPath | None = None) -> list[str]:
     try:
         if study.initial.start == "equilibrium":
             refuse_pure_force(study.robot, "the equilibrium start")
+            refuse_taut(study.robot, study.simulation)
     except InputError as error:
         raise error.located(file=study.path) from None
     path = path or RigidPath(study)
@@ -91,6 +92,9 @@ def check_geometry(study: Study, path: RigidPath | None = None) -> list[str]:
         limbs = rigid.rigid_limbs(robot)
         if limbs.guides or np.count_nonzero(limbs.state == rigid.DRIVEN) < 6:
             rigid.refuse_loose(limbs)
+        for early in path.first_looks:
+            _refuse_lost(robot, early.time, early.reach)
+            _refuse_excess(robot, early.time, early.reach)
         t, found = path.time, path.reach
         _refuse_lost(robot, t, found)
         _refuse_excess(robot, t, found)
@@ -280,7 +284,7 @@ def _touching(path: RigidPath) -> list[str]:
 def _refuse_singular(t: Array, found: rigid.NearestSingularity) -> None:
     words = ""
     if found.smallest_singular_value < SINGULAR:
-        words = f"is singular at t = {t[found.worst]:.6g} s"
+        words = f"is singular at t = {t[found.worst]:.6g} s" + ", from the start" * (found.worst == 0)
     elif len(found.sign_changes):
         k = int(found.sign_changes[0])
         words = f"passes through a singular pose between t = {t[k]:.6g} and {t[k + 1]:.6g} s"
