@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+from dataclasses import replace
 from pathlib import Path
 from typing import Annotated
 
@@ -28,20 +29,32 @@ From = Annotated[
     typer.Option(
         "--from",
         metavar='"home=300 mm, payload=20 kg, stroke=60 mm"',
-        help="A first robot with sizes computed to fit; also base, platform (radii), diameter (of pistons), material, "
-        "motion (surge to yaw), duration.",
+        help="A first robot of catalogue parts that fit: electric cylinders, or drive=hydraulic; also base, platform "
+        "(radii), diameter (of pistons), material, motion (surge to yaw), duration.",
     ),
+]
+Ideal = Annotated[
+    bool,
+    typer.Option("--ideal", help="With --from: joints and drives that do not give way, pistons that stretch and bend."),
 ]
 
 
 @guarded
-def new(name: Name, preset: Preset = None, request: From = None, force: Force = False, json: Json = False) -> None:
+def new(
+    name: Name, preset: Preset = None, request: From = None, ideal: Ideal = False, force: Force = False,
+    json: Json = False,
+) -> None:  # fmt: skip
     """Write a commented study file to edit."""
     path = name if name.suffix or name.is_dir() else name.with_suffix(".toml")
     if path.is_dir():
         raise InputError("is a folder", file=path, next_step="Give the name of a file")
     refuse_existing(path, force)
-    text, source, remarks = _first_robot(request, preset) if request is not None else _preset(preset or "paper-robot")
+    if ideal and request is None:
+        raise InputError("is given without --from", key="--ideal", next_step='Add --from "home=300 mm, payload=20 kg"')
+    if request is None:
+        text, source, remarks = _preset(preset or "paper-robot")
+    else:
+        text, source, remarks = _first_robot(request, preset, ideal=ideal)
     write_text(path, text)
     if json:
         print_json({"file": path, **source, **({} if request is None else {"remarks": remarks})})
@@ -59,14 +72,19 @@ def _preset(name: str) -> tuple[str, dict[str, object], list[str]]:
         return preset_text(name), {"preset": name}, []
 
 
-def _first_robot(request: str, preset: str | None) -> tuple[str, dict[str, object], list[str]]:
+def _first_robot(request: str, preset: str | None, *, ideal: bool) -> tuple[str, dict[str, object], list[str]]:
     """Text of a first robot, what it is from, and what there is to say about it."""
     from flexapod.app.first_words import first_words
-    from flexapod.study.first import first_robot, parse_request
+    from flexapod.study.first import IDEAL, first_robot, parse_request
 
     if preset is not None:
         raise InputError("is given together with --from", key="--preset", value=preset, allowed="one of the two")
-    text = first_robot(parse_request(request))
+    wanted = parse_request(request)
+    if ideal and wanted.texts.get("drive", IDEAL) != IDEAL:
+        raise InputError(
+            "is given together with --from drive", key="--ideal", value=wanted.drive, allowed="one of the two"
+        )
+    text = first_robot(replace(wanted, drive=IDEAL) if ideal else wanted)
     return text, {"from": request}, first_words(text)
 
 
