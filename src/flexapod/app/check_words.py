@@ -50,7 +50,7 @@ def show_robot(found: RobotDescription) -> None:
         for sentence in sentences:
             print_text(f"{sentence[0].upper()}{sentence[1:]}.", indent=2)
     _heading("Remarks")
-    for remark in found.remarks or ("None.",):
+    for remark in (*([found.ideal] if found.ideal else ()), *found.remarks) or ("None.",):
         print_text(remark, indent=2)
 
 

@@ -30,6 +30,7 @@ def budget(
     from flexapod.app.terminal import print_json, progress_bar
     from flexapod.errors import InputError
     from flexapod.study import budget as compute
+    from flexapod.study.ideal import ideal_words
 
     study = model.load(file)
     if isinstance(study, model.ActuatorStudy):
@@ -41,9 +42,9 @@ def budget(
         )
     files = [] if out is None else _write(data, out, figure=not no_figures)
     if json:
-        print_json(_as_dict(data, files))
+        print_json({**_as_dict(data, files), "ideal": ideal_words(study.robot)})
     else:
-        _show(data, files)
+        _show(data, files, ideal_words(study.robot))
 
 
 def _write(data: Dataset, folder: Path, *, figure: bool) -> list[Path]:
@@ -81,7 +82,7 @@ def _as_dict(data: Dataset, files: list[Path]) -> dict[str, object]:
     }
 
 
-def _show(data: Dataset, files: list[Path]) -> None:
+def _show(data: Dataset, files: list[Path], ideal: str | None) -> None:
     from flexapod.app.terminal import print_table, print_text
     from flexapod.study.budgets.words import table
 
@@ -94,6 +95,8 @@ def _show(data: Dataset, files: list[Path]) -> None:
         print_text()
     for line in further:
         print_text(line)
+    if ideal:
+        print_text(ideal)
     for line in data.attrs["warnings"].splitlines():
         print_text(f"Warning: {line}")
     for path in files:

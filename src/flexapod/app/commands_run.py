@@ -88,7 +88,7 @@ def _run(study: Study | ActuatorStudy, folder: Path, formats: Sequence[str], *, 
             files = write_data(data, folder) if interrupted else write_all(data, folder, report, formats)
         except KeyboardInterrupt:  # a second one ends it
             files, interrupted = write_data(data, folder), True
-    _say(data, folder, files, json=json)
+    _say(study, data, folder, files, json=json)
     if interrupted:
         _stopped(data, json=json)
         raise typer.Exit(INTERRUPTED)
@@ -97,12 +97,15 @@ def _run(study: Study | ActuatorStudy, folder: Path, formats: Sequence[str], *, 
         raise typer.Exit(1)
 
 
-def _say(data: Dataset, folder: Path, files: list[Path], *, json: bool) -> None:
+def _say(study: Study | ActuatorStudy, data: Dataset, folder: Path, files: list[Path], *, json: bool) -> None:
+    from flexapod.model import Study
     from flexapod.study.after.summary import summary
+    from flexapod.study.ideal import ideal_words
 
     warnings = [line for line in data.attrs["warnings"].splitlines() if line]
+    ideal = ideal_words(study.robot) if isinstance(study, Study) else None
     if not json:
-        show_run(data, folder, files, warnings)
+        show_run(data, folder, files, warnings, ideal)
         return
     state = {name: data.attrs[name] for name in ("failure", "time_reached") if name in data.attrs}
     print_json(
@@ -110,6 +113,7 @@ def _say(data: Dataset, folder: Path, files: list[Path], *, json: bool) -> None:
             "summary": summary(data).as_dict(),
             "partial": bool(data.attrs["partial"]),
             **state,
+            "ideal": ideal,
             "warnings": warnings,
             "wall_time": data.attrs["wall_time"],
             "steps": int(data.attrs["steps"]),
@@ -130,8 +134,10 @@ def _failed(data: Dataset, *, json: bool) -> None:
     show(ComputationError(what, next_step="What was computed is kept and marked as partial"), as_json=json)
 
 
-def show_run(data: Dataset, folder: Path, files: Sequence[Path], warnings: Sequence[str]) -> None:
-    """Print what a run found and where it is."""
+def show_run(
+    data: Dataset, folder: Path, files: Sequence[Path], warnings: Sequence[str], ideal: str | None = None
+) -> None:
+    """Print what a run found, what is `ideal` in it, and where it is."""
     from flexapod.study.after.summary import POINT_WORDS, RobotSummary, summaries
     from flexapod.study.bodies import bodies_words
 
@@ -142,6 +148,8 @@ def show_run(data: Dataset, folder: Path, files: Sequence[Path], warnings: Seque
         if isinstance(found, RobotSummary):
             print_text()
             _axes(found, POINT_WORDS[found.point])
+    if ideal:
+        print_text(ideal)
     for line in warnings:
         print_text(f"Warning: {line}")
     print_text()

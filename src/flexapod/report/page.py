@@ -92,6 +92,7 @@ def _page(study: Study | ActuatorStudy | None, data: Dataset, figures: Callable[
     links |= {"solver": "Solver", "toml": "Study file", "repeat": "Repeat"}
     body = [
         *(html.paragraph(sentence) for sentence in (*(found.sentence for found in further), *bodies_words(data))),
+        *_ideal(study),
         html.paragraph(f"Report of {name}, flexapod {data.attrs['flexapod_version']}.", "soft"),
         html.contents(links),
         *_partial(data),
@@ -107,6 +108,15 @@ def _page(study: Study | ActuatorStudy | None, data: Dataset, figures: Callable[
         repeat_section("Save the study file above as study.toml, then", "flexapod run study.toml --out results"),
     ]
     return html.page(f"flexapod: {name}", first.sentence, body)
+
+
+def _ideal(study: Study | ActuatorStudy | None) -> list[str]:
+    """What of a robot is ideal, in a line."""
+    from flexapod.model import Study
+    from flexapod.study.ideal import ideal_words
+
+    words = ideal_words(study.robot) if isinstance(study, Study) else None
+    return [html.paragraph(words)] if words else []
 
 
 def _described(study: Study | ActuatorStudy | None) -> RobotDescription | ActuatorDescription | None:

@@ -48,6 +48,7 @@ from flexapod.study.before.describe.screw import ScrewDescription, back_words, d
 from flexapod.study.before.estimates import bending_moments, buckling_loads, residual_vibration
 from flexapod.study.before.loops import loop_remarks
 from flexapod.study.disturbances import vibration_words
+from flexapod.study.ideal import ideal_words
 from flexapod.study.path import RigidPath
 from flexapod.study.words import held
 from flexapod.threads import one_thread
@@ -236,8 +237,8 @@ class RobotDescription:
     """What `describe` finds for a robot; times in s.
 
     In words: what poses `held` still, `motions` that the mechanism has, `back` what happens with the motors of screws
-    off, `oil` how hydraulic legs give way, `accuracy` of the machine as built, what `disturbances` do to it, `remarks`
-    of doubt.
+    off, `oil` how hydraulic legs give way, `accuracy` of the machine as built, what `disturbances` do to it, what is
+    `ideal`, `remarks` of doubt.
     """
 
     kind: str = "robot"
@@ -262,6 +263,7 @@ class RobotDescription:
     vibration: VibrationToExpect | None
     accuracy: tuple[str, ...]
     disturbances: tuple[str, ...]
+    ideal: str | None
     remarks: tuple[str, ...]
 
     def as_dict(self) -> dict[str, object]:
@@ -315,6 +317,7 @@ def describe(study: model.Study | model.ActuatorStudy) -> RobotDescription | Act
         vibration=vibration_to_expect(study, end),
         accuracy=accuracy_words(study),
         disturbances=vibration_words(study),
+        ideal=ideal_words(study.robot),
         remarks=tuple(
             dict.fromkeys(
                 [
