@@ -11,7 +11,7 @@ import typer
 from flexapod.app.failures import guarded
 from flexapod.app.options import Force, Json, StudyFile, as_options, refuse_existing
 from flexapod.app.terminal import print_json, print_table, print_text
-from flexapod.errors import InputError, closest
+from flexapod.errors import InputError
 from flexapod.files import write_text
 
 Name = Annotated[Path, typer.Argument(metavar="NAME.toml", help="File to write.")]
@@ -97,17 +97,15 @@ def keys(table: Table = None, markdown: Markdown = None, json: Json = False) -> 
     """Show every key of a study file: what it is, unit, what it is if left out, what is allowed, an example."""
     from dataclasses import asdict
 
+    from flexapod.app.key_names import check_table
+
+    if table is not None:
+        check_table(table)
     from flexapod.model import page
 
     if markdown is not None:
         write_text(markdown, page.markdown())
-    found = [item for item in page.listed() if table is None or f"{item.entry.table}.".startswith(f"{table}.")]
-    if not found:
-        names = list(dict.fromkeys(item.entry.table for item in page.listed()))
-        raise InputError(
-            "is not a table of a study file", key="TABLE", value=table, allowed=", ".join(names),
-            next_step=closest(str(table), names),
-        )  # fmt: skip
+    found = page.listed(table)
     if json:
         print_json([asdict(item) for item in found])
     elif markdown is not None:

@@ -8,12 +8,12 @@ import numpy as np
 from numpy.typing import ArrayLike
 
 from flexapod.typing import Array
-from flexapod.words import Scale, column, number, scale, text
+from flexapod.words import Scale, along_axes, column, number, scale, text
 
 if TYPE_CHECKING:
     from flexapod.model import Robot
 
-__all__ = ["Scale", "cleared", "cleared_lines", "column", "held", "length", "number", "scale", "text"]
+__all__ = ["Scale", "along_axes", "cleared", "cleared_lines", "column", "held", "length", "number", "scale", "text"]
 
 NOTHING = 1e-12  # length that is rounding [m]
 ROUNDING = 1e-6  # of the largest axis: what is smaller is shown as 0

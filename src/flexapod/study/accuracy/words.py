@@ -13,7 +13,7 @@ from flexapod.study.accuracy.play import half_play
 from flexapod.study.accuracy.spread import drift
 from flexapod.study.cause_words import cause_in_words
 from flexapod.typing import Array
-from flexapod.words import text
+from flexapod.words import along_axes, text
 
 __all__ = ["accuracy_words", "is_real"]
 
@@ -39,9 +39,9 @@ def accuracy_words(study: Study) -> tuple[str, ...]:
             found += _drift_words(at, robot.heat.time)
         if spread := at.spreading:
             sigma = np.sqrt(np.diag(np.sum([one.covariance for one in spread], axis=0)))
-            found.append(f"tolerances spread the tool at home by {_by_axis(sigma)} (standard deviations)")
+            found.append(f"tolerances spread the tool at home by {along_axes(sigma[:3])} (standard deviations)")
         if at.is_loose:
-            found.append(f"play lets the tool move at home by up to {_by_axis(at.play.worst[0])}")
+            found.append(f"play lets the tool move at home by up to {along_axes(at.play.worst[0, :3])}")
     except ComputationError as error:
         return (f"the accuracy at home cannot be said: {error.what}",)
     return tuple(found)
@@ -71,8 +71,3 @@ def _size(moved: Array) -> str:
     turned = float(np.linalg.norm(moved[3:]))
     words = text(float(np.linalg.norm(moved[:3])), "m", 3)
     return words if turned < NOTHING else f"{words} and {text(turned, 'rad', 3)}"
-
-
-def _by_axis(sizes: Array) -> str:
-    """Along the three axes."""
-    return ", ".join(f"{axis} {text(float(size), 'm', 3)}" for axis, size in zip("xyz", sizes, strict=False))
