@@ -16,7 +16,8 @@ def test_says_what_it_found_and_passes_check(flexapod, folder):
     checked = flexapod("check", "first.toml")
     assert checked.exit_code == 0, checked.stderr
     assert "The path keeps all limits." in checked.stdout
-    assert checked.stdout.rstrip().endswith("None.")
+    assert "Ideal, without give: joints, drives, plates;" in checked.stdout.splitlines()[-1]
+    assert json.loads(flexapod("check", "first.toml", "--json").stdout)["remarks"] == []
 
 
 def test_a_machine_of_catalogue_parts_passes_check_and_runs(flexapod, folder):

@@ -9,7 +9,7 @@ from typing import Annotated
 import typer
 
 from flexapod.app.failures import guarded
-from flexapod.app.options import Force, Json, StudyFile, as_options, refuse_existing
+from flexapod.app.options import Force, Json, StudyFile, Verbose, as_options, refuse_existing
 from flexapod.app.terminal import print_json, print_table, print_text
 from flexapod.errors import InputError
 from flexapod.files import write_text
@@ -126,7 +126,7 @@ def keys(table: Table = None, markdown: Markdown = None, json: Json = False) -> 
 
 
 @guarded
-def check(file: StudyFile, json: Json = False) -> None:
+def check(file: StudyFile, verbose: Verbose = False, json: Json = False) -> None:
     """Validate a study and say in words what it asks of its legs: lengths, strokes, loads, stiffness, frequencies."""
     from flexapod.app.check_words import show_actuator, show_robot
     from flexapod.model import load
@@ -136,6 +136,6 @@ def check(file: StudyFile, json: Json = False) -> None:
     if json:
         print_json(found.as_dict())
     elif isinstance(found, RobotDescription):
-        show_robot(found)
+        show_robot(found, verbose=verbose)
     else:
-        show_actuator(found)
+        show_actuator(found, verbose=verbose)

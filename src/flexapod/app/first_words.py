@@ -4,7 +4,7 @@ from __future__ import annotations
 
 from flexapod import model
 from flexapod.study.before.describe.robot import RobotDescription, describe
-from flexapod.study.words import length, number, text
+from flexapod.study.words import number, text
 
 HEAVY = 1.0  # mass of the legs over that of the payload above which it is remarked on
 MACHINE = 3.0  # the same of legs with screws or oil, which are sized for stiffness
@@ -34,10 +34,7 @@ def _found(study: model.Study, found: RobotDescription) -> list[str]:
     bears = f"Pistons bear at most {number(100 * pushed, 2)} % of their Euler load"
     if start.sag is not None and start.modes:
         first = start.modes[0]
-        bears += (
-            f"; at rest the payload sags by {length(start.sag)}; the lowest frequency is {first.frequency:.3g} Hz "
-            f"({first.kind})"
-        )
+        bears += f". {start.rest.rstrip('.')}; the lowest frequency is {first.frequency:.3g} Hz ({first.kind})"
     return [*lines, f"{bears}."]
 
 

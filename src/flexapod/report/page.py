@@ -92,7 +92,7 @@ def _page(study: Study | ActuatorStudy | None, data: Dataset, figures: Callable[
     links |= {"solver": "Solver", "toml": "Study file", "repeat": "Repeat"}
     body = [
         *(html.paragraph(sentence) for sentence in (*(found.sentence for found in further), *bodies_words(data))),
-        *_ideal(study),
+        *_told(study),
         html.paragraph(f"Report of {name}, flexapod {data.attrs['flexapod_version']}.", "soft"),
         html.contents(links),
         *_partial(data),
@@ -110,13 +110,14 @@ def _page(study: Study | ActuatorStudy | None, data: Dataset, figures: Callable[
     return html.page(f"flexapod: {name}", first.sentence, body)
 
 
-def _ideal(study: Study | ActuatorStudy | None) -> list[str]:
-    """What of a robot is ideal, in a line."""
+def _told(study: Study | ActuatorStudy | None) -> list[str]:
+    """What of a robot is ideal, and what a run leaves to the budget, a line each."""
     from flexapod.model import Study
+    from flexapod.study.counted import run_counts
     from flexapod.study.ideal import ideal_words
 
-    words = ideal_words(study.robot) if isinstance(study, Study) else None
-    return [html.paragraph(words)] if words else []
+    words = (ideal_words(study.robot), run_counts(study.robot)) if isinstance(study, Study) else ()
+    return [html.paragraph(line) for line in words if line]
 
 
 def _described(study: Study | ActuatorStudy | None) -> RobotDescription | ActuatorDescription | None:
@@ -208,8 +209,12 @@ def _partial(data: Dataset) -> list[str]:
 
 def warnings_section(data: Dataset) -> str:
     """What is doubtful about a result, in words."""
+    from flexapod.study.words import brief
+
     found = [line for line in str(data.attrs.get("warnings", "")).splitlines() if line]
-    return html.section("warnings", "Warnings", html.bullets(found) if found else html.paragraph("None."))
+    return html.section(
+        "warnings", "Warnings", html.remarks([brief(x) for x in found]) if found else html.paragraph("None.")
+    )
 
 
 def figures_section(name: str, title: str, figures: Sequence[Drawn], *, first: bool = True) -> str:

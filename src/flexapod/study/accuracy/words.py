@@ -12,10 +12,12 @@ from flexapod.study.accuracy.imperfect import is_crooked
 from flexapod.study.accuracy.play import half_play
 from flexapod.study.accuracy.spread import drift
 from flexapod.study.cause_words import cause_in_words
+from flexapod.study.words import NOTHING as LENGTH
+from flexapod.study.words import UNSAID, along_axes, signed
 from flexapod.typing import Array
-from flexapod.words import along_axes, text
+from flexapod.words import text
 
-__all__ = ["accuracy_words", "is_real"]
+__all__ = ["accuracy_words", "is_real", "rest_words"]
 
 NOTHING = 1e-12  # turn that is rounding [rad]
 
@@ -59,6 +61,26 @@ def _drift_words(at: AtPose, times: Array) -> list[str]:
         f"the temperatures of heat.file move the tool at home by up to {text(float(far[last]), 'm', 3)} from where it "
         f"stands at the start, at t = {times[last]:.4g} s"
     ]
+
+
+def rest_words(study: Study, pose: rigid.Poses, off: Array) -> str:
+    """How far the centre of mass at rest is off its drawn place, `off` (3,) [m]: by heat and by weight, with signs."""
+    size = float(np.linalg.norm(off))
+    if size < LENGTH:
+        return "At rest the centre of mass is where it is drawn."
+    words = f"At rest the centre of mass is off by {signed(off)}"
+    parts = rigid.built_parts(study.robot)
+    try:
+        each = AtPose(study, pose).parts if parts else {}
+    except ComputationError:  # held more often than it needs: strained by heat, which only forces tell
+        each = {}
+    moved = np.sum([*each.values(), np.zeros((study.robot.count, 6))], axis=(0, 1))
+    arm = pose.rotation[0] @ (study.robot.com - study.robot.tool)
+    built = moved[:3] + np.cross(moved[3:], arm)
+    if np.linalg.norm(built) < UNSAID * size:
+        return f"{words}."
+    by = "heat" if all(name.startswith("heat") for name in each) else "heat and geometry as built"
+    return f"{words}: by {by} {signed(built, off)}, by weight and load {signed(off - built, off)}."
 
 
 def is_real(robot: Robot) -> bool:
