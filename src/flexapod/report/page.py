@@ -173,10 +173,10 @@ def _axis_table(found: RobotSummary) -> str:
     rows = [
         (
             a.axis.upper(),
-            text(a.peak, "m"),
+            text(a.peak, "m") if a.peak else "0",
             "n/a" if a.time is None else f"{a.time:.3f} s",
-            text(a.rms, "m"),
-            text(a.excursion, "m", 4),
+            text(a.rms, "m") if a.rms else "0",
+            text(a.excursion, "m", 4) if a.excursion else "0",
             "n/a" if a.per_cent is None else f"{number(a.per_cent, 2)} %",
         )
         for a in found.shown_axes
