@@ -8,11 +8,11 @@ from typing import TYPE_CHECKING
 
 import numpy as np
 
-from flexapod.app.terminal import print_table, print_text
+from flexapod.app.terminal import print_remarks, print_table, print_text
 from flexapod.study.after.inside import bushing_words
 from flexapod.study.before.describe.hydraulic import hydraulic_table
 from flexapod.study.before.describe.screw import screw_table
-from flexapod.study.words import column, length, number, scale, text
+from flexapod.study.words import column, number, scale, text
 from flexapod.ties import most, ranked
 
 if TYPE_CHECKING:
@@ -23,8 +23,8 @@ if TYPE_CHECKING:
 SHOWN_ANGLE = math.radians(60)
 
 
-def show_robot(found: RobotDescription) -> None:
-    """Print a description in sections."""
+def show_robot(found: RobotDescription, *, verbose: bool = False) -> None:
+    """Print a description in sections; `verbose`: with what explains remarks."""
     print_text(
         f"The path keeps all limits. The motion takes {found.motion_end:.4g} s, the simulation {found.duration:.4g} s "
         f"({found.fidelity}). Estimates from the rigid path:"
@@ -51,8 +51,10 @@ def show_robot(found: RobotDescription) -> None:
         for sentence in sentences:
             print_text(f"{sentence[0].upper()}{sentence[1:]}.", indent=2)
     _heading("Remarks")
-    for remark in found.remarks or ("None.",):
-        print_text(remark, indent=2)
+    if found.ideal:
+        print_text(found.ideal, indent=2)
+    if found.remarks or not found.ideal:
+        print_remarks(found.remarks or ("None.",), verbose=verbose, indent=2)
 
 
 def _heading(title: str) -> None:
@@ -230,10 +232,11 @@ def _pose(pose: PoseDescription, held: str) -> None:
         print_text(
             f"Stiffness at the tool: {text(s.least, 'N/m')} along [{direction}], where it is least, to "
             f"{text(s.most, 'N/m')}; against turning {number(turning.factor * s.turning_least)} to "
-            f"{turning.text(s.turning_most)}. At rest the centre of mass is off by "
-            f"{length(pose.sag or 0.0)}.",
+            f"{turning.text(s.turning_most)}.",
             indent=2,
         )
+    if pose.rest:
+        print_text(pose.rest, indent=2)
     if pose.parts is not None:
         _parts(pose.parts)
     if any(pose.lost_motion):
@@ -242,8 +245,11 @@ def _pose(pose: PoseDescription, held: str) -> None:
     if pose.bushings:
         print_text(bushing_words(np.array([pose.bushings])), indent=2)
     if pose.modes:
-        listed = ", ".join(f"{m.frequency:.4g} Hz ({m.kind}, {100 * m.damping_ratio:.2g} %)" for m in pose.modes)
-        print_text(f"Frequencies (what moves, damping): {listed}.", indent=2)
+        _, frequencies = column([m.frequency for m in pose.modes], "Hz")
+        rows = [
+            [f"  {f}", f"{100 * m.damping_ratio:.2g}", m.kind] for f, m in zip(frequencies, pose.modes, strict=True)
+        ]
+        print_table(["  frequency [Hz]", "damping [%]", "what moves"], rows, left=(2,))
 
 
 def _parts(parts: Mapping[str, tuple[float, ...]]) -> None:
@@ -286,8 +292,8 @@ def _vibration(found: VibrationToExpect | None) -> None:
     )
 
 
-def show_actuator(found: ActuatorDescription) -> None:
-    """Print a description in sections."""
+def show_actuator(found: ActuatorDescription, *, verbose: bool = False) -> None:
+    """Print a description in sections; `verbose`: with what explains remarks."""
     print_text(f"The beam stays in its hub. A single actuator over {found.duration:.4g} s ({found.fidelity}).")
     print_text()
     print_text("Motion")
@@ -316,8 +322,7 @@ def show_actuator(found: ActuatorDescription) -> None:
             print_text(f"{beam.name}: {beam.problem}", indent=2)
     print_text()
     print_text("Remarks")
-    for remark in found.remarks or ("None.",):
-        print_text(remark, indent=2)
+    print_remarks(found.remarks or ("None.",), verbose=verbose, indent=2)
 
 
 def _actuator_motion(found: ActuatorDescription) -> list[str]:

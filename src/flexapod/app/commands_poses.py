@@ -110,10 +110,11 @@ def _modes_as_dict(data: Dataset, shaken: Dataset | None, files: list[Path]) -> 
 
 
 def _robot_words(study: Study, data: Dataset, pose: str | None) -> str:
-    from flexapod.study.words import held, length
+    from flexapod.study.words import held, signed
 
-    where, off = f"at {pose} from home" if pose else "at home", float((data.com_sag**2).sum() ** 0.5)
-    return f"{held(study.robot)}, {where}, about the static equilibrium (the centre of mass is off by {length(off)})."
+    where, sag = f"at {pose} from home" if pose else "at home", data.com_sag.values
+    rest = f"about the static equilibrium (the centre of mass is off by {signed(sag)})"
+    return f"{held(study.robot)}, {where}, {rest}."
 
 
 def _beam_words(study: ActuatorStudy) -> str:

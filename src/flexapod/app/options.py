@@ -28,6 +28,8 @@ Out = Annotated[
 NoFigures = Annotated[bool, typer.Option("--no-figures", help="Draw nothing: data and words only, in less time.")]
 Quiet = Annotated[bool, typer.Option("--quiet", "-q", help="No progress bar.")]
 
+Verbose = Annotated[bool, typer.Option("--verbose", help="Explain each remark, not only say it.")]
+
 Pose = Annotated[
     str | None,
     typer.Option("--pose", metavar='"roll=20deg,heave=10mm"', help="From home; numbers without unit in m and rad."),

@@ -91,6 +91,7 @@ def _page(study: Study | ActuatorStudy | None, data: Dataset, figures: Callable[
     links |= {"solver": "Solver", "toml": "Study file", "repeat": "Repeat"}
     body = [
         *(html.paragraph(sentence) for sentence in (*(found.sentence for found in further), *bodies_words(data))),
+        *_told(study),
         html.paragraph(f"Report of {name}, flexapod {data.attrs['flexapod_version']}.", "soft"),
         html.contents(links),
         *_partial(data),
@@ -106,6 +107,16 @@ def _page(study: Study | ActuatorStudy | None, data: Dataset, figures: Callable[
         repeat_section("Save the study file above as study.toml, then", "flexapod run study.toml --out results"),
     ]
     return html.page(f"flexapod: {name}", first.sentence, body)
+
+
+def _told(study: Study | ActuatorStudy | None) -> list[str]:
+    """What of a robot is ideal, and what a run leaves to the budget, a line each."""
+    from flexapod.model import Study
+    from flexapod.study.counted import run_counts
+    from flexapod.study.ideal import ideal_words
+
+    words = (ideal_words(study.robot), run_counts(study.robot)) if isinstance(study, Study) else ()
+    return [html.paragraph(line) for line in words if line]
 
 
 def _described(study: Study | ActuatorStudy | None) -> RobotDescription | ActuatorDescription | None:
@@ -161,10 +172,10 @@ def _axis_table(found: RobotSummary) -> str:
     rows = [
         (
             a.axis.upper(),
-            text(a.peak, "m"),
+            text(a.peak, "m") if a.peak else "0",
             "n/a" if a.time is None else f"{a.time:.3f} s",
-            text(a.rms, "m"),
-            text(a.excursion, "m", 4),
+            text(a.rms, "m") if a.rms else "0",
+            text(a.excursion, "m", 4) if a.excursion else "0",
             "n/a" if a.per_cent is None else f"{number(a.per_cent, 2)} %",
         )
         for a in found.shown_axes
@@ -197,8 +208,12 @@ def _partial(data: Dataset) -> list[str]:
 
 def warnings_section(data: Dataset) -> str:
     """What is doubtful about a result, in words."""
+    from flexapod.study.words import brief
+
     found = [line for line in str(data.attrs.get("warnings", "")).splitlines() if line]
-    return html.section("warnings", "Warnings", html.bullets(found) if found else html.paragraph("None."))
+    return html.section(
+        "warnings", "Warnings", html.remarks([brief(x) for x in found]) if found else html.paragraph("None.")
+    )
 
 
 def figures_section(name: str, title: str, figures: Sequence[Drawn], *, first: bool = True) -> str:

@@ -23,7 +23,7 @@ from flexapod.study.words import cleared
 from flexapod.threads import one_thread
 from flexapod.ties import EQUALS, first_largest
 from flexapod.typing import Array
-from flexapod.words import text
+from flexapod.words import along_axes
 
 if TYPE_CHECKING:
     from xarray import Dataset
@@ -142,7 +142,7 @@ def words_of(data: Dataset, where: str) -> tuple[str, ...]:
     """How much the tool shakes, along which axis most, by what and in which mode; doubts."""
     rms = data.vibration_rms.values
     shown = [cleared(size, rms[:3].max()) for size in rms[:3]]
-    sizes = ", ".join(f"{axis} {text(float(size), 'm', 3)}" for axis, size in zip("xyz", shown, strict=True))
+    sizes = along_axes(shown)
     most = int((rms[:3] > (1 - 1e-6) * rms[:3].max()).argmax())
     if not rms[most] > 0:
         return (f"disturbances do not move the tool {where}",)

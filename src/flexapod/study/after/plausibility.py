@@ -29,6 +29,7 @@ from flexapod.study.before.estimates import (
     section_width,
 )
 from flexapod.study.record import Record
+from flexapod.study.words import brief
 from flexapod.ties import first_largest, first_least, most
 from flexapod.typing import Array
 
@@ -186,8 +187,8 @@ def nut_words(leg: Leg, thrust: float, when: str) -> str:
     """That a thrust [N] unloads one half of a preloaded nut (T15.9)."""
     limit = 0.0 if leg.screw is None else leg.screw.nut.linear_to
     return (
-        f"the thrust reaches {thrust:.4g} N{when}, beyond {limit:.4g} N (2.83 times the preload of the nut) one half "
-        "of the nut carries nothing, and it is softer than assumed"
+        f"the thrust reaches {thrust:.4g} N{when}, beyond {limit:.4g} N (2.83 times the preload of the nut). One half "
+        "of the nut then carries nothing, and it is softer than assumed"
     )
 
 
@@ -215,13 +216,13 @@ def thick_words(section: Section, free: float, *, solid: bool) -> str:
     deflection, frequency, inertia = bending_errors(section, free)
     if solid:
         return (
-            f"below {SLENDERNESS:g} rotary inertia, which the solid's shapes leave out, is no longer small: its first "
-            f"frequency of bending is up to {100 * inertia:.2g} % too high (a pinned beam's)"
+            f"rotary inertia counts. Below {SLENDERNESS:g} rotary inertia, which the solid's shapes leave out, is no "
+            f"longer small: its first frequency of bending is up to {100 * inertia:.2g} % too high (a pinned beam's)"
         )
     return (
-        f"below {SLENDERNESS:g} shear, which an Euler-Bernoulli beam leaves out, is no longer small: it deflects by "
-        f"about {100 * deflection:.2g} % too little under a force across its end, and its first bending frequency is "
-        f"up to {100 * frequency:.2g} % too high (Timoshenko's beam, clamped and pinned)"
+        f"shear counts. Below {SLENDERNESS:g} shear, which an Euler-Bernoulli beam leaves out, is no longer small: it "
+        f"deflects by about {100 * deflection:.2g} % too little under a force across its end, and its first bending "
+        f"frequency is up to {100 * frequency:.2g} % too high (Timoshenko's beam, clamped and pinned)"
     )
 
 
@@ -266,5 +267,6 @@ def worst_of_each(found: list[tuple[int, str, float, str]]) -> list[str]:
         worst = most(same, key=lambda entry: entry[2])
         others = sorted(entry[0] + 1 for entry in same if entry is not worst)
         also = f" (also legs {', '.join(map(str, others))})" if others else ""
-        texts.append(f"leg {worst[0] + 1}: {worst[3]}{also}")
+        first, rest = brief(worst[3])
+        texts.append(f"leg {worst[0] + 1}: {first}{also}" + (f". {rest}" if rest else ""))
     return texts

@@ -9,7 +9,7 @@ import numpy as np
 
 from flexapod.errors import InputError
 from flexapod.study.cause_words import cause_words
-from flexapod.study.words import NOTHING, cleared, text
+from flexapod.study.words import NOTHING, along_axes, cleared, text
 from flexapod.ties import EQUALS, first_largest, most
 from flexapod.typing import Array
 
@@ -85,7 +85,7 @@ class RobotSummary:
                 "its legs are rigid" if self.tips < NOTHING else f"tips of legs swing by up to {text(self.tips, 'm')}"
             )
             return f"{name} stays on the path of the rigid robot: {still}."
-        by_axis = ", ".join(f"{a.axis} {text(a.peak, 'm')}" for a in self.shown_axes)
+        by_axis = along_axes([a.peak for a in self.shown_axes])
         leg = "" if self.worst_leg is None else f", most of it in leg {self.worst_leg}"
         until = " until the computation stopped" if self.partial else ""
         size = f"{name} misses its rigid path by up to {text(self.peak, 'm')}{until} ({by_axis})"

@@ -8,7 +8,7 @@ import numpy as np
 
 from flexapod.study.budgets.rules import PLACE, Budget
 from flexapod.study.cause_words import cause_in_words
-from flexapod.study.words import cleared, column, text
+from flexapod.study.words import along_axes, cleared, column, text
 from flexapod.ties import ranked
 from flexapod.typing import Array
 
@@ -127,7 +127,7 @@ def _m(size: float) -> str:
 
 
 def _axes(sizes: Array) -> str:
-    return ", ".join(f"{axis} {_m(float(size))}" for axis, size in zip("xyz", sizes, strict=False))
+    return along_axes(sizes[PLACE])
 
 
 def table(data: Dataset) -> tuple[list[str], list[list[str]]]:

@@ -187,7 +187,7 @@ def load_remarks(legs: tuple[LegDescription, ...], robot: Robot, fidelity: str) 
         remarks.append(f"leg {worst.leg}: {words}")
     if slender is not None and slender.slenderness < SLENDERNESS:
         remarks.append(
-            f"leg {slender.leg}: the free length falls to {slender.slenderness:.3g} times the width of the piston; "
+            f"leg {slender.leg}: the free length falls to {slender.slenderness:.3g} times the width of the piston: "
             + _thick(robot.legs[slender.leg - 1], slender.slenderness, solid=fidelity == SOLID)
             + ("" if fidelity == SOLID else "; leg.piston.shear = true takes it in")
         )
@@ -206,7 +206,7 @@ def bearing_remarks(path: RigidPath) -> list[str]:
                 found.setdefault(end, []).append((max(here / given, given / max(here, 1e-300)), i + 1, at_start[i]))
     return [
         f"leg {leg}: its {end} joint bears {text(float(load), 'N', 4)} at the start, and its stiffness is taken about "
-        f"{text(getattr(path.robot.legs[leg - 1], f'{end}_joint').rolling.load, 'N', 4)}: it grows as load^0.16"
+        f"{text(getattr(path.robot.legs[leg - 1], f'{end}_joint').rolling.load, 'N', 4)}. It grows as load^0.16"
         for end, joints in found.items()
         for off, leg, load in [max(joints)]
         if off > OFF_LOAD

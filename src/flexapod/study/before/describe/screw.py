@@ -151,7 +151,7 @@ def _excesses(screw: ScrewDrive, found: ScrewDescription) -> Iterator[tuple[str,
             found.rms_torque / limits.rms_torque,
             (
                 f"the motor's torque is {number(found.rms_torque, 4)} N m (root mean square), above the limit of "
-                f"{number(limits.rms_torque, 4)} N m: it gets too hot"
+                f"{number(limits.rms_torque, 4)} N m. It gets too hot"
             ),
         )
     yield (
@@ -159,8 +159,8 @@ def _excesses(screw: ScrewDrive, found: ScrewDescription) -> Iterator[tuple[str,
         found.buckling.value,
         (
             f"the screw is pushed with {number(found.buckling.value, 3)} times the {text(found.buckling_thrust, 'N')} "
-            f"that its shaft may bear at t = {found.buckling.time:.6g} s (half the Euler load): a thicker shaft, or "
-            "both ends held"
+            f"that its shaft may bear at t = {found.buckling.time:.6g} s (half the Euler load). A thicker shaft would "
+            "do, or both ends held"
         ),
     )
     yield (
@@ -168,7 +168,7 @@ def _excesses(screw: ScrewDrive, found: ScrewDescription) -> Iterator[tuple[str,
         found.critical,
         (
             f"the screw turns {number(found.critical, 3)} times as fast as its shaft may (0.8 of the first bending "
-            "frequency): a thicker or shorter shaft, a longer lead, or its far end held"
+            "frequency). A thicker or shorter shaft would do, a longer lead, or its far end held"
         ),
     )
     if found.safety is not None:
