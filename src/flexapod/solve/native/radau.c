@@ -15,11 +15,13 @@ typedef struct {
   long outputs, pieces, terms, most, stops;     /* most: steps of this call */
   const double *edges, *series;         /* (pieces + 1), (pieces, terms, width): Chebyshev series of the tables */
   const double *stop;                   /* (stops), ascending: instants on which steps end; the last ends the call */
+  long along, springs;                  /* coordinates along a leg whose springs' forces are those of the leg: first, number */
 } Control;
 
 typedef struct {                        /* from call to call */
   double time, h, spent, last_h, peak;  /* spent: sum of the local errors; peak: error over h^6, decaying */
   double rate, stages, rejected, recorded;      /* rate: of Newton's iteration; stages: whether those of the last step are there */
+  double thrust[LEGS];                  /* sum of the local errors of the legs' forces */
   Vector A[STAGES]; Forces F[STAGES];
 } Memory;
 
@@ -32,6 +34,7 @@ typedef struct {
   lanes M[GROUPS][N*N], D[GROUPS][N*N], K[GROUPS][N*N];
   double hub_M[BODY*BODY], hub_K[BODY*BODY];
   ComplexArrow complex;
+  lanes thrust[GROUPS];                                 /* what errors of displacements are in the legs' forces */
 #ifdef FRICTION
   Arrow soft;                                           /* the robot at rest */
   lanes slides[GROUPS][BRISTLES], lost[GROUPS][BRISTLES];       /* at the start: rates of sliding, shares lost in a second */
@@ -284,6 +287,15 @@ static double norm(const Settings *s, const Control *c, const Vector *x) {
   return isfinite(fault + blemished(faults)) ? fmax(most, largest(m)) : INFINITY;
 }
 
+/* What a displacement is in the forces of the legs' springs, added to the size of what others are */
+static void add_thrust(const Settings *s, const Control *c, const Vector *x, double scale, Radau *r) {
+  for (int g = 0; g < groups(s); g++) for (long k = 0; k < c->springs; k++) {
+    lanes force = {0};
+    for (int j = 0; j < N; j++) force += r->K[g][PLACE[c->along + k] + N*j]*x->leg[g][ORDER[j]];
+    for (int i = 0; i < LANES; i++) r->thrust[g][i] += scale*fabs(force[i]);
+  }
+}
+
 static void arrow_solve_vector(const Settings *s, const Arrow *a, Vector *r, lanes (*g)[ROWS + 1], Vector *dq, Forces *df) {
   lanes gap[GROUPS][ROWS], dlam[GROUPS][ROWS];
   for (int i = 0; i < groups(s); i++) memcpy(gap[i], g[i], sizeof(lanes)*ROWS);
@@ -400,6 +412,8 @@ static double estimate(const Settings *s, const Control *c, double h, Radau *r, 
   multiply(s, -1, r->K, s->hub ? r->hub_K : 0, &error, &rhs);
   multiply(s, -FREE, r->M, s->hub ? r->hub_M : 0, &error, &rhs);
   arrow_solve_vector(s, &w->arrow, &rhs, (lanes (*)[ROWS + 1])none, &second, 0);
+  memset(r->thrust, 0, sizeof r->thrust);
+  add_thrust(s, c, &second, 1, r);
   return norm(s, c, &second);
 }
 
@@ -427,6 +441,7 @@ static double estimate_bristles(const Settings *s, const Control *c, double h, R
     for (int j = 0; j < N; j++) rhs.leg[i][j] += wrong[j];
   }
   arrow_solve_vector(s, &r->soft, &rhs, (lanes (*)[ROWS + 1])none, &moved, 0);
+  add_thrust(s, c, &moved, 2, r);
   return 2*norm(s, c, &moved);
 #else
   return 0;
@@ -629,7 +644,8 @@ int radau(const Settings *s, State *x, const Control *c, double *memory) {
     powers_until(1, h, &r, x->sums);
     memcpy(x->powers, r.powers[2], sizeof r.powers[2]);
     memcpy(m.A, r.A, sizeof m.A); memcpy(m.F, r.F, sizeof m.F);
-    m.stages = 1; m.last_h = h; m.time = until; m.spent += error + rubbed; m.peak = peak;
+    m.stages = 1; m.last_h = h; m.time = until; m.spent += error + rubbed;
+    for (long i = 0; i < s->legs; i++) m.thrust[i] += r.thrust[i/LANES][i%LANES]; m.peak = peak;
     start_step(s, w, &r);
     age++; fresh = 0;
     double share = fmax(allowed, NOISE*unit/h);   /* shorter steps have no less rounding */
