@@ -12,7 +12,8 @@ from flexapod.study.after.forces import force_error, force_warnings
 from flexapod.study.after.leg_results import damped_angles, drive_forms
 from flexapod.study.after.limits import drive_warnings
 from flexapod.study.after.plausibility import robot_warnings
-from flexapod.study.after.results import rigid_force_results, robot_coords, robot_results
+from flexapod.study.after.results import payload_results, rigid_force_results, robot_coords, robot_results
+from flexapod.study.after.steps import step_warnings
 from flexapod.study.arguments import LoadLike, RobotLike, StartLike, as_study, read
 from flexapod.study.attributes import attributes, march_attributes
 from flexapod.study.before.checks import check_path
@@ -49,6 +50,8 @@ class Simulated:
     def warnings(self) -> list[str]:
         """Remarks on the study, its path and its results."""
         found = force_warnings(self.study, self.force_error())
+        deviation = payload_results(self.study.robot, self.path.at(self.record.time), self.record)["tool_deviation"]
+        found += step_warnings(self.study, self.record.smallest_step, deviation)
         found += robot_warnings(self.study.robot, self.march.system, self.record)
         found += drive_warnings(self.study.robot, self.march.system, self.record)
         return [*self.study.warnings, *self.remarks, *found]
