@@ -33,6 +33,7 @@ SOLVER = {
     "compiled": "Compiled equations",
     "tolerance": "Tolerance of the step control",
     "estimated_error": "Largest estimated error",
+    "estimated_force_error": "Estimated error of the legs' forces over their peak",
     "step": "Smallest step (with a tolerance: least mean over some outputs) [s]",
     "output_step": "Output step [s]",
     "steps": "Steps",
