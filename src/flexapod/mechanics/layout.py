@@ -197,7 +197,7 @@ class Shapes:
     guide : LateralBasis, optional
         Shapes of the piston between two bushings, which give way across the leg; None: clamped at the mouth.
     cylinder : LateralBasis, optional
-        Shapes of a cylinder that bends.
+        Shapes of a cylinder that bends; with a guide there is one more, with a kink at the head.
     """
 
     a: LateralBasis
@@ -271,7 +271,8 @@ class Shapes:
     def _inside(self) -> tuple[tuple[str, int], ...]:
         """Coordinates at the mouth and inwards of it: displacement and slope there, inner part, cylinder."""
         guide = () if self.guide is None else (("g", 2), ("h", self.guide.count))
-        bend = () if self.cylinder is None else (("k", self.cylinder.count),)
+        kinked = self.guide is not None  # one shape more, by the head's force
+        bend = () if self.cylinder is None else (("k", self.cylinder.count + kinked),)
         return tuple((f"{name}{way}", size) for name, size in (*guide, *bend) for way in "ab")
 
     @cached_property

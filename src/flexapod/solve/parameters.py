@@ -261,6 +261,7 @@ def _friction(leg: Leg, length: float) -> dict[str, object]:
 def _inside(leg: Leg, per_loss: float) -> dict[str, object]:
     """Bushings of the piston and bending of the cylinder; without them a piece of no mass that never ends."""
     guide, cylinder, piston = leg.guide, leg.cylinder, leg.piston
+    section = cylinder.section
     EI, _, rhoA = cylinder.beam
     body = cylinder.body or Mounted(mass=0.0)
     springs = [] if guide is None else [guide.gland, guide.head]
@@ -274,6 +275,7 @@ def _inside(leg: Leg, per_loss: float) -> dict[str, object]:
         "cylinder_length": cylinder.mouth if EI else 1.0,
         "cylinder_EI": EI,
         "cylinder_rhoA": rhoA,
+        "cylinder_turning": rhoA * section.second_moment / section.area if section is not None else 0.0,
         "mounted_mass": body.mass,
         "mounted_com": body.com,
         "mounted_inertia": body.inertia,
