@@ -21,7 +21,8 @@ def run_counts(robot: Robot) -> str | None:
         return None
     listed = " and ".join(filter(None, (", ".join(named[:-1]), named[-1])))
     warm = "" if robot.heat is None else "warm, "
-    return f"Counted: one machine as drawn, {warm}under load and in motion; {listed} are in the budget (flexapod budget)."
+    here = f"one machine as drawn, {warm}under load and in motion"
+    return f"Counted: {here}; {listed} are in the budget (flexapod budget)."
 
 
 def budget_counts(robot: Robot) -> str:
