@@ -7,7 +7,7 @@ from functools import lru_cache, wraps
 from typing import TYPE_CHECKING, TypeVar, cast
 
 import numpy as np
-from numpy.typing import ArrayLike
+from numpy.typing import ArrayLike, NDArray
 
 from flexapod.errors import InputError
 from flexapod.rigid import dynamics, forward, jacobian, kinematics, mechanism, motions, trajectory, workspace
@@ -143,7 +143,7 @@ def poses(robot: Robot, motion: Motion, t: ArrayLike) -> Poses:
     return _following(robot, free, law, motion.pivot, t)
 
 
-def first_looks(robot: Robot, motion: Motion, t: Array) -> Iterator[Array]:
+def first_looks(robot: Robot, motion: Motion, t: Array) -> Iterator[NDArray[np.intp]]:
     """Indices of few instants `t` (T,) at which to see first whether legs follow; see `mechanism.first_looks`.
 
     Raises
