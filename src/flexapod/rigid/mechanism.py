@@ -6,6 +6,7 @@ from collections.abc import Iterator
 from typing import NamedTuple
 
 import numpy as np
+from numpy.typing import NDArray
 
 from flexapod.errors import ComputationError, InputError
 from flexapod.rigid.closures import Closed, Motion, Task, close, move
@@ -237,7 +238,7 @@ def refuse_far(limbs: Limbs, law: Law, pivot: Array, t: Array) -> None:
         )
 
 
-def first_looks(limbs: Limbs, law: Law, pivot: Array) -> Iterator[Array]:
+def first_looks(limbs: Limbs, law: Law, pivot: Array) -> Iterator[NDArray[np.intp]]:
     """Indices of few instants of a path that leads far, at which to see whether legs follow, ever farther from home.
 
     None of paths near home, nor of legs UPS, which are known in closed form.

@@ -7,7 +7,7 @@ from functools import lru_cache, wraps
 from typing import TYPE_CHECKING, TypeVar, cast
 
 import numpy as np
-from numpy.typing import ArrayLike
+from numpy.typing import ArrayLike, NDArray
 
 from flexapod.errors import InputError
 from flexapod.rigid import dynamics, forward, jacobian, kinematics, mechanism, motions, trajectory, workspace
@@ -128,7 +128,7 @@ def payload_body(robot: Robot) -> PayloadBody:
 def poses(robot: Robot, motion: Motion, t: ArrayLike) -> Poses:
     """Poses at instants `t` [s], shape (T,): as commanded, and where legs guide the platform as they make it move.
 
-    See `trajectory.poses_from_coordinates`, `mechanism.follow`.
+    See `trajectory.sample`, `mechanism.follow`.
 
     Raises
     ------
@@ -136,14 +136,14 @@ def poses(robot: Robot, motion: Motion, t: ArrayLike) -> Poses:
         The robot does not have a motion that is asked for, or cannot take a pose.
     """
     legs, t = rigid_limbs(robot), trajectory.instants(t)
-    law, free = trajectory.coordinates(motion, t), np.ones(6, dtype=bool)
-    if legs.guides:
-        free = motions.commanded(legs, motion, _mobility(robot))
+    law = trajectory.coordinates(motion, t)
     mechanism.refuse_far(legs, law, motion.pivot, t)
-    return _following(robot, free, law, motion.pivot, t)
+    if legs.guides:
+        return _following(robot, motions.commanded(legs, motion, _mobility(robot)), law, motion.pivot, t)
+    return trajectory.sample(home_pose(robot), motion, t)
 
 
-def first_looks(robot: Robot, motion: Motion, t: Array) -> Iterator[Array]:
+def first_looks(robot: Robot, motion: Motion, t: Array) -> Iterator[NDArray[np.intp]]:
     """Indices of few instants `t` (T,) at which to see first whether legs follow; see `mechanism.first_looks`.
 
     Raises

@@ -238,6 +238,17 @@ def coordinates(motion: Motion, t: ArrayLike) -> Law:
     return Law(*(part[:, None] * target for part in unit))
 
 
+def sample(home: Poses, motion: Motion, t: ArrayLike) -> Poses:
+    """Commanded poses of the rigid platform at instants `t` [s], shape (T,); exact rates and accelerations.
+
+    Raises
+    ------
+    InputError
+        If an instant is not finite.
+    """
+    return poses_from_coordinates(home, coordinates(motion, instants(t)), motion.pivot)
+
+
 def instants(t: ArrayLike) -> Array:
     """Instants (T,) [s], refused where one is not finite."""
     t = np.atleast_1d(np.asarray(t, dtype=float))

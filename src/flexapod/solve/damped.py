@@ -94,4 +94,4 @@ def damping_ratios(omega: Array, D: Array) -> Array:
 def poles(omega: Array, D: Array) -> NDArray[np.complex128]:
     """Eigenvalues [1/s] of damped modes as of `damping_ratios`: two of each mass, one of each damper beside them."""
     modes = reacting(omega, D)
-    return np.asarray(modes.rate / np.linalg.eigvals(modes.matrix).astype(complex))
+    return (modes.rate / np.linalg.eigvals(modes.matrix)).astype(np.complex128)

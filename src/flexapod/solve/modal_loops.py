@@ -65,7 +65,7 @@ class ModalLoops:
         A[total, z], E[total, total] = (self.integral / unit * seen)[:, sums].T / rate, np.eye(sums.sum())
         finite(A, E)
         values, shapes = np.linalg.eig(-np.linalg.solve(A, E))
-        return rate / values, modes.basis @ shapes[z]
+        return (rate / values).astype(np.complex128), (modes.basis @ shapes[z]).astype(np.complex128)
 
 
 def growth(values: Complex) -> float:
