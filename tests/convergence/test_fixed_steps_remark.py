@@ -42,3 +42,8 @@ def test_a_slow_motion_leaves_nothing_to_be_followed():
 
 def test_tolerances_have_no_such_remark():
     assert not remarks(simulate(paper_robot(tolerance=1e-2, duration=1.1)))
+
+
+def test_a_run_that_ends_in_the_motion_has_none():
+    """It stops the record, not the robot: no impact, which would leave 75 um."""
+    assert not remarks(simulate(paper_robot(step=1e-3, duration=0.1)))

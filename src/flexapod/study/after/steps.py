@@ -26,8 +26,9 @@ def step_warnings(study: Study, step: float, deviation: Array) -> list[str]:
     How a mode vibrates is estimated as for `flexapod check`: it answers by itself to the inertia of the rigid path.
     What starts, loads and floors excite is not asked for. ``deviation``, (T, 3): of the tool [m].
     """
-    end = min(study.motion.end_time - study.motion.hold, study.duration)
-    if study.simulation.tolerance is not None or study.robot.platform_fixed or end <= 0:
+    end = study.motion.end_time - study.motion.hold
+    ends = 0 < end <= study.duration * (1 + 1e-9)  # else nothing is left of the motion, or it is not over
+    if study.simulation.tolerance is not None or study.robot.platform_fixed or not ends:
         return []
     try:
         at = rigid.poses(study.robot, study.motion, np.array([end]))
