@@ -15,6 +15,13 @@
     .mantine-Button-root[style*="red"] { --button-bg: #b3261e !important; --button-hover: #93201a !important; }
     .mantine-Slider-root + .mantine-NumberInput-root { display: none; }
     .flexapod-below { margin: -0.5em 0 0.4em; }
+    .mantine-Paper-root[style*="position: fixed"] { width: 100% !important; max-height: 55% !important; }
+    .mantine-Paper-root[style*="position: fixed"] [style*="width: 20em"] { width: 100% !important; }
+    .flexapod-notice { position: fixed; left: 8px; bottom: 8px; z-index: 5; display: flex; align-items: center;
+      padding: 0.1em 0.2em 0.1em 0.6em; border-left: 3px solid #e8590c; font-size: 0.75rem; color: #343a40;
+      background: rgba(255, 255, 255, 0.9); }
+    .flexapod-notice button { padding: 0 0.5em; border: 0; background: none; color: inherit; cursor: pointer;
+      font-size: 1.1rem; line-height: 1.4; }
     [role="button"]:focus-visible, canvas:focus-visible { outline: 2px solid #005aa0; outline-offset: -2px; }`;
   document.head.append(style);
 
@@ -132,6 +139,7 @@
         words.firstChild.data = "Sent. The tab Files says whether it is taken.";
       }
     }
+    window.flexapodPicture?.fit(); // the panel may be another one
   }
 
   let waits = false;

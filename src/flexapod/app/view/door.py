@@ -2,12 +2,14 @@
 
 from __future__ import annotations
 
+import gzip
 import http
 import re
 import threading
 import traceback
 from collections.abc import Awaitable, Callable, Iterator, Sequence
 from contextlib import contextmanager
+from functools import lru_cache
 from typing import Any, cast
 
 import viser
@@ -80,7 +82,7 @@ class Door:
             del request.headers["Accept-Encoding"]
             request.headers["Accept-Encoding"] = ", ".join(accepted)
         try:
-            return process(connection, request)
+            return _styled(process(connection, request))
         except (OSError, ValueError):  # a path that no file can have
             return connection.respond(http.HTTPStatus.NOT_FOUND, "There is no such page.\n")
 
@@ -120,6 +122,26 @@ class Door:
             await connection.close(INVALID_DATA, "unreadable")
         finally:
             self._left()
+
+
+STYLE = b"<style>#webgl-software-rendering { display: none; }</style>"
+"""In the head of the page, before any script runs: viser's notice covers the robot; `assets/picture.js` has another."""
+
+
+def _styled(response: Response | None) -> Response | None:
+    """The page with our style in it; other answers as they are."""
+    if response is not None and response.headers.get("Content-Type", "").startswith("text/html"):
+        response.body = _with_style(response.body, response.headers["Content-Encoding"] == "gzip")
+        del response.headers["Content-Length"]
+        response.headers["Content-Length"] = str(len(response.body))
+    return response
+
+
+@lru_cache(maxsize=4)
+def _with_style(body: bytes, packed: bool) -> bytes:
+    text = gzip.decompress(body) if packed else body
+    text = text.replace(b"</head>", STYLE + b"</head>", 1)
+    return gzip.compress(text) if packed else text
 
 
 def _with_headers(_: ServerConnection, request: Request, response: Response) -> None:
