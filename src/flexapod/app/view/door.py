@@ -18,11 +18,11 @@ from websockets.asyncio.server import ServerConnection, serve
 from websockets.http11 import Request, Response
 
 from flexapod.app.view.logs import CONNECTIONS, LOG
-from flexapod.app.view.network import is_expected, is_same_site, names_in_words
+from flexapod.app.view.network import has_place, is_expected, is_same_site, names_in_words, whose
 from flexapod.app.view.visitor import LARGEST_MESSAGE, Visitor
 
-MOST_VISITORS = 32
-"""Pages that are open at once."""
+MOST_VISITORS = 64
+"""Pages that are open at once; one address has at most as many as are still free (`has_place`)."""
 QUEUE = 4  # frames of one visitor that wait for their turn
 CLOSING = 2.0  # time for a visitor to agree that it is over [s]
 
@@ -101,10 +101,20 @@ class Door:
             return http.HTTPStatus.FORBIDDEN, words
         if "Upgrade" in headers and origin is not None and not is_same_site(origin, asked):
             return http.HTTPStatus.FORBIDDEN, f"The page that connects came from another site: {origin[:100]!r}."
-        if len(connection.server.connections) >= MOST_VISITORS:
-            words = f"{MOST_VISITORS} pages are open; this server takes no more. Try again later."
-            return http.HTTPStatus.SERVICE_UNAVAILABLE, words
-        return None
+        return self._full(connection, request)
+
+    def _full(self, connection: ServerConnection, request: Request) -> tuple[http.HTTPStatus, str] | None:
+        """Status and words for a page where there is no place for one more of its address."""
+        if "Upgrade" not in request.headers:
+            return None
+        forwarded = request.headers.get_all("X-Forwarded-For") if self._name else []
+        visitor, there = cast("Visitor", connection), cast("set[Visitor]", connection.server.connections)
+        visitor.whose = whose(visitor.peer, forwarded[-1] if forwarded else None)
+        own = sum(other.whose == visitor.whose for other in there)
+        if has_place(own, len(there), MOST_VISITORS):
+            return None
+        words = f"{len(there)} pages are open, {own} of them from your address; it may have no more now. "
+        return http.HTTPStatus.SERVICE_UNAVAILABLE, words + "Close one, or try again later."
 
     async def _receive(self, handler: Handler, connection: ServerConnection) -> None:
         """Leave a connection to viser; whatever ends it, nothing of it stays."""

@@ -16,6 +16,7 @@ from flexapod.app.view.background import Latest, Threads
 from flexapod.app.view.document import Document, Edit, read
 from flexapod.app.view.files_panel import FilesPanel
 from flexapod.app.view.header import Header, Picture
+from flexapod.app.view.inputs import limit_inputs
 from flexapod.app.view.logs import LOG
 from flexapod.app.view.opening import Source
 from flexapod.app.view.quick import coarse, is_quick, preview_words
@@ -54,6 +55,7 @@ class Session:
     def start(self) -> None:
         """Build the page."""
         if self._source is not None:
+            limit_inputs(self.client)
             self.open(self._source)
             self._source = None
 
