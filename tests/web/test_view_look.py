@@ -59,6 +59,7 @@ def box(found: np.ndarray) -> tuple[float, float, float, float]:
 
 
 def without_notice(page) -> None:
+    page.evaluate("document.getElementById('webgl-software-rendering')?.remove()")
     if page.locator(".flexapod-notice").count():
         page.get_by_role("button", name="Close").click()
 
