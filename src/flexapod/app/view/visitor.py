@@ -6,7 +6,7 @@ import asyncio
 import math
 from collections.abc import Callable
 from concurrent.futures import Future, ThreadPoolExecutor
-from typing import Any, cast
+from typing import Any, TypeAlias, cast
 
 import msgspec
 from websockets.asyncio.server import ServerConnection
@@ -33,8 +33,8 @@ _MOST_PIECES = 256  # in which a message may come
 _UNREAD = 64_000_000  # bytes that wait for somebody who does not read
 _PAUSE = 0.02  # [s]
 
-
-Three, Four = tuple[float, float, float], tuple[float, float, float, float]
+Three: TypeAlias = tuple[float, float, float]
+Four: TypeAlias = tuple[float, float, float, float]
 
 
 class _Any(msgspec.Struct):
@@ -128,7 +128,7 @@ class Visitor(ServerConnection):
             async with asyncio.timeout_at(None if self._is_there else self._until):
                 message = await super().recv(decode)
             kind = _kind(message)
-            if kind in _FORMS and _is_finite(kind, message):
+            if kind in _FORMS and _is_finite(kind, cast("bytes", message)):
                 self._is_there |= kind == GREETING
                 return message
 
