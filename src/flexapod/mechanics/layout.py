@@ -6,6 +6,7 @@ from typing import Literal
 
 from flexapod.bases import AxialBasis, LateralBasis, lateral_basis
 from flexapod.mechanics.drive_layout import (
+    DRIVE_FRICTION,
     GAP_PARAMETERS,
     INTEGRAL_PARAMETERS,
     LOOP_PARAMETERS,
@@ -83,16 +84,9 @@ FLEXURE_PARAMETERS: tuple[tuple[str, int], ...] = (
 SOFT_BASE: tuple[tuple[str, int], ...] = (("base_soft", 2), ("base_soft_damping", 2))
 SOFT_PLATFORM: tuple[tuple[str, int], ...] = (("platform_soft", 2), ("platform_soft_damping", 2))
 
-#: ... of joints and drives with friction, see `elements.friction`.
+#: ... of joints with friction, see `elements.friction`.
 BASE_FRICTION: tuple[tuple[str, int], ...] = (("base_friction", 8),)
 PLATFORM_FRICTION: tuple[tuple[str, int], ...] = (("platform_friction", 8),)
-#: ... of a drive along its travel; 1 where it acts on the stroke, else, of a rotor, the share of its shaft's twist in
-#: what the springs before the stroke give way, at home, and what a longer leg adds to it [1/m].
-DRIVE_FRICTION: tuple[tuple[str, int], ...] = (
-    ("drive_friction", 8),
-    ("drive_friction_at_stroke", 1),
-    ("drive_friction_twist", 2),
-)
 
 #: ... of legs whose base is moved: the point about which it turns.
 BASE_MOTION_PARAMETERS: tuple[tuple[str, int], ...] = (("base_motion_at", 3),)  # m
