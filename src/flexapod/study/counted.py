@@ -21,11 +21,10 @@ def run_counts(robot: Robot) -> str | None:
         return None
     listed = " and ".join(filter(None, (", ".join(named[:-1]), named[-1])))
     warm = "" if robot.heat is None else "warm, "
-    here = f"one machine as drawn, {warm}under load and in motion"
-    return f"Counted: {here}; {listed} are in the budget (flexapod budget)."
+    return f"Counted: one machine as drawn, {warm}under load and in motion; {listed}: flexapod budget."
 
 
 def budget_counts(robot: Robot) -> str:
     """What a budget counts, and what it leaves to a run."""
     made = "one machine" if robot.tolerances is None else "all machines made to these tolerances"
-    return f"Counted: {made}, at rest; what vibrates on the way is in a run (flexapod run), of one machine as drawn."
+    return f"Counted: {made}, at rest; what one of them does on its way: flexapod run."

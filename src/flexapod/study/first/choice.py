@@ -36,6 +36,9 @@ HEAVY = 3.0  # mass of the legs over that of the payload beyond which a thinner 
 OF_PISTON = ("buckling of the piston", "stress of the piston")
 
 
+Described = tuple[tuple[LegDescription, ...], tuple[ScrewDescription, ...], float]
+
+
 @dataclass(frozen=True, kw_only=True)
 class Tried:
     """A plan, how many times what it is asked for exceeds what it bears, by kind, its largest thrust [N].
@@ -109,23 +112,31 @@ def _tried(ideal: Plan, screw: Screw, leg: Leg) -> Tried:
     """The robot with a screw and a leg: preload by the thrust, duration by the speed, then the motor by its torque."""
     parts = Electric(screw=screw, torque=MOTORS[0], preload=PRELOAD * screw.dynamic_load, load=1.0, leg_=leg)
     plan = _slowed(replace(ideal, leg=leg, parts=parts))
-    for _ in range(len(MOTORS)):
-        legs, screws, rest = _described(plan)
-        thrust = max(found.thrust.value for found in screws)
-        preload = float(np.clip(SPARE * thrust / UNLOADS / screw.dynamic_load, PRELOAD, HIGHEST)) * screw.dynamic_load
-        needed = max(max(s.rms_torque, s.torque.value / 3, s.back_torque) for s in screws)
-        larger = [torque for torque in MOTORS if torque >= max(SPARE * needed, parts.torque)]
-        torque = larger[0] if larger else MOTORS[-1]
-        before = parts
-        parts = replace(parts, torque=torque, preload=sizes.rounded(preload), load=sizes.rounded(rest))
-        plan = replace(plan, parts=parts)
-        if before == parts:
+    found = _described(plan)
+    for _ in MOTORS:
+        chosen = _chosen(parts, found)
+        if chosen == parts:
             break
+        parts, plan = chosen, replace(plan, parts=chosen)
+        found = _described(plan)
+    legs, screws, _ = found
+    thrust = max(one.thrust.value for one in screws)
     weight = sum(x.piston.mass + x.cylinder.mass for x in _study(plan).robot.legs)
     heavy, slow = weight / (HEAVY * ideal.request.payload), plan.duration / (SLOW * ideal.duration)
     return Tried(
         plan=plan, excess=_excess(plan, parts, legs, screws), thrust=thrust, cost=max(heavy, 1.0) * max(slow, 1.0)
     )
+
+
+def _chosen(parts: Electric, found: Described) -> Electric:
+    """The cylinder with a preload and a motor for the loads that were found; its motor no smaller than before."""
+    _, screws, rest = found
+    thrust, rating = max(one.thrust.value for one in screws), parts.screw.dynamic_load
+    preload = float(np.clip(SPARE * thrust / UNLOADS / rating, PRELOAD, HIGHEST)) * rating
+    needed = max(max(s.rms_torque, s.torque.value / 3, s.back_torque) for s in screws)
+    larger = [torque for torque in MOTORS if torque >= max(SPARE * needed, parts.torque)]
+    torque = larger[0] if larger else MOTORS[-1]
+    return replace(parts, torque=torque, preload=sizes.rounded(preload), load=sizes.rounded(rest))
 
 
 def _slowed(plan: Plan) -> Plan:
@@ -153,7 +164,7 @@ def _study(plan: Plan) -> model.Study:
     return model.loads(written(plan))  # type: ignore[return-value]
 
 
-def _described(plan: Plan) -> tuple[tuple[LegDescription, ...], tuple[ScrewDescription, ...], float]:
+def _described(plan: Plan) -> Described:
     """Legs and screws on the path; the thrust at rest [N]."""
     study = _study(plan)
     path = RigidPath(study, np.linspace(0.0, study.duration, INSTANTS))
