@@ -141,7 +141,7 @@ STYLE = b"<style>#webgl-software-rendering { display: none; }</style>"
 def _styled(response: Response | None) -> Response | None:
     """The page with our style in it; other answers as they are."""
     if response is not None and response.headers.get("Content-Type", "").startswith("text/html"):
-        response.body = _with_style(response.body, response.headers["Content-Encoding"] == "gzip")
+        response.body = _with_style(bytes(response.body), response.headers["Content-Encoding"] == "gzip")
         del response.headers["Content-Length"]
         response.headers["Content-Length"] = str(len(response.body))
     return response
