@@ -1,0 +1,462 @@
+"""Small faults put into a copy of the code one by one: those that the tests near them do not see are listed.
+
+By hand, it takes an hour or two (seeds give other faults; what is in the file of results is not tried again):
+
+    .venv/bin/python -m tests.faults 100 [--seed 1] [--results build/faults]    try faults, list survivors
+    .venv/bin/python -m tests.faults --list 100                                 show them, try none
+    .venv/bin/python -m tests.faults --again                                    survivors of the results once more
+    .venv/bin/python -m tests.faults --again rigid/laws --tests tests/unit/test_rigid_laws.py    some, by these tests
+
+A fault is one operator, number, index, function, default or sign. One that changes words alone is none: docstrings,
+messages, annotations, figures. Each is tried in one process of low priority, on tests that are near by names and
+imports, the quickest first, until one fails. What fails without the fault does not count.
+"""
+
+import argparse
+import ast
+import builtins
+import contextlib
+import dataclasses
+import hashlib
+import importlib
+import json
+import os
+import re
+import resource
+import select
+import shutil
+import signal
+import subprocess
+import sys
+import tempfile
+import time
+import traceback
+from collections import Counter
+from collections.abc import Callable
+from pathlib import Path
+
+import pytest
+from tests.nearness import Nearness
+
+ROOT = Path(__file__).parents[1]
+#: Chances of a place in a room's code; numbers and laws before pictures and words.
+ROOMS = {"app": 0.1, "plot": 0.1, "report": 0.1, "paper": 0.3, "proof": 0.3, "exchange": 0.7, "scene": 0.7, "": 0.5}
+IN_A_FILE = 3
+#: Files and functions that are about words, looks, files or speed.
+WORDS = re.compile(
+    r"words|text|label|title|legend|caption|colou?r|style|page|html|toml|format|describe_|remark|message|notes?$|"
+    r"names?$|__repr__|__str__|progress|announce|sentence|_say|hint|advice|tick|table$|document|log"
+)
+FILES = re.compile(
+    r"(^|/)(names|words|\w*_words|page|notes|citations|loading|threads|typing|version|errors|compiler|cache|lock|html|"
+    r"style|colours|c_source|failures|terminal|logs|door|server|network|visitor|files|processes|write|toml|printed|"
+    r"documents?|header|player|background|running|opening)\.py$"
+)
+SILENT = {"strict", "frozen", "kw_only", "repr", "exist_ok", "copy", "maxsize", "errors", "description", "mode", "eq",
+          "optimize", "daemon", "parents", "missing_ok", "index", "stacklevel", "timeout", "next_step", "title",
+          "allowed", "init", "check", "capture_output", "alias", "ignore_errors"}  # fmt: skip
+TELLING = re.compile(r"Error$|^_log$|^warn|^log|^number$|^text$|^words|^TypeVar$|^lru_cache$|^round$|^Scalar$")
+OPERATORS = {ast.Add: ast.Sub, ast.Sub: ast.Add, ast.Mult: ast.Div, ast.Div: ast.Mult, ast.Pow: ast.Mult}
+COMPARISONS = {ast.Lt: ast.GtE, ast.Gt: ast.LtE, ast.LtE: ast.Gt, ast.GtE: ast.Lt, ast.Eq: ast.NotEq, ast.NotEq: ast.Eq}
+SWAPS = {"sin": "cos", "cos": "sin", "max": "min", "min": "max", "maximum": "minimum", "minimum": "maximum",
+         "argmax": "argmin", "argmin": "argmax", "floor": "ceil", "ceil": "floor", "abs": "float", "cosh": "sinh",
+         "sinh": "cosh", "all": "any", "any": "all", "zeros": "ones", "hstack": "vstack", "cumsum": "asarray",
+         "base_joint": "platform_joint", "platform_joint": "base_joint", "base_joints": "platform_joints",
+         "platform_joints": "base_joints", "mouth": "begins", "rad2deg": "deg2rad", "deg2rad": "rad2deg"}  # fmt: skip
+SYMBOLIC = ("elements", "mechanics", "symbolic")  # their text is in the key of every kernel: all are compiled anew
+SECONDS = {"near": 60.0, "far": 120.0}  # of a fault's tests, by what they took before
+LONGEST = 20  # a run may take so many times as long: processors are shared
+PRELOADED = ("numpy", "scipy.optimize", "scipy.integrate", "scipy.spatial.transform", "casadi", "pydantic", "xarray",
+             "netCDF4", "tomlkit", "msgspec", "rich.console", "typer", "matplotlib")  # fmt: skip
+
+
+@dataclasses.dataclass(frozen=True)
+class Fault:
+    """A text in a file and what stands there in its place; ``count``: which of the equal ones in this function."""
+
+    path: str
+    function: str
+    was: str
+    now: str
+    count: int
+    line: int
+    span: tuple[int, int, int, int] = dataclasses.field(compare=False)
+
+    @property
+    def name(self) -> str:
+        return f"{self.path}:{self.function}: {self.was}  ->  {self.now}" + f" (#{self.count})" * (self.count > 1)
+
+    @property
+    def symbolic(self) -> bool:
+        return self.path.split("/")[2] in SYMBOLIC
+
+
+# Faults of a file
+
+
+class Places(ast.NodeVisitor):
+    """All faults that a file may have."""
+
+    def __init__(self, path: str, source: str) -> None:
+        self.path, self.source, self.found = path, source, []
+        self.inside, self.seen = [], Counter()
+        self.visit(ast.parse(source))
+
+    def put(self, node: ast.AST, now: ast.AST) -> None:
+        was = ast.get_source_segment(self.source, node)
+        text = ast.unparse(now)
+        if was is None or "\n" in was or len(was) > 120 or not self.inside:
+            return
+        function = ".".join(self.inside)
+        self.seen[function, was, text] += 1
+        span = (node.lineno, node.col_offset, node.end_lineno, node.end_col_offset)
+        self.found.append(Fault(self.path, function, was, text, self.seen[function, was, text], node.lineno, span))
+
+    # What is left out
+
+    def named(self, node):
+        if WORDS.search(node.name) and not isinstance(node, ast.ClassDef):
+            return
+        self.inside.append(node.name)
+        parts = [*node.decorator_list, *node.body] if not isinstance(node, ast.ClassDef) else node.body
+        if not isinstance(node, ast.ClassDef):
+            parts = [*node.args.defaults, *filter(None, node.args.kw_defaults), *node.body]
+        for part in parts:
+            self.visit(part)
+        self.inside.pop()
+
+    visit_FunctionDef = visit_AsyncFunctionDef = visit_ClassDef = named
+
+    def visit_AnnAssign(self, node):
+        if node.value is not None:
+            self.visit(node.value)
+
+    def visit_Assign(self, node):
+        names = [x.id for x in node.targets if isinstance(x, ast.Name)]
+        if any(WORDS.search(name.lower()) or name == "__all__" for name in names):
+            return
+        outside = not self.inside
+        self.inside += names[:1] if outside else []
+        self.visit(node.value)
+        if outside:
+            self.inside.clear()
+
+    def skip(self, node):
+        return
+
+    visit_Raise = visit_JoinedStr = visit_Assert = visit_Import = visit_ImportFrom = visit_Match = skip
+
+    def visit_If(self, node):
+        if "TYPE_CHECKING" not in ast.dump(node.test):
+            # a check that ends in an error alone stays: its words are its purpose
+            if not (all(isinstance(x, ast.Raise) for x in node.body) and not node.orelse):
+                self.visit(node.test)
+            for part in [*node.body, *node.orelse]:
+                self.visit(part)
+
+    def visit_Call(self, node):
+        name = getattr(node.func, "attr", getattr(node.func, "id", ""))
+        owner = getattr(getattr(node.func, "value", None), "id", "")
+        if TELLING.search(name) or TELLING.search(owner):
+            return
+        if name in SWAPS and isinstance(node.func, ast.Attribute):
+            self.put(node, ast.Call(ast.Attribute(node.func.value, SWAPS[name]), node.args, node.keywords))
+        elif name in SWAPS:
+            self.put(node, ast.Call(ast.Name(SWAPS[name]), node.args, node.keywords))
+        self.visit(node.func)
+        for part in node.args:
+            self.visit(part)
+        for keyword in node.keywords:
+            if keyword.arg not in SILENT:
+                self.visit(keyword.value)
+
+    # What may be wrong
+
+    def visit_BinOp(self, node):
+        sides = (node.left, node.right)
+        texts = any(isinstance(x, ast.JoinedStr | ast.List | ast.Tuple) or _is_text(x) for x in sides)
+        if (to := OPERATORS.get(type(node.op))) and not texts:
+            self.put(node, ast.BinOp(node.left, to(), node.right))
+        self.generic_visit(node)
+
+    def visit_AugAssign(self, node):
+        texts = isinstance(node.value, ast.List | ast.JoinedStr | ast.ListComp)
+        if isinstance(node.op, ast.Add | ast.Sub) and not texts:
+            self.put(node.value, ast.UnaryOp(ast.USub(), node.value))
+        self.visit(node.value)
+
+    def visit_UnaryOp(self, node):
+        if isinstance(node.op, ast.USub | ast.Not):
+            self.put(node, node.operand)
+        if not (isinstance(node.op, ast.USub) and isinstance(node.operand, ast.Constant)):
+            self.visit(node.operand)
+
+    def visit_Compare(self, node):
+        if len(node.ops) == 1 and (to := COMPARISONS.get(type(node.ops[0]))) and not _is_text(node.comparators[0]):
+            self.put(node, ast.Compare(node.left, [to()], node.comparators))
+        self.generic_visit(node)
+
+    def visit_BoolOp(self, node):
+        to = ast.Or() if isinstance(node.op, ast.And) else ast.And()
+        self.put(node, ast.BoolOp(to, node.values))
+        self.generic_visit(node)
+
+    def visit_Attribute(self, node):
+        if node.attr in SWAPS and ("joint" in node.attr or node.attr == "mouth"):
+            self.put(node, ast.Attribute(node.value, SWAPS[node.attr]))
+        self.visit(node.value)
+
+    def visit_Constant(self, node):
+        x = node.value
+        if isinstance(x, bool):
+            self.put(node, ast.Constant(not x))
+        elif isinstance(x, int):
+            self.put(node, ast.Constant(x + 1 if x < 9 else 2 * x))
+        elif isinstance(x, float) and abs(x) > 1e-6 and abs(x) < 1e9:  # beyond are guards against rounding
+            self.put(node, ast.Constant(2.0 * x if x else 1.0))
+
+
+def _is_text(node: ast.AST) -> bool:
+    return isinstance(node, ast.Constant) and isinstance(node.value, str | None)
+
+
+def faults(count: int, seed: int) -> list[Fault]:
+    """Faults of a seed, one in a function and few in a file; what else changes in the code moves none of the others."""
+    drawn = []
+    for path in sorted((ROOT / "src").rglob("*.py")):
+        name = str(path.relative_to(ROOT))
+        room = name.split("/")[2] if name.count("/") > 2 else ""
+        if FILES.search(name) or name.endswith("__init__.py"):
+            continue
+        for fault in Places(name, path.read_text(encoding="utf-8")).found:
+            chance = int(hashlib.sha256(f"{seed} {fault.name}".encode()).hexdigest()[:12], 16) / 16**12
+            drawn.append((chance ** (1 / ROOMS.get(room, 1.0)), fault))
+    kept, functions, files = [], set(), Counter()
+    for _, fault in sorted(drawn, key=lambda x: (-x[0], x[1].name)):
+        place = (fault.path, fault.function)
+        if place not in functions and files[fault.path] < IN_A_FILE:
+            functions.add(place)
+            files[fault.path] += 1
+            kept.append(fault)
+        if len(kept) == count:
+            break
+    return kept
+
+
+def faulty(source: str, fault: Fault) -> str:
+    """The source with the fault, which tells when it is reached."""
+    first, start, last, end = fault.span
+    lines = source.splitlines(keepends=True)
+    line = lines[first - 1].encode()
+    if first != last or line[start:end].decode() != fault.was:
+        raise ValueError(f"{fault.path}: {fault.was} is not there")
+    lines[first - 1] = (line[:start] + f"fault_here({fault.now})".encode() + line[end:]).decode()
+    return "".join(lines)
+
+
+# Trying them
+
+
+@dataclasses.dataclass
+class Trial:
+    """What tests say of a fault: which one failed, which files reached it, seconds that each file took."""
+
+    failed: str | None = None
+    why: str = ""
+    reached: list[str] = dataclasses.field(default_factory=list)
+    seconds: dict[str, float] = dataclasses.field(default_factory=dict)
+
+
+class Watch:
+    """Of pytest: the first failure, times, and where the fault was reached."""
+
+    def __init__(self) -> None:
+        self.trial, self.file = Trial(), ""
+
+    def here(self, value):
+        """Stands around the faulty expression."""
+        if self.file not in self.trial.reached:
+            self.trial.reached.append(self.file)
+        return value
+
+    def pytest_runtest_logstart(self, nodeid):
+        self.file = nodeid.split("::")[0]
+
+    def pytest_runtest_logreport(self, report):
+        file = report.nodeid.split("::")[0]
+        self.trial.seconds[file] = self.trial.seconds.get(file, 0.0) + report.duration
+        if report.failed and not self.trial.failed:
+            self.trial.failed, self.trial.why = report.nodeid, str(report.longrepr)[-300:]
+
+    def pytest_collectreport(self, report):
+        if report.failed and not self.trial.failed:
+            self.trial.failed, self.trial.why = report.nodeid, str(report.longrepr)[-300:]
+
+
+class Copy:
+    """A copy of the project, in which one file at a time is faulty."""
+
+    def __init__(self, folder: Path, kernels: Path) -> None:
+        self.folder, self.kernels = folder, kernels
+        listed = ["git", "ls-files", "-co", "--exclude-standard"]
+        for name in subprocess.run(listed, cwd=ROOT, capture_output=True, text=True, check=True).stdout.splitlines():
+            if (ROOT / name).is_file():
+                (folder / name).parent.mkdir(parents=True, exist_ok=True)
+                shutil.copy2(ROOT / name, folder / name)
+        (folder / "told").mkdir()  # for processes that tests start
+        (folder / "told" / "sitecustomize.py").write_text("import builtins\nbuiltins.fault_here = lambda x: x\n")
+
+    def tried(self, tests: list[str], seconds: float, fault: Fault | None = None) -> Trial:
+        """Run `tests` until one fails, in a process of their own."""
+        path = None if fault is None else self.folder / fault.path
+        source = "" if path is None else path.read_text(encoding="utf-8")
+        kernels = self.folder / "kernels" if fault and fault.symbolic else self.kernels
+        try:
+            if path is not None and fault is not None:
+                path.write_text(faulty(source, fault), encoding="utf-8")
+            return self._run(tests, seconds, kernels)
+        finally:
+            if path is not None:
+                path.write_text(source, encoding="utf-8")
+            shutil.rmtree(self.folder / "kernels", ignore_errors=True)
+
+    def _run(self, tests, seconds, kernels) -> Trial:
+        answer = self.folder / "answer.json"
+        answer.unlink(missing_ok=True)
+        child = os.fork()
+        if not child:
+            os.setpgid(0, 0)
+            signal.signal(signal.SIGTERM, signal.SIG_DFL)
+            try:
+                self._child(tests, seconds, kernels, answer)
+            except BaseException:
+                (self.folder / "died.txt").write_text(traceback.format_exc())
+            finally:
+                os._exit(0)
+        try:
+            select.select([os.pidfd_open(child)], [], [], LONGEST * seconds)
+        finally:  # what its tests have left, too
+            with contextlib.suppress(ProcessLookupError):
+                os.killpg(child, signal.SIGKILL)
+            os.waitpid(child, 0)
+        if answer.exists():
+            return Trial(**json.loads(answer.read_text()))
+        died = self.folder / "died.txt"
+        if died.exists():
+            raise RuntimeError(died.read_text())
+        return Trial(failed="time", why=f"no end within {4 * seconds:g} s of the processor, or the process died")
+
+    def _child(self, tests, seconds, kernels, answer):
+        resource.setrlimit(resource.RLIMIT_CPU, (int(4 * seconds), int(4 * seconds) + 5))
+        log = os.open(self.folder / "log.txt", os.O_WRONLY | os.O_CREAT | os.O_TRUNC)
+        os.dup2(log, 1), os.dup2(log, 2)
+        os.chdir(self.folder)
+        for name in [name for name in sys.modules if name.split(".")[0] in ("tests", "flexapod")]:
+            del sys.modules[name]
+        ours = {str(ROOT), str(ROOT / "src"), ""}
+        sys.path[:] = [str(self.folder / "src"), *(p for p in sys.path if p not in ours)]
+        os.environ |= {"PYTHONPATH": f"{self.folder / 'src'}:{self.folder / 'told'}", "FLEXAPOD_CACHE": str(kernels),
+                       "PYTHONDONTWRITEBYTECODE": "1", "OPENBLAS_NUM_THREADS": "1"}  # fmt: skip
+        sys.dont_write_bytecode = True
+        kernels.mkdir(parents=True, exist_ok=True, mode=0o700)
+        watch = Watch()
+        builtins.fault_here = watch.here
+        pytest.main([*tests, "-x", "-q", "-p", "no:cacheprovider"], plugins=[watch])
+        answer.write_text(json.dumps(dataclasses.asdict(watch.trial)))
+
+
+class Results:
+    """Lines of JSON, one for a fault, and the seconds that files of tests take."""
+
+    def __init__(self, folder: Path) -> None:
+        folder.mkdir(parents=True, exist_ok=True)
+        self.file, self.times = folder / "results.jsonl", folder / "seconds.json"
+        self.rows, self.passed = {}, set()
+        for line in self.file.read_text(encoding="utf-8").splitlines() if self.file.exists() else ():
+            row = json.loads(line)
+            self.rows[row["fault"]] = row
+            self.passed |= {row["failed"].split("::")[0]} if row["failed"] else set()
+        self.seconds = json.loads(self.times.read_text()) if self.times.exists() else {}
+
+    def add(self, fault: Fault, trial: Trial, took: float) -> None:
+        row = {"fault": fault.name, "line": fault.line, "failed": trial.failed, "why": trial.why,
+               "reached": trial.reached, "tried": list(trial.seconds), "took": round(took, 1)}  # fmt: skip
+        self.rows[fault.name] = row
+        with self.file.open("a", encoding="utf-8") as file:
+            file.write(json.dumps(row) + "\n")
+
+    def learn(self, trial: Trial) -> None:
+        if trial.failed is None:  # whole files only
+            self.seconds |= {name: round(x, 2) for name, x in trial.seconds.items()}
+            self.times.write_text(json.dumps(self.seconds, indent=1, sort_keys=True))
+
+    def sound(self, test: str, run: Callable[[], Trial]) -> bool:
+        """Whether tests of this file pass without a fault; it is tried once."""
+        file = test.split("::")[0]
+        if test != "time" and file not in self.seconds and file not in self.passed and run().failed is None:
+            self.passed.add(file)
+        return test == "time" or file in self.seconds or file in self.passed
+
+    def survivors(self) -> list[str]:
+        return [name for name, row in self.rows.items() if row["failed"] is None]
+
+
+def tried(copy: Copy, fault: Fault, near: Nearness, results: Results, tests: list[str]) -> Trial:
+    """The tests near a fault, and farther ones where those do not reach it."""
+    whole = Trial()
+    for kind, seconds in SECONDS.items():
+        chosen = tests or near.tests(fault.path, fault.function, seconds, results.seconds, set(whole.seconds))
+        trial = copy.tried(chosen, seconds, fault)
+        results.learn(trial)
+        whole.reached += [file for file in trial.reached if file]
+        whole.seconds |= dict.fromkeys(chosen, 0.0) | trial.seconds
+        whole.failed, whole.why = trial.failed, trial.why
+        if trial.failed and not results.sound(trial.failed, lambda test=trial.failed, s=seconds: copy.tried([test], s)):
+            print(f"    fails without the fault, too: {trial.failed}", flush=True)
+            whole.failed, whole.why = None, f"unsound: {trial.failed}"
+        if whole.failed or tests or (kind == "near" and whole.reached):
+            break
+    return whole
+
+
+def main() -> int:
+    """Try faults; the number of survivors is printed, the exit status 1 if there are some."""
+    parser = argparse.ArgumentParser(prog="python -m tests.faults", description=__doc__.splitlines()[0])
+    parser.add_argument("count", type=int, nargs="?", default=100)
+    parser.add_argument("--seed", type=int, default=1)
+    parser.add_argument("--list", action="store_true", help="show the faults, try none")
+    parser.add_argument("--again", nargs="?", const="", help="survivors of the results once more, of this text")
+    parser.add_argument("--tests", nargs="+", default=[], help="by these tests")
+    parser.add_argument("--results", type=Path, default=ROOT / "build" / "faults")
+    given = parser.parse_args()
+    results = Results(given.results)
+    chosen = faults(given.count if given.again is None else 100_000, given.seed)
+    if given.again is not None:
+        chosen = [x for x in chosen if x.name in results.survivors() and given.again in x.name]
+    if given.list:
+        print("\n".join(f"{x.line:5d}  {x.name}" for x in chosen))
+        return 0
+    os.nice(10)
+    signal.signal(signal.SIGTERM, lambda *_: sys.exit(130))
+    for name in PRELOADED:
+        importlib.import_module(name)
+    os.environ.setdefault("FLEXAPOD_CACHE_MEGABYTES", "1000")
+    near = Nearness(ROOT)
+    with tempfile.TemporaryDirectory(prefix="faults-") as name:
+        copy = Copy(Path(name), given.results / "kernels")
+        for k, fault in enumerate(chosen):
+            if fault.name in results.rows and given.again is None:
+                continue
+            begun = time.monotonic()
+            trial = tried(copy, fault, near, results, given.tests)
+            results.add(fault, trial, time.monotonic() - begun)
+            said = f"seen by {trial.failed}" if trial.failed else f"NOT SEEN, reached in {len(trial.reached)} files"
+            print(f"{k + 1:4d} {fault.name}\n         {said} ({time.monotonic() - begun:.0f} s)", flush=True)
+    names = {fault.name for fault in chosen}
+    left = [name for name in results.survivors() if name in names]
+    print(f"{len(left)} of {len(chosen)} faults were not seen:", *left, sep="\n")
+    return int(bool(left))
+
+
+if __name__ == "__main__":
+    sys.exit(main())
