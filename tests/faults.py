@@ -480,7 +480,7 @@ def main() -> int:
         copy = Copy(Path(name), given.results / "kernels")
         rounds = ROUNDS if given.again is None else ((given.seconds, math.inf),)
         for nth, (seconds, enough) in enumerate(rounds):
-            for k, fault in enumerate(chosen):
+            for k, fault in sorted(enumerate(chosen), key=lambda x: x[1].symbolic):  # all kernels anew: last
                 row = results.rows.get(fault.name)
                 done = row and (row["failed"] or row["round"] >= nth or len(row["reached"]) >= enough)
                 if done and given.again is None:

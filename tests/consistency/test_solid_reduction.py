@@ -105,7 +105,7 @@ def test_stiffness_does_not_jump_when_a_station_comes_out(poisson):
 
 @pytest.mark.parametrize("size", [0.02, 0.04])
 def test_a_mouth_between_stations_meets_the_solid_at_the_next(size):
-    """One interval farther out the station between is free and carries nothing: the solid's own stiffness without it."""
+    """An interval farther out the station between is free and carries nothing: the solid's own stiffness without it."""
     section, beam, intervals, last = Rectangle(width=size, height=size), 1.0, 20, 7
     material = {"E": 2e11, "density": 7800.0}
     model = reduced_beam(section, beam, beam / 40, **material, kind="hex20", spacing=beam / intervals)
