@@ -2,9 +2,12 @@
 
 import base64
 import re
+from itertools import pairwise
+from types import SimpleNamespace
 
 import numpy as np
 import pytest
+from casadi import DM
 from scipy.linalg import eigh
 from scipy.optimize import brentq
 from tests import legs_of_all_kinds as legs
@@ -15,6 +18,7 @@ from tests.runs import balance, run_robot
 
 import flexapod as fx
 from flexapod.bases import axial_basis, lateral_basis
+from flexapod.elements.guide import inner_turn
 from flexapod.errors import InputError
 from flexapod.exchange.export import abaqus_deck
 from flexapod.mechanics.layout import Shapes
@@ -25,6 +29,7 @@ from flexapod.proof.engines import calculix
 from flexapod.proof.engines.engine import CALCULIX
 from flexapod.proof.engines.exudyn_robot import RobotProblem
 from flexapod.report.replay import replay
+from flexapod.rigid.rotations import exponential, quaternion, rotation_vector
 from flexapod.scene.geometry import RobotMotion
 from flexapod.solve.buckling import leg_loads
 from flexapod.study.accuracy.play import guide_play
@@ -76,6 +81,27 @@ def test_energies_are_right_to_second_order(place):
         # Potentials are exact in these kinematics.
         assert found[1] == pytest.approx(V, rel=1e-12)
     assert gaps[0] / gaps[1] == pytest.approx(1000, rel=0.2)
+
+
+def test_the_inner_part_turns_the_tip_as_a_rod_without_twist_does():
+    """Rotations of the section carried along the bent rod by the least turns from one tangent to the next."""
+    basis, rng, D = lateral_basis("tip-load", 3), np.random.default_rng(2), 0.4
+    size, slope = 1e-3, np.array([0.7, -0.4]) * 1e-2
+    a, b = size * rng.normal(size=(2, 3)) * [1, 0.3, 0.1]
+    parts = SimpleNamespace(ha=DM(a), hb=DM(b), l=DM(LENGTH))
+    f = SimpleNamespace(qs=parts, line=SimpleNamespace(slope=DM(slope)))
+    found = float(inner_turn(f, SimpleNamespace(guide_reach=LENGTH + D), basis))
+    # The head hangs below the gland: place - D zeta slope + shape(zeta), zeta = 1 at the head. Towards the tip:
+    slopes = slope - (np.array([a, b]) @ basis.values(np.linspace(1, 0, 2001), 1)).T / D
+    turn = exponential(np.array([-slopes[0, 1], slopes[0, 0], 0.0]))  # the head does not turn about the leg
+    tangents = np.array([exponential(np.array([-y, x, 0.0]))[:, 2] for x, y in slopes])
+    for one, other in pairwise(tangents):
+        axis = np.cross(one, other)
+        turn = exponential(axis / np.linalg.norm(axis) * np.arcsin(np.linalg.norm(axis))) @ turn
+    exact = rotation_vector(quaternion(turn[None]))[0, 2]
+    # Second order in slopes of 1e-2: what is left is their square times as much; 2000 pieces leave 1e-6.
+    assert found == pytest.approx(exact, rel=1e-3)
+    assert abs(found) > 1e-6
 
 
 EI, RHO = 5217.4, 4.466

@@ -143,6 +143,17 @@ def test_a_map_has_margins_and_leaves_out_what_joints_cannot_reach():
     )
 
 
+def test_the_two_legs_that_a_map_names_are_those_that_stand_together():
+    # Feet of legs 3 and 4 on 0.7 m are moved to 8 deg from each other, 98 mm; all others are 12 deg apart or more, and
+    # on the platform legs that are neighbours there are 100 mm apart or more, on 0.4 m.
+    close = machine(lower=np.array([-10.0, 10, 116, 124, 230, 250]), upper=np.array([-50.0, 50, 70, 170, 190, 290]))
+    found = fx.workspace_map(close, {"surge": [-0.05, 0.0, 0.05]}, fidelity="lumped")
+    np.testing.assert_array_equal(found.nearest_legs, [[3, 4]] * 3)
+    still = study(close, duration=2e-3, fidelity="rigid")
+    run = fx.simulate(still.replace(motion=still.motion.replace(amplitude=0.0)))
+    np.testing.assert_array_equal(run.nearest_legs, [[3, 4]] * len(run.time))
+
+
 def _gap(robot, surge):
     pose = rigid.home_pose(robot)
     pose = rigid.Poses.at_rest(pose.position + np.array([surge, 0, 0]), pose.rotation)
