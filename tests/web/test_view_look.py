@@ -111,6 +111,11 @@ def test_a_camera_that_was_moved_stays_until_it_is_called_back(show):
     assert comes(moved) == pytest.approx(first, abs=1e-3)
 
 
+def at_the_foot(page, place) -> bool:
+    _, _, right, foot = room(page)
+    return foot - 60 < place["y"] < place["y"] + place["height"] <= foot and place["x"] + place["width"] <= right
+
+
 def test_the_notice_of_software_rendering_is_small_at_the_foot_and_comes_once(desk):
     """It covered a quarter of the picture, on a phone the robot, at every visit until somebody closed it."""
     _, visit, errors = desk
@@ -121,11 +126,9 @@ def test_the_notice_of_software_rendering_is_small_at_the_foot_and_comes_once(de
     assert "without a graphics card" in notice.inner_text()
     for size in (WIDE, PHONE):
         page.set_viewport_size(size)
-        until(lambda: -60 < notice.bounding_box()["y"] - room(page)[3] < 0 and page.wait_for_timeout(300) is None)
-        place, (_, _, right, foot) = notice.bounding_box(), room(page)
+        until(lambda: at_the_foot(page, notice.bounding_box()))  # once the panel has its place
+        place = notice.bounding_box()
         assert place["width"] * place["height"] < 0.03 * size["width"] * size["height"]
-        assert foot - 60 < place["y"] < place["y"] + place["height"] <= foot
-        assert place["x"] + place["width"] <= right
     theirs = page.locator("#webgl-software-rendering")
     assert theirs.count() == 1 and not theirs.is_visible()  # this is such a browser, and viser says so at length
     notice.get_by_role("button", name="Close").click()
