@@ -78,6 +78,7 @@ PHYSICS |= {
 PHYSICS |= {
     "guide_reach": 1.065, "guide_rhoA": 4.466, "guide_EI": 5217.4, "guide_stiffness": [3e5, 4e5],
     "guide_damping": [30.0, 50.0], "cylinder_length": 0.315, "cylinder_EI": 2e4, "cylinder_rhoA": 4.0,
+    "cylinder_turning": 3e-3,
     "mounted_mass": 1.2, "mounted_com": 0.12, "mounted_inertia": 0.006,
 }  # fmt: skip
 for end, k in (("base", 1.0), ("platform", 1.3)):

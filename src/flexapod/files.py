@@ -1,12 +1,20 @@
-"""Files in and out: regular files of bounded size are read, and what is written appears whole or not at all."""
+"""Files in and out: regular files of bounded size are read, what is written is on the disk whole or not at all."""
 
 from __future__ import annotations
 
 import errno
+import hashlib
 import os
+import platform
+import re
+import shutil
 import stat
+import sys
+import tempfile
+import time
 from collections.abc import Iterator
-from contextlib import contextmanager
+from contextlib import contextmanager, suppress
+from functools import cache, lru_cache
 from pathlib import Path
 from uuid import uuid4
 
@@ -20,7 +28,9 @@ __all__ = [
     "check_regular",
     "read_bytes",
     "read_text",
+    "remove_abandoned",
     "replacing",
+    "scratch",
     "settle",
     "whole",
     "write_text",
@@ -31,7 +41,11 @@ LARGEST_TEXT = 10_000_000
 LARGEST_TABLE = 100_000_000
 """Of a table [byte]: a million lines of a motion."""
 UNFINISHED = ".flexapod-*"
-"""Names of files that are being written; who finds one of a process that is gone may remove it."""
+"""Names of what is being written: `remove_abandoned` removes what processes left that are gone."""
+WRITER = re.compile(r"\.?flexapod-([0-9a-f]{8})-([0-9]+)-[0-9a-f]{12}(\..*)?")
+"""Such a name: the machine and the process that write it."""
+ABANDONED = 3600.0
+"""Age of a file that is being written [s] from which on its writer counts as gone, where nothing else tells."""
 
 
 def check_regular(path: str | Path, most: float = float("inf")) -> None:
@@ -141,10 +155,11 @@ def write_text(path: str | Path, text: str, *, encoding: str = "utf-8", errors: 
 
 
 @contextmanager
-def whole(path: str | Path, *, mode: int = 0o666, settled: bool = False) -> Iterator[Path]:
-    """A temporary file beside `path` that takes its place when the block ends without an error.
+def whole(path: str | Path, *, mode: int = 0o666) -> Iterator[Path]:
+    """A temporary file beside `path` that takes its place, on the disk, when the block ends without an error.
 
-    Whatever ends the block, Ctrl-C and SIGTERM too, the temporary file is gone.
+    Whatever ends the block, Ctrl-C and SIGTERM too, the temporary file is gone; after SIGKILL the next one who writes
+    into the folder removes it.
 
     Parameters
     ----------
@@ -152,27 +167,92 @@ def whole(path: str | Path, *, mode: int = 0o666, settled: bool = False) -> Iter
         Its folder is made if need be.
     mode : int
         Who may do what with it, as far as the user's mask allows.
-    settled : bool
-        Whether content and name are to be on the disk, and not only on their way to it, when the block has ended.
 
     Raises
     ------
     OSError
     """
     path = Path(path)
-    temporary = path.with_name(f"{UNFINISHED[:-1]}{uuid4().hex[:12]}{path.suffix}")
-    made = [folder for folder in path.parents if not folder.exists()] if settled else []
+    temporary = path.with_name(f"{_name('.')}{path.suffix}")
+    made = [folder for folder in path.parents if not folder.exists()]
     try:
         path.parent.mkdir(parents=True, exist_ok=True)
+        _tidy(path.parent.absolute())
         os.close(os.open(temporary, os.O_WRONLY | os.O_CREAT | os.O_EXCL, mode))
         yield temporary
-        if settled:
-            _settle(temporary, os.O_RDWR)
+        _settle(temporary, os.O_RDWR)
         temporary.replace(path)
     finally:
         temporary.unlink(missing_ok=True)
-    for folder in (path, *made) if settled else ():
+    for folder in (path, *made):
         settle(folder.parent)
+
+
+@contextmanager
+def scratch(beside: Path | None = None) -> Iterator[Path]:
+    """An empty folder for this user alone, in the system's temporary one or in `beside`, gone when the block ends.
+
+    Those that killed processes left there are removed.
+
+    Raises
+    ------
+    OSError
+    """
+    place = Path(tempfile.gettempdir()) if beside is None else beside
+    _tidy(place.absolute())
+    folder = place / _name("" if beside is None else ".")
+    folder.mkdir(mode=0o700)
+    try:
+        yield folder
+    finally:
+        shutil.rmtree(folder, ignore_errors=True)
+
+
+def _name(dot: str) -> str:
+    return f"{dot}flexapod-{_here()}-{os.getpid()}-{uuid4().hex[:12]}"
+
+
+@cache
+def _here() -> str:
+    """Eight digits of this machine, and of this container: numbers of processes mean nothing in another."""
+    place = platform.node()
+    with suppress(OSError):
+        place += os.readlink("/proc/self/ns/pid")
+    return hashlib.sha256(place.encode()).hexdigest()[:8]
+
+
+@lru_cache(maxsize=1024)
+def _tidy(folder: Path) -> None:
+    """`remove_abandoned`, once in a process for each folder."""
+    remove_abandoned(folder)
+
+
+def remove_abandoned(folder: Path) -> None:
+    """Remove what processes that are gone were writing in a folder; what cannot be removed stays."""
+    for path in (*folder.glob(UNFINISHED), *folder.glob(UNFINISHED[1:])):
+        with suppress(OSError):
+            _remove_abandoned(path, path.lstat())
+
+
+def _remove_abandoned(path: Path, found: os.stat_result) -> None:
+    writer, is_folder = WRITER.fullmatch(path.name), stat.S_ISDIR(found.st_mode)
+    known = writer is not None and writer[1] == _here() and sys.platform != "win32"
+    if known and (_runs(int(writer[2])) or found.st_uid != os.geteuid()):
+        return
+    if known and is_folder:
+        shutil.rmtree(path)
+    elif not is_folder and path.name.startswith(".") and (known or time.time() - found.st_mtime > ABANDONED):
+        path.unlink()
+
+
+def _runs(process: int) -> bool:
+    try:
+        os.kill(process, 0)
+    except ProcessLookupError:
+        return False
+    except (OSError, OverflowError):  # another user's, or no number of a process
+        return True
+    return True
 
 
 def settle(folder: Path) -> None:

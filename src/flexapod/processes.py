@@ -1,4 +1,4 @@
-"""Other programs, stopped with all that they have started; work shared with copies of this process."""
+"""Other programs, and copies of this process that share its work; none of them outlives it."""
 
 from __future__ import annotations
 
@@ -6,24 +6,30 @@ import os
 import signal
 import subprocess
 import sys
-from collections.abc import Callable, Mapping, Sequence
-from contextlib import suppress
+import threading
+from collections.abc import Callable, Iterator, Mapping, Sequence
+from contextlib import contextmanager, suppress
+from functools import cache
 from pathlib import Path
 from typing import TYPE_CHECKING, TypeVar
 
 if TYPE_CHECKING:
     from multiprocessing.connection import Connection
+    from multiprocessing.process import BaseProcess
 
 __all__ = ["call", "started"]
 
 T = TypeVar("T")
 R = TypeVar("R")
+GENTLE = 2.0  # seconds that a copy has to put its files away before it is killed
 
 
 def call(
     command: Sequence[str], folder: Path, time_limit: float, environment: Mapping[str, str] | None = None
 ) -> tuple[str, int | None]:
     """Run a program in a folder of its own; what it said, and its exit code, or None if it was stopped.
+
+    It ends, with all that it has started, when this process does.
 
     Parameters
     ----------
@@ -41,11 +47,10 @@ def call(
         It cannot be started.
     """
     spoken = folder / "spoken.txt"
-    with spoken.open("wb") as file:
-        # A session of its own, so that whatever it starts can be stopped with it.
+    with spoken.open("wb") as file, _guard() as group:
         process = subprocess.Popen(
             command, cwd=folder, env=os.environ | dict(environment or {}), stdin=subprocess.DEVNULL,
-            stdout=file, stderr=subprocess.STDOUT, start_new_session=True,
+            stdout=file, stderr=subprocess.STDOUT, process_group=group,
         )  # fmt: skip
         try:
             code: int | None = process.wait(timeout=time_limit)
@@ -53,22 +58,60 @@ def call(
             code = None
         finally:
             if process.poll() is None:
-                _stop(process)
+                _stop(process, group)
     return spoken.read_text(encoding="utf-8", errors="replace"), code
 
 
-def _stop(process: subprocess.Popen[bytes]) -> None:
+@contextmanager
+def _guard() -> Iterator[int | None]:
+    """A group of processes to start a program in; a shell, its leader, kills all of it once this process is gone."""
     if sys.platform == "win32":
+        yield None
+        return
+    guard = subprocess.Popen(
+        ["/bin/sh", "-c", "read -r _; kill -s KILL 0"],
+        stdin=_lifeline()[0], stdout=subprocess.DEVNULL, stderr=subprocess.DEVNULL, process_group=0,
+    )  # fmt: skip
+    try:
+        yield guard.pid
+    finally:
+        guard.kill()
+        guard.wait()
+
+
+def _stop(process: subprocess.Popen[bytes], group: int | None) -> None:
+    if sys.platform == "win32" or group is None:
         process.kill()
     else:
-        os.killpg(process.pid, signal.SIGKILL)
+        os.killpg(group, signal.SIGKILL)
     process.wait()
 
 
-def started(make: Callable[[T], R], given: Sequence[T], processes: int) -> Callable[[], list[R]]:
+@cache
+def _lifeline() -> tuple[int, int]:
+    """Two ends of a pipe: to read from the first ends when this process does, which alone holds the second."""
+    return os.pipe()
+
+
+def _follow() -> None:
+    """In a copy: end with the process that it was copied from, whatever this one is doing then."""
+    read, write = _lifeline()
+    os.close(write)
+    _lifeline.cache_clear()
+
+    def wait() -> None:
+        os.read(read, 1)
+        os._exit(1)
+
+    threading.Thread(target=wait, daemon=True).start()
+
+
+@contextmanager
+def started(make: Callable[[T], R], given: Sequence[T], processes: int) -> Iterator[Callable[[], list[R]]]:
     """Begin with `make` of each of `given`, in copies of this process, each taking what comes next.
 
-    What is returned, once called, takes part, and returns all of it in its order.
+    What the block is given, once called, takes part, and returns all of it in its order. Copies end with the block, or
+    with this process if it is killed.
 
     Parameters
     ----------
@@ -81,11 +124,13 @@ def started(make: Callable[[T], R], given: Sequence[T], processes: int) -> Calla
     """
     from multiprocessing import get_all_start_methods, get_context
 
-    copies = min(processes, len(given)) - 1
-    if copies < 1 or "fork" not in get_all_start_methods():
-        return lambda: [make(what) for what in given]
+    count = min(processes, len(given)) - 1
+    if count < 1 or "fork" not in get_all_start_methods():
+        yield lambda: [make(what) for what in given]
+        return
     context = get_context("fork")
-    taken, pipes = context.Value("i", 0), [context.Pipe(duplex=False) for _ in range(copies)]
+    taken, pipes = context.Value("i", 0), [context.Pipe(duplex=False) for _ in range(count)]
+    _lifeline()  # made here, so that copies have it
 
     def work() -> dict[int, R]:
         done: dict[int, R] = {}
@@ -98,12 +143,9 @@ def started(make: Callable[[T], R], given: Sequence[T], processes: int) -> Calla
 
     def told(pipe: Connection) -> None:
         with suppress(BaseException):  # the pipe ends without a word
+            _follow()
             pipe.send(work())
         os._exit(0)  # nothing that this process has open is closed twice
-
-    for _, send in pipes:
-        context.Process(target=told, args=(send,), daemon=True).start()
-        send.close()
 
     def joined() -> list[R]:
         done = work()
@@ -112,4 +154,22 @@ def started(make: Callable[[T], R], given: Sequence[T], processes: int) -> Calla
                 done |= receive.recv()
         return [done[i] if i in done else make(what) for i, what in enumerate(given)]
 
-    return joined
+    copies = [context.Process(target=told, args=(send,), daemon=True) for _, send in pipes]
+    try:
+        for copy, (_, send) in zip(copies, pipes, strict=True):
+            copy.start()
+            send.close()
+        yield joined
+    finally:
+        _end(copies)
+        for end in (end for pipe in pipes for end in pipe):
+            end.close()
+
+
+def _end(copies: Sequence[BaseProcess]) -> None:
+    """End copies that have been started, with time to put their files away."""
+    for copy in (copy for copy in copies if copy.pid is not None):
+        copy.terminate()
+        copy.join(GENTLE)
+        copy.kill()
+        copy.join()

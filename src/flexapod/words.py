@@ -7,7 +7,7 @@ from numpy.typing import ArrayLike
 
 from flexapod.typing import Array
 
-__all__ = ["Scale", "column", "number", "scale", "text"]
+__all__ = ["Scale", "along_axes", "column", "number", "scale", "text"]
 
 _PREFIXES = {
     "m": ((1.0, "m"), (1e3, "mm"), (1e6, "µm"), (1e9, "nm")),
@@ -66,6 +66,17 @@ def scale(values: ArrayLike, unit: str) -> Scale:
 def text(value: float, unit: str, digits: int = 3) -> str:
     """A number with the unit in which it reads well: ``text(1.93e-5, "m")`` is "19.3 µm"."""
     return scale(value, unit).text(value, digits)
+
+
+def along_axes(values: ArrayLike, digits: int = 3, *, signed: bool = False) -> str:
+    """Lengths [m] along x, y, z in words, in a unit each; what is nothing has none: "x 1.2 µm, y 0, z 19.3 µm".
+
+    With signs on request, and then without the axes along which there is nothing.
+    """
+    shown = [(axis, float(value)) for axis, value in zip("xyz", np.asarray(values, dtype=float).tolist(), strict=False)]
+    if signed:
+        return ", ".join(f"{axis} {'+' if v > 0 else ''}{text(v, 'm', digits)}" for axis, v in shown if v) or "0"
+    return ", ".join(f"{axis} {text(value, 'm', digits) if value else '0'}" for axis, value in shown)
 
 
 def number(value: float, digits: int = 3) -> str:

@@ -33,7 +33,7 @@ REFUSED = {
     ),
     "singular": (
         [(BASE, BASE.replace("10 deg", "30 deg")), (PLATFORM, PLATFORM.replace("10 deg", "30 deg"))],
-        ["the path is singular at t = ", "smallest singular value", "half_angle"],
+        ["the path is singular at t = 0 s, from the start", "smallest singular value", "half_angle"],
     ),
     "fidelity": ([('"assumed-modes"', '"beam-fem"')], ["simulation.modes = 3", "two shapes per element"]),
     "basis": ([("modes = 3", 'modes = 3\nbasis = "hermite"')], ["simulation.basis = hermite", 'fidelity = "beam-fem"']),

@@ -87,7 +87,7 @@ def test_check_says_what_a_study_asks_for(flexapod, study):
         "comes nearest to buckling",
         "% of yield",
         "Stiffness at the tool: 3.45 N/µm along [1.00, 0.00, 0.00]",
-        "21.71 Hz (payload",
+        "21.71       0.0056  payload",
         "below 1 µm at once",
     ):
         assert words in result.stdout

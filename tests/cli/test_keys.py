@@ -1,11 +1,14 @@
 """`flexapod keys`: every key of a study file, in the terminal, as JSON and as a page."""
 
 import json
+import subprocess
+import sys
 
+import pytest
 from typer.testing import CliRunner
 
 from flexapod.app.cli import app
-from flexapod.model.page import markdown
+from flexapod.model.page import listed, markdown
 
 RUN = CliRunner()
 
@@ -29,6 +32,40 @@ def test_a_table_that_does_not_exist_is_refused():
     found = RUN.invoke(app, ["keys", "leg.drve"])
     assert found.exit_code == 2
     assert "Did you mean 'leg.drive'?" in found.stderr
+
+
+@pytest.mark.parametrize(
+    ("wrong", "words"),
+    [
+        ("nut", "Did you mean 'leg.drive.nut'?"),
+        ("stribeck", "'leg.base_joint.friction.stribeck' or "),
+        ("home_height", "`flexapod keys robot`"),
+        ("leg.drive.nut.preload", "`flexapod keys leg.drive.nut`"),
+        ("pistn", "Did you mean 'leg.piston'?"),
+        ("qqqqqq", "`flexapod keys` lists all"),
+    ],
+)
+def test_the_last_name_of_a_table_or_a_key_is_enough_to_find_it(wrong, words):
+    """Once seventy names, and not the one that was meant."""
+    told = RUN.invoke(app, ["keys", wrong]).stderr
+    assert words in told and len(told) < 500, told
+
+
+def test_a_wrong_table_is_answered_without_the_model():
+    """The model takes most of a second to load, and is not needed for it: no module of it is."""
+    code = (
+        "import sys; from flexapod.app.key_names import check_table\n"
+        "from flexapod.errors import InputError\n"
+        "try: check_table('nut')\n"
+        "except InputError: print([name for name in sys.modules if name.startswith('flexapod.model')])"
+    )
+    done = subprocess.run([sys.executable, "-c", code], capture_output=True, text=True, check=True)
+    assert done.stdout.strip() == "[]"
+
+
+def test_a_part_of_the_page_is_as_in_the_whole():
+    part = [item for item in listed() if f"{item.entry.table}.".startswith("leg.drive.")]
+    assert listed("leg.drive") == part and len(part) > 10
 
 
 def test_the_page_is_written(tmp_path):

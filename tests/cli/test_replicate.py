@@ -5,7 +5,7 @@ import re
 from html.parser import HTMLParser
 
 import pytest
-from tests.paper_parts import coarse_parts, coarse_study
+from tests.paper_parts import study_parts, whole_study
 
 from flexapod.errors import InputError
 from flexapod.paper import outputs as app_replicate
@@ -43,7 +43,7 @@ def coarse(monkeypatch):
     """The steps of the study, with results at hand."""
     steps = tuple(
         paper.Step(
-            name=s.name, words=s.words, weight=s.weight, compute=lambda _, name=s.name: coarse_parts(ANGLES)[name]
+            name=s.name, words=s.words, weight=s.weight, compute=lambda _, name=s.name: study_parts(ANGLES)[name]
         )
         for s in paper.STEPS
     )
@@ -54,20 +54,21 @@ def coarse(monkeypatch):
 @pytest.fixture(scope="module")
 def folder(tmp_path_factory):
     place = tmp_path_factory.mktemp("replicate")
-    write(coarse_study(ANGLES), place)
+    write(whole_study(ANGLES), place)
     return place
 
 
 def test_figures_of_the_paper_are_there_as_png_and_svg(folder):
     names = {"actuator-response", "roll-law", "robot-end", "leg-lengths", "forces-rigid", "com-path", "modes-bending"}
-    names |= {"deviation-by-cause", "tip-deflections", "energies", "half-angles", "velocity-jump"}
+    names |= {"deviation-by-cause", "tip-deflections", "energies", "half-angles", "velocity-jump", "actuator-solid"}
+    names |= {"light-pistons", "welded"}
     for name in names:
         assert (folder / "figures" / f"{name}.png").read_bytes().startswith(b"\x89PNG")
         assert "</svg>" in (folder / "figures" / f"{name}.svg").read_text(encoding="utf-8")
 
 
 def test_data_are_there_as_netcdf_and_csv(folder):
-    for name, data in coarse_parts(ANGLES).items():
+    for name, data in study_parts(ANGLES).items():
         assert set(open_results(folder / "data" / f"{name}.nc").data_vars) == set(data.data_vars)
         with (folder / "data" / f"{name}.csv").open(encoding="utf-8", newline="") as file:
             assert len(list(csv.reader(file))) > 1
@@ -76,7 +77,7 @@ def test_data_are_there_as_netcdf_and_csv(folder):
 def test_values_without_time_name_their_labels(folder):
     rows = (folder / "data" / "half-angles.csv").read_text(encoding="utf-8").splitlines()
     assert rows[0] == "variable,labels,value,unit"
-    peak = float(coarse_parts(ANGLES)["half-angles"].deviation_peak.sel(half_angle=10.0, axis="z"))
+    peak = float(study_parts(ANGLES)["half-angles"].deviation_peak.sel(half_angle=10.0, axis="z"))
     assert f"deviation_peak,half_angle=10.0 axis=z,{peak:.10g},m" in rows
 
 

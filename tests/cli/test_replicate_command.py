@@ -2,7 +2,7 @@
 
 import json
 
-from tests.paper_parts import coarse_study
+from tests.paper_parts import whole_study
 
 from flexapod.errors import ComputationError
 
@@ -20,7 +20,7 @@ def replaced(monkeypatch, action):
 
 
 def test_answer_and_claims(flexapod, folder, monkeypatch):
-    replaced(monkeypatch, lambda: coarse_study(ANGLES))
+    replaced(monkeypatch, lambda: whole_study(ANGLES))
     result = flexapod("replicate")
     assert result.exit_code == 0, result.stderr
     assert result.stdout.startswith("The payload's centre of mass misses its rigid path by up to")

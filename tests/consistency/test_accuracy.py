@@ -4,6 +4,7 @@ import itertools
 
 import numpy as np
 import pytest
+from scipy.spatial.transform import Rotation
 from tests import machines, mechanisms
 from tests.runs import paper_robot, with_legs
 
@@ -72,6 +73,26 @@ def test_parts_add_up_and_rows_of_a_budget_are_theirs():
     np.testing.assert_allclose(
         (found.pose_sigma_by_tolerance**2).sum(("tolerance", "leg")), found.pose_sigma**2, rtol=1e-12
     )
+
+
+def test_a_tolerance_of_the_lead_counts_from_home():
+    """Legs that are e (l - l_home) too long; by hand from the distances of the joints."""
+    size, robot = 6e-5, paper_robot().robot.replace(tolerances=Tolerances(lead=RatioSpread(box=6e-5)))
+    at_home = fx.accuracy(robot, {"heave": 0.0})
+    assert (at_home.pose_worst < 1e-17).all()  # rounding of lengths, 1e-16 m, times e
+    found = fx.accuracy(robot, {"heave": 0.05})
+    up, arms = np.array([0, 0, robot.home_height + 0.05]), robot.platform_joints
+
+    def lengths(move):
+        turned = Rotation.from_rotvec(move[3:]).apply(arms - robot.tool) + robot.tool
+        return np.linalg.norm(up + move[:3] + turned - robot.base_joints, axis=1)
+
+    home = np.linalg.norm(robot.base_joints - arms - [0, 0, robot.home_height], axis=1)
+    J = np.array([(lengths(1e-6 * e) - lengths(-1e-6 * e)) / 2e-6 for e in np.eye(6)]).T
+    effect = size * np.linalg.inv(J) * (lengths(np.zeros(6)) - home)
+    # Differences over 2 um of lengths known to 1e-16 m: 1e-9 of the Jacobian.
+    np.testing.assert_allclose(found.pose_worst, np.abs(effect).sum(axis=1), rtol=1e-6)
+    np.testing.assert_allclose(found.pose_sigma, np.sqrt((effect**2).sum(axis=1) / 3), rtol=1e-6)
 
 
 @pytest.mark.parametrize("kind", ["6-UPS", "3-RPS"])

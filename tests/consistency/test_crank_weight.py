@@ -1,13 +1,18 @@
 """Weight of cranks: its moment on the drives by hand, and the energy that it takes."""
 
+from types import SimpleNamespace
+
 import numpy as np
 import pytest
+from casadi import DM
 from scipy.spatial.transform import Rotation
 from tests.mechanisms import six_rus
 from tests.moving import moving
 from tests.runs import balance, collect
 
 import flexapod as fx
+from flexapod.elements.carriage import carriage
+from flexapod.elements.frame import Frame
 from flexapod.model.joint import Carriage
 from flexapod.solve.released import rigid_forces
 from flexapod.solve.robot_march import prepare
@@ -43,6 +48,25 @@ def test_its_energy_is_in_the_balance():
         errors.append(np.ptp(balance(run)) / np.ptp(run["energy"][:, 1]))
     assert errors[1] < 2e-3
     assert errors[1] < 0.35 * errors[0]
+
+
+def test_a_crank_of_point_masses_on_a_base_that_moves():
+    """Half of the masses times the squares of their velocities, the base moving along all axes and about the shaft."""
+    rng = np.random.default_rng(8)
+    masses, out, shaft, arm = np.array([1.0, 2.5]), np.array([0.04, 0.11]), np.array([0.3, -0.1, 0.2]), 0.12
+    axis, along = np.array([0.0, 0.6, 0.8]), np.array([1.0, 0.0, 0.0])
+    com = masses @ out / masses.sum()
+    p = {"R0": np.eye(3), "base": shaft + arm * along, "carriage_axis": axis, "carriage_arm": arm * along,
+         "carriage_com": com * along, "carriage_mass": masses.sum(), "carriage_inertia": masses @ out**2,
+         "gravity": np.array([0, 0, -9.81])}  # fmt: skip
+    chi, rate, spin, velocity = 0.7, 3.0, -2.0, rng.normal(size=3)
+    base = Frame(origin=DM(np.zeros(3)), axes=DM.eye(3), velocity=DM(velocity), omega=DM(spin * axis))
+    numbers = SimpleNamespace(**{name: DM(np.ravel(x)) for name, x in p.items()})
+    _, found = carriage("crank", numbers, SimpleNamespace(chi=DM(chi)), SimpleNamespace(chi=DM(rate)), base)
+    places = shaft + Rotation.from_rotvec(chi * axis).apply(out[:, None] * along)
+    rates = velocity + np.cross(spin * axis, places) + np.cross(rate * axis, places - shaft)
+    assert float(found.kinetic) == pytest.approx(0.5 * masses @ (rates**2).sum(axis=1), rel=1e-14)
+    assert float(found.gravity) == pytest.approx(9.81 * masses @ places[:, 2], rel=1e-14)
 
 
 @pytest.mark.parametrize(

@@ -323,6 +323,19 @@ def test_what_sticks_is_a_spring():
     assert found[1] > found[0]
 
 
+def test_what_sticks_damps_as_a_mass_on_its_bristles():
+    """Legs alike on servos, rigid, without weight: each mode is one mass on k = k_s + F / z_0, c = c_s + t F / z_0."""
+    servo, force, bends, time = ServoDrive(stiffness=2e7, damping=1e4), 60.0, 1e-5, 3e-3
+    rubs = StrokeFriction(force=force, presliding=bends, damping_time=time)
+    robot = machine(drive=servo.replace(friction=rubs), damping=0.0).replace(gravity=[0, 0, 0])
+    stuck, slides = (fx.modes(robot, fidelity="rigid", friction=x) for x in ("stuck", "sliding"))
+    k, c = 2e7 + force / bends, 1e4 + time * force / bends
+    # Frequencies are those of the springs: sqrt(k / m); ratios c / (2 sqrt(k m)) = c omega / 2 k. Rounding of 1e8 N/m.
+    np.testing.assert_allclose(stuck.frequency, slides.frequency * np.sqrt(k / 2e7), rtol=1e-8)
+    np.testing.assert_allclose(stuck.damping_ratio, np.pi * stuck.frequency * c / k, rtol=1e-8)
+    np.testing.assert_allclose(slides.damping_ratio, np.pi * slides.frequency * 1e4 / 2e7, rtol=1e-8)
+
+
 def test_causes_with_friction_add_up():
     found = fx.simulate(study(machine(**EVERYWHERE), fidelity="lumped", step=1e-3, output_step=1e-2))
     assert np.abs(found.deviation_residual).max() < 1e-4 * np.abs(found.com_deviation).max()

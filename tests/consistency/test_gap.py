@@ -1,11 +1,14 @@
 """Play as a gap in motions: against the map of signs, energy, limits, refusals, files."""
 
+from types import SimpleNamespace
+
 import numpy as np
 import pytest
 from tests.machines import SCREW, machine, study
 
 import flexapod as fx
 from flexapod.elements.gap import past_gap, touching
+from flexapod.elements.screw import screw
 from flexapod.errors import InputError
 from flexapod.model import AxialSpring, Load, SineWrench, to_toml
 from flexapod.model.joint import Joint
@@ -34,6 +37,21 @@ def test_the_gap_is_a_dead_band_with_rounded_edges():
     assert past_gap(1e-3, half) == pytest.approx(1e-3 - half, abs=1e-6 * half)
     np.testing.assert_allclose(np.gradient(past_gap(x, half), x)[1:-1], touching(x, half)[1:-1], atol=2e-3)
     np.testing.assert_array_equal(past_gap(x, 0.0), x)
+
+
+def test_a_rotor_that_is_free_in_its_gap_loses_nothing():
+    # Between the edges neither spring nor damper acts; past them both do. The edges are rounded over a fifth of the
+    # half play w: at the middle a slope of 1 - 1 / sqrt(1.04) = 0.02 is left, at 4 w 1 - (1 / 450 - 1 / 1250) = 0.999.
+    w, damping, stiffness, rate = 10e-6, 2e5, 3e8, 0.04
+    p = SimpleNamespace(series_home=0.7, series_softening=[0.1, 0.0], series_stiffness=stiffness,
+                        series_damping=damping, half_play=w, rotor_mass=0.0)  # fmt: skip
+    there = np.array([0.0, -0.3, 0.3, 4.0, -4.0]) * w
+    found = [screw(p, SimpleNamespace(r=0.7 + x, l=0.7), SimpleNamespace(r=rate, l=0.0), gap=True) for x in there]
+    lost = np.array([one.dissipation for one in found]) / (0.5 * damping * rate**2)
+    stored = np.array([one.strain for one in found]) / (0.5 * stiffness * w**2)
+    assert (lost[:3] < 1e-3).all() and (stored[:3] < 1e-3).all()
+    np.testing.assert_allclose(lost[3:], 1.0, atol=5e-3)
+    np.testing.assert_allclose(stored[3:], 9.0, rtol=1e-2)
 
 
 def test_a_slow_motion_lies_where_the_signs_of_the_forces_say():

@@ -2,9 +2,12 @@
 
 import base64
 import re
+from itertools import pairwise
+from types import SimpleNamespace
 
 import numpy as np
 import pytest
+from casadi import DM
 from scipy.linalg import eigh
 from scipy.optimize import brentq
 from tests import legs_of_all_kinds as legs
@@ -15,6 +18,7 @@ from tests.runs import balance, run_robot
 
 import flexapod as fx
 from flexapod.bases import axial_basis, lateral_basis
+from flexapod.elements.guide import inner_turn
 from flexapod.errors import InputError
 from flexapod.exchange.export import abaqus_deck
 from flexapod.mechanics.layout import Shapes
@@ -25,6 +29,7 @@ from flexapod.proof.engines import calculix
 from flexapod.proof.engines.engine import CALCULIX
 from flexapod.proof.engines.exudyn_robot import RobotProblem
 from flexapod.report.replay import replay
+from flexapod.rigid.rotations import exponential, quaternion, rotation_vector
 from flexapod.scene.geometry import RobotMotion
 from flexapod.solve.buckling import leg_loads
 from flexapod.study.accuracy.play import guide_play
@@ -44,13 +49,21 @@ def bare(**more):
              "zeta": 0.0, "damping_time": 0.0, "base": np.zeros(3), "R0": np.eye(3), "guide_reach": L_P + MOUTH,
              "drive_stiffness": 0.0, "drive_damping": 0.0, "gravity": [1.0, 2.0, -9.0], "Lp": L_P, "mouth": MOUTH,
              "cylinder_mass": mass, "cylinder_com": MOUTH / 2, "cylinder_inertia": mass * MOUTH**2 / 12,
-             "cylinder_rhoA": TUBE, "cylinder_length": MOUTH}  # fmt: skip
+             "cylinder_rhoA": TUBE, "cylinder_length": MOUTH, "cylinder_turning": 0.0}  # fmt: skip
     return legs.numbers(0, **still | more)
 
 
-def test_energies_are_right_to_second_order():
-    # Closed forms keep terms up to second order in the amplitudes: the gap falls as their cube.
-    ours, given = legs.shapes("point in a guide of a cylinder"), bare()
+@pytest.mark.parametrize("place", [0.1, 0.25])
+def test_energies_are_right_to_second_order(place):
+    # Closed forms keep terms up to second order in the amplitudes: the gap falls as their cube. The body is mounted on
+    # either side of the head; rotary inertia of the tube is a hundred times what it has, to be seen.
+    turning, mass, J = 0.02, 1.2, 0.006
+    given = bare(cylinder_turning=turning, mounted_mass=mass, mounted_com=place, mounted_inertia=J)
+    whole = given["cylinder_mass"] + mass
+    about = TUBE * MOUTH**3 / 3 + turning * MOUTH + mass * place**2 + J
+    com = (TUBE * MOUTH**2 / 2 + mass * place) / whole
+    given |= {"cylinder_mass": whole, "cylinder_com": com, "cylinder_inertia": about - whole * com**2}
+    ours = legs.shapes("point in a guide of a cylinder")
     exact = Guided(ours.layout, given, ours.a.values, ours.guide.values, ours.cylinder.values)
     rng = np.random.default_rng(3)
     gaps = []
@@ -58,8 +71,8 @@ def test_energies_are_right_to_second_order():
         rng = np.random.default_rng(3)
         q, v = amplitude * rng.uniform(-1, 1, ours.size), 30 * amplitude * rng.uniform(-1, 1, ours.size)
         for name in ("ka", "kb"):  # whose stiff shapes are steep
-            q[ours.index(name) :][:3] *= [1, 0.1, 0.1]
-            v[ours.index(name) :][:3] *= [1, 0.1, 0.1]
+            q[ours.index(name) :][:4] *= [1, 0.1, 0.1, 0.3]
+            v[ours.index(name) :][:4] *= [1, 0.1, 0.1, 0.3]
         q[:3], v[:3] = [0.3, -0.2, LENGTH], [0.7, -1.1, 0.4]
         x = legs.state(ours, 0, given=given) | {"q": q, "v": v}
         found = legs.call(ours, "leg_energies", x)["energies"]
@@ -68,6 +81,27 @@ def test_energies_are_right_to_second_order():
         # Potentials are exact in these kinematics.
         assert found[1] == pytest.approx(V, rel=1e-12)
     assert gaps[0] / gaps[1] == pytest.approx(1000, rel=0.2)
+
+
+def test_the_inner_part_turns_the_tip_as_a_rod_without_twist_does():
+    """Rotations of the section carried along the bent rod by the least turns from one tangent to the next."""
+    basis, rng, D = lateral_basis("tip-load", 3), np.random.default_rng(2), 0.4
+    size, slope = 1e-3, np.array([0.7, -0.4]) * 1e-2
+    a, b = size * rng.normal(size=(2, 3)) * [1, 0.3, 0.1]
+    parts = SimpleNamespace(ha=DM(a), hb=DM(b), l=DM(LENGTH))
+    f = SimpleNamespace(qs=parts, line=SimpleNamespace(slope=DM(slope)))
+    found = float(inner_turn(f, SimpleNamespace(guide_reach=LENGTH + D), basis))
+    # The head hangs below the gland: place - D zeta slope + shape(zeta), zeta = 1 at the head. Towards the tip:
+    slopes = slope - (np.array([a, b]) @ basis.values(np.linspace(1, 0, 2001), 1)).T / D
+    turn = exponential(np.array([-slopes[0, 1], slopes[0, 0], 0.0]))  # the head does not turn about the leg
+    tangents = np.array([exponential(np.array([-y, x, 0.0]))[:, 2] for x, y in slopes])
+    for one, other in pairwise(tangents):
+        axis = np.cross(one, other)
+        turn = exponential(axis / np.linalg.norm(axis) * np.arcsin(np.linalg.norm(axis))) @ turn
+    exact = rotation_vector(quaternion(turn[None]))[0, 2]
+    # Second order in slopes of 1e-2: what is left is their square times as much; 2000 pieces leave 1e-6.
+    assert found == pytest.approx(exact, rel=1e-3)
+    assert abs(found) > 1e-6
 
 
 EI, RHO = 5217.4, 4.466
@@ -425,8 +459,8 @@ def deck(given, length, elements):
 @pytest.mark.skipif(not CALCULIX.found(), reason="needs CalculiX")
 @pytest.mark.parametrize("overlap", [0.12, 0.2])
 def test_a_cylinder_that_bends_by_calculix(overlap):
-    # Straight elements bend too stiffly by some (length of an element)^2: 5e-4 of a frequency with sixty of them; our
-    # shapes of the tube do not have the kink in the curvature at the head, 1e-4.
+    # Straight elements bend too stiffly by some (length of an element)^2: 5e-4 of a frequency with sixty of them; ours
+    # are right to 1e-5 (`test_bending_cylinders.py`).
     length, mass = MOUTH + 0.6, TUBE_RHO * MOUTH
     given = bare(
         Lp=0.6 + overlap, guide_reach=length + overlap, gravity=np.zeros(3), guide_stiffness=[GLAND, HEAD], EI=EI,
@@ -437,3 +471,17 @@ def test_a_cylinder_that_bends_by_calculix(overlap):
     ours = Shapes(a=lateral, b=lateral, axial=axial_basis(0), guide=lateral_basis("tip-load", 3), cylinder=tube)
     found = np.sqrt(eigh(*pinned(ours, given, length)[::-1], eigvals_only=True)[::2][:4]) / (2 * np.pi)
     np.testing.assert_allclose(found, calculix.run(deck(given, length, 60)).frequencies()[:4], rtol=1e-3)
+
+
+def test_a_cylinder_without_mass_in_its_guides_is_named():
+    """It turns beside its piston: modes said that "a leg bends so far under its load", of a leg that hardly does."""
+    light = Cylinder(mass=0.0, inertia=0.0, com=0.0, mouth=0.6)
+    robot = machine(guide=Guide(gland=2e8, head=2e8), cylinder=light)
+    with pytest.raises(
+        fx.ComputationError, match="the cylinder of leg 1 has no mass, and turns in its guide"
+    ) as refused:
+        fx.modes(study(robot))
+    assert "leg.cylinder a mass and an inertia" in refused.value.next_step
+    many = fx.modes(study(robot), {"heave": [0.0, 0.02]})
+    assert set(many.reason.values) == {many.reason.attrs["flag_meanings"].split().index("no_mass")}
+    assert np.isfinite(fx.modes(study(machine(guide=Guide(gland=2e8, head=2e8)))).frequency).all()

@@ -243,6 +243,27 @@ def test_the_plate_below_the_payload_keeps_the_balance_of_power(seed):
     assert change == pytest.approx(np.concatenate([u, v]) @ r, rel=1e-7)
 
 
+@pytest.mark.parametrize("seed", range(3))
+def test_a_plate_that_holds_still_under_the_payload_is_one_body_with_it(seed):
+    """Newton and Euler of both bodies by hand; the power alone does not see what is square in the rate of turning."""
+    ours, rng = Shapes(a=NONE, b=NONE, axial=axial_basis(0), platform_mount=True), np.random.default_rng(seed)
+    residual = Interpreted(payload_functions(ours)[0])
+    J, J_plate = (x @ x.T for x in rng.normal(size=(2, 3, 3)))
+    mass, plate, weighs, gravity, at = 7.0, 3.0, 2.0, np.array([1.0, 2.0, -9.0]), np.array([0.1, -0.2, 0.3])
+    p = np.concatenate([[mass], J.ravel(), gravity, np.zeros(3), [plate, weighs], J_plate.ravel(), at])
+    u, u_dot, R = rng.normal(size=6), rng.normal(size=6), rotation(rng)
+    pose, none = np.concatenate([rng.normal(size=3), quaternion(R)]), np.zeros(6)
+    r, _ = residual(pose, u, u_dot, none, none, p, none, none, none)
+    w, spun = u[3:], u_dot[3:]
+    # The plate's centre of mass is where the mount is; forces on the payload in world axes, all else in platform axes.
+    there = R.T @ u_dot[:3] + np.cross(spun, at) + np.cross(w, np.cross(w, at))
+    held = plate * there - weighs * R.T @ gravity
+    own = J_plate @ spun + np.cross(w, J_plate @ w)
+    force = mass * (u_dot[:3] - gravity) + R @ held
+    moment = J @ spun + np.cross(w, J @ w) + own + np.cross(at, held)
+    np.testing.assert_allclose(r, [*force, *moment, *held, *own], atol=1e-12 * np.abs(r).max())
+
+
 def test_a_mount_is_the_same_when_read_again():
     given = preset("paper-robot")
     given = given.replace(robot=given.robot.replace(base_mount=BASE, platform_mount=TOP.replace(loss=0.01)))
@@ -260,6 +281,10 @@ def test_parts_list_what_a_mount_gives_along_each_leg():
         give = n[i] @ (moved[:3] + np.cross(moved[3:], joint - BASE.at))
         assert 1 / float(data.part_stiffness.sel(part="base_mount")[i]) == pytest.approx(give, rel=1e-12)
     assert (data.part_stiffness.sel(part="platform_mount") > 0).all()
+    # All legs share a mount: what a leg has in series is without them, and the words of both say so.
+    np.testing.assert_allclose(data.leg_stiffness, fx.parts(machine()).leg_stiffness, rtol=1e-12)
+    assert "mounts left out" in data.leg_stiffness.attrs["long_name"]
+    assert "mount as if alone" in data.part_stiffness.attrs["long_name"]
 
 
 def test_modes_of_a_heavy_plate_are_those_of_the_base():

@@ -8,6 +8,7 @@ from scipy.sparse.linalg import eigsh
 
 from flexapod.fem.hexahedra import integrals, mass, slope_stiffness, stiffness
 from flexapod.fem.mesh import extruded
+from flexapod.fem.mouth import mouth_of
 from flexapod.fem.reduction import reduced_beam
 from flexapod.fem.section_mesh import free_unknowns, section_averages, section_mesh
 from flexapod.fem.sliding import HubMotion, SlidingBeam
@@ -100,3 +101,19 @@ def test_stiffness_does_not_jump_when_a_station_comes_out(poisson):
         length = (last + 0.5) * beam.model.spacing
         before, after = (np.linalg.inv(beam.mouth.stiffness(length, k))[:8, :8] for k in (last - 1, last))
         np.testing.assert_allclose(before, after, rtol=5e-7)
+
+
+@pytest.mark.parametrize("size", [0.02, 0.04])
+def test_a_mouth_between_stations_meets_the_solid_at_the_next(size):
+    """An interval farther out the station between is free and carries nothing: the solid's own stiffness without it."""
+    section, beam, intervals, last = Rectangle(width=size, height=size), 1.0, 20, 7
+    material = {"E": 2e11, "density": 7800.0}
+    model = reduced_beam(section, beam, beam / 40, **material, kind="hex20", spacing=beam / intervals)
+    mouth, n = mouth_of(model), 2 * (last + 1)
+    assert mouth.bending == pytest.approx(1 / (material["E"] * section.second_moment), rel=1e-9)
+    K = model.stiffness[: n + 2, : n + 2]
+    exact = K[:n, :n] - K[:n, n:] @ np.linalg.solve(K[n:, n:], K[n:, :n])
+    found = mouth.stiffness((last + 2) * model.spacing, last)
+    # What the section's own shapes carry from one station to the next falls with the distance over the depth, as in
+    # Saint-Venant: e^(-5.5 H / depth) for a square, 1e-6 and 1e-3; stiffnesses of neighbours differ by a part of that.
+    np.testing.assert_allclose(found, exact, atol={0.02: 1e-6, 0.04: 1e-3}[size] * np.abs(exact).max())

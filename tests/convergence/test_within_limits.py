@@ -54,6 +54,23 @@ def test_pistons_that_hardly_stretch_at_all():
     np.testing.assert_allclose(found[1], found[0], rtol=0, atol=1e-3 * np.ptp(found[0]))
 
 
+def test_last_bits_do_not_decide_on_steps():
+    """The first steps, whose estimates are rounding, once limited those after them: 133 steps became 132.
+
+    What differs then is what rounding leaves: 1e-15 m in each of 100 steps, of a deviation of 2e-5 m 5e-9 of it; a part
+    of 1e-3 of the tolerance is 20 times as much, and a twentieth of what one step more would bring.
+    """
+    study = override(preset("paper-robot"), duration=0.2, output_step=0.01)
+    payload, found = study.robot.payload, []
+    for digits in (0, 4, -31):
+        heavier = payload.replace(mass=payload.mass * (1 + digits * np.finfo(float).eps))
+        found.append(simulate(study.replace(robot=study.robot.replace(payload=heavier))))
+    assert len({data.attrs["steps"] for data in found}) == 1
+    first, *others = (data.com_deviation.values for data in found)
+    for other in others:
+        assert np.abs(other - first).max() < 1e-3 * study.simulation.tolerance * np.abs(first).max()
+
+
 @pytest.mark.parametrize("tolerance", [1e-2, 1e-4, 1e-6])
 def test_what_has_no_stiffness_is_within_the_tolerance_too(tolerance):
     """A stiff beam that turns and slides freely: its local errors have no stiffness that would tell them."""

@@ -138,7 +138,7 @@ def loaded_actuator():
 
 
 def check(name):
-    """Figures that `flexapod check --json` prints; instants of extremes jump between equal values and are left out."""
+    """Figures that `flexapod check --json` prints; of extremes between equal values the first one is said."""
     with tempfile.TemporaryDirectory() as folder:
         file = Path(folder) / "study.toml"
         file.write_text(preset_text(name), encoding="utf-8")
@@ -149,8 +149,7 @@ def check(name):
     def walk(value, key):
         if isinstance(value, dict):
             for name, part in value.items():
-                if name not in ("time", "leg"):
-                    walk(part, f"{key}.{name}".lstrip("."))
+                walk(part, f"{key}.{name}".lstrip("."))
         elif isinstance(value, list):
             for part in value:
                 walk(part, key)

@@ -78,6 +78,18 @@ def test_a_configured_compiler_may_have_arguments_and_spaces(program, monkeypatc
     assert not caplog.records
 
 
+@pytest.mark.parametrize("own", ["", " -march=x86-64-v2", " -mcpu=cortex-a72"])
+def test_a_target_in_the_command_is_the_target(program, tmp_path, monkeypatch, own):
+    """The processor's own came after it, and the last one counts."""
+    path = program(f"echo $* >> '{tmp_path}/asked'; exit 1")
+    monkeypatch.setenv("CC", f"'{path}'{own}")
+    with pytest.raises(ComputationError):
+        compiled()
+    asked = (tmp_path / "asked").read_text().splitlines()
+    targets = [[word for word in line.split() if word.startswith(("-march", "-mcpu"))] for line in asked]
+    assert targets == ([[own.strip()]] if own else [["-march=native"], []])
+
+
 def test_a_compilation_that_takes_its_time_is_told(program, monkeypatch, caplog):
     program("sleep 0.5; exit 1")
     monkeypatch.setattr(compiler, "SILENT", 0.05)

@@ -3,6 +3,8 @@
 import errno
 import os
 import stat
+import subprocess
+import tempfile
 from pathlib import Path
 
 import pytest
@@ -121,10 +123,10 @@ def test_names_that_are_not_utf8_are_refused_before_anything_is_computed(tmp_pat
         pass
 
 
-def test_settled_files_are_waited_for(tmp_path, monkeypatch):
+def test_files_are_waited_for(tmp_path, monkeypatch):
     waited = []
     monkeypatch.setattr(files.os, "fsync", lambda handle: waited.append(stat.S_ISDIR(os.fstat(handle).st_mode)))
-    with whole(tmp_path / "a" / "b" / "c", settled=True) as temporary:
+    with whole(tmp_path / "a" / "b" / "c") as temporary:
         temporary.write_text("x", encoding="utf-8")
     assert waited == [False, True, True, True]  # the file, its folder, and the folders that were made
 
@@ -135,3 +137,46 @@ def test_folders_that_cannot_be_waited_for(tmp_path, monkeypatch):
 
     monkeypatch.setattr(files.os, "fsync", refuse)
     files.settle(tmp_path)
+
+
+def named(process, dot=".", machine=None):
+    """A name that this process of this machine gives to what it writes."""
+    return f"{dot}flexapod-{machine or files._here()}-{process}-0123456789ab"
+
+
+@pytest.fixture
+def gone():
+    """The number of a process that has ended."""
+    child = subprocess.Popen(["true"])
+    child.wait()
+    return child.pid
+
+
+def test_what_killed_processes_left_is_removed_by_the_next_that_writes_there(tmp_path, gone):
+    removed = [f"{named(gone)}.nc", f"{named(gone)}.png", named(gone), ".flexapod-0123"]
+    # Of another machine, and of names that tell no process, age decides; what is not such a name is somebody's.
+    kept = [f"{named(os.getppid())}.nc", named(gone, machine="0" * 8), ".flexapod-4567", ".flexapod.toml"]
+    for name in (*removed, *kept):
+        (tmp_path / name).write_text("half", encoding="utf-8")
+    for name in (".flexapod-0123", ".flexapod.toml"):
+        os.utime(tmp_path / name, (0, 0))
+    (tmp_path / f"{named(gone)}.zarr" / "c").mkdir(parents=True)
+    with whole(tmp_path / "a.nc"):
+        pass
+    assert sorted(path.name for path in tmp_path.iterdir()) == sorted(["a.nc", *kept])
+
+
+def test_folders_of_killed_processes_in_the_temporary_one(tmp_path, gone, monkeypatch):
+    monkeypatch.setattr(tempfile, "tempdir", str(tmp_path))
+    left = tmp_path / named(gone, "")
+    (left / "deep").mkdir(parents=True)
+    (left / "deep" / "kernel.c").touch()
+    kept = [tmp_path / name for name in ("flexapod-results", named(os.getppid(), ""))]
+    for path in kept:
+        path.mkdir()
+    with pytest.raises(KeyboardInterrupt), files.scratch() as folder:
+        assert stat.S_IMODE(folder.stat().st_mode) == 0o700
+        (folder / "a").touch()
+        assert sorted(tmp_path.iterdir()) == sorted([*kept, folder])
+        raise KeyboardInterrupt
+    assert sorted(tmp_path.iterdir()) == sorted(kept)

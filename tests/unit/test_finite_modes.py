@@ -5,7 +5,7 @@ import pytest
 
 from flexapod.errors import ComputationError
 from flexapod.solve.damped import damping_ratios
-from flexapod.solve.frequencies import natural
+from flexapod.solve.frequencies import count_real, natural
 from flexapod.solve.stiffness import compliance
 
 HUGE = 1e200 * np.eye(3)[None]
@@ -24,6 +24,13 @@ def test_numbers_that_are_not_finite_are_refused(computed):
     with pytest.raises(ComputationError, match="not finite") as refused, np.errstate(all="ignore"):
         computed()
     assert refused.value.next_step is not None
+
+
+def test_as_many_modes_are_shown_as_a_pose_has():
+    none = np.inf
+    assert count_real(np.array([[1.0, 2.0, none, none], [1.0, 2.0, 3.0, none]])) == 3
+    assert count_real(np.array([1.0, none, np.nan])) == 1
+    assert count_real(np.array([[none, none]])) == 2  # a row of none says so
 
 
 def test_compliance_is_the_inverse():

@@ -17,8 +17,9 @@ from flexapod.model.leg import Stroke
 from flexapod.rigid import bodies
 from flexapod.rigid.rotations import exponential
 from flexapod.study.before.describe.bodies import stroke_ends
-from flexapod.study.bodies import CYLINDER, bodies_words, clearance, first_least, pairs_of_legs, turns
+from flexapod.study.bodies import CYLINDER, bodies_words, clearance, pairs_of_legs, turns
 from flexapod.study.path import RigidPath
+from flexapod.ties import first_least
 
 LIMITED = {"base_joint": Joint(max_angle=0.2), "platform_joint": Joint(max_angle=0.1)}
 
@@ -32,6 +33,17 @@ def test_the_distance_of_two_legs_is_that_of_their_axes_less_the_radii():
         found = rigid.nearest_legs(feet, tips, mouth, radii, np.array([pair]))
         assert found.gap == pytest.approx([gap], abs=1e-12)
     assert rigid.nearest_legs(feet, tips, mouth, radii, np.array([(0, 1), (0, 2), (1, 2)])).legs.tolist() == [[0, 1]]
+
+
+def test_of_legs_equally_near_the_first_two_are_named():
+    """Three upright rods on a regular triangle: which pair was the nearest followed the last bits of their places."""
+    corners = 0.3 * np.array([[1, 0], [-0.5, 0.75**0.5], [-0.5, -(0.75**0.5)]])
+    feet = np.zeros((40, 3, 3))
+    feet[..., :2] = corners + 1e-13 * np.random.default_rng(7).normal(size=(40, 3, 2))
+    pairs = np.array([(0, 1), (0, 2), (1, 2)])
+    found = rigid.nearest_legs(feet, feet + np.array([0.0, 0.0, 1.0]), np.full(3, 0.4), np.full((3, 2), 0.01), pairs)
+    np.testing.assert_allclose(found.gap, 0.3 * 3**0.5 - 0.02, rtol=0, atol=1e-12)
+    assert (found.legs == [0, 1]).all()
 
 
 def test_distances_are_those_of_a_search():
@@ -129,6 +141,17 @@ def test_a_map_has_margins_and_leaves_out_what_joints_cannot_reach():
     assert float(free.leg_clearance.min()) == pytest.approx(
         min(_gap(machine(), surge) for surge in axes["surge"]), abs=1e-12
     )
+
+
+def test_the_two_legs_that_a_map_names_are_those_that_stand_together():
+    # Feet of legs 3 and 4 on 0.7 m are moved to 8 deg from each other, 98 mm; all others are 12 deg apart or more, and
+    # on the platform legs that are neighbours there are 100 mm apart or more, on 0.4 m.
+    close = machine(lower=np.array([-10.0, 10, 116, 124, 230, 250]), upper=np.array([-50.0, 50, 70, 170, 190, 290]))
+    found = fx.workspace_map(close, {"surge": [-0.05, 0.0, 0.05]}, fidelity="lumped")
+    np.testing.assert_array_equal(found.nearest_legs, [[3, 4]] * 3)
+    still = study(close, duration=2e-3, fidelity="rigid")
+    run = fx.simulate(still.replace(motion=still.motion.replace(amplitude=0.0)))
+    np.testing.assert_array_equal(run.nearest_legs, [[3, 4]] * len(run.time))
 
 
 def _gap(robot, surge):

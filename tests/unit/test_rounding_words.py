@@ -25,7 +25,7 @@ def data():
 
 def test_rounding_is_zero_in_words(data):
     """Once "x 4.45e-07 nm"."""
-    assert "(x 0 m, y " in summary(data).sentence
+    assert "(x 0, y " in summary(data).sentence
 
 
 def test_panels_of_nothing_are_flat_on_the_scale_of_the_others(data):

@@ -10,7 +10,7 @@ from flexapod.errors import InputError
 from flexapod.model import MATERIALS, Bearing, Nut, ScrewDrive
 from flexapod.report.study_words import study_words
 from flexapod.study.before.describe.robot import describe
-from flexapod.study.before.describe.screw import back_words, describe_screws, screw_remarks
+from flexapod.study.before.describe.screw import back_words, describe_screw, describe_screws, screw_remarks
 from flexapod.study.before.screws import (
     back_efficiency,
     buckling_thrust,
@@ -118,6 +118,17 @@ class TestLife:
         loads = half_loads(Nut(stiffness=1e9), np.full(3, 5e3))
         np.testing.assert_allclose(loads, [[5e3] * 3, [0] * 3])
         assert turns_of_life(5e3, mean_load(loads, np.ones(3))) == pytest.approx(1e6)
+
+    def test_hours_of_the_catalogue(self):
+        # By hand: (30 kN / 5 kN)^3 = 216 million turns; 6 m/min on a lead of 10 mm are 600 rpm: 216e6 / (60 x 600) =
+        # 6000 h. At rest for half of the time: twice as many.
+        leg = model.loads(HEXAPOD).robot.legs[0]
+        drive = leg.replace(drive=leg.drive.replace(nut=Nut(stiffness=1e9, dynamic_load=30e3), friction=None))
+        t = np.linspace(0.0, 2.0, 2001)
+        for rate, hours in ((np.full(2001, 0.1), 6000.0), (np.where(t < 1, 0.1, 0.0), 12000.0)):
+            found = describe_screw(0, drive, t, leg.begins + 0.2 + 0.0 * t, np.full(2001, 5e3), rate, np.zeros(2001))
+            assert found.life == pytest.approx(216e6)
+            assert found.hours == pytest.approx(hours, rel=1e-3)  # one interval of 1000 falls
 
     def test_preload_alone_wears_both_sides(self):
         nut = Nut(rigidity=1e9, preload=1e3, dynamic_load=20e3)

@@ -107,6 +107,13 @@ def test_architecture_singularity_is_refused_at_once():
     assert "singular" in error.what
 
 
+def test_what_is_singular_from_the_start_is_so_at_its_start():
+    """Rounding made one of the instants the most singular: "at t = 0.0145 s"."""
+    study = half_angles(moving("heave", 0.02), 30)
+    with pytest.raises(fx.InputError, match=r"is singular at t = 0 s, from the start"):
+        check_path(study)
+
+
 def test_near_singular_path_runs_with_a_warning():
     study = half_angles(paper_robot(), 28)
     remarks = check_path(study)

@@ -65,7 +65,8 @@ def test_slope_of_a_soft_leg():
     free = data.leg_stroke.sel(leg=5) - 0.31518
     slope = np.linalg.norm(data.lateral_amplitude.sel(leg=5).values @ basis.tip_slope, axis=1) / free.values
     assert value == pytest.approx(slope.max(), rel=5e-3)
-    assert at == pytest.approx(float(data.time[slope.argmax()]), abs=1e-6)
+    # It rests: of instants that differ by the last bits alone the first one is said.
+    assert slope[np.abs(data.time.values - at).argmin()] == pytest.approx(slope.max(), rel=1e-9)
 
 
 def test_axial_load_near_the_euler_load():
@@ -105,12 +106,12 @@ def test_slenderness():
     words = only(data, "times the width")
     ratio = (study.robot.home_lengths[0] - 0.31518) / 0.065
     assert numbers(words.split(": ", 1)[1])[0] == pytest.approx(ratio, rel=1e-2)
-    assert "below 10 shear, which an Euler-Bernoulli beam leaves out" in words
+    assert "Below 10 shear, which an Euler-Bernoulli beam leaves out" in words
     # 0.55 and 1.21 (width / length)^2 for a full round bar, less what rotary inertia bends of the second
     found = numbers(words.split("deflects by", 1)[1])
     assert found[:2] == pytest.approx([55 / ratio**2, 121 / ratio**2], rel=0.05)
     solid = only(fx.simulate(study, fidelity="solid-fem", **SHORT), "times the width")
-    assert "below 10 rotary inertia" in solid
+    assert "Below 10 rotary inertia" in solid
     assert "shear" not in solid
 
 

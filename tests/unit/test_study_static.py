@@ -127,6 +127,25 @@ def test_dataset_of_modes():
     assert np.abs(data.leg_shape).max() > 0.1
 
 
+@pytest.mark.parametrize("roll", [0.0, np.radians(20)])
+def test_modes_say_how_much_of_them_is_the_payload(roll):
+    """One shape at 53 Hz, of payload and legs, was "payload" at home and "leg 3 bending" at the end of a roll."""
+    # Shapes have unit mass: the payload's part is m v^2 + w J w of its own, whatever the legs do.
+    study = paper_robot()
+    data = fx.modes(study, {"roll": roll})
+    payload, R = study.robot.payload, fx.rigid.rotation_matrix(np.array([roll, 0, 0]))
+    v, w = np.split(data.platform_shape.values, 2, axis=1)
+    expected = payload.mass * (v**2).sum(axis=1) + np.einsum("mi,ij,mj->m", w, R @ payload.inertia @ R.T, w)
+    # The platform sags by 2e-5 rad, and so turns its inertia by that.
+    np.testing.assert_allclose(data.payload_share, expected, atol=1e-4)
+    np.testing.assert_allclose(data.payload_share + data.leg_share.sum("leg"), 1.0, atol=1e-9)
+    kinds, legs = data.kind.values, data.leg_share.values
+    assert ((data.payload_share > 0.5) == (kinds == "payload")).all()
+    single = np.flatnonzero([kind.startswith("leg ") for kind in kinds])
+    assert (legs[single].max(axis=1) > data.payload_share.values[single]).all()
+    assert 0.3 < data.payload_share[1] < 0.7  # the one at 53 Hz
+
+
 def test_damping_ratio_of_leg_modes_is_near_that_of_the_piston():
     plain, double = (fx.modes(with_legs(paper_robot(), lambda leg, d=d: leg.replace(damping=d))) for d in (0.005, 0.01))
     np.testing.assert_allclose(double.damping_ratio[:12], 2 * plain.damping_ratio[:12], rtol=2e-3)  # small damping

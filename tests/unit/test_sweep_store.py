@@ -2,6 +2,7 @@
 
 import errno
 import os
+import subprocess
 import sys
 from csv import reader
 from pathlib import Path
@@ -15,6 +16,7 @@ import flexapod as fx
 from flexapod import version
 from flexapod import version as identity
 from flexapod.errors import ComputationError, InputError
+from flexapod.files import scratch
 from flexapod.model import loads, tables
 from flexapod.surveys.sweeps import SweepStopped, batch, open_sweep, result, run, unstacked, writer
 from flexapod.surveys.sweeps.batch import compute_batch
@@ -419,11 +421,15 @@ def test_a_full_store_is_opened_again_without_reading_its_tables_again(path, tmp
 
 
 def test_what_a_process_left_that_was_killed_while_it_made_a_store(path):
-    mine, others = path.with_name(".sweep.zarr-ab12_xyz"), path.with_name(".sweep.zarr-2-ab12_xyz")
-    for folder in (mine, others):
-        (folder / "store").mkdir(parents=True)
+    child = subprocess.Popen(["true"])
+    child.wait()
+    with scratch(path.parent) as folder:
+        begin = folder.name.rsplit(str(os.getpid()), 1)[0]
+    gone, alive = (path.with_name(f"{begin}{number}-0123456789ab") for number in (child.pid, os.getppid()))
+    for left in (gone, alive):
+        (left / "store").mkdir(parents=True)
     sweep(path)
-    assert sorted(os.listdir(path.parent)) == [others.name, "sweep.zarr"]
+    assert sorted(os.listdir(path.parent)) == [alive.name, "sweep.zarr"]
 
 
 @pytest.mark.parametrize("store", [".", "", "..", "/proc/x.zarr", 3])

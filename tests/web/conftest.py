@@ -134,7 +134,7 @@ def desk(browser, tmp_path_factory) -> Iterator[tuple[View, Callable[..., object
 
     def visit() -> object:
         page = browser.new_context(viewport={"width": 900, "height": 700}, accept_downloads=True).new_page()
-        page.set_default_timeout(60_000)  # the machine may be busy: what is waited for comes, or the test is wrong
+        page.set_default_timeout(300_000)  # the machine may be busy: what is waited for comes, or the test is wrong
         page.on("pageerror", lambda error: errors.append(str(error)))
         page.on("console", lambda said: errors.append(said.text) if said.type == "error" and told(said.text) else None)
         page.goto(f"http://{HOST}:{server.port}/?fixedDpr=0.5")  # coarse pictures of constant size: software draws them
@@ -216,7 +216,7 @@ def read(browser, reports) -> Iterator[Callable[..., object]]:
         context = browser.new_context(**({"viewport": {"width": 1100, "height": 900}} | settings))
         contexts.append(context)
         page = context.new_page()
-        page.set_default_timeout(60_000)  # the machine may be busy: what is waited for comes, or the test is wrong
+        page.set_default_timeout(300_000)  # the machine may be busy: what is waited for comes, or the test is wrong
         page.on("pageerror", lambda error: errors.append(str(error)))
         page.on("console", lambda said: errors.append(said.text) if said.type == "error" else None)
         page.on("request", lambda request: asked.append(request.url))

@@ -21,7 +21,7 @@ CAMERA = _messages.ViewerCameraMessage(
 )  # fmt: skip
 
 
-def until(true, seconds=60.0):
+def until(true, seconds=300.0):
     """Wait until something holds; a busy machine takes longer, a fault for ever."""
     end = time.monotonic() + seconds
     while not (found := true()):

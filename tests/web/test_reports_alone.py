@@ -60,7 +60,7 @@ def test_no_control_asks_for_anything_beyond_the_file(browser, reports, name):
     context.on("request", lambda request: seen.append(request.url))
     context.add_init_script(f"({NOTED})()")
     page = context.new_page()
-    page.set_default_timeout(60_000)
+    page.set_default_timeout(300_000)
     page.on("framenavigated", lambda frame: seen.append(frame.url.partition("#")[0]))
     page.goto(file)
     charts = page.locator("figure.chart")
@@ -90,7 +90,7 @@ def test_no_control_asks_for_anything_beyond_the_file(browser, reports, name):
 def test_no_serious_finding_of_axe_in_a_report(browser, reports, axe, name):
     context = browser.new_context(viewport={"width": 1100, "height": 900}, color_scheme="light")
     page = context.new_page()
-    page.set_default_timeout(60_000)
+    page.set_default_timeout(300_000)
     page.goto(reports[name].as_uri())
     if name != "verification":
         page.locator("html[data-ready=yes]").wait_for(state="attached")

@@ -3,9 +3,11 @@
 import gc
 import logging
 import socket
+import sys
 import time
 import urllib.error
 import urllib.request
+from contextlib import ExitStack
 
 import msgspec
 import pytest
@@ -17,7 +19,7 @@ from websockets.sync.client import connect
 
 from flexapod.app.view import door, logs, visitor
 from flexapod.app.view.document import Document
-from flexapod.app.view.network import is_expected, is_same_site
+from flexapod.app.view.network import has_place, is_expected, is_same_site, whose
 from flexapod.app.view.opening import Source
 from flexapod.app.view.server import View
 from flexapod.model import loads
@@ -254,25 +256,104 @@ def test_a_message_that_cannot_be_followed_ends_nothing(server, caplog):
     until(lambda: not server.sessions)
 
 
-def test_as_many_pages_as_the_server_takes(server, monkeypatch):
-    monkeypatch.setattr(door, "MOST_VISITORS", 2)
-    with connect(f"ws://{here(server)}", subprotocols=VERSIONS):
-        with connect(f"ws://{here(server)}", subprotocols=VERSIONS):
-            with pytest.raises(InvalidStatus) as refused:
-                connect(f"ws://{here(server)}", subprotocols=VERSIONS)
-            assert refused.value.response.status_code == 503
-            assert b"2 pages are open" in refused.value.response.body
-    until(lambda: asked(server, f"Host: {here(server)}")[0] == 200)
+def page_from(server, address, **headers):
+    return connect(
+        f"ws://{here(server)}", subprotocols=VERSIONS, source_address=(address, 0), additional_headers=headers
+    )
 
 
+def refused(server, address, **headers) -> bytes:
+    """What somebody is told who is not let in."""
+    with pytest.raises(InvalidStatus) as found:
+        page_from(server, address, **headers)
+    assert found.value.response.status_code == 503
+    return found.value.response.body
+
+
+@pytest.mark.skipif(not sys.platform.startswith("linux"), reason="127.0.0.2 is this machine on Linux")
+def test_one_address_does_not_keep_all_others_out(server, monkeypatch):
+    """32 pages of one were all that there were."""
+    monkeypatch.setattr(door, "MOST_VISITORS", 6)
+    with ExitStack() as pages:
+        for _ in range(3):  # as many as are still free
+            pages.enter_context(page_from(server, "127.0.0.1"))
+        assert b"3 pages are open, 3 of them from your address" in refused(server, "127.0.0.1")
+        assert asked(server, f"Host: {here(server)}")[0] == 200  # the page itself is no session
+        pages.enter_context(page_from(server, "127.0.0.2"))
+        refused(server, "127.0.0.1")
+        with page_from(server, "127.0.0.2"):  # of two that are free one who has one gets another, then no more
+            assert b"5 pages are open, 2 of them from your address" in refused(server, "127.0.0.2")
+        until(lambda: len(server._server._websock_server._live_connections) == 4)
+        pages.enter_context(page_from(server, "127.0.0.3"))  # who is new comes in, whatever the others do
+        pages.enter_context(page_from(server, "127.0.0.4"))
+        refused(server, "127.0.0.5")  # six of six
+    until(lambda: not server._server._websock_server._live_connections)
+    page_from(server, "127.0.0.1").close()
+
+
+def test_who_comes_through_a_proxy_is_counted_by_the_address_that_it_tells(monkeypatch):
+    """A proxy on this machine that `--name` speaks of; nobody else is believed."""
+    text = study_text(*SHORT)
+    source = Source(document=Document(text, None), study=loads(text))
+    monkeypatch.setattr(door, "MOST_VISITORS", 4)
+    for name in ("robots.example", None):
+        server = View(source, "127.0.0.1", 0, name)
+        with ExitStack() as pages:
+            for address in ("198.51.100.1", "203.0.113.9, 198.51.100.1"):  # the first entry is anybody's
+                pages.enter_context(page_from(server, "127.0.0.1", **{"X-Forwarded-For": address}))
+            refused(server, "127.0.0.1", **{"X-Forwarded-For": "198.51.100.1"})
+            if name is None:
+                refused(server, "127.0.0.1", **{"X-Forwarded-For": "198.51.100.2"})
+            else:
+                pages.enter_context(page_from(server, "127.0.0.1", **{"X-Forwarded-For": "198.51.100.2"}))
+        server.stop()
+
+
+@pytest.mark.parametrize(
+    ("peer", "forwarded", "found"),
+    [
+        ("127.0.0.1", None, "127.0.0.1"),
+        ("192.0.2.7", None, "192.0.2.7"),
+        ("::ffff:192.0.2.7", None, "192.0.2.7"),
+        ("2001:db8:1:2:3:4:5:6", None, "2001:db8:1:2::/64"),
+        ("fe80::1%eth0", None, "fe80::/64"),
+        ("127.0.0.1", "192.0.2.7", "192.0.2.7"),
+        ("::1", "198.51.100.1,  2001:db8::9", "2001:db8::/64"),
+        ("127.0.0.1", "nonsense", "127.0.0.1"),
+        ("127.0.0.1", "", "127.0.0.1"),
+        ("192.0.2.7", "198.51.100.1", "192.0.2.7"),  # not from this machine: nobody's word
+        ("", None, ""),
+    ],
+)
+def test_whose_a_connection_is(peer, forwarded, found):
+    assert whose(peer, forwarded) == found
+
+
+@pytest.mark.parametrize("greedy", range(7))
+def test_whoever_is_new_finds_a_place(greedy):
+    """However many addresses take all they get, one after the other: each leaves half of what it found."""
+    there = 0
+    for _ in range(greedy):
+        own = 0
+        while has_place(own, there, 64):
+            own, there = own + 1, there + 1
+    assert 64 - there == 64 // 2**greedy
+    assert has_place(0, there, 64)
+
+
+@pytest.mark.skipif(not sys.platform.startswith("linux"), reason="127.0.0.2 is this machine on Linux")
 def test_connections_that_say_nothing_are_counted(server, monkeypatch):
-    monkeypatch.setattr(visitor, "MOST_CONNECTIONS", 3)
+    """As many of one address as are still free."""
+    monkeypatch.setattr(visitor, "MOST_CONNECTIONS", 6)
     silent = [socket.create_connection(("127.0.0.1", server.port), timeout=30) for _ in range(3)]
     try:
         with socket.create_connection(("127.0.0.1", server.port), timeout=30) as line:
             with pytest.raises(ConnectionResetError):
                 if line.recv(1) == b"":
                     raise ConnectionResetError
+        with socket.create_connection(("127.0.0.1", server.port), timeout=30, source_address=("127.0.0.2", 0)) as line:
+            line.sendall(f"GET / HTTP/1.1\r\nHost: {here(server)}\r\n\r\n".encode())
+            assert line.recv(65536).startswith(b"HTTP/1.1 200")
     finally:
         for line in silent:
             line.close()

@@ -88,16 +88,30 @@ def test_what_is_being_typed_is_not_overwritten_by_an_answer_to_what_was_typed_b
     until(lambda: handle.value == mass.input_value() == "27.5")
     mass.click()
     mass.fill("")
+    held = texts_of(mass)
     for letter in "1.5e2":
         mass.press(letter)
+        before = held().count("27.5")
         session.client._websock_connection.queue_message(_late(handle._impl.uuid, "27.5"))
-        page.wait_for_timeout(100)  # it has come
+        until(lambda before=before: held().count("27.5") > before)  # it has come, and had to go
     assert mass.input_value() == "1.5e2"
     mass.press("Enter")
     until(lambda: session.study.robot.payload.mass == 150.0 and mass.input_value() == "150")
-    # What is left takes the text of the server.
+    # What is left takes the text of the server, which may say its own once more after that.
     session.client._websock_connection.queue_message(_late(handle._impl.uuid, "151"))
-    until(lambda: mass.input_value() == "151")
+    until(lambda: "151" in (*held(), mass.input_value()))
+
+
+def texts_of(field):
+    """A function that gives all texts that a field has held and that others have replaced, from now on."""
+    field.evaluate(
+        """field => {
+            field.held = [];
+            new MutationObserver((changes) => field.held.push(...changes.map((change) => change.oldValue)))
+                .observe(field, { attributes: true, attributeFilter: ["value"], attributeOldValue: true });
+        }"""
+    )
+    return lambda: field.evaluate("field => field.held")
 
 
 def test_keys_in_the_panel_do_not_move_the_camera_and_a_button_brings_it_back(opened):
@@ -139,9 +153,9 @@ def test_slider_and_picture_agree_after_pause_and_arrow_keys(opened):
     session.client._websock_connection.queue_message(_late(panel._dial._slider._impl.uuid, 0.123))
     page.wait_for_timeout(1e3 * SETTLED + 500)
     until(lambda: float(slider.get_attribute("aria-valuenow")) == pytest.approx(session.scene.time, abs=6e-4))
-    assert panel._dial.value == pytest.approx(session.scene.time, abs=6e-4)
+    until(lambda: panel._dial.value == pytest.approx(session.scene.time, abs=6e-4))
     until(lambda: f"At {panel._dial.value:.4g} s" in page.locator(".flexapod-readout").inner_text())
-    assert float(page.get_by_label("time [s]", exact=True).first.input_value()) == panel._dial.value
+    until(lambda: float(page.get_by_label("time [s]", exact=True).first.input_value()) == panel._dial.value)
 
 
 def _late(uuid, value):

@@ -15,8 +15,8 @@ PIXELS = 60  # that must differ before two pictures count as different: more tha
 
 
 def picture(page) -> np.ndarray:
-    """The left part of the page, where neither panel nor notice covers anything, (rows, columns, 3)."""
-    shot = page.screenshot(clip={"x": 0, "y": 190, "width": 510, "height": 510})
+    """What the panel leaves of the page, (rows, columns, 3)."""
+    shot = page.screenshot(clip={"x": 0, "y": 0, "width": 490, "height": 700})
     return np.asarray(Image.open(io.BytesIO(shot)).convert("RGB"), dtype=int)
 
 

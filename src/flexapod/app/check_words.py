@@ -3,16 +3,17 @@
 from __future__ import annotations
 
 import math
-from collections.abc import Mapping, Sequence
+from collections.abc import Mapping
 from typing import TYPE_CHECKING
 
 import numpy as np
 
-from flexapod.app.terminal import print_table, print_text
+from flexapod.app.terminal import print_remarks, print_table, print_text
 from flexapod.study.after.inside import bushing_words
 from flexapod.study.before.describe.hydraulic import hydraulic_table
 from flexapod.study.before.describe.screw import screw_table
-from flexapod.study.words import column, length, number, scale, text
+from flexapod.study.words import column, number, scale, text
+from flexapod.ties import most, ranked
 
 if TYPE_CHECKING:
     from flexapod.study.before.describe.actuator import ActuatorDescription, BeamDescription
@@ -22,8 +23,8 @@ if TYPE_CHECKING:
 SHOWN_ANGLE = math.radians(60)
 
 
-def show_robot(found: RobotDescription) -> None:
-    """Print a description in sections."""
+def show_robot(found: RobotDescription, *, verbose: bool = False) -> None:
+    """Print a description in sections; `verbose`: with what explains remarks."""
     print_text(
         f"The path keeps all limits. The motion takes {found.motion_end:.4g} s, the simulation {found.duration:.4g} s "
         f"({found.fidelity}). Estimates from the rigid path:"
@@ -50,8 +51,10 @@ def show_robot(found: RobotDescription) -> None:
         for sentence in sentences:
             print_text(f"{sentence[0].upper()}{sentence[1:]}.", indent=2)
     _heading("Remarks")
-    for remark in found.remarks or ("None.",):
-        print_text(remark, indent=2)
+    if found.ideal:
+        print_text(found.ideal, indent=2)
+    if found.remarks or not found.ideal:
+        print_remarks(found.remarks or ("None.",), verbose=verbose, indent=2)
 
 
 def _heading(title: str) -> None:
@@ -82,7 +85,7 @@ def _lengths(found: RobotDescription) -> None:
     print_table(header, rows)
     limited = [(leg.stroke_margin.value, leg) for leg in found.legs if leg.stroke_margin is not None]
     if limited:
-        margin, leg = limited[_most([-margin for margin, _ in limited])]
+        margin, leg = most(limited, key=lambda entry: -entry[0])
         low, high = leg.stroke or (0.0, 0.0)
         print_text(
             f"Leg {leg.leg} comes nearest to its limits of {1e3 * low:.4g} and {1e3 * high:.4g} mm: {1e3 * margin:.2f} "
@@ -142,12 +145,6 @@ def _bodies(found: RobotDescription) -> None:
         print_text(f"With all legs at their {name}: {', '.join((*words, *left, *room))}.", indent=2)
 
 
-def _most(values: Sequence[float]) -> int:
-    """Number of the largest value: the first of those that differ by rounding."""
-    largest = max(values)
-    return next(i for i, value in enumerate(values) if value >= largest - 1e-9 * abs(largest))
-
-
 def _at(extreme: Extreme, factor: float = 1e3) -> str:
     return f"{factor * extreme.value + 0.0:.2f} at {extreme.time:.3f} s"
 
@@ -182,7 +179,7 @@ def _loads(found: RobotDescription) -> None:
     rows = zip(names, forces[:count], forces[count:], pushed_words, *stresses, strict=True)
     header = ["", f"least [{unit}]", f"largest [{unit}]", "of Euler load [%]", *pressure]
     print_table(header, [list(row) for row in rows])
-    pushed = found.legs[_most([leg.euler_share.value for leg in found.legs])]
+    pushed = most(found.legs, key=lambda leg: leg.euler_share.value)
     if pushed.euler_share.value > 0:
         print_text(
             f"Leg {pushed.leg} comes nearest to buckling: {1 / pushed.euler_share.value:.3g} times its load would "
@@ -193,9 +190,9 @@ def _loads(found: RobotDescription) -> None:
     if not known:
         print_text("No stresses: the section or the material of the legs is not given.", indent=2)
         return
-    most, number = known[_most([stress.total.value for stress, _ in known])]
-    limit = "" if most.yield_stress is None else f", {100 * most.total.value / most.yield_stress:.2g} % of yield"
-    print_text(f"Leg {number} is stressed most: {text(most.total.value, 'Pa')}{limit}.", indent=2)
+    stress, number = most(known, key=lambda entry: entry[0].total.value)
+    limit = "" if stress.yield_stress is None else f", {100 * stress.total.value / stress.yield_stress:.2g} % of yield"
+    print_text(f"Leg {number} is stressed most: {text(stress.total.value, 'Pa')}{limit}.", indent=2)
 
 
 def _stresses(found: RobotDescription) -> tuple[list[str], list[str], list[str], list[str]]:
@@ -235,10 +232,11 @@ def _pose(pose: PoseDescription, held: str) -> None:
         print_text(
             f"Stiffness at the tool: {text(s.least, 'N/m')} along [{direction}], where it is least, to "
             f"{text(s.most, 'N/m')}; against turning {number(turning.factor * s.turning_least)} to "
-            f"{turning.text(s.turning_most)}. At rest the centre of mass is off by "
-            f"{length(pose.sag or 0.0)}.",
+            f"{turning.text(s.turning_most)}.",
             indent=2,
         )
+    if pose.rest:
+        print_text(pose.rest, indent=2)
     if pose.parts is not None:
         _parts(pose.parts)
     if any(pose.lost_motion):
@@ -247,8 +245,11 @@ def _pose(pose: PoseDescription, held: str) -> None:
     if pose.bushings:
         print_text(bushing_words(np.array([pose.bushings])), indent=2)
     if pose.modes:
-        listed = ", ".join(f"{m.frequency:.4g} Hz ({m.kind}, {100 * m.damping_ratio:.2g} %)" for m in pose.modes)
-        print_text(f"Frequencies (what moves, damping): {listed}.", indent=2)
+        _, frequencies = column([m.frequency for m in pose.modes], "Hz")
+        rows = [
+            [f"  {f}", f"{100 * m.damping_ratio:.2g}", m.kind] for f, m in zip(frequencies, pose.modes, strict=True)
+        ]
+        print_table(["  frequency [Hz]", "damping [%]", "what moves"], rows, left=(2,))
 
 
 def _parts(parts: Mapping[str, tuple[float, ...]]) -> None:
@@ -256,10 +257,10 @@ def _parts(parts: Mapping[str, tuple[float, ...]]) -> None:
     legs = range(len(next(iter(parts.values()))))
     softness = [sum(1 / values[i] for values in parts.values()) for i in legs]
     whole = [1 / x if x else math.inf for x in softness]
-    ranked = sorted(parts.items(), key=lambda item: min(item[1]))
+    softest, names = ranked(-np.array([min(values) for values in parts.values()])), list(parts)
     print_text("Stiffness along the legs [N/µm], softest part first, and its share in the leg's compliance:", indent=2)
-    rows = [[f"  {name}", *(_stiffness_and_share(k, all_) for k, all_ in zip(values, whole, strict=True))]
-            for name, values in ranked]  # fmt: skip
+    rows = [[f"  {name}", *(_stiffness_and_share(k, all_) for k, all_ in zip(parts[name], whole, strict=True))]
+            for name in (names[i] for i in softest)]  # fmt: skip
     rows.append(["  all in series", *("-" if math.isinf(k) else number(k / 1e6, 4) for k in whole)])
     print_table(["", *(f"leg {i}" for i in range(1, len(whole) + 1))], rows)
     if any(math.isinf(k) for values in parts.values() for k in values):
@@ -291,8 +292,8 @@ def _vibration(found: VibrationToExpect | None) -> None:
     )
 
 
-def show_actuator(found: ActuatorDescription) -> None:
-    """Print a description in sections."""
+def show_actuator(found: ActuatorDescription, *, verbose: bool = False) -> None:
+    """Print a description in sections; `verbose`: with what explains remarks."""
     print_text(f"The beam stays in its hub. A single actuator over {found.duration:.4g} s ({found.fidelity}).")
     print_text()
     print_text("Motion")
@@ -321,8 +322,7 @@ def show_actuator(found: ActuatorDescription) -> None:
             print_text(f"{beam.name}: {beam.problem}", indent=2)
     print_text()
     print_text("Remarks")
-    for remark in found.remarks or ("None.",):
-        print_text(remark, indent=2)
+    print_remarks(found.remarks or ("None.",), verbose=verbose, indent=2)
 
 
 def _actuator_motion(found: ActuatorDescription) -> list[str]:

@@ -2,13 +2,14 @@
 
 from __future__ import annotations
 
+from collections.abc import Sequence
 from pathlib import Path
 from typing import TYPE_CHECKING, Annotated
 
 import typer
 
 from flexapod.app.failures import guarded
-from flexapod.app.options import Json, NoFigures, Pose, Quiet, StudyFile, as_options, check_writable
+from flexapod.app.options import Json, NoFigures, Pose, Quiet, StudyFile, Verbose, as_options, check_writable
 
 if TYPE_CHECKING:
     from xarray import Dataset
@@ -22,7 +23,7 @@ Folder = Annotated[
 @guarded
 def budget(
     file: StudyFile, pose: Pose = None, motion: Motion = False, out: Folder = None, no_figures: NoFigures = False,
-    quiet: Quiet = False, json: Json = False,
+    quiet: Quiet = False, verbose: Verbose = False, json: Json = False,
 ) -> None:  # fmt: skip
     """Error budget of the tool: which part adds what, and what halving the largest error would bring."""
     from flexapod import model
@@ -30,6 +31,8 @@ def budget(
     from flexapod.app.terminal import print_json, progress_bar
     from flexapod.errors import InputError
     from flexapod.study import budget as compute
+    from flexapod.study.counted import budget_counts
+    from flexapod.study.ideal import ideal_words
 
     study = model.load(file)
     if isinstance(study, model.ActuatorStudy):
@@ -40,10 +43,11 @@ def budget(
             study, parse_pose(pose), motion=motion, progress=lambda now, end: report("simulating", now / end)
         )
     files = [] if out is None else _write(data, out, figure=not no_figures)
+    ideal, counts = ideal_words(study.robot), None if motion else budget_counts(study.robot)
     if json:
-        print_json(_as_dict(data, files))
+        print_json({**_as_dict(data, files), "ideal": ideal, "counts": counts})
     else:
-        _show(data, files)
+        _show(data, files, (ideal, counts), verbose=verbose)
 
 
 def _write(data: Dataset, folder: Path, *, figure: bool) -> list[Path]:
@@ -81,8 +85,8 @@ def _as_dict(data: Dataset, files: list[Path]) -> dict[str, object]:
     }
 
 
-def _show(data: Dataset, files: list[Path]) -> None:
-    from flexapod.app.terminal import print_table, print_text
+def _show(data: Dataset, files: list[Path], also: Sequence[str | None], *, verbose: bool) -> None:
+    from flexapod.app.terminal import print_remarks, print_table, print_text
     from flexapod.study.budgets.words import table
 
     first, *further = data.attrs["summary"].splitlines()
@@ -94,7 +98,8 @@ def _show(data: Dataset, files: list[Path]) -> None:
         print_text()
     for line in further:
         print_text(line)
-    for line in data.attrs["warnings"].splitlines():
-        print_text(f"Warning: {line}")
+    for line in filter(None, also):
+        print_text(line)
+    print_remarks(data.attrs["warnings"].splitlines(), verbose=verbose, title="Warning: ")
     for path in files:
         print_text(f"Written: {path}")

@@ -28,6 +28,7 @@ if TYPE_CHECKING:
     from xarray import Dataset
 
     from flexapod.model import ActuatorStudy, Study
+    from flexapod.typing import Array
 
 Folder = Annotated[
     Path | None,
@@ -97,6 +98,8 @@ def _modes_as_dict(data: Dataset, shaken: Dataset | None, files: list[Path]) -> 
         {"mode": int(m), "frequency": float(f), "damping_ratio": float(d), "kind": str(kind)}
         for m, f, d, kind in zip(data.mode, data.frequency, data.damping_ratio, data.kind.values, strict=True)
     ]
+    for mode, share in zip(found, data.payload_share.values if "payload_share" in data else (), strict=False):
+        mode["payload_share"] = float(share)
     return {
         "modes": found,
         **({"com_sag": data.com_sag.values.tolist()} if "com_sag" in data else {}),
@@ -107,10 +110,11 @@ def _modes_as_dict(data: Dataset, shaken: Dataset | None, files: list[Path]) -> 
 
 
 def _robot_words(study: Study, data: Dataset, pose: str | None) -> str:
-    from flexapod.study.words import held, length
+    from flexapod.study.words import held, signed
 
-    where, off = f"at {pose} from home" if pose else "at home", float((data.com_sag**2).sum() ** 0.5)
-    return f"{held(study.robot)}, {where}, about the static equilibrium (the centre of mass is off by {length(off)})."
+    where, sag = f"at {pose} from home" if pose else "at home", data.com_sag.values
+    rest = f"about the static equilibrium (the centre of mass is off by {signed(sag)})"
+    return f"{held(study.robot)}, {where}, {rest}."
 
 
 def _beam_words(study: ActuatorStudy) -> str:
@@ -125,11 +129,19 @@ def _show_modes(data: Dataset, words: str, count: int) -> None:
     shown = data.isel(mode=slice(0, count))
     _, frequencies = column(shown.frequency.values, "Hz", 6)
     _, ratios = column(100 * shown.damping_ratio.values, "")
+    head, columns = ["mode", "frequency [Hz]", "damping [%]"], [frequencies, ratios]
+    if "payload_share" in shown:  # of a robot
+        head += ["of the payload [%]", "of the legs [%]"]
+        columns += [_per_cent(shown.payload_share.values), _per_cent(shown.leg_share.values.sum(axis=-1))]
     kinds = map(str, shown.kind.values)
-    rows = [[str(int(m)), *row] for m, *row in zip(shown.mode, frequencies, ratios, kinds, strict=True)]
-    print_table(["mode", "frequency [Hz]", "damping [%]", "what moves most"], rows, left=(3,))
+    rows = [[str(int(m)), *row] for m, *row in zip(shown.mode, *columns, kinds, strict=True)]
+    print_table([*head, "what moves most, by its kinetic energy"], rows, left=(len(head),))
     if data.sizes["mode"] > count:
         print_text(f"The lowest {count} of {data.sizes['mode']} modes; more with --count.")
+
+
+def _per_cent(shares: Array) -> list[str]:
+    return [f"{100 * abs(share):.0f}" for share in shares]
 
 
 def _show_end(data: Dataset, sentences: tuple[str, ...], files: list[Path]) -> None:

@@ -17,12 +17,13 @@ from flexapod.app.options import (
     Out,
     Quiet,
     StudyFile,
+    Verbose,
     parse_formats,
     results_folder,
     write_all,
     write_data,
 )
-from flexapod.app.terminal import print_json, print_table, print_text
+from flexapod.app.terminal import print_json, print_remarks, print_table, print_text
 from flexapod.errors import ComputationError, InputError
 from flexapod.loading import without
 
@@ -43,19 +44,19 @@ USUAL = "png,svg"
 @guarded
 def run(
     file: StudyFile, out: Out = None, formats: Format = USUAL, no_figures: NoFigures = False, json: Json = False,
-    quiet: Quiet = False,
+    quiet: Quiet = False, verbose: Verbose = False,
 ) -> None:  # fmt: skip
     """Simulate a study, rigid and flexible: results.nc, results.csv, figures, report.html."""
     from flexapod.model import load
 
     drawn = () if no_figures else parse_formats(formats)
-    _run(load(file), results_folder(file, "run", out), drawn, json=json, quiet=quiet)
+    _run(load(file), results_folder(file, "run", out), drawn, json=json, quiet=quiet, verbose=verbose)
 
 
 @guarded
 def actuator(
     file: StudyFile, out: Out = None, formats: Format = USUAL, no_figures: NoFigures = False, json: Json = False,
-    quiet: Quiet = False,
+    quiet: Quiet = False, verbose: Verbose = False,
 ) -> None:  # fmt: skip
     """Simulate the study of a single actuator; writes what `run` writes."""
     from flexapod.model import ActuatorStudy, load
@@ -69,10 +70,12 @@ def actuator(
             next_step=f"Use `flexapod run {file}`",
         )
     drawn = () if no_figures else parse_formats(formats)
-    _run(study, results_folder(file, "run", out), drawn, json=json, quiet=quiet)
+    _run(study, results_folder(file, "run", out), drawn, json=json, quiet=quiet, verbose=verbose)
 
 
-def _run(study: Study | ActuatorStudy, folder: Path, formats: Sequence[str], *, json: bool, quiet: bool) -> None:
+def _run(
+    study: Study | ActuatorStudy, folder: Path, formats: Sequence[str], *, json: bool, quiet: bool, verbose: bool
+) -> None:
     from flexapod.study import Interrupted
     from flexapod.study import run as simulate
     from flexapod.study.before.room import check_disk
@@ -88,7 +91,7 @@ def _run(study: Study | ActuatorStudy, folder: Path, formats: Sequence[str], *, 
             files = write_data(data, folder) if interrupted else write_all(data, folder, report, formats)
         except KeyboardInterrupt:  # a second one ends it
             files, interrupted = write_data(data, folder), True
-    _say(data, folder, files, json=json)
+    _say(study, data, folder, files, json=json, verbose=verbose)
     if interrupted:
         _stopped(data, json=json)
         raise typer.Exit(INTERRUPTED)
@@ -97,12 +100,18 @@ def _run(study: Study | ActuatorStudy, folder: Path, formats: Sequence[str], *, 
         raise typer.Exit(1)
 
 
-def _say(data: Dataset, folder: Path, files: list[Path], *, json: bool) -> None:
+def _say(
+    study: Study | ActuatorStudy, data: Dataset, folder: Path, files: list[Path], *, json: bool, verbose: bool
+) -> None:
+    from flexapod.model import Study
     from flexapod.study.after.summary import summary
+    from flexapod.study.counted import run_counts
+    from flexapod.study.ideal import ideal_words
 
     warnings = [line for line in data.attrs["warnings"].splitlines() if line]
+    ideal, counts = (say(study.robot) if isinstance(study, Study) else None for say in (ideal_words, run_counts))
     if not json:
-        show_run(data, folder, files, warnings)
+        show_run(data, folder, files, warnings, (ideal, counts), verbose=verbose)
         return
     state = {name: data.attrs[name] for name in ("failure", "time_reached") if name in data.attrs}
     print_json(
@@ -110,6 +119,8 @@ def _say(data: Dataset, folder: Path, files: list[Path], *, json: bool) -> None:
             "summary": summary(data).as_dict(),
             "partial": bool(data.attrs["partial"]),
             **state,
+            "ideal": ideal,
+            "counts": counts,
             "warnings": warnings,
             "wall_time": data.attrs["wall_time"],
             "steps": int(data.attrs["steps"]),
@@ -130,8 +141,11 @@ def _failed(data: Dataset, *, json: bool) -> None:
     show(ComputationError(what, next_step="What was computed is kept and marked as partial"), as_json=json)
 
 
-def show_run(data: Dataset, folder: Path, files: Sequence[Path], warnings: Sequence[str]) -> None:
-    """Print what a run found and where it is."""
+def show_run(
+    data: Dataset, folder: Path, files: Sequence[Path], warnings: Sequence[str], also: Sequence[str | None] = (), *,
+    verbose: bool = False,
+) -> None:  # fmt: skip
+    """Print what a run found, sentences that are told `also`, and where it is."""
     from flexapod.study.after.summary import POINT_WORDS, RobotSummary, summaries
     from flexapod.study.bodies import bodies_words
 
@@ -142,8 +156,9 @@ def show_run(data: Dataset, folder: Path, files: Sequence[Path], warnings: Seque
         if isinstance(found, RobotSummary):
             print_text()
             _axes(found, POINT_WORDS[found.point])
-    for line in warnings:
-        print_text(f"Warning: {line}")
+    for sentence in filter(None, also):
+        print_text(sentence)
+    print_remarks(warnings, verbose=verbose, title="Warning: ")
     print_text()
     formats = list(dict.fromkeys(path.suffix for path in files if path.suffix[1:] in FORMATS))
     names = ", ".join(path.name for path in files if path.suffix not in formats)

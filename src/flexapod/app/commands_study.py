@@ -2,15 +2,16 @@
 
 from __future__ import annotations
 
+from dataclasses import replace
 from pathlib import Path
 from typing import Annotated
 
 import typer
 
 from flexapod.app.failures import guarded
-from flexapod.app.options import Force, Json, StudyFile, as_options, refuse_existing
+from flexapod.app.options import Force, Json, StudyFile, Verbose, as_options, refuse_existing
 from flexapod.app.terminal import print_json, print_table, print_text
-from flexapod.errors import InputError, closest
+from flexapod.errors import InputError
 from flexapod.files import write_text
 
 Name = Annotated[Path, typer.Argument(metavar="NAME.toml", help="File to write.")]
@@ -28,20 +29,32 @@ From = Annotated[
     typer.Option(
         "--from",
         metavar='"home=300 mm, payload=20 kg, stroke=60 mm"',
-        help="A first robot with sizes computed to fit; also base, platform (radii), diameter (of pistons), material, "
-        "motion (surge to yaw), duration.",
+        help="A first robot of catalogue parts that fit: electric cylinders, or drive=hydraulic; also base, platform "
+        "(radii), diameter (of pistons), material, motion (surge to yaw), duration.",
     ),
+]
+Ideal = Annotated[
+    bool,
+    typer.Option("--ideal", help="With --from: joints and drives that do not give way, pistons that stretch and bend."),
 ]
 
 
 @guarded
-def new(name: Name, preset: Preset = None, request: From = None, force: Force = False, json: Json = False) -> None:
+def new(
+    name: Name, preset: Preset = None, request: From = None, ideal: Ideal = False, force: Force = False,
+    json: Json = False,
+) -> None:  # fmt: skip
     """Write a commented study file to edit."""
     path = name if name.suffix or name.is_dir() else name.with_suffix(".toml")
     if path.is_dir():
         raise InputError("is a folder", file=path, next_step="Give the name of a file")
     refuse_existing(path, force)
-    text, source, remarks = _first_robot(request, preset) if request is not None else _preset(preset or "paper-robot")
+    if ideal and request is None:
+        raise InputError("is given without --from", key="--ideal", next_step='Add --from "home=300 mm, payload=20 kg"')
+    if request is None:
+        text, source, remarks = _preset(preset or "paper-robot")
+    else:
+        text, source, remarks = _first_robot(request, preset, ideal=ideal)
     write_text(path, text)
     if json:
         print_json({"file": path, **source, **({} if request is None else {"remarks": remarks})})
@@ -59,14 +72,19 @@ def _preset(name: str) -> tuple[str, dict[str, object], list[str]]:
         return preset_text(name), {"preset": name}, []
 
 
-def _first_robot(request: str, preset: str | None) -> tuple[str, dict[str, object], list[str]]:
+def _first_robot(request: str, preset: str | None, *, ideal: bool) -> tuple[str, dict[str, object], list[str]]:
     """Text of a first robot, what it is from, and what there is to say about it."""
     from flexapod.app.first_words import first_words
-    from flexapod.study.first import first_robot, parse_request
+    from flexapod.study.first import IDEAL, first_robot, parse_request
 
     if preset is not None:
         raise InputError("is given together with --from", key="--preset", value=preset, allowed="one of the two")
-    text = first_robot(parse_request(request))
+    wanted = parse_request(request)
+    if ideal and wanted.texts.get("drive", IDEAL) != IDEAL:
+        raise InputError(
+            "is given together with --from drive", key="--ideal", value=wanted.drive, allowed="one of the two"
+        )
+    text = first_robot(replace(wanted, drive=IDEAL) if ideal else wanted)
     return text, {"from": request}, first_words(text)
 
 
@@ -79,17 +97,15 @@ def keys(table: Table = None, markdown: Markdown = None, json: Json = False) -> 
     """Show every key of a study file: what it is, unit, what it is if left out, what is allowed, an example."""
     from dataclasses import asdict
 
+    from flexapod.app.key_names import check_table
+
+    if table is not None:
+        check_table(table)
     from flexapod.model import page
 
     if markdown is not None:
         write_text(markdown, page.markdown())
-    found = [item for item in page.listed() if table is None or f"{item.entry.table}.".startswith(f"{table}.")]
-    if not found:
-        names = list(dict.fromkeys(item.entry.table for item in page.listed()))
-        raise InputError(
-            "is not a table of a study file", key="TABLE", value=table, allowed=", ".join(names),
-            next_step=closest(str(table), names),
-        )  # fmt: skip
+    found = page.listed(table)
     if json:
         print_json([asdict(item) for item in found])
     elif markdown is not None:
@@ -110,7 +126,7 @@ def keys(table: Table = None, markdown: Markdown = None, json: Json = False) -> 
 
 
 @guarded
-def check(file: StudyFile, json: Json = False) -> None:
+def check(file: StudyFile, verbose: Verbose = False, json: Json = False) -> None:
     """Validate a study and say in words what it asks of its legs: lengths, strokes, loads, stiffness, frequencies."""
     from flexapod.app.check_words import show_actuator, show_robot
     from flexapod.model import load
@@ -120,6 +136,6 @@ def check(file: StudyFile, json: Json = False) -> None:
     if json:
         print_json(found.as_dict())
     elif isinstance(found, RobotDescription):
-        show_robot(found)
+        show_robot(found, verbose=verbose)
     else:
-        show_actuator(found)
+        show_actuator(found, verbose=verbose)

@@ -3,16 +3,15 @@
 from __future__ import annotations
 
 import os
-import tempfile
 from collections.abc import Iterator, Sequence
-from contextlib import contextmanager
+from contextlib import contextmanager, nullcontext
 from pathlib import Path
 from typing import TYPE_CHECKING, Annotated
 
 import typer
 
 from flexapod.errors import InputError
-from flexapod.files import check_name
+from flexapod.files import check_name, scratch
 
 if TYPE_CHECKING:
     from xarray import Dataset
@@ -28,6 +27,8 @@ Out = Annotated[
 ]
 NoFigures = Annotated[bool, typer.Option("--no-figures", help="Draw nothing: data and words only, in less time.")]
 Quiet = Annotated[bool, typer.Option("--quiet", "-q", help="No progress bar.")]
+
+Verbose = Annotated[bool, typer.Option("--verbose", help="Explain each remark, not only say it.")]
 
 Pose = Annotated[
     str | None,
@@ -96,7 +97,8 @@ def check_writable(folder: Path | None, key: str = "--out") -> None:
     check_name(folder.absolute(), key)
     existing = next(place for place in (folder.absolute(), *folder.absolute().parents) if os.path.lexists(place))
     try:
-        os.rmdir(tempfile.mkdtemp(prefix=".flexapod-", dir=existing))
+        with scratch(existing):
+            pass
     except OSError as error:
         what = (
             f"cannot be made: {existing} is a file" if existing.is_file() else f"cannot be written to: {error.strerror}"
@@ -117,17 +119,17 @@ def write_all(data: Dataset, folder: Path, report: Report, formats: Sequence[str
     from flexapod.report.figures import Drawn, drawing
     from flexapod.report.page import write_report
 
-    drawn = drawing(data, folder, formats, PROCESSES) if formats else list[Drawn]
-    report("writing results", 0.90)
-    files = write_data(data, folder)
     figures: list[Drawn] = []
+    with drawing(data, folder, formats, PROCESSES) if formats else nullcontext(list[Drawn]) as drawn:
+        report("writing results", 0.90)
+        files = write_data(data, folder)
 
-    def waited() -> list[Drawn]:
-        if formats:
-            html.library()  # while others draw
-        report("drawing figures", 0.94)
-        figures.extend(drawn())
-        return figures
+        def waited() -> list[Drawn]:
+            if formats:
+                html.library()  # while others draw
+            report("drawing figures", 0.94)
+            figures.extend(drawn())
+            return figures
 
-    page = write_report(data, folder, waited)
+        page = write_report(data, folder, waited)
     return [*files, *(path for figure in figures for path in figure.files), page]

@@ -9,6 +9,7 @@ from typing import TYPE_CHECKING, Any
 import numpy as np
 
 from flexapod.app.terminal import print_table, print_text
+from flexapod.ties import first_largest, first_least
 
 if TYPE_CHECKING:
     from xarray import Dataset
@@ -62,7 +63,7 @@ def show_sweep(data: Dataset) -> None:
 
 def _extremes(data: Dataset, name: str) -> dict[str, Any]:
     values = data[name].values
-    low, high = int(np.nanargmin(values)), int(np.nanargmax(values))
+    low, high = first_least(values), first_largest(values)
     return {
         "median": float(np.nanmedian(values)),
         "smallest": float(values[low]),

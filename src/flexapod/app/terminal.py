@@ -40,6 +40,17 @@ def print_text(text: str = "", *, indent: int = 0) -> None:
         console.print(" " * indent + text, soft_wrap=True)
 
 
+def print_remarks(remarks: Sequence[str], *, verbose: bool, indent: int = 0, title: str = "") -> None:
+    """A line for each remark; its explanation with `verbose`, and otherwise how to get it, once."""
+    from flexapod.study.words import brief
+
+    parts = [brief(remark) for remark in remarks]
+    for remark, (first, _) in zip(remarks, parts, strict=True):
+        print_text(f"{title}{remark if verbose else first}", indent=indent)
+    if not verbose and any(rest for _, rest in parts):
+        print_text("More about these remarks: --verbose.", indent=indent)
+
+
 def print_table(header: Sequence[str], rows: Sequence[Sequence[str]], left: Collection[int] = (0,)) -> None:
     """A table; the columns `left` are aligned to the left, the others, of numbers, to the right."""
     from rich.console import Console

@@ -5,6 +5,18 @@ from types import SimpleNamespace
 from flexapod.elements.frame import Energies
 from flexapod.elements.gap import past_gap, touching
 from flexapod.elements.oil_column import oil_column
+from flexapod.symbolic.vocabulary import SX
+
+
+def softening(p: SimpleNamespace, stroke: SX) -> SX:
+    """Compliance of the springs before a stroke over that at home, without oil."""
+    away = stroke - p.series_home
+    return 1 + away * (p.series_softening[0] + away * p.series_softening[1])
+
+
+def twisting(p: SimpleNamespace, stroke: SX) -> SX:
+    """Share kappa of a shaft's twist in it, Eq. (T19.12)."""
+    return (p.drive_friction_twist[0] + p.drive_friction_twist[1] * (stroke - p.series_home)) / softening(p, stroke)
 
 
 def screw(
@@ -22,10 +34,9 @@ def screw(
     place; with `oil` that of a hydraulic cylinder comes to it. ``turning``: a piston that is not keyed takes the nut
     along as it turns. ``gap``: the springs touch past the play only.
     """
-    away = qs.l - p.series_home
-    softer = 1 + away * (p.series_softening[0] + away * p.series_softening[1])
+    softer = softening(p, qs.l)
     if oil:
-        softer += oil_column(p, away)
+        softer += oil_column(p, qs.l - p.series_home)
     stiffness = p.series_stiffness / softer  # (T15.5)
     nut, rate = qs.l, vs.l
     if turning:  # (T23.41)

@@ -34,3 +34,10 @@ LOOP_PARAMETERS: tuple[tuple[str, int], ...] = (
 #: ... of which some are columns of oil: their share in the compliance of these at home; of the two columns the share of
 #: the pushing one in their stiffness there, and one over their lengths [1/m].
 OIL_PARAMETERS: tuple[tuple[str, int], ...] = (("oil", 4),)
+#: Of drives with friction along their travel, see `elements.friction`; 1 where it acts on the stroke, else, of a rotor,
+#: the share of its shaft's twist in what springs before the stroke give way, at home, and what a longer leg adds [1/m].
+DRIVE_FRICTION: tuple[tuple[str, int], ...] = (
+    ("drive_friction", 8),
+    ("drive_friction_at_stroke", 1),
+    ("drive_friction_twist", 2),
+)

@@ -13,6 +13,7 @@ CYLINDER_PARAMETERS: tuple[tuple[str, int], ...] = (
     ("cylinder_length", 1),  # m, from the base joint to the mouth; 1 where it is rigid
     ("cylinder_EI", 1),  # N m^2
     ("cylinder_rhoA", 1),  # kg/m
+    ("cylinder_turning", 1),  # kg m, rotary inertia of a section
     ("mounted_mass", 1),  # kg
     ("mounted_com", 1),  # m, from the base joint
     ("mounted_inertia", 1),  # kg m^2, transverse, about its CoM

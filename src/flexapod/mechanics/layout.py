@@ -6,6 +6,7 @@ from typing import Literal
 
 from flexapod.bases import AxialBasis, LateralBasis, lateral_basis
 from flexapod.mechanics.drive_layout import (
+    DRIVE_FRICTION,
     GAP_PARAMETERS,
     INTEGRAL_PARAMETERS,
     LOOP_PARAMETERS,
@@ -83,11 +84,9 @@ FLEXURE_PARAMETERS: tuple[tuple[str, int], ...] = (
 SOFT_BASE: tuple[tuple[str, int], ...] = (("base_soft", 2), ("base_soft_damping", 2))
 SOFT_PLATFORM: tuple[tuple[str, int], ...] = (("platform_soft", 2), ("platform_soft_damping", 2))
 
-#: ... of joints and drives with friction, see `elements.friction`.
+#: ... of joints with friction, see `elements.friction`.
 BASE_FRICTION: tuple[tuple[str, int], ...] = (("base_friction", 8),)
 PLATFORM_FRICTION: tuple[tuple[str, int], ...] = (("platform_friction", 8),)
-#: ... of a drive along its travel, and of a rotor the share of the stroke in what slides.
-DRIVE_FRICTION: tuple[tuple[str, int], ...] = (("drive_friction", 8), ("drive_friction_at_stroke", 1))
 
 #: ... of legs whose base is moved: the point about which it turns.
 BASE_MOTION_PARAMETERS: tuple[tuple[str, int], ...] = (("base_motion_at", 3),)  # m
@@ -192,7 +191,7 @@ class Shapes:
     guide : LateralBasis, optional
         Shapes of the piston between two bushings, which give way across the leg; None: clamped at the mouth.
     cylinder : LateralBasis, optional
-        Shapes of a cylinder that bends.
+        Shapes of a cylinder that bends; with a guide there is one more, with a kink at the head.
     """
 
     a: LateralBasis
@@ -266,7 +265,8 @@ class Shapes:
     def _inside(self) -> tuple[tuple[str, int], ...]:
         """Coordinates at the mouth and inwards of it: displacement and slope there, inner part, cylinder."""
         guide = () if self.guide is None else (("g", 2), ("h", self.guide.count))
-        bend = () if self.cylinder is None else (("k", self.cylinder.count),)
+        kinked = self.guide is not None  # one shape more, by the head's force
+        bend = () if self.cylinder is None else (("k", self.cylinder.count + kinked),)
         return tuple((f"{name}{way}", size) for name, size in (*guide, *bend) for way in "ab")
 
     @cached_property

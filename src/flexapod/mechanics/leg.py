@@ -10,7 +10,7 @@ from flexapod.bases import LateralBasis
 from flexapod.elements.carriage import carriage
 from flexapod.elements.cylinder import cylinder
 from flexapod.elements.distribution import Line, Motion
-from flexapod.elements.flexible_cylinder import Bend, bend, flexible_cylinder
+from flexapod.elements.flexible_cylinder import flexible_cylinder, head, hole, mouth
 from flexapod.elements.flexure import flexure, springs
 from flexapod.elements.frame import Energies, Frame
 from flexapod.elements.guide import (
@@ -87,7 +87,7 @@ def leg(shapes: Shapes, p: SimpleNamespace, q: SX, v: SX, qs: SimpleNamespace, v
     line = _line(shapes, p, qs, vs)
     motion = Motion(a=a, b=b, axial=shapes.axial, frame=frame, line=line, s=s, q=q, v=v, qs=qs, vs=vs)
     e += cylinder(frame, p, vs) + (stepped_piston if shapes.sections else sliding_piston)(motion, p)
-    inside, shift, turn = _inside(shapes, motion, p, inner)
+    inside, shift, turn, by_head = _inside(shapes, motion, p, inner)
     e += inside
     if shapes.torsion:
         e += torsion(frame, p, qs, vs)
@@ -115,7 +115,7 @@ def leg(shapes: Shapes, p: SimpleNamespace, q: SX, v: SX, qs: SimpleNamespace, v
         theta=theta,
         turn=tip_turn(motion) + turn,
         series=series,
-        present=present,
+        present=(vertcat(present[0], by_head[0]), vertcat(present[1], by_head[1])),
         foot=foot,
     )
 
@@ -171,16 +171,11 @@ def _of_sections(
     )
 
 
-def _bends(shapes: Shapes, p: SimpleNamespace, qs: SimpleNamespace, vs: SimpleNamespace) -> tuple[Bend, Bend] | None:
-    """Bending of the cylinder and its rate."""
-    return None if shapes.cylinder is None else (bend(shapes.cylinder, p, qs), bend(shapes.cylinder, p, vs))
-
-
 def _line(shapes: Shapes, p: SimpleNamespace, qs: SimpleNamespace, vs: SimpleNamespace) -> Line:
     """Line of the piston through the mouth: that of a cylinder that bends, and what the gland gives way to it."""
     place, slope, place_rate, slope_rate = (zeros(2) for _ in range(4))
-    if (bends := _bends(shapes, p, qs, vs)) is not None:
-        (place, place_rate), (slope, slope_rate) = ([x.mouth for x in bends], [x.tangent for x in bends])
+    if shapes.cylinder is not None:
+        (place, slope), (place_rate, slope_rate) = (mouth(shapes.cylinder, p, x) for x in (qs, vs))
     if shapes.guide is not None:
         place, slope = (x + vertcat(qs.ga[i], qs.gb[i]) for i, x in enumerate((place, slope)))
         place_rate, slope_rate = (x + vertcat(vs.ga[i], vs.gb[i]) for i, x in enumerate((place_rate, slope_rate)))
@@ -189,25 +184,31 @@ def _line(shapes: Shapes, p: SimpleNamespace, qs: SimpleNamespace, vs: SimpleNam
 
 def _inside(
     shapes: Shapes, f: Motion, p: SimpleNamespace, inner: LateralBasis | SteppedShapes | None
-) -> tuple[Energies, SX, SX]:
-    """What is inside of a mouth that gives way: energies, shift and turn of the tip beyond those of the piston."""
-    e, from_base, turn, bends = Energies(), zeros(1), zeros(1), _bends(shapes, p, f.qs, f.vs)
-    if inner is None and bends is None:
-        return e, zeros(3), zeros(3)
-    head, hole = f.qs.l - p.Lp, zeros(2)
-    if shapes.cylinder is not None and bends is not None:
-        e += flexible_cylinder(f, shapes.cylinder, p, *bends)
-        from_base, hole = bends[0].shortening(head), bends[0].place(head)
+) -> tuple[Energies, SX, SX, tuple[SX, SX]]:
+    """What is inside of a mouth that gives way: energies, shift and turn of the tip beyond those of the piston.
+
+    Returned are also the symbols for what depends on the stroke alone, and what to put for them.
+    """
+    e, from_base, turn, at, tube = Energies(), zeros(1), zeros(1), None, shapes.cylinder
+    if inner is None and tube is None:
+        return e, zeros(3), zeros(3), (zeros(0), zeros(0))
     if inner is not None:
-        gap = inner_end(f, p, inner) - hole
+        gap = inner_end(f, p, inner)
+        if tube is not None:
+            at = head(tube, p, f.qs.l)
+            gap -= hole(tube, p, f, at)
         part = stepped_inner_part(f, p, inner) if isinstance(inner, SteppedShapes) else inner_part(f, p, inner)
         e += part + bushings(f, p, gap, f.rate(gap))
         turn = inner_turn(f, p, inner)
+    if tube is not None:
+        bent, from_base = flexible_cylinder(f, tube, p, at)
+        e += bent
     if isinstance(f.a, SteppedShapes):
         at_tip, short, short_X = stepped_shortening(f, p, cast("SteppedShapes | None", inner), from_base)
     else:
         at_tip, short, short_X = shortening(f, p, cast("LateralBasis | None", inner), from_base)
-    return e + lean(f, p, short, short_X), vertcat(0, 0, at_tip), vertcat(0, 0, turn)
+    present = (zeros(0), zeros(0)) if at is None else at.present
+    return e + lean(f, p, short, short_X), vertcat(0, 0, at_tip), vertcat(0, 0, turn), present
 
 
 def _series(shapes: Shapes, p: SimpleNamespace, qs: SimpleNamespace, vs: SimpleNamespace) -> Energies:

@@ -3,6 +3,7 @@
 from types import SimpleNamespace
 
 from flexapod.elements.friction import Rubbing, forgetting, rubbing, turning
+from flexapod.elements.screw import twisting
 from flexapod.mechanics.layout import Shapes, leg_parameters
 from flexapod.symbolic.functions import NamedFunction
 from flexapod.symbolic.vocabulary import SX, dot, jacobian, split, sqrt, symbol, symbols, vertcat, zeros
@@ -52,7 +53,7 @@ def _rates(shapes: Shapes, p: SimpleNamespace, qs: SimpleNamespace, vs: SimpleNa
     found = {}
     for name, count in shapes.sliding:
         if name == "drive_friction":
-            at_stroke = p.drive_friction_at_stroke
+            at_stroke = p.drive_friction_at_stroke + (twisting(p, qs.l) if shapes.series else 0.0)
             found[name] = at_stroke * vs.l + (1 - at_stroke) * vs.r if shapes.series else vs.l
         elif name == "platform_friction":
             angles, rates = (vertcat(x.gamma1, x.gamma2, x.gamma3) for x in (qs, vs))

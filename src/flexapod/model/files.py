@@ -12,6 +12,7 @@ from typing import Literal, overload
 from flexapod.errors import InputError, closest
 from flexapod.files import LARGEST_TEXT, check_name, read_text
 from flexapod.model.motion import AxisMotion
+from flexapod.model.plausible import size_remarks
 from flexapod.model.read_actuator import read_actuator, read_drives, read_release
 from flexapod.model.read_disturbance import read_disturbance
 from flexapod.model.read_motion import read_initial, read_load, read_motion, read_simulation, unused_settings
@@ -77,7 +78,10 @@ def load(path: str | Path) -> Study | ActuatorStudy:
             file=path,
             next_step="`flexapod new NAME.toml` writes one to start from",
         ) from None
-    return loads(text, path=path)
+    top = _tables(text, path)
+    remarks = size_remarks(top.data, top.file)
+    study = read_study(top, text)
+    return study.replace(notes=(*study.notes, *remarks), source_text=text) if remarks else study
 
 
 def loads(text: str, *, path: str | Path | None = None) -> Study | ActuatorStudy:

@@ -87,8 +87,8 @@ def _whole(table: dict[str, Any]) -> bool:
     return ("base" in table and "type" in table) or "strut" in table or "length" in table
 
 
-def listed() -> list[Listed]:
-    """All entries with their rows.
+def listed(table: str | None = None) -> list[Listed]:
+    """All entries with their rows, or those of a table and of tables in it.
 
     Raises
     ------
@@ -100,7 +100,8 @@ def listed() -> list[Listed]:
     with tempfile.TemporaryDirectory() as name:
         for file, text in reference().files.items():
             (Path(name) / file).write_text(text, encoding="utf-8")
-        for entry in reference().entries:
+        chosen = (x for x in reference().entries if table is None or f"{x.table}.".startswith(f"{table}."))
+        for entry in chosen:
             rows = list(_rows(entry, Path(name)))
             before = seen.setdefault((entry.study, entry.table), set())
             new = tuple(row for row in rows if row not in before)

@@ -20,7 +20,8 @@ _RATIO = 0.1  # damping ratio of the advice for a drive without damping
 def robot_remarks(robot: Robot) -> tuple[str, ...]:
     """Remarks on a robot's legs; the same remark for several legs is made once."""
     numbers: dict[str, list[int]] = {}
-    share = 0.0 if robot.payload is None else robot.payload.mass / sum(bool(leg.driven) for leg in robot.legs)
+    driven = sum(bool(leg.driven) for leg in robot.legs)
+    share = 0.0 if robot.payload is None or not driven else robot.payload.mass / driven
     for i, leg in enumerate(robot.legs, start=1):
         for remark in (*_leg_remarks(leg), *_undamped(leg, share)):
             numbers.setdefault(remark, []).append(i)

@@ -18,11 +18,16 @@ if TYPE_CHECKING:
     from xarray import Dataset
 
 HOLDS, IN_PART, NOT = "holds", "holds in part", "does not hold"  # of numbers, by `judged`
+HERE = "holds here"  # of numbers that are those of one example
 REACHES, BREAKS = "reaches that size", "robot gives way"  # of numbers, too
 OPEN = "cannot be compared"  # of the text: the paper does not give what the preset marks as ours, `left_open`
 MISPRINT = "misprint"  # of the text: a printed formula against the derived one, in the last table of chapter T9
+COPY = "in the text that we have"  # made from pages: what a lost dot, power or letter can explain is said so
+FIGURE = " The figure itself was not at hand."  # that text has none
 PAPER_DEVIATION = {"y": 5e-3, "z": 10e-3}  # of the centre of mass, Fig. 9 [m]
 ELASTIC_LENGTH = 0.6  # of a piston, Table 3 [m]
+WIDTH, HEIGHT = 0.1524, 0.0095  # of the single actuator's beam, Table 2 [m]
+AWAY = 0.05  # distance from the ends of the quintic at which its jump of jerk no longer shows in the forces [s]
 SIZE = 0.5  # "about 5 mm": from half to one and a half times the printed value counts as that size
 
 
@@ -98,6 +103,14 @@ def after_motion(data: Dataset, name: str) -> float:
     """Vibration that is left after the motion: largest peak to peak of a variable along one direction [its unit]."""
     rest = data[name].where(data.time >= (motion_end(data) or 0.0), drop=True)
     return float((rest.max("time") - rest.min("time")).max())
+
+
+def force_gaps(rigid_legs: Dataset) -> tuple[float, float]:
+    """How far our drive forces are from those of Newton and Euler [N]: away from the ends of the roll, and anywhere."""
+    gap = np.abs(rigid_legs.actuator_force - rigid_legs.actuator_force_rigid).max("leg")
+    end = motion_end(rigid_legs) or np.inf
+    near_ends = (rigid_legs.time < AWAY) | (np.abs(rigid_legs.time - end) < AWAY)
+    return float(gap.where(~near_ends).max()), float(gap.max())
 
 
 def roll_and_arm(data: Dataset) -> tuple[float, float]:

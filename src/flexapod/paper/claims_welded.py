@@ -24,7 +24,7 @@ from flexapod.study.words import number, text
 if TYPE_CHECKING:
     from xarray import Dataset
 
-SAYS_MORE = f"{SAYS}, 6 %; a visibly bent piston in Fig. 10"
+SAYS_MORE = f"{SAYS}, 6 %; a mode of a piston in Fig. 10"
 
 
 def welded_claims(found: Dataset) -> tuple[Claim, ...]:
@@ -57,7 +57,7 @@ def _six(found: Dataset, names: list[str]) -> Claim:
         ours="Legs fixed to the platform, at rest. " + ". ".join(_words(n.capitalize(), r) for n, r in rows.items()),
         verdict=size(*(row.deviation.values for row in rows.values())),
         expected=REACHES,
-        reason=f"A hypothesis, not a fit: tips {text(float(best.off_axis), 'm', 2)} off bend visibly, as in Fig. 10, "
+        reason=f"A hypothesis, not a fit: tips {text(float(best.off_axis), 'm', 2)} off are visibly bent, "
         f"and bending counts at first order. It has free parameters (roll, d, half-angles, height), the 6 % are met "
         f"elsewhere than y and z, legs bear {text(float(best.leg_force), 'N', 2)} and "
         f"{text(float(best.stress), 'Pa', 2)}, which a linear elastic steel does and no real one. Slopes reach "

@@ -6,9 +6,11 @@ from collections.abc import Callable, Iterator
 from pathlib import Path
 from typing import TYPE_CHECKING
 
-from flexapod.paper.claim import PAPER_DEVIATION
+from flexapod.paper.claim import PAPER_DEVIATION, force_gaps
 from flexapod.paper.claims_actuator import LINEAR
+from flexapod.paper.readings import actuator_preset, robot_preset
 from flexapod.report.figures import Drawn, store
+from flexapod.study.words import text
 
 if TYPE_CHECKING:
     from matplotlib.figure import Figure
@@ -36,7 +38,7 @@ def paper_figures(result: PaperStudy, folder: Path, progress: Report | None = No
 
 def _actuator(result: PaperStudy) -> Iterator[_Plan]:
     from flexapod import plot
-    from flexapod.paper import printed
+    from flexapod.paper import printed, solid_figure
 
     series = result.actuator
     finest = series[max(series)]
@@ -46,6 +48,17 @@ def _actuator(result: PaperStudy) -> Iterator[_Plan]:
         "behind; its deflection u(x, t) in the axes x, y of the hub; a tip body (m_e, J)"
     )
     yield ACTUATOR, "actuator-symbols", title, printed.actuator_symbols
+    beam, robot = actuator_preset().actuator, robot_preset("paper-robot").robot
+    title = (
+        "Fig. 2: the actuator as a solid beam that slides through a rigid hub (A; 0.5 m of hub are ours), and the leg "
+        "of the robot that it stands for (B; the cylinder is ours), to scale but for the beam's depth"
+    )
+    yield (
+        ACTUATOR,
+        "actuator-solid",
+        title,
+        lambda: solid_figure.actuator_solid(beam, robot.legs[0], float(robot.home_lengths[0])),
+    )
     title = (
         "Fig. 4 of the paper, its analytic curve: tip of the single actuator with 1 to 5 shapes. The values that the "
         "paper leaves open are ours, so size and phase are not to be laid over the printed curve"
@@ -67,7 +80,7 @@ def _actuator(result: PaperStudy) -> Iterator[_Plan]:
     title = "Fig. 4: assumed modes (8 shapes) against beam and solid finite elements, with their differences"
     others = {"beam elements": result["actuator-beam"], "solid elements": result["actuator-solid-quadratic"]}
     yield ACTUATOR, "actuator-comparison", title, lambda: plot.solid_comparison(others, result["actuator-fine"])
-    title = "Amplitudes of the shapes with 5 of them"
+    title = "Amplitudes of the shapes with 5 of them; quick ones as the band that they fill, with their first swings"
     yield ACTUATOR, "actuator-amplitudes", title, lambda: plot.actuator_modes(finest)
 
 
@@ -81,8 +94,12 @@ def _robot(result: PaperStudy) -> Iterator[_Plan]:
     yield (ROBOT, "roll-law", "Fig. 6: the roll about X, quintic", lambda: plot.motion_law(data))
     yield (ROBOT, "robot-end", "Fig. 7: the robot at the end of the roll; pale: at home", lambda: plot.robot_3d(data))
     yield (ROBOT, "leg-lengths", "Leg lengths, and how far the flexible legs are off", lambda: plot.leg_lengths(data))
-    title = "Fig. 8: drive forces of the rigid robot, Newton-Euler against the multibody model, and their difference"
-    yield (ROBOT, "forces-rigid", title, lambda: plot.actuator_forces(rigid))
+    title = (
+        "Fig. 8: drive forces of the rigid robot, Newton-Euler against the multibody model, and their difference. Its "
+        f"spikes, up to {text(force_gaps(rigid)[1], 'N', 2)}, are those of a fixed step of "
+        f"{text(rigid.attrs['step'], 's')} after the quintic's jerk has jumped; they fall with the step"
+    )
+    yield (ROBOT, "forces-rigid", title, lambda: printed.forces_rigid(rigid))
     title = "Fig. 8 as the paper draws it: all forces in one panel, the two models over each other"
     yield (ROBOT, "forces-overlaid", title, lambda: printed.forces_overlaid(rigid))
     title = "Drive forces of the robot with flexible legs against those of the rigid one"
@@ -98,8 +115,9 @@ def _robot(result: PaperStudy) -> Iterator[_Plan]:
     if bending:
         title = "Fig. 10 B: one piston alone in the first bending mode of the legs, at the largest roll; size arbitrary"
         yield (ROBOT, "piston-mode", title, lambda: printed.piston_mode(modes, bending[0]))
-    title = "The lowest modes of the robot at the largest roll; magnified, size arbitrary"
-    yield (ROBOT, "modes-lowest", title, lambda: plot.modes_3d(modes))
+    others = [int(m) for m in modes.mode.values if int(m) not in bending[:3]]
+    title = "The lowest modes of the robot at the largest roll besides those of Fig. 10; magnified, size arbitrary"
+    yield (ROBOT, "modes-lowest", title, lambda: plot.modes_3d(modes, others[:6]))
     yield (ROBOT, "tip-deflections", "Tips of the pistons across their legs", lambda: plot.tip_deflections(data))
     yield (ROBOT, "energies", "Energies, and how well their balance closes", lambda: plot.energies(data))
 
@@ -113,6 +131,8 @@ def _variants(result: PaperStudy) -> Iterator[_Plan]:
     sweeps = {"Circles as diameters": result["half-angles"], "Circles as radii": result["half-angles-radii"]}
     title = "Half-angles of the joint pairs: the road to the architecture singularity at 30 deg"
     yield (VARIANTS, "half-angles", title, lambda: variant_figures.half_angles(sweeps))
+    title = "Section 1: lighter pistons, hollow or thinner, vibrate more; the heaviest is the paper's"
+    yield (VARIANTS, "light-pistons", title, lambda: variant_figures.light_pistons(result["light"]))
     title = (
         "Ball joints that carry moments, at rest: roll and place of the centre of mass at which each of the three "
         "printed figures is reached. Stresses are those of d = 373 mm; steel yields at 0.6 GPa"

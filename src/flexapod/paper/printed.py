@@ -10,6 +10,8 @@ import xarray as xr
 from matplotlib.figure import Figure
 from matplotlib.patches import Arc, Circle, Polygon
 
+from flexapod.paper.claim import force_gaps
+from flexapod.plot.legs import actuator_forces
 from flexapod.plot.robot3d import CYLINDER
 from flexapod.plot.style import (
     COLUMN,
@@ -18,6 +20,7 @@ from flexapod.plot.style import (
     NOTE,
     PAGE,
     RIGID,
+    SMALL,
     TEXT,
     figure,
     ink,
@@ -125,6 +128,25 @@ def actuator_free(results: Mapping[str, xr.Dataset]) -> Figure:
     panels[-1].set_xlabel("time [s]")
     fig.legend(*panels[0].get_legend_handles_labels(), loc="outside upper center", ncols=len(results))
     fig.align_ylabels(panels)
+    return fig
+
+
+@styled
+@needs("actuator_force_rigid", "actuator_force")
+def forces_rigid(data: xr.Dataset) -> Figure:
+    """Drive forces leg by leg with a word at the spikes of the difference.
+
+    Parameters
+    ----------
+    data : xarray.Dataset
+        With rigid legs and a fixed step.
+    """
+    fig = actuator_forces(data)
+    away, _ = force_gaps(data)
+    for axes in fig.axes:
+        if not axes.get_title(loc="left"):
+            axes.annotate(f"elsewhere at\nmost {text(away, 'N', 2)}", (0.78, 0.97), xycoords="axes fraction", va="top",
+                          ha="center", fontsize=SMALL, color=ink("#333333"))  # fmt: skip
     return fig
 
 

@@ -8,7 +8,7 @@ import numpy as np
 
 from flexapod import model
 from flexapod.errors import InputError
-from flexapod.paper.claim import ELASTIC_LENGTH, axis_motion
+from flexapod.paper.claim import ELASTIC_LENGTH, HEIGHT, axis_motion
 from flexapod.paper.trials import opened
 from flexapod.typing import Array
 
@@ -22,7 +22,6 @@ TRAVELS = {
     "radii-both-sides": ("paper-robot-radii", 30.0, True),
     "radii-60-deg": ("paper-robot-radii", 60.0, False),
 }
-BEAM_DEPTH = 0.0095  # of the single actuator's beam, Table 2 [m]
 GUIDED = 0.15  # of a piston at home, as in the preset [m]
 
 
@@ -32,9 +31,9 @@ def readings() -> dict[str, model.Study]:
     payload = study.robot.payload
     edge = cube_edge(payload)
     return {
-        "inextensible": _with_legs(study, lambda leg: leg.replace(axial_modes=0)),
+        "inextensible": with_legs(study, lambda leg: leg.replace(axial_modes=0)),
         "elastic-length": with_whole_piston(study, ELASTIC_LENGTH),
-        "table-2": _with_legs(study, lambda leg: leg.replace(piston=_beam_of_table_2(leg.piston.length))),
+        "table-2": with_legs(study, lambda leg: leg.replace(piston=_beam_of_table_2(leg.piston.length))),
         **{f"modulus-{E:g}": with_modulus(study, 1e9 * E) for E in MODULI},
         "com-on-top": _with_com(study, float(np.linalg.norm(payload.com))),
         CUBE: _with_com(study, edge / 2),
@@ -63,7 +62,7 @@ def with_whole_piston(study: model.Study, length: float) -> model.Study:
         rod = leg.cylinder.replace(mouth=mouth, com=mouth / 2, inertia=leg.cylinder.mass * mouth**2 / 12)
         return leg.replace(piston=leg.piston.replace(length=length), cylinder=rod, stroke=None)
 
-    return _with_legs(study, changed)
+    return with_legs(study, changed)
 
 
 def with_modulus(study: model.Study, E: float) -> model.Study:
@@ -74,13 +73,13 @@ def with_modulus(study: model.Study, E: float) -> model.Study:
         factor = E / piston.E if piston.E else np.nan
         return leg.replace(piston=piston.replace(E=E, EA=factor * piston.EA, EI=factor * piston.EI))
 
-    return _with_legs(study, changed)
+    return with_legs(study, changed)
 
 
 def _beam_of_table_2(length: float) -> model.Piston:
     """A piston with the bending stiffness and mass of the single actuator's beam, about its weak axis."""
     beam = model.preset("paper-actuator").actuator
-    return model.Piston(length=length, EI=beam.EI, EA=12 * beam.EI / BEAM_DEPTH**2, rhoA=beam.rhoA)
+    return model.Piston(length=length, EI=beam.EI, EA=12 * beam.EI / HEIGHT**2, rhoA=beam.rhoA)
 
 
 def _travelling(preset: str, turn: float, both_sides: bool) -> model.Study:
@@ -112,7 +111,8 @@ def _with_payload(study: model.Study, payload: model.Payload) -> model.Study:
     return study.replace(robot=study.robot.replace(payload=payload))
 
 
-def _with_legs(study: model.Study, change: Callable[[model.Leg], model.Leg]) -> model.Study:
+def with_legs(study: model.Study, change: Callable[[model.Leg], model.Leg]) -> model.Study:
+    """The same robot with every leg changed."""
     return study.replace(robot=study.robot.replace(legs=tuple(change(leg) for leg in study.robot.legs)))
 
 
@@ -128,6 +128,20 @@ def robot_preset(name: str) -> model.Study:
     if isinstance(study, model.Study):
         return study
     raise InputError("is the preset of a single actuator", key="preset", value=name, allowed="presets of robots")
+
+
+def actuator_preset() -> model.ActuatorStudy:
+    """The preset of the single actuator.
+
+    Raises
+    ------
+    InputError
+        It is that of a robot.
+    """
+    study = model.preset("paper-actuator")
+    if isinstance(study, model.ActuatorStudy):
+        return study
+    raise InputError("is the preset of a robot", key="preset", value="paper-actuator")
 
 
 ANGLES = np.deg2rad([0.0, 120.0, 240.0])  # of the hinges, which lie along the circle

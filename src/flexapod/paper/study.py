@@ -7,11 +7,13 @@ from dataclasses import dataclass, field
 from typing import TYPE_CHECKING
 
 from flexapod import model
-from flexapod.errors import ComputationError, InputError
+from flexapod.errors import ComputationError
 from flexapod.paper.claim import axis_motion
 from flexapod.paper.cost import inverse_dynamics_cost
 from flexapod.paper.engines import check_engine, exudyn_flexible, exudyn_rigid, rigid_same_step, undamped
-from flexapod.paper.readings import readings, robot_preset, tripod
+from flexapod.paper.light import light_pistons
+from flexapod.paper.printed_lines import printed_lines
+from flexapod.paper.readings import actuator_preset, readings, robot_preset, tripod
 from flexapod.paper.trials import TRIAL_STEP, trials
 from flexapod.paper.variants import (
     HALF_ANGLES,
@@ -32,6 +34,7 @@ if TYPE_CHECKING:
     from xarray import Dataset
 
 ACTUATOR_MODES = (1, 2, 3, 4, 5)
+BEAM_SHAPES = 8  # four beam elements a piston
 FREE_TIME = 5.0  # s; set free, the beam leaves its hub soon after
 COMPARED_STEP = 1e-4  # s: the time integration's error in 10 s is then about a micrometre, below what is compared
 COMPARED_OUTPUT = 1e-2  # s: a fortieth of the first period at the start
@@ -77,25 +80,18 @@ class Step:
     compute: Callable[[Share], Dataset]
 
 
-def _actuator_preset() -> model.ActuatorStudy:
-    study = model.preset("paper-actuator")
-    if isinstance(study, model.ActuatorStudy):
-        return study
-    raise InputError("is the preset of a robot", key="preset", value="paper-actuator")
-
-
 def _over(report: Share) -> Callable[[float, float], None]:
     """Progress of one simulation as a share."""
     return lambda time, end: report(time / end)
 
 
 def _actuator(count: int) -> Callable[[Share], Dataset]:
-    return lambda report: simulate_actuator(_actuator_preset(), modes=count, progress=_over(report))
+    return lambda report: simulate_actuator(actuator_preset(), modes=count, progress=_over(report))
 
 
 def _free_actuator(report: Share) -> Dataset:
     """The same beam set free on a hub without friction or inertia, with the printed velocities at the start."""
-    study, none = _actuator_preset(), model.ConstantLaw(value=0.0)
+    study, none = actuator_preset(), model.ConstantLaw(value=0.0)
     laws = study.motion.rotation, study.motion.extension
     turn, feed = (law.rate if isinstance(law, model.RateLaw) else 0.0 for law in laws)
     free = study.replace(
@@ -108,7 +104,7 @@ def _free_actuator(report: Share) -> Dataset:
 
 def _finest_actuator(fidelity: str, count: int) -> Callable[[Share], Dataset]:
     def compute(report: Share) -> Dataset:
-        study = _actuator_preset()
+        study = actuator_preset()
         return simulate_actuator(
             study,
             fidelity=fidelity,
@@ -123,7 +119,7 @@ def _finest_actuator(fidelity: str, count: int) -> Callable[[Share], Dataset]:
 
 def _solid(size: float, kind: str) -> Callable[[Share], Dataset]:
     def compute(report: Share) -> Dataset:
-        study = _actuator_preset()
+        study = actuator_preset()
         return simulate_solid(study, size=size, kind=kind, output_step=COMPARED_OUTPUT, progress=_over(report))
 
     return compute
@@ -173,9 +169,18 @@ STEPS: tuple[Step, ...] = (
         Step(name=f"actuator-solid-{name}", words=f"solid elements, {words}", weight=weight, compute=_solid(size, kind))
         for name, words, weight, size, kind in SOLIDS
     ),
+    Step(name="printed-lines", words="energies as printed", weight=2, compute=printed_lines),
     Step(name="robot", words="robot with flexible legs", weight=4, compute=_robot("paper-robot")),
     Step(name="robot-rigid", words="robot with rigid legs", weight=0.3, compute=_fidelity("rigid", 5e-4)),
     Step(name="robot-lumped", words="robot whose legs only stretch", weight=0.3, compute=_fidelity("lumped", 2.5e-4)),
+    Step(
+        name="robot-fem",
+        words="robot whose legs are beam elements",
+        weight=0.5,
+        compute=lambda report: simulate(
+            robot_preset("paper-robot"), fidelity="beam-fem", modes=BEAM_SHAPES, progress=_over(report)
+        ),
+    ),
     Step(name="modes", words="modes at the largest roll", weight=0.2, compute=_modes),
     Step(name="robot-radii", words="circles read as radii", weight=4, compute=_robot("paper-robot-radii")),
     Step(name="jump", words="start with a jump of the velocity", weight=2, compute=_jump("paper-robot")),
@@ -196,6 +201,7 @@ STEPS: tuple[Step, ...] = (
         weight=1,
         compute=lambda report: simulate(tripod(), step=TRIAL_STEP, progress=_over(report)),
     ),
+    Step(name="light", words="lighter pistons", weight=1, compute=light_pistons),
     Step(name="welded", words="ball joints that carry moments", weight=8, compute=welded_map),
     Step(
         name="cost",

@@ -8,6 +8,7 @@ import numpy as np
 import xarray as xr
 from matplotlib.axes import Axes
 from matplotlib.figure import Figure
+from matplotlib.ticker import NullFormatter, ScalarFormatter
 
 from flexapod.paper.claim import PAPER_DEVIATION
 from flexapod.plot.style import COLUMN, PAGE, SMALL, figure, ink, styled
@@ -84,6 +85,39 @@ def _lost(axes: Axes, sweep: xr.Dataset) -> None:
             }
             label = str(words).split(":")[0].split(" from ")[0]
             axes.annotate(label, (angle, 0.03), xytext=(-7, 0), ha="right", fontsize=SMALL, color="#C44E52", **place)
+
+
+@styled
+def light_pistons(light: xr.Dataset) -> Figure:
+    """Vibration of payload and tips after the roll against the mass of a piston, hollow ones and thinner ones.
+
+    Parameters
+    ----------
+    light : xarray.Dataset
+        From `light.light_pistons`; its first piston is the paper's.
+    """
+    fig = figure(PAGE, 2.9)
+    panels = fig.subplots(1, 2, sharex=True)
+    hollow = light.inner.values > 0
+    kinds = {"hollow": hollow, "thinner": ~hollow}
+    titles = {"payload_vibration": "Centre of mass", "tip_vibration": "Tips of the pistons"}
+    for axes, (name, title) in zip(panels, titles.items(), strict=True):
+        for (kind, shown), axis in zip(kinds.items(), "yz", strict=True):
+            chosen = light.isel(piston=np.flatnonzero(shown | (np.arange(len(shown)) == 0)))
+            axes.loglog(
+                chosen.piston_mass,
+                1e6 * chosen[name],
+                _MARKS[axis] + "-",
+                color=AXIS_COLORS[axis],
+                label=kind,
+                markersize=5,
+            )
+        axes.set(title=title, xlabel="mass of a piston [kg]", ylabel="peak to peak after the roll [µm]")
+        axes.xaxis.set_major_formatter(ScalarFormatter())
+        axes.xaxis.set_minor_formatter(NullFormatter())
+        axes.set_xticks([0.5, 1.0, 2.0, 3.0])
+    panels[0].legend()
+    return fig
 
 
 @styled

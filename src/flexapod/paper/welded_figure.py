@@ -11,6 +11,7 @@ from flexapod.paper.claim import PAPER_DEVIATION
 from flexapod.paper.welded import SHARE, SLOPE, travel_share
 from flexapod.plot.style import COLUMN, SMALL, figure, ink, styled
 from flexapod.scene.colours import AXIS_COLORS
+from flexapod.study.words import number
 
 _TITLES = {
     "diameters": "Circles as diameters, six legs",
@@ -52,10 +53,16 @@ def _curves(axes: Axes, found: xr.Dataset) -> None:
         for axis, limit in PAPER_DEVIATION.items()
     ]  # fmt: skip
     wanted.append((f"z {100 * SHARE:.0f} % of its travel", travel_share(found) / SHARE, "#333333", "--"))
+    missing = []
     for label, values, color, style in wanted:
         known = np.isfinite(values) & (roll[None, :] > 0)
+        if not (values[known] >= 1).any():
+            missing.append(f"{label}: not reached,\nat most {number(100 * float(values[known].max()), 2)} % of that")
         axes.contour(roll, arm, np.where(known, values, np.nan), levels=[1.0], colors=[color], linestyles=style)
         axes.plot([], [], color=color, linestyle=style, label=label)
+    if missing:
+        axes.annotate("\n".join(missing), (0.03, 0.97), xycoords="axes fraction", va="top", fontsize=SMALL,
+                      color=ink("#333333"), backgroundcolor="#F7F7F7")  # fmt: skip
     steep = float(roll[np.argmax((found.slope.values > SLOPE).any(axis=0))])
     axes.axvspan(steep, roll[-1], color="#999999", alpha=0.12, linewidth=0)
     axes.plot([], [], color="#999999", alpha=0.4, linewidth=6, label=f"slopes of the legs above {SLOPE:g}")

@@ -10,7 +10,18 @@ from matplotlib.axes import Axes
 from matplotlib.figure import Figure
 from numpy.typing import ArrayLike
 
-from flexapod.plot.style import FLEXIBLE, LINE_STYLES, PAGE, RIGID, columns, figure, mark_end, needs, styled
+from flexapod.plot.style import (
+    FLEXIBLE,
+    LINE_STYLES,
+    PAGE,
+    RIGID,
+    columns,
+    figure,
+    flat_on_the_scale_of_others,
+    mark_end,
+    needs,
+    styled,
+)
 from flexapod.scene.colours import LEG_COLORS, colors_of_legs
 from flexapod.scene.drives import drives
 from flexapod.scene.robot import motion_end
@@ -144,7 +155,7 @@ def _rounded(value: float, unit: str) -> str:
 @styled
 @needs("tip_deflection", "com_deviation")
 def tip_deflections(data: xr.Dataset) -> Figure:
-    """Lateral deflection of each piston's tip from its cylinder's axis, in the two directions of the leg frame.
+    """Lateral deflection of each piston's tip from its cylinder's axis, in two directions, each to its own scale.
 
     Parameters
     ----------
@@ -152,15 +163,17 @@ def tip_deflections(data: xr.Dataset) -> Figure:
         With `tip_deflection` (time, leg, direction).
     """
     fig = figure(PAGE, 4.8)
-    rows = fig.subplots(2, 1, sharex=True, sharey=True)
+    rows = fig.subplots(2, 1, sharex=True)
     off = data.tip_deflection * (float(np.abs(data.tip_deflection).max()) >= NOTHING)
-    small, end = scale(off, "m"), motion_end(data)
+    end, sizes = motion_end(data), [float(np.abs(off.sel(direction=name)).max()) for name in data.direction.values]
     words = {"a": "across the leg, direction a (level at home)", "b": "across the leg, direction b"}
-    for axes, direction in zip(rows, data.direction.values, strict=True):
+    for axes, direction, size in zip(rows, data.direction.values, sizes, strict=True):
+        small = scale(size or max(sizes), "m")
         for i, leg in enumerate(data.leg.values):
             _leg_line(axes, data, small(off.sel(leg=leg, direction=direction)), i)
         axes.set(title="Piston tip " + words[str(direction)], ylabel=f"deflection [{small.name}]")
         mark_end(axes, end, "motion ends" if axes is rows[0] else "")
+    flat_on_the_scale_of_others(rows.tolist(), sizes)
     rows[-1].set_xlabel("time [s]")
     _leg_legend(fig, rows[0])
     return fig

@@ -31,6 +31,7 @@ from flexapod.surveys.workspace.findings import (
     unit_of,
 )
 from flexapod.surveys.workspace.grid import UNITS
+from flexapod.ties import first_largest, first_least
 from flexapod.typing import Array
 
 # Ground and hatching of what is not reached, by code; codes that rarely meet share one.
@@ -272,7 +273,7 @@ def _path(axes: Axes, part: xr.DataArray, path: Array | None, data: xr.Dataset, 
 def _mark_worst(grid, values: xr.DataArray, unit: Scale, quantity: str, third: str | None, chosen: Array) -> None:
     """A ring at the least or largest value, whichever is the bad end, where its slice is drawn."""
     flat, side = values.values, SIDES[quantity]
-    index = np.unravel_index(int(np.nanargmin(flat) if side == "least" else np.nanargmax(flat)), flat.shape)
+    index = np.unravel_index(first_least(flat) if side == "least" else first_largest(flat), flat.shape)
     if third and int(index[2]) not in chosen:
         return
     axes = list(grid)[int(np.flatnonzero(chosen == index[2])[0]) if third else 0]
@@ -318,7 +319,7 @@ def _line(data: xr.Dataset, values: xr.DataArray, unit: Scale, title: str, quant
     axes.set(xlabel=_axis_label(name), ylabel=unit.name or WITHOUT_UNIT[quantity])
     if np.isfinite(y).any():
         side = SIDES[quantity]
-        k = int(np.nanargmin(y) if side == "least" else np.nanargmax(y))
+        k = first_least(y) if side == "least" else first_largest(y)
         ring = {"markerfacecolor": "none", "markeredgecolor": BAD, "markeredgewidth": 1.8, "linestyle": "none"}
         axes.plot(x[k], y[k], "o", markersize=8, label=f"{side}: {unit.text(float(values.values[k])).strip()}", **ring)
     _headline(fig, title)

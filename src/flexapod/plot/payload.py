@@ -27,6 +27,7 @@ from flexapod.scene.robot import motion_coordinates, motion_end
 from flexapod.study.after.summary import POINT_WORDS
 from flexapod.study.cause_words import cause_words
 from flexapod.study.words import NOTHING, Scale, cleared, scale
+from flexapod.ties import first_largest, ranked
 
 _TURNS = ("roll", "pitch", "yaw")
 _UNITS = {"position": ("m", "rad"), "rate": ("m/s", "rad/s"), "acceleration": ("m/s²", "rad/s²")}
@@ -123,7 +124,7 @@ def _paths(axes: Axes, data: xr.Dataset, point: str, axis: str) -> None:
 
 def _peak(axes: Axes, time: np.ndarray, values: np.ndarray, unit: str) -> None:
     """Mark the largest deviation with its value."""
-    at = int(np.argmax(np.abs(values)))
+    at = first_largest(np.abs(values))
     above = values[at] > values.mean()
     axes.margins(y=0.22)
     axes.plot(time[at], values[at], "o", color="#333333", markersize=4, zorder=5)
@@ -178,7 +179,7 @@ def deviation_by_cause(data: xr.Dataset) -> Figure:
         left.set(title=f"{str(axis).upper()}, over time", ylabel=f"deviation [{small.name}]")
         mark_end(left, end, "motion ends" if row == 0 else "")
         size = np.abs(total.sel(axis=axis).values) if seen[-1] else np.linalg.norm(total.values, axis=1)
-        _by_leg(right, parts.sel(axis=axis).isel(time=int(size.argmax())), small, str(axis), colors)
+        _by_leg(right, parts.sel(axis=axis).isel(time=first_largest(size)), small, str(axis), colors)
     flat_on_the_scale_of_others(grid[:, 0], seen)
     grid[-1, 0].set_xlabel("time [s]")
     grid[-1, 1].set_xlabel("leg")
@@ -193,8 +194,8 @@ def _largest(parts: xr.DataArray) -> xr.DataArray:
     """The largest causes, and all smaller ones as one, where they are more than colours tell apart."""
     if parts.sizes["cause"] <= MOST:
         return parts
-    ranked = np.argsort(-np.abs(parts.transpose("cause", ...).values).max(axis=(1, 2, 3)))
-    kept, rest = np.sort(ranked[: MOST - 1]), ranked[MOST - 1 :]
+    order = ranked(np.abs(parts.transpose("cause", ...).values).max(axis=(1, 2, 3)))
+    kept, rest = np.sort(order[: MOST - 1]), order[MOST - 1 :]
     others = parts.isel(cause=rest).sum("cause").expand_dims(cause=[f"{len(rest)}{_SMALLER}"])
     return xr.concat([parts.isel(cause=kept), others], "cause")
 

@@ -29,6 +29,8 @@ _SHORT = 0.2  # of the longest: axes that have no room for numbers
 #: Widths of robots against their diagonals, at an angle and along an axis: wider ones are drawn smaller, as their words
 #: would run over the edge.
 _WIDEST = (0.75, 0.65)
+_ASIDE, _NEAR = 0.045, 0.12  # of the robot's size: numbers beside their joints, and joints that stand as a pair
+_STEEP = 0.8  # sine of the slope beyond which a number would lie on the leg
 _LOW = 0.6  # heights against widths: names of axes keep a distance that shrinks with them
 _NEEDLE = 45  # distance of the name of the one axis that is left, in a measure that shrinks with the room
 _FREE: Any = {"axes.titley": None}  # titles go above what is drawn
@@ -82,14 +84,13 @@ def draw_robot(axes: Any, s: Scene, *, numbers: bool = True) -> None:
     """Draw a robot: grey cylinders, coloured pistons, translucent platform, cross-hair at the centre of mass."""
     _plate(axes, s.skeleton.robot.base_joints, BASE, 0.12)
     _segments(axes, s.guides, BASE, 2.0, 3)
-    legs, radii = colors_of_legs(len(s.base)), s.radii
+    legs, radii, places = colors_of_legs(len(s.base)), s.radii, beside(s.base, s.points, axes.azim, axes.elev)
     for i in range(len(s.base)):
         if not np.array_equal(s.base[i], s.mouth[i]):
             _bar(axes, s.base[i], s.mouth[i], color=CYLINDER, linewidth=6, zorder=3)
         axes.add_collection3d(_piston(s.piston[i], radii[i], legs[i]))
         if numbers:
-            outward = s.base[i] * np.array([1.2, 1.2, 0.0]) + np.array([0, 0, s.base[i, 2]])
-            axes.text(*(1e3 * outward), str(i + 1), color=ink(legs[i]), ha="center", va="center", zorder=9, **_NUMBER)
+            axes.text(*(1e3 * places[i]), str(i + 1), color=ink(legs[i]), ha="center", va="center", zorder=9, **_NUMBER)
     _segments(axes, s.heads, INSIDE, 1.2, 4)  # pistons in bushings, inside of their cylinders
     if len(s.heads):
         axes.scatter(*(1e3 * s.heads[:, 1].T), s=16, marker="D", color=INSIDE, depthshade=False, zorder=5)
@@ -110,6 +111,34 @@ def draw_robot(axes: Any, s: Scene, *, numbers: bool = True) -> None:
         [x], [y], [z], marker="o", markersize=10, clip_on=False, color="white", markeredgecolor="#333333", zorder=7
     )
     axes.plot([x], [y], [z], marker="+", markersize=9, clip_on=False, color="#333333", zorder=8)
+
+
+def beside(joints: np.ndarray, points: np.ndarray, turn: float, tilt: float) -> np.ndarray:
+    """Places (n, 3) [m] of the numbers of joints (n, 3) as they are seen from `turn` and `tilt` [deg].
+
+    Each lies outside of the joints, away from a neighbour that is near, and beside the leg; how far, in shares of the
+    size of `points`.
+    """
+    a, b = np.radians(turn), np.radians(tilt)
+    right = np.array([-np.sin(a), np.cos(a), 0.0])
+    up = np.array([-np.sin(b) * np.cos(a), -np.sin(b) * np.sin(a), np.cos(b)])
+    seen = joints @ np.stack([right, up], axis=1)
+    size = float(np.linalg.norm(np.ptp(points, axis=0)))
+    way = _unit(seen - seen.mean(axis=0))
+    for i, place in enumerate(seen):
+        apart = place - np.delete(seen, i, axis=0)
+        gaps = np.linalg.norm(apart, axis=1)
+        if len(gaps) and 0 < gaps.min() < _NEAR * size:
+            way[i] += _unit(apart[gaps.argmin()])
+    level = np.stack([np.where(way[:, 0] < 0, -1.0, 1.0), np.full(len(way), 0.3)], axis=1)
+    way = np.where(_unit(way)[:, 1:] > _STEEP, level, way)  # above a joint stands its leg
+    return joints + _ASIDE * size * _unit(way) @ np.stack([right, up])
+
+
+def _unit(vectors: np.ndarray) -> np.ndarray:
+    """Vectors of length 1; those without a direction point down."""
+    length = np.linalg.norm(vectors, axis=-1, keepdims=True)
+    return np.where(length > 1e-9, vectors / np.maximum(length, 1e-9), [0.0, -1.0])
 
 
 def draw_ghost(axes: Any, s: Scene) -> None:

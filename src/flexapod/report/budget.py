@@ -10,6 +10,7 @@ from flexapod import model, rigid
 from flexapod.errors import FlexapodError
 from flexapod.report import html
 from flexapod.report.figures import carried_study
+from flexapod.ties import first_largest
 
 if TYPE_CHECKING:
     from xarray import Dataset
@@ -34,7 +35,7 @@ def peak_budget(data: Dataset) -> Dataset | None:
     if ideal and study.disturbance is None:
         return None
     size = np.linalg.norm(data.tool_deviation.values, axis=1)
-    t = data.time.values[[int(size.argmax())]]
+    t = data.time.values[[first_largest(size)]]
     path = rigid.poses(study.robot, study.motion, t)
     try:
         found = budget(study, rigid.Poses.at_rest(path.position, path.rotation))

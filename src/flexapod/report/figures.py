@@ -3,9 +3,9 @@
 from __future__ import annotations
 
 from collections.abc import Callable, Iterator, Sequence
+from contextlib import AbstractContextManager
 from io import BytesIO
 from pathlib import Path
-from tempfile import TemporaryDirectory
 from typing import TYPE_CHECKING, Any, NamedTuple
 
 if TYPE_CHECKING:
@@ -50,11 +50,14 @@ def draw(data: Dataset, folder: str | Path, formats: Sequence[str] = ("png", "sv
     `folder` is made if needed, figures of the same name are replaced; `formats` are of png, svg, pdf. InputError: the
     folder cannot be written to, or a format is unknown.
     """
-    return drawing(data, folder, formats, 1)()
+    with drawing(data, folder, formats, 1) as drawn:
+        return drawn()
 
 
-def drawing(data: Dataset, folder: str | Path, formats: Sequence[str], processes: int) -> Callable[[], list[Drawn]]:
-    """The same begun in copies of this process; what is returned takes part, and waits for them."""
+def drawing(
+    data: Dataset, folder: str | Path, formats: Sequence[str], processes: int
+) -> AbstractContextManager[Callable[[], list[Drawn]]]:
+    """The same begun in copies of this process; what the block is given takes part, and waits for them."""
     from flexapod.processes import started
 
     plans = list(_robot(data) if "com_deviation" in data else _actuator(data))
@@ -69,6 +72,7 @@ def drawing(data: Dataset, folder: str | Path, formats: Sequence[str], processes
 def store(figure: Figure, title: str, stem: Path, formats: Sequence[str] = ("png", "svg")) -> Drawn:
     """Write a figure as ``stem.png``, ``stem.svg``, ``stem.pdf``, as asked for."""
     from flexapod import plot
+    from flexapod.files import scratch
     from flexapod.report.interactive import interactive
 
     files = plot.save(figure, stem, formats=formats)
@@ -76,8 +80,8 @@ def store(figure: Figure, title: str, stem: Path, formats: Sequence[str] = ("png
     if png is not None:
         picture = _picture(png)
     else:
-        with TemporaryDirectory() as folder:
-            picture = _picture(*plot.save(figure, Path(folder) / stem.name, formats=("png",)))
+        with scratch() as folder:
+            picture = _picture(*plot.save(figure, folder / stem.name, formats=("png",)))
     return Drawn(stem.name, title, picture, interactive(figure), files)
 
 

@@ -68,6 +68,16 @@ def bullets(texts: Sequence[str]) -> str:
     return "<ul>" + "".join(f"<li>{escape(text)}</li>" for text in texts) + "</ul>"
 
 
+def remarks(texts: Sequence[tuple[str, str]]) -> str:
+    """A list of remarks: what each says, and folded away behind it what explains it."""
+    items = (
+        f"<li><details><summary>{escape(first)}</summary>{escape(rest)}</details></li>" if rest
+        else f"<li>{escape(first)}</li>"
+        for first, rest in texts
+    )  # fmt: skip
+    return "<ul>" + "".join(items) + "</ul>"
+
+
 def code(text: str, title: str | None = None) -> str:
     """Text as it is; folded away under a title if there is one."""
     name = escape(title or "Text")  # long lines are scrolled, by keys too

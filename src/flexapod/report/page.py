@@ -6,11 +6,10 @@ from collections.abc import Callable, Mapping, Sequence
 from importlib.metadata import version
 from pathlib import Path
 from platform import python_version
-from tempfile import TemporaryDirectory
 from typing import TYPE_CHECKING
 
 from flexapod.errors import FlexapodError
-from flexapod.files import write_text
+from flexapod.files import scratch, write_text
 from flexapod.report import html
 from flexapod.report.figures import Drawn, carried_study
 from flexapod.report.interactive import MOST_POINTS
@@ -34,6 +33,7 @@ SOLVER = {
     "compiled": "Compiled equations",
     "tolerance": "Tolerance of the step control",
     "estimated_error": "Largest estimated error",
+    "estimated_force_error": "Estimated error of the legs' forces over their peak",
     "step": "Smallest step (with a tolerance: least mean over some outputs) [s]",
     "output_step": "Output step [s]",
     "steps": "Steps",
@@ -55,7 +55,7 @@ def robot_report(study: Study | ActuatorStudy, data: Dataset) -> str:
     """The report of a robot's or an actuator's run, whole or partial, as text, with figures drawn for it."""
     from flexapod.report.figures import draw
 
-    with TemporaryDirectory() as folder:
+    with scratch() as folder:
         return _page(study, data, lambda: draw(data, folder, ("png",)))
 
 
@@ -92,6 +92,7 @@ def _page(study: Study | ActuatorStudy | None, data: Dataset, figures: Callable[
     links |= {"solver": "Solver", "toml": "Study file", "repeat": "Repeat"}
     body = [
         *(html.paragraph(sentence) for sentence in (*(found.sentence for found in further), *bodies_words(data))),
+        *_told(study),
         html.paragraph(f"Report of {name}, flexapod {data.attrs['flexapod_version']}.", "soft"),
         html.contents(links),
         *_partial(data),
@@ -107,6 +108,16 @@ def _page(study: Study | ActuatorStudy | None, data: Dataset, figures: Callable[
         repeat_section("Save the study file above as study.toml, then", "flexapod run study.toml --out results"),
     ]
     return html.page(f"flexapod: {name}", first.sentence, body)
+
+
+def _told(study: Study | ActuatorStudy | None) -> list[str]:
+    """What of a robot is ideal, and what a run leaves to the budget, a line each."""
+    from flexapod.model import Study
+    from flexapod.study.counted import run_counts
+    from flexapod.study.ideal import ideal_words
+
+    words = (ideal_words(study.robot), run_counts(study.robot)) if isinstance(study, Study) else ()
+    return [html.paragraph(line) for line in words if line]
 
 
 def _described(study: Study | ActuatorStudy | None) -> RobotDescription | ActuatorDescription | None:
@@ -162,10 +173,10 @@ def _axis_table(found: RobotSummary) -> str:
     rows = [
         (
             a.axis.upper(),
-            text(a.peak, "m"),
+            text(a.peak, "m") if a.peak else "0",
             "n/a" if a.time is None else f"{a.time:.3f} s",
-            text(a.rms, "m"),
-            text(a.excursion, "m", 4),
+            text(a.rms, "m") if a.rms else "0",
+            text(a.excursion, "m", 4) if a.excursion else "0",
             "n/a" if a.per_cent is None else f"{number(a.per_cent, 2)} %",
         )
         for a in found.shown_axes
@@ -198,8 +209,12 @@ def _partial(data: Dataset) -> list[str]:
 
 def warnings_section(data: Dataset) -> str:
     """What is doubtful about a result, in words."""
+    from flexapod.study.words import brief
+
     found = [line for line in str(data.attrs.get("warnings", "")).splitlines() if line]
-    return html.section("warnings", "Warnings", html.bullets(found) if found else html.paragraph("None."))
+    return html.section(
+        "warnings", "Warnings", html.remarks([brief(x) for x in found]) if found else html.paragraph("None.")
+    )
 
 
 def figures_section(name: str, title: str, figures: Sequence[Drawn], *, first: bool = True) -> str:

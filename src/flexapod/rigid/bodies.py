@@ -16,7 +16,7 @@ Index = NDArray[np.intp]
 
 HALVES = (0, 0, 1, 1), (0, 1, 0, 1)  # of two legs: cylinder (0) or piston (1)
 SPAN = 32  # poses between which legs that follow a path move little
-ROUNDING = 1e-9  # of distances [m], far above what it is
+ROUNDING = 1e-9  # of distances [m], far above what it is: of pairs that differ by less the first one is the nearest
 
 
 class Nearest(NamedTuple):
@@ -74,7 +74,7 @@ def nearest_legs(feet: Array, tips: Array, mouth: Array, radii: Array, pairs: Ar
         gap = _apart(a[:, i, span], b[:, i, span], a[:, k, span], b[:, k, span]) - (width[i] + width[k])[:, None]
         firsts = np.searchsorted(span, np.arange(a.shape[2]))
         least = np.minimum.reduceat(gap, firsts)
-        pair = np.where(gap > least[span], len(pairs), body[:, None] // len(HALVES[0]))
+        pair = np.where(gap > least[span] + ROUNDING, len(pairs), body[:, None] // len(HALVES[0]))
         size = len(found.gap[where])
         found.gap[where] = least.ravel()[:size]
         found.legs[where] = pairs[np.minimum.reduceat(pair, firsts).ravel()[:size]]

@@ -22,6 +22,7 @@ from flexapod.typing import Array, Mask
 
 STRIDE = 0.35  # rad, or of a leg's length: the longest way in one step from home to a pose
 NEWTON = 25
+FAR = 10.0  # rad, or of a leg's length: on a longer way poses are followed each by its own strides, while legs follow
 APART = 16  # instants of a path from one that is sought from the start to the next
 NEIGHBOURS = 0.05  # rad, or of a leg's length: between these a path is smooth
 TAKEN = 1e-9  # gap relative to L_c at which a pose counts as taken by the legs
@@ -205,19 +206,39 @@ def _from_start(limbs: Limbs, task: Task, q: Array, goal: Array | Poses, start: 
     ways = np.where(task.legs, 0.0, q - q0)
     asked = np.asarray(np.isfinite(way).all(axis=1))
     way, turn = np.where(asked[:, None], way, 0.0), np.where(asked[:, None], turn, 0.0)
-    far = max(np.abs(way / unit[:6]).max(initial=0.0), np.abs(ways / unit[6:]).max(initial=0.0))
-    steps = 1 + int(far / STRIDE)
+    far = np.maximum(np.abs(way / unit[:6]).max(axis=1), np.abs(ways / unit[6:]).max(axis=(1, 2)))
+    if (far > FAR).any() and (far <= FAR).any():
+        return _each_part(limbs, task, q, goal, start, far > FAR)
+    steps, own = 1 + int(far.max(initial=0.0) / STRIDE), bool((far > FAR).any())
     q, x, gap = np.tile(q0, (len(q), 1, 1)), np.tile(x0, (len(q), 1)), np.zeros(ways.shape[:2])
     for k in range(1, steps + 1):
-        q, at = np.where(task.legs, q, q0 + k / steps * ways), None
-        x = np.where(task.platform, x, x0 + k / steps * way)
+        here, share = np.arange(len(q)), np.full(len(q), k / steps)
+        if own and k < steps:  # without those at their end, and those that legs have lost by more than their length
+            share = k * STRIDE / far
+            here = here[(share < 1) & (gap.max(axis=1, initial=0.0) < unit[0])]
+            if not here.size:
+                continue
+        part, at = share[here, None], None
+        legs = np.where(task.legs, q[here], q0 + part[..., None] * ways[here])
+        hub = np.where(task.platform, x[here], x0 + part * way[here])
         if isinstance(goal, Poses):
-            at = Poses.at_rest(limbs.position + k / steps * way[:, :3], exponential(k / steps * turn) @ limbs.rotation)
+            at = Poses.at_rest(limbs.position + part * way[here, :3], exponential(part * turn[here]) @ limbs.rotation)
             at = goal if k == steps and asked.all() else at
-        q, x, gap = _newton(limbs, task, q, x, at, CLOSE if k == steps else 1e-3)
+        q[here], x[here], gap[here] = _newton(limbs, task, legs, hub, at, CLOSE if k == steps else 1e-3)
     lost = ~(gap.max(axis=1, initial=0.0) < TAKEN * limbs.L_c) | ~asked
-    q[lost], x[lost] = np.nan, np.nan
+    q[lost], x[lost], gap[~asked] = np.nan, np.nan, np.inf
     return Closed(q=q, x=x, gap=gap)
+
+
+def _each_part(
+    limbs: Limbs, task: Task, q: Array, goal: Array | Poses, start: tuple[Array, Array], beyond: Mask
+) -> Closed:
+    """Solution at instants of which some are far from the start and others are not, each by themselves."""
+    found = Closed(q=np.zeros(q.shape), x=np.zeros((len(q), 6)), gap=np.zeros(q.shape[:2]))
+    for at in (np.flatnonzero(~beyond), np.flatnonzero(beyond)):
+        part = _from_start(limbs, task, q[at], goal.part(at) if isinstance(goal, Poses) else goal[at], start)
+        found.q[at], found.x[at], found.gap[at] = part.q, part.x, part.gap
+    return found
 
 
 def _units(limbs: Limbs) -> Array:

@@ -12,6 +12,7 @@ from flexapod.rigid.vectors import cross, dot, time_first, time_last
 from flexapod.typing import Array
 
 STRIDES = (64, 8, 1)  # every so many poses of a path are looked at, where the last look leaves a doubt
+ALIKE = 1e-12  # singular values of scaled Jacobians, of order 1, that are equal but for rounding
 
 
 @dataclass(frozen=True, kw_only=True)
@@ -42,7 +43,7 @@ class NearestSingularity:
     Attributes
     ----------
     worst : int
-        Its index.
+        Its index, the first of several.
     smallest_singular_value, condition : float
         There [-]; the condition is inf where it is singular.
     sign_changes : ndarray of int, shape (m,)
@@ -124,9 +125,14 @@ def along_path(jacobians: Array) -> SingularityPath:
         smallest_singular_value=smallest,
         condition=condition,
         determinant=determinant,
-        worst=int(np.argmin(smallest)),
+        worst=_first(smallest),
         sign_changes=np.flatnonzero(np.signbit(determinant[:-1]) != np.signbit(determinant[1:])),
     )
+
+
+def _first(smallest: Array) -> int:
+    """The first of the smallest numbers, of those that rounding makes differ."""
+    return int(np.argmax(smallest <= smallest.min() + ALIKE))
 
 
 def _determinant(jacobians: Array, singular: Array) -> Array:
@@ -155,7 +161,7 @@ def nearest(jacobians: Array) -> NearestSingularity:
         near = np.maximum.accumulate(np.where(np.isfinite(singular[:, 0]), np.arange(len(j)), 0))[left]
         bound[left] = singular[near, -1] - np.sqrt(np.sum((j[left] - j[near]) ** 2, axis=(1, 2)))
         sign[left] = sign[near]
-    worst = int(np.argmin(singular[:, -1]))
+    worst = _first(singular[:, -1])
     smallest = float(singular[worst, -1])
     return NearestSingularity(
         worst=worst,

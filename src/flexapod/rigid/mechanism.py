@@ -2,9 +2,11 @@
 
 from __future__ import annotations
 
+from collections.abc import Iterator
 from typing import NamedTuple
 
 import numpy as np
+from numpy.typing import NDArray
 
 from flexapod.errors import ComputationError, InputError
 from flexapod.rigid.closures import Closed, Motion, Task, close, move
@@ -12,8 +14,11 @@ from flexapod.rigid.kinematics import BETA_LIMIT, NO_LENGTH, LegState
 from flexapod.rigid.laws import Law
 from flexapod.rigid.limbs import ABSENT, COORDINATES, DRIVEN, FREE, Limbs
 from flexapod.rigid.screws import screws
-from flexapod.rigid.trajectory import Poses, poses_from_coordinates
+from flexapod.rigid.trajectory import Poses, places, poses_from_coordinates
 from flexapod.typing import Array, Mask
+
+BEYOND, NEAR = 1000.0, 2.0  # lengths of a leg: farther away no path leads; first look at how far its legs can follow
+LOOKS = 33  # instants of each
 
 CHI, BETA, L, GAMMA2 = (COORDINATES.index(name) for name in ("chi", "beta", "l", "gamma2"))
 
@@ -212,6 +217,43 @@ def refuse_lost(limbs: Limbs, found: Closed, t: Array | None = None) -> None:
         allowed="poses that all legs can take",
         next_step="Reduce the motion; of a robot with fewer than six motions command only those (motion.independent)",
     )
+
+
+def refuse_far(limbs: Limbs, law: Law, pivot: Array, t: Array) -> None:
+    """Refuse a path that leads beyond all robots: some length is not what it was meant to be.
+
+    Raises
+    ------
+    InputError
+    """
+    size, way = _ways_of(limbs, law, pivot)
+    k = int(np.argmax(way))
+    if not way[k] <= BEYOND * size:
+        raise InputError(
+            f"leads the platform {way[k]:.4g} m away from home at t = {t[k]:.6g} s, and the robot's legs are "
+            f"{size:.4g} m long",
+            key="motion",
+            allowed=f'at most {BEYOND:g} times that; numbers are in m and rad, text has its unit: "8 mm"',
+            next_step="Look at amplitudes and pivot of the motion",
+        )
+
+
+def first_looks(limbs: Limbs, law: Law, pivot: Array) -> Iterator[NDArray[np.intp]]:
+    """Indices of few instants of a path that leads far, at which to see whether legs follow, ever farther from home.
+
+    None of paths near home, nor of legs UPS, which are known in closed form.
+    """
+    size, way = _ways_of(limbs, law, pivot)
+    radius = NEAR * size
+    while not limbs.plain and radius < way.max(initial=0.0):
+        yield np.unique(np.linspace(0, np.argmax(way > radius), LOOKS).astype(np.intp))
+        radius *= 2
+
+
+def _ways_of(limbs: Limbs, law: Law, pivot: Array) -> tuple[float, Array]:
+    """The size of a robot [m], and how far away from home a path leads (T,) [m]."""
+    place = places(Poses.at_rest(limbs.position, limbs.rotation), law, pivot)[0]
+    return max(float(limbs.home[:, L].mean()), limbs.L_c), np.linalg.norm(place - limbs.position, axis=1)
 
 
 _NEXT = {

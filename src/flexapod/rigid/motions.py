@@ -7,6 +7,7 @@ from collections.abc import Sequence
 import numpy as np
 
 from flexapod.errors import InputError
+from flexapod.model.chain import chain_of
 from flexapod.model.motion import AXES, CsvMotion, Motion, WaypointMotion
 from flexapod.rigid.limbs import DRIVEN, Limbs
 from flexapod.rigid.mobility import Mobility, Posture, displaced, mobility, nearly_redundant
@@ -189,7 +190,13 @@ def _loose_words(limbs: Limbs, home: Mobility, near: list[Mobility], at: Posture
     names = ", ".join(motion_names(limbs, home.locked_platform, at))
     here = f": singular at {'home' if at is None else 'this pose'}"
     only = all(m.locked_platform.shape[1] < loose for m in near)
-    return [f"with all drives locked it still has {_count(loose, 'motion')}: {names}{here * only}"]
+    bends = ", but for what its welds and flexures (F) hold: on the rigid path these turn freely" * _bends(limbs)
+    return [f"with all drives locked it still has {_count(loose, 'motion')}: {names}{here * only}{bends}"]
+
+
+def _bends(limbs: Limbs) -> bool:
+    """Whether legs are welded to the base or to the platform, or held by flexures."""
+    return any("F" in (chain_of(chain).base, chain_of(chain).platform) for chain in limbs.chain)
 
 
 def refuse_loose(limbs: Limbs) -> None:
@@ -202,10 +209,11 @@ def refuse_loose(limbs: Limbs) -> None:
     """
     home = mobility(limbs)
     if home.locked_platform.shape[1]:
-        near = [mobility(limbs, at) for at in displaced(limbs)]
+        near, bends = [mobility(limbs, at) for at in displaced(limbs)], _bends(limbs)
         raise InputError(
             _loose_words(limbs, home, near)[0],
             key="robot.type",
-            allowed="drives that hold every motion of the platform",
-            next_step="Drive more legs, or turn the axes of their joints",
+            allowed="drives that hold every motion of the platform" + " without welds and flexures" * bends,
+            next_step="Drive more legs, or turn the axes of their joints"
+            + ("; a path needs that. `flexapod modes` and `fx.stiffness` take the robot as it is" if bends else ""),
         )

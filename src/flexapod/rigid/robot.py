@@ -2,12 +2,12 @@
 
 from __future__ import annotations
 
-from collections.abc import Callable
+from collections.abc import Callable, Iterator
 from functools import lru_cache, wraps
 from typing import TYPE_CHECKING, TypeVar, cast
 
 import numpy as np
-from numpy.typing import ArrayLike
+from numpy.typing import ArrayLike, NDArray
 
 from flexapod.errors import InputError
 from flexapod.rigid import dynamics, forward, jacobian, kinematics, mechanism, motions, trajectory, workspace
@@ -135,12 +135,25 @@ def poses(robot: Robot, motion: Motion, t: ArrayLike) -> Poses:
     InputError
         The robot does not have a motion that is asked for, or cannot take a pose.
     """
-    legs = rigid_limbs(robot)
+    legs, t = rigid_limbs(robot), trajectory.instants(t)
+    law = trajectory.coordinates(motion, t)
+    mechanism.refuse_far(legs, law, motion.pivot, t)
     if legs.guides:
-        t = trajectory.instants(t)
-        free = motions.commanded(legs, motion, _mobility(robot))
-        return _following(robot, free, trajectory.coordinates(motion, t), motion.pivot, t)
+        return _following(robot, motions.commanded(legs, motion, _mobility(robot)), law, motion.pivot, t)
     return trajectory.sample(home_pose(robot), motion, t)
+
+
+def first_looks(robot: Robot, motion: Motion, t: Array) -> Iterator[NDArray[np.intp]]:
+    """Indices of few instants `t` (T,) at which to see first whether legs follow; see `mechanism.first_looks`.
+
+    Raises
+    ------
+    InputError
+        The motion leads beyond all robots.
+    """
+    legs, law = rigid_limbs(robot), trajectory.coordinates(motion, t)
+    mechanism.refuse_far(legs, law, motion.pivot, t)
+    return mechanism.first_looks(legs, law, motion.pivot)
 
 
 def places(robot: Robot, motion: Motion, t: ArrayLike) -> tuple[Array, Array]:

@@ -135,7 +135,8 @@ class _Run:
             why = f"rounding leaves {ROUNDING / self.scales[0]:.1g} of the largest value"
             failure = self._out_of_reach(begin, why)
         step = (end - begin) / max(self.steps, 1)
-        return Chunk(recording=recording, error=self.within.spent, step=step), flow, failure
+        chunk = Chunk(recording=recording, error=self.within.spent, step=step, force_error=self.within.thrust)
+        return chunk, flow, failure
 
     def _advance(self, flow: Flow, stops: Sequence[float], done: int, to: int) -> Advanced:
         """Advance to the last of `stops`; where many steps lie between outputs, with looks at the scales on the way."""

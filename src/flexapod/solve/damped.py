@@ -1,4 +1,6 @@
-"""Damping ratios of damped modes, Eqs. (T7.4)-(T7.5), (T7.23)."""
+"""Damped modes without what has neither mass nor damper: damping ratios and poles, Eqs. (T7.4)-(T7.5), (T7.23)."""
+
+from dataclasses import dataclass
 
 import numpy as np
 from numpy.typing import NDArray
@@ -6,15 +8,59 @@ from numpy.typing import NDArray
 from flexapod.bases.eigen import finite
 from flexapod.typing import Array
 
-__all__ = ["OSCILLATES", "damping_ratios", "poles"]
+__all__ = ["OSCILLATES", "Reacting", "damping_ratios", "poles", "reacting"]
 
 OSCILLATES = 1e-9  # imaginary part over size of an eigenvalue: less is a pair of real ones, split by rounding
+
+
+@dataclass(frozen=True, kw_only=True)
+class Reacting:
+    """What of m modes of unit stiffness takes time to move: r modes with mass, and d motions with a damper alone.
+
+    ``basis`` (m, r + d): these by the modes, those with mass first; ``D`` (r + d, r + d): damping [s];
+    ``slowness`` (r + d, r): one over the frequencies, by the ``rate`` [rad/s] of the lowest of them; 0 without mass.
+    """
+
+    basis: Array
+    D: Array
+    slowness: Array
+    rate: float
+
+    @property
+    def matrix(self) -> Array:
+        """Matrix of order 2 r + d, regular, with the eigenvalues rate/mu, Eq. (T7.23)."""
+        count = self.slowness.shape[1]
+        return np.block([[-self.rate * self.D, -self.slowness], [self.slowness.T, np.zeros((count, count))]])
+
+
+def reacting(omega: Array, D: Array) -> Reacting:
+    """Modes without what has neither mass nor damper: that is at rest, whatever the others do, Eq. (T7.23).
+
+    ``omega``, ``D``: as of `damping_ratios`.
+
+    Raises
+    ------
+    ComputationError
+        A number in it is not finite.
+    """
+    finite(D)
+    mass = np.isfinite(omega)
+    damper, shapes = np.linalg.eigh(D[np.ix_(~mass, ~mass)])
+    shapes = shapes[:, damper > np.finfo(float).eps * len(omega) * np.linalg.norm(D)]
+    count = int(mass.sum())
+    basis = np.zeros((len(omega), count + shapes.shape[1]))
+    basis[mass, np.arange(count)], basis[~mass, count:] = 1.0, shapes
+    rate = float(omega[mass].min(initial=np.inf)) if count else 1.0
+    slowness = np.zeros((basis.shape[1], count))
+    slowness[:count] = np.diag(rate / omega[mass])
+    return Reacting(basis=basis, D=basis.T @ D @ basis, slowness=slowness, rate=rate)
 
 
 def damping_ratios(omega: Array, D: Array) -> Array:
     """-Re/|.| of the damped eigenvalue that shares most of each undamped shape, Eqs. (T7.4)-(T7.5), (m,).
 
-    D_jj omega_j / 2 for a mode of which no oscillating eigenvalue has at least half (overdamped or evenly mixed).
+    D_jj omega_j / 2 for a mode of which no oscillating eigenvalue has at least half (overdamped or evenly mixed), 0 of
+    what has no mass.
 
     Parameters
     ----------
@@ -28,32 +74,24 @@ def damping_ratios(omega: Array, D: Array) -> Array:
     ComputationError
         A number in it is not finite.
     """
-    finite(D)
-    size = len(omega)
-    ratio = 0.5 * np.diag(D) * np.where(np.isfinite(omega), omega, 0.0)
-    if not D.any():
+    modes, mass = reacting(omega, D), np.isfinite(omega)
+    ratio = 0.5 * np.diag(D) * np.where(mass, omega, 0.0)
+    if not D.any() or not mass.any():
         return ratio
     # (T7.23)  Eigenvalues 1/mu: the slow modes come out right however fast a light part is.
-    slowness = np.diag(omega.min() / omega)
-    values, shapes = np.linalg.eig(_slow(omega, D))
+    values, shapes = np.linalg.eig(modes.matrix)
     oscillating = np.imag(values) < -OSCILLATES * np.abs(values)
-    values, share = values[oscillating], slowness @ np.abs(shapes[:size, oscillating])
+    values, share = values[oscillating], modes.slowness.T @ np.abs(shapes[: len(modes.D), oscillating])
     share /= np.linalg.norm(share, axis=0)
+    at = np.flatnonzero(mass)
     while share.size and share.max() > 0.5:  # the clearest pair first
         mode, column = np.unravel_index(share.argmax(), share.shape)
-        ratio[mode] = -np.real(values[column]) / np.abs(values[column])
+        ratio[at[mode]] = -np.real(values[column]) / np.abs(values[column])
         share[mode, :] = share[:, column] = 0
     return ratio
 
 
 def poles(omega: Array, D: Array) -> NDArray[np.complex128]:
-    """Eigenvalues [1/s] of damped modes as of `damping_ratios`, without those of what has no mass nor damping."""
-    finite(D)
-    values = np.linalg.eigvals(_slow(omega, D))
-    return omega.min() / values[np.abs(values) > np.finfo(float).eps]
-
-
-def _slow(omega: Array, D: Array) -> Array:
-    """Matrix with the eigenvalues omega_1/mu."""
-    slowness = np.diag(omega.min() / omega)
-    return np.block([[-omega.min() * D, -slowness], [slowness, np.zeros_like(slowness)]])
+    """Eigenvalues [1/s] of damped modes as of `damping_ratios`: two of each mass, one of each damper beside them."""
+    modes = reacting(omega, D)
+    return (modes.rate / np.linalg.eigvals(modes.matrix)).astype(np.complex128)

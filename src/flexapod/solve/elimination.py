@@ -108,6 +108,7 @@ def open_borders(bases: list[LegBases]) -> bool:
         size = np.maximum(np.abs(D).max(axis=-1, initial=0.0), np.abs(Y).max(axis=-1, initial=0.0))[..., None]
         if not np.isfinite(size).all():
             continue
+        size = np.where(size > 0, size, 1.0)  # a pivot that nothing moves: the strut of a fixed platform
         left, share, _ = np.linalg.svd(D / size)
         rank = (share > YIELDS).sum(axis=-1)
         rows += [u[:, k:].T @ (y / s) for u, k, y, s in zip(left, rank, Y, size, strict=True)]

@@ -10,7 +10,9 @@ from flexapod.typing import Array, Mask
 __all__ = ["cholesky_each", "count_real", "mass_factor", "natural"]
 
 ROUNDED = 1e-10  # eigenvalue of a mass matrix with a unit diagonal that may be rounding
-LIGHTEST = 1e-9  # lowest frequency over the highest that counts: beyond, a mass is lost in rounding
+NO_MASS = 1e-12  # share of its mass that what others do leaves of a coordinate: less is rounding
+LIGHTEST = 1e-10  # root of a mass over that of what moves with it: less is rounding
+SLOW = 1e-6  # lowest frequency over the highest: above, all modes have mass
 
 
 def cholesky_each(A: Array) -> tuple[Array, Mask]:
@@ -31,15 +33,36 @@ def mass_factor(M: Array, *, carried: bool = False) -> tuple[Array, Mask]:
     size, however much heavier other bodies are. `carried`: a base moves the body in ways in which it moves by itself,
     so that the matrix is singular.
     """
-    massless = np.diagonal(M, axis1=-2, axis2=-1) == 0
     if carried:
-        scale = np.sqrt(np.where(massless, 1.0, np.abs(np.diagonal(M, axis1=-2, axis2=-1))))
-        values, vectors = np.linalg.eigh(M / scale[..., None] / scale[..., None, :])
-        root = np.sqrt(np.maximum(values, 0.0))[..., None] * vectors.swapaxes(-1, -2) * scale[..., None, :]
-        return root, values[..., 0] > -ROUNDED
+        return _by_pivots(M)
+    massless = np.diagonal(M, axis1=-2, axis2=-1) == 0
     filled = M + massless[..., None] * np.eye(M.shape[-1])
     root, positive = cholesky_each(filled)
     return root.swapaxes(-1, -2) * ~massless[..., None], positive
+
+
+def _by_pivots(M: Array) -> tuple[Array, Mask]:
+    """Factors of singular mass matrices, the coordinates that keep most of their mass first, zeros from the rank on."""
+    left, U = M.copy(), np.zeros(M.shape)
+    whole = np.abs(np.diagonal(M, axis1=-2, axis2=-1))
+    per_whole = np.divide(1.0, whole, out=np.zeros(whole.shape), where=whole > 0)
+    for k in range(M.shape[-1]):
+        share = np.diagonal(left, axis1=-2, axis2=-1) * per_whole
+        at = share.argmax(axis=-1)[..., None]
+        real = np.take_along_axis(share, at, axis=-1) > NO_MASS
+        row = np.take_along_axis(left, at[..., None], axis=-2)[..., 0, :]
+        pivot = np.where(real, np.take_along_axis(row, at, axis=-1), 1.0)
+        U[..., k, :] = np.where(real, row, 0.0) / np.sqrt(pivot)
+        left -= U[..., k, :, None] * U[..., k, None, :]
+    return U, (np.diagonal(left, axis1=-2, axis2=-1) * per_whole).min(axis=-1, initial=0.0) > -ROUNDED
+
+
+def mass_rank(U: Array) -> Array:
+    """Rank (p,) of mass matrices U^T U, (p, rows, r): how many motions have mass, Eq. (T7.22)."""
+    size = np.linalg.norm(U, axis=1, keepdims=True)
+    moving = size > np.finfo(float).eps * U.shape[1] * size.max(axis=-1, keepdims=True, initial=0.0)
+    alike = np.divide(U, size, out=np.zeros(U.shape), where=moving)
+    return np.asarray((np.linalg.svd(alike, compute_uv=False) > LIGHTEST).sum(axis=-1))
 
 
 def natural(U: Array, K: Array, *, shapes: bool) -> tuple[Array, Array, Mask]:
@@ -62,8 +85,8 @@ def natural(U: Array, K: Array, *, shapes: bool) -> tuple[Array, Array, Mask]:
     Notes
     -----
     With K = L L^T and the singular values s of U L^-T (T7.21) the frequencies are 1 / s: the lowest ones are right to
-    rounding, the others to rounding times their multiple of it. Above 1 / `LIGHTEST` of the lowest there is no mass to
-    speak of and no mode (T7.22): inf, or NaN where K is not positive. Times its frequency a shape has unit mass.
+    rounding, the others to rounding times their multiple of it. There are as many as the rank of the mass matrix
+    (T7.22); the others are inf, and all NaN where K is not positive. Times its frequency a shape has unit mass.
     """
     L, positive = cholesky_each(K)
     L = np.where(positive[:, None, None], L, np.eye(K.shape[-1]))
@@ -73,7 +96,10 @@ def natural(U: Array, K: Array, *, shapes: bool) -> tuple[Array, Array, Mask]:
         left, sizes, _ = np.linalg.svd(X, full_matrices=False)
     else:
         left, sizes = np.zeros((*K.shape[:2], 0)), np.linalg.svd(X, compute_uv=False)
-    real = sizes > LIGHTEST * sizes[:, :1]  # (T7.22)
+    real = sizes > SLOW * sizes[:, :1]
+    if (light := ~real.all(axis=1)).any():
+        real[light] = np.arange(sizes.shape[1]) < mass_rank(U[light])[:, None]  # (T7.22)
+    real &= sizes > 0
     omega = np.divide(1.0, sizes, out=np.full(sizes.shape, np.inf), where=real)
     omega[~positive] = np.nan
     z = np.asarray(np.linalg.solve(L.swapaxes(1, 2), left), dtype=np.float64)

@@ -10,7 +10,7 @@ from flexapod.model import ForceDrive, Leg, Robot
 from flexapod.solve.friction import numbers, sliding
 from flexapod.solve.many import matrices_at_rest
 from flexapod.solve.modes import LockedPoses
-from flexapod.solve.springs import before_piston
+from flexapod.solve.springs import before_piston, twist_share
 from flexapod.solve.stiffness import displacement, tool_motion
 from flexapod.typing import Array
 
@@ -68,8 +68,8 @@ def before_friction(leg: Leg, length: Array) -> dict[str, Array]:
     if isinstance(leg.drive, ForceDrive) and leg.drive.feedback is not None and leg.drive.feedback.stiffness:
         loop = np.full_like(length, 1 / leg.drive.feedback.stiffness)
     if leg.screw is not None:  # the twist alone gives; what all have together is shared by compliance
-        whole = np.sum(list(found.values()), axis=0)
-        found = {name: softness / whole * found["twist"] for name, softness in found.items()}
+        share = twist_share(leg, length) if found else 0.0
+        found = {name: softness * share for name, softness in found.items()}
     return found if loop is None else found | {"drive": loop}
 
 

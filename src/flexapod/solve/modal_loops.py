@@ -8,6 +8,7 @@ import numpy as np
 from numpy.typing import NDArray
 
 from flexapod.bases.eigen import finite
+from flexapod.solve.damped import reacting
 from flexapod.typing import Array
 from flexapod.words import text
 
@@ -41,26 +42,30 @@ class ModalLoops:
         return np.asarray(self.rotor @ (asked / (1 + s * lag) - (k + s * c) * self.rotor.T), dtype=np.complex128)
 
     def eigen(self, omega: Array, D: Array) -> tuple[Complex, Complex]:
-        """Eigenvalues [1/s], and their shapes (r, any), of modes with damping (r, r), Eq. (T23.59)."""
-        finite(D)
-        r, count = self.rotor.shape
-        z, y = slice(0, r), slice(r, 2 * r)
-        force, total = slice(2 * r, 2 * r + count), slice(2 * r + count, 2 * (r + count))
-        slowness, unit, sums = np.diag(omega.min() / omega), np.sqrt(self.stiffness), self.integral > 0
-        A, E = np.zeros((2, 2 * (r + count), 2 * (r + count)))
-        rate, b, seen = omega.min(), self.rotor * unit, self.measured * unit  # times are in 1 over the first frequency
-        A[z, z], A[z, force] = np.eye(r) - b @ b.T, -b
-        E[z, z] = rate * (D - self.rotor * self.damping @ self.rotor.T)
-        E[z, y], E[y, z], A[y, y] = slowness, -slowness, np.eye(r)
-        A[force, z], A[force, force], A[force, total] = seen.T, np.eye(count), -np.diag(sums * 1.0)
-        E[force, z] = rate * (self.damping / unit * self.damped).T
-        E[force, force] = rate * np.diag(self.lag)
-        A[total, z] = (self.integral / unit * self.measured).T / rate
-        A[total, total], E[total, total] = np.diag(~sums * 1.0), np.diag(sums * 1.0)
+        """Eigenvalues [1/s], and their shapes (r, any), of modes with damping (r, r), Eq. (T23.59).
+
+        A force that comes at once is no unknown; a rotor has mass, so that what has none is as without loops.
+        """
+        modes, (late, sums) = reacting(omega, D), (self.lag > 0, self.integral > 0)
+        (s, r), rate = modes.slowness.shape, modes.rate  # times are in 1 over the first frequency
+        z, y = slice(0, s), slice(s, s + r)
+        force, total = slice(s + r, s + r + late.sum()), slice(s + r + late.sum(), s + r + late.sum() + sums.sum())
+        b, seen, damped = (modes.basis.T @ x for x in (self.rotor, self.measured, self.damped))
+        A, E = np.zeros((2, total.stop, total.stop))
+        asked, asked_rate, summed = self.stiffness * seen, self.damping * damped, np.eye(len(sums))[:, sums]
+        at_once = b * ~late
+        A[z, z] = np.eye(s) - b * self.stiffness @ b.T + at_once @ asked.T
+        E[z, z] = rate * (modes.D - b * self.damping @ b.T + at_once @ asked_rate.T)
+        unit = np.sqrt(self.stiffness)  # of forces and of what is summed, by the loops
+        A[z, force], A[z, total] = -(b * unit)[:, late], -(at_once * unit) @ summed
+        E[z, y], E[y, z], A[y, y] = modes.slowness, -modes.slowness.T, np.eye(r)
+        A[force, z], E[force, z] = (asked / unit)[:, late].T, rate * (asked_rate / unit)[:, late].T
+        A[force, force], A[force, total] = np.eye(late.sum()), -summed[late]
+        E[force, force] = rate * np.diag(self.lag[late])
+        A[total, z], E[total, total] = (self.integral / unit * seen)[:, sums].T / rate, np.eye(sums.sum())
         finite(A, E)
         values, shapes = np.linalg.eig(-np.linalg.solve(A, E))
-        slow = np.abs(values) > np.finfo(float).eps
-        return rate / values[slow], shapes[z, slow]
+        return (rate / values).astype(np.complex128), (modes.basis @ shapes[z]).astype(np.complex128)
 
 
 def growth(values: Complex) -> float:

@@ -8,7 +8,7 @@ import numpy as np
 from flexapod import rigid
 from flexapod.bases.eigen import finite
 from flexapod.errors import ComputationError, InputError
-from flexapod.mechanics.layout import LEG_PARAMETERS, columns
+from flexapod.mechanics.layout import LEG_PARAMETERS, columns, leg_parameters
 from flexapod.model import Load, Robot, Simulation
 from flexapod.rigid.limbs import DRIVEN, FREE
 from flexapod.solve.damped import OSCILLATES, damping_ratios
@@ -24,6 +24,7 @@ from flexapod.solve.reduction import expanded, hub_motion, null_space_of_borders
 from flexapod.solve.rest import RestLoad, rest_commands, rest_load
 from flexapod.solve.rigid_motion import rigid_rest
 from flexapod.solve.robot_system import robot_system, smooth
+from flexapod.solve.springs import springs_along
 from flexapod.solve.system import Index, System
 from flexapod.typing import Array, Mask
 
@@ -145,6 +146,22 @@ def refuse_pure_force(robot: Robot, what: str) -> None:
             )
 
 
+def refuse_taut(robot: Robot, simulation: Simulation) -> None:
+    """Raise InputError if a leg bends between two fixed points and cannot stretch: it would have to get longer."""
+    if not robot.platform_fixed or not simulation.lateral_shapes:
+        return
+    for i, leg in enumerate(robot.legs, start=1):
+        held = leg.drive.holds and leg.driven in ("stroke", "carriage") if leg.driven else leg.strut is not None
+        gives = leg.gives or springs_along(leg) or leg.base_joint.flexes or leg.platform_joint.flexes
+        if held and not gives and not simulation.axial_shapes(leg.axial_modes):
+            raise InputError(
+                f"leg {i} is held at both ends and cannot stretch: it could not bend either, but for getting longer",
+                key="leg.axial_modes",
+                value=leg.axial_modes,
+                allowed="1 to 4; or a drive that gives way (servo)",
+            )
+
+
 def _held_by_others(robot: Robot, pure: Mask) -> bool:
     """Whether the drives that hold a position leave the platform no motion at home."""
     legs = rigid.rigid_limbs(robot)
@@ -166,6 +183,7 @@ def locked_poses(
         A pure force drive.
     """
     refuse_pure_force(robot, "a static equilibrium")
+    refuse_taut(robot, simulation)
     robot = robot if robot.base_motion is None else robot.replace(base_motion=None)  # poses are those of a base at rest
     system = robot_system(smooth(robot), simulation.replace(play="static"), at_rest=True, evaluated=True)
     start, acts = rigid_rest(system, robot, path), rest_load(system, robot, path, load, time)
@@ -242,10 +260,23 @@ def no_mass(system: System, q: Array) -> ComputationError:
         "a leg bends so far under its load that shapes of small slopes no longer describe its motion",
         "Reduce the load or the weight across the legs, make them stiffer, or take fewer shapes (simulation.modes).",
     )
-    if short.any():
+    if (light := _turns_for_nothing(system)).any():
+        what = f"the cylinder of leg {int(light.argmax()) + 1} has no mass, and turns in its guide beside its piston"
+        next_step = "Give leg.cylinder a mass and an inertia."
+    elif short.any():
         what = f"the piston of leg {int(short.argmax()) + 1} is shorter than what the leg has outside the cylinder"
         next_step = "Give leg.piston.length at least the largest leg length less leg.cylinder.mouth."
     return ComputationError(f"the mass matrix is not positive: {what}", next_step=next_step)
+
+
+def _turns_for_nothing(system: System) -> Mask:
+    """Legs (n,) whose cylinder has no inertia about its joint, and a piston that only bushings take along."""
+    if system.kernel.shapes.guide is None:
+        return np.zeros(system.legs, dtype=bool)
+    layout = leg_parameters(system.kernel.shapes)
+    names = ("cylinder_mass", "cylinder_com", "cylinder_inertia", "guide_stiffness")
+    mass, com, inertia, guide = (system.leg_p[:, columns(layout, name)] for name in names)
+    return np.asarray((guide > 0).all(axis=1) & ((inertia + mass * com**2)[:, 0] == 0))
 
 
 def modes_of(locked: LockedPoses, *, shapes: bool = False, loops: bool = True) -> ManyModes:
@@ -344,7 +375,7 @@ def _mass_factor(system: System, bases: list[LegBases], m: RestMatrices) -> tupl
     payload, real_payload = mass_factor(m.payload_M)
     moving = (of_legs @ motion[:, : legs * n].reshape(p, legs, n, size)).reshape(p, legs * n, size)
     U = np.concatenate([moving, payload @ hub_motion(system, motion)], axis=1)
-    positive = real.all(axis=1) & real_payload
+    positive = real.all(axis=1) & real_payload & ~_turns_for_nothing(system).any()
     return np.where(positive[:, None, None], U, 0.0), positive
 
 

@@ -15,7 +15,7 @@ from flexapod.solve.springs import (
     oil_shares,
     softening,
     springs_along,
-    twist_share,
+    twist_with_length,
     viscous,
 )
 from flexapod.typing import Array
@@ -231,7 +231,7 @@ def _loop(leg: Leg, *, at_rest: bool) -> dict[str, object]:
         return found
     found |= {"rotor_stiffness": 0.0, "rotor_damping": 0.0}
     if at_rest:
-        return found | {"series_stiffness": 0.0, "drive_friction_at_stroke": 1.0}
+        return found | {"series_stiffness": 0.0, "drive_friction_at_stroke": 1.0, "drive_friction_twist": (0.0, 0.0)}
     found |= {"loop_rate_at_rotor": float(screw.encoder.rate == "rotor"), "loop_stiffness": screw.loop_spring[0]}
     late = {"loop_lag": screw.lag, "loop_at_once": 0.0} if screw.lag else {}
     return found | {"loop_damping": screw.loop_spring[1]} | late
@@ -247,16 +247,21 @@ def _friction(leg: Leg, length: float) -> dict[str, object]:
         numbers = NO_FRICTION if joint.friction is None else joint.friction.numbers
         found[f"{name}_friction"] = (*numbers, float(letter == "S"))
     drive, screw = leg.drive.friction, leg.screw
-    numbers, at_stroke = NO_FRICTION if drive is None else drive.numbers, 1.0
+    numbers, twist = NO_FRICTION if drive is None else drive.numbers, (0.0, 0.0)
     if screw is not None:
         per_turn = np.array([1 / screw.per_turn, 0.0, screw.per_turn, 1.0, 1 / screw.per_turn, screw.per_turn**-2, 1.0])
-        numbers, at_stroke = tuple(numbers * per_turn), twist_share(leg, length)
-    return found | {"drive_friction": (*numbers, 0.0), "drive_friction_at_stroke": at_stroke}
+        numbers, twist = tuple(numbers * per_turn), twist_with_length(leg, length)
+    return found | {
+        "drive_friction": (*numbers, 0.0),
+        "drive_friction_at_stroke": float(screw is None),
+        "drive_friction_twist": twist,
+    }
 
 
 def _inside(leg: Leg, per_loss: float) -> dict[str, object]:
     """Bushings of the piston and bending of the cylinder; without them a piece of no mass that never ends."""
     guide, cylinder, piston = leg.guide, leg.cylinder, leg.piston
+    section = cylinder.section
     EI, _, rhoA = cylinder.beam
     body = cylinder.body or Mounted(mass=0.0)
     springs = [] if guide is None else [guide.gland, guide.head]
@@ -270,6 +275,7 @@ def _inside(leg: Leg, per_loss: float) -> dict[str, object]:
         "cylinder_length": cylinder.mouth if EI else 1.0,
         "cylinder_EI": EI,
         "cylinder_rhoA": rhoA,
+        "cylinder_turning": rhoA * section.second_moment / section.area if section is not None else 0.0,
         "mounted_mass": body.mass,
         "mounted_com": body.com,
         "mounted_inertia": body.inertia,

@@ -65,8 +65,9 @@ class Problem:
 
 @dataclass(frozen=True, kw_only=True)
 class Chunk:
-    """Piece of a result: recording, largest estimated relative error, step used."""
+    """Piece of a result: recording, largest estimated relative error, step used, estimated error of forces [N]."""
 
     recording: Recording
     error: float
     step: float
+    force_error: float | None = None

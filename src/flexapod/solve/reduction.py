@@ -104,7 +104,8 @@ def null_space_of_borders(bases: list[LegBases]) -> Array | None:
     if not rows:
         return None
     G = np.stack(rows, axis=1)
-    G = G / np.linalg.norm(G, axis=-1, keepdims=True)
+    length = np.linalg.norm(G, axis=-1, keepdims=True)
+    G = G / np.where(length > 0, length, 1.0)  # a pivot that nothing moves needs no row
     _, size, right = np.linalg.svd(G, full_matrices=True)
     rank = int((size > 1e-9).sum(axis=-1).max(initial=0))
     return np.asarray(right[:, rank:].swapaxes(1, 2), dtype=np.float64)

@@ -73,7 +73,7 @@ def shared(system: System, recording: Recording, table: Array) -> Recording:
         raise ComputationError(
             f"rigid legs do not fit at t = {recording.time[k]:.6g} s: the coordinate {names[system.ports[port]]} of "
             f"leg {leg + 1} misses what holds it by {gap[k, leg, port]:.2g}",
-            next_step="Give a fidelity whose legs can yield, or check axes and lengths of the legs.",
+            next_step="Give a fidelity whose legs can yield, axial_modes above 0, or check axes and lengths of legs.",
         )
     x = RestStates(q=recording.q, pose=recording.pose, lam=recording.lam, drive=recording.drive)
     found = least_energy(system, x, matrices_at_rest(system, x, np.zeros(6)))

@@ -8,6 +8,7 @@ import numpy as np
 from flexapod import rigid
 from flexapod.errors import ComputationError, InputError
 from flexapod.integration import GeneralizedAlpha
+from flexapod.mechanics.layout import columns
 from flexapod.model import ForceDrive, Robot, Study
 from flexapod.rigid.kinematics import BETA_LIMIT
 from flexapod.rigid.rotations import matrix
@@ -33,6 +34,7 @@ from flexapod.solve.tables import Law, robot_law
 from flexapod.typing import Array
 
 AHEAD = 2000  # outputs whose rigid places are made at once
+ROUNDING = 1e-12  # of the sum of what rounding makes along the legs [m]
 
 
 @dataclass(frozen=True, kw_only=True)
@@ -230,23 +232,35 @@ class _Path:
 
 
 class _Measure:
-    """Deviation of the payload (CoM, and rotation at the joints' radius) and the lateral amplitudes of a recording."""
+    """Deviation of the payload (CoM, and rotation at the joints' radius) and the lateral amplitudes of a recording.
+
+    A payload that is fixed has no deviation: there amplitudes count, those along the legs as well.
+    """
 
     def __init__(self, study: Study, system: System, path: _Path) -> None:
         shapes = system.kernel.shapes
         first = shapes.index("a")
         self.system, self.robot = system, study.robot
         self.path, self.lateral = path, slice(first, first + shapes.a.count + shapes.b.count)
+        self.along = columns(shapes.layout, "c") if shapes.axial.count else slice(0)
         self.radius = np.linalg.norm(study.robot.platform_joints, axis=1).max()
+        self.fixed = bool(system.hub_held.all())
+        self.least = ROUNDING / (study.simulation.tolerance or 1.0)  # what is smaller along a leg does not count
 
     def weights(self) -> tuple[Weight, ...]:
         """What moves the deviation, and the lateral amplitudes: these may have ten times the error."""
         still, lateral = np.zeros(self.system.n), np.zeros(self.system.n)
+        if self.fixed:
+            along, none = still.copy(), np.zeros(6)
+            lateral[self.lateral] = along[self.along] = 1.0
+            return Weight(leg=lateral, hub=none), Weight(leg=along, hub=none)
         lateral[self.lateral] = 0.1
         hub = np.array([1.0, 1.0, 1.0, self.radius, self.radius, self.radius])
         return Weight(leg=still, hub=hub), Weight(leg=lateral, hub=np.zeros(6))
 
     def __call__(self, recording: Recording) -> list[Array]:
+        if self.fixed:
+            return [recording.q[:, :, self.lateral], np.append(recording.q[:, :, self.along], self.least)]
         com, rigid_rotation = self.path.centre(recording.time)
         place, rotation = recording.pose[:, :3], matrix(recording.pose[:, 3:])
         if self.robot.base_motion is not None:

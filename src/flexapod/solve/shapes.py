@@ -55,21 +55,30 @@ def robot_shapes(robot: Robot, simulation: Simulation, legs: Limbs) -> Shapes:
         base_motion=robot.base_motion is not None,
         base_mount=robot.base_mount is not None,
         platform_mount=robot.platform_mount is not None,
-        guide=_inner(simulation.lateral_shapes) if any(leg.guide is not None for leg in robot.legs) else None,
+        guide=_inner(simulation.lateral_shapes, robot),
         cylinder=_cylinder(simulation.lateral_shapes, robot),
     )
 
 
-def _inner(count: int) -> LateralBasis:
-    """Shapes of pistons between their bushings, a short piece: half as many as outside, at most four."""
-    return bases.lateral_basis("tip-load", min(max(count // 2, 1), 4, count))
+def _bends(robot: Robot) -> bool:
+    return any(leg.cylinder.section is not None for leg in robot.legs)
+
+
+def _inner(count: int, robot: Robot) -> LateralBasis | None:
+    """Shapes of pistons between their bushings, a short piece: half as many as outside, at most four.
+
+    Of an odd number half of the next where a cylinder bends: one alone costs more than the kink at the head gains.
+    """
+    if all(leg.guide is None for leg in robot.legs):
+        return None
+    return bases.lateral_basis("tip-load", min(max((count + _bends(robot)) // 2, 1), 4, count))
 
 
 def _cylinder(count: int, robot: Robot) -> LateralBasis | None:
-    """Shapes of cylinders that bend, under forces and moments at the mouth and the head's force."""
-    if not count or all(leg.cylinder.section is None for leg in robot.legs):
+    """Shapes of cylinders that bend, the static ones under forces and moments at the mouth among them."""
+    if not count or not _bends(robot):
         return None
-    return bases.lateral_basis("tip-load", min((count + 1) // 2, 5), moment=True)
+    return bases.lateral_basis("tip-load", min((count + 1) // 2 + 1, 5), moment=True)
 
 
 def space_shapes(lateral: LateralBasis, axial_modes: int, **joints: Any) -> Shapes:

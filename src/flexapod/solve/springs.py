@@ -22,6 +22,7 @@ __all__ = [
     "softening",
     "springs_along",
     "twist_share",
+    "twist_with_length",
     "viscous",
 ]
 
@@ -152,10 +153,17 @@ def oil_shares(springs: Iterable[Spring], length: float) -> tuple[float, ...]:
     return float(softness / whole), float(softness / push.at_length(at)), float(pair[0]), float(pair[1])
 
 
-def twist_share(leg: Leg, length: float) -> float:
-    """Share of a screw's twist in the give of what stands before its piston, at a length [m], Eq. (T19.12)."""
-    softness = {x.name: float(x.at_length(np.array(length))) for x in springs_along(leg) if x.at == "nut"}
-    return softness["twist"] / sum(softness.values())
+def twist_share(leg: Leg, length: Array) -> Array:
+    """Share of a screw's twist in the give of what stands before its piston, at lengths [m], Eq. (T19.12)."""
+    softness = {x.name: x.at_length(length) for x in springs_along(leg) if x.at == "nut"}
+    return np.asarray(softness["twist"] / np.sum(list(softness.values()), axis=0))
+
+
+def twist_with_length(leg: Leg, length: float) -> tuple[float, float]:
+    """That share at a length [m] as the legs' parameters have it, and how much of it longer legs add [1/m]."""
+    share = float(twist_share(leg, np.array(length)))
+    twist = next(x for x in springs_along(leg) if x.name == "twist")
+    return share, share * twist.compliance[1] / float(twist.at_length(np.array(length)))
 
 
 def softening(springs: Iterable[Spring], length: float) -> tuple[float, float]:

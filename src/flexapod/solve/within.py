@@ -21,7 +21,7 @@ LONGEST, SHORTEST = np.inf, 1e-7  # s
 UNSOLVED = 0.05  # share of a step's error that corrections may leave, in the displacements that its rates bring
 MOST = 8192  # steps per output in a call
 #: Places in the memory, as in `Memory` of radau.c; what follows is C's own.
-TIME, STEP, SPENT, PEAK, STAGES, REJECTED, RECORDED = 0, 1, 2, 4, 6, 7, 8
+TIME, STEP, SPENT, PEAK, STAGES, REJECTED, RECORDED, THRUST = 0, 1, 2, 4, 6, 7, 8, 9
 
 
 class _Control(Structure):
@@ -32,6 +32,7 @@ class _Control(Structure):
         *[(name, c_double) for name in ("longest", "shortest", "unsolved", "output_first", "output_step")],
         *[(name, c_long) for name in ("outputs", "pieces", "terms", "most", "stops")],
         *[(name, c_void_p) for name in ("edges", "series", "stop")],
+        *[(name, c_long) for name in ("along", "springs")],
     ]
 
 
@@ -61,6 +62,7 @@ class Within:
 
     def __init__(self, system: System, series: Series, horizon: float, tolerance: float) -> None:
         self.system, self.series, self.horizon, self.tolerance = system, series, horizon, tolerance
+        self._along = _along(system)
         self._memory = np.zeros(compiled(system).radau_memory())
         self._memory[STEP] = FIRST
 
@@ -68,6 +70,11 @@ class Within:
     def spent(self) -> float:
         """Sum of the local errors, an estimate of the error: relative to what the weights say."""
         return float(self._memory[SPENT])
+
+    @property
+    def thrust(self) -> float | None:
+        """Sum of the local errors of the force along a leg, the largest of all legs [N]; None: no spring tells it."""
+        return float(self._memory[THRUST : THRUST + self.system.legs].max()) if self._along[1] else None
 
     @property
     def time(self) -> float:
@@ -107,7 +114,7 @@ class Within:
         control = _Control(
             self.horizon, self.tolerance, address(leg), address(hub), LONGEST, SHORTEST,
             UNSOLVED, *outputs, len(series), NODES, most, len(stops),
-            address(edges), address(series), address(stops),
+            address(edges), address(series), address(stops), *self._along,
         )  # fmt: skip
         before = self._memory[REJECTED]
         status = compiled(self.system).radau(
@@ -119,3 +126,11 @@ class Within:
         counters.rejected += int(self._memory[REJECTED] - before)
         rows = rows[: int(self._memory[RECORDED])]
         return Advanced(flow=new, rows=rows, status=status, leg=call.state.bad_leg, time=float(self._memory[TIME]))
+
+
+def _along(system: System) -> tuple[int, int]:
+    """Coordinates whose springs carry the force along a leg, first and number: of its stretch, else its stroke."""
+    shapes = system.kernel.shapes
+    if shapes.axial.count:
+        return shapes.index("c"), shapes.axial.count
+    return shapes.l_index, int(not system.held[:, shapes.l_index].any())

@@ -12,6 +12,7 @@ from flexapod.model import Robot
 from flexapod.study.after.inside import bushing_words
 from flexapod.study.before.estimates import section_width
 from flexapod.study.words import text
+from flexapod.ties import EQUALS, first_least
 from flexapod.typing import Array
 
 if TYPE_CHECKING:
@@ -22,7 +23,6 @@ __all__ = [
     "bodies_words",
     "body_results",
     "clearance",
-    "first_least",
     "largest_turns",
     "pairs_of_legs",
     "turns",
@@ -92,19 +92,14 @@ def bodies_words(data: Dataset) -> list[str]:
     said = []
     if "joint_margin" in data:
         left = data.joint_margin.values
-        k, leg, end = np.unravel_index(left.argmin(), left.shape)
+        k, leg, end = np.unravel_index(first_least(left), left.shape)
         said.append(left_words(float(left[k, leg, end]), leg + 1, data.end.values[end], float(data.time[k])))
     if "leg_clearance" in data:
-        k = first_least(data.leg_clearance.values)
+        k = first_least(data.leg_clearance.values, EQUALS)
         said.append(gap_words(float(data.leg_clearance[k]), data.nearest_legs.values[k], float(data.time[k])))
     if "guide_force" in data:
         said.append(bushing_words(np.linalg.norm(data.guide_force.values, axis=-1), data.time.values))
     return said
-
-
-def first_least(gap: Array) -> int:
-    """The first of the least of distances (T,), rounding aside."""
-    return int(np.argmax(gap <= gap.min() + 1e-9))
 
 
 def left_words(left: float, leg: int, end: str, time: float) -> str:

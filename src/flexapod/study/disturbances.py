@@ -21,8 +21,9 @@ from flexapod.study.before.checks import path_remarks
 from flexapod.study.names import dataset
 from flexapod.study.words import cleared
 from flexapod.threads import one_thread
+from flexapod.ties import EQUALS, first_largest
 from flexapod.typing import Array
-from flexapod.words import text
+from flexapod.words import along_axes
 
 if TYPE_CHECKING:
     from xarray import Dataset
@@ -141,17 +142,17 @@ def words_of(data: Dataset, where: str) -> tuple[str, ...]:
     """How much the tool shakes, along which axis most, by what and in which mode; doubts."""
     rms = data.vibration_rms.values
     shown = [cleared(size, rms[:3].max()) for size in rms[:3]]
-    sizes = ", ".join(f"{axis} {text(float(size), 'm', 3)}" for axis, size in zip("xyz", shown, strict=True))
+    sizes = along_axes(shown)
     most = int((rms[:3] > (1 - 1e-6) * rms[:3].max()).argmax())
     if not rms[most] > 0:
         return (f"disturbances do not move the tool {where}",)
     sources, f = data.vibration_by_source.values[:, most], data.frequency.values
     alike = np.abs(f - f[:, None]) < 1e-3 * f
     modes = alike @ data.vibration_by_mode.values[:, most]
-    culprit = int(modes.argmax())
+    culprit = first_largest(modes, EQUALS)
     return (
         f"disturbances shake the tool {where} by {sizes} (rms, relative to the base), along {'xyz'[most]} most by the "
-        f"{data.source.values[int(sources.argmax())]}, {100 * modes[culprit] / rms[most]:.0f} % of it in the mode at "
-        f"{f[culprit]:.4g} Hz ({data.kind.values[culprit]})",
+        f"{data.source.values[first_largest(sources, EQUALS)]}, {100 * modes[culprit] / rms[most]:.0f} % of it in "
+        f"the mode at {f[culprit]:.4g} Hz ({data.kind.values[culprit]})",
         *(line for line in data.attrs["warnings"].splitlines() if BEYOND in line),
     )

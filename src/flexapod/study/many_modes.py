@@ -33,7 +33,8 @@ if TYPE_CHECKING:
 
 FORMS = {
     **{name: Variable(("pose", *VARIABLES[name].dims), *VARIABLES[name][1:])
-       for name in ("frequency", "damping_ratio", "kind", "platform_shape", "leg_shape", "leg_stretch", "com_sag")},
+       for name in ("frequency", "damping_ratio", "kind", "payload_share", "leg_share",
+                    "platform_shape", "leg_shape", "leg_stretch", "com_sag")},
     "platform_position": Variable(("pose", "axis"), "m", "origin of the platform frame"),
     "platform_quaternion": Variable(("pose", "quaternion"), "1", "orientation of the platform, platform to world"),
     "pose_from_home": Variable(("pose", "coordinate"), "mixed", "rigid pose from home [m, rad]"),

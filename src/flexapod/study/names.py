@@ -155,17 +155,17 @@ _ENERGY = {
 }
 
 _STATIC = {
-    "part_stiffness": Variable(("leg", "part"), "N/m", "stiffness of a part that counts along its leg"),
-    "leg_stiffness": Variable(("leg",), "N/m", "stiffness of all parts along a leg in series"),
+    "part_stiffness": Variable(("leg", "part"), "N/m", "stiffness of a part along its leg; of a mount as if alone"),
+    "leg_stiffness": Variable(("leg",), "N/m", "stiffness along a leg: all its parts in series, mounts left out"),
     "guide_stiffness": Variable(("leg", "bushing"), "N/m", "stiffness of a bushing of the piston across the leg"),
     "guide_turning": Variable(("leg",), "N m/rad", "moment at the gland over the turn of the piston there"),
     "lost_motion": Variable(("leg",), "m", "what the leg lags by the friction of its drive, half of it to and fro"),
     "frequency": Variable(("mode",), "Hz", "undamped natural frequency"),
     "damping_ratio": Variable(("mode",), "1", "damping ratio"),
     "kind": Variable(("mode",), "1", "what mostly moves"),
-    "platform_shape": Variable(
-        ("mode", "component"), "1", "motion of the centre of mass [m] and rotation [rad] of the platform"
-    ),
+    "payload_share": Variable(("mode",), "1", "share of the payload in the kinetic energy of the mode"),
+    "leg_share": Variable(("mode", "leg"), "1", "share of the leg in the kinetic energy of the mode"),
+    "platform_shape": Variable(("mode", "component"), "1", "motion of centre of mass [m] and platform [rad]"),
     "leg_shape": Variable(
         ("mode", "leg", "direction", "station"), "1", "lateral displacement of the leg from the line of its joints [m]"
     ),

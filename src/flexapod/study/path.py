@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+from collections.abc import Iterator
 from functools import cached_property
 
 import numpy as np
@@ -52,6 +53,12 @@ class RigidPath:
     def poses(self) -> rigid.Poses:
         """Poses of the platform frame with rates and accelerations."""
         return rigid.poses(self.robot, self.study.motion, self.time)
+
+    @property
+    def first_looks(self) -> Iterator[RigidPath]:
+        """The path at few instants, ever farther from home, where it leads far; none where its poses are known."""
+        looks = () if "poses" in self.__dict__ else rigid.first_looks(self.robot, self.study.motion, self.time)
+        return (RigidPath(self.study, self.time[at]) for at in looks)
 
     @cached_property
     def base(self) -> rigid.Placed | None:

@@ -4,7 +4,7 @@ from __future__ import annotations
 
 import time
 from collections.abc import Callable, Iterable, Sequence
-from dataclasses import dataclass
+from dataclasses import dataclass, fields, replace
 from typing import TYPE_CHECKING
 
 import numpy as np
@@ -39,6 +39,7 @@ class Record:
     ``q`` (T, legs, n) leg coordinates; ``rate`` (T, legs, n') rates of those that were asked for; ``turn`` (T, 3)
     angular velocity in platform axes; ``lam``, ``drive``, ``pose``, ``reaction``, ``energy``, ``sums``, ``closure``,
     ``friction`` as in `solve.recording.Recording`.
+    ``force_error``: estimate of the error of the legs' forces [N], where steps follow a tolerance.
     ``failure``: why the integration stopped early, in words, or None; ``interrupted``: by the user.
     """
 
@@ -56,9 +57,15 @@ class Record:
     friction: Array
     smallest_step: float
     largest_error: float
+    force_error: float | None
     wall_time: float
     failure: ComputationError | None
     interrupted: bool
+
+    def part(self, which: slice) -> Record:
+        """Some of the instants."""
+        names = [field.name for field in fields(self) if isinstance(getattr(self, field.name), np.ndarray)]
+        return replace(self, **{name: getattr(self, name)[which] for name in names})
 
 
 _KEPT = ("time", "q", "lam", "drive", "pose", "reaction", "energy", "sums", "closure", "friction")
@@ -76,12 +83,13 @@ def collect(chunks: Iterable[Chunk], rates: Sequence[int], duration: float, prog
     """
     parts: list[dict[str, Array]] = []
     steps, errors, begin = [np.inf], [0.0], time.perf_counter()
-    failure, interrupted = None, False
+    failure, interrupted, of_force = None, False, None
     try:
         for chunk in chunks:
             parts.append(_kept(chunk, rates))  # whole or not at all, whenever the user interrupts
             steps.append(chunk.step)
             errors.append(chunk.error)
+            of_force = chunk.force_error
             if progress is not None:
                 progress(float(chunk.recording.time[-1]), duration)
     except ComputationError as error:
@@ -94,6 +102,7 @@ def collect(chunks: Iterable[Chunk], rates: Sequence[int], duration: float, prog
         **{name: np.concatenate([part[name] for part in parts]) for name in parts[0]},
         smallest_step=min(steps),
         largest_error=max(errors),
+        force_error=of_force,
         wall_time=time.perf_counter() - begin,
         failure=failure,
         interrupted=interrupted,

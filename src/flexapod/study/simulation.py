@@ -8,10 +8,12 @@ from typing import TYPE_CHECKING
 from flexapod import model
 from flexapod.solve.robot_march import RobotMarch, prepare
 from flexapod.study.actuator import simulate_actuator
+from flexapod.study.after.forces import force_error, force_warnings
 from flexapod.study.after.leg_results import damped_angles, drive_forms
 from flexapod.study.after.limits import drive_warnings
 from flexapod.study.after.plausibility import robot_warnings
-from flexapod.study.after.results import rigid_force_results, robot_coords, robot_results
+from flexapod.study.after.results import payload_results, rigid_force_results, robot_coords, robot_results
+from flexapod.study.after.steps import step_warnings
 from flexapod.study.arguments import LoadLike, RobotLike, StartLike, as_study, read
 from flexapod.study.attributes import attributes, march_attributes
 from flexapod.study.before.checks import check_path
@@ -41,9 +43,16 @@ class Simulated:
         path = self.path.at(self.record.time)
         return robot_results(self.study, self.march.system, self.record, path) | rigid_force_results(path)
 
+    def force_error(self) -> float | None:
+        """Estimated error of the legs' forces over their peak, where steps follow a tolerance."""
+        return force_error(self.study.robot, self.march.system, self.record)
+
     def warnings(self) -> list[str]:
         """Remarks on the study, its path and its results."""
-        found = robot_warnings(self.study.robot, self.march.system, self.record)
+        found = force_warnings(self.study, self.force_error())
+        deviation = payload_results(self.study.robot, self.path.at(self.record.time), self.record)["tool_deviation"]
+        found += step_warnings(self.study, self.record.smallest_step, deviation)
+        found += robot_warnings(self.study.robot, self.march.system, self.record)
         found += drive_warnings(self.study.robot, self.march.system, self.record)
         return [*self.study.warnings, *self.remarks, *found]
 
@@ -55,6 +64,8 @@ class Simulated:
             **march_attributes(self.study, march.counters, self.record, compiled=system.kernel.library is not None),
             "impact_energy": march.impact,
         }
+        if (error := self.force_error()) is not None:
+            attrs["estimated_force_error"] = error
         robot = self.study.robot
         return dataset(self.values(), robot_coords(robot, system, self.record), attrs, drive_forms(robot))
 

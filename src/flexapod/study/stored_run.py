@@ -35,7 +35,7 @@ TEXTS = ("flexapod_version", "study", "study_file", "study_hash", "warnings", "f
 NUMBERS = ("modes", "step", "output_step", "steps", "newton_iterations", "wall_time", "partial")
 NUMBERS_IF_THERE = (
     "tolerance", "estimated_error", "axial_modes", "time_reached", "impact_energy", "rho_inf", "compiled",
-    "factorisations", "rejected_steps",
+    "factorisations", "rejected_steps", "estimated_force_error",
 )  # fmt: skip
 TEXTS_IF_THERE = ("failure", "start", "title", "integrator")
 LARGEST = 1e100

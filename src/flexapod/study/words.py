@@ -2,21 +2,27 @@
 
 from __future__ import annotations
 
+import re
 from typing import TYPE_CHECKING
 
 import numpy as np
 from numpy.typing import ArrayLike
 
 from flexapod.typing import Array
-from flexapod.words import Scale, column, number, scale, text
+from flexapod.words import Scale, along_axes, column, number, scale, text
 
 if TYPE_CHECKING:
     from flexapod.model import Robot
 
-__all__ = ["Scale", "cleared", "cleared_lines", "column", "held", "length", "number", "scale", "text"]
+__all__ = [
+    "Scale", "along_axes", "brief", "cleared", "cleared_lines", "column", "held", "length", "number", "scale",
+    "signed", "text",
+]  # fmt: skip
 
+_SENTENCE = re.compile(r"\. (?=[A-Z])")
 NOTHING = 1e-12  # length that is rounding [m]
 ROUNDING = 1e-6  # of the largest axis: what is smaller is shown as 0
+UNSAID = 1e-4  # of a displacement: components below it go unsaid
 
 
 def cleared(values: ArrayLike, largest: float) -> Array:
@@ -31,9 +37,21 @@ def cleared_lines(lines: Array) -> Array:
     return np.stack([cleared(line, largest) for line in lines])
 
 
+def brief(remark: str) -> tuple[str, str]:
+    """The first sentence of a remark, which says it, and the others, which explain it."""
+    first, _, rest = _SENTENCE.sub("\n", remark, count=1).partition("\n")
+    return first, rest
+
+
 def length(value: float) -> str:
     """A computed length of which what is below a picometre is rounding, in words."""
     return text(value if abs(value) >= NOTHING else 0.0, "m")
+
+
+def signed(moved: Array, beside: Array | None = None) -> str:
+    """Components (3,) [m] with signs: "x -1.2 µm, z +18.5 µm"; without those that are nothing beside a displacement."""
+    size = float(np.linalg.norm(moved if beside is None else beside))
+    return along_axes(np.where(np.abs(moved) > max(UNSAID * size, NOTHING), moved, 0.0), signed=True)
 
 
 def held(robot: Robot) -> str:

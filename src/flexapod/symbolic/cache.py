@@ -10,7 +10,6 @@ import os
 import re
 import sys
 import tempfile
-import time
 from contextlib import suppress
 from dataclasses import dataclass
 from pathlib import Path
@@ -37,8 +36,6 @@ LIMIT = "FLEXAPOD_CACHE_MEGABYTES"
 LARGEST = 100_000_000
 #: Key of what the code depends on, then the beginning of the hash of the file itself.
 LIBRARY = re.compile(r"[0-9a-f]{32}-[0-9a-f]{16}\.so")
-#: Copying a library takes milliseconds; what is unfinished after an hour belongs to a process that was killed.
-ABANDONED = 3600.0
 _log = logging.getLogger("flexapod")
 
 
@@ -166,15 +163,12 @@ def _name(key: str, path: Path) -> str:
 
 
 def _make_room(folder: Path, newest: Path) -> None:
-    """Remove libraries, least recently used first, until all fit; `newest` stays. Remove what was abandoned."""
+    """Remove libraries, least recently used first, until all fit; `newest` stays."""
     files = [(path != newest, -found.st_mtime_ns, found.st_size, path) for path, found in _kernels(folder).items()]
     used = 0
     for older, _, size, path in sorted(files):
         used += size
         if older and used > size_limit():
-            _remove(path)
-    for path in folder.glob(UNFINISHED):
-        if (found := _stat(path)) and time.time() - found.st_mtime > ABANDONED:
             _remove(path)
 
 

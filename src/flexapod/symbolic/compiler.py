@@ -10,7 +10,6 @@ import platform
 import shlex
 import shutil
 import sys
-import tempfile
 import threading
 from collections.abc import Callable, Iterator, Sequence
 from contextlib import contextmanager
@@ -22,6 +21,7 @@ from pathlib import Path
 import numpy as np
 
 from flexapod.errors import ComputationError
+from flexapod.files import scratch
 from flexapod.processes import call
 from flexapod.symbolic.cache import intact_libraries, open_cache, store_library, warn_unused
 from flexapod.typing import Array
@@ -34,7 +34,7 @@ __all__ = ["CompiledFunction", "compiled_library", "compiler"]
 #: -O1 runs straight-line code as fast as -O2 and compiles it in half the time. Without contraction of products and sums
 #: numbers do not depend on the processor.
 FLAGS = ("-O1", "-fPIC", "-shared", "-std=gnu11", "-fno-math-errno", "-fno-trapping-math", "-ffp-contract=off")
-#: Vectors as wide as the processor has them; left out where the compiler does not know it.
+#: Vectors as wide as the processor has them; left out where the compiler does not know it, or `CC` names a target.
 NATIVE = "-march=native"
 LONGEST = 300.0  # seconds that a compiler may take: usual are 2 to 20
 SILENT = 2.0  # seconds after which it is told that there is a compiler at work
@@ -148,8 +148,8 @@ def _library(
     cache = open_cache()
     if cache and (found := _first(intact_libraries(cache, name))):
         return found
-    with tempfile.TemporaryDirectory(prefix="flexapod-", ignore_cleanup_errors=True) as folder:
-        built = _build(functions(), sizes, sources, command, Path(folder))
+    with scratch() as folder:
+        built = _build(functions(), sizes, sources, command, folder)
         if cache and (found := _first(intact_libraries(cache, name))):
             return found  # another process was faster
         if cache and (stored := store_library(cache, name, built)):
@@ -242,9 +242,11 @@ def _build(functions: list, sizes: str, sources: Sequence[Path], command: list[s
         generated = [c_source(function) for function in functions]
         texts = [PRELUDE.read_text(), *generated, tail, sizes, *(path.read_text() for path in sources)]
         (folder / "kernel.c").write_text("\n".join(texts))
-        said, status = call([*line, NATIVE], folder, LONGEST)
-        if status:
-            said, status = call(line, folder, LONGEST)
+        target = [] if any(word.startswith(("-march=", "-mcpu=")) for word in command) else [NATIVE]
+        own = {"TMPDIR": str(folder)}  # of its files, too, nothing stays if it is killed
+        said, status = call([*line, *target], folder, LONGEST, own)
+        if status and target:
+            said, status = call(line, folder, LONGEST, own)
     except OSError as error:
         raise _failed(command, f"{error.filename or folder}: {error.strerror}") from None
     if status is None:

@@ -9,12 +9,21 @@
   const LEFT = "\u2003"; // as in typed.py: the text of a field that was left
   const style = document.createElement("style");
   style.textContent = `
-    :root { --mantine-color-dimmed: #5c636a !important; }
+    [data-mantine-color-scheme=light] { --mantine-color-dimmed: #5c636a !important; }
+    [data-mantine-color-scheme=dark] { --mantine-color-dimmed: #a6a7ab !important; --flexapod-soft: #b0b0b0;
+      --flexapod-good: #7fc99c; --flexapod-warning: #e0b04c; --flexapod-error: #ff8a80; }
     .mantine-Button-root { --button-bg: #005aa0 !important; --button-hover: #004a85 !important; }
     .mantine-Button-root[style*="gray"] { --button-bg: #566069 !important; --button-hover: #454d55 !important; }
     .mantine-Button-root[style*="red"] { --button-bg: #b3261e !important; --button-hover: #93201a !important; }
     .mantine-Slider-root + .mantine-NumberInput-root { display: none; }
     .flexapod-below { margin: -0.5em 0 0.4em; }
+    .mantine-Paper-root[style*="position: fixed"] { width: 100% !important; max-height: 55% !important; }
+    .mantine-Paper-root[style*="position: fixed"] [style*="width: 20em"] { width: 100% !important; }
+    .flexapod-notice { position: fixed; left: 8px; bottom: 8px; z-index: 5; display: flex; align-items: center;
+      padding: 0.1em 0.2em 0.1em 0.6em; border-left: 3px solid #e8590c; font-size: 0.75rem;
+      color: var(--mantine-color-text); background: var(--mantine-color-body); }
+    .flexapod-notice button { padding: 0 0.5em; border: 0; background: none; color: inherit; cursor: pointer;
+      font-size: 1.1rem; line-height: 1.4; }
     [role="button"]:focus-visible, canvas:focus-visible { outline: 2px solid #005aa0; outline-offset: -2px; }`;
   document.head.append(style);
 
@@ -132,6 +141,7 @@
         words.firstChild.data = "Sent. The tab Files says whether it is taken.";
       }
     }
+    window.flexapodPicture?.fit(); // the panel may be another one
   }
 
   let waits = false;

@@ -7,10 +7,11 @@ from typing import TYPE_CHECKING, Any
 import numpy as np
 import viser
 
-from flexapod import model
+from flexapod import model, rigid
 from flexapod.app.view.legend import LEGEND_STYLE, rgb
 from flexapod.app.view.robot_parts import add_grid
 from flexapod.app.view.scene import OF_RESULTS, STRAIGHT, Scene, mode_note
+from flexapod.model.laws import MotionLaw
 from flexapod.scene.geometry import (
     BEAM_POINTS,
     ActuatorMotion,
@@ -33,6 +34,7 @@ _BEAM, _HUB, _INSIDE, _GHOST, _TIP = rgb("#0072B2"), rgb("#4A4F57"), rgb("#B5BAC
 _STRIPE = rgb("#F0E442")
 TURN = 10.0  # rad per share of the free length: as far as what twists is turned in a mode
 TWISTS = "A mode has no size of its own: the stripe shows how the beam turns about its axis."
+INSTANTS = 49  # of a motion, at which the picture has to hold the beam
 _HERE = (0.0, 0.0, 0.0)
 _NOTHING = np.zeros((1, 2, 3))
 
@@ -61,10 +63,7 @@ class ActuatorScene(Scene):
                 self._nodes = self._make(actuator)
                 self.show_pose(actuator.free_length)
             if first:
-                reach = actuator.hub_radius + actuator.length
-                beside = reach * np.array([0.7, 0.0, 0.0])  # the panel covers the right of the page
-                away = [0.5, -1.4, 0.7] if actuator.space else [0.0, -1.6, 0.2]
-                self._look(reach * np.array(away), beside)
+                self._look(np.array([0.5, -1.4, 0.7] if actuator.space else [0.0, -1.6, 0.2]))
 
     def show_pose(self, pose: float) -> None:
         """As `Scene.show_pose`; a length outside the hub [m], the hub as at t = 0."""
@@ -107,6 +106,24 @@ class ActuatorScene(Scene):
                 turning = modes.kind[mode - 1] == "twisting"
                 note = TWISTS if turning else mode_note(amplitude * length)
                 self._draws(f"mode {mode}, {modes.kind[mode - 1]}{where and f' at {where}'}", note)
+
+    def _whole(self) -> tuple[Array, Array]:
+        """As `Scene._whole`: both ends of the beam at instants; an axis that is free may turn to any angle."""
+        if self._study is None:
+            return _NOTHING[0, :0], _NOTHING[0, :0]
+        study, actuator = self._study, self._actuator
+        time = np.linspace(0.0, study.duration, INSTANTS)
+
+        def moved(law: MotionLaw | None, start: float, free: Array) -> Array:
+            return free if law is None else start + rigid.motion_law(law, time)[0]
+
+        turn = np.linspace(0.0, 2 * np.pi, INSTANTS)
+        angle = moved(study.motion.rotation, actuator.angle, turn)
+        elevation = moved(study.motion.elevation, actuator.elevation, turn)
+        length = moved(study.motion.extension, actuator.free_length, np.full(INSTANTS, actuator.length))
+        along = beam_frame(actuator, angle, elevation)[:, 0]
+        tip = actuator.hub_radius + length
+        return (tip - actuator.length)[:, None] * along, tip[:, None] * along
 
     def _straight(self, length: float) -> tuple[Array, Array]:
         """Axes of the beam at t = 0, and its straight line."""

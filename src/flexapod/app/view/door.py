@@ -2,12 +2,14 @@
 
 from __future__ import annotations
 
+import gzip
 import http
 import re
 import threading
 import traceback
 from collections.abc import Awaitable, Callable, Iterator, Sequence
 from contextlib import contextmanager
+from functools import lru_cache
 from typing import Any, cast
 
 import viser
@@ -16,11 +18,11 @@ from websockets.asyncio.server import ServerConnection, serve
 from websockets.http11 import Request, Response
 
 from flexapod.app.view.logs import CONNECTIONS, LOG
-from flexapod.app.view.network import is_expected, is_same_site, names_in_words
+from flexapod.app.view.network import has_place, is_expected, is_same_site, names_in_words, whose
 from flexapod.app.view.visitor import LARGEST_MESSAGE, Visitor
 
-MOST_VISITORS = 32
-"""Pages that are open at once."""
+MOST_VISITORS = 64
+"""Pages that are open at once; one address has at most as many as are still free (`has_place`)."""
 QUEUE = 4  # frames of one visitor that wait for their turn
 CLOSING = 2.0  # time for a visitor to agree that it is over [s]
 
@@ -80,7 +82,7 @@ class Door:
             del request.headers["Accept-Encoding"]
             request.headers["Accept-Encoding"] = ", ".join(accepted)
         try:
-            return process(connection, request)
+            return _styled(process(connection, request))
         except (OSError, ValueError):  # a path that no file can have
             return connection.respond(http.HTTPStatus.NOT_FOUND, "There is no such page.\n")
 
@@ -99,10 +101,20 @@ class Door:
             return http.HTTPStatus.FORBIDDEN, words
         if "Upgrade" in headers and origin is not None and not is_same_site(origin, asked):
             return http.HTTPStatus.FORBIDDEN, f"The page that connects came from another site: {origin[:100]!r}."
-        if len(connection.server.connections) >= MOST_VISITORS:
-            words = f"{MOST_VISITORS} pages are open; this server takes no more. Try again later."
-            return http.HTTPStatus.SERVICE_UNAVAILABLE, words
-        return None
+        return self._full(connection, request)
+
+    def _full(self, connection: ServerConnection, request: Request) -> tuple[http.HTTPStatus, str] | None:
+        """Status and words for a page where there is no place for one more of its address."""
+        if "Upgrade" not in request.headers:
+            return None
+        forwarded = request.headers.get_all("X-Forwarded-For") if self._name else []
+        visitor, there = cast("Visitor", connection), cast("set[Visitor]", connection.server.connections)
+        visitor.whose = whose(visitor.peer, forwarded[-1] if forwarded else None)
+        own = sum(other.whose == visitor.whose for other in there)
+        if has_place(own, len(there), MOST_VISITORS):
+            return None
+        words = f"{len(there)} pages are open, {own} of them from your address; it may have no more now. "
+        return http.HTTPStatus.SERVICE_UNAVAILABLE, words + "Close one, or try again later."
 
     async def _receive(self, handler: Handler, connection: ServerConnection) -> None:
         """Leave a connection to viser; whatever ends it, nothing of it stays."""
@@ -120,6 +132,26 @@ class Door:
             await connection.close(INVALID_DATA, "unreadable")
         finally:
             self._left()
+
+
+STYLE = b"<style>#webgl-software-rendering { display: none; }</style>"
+"""In the head of the page, before any script runs: viser's notice covers the robot; `assets/picture.js` has another."""
+
+
+def _styled(response: Response | None) -> Response | None:
+    """The page with our style in it; other answers as they are."""
+    if response is not None and response.headers.get("Content-Type", "").startswith("text/html"):
+        response.body = _with_style(bytes(response.body), response.headers["Content-Encoding"] == "gzip")
+        del response.headers["Content-Length"]
+        response.headers["Content-Length"] = str(len(response.body))
+    return response
+
+
+@lru_cache(maxsize=4)
+def _with_style(body: bytes, packed: bool) -> bytes:
+    text = gzip.decompress(body) if packed else body
+    text = text.replace(b"</head>", STYLE + b"</head>", 1)
+    return gzip.compress(text) if packed else text
 
 
 def _with_headers(_: ServerConnection, request: Request, response: Response) -> None:

@@ -3,7 +3,6 @@
 from __future__ import annotations
 
 import io
-import tempfile
 import threading
 import time
 import zipfile
@@ -18,6 +17,7 @@ from flexapod.app.view.background import Threads
 from flexapod.app.view.document import Document, read
 from flexapod.app.view.uploads import LARGEST, Sent, limit_uploads, read_upload, store_table
 from flexapod.errors import FlexapodError
+from flexapod.files import scratch
 
 if TYPE_CHECKING:
     from xarray import Dataset
@@ -32,23 +32,23 @@ def netcdf(data: Dataset) -> bytes:
     from flexapod.study.store import save
 
     named = data.assign_attrs(study_file=Path(str(data.attrs.get("study_file", ""))).name)
-    with _ONE_AT_A_TIME, tempfile.TemporaryDirectory(prefix="flexapod-") as folder:
-        return save(named, Path(folder) / "results.nc").read_bytes()
+    with _ONE_AT_A_TIME, scratch() as folder:
+        return save(named, folder / "results.nc").read_bytes()
 
 
 def csv(data: Dataset) -> bytes:
     """``results.csv``."""
     from flexapod.study.store import save_csv
 
-    with tempfile.TemporaryDirectory(prefix="flexapod-") as folder:
-        return save_csv(data, Path(folder) / "results.csv").read_bytes()
+    with scratch() as folder:
+        return save_csv(data, folder / "results.csv").read_bytes()
 
 
 def figures(data: Dataset) -> bytes:
     """A ZIP archive of the standard figures, PNG."""
     from flexapod.report.figures import draw
 
-    with _ONE_AT_A_TIME, tempfile.TemporaryDirectory(prefix="flexapod-") as folder:
+    with _ONE_AT_A_TIME, scratch() as folder:
         archive = io.BytesIO()
         with zipfile.ZipFile(archive, "w", zipfile.ZIP_STORED) as files:
             for figure in draw(data, folder, ("png",)):

@@ -1,11 +1,8 @@
-"""Above the tabs: the answer or what is wrong, Simulate, progress, what the scene shows; what the page is told."""
+"""Above the tabs: the answer or what is wrong, Simulate, progress, what the scene shows."""
 
 from __future__ import annotations
 
-import json
 from collections.abc import Callable
-from functools import cache
-from importlib.resources import files
 from typing import TYPE_CHECKING
 
 import viser
@@ -90,17 +87,3 @@ class Picture:
         elsewhere = bool(scene.drawn) and scene.data is not None
         if self._back.visible != elsewhere:
             self._back.visible = elsewhere
-
-
-def prepare(client: ClientHandle, name: str) -> None:
-    """Call the page of a client after what it shows, and let it mend itself (`assets/view.js`)."""
-    from viser import _messages
-
-    source = f"({_script()})({json.dumps(f'{name} - flexapod')})"
-    client._websock_connection.queue_message(_messages.RunJavascriptMessage(source=source))
-
-
-@cache
-def _script() -> str:
-    text = files("flexapod.app").joinpath("assets", "view.js").read_text(encoding="utf-8")
-    return text[text.index("(title) =>") :].rstrip().rstrip(";")

@@ -72,6 +72,37 @@ def is_same_site(origin: str, asked: str) -> bool:
     return there == here and (port or own) == (asked_port or own)
 
 
+def whose(peer: str, forwarded: str | None = None) -> str:
+    """Whose a connection is, for limits: the address that it came from, of IPv6 the network of one customer (/64).
+
+    `forwarded`: the header ``X-Forwarded-For`` where a proxy is known to stand before this server: its last entry is
+    the one that the proxy wrote, about a connection from this machine.
+    """
+    found = _address(peer)
+    if forwarded is not None and found is not None and found.is_loopback:
+        found = _address(forwarded.rpartition(",")[2].strip()) or found
+    if isinstance(found, ipaddress.IPv6Address):
+        return str(ipaddress.ip_network((found, 64), strict=False))
+    return peer if found is None else str(found)
+
+
+def _address(text: str) -> ipaddress.IPv4Address | ipaddress.IPv6Address | None:
+    """An address, with or without a zone (``%eth0``); one of IPv4 that is written as IPv6 is one of IPv4."""
+    try:
+        found = ipaddress.ip_address(text.partition("%")[0])
+    except ValueError:
+        return None
+    return (found.ipv4_mapped if isinstance(found, ipaddress.IPv6Address) else None) or found
+
+
+def has_place(own: int, there: int, most: int) -> bool:
+    """Whether one more may come of somebody with `own` of the `there` that are here, where `most` find room.
+
+    Nobody gets more than are still free: each who takes all leaves half of what was there to the next.
+    """
+    return own < most - there
+
+
 def names_in_words(host: str, name: str | None) -> str:
     """Under what the page is served."""
     listed = ["127.0.0.1", "localhost"] if is_local(host) else ["its address", "localhost", "the name of this machine"]

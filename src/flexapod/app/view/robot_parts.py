@@ -46,6 +46,8 @@ Add = Callable[[str, Any], Any]
 
 _CYLINDER, _BASE, _PLATFORM, _PAYLOAD = rgb("#8A8F98"), rgb("#4A4F57"), rgb("#2F6690"), rgb("#F2F2F2")
 _GHOST, _RIGID, _FLEXIBLE = rgb("#9A9A9A"), rgb("#6E6E6E"), rgb("#C2185B")
+LABELS = np.array([1.15, 1.15, 1.0])
+"""Where the numbers of the legs stand, in their base joints' places."""
 _HINGE = rgb("#222222")
 _LEAST = 0.004  # of the robot's size: least radius of a drawn piston
 _HERE = (0.0, 0.0, 0.0)
@@ -128,7 +130,7 @@ class RobotParts:
         for i, joint in enumerate(robot.base_joints):
             joints.append(_joint(scene, f"/joint_{i + 1}", self._skeleton.joints[i][0], 1.5 * self._radius[i], _BASE))
             joints[i].position = joint
-            outward = self._skeleton.home.base[i] * [1.15, 1.15, 1.0]
+            outward = self._skeleton.home.base[i] * LABELS
             add("labels", scene.add_label(f"/leg_{i + 1}", f"leg {i + 1}", position=outward, anchor="top-center"))
         return joints
 

@@ -12,7 +12,7 @@ import viser
 
 from flexapod import model, rigid
 from flexapod.app.view.legend import QUANTITIES, LegColors, leg_colors, plain_legend, rgb
-from flexapod.app.view.robot_parts import Deviation, Ghost, Nodes, RobotParts
+from flexapod.app.view.robot_parts import LABELS, Deviation, Ghost, Nodes, RobotParts
 from flexapod.app.view.scene import OF_RESULTS, STRAIGHT, Scene, mode_note
 from flexapod.scene.colours import colors_of_legs
 from flexapod.scene.geometry import RobotMotion
@@ -26,8 +26,10 @@ if TYPE_CHECKING:
     from xarray import Dataset
 
 
-#: From where robots in space and in a plane are seen, in their sizes.
+#: From which directions robots in space and in a plane are seen.
 _EYES = {None: (1.1, -0.95, 0.35), "xy": (0.1, -0.6, 1.4), "yz": (1.4, -0.6, 0.3), "zx": (0.6, -1.4, 0.3)}
+_NOWHERE = np.zeros((0, 3))
+INSTANTS = 17  # of a motion, at which the picture has to hold the robot
 
 
 @dataclass(frozen=True, kw_only=True)
@@ -91,7 +93,7 @@ class RobotScene(Scene):
                 drawn.robot.draw(robot.at(start.position[0], start.rotation[0]), self._plain)
                 self._draws(f"the rigid robot at {number(self.time, 4)} s; no result yet", STRAIGHT)
             if first:
-                self._look_at(robot)
+                self._look(np.array(_EYES[study.robot.plane]))
 
     def show_pose(self, pose: PoseLike) -> None:
         """As `Scene.show_pose`; a pose as for `flexapod.modes`, in reach or not; InputError where it is not a pose."""
@@ -173,10 +175,15 @@ class RobotScene(Scene):
         if self._motion is not None and self._drawn is not None:
             self._drawn.deviation.paths(*self._motion.paths(self.scale, self.point))
 
-    def _look_at(self, robot: Skeleton) -> None:
-        points, size = np.vstack([robot.home.base, robot.home.platform]), robot.size
-        beside = size * np.array([0.13, 0.16, 0.05])  # the panel covers the right of the page
-        self._look(size * np.array(_EYES[robot.robot.plane]), points.mean(axis=0) + beside)
+    def _whole(self) -> tuple[Array, Array]:
+        """As `Scene._whole`: at home and at instants of the motion; payload and tool have labels."""
+        if self._drawn is None:
+            return _NOWHERE, _NOWHERE
+        study, skeleton = self._drawn.study, self._drawn.skeleton
+        found = rigid.poses(study.robot, study.motion, np.linspace(0.0, study.duration, INSTANTS))
+        seen = [skeleton.at(x, R) for x, R in zip(found.position, found.rotation, strict=True)] + [skeleton.home]
+        labelled = [place for scene in seen for place in (scene.com, scene.centre + scene.rotation @ skeleton.tool)]
+        return np.vstack([*(scene.points for scene in seen), skeleton.home.base * LABELS]), np.array(labelled)
 
 
 def pose_words(pose: PoseLike) -> str:

@@ -7,8 +7,10 @@ from abc import ABC, abstractmethod
 from collections.abc import Callable
 from typing import TYPE_CHECKING, Any
 
+import numpy as np
 import viser
 
+from flexapod.app.view.scripts import run_script
 from flexapod.study.words import number, text
 from flexapod.typing import Array
 
@@ -52,7 +54,7 @@ class Scene(ABC):
         self._parts: dict[str, list[Any]] = {name: [] for name in PARTS}
         self._now: tuple[str, ...] = ()
         self._closed = False
-        self._view: tuple[Array, Array]
+        self._away: Array
 
     @property
     def points(self) -> tuple[str, ...]:
@@ -193,16 +195,19 @@ class Scene(ABC):
     def _redraw_paths(self) -> None:
         """Draw anew what depends on the factor but not on time."""
 
-    def _look(self, away: Array, at: Array) -> None:
-        """Place the camera `away` from what it looks `at`, (3,) [m] each; so it stands again after `reset_view`."""
-        self._view = away, at
+    @abstractmethod
+    def _whole(self) -> tuple[Array, Array]:
+        """Points between which all lies that moves in the study, and those with a label beside them, (n, 3) [m]."""
+
+    def _look(self, away: Array) -> None:
+        """See the whole from the direction `away`, (3,); so it is seen again after `reset_view`."""
+        self._away = away
         self.reset_view()
 
     def reset_view(self) -> None:
-        """Place the camera where it was at first."""
-        camera, (away, at) = self.client.camera, self._view
-        camera.up_direction = (0.0, 0.0, 1.0)
-        camera.position, camera.look_at = at + away, at
+        """Place the camera where the whole study fits into what the panel leaves of the page; the page knows that."""
+        points, labelled = (found[np.isfinite(found).all(axis=1)].tolist() for found in self._whole())
+        run_script(self.client, "picture", {"away": self._away.tolist(), "points": points, "labelled": labelled})
 
 
 def mode_note(size: float) -> str:

@@ -4,7 +4,6 @@ from __future__ import annotations
 
 import asyncio
 import contextlib
-import gc
 import io
 import threading
 import traceback
@@ -16,6 +15,7 @@ import viser
 from flexapod.app.view.background import Latest, Threads
 from flexapod.app.view.door import Door
 from flexapod.app.view.logs import LOG
+from flexapod.app.view.memory import collect, few_arenas
 from flexapod.app.view.running import Cores
 from flexapod.app.view.visitor import Pool
 from flexapod.loading import loaded
@@ -44,10 +44,11 @@ class View:
     def __init__(self, source: Source, host: str, port: int, name: str | None = None) -> None:
         for remark in (GONE, GARBLED):
             warnings.filterwarnings("ignore", message=remark)
+        few_arenas()
         self._source, self._cores = source, Cores()
         self._sessions: dict[int, Session] = {}
         self._lock = threading.Lock()
-        self._leftovers = Latest(Threads(lambda error: self._fault(None, error)), _collect)
+        self._leftovers = Latest(Threads(lambda error: self._fault(None, error)), collect)
         door = Door(host, name, lambda: self._leftovers.request(SETTLED))
         with contextlib.redirect_stdout(io.StringIO()):  # viser announces itself; the command says where it listens
             with door.before():
@@ -118,11 +119,6 @@ def _load() -> None:
         loaded(name)
     loaded("flexapod.study.simulation")
     loaded("xarray")
-
-
-def _collect() -> None:
-    """Free what somebody who has left leaves in cycles, before it adds up."""
-    gc.collect()
 
 
 def _unhandled(loop: asyncio.AbstractEventLoop, context: dict[str, Any]) -> None:

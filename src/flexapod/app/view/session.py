@@ -15,12 +15,14 @@ from flexapod.app.view.actuator_scene import ActuatorScene
 from flexapod.app.view.background import Latest, Threads
 from flexapod.app.view.document import Document, Edit, read
 from flexapod.app.view.files_panel import FilesPanel
-from flexapod.app.view.header import Header, Picture, prepare
+from flexapod.app.view.header import Header, Picture
+from flexapod.app.view.inputs import limit_inputs
 from flexapod.app.view.logs import LOG
 from flexapod.app.view.opening import Source
 from flexapod.app.view.quick import coarse, is_quick, preview_words
 from flexapod.app.view.robot_scene import RobotScene
 from flexapod.app.view.running import Cores, Run
+from flexapod.app.view.scripts import run_script
 from flexapod.app.view.study_panel import StudyPanel
 from flexapod.app.view.uploads import Sent, refuse_length
 from flexapod.errors import FlexapodError
@@ -53,6 +55,7 @@ class Session:
     def start(self) -> None:
         """Build the page."""
         if self._source is not None:
+            limit_inputs(self.client)
             self.open(self._source)
             self._source = None
 
@@ -178,7 +181,7 @@ class Session:
         from flexapod.app.view.time_panel import TimePanel
 
         gui = self.client.gui
-        prepare(self.client, _name(document))
+        run_script(self.client, "view", f"{_name(document)} - flexapod")
         self.header = Header(self.client, _name(document), self.simulate, self.cancel)
         self.scene: Any = RobotScene(self.client) if isinstance(self.study, model.Study) else ActuatorScene(self.client)
         self.scene.show_study(self.study)  # first of all: it is what takes the browser longest

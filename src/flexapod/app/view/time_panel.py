@@ -23,6 +23,7 @@ if TYPE_CHECKING:
     from xarray import Dataset
 
 CHART_FRAMES = 4  # updates of the scene between two of the chart
+LARGEST_FACTOR = 1e12  # on deflections; the automatic one ends below, at the rounding of positions
 _NOTHING: str = "none"
 NONE = "No result yet: press Simulate."
 ONE = "The result has a single instant: nothing moves."
@@ -221,8 +222,9 @@ class TimePanel:
         """Draw deflections as many times larger as somebody has typed, or say why not."""
         try:
             factor = in_unit(text, "", "number", "magnify")
-            if factor < 1:
-                raise InputError("makes deflections smaller", key="magnify", value=text, allowed="1 or more")
+            if not 1 <= factor <= LARGEST_FACTOR:
+                problem = "makes deflections smaller" if factor < 1 else "is more than a picture can show"
+                raise InputError(problem, key="magnify", value=text, allowed=f"from 1 to {LARGEST_FACTOR:g}")
         except InputError as error:
             self._factor_words.content = words.error_html(error)
         else:

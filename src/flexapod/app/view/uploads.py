@@ -2,14 +2,15 @@
 
 from __future__ import annotations
 
-import tempfile
 from collections.abc import Callable
+from contextlib import ExitStack
 from pathlib import Path, PurePosixPath
 from typing import TYPE_CHECKING, Any
 
 from flexapod import model
 from flexapod.app.view.document import Document, read
 from flexapod.errors import InputError
+from flexapod.files import scratch
 from flexapod.model.toml import parsed
 
 if TYPE_CHECKING:
@@ -27,12 +28,12 @@ class Sent:
     """The folder of the tables that one person has sent; it lasts as long as their session."""
 
     def __init__(self) -> None:
-        self._folder = tempfile.TemporaryDirectory(prefix="flexapod-uploads-", ignore_cleanup_errors=True)
-        self.folder = Path(self._folder.name)
+        self._end = ExitStack()
+        self.folder = self._end.enter_context(scratch())
 
     def close(self) -> None:
         """Delete the tables."""
-        self._folder.cleanup()
+        self._end.close()
 
 
 def refuse_size(name: str, size: int) -> None:

@@ -3,41 +3,68 @@
 from __future__ import annotations
 
 import asyncio
+import math
 from collections.abc import Callable
 from concurrent.futures import Future, ThreadPoolExecutor
-from typing import Any
+from typing import Any, TypeAlias, cast
 
 import msgspec
 from websockets.asyncio.server import ServerConnection
 from websockets.frames import DATA_OPCODES, Frame
 from websockets.protocol import Event
 
+from flexapod.app.view.logs import LOG
+from flexapod.app.view.network import has_place, whose
+
 LARGEST_MESSAGE = 2_000_000
 """Largest message that is taken [bytes]; more closes the connection."""
 LARGEST_WORDS = 64_000
 """Largest message that is not a part of a file [bytes]."""
-MOST_CONNECTIONS = 128
-"""Connections at once, those that have not said anything yet included."""
+MOST_CONNECTIONS = 256
+"""Connections at once, those that have not said anything yet included; of one address as many as are still free."""
 FIRST_MESSAGE = 10.0
 """Time until a page has said that it is there [s]."""
 MOST_WORK = 8
 """Callbacks of one visitor that wait or run; what comes then is not read until one is done."""
 
-GREETING, FILE = "ViewerCameraMessage", "FileTransferPart"
-WANTED = frozenset(
-    {GREETING, FILE, "FileTransferStartUpload", "GuiUpdateMessage", "GuiButtonHoldMessage", "CommandTriggerMessage",
-     "ScenePointerMessage", "SceneNodeClickMessage", "SceneNodeDragMessage", "TransformControlsUpdateMessage",
-     "TransformControlsDragStartMessage", "TransformControlsDragEndMessage", "LocalStorageGetItemResponseMessage"}
-)  # fmt: skip
-"""Messages that a page sends for itself; others are dropped: viser would pass some of them on to everybody."""
+GREETING, FILE, BEGIN, INPUT = "ViewerCameraMessage", "FileTransferPart", "FileTransferStartUpload", "GuiUpdateMessage"
 
 _MOST_PIECES = 256  # in which a message may come
 _UNREAD = 64_000_000  # bytes that wait for somebody who does not read
 _PAUSE = 0.02  # [s]
 
+Three: TypeAlias = tuple[float, float, float]
+Four: TypeAlias = tuple[float, float, float, float]
+
 
 class _Any(msgspec.Struct):
     type: str
+
+
+class _Camera(msgspec.Struct):
+    wxyz: Four
+    position: Three
+    look_at: Three
+    up_direction: Three
+    fov: float
+    near: float
+    far: float
+    image_width: float
+    image_height: float
+
+
+class _Input(msgspec.Struct):
+    uuid: str
+    updates: dict[str, bool | int | float | str]
+
+
+class _Begin(msgspec.Struct):
+    source_component_uuid: str
+    transfer_uuid: str
+    filename: str
+    mime_type: str
+    part_count: int
+    size_bytes: int
 
 
 class _File(msgspec.Struct, forbid_unknown_fields=True):
@@ -48,6 +75,10 @@ class _File(msgspec.Struct, forbid_unknown_fields=True):
     content: bytes
 
 
+_FORMS: dict[str, Any] = {GREETING: _Camera, INPUT: _Input, BEGIN: _Begin, FILE: _File}
+"""Messages that a page sends for itself; others are dropped: viser would pass some of them on to everybody."""
+
+
 class Visitor(ServerConnection):
     """A connection whose messages are looked at before they are decoded; `work`: callbacks that wait or run for it."""
 
@@ -55,11 +86,14 @@ class Visitor(ServerConnection):
         super().__init__(*args, **options)
         self.work: set[Future[Any]] = set()
         self._pieces, self._until, self._is_there = 0, 0.0, False
+        self.peer = self.whose = ""
 
     def connection_made(self, transport: asyncio.BaseTransport) -> None:
         """Begin, unless there are too many already."""
         super().connection_made(transport)
-        if len(self.server.handlers) > MOST_CONNECTIONS:
+        self.peer = self.whose = whose(str((transport.get_extra_info("peername") or ("",))[0]))
+        others = [cast("Visitor", other) for other in self.server.handlers if other is not self]
+        if not has_place(sum(other.peer == self.peer for other in others), len(others), MOST_CONNECTIONS):
             self.transport.abort()
 
     def data_received(self, data: bytes) -> None:
@@ -94,7 +128,7 @@ class Visitor(ServerConnection):
             async with asyncio.timeout_at(None if self._is_there else self._until):
                 message = await super().recv(decode)
             kind = _kind(message)
-            if kind in WANTED:
+            if kind in _FORMS and _is_finite(kind, cast("bytes", message)):
                 self._is_there |= kind == GREETING
                 return message
 
@@ -108,6 +142,20 @@ def _kind(message: str | bytes) -> str:
     if form is _File and found != FILE:
         raise ValueError(f"{len(message)} bytes in a {found:.40}")
     return found
+
+
+def _is_finite(kind: str, message: bytes) -> bool:
+    """Whether all numbers of a message are numbers; ValueError where it has another form."""
+    finite = _all_finite(msgspec.structs.astuple(msgspec.msgpack.decode(message, type=_FORMS[kind])))
+    if not finite:
+        LOG.warning("a message is ignored: a number in a %s is not finite", kind)
+    return finite
+
+
+def _all_finite(value: object) -> bool:
+    if isinstance(value, tuple | dict):
+        return all(map(_all_finite, value.values() if isinstance(value, dict) else value))
+    return not isinstance(value, float) or math.isfinite(value)
 
 
 class Pool(ThreadPoolExecutor):

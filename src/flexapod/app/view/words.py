@@ -10,7 +10,9 @@ from flexapod.app.failures import lines_of, parts_of
 from flexapod.errors import FlexapodError
 from flexapod.version import __version__
 
-_COLOURS = {"error": "#c0392b", "warning": "#9a6700", "good": "#2c6e49", "plain": "inherit", "soft": "#666666"}
+_LIGHT = {"error": "#c0392b", "warning": "#9a6700", "good": "#2c6e49", "soft": "#666666"}
+_COLOURS = {kind: f"var(--flexapod-{kind}, {colour})" for kind, colour in _LIGHT.items()} | {"plain": "inherit"}
+"""Of text on white; `assets/view.js` gives those on black."""
 
 
 def block(text: str, kind: str = "plain") -> str:

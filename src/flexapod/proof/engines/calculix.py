@@ -5,13 +5,12 @@ from __future__ import annotations
 import re
 import shutil
 import signal
-import tempfile
 from dataclasses import dataclass
-from pathlib import Path
 
 import numpy as np
 
 from flexapod.errors import ComputationError
+from flexapod.files import scratch
 from flexapod.processes import call
 from flexapod.proof.engines.engine import CALCULIX
 from flexapod.typing import Array
@@ -97,8 +96,7 @@ def run(deck: str, *, time_limit: float = TIME_LIMIT) -> Run:
     program = shutil.which(CALCULIX.program)
     if program is None:
         raise ComputationError("CalculiX (ccx) is not installed", next_step=f"Install it: {CALCULIX.install}")
-    with tempfile.TemporaryDirectory(prefix="flexapod-ccx-") as name:
-        folder = Path(name)
+    with scratch() as folder:
         (folder / f"{_JOB}.inp").write_text(deck, encoding="ascii")
         output, code = call([program, "-i", _JOB], folder, time_limit, _ONE_THREAD)
         table = folder / f"{_JOB}.dat"

@@ -3,16 +3,17 @@
 from __future__ import annotations
 
 import importlib
+import os
 import pickle
 import re
 import signal
-import subprocess
 import sys
-import tempfile
 from pathlib import Path
 from typing import Any
 
 from flexapod.errors import ComputationError, FlexapodError
+from flexapod.files import scratch
+from flexapod.processes import call
 from flexapod.proof.engines.engine import EXUDYN
 
 TIME_LIMIT = 300.0
@@ -43,26 +44,26 @@ def ask(solver: str, problem: object, *, time_limit: float = TIME_LIMIT) -> Any:
     """
     if not EXUDYN.found():
         raise ComputationError("Exudyn is not installed", next_step=f"Install it: {EXUDYN.install}")
-    with tempfile.TemporaryDirectory(prefix="flexapod-exudyn-") as name:
-        given, found = Path(name) / "problem", Path(name) / "result"
+    with scratch() as folder:
+        given, found = folder / "problem", folder / "result"
         given.write_bytes(pickle.dumps((solver, problem)))
         # -P: no file of the folder that the user works in takes the place of a module.
         command = [sys.executable, "-P", "-m", "flexapod.proof.engines.exudyn_process", str(given), str(found)]
-        try:
-            run = subprocess.run(command, capture_output=True, text=True, errors="replace", timeout=time_limit)
-        except subprocess.TimeoutExpired as stopped:
+        modules = {"PYTHONPATH": os.pathsep.join(map(os.path.abspath, _paths()))}
+        said, code = call(command, folder, time_limit, modules)
+        if code is None:
             raise ComputationError(
-                f"Exudyn did not end within {time_limit:g} s and was stopped. {_said(_text(stopped.stdout))}",
+                f"Exudyn did not end within {time_limit:g} s and was stopped. {_said(said)}",
                 next_step="Use fewer elements or a longer step",
-            ) from None
+            )
         if not found.exists():
-            raise ComputationError(f"Exudyn crashed ({_code(run.returncode)}). {_said(run.stdout + run.stderr)}")
+            raise ComputationError(f"Exudyn crashed ({_code(code)}). {_said(said)}")
         answer, error = pickle.loads(found.read_bytes())
     if isinstance(error, FlexapodError):
         raise error
     if error:
         raise ComputationError(
-            f"Exudyn did not solve the problem ({error}). {_said(run.stdout)}",
+            f"Exudyn did not solve the problem ({error}). {_said(said)}",
             next_step="Use fewer elements, a larger tolerance of Newton's method or a shorter step",
         )
     return answer
@@ -86,8 +87,9 @@ def _said(output: str) -> str:
     return "Its output: " + " | ".join(lines[:_LAST]) if lines else "It said nothing about it."
 
 
-def _text(output: str | bytes | None) -> str:
-    return output.decode(errors="replace") if isinstance(output, bytes) else output or ""
+def _paths() -> list[str]:
+    """Where modules are looked for, besides the usual places: names that hold in another folder, too."""
+    return [path for path in os.environ.get("PYTHONPATH", "").split(os.pathsep) if path]
 
 
 def _code(code: int) -> str:

@@ -5,6 +5,7 @@ enum { STAGES = 3, BODY = 6 + PLATE, LOAD = 12, WIDTH = LEGS*PORTS*COLUMNS + LOA
 #define NOISE 3e-16  /* m: what it adds to the estimate of a step's error */
 #define CLOSED 1e-14 /* m: what rounding leaves */
 #define CLOSINGS 10
+#define TURNING 0.005  /* share of what is left of the tolerance that bristles which turn over may take in one step */
 
 typedef struct {
   double horizon, tolerance;            /* of the whole; sum of the local errors that is allowed until the horizon */
@@ -14,11 +15,13 @@ typedef struct {
   long outputs, pieces, terms, most, stops;     /* most: steps of this call */
   const double *edges, *series;         /* (pieces + 1), (pieces, terms, width): Chebyshev series of the tables */
   const double *stop;                   /* (stops), ascending: instants on which steps end; the last ends the call */
+  long along, springs;                  /* coordinates along a leg whose springs' forces are those of the leg: first, number */
 } Control;
 
 typedef struct {                        /* from call to call */
   double time, h, spent, last_h, peak;  /* spent: sum of the local errors; peak: error over h^6, decaying */
   double rate, stages, rejected, recorded;      /* rate: of Newton's iteration; stages: whether those of the last step are there */
+  double thrust[LEGS];                  /* sum of the local errors of the legs' forces */
   Vector A[STAGES]; Forces F[STAGES];
 } Memory;
 
@@ -31,6 +34,11 @@ typedef struct {
   lanes M[GROUPS][N*N], D[GROUPS][N*N], K[GROUPS][N*N];
   double hub_M[BODY*BODY], hub_K[BODY*BODY];
   ComplexArrow complex;
+  lanes thrust[GROUPS];                                 /* what errors of displacements are in the legs' forces */
+#ifdef FRICTION
+  Arrow soft;                                           /* the robot at rest */
+  lanes slides[GROUPS][BRISTLES], lost[GROUPS][BRISTLES];       /* at the start: rates of sliding, shares lost in a second */
+#endif
 } Radau;
 
 static const double NODE[STAGES] = {0.15505102572168219018, 0.64494897427831780982, 1};
@@ -221,6 +229,19 @@ static void rest(const Settings *s, const double *load, double h, Radau *r, Work
   for (int j = 0; j < BODY*BODY; j++) r->hub_K[j] += stiffness[j];
 }
 
+/* The robot at rest, what has no stiffness as in the estimate of errors: how far forces move it that last */
+static int factor_soft(const Settings *s, Radau *r, Work *w) {
+#ifdef FRICTION
+  double hub[HUB*HUB] = {0};
+  r->soft = w->arrow;
+  for (int g = 0; g < groups(s); g++) for (int j = 0; j < N*N; j++) r->soft.leg[g].A[j] = FREE*r->M[g][j] + r->K[g][j];
+  for (int j = 0; j < BODY; j++) for (int i = 0; i < BODY; i++) hub[i + HUB*j] = FREE*r->hub_M[i + BODY*j] + r->hub_K[i + BODY*j];
+  return arrow_factor(&r->soft, s, hub);
+#else
+  return OK;
+#endif
+}
+
 static int factor_stages(const Settings *s, double h, Radau *r, Work *w) {
   double c[3][3] = {{REAL*REAL/(h*h), REAL/h, 1}, {(PAIR[0]*PAIR[0] - PAIR[1]*PAIR[1])/(h*h), PAIR[0]/h, 1}, {2*PAIR[0]*PAIR[1]/(h*h), PAIR[1]/h, 0}};
   double hub[3][HUB*HUB] = {{0}};
@@ -266,10 +287,19 @@ static double norm(const Settings *s, const Control *c, const Vector *x) {
   return isfinite(fault + blemished(faults)) ? fmax(most, largest(m)) : INFINITY;
 }
 
-static void arrow_solve_vector(const Settings *s, Work *w, Vector *r, lanes (*g)[ROWS + 1], Vector *dq, Forces *df) {
+/* What a displacement is in the forces of the legs' springs, added to the size of what others are */
+static void add_thrust(const Settings *s, const Control *c, const Vector *x, double scale, Radau *r) {
+  for (int g = 0; g < groups(s); g++) for (long k = 0; k < c->springs; k++) {
+    lanes force = {0};
+    for (int j = 0; j < N; j++) force += r->K[g][PLACE[c->along + k] + N*j]*x->leg[g][ORDER[j]];
+    for (int i = 0; i < LANES; i++) r->thrust[g][i] += scale*fabs(force[i]);
+  }
+}
+
+static void arrow_solve_vector(const Settings *s, const Arrow *a, Vector *r, lanes (*g)[ROWS + 1], Vector *dq, Forces *df) {
   lanes gap[GROUPS][ROWS], dlam[GROUPS][ROWS];
   for (int i = 0; i < groups(s); i++) memcpy(gap[i], g[i], sizeof(lanes)*ROWS);
-  arrow_solve(&w->arrow, s, r->leg, gap, r->hub, dq->leg, df ? dlam : 0, df ? df->drive : 0, dq->hub);
+  arrow_solve(a, s, r->leg, gap, r->hub, dq->leg, df ? dlam : 0, df ? df->drive : 0, dq->hub);
   for (int i = 0; df && i < groups(s); i++) memcpy(df->lam[i], dlam[i], sizeof(lanes)*ROWS);
 }
 
@@ -302,7 +332,7 @@ static double correct_stages(const Settings *s, const Control *c, double h, Rada
     gap[0][i][j] *= 1/REAL;
     gap[1][i][j] = (PAIR[0]*re + PAIR[1]*im)/size; gap[2][i][j] = (PAIR[0]*im - PAIR[1]*re)/size;
   }
-  arrow_solve_vector(s, w, &part[0], gap[0], &change[0], &force[0]);
+  arrow_solve_vector(s, &w->arrow, &part[0], gap[0], &change[0], &force[0]);
   complex_solve(&r->complex, &w->arrow, s, part + 1, gap + 1, change + 1, force + 1);
   for (int k = 0; k < STAGES; k++) {
     Vector x;
@@ -377,19 +407,52 @@ static double estimate(const Settings *s, const Control *c, double h, Radau *r, 
   for (int j = 0; j < 6; j++) acceleration.hub[j] += REAL/h*speed.hub[j];
   multiply(s, -1, r->M, s->hub ? r->hub_M : 0, &acceleration, &rhs);
   multiply(s, -1, r->D, 0, &speed, &rhs);
-  arrow_solve_vector(s, w, &rhs, (lanes (*)[ROWS + 1])none, &error, 0);
+  arrow_solve_vector(s, &w->arrow, &rhs, (lanes (*)[ROWS + 1])none, &error, 0);
   memset(&rhs, 0, sizeof rhs);
   multiply(s, -1, r->K, s->hub ? r->hub_K : 0, &error, &rhs);
   multiply(s, -FREE, r->M, s->hub ? r->hub_M : 0, &error, &rhs);
-  arrow_solve_vector(s, w, &rhs, (lanes (*)[ROWS + 1])none, &second, 0);
+  arrow_solve_vector(s, &w->arrow, &rhs, (lanes (*)[ROWS + 1])none, &second, 0);
+  memset(r->thrust, 0, sizeof r->thrust);
+  add_thrust(s, c, &second, 1, r);
   return norm(s, c, &second);
+}
+
+/* Estimate of the error that bristles leave, twice how far their own, of order 4 of the embedded formula, moves the robot at
+   rest: it stays where they stick. Where they turn over what is twice filtered does not see it, Eq. (T19.20). */
+static double estimate_bristles(const Settings *s, const Control *c, double h, Radau *r, Work *w) {
+#ifdef FRICTION
+  static _Thread_local Vector rhs, moved;
+  static const lanes none[GROUPS][ROWS + 1];
+  memset(&rhs, 0, sizeof rhs);
+  for (int i = 0; i < groups(s); i++) {
+    LegState *leg = &w->leg[i];
+    lanes bent[2*BRISTLES], wrong[N], state[2*BRISTLES], force[BRISTLES], rate[BRISTLES], energies[2], still = {0};
+    memcpy(bent, r->bristles[2][i], sizeof bent);
+    const lanes *in[] = {leg->q, leg->v, leg->lam, bent, &still, w->p[i]};
+    lanes *out[] = {wrong, state, force, rate, energies};
+    leg_friction_lanes(in, out);
+    for (int j = 0; j < N; j++) rhs.leg[i][j] = -wrong[j];
+    for (int b = 0; b < BRISTLES; b++) {
+      lanes z = r->bristles[STAGES][i][b], e = r->slides[i][b] - r->lost[i][b]*z;
+      for (int k = 0; k < STAGES; k++) e += EMBEDDED[k]/h*(r->bristles[k][i][b] - z);
+      bent[b] += e/(REAL/h + r->lost[i][b]);
+    }
+    leg_friction_lanes(in, out);
+    for (int j = 0; j < N; j++) rhs.leg[i][j] += wrong[j];
+  }
+  arrow_solve_vector(s, &r->soft, &rhs, (lanes (*)[ROWS + 1])none, &moved, 0);
+  add_thrust(s, c, &moved, 2, r);
+  return 2*norm(s, c, &moved);
+#else
+  return 0;
+#endif
 }
 
 /* Correct the places of the state in the work space by how far legs are from closed, with the last matrices */
 static void close_places(const Settings *s, lanes (*gap)[ROWS + 1], Work *w) {
   static _Thread_local Vector zero, change;
   double before[7];
-  arrow_solve_vector(s, w, &zero, gap, &change, 0);
+  arrow_solve_vector(s, &w->arrow, &zero, gap, &change, 0);
   for (int i = 0; i < groups(s); i++) for (int j = 0; j < N; j++) w->leg[i].q[j] += change.leg[i][j];
   memcpy(before, w->payload.pose, sizeof before);
   turned_pose(before, change.hub, w->payload.pose);
@@ -400,7 +463,7 @@ static void close_record(const Settings *s, const double *load, Work *w) {
   static _Thread_local lanes gap[GROUPS][ROWS + 1], rate[GROUPS][ROWS + 1];
   static _Thread_local Vector zero, change;
   closing(s, load, w, gap, rate);
-  arrow_solve_vector(s, w, &zero, rate, &change, 0);
+  arrow_solve_vector(s, &w->arrow, &zero, rate, &change, 0);
   for (int i = 0; i < groups(s); i++) for (int j = 0; j < N; j++) w->leg[i].v[j] += change.leg[i][j];
   for (int j = 0; j < 6; j++) w->payload.u[j] += change.hub[j];
   double before = INFINITY;                             /* matrices of an earlier place close by a share each time */
@@ -416,6 +479,13 @@ static void close_record(const Settings *s, const double *load, Work *w) {
 
 /* The accepted state becomes the start of a step */
 static void start_step(const Settings *s, const Work *w, Radau *r) {
+#ifdef FRICTION
+  for (int i = 0; i < groups(s); i++) {
+    const lanes *in[] = {w->leg[i].q, w->leg[i].v, w->p[i]};
+    lanes *out[] = {r->slides[i], r->lost[i]};
+    leg_sliding_lanes(in, out);
+  }
+#endif
   for (int i = 0; i < groups(s); i++) {
     memcpy(r->q.leg[i], w->leg[i].q, sizeof r->q.leg[i]); memcpy(r->v0.leg[i], w->leg[i].v, sizeof r->q.leg[i]);
     memcpy(r->a0.leg[i], w->leg[i].v_dot, sizeof r->q.leg[i]);
@@ -531,11 +601,12 @@ int radau(const Settings *s, State *x, const Control *c, double *memory) {
     double left = c->stop[stop] - m.time, h = fmin(m.h, c->longest), rest_of_it = fmax(c->tolerance - m.spent, 0.1*c->tolerance);
     double allowed = fmin(rest_of_it/fmax(c->horizon - m.time, left), 3*c->tolerance/c->horizon), rounding = 1e-15*unit;
     if (h >= left*(1 - 1e-9)) h = left; else if (h > 0.5*left) h = 0.5*left;
-    if (age >= OLDEST) { rest(s, row + tables, h, &r, w); age = 0; fresh = 1; factored = 0; }
+    int renewed = age >= OLDEST;
+    if (renewed) { rest(s, row + tables, h, &r, w); age = 0; fresh = 1; factored = 0; }
     if (fabs(factored - h) > 1e-9*h) {
       x->factorisations++;
       m.rate = 0;
-      if (factor_stages(s, h, &r, w)) { x->bad_leg = s->legs; status = SINGULAR; break; }
+      if ((renewed && factor_soft(s, &r, w)) || factor_stages(s, h, &r, w)) { x->bad_leg = s->legs; status = SINGULAR; break; }
       factored = h;
     }
     double until = h < left ? m.time + h : c->stop[stop];
@@ -553,10 +624,11 @@ int radau(const Settings *s, State *x, const Control *c, double *memory) {
       continue;
     }
     double error = estimate(s, c, h, &r, w), h5 = h*h*h*h*h, peak = fmax(error/(h5*h), 0.9*m.peak);
-    if (error > fmax(2*allowed*h, rounding)) {
+    double rubbed = estimate_bristles(s, c, h, &r, w), turning = fmax(allowed*h, TURNING*rest_of_it);
+    if (error > fmax(2*allowed*h, rounding) || rubbed > fmax(2*turning, rounding)) {
       step_back(s, &r, row, w);
       m.rejected++;
-      m.h = h*fmin(0.8, fmax(0.2, 0.9*pow(allowed*h/error, 0.2)));
+      m.h = h*fmin(0.8, fmax(0.2, 0.9*fmin(pow(allowed*h/error, 0.2), cbrt(turning/fmax(rubbed, 1e-300)))));
       if (m.h < c->shortest) { x->bad_leg = s->legs; status = OUT_OF_REACH; }
       continue;
     }
@@ -572,11 +644,14 @@ int radau(const Settings *s, State *x, const Control *c, double *memory) {
     powers_until(1, h, &r, x->sums);
     memcpy(x->powers, r.powers[2], sizeof r.powers[2]);
     memcpy(m.A, r.A, sizeof m.A); memcpy(m.F, r.F, sizeof m.F);
-    m.stages = 1; m.last_h = h; m.time = until; m.spent += error; m.peak = peak;
+    m.stages = 1; m.last_h = h; m.time = until; m.spent += error + rubbed;
+    for (long i = 0; i < s->legs; i++) m.thrust[i] += r.thrust[i/LANES][i%LANES];
     start_step(s, w, &r);
     age++; fresh = 0;
     double share = fmax(allowed, NOISE*unit/h);   /* shorter steps have no less rounding */
-    double wanted = h*fmin(4, fmax(0.2, 0.9*pow(share/fmax(peak*h5, 1e-300), 0.2)));
+    double factor = fmin(pow(share/fmax(peak*h5, 1e-300), 0.2), cbrt(share*h/fmax(rubbed, 1e-300)));
+    double wanted = h*fmin(4, fmax(0.2, 0.9*factor));
+    m.peak = wanted < 4*h ? peak : 0;              /* what limits no step is not remembered: it may be rounding */
     if (h < left && (wanted < 0.9*h || wanted > 1.2*h)) m.h = wanted;      /* another step costs another factorisation */
     if (h == left && wanted > m.h) m.h = wanted;
   }

@@ -14,6 +14,7 @@ from flexapod.rigid.limbs import COORDINATES
 from flexapod.study.accuracy.play import Play
 from flexapod.study.accuracy.sensitivity import Sensitivity
 from flexapod.study.before.estimates import buckling_loads, pinned_root, section_width
+from flexapod.ties import EQUALS, first_largest
 from flexapod.typing import Array
 
 __all__ = ["Bent", "bent", "by_bending_stiffness", "by_bow", "crookedness", "is_crooked", "softness", "thrust"]
@@ -75,7 +76,7 @@ def _under(robot: Robot, at: Sensitivity, push: Array) -> _Under:
     euler = buckling_loads(robot, at.q[:1, :, L])[0]
     share = push / euler
     if share.max() >= 1:
-        leg = int(share.argmax())
+        leg = first_largest(share, EQUALS)
         raise ComputationError(
             f"leg {leg + 1} is pushed with {push[leg]:.4g} N, beyond its Euler load of {euler[leg]:.4g} N",
             next_step="A thicker or shorter piston bears more",

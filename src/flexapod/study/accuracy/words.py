@@ -12,10 +12,13 @@ from flexapod.study.accuracy.imperfect import is_crooked
 from flexapod.study.accuracy.play import half_play
 from flexapod.study.accuracy.spread import drift
 from flexapod.study.cause_words import cause_in_words
+from flexapod.study.words import NOTHING as LENGTH
+from flexapod.study.words import UNSAID, along_axes, signed
+from flexapod.ties import first_largest, most
 from flexapod.typing import Array
 from flexapod.words import text
 
-__all__ = ["accuracy_words", "is_real"]
+__all__ = ["accuracy_words", "is_real", "rest_words"]
 
 NOTHING = 1e-12  # turn that is rounding [rad]
 
@@ -30,7 +33,7 @@ def accuracy_words(study: Study) -> tuple[str, ...]:
         parts = at.parts
         whole = np.sum([*parts.values(), np.zeros((robot.count, 6))], axis=(0, 1))
         if whole.any():
-            largest = max(parts, key=lambda name: float(np.linalg.norm(parts[name][:, :3].sum(axis=0))))
+            largest = most(parts, key=lambda name: float(np.linalg.norm(parts[name][:, :3].sum(axis=0))))
             found.append(
                 f"as built and warm the tool stands {_size(whole)} beside its drawn place at home, most of it by "
                 f"{cause_in_words(largest)} ({text(float(np.linalg.norm(parts[largest][:, :3].sum(axis=0))), 'm', 3)})"
@@ -39,9 +42,9 @@ def accuracy_words(study: Study) -> tuple[str, ...]:
             found += _drift_words(at, robot.heat.time)
         if spread := at.spreading:
             sigma = np.sqrt(np.diag(np.sum([one.covariance for one in spread], axis=0)))
-            found.append(f"tolerances spread the tool at home by {_by_axis(sigma)} (standard deviations)")
+            found.append(f"tolerances spread the tool at home by {along_axes(sigma[:3])} (standard deviations)")
         if at.is_loose:
-            found.append(f"play lets the tool move at home by up to {_by_axis(at.play.worst[0])}")
+            found.append(f"play lets the tool move at home by up to {along_axes(at.play.worst[0, :3])}")
     except ComputationError as error:
         return (f"the accuracy at home cannot be said: {error.what}",)
     return tuple(found)
@@ -54,11 +57,31 @@ def _drift_words(at: AtPose, times: Array) -> list[str]:
     except ComputationError:  # held more often than it needs: strained by heat, which only forces tell
         return []
     far = np.linalg.norm((moved - moved[0])[:, :3], axis=1)
-    last = int(far.argmax())
+    last = first_largest(far)
     return [
         f"the temperatures of heat.file move the tool at home by up to {text(float(far[last]), 'm', 3)} from where it "
         f"stands at the start, at t = {times[last]:.4g} s"
     ]
+
+
+def rest_words(study: Study, pose: rigid.Poses, off: Array) -> str:
+    """How far the centre of mass at rest is off its drawn place, `off` (3,) [m]: by heat and by weight, with signs."""
+    size = float(np.linalg.norm(off))
+    if size < LENGTH:
+        return "At rest the centre of mass is where it is drawn."
+    words = f"At rest the centre of mass is off by {signed(off)}"
+    parts = rigid.built_parts(study.robot)
+    try:
+        each = AtPose(study, pose).parts if parts else {}
+    except ComputationError:  # held more often than it needs: strained by heat, which only forces tell
+        each = {}
+    moved = np.sum([*each.values(), np.zeros((study.robot.count, 6))], axis=(0, 1))
+    arm = pose.rotation[0] @ (study.robot.com - study.robot.tool)
+    built = moved[:3] + np.cross(moved[3:], arm)
+    if np.linalg.norm(built) < UNSAID * size:
+        return f"{words}."
+    by = "heat" if all(name.startswith("heat") for name in each) else "heat and geometry as built"
+    return f"{words}: by {by} {signed(built, off)}, by weight and load {signed(off - built, off)}."
 
 
 def is_real(robot: Robot) -> bool:
@@ -71,8 +94,3 @@ def _size(moved: Array) -> str:
     turned = float(np.linalg.norm(moved[3:]))
     words = text(float(np.linalg.norm(moved[:3])), "m", 3)
     return words if turned < NOTHING else f"{words} and {text(turned, 'rad', 3)}"
-
-
-def _by_axis(sizes: Array) -> str:
-    """Along the three axes."""
-    return ", ".join(f"{axis} {text(float(size), 'm', 3)}" for axis, size in zip("xyz", sizes, strict=False))

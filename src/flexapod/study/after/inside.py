@@ -3,11 +3,14 @@
 from __future__ import annotations
 
 import numpy as np
+from numpy.polynomial.polynomial import polyval
 
+from flexapod.elements.kink import LEAST, kink
 from flexapod.mechanics.layout import columns, leg_parameters
 from flexapod.model import Robot
 from flexapod.solve.system import System
 from flexapod.study.words import text
+from flexapod.ties import first_largest
 from flexapod.typing import Array
 
 __all__ = ["PARTS", "bushing_words", "guide_results", "is_guided", "off_axis", "part_names_inside", "tip_moves"]
@@ -37,14 +40,33 @@ def _mouths(robot: Robot) -> Array:
     return np.array([leg.cylinder.mouth for leg in robot.legs])
 
 
+def _lengths(robot: Robot) -> Array:
+    """Of the cylinders that bend, and 1."""
+    return np.where([leg.cylinder.section is not None for leg in robot.legs], _mouths(robot), 1.0)
+
+
 def _tube(robot: Robot, system: System, q: Array, at: Array, derivative: int = 0) -> Array:
-    """Displacement or slope of the cylinders at places ``at`` [m] from their joints, (..., legs, 2)."""
+    """Displacement or slope by the cylinders' shapes at places ``at`` [m] from their joints, (..., legs, 2)."""
     basis = system.kernel.shapes.cylinder
     if basis is None:
         return np.zeros((*q.shape[:-1], 2))
-    length = np.where([leg.cylinder.section is not None for leg in robot.legs], _mouths(robot), 1.0)
+    length = _lengths(robot)
     values = np.moveaxis(basis.values(at / length, derivative), 0, -1) / length[:, None] ** derivative
-    return np.einsum("...k,...dk->...d", np.broadcast_to(values, (*q.shape[:-1], basis.count)), _pair(system, q, "k"))
+    smooth = _pair(system, q, "k")[..., : basis.count]
+    return np.einsum("...k,...dk->...d", np.broadcast_to(values, (*q.shape[:-1], basis.count)), smooth)
+
+
+def _bent(robot: Robot, system: System, q: Array, at: Array) -> Array:
+    """Displacement of the cylinders, with the kink that the heads make, Eq. (T25.19)."""
+    found, basis = _tube(robot, system, q, np.maximum(at, 0.0)), system.kernel.shapes.cylinder
+    if basis is None or system.kernel.shapes.guide is None:
+        return found
+    at, length, amplitude = np.maximum(at, 0.0), _lengths(robot), _pair(system, q, "k")[..., -1]
+    eta = np.clip((_mouths(robot) - _overlaps(robot, system, q)) / length, LEAST, 1 - LEAST)
+    share = np.stack([polyval(2 * eta - 1, row) for row in kink(basis)["share"]], axis=-1)
+    smooth = (share * np.moveaxis(basis.values(at / length), 0, -1)).sum(axis=-1)
+    shape = (np.maximum(at / length - eta, 0.0) ** 3 / 6 - smooth) / (eta * (1 - eta)) ** 2
+    return found + shape[..., None] * amplitude
 
 
 def tip_moves(robot: Robot, system: System, q: Array) -> dict[str, tuple[Array, Array]]:
@@ -59,7 +81,7 @@ def tip_moves(robot: Robot, system: System, q: Array) -> dict[str, tuple[Array, 
     slope = tangent
     if shapes.guide is not None:
         overlap = _overlaps(robot, system, q)
-        through = (place - _tube(robot, system, q, mouth - overlap)) / overlap[..., None]
+        through = (place - _bent(robot, system, q, mouth - overlap)) / overlap[..., None]
         slope = np.where(np.array([leg.guide is not None for leg in robot.legs])[:, None], through, tangent)
         lean = _pair(system, q, "g")
         own = tangent + lean[..., 1] - slope
@@ -90,7 +112,7 @@ def off_axis(robot: Robot, system: System, q: Array, length: Array, stations: Ar
         place, slope = place + lean[..., 0], slope + lean[..., 1]
     for k, station in enumerate(stations):
         beyond = (station * length - mouth)[:, None]
-        inside = _tube(robot, system, q, np.minimum(station * length, mouth))
+        inside = _bent(robot, system, q, np.minimum(station * length, mouth))
         found[..., k] = np.where(beyond > 0, place + beyond * slope, inside)
     return found
 
@@ -104,7 +126,7 @@ def guide_results(robot: Robot, system: System, q: Array) -> dict[str, Array]:
     overlap = _overlaps(robot, system, q)
     lean = _pair(system, q, "g")
     place, slope = lean[..., 0] + _tube(robot, system, q, mouth), lean[..., 1] + _tube(robot, system, q, mouth, 1)
-    end = place - overlap[..., None] * slope - _tube(robot, system, q, mouth - overlap)  # (T25.1)
+    end = place - overlap[..., None] * slope - _bent(robot, system, q, mouth - overlap)  # (T25.1)
     if inner.count:
         end = end + _pair(system, q, "h") @ inner.tip
     stiffness = system.leg_p[:, columns(leg_parameters(shapes), "guide_stiffness")]
@@ -118,7 +140,7 @@ def bushing_words(force: Array, time: Array | None = None) -> str:
     """What glands and heads bear most, of forces (T, legs, 2) [N]; without ``time`` [s] of a single pose."""
     parts = []
     for k, name in enumerate(("glands", "heads")):
-        at, leg = np.unravel_index(force[..., k].argmax(), force.shape[:-1])
+        at, leg = np.unravel_index(first_largest(force[..., k]), force.shape[:-1])
         when = "" if time is None else f" at t = {time[at]:.4g} s"
         parts.append(f"{name} bear up to {text(float(force[at, leg, k]), 'N')} across (leg {leg + 1}{when})")
     return f"The {', '.join(parts)}."

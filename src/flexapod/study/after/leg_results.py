@@ -152,8 +152,9 @@ def drive_forces(robot: Robot, system: System, record: Record) -> Array:
     """Force of every drive on carriage or piston, (T, legs) [N, of cranks N m]; 0 of passive legs."""
     found = by_name.of_drives(robot_limbs(robot), system.kernel.shapes, _port_forces(system, record))
     rubbing = [i for i, leg in enumerate(robot.legs) if leg.screw is not None and leg.screw.friction is not None]
+    length = record.q[..., system.kernel.shapes.l_index]
     for i in rubbing:  # what a screw's friction takes of the springs' force before it reaches the piston, Eq. (T19.12)
-        found[:, i] -= twist_share(robot.legs[i], float(robot.home_lengths[i])) * record.friction[:, i, -1]
+        found[:, i] -= twist_share(robot.legs[i], length[:, i]) * record.friction[:, i, -1]
     return found
 
 

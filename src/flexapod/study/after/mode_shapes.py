@@ -11,6 +11,7 @@ from flexapod.solve.modes import RobotModes
 from flexapod.solve.sections import leg_values
 from flexapod.study.after.inside import off_axis
 from flexapod.study.after.legs import base_points, bending_basis, lateral
+from flexapod.ties import EQUALS, first_largest, most
 from flexapod.typing import Array
 
 MOSTLY = 0.5  # share of an energy from which a part names the mode
@@ -19,14 +20,19 @@ MOSTLY = 0.5  # share of an energy from which a part names the mode
 def mode_kinds(found: RobotModes) -> list[str]:
     """``payload``, ``base``, ``leg n bending``, ``legs bending``, ``leg n axial``, ``legs axial`` ... for each mode.
 
-    The kinetic energy says whether payload, base plate or legs; that of the legs, which leg; the strain energy of its
-    coordinates, how: bending, axial, twisting (of the leg about its axis), carriage (on the spring of its drive),
-    turning (on springs of joints).
+    The kinetic energy says whether payload, base plate or legs; that of the legs, which leg, if one has more than all
+    others and more than the payload; the strain energy of its coordinates, how: bending, axial, twisting (of the leg
+    about its axis), carriage (on the spring of its drive), turning (on springs of joints).
 
     Parameters
     ----------
     found : RobotModes
     """
+    return _named(found)[0]
+
+
+def _named(found: RobotModes) -> tuple[list[str], Array, Array]:
+    """Names of the modes, and the shares of the payload (m,) and of the legs (m, legs) in their kinetic energy."""
     system, state = found.system, found.equilibrium.state
     matrices, n = system.matrices(state, found.wrench), system.n
     legs = found.shapes[:, :-6].reshape(len(found.shapes), -1, n)
@@ -37,14 +43,16 @@ def mode_kinds(found: RobotModes) -> list[str]:
     )
     plate = _base_plate(found, legs)
     kinetic = kinetic - plate[:, None] / len(blocks)
+    payload = 1.0 - plate - kinetic.sum(axis=1)
     energies = {}
     for name, chosen in _groups(system.kernel.shapes).items():
         parts = [_form(legs[:, i, chosen], matrices.K[at, at][np.ix_(chosen, chosen)]) for i, at in enumerate(blocks)]
         energies[name] = np.sum(parts, axis=0)
-    return [
-        "base" if plate[k] > MOSTLY else _kind(row, {name: of[k] for name, of in energies.items()})
+    names = [
+        "base" if plate[k] > MOSTLY else _kind(row, {name: of[k] for name, of in energies.items()}, payload[k])
         for k, row in enumerate(kinetic)
     ]
+    return names, payload, kinetic
 
 
 def _base_plate(found: RobotModes, legs: Array) -> Array:
@@ -81,15 +89,15 @@ def _form(vectors: Array, matrix: Array) -> Array:
     return np.einsum("mi,ij,mj->m", vectors, matrix, vectors)
 
 
-def _kind(kinetic: Array, energies: dict[str, float]) -> str:
+def _kind(kinetic: Array, energies: dict[str, float], payload: float) -> str:
     whole = float(kinetic.sum())  # of a mass-normalised mode: 1 with the payload's
     if np.isnan(whole):
         return ""
     if whole < MOSTLY:
         return "payload"
-    first = int(kinetic.argmax())
-    name = f"leg {first + 1}" if kinetic[first] > MOSTLY * whole else "legs"
-    return f"{name} {max(energies, key=energies.__getitem__)}"
+    first = first_largest(kinetic, EQUALS)
+    name = f"leg {first + 1}" if kinetic[first] > max(MOSTLY * whole, payload) else "legs"
+    return f"{name} {most(energies, key=energies.__getitem__)}"
 
 
 STATIONS = np.linspace(0.0, 1.0, 41)
@@ -99,10 +107,13 @@ def mode_values(robot: model.Robot, found: RobotModes, path: rigid.Poses) -> dic
     """Variables of `flexapod.modes` at one pose, by name; ``path`` is the rigid pose."""
     at, R, com = found.equilibrium.state.pose, matrix(found.equilibrium.state.pose[3:]), robot.com
     platform = np.concatenate([found.shapes[:, -6:-3], found.shapes[:, -3:] @ R.T], axis=1)
+    kind, of_payload, of_legs = _named(found)
     return {
         "frequency": found.frequency,
         "damping_ratio": found.damping_ratio,
-        "kind": np.array(mode_kinds(found)),
+        "kind": np.array(kind),
+        "payload_share": of_payload,
+        "leg_share": of_legs,
         "platform_shape": platform,
         "leg_shape": _leg_shapes(robot, found),
         "leg_stretch": _stretch(robot, found, platform),

@@ -29,6 +29,8 @@ from flexapod.study.before.estimates import (
     section_width,
 )
 from flexapod.study.record import Record
+from flexapod.study.words import brief
+from flexapod.ties import first_largest, first_least, most
 from flexapod.typing import Array
 
 SLOPE = 0.1  # tip slope up to which second order in the amplitudes is enough
@@ -92,7 +94,7 @@ def actuator_warnings(actuator: Actuator, shapes: Shapes, record: Record) -> lis
         depth, material = actuator.section.depth, actuator.material
         section = beam_section(actuator)
         if free.min() < SLENDERNESS * depth and section is not None:
-            k = int(free.argmin())
+            k = first_least(free)
             found.append(_slender_remark(free[k], depth, section, basis, when[k]))
         if material.yield_stress is not None:
             bending = _bending(basis, lateral, free) * material.E * depth / 2
@@ -142,7 +144,7 @@ def _slope(slopes: Array, lateral: Array, when: _When) -> list[_Remark]:
     if not lateral.shape[-1]:
         return []
     slope = np.linalg.norm((np.moveaxis(slopes, -1, 0) * lateral).sum(axis=-1), axis=1)
-    k = int(slope.argmax())
+    k = first_largest(slope)
     if slope[k] <= SLOPE:
         return []
     words = f"the tip slope reaches {slope[k]:.3g}{when[k]}: above {SLOPE:g} second-order theory is strained"
@@ -154,7 +156,7 @@ def _stroke(leg: Leg, length: Array, when: _When) -> list[_Remark]:
     if leg.stroke is None:
         return []
     excess = np.maximum(leg.stroke.min - length, length - leg.stroke.max)
-    k = int(excess.argmax())
+    k = first_largest(excess)
     if excess[k] <= STROKE_ROUNDING:
         return []
     words = (
@@ -168,7 +170,7 @@ def _axial(leg: Leg, free: Array, compression: Array, when: _When, load: Array |
     if load is None and (compression * free**2).max() <= NEAR_BUCKLING * leg.piston.least_EI * (np.pi / 2) ** 2:
         return []  # even with the least root that (T8.11) can have
     share = compression / (buckling_load(leg, free) if load is None else load)
-    k = int(share.argmax())
+    k = first_largest(share)
     if share[k] <= NEAR_BUCKLING:
         return []
     return [("buckling", share[k], buckling_words(share[k], compression[k], when[k]))]
@@ -177,7 +179,7 @@ def _axial(leg: Leg, free: Array, compression: Array, when: _When, load: Array |
 def _nut(leg: Leg, thrust: Array, when: _When) -> list[_Remark]:
     if leg.screw is None:
         return []
-    share, k = np.abs(thrust) / leg.screw.nut.linear_to, int(np.abs(thrust).argmax())
+    share, k = np.abs(thrust) / leg.screw.nut.linear_to, first_largest(np.abs(thrust))
     return [("nut", share[k], nut_words(leg, float(abs(thrust[k])), when[k]))] if share[k] > 1 else []
 
 
@@ -185,8 +187,8 @@ def nut_words(leg: Leg, thrust: float, when: str) -> str:
     """That a thrust [N] unloads one half of a preloaded nut (T15.9)."""
     limit = 0.0 if leg.screw is None else leg.screw.nut.linear_to
     return (
-        f"the thrust reaches {thrust:.4g} N{when}, beyond {limit:.4g} N (2.83 times the preload of the nut) one half "
-        "of the nut carries nothing, and it is softer than assumed"
+        f"the thrust reaches {thrust:.4g} N{when}, beyond {limit:.4g} N (2.83 times the preload of the nut). One half "
+        "of the nut then carries nothing, and it is softer than assumed"
     )
 
 
@@ -197,7 +199,7 @@ def buckling_words(share: float, force: float, when: str) -> str:
 
 
 def _slender(leg: Leg, basis: LateralBasis, free: Array, when: _When) -> list[_Remark]:
-    width, k = section_width(leg.piston), int(free.argmin())
+    width, k = section_width(leg.piston), first_least(free)
     if free[k] >= SLENDERNESS * width or leg.piston.shear:
         return []
     return [_slender_remark(free[k], width, piston_section(leg.piston), basis, when[k])]
@@ -214,13 +216,13 @@ def thick_words(section: Section, free: float, *, solid: bool) -> str:
     deflection, frequency, inertia = bending_errors(section, free)
     if solid:
         return (
-            f"below {SLENDERNESS:g} rotary inertia, which the solid's shapes leave out, is no longer small: its first "
-            f"frequency of bending is up to {100 * inertia:.2g} % too high (a pinned beam's)"
+            f"rotary inertia counts. Below {SLENDERNESS:g} rotary inertia, which the solid's shapes leave out, is no "
+            f"longer small: its first frequency of bending is up to {100 * inertia:.2g} % too high (a pinned beam's)"
         )
     return (
-        f"below {SLENDERNESS:g} shear, which an Euler-Bernoulli beam leaves out, is no longer small: it deflects by "
-        f"about {100 * deflection:.2g} % too little under a force across its end, and its first bending frequency is "
-        f"up to {100 * frequency:.2g} % too high (Timoshenko's beam, clamped and pinned)"
+        f"shear counts. Below {SLENDERNESS:g} shear, which an Euler-Bernoulli beam leaves out, is no longer small: it "
+        f"deflects by about {100 * deflection:.2g} % too little under a force across its end, and its first bending "
+        f"frequency is up to {100 * frequency:.2g} % too high (Timoshenko's beam, clamped and pinned)"
     )
 
 
@@ -250,7 +252,7 @@ def _stress(
 
 
 def _yield_words(stress: Array, limit: float, when: _When) -> list[_Remark]:
-    k = int(stress.argmax())
+    k = first_largest(stress)
     if stress[k] <= limit:
         return []
     words = f"the stress reaches {stress[k] / 1e6:.4g} MPa{when[k]}, above the yield stress of {limit / 1e6:.4g} MPa"
@@ -262,8 +264,9 @@ def worst_of_each(found: list[tuple[int, str, float, str]]) -> list[str]:
     texts = []
     for kind in dict.fromkeys(entry[1] for entry in found):
         same = [entry for entry in found if entry[1] == kind]
-        worst = max(same, key=lambda entry: entry[2])
+        worst = most(same, key=lambda entry: entry[2])
         others = sorted(entry[0] + 1 for entry in same if entry is not worst)
         also = f" (also legs {', '.join(map(str, others))})" if others else ""
-        texts.append(f"leg {worst[0] + 1}: {worst[3]}{also}")
+        first, rest = brief(worst[3])
+        texts.append(f"leg {worst[0] + 1}: {first}{also}" + (f". {rest}" if rest else ""))
     return texts

@@ -9,7 +9,8 @@ import numpy as np
 
 from flexapod.errors import InputError
 from flexapod.study.cause_words import cause_words
-from flexapod.study.words import NOTHING, cleared, text
+from flexapod.study.words import NOTHING, along_axes, cleared, text
+from flexapod.ties import EQUALS, first_largest, most
 from flexapod.typing import Array
 
 if TYPE_CHECKING:
@@ -63,7 +64,7 @@ class RobotSummary:
     @property
     def largest_cause(self) -> str | None:
         """Cause with the largest share in size; None without deviation."""
-        return max(self.causes, key=lambda cause: abs(self.causes[cause])) if self.causes else None
+        return most(self.causes, key=lambda cause: abs(self.causes[cause])) if self.causes else None
 
     @property
     def shown_axes(self) -> tuple[AxisSummary, ...]:
@@ -84,7 +85,7 @@ class RobotSummary:
                 "its legs are rigid" if self.tips < NOTHING else f"tips of legs swing by up to {text(self.tips, 'm')}"
             )
             return f"{name} stays on the path of the rigid robot: {still}."
-        by_axis = ", ".join(f"{a.axis} {text(a.peak, 'm')}" for a in self.shown_axes)
+        by_axis = along_axes([a.peak for a in self.shown_axes])
         leg = "" if self.worst_leg is None else f", most of it in leg {self.worst_leg}"
         until = " until the computation stopped" if self.partial else ""
         size = f"{name} misses its rigid path by up to {text(self.peak, 'm')}{until} ({by_axis})"
@@ -147,7 +148,7 @@ def summary(data: Dataset, point: str = "com") -> RobotSummary | ActuatorSummary
     partial = bool(data.attrs.get("partial", 0))
     if "com_deviation" not in data:
         tip = tip_size(data)
-        at, length = int(np.abs(tip).argmax()), data.length.values
+        at, length = first_largest(np.abs(tip)), data.length.values
         return ActuatorSummary(
             peak=float(np.abs(tip[at])),
             time=float(data.time[at]),
@@ -158,7 +159,7 @@ def summary(data: Dataset, point: str = "com") -> RobotSummary | ActuatorSummary
         )
     deviation, path = data[f"{point}_deviation"].values, data[f"{point}_position_rigid"].values
     size, time = np.linalg.norm(deviation, axis=1), data.time.values
-    at = int(size.argmax())
+    at = first_largest(size)
     causes, leg, share = _blame(data, at) if point == "com" else ({}, None, None)
     return RobotSummary(
         point=point,
@@ -194,7 +195,7 @@ def tool_apart(data: Dataset) -> bool:
 
 
 def _axis(name: str, deviation: Array, path: Array, time: Array) -> AxisSummary:
-    at, excursion = int(np.abs(deviation).argmax()), float(np.ptp(path))
+    at, excursion = first_largest(np.abs(deviation)), float(np.ptp(path))
     peak = float(np.abs(deviation[at]))
     per_cent = 100 * peak / excursion if excursion >= SMALLEST_EXCURSION else None
     return AxisSummary(
@@ -210,12 +211,12 @@ def _blame(data: Dataset, at: int) -> tuple[dict[str, float], int | None, float 
         return {}, None, None
     shares = data.deviation_by_cause.values[at] @ deviation / size**2
     causes = dict(zip(map(str, data.cause.values), shares.sum(axis=1).tolist(), strict=True))
-    by_leg = shares[int(np.abs(shares.sum(axis=1)).argmax())]
+    by_leg = shares[first_largest(np.abs(shares.sum(axis=1)))]
     parts = by_leg / by_leg.sum()
     second, largest = np.sort(parts)[-2:]
     if not cleared(largest - second, largest):  # legs alike: none of them is the one
         return causes, None, None
-    leg = int(parts.argmax())
+    leg = first_largest(parts, EQUALS)
     return causes, leg + 1, float(parts[leg])
 
 

@@ -11,11 +11,12 @@ from flexapod.errors import InputError
 from flexapod.model import ActuatorStudy, HydraulicDrive, Robot, Study
 from flexapod.rigid.kinematics import BETA_LIMIT
 from flexapod.rigid.workspace import BEFORE, BEYOND, LONGEST, PULLED_OUT, SHORTEST
-from flexapod.solve.modes import refuse_pure_force
+from flexapod.solve.modes import refuse_pure_force, refuse_taut
 from flexapod.study.before.room import check_outputs
-from flexapod.study.bodies import clearance, first_least, gap_words, largest_turns, turns
+from flexapod.study.bodies import clearance, gap_words, largest_turns, turns
 from flexapod.study.path import RigidPath, open_force_words, path_instants
 from flexapod.threads import one_thread
+from flexapod.ties import first_largest, first_least, most
 from flexapod.typing import Array
 
 SINGULAR = 1e-8  # smallest singular value of the scaled Jacobian below which a pose is refused
@@ -54,6 +55,7 @@ def check_path(study: Study, path: RigidPath | None = None) -> list[str]:
     try:
         if study.initial.start == "equilibrium":
             refuse_pure_force(study.robot, "the equilibrium start")
+            refuse_taut(study.robot, study.simulation)
     except InputError as error:
         raise error.located(file=study.path) from None
     path = path or RigidPath(study)
@@ -90,6 +92,9 @@ def check_geometry(study: Study, path: RigidPath | None = None) -> list[str]:
         limbs = rigid.rigid_limbs(robot)
         if limbs.guides or np.count_nonzero(limbs.state == rigid.DRIVEN) < 6:
             rigid.refuse_loose(limbs)
+        for early in path.first_looks:
+            _refuse_lost(robot, early.time, early.reach)
+            _refuse_excess(robot, early.time, early.reach)
         t, found = path.time, path.reach
         _refuse_lost(robot, t, found)
         _refuse_excess(robot, t, found)
@@ -143,7 +148,7 @@ def _refuse_excess(robot: Robot, t: Array, reach: rigid.Reach) -> None:
     fatal = [e for e in (*found, *rigid.carriages(robot, t, reach.carriage)) if e.fatal]
     if not fatal:
         return
-    worst = max(fatal, key=lambda e: abs(e.value - e.limit))
+    worst = most(fatal, key=lambda e: abs(e.value - e.limit))
     others = [str(leg) for leg in sorted({e.leg for e in fatal} - {worst.leg})]
     also = f"; so do legs {', '.join(others)}" if len(others) > 1 else "".join(f"; so does leg {n}" for n in others)
     raise InputError(
@@ -161,7 +166,7 @@ def _refuse_off_the_screw(robot: Robot, t: Array, length: Array) -> None:
             _refuse_out_of_oil(i, leg.cylinder_of_oil, t, along)
         if leg.screw is None:
             continue
-        low, high = int(along.argmin()), int(along.argmax())
+        low, high = first_least(along), first_largest(along)
         k = low if -along[low] > along[high] - leg.screw.length else high
         if 0 <= along[k] <= leg.screw.length:
             continue
@@ -180,7 +185,7 @@ def _refuse_off_the_screw(robot: Robot, t: Array, length: Array) -> None:
 def _refuse_out_of_oil(i: int, drive: HydraulicDrive, t: Array, along: Array) -> None:
     volumes = drive.volumes(along)
     outside = np.maximum(-along, along - drive.stroke)
-    k = int(np.where(volumes.min(axis=0) > 0, outside, np.inf).argmax())
+    k = first_largest(np.where(volumes.min(axis=0) > 0, outside, np.inf))
     if outside[k] <= 0 and volumes[:, k].min() > 0:
         return
     at = "" if len(t) == 1 else f" at t = {t[k]:.6g} s"
@@ -236,7 +241,7 @@ def _refuse_folded(t: Array, found: rigid.Reach) -> None:
         if angle.max() <= BETA_LIMIT:
             continue
         words = _FOLDS[joint]
-        k, leg = np.unravel_index(angle.argmax(), angle.shape)
+        k, leg = np.unravel_index(first_largest(angle), angle.shape)
         first = t[np.argmax(angle[:, leg] > BETA_LIMIT)]
         raise InputError(
             f"{words.what.format(leg + 1)} {np.rad2deg(angle[k, leg]):.1f} deg "
@@ -252,7 +257,7 @@ def _refuse_turned(path: RigidPath) -> None:
     if not np.isfinite(largest).any():
         return
     found = turns(path.robot, path.axes, path.poses.rotation)
-    k, leg, end = np.unravel_index((found - largest).argmax(), found.shape)
+    k, leg, end = np.unravel_index(first_largest(found - largest), found.shape)
     if found[k, leg, end] <= largest[leg, end] + ROUNDING:
         return
     name = ("base", "platform")[end]
@@ -279,7 +284,7 @@ def _touching(path: RigidPath) -> list[str]:
 def _refuse_singular(t: Array, found: rigid.NearestSingularity) -> None:
     words = ""
     if found.smallest_singular_value < SINGULAR:
-        words = f"is singular at t = {t[found.worst]:.6g} s"
+        words = f"is singular at t = {t[found.worst]:.6g} s" + ", from the start" * (found.worst == 0)
     elif len(found.sign_changes):
         k = int(found.sign_changes[0])
         words = f"passes through a singular pose between t = {t[k]:.6g} and {t[k + 1]:.6g} s"

@@ -10,6 +10,7 @@ from flexapod.solve.modal_loops import unstable_words
 from flexapod.solve.modes import locked_poses, modes_of
 from flexapod.study.poses import coordinate_words, coordinates_of
 from flexapod.study.words import text
+from flexapod.ties import first_largest
 from flexapod.typing import Array
 
 __all__ = ["loop_remarks", "loops", "unstable_at"]
@@ -39,7 +40,7 @@ def loop_remarks(study: model.Study, poses: rigid.Poses | None = None) -> list[s
         return []
     if rates is None or not rates.any():
         return []
-    worst, count = int(rates.argmax()), int((rates > 0).sum())
+    worst, count = first_largest(rates), int((rates > 0).sum())
     last = text(float(t[locked.at[worst]]), "s")
     where = f" at {count} of {INSTANTS} instants, most at t = {last}" if moving else ""
     return unstable_words(float(rates[worst]), where)
@@ -49,7 +50,7 @@ def unstable_at(robot: model.Robot, poses: rigid.Poses, rates: Array) -> list[st
     """At how many of P poses they are, and at which one most; ``rates`` (P,): growth there [1/s]."""
     if not (count := int((rates > 0).sum())):
         return []
-    worst = int(rates.argmax())
+    worst = first_largest(rates)
     at = coordinates_of(robot, poses.part(slice(worst, worst + 1)))[0]
     moved = {name: x for name, x in zip(model.AXES, at.tolist(), strict=True) if abs(x) > 1e-9}
     where = f"at {coordinate_words(moved)} from home" if moved else "at home"

@@ -9,6 +9,7 @@ from functools import cached_property
 import numpy as np
 
 from flexapod.study.accuracy.rows import Row
+from flexapod.ties import most
 from flexapod.typing import Array
 
 __all__ = ["KINDS", "Budget", "combined"]
@@ -85,7 +86,7 @@ class Budget:
     @property
     def largest(self) -> str:
         """The part with the largest share."""
-        return max(self.parts, key=lambda part: self.sizes[part])
+        return most(self.parts, key=lambda part: self.sizes[part])
 
     @property
     def calibrated(self) -> Budget:

@@ -8,7 +8,8 @@ import numpy as np
 
 from flexapod.study.budgets.rules import PLACE, Budget
 from flexapod.study.cause_words import cause_in_words
-from flexapod.study.words import cleared, column, text
+from flexapod.study.words import along_axes, cleared, column, text
+from flexapod.ties import ranked
 from flexapod.typing import Array
 
 if TYPE_CHECKING:
@@ -126,12 +127,12 @@ def _m(size: float) -> str:
 
 
 def _axes(sizes: Array) -> str:
-    return ", ".join(f"{axis} {_m(float(size))}" for axis, size in zip("xyz", sizes, strict=False))
+    return along_axes(sizes[PLACE])
 
 
 def table(data: Dataset) -> tuple[list[str], list[list[str]]]:
     """Head and rows of a budget's table, largest parts first; below them the whole of each kind and both totals."""
-    order = np.argsort(-data.share.values, kind="stable")
+    order = ranked(data.share.values)
     lines, values = [], []
     for k, kind in enumerate(map(str, data.kind.values)):
         there = [i for i in order if data.how.values[i, k]]
@@ -171,7 +172,7 @@ def bars(data: Dataset) -> list[Bar]:
 
     Systematic ones by their nature; three standard deviations of random ones.
     """
-    order = np.argsort(-data.share.values, kind="stable")
+    order = ranked(data.share.values)
     few = int((data.share.values >= SMALLEST).sum())
     few += few == len(order) - 1  # a single smaller part has its name
     found = [

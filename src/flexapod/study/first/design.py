@@ -1,4 +1,4 @@
-"""A first robot, computed: the thinnest standard piston that bears its load, and all sizes that follow from it."""
+"""A first robot, computed: the thinnest parts that bear its load, and all sizes that follow from them."""
 
 from __future__ import annotations
 
@@ -11,6 +11,8 @@ from flexapod.errors import InputError
 from flexapod.study.before.describe.robot import describe_legs
 from flexapod.study.before.estimates import buckling_load
 from flexapod.study.first import sizes
+from flexapod.study.first.choice import electric
+from flexapod.study.first.hydraulic import hydraulic
 from flexapod.study.first.sizes import OPTION, Body, Joints, Leg, Request
 from flexapod.study.first.written import Plan, written
 from flexapod.study.path import RigidPath
@@ -41,6 +43,23 @@ def first_robot(request: Request) -> str:
     """
     joints = sizes.joints_of(request)
     body, stroke = sizes.body_of(request, joints), sizes.stroke_of(request)
+    if request.drive == "electric":
+        return written(electric(_moved(request, joints, body, stroke)))
+    if request.drive == "hydraulic":
+        return written(hydraulic(_moved(request, joints, body, stroke)))
+    return written(_ideal(request, joints, body, stroke))
+
+
+def _moved(request: Request, joints: Joints, body: Body, stroke: float) -> Plan:
+    """The robot with legs of any thickness: its motion depends on their strokes alone."""
+    leg = sizes.leg_of(joints, stroke, sizes.RODS[0])
+    if leg is None:
+        raise _no_stroke(request, joints, stroke, sizes.RODS[0])
+    return _plan(request, joints, body, leg)
+
+
+def _ideal(request: Request, joints: Joints, body: Body, stroke: float) -> Plan:
+    """The robot with ideal legs: the thinnest standard piston."""
     safety = diameter = 0.0
     for diameter in _diameters(request, joints, stroke):
         leg = sizes.leg_of(joints, stroke, diameter)
@@ -49,7 +68,7 @@ def first_robot(request: Request) -> str:
         found = _plan(request, joints, body, leg)
         safety = _safety(found)
         if safety >= sizes.SAFETY:
-            return written(found)
+            return found
     raise _too_weak(request, diameter, safety)
 
 

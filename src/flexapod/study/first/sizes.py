@@ -16,7 +16,8 @@ from flexapod.words import text
 
 OPTION = "--from"
 EXAMPLE = "home=300 mm, payload=20 kg, stroke=60 mm"
-CHOICES = {"material": tuple(MATERIALS), "motion": AXES}
+IDEAL = "ideal"
+CHOICES = {"material": tuple(MATERIALS), "motion": AXES, "drive": ("electric", "hydraulic", IDEAL)}
 _BETWEEN = re.compile(r";|,(?!\d)|\s+(?=[A-Za-z]+\s*=)")  # not the comma of 27,5 mm
 _NUMBERS = {  # key: dimension, least, most [SI]
     "home": ("length", 0.01, 100.0),
@@ -35,7 +36,8 @@ class Request:
 
     `home`: height of the platform's joints above the base's; `payload`: mass with the platform; `stroke`: of a leg,
     from its shortest to its longest; `base`, `platform`: radii of the joints' circles; `diameter`: of the pistons;
-    `duration`: of the motion; `texts`: what was typed, by key.
+    `duration`: of the motion; `drive`: what the legs are, "ideal" ones have exact drives and joints that do not give
+    way; `texts`: what was typed, by key.
     """
 
     home: float
@@ -47,6 +49,7 @@ class Request:
     duration: float | None = None
     material: str = "steel"
     motion: str = "heave"
+    drive: str = "electric"
     texts: dict[str, str] = field(default_factory=dict)
 
 
@@ -164,8 +167,8 @@ class Leg:
 
 def joints_of(request: Request) -> Joints:
     """Circles in proportion to the home height where they are not given."""
-    base = request.base or _rounded(BASE * (request.home if request.platform is None else _wider(request)))
-    platform = request.platform or _rounded(PLATFORM * base)
+    base = request.base or rounded(BASE * (request.home if request.platform is None else _wider(request)))
+    platform = request.platform or rounded(PLATFORM * base)
     half = math.radians(HALF_ANGLE)
     across = platform_circle(platform, half) - base_circle(base, half)
     length = float(np.hypot(np.linalg.norm(across[0]), request.home))
@@ -197,9 +200,9 @@ def body_of(request: Request, joints: Joints) -> Body:
             allowed=f"at most {most:.3g} kg with home = {text(request.home, 'm')}",
             next_step=f"Give a larger home, {text(1.01 * compact / WIDEST / BASE, 'm')} or more, or a smaller payload",
         )
-    radius = _rounded(max(compact, joints.platform))
+    radius = rounded(max(compact, joints.platform))
     height = max(m / (math.pi * DENSITY * radius**2), FLATTEST * radius)
-    return Body(mass=m, radius=radius, height=_rounded(height))
+    return Body(mass=m, radius=radius, height=rounded(height))
 
 
 def longest_stroke(joints: Joints, diameter: float) -> float:
@@ -216,17 +219,17 @@ def leg_of(joints: Joints, stroke: float, diameter: float) -> Leg | None:
     if stroke > longest_stroke(joints, diameter):
         return None
     digit = joints.digit
-    shortest = _down(joints.length - stroke / 2, digit)
-    longest = _up(joints.length + stroke / 2, digit)
+    shortest = down(joints.length - stroke / 2, digit)
+    longest = up(joints.length + stroke / 2, digit)
     least, most = longest - shortest + (GUIDED + SPARE) * diameter, shortest - FREE * diameter
-    mouth = _down(max(min(MOUTH * joints.length, most), least), digit)
-    piston = _up(longest - mouth + GUIDED * diameter, digit)
+    mouth = down(max(min(MOUTH * joints.length, most), least), digit)
+    piston = up(longest - mouth + GUIDED * diameter, digit)
     return Leg(shortest=shortest, longest=longest, mouth=mouth, piston=piston, diameter=diameter)
 
 
 def stroke_of(request: Request) -> float:
     """Stroke of a leg [m]: given, or a share of the home height."""
-    return request.stroke or _rounded(STROKE * request.home)
+    return request.stroke or rounded(STROKE * request.home)
 
 
 def cylinder_of(leg: Leg, density: float) -> tuple[float, float, float]:
@@ -241,13 +244,16 @@ def fitting(joints: Joints) -> Array:
     return np.array([d for d in RODS if 1.25 * OUTER * d <= joints.gap])
 
 
-def _rounded(value: float) -> float:
+def rounded(value: float) -> float:
+    """To three digits."""
     return float(f"{value:.3g}")
 
 
-def _down(value: float, digit: float) -> float:
+def down(value: float, digit: float) -> float:
+    """To a multiple of `digit`, downwards."""
     return round(math.floor(value / digit) * digit, 12)
 
 
-def _up(value: float, digit: float) -> float:
+def up(value: float, digit: float) -> float:
+    """To a multiple of `digit`, upwards."""
     return round(math.ceil(value / digit) * digit, 12)

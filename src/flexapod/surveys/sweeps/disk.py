@@ -24,5 +24,5 @@ class DurableStore(LocalStore):
 
 
 def _put(path: Path, content: Any) -> None:
-    with whole(path, settled=True) as temporary:
+    with whole(path) as temporary:
         temporary.write_bytes(content)

@@ -17,6 +17,7 @@ from typing import TYPE_CHECKING, Any
 import numpy as np
 
 from flexapod.errors import ComputationError, InputError
+from flexapod.files import remove_abandoned
 from flexapod.model import ActuatorStudy, Study
 from flexapod.solve.actuator_march import prepare_actuator
 from flexapod.solve.robot_system import robot_system
@@ -31,7 +32,7 @@ from flexapod.surveys.sweeps.plan import read_plan
 from flexapod.surveys.sweeps.points import Points, Resolved
 from flexapod.surveys.sweeps.result import as_dataset
 from flexapod.surveys.sweeps.schedule import results
-from flexapod.surveys.sweeps.store import COMPUTED, FAILED, SweepStore, check_header, tidy
+from flexapod.surveys.sweeps.store import COMPUTED, FAILED, SweepStore, check_header
 from flexapod.surveys.sweeps.writer import Writer, mend
 from flexapod.version import this_version
 
@@ -181,7 +182,7 @@ def _store(path: Path | None, points: Points, keep: Kept, resolved: Resolved) ->
     varied, others = columns(points, keep, resolved)
     wanted = header(points, keep, resolved, varied)
     if path is not None:
-        tidy(path)
+        remove_abandoned(path.parent)
     if path is not None and path.exists():
         found = SweepStore.open(path, write=True)
         check_header(path, found.header, wanted)

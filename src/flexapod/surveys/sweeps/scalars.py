@@ -23,6 +23,7 @@ from flexapod.study.after.plausibility import flexible_axes, leg_stress
 from flexapod.study.after.results import robot_results
 from flexapod.study.path import RigidPath
 from flexapod.study.record import Record
+from flexapod.ties import first_largest
 from flexapod.typing import Array
 
 
@@ -113,7 +114,7 @@ class RobotRun:
     def cause_share(self) -> Array:
         """Share of every cause in the deviation at its peak, along its direction, (causes,); zero without deviation."""
         deviation = self.com_deviation
-        at = int(np.linalg.norm(deviation, axis=1).argmax())
+        at = first_largest(np.linalg.norm(deviation, axis=1))
         size = float(deviation[at] @ deviation[at])
         if size == 0.0:
             return np.zeros(len(cause_names(self.study.robot)))

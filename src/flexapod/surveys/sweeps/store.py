@@ -3,9 +3,6 @@
 from __future__ import annotations
 
 import os
-import re
-import shutil
-import tempfile
 import warnings
 from collections.abc import Iterator, Mapping, Sequence
 from pathlib import Path
@@ -15,7 +12,7 @@ import numpy as np
 from numpy.typing import NDArray
 
 from flexapod.errors import ComputationError, InputError
-from flexapod.files import UNFINISHED, check_regular, settle
+from flexapod.files import UNFINISHED, check_regular, scratch, settle
 from flexapod.typing import Array
 
 if TYPE_CHECKING:
@@ -85,9 +82,8 @@ class SweepStore:
             return cls(group, None)
         try:
             path.parent.mkdir(parents=True, exist_ok=True)
-            beside = {"prefix": f".{path.name}-", "dir": path.parent, "ignore_cleanup_errors": True}
-            with tempfile.TemporaryDirectory(**beside) as folder:
-                whole = Path(folder) / "store"
+            with scratch(path.parent) as folder:
+                whole = folder / "store"
                 _fill(zarr.create_group(DurableStore(whole), attributes=dict(header)), size, columns)
                 whole.rename(path)
             settle(path.parent)
@@ -271,14 +267,6 @@ def unreadable(path: Path | None, name: str) -> ComputationError:
         f"{path}: {name} cannot be read",
         next_step="Run the sweep again with this store: it computes again what was lost",
     )
-
-
-def tidy(path: Path) -> None:
-    """Remove what processes left beside a store that were killed while they made it; for the holder of its lock."""
-    made = re.compile(re.escape(f".{path.name}-") + "[a-z0-9_]{8}")  # by tempfile
-    for rest in path.parent.iterdir():
-        if made.fullmatch(rest.name):
-            shutil.rmtree(rest, ignore_errors=True)
 
 
 def _fill(group: zarr.Group, size: int, columns: Mapping[str, Column]) -> None:

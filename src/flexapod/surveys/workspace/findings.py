@@ -14,6 +14,7 @@ from flexapod.scene.robot import robot_study
 from flexapod.study.before.reach import REACHED, REASONS
 from flexapod.study.names import Variable
 from flexapod.study.poses import coordinate_words, coordinates_of, in_shown_unit
+from flexapod.ties import first_largest, first_least
 from flexapod.typing import Array
 
 if TYPE_CHECKING:
@@ -206,7 +207,7 @@ def _finding(data: Dataset, name: str, values: DataArray, mode: int) -> Finding 
     flat = values.values.ravel()
     if not np.isfinite(flat).any():
         return None
-    least, largest = int(np.nanargmin(flat)), int(np.nanargmax(flat))
+    least, largest = first_least(flat), first_largest(flat)
     home = _home(data, values)
     return Finding(
         name=name,

@@ -19,6 +19,7 @@ from flexapod.study.bodies import clearance, largest_turns, turns
 from flexapod.study.budgets.rows import names_of_rows, rows_of_poses
 from flexapod.study.budgets.rules import Budget
 from flexapod.study.many_modes import codes_at_rest, poses_of
+from flexapod.ties import EQUALS, alike
 from flexapod.typing import Array, Mask
 
 Values = dict[str, Array]
@@ -107,7 +108,9 @@ def _elastic(robot: model.Robot, path: rigid.Poses, locked: LockedPoses, wanted:
     give = compliance(stiffness_of(robot, locked).total)[:, :3, :3]
     principal, axes = np.linalg.eigh(give)
     softest = axes[:, :, -1]
-    sign = np.sign(np.take_along_axis(softest, np.abs(softest).argmax(axis=1)[:, None], axis=1))
+    sign = np.sign(
+        np.take_along_axis(softest, alike(np.abs(softest), axis=1, same=EQUALS).argmax(axis=1)[:, None], axis=1)
+    )
     tool = states.pose[:, :3] + matrix(states.pose[:, 3:]) @ (robot.tool - robot.com)
     sag = tool - rigid_pose.point(robot.tool)[0]
     force = _drive_forces(robot, locked)

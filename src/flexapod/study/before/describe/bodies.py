@@ -10,8 +10,9 @@ from flexapod import rigid
 from flexapod.errors import FlexapodError
 from flexapod.model import Robot
 from flexapod.study.before.describe.leg import Extreme
-from flexapod.study.bodies import clearance, first_least, largest_turns, turns
+from flexapod.study.bodies import clearance, largest_turns, turns
 from flexapod.study.path import RigidPath
+from flexapod.ties import first_largest, first_least
 
 __all__ = ["Clearance", "JointTurn", "StrokeEnd", "joint_turns", "leg_clearance", "stroke_ends"]
 
@@ -88,7 +89,7 @@ def joint_turns(path: RigidPath) -> tuple[JointTurn, ...]:
     for end, name in enumerate(("base", "platform")):
         limited = np.isfinite(limits[:, end])
         over = found[..., end] - (limits[:, end] if limited.any() else 0.0)
-        k, leg = np.unravel_index(over.argmax(), over.shape)
+        k, leg = np.unravel_index(first_largest(over), over.shape)
         extreme = Extreme(value=float(found[k, leg, end]), time=float(path.time[k]))
         limit = float(limits[leg, end]) if limited.any() else None
         lines.append(JointTurn(end=name, leg=int(leg) + 1, largest=extreme, limit=limit))

@@ -16,6 +16,7 @@ from flexapod.study.before.describe.leg import Extreme
 from flexapod.study.before.sliding import steady_friction
 from flexapod.study.path import RigidPath
 from flexapod.study.words import number
+from flexapod.ties import first_largest, first_least, most
 from flexapod.typing import Array
 
 __all__ = [
@@ -66,14 +67,13 @@ def describe_hydraulic(i: int, leg: Leg, t: Array, length: Array, thrust: Array,
         thrust=_largest(t, np.abs(thrust)),
         pressure=_largest(t, np.maximum(thrust / push, -thrust / pull)),  # (T23.7)
         flow=_largest(t, np.maximum(rate * push, -rate * pull)),
-        stiffness=Extreme(value=float(k.min()), time=float(t[k.argmin()])),
+        stiffness=Extreme(value=float(k.min()), time=float(t[first_least(k)])),
         creep=float((np.abs(thrust) * oil.creep(length)).max()),
     )
 
 
 def _largest(t: Array, values: Array) -> Extreme:
-    k = int(values.argmax())
-    return Extreme(value=float(values[k]), time=float(t[k]))
+    return Extreme(value=float(values.max()), time=float(t[first_largest(values)]))
 
 
 def oil_frequency(path: RigidPath) -> tuple[float, float] | None:
@@ -107,11 +107,11 @@ def oil_words(path: RigidPath, found: tuple[HydraulicDescription, ...]) -> tuple
         words.append(
             f"the platform on its oil alone vibrates at {low}" + (f" to {high}" if high != low else "") + " Hz at least"
         )
-    most = max(found, key=lambda x: x.creep)
-    if most.creep:
+    worst = most(found, key=lambda x: x.creep)
+    if worst.creep:
         words.append(
-            f"leakage lets leg {most.leg} give way by up to {number(1e6 * most.creep, 3)} um/s where nothing corrects "
-            "it; positions and frequencies are those of valves that do"
+            f"leakage lets leg {worst.leg} give way by up to {number(1e6 * worst.creep, 3)} um/s where nothing "
+            "corrects it; positions and frequencies are those of valves that do"
         )
     return tuple(words)
 

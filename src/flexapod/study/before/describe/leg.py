@@ -12,6 +12,7 @@ from flexapod.study.after.plausibility import NEAR_BUCKLING, SLENDERNESS, buckli
 from flexapod.study.before.estimates import STATIONS, piston_section, section_width
 from flexapod.study.path import RigidPath
 from flexapod.study.words import text
+from flexapod.ties import first_largest, first_least, most
 from flexapod.typing import Array
 
 OFF_LOAD = 2.0  # times another load: 12 % of stiffness
@@ -109,7 +110,7 @@ def describe_leg(number: int, leg: Leg, path: LegPath, home: float) -> LegDescri
     along = path.force if leg.driven == "stroke" else path.thrust
     pushed = np.maximum(along, path.thrust)  # the axial force goes from the drive's to the tip's along the piston
     euler = path.euler
-    near = int((pushed / euler).argmax())
+    near = first_largest(pushed / euler)
     inside = np.minimum(leg.piston.length, leg.piston.length - free)
     return LegDescription(
         leg=number,
@@ -132,13 +133,11 @@ def describe_leg(number: int, leg: Leg, path: LegPath, home: float) -> LegDescri
 
 
 def _least(t: Array, values: Array) -> Extreme:
-    k = int(values.argmin())
-    return Extreme(value=float(values[k]), time=float(t[k]))
+    return Extreme(value=float(values.min()), time=float(t[first_least(values)]))
 
 
 def _most(t: Array, values: Array) -> Extreme:
-    k = int(values.argmax())
-    return Extreme(value=float(values[k]), time=float(t[k]))
+    return Extreme(value=float(values.max()), time=float(t[first_largest(values)]))
 
 
 def _way(leg: Leg, t: Array, place: Array) -> Way | None:
@@ -180,15 +179,15 @@ def _stress(leg: Leg, t: Array, force: Array, moment: Array, free: Array) -> Str
 def load_remarks(legs: tuple[LegDescription, ...], robot: Robot, fidelity: str) -> list[str]:
     """Doubts about loads and about legs too thick for the `fidelity`, each of the leg where it is worst."""
     remarks = []
-    worst = max(legs, key=lambda leg: leg.euler_share.value)
+    worst = most(legs, key=lambda leg: leg.euler_share.value)
     slim = [found for found, leg in zip(legs, robot.legs, strict=True) if not leg.piston.shear]
-    share, slender = worst.euler_share, min(slim, key=lambda leg: leg.slenderness, default=None)
+    share, slender = worst.euler_share, most(slim, key=lambda leg: -leg.slenderness) if slim else None
     if share.value > NEAR_BUCKLING:
         words = buckling_words(share.value, share.value * worst.euler_load, f" at t = {share.time:.6g} s")
         remarks.append(f"leg {worst.leg}: {words}")
     if slender is not None and slender.slenderness < SLENDERNESS:
         remarks.append(
-            f"leg {slender.leg}: the free length falls to {slender.slenderness:.3g} times the width of the piston; "
+            f"leg {slender.leg}: the free length falls to {slender.slenderness:.3g} times the width of the piston: "
             + _thick(robot.legs[slender.leg - 1], slender.slenderness, solid=fidelity == SOLID)
             + ("" if fidelity == SOLID else "; leg.piston.shear = true takes it in")
         )
@@ -207,7 +206,7 @@ def bearing_remarks(path: RigidPath) -> list[str]:
                 found.setdefault(end, []).append((max(here / given, given / max(here, 1e-300)), i + 1, at_start[i]))
     return [
         f"leg {leg}: its {end} joint bears {text(float(load), 'N', 4)} at the start, and its stiffness is taken about "
-        f"{text(getattr(path.robot.legs[leg - 1], f'{end}_joint').rolling.load, 'N', 4)}: it grows as load^0.16"
+        f"{text(getattr(path.robot.legs[leg - 1], f'{end}_joint').rolling.load, 'N', 4)}. It grows as load^0.16"
         for end, joints in found.items()
         for off, leg, load in [max(joints)]
         if off > OFF_LOAD
@@ -222,13 +221,13 @@ def _unloading(legs: tuple[LegDescription, ...], robot: Robot) -> list[str]:
     """The leg whose thrust goes farthest beyond what the preload of its nut takes, if any does."""
     over = []
     for found, leg in zip(legs, robot.legs, strict=True):
-        most = max((found.force_min, found.force_max), key=lambda force: abs(force.value))
-        if leg.screw is not None and abs(most.value) > leg.screw.nut.linear_to:
-            over.append((abs(most.value) / leg.screw.nut.linear_to, found.leg, most))
+        force = most((found.force_min, found.force_max), key=lambda force: abs(force.value))
+        if leg.screw is not None and abs(force.value) > leg.screw.nut.linear_to:
+            over.append((abs(force.value) / leg.screw.nut.linear_to, found.leg, force))
     if not over:
         return []
-    _, number, most = max(over, key=lambda entry: entry[0])
-    return [f"leg {number}: {nut_words(robot.legs[number - 1], abs(most.value), f' at t = {most.time:.6g} s')}"]
+    _, number, force = most(over, key=lambda entry: entry[0])
+    return [f"leg {number}: {nut_words(robot.legs[number - 1], abs(force.value), f' at t = {force.time:.6g} s')}"]
 
 
 def _yielding(legs: tuple[LegDescription, ...]) -> list[str]:
@@ -238,7 +237,7 @@ def _yielding(legs: tuple[LegDescription, ...]) -> list[str]:
         for leg in legs
         if leg.stress is not None and leg.stress.yield_stress is not None
     ]
-    ratio, leg, stress = max(over, key=lambda entry: entry[0], default=(0.0, 0, None))
+    ratio, leg, stress = most(over, key=lambda entry: entry[0]) if over else (0.0, 0, None)
     if stress is None or ratio <= 1:
         return []
     return [

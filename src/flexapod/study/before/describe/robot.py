@@ -17,7 +17,7 @@ from flexapod.solve.parts import part_stiffness
 from flexapod.solve.robot_march import refuse_massless
 from flexapod.solve.springs import springs_along
 from flexapod.solve.stiffness import compliance, stiffness_of
-from flexapod.study.accuracy.words import accuracy_words
+from flexapod.study.accuracy.words import accuracy_words, rest_words
 from flexapod.study.after.inside import guide_results
 from flexapod.study.after.mode_shapes import mode_kinds
 from flexapod.study.before.checks import check_path
@@ -48,9 +48,11 @@ from flexapod.study.before.describe.screw import ScrewDescription, back_words, d
 from flexapod.study.before.estimates import bending_moments, buckling_loads, residual_vibration
 from flexapod.study.before.loops import loop_remarks
 from flexapod.study.disturbances import vibration_words
+from flexapod.study.ideal import ideal_words
 from flexapod.study.path import RigidPath
 from flexapod.study.words import held
 from flexapod.threads import one_thread
+from flexapod.ties import EQUALS, first_largest
 from flexapod.typing import Array
 
 SHOWN = 6
@@ -87,15 +89,17 @@ class StiffnessDescription:
 class PoseDescription:
     """The robot at one pose, drives locked, about its static equilibrium.
 
-    `sag` [m] of the centre of mass, `stiffness`, `modes`: the lowest. None and empty where there is no such thing;
-    `problem` then says why, or that loops are unstable. `parts`: of legs with more than ideal parts, by name and leg
-    [N/m], inf where it has none, or where its drive makes up for it. `lost_motion` [m] of each leg by friction of its
-    drive, half of it to and fro. `bushings` [N]: what gland and head of each leg bear across it.
+    `sag` [m] of the centre of mass, `rest`: the same in words with signs, and what of it is by heat; `stiffness`,
+    `modes`: the lowest. None and empty where there is no such thing; `problem` then says why, or that loops are
+    unstable. `parts`: of legs with more than ideal parts, by name and leg [N/m], inf where it has none, or where its
+    drive makes up for it. `lost_motion` [m] of each leg by friction of its drive, half of it to and fro. `bushings`
+    [N]: what gland and head of each leg bear across it.
     """
 
     name: str
     time: float
     sag: float | None = None
+    rest: str = ""
     stiffness: StiffnessDescription | None = None
     modes: tuple[ModeLine, ...] = ()
     problem: str | None = None
@@ -143,8 +147,8 @@ def describe_pose(study: model.Study, name: str, time: float) -> PoseDescription
         )
     sag = found.equilibrium.state.pose[:3] - path.point(robot.com)[0][0]
     return PoseDescription(
-        name=name, time=time, sag=float(np.linalg.norm(sag)), stiffness=stiffness, modes=modes[:SHOWN], parts=parts,
-        lost_motion=lost, bushings=bushings,
+        name=name, time=time, sag=float(np.linalg.norm(sag)), rest=rest_words(study, path, sag),
+        stiffness=stiffness, modes=modes[:SHOWN], parts=parts, lost_motion=lost, bushings=bushings,
         problem=next((f"{x[0].upper()}{x[1:]}." for x in unstable_words(found.growth)), None),
     )  # fmt: skip
 
@@ -167,7 +171,7 @@ def _stiffness(total: Array) -> StiffnessDescription:
     shift, vectors = np.linalg.eigh(give[:3, :3])
     turning = np.linalg.eigvalsh(give[3:, 3:])
     most, turning_most = (values[values > ROUNDING * values[-1]][0] for values in (shift, turning))  # others are held
-    softest = vectors[:, -1] * np.sign(vectors[np.abs(vectors[:, -1]).argmax(), -1])
+    softest = vectors[:, -1] * np.sign(vectors[first_largest(np.abs(vectors[:, -1]), EQUALS), -1])
     return StiffnessDescription(
         least=float(1 / shift[-1]),
         most=float(1 / most),
@@ -200,7 +204,7 @@ def vibration_to_expect(study: model.Study, end: float) -> VibrationToExpect | N
     found = residual_vibration(robot, modes, t, path, BAND, from_rest=study.initial.start != "moving")
     if not found.frequency.size:
         return None
-    largest = int(found.amplitude.argmax())
+    largest = first_largest(found.amplitude, EQUALS)
     return VibrationToExpect(
         amplitude=found.total,
         frequency=float(found.frequency[largest]),
@@ -236,8 +240,8 @@ class RobotDescription:
     """What `describe` finds for a robot; times in s.
 
     In words: what poses `held` still, `motions` that the mechanism has, `back` what happens with the motors of screws
-    off, `oil` how hydraulic legs give way, `accuracy` of the machine as built, what `disturbances` do to it, `remarks`
-    of doubt.
+    off, `oil` how hydraulic legs give way, `accuracy` of the machine as built, what `disturbances` do to it, what is
+    `ideal`, `remarks` of doubt.
     """
 
     kind: str = "robot"
@@ -262,6 +266,7 @@ class RobotDescription:
     vibration: VibrationToExpect | None
     accuracy: tuple[str, ...]
     disturbances: tuple[str, ...]
+    ideal: str | None
     remarks: tuple[str, ...]
 
     def as_dict(self) -> dict[str, object]:
@@ -315,6 +320,7 @@ def describe(study: model.Study | model.ActuatorStudy) -> RobotDescription | Act
         vibration=vibration_to_expect(study, end),
         accuracy=accuracy_words(study),
         disturbances=vibration_words(study),
+        ideal=ideal_words(study.robot),
         remarks=tuple(
             dict.fromkeys(
                 [
@@ -334,7 +340,7 @@ def describe(study: model.Study | model.ActuatorStudy) -> RobotDescription | Act
 def _angles(path: RigidPath) -> tuple[JointAngle, ...]:
     found = []
     for joint, angle in path.reach.angles.items():
-        k, leg = np.unravel_index(angle.argmax(), angle.shape)
+        k, leg = np.unravel_index(first_largest(angle), angle.shape)
         extreme = Extreme(value=float(angle[k, leg]), time=float(path.time[k]))
         found.append(JointAngle(joint=joint, leg=int(leg) + 1, largest=extreme))
     return tuple(found)

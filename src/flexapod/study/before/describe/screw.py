@@ -22,6 +22,7 @@ from flexapod.study.before.screws import (
 )
 from flexapod.study.path import RigidPath
 from flexapod.study.words import number, text
+from flexapod.ties import first_largest, most
 from flexapod.typing import Array
 
 __all__ = ["ScrewDescription", "back_words", "describe_screw", "describe_screws", "screw_remarks", "screw_table"]
@@ -88,7 +89,7 @@ def describe_screw(
         leg=i + 1,
         thrust=_largest(t, np.abs(thrust)),
         buckling=buckling,
-        buckling_thrust=float(allowed[int((pushed / allowed).argmax())]),
+        buckling_thrust=float(allowed[first_largest(pushed / allowed)]),
         speed=_largest(t, speed * screw.rotor.ratio),
         critical=float(speed.max() / critical_speed(screw)),
         torque=_largest(t, np.abs(torque)),
@@ -111,8 +112,7 @@ def _life(screw: ScrewDrive, load: Array, t: Array, rate: Array) -> tuple[float 
 
 
 def _largest(t: Array, values: Array) -> Extreme:
-    k = int(values.argmax())
-    return Extreme(value=float(values[k]), time=float(t[k]))
+    return Extreme(value=float(values.max()), time=float(t[first_largest(values)]))
 
 
 def screw_remarks(robot: Robot, screws: tuple[ScrewDescription, ...]) -> list[str]:
@@ -151,7 +151,7 @@ def _excesses(screw: ScrewDrive, found: ScrewDescription) -> Iterator[tuple[str,
             found.rms_torque / limits.rms_torque,
             (
                 f"the motor's torque is {number(found.rms_torque, 4)} N m (root mean square), above the limit of "
-                f"{number(limits.rms_torque, 4)} N m: it gets too hot"
+                f"{number(limits.rms_torque, 4)} N m. It gets too hot"
             ),
         )
     yield (
@@ -159,8 +159,8 @@ def _excesses(screw: ScrewDrive, found: ScrewDescription) -> Iterator[tuple[str,
         found.buckling.value,
         (
             f"the screw is pushed with {number(found.buckling.value, 3)} times the {text(found.buckling_thrust, 'N')} "
-            f"that its shaft may bear at t = {found.buckling.time:.6g} s (half the Euler load): a thicker shaft, or "
-            "both ends held"
+            f"that its shaft may bear at t = {found.buckling.time:.6g} s (half the Euler load). A thicker shaft would "
+            "do, or both ends held"
         ),
     )
     yield (
@@ -168,7 +168,7 @@ def _excesses(screw: ScrewDrive, found: ScrewDescription) -> Iterator[tuple[str,
         found.critical,
         (
             f"the screw turns {number(found.critical, 3)} times as fast as its shaft may (0.8 of the first bending "
-            "frequency): a thicker or shorter shaft, a longer lead, or its far end held"
+            "frequency). A thicker or shorter shaft would do, a longer lead, or its far end held"
         ),
     )
     if found.safety is not None:
@@ -190,16 +190,16 @@ def _excesses(screw: ScrewDrive, found: ScrewDescription) -> Iterator[tuple[str,
 
 def back_words(path: RigidPath, screws: tuple[ScrewDescription, ...]) -> str:
     """What happens with the motors off."""
-    most = max(screws, key=lambda found: found.back_torque)
-    screw = path.robot.legs[most.leg - 1].screw
+    worst = most(screws, key=lambda found: found.back_torque)
+    screw = path.robot.legs[worst.leg - 1].screw
     if screw is None or back_efficiency(screw) <= 0:
         return "with the motors off the screws stay where they are: at efficiencies up to 0.5 no thrust turns them back"
-    if most.back_torque == 0:
+    if worst.back_torque == 0:
         return "with the motors off nothing turns the screws: no leg bears a thrust"
     brake = "no brake is given" if screw.brake is None else f"its brake holds {text(screw.brake.torque, 'N m')}"
     return (
-        f"with the motors off the legs give way: the thrust turns the motor of leg {most.leg} back with up to "
-        f"{text(most.back_torque, 'N m')} (efficiency {number(back_efficiency(screw), 2)} backwards); {brake}"
+        f"with the motors off the legs give way: the thrust turns the motor of leg {worst.leg} back with up to "
+        f"{text(worst.back_torque, 'N m')} (efficiency {number(back_efficiency(screw), 2)} backwards); {brake}"
     )
 
 

@@ -1,0 +1,47 @@
+"""Names of tables and keys of a study file, read without the model: answers about wrong ones come at once."""
+
+from __future__ import annotations
+
+import tomllib
+from importlib.resources import files
+
+from flexapod.errors import InputError, nearest
+
+__all__ = ["check_table"]
+
+MOST = 3  # names that are suggested
+
+
+def check_table(wanted: str) -> None:
+    """Refuse what is not a table of a study file, nor above one.
+
+    Raises
+    ------
+    InputError
+        With the table that is meant: of that last name, with a key of that name, or of a similar name.
+    """
+    found = tomllib.loads(files("flexapod").joinpath("model", "keys.toml").read_text(encoding="utf-8"))
+    tables = list(dict.fromkeys(entry["table"] for entry in found["entry"]))
+    if any(f"{table}.".startswith(f"{wanted}.") for table in tables):
+        return
+    raise InputError(
+        "is not a table of a study file",
+        key="TABLE",
+        value=wanted,
+        allowed=f"{', '.join(dict.fromkeys(table.split('.')[0] for table in tables))}, or a table in one of them",
+        next_step=_meant(wanted, tables, {table: list(words) for table, words in found["words"].items()}),
+    )
+
+
+def _meant(wanted: str, tables: list[str], keys: dict[str, list[str]]) -> str:
+    table, _, last = wanted.rpartition(".")
+    ends = [name for name in tables if name.rpartition(".")[2] == last]
+    if ends:
+        return f"Did you mean {' or '.join(map(repr, ends[:MOST]))}?"
+    holders = [name for name in tables if last in keys.get(name, ()) and table in (name, "")]
+    if holders:
+        which = " or ".join(f"`flexapod keys {name}`" for name in holders[:MOST])
+        return f"{last} is a key of a table: {which}"
+    lasts = {name.rpartition(".")[2]: name for name in reversed(tables)}
+    close = nearest(wanted, tables) or lasts.get(nearest(last, lasts) or "")
+    return f"Did you mean {close!r}?" if close else "`flexapod keys` lists all tables with their keys"

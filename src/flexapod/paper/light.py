@@ -1,0 +1,72 @@
+"""Lighter pistons in the paper's robot, hollow ones and thinner ones: what its payload and their tips vibrate by."""
+
+from __future__ import annotations
+
+from typing import TYPE_CHECKING
+
+import numpy as np
+
+from flexapod import model
+from flexapod.paper.claim import after_motion, largest
+from flexapod.paper.readings import robot_preset, with_legs
+from flexapod.study.attributes import attributes
+from flexapod.study.record import Share
+from flexapod.study.simulation import simulate
+from flexapod.study.static import modes
+
+if TYPE_CHECKING:
+    from xarray import Dataset
+
+#: Outer and inner diameter [mm]: the paper's, hollow ones of the same width, thinner ones.
+PISTONS = ((27.0, 0.0), (27.0, 16.0), (27.0, 22.0), (27.0, 25.0), (20.0, 0.0), (15.0, 0.0), (10.0, 0.0))
+COLUMNS = {"piston_mass": "kg", "payload_vibration": "m", "tip_vibration": "m", "lowest_frequency": "Hz"}
+
+
+def with_section(study: model.Study, outer: float, inner: float) -> model.Study:
+    """The same robot with round pistons of other diameters [m], of the same material and length."""
+    hollow = model.Tube(diameter=outer, inner_diameter=inner or None)
+
+    def changed(leg: model.Leg) -> model.Leg:
+        piston = leg.piston
+        E, density = piston.E or np.nan, piston.density or np.nan
+        stiffness = {"EA": E * hollow.area, "EI": E * hollow.second_moment, "rhoA": density * hollow.area}
+        return leg.replace(piston=piston.replace(diameter=outer, **stiffness))
+
+    return with_legs(study, changed)
+
+
+def light_pistons(report: Share) -> Dataset:
+    """The roll of the paper's robot on lighter and lighter pistons.
+
+    Returns
+    -------
+    xarray.Dataset
+        Over `piston` (words), with its `outer` and `inner` diameters [mm]: `piston_mass` [kg]; `payload_vibration` and
+        `tip_vibration` [m] from peak to peak after the roll, the largest along one direction; `lowest_frequency` [Hz]
+        at home; `deviation_peak` (piston, axis) [m].
+    """
+    import xarray as xr
+
+    study, rows, peaks = robot_preset("paper-robot"), [], []
+    for outer, inner in PISTONS:
+        changed = with_section(study, 1e-3 * outer, 1e-3 * inner)
+        data, piston = simulate(changed), changed.robot.legs[0].piston
+        vibrations = (after_motion(data, name) for name in ("com_deviation", "tip_deflection"))
+        rows.append((piston.rhoA * piston.length, *vibrations, float(modes(changed).frequency[0])))
+        peaks.append(largest(data))
+        report(len(rows) / len(PISTONS))
+    values = {
+        name: ("piston", column, {"units": unit})
+        for (name, unit), column in zip(COLUMNS.items(), np.transpose(rows), strict=True)
+    }
+    widths = {name: ("piston", column) for name, column in zip(("outer", "inner"), np.transpose(PISTONS), strict=True)}
+    return xr.Dataset(
+        values | {"deviation_peak": (("piston", "axis"), np.array(peaks), {"units": "m"})},
+        {"piston": [words(*pair) for pair in PISTONS], "axis": list("xyz"), **widths},
+        attributes(study),
+    )
+
+
+def words(outer: float, inner: float) -> str:
+    """A piston by its diameters [mm]."""
+    return f"{outer:g} mm, {inner:g} mm hollow" if inner else f"{outer:g} mm"
