@@ -237,7 +237,7 @@ def remove_abandoned(folder: Path) -> None:
 def _remove_abandoned(path: Path, found: os.stat_result) -> None:
     writer, is_folder = WRITER.fullmatch(path.name), stat.S_ISDIR(found.st_mode)
     known = writer is not None and writer[1] == _here() and sys.platform != "win32"
-    if known and (_runs(int(writer[2])) or found.st_uid != os.geteuid()):
+    if writer is not None and known and (_runs(int(writer[2])) or found.st_uid != os.geteuid()):
         return
     if known and is_folder:
         shutil.rmtree(path)

@@ -6,6 +6,7 @@ from collections.abc import Callable, Iterable
 from typing import TypeVar
 
 import numpy as np
+from numpy.typing import NDArray
 
 from flexapod.typing import Array, Mask
 
@@ -39,7 +40,7 @@ def first_least(values: Array, same: float = ROUNDING) -> int:
     return first_largest(-np.asarray(values, float), same)
 
 
-def ranked(values: Array) -> Array:
+def ranked(values: Array) -> NDArray[np.intp]:
     """Places of values (n,) from the largest to the least; those of equals in their order."""
     order = np.argsort(-values, kind="stable")
     falling = values[order]

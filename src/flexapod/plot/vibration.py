@@ -64,7 +64,7 @@ def _name_modes(axes: Axes, data: xr.Dataset, names: list[str]) -> None:
     f = data.frequency.values
     groups = np.cumsum(np.append(0, np.diff(f) > 1e-3 * f[1:]))
     sizes = np.bincount(groups, weights=part)
-    named = [group for group in ranked(sizes)[:NAMED] if sizes[group] > LEAST * whole]
+    named = [group for group in ranked(np.asarray(sizes, float))[:NAMED] if sizes[group] > LEAST * whole]
     for row, group in enumerate(sorted(named, reverse=True)):
         at = np.flatnonzero(groups == group)
         axes.axvline(f[at[0]], color="#777777", linewidth=0.8, linestyle=":")

@@ -93,7 +93,7 @@ def bodies_words(data: Dataset) -> list[str]:
     if "joint_margin" in data:
         left = data.joint_margin.values
         k, leg, end = np.unravel_index(first_least(left), left.shape)
-        said.append(left_words(float(left[k, leg, end]), leg + 1, data.end.values[end], float(data.time[k])))
+        said.append(left_words(float(left[k, leg, end]), int(leg) + 1, data.end.values[end], float(data.time[k])))
     if "leg_clearance" in data:
         k = first_least(data.leg_clearance.values, EQUALS)
         said.append(gap_words(float(data.leg_clearance[k]), data.nearest_legs.values[k], float(data.time[k])))
