@@ -37,7 +37,7 @@ def test_second_order_with_assumed_modes():
 
 
 def test_the_start_leaves_the_closure_by_the_square_of_the_step():
-    """Rates at the start have a normal part of order h^2 (T6.14) where it moves at once: halved steps leave a quarter."""
+    """Rates at the start have a normal part of order h^2 (T6.14) where it moves at once: half a step, a quarter."""
     study = override(paper_robot(profile="linear", start="moving"), fidelity="lumped", output_step=4e-3, duration=4e-3)
     starts = [run_robot(override(study, step=h))["v"][0] for h in STEPS]
     gaps = [np.abs(a - b).max() for a, b in pairwise(starts)]
