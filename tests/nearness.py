@@ -2,6 +2,7 @@
 
 import ast
 import re
+import tomllib
 from collections import defaultdict
 from pathlib import Path
 from typing import Protocol
@@ -33,6 +34,7 @@ class Nearness:
         for path in sorted((root / "src").rglob("*.py")):
             self._read(str(path.relative_to(root)), ast.parse(path.read_text(encoding="utf-8")))
         helpers = {path.stem: set(WORD.findall(path.read_text(encoding="utf-8"))) for path in root.glob("tests/*.py")}
+        self.first = tomllib.loads(Path(__file__).with_suffix(".toml").read_text(encoding="utf-8"))
         self.words = {}
         for kind in KINDS:
             for path in sorted((root / "tests" / kind).glob("test_*.py")):
@@ -91,12 +93,19 @@ class Nearness:
             worth[file] = near * self._called(module, function, known.called.get(file), room)
         takes = {file: STARTING + known.seconds.get(file, KINDS[file.split("/")[1]]) for file in worth}
         order = sorted((f for f in worth if f not in without), key=lambda f: (-worth[f] / takes[f] ** 0.6, f))
-        chosen, total = [], 0.0
+        chosen = [file for file in self._first(module) if file not in without]
+        total = sum(takes[file] for file in chosen)
+        order = [file for file in order if file not in chosen]
         for file in order:
             if worth[file] > 0.02 and total + takes[file] <= seconds:
                 chosen.append(file)
                 total += takes[file]
         return chosen or order[:1]
+
+    def _first(self, module: str) -> list[str]:
+        """Files that are to be asked first."""
+        own = module.removeprefix("src/flexapod/")
+        return [f"tests/{file}.py" for name, files in self.first.items() if own.startswith(name) for file in files]
 
     def _called(self, module: str, function: str, called: list[str] | None, room: str) -> float:
         """How much a file of tests counts that calls a function, does not, or has not been looked at."""

@@ -86,3 +86,26 @@ def test_axes_of_crosses_that_are_not_normal_to_the_leg_count_as_given(make, cou
     found = mobility(limbs(robot))
     assert (found.freedoms, found.mobility, found.redundant, found.locked, found.self_stress) == counts
     assert tuple(virtual_power.mobility(as_mechanism(robot)).values()) == counts
+
+
+def test_rates_about_a_pivot_that_is_not_the_origin():
+    """Commanded about a point beside the platform, with axes that follow: against differences over time."""
+    robot, pivot = ROBOTS["3-RPS"](), [0.05, -0.1, 0.25]
+    motion = CombinedMotion(
+        amplitudes={"heave": 0.02, "roll": 0.1, "pitch": -0.05}, independent=["heave", "roll", "pitch"],
+        duration=1.0, pivot=pivot,
+    )  # fmt: skip
+    h = 1e-3
+    t = np.array([0.3, 0.6])[:, None] + h * np.arange(-2, 3)
+    path = rigid.poses(robot, motion, t.ravel())
+
+    def slope(values):
+        x = values.reshape(2, 5, *values.shape[1:])
+        return (8 * (x[:, 3] - x[:, 1]) - (x[:, 4] - x[:, 0])) / (12 * h)
+
+    # Fourth order in steps of 1 ms of a motion of a second: (2 pi h)^4 / 30 = 5e-11 of the rates' own changes.
+    np.testing.assert_allclose(slope(path.position), path.velocity[2::5], atol=1e-8)
+    turning = slope(path.rotation) @ path.rotation[2::5].swapaxes(1, 2)
+    spin = np.stack([turning[:, 2, 1], turning[:, 0, 2], turning[:, 1, 0]], axis=1)
+    np.testing.assert_allclose(spin, path.omega[2::5], atol=1e-8)
+    assert np.abs(path.velocity[2::5, :2]).max() > 1e-3  # the tripod moves sideways beside its pivot

@@ -36,6 +36,15 @@ def test_second_order_with_assumed_modes():
     assert max(run["closure"].max() for run in runs) < 1e-10
 
 
+def test_the_start_leaves_the_closure_by_the_square_of_the_step():
+    """Rates at the start have a normal part of order h^2 (T6.14) where it moves at once: half a step, a quarter."""
+    study = override(paper_robot(profile="linear", start="moving"), fidelity="lumped", output_step=4e-3, duration=4e-3)
+    starts = [run_robot(override(study, step=h))["v"][0] for h in STEPS]
+    gaps = [np.abs(a - b).max() for a, b in pairwise(starts)]
+    assert gaps[0] > 1e-9
+    np.testing.assert_allclose(np.divide(gaps[:-1], gaps[1:]), 4.0, rtol=0.02)
+
+
 def test_tolerance_is_kept():
     # The tolerance bounds the true error (measured against a fine fixed step).
     study = paper_robot(duration=0.5, modes=2)

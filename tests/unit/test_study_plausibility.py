@@ -13,7 +13,8 @@ from flexapod.model import AxisMotion, Rectangle, Tube
 from flexapod.model.material import MATERIALS
 from flexapod.solve.sections import leg_values
 from flexapod.study.after.plausibility import leg_stress
-from flexapod.study.before.estimates import buckling_load
+from flexapod.study.before.describe.leg import _stress
+from flexapod.study.before.estimates import STATIONS, buckling_load
 
 STILL = AxisMotion(type="heave", amplitude=0.0, duration=1.0)
 SHORT = {"duration": 0.02, "step": 1e-3}
@@ -154,6 +155,15 @@ def test_stress_of_sections_is_that_of_each_place(sections, depth):
     both = np.where(strip, np.abs(bend).sum(axis=0), np.hypot(*bend)) * STEEL["E"] * d / 2
     found = leg_stress(leg, basis, amplitudes, free, np.array([-N]))
     assert found[0] == pytest.approx((both + N / area).max(), rel=1e-3)
+
+
+@pytest.mark.parametrize(("free", "thinnest"), [(0.29, 0.05), (0.4, 0.03), (0.6, 0.03)])
+def test_stress_before_a_run_is_that_of_the_sections_outside(free, thinnest):
+    # By hand: 32 M / pi d^3 of the thinnest section that has come out; from the driven end 40, 30 and 50 mm, of which
+    # the last is the first 0.3 m from the tip.
+    leg = leg_of([section(0.25, 0.04), section(0.2, 0.03), section(0.3, 0.05)])
+    found = _stress(leg, np.zeros(1), np.zeros(1), np.full((len(STATIONS), 1), 70.0), np.array([free]))
+    assert found.bending == pytest.approx(32 * 70.0 / (np.pi * thinnest**3), rel=1e-12)
 
 
 def test_no_stress_without_a_section():
