@@ -4,12 +4,15 @@ import re
 
 import numpy as np
 import pytest
+from tests.mechanisms import ROBOTS
 
 from flexapod import InputError
 from flexapod.exchange.decks import Deck, Tie, cross_matrix, solved
+from flexapod.exchange.decks_legs import legs_at_pose
 from flexapod.exchange.decks_robot import point_masses
 from flexapod.exchange.export import abaqus_deck, left_out
 from flexapod.model import ConstantWrench, Cylinder, ForceDrive, Joint, Load, ServoDrive, Study, preset
+from flexapod.rigid import home_pose
 
 SHARED = {
     "HEADING", "NODE", "ELEMENT", "MASS", "MATERIAL", "ELASTIC", "DENSITY", "SOLID SECTION", "SPRING", "BOUNDARY",
@@ -203,3 +206,16 @@ def test_load_of_a_study_is_taken(robot):
     pushed = study.replace(load=Load(wrench=ConstantWrench(value=[0, 0, -100.0, 0, 0, 0])))
     assert "*CLOAD" in abaqus_deck(pushed, elements=2)
     assert "*CLOAD" not in abaqus_deck(study, elements=2)
+
+
+@pytest.mark.parametrize(
+    ("kind", "turns", "rod", "ends"),
+    [("6-UPS", 2, False, None), ("3-RPS", 1, False, None), ("3-UPU", 2, False, 2), ("6-UCU", 2, True, 2)],
+)
+def test_each_freedom_of_a_leg_stands_once_in_its_deck(kind, turns, rod, ends):
+    # Counted by hand: a cross 2, a hinge 1; the turn in a cylindrical joint is the piston's in its cylinder.
+    # Ends in balls meet the platform at a point and need none.
+    robot = ROBOTS[kind]()
+    for leg in legs_at_pose(robot, home_pose(robot), np.zeros(robot.count)):
+        assert (len(leg.turns), leg.piston_turns) == (turns, rod)
+        assert (None if leg.ends is None else len(leg.ends)) == ends

@@ -3,7 +3,7 @@
 import numpy as np
 import pytest
 from scipy.optimize import minimize
-from tests.machines import machine, study
+from tests.machines import TUBE, machine, study
 from tests.mechanisms import built, ring
 from typer.testing import CliRunner
 
@@ -17,6 +17,7 @@ from flexapod.model.leg import Stroke
 from flexapod.rigid import bodies
 from flexapod.rigid.rotations import exponential
 from flexapod.study.before.describe.bodies import stroke_ends
+from flexapod.study.before.describe.robot import describe
 from flexapod.study.bodies import CYLINDER, bodies_words, clearance, pairs_of_legs, turns
 from flexapod.study.path import RigidPath
 from flexapod.ties import first_least
@@ -146,9 +147,19 @@ def test_a_map_has_margins_and_leaves_out_what_joints_cannot_reach():
 def test_the_two_legs_that_a_map_names_are_those_that_stand_together():
     # Feet of legs 3 and 4 on 0.7 m are moved to 8 deg from each other, 98 mm; all others are 12 deg apart or more, and
     # on the platform legs that are neighbours there are 100 mm apart or more, on 0.4 m.
-    close = machine(lower=np.array([-10.0, 10, 116, 124, 230, 250]), upper=np.array([-50.0, 50, 70, 170, 190, 290]))
+    lower = np.array([-10.0, 10, 116, 124, 230, 250])
+    close = machine(lower=lower, piston=TUBE.replace(diameter=0.02))
     found = fx.workspace_map(close, {"surge": [-0.05, 0.0, 0.05]}, fidelity="lumped")
     np.testing.assert_array_equal(found.nearest_legs, [[3, 4]] * 3)
+    said = describe(study(close)).clearance
+    feet, tips = close.base_joints[2:4], close.home_height * np.array([0, 0, 1]) + close.platform_joints[2:4]
+
+    def apart(x):
+        return np.linalg.norm(np.subtract(*(a + share * (b - a) for share, a, b in zip(x, feet, tips, strict=True))))
+
+    assert said.legs == (3, 4)
+    axes = minimize(apart, [0.5, 0.5], bounds=[(0, 1)] * 2)
+    assert said.home == pytest.approx(axes.fun - CYLINDER * 0.02, rel=1e-6)  # there both are cylinders
     still = study(close, duration=2e-3, fidelity="rigid")
     run = fx.simulate(still.replace(motion=still.motion.replace(amplitude=0.0)))
     np.testing.assert_array_equal(run.nearest_legs, [[3, 4]] * len(run.time))

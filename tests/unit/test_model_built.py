@@ -2,7 +2,7 @@
 
 import numpy as np
 import pytest
-from tests import mechanisms
+from tests import machines, mechanisms
 
 from flexapod import accuracy, loads
 from flexapod.errors import InputError
@@ -11,6 +11,7 @@ from flexapod.model import (
     Geometry,
     Gradient,
     Heat,
+    Joint,
     LengthSpread,
     RatioSpread,
     Tolerances,
@@ -212,3 +213,13 @@ def test_parts_that_contradict_each_other_or_themselves_are_refused(old, new, ke
         loads(text.replace(old, new))
     assert caught.value.key == key
     assert allowed in str(caught.value)
+
+
+@pytest.mark.parametrize("end", ["base", "platform"])
+@pytest.mark.parametrize("what", ["play", "eccentricity"])
+def test_errors_of_joints_that_are_none_are_refused_at_both_ends(end, what):
+    robot = machines.machine()
+    joint = Joint(**{what: 0.06 * float(robot.home_lengths.max())})
+    with pytest.raises(InputError, match="is not an error of a leg") as caught:
+        machines.machine(**{f"{end}_joint": joint})
+    assert caught.value.key == f"leg.{end}_joint.{what}"

@@ -1,5 +1,6 @@
 """Orders, rates and recommendation of a convergence study: on tables made up here, and on short runs."""
 
+import re
 from dataclasses import replace
 from pathlib import Path
 
@@ -142,6 +143,7 @@ def test_a_whole_study(beam, short, monkeypatch, tmp_path):
     assert (steps.failure.values[1:] == "").all()
     # Second order, first damped by rho_inf: the finest pair within 0.2.
     assert float(data.order.sel(group="step")) == pytest.approx(2.0, abs=0.2)
+    assert re.match(r"observed order (1\.[89]|2\.[012])\d* \(theory 2\)", str(data.rate.sel(group="step").values))
     assert 0 < float(data.own_error_tip.sel(group="step")) <= 1e-2 / halving.FINER
     chosen = rows(data, "recommended")
     assert chosen.sizes["setting"] == 1

@@ -4,15 +4,18 @@ import re
 
 import numpy as np
 import pytest
+from scipy.spatial.transform import Rotation
 from tests.runs import paper_robot, with_legs
 from tests.stepped import STEEL, leg_of, section
 
 import flexapod as fx
+from flexapod import rigid
 from flexapod.bases import lateral_basis
 from flexapod.model import AxisMotion, Rectangle, Tube
 from flexapod.model.material import MATERIALS
+from flexapod.solve.modes import locked_poses
 from flexapod.solve.sections import leg_values
-from flexapod.study.after.plausibility import leg_stress
+from flexapod.study.after.plausibility import flexible_axes, leg_stress
 from flexapod.study.before.describe.leg import _stress
 from flexapod.study.before.estimates import STATIONS, buckling_load
 
@@ -164,6 +167,19 @@ def test_stress_before_a_run_is_that_of_the_sections_outside(free, thinnest):
     leg = leg_of([section(0.25, 0.04), section(0.2, 0.03), section(0.3, 0.05)])
     found = _stress(leg, np.zeros(1), np.zeros(1), np.full((len(STATIONS), 1), 70.0), np.array([free]))
     assert found.bending == pytest.approx(32 * 70.0 / (np.pi * thinnest**3), rel=1e-12)
+
+
+def test_axes_of_legs_are_lines_between_their_joints_where_the_platform_is_turned():
+    study = paper_robot()
+    robot, angles = study.robot, np.array([0.35, -0.2, 0.3])
+    place = np.array([0.03, -0.02, robot.home_height + 0.04])
+    turn = Rotation.from_rotvec(angles)
+    pose = rigid.Poses.at_rest(place[None], turn.as_matrix()[None])
+    here = locked_poses(robot, study.simulation, pose)
+    found = flexible_axes(robot, here.system, here.equilibria.states[here.at])[0]
+    lines = place + robot.platform_joints @ turn.as_matrix().T - robot.base_joints
+    # The platform sags by some 20 um under its load, legs are a metre long.
+    np.testing.assert_allclose(found, lines / np.linalg.norm(lines, axis=1, keepdims=True), atol=2e-4)
 
 
 def test_no_stress_without_a_section():

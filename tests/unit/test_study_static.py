@@ -241,3 +241,21 @@ def test_a_piston_that_does_not_reach_its_joint_is_refused_in_words():
     )
     with pytest.raises(ComputationError, match="piston of leg 1 is shorter"):
         fx.modes(study)
+
+
+def test_stretch_of_legs_in_a_mode_is_the_change_of_their_lengths():
+    # By differences of the distances of the joints, the platform turned; of rotations of 1e-6 the square is left.
+    found = fx.modes(paper_robot(), {"surge": 0.03, "roll": 0.2, "yaw": -0.3}, fidelity="lumped")
+    robot, size = paper_robot().robot, 1e-6
+    turn = Rotation.from_quat(np.roll(found.platform_quaternion.values, -1))
+    com = found.platform_position.values + turn.as_matrix() @ robot.com
+
+    def lengths(step):
+        turned = Rotation.from_rotvec(step[3:]) * turn
+        tips = com + step[:3] + (robot.platform_joints - robot.com) @ turned.as_matrix().T
+        return np.linalg.norm(tips - robot.base_joints, axis=1)
+
+    for shape, stretch in zip(found.platform_shape.values, found.leg_stretch.values, strict=True):
+        unit = size / np.abs(shape).max()
+        change = (lengths(unit * shape) - lengths(-unit * shape)) / (2 * unit)
+        np.testing.assert_allclose(stretch, change, atol=1e-7 * np.abs(change).max() + 1e-9)
