@@ -7,6 +7,7 @@ from tests.runs import uncompiled, uncompiled_kernel
 
 from flexapod.mechanics.layout import LEG_PARAMETERS, PAYLOAD_PARAMETERS
 from flexapod.model import Simulation
+from flexapod.solve.losses import per_loss
 from flexapod.solve.many import RestStates
 from flexapod.solve.robot_system import robot_system
 from flexapod.solve.system import System
@@ -65,5 +66,6 @@ def tangents(degrees):
 
 def of_robot(robot, **simulation):
     """System of a robot of the model, its kernel interpreted: for a few calls nothing need be compiled."""
+    settings = Simulation(**simulation)
     with patch("flexapod.solve.robot_system.kernel", uncompiled_kernel):
-        return robot_system(robot, Simulation(**simulation))
+        return robot_system(robot, settings, per_loss(robot, settings))

@@ -8,7 +8,7 @@ from flexapod.model import MATERIALS, AxisMotion, ConstantWrench, Load, Simulati
 from flexapod.model.material import Tube
 from flexapod.model.payload import Payload
 from flexapod.model.piston import Cylinder, Piston
-from flexapod.solve.modes import robot_modes
+from flexapod.solve.at_poses import robot_modes
 from flexapod.solve.stiffness import robot_stiffness
 from flexapod.surveys.sweeps.batch import compute_point
 from flexapod.surveys.sweeps.kept import kept

@@ -9,7 +9,7 @@ from tests.runs import balance, paper_robot, run_actuator, run_robot, with_legs
 from flexapod import rigid
 from flexapod.model import ServoDrive, override, preset
 from flexapod.solve.actuator_march import actuator_system
-from flexapod.solve.modes import robot_modes
+from flexapod.solve.at_poses import robot_modes
 
 RHO, STEPS, PERIODS = 0.9, 200, 10
 CHI, OM = (1 - RHO) / (1 + RHO), 2 * np.pi / STEPS
@@ -97,7 +97,7 @@ def test_momentum_of_a_payload_pulled_by_free_legs():
     from flexapod.solve.rigid_motion import rigid_state
     from flexapod.solve.robot_system import robot_system
 
-    state = rigid_state(robot_system(study.robot, study.simulation), study.robot, path)
+    state = rigid_state(robot_system(study.robot, study.simulation, 0.0), study.robot, path)
     run = run_robot(study, replace(state, v_dot=np.zeros_like(state.v_dot)))
     energy = run["energy"].sum(axis=1)
     assert run["energy"][0, 0] > 1.0

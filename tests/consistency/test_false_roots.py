@@ -39,7 +39,7 @@ def test_rigid_legs_are_not_closed_there():
 def turned():
     """A study, its system, and the state at its start with a leg half a turn off."""
     study = moving("6-UCU", fidelity="rigid", modes=None, duration=0.004)
-    system = robot_system(study.robot, study.simulation)
+    system = robot_system(study.robot, study.simulation, 0.0)
     state = rigid_state(system, study.robot, rigid.poses(study.robot, study.motion, np.zeros(1)))
     q = state.q.copy()
     q[2, system.kernel.shapes.index("spin")] += np.pi

@@ -21,10 +21,10 @@ from flexapod.mechanics.layout import columns, leg_parameters
 from flexapod.mechanics.sliding import friction_functions
 from flexapod.model import Feedback, Joint, JointFriction, ScrewFriction, ServoDrive, StrokeFriction, override
 from flexapod.rigid.rotations import exponential
+from flexapod.solve.at_poses import locked_poses
 from flexapod.solve.friction import numbers, sliding
 from flexapod.solve.kernel import kernel
 from flexapod.solve.lost_motion import lost_motion, reversal
-from flexapod.solve.modes import locked_poses
 from flexapod.solve.springs import springs_along
 from flexapod.solve.stiffness import displacement, tool_motion
 from flexapod.study.before.sliding import steady_friction

@@ -12,11 +12,12 @@ import flexapod as fx
 from flexapod import rigid
 from flexapod.model import ConstantWrench, Cylinder, Load, ServoDrive, Waypoint, WaypointMotion, override
 from flexapod.solve.arrow import arrow_solve
+from flexapod.solve.at_poses import locked_poses, robot_modes
 from flexapod.solve.elimination import solve_each
 from flexapod.solve.equilibrium import equilibria
 from flexapod.solve.kernel import interpreted_kernel
 from flexapod.solve.many import RestStates, matrices_at_rest, residual_at_rest
-from flexapod.solve.modes import locked_poses, modes_of, robot_modes
+from flexapod.solve.modes import modes_of
 from flexapod.solve.rest import rest_commands
 from flexapod.solve.rigid_motion import rigid_rest
 from flexapod.solve.saddle import saddle_solve

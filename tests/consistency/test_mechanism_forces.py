@@ -23,7 +23,7 @@ def test_forces_are_those_of_virtual_power(name):
     pivot = [0.01, -0.02, 0.03] if own == tuple(NAMED) else [0, 0, 0]
     motion = CombinedMotion(amplitudes={axis: AMPLITUDES[axis] for axis in own}, duration=DURATION, pivot=pivot)
     t, wrench = np.array([0.12, 0.3]), WRENCH * ([1, 1, 0, 0, 0, 1] if robot.plane else [1] * 6)
-    system = robot_system(robot, Simulation(fidelity="rigid"))
+    system = robot_system(robot, Simulation(fidelity="rigid"), 0.0)
     ours = joint_forces(system, *rigid_motion(system, robot, rigid.poses(robot, motion, t)), wrench)
     shapes = system.kernel.shapes
     mechanism, found = as_mechanism(robot, own, pivot), None

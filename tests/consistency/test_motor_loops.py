@@ -19,9 +19,9 @@ from flexapod.integration import GeneralizedAlpha
 from flexapod.model import Encoder, Loop, Motor, Ripple, Rotor
 from flexapod.proof.engines.exudyn_robot import RobotProblem
 from flexapod.solve import interpreted, native
+from flexapod.solve.at_poses import locked_poses
 from flexapod.solve.linear import linear_robot
 from flexapod.solve.losses import loss_frequency
-from flexapod.solve.modes import locked_poses
 from flexapod.solve.recording import Counters
 from flexapod.solve.robot_march import prepare
 from flexapod.solve.tables import robot_law

@@ -28,7 +28,7 @@ def test_forces_are_those_of_mujoco(name):
     wrench = WRENCH * ([1, 1, 0, 0, 0, 1] if robot.plane else [1] * 6)
     path = rigid.poses(robot, motion, np.linspace(0.2, 0.8, 3) * DURATION)
     theirs = mujoco_forces.inverse_dynamics(robot, path, wrench)
-    system = robot_system(robot, Simulation(fidelity="rigid"))
+    system = robot_system(robot, Simulation(fidelity="rigid"), 0.0)
     ours = joint_forces(system, *rigid_motion(system, robot, path), wrench)
     places = [system.kernel.shapes.index("chi" if leg.driven == "carriage" else "l") for leg in robot.legs]
     driven = np.array([bool(leg.driven) for leg in robot.legs])

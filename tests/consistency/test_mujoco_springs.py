@@ -11,7 +11,7 @@ import flexapod as fx
 from flexapod.model import AxialSpring
 from flexapod.proof.engines.mujoco_model import LEAST, mjcf
 from flexapod.rigid.rotations import matrix
-from flexapod.solve.modes import locked_poses
+from flexapod.solve.at_poses import locked_poses
 from flexapod.study.arguments import as_pose
 
 mujoco = pytest.importorskip("mujoco")

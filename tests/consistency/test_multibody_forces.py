@@ -15,7 +15,7 @@ def test_forces_at_the_rigid_path(kind):
     study = paper_robot(fidelity="rigid")
     amplitude = 0.05 if kind in ("surge", "sway", "heave") else 0.3
     motion = AxisMotion(type=kind, amplitude=amplitude, duration=0.4, profile="quintic", pivot=[0.02, 0.01, 0.1])
-    system, wrench = robot_system(study.robot, study.simulation), np.array([30.0, -20, 10, 5, -4, 3])
+    system, wrench = robot_system(study.robot, study.simulation, 0.0), np.array([30.0, -20, 10, 5, -4, 3])
     for t in (0.0, 0.11, 0.23):
         path = rigid.poses(study.robot, motion, np.array([t]))
         x = rigid_state(system, study.robot, path)

@@ -8,8 +8,8 @@ from tests.runs import uncompiled_kernel
 
 from flexapod.model import Simulation
 from flexapod.rigid import Poses
+from flexapod.solve.at_poses import locked_poses
 from flexapod.solve.equilibrium import equilibria
-from flexapod.solve.modes import locked_poses
 
 MISFIT = 1e-4
 

@@ -11,8 +11,8 @@ from flexapod import rigid
 from flexapod.model import Feedback, ForceDrive, Simulation
 from flexapod.model.drive import ServoDrive
 from flexapod.rigid.limbs import DRIVEN
+from flexapod.solve.at_poses import locked_poses
 from flexapod.solve.many import port_forces
-from flexapod.solve.modes import locked_poses
 from flexapod.solve.released import rigid_forces
 from flexapod.solve.rest import at_drives
 

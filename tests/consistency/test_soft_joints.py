@@ -98,7 +98,7 @@ def test_joints_of_some_legs_are_soft():
     some = some.replace(legs=tuple(legs))
     rigid = [leg.replace(**{name: getattr(leg, name) if getattr(leg, name).stiffness is not None else joint(1e16)
                             for name in ("base_joint", "platform_joint")}) for leg in some.legs]  # fmt: skip
-    held = robot_system(some, fx.model.Simulation(fidelity="lumped")).held
+    held = robot_system(some, fx.model.Simulation(fidelity="lumped"), 0.0).held
     assert held.sum() == 6 + 2 * 15  # strokes, and five of six joints at either end
     ours, theirs = (
         fx.stiffness(x, fidelity="lumped").stiffness.values for x in (some, some.replace(legs=tuple(rigid)))

@@ -21,7 +21,7 @@ def test_closures_of_the_rigid_path(t):
     beside a remainder of 1e-16 times the fifth derivative, about 1e4 here.
     """
     study = fx.preset("paper-robot")
-    system = robot_system(study.robot, study.simulation)
+    system = robot_system(study.robot, study.simulation, 0.0)
     x = rigid_state(system, study.robot, rigid.poses(study.robot, study.motion, np.array([t])))
     law = robot_law(system, study.robot, study.load, partial(rigid.poses, study.robot, study.motion))
     table, wrench = law(np.array([t]))

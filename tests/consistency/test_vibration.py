@@ -10,9 +10,10 @@ import flexapod as fx
 from flexapod import model, rigid
 from flexapod.model.mount import BaseMotion, Mount
 from flexapod.rigid.rotations import difference, matrix, quaternion
+from flexapod.solve.at_poses import locked_poses
 from flexapod.solve.damped import poles
 from flexapod.solve.linear import FAR, LinearRobot, linear_robot
-from flexapod.solve.modes import LockedPoses, locked_poses
+from flexapod.solve.locked import LockedPoses
 from flexapod.solve.random_vibration import Source, panels, random_vibration
 from flexapod.study.accuracy.sensitivity import sensitivity
 from flexapod.study.arguments import as_pose

@@ -25,6 +25,7 @@ from tests.texts import replaced
 import flexapod as fx
 from flexapod.model import preset_text
 from flexapod.solve.kernel import generated_text
+from flexapod.solve.losses import per_loss
 from flexapod.solve.robot_system import robot_system
 
 ROOT = Path(__file__).parents[2]
@@ -83,7 +84,7 @@ def of_dataset(data) -> dict[str, str]:
 def prints(name: str) -> dict[str, str]:
     """All prints of a study, by what they are of."""
     study = fx.loads(text(name))
-    system = robot_system(study.robot, study.simulation)
+    system = robot_system(study.robot, study.simulation, per_loss(study.robot, study.simulation))
     found = {f"text.{part}": printed(words) for part, words in generated_text(system.kernel.shapes).items()}
     arrays = ("leg_p", "joint_p", "payload_p", "held", "hub_held")
     found |= {f"parameters.{part}": printed(getattr(system, part)) for part in arrays}

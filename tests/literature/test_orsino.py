@@ -48,7 +48,7 @@ def test_printed_forces(mixed, printed):
     for part, values in zip(law, orsino_motion(0.05), strict=True):
         part[0, [0, 1, 5]] = values
     path = poses_from_coordinates(Poses.at_rest(study.home_position, study.home_rotation), Law(*law), np.zeros(3))
-    system = robot_system(study, Simulation(fidelity="rigid"))
+    system = robot_system(study, Simulation(fidelity="rigid"), 0.0)
     held = joint_forces(system, *rigid_motion(system, study, path), np.zeros(6)).held[0]
     driven = [system.kernel.shapes.index("l" if leg.driven == "stroke" else "chi") for leg in study.legs]
     np.testing.assert_allclose(held[np.arange(3), driven], printed, rtol=0, atol=5.1e-6)  # five decimals

@@ -16,7 +16,7 @@ import pytest
 from flexapod.errors import ComputationError, InputError
 from flexapod.model import preset
 from flexapod.rigid.robot import home_pose
-from flexapod.solve.modes import locked_poses
+from flexapod.solve.at_poses import locked_poses
 from flexapod.solve.robot_system import robot_system
 from flexapod.symbolic import cache, compiler
 from flexapod.symbolic.compiler import CompiledFunction, compiled_library
@@ -397,7 +397,7 @@ def test_a_compiler_that_fails_says_why(folder, tmp_path):
 
 def test_modes_after_steps_within_a_tolerance_compile_nothing_more(monkeypatch):
     study = preset("paper-robot")
-    made = robot_system(study.robot, study.simulation, within=True).kernel
+    made = robot_system(study.robot, study.simulation, 0.0, within=True).kernel
     after = locked_poses(study.robot, study.simulation, home_pose(study.robot))
     assert after.system.kernel is made
     monkeypatch.setattr("flexapod.solve.kernel._within", {})

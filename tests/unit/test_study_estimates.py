@@ -15,8 +15,8 @@ from flexapod import rigid
 from flexapod.bases import lateral_basis
 from flexapod.mechanics.layout import LEG_PARAMETERS, columns
 from flexapod.model import AxisMotion, Feedback, ForceDrive, Payload, ServoDrive, Simulation, Study
+from flexapod.solve.at_poses import robot_modes
 from flexapod.solve.kernel import kernel
-from flexapod.solve.modes import robot_modes
 from flexapod.solve.robot_system import robot_system
 from flexapod.solve.shapes import space_shapes
 from flexapod.study.before.describe.robot import vibration_to_expect
@@ -43,7 +43,10 @@ def test_buckling_load_makes_the_own_stiffness_of_a_leg_singular(mouth):
     # The model's leg, its tip fixed: N^T K N under a thrust that rises until it is singular.
     robot = paper_robot().robot.replace(gravity=[0, 0, 0])
     axis = robot.home_vectors[0] / robot.home_lengths[0]
-    p, leg = robot_system(robot, Simulation()).leg_p[0].copy(), kernel(space_shapes(lateral_basis("tip-load", 6), 2))
+    p, leg = (
+        robot_system(robot, Simulation(), 0.0).leg_p[0].copy(),
+        kernel(space_shapes(lateral_basis("tip-load", 6), 2)),
+    )
     p[columns(LEG_PARAMETERS, "mouth")] = mouth
     q, l_index = np.zeros(leg.shapes.size), leg.shapes.l_index
     q[l_index] = mouth + 0.6

@@ -9,7 +9,8 @@ from flexapod.errors import InputError
 from flexapod.exchange.decks import Deck, number
 from flexapod.exchange.decks_legs import LegAtPose, PayloadAtPose, axial_inertia, legs_at_pose
 from flexapod.exchange.decks_robot import Carriers, drive_shift, write_leg, write_payload
-from flexapod.solve.modes import locked_poses, the_equilibrium
+from flexapod.solve.at_poses import locked_poses
+from flexapod.solve.locked import the_equilibrium
 from flexapod.solve.rest import at_drives
 from flexapod.study.arguments import LoadLike, PoseLike, RobotLike, as_pose, at_pose
 from flexapod.typing import Array

@@ -14,6 +14,7 @@ from flexapod.paper.claim import axis_motion, largest, roll_error
 from flexapod.paper.trials import TRIAL_STEP, opened, table, trial
 from flexapod.rigid.rotations import quaternion, rotation_vector
 from flexapod.solve.equilibrium import Equilibrium, equilibrium
+from flexapod.solve.losses import per_loss
 from flexapod.solve.rest import rest_commands, rest_load
 from flexapod.solve.rigid_motion import rigid_rest, rigid_state
 from flexapod.solve.robot_system import robot_system
@@ -81,7 +82,7 @@ def at_rest(study: model.Study) -> Rest:
 
 def _followed(study: model.Study) -> tuple[float, Array]:
     """Share of the motion that the equilibrium of home lasts, and the largest sag (3,) [m] on the way."""
-    system = robot_system(study.robot, study.simulation)
+    system = robot_system(study.robot, study.simulation, per_loss(study.robot, study.simulation))
     found, off = _near(study, system, 0.0, None)
     if not found.found:
         return 0.0, np.full(3, np.nan)

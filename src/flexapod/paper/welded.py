@@ -12,6 +12,7 @@ from flexapod import model, rigid
 from flexapod.paper.readings import robot_preset
 from flexapod.paper.trials import opened
 from flexapod.solve.equilibrium import equilibrium
+from flexapod.solve.losses import per_loss
 from flexapod.solve.rest import rest_commands, rest_load
 from flexapod.solve.rigid_motion import rigid_rest, rigid_state
 from flexapod.solve.robot_system import robot_system
@@ -126,7 +127,7 @@ def welded_map(report: Share, arms: Sequence[float] = ARMS, rolls: Sequence[floa
         for j, arm in enumerate(arms):
             study = welded(with_arm(opened(robot_preset(preset)), arm), count)
             simulation = study.simulation.replace(modes=SHAPES)
-            walk = _Walk(study=study, system=robot_system(study.robot, simulation))
+            walk = _Walk(study=study, system=robot_system(study.robot, simulation, per_loss(study.robot, simulation)))
             for k, row in enumerate(walk.poses(rolls)):
                 for name, value in row.items():
                     values[name][i, j, k] = value

@@ -9,7 +9,7 @@ import numpy as np
 from flexapod import model, rigid
 from flexapod.errors import FlexapodError
 from flexapod.report import html
-from flexapod.report.figures import carried_study
+from flexapod.scene.robot import carried_study
 from flexapod.ties import first_largest
 
 if TYPE_CHECKING:

@@ -8,11 +8,11 @@ from io import BytesIO
 from pathlib import Path
 from typing import TYPE_CHECKING, Any, NamedTuple
 
+from flexapod.scene.robot import carried_study
+
 if TYPE_CHECKING:
     from matplotlib.figure import Figure
     from xarray import Dataset
-
-    from flexapod.model import ActuatorStudy, Study
 
 FAST = 3  # level of deflating: half the time of the usual one, a quarter more bytes
 _Plan = tuple[str, str, Callable[[], "Figure"]]
@@ -31,17 +31,6 @@ class Drawn(NamedTuple):
     def png(self) -> Path:
         """Its PNG file, where one was asked for."""
         return next(path for path in self.files if path.suffix == ".png")
-
-
-def carried_study(data: Dataset) -> Study | ActuatorStudy | None:
-    """The study that a result carries; None where it cannot be read any more, as when a table is gone."""
-    from flexapod.errors import FlexapodError
-    from flexapod.study.attributes import study_of
-
-    try:
-        return study_of(data)
-    except FlexapodError:
-        return None
 
 
 def draw(data: Dataset, folder: str | Path, formats: Sequence[str] = ("png", "svg")) -> list[Drawn]:

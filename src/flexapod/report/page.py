@@ -11,8 +11,9 @@ from typing import TYPE_CHECKING
 from flexapod.errors import FlexapodError
 from flexapod.files import scratch, write_text
 from flexapod.report import html
-from flexapod.report.figures import Drawn, carried_study
+from flexapod.report.figures import Drawn
 from flexapod.report.interactive import MOST_POINTS
+from flexapod.scene.robot import carried_study
 
 if TYPE_CHECKING:
     from xarray import Dataset

@@ -9,7 +9,7 @@ from typing import TYPE_CHECKING
 import numpy as np
 
 from flexapod import model
-from flexapod.errors import InputError
+from flexapod.errors import FlexapodError, InputError
 from flexapod.rigid.rotations import exponential, matrix
 from flexapod.scene.skeleton import STATIONS, Scene, Skeleton
 from flexapod.study.attributes import robot_of, study_of
@@ -25,6 +25,14 @@ def robot_study(data: Dataset) -> model.Study:
     if not isinstance(study, model.Study):
         raise InputError("is the result of a single actuator", key="data", allowed="results of a robot")
     return study
+
+
+def carried_study(data: Dataset) -> model.Study | model.ActuatorStudy | None:
+    """The study that a result carries; None where it cannot be read any more, as when a table is gone."""
+    try:
+        return study_of(data)
+    except FlexapodError:
+        return None
 
 
 def motion_end(data: Dataset) -> float | None:

@@ -72,9 +72,12 @@ def _at_force(system: System, x: State, table: Array, wrench: Array) -> State:
     return replace(x, v=v)
 
 
-def at_rotors(robot: Robot, simulation: Simulation) -> System:
-    """The robot's equations in motion with loops as springs and dampers on their rotors, which act at once."""
-    system = robot_system(robot, simulation, evaluated=True)
+def at_rotors(robot: Robot, simulation: Simulation, per_loss: float) -> System:
+    """The robot's equations in motion with loops as springs and dampers on their rotors, which act at once.
+
+    ``per_loss``: as of `robot_system`.
+    """
+    system = robot_system(robot, simulation, per_loss, evaluated=True)
     layout, leg_p, held = leg_parameters(system.kernel.shapes), system.leg_p.copy(), system.held.copy()
     for i, leg in enumerate(robot.legs):
         if leg.screw is not None and leg.screw.loops:

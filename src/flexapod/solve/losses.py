@@ -20,6 +20,9 @@ from flexapod.model import (
     ScrewDrive,
     Simulation,
 )
+from flexapod.rigid import home_pose
+from flexapod.solve.locked import lock
+from flexapod.solve.modes import the_modes
 from flexapod.solve.springs import springs_along, viscous
 from flexapod.words import number, text
 
@@ -100,9 +103,8 @@ def _of_springs(robot: Robot, per: float) -> list[str]:
 
 
 def _computed(robot: Robot, simulation: Simulation) -> float:
-    from flexapod.solve.modes import robot_modes  # which need the parameters that ask for this
-
-    found = robot_modes(_lossless(robot), simulation)
+    lossless = _lossless(robot)
+    found = the_modes(lock(lossless, simulation, home_pose(lossless), per_loss=0.0))
     if not found.frequency.size:
         raise ComputationError("no mode at home, at whose frequency loss factors could be made viscous")
     return float(found.frequency[0])

@@ -1,31 +1,22 @@
 """Undamped and damped modes of the locked robot about its static equilibrium, Eqs. (T7.2)-(T7.5), (T7.16)-(T7.17)."""
 
-from dataclasses import dataclass, replace
-from functools import cached_property
+from dataclasses import dataclass
 
 import numpy as np
 
-from flexapod import rigid
 from flexapod.bases.eigen import finite
 from flexapod.errors import ComputationError, InputError
 from flexapod.mechanics.layout import LEG_PARAMETERS, columns, leg_parameters
-from flexapod.model import Load, Robot, Simulation
-from flexapod.rigid.limbs import DRIVEN, FREE
 from flexapod.solve.damped import OSCILLATES, damping_ratios
-from flexapod.solve.elimination import LegBases, closed, leg_bases
-from flexapod.solve.equilibrium import FOUND, Equilibria, Equilibrium, equilibria
-from flexapod.solve.fallen import refuse_fallen
+from flexapod.solve.elimination import LegBases
+from flexapod.solve.equilibrium import Equilibrium
 from flexapod.solve.frequencies import count_real, mass_factor, natural
-from flexapod.solve.friction import with_friction
-from flexapod.solve.loops import at_rotors, modal_loops
-from flexapod.solve.many import RestMatrices, RestStates, matrices_at_rest
+from flexapod.solve.locked import LockedPoses, the_equilibrium
+from flexapod.solve.loops import modal_loops
+from flexapod.solve.many import RestMatrices
 from flexapod.solve.modal_loops import ModalLoops, growth
 from flexapod.solve.reduction import expanded, hub_motion, null_space_of_borders, reduced
-from flexapod.solve.rest import RestLoad, rest_commands, rest_load
-from flexapod.solve.rigid_motion import rigid_rest
-from flexapod.solve.robot_system import robot_system, smooth
-from flexapod.solve.springs import springs_along
-from flexapod.solve.system import Index, System
+from flexapod.solve.system import System
 from flexapod.typing import Array, Mask
 
 
@@ -45,60 +36,6 @@ class RobotModes:
     system: System
     wrench: Array
     growth: float = 0.0
-
-
-@dataclass(frozen=True, kw_only=True)
-class LockedPoses:
-    """A robot with drives locked at the ``command`` (P, legs, ports) of a rigid ``path`` of P poses.
-
-    Its undeformed states ``start``, what ``acts`` on it, equilibria, and the matrices ``m`` of those found, ``at``.
-    """
-
-    robot: Robot
-    path: rigid.Poses
-    system: System
-    simulation: Simulation
-    start: RestStates
-    command: Array
-    acts: RestLoad
-    equilibria: Equilibria
-    at: Index
-    m: RestMatrices
-
-    @cached_property
-    def shaken(self) -> "LockedPoses":
-        """The same about which to vibrate: a rotor whose loop sums its error is at rest, and has its spring beside."""
-        if self.system.kernel.shapes.loop:
-            system = at_rotors(smooth(self.robot), self.simulation.replace(play="static"))
-            at, stuck = self.equilibria.states[self.at], self.simulation.friction == "stuck"
-            m = with_friction(system, at, matrices_at_rest(system, at, self.acts.wrench), stuck=stuck)
-            return replace(self, system=system, m=m)
-        if not self.system.kernel.shapes.integral:
-            return self
-        held, shapes = self.system.held.copy(), self.system.kernel.shapes
-        rests = [leg.screw is not None and leg.screw.rests and not leg.screw.holds for leg in self.robot.legs]
-        held[rests, shapes.index("r")] = False
-        return replace(self, system=replace(self.system, held=held))
-
-    def one(self, k: int) -> "LockedPoses":
-        """The k-th pose of those whose equilibrium was found, by itself."""
-        at, found = self.at[k : k + 1], self.equilibria
-        alone = Equilibria(states=found.states[at], code=found.code[at], m=found.m[np.array([k])])
-        return replace(
-            self,
-            path=self.path.part(slice(at[0], at[0] + 1)),
-            start=self.start[at],
-            command=self.command[at],
-            acts=replace(self.acts, force=self.acts.force[at]),
-            equilibria=alone,
-            at=np.zeros(1, dtype=np.intp),
-            m=self.m[np.array([k])],
-        )
-
-    @cached_property
-    def bases(self) -> list[LegBases]:
-        """Independent motions about the equilibria, as far as legs can give way."""
-        return closed(leg_bases(self.system, self.m))
 
 
 @dataclass(frozen=True, kw_only=True)
@@ -128,108 +65,6 @@ class UnitModes:
     omega: Array
     flat: Array
     positive: Mask
-
-
-def refuse_pure_force(robot: Robot, what: str) -> None:
-    """Raise InputError if drives that are a force without feedback stiffness leave the platform something to do."""
-    pure = [leg.drive.pushes for leg in robot.legs]
-    if not any(pure) or _held_by_others(robot, np.array(pure)):
-        return
-    for i, loose in enumerate(pure, start=1):
-        if loose:
-            raise InputError(
-                f"{what} of leg {i} has no meaning: a pure force drive holds no position, so the stroke is free",
-                key="leg.drive",
-                value=robot.legs[i - 1].drive.type,
-                allowed='"prescribed", "servo", or a force drive with feedback stiffness; a screw with a loop',
-                next_step='A simulation can start with [initial] start = "moving"',
-            )
-
-
-def refuse_taut(robot: Robot, simulation: Simulation) -> None:
-    """Raise InputError if a leg bends between two fixed points and cannot stretch: it would have to get longer."""
-    if not robot.platform_fixed or not simulation.lateral_shapes:
-        return
-    for i, leg in enumerate(robot.legs, start=1):
-        held = leg.drive.holds and leg.driven in ("stroke", "carriage") if leg.driven else leg.strut is not None
-        gives = leg.gives or springs_along(leg) or leg.base_joint.flexes or leg.platform_joint.flexes
-        if held and not gives and not simulation.axial_shapes(leg.axial_modes):
-            raise InputError(
-                f"leg {i} is held at both ends and cannot stretch: it could not bend either, but for getting longer",
-                key="leg.axial_modes",
-                value=leg.axial_modes,
-                allowed="1 to 4; or a drive that gives way (servo)",
-            )
-
-
-def _held_by_others(robot: Robot, pure: Mask) -> bool:
-    """Whether the drives that hold a position leave the platform no motion at home."""
-    legs = rigid.rigid_limbs(robot)
-    loose = pure[:, None] & (legs.state == DRIVEN)
-    others = replace(legs, state=np.where(loose, FREE, legs.state).astype(legs.state.dtype))
-    return rigid.mobility(others).locked_platform.shape[1] == 0
-
-
-def locked_poses(
-    robot: Robot, simulation: Simulation, path: rigid.Poses, load: Load | None = None, time: float = 0.0
-) -> LockedPoses:
-    """Static equilibria with the drives locked at the lengths of each of P rigid poses.
-
-    The drives' forces and the wrench of ``load`` are those of `rest.rest_load` at ``time`` [s].
-
-    Raises
-    ------
-    InputError
-        A pure force drive.
-    """
-    refuse_pure_force(robot, "a static equilibrium")
-    refuse_taut(robot, simulation)
-    robot = robot if robot.base_motion is None else robot.replace(base_motion=None)  # poses are those of a base at rest
-    system = robot_system(smooth(robot), simulation.replace(play="static"), at_rest=True, evaluated=True)
-    start, acts = rigid_rest(system, robot, path), rest_load(system, robot, path, load, time)
-    command = rest_commands(system, robot, start.q, time)
-    found = equilibria(system, start, command, acts.force, acts.wrench)
-    at = np.flatnonzero(found.code == FOUND)
-    return LockedPoses(
-        robot=robot,
-        path=path,
-        system=system,
-        simulation=simulation,
-        start=start,
-        command=command,
-        acts=acts,
-        equilibria=found,
-        at=at,
-        m=with_friction(system, found.states[at], found.m, stuck=simulation.friction == "stuck"),
-    )
-
-
-def the_equilibrium(locked: LockedPoses) -> Equilibrium:
-    """The equilibrium of a single pose; ComputationError if there is none."""
-    found = locked.equilibria.one(0)
-    if not found.found:
-        raise ComputationError(found.reason, next_step="Check the pose for a singularity and the load of the legs.")
-    refuse_fallen(locked.system, locked.robot, locked.start, locked.equilibria.states)
-    return found
-
-
-def robot_modes(
-    robot: Robot,
-    simulation: Simulation,
-    path: rigid.Poses | None = None,
-    load: Load | None = None,
-    time: float = 0.0,
-) -> RobotModes:
-    """Modes of the locked robot at a pose (default: home), all degrees of freedom; loads as of `locked_poses`.
-
-    Raises
-    ------
-    InputError
-        Rigid legs on prescribed strokes (nothing can move), or a pure force drive.
-    ComputationError
-        No equilibrium at this pose, masses that no body can have, or a number that is not finite.
-    """
-    return the_modes(locked_poses(robot, simulation, rigid.home_pose(robot) if path is None else path, load, time))
 
 
 def the_modes(locked: LockedPoses, *, loops: bool = True) -> RobotModes:

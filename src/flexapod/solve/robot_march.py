@@ -15,10 +15,11 @@ from flexapod.rigid.rotations import matrix
 from flexapod.solve.equilibrium import equilibrium
 from flexapod.solve.fallen import flipped, refuse_fallen, refuse_flipped
 from flexapod.solve.frames import floor
+from flexapod.solve.locked import refuse_pure_force
 from flexapod.solve.loops import settled
+from flexapod.solve.losses import per_loss
 from flexapod.solve.many import RestStates
 from flexapod.solve.march import initial_step, march
-from flexapod.solve.modes import refuse_pure_force
 from flexapod.solve.pieces import Pieces
 from flexapod.solve.problem import Chunk, Problem, Weight
 from flexapod.solve.recording import Counters, Recording
@@ -72,7 +73,8 @@ def prepare(study: Study, state: State | None = None) -> RobotMarch:
     refuse_growing_plates(study)
     refuse_gaps(study)
     robot, simulation = study.robot, study.simulation
-    system, path = robot_system(robot, simulation, within=simulation.tolerance is not None), _Path(study)
+    system = robot_system(robot, simulation, per_loss(robot, simulation), within=simulation.tolerance is not None)
+    path = _Path(study)
     law = robot_law(system, robot, study.load, path.poses, path.knots)
     method = GeneralizedAlpha(simulation.rho_inf)
     if state is None:
@@ -172,7 +174,8 @@ def _configuration(study: Study, system: System) -> State:
     refuse_pure_force(study.robot, "the equilibrium start")
     still = system
     if system.kernel.shapes.integral or system.kernel.shapes.loop:
-        still = robot_system(study.robot, study.simulation, at_rest=True, within=study.simulation.tolerance is not None)
+        lost, within = per_loss(study.robot, study.simulation), study.simulation.tolerance is not None
+        still = robot_system(study.robot, study.simulation, lost, at_rest=True, within=within)
         at_rest = replace(at_rest, drive=np.zeros((still.legs, still.ports.size)))
     acts = rest_load(still, study.robot, path, study.load)
     command = rest_commands(still, study.robot, straight.q[None])[0]

@@ -7,7 +7,6 @@ from flexapod.mechanics.layout import Shapes
 from flexapod.model import Robot, Simulation
 from flexapod.rigid.limbs import ABSENT, COORDINATES, DRIVEN, HELD, Limbs
 from flexapod.solve.kernel import kernel, kernel_at_hand
-from flexapod.solve.losses import per_loss
 from flexapod.solve.parameters import (
     flexures,
     leg_parameters,
@@ -24,6 +23,7 @@ __all__ = ["robot_system", "smooth"]
 def robot_system(
     robot: Robot,
     simulation: Simulation,
+    per_loss: float,
     march: bool = True,
     *,
     at_rest: bool = False,
@@ -32,6 +32,7 @@ def robot_system(
 ) -> System:
     """System of a robot as built, in the fidelity and shapes of ``simulation``; ``march``: to be integrated.
 
+    ``per_loss`` [s]: viscous damping over stiffness of a spring of loss factor 1, see `losses.per_loss`.
     ``within``: with steps that follow a tolerance, too. ``evaluated``: not to be integrated, see `kernel_at_hand`.
     ``at_rest``: loops that sum their errors have left none, Eq. (T23.16).
     """
@@ -39,7 +40,7 @@ def robot_system(
     shapes = robot_shapes(robot, simulation, legs)
     return System(
         kernel=kernel_at_hand(shapes) if evaluated else kernel(shapes, march, within),
-        leg_p=leg_parameters(robot, legs, shapes, per_loss(robot, simulation), at_rest=at_rest),
+        leg_p=leg_parameters(robot, legs, shapes, per_loss, at_rest=at_rest),
         joint_p=np.ascontiguousarray(legs.platform - robot.com),
         payload_p=payload_parameters(robot, shapes, at_rest=at_rest),
         held=_held(robot, legs, shapes, at_rest=at_rest) | _summed(robot, shapes, at_rest=at_rest),

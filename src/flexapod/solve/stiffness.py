@@ -9,9 +9,10 @@ from flexapod.bases.eigen import finite
 from flexapod.errors import InputError
 from flexapod.model import Load, Robot, Simulation
 from flexapod.rigid.rotations import matrix
+from flexapod.solve.at_poses import locked_poses
 from flexapod.solve.elimination import solve_each
 from flexapod.solve.equilibrium import Equilibrium
-from flexapod.solve.modes import LockedPoses, locked_poses, the_equilibrium
+from flexapod.solve.locked import LockedPoses, the_equilibrium
 from flexapod.solve.reduction import reduced_legs
 from flexapod.solve.system import System
 from flexapod.typing import Array
@@ -43,7 +44,7 @@ def robot_stiffness(
 ) -> PoseStiffness:
     """Stiffness against a wrench at the tool, drives locked, about the static equilibrium at a pose (default: home).
 
-    Loads as of `modes.locked_poses`.
+    Loads as of `at_poses.locked_poses`.
 
     Raises
     ------

@@ -9,9 +9,11 @@ import numpy as np
 from flexapod.errors import ComputationError, InputError
 from flexapod.model import Disturbance, Study
 from flexapod.rigid import Poses
+from flexapod.solve.at_poses import locked_poses
 from flexapod.solve.frequencies import count_real
 from flexapod.solve.linear import LinearRobot, linear_robot
-from flexapod.solve.modes import LockedPoses, locked_poses, the_modes
+from flexapod.solve.locked import LockedPoses
+from flexapod.solve.modes import the_modes
 from flexapod.solve.random_vibration import Source, random_vibration, sources_of
 from flexapod.study.accuracy.rows import Row
 from flexapod.study.after.mode_shapes import mode_values

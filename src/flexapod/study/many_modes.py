@@ -9,9 +9,11 @@ import numpy as np
 
 from flexapod import model, rigid
 from flexapod.rigid.rotations import quaternion
+from flexapod.solve.at_poses import locked_poses
 from flexapod.solve.fallen import fallen, platform_poses
 from flexapod.solve.frequencies import count_real
-from flexapod.solve.modes import LockedPoses, ManyModes, RobotModes, locked_poses, modes_of
+from flexapod.solve.locked import LockedPoses
+from flexapod.solve.modes import ManyModes, RobotModes, modes_of
 from flexapod.study.after.mode_shapes import STATIONS, mode_values
 from flexapod.study.before.loops import unstable_at
 from flexapod.study.before.reach import (

@@ -10,9 +10,9 @@ import numpy as np
 from flexapod import model, rigid
 from flexapod.errors import InputError
 from flexapod.solve.actuator_modes import actuator_modes
+from flexapod.solve.at_poses import robot_modes
 from flexapod.solve.many import RestStates
 from flexapod.solve.modal_loops import unstable_words
-from flexapod.solve.modes import robot_modes
 from flexapod.solve.stiffness import robot_stiffness
 from flexapod.solve.system import State, System
 from flexapod.study.after.mode_shapes import STATIONS, mode_values

@@ -13,7 +13,7 @@ from flexapod.proof.cases.calculix_corrections import ONE_ELEMENT, robot_thick
 from flexapod.proof.engines import calculix
 from flexapod.proof.engines.engine import CALCULIX
 from flexapod.proof.robots import unlike_legs, without_cylinders, without_gravity
-from flexapod.solve.modes import robot_modes
+from flexapod.solve.at_poses import robot_modes
 from flexapod.study.arguments import as_pose
 from flexapod.study.static import modes
 

@@ -17,8 +17,8 @@ from flexapod.model.piston import Cylinder, Piston
 from flexapod.proof.case import Case, Check, case, checks
 from flexapod.proof.robots import CYLINDER, PISTON, eight_legs, hexapod, table, tripod, without_gravity
 from flexapod.rigid import Poses, poses, rigid_limbs
+from flexapod.solve.at_poses import locked_poses
 from flexapod.solve.equilibrium import equilibria
-from flexapod.solve.modes import locked_poses
 from flexapod.study.static import modes, stiffness
 from flexapod.typing import Array
 

@@ -9,8 +9,9 @@ import numpy as np
 from flexapod import rigid
 from flexapod.mechanics.layout import columns, leg_parameters
 from flexapod.model import Study
+from flexapod.solve.at_poses import locked_poses
+from flexapod.solve.locked import LockedPoses, the_equilibrium
 from flexapod.solve.many import residual
-from flexapod.solve.modes import LockedPoses, locked_poses, the_equilibrium
 from flexapod.solve.stiffness import displacement, tool_motion
 from flexapod.solve.system import System
 from flexapod.typing import Array

@@ -7,7 +7,8 @@ import numpy as np
 from flexapod import rigid
 from flexapod.errors import FlexapodError
 from flexapod.model import Study
-from flexapod.solve.modes import RobotModes, robot_modes
+from flexapod.solve.at_poses import robot_modes
+from flexapod.solve.modes import RobotModes
 from flexapod.study.before.estimates import residual_vibration
 from flexapod.typing import Array
 from flexapod.words import number

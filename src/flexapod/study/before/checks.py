@@ -11,7 +11,7 @@ from flexapod.errors import InputError
 from flexapod.model import ActuatorStudy, HydraulicDrive, Robot, Study
 from flexapod.rigid.kinematics import BETA_LIMIT
 from flexapod.rigid.workspace import BEFORE, BEYOND, LONGEST, PULLED_OUT, SHORTEST
-from flexapod.solve.modes import refuse_pure_force, refuse_taut
+from flexapod.solve.locked import refuse_pure_force, refuse_taut
 from flexapod.study.before.room import check_outputs
 from flexapod.study.bodies import clearance, gap_words, largest_turns, turns
 from flexapod.study.path import RigidPath, open_force_words, path_instants

@@ -6,8 +6,9 @@ import numpy as np
 
 from flexapod import model, rigid
 from flexapod.errors import FlexapodError
+from flexapod.solve.at_poses import locked_poses
 from flexapod.solve.modal_loops import unstable_words
-from flexapod.solve.modes import locked_poses, modes_of
+from flexapod.solve.modes import modes_of
 from flexapod.study.poses import coordinate_words, coordinates_of
 from flexapod.study.words import text
 from flexapod.ties import first_largest

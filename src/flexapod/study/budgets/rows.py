@@ -12,11 +12,12 @@ from flexapod import rigid
 from flexapod.errors import ComputationError, InputError
 from flexapod.model import Robot, Study
 from flexapod.rigid.rotations import difference, matrix, quaternion
+from flexapod.solve.at_poses import locked_poses
 from flexapod.solve.equilibrium import FOUND
 from flexapod.solve.frames import floor
+from flexapod.solve.locked import LockedPoses, the_equilibrium
 from flexapod.solve.lost_motion import places_with_friction, reversal
 from flexapod.solve.many import RestStates
-from flexapod.solve.modes import LockedPoses, locked_poses, the_equilibrium
 from flexapod.solve.random_vibration import SOURCES
 from flexapod.solve.system import System
 from flexapod.study.accuracy.rows import Row

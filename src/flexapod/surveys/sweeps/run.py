@@ -236,7 +236,7 @@ class _Job:
         for point in islice(self.resolved.settings.values(), KERNELS):
             study = self.points.study(point)
             if isinstance(study, Study):
-                robot_system(study.robot, study.simulation, within=study.simulation.tolerance is not None)
+                robot_system(study.robot, study.simulation, 0.0, within=study.simulation.tolerance is not None)
             else:
                 prepare_actuator(study)
 

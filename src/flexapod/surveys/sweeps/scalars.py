@@ -13,7 +13,7 @@ from flexapod import rigid
 from flexapod.errors import InputError
 from flexapod.model import Study
 from flexapod.rigid.rotations import difference, matrix, quaternion
-from flexapod.solve.modes import robot_modes
+from flexapod.solve.at_poses import robot_modes
 from flexapod.solve.recording import Counters
 from flexapod.solve.system import System
 from flexapod.study.after.causes import cause_names

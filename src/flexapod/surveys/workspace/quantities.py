@@ -8,8 +8,10 @@ import numpy as np
 
 from flexapod import model, rigid
 from flexapod.rigid.rotations import matrix
+from flexapod.solve.at_poses import locked_poses
+from flexapod.solve.locked import LockedPoses
 from flexapod.solve.many import port_forces
-from flexapod.solve.modes import LockedPoses, locked_poses, modes_of
+from flexapod.solve.modes import modes_of
 from flexapod.solve.rest import at_drives
 from flexapod.solve.rigid_motion import rigid_motion
 from flexapod.solve.stiffness import compliance, displacement, stiffness_of, tool_motion

@@ -9,10 +9,11 @@ import numpy as np
 
 from flexapod import model, rigid
 from flexapod.errors import FlexapodError, InputError
+from flexapod.solve.at_poses import locked_poses, robot_modes
 from flexapod.solve.losses import loss_words
 from flexapod.solve.lost_motion import lost_motion, places_with_friction
 from flexapod.solve.modal_loops import unstable_words
-from flexapod.solve.modes import locked_poses, robot_modes, the_modes
+from flexapod.solve.modes import the_modes
 from flexapod.solve.parts import part_stiffness
 from flexapod.solve.robot_march import refuse_massless
 from flexapod.solve.springs import springs_along
