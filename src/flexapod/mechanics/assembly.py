@@ -40,7 +40,7 @@ from flexapod.symbolic.vocabulary import (
 def leg_functions(shapes: Shapes) -> list[NamedFunction]:
     """Residual, matrices at rest, energies and rates of the closure of one leg with the given shapes."""
     x = _Leg(shapes)
-    return [x.residual(), x.matrices(), x.energies(), x.closing(), *([x.looping()] if shapes.loop else [])]
+    return [x.residual(), x.matrices(), x.energies(), x.closing(), *([x.looping()] if shapes.has("j") else [])]
 
 
 def leg_tangents(shapes: Shapes) -> NamedFunction:
@@ -74,13 +74,13 @@ class _Leg:
                 v=getattr(self.vs, name),
                 q_cmd=self.command[2 * i],
                 v_cmd=self.command[2 * i + 1],
-                summed=self._summed() if drive == "rotor" and not shapes.loop else None,
+                summed=self._summed() if drive == "rotor" and not shapes.has("j") else None,
             )
             for i, (name, drive) in enumerate(shapes.drives)
         }
 
     def _summed(self) -> SX | None:
-        return self.p.rotor_integral * self.qs.w if self.shapes.integral else None
+        return self.p.rotor_integral * self.qs.w if self.shapes.has("w") else None
 
     def loop(self) -> Loop:
         """Of legs whose motors lag, or whose loops are closed about another place than the rotor."""
@@ -127,12 +127,12 @@ class _Leg:
             r -= self.load_force()
         for i, servo in self.servos.items():
             r[i] -= servo.force
-        loop = self.loop() if self.shapes.loop else None
+        loop = self.loop() if self.shapes.has("j") else None
         if loop is not None:
             j = self.shapes.index("j")
             r[self.shapes.index("r")] -= loop.force
             r[j] += loop.lag(self.v_dot[j])
-        if self.shapes.integral:  # a coordinate of mass 1 whose rate is the error, (T23.16)
+        if self.shapes.has("w"):  # a coordinate of mass 1 whose rate is the error, (T23.16)
             rotor, w = self.servos[self.shapes.index("r")], self.shapes.index("w")
             r[w] += self.v_dot[w] - (rotor.v_cmd - (rotor.v if loop is None else loop.rate))
         return r
@@ -141,7 +141,7 @@ class _Leg:
         """What loops about other places, and lags, add to D and K, not symmetric; what is measured, and its slope."""
         loop, rows = self.loop(), zeros(self.shapes.size)
         rows[self.shapes.index("r")], rows[self.shapes.index("j")] = -loop.force, -loop.asked
-        if self.shapes.integral:
+        if self.shapes.has("w"):
             rows[self.shapes.index("w")] = loop.rate
         still = zeros(self.shapes.size)
         D, K = jacobian(rows, self.v), substitute(jacobian(rows, self.q), (self.v,), (still,))
@@ -153,7 +153,7 @@ class _Leg:
         loss = dot(self.v, gradient(self.body.lagrangian.dissipation, self.v))
         lost = sum((servo.lost for servo in self.servos.values()), loss)
         given = sum((servo.given for servo in self.servos.values()), zeros(1))
-        if self.shapes.loop:
+        if self.shapes.has("j"):
             given += self.loop().force * self.vs.r
         powers = [lost, given, *([dot(self.load_force(), self.v)] if self.shapes.loaded else [])]
         gap, wrench = (self.by_q.value(x) for x in self.closed(zeros(6)))
@@ -168,9 +168,9 @@ class _Leg:
     def forces(self) -> SX:
         """Forces of the drives' springs; of a stroke that is driven through springs theirs on it, Eq. (T15.11)."""
         forces = [servo.force for servo in self.servos.values()]
-        if self.shapes.loop:
+        if self.shapes.has("j"):
             forces[-1] += self.loop().force
-        if self.shapes.series:
+        if self.shapes.has("r"):
             series = self.body.series
             forces[0] -= gradient(series.strain, self.qs.l) + gradient(series.dissipation, self.vs.l)
         return vertcat(*forces)
@@ -188,9 +188,9 @@ class _Leg:
             D[i, i] += servo.damping
             K[i, i] += servo.stiffness
         M = mass_matrix(e)
-        if self.shapes.integral:  # what couples it to the rotor is slow, and left out of the iterations
+        if self.shapes.has("w"):  # what couples it to the rotor is slow, and left out of the iterations
             M[self.shapes.index("w"), self.shapes.index("w")] += 1.0
-        if self.shapes.loop:
+        if self.shapes.has("j"):
             j = self.shapes.index("j")
             M[j, j], D[j, j] = M[j, j] + self.p.loop_lag, D[j, j] + 1.0
         outputs = [("M", M), ("D", D), ("K", K), ("J", self.by_q.jacobian(here))]

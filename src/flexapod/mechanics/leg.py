@@ -213,7 +213,7 @@ def _inside(
 
 def _series(shapes: Shapes, p: SimpleNamespace, qs: SimpleNamespace, vs: SimpleNamespace) -> Energies:
     """Springs between rotor and stroke."""
-    if not shapes.series:
+    if not shapes.has("r"):
         return Energies()
     return screw(p, qs, vs, oil=shapes.oil, turning=shapes.turning, gap=shapes.gap)
 

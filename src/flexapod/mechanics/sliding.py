@@ -53,8 +53,8 @@ def _rates(shapes: Shapes, p: SimpleNamespace, qs: SimpleNamespace, vs: SimpleNa
     found = {}
     for name, count in shapes.sliding:
         if name == "drive_friction":
-            at_stroke = p.drive_friction_at_stroke + (twisting(p, qs.l) if shapes.series else 0.0)
-            found[name] = at_stroke * vs.l + (1 - at_stroke) * vs.r if shapes.series else vs.l
+            at_stroke = p.drive_friction_at_stroke + (twisting(p, qs.l) if shapes.has("r") else 0.0)
+            found[name] = at_stroke * vs.l + (1 - at_stroke) * vs.r if shapes.has("r") else vs.l
         elif name == "platform_friction":
             angles, rates = (vertcat(x.gamma1, x.gamma2, x.gamma3) for x in (qs, vs))
             found[name] = turning(angles, rates, p.platform_friction[7])

@@ -49,7 +49,7 @@ def _loads(system: System, legs: Limbs, length: Array) -> Array:
         if shapes.has(name):
             q[:, shapes.index(name)] = legs.home[:, k]
     q[:, shapes.l_index] = length
-    if shapes.series:
+    if shapes.has("r"):
         q[:, shapes.index("r")] = length
     beta = legs.home[:, COORDINATES.index("beta")]
     axes = np.einsum("nij,nj->ni", legs.frames, np.stack([np.sin(beta), 0 * beta, np.cos(beta)], axis=1))

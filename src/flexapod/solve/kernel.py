@@ -111,7 +111,7 @@ def sizes(shapes: Shapes, leg_p: int = 0, joint: int = 3) -> str:
     lists = (f"{name}[] = {{{', '.join(map(str, x))}}}" for name, x in (("ORDER", order), ("PLACE", places)))
     constants = ", ".join(f"{name} = {value}" for name, value in values.items())
     friction = f"#define BRISTLES {shapes.bristles}\n" if shapes.bristles else ""
-    loop = f"#define LOOP {shapes.index('j')}\n" if shapes.loop else ""
+    loop = f"#define LOOP {shapes.index('j')}\n" if shapes.has("j") else ""
     return f"{friction}{loop}enum {{ {constants} }};\nstatic const int {', '.join(lists)};"
 
 

@@ -48,12 +48,12 @@ class LockedPoses:
     @cached_property
     def shaken(self) -> "LockedPoses":
         """The same about which to vibrate: a rotor whose loop sums its error is at rest, and has its spring beside."""
-        if self.system.kernel.shapes.loop:
+        if self.system.kernel.shapes.has("j"):
             system = at_rotors(smooth(self.robot), self.simulation.replace(play="static"), self.per_loss)
             at, stuck = self.equilibria.states[self.at], self.simulation.friction == "stuck"
             m = with_friction(system, at, matrices_at_rest(system, at, self.acts.wrench), stuck=stuck)
             return replace(self, system=system, m=m)
-        if not self.system.kernel.shapes.integral:
+        if not self.system.kernel.shapes.has("w"):
             return self
         held, shapes = self.system.held.copy(), self.system.kernel.shapes
         rests = [leg.screw is not None and leg.screw.rests and not leg.screw.holds for leg in self.robot.legs]

@@ -33,7 +33,7 @@ def settled(system: System, x: State, table: Array, wrench: Array, *, rests: boo
     """
     shapes, before = system.kernel.shapes, np.inf
     x, j = _at_force(system, x, table, wrench), _flat(system, "j")
-    w = _flat(system, "w") if shapes.integral else np.zeros_like(j)
+    w = _flat(system, "w") if shapes.has("w") else np.zeros_like(j)
     for _ in range(ROUNDS if rests else 0):
         r, g, _ = system.residual(x, table, wrench)
         m = system.matrices(x, wrench)

@@ -124,7 +124,7 @@ def modes_of(locked: LockedPoses, *, shapes: bool = False, loops: bool = True) -
     InputError
         Rigid legs on prescribed strokes: nothing can move.
     """
-    if loops and locked.system.kernel.shapes.loop:
+    if loops and locked.system.kernel.shapes.has("j"):
         return _looping(locked)
     found = unit_modes(locked, shapes=shapes)
     omega, flat = found.omega, found.flat
@@ -166,7 +166,7 @@ def _looping(locked: LockedPoses) -> ManyModes:
 
 def loops_of(locked: LockedPoses) -> list[ModalLoops]:
     """Loops that are not symmetric in the modes of `unit_modes` at each equilibrium; none of them of other robots."""
-    if not locked.system.kernel.shapes.loop:
+    if not locked.system.kernel.shapes.has("j"):
         return []
     found = unit_modes(locked, shapes=True)
     return modal_loops(locked.robot, locked.shaken.system, locked.equilibria.states[locked.at], found.flat)

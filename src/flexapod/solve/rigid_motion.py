@@ -93,7 +93,7 @@ def _undeformed(system: System, robot: Robot, path: rigid.Poses, found: rigid.Le
     q = np.zeros((*x.shape[:3], system.n))
     there, at = leg_coordinates(shapes)
     q[..., at] = x[..., there]
-    if shapes.series:
+    if shapes.has("r"):
         q[..., shapes.index("r")] = np.where([leg.gives for leg in robot.legs], q[..., shapes.l_index], 0.0)
     return q
 

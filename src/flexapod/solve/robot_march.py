@@ -79,7 +79,7 @@ def prepare(study: Study, state: State | None = None) -> RobotMarch:
     method = GeneralizedAlpha(simulation.rho_inf)
     if state is None:
         state = _configuration(study, system)
-        if system.kernel.shapes.loop:
+        if system.kernel.shapes.has("j"):
             rests = study.initial.start == "equilibrium"
             table, wrench = (part[0] for part in law(np.zeros(1)))
             table[..., 1:3] *= not rests
@@ -173,7 +173,7 @@ def _configuration(study: Study, system: System) -> State:
         return at_rest
     refuse_pure_force(study.robot, "the equilibrium start")
     still = system
-    if system.kernel.shapes.integral or system.kernel.shapes.loop:
+    if system.kernel.shapes.has("w") or system.kernel.shapes.has("j"):
         lost, within = per_loss(study.robot, study.simulation), study.simulation.tolerance is not None
         still = robot_system(study.robot, study.simulation, lost, at_rest=True, within=within)
         at_rest = replace(at_rest, drive=np.zeros((still.legs, still.ports.size)))
@@ -183,7 +183,7 @@ def _configuration(study: Study, system: System) -> State:
     if not found.found:
         raise ComputationError(f"the robot cannot start at rest: {found.reason}", next_step="See `flexapod check`.")
     refuse_fallen(still, study.robot, RestStates.of(straight), RestStates.of(found.state))
-    if system.kernel.shapes.loop:
+    if system.kernel.shapes.has("j"):
         return replace(found.state, drive=np.zeros((system.legs, system.ports.size)))
     return found.state if still is system else _summed(study.robot, system, still, found.state)
 

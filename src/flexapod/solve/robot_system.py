@@ -66,7 +66,7 @@ def _held(robot: Robot, legs: Limbs, shapes: Shapes, *, at_rest: bool) -> Mask:
             state = legs.state[:, k]
             foreign = (state == ABSENT) & (name in ("chi", "spin"))
             held[:, shapes.index(name)] = (state == HELD) | ((state == DRIVEN) & prescribed) | foreign
-    if shapes.series:  # a servo's spring is in series with those behind it
+    if shapes.has("r"):  # a servo's spring is in series with those behind it
         held[:, shapes.index("r")] = [leg.drive.holds or leg.screw is None for leg in robot.legs]
     made_up = [leg.drive.holds or at_rest for leg in robot.legs]  # ideally, or at rest
     ends = np.array([leg.measured == "joint-to-joint" for leg in robot.legs]) & made_up
@@ -95,11 +95,11 @@ def _held_inside(robot: Robot, shapes: Shapes) -> Mask:
 def _summed(robot: Robot, shapes: Shapes, *, at_rest: bool) -> Mask:
     """Rotors, strokes and summed errors that loops hold at rest; summed errors and lags of legs that have none."""
     held: Mask = np.zeros((len(robot.legs), shapes.size), dtype=bool)
-    if shapes.integral:
+    if shapes.has("w"):
         sums = np.array([leg.screw is not None and leg.screw.integral > 0 for leg in robot.legs])
         held[:, shapes.index("w")] = ~sums | at_rest
         held[sums, shapes.index("r")] = at_rest
-    if shapes.loop:
+    if shapes.has("j"):
         screws, elsewhere = [leg.screw for leg in robot.legs], np.array([bool(leg.closed_about) for leg in robot.legs])
         held[:, shapes.index("j")] = [at_rest or x is None or not x.lag for x in screws]
         if at_rest:  # (T23.55)

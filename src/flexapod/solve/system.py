@@ -184,7 +184,7 @@ class System:
         driven = [shapes.index(name) for name, _ in shapes.drives]
         if not self.hub:
             driven += [shapes.index(name) for name in ("alpha", "beta") if shapes.has(name)]
-        if shapes.loop:
+        if shapes.has("j"):
             driven.append(shapes.index("j"))
         return np.array([*driven, *(k for k in np.flatnonzero(self.held.any(axis=0)) if k not in driven)])
 
@@ -246,7 +246,7 @@ class System:
             r, powers[0] = r + rubbed.r, powers[0] + rubbed.energies[:, 0].sum()
         r[:, self.ports] -= force
         work = force * v[:, self.ports]
-        if shapes.loop:
+        if shapes.has("j"):
             work[:, self.ports == shapes.index("j")] = 0.0
         powers[1], powers[3] = powers[1] + work[:, ~self.floor].sum(), work[:, self.floor].sum()
         if not self.hub:
@@ -282,7 +282,7 @@ class System:
         for whole, parts in zip((M, D, K, G), found[:4], strict=True):
             for i, part in enumerate(parts):
                 whole[i * len(part) : (i + 1) * len(part), i * n : (i + 1) * n] = part
-        if self.kernel.shapes.loop:
+        if self.kernel.shapes.has("j"):
             for i, parts in enumerate(zip(*self.loops(x)[:2], strict=True)):
                 for whole, part in zip((D, K), parts, strict=True):
                     whole[i * n : (i + 1) * n, i * n : (i + 1) * n] += part

@@ -35,12 +35,12 @@ def robot_law(
         if port in names:
             place = COORDINATES.index(names[port])
             driven[:, k], home[:, k] = chains.state[:, place] == DRIVEN, chains.home[:, place]
-    if shapes.series:  # a rotor's travel follows the length
+    if shapes.has("r"):  # a rotor's travel follows the length
         names[shapes.index("r")] = "l"
         driven[:, system.ports == shapes.index("r")] = np.array([[leg.gives] for leg in robot.legs])
     driven, ports = driven.astype(bool), list(enumerate(system.ports))
     every = np.ones(system.legs, dtype=bool)
-    turned = {shapes.index("r"): np.array([leg.gives for leg in robot.legs])} if shapes.series else {}
+    turned = {shapes.index("r"): np.array([leg.gives for leg in robot.legs])} if shapes.has("r") else {}
     places = {k: (COORDINATES.index(names[port]), turned.get(port, every)) for k, port in ports if port in names}
     pushed = system.ports == force_ports(system, robot)[:, None]
 
@@ -107,7 +107,7 @@ def push_ports(system: System, robot: Robot) -> Index:
     for name in ("l", "chi"):
         if shapes.has(name):
             found[state[:, COORDINATES.index(name)] == DRIVEN] = shapes.index(name)
-    if shapes.series:
+    if shapes.has("r"):
         found[[leg.gives for leg in robot.legs]] = shapes.index("r")
     return found
 
@@ -118,7 +118,7 @@ def force_ports(system: System, robot: Robot) -> Index:
     At rest, about a loop that is closed elsewhere than at the rotor, the stroke, Eq. (T23.55).
     """
     found, shapes = push_ports(system, robot), system.kernel.shapes
-    if shapes.loop:
+    if shapes.has("j"):
         r, j = (system.held[:, shapes.index(name)] for name in ("r", "j"))
         found[~j] = shapes.index("j")
         found[[bool(leg.closed_about) and bool(still) for leg, still in zip(robot.legs, r, strict=True)]] = (

@@ -73,7 +73,7 @@ def _gives(system: System, q: Array) -> dict[Place, Array]:
     shapes = system.kernel.shapes
     places: dict[Place, str] = {} if shapes.flexure else {"base": "u3", "platform": "e3"}
     found: dict[Place, Array] = {at: q[..., shapes.index(name)] for at, name in places.items() if shapes.has(name)}
-    if shapes.series:
+    if shapes.has("r"):
         found["nut"] = q[..., shapes.l_index] - q[..., shapes.index("r")]
     return found
 

@@ -117,14 +117,14 @@ def _drive_positions(robot: Robot, system: System, record: Record) -> Array:
     gives = elongations(robot, system, q, ("nut",))
     give = np.sum(list(gives.values()), axis=0)
     give = give + in_gap(robot, system, q)
-    return found - give if shapes.series else found
+    return found - give if shapes.has("r") else found
 
 
 def _motor_forces(robot: Robot, system: System, forces: Array) -> Array:
     """Forces of the drives on what they move, (T, legs): of rotors by their travel."""
     shapes = system.kernel.shapes
     found = by_name.of_drives(robot_limbs(robot), shapes, forces)
-    if not shapes.series:
+    if not shapes.has("r"):
         return found
     rotor = forces[..., shapes.index("r")]
     held = system.held[:, shapes.l_index]  # by the drive, whose rotor turns along
