@@ -436,11 +436,11 @@ class Results:
 
 
 def tried(
-    copy: Copy, fault: Fault, near: Nearness, results: Results, seconds: float, tests: list[str]
+    copy: Copy, fault: Fault, near: Nearness, results: Results, seconds: float, tests: list[str], again: bool
 ) -> tuple[Trial, float]:
     """The tests near a fault, without those that did not see it before; and how long that took [s]."""
     begun, before = time.monotonic(), results.rows.get(fault.name, {"reached": [], "tried": []})
-    chosen = tests or near.tests(fault.path, fault.function, seconds, results, set(before["tried"]))
+    chosen = tests or near.tests(fault.path, fault.function, seconds, results, set(() if again else before["tried"]))
     copy.mapped = set(results.called)
     trial = copy.tried(chosen, seconds, fault)
     results.learn(trial)
@@ -485,7 +485,7 @@ def main() -> int:
                 done = row and (row["failed"] or row["round"] >= nth or len(row["reached"]) >= enough)
                 if done and given.again is None:
                     continue
-                trial, took = tried(copy, fault, near, results, seconds, given.tests)
+                trial, took = tried(copy, fault, near, results, seconds, given.tests, given.again is not None)
                 results.add(fault, trial, nth, took)
                 said = f"seen by {trial.failed}" if trial.failed else f"NOT SEEN, reached in {len(trial.reached)} files"
                 print(f"{k + 1:4d} {fault.name}\n         {said} ({took:.0f} s)", flush=True)

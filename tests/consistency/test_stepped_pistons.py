@@ -3,6 +3,7 @@
 import re
 from itertools import pairwise
 
+import casadi
 import numpy as np
 import pytest
 from tests.stepped import function, leg_of, section, shapes_of, vector
@@ -12,6 +13,7 @@ from flexapod.elements.steps import held
 from flexapod.errors import InputError
 from flexapod.model.files import preset_text
 from flexapod.solve.sections import numeric_pieces
+from flexapod.symbolic.vocabulary import expanded
 
 THREE = [section(0.2, 0.05), section(0.25, 0.04, inner_diameter=0.03), section(0.3, 0.03)]
 PISTON = '{{ sections = [{{ length = "200 mm", diameter = "{} mm", material = "steel" }}, ' \
@@ -178,3 +180,16 @@ def test_a_taper_without_pieces_that_stand_for_it_is_refused():
         section(0.2, 0.44, tip_diameter=0.01, inner_diameter=0.009)
     half = section(0.1, 0.44, tip_diameter=0.225, inner_diameter=0.009)
     assert min(min(step.EI) for step in half.steps) > 0
+
+
+def test_series_of_shapes_have_the_derivatives_of_the_shapes():
+    # What is expanded about the value of x, differentiated twice and put back: x^3 and sin 2x, by hand.
+    x = casadi.SX.sym("x")
+    (cube, wave), (at, known) = expanded([x**3, casadi.sin(2 * x)], x)
+    found = [casadi.jacobian(cube * wave, x)]
+    found.append(casadi.jacobian(found[0], x))
+    exact = casadi.Function("f", [x], [casadi.substitute(casadi.vertcat(cube, wave, *found), at, known)])
+    v, s, c = 0.7, np.sin(1.4), np.cos(1.4)
+    first = 3 * v**2 * s + 2 * v**3 * c
+    second = 6 * v * s + 12 * v**2 * c - 4 * v**3 * s
+    np.testing.assert_allclose(exact(v).full()[:, 0], [v**3, s, first, second], rtol=1e-13)

@@ -27,6 +27,14 @@ def test_secant_of_a_cross_on_needle_bearings(bore, stiffness):
     assert law(bore=1e-3 * bore).k == pytest.approx(found.k / 0.84, rel=1e-12)
 
 
+def test_secant_of_bearings_by_their_width():
+    # NKI of 16 mm on 20 mm, same pages: K_c = 4.4 x 16^0.8 / 20^0.2 = 22.21, c_s = 22.21 x 20^0.65 = 155.7,
+    # 2 x 150^0.84 / 155.7 = 0.864 um under 300 N; of another width as its power of 0.8.
+    found = law(series="NKI", width=0.016, of="secant").k / UM
+    assert found == pytest.approx(347.0, abs=0.6)
+    assert law(series="NKI", width=0.032, of="secant").k / UM == pytest.approx(2**0.8 * found, rel=1e-12)
+
+
 @pytest.mark.parametrize(
     "more",
     [{}, {"series": "NKI", "width": 0.016}, {"series": "BK", "width": 0.012, "yokes": 1}, {"series": "K893"},

@@ -66,3 +66,13 @@ def test_a_beam_wholly_outside_its_hub_is_no_loss():
     still = fx.model.ActuatorMotion(rotation={"law": "rate", "rate": 0.785}, extension={"law": "rate", "rate": 0.0})
     data = fx.simulate_actuator(beam, still, step=1e-3, duration=0.01)
     assert data.attrs["partial"] == 0
+
+
+def test_modes_of_the_beam_are_those_of_a_cantilever():
+    study = fx.preset("paper-actuator")
+    actuator = study.actuator
+    found = fx.modes(study)
+    assert found.mode.values.tolist() == list(range(1, found.sizes["mode"] + 1))
+    roots = np.array([1.87510407, 4.69409113, 7.85475744])
+    expected = roots**2 / actuator.free_length**2 * np.sqrt(actuator.EI / actuator.rhoA) / (2 * np.pi)
+    np.testing.assert_allclose(found.frequency[:3], expected, rtol=1e-6)  # shapes are those of the modes
