@@ -56,7 +56,9 @@ def test_scalars_are_those_of_a_run(changes):
         assert found[name] == pytest.approx(values.max(), **ROUNDING)
     assert found["first_frequency"] == pytest.approx(float(fx.modes(study).frequency[0]), rel=1e-12)
     assert found["steps"] == data.attrs["steps"]
-    assert result.remarks == data.attrs["warnings"]
+    # whether fixed steps follow what vibrates takes the modes, for which a sweep has no time
+    said = [remark for remark in data.attrs["warnings"].splitlines() if "steps a period" not in remark]
+    assert result.remarks.splitlines() == said
 
 
 def test_stress_is_force_over_section_where_nothing_bends():

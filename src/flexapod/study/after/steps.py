@@ -61,7 +61,7 @@ def _vibrations(study: Study, modes: RobotModes, end: float) -> tuple[Array, Arr
     t = np.linspace(0.0, end, int(min(np.ceil(PER_PERIOD * highest * end), MOST)) + 2)
     path = rigid.poses(study.robot, study.motion, t)
     found = residual_vibration(study.robot, modes, t, path, from_rest=study.initial.start != "moving")
-    with np.errstate(divide="ignore"):
-        periods = np.minimum(found.frequency * end, 1 / (2 * np.pi * found.damping_ratio))
+    with np.errstate(divide="ignore"):  # of an undamped robot the ratio is 0, or rounding on either side of it
+        periods = np.minimum(found.frequency * end, 1 / (2 * np.pi * np.maximum(found.damping_ratio, 0.0)))
     needed = np.maximum(FEWEST, 2 * np.pi * np.sqrt(periods / (12 * DRIFT)))
     return found.frequency, found.amplitude, needed
