@@ -13,7 +13,7 @@ from flexapod import rigid
 from flexapod.bases import lateral_basis
 from flexapod.model import AxisMotion, Rectangle, Tube
 from flexapod.model.material import MATERIALS
-from flexapod.solve.modes import locked_poses
+from flexapod.solve.at_poses import locked_poses
 from flexapod.solve.sections import leg_values
 from flexapod.study.after.plausibility import flexible_axes, leg_stress
 from flexapod.study.before.describe.leg import _stress
