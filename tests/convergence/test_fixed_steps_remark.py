@@ -6,6 +6,7 @@ import numpy as np
 from tests.runs import paper_robot
 
 from flexapod import simulate
+from flexapod.study.after.steps import steps_needed
 
 
 def after_the_roll(found):
@@ -31,6 +32,15 @@ def test_steps_that_pass_over_a_vibration_are_told():
     fine = simulate(paper_robot(step=advised, duration=1.31))
     assert not remarks(fine)
     assert np.abs(after_the_roll(fine) - after_the_roll(true)).max() < np.pi / 5 * size
+
+
+def test_with_the_steps_that_are_needed_a_vibration_is_a_tenth_of_a_period_late():
+    """The trapezoidal rule turns an oscillator of angular frequency w by 2 atan(w h / 2) in a step, not by w h."""
+    periods = np.array([30.0, 100.0, 1000.0])
+    step = 2 * np.pi / steps_needed(periods)  # w h
+    late = periods * (1 - 2 * np.arctan(step / 2) / step)
+    np.testing.assert_allclose(late, 0.1, rtol=0.01)  # the next term is 12 (w h)^2 / 80 of it: 0.6 % at 30
+    assert steps_needed(np.array([0.0, 1.0])).tolist() == [20.0, 20.0]
 
 
 def test_a_slow_motion_leaves_nothing_to_be_followed():

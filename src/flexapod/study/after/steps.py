@@ -13,7 +13,7 @@ from flexapod.study.before.estimates import residual_vibration
 from flexapod.typing import Array
 from flexapod.words import number
 
-__all__ = ["step_warnings"]
+__all__ = ["step_warnings", "steps_needed"]
 
 FEWEST = 20.0  # steps a period, whose length is then 0.8 % too long, Eq. (T6.16)
 DRIFT = 0.1  # periods by which a mode may come too late to the motion's end
@@ -63,5 +63,9 @@ def _vibrations(study: Study, modes: RobotModes, end: float) -> tuple[Array, Arr
     found = residual_vibration(study.robot, modes, t, path, from_rest=study.initial.start != "moving")
     with np.errstate(divide="ignore"):  # of an undamped robot the ratio is 0, or rounding on either side of it
         periods = np.minimum(found.frequency * end, 1 / (2 * np.pi * np.maximum(found.damping_ratio, 0.0)))
-    needed = np.maximum(FEWEST, 2 * np.pi * np.sqrt(periods / (12 * DRIFT)))
-    return found.frequency, found.amplitude, needed
+    return found.frequency, found.amplitude, steps_needed(periods)
+
+
+def steps_needed(periods: Array) -> Array:
+    """Steps a period that follow a vibration over so many of its periods, Eq. (T8.24)."""
+    return np.maximum(FEWEST, 2 * np.pi * np.sqrt(periods / (12 * DRIFT)))
