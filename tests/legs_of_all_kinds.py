@@ -5,6 +5,8 @@ from functools import cache
 import numpy as np
 
 from flexapod.bases import axial_basis, lateral_basis
+from flexapod.elements.drive_train import DriveTrain
+from flexapod.elements.soft_joint import SoftBase, SoftPlatform
 from flexapod.mechanics.assembly import leg_functions
 from flexapod.mechanics.layout import Shapes, leg_parameters
 from flexapod.rigid.rotations import quaternion
@@ -22,11 +24,11 @@ KINDS = {
     "pose on a slider": EVERYTHING | {"carriage": "slider"},
     "pose on a crank": EVERYTHING | {"carriage": "crank"},
     "flexures on a crank": EVERYTHING | {"carriage": "crank", "flexure": True},
-    "point between soft joints": {"soft_base": True, "soft_platform": True},
-    "pose between soft joints": EVERYTHING | {"soft_base": True, "soft_platform": True},
-    "soft joints and flexures": {"closure": "pose", "flexure": True, "soft_base": True, "soft_platform": True},
-    "point behind a screw": {"series": True},
-    "pose behind a screw": EVERYTHING | {"series": True, "soft_base": True},
+    "point between soft joints": {"elements": (SoftBase, SoftPlatform)},
+    "pose between soft joints": EVERYTHING | {"elements": (SoftBase, SoftPlatform)},
+    "soft joints and flexures": {"closure": "pose", "flexure": True, "elements": (SoftBase, SoftPlatform)},
+    "point behind a screw": {"elements": (DriveTrain,)},
+    "pose behind a screw": EVERYTHING | {"elements": (SoftBase, DriveTrain)},
     "point on frames that move": {"base_motion": True, "base_mount": True, "platform_mount": True},
     "slider on a base that moves": {"base_motion": True, "carriage": "slider"},
     "pose on a crank on frames that move": EVERYTHING
@@ -34,7 +36,7 @@ KINDS = {
     "point in a guide": {"guide": GUIDE},
     "point in a cylinder that bends": {"cylinder": CYLINDER},
     "point in a guide of a cylinder": {"guide": GUIDE, "cylinder": CYLINDER},
-    "pose in a guide of a cylinder": EVERYTHING | {"guide": GUIDE, "cylinder": CYLINDER, "soft_base": True},
+    "pose in a guide of a cylinder": EVERYTHING | {"guide": GUIDE, "cylinder": CYLINDER, "elements": (SoftBase,)},
     "tip body": {"closure": "none", "torsion": True, "tip_body": True},
     "planar": {"closure": "none", "planar": True, "tip_body": True},
 }

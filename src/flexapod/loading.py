@@ -9,8 +9,9 @@ from collections.abc import Iterator
 from contextlib import contextmanager
 from importlib import import_module
 from types import ModuleType
+from typing import Any
 
-__all__ = ["loaded", "without"]
+__all__ = ["lazy", "loaded", "without"]
 
 atexit.register(gc.freeze)  # the search as the interpreter ends would look at every module again
 
@@ -27,6 +28,15 @@ def loaded(name: str) -> ModuleType:
             gc.unfreeze()  # into the oldest generation
         if collecting:
             gc.enable()
+
+
+class lazy(ModuleType):
+    """A module that is imported with the first name that is asked of it."""
+
+    def __getattr__(self, name: str) -> Any:
+        value = getattr(loaded(self.__name__), name)
+        setattr(self, name, value)
+        return value
 
 
 @contextmanager

@@ -17,6 +17,7 @@ import flexapod as fx
 from flexapod import rigid
 from flexapod.bases import lateral_basis
 from flexapod.elements.friction import rubbing, turning
+from flexapod.elements.springs import springs_along
 from flexapod.mechanics.layout import columns, leg_parameters
 from flexapod.mechanics.sliding import friction_functions
 from flexapod.model import Feedback, Joint, JointFriction, ScrewFriction, ServoDrive, StrokeFriction, override
@@ -25,7 +26,6 @@ from flexapod.solve.at_poses import locked_poses
 from flexapod.solve.friction import numbers, sliding
 from flexapod.solve.kernel import kernel
 from flexapod.solve.lost_motion import lost_motion, reversal
-from flexapod.solve.springs import springs_along
 from flexapod.solve.stiffness import displacement, tool_motion
 from flexapod.study.before.sliding import steady_friction
 from flexapod.study.budgets.words import part_words

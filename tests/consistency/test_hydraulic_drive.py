@@ -12,11 +12,11 @@ from tests.texts import replaced
 import flexapod as fx
 from flexapod import model
 from flexapod.app.check_words import show_robot
+from flexapod.elements.springs import springs_along
 from flexapod.errors import InputError
 from flexapod.model import AxialSpring, HydraulicDrive, HydraulicLimits
 from flexapod.report.study_words import study_words
 from flexapod.solve.losses import loss_frequency
-from flexapod.solve.springs import springs_along
 from flexapod.study.before.describe.hydraulic import describe_hydraulics, hydraulic_remarks, oil_frequency
 from flexapod.study.before.describe.robot import describe
 from flexapod.study.path import RigidPath

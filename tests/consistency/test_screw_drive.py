@@ -8,9 +8,9 @@ from tests.mechanisms import ROBOTS, three_rps
 from tests.runs import balance, run_robot
 
 import flexapod as fx
+from flexapod.elements.springs import in_series, springs_along
 from flexapod.errors import InputError
 from flexapod.model import AxialSpring, AxisMotion, Feedback, Joint, PrescribedDrive, ServoDrive, Simulation, Study
-from flexapod.solve.springs import in_series, springs_along
 
 STILL = {"gravity": [0, 0, 0]}
 NEVER = 1e17  # N/m

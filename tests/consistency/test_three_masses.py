@@ -13,8 +13,8 @@ from tests.consistency.test_soft_joints import light
 from tests.machines import SCREW, symmetric
 
 import flexapod as fx
+from flexapod.elements.springs import springs_along
 from flexapod.model import Loop
-from flexapod.solve.springs import springs_along
 
 
 def active(robot):

@@ -10,6 +10,7 @@ from typer.testing import CliRunner
 import flexapod as fx
 from flexapod import rigid
 from flexapod.app.cli import app
+from flexapod.elements.springs import in_series, softening, springs_along
 from flexapod.errors import InputError
 from flexapod.exchange.decks_legs import legs_at_pose
 from flexapod.model import (
@@ -28,7 +29,6 @@ from flexapod.model.material import Tube
 from flexapod.model.mount import Mount
 from flexapod.model.piston import Cylinder, Guide
 from flexapod.solve.parts import part_stiffness
-from flexapod.solve.springs import in_series, softening, springs_along
 from flexapod.study.after.causes import cause_names
 from flexapod.study.budgets.rows import names_of_rows
 

@@ -1,10 +1,16 @@
 """What carries a base joint: a slider on a rail or a crank on a shaft, Eqs. (T13.1)-(T13.3)."""
 
+from __future__ import annotations
+
 from types import SimpleNamespace
+from typing import TYPE_CHECKING
 
 from flexapod.elements.frame import Energies, Frame
 from flexapod.elements.rotations import about_axis
-from flexapod.symbolic.vocabulary import SX, cross, dot, matrix33, zeros
+from flexapod.symbolic.vocabulary import cross, dot, matrix33, zeros
+
+if TYPE_CHECKING:
+    from flexapod.symbolic.vocabulary import SX
 
 
 def carriage(

@@ -1,5 +1,7 @@
 """The cylinder: a rigid body that turns about the base joint, Eqs. (T3.12) and (T13.5)."""
 
+from __future__ import annotations
+
 from types import SimpleNamespace
 
 from flexapod.elements.frame import Energies, Frame

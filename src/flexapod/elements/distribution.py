@@ -7,6 +7,8 @@ products of these functions, so that the kinetic energy is a sum of quadratic fo
 zero-order velocities and is added to second order.
 """
 
+from __future__ import annotations
+
 from dataclasses import dataclass, field
 from types import SimpleNamespace
 from typing import Any

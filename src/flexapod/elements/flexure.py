@@ -1,7 +1,14 @@
 """Springs of a joint: on its angles, or a flexure that gives way along and about all axes; and what damps them."""
 
+from __future__ import annotations
+
+from typing import TYPE_CHECKING
+
 from flexapod.elements.frame import Energies
-from flexapod.symbolic.vocabulary import SX, dot, reshape
+from flexapod.symbolic.vocabulary import dot, reshape
+
+if TYPE_CHECKING:
+    from flexapod.symbolic.vocabulary import SX
 
 
 def springs(stiffness: SX, damping: SX, angles: SX, rates: SX) -> Energies:

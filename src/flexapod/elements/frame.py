@@ -3,8 +3,12 @@
 from __future__ import annotations
 
 from dataclasses import dataclass, field
+from typing import TYPE_CHECKING
 
-from flexapod.symbolic.vocabulary import SX, cross, dot, mtimes, zeros
+from flexapod.symbolic.vocabulary import cross, dot, mtimes, zeros
+
+if TYPE_CHECKING:
+    from flexapod.symbolic.vocabulary import SX
 
 __all__ = ["Energies", "Frame"]
 

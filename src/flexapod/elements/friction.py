@@ -1,8 +1,14 @@
 """Friction with presliding after LuGre: a bristle for each direction in which things slide, Eqs. (T19.1)-(T19.6)."""
 
-from dataclasses import dataclass
+from __future__ import annotations
 
-from flexapod.symbolic.vocabulary import SX, cos, dot, exp, sin, sqrt, vertcat
+from dataclasses import dataclass
+from typing import TYPE_CHECKING
+
+from flexapod.symbolic.vocabulary import cos, dot, exp, sin, sqrt, vertcat
+
+if TYPE_CHECKING:
+    from flexapod.symbolic.vocabulary import SX
 
 __all__ = ["Rubbing", "forgetting", "rubbing", "turning"]
 

@@ -1,6 +1,17 @@
-"""Play of a leg as a gap in the springs before its piston, Eqs. (T16.26)-(T16.27). Numbers and symbols alike."""
+"""Play of a leg as a gap in the springs before its piston, Eqs. (T16.26)-(T16.27)."""
 
-from typing import Any, TypeVar
+from __future__ import annotations
+
+from collections.abc import Sequence
+from dataclasses import dataclass
+from types import SimpleNamespace
+from typing import TYPE_CHECKING, Any, ClassVar, Self, TypeVar
+
+from flexapod.elements.element import Element, Named, Standing
+
+if TYPE_CHECKING:
+    from flexapod.model import Leg, Simulation
+    from flexapod.symbolic.vocabulary import SX
 
 ROUNDED = 0.2  # width over half of the play within which the gap's edges are rounded
 LEAST = 1e-9  # m, of a leg without play
@@ -8,8 +19,36 @@ LEAST = 1e-9  # m, of a leg without play
 T = TypeVar("T")
 
 
+@dataclass(frozen=True)
+class Gap(Element):
+    """Free travel along a leg, `half` to either side [m]."""
+
+    half: float
+
+    parameters: ClassVar[Named] = (("half_play", 1),)
+
+    @classmethod
+    def of(cls, leg: Leg) -> Self | None:
+        """Of a leg with play and with springs before its piston."""
+        return cls(leg.half_play) if leg.half_play and leg.gives else None
+
+    @classmethod
+    def among(cls, legs: Sequence[Leg], simulation: Simulation) -> bool:
+        """Where the simulation takes play for a gap."""
+        return simulation.play == "gap" and super().among(legs, simulation)
+
+    def numbers(self, leg: Leg, standing: Standing) -> dict[str, Any]:
+        """Half of the play."""
+        return {"half_play": self.half}
+
+    @classmethod
+    def past(cls, x: SX, rate: SX, p: SimpleNamespace) -> tuple[SX, SX]:
+        """The springs touch past the play only, Eqs. (T16.26)-(T16.27)."""
+        return past_gap(x, p.half_play), touching(x, p.half_play) * rate
+
+
 def past_gap(x: T, half: Any) -> T:
-    """How far a displacement x is past the edges of a gap that is `half` wide on either side."""
+    """How far a displacement x is past the edges of a gap that is `half` wide on either side. Numbers and symbols."""
     rounding = (ROUNDED * half) ** 2 + LEAST**2  # type: ignore[operator]
     return x - 0.5 * (((x + half) ** 2 + rounding) ** 0.5 - ((x - half) ** 2 + rounding) ** 0.5)  # type: ignore[operator]
 

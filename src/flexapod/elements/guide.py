@@ -4,6 +4,8 @@ Both parts of the piston are beams clamped to a line through the gland: the oute
 with shapes of its own towards the head.
 """
 
+from __future__ import annotations
+
 from types import SimpleNamespace
 from typing import Any
 

@@ -1,13 +1,23 @@
 """A plate on springs along and about all axes, or one that is moved: displacement and roll, pitch, yaw, (T24.1)."""
 
+from __future__ import annotations
+
+from typing import TYPE_CHECKING
+
 from flexapod.elements.flexure import flexure
 from flexapod.elements.frame import Energies, Frame
 from flexapod.elements.rotations import about_x, about_y, about_z
-from flexapod.symbolic.vocabulary import SX, dot, matrix33, vertcat, zeros
+from flexapod.symbolic.vocabulary import dot, identity, matrix33, vertcat, zeros
 
-__all__ = ["WORLD", "displaced", "mount", "plate", "turn"]
+if TYPE_CHECKING:
+    from flexapod.symbolic.vocabulary import SX
 
-WORLD = Frame(origin=zeros(3), axes=SX.eye(3), velocity=zeros(3), omega=zeros(3))
+__all__ = ["displaced", "mount", "plate", "turn", "world"]
+
+
+def world() -> Frame:
+    """The frame that stands still."""
+    return Frame(origin=zeros(3), axes=identity(3), velocity=zeros(3), omega=zeros(3))
 
 
 def turn(angles: SX) -> SX:

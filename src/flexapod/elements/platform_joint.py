@@ -1,9 +1,14 @@
 """The platform joint: three successive angles about axes fixed in the leg, in the cross, in the platform."""
 
+from __future__ import annotations
+
 from types import SimpleNamespace
+from typing import TYPE_CHECKING
 
 from flexapod.elements.rotations import about_x, about_y, about_z
-from flexapod.symbolic.vocabulary import SX
+
+if TYPE_CHECKING:
+    from flexapod.symbolic.vocabulary import SX
 
 
 def gimbal(axes: SX, qs: SimpleNamespace) -> SX:

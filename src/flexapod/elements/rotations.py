@@ -1,25 +1,32 @@
 """Rotation matrices, Eqs. (T3.4), (T4.1)-(T4.2) and (T13.2)."""
 
-from flexapod.symbolic.vocabulary import SX, cos, sin, zeros
+from __future__ import annotations
+
+from typing import TYPE_CHECKING
+
+from flexapod.symbolic.vocabulary import cos, identity, sin, zeros
+
+if TYPE_CHECKING:
+    from flexapod.symbolic.vocabulary import SX
 
 
 def about_x(angle: SX) -> SX:
     """Rotation about the first axis."""
-    R, c, s = SX.eye(3), cos(angle), sin(angle)
+    R, c, s = identity(3), cos(angle), sin(angle)
     R[1, 1], R[1, 2], R[2, 1], R[2, 2] = c, -s, s, c
     return R
 
 
 def about_y(angle: SX) -> SX:
     """Rotation about the second axis."""
-    R, c, s = SX.eye(3), cos(angle), sin(angle)
+    R, c, s = identity(3), cos(angle), sin(angle)
     R[0, 0], R[0, 2], R[2, 0], R[2, 2] = c, s, -s, c
     return R
 
 
 def about_z(angle: SX) -> SX:
     """Rotation about the third axis."""
-    R, c, s = SX.eye(3), cos(angle), sin(angle)
+    R, c, s = identity(3), cos(angle), sin(angle)
     R[0, 0], R[0, 1], R[1, 0], R[1, 1] = c, -s, s, c
     return R
 
@@ -35,13 +42,13 @@ def hat(x: SX) -> SX:
 def about_axis(axis: SX, angle: SX) -> SX:
     """Rotation about a unit vector, Eq. (T13.2)."""
     c = cos(angle)
-    return c * SX.eye(3) + sin(angle) * hat(axis) + (1 - c) * (axis @ axis.T)
+    return c * identity(3) + sin(angle) * hat(axis) + (1 - c) * (axis @ axis.T)
 
 
 def small_rotation(theta: SX) -> SX:
     """exp(theta^) to second order: exact for first and second derivatives at theta = 0, Eq. (T4.2)."""
     S = hat(theta)
-    return SX.eye(3) + S + 0.5 * (S @ S)
+    return identity(3) + S + 0.5 * (S @ S)
 
 
 def from_quaternion(e: SX) -> SX:

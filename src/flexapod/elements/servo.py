@@ -1,15 +1,19 @@
 """The spring and damper of a drive between its command and its coordinate, Eqs. (T5.4)-(T5.5), and its integral."""
 
-from dataclasses import dataclass
+from __future__ import annotations
 
-from flexapod.symbolic.vocabulary import SX
+from dataclasses import dataclass
+from typing import TYPE_CHECKING
+
+if TYPE_CHECKING:
+    from flexapod.symbolic.vocabulary import SX
 
 
 @dataclass(frozen=True, kw_only=True)
 class Servo:
     """A drive on the coordinate ``q``; stiffness and damping are zero where the coordinate is prescribed.
 
-    ``summed``: force of the summed error, Eq. (T23.15).
+    ``more``: what elements ask of the motor beside, as a summed error does, Eq. (T23.15).
     """
 
     stiffness: SX
@@ -18,12 +22,12 @@ class Servo:
     v: SX
     q_cmd: SX
     v_cmd: SX
-    summed: SX | None = None
+    more: SX | None = None
 
     @property
     def force(self) -> SX:
         """Force on the coordinate, Eqs. (T5.4) and (T23.15)."""
-        return self._held if self.summed is None else self._held + self.summed
+        return self._held if self.more is None else self._held + self.more
 
     @property
     def _held(self) -> SX:
@@ -41,6 +45,6 @@ class Servo:
 
     @property
     def given(self) -> SX:
-        """Power that comes in at the commanded end, Eq. (T5.5), and by the summed error."""
+        """Power that comes in at the commanded end, Eq. (T5.5), and by what is asked beside."""
         power = self._held * self.v_cmd
-        return power if self.summed is None else power + self.summed * self.v
+        return power if self.more is None else power + self.more * self.v

@@ -3,9 +3,13 @@
 from __future__ import annotations
 
 from types import SimpleNamespace
+from typing import TYPE_CHECKING
 
 from flexapod.elements.distribution import Motion
-from flexapod.symbolic.vocabulary import SX, dot, quadratic
+from flexapod.symbolic.vocabulary import dot, quadratic
+
+if TYPE_CHECKING:
+    from flexapod.symbolic.vocabulary import SX
 
 
 def shear_energy(f: Motion, qs: SimpleNamespace) -> SX:

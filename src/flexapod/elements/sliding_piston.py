@@ -1,5 +1,7 @@
 """The flexible piston that slides out of its cylinder, Eqs. (T3.6)-(T3.15) and (T5.1)-(T5.6)."""
 
+from __future__ import annotations
+
 from types import SimpleNamespace
 
 import numpy as np

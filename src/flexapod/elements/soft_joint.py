@@ -1,7 +1,63 @@
 """A joint held by springs along and across its leg, whose axes move with the leg, Eqs. (T15.1)-(T15.2)."""
 
+from __future__ import annotations
+
+from collections.abc import Sequence
+from dataclasses import dataclass
+from typing import TYPE_CHECKING, Any, ClassVar, Literal, Self
+
+from flexapod.elements.element import Element, Named, Standing
 from flexapod.elements.frame import Energies
-from flexapod.symbolic.vocabulary import SX, dot
+from flexapod.elements.springs import Spring, in_series, springs_along, viscous
+from flexapod.symbolic.vocabulary import dot
+
+if TYPE_CHECKING:
+    from flexapod.model import Joint, Leg
+    from flexapod.symbolic.vocabulary import SX
+
+
+@dataclass(frozen=True)
+class SoftJoint(Element):
+    """Springs of a joint across the leg, and all those along it there, which are in series."""
+
+    joint: Joint
+    along: Sequence[Spring]
+
+    end: ClassVar[Literal["base", "platform"]]
+
+    @classmethod
+    def of(cls, leg: Leg) -> Self | None:
+        """Of a leg with a spring along it at this end."""
+        along = [spring for spring in springs_along(leg) if spring.at == cls.end]
+        return cls(getattr(leg, f"{cls.end}_joint"), along) if along else None
+
+    @classmethod
+    def held(cls, leg: Leg, *, at_rest: bool) -> Sequence[str]:
+        """None by itself: a flexure has the same coordinates (`solve.robot_system`)."""
+        return ()
+
+    def numbers(self, leg: Leg, standing: Standing) -> dict[str, Any]:
+        """Stiffness and damping (across, along) [N/m, N s/m]."""
+        joint, along = self.joint, in_series(self.along, standing.length, standing.per_loss)
+        across = 0.0 if joint.across_and_along is None else joint.across_and_along[0]
+        damper = viscous(across, joint.stiffness_damping, joint.loss_of_stiffness, standing.per_loss) if across else 0.0
+        return {f"{self.end}_soft": [across, along[0]], f"{self.end}_soft_damping": [damper, along[1]]}
+
+
+class SoftBase(SoftJoint):
+    """At the base, between it and the cylinder."""
+
+    end = "base"
+    coordinates: ClassVar[Named] = (("u1", 1), ("u2", 1), ("u3", 1))
+    parameters: ClassVar[Named] = (("base_soft", 2), ("base_soft_damping", 2))
+
+
+class SoftPlatform(SoftJoint):
+    """At the platform, between the piston's tip and it."""
+
+    end = "platform"
+    coordinates: ClassVar[Named] = (("e1", 1), ("e2", 1), ("e3", 1))
+    parameters: ClassVar[Named] = (("platform_soft", 2), ("platform_soft_damping", 2))
 
 
 def soft_joint(stiffness: SX, damping: SX, moved: SX, rate: SX, along: SX) -> Energies:

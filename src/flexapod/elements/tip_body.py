@@ -1,5 +1,7 @@
 """A body fixed to the tip of a leg that carries no payload, Eqs. (T3.10), (T3.13) and (T13.11)."""
 
+from __future__ import annotations
+
 from types import SimpleNamespace
 
 import numpy as np

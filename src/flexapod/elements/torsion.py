@@ -1,5 +1,7 @@
 """Twist of the piston from its driven end to its tip, Eqs. (T13.7)-(T13.8)."""
 
+from __future__ import annotations
+
 from types import SimpleNamespace
 
 from flexapod.elements.frame import Energies, Frame

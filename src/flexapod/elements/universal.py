@@ -1,5 +1,7 @@
 """The base joint: a universal joint, and with a spin about the leg's axis a spherical one, Eqs. (T3.4)-(T3.5)."""
 
+from __future__ import annotations
+
 from types import SimpleNamespace
 
 from flexapod.elements.frame import Frame

@@ -7,11 +7,11 @@ from dataclasses import dataclass
 import numpy as np
 
 from flexapod import model, rigid
+from flexapod.elements.springs import Place, before_piston, in_series, springs_along
 from flexapod.errors import InputError
 from flexapod.rigid.limbs import FREE, Limbs, limbs
 from flexapod.rigid.mechanism import legs_at
 from flexapod.rigid.screws import screws
-from flexapod.solve.springs import Place, before_piston, in_series, springs_along
 from flexapod.typing import Array
 
 _STIFF = 1e5  # of a locked drive, in EA / l: adds 1e-5 of a leg's compliance

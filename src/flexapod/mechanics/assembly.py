@@ -3,7 +3,8 @@
 The residuals are exact. The matrices at rest serve equilibria, modes and the iterations of the time integration.
 """
 
-from flexapod.elements.loop import Loop
+from flexapod.elements.drive_train import DriveTrain
+from flexapod.elements.motor_loop import Loop
 from flexapod.elements.mount import plate
 from flexapod.elements.servo import Servo
 from flexapod.mechanics.closure import ball_closure, load_force, pose_closure
@@ -74,13 +75,14 @@ class _Leg:
                 v=getattr(self.vs, name),
                 q_cmd=self.command[2 * i],
                 v_cmd=self.command[2 * i + 1],
-                summed=self._summed() if drive == "rotor" and not shapes.has("j") else None,
+                more=self._asked() if drive == "rotor" and not shapes.has("j") else None,
             )
             for i, (name, drive) in enumerate(shapes.drives)
         }
 
-    def _summed(self) -> SX | None:
-        return self.p.rotor_integral * self.qs.w if self.shapes.has("w") else None
+    def _asked(self) -> SX | None:
+        found = [x for element in self.shapes.elements if (x := element.asked(self.p, self.qs)) is not None]
+        return sum(found[1:], found[0]) if found else None
 
     def loop(self) -> Loop:
         """Of legs whose motors lag, or whose loops are closed about another place than the rotor."""
@@ -89,7 +91,7 @@ class _Leg:
         rotor = self.servos[self.shapes.index("r")]
         return Loop(
             p=self.p, place=place, rate=jacobian(place, self.q) @ self.v, turns=self.vs.r, q_cmd=rotor.q_cmd,
-            v_cmd=rotor.v_cmd, summed=self._summed(), j=self.vs.j,
+            v_cmd=rotor.v_cmd, more=self._asked(), j=self.vs.j,
         )  # fmt: skip
 
     def named(self, name: str, inputs: list[tuple[str, SX]], outputs: list[tuple[str, SX]]) -> NamedFunction:
@@ -171,7 +173,7 @@ class _Leg:
         if self.shapes.has("j"):
             forces[-1] += self.loop().force
         if self.shapes.has("r"):
-            series = self.body.series
+            series = self.body.elements[DriveTrain]
             forces[0] -= gradient(series.strain, self.qs.l) + gradient(series.dissipation, self.vs.l)
         return vertcat(*forces)
 

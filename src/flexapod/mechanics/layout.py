@@ -5,16 +5,7 @@ from functools import cached_property
 from typing import Literal
 
 from flexapod.bases import AxialBasis, LateralBasis, lateral_basis
-from flexapod.mechanics.drive_layout import (
-    DRIVE_FRICTION,
-    GAP_PARAMETERS,
-    INTEGRAL_PARAMETERS,
-    LOOP_PARAMETERS,
-    OIL_PARAMETERS,
-    RIPPLE_PARAMETERS,
-    SERIES_PARAMETERS,
-    TURNING_PARAMETERS,
-)
+from flexapod.elements.element import Element
 from flexapod.mechanics.guide_layout import CYLINDER_PARAMETERS, GUIDE_PARAMETERS
 from flexapod.mechanics.section_layout import inner_parameters, section_parameters
 
@@ -80,13 +71,16 @@ FLEXURE_PARAMETERS: tuple[tuple[str, int], ...] = (
     ("platform_flexure_damping", 36),
 )
 
-#: ... of joints that are held by springs along and across the leg: stiffness and damping across, along [N/m, N s/m].
-SOFT_BASE: tuple[tuple[str, int], ...] = (("base_soft", 2), ("base_soft_damping", 2))
-SOFT_PLATFORM: tuple[tuple[str, int], ...] = (("platform_soft", 2), ("platform_soft_damping", 2))
-
 #: ... of joints with friction, see `elements.friction`.
 BASE_FRICTION: tuple[tuple[str, int], ...] = (("base_friction", 8),)
 PLATFORM_FRICTION: tuple[tuple[str, int], ...] = (("platform_friction", 8),)
+#: Of drives with friction along their travel; 1 where it acts on the stroke, else, of a rotor, the share of its shaft's
+#: twist in what springs before the stroke give way, at home, and what a longer leg adds [1/m].
+DRIVE_FRICTION: tuple[tuple[str, int], ...] = (
+    ("drive_friction", 8),
+    ("drive_friction_at_stroke", 1),
+    ("drive_friction_twist", 2),
+)
 
 #: ... of legs whose base is moved: the point about which it turns.
 BASE_MOTION_PARAMETERS: tuple[tuple[str, int], ...] = (("base_motion_at", 3),)  # m
@@ -122,6 +116,9 @@ PLATE_PARAMETERS: tuple[tuple[str, int], ...] = (
     ("plate_at", 3),  # m, this point, where the mount is, from the payload's CoM
 )
 
+#: Coordinates of elements that stand beside those of the drive, in this order; of others behind all but frames'.
+DRIVE = ("r", "w", "j")
+
 #: Commands that the spring of a drive reads: place and rate.
 COMMAND_SIZE = 2
 
@@ -147,6 +144,8 @@ class Shapes:
     axial : AxialBasis
     planar : bool
         The single actuator in its plane: beta alone, no direction b, a body at the tip.
+    elements : tuple of Element
+        What else its legs have, in the order of `elements.known`.
     closure : {"none", "point", "pose"}
         What the payload fixes at the tip: nothing, its place (an ideal ball) or its place and attitude.
     carriage : {"", "slider", "crank"}
@@ -159,22 +158,6 @@ class Shapes:
         Displacements of the base joint and of the platform joint (pose closures).
     pivot_spin : bool
         A free spin takes the place of gamma3 among the coordinates that the closure determines.
-    soft_base, soft_platform : bool
-        Displacements of the joints along and across the leg.
-    series : bool
-        Springs between a rotor, whose travel is r, and the stroke l.
-    turning : bool
-        Pistons that turn in their cylinders take the nut along (with spin and series).
-    gap : bool
-        Play of the leg between the springs of the stroke and the piston.
-    ripple : bool
-        A torque that returns with the turns of the rotor.
-    integral : bool
-        The rotor's servo sums its error: w.
-    loop : bool
-        Motors lag, or loops are closed about the stroke or the distance of the joints: j, the impulse of the motor.
-    oil : bool
-        Columns of oil among these.
     sections : int
         Of the pistons; 0: all are uniform.
     strips : bool
@@ -197,6 +180,7 @@ class Shapes:
     a: LateralBasis
     b: LateralBasis
     axial: AxialBasis
+    elements: tuple[type[Element], ...] = ()
     planar: bool = False
     closure: Literal["none", "point", "pose"] = "point"
     carriage: Literal["", "slider", "crank"] = ""
@@ -205,15 +189,6 @@ class Shapes:
     tip_body: bool = False
     flexure: bool = False
     pivot_spin: bool = False
-    soft_base: bool = False
-    soft_platform: bool = False
-    series: bool = False
-    turning: bool = False
-    ripple: bool = False
-    gap: bool = False
-    integral: bool = False
-    loop: bool = False
-    oil: bool = False
     sections: int = 0
     strips: bool = False
     tapers: bool = False
@@ -244,22 +219,17 @@ class Shapes:
         angles = ("beta",) if self.planar else ("alpha", "beta")
         amplitudes = (("c", self.axial.count), ("a", self.a.count), ("b", self.b.count))
         gamma = ("gamma1", "gamma2", "gamma3") if self.closure == "pose" else ()
-        there = (
-            ("chi", bool(self.carriage)),
-            ("spin", self.spin),
-            ("t", self.torsion),
-            ("r", self.series),
-            ("w", self.integral),
-            ("j", self.loop),
-        )
-        more = (*(name for name, has in there if has), *gamma)
-        ends = (("u", self.flexure or self.soft_base), ("e", self.flexure or self.soft_platform))
+        there = (("chi", bool(self.carriage)), ("spin", self.spin), ("t", self.torsion))
+        own = {name: size for element in self.elements for name, size in element.coordinates}
+        ends = {f"{end}{k}": 1 for end in "ue" for k in (1, 2, 3) if self.flexure or f"{end}{k}" in own}
+        drive = tuple((name, own[name]) for name in DRIVE if name in own)
+        others = tuple((name, size) for name, size in own.items() if name not in (*DRIVE, *ends))
         sheared = (("shear_a", self.shear * self.a.count), ("shear_b", self.shear * self.b.count))
-        moved = tuple(f"{end}{k}" for end, has in ends if has for k in (1, 2, 3))
         frames = (("g", self.base_motion), ("m", self.platform_mount), ("f", self.base_mount))
-        single = (*((name, 1) for name in (*angles, "l")), *amplitudes, *((name, 1) for name in (*more, *moved)))
+        first = (*((name, 1) for name in (*angles, "l")), *amplitudes, *((name, 1) for name, has in there if has))
         thick = (part for part in sheared if part[1])
-        return (*single, *thick, *self._inside, *((name, 6) for name, has in frames if has))
+        inside = (*((name, 1) for name in gamma), *ends.items(), *thick, *self._inside)
+        return (*first, *drive, *inside, *others, *((name, 6) for name, has in frames if has))
 
     @property
     def _inside(self) -> tuple[tuple[str, int], ...]:
@@ -305,7 +275,7 @@ class Shapes:
     @property
     def drives(self) -> tuple[tuple[str, str], ...]:
         """Coordinates on which drives have springs, and how their parameters are called."""
-        more = (("chi", "carriage", bool(self.carriage)), ("r", "rotor", self.series))
+        more = (("chi", "carriage", bool(self.carriage)), ("r", "rotor", self.has("r")))
         return (("l", "drive"), *((name, called) for name, called, there in more if there))
 
     @property
@@ -367,15 +337,7 @@ def leg_parameters(shapes: Shapes) -> tuple[tuple[str, int], ...]:
         (shapes.tip_body and not shapes.planar, TIP_BODY_PARAMETERS),
         (shapes.closure == "pose", POSE_PARAMETERS),
         (shapes.flexure, FLEXURE_PARAMETERS),
-        (shapes.soft_base, SOFT_BASE),
-        (shapes.soft_platform, SOFT_PLATFORM),
-        (shapes.series, SERIES_PARAMETERS),
-        (shapes.turning, TURNING_PARAMETERS),
-        (shapes.gap, GAP_PARAMETERS),
-        (shapes.ripple, RIPPLE_PARAMETERS),
-        (shapes.integral, INTEGRAL_PARAMETERS),
-        (shapes.loop, LOOP_PARAMETERS),
-        (shapes.oil, OIL_PARAMETERS),
+        *((True, element.parameters) for element in shapes.elements),
         (shapes.sections > 0, _of_sections(shapes)),
         (shapes.base_friction, BASE_FRICTION),
         (shapes.platform_friction, PLATFORM_FRICTION),

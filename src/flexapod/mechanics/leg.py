@@ -1,5 +1,6 @@
 """One leg as a chain of elements, from its carriage to its tip."""
 
+from collections.abc import Mapping
 from dataclasses import dataclass
 from types import SimpleNamespace
 from typing import cast
@@ -10,6 +11,7 @@ from flexapod.bases import LateralBasis
 from flexapod.elements.carriage import carriage
 from flexapod.elements.cylinder import cylinder
 from flexapod.elements.distribution import Line, Motion
+from flexapod.elements.element import Element
 from flexapod.elements.flexible_cylinder import flexible_cylinder, head, hole, mouth
 from flexapod.elements.flexure import flexure, springs
 from flexapod.elements.frame import Energies, Frame
@@ -23,12 +25,10 @@ from flexapod.elements.guide import (
     stepped_inner_part,
     stepped_shortening,
 )
-from flexapod.elements.mount import WORLD, displaced, mount, plate
-from flexapod.elements.ripple import ripple
+from flexapod.elements.mount import displaced, mount, plate, world
 from flexapod.elements.rotations import small_rotation
-from flexapod.elements.screw import screw
 from flexapod.elements.sliding_piston import sliding_piston, tip_place, tip_turn
-from flexapod.elements.soft_joint import soft_joint
+from flexapod.elements.soft_joint import SoftBase, SoftPlatform, soft_joint
 from flexapod.elements.stepped_piston import Part, SteppedShapes, of_planes, stepped_piston, stepped_shapes, straight
 from flexapod.elements.tip_body import tip_body
 from flexapod.elements.torsion import torsion
@@ -45,8 +45,7 @@ ALONG = constant(np.array([[0.0], [0.0], [1.0]]))  # a leg's own direction
 class Leg:
     """One leg as expressions: energies, place of the tip in the world, rotation from the tip's axes to the world.
 
-    ``foot``: place of the base joint, as the base carries it. ``series``: energies of the springs between rotor and
-    stroke, which are among the others.
+    ``foot``: place of the base joint, as the base carries it. ``elements``: energies of each, which are in the sums.
     ``tip_axes`` is written in ``theta``, symbols for the rotation vector ``turn`` of the tip: derivatives by the many
     amplitudes go through these three.
     ``present``: symbols for what depends on the stroke alone, and what to put for them once all is differentiated.
@@ -59,7 +58,7 @@ class Leg:
     tip_axes: SX
     theta: SX
     turn: SX
-    series: Energies
+    elements: Mapping[type[Element], Energies]
     present: tuple[SX, SX]
     foot: SX
 
@@ -71,7 +70,7 @@ def leg(shapes: Shapes, p: SimpleNamespace, q: SX, v: SX, qs: SimpleNamespace, v
     if shapes.flexure:
         ground = ground.moved(_three(qs, "u"), _three(vs, "u"))
     frame = universal(ground, qs, vs)
-    if shapes.soft_base:
+    if SoftBase in shapes.elements:
         along = ground.axes.T @ frame.axes[:, 2] if shapes.flexure else ALONG
         e += soft_joint(p.base_soft, p.base_soft_damping, _three(qs, "u"), _three(vs, "u"), along)
         frame = frame if shapes.flexure else frame.moved(_three(qs, "u"), _three(vs, "u"))
@@ -91,16 +90,15 @@ def leg(shapes: Shapes, p: SimpleNamespace, q: SX, v: SX, qs: SimpleNamespace, v
     e += inside
     if shapes.torsion:
         e += torsion(frame, p, qs, vs)
-    series = _series(shapes, p, qs, vs)
-    e += series
-    if shapes.ripple:
-        e += Energies(strain=ripple(p, qs))
+    of_elements = {x: x.energy(p, qs, vs, shapes.elements) for x in shapes.elements}
+    for energies in of_elements.values():
+        e += energies
     if shapes.tip_body:
         e += tip_body(motion, p, shapes.planar)
     if shapes.closure == "pose":
         e += _joints(shapes, p, qs, vs)
     place = tip_place(motion) + shift
-    if shapes.soft_platform:
+    if SoftPlatform in shapes.elements:
         along = matrix33(p.leg_frame).T @ ALONG if shapes.flexure else ALONG
         e += soft_joint(p.platform_soft, p.platform_soft_damping, _three(qs, "e"), _three(vs, "e"), along)
         place = place if shapes.flexure else place + _three(qs, "e")
@@ -114,7 +112,7 @@ def leg(shapes: Shapes, p: SimpleNamespace, q: SX, v: SX, qs: SimpleNamespace, v
         tip_axes=frame.axes @ small_rotation(theta),
         theta=theta,
         turn=tip_turn(motion) + turn,
-        series=series,
+        elements=of_elements,
         present=(vertcat(present[0], by_head[0]), vertcat(present[1], by_head[1])),
         foot=foot,
     )
@@ -124,9 +122,9 @@ def _ground(shapes: Shapes, p: SimpleNamespace, qs: SimpleNamespace, vs: SimpleN
     """Frame in which the base joint stands; energies of what carries it, with the leg's share of mounts and plate."""
     base, e = None, Energies()
     if shapes.base_motion:
-        base = displaced(WORLD, p.base_motion_at, qs.g, vs.g)
+        base = displaced(world(), p.base_motion_at, qs.g, vs.g)
     if shapes.base_mount:
-        base = displaced(base or WORLD, p.base_mount_at, qs.f, vs.f)
+        base = displaced(base or world(), p.base_mount_at, qs.f, vs.f)
         e += mount(p.base_mount_stiffness, p.base_mount_damping, qs.f, vs.f)
         e += plate(base, p.base_mount_at, p.base_plate_mass, p.base_plate_inertia, p.base_plate_weighs * p.gravity)
     if shapes.platform_mount:
@@ -209,13 +207,6 @@ def _inside(
         at_tip, short, short_X = shortening(f, p, cast("LateralBasis | None", inner), from_base)
     present = (zeros(0), zeros(0)) if at is None else at.present
     return e + lean(f, p, short, short_X), vertcat(0, 0, at_tip), vertcat(0, 0, turn), present
-
-
-def _series(shapes: Shapes, p: SimpleNamespace, qs: SimpleNamespace, vs: SimpleNamespace) -> Energies:
-    """Springs between rotor and stroke."""
-    if not shapes.has("r"):
-        return Energies()
-    return screw(p, qs, vs, oil=shapes.oil, turning=shapes.turning, gap=shapes.gap)
 
 
 def _joints(shapes: Shapes, p: SimpleNamespace, qs: SimpleNamespace, vs: SimpleNamespace) -> Energies:

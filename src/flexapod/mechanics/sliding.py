@@ -2,8 +2,8 @@
 
 from types import SimpleNamespace
 
+from flexapod.elements.drive_train import twisting
 from flexapod.elements.friction import Rubbing, forgetting, rubbing, turning
-from flexapod.elements.screw import twisting
 from flexapod.mechanics.layout import Shapes, leg_parameters
 from flexapod.symbolic.functions import NamedFunction
 from flexapod.symbolic.vocabulary import SX, dot, jacobian, split, sqrt, symbol, symbols, vertcat, zeros

@@ -6,6 +6,7 @@ from functools import cached_property
 import numpy as np
 
 from flexapod import rigid
+from flexapod.elements.springs import springs_along
 from flexapod.errors import ComputationError, InputError
 from flexapod.model import Load, Robot, Simulation
 from flexapod.rigid.limbs import DRIVEN, FREE
@@ -18,7 +19,6 @@ from flexapod.solve.many import RestMatrices, RestStates, matrices_at_rest
 from flexapod.solve.rest import RestLoad, rest_commands, rest_load
 from flexapod.solve.rigid_motion import rigid_rest
 from flexapod.solve.robot_system import robot_system, smooth
-from flexapod.solve.springs import springs_along
 from flexapod.solve.system import Index, System
 from flexapod.typing import Array, Mask
 

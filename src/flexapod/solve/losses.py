@@ -8,6 +8,7 @@ from typing import cast
 
 import numpy as np
 
+from flexapod.elements.springs import springs_along, viscous
 from flexapod.errors import ComputationError
 from flexapod.model import (
     Drive,
@@ -23,7 +24,6 @@ from flexapod.model import (
 from flexapod.rigid import home_pose
 from flexapod.solve.locked import lock
 from flexapod.solve.modes import the_modes
-from flexapod.solve.springs import springs_along, viscous
 from flexapod.words import number, text
 
 __all__ = ["loss_frequency", "loss_words", "per_loss"]

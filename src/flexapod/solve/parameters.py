@@ -2,22 +2,14 @@
 
 import numpy as np
 
+from flexapod.elements.element import Standing, numbers_of
+from flexapod.elements.springs import twist_with_length, viscous
 from flexapod.mechanics import layout
 from flexapod.mechanics.layout import LEG_PARAMETERS, PAYLOAD_PARAMETERS, Shapes
 from flexapod.model import Actuator, ForceDrive, Joint, Leg, Mounted, Robot, ServoDrive, damping_parts
 from flexapod.model.mount import Mount
 from flexapod.rigid.limbs import COORDINATES, FREE, Limbs
 from flexapod.solve.sections import section_parameters
-from flexapod.solve.springs import (
-    Place,
-    in_series,
-    of_servo,
-    oil_shares,
-    softening,
-    springs_along,
-    twist_with_length,
-    viscous,
-)
 from flexapod.typing import Array
 
 #: Of a place without friction: nothing rubs, and what could bend is a unit long.
@@ -68,10 +60,9 @@ def leg_parameters(robot: Robot, legs: Limbs, shapes: Shapes, per_loss: float = 
         | _place(robot, legs, i)
         | _joints(leg, legs, i, per_loss)
         | ends[i]
-        | _soft(leg, legs.home[i, COORDINATES.index("l")], per_loss)
         | (section_parameters(leg, shapes, legs.home[i, COORDINATES.index("l")]) if shapes.sections else {})
         | _friction(leg, float(legs.home[i, COORDINATES.index("l")]))
-        | _loop(leg, at_rest=at_rest)
+        | _of_elements(leg, shapes, Standing(float(legs.home[i, COORDINATES.index("l")]), per_loss, at_rest))
         | frames
         | _inside(leg, per_loss)
         for i, leg in enumerate(robot.legs)
@@ -184,57 +175,11 @@ def _joints(leg: Leg, legs: Limbs, i: int, per_loss: float) -> dict[str, object]
     }
 
 
-def _soft(leg: Leg, length: float, per_loss: float) -> dict[str, object]:
-    """Springs along and across a leg at its joints, and those before its piston."""
+def _of_elements(leg: Leg, shapes: Shapes, standing: Standing) -> dict[str, object]:
     found: dict[str, object] = {}
-    ends: tuple[tuple[Place, Joint], ...] = (("base", leg.base_joint), ("platform", leg.platform_joint))
-    for name, joint in ends:
-        along = in_series((x for x in springs_along(leg) if x.at == name), length, per_loss)
-        across = 0.0 if joint.across_and_along is None else joint.across_and_along[0]
-        found[f"{name}_soft"] = [across, along[0]]
-        damper = viscous(across, joint.stiffness_damping, joint.loss_of_stiffness, per_loss) if across else 0.0
-        found[f"{name}_soft_damping"] = [damper, along[1]]
-    return found | _series(leg, length, per_loss)
-
-
-def _series(leg: Leg, length: float, per_loss: float) -> dict[str, object]:
-    """Springs between rotor and stroke, and the rotor."""
-    springs, screw = [x for x in springs_along(leg) if x.at == "nut"], leg.screw
-    if springs and isinstance(leg.drive, ServoDrive):  # nothing has a mass between the servo's spring and these
-        springs.append(of_servo(leg.drive))
-    stiffness, damping = in_series(springs, length, per_loss)
-    loop = (0.0, 0.0) if screw is None else screw.loop_spring
-    return {
-        "series_stiffness": stiffness,
-        "series_softening": softening(springs, length) if springs else (0.0, 0.0),
-        "series_home": length,
-        "series_turn": leg.turning,
-        "half_play": leg.half_play,
-        "ripple_wave": 0.0 if screw is None else screw.wave,
-        "ripple": np.zeros(4) if screw is None or not screw.wave else screw.rippling / (screw.wave * np.arange(1, 5)),
-        "rotor_integral": 0.0 if screw is None else screw.integral,
-        "oil": oil_shares(springs, length),
-        "series_damping": damping,
-        "rotor_mass": 0.0 if screw is None else screw.inertia / screw.per_turn**2,  # (T15.12)
-        "rotor_stiffness": loop[0],
-        "rotor_damping": loop[1],
-    }
-
-
-def _loop(leg: Leg, *, at_rest: bool) -> dict[str, object]:
-    """The loop of a motor that lags, or about another place than its rotor; at rest it is a spring, Eq. (T23.55)."""
-    screw = leg.screw
-    found: dict[str, object] = dict.fromkeys(("loop_stiffness", "loop_damping", "loop_rate_at_rotor"), 0.0)
-    at = [float(leg.closed_about == place) for place in ("stroke", "joint-to-joint")]
-    found |= {"loop_lag": 1.0, "loop_at_once": 1.0, "loop_at": at}
-    if screw is None or not screw.loops or (at_rest and not leg.closed_about):
-        return found
-    found |= {"rotor_stiffness": 0.0, "rotor_damping": 0.0}
-    if at_rest:
-        return found | {"series_stiffness": 0.0, "drive_friction_at_stroke": 1.0, "drive_friction_twist": (0.0, 0.0)}
-    found |= {"loop_rate_at_rotor": float(screw.encoder.rate == "rotor"), "loop_stiffness": screw.loop_spring[0]}
-    late = {"loop_lag": screw.lag, "loop_at_once": 0.0} if screw.lag else {}
-    return found | {"loop_damping": screw.loop_spring[1]} | late
+    for element in shapes.elements:
+        found |= numbers_of(element, leg, standing)
+    return found
 
 
 def _friction(leg: Leg, length: float) -> dict[str, object]:

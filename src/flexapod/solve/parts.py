@@ -5,8 +5,8 @@ from __future__ import annotations
 import numpy as np
 
 from flexapod import rigid
+from flexapod.elements.springs import Spring, before_piston, of_servo, springs_along
 from flexapod.model import ForceDrive, Leg, Robot, ServoDrive
-from flexapod.solve.springs import Spring, before_piston, of_servo, springs_along
 from flexapod.typing import Array
 
 __all__ = ["guide_turning", "mount_stiffness", "part_stiffness"]

@@ -6,6 +6,7 @@ from dataclasses import dataclass, field, replace
 import numpy as np
 
 from flexapod import rigid
+from flexapod.elements.springs import springs_along
 from flexapod.errors import ComputationError, InputError
 from flexapod.integration import GeneralizedAlpha
 from flexapod.mechanics.layout import columns
@@ -27,7 +28,6 @@ from flexapod.solve.redundant import independent, shared
 from flexapod.solve.rest import rest_commands, rest_load
 from flexapod.solve.rigid_motion import built_state, rigid_state
 from flexapod.solve.robot_system import robot_system
-from flexapod.solve.springs import springs_along
 from flexapod.solve.start import consistent_start
 from flexapod.solve.stops import Stops
 from flexapod.solve.system import Flow, State, System

@@ -3,6 +3,7 @@
 import numpy as np
 
 from flexapod import rigid
+from flexapod.elements.springs import springs_along
 from flexapod.mechanics.layout import Shapes
 from flexapod.model import Robot, Simulation
 from flexapod.rigid.limbs import ABSENT, COORDINATES, DRIVEN, HELD, Limbs
@@ -13,7 +14,6 @@ from flexapod.solve.parameters import (
     payload_parameters,
 )
 from flexapod.solve.shapes import robot_shapes
-from flexapod.solve.springs import springs_along
 from flexapod.solve.system import System
 from flexapod.typing import Mask
 
@@ -43,7 +43,7 @@ def robot_system(
         leg_p=leg_parameters(robot, legs, shapes, per_loss, at_rest=at_rest),
         joint_p=np.ascontiguousarray(legs.platform - robot.com),
         payload_p=payload_parameters(robot, shapes, at_rest=at_rest),
-        held=_held(robot, legs, shapes, at_rest=at_rest) | _summed(robot, shapes, at_rest=at_rest),
+        held=_held(robot, legs, shapes, at_rest=at_rest) | _held_by_elements(robot, shapes, at_rest=at_rest),
         hub_held=legs.hub_held,
     )
 
@@ -66,8 +66,6 @@ def _held(robot: Robot, legs: Limbs, shapes: Shapes, *, at_rest: bool) -> Mask:
             state = legs.state[:, k]
             foreign = (state == ABSENT) & (name in ("chi", "spin"))
             held[:, shapes.index(name)] = (state == HELD) | ((state == DRIVEN) & prescribed) | foreign
-    if shapes.has("r"):  # a servo's spring is in series with those behind it
-        held[:, shapes.index("r")] = [leg.drive.holds or leg.screw is None for leg in robot.legs]
     made_up = [leg.drive.holds or at_rest for leg in robot.legs]  # ideally, or at rest
     ends = np.array([leg.measured == "joint-to-joint" for leg in robot.legs]) & made_up
     for name, size in shapes.layout:
@@ -92,19 +90,14 @@ def _held_inside(robot: Robot, shapes: Shapes) -> Mask:
     return held
 
 
-def _summed(robot: Robot, shapes: Shapes, *, at_rest: bool) -> Mask:
-    """Rotors, strokes and summed errors that loops hold at rest; summed errors and lags of legs that have none."""
+def _held_by_elements(robot: Robot, shapes: Shapes, *, at_rest: bool) -> Mask:
+    """Coordinates that elements let follow a table, their own and others."""
     held: Mask = np.zeros((len(robot.legs), shapes.size), dtype=bool)
-    if shapes.has("w"):
-        sums = np.array([leg.screw is not None and leg.screw.integral > 0 for leg in robot.legs])
-        held[:, shapes.index("w")] = ~sums | at_rest
-        held[sums, shapes.index("r")] = at_rest
-    if shapes.has("j"):
-        screws, elsewhere = [leg.screw for leg in robot.legs], np.array([bool(leg.closed_about) for leg in robot.legs])
-        held[:, shapes.index("j")] = [at_rest or x is None or not x.lag for x in screws]
-        if at_rest:  # (T23.55)
-            held[elsewhere, shapes.index("r")] = True
-            held[elsewhere & [x is not None and x.rests for x in screws], shapes.l_index] = True
+    sizes = dict(shapes.layout)
+    for i, leg in enumerate(robot.legs):
+        for element in shapes.elements:
+            for name in element.held(leg, at_rest=at_rest):
+                held[i, shapes.index(name) : shapes.index(name) + sizes[name]] = True
     return held
 
 

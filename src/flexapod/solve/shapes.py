@@ -9,10 +9,10 @@ import numpy as np
 
 from flexapod import bases, rigid
 from flexapod.bases.lateral import LateralBasis
+from flexapod.elements.known import elements_of
 from flexapod.mechanics.layout import Shapes
 from flexapod.model import Actuator, Rectangle, Robot, Simulation, Tube
 from flexapod.rigid.limbs import ABSENT, COORDINATES, FREE, HELD, Limbs
-from flexapod.solve.springs import springs_along
 
 __all__ = ["actuator_shapes", "beam_shapes", "leg_shapes", "planar_shapes", "robot_shapes", "space_shapes"]
 
@@ -24,26 +24,17 @@ def robot_shapes(robot: Robot, simulation: Simulation, legs: Limbs) -> Shapes:
     spin, gamma3 = (legs.state[:, COORDINATES.index(name)] for name in ("spin", "gamma3"))
     pose = bool(legs.pose_closure.any())
     lateral = leg_shapes(robot, simulation)
-    springs = [spring for leg in robot.legs for spring in springs_along(leg)]
     shear = simulation.lateral_shapes > 0 and any(leg.piston.shear for leg in robot.legs)
     return Shapes(
         a=bases.lateral_basis("clamped-free", 0) if robot.plane else lateral,  # across the plane nothing bends
         b=lateral,
         axial=bases.axial_basis(simulation.axial_shapes(robot.legs[0].axial_modes)),
+        elements=elements_of(robot.legs, simulation),
         closure="pose" if pose else "point",
         carriage=legs.carriage,
         spin=bool((spin != ABSENT).any()),
         torsion=pose and simulation.lateral_shapes > 0,
         flexure=any(x.flexes for leg in robot.legs for x in (leg.base_joint, leg.platform_joint)),
-        soft_base=any(x.at == "base" for x in springs),
-        soft_platform=any(x.at == "platform" for x in springs),
-        series=any(leg.gives for leg in robot.legs),
-        turning=any(leg.turning for leg in robot.legs),
-        gap=simulation.play == "gap" and any(leg.half_play and leg.gives for leg in robot.legs),
-        ripple=any(leg.screw is not None and leg.screw.motor.ripple is not None for leg in robot.legs),
-        integral=any(leg.screw is not None and leg.screw.integral > 0 for leg in robot.legs),
-        loop=any(leg.screw is not None and leg.screw.loops for leg in robot.legs),
-        oil=any(leg.cylinder_of_oil is not None for leg in robot.legs),
         base_friction=any(leg.base_joint.friction is not None for leg in robot.legs),
         platform_friction=any(leg.platform_joint.friction is not None for leg in robot.legs),
         drive_friction=any(leg.drive.friction is not None for leg in robot.legs),

@@ -1,30 +1,22 @@
-"""The few words in which the equations are written; the rest of the package never imports casadi."""
+"""The few words in which the equations are written; casadi loads with the first of them: tables do without it."""
+
+from __future__ import annotations
 
 from collections.abc import Sequence
 from dataclasses import dataclass
 from types import SimpleNamespace
+from typing import TYPE_CHECKING, Any
 
-import casadi
 import numpy as np
-from casadi import (
-    SX,
-    cos,
-    densify,
-    diagcat,
-    dot,
-    exp,
-    gradient,
-    horzcat,
-    jacobian,
-    jtimes,
-    mtimes,
-    reshape,
-    sin,
-    sqrt,
-    trace,
-    vertcat,
-)
 from numpy.typing import ArrayLike
+
+from flexapod.loading import lazy
+
+if TYPE_CHECKING:
+    import casadi
+    from casadi import SX
+else:
+    casadi = lazy("casadi")
 
 __all__ = [
     "SX",
@@ -40,6 +32,7 @@ __all__ = [
     "gradient",
     "hessian",
     "horzcat",
+    "identity",
     "jacobian",
     "jtimes",
     "matrix33",
@@ -59,19 +52,100 @@ __all__ = [
 ]
 
 
+def __getattr__(name: str) -> Any:
+    if name == "SX":
+        return casadi.SX
+    raise AttributeError(f"module {__name__!r} has no attribute {name!r}")
+
+
+def cos(x: Any) -> Any:
+    """Cosine [rad], of symbols or numbers."""
+    return x.cos() if hasattr(x, "cos") else np.cos(x)
+
+
+def sin(x: Any) -> Any:
+    """Sine [rad], of symbols or numbers."""
+    return x.sin() if hasattr(x, "sin") else np.sin(x)
+
+
+def exp(x: Any) -> Any:
+    """Exponential, of symbols or numbers."""
+    return x.exp() if hasattr(x, "exp") else np.exp(x)
+
+
+def sqrt(x: Any) -> Any:
+    """Square root, of symbols or numbers."""
+    return x.sqrt() if hasattr(x, "sqrt") else np.sqrt(x)
+
+
+def dot(a: SX, b: SX) -> SX:
+    """Scalar product of two columns."""
+    return casadi.dot(a, b)
+
+
+def mtimes(*factors: SX) -> SX:
+    """Product of matrices."""
+    return casadi.mtimes(*factors)
+
+
+def trace(matrix: SX) -> SX:
+    """Sum of the diagonal."""
+    return casadi.trace(matrix)
+
+
+def vertcat(*parts: SX | float) -> SX:
+    """One below the other."""
+    return casadi.vertcat(*parts)
+
+
+def horzcat(*parts: SX | float) -> SX:
+    """One beside the other."""
+    return casadi.horzcat(*parts)
+
+
+def diagcat(*parts: SX) -> SX:
+    """Blocks along the diagonal."""
+    return casadi.diagcat(*parts)
+
+
+def reshape(matrix: SX, *shape: int) -> SX:
+    """The same entries, column by column, in another shape."""
+    return casadi.reshape(matrix, *shape)
+
+
+def gradient(expression: SX, x: SX) -> SX:
+    """Column of first derivatives of a scalar."""
+    return casadi.gradient(expression, x)
+
+
+def jacobian(expression: SX, x: SX) -> SX:
+    """Matrix of first derivatives."""
+    return casadi.jacobian(expression, x)
+
+
+def jtimes(expression: SX, x: SX, way: SX) -> SX:
+    """Derivative along a way."""
+    return casadi.jtimes(expression, x, way)
+
+
 def symbol(name: str, size: int = 1) -> SX:
     """Column of ``size`` symbols."""
-    return SX.sym(name, size)
+    return casadi.SX.sym(name, size)
 
 
 def constant(array: ArrayLike) -> SX:
     """Numeric array as a dense symbolic constant."""
-    return SX(np.atleast_2d(np.asarray(array, dtype=float)) if np.ndim(array) else float(np.asarray(array)))
+    return casadi.SX(np.atleast_2d(np.asarray(array, dtype=float)) if np.ndim(array) else float(np.asarray(array)))
 
 
 def zeros(rows: int, columns: int = 1) -> SX:
     """Matrix of zeros."""
-    return SX.zeros(rows, columns)
+    return casadi.SX.zeros(rows, columns)
+
+
+def identity(size: int) -> SX:
+    """Matrix of ones on the diagonal."""
+    return casadi.SX.eye(size)
 
 
 def substitute(expression: SX, old: Sequence[SX], new: Sequence[SX]) -> SX:
@@ -131,17 +205,17 @@ def quadratic(x: SX, matrix: np.ndarray | SX) -> SX:
     """x^T matrix x for a symmetric matrix, summed over one triangle; zero when there are no shapes."""
     if not x.numel():
         return zeros(1)
-    if isinstance(matrix, SX):
+    if isinstance(matrix, casadi.SX):
         return dot(x, mtimes(2 * casadi.triu(matrix, False) + casadi.diag(casadi.diag(matrix)), x))
     triangle = 2 * np.triu(matrix, 1) + np.diag(np.diag(matrix))
-    return dot(x, mtimes(SX(casadi.sparsify(casadi.DM(triangle))), x))
+    return dot(x, mtimes(casadi.SX(casadi.sparsify(casadi.DM(triangle))), x))
 
 
 def bilinear(x: SX, matrix: np.ndarray | SX, y: SX) -> SX:
     """x^T matrix y; zero when either has no shapes."""
     if not (x.numel() and y.numel()):
         return zeros(1)
-    return dot(x, mtimes(casadi.sparsify(SX(matrix)), y))
+    return dot(x, mtimes(casadi.sparsify(casadi.SX(matrix)), y))
 
 
 def expanded(expressions: Sequence[SX], x: SX) -> tuple[list[SX], tuple[SX, SX]]:
@@ -150,9 +224,9 @@ def expanded(expressions: Sequence[SX], x: SX) -> tuple[list[SX], tuple[SX, SX]]
     To be differentiated twice at most, by anything: what is in the expressions is differentiated here, by x alone.
     Returned are the series, and (symbols, what to put for them in the end).
     """
-    value = densify(vertcat(*(reshape(e, e.numel(), 1) for e in expressions)))
-    slope = jtimes(value, x, SX(1.0))
-    known = vertcat(x, value, slope, jtimes(slope, x, SX(1.0)))
+    value = casadi.densify(vertcat(*(reshape(e, e.numel(), 1) for e in expressions)))
+    slope = jtimes(value, x, casadi.SX(1.0))
+    known = vertcat(x, value, slope, jtimes(slope, x, casadi.SX(1.0)))
     at, n = symbol("at", known.numel()), value.numel()
     step = x - at[0]
     series = at[1 : n + 1] + step * (at[n + 1 : 2 * n + 1] + step / 2 * at[2 * n + 1 :])
@@ -165,12 +239,12 @@ def expanded(expressions: Sequence[SX], x: SX) -> tuple[list[SX], tuple[SX, SX]]
 
 def time_derivative(expression: SX, *pairs: tuple[SX, SX]) -> SX:
     """d/dt of an expression by the chain rule; ``pairs`` are (variable, its rate)."""
-    return sum((jtimes(expression, x, x_dot) for x, x_dot in pairs), SX.zeros(*expression.shape))
+    return sum((jtimes(expression, x, x_dot) for x, x_dot in pairs), casadi.SX.zeros(*expression.shape))
 
 
 def symbols(layout: Sequence[tuple[str, int]], name: str) -> tuple[SX, SimpleNamespace]:
     """One symbolic column and its named pieces, in the order of ``layout`` (name, size)."""
-    column = SX.sym(name, sum(size for _, size in layout))
+    column = casadi.SX.sym(name, sum(size for _, size in layout))
     return column, split(column, layout)
 
 

@@ -7,13 +7,13 @@ from typing import Any
 import numpy as np
 
 from flexapod import model
+from flexapod.elements.springs import springs_along
 from flexapod.model import Robot, ScrewDrive
 from flexapod.model.drive import Feedback, ServoDrive
 from flexapod.model.joint import Joint
 from flexapod.model.material import Material
 from flexapod.model.screw import Bearing, Limits, Nut
 from flexapod.proof.case import Check, case, checks
-from flexapod.solve.springs import springs_along
 from flexapod.study.before.screws import buckling_thrust
 from flexapod.study.parts import parts
 from flexapod.study.static import modes

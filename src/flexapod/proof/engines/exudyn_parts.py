@@ -11,10 +11,10 @@ from dataclasses import dataclass
 
 import numpy as np
 
+from flexapod.elements.springs import Place, before_piston, in_series, springs_along
 from flexapod.model import Leg
 from flexapod.proof.engines.exudyn_friction import rub_coordinate
 from flexapod.proof.engines.exudyn_system import System, items
-from flexapod.solve.springs import Place, before_piston, in_series, springs_along
 from flexapod.typing import Array
 
 SCREW_END = 1e-2  # kg, of the screw at its nut, as travel: next to nothing beside a rotor of hundreds

@@ -7,11 +7,11 @@ from dataclasses import dataclass
 import numpy as np
 
 from flexapod import rigid
+from flexapod.elements.springs import springs_along
 from flexapod.errors import InputError
 from flexapod.model import Joint, Leg, Motion, Robot
 from flexapod.proof.engines.exudyn_integration import Integration
 from flexapod.proof.engines.exudyn_process import TIME_LIMIT, ask
-from flexapod.solve.springs import springs_along
 from flexapod.typing import Array
 
 #: s; longer ones ring more where the jerk jumps, shorter ones carry Newton's tolerance into the forces.

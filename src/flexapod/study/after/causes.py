@@ -9,6 +9,8 @@ import numpy as np
 from numpy.typing import NDArray
 
 from flexapod import rigid
+from flexapod.elements.soft_joint import SoftBase, SoftPlatform
+from flexapod.elements.springs import Place
 from flexapod.errors import ComputationError
 from flexapod.model import Robot
 from flexapod.rigid.closures import Task, close
@@ -18,7 +20,6 @@ from flexapod.solve.frames import on_plates
 from flexapod.solve.lost_motion import before_friction, places_with_friction
 from flexapod.solve.many import RestStates
 from flexapod.solve.released import is_hexapod, rigid_errors
-from flexapod.solve.springs import Place
 from flexapod.solve.system import System
 from flexapod.study.after.elongations import elongations, frame_names, part_names
 from flexapod.study.after.inside import tip_moves
@@ -137,8 +138,8 @@ def _across(robot: Robot, found: Limbs, system: System, record: Record | RestSta
     """
     shapes, errors = system.kernel.shapes, {}
     moves = tip_moves(robot, system, record.q)
-    for name, end, soft in (("base_joint", "u", shapes.soft_base), ("platform_joint", "e", shapes.soft_platform)):
-        if soft and not shapes.flexure:
+    for name, end, soft in (("base_joint", "u", SoftBase), ("platform_joint", "e", SoftPlatform)):
+        if soft in shapes.elements and not shapes.flexure:
             at = shapes.index(f"{end}1")
             moves[name] = record.q[..., at : at + 2], np.zeros((*record.q.shape[:-1], 2))
     if found.plain or not moves:

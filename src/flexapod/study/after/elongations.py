@@ -6,9 +6,10 @@ from collections.abc import Sequence
 
 import numpy as np
 
-from flexapod.elements.gap import past_gap
+from flexapod.elements.gap import Gap, past_gap
+from flexapod.elements.springs import Place, Spring, of_servo, springs_along
+from flexapod.elements.turning_nut import TurningNut
 from flexapod.model import Robot, ServoDrive
-from flexapod.solve.springs import Place, Spring, of_servo, springs_along
 from flexapod.solve.system import System
 from flexapod.study.after.inside import part_names_inside
 from flexapod.typing import Array
@@ -47,7 +48,7 @@ def elongations(
         if leg.turning and "nut" in places:  # (T23.41)
             found["unkeyed"][..., i] = leg.turning * q[..., i, shapes.index("spin")]
             gives["nut"] = gives["nut"] - found["unkeyed"][..., i]
-        if shapes.gap:
+        if Gap in shapes.elements:
             gives["nut"] = gives["nut"] - played[..., i]
         for at, give in gives.items():
             here = [spring for spring in springs if spring.at == at and at in places]
@@ -60,10 +61,10 @@ def elongations(
 def in_gap(robot: Robot, system: System, q: Array) -> Array:
     """How far the play of legs that is a gap has let them go, (..., legs) [m], at most half of it; Eq. (T16.26)."""
     shapes = system.kernel.shapes
-    if not shapes.gap:
+    if Gap not in shapes.elements:
         return np.zeros(q.shape[:-1])
     apart = q[..., shapes.l_index] - q[..., shapes.index("r")]
-    if shapes.turning:
+    if TurningNut in shapes.elements:
         apart = apart - np.array([leg.turning for leg in robot.legs]) * q[..., shapes.index("spin")]
     return apart - past_gap(apart, np.array([leg.half_play for leg in robot.legs]))
 

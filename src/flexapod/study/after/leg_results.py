@@ -7,6 +7,7 @@ from dataclasses import replace
 import numpy as np
 from numpy.typing import ArrayLike
 
+from flexapod.elements.springs import twist_share
 from flexapod.mechanics.layout import columns, leg_parameters
 from flexapod.model import Robot
 from flexapod.rigid.built import built_limbs
@@ -18,7 +19,6 @@ from flexapod.solve.friction import sliding
 from flexapod.solve.lost_motion import PLACES, places_with_friction
 from flexapod.solve.many import RestStates
 from flexapod.solve.released import RobotForces, released, rigid_system
-from flexapod.solve.springs import twist_share
 from flexapod.solve.system import System
 from flexapod.study.after import legs as by_name
 from flexapod.study.after.causes import cause_names

@@ -6,10 +6,10 @@ from dataclasses import dataclass
 
 import numpy as np
 
+from flexapod.elements.springs import springs_along
 from flexapod.model import Leg, Robot
 from flexapod.rigid.limbs import COORDINATES
 from flexapod.rigid.rotations import matrix, quaternion
-from flexapod.solve.springs import springs_along
 from flexapod.study.accuracy.sensitivity import sensitivity
 from flexapod.study.after.plausibility import worst_of_each
 from flexapod.study.before.describe.leg import Extreme

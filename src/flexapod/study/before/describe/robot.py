@@ -8,6 +8,7 @@ from dataclasses import asdict, dataclass
 import numpy as np
 
 from flexapod import model, rigid
+from flexapod.elements.springs import springs_along
 from flexapod.errors import FlexapodError, InputError
 from flexapod.solve.at_poses import locked_poses, robot_modes
 from flexapod.solve.losses import loss_words
@@ -16,7 +17,6 @@ from flexapod.solve.modal_loops import unstable_words
 from flexapod.solve.modes import the_modes
 from flexapod.solve.parts import part_stiffness
 from flexapod.solve.robot_march import refuse_massless
-from flexapod.solve.springs import springs_along
 from flexapod.solve.stiffness import compliance, stiffness_of
 from flexapod.study.accuracy.words import accuracy_words, rest_words
 from flexapod.study.after.inside import guide_results

@@ -16,6 +16,7 @@ __all__ = [
     "Place",
     "Spring",
     "before_piston",
+    "before_stroke",
     "in_series",
     "of_servo",
     "oil_shares",
@@ -107,6 +108,14 @@ def before_piston(leg: Leg) -> list[Spring]:
     return springs
 
 
+def before_stroke(leg: Leg) -> list[Spring]:
+    """The springs between rotor and stroke, a servo's among them: nothing has a mass between it and these."""
+    springs = [spring for spring in springs_along(leg) if spring.at == "nut"]
+    if springs and isinstance(leg.drive, ServoDrive):
+        springs.append(of_servo(leg.drive))
+    return springs
+
+
 def of_servo(drive: ServoDrive) -> Spring:
     """The spring and damper of a servo, in series with what is behind it."""
     return Spring(name="drive", at="nut", compliance=(1.0 / drive.stiffness, 0.0, 0.0), damping=drive.damping)
@@ -141,7 +150,7 @@ def _of_oil(drive: HydraulicDrive, begin: float) -> Spring:
 
 
 def oil_shares(springs: Iterable[Spring], length: float) -> tuple[float, ...]:
-    """What `drive_layout.OIL_PARAMETERS` are of springs in series at a length of the leg [m]; 0 without oil."""
+    """What `elements.oil.Oil.parameters` are of springs in series at a length of the leg [m]; 0 without oil."""
     at, springs = np.array(length), list(springs)
     oil = next((spring for spring in springs if spring.columns), None)
     if oil is None:

@@ -1,0 +1,84 @@
+"""A rotor that drives a stroke through springs in series: screw, nut, bearing, brackets, Eqs. (T15.5), (T15.11)."""
+
+from __future__ import annotations
+
+from collections.abc import Sequence
+from dataclasses import dataclass
+from types import SimpleNamespace
+from typing import TYPE_CHECKING, Any, ClassVar, Self
+
+from flexapod.elements.element import Element, Named, Series, Standing
+from flexapod.elements.frame import Energies
+from flexapod.elements.springs import Spring, before_stroke, in_series, softening
+
+if TYPE_CHECKING:
+    from flexapod.model import Leg
+    from flexapod.symbolic.vocabulary import SX
+
+
+@dataclass(frozen=True)
+class DriveTrain(Element):
+    """The springs between the travel r of a rotor and the stroke l, and what turns with the rotor."""
+
+    springs: Sequence[Spring]
+
+    coordinates: ClassVar[Named] = (("r", 1),)
+    follows: ClassVar[dict[str, str]] = {"r": "l"}
+    parameters: ClassVar[Named] = (
+        ("series_stiffness", 1),  # N/m, at home
+        ("series_softening", 2),  # 1/m, 1/m^2: how the compliance grows with the length there
+        ("series_home", 1),  # m, length at home
+        ("series_damping", 1),  # N s/m
+        ("rotor_mass", 1),  # kg, by the stroke
+        ("rotor_stiffness", 1),  # N/m, between command and r
+        ("rotor_damping", 1),  # N s/m
+    )
+
+    @classmethod
+    def of(cls, leg: Leg) -> Self | None:
+        """Of a leg with springs between its drive and its piston."""
+        return cls(before_stroke(leg)) if leg.gives else None
+
+    def numbers(self, leg: Leg, standing: Standing) -> dict[str, Any]:
+        """The springs at home, and the rotor with its servo."""
+        stiffness, damping = in_series(self.springs, standing.length, standing.per_loss)
+        found = {"series_stiffness": stiffness, "series_damping": damping, "series_home": standing.length}
+        found["series_softening"] = softening(self.springs, standing.length)
+        if (screw := leg.screw) is not None:
+            found["rotor_mass"] = screw.inertia / screw.per_turn**2  # (T15.12)
+            found["rotor_stiffness"], found["rotor_damping"] = screw.loop_spring
+        return found
+
+    @classmethod
+    def held(cls, leg: Leg, *, at_rest: bool) -> Sequence[str]:
+        """The travel of what has no rotor, a servo's spring being in series with these, and of a held rotor."""
+        return ("r",) if leg.drive.holds or leg.screw is None else ()
+
+    @classmethod
+    def energy(
+        cls, p: SimpleNamespace, q: SimpleNamespace, v: SimpleNamespace, elements: Sequence[type[Element]]
+    ) -> Energies:
+        """The compliance of the springs is a polynomial in l, as that of a shaft goes with the nut's place."""
+        s = Series(stretching(p, q.l), q.l, v.l)
+        for element in elements:
+            s = element.in_series(s, p, q, v)
+        stiffness = p.series_stiffness / s.softer  # (T15.5)
+        x, rate = q.r - s.nut, v.r - s.rate
+        for element in elements:
+            x, rate = element.past(x, rate, p)
+        return Energies(
+            kinetic=0.5 * p.rotor_mass * v.r**2,  # (T15.12)
+            strain=0.5 * stiffness * x**2,  # (T15.11)
+            dissipation=0.5 * p.series_damping * rate**2,
+        )
+
+
+def stretching(p: SimpleNamespace, stroke: SX) -> SX:
+    """Compliance of the springs before a stroke over that at home, without oil."""
+    away = stroke - p.series_home
+    return 1 + away * (p.series_softening[0] + away * p.series_softening[1])
+
+
+def twisting(p: SimpleNamespace, stroke: SX) -> SX:
+    """Share kappa of a shaft's twist in it, Eq. (T19.12)."""
+    return (p.drive_friction_twist[0] + p.drive_friction_twist[1] * (stroke - p.series_home)) / stretching(p, stroke)

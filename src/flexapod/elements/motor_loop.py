@@ -1,0 +1,97 @@
+"""A motor whose force lags behind what its loop asks for, by what that measures, Eqs. (T23.51)-(T23.53)."""
+
+from __future__ import annotations
+
+from collections.abc import Sequence
+from dataclasses import dataclass
+from types import SimpleNamespace
+from typing import TYPE_CHECKING, Any, ClassVar, Self
+
+from flexapod.elements.element import Element, Named, Standing
+
+if TYPE_CHECKING:
+    from flexapod.model import Leg, ScrewDrive
+    from flexapod.symbolic.vocabulary import SX
+
+
+@dataclass(frozen=True)
+class MotorLoop(Element):
+    """A motor that lags, or whose loop is closed about another place than its rotor: j is its impulse."""
+
+    screw: ScrewDrive
+    at: str  # the other place, see `model.Leg.closed_about`
+
+    coordinates: ClassVar[Named] = (("j", 1),)
+    parameters: ClassVar[Named] = (
+        ("loop_stiffness", 1),  # N/m
+        ("loop_damping", 1),  # N s/m
+        ("loop_lag", 1),  # s
+        ("loop_at_once", 1),  # 1 of a force that comes at once, else 0
+        ("loop_at", 2),  # shares of the stroke and of the distance of the joints in what is measured
+        ("loop_rate_at_rotor", 1),  # 1 where the rate is that of the rotor, else 0
+    )
+    absent: ClassVar[dict[str, float]] = {"loop_lag": 1.0, "loop_at_once": 1.0}
+
+    @classmethod
+    def of(cls, leg: Leg) -> Self | None:
+        """Of a screw whose motor is more than a spring and a damper on its rotor."""
+        return cls(leg.screw, leg.closed_about) if leg.screw is not None and leg.screw.loops else None
+
+    def numbers(self, leg: Leg, standing: Standing) -> dict[str, Any]:
+        """The loop; at rest, about another place, it is a spring of the drive there, Eq. (T23.55)."""
+        screw, found = self.screw, {"loop_at": [float(self.at == place) for place in ("stroke", "joint-to-joint")]}
+        if standing.at_rest and not self.at:
+            return found
+        found |= {"rotor_stiffness": 0.0, "rotor_damping": 0.0}
+        if standing.at_rest:
+            return found | {
+                "series_stiffness": 0.0,
+                "drive_friction_at_stroke": 1.0,
+                "drive_friction_twist": (0.0, 0.0),
+            }
+        found |= {"loop_stiffness": screw.loop_spring[0], "loop_damping": screw.loop_spring[1]}
+        found["loop_rate_at_rotor"] = float(screw.encoder.rate == "rotor")
+        return found | ({"loop_lag": screw.lag, "loop_at_once": 0.0} if screw.lag else {})
+
+    @classmethod
+    def held(cls, leg: Leg, *, at_rest: bool) -> Sequence[str]:
+        """The impulse of a force that comes at once; at rest what the loop leaves to its place, Eq. (T23.55)."""
+        own = cls.of(leg)
+        if own is None or not at_rest:
+            return () if own is not None and own.screw.lag else ("j",)
+        return ("j", *(("r",) if own.at else ()), *(("l",) if own.at and own.screw.rests else ()))
+
+
+@dataclass(frozen=True, kw_only=True)
+class Loop:
+    """Force of such a motor on its rotor.
+
+    ``p``: parameters of the leg; ``place`` and ``rate``: what is measured, ``q_cmd`` and ``v_cmd`` what it is to be,
+    ``turns``: rate of the rotor; ``more``: what is asked beside spring and damper, None of nothing; ``j``: rate of the
+    motor's impulse, the force that lags.
+    """
+
+    p: SimpleNamespace
+    place: SX
+    rate: SX
+    turns: SX
+    q_cmd: SX
+    v_cmd: SX
+    more: SX | None
+    j: SX
+
+    @property
+    def asked(self) -> SX:
+        """Force that the loop asks for, Eq. (T23.52)."""
+        rate = self.rate + self.p.loop_rate_at_rotor * (self.turns - self.rate)
+        held = self.p.loop_stiffness * (self.q_cmd - self.place) + self.p.loop_damping * (self.v_cmd - rate)
+        return held if self.more is None else held + self.more
+
+    @property
+    def force(self) -> SX:
+        """Force on the rotor: at once what is asked for, or what lags behind it."""
+        return self.p.loop_at_once * self.asked + (1 - self.p.loop_at_once) * self.j
+
+    def lag(self, j_dot: SX) -> SX:
+        """What vanishes where the force lags as it does, Eq. (T23.53)."""
+        return self.p.loop_lag * j_dot + self.j - self.asked

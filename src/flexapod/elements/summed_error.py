@@ -1,0 +1,45 @@
+"""A loop about a rotor that sums its error, Eqs. (T23.15)-(T23.16)."""
+
+from __future__ import annotations
+
+from collections.abc import Sequence
+from dataclasses import dataclass
+from types import SimpleNamespace
+from typing import TYPE_CHECKING, Any, ClassVar, Self
+
+from flexapod.elements.element import Element, Named, Standing
+
+if TYPE_CHECKING:
+    from flexapod.model import Leg
+    from flexapod.symbolic.vocabulary import SX
+
+
+@dataclass(frozen=True)
+class SummedError(Element):
+    """The sum w of the error of a loop: its `gain` [N/(m s)] by the travel that the rotor drives."""
+
+    gain: float
+
+    coordinates: ClassVar[Named] = (("w", 1),)
+    parameters: ClassVar[Named] = (("rotor_integral", 1),)
+
+    @classmethod
+    def of(cls, leg: Leg) -> Self | None:
+        """Of a leg whose screw has a loop with an integral."""
+        return cls(leg.screw.integral) if leg.screw is not None and leg.screw.integral > 0 else None
+
+    def numbers(self, leg: Leg, standing: Standing) -> dict[str, Any]:
+        """Its gain."""
+        return {"rotor_integral": self.gain}
+
+    @classmethod
+    def held(cls, leg: Leg, *, at_rest: bool) -> Sequence[str]:
+        """At rest it has left no error: then the rotor is where it is to be, and there is nothing to sum."""
+        if cls.of(leg) is None:
+            return ("w",)
+        return ("w", "r") if at_rest else ()
+
+    @classmethod
+    def asked(cls, p: SimpleNamespace, q: SimpleNamespace) -> SX:
+        """Force of the summed error."""
+        return p.rotor_integral * q.w
