@@ -24,7 +24,7 @@ import numpy as np
 
 from flexapod.errors import ComputationError, InputError
 from flexapod.model import Study, load, loads, to_toml
-from flexapod.model.base import Frozen
+from flexapod.schema.base import Frozen
 from flexapod.study import simulate, simulate_actuator
 from flexapod.study.before.describe.robot import describe
 from flexapod.surveys.sweeps.kept import columns, kept

@@ -20,9 +20,9 @@ from flexapod.model import (
     WaypointMotion,
     override,
 )
-from flexapod.model.tables import WRENCH as COLUMNS
-from flexapod.model.tables import read_table
 from flexapod.rigid import Breaks
+from flexapod.schema.csv_tables import WRENCH as COLUMNS
+from flexapod.schema.csv_tables import read_table
 from flexapod.solve.stops import Stop, Stops
 
 WRENCH = np.array([60.0, -40.0, 30.0, 5.0, 4.0, -3.0])

@@ -12,7 +12,7 @@ from flexapod.bases.eigen import eigh
 from flexapod.errors import ComputationError, FlexapodError, InputError
 from flexapod.model import preset_text
 from flexapod.model.files import read_study
-from flexapod.model.section import Section
+from flexapod.schema.section import Section
 from flexapod.solve.saddle import saddle_solve
 
 EXTREMES = (1e-300, 1e160)

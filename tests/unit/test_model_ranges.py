@@ -8,7 +8,7 @@ from annotated_types import Ge, Le, Lt
 
 from flexapod import model
 from flexapod.errors import InputError
-from flexapod.model.base import Frozen, Measure
+from flexapod.schema.base import Frozen, Measure
 from flexapod.units import DIMENSIONS
 
 

@@ -11,12 +11,12 @@ from flexapod.errors import InputError
 from flexapod.model import AXES, FIDELITIES, PROFILES, loads, preset_text
 from flexapod.model.fields import listened
 from flexapod.model.page import listed, markdown, study_data
-from flexapod.model.reference import example_line, plain_path, reference
-from flexapod.model.write import toml_value
+from flexapod.schema.reference import example_line, plain_path, reference
+from flexapod.schema.toml import toml_value
 
 PAGE = Path(__file__).parents[2] / "docs" / "study-file.md"
 ENTRIES = reference().entries
-KEYS = "src/flexapod/model/keys.toml"
+KEYS = "src/flexapod/schema/keys.toml"
 # Classes and fields that no study file fills by itself: whole studies, and what follows from the other keys.
 DERIVED = {
     "Study", "ActuatorStudy", "Robot", "Load", "ActuatorMotion", "ActuatorLoad",

@@ -7,7 +7,7 @@ import pytest
 
 from flexapod import model
 from flexapod.errors import InputError
-from flexapod.model.toml import DEEPEST, parsed
+from flexapod.schema.toml import DEEPEST, parsed
 
 TEXT = model.preset_text("paper-robot")
 LONG = {

@@ -20,7 +20,7 @@ def check_table(wanted: str) -> None:
     InputError
         With the table that is meant: of that last name, with a key of that name, or of a similar name.
     """
-    found = tomllib.loads(files("flexapod").joinpath("model", "keys.toml").read_text(encoding="utf-8"))
+    found = tomllib.loads(files("flexapod").joinpath("schema", "keys.toml").read_text(encoding="utf-8"))
     tables = list(dict.fromkeys(entry["table"] for entry in found["entry"]))
     if any(f"{table}.".startswith(f"{wanted}.") for table in tables):
         return

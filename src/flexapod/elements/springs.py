@@ -4,13 +4,14 @@ from __future__ import annotations
 
 from collections.abc import Iterable
 from dataclasses import dataclass
-from typing import Literal, NamedTuple, TypeVar
+from typing import TYPE_CHECKING, Literal, NamedTuple, TypeVar
 
 import numpy as np
 
-from flexapod.model import HydraulicDrive, Leg, ScrewDrive, ServoDrive
-from flexapod.model.joint import Joint
 from flexapod.typing import Array
+
+if TYPE_CHECKING:
+    from flexapod.model import HydraulicDrive, Joint, Leg, ScrewDrive
 
 __all__ = [
     "Place",
@@ -101,24 +102,24 @@ def before_piston(leg: Leg) -> list[Spring]:
     What is inside of a loop is not.
     """
     springs = [x for x in springs_along(leg) if x.at == "nut" and not leg.closed_about]
-    if isinstance(leg.drive, ServoDrive):
-        springs.append(of_servo(leg.drive))
+    if leg.drive.type == "servo":
+        springs.append(of_servo(leg.drive.stiffness, leg.drive.damping))
     elif leg.screw is not None and leg.screw.loop_spring[0] and not leg.screw.rests:
-        springs.append(of_servo(ServoDrive(stiffness=leg.screw.loop_spring[0])))
+        springs.append(of_servo(leg.screw.loop_spring[0]))
     return springs
 
 
 def before_stroke(leg: Leg) -> list[Spring]:
     """The springs between rotor and stroke, a servo's among them: nothing has a mass between it and these."""
     springs = [spring for spring in springs_along(leg) if spring.at == "nut"]
-    if springs and isinstance(leg.drive, ServoDrive):
-        springs.append(of_servo(leg.drive))
+    if springs and leg.drive.type == "servo":
+        springs.append(of_servo(leg.drive.stiffness, leg.drive.damping))
     return springs
 
 
-def of_servo(drive: ServoDrive) -> Spring:
-    """The spring and damper of a servo, in series with what is behind it."""
-    return Spring(name="drive", at="nut", compliance=(1.0 / drive.stiffness, 0.0, 0.0), damping=drive.damping)
+def of_servo(stiffness: float, damping: float = 0.0) -> Spring:
+    """The spring [N/m] and damper [N s/m] of a servo, in series with what is behind it."""
+    return Spring(name="drive", at="nut", compliance=(1.0 / stiffness, 0.0, 0.0), damping=damping)
 
 
 def _of_screw(screw: ScrewDrive, begin: float) -> list[Spring]:

@@ -8,11 +8,11 @@ from typing import Annotated, Any
 from pydantic import Field, model_validator
 
 from flexapod.errors import InputError
-from flexapod.model.base import Frozen, Measure, NonNegative, Number, Positive
 from flexapod.model.damping import BodyDamping
 from flexapod.model.laws import CsvLaw, LoadLaw, MotionLaw, RateLaw, Wrench
 from flexapod.model.material import Material, Rectangle, Tube
 from flexapod.model.motion import check_times
+from flexapod.schema.base import Frozen, Measure, NonNegative, Number, Positive
 from flexapod.words import number, text
 
 #: Fields that only an actuator in space has.

@@ -9,8 +9,8 @@ import numpy as np
 from pydantic import model_validator
 
 from flexapod.errors import InputError
-from flexapod.model.axes import plane_order, within_a_turn
-from flexapod.model.base import Frozen, Measure, NonNegative, Positive, Series
+from flexapod.schema.axes import plane_order, within_a_turn
+from flexapod.schema.base import Frozen, Measure, NonNegative, Positive, Series
 from flexapod.typing import Array
 
 _LOWER = ((0, -1), (0, 1), (120, -1), (120, 1), (240, -1), (240, 1))

@@ -8,7 +8,7 @@ from typing import Annotated
 from pydantic import Field, PlainSerializer, PlainValidator
 
 from flexapod.errors import InputError
-from flexapod.model.base import Frozen, Measure, NonNegative
+from flexapod.schema.base import Frozen, Measure, NonNegative
 
 Ratio = Annotated[float, Field(strict=True, ge=0, lt=1)]
 

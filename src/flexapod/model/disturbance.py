@@ -8,7 +8,7 @@ import numpy as np
 from pydantic import PlainSerializer, PlainValidator, model_validator
 
 from flexapod.errors import InputError
-from flexapod.model.base import Frozen, Measure, Series, array_of
+from flexapod.schema.base import Frozen, Measure, Series, array_of
 from flexapod.typing import Array
 
 __all__ = ["CURVES", "Curve", "Disturbance", "Floor", "Spectrum", "check_density"]

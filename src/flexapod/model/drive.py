@@ -7,9 +7,9 @@ from typing import Annotated, ClassVar, Literal
 from pydantic import model_validator
 
 from flexapod.errors import InputError
-from flexapod.model.base import Frozen, Measure, NonNegative, Number, Positive, Series
 from flexapod.model.friction import StrokeFriction
 from flexapod.model.motion import check_times
+from flexapod.schema.base import Frozen, Measure, NonNegative, Number, Positive, Series
 
 
 class PrescribedDrive(Frozen):

@@ -9,8 +9,8 @@ from typing import Any
 
 from flexapod.errors import InputError
 from flexapod.model.files import read_study
-from flexapod.model.notes import Field, Notes
-from flexapod.model.section import Section
+from flexapod.schema.notes import Field, Notes
+from flexapod.schema.section import Section
 
 
 def read_fields(text: str, path: str | Path | None) -> list[Field]:

@@ -18,10 +18,10 @@ from flexapod.model.read_disturbance import read_disturbance
 from flexapod.model.read_motion import read_initial, read_load, read_motion, read_simulation, unused_settings
 from flexapod.model.read_robot import platform_fixed, read_robot
 from flexapod.model.robot import Robot
-from flexapod.model.section import Section
 from flexapod.model.simulation import STRAIGHT, Simulation
 from flexapod.model.study import ActuatorStudy, Study
-from flexapod.model.toml import parsed
+from flexapod.schema.section import Section
+from flexapod.schema.toml import parsed
 
 PAPER_PRESETS = ("paper-robot", "paper-robot-radii", "paper-actuator")
 PRESETS = (*PAPER_PRESETS, "tripod", "flight-simulator", "machine-hexapod", "small-hexapod", "nano-hexapod",

@@ -7,7 +7,7 @@ from typing import Annotated
 from pydantic import model_validator
 
 from flexapod.errors import InputError
-from flexapod.model.base import Frozen, Measure, NonNegative, Positive
+from flexapod.schema.base import Frozen, Measure, NonNegative, Positive
 from flexapod.words import number
 
 __all__ = ["JointFriction", "ScrewFriction", "StrokeFriction"]

@@ -8,7 +8,7 @@ import numpy as np
 from pydantic import PlainSerializer, PlainValidator
 
 from flexapod.errors import InputError
-from flexapod.model.base import Frozen, Joints, Measure, array_of
+from flexapod.schema.base import Frozen, Joints, Measure, array_of
 from flexapod.typing import Array
 
 __all__ = ["Geometry", "PerLeg", "check_legs"]

@@ -8,9 +8,9 @@ import numpy as np
 from pydantic import Field, PlainSerializer, PlainValidator, model_validator
 
 from flexapod.errors import InputError
-from flexapod.model.base import Frozen, Measure, Number, Series, array_of
 from flexapod.model.geometry import PerLeg, check_legs
 from flexapod.model.motion import check_times
+from flexapod.schema.base import Frozen, Measure, Number, Series, array_of
 from flexapod.typing import Array
 
 __all__ = ["HEAT_PARTS", "LEG_PARTS", "Expansion", "Gradient", "Heat"]

@@ -8,9 +8,9 @@ from typing import Annotated
 import numpy as np
 from pydantic import Field, model_validator
 
-from flexapod.model.axes import within_a_turn
-from flexapod.model.base import Frozen, Measure, Vec3
 from flexapod.model.joint import Carriage
+from flexapod.schema.axes import within_a_turn
+from flexapod.schema.base import Frozen, Measure, Vec3
 from flexapod.typing import Array
 
 

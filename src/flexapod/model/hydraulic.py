@@ -9,8 +9,8 @@ import numpy as np
 from pydantic import PlainSerializer, PlainValidator, model_validator
 
 from flexapod.errors import InputError
-from flexapod.model.base import Frozen, Measure, NonNegative, Positive, array_of
 from flexapod.model.friction import StrokeFriction
+from flexapod.schema.base import Frozen, Measure, NonNegative, Positive, array_of
 from flexapod.typing import Array
 from flexapod.words import text
 

@@ -8,10 +8,10 @@ import numpy as np
 from pydantic import model_validator
 
 from flexapod.errors import InputError
-from flexapod.model.axes import within_a_turn
-from flexapod.model.base import Frozen, Loss, Matrix6, Measure, NonNegative, Number, Positive, Vec3
 from flexapod.model.friction import JointFriction
 from flexapod.model.rolling import RollingLaw
+from flexapod.schema.axes import within_a_turn
+from flexapod.schema.base import Frozen, Loss, Matrix6, Measure, NonNegative, Number, Positive, Vec3
 
 NO_DIRECTION = 1e-9  # length of a vector below which it is none
 

@@ -6,8 +6,8 @@ from typing import Annotated, ClassVar, Literal
 
 from pydantic import Field, model_validator
 
-from flexapod.model.base import Frozen, Measure, NonNegative, Number, Positive, Series, Series6, Vec6
 from flexapod.model.motion import Profile, check_times
+from flexapod.schema.base import Frozen, Measure, NonNegative, Number, Positive, Series, Series6, Vec6
 
 _AMPLITUDE = Measure("angle", "length", "torque", "force")
 

@@ -7,7 +7,6 @@ from typing import Annotated, Any
 from pydantic import Field, model_validator
 
 from flexapod.errors import InputError
-from flexapod.model.base import Frozen, Measure, NonNegative, Positive, Vec3
 from flexapod.model.chain import Chain, chain_of
 from flexapod.model.damping import BodyDamping, damping_parts
 from flexapod.model.drive import ForceDrive, PrescribedDrive
@@ -16,6 +15,7 @@ from flexapod.model.joint import Carriage, Joint
 from flexapod.model.piston import Cylinder, Guide, Piston, Strut
 from flexapod.model.screw import Drive, ScrewDrive
 from flexapod.model.spring import AxialSpring
+from flexapod.schema.base import Frozen, Measure, NonNegative, Positive, Vec3
 from flexapod.words import number, text
 
 NOTHING = Cylinder(mass=0.0, mouth=0.0)  # in place of the cylinder that a strut does not have

@@ -9,7 +9,7 @@ from typing import Annotated
 from pydantic import Field, model_validator
 
 from flexapod.errors import InputError
-from flexapod.model.base import Frozen, Measure, Number, Positive
+from flexapod.schema.base import Frozen, Measure, Number, Positive
 
 POISSON = 0.3  # where no other is given
 

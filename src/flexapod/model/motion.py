@@ -9,8 +9,8 @@ import numpy as np
 from pydantic import AfterValidator, Field, model_validator
 
 from flexapod.errors import InputError
-from flexapod.model.base import Frozen, Measure, NonNegative, Number, Positive, Series, Series6, Vec3
-from flexapod.model.tables import wrong_instant
+from flexapod.schema.base import Frozen, Measure, NonNegative, Number, Positive, Series, Series6, Vec3
+from flexapod.schema.csv_tables import wrong_instant
 from flexapod.typing import Array
 from flexapod.units import DIMENSIONS
 from flexapod.words import number, text

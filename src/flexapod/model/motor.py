@@ -7,8 +7,8 @@ from typing import Annotated, Literal
 from pydantic import Field, model_validator
 
 from flexapod.errors import InputError
-from flexapod.model.base import Frozen, Measure, NonNegative, Positive, Series, array_of
 from flexapod.model.drive import Feedback
+from flexapod.schema.base import Frozen, Measure, NonNegative, Positive, Series, array_of
 from flexapod.words import number
 
 __all__ = ["HARMONICS", "Brake", "Encoder", "Limits", "Loop", "Motor", "Ripple", "Rotor", "summing"]

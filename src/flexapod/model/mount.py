@@ -8,9 +8,9 @@ import numpy as np
 from pydantic import Field, model_validator
 
 from flexapod.errors import InputError
-from flexapod.model.base import Frozen, Loss, Matrix3, Matrix6, Measure, NonNegative, Series, Series6, Vec3
 from flexapod.model.motion import check_times
 from flexapod.model.spring import check_lossy
+from flexapod.schema.base import Frozen, Loss, Matrix3, Matrix6, Measure, NonNegative, Series, Series6, Vec3
 
 __all__ = ["BaseMotion", "Mount"]
 

@@ -16,8 +16,8 @@ from flexapod.model.fields import Field, Notes, listened
 from flexapod.model.material import MATERIALS
 from flexapod.model.read_disturbance import FLOOR, FORCE_NOISE, WRENCH_NOISE
 from flexapod.model.read_mount import BASE_ACCELERATION
-from flexapod.model.reference import Entry, plain_path, reference
-from flexapod.model.tables import POSE, WRENCH, forces, header
+from flexapod.schema.csv_tables import POSE, WRENCH, forces, header
+from flexapod.schema.reference import Entry, plain_path, reference
 from flexapod.units import COMMON_UNITS, DIMENSIONS
 
 HEAD = ("Key", "What it is", "Unit", "Default", "Allowed")
@@ -267,4 +267,4 @@ writes one to start from, `flexapod check NAME.toml` reads and describes it. Key
 refused, with the right form.
 
 This page is written by `flexapod keys --markdown docs/study-file.md` from the readers, the model and
-`src/flexapod/model/keys.toml`; `flexapod keys leg.drive` shows a part of it in the terminal. All examples load."""
+`src/flexapod/schema/keys.toml`; `flexapod keys leg.drive` shows a part of it in the terminal. All examples load."""

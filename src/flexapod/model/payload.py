@@ -8,7 +8,7 @@ import numpy as np
 from pydantic import field_validator, model_validator
 
 from flexapod.errors import InputError
-from flexapod.model.base import Frozen, Matrix3, Measure, Positive, Vec3
+from flexapod.schema.base import Frozen, Matrix3, Measure, Positive, Vec3
 from flexapod.typing import Array
 from flexapod.words import number
 

@@ -8,10 +8,10 @@ from typing import Annotated, ClassVar, Self
 from pydantic import Field, model_validator
 
 from flexapod.errors import InputError
-from flexapod.model.base import Frozen, Loss, Measure, NonNegative, Number, Positive
 from flexapod.model.material import POISSON, Material, Rectangle, Tube
 from flexapod.model.sections import SHARES, PistonSection, Step
 from flexapod.model.spring import check_lossy
+from flexapod.schema.base import Frozen, Loss, Measure, NonNegative, Number, Positive
 
 SAME = 1e-9  # relative; rounding leaves less
 

@@ -6,12 +6,12 @@ from collections.abc import Mapping
 from typing import Any
 
 from flexapod.model.actuator import Actuator, ActuatorInitial, ActuatorLoad, ActuatorMotion
-from flexapod.model.columns import columns_of
 from flexapod.model.laws import ConstantLaw, CsvLaw, RateLaw
 from flexapod.model.material import Rectangle, Tube
 from flexapod.model.read_leg import read_material
 from flexapod.model.read_motion import read_wrench
-from flexapod.model.section import Section
+from flexapod.schema.columns import columns_of
+from flexapod.schema.section import Section
 
 _STIFFNESS = ("rhoA", "EI")
 _DRIVEN = {  # what a load drives: the load and its dimension, the dimensions of the motion

@@ -7,8 +7,8 @@ from collections.abc import Mapping
 from flexapod.errors import InputError
 from flexapod.model.geometry import Geometry
 from flexapod.model.heat import HEAT_PARTS, LEG_PARTS, Expansion, Gradient, Heat
-from flexapod.model.section import Section
 from flexapod.model.tolerances import CLASSES, LengthSpread, RatioSpread, Tolerances
+from flexapod.schema.section import Section
 
 __all__ = ["read_built"]
 

@@ -7,11 +7,11 @@ from typing import Any, TypeVar
 import numpy as np
 
 from flexapod.errors import InputError
-from flexapod.model.base import Frozen
 from flexapod.model.disturbance import CURVES, Disturbance, Floor, Spectrum, check_density
 from flexapod.model.robot import Robot
-from flexapod.model.section import Section
-from flexapod.model.tables import WRENCH
+from flexapod.schema.base import Frozen
+from flexapod.schema.csv_tables import WRENCH
+from flexapod.schema.section import Section
 from flexapod.typing import Array
 
 __all__ = ["FLOOR", "FORCE_NOISE", "WRENCH_NOISE", "read_disturbance"]

@@ -8,9 +8,7 @@ from typing import TypeVar
 import numpy as np
 
 from flexapod.errors import InputError
-from flexapod.model.axes import axis_of
 from flexapod.model.chain import chain_of
-from flexapod.model.columns import columns_of
 from flexapod.model.drive import ForceDrive, PrescribedDrive, ServoDrive
 from flexapod.model.hydraulic import HydraulicDrive
 from flexapod.model.joint import NO_DIRECTION, Carriage, Joint
@@ -19,10 +17,12 @@ from flexapod.model.material import MATERIALS, Material, Tube
 from flexapod.model.piston import Cylinder, Mounted, Piston, Strip, Strut
 from flexapod.model.rolling import RollingLaw
 from flexapod.model.screw import Drive, Encoder, Motor, Ripple, ScrewDrive
-from flexapod.model.section import Section
 from flexapod.model.sections import PistonSection
 from flexapod.model.spring import AxialSpring
-from flexapod.model.tables import forces
+from flexapod.schema.axes import axis_of
+from flexapod.schema.columns import columns_of
+from flexapod.schema.csv_tables import forces
+from flexapod.schema.section import Section
 from flexapod.typing import Array
 
 P = TypeVar("P", bound=Piston)

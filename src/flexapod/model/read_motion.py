@@ -8,9 +8,9 @@ import numpy as np
 
 from flexapod.model.laws import ConstantWrench, CsvWrench, Load, SineWrench, StepWrench, Wrench
 from flexapod.model.motion import AXES, AxisMotion, CombinedMotion, CsvMotion, Motion, Waypoint, WaypointMotion
-from flexapod.model.section import Section
 from flexapod.model.simulation import FIDELITIES, OWN_BASIS, STRAIGHT, Initial, Simulation, own_fidelity
-from flexapod.model.tables import POSE, WRENCH
+from flexapod.schema.csv_tables import POSE, WRENCH
+from flexapod.schema.section import Section
 from flexapod.typing import Array
 
 

@@ -5,8 +5,8 @@ from __future__ import annotations
 import numpy as np
 
 from flexapod.model.mount import BaseMotion, Mount
-from flexapod.model.section import Section
-from flexapod.model.tables import POSE
+from flexapod.schema.csv_tables import POSE
+from flexapod.schema.section import Section
 
 __all__ = ["BASE_ACCELERATION", "read_mounts"]
 

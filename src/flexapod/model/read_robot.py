@@ -8,7 +8,6 @@ from typing import cast
 import numpy as np
 
 from flexapod.errors import InputError
-from flexapod.model.axes import Plane, normal_of
 from flexapod.model.chain import chains_of
 from flexapod.model.circle import Circle
 from flexapod.model.home import Home
@@ -18,7 +17,8 @@ from flexapod.model.read_built import read_built
 from flexapod.model.read_leg import read_leg
 from flexapod.model.read_mount import read_mounts
 from flexapod.model.robot import Robot
-from flexapod.model.section import Section
+from flexapod.schema.axes import Plane, normal_of
+from flexapod.schema.section import Section
 from flexapod.typing import Array
 
 _LENGTHS = ("length", "length", "length")

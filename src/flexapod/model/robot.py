@@ -9,8 +9,6 @@ import numpy as np
 from pydantic import Field, WrapValidator, computed_field, model_validator
 
 from flexapod.errors import InputError
-from flexapod.model.axes import Plane, normal_of, own_view
-from flexapod.model.base import Frozen, Joints, Measure, Vec3
 from flexapod.model.geometry import Geometry
 from flexapod.model.heat import Heat
 from flexapod.model.home import Home, carriage_home, foot
@@ -28,6 +26,8 @@ from flexapod.model.robot_checks import (
     check_tolerances,
 )
 from flexapod.model.tolerances import Tolerances
+from flexapod.schema.axes import Plane, axis_of, normal_of
+from flexapod.schema.base import Frozen, Joints, Measure, Vec3
 from flexapod.typing import Array
 from flexapod.words import number, text
 
@@ -107,7 +107,7 @@ class Robot(Frozen):
         if all(leg is self.legs[0] for leg in self.legs):
             return True
         joints = zip(self.legs, self.base_joints, self.platform_joints, strict=True)
-        first, *others = (own_view(leg, base, platform, self.normal) for leg, base, platform in joints)
+        first, *others = (_own_view(leg, base, platform, self.normal) for leg, base, platform in joints)
         return all(leg == first for leg in others)
 
     @computed_field
@@ -185,3 +185,22 @@ def _carriage(leg: Leg, base: Array, tip: Array) -> float:
         return leg.carriage.home or 0.0
     found = carriage_home(base, leg.carriage, tip, leg.strut.length)
     return math.nan if found is None else found
+
+
+def _own_view(leg: Leg, base: Array, platform: Array, normal: Array) -> Leg:
+    """The leg with its directions as seen from its own joints, along radial, tangential, normal: for comparisons."""
+    changes: dict[str, object] = {}
+    for name, joint, place in (("base_joint", leg.base_joint, base), ("platform_joint", leg.platform_joint, platform)):
+        if joint.axis is not None:
+            changes[name] = joint.replace(axis=_seen(joint.axis, place, normal))
+    if (carriage := leg.carriage) is not None:
+        arm = {} if carriage.arm is None else {"arm": _seen(carriage.arm, base, normal)}
+        changes["carriage"] = carriage.replace(axis=_seen(carriage.axis, base, normal), **arm)
+    return leg.replace(**changes) if changes else leg
+
+
+def _seen(vector: Array, place: Array, normal: Array) -> Array:
+    radial = axis_of("radial", place, normal)
+    if radial is None:
+        return vector
+    return np.round(np.array([radial, np.cross(normal, radial), normal]) @ vector, 12)

@@ -7,7 +7,7 @@ from typing import Annotated, Literal
 from pydantic import Field, model_validator
 
 from flexapod.errors import InputError
-from flexapod.model.base import Frozen, Loss, Measure, NonNegative, Positive
+from flexapod.schema.base import Frozen, Loss, Measure, NonNegative, Positive
 
 __all__ = ["AXIAL", "RollingLaw"]
 

@@ -9,7 +9,6 @@ import numpy as np
 from pydantic import BeforeValidator, Field, model_validator
 
 from flexapod.errors import InputError
-from flexapod.model.base import Frozen, Loss, Measure, NonNegative, Number, Positive, Series
 from flexapod.model.drive import ForceDrive, PrescribedDrive, ServoDrive
 from flexapod.model.friction import ScrewFriction
 from flexapod.model.hydraulic import HydraulicDrive
@@ -17,6 +16,7 @@ from flexapod.model.material import Material
 from flexapod.model.motion import check_times
 from flexapod.model.motor import HARMONICS, Brake, Encoder, Limits, Loop, Motor, Ripple, Rotor, summing
 from flexapod.model.spring import check_lossy
+from flexapod.schema.base import Frozen, Loss, Measure, NonNegative, Number, Positive, Series
 from flexapod.typing import Array
 from flexapod.words import number
 

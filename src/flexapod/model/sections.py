@@ -8,8 +8,8 @@ from typing import Annotated, NamedTuple
 from pydantic import Field, model_validator
 
 from flexapod.errors import InputError
-from flexapod.model.base import Frozen, Measure, Number, Positive
 from flexapod.model.material import POISSON, Rectangle, Tube
+from flexapod.schema.base import Frozen, Measure, Number, Positive
 
 STEPS = 64  # uniform pieces in place of a taper where formulas know no tapers, in pairs
 SHARES = (0.0, 0.25, 0.5, 0.75, 1.0)  # of a length: they tell EI of a taper, which is of fourth order

@@ -8,7 +8,7 @@ from typing import Annotated, Literal, Self
 from pydantic import Field, model_validator
 
 from flexapod.errors import InputError, closest
-from flexapod.model.base import Frozen, Measure, Positive
+from flexapod.schema.base import Frozen, Measure, Positive
 from flexapod.words import number, text
 
 FIDELITIES = ("rigid", "lumped", "finite-segment", "assumed-modes", "beam-fem", "solid-fem")

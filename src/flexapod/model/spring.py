@@ -8,8 +8,8 @@ from typing import Annotated, Any, ClassVar, Literal
 from pydantic import model_validator
 
 from flexapod.errors import InputError
-from flexapod.model.base import Frozen, Loss, Measure, NonNegative, Positive
 from flexapod.model.heat import HEAT_PARTS
+from flexapod.schema.base import Frozen, Loss, Measure, NonNegative, Positive
 
 __all__ = ["RESERVED", "AxialSpring", "check_lossy"]
 

@@ -9,8 +9,6 @@ from pydantic import field_validator, model_validator
 
 from flexapod.errors import InputError
 from flexapod.model.actuator import Actuator, ActuatorInitial, ActuatorLoad, ActuatorMotion
-from flexapod.model.axes import plane_order
-from flexapod.model.base import Frozen
 from flexapod.model.disturbance import Disturbance
 from flexapod.model.laws import Load
 from flexapod.model.motion import AXES, Motion, moved_axes
@@ -18,6 +16,8 @@ from flexapod.model.remarks import actuator_remarks, robot_remarks, settings_rem
 from flexapod.model.robot import Robot
 from flexapod.model.simulation import FIDELITIES, OWN_BASIS, SOLID, STRAIGHT, Initial, Simulation
 from flexapod.model.write import to_toml
+from flexapod.schema.axes import plane_order
+from flexapod.schema.base import Frozen
 
 #: The load that drives a motion of the single actuator where no law does.
 DRIVEN_BY = {"rotation": "torque", "extension": "force", "elevation": "elevation_torque"}

@@ -7,7 +7,7 @@ from typing import Annotated, Any, TypeVar
 from pydantic import BeforeValidator, Field, model_validator
 
 from flexapod.errors import InputError
-from flexapod.model.base import Frozen, Measure, NonNegative
+from flexapod.schema.base import Frozen, Measure, NonNegative
 
 __all__ = ["CLASSES", "LengthSpread", "RatioSpread", "Spread", "Tolerances"]
 

@@ -7,8 +7,6 @@ from collections.abc import Iterator
 import numpy as np
 
 from flexapod.model.actuator import Actuator
-from flexapod.model.axes import word_of
-from flexapod.model.base import Frozen
 from flexapod.model.disturbance import Floor, Spectrum
 from flexapod.model.joint import Carriage, Joint
 from flexapod.model.leg import Leg
@@ -16,6 +14,9 @@ from flexapod.model.material import MATERIALS, POISSON, Material, Tube
 from flexapod.model.piston import Cylinder, Piston, Strut
 from flexapod.model.robot import Robot
 from flexapod.model.simulation import OWN_BASIS, Simulation
+from flexapod.schema.axes import word_of
+from flexapod.schema.base import Frozen
+from flexapod.schema.toml import toml_value
 from flexapod.typing import Array
 
 
@@ -231,21 +232,13 @@ def _section(name: str, fields: dict[str, object]) -> list[str]:
 
 
 def _keys(fields: dict[str, object]) -> list[str]:
-    return [f"{name} = {toml_value(value)}" for name, value in fields.items()]
+    return [f"{name} = {toml_value(_plain(value))}" for name, value in fields.items()]
 
 
-def toml_value(value: object) -> str:
-    """A value as it stands in a study file."""
+def _plain(value: object) -> object:
+    """A value without objects of the model in it."""
     if isinstance(value, Frozen):
         value = _fields(value)
     if isinstance(value, dict):
-        return "{ " + ", ".join(_keys(value)) + " }"
-    if isinstance(value, np.ndarray):
-        value = value.tolist()
-    if isinstance(value, bool):
-        return "true" if value else "false"
-    if isinstance(value, list | tuple):
-        return "[" + ", ".join(toml_value(item) for item in value) + "]"
-    if isinstance(value, str):
-        return '"' + value.replace("\\", "\\\\").replace('"', '\\"') + '"'
-    return repr(value)
+        return {name: _plain(item) for name, item in value.items()}
+    return [_plain(item) for item in value] if isinstance(value, list | tuple) else value

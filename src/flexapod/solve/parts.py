@@ -6,7 +6,7 @@ import numpy as np
 
 from flexapod import rigid
 from flexapod.elements.springs import Spring, before_piston, of_servo, springs_along
-from flexapod.model import ForceDrive, Leg, Robot, ServoDrive
+from flexapod.model import ForceDrive, Leg, Robot
 from flexapod.typing import Array
 
 __all__ = ["guide_turning", "mount_stiffness", "part_stiffness"]
@@ -77,5 +77,5 @@ def _all(leg: Leg) -> list[Spring]:
     piston = Spring(name="piston", at="nut", compliance=(leg.piston.length / leg.piston.EA, 0.0, 0.0))
     drive = [spring for spring in before_piston(leg) if spring.name == "drive" and leg.driven == "stroke"]
     if isinstance(leg.drive, ForceDrive) and leg.driven == "stroke" and not leg.drive.pushes:
-        drive = [of_servo(ServoDrive(stiffness=leg.drive.feedback.stiffness))]  # type: ignore[union-attr]
+        drive = [of_servo(leg.drive.feedback.stiffness)]  # type: ignore[union-attr]
     return [piston, *springs_along(leg), *drive]

@@ -11,7 +11,7 @@ from flexapod import model
 from flexapod.app.view.document import Document, read
 from flexapod.errors import InputError
 from flexapod.files import scratch
-from flexapod.model.toml import parsed
+from flexapod.schema.toml import parsed
 
 if TYPE_CHECKING:
     from viser import ClientHandle

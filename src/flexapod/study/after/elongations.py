@@ -43,7 +43,7 @@ def elongations(
     for i, leg in enumerate(robot.legs):
         springs = springs_along(leg)
         if leg.gives and isinstance(leg.drive, ServoDrive):
-            springs.append(of_servo(leg.drive))
+            springs.append(of_servo(leg.drive.stiffness, leg.drive.damping))
         gives = _gives(system, q[..., i, :])
         if leg.turning and "nut" in places:  # (T23.41)
             found["unkeyed"][..., i] = leg.turning * q[..., i, shapes.index("spin")]

@@ -16,8 +16,8 @@ import numpy as np
 
 from flexapod.errors import InputError
 from flexapod.files import LARGEST_TEXT, check_name, read_text
-from flexapod.model.section import Section
-from flexapod.model.toml import parsed, refuse_excess
+from flexapod.schema.section import Section
+from flexapod.schema.toml import parsed, refuse_excess
 from flexapod.surveys.sweeps.keys import Step, key_text, overlap, parse_key
 
 _PER_CENT = re.compile(r"\s*(\d+\.?\d*(?:[eE][-+]?\d+)?|\.\d+)\s*%\s*")

@@ -15,7 +15,7 @@ import numpy as np
 
 from flexapod.errors import InputError, Malformed
 from flexapod.model import ActuatorStudy, Study
-from flexapod.model.base import SHORT
+from flexapod.schema.base import SHORT
 from flexapod.study.after.causes import cause_names
 from flexapod.study.before.room import check_outputs, check_room, result_bytes
 from flexapod.surveys.sweeps.keys import Step, copied, key_text, leaves, leg_count, put, similar_key, value_at

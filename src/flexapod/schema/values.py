@@ -8,11 +8,11 @@ from pathlib import Path
 from typing import Any, Self, TypeVar
 
 from flexapod.errors import InputError, Malformed, closest
-from flexapod.model.axes import plane_order
-from flexapod.model.base import Frozen
-from flexapod.model.columns import Kind
-from flexapod.model.notes import Notes
-from flexapod.model.reference import advice, example_line
+from flexapod.schema.axes import plane_order
+from flexapod.schema.base import Frozen
+from flexapod.schema.columns import Kind
+from flexapod.schema.notes import Notes
+from flexapod.schema.reference import advice, example_line
 from flexapod.units import to_si
 
 M = TypeVar("M", bound=Frozen)

@@ -11,6 +11,7 @@ from importlib.resources import files
 from typing import Any
 
 from flexapod.errors import nearest
+from flexapod.schema.toml import toml_value
 
 _VARIANT = ("type", "law")
 
@@ -49,7 +50,7 @@ class Reference:
 @cache
 def reference() -> Reference:
     """The content of ``keys.toml``."""
-    found = tomllib.loads(files("flexapod.model").joinpath("keys.toml").read_text(encoding="utf-8"))
+    found = tomllib.loads(files("flexapod.schema").joinpath("keys.toml").read_text(encoding="utf-8"))
     return Reference(
         entries=tuple(Entry(**entry) for entry in found["entry"]),
         words=found["words"],
@@ -66,8 +67,6 @@ def plain_path(path: str) -> str:
 
 def example_line(table: str, name: str, like: Mapping[str, Any] | None = None) -> str | None:
     """``name = value`` from an example of the table; of the variant that the tables `like` have, if there is one."""
-    from flexapod.model.write import toml_value
-
     like = like or {}
     fitting = [entry.data for entry in reference().entries if entry.table == plain_path(table)]
     found = [data for data in fitting if name in data]

@@ -11,7 +11,7 @@ import numpy as np
 from annotated_types import Ge, Gt, Le, Lt
 from pydantic.fields import FieldInfo
 
-from flexapod.model.base import Frozen, Measure
+from flexapod.schema.base import Frozen, Measure
 
 Kind = Literal["number", "vector", "rows", "whole", "text", "words", "flag", "table", "other"]
 

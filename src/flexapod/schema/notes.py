@@ -6,8 +6,8 @@ from collections.abc import Callable, Iterator, Mapping
 from dataclasses import dataclass, field, replace
 from typing import Any
 
-from flexapod.model.base import Frozen
-from flexapod.model.columns import NO_BOUNDS, Bounds, Kind, columns_of
+from flexapod.schema.base import Frozen
+from flexapod.schema.columns import NO_BOUNDS, Bounds, Kind, columns_of
 
 
 @dataclass(frozen=True, kw_only=True)

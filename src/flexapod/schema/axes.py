@@ -2,15 +2,12 @@
 
 from __future__ import annotations
 
-from typing import TYPE_CHECKING, Literal
+from typing import Literal
 
 import numpy as np
 
 from flexapod.errors import InputError
 from flexapod.typing import Array
-
-if TYPE_CHECKING:
-    from flexapod.model.leg import Leg
 
 Plane = Literal["xy", "yz", "zx"]
 WORDS = ("tangential", "radial", "vertical")
@@ -59,25 +56,6 @@ def word_of(axis: Array, place: Array, normal: Array) -> str | None:
     """The word for a direction at a joint, or None."""
     found = ((word, axis_of(word, place, normal)) for word in WORDS)
     return next((word for word, meant in found if meant is not None and np.array_equal(axis, meant)), None)
-
-
-def own_view(leg: Leg, base: Array, platform: Array, normal: Array) -> Leg:
-    """The leg with its directions as seen from its own joints, along radial, tangential, normal: for comparisons."""
-    changes: dict[str, object] = {}
-    for name, joint, place in (("base_joint", leg.base_joint, base), ("platform_joint", leg.platform_joint, platform)):
-        if joint.axis is not None:
-            changes[name] = joint.replace(axis=_seen(joint.axis, place, normal))
-    if (carriage := leg.carriage) is not None:
-        arm = {} if carriage.arm is None else {"arm": _seen(carriage.arm, base, normal)}
-        changes["carriage"] = carriage.replace(axis=_seen(carriage.axis, base, normal), **arm)
-    return leg.replace(**changes) if changes else leg
-
-
-def _seen(vector: Array, place: Array, normal: Array) -> Array:
-    radial = axis_of("radial", place, normal)
-    if radial is None:
-        return vector
-    return np.round(np.array([radial, np.cross(normal, radial), normal]) @ vector, 12)
 
 
 def within_a_turn(angles: Array | float, key: str) -> None:

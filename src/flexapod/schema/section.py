@@ -7,11 +7,11 @@ from typing import Any, TypeVar
 
 import numpy as np
 
-from flexapod.model.axes import WORDS, axis_of
-from flexapod.model.base import Frozen
-from flexapod.model.columns import Column, columns_of
-from flexapod.model.tables import Unreadable, read_table
-from flexapod.model.values import Values
+from flexapod.schema.axes import WORDS, axis_of
+from flexapod.schema.base import Frozen
+from flexapod.schema.columns import Column, columns_of
+from flexapod.schema.csv_tables import Unreadable, read_table
+from flexapod.schema.values import Values
 from flexapod.typing import Array
 
 M = TypeVar("M", bound=Frozen)

@@ -1,10 +1,12 @@
-"""TOML text to data: refused in words where it is not valid, or where reading it would take for ever."""
+"""TOML text to data, refused in words where it is not valid or where reading it would take for ever; and back."""
 
 from __future__ import annotations
 
 import re
 import tomllib
 from typing import Any
+
+import numpy as np
 
 from flexapod.errors import InputError
 
@@ -90,3 +92,18 @@ def refuse_excess(data: dict[str, Any], file: str | None) -> None:
             waiting += [(f"{path}[{i}]", depth + 1, item) for i, item in enumerate(value, start=1)]
         elif isinstance(value, int) and abs(value) >= 10**MOST_DIGITS:
             raise InputError("has too many digits", file=file, key=path, allowed=f"at most {MOST_DIGITS}")
+
+
+def toml_value(value: object) -> str:
+    """A value as it stands in a study file."""
+    if isinstance(value, dict):
+        return "{ " + ", ".join(f"{name} = {toml_value(item)}" for name, item in value.items()) + " }"
+    if isinstance(value, np.ndarray):
+        value = value.tolist()
+    if isinstance(value, bool):
+        return "true" if value else "false"
+    if isinstance(value, list | tuple):
+        return "[" + ", ".join(toml_value(item) for item in value) + "]"
+    if isinstance(value, str):
+        return '"' + value.replace("\\", "\\\\").replace('"', '\\"') + '"'
+    return repr(value)

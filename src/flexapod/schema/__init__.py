@@ -1,0 +1,1 @@
+"""Tables of a study file, whatever is in them: reading, refusing, writing; what the model and its elements share."""
