@@ -51,7 +51,7 @@ class Distribution:
     phi_sliding: np.ndarray
     sliding_sliding: np.ndarray
     axial_mass: SX
-    psi_psi: np.ndarray
+    psi_psi: np.ndarray | SX
     phi_psi: SX
     sliding_psi: SX
     short: SX

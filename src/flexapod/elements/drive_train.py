@@ -2,7 +2,7 @@
 
 from __future__ import annotations
 
-from collections.abc import Sequence
+from collections.abc import Mapping, Sequence
 from dataclasses import dataclass
 from types import SimpleNamespace
 from typing import TYPE_CHECKING, Any, ClassVar, Self
@@ -23,7 +23,7 @@ class DriveTrain(Element):
     springs: Sequence[Spring]
 
     coordinates: ClassVar[Named] = (("r", 1),)
-    follows: ClassVar[dict[str, str]] = {"r": "l"}
+    follows: ClassVar[Mapping[str, str]] = {"r": "l"}
     parameters: ClassVar[Named] = (
         ("series_stiffness", 1),  # N/m, at home
         ("series_softening", 2),  # 1/m, 1/m^2: how the compliance grows with the length there
@@ -42,8 +42,8 @@ class DriveTrain(Element):
     def numbers(self, leg: Leg, standing: Standing) -> dict[str, Any]:
         """The springs at home, and the rotor with its servo."""
         stiffness, damping = in_series(self.springs, standing.length, standing.per_loss)
-        found = {"series_stiffness": stiffness, "series_damping": damping, "series_home": standing.length}
-        found["series_softening"] = softening(self.springs, standing.length)
+        found: dict[str, Any] = {"series_stiffness": stiffness, "series_damping": damping}
+        found |= {"series_home": standing.length, "series_softening": softening(self.springs, standing.length)}
         if (screw := leg.screw) is not None:
             found["rotor_mass"] = screw.inertia / screw.per_turn**2  # (T15.12)
             found["rotor_stiffness"], found["rotor_damping"] = screw.loop_spring

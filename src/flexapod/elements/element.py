@@ -5,7 +5,7 @@ The class stands in the layout of a kernel: its equations hold for all legs. Its
 
 from __future__ import annotations
 
-from collections.abc import Mapping, Sequence
+from collections.abc import Callable, Mapping, Sequence
 from dataclasses import dataclass
 from types import SimpleNamespace
 from typing import TYPE_CHECKING, Any, ClassVar, NamedTuple, Self
@@ -13,12 +13,13 @@ from typing import TYPE_CHECKING, Any, ClassVar, NamedTuple, Self
 import numpy as np
 
 from flexapod.elements.frame import Energies
+from flexapod.symbolic.vocabulary import dot, sqrt
 
 if TYPE_CHECKING:
     from flexapod.model import Leg, Simulation
     from flexapod.symbolic.vocabulary import SX
 
-__all__ = ["Element", "Named", "Series", "Standing", "numbers_of"]
+__all__ = ["Element", "Moving", "Named", "Series", "Standing", "asked_beside", "numbers_of"]
 
 Named = tuple[tuple[str, int], ...]
 
@@ -45,6 +46,32 @@ class Series:
     softer: SX
     nut: SX
     rate: SX
+
+
+@dataclass(frozen=True, kw_only=True)
+class Moving:
+    """A leg in motion, for those that need more than its coordinates.
+
+    ``p``, ``q``, ``v``: its parameters, coordinates and rates by name; ``q_cmd`` and ``v_cmd``: what is commanded to
+    its rotor, if it has one; ``foot`` and ``tip``: places of its joints in the world; ``elements``: all those of the
+    kernel; ``rate``: gives the rate of an expression.
+    """
+
+    p: SimpleNamespace
+    q: SimpleNamespace
+    v: SimpleNamespace
+    q_cmd: SX
+    v_cmd: SX
+    foot: SX
+    tip: SX
+    elements: Sequence[type[Element]]
+    rate: Callable[[SX], SX]
+
+    @property
+    def distance(self) -> SX:
+        """Of the joints."""
+        along = self.tip - self.foot
+        return sqrt(dot(along, along))
 
 
 class Element:
@@ -104,9 +131,30 @@ class Element:
         """What a loop about a rotor asks of its motor because of it [N], beside what its spring and damper ask."""
         return None
 
+    @classmethod
+    def pushes(cls, x: Moving) -> Mapping[str, SX]:
+        """What it adds to the balance of coordinates, by name, without an energy; forces on them are negative here."""
+        return {}
+
+    @classmethod
+    def inertia(cls, p: SimpleNamespace) -> Mapping[str, tuple[SX | float, SX | float]]:
+        """Mass and damper of coordinates of its own that have them without an energy, by name."""
+        return {}
+
+    @classmethod
+    def given(cls, x: Moving) -> SX | None:
+        """Power that comes in by what it pushes."""
+        return None
+
 
 def numbers_of(element: type[Element], leg: Leg, standing: Standing) -> dict[str, Any]:
     """Parameters of an element in a leg, whether or not it is there."""
     own = element.of(leg)
     found = {name: element.absent.get(name, np.zeros(size)) for name, size in element.parameters}
     return found if own is None else found | dict(own.numbers(leg, standing))
+
+
+def asked_beside(elements: Sequence[type[Element]], p: SimpleNamespace, q: SimpleNamespace) -> SX | None:
+    """What elements ask of a motor beside spring and damper of its loop; None of nothing."""
+    found = [x for element in elements if (x := element.asked(p, q)) is not None]
+    return sum(found[1:], found[0]) if found else None

@@ -2,12 +2,12 @@
 
 from __future__ import annotations
 
-from collections.abc import Sequence
+from collections.abc import Mapping, Sequence
 from dataclasses import dataclass
 from types import SimpleNamespace
 from typing import TYPE_CHECKING, Any, ClassVar, Self
 
-from flexapod.elements.element import Element, Named, Standing
+from flexapod.elements.element import Element, Moving, Named, Standing, asked_beside
 
 if TYPE_CHECKING:
     from flexapod.model import Leg, ScrewDrive
@@ -30,7 +30,7 @@ class MotorLoop(Element):
         ("loop_at", 2),  # shares of the stroke and of the distance of the joints in what is measured
         ("loop_rate_at_rotor", 1),  # 1 where the rate is that of the rotor, else 0
     )
-    absent: ClassVar[dict[str, float]] = {"loop_lag": 1.0, "loop_at_once": 1.0}
+    absent: ClassVar[Mapping[str, Any]] = {"loop_lag": 1.0, "loop_at_once": 1.0}
 
     @classmethod
     def of(cls, leg: Leg) -> Self | None:
@@ -61,37 +61,39 @@ class MotorLoop(Element):
             return () if own is not None and own.screw.lag else ("j",)
         return ("j", *(("r",) if own.at else ()), *(("l",) if own.at and own.screw.rests else ()))
 
+    @classmethod
+    def place(cls, x: Moving) -> SX:
+        """What the loop measures, Eq. (T23.52)."""
+        p, q = x.p, x.q
+        return q.r + p.loop_at[0] * (q.l - q.r) + p.loop_at[1] * (x.distance - q.r)
 
-@dataclass(frozen=True, kw_only=True)
-class Loop:
-    """Force of such a motor on its rotor.
-
-    ``p``: parameters of the leg; ``place`` and ``rate``: what is measured, ``q_cmd`` and ``v_cmd`` what it is to be,
-    ``turns``: rate of the rotor; ``more``: what is asked beside spring and damper, None of nothing; ``j``: rate of the
-    motor's impulse, the force that lags.
-    """
-
-    p: SimpleNamespace
-    place: SX
-    rate: SX
-    turns: SX
-    q_cmd: SX
-    v_cmd: SX
-    more: SX | None
-    j: SX
-
-    @property
-    def asked(self) -> SX:
+    @classmethod
+    def asks(cls, x: Moving) -> SX:
         """Force that the loop asks for, Eq. (T23.52)."""
-        rate = self.rate + self.p.loop_rate_at_rotor * (self.turns - self.rate)
-        held = self.p.loop_stiffness * (self.q_cmd - self.place) + self.p.loop_damping * (self.v_cmd - rate)
-        return held if self.more is None else held + self.more
+        p, place = x.p, cls.place(x)
+        rate = x.rate(place)
+        rate = rate + p.loop_rate_at_rotor * (x.v.r - rate)
+        held = p.loop_stiffness * (x.q_cmd - place) + p.loop_damping * (x.v_cmd - rate)
+        more = asked_beside(x.elements, p, x.q)
+        return held if more is None else held + more
 
-    @property
-    def force(self) -> SX:
+    @classmethod
+    def force(cls, x: Moving, asked: SX) -> SX:
         """Force on the rotor: at once what is asked for, or what lags behind it."""
-        return self.p.loop_at_once * self.asked + (1 - self.p.loop_at_once) * self.j
+        return x.p.loop_at_once * asked + (1 - x.p.loop_at_once) * x.v.j
 
-    def lag(self, j_dot: SX) -> SX:
-        """What vanishes where the force lags as it does, Eq. (T23.53)."""
-        return self.p.loop_lag * j_dot + self.j - self.asked
+    @classmethod
+    def pushes(cls, x: Moving) -> Mapping[str, SX]:
+        """The force on the rotor, and what it lags behind, Eq. (T23.53)."""
+        asked = cls.asks(x)
+        return {"r": -cls.force(x, asked), "j": -asked}
+
+    @classmethod
+    def inertia(cls, p: SimpleNamespace) -> Mapping[str, tuple[SX | float, SX | float]]:
+        """The lag of the force, Eq. (T23.53)."""
+        return {"j": (p.loop_lag, 1.0)}
+
+    @classmethod
+    def given(cls, x: Moving) -> SX:
+        """Power of the motor."""
+        return cls.force(x, cls.asks(x)) * x.v.r

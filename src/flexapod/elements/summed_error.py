@@ -2,12 +2,13 @@
 
 from __future__ import annotations
 
-from collections.abc import Sequence
+from collections.abc import Mapping, Sequence
 from dataclasses import dataclass
 from types import SimpleNamespace
 from typing import TYPE_CHECKING, Any, ClassVar, Self
 
-from flexapod.elements.element import Element, Named, Standing
+from flexapod.elements.element import Element, Moving, Named, Standing
+from flexapod.elements.motor_loop import MotorLoop
 
 if TYPE_CHECKING:
     from flexapod.model import Leg
@@ -43,3 +44,13 @@ class SummedError(Element):
     def asked(cls, p: SimpleNamespace, q: SimpleNamespace) -> SX:
         """Force of the summed error."""
         return p.rotor_integral * q.w
+
+    @classmethod
+    def pushes(cls, x: Moving) -> Mapping[str, SX]:
+        """The error is the rate of the sum, Eq. (T23.16)."""
+        return {"w": (x.rate(MotorLoop.place(x)) if MotorLoop in x.elements else x.v.r) - x.v_cmd}
+
+    @classmethod
+    def inertia(cls, p: SimpleNamespace) -> Mapping[str, tuple[SX | float, SX | float]]:
+        """A mass of 1; what couples it to the rotor is slow, and left out of the iterations."""
+        return {"w": (1.0, 0.0)}

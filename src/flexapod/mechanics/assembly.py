@@ -4,7 +4,8 @@ The residuals are exact. The matrices at rest serve equilibria, modes and the it
 """
 
 from flexapod.elements.drive_train import DriveTrain
-from flexapod.elements.motor_loop import Loop
+from flexapod.elements.element import Element, Moving, asked_beside
+from flexapod.elements.motor_loop import MotorLoop
 from flexapod.elements.mount import plate
 from flexapod.elements.servo import Servo
 from flexapod.mechanics.closure import ball_closure, load_force, pose_closure
@@ -29,7 +30,6 @@ from flexapod.symbolic.vocabulary import (
     hessian,
     jacobian,
     matrix33,
-    sqrt,
     substitute,
     symbol,
     symbols,
@@ -41,7 +41,8 @@ from flexapod.symbolic.vocabulary import (
 def leg_functions(shapes: Shapes) -> list[NamedFunction]:
     """Residual, matrices at rest, energies and rates of the closure of one leg with the given shapes."""
     x = _Leg(shapes)
-    return [x.residual(), x.matrices(), x.energies(), x.closing(), *([x.looping()] if shapes.has("j") else [])]
+    looping = [x.looping()] if MotorLoop in shapes.elements else []
+    return [x.residual(), x.matrices(), x.energies(), x.closing(), *looping]
 
 
 def leg_tangents(shapes: Shapes) -> NamedFunction:
@@ -75,24 +76,42 @@ class _Leg:
                 v=getattr(self.vs, name),
                 q_cmd=self.command[2 * i],
                 v_cmd=self.command[2 * i + 1],
-                more=self._asked() if drive == "rotor" and not shapes.has("j") else None,
+                more=self._asked_of(drive),
             )
             for i, (name, drive) in enumerate(shapes.drives)
         }
 
-    def _asked(self) -> SX | None:
-        found = [x for element in self.shapes.elements if (x := element.asked(self.p, self.qs)) is not None]
-        return sum(found[1:], found[0]) if found else None
+    def _asked_of(self, drive: str) -> SX | None:
+        beside = drive == "rotor" and MotorLoop not in self.shapes.elements
+        return asked_beside(self.shapes.elements, self.p, self.qs) if beside else None
 
-    def loop(self) -> Loop:
-        """Of legs whose motors lag, or whose loops are closed about another place than the rotor."""
-        along, (at_stroke, at_joints) = self.body.tip - self.body.foot, (self.p.loop_at[0], self.p.loop_at[1])
-        place = self.qs.r + at_stroke * (self.qs.l - self.qs.r) + at_joints * (sqrt(dot(along, along)) - self.qs.r)
-        rotor = self.servos[self.shapes.index("r")]
-        return Loop(
-            p=self.p, place=place, rate=jacobian(place, self.q) @ self.v, turns=self.vs.r, q_cmd=rotor.q_cmd,
-            v_cmd=rotor.v_cmd, more=self._asked(), j=self.vs.j,
+    @property
+    def elements(self) -> tuple[type[Element], ...]:
+        """Those of the kernel."""
+        return self.shapes.elements
+
+    def as_moving(self) -> Moving:
+        """The leg as elements ask for it."""
+        rotor = self.servos.get(self.shapes.index("r")) if self.shapes.has("r") else None
+        none = zeros(1)
+        return Moving(
+            p=self.p, q=self.qs, v=self.vs, q_cmd=none if rotor is None else rotor.q_cmd,
+            v_cmd=none if rotor is None else rotor.v_cmd, foot=self.body.foot, tip=self.body.tip,
+            elements=self.elements, rate=lambda place: jacobian(place, self.q) @ self.v,
         )  # fmt: skip
+
+    def pushed(self) -> SX:
+        """What elements add to the balance without an energy."""
+        r, x = zeros(self.shapes.size), self.as_moving()
+        for element in self.elements:
+            for name, push in element.pushes(x).items():
+                r[self.shapes.index(name)] += push
+        return r
+
+    def own_inertia(self) -> dict[int, tuple[SX | float, SX | float]]:
+        """Mass and damper of coordinates that have them without an energy, by position."""
+        found = (x for element in self.elements for x in element.inertia(self.p).items())
+        return {self.shapes.index(name): pair for name, pair in found}
 
     def named(self, name: str, inputs: list[tuple[str, SX]], outputs: list[tuple[str, SX]]) -> NamedFunction:
         """Function of expressions that are differentiated."""
@@ -129,25 +148,15 @@ class _Leg:
             r -= self.load_force()
         for i, servo in self.servos.items():
             r[i] -= servo.force
-        loop = self.loop() if self.shapes.has("j") else None
-        if loop is not None:
-            j = self.shapes.index("j")
-            r[self.shapes.index("r")] -= loop.force
-            r[j] += loop.lag(self.v_dot[j])
-        if self.shapes.has("w"):  # a coordinate of mass 1 whose rate is the error, (T23.16)
-            rotor, w = self.servos[self.shapes.index("r")], self.shapes.index("w")
-            r[w] += self.v_dot[w] - (rotor.v_cmd - (rotor.v if loop is None else loop.rate))
-        return r
+        for i, (mass, damper) in self.own_inertia().items():
+            r[i] += mass * self.v_dot[i] + damper * self.v[i]
+        return r + self.pushed()
 
     def looping(self) -> NamedFunction:
         """What loops about other places, and lags, add to D and K, not symmetric; what is measured, and its slope."""
-        loop, rows = self.loop(), zeros(self.shapes.size)
-        rows[self.shapes.index("r")], rows[self.shapes.index("j")] = -loop.force, -loop.asked
-        if self.shapes.has("w"):
-            rows[self.shapes.index("w")] = loop.rate
-        still = zeros(self.shapes.size)
+        rows, place, still = self.pushed(), MotorLoop.place(self.as_moving()), zeros(self.shapes.size)
         D, K = jacobian(rows, self.v), substitute(jacobian(rows, self.q), (self.v,), (still,))
-        outputs = [("D", D), ("K", K), ("place", loop.place), ("slope", jacobian(loop.place, self.q).T)]
+        outputs = [("D", D), ("K", K), ("place", place), ("slope", jacobian(place, self.q).T)]
         return self.named("leg_loop", [("q", self.q), ("p", self.p_vector)], outputs)
 
     def residual(self) -> NamedFunction:
@@ -155,8 +164,7 @@ class _Leg:
         loss = dot(self.v, gradient(self.body.lagrangian.dissipation, self.v))
         lost = sum((servo.lost for servo in self.servos.values()), loss)
         given = sum((servo.given for servo in self.servos.values()), zeros(1))
-        if self.shapes.has("j"):
-            given += self.loop().force * self.vs.r
+        given += sum((x for element in self.elements if (x := element.given(self.as_moving())) is not None), zeros(1))
         powers = [lost, given, *([dot(self.load_force(), self.v)] if self.shapes.loaded else [])]
         gap, wrench = (self.by_q.value(x) for x in self.closed(zeros(6)))
         meeting = [("gap", gap), ("wrench", wrench)] if self.shapes.posed else [("tip", self.body.tip)]
@@ -170,8 +178,9 @@ class _Leg:
     def forces(self) -> SX:
         """Forces of the drives' springs; of a stroke that is driven through springs theirs on it, Eq. (T15.11)."""
         forces = [servo.force for servo in self.servos.values()]
-        if self.shapes.has("j"):
-            forces[-1] += self.loop().force
+        if MotorLoop in self.elements:
+            x = self.as_moving()
+            forces[-1] += MotorLoop.force(x, MotorLoop.asks(x))
         if self.shapes.has("r"):
             series = self.body.elements[DriveTrain]
             forces[0] -= gradient(series.strain, self.qs.l) + gradient(series.dissipation, self.vs.l)
@@ -190,11 +199,8 @@ class _Leg:
             D[i, i] += servo.damping
             K[i, i] += servo.stiffness
         M = mass_matrix(e)
-        if self.shapes.has("w"):  # what couples it to the rotor is slow, and left out of the iterations
-            M[self.shapes.index("w"), self.shapes.index("w")] += 1.0
-        if self.shapes.has("j"):
-            j = self.shapes.index("j")
-            M[j, j], D[j, j] = M[j, j] + self.p.loop_lag, D[j, j] + 1.0
+        for i, (mass, damper) in self.own_inertia().items():
+            M[i, i], D[i, i] = M[i, i] + mass, D[i, i] + damper
         outputs = [("M", M), ("D", D), ("K", K), ("J", self.by_q.jacobian(here))]
         if self.shapes.posed:  # (T13.14)-(T13.15)
             outputs += [

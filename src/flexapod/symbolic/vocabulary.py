@@ -83,9 +83,9 @@ def dot(a: SX, b: SX) -> SX:
     return casadi.dot(a, b)
 
 
-def mtimes(*factors: SX) -> SX:
-    """Product of matrices."""
-    return casadi.mtimes(*factors)
+def mtimes(a: SX, b: SX) -> SX:
+    """Product of two matrices."""
+    return casadi.mtimes(a, b)
 
 
 def trace(matrix: SX) -> SX:
