@@ -7,7 +7,7 @@ from numpy.typing import ArrayLike
 
 from flexapod.typing import Array
 
-__all__ = ["Scale", "along_axes", "column", "number", "scale", "text"]
+__all__ = ["Scale", "above", "along_axes", "column", "number", "scale", "text"]
 
 _PREFIXES = {
     "m": ((1.0, "m"), (1e3, "mm"), (1e6, "µm"), (1e9, "nm")),
@@ -66,6 +66,12 @@ def scale(values: ArrayLike, unit: str) -> Scale:
 def text(value: float, unit: str, digits: int = 3) -> str:
     """A number with the unit in which it reads well: ``text(1.93e-5, "m")`` is "19.3 µm"."""
     return scale(value, unit).text(value, digits)
+
+
+def above(value: float) -> float:
+    """The next of 1, 2, 5 and 10 times a power of ten: what a number is at most whose digits are rounding."""
+    power = 10.0 ** np.floor(np.log10(value)) if value > 0 else 0.0
+    return float(next((k * power for k in (1, 2, 5) if k * power >= value), 10 * power))
 
 
 def along_axes(values: ArrayLike, digits: int = 3, *, signed: bool = False) -> str:

