@@ -7,7 +7,7 @@ from numpy.typing import ArrayLike
 
 from flexapod.typing import Array
 
-__all__ = ["Scale", "above", "along_axes", "column", "number", "scale", "text"]
+__all__ = ["Scale", "along_axes", "column", "number", "rounded_up", "scale", "text"]
 
 _PREFIXES = {
     "m": ((1.0, "m"), (1e3, "mm"), (1e6, "µm"), (1e9, "nm")),
@@ -68,7 +68,7 @@ def text(value: float, unit: str, digits: int = 3) -> str:
     return scale(value, unit).text(value, digits)
 
 
-def above(value: float) -> float:
+def rounded_up(value: float) -> float:
     """The next of 1, 2, 5 and 10 times a power of ten: what a number is at most whose digits are rounding."""
     power = 10.0 ** np.floor(np.log10(value)) if value > 0 else 0.0
     return float(next((k * power for k in (1, 2, 5) if k * power >= value), 10 * power))

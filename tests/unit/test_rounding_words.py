@@ -12,7 +12,7 @@ from flexapod.app.view.charts import Chart, _readout, charts
 from flexapod.study.after.summary import summary
 from flexapod.study.before.estimates import buckling_load
 from flexapod.study.words import length
-from flexapod.words import above
+from flexapod.words import rounded_up
 
 
 @pytest.fixture(scope="module")
@@ -114,4 +114,4 @@ def test_values_at_the_cursor_hold_no_rounding():
 
 @pytest.mark.parametrize(("value", "most"), [(0.0123, 0.02), (0.02, 0.02), (3.1, 5.0), (7.0, 10.0), (0.0, 0.0)])
 def test_a_number_whose_digits_are_rounding_is_said_by_what_it_is_at_most(value, most):
-    assert above(value) == pytest.approx(most, rel=1e-15)
+    assert rounded_up(value) == pytest.approx(most, rel=1e-15)

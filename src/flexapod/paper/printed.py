@@ -31,7 +31,7 @@ from flexapod.plot.style import (
 from flexapod.scene.colours import AXIS_COLORS, LEG_COLORS
 from flexapod.scene.robot import mode_scene, motion_end, robot_study
 from flexapod.study.words import number, scale, text
-from flexapod.words import above
+from flexapod.words import rounded_up
 
 BENT = 0.18  # of the length of a leg: how far its mode is drawn off the line of its joints
 
@@ -142,7 +142,8 @@ def forces_rigid(data: xr.Dataset) -> Figure:
     away, _ = force_gaps(data)
     for axes in fig.axes:
         if not axes.get_title(loc="left"):
-            axes.annotate(f"elsewhere at\nmost {text(above(away), 'N', 2)}", (0.78, 0.97), xycoords="axes fraction", va="top",
+            most = text(rounded_up(away), "N", 2)
+            axes.annotate(f"elsewhere at\nmost {most}", (0.78, 0.97), xycoords="axes fraction", va="top",
                           ha="center", fontsize=SMALL, color=ink("#333333"))  # fmt: skip
     return fig
 
