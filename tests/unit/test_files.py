@@ -12,7 +12,8 @@ import pytest
 from flexapod import files, model
 from flexapod.errors import InputError
 from flexapod.files import read_bytes, read_text, replacing, whole
-from flexapod.model import preset_text, tables
+from flexapod.model import preset_text
+from flexapod.schema import csv_tables
 from flexapod.surveys.sweeps.plan import read_plan
 from flexapod.symbolic import cache
 
@@ -26,7 +27,7 @@ def pipe(tmp_path):
     return path
 
 
-@pytest.mark.parametrize("read", [model.load, read_plan, lambda path: tables.read_table(path, tables.POSE)])
+@pytest.mark.parametrize("read", [model.load, read_plan, lambda path: csv_tables.read_table(path, csv_tables.POSE)])
 @pytest.mark.parametrize("place", ["pipe", "/dev/zero", "/dev/full"])
 def test_what_is_not_a_regular_file_is_refused(pipe, read, place):
     """A pipe without a writer once hung for ever, /dev/zero filled the memory."""
@@ -38,7 +39,7 @@ def test_sizes_are_bounded(tmp_path, monkeypatch):
     path = tmp_path / "large.toml"
     path.touch()
     os.truncate(path, files.LARGEST_TABLE + 1)  # no space is taken
-    for read in (model.load, read_plan, lambda path: tables.read_table(path, tables.POSE)):
+    for read in (model.load, read_plan, lambda path: csv_tables.read_table(path, csv_tables.POSE)):
         with pytest.raises(InputError, match=r"cannot be read: it is larger than 100? MB"):
             read(path)
     # what grows while it is read, or tells no size, is bounded too
@@ -58,7 +59,7 @@ def test_texts(tmp_path):
         read_text(path, 10)
 
 
-@pytest.mark.parametrize("read", [model.load, lambda path: tables.read_table(Path(path), tables.POSE)])
+@pytest.mark.parametrize("read", [model.load, lambda path: csv_tables.read_table(Path(path), csv_tables.POSE)])
 def test_a_name_with_a_zero_byte(read):
     with pytest.raises(InputError, match="its name holds a zero byte"):
         read("a\0b")

@@ -17,7 +17,8 @@ from flexapod import version
 from flexapod import version as identity
 from flexapod.errors import ComputationError, InputError
 from flexapod.files import scratch
-from flexapod.model import loads, tables
+from flexapod.model import loads
+from flexapod.schema import csv_tables
 from flexapod.surveys.sweeps import SweepStopped, batch, open_sweep, result, run, unstacked, writer
 from flexapod.surveys.sweeps.batch import compute_batch
 from flexapod.surveys.sweeps.disk import DurableStore
@@ -411,7 +412,7 @@ def test_a_full_store_is_opened_again_without_reading_its_tables_again(path, tmp
     text = f'{head}[motion]\ntype = "csv"\nfile = "roll.csv"\n{tail[tail.index("[simulation]") :]}'
     study = loads(text, path=tmp_path / "study.toml")
     read = []
-    monkeypatch.setattr(tables.csv, "reader", lambda stream: read.append(1) or iter(list(reader(stream))))
+    monkeypatch.setattr(csv_tables.csv, "reader", lambda stream: read.append(1) or iter(list(reader(stream))))
     points = Points(study, read_plan(diameters(20)))
     first = points.resolve().hash
     assert read == []  # it was read with the study

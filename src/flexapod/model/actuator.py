@@ -3,14 +3,14 @@
 from __future__ import annotations
 
 from collections.abc import Mapping
-from typing import Annotated, Any
+from typing import Annotated, Any, ClassVar
 
 from pydantic import Field, model_validator
 
 from flexapod.errors import InputError
 from flexapod.model.damping import BodyDamping
 from flexapod.model.laws import CsvLaw, LoadLaw, MotionLaw, RateLaw, Wrench
-from flexapod.model.material import Material, Rectangle, Tube
+from flexapod.model.material import SPELLS, Material, Rectangle, Tube
 from flexapod.model.motion import check_times
 from flexapod.schema.base import Frozen, Measure, NonNegative, Number, Positive
 from flexapod.words import number, text
@@ -32,6 +32,8 @@ class Actuator(Frozen):
     (`EA` [N], `axial_modes` shapes) and twist (`GJ` [N m^2], `axial_inertia` [kg m^2] of the whole beam)
     from its inner end; `tip_axial_inertia`, `hub_axial_inertia` [kg m^2] about its axis.
     """
+
+    spells: ClassVar[Mapping[str, tuple[str, ...]]] = SPELLS
 
     length: Annotated[Positive, Measure("length")]
     rhoA: Annotated[Positive, Measure("line density")]

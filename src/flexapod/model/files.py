@@ -215,7 +215,7 @@ def _study(top: Section, text: str) -> Study:
     settings = top.section("simulation")
     simulation = read_simulation(settings, basis="tip-load", bases=("tip-load", "clamped-free"))
     robot = read_robot(top)
-    return top.build(
+    study = top.build(
         Study,
         robot=robot,
         motion=read_motion(top.child(top.data["motion"], "motion")) if "motion" in top else AT_REST,
@@ -227,6 +227,7 @@ def _study(top: Section, text: str) -> Study:
         path=top.file,
         notes=(*unused_settings(settings, simulation), *_unused_axial_modes(top, simulation)),
     )
+    return study.keep(top.written)
 
 
 def _unused_axial_modes(top: Section, simulation: Simulation) -> tuple[str, ...]:
@@ -243,7 +244,7 @@ def _actuator_study(top: Section, text: str) -> ActuatorStudy:
     bases = ("clamped-free", "tip-load", "tip-mass")
     simulation = read_simulation(settings, basis="clamped-free", bases=bases)
     motion, load = read_drives(top)
-    return top.build(
+    study = top.build(
         ActuatorStudy,
         actuator=read_actuator(top.child(top.data["actuator"], "actuator")),
         motion=motion,
@@ -254,3 +255,4 @@ def _actuator_study(top: Section, text: str) -> ActuatorStudy:
         path=top.file,
         notes=unused_settings(settings, simulation),
     )
+    return study.keep(top.written)

@@ -3,7 +3,7 @@
 from __future__ import annotations
 
 import math
-from typing import Annotated
+from typing import Annotated, ClassVar
 
 import numpy as np
 from pydantic import Field, model_validator
@@ -19,6 +19,8 @@ class Home(Frozen):
 
     `rotation`: roll, pitch, yaw about world x, y, z: R = Rz(yaw) Ry(pitch) Rx(roll).
     """
+
+    placed: ClassVar[tuple[str, ...]] = ("rotation",)
 
     position: Annotated[Vec3, Measure("length")]
     rotation: Annotated[Vec3, Measure("angle")] = Field(default=(0.0, 0.0, 0.0), validate_default=True)

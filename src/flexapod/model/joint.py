@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+from collections.abc import Mapping
 from typing import Annotated, Any, ClassVar, Literal
 
 import numpy as np
@@ -34,6 +35,11 @@ class Joint(Frozen):
     """
 
     derived: ClassVar[tuple[str, ...]] = ("leg_axes", "stiffness_damping", "stiffness_loss", "rolling")
+
+    placed: ClassVar[tuple[str, ...]] = ("at", "axis")
+    spells: ClassVar[Mapping[str, tuple[str, ...]]] = {
+        "stiffness": ("stiffness", "leg_axes", "stiffness_damping", "stiffness_loss", "rolling")
+    }
 
     axis: Annotated[Vec3, Measure("number")] | None = None
     bending: Annotated[NonNegative, Measure("rotational stiffness")] | None = None
@@ -151,6 +157,8 @@ class Carriage(Frozen):
     """
 
     derived: ClassVar[tuple[str, ...]] = ("kind", "axis")
+
+    placed: ClassVar[tuple[str, ...]] = ("slider", "crank", "arm", "radius")
 
     kind: Literal["slider", "crank"]
     axis: Annotated[Vec3, Measure("number")]

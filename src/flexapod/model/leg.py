@@ -2,7 +2,7 @@
 
 from __future__ import annotations
 
-from typing import Annotated, Any
+from typing import Annotated, Any, ClassVar
 
 from pydantic import Field, model_validator
 
@@ -51,6 +51,8 @@ class Leg(Frozen):
     static one first.
     `u_axis` stands for the axis of `base_joint`.
     """
+
+    placed: ClassVar[tuple[str, ...]] = ("base_joint", "platform_joint", "carriage", "u_axis", "count", "chain")
 
     chain: str = "UPS"
     passive: bool = False

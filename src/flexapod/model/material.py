@@ -12,6 +12,8 @@ from flexapod.errors import InputError
 from flexapod.schema.base import Frozen, Measure, Number, Positive
 
 POISSON = 0.3  # where no other is given
+#: Keys of a table of which a material is made.
+SPELLS = {key: ("material",) for key in ("E", "density", "yield_stress", "poisson", "expansion")}
 
 
 class Material(Frozen):

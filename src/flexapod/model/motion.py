@@ -38,6 +38,7 @@ class AxisMotion(Frozen):
     Turns are about `pivot` (3,) [m], a point given in the platform frame.
     """
 
+    placed: ClassVar[tuple[str, ...]] = ("pivot",)
     type: Axis
     amplitude: Annotated[Number, Measure("length", "angle")]
     duration: Annotated[Positive, Measure("time")]
@@ -73,6 +74,7 @@ class AxisMotion(Frozen):
 class CombinedMotion(Frozen):
     """Several axes at once with one profile: `amplitudes` by axis name [m or rad]."""
 
+    placed: ClassVar[tuple[str, ...]] = ("pivot",)
     type: Literal["combined"] = "combined"
     amplitudes: dict[Axis, Annotated[Number, Measure("length", "angle")]]
     duration: Annotated[Positive, Measure("time")]
@@ -133,6 +135,7 @@ class Waypoint(Frozen):
 class WaypointMotion(Frozen):
     """From point to point, at rest at each; from home at t = 0 if the first point is later."""
 
+    placed: ClassVar[tuple[str, ...]] = ("pivot",)
     type: Literal["waypoints"] = "waypoints"
     points: tuple[Waypoint, ...]
     hold: Annotated[NonNegative, Measure("time")] = 0.0
@@ -187,6 +190,7 @@ class CsvMotion(Frozen):
     """
 
     derived: ClassVar[tuple[str, ...]] = ("time", "pose")
+    placed: ClassVar[tuple[str, ...]] = ("pivot",)
     type: Literal["csv"] = "csv"
     file: str | None = None
     time: Annotated[Series, Measure("time")]

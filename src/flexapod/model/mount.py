@@ -27,6 +27,8 @@ class Mount(Frozen):
     `mass` [kg] and `inertia` (3, 3) [kg m^2] of the plate with the joints.
     """
 
+    placed: ClassVar[tuple[str, ...]] = ("at",)
+
     at: Annotated[Vec3, Measure("length")] = Field(default=ORIGIN, validate_default=True)
     stiffness: Annotated[Matrix6, Measure("stiffness", "force", "rotational stiffness")]
     damping: Annotated[Matrix6, Measure("damping", "rotational damping")] | None = None
@@ -76,6 +78,7 @@ class BaseMotion(Frozen):
     """
 
     derived: ClassVar[tuple[str, ...]] = ("time", "values")
+    placed: ClassVar[tuple[str, ...]] = ("at",)
 
     file: str | None = None
     of: Literal["acceleration", "displacement"] = "acceleration"

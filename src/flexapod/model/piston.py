@@ -2,13 +2,13 @@
 
 from __future__ import annotations
 
-from collections.abc import Sequence
+from collections.abc import Mapping, Sequence
 from typing import Annotated, ClassVar, Self
 
 from pydantic import Field, model_validator
 
 from flexapod.errors import InputError
-from flexapod.model.material import POISSON, Material, Rectangle, Tube
+from flexapod.model.material import POISSON, SPELLS, Material, Rectangle, Tube
 from flexapod.model.sections import SHARES, PistonSection, Step
 from flexapod.model.spring import check_lossy
 from flexapod.schema.base import Frozen, Loss, Measure, NonNegative, Number, Positive
@@ -32,6 +32,8 @@ class Cylinder(Frozen):
     A tube of `diameter`, `inner_diameter` [m] and `material` from the joint to the mouth bends and stretches; with
     what is mounted on it, `body`, it has the masses above.
     """
+
+    spells: ClassVar[Mapping[str, tuple[str, ...]]] = SPELLS
 
     mass: Annotated[NonNegative, Measure("mass")]
     com: Annotated[Number, Measure("length")] = 0.0

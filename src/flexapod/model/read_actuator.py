@@ -65,7 +65,8 @@ def read_drives(top: Section) -> tuple[ActuatorMotion, ActuatorLoad]:
                 raise motion.error(f"is prescribed and driven by load.{drive}", name, allowed="one of the two")
         elif motion is not None and name in motion:
             laws[name] = _law(motion.child(motion.data[name], name), ActuatorMotion, name, moved)
-    return ActuatorMotion(**laws), ActuatorLoad() if load is None else load.build(ActuatorLoad, **loads)
+    moved = ActuatorMotion(**laws) if motion is None else ActuatorMotion(**laws).keep(motion.written)
+    return moved, ActuatorLoad() if load is None else load.build(ActuatorLoad, **loads).keep(load.written)
 
 
 def read_release(section: Section | None) -> ActuatorInitial:

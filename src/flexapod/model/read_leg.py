@@ -201,7 +201,7 @@ def _of_material(section: Section) -> dict[str, object]:
 
 def _piston(section: Section) -> Piston:
     keyed = section.flag("keyed")
-    return _beam(section).replace(**({} if keyed is None else {"keyed": keyed}))
+    return _beam(section).replace(**({} if keyed is None else {"keyed": keyed})).keep(section.written)
 
 
 def _beam(section: Section) -> Piston:
@@ -235,16 +235,21 @@ def _cylinder(section: Section) -> Cylinder:
             )
     section.need("mouth", "diameter")
     body = section.section("body")
-    return section.build(
+    cylinder = section.build(
         Cylinder.tube,
         mouth=section.number("mouth", "length"),
         section=section.build(Tube, **_diameters(section)),
         material=read_material(section),
         body=None if body is None else body.read(Mounted),
     )
+    return cylinder.keep(section.written)
 
 
 def _strut(section: Section) -> Strut:
+    return _rod(section).keep(section.written)
+
+
+def _rod(section: Section) -> Strut:
     section.only(*(name for name in columns_of(Strut) if name not in Strut.derived), "material")
     if "sections" in section:
         return _sections(section, Strut)

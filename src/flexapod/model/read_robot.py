@@ -19,11 +19,13 @@ from flexapod.model.read_mount import read_mounts
 from flexapod.model.robot import Robot
 from flexapod.schema.axes import Plane, normal_of
 from flexapod.schema.section import Section
+from flexapod.schema.written import Written
 from flexapod.typing import Array
 
 _LENGTHS = ("length", "length", "length")
 _INERTIAS = ("inertia", "inertia", "inertia")
 _ENDS = ("base", "platform")
+_BESIDE = ("payload", "leg", "geometry", "heat", "tolerances")
 _MOUNTS = ("base_mount", "platform_mount", "base_motion")
 
 
@@ -49,7 +51,7 @@ def read_robot(top: Section) -> Robot:
         places = (base[i], platform[i], normal_of(plane))
         legs.append(legs[-1] if same else read_leg(table, i + 1, len(chains), chains[i], places))
     payload = top.section("payload")
-    return top.build(
+    robot = top.build(
         Robot,
         type=kind,
         base_joints=base,
@@ -63,6 +65,8 @@ def read_robot(top: Section) -> Robot:
         **read_built(top, len(chains)),
         **read_mounts(section),
     )
+    beside = {name: top.data[name] for name in _BESIDE if name in top}
+    return robot.keep(Written({**section.data, **beside}))
 
 
 def platform_fixed(top: Section) -> bool:

@@ -3,7 +3,8 @@
 from __future__ import annotations
 
 import math
-from typing import Annotated, Any, cast
+from collections.abc import Mapping
+from typing import Annotated, Any, ClassVar, cast
 
 import numpy as np
 from pydantic import Field, WrapValidator, computed_field, model_validator
@@ -45,6 +46,15 @@ class Robot(Frozen):
     `heat`: how it differs from all this as it is built and warm, `tolerances`: as it may; `base_mount`,
     `platform_mount`: springs on which base and payload stand, `base_motion`: how the base is moved.
     """
+
+    spells: ClassVar[Mapping[str, tuple[str, ...]]] = {
+        "base": ("base_joints", "type", "plane"),
+        "platform": ("platform_joints", "platform_fixed", "type", "plane"),
+        "home_height": ("home",),
+        "home": ("home", "plane"),
+        "payload": ("payload", "plane"),
+        "leg": ("legs", "base_joints", "platform_joints", "type", "plane"),
+    }
 
     type: str = "6-UPS"
     base_joints: Annotated[Joints, Measure("length")]
@@ -95,6 +105,19 @@ class Robot(Frozen):
             if payload is None
             else f"{number(payload.mass, 4)} kg, centre of mass at {millimetres(payload.com)}",
         }
+
+    def still_says(self, key: str) -> bool:
+        """Whether what was written under a key still holds; joints beside which legs have places only with these."""
+        return super().still_says(key) and (
+            key not in ("base", "platform") or self.still_says("leg") or not self._places
+        )
+
+    @property
+    def _places(self) -> bool:
+        """Whether a leg was written with places of its own."""
+        legs = self.written.data["leg"] if self.written is not None else []
+        tables = legs if isinstance(legs, list) else [legs]
+        return any("at" in leg.get(f"{end}_joint", {}) for leg in tables for end in ("base", "platform"))
 
     @property
     def count(self) -> int:

@@ -3,6 +3,7 @@
 from __future__ import annotations
 
 import math
+from collections.abc import Mapping
 from typing import Annotated, ClassVar, Literal
 
 import numpy as np
@@ -12,7 +13,7 @@ from flexapod.errors import InputError
 from flexapod.model.drive import ForceDrive, PrescribedDrive, ServoDrive
 from flexapod.model.friction import ScrewFriction
 from flexapod.model.hydraulic import HydraulicDrive
-from flexapod.model.material import Material
+from flexapod.model.material import SPELLS, Material
 from flexapod.model.motion import check_times
 from flexapod.model.motor import HARMONICS, Brake, Encoder, Limits, Loop, Motor, Ripple, Rotor, summing
 from flexapod.model.spring import check_lossy
@@ -137,6 +138,7 @@ class ScrewDrive(Frozen):
     """
 
     derived: ClassVar[tuple[str, ...]] = ("time", "torque")
+    spells: ClassVar[Mapping[str, tuple[str, ...]]] = SPELLS
 
     type: Literal["screw"] = "screw"
     lead: Annotated[Positive, Measure("length")]

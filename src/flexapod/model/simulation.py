@@ -3,7 +3,7 @@
 from __future__ import annotations
 
 import math
-from typing import Annotated, Literal, Self
+from typing import Annotated, ClassVar, Literal, Self
 
 from pydantic import Field, model_validator
 
@@ -37,6 +37,8 @@ class Simulation(Frozen):
     the integrator of fixed steps at infinite frequency; `friction` about rest, in modes and stiffness: what rubs
     slides, or sticks; `play`: left to `flexapod.play`, or a gap in the motion.
     """
+
+    placed: ClassVar[tuple[str, ...]] = ("basis",)
 
     fidelity: str = "assumed-modes"
     basis: Literal["tip-load", "clamped-free", "tip-mass"] = "tip-load"
@@ -75,7 +77,7 @@ class Simulation(Frozen):
         if "basis" in changes or fields["fidelity"] not in OWN_BASIS:
             return super().replace(**changes)
         del fields["basis"]
-        return type(self)(**fields).with_unused_basis(self.basis)
+        return self._kept_in(type(self)(**fields).with_unused_basis(self.basis))
 
     def _shown(self) -> dict[str, str]:
         shapes = {"modes": f"{self.modes} a plane"} if self.lateral_shapes else {}
@@ -87,7 +89,7 @@ class Simulation(Frozen):
         """The same settings with the `basis` that another fidelity would use."""
         copy = self.model_copy()
         object.__setattr__(copy, "basis", basis)
-        return copy
+        return copy if self.written is None else copy.keep(self.written)
 
     @model_validator(mode="after")
     def _consistent(self) -> Self:

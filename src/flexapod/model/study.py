@@ -2,8 +2,8 @@
 
 from __future__ import annotations
 
-from collections.abc import Sequence
-from typing import Any, Self, TypeVar
+from collections.abc import Mapping, Sequence
+from typing import Any, ClassVar, Self, TypeVar
 
 from pydantic import field_validator, model_validator
 
@@ -28,8 +28,17 @@ _OUT_OF_PLANE = {
 }
 
 
+_ANEW = "-"  # for the text of a study that is to be written
+
+
 class _Documented(Frozen):
     """Keeps `source_text` true: it is written anew when content is changed or the study was not read from text."""
+
+    untold: ClassVar[tuple[str, ...]] = ("source_text", "path", "notes")
+    spells: ClassVar[Mapping[str, tuple[str, ...]]] = {
+        **{name: ("robot",) for name in ("payload", "leg", "geometry", "heat", "tolerances")},
+        "motion": ("motion", "robot"),
+    }
 
     source_text: str = ""
     path: str | None = None
@@ -63,7 +72,10 @@ class _Documented(Frozen):
         """A copy with some fields changed, validated again, and its text written anew."""
         if all(getattr(self, name, None) == value for name, value in changes.items()):
             return super().replace(**changes)
-        return super().replace(**({"source_text": "", "notes": ()} | changes))
+        changed = super().replace(**({"source_text": _ANEW, "notes": ()} | changes))
+        if changed.source_text == _ANEW:  # with what the text of the parts that stay was
+            object.__setattr__(changed, "source_text", to_toml(changed))
+        return changed
 
 
 class Study(_Documented):

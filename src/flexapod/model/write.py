@@ -2,29 +2,36 @@
 
 from __future__ import annotations
 
-from collections.abc import Iterator
+from collections.abc import Callable, Iterator, Mapping
+from typing import Any
 
 import numpy as np
 
 from flexapod.model.actuator import Actuator
 from flexapod.model.disturbance import Floor, Spectrum
+from flexapod.model.geometry import Geometry
+from flexapod.model.heat import Gradient, Heat
 from flexapod.model.joint import Carriage, Joint
 from flexapod.model.leg import Leg
 from flexapod.model.material import MATERIALS, POISSON, Material, Tube
+from flexapod.model.payload import Payload
 from flexapod.model.piston import Cylinder, Piston, Strut
 from flexapod.model.robot import Robot
+from flexapod.model.screw import ScrewDrive
 from flexapod.model.simulation import OWN_BASIS, Simulation
 from flexapod.schema.axes import word_of
 from flexapod.schema.base import Frozen
-from flexapod.schema.toml import toml_value
+from flexapod.schema.toml import toml_text
+from flexapod.schema.written import together
 from flexapod.typing import Array
 
 
 def to_toml(study: Frozen) -> str:
-    """The study as TOML text in SI units; read again, it is the same study.
+    """The study as TOML text; read again, it is the same study.
 
-    Tables stay in the CSV files they came from; one given from Python is named ``table.csv`` and must be saved there
-    by whoever wants to read the text again.
+    What was read from a text and not changed since stands there as it was written, key by key; all else in SI units,
+    numbers to the last digit. Tables stay in the CSV files they came from; one given from Python is named ``table.csv``
+    and must be saved there by whoever wants to read the text again.
 
     Parameters
     ----------
@@ -34,54 +41,57 @@ def to_toml(study: Frozen) -> str:
     Returns
     -------
     str
-        The text, numbers to the last digit.
+        The text, its tables one after the other.
     """
-    lines = ["# Written by flexapod, SI units"]
+    return "# Written by flexapod\n" + toml_text(_tables(study))
+
+
+def _tables(study: Frozen) -> dict[str, Any]:
+    if study.written is not None and study.unchanged:
+        return dict(study.written.data)
+    found: dict[str, object] = {}
     for name in type(study).model_fields:
         part = getattr(study, name)
-        if isinstance(part, Robot):
-            lines += _robot(part)
-        elif isinstance(part, Actuator):
-            lines += _section("actuator", _actuator(part))
-        elif isinstance(part, Frozen) and (fields := _fields(part)):
-            lines += _section(name, fields)
-    return "\n".join(lines) + "\n"
+        found |= _robot(part) if isinstance(part, Robot) else {name: part} if isinstance(part, Frozen) else {}
+    tables = {name: _plain(part) for name, part in _merged(study, found).items()}
+    return {name: table for name, table in tables.items() if table}
 
 
-def _robot(robot: Robot) -> Iterator[str]:
+def _robot(robot: Robot) -> dict[str, Any]:
     home, fixed = robot.home, {"fixed": True} if robot.platform_fixed else {}
     above = not (home.rotation.any() or home.position[:2].any())
-    yield from _section(
-        "robot",
-        {
-            "type": robot.type,
-            **({"plane": robot.plane} if robot.plane else {}),
-            "base": {"joints": robot.base_joints},
-            "platform": {"joints": robot.platform_joints, **fixed},
-            **({"home_height": robot.home_height} if above else {"home": home}),
-            "gravity": robot.gravity,
-            **{name: mount for name, mount in _mounts(robot)},
-        },
-    )
-    if robot.payload is not None:
-        yield from _section("payload", _fields(robot.payload))
     places = zip(robot.legs, robot.base_joints, robot.platform_joints, strict=True)
-    legs = [_keys(_leg(leg, base, platform, robot.normal)) for leg, base, platform in places]
-    if all(leg == legs[0] for leg in legs) and len({leg.chain for leg in robot.legs}) == 1:
-        yield from ["", "[leg]", *legs[0]]
-    else:
-        for leg in legs:
-            yield from ["", "[[leg]]", *leg]
-    for name in ("geometry", "heat", "tolerances"):
-        if (part := getattr(robot, name)) is not None:
-            yield from _section(name, _per_leg(_fields(part)))
+    legs = [_plain(_leg(leg, base, platform, robot.normal)) for leg, base, platform in places]
+    alike = all(leg == legs[0] for leg in legs) and len({leg.chain for leg in robot.legs}) == 1
+    geometry = {
+        "type": robot.type,
+        **({"plane": robot.plane} if robot.plane else {}),
+        "base": {"joints": robot.base_joints},
+        "platform": {"joints": robot.platform_joints, **fixed},
+        **({"home_height": robot.home_height} if above else {"home": home}),
+        "gravity": robot.gravity,
+        **{name: mount for name, mount in _mounts(robot)},
+    }
+    beside = {
+        "payload": robot.payload and _payload(robot.payload),
+        "leg": legs[0] if alike else legs,
+        **{name: part for name in ("geometry", "heat", "tolerances") if (part := getattr(robot, name)) is not None},
+    }
+    found = _merged(robot, geometry | {name: part for name, part in beside.items() if part is not None})
+    tables = {name: _plain(found[name]) for name in found if name in beside}
+    return {"robot": _plain({name: found[name] for name in found if name not in beside}), **tables}
+
+
+def _payload(payload: Payload) -> dict[str, object]:
+    return _merged(payload, _fields(payload) | {"inertia": _diagonal(payload.inertia)})
 
 
 def _mounts(robot: Robot) -> Iterator[tuple[str, object]]:
     for name in ("base_mount", "platform_mount"):
         if (mount := getattr(robot, name)) is not None:
             short = {key: _diagonal(value) for key, value in _fields(mount).items()}
-            yield name, {key: value for key, value in short.items() if key == "loss" or np.asarray(value).any()}
+            given = {key: value for key, value in short.items() if key == "loss" or np.asarray(value).any()}
+            yield name, _merged(mount, given)
     if robot.base_motion is not None:
         yield "base_motion", robot.base_motion
 
@@ -91,12 +101,6 @@ def _diagonal(value: object) -> object:
     if not isinstance(value, np.ndarray) or value.ndim != 2:
         return value
     return np.diag(value) if not (value - np.diag(np.diag(value))).any() else value
-
-
-def _per_leg(fields: dict[str, object]) -> dict[str, object]:
-    """What is the same for all legs as one number."""
-    inner = {n: _per_leg(_fields(x)) if isinstance(x, Frozen) else x for n, x in fields.items()}
-    return {n: x.item() if isinstance(x, np.ndarray) and x.shape == (1,) else x for n, x in inner.items()}
 
 
 def _leg(leg: Leg, base: Array, platform: Array, normal: Array) -> dict[str, object]:
@@ -110,22 +114,32 @@ def _leg(leg: Leg, base: Array, platform: Array, normal: Array) -> dict[str, obj
         fields[name] = _joint(getattr(leg, name), place, normal)
         if not fields[name]:
             del fields[name]
-    if leg.screw is not None:
-        drive = _fields(leg.screw)
-        fields["drive"] = {name: x for name, x in drive.items() if name != "material"} | _material(leg.screw.material)
-    fields["cylinder"] = _cylinder(leg.cylinder)
     del fields["springs"]
     if leg.springs:
         fields["springs"] = {spring.name: spring for spring in leg.springs}
     if leg.carriage is not None:
         fields["carriage"] = _carriage(leg.carriage, base, normal)
     if leg.strut is None:
-        return fields | {"piston": _beam(leg.piston)}
+        return _merged(leg, fields)
     del fields["cylinder"], fields["piston"]
-    return fields | {"strut": _beam(leg.strut)}
+    return _merged(leg, fields)
+
+
+def _screw(drive: ScrewDrive) -> dict[str, object]:
+    return {name: x for name, x in _fields(drive).items() if name != "material"} | _material(drive.material)
+
+
+def _of_all_legs(part: Geometry | Heat) -> dict[str, object]:
+    """What is the same for all legs as one number."""
+    inner = {n: _of_all_legs(x) if isinstance(x, Gradient) else x for n, x in _fields(part).items()}
+    return {n: x.item() if isinstance(x, np.ndarray) and x.shape == (1,) else x for n, x in inner.items()}
 
 
 def _joint(joint: Joint, place: Array, normal: Array) -> dict[str, object]:
+    return _merged(joint, _of_joint(joint, place, normal))
+
+
+def _of_joint(joint: Joint, place: Array, normal: Array) -> dict[str, object]:
     fields = _fields(joint)
     if joint.axis is not None:
         fields["axis"] = word_of(joint.axis, place, normal) or joint.axis
@@ -147,7 +161,7 @@ def _joint(joint: Joint, place: Array, normal: Array) -> dict[str, object]:
 def _carriage(carriage: Carriage, place: Array, normal: Array) -> dict[str, object]:
     unused = "mass" if carriage.kind == "crank" else "inertia"
     fields = {name: value for name, value in _fields(carriage).items() if name != unused or value}
-    return {carriage.kind: word_of(carriage.axis, place, normal) or carriage.axis, **fields}
+    return _merged(carriage, {carriage.kind: word_of(carriage.axis, place, normal) or carriage.axis, **fields})
 
 
 def _cylinder(cylinder: Cylinder) -> dict[str, object]:
@@ -227,18 +241,42 @@ def _fields(model: Frozen) -> dict[str, object]:
     return {name: value for name, value in fields.items() if value is not None}
 
 
-def _section(name: str, fields: dict[str, object]) -> list[str]:
-    return ["", f"[{name}]", *_keys(fields)]
+def _merged(model: Frozen, fields: dict[str, object]) -> dict[str, object]:
+    """The keys of an object's table: as they were written where that still holds, else in SI."""
+    if model.written is None:
+        return fields
+    data, changed = model.written.data, model.written.changed
+    said = {*data, *changed, *model.placed}
+    usual = {name: info.default for name, info in type(model).model_fields.items() if name not in said}
+    given = {name: value for name, value in fields.items() if not _is(value, usual.get(name))}
+    numbers = [name for name in model.placed if isinstance(fields.get(name), np.ndarray)]  # say the same anywhere
+    kept = (key for key in data if model.still_says(key) and (key not in model.placed or key in numbers))
+    return together(given, data, {key: data[key] for key in kept})
 
 
-def _keys(fields: dict[str, object]) -> list[str]:
-    return [f"{name} = {toml_value(_plain(value))}" for name, value in fields.items()]
+def _is(value: object, usual: object) -> bool:
+    return type(value) is type(usual) and isinstance(value, Frozen | float | int | str) and value == usual
 
 
-def _plain(value: object) -> object:
-    """A value without objects of the model in it."""
+def _plain(value: object) -> Any:
+    """A value as data of a study file."""
     if isinstance(value, Frozen):
-        value = _fields(value)
-    if isinstance(value, dict):
+        if value.written is not None and value.unchanged and not value.placed:
+            return value.written.data
+        value = _merged(value, _SPECIAL.get(type(value), _fields)(value))
+    if isinstance(value, Mapping):
         return {name: _plain(item) for name, item in value.items()}
+    if isinstance(value, np.ndarray):
+        return value.tolist()
     return [_plain(item) for item in value] if isinstance(value, list | tuple) else value
+
+
+_SPECIAL: dict[type, Callable[[Any], dict[str, object]]] = {
+    Actuator: _actuator,
+    Cylinder: _cylinder,
+    Heat: _of_all_legs,
+    Geometry: _of_all_legs,
+    Piston: _beam,
+    ScrewDrive: _screw,
+    Strut: _beam,
+}

@@ -23,6 +23,7 @@ from pydantic import (
 from pydantic_core import CoreSchema, PydanticCustomError, core_schema
 
 from flexapod.errors import InputError, closest
+from flexapod.schema.written import Written
 from flexapod.typing import Array
 from flexapod.units import DIMENSIONS
 from flexapod.words import number
@@ -34,6 +35,7 @@ NonNegative = Annotated[float, Field(strict=True, ge=0, allow_inf_nan=False)]
 Loss = Annotated[float, Field(strict=True, ge=0, le=2, allow_inf_nan=False)]
 
 _HASH = "hash"  # where an object keeps its hash; no field can have this name, which would hide the built-in
+_WRITTEN = "written"  # where it keeps the table that it was read from
 
 _building = RLock()  # classes need those of their fields
 
@@ -117,6 +119,12 @@ class Frozen(BaseModel):
 
     #: Fields that are no keys of a study file: a table in a file of its own has them, or they follow from the others
     derived: ClassVar[tuple[str, ...]] = ()
+    #: Fields that a key stands for, where that is not the one of its name alone
+    spells: ClassVar[Mapping[str, tuple[str, ...]]] = {}
+    #: Keys that say something else in another place: directions in words, vectors in a plane
+    placed: ClassVar[tuple[str, ...]] = ()
+    #: Fields that are in no text
+    untold: ClassVar[tuple[str, ...]] = ()
     model_config = ConfigDict(
         frozen=True, extra="forbid", arbitrary_types_allowed=True, hide_input_in_errors=True, defer_build=True
     )  # what checks a class is built with its first object: most studies have few of the tables
@@ -139,14 +147,42 @@ class Frozen(BaseModel):
             If a field does not exist or the new value is not allowed.
         """
         fields = {name: getattr(self, name) for name in type(self).model_fields}
-        return type(self)(**(fields | changes))
+        return self._kept_in(type(self)(**(fields | changes)))
+
+    @property
+    def written(self) -> Written | None:
+        """The table that it was read from, or what of that still holds; None of an object made in Python."""
+        return vars(self).get(_WRITTEN)
+
+    def keep(self, written: Written) -> Self:
+        """Itself, with the table that says the same."""
+        vars(self)[_WRITTEN] = written
+        return self
+
+    @property
+    def unchanged(self) -> bool:
+        """Whether the table that it was read from says all of it."""
+        return self.written is not None and not self.written.changed
+
+    def _kept_in(self, changed: Self) -> Self:
+        """A changed object with what still holds of the table of this one."""
+        if self.written is None:
+            return changed
+        told = (name for name in type(self).model_fields if name not in self.untold)
+        names = {name for name in told if not _same(getattr(self, name), getattr(changed, name))}
+        return changed.keep(Written(self.written.data, self.written.changed | names))
+
+    def still_says(self, key: str) -> bool:
+        """Whether what was written under a key still says what the object has."""
+        return self.written is not None and self.written.changed.isdisjoint(self.spells.get(key, (key,)))
 
     def __deepcopy__(self, memo: dict[int, Any] | None = None) -> Self:
         return self  # nothing in it can change
 
     def __copy__(self) -> Self:
         copy = super().__copy__()
-        vars(copy).pop(_HASH, None)  # pydantic copies before it changes fields
+        for name in (_HASH, _WRITTEN):  # pydantic copies before it changes fields
+            vars(copy).pop(name, None)
         return copy
 
     def __setstate__(self, state: dict[Any, Any]) -> None:
@@ -193,7 +229,9 @@ class Frozen(BaseModel):
 
 
 # Names that work, and that nobody who completes a name is looking for
-_OF_PYDANTIC = {name for name in dir(BaseModel) if not name.startswith("__")} | {"model_config", _HASH}
+_OF_PYDANTIC = {name for name in dir(BaseModel) if not name.startswith("__")} | {
+    "model_config", _HASH, _WRITTEN, "keep", "still_says", "unchanged", "spells", "placed", "untold",
+}  # fmt: skip
 
 
 def _brief(value: object) -> str:
@@ -202,6 +240,10 @@ def _brief(value: object) -> str:
     if isinstance(value, np.ndarray):
         return str(value.tolist()) if value.size <= 9 else f"{' x '.join(map(str, value.shape))} numbers"
     return str(value)
+
+
+def _same(one: object, other: object) -> bool:
+    return one is other or _comparable(one) == _comparable(other)
 
 
 def _comparable(value: object) -> object:

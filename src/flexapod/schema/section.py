@@ -29,7 +29,7 @@ class Section(Values):
         also: tuple[str, ...] = (),
         then: Callable[[Section], Mapping[str, object]] | None = None,
     ) -> M:
-        """The model's object that this table describes, key by key (`model.columns`).
+        """The model's object that this table describes, key by key (`schema.columns`).
 
         Parameters
         ----------
@@ -46,7 +46,7 @@ class Section(Values):
         self.only(*(column.name for column in columns), *also)
         others = {} if then is None else then(self)
         values = {column.name: self._value(column, among) for column in columns if column.name not in others}
-        return self.build(model, **values, **others)
+        return self.build(model, **values, **others).keep(self.written)
 
     def _value(self, column: Column, among: tuple[str, ...]) -> object:
         name = column.name
@@ -90,7 +90,7 @@ class Section(Values):
         return self.read(model, among=among) if reader is None else reader(self)
 
     def direction(self, name: str, place: Array, normal: Array) -> Array | None:
-        """A vector, or a word for one as seen from a joint (`model.axes`); None if absent."""
+        """A vector, or a word for one as seen from a joint (`schema.axes`); None if absent."""
         if not isinstance(self.data.get(name), str):
             given = self.vector(name, "number", "number", "number")
             return None if given is None else np.array(given)
@@ -109,7 +109,7 @@ class Section(Values):
         name: str = "file",
         along: str = "time",
     ) -> dict[str, Array]:
-        """Columns of the CSV file under `file` or another name (`model.tables`)."""
+        """Columns of the CSV file under `file` or another name (`schema.csv_tables`)."""
         self.need(name)
         try:
             return read_table(self.folder / str(self.text(name)), columns, needed=needed, jumps=jumps, along=along)

@@ -2,18 +2,23 @@
 
 from __future__ import annotations
 
+import json
 import re
 import tomllib
+from collections.abc import Mapping
 from typing import Any
 
 import numpy as np
 
 from flexapod.errors import InputError
+from flexapod.schema.written import Letters, as_float
 
 DEEPEST = 32
 """Most names in a dotted key and most levels of tables and lists; a study has six. Reading takes the square of it."""
 MOST_DIGITS = 1000
 """Longest whole number that is handed on; Python writes none of more than 4300 digits, not even into a message."""
+
+_BARE = re.compile(r"[A-Za-z0-9_-]+")
 
 # Texts and comments, which are passed over, and what separates keys; no piece fails to match once it has begun, so
 # that the time stays proportional to the length of the text.
@@ -45,7 +50,7 @@ def parsed(text: str, file: str) -> dict[str, Any]:
     """
     _refuse_long_keys(text, file)
     try:
-        data = tomllib.loads(text)
+        data = tomllib.loads(text, parse_float=as_float)
     except (ValueError, RecursionError) as error:  # ValueError: no TOML, or a number of thousands of digits
         raise InputError(f"is not valid TOML: {_reason(error)}", file=file) from None
     refuse_excess(data, file)
@@ -94,10 +99,29 @@ def refuse_excess(data: dict[str, Any], file: str | None) -> None:
             raise InputError("has too many digits", file=file, key=path, allowed=f"at most {MOST_DIGITS}")
 
 
+def toml_text(tables: Mapping[str, object]) -> str:
+    """The text of a study file: its tables, or lists of tables, one after the other."""
+    lines: list[str] = []
+    for name, table in tables.items():
+        head, items = (f"[[{name}]]", table) if isinstance(table, list) else (f"[{name}]", [table])
+        for item in items:
+            lines += ["", head, *_lines(item)]
+    return "\n".join(lines) + "\n"
+
+
+def _lines(table: Mapping[str, object]) -> list[str]:
+    return [f"{toml_name(name)} = {toml_value(value)}" for name, value in table.items()]
+
+
+def toml_name(name: str) -> str:
+    """A key as it stands in a study file."""
+    return name if _BARE.fullmatch(name) else _quoted(name)
+
+
 def toml_value(value: object) -> str:
     """A value as it stands in a study file."""
-    if isinstance(value, dict):
-        return "{ " + ", ".join(f"{name} = {toml_value(item)}" for name, item in value.items()) + " }"
+    if isinstance(value, Mapping):
+        return "{ " + ", ".join(_lines(value)) + " }"
     if isinstance(value, np.ndarray):
         value = value.tolist()
     if isinstance(value, bool):
@@ -105,5 +129,9 @@ def toml_value(value: object) -> str:
     if isinstance(value, list | tuple):
         return "[" + ", ".join(toml_value(item) for item in value) + "]"
     if isinstance(value, str):
-        return '"' + value.replace("\\", "\\\\").replace('"', '\\"') + '"'
-    return repr(value)
+        return _quoted(value)
+    return value.text if isinstance(value, Letters) else repr(value)
+
+
+def _quoted(text: str) -> str:
+    return json.dumps(text, ensure_ascii=False).replace("\x7f", "\\u007f")

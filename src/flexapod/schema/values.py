@@ -13,6 +13,7 @@ from flexapod.schema.base import Frozen
 from flexapod.schema.columns import Kind
 from flexapod.schema.notes import Notes
 from flexapod.schema.reference import advice, example_line
+from flexapod.schema.written import Written
 from flexapod.units import to_si
 
 M = TypeVar("M", bound=Frozen)
@@ -58,6 +59,11 @@ class Values:
                 next_step=_such_as(table, name),
             )
         self.data: Mapping[str, Any] = data
+
+    @property
+    def written(self) -> Written:
+        """The table, for the object that is read from it."""
+        return Written(self.data)
 
     def key(self, name: str) -> str:
         """Full key path of `name` in this section."""
@@ -228,7 +234,7 @@ class Values:
 
     def _si(self, value: object, dimension: str, key: str) -> float:
         if isinstance(value, float) and isfinite(value):
-            return value
+            return float(value)
         try:
             return to_si(value, dimension, key=key)
         except InputError as error:
