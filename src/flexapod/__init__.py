@@ -12,9 +12,12 @@ from flexapod.loading import loaded
 if TYPE_CHECKING:
     from flexapod import model, plot, rigid, study
     from flexapod.citations import cite
+    from flexapod.elements.element import Contribution, Element, Output
+    from flexapod.elements.frame import Energies
     from flexapod.errors import ComputationError, FlexapodError, InputError
     from flexapod.model import ActuatorStudy, Study, load, loads, open_values, preset
     from flexapod.paper.study import replicate
+    from flexapod.schema.base import Measure
     from flexapod.study import (
         accuracy,
         budget,
@@ -39,6 +42,9 @@ if TYPE_CHECKING:
     from flexapod.version import __version__
 
 _HOMES = {
+    "flexapod.elements.element": ("Contribution", "Element", "Output"),
+    "flexapod.elements.frame": ("Energies",),
+    "flexapod.schema.base": ("Measure",),
     "flexapod.errors": ("ComputationError", "FlexapodError", "InputError"),
     "flexapod.citations": ("cite",),
     "flexapod.model": ("ActuatorStudy", "Study", "load", "loads", "open_values", "preset"),
@@ -72,8 +78,13 @@ _PACKAGES = ("model", "plot", "rigid", "study")
 __all__ = [
     "ActuatorStudy",
     "ComputationError",
+    "Contribution",
+    "Element",
+    "Energies",
     "FlexapodError",
     "InputError",
+    "Measure",
+    "Output",
     "Study",
     "__version__",
     "accuracy",

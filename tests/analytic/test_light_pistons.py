@@ -80,8 +80,10 @@ def test_servo_drives_on_light_pistons_are_integrated(fidelity):
         fx.simulate(robot_study(rhoA, servo=True, cylinders=True, gravity=9.81), **at).com_deviation
         for rhoA in (1e-3, 1e-6, 1e-9)
     )
-    for data in light:  # the six pistons of a gram a metre are 4.5e-5 of the payload
-        assert float(np.abs(data - heavier).max()) < 5e-5 * float(np.abs(heavier).max())
+    # The six pistons of a gram a metre are 4.5e-5 of the payload. At 1e-9 kg/m rounding, of which digits differ by
+    # processor, is a multiple of 2e-16 times the ratio of the masses, 1e11: 2e-5 a step.
+    for data, most in zip(light, (5e-5, 1e-3), strict=True):
+        assert float(np.abs(data - heavier).max()) < most * float(np.abs(heavier).max())
 
 
 def test_no_mass_in_time():

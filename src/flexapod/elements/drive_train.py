@@ -7,17 +7,18 @@ from dataclasses import dataclass
 from types import SimpleNamespace
 from typing import TYPE_CHECKING, Any, ClassVar, Self
 
-from flexapod.elements.element import Element, Named, Series, Standing
+from flexapod.elements.element import Named, Physics, Series, Standing
 from flexapod.elements.frame import Energies
 from flexapod.elements.springs import Spring, before_stroke, in_series, softening
 
 if TYPE_CHECKING:
+    from flexapod.elements.slot import Slot
     from flexapod.model import Leg
     from flexapod.symbolic.vocabulary import SX
 
 
 @dataclass(frozen=True)
-class DriveTrain(Element):
+class DriveTrain(Physics):
     """The springs between the travel r of a rotor and the stroke l, and what turns with the rotor."""
 
     springs: Sequence[Spring]
@@ -50,13 +51,13 @@ class DriveTrain(Element):
         return found
 
     @classmethod
-    def held(cls, leg: Leg, *, at_rest: bool) -> Sequence[str]:
+    def held(cls, own: Self | None, leg: Leg, *, at_rest: bool) -> Sequence[str]:
         """The travel of what has no rotor, a servo's spring being in series with these, and of a held rotor."""
         return ("r",) if leg.drive.holds or leg.screw is None else ()
 
     @classmethod
-    def energy(
-        cls, p: SimpleNamespace, q: SimpleNamespace, v: SimpleNamespace, elements: Sequence[type[Element]]
+    def energy_among(
+        cls, elements: Sequence[Slot], p: SimpleNamespace, q: SimpleNamespace, v: SimpleNamespace
     ) -> Energies:
         """The compliance of the springs is a polynomial in l, as that of a shaft goes with the nut's place."""
         s = Series(stretching(p, q.l), q.l, v.l)

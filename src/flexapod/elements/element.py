@@ -1,25 +1,42 @@
-"""What an element of a leg is: coordinates, parameters, energies and numbers of one physical part, in one class.
+"""What an element of a leg is: table, coordinates, numbers, energies, errors, outputs of one part, in one class.
 
-The class stands in the layout of a kernel: its equations hold for all legs. Its objects are the part in one leg.
+The class stands for its equations, which hold for all legs; its objects are the part in one leg.
 """
 
 from __future__ import annotations
 
+import re
+import sys
 from collections.abc import Callable, Mapping, Sequence
 from dataclasses import dataclass
+from pathlib import Path
 from types import SimpleNamespace
-from typing import TYPE_CHECKING, Any, ClassVar, NamedTuple, Self
-
-import numpy as np
+from typing import TYPE_CHECKING, Any, ClassVar, Literal, NamedTuple, Self
 
 from flexapod.elements.frame import Energies
+from flexapod.errors import InputError
+from flexapod.schema.base import Frozen
 from flexapod.symbolic.vocabulary import dot, sqrt
 
 if TYPE_CHECKING:
+    from flexapod.elements.slot import Slot
     from flexapod.model import Leg, Simulation
     from flexapod.symbolic.vocabulary import SX
 
-__all__ = ["Element", "Moving", "Named", "Series", "Standing", "asked_beside", "numbers_of"]
+__all__ = [
+    "Contribution",
+    "Element",
+    "Moving",
+    "Named",
+    "Output",
+    "Physics",
+    "Series",
+    "Standing",
+    "asked_beside",
+    "register",
+    "registered",
+    "source_of",
+]
 
 Named = tuple[tuple[str, int], ...]
 
@@ -48,6 +65,32 @@ class Series:
     rate: SX
 
 
+class Output(NamedTuple):
+    """A result of an element, a number for each instant and leg.
+
+    ``of``: gives it from parameters and coordinates by name, as the energies do; arrays over time.
+    """
+
+    name: str
+    units: str
+    long_name: str
+    of: Callable[[Any, Any], Any]
+
+
+class Contribution(NamedTuple):
+    """What an element makes a stroke err by, for an error budget.
+
+    ``size`` [m]: a standard deviation of ``kind`` "random", half of the width of "hysteretic"; ``how`` it is computed;
+    ``stands``: a random one is the same at each approach of one machine.
+    """
+
+    name: str
+    kind: Literal["random", "hysteretic"]
+    size: float
+    how: str
+    stands: bool = False
+
+
 @dataclass(frozen=True, kw_only=True)
 class Moving:
     """A leg in motion, for those that need more than its coordinates.
@@ -64,7 +107,7 @@ class Moving:
     v_cmd: SX
     foot: SX
     tip: SX
-    elements: Sequence[type[Element]]
+    elements: Sequence[Slot]
     rate: Callable[[SX], SX]
 
     @property
@@ -74,8 +117,8 @@ class Moving:
         return sqrt(dot(along, along))
 
 
-class Element:
-    """A physical part of a leg.
+class Physics:
+    """A physical part of a leg: what it adds to the equations, to the results and to the error budget.
 
     Attributes
     ----------
@@ -85,12 +128,15 @@ class Element:
         Its parameters in a leg without it, beside one that has it; 0 if they are not named here.
     follows : mapping
         Its coordinates that are as others are in a leg that carries nothing: own name -> the other's.
+    outputs : tuple of Output
+        Its results.
     """
 
     coordinates: ClassVar[Named] = ()
     parameters: ClassVar[Named] = ()
     absent: ClassVar[Mapping[str, Any]] = {}
     follows: ClassVar[Mapping[str, str]] = {}
+    outputs: ClassVar[tuple[Output, ...]] = ()
 
     @classmethod
     def of(cls, leg: Leg) -> Self | None:
@@ -98,23 +144,40 @@ class Element:
         raise NotImplementedError
 
     @classmethod
+    def all_of(cls, leg: Leg) -> tuple[Self, ...]:
+        """All of them in one leg."""
+        own = cls.of(leg)
+        return () if own is None else (own,)
+
+    @classmethod
     def among(cls, legs: Sequence[Leg], simulation: Simulation) -> bool:
-        """Whether it is in a kernel for these legs."""
-        return any(cls.of(leg) is not None for leg in legs)
+        """Whether a kernel for these legs knows of it."""
+        return any(cls.all_of(leg) for leg in legs)
 
     def numbers(self, leg: Leg, standing: Standing) -> Mapping[str, Any]:
         """Its parameters in one leg, by name."""
         return {}
 
-    @classmethod
-    def held(cls, leg: Leg, *, at_rest: bool) -> Sequence[str]:
-        """Coordinates that follow a table in one leg: by default its own where the leg does not have it."""
-        return () if cls.of(leg) is not None else tuple(name for name, _ in cls.coordinates)
+    def errors(self, leg: Leg) -> Sequence[Contribution]:
+        """What it makes the stroke of one leg err by."""
+        return ()
 
     @classmethod
-    def energy(cls, p: SimpleNamespace, q: SimpleNamespace, v: SimpleNamespace, elements: Sequence[type]) -> Energies:
-        """Its energies by parameters, coordinates and rates; ``elements``: all those of the kernel."""
+    def held(cls, own: Self | None, leg: Leg, *, at_rest: bool) -> Sequence[str]:
+        """Coordinates that follow a table in one leg: by default those of an element that the leg does not have."""
+        return () if own is not None else tuple(name for name, _ in cls.coordinates)
+
+    @classmethod
+    def energy(cls, p: SimpleNamespace, q: SimpleNamespace, v: SimpleNamespace) -> Energies:
+        """Its energies by parameters, coordinates and rates."""
         return Energies()
+
+    @classmethod
+    def energy_among(
+        cls, elements: Sequence[Slot], p: SimpleNamespace, q: SimpleNamespace, v: SimpleNamespace
+    ) -> Energies:
+        """The same where others of the kernel change them."""
+        return cls.energy(p, q, v)
 
     @classmethod
     def in_series(cls, s: Series, p: SimpleNamespace, q: SimpleNamespace, v: SimpleNamespace) -> Series:
@@ -147,14 +210,75 @@ class Element:
         return None
 
 
-def numbers_of(element: type[Element], leg: Leg, standing: Standing) -> dict[str, Any]:
-    """Parameters of an element in a leg, whether or not it is there."""
-    own = element.of(leg)
-    found = {name: element.absent.get(name, np.zeros(size)) for name, size in element.parameters}
-    return found if own is None else found | dict(own.numbers(leg, standing))
+class Element(Physics, Frozen):
+    """An element with a table of its own in a leg, ``[leg.NAME]``, or several, ``[[leg.NAME]]``; base of users' ones.
+
+    Fields are keys of the table: ``stiffness: Annotated[float, fx.Measure("stiffness")]``. Names of coordinates,
+    parameters and results are its own; beside those of others NAME stands before them. What it has and can do is in
+    `Physics`. It is known once its module is imported, or by an entry point NAME of its package in the group
+    ``flexapod.elements``.
+
+    Attributes
+    ----------
+    at : str
+        NAME of its table.
+
+    Raises
+    ------
+    InputError
+        A class that comes from no file, or whose names are taken.
+    """
+
+    at: ClassVar[str] = ""
+
+    def __init_subclass__(cls, **options: Any) -> None:
+        super().__init_subclass__(**options)
+        if "at" in vars(cls):
+            register(cls)
+
+    @classmethod
+    def all_of(cls, leg: Leg) -> tuple[Self, ...]:
+        """Those in the tables of one leg, in their order."""
+        return tuple(one for one in leg.elements if type(one) is cls)
 
 
-def asked_beside(elements: Sequence[type[Element]], p: SimpleNamespace, q: SimpleNamespace) -> SX | None:
+registered: dict[str, type[Element]] = {}
+
+
+def register(element: type[Element]) -> None:
+    """Make a class known by the name of its table.
+
+    Raises
+    ------
+    InputError
+        It comes from no file, or its names are taken.
+    """
+    name, file = element.at, source_of(element)
+    if file is None:
+        raise InputError(
+            "is an element without a file: the equations are compiled anew when their source changes",
+            value=element.__name__,
+            allowed="a class in a module",
+            next_step="Write it into a file of its own and import that",
+        )
+    if not re.fullmatch(r"[a-z][a-z0-9_]*", name):
+        raise InputError("is not a name for a table", value=name, allowed="small letters, digits and _")
+    other = registered.get(name)
+    if other is not None and (other.__module__, other.__qualname__) != (element.__module__, element.__qualname__):
+        raise InputError(
+            "is the table of another element", value=name, allowed=f"a name that {other.__module__} does not have"
+        )
+    registered[name] = element
+
+
+def source_of(element: type[Physics]) -> Path | None:
+    """File of the module of a class; None of one that was typed into a console."""
+    file = getattr(sys.modules.get(element.__module__), "__file__", None)
+    found = None if file is None else Path(file)
+    return found if found is not None and found.is_file() else None
+
+
+def asked_beside(elements: Sequence[Slot], p: SimpleNamespace, q: SimpleNamespace) -> SX | None:
     """What elements ask of a motor beside spring and damper of its loop; None of nothing."""
     found = [x for element in elements if (x := element.asked(p, q)) is not None]
     return sum(found[1:], found[0]) if found else None

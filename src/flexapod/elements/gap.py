@@ -7,7 +7,7 @@ from dataclasses import dataclass
 from types import SimpleNamespace
 from typing import TYPE_CHECKING, Any, ClassVar, Self, TypeVar
 
-from flexapod.elements.element import Element, Named, Standing
+from flexapod.elements.element import Named, Physics, Standing
 
 if TYPE_CHECKING:
     from flexapod.model import Leg, Simulation
@@ -20,7 +20,7 @@ T = TypeVar("T")
 
 
 @dataclass(frozen=True)
-class Gap(Element):
+class Gap(Physics):
     """Free travel along a leg, `half` to either side [m]."""
 
     half: float

@@ -6,30 +6,72 @@ from collections.abc import Sequence
 from typing import TYPE_CHECKING
 
 from flexapod.elements.drive_train import DriveTrain
-from flexapod.elements.element import Element
+from flexapod.elements.element import Element, Physics, registered
+from flexapod.elements.encoder import Resolution
 from flexapod.elements.gap import Gap
 from flexapod.elements.motor_loop import MotorLoop
 from flexapod.elements.oil import Oil
 from flexapod.elements.ripple import Rippling
+from flexapod.elements.slot import Slot
 from flexapod.elements.soft_joint import SoftBase, SoftPlatform
 from flexapod.elements.summed_error import SummedError
 from flexapod.elements.turning_nut import TurningNut
+from flexapod.errors import InputError
 
 if TYPE_CHECKING:
     from flexapod.model import Leg, Simulation
 
-__all__ = ["elements_of", "known"]
+__all__ = ["element_at", "elements_of", "kinds_of", "refuse_tables"]
 
-OURS: tuple[type[Element], ...] = (
-    SoftBase, SoftPlatform, DriveTrain, TurningNut, Gap, Rippling, SummedError, MotorLoop, Oil,
+GROUP = "flexapod.elements"
+OURS: tuple[type[Physics], ...] = (
+    SoftBase, SoftPlatform, DriveTrain, TurningNut, Gap, Rippling, SummedError, MotorLoop, Oil, Resolution,
 )  # fmt: skip
 
 
-def known() -> tuple[type[Element], ...]:
-    """All of them."""
-    return OURS
+def kinds_of(legs: Sequence[Leg]) -> tuple[type[Physics], ...]:
+    """What may be in some legs: ours, then those with tables of their own, by name."""
+    tables = {type(element) for leg in legs for element in leg.elements}
+    return (*OURS, *sorted(tables, key=lambda kind: kind.at))
 
 
-def elements_of(legs: Sequence[Leg], simulation: Simulation) -> tuple[type[Element], ...]:
-    """Those that any of some legs has."""
-    return tuple(element for element in known() if element.among(legs, simulation))
+def elements_of(legs: Sequence[Leg], simulation: Simulation) -> tuple[Slot, ...]:
+    """Those that a kernel for some legs knows of, two alike in a leg after each other."""
+    there = (kind for kind in kinds_of(legs) if kind.among(legs, simulation))
+    most = ((kind, max(len(kind.all_of(leg)) for leg in legs)) for kind in there)
+    return tuple(Slot(kind, number) for kind, count in most for number in range(1, count + 1))
+
+
+def refuse_tables(legs: Sequence[Leg], reader: str, *, known: Sequence[type[Element]] = ()) -> None:
+    """Raise InputError if legs have elements with tables of their own that some reader of legs does not know."""
+    for leg in legs:
+        for element in leg.elements:
+            if type(element) not in known:
+                raise InputError(
+                    f"is not known to {reader}",
+                    key=f"leg.{element.at}",
+                    allowed="legs without it",
+                    next_step=f"Leave [leg.{element.at}] out for this",
+                )
+
+
+def element_at(name: str) -> type[Element] | None:
+    """The class with a table of this name, of a module that was imported or of a package that names it; None of none.
+
+    Raises
+    ------
+    InputError
+        The package's entry point in the group ``flexapod.elements`` gives no such class.
+    """
+    from importlib.metadata import entry_points  # most studies have no such table
+
+    for point in () if name in registered else entry_points(group=GROUP, name=name):
+        found = point.load()
+        if registered.get(name) is not found:
+            raise InputError(
+                "is no element of this name",
+                value=f"{point.name} = {point.value!r}",
+                allowed=f'a class of flexapod.Element with at = "{name}"',
+                next_step=f"See the entry point of the package in the group {GROUP}",
+            )
+    return registered.get(name)

@@ -7,7 +7,7 @@ from dataclasses import dataclass
 from types import SimpleNamespace
 from typing import TYPE_CHECKING, Any, ClassVar, Self
 
-from flexapod.elements.element import Element, Moving, Named, Standing, asked_beside
+from flexapod.elements.element import Moving, Named, Physics, Standing, asked_beside
 
 if TYPE_CHECKING:
     from flexapod.model import Leg, ScrewDrive
@@ -15,7 +15,7 @@ if TYPE_CHECKING:
 
 
 @dataclass(frozen=True)
-class MotorLoop(Element):
+class MotorLoop(Physics):
     """A motor that lags, or whose loop is closed about another place than its rotor: j is its impulse."""
 
     screw: ScrewDrive
@@ -54,9 +54,8 @@ class MotorLoop(Element):
         return found | ({"loop_lag": screw.lag, "loop_at_once": 0.0} if screw.lag else {})
 
     @classmethod
-    def held(cls, leg: Leg, *, at_rest: bool) -> Sequence[str]:
+    def held(cls, own: Self | None, leg: Leg, *, at_rest: bool) -> Sequence[str]:
         """The impulse of a force that comes at once; at rest what the loop leaves to its place, Eq. (T23.55)."""
-        own = cls.of(leg)
         if own is None or not at_rest:
             return () if own is not None and own.screw.lag else ("j",)
         return ("j", *(("r",) if own.at else ()), *(("l",) if own.at and own.screw.rests else ()))

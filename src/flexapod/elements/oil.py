@@ -6,7 +6,7 @@ from dataclasses import dataclass
 from types import SimpleNamespace
 from typing import TYPE_CHECKING, Any, ClassVar, Self
 
-from flexapod.elements.element import Element, Named, Series, Standing
+from flexapod.elements.element import Named, Physics, Series, Standing
 from flexapod.elements.springs import before_stroke, oil_shares
 
 if TYPE_CHECKING:
@@ -14,7 +14,7 @@ if TYPE_CHECKING:
 
 
 @dataclass(frozen=True)
-class Oil(Element):
+class Oil(Physics):
     """The two columns of oil of a hydraulic cylinder."""
 
     drive: HydraulicDrive

@@ -8,7 +8,7 @@ from typing import TYPE_CHECKING, Any, ClassVar, Self
 
 import numpy as np
 
-from flexapod.elements.element import Element, Named, Standing
+from flexapod.elements.element import Contribution, Named, Physics, Standing
 from flexapod.elements.frame import Energies
 from flexapod.symbolic.vocabulary import cos, dot, vertcat
 from flexapod.typing import Array
@@ -22,7 +22,7 @@ HARMONICS = 4  # at most
 
 
 @dataclass(frozen=True)
-class Rippling(Element):
+class Rippling(Physics):
     """The ripple of a motor by the travel that it drives: angle of the first harmonic [rad/m], amplitudes (4,) [N]."""
 
     wave: float
@@ -41,7 +41,15 @@ class Rippling(Element):
         return {"ripple_wave": self.wave, "ripple": self.amplitudes / (self.wave * np.arange(1, HARMONICS + 1))}
 
     @classmethod
-    def energy(cls, p: SimpleNamespace, q: SimpleNamespace, v: SimpleNamespace, elements: Sequence[type]) -> Energies:
+    def energy(cls, p: SimpleNamespace, q: SimpleNamespace, v: SimpleNamespace) -> Energies:
         """Energy of the harmonics of the torque, of mean 0."""
         angle = p.ripple_wave * q.r
         return Energies(strain=dot(p.ripple, vertcat(*(1 - cos(k * angle) for k in range(1, HARMONICS + 1)))))
+
+    def errors(self, leg: Leg) -> Sequence[Contribution]:
+        """What it moves the rotor by at rest, against the spring of its loop, Eq. (T23.22)."""
+        screw = leg.screw
+        if screw is None or not screw.rippled:
+            return ()
+        how = "standard deviation over a period, against the loop's stiffness, legs independent"
+        return (Contribution("ripple", "random", screw.rippled, how, stands=True),)

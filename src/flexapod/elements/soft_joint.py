@@ -6,7 +6,7 @@ from collections.abc import Sequence
 from dataclasses import dataclass
 from typing import TYPE_CHECKING, Any, ClassVar, Literal, Self
 
-from flexapod.elements.element import Element, Named, Standing
+from flexapod.elements.element import Named, Physics, Standing
 from flexapod.elements.frame import Energies
 from flexapod.elements.springs import Spring, in_series, springs_along, viscous
 from flexapod.symbolic.vocabulary import dot
@@ -17,7 +17,7 @@ if TYPE_CHECKING:
 
 
 @dataclass(frozen=True)
-class SoftJoint(Element):
+class SoftJoint(Physics):
     """Springs of a joint across the leg, and all those along it there, which are in series."""
 
     joint: Joint
@@ -32,7 +32,7 @@ class SoftJoint(Element):
         return cls(getattr(leg, f"{cls.end}_joint"), along) if along else None
 
     @classmethod
-    def held(cls, leg: Leg, *, at_rest: bool) -> Sequence[str]:
+    def held(cls, own: Self | None, leg: Leg, *, at_rest: bool) -> Sequence[str]:
         """None by itself: a flexure has the same coordinates (`solve.robot_system`)."""
         return ()
 

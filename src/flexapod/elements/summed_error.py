@@ -7,7 +7,7 @@ from dataclasses import dataclass
 from types import SimpleNamespace
 from typing import TYPE_CHECKING, Any, ClassVar, Self
 
-from flexapod.elements.element import Element, Moving, Named, Standing
+from flexapod.elements.element import Moving, Named, Physics, Standing
 from flexapod.elements.motor_loop import MotorLoop
 
 if TYPE_CHECKING:
@@ -16,7 +16,7 @@ if TYPE_CHECKING:
 
 
 @dataclass(frozen=True)
-class SummedError(Element):
+class SummedError(Physics):
     """The sum w of the error of a loop: its `gain` [N/(m s)] by the travel that the rotor drives."""
 
     gain: float
@@ -34,9 +34,9 @@ class SummedError(Element):
         return {"rotor_integral": self.gain}
 
     @classmethod
-    def held(cls, leg: Leg, *, at_rest: bool) -> Sequence[str]:
+    def held(cls, own: Self | None, leg: Leg, *, at_rest: bool) -> Sequence[str]:
         """At rest it has left no error: then the rotor is where it is to be, and there is nothing to sum."""
-        if cls.of(leg) is None:
+        if own is None:
             return ("w",)
         return ("w", "r") if at_rest else ()
 
@@ -48,7 +48,9 @@ class SummedError(Element):
     @classmethod
     def pushes(cls, x: Moving) -> Mapping[str, SX]:
         """The error is the rate of the sum, Eq. (T23.16)."""
-        return {"w": (x.rate(MotorLoop.place(x)) if MotorLoop in x.elements else x.v.r) - x.v_cmd}
+        return {
+            "w": (x.rate(MotorLoop.place(x)) if any(one.kind is MotorLoop for one in x.elements) else x.v.r) - x.v_cmd
+        }
 
     @classmethod
     def inertia(cls, p: SimpleNamespace) -> Mapping[str, tuple[SX | float, SX | float]]:

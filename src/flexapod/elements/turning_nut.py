@@ -6,14 +6,14 @@ from dataclasses import dataclass
 from types import SimpleNamespace
 from typing import TYPE_CHECKING, Any, ClassVar, Self
 
-from flexapod.elements.element import Element, Named, Series, Standing
+from flexapod.elements.element import Named, Physics, Series, Standing
 
 if TYPE_CHECKING:
     from flexapod.model import Leg
 
 
 @dataclass(frozen=True)
-class TurningNut(Element):
+class TurningNut(Physics):
     """A nut that turns with the piston: its `travel` by that angle [m/rad]."""
 
     travel: float

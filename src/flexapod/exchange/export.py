@@ -5,6 +5,7 @@ from __future__ import annotations
 import numpy as np
 
 from flexapod import model, rigid
+from flexapod.elements.known import refuse_tables
 from flexapod.errors import InputError
 from flexapod.exchange.decks import Deck, number
 from flexapod.exchange.decks_legs import LegAtPose, PayloadAtPose, axial_inertia, legs_at_pose
@@ -76,6 +77,7 @@ def abaqus_deck(
 
 def _written(study: model.Study, pose: PoseLike, elements: int, modes: int, title: str) -> str:
     robot = study.robot
+    refuse_tables(robot.legs, "decks")
     _refuse_mounts(robot)
     path = as_pose(robot, pose)
     locked = locked_poses(robot, model.Simulation(), path, study.load)

@@ -4,10 +4,11 @@ The residuals are exact. The matrices at rest serve equilibria, modes and the it
 """
 
 from flexapod.elements.drive_train import DriveTrain
-from flexapod.elements.element import Element, Moving, asked_beside
+from flexapod.elements.element import Moving, asked_beside
 from flexapod.elements.motor_loop import MotorLoop
 from flexapod.elements.mount import plate
 from flexapod.elements.servo import Servo
+from flexapod.elements.slot import Slot
 from flexapod.mechanics.closure import ball_closure, load_force, pose_closure
 from flexapod.mechanics.layout import LOAD_SIZE, Shapes, leg_parameters, payload_parameters
 from flexapod.mechanics.leg import leg
@@ -41,7 +42,7 @@ from flexapod.symbolic.vocabulary import (
 def leg_functions(shapes: Shapes) -> list[NamedFunction]:
     """Residual, matrices at rest, energies and rates of the closure of one leg with the given shapes."""
     x = _Leg(shapes)
-    looping = [x.looping()] if MotorLoop in shapes.elements else []
+    looping = [x.looping()] if shapes.holds(MotorLoop) else []
     return [x.residual(), x.matrices(), x.energies(), x.closing(), *looping]
 
 
@@ -82,11 +83,11 @@ class _Leg:
         }
 
     def _asked_of(self, drive: str) -> SX | None:
-        beside = drive == "rotor" and MotorLoop not in self.shapes.elements
+        beside = drive == "rotor" and not self.shapes.holds(MotorLoop)
         return asked_beside(self.shapes.elements, self.p, self.qs) if beside else None
 
     @property
-    def elements(self) -> tuple[type[Element], ...]:
+    def elements(self) -> tuple[Slot, ...]:
         """Those of the kernel."""
         return self.shapes.elements
 
@@ -178,11 +179,11 @@ class _Leg:
     def forces(self) -> SX:
         """Forces of the drives' springs; of a stroke that is driven through springs theirs on it, Eq. (T15.11)."""
         forces = [servo.force for servo in self.servos.values()]
-        if MotorLoop in self.elements:
+        if self.shapes.holds(MotorLoop):
             x = self.as_moving()
             forces[-1] += MotorLoop.force(x, MotorLoop.asks(x))
         if self.shapes.has("r"):
-            series = self.body.elements[DriveTrain]
+            series = self.body.elements[Slot(DriveTrain)]
             forces[0] -= gradient(series.strain, self.qs.l) + gradient(series.dissipation, self.vs.l)
         return vertcat(*forces)
 

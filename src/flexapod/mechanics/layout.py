@@ -5,7 +5,8 @@ from functools import cached_property
 from typing import Literal
 
 from flexapod.bases import AxialBasis, LateralBasis, lateral_basis
-from flexapod.elements.element import Element
+from flexapod.elements.element import Physics
+from flexapod.elements.slot import Slot
 from flexapod.mechanics.guide_layout import CYLINDER_PARAMETERS, GUIDE_PARAMETERS
 from flexapod.mechanics.section_layout import inner_parameters, section_parameters
 
@@ -144,8 +145,8 @@ class Shapes:
     axial : AxialBasis
     planar : bool
         The single actuator in its plane: beta alone, no direction b, a body at the tip.
-    elements : tuple of Element
-        What else its legs have, in the order of `elements.known`.
+    elements : tuple of Slot
+        What else its legs have, see `elements.known`.
     closure : {"none", "point", "pose"}
         What the payload fixes at the tip: nothing, its place (an ideal ball) or its place and attitude.
     carriage : {"", "slider", "crank"}
@@ -180,7 +181,7 @@ class Shapes:
     a: LateralBasis
     b: LateralBasis
     axial: AxialBasis
-    elements: tuple[type[Element], ...] = ()
+    elements: tuple[Slot, ...] = ()
     planar: bool = False
     closure: Literal["none", "point", "pose"] = "point"
     carriage: Literal["", "slider", "crank"] = ""
@@ -305,6 +306,10 @@ class Shapes:
     def l_index(self) -> int:
         """Position of the reference length l in q."""
         return self.index("l")
+
+    def holds(self, kind: type[Physics]) -> bool:
+        """Whether an element of a kind is among them."""
+        return any(element.kind is kind for element in self.elements)
 
     def has(self, name: str) -> bool:
         """Whether the leg has a coordinate of this name."""

@@ -11,7 +11,6 @@ from flexapod.bases import LateralBasis
 from flexapod.elements.carriage import carriage
 from flexapod.elements.cylinder import cylinder
 from flexapod.elements.distribution import Line, Motion
-from flexapod.elements.element import Element
 from flexapod.elements.flexible_cylinder import flexible_cylinder, head, hole, mouth
 from flexapod.elements.flexure import flexure, springs
 from flexapod.elements.frame import Energies, Frame
@@ -28,6 +27,7 @@ from flexapod.elements.guide import (
 from flexapod.elements.mount import displaced, mount, plate, world
 from flexapod.elements.rotations import small_rotation
 from flexapod.elements.sliding_piston import sliding_piston, tip_place, tip_turn
+from flexapod.elements.slot import Slot
 from flexapod.elements.soft_joint import SoftBase, SoftPlatform, soft_joint
 from flexapod.elements.stepped_piston import Part, SteppedShapes, of_planes, stepped_piston, stepped_shapes, straight
 from flexapod.elements.tip_body import tip_body
@@ -58,7 +58,7 @@ class Leg:
     tip_axes: SX
     theta: SX
     turn: SX
-    elements: Mapping[type[Element], Energies]
+    elements: Mapping[Slot, Energies]
     present: tuple[SX, SX]
     foot: SX
 
@@ -70,7 +70,7 @@ def leg(shapes: Shapes, p: SimpleNamespace, q: SX, v: SX, qs: SimpleNamespace, v
     if shapes.flexure:
         ground = ground.moved(_three(qs, "u"), _three(vs, "u"))
     frame = universal(ground, qs, vs)
-    if SoftBase in shapes.elements:
+    if shapes.holds(SoftBase):
         along = ground.axes.T @ frame.axes[:, 2] if shapes.flexure else ALONG
         e += soft_joint(p.base_soft, p.base_soft_damping, _three(qs, "u"), _three(vs, "u"), along)
         frame = frame if shapes.flexure else frame.moved(_three(qs, "u"), _three(vs, "u"))
@@ -90,7 +90,7 @@ def leg(shapes: Shapes, p: SimpleNamespace, q: SX, v: SX, qs: SimpleNamespace, v
     e += inside
     if shapes.torsion:
         e += torsion(frame, p, qs, vs)
-    of_elements = {x: x.energy(p, qs, vs, shapes.elements) for x in shapes.elements}
+    of_elements = {one: one.energy(shapes.elements, p, qs, vs) for one in shapes.elements}
     for energies in of_elements.values():
         e += energies
     if shapes.tip_body:
@@ -98,7 +98,7 @@ def leg(shapes: Shapes, p: SimpleNamespace, q: SX, v: SX, qs: SimpleNamespace, v
     if shapes.closure == "pose":
         e += _joints(shapes, p, qs, vs)
     place = tip_place(motion) + shift
-    if SoftPlatform in shapes.elements:
+    if shapes.holds(SoftPlatform):
         along = matrix33(p.leg_frame).T @ ALONG if shapes.flexure else ALONG
         e += soft_joint(p.platform_soft, p.platform_soft_damping, _three(qs, "e"), _three(vs, "e"), along)
         place = place if shapes.flexure else place + _three(qs, "e")

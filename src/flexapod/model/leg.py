@@ -4,8 +4,9 @@ from __future__ import annotations
 
 from typing import Annotated, Any, ClassVar
 
-from pydantic import Field, model_validator
+from pydantic import Field, InstanceOf, SerializeAsAny, model_validator
 
+from flexapod.elements.element import Element
 from flexapod.errors import InputError
 from flexapod.model.chain import Chain, chain_of
 from flexapod.model.damping import BodyDamping, damping_parts
@@ -48,10 +49,11 @@ class Leg(Frozen):
     foot, where the letters have one; `base_joint`, `platform_joint`;
     `springs` along it, in series with its other parts; `passive`: nothing drives it; `damping`: modal damping ratio of
     the piston, or `Damping` with a part in proportion to its stiffness; `axial_modes`: number of axial shapes, the
-    static one first.
+    static one first; `elements`: parts with tables of their own (`flexapod.Element`).
     `u_axis` stands for the axis of `base_joint`.
     """
 
+    derived: ClassVar[tuple[str, ...]] = ("elements",)
     placed: ClassVar[tuple[str, ...]] = ("base_joint", "platform_joint", "carriage", "u_axis", "count", "chain")
 
     chain: str = "UPS"
@@ -68,6 +70,7 @@ class Leg(Frozen):
     damping: BodyDamping = 0.0
     drive: Drive = PrescribedDrive()
     axial_modes: int = Field(default=2, strict=True, ge=0, le=4)
+    elements: tuple[SerializeAsAny[InstanceOf[Element]], ...] = ()
 
     def __init__(self, **fields: Any) -> None:
         if fields.get("strut") is not None:

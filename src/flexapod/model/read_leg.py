@@ -7,6 +7,8 @@ from typing import TypeVar
 
 import numpy as np
 
+from flexapod.elements.element import Element, registered
+from flexapod.elements.known import element_at
 from flexapod.errors import InputError
 from flexapod.model.chain import chain_of
 from flexapod.model.drive import ForceDrive, PrescribedDrive, ServoDrive
@@ -72,9 +74,20 @@ def read_leg(section: Section, number: int, count: int, chain: str, places: tupl
             "platform_joint": _joint(section, "platform_joint", platform, normal),
             "springs": _springs(section.section("springs")),
             "drive": _drive(section.section("drive"), number, count, _TURNING if letters.turning else _SLIDING),
+            "elements": tuple(element for kind in kinds.values() for element in _elements(section, kind)),
         }
 
-    return section.read(Leg, also=("count", "u_axis"), then=parts)
+    own = {*columns_of(Leg), "count", "u_axis"} - {*Leg.derived}
+    kinds = {name: kind for name in section.data if name not in own and (kind := element_at(name)) is not None}
+    return section.read(Leg, also=("count", "u_axis", *registered), then=parts)
+
+
+def _elements(section: Section, kind: type[Element]) -> list[Element]:
+    """Elements of a kind: one table, or a list of tables."""
+    given = section.data[kind.at]
+    if not isinstance(given, list):
+        return [section.child(given, kind.at).read(kind)]
+    return [section.child(table, f"{kind.at}[{k}]").read(kind) for k, table in enumerate(given, start=1)]
 
 
 def _joint(leg: Section, name: str, place: Array, normal: Array) -> Joint | None:

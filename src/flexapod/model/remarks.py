@@ -27,6 +27,9 @@ def robot_remarks(robot: Robot) -> tuple[str, ...]:
             numbers.setdefault(remark, []).append(i)
         if robot.heat is not None and robot.heat.warms("piston") and _expands_unknown(robot.heat, leg):
             numbers.setdefault(_LIKE_STEEL, []).append(i)
+        for element in leg.elements:
+            what = f"[leg.{element.at}] is not in the forces of the rigid robot"
+            numbers.setdefault(what, []).append(i)
     told = (f"{_legs(which, robot.count)}: {remark}" for remark, which in numbers.items())
     return (*told, *(() if robot.heat is None else _cold(robot.heat)), *_straight(robot))
 

@@ -117,6 +117,9 @@ def _leg(leg: Leg, base: Array, platform: Array, normal: Array) -> dict[str, obj
     del fields["springs"]
     if leg.springs:
         fields["springs"] = {spring.name: spring for spring in leg.springs}
+    for kind in dict.fromkeys(type(element) for element in leg.elements):
+        own = kind.all_of(leg)
+        fields[kind.at] = own[0] if len(own) == 1 else list(own)
     if leg.carriage is not None:
         fields["carriage"] = _carriage(leg.carriage, base, normal)
     if leg.strut is None:

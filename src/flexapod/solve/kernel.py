@@ -12,6 +12,7 @@ from weakref import WeakValueDictionary
 import numpy as np
 
 from flexapod import elements, mechanics, symbolic
+from flexapod.elements.element import source_of
 from flexapod.mechanics.layout import Shapes, leg_parameters
 from flexapod.symbolic.compiler import CompiledFunction, compiled_library, compiler
 from flexapod.typing import Array
@@ -139,8 +140,10 @@ def _fingerprint(shapes: Shapes) -> list[object]:
     bases = [x for x in (shapes.a, shapes.b, shapes.axial, shapes.guide, shapes.cylinder) if x is not None]
     numbers = [getattr(basis, field.name) for basis in bases for field in fields(basis)]
     arrays = [np.ascontiguousarray(x).tobytes() for x in numbers if isinstance(x, np.ndarray)]
+    sources = {source_of(one.kind) for one in shapes.elements}
+    texts += [path.read_bytes() for path in sorted(path for path in sources if path is not None)]
     switches = [x for x in (getattr(shapes, field.name) for field in fields(shapes)) if isinstance(x, (bool, int, str))]
-    return [*texts, *arrays, shapes.layout, switches]
+    return [*texts, *arrays, shapes.layout, [str(one) for one in shapes.elements], switches]
 
 
 def evaluate(

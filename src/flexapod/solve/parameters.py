@@ -2,7 +2,7 @@
 
 import numpy as np
 
-from flexapod.elements.element import Standing, numbers_of
+from flexapod.elements.element import Standing
 from flexapod.elements.springs import twist_with_length, viscous
 from flexapod.mechanics import layout
 from flexapod.mechanics.layout import LEG_PARAMETERS, PAYLOAD_PARAMETERS, Shapes
@@ -178,7 +178,7 @@ def _joints(leg: Leg, legs: Limbs, i: int, per_loss: float) -> dict[str, object]
 def _of_elements(leg: Leg, shapes: Shapes, standing: Standing) -> dict[str, object]:
     found: dict[str, object] = {}
     for element in shapes.elements:
-        found |= numbers_of(element, leg, standing)
+        found |= element.numbers(leg, standing)
     return found
 
 

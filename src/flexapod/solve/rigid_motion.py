@@ -93,8 +93,10 @@ def _undeformed(system: System, robot: Robot, path: rigid.Poses, found: rigid.Le
     q = np.zeros((*x.shape[:3], system.n))
     there, at = leg_coordinates(shapes)
     q[..., at] = x[..., there]
-    if shapes.has("r"):
-        q[..., shapes.index("r")] = np.where([leg.gives for leg in robot.legs], q[..., shapes.l_index], 0.0)
+    for element in shapes.elements:
+        has = [element.of(leg) is not None for leg in robot.legs]
+        for name, other in element.follows.items():
+            q[..., shapes.index(name)] = np.where(has, q[..., shapes.index(other)], 0.0)
     return q
 
 

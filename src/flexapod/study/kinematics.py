@@ -8,6 +8,7 @@ import numpy as np
 from numpy.typing import ArrayLike
 
 from flexapod import model, rigid
+from flexapod.elements.known import refuse_tables
 from flexapod.errors import InputError
 from flexapod.rigid.rotations import quaternion
 from flexapod.study.after.leg_results import drive_forms, leg_labels, rigid_leg_results, rigid_reactions
@@ -135,6 +136,7 @@ def inverse_dynamics(
         As `inverse_kinematics`.
     """
     path, remarks = _path(_study(robot, motion, load, duration, output_step))
+    refuse_tables(path.robot.legs, "the rigid robot")
     values = _legs_and_payload(path) | rigid_force_results(path) | rigid_reactions(path.robot, path.forces)
     return _named(path, values, [*remarks, *open_force_words(path.forces)])
 

@@ -11,6 +11,7 @@ from flexapod.study.actuator import simulate_actuator
 from flexapod.study.after.forces import force_error, force_warnings
 from flexapod.study.after.leg_results import damped_angles, drive_forms
 from flexapod.study.after.limits import drive_warnings
+from flexapod.study.after.of_elements import element_forms
 from flexapod.study.after.plausibility import robot_warnings
 from flexapod.study.after.results import payload_results, rigid_force_results, robot_coords, robot_results
 from flexapod.study.after.steps import step_warnings
@@ -67,7 +68,9 @@ class Simulated:
         if (error := self.force_error()) is not None:
             attrs["estimated_force_error"] = error
         robot = self.study.robot
-        return dataset(self.values(), robot_coords(robot, system, self.record), attrs, drive_forms(robot))
+        return dataset(
+            self.values(), robot_coords(robot, system, self.record), attrs, drive_forms(robot) | element_forms(robot)
+        )
 
 
 @one_thread()

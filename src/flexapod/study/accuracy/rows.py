@@ -7,6 +7,7 @@ from typing import NamedTuple
 import numpy as np
 
 from flexapod import rigid
+from flexapod.elements.known import kinds_of
 from flexapod.model import Study
 from flexapod.rigid.limbs import COORDINATES
 from flexapod.study.accuracy.at_pose import AtPose
@@ -42,17 +43,7 @@ def rows(study: Study, pose: rigid.Poses) -> list[Row]:
         Row(f"{one.name} tolerance", "random", "", one.sigma, "first order, errors independent", stands=True)
         for one in at.spreading
     ]
-    increment = np.array([0.0 if leg.screw is None else leg.screw.increment for leg in study.robot.legs])
-    if increment.any():
-        by_leg = (increment / np.sqrt(12))[:, None] * at.sensitivity.coordinate[
-            0, :, COORDINATES.index("l")
-        ]  # (T23.12)
-        found.append(Row("encoder", "random", "", by_leg, "increment over the root of 12, legs independent"))
-    rippling = np.array([0.0 if leg.screw is None else leg.screw.rippled for leg in study.robot.legs])
-    if rippling.any():
-        by_leg = rippling[:, None] * at.sensitivity.coordinate[0, :, COORDINATES.index("l")]
-        how = "standard deviation over a period, against the loop's stiffness, legs independent"
-        found.append(Row("ripple", "random", "", by_leg, how, stands=True))
+    found += _of_elements(study, at)
     if (shorter := guide_play(study.robot, at.sensitivity.q[0, :, COORDINATES.index("l")])).any():
         by_leg = np.abs(shorter[:, None] * at.sensitivity.coordinate[0, :, COORDINATES.index("l")])
         found.append(Row("guide play", "hysteretic", "", by_leg, "second order in the kink: legs that lean or do not"))
@@ -62,6 +53,22 @@ def rows(study: Study, pose: rigid.Poses) -> list[Row]:
         table = zip(PLACES, effect, strict=True)
         found += [Row(f"{place} play", "hysteretic", "", by_leg, how) for place, by_leg in table if by_leg.any()]
     return found
+
+
+def _of_elements(study: Study, at: AtPose) -> list[Row]:
+    """Rows of what elements make the strokes err by; alike ones of all legs are a row."""
+    legs, found = study.robot.legs, {}
+    for i, leg in enumerate(legs):
+        for kind in kinds_of(legs):
+            for error in (error for own in kind.all_of(leg) for error in own.errors(leg)):
+                sizes = found.setdefault(error._replace(size=0.0), np.zeros(len(legs)))
+                sizes[i] = np.hypot(sizes[i], error.size) if error.kind == "random" else sizes[i] + error.size
+    moves = at.sensitivity.coordinate[0, :, COORDINATES.index("l")]
+    by_leg = {error: sizes[:, None] * moves for error, sizes in found.items()}
+    return [
+        Row(error.name, error.kind, "", x if error.kind == "random" else np.abs(x), error.how, error.stands)
+        for error, x in by_leg.items()
+    ]
 
 
 def _nature(part: str) -> str:

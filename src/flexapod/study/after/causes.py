@@ -139,7 +139,7 @@ def _across(robot: Robot, found: Limbs, system: System, record: Record | RestSta
     shapes, errors = system.kernel.shapes, {}
     moves = tip_moves(robot, system, record.q)
     for name, end, soft in (("base_joint", "u", SoftBase), ("platform_joint", "e", SoftPlatform)):
-        if soft in shapes.elements and not shapes.flexure:
+        if shapes.holds(soft) and not shapes.flexure:
             at = shapes.index(f"{end}1")
             moves[name] = record.q[..., at : at + 2], np.zeros((*record.q.shape[:-1], 2))
     if found.plain or not moves:

@@ -48,7 +48,7 @@ def elongations(
         if leg.turning and "nut" in places:  # (T23.41)
             found["unkeyed"][..., i] = leg.turning * q[..., i, shapes.index("spin")]
             gives["nut"] = gives["nut"] - found["unkeyed"][..., i]
-        if Gap in shapes.elements:
+        if shapes.holds(Gap):
             gives["nut"] = gives["nut"] - played[..., i]
         for at, give in gives.items():
             here = [spring for spring in springs if spring.at == at and at in places]
@@ -61,10 +61,10 @@ def elongations(
 def in_gap(robot: Robot, system: System, q: Array) -> Array:
     """How far the play of legs that is a gap has let them go, (..., legs) [m], at most half of it; Eq. (T16.26)."""
     shapes = system.kernel.shapes
-    if Gap not in shapes.elements:
+    if not shapes.holds(Gap):
         return np.zeros(q.shape[:-1])
     apart = q[..., shapes.l_index] - q[..., shapes.index("r")]
-    if TurningNut in shapes.elements:
+    if shapes.holds(TurningNut):
         apart = apart - np.array([leg.turning for leg in robot.legs]) * q[..., shapes.index("spin")]
     return apart - past_gap(apart, np.array([leg.half_play for leg in robot.legs]))
 

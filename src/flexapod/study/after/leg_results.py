@@ -24,6 +24,7 @@ from flexapod.study.after import legs as by_name
 from flexapod.study.after.causes import cause_names
 from flexapod.study.after.elongations import elongations, in_gap
 from flexapod.study.after.inside import guide_results, is_guided, tip_moves
+from flexapod.study.after.of_elements import element_results
 from flexapod.study.after.plausibility import axes_as_drawn
 from flexapod.study.bodies import body_results, largest_turns, pairs_of_legs
 from flexapod.study.names import DRIVES, Variable
@@ -65,6 +66,7 @@ def leg_results(robot: Robot, system: System, path: RigidPath, record: Record) -
         results["friction"] = record.friction * _by_angle(robot, system)
     if bent.shape[-1]:
         results["lateral_amplitude"] = bent
+    results |= element_results(robot, system, q)
     if shapes.axial.count:
         results["axial_amplitude"] = q[..., shapes.index("c") :][..., : shapes.axial.count]
     return results

@@ -14,6 +14,7 @@ from flexapod.errors import InputError, closest
 from flexapod.model import ActuatorStudy, Study
 from flexapod.study.after.causes import cause_names
 from flexapod.study.after.leg_results import absent, drive_forms, leg_labels
+from flexapod.study.after.of_elements import element_forms
 from flexapod.study.after.summary import tip_size
 from flexapod.study.attributes import attributes
 from flexapod.study.names import ACTUATOR_FORMS, SPACE_FORMS, VARIABLES, Variable, fixed_labels
@@ -153,7 +154,8 @@ def _known(name: str, table: Mapping[str, object], key: str) -> None:
 def _records(study: Study | ActuatorStudy) -> dict[str, Variable]:
     """Variables over time that a simulation of this kind of study has."""
     forms = drive_forms(study.robot) if isinstance(study, Study) else {}
-    over_time = {name: forms.get(name, entry) for name, entry in VARIABLES.items() if "time" in entry.dims[:1]}
+    own = element_forms(study.robot) if isinstance(study, Study) else {}
+    over_time = {name: forms.get(name, entry) for name, entry in VARIABLES.items() if "time" in entry.dims[:1]} | own
     actuator = ("length", "angle", "length_rate", "angle_rate", "mode_amplitude", "tip_position", "torque", "force")
     space = ("elevation", "elevation_rate", *_SPACE_PEAKS)
     shared = ("energy_kinetic", "energy_dissipated", "work_drive", "work_external", "closure_residual")

@@ -1,0 +1,112 @@
+"""A place for an element in a kernel: its names beside those of the others, and of two alike which of them it is."""
+
+from __future__ import annotations
+
+from collections.abc import Mapping, Sequence
+from dataclasses import dataclass, replace
+from types import SimpleNamespace
+from typing import TYPE_CHECKING, Any
+
+import numpy as np
+
+from flexapod.elements.element import Moving, Named, Physics, Series, Standing
+
+if TYPE_CHECKING:
+    from flexapod.elements.frame import Energies
+    from flexapod.model import Leg
+    from flexapod.symbolic.vocabulary import SX
+
+__all__ = ["Slot"]
+
+
+@dataclass(frozen=True)
+class Slot:
+    """The ``number``-th element of a kind in each leg, from 1. What it has is what its `kind` has, see `Physics`."""
+
+    kind: type[Physics]
+    number: int = 1
+
+    @property
+    def prefix(self) -> str:
+        """What stands before its names: nothing of an element without a table of its own."""
+        at = getattr(self.kind, "at", "")
+        return at and f"{at}{'' if self.number == 1 else f'_{self.number}'}_"
+
+    def of(self, leg: Leg) -> Physics | None:
+        """The element in one leg; None of a leg without it."""
+        found = self.kind.all_of(leg)
+        return found[self.number - 1] if len(found) >= self.number else None
+
+    @property
+    def coordinates(self) -> Named:
+        """By name, with their sizes."""
+        return self._named(self.kind.coordinates)
+
+    @property
+    def parameters(self) -> Named:
+        """By name, with their sizes."""
+        return self._named(self.kind.parameters)
+
+    @property
+    def follows(self) -> Mapping[str, str]:
+        """Own coordinates that are as others are in an undeformed leg."""
+        return self._prefixed(self.kind.follows)
+
+    def numbers(self, leg: Leg, standing: Standing) -> dict[str, Any]:
+        """Parameters of one leg, whether or not the element is there."""
+        own = self.of(leg)
+        absent = {name: self.kind.absent.get(name, np.zeros(size)) for name, size in self.kind.parameters}
+        return self._prefixed(absent if own is None else absent | dict(own.numbers(leg, standing)))
+
+    def held(self, leg: Leg, *, at_rest: bool) -> list[str]:
+        """Coordinates that follow a table in one leg."""
+        return list(self._prefixed(dict.fromkeys(self.kind.held(self.of(leg), leg, at_rest=at_rest))))
+
+    def energy(self, elements: Sequence[Slot], p: SimpleNamespace, q: SimpleNamespace, v: SimpleNamespace) -> Energies:
+        """Energies of a leg with some elements."""
+        return self.kind.energy_among(elements, self.seen(p), self.seen(q), self.seen(v))
+
+    def in_series(self, s: Series, p: SimpleNamespace, q: SimpleNamespace, v: SimpleNamespace) -> Series:
+        """Springs between rotor and stroke with what the element changes in them."""
+        return self.kind.in_series(s, self.seen(p), self.seen(q), self.seen(v))
+
+    def past(self, x: SX, rate: SX, p: SimpleNamespace) -> tuple[SX, SX]:
+        """How far these are stretched, and how fast."""
+        return self.kind.past(x, rate, self.seen(p))
+
+    def asked(self, p: SimpleNamespace, q: SimpleNamespace) -> SX | None:
+        """Force that a loop about a rotor asks for because of the element."""
+        return self.kind.asked(self.seen(p), self.seen(q))
+
+    def pushes(self, x: Moving) -> dict[str, SX]:
+        """What is added to the balance without an energy."""
+        return self._prefixed(self.kind.pushes(self._seen_moving(x)))
+
+    def inertia(self, p: SimpleNamespace) -> dict[str, tuple[SX | float, SX | float]]:
+        """Mass and damper without an energy."""
+        return self._prefixed(self.kind.inertia(self.seen(p)))
+
+    def given(self, x: Moving) -> SX | None:
+        """Power that comes in."""
+        return self.kind.given(self._seen_moving(x))
+
+    def seen(self, names: SimpleNamespace) -> SimpleNamespace:
+        """Names as the element has them: its own without what stands before them."""
+        if not self.prefix:
+            return names
+        own = {name: getattr(names, f"{self.prefix}{name}", None) for name in self._own}
+        return SimpleNamespace(**vars(names) | {name: value for name, value in own.items() if value is not None})
+
+    def _seen_moving(self, x: Moving) -> Moving:
+        return replace(x, p=self.seen(x.p), q=self.seen(x.q), v=self.seen(x.v)) if self.prefix else x
+
+    @property
+    def _own(self) -> set[str]:
+        return {name for name, _ in (*self.kind.coordinates, *self.kind.parameters)}
+
+    def _named(self, names: Named) -> Named:
+        return tuple((f"{self.prefix}{name}", size) for name, size in names)
+
+    def _prefixed(self, found: Mapping[str, Any]) -> dict[str, Any]:
+        own = self._own if self.prefix else ()
+        return {f"{self.prefix}{name}" if name in own else name: value for name, value in found.items()}
