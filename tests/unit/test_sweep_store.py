@@ -16,7 +16,6 @@ import flexapod as fx
 from flexapod import version
 from flexapod import version as identity
 from flexapod.errors import ComputationError, InputError
-from flexapod.files import scratch
 from flexapod.model import loads, tables
 from flexapod.surveys.sweeps import SweepStopped, batch, open_sweep, run, store, unstacked, writer
 from flexapod.surveys.sweeps.batch import compute_batch
@@ -242,6 +241,11 @@ RECORDS = {"scalars": ["com_deviation_peak"], "records": ["deviation_by_cause"]}
 def test_full_disk(path, monkeypatch, more):
     """Whichever page has no room: what the store says to be computed is, and the next run completes it."""
     whole = sweep_of_records(None)
+    with monkeypatch.context() as broken:
+        full(broken, 1)
+        with pytest.raises(ComputationError, match=r"No space left on device. Make space"):
+            sweep_of_records(path)
+    assert os.listdir(path.parent) == []
     monkeypatch.setattr(writer, "OFTEN", 0.0)
     monkeypatch.setattr(writer, "SHARE", np.inf)
     with monkeypatch.context() as broken:
@@ -264,21 +268,6 @@ def test_full_disk(path, monkeypatch, more):
 
 def sweep_of_records(path):
     return fx.sweep(quick(), diameters(6, **RECORDS), store=path, workers=0)
-
-
-@pytest.mark.parametrize("room", [5_000, 30_000, 60_000])
-def test_files_that_may_not_grow(path, room):
-    """What the system says is said, whether the file or its journal has no room: of a new store nothing is left."""
-    resource = pytest.importorskip("resource")
-    limits = resource.getrlimit(resource.RLIMIT_FSIZE)
-    resource.setrlimit(resource.RLIMIT_FSIZE, (room, limits[1]))
-    try:
-        with pytest.raises(ComputationError, match=r"sweep.sqlite cannot be written: .*Make space"):
-            sweep_of_records(path)
-    finally:
-        resource.setrlimit(resource.RLIMIT_FSIZE, limits)
-    assert path.exists() == (room > 5_000)
-    assert sweep_of_records(path).status.values.tolist() == ["computed"] * 6
 
 
 #: Rows of 200 points, all of them again and again with the number of the turn, until it is killed.
@@ -341,6 +330,9 @@ def test_what_a_killed_process_had_half_written_is_taken_back(path, opening):
     assert path.with_name("sweep.sqlite-journal").stat().st_size
     xr.testing.assert_identical(opening(path).load(), made)
     assert os.listdir(path.parent) == ["sweep.sqlite"]
+    subprocess.run([sys.executable, "-c", HALF, path], check=False)
+    path.unlink()  # by hand; what it had half written is not for the next one
+    xr.testing.assert_identical(sweep_of_records(path).load(), made)
 
 
 STROKE = "leg.stroke.max"
@@ -445,18 +437,6 @@ def test_a_full_store_is_opened_again_without_reading_its_tables_again(path, tmp
     (tmp_path / "roll.csv").write_text(f"time [s],roll [deg]\n{lines.replace('0.799,', '0.7995,')}", encoding="utf-8")
     assert Points(study, read_plan(diameters(20))).resolve().hash != first  # the content counts, not its date
     assert read == [1]
-
-
-def test_what_a_process_left_that_was_killed_while_it_made_a_store(path, tmp_path_factory):
-    child = subprocess.Popen(["true"])
-    child.wait()
-    with scratch(tmp_path_factory.mktemp("other")) as folder:
-        begin = folder.name.rsplit(str(os.getpid()), 1)[0]
-    gone, alive = (path.with_name(f"{begin}{number}-0123456789ab") for number in (child.pid, os.getppid()))
-    for left in (gone, alive):
-        (left / "store").mkdir(parents=True)
-    sweep(path)
-    assert sorted(os.listdir(path.parent)) == [alive.name, "sweep.sqlite"]
 
 
 @pytest.mark.parametrize("store", [".", "", "..", "/proc/x.sqlite", "/proc/x.zarr", 3])

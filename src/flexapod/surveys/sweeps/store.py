@@ -91,6 +91,7 @@ class SweepStore:
             try:
                 with scratch(path.parent) as folder:
                     _filled(folder / "store", known).close()
+                    path.with_name(path.name + "-journal").unlink(missing_ok=True)  # of one that was removed
                     (folder / "store").rename(path)
                 settle(path.parent)
             except (OSError, sqlite3.Error) as error:
