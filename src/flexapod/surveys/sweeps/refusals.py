@@ -57,7 +57,8 @@ def of_sqlite(error: sqlite3.Error | OSError, path: Path | None, done: int = 0) 
         return damaged(path, str(error))
     words = os.strerror(errno.ENOSPC) if code == sqlite3.SQLITE_FULL else getattr(error, "strerror", None) or error
     kept = f"; the points stored before ({done}) are whole" if done else ""
-    next_step = "Make space, then run the same command again: it continues"
+    first = "Let it be written to" if code == sqlite3.SQLITE_READONLY else "Make space"
+    next_step = f"{first}, then run the same command again: it continues"
     return ComputationError(f"{path} cannot be written: {words}{kept}", next_step=next_step)
 
 

@@ -34,8 +34,6 @@ def save_zarr(data: Dataset, path: str | Path) -> Path:
     InputError
         There is something else, or the folder cannot be written to.
     """
-    import zarr
-
     path, size = Path(path), data.sizes["point"]
     if path.exists() and not is_sweep(path):
         raise no_store(path)
@@ -43,14 +41,12 @@ def save_zarr(data: Dataset, path: str | Path) -> Path:
     many = max(1, int(BYTES * size / data.nbytes))
     fixed = [name for name, array in data.variables.items() if "point" not in array.dims]
     try:
-        with scratch(path.parent) as folder:
+        with scratch(path.parent) as folder, warnings.catch_warnings():
+            warnings.filterwarnings("ignore", message="Consolidated metadata")  # what xarray looks for first
             new: Any = folder / "new"
             for begin in range(0, size, many):
                 part = data.isel(point=slice(begin, begin + many)).drop_vars(fixed if begin else ())
-                part.to_zarr(new, append_dim="point" if begin else None, consolidated=False)
-            with warnings.catch_warnings():  # all that describes it in one place is what xarray looks for first
-                warnings.filterwarnings("ignore", message="Consolidated metadata")
-                zarr.consolidate_metadata(new)
+                part.to_zarr(new, append_dim="point" if begin else None)
             if path.exists():
                 path.rename(folder / "old")
             new.rename(path)
