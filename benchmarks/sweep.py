@@ -135,7 +135,7 @@ def main():
         for repeat in range(REPEATS):
             two = plain_rate(settings, given.points, 2)
             before = resident()
-            rate, cost = swept(settings, given.points, 2, Path(folder) / f"{repeat}.zarr")
+            rate, cost = swept(settings, given.points, 2, Path(folder) / f"{repeat}.sqlite")
             rates.append(rate)
             ratios.append(rate / two)
             client.append(cost)

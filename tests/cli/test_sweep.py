@@ -42,12 +42,12 @@ def files(folder):
 
 
 def result(folder):
-    return open_sweep(folder / "study-sweep" / "sweep.zarr")
+    return open_sweep(folder / "study-sweep" / "sweep.sqlite")
 
 
 def stored(folder):
     """Points in the store, while another process may be writing to it."""
-    path = folder / "study-sweep" / "sweep.zarr"
+    path = folder / "study-sweep" / "sweep.sqlite"
     return int((open_sweep(path).status != "pending").sum()) if path.exists() else 0
 
 
@@ -57,7 +57,7 @@ def test_what_it_prints_and_writes(flexapod, files, folder):
     for words in ("3 points: 3 computed.", "com_deviation_peak is smallest at point 2 (leg.piston.diameter = 30 mm)"):
         assert words in run.stdout
     names = {path.name for path in (folder / "study-sweep").iterdir()}
-    assert names == {"sweep.zarr", "sweep.csv", "sweep.png", "sweep.svg"}
+    assert names == {"sweep.sqlite", "sweep.csv", "sweep.png", "sweep.svg"}
 
 
 def test_without_arrays_of_dask(files, folder):
@@ -101,7 +101,7 @@ def test_json(flexapod, files, folder):
     assert (found["points"], found["computed"], found["failed"], found["pending"]) == (3, 3, 0, 0)
     smallest = found["scalars"]["com_deviation_peak"]["smallest_at"]
     assert smallest == {"point": 2, "leg.piston.diameter": 0.03}
-    assert found["files"][0] == "there/sweep.zarr"
+    assert found["files"][0] == "there/sweep.sqlite"
 
 
 def test_bad_input(flexapod, files, folder):
@@ -118,7 +118,7 @@ def test_workers_below_zero_leave_nothing_behind(flexapod, files, folder, more):
     run = flexapod("sweep", *files(), "--workers", "-1", *more)
     assert run.exit_code == 2
     assert "Error: --workers = -1: is out of range" in run.stderr
-    assert not (folder / "study-sweep" / "sweep.zarr").exists()
+    assert not (folder / "study-sweep" / "sweep.sqlite").exists()
     assert flexapod("sweep", *files(), "--workers", "0").exit_code == 0
     assert flexapod("sweep", *files(), "--workers", "-1", *more).exit_code == 2  # also where nothing is left to do
 

@@ -60,10 +60,10 @@ class _Entered:
 
 
 def test_order_changes_nothing(backwards, tmp_path):
-    there = sweep(14, store=tmp_path / "a.zarr")
+    there = sweep(14, store=tmp_path / "a.sqlite")
     assert len(backwards) == 1
     backwards.clear()
-    reversed_ = fx.sweep(quick(), diameters(14), store=tmp_path / "b.zarr")
+    reversed_ = fx.sweep(quick(), diameters(14), store=tmp_path / "b.sqlite")
     xr.testing.assert_identical(there, reversed_)
 
 
@@ -100,7 +100,7 @@ def test_two_local_workers_one_of_which_dies(monkeypatch, tmp_path):
         if words.startswith("1 of") and not seen:
             seen.append(_kill_a_worker())
 
-    made = sweep(30, workers=2, store=tmp_path / "a.zarr", progress=progress)
+    made = sweep(30, workers=2, store=tmp_path / "a.sqlite", progress=progress)
     assert seen == [True]
     assert np.flatnonzero(made.status.values == "failed").tolist() == [11]
     assert made.message.values[11] == schedule.DEADLY
@@ -108,7 +108,7 @@ def test_two_local_workers_one_of_which_dies(monkeypatch, tmp_path):
     for name in ("com_deviation_peak", "com_deviation_peak_by_axis"):
         assert (made[name].values[others] == alone[name].values[others]).all()
     monkeypatch.undo()
-    xr.testing.assert_identical(sweep(30, workers=0, store=tmp_path / "a.zarr", retry_failed=True), alone)
+    xr.testing.assert_identical(sweep(30, workers=0, store=tmp_path / "a.sqlite", retry_failed=True), alone)
 
 
 def _kill_a_worker():
@@ -170,4 +170,4 @@ def test_a_script_without_a_guard_is_told_so(tmp_path):
 
 def test_open_sweep_of_nothing(tmp_path):
     with pytest.raises(InputError, match="is not a store of a sweep"):
-        open_sweep(tmp_path / "none.zarr")
+        open_sweep(tmp_path / "none.sqlite")

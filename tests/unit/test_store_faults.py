@@ -198,7 +198,7 @@ def test_sweeps_that_no_place_holds(monkeypatch, tmp_path):
     monkeypatch.setattr(room, "SMALL", 0.0)
     monkeypatch.setattr(room, "free_disk", lambda folder: 100.0)
     with pytest.raises(InputError, match=r"keep: asks for .* on the disk.*record_step"):
-        fx.sweep(quick(), plan, store=tmp_path / "a.zarr", workers=0)
+        fx.sweep(quick(), plan, store=tmp_path / "a.sqlite", workers=0)
     monkeypatch.setattr(room, "available_memory", lambda: 150_000.0)
     fx.sweep(quick(), plan, workers=0)
     with pytest.raises(InputError, match="of memory, 2 of them at a time"):

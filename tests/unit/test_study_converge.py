@@ -17,7 +17,7 @@ from flexapod.surveys.convergence import search as choice
 from flexapod.surveys.convergence import search as halving
 from flexapod.surveys.convergence.family import Family, finest_error, observed_order, relative_difference, shape_factor
 from flexapod.surveys.convergence.ladder import RUNGS, ladder
-from flexapod.surveys.convergence.search import Candidate, Discretisation, Step, candidates
+from flexapod.surveys.convergence.search import Candidate, Discretisation, StepChoice, candidates
 from flexapod.surveys.convergence.table import save_table
 from flexapod.surveys.convergence.trials import Setting, Trial, setting_of
 
@@ -87,8 +87,8 @@ def test_a_family_of_failures():
 
 
 def test_the_recommended_setting_is_the_cheapest_that_keeps_the_accuracy():
-    steps = [Step(step=h, steps=round(1 / h), error=e) for h, e in ((4e-3, 2e-2), (1e-3, 5e-3), (5e-4, 1e-3))]
-    steps.append(Step(step=2e-3, steps=500, error=float("nan")))  # failed
+    steps = [StepChoice(step=h, steps=round(1 / h), error=e) for h, e in ((4e-3, 2e-2), (1e-3, 5e-3), (5e-4, 1e-3))]
+    steps.append(StepChoice(step=2e-3, steps=500, error=float("nan")))  # failed
     shapes = [
         Discretisation(setting=replace(BASE, modes=k), per_step=c, error=e)
         for k, c, e in ((1, 10e-6, 8e-3), (2, 20e-6, 2e-3), (3, 21e-6, 1e-5), (6, 80e-6, 1e-9))

@@ -34,29 +34,32 @@ Workers = Annotated[
     int | None, typer.Option("--workers", metavar="N", help="Local processes; default: one a core; 0: none but this.")
 ]
 RetryFailed = Annotated[bool, typer.Option("--retry-failed", help="Compute points again that failed before.")]
+Zarr = Annotated[bool, typer.Option("--zarr", help="Write what was computed also as Zarr, for other programs.")]
 
 
 @guarded
 def sweep(
     file: StudyFile, sweep_file: SweepFile, out: SweepOut = None, scheduler: Scheduler = None, workers: Workers = None,
-    retry_failed: RetryFailed = False, no_figures: NoFigures = False, json: Json = False, quiet: Quiet = False,
+    retry_failed: RetryFailed = False, zarr: Zarr = False, no_figures: NoFigures = False, json: Json = False,
+    quiet: Quiet = False,
 ) -> None:  # fmt: skip
     """Compute many variants of a study: grids, lists, Latin hypercubes, random tolerances. Run again, it continues."""
     from flexapod.surveys.sweeps import SweepStopped
     from flexapod.surveys.sweeps import sweep as compute
 
     folder = results_folder(file, sweep_file.stem, out)
+    store = folder / ("sweep.zarr" if zarr else "sweep.sqlite")
     options = as_options(workers="--workers", scheduler="--scheduler")
     with without("dask.array"), options, terminal.progress_bar(quiet=quiet or json) as report:
         try:
             data = compute(
-                file, sweep_file, store=folder / "sweep.zarr", scheduler=scheduler, workers=workers,
-                retry_failed=retry_failed, progress=report,
+                file, sweep_file, store=store, scheduler=scheduler, workers=workers, retry_failed=retry_failed,
+                progress=report,
             )  # fmt: skip
             interrupted = False
         except SweepStopped as stop:
             data, interrupted = stop.dataset, True
-        files = _write_sweep(data, folder, figure=not no_figures)
+        files = [folder / "sweep.sqlite", *[store] * zarr, *_write_sweep(data, folder, figure=not no_figures)]
     _say_sweep(data, folder, files, json=json)
     if interrupted:
         _stopped_sweep(data, json=json)
@@ -81,11 +84,11 @@ def _say_sweep(data: Dataset, folder: Path, files: list[Path], *, json: bool) ->
     from flexapod.app.survey_words import show_sweep, sweep_as_dict
 
     if json:
-        print_json({**sweep_as_dict(data), "folder": folder, "files": [folder / "sweep.zarr", *files]})
+        print_json({**sweep_as_dict(data), "folder": folder, "files": files})
         return
     show_sweep(data)
     print_text()
-    print_text(f"In {folder}: sweep.zarr, {', '.join(path.name for path in files)}.")
+    print_text(f"In {folder}: {', '.join(path.name for path in files)}.")
 
 
 def _stopped_sweep(data: Dataset, *, json: bool) -> None:

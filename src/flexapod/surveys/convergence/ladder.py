@@ -15,7 +15,7 @@ from flexapod.study.record import Report
 from flexapod.surveys.convergence.family import relative_difference
 from flexapod.surveys.convergence.plan import checked_trials
 from flexapod.surveys.convergence.search import ConvergenceStopped
-from flexapod.surveys.convergence.table import Row, reference_words, rows_dataset
+from flexapod.surveys.convergence.table import SettingRow, reference_words, rows_dataset
 from flexapod.surveys.convergence.trials import QUANTITIES, Setting, Trial, Trials, setting_of
 
 if TYPE_CHECKING:
@@ -114,7 +114,7 @@ def _dataset(trials: Trials, done: list[Trial], best: Trial, near: Trial, *, par
     names = trials.quantities
     none = dict.fromkeys(names, np.nan)
     rows = [
-        Row(family="ladder", trial=t, error={q: _error(t, best, q) for q in names}, order=none, reference=False)
+        SettingRow(family="ladder", trial=t, error={q: _error(t, best, q) for q in names}, order=none, reference=False)
         for t in done
     ]
     attrs = {

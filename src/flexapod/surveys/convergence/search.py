@@ -30,7 +30,7 @@ ALIKE = 1.10  # costs within 10 % are the same: timings vary by as much
 
 
 @dataclass(frozen=True, kw_only=True)
-class Step:
+class StepChoice:
     """A step [s], the number of them, and the relative error they cause."""
 
     step: float
@@ -56,7 +56,7 @@ class Candidate:
     cost: float
 
 
-def candidates(steps: Sequence[Step], shapes: Sequence[Discretisation], accuracy: float) -> list[Candidate]:
+def candidates(steps: Sequence[StepChoice], shapes: Sequence[Discretisation], accuracy: float) -> list[Candidate]:
     """Settings whose two errors together keep the accuracy, cheapest first; of equally cheap ones the most accurate.
 
     Parameters
@@ -109,11 +109,11 @@ def choose(trials: Trials, found: Findings) -> None:
     )
 
 
-def _step_choices(found: Findings) -> list[Step]:
+def _step_choices(found: Findings) -> list[StepChoice]:
     family, main = found.family("step"), found.quantities[0]
     pairs = zip(family.trials, family.bounds(main), strict=True)
     return [
-        Step(step=t.setting.step or 0.0, steps=t.steps, error=float(bound))
+        StepChoice(step=t.setting.step or 0.0, steps=t.steps, error=float(bound))
         for t, bound in pairs
         if not t.failure and (t.setting.step or 0.0) <= t.setting.output_step
     ]
@@ -133,7 +133,7 @@ def _shape_choices(found: Findings) -> list[Discretisation]:
     return choices
 
 
-def _best(trials: Trials, steps: list[Step], shapes: list[Discretisation], found: Findings) -> Trial | None:
+def _best(trials: Trials, steps: list[StepChoice], shapes: list[Discretisation], found: Findings) -> Trial | None:
     """The finest step with the cheapest discretisation whose error does not count beside the accuracy."""
     if not (steps and shapes):
         found.notes.append("No setting is recommended: too few runs succeeded.")

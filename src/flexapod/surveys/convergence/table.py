@@ -21,7 +21,7 @@ if TYPE_CHECKING:
 
 
 @dataclass(frozen=True, kw_only=True)
-class Row:
+class SettingRow:
     """A setting in the table: its run, and by quantity its relative error and the order from the row before."""
 
     family: str
@@ -38,7 +38,9 @@ def as_dataset(study: Study | ActuatorStudy, found: Findings, *, partial: bool =
         for trial in found.trials.get(name, ()):
             error = {q: found.error(trial, q) for q in found.quantities}
             none = dict.fromkeys(found.quantities, np.nan)
-            rows.append(Row(family=name, trial=trial, error=error, order=none, reference=trial is found.reference))
+            rows.append(
+                SettingRow(family=name, trial=trial, error=error, order=none, reference=trial is found.reference)
+            )
     lines = [line for trial in found.trials.get("recommended", ()) for line in trial.setting.lines()]
     attrs = {
         **attributes(study, study.warnings),
@@ -56,12 +58,12 @@ def as_dataset(study: Study | ActuatorStudy, found: Findings, *, partial: bool =
     return rows_dataset(rows, found.quantities, attrs).merge(_groups(found), combine_attrs="override")
 
 
-def _family_rows(found: Findings, name: str) -> list[Row]:
+def _family_rows(found: Findings, name: str) -> list[SettingRow]:
     family = found.family(name)
     errors = {q: family.errors(q) for q in found.quantities}
     orders = {q: family.orders(q) for q in found.quantities}
     return [
-        Row(
+        SettingRow(
             family=name,
             trial=trial,
             error={q: float(errors[q][i]) for q in errors},
@@ -72,7 +74,7 @@ def _family_rows(found: Findings, name: str) -> list[Row]:
     ]
 
 
-def rows_dataset(rows: list[Row], quantities: Iterable[str], attrs: Mapping[str, object]) -> Dataset:
+def rows_dataset(rows: list[SettingRow], quantities: Iterable[str], attrs: Mapping[str, object]) -> Dataset:
     """Rows as a Dataset along ``setting``."""
     import xarray as xr
 
@@ -132,7 +134,7 @@ def reference_words(setting: Setting) -> str:
     return f"{setting.label}, {setting.time_words}"
 
 
-def _label(row: Row) -> str:
+def _label(row: SettingRow) -> str:
     setting = row.trial.setting
     if row.family == "step":
         return setting.time_words

@@ -23,7 +23,7 @@ from flexapod.surveys.sweeps.plan import Keep
 from flexapod.surveys.sweeps.points import Points, Resolved
 from flexapod.surveys.sweeps.reading import dimension_of, number
 from flexapod.surveys.sweeps.scalars import ROBOT_DEFAULTS, ROBOT_SCALARS, Scalar
-from flexapod.surveys.sweeps.store import FORMAT, Column, Values
+from flexapod.surveys.sweeps.store import FORMAT, Known, StoredArray, Values
 from flexapod.typing import Array
 from flexapod.units import DIMENSIONS
 
@@ -206,8 +206,13 @@ def _shape_sizes(resolved: Resolved, variables: Mapping[str, Variable]) -> dict[
 DRAWN = "_drawn"  # what a tolerance drew about values that vary themselves, and own the name
 
 
-def header(points: Points, kept: Kept, resolved: Resolved, varied: Mapping[str, Column]) -> dict[str, Any]:
-    """Attributes of the store: what is in it, told by hashes, and how its points are laid out."""
+def known(points: Points, kept: Kept, resolved: Resolved) -> Known:
+    """What the store of a sweep knows from the start."""
+    return Known(len(points), _header(points, resolved), columns(points, kept, resolved))
+
+
+def _header(points: Points, resolved: Resolved) -> dict[str, Any]:
+    """Attributes of the Dataset: what is in it, told by hashes, and how its points are laid out."""
     study = attributes(points.nominal)
     return {
         "title": f"flexapod: sweep of a {'single actuator' if isinstance(points.nominal, ActuatorStudy) else 'robot'}",
@@ -222,10 +227,6 @@ def header(points: Points, kept: Kept, resolved: Resolved, varied: Mapping[str, 
         "sweep_hash": points.plan.hash,
         "points_hash": resolved.hash,
         "axes": json.dumps(axes(points)),
-        "coordinates": " ".join(varied),  # for other readers: CF
-        "varied": " ".join(varied),
-        "kept": " ".join(kept.variables),
-        "complete": " ".join(name for name in kept.variables if name not in kept.absent),
     }
 
 
@@ -244,32 +245,32 @@ def axes(points: Points) -> list[dict[str, Any]]:
     return found
 
 
-def columns(points: Points, kept: Kept, resolved: Resolved) -> tuple[dict[str, Column], dict[str, Column]]:
-    """Arrays of what varies, and of what is kept with the labels of its dimensions."""
+def columns(points: Points, kept: Kept, resolved: Resolved) -> dict[str, StoredArray]:
+    """Arrays of what varies, labels of dimensions, and what is kept."""
     given = _varied(points)
     drawn = _scattered(points, resolved)
     varied = given | {f"{name}{DRAWN}" if name in given else name: column for name, column in drawn.items()}
-    made: dict[str, Column] = {}
+    results: dict[str, StoredArray] = {}
     for name, (dims, units, long_name) in kept.variables.items():
         shape = (len(points), *kept.shape(name))
         comment = {"comment": f"NaN at a computed point: {kept.absent[name]}"} if name in kept.absent else {}
-        made[name] = Column(("point", *dims), shape, {"units": units, "long_name": long_name, **comment})
+        results[name] = StoredArray(("point", *dims), shape, {"units": units, "long_name": long_name, **comment})
     used = {
         dim: size
-        for column in (*varied.values(), *made.values())
+        for column in (*varied.values(), *results.values())
         for dim, size in zip(column.dims, column.shape, strict=True)
     }
     robot = getattr(points.nominal, "robot", None)
     own = {} if robot is None else leg_labels(robot)
     for dim, (labels, words) in ({dim: (own[dim], dim) for dim in own if dim in used} | fixed_labels(used)).items():
         values = np.asarray(own.get(dim, labels))
-        made[dim] = Column((dim,), values.shape, {"long_name": words}, values)
+        varied[dim] = StoredArray((dim,), values.shape, {"long_name": words}, values)
     if "time" in used:
-        made["time"] = Column(("time",), kept.times.shape, {"units": "s", "long_name": "time"}, kept.times)
-    return varied, made
+        varied["time"] = StoredArray(("time",), kept.times.shape, {"units": "s", "long_name": "time"}, kept.times)
+    return varied | results
 
 
-def _varied(points: Points) -> dict[str, Column]:
+def _varied(points: Points) -> dict[str, StoredArray]:
     """Values by key of blocks and hypercube."""
     at, plan = np.unravel_index(np.arange(len(points)), points.plan.shape), points.plan
     found = {}
@@ -282,7 +283,7 @@ def _varied(points: Points) -> dict[str, Column]:
     return found
 
 
-def _column(key: tuple[Step, ...], values: Any, at: Values, points: Points) -> Column:
+def _column(key: tuple[Step, ...], values: Any, at: Values, points: Points) -> StoredArray:
     plain = np.asarray(_plain(values, key, points))
     attributes = {"long_name": key_text(key)}
     items = [key, *((*key, number) for number in range(1, 1 + plain.shape[1] if plain.ndim > 1 else 1))]
@@ -290,7 +291,7 @@ def _column(key: tuple[Step, ...], values: Any, at: Values, points: Points) -> C
     if len(found) == 1 and plain.dtype.kind != "U":  # forces and moments in one list have no unit in common
         attributes["units"] = DIMENSIONS[str(found.pop())].unit or "1"
     dims = _dims(key, plain.shape[1:], each=key[-1] == "joints")
-    return Column(("point", *dims), (len(at), *plain.shape[1:]), attributes, plain[at])
+    return StoredArray(("point", *dims), (len(at), *plain.shape[1:]), attributes, plain[at])
 
 
 def _plain(values: Any, key: tuple[Step, ...], points: Points) -> list[Any]:
@@ -309,7 +310,7 @@ def _plain(values: Any, key: tuple[Step, ...], points: Points) -> list[Any]:
     return found
 
 
-def _scattered(points: Points, resolved: Resolved) -> dict[str, Column]:
+def _scattered(points: Points, resolved: Resolved) -> dict[str, StoredArray]:
     """Values by key of tolerances: one of every point, or of every point and leg, joint or axis."""
     found = {}
     draws = points.plan.draws
@@ -324,7 +325,7 @@ def _scattered(points: Points, resolved: Resolved) -> dict[str, Column]:
         attributes = {"long_name": key_text(key), "units": DIMENSIONS[dimension].unit or "1"}
         whole = (len(points), *shape)
         dims = _dims(key, shape, each=_of_each_leg(key))
-        found[key_text(key)] = Column(("point", *dims), whole, attributes, values.reshape(whole))
+        found[key_text(key)] = StoredArray(("point", *dims), whole, attributes, values.reshape(whole))
     return found
 
 

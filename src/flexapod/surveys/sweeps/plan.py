@@ -49,7 +49,7 @@ class Block:
 
 
 @dataclass(frozen=True, kw_only=True)
-class Range:
+class KeyRange:
     """A key between two values, as written."""
 
     key: tuple[Step, ...]
@@ -63,7 +63,7 @@ class Hypercube:
 
     count: int
     seed: int
-    ranges: tuple[Range, ...]
+    ranges: tuple[KeyRange, ...]
 
 
 @dataclass(frozen=True, kw_only=True)
@@ -98,7 +98,7 @@ class Keep:
 
 
 @dataclass(frozen=True, kw_only=True)
-class Plan:
+class SweepPlan:
     """A sweep: the product of `blocks`, of the `hypercube` and of the `draws`; the last varies fastest."""
 
     blocks: tuple[Block, ...]
@@ -126,7 +126,7 @@ class Plan:
         return hashlib.sha256(content.encode()).hexdigest()[:16]
 
 
-def read_plan(sweep: str | Path | Mapping[str, Any]) -> Plan:
+def read_plan(sweep: str | Path | Mapping[str, Any]) -> SweepPlan:
     """A sweep from its file, or from a mapping with the same content.
 
     Raises
@@ -161,10 +161,10 @@ def _plain(value: Any) -> Any:
     return [_plain(inner) for inner in value] if isinstance(value, list | tuple) else value
 
 
-def _plan(top: Section, text: str) -> Plan:
+def _plan(top: Section, text: str) -> SweepPlan:
     top.only("vary", "latin_hypercube", "random", "keep")
     try:
-        plan = Plan(
+        plan = SweepPlan(
             blocks=tuple(_block(top.child(entry, f"vary[{i}]")) for i, entry in enumerate(_tables(top, "vary"), 1)),
             hypercube=_hypercube(top.section("latin_hypercube")),
             draws=_draws(top.section("random")),
@@ -191,7 +191,7 @@ def _tables(section: Section, name: str) -> list[object]:
     return value
 
 
-def _refuse_overlaps(plan: Plan) -> None:
+def _refuse_overlaps(plan: SweepPlan) -> None:
     """A value may vary in one place, and be given a tolerance in one more."""
     varied = [key for block in plan.blocks for key in block.keys]
     varied += [entry.key for entry in plan.hypercube.ranges] if plan.hypercube else []
@@ -277,7 +277,7 @@ def _hypercube(section: Section | None) -> Hypercube | None:
     for name, value in inner.data.items():
         if not isinstance(value, list) or len(value) != 2:
             raise inner.error("is not a range", name, allowed='lowest and highest value, such as ["25 mm", "30 mm"]')
-        ranges.append(Range(key=parse_key(name, what=inner.path), low=value[0], high=value[1]))
+        ranges.append(KeyRange(key=parse_key(name, what=inner.path), low=value[0], high=value[1]))
     if not ranges:
         raise section.error("names no key", "ranges", allowed='such as { "payload.mass" = ["50 kg", "150 kg"] }')
     return Hypercube(count=_count(section), seed=_seed(section), ranges=tuple(ranges))

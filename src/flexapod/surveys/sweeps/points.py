@@ -19,7 +19,7 @@ from flexapod.schema.base import SHORT
 from flexapod.study.after.causes import cause_names
 from flexapod.study.before.room import check_outputs, check_room, result_bytes
 from flexapod.surveys.sweeps.keys import Step, copied, key_text, leaves, leg_count, put, similar_key, value_at
-from flexapod.surveys.sweeps.plan import Plan, Tolerance
+from flexapod.surveys.sweeps.plan import SweepPlan, Tolerance
 from flexapod.surveys.sweeps.reading import (
     dimension_of,
     hypercube_values,
@@ -97,7 +97,7 @@ class Points:
     Parameters
     ----------
     study : Study or ActuatorStudy
-    plan : Plan
+    plan : SweepPlan
 
     Raises
     ------
@@ -105,7 +105,7 @@ class Points:
         A key that no study file has, or values that are not of its kind.
     """
 
-    def __init__(self, study: Study | ActuatorStudy, plan: Plan) -> None:
+    def __init__(self, study: Study | ActuatorStudy, plan: SweepPlan) -> None:
         self.nominal, self.plan = study, plan
         self.data: dict[str, Any] = tomllib.loads(study.source_text)
         self.folder = Path(study.path).parent if study.path else Path()

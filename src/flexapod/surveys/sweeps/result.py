@@ -3,78 +3,91 @@
 from __future__ import annotations
 
 import json
-from collections.abc import Hashable, Sequence
+from collections.abc import Iterator, Sequence
+from math import prod
 from pathlib import Path
 from typing import TYPE_CHECKING, Any
 
 import numpy as np
 
 from flexapod.files import replacing
-from flexapod.surveys.sweeps.store import COMPUTED, FAILED, PENDING, TEXTS, SweepStore, Values, unreadable
-from flexapod.surveys.sweeps.writer import incomplete
+from flexapod.surveys.sweeps.refusals import other_format
+from flexapod.surveys.sweeps.store import COMPUTED, FAILED, FLOAT, FORMAT, PENDING, Known, StoredPoint, SweepStore
+from flexapod.surveys.sweeps.zarr_folder import read_zarr
 
 if TYPE_CHECKING:
     from xarray import DataArray, Dataset
-
-STATES = np.array(["pending", "computed", "failed"])
 
 
 def open_sweep(path: str | Path) -> Dataset:
     """The Dataset of a sweep's store, finished or not; records are read when they are used.
 
+    Parameters
+    ----------
+    path : path
+        The SQLite file, or a Zarr folder; of a Zarr folder whose store lies beside it the store, which holds the same
+        and may hold more.
+
     Raises
     ------
     InputError
-        There is no store of a sweep, or another version has written it.
+        There is no store of a sweep, it is damaged, or another version has written it.
     ComputationError
-        A part of it cannot be read. Of a record that is told by Zarr, when it is used; the sweep run again mends it.
+        A part of it cannot be read. Of a record that is told when it is used; the sweep run again mends it.
     """
-    return as_dataset(SweepStore.open(Path(path)))
+    place, file = Path(path), store_file(Path(path))
+    if place.is_dir() and not file.is_file():
+        return read_zarr(place)
+    with SweepStore.open(file) as store:
+        if store.known.header["flexapod_sweep_format"] != FORMAT:
+            raise other_format(file, store.known.header)
+        return as_dataset(store)
+
+
+def store_file(path: Path) -> Path:
+    """The SQLite file of a sweep: for ``NAME.zarr`` it is ``NAME.sqlite``."""
+    return path.with_suffix(".sqlite") if path.suffix == ".zarr" else path
 
 
 def as_dataset(store: SweepStore) -> Dataset:
     """The Dataset of an open store: whole records of one on disk stay there until they are used."""
     import xarray as xr
 
-    for name in store.coordinates:
-        if not store.whole(name):
-            raise unreadable(store.path, name)
-    data = xr.open_zarr(store.group.store, chunks=None, consolidated=False)
-    _load(data, "status", store.path)  # first: what is written meanwhile has its values before its status
-    varied, kept, complete = (str(data.attrs.pop(name)).split() for name in ("varied", "kept", "complete"))
-    data = data.reset_coords(varied)  # a store keeps no order
-    coordinates = {name: data[name] for name in varied}
-    data = data[[*kept, "status", "message", "remarks"]].assign_coords(coordinates)
-    small = [name for name, array in data.variables.items() if "time" not in array.dims or store.path is None]
-    for name in small:
-        _load(data, name, store.path)
-    for name in data.variables:
-        if data[name].dtype.kind == "T":
-            data[name] = data[name].astype(object)
-    absent = np.any([store.absent(name) for name in (*kept, *TEXTS)], axis=0)
-    return data.assign(_consistent(data, absent, [name for name in complete if name in small]))
+    from flexapod.surveys.sweeps.records import lazy
+
+    known, rows = store.known, store.points()
+    at = {state: [row.point for row in rows if row.state == state] for state in (COMPUTED, FAILED)}
+    made: dict[str, Any] = dict(_scalars(known, rows, at[COMPUTED]))
+    for name, (dims, shape, attributes, _) in known.kept(records=True).items():
+        values = lazy(store.path, name, shape) if store.path else store.record(name, range(known.size), shape[1:])
+        made[name] = (dims, values, attributes)
+    states = np.full(known.size, PENDING, dtype="U8")
+    made["status"] = ("point", states, {"long_name": "state of the point"})
+    for name, state, words in (
+        ("message", FAILED, "why there is no result"),
+        ("remarks", COMPUTED, "remarks on the result, a line each"),
+    ):
+        states[at[state]] = state
+        texts = np.full(known.size, "", dtype=object)
+        texts[at[state]] = [row.words for row in rows if row.state == state]
+        made[name] = ("point", texts, {"long_name": words})
+    coordinates = {
+        name: (dims, values.astype(object) if values.dtype.kind == "U" else values, attributes)
+        for name, (dims, _, attributes, values) in known.arrays.items()
+        if values is not None
+    }
+    return xr.Dataset(made, coords=coordinates, attrs=known.header)
 
 
-def _load(data: Dataset, name: Hashable, path: Path | None) -> None:
-    try:
-        data.variables[name].load()  # without its coordinates, which have their own turn
-    except Exception:  # whatever the decoder of a spoilt chunk says
-        raise unreadable(path, str(name)) from None
-
-
-def _consistent(data: Dataset, absent: Values, complete: Sequence[str]) -> dict[str, Any]:
-    """The status in words, and loaded values and texts as they belong to it, whatever was written meanwhile."""
-    status = data["status"].values.copy()
-    status[absent] = PENDING
-    status[incomplete(status, {name: data[name].values for name in complete})] = PENDING
-    made: dict[str, Any] = {"status": ("point", STATES[status], {"long_name": "state of the point"})}
-    for name, state in (("message", FAILED), ("remarks", COMPUTED)):
-        made[name] = ("point", np.where(status == state, data[name].values, ""), data[name].attrs)
-    for name, array in data.data_vars.items():
-        if array.dtype.kind == "f" and "time" not in array.dims:
-            there = (status == COMPUTED).reshape(-1, *[1] * (array.ndim - 1))
-            made[str(name)] = (array.dims, np.where(there, array.values, np.nan), array.attrs)
-    return made
+def _scalars(known: Known, rows: Sequence[StoredPoint], computed: Sequence[int]) -> Iterator[tuple[str, Any]]:
+    """What is kept of every point beside records; not a number where nothing is computed."""
+    arrays = known.kept(records=False)
+    widths = [prod(array.shape[1:]) for array in arrays.values()]
+    numbers = np.frombuffer(b"".join(row.scalars for row in rows), FLOAT).reshape(len(computed), sum(widths))
+    for (name, (dims, shape, attributes, _)), end, width in zip(arrays.items(), np.cumsum(widths), widths, strict=True):
+        values = np.full(shape, np.nan)
+        values[computed] = numbers[:, end - width : end].reshape(-1, *shape[1:])
+        yield name, (dims, values, attributes)
 
 
 def unstacked(data: Dataset) -> Dataset:

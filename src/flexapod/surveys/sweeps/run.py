@@ -7,7 +7,7 @@ import math
 import multiprocessing
 import os
 from collections.abc import Callable, Iterator, Mapping
-from contextlib import ExitStack, contextmanager
+from contextlib import ExitStack, contextmanager, suppress
 from dataclasses import dataclass
 from itertools import islice
 from pathlib import Path
@@ -17,7 +17,6 @@ from typing import TYPE_CHECKING, Any
 import numpy as np
 
 from flexapod.errors import ComputationError, InputError
-from flexapod.files import remove_abandoned
 from flexapod.model import ActuatorStudy, Study
 from flexapod.solve.actuator_march import prepare_actuator
 from flexapod.solve.robot_system import robot_system
@@ -26,14 +25,15 @@ from flexapod.study.before.room import check_memory, check_room
 from flexapod.study.record import Report
 from flexapod.surveys.sweeps.batch import BatchResult, PointResult
 from flexapod.surveys.sweeps.executors import check_place, executor, local_cores
-from flexapod.surveys.sweeps.kept import Kept, columns, header, kept
-from flexapod.surveys.sweeps.lock import locked
+from flexapod.surveys.sweeps.kept import Kept, kept, known
 from flexapod.surveys.sweeps.plan import read_plan
 from flexapod.surveys.sweeps.points import Points, Resolved
-from flexapod.surveys.sweeps.result import as_dataset
+from flexapod.surveys.sweeps.refusals import check_header, no_store, only_to_read
+from flexapod.surveys.sweeps.result import as_dataset, store_file
 from flexapod.surveys.sweeps.schedule import results
-from flexapod.surveys.sweeps.store import COMPUTED, FAILED, SweepStore, check_header
-from flexapod.surveys.sweeps.writer import Writer, mend
+from flexapod.surveys.sweeps.store import COMPUTED, Known, SweepStore, locked
+from flexapod.surveys.sweeps.writer import Writer
+from flexapod.surveys.sweeps.zarr_folder import is_sweep, save_zarr
 from flexapod.version import this_version
 
 if TYPE_CHECKING:
@@ -71,7 +71,8 @@ def sweep(
     sweep : path or mapping
         A sweep file, or a dictionary with the same content.
     store : path, optional
-        Folder of the Zarr store; one that exists is continued. None: results are kept in memory only.
+        SQLite file of the results, such as ``sweep.sqlite``; one that exists is continued. ``sweep.zarr``: the same
+        file, and at the end its content as a Zarr folder. None: results are kept in memory only.
     scheduler : str, optional
         Address of a running Dask scheduler.
     workers : int, optional
@@ -99,19 +100,19 @@ def sweep(
     """
     _refuse_import_by_worker()
     check_place(scheduler, workers)
-    path = None if store is None else _place(store)
+    path, folder = (None, None) if store is None else _place(store)
     tell, points = progress or (lambda words, share: None), Points(_nominal(study), read_plan(sweep))
     resolved = points.resolve(lambda share: tell("reading the points", READING * share))
     keep = _kept(points, resolved)
     _check_room(points, resolved, keep, path, 1 if scheduler else local_cores() if workers is None else workers)
-    with _alone(path):
-        opened = _store(path, points, keep, resolved)
-        job = _Job(points=points, resolved=resolved, kept=keep, store=opened)
-        try:
-            job.run(scheduler, workers, retry_failed=retry_failed, tell=tell)
-        except KeyboardInterrupt:
-            raise SweepStopped(as_dataset(opened)) from None
-        return as_dataset(opened)
+    with _opened(path, known(points, keep, resolved)) as opened:
+        stopped = _Job(points, resolved, keep, opened).run(scheduler, workers, retry_failed=retry_failed, tell=tell)
+        data = as_dataset(opened)
+    if folder:
+        save_zarr(data, folder)
+    if stopped:
+        raise SweepStopped(data)
+    return data
 
 
 def _nominal(study: object) -> Study | ActuatorStudy:
@@ -124,26 +125,18 @@ def _nominal(study: object) -> Study | ActuatorStudy:
     return nominal
 
 
-def _place(store: object) -> Path:
-    """Where the store is; it needs a name."""
+def _place(store: object) -> tuple[Path, Path | None]:
+    """Where the store is, which needs a name, and where a Zarr folder is wanted."""
     path = Path(store) if isinstance(store, str | os.PathLike) else Path()
     if not path.name or path.name == "..":
-        raise InputError("names no folder", key="store", value=str(store), allowed='such as "sweep.zarr"')
-    return path
-
-
-@contextmanager
-def _alone(path: Path | None) -> Iterator[None]:
-    """The folder of the store made, and nobody else at it."""
-    if path is None:
-        yield
-        return
-    try:
-        path.parent.mkdir(parents=True, exist_ok=True)
-    except OSError as error:
-        raise InputError(f"cannot be made: {error.strerror or error}", file=path.parent) from None
-    with locked(path):
-        yield
+        raise InputError("names no file", key="store", value=str(store), allowed='such as "sweep.sqlite"')
+    file, wanted = store_file(path), path.suffix == ".zarr"
+    folder = path.with_suffix(".zarr") if file.suffix == ".sqlite" else path
+    if is_sweep(folder) and not file.is_file():
+        raise only_to_read(folder)
+    if wanted and folder.exists() and not is_sweep(folder):
+        raise no_store(folder)
+    return file, folder if wanted else None
 
 
 def _refuse_import_by_worker() -> None:
@@ -178,22 +171,17 @@ def _check_room(points: Points, resolved: Resolved, keep: Kept, path: Path | Non
     )
 
 
-def _store(path: Path | None, points: Points, keep: Kept, resolved: Resolved) -> SweepStore:
-    varied, others = columns(points, keep, resolved)
-    wanted = header(points, keep, resolved, varied)
-    if path is not None:
-        remove_abandoned(path.parent)
-    if path is not None and path.exists():
-        found = SweepStore.open(path, write=True)
-        check_header(path, found.header, wanted)
-        found.renew(varied | others)
-        if lost := mend(found):
+@contextmanager
+def _opened(path: Path | None, wanted: Known) -> Iterator[SweepStore]:
+    """The store, of these points and of nobody else, with every row as it was written."""
+    with locked(path), SweepStore.at(path, wanted) as found:
+        check_header(path, found.known.header, wanted.header)
+        if lost := found.mend():
             _log.warning("Results of %d points in %s are lost (was the power off?): computed again", lost, path)
-        return found
-    return SweepStore.create(path, len(points), wanted, varied | others)
+        yield found
 
 
-@dataclass(frozen=True, kw_only=True)
+@dataclass(frozen=True)
 class _Job:
     """Points to compute, and where their results go."""
 
@@ -204,11 +192,20 @@ class _Job:
 
     def run(
         self, scheduler: str | None, workers: int | None, *, retry_failed: bool, tell: Callable[[str, float], None]
-    ) -> None:
-        """Compute what is left; whatever ends it, results that have come are stored first."""
-        writer = Writer(self.store, self.kept, self.resolved.first)
-        left = self.store.status != COMPUTED if retry_failed else ~np.isin(self.store.status, (COMPUTED, FAILED))
+    ) -> bool:
+        """Compute what is left; whether the user stopped it. Whatever ends it, results that have come are stored."""
+        left = np.ones(len(self.resolved.first), dtype=bool)
+        left[[row.point for row in self.store.points() if row.state == COMPUTED or not retry_failed]] = False
         todo = np.unique(self.resolved.first[left]).tolist()
+        with suppress(KeyboardInterrupt):
+            self._compute(todo, scheduler, workers, tell)
+            return False
+        return True
+
+    def _compute(
+        self, todo: list[int], scheduler: str | None, workers: int | None, tell: Callable[[str, float], None]
+    ) -> None:
+        writer = Writer(self.store, self.kept, self.resolved.first)
         with ExitStack() as ends:
             ends.callback(writer.flush)
             writer.add(self._refused(todo))

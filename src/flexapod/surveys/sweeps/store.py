@@ -1,34 +1,36 @@
-"""The results of a sweep as one Zarr store: written by one process, whole at any instant, continued when reopened."""
+"""The results of a sweep as one SQLite file: a row a point, whole at any instant, continued when reopened."""
 
 from __future__ import annotations
 
-import os
-import warnings
-from collections.abc import Iterator, Mapping, Sequence
+import io
+import json
+import sqlite3
+import zlib
+from collections.abc import Iterable, Iterator, Mapping, Sequence
+from contextlib import closing, contextmanager, suppress
+from functools import cached_property
+from math import prod
 from pathlib import Path
-from typing import TYPE_CHECKING, Any, NamedTuple
+from typing import Any, NamedTuple, Self
 
 import numpy as np
 from numpy.typing import NDArray
 
-from flexapod.errors import ComputationError, InputError
-from flexapod.files import UNFINISHED, check_regular, scratch, settle
+from flexapod.errors import InputError
+from flexapod.files import check_regular, scratch, settle
+from flexapod.surveys.sweeps.refusals import damaged, no_store, not_locked, of_sqlite, unreadable
 from flexapod.typing import Array
 
-if TYPE_CHECKING:
-    import zarr
-
-FORMAT = 2
+FORMAT = 3
 Values = NDArray[Any]  # numbers of any kind, or texts
-PENDING, COMPUTED, FAILED = 0, 1, 2
-CHUNK_POINTS = 2048  # of scalars
-CHUNK_BYTES = 1 << 20  # of records
-TEXTS = {"message": "why there is no result", "remarks": "remarks on the result, a line each"}
-_NEXT = "Choose another place with --out (store in Python), or remove this one"
+PENDING, COMPUTED, FAILED = "pending", "computed", "failed"
+PATIENCE = 60.0  # seconds that who reads and who writes wait for each other
+PORTION = 64 << 20  # byte of records that are read at a time: nobody writes meanwhile
+FLOAT = np.dtype("<f8")
 
 
-class Column(NamedTuple):
-    """An array of the store: dimensions, shape, attributes, and values if they are known from the start."""
+class StoredArray(NamedTuple):
+    """A variable of the Dataset: dimensions, shape, attributes, and values if they are known from the start."""
 
     dims: tuple[str, ...]
     shape: tuple[int, ...]
@@ -36,307 +38,237 @@ class Column(NamedTuple):
     values: Values | None = None
 
 
+class StoredPoint(NamedTuple):
+    """A row: remarks or why there is no result, all scalars one after the other, and records, in their order."""
+
+    point: int
+    state: str
+    words: str
+    scalars: bytes
+    records: Sequence[bytes] = ()
+
+
+class Known(NamedTuple):
+    """What a store knows from the start: number of points, attributes and variables of its Dataset."""
+
+    size: int
+    header: dict[str, Any]
+    arrays: dict[str, StoredArray]
+
+    def kept(self, *, records: bool) -> dict[str, StoredArray]:
+        """What is kept of every point: over time, each in a blob of its own, or all the rest."""
+        results = {name: array for name, array in self.arrays.items() if array.values is None}
+        return {name: array for name, array in results.items() if ("time" in array.dims) == records}
+
+
 class SweepStore:
-    """An open store. Results are written first, the status of their points last.
+    """An open store in a file, or in memory; points that it does not hold are pending."""
 
-    Parameters
-    ----------
-    group : zarr.Group
-    path : Path, optional
-        Where it is; None: in memory.
-    """
+    def __init__(self, database: sqlite3.Connection, path: Path | None) -> None:
+        self.path, self._database = path, database
+        database.text_factory = lambda text: text.decode(errors="replace")  # what is spoilt a checksum tells
 
-    def __init__(self, group: zarr.Group, path: Path | None) -> None:
-        self.group, self.path = group, path
-        self._arrays = _arrays(group, path)
-        self.lost = 0  # points whose status could not be read
-        self.status: Values = np.zeros(self._arrays["status"].shape, dtype=np.int8)
-        for rows, file in self.chunks("status"):
-            try:
-                self.status[rows] = self.read("status", rows)
-            except Exception:  # spoilt: whatever its decoder says
-                if group.read_only:
-                    raise unreadable(path, "status") from None
-                file.unlink(missing_ok=True)
-                self.lost += rows.stop - rows.start
+    def __enter__(self) -> Self:
+        return self
+
+    def __exit__(self, *_: object) -> None:
+        self._database.close()
 
     @classmethod
-    def create(
-        cls, path: Path | None, size: int, header: Mapping[str, Any], columns: Mapping[str, Column]
-    ) -> SweepStore:
-        """A new store with nothing computed; it appears at `path` when it is whole.
-
-        Raises
-        ------
-        ComputationError
-            It cannot be written.
-        """
-        import zarr
-        from zarr.storage import MemoryStore
-
-        from flexapod.surveys.sweeps.disk import DurableStore
-
-        if path is None:
-            group = zarr.create_group(MemoryStore(), attributes=dict(header))
-            _fill(group, size, columns)
-            return cls(group, None)
-        try:
-            path.parent.mkdir(parents=True, exist_ok=True)
-            with scratch(path.parent) as folder:
-                whole = folder / "store"
-                _fill(zarr.create_group(DurableStore(whole), attributes=dict(header)), size, columns)
-                whole.rename(path)
-            settle(path.parent)
-        except OSError as error:
-            raise _unwritable(path, error, 0) from None
-        return cls.open(path, write=True)
-
-    @classmethod
-    def open(cls, path: Path, *, write: bool = False) -> SweepStore:
-        """A store that `create` made, to read it or, by who holds its lock, to write to it.
+    def at(cls, path: Path | None, known: Known) -> SweepStore:
+        """The store at `path`; where there is none a new one with nothing computed, which appears when it is whole.
 
         Raises
         ------
         InputError
-            There is something else, or a part is missing; to read: another version has written it, or there is a pipe
-            or a device in the place of a file.
-        ComputationError
-            To read: the status of its points is spoilt.
-        """
-        import zarr
-
-        from flexapod.surveys.sweeps.disk import DurableStore
-
-        _only_files(path, write=write)
-        try:
-            place = DurableStore(path) if write and path.is_dir() else path
-            group = zarr.open_group(place, mode="r+" if write else "r", use_consolidated=False)
-        except (OSError, ValueError, KeyError):
-            group = None
-        if group is None and (path / "status").is_dir():
-            raise _damaged(path / "zarr.json", "what describes the whole cannot be read")
-        if group is None or "flexapod_sweep_format" not in group.attrs:
-            raise InputError("is not a store of a sweep", file=path, next_step="Choose another place with --out")
-        if not write and group.attrs["flexapod_sweep_format"] != FORMAT:  # `check_header` is for who goes on with it
-            raise InputError(
-                "was written by another version of flexapod", file=path, key="flexapod_sweep_format",
-                value=group.attrs["flexapod_sweep_format"], allowed=str(FORMAT),
-                next_step=f"Read it with flexapod {group.attrs.get('flexapod_version', 'of that time')}",
-            )  # fmt: skip
-        for rest in path.rglob(UNFINISHED) if write else ():
-            rest.unlink(missing_ok=True)  # of a process that was killed while writing
-        return cls(group, path)
-
-    def dims(self, name: str) -> tuple[str, ...]:
-        """Dimensions of an array."""
-        return tuple(self._arrays[name].metadata.dimension_names or ())
-
-    def read(self, name: str, rows: slice) -> Values:
-        """Values of some points."""
-        return np.asarray(self._arrays[name][rows])
-
-    def chunks(self, name: str) -> Iterator[tuple[slice, Path]]:
-        """Points of an array that share a file, and the file."""
-        array, folder = self._arrays[name], (self.path or Path()) / name
-        for number, begin in enumerate(range(0, array.shape[0], array.chunks[0])):
-            key = array.metadata.encode_chunk_key((number, *(0,) * (array.ndim - 1)))
-            yield slice(begin, min(begin + array.chunks[0], array.shape[0])), folder / key
-
-    def missing(self, name: str) -> list[slice]:
-        """Items of an array that are in no file."""
-        return [rows for rows, file in self.chunks(name) if not file.is_file()] if self.path is not None else []
-
-    def absent(self, name: str) -> Values:
-        """Points whose values of an array are in no file, (N,)."""
-        found = np.zeros(self.status.shape, dtype=bool)
-        for rows in self.missing(name):
-            found[rows] = True
-        return found
-
-    def whole(self, name: str) -> bool:
-        """Whether an array is there and can be read."""
-        try:
-            return not self.missing(name) and self._arrays[name][...] is not None
-        except Exception:  # whatever the decoder of a spoilt chunk says
-            return False
-
-    @property
-    def coordinates(self) -> list[str]:
-        """Names of what is known from the start."""
-        return [name for name in self._arrays if name not in ("status", *TEXTS, *self.header["kept"].split())]
-
-    def renew(self, columns: Mapping[str, Column]) -> None:
-        """Write again what is known from the start, where it is missing or cannot be read.
-
-        Raises
-        ------
+            There is something else.
         ComputationError
             It cannot be written.
         """
+        if path is None:
+            return cls(_filled(":memory:", known), None)
+        if not path.exists():
+            try:
+                with scratch(path.parent) as folder:
+                    _filled(folder / "store", known).close()
+                    path.with_name(path.name + "-journal").unlink(missing_ok=True)  # of one that was removed
+                    (folder / "store").rename(path)
+                settle(path.parent)
+            except (OSError, sqlite3.Error) as error:
+                raise of_sqlite(error, path) from None
+        return cls.open(path)
+
+    @classmethod
+    def open(cls, path: Path) -> SweepStore:
+        """A store that exists, to read it or, by who holds its lock, to write to it.
+
+        What a process that was killed had half written is taken back by whoever reads or writes first.
+
+        Raises
+        ------
+        InputError
+            There is no regular file.
+        """
         try:
-            for name, column in columns.items():
-                if column.values is not None and not self.whole(name):
-                    for _, file in self.chunks(name):
-                        file.unlink(missing_ok=True)
-                    _set_all(self._arrays[name], column.values)
-        except OSError as error:
-            raise _unwritable(self.path, error, 0) from None
+            check_regular(path)
+        except OSError:
+            raise no_store(path) from None
+        try:  # where nobody may write SQLite takes it to read
+            where = f"{path.absolute().as_uri()}?mode=rw"
+            return cls(sqlite3.connect(where, uri=True, timeout=PATIENCE, isolation_level=None), path)
+        except sqlite3.Error as error:
+            raise of_sqlite(error, path) from None
 
-    @property
-    def header(self) -> dict[str, Any]:
-        """Attributes of the store."""
-        return dict(self.group.attrs)
+    @cached_property
+    def known(self) -> Known:
+        """What is known from the start; like all that is read, refused where it is not what was written."""
+        ((content,),) = [*self._all("SELECT content FROM known")] or [(None,)]
+        if (content := _unsealed(content, "known")) is None:
+            raise damaged(self.path, "what describes it cannot be read")
+        parts = np.load(io.BytesIO(content))
+        size, header, arrays, given = json.loads(parts["arr_0"].tobytes())
+        values = {name: parts[f"arr_{number}"] for number, name in enumerate(given, start=1)}
+        return Known(
+            size,
+            header,
+            {name: StoredArray(tuple(a[0]), tuple(a[1]), a[2], values.get(name)) for name, a in arrays.items()},
+        )
 
-    def write(
-        self, points: Values, values: Mapping[str, Array], status: Values, texts: Mapping[str, Sequence[str]]
-    ) -> None:
-        """Write results of points (sorted): values (n, ...) by name, then status.
+    def points(self) -> list[StoredPoint]:
+        """Rows by number, without their records."""
+        found = []
+        for point, state, words, blob in self._all("SELECT point, state, words, scalars FROM points ORDER BY point"):
+            scalars = _unsealed(blob, point, state, words)
+            if scalars is None:
+                raise unreadable(self.path, f"point {point}")
+            found.append(StoredPoint(point, state, words, scalars))
+        return found
+
+    def record(self, name: str, points: range, shape: tuple[int, ...]) -> Array:
+        """A record of some points, (n, *shape); not a number where there is none."""
+        made = np.full((len(points), *shape), np.nan)
+        many, low, high = max(1, PORTION // max(1, 8 * prod(shape))), min(points, default=0), max(points, default=-1)
+        query = f'SELECT point, "{name}" FROM points WHERE point BETWEEN ? AND ?'
+        for begin in range(low, high + 1, many):
+            for point, blob in self._all(query, (begin, min(begin + many - 1, high))):
+                content = _unsealed(blob, point, name) if point in points else b""
+                if content is None:
+                    raise unreadable(self.path, f"{name} of point {point}")
+                if content:
+                    made[points.index(point)] = np.frombuffer(content, FLOAT).reshape(shape)
+        return made
+
+    def mend(self) -> int:
+        """Make points pending whose row is not what was written; how many there were."""
+        for (told,) in self._all("PRAGMA quick_check(1)"):
+            if told != "ok":
+                raise damaged(self.path, told)
+        lost, names = [], self.known.kept(records=True)
+        for point, state, words, scalars, *records in self._all("SELECT * FROM points"):
+            found = [_unsealed(scalars, point, state, words), *map(_unsealed, records, [point] * len(names), names)]
+            lost += [(point,)] * (None in found)
+        self._change("DELETE FROM points WHERE point = ?", lost)
+        return len(lost)
+
+    def write(self, rows: Iterable[StoredPoint]) -> None:
+        """Write rows, all or none of them; one that is there is replaced.
 
         Raises
         ------
         ComputationError
             The disk is full or cannot be written to; what was written before stays valid.
         """
+        names = self.known.kept(records=True)
+        sealed = (
+            (*row[:3], _sealed(row.scalars, *row[:3]), *map(_sealed, row.records, [row.point] * len(names), names))
+            for row in rows
+        )
+        self._change(f"INSERT OR REPLACE INTO points VALUES (?, ?, ?, ?{', ?' * len(names)})", sealed)
+
+    def _change(self, statement: str, rows: Iterable[tuple[Any, ...]]) -> None:
+        with self._told():
+            self._database.execute("PRAGMA synchronous = EXTRA")  # what is written is on the disk, its name too
+            self._database.execute("BEGIN IMMEDIATE")
+            try:
+                self._database.executemany(statement, rows)
+                self._database.execute("COMMIT")
+            except BaseException:
+                with suppress(sqlite3.Error):  # SQLite may have done it
+                    self._database.execute("ROLLBACK")
+                raise
+
+    def _all(self, query: str, values: tuple[Any, ...] = ()) -> Iterator[tuple[Any, ...]]:
+        with self._told():
+            yield from self._database.execute(query, values)
+
+    @contextmanager
+    def _told(self) -> Iterator[None]:
+        """Errors of SQLite in words."""
         try:
-            for name, array in values.items():
-                self._set(name, points, array)
-            for name, lines in texts.items():
-                self._set(name, points, np.array(lines, dtype=object))
-            self._set("status", points, status)
-        except OSError as error:
-            done = int(np.count_nonzero(self.status))
-            raise _unwritable(self.path, error, done) from None
-        self.status[points] = status
-
-    def _set(self, name: str, points: Values, values: Values) -> None:
-        array = self._arrays[name]
-        if points[-1] - points[0] == len(points) - 1:
-            array[int(points[0]) : int(points[-1]) + 1] = values
-        else:
-            array.oindex[(points, *[slice(None)] * (array.ndim - 1))] = values
+            yield
+        except sqlite3.Error as error:
+            done = 0
+            with suppress(sqlite3.Error):
+                (done,) = self._database.execute("SELECT count(*) FROM points").fetchone()
+            raise of_sqlite(error, self.path, done) from None
 
 
-def _arrays(group: zarr.Group, path: Path | None) -> dict[str, Any]:
-    """Arrays of the store, which write chunks of nothing too: no file means lost; refused where one is missing."""
-    import zarr
-
-    with zarr.config.set({"array.write_empty_chunks": True}):
-        found = dict(group.arrays()) if path is None else {name: _array_of(group, path, name) for name in _names(path)}
-    known = [name for part in ("varied", "kept") for name in str(group.attrs.get(part, "")).split()]
-    for name in ("status", *TEXTS, *known):
-        if name not in found:
-            raise _damaged(path, f"there is no {name}")
-    return found
-
-
-def _only_files(path: Path, *, write: bool) -> None:
-    """Refuse a store with a pipe, a device or a link to nothing: reading would never end, what is written is lost."""
-    for folder, _, names in os.walk(path):
-        for file in (Path(folder, name) for name in names if not os.path.isfile(os.path.join(folder, name))):
-            if not write or file.name == "zarr.json":
-                raise _damaged(file, "it is not a regular file")
-            file.unlink(missing_ok=True)
+def _filled(place: Path | str, known: Known) -> sqlite3.Connection:
+    """A database with what is known from the start."""
+    given = {name: array.values for name, array in known.arrays.items() if array.values is not None}
+    arrays = {name: array[:3] for name, array in known.arrays.items()}
+    about = json.dumps((known.size, known.header, arrays, list(given))).encode()
+    file = io.BytesIO()
+    np.savez(file, np.frombuffer(about, np.uint8), *given.values())
+    records = "".join(f', "{name}" BLOB' for name in known.kept(records=True))
+    database = sqlite3.connect(place, isolation_level=None)
+    database.execute("BEGIN")
+    database.execute("CREATE TABLE known (content BLOB)")
+    database.execute(f"CREATE TABLE points (point INTEGER PRIMARY KEY, state TEXT, words TEXT, scalars BLOB{records})")
+    database.execute("INSERT INTO known VALUES (?)", (_sealed(file.getvalue(), "known"),))
+    database.execute("COMMIT")
+    return database
 
 
-def _names(path: Path) -> list[str]:
-    """Folders of a store that hold an array, or did so once."""
-    return sorted(f.name for f in path.iterdir() if (f / "c").is_dir() or os.path.lexists(f / "zarr.json"))
+def _sealed(content: bytes, *said: object) -> bytes:
+    """Content, and behind it the checksum of what is said of it and of itself."""
+    return content + zlib.crc32(content, zlib.crc32(" ".join(map(str, said)).encode())).to_bytes(4, "little")
 
 
-def _array_of(group: zarr.Group, path: Path, name: str) -> Any:
-    file = path / name / "zarr.json"
-    if not os.path.lexists(file):
-        raise _damaged(path, f"there is no {name}")
-    try:
-        check_regular(file)
-        found: Any = group[name]
-        if found.metadata.dimension_names is not None:
-            return found
-    except Exception:  # whatever the reader of a spoilt description says
-        pass
-    raise _damaged(file, f"what describes the array {name} cannot be read")
+def _unsealed(blob: object, *said: object) -> bytes | None:
+    """The content; None if it is not what was written."""
+    content = blob[:-4] if isinstance(blob, bytes) else b""
+    return content if blob == _sealed(content, *said) else None
 
 
-def _damaged(path: Path | None, why: str) -> InputError:
-    return InputError(f"is a damaged store of a sweep: {why}", file=path, next_step=_NEXT)
+@contextmanager
+def locked(path: Path | None) -> Iterator[None]:
+    """Hold the lock of a store: of the empty database ``STORE.lock`` beside it, which is removed at the end.
 
-
-def unreadable(path: Path | None, name: str) -> ComputationError:
-    """What is to be done about a spoilt chunk."""
-    return ComputationError(
-        f"{path}: {name} cannot be read",
-        next_step="Run the sweep again with this store: it computes again what was lost",
-    )
-
-
-def _fill(group: zarr.Group, size: int, columns: Mapping[str, Column]) -> None:
-    import zarr
-
-    flags = {"flag_values": [PENDING, COMPUTED, FAILED], "flag_meanings": "pending computed failed"}
-    made = {**columns, "status": Column(("point",), (size,), {"long_name": "state of the point", **flags})}
-    for name, column in made.items():
-        _array(group, name, column, np.dtype("int8") if name == "status" else np.dtype("float64"))
-    for name, words in TEXTS.items():
-        _array(group, name, Column(("point",), (size,), {"long_name": words}), None)
-    with warnings.catch_warnings():  # all metadata in one place is what xarray looks for first
-        warnings.filterwarnings("ignore", message="Consolidated metadata")
-        zarr.consolidate_metadata(group.store)
-
-
-def _array(group: zarr.Group, name: str, column: Column, kind: np.dtype[Any] | None) -> None:
-    """An array of numbers, or of texts if `kind` is None or the values are."""
-    from zarr.codecs import ZstdCodec
-
-    values = column.values
-    if values is not None:
-        kind = None if values.dtype.kind in "UOT" else values.dtype
-    width = 8 * int(np.prod(column.shape[1:], dtype=int))
-    chunk = CHUNK_POINTS if width <= CHUNK_BYTES // CHUNK_POINTS else max(1, CHUNK_BYTES // width)
-    made: Any = group.create_array(
-        name,
-        shape=column.shape,
-        chunks=(min(chunk, column.shape[0]), *column.shape[1:]),
-        dtype=str if kind is None else kind,
-        compressors=ZstdCodec(checksum=True),  # what is not what was written cannot be read
-        fill_value="" if kind is None else np.nan if kind.kind == "f" else 0,
-        dimension_names=column.dims,
-        attributes=dict(column.attributes),
-        config={"write_empty_chunks": True},
-    )
-    if values is not None:
-        _set_all(made, values)
-
-
-def _set_all(array: Any, values: Values) -> None:
-    array[...] = values.astype(object) if values.dtype.kind in "UOT" else values
-
-
-def check_header(path: Path, found: Mapping[str, Any], wanted: Mapping[str, Any]) -> None:
-    """Refuse to continue the store of something else.
+    It ends with the process that holds it. Who opens the file as it is removed, and locks it, is not seen by a third:
+    those two would compute the same rows, and neither would spoil one.
 
     Raises
     ------
     InputError
-        Saying what differs: format, version, study, sweep, or how they are read.
+        There can be no such file.
+    ComputationError
+        Another process holds it, or the file system knows no locks.
     """
-    words = {
-        "flexapod_sweep_format": "has another format",
-        "flexapod_version": "was made by another version of flexapod",
-        "flexapod_sources": "was made by other sources of flexapod",
-        "study_hash": "holds another study",
-        "sweep_hash": "holds another sweep of this study",
-        "points_hash": "holds other points: tables that the study names have changed",
-    }
-    for name, what in words.items():
-        if found.get(name) != wanted[name]:
-            raise InputError(
-                what, file=path, key=name, value=found.get(name), allowed=str(wanted[name]), next_step=_NEXT
-            )
-
-
-def _unwritable(path: Path | None, error: OSError, done: int) -> ComputationError:
-    kept = f"; the points stored before ({done}) are whole" if done else ""
-    return ComputationError(
-        f"{path} cannot be written: {error.strerror or error}{kept}",
-        next_step="Make space, then run the same command again: it continues",
-    )
+    if path is None:
+        yield
+        return
+    try:
+        path.parent.mkdir(parents=True, exist_ok=True)
+    except OSError as error:
+        raise InputError(f"cannot be made: {error.strerror or error}", file=path.parent) from None
+    place = path.with_name(path.name + ".lock")
+    try:
+        with closing(sqlite3.connect(place, timeout=0, isolation_level=None)) as lock:
+            lock.execute("BEGIN EXCLUSIVE")
+            try:
+                yield
+            finally:
+                place.unlink(missing_ok=True)
+    except sqlite3.Error as error:
+        raise not_locked(error, path) from None

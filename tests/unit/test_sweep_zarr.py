@@ -1,0 +1,136 @@
+"""Sweeps as Zarr folders: written for other programs, and read, also those that were stores of earlier versions."""
+
+import json
+import os
+
+import numpy as np
+import pytest
+import xarray as xr
+import zarr
+from tests.sweeps import diameters, quick
+
+import flexapod as fx
+from flexapod.errors import InputError
+from flexapod.surveys.sweeps import open_sweep, save_zarr, zarr_folder
+
+KEPT = {"scalars": ["com_deviation_peak", "com_deviation_peak_by_axis"], "records": ["com_deviation"]}
+STROKES = {"vary": [{"key": "leg.stroke.max", "values": ["1.05 m", "0.8 m", "1.06 m"]}], "keep": KEPT}
+
+
+def sweep(path, plan=STROKES):
+    return fx.sweep(quick(), plan, store=path, workers=0).load()
+
+
+@pytest.mark.parametrize("portion", [1, 64 << 20])
+def test_written_with_the_sweep_and_read_by_anybody(tmp_path, monkeypatch, portion):
+    """A name that ends in .zarr asks for it; the store lies beside it, and a second run writes the folder again."""
+    monkeypatch.setattr(zarr_folder, "BYTES", portion)
+    for _ in range(2):
+        made = sweep(tmp_path / "a.zarr")
+        assert made.status.values.tolist() == ["computed", "failed", "computed"]
+        assert sorted(os.listdir(tmp_path)) == ["a.sqlite", "a.zarr"]
+        with xr.open_zarr(tmp_path / "a.zarr", chunks=None) as plain:  # without a warning
+            xr.testing.assert_identical(plain.load(), made)
+    for alone in ("a.sqlite", None):  # beside its store, and without it
+        xr.testing.assert_identical(open_sweep(tmp_path / "a.zarr").load(), made)
+        if alone:
+            os.unlink(tmp_path / alone)
+
+
+def test_the_store_has_what_the_folder_has_not_yet(tmp_path):
+    made = sweep(tmp_path / "a.sqlite")
+    xr.testing.assert_identical(open_sweep(tmp_path / "a.zarr").load(), made)
+    assert os.listdir(tmp_path) == ["a.sqlite"]
+
+
+def test_a_folder_of_something_else_is_refused_before_anything_is_computed(tmp_path):
+    (tmp_path / "a.zarr").mkdir()
+    (tmp_path / "a.zarr" / "mine").touch()
+    with pytest.raises(InputError, match=r"a.zarr: is not a store of a sweep"):
+        sweep(tmp_path / "a.zarr")
+    with pytest.raises(InputError, match=r"a.zarr: is not a store of a sweep"):
+        save_zarr(fx.sweep(quick(), diameters(2), workers=0), tmp_path / "a.zarr")
+    assert os.listdir(tmp_path) == ["a.zarr"] and os.listdir(tmp_path / "a.zarr") == ["mine"]
+
+
+@pytest.fixture
+def earlier(tmp_path):
+    """A store as it was before SQLite: four points, of which one was written and not yet marked."""
+    header = {"flexapod_sweep_format": 2, "flexapod_version": "0.1.0", "study_hash": "1f", "axes": "[]"}
+    names = {"coordinates": "a.b c", "varied": "a.b c", "kept": "x by s r", "complete": "x by r"}
+    group = zarr.create_group(tmp_path / "a.zarr", attributes=header | names)
+    nan = np.nan
+    for name, dims, values in (
+        ("a.b", ["point"], np.array([1.0, 2.0, 3.0, 4.0])), ("c", ["point"], ["u", "v", "w", "u"]),
+        ("axis", ["axis"], ["x", "y", "z"]), ("time", ["time"], np.array([0.0, 0.1])),
+        ("x", ["point"], np.array([5.0, nan, 6.0, 7.0])), ("by", ["point", "axis"], np.arange(12.0).reshape(4, 3)),
+        ("s", ["point"], np.array([nan, nan, 1.0, 2.0])), ("r", ["point", "time"], np.arange(8.0).reshape(4, 2)),
+        ("status", ["point"], np.array([1, 2, 0, 1], dtype=np.int8)),
+        ("message", ["point"], ["", "no", "", ""]), ("remarks", ["point"], ["hm", "", "early", ""]),
+    ):  # fmt: skip
+        attributes = {"long_name": f"the {name}", "flag_values": [0, 1, 2]} if name == "status" else {"long_name": name}
+        kind = values.dtype if isinstance(values, np.ndarray) else str
+        array = group.create_array(
+            name, shape=np.shape(values), dtype=kind, dimension_names=dims, attributes=attributes,
+            compressors=zarr.codecs.ZstdCodec(checksum=True), config={"write_empty_chunks": True},
+        )  # fmt: skip
+        array[...] = values if kind is not str else np.array(values, dtype=object)
+    return tmp_path / "a.zarr"
+
+
+def test_an_earlier_store_is_read(earlier):
+    """Status in words, values and words of points that it calls computed or failed alone, keys as coordinates."""
+    nan = np.nan
+    wanted = xr.Dataset(
+        {
+            "x": ("point", [5.0, nan, nan, 7.0]),
+            "by": (("point", "axis"), [[0.0, 1.0, 2.0], [nan] * 3, [nan] * 3, [9.0, 10.0, 11.0]]),
+            "s": ("point", [nan, nan, nan, 2.0]),
+            "r": (("point", "time"), np.arange(8.0).reshape(4, 2)),
+            "status": ("point", ["computed", "failed", "pending", "computed"]),
+            "message": ("point", np.array(["", "no", "", ""], dtype=object)),
+            "remarks": ("point", np.array(["hm", "", "", ""], dtype=object)),
+        },
+        coords={
+            "a.b": ("point", [1.0, 2.0, 3.0, 4.0]),
+            "c": ("point", np.array(["u", "v", "w", "u"], dtype=object)),
+            "axis": np.array(["x", "y", "z"], dtype=object),
+            "time": [0.0, 0.1],
+        },
+        attrs={"flexapod_sweep_format": 2, "flexapod_version": "0.1.0", "study_hash": "1f", "axes": "[]"},
+    )
+    for name, array in wanted.variables.items():
+        array.attrs = {"long_name": "state of the point" if name == "status" else name}
+    found = open_sweep(earlier)
+    xr.testing.assert_identical(found.load(), wanted)
+    assert list(found.data_vars) == list(wanted.data_vars)
+
+
+@pytest.mark.parametrize("name", ["a.zarr", "a.sqlite"])
+def test_an_earlier_store_is_not_continued(earlier, name):
+    with pytest.raises(InputError, match=r"a.zarr: is a sweep as Zarr.*can be read, not continued.*--out"):
+        sweep(earlier.with_name(name))
+    renamed = earlier.rename(earlier.with_name("store"))
+    with pytest.raises(InputError, match=r"store: is a sweep as Zarr.*can be read, not continued"):
+        sweep(renamed)
+    sweep(earlier.with_name(name))
+
+
+def test_another_format_is_refused(earlier):
+    about = earlier / "zarr.json"
+    content = json.loads(about.read_text())
+    content["attributes"]["flexapod_sweep_format"] = 1
+    about.write_text(json.dumps(content))
+    with pytest.raises(InputError, match=r"another version of flexapod.*Read it with flexapod 0.1.0"):
+        open_sweep(earlier)
+
+
+@pytest.mark.parametrize("file", ["x/c/0", "status/c/0", "message/c/0", "by/zarr.json", "zarr.json"])
+def test_a_damaged_folder_is_refused(earlier, file):
+    content = (earlier / file).read_bytes()
+    turned = content[:-5] + bytes([content[-5] ^ 1]) + content[-4:]  # of the last number; a checksum follows
+    for damage in (b"", content[: len(content) // 2], turned if "/c/" in file else b"{}", None):
+        (earlier / file).unlink()
+        os.mkfifo(earlier / file) if damage is None else (earlier / file).write_bytes(damage)
+        with pytest.raises(InputError, match=r"a.zarr: is (a damaged|not a) store of a sweep"):
+            open_sweep(earlier)  # of a pipe: reading it would never end
