@@ -6,9 +6,9 @@ import pytest
 from flexapod import rigid
 from flexapod.errors import ComputationError
 from flexapod.model import AxisMotion, preset
-from flexapod.proof.cases import mujoco_forces as case
 from flexapod.proof.engines import mujoco_forces
 from flexapod.proof.engines.mujoco_model import mjcf
+from flexapod.proof.pack import verify
 from flexapod.proof.robots import unlike_legs, without_cylinders
 
 mujoco = pytest.importorskip("mujoco")
@@ -22,7 +22,7 @@ def path(robot, motion=ROLL, duration=0.4):
 
 @pytest.fixture(scope="module")
 def checks():
-    return case.mujoco_forces.compute()
+    return verify(["mujoco-forces"])[0].checks
 
 
 def test_forces_on_motions_of_all_degrees_of_freedom(checks):

@@ -6,6 +6,7 @@ import pytest
 from flexapod.errors import ComputationError
 from flexapod.proof import mechanism
 from flexapod.proof.cases import slider_crank, squeezer
+from flexapod.proof.pack import verify
 
 
 def test_squeezer_of_second_order():
@@ -16,9 +17,10 @@ def test_squeezer_of_second_order():
     assert errors[2].max() < 1e-6
 
 
-def test_squeezer_extrapolated():
-    for check in squeezer.squeezer.compute():
-        assert check.passed, check
+@pytest.mark.parametrize("case", ["squeezer", "slider-crank"])
+def test_extrapolated(case):
+    (outcome,) = verify([case])
+    assert outcome.passed, outcome.worst
 
 
 def test_the_squeezer_starts_as_the_test_set_does():
@@ -28,11 +30,6 @@ def test_the_squeezer_starts_as_the_test_set_does():
     np.testing.assert_allclose(np.abs(start.lam[0, 0, :2]), [98.5668703962410896, 6.12268834425566265], rtol=1e-12)
     assert np.abs(start.v_dot[0, :-6]).max() < 1e-6
     assert np.abs(start.lam[0, 1:]).max() < 1e-9
-
-
-def test_slider_crank_extrapolated():
-    for check in slider_crank.slider_crank.compute():
-        assert check.passed, check
 
 
 def test_cranks_on_one_shaft_turn_alike():
