@@ -6,6 +6,7 @@ import pytest
 from flexapod import rigid
 from flexapod.errors import ComputationError
 from flexapod.model import AxisMotion, preset
+from flexapod.proof.cases import mujoco_forces as case
 from flexapod.proof.engines import mujoco_forces
 from flexapod.proof.engines.mujoco_model import mjcf
 from flexapod.proof.pack import verify
