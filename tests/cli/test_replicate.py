@@ -13,6 +13,7 @@ from flexapod.paper import study as paper
 from flexapod.paper.outputs import replicate, write
 from flexapod.study import open_results
 
+pytestmark = pytest.mark.xdist_group("claims")  # one process computes the parts
 ANGLES = (10.0, 29.0)
 
 
@@ -42,7 +43,7 @@ def read_page(path):
 def coarse(monkeypatch):
     """The steps of the study, with results at hand."""
     steps = tuple(
-        paper.Step(
+        paper.StudyPart(
             name=s.name, words=s.words, weight=s.weight, compute=lambda _, name=s.name: study_parts(ANGLES)[name]
         )
         for s in paper.STEPS
@@ -113,7 +114,7 @@ def test_interrupt_leaves_what_is_done_and_no_old_report(coarse, tmp_path, monke
     def stop(_):
         raise KeyboardInterrupt
 
-    changed = [step if step.name != "modes" else paper.Step(name="modes", words="", weight=1, compute=stop)
+    changed = [step if step.name != "modes" else paper.StudyPart(name="modes", words="", weight=1, compute=stop)
                for step in coarse]  # fmt: skip
     monkeypatch.setattr(paper, "STEPS", tuple(changed))
     (tmp_path / "report.html").write_text("of an older run", encoding="utf-8")

@@ -44,7 +44,8 @@ def parts():
 @pytest.fixture
 def few(monkeypatch):
     """No claims, and only the figures of the engine."""
-    monkeypatch.setattr("flexapod.paper.claims.claims", lambda _: [])
+    for module in ("claims", "outputs"):
+        monkeypatch.setattr(f"flexapod.paper.{module}.claims", lambda _: [])
     for name in ("_actuator", "_robot", "_variants"):
         monkeypatch.setattr(paper_figures, name, lambda _: [])
 

@@ -5,17 +5,14 @@ from __future__ import annotations
 import math
 from collections.abc import Sequence
 from dataclasses import InitVar, dataclass
-from typing import TYPE_CHECKING
 
 import numpy as np
+from xarray import Dataset
 
 from flexapod import model
 from flexapod.errors import InputError
 from flexapod.scene.robot import motion_end, robot_study
 from flexapod.study.words import number, text
-
-if TYPE_CHECKING:
-    from xarray import Dataset
 
 HOLDS, IN_PART, NOT = "holds", "holds in part", "does not hold"  # of numbers, by `judged`
 HERE = "holds here"  # of numbers that are those of one example

@@ -2,9 +2,8 @@
 
 from __future__ import annotations
 
-from typing import TYPE_CHECKING
-
 import numpy as np
+from xarray import Dataset
 
 from flexapod import model
 from flexapod.paper.claim import after_motion, largest
@@ -13,9 +12,6 @@ from flexapod.study.attributes import attributes
 from flexapod.study.record import Share
 from flexapod.study.simulation import simulate
 from flexapod.study.static import modes
-
-if TYPE_CHECKING:
-    from xarray import Dataset
 
 #: Outer and inner diameter [mm]: the paper's, hollow ones of the same width, thinner ones.
 PISTONS = ((27.0, 0.0), (27.0, 16.0), (27.0, 22.0), (27.0, 25.0), (20.0, 0.0), (15.0, 0.0), (10.0, 0.0))
@@ -45,8 +41,6 @@ def light_pistons(report: Share) -> Dataset:
         `tip_vibration` [m] from peak to peak after the roll, the largest along one direction; `lowest_frequency` [Hz]
         at home; `deviation_peak` (piston, axis) [m].
     """
-    import xarray as xr
-
     study, rows, peaks = robot_preset("paper-robot"), [], []
     for outer, inner in PISTONS:
         changed = with_section(study, 1e-3 * outer, 1e-3 * inner)
@@ -60,7 +54,7 @@ def light_pistons(report: Share) -> Dataset:
         for (name, unit), column in zip(COLUMNS.items(), np.transpose(rows), strict=True)
     }
     widths = {name: ("piston", column) for name, column in zip(("outer", "inner"), np.transpose(PISTONS), strict=True)}
-    return xr.Dataset(
+    return Dataset(
         values | {"deviation_peak": (("piston", "axis"), np.array(peaks), {"units": "m"})},
         {"piston": [words(*pair) for pair in PISTONS], "axis": list("xyz"), **widths},
         attributes(study),

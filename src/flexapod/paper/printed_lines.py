@@ -8,9 +8,10 @@ from __future__ import annotations
 
 from collections.abc import Sequence
 from dataclasses import dataclass
-from typing import TYPE_CHECKING, Any
+from typing import Any
 
 import numpy as np
+from xarray import Dataset
 
 from flexapod import bases
 from flexapod.bases.beam_functions import clamped_free
@@ -19,9 +20,6 @@ from flexapod.paper.readings import actuator_preset
 from flexapod.study.attributes import attributes
 from flexapod.study.record import Share
 from flexapod.typing import Array
-
-if TYPE_CHECKING:
-    from xarray import Dataset
 
 GRAVITY = 9.81  # m/s^2, in the cases that are upright
 STEP, OUTPUT, DURATION = 5e-4, 1e-2, 10.0  # s; RK4 errs by (omega h)^4 / 120 a radian: 2e-6 for 40 Hz
@@ -159,8 +157,6 @@ def printed_lines(_: Share) -> Dataset:
         same case; `tip_error` and `largest` (line): largest distance of the two, and largest deflection as derived
         [m]; `upright` (line): 1 where gravity acts.
     """
-    import xarray as xr
-
     found = tip_paths([(None, False), (None, True), *((line, line.upright) for line in LINES)])
     paths, own = found[2:], found[[int(line.upright) for line in LINES]]
     metre, time = {"units": "m"}, OUTPUT * np.arange(found.shape[1])
@@ -172,4 +168,4 @@ def printed_lines(_: Share) -> Dataset:
         "upright": ("line", [int(line.upright) for line in LINES], {"units": "1"}),
     }
     coords = {"line": [line.name for line in LINES], "time": ("time", time, {"units": "s"})}
-    return xr.Dataset(values, coords, attributes(actuator_preset()) | {"step": STEP, "tip_mass": TIP_MASS})
+    return Dataset(values, coords, attributes(actuator_preset()) | {"step": STEP, "tip_mass": TIP_MASS})

@@ -3,9 +3,9 @@
 from __future__ import annotations
 
 from collections.abc import Mapping
-from typing import TYPE_CHECKING
 
 import numpy as np
+from xarray import Dataset
 
 from flexapod import model, rigid
 from flexapod.errors import ComputationError, InputError
@@ -16,9 +16,6 @@ from flexapod.study.before.estimates import buckling_load
 from flexapod.study.path import path_instants
 from flexapod.study.record import Share
 from flexapod.study.simulation import simulate
-
-if TYPE_CHECKING:
-    from xarray import Dataset
 
 TRIAL_STEP = 5e-4  # s; peaks change by less than 1 % from 1 ms to 0.25 ms
 #: Columns of a table of trials and their units; `verdict` is text.
@@ -109,11 +106,9 @@ def table(
     attrs: Mapping[str, object],
 ) -> Dataset:
     """Rows as a Dataset along a dimension (name, labels, attributes), with units by column, axes and `verdict`."""
-    import xarray as xr
-
     dim, labels, about = along
     data: dict[str, object] = {"verdict": (dim, [row["verdict"] for row in rows])}
     for name, unit in columns.items():
         values = np.array([row[name] for row in rows])
         data[name] = ((dim, "axis") if values.ndim == 2 else dim, values, {"units": unit})
-    return xr.Dataset(data, {dim: (dim, labels, about), "axis": list("xyz")}, dict(attrs))
+    return Dataset(data, {dim: (dim, labels, about), "axis": list("xyz")}, dict(attrs))

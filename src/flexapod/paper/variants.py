@@ -4,9 +4,9 @@ from __future__ import annotations
 
 from collections.abc import Sequence
 from dataclasses import dataclass, replace
-from typing import TYPE_CHECKING
 
 import numpy as np
+from xarray import Dataset
 
 from flexapod import model, rigid
 from flexapod.errors import ComputationError
@@ -26,9 +26,6 @@ from flexapod.study.record import Share
 from flexapod.study.simulation import simulate
 from flexapod.study.static import modes
 from flexapod.typing import Array
-
-if TYPE_CHECKING:
-    from xarray import Dataset
 
 POSES = 11  # every tenth of the motion: sag and frequency change steadily along it, their extremes are at its ends
 FINEST = 2.0**-8 / (POSES - 1)  # share of the motion to which the end of the equilibrium is found: 0.01 deg of 30 deg
@@ -185,8 +182,6 @@ def assumptions(study: model.Study, report: Share) -> Dataset:
         part of the latter that is there at rest, before the motion;
         `length_error` (leg) [m]: what the legs would have to be off for the paper's deviation.
     """
-    import xarray as xr
-
     whole = len(DURATIONS) + len(SERVO_STIFFNESS)
     durations, drives, sags = [], [], []
     for duration in DURATIONS:
@@ -211,7 +206,7 @@ def assumptions(study: model.Study, report: Share) -> Dataset:
         "axis": list("xyz"),
         "leg": np.arange(1, 7),
     }
-    return xr.Dataset(values, coords, attributes(study) | {"step": TRIAL_STEP})
+    return Dataset(values, coords, attributes(study) | {"step": TRIAL_STEP})
 
 
 def _with_servo(study: model.Study, stiffness: float) -> model.Study:

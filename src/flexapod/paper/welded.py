@@ -4,9 +4,9 @@ from __future__ import annotations
 
 from collections.abc import Iterator, Sequence
 from dataclasses import dataclass
-from typing import TYPE_CHECKING
 
 import numpy as np
+from xarray import Dataset
 
 from flexapod import model, rigid
 from flexapod.paper.readings import robot_preset
@@ -20,9 +20,6 @@ from flexapod.solve.system import State, System
 from flexapod.study.attributes import attributes
 from flexapod.study.record import Share
 from flexapod.typing import Array
-
-if TYPE_CHECKING:
-    from xarray import Dataset
 
 #: Robots of the map: preset and how many legs are welded to the platform.
 READINGS = {
@@ -119,8 +116,6 @@ def welded_map(report: Share, arms: Sequence[float] = ARMS, rolls: Sequence[floa
         the farthest tip from its cylinder's axis, and its `slope`; `shortening` [m] of a leg by bending; `leg_force`
         [N]; `stress` [Pa] of a linear elastic piston. NaN beyond the last equilibrium.
     """
-    import xarray as xr
-
     shape = (len(READINGS), len(arms), len(rolls))
     values = {name: np.full((*shape, 3) if name == "deviation" else shape, np.nan) for name in COLUMNS}
     for i, (preset, count) in enumerate(READINGS.values()):
@@ -133,7 +128,7 @@ def welded_map(report: Share, arms: Sequence[float] = ARMS, rolls: Sequence[floa
                     values[name][i, j, k] = value
             report((i * len(arms) + j + 1) / (len(READINGS) * len(arms)))
     dims = ("reading", "arm", "roll")
-    return xr.Dataset(
+    return Dataset(
         {
             name: ((*dims, "axis") if name == "deviation" else dims, values[name], {"units": unit})
             for name, unit in COLUMNS.items()

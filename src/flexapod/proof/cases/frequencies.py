@@ -36,7 +36,7 @@ LADDER = (ASSUMED, ("beam-fem", (4, 8)), ("finite-segment", (4, 8)))  # shapes a
 FEWEST = {"assumed-modes": 2, "beam-fem": 8, "finite-segment": 8}  # shapes that can follow the second bending mode
 
 
-def _bound(legs: list[dynamic_stiffness.Leg], frequency: Array, fidelity: str, shapes: int) -> Array:
+def _bound(legs: list[dynamic_stiffness.UniformLeg], frequency: Array, fidelity: str, shapes: int) -> Array:
     """What the shapes leave out of the frequencies, relative."""
     rest = missing_sines(legs, frequency, AXIAL) + ROUNDING
     if fidelity == "beam-fem":

@@ -14,7 +14,7 @@ import numpy as np
 from flexapod import rigid
 from flexapod.errors import InputError
 from flexapod.model import ActuatorStudy
-from flexapod.proof.engines.exudyn_builder import CARRIAGE_MASS, Builder, Chain, Link
+from flexapod.proof.engines.exudyn_builder import CARRIAGE_MASS, Builder, CableChain, Link
 from flexapod.proof.engines.exudyn_integration import Integration
 from flexapod.proof.engines.exudyn_process import TIME_LIMIT, ask
 from flexapod.typing import Array
@@ -161,7 +161,7 @@ def _stations(problem: ActuatorProblem) -> Array:
     return np.concatenate([np.linspace(-behind, 0.0, count + 1)[:-1], outside])
 
 
-def _beam(builder: Builder, problem: ActuatorProblem, places: Array) -> Chain:
+def _beam(builder: Builder, problem: ActuatorProblem, places: Array) -> CableChain:
     """The chain of cables with its nodes at places [m] from where the beam comes out."""
     actuator = problem.study.actuator
     rest, start, rate = (np.array(rows) for rows in zip(*(_node(problem, x) for x in places), strict=True))

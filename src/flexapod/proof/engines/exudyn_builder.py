@@ -47,7 +47,7 @@ class Tree:
 
 
 @dataclass(frozen=True, kw_only=True)
-class Chain:
+class CableChain:
     """Exudyn's numbers of a chain of cables, `nodes`, `cables`, markers of their `shapes`; where each `starts` [m]."""
 
     nodes: list[int]
@@ -133,7 +133,7 @@ class Builder:
         gravity: Array,
         start: Array | None = None,
         rate: Array | None = None,
-    ) -> Chain:
+    ) -> CableChain:
         """ANCF cables (Euler-Bernoulli, finite strain and rotation) between n + 1 nodes.
 
         `starts`, `sizes` (n,): where each begins along the chain, and its length [m]; `rest` (n + 1, 4 or 6): places
@@ -156,7 +156,7 @@ class Builder:
             cables.append(mbs.AddObject(cable(length=size, nodeNumbers=nodes[k : k + 2], **stuff)))
             self._weigh(cables[-1], gravity)
         shapes = [mbs.AddMarker(shape(bodyNumber=cable)) for cable in cables]
-        return Chain(nodes=nodes, cables=cables, shapes=shapes, starts=starts, in_plane=in_plane)
+        return CableChain(nodes=nodes, cables=cables, shapes=shapes, starts=starts, in_plane=in_plane)
 
     def _weigh(self, body: int, gravity: Array) -> None:
         marker = self.mbs.AddMarker(self.items.MarkerBodyMass(bodyNumber=body))
@@ -188,7 +188,7 @@ class Builder:
         """Hold those of three shifts and three turns that are 1, in the axes of the first place."""
         self.mbs.AddObject(self.items.ObjectJointGeneric(markerNumbers=[first, second], constrainedAxes=list(held)))
 
-    def ring(self, place: int, chain: Chain, position: float) -> None:
+    def ring(self, place: int, chain: CableChain, position: float) -> None:
         """Let a chain slide through a place, now at `position` [m] of it: free to turn in space, clamped in a plane."""
         element = int(np.searchsorted(chain.starts, position, side="right")) - 1
         data = self.items.NodeGenericData(initialCoordinates=[element, position], numberOfDataCoordinates=2)

@@ -15,7 +15,7 @@ import numpy as np
 
 from flexapod import rigid
 from flexapod.model import Leg, Robot
-from flexapod.proof.engines.exudyn_builder import CARRIAGE_MASS, Builder, Chain, Link, Tree
+from flexapod.proof.engines.exudyn_builder import CARRIAGE_MASS, Builder, CableChain, Link, Tree
 from flexapod.rigid.rotations import exponential
 from flexapod.solve.springs import Place, Spring, before_piston, in_series, springs_along
 from flexapod.typing import Array
@@ -129,7 +129,7 @@ def _links(robot: Robot, i: int, foot: SoftEnd, flexible: bool, follows: bool) -
 
 def _piston(
     builder: Builder, robot: Robot, i: int, tree: Tree, tube: int, inner: float, count: int, guide: float
-) -> Chain:
+) -> CableChain:
     """Chain of cables from the inner end on, with the rings on the link `tube` that guide it."""
     leg, rod, limbs = robot.legs[i], robot.legs[i].piston, rigid.rigid_limbs(robot)
     tilt = _tilt(limbs, i)
