@@ -86,6 +86,12 @@ def by_axis(values: np.ndarray, digits: int = 3) -> str:
     return ", ".join(f"{axis} {text(float(value), 'm', digits)}" for axis, value in zip("xyz", values, strict=True))
 
 
+def in_y_and_z(deviation: Sequence[float] | np.ndarray) -> str:
+    """Lengths along y and z, of x, y, z, in words."""
+    _, y, z = (text(float(value), "m") for value in deviation)
+    return f"y {y}, z {z}"
+
+
 def largest(data: Dataset) -> np.ndarray:
     """Largest deviation of the centre of mass along x, y, z [m]."""
     return np.abs(data.com_deviation.values).max(axis=0)

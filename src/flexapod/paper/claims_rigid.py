@@ -17,6 +17,7 @@ from flexapod.paper.claim import (
     OPEN,
     axis_motion,
     force_gaps,
+    in_y_and_z,
     judged,
     left_open,
     roll_and_arm,
@@ -79,7 +80,8 @@ def _figure7(readings: Dataset) -> Said:
     differs = [name for name in TRAVELS if name not in travels and _is_260(apart[name])]
     first = next(iter(TRAVELS))
     ways = [f"the longest leg less the shortest ({_named(name)})" for name in differs]
-    ways += [f"a piston's travel ({_named(name)}; deviations {_yz(found[name])})" for name in travels]
+    off = {name: in_y_and_z(found[name].deviation_peak.values) for name in travels}
+    ways += [f"a piston's travel ({_named(name)}; deviations {words})" for name, words in off.items()]
     can_be = f" 260 mm can be {', '.join(ways)}; the text does not say which." if ways else ""
     return Said(
         ours=". ".join(f"{_named(name).capitalize()}: {1e3 * travel[name]:.0f} mm" for name in TRAVELS),
@@ -98,11 +100,6 @@ def _named(reading: str) -> str:
     preset, turn, both_sides = TRAVELS[reading]
     circles = "radii" if preset.endswith("radii") else "diameters"
     return f"{circles}, {-turn if both_sides else 0:g} to {turn:g} deg"
-
-
-def _yz(row: Dataset) -> str:
-    _, y, z = row.deviation_peak.values
-    return f"y {text(float(y), 'm')}, z {text(float(z), 'm')}"
 
 
 @row(

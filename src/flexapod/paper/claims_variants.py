@@ -11,6 +11,7 @@ from flexapod.paper.claim import (
     NOT,
     REACHES,
     by_axis,
+    in_y_and_z,
     judged,
     largest,
     near,
@@ -31,10 +32,7 @@ NO_ANGLES = f"{SAYS}; no joint angles are given"
 @row("Time of the roll", f"{SAYS}; no time is given", "assumptions", "robot")
 def _duration(data: Dataset, robot: Dataset) -> Said:
     durations, rows = data.duration.values, data.deviation_by_duration.values
-    parts = [
-        f"{duration:g} s: y {text(float(row[1]), 'm')}, z {text(float(row[2]), 'm')}"
-        for duration, row in zip(durations, rows, strict=True)
-    ]
+    parts = [f"{duration:g} s: {in_y_and_z(peak)}" for duration, peak in zip(durations, rows, strict=True)]
     sag = abs(float(robot.com_deviation.sel(axis="z")[0]))
     fast, slow = (text(float(rows[i, 2]) - sag, "m", 2) for i in (durations.argmin(), durations.argmax()))
     return Said(
@@ -50,15 +48,12 @@ def _half_angles(diameters: Dataset, radii: Dataset) -> Said:
     own, other = (data.isel(half_angle=data.half_angle.values <= FAR) for data in (diameters, radii))
     angles, rows = own.half_angle.values, own.deviation_peak.values
     forces = np.fmax(own.force_peak, other.force_peak).values / _weight(own)
-    each = "; ".join(
-        f"{angle:g} deg: y {text(float(y), 'm')}, z {text(float(z), 'm')}"
-        for angle, (_, y, z) in zip(angles, rows, strict=True)
-    )
-    _, y, z = other.deviation_peak.max("half_angle").values
+    each = "; ".join(f"{angle:g} deg: {in_y_and_z(peak)}" for angle, peak in zip(angles, rows, strict=True))
+    most = in_y_and_z(other.deviation_peak.max("half_angle").values)
     to = f" to {angles[-1]:g}" if len(angles) > 1 else ""
     return Said(
         where=f"Half-angles {angles[0]:g}{to} deg",
-        ours=f"Diameters: {each}. Radii: at most y {text(float(y), 'm')}, z {text(float(z), 'm')}",
+        ours=f"Diameters: {each}. Radii: at most {most}",
         verdict=size(*rows, *other.deviation_peak.values),
         reason=f"Leg forces up to {number(forces[0], 2)} times the payload's weight at {angles[0]:g} deg, "
         f"{number(forces[-1], 2)} at {angles[-1]:g} deg: the nearer to the architecture singularity at 30 deg, "
@@ -135,10 +130,10 @@ def _jump_near(data: Dataset) -> Said:
 def _roll_error(robot: Dataset) -> Said:
     roll, arm = roll_and_arm(robot)
     error = roll_error(arm)
-    y, z = (float(arm * f(roll) * error) for f in (np.sin, np.cos))
+    off = [0.0, *(float(arm * f(roll) * error) for f in (np.sin, np.cos))]
     return Said(
-        ours=f"A roll that is off by {np.rad2deg(error):.2f} deg: y {text(y, 'm')}, z {text(z, 'm')}",
-        verdict=size([0.0, y, z]),
+        ours=f"A roll that is off by {np.rad2deg(error):.2f} deg: {in_y_and_z(off)}",
+        verdict=size(off),
         reason=f"{100 * error / roll:.2g} % of the roll. It fits by construction and shows nothing: this error, d = "
         f"{1e3 * arm:.0f} mm and the roll are three unknowns, backed out of three printed figures.",
     )
@@ -167,12 +162,11 @@ def _half_wave(shortening: float) -> float:
 
 @row("What would give it: drives", SAYS, "assumptions")
 def _drives(data: Dataset) -> Said:
-    (_, y, z), (_, real_y, real_z) = data.deviation_by_drive.values
-    soft, real = data.drive_stiffness.values
+    peaks, (soft, real) = data.deviation_by_drive.values, data.drive_stiffness.values
     sag = float(data.sag_by_drive.values[0, 2])
     return Said(
-        ours=f"Drives of {text(soft, 'N/m')}: y {text(float(y), 'm')}, z {text(float(z), 'm')}",
-        verdict=size(data.deviation_by_drive.values[0]),
-        reason=f"{100 * sag / z:.0f} % of z is sag. Ball screws have {text(real, 'N/m')} and more: y "
-        f"{text(float(real_y), 'm')}, z {text(float(real_z), 'm')}; and the paper's strokes are prescribed.",
+        ours=f"Drives of {text(soft, 'N/m')}: {in_y_and_z(peaks[0])}",
+        verdict=size(peaks[0]),
+        reason=f"{100 * sag / peaks[0, 2]:.0f} % of z is sag. Ball screws have {text(real, 'N/m')} and more: "
+        f"{in_y_and_z(peaks[1])}; and the paper's strokes are prescribed.",
     )

@@ -51,7 +51,7 @@ def _nothing(p: Point) -> Any:
     return 0.0 * p.tip
 
 
-@dataclass(frozen=True, kw_only=True)
+@dataclass(frozen=True)
 class Printed:
     """A printed line: what it changes in the energies, by equation, and whether the case is upright in gravity."""
 
@@ -67,31 +67,19 @@ def _tip_with(p: Point, square: Any, coupled: Any) -> dict[str, Any]:
 
 #: Lines of the paper in its order; `copy` in a name: as our copy has it, which may have lost dots or a power.
 LINES = (
-    Printed(name="2, norm", change=_norm_as_said),
-    Printed(name="2, power (copy)", change=lambda p: {"6": _frequencies_as_printed(p)}),
-    Printed(name="4, without sliding", change=lambda p: {"4": beam_with(p, p.basis.mass, sliding=0.0)}),
+    Printed("2, norm", _norm_as_said),
+    Printed("2, power (copy)", lambda p: {"6": _frequencies_as_printed(p)}),
+    Printed("4, without sliding", lambda p: {"4": beam_with(p, p.basis.mass, sliding=0.0)}),
+    Printed("5, dots lost (copy)", lambda p: _tip_with(p, p.tip**2, TIP_MASS * p.length * p.angle_dot * p.tip)),
+    Printed("5, with dots", lambda p: _tip_with(p, p.tip_dot**2, TIP_MASS * p.length * p.angle_dot * p.tip_dot)),
+    Printed("5, with dots and factor 2", lambda p: _tip_with(p, p.tip_dot**2, 2 * p.length * p.angle_dot * p.tip_dot)),
+    Printed("7, nothing elastic", lambda p: {"7": _nothing(p)}, upright=True),
+    Printed("8, linear", lambda p: {"8, tip": TIP_MASS * p.angle_dot**2 * p.length * along(p.basis.tip_slope, p.a)}),
     Printed(
-        name="5, dots lost (copy)",
-        change=lambda p: _tip_with(p, p.tip**2, TIP_MASS * p.length * p.angle_dot * p.tip),
+        "8, with half and square",
+        lambda p: {"8, tip": 0.5 * TIP_MASS * p.angle_dot**2 * along(p.basis.tip_slope, p.a) ** 2},
     ),
-    Printed(
-        name="5, with dots",
-        change=lambda p: _tip_with(p, p.tip_dot**2, TIP_MASS * p.length * p.angle_dot * p.tip_dot),
-    ),
-    Printed(
-        name="5, with dots and factor 2",
-        change=lambda p: _tip_with(p, p.tip_dot**2, 2 * p.length * p.angle_dot * p.tip_dot),
-    ),
-    Printed(name="7, nothing elastic", change=lambda p: {"7": _nothing(p)}, upright=True),
-    Printed(
-        name="8, linear",
-        change=lambda p: {"8, tip": TIP_MASS * p.angle_dot**2 * p.length * along(p.basis.tip_slope, p.a)},
-    ),
-    Printed(
-        name="8, with half and square",
-        change=lambda p: {"8, tip": 0.5 * TIP_MASS * p.angle_dot**2 * along(p.basis.tip_slope, p.a) ** 2},
-    ),
-    Printed(name="9-10, centrifugal only", change=lambda p: {"9-10": _nothing(p)}, upright=True),
+    Printed("9-10, centrifugal only", lambda p: {"9-10": _nothing(p)}, upright=True),
 )
 
 

@@ -11,13 +11,9 @@ from xarray import Dataset
 from flexapod import model, rigid
 from flexapod.errors import ComputationError
 from flexapod.paper.claim import axis_motion, largest, roll_error
-from flexapod.paper.trials import TRIAL_STEP, opened, table, trial
+from flexapod.paper.trials import TRIAL_STEP, opened, resting, system_of, table, trial
 from flexapod.rigid.rotations import quaternion, rotation_vector
-from flexapod.solve.equilibrium import Equilibrium, equilibrium
-from flexapod.solve.losses import per_loss
-from flexapod.solve.rest import rest_commands, rest_load
-from flexapod.solve.rigid_motion import rigid_rest, rigid_state
-from flexapod.solve.robot_system import robot_system
+from flexapod.solve.equilibrium import Equilibrium
 from flexapod.solve.system import State, System
 from flexapod.study.arguments import as_pose
 from flexapod.study.attributes import attributes
@@ -79,7 +75,7 @@ def at_rest(study: model.Study) -> Rest:
 
 def _followed(study: model.Study) -> tuple[float, Array]:
     """Share of the motion that the equilibrium of home lasts, and the largest sag (3,) [m] on the way."""
-    system = robot_system(study.robot, study.simulation, per_loss(study.robot, study.simulation))
+    system = system_of(study)
     found, off = _near(study, system, 0.0, None)
     if not found.found:
         return 0.0, np.full(3, np.nan)
@@ -96,13 +92,9 @@ def _followed(study: model.Study) -> tuple[float, Array]:
 
 def _near(study: model.Study, system: System, share: float, state: State | None) -> tuple[Equilibrium, Array]:
     """Equilibrium at a share of the motion, sought from a state (None: the rigid pose); its sag (3,) [m]."""
-    robot = study.robot
-    path = as_pose(robot, share * axis_motion(study).target)
-    start = rigid_state(system, robot, path) if state is None else state
-    acts = rest_load(system, robot, path, study.load)
-    command = rest_commands(system, robot, rigid_rest(system, robot, path).q)
-    found = equilibrium(system, start, command[0], acts.force[0], acts.wrench)
-    return found, found.state.pose[:3] - path.point(robot.payload.com)[0][0]
+    path = as_pose(study.robot, share * axis_motion(study).target)
+    found = resting(study, system, path, state)
+    return found, found.state.pose[:3] - path.point(study.robot.payload.com)[0][0]
 
 
 HALF_ANGLES = (5.0, 10.0, 15.0, 20.0, 25.0, 27.0, 28.0, 29.0)  # deg
