@@ -13,14 +13,14 @@ from flexapod.paper import (
     claims_welded,
 )
 from flexapod.paper.claim import Claim
-from flexapod.paper.rows import Row
+from flexapod.paper.rows import ClaimRow
 from flexapod.paper.study import PaperStudy
 
 CLAIM_HEAD = ("Where", "The paper", "What we get", "Verdict", "Reason")
 _SUBJECTS = (claims_actuator, claims_rigid, claims_robot, claims_readings, claims_variants, claims_welded)
 
 #: In the order of the paper, then other readings, what the deviation depends on, what would give it.
-ROWS = tuple(row for module in _SUBJECTS for row in vars(module).values() if isinstance(row, Row))
+ROWS = tuple(row for module in _SUBJECTS for row in vars(module).values() if isinstance(row, ClaimRow))
 
 
 def claims(result: PaperStudy) -> tuple[Claim, ...]:

@@ -23,8 +23,11 @@ class Said:
 Numbers = Callable[..., Said | Sequence[Said]]
 
 
+Numbers = Callable[..., Said | Sequence[Said]]
+
+
 @dataclass(frozen=True, kw_only=True)
-class Row:
+class ClaimRow:
     """`numbers` of the named parts, of the whole study if there are none, for what the paper `says` somewhere."""
 
     where: str
@@ -49,8 +52,6 @@ class Row:
         ]
 
 
-def row(
-    where: str, says: str, *parts: str, expected: str = ""
-) -> Callable[[Callable[..., Said | Sequence[Said]]], Row]:
-    """Decorator of the function of a row's numbers; the words: the fields of `Row`."""
-    return lambda numbers: Row(where=where, says=says, parts=parts, expected=expected, numbers=numbers)
+def row(where: str, says: str, *parts: str, expected: str = "") -> Callable[[Numbers], ClaimRow]:
+    """Decorator of the function of a row's numbers; the words: the fields of `ClaimRow`."""
+    return lambda numbers: ClaimRow(where=where, says=says, parts=parts, expected=expected, numbers=numbers)
