@@ -23,9 +23,6 @@ class Said:
 Numbers = Callable[..., Said | Sequence[Said]]
 
 
-Numbers = Callable[..., Said | Sequence[Said]]
-
-
 @dataclass(frozen=True, kw_only=True)
 class ClaimRow:
     """`numbers` of the named parts, of the whole study if there are none, for what the paper `says` somewhere."""

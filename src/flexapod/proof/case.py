@@ -79,8 +79,7 @@ def case(
 
     def row(compute: Callable[[], Iterable[Check]]) -> Case:
         name = compute.__name__.strip("_").replace("_", "-")
-        words = {"name": name, "statement": statement, "source": source, "argument": argument}
-        return Case(compute=compute, engine=engine, **words)
+        return Case(name=name, statement=statement, source=source, argument=argument, compute=compute, engine=engine)
 
     return row
 

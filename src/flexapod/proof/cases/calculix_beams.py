@@ -69,7 +69,7 @@ def _correction(beam: model.Actuator, thick: Array) -> Array:
     argument="as calculix-piston; shear and rotary inertia take 1e-4 at most",
     engine=CALCULIX,
 )
-def _calculix_beam() -> list[Check]:
+def _calculix_beam() -> Iterator[Check]:
     beam = model.Actuator(length=FREE, free_length=FREE, EI=EI, rhoA=RHO_A)
     ours = clamped_thick(beam, FLAT.height / np.sqrt(12), ONE_ELEMENT, 5)[:3]
     found = {}
@@ -88,7 +88,7 @@ def _calculix_beam() -> list[Check]:
     "that and rounding, 1e-5; of a mesh what it differs from the limit: a circle of 8 parabolas is not a circle",
     engine=CALCULIX,
 )
-def _calculix_piston() -> list[Check]:
+def _calculix_piston() -> Iterator[Check]:
     meshes = {"12 x 12 elements": (COARSE, 12), "12 x 24 elements": (COARSE, 24), "32 x 24 elements": (FINE, 24)}
     found = {
         name: _theirs(_mesh(PISTON, size, LENGTH, layers, "hex20"), STEEL, 0.0, reduced=True)[[0, 2, 4]]

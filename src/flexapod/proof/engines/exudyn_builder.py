@@ -90,7 +90,7 @@ class Builder:
     def tree(
         self,
         links: Sequence[Link],
-        rest: Sequence[float],
+        rest: Sequence[float] | Array,
         rate: Sequence[float] | None = None,
         place: Sequence[float] | Array = (0.0, 0.0, 0.0),
         gravity: Sequence[float] | Array = (0.0, 0.0, 0.0),

@@ -136,8 +136,8 @@ def _piston(
     axis, k, size = limbs.frames[i] @ tilt[:, 2], np.arange(count + 1)[:, None], rod.length / count
     places = robot.base_joints[i] + axis * inner + axis * k * size
     rest = np.hstack([places, np.tile(axis, (count + 1, 1))])
-    starts, stuff = size * k[:-1, 0], {"rhoA": rod.rhoA, "EI": rod.EI, "EA": rod.EA}
-    chain = builder.chain(rest, starts, size, gravity=robot.gravity, **stuff)
+    starts = np.asarray(size * k[:-1, 0], dtype=float)
+    chain = builder.chain(rest, starts, size, rhoA=rod.rhoA, EI=rod.EI, EA=rod.EA, gravity=robot.gravity)
     along = np.array([0.0, 0.0, 1.0]) if tube >= turns(leg) else tilt[:, 2]
     for place in (leg.cylinder.mouth, leg.cylinder.mouth - guide):
         builder.ring(builder.on_link(tree, tube, place * along), chain, place - inner)
@@ -183,6 +183,7 @@ def _driven(builder: Builder, leg: Leg, slide: int, length: Array) -> int:
     return builder.spring((end, slide), *_along(along, length))
 
 
-def _along(springs: list[Spring], lengths: Array) -> Array:
-    """Stiffness and damping, (2, T), of springs in series at lengths of the leg (T,)."""
-    return np.array([in_series(springs, x, 0.0) for x in lengths]).T
+def _along(springs: list[Spring], lengths: Array) -> tuple[Array, Array]:
+    """Stiffness and damping, (T,) each, of springs in series at lengths of the leg (T,)."""
+    stiffness, damping = np.array([in_series(springs, x, 0.0) for x in lengths]).T
+    return stiffness, damping

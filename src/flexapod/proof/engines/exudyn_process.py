@@ -19,7 +19,8 @@ from flexapod.proof.engines.engine import EXUDYN
 TIME_LIMIT = 300.0
 """Seconds after which Exudyn is stopped."""
 
-Problem, Answer = TypeVar("Problem"), TypeVar("Answer")
+Problem = TypeVar("Problem")
+Answer = TypeVar("Answer")
 
 _TELLING = re.compile(r"fail|singular|error", re.IGNORECASE)
 _LAST = 3  # telling lines of its output in a message
