@@ -6,10 +6,9 @@ from collections.abc import Iterator
 
 import numpy as np
 
-from flexapod import model
 from flexapod.model import Actuator, Simulation
 from flexapod.proof.case import Check, case, checks
-from flexapod.proof.robots import heavy_robot
+from flexapod.proof.robots import STEEL, heavy_robot, round_piston
 from flexapod.solve.actuator_modes import actuator_modes
 from flexapod.study.static import modes
 from flexapod.typing import Array
@@ -87,7 +86,6 @@ def _beam_elements() -> list[Check]:
     return found + checks(segments, bare, _waves("finite-segment", SEGMENTS), bare / SEGMENTS**2 / 12)
 
 
-STEEL = {"diameter": 0.027, "E": 200e9, "density": 7800.0}
 FREE = 0.6
 PINNED = (149.138, 596.553)  # Hz, pinned at both ends
 CLAMPED = (232.982, 755.012)  # Hz, clamped at one
@@ -98,14 +96,8 @@ THRUST = 1e3
 FACTOR = 0.996498
 
 
-def _rod() -> model.Piston:
-    """The steel piston."""
-    material = model.Material(name="steel", E=STEEL["E"], density=STEEL["density"])
-    return model.Piston.round(length=FREE, section=model.Tube(diameter=STEEL["diameter"]), material=material)
-
-
 def _section() -> list[Check]:
-    rod = _rod()
+    rod = round_piston(FREE)
     return [
         Check("EI", 5217.4, rod.EI, 1e-5, "N m^2"),
         Check("EA", 1.1451e8, rod.EA, 5e-5, "N"),
@@ -121,8 +113,8 @@ def _section() -> list[Check]:
 )
 def _piston() -> list[Check]:
     found = _section()
-    light = heavy_robot(mouth=0.0, mass=0.0, free=FREE, **STEEL)
-    held = heavy_robot(mouth=0.3, mass=HEAVY, free=FREE, **STEEL)
+    light = heavy_robot(mouth=0.0, mass=0.0, free=FREE)
+    held = heavy_robot(mouth=0.3, mass=HEAVY, free=FREE)
     for name, robot, first, table in (("pinned", light, 6, PINNED), ("clamped", held, 18, CLAMPED)):
         ours = modes(robot, modes=8, axial_modes=1).frequency.values[first::12]
         found += checks([f"{name} and pinned, mode {i}" for i in (1, 2)], table, ours[:2], 1e-5, "Hz")
@@ -141,11 +133,11 @@ def _piston() -> list[Check]:
 )
 def _bar() -> list[Check]:
     # A platform that cannot move holds the tips: clamped-clamped bar, n c / 2 L.
-    speed = np.sqrt(STEEL["E"] / STEEL["density"])
-    robot = heavy_robot(mouth=0.0, mass=0.0, free=FREE, **STEEL)
+    speed = np.sqrt(STEEL.E / STEEL.density)
+    robot = heavy_robot(mouth=0.0, mass=0.0, free=FREE)
     found = modes(robot, modes=1, axial_modes=4)
     first = float(found.frequency.values[[kind.endswith("axial") for kind in found.kind.values]].min())
     return [
         Check("first axial mode", speed / (2 * FREE), first, 1e-12, "Hz"),
-        Check("EA / L of the piston", 1.9085e8, _rod().EA / FREE, 5e-5, "N/m"),
+        Check("EA / L of the piston", 1.9085e8, round_piston(FREE).EA / FREE, 5e-5, "N/m"),
     ]

@@ -15,12 +15,11 @@ from flexapod.proof.case import Check, case, checks
 from flexapod.proof.cases.calculix_corrections import ONE_ELEMENT, clamped_thick
 from flexapod.proof.engines import calculix
 from flexapod.proof.engines.engine import CALCULIX
+from flexapod.proof.robots import ROUND, STEEL
 from flexapod.solve.actuator_modes import actuator_modes
 from flexapod.study.actuator import simulate_actuator
 from flexapod.typing import Array
 
-STEEL = model.Material(name="steel", E=200e9, density=7800.0)
-PISTON = model.Tube(diameter=0.027)
 LENGTH = 0.6  # m, of the piston
 COARSE, FINE = 0.02, 0.005  # m, elements in its section: 12 and 32, edges half as long along the circle
 FLAT = model.Rectangle(width=0.1524, height=0.0095)  # Table 2
@@ -91,11 +90,11 @@ def _calculix_beam() -> Iterator[Check]:
 def _calculix_piston() -> Iterator[Check]:
     meshes = {"12 x 12 elements": (COARSE, 12), "12 x 24 elements": (COARSE, 24), "32 x 24 elements": (FINE, 24)}
     found = {
-        name: _theirs(_mesh(PISTON, size, LENGTH, layers, "hex20"), STEEL, 0.0, reduced=True)[[0, 2, 4]]
+        name: _theirs(_mesh(ROUND, size, LENGTH, layers, "hex20"), STEEL, 0.0, reduced=True)[[0, 2, 4]]
         for name, (size, layers) in meshes.items()
     }
-    beam = model.Actuator.from_section(section=PISTON, material=STEEL, length=LENGTH, free_length=LENGTH)
-    ours = clamped_thick(beam, PISTON.diameter / 4, 2 * 7 / 6, 5)[:3]  # E / G = 2; k = 6 / 7 of a circle (Cowper)
+    beam = model.Actuator.from_section(section=ROUND, material=STEEL, length=LENGTH, free_length=LENGTH)
+    ours = clamped_thick(beam, ROUND.diameter / 4, 2 * 7 / 6, 5)[:3]  # E / G = 2; k = 6 / 7 of a circle (Cowper)
     limit = _limit(found["12 x 12 elements"], found["32 x 24 elements"])
     return _compared(found, limit, ours, ROUNDING + _correction(beam, ours) ** 2)
 
@@ -110,7 +109,7 @@ def _calculix_solid() -> Iterator[Check]:
     for name, material, mesh in (
         ("Table 2 beam, C3D8", ALUMINIUM, _mesh(FLAT, 0.05, 3.66, 73, "hex8")),
         ("Table 2 beam, C3D20", ALUMINIUM, _mesh(FLAT, 0.05, 3.66, 36, "hex20")),
-        ("piston, C3D20", STEEL, _mesh(PISTON, COARSE, LENGTH, 12, "hex20")),
+        ("piston, C3D20", STEEL, _mesh(ROUND, COARSE, LENGTH, 12, "hex20")),
     ):
         theirs = _theirs(mesh, material, 0.3, reduced=False)
         ours = frequencies(mesh, E=material.E, density=material.density, poisson=0.3, count=len(theirs))

@@ -10,6 +10,7 @@ import numpy as np
 
 from flexapod import model, rigid
 from flexapod.proof.case import Case, Check, case, checks, curves
+from flexapod.proof.cases.turning import DURATION, TABLE
 from flexapod.proof.engines.engine import EXUDYN
 from flexapod.proof.engines.exudyn_actuator import simulate_actuator as exudyn_actuator
 from flexapod.proof.engines.exudyn_integration import Integration, extrapolated
@@ -18,14 +19,7 @@ from flexapod.study.actuator import simulate_actuator
 from flexapod.study.simulation import simulate
 from flexapod.typing import Array
 
-DURATION, SPIN_UP_STEP, ELEMENTS = 15.0, 5e-3, 16
-AREA, E, SECOND, DENSITY = 7.2968e-5, 6.8952e10, 8.2189e-9, 2766.7  # of Wu & Haug's beam
-# Name, length [m], EI [N m^2], EA [N], mass per length [kg/m], final rate [rad/s]
-TABLE = (
-    ("Simo & Vu-Quoc, 6 rad/s", 10.0, 1.4e4, 2.8e7, 1.2, 6.0),
-    ("Wu & Haug, 4 rad/s", 8.0, E * SECOND, E * AREA, DENSITY * AREA, 4.0),
-    ("Wu & Haug, 6 rad/s", 8.0, E * SECOND, E * AREA, DENSITY * AREA, 6.0),
-)
+SPIN_UP_STEP, ELEMENTS = 5e-3, 16
 
 
 @case(
@@ -35,7 +29,7 @@ TABLE = (
     engine=EXUDYN,
 )
 def _exudyn_spin_up() -> Iterator[Check]:
-    for name, length, EI, EA, rhoA, rate in TABLE:
+    for name, (length, EI, EA, rhoA), rate, *_ in TABLE:
         study = model.ActuatorStudy(
             actuator=model.Actuator(length=length, free_length=length, rhoA=rhoA, EI=EI),
             motion=model.ActuatorMotion(rotation=model.SpinUpLaw(rate=rate, duration=DURATION)),

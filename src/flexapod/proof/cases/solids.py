@@ -10,11 +10,12 @@ from flexapod.fem.frequencies import frequencies
 from flexapod.fem.mesh import extruded
 from flexapod.fem.reduction import reduced_beam
 from flexapod.fem.section_mesh import section_mesh
-from flexapod.model import Rectangle, Tube
+from flexapod.model import Rectangle
 from flexapod.proof.case import Check, case, checks
+from flexapod.proof.robots import ROUND, STEEL
 from flexapod.typing import Array
 
-E, DENSITY, DIAMETER, LENGTH = 200e9, 7800.0, 0.027, 0.6
+LENGTH = 0.6  # m, of the piston
 LAYERS, BELOW = 12, 9
 
 
@@ -26,9 +27,9 @@ LAYERS, BELOW = 12, 9
     "printed digits",
 )
 def _axial_free() -> list[Check]:
-    mesh = extruded(section_mesh(Tube(diameter=DIAMETER), 0.02, "hex20"), LENGTH, LAYERS)
-    found = frequencies(mesh, E=E, density=DENSITY, count=BELOW + 1)
-    exact = float(np.sqrt(E / DENSITY) / (4 * LENGTH))
+    mesh = extruded(section_mesh(ROUND, 0.02, "hex20"), LENGTH, LAYERS)
+    found = frequencies(mesh, E=STEEL.E, density=STEEL.density, count=BELOW + 1)
+    exact = float(np.sqrt(STEEL.E / STEEL.density) / (4 * LENGTH))
     # The leading error of a quadratic element is (k l)^4 / 720 of a frequency, k = pi / 2 L.
     bound = (np.pi / 2 / LAYERS) ** 4 / 720 + 1e-6
     return [
