@@ -5,7 +5,6 @@ from __future__ import annotations
 from typing import Any
 
 import numpy as np
-from scipy.integrate import solve_ivp
 
 from flexapod import model
 from flexapod.elements.friction import rubbing
@@ -132,6 +131,8 @@ def _screws_and_rotors() -> list[Check]:
     argument="SciPy's LSODA with a relative tolerance of 1e-12: 3e-10 m",
 )
 def _stick_slip() -> list[Check]:
+    from scipy.integrate import solve_ivp  # a tenth of a second, of which the other cases have no use
+
     table = constant(np.array([1.0, 0.0, 1e-5, 0.5, 1e3, 0.4, np.sqrt(1e5) / 1e5, 0.0]))
     v, z, h = symbol("v"), symbol("z"), symbol("h")
     found = rubbing(table, zeros(1), v, v, z, h, falling=False)
