@@ -5,12 +5,12 @@ import re
 from html.parser import HTMLParser
 
 import pytest
-from tests.paper_parts import study_parts, whole_study
+from tests.paper_parts import at_hand, study_parts, whole_study
 
 from flexapod.errors import InputError
 from flexapod.paper import outputs as app_replicate
 from flexapod.paper import study as paper
-from flexapod.paper.outputs import replicate, write
+from flexapod.paper.outputs import replicate
 from flexapod.study import open_results
 
 pytestmark = pytest.mark.xdist_group("claims")  # one process computes the parts
@@ -55,7 +55,9 @@ def coarse(monkeypatch):
 @pytest.fixture(scope="module")
 def folder(tmp_path_factory):
     place = tmp_path_factory.mktemp("replicate")
-    write(whole_study(ANGLES), place)
+    with pytest.MonkeyPatch.context() as patch:
+        patch.setattr(app_replicate, "compute", at_hand(whole_study(ANGLES)))
+        replicate(place)
     return place
 
 

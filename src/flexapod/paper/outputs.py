@@ -58,41 +58,11 @@ def replicate(
         progress=_upto(0.75, progress),
         keep=lambda name, data: _store(data, folder / "data" / name),
     )
-    _figures_and_report(result, folder, _from(0.75, progress), figures=figures)
-    return result
-
-
-def write(result: PaperStudy, folder: str | Path, *, progress: Report | None = None) -> Path:
-    """Write data, figures, claims and report of `flexapod.replicate` into a folder.
-
-    Parameters
-    ----------
-    result : PaperStudy
-    folder : path
-        Made if needed; files of the same name are replaced when the new ones are complete.
-    progress : callable, optional
-        As for `replicate`.
-
-    Returns
-    -------
-    Path
-        Of the report.
-
-    Raises
-    ------
-    InputError
-        The folder cannot be written to.
-    """
-    for name, data in result.parts.items():
-        _store(data, Path(folder) / "data" / name)
-    return _figures_and_report(result, Path(folder), progress)
-
-
-def _figures_and_report(result: PaperStudy, folder: Path, progress: Report | None, *, figures: bool = True) -> Path:
-    groups = paper_figures(result, folder / "figures", progress) if figures else {}
+    groups = paper_figures(result, folder / "figures", _from(0.75, progress)) if figures else {}
     table = claims(result)
     write_text(folder / "claims.md", markdown(table))
-    return write_text(folder / "report.html", paper_page(result, table, groups))
+    write_text(folder / "report.html", paper_page(result, table, groups))
+    return result
 
 
 def _remove(path: Path) -> None:
