@@ -7,6 +7,8 @@ PIP = $(BIN)/python -m pip install --quiet --disable-pip-version-check -c constr
 RUN := .venv/.installed-to-run
 DEV := .venv/.installed-to-develop
 COMPILER ?= $(shell command -v cc || command -v gcc || command -v clang)
+COMMA := ,
+PARTS = page,verify$(if $(COMPILER),,$(COMMA)compiler)
 
 .DEFAULT_GOAL := help
 .PHONY: help setup demo test lint format bench clean
@@ -19,7 +21,7 @@ setup: $(DEV)  ## own virtual environment with everything in it
 $(RUN): pyproject.toml constraints.txt
 	test -x $(BIN)/python || $(PYTHON) -m venv .venv
 	$(PIP) pip
-	$(PIP) --editable ".$(if $(COMPILER),,[compiler])"
+	$(PIP) --editable ".[$(PARTS)]"
 	$(BIN)/python -m compileall -q src
 	touch $@
 

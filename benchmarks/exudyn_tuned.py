@@ -8,28 +8,31 @@ piston take seven to eight times as long.
 from __future__ import annotations
 
 import time
-from unittest.mock import patch
 
-from flexapod.proof.engines import exudyn_robot_model
+from flexapod.proof.engines import exudyn_robot
+from flexapod.proof.engines.exudyn_builder import Builder
+from flexapod.proof.engines.exudyn_integration import Integration
 from flexapod.proof.engines.exudyn_robot import RobotProblem, RobotResult
-from flexapod.proof.engines.exudyn_system import System, items
 from flexapod.typing import Array
 
 __all__ = ["solve"]
 
 
-class Tuned(System):
+class Tuned(Builder):
     """The system with drives that are set at the beginning of a step."""
 
+    def __init__(self, integration: Integration) -> None:
+        super().__init__(integration)
+        self.drives: list[tuple[int, list[float]]] = []
+
     def hold(self, marker: int, displacement: Array) -> int:
-        number = self.mbs.AddObject(
-            items.ObjectConnectorCoordinate(markerNumbers=[self.ground, marker], offset=float(displacement[0]))
-        )
-        self.drives: list[tuple[int, list[float]]] = [*getattr(self, "drives", []), (number, displacement.tolist())]
+        connector = self.items.ObjectConnectorCoordinate
+        number = self.mbs.AddObject(connector(markerNumbers=[self.ground, marker], offset=float(displacement[0])))
+        self.drives.append((number, displacement.tolist()))
         return number
 
     def solve(self, *, equilibrium: bool) -> float:
-        step, last = self.integration.duration / self.integration.steps, self.integration.steps
+        step, last = self.step, self.integration.steps
 
         def set_strokes(mbs: object, t: float) -> bool:
             k = min(round(t / step), last)
@@ -38,7 +41,7 @@ class Tuned(System):
             return True
 
         self.mbs.Assemble()
-        settings = self._settings()
+        settings = self.settings()
         settings.timeIntegration.verboseMode = 0
         if equilibrium:
             self.mbs.SolveStatic(settings, updateInitialValues=True)
@@ -50,5 +53,4 @@ class Tuned(System):
 
 def solve(problem: RobotProblem) -> RobotResult:
     """Result of the package's own model in the tuned system; its seconds are those of the processor."""
-    with patch.object(exudyn_robot_model, "System", Tuned):
-        return exudyn_robot_model.solve(problem)
+    return exudyn_robot.solve(problem, Tuned)

@@ -160,6 +160,7 @@ def _exudyn() -> list[Family]:
 
 
 def _asked(elements: int, guide: float, rho: float, h: float, tolerance: float = 1e-4) -> tuple[Curve, float]:
+    from benchmarks.exudyn_tuned import solve
     from flexapod.proof.engines.exudyn_integration import Integration
     from flexapod.proof.engines.exudyn_process import ask
     from flexapod.proof.engines.exudyn_robot import RobotProblem
@@ -169,7 +170,7 @@ def _asked(elements: int, guide: float, rho: float, h: float, tolerance: float =
     study = undamped(roll())
     plan = Integration(duration=2.0, step=h, rho_inf=rho, tolerance=tolerance)
     problem = RobotProblem(robot=study.robot, motion=study.motion, integration=plan, elements=elements, guide=guide)
-    result = ask("benchmarks.exudyn_tuned", problem)
+    result = ask(solve, problem)
     every = max(1, round(1e-3 / h))
     return Curve(result.time[::every], result.com_deviation[::every]), result.seconds
 

@@ -5,25 +5,19 @@ from __future__ import annotations
 import numpy as np
 
 from flexapod.model import Robot
-from flexapod.model.joint import Carriage, Joint
-from flexapod.model.leg import Leg
+from flexapod.model.joint import Carriage
 from flexapod.model.payload import Payload
-from flexapod.model.piston import Cylinder, Piston, Strut
+from flexapod.model.piston import Cylinder
+from flexapod.proof.robots import CYLINDER, LOWER, PISTON, THREE, UPPER, leg, rod, tangents
 
-THREE = np.array([0.0, 120.0, 240.0])
-LOWER, UPPER = np.array([-10.0, 10, 110, 130, 230, 250]), np.array([-50.0, 50, 70, 170, 190, 290])
+__all__ = ["CYLINDER", "LOWER", "PISTON", "ROBOTS", "THREE", "UPPER", "built", "leg", "ring", "rod", "tangents"]
+
 LOAD = Payload(mass=100.0, inertia=[18.0, 18.0, 18.0], com=[0.0, 0.05, 0.1])
-PISTON = Piston(length=0.75, EA=1.1e8, EI=5e3, rhoA=4.5)
-CYLINDER = Cylinder(mass=3.0, com=0.15, inertia=0.025, mouth=0.25)
 
 
 def ring(radius, degrees, height=0.0):
     a = np.deg2rad(degrees)
     return np.stack([radius * np.cos(a), radius * np.sin(a), np.full(len(a), height)], axis=-1)
-
-
-def tangents(degrees):
-    return ring(1.0, np.asarray(degrees) + 90.0)
 
 
 def built(kind, base, top, height, legs, **more):
@@ -32,16 +26,6 @@ def built(kind, base, top, height, legs, **more):
         type=kind, base_joints=base, platform_joints=top, home_height=height, gravity=[0, 0, -9.81],
         payload=more.pop("payload", LOAD), legs=found, **more,
     )  # fmt: skip
-
-
-def leg(chain, base_axis=None, platform_axis=None, **more):
-    parts = {} if "strut" in more else {"cylinder": CYLINDER, "piston": PISTON}
-    joints = {"base_joint": Joint(axis=base_axis), "platform_joint": Joint(axis=platform_axis)}
-    return Leg(chain=chain, **{**joints, **parts, **more})
-
-
-def rod(length):
-    return Strut(length=length, EA=1e7, EI=200.0, rhoA=0.8)
 
 
 def hexapod(chain="UPS", lower=LOWER, upper=UPPER, height=0.8):

@@ -1,12 +1,12 @@
-"""The parts of the paper's study for tests: those of `replicate`, each computed once."""
+"""The parts of the paper's study for tests: those of `replicate`, each computed once in a process.
+
+Who asks for them belongs to the group "claims" of pytest-xdist, so that one process does.
+"""
 
 from functools import cache
 
-from flexapod.model import preset
 from flexapod.paper.study import STEPS, PaperStudy
-from flexapod.paper.variants import HALF_ANGLES, half_angle_sweep
-
-SWEEPS = {"half-angles": "paper-robot", "half-angles-radii": "paper-robot-radii"}
+from flexapod.paper.variants import HALF_ANGLES
 
 
 def quiet(_):
@@ -21,14 +21,22 @@ def part(name):
 
 @cache
 def study_parts(angles=HALF_ANGLES):
-    """Every part of `replicate` by name, at some of the half-angles."""
-    return {
-        step.name: part(step.name)
-        if step.name not in SWEEPS or angles == HALF_ANGLES
-        else half_angle_sweep(preset(SWEEPS[step.name]), angles, quiet)
-        for step in STEPS
-    }
+    """Every part of `replicate` by name, at some of the half-angles: each is computed by itself."""
+    parts = {step.name: part(step.name) for step in STEPS}
+    sweeps = ("half-angles", "half-angles-radii")
+    return parts | {name: parts[name].sel(half_angle=list(angles)) for name in sweeps}
 
 
 def whole_study(angles=HALF_ANGLES):
     return PaperStudy(parts=study_parts(angles))
+
+
+def at_hand(result):
+    """In the place of what computes a study: its results."""
+
+    def compute(*, engines, progress, keep):
+        for name, data in result.parts.items():
+            keep(name, data)
+        return result
+
+    return compute

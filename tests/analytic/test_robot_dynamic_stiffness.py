@@ -28,7 +28,7 @@ N = 20  # frequencies compared: the platform's six, twelve of first and two of s
 def single(mouth=0.0, mass=0.0, free=0.6, **fields):
     tip = np.array([0.0, 0.0, mouth + free])
     fields = {"first_axis": np.array([1.0, 0.0, 0.0]), "Lp": free, "inertia": mass * mouth**2 / 3} | fields
-    return dynamic_stiffness.Leg(base=np.zeros(3), tip=tip, mouth=mouth, **PISTON, **fields)
+    return dynamic_stiffness.UniformLeg(base=np.zeros(3), tip=tip, mouth=mouth, **PISTON, **fields)
 
 
 def pinned(leg):

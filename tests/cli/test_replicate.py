@@ -5,14 +5,15 @@ import re
 from html.parser import HTMLParser
 
 import pytest
-from tests.paper_parts import study_parts, whole_study
+from tests.paper_parts import at_hand, study_parts, whole_study
 
 from flexapod.errors import InputError
 from flexapod.paper import outputs as app_replicate
 from flexapod.paper import study as paper
-from flexapod.paper.outputs import replicate, write
+from flexapod.paper.outputs import replicate
 from flexapod.study import open_results
 
+pytestmark = pytest.mark.xdist_group("claims")  # one process computes the parts
 ANGLES = (10.0, 29.0)
 
 
@@ -42,7 +43,7 @@ def read_page(path):
 def coarse(monkeypatch):
     """The steps of the study, with results at hand."""
     steps = tuple(
-        paper.Step(
+        paper.StudyPart(
             name=s.name, words=s.words, weight=s.weight, compute=lambda _, name=s.name: study_parts(ANGLES)[name]
         )
         for s in paper.STEPS
@@ -54,7 +55,9 @@ def coarse(monkeypatch):
 @pytest.fixture(scope="module")
 def folder(tmp_path_factory):
     place = tmp_path_factory.mktemp("replicate")
-    write(whole_study(ANGLES), place)
+    with pytest.MonkeyPatch.context() as patch:
+        patch.setattr(app_replicate, "compute", at_hand(whole_study(ANGLES)))
+        replicate(place)
     return place
 
 
@@ -113,7 +116,7 @@ def test_interrupt_leaves_what_is_done_and_no_old_report(coarse, tmp_path, monke
     def stop(_):
         raise KeyboardInterrupt
 
-    changed = [step if step.name != "modes" else paper.Step(name="modes", words="", weight=1, compute=stop)
+    changed = [step if step.name != "modes" else paper.StudyPart(name="modes", words="", weight=1, compute=stop)
                for step in coarse]  # fmt: skip
     monkeypatch.setattr(paper, "STEPS", tuple(changed))
     (tmp_path / "report.html").write_text("of an older run", encoding="utf-8")

@@ -2,10 +2,12 @@
 
 import json
 
+import pytest
 from tests.paper_parts import whole_study
 
 from flexapod.errors import ComputationError
 
+pytestmark = pytest.mark.xdist_group("claims")  # one process computes the parts
 ANGLES = (10.0, 29.0)
 
 

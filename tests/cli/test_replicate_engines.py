@@ -9,12 +9,13 @@ import sys
 from dataclasses import replace
 
 import pytest
+from tests.paper_parts import at_hand
 
 from flexapod import model
 from flexapod.errors import ComputationError
 from flexapod.paper import engines
 from flexapod.paper import figures as paper_figures
-from flexapod.paper.outputs import write
+from flexapod.paper.outputs import replicate
 from flexapod.paper.report import paper_page
 from flexapod.paper.study import PaperStudy
 from flexapod.proof.engines.engine import EXUDYN
@@ -44,7 +45,8 @@ def parts():
 @pytest.fixture
 def few(monkeypatch):
     """No claims, and only the figures of the engine."""
-    monkeypatch.setattr("flexapod.paper.claims.claims", lambda _: [])
+    for module in ("claims", "outputs"):
+        monkeypatch.setattr(f"flexapod.paper.{module}.claims", lambda _: [])
     for name in ("_actuator", "_robot", "_variants"):
         monkeypatch.setattr(paper_figures, name, lambda _: [])
 
@@ -86,8 +88,9 @@ def test_engine_that_fails_is_told_when_all_else_is_written(flexapod, few, parts
     assert "Not computed: robot-exudyn: Exudyn crashed (SIGSEGV)" in page
 
 
-def test_report_names_engine_version_settings_and_how_to_repeat(few, parts, tmp_path):
-    write(PaperStudy(parts=parts), tmp_path)
+def test_report_names_engine_version_settings_and_how_to_repeat(few, parts, tmp_path, monkeypatch):
+    monkeypatch.setattr("flexapod.paper.outputs.compute", at_hand(PaperStudy(parts=parts)))
+    replicate(tmp_path)
     for name in ("engine-forces-rigid", "engine-forces-flexible", "engine-com-path"):
         assert (tmp_path / "figures" / f"{name}.png").read_bytes().startswith(b"\x89PNG")
         assert (tmp_path / "figures" / f"{name}.svg").is_file()

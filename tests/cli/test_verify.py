@@ -5,6 +5,7 @@ import os
 from pathlib import Path
 
 import pytest
+from tests.pack_outcomes import outcomes
 
 from flexapod.errors import ComputationError
 from flexapod.proof import pack
@@ -16,29 +17,25 @@ pytestmark = pytest.mark.xdist_group("pack")  # one process computes the pack
 PAGE = Path(__file__).parents[2] / "docs" / "verification.md"
 
 
-@pytest.fixture(scope="module")
-def outcomes():
-    return pack.verify()
-
-
-def test_every_case_passes_and_says_why(outcomes):
-    assert len(outcomes) == len({outcome.case.name for outcome in outcomes}) >= 11
-    for outcome in outcomes:
+def test_every_case_passes_and_says_why():
+    found = outcomes()
+    assert len(found) == len({outcome.case.name for outcome in found}) >= 11
+    for outcome in found:
         assert outcome.passed or (outcome.not_run and outcome.not_run == outcome.case.obstacle), outcome
         assert all((outcome.case.statement, outcome.case.source, outcome.case.argument))
 
 
-def test_the_page_is_what_the_program_writes(outcomes):
+def test_the_page_is_what_the_program_writes():
     """Made by `flexapod verify --markdown docs/verification.md`.
 
     What varies from machine to machine is left out: which number of a case lies nearest to its tolerance, our own
     numbers, and references that an engine computes.
     """
-    page, written = PAGE.read_text(encoding="utf-8"), markdown(outcomes)
+    page, written = PAGE.read_text(encoding="utf-8"), markdown(outcomes())
     assert page.partition("\n## Cases")[2] == written.partition("\n## Cases")[2]
     shown = [line.strip("| ").split(" | ") for line in page.splitlines() if line.startswith("| ")][2:]
-    assert [row[0] for row in shown] == [o.case.name for o in outcomes]
-    for row, found in zip(shown, outcomes, strict=True):
+    assert [row[0] for row in shown] == [o.case.name for o in outcomes()]
+    for row, found in zip(shown, outcomes(), strict=True):
         assert row[-1] == found.verdict
         if found.checks and found.case.engine is None:
             references = {c.what: f"{c.reference:.8g}" for c in found.checks}

@@ -4,7 +4,7 @@ import os
 
 import numpy as np
 import pytest
-from benchmarks import sweep
+from benchmarks import exudyn_tuned, sweep
 from benchmarks.deviation import error, marched, reference, roll, undamped
 from benchmarks.ode import ode
 from benchmarks.side_by_side import _with_this
@@ -49,7 +49,7 @@ def test_tuned_exudyn_moves_as_the_untuned(monkeypatch):
     plan = Integration(duration=0.1, step=1e-3)
     monkeypatch.setenv("PYTHONPATH", _with_this(os.environ.get("PYTHONPATH", "")))
     problem = RobotProblem(robot=robot, motion=motion, integration=plan, elements=3, guide=0.04)
-    tuned = ask("benchmarks.exudyn_tuned", problem)
+    tuned = ask(exudyn_tuned.solve, problem)
     plain = simulate_robot(robot, motion, plan, elements=3, guide=0.04)
     # The same equations at the same instants; Newton's tolerance of 1e-6 N leaves less than 1e-6 of forces of 1e3 N.
     scale = np.abs(plain.com_deviation).max()

@@ -2,6 +2,7 @@
 
 import numpy as np
 import pytest
+from tests.pack_outcomes import outcome
 
 from flexapod import rigid
 from flexapod.errors import ComputationError
@@ -11,6 +12,7 @@ from flexapod.proof.engines import mujoco_forces
 from flexapod.proof.engines.mujoco_model import mjcf
 from flexapod.proof.robots import unlike_legs, without_cylinders
 
+pytestmark = pytest.mark.xdist_group("pack")  # one process computes its cases
 mujoco = pytest.importorskip("mujoco")
 ROBOT = preset("paper-robot").robot
 ROLL = AxisMotion(type="roll", amplitude=0.3, duration=0.4, pivot=[0.02, 0.01, 0.1])
@@ -22,7 +24,7 @@ def path(robot, motion=ROLL, duration=0.4):
 
 @pytest.fixture(scope="module")
 def checks():
-    return case.mujoco_forces.compute()
+    return outcome("mujoco-forces").checks
 
 
 def test_forces_on_motions_of_all_degrees_of_freedom(checks):

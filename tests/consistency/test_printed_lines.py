@@ -9,6 +9,7 @@ from pathlib import Path
 import numpy as np
 import pytest
 from tests.oracles import sliding
+from tests.paper_parts import part
 
 from flexapod.bases import lateral_basis
 from flexapod.paper import printed_lines
@@ -17,6 +18,7 @@ from flexapod.paper.printed_lines import GRAVITY, LINES, tip_paths
 
 RHO, EI, L0, FEED, TURN = 4.02, 756.65, 1.83, 0.1, 0.785
 AT = {"L": 2.1, "L_dot": 0.1, "angle": 0.9, "angle_dot": 0.785}
+pytestmark = pytest.mark.xdist_group("claims")  # one process computes the parts
 PAGE = Path(__file__).parents[2] / "docs" / "theory" / "T9-actuator.md"
 
 
@@ -138,5 +140,5 @@ def test_page_says_what_the_lines_cost():
 
 
 def _costs():
-    data = printed_lines.printed_lines(lambda _: None)
+    data = part("printed-lines")
     return data.line.values, data.tip_error.values, data.largest.values

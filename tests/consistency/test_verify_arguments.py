@@ -2,9 +2,12 @@
 
 import numpy as np
 import pytest
+from tests.pack_outcomes import outcome
 
 from flexapod import model
 from flexapod.proof.cases import sliding as beam_fem
+
+pytestmark = pytest.mark.xdist_group("pack")  # one process computes its cases
 
 
 def test_the_gap_of_six_elements_is_that_of_modes_that_run_ahead():
@@ -22,7 +25,7 @@ def test_the_gap_of_six_elements_is_that_of_modes_that_run_ahead():
 
 def test_the_tolerances_are_those_of_the_law():
     """A thousandth of the peak stood there once, less than the argument for it gave."""
-    rows = {row.what: row for row in beam_fem.beam_fem.compute()}
+    rows = {row.what: row for row in outcome("beam-fem").checks}
     t = np.arange(2001) * beam_fem.OUTPUT_STEP
     law, bound = beam_fem.predicted_gap(beam_fem.ELEMENTS, t)
     peak = rows["largest deflection"].reference

@@ -99,9 +99,3 @@ def test_bricard_is_of_second_order_and_keeps_its_energy():
     np.testing.assert_allclose(orders(errors), 2.0, atol=0.02)
     swings = np.array([np.ptp(energy) for _, _, energy in runs])
     np.testing.assert_allclose(orders(swings), 2.0, atol=0.02)
-
-
-@pytest.mark.parametrize("case", [four_bar.four_bar, bricard.bricard], ids=lambda case: case.name)
-def test_cases_pass(case):
-    for check in case.compute():
-        assert check.passed, check

@@ -12,7 +12,9 @@ from flexapod.solve.actuator_modes import turning_matrices
 
 TS = 15.0
 # case; peak and its instant by Ritz's method, peak of full nonlinear finite elements, largest lag after the spin-up
-CASES = [({"length": length, "EI": EI, "m": m, "rate": rate}, *values) for _, length, EI, m, rate, *values in TABLE]
+CASES = [
+    ({"length": length, "EI": EI, "m": m, "rate": rate}, *values) for _, (length, EI, _, m), rate, *values in TABLE
+]
 ALUMINIUM = CASES[2][0]
 
 

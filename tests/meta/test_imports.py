@@ -1,11 +1,16 @@
 """What importing flexapod costs, and that its public names lead somewhere."""
 
+import re
 import subprocess
 import sys
+import tomllib
+from pathlib import Path
 
 import pytest
 
 import flexapod
+from flexapod.app.commands_view import PACKAGES
+from flexapod.proof.engines.engine import EXUDYN, MUJOCO
 
 HEAVY = ("casadi", "matplotlib", "netCDF4", "pint", "pydantic", "rich", "scipy", "typer", "xarray")
 
@@ -16,6 +21,26 @@ def python(code: str) -> str:
 
 def test_import_is_light():
     assert python(f"import sys, flexapod; print([m for m in {HEAVY} if m in sys.modules])") == "[]"
+
+
+def test_the_command_loads_neither_page_nor_proof_nor_paper():
+    own = ("flexapod.app.view", "flexapod.paper", "flexapod.proof")
+    code = "import sys, flexapod.app.cli; print([m for m in sys.modules if m.startswith({names})])"
+    assert python(code.format(names=own)) == "[]"
+    engines = ("exudyn", "mujoco")  # loaded by what is computed, not by the tables of cases and claims
+    code = "import sys, flexapod.{part}; print([m for m in {names} if m in sys.modules])"
+    assert python(code.format(part="proof.pack", names=engines)) == "[]"
+    assert python(code.format(part="paper.claims", names=engines)) == "[]"
+
+
+def test_parts_of_the_distribution_are_what_the_programs_ask_for():
+    parts = tomllib.loads((Path(__file__).parents[2] / "pyproject.toml").read_text())["project"][
+        "optional-dependencies"
+    ]
+    named = {part: {re.match("[a-zA-Z]+", line)[0] for line in lines} for part, lines in parts.items()}
+    assert named["page"] == set(PACKAGES)
+    assert named["verify"] == {engine.module for engine in (EXUDYN, MUJOCO)}
+    assert all("flexapod[verify]" in engine.install for engine in (EXUDYN, MUJOCO))
 
 
 def test_reading_numbers_needs_no_pint():

@@ -142,7 +142,7 @@ def test_progress_moves_while_the_engine_is_silent_and_stops_with_it(monkeypatch
 
 def test_absent_engine_is_refused_before_anything_is_computed(monkeypatch):
     monkeypatch.setattr(engines, "EXUDYN", replace(EXUDYN, module="no_such_module"))
-    monkeypatch.setattr(paper, "STEPS", (paper.Step(name="robot", words="", weight=1, compute=pytest.fail),))
+    monkeypatch.setattr(paper, "STEPS", (paper.StudyPart(name="robot", words="", weight=1, compute=pytest.fail),))
     with pytest.raises(InputError, match="not installed") as raised:
         paper.replicate(engines=True)
     assert EXUDYN.install in str(raised.value)
@@ -157,7 +157,7 @@ def steps(*failing):
 
         return made
 
-    return [paper.Step(name=name, words=name, weight=1, compute=compute(name)) for name in ("robot", "a", "b")]
+    return [paper.StudyPart(name=name, words=name, weight=1, compute=compute(name)) for name in ("robot", "a", "b")]
 
 
 def test_engine_that_fails_costs_its_part_only(monkeypatch):

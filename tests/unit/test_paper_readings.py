@@ -2,12 +2,14 @@
 
 import numpy as np
 import pytest
-from tests.paper_parts import quiet
+from tests.paper_parts import part
 
 from flexapod import model
 from flexapod.paper import cost, readings, trials
 from flexapod.rigid import dynamics
 from flexapod.rigid.kinematics import JointTurn
+
+pytestmark = pytest.mark.xdist_group("claims")  # one process computes the parts
 
 
 @pytest.fixture(scope="module")
@@ -16,8 +18,8 @@ def studies():
 
 
 @pytest.fixture(scope="module")
-def table(studies):
-    return trials.trials(studies, quiet)
+def table():
+    return part("readings")
 
 
 def peak(table, name):

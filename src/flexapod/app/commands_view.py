@@ -4,6 +4,7 @@ from __future__ import annotations
 
 import signal
 import socket
+from importlib.util import find_spec
 from pathlib import Path
 from types import FrameType
 from typing import Annotated
@@ -13,8 +14,10 @@ import typer
 from flexapod.app.failures import guarded
 from flexapod.app.options import Json
 from flexapod.app.terminal import print_json, print_text
+from flexapod.errors import InputError
 
 LOCAL = "127.0.0.1"
+PACKAGES = ("msgspec", "tomlkit", "viser", "websockets")  # what the page alone needs
 
 File = Annotated[Path, typer.Argument(metavar="FILE", help="Study file (TOML), or results.nc of `flexapod run`.")]
 Host = Annotated[
@@ -42,6 +45,7 @@ def view(
     json: Json = False,
 ) -> None:
     """Look at a study or its results in the browser: 3D, charts, modes, every number to turn. Ctrl-C ends it."""
+    _check_packages()
     from flexapod.app.view.network import address, free_port
     from flexapod.app.view.opening import open_source
 
@@ -62,6 +66,18 @@ def view(
         pass
     finally:
         running.stop()
+
+
+def _check_packages() -> None:
+    """Refuse, before anything is read, to show a page without what it is made with."""
+    missing = [name for name in PACKAGES if find_spec(name) is None]
+    if missing:
+        raise InputError(
+            "is not installed, which the page needs",
+            key="flexapod view",
+            value=", ".join(missing),
+            next_step='Install it: pip install "flexapod[page]"',
+        )
 
 
 def _end_by_signals() -> None:

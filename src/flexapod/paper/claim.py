@@ -5,17 +5,14 @@ from __future__ import annotations
 import math
 from collections.abc import Sequence
 from dataclasses import InitVar, dataclass
-from typing import TYPE_CHECKING
 
 import numpy as np
+from xarray import Dataset
 
 from flexapod import model
 from flexapod.errors import InputError
 from flexapod.scene.robot import motion_end, robot_study
 from flexapod.study.words import number, text
-
-if TYPE_CHECKING:
-    from xarray import Dataset
 
 HOLDS, IN_PART, NOT = "holds", "holds in part", "does not hold"  # of numbers, by `judged`
 HERE = "holds here"  # of numbers that are those of one example
@@ -87,6 +84,12 @@ def roll_error(arm: float) -> float:
 def by_axis(values: np.ndarray, digits: int = 3) -> str:
     """Lengths along x, y, z in words."""
     return ", ".join(f"{axis} {text(float(value), 'm', digits)}" for axis, value in zip("xyz", values, strict=True))
+
+
+def in_y_and_z(deviation: Sequence[float] | np.ndarray) -> str:
+    """Lengths along y and z, of x, y, z, in words."""
+    _, y, z = (text(float(value), "m") for value in deviation)
+    return f"y {y}, z {z}"
 
 
 def largest(data: Dataset) -> np.ndarray:

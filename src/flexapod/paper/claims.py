@@ -4,33 +4,34 @@ from __future__ import annotations
 
 from collections.abc import Sequence
 
+from flexapod.paper import (
+    claims_actuator,
+    claims_readings,
+    claims_rigid,
+    claims_robot,
+    claims_variants,
+    claims_welded,
+)
 from flexapod.paper.claim import Claim
-from flexapod.paper.claims_actuator import actuator_claims
-from flexapod.paper.claims_readings import reading_claims
-from flexapod.paper.claims_rigid import rigid_claims
-from flexapod.paper.claims_robot import robot_claims
-from flexapod.paper.claims_variants import explanation_claims, variant_claims
+from flexapod.paper.rows import ClaimRow
 from flexapod.paper.study import PaperStudy
 
 CLAIM_HEAD = ("Where", "The paper", "What we get", "Verdict", "Reason")
+_SUBJECTS = (claims_actuator, claims_rigid, claims_robot, claims_readings, claims_variants, claims_welded)
+
+#: In the order of the paper, then other readings, what the deviation depends on, what would give it.
+ROWS = tuple(row for module in _SUBJECTS for row in vars(module).values() if isinstance(row, ClaimRow))
 
 
 def claims(result: PaperStudy) -> tuple[Claim, ...]:
-    """All claims in the order of the paper, then other readings, what the deviation depends on, what would give it.
+    """All claims in the order of `ROWS`.
 
     Parameters
     ----------
     result : PaperStudy
         From `replicate`.
     """
-    return (
-        *actuator_claims(result),
-        *rigid_claims(result),
-        *robot_claims(result),
-        *reading_claims(result),
-        *variant_claims(result),
-        *explanation_claims(result),
-    )
+    return tuple(claim for row in ROWS for claim in row.claims(result))
 
 
 def markdown(table: Sequence[Claim]) -> str:

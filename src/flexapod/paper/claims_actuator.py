@@ -2,9 +2,8 @@
 
 from __future__ import annotations
 
-from typing import TYPE_CHECKING
-
 import numpy as np
+from xarray import Dataset
 
 from flexapod import model
 from flexapod.bases.beam_functions import clamped_free
@@ -19,16 +18,13 @@ from flexapod.paper.claim import (
     NOT,
     OPEN,
     WIDTH,
-    Claim,
     judged,
     left_open,
 )
 from flexapod.paper.energies import TIP_MASS
+from flexapod.paper.rows import Said, row
 from flexapod.paper.study import ACTUATOR_MODES, PaperStudy
 from flexapod.study.words import text
-
-if TYPE_CHECKING:
-    from xarray import Dataset
 
 ALUMINIUM = (70e9, 2700.0)  # E [Pa], density [kg/m^3]; its alloys lie within 5 %, steel at three times as much
 ALLOYS = 0.05
@@ -41,49 +37,33 @@ LINEAR = {  # kinds of linear elements, and their meshes of 50 and of 5 mm
 ROUNDED = 1e-3  # half a unit in the third digit: a norm nearer to 1 would be taken for 1
 
 
-def actuator_claims(result: PaperStudy) -> tuple[Claim, ...]:
-    """Equations 2 to 10, Table 2, Figs. 3 and 4."""
-    eps = np.array([shape.eps for shape in clamped_free(3)])
-    return (
-        _shapes(eps),
-        _equations(result["printed-lines"]),
-        _table2(_actuator(result)),
-        _figure2(),
-        _figure3(result),
-        _figure4(result),
-        _printed(result),
-    )
-
-
-def _actuator(result: PaperStudy) -> model.Actuator:
-    study = model.loads(result.actuator[ACTUATOR_MODES[0]].attrs["study"])
+def _actuator(data: Dataset) -> model.Actuator:
+    study = model.loads(data.attrs["study"])
     if isinstance(study, model.ActuatorStudy):
         return study.actuator
     raise InputError("is the result of a robot", key="data", allowed="results of a single actuator")
 
 
-def _shapes(eps: np.ndarray) -> Claim:
+@row("Eq. 2", f"Shapes normalised by the mass per length; {COPY} beta^4 = omega^4 rho / EI", expected=NOT)
+def _shapes(_: PaperStudy) -> Said:
+    eps = np.array([shape.eps for shape in clamped_free(3)])
     alpha = (np.sin(eps) + np.sinh(eps)) / (np.cos(eps) + np.cosh(eps))
     norms = ", ".join(f"{norm:.4f}" for norm in alpha**2)
-    return Claim(
-        where="Eq. 2",
-        says=f"Shapes normalised by the mass per length; {COPY} beta^4 = omega^4 rho / EI",
+    return Said(
         ours=f"The integral of rho Y^2 is alpha^2 = {norms} for three shapes; normalised, it would be 1",
         verdict=judged(np.abs(alpha**2 - 1).max() < ROUNDED),
-        expected=NOT,
         reason="In any reading a factor 1 / alpha is missing; results do not depend on the norm unless it is taken as "
         "said. The fourth power of omega may be the copy's: beta^4 = rho omega^2 / EI is meant.",
     )
 
 
-def _equations(lines: Dataset) -> Claim:
+@row("Eqs. 4-10", "Energies of the sliding, turning beam", "printed-lines")
+def _equations(lines: Dataset) -> Said:
     names = [str(line) for line in lines.line.values]
     cost = dict(zip(names, (text(float(error), "m") for error in lines.tip_error.values), strict=True))
     sizes = dict(zip(names, (text(float(size), "m") for size in lines.largest.values), strict=True))
     level, upright = sizes["8, linear"], sizes["7, nothing elastic"]
-    return Claim(
-        where="Eqs. 4-10",
-        says="Energies of the sliding, turning beam",
+    return Said(
         ours="Derived anew: one kinetic and one potential energy, differentiated. One line as printed, the others as "
         f"derived, and the tip is off by: Eq. 5 {cost['5, dots lost (copy)']}, with its dots {cost['5, with dots']}; "
         f"Eq. 8 {cost['8, linear']}, with a half and a square {cost['8, with half and square']}, of {level}; "
@@ -98,31 +78,30 @@ def _equations(lines: Dataset) -> Claim:
     )
 
 
-def _figure2() -> Claim:
-    return Claim(
-        where="Fig. 2",
-        says="CAD model: the beam a deformable solid, the hub a rigid shell, no friction between them",
+@row("Table 2", "15.24 x 0.95 cm^2, 4.02 kg/m, EI = 756.65 N m^2", f"actuator-{ACTUATOR_MODES[0]}", expected=HOLDS)
+def _table2(data: Dataset) -> Said:
+    actuator = _actuator(data)
+    modulus, density = actuator.EI / (WIDTH * HEIGHT**3 / 12), actuator.rhoA / (WIDTH * HEIGHT)
+    off = max(abs(modulus / ALUMINIUM[0] - 1), abs(density / ALUMINIUM[1] - 1))
+    return Said(
+        ours=f"E = {modulus / 1e9:.1f} GPa, density {density:.0f} kg/m^3",
+        verdict=judged(off < ALLOYS),
+        reason="The figures belong to one aluminium beam that bends about its weak axis: within "
+        f"{100 * off:.1g} % of {ALUMINIUM[0] / 1e9:.0f} GPa and {ALUMINIUM[1]:.0f} kg/m^3. The paper states no E.",
+    )
+
+
+@row("Fig. 2", "CAD model: the beam a deformable solid, the hub a rigid shell, no friction between them")
+def _figure2(_: PaperStudy) -> Said:
+    return Said(
         ours="Hexahedra that slide through a plane in which their sections stay straight; drawn as actuator-solid",
         verdict=OPEN,
         reason=f"Length and play of the hub and the kind of contact are not printed. Ours guides without play.{FIGURE}",
     )
 
 
-def _table2(actuator: model.Actuator) -> Claim:
-    modulus, density = actuator.EI / (WIDTH * HEIGHT**3 / 12), actuator.rhoA / (WIDTH * HEIGHT)
-    off = max(abs(modulus / ALUMINIUM[0] - 1), abs(density / ALUMINIUM[1] - 1))
-    return Claim(
-        where="Table 2",
-        says="15.24 x 0.95 cm^2, 4.02 kg/m, EI = 756.65 N m^2",
-        ours=f"E = {modulus / 1e9:.1f} GPa, density {density:.0f} kg/m^3",
-        verdict=judged(off < ALLOYS),
-        expected=HOLDS,
-        reason="The figures belong to one aluminium beam that bends about its weak axis: within "
-        f"{100 * off:.1g} % of {ALUMINIUM[0] / 1e9:.0f} GPa and {ALUMINIUM[1]:.0f} kg/m^3. The paper states no E.",
-    )
-
-
-def _figure3(result: PaperStudy) -> Claim:
+@row("Fig. 3", "Refined from 5 cm to 5 mm; with 5 mm cubic elements the response is converged", expected=IN_PART)
+def _figure3(result: PaperStudy) -> Said:
     peak, off = _differences(result, *(f"actuator-solid-{name}" for pair in LINEAR.values() for name in pair))
     _, best = _differences(result, "actuator-solid-quadratic")
     first = {name: float(result[name].frequency[0]) for name in (*off, *best)}
@@ -134,14 +113,11 @@ def _figure3(result: PaperStudy) -> Claim:
         gaps[kind] = 100 * (first[fine] / true - 1)
         words.append(f"{kind} {first[coarse]:.3g} and {first[fine]:.3g} Hz, the tip off by {text(off[fine], 'm', 2)}")
     converged = best["actuator-solid-quadratic"] < CONVERGED * peak
-    return Claim(
-        where="Fig. 3",
-        says="Refined from 5 cm to 5 mm; with 5 mm cubic elements the response is converged",
+    return Said(
         ours=f"First frequency of linear hexahedra of 50 and of 5 mm instead of {true:.3g} Hz, largest error of the "
         f"latter in 10 s: {'; '.join(words)}. Quadratic ones of 5 mm: "
         f"{text(best['actuator-solid-quadratic'], 'm', 2)}",
         verdict=judged(all(good.values()), any(good.values()) or converged),
-        expected=IN_PART,
         reason="It depends on the element, which the paper does not name. With full integration linear ones lock in "
         f"bending: two across the depth are {gaps['full integration']:.2g} % too fast. With reduced integration, "
         f"the usual default, two layers feel three quarters of the bending: {-gaps['reduced integration']:.2g} % "
@@ -149,16 +125,14 @@ def _figure3(result: PaperStudy) -> Claim:
     )
 
 
-def _figure4(result: PaperStudy) -> Claim:
+@row("Fig. 4", "Assumed modes and finite elements agree closely", expected=HOLDS)
+def _figure4(result: PaperStudy) -> Said:
     peak, off = _differences(result, "actuator-beam", "actuator-solid-quadratic")
     worst = max(off.values()) / peak
-    return Claim(
-        where="Fig. 4",
-        says="Assumed modes and finite elements agree closely",
+    return Said(
         ours=f"Over 10 s and a largest deflection of {text(peak, 'm')} the beam elements differ by at most "
         f"{text(off['actuator-beam'], 'm', 2)}, solid elements by {text(off['actuator-solid-quadratic'], 'm', 2)}",
         verdict=judged(worst < CLOSE, worst < CONVERGED),
-        expected=HOLDS,
         reason="Same motion, start and guide in all three: 8 shapes, 12 cubic beam elements on the free length, "
         f"quadratic hexahedra of 5 mm without lateral contraction, as in a beam.{FIGURE}",
     )
@@ -172,24 +146,22 @@ def _differences(result: PaperStudy, *names: str) -> tuple[float, dict[str, floa
     }
 
 
-def _printed(result: PaperStudy) -> Claim:
+@row("Figs. 3-4, printed curves", "Tip vibration at 0.1 m/s and 0.785 rad/s", expected=OPEN)
+def _printed(result: PaperStudy) -> Said:
     finest = result.actuator[ACTUATOR_MODES[-1]].tip_deflection
     peak = float(np.abs(finest).max())
     off = {k: float(np.abs(d.tip_deflection - finest).max()) for k, d in result.actuator.items()}
     open_here = left_open("paper-actuator", "actuator.free_length", "actuator.tip_mass", "actuator.gravity")
     free = result["actuator-free"]
     swing = float(np.abs(free.tip_deflection).max())
-    return Claim(
-        where="Figs. 3-4, printed curves",
-        says="Tip vibration at 0.1 m/s and 0.785 rad/s",
+    return Said(
         ours=f"Prescribed rates: largest deflection {text(peak, 'm')}; 3 shapes are within {text(off[3], 'm', 2)} of "
         f"{ACTUATOR_MODES[-1]}. Set free with these rates: "
         f"{text(swing, 'm')} in {float(free.time[-1]):.3g} s, at the end of which {float(free.length[-1]):.3g} m "
         "are outside",
         verdict=OPEN if open_here else judged(off[3] < 0.01 * peak, off[3] < 0.1 * peak),
-        expected=OPEN,
         reason="Free length at the start, tip mass, hub, plane of motion, and whether the velocities are held or only "
         "given at the start (a hub without friction suggests it), are not printed, so the curves cannot be laid "
-        f"over each other. Ours is level and starts at {_actuator(result).free_length:g} m; 1 shape would be off "
+        f"over each other. Ours is level and starts at {_actuator(free).free_length:g} m; 1 shape would be off "
         f"by {text(off[1], 'm', 2)}.{FIGURE}",
     )

@@ -2,16 +2,14 @@
 
 from __future__ import annotations
 
-from typing import TYPE_CHECKING
-
 import numpy as np
+from xarray import Dataset
 
 from flexapod.paper.claim import (
     COPY,
     ELASTIC_LENGTH,
     MISPRINT,
     NOT,
-    Claim,
     by_axis,
     largest,
     peaks,
@@ -19,93 +17,68 @@ from flexapod.paper.claim import (
     times,
 )
 from flexapod.paper.readings import CUBE, MODULI, about_platform, cube_edge
+from flexapod.paper.rows import Said, row
 from flexapod.paper.study import PaperStudy
 from flexapod.scene.robot import robot_study
 from flexapod.study.words import number, text
 
-if TYPE_CHECKING:
-    from xarray import Dataset
-
 SAYS = "5 mm in Y and 10 mm in Z"
-
-
-def reading_claims(result: PaperStudy) -> tuple[Claim, ...]:
-    """Inextensible pistons, elastic length, Table 2 for pistons, the modulus, circles, payload, cross-references."""
-    robot, readings = result["robot"], result["readings"]
-    return (
-        _inextensible(readings),
-        _elastic_length(robot, readings),
-        _table_2(readings),
-        _modulus(readings),
-        _radii(robot, result["robot-radii"]),
-        _com_on_top(robot, readings),
-        _about_platform(robot, readings),
-        _cross_references(),
-    )
+PRINTED = f"{1e3 * ELASTIC_LENGTH:.0f} mm"
 
 
 def _peak(readings: Dataset, name: str) -> np.ndarray:
     return readings.deviation_peak.sel(reading=name).values
 
 
-def _inextensible(readings: Dataset) -> Claim:
+@row("Section 2, assumption 3", f"The beam is inextensible; {SAYS}", "readings", expected=NOT)
+def _inextensible(readings: Dataset) -> Said:
     peak, tip = _peak(readings, "inextensible"), float(readings.tip_peak.sel(reading="inextensible"))
-    return Claim(
-        where="Section 2, assumption 3",
-        says=f"The beam is inextensible; {SAYS}",
+    return Said(
         ours=f"Pistons that bend and do not stretch: {by_axis(peak)}, with tips {text(tip, 'm', 2)} off",
         verdict=size(peak),
-        expected=NOT,
         reason="With the paper's own assumption no deviation is left, let alone millimetres: between ideal joints all "
         "that bending does to the payload is to shorten legs, by the square of the slope.",
     )
 
 
-def _elastic_length(robot: Dataset, readings: Dataset) -> Claim:
+@row("Table 3, elastic length", f"{SAYS}; elastic length of piston {PRINTED}", "robot", "readings", expected=NOT)
+def _elastic_length(robot: Dataset, readings: Dataset) -> Said:
     piston = robot_study(robot).robot.legs[0].piston
     own, whole = largest(robot), _peak(readings, "elastic-length")
     less = 1 - whole / own
     stiffness = float(readings.stretch_stiffness.sel(reading="elastic-length"))
-    verdict, printed = size(own, whole), f"{1e3 * ELASTIC_LENGTH:.0f} mm"
-    return Claim(
-        where="Table 3, elastic length",
-        says=f"{SAYS}; elastic length of piston {printed}",
-        ours=f"{1e3 * piston.length:.0f} mm that stretch, {printed} of them free at home: "
-        f"{text(piston.EA / piston.length, 'N/m')}, {by_axis(own)}. A piston of {printed} in all: "
+    return Said(
+        ours=f"{1e3 * piston.length:.0f} mm that stretch, {PRINTED} of them free at home: "
+        f"{text(piston.EA / piston.length, 'N/m')}, {by_axis(own)}. A piston of {PRINTED} in all: "
         f"{text(stiffness, 'N/m')}, {by_axis(whole)}",
-        verdict=verdict,
-        expected=NOT,
-        reason=f"The paper does not say whether {printed} are the free part or the whole piston. The presets take the "
+        verdict=size(own, whole),
+        reason=f"The paper does not say whether {PRINTED} are the free part or the whole piston. The presets take the "
         "free part, which bends; what its cylinder guides, down to the drive, stretches too. The other reading "
         f"makes y {100 * less[1]:.0f} % and z {100 * less[2]:.0f} % smaller.",
     )
 
 
-def _table_2(readings: Dataset) -> Claim:
+@row("Section 3.2, Table 2", f"{SAYS}; the pistons' elastic properties are those of Table 2", "readings", expected=NOT)
+def _table_2(readings: Dataset) -> Said:
     row = readings.sel(reading="table-2")
     peak, share = row.deviation_peak.values, 100 * float(row.load_share)
-    return Claim(
-        where="Section 3.2, Table 2",
-        says=f"{SAYS}; the pistons' elastic properties are those of Table 2",
+    return Said(
         ours=f"Pistons with the EI, EA and mass of that beam: {by_axis(peak)}; tips "
         f"{text(float(row.tip_peak), 'm', 2)} off",
         verdict=size(peak),
-        expected=NOT,
         reason="Table 2 is the single actuator's aluminium beam; probably Table 3 is meant. Taken literally, pistons "
         f"bend more easily and stretch hardly more, and bear {share:.2g} % of their Euler load.",
     )
 
 
-def _modulus(readings: Dataset) -> Claim:
+@row("Elastic modulus", f"{SAYS}, a mode of a piston in Fig. 10; E = 200 GPa", "readings", expected=NOT)
+def _modulus(readings: Dataset) -> Said:
     rows = {E: readings.sel(reading=f"modulus-{E:g}") for E in MODULI}
     sound = {E: row for E, row in rows.items() if not row.verdict.item()}
     last = sound[min(sound)] if sound else rows[min(rows)]
-    return Claim(
-        where="Elastic modulus",
-        says=f"{SAYS}, a mode of a piston in Fig. 10; E = 200 GPa",
+    return Said(
         ours=". ".join(f"{E:g} GPa: {_modulus_words(row)}" for E, row in rows.items()),
         verdict=size(*(row.deviation_peak.values for row in sound.values())),
-        expected=NOT,
         reason="With one digit lost the stretch is ten times larger. Near the Euler load millimetres come with a "
         f"visibly bent piston (at {100 * float(last.load_share):.0f} % of it tips are "
         f"{text(float(last.tip_peak), 'm', 2)} off): a modulus {number(200 / min(sound, default=np.nan), 2)} times "
@@ -119,55 +92,52 @@ def _modulus_words(row: Dataset) -> str:
     return f"{by_axis(row.deviation_peak.values)}, tips {text(float(row.tip_peak), 'm', 2)}"
 
 
-def _radii(diameters: Dataset, radii: Dataset) -> Claim:
+@row("Circles as radii", f"{SAYS}; Table 3 calls 0.5 m and 0.3 m diameters", "robot", "robot-radii", expected=NOT)
+def _radii(diameters: Dataset, radii: Dataset) -> Said:
     (_, y0, z0), (_, y, z) = largest(diameters), largest(radii)
-    return Claim(
-        where="Circles as radii",
-        says=f"{SAYS}; Table 3 calls 0.5 m and 0.3 m diameters",
+    return Said(
         ours=peaks(radii),
         verdict=size(largest(radii)),
-        expected=NOT,
         reason="A wider robot is stiffer against the moment of the offset payload: "
         f"y {times(y, y0)}, z {times(z, z0)}.",
     )
 
 
-def _com_on_top(robot: Dataset, readings: Dataset) -> Claim:
+@row("Centre of mass on top", f"{SAYS}; Eqs. 11-12 put it beside the platform", "robot", "readings", expected=NOT)
+def _com_on_top(robot: Dataset, readings: Dataset) -> Said:
     payload = robot_study(robot).robot.payload
     d, edge = float(np.linalg.norm(payload.com)), cube_edge(payload)
     low, high = _peak(readings, "com-on-top"), _peak(readings, CUBE)
-    return Claim(
-        where="Centre of mass on top",
-        says=f"{SAYS}; Eqs. 11-12 put it beside the platform",
+    return Said(
         ours=f"{1e3 * d:.0f} mm above the platform: {by_axis(low)}. {500 * edge:.0f} mm: {by_axis(high)}",
         verdict=size(low, high),
-        expected=NOT,
         reason=f"{payload.inertia.max():g} kg m^2 at {payload.mass:g} kg is a cube of {edge:.2f} m: standing on the "
         f"platform, it has its centre {500 * edge:.0f} mm up.",
     )
 
 
-def _about_platform(robot: Dataset, readings: Dataset) -> Claim:
+@row("Inertia about the platform", SAYS, "robot", "readings", expected=NOT)
+def _about_platform(robot: Dataset, readings: Dataset) -> Said:
     payload = robot_study(robot).robot.payload
     moments = np.linalg.eigvalsh(about_platform(payload))
     body = "no body has these" if moments[2] > moments[0] + moments[1] or moments[0] <= 0 else "a body has these"
     peak = _peak(readings, "inertia-of-platform")
-    return Claim(
-        where="Inertia about the platform",
+    return Said(
         says=f"{SAYS}; {payload.inertia.max():g} kg m^2, about which point is not said",
         ours=f"About the platform's centre it would be {', '.join(f'{m:.3g}' for m in moments)} kg m^2 about the "
         f"centre of mass: {body}. With the largest lowered to the sum of the others: {by_axis(peak)}",
         verdict=size(peak),
-        expected=NOT,
         reason="Most of the deviation is sag, which does not depend on inertia.",
     )
 
 
-def _cross_references() -> Claim:
-    return Claim(
-        where="Cross-references",
-        says=f"{COPY.capitalize()}: section 2.2, properties of Table 1; section 3.2, pistons of Table 2; abstract and "
-        "contributions, 6 %",
+@row(
+    "Cross-references",
+    f"{COPY.capitalize()}: section 2.2, properties of Table 1; section 3.2, pistons of Table 2; abstract and "
+    "contributions, 6 %",
+)
+def _cross_references(_: PaperStudy) -> Said:
+    return Said(
         ours="Table 1 classifies literature, Table 2 is the beam, Table 3 the pistons; no section arrives at 6 %",
         verdict=MISPRINT,
         reason="A matter of the text. Also: rho is a mass per length in section 2 and a density in Table 3; I is "

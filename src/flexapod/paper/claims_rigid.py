@@ -3,9 +3,9 @@
 from __future__ import annotations
 
 import math
-from typing import TYPE_CHECKING
 
 import numpy as np
+from xarray import Dataset
 
 from flexapod import rigid
 from flexapod.paper.claim import (
@@ -15,49 +15,32 @@ from flexapod.paper.claim import (
     HERE,
     IN_PART,
     OPEN,
-    Claim,
     axis_motion,
     force_gaps,
+    in_y_and_z,
     judged,
     left_open,
     roll_and_arm,
 )
 from flexapod.paper.cost import FORMULATIONS
 from flexapod.paper.readings import TRAVELS
-from flexapod.paper.study import PaperStudy
+from flexapod.paper.rows import Said, row
 from flexapod.scene.robot import robot_study
 from flexapod.study.before.estimates import section_width
 from flexapod.study.words import number, text
-
-if TYPE_CHECKING:
-    from xarray import Dataset
 
 TRAVEL, TRAVEL_ROUNDED = 0.26, 0.005  # of a piston, Fig. 7; printed to 10 mm [m]
 SHEAR = 2.6 / 0.9  # E / kappa G of a round steel section: 2 (1 + 0.3), kappa = 0.9
 ROUNDING = 1e-9  # of a path computed in double precision, relative
 
 
-def rigid_claims(result: PaperStudy) -> tuple[Claim, ...]:
-    """Slenderness, Figs. 6 to 8, the methods of inverse dynamics, Eqs. 11 and 12."""
-    robot = result["robot"]
-    return (
-        _slender(robot),
-        _figure6(robot),
-        _figure7(result["readings"]),
-        _cost(result["cost"]),
-        _figure8(result["robot-rigid"]),
-        _equations_11_12(robot),
-    )
-
-
-def _slender(robot: Dataset) -> Claim:
+@row("Section 3", "Diameter below a tenth of the length: Euler-Bernoulli theory is valid", "robot")
+def _slender(robot: Dataset) -> Said:
     diameter = section_width(robot_study(robot).robot.legs[0].piston)
     ratio = diameter / ELASTIC_LENGTH
     lower = _lowered(ratio)
     verdict = judged(ratio < 0.1 and lower < 0.01, ratio < 0.1)
-    return Claim(
-        where="Section 3",
-        says="Diameter below a tenth of the length: Euler-Bernoulli theory is valid",
+    return Said(
         ours=f"{100 * ratio:.2g} % of the elastic length",
         verdict=verdict,
         reason=f"Shear and rotary inertia lower the first frequency of such a pinned piston by {100 * lower:.2g} %.",
@@ -77,32 +60,30 @@ def _lowered(ratio: float) -> float:
     return 1 - float(np.sqrt(squared)) / np.pi**2
 
 
-def _figure6(robot: Dataset) -> Claim:
+@row("Fig. 6", "Roll about X; no amplitude, time or law in the text", "robot", expected=OPEN)
+def _figure6(robot: Dataset) -> Said:
     motion = axis_motion(robot_study(robot))
     open_here = left_open("paper-robot", "motion.amplitude", "motion.duration", "motion.profile")
-    return Claim(
-        where="Fig. 6",
-        says="Roll about X; no amplitude, time or law in the text",
+    return Said(
         ours=f"{motion.profile.capitalize()} law, 0 to {np.rad2deg(motion.target[3]):.1f} deg in {motion.duration:g} s",
         verdict=OPEN if open_here else judged(motion.type == "roll"),
-        expected=OPEN,
         reason="The amplitude is backed out of Eqs. 11-12 and the printed 5 mm, 10 mm and 6 %; law and time are ours. "
         "The figure, which may have them, was not at hand.",
     )
 
 
-def _figure7(readings: Dataset) -> Claim:
+@row("Fig. 7", "Pistons reach a maximum travel of 260 mm at the end of the roll", "readings")
+def _figure7(readings: Dataset) -> Said:
     found = {name: readings.sel(reading=name) for name in TRAVELS}
     travel, apart = ({name: float(row[key]) for name, row in found.items()} for key in ("travel", "apart"))
     travels = [name for name in TRAVELS if _is_260(travel[name])]
     differs = [name for name in TRAVELS if name not in travels and _is_260(apart[name])]
     first = next(iter(TRAVELS))
     ways = [f"the longest leg less the shortest ({_named(name)})" for name in differs]
-    ways += [f"a piston's travel ({_named(name)}; deviations {_yz(found[name])})" for name in travels]
+    off = {name: in_y_and_z(found[name].deviation_peak.values) for name in travels}
+    ways += [f"a piston's travel ({_named(name)}; deviations {words})" for name, words in off.items()]
     can_be = f" 260 mm can be {', '.join(ways)}; the text does not say which." if ways else ""
-    return Claim(
-        where="Fig. 7",
-        says="Pistons reach a maximum travel of 260 mm at the end of the roll",
+    return Said(
         ours=". ".join(f"{_named(name).capitalize()}: {1e3 * travel[name]:.0f} mm" for name in TRAVELS),
         verdict=judged(first in travels, bool(ways)),
         reason=f"The printed diameters and the roll that is backed out give {1e3 * travel[first]:.0f} mm.{can_be}"
@@ -121,16 +102,14 @@ def _named(reading: str) -> str:
     return f"{circles}, {-turn if both_sides else 0:g} to {turn:g} deg"
 
 
-def _yz(row: Dataset) -> str:
-    _, y, z = row.deviation_peak.values
-    return f"y {text(float(y), 'm')}, z {text(float(z), 'm')}"
-
-
-def _cost(cost: Dataset) -> Claim:
+@row(
+    "Section 3.1",
+    "Newton-Euler is more efficient than Lagrange, which differentiates, for the inverse dynamics",
+    "cost",
+)
+def _cost(cost: Dataset) -> Said:
     newton_euler, lagrange = (int(cost.operations.sel(formulation=name)) for name in FORMULATIONS)
-    return Claim(
-        where="Section 3.1",
-        says="Newton-Euler is more efficient than Lagrange, which differentiates, for the inverse dynamics",
+    return Said(
         ours=f"A rigid leg in one pose takes {newton_euler} operations by Newton-Euler, {lagrange} by Lagrange",
         verdict=judged(newton_euler < 0.9 * lagrange, newton_euler < lagrange, best=HERE),
         reason=f"Lagrange's equations take {number(lagrange / newton_euler, 2)} times as many, even differentiated "
@@ -140,35 +119,32 @@ def _cost(cost: Dataset) -> Claim:
     )
 
 
-def _figure8(rigid_legs: Dataset) -> Claim:
+@row("Fig. 8", "Actuator forces of the rigid robot: Newton-Euler and finite elements agree strongly", "robot-rigid")
+def _figure8(rigid_legs: Dataset) -> Said:
     largest = float(np.abs(rigid_legs.actuator_force_rigid).max())
     apart, anywhere = (gap / largest for gap in force_gaps(rigid_legs))
     at_most = 2 * 10 ** math.ceil(math.log10(apart / 2))  # of a difference the digits are those of the processor: 1e-5
-    return Claim(
-        where="Fig. 8",
-        says="Actuator forces of the rigid robot: Newton-Euler and finite elements agree strongly",
+    return Said(
         ours=f"Newton-Euler and our multibody model differ by at most {at_most:.0e} of the largest force, "
         f"{largest:.0f} N",
-        verdict=judged(apart < 0.01, apart < 0.1),  # a line's width in the figure; visibly apart
+        verdict=judged(apart < 0.01, apart < 0.1),
         reason=f"Closer than {1e3 * AWAY:.0f} ms to the ends of the quintic, where its jerk jumps, by "
         f"{100 * anywhere:.1g} % at a step of {1e3 * rigid_legs.attrs['step']:g} ms; this falls "
         f"with the step.{FIGURE}",
     )
 
 
-def _equations_11_12(robot: Dataset) -> Claim:
+@row("Eqs. 11-12", "Rigid path of the centre of mass: Y = d cos(theta), Z = d sin(theta)", "robot", expected=IN_PART)
+def _equations_11_12(robot: Dataset) -> Said:
     study, (_, arm) = robot_study(robot), roll_and_arm(robot)
     R = rigid.poses(study.robot, study.motion, robot.time.values).rotation
     roll = np.arctan2(R[:, 2, 1], R[:, 2, 2])
     rest = robot.com_position_rigid.values[:, 1:] - arm * np.stack([np.cos(roll), np.sin(roll)], axis=1)
     printed, off = (float(np.abs(rest - [0.0, height]).max()) for height in (0.0, study.robot.home_height))
     so = "So it is" if off < ROUNDING * arm else f"Off by {text(off, 'm')}"
-    return Claim(
-        where="Eqs. 11-12",
-        says="Rigid path of the centre of mass: Y = d cos(theta), Z = d sin(theta)",
+    return Said(
         ours=f"{so}, with d = {1e3 * arm:.0f} mm along the platform's y and its height added",
         verdict=judged(printed < ROUNDING * arm, off < ROUNDING * arm),
-        expected=IN_PART,
         reason="A payload on top of the platform would have Y = -d sin(theta), Z = d cos(theta) (T2.13); no height is "
         f"given, ours is {study.robot.home_height:g} m.",
     )

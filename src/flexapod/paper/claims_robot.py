@@ -2,9 +2,8 @@
 
 from __future__ import annotations
 
-from typing import TYPE_CHECKING
-
 import numpy as np
+from xarray import Dataset
 
 from flexapod.errors import InputError
 from flexapod.paper.claim import (
@@ -14,7 +13,6 @@ from flexapod.paper.claim import (
     IN_PART,
     NOT,
     PAPER_DEVIATION,
-    Claim,
     after_motion,
     axis_motion,
     judged,
@@ -23,31 +21,14 @@ from flexapod.paper.claim import (
     printed_deviation,
     times,
 )
-from flexapod.paper.study import PaperStudy
+from flexapod.paper.rows import Said, row
 from flexapod.paper.trials import load_share
 from flexapod.scene.robot import robot_study
 from flexapod.study.after.summary import AxisSummary, RobotSummary, summary
 from flexapod.study.words import text
 
-if TYPE_CHECKING:
-    from xarray import Dataset
-
 PER_CENT = 6.0  # Abstract
 VISIBLE = 0.01  # deflection over length: the width of a line in a picture
-
-
-def robot_claims(result: PaperStudy) -> tuple[Claim, ...]:
-    """Figs. 9 and 10, abstract and conclusions."""
-    robot = result["robot"]
-    return (
-        _figure9(robot),
-        _six_per_cent(robot),
-        _vibration(robot),
-        _lumped(robot, result["robot-lumped"]),
-        _tips(robot, result["robot-lumped"], result["robot-fem"]),
-        _figure10(robot, result["modes"]),
-        _light(result["light"]),
-    )
 
 
 def _axes(robot: Dataset) -> dict[str, AxisSummary]:
@@ -57,30 +38,32 @@ def _axes(robot: Dataset) -> dict[str, AxisSummary]:
     raise InputError("is the result of a single actuator", key="data", allowed="results of a robot")
 
 
-def _figure9(robot: Dataset) -> Claim:
+@row(
+    "Fig. 9, section 4.1",
+    "Flexible actuators move the centre of mass by about 5 mm in Y and 10 mm in Z",
+    "robot",
+    expected=NOT,
+)
+def _figure9(robot: Dataset) -> Said:
     found, piston = _axes(robot), robot_study(robot).robot.legs[0].piston
     ours = {axis: found[axis].peak for axis in PAPER_DEVIATION}
     ratios = ", ".join(f"{axis} is {times(ours[axis], paper)}" for axis, paper in PAPER_DEVIATION.items())
     sag = abs(float(robot.com_deviation.sel(axis="z")[0]))
-    return Claim(
-        where="Fig. 9, section 4.1",
-        says="Flexible actuators move the centre of mass by about 5 mm in Y and 10 mm in Z",
+    return Said(
         ours=f"{peaks(robot)}, of which {text(sag, 'm')} in z is sag at rest",
         verdict=judged(printed_deviation(ours["y"], ours["z"])),
-        expected=NOT,
         reason=f"{ratios} than printed. What counts between ideal joints is a piston's stretch, at "
         f"{text(piston.EA / piston.length, 'N/m')} over its {1e3 * piston.length:.0f} mm; bending shortens it to "
         f"second order. The sizes are those of section 4.1.{FIGURE}",
     )
 
 
-def _six_per_cent(robot: Dataset) -> Claim:
+@row("Abstract", f"Deviations of up to {PER_CENT:g} % of the end effector's position", "robot")
+def _six_per_cent(robot: Dataset) -> Said:
     found = {axis: _axes(robot)[axis] for axis in PAPER_DEVIATION}
     shares = {axis: a.per_cent or np.nan for axis, a in found.items()}
     printed = [f"{100 * PAPER_DEVIATION[axis] / a.excursion:.2g} % in {axis}" for axis, a in found.items()]
-    return Claim(
-        where="Abstract",
-        says=f"Deviations of up to {PER_CENT:g} % of the end effector's position",
+    return Said(
         ours=", ".join(f"{axis} {share:.2g} %" for axis, share in shares.items()),
         verdict=judged(any(near(share, PER_CENT) for share in shares.values())),
         reason="Largest deviation over the rigid travel of the same axis. The printed 5 mm and 10 mm would be "
@@ -88,17 +71,15 @@ def _six_per_cent(robot: Dataset) -> Claim:
     )
 
 
-def _vibration(robot: Dataset) -> Claim:
+@row("Title, section 4.1", "Lateral vibration of the actuators makes the deviation", "robot", expected=NOT)
+def _vibration(robot: Dataset) -> Said:
     parts = np.abs(robot.deviation_by_cause.sum("leg")).max(("time", "axis"))
     bending, stretch = (float(parts.sel(cause=cause)) for cause in ("bending", "axial-strain"))
     tips, payload = (text(after_motion(robot, name), "m", 2) for name in ("tip_deflection", "com_deviation"))
-    return Claim(
-        where="Title, section 4.1",
-        says="Lateral vibration of the actuators makes the deviation",
+    return Said(
         ours=f"Bending moves the payload by at most {text(bending, 'm', 2)}, stretch by {text(stretch, 'm', 2)}. After "
         f"the roll tips vibrate by {tips}, the payload by {payload} (peak to peak)",
         verdict=judged(bending >= stretch, bending >= 0.1 * stretch),
-        expected=NOT,
         reason="Universal and spherical joints carry no moment. Below its Euler load (a leg bears up to "
         f"{100 * load_share(robot):.2g} % of it) only its own weight and inertia bend a piston: its tip is "
         f"{_tip_words(robot)}, and the leg is shorter by the square of that.",
@@ -111,34 +92,59 @@ def _tip_words(robot: Dataset) -> str:
     return f"{text(float(tips[0].max()), 'm', 2)} off at rest, {text(float(tips.max()), 'm', 2)} at most"
 
 
-def _lumped(robot: Dataset, lumped: Dataset) -> Claim:
+@row("Sections 1, 4.1", "Lumped models are less suitable where accuracy matters", "robot", "robot-lumped", expected=NOT)
+def _lumped(robot: Dataset, lumped: Dataset) -> Said:
     one, whole = (np.abs(data.com_deviation).max("time") for data in (lumped, robot))
     apart = float(np.abs(one / whole - 1).max())
-    return Claim(
-        where="Sections 1, 4.1",
-        says="Lumped models are less suitable where accuracy matters",
+    return Said(
         ours=f"One axial spring a leg: {peaks(lumped)}; all shapes: within {100 * apart:.1g} %",
         verdict=judged(apart > 0.5, apart > 0.1),
-        expected=NOT,
         reason="True of one actuator loaded sideways. For this robot's payload a spring along each leg is enough.",
     )
 
 
-def _tips(robot: Dataset, lumped: Dataset, elements: Dataset) -> Claim:
+@row(
+    "Section 4.1, item 3",
+    "Unlike lumped models, finite elements capture distributed flexibility",
+    "robot",
+    "robot-lumped",
+    "robot-fem",
+    expected=HOLDS,
+)
+def _tips(robot: Dataset, lumped: Dataset, elements: Dataset) -> Said:
     spring, beams, own = (float(np.abs(data.tip_deflection).max()) for data in (lumped, elements, robot))
-    return Claim(
-        where="Section 4.1, item 3",
-        says="Unlike lumped models, finite elements capture distributed flexibility",
+    return Said(
         ours=f"Tips of the pistons: {text(beams, 'm')} off by beam elements, {text(own, 'm')} by assumed modes, "
         f"{text(spring, 'm')} by one spring a leg",
         verdict=judged(abs(beams / own - 1) < 0.01 and spring < 0.5 * own, spring < 0.9 * own),
-        expected=HOLDS,
         reason="There the paper is right: a spring along the leg has no tip that could leave its line. What bends, its "
         "stress and its frequencies need shapes; the payload's path between ideal joints does not.",
     )
 
 
-def _light(light: Dataset) -> Claim:
+@row("Fig. 10", "At the largest roll a mode of one piston is excited", "robot", "modes", expected=IN_PART)
+def _figure10(robot: Dataset, modes: Dataset) -> Said:
+    kinds, frequency = [str(kind) for kind in modes.kind.values], modes.frequency.values
+    bending = [f for f, kind in zip(frequency, kinds, strict=True) if kind.endswith("bending")]
+    first = f"the first bending of legs {bending[0]:.0f} Hz" if bending else "no leg bends in any"
+    tips = float(np.abs(robot.tip_deflection).max())
+    return Said(
+        ours=f"There the lowest mode ({kinds[0]}) has {frequency[0]:.0f} Hz, {first}; tips are {_tip_words(robot)}",
+        verdict=judged(bool(bending) and tips >= VISIBLE * ELASTIC_LENGTH, bool(bending)),
+        reason=f"The modes exist. A roll of {axis_motion(robot_study(robot)).duration:g} s excites them to "
+        f"{text(after_motion(robot, 'tip_deflection'), 'm', 2)} peak to peak; nothing shows without magnification: "
+        f"{100 * tips / ELASTIC_LENGTH:.1g} % of the elastic length, most of it sag. Whether the paper magnifies is "
+        f"not said.{FIGURE}",
+    )
+
+
+@row(
+    "Section 1, light actuators",
+    "Lightweight actuators are less rigid and vibrate more, which costs accuracy",
+    "light",
+    expected=HOLDS,
+)
+def _light(light: Dataset) -> Said:
     payload, tips = light.payload_vibration.values, light.tip_vibration.values
     each = "; ".join(
         f"{name}, {mass:.2g} kg: {text(float(a), 'm', 2)}, {text(float(b), 'm', 2)}"
@@ -146,30 +152,9 @@ def _light(light: Dataset) -> Claim:
     )
     more = [bool(values[1:].min() > values[0]) for values in (payload, tips)]
     low, high = (float(light.lowest_frequency[i]) for i in (-1, 0))
-    return Claim(
-        where="Section 1, light actuators",
-        says="Lightweight actuators are less rigid and vibrate more, which costs accuracy",
+    return Said(
         ours=f"Payload and tips after the roll, from peak to peak, by piston: {each}",
         verdict=judged(all(more), any(more)),
-        expected=HOLDS,
         reason="Hollow or thinner, every lighter piston lets payload and tips vibrate more. The same roll meets a "
         f"first frequency that falls from {high:.2g} to {low:.2g} Hz; the thinnest piston is near its Euler load.",
-    )
-
-
-def _figure10(robot: Dataset, modes: Dataset) -> Claim:
-    kinds, frequency = [str(kind) for kind in modes.kind.values], modes.frequency.values
-    bending = [f for f, kind in zip(frequency, kinds, strict=True) if kind.endswith("bending")]
-    first = f"the first bending of legs {bending[0]:.0f} Hz" if bending else "no leg bends in any"
-    tips = float(np.abs(robot.tip_deflection).max())
-    return Claim(
-        where="Fig. 10",
-        says="At the largest roll a mode of one piston is excited",
-        ours=(f"There the lowest mode ({kinds[0]}) has {frequency[0]:.0f} Hz, {first}; tips are {_tip_words(robot)}"),
-        verdict=judged(bool(bending) and tips >= VISIBLE * ELASTIC_LENGTH, bool(bending)),
-        expected=IN_PART,
-        reason=f"The modes exist. A roll of {axis_motion(robot_study(robot)).duration:g} s excites them to "
-        f"{text(after_motion(robot, 'tip_deflection'), 'm', 2)} peak to peak; nothing shows without magnification: "
-        f"{100 * tips / ELASTIC_LENGTH:.1g} % of the elastic length, most of it sag. Whether the paper magnifies is "
-        f"not said.{FIGURE}",
     )

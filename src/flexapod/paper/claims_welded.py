@@ -2,15 +2,13 @@
 
 from __future__ import annotations
 
-from typing import TYPE_CHECKING
-
 import numpy as np
+from xarray import Dataset
 
 from flexapod.paper.claim import (
     HOLDS,
     PAPER_DEVIATION,
     REACHES,
-    Claim,
     by_axis,
     judged,
     largest,
@@ -18,20 +16,11 @@ from flexapod.paper.claim import (
     size,
 )
 from flexapod.paper.claims_readings import SAYS
+from flexapod.paper.rows import Said, row
 from flexapod.paper.welded import SLOPE, travel_share
 from flexapod.study.words import number, text
 
-if TYPE_CHECKING:
-    from xarray import Dataset
-
 SAYS_MORE = f"{SAYS}, 6 %; a mode of a piston in Fig. 10"
-
-
-def welded_claims(found: Dataset) -> tuple[Claim, ...]:
-    """All six ball joints welded, by reading of the circles, and one of them."""
-    names = [str(name) for name in found.reading.values]
-    six, one = ([name for name in names if name.endswith("-one") == alone] for alone in (False, True))
-    return _six(found, six), _one(found, one)
 
 
 def nearest(found: Dataset) -> Dataset:
@@ -43,20 +32,24 @@ def nearest(found: Dataset) -> Dataset:
     return found.isel(arm=int(j), roll=int(k)).assign(share=share)
 
 
+def _nearest_by_reading(found: Dataset, *, alone: bool) -> dict[str, Dataset]:
+    """The same of all readings with six welded legs, or with one `alone`."""
+    names = [str(name) for name in found.reading.values]
+    return {name: nearest(found.sel(reading=name)) for name in names if name.endswith("-one") == alone}
+
+
 def _words(name: str, row: Dataset) -> str:
     where = f"roll {float(row['roll']):.0f} deg, d = {1e3 * float(row.arm):.0f} mm"
     return f"{name}, {where}: {by_axis(row.deviation.values, 2)}, {100 * float(row.share):.2g} % of the travel in z"
 
 
-def _six(found: Dataset, names: list[str]) -> Claim:
-    rows = {name: nearest(found.sel(reading=name)) for name in names}
-    best = rows[names[-1]]
-    return Claim(
-        where="What would give it: joints",
-        says=SAYS_MORE,
+@row("What would give it: joints", SAYS_MORE, "welded", expected=REACHES)
+def _six(found: Dataset) -> Said:
+    rows = _nearest_by_reading(found, alone=False)
+    *_, best = rows.values()
+    return Said(
         ours="Legs fixed to the platform, at rest. " + ". ".join(_words(n.capitalize(), r) for n, r in rows.items()),
         verdict=size(*(row.deviation.values for row in rows.values())),
-        expected=REACHES,
         reason=f"A hypothesis, not a fit: tips {text(float(best.off_axis), 'm', 2)} off are visibly bent, "
         f"and bending counts at first order. It has free parameters (roll, d, half-angles, height), the 6 % are met "
         f"elsewhere than y and z, legs bear {text(float(best.leg_force), 'N', 2)} and "
@@ -66,29 +59,31 @@ def _six(found: Dataset, names: list[str]) -> Claim:
     )
 
 
-def _one(found: Dataset, names: list[str]) -> Claim:
-    rows = {name: nearest(found.sel(reading=name)) for name in names}
+@row("What would give it: one joint", SAYS_MORE, "welded")
+def _one(found: Dataset) -> Said:
+    rows = _nearest_by_reading(found, alone=True)
     verdict = size(*(row.deviation.values for row in rows.values()))
     words = ". ".join(_words(name.removesuffix("-one").capitalize(), row) for name, row in rows.items())
-    return Claim(
-        where="What would give it: one joint",
-        says=SAYS_MORE,
+    return Said(
         ours=f"Leg 1 alone fixed to the platform. {words}",
         verdict=verdict,
         reason="One leg that is held at the platform pushes it aside: y is larger than z but for large rolls and arms.",
     )
 
 
-def tripod_claim(tripod: Dataset, robot: Dataset) -> Claim:
-    """The same pistons in a mechanism whose hinges make them carry the platform sideways."""
+@row(
+    "Section 4.3",
+    "A wider range of robotic architectures is future work; lateral vibration of the pistons matters",
+    "tripod",
+    "robot-radii",
+    expected=HOLDS,
+)
+def _tripod(tripod: Dataset, robot: Dataset) -> Said:
     shares, own = (_bent(data) for data in (tripod, robot))
-    return Claim(
-        where="Section 4.3",
-        says="A wider range of robotic architectures is future work; lateral vibration of the pistons matters",
+    return Said(
         ours=f"A 3-RPS of the same pistons, radii, payload and roll: {peaks(tripod)}; bending makes "
         f"{_percent(shares)} of it. The 6-UPS: {peaks(robot)}; {_percent(own)}",
         verdict=judged(shares.min() > 0.5 > own.max()),
-        expected=HOLDS,
         reason="Three hinges guide the platform sideways through the pistons, which give as cantilevers do: there the "
         "paper's claim is true. Ideal U and S joints keep it from a 6-UPS.",
     )

@@ -7,22 +7,21 @@ both: six balances of the payload, and six equations for the forces along the le
 from __future__ import annotations
 
 from collections.abc import Callable
-from typing import TYPE_CHECKING
 
 import numpy as np
+from xarray import Dataset
 
 from flexapod import bases, model
 from flexapod.mechanics.layout import LEG_PARAMETERS, Shapes
+from flexapod.mechanics.leg import leg
 from flexapod.rigid import dynamics
 from flexapod.rigid.kinematics import JointTurn
 from flexapod.rigid.vectors import turned
 from flexapod.study.attributes import attributes
-
-if TYPE_CHECKING:
-    from xarray import Dataset
-
-    from flexapod.symbolic.functions import NamedFunction
-    from flexapod.typing import Array
+from flexapod.symbolic.functions import NamedFunction, operations
+from flexapod.symbolic.lagrange import inverse_dynamics
+from flexapod.symbolic.vocabulary import symbol, symbols
+from flexapod.typing import Array
 
 FORMULATIONS = ("Newton-Euler", "Lagrange")
 
@@ -78,15 +77,11 @@ def inverse_dynamics_cost(study: model.Study) -> Dataset:
     xarray.Dataset
         `operations` (formulation): additions, multiplications, divisions, sines and cosines, one each.
     """
-    import xarray as xr
-
-    from flexapod.symbolic.functions import operations
-
     tally = [0]
     _newton_euler_leg(lambda *shape: _numbers(shape, tally))
     lagrange = sum(operations(lagrange_leg().build()).values())
     values = ("formulation", [tally[0], lagrange], {"units": "1"})
-    return xr.Dataset({"operations": values}, {"formulation": list(FORMULATIONS)}, attributes(study))
+    return Dataset({"operations": values}, {"formulation": list(FORMULATIONS)}, attributes(study))
 
 
 def _newton_euler_leg(numbers: Callable[..., Array]) -> tuple[Array, ...]:
@@ -111,11 +106,6 @@ def _numbers(shape: tuple[int, ...], tally: list[int]) -> Array:
 
 def lagrange_leg() -> NamedFunction:
     """The same leg by Lagrange's equations, differentiated symbolically, Eqs. (T3.1)-(T3.2): M v_dot + h of 3 rows."""
-    from flexapod.mechanics.leg import leg
-    from flexapod.symbolic.functions import NamedFunction
-    from flexapod.symbolic.lagrange import inverse_dynamics
-    from flexapod.symbolic.vocabulary import symbol, symbols
-
     none = bases.lateral_basis("clamped-free", 0)
     shapes = Shapes(a=none, b=none, axial=bases.axial_basis(0), planar=False)
     p_vector, p = symbols(LEG_PARAMETERS, "p")

@@ -11,6 +11,20 @@ from typing import Any
 
 from flexapod import bases
 from flexapod.paper.readings import actuator_preset
+from flexapod.symbolic.functions import NamedFunction
+from flexapod.symbolic.lagrange import Lagrangian, inverse_dynamics
+from flexapod.symbolic.vocabulary import (
+    constant,
+    cos,
+    jacobian,
+    mtimes,
+    quadratic,
+    sin,
+    substitute,
+    symbol,
+    vertcat,
+    zeros,
+)
 from flexapod.typing import Array
 
 SHAPES = 3  # of the paper
@@ -54,8 +68,6 @@ def beam_kinetic(p: Point) -> Any:
 
 def beam_with(p: Point, mass: Array, sliding: float) -> Any:
     """The same with other integrals of the shapes, and with a share of what sliding adds."""
-    from flexapod.symbolic.vocabulary import vertcat
-
     rate = vertcat(p.a_dot, sliding * p.length_dot / p.length * p.a)
     k, turn = p.basis.count, p.angle_dot
     squares = square(rate, mass) + turn**2 * square(p.a, mass[:k, :k])
@@ -76,8 +88,6 @@ def strain(p: Point) -> Any:
 
 def weight(p: Point) -> Any:
     """Eq. 7, its elastic part: g cos(theta) [rho int u dx + m_e u_L]; the rest does not bend the beam."""
-    from flexapod.symbolic.vocabulary import cos
-
     first = along(p.basis.first[: p.basis.count], p.a)
     return p.gravity * cos(p.angle) * (p.rho * p.length * first + TIP_MASS * p.tip)
 
@@ -94,23 +104,17 @@ def tension_of_tip(p: Point) -> Any:
 
 def thrust(p: Point) -> Any:
     """Axial loads of the weight: - g sin(theta) S; those of the feed vanish where L'' does, as in section 2.2."""
-    from flexapod.symbolic.vocabulary import sin
-
     shortening = p.rho * square(p.a, p.basis.slope_first) + TIP_MASS / p.length * square(p.a, p.basis.slope_tip)
     return -0.5 * p.gravity * sin(p.angle) * shortening
 
 
 def along(values: Array, x: Any) -> Any:
     """Sum of values times amplitudes."""
-    from flexapod.symbolic.vocabulary import constant, mtimes
-
     return mtimes(constant(values), x)
 
 
 def square(x: Any, matrix: Array) -> Any:
     """x^T matrix x."""
-    from flexapod.symbolic.vocabulary import quadratic
-
     return quadratic(x, matrix)
 
 
@@ -125,10 +129,6 @@ def matrices(change: Change, gravity: float) -> Any:
 
     A function of casadi's own, from L, L', theta, theta'.
     """
-    from flexapod.symbolic.functions import NamedFunction
-    from flexapod.symbolic.lagrange import Lagrangian, inverse_dynamics
-    from flexapod.symbolic.vocabulary import jacobian, substitute, symbol, vertcat, zeros
-
     beam, basis = actuator_preset().actuator, bases.lateral_basis("clamped-free", SHAPES)
     q, v, a_ddot = symbol("q", SHAPES + 2), symbol("v", SHAPES + 2), symbol("a_ddot", SHAPES)
     p = Point(a=q[:SHAPES], length=q[SHAPES], angle=q[SHAPES + 1], a_dot=v[:SHAPES], length_dot=v[SHAPES],

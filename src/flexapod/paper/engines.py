@@ -8,9 +8,9 @@ from collections.abc import Iterator, Mapping
 from contextlib import contextmanager
 from dataclasses import dataclass
 from importlib.metadata import version
-from typing import TYPE_CHECKING
 
 import numpy as np
+from xarray import Dataset
 
 from flexapod import model, rigid
 from flexapod.errors import InputError
@@ -24,9 +24,6 @@ from flexapod.study.record import Share
 from flexapod.study.simulation import simulate
 from flexapod.study.words import scale, text
 from flexapod.typing import Array
-
-if TYPE_CHECKING:
-    from xarray import Dataset
 
 NO_GUIDE = 0.0  # m; of rigid pistons
 RIGID_TOLERANCE = 1e-8  # N; Newton's method

@@ -4,21 +4,20 @@ from __future__ import annotations
 
 from collections.abc import Callable, Iterator
 from pathlib import Path
-from typing import TYPE_CHECKING
 
+from matplotlib.figure import Figure
+
+from flexapod import plot
+from flexapod.paper import engine_figures, printed, solid_figure, variant_figures, welded_figure
 from flexapod.paper.claim import PAPER_DEVIATION, force_gaps
 from flexapod.paper.claims_actuator import LINEAR
 from flexapod.paper.readings import actuator_preset, robot_preset
+from flexapod.paper.study import PaperStudy
 from flexapod.report.figures import Drawn, store
+from flexapod.study.record import Report
 from flexapod.study.words import text
 
-if TYPE_CHECKING:
-    from matplotlib.figure import Figure
-
-    from flexapod.paper.study import PaperStudy
-    from flexapod.study.record import Report
-
-_Plan = tuple[str, str, str, Callable[[], "Figure"]]
+_Plan = tuple[str, str, str, Callable[[], Figure]]
 ACTUATOR, ROBOT, VARIANTS = "Single actuator", "Robot", "What the deviation depends on"
 ENGINE = "Independent engine"
 
@@ -37,9 +36,6 @@ def paper_figures(result: PaperStudy, folder: Path, progress: Report | None = No
 
 
 def _actuator(result: PaperStudy) -> Iterator[_Plan]:
-    from flexapod import plot
-    from flexapod.paper import printed, solid_figure
-
     series = result.actuator
     finest = series[max(series)]
     title = (
@@ -85,9 +81,6 @@ def _actuator(result: PaperStudy) -> Iterator[_Plan]:
 
 
 def _robot(result: PaperStudy) -> Iterator[_Plan]:
-    from flexapod import plot
-    from flexapod.paper import printed
-
     data, rigid, modes = result["robot"], result["robot-rigid"], result["modes"]
     bending = [int(m) for m, kind in zip(modes.mode.values, modes.kind.values, strict=True) if "bending" in str(kind)]
     yield (ROBOT, "robot-home", "Fig. 5: the robot at home", lambda: plot.robot_3d(data, 0.0))
@@ -123,9 +116,6 @@ def _robot(result: PaperStudy) -> Iterator[_Plan]:
 
 
 def _variants(result: PaperStudy) -> Iterator[_Plan]:
-    from flexapod import plot
-    from flexapod.paper import variant_figures, welded_figure
-
     title = "Fig. 9 with the circles read as radii, roll of 30 deg"
     yield (VARIANTS, "com-path-radii", title, lambda: plot.com_path(result["robot-radii"]))
     sweeps = {"Circles as diameters": result["half-angles"], "Circles as radii": result["half-angles-radii"]}
@@ -148,8 +138,6 @@ def _variants(result: PaperStudy) -> Iterator[_Plan]:
 
 def _engine(result: PaperStudy) -> Iterator[_Plan]:
     """Of those parts that the engine was asked for and computed."""
-    from flexapod.paper import engine_figures
-
     model, engine = "multibody model", "Exudyn"
     if "robot-exudyn-rigid" in result.parts:
         rigid = {model: result["robot-rigid-same-step"], engine: result["robot-exudyn-rigid"]}

@@ -2,24 +2,27 @@
 
 from __future__ import annotations
 
-from typing import TYPE_CHECKING
-
 import numpy as np
+from xarray import Dataset
 
 from flexapod import model
 from flexapod.paper.claim import after_motion, largest
 from flexapod.paper.readings import robot_preset, with_legs
+from flexapod.paper.trials import table
 from flexapod.study.attributes import attributes
 from flexapod.study.record import Share
 from flexapod.study.simulation import simulate
 from flexapod.study.static import modes
 
-if TYPE_CHECKING:
-    from xarray import Dataset
-
 #: Outer and inner diameter [mm]: the paper's, hollow ones of the same width, thinner ones.
 PISTONS = ((27.0, 0.0), (27.0, 16.0), (27.0, 22.0), (27.0, 25.0), (20.0, 0.0), (15.0, 0.0), (10.0, 0.0))
-COLUMNS = {"piston_mass": "kg", "payload_vibration": "m", "tip_vibration": "m", "lowest_frequency": "Hz"}
+COLUMNS = {
+    "piston_mass": "kg",
+    "payload_vibration": "m",
+    "tip_vibration": "m",
+    "lowest_frequency": "Hz",
+    "deviation_peak": "m",
+}
 
 
 def with_section(study: model.Study, outer: float, inner: float) -> model.Study:
@@ -45,26 +48,21 @@ def light_pistons(report: Share) -> Dataset:
         `tip_vibration` [m] from peak to peak after the roll, the largest along one direction; `lowest_frequency` [Hz]
         at home; `deviation_peak` (piston, axis) [m].
     """
-    import xarray as xr
-
-    study, rows, peaks = robot_preset("paper-robot"), [], []
+    study, rows = robot_preset("paper-robot"), []
     for outer, inner in PISTONS:
         changed = with_section(study, 1e-3 * outer, 1e-3 * inner)
         data, piston = simulate(changed), changed.robot.legs[0].piston
-        vibrations = (after_motion(data, name) for name in ("com_deviation", "tip_deflection"))
-        rows.append((piston.rhoA * piston.length, *vibrations, float(modes(changed).frequency[0])))
-        peaks.append(largest(data))
+        values = (
+            piston.rhoA * piston.length,
+            *(after_motion(data, name) for name in ("com_deviation", "tip_deflection")),
+            float(modes(changed).frequency[0]),
+            largest(data),
+        )
+        rows.append(dict(zip(COLUMNS, values, strict=True)))
         report(len(rows) / len(PISTONS))
-    values = {
-        name: ("piston", column, {"units": unit})
-        for (name, unit), column in zip(COLUMNS.items(), np.transpose(rows), strict=True)
-    }
-    widths = {name: ("piston", column) for name, column in zip(("outer", "inner"), np.transpose(PISTONS), strict=True)}
-    return xr.Dataset(
-        values | {"deviation_peak": (("piston", "axis"), np.array(peaks), {"units": "m"})},
-        {"piston": [words(*pair) for pair in PISTONS], "axis": list("xyz"), **widths},
-        attributes(study),
-    )
+    found = table(rows, ("piston", [words(*pair) for pair in PISTONS], {}), COLUMNS, attributes(study))
+    widths = zip(("outer", "inner"), np.transpose(PISTONS), strict=True)
+    return found.assign_coords({name: ("piston", column) for name, column in widths})
 
 
 def words(outer: float, inner: float) -> str:

@@ -4,18 +4,19 @@ from __future__ import annotations
 
 import csv
 from pathlib import Path
-from typing import TYPE_CHECKING
+
+from xarray import Dataset
 
 from flexapod.errors import InputError
-from flexapod.files import write_text
+from flexapod.files import replacing, write_text
+from flexapod.paper.claims import claims, markdown
+from flexapod.paper.engines import check_engine
 from flexapod.paper.figures import paper_figures
 from flexapod.paper.report import paper_page
-
-if TYPE_CHECKING:
-    from xarray import Dataset
-
-    from flexapod.paper.study import PaperStudy
-    from flexapod.study.record import Report
+from flexapod.paper.study import PaperStudy
+from flexapod.paper.study import replicate as compute
+from flexapod.study.record import Report
+from flexapod.study.store import save, save_csv
 
 
 def replicate(
@@ -48,9 +49,6 @@ def replicate(
     ComputationError
         Of our simulations.
     """
-    from flexapod.paper.engines import check_engine
-    from flexapod.paper.study import replicate as compute
-
     if engines:
         check_engine()
     folder = Path(folder)
@@ -60,43 +58,11 @@ def replicate(
         progress=_upto(0.75, progress),
         keep=lambda name, data: _store(data, folder / "data" / name),
     )
-    _figures_and_report(result, folder, _from(0.75, progress), figures=figures)
-    return result
-
-
-def write(result: PaperStudy, folder: str | Path, *, progress: Report | None = None) -> Path:
-    """Write data, figures, claims and report of `flexapod.replicate` into a folder.
-
-    Parameters
-    ----------
-    result : PaperStudy
-    folder : path
-        Made if needed; files of the same name are replaced when the new ones are complete.
-    progress : callable, optional
-        As for `replicate`.
-
-    Returns
-    -------
-    Path
-        Of the report.
-
-    Raises
-    ------
-    InputError
-        The folder cannot be written to.
-    """
-    for name, data in result.parts.items():
-        _store(data, Path(folder) / "data" / name)
-    return _figures_and_report(result, Path(folder), progress)
-
-
-def _figures_and_report(result: PaperStudy, folder: Path, progress: Report | None, *, figures: bool = True) -> Path:
-    from flexapod.paper.claims import claims, markdown
-
-    groups = paper_figures(result, folder / "figures", progress) if figures else {}
+    groups = paper_figures(result, folder / "figures", _from(0.75, progress)) if figures else {}
     table = claims(result)
     write_text(folder / "claims.md", markdown(table))
-    return write_text(folder / "report.html", paper_page(result, table, groups))
+    write_text(folder / "report.html", paper_page(result, table, groups))
+    return result
 
 
 def _remove(path: Path) -> None:
@@ -117,8 +83,6 @@ def _from(share: float, progress: Report | None) -> Report | None:
 
 def _store(data: Dataset, stem: Path) -> None:
     """NetCDF and CSV of a part."""
-    from flexapod.study.store import save, save_csv
-
     save(data, stem.with_name(stem.name + ".nc"))
     table = stem.with_name(stem.name + ".csv")
     if "time" in data.dims:
@@ -129,8 +93,6 @@ def _store(data: Dataset, stem: Path) -> None:
 
 def _save_rows(data: Dataset, path: Path) -> None:
     """A CSV file of a part without time: variable, labels, value and unit, a value a row."""
-    from flexapod.files import replacing
-
     with replacing(path) as temporary, temporary.open("w", newline="", encoding="utf-8") as file:
         rows = csv.writer(file)
         rows.writerow(["variable", "labels", "value", "unit"])

@@ -8,9 +8,10 @@ from __future__ import annotations
 
 from collections.abc import Sequence
 from dataclasses import dataclass
-from typing import TYPE_CHECKING, Any
+from typing import Any
 
 import numpy as np
+from xarray import Dataset
 
 from flexapod import bases
 from flexapod.bases.beam_functions import clamped_free
@@ -19,9 +20,6 @@ from flexapod.paper.readings import actuator_preset
 from flexapod.study.attributes import attributes
 from flexapod.study.record import Share
 from flexapod.typing import Array
-
-if TYPE_CHECKING:
-    from xarray import Dataset
 
 GRAVITY = 9.81  # m/s^2, in the cases that are upright
 STEP, OUTPUT, DURATION = 5e-4, 1e-2, 10.0  # s; RK4 errs by (omega h)^4 / 120 a radian: 2e-6 for 40 Hz
@@ -53,7 +51,7 @@ def _nothing(p: Point) -> Any:
     return 0.0 * p.tip
 
 
-@dataclass(frozen=True, kw_only=True)
+@dataclass(frozen=True)
 class Printed:
     """A printed line: what it changes in the energies, by equation, and whether the case is upright in gravity."""
 
@@ -69,31 +67,19 @@ def _tip_with(p: Point, square: Any, coupled: Any) -> dict[str, Any]:
 
 #: Lines of the paper in its order; `copy` in a name: as our copy has it, which may have lost dots or a power.
 LINES = (
-    Printed(name="2, norm", change=_norm_as_said),
-    Printed(name="2, power (copy)", change=lambda p: {"6": _frequencies_as_printed(p)}),
-    Printed(name="4, without sliding", change=lambda p: {"4": beam_with(p, p.basis.mass, sliding=0.0)}),
+    Printed("2, norm", _norm_as_said),
+    Printed("2, power (copy)", lambda p: {"6": _frequencies_as_printed(p)}),
+    Printed("4, without sliding", lambda p: {"4": beam_with(p, p.basis.mass, sliding=0.0)}),
+    Printed("5, dots lost (copy)", lambda p: _tip_with(p, p.tip**2, TIP_MASS * p.length * p.angle_dot * p.tip)),
+    Printed("5, with dots", lambda p: _tip_with(p, p.tip_dot**2, TIP_MASS * p.length * p.angle_dot * p.tip_dot)),
+    Printed("5, with dots and factor 2", lambda p: _tip_with(p, p.tip_dot**2, 2 * p.length * p.angle_dot * p.tip_dot)),
+    Printed("7, nothing elastic", lambda p: {"7": _nothing(p)}, upright=True),
+    Printed("8, linear", lambda p: {"8, tip": TIP_MASS * p.angle_dot**2 * p.length * along(p.basis.tip_slope, p.a)}),
     Printed(
-        name="5, dots lost (copy)",
-        change=lambda p: _tip_with(p, p.tip**2, TIP_MASS * p.length * p.angle_dot * p.tip),
+        "8, with half and square",
+        lambda p: {"8, tip": 0.5 * TIP_MASS * p.angle_dot**2 * along(p.basis.tip_slope, p.a) ** 2},
     ),
-    Printed(
-        name="5, with dots",
-        change=lambda p: _tip_with(p, p.tip_dot**2, TIP_MASS * p.length * p.angle_dot * p.tip_dot),
-    ),
-    Printed(
-        name="5, with dots and factor 2",
-        change=lambda p: _tip_with(p, p.tip_dot**2, 2 * p.length * p.angle_dot * p.tip_dot),
-    ),
-    Printed(name="7, nothing elastic", change=lambda p: {"7": _nothing(p)}, upright=True),
-    Printed(
-        name="8, linear",
-        change=lambda p: {"8, tip": TIP_MASS * p.angle_dot**2 * p.length * along(p.basis.tip_slope, p.a)},
-    ),
-    Printed(
-        name="8, with half and square",
-        change=lambda p: {"8, tip": 0.5 * TIP_MASS * p.angle_dot**2 * along(p.basis.tip_slope, p.a) ** 2},
-    ),
-    Printed(name="9-10, centrifugal only", change=lambda p: {"9-10": _nothing(p)}, upright=True),
+    Printed("9-10, centrifugal only", lambda p: {"9-10": _nothing(p)}, upright=True),
 )
 
 
@@ -159,8 +145,6 @@ def printed_lines(_: Share) -> Dataset:
         same case; `tip_error` and `largest` (line): largest distance of the two, and largest deflection as derived
         [m]; `upright` (line): 1 where gravity acts.
     """
-    import xarray as xr
-
     found = tip_paths([(None, False), (None, True), *((line, line.upright) for line in LINES)])
     paths, own = found[2:], found[[int(line.upright) for line in LINES]]
     metre, time = {"units": "m"}, OUTPUT * np.arange(found.shape[1])
@@ -172,4 +156,4 @@ def printed_lines(_: Share) -> Dataset:
         "upright": ("line", [int(line.upright) for line in LINES], {"units": "1"}),
     }
     coords = {"line": [line.name for line in LINES], "time": ("time", time, {"units": "s"})}
-    return xr.Dataset(values, coords, attributes(actuator_preset()) | {"step": STEP, "tip_mass": TIP_MASS})
+    return Dataset(values, coords, attributes(actuator_preset()) | {"step": STEP, "tip_mass": TIP_MASS})

@@ -3,11 +3,12 @@
 from __future__ import annotations
 
 from collections.abc import Mapping, Sequence
-from typing import TYPE_CHECKING
 
 import numpy as np
+from xarray import Dataset
 
 from flexapod import model
+from flexapod.citations import CITATIONS
 from flexapod.paper.claim import (
     BREAKS,
     COPY,
@@ -18,10 +19,15 @@ from flexapod.paper.claim import (
     NOT,
     OPEN,
     REACHES,
+    Claim,
     axis_motion,
     roll_and_arm,
 )
+from flexapod.paper.claims import CLAIM_HEAD
+from flexapod.paper.engines import agreements
 from flexapod.paper.figures import ENGINE
+from flexapod.paper.study import PaperStudy
+from flexapod.proof.engines.engine import EXUDYN
 from flexapod.report import html
 from flexapod.report.figures import Drawn
 from flexapod.report.page import (
@@ -35,12 +41,8 @@ from flexapod.report.page import (
 from flexapod.report.replay import replay
 from flexapod.report.study_words import modes_table
 from flexapod.scene.robot import robot_study
-
-if TYPE_CHECKING:
-    from xarray import Dataset
-
-    from flexapod.paper.claims import Claim
-    from flexapod.paper.study import PaperStudy
+from flexapod.study.after.summary import summary
+from flexapod.study.words import number, scale, text
 
 _MARKS = {
     HOLDS: "good", HERE: "good", IN_PART: "open", NOT: "bad", OPEN: "open", MISPRINT: "bad", REACHES: "open",
@@ -57,9 +59,6 @@ _SHOWN = {
 
 def paper_page(result: PaperStudy, claims: Sequence[Claim], groups: Mapping[str, Sequence[Drawn]]) -> str:
     """The page: deviation and cause, claims, figures, open values, studies, solver."""
-    from flexapod.citations import CITATIONS
-    from flexapod.study.after.summary import summary
-
     paper = CITATIONS["nourian-akbarzadeh"]
     robot = result["robot"]
     links = {"deviation": "Deviation", "claims": "Claims", "replay": "Replay"}
@@ -130,10 +129,6 @@ def _command(result: PaperStudy) -> str:
 
 def _engine(result: PaperStudy, figures: Sequence[Drawn]) -> str:
     """What the engine is, how well it agrees with us, its figures, and how to repeat."""
-    from flexapod.paper.engines import agreements
-    from flexapod.proof.engines.engine import EXUDYN
-    from flexapod.study.words import scale, text
-
     rows = []
     for row in agreements(result.parts):
         unit = scale([row.ours, row.theirs], row.unit)
@@ -154,8 +149,6 @@ def _engine(result: PaperStudy, figures: Sequence[Drawn]) -> str:
 
 
 def _engine_words(result: PaperStudy) -> list[str]:
-    from flexapod.study.words import number
-
     done = [result[name] for name in ("robot-exudyn-rigid", "robot-exudyn") if name in result.parts]
     if not done:
         return []
@@ -186,8 +179,6 @@ def _anchor(name: str) -> str:
 
 
 def _claims(claims: Sequence[Claim]) -> str:
-    from flexapod.paper.claims import CLAIM_HEAD
-
     rows = [(c.where, c.says, c.ours, c.verdict, c.reason) for c in claims]
     words = (
         "What the paper says, what we get, and why. Deviations are the largest of the centre of mass along each axis. "

@@ -4,7 +4,10 @@ from __future__ import annotations
 
 from collections.abc import Callable, Mapping
 from dataclasses import dataclass, field
-from typing import TYPE_CHECKING
+from functools import partial
+from typing import Any
+
+from xarray import Dataset
 
 from flexapod import model
 from flexapod.errors import ComputationError
@@ -26,12 +29,9 @@ from flexapod.paper.variants import (
 from flexapod.paper.welded import welded_map
 from flexapod.study.actuator import simulate_actuator
 from flexapod.study.record import Report, Share
-from flexapod.study.simulation import run, simulate
+from flexapod.study.simulation import simulate
 from flexapod.study.solid import simulate_solid
 from flexapod.study.static import modes
-
-if TYPE_CHECKING:
-    from xarray import Dataset
 
 ACTUATOR_MODES = (1, 2, 3, 4, 5)
 BEAM_SHAPES = 8  # four beam elements a piston
@@ -70,8 +70,8 @@ class PaperStudy:
         return {k: self.parts[f"actuator-{k}"] for k in ACTUATOR_MODES}
 
 
-@dataclass(frozen=True, kw_only=True)
-class Step:
+@dataclass(frozen=True)
+class StudyPart:
     """A part of the study: name, words, usual share of the time, and how it is computed."""
 
     name: str
@@ -85,8 +85,8 @@ def _over(report: Share) -> Callable[[float, float], None]:
     return lambda time, end: report(time / end)
 
 
-def _actuator(count: int) -> Callable[[Share], Dataset]:
-    return lambda report: simulate_actuator(actuator_preset(), modes=count, progress=_over(report))
+def _actuator(**settings: Any) -> Callable[[Share], Dataset]:
+    return lambda report: simulate_actuator(actuator_preset(), **settings, progress=_over(report))
 
 
 def _free_actuator(report: Share) -> Dataset:
@@ -102,35 +102,13 @@ def _free_actuator(report: Share) -> Dataset:
     return simulate_actuator(free, duration=FREE_TIME, progress=_over(report))
 
 
-def _finest_actuator(fidelity: str, count: int) -> Callable[[Share], Dataset]:
-    def compute(report: Share) -> Dataset:
-        study = actuator_preset()
-        return simulate_actuator(
-            study,
-            fidelity=fidelity,
-            modes=count,
-            step=COMPARED_STEP,
-            output_step=COMPARED_OUTPUT,
-            progress=_over(report),
-        )
-
-    return compute
-
-
 def _solid(size: float, kind: str) -> Callable[[Share], Dataset]:
-    def compute(report: Share) -> Dataset:
-        study = actuator_preset()
-        return simulate_solid(study, size=size, kind=kind, output_step=COMPARED_OUTPUT, progress=_over(report))
-
-    return compute
+    settings: Any = {"size": size, "kind": kind, "output_step": COMPARED_OUTPUT}
+    return lambda report: simulate_solid(actuator_preset(), **settings, progress=_over(report))
 
 
-def _robot(name: str) -> Callable[[Share], Dataset]:
-    return lambda report: run(robot_preset(name), progress=_over(report))
-
-
-def _fidelity(name: str, step: float) -> Callable[[Share], Dataset]:
-    return lambda report: simulate(robot_preset("paper-robot"), fidelity=name, step=step, progress=_over(report))
+def _robot(study: Callable[[], model.Study], **settings: Any) -> Callable[[Share], Dataset]:
+    return lambda report: simulate(study(), **settings, progress=_over(report))
 
 
 def _jump(name: str, angle: float | None = None) -> Callable[[Share], Dataset]:
@@ -150,80 +128,55 @@ def _sweep(name: str) -> Callable[[Share], Dataset]:
     return lambda report: half_angle_sweep(robot_preset(name), HALF_ANGLES, report)
 
 
-STEPS: tuple[Step, ...] = (
-    *(
-        Step(name=f"actuator-{k}", words=f"single actuator, {k} shapes", weight=0.2 * k, compute=_actuator(k))
-        for k in ACTUATOR_MODES
-    ),
-    Step(name="actuator-free", words="single actuator, set free", weight=0.5, compute=_free_actuator),
-    Step(
-        name="actuator-fine",
-        words="single actuator, 8 shapes",
-        weight=3,
-        compute=_finest_actuator("assumed-modes", 8),
-    ),
-    Step(
-        name="actuator-beam", words="single actuator, beam elements", weight=6, compute=_finest_actuator("beam-fem", 24)
-    ),
-    *(
-        Step(name=f"actuator-solid-{name}", words=f"solid elements, {words}", weight=weight, compute=_solid(size, kind))
-        for name, words, weight, size, kind in SOLIDS
-    ),
-    Step(name="printed-lines", words="energies as printed", weight=2, compute=printed_lines),
-    Step(name="robot", words="robot with flexible legs", weight=4, compute=_robot("paper-robot")),
-    Step(name="robot-rigid", words="robot with rigid legs", weight=0.3, compute=_fidelity("rigid", 5e-4)),
-    Step(name="robot-lumped", words="robot whose legs only stretch", weight=0.3, compute=_fidelity("lumped", 2.5e-4)),
-    Step(
-        name="robot-fem",
-        words="robot whose legs are beam elements",
-        weight=0.5,
-        compute=lambda report: simulate(
-            robot_preset("paper-robot"), fidelity="beam-fem", modes=BEAM_SHAPES, progress=_over(report)
-        ),
-    ),
-    Step(name="modes", words="modes at the largest roll", weight=0.2, compute=_modes),
-    Step(name="robot-radii", words="circles read as radii", weight=4, compute=_robot("paper-robot-radii")),
-    Step(name="jump", words="start with a jump of the velocity", weight=2, compute=_jump("paper-robot")),
-    Step(name="jump-radii", words="the same, circles read as radii", weight=2, compute=_jump("paper-robot-radii")),
-    Step(name="jump-27", words="the same, half-angles of 27 deg", weight=2, compute=_jump("paper-robot", 27.0)),
-    Step(name="half-angles", words="half-angles of the joints", weight=4, compute=_sweep("paper-robot")),
-    Step(name="half-angles-radii", words="half-angles, radii", weight=4, compute=_sweep("paper-robot-radii")),
-    Step(
-        name="assumptions",
-        words="other assumptions",
-        weight=3,
-        compute=lambda r: assumptions(robot_preset("paper-robot"), r),
-    ),
-    Step(name="readings", words="other readings of the paper", weight=4, compute=lambda r: trials(readings(), r)),
-    Step(
-        name="tripod",
-        words="a tripod of the same pistons",
-        weight=1,
-        compute=lambda report: simulate(tripod(), step=TRIAL_STEP, progress=_over(report)),
-    ),
-    Step(name="light", words="lighter pistons", weight=1, compute=light_pistons),
-    Step(name="welded", words="ball joints that carry moments", weight=8, compute=welded_map),
-    Step(
-        name="cost",
-        words="operations of inverse dynamics",
-        weight=0.3,
-        compute=lambda _: inverse_dynamics_cost(robot_preset("paper-robot")),
-    ),
-)
-
-
-def _engine(compute: Callable[[model.Study, Share], Dataset]) -> Callable[[Share], Dataset]:
+def _of_preset(compute: Callable[[model.Study, Share], Dataset]) -> Callable[[Share], Dataset]:
     return lambda report: compute(robot_preset("paper-robot"), report)
 
 
+_DIAMETERS, _RADII = partial(robot_preset, "paper-robot"), partial(robot_preset, "paper-robot-radii")
+_FINEST = {"step": COMPARED_STEP, "output_step": COMPARED_OUTPUT}
+STEPS: tuple[StudyPart, ...] = (
+    *(StudyPart(f"actuator-{k}", f"single actuator, {k} shapes", 0.2 * k, _actuator(modes=k)) for k in ACTUATOR_MODES),
+    StudyPart("actuator-free", "single actuator, set free", 0.5, _free_actuator),
+    StudyPart("actuator-fine", "single actuator, 8 shapes", 3, _actuator(fidelity="assumed-modes", modes=8, **_FINEST)),
+    StudyPart(
+        "actuator-beam", "single actuator, beam elements", 6, _actuator(fidelity="beam-fem", modes=24, **_FINEST)
+    ),
+    *(
+        StudyPart(f"actuator-solid-{name}", f"solid elements, {words}", weight, _solid(size, kind))
+        for name, words, weight, size, kind in SOLIDS
+    ),
+    StudyPart("printed-lines", "energies as printed", 2, printed_lines),
+    StudyPart("robot", "robot with flexible legs", 4, _robot(_DIAMETERS)),
+    StudyPart("robot-rigid", "robot with rigid legs", 0.3, _robot(_DIAMETERS, fidelity="rigid", step=5e-4)),
+    StudyPart("robot-lumped", "robot whose legs only stretch", 0.3, _robot(_DIAMETERS, fidelity="lumped", step=2.5e-4)),
+    StudyPart(
+        "robot-fem",
+        "robot whose legs are beam elements",
+        0.5,
+        _robot(_DIAMETERS, fidelity="beam-fem", modes=BEAM_SHAPES),
+    ),
+    StudyPart("modes", "modes at the largest roll", 0.2, _modes),
+    StudyPart("robot-radii", "circles read as radii", 4, _robot(_RADII)),
+    StudyPart("jump", "start with a jump of the velocity", 2, _jump("paper-robot")),
+    StudyPart("jump-radii", "the same, circles read as radii", 2, _jump("paper-robot-radii")),
+    StudyPart("jump-27", "the same, half-angles of 27 deg", 2, _jump("paper-robot", 27.0)),
+    StudyPart("half-angles", "half-angles of the joints", 4, _sweep("paper-robot")),
+    StudyPart("half-angles-radii", "half-angles, radii", 4, _sweep("paper-robot-radii")),
+    StudyPart("assumptions", "other assumptions", 3, _of_preset(assumptions)),
+    StudyPart("readings", "other readings of the paper", 4, lambda report: trials(readings(), report)),
+    StudyPart("tripod", "a tripod of the same pistons", 1, _robot(tripod, step=TRIAL_STEP)),
+    StudyPart("light", "lighter pistons", 1, light_pistons),
+    StudyPart("welded", "ball joints that carry moments", 8, welded_map),
+    StudyPart("cost", "operations of inverse dynamics", 0.3, lambda _: inverse_dynamics_cost(_DIAMETERS())),
+)
+
 #: What an independent engine computes, with our runs at its step.
-ENGINE_STEPS: tuple[Step, ...] = (
-    Step(name="robot-rigid-same-step", words="rigid legs, step of the engine", weight=0.3,
-         compute=_engine(rigid_same_step)),
-    Step(name="robot-undamped", words="flexible legs without damping", weight=1, compute=_engine(undamped)),
-    Step(name="robot-exudyn-rigid", words="Exudyn, rigid legs", weight=2, compute=_engine(exudyn_rigid)),
-    Step(name="robot-exudyn", words="Exudyn, flexible legs", weight=25, compute=_engine(exudyn_flexible)),
-)  # fmt: skip
+ENGINE_STEPS: tuple[StudyPart, ...] = (
+    StudyPart("robot-rigid-same-step", "rigid legs, step of the engine", 0.3, _of_preset(rigid_same_step)),
+    StudyPart("robot-undamped", "flexible legs without damping", 1, _of_preset(undamped)),
+    StudyPart("robot-exudyn-rigid", "Exudyn, rigid legs", 2, _of_preset(exudyn_rigid)),
+    StudyPart("robot-exudyn", "Exudyn, flexible legs", 25, _of_preset(exudyn_flexible)),
+)
 
 
 def replicate(
@@ -264,7 +217,7 @@ def replicate(
     failures: dict[str, ComputationError] = {}
     for step in steps:
 
-        def report(share: float, step: Step = step, before: float = done) -> None:
+        def report(share: float, step: StudyPart = step, before: float = done) -> None:
             if progress is not None:
                 progress(step.words, (before + step.weight * share) / whole)
 

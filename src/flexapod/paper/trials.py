@@ -3,22 +3,25 @@
 from __future__ import annotations
 
 from collections.abc import Mapping
-from typing import TYPE_CHECKING
 
 import numpy as np
+from xarray import Dataset
 
 from flexapod import model, rigid
 from flexapod.errors import ComputationError, InputError
 from flexapod.paper.claim import largest
 from flexapod.scene.robot import robot_study
+from flexapod.solve.equilibrium import Equilibrium, equilibrium
+from flexapod.solve.losses import per_loss
+from flexapod.solve.rest import rest_commands, rest_load
+from flexapod.solve.rigid_motion import rigid_rest, rigid_state
+from flexapod.solve.robot_system import robot_system
+from flexapod.solve.system import State, System
 from flexapod.study.attributes import attributes
 from flexapod.study.before.estimates import buckling_load
 from flexapod.study.path import path_instants
 from flexapod.study.record import Share
 from flexapod.study.simulation import simulate
-
-if TYPE_CHECKING:
-    from xarray import Dataset
 
 TRIAL_STEP = 5e-4  # s; peaks change by less than 1 % from 1 ms to 0.25 ms
 #: Columns of a table of trials and their units; `verdict` is text.
@@ -54,6 +57,20 @@ def load_share(data: Dataset) -> float:
     free = data.leg_length.values - np.array([leg.cylinder.mouth for leg in robot.legs])
     shares = (data.actuator_force.values[:, i] / buckling_load(leg, free[:, i]) for i, leg in enumerate(robot.legs))
     return max(float(share.max()) for share in shares)
+
+
+def system_of(study: model.Study) -> System:
+    """The equations of a study's robot."""
+    return robot_system(study.robot, study.simulation, per_loss(study.robot, study.simulation))
+
+
+def resting(study: model.Study, system: System, path: rigid.Poses, state: State | None) -> Equilibrium:
+    """Equilibrium with the drives locked at a rigid pose, sought from a state; None: from the rigid pose."""
+    robot = study.robot
+    start = rigid_state(system, robot, path) if state is None else state
+    acts = rest_load(system, robot, path, study.load)
+    command = rest_commands(system, robot, rigid_rest(system, robot, path).q)
+    return equilibrium(system, start, command[0], acts.force[0], acts.wrench)
 
 
 def trial(study: model.Study) -> dict[str, object]:
@@ -108,12 +125,10 @@ def table(
     columns: Mapping[str, str],
     attrs: Mapping[str, object],
 ) -> Dataset:
-    """Rows as a Dataset along a dimension (name, labels, attributes), with units by column, axes and `verdict`."""
-    import xarray as xr
-
+    """Rows as a Dataset along a dimension (name, labels, attributes), units by column, axes and, if any, `verdict`."""
     dim, labels, about = along
-    data: dict[str, object] = {"verdict": (dim, [row["verdict"] for row in rows])}
+    data: dict[str, object] = {name: (dim, [row[name] for row in rows]) for name in ("verdict",) if name in rows[0]}
     for name, unit in columns.items():
         values = np.array([row[name] for row in rows])
         data[name] = ((dim, "axis") if values.ndim == 2 else dim, values, {"units": unit})
-    return xr.Dataset(data, {dim: (dim, labels, about), "axis": list("xyz")}, dict(attrs))
+    return Dataset(data, {dim: (dim, labels, about), "axis": list("xyz")}, dict(attrs))

@@ -4,20 +4,16 @@ from __future__ import annotations
 
 from collections.abc import Sequence
 from dataclasses import dataclass, replace
-from typing import TYPE_CHECKING
 
 import numpy as np
+from xarray import Dataset
 
 from flexapod import model, rigid
 from flexapod.errors import ComputationError
 from flexapod.paper.claim import axis_motion, largest, roll_error
-from flexapod.paper.trials import TRIAL_STEP, opened, table, trial
+from flexapod.paper.trials import TRIAL_STEP, opened, resting, system_of, table, trial
 from flexapod.rigid.rotations import quaternion, rotation_vector
-from flexapod.solve.equilibrium import Equilibrium, equilibrium
-from flexapod.solve.losses import per_loss
-from flexapod.solve.rest import rest_commands, rest_load
-from flexapod.solve.rigid_motion import rigid_rest, rigid_state
-from flexapod.solve.robot_system import robot_system
+from flexapod.solve.equilibrium import Equilibrium
 from flexapod.solve.system import State, System
 from flexapod.study.arguments import as_pose
 from flexapod.study.attributes import attributes
@@ -26,9 +22,6 @@ from flexapod.study.record import Share
 from flexapod.study.simulation import simulate
 from flexapod.study.static import modes
 from flexapod.typing import Array
-
-if TYPE_CHECKING:
-    from xarray import Dataset
 
 POSES = 11  # every tenth of the motion: sag and frequency change steadily along it, their extremes are at its ends
 FINEST = 2.0**-8 / (POSES - 1)  # share of the motion to which the end of the equilibrium is found: 0.01 deg of 30 deg
@@ -82,7 +75,7 @@ def at_rest(study: model.Study) -> Rest:
 
 def _followed(study: model.Study) -> tuple[float, Array]:
     """Share of the motion that the equilibrium of home lasts, and the largest sag (3,) [m] on the way."""
-    system = robot_system(study.robot, study.simulation, per_loss(study.robot, study.simulation))
+    system = system_of(study)
     found, off = _near(study, system, 0.0, None)
     if not found.found:
         return 0.0, np.full(3, np.nan)
@@ -99,13 +92,9 @@ def _followed(study: model.Study) -> tuple[float, Array]:
 
 def _near(study: model.Study, system: System, share: float, state: State | None) -> tuple[Equilibrium, Array]:
     """Equilibrium at a share of the motion, sought from a state (None: the rigid pose); its sag (3,) [m]."""
-    robot = study.robot
-    path = as_pose(robot, share * axis_motion(study).target)
-    start = rigid_state(system, robot, path) if state is None else state
-    acts = rest_load(system, robot, path, study.load)
-    command = rest_commands(system, robot, rigid_rest(system, robot, path).q)
-    found = equilibrium(system, start, command[0], acts.force[0], acts.wrench)
-    return found, found.state.pose[:3] - path.point(robot.payload.com)[0][0]
+    path = as_pose(study.robot, share * axis_motion(study).target)
+    found = resting(study, system, path, state)
+    return found, found.state.pose[:3] - path.point(study.robot.payload.com)[0][0]
 
 
 HALF_ANGLES = (5.0, 10.0, 15.0, 20.0, 25.0, 27.0, 28.0, 29.0)  # deg
@@ -185,8 +174,6 @@ def assumptions(study: model.Study, report: Share) -> Dataset:
         part of the latter that is there at rest, before the motion;
         `length_error` (leg) [m]: what the legs would have to be off for the paper's deviation.
     """
-    import xarray as xr
-
     whole = len(DURATIONS) + len(SERVO_STIFFNESS)
     durations, drives, sags = [], [], []
     for duration in DURATIONS:
@@ -211,7 +198,7 @@ def assumptions(study: model.Study, report: Share) -> Dataset:
         "axis": list("xyz"),
         "leg": np.arange(1, 7),
     }
-    return xr.Dataset(values, coords, attributes(study) | {"step": TRIAL_STEP})
+    return Dataset(values, coords, attributes(study) | {"step": TRIAL_STEP})
 
 
 def _with_servo(study: model.Study, stiffness: float) -> model.Study:

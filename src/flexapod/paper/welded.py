@@ -3,26 +3,18 @@
 from __future__ import annotations
 
 from collections.abc import Iterator, Sequence
-from dataclasses import dataclass
-from typing import TYPE_CHECKING
 
 import numpy as np
+from xarray import Dataset
 
 from flexapod import model, rigid
+from flexapod.mechanics.layout import Shapes
 from flexapod.paper.readings import robot_preset
-from flexapod.paper.trials import opened
-from flexapod.solve.equilibrium import equilibrium
-from flexapod.solve.losses import per_loss
-from flexapod.solve.rest import rest_commands, rest_load
-from flexapod.solve.rigid_motion import rigid_rest, rigid_state
-from flexapod.solve.robot_system import robot_system
-from flexapod.solve.system import State, System
+from flexapod.paper.trials import opened, resting, system_of
+from flexapod.solve.system import State
 from flexapod.study.attributes import attributes
 from flexapod.study.record import Share
 from flexapod.typing import Array
-
-if TYPE_CHECKING:
-    from xarray import Dataset
 
 #: Robots of the map: preset and how many legs are welded to the platform.
 READINGS = {
@@ -55,58 +47,44 @@ def welded(study: model.Study, count: int = 6) -> model.Study:
     return study.replace(robot=robot.replace(type=kind, legs=legs))
 
 
-@dataclass(frozen=True, kw_only=True)
-class _Walk:
-    """A robot on its way from home to the largest roll, at rest at each turn."""
+def _walk(study: model.Study, rolls: Sequence[float]) -> Iterator[dict[str, object]]:
+    """What the equilibrium at each roll [deg] is, from home on; ends where none continues the one before."""
+    system, state = system_of(study), None
+    for roll in rolls:
+        R = rigid.rotation_matrix(np.array([[np.deg2rad(roll), 0.0, 0.0]]))[0]
+        path = rigid.Poses.at_rest(rigid.home_pose(study.robot).position[0], R)
+        found = resting(study, system, path, state)
+        if not found.found:
+            return
+        state = found.state
+        yield _values(study.robot, system.kernel.shapes, path, state)
 
-    study: model.Study
-    system: System
 
-    def poses(self, rolls: Sequence[float]) -> Iterator[dict[str, object]]:
-        """What the equilibrium at each roll [deg] is; ends where none continues the one before."""
-        state: State | None = None
-        robot = self.study.robot
-        for roll in rolls:
-            R = rigid.rotation_matrix(np.array([[np.deg2rad(roll), 0.0, 0.0]]))[0]
-            path = rigid.Poses.at_rest(rigid.home_pose(robot).position[0], R)
-            start = rigid_state(self.system, robot, path) if state is None else state
-            acts = rest_load(self.system, robot, path, self.study.load)
-            command = rest_commands(self.system, robot, rigid_rest(self.system, robot, path).q)
-            found = equilibrium(self.system, start, command[0], acts.force[0], acts.wrench)
-            if not found.found:
-                return
-            state = found.state
-            yield self._values(path, state, command[0])
+def _values(robot: model.Robot, shapes: Shapes, path: rigid.Poses, x: State) -> dict[str, object]:
+    first = shapes.index("a")
+    lateral = x.q[:, first : first + 2 * shapes.a.count].reshape(len(x.q), 2, -1)
+    free = x.q[:, shapes.index("l")] - np.array([leg.cylinder.mouth for leg in robot.legs])
+    slope = lateral @ shapes.a.tip_slope / free[:, None]
+    short = 0.5 * np.einsum("idk,kj,idj->i", lateral, shapes.a.slope_tip, lateral) / free
+    curvature = lateral @ shapes.a.values(STATIONS, 2) / free[:, None, None] ** 2
+    thrust = np.abs(x.drive[:, 0])
+    return {
+        "deviation": np.abs(x.pose[:3] - path.point(robot.payload.com)[0][0]),
+        "off_axis": np.linalg.norm(lateral @ shapes.a.tip, axis=1).max(),
+        "slope": np.linalg.norm(slope, axis=1).max(),
+        "shortening": short.max(),
+        "leg_force": thrust.max(),
+        "stress": _stress(robot, np.linalg.norm(curvature, axis=1).max(axis=1), thrust),
+    }
 
-    def _values(self, path: rigid.Poses, x: State, command: Array) -> dict[str, object]:
-        robot, shapes = self.study.robot, self.system.kernel.shapes
-        com = path.point(robot.payload.com)[0][0]
-        first = shapes.index("a")
-        lateral = x.q[:, first : first + 2 * shapes.a.count].reshape(len(x.q), 2, -1)
-        stroke = x.q[:, shapes.index("l")]
-        free = stroke - np.array([leg.cylinder.mouth for leg in robot.legs])
-        slope = lateral @ shapes.a.tip_slope / free[:, None]
-        short = 0.5 * np.einsum("idk,kj,idj->i", lateral, shapes.a.slope_tip, lateral) / free
-        thrust = np.abs(x.drive[:, 0])
-        return {
-            "deviation": np.abs(x.pose[:3] - com),
-            "off_axis": np.linalg.norm(lateral @ shapes.a.tip, axis=1).max(),
-            "slope": np.linalg.norm(slope, axis=1).max(),
-            "shortening": short.max(),
-            "leg_force": thrust.max(),
-            "stress": self._stress(lateral, free, thrust),
-        }
 
-    def _stress(self, lateral: Array, free: Array, thrust: Array) -> float:
-        """Largest stress [Pa] of round pistons: E d / 2 times the curvature, and the thrust over the section."""
-        curvature = lateral @ self.system.kernel.shapes.a.values(STATIONS, 2) / free[:, None, None] ** 2
-        bent = np.linalg.norm(curvature, axis=1).max(axis=1)
-        pistons = [leg.piston for leg in self.study.robot.legs]
-        stress = [
-            0.5 * (p.E or np.nan) * (p.diameter or np.nan) * k + f * (p.E or np.nan) / p.EA
-            for p, k, f in zip(pistons, bent, thrust, strict=True)
-        ]
-        return float(max(stress))
+def _stress(robot: model.Robot, bent: Array, thrust: Array) -> float:
+    """Largest stress [Pa] of round pistons: E d / 2 times the curvature, and the thrust over the section."""
+    stress = [
+        0.5 * (p.E or np.nan) * (p.diameter or np.nan) * k + f * (p.E or np.nan) / p.EA
+        for p, k, f in zip((leg.piston for leg in robot.legs), bent, thrust, strict=True)
+    ]
+    return float(max(stress))
 
 
 def welded_map(report: Share, arms: Sequence[float] = ARMS, rolls: Sequence[float] = ROLLS) -> Dataset:
@@ -119,21 +97,17 @@ def welded_map(report: Share, arms: Sequence[float] = ARMS, rolls: Sequence[floa
         the farthest tip from its cylinder's axis, and its `slope`; `shortening` [m] of a leg by bending; `leg_force`
         [N]; `stress` [Pa] of a linear elastic piston. NaN beyond the last equilibrium.
     """
-    import xarray as xr
-
     shape = (len(READINGS), len(arms), len(rolls))
     values = {name: np.full((*shape, 3) if name == "deviation" else shape, np.nan) for name in COLUMNS}
     for i, (preset, count) in enumerate(READINGS.values()):
         for j, arm in enumerate(arms):
-            study = welded(with_arm(opened(robot_preset(preset)), arm), count)
-            simulation = study.simulation.replace(modes=SHAPES)
-            walk = _Walk(study=study, system=robot_system(study.robot, simulation, per_loss(study.robot, simulation)))
-            for k, row in enumerate(walk.poses(rolls)):
+            study = model.override(welded(with_arm(opened(robot_preset(preset)), arm), count), modes=SHAPES)
+            for k, row in enumerate(_walk(study, rolls)):
                 for name, value in row.items():
                     values[name][i, j, k] = value
             report((i * len(arms) + j + 1) / (len(READINGS) * len(arms)))
     dims = ("reading", "arm", "roll")
-    return xr.Dataset(
+    return Dataset(
         {
             name: ((*dims, "axis") if name == "deviation" else dims, values[name], {"units": unit})
             for name, unit in COLUMNS.items()

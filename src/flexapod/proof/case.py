@@ -2,9 +2,8 @@
 
 from __future__ import annotations
 
-from collections.abc import Callable, Sequence
+from collections.abc import Callable, Iterable, Iterator, Sequence
 from dataclasses import dataclass, field
-from typing import Any
 
 import numpy as np
 from numpy.typing import ArrayLike
@@ -60,7 +59,7 @@ class Case:
     statement: str
     source: str
     argument: str
-    compute: Callable[[], Sequence[Check]]
+    compute: Callable[[], Iterable[Check]]
     engine: Engine | None = None
     slow: bool = False
     not_run: str = ""
@@ -73,9 +72,16 @@ class Case:
         return self.not_run
 
 
-def case(**words: Any) -> Callable[[Callable[[], Sequence[Check]]], Case]:
-    """Decorator of a function that computes a case; `words`: the fields of `Case`."""
-    return lambda compute: Case(compute=compute, **words)
+def case(
+    statement: str, *, source: str, argument: str, engine: Engine | None = None
+) -> Callable[[Callable[[], Iterable[Check]]], Case]:
+    """Decorator of a function that computes a case, which has its name; the words: the fields of `Case`."""
+
+    def row(compute: Callable[[], Iterable[Check]]) -> Case:
+        name = compute.__name__.strip("_").replace("_", "-")
+        return Case(name=name, statement=statement, source=source, argument=argument, compute=compute, engine=engine)
+
+    return row
 
 
 def checks(
@@ -91,3 +97,13 @@ def checks(
     columns = (np.ravel(values).tolist() for values in (reference, ours, np.broadcast_to(tolerance, len(names))))
     rows = zip(names, *columns, strict=True)
     return [Check(name, a, b, bound, unit, absolute=absolute) for name, a, b, bound in rows]
+
+
+def curves(
+    what: str, reference: ArrayLike, ours: ArrayLike, of_peak: float, of_curve: float, unit: str
+) -> Iterator[Check]:
+    """Checks of the largest values of curves, and of their largest difference, both as shares of the peak."""
+    x, y = np.asarray(reference), np.asarray(ours)
+    peak, worst = float(np.abs(x).max()), float(np.abs(x - y).max())
+    yield Check(f"{what}, largest", peak, float(np.abs(y).max()), of_peak, unit)
+    yield Check(f"{what}, largest difference", 0.0, worst, of_curve * peak, unit, absolute=True)

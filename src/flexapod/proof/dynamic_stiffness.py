@@ -24,7 +24,7 @@ Stiffness = tuple[np.ndarray, int]
 
 
 @dataclass(frozen=True, kw_only=True)
-class Leg:
+class UniformLeg:
     """A leg between its joints at the pose: ``base``, ``tip`` and ``first_axis`` of the universal joint, world axes.
 
     ``inertia`` [kg m^2]: transverse, of the cylinder about the universal joint; ``axial_inertia``: cylinder and piston;
@@ -82,7 +82,7 @@ class Leg:
 
 
 @dataclass(frozen=True, kw_only=True)
-class Body:
+class LockedPayload:
     """The payload at the pose: mass, centre of mass (3,) and inertia about it (3, 3), world axes.
 
     ``free`` (k, 6): shifts of the centre of mass and turns that nothing holds.
@@ -94,7 +94,7 @@ class Body:
     free: np.ndarray = field(default_factory=lambda: np.eye(6))
 
 
-def bar(omega: float, leg: Leg) -> tuple[float, int]:
+def bar(omega: float, leg: UniformLeg) -> tuple[float, int]:
     """Return force over displacement at the tip of the piston, driven at its inner end, Eqs. (T7.9)-(T7.10)."""
     wave = omega * np.sqrt(leg.rhoA / leg.EA)
     x, shift = wave * leg.Lp, np.arctan(leg.EA * wave * leg.compliance)
@@ -119,21 +119,21 @@ def beam(omega: float, length: float, EI: float, rhoA: float) -> Stiffness:
     return K, i - int(1 - (-1) ** i * np.sign(gap)) // 2
 
 
-def lateral(omega: float, leg: Leg, inertia: float) -> Stiffness:
+def lateral(omega: float, leg: UniformLeg, inertia: float) -> Stiffness:
     """Return the stiffness of one plane on (angle of the cylinder, slope at the tip, displacement of the tip)."""
     K, count = beam(omega, leg.length - leg.mouth, leg.EI, leg.rhoA)
     ends = np.array([[leg.mouth, 0, 0], [1, 0, 0], [0, 0, 1], [0, 1, 0]])
     return ends.T @ K @ ends - np.diag([omega**2 * inertia, 0, 0]), count
 
 
-def shaft(omega: float, leg: Leg) -> Stiffness:
+def shaft(omega: float, leg: UniformLeg) -> Stiffness:
     """Return the stiffness on the turns about the leg at both ends of the piston, as (T7.9) of a bar."""
     x = omega * np.sqrt(leg.spin_inertia * leg.Lp / leg.GJ)
     cot, cosec = 1 / np.tan(x), 1 / np.sin(x)
     return leg.GJ / leg.Lp * x * np.array([[cot, -cosec], [-cosec, cot]]), int(x // np.pi)
 
 
-def robot(omega: float, legs: Sequence[Leg], body: Body) -> Stiffness:
+def robot(omega: float, legs: Sequence[UniformLeg], body: LockedPayload) -> Stiffness:
     """Return the stiffness on the payload's coordinates and the turns of each leg's ends, Eq. (T7.13)."""
     free, turns = len(body.free), [sum(map(len, leg.turns())) for leg in legs]
     twist, mass = np.zeros((6, free + sum(turns))), np.zeros((6, 6))
@@ -145,7 +145,7 @@ def robot(omega: float, legs: Sequence[Leg], body: Body) -> Stiffness:
     return K, count
 
 
-def _leg(omega: float, leg: Leg, arm: np.ndarray, twist: np.ndarray, at: int) -> Stiffness:
+def _leg(omega: float, leg: UniformLeg, arm: np.ndarray, twist: np.ndarray, at: int) -> Stiffness:
     """One leg's part: its ends turn by the coordinates from `at` on, its tip is at `arm` from the centre of mass."""
     base, tip = leg.turns()
     middle = at + len(base)
@@ -192,6 +192,6 @@ def roots(count: Count, n: int, start: float = 1.0, tolerance: float = 1e-12) ->
     return np.array(found[:n]) / (2 * np.pi)
 
 
-def robot_frequencies(legs: Sequence[Leg], body: Body, n: int) -> np.ndarray:
+def robot_frequencies(legs: Sequence[UniformLeg], body: LockedPayload, n: int) -> np.ndarray:
     """Return the first n frequencies [Hz] of the robot."""
     return roots(lambda omega: below(robot(omega, legs, body)), n)

@@ -2,7 +2,6 @@
 
 The loop knows legs of n coordinates, each closed by three equations to a body that carries them, and strokes that
 may follow a table. Any mechanism of that structure can take their place: `Branch` for the leg, `Hub` for the body.
-Needs casadi: import it where a case is computed.
 """
 
 from __future__ import annotations
@@ -72,7 +71,19 @@ class Mechanism:
     driven: tuple[int, ...] = (0,)
 
 
-def run(mechanism: Mechanism, q: Array, x: Array, v: Array, u: Array, duration: float, steps: int) -> list[Recording]:
+def still(t: Array) -> tuple[Array, Array, Array]:
+    """A drive that rests at zero."""
+    return np.zeros_like(t), np.zeros_like(t), np.zeros_like(t)
+
+
+def extrapolated(coarse: Array, fine: Array) -> Array:
+    """What two step sizes, the second half the first, give of a method of order two, to order four (Richardson)."""
+    return (4 * fine - coarse) / 3
+
+
+def run_mechanism(
+    mechanism: Mechanism, q: Array, x: Array, v: Array, u: Array, duration: float, steps: int
+) -> list[Recording]:
     """The start, and what follows in `steps` equal steps of the time integration with spectral radius 0.9.
 
     Parameters

@@ -138,10 +138,16 @@ def _unlike(i: int, leg: Leg) -> Leg:
     return leg.replace(piston=rod, cylinder=cylinder, u_axis=u_axis)
 
 
+STEEL, ROUND = model.Material(name="steel", E=200e9, density=7800.0), model.Tube(diameter=0.027)
 HELD = 1e12  # kg, and kg m^2
 
 
-def heavy_robot(*, mouth: float, mass: float, free: float, diameter: float, E: float, density: float) -> model.Robot:
+def round_piston(length: float) -> Piston:
+    """The paper's steel piston of a length [m]."""
+    return Piston.round(length=length, section=ROUND, material=STEEL)
+
+
+def heavy_robot(*, mouth: float, mass: float, free: float) -> model.Robot:
     """A robot without gravity whose platform cannot move, so that each leg vibrates by itself between its joints.
 
     Parameters
@@ -149,20 +155,14 @@ def heavy_robot(*, mouth: float, mass: float, free: float, diameter: float, E: f
     mouth, mass : float
         Length [m] and mass [kg] of a cylinder, uniform.
     free : float
-        Length of the piston [m], all of it outside.
-    diameter, E, density : float
-        Of the full round piston, SI.
+        Length of the piston `round_piston` [m], all of it outside.
     """
     layout = model.preset("paper-robot")
     robot = layout.robot
     across = np.linalg.norm((robot.base_joints - robot.platform_joints)[:, :2], axis=1)[0]
     leg = robot.legs[0].replace(
         cylinder=model.Cylinder(mass=mass, com=mouth / 2, inertia=mass * mouth**2 / 12, mouth=mouth),
-        piston=model.Piston.round(
-            length=free,
-            section=model.Tube(diameter=diameter),
-            material=model.Material(name="given", E=E, density=density),
-        ),
+        piston=round_piston(free),
         stroke=None,
         damping=0.0,
     )

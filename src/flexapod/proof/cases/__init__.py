@@ -1,5 +1,8 @@
 """The cases, from the parts to the whole, then the independent engines and what is left out."""
 
+from collections.abc import Iterator
+from types import ModuleType
+
 from flexapod.proof.case import Case
 from flexapod.proof.cases import (
     bending,
@@ -42,5 +45,11 @@ NOT_MODELLED = Case(
     not_run="the software has neither shapers nor force feedback",
 )
 
-#: Of each subject in the order in which they are written.
-CASES = (*(case for module in _SUBJECTS for case in vars(module).values() if isinstance(case, Case)), NOT_MODELLED)
+
+def _rows(module: ModuleType) -> Iterator[Case]:
+    """The cases of a subject in the order in which they are written, alone or as a list."""
+    for value in vars(module).values():
+        yield from (case for case in (value if isinstance(value, list) else [value]) if isinstance(case, Case))
+
+
+CASES = (*(case for module in _SUBJECTS for case in _rows(module)), NOT_MODELLED)

@@ -2,12 +2,13 @@
 
 from __future__ import annotations
 
+from collections.abc import Iterator
+
 import numpy as np
 
-from flexapod import model
 from flexapod.model import Actuator, Simulation
 from flexapod.proof.case import Check, case, checks
-from flexapod.proof.robots import heavy_robot
+from flexapod.proof.robots import STEEL, heavy_robot, round_piston
 from flexapod.solve.actuator_modes import actuator_modes
 from flexapod.study.static import modes
 from flexapod.typing import Array
@@ -17,13 +18,11 @@ MODES = [f"mode {i}, omega / sqrt(EI / rhoA L^4)" for i in range(1, 6)]
 
 
 @case(
-    name="cantilever",
-    statement="Frequencies of a clamped-free beam, in its own eigenfunctions",
+    "Frequencies of a clamped-free beam, in its own eigenfunctions",
     source="roots of cos x cosh x = -1, any text on vibrations",
     argument="the shapes are the exact ones; the printed roots carry 12 to 13 digits",
 )
-def cantilever() -> list[Check]:
-    """Bending of a clamped beam."""
+def _cantilever() -> list[Check]:
     beam = Actuator(length=1.0, rhoA=1.0, EI=1.0, free_length=1.0)
     found = actuator_modes(beam, Simulation(basis="clamped-free", modes=5))
     return checks(MODES, np.square(ROOTS), 2 * np.pi * found.frequency, 1e-11)
@@ -45,20 +44,16 @@ BODIES = (
 
 
 @case(
-    name="tip-body",
-    statement="Frequencies of a clamped beam with mass and rotary inertia at its tip, basis tip-mass",
+    "Frequencies of a clamped beam with mass and rotary inertia at its tip, basis tip-mass",
     source="1 + cos x cosh x + mu x (cos x sinh x - sin x cosh x) = 0 and its form with rotary inertia, in closed form",
     argument="the shapes are the exact ones; the table carries seven to nine digits, at least half a unit of 0.3115388",
 )
-def tip_body() -> list[Check]:
-    """Bending of a clamped beam that carries a body at its tip."""
-    found: list[Check] = []
+def _tip_body() -> Iterator[Check]:
     for mass, inertia, row in BODIES:
         beam = Actuator(length=1.0, rhoA=1.0, EI=1.0, free_length=1.0, tip_mass=mass, tip_inertia=inertia)
         waves = 2 * np.pi * actuator_modes(beam, Simulation(basis="tip-mass", modes=3)).frequency
         names = [f"m = {mass:g}, J = {inertia:g}, mode {i}" for i in (1, 2, 3)]
-        found += checks(names, row, waves, 2e-7)
-    return found
+        yield from checks(names, row, waves, 2e-7)
 
 
 ELEMENTS, SEGMENTS = 8, 12
@@ -75,16 +70,14 @@ def _cubic(wave: Array) -> Array:
 
 
 @case(
-    name="beam-elements",
-    statement="Frequencies of a clamped beam with mass and rotary inertia at its tip: eight cubic elements; twelve "
+    "Frequencies of a clamped beam with mass and rotary inertia at its tip: eight cubic elements; twelve "
     "hinged segments without a body",
     source="closed forms, as for cantilever and tip-body",
     argument="leading error of cubic elements, (lambda / n)^4 / 1440 (that of a sine; a clamped or free end takes "
     "some of it), a tenth for the next term, seven digits of the table; of segments, the chord of a sine, (lambda / "
     "n)^2 / 24, and as much for the half segment at the clamp",
 )
-def beam_elements() -> list[Check]:
-    """Bending of a clamped beam in finite elements, with and without a body at its tip."""
+def _beam_elements() -> list[Check]:
     found, bare = [], np.square(ROOTS[:3])
     for mass, inertia, row in ((0.0, 0.0, bare), *BODIES):
         names = [f"elements, m = {mass:g}, J = {inertia:g}, mode {i}" for i in (1, 2, 3)]
@@ -93,7 +86,6 @@ def beam_elements() -> list[Check]:
     return found + checks(segments, bare, _waves("finite-segment", SEGMENTS), bare / SEGMENTS**2 / 12)
 
 
-STEEL = {"diameter": 0.027, "E": 200e9, "density": 7800.0}
 FREE = 0.6
 PINNED = (149.138, 596.553)  # Hz, pinned at both ends
 CLAMPED = (232.982, 755.012)  # Hz, clamped at one
@@ -104,14 +96,8 @@ THRUST = 1e3
 FACTOR = 0.996498
 
 
-def _rod() -> model.Piston:
-    """The steel piston."""
-    material = model.Material(name="steel", E=STEEL["E"], density=STEEL["density"])
-    return model.Piston.round(length=FREE, section=model.Tube(diameter=STEEL["diameter"]), material=material)
-
-
 def _section() -> list[Check]:
-    rod = _rod()
+    rod = round_piston(FREE)
     return [
         Check("EI", 5217.4, rod.EI, 1e-5, "N m^2"),
         Check("EA", 1.1451e8, rod.EA, 5e-5, "N"),
@@ -121,17 +107,14 @@ def _section() -> list[Check]:
 
 
 @case(
-    name="piston",
-    statement="A 27 mm steel piston of 600 mm: section, bending between ideal ends, first frequency under a thrust of "
-    "1 kN",
+    "A 27 mm steel piston of 600 mm: section, bending between ideal ends, first frequency under a thrust of 1 kN",
     source="closed forms: sin x = 0, tan x = tanh x, sqrt(1 - P / P_cr)",
     argument="printed digits; what eight polynomials lack of a sine with lambda = 7.07 is at most 4e-6",
 )
-def piston() -> list[Check]:
-    """The paper's piston between ideal ends: section, bending, buckling."""
+def _piston() -> list[Check]:
     found = _section()
-    light = heavy_robot(mouth=0.0, mass=0.0, free=FREE, **STEEL)
-    held = heavy_robot(mouth=0.3, mass=HEAVY, free=FREE, **STEEL)
+    light = heavy_robot(mouth=0.0, mass=0.0, free=FREE)
+    held = heavy_robot(mouth=0.3, mass=HEAVY, free=FREE)
     for name, robot, first, table in (("pinned", light, 6, PINNED), ("clamped", held, 18, CLAMPED)):
         ours = modes(robot, modes=8, axial_modes=1).frequency.values[first::12]
         found += checks([f"{name} and pinned, mode {i}" for i in (1, 2)], table, ours[:2], 1e-5, "Hz")
@@ -144,19 +127,17 @@ def piston() -> list[Check]:
 
 
 @case(
-    name="bar",
-    statement="Axial vibration and stiffness of a 27 mm steel piston of 600 mm",
+    "Axial vibration and stiffness of a 27 mm steel piston of 600 mm",
     source="c / 2 L of a uniform bar held at both ends; EA / L",
     argument="the sine shapes are the exact modes of such a bar; EA / L is printed with five digits",
 )
-def bar() -> list[Check]:
-    """Stretching of a piston held at its inner end."""
+def _bar() -> list[Check]:
     # A platform that cannot move holds the tips: clamped-clamped bar, n c / 2 L.
-    speed = np.sqrt(STEEL["E"] / STEEL["density"])
-    robot = heavy_robot(mouth=0.0, mass=0.0, free=FREE, **STEEL)
+    speed = np.sqrt(STEEL.E / STEEL.density)
+    robot = heavy_robot(mouth=0.0, mass=0.0, free=FREE)
     found = modes(robot, modes=1, axial_modes=4)
     first = float(found.frequency.values[[kind.endswith("axial") for kind in found.kind.values]].min())
     return [
         Check("first axial mode", speed / (2 * FREE), first, 1e-12, "Hz"),
-        Check("EA / L of the piston", 1.9085e8, _rod().EA / FREE, 5e-5, "N/m"),
+        Check("EA / L of the piston", 1.9085e8, round_piston(FREE).EA / FREE, 5e-5, "N/m"),
     ]

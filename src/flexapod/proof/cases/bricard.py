@@ -8,16 +8,13 @@ are independent, and the copies must move as one.
 
 from __future__ import annotations
 
-from typing import TYPE_CHECKING
-
 import numpy as np
 
 from flexapod.proof.case import Check, case, checks
+from flexapod.proof.mechanism import Mechanism, extrapolated, run_mechanism, still
+from flexapod.solve.recording import Recording
+from flexapod.symbolic.vocabulary import SX, constant, cos, dot, mtimes, sin, time_derivative, vertcat, zeros
 from flexapod.typing import Array
-
-if TYPE_CHECKING:
-    from flexapod.solve.recording import Recording
-    from flexapod.symbolic.vocabulary import SX
 
 LENGTH, SIDE, MASS, GRAVITY = 1.0, 0.1, 1.0, 9.81  # m, m, kg, m/s^2
 HINGES = np.array([[0, 0, 0], [1, 0, 0], [1, -1, 0], [1, -1, 1], [0, -1, 1], [0, 0, 1]]) * LENGTH
@@ -34,8 +31,6 @@ TABLE = (
 
 def _turn(axis: int, angle: SX) -> SX:
     """Rotation about a coordinate axis."""
-    from flexapod.symbolic.vocabulary import constant, cos, sin
-
     n = np.eye(3)[axis]
     cross = np.array([[0, -n[2], n[1]], [n[2], 0, -n[0]], [-n[1], n[0], 0]])
     return constant(np.eye(3)) + sin(angle) * constant(cross) + (1 - cos(angle)) * constant(cross @ cross)
@@ -43,8 +38,6 @@ def _turn(axis: int, angle: SX) -> SX:
 
 def _chain(start: int, step: int, angles: list[SX], q: SX, v: SX) -> tuple[SX, SX, SX, SX]:
     """Rods from hinge ``start`` on: kinetic and potential energy, place of the last hinge, rotation of the last rod."""
-    from flexapod.symbolic.vocabulary import constant, dot, mtimes, time_derivative, zeros
-
     place, R = constant(HINGES[start][:, None]), constant(np.eye(3))
     kinetic, potential = zeros(1), zeros(1)
     for k, angle in enumerate(angles):
@@ -69,8 +62,6 @@ def _branch(q: SX, v: SX, p: SX) -> tuple[SX, SX, SX]:
 
     The third coordinate is a slide along rod 4, which the drive holds.
     """
-    from flexapod.symbolic.vocabulary import constant, mtimes
-
     kinetic, potential, place, R = _chain(5, -1, [q[0], q[1]], q, v)
     rod = (HINGES[3] - HINGES[4]) / LENGTH
     point = place + mtimes(R, constant(rod[:, None]) * q[2] + constant(AXES[3][:, None]) * p[0])
@@ -79,8 +70,6 @@ def _branch(q: SX, v: SX, p: SX) -> tuple[SX, SX, SX]:
 
 def _hub(x: SX, u: SX) -> tuple[SX, SX, SX]:
     """Rods 1 to 3 and the two points of the fourth hinge's axis."""
-    from flexapod.symbolic.vocabulary import constant, mtimes, vertcat
-
     kinetic, potential, place, R = _chain(0, 1, [x[0], x[1], x[2]], x, u)
     axis = mtimes(R, constant(AXES[3][:, None]))
     return kinetic, potential, vertcat(place, place + OFFSET * axis)
@@ -88,19 +77,17 @@ def _hub(x: SX, u: SX) -> tuple[SX, SX, SX]:
 
 def run(steps: int) -> list[Recording]:
     """The mechanism from rest over 10 s in so many steps: the start, and what follows."""
-    from flexapod.proof import mechanism
-
-    loop = mechanism.Mechanism(
+    loop = Mechanism(
         branch=_branch,
         hub=_hub,
-        drive=lambda t: (np.zeros_like(t), np.zeros_like(t), np.zeros_like(t)),
+        drive=still,
         shapes=0,
         parameters=np.array([[0.0], [OFFSET]]),
         file=__file__,
         driven=(0, 1),
     )
     none = np.zeros((2, 3))
-    return mechanism.run(loop, none, np.zeros(3), none, np.zeros(3), DURATION, steps)
+    return run_mechanism(loop, none, np.zeros(3), none, np.zeros(3), DURATION, steps)
 
 
 def motion(steps: int) -> tuple[Array, Array, Array]:
@@ -112,8 +99,7 @@ def motion(steps: int) -> tuple[Array, Array, Array]:
 
 
 @case(
-    name="bricard",
-    statement="Bricard's mechanism, five rods of 1 m and an overconstrained loop of six hinges, from rest over 10 s, "
+    "Bricard's mechanism, five rods of 1 m and an overconstrained loop of six hinges, from rest over 10 s, "
     "in the compiled time integration of the robot with the equations that are independent; two step sizes "
     "extrapolated",
     source="IFToMM library of computational benchmark problems, A04 (Gonzalez et al. 2006), whose reference is "
@@ -122,10 +108,9 @@ def motion(steps: int) -> tuple[Array, Array, Array]:
     argument="of two steps of a method of order two the error of order four: 2e-11 rad, 3e-12 J; what the equations "
     "leave out, the second set of hinges and the equality of the copies, to rounding over lengths of a metre",
 )
-def bricard() -> list[Check]:
-    """Angles at three instants, the energy, and what must stay alike."""
+def _bricard() -> list[Check]:
     coarse, fine = motion(STEPS), motion(2 * STEPS)
-    angles, energy = ((4 * fine[i] - coarse[i]) / 3 for i in (0, 2))
+    angles, energy = (extrapolated(coarse[i], fine[i]) for i in (0, 2))
     first, copies = fine[0], fine[1]
     one, two = np.sin(first[:, 0]), np.sin(first[:, 1])
     rows = [

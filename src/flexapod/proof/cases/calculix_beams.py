@@ -2,6 +2,8 @@
 
 from __future__ import annotations
 
+from collections.abc import Iterator
+
 import numpy as np
 
 from flexapod import model
@@ -13,12 +15,11 @@ from flexapod.proof.case import Check, case, checks
 from flexapod.proof.cases.calculix_corrections import ONE_ELEMENT, clamped_thick
 from flexapod.proof.engines import calculix
 from flexapod.proof.engines.engine import CALCULIX
+from flexapod.proof.robots import ROUND, STEEL
 from flexapod.solve.actuator_modes import actuator_modes
 from flexapod.study.actuator import simulate_actuator
 from flexapod.typing import Array
 
-STEEL = model.Material(name="steel", E=200e9, density=7800.0)
-PISTON = model.Tube(diameter=0.027)
 LENGTH = 0.6  # m, of the piston
 COARSE, FINE = 0.02, 0.005  # m, elements in its section: 12 and 32, edges half as long along the circle
 FLAT = model.Rectangle(width=0.1524, height=0.0095)  # Table 2
@@ -48,13 +49,11 @@ def _limit(coarse: Array, fine: Array) -> Array:
     return fine + (fine - coarse) / 15
 
 
-def _compared(found: dict[str, Array], limit: Array, ours: Array, tolerance: Array) -> list[Check]:
+def _compared(found: dict[str, Array], limit: Array, ours: Array, tolerance: Array) -> Iterator[Check]:
     """Each mesh may be off by what it differs from the limit, and the limit by `tolerance`."""
-    rows: list[Check] = []
     for name, f in {**found, "limit": limit}.items():
         bound = tolerance + np.abs(limit / f - 1)
-        rows += checks([f"{name}, bending {i + 1}" for i in range(len(ours))], f, ours, bound, "Hz")
-    return rows
+        yield from checks([f"{name}, bending {i + 1}" for i in range(len(ours))], f, ours, bound, "Hz")
 
 
 def _correction(beam: model.Actuator, thick: Array) -> Array:
@@ -64,14 +63,12 @@ def _correction(beam: model.Actuator, thick: Array) -> Array:
 
 
 @case(
-    name="calculix-beam",
-    statement="Bending frequencies of the paper's Table 2 beam, 1.83 m clamped, Poisson's ratio 0",
+    "Bending frequencies of the paper's Table 2 beam, 1.83 m clamped, Poisson's ratio 0",
     source=_THREE_MESHES,
     argument="as calculix-piston; shear and rotary inertia take 1e-4 at most",
     engine=CALCULIX,
 )
-def calculix_beam() -> list[Check]:
-    """The beam of the paper's Table 2, meshes of 10 to 40 elements."""
+def _calculix_beam() -> Iterator[Check]:
     beam = model.Actuator(length=FREE, free_length=FREE, EI=EI, rhoA=RHO_A)
     ours = clamped_thick(beam, FLAT.height / np.sqrt(12), ONE_ELEMENT, 5)[:3]
     found = {}
@@ -84,51 +81,43 @@ def calculix_beam() -> list[Check]:
 
 
 @case(
-    name="calculix-piston",
-    statement="Bending frequencies of the clamped piston, 27 mm by 600 mm of steel, Poisson's ratio 0",
+    "Bending frequencies of the clamped piston, 27 mm by 600 mm of steel, Poisson's ratio 0",
     source=_THREE_MESHES,
     argument="ours with first-order shear and rotary inertia, r / L = 0.011, which take 0.1 to 1.6 %; the square of "
     "that and rounding, 1e-5; of a mesh what it differs from the limit: a circle of 8 parabolas is not a circle",
     engine=CALCULIX,
 )
-def calculix_piston() -> list[Check]:
-    """The piston, three meshes."""
+def _calculix_piston() -> Iterator[Check]:
     meshes = {"12 x 12 elements": (COARSE, 12), "12 x 24 elements": (COARSE, 24), "32 x 24 elements": (FINE, 24)}
     found = {
-        name: _theirs(_mesh(PISTON, size, LENGTH, layers, "hex20"), STEEL, 0.0, reduced=True)[[0, 2, 4]]
+        name: _theirs(_mesh(ROUND, size, LENGTH, layers, "hex20"), STEEL, 0.0, reduced=True)[[0, 2, 4]]
         for name, (size, layers) in meshes.items()
     }
-    beam = model.Actuator.from_section(section=PISTON, material=STEEL, length=LENGTH, free_length=LENGTH)
-    ours = clamped_thick(beam, PISTON.diameter / 4, 2 * 7 / 6, 5)[:3]  # E / G = 2; k = 6 / 7 of a circle (Cowper)
+    beam = model.Actuator.from_section(section=ROUND, material=STEEL, length=LENGTH, free_length=LENGTH)
+    ours = clamped_thick(beam, ROUND.diameter / 4, 2 * 7 / 6, 5)[:3]  # E / G = 2; k = 6 / 7 of a circle (Cowper)
     limit = _limit(found["12 x 12 elements"], found["32 x 24 elements"])
     return _compared(found, limit, ours, ROUNDING + _correction(beam, ours) ** 2)
 
 
 @case(
-    name="calculix-solid",
-    statement="Frequencies of our solid and of CalculiX on the same meshes of Table 2 beam and piston, Poisson's "
-    "ratio 0.3",
+    "Frequencies of our solid and of CalculiX on the same meshes of Table 2 beam and piston, Poisson's ratio 0.3",
     source="CalculiX, C3D8 and C3D20",
     argument="the same elements and quadrature: rounding of either, eps (length / thickness)^4 = 5e-6",
     engine=CALCULIX,
 )
-def calculix_solid() -> list[Check]:
-    """Our solid on the same meshes."""
-    rows: list[Check] = []
+def _calculix_solid() -> Iterator[Check]:
     for name, material, mesh in (
         ("Table 2 beam, C3D8", ALUMINIUM, _mesh(FLAT, 0.05, 3.66, 73, "hex8")),
         ("Table 2 beam, C3D20", ALUMINIUM, _mesh(FLAT, 0.05, 3.66, 36, "hex20")),
-        ("piston, C3D20", STEEL, _mesh(PISTON, COARSE, LENGTH, 12, "hex20")),
+        ("piston, C3D20", STEEL, _mesh(ROUND, COARSE, LENGTH, 12, "hex20")),
     ):
         theirs = _theirs(mesh, material, 0.3, reduced=False)
         ours = frequencies(mesh, E=material.E, density=material.density, poisson=0.3, count=len(theirs))
-        rows += checks([f"{name}, mode {i + 1}" for i in range(len(theirs))], theirs, ours, SAME, "Hz")
-    return rows
+        yield from checks([f"{name}, mode {i + 1}" for i in range(len(theirs))], theirs, ours, SAME, "Hz")
 
 
 @case(
-    name="calculix-linear",
-    statement="Linear elements by kind: first frequencies across the thickness of the Table 2 beam, 0.3 m clamped, "
+    "Linear elements by kind: first frequencies across the thickness of the Table 2 beam, 0.3 m clamped, "
     "two elements of 4.75 mm deep, Poisson's ratio 0",
     source="CalculiX, C3D8, C3D8I and C3D8R",
     argument="C3D8 is the same element: rounding, 2e-5; C3D8I of another author: as far as it is itself from "
@@ -136,8 +125,7 @@ def calculix_solid() -> list[Check]:
     "constant is each program's own",
     engine=CALCULIX,
 )
-def calculix_linear() -> list[Check]:
-    """Bending across the thickness, two elements of 4.75 mm deep."""
+def _calculix_linear() -> list[Check]:
     found = {}
     for kind in ("hex20", "hex8", "hex8i", "hex8r"):
         mesh = _mesh(FLAT, FLAT.height / 2, SHORT, 63, kind)
@@ -156,15 +144,13 @@ def calculix_linear() -> list[Check]:
 
 
 @case(
-    name="calculix-release",
-    statement="Tip of the Table 2 beam, 1.83 m clamped, released from 5 mm, over half a period: our modes and a solid",
+    "Tip of the Table 2 beam, 1.83 m clamped, released from 5 mm, over half a period: our modes and a solid",
     source="CalculiX, *DYNAMIC, 24 elements C3D20, average acceleration, 1 ms",
     argument="the method lengthens periods by (omega h)^2 / 12: 0.007 mm in modes 1 to 3; higher ones, of 0.0075 mm "
     "together, may come with any phase",
     engine=CALCULIX,
 )
-def calculix_release() -> list[Check]:
-    """The tip over half a period, each 20 ms."""
+def _calculix_release() -> list[Check]:
     mesh = _mesh(FLAT, FLAT.width, FREE, 24, "hex20")
     deck = clamped_release(
         mesh, E=ALUMINIUM.E, density=ALUMINIUM.density, force=3 * EI / FREE**3 * TIP, duration=DURATION, step=STEP

@@ -46,16 +46,14 @@ def _robot_frequencies(name: str, robot: model.Robot, pose: tuple[float, ...] | 
 
 
 @case(
-    name="calculix-robot",
-    statement="Frequencies of the whole locked robot without gravity: the preset, pistons without cylinders, six "
+    "Frequencies of the whole locked robot without gravity: the preset, pistons without cylinders, six "
     "different legs at a rolled pose",
     source="CalculiX on the deck of `flexapod export`, pistons of 16 and 32 elements C3D20 and their limit",
     argument="ours with first-order shear and rotary inertia, 1e-4 to 1e-2; its square, half of what the limit of the "
     "meshes adds, and 1e-5 for the spring that locks a stroke",
     engine=CALCULIX,
 )
-def calculix_robot() -> list[Check]:
-    """The whole locked robot by CalculiX, from the deck that `flexapod export` writes."""
+def _calculix_robot() -> list[Check]:
     robot = without_gravity(_preset())
     return [
         *_robot_frequencies("preset", robot, None),
@@ -65,16 +63,14 @@ def calculix_robot() -> list[Check]:
 
 
 @case(
-    name="calculix-prestress",
-    statement="The locked robot under gravity, which shifts bending frequencies by -0.6 to 0.4 %: frequencies about "
+    "The locked robot under gravity, which shifts bending frequencies by -0.6 to 0.4 %: frequencies about "
     "the sagged state, and the sag",
     source="CalculiX, *STATIC with NLGEOM, then *FREQUENCY, on the deck of `flexapod export`",
     argument="as calculix-robot, and 1.5e-4 for the weight of a turning cylinder, which linear equations leave out, m "
     "g d / (2 omega^2 I); the sag 1e-4 for the turning payload, likewise: 390 N m over 5.7e6 N m",
     engine=CALCULIX,
 )
-def calculix_prestress() -> list[Check]:
-    """The same of the robot that sags."""
+def _calculix_prestress() -> list[Check]:
     robot = _preset()
     found = [replace(check, tolerance=check.tolerance + WEIGHT) for check in _robot_frequencies("preset", robot, None)]
     _, moved = calculix.run(abaqus_deck(robot)).displacements("PAYLOAD")
@@ -85,16 +81,14 @@ def calculix_prestress() -> list[Check]:
 
 
 @case(
-    name="calculix-mechanisms",
-    statement="Frequencies of the presets tripod (3-RPS), flight-simulator (6-UCU) and machine-hexapod (as drawn: "
+    "Frequencies of the presets tripod (3-RPS), flight-simulator (6-UCU) and machine-hexapod (as drawn: "
     "joints and plates that give way, screws) under gravity, drives locked",
     source="CalculiX, *STATIC with NLGEOM, then *FREQUENCY, on the deck of `flexapod export`, 20 elements a piston",
     argument="shear and rotary inertia, which beams have not: ten times (thickness / length)^2 in stiffness, at most "
     "1e-2; and the weight of what turns, which the deck's linear equations leave out",
     engine=CALCULIX,
 )
-def calculix_mechanisms() -> list[Check]:
-    """Robots of other kinds than six legs UPS."""
+def _calculix_mechanisms() -> list[Check]:
     found = []
     for name in ("tripod", "flight-simulator", "machine-hexapod"):
         robot = _preset(name).replace(heat=None)

@@ -9,7 +9,8 @@ from typing import Literal
 import numpy as np
 
 from flexapod import model, rigid
-from flexapod.proof.case import Case, Check, case, checks
+from flexapod.proof.case import Case, Check, case, checks, curves
+from flexapod.proof.cases.turning import DURATION, TABLE
 from flexapod.proof.engines.engine import EXUDYN
 from flexapod.proof.engines.exudyn_actuator import simulate_actuator as exudyn_actuator
 from flexapod.proof.engines.exudyn_integration import Integration, extrapolated
@@ -18,27 +19,17 @@ from flexapod.study.actuator import simulate_actuator
 from flexapod.study.simulation import simulate
 from flexapod.typing import Array
 
-DURATION, SPIN_UP_STEP, ELEMENTS = 15.0, 5e-3, 16
-AREA, E, SECOND, DENSITY = 7.2968e-5, 6.8952e10, 8.2189e-9, 2766.7  # of Wu & Haug's beam
-# Name, length [m], EI [N m^2], EA [N], mass per length [kg/m], final rate [rad/s]
-TABLE = (
-    ("Simo & Vu-Quoc, 6 rad/s", 10.0, 1.4e4, 2.8e7, 1.2, 6.0),
-    ("Wu & Haug, 4 rad/s", 8.0, E * SECOND, E * AREA, DENSITY * AREA, 4.0),
-    ("Wu & Haug, 6 rad/s", 8.0, E * SECOND, E * AREA, DENSITY * AREA, 6.0),
-)
+SPIN_UP_STEP, ELEMENTS = 5e-3, 16
 
 
 @case(
-    name="exudyn-spin-up",
-    statement="Lag of the tip of a beam spun up in 15 s, three shapes, against 16 nonlinear cable elements",
+    "Lag of the tip of a beam spun up in 15 s, three shapes, against 16 nonlinear cable elements",
     source="Exudyn, run on the spot; the beams of Simo & Vu-Quoc 1986, Wu & Haug 1988",
     argument="ours is of second order in a lag of a tenth of the length: wrong by 0.1 to 0.3 %; mesh and step: 0.02 %",
     engine=EXUDYN,
 )
-def exudyn_spin_up() -> list[Check]:
-    """Beams spun up to speed, against Exudyn."""
-    found: list[Check] = []
-    for name, length, EI, EA, rhoA, rate in TABLE:
+def _exudyn_spin_up() -> Iterator[Check]:
+    for name, (length, EI, EA, rhoA), rate, *_ in TABLE:
         study = model.ActuatorStudy(
             actuator=model.Actuator(length=length, free_length=length, rhoA=rhoA, EI=EI),
             motion=model.ActuatorMotion(rotation=model.SpinUpLaw(rate=rate, duration=DURATION)),
@@ -50,11 +41,10 @@ def exudyn_spin_up() -> list[Check]:
         ours = simulate_actuator(study, modes=3, step=SPIN_UP_STEP, output_step=SPIN_UP_STEP).tip_deflection.values
         peak = float(theirs.min())
         worst = float(np.abs(ours - theirs).max())
-        found += [
+        yield from [
             Check(f"{name}, peak lag", peak, float(ours.min()), 5e-3, "m"),
             Check(f"{name}, largest difference of the lag in 15 s", 0.0, worst, 5e-3 * abs(peak), "m", absolute=True),
         ]
-    return found
 
 
 SLIDING_STEP = 1e-3
@@ -74,23 +64,23 @@ def _sliding_beam(duration: float, elements: int) -> list[Check]:
     ]
 
 
-def _sliding(name: str, time: str, elements: int, compute: Callable[[], list[Check]], slow: bool = False) -> Case:
-    return Case(
+SLIDING = [
+    Case(
         name=name,
         statement=f"Tip of the beam of the paper's Table 2, {time}, against {elements} and {2 * elements} cable "
         "elements, extrapolated",
         source="Exudyn, run on the spot: cables that slide through a clamp",
         argument="a clamp that slides through elements is of first order in their length: the meshes differ by what "
         "the finer one is wrong, and half of it is allowed after extrapolation; the same step in both",
-        compute=compute,
+        compute=partial(_sliding_beam, duration, elements),
         engine=EXUDYN,
-        slow=slow,
+        slow=name.endswith("long"),
     )
-
-
-sliding_beam = _sliding("exudyn-sliding-beam", "the first 3 s", 36, partial(_sliding_beam, 3.0, 36))
-sliding_beam_long = _sliding("exudyn-sliding-beam-long", "10 s", 72, partial(_sliding_beam, 10.0, 72), slow=True)
-
+    for name, time, duration, elements in (
+        ("exudyn-sliding-beam", "the first 3 s", 3.0, 36),
+        ("exudyn-sliding-beam-long", "10 s", 10.0, 72),
+    )
+]
 
 MOTION = model.CombinedMotion(
     amplitudes={"surge": 0.02, "sway": -0.015, "heave": 0.03, "roll": 0.1, "pitch": -0.08, "yaw": 0.15},
@@ -101,14 +91,12 @@ MOTION = model.CombinedMotion(
 
 
 @case(
-    name="exudyn-rigid-robot",
-    statement="Drive forces and path of the preset paper-robot, rigid, moved and turned in all six directions in 0.4 s",
+    "Drive forces and path of the preset paper-robot, rigid, moved and turned in all six directions in 0.4 s",
     source="Exudyn, run on the spot: kinematic trees, spherical joints, prescribed strokes",
     argument="Exudyn's step of 0.25 ms: 0.04 N of 3,100 N, falling with its square; constraints to Newton's tolerance",
     engine=EXUDYN,
 )
-def exudyn_rigid_robot() -> list[Check]:
-    """The rigid robot in all six directions at once, against Exudyn."""
+def _exudyn_rigid_robot() -> list[Check]:
     study = model.preset("paper-robot")
     theirs = simulate_robot(study.robot, MOTION, Integration(duration=0.5, tolerance=1e-8), elements=0)
     ours = rigid.inverse_dynamics(study.robot, rigid.poses(study.robot, MOTION, theirs.time)).actuator_force
@@ -124,15 +112,14 @@ def exudyn_rigid_robot() -> list[Check]:
 _SOURCE = "Exudyn, run on the spot: pistons of 30 and 60 cable elements slide through two rings; extrapolated"
 
 
-def _robot(amplitude: float, travel: float, duration: float) -> list[Check]:
+def _robot(amplitude: float, travel: float, duration: float) -> Iterator[Check]:
     motion = model.AxisMotion(type="roll", amplitude=np.deg2rad(amplitude), duration=travel)
     pair = _curve_pairs("paper-robot", motion, duration)
     theirs, ours = pair("com_deviation")
-    return [
-        *checks(["sag at the start, y", "sag at the start, z"], theirs[0, 1:], ours[0, 1:], 1e-5, "m"),
-        *_curves([f"deviation, {axis}" for axis in "xyz"], theirs, ours, 2e-3, 1e-2, "m"),
-        *_forces_and_tips(pair),
-    ]
+    yield from checks(["sag at the start, y", "sag at the start, z"], theirs[0, 1:], ours[0, 1:], 1e-5, "m")
+    for i, axis in enumerate("xyz"):
+        yield from curves(f"deviation, {axis}", theirs[:, i], ours[:, i], 2e-3, 1e-2, "m")
+    yield from _forces_and_tips(pair)
 
 
 def _curve_pairs(
@@ -148,45 +135,31 @@ def _curve_pairs(
 
 
 def _forces_and_tips(pair: Callable[[str], tuple[Array, Array]]) -> Iterator[Check]:
-    for what, name, unit, of_peak in (
-        ("drive force", "actuator_force", "N", 5e-4),
-        ("deflection of a tip", "tip_deflection", "m", 1e-2),
-    ):
-        theirs, ours = (values.reshape(-1, 1) for values in pair(name))
-        yield from _curves([what], theirs, ours, of_peak, 4 * of_peak, unit)
+    yield from curves("drive force", *pair("actuator_force"), 5e-4, 2e-3, "N")
+    yield from curves("deflection of a tip", *pair("tip_deflection"), 1e-2, 4e-2, "m")
 
 
-def _curves(
-    names: list[str], theirs: Array, ours: Array, of_peak: float, of_curve: float, unit: str
-) -> Iterator[Check]:
-    """Checks of the largest value and of the largest difference of each column."""
-    for name, x, y in zip(names, theirs.T, ours.T, strict=True):
-        peak, worst = float(np.abs(x).max()), float(np.abs(x - y).max())
-        yield Check(f"{name}, largest", peak, float(np.abs(y).max()), of_peak, unit)
-        yield Check(f"{name}, largest difference", 0.0, worst, of_curve * peak, unit, absolute=True)
-
-
-def _flexible(name: str, path: str, compute: Callable[[], list[Check]], slow: bool = False) -> Case:
-    return Case(
+FLEXIBLE = [
+    Case(
         name=name,
         statement=f"Deviation, drive forces and deflections of the preset paper-robot, undamped, {path}",
         source=_SOURCE,
         argument="rings a distance d apart are softer than a clamp by about d/s, 0.8 % of the deflection of a tip at "
         "d = 5 mm, of first order, and let it vibrate more slowly; the deviation is stretch and hears of it by "
         "vibration only; the same step in both",
-        compute=compute,
+        compute=partial(_robot, *numbers),
         engine=EXUDYN,
-        slow=slow,
+        slow=name.endswith("paper"),
     )
-
-
-robot = _flexible("exudyn-robot", "roll of 10 deg in 0.4 s", partial(_robot, 10.0, 0.4, 0.4))
-robot_paper = _flexible("exudyn-robot-paper", "on its own path of 2 s", partial(_robot, 26.6, 1.0, 2.0), slow=True)
+    for name, path, numbers in (
+        ("exudyn-robot", "roll of 10 deg in 0.4 s", (10.0, 0.4, 0.4)),
+        ("exudyn-robot-paper", "on its own path of 2 s", (26.6, 1.0, 2.0)),
+    )
+]
 
 
 @case(
-    name="exudyn-tripod",
-    statement="Deviation, drive forces and deflections of the preset tripod (3-RPS), undamped, heave of 10 mm and "
+    "Deviation, drive forces and deflections of the preset tripod (3-RPS), undamped, heave of 10 mm and "
     "roll of 0.06 rad in 0.2 s: its pistons bend across their hinges, and the payload moves along at first order",
     source=_SOURCE,
     argument="rings a distance d apart are softer than a clamp by about d/s, of first order: 1 % of deflections on "
@@ -194,13 +167,10 @@ robot_paper = _flexible("exudyn-robot-paper", "on its own path of 2 s", partial(
     "both",
     engine=EXUDYN,
 )
-def exudyn_tripod() -> list[Check]:
-    """A flexible robot whose deviation is bending."""
+def _exudyn_tripod() -> Iterator[Check]:
     motion = model.CombinedMotion(amplitudes={"heave": 0.01, "roll": 0.06}, duration=0.2)
     pair = _curve_pairs("tripod", motion, 0.3)
     theirs, ours = pair("com_deviation")
-    return [
-        Check("sag at the start, z", theirs[0, 2], ours[0, 2], 1e-4, "m"),
-        *_curves(["deviation, y"], theirs[:, 1:2], ours[:, 1:2], 1e-2, 4e-2, "m"),
-        *_forces_and_tips(pair),
-    ]
+    yield Check("sag at the start, z", theirs[0, 2], ours[0, 2], 1e-4, "m")
+    yield from curves("deviation, y", theirs[:, 1], ours[:, 1], 1e-2, 4e-2, "m")
+    yield from _forces_and_tips(pair)

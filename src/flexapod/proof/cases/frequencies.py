@@ -36,7 +36,7 @@ LADDER = (ASSUMED, ("beam-fem", (4, 8)), ("finite-segment", (4, 8)))  # shapes a
 FEWEST = {"assumed-modes": 2, "beam-fem": 8, "finite-segment": 8}  # shapes that can follow the second bending mode
 
 
-def _bound(legs: list[dynamic_stiffness.Leg], frequency: Array, fidelity: str, shapes: int) -> Array:
+def _bound(legs: list[dynamic_stiffness.UniformLeg], frequency: Array, fidelity: str, shapes: int) -> Array:
     """What the shapes leave out of the frequencies, relative."""
     rest = missing_sines(legs, frequency, AXIAL) + ROUNDING
     if fidelity == "beam-fem":
@@ -47,8 +47,7 @@ def _bound(legs: list[dynamic_stiffness.Leg], frequency: Array, fidelity: str, s
 
 
 @case(
-    name="locked-robot",
-    statement="Frequencies of the 6-UPS robot about the undeformed pose, drives locked: with and without cylinders, "
+    "Frequencies of the 6-UPS robot about the undeformed pose, drives locked: with and without cylinders, "
     "with six different legs, up the ladder of shapes",
     source="exact dynamic stiffness of uniform pinned legs, transcendental in the frequency; roots counted after "
     "Wittrick & Williams 1971, none missed",
@@ -56,8 +55,7 @@ def _bound(legs: list[dynamic_stiffness.Leg], frequency: Array, fidelity: str, s
     "a fifth of it for the next term; straight segments (lambda / n)^2 / 24; sines of the bars beyond the second "
     "shape",
 )
-def locked_robot() -> list[Check]:
-    """Frequencies of the whole robot with its drives locked, against the exact dynamic stiffness of its legs."""
+def _locked_robot() -> list[Check]:
     layout = model.preset("paper-robot")
     robot, found = without_gravity(layout.robot), []
     for name, body, pose, ladder in (
@@ -91,9 +89,9 @@ def _lowest(make: Callable[[], Robot]) -> list[Check]:
     return checks([f"frequency {i + 1}" for i in range(COUNT)], exact, ours[:COUNT], bound, "Hz")
 
 
-def _case(name: str, robot: str, make: Callable[[], Robot]) -> Case:
-    return Case(
-        name=name,
+LOWEST = [
+    Case(
+        name=f"frequencies-{name}",
         statement=f"Lowest frequencies of {robot}, drives locked; six shapes a plane",
         source="exact dynamic stiffness, transcendental in the frequency, joints as axes about which ends turn; roots "
         "counted after Wittrick & Williams 1971, none missed",
@@ -101,19 +99,12 @@ def _case(name: str, robot: str, make: Callable[[], Robot]) -> Case:
         "shape and of shafts beyond the first; rounding where bars are 1e7 times as stiff as what bends",
         compute=partial(_lowest, make),
     )
-
-
-tripod_frequencies = _case("frequencies-tripod", "a tripod 3-RPS, hinged at the base", tripod)
-tricept_frequencies = _case(
-    "frequencies-tricept", "a Tricept 3-UPS+UP, its passive leg welded to the platform", tricept
-)
-eight_leg_frequencies = _case("frequencies-eight-legs", "an 8-UPS, two drives more than motions", eight_legs)
-planar_frequencies = _case("frequencies-planar", "a planar 3-PRR with slender rods", planar)
-welded_frequencies = _case(
-    "frequencies-welded", "a hexapod 6-UPF, legs welded to the platform", partial(hexapod, "UPF")
-)
-table_frequencies = _case(
-    "frequencies-table",
-    "a table on four upright legs welded at both ends",
-    partial(table, "FPF", mass=500.0, inertia=50.0),
-)
+    for name, robot, make in (
+        ("tripod", "a tripod 3-RPS, hinged at the base", tripod),
+        ("tricept", "a Tricept 3-UPS+UP, its passive leg welded to the platform", tricept),
+        ("eight-legs", "an 8-UPS, two drives more than motions", eight_legs),
+        ("planar", "a planar 3-PRR with slender rods", planar),
+        ("welded", "a hexapod 6-UPF, legs welded to the platform", partial(hexapod, "UPF")),
+        ("table", "a table on four upright legs welded at both ends", partial(table, "FPF", mass=500.0, inertia=50.0)),
+    )
+]

@@ -2,6 +2,8 @@
 
 from __future__ import annotations
 
+from collections.abc import Iterator
+
 import numpy as np
 
 from flexapod import model
@@ -44,24 +46,21 @@ def above_the_centre() -> Array:
 
 
 @case(
-    name="cubic-hexapod",
-    statement="Stiffness of a hexapod along edges of a cube, in units of that of a leg",
+    "Stiffness of a hexapod along edges of a cube, in units of that of a leg",
     source="Preumont et al. 2007: diag(2, 2, 2, L^2/2, L^2/2, 2 L^2), and its table 70 mm above the centre",
     argument="closed form on both sides: rounding",
 )
-def cubic_hexapod() -> list[Check]:
-    """Stiffness of the cubic hexapod."""
-    found: list[Check] = []
+def _cubic_hexapod() -> Iterator[Check]:
     for size in EDGES_MM:
         edge = np.sqrt(3) * size * 1e-3
         ours = stiffness(length_jacobian(*joints(edge), np.zeros(3), np.eye(3)), 1.0)
         names = [f"edge sqrt(3) {size} mm, {name}" for name in NAMES]
-        found += checks(names, np.diag(at_the_centre(edge)), np.diag(ours), 1e-13)
+        yield from checks(names, np.diag(at_the_centre(edge)), np.diag(ours), 1e-13)
         off = float(np.abs(ours - np.diag(np.diag(ours))).max())
-        found.append(Check(f"edge sqrt(3) {size} mm, coupling", 0, off, 1e-14, absolute=True))
+        yield Check(f"edge sqrt(3) {size} mm, coupling", 0, off, 1e-14, absolute=True)
     ours = stiffness(length_jacobian(*joints(np.sqrt(3) * 0.1), np.zeros(3), np.eye(3), [0, 0, ABOVE]), 1.0)
     names = [f"70 mm above the centre, row {i + 1}, column {j + 1}" for i, j, _ in COUPLED]
-    return found + checks(names, [v for *_, v in COUPLED], [ours[i, j] for i, j, _ in COUPLED], 1e-13)
+    yield from checks(names, [v for *_, v in COUPLED], [ours[i, j] for i, j, _ in COUPLED], 1e-13)
 
 
 BASE = np.array([
@@ -76,14 +75,12 @@ LENGTHS = np.array([1.0, 0.645275, 1.086284, 1.503439, 1.281933, 0.771071])
 
 
 @case(
-    name="dietmaier",
-    statement="All real postures of a platform that has as many as are possible",
+    "All real postures of a platform that has as many as are possible",
     source="Dietmaier 1998; recomputed by Newton's method from 480000 starts",
     argument="counts are exact; lengths to rounding times the condition of the worst posture; the determinant is "
     "printed with two digits, the posture with six",
 )
-def dietmaier() -> list[Check]:
-    """All postures of a platform with forty of them."""
+def _dietmaier() -> list[Check]:
     poses = all_postures(BASE, PLATFORM, LENGTHS).poses
     determinant = np.linalg.det(length_jacobian(BASE, PLATFORM, poses.position, poses.rotation))
     known = np.linalg.norm(poses.position - [0.955868, -0.046996, -0.290013], axis=1).min()
@@ -113,14 +110,12 @@ STRUTS = (0.15205, 0.07204, -0.04667, 0.13381, 0.02959, -0.07292)
 
 
 @case(
-    name="observatory-hexapod",
-    statement="Struts of the camera hexapod of the Rubin Observatory, moved by 0.12 m and turned about a distant pivot",
+    "Struts of the camera hexapod of the Rubin Observatory, moved by 0.12 m and turned about a distant pivot",
     source="github.com/lsst-ts/ts_mthexapod, simple_hexapod.py and its test: translation in m, successive angles about "
     "x, y, z in rad (R = Rx Ry Rz), changes of the struts",
     argument="half a unit of the last digit that is printed of a strut",
 )
-def observatory_hexapod() -> list[Check]:
-    """Inverse kinematics of a hexapod whose control software is public."""
+def _observatory_hexapod() -> list[Check]:
     mirror, moved = (np.column_stack([plane, np.full(6, z)]) for plane, z in ((MIRROR, -0.125), (MOVED, -0.555)))
     turns = np.diag(TURN)
     rotation = rotation_matrix(turns[0]) @ rotation_matrix(turns[1]) @ rotation_matrix(turns[2])
@@ -151,14 +146,12 @@ def base(half_angle: float) -> Array:
 
 
 @case(
-    name="singularities",
-    statement="Smallest singular value of the scaled Jacobian in known singularities",
+    "Smallest singular value of the scaled Jacobian in known singularities",
     source="Ma & Angeles 1991 (architecture), Fichter 1986 (yaw)",
     argument="a few units in the last place of the largest singular value, about 2; a simple zero is linear to 1e-3 "
     "within a degree",
 )
-def singularities() -> list[Check]:
-    """Poses and architectures in which the legs do not hold the platform."""
+def _singularities() -> list[Check]:
     random = np.random.default_rng(1991)
     position = random.uniform([-0.2, -0.2, 0.6], [0.2, 0.2, 1.1], (2000, 3))
     rotation = rotation_matrix(random.uniform(-0.5, 0.5, (2000, 3)))

@@ -33,13 +33,11 @@ def _released(**settings: float) -> Record:
 
 
 @case(
-    name="energy-loss",
-    statement="Free vibration of a beam, rho_inf = 0.9, 200 steps a period",
+    "Free vibration of a beam, rho_inf = 0.9, 200 steps a period",
     source="Chung & Hulbert 1993: damping ratio chi^3 (omega h)^3 / 2, chi = (1 - rho) / (1 + rho)",
     argument="leading term of the loss; the next ones are of relative size (omega h)^2 and the phase of the start",
 )
-def energy_loss() -> list[Check]:
-    """What the time integration loses by itself."""
+def _energy_loss() -> list[Check]:
     period = 2 * np.pi / ROOTS[0] ** 2
     chi, turn = (1 - 0.9) / (1 + 0.9), 2 * np.pi / A_PERIOD
     predicted = 1 - np.exp(-2 * np.pi * PERIODS * chi**3 * turn**3)
@@ -68,13 +66,11 @@ def roots(rho: float, turn: float) -> NDArray[np.complex128]:
 
 
 @case(
-    name="generalized-alpha",
-    statement="Spectral radius at omega h = 1, damping ratio and longer period at 0.05 of a marched mode of a beam",
+    "Spectral radius at omega h = 1, damping ratio and longer period at 0.05 of a marched mode of a beam",
     source="Chung & Hulbert 1993; leading errors chi^3 (omega h)^3 / 2 and (omega h)^2 (1/12 + 3 chi^2 / 8)",
     argument="six printed digits; the next terms are some (omega h)^2 of the leading ones",
 )
-def generalized_alpha() -> list[Check]:
-    """Spectral radius, numerical damping and period of the time integration, measured on a vibrating beam."""
+def _generalized_alpha() -> list[Check]:
     found = [
         Check(f"spectral radius, rho = {rho:g}", radius, float(np.abs(roots(rho, 1.0)).max()), 1e-6)
         for rho, radius in RADIUS
@@ -120,14 +116,12 @@ def residual(profile: str, s: float) -> float:
 
 
 @case(
-    name="residual-vibration",
-    statement="Residual amplitude over stroke of a one-mode beam on a hub that turns from rest to rest",
+    "Residual amplitude over stroke of a one-mode beam on a hub that turns from rest to rest",
     source="closed forms: 8 pi^2 |sin(s/2)| / (s |s^2 - 4 pi^2|), (120 / s^5) |(12 - s^2) sin(s/2) - 6 s cos(s/2)|",
     argument="the integrator shifts s by s (omega h)^2 / 12: 3e-8, 2e-7, 3e-6 at 5, 10, 25, where the slopes are "
     "below 0.2, 0.1, 0.01; the integral of the shape is printed with eight digits",
 )
-def residual_vibration() -> list[Check]:
-    """What vibrates after a rest-to-rest turn."""
+def _residual_vibration() -> list[Check]:
     rows = [*TABLE, *((profile, s, _closed(profile, s)) for profile, _, _ in TABLE for s in (5.0, 25.0))]
     return [
         Check(f"{profile}, omega T = {s:g}", value, residual(profile, s), 5e-8, absolute=True)
@@ -211,13 +205,10 @@ def _payload() -> list[Check]:
 
 
 @case(
-    name="conservation",
-    statement="Energy balance of the driven and damped robot; energy of a free beam; momentum and energy of a free "
-    "payload",
+    "Energy balance of the driven and damped robot; energy of a free beam; momentum and energy of a free payload",
     source="laws of conservation",
     argument="the balance closes to the order of the method, two, and to a share of 1e-4; the energy of a vibration "
     "wavers by (omega h)^2 / 12; legs of 1e-9 kg/m are 1e-11 of the payload",
 )
-def conservation() -> list[Check]:
-    """What motion without losses must keep, and the balance of motion with them."""
+def _conservation() -> list[Check]:
     return [*_balance(), *_beam(), *_payload()]

@@ -39,15 +39,12 @@ def _mirrored(points: list[tuple[float, float]]) -> Array:
 
 
 @case(
-    name="built-hexapod",
-    statement="Pose of a hexapod whose 42 parameters differ from its drawing by up to 7 mm, commanded to "
-    "(-25, -750, 800) mm",
+    "Pose of a hexapod whose 42 parameters differ from its drawing by up to 7 mm, commanded to (-25, -750, 800) mm",
     source="Nategh & Agheli's parameters, calibration.m and html/calibration.html of "
     "github.com/tabathaviso/hexapod-parallel-manipulator",
     argument="printed to 0.01 mm; its solver left angles at about a hundredth of a degree",
 )
-def built_hexapod() -> list[Check]:
-    """A hexapod as it is built."""
+def _built_hexapod() -> list[Check]:
     base, platform = 1e-3 * _mirrored(U), 1e-3 * _mirrored(S)
     geometry = Geometry(
         base_joints=1e-3 * np.array(REAL_U) - base,
@@ -64,13 +61,11 @@ def built_hexapod() -> list[Check]:
 
 
 @case(
-    name="warm-hexapod",
-    statement="Preset machine-hexapod warmed as a whole by 25 K, moved and turned: places grow, nothing turns",
+    "Preset machine-hexapod warmed as a whole by 25 K, moved and turned: places grow, nothing turns",
     source="a similarity, exactly: 12e-6 of the place for each kelvin; THK A-715: 5 K over 1 m are 0.06 mm",
     argument="forward kinematics by Newton's method: rounding of a metre",
 )
-def warm_hexapod() -> list[Check]:
-    """Uniform heat is a similarity."""
+def _warm_hexapod() -> list[Check]:
     hot = np.full(6, 45.0)
     warm = Heat(reference=20.0, base=45.0, platform=45.0, piston=hot, cylinder=hot, screw=hot)
     alpha = MATERIALS["steel"].expansion or 0.0
@@ -88,15 +83,13 @@ def warm_hexapod() -> list[Check]:
 
 
 @case(
-    name="noise-budget",
-    statement="Rms of a noise with the amplitude density 1e-9 / (1 + s / (2 pi 100)) from 1 to 1000 Hz, and of 2e-8; "
+    "Rms of a noise with the amplitude density 1e-9 / (1 + s / (2 pi 100)) from 1 to 1000 Hz, and of 2e-8; "
     "of a white force and a white floor on one mode",
     source="T. Dehaeze, noise budgeting of the nano-active stabilisation system (12.1 nm, 241.8 nrad); Crandall & "
     "Mark, Random Vibration in Mechanical Systems, sec. 2.2; Miles 1954",
     argument="half a unit of the printed digits; the spectrum in 400 places; what lies outside of its band, 1e-5",
 )
-def noise_budget() -> list[Check]:
-    """Random vibration of one mode."""
+def _noise_budget() -> list[Check]:
     f, found = np.geomspace(1.0, 1000.0, 400), []
     far = _one_mode(1e7, 0.5, 1.0)
     for size, printed, unit in ((1e-9, 12.1, "nm"), (2e-8, 241.8, "nrad")):
@@ -130,14 +123,12 @@ AXES = ("x", "y", "z")
 
 
 @case(
-    name="budget",
-    statement="Error budget of the preset machine-hexapod: its systematic total is where a simulation at rest starts, "
+    "Error budget of the preset machine-hexapod: its systematic total is where a simulation at rest starts, "
     "and a part made ideal takes its row out of it",
     source="a simulation of the same study; the total of the other study less this one's",
     argument="the same equilibrium: rounding of a metre; rows are of first order, what is of second is below 2 %",
 )
-def budget_of_the_machine() -> list[Check]:
-    """A budget beside a simulation, and with a part less."""
+def _budget() -> list[Check]:
     warm = machine().replace(heat=model.preset("machine-hexapod").robot.heat)
     still = model.AxisMotion(type="heave", amplitude=0.0, duration=1.0)
     whole = budget(warm)

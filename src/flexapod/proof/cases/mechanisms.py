@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+from collections.abc import Iterator
 from functools import partial
 
 import numpy as np
@@ -54,21 +55,17 @@ TABLE = {  # the counts above
 
 
 @case(
-    name="mobility-table",
-    statement="Joint freedoms, Gruebler's number, motions, redundant conditions, motions with locked drives and "
+    "Joint freedoms, Gruebler's number, motions, redundant conditions, motions with locked drives and "
     "self-stress of twelve mechanisms",
     source="textbooks (Merlet 2006, Tsai 1999); singular on similar hexagons: Merlet; six idle turns of legs between "
     "balls",
     argument="whole numbers",
 )
-def mobility_table() -> list[Check]:
-    """Mobility of mechanisms that people build."""
-    found: list[Check] = []
+def _mobility_table() -> Iterator[Check]:
     for name, (make, counts) in TABLE.items():
         ours = mobility(make())
         values = [float(ours[key]) for key in COUNTS]
-        found += checks([f"{name}, {key}" for key in COUNTS], counts, values, 0.5, absolute=True)
-    return found
+        yield from checks([f"{name}, {key}" for key in COUNTS], counts, values, 0.5, absolute=True)
 
 
 AT = 0.05  # s
@@ -112,18 +109,14 @@ def fast_path() -> Poses:
 
 
 @case(
-    name="orsino",
-    statement="Drive forces of the planar robots 3-PRR and 2-PRR+RPR on a fast path",
+    "Drive forces of the planar robots 3-PRR and 2-PRR+RPR on a fast path",
     source="Orsino, Hess-Coelho & Malvezzi 2021 (TMM2021-EXAMPLE.jl): printed numbers",
     argument="half a unit of the fifth decimal that is printed",
 )
-def orsino() -> list[Check]:
-    """Printed drive forces of rigid planar robots."""
-    found: list[Check] = []
+def _orsino() -> Iterator[Check]:
     for kind, printed in PRINTED.items():
         ours = rigid_forces(planar_robot(kind), fast_path(), np.zeros(6)).drive_force[0]
-        found += checks([f"{kind}, drive {i + 1}" for i in range(3)], printed, ours, 5.1e-6, "N", absolute=True)
-    return found
+        yield from checks([f"{kind}, drive {i + 1}" for i in range(3)], printed, ours, 5.1e-6, "N", absolute=True)
 
 
 WRENCH = np.array([30.0, -20, -100, 5, 4, 3])
@@ -141,13 +134,11 @@ def _on_the_rail(vector: Array) -> Array:
 
 
 @case(
-    name="carriage-places",
-    statement="Way of the carriages of a 6-PUS from home, displaced and turned about all axes",
+    "Way of the carriages of a 6-PUS from home, displaced and turned about all axes",
     source="closed form: a sphere about the platform joint meets the rail, z - sqrt(L^2 - x^2 - y^2)",
     argument="closed by Newton's method: rounding of a metre times the rail's slope to the rod",
 )
-def carriage_places() -> list[Check]:
-    """Carriages: where they stand, what accelerating them does, and cranks of great radius."""
+def _carriage_places() -> list[Check]:
     robot = sliders()
     path = _displaced(robot)
     tips = robot.platform_joints @ path.rotation[0].T + path.position[0], robot.home_tips
@@ -157,19 +148,16 @@ def carriage_places() -> list[Check]:
 
 
 @case(
-    name="accelerated-carriages",
-    statement="Drive and joint forces of a 6-PUS whose carriages all accelerate alike, against those at rest in a "
+    "Drive and joint forces of a 6-PUS whose carriages all accelerate alike, against those at rest in a "
     "changed gravity; largest difference over the largest force",
     source="equivalence of acceleration and gravity, g - a; the quintic's acceleration in closed form",
     argument="rounding times the condition of the closures, below 1e3, and that of rates and accelerations",
 )
-def accelerated_carriages() -> list[Check]:
-    """Carriages: where they stand, what accelerating them does, and cranks of great radius."""
+def _accelerated_carriages() -> Iterator[Check]:
     robot = sliders()
     motion = AxisMotion(type="heave", amplitude=0.05, duration=0.2, profile="quintic")
     path = poses(robot, motion, np.array([0.03, 0.08, 0.15]))
     moving = rigid_forces(robot, path, WRENCH)
-    found: list[Check] = []
     s = np.array([0.03, 0.08, 0.15]) / 0.2
     acceleration = 0.05 / 0.2**2 * 60 * s * (1 - s) * (1 - 2 * s)
     for i, a in enumerate(acceleration):
@@ -179,8 +167,7 @@ def accelerated_carriages() -> list[Check]:
             ours, exact = getattr(moving, kind)[i], getattr(still, kind)[0]
             gap = float(np.abs(ours - exact).max() / np.abs(exact).max())
             what = f"a = {a:.3g} m/s^2, {kind.replace('_', ' ')}"
-            found.append(Check(what, 0, gap, 1e-10, absolute=True))
-    return found
+            yield Check(what, 0, gap, 1e-10, absolute=True)
 
 
 def _cranks(radius: float, feet: Array) -> Robot:
@@ -193,15 +180,12 @@ def _cranks(radius: float, feet: Array) -> Robot:
 
 
 @case(
-    name="long-cranks",
-    statement="Torque over radius of cranks of 100 m to 10 km, against the force on sliders on the rails that their "
-    "ends follow",
+    "Torque over radius of cranks of 100 m to 10 km, against the force on sliders on the rails that their ends follow",
     source="a circle of great radius is a straight line",
     argument="way along the rail over radius, 1e-5 of 0.1 m and 10 km; extrapolated its square and the rounding of "
     "places at 10 km, 1e-12 m times forces by metres",
 )
-def long_cranks() -> list[Check]:
-    """Carriages: where they stand, what accelerating them does, and cranks of great radius."""
+def _long_cranks() -> list[Check]:
     robot = sliders(mass=0.0)  # that of a balanced crank has no weight
     path = _displaced(robot)
     exact = rigid_forces(robot, path, WRENCH).drive_force[0]
@@ -223,14 +207,11 @@ SOFT = ServoDrive(stiffness=1e6, damping=2e3)  # some 40 Hz with the platform
 
 
 @case(
-    name="tricept-guide",
-    statement="Force along the passive leg of a moving, loaded Tricept whose guide weighs nothing, over the largest "
-    "joint force",
+    "Force along the passive leg of a moving, loaded Tricept whose guide weighs nothing, over the largest joint force",
     source="it slides freely: nothing pushes along it",
     argument="rounding times the condition of the closures, some ten to a hundred",
 )
-def tricept_guide() -> list[Check]:
-    """A Tricept: what its passive leg bears, and the energy of its motion."""
+def _tricept_guide() -> list[Check]:
     robot = tricept()
     guide = robot.legs[3]
     bare = guide.replace(
@@ -251,13 +232,11 @@ def tricept_guide() -> list[Check]:
 
 
 @case(
-    name="tricept-energy",
-    statement="Energy balance of a flexible, damped Tricept on soft drives that rises by 30 mm in 0.1 s",
+    "Energy balance of a flexible, damped Tricept on soft drives that rises by 30 mm in 0.1 s",
     source="conservation of energy",
     argument="the order of the method, two, and (omega h)^2 / 12 at 40 to 100 Hz of what vibrates",
 )
-def tricept_energy() -> list[Check]:
-    """A Tricept: what its passive leg bears, and the energy of its motion."""
+def _tricept_energy() -> list[Check]:
     robot = tricept()
     legs = tuple(
         leg.replace(damping=0.01, axial_modes=0, **({} if leg.passive else {"drive": SOFT})) for leg in robot.legs

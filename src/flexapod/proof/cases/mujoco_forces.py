@@ -2,12 +2,14 @@
 
 from __future__ import annotations
 
+from collections.abc import Iterator
 from typing import Any
 
 import numpy as np
 
 from flexapod import model, rigid
 from flexapod.proof.case import Check, case, checks
+from flexapod.proof.engines import mujoco_forces
 from flexapod.proof.engines.engine import MUJOCO
 from flexapod.proof.robots import unlike_legs
 from flexapod.study.kinematics import inverse_dynamics
@@ -56,10 +58,8 @@ def robots() -> dict[str, model.Robot]:
 
 def _gaps(what: str, robot: model.Robot, motion: model.Motion, output_step: float) -> list[Check]:
     """Largest differences of drive and joint forces over the largest force."""
-    from flexapod.proof.engines.mujoco_forces import inverse_dynamics as by_mujoco
-
     ours = inverse_dynamics(robot, motion, load=WRENCH, output_step=output_step)
-    theirs = by_mujoco(robot, rigid.poses(robot, motion, ours.time.values), WRENCH)
+    theirs = mujoco_forces.inverse_dynamics(robot, rigid.poses(robot, motion, ours.time.values), WRENCH)
     gap = (
         float(np.abs(a.values - b).max() / np.abs(b).max())
         for a, b in ((ours.drive_force_rigid, theirs.actuator_force), (ours.joint_force_rigid, theirs.joint_force))
@@ -68,36 +68,27 @@ def _gaps(what: str, robot: model.Robot, motion: model.Motion, output_step: floa
 
 
 @case(
-    name="mujoco-forces",
-    statement="Drive and joint forces of the rigid robot that moves along and about every axis, loaded at its tool: "
+    "Drive and joint forces of the rigid robot that moves along and about every axis, loaded at its tool: "
     "largest difference over the largest force",
     source="MuJoCo, inverse dynamics of the open chains; the joint forces from the universal joints' and the "
     "payload's equations",
     argument="both are exact: rounding times the condition of the leg Jacobian (below 1e3), twice inverted",
     engine=MUJOCO,
 )
-def mujoco_forces() -> list[Check]:
-    """Largest differences of drive and joint forces, robot by robot and motion by motion."""
-    return [
-        check
-        for name, robot in robots().items()
-        for axis, motion in motions().items()
-        for check in _gaps(f"{name}, {axis}", robot, motion, DURATION / INSTANTS)
-    ]
+def _mujoco_forces() -> Iterator[Check]:
+    for name, robot in robots().items():
+        for axis, motion in motions().items():
+            yield from _gaps(f"{name}, {axis}", robot, motion, DURATION / INSTANTS)
 
 
 @case(
-    name="mujoco-mechanisms",
-    statement="Drive and joint forces of the presets tripod (3-RPS) and flight-simulator (6-UCU), rigid, moved and "
+    "Drive and joint forces of the presets tripod (3-RPS) and flight-simulator (6-UCU), rigid, moved and "
     "loaded at their tools: largest difference over the largest force",
     source="MuJoCo, inverse dynamics of the open chains; hinges, cylindrical and universal joints as it has them",
     argument="both are exact: rounding times the condition of the closures (below 1e3), twice inverted",
     engine=MUJOCO,
 )
-def mujoco_mechanisms() -> list[Check]:
-    """The same of robots of other kinds than six legs UPS."""
-    found: list[Check] = []
+def _mujoco_mechanisms() -> Iterator[Check]:
     for name, amplitudes in MECHANISMS.items():
         robot = model.preset(name).robot  # type: ignore[union-attr]
-        found += _gaps(name, robot, model.CombinedMotion(amplitudes=amplitudes, duration=0.4), 0.02)
-    return found
+        yield from _gaps(name, robot, model.CombinedMotion(amplitudes=amplitudes, duration=0.4), 0.02)

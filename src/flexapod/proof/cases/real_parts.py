@@ -7,6 +7,7 @@ from typing import Any
 import numpy as np
 
 from flexapod import model
+from flexapod.elements.friction import rubbing
 from flexapod.elements.springs import springs_along
 from flexapod.model import Robot, ScrewDrive
 from flexapod.model.drive import Feedback, ServoDrive
@@ -17,6 +18,8 @@ from flexapod.proof.case import Check, case, checks
 from flexapod.study.before.screws import buckling_thrust
 from flexapod.study.parts import parts
 from flexapod.study.static import modes
+from flexapod.symbolic.functions import Interpreted, NamedFunction
+from flexapod.symbolic.vocabulary import constant, substitute, symbol, zeros
 from flexapod.typing import Array
 
 UM = 1e6  # N/m of an N/um
@@ -36,15 +39,13 @@ def _screw(robot: Robot) -> ScrewDrive:
 
 
 @case(
-    name="screw-catalogue",
-    statement="Screws of a catalogue: stiffness of a shaft with the nut at two places, error of a load there; "
+    "Screws of a catalogue: stiffness of a shaft with the nut at two places, error of a load there; "
     "buckling, preloaded nut and bearing",
     source="THK General Catalogue, Ball Screw, A-694, A-696, A-707 to A-714 (BNF2512-2.5: root 21.9 mm, 2.06e5 N/mm^2, "
     "1500 N; 17.5 mm over 1100 mm); IBC Ball screw support bearings, p. 9: twice the preload, 1.26 times the stiffness",
     argument="half a unit of the printed digits; of the buckling load 1 %, as its formula has factors of two digits",
 )
-def screw_catalogue() -> list[Check]:
-    """Screws and bearings of catalogues."""
+def _screw_catalogue() -> list[Check]:
     steel = Material(name="given", E=2.06e11, density=7850.0)
     screw = _screw(machine()).replace(root_diameter=0.0219, mounting="fixed-supported", material=steel)
     leg = machine(drive=screw).legs[0]
@@ -70,14 +71,12 @@ PRINTED = (780.60, 780.60, 903.89, 1061.43, 1061.43, 1269.66)
 
 
 @case(
-    name="flexures-in-series",
-    statement="Preset nano-hexapod: struts of its flexures and actuators in series, frequencies with ideal joints",
+    "Preset nano-hexapod: struts of its flexures and actuators in series, frequencies with ideal joints",
     source="github.com/tdehaeze/stewart-simscape: flexures of 93.95 N/um and struts of 20 N/um, which are 14.03 N/um; "
     "frequencies that its model prints for struts of 20 N/um without gravity",
     argument="half a unit of the printed digits; its struts have the inertia of their sections, 3e-4 of a frequency",
 )
-def flexures_in_series() -> list[Check]:
-    """Flexures, actuators, and the robot that stands on them."""
+def _flexures_in_series() -> list[Check]:
     robot = model.preset("nano-hexapod").robot
     leg = robot.legs[0]
     plain = leg.replace(piston=leg.piston.replace(EA=1e12), drive=ServoDrive(stiffness=20 * UM, damping=20.0))
@@ -92,14 +91,12 @@ def flexures_in_series() -> list[Check]:
 
 
 @case(
-    name="screws-and-rotors",
-    statement="A mass on six screws in heave: rotors held, and free to turn back",
+    "A mass on six screws in heave: rotors held, and free to turn back",
     source="sqrt(k / M) / 2 pi and sqrt(k (1 / M + 1 / m)) / 2 pi, k of shaft, twist, nut, bearing and piston by hand, "
     "m of motor and screw by the lead",
     argument="legs without mass: rounding; the loop of the free ones is 1e-7 of k",
 )
-def screws_and_rotors() -> list[Check]:
-    """Locked and free rotors."""
+def _screws_and_rotors() -> list[Check]:
     ideal = {"base_joint": Joint(), "platform_joint": Joint(), "springs": (), "damping": 0.0}
     robot = machine(**ideal)
     screw, leg = _screw(robot), robot.legs[0]
@@ -128,19 +125,13 @@ def screws_and_rotors() -> list[Check]:
 
 
 @case(
-    name="stick-slip",
-    statement="A kilogram on a rough table, pulled through a spring at 0.1 m/s: place and bristle after 25 s of slips",
+    "A kilogram on a rough table, pulled through a spring at 0.1 m/s: place and bristle after 25 s of slips",
     source="Exudyn, Examples/lugreFrictionTest.py, with the parameters of Canudas de Wit, Olsson, Åström & Lischinsky, "
     "IEEE Trans. Automatic Control 40 (1995) 419, Table I",
     argument="SciPy's LSODA with a relative tolerance of 1e-12: 3e-10 m",
 )
-def stick_slip() -> list[Check]:
-    """Friction alone, its equation integrated beside that of a mass."""
-    from scipy.integrate import solve_ivp
-
-    from flexapod.elements.friction import rubbing
-    from flexapod.symbolic.functions import Interpreted, NamedFunction
-    from flexapod.symbolic.vocabulary import constant, substitute, symbol, zeros
+def _stick_slip() -> list[Check]:
+    from scipy.integrate import solve_ivp  # a tenth of a second, of which the other cases have no use
 
     table = constant(np.array([1.0, 0.0, 1e-5, 0.5, 1e3, 0.4, np.sqrt(1e5) / 1e5, 0.0]))
     v, z, h = symbol("v"), symbol("z"), symbol("h")

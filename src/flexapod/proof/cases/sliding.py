@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+from collections.abc import Iterator
 from functools import partial
 
 import numpy as np
@@ -46,13 +47,11 @@ def expected(t: Array) -> tuple[Array, Array]:
 
 
 @case(
-    name="sliding-forces",
-    statement="Torque and force of a rigid beam with a tip mass, turning by 1.2 rad and sliding by 0.8 m",
+    "Torque and force of a rigid beam with a tip mass, turning by 1.2 rad and sliding by 0.8 m",
     source="equations of motion of the sliding link without bending, written by hand",
     argument="both are closed forms of the same instant: rounding",
 )
-def sliding_forces() -> list[Check]:
-    """Torque and force that a stiff beam asks of hub and feed while it turns and slides."""
+def _sliding_forces() -> list[Check]:
     beam = model.Actuator(
         length=RIGID_LENGTH,
         free_length=RIGID_FREE,
@@ -78,13 +77,11 @@ LARGEST_MM = 13.9986
 
 
 @case(
-    name="sliding-beam",
-    statement="Tip of the beam of the paper's Table 2, out of the hub at 0.1 m/s, turning at 0.785 rad/s",
+    "Tip of the beam of the paper's Table 2, out of the hub at 0.1 m/s, turning at 0.785 rad/s",
     source="independent closed equation of motion with six shapes, converged to the printed digits",
     argument="three shapes are within 4e-3 mm of six",
 )
-def sliding_beam() -> list[Check]:
-    """The paper's beam that slides out of a turning hub."""
+def _sliding_beam() -> list[Check]:
     study = model.override(model.preset("paper-actuator"), modes=3, step=1e-4, output_step=0.01)
     first = 2.5e-3 * np.eye(3)[0]  # phi_1(1) = 2; the table starts from the first mode with sqrt(rhoA L) a at rest
     march = prepare_actuator(study, first, -FEED / (2 * study.actuator.free_length) * first)
@@ -125,8 +122,7 @@ def _tip(study: model.ActuatorStudy, **settings: object) -> Array:
 
 
 @case(
-    name="beam-fem",
-    statement="Tip of the beam of the paper's Table 2 over 10 s, every 5 ms: twelve cubic elements on the free length "
+    "Tip of the beam of the paper's Table 2 over 10 s, every 5 ms: twelve cubic elements on the free length "
     "against eight clamped-free shapes",
     source="assumed modes of this software, themselves checked in sliding-beam; the size of the difference by the "
     "order of the elements: mode i of n runs ahead by (lambda / n)^4 / 1440 of its angle",
@@ -134,8 +130,7 @@ def _tip(study: model.ActuatorStudy, **settings: object) -> Array:
     "4; largest values: no more than all modes ahead would give if they met at one instant, 0.14 % of the peak; the "
     "same steps in both",
 )
-def beam_fem() -> list[Check]:
-    """The paper's sliding beam by elements on its free length and by assumed modes."""
+def _beam_fem() -> list[Check]:
     study = model.preset("paper-actuator")
     elements = _tip(study, fidelity="beam-fem", modes=2 * ELEMENTS)
     modes = _tip(study, fidelity="assumed-modes", basis="clamped-free", modes=SHAPES)
@@ -174,21 +169,18 @@ def _lag(study: model.ActuatorStudy, shift: float) -> float:
 
 
 @case(
-    name="sliding-mesh",
-    statement="Error of a beam mesh that is fixed to the material and slides through a guide, Table 2 beam, 1.83 s",
+    "Error of a beam mesh that is fixed to the material and slides through a guide, Table 2 beam, 1.83 s",
     source="theory: the clamp is off by a share of an element's length, so order one and 2 int omega shift / L dt",
     argument="in contact the free length grows by jumps of an element at any phase of the vibration: each changes the "
     "amplitude by 3/2 h / L, which does not average out over four periods, a tenth of the lag of 14 h / L, in every "
     "mesh anew: log2(1.1 / 0.9) / 2 = 0.15 of the order. Sizes: that tenth, a twentieth for the sag that does not "
     "lag, a twentieth for the last of five elements: 0.2",
 )
-def sliding_mesh() -> list[Check]:
-    """A mesh fixed to the paper's sliding beam: first order in the length of its elements, whatever the guide."""
+def _sliding_mesh() -> Iterator[Check]:
     study = model.preset("paper-actuator")
     exact = simulate_actuator(
         study, basis="clamped-free", modes=6, step=1e-4, duration=MESH_DURATION, output_step=OUTPUT_STEP
     ).tip_deflection.values
-    rows: list[Check] = []
     for name, (guide, shift) in GUIDES.items():
         errors = []
         for n in MESHES:
@@ -196,10 +188,9 @@ def sliding_mesh() -> list[Check]:
             errors.append(float(np.sqrt(((run.tip - exact) ** 2).mean() / (exact**2).mean())))
         first, last = MESHES[0], MESHES[-1]
         order = float(np.log(errors[0] / errors[-1]) / np.log(last / first))
-        rows.append(Check(f"{name}, order from {first} to {last} elements", 1.0, order, OF_ORDER))
+        yield Check(f"{name}, order from {first} to {last} elements", 1.0, order, OF_ORDER)
         lags = [_lag(study, shift * study.actuator.length / n) for n in MESHES]
-        rows += checks([f"{name}, error with {n} elements" for n in MESHES], lags, errors, OF_SIZE)
-    return rows
+        yield from checks([f"{name}, error with {n} elements" for n in MESHES], lags, errors, OF_SIZE)
 
 
 SIZE, SOLID_OUTPUT_STEP, WINDOWS = 0.025, 0.01, 3
@@ -207,7 +198,7 @@ PERIODS = 1.45  # s: three of them
 EARLY, GROWTH = 7e-6, 2.5e-6  # m in three periods, m/s after them
 
 
-def _solid_beam(duration: float) -> list[Check]:
+def _solid_beam(duration: float) -> Iterator[Check]:
     study = model.preset("paper-actuator")
     beam = simulate_actuator(study, modes=8, step=1e-4, output_step=SOLID_OUTPUT_STEP, duration=duration)
     solid, plate = (
@@ -218,7 +209,7 @@ def _solid_beam(duration: float) -> list[Check]:
     gap = np.abs(solid.tip_deflection.values - modes)
     spans, bounds = ("three periods", f"{duration:g} s"), (EARLY, EARLY + GROWTH * (duration - PERIODS))
     names, gaps = [f"nu = 0, largest difference in {span}" for span in spans], (gap[t < PERIODS].max(), gap.max())
-    rows = checks(names, [0, 0], gaps, bounds, "m", absolute=True)
+    yield from checks(names, [0, 0], gaps, bounds, "m", absolute=True)
     slow = local_vibration(t, modes, solid.frequency.values, WINDOWS)
     fast = local_vibration(t, plate.tip_deflection.values, plate.frequency.values, WINDOWS)
     locked = plate.frequency.values / solid.frequency.values
@@ -229,14 +220,14 @@ def _solid_beam(duration: float) -> list[Check]:
         ("envelope", fast.envelope, slow.envelope, 2.5e-3, "m"),
         ("Coriolis sag", fast.sag, slow.sag * np.interp(fast.time, t, hanging), 3e-3, "m"),
     ):
-        rows += checks([words.format(name) for words in at], reference, ours, tolerance, unit)
+        yield from checks([words.format(name) for words in at], reference, ours, tolerance, unit)
     # Between a section that may curl, 0, and a plate whose mouth is held at every point, 0.6 %
     rise = [float(of(locked)) - 1 for of in (np.min, np.max)]
-    return rows + checks(["nu = 0.3, least rise", "nu = 0.3, largest rise"], [3e-3] * 2, rise, 3e-3, absolute=True)
+    yield from checks(["nu = 0.3, least rise", "nu = 0.3, largest rise"], [3e-3] * 2, rise, 3e-3, absolute=True)
 
 
-def _solid_case(name: str, time: str, duration: float, slow: bool = False) -> Case:
-    return Case(
+SOLID = [
+    Case(
         name=name,
         statement=f"Tip of the beam of the paper's Table 2, {time}: quadratic solid elements of 25 mm, reduced, "
         "against eight assumed modes; point by point at Poisson's ratio 0, by frequency, envelope and Coriolis sag at "
@@ -248,9 +239,7 @@ def _solid_case(name: str, time: str, duration: float, slow: bool = False) -> Ca
         "envelope share the 5 mm of the start, and the stiffer mouth takes 6 um from the sag; a plate held at every "
         "point of its mouth is stiffer by 0.6 %, the guide's averages leave it between that and nothing",
         compute=partial(_solid_beam, duration),
-        slow=slow,
+        slow=name.endswith("long"),
     )
-
-
-solid_beam = _solid_case("solid-beam", "the first 4 s", 4.0)
-solid_beam_long = _solid_case("solid-beam-long", "10 s", 10.0, slow=True)
+    for name, time, duration in (("solid-beam", "the first 4 s", 4.0), ("solid-beam-long", "10 s", 10.0))
+]

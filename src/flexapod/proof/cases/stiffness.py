@@ -2,7 +2,7 @@
 
 from __future__ import annotations
 
-from collections.abc import Callable
+from collections.abc import Callable, Iterator
 from functools import partial
 
 import numpy as np
@@ -27,14 +27,12 @@ MOTIONS = ("along x", "along y", "along z", "about x", "about y", "about z")
 
 
 @case(
-    name="tripod-stiffness",
-    statement="Stiffness of a 3-RPS at home: sideways and about the vertical only its pistons' bending holds it",
+    "Stiffness of a 3-RPS at home: sideways and about the vertical only its pistons' bending holds it",
     source="bars along the legs, EA / L, and cantilevers across the hinges' planes, 3 EI / s^3, summed by hand",
     argument="the shapes contain the static answers: rounding, 1e-16 times the ratio of bars to cantilevers, 1e4, and "
     "the condition of the eliminated joints",
 )
-def tripod_stiffness() -> list[Check]:
-    """A 3-RPS: stiffness in closed form."""
+def _tripod_stiffness() -> list[Check]:
     load = Payload(mass=50.0, inertia=[2.0, 2.0, 3.0], com=[0.0, 0.0, 0.0])
     ours = stiffness(tripod().replace(gravity=[0, 0, 0], payload=load), modes=6, axial_modes=2).stiffness.values
     span = np.hypot(BASE - RADIUS, HEIGHT)
@@ -47,24 +45,20 @@ def tripod_stiffness() -> list[Check]:
 
 
 @case(
-    name="tripod-parasitic-motion",
-    statement="Surge, sway and torsion that follow where heave, roll and pitch of a 3-RPS are commanded, turns to 0.25",
+    "Surge, sway and torsion that follow where heave, roll and pitch of a 3-RPS are commanded, turns to 0.25",
     source="closed form: three balls in the hinges' planes, x = h/2 (R11 - R22), y = -h R21, R12 = R21 (no torsion)",
     argument="closed by Newton's method: rounding of a metre, times the condition of the closures, below 1e3",
 )
-def tripod_parasitic() -> list[Check]:
-    """The motions that a 3-RPS' own motions bring along."""
+def _tripod_parasitic_motion() -> Iterator[Check]:
     amplitudes = {"heave": 0.03, "roll": 0.25, "pitch": -0.2}
     motion = CombinedMotion(amplitudes=amplitudes, duration=1.0)  # type: ignore[arg-type]
     path = poses(tripod(), motion, np.array([0.3, 0.5, 1.0]))
-    found: list[Check] = []
     for i, R in enumerate(path.rotation):
         place = [RADIUS / 2 * (R[0, 0] - R[1, 1]), -RADIUS * R[1, 0], 0.0]
         torsion = Rotation.from_matrix(R).as_quat(canonical=True)[2]
         ours = [*path.position[i, :2], torsion]
         names = [f"instant {i + 1}, {name}" for name in ("surge", "sway", "torsion / 2")]
-        found += checks(names, place, ours, 1e-12, "m, 1", absolute=True)
-    return found
+        yield from checks(names, place, ours, 1e-12, "m, 1", absolute=True)
 
 
 EI, RHOA, SPAN = 5e3, 4.5, 0.8  # of `table`
@@ -123,16 +117,13 @@ def _bound(wave: float, thrust: float, left: float) -> float:
 
 
 @case(
-    name="table-sway",
-    statement="Sideways stiffness of a table that does not tilt, four upright legs welded to it, under load: 48 EI / "
+    "Sideways stiffness of a table that does not tilt, four upright legs welded to it, under load: 48 EI / "
     "L^3 or 12 EI / L^3 at none, nothing where the legs buckle",
     source="beam-column in closed form, P / L / (tan x / x - 1) a leg, x = L sqrt(P / EI), welded at the base half of "
     "that",
     argument="as for thrust-on-legs, where a fiftieth of the stiffness is left",
 )
-def table_sway() -> list[Check]:
-    """Legs under thrust, to near their buckling: the sideways stiffness of a table."""
-    found: list[Check] = []
+def _table_sway() -> Iterator[Check]:
     for ends, chain, base in (("welded", "FPF", 2), ("hinged", "UPF", 1)):
         robot = table(chain, mass=1.0, inertia=1.0, EA=STIFF).replace(gravity=[0, 0, 0])
         for share in (0.01, 0.5, 0.99):
@@ -142,21 +133,17 @@ def table_sway() -> list[Check]:
             load = [0, 0, -4 * thrust, 0, 0, 0]
             ours = stiffness(robot, load=load, modes=6, axial_modes=2).stiffness.values[0, 0]
             what, bound = f"{ends} at the base, {share:g} of the wave", 2 * _bound(base * x, thrust, 1 - share**2)
-            found.append(Check(what, reference, float(ours), bound, "N/m"))
-    return found
+            yield Check(what, reference, float(ours), bound, "N/m")
 
 
 @case(
-    name="thrust-on-legs",
-    statement="First frequency of a leg between a fixed base and an immovable platform, free to turn or welded there, "
+    "First frequency of a leg between a fixed base and an immovable platform, free to turn or welded there, "
     "to 0.99 of its buckling load, pi^2, 20.19 and 4 pi^2 EI / L^2",
     source="characteristic equations of a beam under thrust in closed form; Timoshenko & Gere, sec. 2.1",
     argument="what six polynomials lack of a sine, twice for ends that are fixed, and the squeezing of the leg, P / "
     "EA; a hundred times that where a hundredth of the stiffness is left",
 )
-def thrust_on_legs() -> list[Check]:
-    """Legs under thrust, to near their buckling: frequencies."""
-    found: list[Check] = []
+def _thrust_on_legs() -> Iterator[Check]:
     for ends, (chain, buckling, root) in ENDS.items():
         robot = _spread(chain)
         rise = (robot.home_vectors / robot.home_lengths[:, None])[0, 2]
@@ -168,12 +155,7 @@ def thrust_on_legs() -> list[Check]:
             square = (2 * np.pi * exact) ** 2 * RHOA * SPAN**4 / EI
             wave = np.sqrt(thrust / 2 + np.sqrt(thrust**2 / 4 + square))
             what, bound = f"{ends}, {share:g} of the buckling load", _bound(wave, thrust * EI / SPAN**2, 1 - share)
-            found.append(Check(what, exact, float(ours[0]), bound, "Hz"))
-    return found
-
-
-WELD = (Joint(), np.zeros((6, 6)))
-SPRINGS = (Joint(bending=150.0, torsion=200.0), np.diag([0, 0, 0, 1 / 150, 1 / 150, 1 / 200]))
+            yield Check(what, exact, float(ours[0]), bound, "Hz")
 
 
 def _lever(arm: Array) -> Array:
@@ -202,28 +184,34 @@ def _exact(robot: Robot, end: Array) -> Array:
     return total
 
 
-def _welded(joint: Joint, end: Array) -> list[Check]:
+def _welded(joint: Joint, end: Array) -> Iterator[Check]:
     robot = without_gravity(hexapod("FPF", joint=joint))
     ours, exact = stiffness(robot, modes=2, axial_modes=1).stiffness.values, _exact(robot, end)
     scale = np.sqrt(np.diag(exact))
     gap = np.abs(ours - exact) / np.outer(scale, scale)
-    found = checks(MOTIONS, np.diag(exact), np.diag(ours), 1e-8, "N/m, N m")
-    return [*found, Check("all 36", 0, float(gap.max()), 1e-8, absolute=True)]
+    yield from checks(MOTIONS, np.diag(exact), np.diag(ours), 1e-8, "N/m, N m")
+    yield Check("all 36", 0, float(gap.max()), 1e-8, absolute=True)
 
 
-def _welded_case(name: str, kind: str, joint: Joint, end: Array) -> Case:
-    return Case(
-        name=name,
+WELDED = [
+    Case(
+        name=f"{name}-hexapod",
         statement=f"Stiffness of a hexapod at its tool, legs {kind}",
         source="in each leg compliances in series, s^3 / 3 EI, s^2 / 2 EI, s / EI, L / EA, L / GJ and those of its "
         "joints a lever away; over the legs stiffnesses in sum",
         argument="the shapes contain the static answers: rounding times the ratio of bars to springs, 1e6",
         compute=partial(_welded, joint, end),
     )
-
-
-WELDED_HEXAPOD = _welded_case("welded-hexapod", "welded at both ends", *WELD)
-FLEXURE_HEXAPOD = _welded_case("flexure-hexapod", "on flexures at both ends", *SPRINGS)
+    for name, kind, joint, end in (
+        ("welded", "welded at both ends", Joint(), np.zeros((6, 6))),
+        (
+            "flexure",
+            "on flexures at both ends",
+            Joint(bending=150.0, torsion=200.0),
+            np.diag([0, 0, 0, 1 / 150, 1 / 150, 1 / 200]),
+        ),
+    )
+]
 
 
 MISFIT, LEG = 1e-4, 2  # m, of leg 3
@@ -250,13 +238,11 @@ def least_energy(robot: Robot, position: Array, R: Array, lengths: Array) -> Arr
 
 
 @case(
-    name="eight-legs-misfit",
-    statement="Thrusts of an 8-UPS far from home, turned by 0.27, whose third leg is 0.1 mm too long",
+    "Thrusts of an 8-UPS far from home, turned by 0.27, whose third leg is 0.1 mm too long",
     source="least energy of eight bars between the joints, by Newton's method, without shapes or multipliers",
     argument="1e-6 of the largest thrust: kilonewtons from 1e-5 m of stretch, in lengths known to 1e-15 m",
 )
-def eight_legs_misfit() -> list[Check]:
-    """Eight legs of which one is too long."""
+def _eight_legs_misfit() -> list[Check]:
     robot = without_gravity(eight_legs())
     robot = robot.replace(legs=tuple(leg.replace(axial_modes=2) for leg in robot.legs))
     position, R = robot.home_position + SHIFT, Rotation.from_rotvec(TURN).as_matrix()

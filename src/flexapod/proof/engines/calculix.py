@@ -25,7 +25,7 @@ _BLOCK = re.compile(r"^ displacements \(vx,vy,vz\) for set (\S+) and time +(\S+)
 
 
 @dataclass(frozen=True, kw_only=True)
-class Run:
+class CalculixRun:
     """What a run left: `printed`, its table of results (``.dat``), and `output`, what it said on the way."""
 
     printed: str
@@ -79,7 +79,7 @@ class Run:
         return np.array(times), np.array(rows)
 
 
-def run(deck: str, *, time_limit: float = TIME_LIMIT) -> Run:
+def run(deck: str, *, time_limit: float = TIME_LIMIT) -> CalculixRun:
     """Run CalculiX on the text of a deck, on one core.
 
     Parameters
@@ -113,7 +113,7 @@ def run(deck: str, *, time_limit: float = TIME_LIMIT) -> Run:
         )
     if code > 0 or "*ERROR" in output:
         raise ComputationError(f"CalculiX stopped with an error (exit code {code}). {_said(output)}")
-    return Run(printed=printed, output=output)
+    return CalculixRun(printed=printed, output=output)
 
 
 def _said(output: str) -> str:

@@ -22,5 +22,5 @@ class Engine:
 
 
 CALCULIX = Engine(name="CalculiX", program="ccx", install="apt-get install calculix-ccx")
-EXUDYN = Engine(name="Exudyn", module="exudyn", install="pip install exudyn")
-MUJOCO = Engine(name="MuJoCo", module="mujoco", install="pip install mujoco")
+EXUDYN = Engine(name="Exudyn", module="exudyn", install='pip install "flexapod[verify]"')
+MUJOCO = Engine(name="MuJoCo", module="mujoco", install='pip install "flexapod[verify]"')

@@ -1,4 +1,4 @@
-"""Friction in Exudyn's terms: user functions of connectors, bristles that are integrated beside it. Imports Exudyn.
+"""LuGre's friction beside Exudyn, which asks it as a user function of a connector.
 
 The bristles of a step follow the mean of the rates at its ends, exactly for a rate that is constant; rates at its end
 are Newton's, so that the friction of a step is part of what it solves for.
@@ -6,15 +6,9 @@ are Newton's, so that the friction of a step is part of what it solves for.
 
 from __future__ import annotations
 
-from collections.abc import Callable
-
 import numpy as np
 
-from flexapod.model import Leg
-from flexapod.proof.engines.exudyn_system import System, exu, items
 from flexapod.typing import Array
-
-__all__ = ["Bristles", "rub_ball", "rub_coordinate"]
 
 Numbers = tuple[float, ...]
 
@@ -53,54 +47,3 @@ class Bristles:
 
     def _limit(self, speed: float) -> float:
         return self.presliding * (1 + self.excess * float(np.exp(-((speed * self.slower) ** 2))))
-
-
-def rub_coordinate(system: System, marker: int, numbers: Numbers, load: Callable[[], float] = lambda: 0.0) -> None:
-    """Friction against the rate of a marker's coordinate; `load` [N] that presses."""
-    bristles = Bristles(numbers, system.step)
-
-    def force(_mbs: object, _t: float, _number: int, _u: float, v: float, *_given: float) -> float:
-        return float(bristles.force(np.array([v]), load())[0])
-
-    number = system.mbs.AddObject(
-        items.ObjectConnectorCoordinateSpringDamper(
-            markerNumbers=[system.ground, marker], springForceUserFunction=force
-        )
-    )
-    speed = exu.OutputVariableType.Velocity
-    system.before_step.append(lambda: bristles.keep(np.atleast_1d(system.mbs.GetObjectOutput(number, speed))))
-
-
-def rub_ball(system: System, markers: list[int], numbers: Numbers, load: Callable[[], float]) -> None:
-    """Friction against the turning of two bodies in a ball, at their markers, in the axes of the first."""
-    bristles = Bristles(numbers, system.step, 3)
-
-    def moment(_mbs: object, _t: float, _number: int, _u: Array, _turn: Array, _v: Array, w: Array, *_given: Array):  # type: ignore[no-untyped-def]
-        return [0.0, 0.0, 0.0, *bristles.force(np.array(w), load()).tolist()]
-
-    number = system.mbs.AddObject(
-        items.ObjectConnectorRigidBodySpringDamper(markerNumbers=markers, springForceTorqueUserFunction=moment)
-    )
-    speed = exu.OutputVariableType.AngularVelocityLocal
-    system.before_step.append(lambda: bristles.keep(np.array(system.mbs.GetObjectOutput(number, speed))))
-
-
-def pressing(system: System, connector: int | None) -> Callable[[], float]:
-    """The force of a platform joint as the last step left it [N]; of a rigid one none is told."""
-    if connector is None:
-        return lambda: 0.0
-    now = [0.0]
-    force = exu.OutputVariableType.ForceLocal
-    system.before_step.append(
-        lambda: now.__setitem__(0, float(np.linalg.norm(system.mbs.GetObjectOutput(connector, force))))
-    )
-    return lambda: now[0]
-
-
-def rub(system: System, leg: Leg, turns: list[int], ends: list[int], pressed: Callable[[], float]) -> None:
-    """Friction of a leg's joints: of the markers of its base joint's angles, of those of tip and platform joint."""
-    if leg.base_joint.friction is not None:
-        for marker in turns:
-            rub_coordinate(system, marker, leg.base_joint.friction.numbers, pressed)
-    if leg.platform_joint.friction is not None:
-        rub_ball(system, ends, leg.platform_joint.friction.numbers, pressed)

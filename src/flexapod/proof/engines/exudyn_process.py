@@ -2,14 +2,14 @@
 
 from __future__ import annotations
 
-import importlib
 import os
 import pickle
 import re
 import signal
 import sys
+from collections.abc import Callable
 from pathlib import Path
-from typing import Any
+from typing import TypeVar
 
 from flexapod.errors import ComputationError, FlexapodError
 from flexapod.files import scratch
@@ -19,17 +19,20 @@ from flexapod.proof.engines.engine import EXUDYN
 TIME_LIMIT = 300.0
 """Seconds after which Exudyn is stopped."""
 
+Problem = TypeVar("Problem")
+Answer = TypeVar("Answer")
+
 _TELLING = re.compile(r"fail|singular|error", re.IGNORECASE)
 _LAST = 3  # telling lines of its output in a message
 
 
-def ask(solver: str, problem: object, *, time_limit: float = TIME_LIMIT) -> Any:
-    """What ``solve(problem)`` of the module `solver` returns, computed in a process of its own.
+def ask(solve: Callable[[Problem], Answer], problem: Problem, *, time_limit: float = TIME_LIMIT) -> Answer:
+    """What ``solve(problem)`` returns, computed in a process of its own.
 
     Parameters
     ----------
-    solver : str
-        Full name of a module that imports Exudyn and has a function `solve`.
+    solve : callable
+        A function of a module; it may import Exudyn.
     problem : object
         Its argument; argument and result must be picklable.
     time_limit : float
@@ -46,7 +49,7 @@ def ask(solver: str, problem: object, *, time_limit: float = TIME_LIMIT) -> Any:
         raise ComputationError("Exudyn is not installed", next_step=f"Install it: {EXUDYN.install}")
     with scratch() as folder:
         given, found = folder / "problem", folder / "result"
-        given.write_bytes(pickle.dumps((solver, problem)))
+        given.write_bytes(pickle.dumps((solve, problem)))
         # -P: no file of the folder that the user works in takes the place of a module.
         command = [sys.executable, "-P", "-m", "flexapod.proof.engines.exudyn_process", str(given), str(found)]
         modules = {"PYTHONPATH": os.pathsep.join(map(os.path.abspath, _paths()))}
@@ -71,10 +74,9 @@ def ask(solver: str, problem: object, *, time_limit: float = TIME_LIMIT) -> Any:
 
 def main(given: str, found: str) -> None:
     """Solve the problem in the file `given`; leave result and error, one of them None, in the file `found`."""
-    solver, problem = pickle.loads(Path(given).read_bytes())
-    module = importlib.import_module(solver)
+    solve, problem = pickle.loads(Path(given).read_bytes())
     try:
-        outcome = module.solve(problem), None
+        outcome = solve(problem), None
     except FlexapodError as error:
         outcome = None, error
     except Exception as error:  # Exudyn's errors have no common base

@@ -2,7 +2,9 @@
 
 from __future__ import annotations
 
+from collections.abc import Iterator
 from dataclasses import dataclass
+from typing import Any
 
 import numpy as np
 
@@ -10,8 +12,11 @@ from flexapod import rigid
 from flexapod.elements.springs import springs_along
 from flexapod.errors import InputError
 from flexapod.model import Joint, Leg, Motion, Robot
+from flexapod.proof.engines.exudyn_builder import Builder
 from flexapod.proof.engines.exudyn_integration import Integration
+from flexapod.proof.engines.exudyn_legs import SoftEnd, add_leg, turns
 from flexapod.proof.engines.exudyn_process import TIME_LIMIT, ask
+from flexapod.rigid.rotations import quaternion
 from flexapod.typing import Array
 
 #: s; longer ones ring more where the jerk jumps, shorter ones carry Newton's tolerance into the forces.
@@ -46,38 +51,18 @@ class RobotProblem:
             raise InputError("leaves the piston free to turn", key="guide", value=self.guide, allowed="above 0 m")
         for key in ("geometry", "heat"):
             if getattr(self.robot, key) is not None:
-                raise InputError("is not modelled in Exudyn", key=key, allowed="the robot as it is drawn")
+                raise _refused(key, "the robot as it is drawn")
         for number, leg in enumerate(self.robot.legs, start=1):
             if leg.chain not in CHAINS or leg.passive:
-                raise InputError(
-                    "is not modelled in Exudyn", key=f"leg {number}: chain", value=leg.chain, allowed=", ".join(CHAINS)
-                )
-            _check_parts(number, leg)
-            for key, there in (("sections", leg.piston.sections), ("shear", leg.piston.shear)):
-                if self.elements and there:
-                    raise InputError(
-                        "is not modelled in Exudyn",
-                        key=f"leg {number}: piston.{key}",
-                        next_step="Compare uniform, slender pistons, or take rigid ones (elements=0)",
-                    )
-            if self.elements and not leg.piston.rhoA:
-                raise InputError(
-                    "makes cables without mass, which Exudyn cannot move",
-                    key=f"leg {number}: piston.rhoA",
-                    value=0,
-                    next_step="Give a small rhoA, or take rigid pistons (elements=0)",
-                )
-            if leg.damping and self.elements:
-                raise InputError(
-                    "is not modelled in Exudyn",
-                    key=f"leg {number}: damping",
-                    value=leg.damping,
-                    allowed="0",
-                    next_step="Compare without damping",
-                )
+                raise _refused(f"leg {number}: chain", ", ".join(CHAINS), value=leg.chain)
+            for key, there, allowed in _lacking(leg):
+                if there:
+                    raise _refused(f"leg {number}: {key}", allowed)
+            if self.elements:
+                _check_cables(number, leg)
         for name in ("base_mount", "platform_mount", "base_motion"):
             if getattr(self.robot, name) is not None:
-                raise InputError("is not modelled in Exudyn", key=f"robot.{name}", allowed="rigid frames at rest")
+                raise _refused(f"robot.{name}", "rigid frames at rest")
         self._check_path()
 
     def _check_path(self) -> None:
@@ -101,38 +86,55 @@ class RobotProblem:
                 )
 
 
-def _check_parts(number: int, leg: Leg) -> None:
-    """Raise InputError for what the model of a leg's joints, springs and drive does not have."""
+def _refused(key: str, allowed: str, **more: Any) -> InputError:
+    return InputError("is not modelled in Exudyn", key=key, allowed=allowed, **more)
 
-    def refused(key: str, allowed: str) -> InputError:
-        return InputError("is not modelled in Exudyn", key=f"leg {number}: {key}", allowed=allowed)
 
-    for key, there in (("guide", leg.guide), ("cylinder.diameter", leg.cylinder.section)):
-        if there is not None:
-            raise refused(key, "a piston clamped in the mouth of a rigid cylinder")
-    if leg.screw is not None and leg.screw.motor.ripple is not None:
-        raise refused("drive.motor.ripple", "a motor without")
-    if leg.screw is not None and leg.screw.lag:
-        raise refused("drive.motor.bandwidth", "a motor without")
-    if leg.piston.bow or leg.base_joint.eccentricity or leg.platform_joint.eccentricity:
-        raise refused("bow, eccentricity", "straight legs")
-    if leg.turning:
-        raise refused("piston.keyed", "true")
-    if leg.drive.type == "force" or (leg.screw is not None and (leg.screw.command == "torque" or leg.holds_stroke)):
-        raise refused("drive", "prescribed, servo, screw with command = 'position' or 'servo' at the rotor")
-    if leg.screw is not None and leg.screw.loop is not None and leg.screw.loop.integral:
-        raise refused("drive.loop.integral", "stiffness and damping")
+def _lacking(leg: Leg) -> Iterator[tuple[str, object, str]]:
+    """What the model of a leg's joints, springs and drive does not have: key, whether it is there, what is allowed."""
+    screw, straight = leg.screw, "a piston clamped in the mouth of a rigid cylinder"
+    yield "guide", leg.guide is not None, straight
+    yield "cylinder.diameter", leg.cylinder.section is not None, straight
+    yield "drive.motor.ripple", screw and screw.motor.ripple is not None, "a motor without"
+    yield "drive.motor.bandwidth", screw and screw.lag, "a motor without"
+    yield (
+        "bow, eccentricity",
+        leg.piston.bow or leg.base_joint.eccentricity or leg.platform_joint.eccentricity,
+        "straight legs",
+    )
+    yield "piston.keyed", leg.turning, "true"
+    pushes = leg.drive.type == "force" or (screw and (screw.command == "torque" or leg.holds_stroke))
+    yield "drive", pushes, "prescribed, servo, screw with command = 'position' or 'servo' at the rotor"
+    yield "drive.loop.integral", screw and screw.loop is not None and screw.loop.integral, "stiffness and damping"
     for end in ("base_joint", "platform_joint"):
         joint: Joint = getattr(leg, end)
-        if joint.flexes or joint.bending is not None or joint.torsion is not None:
-            raise refused(end, "stiffness = { axial, radial } alone")
-        if joint.friction is not None and joint.friction.arm and leg.platform_joint.stiffness is None:
-            raise refused(f"{end}.friction", "a moment, or a platform joint with stiffness, whose force presses")
-        if joint.lossy:
-            raise refused(f"{end}.loss", "damping")
+        hinges = joint.flexes or joint.bending is not None or joint.torsion is not None
+        yield end, hinges, "stiffness = { axial, radial } alone"
+        pressed = joint.friction is not None and joint.friction.arm and leg.platform_joint.stiffness is None
+        yield f"{end}.friction", pressed, "a moment, or a platform joint with stiffness, whose force presses"
+        yield f"{end}.loss", joint.lossy, "damping"
     for spring in springs_along(leg):
-        if spring.loss:
-            raise refused(f"{spring.name}.loss", "damping")
+        yield f"{spring.name}.loss", spring.loss, "damping"
+
+
+def _check_cables(number: int, leg: Leg) -> None:
+    """Raise InputError for what cables in place of a piston do not have."""
+    for key, there in (("sections", leg.piston.sections), ("shear", leg.piston.shear)):
+        if there:
+            raise InputError(
+                "is not modelled in Exudyn",
+                key=f"leg {number}: piston.{key}",
+                next_step="Compare uniform, slender pistons, or take rigid ones (elements=0)",
+            )
+    if not leg.piston.rhoA:
+        raise InputError(
+            "makes cables without mass, which Exudyn cannot move",
+            key=f"leg {number}: piston.rhoA",
+            value=0,
+            next_step="Give a small rhoA, or take rigid pistons (elements=0)",
+        )
+    if leg.damping:
+        raise _refused(f"leg {number}: damping", "0", value=leg.damping, next_step="Compare without damping")
 
 
 @dataclass(frozen=True, kw_only=True)
@@ -192,4 +194,41 @@ def simulate_robot(
         Exudyn is not installed, does not end in time, crashes, or does not converge.
     """
     problem = RobotProblem(robot=robot, motion=motion, integration=integration, elements=elements, guide=guide)
-    return ask("flexapod.proof.engines.exudyn_robot_model", problem, time_limit=time_limit)
+    return ask(solve, problem, time_limit=time_limit)
+
+
+def solve(problem: RobotProblem, builders: type[Builder] = Builder) -> RobotResult:
+    """Build the robot, integrate, and read the sensors."""
+    robot, plan, builder = problem.robot, problem.integration, builders(problem.integration)
+    path = rigid.poses(robot, problem.motion, plan.time)
+    lengths = rigid.inverse_kinematics(robot, path).length
+    load, start = robot.payload, robot.home_position + robot.home_rotation @ robot.payload.com
+    body = builder.body(load.mass, load.inertia, start, quaternion(robot.home_rotation), robot.gravity)
+    mesh = {"elements": problem.elements, "guide": problem.guide}
+    legs = [add_leg(builder, robot, i, lengths[:, i], body, **mesh) for i in range(robot.count)]
+    centre = builder.watch("body", body, "Displacement")
+    seconds = builder.solve(equilibrium=True)
+    rigid_centre, _, _ = path.point(load.com)
+    coordinates = [builder.records([leg.coordinates])[:, 0] for leg in legs]
+    return RobotResult(
+        time=plan.time,
+        com_deviation=builder.records([centre])[:, 0] - (rigid_centre - start),
+        actuator_force=-builder.records([leg.drive for leg in legs])[..., 0],
+        tip_deflection=_tip_deflection(robot, coordinates, builder.records([leg.tip for leg in legs])),
+        seconds=seconds,
+    )
+
+
+def _tip_deflection(robot: Robot, coordinates: list[Array], tips: Array) -> Array:
+    """Tips (T, legs, 3) [m] seen from the axes of the cylinders at their `coordinates` (T, any), (T, legs, 2)."""
+    limbs = rigid.rigid_limbs(robot)
+    beta = np.tile(limbs.home[:, rigid.COORDINATES.index("beta")], (len(tips), 1))
+    for i, leg in enumerate(robot.legs):
+        if turns(leg) == 2:
+            beta[:, i] = coordinates[i][:, 1]
+    axes = rigid.leg_rotations(limbs.frames, np.column_stack([q[:, 0] for q in coordinates]), beta)
+    found = np.einsum("tnij,tni->tnj", axes, tips - robot.base_joints)[..., :2]
+    for i, leg in enumerate(robot.legs):
+        if 0 in SoftEnd.of(leg, "base").slides:
+            found[:, i] -= coordinates[i][:, turns(leg) : turns(leg) + 2]
+    return found
