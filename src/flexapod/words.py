@@ -2,12 +2,14 @@
 
 from __future__ import annotations
 
+from typing import Any
+
 import numpy as np
 from numpy.typing import ArrayLike
 
 from flexapod.typing import Array
 
-__all__ = ["Scale", "along_axes", "column", "number", "scale", "text"]
+__all__ = ["Scale", "along_axes", "column", "columns", "number", "scale", "sentence", "text"]
 
 _PREFIXES = {
     "m": ((1.0, "m"), (1e3, "mm"), (1e6, "µm"), (1e9, "nm")),
@@ -110,3 +112,16 @@ def column(values: ArrayLike, unit: str, digits: int = 4) -> tuple[str, list[str
     return chosen.name, [
         f"{round(value, decimals) + 0.0:.{decimals}f}" if np.isfinite(value) else "n/a" for value in shown
     ]
+
+
+def columns(unit: str, *values: ArrayLike, digits: int = 4) -> list[Any]:
+    """The unit, and the numbers of several columns in that one: ``columns("m", [1.0], [0.5])``; see `column`."""
+    parts = [np.atleast_1d(np.asarray(part, dtype=float)) for part in values]
+    name, flat = column(np.concatenate(parts), unit, digits)
+    ends = np.cumsum([len(part) for part in parts])
+    return [name, *(flat[end - len(part) : end] for part, end in zip(parts, ends, strict=True))]
+
+
+def sentence(words: str) -> str:
+    """Words with a capital letter and a full stop."""
+    return f"{words[0].upper()}{words[1:]}."

@@ -9,8 +9,8 @@ from typer.testing import CliRunner
 
 import flexapod as fx
 from flexapod.app.cli import app
+from flexapod.document import html
 from flexapod.model import ActuatorStudy, override
-from flexapod.report import html
 from flexapod.report.page import warnings_section
 from flexapod.solve.parts import part_stiffness
 from flexapod.study.before.describe.robot import describe

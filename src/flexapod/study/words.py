@@ -9,14 +9,14 @@ import numpy as np
 from numpy.typing import ArrayLike
 
 from flexapod.typing import Array
-from flexapod.words import Scale, along_axes, column, number, scale, text
+from flexapod.words import Scale, along_axes, column, columns, number, scale, sentence, text
 
 if TYPE_CHECKING:
     from flexapod.model import Robot
 
 __all__ = [
-    "Scale", "along_axes", "brief", "cleared", "cleared_lines", "column", "held", "length", "number", "scale",
-    "signed", "text",
+    "Scale", "along_axes", "brief", "cleared", "cleared_lines", "column", "columns", "held", "length", "number",
+    "scale", "sentence", "signed", "text",
 ]  # fmt: skip
 
 _SENTENCE = re.compile(r"\. (?=[A-Z])")

@@ -61,7 +61,7 @@ class BudgetPanel:
 
 def budget_html(study: model.Study | model.ActuatorStudy, data: Dataset | None = None) -> str:
     """A budget in sentences, as a chart and as a table."""
-    from flexapod.report.budget import peak_budget
+    from flexapod.document.budget import peak_budget
     from flexapod.study import budget
     from flexapod.study.budgets.words import bars, table
 

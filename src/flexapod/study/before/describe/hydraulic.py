@@ -135,10 +135,11 @@ def hydraulic_remarks(robot: Robot, found: tuple[HydraulicDescription, ...]) -> 
 
 
 def hydraulic_table(found: tuple[HydraulicDescription, ...]) -> tuple[list[str], list[list[str]]]:
-    """Heads, and a row of texts for each cylinder."""
+    """Heads, and a row of texts for each cylinder, its leg first."""
     head = ["thrust [N]", "pressure [bar]", "flow [l/min]", "least stiffness of the oil [N/um]", "creep [um/s]"]
     return head, [
         [
+            f"{x.leg}",
             f"{x.thrust.value:.4g}",
             f"{BAR * x.pressure.value:.3g}",
             f"{LITRES * x.flow.value:.3g}",

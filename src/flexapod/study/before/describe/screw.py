@@ -204,13 +204,14 @@ def back_words(path: RigidPath, screws: tuple[ScrewDescription, ...]) -> str:
 
 
 def screw_table(screws: tuple[ScrewDescription, ...]) -> tuple[list[str], list[list[str]]]:
-    """Heads, and a row of texts for each screw."""
+    """Heads, and a row of texts for each screw, its leg first."""
     head = ["thrust [N]", "of buckling [%]", "motor [rpm]", "of critical speed [%]", "motor [N m]", "rms [N m]",
             "static safety", "life [h]"]  # fmt: skip
     known = any(s.current is not None for s in screws)
     head += ["current [A]", "rms [A]"] if known else []
     return head, [
         [
+            f"{s.leg}",
             f"{s.thrust.value:.4g}",
             f"{100 * s.buckling.value:.3g}",
             f"{RPM * s.speed.value:.4g}",
