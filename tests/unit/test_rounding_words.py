@@ -11,7 +11,7 @@ from flexapod import plot
 from flexapod.app.view.charts import Chart, _readout, charts
 from flexapod.study.after.summary import summary
 from flexapod.study.before.estimates import buckling_load
-from flexapod.study.words import length
+from flexapod.words import length
 
 
 @pytest.fixture(scope="module")

@@ -12,7 +12,7 @@ from flexapod import model, rigid
 from flexapod.document.parts import Item, Remarks, Table, Text
 from flexapod.errors import FlexapodError
 from flexapod.scene.robot import carried_study
-from flexapod.study.budgets.words import table
+from flexapod.study.budgets.sentences import table
 from flexapod.ties import first_largest
 
 if TYPE_CHECKING:
@@ -27,7 +27,7 @@ def peak_budget(data: Dataset) -> Dataset | None:
     None also where there is none: the study cannot be read any more, the platform is fixed, drives are pure forces.
     """
     from flexapod.study import budget
-    from flexapod.study.accuracy.words import is_real
+    from flexapod.study.accuracy.at_home import is_real
     from flexapod.study.after.causes import cause_names
     from flexapod.study.cause_words import CAUSES
 

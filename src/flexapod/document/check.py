@@ -12,8 +12,8 @@ from flexapod.document.parts import Item, Remarks, Section, Table
 from flexapod.study.after.inside import bushing_words
 from flexapod.study.before.describe.hydraulic import hydraulic_table
 from flexapod.study.before.describe.screw import screw_table
-from flexapod.study.words import column, columns, number, scale, sentence, text
 from flexapod.ties import most, ranked
+from flexapod.words import column, columns, number, scale, sentence, text
 
 if TYPE_CHECKING:
     from flexapod.study.before.describe.actuator import ActuatorDescription, BeamDescription

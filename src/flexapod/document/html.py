@@ -13,7 +13,7 @@ from importlib.resources import files
 from itertools import repeat
 
 from flexapod.document.parts import Bullets, Item, Lines, Remarks, Section, Table, Text
-from flexapod.study.words import brief
+from flexapod.words import brief
 
 # What a browser may do with a page: run and show what is in it, and fetch nothing.
 _POLICY = (

@@ -8,8 +8,8 @@ from typing import TYPE_CHECKING
 
 from flexapod.document.parts import Item, Section, Table
 from flexapod.study.poses import coordinate_words
-from flexapod.study.words import column, text
 from flexapod.surveys.workspace.findings import Finding, MapFindings, axis_words
+from flexapod.words import column, text
 
 if TYPE_CHECKING:
     from xarray import Dataset

@@ -8,7 +8,8 @@ from typing import TYPE_CHECKING
 
 from flexapod import model
 from flexapod.document.parts import Item, Table
-from flexapod.study.words import column, held, signed
+from flexapod.study.ideal import held
+from flexapod.words import column, signed
 
 if TYPE_CHECKING:
     from xarray import Dataset

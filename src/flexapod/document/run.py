@@ -11,7 +11,7 @@ from flexapod.study.after.summary import POINT_WORDS, RobotSummary, summaries, s
 from flexapod.study.bodies import bodies_words
 from flexapod.study.counted import run_counts
 from flexapod.study.ideal import ideal_words
-from flexapod.study.words import column, columns, number, text
+from flexapod.words import column, columns, number, text
 
 if TYPE_CHECKING:
     from xarray import Dataset

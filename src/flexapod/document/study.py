@@ -15,7 +15,8 @@ from flexapod.document.parts import Bullets, Item, Section, Table, Text
 from flexapod.solve.lost_motion import places_with_friction
 from flexapod.study.after.causes import cause_names
 from flexapod.study.cause_words import CAUSES, cause_in_words
-from flexapod.study.words import held, number, text
+from flexapod.study.ideal import held
+from flexapod.words import number, text
 
 if TYPE_CHECKING:
     from flexapod.model import ActuatorStudy, Robot, Study

@@ -10,8 +10,8 @@ from typing import TYPE_CHECKING, Any
 import numpy as np
 
 from flexapod.document.parts import Item, Lines, Table
-from flexapod.study.words import column, text
 from flexapod.ties import first_largest, first_least
+from flexapod.words import column, text
 
 if TYPE_CHECKING:
     from xarray import Dataset

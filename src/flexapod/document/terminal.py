@@ -10,7 +10,7 @@ from pathlib import Path
 from typing import TYPE_CHECKING
 
 from flexapod.document.parts import Bullets, Item, Lines, Remarks, Section, Table, Text
-from flexapod.study.words import brief
+from flexapod.words import brief
 
 if TYPE_CHECKING:
     from flexapod.study.record import Report

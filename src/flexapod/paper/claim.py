@@ -12,7 +12,7 @@ import numpy as np
 from flexapod import model
 from flexapod.errors import InputError
 from flexapod.scene.robot import motion_end, robot_study
-from flexapod.study.words import number, text
+from flexapod.words import number, text
 
 if TYPE_CHECKING:
     from xarray import Dataset

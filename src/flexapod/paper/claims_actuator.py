@@ -25,7 +25,7 @@ from flexapod.paper.claim import (
 )
 from flexapod.paper.energies import TIP_MASS
 from flexapod.paper.study import ACTUATOR_MODES, PaperStudy
-from flexapod.study.words import text
+from flexapod.words import text
 
 if TYPE_CHECKING:
     from xarray import Dataset

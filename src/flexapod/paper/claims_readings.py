@@ -21,7 +21,7 @@ from flexapod.paper.claim import (
 from flexapod.paper.readings import CUBE, MODULI, about_platform, cube_edge
 from flexapod.paper.study import PaperStudy
 from flexapod.scene.robot import robot_study
-from flexapod.study.words import number, text
+from flexapod.words import number, text
 
 if TYPE_CHECKING:
     from xarray import Dataset

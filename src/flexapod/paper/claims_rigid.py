@@ -27,7 +27,7 @@ from flexapod.paper.readings import TRAVELS
 from flexapod.paper.study import PaperStudy
 from flexapod.scene.robot import robot_study
 from flexapod.study.before.estimates import section_width
-from flexapod.study.words import number, text
+from flexapod.words import number, text
 
 if TYPE_CHECKING:
     from xarray import Dataset

@@ -27,7 +27,7 @@ from flexapod.paper.study import PaperStudy
 from flexapod.paper.trials import load_share
 from flexapod.scene.robot import robot_study
 from flexapod.study.after.summary import AxisSummary, RobotSummary, summary
-from flexapod.study.words import text
+from flexapod.words import text
 
 if TYPE_CHECKING:
     from xarray import Dataset

@@ -25,7 +25,7 @@ from flexapod.paper.claims_readings import SAYS
 from flexapod.paper.claims_welded import tripod_claim, welded_claims
 from flexapod.paper.study import PaperStudy
 from flexapod.scene.robot import robot_study
-from flexapod.study.words import number, text
+from flexapod.words import number, text
 
 if TYPE_CHECKING:
     from xarray import Dataset

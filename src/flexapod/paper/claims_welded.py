@@ -19,7 +19,7 @@ from flexapod.paper.claim import (
 )
 from flexapod.paper.claims_readings import SAYS
 from flexapod.paper.welded import SLOPE, travel_share
-from flexapod.study.words import number, text
+from flexapod.words import number, text
 
 if TYPE_CHECKING:
     from xarray import Dataset

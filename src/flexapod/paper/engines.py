@@ -22,8 +22,8 @@ from flexapod.study.attributes import attributes
 from flexapod.study.names import dataset
 from flexapod.study.record import Share
 from flexapod.study.simulation import simulate
-from flexapod.study.words import scale, text
 from flexapod.typing import Array
+from flexapod.words import scale, text
 
 if TYPE_CHECKING:
     from xarray import Dataset

@@ -10,7 +10,7 @@ from flexapod.paper.claim import PAPER_DEVIATION, force_gaps
 from flexapod.paper.claims_actuator import LINEAR
 from flexapod.paper.readings import actuator_preset, robot_preset
 from flexapod.report.figures import Drawn, store
-from flexapod.study.words import text
+from flexapod.words import text
 
 if TYPE_CHECKING:
     from matplotlib.figure import Figure

@@ -134,7 +134,7 @@ def _engine(result: PaperStudy, figures: Sequence[Drawn]) -> Html:
     """What the engine is, how well it agrees with us, its figures, and how to repeat."""
     from flexapod.paper.engines import agreements
     from flexapod.proof.engines.engine import EXUDYN
-    from flexapod.study.words import scale, text
+    from flexapod.words import scale, text
 
     rows = []
     for row in agreements(result.parts):
@@ -155,7 +155,7 @@ def _engine(result: PaperStudy, figures: Sequence[Drawn]) -> Html:
 
 
 def _engine_words(result: PaperStudy) -> list[str]:
-    from flexapod.study.words import number
+    from flexapod.words import number
 
     done = [result[name] for name in ("robot-exudyn-rigid", "robot-exudyn") if name in result.parts]
     if not done:

@@ -20,7 +20,6 @@ from flexapod.model import AXES
 from flexapod.plot.style import COLORS, NOTE, PAGE, SMALL, TEXT, figure, needs, styled
 from flexapod.study.before.reach import REACHED, REASONS
 from flexapod.study.poses import coordinate_words
-from flexapod.study.words import Scale, number, scale
 from flexapod.surveys.workspace.findings import (
     SIDES,
     drawn,
@@ -33,6 +32,7 @@ from flexapod.surveys.workspace.findings import (
 from flexapod.surveys.workspace.grid import UNITS
 from flexapod.ties import first_largest, first_least
 from flexapod.typing import Array
+from flexapod.words import Scale, number, scale
 
 # Ground and hatching of what is not reached, by code; codes that rarely meet share one.
 GROUNDS = {

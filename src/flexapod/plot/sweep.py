@@ -16,7 +16,7 @@ from numpy.typing import NDArray
 
 from flexapod.errors import InputError
 from flexapod.plot.style import COLORS, COLUMN, FLEXIBLE, NOTE, PAGE, RIGID, TEXT, figure, styled
-from flexapod.study.words import scale
+from flexapod.words import scale
 
 FAILED = "#C44E52"
 MOST_PANELS = 6

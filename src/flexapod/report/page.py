@@ -161,7 +161,7 @@ def by_axis(data: Dataset) -> Html:
 
 
 def _actuator_numbers(found: ActuatorSummary) -> Html:
-    from flexapod.study.words import text
+    from flexapod.words import text
 
     start, end = (text(length, "m", 4) for length in found.lengths)
     rows = [

@@ -15,9 +15,9 @@ from flexapod.study.after.plausibility import worst_of_each
 from flexapod.study.before.describe.leg import Extreme
 from flexapod.study.before.sliding import steady_friction
 from flexapod.study.path import RigidPath
-from flexapod.study.words import number
 from flexapod.ties import first_largest, first_least, most
 from flexapod.typing import Array
+from flexapod.words import number
 
 __all__ = [
     "HydraulicDescription", "describe_hydraulic", "describe_hydraulics", "hydraulic_remarks", "hydraulic_table",

@@ -11,9 +11,9 @@ from flexapod.model.simulation import SOLID
 from flexapod.study.after.plausibility import NEAR_BUCKLING, SLENDERNESS, buckling_words, nut_words, thick_words
 from flexapod.study.before.estimates import STATIONS, piston_section, section_width
 from flexapod.study.path import RigidPath
-from flexapod.study.words import text
 from flexapod.ties import first_largest, first_least, most
 from flexapod.typing import Array
+from flexapod.words import text
 
 OFF_LOAD = 2.0  # times another load: 12 % of stiffness
 

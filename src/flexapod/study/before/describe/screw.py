@@ -21,9 +21,9 @@ from flexapod.study.before.screws import (
     turns_of_life,
 )
 from flexapod.study.path import RigidPath
-from flexapod.study.words import number, text
 from flexapod.ties import first_largest, most
 from flexapod.typing import Array
+from flexapod.words import number, text
 
 __all__ = ["ScrewDescription", "back_words", "describe_screw", "describe_screws", "screw_remarks", "screw_table"]
 
