@@ -24,7 +24,6 @@ from flexapod.app.options import (
 from flexapod.document.terminal import tell
 from flexapod.errors import InputError
 from flexapod.files import write_text
-from flexapod.words import sentence
 
 if TYPE_CHECKING:
     from xarray import Dataset
@@ -61,9 +60,7 @@ def modes(
     of_robot = isinstance(study, model.Study)
     shaken, sentences = _shaken(study, parse_pose(pose)) if of_robot else (None, ())
     files = [] if out is None else _write_modes(data, shaken, out, figure=of_robot and not no_figures)
-    warnings = map("Warning: {}".format, data.attrs["warnings"].splitlines())
-    end = (map(sentence, sentences), warnings, map("Written: {}".format, files))
-    items = chain(modes_items(study, data, pose, count), *end)
+    items = chain(modes_items(study, data, pose, count, sentences), map("Written: {}".format, files))
     tell(items, lambda: modes_as_dict(data, shaken, files), json=json)
 
 

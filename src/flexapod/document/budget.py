@@ -9,7 +9,7 @@ from typing import TYPE_CHECKING
 import numpy as np
 
 from flexapod import model, rigid
-from flexapod.document.parts import Item, Remarks, Table, Text
+from flexapod.document.parts import Item, Remarks, Table, Text, warnings_of
 from flexapod.errors import FlexapodError
 from flexapod.scene.robot import carried_study
 from flexapod.study.budgets.sentences import table
@@ -58,7 +58,7 @@ def budget_items(data: Dataset, also: Sequence[str | None]) -> Iterator[Item]:
         yield Table(*table(data), left=(0, 1))
         yield ""
     yield from filter(None, [*further, *also])
-    yield Remarks(data.attrs["warnings"].splitlines(), "Warning: ")
+    yield Remarks(warnings_of(data), "Warning: ")
 
 
 def peak_items(found: Dataset) -> Iterator[Item]:
@@ -95,6 +95,6 @@ def budget_as_dict(data: Dataset, files: Sequence[Path]) -> dict[str, object]:
         **{name: data[name].values.tolist() for name in whole},
         "pose_accuracy": dict(zip(map(str, data.state.values), data.pose_accuracy.values.tolist(), strict=True)),
         **({"worst_time": float(data.worst_time)} if "worst_time" in data else {}),
-        "warnings": [line for line in data.attrs["warnings"].splitlines() if line],
+        "warnings": warnings_of(data),
         "files": files,
     }

@@ -6,7 +6,7 @@ import math
 from collections.abc import Iterator
 from typing import TYPE_CHECKING
 
-from flexapod.document.parts import Item, Section, Table
+from flexapod.document.parts import Item, Section, Table, warnings_of
 from flexapod.study.poses import coordinate_words
 from flexapod.surveys.workspace.findings import Finding, MapFindings, axis_words
 from flexapod.words import column, text
@@ -29,7 +29,7 @@ def map_items(data: Dataset, found: MapFindings) -> Iterator[Item]:
     if found.quantities:
         head = ["", "unit", "least", "at", "largest", "at", "home"]
         yield Table(head, list(map(_row, found.quantities)), left=(0, 1, 3, 5))
-    yield from (f"Warning: {line}" for line in data.attrs["warnings"].splitlines())
+    yield from map("Warning: {}".format, warnings_of(data))
 
 
 def _sentence(found: Finding) -> str:

@@ -7,9 +7,9 @@ from pathlib import Path
 from typing import TYPE_CHECKING
 
 from flexapod import model
-from flexapod.document.parts import Item, Table
+from flexapod.document.parts import Item, Table, warnings_of
 from flexapod.study.ideal import held
-from flexapod.words import column, signed
+from flexapod.words import column, sentence, signed
 
 if TYPE_CHECKING:
     from xarray import Dataset
@@ -18,9 +18,9 @@ if TYPE_CHECKING:
 
 
 def modes_items(
-    study: model.Study | model.ActuatorStudy, data: Dataset, pose: str | None, count: int
+    study: model.Study | model.ActuatorStudy, data: Dataset, pose: str | None, count: int, shaken: Sequence[str]
 ) -> Iterator[Item]:
-    """Where the modes are, and a table of the lowest `count`."""
+    """Where the modes are, a table of the lowest `count`, how disturbances have `shaken` the robot, warnings."""
     yield f"{_held(study, data, pose)}."
     yield ""
     shown = data.isel(mode=slice(0, count))
@@ -34,6 +34,8 @@ def modes_items(
     yield Table([*head, "what moves most, by its kinetic energy"], list(rows), left=(len(head),))
     if data.sizes["mode"] > count:
         yield f"The lowest {count} of {data.sizes['mode']} modes; more with --count."
+    yield from map(sentence, shaken)
+    yield from map("Warning: {}".format, warnings_of(data))
 
 
 def _held(study: model.Study | model.ActuatorStudy, data: Dataset, pose: str | None) -> str:
@@ -57,6 +59,6 @@ def modes_as_dict(data: Dataset, shaken: Dataset | None, files: Sequence[Path]) 
         "modes": [dict(zip(names, mode, strict=True)) for mode in zip(*columns, strict=True)],
         **({"com_sag": data.com_sag.values.tolist()} if "com_sag" in data else {}),
         **({} if shaken is None else {"vibration_rms": shaken.vibration_rms.values.tolist()}),
-        "warnings": [line for line in data.attrs["warnings"].splitlines() if line],
+        "warnings": warnings_of(data),
         "files": files,
     }

@@ -7,8 +7,12 @@ from __future__ import annotations
 
 from collections.abc import Collection, Iterable, Mapping, Sequence
 from dataclasses import dataclass, field
+from typing import TYPE_CHECKING
 
-__all__ = ["Bullets", "Item", "Lines", "Remarks", "Section", "Table", "Text"]
+if TYPE_CHECKING:
+    from xarray import Dataset
+
+__all__ = ["Bullets", "Item", "Lines", "Remarks", "Section", "Table", "Text", "warnings_of"]
 
 
 @dataclass(frozen=True)
@@ -70,3 +74,8 @@ class Section:
 
 
 Item = str | Text | Table | Bullets | Remarks | Lines | Section
+
+
+def warnings_of(data: Dataset) -> list[str]:
+    """What is doubtful about a result, a line each."""
+    return [line for line in str(data.attrs.get("warnings", "")).splitlines() if line]

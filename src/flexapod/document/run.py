@@ -5,7 +5,7 @@ from __future__ import annotations
 from collections.abc import Iterator
 from typing import TYPE_CHECKING
 
-from flexapod.document.parts import Item, Remarks, Table
+from flexapod.document.parts import Item, Remarks, Table, warnings_of
 from flexapod.model import ActuatorStudy, Study
 from flexapod.study.after.summary import POINT_WORDS, RobotSummary, summaries, summary
 from flexapod.study.bodies import bodies_words
@@ -15,11 +15,6 @@ from flexapod.words import column, columns, number, text
 
 if TYPE_CHECKING:
     from xarray import Dataset
-
-
-def warnings_of(data: Dataset) -> list[str]:
-    """What is doubtful about a result, a line each."""
-    return [line for line in str(data.attrs.get("warnings", "")).splitlines() if line]
 
 
 def told_of(study: Study | ActuatorStudy | None) -> list[str | None]:

@@ -10,7 +10,7 @@ from typing import TYPE_CHECKING
 
 from flexapod.document import html
 from flexapod.document.html import Html
-from flexapod.document.parts import Item, Lines, Remarks, Section, Table, Text
+from flexapod.document.parts import Item, Lines, Remarks, Section, Table, Text, warnings_of
 from flexapod.errors import FlexapodError
 from flexapod.files import scratch, write_text
 from flexapod.report.figures import Drawn
@@ -181,8 +181,6 @@ def _partial(data: Dataset) -> list[Item]:
 
 def warnings_section(data: Dataset) -> Html:
     """What is doubtful about a result, in words."""
-    from flexapod.document.run import warnings_of
-
     found = warnings_of(data)
     return html.section("warnings", "Warnings", [Remarks(found) if found else "None."])
 

@@ -25,6 +25,7 @@ from flexapod.app.view.running import Cores, Run
 from flexapod.app.view.scripts import run_script
 from flexapod.app.view.study_panel import StudyPanel
 from flexapod.app.view.uploads import Sent, refuse_length
+from flexapod.document.parts import warnings_of
 from flexapod.errors import FlexapodError
 
 if TYPE_CHECKING:
@@ -316,5 +317,4 @@ def _answer(data: Dataset, point: str) -> str:
     if data.attrs["partial"]:
         reached = f"Stopped at t = {float(data.time[-1]):.6g} s: {data.attrs.get('failure', '')}"
         html += markup.block(reached, "error")
-    warnings = [line for line in str(data.attrs["warnings"]).splitlines() if line]
-    return html + "".join(markup.block(f"Warning: {line}", "warning") for line in warnings)
+    return html + "".join(markup.block(f"Warning: {line}", "warning") for line in warnings_of(data))
