@@ -9,7 +9,7 @@ import numpy as np
 from flexapod import rigid
 from flexapod.errors import FlexapodError
 from flexapod.model import Robot
-from flexapod.study.before.describe.leg import Extreme, least
+from flexapod.study.before.describe.leg import Extreme
 from flexapod.study.bodies import clearance, largest_turns, turns
 from flexapod.study.path import RigidPath
 from flexapod.ties import first_largest, first_least
@@ -105,5 +105,7 @@ def leg_clearance(path: RigidPath) -> Clearance | None:
     )
     if nearest is None or there is None:
         return None
-    one, other = (int(leg) + 1 for leg in nearest.legs[first_least(nearest.gap)])
-    return Clearance(legs=(one, other), least=least(path.time, nearest.gap), home=float(there.gap[0]))
+    k = first_least(nearest.gap)
+    one, other = (int(leg) + 1 for leg in nearest.legs[k])
+    least = Extreme(value=float(nearest.gap[k]), time=float(path.time[k]))
+    return Clearance(legs=(one, other), least=least, home=float(there.gap[0]))
