@@ -10,7 +10,6 @@ from pathlib import Path
 from typing import TYPE_CHECKING
 
 from flexapod.document.parts import Bullets, Item, Lines, Remarks, Section, Table, Text
-from flexapod.words import brief
 
 if TYPE_CHECKING:
     from flexapod.study.record import Report
@@ -84,6 +83,8 @@ def print_text(text: str = "", *, indent: int = 0) -> None:
 
 def _print_remarks(remarks: Remarks, *, verbose: bool, indent: int) -> None:
     """A line for each remark; its explanation with `verbose`, and otherwise how to get it, once."""
+    from flexapod.words import brief
+
     parts = [brief(remark) for remark in remarks.lines]
     for remark, (first, _) in zip(remarks.lines, parts, strict=True):
         print_text(f"{remarks.title}{remark if verbose else first}", indent=indent)
