@@ -2,13 +2,18 @@
 
 from __future__ import annotations
 
+import re
+from typing import Any
+
 import numpy as np
 from numpy.typing import ArrayLike
 
 from flexapod.typing import Array
 
-__all__ = ["Scale", "along_axes", "column", "number", "rounded_up", "scale", "text"]
-
+_SENTENCE = re.compile(r"\. (?=[A-Z])")
+NOTHING = 1e-12  # length that is rounding [m]
+ROUNDING = 1e-6  # of the largest axis: what is smaller is shown as 0
+UNSAID = 1e-4  # of a displacement: components below it go unsaid
 _PREFIXES = {
     "m": ((1.0, "m"), (1e3, "mm"), (1e6, "µm"), (1e9, "nm")),
     "N": ((1e-6, "MN"), (1e-3, "kN"), (1.0, "N"), (1e3, "mN"), (1e6, "µN")),
@@ -116,3 +121,45 @@ def column(values: ArrayLike, unit: str, digits: int = 4) -> tuple[str, list[str
     return chosen.name, [
         f"{round(value, decimals) + 0.0:.{decimals}f}" if np.isfinite(value) else "n/a" for value in shown
     ]
+
+
+def columns(unit: str, *values: ArrayLike, digits: int = 4) -> list[Any]:
+    """The unit, and the numbers of several columns in that one: ``columns("m", [1.0], [0.5])``; see `column`."""
+    parts = [np.atleast_1d(np.asarray(part, dtype=float)) for part in values]
+    name, flat = column(np.concatenate(parts), unit, digits)
+    ends = np.cumsum([len(part) for part in parts])
+    return [name, *(flat[end - len(part) : end] for part, end in zip(parts, ends, strict=True))]
+
+
+def sentence(words: str) -> str:
+    """Words with a capital letter and a full stop."""
+    return f"{words[0].upper()}{words[1:]}."
+
+
+def cleared(values: ArrayLike, largest: float) -> Array:
+    """Values of one axis to show beside the others: 0 throughout where all are rounding beside the largest axis."""
+    given = np.asarray(values, dtype=float)
+    return given * (np.abs(given).max(initial=0.0) > ROUNDING * abs(largest))
+
+
+def cleared_lines(lines: Array) -> Array:
+    """Lines (lines, T) to show together: each that is rounding beside the largest of all is 0 throughout."""
+    largest = float(np.abs(lines).max(initial=0.0))
+    return np.stack([cleared(line, largest) for line in lines])
+
+
+def brief(remark: str) -> tuple[str, str]:
+    """The first sentence of a remark, which says it, and the others, which explain it."""
+    first, _, rest = _SENTENCE.sub("\n", remark, count=1).partition("\n")
+    return first, rest
+
+
+def length(value: float) -> str:
+    """A computed length of which what is below a picometre is rounding, in words."""
+    return text(value if abs(value) >= NOTHING else 0.0, "m")
+
+
+def signed(moved: Array, beside: Array | None = None) -> str:
+    """Components (3,) [m] with signs: "x -1.2 µm, z +18.5 µm"; without those that are nothing beside a displacement."""
+    size = float(np.linalg.norm(moved if beside is None else beside))
+    return along_axes(np.where(np.abs(moved) > max(UNSAID * size, NOTHING), moved, 0.0), signed=True)

@@ -5,11 +5,11 @@ import pytest
 from tests.runs import FIELDS, paper_robot, run_actuator, run_robot, with_legs
 
 import flexapod as fx
+from flexapod.document.study import _damping
 from flexapod.errors import InputError
 from flexapod.mechanics.layout import LEG_PARAMETERS, columns
 from flexapod.model import Actuator, ActuatorMotion, ActuatorStudy, Damping, Simulation, loads, override, to_toml
 from flexapod.model.fields import read_fields
-from flexapod.report.study_words import _damping
 from flexapod.solve.actuator_modes import actuator_modes
 from flexapod.solve.robot_march import prepare
 from flexapod.surveys.sweeps.keys import parse_key, put, value_at

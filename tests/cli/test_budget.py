@@ -6,7 +6,7 @@ import pytest
 from tests.cli.conftest import SHORT
 
 import flexapod as fx
-from flexapod.report.budget import peak_budget
+from flexapod.document.budget import peak_budget
 from flexapod.study import open_results
 from flexapod.study.budgets import words
 

@@ -28,7 +28,7 @@ from flexapod.solve.kernel import kernel
 from flexapod.solve.lost_motion import lost_motion, reversal
 from flexapod.solve.stiffness import displacement, tool_motion
 from flexapod.study.before.sliding import steady_friction
-from flexapod.study.budgets.words import part_words
+from flexapod.study.budgets.sentences import part_words
 from flexapod.symbolic.functions import Interpreted
 from flexapod.symbolic.vocabulary import constant, symbol, zeros
 

@@ -36,7 +36,7 @@ from flexapod.study.accuracy.play import guide_play
 from flexapod.study.before.describe.robot import describe
 from flexapod.study.before.estimates import buckling_load
 from flexapod.study.bodies import bodies_words
-from flexapod.study.budgets.words import part_words
+from flexapod.study.budgets.sentences import part_words
 
 L_P, MOUTH, LENGTH = 0.75, 0.315, 0.91
 TUBE = 4.0

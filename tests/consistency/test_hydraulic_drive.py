@@ -11,11 +11,13 @@ from tests.texts import replaced
 
 import flexapod as fx
 from flexapod import model
-from flexapod.app.check_words import show_robot
+from flexapod.document import html
+from flexapod.document.check import check_items
+from flexapod.document.study import study_items
+from flexapod.document.terminal import show
 from flexapod.elements.springs import springs_along
 from flexapod.errors import InputError
 from flexapod.model import AxialSpring, HydraulicDrive, HydraulicLimits
-from flexapod.report.study_words import study_words
 from flexapod.solve.losses import loss_frequency
 from flexapod.study.before.describe.hydraulic import describe_hydraulics, hydraulic_remarks, oil_frequency
 from flexapod.study.before.describe.robot import describe
@@ -289,14 +291,14 @@ class TestMotionBase:
     def test_check_and_report_say_it(self, capsys):
         study = changed(('pressure = "140 bar", flow = "470 l/min"', 'pressure = "30 bar", flow = "200 l/min"'))
         found = describe(study)
-        show_robot(found)
+        show(check_items(found))
         words = capsys.readouterr().out
         assert "Hydraulic cylinders, on the path" in words and "The platform on its oil alone vibrates at" in words
         assert "Leakage lets leg" in words
         remarks = "\n".join(found.remarks)
         assert "needs a pressure of" in remarks and "above the limit of 30 bar" in remarks
         assert "needs a flow of" in remarks and "above the limit of 200 l/min" in remarks
-        assert "hydraulic, bore 100 mm, rod 70 mm" in " ".join(study_words(study, None)).replace(
+        assert "hydraulic, bore 100 mm, rod 70 mm" in html.parts(study_items(study, None)).replace(
             "\N{NO-BREAK SPACE}", " "
         )
 

@@ -11,7 +11,7 @@ from tests.texts import replaced
 import flexapod as fx
 from flexapod import model
 from flexapod.study.before.describe.robot import describe
-from flexapod.study.words import held
+from flexapod.study.ideal import held
 
 
 def shares(name):

@@ -8,7 +8,8 @@ from tests.runs import balance, run_robot
 
 import flexapod as fx
 from flexapod import model
-from flexapod.app.check_words import show_robot
+from flexapod.document.check import check_items
+from flexapod.document.terminal import show
 from flexapod.errors import InputError
 from flexapod.model import Loop, Motor, Ripple, Rotor
 from flexapod.study.before.describe.robot import describe
@@ -93,9 +94,9 @@ def test_currents_are_in_check(capsys):
     assert one.current == pytest.approx(one.torque.value / 0.5) and one.rms_current == pytest.approx(
         one.rms_torque / 0.5
     )
-    show_robot(found)
+    show(check_items(found))
     assert "current [A]" in capsys.readouterr().out
-    show_robot(describe(model.loads(TEXT)))
+    show(check_items(describe(model.loads(TEXT))))
     assert "current [A]" not in capsys.readouterr().out
 
 

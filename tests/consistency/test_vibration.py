@@ -18,7 +18,7 @@ from flexapod.solve.random_vibration import Source, panels, random_vibration
 from flexapod.study.accuracy.sensitivity import sensitivity
 from flexapod.study.arguments import as_pose
 from flexapod.study.before.describe.robot import describe
-from flexapod.study.budgets.words import part_words
+from flexapod.study.budgets.sentences import part_words
 from flexapod.study.disturbances import vibration_rows, vibration_words
 
 WHITE = np.array([1e-3, 1e5])

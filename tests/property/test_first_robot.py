@@ -10,7 +10,7 @@ import pytest
 
 import flexapod as fx
 from flexapod import model, rigid
-from flexapod.app.first_words import first_words
+from flexapod.document.first import first_words
 from flexapod.errors import InputError
 from flexapod.study.before.checks import check_path
 from flexapod.study.before.describe.robot import describe

@@ -40,13 +40,14 @@ def test_tables_of_a_run_and_of_modes(capsys):
     """Peaks of 4.33 µm, 12 mm and 900 nm once stood in one column, each with a unit of its own."""
     from types import SimpleNamespace
 
-    from flexapod.app.commands_run import _axes
+    from flexapod.document.run import axes_table
+    from flexapod.document.terminal import show
 
     axes = [
         SimpleNamespace(axis=a, peak=peak, time=1.0, rms=peak / 3, excursion=0.1, per_cent=None)
         for a, peak in zip("xyz", (4.33e-6, 1.2e-5, 9e-7), strict=True)
     ]
-    _axes(SimpleNamespace(shown_axes=axes), "tool")
+    show([axes_table(SimpleNamespace(shown_axes=axes, point="tool"))])
     head, *lines = capsys.readouterr().out.splitlines()
     assert "peak [µm]" in head and "rms [µm]" in head and "rigid travel [mm]" in head
     rows = [line.split() for line in lines if line.strip()]

@@ -21,7 +21,7 @@ from flexapod.model import (
 )
 from flexapod.study.before.describe.leg import _stress
 from flexapod.study.before.describe.robot import describe
-from flexapod.study.words import held
+from flexapod.study.ideal import held
 
 
 def rolling(duration, amplitude=0.4643, profile="quintic", hold=0.25, **settings):

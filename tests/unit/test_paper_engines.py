@@ -15,7 +15,7 @@ from flexapod.paper.engines import agreements, exudyn_flexible, exudyn_rigid, ri
 from flexapod.proof.engines.engine import EXUDYN
 from flexapod.proof.engines.exudyn_robot import RobotResult
 from flexapod.scene.robot import robot_study
-from flexapod.study.words import text as words
+from flexapod.words import text as words
 
 
 def quick():

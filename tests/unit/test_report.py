@@ -9,15 +9,16 @@ import numpy as np
 import pytest
 from tests.texts import replaced
 
-from flexapod.app.commands_run import _axes, show_run
+from flexapod.document import html
+from flexapod.document.html import replay as replay_figure
+from flexapod.document.parts import Lines
+from flexapod.document.run import axes_table, distances_table, run_items
+from flexapod.document.study import modes_section, study_items
+from flexapod.document.terminal import show
 from flexapod.model import loads, preset, preset_text
-from flexapod.report import html
-from flexapod.report.html import code
-from flexapod.report.html import replay as replay_figure
 from flexapod.report.interactive import MOST_POINTS
-from flexapod.report.page import _axis_table, robot_report, write_report
+from flexapod.report.page import robot_report, write_report
 from flexapod.report.replay import FRAMES, locked_modes, replay
-from flexapod.report.study_words import modes_section, study_words
 from flexapod.rigid.rotations import exponential, matrix
 from flexapod.study import simulate, simulate_actuator
 from flexapod.study.after.summary import summary
@@ -128,11 +129,11 @@ def test_long_runs_stay_small(study):
 
 
 def test_study_in_words(study):
-    words = " ".join(study_words(study, None))
+    words = html.parts(study_items(study, None))
     for part in ("6-UPS", "100 kg", "roll 26.6 deg in 1 s", "assumed-modes, 3 lateral shapes", "static equilibrium"):
         assert part in words.replace("\N{NO-BREAK SPACE}", " ")
     text = preset_text("paper-actuator")
-    words = " ".join(study_words(loads(text), None)).replace("\N{NO-BREAK SPACE}", " ")
+    words = html.parts(study_items(loads(text), None)).replace("\N{NO-BREAK SPACE}", " ")
     for part in ("3.66 m", "rotation at 0.785 rad/s", "extension at 0.1 m/s", "released from 5 mm"):
         assert part in words
 
@@ -141,7 +142,7 @@ def test_words_of_other_motions(study):
     text = preset_text("paper-robot")
     head, tail = text.split("[motion]")[0], "[simulation]" + text.split("[simulation]")[1]
     points_of = 'type = "waypoints"\npoints = [{ time = "1 s", heave = "10 mm" }, { time = "2 s", heave = 0 }]\n'
-    words = " ".join(study_words(loads(f"{head}[motion]\n{points_of}{tail}"), None))
+    words = html.parts(study_items(loads(f"{head}[motion]\n{points_of}{tail}"), None))
     assert "through 2 points" in words
 
 
@@ -191,7 +192,7 @@ def test_the_tool_is_told_first(tool):
 
 
 def test_words_of_tool_drives_and_load(tool):
-    words = " ".join(study_words(tool[0], None)).replace("\N{NO-BREAK SPACE}", " ")
+    words = html.parts(study_items(tool[0], None)).replace("\N{NO-BREAK SPACE}", " ")
     for part in (
         "gravity of 9.81 m/s² along -z",
         "Centre of mass at [0, 373, 0] mm from the platform&#x27;s centre, the tool at [0, 0, 100] mm",
@@ -215,7 +216,7 @@ def test_words_of_tool_drives_and_load(tool):
     ],
 )
 def test_words_of_drives(drive, words):
-    text = " ".join(study_words(changed((PRESCRIBED, drive)), None)).replace("\N{NO-BREAK SPACE}", " ")
+    text = html.parts(study_items(changed((PRESCRIBED, drive)), None)).replace("\N{NO-BREAK SPACE}", " ")
     assert words in text and "Load: none" in text and "which is the tool, too" in text
 
 
@@ -228,14 +229,14 @@ def test_words_of_drives(drive, words):
 )
 def test_words_of_loads(wrench, words):
     study = changed(("[simulation]", f"[load]\nwrench = {{ {wrench} }}\n\n[simulation]"), ("-9.81]", "0]"))
-    text = " ".join(study_words(study, None)).replace("\N{NO-BREAK SPACE}", " ")
+    text = html.parts(study_items(study, None)).replace("\N{NO-BREAK SPACE}", " ")
     assert words in text and "no gravity" in text
 
 
 def test_legs_with_unlike_drives_are_told_apart(study):
     robot, servo = study.robot, loads(changed((PRESCRIBED, 'drive = { type = "servo", stiffness = 1e6 }')).source_text)
     legs = (servo.robot.legs[0], *robot.legs[1:])
-    words = " ".join(study_words(study.replace(robot=robot.replace(legs=legs)), None))
+    words = html.parts(study_items(study.replace(robot=robot.replace(legs=legs)), None))
     assert "Drives: leg 1: servo" in words and "legs 2, 3, 4, 5, 6: prescribed" in words
 
 
@@ -252,7 +253,7 @@ def test_words_of_a_driven_beam():
     torque = ("[initial]", '[load]\ntorque = { law = "constant", value = 30 }\n\n[initial]')
     gravity = ("gravity = 0 ", "gravity = 9.81 ")
     study = changed(held, torque, gravity, ("damping = 0 ", "damping = 0.01 "), name="paper-actuator")
-    words = " ".join(study_words(study, None)).replace("\N{NO-BREAK SPACE}", " ")
+    words = html.parts(study_items(study, None)).replace("\N{NO-BREAK SPACE}", " ")
     for part in ("by a torque of 30 N m, so that", "gravity of 9.81 m/s² along -y", "damping of 1 % of the critical"):
         assert part in words
 
@@ -261,7 +262,7 @@ def test_a_study_can_be_taken_out_of_the_page_as_it_was():
     """Spaces between numbers and units stay spaces: a file's name may have them, and its text a hash."""
     text = 'file = "a 2 m.csv"\nlength = "27 mm"  # < 1 kN'
     written = "file = &quot;a 2 m.csv&quot;\nlength = &quot;27 mm&quot;  # &lt; 1 kN"
-    assert code(text) == f'<pre tabindex="0" role="group" aria-label="Text">{written}</pre>'
+    assert html.parts([Lines(text)]) == f'<pre tabindex="0" role="group" aria-label="Text">{written}</pre>'
 
 
 def test_limits_of_the_replay_hold_every_frame(study, robot):
@@ -309,7 +310,7 @@ def test_pictures_stand_below_the_figures_that_zoom(page):
 
 
 def test_the_terminal_tells_of_the_tool_first(tool, tmp_path, capsys):
-    show_run(tool[1], tmp_path, [], [])
+    show(run_items(*tool))
     lines = capsys.readouterr().out
     assert lines.startswith("The tool misses its rigid path")
     assert lines.index("The payload's centre of mass") < lines.index("peak / travel")
@@ -321,10 +322,10 @@ def test_small_shares_of_the_travel_keep_their_digits(tool, capsys):
     shares = (None, 0.0123, 234.0)
     axes = [replace(axis, per_cent=share) for axis, share in zip(found.axes, shares, strict=True)]
     found = replace(found, axes=axes)
-    _axes(found, "")
+    show([axes_table(found)])
     lines = capsys.readouterr().out.splitlines()
     assert [line.split()[-1] for line in lines if line.split()[:1] in (["x"], ["y"], ["z"])] == ["n/a", "0.012", "230"]
-    table = _axis_table(found)
+    table = html.parts([distances_table(found)])
     assert all(words in table for words in ("n/a", "0.012\N{NO-BREAK SPACE}%", "230\N{NO-BREAK SPACE}%"))
 
 
@@ -356,7 +357,7 @@ def test_a_machine_with_real_parts_has_its_error_budget():
 
 
 def test_a_report_names_the_parts_that_are_not_ideal():
-    machine, ideal = (" ".join(study_words(preset(name), None)) for name in ("machine-hexapod", "paper-robot"))
+    machine, ideal = (html.parts(study_items(preset(name), None)) for name in ("machine-hexapod", "paper-robot"))
     assert "Other parts that count: give of the joints at the base," in machine
     assert "heat of the screws, friction of the joints at the base." in machine
     assert "Tolerances: base joints, platform joints, leg offset, lead." in machine

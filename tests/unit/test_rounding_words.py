@@ -11,8 +11,7 @@ from flexapod import plot
 from flexapod.app.view.charts import Chart, _readout, charts
 from flexapod.study.after.summary import summary
 from flexapod.study.before.estimates import buckling_load
-from flexapod.study.words import length
-from flexapod.words import rounded_up
+from flexapod.words import length, rounded_up
 
 
 @pytest.fixture(scope="module")

@@ -5,10 +5,12 @@ import pytest
 from tests.texts import replaced
 
 from flexapod import model
-from flexapod.app.check_words import show_robot
+from flexapod.document import html
+from flexapod.document.check import check_items
+from flexapod.document.study import study_items
+from flexapod.document.terminal import show
 from flexapod.errors import InputError
 from flexapod.model import MATERIALS, Bearing, Nut, ScrewDrive
-from flexapod.report.study_words import study_words
 from flexapod.study.before.describe.robot import describe
 from flexapod.study.before.describe.screw import back_words, describe_screw, describe_screws, screw_remarks
 from flexapod.study.before.screws import (
@@ -154,9 +156,9 @@ class TestCheck:
     def test_numbers_by_hand(self, capsys):
         study = model.preset("machine-hexapod")
         found = describe(study)
-        show_robot(found)
+        show(check_items(found))
         assert "Screws, largest values on the path" in capsys.readouterr().out
-        report = "".join(study_words(study, found)).replace("\xa0", " ")
+        report = html.parts(study_items(study, found)).replace("\xa0", " ")
         assert "Screws, largest values on the path" in report and "screw of 28.74 mm with a lead of 10 mm" in report
         worst = max(found.screws, key=lambda leg: leg.thrust.value)
         assert worst.thrust.value == pytest.approx(max(leg.force_max.value for leg in found.legs))

@@ -9,15 +9,14 @@ from typer.testing import CliRunner
 
 import flexapod as fx
 from flexapod.app.cli import app
+from flexapod.document import html
 from flexapod.model import ActuatorStudy, override
-from flexapod.report import html
 from flexapod.report.page import warnings_section
 from flexapod.solve.parts import part_stiffness
 from flexapod.study.before.describe.robot import describe
 from flexapod.study.counted import budget_counts, run_counts
 from flexapod.study.ideal import MACHINES, ideal_words
-from flexapod.study.words import brief
-from flexapod.words import along_axes
+from flexapod.words import along_axes, brief
 
 RUN = CliRunner()
 KINDS = {"joints": ("base_joint", "platform_joint"), "plates": ("base_plate", "top_plate")}

@@ -3,7 +3,7 @@
 from flexapod import model
 from flexapod.app.view.budget_panel import budget_html, chart_html
 from flexapod.scene.colours import ERRORS
-from flexapod.study.budgets.words import Bar
+from flexapod.study.budgets.sentences import Bar
 
 
 def test_bars_are_as_long_as_the_errors_and_names_are_not_live():

@@ -4,8 +4,9 @@ import xarray as xr
 from tests.mechanisms import ROBOTS
 
 import flexapod as fx
+from flexapod.document import html
+from flexapod.document.study import _path
 from flexapod.model import AxisMotion, Study
-from flexapod.report.study_words import _path
 from flexapod.study.before.describe.robot import Singularity, describe_legs
 from flexapod.study.cause_words import cause_words
 from flexapod.study.path import RigidPath
@@ -26,7 +27,7 @@ def table(name):
             home_smallest_singular_value=1, home_condition=1, smallest_singular_value=1, condition=1, time=0
         )
 
-    return _path(Found)[1].replace("\xa0", " ")
+    return html.parts(_path(Found)).replace("\xa0", " ")
 
 
 def test_the_report_shows_what_drives_move():

@@ -2,7 +2,7 @@
 
 from __future__ import annotations
 
-from collections.abc import Sequence
+from itertools import chain
 from pathlib import Path
 from typing import TYPE_CHECKING, Annotated
 
@@ -28,7 +28,8 @@ def budget(
     """Error budget of the tool: which part adds what, and what halving the largest error would bring."""
     from flexapod import model
     from flexapod.app.map_options import parse_pose
-    from flexapod.app.terminal import print_json, progress_bar
+    from flexapod.document.budget import budget_as_dict, budget_items
+    from flexapod.document.terminal import progress_bar, tell
     from flexapod.errors import InputError
     from flexapod.study import budget as compute
     from flexapod.study.counted import budget_counts
@@ -44,10 +45,8 @@ def budget(
         )
     files = [] if out is None else _write(data, out, figure=not no_figures)
     ideal, counts = ideal_words(study.robot), None if motion else budget_counts(study.robot)
-    if json:
-        print_json({**_as_dict(data, files), "ideal": ideal, "counts": counts})
-    else:
-        _show(data, files, (ideal, counts), verbose=verbose)
+    items = chain(budget_items(data, (ideal, counts)), map("Written: {}".format, files))
+    tell(items, lambda: {**budget_as_dict(data, files), "ideal": ideal, "counts": counts}, json=json, verbose=verbose)
 
 
 def _write(data: Dataset, folder: Path, *, figure: bool) -> list[Path]:
@@ -56,50 +55,3 @@ def _write(data: Dataset, folder: Path, *, figure: bool) -> list[Path]:
 
     files = [save(data, folder / "budget.nc")]
     return [*files, *(plot.save(plot.budget(data), folder / "budget") if figure else ())]
-
-
-def _as_dict(data: Dataset, files: list[Path]) -> dict[str, object]:
-    kinds = list(map(str, data.kind.values))
-    parts = [
-        {
-            "part": str(part),
-            "nature": str(data.nature.values[i]),
-            "share": float(data.share[i]),
-            **{kind: data.budget.values[i, k].tolist() for k, kind in enumerate(kinds) if data.how.values[i, k]},
-            "how": {kind: str(data.how.values[i, k]) for k, kind in enumerate(kinds) if data.how.values[i, k]},
-        }
-        for i, part in enumerate(data.part.values)
-    ]
-    whole = ("worst", "rss", "repeatability_unidirectional", "repeatability_bidirectional")
-    return {
-        "summary": data.attrs["summary"].splitlines(),
-        "components": list(map(str, data.component.values)),
-        "parts": parts,
-        "total": dict(zip(kinds, data.budget_total.values.tolist(), strict=True)),
-        "residual": dict(zip(kinds, data.budget_residual.values.tolist(), strict=True)),
-        **{name: data[name].values.tolist() for name in whole},
-        "pose_accuracy": dict(zip(map(str, data.state.values), data.pose_accuracy.values.tolist(), strict=True)),
-        **({"worst_time": float(data.worst_time)} if "worst_time" in data else {}),
-        "warnings": [line for line in data.attrs["warnings"].splitlines() if line],
-        "files": files,
-    }
-
-
-def _show(data: Dataset, files: list[Path], also: Sequence[str | None], *, verbose: bool) -> None:
-    from flexapod.app.terminal import print_remarks, print_table, print_text
-    from flexapod.study.budgets.words import table
-
-    first, *further = data.attrs["summary"].splitlines()
-    print_text(first)
-    print_text()
-    if data.sizes["part"]:
-        head, rows = table(data)
-        print_table(head, rows, left=(0, 1))
-        print_text()
-    for line in further:
-        print_text(line)
-    for line in filter(None, also):
-        print_text(line)
-    print_remarks(data.attrs["warnings"].splitlines(), verbose=verbose, title="Warning: ")
-    for path in files:
-        print_text(f"Written: {path}")

@@ -2,22 +2,21 @@
 
 from __future__ import annotations
 
+from itertools import chain
 from pathlib import Path
 from typing import TYPE_CHECKING, Annotated
 
 import typer
 
-from flexapod.app import terminal
 from flexapod.app.failures import guarded
 from flexapod.app.options import Json, NoFigures, Out, Quiet, StudyFile, as_options, results_folder, robot_study
-from flexapod.app.terminal import print_json, print_table, print_text
+from flexapod.document import terminal
 from flexapod.errors import InputError
 
 if TYPE_CHECKING:
     from xarray import Dataset
 
     from flexapod.study.record import Report
-    from flexapod.surveys.workspace.findings import Finding, MapFindings
 
 COMPUTING = 0.7  # share of the bar for the poses; the rest is for figures
 _FORM = '"surge=-100..100mm:41"'
@@ -54,6 +53,7 @@ def workspace_map(
 ) -> None:  # fmt: skip
     """Map frequencies, stiffness, deviations, forces and margins over poses: map.nc and figures."""
     from flexapod.app.map_options import parse_acceleration, parse_at, parse_axes, parse_direction
+    from flexapod.document.maps import map_items
     from flexapod.study.before.room import check_map
     from flexapod.surveys.workspace import workspace_map as compute
     from flexapod.surveys.workspace.findings import map_findings
@@ -79,10 +79,10 @@ def workspace_map(
             )
         files = _write(data, folder, mode, report, figures=not no_figures)
     found = map_findings(data, mode)
-    if json:
-        print_json(found.as_dict() | {"wall_time": data.attrs["wall_time"], "folder": folder, "files": files})
-    else:
-        _show(data, found, folder, files)
+    drawn = " and a figure of each quantity" if len(files) > 1 else ""
+    where = f"In {folder}: map.nc{drawn}. ({data.attrs['wall_time']:.2g} s of computation)"
+    more = {"wall_time": data.attrs["wall_time"], "folder": folder, "files": files}
+    terminal.tell(chain(map_items(data, found), [where]), lambda: found.as_dict() | more, json=json)
 
 
 def _write(data: Dataset, folder: Path, mode: int, report: Report, *, figures: bool) -> list[Path]:
@@ -97,54 +97,3 @@ def _write(data: Dataset, folder: Path, mode: int, report: Report, *, figures: b
         report(f"drawing {name.replace('_', ' ')}", COMPUTING + (1 - COMPUTING) * k / len(names))
         files += plot.save(plot.workspace_map(data, name, mode=mode), folder / f"map-{name.replace('_', '-')}")
     return files
-
-
-def _show(data: Dataset, found: MapFindings, folder: Path, files: list[Path]) -> None:
-    from flexapod.surveys.workspace.findings import axis_words
-
-    share = found.reached / found.poses
-    print_text(f"{found.reached} of {found.poses} poses are reached ({100 * share:.3g} %): {axis_words(data)}.")
-    for words, count in sorted(found.reasons.items(), key=lambda item: -item[1]):
-        print_text(f"{count}: {words}", indent=2)
-    if not found.quantities:
-        print_text("Nothing to map: choose other ranges or fixed coordinates.")
-    for name in ("frequency", "stiffness_least"):
-        for quantity in found.quantities:
-            if quantity.name == name:
-                print_text(_sentence(quantity))
-    print_text()
-    rows = [_row(quantity) for quantity in found.quantities]
-    if rows:
-        print_table(["", "unit", "least", "at", "largest", "at", "home"], rows, left=(0, 1, 3, 5))
-    for line in data.attrs["warnings"].splitlines():
-        print_text(f"Warning: {line}")
-    drawn = " and a figure of each quantity" if len(files) > 1 else ""
-    print_text(f"In {folder}: map.nc{drawn}. ({data.attrs['wall_time']:.2g} s of computation)")
-
-
-def _sentence(found: Finding) -> str:
-    from flexapod.study.poses import coordinate_words
-    from flexapod.study.words import text
-
-    words = found.words[0].upper() + found.words[1:]
-    return (
-        f"{words}: {text(found.least, found.unit)} to {text(found.largest, found.unit)}; "
-        f"least at {coordinate_words(found.least_at)}."
-    )
-
-
-def _row(found: Finding) -> list[str]:
-    from flexapod.study.poses import coordinate_words
-    from flexapod.study.words import column
-
-    home = float("nan") if found.home is None else found.home
-    unit, (least, largest, at_home) = column([found.least, found.largest, home], found.unit)
-    return [
-        found.words,
-        unit,
-        least,
-        coordinate_words(found.least_at),
-        largest,
-        coordinate_words(found.largest_at),
-        "" if found.home is None else at_home,
-    ]

@@ -3,6 +3,7 @@
 from __future__ import annotations
 
 import string
+from itertools import chain
 from pathlib import Path
 from typing import TYPE_CHECKING, Annotated
 
@@ -20,15 +21,14 @@ from flexapod.app.options import (
     refuse_existing,
     robot_study,
 )
-from flexapod.app.terminal import print_json, print_table, print_text
+from flexapod.document.terminal import tell
 from flexapod.errors import InputError
 from flexapod.files import write_text
 
 if TYPE_CHECKING:
     from xarray import Dataset
 
-    from flexapod.model import ActuatorStudy, Study
-    from flexapod.typing import Array
+    from flexapod.model import Study
 
 Folder = Annotated[
     Path | None,
@@ -50,6 +50,7 @@ def modes(
     """
     from flexapod import model
     from flexapod.app.map_options import parse_pose
+    from flexapod.document.modes import modes_as_dict, modes_items
     from flexapod.study import modes as compute
 
     study = model.load(file)
@@ -59,11 +60,8 @@ def modes(
     of_robot = isinstance(study, model.Study)
     shaken, sentences = _shaken(study, parse_pose(pose)) if of_robot else (None, ())
     files = [] if out is None else _write_modes(data, shaken, out, figure=of_robot and not no_figures)
-    if json:
-        print_json(_modes_as_dict(data, shaken, files))
-    else:
-        _show_modes(data, _robot_words(study, data, pose) if of_robot else _beam_words(study), count)
-        _show_end(data, sentences, files)
+    items = chain(modes_items(study, data, pose, count, sentences), map("Written: {}".format, files))
+    tell(items, lambda: modes_as_dict(data, shaken, files), json=json)
 
 
 def _shaken(study: Study, pose: dict[str, float] | None) -> tuple[Dataset | None, tuple[str, ...]]:
@@ -91,67 +89,6 @@ def _write_modes(data: Dataset, shaken: Dataset | None, folder: Path, *, figure:
         files.append(save(shaken, folder / "vibration.nc"))
         files += plot.save(plot.vibration(shaken), folder / "vibration") if figure else ()
     return files
-
-
-def _modes_as_dict(data: Dataset, shaken: Dataset | None, files: list[Path]) -> dict[str, object]:
-    found = [
-        {"mode": int(m), "frequency": float(f), "damping_ratio": float(d), "kind": str(kind)}
-        for m, f, d, kind in zip(data.mode, data.frequency, data.damping_ratio, data.kind.values, strict=True)
-    ]
-    for mode, share in zip(found, data.payload_share.values if "payload_share" in data else (), strict=False):
-        mode["payload_share"] = float(share)
-    return {
-        "modes": found,
-        **({"com_sag": data.com_sag.values.tolist()} if "com_sag" in data else {}),
-        **({} if shaken is None else {"vibration_rms": shaken.vibration_rms.values.tolist()}),
-        "warnings": [line for line in data.attrs["warnings"].splitlines() if line],
-        "files": files,
-    }
-
-
-def _robot_words(study: Study, data: Dataset, pose: str | None) -> str:
-    from flexapod.study.words import held, signed
-
-    where, sag = f"at {pose} from home" if pose else "at home", data.com_sag.values
-    rest = f"about the static equilibrium (the centre of mass is off by {signed(sag)})"
-    return f"{held(study.robot)}, {where}, {rest}."
-
-
-def _beam_words(study: ActuatorStudy) -> str:
-    return f"Hub and extension held, about the straight beam, {study.actuator.free_length:.4g} m of it outside the hub."
-
-
-def _show_modes(data: Dataset, words: str, count: int) -> None:
-    from flexapod.study.words import column
-
-    print_text(words)
-    print_text()
-    shown = data.isel(mode=slice(0, count))
-    _, frequencies = column(shown.frequency.values, "Hz", 6)
-    _, ratios = column(100 * shown.damping_ratio.values, "")
-    head, columns = ["mode", "frequency [Hz]", "damping [%]"], [frequencies, ratios]
-    if "payload_share" in shown:  # of a robot
-        head += ["of the payload [%]", "of the legs [%]"]
-        columns += [_per_cent(shown.payload_share.values), _per_cent(shown.leg_share.values.sum(axis=-1))]
-    kinds = map(str, shown.kind.values)
-    rows = [[str(int(m)), *row] for m, *row in zip(shown.mode, *columns, kinds, strict=True)]
-    print_table([*head, "what moves most, by its kinetic energy"], rows, left=(len(head),))
-    if data.sizes["mode"] > count:
-        print_text(f"The lowest {count} of {data.sizes['mode']} modes; more with --count.")
-
-
-def _per_cent(shares: Array) -> list[str]:
-    return [f"{100 * abs(share):.0f}" for share in shares]
-
-
-def _show_end(data: Dataset, sentences: tuple[str, ...], files: list[Path]) -> None:
-    """What disturbances do, warnings, files."""
-    for sentence in sentences:
-        print_text(f"{sentence[0].upper()}{sentence[1:]}.")
-    for line in data.attrs["warnings"].splitlines():
-        print_text(f"Warning: {line}")
-    for path in files:
-        print_text(f"Written: {path}")
 
 
 NAMES = frozenset(string.ascii_letters + string.digits + "-_")
@@ -189,10 +126,14 @@ def export(
     with as_options(elements="--elements", modes="--count", pose="--pose"):
         text = abaqus_deck(study, parse_pose(pose), elements=elements, modes=count, title=title)
     write_text(path, text, encoding="ascii", errors="replace")
-    if json:
-        print_json({"file": path, "format": format, "elements": elements, "modes": count})
-    else:
-        _show_deck(path, file, pose)
+    at = f' --pose "{pose}"' if pose else ""
+    items = [
+        f"Written: {path}",
+        f"Run it with `ccx -i {path.with_suffix('')}` (CalculiX) or `abaqus job={path.stem}` (Abaqus).",
+        f"Compare its frequencies and its sag with `flexapod modes {file}{at}`.",
+        "Bending of slender pistons lies parts in ten thousand lower: a solid has shear and rotary inertia.",
+    ]
+    tell(items, lambda: {"file": path, "format": format, "elements": elements, "modes": count}, json=json)
 
 
 def _check_file(path: Path, force: bool) -> None:
@@ -211,11 +152,3 @@ def _check_file(path: Path, force: bool) -> None:
             next_step="Name the deck with --out NAME.inp",
         )
     refuse_existing(path, force)
-
-
-def _show_deck(path: Path, file: Path, pose: str | None) -> None:
-    at = f' --pose "{pose}"' if pose else ""
-    print_text(f"Written: {path}")
-    print_text(f"Run it with `ccx -i {path.with_suffix('')}` (CalculiX) or `abaqus job={path.stem}` (Abaqus).")
-    print_text(f"Compare its frequencies and its sag with `flexapod modes {file}{at}`.")
-    print_text("Bending of slender pistons lies parts in ten thousand lower: a solid has shear and rotary inertia.")

@@ -2,16 +2,17 @@
 
 from __future__ import annotations
 
+from collections.abc import Iterator
 from dataclasses import asdict
 from pathlib import Path
 from typing import TYPE_CHECKING, Annotated
 
 import typer
 
-from flexapod.app import terminal
 from flexapod.app.failures import guarded
 from flexapod.app.options import Json, NoFigures, Quiet, check_writable
-from flexapod.app.terminal import print_json, print_table, print_text
+from flexapod.document import terminal
+from flexapod.document.parts import Bullets, Item, Section, Table
 from flexapod.files import write_text
 
 if TYPE_CHECKING:
@@ -39,24 +40,23 @@ def replicate(
     with terminal.progress_bar(quiet=quiet or json) as report:
         result = repeat(out, engines=engines, figures=not no_figures, progress=report)
     found, table, agreed = summary(result["robot"]), claims(result), agreements(result.parts)
-    if json:
+
+    def data() -> dict[str, object]:
         files = sorted(path for path in out.rglob("*") if path.is_file())
         more = {"engines": [asdict(row) for row in agreed]} if engines else {}
-        print_json({"summary": found.as_dict(), "claims": [asdict(claim) for claim in table], **more, "files": files})
-        _fail(result)
-        return
-    print_text(found.sentence)
-    print_text("The paper prints about 5 mm in Y and 10 mm in Z. Its claims one by one:")
-    for claim in table:
-        print_text(f"{claim.where}: {claim.says}: {claim.verdict} ({claim.ours})", indent=2)
+        return {"summary": found.as_dict(), "claims": [asdict(claim) for claim in table], **more, "files": files}
+
+    told = [f"{claim.where}: {claim.says}: {claim.verdict} ({claim.ours})" for claim in table]
+    items = [
+        found.sentence,
+        Section("The paper prints about 5 mm in Y and 10 mm in Z. Its claims one by one:", told, close=True),
+    ]
     if agreed:
-        print_text("Exudyn, an independent engine, against us (largest values):")
-    for row in agreed:
-        print_text(f"{row.quantity}: {row.words}", indent=2)
-    print_text()
-    print_text(
-        f"In {out}: report.html (open it in a browser), claims.md, {'' if no_figures else 'figures/ '}and data/."
-    )
+        theirs = [f"{row.quantity}: {row.words}" for row in agreed]
+        items += [Section("Exudyn, an independent engine, against us (largest values):", theirs, close=True)]
+    figures = "" if no_figures else "figures/ "
+    items += ["", f"In {out}: report.html (open it in a browser), claims.md, {figures}and data/."]
+    terminal.tell(items, data, json=json)
     _fail(result)
 
 
@@ -82,7 +82,6 @@ def verify(
     quiet: Quiet = False,
 ) -> None:
     """Compute cases with published or closed-form answers: reference, ours, tolerance, verdict, time."""
-    from flexapod.proof import page
     from flexapod.proof.pack import verify as compute
 
     for key, file in (("--html", html), ("--markdown", markdown)):
@@ -97,49 +96,50 @@ def verify(
     passed = not interrupted and all(o.passed or o.not_run for o in outcomes)
     if not interrupted:
         _write(outcomes, html, markdown)
-    if json:
-        state = {"passed": passed, "complete": not interrupted}
-        print_json({**state, "cases": [o.as_dict() for o in outcomes]})
-    else:
-        print_table(page.HEAD, page.rows(outcomes), left=(0, 1))
-        print_text()
-        print_text("Sources of the references")
-        for o in outcomes:
-            print_text(f"  {o.case.name}: {o.case.source}")
-            for fault in page.faults(o):
-                print_text(f"    {fault}")
-        print_text()
-        print_text(page.sentence(outcomes))
+    state = {"passed": passed, "complete": not interrupted}
+    terminal.tell(_verified(outcomes), lambda: {**state, "cases": [o.as_dict() for o in outcomes]}, json=json)
     if interrupted:
         raise KeyboardInterrupt
     if not passed:
         raise typer.Exit(1)
 
 
-def _write(outcomes: list[Outcome], html: Path | None, markdown: Path | None) -> None:
+def _verified(outcomes: list[Outcome]) -> Iterator[Item]:
+    """The table of the cases, sources of their references, how many agree."""
     from flexapod.proof import page
-    from flexapod.report import html as parts
+
+    yield Table(page.HEAD, page.rows(outcomes), left=(0, 1))
+    yield ""
+    yield "Sources of the references"
+    for o in outcomes:
+        yield f"  {o.case.name}: {o.case.source}"
+        yield from (f"    {fault}" for fault in page.faults(o))
+    yield ""
+    yield page.sentence(outcomes)
+
+
+def _write(outcomes: list[Outcome], html: Path | None, markdown: Path | None) -> None:
+    from flexapod.document.html import page as whole
+    from flexapod.document.html import section
+    from flexapod.proof import page
 
     if markdown is not None:
         write_text(markdown, page.markdown(outcomes))
     if html is not None:
         marks = {"pass": "good", "fail": "bad", "not computed": "bad", "not run": "open"}
         cases = [
-            parts.section(o.case.name, o.case.name, parts.paragraph(f"{o.case.statement}."),
-                          parts.bullets(page.notes(o)), _checks(o))
+            section(o.case.name, o.case.name, [f"{o.case.statement}.", Bullets(page.notes(o)), _checks(o)])
             for o in outcomes
-        ]  # fmt: skip
-        table = parts.table(page.HEAD, page.rows(outcomes), marks)
-        write_text(html, parts.page("flexapod: verification", page.sentence(outcomes), [table, *cases]))
+        ]
+        table = Table(page.HEAD, page.rows(outcomes), marks=marks)
+        write_text(html, whole("flexapod: verification", page.sentence(outcomes), [table, *cases]))
 
 
-def _checks(outcome: Outcome) -> str:
-    from flexapod.report import html as parts
-
+def _checks(outcome: Outcome) -> Table:
     head = ("What", "Reference", "Ours", "Error", "Tolerance", "Verdict")
     rows = [
         (c.what, f"{c.reference:.10g}", f"{c.ours:.10g}", f"{c.error:.2g}", f"{c.tolerance:.2g}",
          "reference at fault" if c.fault else "pass" if c.passed else "fail")
         for c in outcome.checks
     ]  # fmt: skip
-    return parts.table(head, rows, {"pass": "good", "fail": "bad"})
+    return Table(head, rows, marks={"pass": "good", "fail": "bad"})

@@ -2,17 +2,22 @@
 
 from __future__ import annotations
 
+from collections.abc import Sequence
 from dataclasses import replace
 from pathlib import Path
-from typing import Annotated
+from typing import TYPE_CHECKING, Annotated
 
 import typer
 
 from flexapod.app.failures import guarded
 from flexapod.app.options import Force, Json, StudyFile, Verbose, as_options, refuse_existing
-from flexapod.app.terminal import print_json, print_table, print_text
+from flexapod.document import parts
+from flexapod.document.terminal import tell
 from flexapod.errors import InputError
 from flexapod.files import write_text
+
+if TYPE_CHECKING:
+    from flexapod.model.page import Listed
 
 Name = Annotated[Path, typer.Argument(metavar="NAME.toml", help="File to write.")]
 Preset = Annotated[
@@ -56,13 +61,9 @@ def new(
     else:
         text, source, remarks = _first_robot(request, preset, ideal=ideal)
     write_text(path, text)
-    if json:
-        print_json({"file": path, **source, **({} if request is None else {"remarks": remarks})})
-        return
-    for line in remarks:
-        print_text(line)
     words = f", from the preset {source['preset']}" if "preset" in source else ""
-    print_text(f"{path} written{words}. Edit it, then: flexapod check {path}")
+    data = {"file": path, **source, **({} if request is None else {"remarks": remarks})}
+    tell([*remarks, f"{path} written{words}. Edit it, then: flexapod check {path}"], lambda: data, json=json)
 
 
 def _preset(name: str) -> tuple[str, dict[str, object], list[str]]:
@@ -74,7 +75,7 @@ def _preset(name: str) -> tuple[str, dict[str, object], list[str]]:
 
 def _first_robot(request: str, preset: str | None, *, ideal: bool) -> tuple[str, dict[str, object], list[str]]:
     """Text of a first robot, what it is from, and what there is to say about it."""
-    from flexapod.app.first_words import first_words
+    from flexapod.document.first import first_words
     from flexapod.study.first import IDEAL, first_robot, parse_request
 
     if preset is not None:
@@ -106,36 +107,28 @@ def keys(table: Table = None, markdown: Markdown = None, json: Json = False) -> 
     if markdown is not None:
         write_text(markdown, page.markdown())
     found = page.listed(table)
-    if json:
-        print_json([asdict(item) for item in found])
-    elif markdown is not None:
-        print_text(f"{markdown} written.")
-    else:
-        for item in found:
-            entry = item.entry
-            print_text(f"[{entry.table}] {entry.title}".rstrip() + (f" ({entry.study})" if table is None else ""))
-            print_text(entry.words, indent=2)
-            if item.rows:
-                print_table([f"  {page.HEAD[0]}", *page.HEAD[1:]], [
-                    [f"  {row.key}", row.what, row.unit, row.default, row.allowed] for row in item.rows
-                ], left=range(len(page.HEAD)))  # fmt: skip
-            print_text()
-            for line in entry.example.strip().splitlines():
-                print_text(line, indent=4)
-            print_text()
+    written = None if markdown is None else [f"{markdown} written."]
+    told = (_key_section(item, page.HEAD, alone=table is not None) for item in found)
+    tell(written or told, lambda: [asdict(item) for item in found], json=json)
+
+
+def _key_section(found: Listed, head: Sequence[str], *, alone: bool) -> parts.Section:
+    """A table of a study file: its words, its keys, an example."""
+    entry = found.entry
+    title = f"[{entry.table}] {entry.title}".rstrip() + ("" if alone else f" ({entry.study})")
+    rows = [[row.key, row.what, row.unit, row.default, row.allowed] for row in found.rows]
+    keys = [parts.Table(head, rows, left=range(len(head)))] if rows else []
+    return parts.Section(
+        title, [parts.Text(entry.words), *keys, "", parts.Lines(entry.example.strip()), ""], close=True
+    )
 
 
 @guarded
 def check(file: StudyFile, verbose: Verbose = False, json: Json = False) -> None:
     """Validate a study and say in words what it asks of its legs: lengths, strokes, loads, stiffness, frequencies."""
-    from flexapod.app.check_words import show_actuator, show_robot
+    from flexapod.document.check import check_items
     from flexapod.model import load
-    from flexapod.study.before.describe.robot import RobotDescription, describe
+    from flexapod.study.before.describe.robot import describe
 
     found = describe(load(file))
-    if json:
-        print_json(found.as_dict())
-    elif isinstance(found, RobotDescription):
-        show_robot(found, verbose=verbose)
-    else:
-        show_actuator(found, verbose=verbose)
+    tell(check_items(found), found.as_dict, json=json, verbose=verbose)

@@ -4,15 +4,15 @@ from __future__ import annotations
 
 import shlex
 import sys
+from itertools import chain
 from pathlib import Path
 from typing import TYPE_CHECKING, Annotated
 
 import typer
 
-from flexapod.app import terminal
 from flexapod.app.failures import INTERRUPTED, guarded, print_parts, stopped
 from flexapod.app.options import Json, NoFigures, Out, Quiet, StudyFile, as_options, results_folder
-from flexapod.app.terminal import print_json, print_text
+from flexapod.document import terminal
 from flexapod.loading import without
 
 if TYPE_CHECKING:
@@ -81,14 +81,11 @@ def _write_sweep(data: Dataset, folder: Path, *, figure: bool) -> list[Path]:
 
 
 def _say_sweep(data: Dataset, folder: Path, files: list[Path], *, json: bool) -> None:
-    from flexapod.app.survey_words import show_sweep, sweep_as_dict
+    from flexapod.document.surveys import sweep_as_dict, sweep_items
 
-    if json:
-        print_json({**sweep_as_dict(data), "folder": folder, "files": files})
-        return
-    show_sweep(data)
-    print_text()
-    print_text(f"In {folder}: {', '.join(path.name for path in files)}.")
+    where = f"In {folder}: {', '.join(path.name for path in files)}."
+    places = {"folder": folder, "files": files}
+    terminal.tell(chain(sweep_items(data), ["", where]), lambda: sweep_as_dict(data) | places, json=json)
 
 
 def _stopped_sweep(data: Dataset, *, json: bool) -> None:
@@ -124,7 +121,7 @@ def converge(
     with as_options(accuracy="--accuracy"):
         count, seconds = estimate(trials, accuracy)
     if not (json or quiet):
-        print_text(
+        terminal.print_text(
             f"About {count} settings, {_rough(seconds)}; the first time a few seconds more for each number of "
             "shapes that is compiled."
         )
@@ -178,16 +175,16 @@ def _write(data: Dataset, folder: Path, name: str, *, figure: bool) -> list[Path
 
 
 def _say(tables: dict[str, Dataset], folder: Path, files: list[Path], *, json: bool) -> None:
-    from flexapod.app.survey_words import convergence_as_dict, show_convergence, show_ladder
+    from flexapod.document.surveys import convergence_as_dict, convergence_items, ladder_items
 
-    if json:
+    def data() -> dict[str, object]:
         found = {name: convergence_as_dict(data) for name, data in tables.items()}
-        print_json({**found.get("convergence", {}), "ladder": found.get("ladder"), "folder": folder, "files": files})
-        return
-    for name, data in tables.items():
-        {"convergence": show_convergence, "ladder": show_ladder}[name](data)
-    print_text()
-    print_text(f"In {folder}: {', '.join(path.name for path in files)}.")
+        return {**found.get("convergence", {}), "ladder": found.get("ladder"), "folder": folder, "files": files}
+
+    said = {"convergence": convergence_items, "ladder": ladder_items}
+    where = f"In {folder}: {', '.join(path.name for path in files)}."
+    items = (item for name, data in tables.items() for item in said[name](data))
+    terminal.tell(chain(items, ["", where]), data, json=json)
 
 
 def _stopped(tables: dict[str, Dataset], *, json: bool) -> None:

@@ -13,7 +13,7 @@ import typer
 
 from flexapod.app.failures import guarded
 from flexapod.app.options import Json
-from flexapod.app.terminal import print_json, print_text
+from flexapod.document.terminal import tell
 from flexapod.errors import InputError
 
 LOCAL = "127.0.0.1"
@@ -113,9 +113,6 @@ def _say(page: str, host: str, *, json: bool) -> None:
     from flexapod.app.view.network import is_local
 
     local = is_local(host)
-    if json:
-        print_json({"address": page, "local": local})
-        return
     said = f"The page is at {page} ; Ctrl-C ends it."
     if not local:
         said += (
@@ -123,4 +120,5 @@ def _say(page: str, host: str, *, json: bool) -> None:
             "study, download its results, upload studies of their own and have them computed here. "
             "There is no password."
         )
-    print_text(said)  # at once: whoever reads the address may end it before another line is written
+    # at once: whoever reads the address may end it before another line is written
+    tell([said], lambda: {"address": page, "local": local}, json=json)

@@ -115,7 +115,7 @@ def write_data(data: Dataset, folder: Path) -> list[Path]:
 
 def write_all(data: Dataset, folder: Path, report: Report, formats: Sequence[str]) -> list[Path]:
     """Data, figures in the formats asked for (none: no figures), ``report.html``; `report` is told what is written."""
-    from flexapod.report import html
+    from flexapod.document import html
     from flexapod.report.figures import Drawn, drawing
     from flexapod.report.page import write_report
 

@@ -24,7 +24,7 @@ from flexapod.paper.claim import (
 from flexapod.paper.energies import TIP_MASS
 from flexapod.paper.rows import Said, row
 from flexapod.paper.study import ACTUATOR_MODES, PaperStudy
-from flexapod.study.words import text
+from flexapod.words import text
 
 ALUMINIUM = (70e9, 2700.0)  # E [Pa], density [kg/m^3]; its alloys lie within 5 %, steel at three times as much
 ALLOYS = 0.05

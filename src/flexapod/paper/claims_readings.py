@@ -20,7 +20,7 @@ from flexapod.paper.readings import CUBE, MODULI, about_platform, cube_edge
 from flexapod.paper.rows import Said, row
 from flexapod.paper.study import PaperStudy
 from flexapod.scene.robot import robot_study
-from flexapod.study.words import number, text
+from flexapod.words import number, text
 
 SAYS = "5 mm in Y and 10 mm in Z"
 PRINTED = f"{1e3 * ELASTIC_LENGTH:.0f} mm"

@@ -27,7 +27,7 @@ from flexapod.paper.readings import TRAVELS
 from flexapod.paper.rows import Said, row
 from flexapod.scene.robot import robot_study
 from flexapod.study.before.estimates import section_width
-from flexapod.study.words import number, text
+from flexapod.words import number, text
 
 TRAVEL, TRAVEL_ROUNDED = 0.26, 0.005  # of a piston, Fig. 7; printed to 10 mm [m]
 SHEAR = 2.6 / 0.9  # E / kappa G of a round steel section: 2 (1 + 0.3), kappa = 0.9

@@ -25,7 +25,7 @@ from flexapod.paper.rows import Said, row
 from flexapod.paper.trials import load_share
 from flexapod.scene.robot import robot_study
 from flexapod.study.after.summary import AxisSummary, RobotSummary, summary
-from flexapod.study.words import text
+from flexapod.words import text
 
 PER_CENT = 6.0  # Abstract
 VISIBLE = 0.01  # deflection over length: the width of a line in a picture

@@ -23,7 +23,7 @@ from flexapod.paper.claim import (
 from flexapod.paper.claims_readings import SAYS
 from flexapod.paper.rows import Said, row
 from flexapod.scene.robot import robot_study
-from flexapod.study.words import number, text
+from flexapod.words import number, text
 
 FAR = 25.0  # half-angles up to here are one row [deg]
 NO_ANGLES = f"{SAYS}; no joint angles are given"

@@ -18,7 +18,7 @@ from flexapod.paper.claim import (
 from flexapod.paper.claims_readings import SAYS
 from flexapod.paper.rows import Said, row
 from flexapod.paper.welded import SLOPE, travel_share
-from flexapod.study.words import number, text
+from flexapod.words import number, text
 
 SAYS_MORE = f"{SAYS}, 6 %; a mode of a piston in Fig. 10"
 

@@ -15,7 +15,7 @@ from flexapod.plot.legs import force_panels
 from flexapod.plot.style import COLUMN, FLEXIBLE, NOTE, RIGID, figure, mark_end, needs, styled
 from flexapod.scene.colours import LEG_COLORS
 from flexapod.scene.robot import motion_end
-from flexapod.study.words import Scale, scale, text
+from flexapod.words import Scale, scale, text
 
 # From broad and pale to fine and dark: all show where they coincide.
 _BAND: dict[str, Any] = {"color": RIGID, "linewidth": 6.5, "solid_capstyle": "butt"}

@@ -22,8 +22,8 @@ from flexapod.study.attributes import attributes
 from flexapod.study.names import dataset
 from flexapod.study.record import Share
 from flexapod.study.simulation import simulate
-from flexapod.study.words import scale, text
 from flexapod.typing import Array
+from flexapod.words import scale, text
 
 NO_GUIDE = 0.0  # m; of rigid pistons
 RIGID_TOLERANCE = 1e-8  # N; Newton's method

@@ -15,7 +15,7 @@ from flexapod.paper.readings import actuator_preset, robot_preset
 from flexapod.paper.study import PaperStudy
 from flexapod.report.figures import Drawn, store
 from flexapod.study.record import Report
-from flexapod.study.words import text
+from flexapod.words import text
 
 _Plan = tuple[str, str, str, Callable[[], Figure]]
 ACTUATOR, ROBOT, VARIANTS = "Single actuator", "Robot", "What the deviation depends on"

@@ -30,8 +30,7 @@ from flexapod.plot.style import (
 )
 from flexapod.scene.colours import AXIS_COLORS, LEG_COLORS
 from flexapod.scene.robot import mode_scene, motion_end, robot_study
-from flexapod.study.words import number, scale, text
-from flexapod.words import rounded_up
+from flexapod.words import number, rounded_up, scale, text
 
 BENT = 0.18  # of the length of a leg: how far its mode is drawn off the line of its joints
 

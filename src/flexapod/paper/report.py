@@ -9,6 +9,10 @@ from xarray import Dataset
 
 from flexapod import model
 from flexapod.citations import CITATIONS
+from flexapod.document import html
+from flexapod.document.html import Html
+from flexapod.document.parts import Item, Lines, Section, Table, Text
+from flexapod.document.study import modes_table
 from flexapod.paper.claim import (
     BREAKS,
     COPY,
@@ -28,7 +32,6 @@ from flexapod.paper.engines import agreements
 from flexapod.paper.figures import ENGINE
 from flexapod.paper.study import PaperStudy
 from flexapod.proof.engines.engine import EXUDYN
-from flexapod.report import html
 from flexapod.report.figures import Drawn
 from flexapod.report.page import (
     by_axis,
@@ -39,10 +42,9 @@ from flexapod.report.page import (
     warnings_section,
 )
 from flexapod.report.replay import replay
-from flexapod.report.study_words import modes_table
 from flexapod.scene.robot import robot_study
 from flexapod.study.after.summary import summary
-from flexapod.study.words import number, scale, text
+from flexapod.words import number, scale, text
 
 _MARKS = {
     HOLDS: "good", HERE: "good", IN_PART: "open", NOT: "bad", OPEN: "open", MISPRINT: "bad", REACHES: "open",
@@ -67,26 +69,26 @@ def paper_page(result: PaperStudy, claims: Sequence[Claim], groups: Mapping[str,
         links[_anchor(ENGINE)] = ENGINE
     links |= {"modes": "Modes", "open": "Open values", "studies": "Studies", "solver": "Solver", "repeat": "Repeat"}
     body = [
-        html.paragraph(
-            "The paper prints about 5 mm in Y and 10 mm in Z. With its values, ideal joints and rigid drives the "
-            f"deviation is micrometres. {_backed_out(robot)} "
-            f"The paper: {paper.authors} ({paper.year}), {paper.title}.",
-        ),
+        "The paper prints about 5 mm in Y and 10 mm in Z. With its values, ideal joints and rigid drives the "
+        f"deviation is micrometres. {_backed_out(robot)} The paper: {paper.authors} ({paper.year}), {paper.title}.",
         html.contents(links),
         by_axis(robot),
         _claims(claims),
         _replay(robot, result["modes"], [drawn for group in groups.values() for drawn in group]),
         *(
-            figures_section(_anchor(name), name, drawn, first=i == 0)
+            section
             for i, (name, drawn) in enumerate(groups.items())
             if name != ENGINE
+            for section in figures_section(_anchor(name), name, drawn, first=i == 0)
         ),
         *([_engine(result, groups.get(ENGINE, ()))] if _asked(result) else []),
         _modes(result["modes"]),
         _open_values(),
         warnings_section(robot),
         _studies(),
-        html.section("solver", "Solver", *(_solver(result, name, words) for name, words in _SHOWN.items())),
+        html.section(
+            "solver", "Solver", [Section(words, [solver_table(result[name])]) for name, words in _SHOWN.items()]
+        ),
         repeat_section("Everything on this page, with data as NetCDF and CSV:", _command(result)),
     ]
     return html.page("flexapod: the paper's study", summary(robot).sentence, body)
@@ -103,19 +105,19 @@ def _backed_out(robot: Dataset) -> str:
     )
 
 
-def _replay(data: Dataset, modes: Dataset, figures: Sequence[Drawn]) -> str:
+def _replay(data: Dataset, modes: Dataset, figures: Sequence[Drawn]) -> Html:
     """The robot in motion and in its modes at the largest roll; on paper the figure of its end."""
     study = robot_study(data)
     still = next((figure for figure in figures if figure.name == "robot-end"), None)
     return replay_section(data, replay(study, data, modes), still)
 
 
-def _modes(modes: Dataset) -> str:
+def _modes(modes: Dataset) -> Html:
     """Frequencies, damping and kinds of the lowest modes at the largest roll."""
     shown = modes.isel(mode=slice(SHOWN_MODES))
     columns = (shown[name].values.tolist() for name in ("frequency", "damping_ratio", "kind"))
     words = "At the largest roll, drives locked, about the static equilibrium."
-    return html.section("modes", "Modes", html.paragraph(words, "soft"), modes_table(zip(*columns, strict=True)))
+    return html.section("modes", "Modes", [Text(words, "soft"), modes_table(zip(*columns, strict=True))])
 
 
 def _asked(result: PaperStudy) -> bool:
@@ -127,7 +129,7 @@ def _command(result: PaperStudy) -> str:
     return f"flexapod replicate {'--engines ' if _asked(result) else ''}--out DIR"
 
 
-def _engine(result: PaperStudy, figures: Sequence[Drawn]) -> str:
+def _engine(result: PaperStudy, figures: Sequence[Drawn]) -> Html:
     """What the engine is, how well it agrees with us, its figures, and how to repeat."""
     rows = []
     for row in agreements(result.parts):
@@ -136,16 +138,15 @@ def _engine(result: PaperStudy, figures: Sequence[Drawn]) -> str:
         rows.append((row.quantity, unit.text(row.ours, 5), unit.text(row.theirs, 5), *apart))
     head = ("Largest", "Ours", EXUDYN.name, "Largest difference of the curves", "Exudyn's last refinement changes")
     failures = [f"{name}: {error}" for name, error in result.failures.items()]
-    return html.section(
-        _anchor(ENGINE),
-        ENGINE,
-        *(html.paragraph(f"Not computed: {words}", "bad") for words in failures),
-        *(html.paragraph(words, "soft") for words in _engine_words(result)),
-        *([html.table(head, rows)] if rows else []),
+    told: list[Item] = [
+        *(Text(f"Not computed: {words}", "bad") for words in failures),
+        *(Text(words, "soft") for words in _engine_words(result)),
+        *([Table(head, rows)] if rows else []),
         *(html.figure(figure.title, figure.picture, figure.plot) for figure in figures),
-        html.paragraph("To repeat this:"),
-        html.code(f"{EXUDYN.install}\n{_command(result)}"),
-    )
+        "To repeat this:",
+        Lines(f"{EXUDYN.install}\n{_command(result)}"),
+    ]
+    return html.section(_anchor(ENGINE), ENGINE, told)
 
 
 def _engine_words(result: PaperStudy) -> list[str]:
@@ -178,7 +179,7 @@ def _anchor(name: str) -> str:
     return name.lower().replace(" ", "-")
 
 
-def _claims(claims: Sequence[Claim]) -> str:
+def _claims(claims: Sequence[Claim]) -> Html:
     rows = [(c.where, c.says, c.ours, c.verdict, c.reason) for c in claims]
     words = (
         "What the paper says, what we get, and why. Deviations are the largest of the centre of mass along each axis. "
@@ -186,23 +187,19 @@ def _claims(claims: Sequence[Claim]) -> str:
         "was at hand as a text made from its pages, without its figures: what that copy may have lost is said to stand "
         f"'{COPY}', what is so in any reading is said to be, and rows on figures say that these were not seen."
     )
-    return html.section("claims", "Claims", html.paragraph(words, "soft"), html.table(CLAIM_HEAD, rows, _MARKS))
+    return html.section("claims", "Claims", [Text(words, "soft"), Table(CLAIM_HEAD, rows, marks=_MARKS)])
 
 
-def _open_values() -> str:
+def _open_values() -> Html:
     """The values of the presets that the paper does not give, each with the reason for ours."""
-    parts = [html.paragraph("The paper does not give these values. Each is ours, for the reason beside it.", "soft")]
+    told: list[Item] = [Text("The paper does not give these values. Each is ours, for the reason beside it.", "soft")]
     for name in model.PAPER_PRESETS:
         rows = [(value.key, value.value, value.reason) for value in model.open_values(name)]
-        parts += [html.heading(name), html.table(("Value", "Ours", "Reason"), rows)]
-    return html.section("open", "Values that the paper leaves open", *parts)
+        told.append(Section(name, [Table(("Value", "Ours", "Reason"), rows)]))
+    return html.section("open", "Values that the paper leaves open", told)
 
 
-def _studies() -> str:
-    blocks = [html.code(model.preset_text(name), name) for name in model.PAPER_PRESETS]
+def _studies() -> Html:
     words = "Half-angles, jumps and drives change these presets; each data file carries its own study."
-    return html.section("studies", "Studies", html.paragraph(words, "soft"), *blocks)
-
-
-def _solver(result: PaperStudy, name: str, words: str) -> str:
-    return html.heading(words) + solver_table(result[name])
+    files = [Lines(model.preset_text(name), name) for name in model.PAPER_PRESETS]
+    return html.section("studies", "Studies", [Text(words, "soft"), *files])

@@ -13,7 +13,7 @@ from matplotlib.ticker import NullFormatter, ScalarFormatter
 from flexapod.paper.claim import PAPER_DEVIATION
 from flexapod.plot.style import COLUMN, PAGE, SMALL, figure, ink, styled
 from flexapod.scene.colours import AXIS_COLORS
-from flexapod.study.words import scale
+from flexapod.words import scale
 
 _MARKS = {"x": "^", "y": "o", "z": "s"}
 

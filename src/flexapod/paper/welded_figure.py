@@ -11,7 +11,7 @@ from flexapod.paper.claim import PAPER_DEVIATION
 from flexapod.paper.welded import SHARE, SLOPE, travel_share
 from flexapod.plot.style import COLUMN, SMALL, figure, ink, styled
 from flexapod.scene.colours import AXIS_COLORS
-from flexapod.study.words import number
+from flexapod.words import number
 
 _TITLES = {
     "diameters": "Circles as diameters, six legs",

@@ -22,7 +22,7 @@ from flexapod.plot.style import (
     styled,
 )
 from flexapod.scene.colours import LEG_COLORS
-from flexapod.study.words import cleared_lines, number, scale
+from flexapod.words import cleared_lines, number, scale
 
 _SWINGS, _SHOWN = 240, 12  # half swings: more of them are solid ink; and how many of those are shown beside
 _LARGER = ("angles", "elevations")  # towards which the tip of an actuator in space is deflected

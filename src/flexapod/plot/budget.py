@@ -12,9 +12,9 @@ from matplotlib.patches import Patch
 
 from flexapod.plot.style import NOTE, PAGE, SMALL, TEXT, figure, needs, styled
 from flexapod.scene.colours import ERRORS
-from flexapod.study.budgets.words import Bar, bars
-from flexapod.study.words import scale
+from flexapod.study.budgets.sentences import Bar, bars
 from flexapod.typing import Array
+from flexapod.words import scale
 
 __all__ = ["budget"]
 

@@ -11,7 +11,7 @@ from matplotlib.figure import Figure
 
 from flexapod.plot.style import FLEXIBLE, NOTE, PAGE, RIGID, figure, needs, styled
 from flexapod.scene.colours import LEG_COLORS
-from flexapod.study.words import number, scale
+from flexapod.words import number, scale
 
 
 @styled

@@ -25,7 +25,7 @@ from flexapod.plot.style import (
 from flexapod.scene.colours import LEG_COLORS, colors_of_legs
 from flexapod.scene.drives import drives
 from flexapod.scene.robot import motion_end
-from flexapod.study.words import NOTHING, Scale, scale, text
+from flexapod.words import NOTHING, Scale, scale, text
 
 ROUNDING = 1e-11  # of where drives stand
 _WORDS = {"rigid": "rigid legs", "lumped": "legs that stretch", "assumed-modes": "flexible legs"}

@@ -17,10 +17,9 @@ from matplotlib.ticker import LogLocator, MaxNLocator
 
 from flexapod.errors import InputError
 from flexapod.model import AXES
-from flexapod.plot.style import COLORS, NOTE, PAGE, SMALL, TEXT, figure, needs, styled
+from flexapod.plot.style import COLORS, NOTE, PAGE, SMALL, TEXT, edges_of, figure, needs, styled
 from flexapod.study.before.reach import REACHED, REASONS
 from flexapod.study.poses import coordinate_words
-from flexapod.study.words import Scale, number, scale
 from flexapod.surveys.workspace.findings import (
     SIDES,
     drawn,
@@ -33,6 +32,7 @@ from flexapod.surveys.workspace.findings import (
 from flexapod.surveys.workspace.grid import UNITS
 from flexapod.ties import first_largest, first_least
 from flexapod.typing import Array
+from flexapod.words import Scale, number, scale
 
 # Ground and hatching of what is not reached, by code; codes that rarely meet share one.
 GROUNDS = {
@@ -144,7 +144,7 @@ def _headline(fig: Figure, title: str) -> None:
 
 def _size(values: xr.DataArray, width: float) -> tuple[float, float]:
     """Width and height of a panel [in]: as the plane is, where both axes have the same unit."""
-    spans = [np.ptp(_edges(_shown(str(dim), values[dim].values))) for dim in values.dims[:2]]
+    spans = [np.ptp(edges_of(_shown(str(dim), values[dim].values))) for dim in values.dims[:2]]
     if UNITS[str(values.dims[0])] != UNITS[str(values.dims[1])]:
         return width, 0.75 * width
     ratio = spans[1] / spans[0]
@@ -173,18 +173,18 @@ def _levels(norm: Normalize) -> Sequence[float]:
 
 def _slice(axes: Axes, part: xr.DataArray, codes: xr.DataArray, unit: Scale, norm: Normalize):
     x, y = (_shown(str(dim), part[dim].values) for dim in part.dims)
-    _unreached(axes, _edges(x), _edges(y), codes.values)
+    _unreached(axes, edges_of(x), edges_of(y), codes.values)
     shown = np.ma.masked_invalid(unit(part.values).T)
     colors: Colormap | str = COLORS
-    image = axes.pcolormesh(_edges(x), _edges(y), shown, cmap=colors, norm=norm, rasterized=True, zorder=1)
+    image = axes.pcolormesh(edges_of(x), edges_of(y), shown, cmap=colors, norm=norm, rasterized=True, zorder=1)
     axes.grid(visible=False)
     if min(len(x), len(y)) > 4 and shown.count() > 12 and np.ptp(shown.compressed()) > 0:
         levels = _levels(norm)
         inks = np.where(norm(np.asarray(levels)) > BRIGHT, "#222222", "white").tolist()
         lines = axes.contour(x, y, shown, levels=levels, colors=inks, linewidths=0.7, zorder=2)
         axes.clabel(lines, fontsize=SMALL, fmt=lambda value: number(value))
-    axes.set_xlim(*_edges(x)[[0, -1]])
-    axes.set_ylim(*_edges(y)[[0, -1]])
+    axes.set_xlim(*edges_of(x)[[0, -1]])
+    axes.set_ylim(*edges_of(y)[[0, -1]])
     if len({UNITS[str(dim)] for dim in part.dims}) == 1:
         axes.set_aspect("equal", adjustable="box")
     return image
@@ -211,13 +211,6 @@ def _runs(mask: np.ndarray) -> Sequence[tuple[int, int]]:
     return list(zip(steps[::2].tolist(), steps[1::2].tolist(), strict=True))
 
 
-def _edges(centres: Array) -> Array:
-    if len(centres) == 1:
-        return centres[0] + np.array([-0.5, 0.5])
-    middle = 0.5 * (centres[1:] + centres[:-1])
-    return np.concatenate([[2 * centres[0] - middle[0]], middle, [2 * centres[-1] - middle[-1]]])
-
-
 def _shown(name: str, values: Array) -> Array:
     """Coordinates in mm and deg."""
     return 1e3 * values if UNITS[name] == "m" else np.rad2deg(values)
@@ -235,7 +228,7 @@ def _in_slice(values: Array, near: _Near | None) -> np.ndarray:
     if near is None:
         return np.ones(len(values), dtype=bool)
     _, places, k = near
-    edges = _edges(places)
+    edges = edges_of(places)
     return (values >= edges[k]) & (values <= edges[k + 1])
 
 
@@ -305,7 +298,7 @@ def _line(data: xr.Dataset, values: xr.DataArray, unit: Scale, title: str, quant
     axes, name = fig.subplots(), str(values.dims[0])
     x, y = _shown(name, values[name].values), unit(values.values)
     axes.plot(x, y, color="#00336F", marker="." if len(x) < 60 else None)
-    edges = _edges(x)
+    edges = edges_of(x)
     for code in np.unique(data.reason.values[data.reason.values != REACHED]):
         ground, hatch = GROUNDS[int(code)]
         for a, b in _runs(data.reason.values == code):

@@ -26,8 +26,8 @@ from flexapod.scene.colours import AXIS_COLORS, ENERGIES, LEG_COLORS
 from flexapod.scene.robot import motion_coordinates, motion_end
 from flexapod.study.after.summary import POINT_WORDS
 from flexapod.study.cause_words import cause_words
-from flexapod.study.words import NOTHING, Scale, cleared, scale
 from flexapod.ties import first_largest, ranked
+from flexapod.words import NOTHING, Scale, cleared, scale
 
 _TURNS = ("roll", "pitch", "yaw")
 _UNITS = {"position": ("m", "rad"), "rate": ("m/s", "rad/s"), "acceleration": ("m/s²", "rad/s²")}

@@ -14,6 +14,7 @@ from pathlib import Path
 from typing import Any, ParamSpec
 
 import matplotlib
+import numpy as np
 from matplotlib.axes import Axes
 from matplotlib.backends.backend_agg import FigureCanvasAgg
 from matplotlib.colors import to_hex, to_rgb
@@ -23,6 +24,7 @@ from matplotlib.layout_engine import ConstrainedLayoutEngine
 from flexapod.errors import InputError
 from flexapod.files import replacing
 from flexapod.plot.narrow import narrowed
+from flexapod.typing import Array
 
 P = ParamSpec("P")
 
@@ -125,6 +127,14 @@ def flat_on_the_scale_of_others(panels: Sequence[Axes], sizes: Sequence[float]) 
     for panel, size in zip(panels, sizes, strict=True):
         if size == 0 and max(sizes) > 0:
             panel.set_ylim(limits)
+
+
+def edges_of(centres: Array) -> Array:
+    """Edges of cells around values (n,): half-way between neighbours, as wide beyond the first and the last."""
+    if len(centres) == 1:
+        return centres[0] + np.array([-0.5, 0.5])
+    middle = 0.5 * (centres[1:] + centres[:-1])
+    return np.concatenate([[2 * centres[0] - middle[0]], middle, [2 * centres[-1] - middle[-1]]])
 
 
 def columns(entries: int, most: int = 6) -> int:

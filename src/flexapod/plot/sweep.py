@@ -15,8 +15,8 @@ from matplotlib.ticker import MaxNLocator
 from numpy.typing import NDArray
 
 from flexapod.errors import InputError
-from flexapod.plot.style import COLORS, COLUMN, FLEXIBLE, NOTE, PAGE, RIGID, TEXT, figure, styled
-from flexapod.study.words import scale
+from flexapod.plot.style import COLORS, COLUMN, FLEXIBLE, NOTE, PAGE, RIGID, TEXT, edges_of, figure, styled
+from flexapod.words import scale
 
 FAILED = "#C44E52"
 MOST_PANELS = 6
@@ -157,7 +157,7 @@ def _map(x: _Shown, y: _Shown, z: _Shown, data: xr.Dataset) -> Figure:
     rows, row = np.unique(y.values, return_inverse=True)
     grid, failed = np.full((len(rows), len(columns)), np.nan), np.zeros((len(rows), len(columns)), dtype=bool)
     grid[row, column], failed[row, column] = z.values, _failed(data)
-    edges = _edges(columns), _edges(rows)
+    edges = edges_of(columns), edges_of(rows)
     shown = axes.pcolormesh(*edges, np.ma.masked_invalid(grid), cmap=COLORS, linewidth=0, rasterized=True)
     if failed.any():
         axes.pcolormesh(*edges, np.ma.masked_equal(failed, False), cmap=ListedColormap([FAILED]), alpha=0.35)
@@ -170,14 +170,6 @@ def _map(x: _Shown, y: _Shown, z: _Shown, data: xr.Dataset) -> Figure:
     _label(axes, x)
     _label(axes, y, vertical=True)
     return fig
-
-
-def _edges(values: Values) -> Values:
-    """Edges of cells around values: half-way between neighbours."""
-    if len(values) == 1:
-        return values[0] + np.array([-0.5, 0.5])
-    half = np.diff(values) / 2
-    return np.concatenate([[values[0] - half[0]], values[:-1] + half, [values[-1] + half[-1]]])
 
 
 def _histogram(y: _Shown, data: xr.Dataset) -> Figure:

@@ -10,8 +10,8 @@ from matplotlib.ticker import LogLocator, NullFormatter
 
 from flexapod.plot.style import NOTE, PAGE, figure, needs, styled
 from flexapod.scene.colours import AXIS_COLORS
-from flexapod.study.words import scale
 from flexapod.ties import ranked
+from flexapod.words import scale
 
 NAMED = 3  # modes with the largest steps
 ROW = 10  # height of a name [points]

@@ -90,7 +90,7 @@ def _robot(data: Dataset) -> Iterator[_Plan]:
     import numpy as np
 
     from flexapod import plot
-    from flexapod.report.budget import peak_budget
+    from flexapod.document.budget import peak_budget
     from flexapod.scene.drives import drives
     from flexapod.study.after.summary import tool_apart
     from flexapod.study.attributes import robot_of

@@ -8,9 +8,11 @@ from pathlib import Path
 from platform import python_version
 from typing import TYPE_CHECKING
 
+from flexapod.document import html
+from flexapod.document.html import Html
+from flexapod.document.parts import Item, Lines, Remarks, Section, Table, Text, warnings_of
 from flexapod.errors import FlexapodError
 from flexapod.files import scratch, write_text
-from flexapod.report import html
 from flexapod.report.figures import Drawn
 from flexapod.report.interactive import MOST_POINTS
 from flexapod.scene.robot import carried_study
@@ -19,7 +21,7 @@ if TYPE_CHECKING:
     from xarray import Dataset
 
     from flexapod.model import ActuatorStudy, Study
-    from flexapod.study.after.summary import ActuatorSummary, RobotSummary
+    from flexapod.study.after.summary import ActuatorSummary
     from flexapod.study.before.describe.actuator import ActuatorDescription
     from flexapod.study.before.describe.robot import RobotDescription
 
@@ -70,8 +72,9 @@ def write_report(data: Dataset, folder: str | Path, figures: Callable[[], Sequen
 
 
 def _page(study: Study | ActuatorStudy | None, data: Dataset, figures: Callable[[], Sequence[Drawn]]) -> str:
-    from flexapod.report.budget import budget_section, peak_budget
-    from flexapod.report.study_words import modes_section, study_words
+    from flexapod.document.budget import peak_budget, peak_items
+    from flexapod.document.run import told_of
+    from flexapod.document.study import modes_section, study_items
     from flexapod.study.after.summary import RobotSummary, summaries
     from flexapod.study.bodies import bodies_words
 
@@ -92,33 +95,23 @@ def _page(study: Study | ActuatorStudy | None, data: Dataset, figures: Callable[
     links |= {part: part.capitalize() for part, there in parts.items() if there}
     links |= {"solver": "Solver", "toml": "Study file", "repeat": "Repeat"}
     body = [
-        *(html.paragraph(sentence) for sentence in (*(found.sentence for found in further), *bodies_words(data))),
-        *_told(study),
-        html.paragraph(f"Report of {name}, flexapod {data.attrs['flexapod_version']}.", "soft"),
+        *(*(found.sentence for found in further), *bodies_words(data)),
+        *filter(None, told_of(study)),
+        Text(f"Report of {name}, flexapod {data.attrs['flexapod_version']}.", "soft"),
         html.contents(links),
         *_partial(data),
         by_axis(data) if isinstance(first, RobotSummary) else _actuator_numbers(first),
-        *([] if budget is None else [budget_section(budget)]),
+        *([] if budget is None else [html.section("budget", "Error budget", peak_items(budget))]),
         warnings_section(data),
-        html.section("study", "What was computed", *([] if study is None else study_words(study, described))),
+        html.section("study", "What was computed", () if study is None else study_items(study, described)),
         *moving,
-        figures_section("figures", "Figures", others),
+        *figures_section("figures", "Figures", others),
         *modes,
-        html.section("solver", "Solver", solver_table(data)),
-        html.section("toml", "Study file", html.code(str(data.attrs["study"]))),
+        html.section("solver", "Solver", [solver_table(data)]),
+        html.section("toml", "Study file", [Lines(str(data.attrs["study"]))]),
         repeat_section("Save the study file above as study.toml, then", "flexapod run study.toml --out results"),
     ]
     return html.page(f"flexapod: {name}", first.sentence, body)
-
-
-def _told(study: Study | ActuatorStudy | None) -> list[str]:
-    """What of a robot is ideal, and what a run leaves to the budget, a line each."""
-    from flexapod.model import Study
-    from flexapod.study.counted import run_counts
-    from flexapod.study.ideal import ideal_words
-
-    words = (ideal_words(study.robot), run_counts(study.robot)) if isinstance(study, Study) else ()
-    return [html.paragraph(line) for line in words if line]
 
 
 def _described(study: Study | ActuatorStudy | None) -> RobotDescription | ActuatorDescription | None:
@@ -133,7 +126,7 @@ def _described(study: Study | ActuatorStudy | None) -> RobotDescription | Actuat
 
 def _replay(
     study: Study | ActuatorStudy | None, data: Dataset, figures: Callable[[], Sequence[Drawn]]
-) -> tuple[list[str], list[Drawn]]:
+) -> tuple[list[Html], list[Drawn]]:
     """The replay, with the figure that stands for it on paper, and the other figures."""
     if study is None:
         return [], list(figures())
@@ -145,91 +138,64 @@ def _replay(
     return [replay_section(data, told, still)], [figure for figure in drawn if figure is not still]
 
 
-def replay_section(data: Dataset, told: Mapping[str, object], still: Drawn | None) -> str:
+def replay_section(data: Dataset, told: Mapping[str, object], still: Drawn | None) -> Html:
     """What `flexapod.report.replay` tells, and the figure that stands for it on paper."""
     title = "The robot in motion" if "com_deviation" in data else "The beam in motion"
     words = str(told["words"])
     shown = len(told["time"])  # type: ignore[arg-type]
     title += f", {shown} of {data.sizes['time']} instants; {words}. {told['mouse']}."
-    return html.section("replay", "Replay", html.replay(title, told, still and (still.title, still.picture)))
+    return html.section("replay", "Replay", [html.replay(title, told, still and (still.title, still.picture))])
 
 
-def by_axis(data: Dataset) -> str:
+def by_axis(data: Dataset) -> Html:
     """Largest and rms deviation along each axis, of the centre of mass and of a tool elsewhere."""
+    from flexapod.document.run import distances_table
     from flexapod.study.after.summary import POINT_WORDS, RobotSummary, summaries
 
-    told = [found for found in summaries(data) if isinstance(found, RobotSummary)]
-    parts = []
-    for found in told:
-        parts += [html.heading(POINT_WORDS[found.point].capitalize())] * (len(told) > 1) + [_axis_table(found)]
+    tables = {x.point: distances_table(x) for x in summaries(data) if isinstance(x, RobotSummary)}
+    several = [Section(POINT_WORDS[point].capitalize(), [table]) for point, table in tables.items()]
     note = "Flexible minus rigid at the same instant, world axes; it contains the sag at rest. Per cent of the travel: "
     note += "largest deviation over the rigid point's peak-to-peak travel, n/a where that is below 1 µm."
-    return html.section("deviation", "Deviation by axis", *parts, html.paragraph(note, "soft"))
+    told = several if len(several) > 1 else tables.values()
+    return html.section("deviation", "Deviation by axis", [*told, Text(note, "soft")])
 
 
-def _axis_table(found: RobotSummary) -> str:
-    from flexapod.study.words import number, text
+def _actuator_numbers(found: ActuatorSummary) -> Html:
+    from flexapod.words import text
 
-    head = ("Axis", "Largest", "at", "rms", "Rigid travel", "Per cent of the travel")
+    start, end = (text(length, "m", 4) for length in found.lengths)
     rows = [
-        (
-            a.axis.upper(),
-            text(a.peak, "m") if a.peak else "0",
-            "n/a" if a.time is None else f"{a.time:.3f} s",
-            text(a.rms, "m") if a.rms else "0",
-            text(a.excursion, "m", 4) if a.excursion else "0",
-            "n/a" if a.per_cent is None else f"{number(a.per_cent, 2)} %",
-        )
-        for a in found.shown_axes
+        ("Largest deflection of the tip", f"{text(found.peak, 'm')} at {found.time:.3f} s"),
+        ("rms", text(found.rms, "m")),
+        ("At the end", text(found.end, "m")),
+        ("Free length", f"{start} at the start, {end} at the end"),
     ]
-    rows.append(("Distance", text(found.peak, "m"), f"{found.time:.3f} s", text(found.rms, "m"), "", ""))
-    return html.table(head, rows)
+    return html.section("deflection", "Deflection of the tip", [Table((), rows)])
 
 
-def _actuator_numbers(found: ActuatorSummary) -> str:
-    from flexapod.study.words import text
-
-    pairs = {
-        "Largest deflection of the tip": f"{text(found.peak, 'm')} at {found.time:.3f} s",
-        "rms": text(found.rms, "m"),
-        "At the end": text(found.end, "m"),
-        "Free length": f"{text(found.lengths[0], 'm', 4)} at the start, {text(found.lengths[1], 'm', 4)} at the end",
-    }
-    return html.section("deflection", "Deflection of the tip", html.values(pairs))
-
-
-def _partial(data: Dataset) -> list[str]:
+def _partial(data: Dataset) -> list[Item]:
     if not data.attrs.get("partial"):
         return []
-    return [
-        html.paragraph(
-            f"Incomplete: computed to t = {float(data.time[-1]):.6g} s. {data.attrs.get('failure', '')}", "bad"
-        )
-    ]
+    return [Text(f"Incomplete: computed to t = {float(data.time[-1]):.6g} s. {data.attrs.get('failure', '')}", "bad")]
 
 
-def warnings_section(data: Dataset) -> str:
+def warnings_section(data: Dataset) -> Html:
     """What is doubtful about a result, in words."""
-    from flexapod.study.words import brief
-
-    found = [line for line in str(data.attrs.get("warnings", "")).splitlines() if line]
-    return html.section(
-        "warnings", "Warnings", html.remarks([brief(x) for x in found]) if found else html.paragraph("None.")
-    )
+    found = warnings_of(data)
+    return html.section("warnings", "Warnings", [Remarks(found) if found else "None."])
 
 
-def figures_section(name: str, title: str, figures: Sequence[Drawn], *, first: bool = True) -> str:
+def figures_section(name: str, title: str, figures: Sequence[Drawn], *, first: bool = True) -> list[Html]:
     """Figures, one below the other, nothing where there are none; the first of a page say how they are read."""
-    if not figures:
-        return ""
     parts = [html.figure(figure.title, figure.picture, figure.plot) for figure in figures]
-    return html.section(name, title, *([html.paragraph(THINNED, "soft screen")] if first else []), *parts)
+    read = [Text(THINNED, "soft screen")] if first else []
+    return [html.section(name, title, [*read, *parts])] if parts else []
 
 
-def solver_table(data: Dataset) -> str:
+def solver_table(data: Dataset) -> Table:
     """Settings and counters of the time integration."""
     attrs: Mapping[object, object] = data.attrs
-    return html.values({words: _shown(attrs[key], key) for key, words in SOLVER.items() if key in attrs})
+    return Table((), [(words, _shown(attrs[key], key)) for key, words in SOLVER.items() if key in attrs])
 
 
 def _shown(value: object, key: str) -> str:
@@ -238,13 +204,8 @@ def _shown(value: object, key: str) -> str:
     return f"{value:.4g}" if isinstance(value, float) else str(value)
 
 
-def repeat_section(words: str, command: str) -> str:
+def repeat_section(words: str, command: str) -> Html:
     """How to get the same again, with the versions it was got with."""
     versions = ", ".join(f"{name} {version(name)}" for name in _PACKAGES)
-    return html.section(
-        "repeat",
-        "How to repeat this",
-        html.paragraph(words),
-        html.code(command),
-        html.paragraph(f"Python {python_version()}, {versions}.", "soft"),
-    )
+    note = Text(f"Python {python_version()}, {versions}.", "soft")
+    return html.section("repeat", "How to repeat this", [words, Lines(command), note])

@@ -17,9 +17,9 @@ from flexapod.scene.geometry import ActuatorMotion, RobotMotion
 from flexapod.scene.robot import mode_scene
 from flexapod.scene.skeleton import STATIONS, Scene, Skeleton, around
 from flexapod.study.after.summary import POINT_WORDS, tool_apart
-from flexapod.study.words import cleared_lines, number, scale
 from flexapod.threads import one_thread
 from flexapod.typing import Array
+from flexapod.words import cleared_lines, number, scale
 
 if TYPE_CHECKING:
     from xarray import Dataset

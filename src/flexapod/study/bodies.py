@@ -11,9 +11,9 @@ from flexapod import rigid
 from flexapod.model import Robot
 from flexapod.study.after.inside import bushing_words
 from flexapod.study.before.estimates import section_width
-from flexapod.study.words import text
 from flexapod.ties import EQUALS, first_least
 from flexapod.typing import Array
+from flexapod.words import text
 
 if TYPE_CHECKING:
     from xarray import Dataset

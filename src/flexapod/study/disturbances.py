@@ -21,11 +21,10 @@ from flexapod.study.arguments import PoseLike, RobotLike, as_pose, at_pose
 from flexapod.study.attributes import attributes
 from flexapod.study.before.checks import path_remarks
 from flexapod.study.names import dataset
-from flexapod.study.words import cleared
 from flexapod.threads import one_thread
 from flexapod.ties import EQUALS, first_largest
 from flexapod.typing import Array
-from flexapod.words import along_axes
+from flexapod.words import along_axes, cleared
 
 if TYPE_CHECKING:
     from xarray import Dataset

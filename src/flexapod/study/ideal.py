@@ -1,4 +1,4 @@
-"""What of a robot is ideal, and what such parts are in machines of its size."""
+"""What of a robot is ideal, what such parts are in machines of its size, and what modes and stiffness hold still."""
 
 from __future__ import annotations
 
@@ -6,7 +6,7 @@ import math
 
 from flexapod.model import Robot
 
-__all__ = ["MACHINES", "ideal_words"]
+__all__ = ["MACHINES", "held", "ideal_words"]
 
 #: Shares of joints, drives and plates in the compliance of a leg, in per cent, by the length of a leg [m] of presets.
 MACHINES = {
@@ -40,3 +40,16 @@ def _ideal(robot: Robot) -> list[str]:
     mounts = robot.base_mount is not None or robot.platform_mount is not None
     plates = mounts or any(leg.springs for leg in robot.legs)
     return [name for name, real in (("joints", joints), ("drives", drives), ("plates", plates)) if not real]
+
+
+def held(robot: Robot) -> str:
+    """What modes and stiffness hold still: the drives, or their commands where drives give way."""
+    soft = {leg.drive.type for leg in robot.legs if not leg.drive.holds and getattr(leg.drive, "feedback", True)}
+    if not soft:
+        return "Drives locked"
+    parts = {
+        "servo": "springs and dampers of the servo drives",
+        "force": "feedback of the force drives",
+        "screw": "loops of the screw drives",
+    }
+    return f"Commands of the drives held, with the {' and the '.join(parts[kind] for kind in sorted(soft))}"

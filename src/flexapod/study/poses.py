@@ -9,8 +9,8 @@ import numpy as np
 from flexapod import model, rigid
 from flexapod.errors import InputError
 from flexapod.study.arguments import POSE_KEYS, PoseLike
-from flexapod.study.words import number
 from flexapod.typing import Array
+from flexapod.words import number
 
 BATCH = 200  # poses computed together: their matrices stay in the processor's cache
 

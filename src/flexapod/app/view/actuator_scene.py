@@ -22,8 +22,8 @@ from flexapod.scene.geometry import (
     tube,
     tube_faces,
 )
-from flexapod.study.words import number, text
 from flexapod.typing import Array
+from flexapod.words import number, text
 
 if TYPE_CHECKING:
     from xarray import Dataset

@@ -9,7 +9,7 @@ from typing import TYPE_CHECKING
 import viser
 
 from flexapod import model
-from flexapod.app.view import words
+from flexapod.app.view import markup
 from flexapod.app.view.background import Latest, Threads
 from flexapod.errors import FlexapodError
 from flexapod.scene.colours import ERRORS
@@ -17,7 +17,7 @@ from flexapod.scene.colours import ERRORS
 if TYPE_CHECKING:
     from xarray import Dataset
 
-    from flexapod.study.budgets.words import Bar
+    from flexapod.study.budgets.sentences import Bar
 
 CHANGED = 0.3  # after a change of the study, before its budget is computed [s]
 
@@ -52,7 +52,7 @@ class BudgetPanel:
         try:
             html = budget_html(study, data)
         except FlexapodError as error:
-            html = words.error_html(error)
+            html = markup.error_html(error)
         finally:  # a fault, too, leaves no budget of the study before
             with self._lock:
                 if study is self._study and data is self._data:
@@ -61,12 +61,12 @@ class BudgetPanel:
 
 def budget_html(study: model.Study | model.ActuatorStudy, data: Dataset | None = None) -> str:
     """A budget in sentences, as a chart and as a table."""
-    from flexapod.report.budget import peak_budget
+    from flexapod.document.budget import peak_budget
     from flexapod.study import budget
-    from flexapod.study.budgets.words import bars, table
+    from flexapod.study.budgets.sentences import bars, table
 
     if not isinstance(study, model.Study):
-        return words.block("Error budgets are those of robots: a single actuator has no tool to place.", "soft")
+        return markup.block("Error budgets are those of robots: a single actuator has no tool to place.", "soft")
     found = None if data is None else peak_budget(data)
     where = (
         "at home" if found is None else f"at the pose of t = {found.attrs['pose_time']:.4g} s, the largest deviation"
@@ -74,13 +74,15 @@ def budget_html(study: model.Study | model.ActuatorStudy, data: Dataset | None =
     found = budget(study) if found is None else found
     first, *more = found.attrs["summary"].splitlines()
     note = f"At rest, {where}; world axes. What is dynamic: flexapod budget FILE --motion."
-    sentences = words.block(first, "good") + "".join(words.block(line) for line in more)
-    return sentences + chart_html(bars(found)) + words.wide(words.table_html(*table(found))) + words.block(note, "soft")
+    sentences = markup.block(first, "good") + "".join(markup.block(line) for line in more)
+    return (
+        sentences + chart_html(bars(found)) + markup.wide(markup.table_html(*table(found))) + markup.block(note, "soft")
+    )
 
 
 def chart_html(rows: list[Bar]) -> str:
     """Bars of the parts, of each kind in its colour, with a legend."""
-    from flexapod.study.words import scale
+    from flexapod.words import scale
 
     most = max((sum(row.sizes.values()) for row in rows), default=0.0)
     if not most:
@@ -106,4 +108,4 @@ def chart_html(rows: list[Bar]) -> str:
         for name, (what, color) in ERRORS.items()
         if name in used
     )
-    return words.framed("".join(lines) + f"<div style='padding-top:0.5em'>{legend}</div>")
+    return markup.framed("".join(lines) + f"<div style='padding-top:0.5em'>{legend}</div>")

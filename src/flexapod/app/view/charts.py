@@ -15,8 +15,8 @@ from flexapod.scene.colours import AXIS_COLORS, ENERGIES, colors_of_legs
 from flexapod.scene.drives import drives
 from flexapod.scene.geometry import nearest
 from flexapod.study.after.summary import POINT_WORDS, tip_size
-from flexapod.study.words import NOTHING, cleared_lines, number, scale
 from flexapod.typing import Array
+from flexapod.words import NOTHING, cleared_lines, number, scale
 
 if TYPE_CHECKING:
     from xarray import DataArray, Dataset

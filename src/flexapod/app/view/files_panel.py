@@ -12,7 +12,7 @@ from typing import TYPE_CHECKING
 
 from viser import ClientHandle, Icon, IconName
 
-from flexapod.app.view import words
+from flexapod.app.view import markup
 from flexapod.app.view.background import Threads
 from flexapod.app.view.document import Document, read
 from flexapod.app.view.uploads import LARGEST, Sent, limit_uploads, read_upload, store_table
@@ -100,9 +100,9 @@ class FilesPanel:
             self._offer("Figures (ZIP of PNG)", Icon.PHOTO, "-figures.zip", figures)
             self._offer("Report (HTML)", Icon.REPORT, "-report.html", lambda found: report(self._study(), found))
         with gui.add_folder("Upload"):
-            gui.add_html(words.block(f"A study file (TOML, UTF-8) of at most {LARGEST / 1e6:g} MB.", "soft"))
+            gui.add_html(markup.block(f"A study file (TOML, UTF-8) of at most {LARGEST / 1e6:g} MB.", "soft"))
             study_file = gui.add_upload_button("Study file", icon=Icon.UPLOAD, mime_type=".toml,text/plain")
-            gui.add_html(words.block("Tables that a study names (CSV) first, then the study.", "soft"))
+            gui.add_html(markup.block("Tables that a study names (CSV) first, then the study.", "soft"))
             table = gui.add_upload_button("Table", icon=Icon.UPLOAD, mime_type=".csv,text/csv")
         study_file.on_upload(lambda _: self._do(lambda: self._take(study_file.value.name, study_file.value.content)))
         table.on_upload(lambda _: self._do(lambda: self._keep(table.value.name, table.value.content)))
@@ -116,7 +116,7 @@ class FilesPanel:
         """Do some work in the background, unless some is being done: a button that waits would hold up others."""
         with self._lock:
             if self._busy:
-                self._words.content = words.block(_BUSY, "warning")
+                self._words.content = markup.block(_BUSY, "warning")
                 return
             self._busy = True
         self._threads.start("files", lambda: self._done(work))
@@ -133,10 +133,10 @@ class FilesPanel:
         def send() -> None:
             data = self._data()
             if data is None:
-                self._words.content = words.block(_NO_RESULTS, "warning")
+                self._words.content = markup.block(_NO_RESULTS, "warning")
                 return
             button.disabled = True
-            self._words.content = words.block(f"Writing {label} ...", "soft")
+            self._words.content = markup.block(f"Writing {label} ...", "soft")
             try:
                 self._send(self._name(ending), make(data))
             except Exception:
@@ -151,14 +151,14 @@ class FilesPanel:
         found = read(self._document())
         self._send(self._name(".toml"), found.document.text.encode())
         if found.error is not None:
-            remark = words.block("The study is sent as it stands, which is refused:", "warning")
-            self._words.content += remark + words.error_html(found.error)
+            remark = markup.block("The study is sent as it stands, which is refused:", "warning")
+            self._words.content += remark + markup.error_html(found.error)
 
     def _send(self, name: str, content: bytes) -> None:
         if self._closed:
             return
         self._client.send_file_download(name, content, save_immediately=True)
-        self._words.content = words.block(f"Sent: {name} ({len(content) / 1e6:.2g} MB).", "good")
+        self._words.content = markup.block(f"Sent: {name} ({len(content) / 1e6:.2g} MB).", "good")
 
     def _name(self, ending: str) -> str:
         path = self._document().path
@@ -170,7 +170,7 @@ class FilesPanel:
         except FlexapodError as error:
             self._refused(error)
             return
-        self._words.content = words.block(f"Taken: {name}.", "good")
+        self._words.content = markup.block(f"Taken: {name}.", "good")
         time.sleep(ACKNOWLEDGED)
         self._on_upload(document)
 
@@ -180,7 +180,7 @@ class FilesPanel:
         except FlexapodError as error:
             self._refused(error)
             return
-        self._words.content = words.block(f"Kept: {kept}. A study may name it as file = {kept!r}.", "good")
+        self._words.content = markup.block(f"Kept: {kept}. A study may name it as file = {kept!r}.", "good")
 
     def _refused(self, error: FlexapodError) -> None:
-        self._words.content = words.error_html(error)
+        self._words.content = markup.error_html(error)

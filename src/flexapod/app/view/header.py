@@ -8,7 +8,7 @@ from typing import TYPE_CHECKING
 import viser
 from viser import ClientHandle, Icon
 
-from flexapod.app.view import words
+from flexapod.app.view import markup
 
 if TYPE_CHECKING:
     from flexapod.app.view.scene import Scene
@@ -24,7 +24,7 @@ class Header:
         self, client: ClientHandle, name: str, simulate: Callable[[], None], cancel: Callable[[], None]
     ) -> None:
         gui = client.gui
-        gui.add_html(words.title(name))
+        gui.add_html(markup.title(name))
         self.said, self._answer, self._runs, self._ready = "", "", False, True
         self._words, self._fault = gui.add_html(""), gui.add_html("")
         self._simulate = gui.add_button("Simulate", icon=Icon.PLAYER_PLAY, hint="Compute the study as it stands now")
@@ -34,14 +34,14 @@ class Header:
         self._cancel.on_click(lambda _: cancel())
 
     def answer(self, html: str) -> None:
-        """Show an answer (HTML of `words`) in place of the words before."""
+        """Show an answer (HTML of `markup`) in place of the words before."""
         self._answer = html
         self.say(html)
 
     def say(self, html: str) -> None:
         """Show words in place of those before; the last answer keeps its room: what is below stays under the mouse."""
         self.said = html
-        self._words.content = html if html == self._answer else words.in_room_of(self._answer, html)
+        self._words.content = html if html == self._answer else markup.in_room_of(self._answer, html)
 
     def fault(self, html: str) -> None:
         """Show a fault below the words until the next change or simulation that is asked for; "" for none."""
@@ -81,7 +81,7 @@ class Picture:
 
     def tell(self, scene: Scene) -> None:
         """Say what a scene shows now."""
-        html = words.block(f"Picture: {scene.picture_words()}.", "soft")
+        html = markup.block(f"Picture: {scene.picture_words()}.", "soft")
         if self._words.content != html:
             self._words.content = html
         elsewhere = bool(scene.drawn) and scene.data is not None

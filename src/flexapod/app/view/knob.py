@@ -8,7 +8,7 @@ from collections.abc import Callable, Sequence
 
 from viser import ClientHandle, GuiDropdownHandle, GuiSliderHandle
 
-from flexapod.app.view import words
+from flexapod.app.view import markup
 from flexapod.app.view.background import Threads
 from flexapod.app.view.document import Quantity, quantity
 from flexapod.app.view.typed import TypedText, by_user, plain, written
@@ -68,7 +68,7 @@ class Knob:
         field = self._fields.get(self._choice.value)
         if not self._typing:
             self._show_text()
-        content = "" if field is None else words.block(f"{field.key} = {field.value}", "soft")
+        content = "" if field is None else markup.block(f"{field.key} = {field.value}", "soft")
         if self._words.content != content:
             self._words.content = content
 

@@ -10,8 +10,8 @@ import numpy as np
 from flexapod import model
 from flexapod.scene.colours import colors_of_legs
 from flexapod.scene.drives import drives
-from flexapod.study.words import NOTHING, cleared_lines, number, scale
 from flexapod.typing import Array
+from flexapod.words import NOTHING, cleared_lines, number, scale
 
 if TYPE_CHECKING:
     from xarray import Dataset

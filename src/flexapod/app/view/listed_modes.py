@@ -12,13 +12,13 @@ from typing import Any, Generic, NamedTuple, TypeVar
 import viser
 from viser import Icon
 
-from flexapod.app.view import words
+from flexapod.app.view import markup
 from flexapod.app.view.background import Latest, Threads
 from flexapod.app.view.player import Player
 from flexapod.app.view.scene import Scene
 from flexapod.app.view.typed import Dial, by_user
 from flexapod.errors import FlexapodError
-from flexapod.study.words import text
+from flexapod.words import text
 
 SHOWN_FREQUENCY = 0.5  # of the drawn motion, whatever the mode's own [Hz]
 _NONE: str = "none yet"
@@ -63,7 +63,7 @@ class ModeShow:
             self._play.disabled = not modes
             if modes:
                 slowed = f"Whatever its frequency, a mode is drawn at {SHOWN_FREQUENCY:g} Hz."
-                self._note.content = words.block(f"{slowed} 100 % of {self._size}: {text(length, 'm')}.", "soft")
+                self._note.content = markup.block(f"{slowed} 100 % of {self._size}: {text(length, 'm')}.", "soft")
                 self._choice.options = tuple(modes)
                 self._choice.value = modes[min(place, len(modes) - 1)]
 
@@ -199,7 +199,7 @@ class ListedModes(ABC, Generic[Study]):
         try:
             found = self._listed(study)
         except FlexapodError as error:
-            said = words.error_html(error)
+            said = markup.error_html(error)
         finally:  # a fault, too, leaves no modes of the study before
             with self._show.lock:
                 if study is self._study:

@@ -11,7 +11,7 @@ import viser
 from viser import Icon
 
 from flexapod import model, rigid
-from flexapod.app.view import words
+from flexapod.app.view import markup
 from flexapod.app.view.background import Threads
 from flexapod.app.view.listed_modes import Listed, ListedModes
 from flexapod.app.view.robot_scene import pose_words
@@ -19,7 +19,8 @@ from flexapod.app.view.scene import Scene
 from flexapod.app.view.typed import Dial
 from flexapod.scene.geometry import BEAM_POINTS
 from flexapod.scene.skeleton import Skeleton
-from flexapod.study.words import held, number, text
+from flexapod.study.ideal import held
+from flexapod.words import number, text
 
 if TYPE_CHECKING:
     from flexapod.scene.robot import BeamModes as Shapes
@@ -72,9 +73,9 @@ class RobotModes(ListedModes[model.Study]):
         header = ["Mode", "frequency [Hz]", "damping [%]", "what moves most"]
         more = found.sizes["mode"] - len(rows)
         table = (
-            words.table_html(header, rows)
-            + (words.block(f"and {more} higher ones", "soft") if more > 0 else "")
-            + words.block(f"{held(study.robot)}, about the static equilibrium at the pose above.", "soft")
+            markup.table_html(header, rows)
+            + (markup.block(f"and {more} higher ones", "soft") if more > 0 else "")
+            + markup.block(f"{held(study.robot)}, about the static equilibrium at the pose above.", "soft")
         )
         names = [f"{m}: {f} Hz, {kind}" for m, f, _, kind in rows]
         return Listed(found, names, table, pose_words(pose), Skeleton(study.robot).size)
@@ -159,7 +160,7 @@ def _beam_table(modes: Shapes, study: model.ActuatorStudy) -> str:
     sag = describe_actuator(study).beam[0].sag
     level = f"The tip sags by {text(sag, 'm')} where the beam lies level. " if sag else ""
     note = level + "Hub and extension held, about the straight beam at rest."
-    return words.table_html(["Mode", "frequency [Hz]", "damping [%]", "what moves"], rows) + words.block(note, "soft")
+    return markup.table_html(["Mode", "frequency [Hz]", "damping [%]", "what moves"], rows) + markup.block(note, "soft")
 
 
 class ModesPanel:

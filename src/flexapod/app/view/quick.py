@@ -7,10 +7,10 @@ from typing import TYPE_CHECKING
 import numpy as np
 
 from flexapod import model, rigid
-from flexapod.app.view import words
+from flexapod.app.view import markup
 from flexapod.errors import InputError
 from flexapod.study.before.checks import check_actuator_path, check_path
-from flexapod.study.words import number
+from flexapod.words import number
 
 if TYPE_CHECKING:
     from xarray import Dataset
@@ -52,9 +52,9 @@ def preview_html(study: model.Study | model.ActuatorStudy) -> str:
         remarks = check_path(study) if isinstance(study, model.Study) else check_actuator_path(study)
         refusal = ""
     except InputError as error:
-        remarks, refusal = [], words.error_html(error)
+        remarks, refusal = [], markup.error_html(error)
     body = _robot(study) if isinstance(study, model.Study) else _actuator(study)
-    return refusal + body + "".join(words.block(remark, "warning") for remark in remarks)
+    return refusal + body + "".join(markup.block(remark, "warning") for remark in remarks)
 
 
 def _robot(study: model.Study) -> str:
@@ -72,16 +72,16 @@ def _robot(study: model.Study) -> str:
     found = rigid.singularity(study.robot, path)
     worst = float(found.smallest_singular_value[found.worst])
     singular = f"Smallest singular value {worst:.3g} at t = {t[found.worst]:.3g} s (0 is singular; scaled Jacobian)."
-    return words.table_html(header, rows, bad) + words.block(singular)
+    return markup.table_html(header, rows, bad) + markup.block(singular)
 
 
 def _actuator(study: model.ActuatorStudy) -> str:
     actuator, law = study.actuator, study.motion.extension
     if law is None:
-        return words.block("The extension is driven by a force: the free length is a result.")
+        return markup.block("The extension is driven by a force: the free length is a result.")
     t = np.linspace(0.0, study.duration, INSTANTS)
     free = actuator.free_length + rigid.motion_law(law, t).position
-    return words.block(
+    return markup.block(
         f"Free length {free.min():.4g} to {free.max():.4g} m of {actuator.length:.4g} m; "
         f"{study.simulation.lateral_shapes} shapes."
     )

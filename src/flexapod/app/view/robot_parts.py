@@ -16,8 +16,8 @@ from flexapod.scene.geometry import ROUNDING, Instant, orientation, plate, round
 from flexapod.scene.skeleton import STATIONS, Scene, Skeleton
 from flexapod.study.before.estimates import section_width
 from flexapod.study.bodies import CYLINDER
-from flexapod.study.words import number, text
 from flexapod.typing import Array
+from flexapod.words import number, text
 
 
 class Nodes:

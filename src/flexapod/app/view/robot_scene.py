@@ -19,8 +19,8 @@ from flexapod.scene.geometry import RobotMotion
 from flexapod.scene.robot import mode_scene
 from flexapod.scene.skeleton import Skeleton
 from flexapod.study.arguments import PoseLike, as_pose
-from flexapod.study.words import number
 from flexapod.typing import Array
+from flexapod.words import number
 
 if TYPE_CHECKING:
     from xarray import Dataset

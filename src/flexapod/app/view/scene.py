@@ -11,8 +11,8 @@ import numpy as np
 import viser
 
 from flexapod.app.view.scripts import run_script
-from flexapod.study.words import number, text
 from flexapod.typing import Array
+from flexapod.words import number, text
 
 if TYPE_CHECKING:
     from xarray import Dataset

@@ -10,7 +10,7 @@ from typing import TYPE_CHECKING, Any
 from viser import ClientHandle
 
 from flexapod import model
-from flexapod.app.view import words
+from flexapod.app.view import markup
 from flexapod.app.view.actuator_scene import ActuatorScene
 from flexapod.app.view.background import Latest, Threads
 from flexapod.app.view.document import Document, Edit, read
@@ -25,6 +25,7 @@ from flexapod.app.view.running import Cores, Run
 from flexapod.app.view.scripts import run_script
 from flexapod.app.view.study_panel import StudyPanel
 from flexapod.app.view.uploads import Sent, refuse_length
+from flexapod.document.parts import warnings_of
 from flexapod.errors import FlexapodError
 
 if TYPE_CHECKING:
@@ -115,14 +116,14 @@ class Session:
             if self._run is not None:
                 self._stop()
                 if self.data is None:
-                    self._say(words.block("Cancelled. The study is not simulated as it stands.", "warning"))
+                    self._say(markup.block("Cancelled. The study is not simulated as it stands.", "warning"))
                 else:
-                    self._show_answer(self.data, words.block("Cancelled. What was there stays.", "warning"))
+                    self._show_answer(self.data, markup.block("Cancelled. What was there stays.", "warning"))
 
     def fault(self, error: BaseException) -> None:
         """Tell this person, and the log, what went wrong; the session goes on."""
         known = isinstance(error, FlexapodError)
-        html = words.error_html(error) if known else words.fault_html(error)
+        html = markup.error_html(error) if known else markup.fault_html(error)
         if not known or self.header is None:
             LOG.error("client %s: %s", self.client.client_id, "".join(traceback.format_exception(error)))
         if self.header is None and not self._closed:  # the page is not there yet: the words are all there is
@@ -134,11 +135,11 @@ class Session:
 
     def waits(self, run: Run) -> None:
         """As `Watcher.waits`."""
-        self._tell(run, words.block("Waiting for a free core: others are simulating on this machine.", "soft"))
+        self._tell(run, markup.block("Waiting for a free core: others are simulating on this machine.", "soft"))
 
     def begins(self, run: Run) -> None:
         """As `Watcher.begins`."""
-        self._tell(run, words.block("Simulating.", "soft"))
+        self._tell(run, markup.block("Simulating.", "soft"))
 
     def progress(self, run: Run, share: float) -> None:
         """As `Watcher.progress`."""
@@ -226,11 +227,11 @@ class Session:
                 self.header.ready(self._valid)
             self._stop()
             if found.study is None:
-                self._say(words.block("The study is refused; the picture shows the last valid one.", "error"))
+                self._say(markup.block("The study is refused; the picture shows the last valid one.", "error"))
                 return
             self.study, self.data = found.study, None
             self._fault("")
-            self._say(words.block("Changed: rigid preview.", "soft"))
+            self._say(markup.block("Changed: rigid preview.", "soft"))
             self._show_study()
             self._unsettled = True
             self._settling.request(QUIET)
@@ -248,7 +249,7 @@ class Session:
             if is_quick(self.study):
                 self._simulate(preview=True)
             else:
-                self._say(words.block("Changed: press Simulate for the flexible result.", "soft"))
+                self._say(markup.block("Changed: press Simulate for the flexible result.", "soft"))
 
     def _uploaded(self, document: Document) -> None:
         found = read(document)
@@ -304,7 +305,7 @@ def _name(document: Document) -> str:
 
 def _preview(study: model.Study | model.ActuatorStudy, data: Dataset) -> str:
     said = preview_words(study, data)
-    return words.block(said, "warning") if said else ""
+    return markup.block(said, "warning") if said else ""
 
 
 def _answer(data: Dataset, point: str) -> str:
@@ -312,9 +313,8 @@ def _answer(data: Dataset, point: str) -> str:
     from flexapod.study.after.summary import summaries
 
     said = sorted(summaries(data), key=lambda s: getattr(s, "point", point) != point)
-    html = "".join(words.block(s.sentence, "soft" if i else "good") for i, s in enumerate(said))
+    html = "".join(markup.block(s.sentence, "soft" if i else "good") for i, s in enumerate(said))
     if data.attrs["partial"]:
         reached = f"Stopped at t = {float(data.time[-1]):.6g} s: {data.attrs.get('failure', '')}"
-        html += words.block(reached, "error")
-    warnings = [line for line in str(data.attrs["warnings"]).splitlines() if line]
-    return html + "".join(words.block(f"Warning: {line}", "warning") for line in warnings)
+        html += markup.block(reached, "error")
+    return html + "".join(markup.block(f"Warning: {line}", "warning") for line in warnings_of(data))

@@ -9,7 +9,7 @@ from typing import Any
 
 from viser import ClientHandle, Icon
 
-from flexapod.app.view import words
+from flexapod.app.view import markup
 from flexapod.app.view.background import Threads
 from flexapod.app.view.document import Document, Edit, chosen, edited, first_value, read
 from flexapod.app.view.knob import Knob
@@ -169,12 +169,12 @@ class StudyPanel:
 
     def _said(self, found: Edit) -> str:
         removed = [f"{key} is taken out: the choice does not use it" for key in found.removed]
-        html = words.lines_html(removed, "warning") if removed else ""
+        html = markup.lines_html(removed, "warning") if removed else ""
         if found.error is not None:
-            return html + words.error_html(found.error)
+            return html + markup.error_html(found.error)
         if found.study is None:
             return html
-        remarks = "".join(words.block(remark, "warning") for remark in found.study.warnings)
+        remarks = "".join(markup.block(remark, "warning") for remark in found.study.warnings)
         return html + preview_html(found.study) + remarks
 
     def _fit_folders(self, fields: list[Field], long: dict[str, int]) -> None:
@@ -225,7 +225,7 @@ class StudyPanel:
         key = "" if error is None else error.key or ""
         near = max((t for t in self._beside if key.startswith(f"{t}.") or key.startswith(f"{t}[")), key=len, default="")
         for table, handle in self._beside.items():
-            content = words.error_html(error) if error is not None and table == near else ""
+            content = markup.error_html(error) if error is not None and table == near else ""
             if handle.content != content:
                 handle.content = content
 
@@ -240,7 +240,7 @@ class StudyPanel:
         with folder:
             self._fill(fields, found)
             for remark in remarks:
-                self._gui.add_html(words.block(remark, "soft"))
+                self._gui.add_html(markup.block(remark, "soft"))
 
     def _fill(self, fields: list[Field], found: list[Offer]) -> None:
         inner: dict[str, list[Field]] = {}

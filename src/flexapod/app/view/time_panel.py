@@ -9,7 +9,7 @@ from typing import TYPE_CHECKING
 import viser
 from viser import Icon
 
-from flexapod.app.view import words
+from flexapod.app.view import markup
 from flexapod.app.view.background import Threads
 from flexapod.app.view.charts import Chart, ChartView, charts
 from flexapod.app.view.player import Player
@@ -46,7 +46,7 @@ class TimePanel:
         self._lock = threading.RLock()
         self._player = Player(scene, threads, self._lock, self._step, self._label)
         gui = client.gui
-        self._hint = gui.add_html(words.block(NONE, "soft"))
+        self._hint = gui.add_html(markup.block(NONE, "soft"))
         self._play = gui.add_button("Play", icon=Icon.PLAYER_PLAY, disabled=True, hint="Play or pause")
         self._dial = Dial(gui, threads, "time", "s", (0.0, 1.0), 0.001, 0.0, self._scrubbed, dimension="time")
         self._dial.disabled = True
@@ -67,7 +67,7 @@ class TimePanel:
                 self._time = min(self._time, self._end)
             instants = 0 if data is None else data.sizes["time"]
             self._hint.visible = instants < 2
-            self._hint.content = words.block(ONE if instants else NONE, "soft")
+            self._hint.content = markup.block(ONE if instants else NONE, "soft")
             if data is not None and instants > 1:
                 self._dial.fit(0.0, self._end, float(data.time[1] - data.time[0]))
                 self._dial.value = self._time
@@ -213,7 +213,7 @@ class TimePanel:
     def _tell_scale(self) -> None:
         if self.scene.scale == self.scene.automatic:  # another one is the user's, who may be writing on
             self._tell_factor()
-        self._scale_words.content = words.block(self.scene.scale_words(), "soft")
+        self._scale_words.content = markup.block(self.scene.scale_words(), "soft")
 
     def _tell_factor(self) -> None:
         self._factor.show(plain(self.scene.scale))
@@ -226,6 +226,6 @@ class TimePanel:
                 problem = "makes deflections smaller" if factor < 1 else "is more than a picture can show"
                 raise InputError(problem, key="magnify", value=text, allowed=f"from 1 to {LARGEST_FACTOR:g}")
         except InputError as error:
-            self._factor_words.content = words.error_html(error)
+            self._factor_words.content = markup.error_html(error)
         else:
             self._rescale(factor)

@@ -10,7 +10,7 @@ import time
 from collections.abc import Callable
 from typing import TYPE_CHECKING, Any
 
-from flexapod.app.view import words
+from flexapod.app.view import markup
 from flexapod.app.view.background import Latest, Threads
 from flexapod.errors import InputError
 from flexapod.units import number_and_unit, to_si
@@ -227,7 +227,7 @@ class Dial:
         try:
             number = self._read(text)
         except InputError as error:
-            self._say(words.error_html(error))
+            self._say(markup.error_html(error))
             return
         self._say("")
         self._slider.value = number

@@ -9,9 +9,9 @@ from flexapod.elements.kink import LEAST, kink
 from flexapod.mechanics.layout import columns, leg_parameters
 from flexapod.model import Robot
 from flexapod.solve.system import System
-from flexapod.study.words import text
 from flexapod.ties import first_largest
 from flexapod.typing import Array
+from flexapod.words import text
 
 __all__ = ["PARTS", "bushing_words", "guide_results", "is_guided", "off_axis", "part_names_inside", "tip_moves"]
 

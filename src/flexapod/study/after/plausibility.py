@@ -29,9 +29,9 @@ from flexapod.study.before.estimates import (
     section_width,
 )
 from flexapod.study.record import Record
-from flexapod.study.words import brief
 from flexapod.ties import first_largest, first_least, most
 from flexapod.typing import Array
+from flexapod.words import brief
 
 SLOPE = 0.1  # tip slope up to which second order in the amplitudes is enough
 SLENDERNESS = 10.0  # free length over width below which shear is no longer small

@@ -9,9 +9,9 @@ import numpy as np
 
 from flexapod.errors import InputError
 from flexapod.study.cause_words import cause_words
-from flexapod.study.words import NOTHING, along_axes, cleared, text
 from flexapod.ties import EQUALS, first_largest, most
 from flexapod.typing import Array
+from flexapod.words import NOTHING, along_axes, cleared, text
 
 if TYPE_CHECKING:
     from xarray import Dataset

@@ -10,9 +10,9 @@ from flexapod.solve.at_poses import locked_poses
 from flexapod.solve.modal_loops import unstable_words
 from flexapod.solve.modes import modes_of
 from flexapod.study.poses import coordinate_words, coordinates_of
-from flexapod.study.words import text
 from flexapod.ties import first_largest
 from flexapod.typing import Array
+from flexapod.words import text
 
 __all__ = ["loop_remarks", "loops", "unstable_at"]
 

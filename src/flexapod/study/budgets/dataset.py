@@ -15,7 +15,7 @@ from flexapod.study.before.loops import loop_remarks
 from flexapod.study.budgets.motion import along_motion
 from flexapod.study.budgets.rows import rows
 from flexapod.study.budgets.rules import Budget
-from flexapod.study.budgets.words import sentences
+from flexapod.study.budgets.sentences import sentences
 from flexapod.study.names import dataset
 from flexapod.study.record import Progress
 from flexapod.threads import one_thread

@@ -29,8 +29,8 @@ from flexapod.study.many_modes import poses_of
 from flexapod.study.path import RigidPath
 from flexapod.study.poses import batches
 from flexapod.study.record import Record
-from flexapod.study.words import NOTHING
 from flexapod.typing import Array
+from flexapod.words import NOTHING
 
 __all__ = ["Moved", "at_rest", "elastic_causes", "moved", "names_of_rows", "rows", "rows_of_poses", "without_rounding"]
 

@@ -10,7 +10,6 @@ from flexapod.errors import ComputationError, InputError
 from flexapod.model import ActuatorStudy, Study
 from flexapod.study.arguments import FileLike
 from flexapod.study.record import Report
-from flexapod.study.words import text
 from flexapod.surveys.convergence.family import ABOVE, FAMILIES, Findings
 from flexapod.surveys.convergence.plan import (
     base_setting,
@@ -22,6 +21,7 @@ from flexapod.surveys.convergence.plan import (
 )
 from flexapod.surveys.convergence.table import as_dataset
 from flexapod.surveys.convergence.trials import Setting, Trial, Trials, setting_of
+from flexapod.words import text
 
 if TYPE_CHECKING:
     from xarray import Dataset

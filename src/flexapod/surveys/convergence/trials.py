@@ -16,8 +16,8 @@ from flexapod.model import ActuatorStudy, Study
 from flexapod.model.simulation import OWN_BASIS, STRAIGHT
 from flexapod.study.record import Report
 from flexapod.study.simulation import run
-from flexapod.study.words import text
 from flexapod.typing import Array
+from flexapod.words import text
 
 if TYPE_CHECKING:
     from xarray import Dataset

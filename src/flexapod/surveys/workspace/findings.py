@@ -51,24 +51,27 @@ FURTHER_VARIABLES = {
     "error_by_part": Variable(("part",), "m", "size of the worst that a part does to the tool's place at rest"),
 }
 
-#: Scalars of which maps are drawn, in the order of the figures, and which end is the bad one.
-SCALARS = {
-    "frequency": "least",
-    "stiffness": "least",
-    "stiffness_least": "least",
-    "condition": "largest",
-    "static_deviation_size": "largest",
-    "dynamic_deviation": "largest",
-    "largest_force": "largest",
-    "stroke_margin": "least",
-    "guided_length": "least",
-    "base_joint_angle": "largest",
-    "platform_joint_angle": "largest",
-    "leg_clearance": "least",
-    "euler_share": "largest",
+#: Scalars of which maps are drawn, in the order of the figures: which end is the bad one, and what they are called.
+TOLD = {
+    "frequency": ("least", "first natural frequency"),
+    "stiffness": ("least", "stiffness at the tool along {}"),
+    "stiffness_least": ("least", "stiffness at the tool in its weakest direction"),
+    "condition": ("largest", "condition of the scaled Jacobian"),
+    "static_deviation_size": ("largest", "deviation of the tool at rest"),
+    "dynamic_deviation": ("largest", "deviation of the tool at {}"),
+    "largest_force": ("largest", "largest drive force at rest"),
+    "stroke_margin": ("least", "least stroke left"),
+    "guided_length": ("least", "least length of piston in its cylinder"),
+    "base_joint_angle": ("largest", "largest turn of a base joint from home"),
+    "platform_joint_angle": ("largest", "largest turn of a platform joint from home"),
+    "leg_clearance": ("least", "least distance between two legs"),
+    "euler_share": ("largest", "largest thrust over the Euler load"),
+    "loop_growth": ("largest", "growth of deviations by unstable loops"),
+    "error_worst": ("largest", "worst case of the tool's place at rest, all parts"),
+    "joint_margin": ("least", "least angle left at a joint"),
 }
-#: The same with those that only some maps have.
-SIDES = SCALARS | {"loop_growth": "largest", "error_worst": "largest", "joint_margin": "least"}
+SIDES = {name: side for name, (side, _) in TOLD.items()}
+SCALARS = [name for name in TOLD if name in GRID_VARIABLES]  # the others only some maps have
 
 
 def forms(names: tuple[str, ...]) -> dict[str, Variable]:
@@ -158,27 +161,11 @@ def scalar(data: Dataset, name: str, mode: int = 1) -> DataArray:
 
 def name_of(data: Dataset, name: str, mode: int = 1) -> str:
     """A quantity in words."""
-    if name == "frequency":
-        return "first natural frequency" if mode == 1 else f"natural frequency of mode {mode}"
-    if name == "stiffness":
-        return f"stiffness at the tool along {_vector(data.attrs['stiffness_direction'])}"
-    if name == "dynamic_deviation":
-        return f"deviation of the tool at {_acceleration(data.attrs['acceleration'])}"
-    return {
-        "stiffness_least": "stiffness at the tool in its weakest direction",
-        "condition": "condition of the scaled Jacobian",
-        "static_deviation_size": "deviation of the tool at rest",
-        "loop_growth": "growth of deviations by unstable loops",
-        "error_worst": "worst case of the tool's place at rest, all parts",
-        "largest_force": "largest drive force at rest",
-        "stroke_margin": "least stroke left",
-        "guided_length": "least length of piston in its cylinder",
-        "base_joint_angle": "largest turn of a base joint from home",
-        "platform_joint_angle": "largest turn of a platform joint from home",
-        "joint_margin": "least angle left at a joint",
-        "leg_clearance": "least distance between two legs",
-        "euler_share": "largest thrust over the Euler load",
-    }[name]
+    if name == "frequency" and mode > 1:
+        return f"natural frequency of mode {mode}"
+    words = {"stiffness": ("stiffness_direction", _vector), "dynamic_deviation": ("acceleration", _acceleration)}
+    given = [told(data.attrs[key]) for key, told in [words[name]]] if name in words else []
+    return TOLD[name][1].format(*given)
 
 
 def unit_of(values: DataArray) -> str:

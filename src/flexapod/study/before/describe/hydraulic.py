@@ -12,12 +12,12 @@ from flexapod.rigid.limbs import COORDINATES
 from flexapod.rigid.rotations import matrix, quaternion
 from flexapod.study.accuracy.sensitivity import sensitivity
 from flexapod.study.after.plausibility import worst_of_each
-from flexapod.study.before.describe.leg import Extreme
+from flexapod.study.before.describe.leg import Extreme, largest, least
 from flexapod.study.before.sliding import steady_friction
 from flexapod.study.path import RigidPath
-from flexapod.study.words import number
-from flexapod.ties import first_largest, first_least, most
+from flexapod.ties import most
 from flexapod.typing import Array
+from flexapod.words import number
 
 __all__ = [
     "HydraulicDescription", "describe_hydraulic", "describe_hydraulics", "hydraulic_remarks", "hydraulic_table",
@@ -64,16 +64,12 @@ def describe_hydraulic(i: int, leg: Leg, t: Array, length: Array, thrust: Array,
     k = 1 / oil.at_length(length)
     return HydraulicDescription(
         leg=i + 1,
-        thrust=_largest(t, np.abs(thrust)),
-        pressure=_largest(t, np.maximum(thrust / push, -thrust / pull)),  # (T23.7)
-        flow=_largest(t, np.maximum(rate * push, -rate * pull)),
-        stiffness=Extreme(value=float(k.min()), time=float(t[first_least(k)])),
+        thrust=largest(t, np.abs(thrust)),
+        pressure=largest(t, np.maximum(thrust / push, -thrust / pull)),  # (T23.7)
+        flow=largest(t, np.maximum(rate * push, -rate * pull)),
+        stiffness=least(t, k),
         creep=float((np.abs(thrust) * oil.creep(length)).max()),
     )
-
-
-def _largest(t: Array, values: Array) -> Extreme:
-    return Extreme(value=float(values.max()), time=float(t[first_largest(values)]))
 
 
 def oil_frequency(path: RigidPath) -> tuple[float, float] | None:
@@ -135,10 +131,11 @@ def hydraulic_remarks(robot: Robot, found: tuple[HydraulicDescription, ...]) -> 
 
 
 def hydraulic_table(found: tuple[HydraulicDescription, ...]) -> tuple[list[str], list[list[str]]]:
-    """Heads, and a row of texts for each cylinder."""
+    """Heads, and a row of texts for each cylinder, its leg first."""
     head = ["thrust [N]", "pressure [bar]", "flow [l/min]", "least stiffness of the oil [N/um]", "creep [um/s]"]
     return head, [
         [
+            f"{x.leg}",
             f"{x.thrust.value:.4g}",
             f"{BAR * x.pressure.value:.3g}",
             f"{LITRES * x.flow.value:.3g}",

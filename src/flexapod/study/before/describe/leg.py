@@ -11,9 +11,9 @@ from flexapod.model.simulation import SOLID
 from flexapod.study.after.plausibility import NEAR_BUCKLING, SLENDERNESS, buckling_words, nut_words, thick_words
 from flexapod.study.before.estimates import STATIONS, piston_section, section_width
 from flexapod.study.path import RigidPath
-from flexapod.study.words import text
 from flexapod.ties import first_largest, first_least, most
 from flexapod.typing import Array
+from flexapod.words import text
 
 OFF_LOAD = 2.0  # times another load: 12 % of stiffness
 
@@ -24,6 +24,16 @@ class Extreme:
 
     value: float
     time: float
+
+
+def least(t: Array, values: Array) -> Extreme:
+    """The least of values (T,) at instants `t`."""
+    return Extreme(value=float(values.min()), time=float(t[first_least(values)]))
+
+
+def largest(t: Array, values: Array) -> Extreme:
+    """The largest of values (T,) at instants `t`."""
+    return Extreme(value=float(values.max()), time=float(t[first_largest(values)]))
 
 
 @dataclass(frozen=True, kw_only=True)
@@ -116,42 +126,34 @@ def describe_leg(number: int, leg: Leg, path: LegPath, home: float) -> LegDescri
         leg=number,
         chain=leg.chain,
         home=home,
-        shortest=_least(t, length),
-        longest=_most(t, length),
+        shortest=least(t, length),
+        longest=largest(t, length),
         stroke=None if leg.stroke is None else (leg.stroke.min, leg.stroke.max),
         stroke_margin=_margin(leg, t, length),
-        guided=None if leg.strut is not None else _least(t, inside),
+        guided=None if leg.strut is not None else least(t, inside),
         slenderness=float(free.min() / section_width(leg.piston)),
         carriage=_way(leg, t, path.carriage),
         drive=leg.carriage.kind if leg.carriage and leg.driven == "carriage" else leg.driven,
-        force_min=_least(t, path.force),
-        force_max=_most(t, path.force),
+        force_min=least(t, path.force),
+        force_max=largest(t, path.force),
         euler_share=Extreme(value=max(0.0, float(pushed[near] / euler[near])), time=float(t[near])),
         euler_load=float(euler[near]),
         stress=_stress(leg, t, np.maximum(np.abs(along), np.abs(path.thrust)), path.moment, free),
     )
 
 
-def _least(t: Array, values: Array) -> Extreme:
-    return Extreme(value=float(values.min()), time=float(t[first_least(values)]))
-
-
-def _most(t: Array, values: Array) -> Extreme:
-    return Extreme(value=float(values.max()), time=float(t[first_largest(values)]))
-
-
 def _way(leg: Leg, t: Array, place: Array) -> Way | None:
     if leg.carriage is None:
         return None
     travel = leg.carriage.stroke
-    margin = None if travel is None else _least(t, np.minimum(place - travel.min, travel.max - place))
-    return Way(kind=leg.carriage.kind, low=_least(t, place), high=_most(t, place), margin=margin)
+    margin = None if travel is None else least(t, np.minimum(place - travel.min, travel.max - place))
+    return Way(kind=leg.carriage.kind, low=least(t, place), high=largest(t, place), margin=margin)
 
 
 def _margin(leg: Leg, t: Array, length: Array) -> Extreme | None:
     if leg.stroke is None:
         return None
-    return _least(t, np.minimum(length - leg.stroke.min, leg.stroke.max - length))
+    return least(t, np.minimum(length - leg.stroke.min, leg.stroke.max - length))
 
 
 def _stress(leg: Leg, t: Array, force: Array, moment: Array, free: Array) -> Stress | None:
@@ -171,7 +173,7 @@ def _stress(leg: Leg, t: Array, force: Array, moment: Array, free: Array) -> Str
     return Stress(
         axial=float(axial.max()),
         bending=float(bending.max()),
-        total=_most(t, axial + bending),
+        total=largest(t, axial + bending),
         yield_stress=piston.yield_stress,
     )
 

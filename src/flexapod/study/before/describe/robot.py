@@ -18,7 +18,7 @@ from flexapod.solve.modes import the_modes
 from flexapod.solve.parts import part_stiffness
 from flexapod.solve.robot_march import refuse_massless
 from flexapod.solve.stiffness import compliance, stiffness_of
-from flexapod.study.accuracy.words import accuracy_words, rest_words
+from flexapod.study.accuracy.at_home import accuracy_words, rest_words
 from flexapod.study.after.inside import guide_results
 from flexapod.study.after.mode_shapes import mode_kinds
 from flexapod.study.before.checks import check_path
@@ -49,9 +49,8 @@ from flexapod.study.before.describe.screw import ScrewDescription, back_words, d
 from flexapod.study.before.estimates import bending_moments, buckling_loads, residual_vibration
 from flexapod.study.before.loops import loop_remarks
 from flexapod.study.disturbances import vibration_words
-from flexapod.study.ideal import ideal_words
+from flexapod.study.ideal import held, ideal_words
 from flexapod.study.path import RigidPath
-from flexapod.study.words import held
 from flexapod.threads import one_thread
 from flexapod.ties import EQUALS, first_largest
 from flexapod.typing import Array

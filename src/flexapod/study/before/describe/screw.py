@@ -10,7 +10,7 @@ import numpy as np
 
 from flexapod.model import Leg, Robot, ScrewDrive
 from flexapod.study.after.plausibility import worst_of_each
-from flexapod.study.before.describe.leg import Extreme
+from flexapod.study.before.describe.leg import Extreme, largest
 from flexapod.study.before.screws import (
     back_efficiency,
     buckling_thrust,
@@ -21,9 +21,9 @@ from flexapod.study.before.screws import (
     turns_of_life,
 )
 from flexapod.study.path import RigidPath
-from flexapod.study.words import number, text
 from flexapod.ties import first_largest, most
 from flexapod.typing import Array
+from flexapod.words import number, text
 
 __all__ = ["ScrewDescription", "back_words", "describe_screw", "describe_screws", "screw_remarks", "screw_table"]
 
@@ -80,19 +80,19 @@ def describe_screw(
     along = length - leg.begins
     allowed = buckling_thrust(screw, along)
     pushed = np.abs(thrust) if screw.mounting == "fixed-fixed" else np.maximum(thrust, 0.0)
-    buckling = _largest(t, pushed / allowed)
+    buckling = largest(t, pushed / allowed)
     speed, torque = np.abs(rate) / screw.per_turn, motor_torque(screw, thrust, rate, accel)
     rms, constant = float(np.sqrt(np.trapezoid(torque**2, t) / (t[-1] - t[0]))), screw.motor.torque_constant
     load, rating = half_loads(screw.nut, thrust), screw.nut.static_load
     life, hours = _life(screw, load, t, rate)
     return ScrewDescription(
         leg=i + 1,
-        thrust=_largest(t, np.abs(thrust)),
+        thrust=largest(t, np.abs(thrust)),
         buckling=buckling,
         buckling_thrust=float(allowed[first_largest(pushed / allowed)]),
-        speed=_largest(t, speed * screw.rotor.ratio),
+        speed=largest(t, speed * screw.rotor.ratio),
         critical=float(speed.max() / critical_speed(screw)),
-        torque=_largest(t, np.abs(torque)),
+        torque=largest(t, np.abs(torque)),
         rms_torque=rms,
         current=None if constant is None else float(np.abs(torque).max()) / constant,
         rms_current=None if constant is None else rms / constant,
@@ -109,10 +109,6 @@ def _life(screw: ScrewDrive, load: Array, t: Array, rate: Array) -> tuple[float 
         return None, None
     life = turns_of_life(screw.nut.dynamic_load, mean_load(load, rate))
     return life, life / (travel / screw.lead) * (t[-1] - t[0]) / 3600
-
-
-def _largest(t: Array, values: Array) -> Extreme:
-    return Extreme(value=float(values.max()), time=float(t[first_largest(values)]))
 
 
 def screw_remarks(robot: Robot, screws: tuple[ScrewDescription, ...]) -> list[str]:
@@ -204,13 +200,14 @@ def back_words(path: RigidPath, screws: tuple[ScrewDescription, ...]) -> str:
 
 
 def screw_table(screws: tuple[ScrewDescription, ...]) -> tuple[list[str], list[list[str]]]:
-    """Heads, and a row of texts for each screw."""
+    """Heads, and a row of texts for each screw, its leg first."""
     head = ["thrust [N]", "of buckling [%]", "motor [rpm]", "of critical speed [%]", "motor [N m]", "rms [N m]",
             "static safety", "life [h]"]  # fmt: skip
     known = any(s.current is not None for s in screws)
     head += ["current [A]", "rms [A]"] if known else []
     return head, [
         [
+            f"{s.leg}",
             f"{s.thrust.value:.4g}",
             f"{100 * s.buckling.value:.3g}",
             f"{RPM * s.speed.value:.4g}",

@@ -3,19 +3,20 @@
 from __future__ import annotations
 
 import math
-from collections.abc import Iterable
+from collections.abc import Iterable, Iterator
 from typing import TYPE_CHECKING
 
 import numpy as np
 
 from flexapod import model
-from flexapod.report import html
+from flexapod.document import check, html
+from flexapod.document.html import Html
+from flexapod.document.parts import Bullets, Item, Section, Table, Text
 from flexapod.solve.lost_motion import places_with_friction
 from flexapod.study.after.causes import cause_names
-from flexapod.study.before.describe.hydraulic import hydraulic_table
-from flexapod.study.before.describe.screw import screw_table
 from flexapod.study.cause_words import CAUSES, cause_in_words
-from flexapod.study.words import held, number, text
+from flexapod.study.ideal import held
+from flexapod.words import number, text
 
 if TYPE_CHECKING:
     from flexapod.model import ActuatorStudy, Robot, Study
@@ -39,14 +40,16 @@ _START = {
 }
 
 
-def study_words(study: Study | ActuatorStudy, found: RobotDescription | ActuatorDescription | None) -> list[str]:
+def study_items(study: Study | ActuatorStudy, found: RobotDescription | ActuatorDescription | None) -> Iterator[Item]:
     """Sentences and, where the path could be described, a table of the legs on it."""
     if isinstance(study, model.ActuatorStudy):
-        return [html.bullets(_actuator(study))]
-    parts = [html.bullets(_robot(study))]
+        yield Bullets(_actuator(study))
+        return
+    yield Bullets(_robot(study))
     if found is not None and found.kind == "robot":
-        parts += _path(found)  # type: ignore[arg-type]
-    return parts
+        yield Section("What the path asks of the legs", _path(found))  # type: ignore[arg-type]
+        yield check.screws(found)  # type: ignore[arg-type]
+        yield check.hydraulics(found)  # type: ignore[arg-type]
 
 
 def _robot(study: Study) -> list[str]:
@@ -205,7 +208,7 @@ def _amount(name: str, value: float) -> str:
     return f"{name} {text(value, 'm', 4) if name in model.AXES[:3] else f'{number(math.degrees(value), 4)} deg'}"
 
 
-def _path(found: RobotDescription) -> list[str]:
+def _path(found: RobotDescription) -> Iterator[Item]:
     rows = [
         (
             f"{leg.leg}",
@@ -218,12 +221,13 @@ def _path(found: RobotDescription) -> list[str]:
         )
         for leg in found.legs
     ]
-    kinds = {leg.carriage.kind: leg for leg in found.legs if leg.carriage is not None}
+    kind = next((leg.carriage.kind for leg in found.legs if leg.carriage is not None), "")
+    crank = any(leg.carriage is not None and leg.carriage.kind == "crank" for leg in found.legs)
     place, left = {"crank": ("Angle", "Turn left"), "slider": ("Position", "Travel left")}.get(
-        next(iter(kinds), ""), ("Length", "Stroke left")
+        kind, ("Length", "Stroke left")
     )
-    force = "Drive torque" if "crank" in kinds else "Drive force"
-    head = ("Leg", place, left, force, "Of Euler load", "Largest stress")
+    force = "Drive torque" if crank else "Drive force"
+    yield Table((place, left, force, "Of Euler load", "Largest stress"), rows, of="leg")
     words = "Estimates from the rigid path, as `flexapod check` gives them."
     if (s := found.singularity) is not None:
         words += (
@@ -231,26 +235,7 @@ def _path(found: RobotDescription) -> list[str]:
             f"{s.smallest_singular_value:.3g} at t = {s.time:.3f} s, condition {s.condition:.3g}; at home "
             f"{s.home_smallest_singular_value:.3g} and {s.home_condition:.3g}."
         )
-    asked = [html.heading("What the path asks of the legs"), html.table(head, rows), html.paragraph(words, "soft")]
-    return asked + _screws(found) + _hydraulics(found)
-
-
-def _screws(found: RobotDescription) -> list[str]:
-    if not found.screws:
-        return []
-    head, texts = screw_table(found.screws)
-    rows = [(f"{s.leg}", *row) for s, row in zip(found.screws, texts, strict=True)]
-    words = f"{found.back[0].upper()}{found.back[1:]}."
-    return [html.heading("Screws, largest values on the path"), html.table(("Leg", *head), rows), html.paragraph(words)]
-
-
-def _hydraulics(found: RobotDescription) -> list[str]:
-    if not found.hydraulics:
-        return []
-    head, texts = hydraulic_table(found.hydraulics)
-    rows = [(f"{x.leg}", *row) for x, row in zip(found.hydraulics, texts, strict=True)]
-    words = [html.paragraph(f"{sentence[0].upper()}{sentence[1:]}.") for sentence in found.oil]
-    return [html.heading("Hydraulic cylinders, on the path"), html.table(("Leg", *head), rows), *words]
+    yield Text(words, "soft")
 
 
 def _way(leg: LegDescription) -> tuple[str, str]:
@@ -321,51 +306,43 @@ def _law(law: model.LoadLaw, unit: str) -> str:
 
 def modes_section(
     study: Study | ActuatorStudy | None, found: RobotDescription | ActuatorDescription | None
-) -> list[str]:
+) -> list[Html]:
     """Frequencies, damping and stiffness while the commands stand still; nothing where there is no description."""
     if study is None or found is None:
         return []
     if isinstance(study, model.ActuatorStudy):
-        return [html.section("modes", "Modes", *_beam(found))]  # type: ignore[arg-type]
-    parts = [part for pose in found.poses for part in _pose(pose)]  # type: ignore[union-attr]
+        return [html.section("modes", "Modes", _beam(found))]  # type: ignore[arg-type]
     words = f"{held(study.robot)}, about the static equilibrium. Damping is the part of critical damping."
-    return [html.section("modes", "Modes", html.paragraph(words, "soft"), *parts)]
+    return [html.section("modes", "Modes", [Text(words, "soft"), *map(_pose, found.poses)])]  # type: ignore[union-attr]
 
 
-def _pose(pose: PoseDescription) -> list[str]:
-    parts = [html.heading(f"{pose.name[0].upper()}{pose.name[1:]}, t = {pose.time:.3f} s")]
-    if pose.problem:
-        parts.append(html.paragraph(pose.problem, "bad"))
+def _pose(pose: PoseDescription) -> Section:
+    told: list[Item] = [] if not pose.problem else [Text(pose.problem, "bad")]
     if pose.modes:
-        parts.append(modes_table((mode.frequency, mode.damping_ratio, mode.kind) for mode in pose.modes))
-    if pose.stiffness is not None:
-        s = pose.stiffness
+        told.append(modes_table((mode.frequency, mode.damping_ratio, mode.kind) for mode in pose.modes))
+    if (s := pose.stiffness) is not None:
         words = f"Stiffness at the tool: {text(s.least, 'N/m')} to {text(s.most, 'N/m')} along a direction."
-        parts.append(html.paragraph(words, "soft"))
+        told.append(Text(words, "soft"))
     if pose.parts is not None:
-        head = (
-            "Stiffness along the leg [N/µm]",
-            *(f"leg {i}" for i in range(1, 1 + len(next(iter(pose.parts.values()))))),
-        )
+        legs = range(1, 1 + len(next(iter(pose.parts.values()))))
         rows = [
             (name, *("-" if math.isinf(k) else f"{k / 1e6:.4g}" for k in values)) for name, values in pose.parts.items()
         ]
-        parts.append(html.table(head, rows))
-    return parts
+        told.append(Table(("Stiffness along the leg [N/µm]", *map("leg {}".format, legs)), rows))
+    return Section(f"{pose.name[0].upper()}{pose.name[1:]}, t = {pose.time:.3f} s", told)
 
 
-def modes_table(modes: Iterable[tuple[float, float, str]]) -> str:
+def modes_table(modes: Iterable[tuple[float, float, str]]) -> Table:
     """Modes from the lowest on: frequency [Hz], damping ratio, kind."""
     rows = [(f"{i}", f"{f:.4g} Hz", f"{100 * d:.2g} %", kind) for i, (f, d, kind) in enumerate(modes, start=1)]
-    return html.table(("Mode", "Frequency", "Damping", "What moves most"), rows)
+    return Table(("Frequency", "Damping", "What moves most"), rows, of="mode")
 
 
-def _beam(found: ActuatorDescription) -> list[str]:
+def _beam(found: ActuatorDescription) -> list[Item]:
     rows = [
         (beam.name, f"{beam.free_length:.4g} m", *numbers)
         for beam in found.beam
         for numbers in beam.by_kind or [("n/a", beam.problem or "n/a", "n/a")]
     ]
-    words = "Hub and extension held, about the straight beam at rest."
     head = ("Beam", "Free length", "What moves", "Frequencies [Hz]", "Damping [%]")
-    return [html.paragraph(words, "soft"), html.table(head, rows)]
+    return [Text("Hub and extension held, about the straight beam at rest.", "soft"), Table(head, rows)]

@@ -4,7 +4,7 @@ from __future__ import annotations
 
 from flexapod import model
 from flexapod.study.before.describe.robot import RobotDescription, describe
-from flexapod.study.words import number, text
+from flexapod.words import number, text
 
 HEAVY = 1.0  # mass of the legs over that of the payload above which it is remarked on
 MACHINE = 3.0  # the same of legs with screws or oil, which are sized for stiffness

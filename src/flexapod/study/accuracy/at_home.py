@@ -12,11 +12,10 @@ from flexapod.study.accuracy.imperfect import is_crooked
 from flexapod.study.accuracy.play import half_play
 from flexapod.study.accuracy.spread import drift
 from flexapod.study.cause_words import cause_in_words
-from flexapod.study.words import NOTHING as LENGTH
-from flexapod.study.words import UNSAID, along_axes, signed
 from flexapod.ties import first_largest, most
 from flexapod.typing import Array
-from flexapod.words import text
+from flexapod.words import NOTHING as LENGTH
+from flexapod.words import UNSAID, along_axes, signed, text
 
 __all__ = ["accuracy_words", "is_real", "rest_words"]
 

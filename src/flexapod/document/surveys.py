@@ -4,17 +4,20 @@ from __future__ import annotations
 
 import math
 from collections import Counter
+from collections.abc import Iterator
 from typing import TYPE_CHECKING, Any
 
 import numpy as np
 
-from flexapod.app.terminal import print_table, print_text
+from flexapod.document.parts import Item, Lines, Table
 from flexapod.ties import first_largest, first_least
+from flexapod.words import column, text
 
 if TYPE_CHECKING:
     from xarray import Dataset
 
 MESSAGES = 3  # different ones that are shown
+EXTREMES = ("median", "smallest", "largest")
 
 
 def sweep_as_dict(data: Dataset) -> dict[str, Any]:
@@ -31,34 +34,31 @@ def sweep_as_dict(data: Dataset) -> dict[str, Any]:
     }
 
 
-def show_sweep(data: Dataset) -> None:
-    """Print what was found."""
-    from flexapod.app.terminal import print_table, print_text
-    from flexapod.study.words import column
-
+def sweep_items(data: Dataset) -> Iterator[Item]:
+    """How many points there are of each state, why they failed, extremes."""
     found = sweep_as_dict(data)
     states = [f"{found[state]} {state}" for state in ("computed", "failed", "pending") if found[state]]
-    print_text(f"{found['points']} points: {', '.join(states)}.")
-    for entry in found["failures"][:MESSAGES]:
-        print_text(f"Failed: {_times(entry['points'])}, first point {entry['first']}: {entry['message']}")
-    if len(found["failures"]) > MESSAGES:
-        print_text(f"... and {len(found['failures']) - MESSAGES} other messages: see the table.")
+    yield f"{found['points']} points: {', '.join(states)}."
+    failures, scalars = found["failures"], found["scalars"]
+    for entry in failures[:MESSAGES]:
+        yield f"Failed: {_times(entry['points'])}, first point {entry['first']}: {entry['message']}"
+    if len(failures) > MESSAGES:
+        yield f"... and {len(failures) - MESSAGES} other messages: see the table."
     for entry in found["remarks"][:MESSAGES]:
-        print_text(f"Warning at {_times(entry['points'])}: {entry['remark']}")
+        yield f"Warning at {_times(entry['points'])}: {entry['remark']}"
+    if not scalars:
+        return
     rows = []
-    for name, extremes in found["scalars"].items():
+    for name, extremes in scalars.items():
         unit = str(data[name].attrs.get("units", "1"))
-        shown, values = column(
-            [extremes[key] for key in ("median", "smallest", "largest")], "" if unit == "1" else unit
-        )
+        shown, values = column([extremes[key] for key in EXTREMES], "" if unit == "1" else unit)
         rows.append([name, shown, *values])
-    if rows:
-        print_text()
-        print_table(["scalar", "unit", "median", "smallest", "largest"], rows, left=(0, 1))
-        main = next(iter(found["scalars"]))
-        for key in ("smallest", "largest"):
-            at = found["scalars"][main][f"{key}_at"]
-            print_text(f"{main} is {key} at point {at['point']}{_place(data, at['point'])}.")
+    yield ""
+    yield Table(["scalar", "unit", *EXTREMES], rows, left=(0, 1))
+    main = next(iter(scalars))
+    for key in EXTREMES[1:]:
+        at = scalars[main][f"{key}_at"]
+        yield f"{main} is {key} at point {at['point']}{_place(data, at['point'])}."
 
 
 def _extremes(data: Dataset, name: str) -> dict[str, Any]:
@@ -83,8 +83,6 @@ def _single(array: Any) -> bool:
 
 
 def _place(data: Dataset, point: int) -> str:
-    from flexapod.study.words import text
-
     words = []
     for name, array in data.coords.items():
         if array.dims == ("point",):
@@ -106,8 +104,8 @@ def _failures(data: Dataset) -> list[tuple[str, int, int]]:
 def _remarks(data: Dataset) -> list[tuple[str, int]]:
     """Remarks by kind (what they say up to their first number), the most frequent first, each by its first wording."""
     kinds: dict[str, list[str]] = {}
-    for text in data.remarks.values:
-        for line in filter(None, str(text).splitlines()):
+    for remarks in data.remarks.values:
+        for line in filter(None, str(remarks).splitlines()):
             words = line.split(": ", 1)[-1] if line.startswith("leg ") else line
             kinds.setdefault("".join(c for c in words if not c.isdigit())[:30], []).append(line)
     return [(lines[0], len(lines)) for lines in sorted(kinds.values(), key=len, reverse=True)]
@@ -121,51 +119,41 @@ _TITLES = {"step": "Step", "shapes": "Shapes", "elements": "Beam elements", "seg
 _NAMES = {"deviation": "centre of mass", "tip": "tip deflection"}
 
 
-def show_convergence(data: Dataset) -> None:
-    """Print the tables of the families, what they tell, and the recommendation."""
+def convergence_items(data: Dataset) -> Iterator[Item]:
+    """The tables of the families, what they tell, and the recommendation."""
     for i, group in enumerate(data.group.values):
         spectral = str(data.rate.values[i]).startswith("spectral")
         own = _error(float(data[f"own_error_{_quantities(data)[0]}"][i]))
-        print_text()
-        print_text(f"{_TITLES[str(group)]}: {data.rate.values[i]}.")
-        print_text(f"Errors against {data.group_reference.values[i]}, itself good to {own}.")
-        _table(data, str(group), orders=math.isfinite(float(data.order[i])) and not spectral)
-    print_text()
-    _conclusion(data)
+        yield ""
+        yield f"{_TITLES[str(group)]}: {data.rate.values[i]}."
+        yield f"Errors against {data.group_reference.values[i]}, itself good to {own}."
+        yield _table(data, str(group), orders=math.isfinite(float(data.order[i])) and not spectral)
+    yield ""
+    yield from _conclusion(data)
     for line in filter(None, (*str(data.attrs["notes"]).splitlines(), *str(data.attrs["warnings"]).splitlines())):
-        print_text(f"Note: {line}")
+        yield f"Note: {line}"
 
 
-def show_ladder(data: Dataset) -> None:
-    """Print every fidelity with error and cost."""
-    from flexapod.study.words import column
-
-    names = _quantities(data)
-    print_text()
+def ladder_items(data: Dataset) -> Iterator[Item]:
+    """Every fidelity with error and cost."""
+    names, found = _quantities(data), _rows(data, "ladder")
     own = ", ".join(f"{_error(float(data.attrs[f'reference_error_{q}']))} in the {_NAMES[q]}" for q in names)
-    print_text(
+    yield ""
+    yield (
         f"Every fidelity, with the same step: errors against {data.attrs['reference']} "
         f"(8 of these shapes differ from it by {own})."
     )
-    found = _rows(data, "ladder")
     _, each = column([1e6 * row["seconds_per_step"] for row in found], "", 3)
     unit, times = column([row["seconds"] for row in found], "s", 3)
     errors = (f"error, {_NAMES[q]}" for q in names)
     head = ["fidelity", "made of", *errors, "time of a step [µs]", f"time [{unit}]", ""]
     rows = [
-        [
-            str(row["fidelity"]),
-            str(row["label"]),
-            *(_error(row[f"error_{q}"]) for q in names),
-            each[i],
-            times[i],
-            str(row["failure"]),
-        ]
-        for i, row in enumerate(found)
+        [row["fidelity"], row["label"], *(_error(row[f"error_{q}"]) for q in names), *times, row["failure"]]
+        for row, *times in zip(found, each, times, strict=True)
     ]
-    print_table(head, rows, left=(0, 1, len(head) - 1))
+    yield Table(head, rows, left=(0, 1, len(head) - 1))
     if data.attrs["notes"]:
-        print_text(f"Note: {data.attrs['notes']}")
+        yield f"Note: {data.attrs['notes']}"
 
 
 def convergence_as_dict(data: Dataset) -> dict[str, object]:
@@ -183,41 +171,36 @@ def convergence_as_dict(data: Dataset) -> dict[str, object]:
     return {**facts, "partial": bool(data.attrs["partial"]), **lines, "families": groups, "settings": rows}
 
 
-def _table(data: Dataset, family: str, *, orders: bool) -> None:
+def _table(data: Dataset, family: str, *, orders: bool) -> Table:
     """Rows of a family; without orders where the error falls with no power or not steadily."""
-    from flexapod.study.words import column
-
     names, rows = _quantities(data), _rows(data, family)
-    columns = [[str(row["label"]).removeprefix("step ") for row in rows]]
-    head = [family]
+    columns = [(family, [row["label"].removeprefix("step ") for row in rows])]
     for q in names:
         unit, peaks = column([math.nan if row["failure"] else row[f"peak_{q}"] for row in rows], "m", 5)
-        head += [f"peak [{unit}], {_NAMES[q]}", "error"]
-        columns += [peaks, ["reference" if row["reference"] else _error(row[f"error_{q}"]) for row in rows]]
-        if orders:
-            head.append("order")
-            columns.append([_order(row[f"order_{q}"]) for row in rows])
+        errors = ["reference" if row["reference"] else _error(row[f"error_{q}"]) for row in rows]
+        columns += [(f"peak [{unit}], {_NAMES[q]}", peaks), ("error", errors)]
+        columns += [("order", [_order(row[f"order_{q}"]) for row in rows])] if orders else []
     unit, times = column([row["seconds"] for row in rows], "s", 3)
-    columns += [[str(row["steps"]) for row in rows], times, [str(row["failure"]) for row in rows]]
-    head += ["steps", f"time [{unit}]", ""]
-    print_table(head, [list(line) for line in zip(*columns, strict=True)], left=(0, len(head) - 1))
+    columns += [("steps", [str(row["steps"]) for row in rows]), (f"time [{unit}]", times)]
+    columns += [("", [row["failure"] for row in rows])]
+    head, values = zip(*columns, strict=True)
+    return Table(head, list(zip(*values, strict=True)), left=(0, len(head) - 1))
 
 
-def _conclusion(data: Dataset) -> None:
+def _conclusion(data: Dataset) -> Iterator[Item]:
     """The file's setting beside the recommended one, and the lines to paste."""
     good = f"against {data.attrs['reference']}, itself good to {_error(float(data.attrs['reference_error']))}"
     file, chosen = _rows(data, "file"), _rows(data, "recommended")
     for row in file:
-        print_text(f"As in the file ({row['label']}): {_cost(data, row)}.")
+        yield f"As in the file ({row['label']}): {_cost(data, row)}."
     for row in chosen:
         faster = ""
         if file and file[0]["seconds"] > 2 * row["seconds"]:
             faster = f", {file[0]['seconds'] / row['seconds']:.0f} times faster than the file's setting"
-        print_text(f"Recommended for {data.attrs['accuracy']:g} ({row['label']}): {_cost(data, row)}{faster}; {good}.")
-        print_text("In [simulation], in place of fidelity, basis, modes, step and tolerance:")
-        print_text()
-        for line in str(data.attrs["recommended"]).splitlines():
-            print_text(line, indent=4)
+        yield f"Recommended for {data.attrs['accuracy']:g} ({row['label']}): {_cost(data, row)}{faster}; {good}."
+        yield "In [simulation], in place of fidelity, basis, modes, step and tolerance:"
+        yield ""
+        yield Lines(str(data.attrs["recommended"]))
 
 
 def _cost(data: Dataset, row: dict[str, Any]) -> str:
@@ -250,8 +233,6 @@ def _order(value: object) -> str:
 
 
 def _time(seconds: object) -> str:
-    from flexapod.study.words import text
-
     if not (isinstance(seconds, float) and math.isfinite(seconds)):
         return "-"
     return f"{1e6 * seconds:.3g} µs" if seconds < 1e-3 else text(seconds, "s")

@@ -8,9 +8,9 @@ import numpy as np
 
 from flexapod.study.budgets.rules import PLACE, Budget
 from flexapod.study.cause_words import cause_in_words
-from flexapod.study.words import along_axes, cleared, column, text
 from flexapod.ties import ranked
 from flexapod.typing import Array
+from flexapod.words import along_axes, cleared, column, text
 
 if TYPE_CHECKING:
     from xarray import Dataset

@@ -1,4 +1,4 @@
-"""Building blocks of a self-contained HTML page: text, tables, code, figures that zoom, a replay."""
+"""What is told, on a self-contained HTML page: text, tables, code; figures that zoom, a replay."""
 
 from __future__ import annotations
 
@@ -7,9 +7,13 @@ import html
 import json
 import re
 import zlib
-from collections.abc import Mapping, Sequence
+from collections.abc import Iterable, Mapping, Sequence
 from functools import cache
 from importlib.resources import files
+from itertools import repeat
+
+from flexapod.document.parts import Bullets, Item, Lines, Remarks, Section, Table, Text
+from flexapod.words import brief
 
 # What a browser may do with a page: run and show what is in it, and fetch nothing.
 _POLICY = (
@@ -27,9 +31,9 @@ def escape(text: str) -> str:
     return _QUANTITY.sub("\N{NO-BREAK SPACE}", html.escape(text))
 
 
-def page(title: str, lead: str, body: Sequence[str]) -> str:
+def page(title: str, lead: str, body: Iterable[Item]) -> str:
     """A whole page; `lead` is its first sentence. Figures that zoom bring their library with them."""
-    inner = "\n".join(body)
+    inner = parts(body)
     script = f'<script type="text/plain" id="plotly">{library()}</script>\n' if 'class="plot"' in inner else ""
     return (
         '<!DOCTYPE html>\n<html lang="en">\n<head>\n<meta charset="utf-8">\n'
@@ -42,7 +46,7 @@ def page(title: str, lead: str, body: Sequence[str]) -> str:
 
 
 def _asset(name: str) -> str:
-    return files("flexapod.report").joinpath("assets", name).read_text(encoding="utf-8")
+    return files("flexapod.document").joinpath("assets", name).read_text(encoding="utf-8")
 
 
 @cache
@@ -52,81 +56,84 @@ def library() -> str:
     return base64.b64encode(zlib.compress(script, 4)).decode("ascii")
 
 
-def section(name: str, title: str, *parts: str) -> str:
+class Html(str):
+    """What is markup already: a figure, a replay, links, a section."""
+
+
+def parts(told: Iterable[Item]) -> str:
+    """What is told, a block each; a section within has a smaller title, and is left out with nothing in it."""
+    return "\n".join(filter(None, map(_part, told)))
+
+
+def _part(item: Item) -> str:
+    match item:
+        case Html():
+            return item
+        case str():
+            return f"<p>{escape(item)}</p>"
+        case Text():
+            return f'<p class="{item.kind}">{escape(item.words)}</p>'
+        case Table():
+            return _table(item)
+        case Bullets():
+            return "<ul>" + "".join(f"<li>{escape(text)}</li>" for text in item.lines) + "</ul>"
+        case Remarks():
+            return "<ul>" + "".join(map(_remark, item.lines)) + "</ul>"
+        case Lines():
+            return _lines(item)
+        case Section():
+            inner = parts(item.items)
+            return f"<h3>{escape(item.title)}</h3>\n{inner}" if inner else ""
+
+
+def section(name: str, title: str, told: Iterable[Item]) -> Html:
     """A titled section with an anchor."""
-    return f'<section id="{escape(name)}">\n<h2>{escape(title)}</h2>\n' + "\n".join(parts) + "\n</section>"
+    return Html(f'<section id="{escape(name)}">\n<h2>{escape(title)}</h2>\n{parts(told)}\n</section>')
 
 
-def paragraph(text: str, kind: str = "") -> str:
-    """A paragraph of plain text."""
-    style = f' class="{kind}"' if kind else ""
-    return f"<p{style}>{escape(text)}</p>"
+def _remark(text: str) -> str:
+    """What a remark says, and folded away behind it what explains it."""
+    first, rest = map(escape, brief(text))
+    return f"<li><details><summary>{first}</summary>{rest}</details></li>" if rest else f"<li>{first}</li>"
 
 
-def bullets(texts: Sequence[str]) -> str:
-    """A list of plain texts."""
-    return "<ul>" + "".join(f"<li>{escape(text)}</li>" for text in texts) + "</ul>"
+def _lines(lines: Lines) -> str:
+    """Text as it is; long lines are scrolled, by keys too."""
+    title = escape(lines.title)
+    block = f'<pre tabindex="0" role="group" aria-label="{title or "Text"}">{html.escape(lines.text)}</pre>'
+    return f"<details><summary>{title}</summary>{block}</details>" if title else block
 
 
-def remarks(texts: Sequence[tuple[str, str]]) -> str:
-    """A list of remarks: what each says, and folded away behind it what explains it."""
-    items = (
-        f"<li><details><summary>{escape(first)}</summary>{escape(rest)}</details></li>" if rest
-        else f"<li>{escape(first)}</li>"
-        for first, rest in texts
-    )  # fmt: skip
-    return "<ul>" + "".join(items) + "</ul>"
-
-
-def code(text: str, title: str | None = None) -> str:
-    """Text as it is; folded away under a title if there is one."""
-    name = escape(title or "Text")  # long lines are scrolled, by keys too
-    block = f'<pre tabindex="0" role="group" aria-label="{name}">{html.escape(text)}</pre>'  # every space as it is
-    return block if title is None else f"<details><summary>{escape(title)}</summary>{block}</details>"
-
-
-def table(head: Sequence[str], rows: Sequence[Sequence[str]], marks: Mapping[str, str] | None = None) -> str:
-    """A table of plain text; `marks` gives a style (good, bad, open) to cells by their text."""
-    marks = marks or {}
+def _table(table: Table) -> str:
+    head = [table.of.capitalize(), *table.head] if table.of else table.head
     top = "".join(f"<th>{escape(name)}</th>" for name in head)
-    lines = ["".join(_cell(text, label, marks) for text, label in zip(row, head, strict=True)) for row in rows]
-    body = "".join(f"<tr>{line}</tr>\n" for line in lines)
-    return f"<table><thead><tr>{top}</tr></thead>\n<tbody>\n{body}</tbody></table>"
+    labels = [f' data-label="{escape(name)}"' for name in head] or [""] * max(map(len, table.rows), default=0)
+    rows = "".join(f"<tr>{''.join(map(_cell, row, labels, repeat(table.marks)))}</tr>\n" for row in table.rows)
+    return f"<table>{f'<thead><tr>{top}</tr></thead>' if head else ''}\n<tbody>\n{rows}</tbody></table>"
 
 
 def _cell(text: str, label: str, marks: Mapping[str, str]) -> str:
     style = f' class="{marks[text]}"' if text in marks else ""
-    return f'<td data-label="{escape(label)}"{style}>{escape(text)}</td>'
+    return f"<td{label}{style}>{escape(text)}</td>"
 
 
-def values(pairs: Mapping[str, object]) -> str:
-    """Names and values, a row each."""
-    rows = "".join(f"<tr><td>{escape(name)}</td><td>{escape(str(value))}</td></tr>\n" for name, value in pairs.items())
-    return f"<table><tbody>\n{rows}</tbody></table>"
-
-
-def heading(text: str) -> str:
-    """A title within a section."""
-    return f"<h3>{escape(text)}</h3>"
-
-
-def contents(links: Mapping[str, str]) -> str:
+def contents(links: Mapping[str, str]) -> Html:
     """Links to the sections of a page: words by anchor."""
     inner = " ".join(f'<a href="#{escape(anchor)}">{escape(words)}</a>' for anchor, words in links.items())
-    return f'<nav aria-label="Contents">{inner}</nav>'
+    return Html(f'<nav aria-label="Contents">{inner}</nav>')
 
 
-def figure(title: str, png: bytes, plot: Mapping[str, object] | None = None) -> str:
+def figure(title: str, png: bytes, plot: Mapping[str, object] | None = None) -> Html:
     """A picture with its title, held in the page itself; with `plot` (from `interactive`) scripts can zoom it."""
     image, caption = _image(title, png), f"<figcaption>{escape(title)}</figcaption>"
     tall = ["tall"] * _is_tall(png)
     if plot is None:
-        return f"<figure{_classes(tall)}>{image}{caption}</figure>"
+        return Html(f"<figure{_classes(tall)}>{image}{caption}</figure>")
     keys = "Plus and minus zoom, arrow keys move along the horizontal axis, 0 shows all"
-    return f"<figure{_classes(['chart', *tall])}>{image}{_plot(title, keys)}{caption}{_json(plot)}</figure>"
+    return Html(f"<figure{_classes(['chart', *tall])}>{image}{_plot(title, keys)}{caption}{_json(plot)}</figure>")
 
 
-def replay(title: str, told: Mapping[str, object], still: tuple[str, bytes] | None = None) -> str:
+def replay(title: str, told: Mapping[str, object], still: tuple[str, bytes] | None = None) -> Html:
     """A moving picture with its controls; `told` is from `flexapod.report.replay.replay`.
 
     `still`: title and picture (PNG) that stand in its place on paper and where no scripts run.
@@ -142,7 +149,7 @@ def replay(title: str, told: Mapping[str, object], still: tuple[str, bytes] | No
     image = "" if still is None else _image(*still)
     words = f'<figcaption class="moving">{escape(title)}</figcaption>'
     words += "" if still is None else f'<figcaption class="still">{escape(still[0])}</figcaption>'
-    return f'<figure class="replay">{image}{_plot(title, keys)}{controls}{words}{_json(told)}</figure>'
+    return Html(f'<figure class="replay">{image}{_plot(title, keys)}{controls}{words}{_json(told)}</figure>')
 
 
 def _classes(names: Sequence[str]) -> str:
