@@ -5,10 +5,11 @@ from __future__ import annotations
 import numpy as np
 
 from flexapod.model import Robot
+from flexapod.model.cylinder import Cylinder
 from flexapod.model.joint import Carriage, Joint
 from flexapod.model.leg import Leg
 from flexapod.model.payload import Payload
-from flexapod.model.piston import Cylinder, Piston, Strut
+from flexapod.model.piston import Piston, Strut
 
 THREE = np.array([0.0, 120.0, 240.0])
 LOWER, UPPER = np.array([-10.0, 10, 110, 130, 230, 250]), np.array([-50.0, 50, 70, 170, 190, 290])

@@ -8,7 +8,7 @@ from typing import Annotated
 from pydantic import Field, PlainSerializer, PlainValidator
 
 from flexapod.errors import InputError
-from flexapod.schema.base import Frozen, Measure, NonNegative
+from flexapod.schema.base import Frozen, Quantity
 
 Ratio = Annotated[float, Field(strict=True, ge=0, lt=1)]
 
@@ -21,7 +21,7 @@ class Damping(Frozen):
     """
 
     ratio: Ratio = 0.0
-    stiffness: Annotated[NonNegative, Measure("time")] = 0.0
+    stiffness: Annotated[float, Quantity("time", least=0, why="time by which its stiffness is multiplied")] = 0.0
 
     def __bool__(self) -> bool:
         """Whether anything is damped, as of a plain number."""

@@ -8,7 +8,7 @@ import numpy as np
 from pydantic import PlainSerializer, PlainValidator, model_validator
 
 from flexapod.errors import InputError
-from flexapod.schema.base import Frozen, Measure, Series, array_of
+from flexapod.schema.base import Frozen, Key, Quantity, Series, array_of
 from flexapod.typing import Array
 
 __all__ = ["CURVES", "Curve", "Disturbance", "Floor", "Spectrum", "check_density"]
@@ -29,9 +29,9 @@ class Spectrum(Frozen):
     """
 
     derived: ClassVar[tuple[str, ...]] = ("frequency", "density")
-    spectrum: str | None = None
-    frequency: Annotated[Series, Measure("frequency")]
-    density: Annotated[Densities, Measure("force spectrum", "torque spectrum")]
+    spectrum: Annotated[str | None, Key("CSV file, relative to this file")] = None
+    frequency: Annotated[Series, Quantity("frequency")]
+    density: Annotated[Densities, Quantity("force spectrum", "torque spectrum")]
 
     @model_validator(mode="after")
     def _table(self) -> Spectrum:
@@ -46,11 +46,13 @@ class Floor(Frozen):
     """
 
     derived: ClassVar[tuple[str, ...]] = ("frequency", "density")
-    curve: Curve | None = None
-    spectrum: str | None = None
-    of: Literal["acceleration", "velocity", "displacement"] = "acceleration"
-    frequency: Annotated[Series, Measure("frequency")]
-    density: Annotated[Densities, Measure("acceleration spectrum", "velocity spectrum", "displacement spectrum")]
+    curve: Annotated[Curve | None, Key("generic vibration criterion")] = None
+    spectrum: Annotated[str | None, Key("CSV file, relative to this file")] = None
+    of: Annotated[Literal["acceleration", "velocity", "displacement"], Key("what `spectrum` is the density of")] = (
+        "acceleration"
+    )
+    frequency: Annotated[Series, Quantity("frequency")]
+    density: Annotated[Densities, Quantity("acceleration spectrum", "velocity spectrum", "displacement spectrum")]
 
     @model_validator(mode="after")
     def _table(self) -> Floor:
@@ -80,9 +82,11 @@ class Disturbance(Frozen):
     cranks (N m)^2/Hz]: a column for all or one for each leg.
     """
 
-    floor: Floor | None = None
-    wrench: Spectrum | None = None
-    force_noise: Spectrum | None = None
+    floor: Annotated[
+        Floor | None, Key("motion of the floor: a table, VC-A to VC-G, or a CSV file of accelerations")
+    ] = None
+    wrench: Annotated[Spectrum | None, Key("force and moment at the tool: a table, or a CSV file")] = None
+    force_noise: Annotated[Spectrum | None, Key("forces of the drives, each by itself: a table, or a CSV file")] = None
 
     def check(self, legs: int) -> None:
         """Raise InputError if a table has not the columns of a robot with so many legs."""

@@ -8,7 +8,7 @@ import numpy as np
 from pydantic import PlainSerializer, PlainValidator
 
 from flexapod.errors import InputError
-from flexapod.schema.base import Frozen, Joints, Measure, array_of
+from flexapod.schema.base import Frozen, Joints, Quantity, array_of
 from flexapod.typing import Array
 
 __all__ = ["Geometry", "PerLeg", "check_legs"]
@@ -31,10 +31,39 @@ class Geometry(Frozen):
     slider. The last two for all legs or for each.
     """
 
-    base_joints: Annotated[Joints, Measure("length")] | None = None
-    platform_joints: Annotated[Joints, Measure("length")] | None = None
-    leg_offset: Annotated[PerLeg, Measure("length")] | None = None
-    lead: Annotated[PerLeg, Measure("number")] | None = None
+    base_joints: Annotated[
+        Joints | None,
+        Quantity(
+            "length",
+            why="real less drawn place of the joints on the base, of a carriage of its rail or shaft, world "
+            "axes, leg by leg",
+            usual="as drawn",
+        ),
+    ] = None
+    platform_joints: Annotated[
+        Joints | None,
+        Quantity(
+            "length",
+            why="real less drawn place of the joints on the platform, platform axes, leg by leg",
+            usual="as drawn",
+        ),
+    ] = None
+    leg_offset: Annotated[
+        PerLeg | None,
+        Quantity(
+            "length",
+            why="real less commanded length of a leg at home, of a strut its length; one number or one for each leg",
+            usual="as drawn",
+        ),
+    ] = None
+    lead: Annotated[
+        PerLeg | None,
+        Quantity(
+            "number",
+            why="real over called travel of a stroke or slider, less 1, from home on; one number or one for each leg",
+            usual="as drawn",
+        ),
+    ] = None
 
     def check(self, count: int, normal: Array | None) -> None:
         """Refuse what does not fit a robot of `count` legs, and what leaves the plane of this normal."""

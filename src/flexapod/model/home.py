@@ -10,7 +10,7 @@ from pydantic import Field, model_validator
 
 from flexapod.model.joint import Carriage
 from flexapod.schema.axes import within_a_turn
-from flexapod.schema.base import Frozen, Measure, Vec3
+from flexapod.schema.base import Frozen, Quantity, Vec3
 from flexapod.typing import Array
 
 
@@ -22,8 +22,15 @@ class Home(Frozen):
 
     placed: ClassVar[tuple[str, ...]] = ("rotation",)
 
-    position: Annotated[Vec3, Measure("length")]
-    rotation: Annotated[Vec3, Measure("angle")] = Field(default=(0.0, 0.0, 0.0), validate_default=True)
+    position: Annotated[Vec3, Quantity("length", why="of its origin")]
+    rotation: Annotated[
+        Vec3,
+        Quantity(
+            "angle",
+            why="roll, pitch, yaw about world x, y, z: R = Rz(yaw) Ry(pitch) Rx(roll)",
+            usual="parallel to the world",
+        ),
+    ] = Field(default=(0.0, 0.0, 0.0), validate_default=True)
 
     @model_validator(mode="after")
     def _within_a_turn(self) -> Home:

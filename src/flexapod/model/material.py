@@ -9,7 +9,7 @@ from typing import Annotated
 from pydantic import Field, model_validator
 
 from flexapod.errors import InputError
-from flexapod.schema.base import Frozen, Measure, Number, Positive
+from flexapod.schema.base import Frozen, Quantity
 
 POISSON = 0.3  # where no other is given
 #: Keys of a table of which a material is made.
@@ -23,11 +23,11 @@ class Material(Frozen):
     """
 
     name: str
-    E: Annotated[Positive, Measure("stress")]
-    density: Annotated[Positive, Measure("density")]
-    yield_stress: Annotated[Positive, Measure("stress")] | None = None
+    E: Annotated[float, Quantity("stress", above=0)]
+    density: Annotated[float, Quantity("density", above=0)]
+    yield_stress: Annotated[float | None, Quantity("stress", above=0)] = None
     poisson: float = Field(default=POISSON, strict=True, ge=-0.5, le=0.5)
-    expansion: Annotated[Number, Measure("expansion")] | None = None
+    expansion: Annotated[float | None, Quantity("expansion")] = None
 
 
 # E and density of steel: Table 3 of the paper. The others are handbook values at room temperature
@@ -48,8 +48,8 @@ MATERIALS = MappingProxyType({material.name: material for material in _TABLE})
 class Tube(Frozen):
     """Round section, full or hollow: outer and inner diameter [m]."""
 
-    diameter: Annotated[Positive, Measure("length")]
-    inner_diameter: Annotated[Positive, Measure("length")] | None = None
+    diameter: Annotated[float, Quantity("length", above=0)]
+    inner_diameter: Annotated[float | None, Quantity("length", above=0)] = None
 
     @model_validator(mode="after")
     def _hollow_inside(self) -> Tube:
@@ -88,8 +88,8 @@ class Tube(Frozen):
 class Rectangle(Frozen):
     """Rectangular section: width across and height along the direction of bending [m]."""
 
-    width: Annotated[Positive, Measure("length")]
-    height: Annotated[Positive, Measure("length")]
+    width: Annotated[float, Quantity("length", above=0, why="across the plane of bending")]
+    height: Annotated[float, Quantity("length", above=0, why="in the plane of bending")]
 
     @property
     def area(self) -> float:

@@ -9,7 +9,7 @@ import numpy as np
 from pydantic import AfterValidator, Field, model_validator
 
 from flexapod.errors import InputError
-from flexapod.schema.base import Frozen, Measure, NonNegative, Number, Positive, Series, Series6, Vec3
+from flexapod.schema.base import Frozen, Key, Quantity, Series, Series6, Vec3
 from flexapod.schema.csv_tables import wrong_instant
 from flexapod.typing import Array
 from flexapod.units import DIMENSIONS
@@ -39,13 +39,25 @@ class AxisMotion(Frozen):
     """
 
     placed: ClassVar[tuple[str, ...]] = ("pivot",)
-    type: Axis
-    amplitude: Annotated[Number, Measure("length", "angle")]
-    duration: Annotated[Positive, Measure("time")]
-    hold: Annotated[NonNegative, Measure("time")] = 0.0
-    profile: Profile = "quintic"
-    pivot: Annotated[Vec3, Measure("length")] = Field(default=_ORIGIN, validate_default=True)
-    independent: Independent | None = None
+    type: Annotated[Axis, Key("kind of motion: an axis, several, points, a table")]
+    amplitude: Annotated[
+        float,
+        Quantity(
+            "length",
+            "angle",
+            why="pose reached, in m for surge, sway, heave and in rad for roll, pitch, yaw (up to half a turn)",
+        ),
+    ]
+    duration: Annotated[float, Quantity("time", above=0, why="time to get there")]
+    hold: Annotated[float, Quantity("time", least=0, why="rest after it")] = 0.0
+    profile: Annotated[Profile, Key("law of the way over time")] = "quintic"
+    pivot: Annotated[Vec3, Quantity("length", why="point that turns are about, in the platform frame")] = Field(
+        default=_ORIGIN, validate_default=True
+    )
+    independent: Annotated[
+        Independent | None,
+        Key("axes that are commanded, of a robot with fewer than six motions", usual="all that the robot has"),
+    ] = None
 
     def _shown(self) -> dict[str, str]:
         return _in_words(self.target, self.duration, self.hold, self.profile)
@@ -75,13 +87,20 @@ class CombinedMotion(Frozen):
     """Several axes at once with one profile: `amplitudes` by axis name [m or rad]."""
 
     placed: ClassVar[tuple[str, ...]] = ("pivot",)
-    type: Literal["combined"] = "combined"
-    amplitudes: dict[Axis, Annotated[Number, Measure("length", "angle")]]
-    duration: Annotated[Positive, Measure("time")]
-    hold: Annotated[NonNegative, Measure("time")] = 0.0
-    profile: Profile = "quintic"
-    pivot: Annotated[Vec3, Measure("length")] = Field(default=_ORIGIN, validate_default=True)
-    independent: Independent | None = None
+    type: Annotated[Literal["combined"], Key("kind of motion: an axis, several, points, a table")] = "combined"
+    amplitudes: Annotated[
+        dict[Axis, Annotated[float, Quantity("length", "angle")]], Key("table: poses reached, by axis")
+    ]
+    duration: Annotated[float, Quantity("time", above=0, why="time to get there")]
+    hold: Annotated[float, Quantity("time", least=0, why="rest after it")] = 0.0
+    profile: Annotated[Profile, Key("law of the way over time")] = "quintic"
+    pivot: Annotated[Vec3, Quantity("length", why="point that turns are about, in the platform frame")] = Field(
+        default=_ORIGIN, validate_default=True
+    )
+    independent: Annotated[
+        Independent | None,
+        Key("axes that are commanded, of a robot with fewer than six motions", usual="all that the robot has"),
+    ] = None
 
     def _shown(self) -> dict[str, str]:
         return _in_words(self.target, self.duration, self.hold, self.profile)
@@ -112,13 +131,13 @@ class CombinedMotion(Frozen):
 class Waypoint(Frozen):
     """A pose relative to home at `time` [s]: surge, sway, heave [m], roll, pitch, yaw [rad]."""
 
-    time: Annotated[NonNegative, Measure("time")]
-    surge: Annotated[Number, Measure("length")] = 0.0
-    sway: Annotated[Number, Measure("length")] = 0.0
-    heave: Annotated[Number, Measure("length")] = 0.0
-    roll: Annotated[Number, Measure("angle")] = 0.0
-    pitch: Annotated[Number, Measure("angle")] = 0.0
-    yaw: Annotated[Number, Measure("angle")] = 0.0
+    time: Annotated[float, Quantity("time", least=0, why="instant, above that of the point before")]
+    surge: Annotated[float, Quantity("length", why="along x")] = 0.0
+    sway: Annotated[float, Quantity("length", why="along y")] = 0.0
+    heave: Annotated[float, Quantity("length", why="along z")] = 0.0
+    roll: Annotated[float, Quantity("angle", why="about x")] = 0.0
+    pitch: Annotated[float, Quantity("angle", why="about y")] = 0.0
+    yaw: Annotated[float, Quantity("angle", why="about z")] = 0.0
 
     @model_validator(mode="after")
     def _angles(self) -> Waypoint:
@@ -136,12 +155,17 @@ class WaypointMotion(Frozen):
     """From point to point, at rest at each; from home at t = 0 if the first point is later."""
 
     placed: ClassVar[tuple[str, ...]] = ("pivot",)
-    type: Literal["waypoints"] = "waypoints"
-    points: tuple[Waypoint, ...]
-    hold: Annotated[NonNegative, Measure("time")] = 0.0
-    profile: Profile = "quintic"
-    pivot: Annotated[Vec3, Measure("length")] = Field(default=_ORIGIN, validate_default=True)
-    independent: Independent | None = None
+    type: Annotated[Literal["waypoints"], Key("kind of motion: an axis, several, points, a table")] = "waypoints"
+    points: Annotated[tuple[Waypoint, ...], Key("list of tables: the poses")]
+    hold: Annotated[float, Quantity("time", least=0, why="rest after it")] = 0.0
+    profile: Annotated[Profile, Key("law of the way over time")] = "quintic"
+    pivot: Annotated[Vec3, Quantity("length", why="point that turns are about, in the platform frame")] = Field(
+        default=_ORIGIN, validate_default=True
+    )
+    independent: Annotated[
+        Independent | None,
+        Key("axes that are commanded, of a robot with fewer than six motions", usual="all that the robot has"),
+    ] = None
 
     def _shown(self) -> dict[str, str]:
         return {"to": f"{len(self.points)} points", "in": f"{number(self.end_time, 4)} s", "profile": self.profile}
@@ -191,13 +215,18 @@ class CsvMotion(Frozen):
 
     derived: ClassVar[tuple[str, ...]] = ("time", "pose")
     placed: ClassVar[tuple[str, ...]] = ("pivot",)
-    type: Literal["csv"] = "csv"
-    file: str | None = None
-    time: Annotated[Series, Measure("time")]
-    pose: Annotated[Series6, Measure("length", "angle")]
-    hold: Annotated[NonNegative, Measure("time")] = 0.0
-    pivot: Annotated[Vec3, Measure("length")] = Field(default=_ORIGIN, validate_default=True)
-    independent: Independent | None = None
+    type: Annotated[Literal["csv"], Key("kind of motion: an axis, several, points, a table")] = "csv"
+    file: Annotated[str | None, Key("CSV file of the poses")] = None
+    time: Annotated[Series, Quantity("time")]
+    pose: Annotated[Series6, Quantity("length", "angle")]
+    hold: Annotated[float, Quantity("time", least=0, why="rest after it")] = 0.0
+    pivot: Annotated[Vec3, Quantity("length", why="point that turns are about, in the platform frame")] = Field(
+        default=_ORIGIN, validate_default=True
+    )
+    independent: Annotated[
+        Independent | None,
+        Key("axes that are commanded, of a robot with fewer than six motions", usual="all that the robot has"),
+    ] = None
 
     def _shown(self) -> dict[str, str]:
         return {"table": f"{self.file or 'given'}, {len(self.time)} rows", "in": f"{number(self.end_time, 4)} s"}

@@ -28,7 +28,7 @@ from flexapod.model.robot_checks import (
 )
 from flexapod.model.tolerances import Tolerances
 from flexapod.schema.axes import Plane, axis_of, normal_of
-from flexapod.schema.base import Frozen, Joints, Measure, Vec3
+from flexapod.schema.base import Frozen, Joints, Quantity, Vec3
 from flexapod.typing import Array
 from flexapod.words import number, text
 
@@ -57,10 +57,10 @@ class Robot(Frozen):
     }
 
     type: str = "6-UPS"
-    base_joints: Annotated[Joints, Measure("length")]
-    platform_joints: Annotated[Joints, Measure("length")]
+    base_joints: Annotated[Joints, Quantity("length")]
+    platform_joints: Annotated[Joints, Quantity("length")]
     home: Home
-    gravity: Annotated[Vec3, Measure("acceleration")]
+    gravity: Annotated[Vec3, Quantity("acceleration")]
     payload: Annotated[Payload, _OR_NONE] = Field(default=cast(Payload, None))
     legs: tuple[Leg, ...]
     plane: Plane | None = None

@@ -9,7 +9,7 @@ from pydantic import model_validator
 
 from flexapod.errors import InputError
 from flexapod.model.heat import HEAT_PARTS
-from flexapod.schema.base import Frozen, Loss, Measure, NonNegative, Positive
+from flexapod.schema.base import Frozen, Key, Loss, Quantity
 
 __all__ = ["RESERVED", "AxialSpring", "check_lossy"]
 
@@ -32,10 +32,13 @@ class AxialSpring(Frozen):
     derived: ClassVar[tuple[str, ...]] = ("name",)
 
     name: str
-    stiffness: Annotated[Positive, Measure("stiffness")]
-    at: Literal["nut", "base", "platform"] = "nut"
-    damping: Annotated[NonNegative, Measure("damping")] | None = None
-    loss: Loss | None = None
+    stiffness: Annotated[float, Quantity("stiffness", above=0, why="along the leg")]
+    at: Annotated[
+        Literal["nut", "base", "platform"],
+        Key("between base joint and cylinder, drive and piston, or piston and platform joint"),
+    ] = "nut"
+    damping: Annotated[float | None, Quantity("damping", least=0, why="damper beside it")] = None
+    loss: Annotated[Loss | None, Key("loss factor, in place of damping")] = None
 
     @model_validator(mode="after")
     def _sensible(self) -> AxialSpring:

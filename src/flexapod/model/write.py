@@ -8,6 +8,7 @@ from typing import Any
 import numpy as np
 
 from flexapod.model.actuator import Actuator
+from flexapod.model.cylinder import Cylinder
 from flexapod.model.disturbance import Floor, Spectrum
 from flexapod.model.geometry import Geometry
 from flexapod.model.heat import Gradient, Heat
@@ -15,7 +16,7 @@ from flexapod.model.joint import Carriage, Joint
 from flexapod.model.leg import Leg
 from flexapod.model.material import MATERIALS, POISSON, Material, Tube
 from flexapod.model.payload import Payload
-from flexapod.model.piston import Cylinder, Piston, Strut
+from flexapod.model.piston import Piston, Strut
 from flexapod.model.robot import Robot
 from flexapod.model.screw import ScrewDrive
 from flexapod.model.simulation import OWN_BASIS, Simulation

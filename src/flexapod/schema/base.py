@@ -28,9 +28,6 @@ from flexapod.typing import Array
 from flexapod.units import DIMENSIONS
 from flexapod.words import number
 
-Number = Annotated[float, Field(strict=True, allow_inf_nan=False)]
-Positive = Annotated[float, Field(strict=True, gt=0, allow_inf_nan=False)]
-NonNegative = Annotated[float, Field(strict=True, ge=0, allow_inf_nan=False)]
 #: A loss factor; metals have 1e-4 to 0.01, joints 0.01 to 0.1, layers made for damping up to about 1.
 Loss = Annotated[float, Field(strict=True, ge=0, le=2, allow_inf_nan=False)]
 
@@ -47,32 +44,60 @@ _LIMIT_WORDS = {
 }
 
 
-class Measure:
-    """What the number or the array of a field measures: its size lies in the range of that dimension.
+class Key:
+    """What a key of a table is, for the reference: `why`, in words.
 
-    ``Annotated[Positive, Measure("length")]``; of several dimensions, where another field decides which, the widest
-    range counts. The lower end concerns numbers that cannot be 0: what may be 0 may be next to it as well.
+    `usual`: what holds where it is left out, in words, where its default does not say it.
     """
 
-    def __init__(self, *dimensions: str) -> None:
+    def __init__(self, why: str = "", *, usual: str = "") -> None:
+        self.why, self.usual = why, usual
+
+
+class Quantity(Key):
+    """What the number or the array of a field measures: its size lies in the range of that dimension.
+
+    ``Annotated[float | None, Quantity("length", above=0, why="of the screw")]``; of several dimensions, where another
+    field decides which, the widest range counts. The lower end concerns numbers that cannot be 0: what may be 0 may be
+    next to it as well. `above`, `least`, `most`, `below`: limits of a number.
+    """
+
+    def __init__(
+        self,
+        *dimensions: str,
+        above: float | None = None,
+        least: float | None = None,
+        most: float | None = None,
+        below: float | None = None,
+        why: str = "",
+        usual: str = "",
+    ) -> None:
+        super().__init__(why, usual=usual)
         self.dimensions = dimensions
-        self.least = min(DIMENSIONS[name].least for name in dimensions)
-        self.most = max(DIMENSIONS[name].most for name in dimensions)
+        limits = {"gt": above, "ge": least, "le": most, "lt": below}
+        self.limits = {name: float(limit) for name, limit in limits.items() if limit is not None}
+        self.smallest = min(DIMENSIONS[name].least for name in dimensions) if above == 0 else 0.0
+        self.largest = max(DIMENSIONS[name].most for name in dimensions)
 
     def __get_pydantic_core_schema__(self, source: Any, handler: GetCoreSchemaHandler) -> CoreSchema:
-        inner = handler(source)
-        least = self.least if inner.get("gt") == 0 else 0.0
+        return self._limited(handler(source))
+
+    def _limited(self, schema: Any) -> CoreSchema:
+        if schema["type"] == "nullable":
+            return schema | {"schema": self._limited(schema["schema"])}
+        if schema["type"] == "float":
+            schema = schema | {"strict": True, "allow_inf_nan": False, **self.limits}
         unit = DIMENSIONS[self.dimensions[0]].unit if len(self.dimensions) == 1 else ""
-        most = f"{self.most:g} {unit}".rstrip()
-        allowed = f"{least:g} to {most}" if least else f"at most {most} in size"
+        most = f"{self.largest:g} {unit}".rstrip()
+        allowed = f"{self.smallest:g} to {most}" if self.smallest else f"at most {most} in size"
 
         def within(value: Any) -> Any:
             size = np.abs(value).max(initial=0.0) if isinstance(value, np.ndarray) else abs(value)
-            if not least <= size <= self.most:
+            if not self.smallest <= size <= self.largest:
                 raise PydanticCustomError("size", "is out of range", {"allowed": allowed})
             return value
 
-        return core_schema.no_info_after_validator_function(within, inner)
+        return core_schema.no_info_after_validator_function(within, schema)
 
 
 def array_of(shape: tuple[int | None, ...]) -> Callable[[object], Array]:

@@ -7,7 +7,7 @@ from dataclasses import dataclass, field, replace
 from typing import Any
 
 from flexapod.schema.base import Frozen
-from flexapod.schema.columns import NO_BOUNDS, Bounds, Kind, columns_of
+from flexapod.schema.columns import NO_BOUNDS, Bounds, Column, Kind, columns_of
 
 
 @dataclass(frozen=True, kw_only=True)
@@ -51,11 +51,15 @@ class Field:
 
 @dataclass
 class Notes:
-    """`fields` by key; `allowed`: keys by path of their table; `given`: fields of the model that were filled."""
+    """`fields` by key; `allowed`: keys by path of their table; `given`: fields of the model that were filled.
+
+    `columns`: of the classes that a table fills, by its path.
+    """
 
     fields: dict[str, Field] = field(default_factory=dict)
     allowed: dict[str, set[str]] = field(default_factory=dict)
     given: set[tuple[str, str]] = field(default_factory=set)
+    columns: dict[str, dict[str, Column]] = field(default_factory=dict)
 
     def allow(self, table: str, names: tuple[str, ...]) -> None:
         """A table may have these keys."""
@@ -74,6 +78,7 @@ class Notes:
         if not (isinstance(cls, type) and issubclass(cls, Frozen)):
             return
         self.given |= {(cls.__name__, name) for name in values}
+        self.columns.setdefault(table, {}).update(columns_of(cls))
         for name, column in columns_of(cls).items():
             known = self.fields.get(_path(table, name))
             if known is not None and known.kind in ("number", "whole"):
