@@ -10,9 +10,10 @@ from pydantic import Field, model_validator
 from flexapod.errors import InputError
 from flexapod.model.damping import BodyDamping
 from flexapod.model.laws import CsvLaw, LoadLaw, MotionLaw, RateLaw, Wrench
-from flexapod.model.material import SPELLS, Material, Rectangle, Tube
+from flexapod.model.material import SPELLS, Material, Rectangle, Tube, spelled
 from flexapod.model.motion import check_times
-from flexapod.schema.base import Frozen, Key, Quantity
+from flexapod.schema.base import Key, Quantity
+from flexapod.schema.table import Table
 from flexapod.words import number, text
 
 #: Fields that only an actuator in space has.
@@ -21,7 +22,7 @@ IN_SPACE = (
 )  # fmt: skip
 
 
-class Actuator(Frozen):
+class Actuator(Table):
     """A uniform beam in a hub, moving in a plane, or in `space`: about two axes, then of round section.
 
     `length` [m], whole beam; `rhoA` [kg/m]; `EI` [N m^2]; `free_length` [m], outside the hub at t = 0; `tip_mass` [kg];
@@ -134,8 +135,19 @@ class Actuator(Frozen):
         """An actuator whose rhoA and EI follow from section and material; `fields` are the others."""
         return cls(section=section, material=material, **cls.stiffness(section, material), **fields)
 
+    def told(self) -> dict[str, object]:
+        """All that it has to say in a file: section and material, where the rest follows from them."""
+        fields, section, material = super().told(), self.section, self.material
+        others = {name: value for name, value in fields.items() if name not in ("section", "material")}
+        if section is None or material is None:
+            return others
+        free = {name: value for name, value in others.items() if name not in ("rhoA", "EI")}
+        if type(self).from_section(section=section, material=material, **free) != self:  # type: ignore[arg-type]
+            return others
+        return free | {"section": section} | spelled(material)
 
-class ActuatorMotion(Frozen):
+
+class ActuatorMotion(Table):
     """Prescribed `rotation`, in space `elevation` [rad], `extension` [m] since t = 0; None: that coordinate is free."""
 
     rotation: MotionLaw | None = RateLaw(rate=0.0)
@@ -177,7 +189,7 @@ class ActuatorMotion(Frozen):
         return max(ends, default=None)
 
 
-class ActuatorLoad(Frozen):
+class ActuatorLoad(Table):
     """Driving `torque` [N m] on the hub and axial `force` [N] on the beam; each frees its coordinate.
 
     In space also `elevation_torque` [N m], and a `wrench` at the tip: in world axes, or with `follow` in axes that turn
@@ -197,7 +209,7 @@ class ActuatorLoad(Frozen):
         return self
 
 
-class ActuatorInitial(Frozen):
+class ActuatorInitial(Table):
     """State at t = 0: `tip_displacement` [m] of the static shape under a tip force, modal velocities zero.
 
     `angle_rate` [rad/s] and `length_rate` [m/s] where angle or length are free, that is driven by a load. In space

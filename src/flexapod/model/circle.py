@@ -10,14 +10,15 @@ from pydantic import model_validator
 
 from flexapod.errors import InputError
 from flexapod.schema.axes import plane_order, within_a_turn
-from flexapod.schema.base import Frozen, Quantity, Series
+from flexapod.schema.base import Quantity, Series
+from flexapod.schema.table import Table
 from flexapod.typing import Array
 
 _LOWER = ((0, -1), (0, 1), (120, -1), (120, 1), (240, -1), (240, 1))
 _UPPER = ((-60, 1), (60, -1), (60, 1), (180, -1), (180, 1), (300, -1))
 
 
-class Circle(Frozen):
+class Circle(Table):
     """Joints on a circle of a `radius` [m]: at `angles` (n,) [rad], or in pairs.
 
     `half_angle` [rad]: half the angle between the joints of a pair.

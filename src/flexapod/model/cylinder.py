@@ -8,13 +8,14 @@ from typing import Annotated, ClassVar
 from pydantic import model_validator
 
 from flexapod.errors import InputError
-from flexapod.model.material import SPELLS, Material, Tube
-from flexapod.schema.base import Frozen, Key, Quantity
+from flexapod.model.material import SPELLS, Material, Tube, spelled
+from flexapod.schema.base import Key, Quantity
+from flexapod.schema.table import Table
 
 SAME = 1e-9  # relative; rounding leaves less
 
 
-class Mounted(Frozen):
+class Mounted(Table):
     """A body on a cylinder: `mass` [kg], `com` [m] from the base joint, transverse `inertia` [kg m^2] about it."""
 
     mass: Annotated[float, Quantity("mass", least=0, why="mass")]
@@ -24,7 +25,7 @@ class Mounted(Frozen):
     ] = 0.0
 
 
-class Cylinder(Frozen):
+class Cylinder(Table):
     """The lower part of a leg, rigid unless its section is known.
 
     `mass` [kg]; `com` [m], centre of mass from the universal joint along the axis; `inertia` [kg m^2], transverse,
@@ -110,6 +111,14 @@ class Cylinder(Frozen):
         if section is None or material is None:
             return 0.0, 0.0, 0.0
         return material.E * section.second_moment, material.E * section.area, material.density * section.area
+
+    def told(self) -> dict[str, object]:
+        """All that it has to say in a file: without the masses that follow from a section and a material."""
+        fields = super().told()
+        if self.section is None or self.material is None:
+            return fields
+        computed = ("mass", "com", "inertia", "axial_inertia", "material")
+        return {name: x for name, x in fields.items() if name not in computed} | spelled(self.material)
 
 
 def _tube_masses(mouth: float, section: Tube, material: Material, body: Mounted | None) -> dict[str, float]:

@@ -8,7 +8,8 @@ import numpy as np
 from pydantic import PlainSerializer, PlainValidator, model_validator
 
 from flexapod.errors import InputError
-from flexapod.schema.base import Frozen, Key, Quantity, Series, array_of
+from flexapod.schema.base import Key, Quantity, Series, array_of
+from flexapod.schema.table import Table
 from flexapod.typing import Array
 
 __all__ = ["CURVES", "Curve", "Disturbance", "Floor", "Spectrum", "check_density"]
@@ -21,7 +22,7 @@ THIRD = 2 ** (1 / 6) - 2 ** (-1 / 6)  # width of such a band over its middle, (T
 Densities = Annotated[Array, PlainValidator(array_of((None, None))), PlainSerializer(lambda rows: rows.tolist())]
 
 
-class Spectrum(Frozen):
+class Spectrum(Table):
     """A one-sided power spectral density over `frequency` (m,) [Hz], its columns `density` (m, any) [unit^2/Hz].
 
     Between the rows straight lines in logarithms of both, or in the numbers themselves where one end is 0; outside of
@@ -33,13 +34,17 @@ class Spectrum(Frozen):
     frequency: Annotated[Series, Quantity("frequency")]
     density: Annotated[Densities, Quantity("force spectrum", "torque spectrum")]
 
+    def told(self) -> dict[str, object]:
+        """All that it has to say in a file."""
+        return {"spectrum": self.spectrum or "table.csv"}
+
     @model_validator(mode="after")
     def _table(self) -> Spectrum:
         check_density(self.frequency, self.density)
         return self
 
 
-class Floor(Frozen):
+class Floor(Table):
     """Motion of the floor along x, y, z, each by itself: a `curve`, which all third-octave bands reach, or a spectrum.
 
     `of`: what `density` (m, 3) is the spectrum of [m/s^2, m/s or m, squared, per Hz]; the rest as of `Spectrum`.
@@ -53,6 +58,12 @@ class Floor(Frozen):
     )
     frequency: Annotated[Series, Quantity("frequency")]
     density: Annotated[Densities, Quantity("acceleration spectrum", "velocity spectrum", "displacement spectrum")]
+
+    def told(self) -> dict[str, object]:
+        """All that it has to say in a file."""
+        if self.curve is not None:
+            return {"curve": self.curve}
+        return {"spectrum": self.spectrum or "table.csv", "of": self.of}
 
     @model_validator(mode="after")
     def _table(self) -> Floor:
@@ -75,7 +86,7 @@ class Floor(Frozen):
         return cls(curve=curve, of="velocity", frequency=f, density=density)  # type: ignore[arg-type]
 
 
-class Disturbance(Frozen):
+class Disturbance(Table):
     """What shakes a robot: floor, wrench at the tool, forces of drives.
 
     `wrench`: columns Fx Fy Fz [N^2/Hz], Mx My Mz [(N m)^2/Hz], world axes; `force_noise` of the drives [N^2/Hz, of

@@ -9,10 +9,11 @@ from pydantic import model_validator
 from flexapod.errors import InputError
 from flexapod.model.friction import StrokeFriction
 from flexapod.model.motion import check_times
-from flexapod.schema.base import Frozen, Key, Quantity, Series
+from flexapod.schema.base import Key, Quantity, Series
+from flexapod.schema.table import Table
 
 
-class PrescribedDrive(Frozen):
+class PrescribedDrive(Table):
     """The stroke follows the command exactly; its force is a result.
 
     `backlash`: free travel [m], of a crank [rad]. `friction` of the stroke. Of every drive: `holds`, whether it keeps
@@ -38,7 +39,7 @@ class PrescribedDrive(Frozen):
     ] = None
 
 
-class ServoDrive(Frozen):
+class ServoDrive(Table):
     """A spring [N/m] and a damper [N s/m] between command and stroke; of a crank [N m/rad, N m s/rad].
 
     `backlash`: free travel [m], of a crank [rad]. `friction` of the stroke.
@@ -65,14 +66,14 @@ class ServoDrive(Frozen):
     ] = None
 
 
-class Feedback(Frozen):
+class Feedback(Table):
     """Correction of a force drive: gain on stroke [N/m] and on stroke rate [N s/m]."""
 
     stiffness: Annotated[float, Quantity("stiffness", "rotational stiffness", least=0)]
     damping: Annotated[float, Quantity("damping", "rotational damping", least=0)] = 0.0
 
 
-class ForceDrive(Frozen):
+class ForceDrive(Table):
     """A force along the leg, of a crank a torque; the stroke is a result.
 
     ``law = "rigid"`` replays the force that the rigid robot needs, ``law = "constant"`` is `value` [N, N m],

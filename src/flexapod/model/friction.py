@@ -7,7 +7,8 @@ from typing import Annotated
 from pydantic import model_validator
 
 from flexapod.errors import InputError
-from flexapod.schema.base import Frozen, Key, Quantity
+from flexapod.schema.base import Key, Quantity
+from flexapod.schema.table import Table
 from flexapod.words import number
 
 __all__ = ["JointFriction", "ScrewFriction", "StrokeFriction"]
@@ -17,21 +18,21 @@ SHORTEST, LEAST = 1e-10, 1e-8  # m, less than an atom; rad, that on a radius of 
 STICKIEST = 2.0  # coefficient of friction: plain joints have 0.02 to 0.25
 
 
-class TurningStribeck(Frozen):
+class TurningStribeck(Table):
     """More friction at low rates: the `moment` [N m] of breaking away, and the `rate` [rad/s] at which it is lost."""
 
     moment: Annotated[float, Quantity("torque", above=0)]
     rate: Annotated[float, Quantity("angular rate", above=0, why="at which more than half of the excess is lost")]
 
 
-class SlidingStribeck(Frozen):
+class SlidingStribeck(Table):
     """More friction at low rates: the `force` [N] of breaking away, and the `rate` [m/s] at which it is lost."""
 
     force: Annotated[float, Quantity("force", above=0, why="to break away, at least that of sliding")]
     rate: Annotated[float, Quantity("velocity", above=0, why="at which more than half of the excess is lost")]
 
 
-class JointFriction(Frozen):
+class JointFriction(Table):
     """Friction in a joint, about each of its axes; of a ball about that about which it turns.
 
     `moment` [N m]; or `mu`, the coefficient of a plain joint of mean `diameter` [m]; or of a rolling one `M0` [N m]
@@ -112,7 +113,7 @@ class JointFriction(Frozen):
         return _numbers(self, self.constant, self.arm, self.stribeck and self.stribeck.moment)
 
 
-class ScrewFriction(Frozen):
+class ScrewFriction(Table):
     """Friction of a screw at its nut, by the screw's angle, whatever the thrust: preload, seals, bearing.
 
     `torque` [N m]; `viscous` [N m s/rad]; `presliding` [rad]; `damping_time` [s] as of a joint.
@@ -148,7 +149,7 @@ class ScrewFriction(Frozen):
         return self.torque if self.stribeck is None else self.stribeck.moment
 
 
-class StrokeFriction(Frozen):
+class StrokeFriction(Table):
     """Friction of a stroke, along it: seals, guide.
 
     `force` [N]; `viscous` [N s/m]; `presliding` [m]; `damping_time` [s] as of a joint.

@@ -8,7 +8,8 @@ import numpy as np
 from pydantic import PlainSerializer, PlainValidator
 
 from flexapod.errors import InputError
-from flexapod.schema.base import Frozen, Joints, Quantity, array_of
+from flexapod.schema.base import Joints, Quantity, array_of
+from flexapod.schema.table import Table
 from flexapod.typing import Array
 
 __all__ = ["Geometry", "PerLeg", "check_legs"]
@@ -22,7 +23,12 @@ def _per_leg(value: object) -> Array:
 PerLeg = Annotated[Array, PlainValidator(_per_leg), PlainSerializer(lambda array: array.tolist())]
 
 
-class Geometry(Frozen):
+def one_for_all(value: object) -> object:
+    """What is the same for all legs as one number."""
+    return value.item() if isinstance(value, np.ndarray) and value.shape == (1,) else value
+
+
+class Geometry(Table):
     """What differs from the drawing, the same at all times; what is left out is as drawn.
 
     `base_joints` (n, 3) [m] in world axes, `platform_joints` (n, 3) [m] in platform axes: real less drawn place of
@@ -86,6 +92,10 @@ class Geometry(Frozen):
                 )
         for name in ("leg_offset", "lead"):
             check_legs(getattr(self, name), f"geometry.{name}", count)
+
+    def told(self) -> dict[str, object]:
+        """All that it has to say in a file: what is the same for all legs as one number."""
+        return {name: one_for_all(value) for name, value in super().told().items()}
 
 
 def check_legs(values: Array | None, key: str, count: int) -> None:

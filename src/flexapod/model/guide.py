@@ -7,10 +7,11 @@ from typing import Annotated
 from pydantic import model_validator
 
 from flexapod.model.spring import check_lossy
-from flexapod.schema.base import Frozen, Key, Loss, Quantity
+from flexapod.schema.base import Key, Loss, Quantity
+from flexapod.schema.table import Table
 
 
-class Guide(Frozen):
+class Guide(Table):
     """Two bushings in which a piston slides: in the cylinder's mouth (`gland`), on the piston's inner end (`head`).
 
     Stiffness [N/m] of each across the leg, with a damper [N s/m] or a loss factor for both; `clearance` [m]: the free

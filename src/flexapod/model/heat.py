@@ -8,9 +8,10 @@ import numpy as np
 from pydantic import PlainSerializer, PlainValidator, model_validator
 
 from flexapod.errors import InputError
-from flexapod.model.geometry import PerLeg, check_legs
+from flexapod.model.geometry import PerLeg, check_legs, one_for_all
 from flexapod.model.motion import check_times
-from flexapod.schema.base import Frozen, Key, Quantity, Series, array_of
+from flexapod.schema.base import Key, Quantity, Series, array_of
+from flexapod.schema.table import Table
 from flexapod.typing import Array
 
 __all__ = ["HEAT_PARTS", "LEG_PARTS", "Expansion", "Gradient", "Heat"]
@@ -22,7 +23,7 @@ COLDEST = -273.15
 _Rows = Annotated[Array, PlainValidator(array_of((None, None))), PlainSerializer(lambda rows: rows.tolist())]
 
 
-class Expansion(Frozen):
+class Expansion(Table):
     """Thermal expansion of parts [1/K] in place of that of their material, or of steel where none is known."""
 
     base: Annotated[float | None, Quantity("expansion", why="of the base", usual="11.8e-06")] = None
@@ -32,7 +33,7 @@ class Expansion(Frozen):
     screw: Annotated[float | None, Quantity("expansion", why="of screws", usual="of leg.drive")] = None
 
 
-class Gradient(Frozen):
+class Gradient(Table):
     """Temperature differences across parts [K]: of `piston` (or strut), for all legs or for each."""
 
     piston: Annotated[
@@ -44,8 +45,12 @@ class Gradient(Frozen):
         ),
     ] = None
 
+    def told(self) -> dict[str, object]:
+        """All that it has to say in a file: what is the same for all legs as one number."""
+        return {name: one_for_all(value) for name, value in super().told().items()}
 
-class Heat(Frozen):
+
+class Heat(Table):
     """Temperatures [degC]: those at which lengths are as drawn, `reference`, and of parts, where they differ.
 
     `base`, `platform`: the plates between the joints; `piston` (or strut), `cylinder`, `screw`: for all legs or for
@@ -134,3 +139,7 @@ class Heat(Frozen):
             if what == part:
                 found[:, slice(None) if not leg else int(leg) - 1] = values[:, None] if not leg else values
         return found
+
+    def told(self) -> dict[str, object]:
+        """All that it has to say in a file: what is the same for all legs as one number."""
+        return {name: one_for_all(value) for name, value in super().told().items()}

@@ -10,11 +10,12 @@ from pydantic import Field, model_validator
 
 from flexapod.model.joint import Carriage
 from flexapod.schema.axes import within_a_turn
-from flexapod.schema.base import Frozen, Quantity, Vec3
+from flexapod.schema.base import Quantity, Vec3
+from flexapod.schema.table import Table
 from flexapod.typing import Array
 
 
-class Home(Frozen):
+class Home(Table):
     """Pose of the platform frame at home: `position` (3,) [m], `rotation` (3,) [rad], world axes.
 
     `rotation`: roll, pitch, yaw about world x, y, z: R = Rz(yaw) Ry(pitch) Rx(roll).

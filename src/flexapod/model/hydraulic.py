@@ -10,7 +10,8 @@ from pydantic import PlainSerializer, PlainValidator, model_validator
 
 from flexapod.errors import InputError
 from flexapod.model.friction import StrokeFriction
-from flexapod.schema.base import Frozen, Key, Quantity, array_of
+from flexapod.schema.base import Key, Quantity, array_of
+from flexapod.schema.table import Table
 from flexapod.typing import Array
 from flexapod.words import text
 
@@ -30,14 +31,14 @@ def _pair(value: object) -> Array:
 Pair = Annotated[Array, PlainValidator(_pair), PlainSerializer(lambda pair: pair.tolist())]
 
 
-class HydraulicLimits(Frozen):
+class HydraulicLimits(Table):
     """What the supply gives: `pressure` [Pa] over that of the return, `flow` [m^3/s] into one cylinder."""
 
     pressure: Annotated[float | None, Quantity("stress", above=0, why="of the supply, over that of the return")] = None
     flow: Annotated[float | None, Quantity("flow", above=0, why="into one cylinder")] = None
 
 
-class HydraulicDrive(Frozen):
+class HydraulicDrive(Table):
     """A double-acting cylinder; the piston's inner end is its head, and the closed valve holds its place.
 
     `bore` of the cylinder and diameter of the `rod` [m]; `double_ended`: the rod leaves at both ends, and both areas

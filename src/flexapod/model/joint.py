@@ -12,12 +12,13 @@ from flexapod.errors import InputError
 from flexapod.model.friction import JointFriction
 from flexapod.model.rolling import RollingLaw
 from flexapod.schema.axes import within_a_turn
-from flexapod.schema.base import Frozen, Key, Loss, Matrix6, Quantity, Vec3
+from flexapod.schema.base import Key, Loss, Matrix6, Quantity, Vec3
+from flexapod.schema.table import Table
 
 NO_DIRECTION = 1e-9  # length of a vector below which it is none
 
 
-class Joint(Frozen):
+class Joint(Table):
     """A joint at an end of a leg.
 
     `axis` (3,): of a revolute joint its axis, of a universal joint the direction of the axis that is fixed to the base
@@ -171,7 +172,7 @@ class Joint(Frozen):
         return self.stiffness is not None and self.across_and_along is None
 
 
-class Travel(Frozen):
+class Travel(Table):
     """Allowed positions of a carriage [m, of a crank rad]."""
 
     min: Annotated[float, Quantity("length", "angle", why="smallest position")]
@@ -184,7 +185,7 @@ class Travel(Frozen):
         return self
 
 
-class Carriage(Frozen):
+class Carriage(Table):
     """What moves the foot of a leg: a slider along `axis`, or a crank about it.
 
     `axis` (3,), world axes; `arm` (3,) [m], of a crank: from its axis to the base joint at angle 0, world axes;

@@ -6,12 +6,13 @@ from typing import Annotated
 
 import numpy as np
 
-from flexapod.schema.base import Frozen, Key, Loss, Matrix6, Quantity
+from flexapod.schema.base import Key, Loss, Matrix6, Quantity
+from flexapod.schema.table import Table
 
 __all__ = ["AlongLeg", "InRows"]
 
 
-class AlongLeg(Frozen):
+class AlongLeg(Table):
     """Springs along (`axial`) and across (`radial`) the leg [N/m], with a damper [N s/m] or a loss factor."""
 
     axial: Annotated[float, Quantity("stiffness", above=0, why="along the leg")]
@@ -26,7 +27,7 @@ class AlongLeg(Frozen):
         return {"stiffness": along, "leg_axes": True, **_damped(self)}
 
 
-class InRows(Frozen):
+class InRows(Table):
     """Springs along and about the axes of base or platform, `rows` (6, 6) [N/m, N, N m/rad], with what damps them."""
 
     rows: Annotated[Matrix6, Quantity("stiffness", "force", "rotational stiffness")]

@@ -7,19 +7,20 @@ from typing import Annotated, ClassVar, Literal
 from pydantic import Field, model_validator
 
 from flexapod.model.motion import Profile, check_times
-from flexapod.schema.base import Frozen, Key, Quantity, Series, Series6, Vec6
+from flexapod.schema.base import Key, Quantity, Series, Series6, Vec6
+from flexapod.schema.table import Table
 
 _AMPLITUDE = ("angle", "length", "torque", "force")
 
 
-class RateLaw(Frozen):
+class RateLaw(Table):
     """Constant `rate` [rad/s or m/s] from t = 0 on."""
 
     law: Annotated[Literal["rate"], Key("law over time", usual="rate")] = "rate"
     rate: Annotated[float, Quantity("angular rate", "velocity", why="rate")]
 
 
-class ProfileLaw(Frozen):
+class ProfileLaw(Table):
     """From 0 to `amplitude` [rad, m, N m or N] in `duration` [s], then constant."""
 
     law: Annotated[Profile, Key("law over time")]
@@ -27,7 +28,7 @@ class ProfileLaw(Frozen):
     duration: Annotated[float, Quantity("time", above=0, why="time to get there")]
 
 
-class SpinUpLaw(Frozen):
+class SpinUpLaw(Table):
     """From rest to `rate` [rad/s or m/s] in `duration` [s] with a smooth acceleration, then constant rate."""
 
     law: Annotated[Literal["spin-up"], Key("law over time", usual="rate")] = "spin-up"
@@ -35,7 +36,7 @@ class SpinUpLaw(Frozen):
     duration: Annotated[float, Quantity("time", above=0, why="time to get there")]
 
 
-class CsvLaw(Frozen):
+class CsvLaw(Table):
     """A table: `value` (n,) [rad, m, N m or N] at `time` (n,) [s], from 0, read from `file`.
 
     A torque or force is linear between the rows and jumps where two rows stand at one instant; a motion is smooth.
@@ -53,14 +54,14 @@ class CsvLaw(Frozen):
         return self
 
 
-class ConstantLaw(Frozen):
+class ConstantLaw(Table):
     """A constant `value` [N m or N]."""
 
     law: Annotated[Literal["constant"], Key("law over time")] = "constant"
     value: Annotated[float, Quantity("torque", "force")]
 
 
-class SineLaw(Frozen):
+class SineLaw(Table):
     """amplitude [N m or N] times sin(2 pi frequency t + phase); frequency [Hz], phase [rad]."""
 
     law: Annotated[Literal["sine"], Key("law over time")] = "sine"
@@ -69,7 +70,7 @@ class SineLaw(Frozen):
     phase: Annotated[float, Quantity("angle", why="phase at t = 0")] = 0.0
 
 
-class StepLaw(Frozen):
+class StepLaw(Table):
     """Zero before `time` [s], `amplitude` [N m or N] from then on."""
 
     law: Annotated[Literal["step"], Key("law over time")] = "step"
@@ -81,14 +82,14 @@ MotionLaw = Annotated[RateLaw | ProfileLaw | SpinUpLaw | CsvLaw, Field(discrimin
 LoadLaw = Annotated[ConstantLaw | ProfileLaw | SineLaw | StepLaw | CsvLaw, Field(discriminator="law")]
 
 
-class ConstantWrench(Frozen):
+class ConstantWrench(Table):
     """`value` (6,): Fx Fy Fz [N], Mx My Mz [N m], at the tool, world axes, at all times."""
 
     law: Annotated[Literal["constant"], Key("law over time")] = "constant"
     value: Annotated[Vec6, Quantity("force", "torque", why="Fx, Fy, Fz, Mx, My, Mz")]
 
 
-class SineWrench(Frozen):
+class SineWrench(Table):
     """amplitude (6,) [N, N m] times sin(2 pi frequency t + phase); frequency [Hz], phase [rad]."""
 
     law: Annotated[Literal["sine"], Key("law over time")] = "sine"
@@ -97,7 +98,7 @@ class SineWrench(Frozen):
     phase: Annotated[float, Quantity("angle", why="phase at t = 0")] = 0.0
 
 
-class StepWrench(Frozen):
+class StepWrench(Table):
     """Zero before `time` [s], `amplitude` (6,) [N, N m] from then on."""
 
     law: Annotated[Literal["step"], Key("law over time")] = "step"
@@ -105,7 +106,7 @@ class StepWrench(Frozen):
     time: Annotated[float, Quantity("time", least=0, why="instant of the step")] = 0.0
 
 
-class CsvWrench(Frozen):
+class CsvWrench(Table):
     """A table: `time` (n,) [s], from 0, and `wrench` (n, 6) [N, N m], read from `file`.
 
     The wrench is linear between the rows, jumps where two rows stand at one instant and keeps its last value.
@@ -126,7 +127,7 @@ class CsvWrench(Frozen):
 Wrench = Annotated[ConstantWrench | SineWrench | StepWrench | CsvWrench, Field(discriminator="law")]
 
 
-class Load(Frozen):
+class Load(Table):
     """External load of a robot: `wrench` at the tool, world axes, or none."""
 
     wrench: Annotated[Wrench | None, Key("Fx, Fy, Fz, Mx, My, Mz, or a table: a law over time")] = None

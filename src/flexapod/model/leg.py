@@ -17,13 +17,14 @@ from flexapod.model.joint import Carriage, Joint
 from flexapod.model.piston import Piston, Strut
 from flexapod.model.screw import Drive, ScrewDrive
 from flexapod.model.spring import AxialSpring
-from flexapod.schema.base import Frozen, Key, Quantity, Vec3
+from flexapod.schema.base import Key, Quantity, Vec3
+from flexapod.schema.table import Table
 from flexapod.words import number, text
 
 NOTHING = Cylinder(mass=0.0, mouth=0.0)  # in place of the cylinder that a strut does not have
 
 
-class Stroke(Frozen):
+class Stroke(Table):
     """Allowed joint-to-joint length [m]."""
 
     min: Annotated[float, Quantity("length", least=0, why="shortest length")]
@@ -42,7 +43,7 @@ class Stroke(Frozen):
         return self
 
 
-class Leg(Frozen):
+class Leg(Table):
     """A leg between base and platform: a chain of joints, of letters "UPS" unless others are given (`model.chain`).
 
     `cylinder` and `piston` of a leg with a stroke, or `strut` of fixed length (then `piston` is the strut, `cylinder`

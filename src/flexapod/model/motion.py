@@ -9,8 +9,9 @@ import numpy as np
 from pydantic import AfterValidator, Field, model_validator
 
 from flexapod.errors import InputError
-from flexapod.schema.base import Frozen, Key, Quantity, Series, Series6, Vec3
+from flexapod.schema.base import Key, Quantity, Series, Series6, Vec3
 from flexapod.schema.csv_tables import wrong_instant
+from flexapod.schema.table import Table
 from flexapod.typing import Array
 from flexapod.units import DIMENSIONS
 from flexapod.words import number, text
@@ -32,7 +33,7 @@ def _distinct(axes: tuple[str, ...]) -> tuple[str, ...]:
 Independent = Annotated[tuple[Axis, ...], AfterValidator(_distinct)]
 
 
-class AxisMotion(Frozen):
+class AxisMotion(Table):
     """From home to `amplitude` [m or rad] along or about one world axis, in `duration` [s], then `hold` [s].
 
     Turns are about `pivot` (3,) [m], a point given in the platform frame.
@@ -83,7 +84,7 @@ class AxisMotion(Frozen):
         return (self.duration,) if self.profile == "linear" else ()
 
 
-class CombinedMotion(Frozen):
+class CombinedMotion(Table):
     """Several axes at once with one profile: `amplitudes` by axis name [m or rad]."""
 
     placed: ClassVar[tuple[str, ...]] = ("pivot",)
@@ -128,7 +129,7 @@ class CombinedMotion(Frozen):
         return (self.duration,) if self.profile == "linear" else ()
 
 
-class Waypoint(Frozen):
+class Waypoint(Table):
     """A pose relative to home at `time` [s]: surge, sway, heave [m], roll, pitch, yaw [rad]."""
 
     time: Annotated[float, Quantity("time", least=0, why="instant, above that of the point before")]
@@ -151,7 +152,7 @@ class Waypoint(Frozen):
         return np.array([getattr(self, axis) for axis in AXES])
 
 
-class WaypointMotion(Frozen):
+class WaypointMotion(Table):
     """From point to point, at rest at each; from home at t = 0 if the first point is later."""
 
     placed: ClassVar[tuple[str, ...]] = ("pivot",)
@@ -207,7 +208,7 @@ class WaypointMotion(Frozen):
         return tuple(self.times[1:].tolist()) if self.profile == "linear" else ()
 
 
-class CsvMotion(Frozen):
+class CsvMotion(Table):
     """A table of poses: `time` (n,) [s], from 0, and `pose` (n, 6) relative to home, read from `file`.
 
     Columns of `pose`: surge, sway, heave [m], roll, pitch, yaw [rad].

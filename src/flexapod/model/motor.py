@@ -8,7 +8,8 @@ from pydantic import Field, model_validator
 
 from flexapod.errors import InputError
 from flexapod.model.drive import Feedback
-from flexapod.schema.base import Frozen, Key, Quantity, Series, array_of
+from flexapod.schema.base import Key, Quantity, Series, array_of
+from flexapod.schema.table import Table
 from flexapod.words import number
 
 __all__ = ["HARMONICS", "Brake", "Encoder", "Limits", "Loop", "Motor", "Ripple", "Rotor", "summing"]
@@ -16,14 +17,14 @@ __all__ = ["HARMONICS", "Brake", "Encoder", "Limits", "Loop", "Motor", "Ripple",
 HARMONICS = 4  # of a ripple, at most
 
 
-class Rotor(Frozen):
+class Rotor(Table):
     """What turns with the motor: `inertia` [kg m^2] at the motor, which turns `ratio` times as fast as the screw."""
 
     inertia: Annotated[float, Quantity("inertia", least=0, why="at the motor, with brake and coupling")] = 0.0
     ratio: Annotated[float, Quantity("number", above=0, why="turns of the motor in a turn of the screw")] = 1.0
 
 
-class Ripple(Frozen):
+class Ripple(Table):
     """What a motor's torque changes by as it turns: cogging and ripple, `torque` [N m] times `harmonics`.
 
     `per_turn`: how often the first of these returns in a turn of the motor; `harmonics`: sizes of the first one and of
@@ -47,7 +48,7 @@ class Ripple(Frozen):
         return self
 
 
-class Motor(Frozen):
+class Motor(Table):
     """The motor: its `torque_constant` [N m/A], the `bandwidth` [Hz] of its current's loop, and its `ripple`."""
 
     torque_constant: Annotated[float | None, Quantity("torque constant", above=0, why="torque by current")] = None
@@ -58,7 +59,7 @@ class Motor(Frozen):
     ripple: Annotated[Ripple | None, Key("table: a torque that returns with its turns")] = None
 
 
-class Limits(Frozen):
+class Limits(Table):
     """What the drive is made for.
 
     `force` [N] on the screw; `speed` [rad/s], `torque` and `rms_torque` [N m] of the motor.
@@ -85,13 +86,13 @@ class Limits(Frozen):
         return self
 
 
-class Brake(Frozen):
+class Brake(Table):
     """A brake at the motor: the `torque` [N m] that it holds."""
 
     torque: Annotated[float, Quantity("torque", above=0, why="that it holds")]
 
 
-class Encoder(Frozen):
+class Encoder(Table):
     """Where the position is measured: the motor's angle, the stroke, or the distance of both joints of the leg.
 
     `resolution`: what it tells apart [m], of the motor's angle [rad]. `rate` "rotor": a loop about another place takes

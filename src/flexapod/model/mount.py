@@ -10,7 +10,8 @@ from pydantic import Field, model_validator
 from flexapod.errors import InputError
 from flexapod.model.motion import check_times
 from flexapod.model.spring import check_lossy
-from flexapod.schema.base import Frozen, Key, Loss, Matrix3, Matrix6, Quantity, Series, Series6, Vec3
+from flexapod.schema.base import Key, Loss, Matrix3, Matrix6, Quantity, Series, Series6, Vec3
+from flexapod.schema.table import Table
 
 __all__ = ["BaseMotion", "Mount"]
 
@@ -18,7 +19,7 @@ ORIGIN = np.zeros(3)
 LEVEL = 1e-9  # of the largest number of a matrix, by which it may miss being one of a spring
 
 
-class Mount(Frozen):
+class Mount(Table):
     """Springs between a plate and what it stands on, along and about the axes through a point.
 
     `at` (3,) [m]: of the base from the origin of the world, of the platform from that of the platform frame; there is
@@ -77,7 +78,7 @@ def _of_a_spring(matrix: Matrix6, key: str, least: float, words: str) -> None:
         )
 
 
-class BaseMotion(Frozen):
+class BaseMotion(Table):
     """How the base, or the floor under its mount, is moved from t = 0 on: a table from `file`.
 
     `time` (n,) [s], from 0; `values` (n, 6): along x, y, z of the world and roll, pitch, yaw about them through the

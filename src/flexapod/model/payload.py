@@ -8,12 +8,13 @@ import numpy as np
 from pydantic import field_validator, model_validator
 
 from flexapod.errors import InputError
-from flexapod.schema.base import Frozen, Matrix3, Quantity, Vec3
+from flexapod.schema.base import Matrix3, Quantity, Vec3
+from flexapod.schema.table import Table
 from flexapod.typing import Array
 from flexapod.words import number
 
 
-class Payload(Frozen):
+class Payload(Table):
     """Platform and everything on it, as one rigid body.
 
     `mass` [kg]; `inertia` (3, 3) [kg m^2] about the centre of mass in platform axes, products with tensor sign;

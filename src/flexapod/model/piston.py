@@ -11,10 +11,11 @@ from flexapod.errors import InputError
 from flexapod.model.cylinder import check_axial
 from flexapod.model.material import POISSON, Material, Rectangle, Tube
 from flexapod.model.sections import SHARES, PistonSection, Step
-from flexapod.schema.base import Frozen, Key, Quantity
+from flexapod.schema.base import Key, Quantity
+from flexapod.schema.table import Table
 
 
-class Piston(Frozen):
+class Piston(Table):
     """The upper, flexible part of a leg: a uniform Euler-Bernoulli beam.
 
     `length` [m], whole piston; `EA` [N]; `EI` [N m^2]; `rhoA` [kg/m], 0 for a spring without mass; `diameter`,
@@ -25,6 +26,8 @@ class Piston(Frozen):
     that turns in its cylinder (C) and takes the nut of its screw along. `shear`: whether it shears and its sections
     have rotary inertia (Timoshenko's beam).
     """
+
+    silent: ClassVar[tuple[str, ...]] = ("poisson", "keyed", "sections", "shear")
 
     length: Annotated[float, Quantity("length", above=0)]
     EA: Annotated[float, Quantity("axial stiffness", above=0, why="axial stiffness")]
@@ -234,8 +237,34 @@ class Piston(Frozen):
         """Size in the direction of bending [m]; None where no section is given."""
         return self.diameter
 
+    def told(self) -> dict[str, object]:
+        """All that it has to say in a file: section and material, where the rest follows from them."""
+        fields = super().told()
+        if self.sections:
+            kept = ("sections", "bow", "axial_inertia", "shear")
+            return {name: value for name, value in fields.items() if (name in kept and value) or name == "keyed"}
+        made_of = {name: fields.pop(name, None) for name in ("E", "density")}
+        if self._made_again() != self.replace(bow=None, keyed=True, shear=False):
+            return fields
+        computed = ("EA", "EI", "rhoA", *(() if self.diameter else ("axial_inertia",)))
+        return {name: value for name, value in fields.items() if name not in computed} | made_of
 
-class Strip(Frozen):
+    def _made_again(self) -> Self | None:
+        """One of its section and material; None where it has none."""
+        if self.E is None or self.density is None or self.diameter is None:
+            return None
+        section = Tube(diameter=self.diameter, inner_diameter=self.inner_diameter)
+        return type(self).round(
+            length=self.length, section=section, material=self._material, axial_inertia=self.axial_inertia
+        )
+
+    @property
+    def _material(self) -> Material:
+        own = {name: getattr(self, name) for name in ("E", "density", "yield_stress", "poisson", "expansion")}
+        return Material(name="given", **own)
+
+
+class Strip(Table):
     """Section of a strip that bends across its thickness: `width`, `thickness` [m]."""
 
     width: Annotated[float, Quantity("length", above=0, why="across the plane")]
@@ -257,8 +286,13 @@ class Strut(Piston):
         """Size in the direction of bending [m], of a strip its thickness."""
         return self.diameter if self.section is None else self.section.thickness
 
+    def _made_again(self) -> Self | None:
+        if self.section is None or self.E is None or self.density is None:
+            return super()._made_again()
+        return self.strip(length=self.length, section=self.section, material=self._material)
+
     @classmethod
-    def strip(cls, *, length: float, section: Strip, material: Material, bow: float | None = None) -> Strut:
+    def strip(cls, *, length: float, section: Strip, material: Material, bow: float | None = None) -> Self:
         """A strip: EA, EI across its thickness and rhoA follow from section and material."""
         size = Rectangle(width=section.width, height=section.thickness)
         return cls(

@@ -7,7 +7,8 @@ from typing import Annotated, Literal
 from pydantic import Field, model_validator
 
 from flexapod.errors import InputError
-from flexapod.schema.base import Frozen, Key, Loss, Quantity
+from flexapod.schema.base import Key, Loss, Quantity
+from flexapod.schema.table import Table
 
 __all__ = ["AXIAL", "RollingLaw"]
 
@@ -25,7 +26,7 @@ AXIAL = ("K811", "K812", "K893", "K894")  # thrust bearings: one carries the who
 LARGEST = 1.0  # bore [m] beyond which no such bearing is made
 
 
-class RollingLaw(Frozen):
+class RollingLaw(Table):
     """Bearings of a `series` and a `bore` [m] in the yokes of a joint, under the `load` [N] along the leg.
 
     `yokes`: in series along the leg, 2 of a cross; in each of them two radial bearings share the load, or a thrust

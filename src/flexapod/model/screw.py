@@ -13,11 +13,12 @@ from flexapod.errors import InputError
 from flexapod.model.drive import ForceDrive, PrescribedDrive, ServoDrive
 from flexapod.model.friction import ScrewFriction
 from flexapod.model.hydraulic import HydraulicDrive
-from flexapod.model.material import SPELLS, Material
+from flexapod.model.material import SPELLS, Material, spelled
 from flexapod.model.motion import check_times
 from flexapod.model.motor import HARMONICS, Brake, Encoder, Limits, Loop, Motor, Ripple, Rotor, summing
 from flexapod.model.spring import check_lossy
-from flexapod.schema.base import Frozen, Key, Loss, Quantity, Series
+from flexapod.schema.base import Key, Loss, Quantity, Series
+from flexapod.schema.table import Table
 from flexapod.typing import Array
 from flexapod.words import number
 
@@ -28,7 +29,7 @@ HIGHEST = 0.1  # preload over dynamic load rating of a double nut, at most (HIWI
 UM = 1e6  # N/m of an N/um
 
 
-class Nut(Frozen):
+class Nut(Table):
     """The nut: its `stiffness` [N/m], or the catalogue's.
 
     `rigidity` [N/m] at a preload of a tenth of the `dynamic_load` [N], and the `preload` [N]. `dynamic_load` and
@@ -94,7 +95,7 @@ class Nut(Frozen):
         return math.inf if self.preload is None else UNLOADS * self.preload
 
 
-class Bearing(Frozen):
+class Bearing(Table):
     """The thrust bearing of a screw, at `position` [m] along the cylinder from the base joint.
 
     Its `stiffness` [N/m], or with ``model = "angular-contact"`` that of a preloaded pair: `preload` [N], number of
@@ -133,7 +134,7 @@ class Bearing(Frozen):
         return 3 * preload / approach * UM
 
 
-class ScrewDrive(Frozen):
+class ScrewDrive(Table):
     """A screw that the motor turns in a thrust bearing in the cylinder; its nut is the piston's inner end.
 
     `lead` [m] a turn; the shaft between bearing and nut by its `root_diameter` [m], `length` [m] from the bearing and
@@ -344,11 +345,15 @@ class ScrewDrive(Frozen):
         turns = self.per_turn / self.rotor.ratio if self.encoder.at == "rotor" else 1.0
         return (self.encoder.resolution or 0.0) * turns
 
+    def told(self) -> dict[str, object]:
+        """All that it has to say in a file, with the keys of its material."""
+        return {name: x for name, x in super().told().items() if name != "material"} | spelled(self.material)
+
 
 Drive = Annotated[PrescribedDrive | ServoDrive | ForceDrive | ScrewDrive | HydraulicDrive, Field(discriminator="type")]
 
 
-def _one_of(part: Frozen, given: str, law: tuple[str, ...]) -> None:
+def _one_of(part: Table, given: str, law: tuple[str, ...]) -> None:
     """Raise InputError unless a part has either its stiffness or all numbers of a catalogue's law."""
     has = [name for name in law if getattr(part, name) is not None]
     if getattr(part, given) is not None and has:

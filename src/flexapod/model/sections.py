@@ -3,13 +3,14 @@
 from __future__ import annotations
 
 from collections.abc import Iterable, Iterator, Sequence
-from typing import Annotated, NamedTuple
+from typing import Annotated, ClassVar, NamedTuple
 
 from pydantic import Field, model_validator
 
 from flexapod.errors import InputError
 from flexapod.model.material import POISSON, Rectangle, Tube
-from flexapod.schema.base import Frozen, Key, Quantity
+from flexapod.schema.base import Key, Quantity
+from flexapod.schema.table import Table
 
 STEPS = 64  # uniform pieces in place of a taper where formulas know no tapers, in pairs
 SHARES = (0.0, 0.25, 0.5, 0.75, 1.0)  # of a length: they tell EI of a taper, which is of fourth order
@@ -29,13 +30,15 @@ class Step(NamedTuple):
     round: bool
 
 
-class PistonSection(Frozen):
+class PistonSection(Table):
     """A section of a piston: round, full or hollow, or a strip; of one material.
 
     `length`; `diameter`, `tip_diameter` where it tapers towards the tip, `inner_diameter`, or `width` along the axis x
     of the leg (the first axis of its base joint) and `thickness` along y [m]; `E` [Pa], `density` [kg/m^3],
     `yield_stress` [Pa], `poisson`, `expansion` [1/K].
     """
+
+    silent: ClassVar[tuple[str, ...]] = ("poisson",)
 
     length: Annotated[float, Quantity("length", above=0, why="of this section")]
     diameter: Annotated[

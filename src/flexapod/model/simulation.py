@@ -8,7 +8,8 @@ from typing import Annotated, ClassVar, Literal, Self
 from pydantic import Field, model_validator
 
 from flexapod.errors import InputError, closest
-from flexapod.schema.base import Frozen, Key, Quantity
+from flexapod.schema.base import Key, Quantity
+from flexapod.schema.table import Table
 from flexapod.words import number, text
 
 FIDELITIES = ("rigid", "lumped", "finite-segment", "assumed-modes", "beam-fem", "solid-fem")
@@ -21,13 +22,13 @@ MOST_SHAPES = 12  # of a lateral plane; higher ones follow no excitation that a 
 MOST_ELEMENT_SHAPES = 24  # of `beam-fem`: twelve elements, for differences of 0.1 % in long runs
 
 
-class Initial(Frozen):
+class Initial(Table):
     """Start of a robot: `equilibrium` (static, at rest), `straight` (undeformed) or `moving` (rigid velocity field)."""
 
     start: Annotated[Literal["equilibrium", "straight", "moving"], Key("how the robot starts")] = "equilibrium"
 
 
-class Simulation(Frozen):
+class Simulation(Table):
     """Settings of a simulation.
 
     `fidelity`; `basis` of `assumed-modes`; `modes`, the lateral shapes per plane (of `finite-segment` one per segment,
@@ -39,6 +40,7 @@ class Simulation(Frozen):
     """
 
     placed: ClassVar[tuple[str, ...]] = ("basis",)
+    silent: ClassVar[tuple[str, ...]] = ("friction",)
 
     fidelity: Annotated[str, Key("what the legs can do: docs/ladder.md")] = "assumed-modes"
     basis: Annotated[Literal["tip-load", "clamped-free", "tip-mass"], Key("shapes of assumed-modes")] = "tip-load"
@@ -189,6 +191,11 @@ class Simulation(Frozen):
     def outputs(self, duration: float) -> int:
         """Number of intervals between stored results in `duration` [s]; a rest shorter than one is left out."""
         return math.floor(duration / self.stored_step + 1e-6)
+
+    def told(self) -> dict[str, object]:
+        """All that it has to say in a file: no basis that its fidelity does not use."""
+        unused = ("basis",) if self.fidelity in OWN_BASIS else ()
+        return {name: value for name, value in super().told().items() if name not in unused}
 
 
 def own_fidelity(basis: object) -> str | None:

@@ -9,7 +9,8 @@ from pydantic import model_validator
 
 from flexapod.errors import InputError
 from flexapod.model.heat import HEAT_PARTS
-from flexapod.schema.base import Frozen, Key, Loss, Quantity
+from flexapod.schema.base import Key, Loss, Quantity
+from flexapod.schema.table import Table
 
 __all__ = ["RESERVED", "AxialSpring", "check_lossy"]
 
@@ -22,7 +23,7 @@ RESERVED = (
 )  # fmt: skip
 
 
-class AxialSpring(Frozen):
+class AxialSpring(Table):
     """A named spring [N/m] along a leg, with a damper [N s/m] or a loss factor.
 
     `at`: where it is, between base joint and cylinder ("base"), between nut or drive and piston ("nut"), or between

@@ -7,7 +7,8 @@ from typing import Annotated, Any, TypeVar
 from pydantic import BeforeValidator, model_validator
 
 from flexapod.errors import InputError
-from flexapod.schema.base import Frozen, Key, Quantity
+from flexapod.schema.base import Key, Quantity
+from flexapod.schema.table import Table
 
 __all__ = ["CLASSES", "LengthSpread", "RatioSpread", "Spread", "Tolerances"]
 
@@ -16,7 +17,7 @@ __all__ = ["CLASSES", "LengthSpread", "RatioSpread", "Spread", "Tolerances"]
 CLASSES = {"C5": 0.018 / 300, "C7": 0.05 / 300, "C10": 0.21 / 300}
 
 
-class LengthSpread(Frozen):
+class LengthSpread(Table):
     """Spread of a length: its standard deviation `sigma` [m], or up to `box` [m] on either side of the drawing."""
 
     sigma: Annotated[float | None, Quantity("length", least=0, why="standard deviation", usual="given by box")] = None
@@ -29,7 +30,7 @@ class LengthSpread(Frozen):
         return _either(self)
 
 
-class RatioSpread(Frozen):
+class RatioSpread(Table):
     """A ratio: standard deviation `sigma`, or up to `box` on either side; of EA, EI and density relative to them."""
 
     sigma: Annotated[
@@ -63,7 +64,7 @@ def _spread(value: Any) -> Any:
     return {"sigma": value} if isinstance(value, int | float) and not isinstance(value, bool) else value
 
 
-class Tolerances(Frozen):
+class Tolerances(Table):
     """Independent errors of single parts, those of joints along each axis; what is left out has none.
 
     `base_joints`, `platform_joints`, `leg_offset` and `lead` as of `Geometry`; `EA`, `EI` and `density` of pistons and

@@ -1,4 +1,4 @@
-"""What all model classes share: frozen, SI floats, read-only arrays, errors in the user's words."""
+"""What all model classes share: frozen, SI floats with limits, read-only arrays, errors in the user's words."""
 
 from __future__ import annotations
 
@@ -7,7 +7,7 @@ import re
 from collections.abc import Callable, Mapping
 from html import escape
 from threading import RLock
-from typing import Annotated, Any, ClassVar, Self
+from typing import Annotated, Any, Self
 
 import numpy as np
 from pydantic import (
@@ -23,7 +23,6 @@ from pydantic import (
 from pydantic_core import CoreSchema, PydanticCustomError, core_schema
 
 from flexapod.errors import InputError, closest
-from flexapod.schema.written import Written
 from flexapod.typing import Array
 from flexapod.units import DIMENSIONS
 from flexapod.words import number
@@ -32,7 +31,6 @@ from flexapod.words import number
 Loss = Annotated[float, Field(strict=True, ge=0, le=2, allow_inf_nan=False)]
 
 _HASH = "hash"  # where an object keeps its hash; no field can have this name, which would hide the built-in
-_WRITTEN = "written"  # where it keeps the table that it was read from
 
 _building = RLock()  # classes need those of their fields
 
@@ -142,14 +140,6 @@ Series6 = Annotated[Array, PlainValidator(array_of((None, 6))), PlainSerializer(
 class Frozen(BaseModel):
     """Base of the model: immutable, SI, unknown fields refused, `InputError` on bad values."""
 
-    #: Fields that are no keys of a study file: a table in a file of its own has them, or they follow from the others
-    derived: ClassVar[tuple[str, ...]] = ()
-    #: Fields that a key stands for, where that is not the one of its name alone
-    spells: ClassVar[Mapping[str, tuple[str, ...]]] = {}
-    #: Keys that say something else in another place: directions in words, vectors in a plane
-    placed: ClassVar[tuple[str, ...]] = ()
-    #: Fields that are in no text
-    untold: ClassVar[tuple[str, ...]] = ()
     model_config = ConfigDict(
         frozen=True, extra="forbid", arbitrary_types_allowed=True, hide_input_in_errors=True, defer_build=True
     )  # what checks a class is built with its first object: most studies have few of the tables
@@ -172,42 +162,14 @@ class Frozen(BaseModel):
             If a field does not exist or the new value is not allowed.
         """
         fields = {name: getattr(self, name) for name in type(self).model_fields}
-        return self._kept_in(type(self)(**(fields | changes)))
-
-    @property
-    def written(self) -> Written | None:
-        """The table that it was read from, or what of that still holds; None of an object made in Python."""
-        return vars(self).get(_WRITTEN)
-
-    def keep(self, written: Written) -> Self:
-        """Itself, with the table that says the same."""
-        vars(self)[_WRITTEN] = written
-        return self
-
-    @property
-    def unchanged(self) -> bool:
-        """Whether the table that it was read from says all of it."""
-        return self.written is not None and not self.written.changed
-
-    def _kept_in(self, changed: Self) -> Self:
-        """A changed object with what still holds of the table of this one."""
-        if self.written is None:
-            return changed
-        told = (name for name in type(self).model_fields if name not in self.untold)
-        names = {name for name in told if not _same(getattr(self, name), getattr(changed, name))}
-        return changed.keep(Written(self.written.data, self.written.changed | names))
-
-    def still_says(self, key: str) -> bool:
-        """Whether what was written under a key still says what the object has."""
-        return self.written is not None and self.written.changed.isdisjoint(self.spells.get(key, (key,)))
+        return type(self)(**(fields | changes))
 
     def __deepcopy__(self, memo: dict[int, Any] | None = None) -> Self:
         return self  # nothing in it can change
 
     def __copy__(self) -> Self:
         copy = super().__copy__()
-        for name in (_HASH, _WRITTEN):  # pydantic copies before it changes fields
-            vars(copy).pop(name, None)
+        vars(copy).pop(_HASH, None)  # pydantic copies before it changes fields
         return copy
 
     def __setstate__(self, state: dict[Any, Any]) -> None:
@@ -254,9 +216,7 @@ class Frozen(BaseModel):
 
 
 # Names that work, and that nobody who completes a name is looking for
-_OF_PYDANTIC = {name for name in dir(BaseModel) if not name.startswith("__")} | {
-    "model_config", _HASH, _WRITTEN, "keep", "still_says", "unchanged", "spells", "placed", "untold",
-}  # fmt: skip
+_OF_PYDANTIC = {name for name in dir(BaseModel) if not name.startswith("__")} | {"model_config", _HASH}
 
 
 def _brief(value: object) -> str:
@@ -267,7 +227,8 @@ def _brief(value: object) -> str:
     return str(value)
 
 
-def _same(one: object, other: object) -> bool:
+def same(one: object, other: object) -> bool:
+    """Whether two values of a field are the same."""
     return one is other or _comparable(one) == _comparable(other)
 
 

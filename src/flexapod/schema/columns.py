@@ -11,7 +11,8 @@ import numpy as np
 from annotated_types import Ge, Gt, Le, Lt
 from pydantic.fields import FieldInfo
 
-from flexapod.schema.base import Frozen, Key, Quantity
+from flexapod.schema.base import Key, Quantity
+from flexapod.schema.table import Table
 
 Kind = Literal["number", "vector", "rows", "whole", "text", "words", "flag", "table", "other"]
 
@@ -46,7 +47,7 @@ class Column:
     dimensions: tuple[str, ...] = ()
     size: int = 0
     choices: tuple[str, ...] | None = None
-    models: tuple[type[Frozen], ...] = ()
+    models: tuple[type[Table], ...] = ()
     bounds: Bounds = NO_BOUNDS
     default: float | None = None
     why: str = ""
@@ -54,7 +55,7 @@ class Column:
 
 
 @cache
-def columns_of(model: type[Frozen]) -> dict[str, Column]:
+def columns_of(model: type[Table]) -> dict[str, Column]:
     """The keys of a table that fills a class, in their order."""
     return {name: _column(name, info) for name, info in model.model_fields.items()}
 
@@ -69,7 +70,7 @@ def _column(name: str, info: FieldInfo) -> Column:
     found: dict[str, Any] = {"name": name, "bounds": _bounds(parts), **said}
     if isinstance(info.default, int | float) and not isinstance(info.default, bool):
         found["default"] = info.default
-    models = tuple(kind for kind in kinds if issubclass(kind, Frozen))
+    models = tuple(kind for kind in kinds if issubclass(kind, Table))
     shape = next((part.shape for part in parts if hasattr(part, "shape") and not isinstance(part, type)), None)
     choices = [part for part in parts if isinstance(part, str)]
     if models:

@@ -6,8 +6,8 @@ from collections.abc import Callable, Iterator, Mapping
 from dataclasses import dataclass, field, replace
 from typing import Any
 
-from flexapod.schema.base import Frozen
 from flexapod.schema.columns import NO_BOUNDS, Bounds, Column, Kind, columns_of
+from flexapod.schema.table import Table
 
 
 @dataclass(frozen=True, kw_only=True)
@@ -75,7 +75,7 @@ class Notes:
     def fill(self, table: str, model: Callable[..., Any], values: Mapping[str, object]) -> None:
         """An object of the model is made of the values of a table."""
         cls = model if isinstance(model, type) else getattr(model, "__self__", None)
-        if not (isinstance(cls, type) and issubclass(cls, Frozen)):
+        if not (isinstance(cls, type) and issubclass(cls, Table)):
             return
         self.given |= {(cls.__name__, name) for name in values}
         self.columns.setdefault(table, {}).update(columns_of(cls))
@@ -84,7 +84,7 @@ class Notes:
             if known is not None and known.kind in ("number", "whole"):
                 self.fields[known.key] = replace(known, bounds=column.bounds, default=column.default)
 
-    def taken(self, table: str, built: Frozen) -> None:
+    def taken(self, table: str, built: Table) -> None:
         """The object was made: what it has for keys that are absent."""
         for name in type(built).model_fields:
             known = self.fields.get(_path(table, name))
