@@ -91,9 +91,13 @@ def _first_robot(request: str, preset: str | None, *, ideal: bool) -> tuple[str,
 Table = Annotated[str | None, typer.Argument(metavar="[TABLE]", help="Only this table and those in it: leg.drive")]
 Markdown = Annotated[Path | None, typer.Option("--markdown", metavar="FILE", help="Write the whole page as Markdown.")]
 
+Schema = Annotated[
+    Path | None, typer.Option("--schema", metavar="FILE", help="Write a JSON schema of study files, for editors.")
+]
+
 
 @guarded
-def keys(table: Table = None, markdown: Markdown = None, json: Json = False) -> None:
+def keys(table: Table = None, markdown: Markdown = None, schema: Schema = None, json: Json = False) -> None:
     """Show every key of a study file: what it is, unit, what it is if left out, what is allowed, an example."""
     from dataclasses import asdict
 
@@ -105,11 +109,15 @@ def keys(table: Table = None, markdown: Markdown = None, json: Json = False) -> 
 
     if markdown is not None:
         write_text(markdown, page.markdown())
+    if schema is not None:
+        from flexapod.model.json_schema import json_schema
+
+        write_text(schema, json_schema())
     found = page.listed(table)
     if json:
         print_json([asdict(item) for item in found])
-    elif markdown is not None:
-        print_text(f"{markdown} written.")
+    elif markdown is not None or schema is not None:
+        print_text(f"{' and '.join(str(file) for file in (markdown, schema) if file is not None)} written.")
     else:
         for item in found:
             entry = item.entry

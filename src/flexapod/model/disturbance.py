@@ -94,10 +94,12 @@ class Disturbance(Table):
     """
 
     floor: Annotated[
-        Floor | None, Key("motion of the floor: a table, VC-A to VC-G, or a CSV file of accelerations")
+        Floor | None, Key("motion of the floor: a table, VC-A to VC-G, or a CSV file of accelerations", short="text")
     ] = None
-    wrench: Annotated[Spectrum | None, Key("force and moment at the tool: a table, or a CSV file")] = None
-    force_noise: Annotated[Spectrum | None, Key("forces of the drives, each by itself: a table, or a CSV file")] = None
+    wrench: Annotated[Spectrum | None, Key("force and moment at the tool: a table, or a CSV file", short="text")] = None
+    force_noise: Annotated[
+        Spectrum | None, Key("forces of the drives, each by itself: a table, or a CSV file", short="text")
+    ] = None
 
     def check(self, legs: int) -> None:
         """Raise InputError if a table has not the columns of a robot with so many legs."""

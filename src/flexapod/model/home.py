@@ -30,6 +30,7 @@ class Home(Table):
             "angle",
             why="roll, pitch, yaw about world x, y, z: R = Rz(yaw) Ry(pitch) Rx(roll)",
             usual="parallel to the world",
+            short="number",
         ),
     ] = Field(default=(0.0, 0.0, 0.0), validate_default=True)
 

@@ -28,6 +28,7 @@ class Payload(Table):
             "inertia",
             why="principal moments, or three rows, about the centre of mass in platform axes; a body's: "
             "positive, none above the sum of the others",
+            short="number",
         ),
     ]
     com: Annotated[Vec3, Quantity("length", why="centre of mass, from the platform frame's origin")]

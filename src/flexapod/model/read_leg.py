@@ -353,7 +353,7 @@ def _springs(section: Section | None) -> tuple[AxialSpring, ...] | None:
     """Springs along a leg by name: a number, or a table."""
     if section is None:
         return None
-    section.only(*section.data)
+    section.any_names()
     found = []
     for name, value in section.data.items():
         spring = section.child(value if isinstance(value, Mapping) else {}, name)

@@ -45,11 +45,12 @@ _LIMIT_WORDS = {
 class Key:
     """What a key of a table is, for the reference: `why`, in words.
 
-    `usual`: what holds where it is left out, in words, where its default does not say it.
+    `usual`: what holds where it is left out, in words, where its default does not say it. `short`: "number" or "text"
+    where one may stand for the value.
     """
 
-    def __init__(self, why: str = "", *, usual: str = "") -> None:
-        self.why, self.usual = why, usual
+    def __init__(self, why: str = "", *, usual: str = "", short: str = "") -> None:
+        self.why, self.usual, self.short = why, usual, short
 
 
 class Quantity(Key):
@@ -69,8 +70,9 @@ class Quantity(Key):
         below: float | None = None,
         why: str = "",
         usual: str = "",
+        short: str = "",
     ) -> None:
-        super().__init__(why, usual=usual)
+        super().__init__(why, usual=usual, short=short)
         self.dimensions = dimensions
         limits = {"gt": above, "ge": least, "le": most, "lt": below}
         self.limits = {name: float(limit) for name, limit in limits.items() if limit is not None}

@@ -39,7 +39,7 @@ class Column:
     `kind` of its value; `dimensions` that a number may have, another key deciding which; `size`: numbers of a vector;
     `choices` of a text; `models`: classes of a table, of which the text under `type` or `law` names one; a number may
     stand in place of a table where both are possible; `default` where it is a number; `why`, `usual`: its words and
-    those of its default, where it has some.
+    those of its default, where it has some; `short`: "number" or "text" that may stand for it.
     """
 
     name: str
@@ -52,6 +52,7 @@ class Column:
     default: float | None = None
     why: str = ""
     usual: str = ""
+    short: str = ""
 
 
 @cache
@@ -66,7 +67,9 @@ def _column(name: str, info: FieldInfo) -> Column:
     quantity = next((part for part in parts if isinstance(part, Quantity)), None)
     dimensions = ("number",) if quantity is None else quantity.dimensions
     keys = [part for part in parts if isinstance(part, Key)]
-    said = {word: next((getattr(key, word) for key in keys if getattr(key, word)), "") for word in ("why", "usual")}
+    said = {
+        word: next((getattr(key, word) for key in keys if getattr(key, word)), "") for word in ("why", "usual", "short")
+    }
     found: dict[str, Any] = {"name": name, "bounds": _bounds(parts), **said}
     if isinstance(info.default, int | float) and not isinstance(info.default, bool):
         found["default"] = info.default

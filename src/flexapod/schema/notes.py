@@ -53,13 +53,14 @@ class Field:
 class Notes:
     """`fields` by key; `allowed`: keys by path of their table; `given`: fields of the model that were filled.
 
-    `columns`: of the classes that a table fills, by its path.
+    `columns`: of the classes that a table fills, by its path; `named`: tables whose keys are names.
     """
 
     fields: dict[str, Field] = field(default_factory=dict)
     allowed: dict[str, set[str]] = field(default_factory=dict)
     given: set[tuple[str, str]] = field(default_factory=set)
     columns: dict[str, dict[str, Column]] = field(default_factory=dict)
+    named: set[str] = field(default_factory=set)
 
     def allow(self, table: str, names: tuple[str, ...]) -> None:
         """A table may have these keys."""

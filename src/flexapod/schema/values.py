@@ -95,6 +95,12 @@ class Values:
                     next_step=advice(self.path, name, names, self.data),
                 )
 
+    def any_names(self) -> None:
+        """Take every key: they are names."""
+        self.only(*self.data)
+        if self.notes is not None:
+            self.notes.named.add(self.path)
+
     def need(self, *names: str) -> None:
         """Refuse a section without these keys."""
         for name in names:
