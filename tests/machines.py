@@ -6,11 +6,12 @@ import numpy as np
 from tests.mechanisms import LOWER, UPPER, built, ring
 
 from flexapod.model import MATERIALS, Bearing, Nut, Rotor, ScrewDrive, Study
+from flexapod.model.cylinder import Cylinder
 from flexapod.model.joint import Joint
 from flexapod.model.leg import Leg
 from flexapod.model.motion import AxisMotion
 from flexapod.model.payload import Payload
-from flexapod.model.piston import Cylinder, Piston
+from flexapod.model.piston import Piston
 from flexapod.model.simulation import Simulation
 
 TON = Payload(mass=1000.0, inertia=np.diag([120.0, 120.0, 180.0]), com=[0.02, 0.01, 0.15])

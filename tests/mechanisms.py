@@ -5,9 +5,9 @@ from __future__ import annotations
 import numpy as np
 
 from flexapod.model import Robot
+from flexapod.model.cylinder import Cylinder
 from flexapod.model.joint import Carriage
 from flexapod.model.payload import Payload
-from flexapod.model.piston import Cylinder
 from flexapod.proof.robots import CYLINDER, LOWER, PISTON, THREE, UPPER, leg, rod, tangents
 
 __all__ = ["CYLINDER", "LOWER", "PISTON", "ROBOTS", "THREE", "UPPER", "built", "leg", "ring", "rod", "tangents"]

@@ -14,10 +14,11 @@ from tests.oracles import frames
 from tests.runs import uncompiled_kernel
 
 import flexapod as fx
+from flexapod.model.cylinder import Cylinder
 from flexapod.model.joint import Joint
 from flexapod.model.leg import Leg
 from flexapod.model.payload import Payload
-from flexapod.model.piston import Cylinder, Piston
+from flexapod.model.piston import Piston
 
 FOUR = np.arange(4) * 90.0
 BARE = {"cylinder": Cylinder(mass=0.0, mouth=0.0), "piston": Piston(length=0.8, EA=1.1e8, EI=5e3, rhoA=4.5)}

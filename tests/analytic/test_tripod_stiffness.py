@@ -5,9 +5,10 @@ import pytest
 from tests.mechanisms import THREE, built, leg, ring, tangents
 
 from flexapod.model import MATERIALS, AxisMotion, ConstantWrench, Load, Simulation, Study
+from flexapod.model.cylinder import Cylinder
 from flexapod.model.material import Tube
 from flexapod.model.payload import Payload
-from flexapod.model.piston import Cylinder, Piston
+from flexapod.model.piston import Piston
 from flexapod.solve.at_poses import robot_modes
 from flexapod.solve.stiffness import robot_stiffness
 from flexapod.surveys.sweeps.batch import compute_point

@@ -10,7 +10,8 @@ from tests.runs import balance, collect
 
 import flexapod as fx
 from flexapod.model import AxisMotion, Joint, Payload, Simulation, loads, override, preset, preset_text, to_toml
-from flexapod.model.piston import Cylinder, Piston
+from flexapod.model.cylinder import Cylinder
+from flexapod.model.piston import Piston
 from flexapod.rigid.limbs import limbs
 from flexapod.solve import parameters
 from flexapod.solve.losses import loss_frequency, loss_words

@@ -342,3 +342,16 @@ def test_what_only_python_can_give():
 def test_the_help_of_new_names_every_preset():
     text = (Path(__file__).parents[2] / "src/flexapod/app/commands_study.py").read_text(encoding="utf-8")
     assert all(name in text for name in model.PRESETS)
+
+
+@pytest.mark.parametrize("end", ["base_joint", "platform_joint"])
+@pytest.mark.parametrize(("key", "words"), [("loss = 3", "at most 2"), ('damping = "-1 N s/m"', "at least 0")])
+def test_what_damps_a_joints_stiffness_is_refused_under_its_key(end, key, words):
+    """Once `leg.base_joint.stiffness_loss`, which no file has."""
+    name = key.partition(" ")[0]
+    stiffness = f'{{ axial = "100 N/um", radial = "50 N/um", {key} }}'
+    text = replaced(model.preset_text("paper-robot"), ("[leg] ", f"[leg]\n{end} = {{ stiffness = {stiffness} }} "))
+    with pytest.raises(InputError) as caught:
+        model.loads(text)
+    assert caught.value.key == f"leg.{end}.stiffness.{name}"
+    assert words in str(caught.value)

@@ -8,7 +8,7 @@ from annotated_types import Ge, Le, Lt
 
 from flexapod import model
 from flexapod.errors import InputError
-from flexapod.schema.base import Frozen, Measure
+from flexapod.schema.base import Frozen, Quantity
 from flexapod.units import DIMENSIONS
 
 
@@ -43,7 +43,7 @@ def flat(metadata):
 
 @pytest.mark.parametrize(("cls", "name", "kind", "bounds"), list(numbers()))
 def test_every_number_of_the_model_has_a_range(cls, name, kind, bounds):
-    measured = [b for b in bounds if isinstance(b, Measure)]
+    measured = [b for b in bounds if isinstance(b, Quantity)]
     both_ends = any(isinstance(b, Ge) for b in bounds) and any(isinstance(b, Le | Lt) for b in bounds)
     assert measured or (kind is float and both_ends)
 

@@ -24,10 +24,11 @@ from flexapod.model import (
     ScrewFriction,
     to_toml,
 )
+from flexapod.model.cylinder import Cylinder
+from flexapod.model.guide import Guide
 from flexapod.model.heat import HEAT_PARTS
 from flexapod.model.material import Tube
 from flexapod.model.mount import Mount
-from flexapod.model.piston import Cylinder, Guide
 from flexapod.solve.parts import part_stiffness
 from flexapod.study.after.causes import cause_names
 from flexapod.study.budgets.rows import names_of_rows

@@ -92,9 +92,13 @@ def _first_robot(request: str, preset: str | None, *, ideal: bool) -> tuple[str,
 Table = Annotated[str | None, typer.Argument(metavar="[TABLE]", help="Only this table and those in it: leg.drive")]
 Markdown = Annotated[Path | None, typer.Option("--markdown", metavar="FILE", help="Write the whole page as Markdown.")]
 
+Schema = Annotated[
+    Path | None, typer.Option("--schema", metavar="FILE", help="Write a JSON schema of study files, for editors.")
+]
+
 
 @guarded
-def keys(table: Table = None, markdown: Markdown = None, json: Json = False) -> None:
+def keys(table: Table = None, markdown: Markdown = None, schema: Schema = None, json: Json = False) -> None:
     """Show every key of a study file: what it is, unit, what it is if left out, what is allowed, an example."""
     from dataclasses import asdict
 
@@ -106,8 +110,13 @@ def keys(table: Table = None, markdown: Markdown = None, json: Json = False) -> 
 
     if markdown is not None:
         write_text(markdown, page.markdown())
+    if schema is not None:
+        from flexapod.model.json_schema import json_schema
+
+        write_text(schema, json_schema())
     found = page.listed(table)
-    written = None if markdown is None else [f"{markdown} written."]
+    files = " and ".join(str(file) for file in (markdown, schema) if file is not None)
+    written = [f"{files} written."] if files else None
     told = (_key_section(item, page.HEAD, alone=table is not None) for item in found)
     tell(written or told, lambda: [asdict(item) for item in found], json=json)
 

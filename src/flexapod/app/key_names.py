@@ -2,10 +2,8 @@
 
 from __future__ import annotations
 
-import tomllib
-from importlib.resources import files
-
 from flexapod.errors import InputError, nearest
+from flexapod.schema.reference import Entry, reference
 
 __all__ = ["check_table"]
 
@@ -20,8 +18,8 @@ def check_table(wanted: str) -> None:
     InputError
         With the table that is meant: of that last name, with a key of that name, or of a similar name.
     """
-    found = tomllib.loads(files("flexapod").joinpath("schema", "keys.toml").read_text(encoding="utf-8"))
-    tables = list(dict.fromkeys(entry["table"] for entry in found["entry"]))
+    entries = reference().entries
+    tables = list(dict.fromkeys(entry.table for entry in entries))
     if any(f"{table}.".startswith(f"{wanted}.") for table in tables):
         return
     raise InputError(
@@ -29,16 +27,17 @@ def check_table(wanted: str) -> None:
         key="TABLE",
         value=wanted,
         allowed=f"{', '.join(dict.fromkeys(table.split('.')[0] for table in tables))}, or a table in one of them",
-        next_step=_meant(wanted, tables, {table: list(words) for table, words in found["words"].items()}),
+        next_step=_meant(wanted, tables, entries),
     )
 
 
-def _meant(wanted: str, tables: list[str], keys: dict[str, list[str]]) -> str:
+def _meant(wanted: str, tables: list[str], entries: tuple[Entry, ...]) -> str:
     table, _, last = wanted.rpartition(".")
     ends = [name for name in tables if name.rpartition(".")[2] == last]
     if ends:
         return f"Did you mean {' or '.join(map(repr, ends[:MOST]))}?"
-    holders = [name for name in tables if last in keys.get(name, ()) and table in (name, "")]
+    named = [name for name in tables if table in (name, "")]
+    holders = [name for name in named if any(last in entry.data for entry in entries if entry.table == name)]
     if holders:
         which = " or ".join(f"`flexapod keys {name}`" for name in holders[:MOST])
         return f"{last} is a key of a table: {which}"

@@ -3,6 +3,7 @@
 from flexapod.model.actuator import Actuator, ActuatorInitial, ActuatorLoad, ActuatorMotion
 from flexapod.model.chain import Chain, chain_of, chains_of
 from flexapod.model.circle import base_circle, platform_circle
+from flexapod.model.cylinder import Cylinder, Mounted
 from flexapod.model.damping import Damping, damping_parts
 from flexapod.model.disturbance import CURVES, Disturbance, Floor, Spectrum
 from flexapod.model.drive import Feedback, ForceDrive, PrescribedDrive, ServoDrive
@@ -19,6 +20,7 @@ from flexapod.model.files import (
 )
 from flexapod.model.friction import JointFriction, ScrewFriction, StrokeFriction
 from flexapod.model.geometry import Geometry
+from flexapod.model.guide import Guide
 from flexapod.model.heat import Expansion, Gradient, Heat
 from flexapod.model.home import Home
 from flexapod.model.hydraulic import HydraulicDrive, HydraulicLimits
@@ -53,7 +55,7 @@ from flexapod.model.motion import (
     WaypointMotion,
 )
 from flexapod.model.payload import Payload
-from flexapod.model.piston import Cylinder, Guide, Mounted, Piston, Strut
+from flexapod.model.piston import Piston, Strut
 from flexapod.model.robot import Robot
 from flexapod.model.rolling import RollingLaw
 from flexapod.model.screw import Bearing, Brake, Drive, Encoder, Limits, Loop, Motor, Nut, Ripple, Rotor, ScrewDrive

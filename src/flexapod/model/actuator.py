@@ -10,9 +10,10 @@ from pydantic import Field, model_validator
 from flexapod.errors import InputError
 from flexapod.model.damping import BodyDamping
 from flexapod.model.laws import CsvLaw, LoadLaw, MotionLaw, RateLaw, Wrench
-from flexapod.model.material import SPELLS, Material, Rectangle, Tube
+from flexapod.model.material import SPELLS, Material, Rectangle, Tube, spelled
 from flexapod.model.motion import check_times
-from flexapod.schema.base import Frozen, Measure, NonNegative, Number, Positive
+from flexapod.schema.base import Key, Quantity
+from flexapod.schema.table import Table
 from flexapod.words import number, text
 
 #: Fields that only an actuator in space has.
@@ -21,7 +22,7 @@ IN_SPACE = (
 )  # fmt: skip
 
 
-class Actuator(Frozen):
+class Actuator(Table):
     """A uniform beam in a hub, moving in a plane, or in `space`: about two axes, then of round section.
 
     `length` [m], whole beam; `rhoA` [kg/m]; `EI` [N m^2]; `free_length` [m], outside the hub at t = 0; `tip_mass` [kg];
@@ -35,27 +36,33 @@ class Actuator(Frozen):
 
     spells: ClassVar[Mapping[str, tuple[str, ...]]] = SPELLS
 
-    length: Annotated[Positive, Measure("length")]
-    rhoA: Annotated[Positive, Measure("line density")]
-    EI: Annotated[Positive, Measure("bending stiffness")]
-    free_length: Annotated[Positive, Measure("length")]
-    tip_mass: Annotated[NonNegative, Measure("mass")] = 0.0
-    tip_inertia: Annotated[NonNegative, Measure("inertia")] = 0.0
-    hub_inertia: Annotated[NonNegative, Measure("inertia")] = 0.0
-    hub_radius: Annotated[NonNegative, Measure("length")] = 0.0
-    angle: Annotated[Number, Measure("angle")] = 0.0
-    gravity: Annotated[Number, Measure("acceleration")] = 0.0
-    damping: BodyDamping = 0.0
-    section: Tube | Rectangle | None = None
-    material: Material | None = None
-    space: bool = False
-    elevation: Annotated[Number, Measure("angle")] = 0.0
-    EA: Annotated[Positive, Measure("axial stiffness")] | None = None
-    GJ: Annotated[Positive, Measure("bending stiffness")] | None = None
-    axial_inertia: Annotated[NonNegative, Measure("inertia")] = 0.0
-    tip_axial_inertia: Annotated[NonNegative, Measure("inertia")] = 0.0
-    hub_axial_inertia: Annotated[NonNegative, Measure("inertia")] = 0.0
-    axial_modes: int = Field(default=2, strict=True, ge=1, le=6)
+    length: Annotated[float, Quantity("length", above=0, why="whole beam")]
+    rhoA: Annotated[float, Quantity("line density", above=0, why="mass per length")]
+    EI: Annotated[float, Quantity("bending stiffness", above=0, why="bending stiffness")]
+    free_length: Annotated[float, Quantity("length", above=0, why="outside the hub at t = 0, at most the length")]
+    tip_mass: Annotated[float, Quantity("mass", least=0, why="point mass at the tip")] = 0.0
+    tip_inertia: Annotated[float, Quantity("inertia", least=0, why="moment of inertia of the tip's body")] = 0.0
+    hub_inertia: Annotated[float, Quantity("inertia", least=0, why="moment of inertia of the hub")] = 0.0
+    hub_radius: Annotated[float, Quantity("length", least=0, why="from the pivot to where the beam comes out")] = 0.0
+    angle: Annotated[float, Quantity("angle", why="from the horizontal at t = 0")] = 0.0
+    gravity: Annotated[float, Quantity("acceleration", why="acceleration along -Y, in the plane of motion")] = 0.0
+    damping: Annotated[BodyDamping, Key("damping ratio of the bending modes, or a table")] = 0.0
+    section: Annotated[Tube | Rectangle | None, Key("table: section of the beam")] = None
+    material: Annotated[Material | None, Key("in place of E, density and yield_stress")] = None
+    space: Annotated[bool, Key("true: the hub turns about two axes", usual="false")] = False
+    elevation: Annotated[float, Quantity("angle", why="from the horizontal at t = 0, towards Z")] = 0.0
+    EA: Annotated[
+        float | None, Quantity("axial stiffness", above=0, why="axial stiffness", usual="does not stretch")
+    ] = None
+    GJ: Annotated[
+        float | None, Quantity("bending stiffness", above=0, why="torsional stiffness", usual="does not twist")
+    ] = None
+    axial_inertia: Annotated[
+        float, Quantity("inertia", least=0, why="moment of inertia of the whole beam about its axis")
+    ] = 0.0
+    tip_axial_inertia: Annotated[float, Quantity("inertia", least=0, why="of the tip's body about the beam")] = 0.0
+    hub_axial_inertia: Annotated[float, Quantity("inertia", least=0, why="of the hub about the beam")] = 0.0
+    axial_modes: Annotated[int, Key("axial shapes")] = Field(default=2, strict=True, ge=1, le=6)
 
     def _shown(self) -> dict[str, str]:
         tip = {"tip": f"{number(self.tip_mass, 4)} kg"} if self.tip_mass else {}
@@ -128,8 +135,19 @@ class Actuator(Frozen):
         """An actuator whose rhoA and EI follow from section and material; `fields` are the others."""
         return cls(section=section, material=material, **cls.stiffness(section, material), **fields)
 
+    def told(self) -> dict[str, object]:
+        """All that it has to say in a file: section and material, where the rest follows from them."""
+        fields, section, material = super().told(), self.section, self.material
+        others = {name: value for name, value in fields.items() if name not in ("section", "material")}
+        if section is None or material is None:
+            return others
+        free = {name: value for name, value in others.items() if name not in ("rhoA", "EI")}
+        if type(self).from_section(section=section, material=material, **free) != self:  # type: ignore[arg-type]
+            return others
+        return free | {"section": section} | spelled(material)
 
-class ActuatorMotion(Frozen):
+
+class ActuatorMotion(Table):
     """Prescribed `rotation`, in space `elevation` [rad], `extension` [m] since t = 0; None: that coordinate is free."""
 
     rotation: MotionLaw | None = RateLaw(rate=0.0)
@@ -171,18 +189,18 @@ class ActuatorMotion(Frozen):
         return max(ends, default=None)
 
 
-class ActuatorLoad(Frozen):
+class ActuatorLoad(Table):
     """Driving `torque` [N m] on the hub and axial `force` [N] on the beam; each frees its coordinate.
 
     In space also `elevation_torque` [N m], and a `wrench` at the tip: in world axes, or with `follow` in axes that turn
     with the tip and are the world's where angle and elevation are 0.
     """
 
-    torque: LoadLaw | None = None
-    force: LoadLaw | None = None
-    elevation_torque: LoadLaw | None = None
-    wrench: Wrench | None = None
-    follow: bool | None = None
+    torque: Annotated[LoadLaw | None, Key("on the hub, or a table: a law over time")] = None
+    force: Annotated[LoadLaw | None, Key("along the beam, or a table: a law over time")] = None
+    elevation_torque: Annotated[LoadLaw | None, Key("on the hub towards Z, or a table: a law over time")] = None
+    wrench: Annotated[Wrench | None, Key("Fx, Fy, Fz, Mx, My, Mz, or a table: a law over time")] = None
+    follow: Annotated[bool | None, Key("true: the wrench turns with the tip", usual="false")] = None
 
     @model_validator(mode="after")
     def _followed(self) -> ActuatorLoad:
@@ -191,7 +209,7 @@ class ActuatorLoad(Frozen):
         return self
 
 
-class ActuatorInitial(Frozen):
+class ActuatorInitial(Table):
     """State at t = 0: `tip_displacement` [m] of the static shape under a tip force, modal velocities zero.
 
     `angle_rate` [rad/s] and `length_rate` [m/s] where angle or length are free, that is driven by a load. In space
@@ -199,11 +217,15 @@ class ActuatorInitial(Frozen):
     `elevation_rate` [rad/s] that of a free elevation.
     """
 
-    tip_displacement: Annotated[Number, Measure("length")] = 0.0
-    angle_rate: Annotated[Number, Measure("angular rate")] = 0.0
-    length_rate: Annotated[Number, Measure("velocity")] = 0.0
-    elevation_displacement: Annotated[Number, Measure("length")] = 0.0
-    elevation_rate: Annotated[Number, Measure("angular rate")] = 0.0
+    tip_displacement: Annotated[
+        float, Quantity("length", why="of the static shape under a force at the tip, released at rest")
+    ] = 0.0
+    angle_rate: Annotated[float, Quantity("angular rate", why="of a hub that a torque drives")] = 0.0
+    length_rate: Annotated[float, Quantity("velocity", why="of a beam that a force drives")] = 0.0
+    elevation_displacement: Annotated[
+        float, Quantity("length", why="as tip_displacement, towards larger elevations")
+    ] = 0.0
+    elevation_rate: Annotated[float, Quantity("angular rate", why="of a hub that a torque drives towards Z")] = 0.0
 
     def _shown(self) -> Mapping[str, str]:
         return {name: words for name, words in super()._shown().items() if getattr(self, name)}

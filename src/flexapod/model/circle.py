@@ -10,22 +10,34 @@ from pydantic import model_validator
 
 from flexapod.errors import InputError
 from flexapod.schema.axes import plane_order, within_a_turn
-from flexapod.schema.base import Frozen, Measure, NonNegative, Positive, Series
+from flexapod.schema.base import Quantity, Series
+from flexapod.schema.table import Table
 from flexapod.typing import Array
 
 _LOWER = ((0, -1), (0, 1), (120, -1), (120, 1), (240, -1), (240, 1))
 _UPPER = ((-60, 1), (60, -1), (60, 1), (180, -1), (180, 1), (300, -1))
 
 
-class Circle(Frozen):
+class Circle(Table):
     """Joints on a circle of a `radius` [m]: at `angles` (n,) [rad], or in pairs.
 
     `half_angle` [rad]: half the angle between the joints of a pair.
     """
 
-    radius: Annotated[Positive, Measure("length")]
-    half_angle: Annotated[NonNegative, Measure("angle")] | None = None
-    angles: Annotated[Series, Measure("angle")] | None = None
+    radius: Annotated[float, Quantity("length", above=0, why="radius of the joints' circle")]
+    half_angle: Annotated[
+        float | None,
+        Quantity(
+            "angle",
+            least=0,
+            why="half the angle between the two joints of a pair, up to 60 deg; six legs",
+            usual="given by angles",
+        ),
+    ] = None
+    angles: Annotated[
+        Series | None,
+        Quantity("angle", why="of the joints on the circle, one for each leg", usual="given by half_angle"),
+    ] = None
 
     @model_validator(mode="after")
     def _pairs_apart(self) -> Circle:

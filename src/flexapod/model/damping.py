@@ -8,12 +8,13 @@ from typing import Annotated
 from pydantic import Field, PlainSerializer, PlainValidator
 
 from flexapod.errors import InputError
-from flexapod.schema.base import Frozen, Measure, NonNegative
+from flexapod.schema.base import Quantity
+from flexapod.schema.table import Table
 
 Ratio = Annotated[float, Field(strict=True, ge=0, lt=1)]
 
 
-class Damping(Frozen):
+class Damping(Table):
     """Damping of a piston or beam, Eqs. (T5.1)-(T5.6).
 
     `ratio` of every mode of the bare body; `stiffness` [s]: the damping matrix has this time times the stiffness matrix
@@ -21,7 +22,7 @@ class Damping(Frozen):
     """
 
     ratio: Ratio = 0.0
-    stiffness: Annotated[NonNegative, Measure("time")] = 0.0
+    stiffness: Annotated[float, Quantity("time", least=0, why="time by which its stiffness is multiplied")] = 0.0
 
     def __bool__(self) -> bool:
         """Whether anything is damped, as of a plain number."""

@@ -8,7 +8,8 @@ import numpy as np
 from pydantic import PlainSerializer, PlainValidator, model_validator
 
 from flexapod.errors import InputError
-from flexapod.schema.base import Frozen, Measure, Series, array_of
+from flexapod.schema.base import Key, Quantity, Series, array_of
+from flexapod.schema.table import Table
 from flexapod.typing import Array
 
 __all__ = ["CURVES", "Curve", "Disturbance", "Floor", "Spectrum", "check_density"]
@@ -21,7 +22,7 @@ THIRD = 2 ** (1 / 6) - 2 ** (-1 / 6)  # width of such a band over its middle, (T
 Densities = Annotated[Array, PlainValidator(array_of((None, None))), PlainSerializer(lambda rows: rows.tolist())]
 
 
-class Spectrum(Frozen):
+class Spectrum(Table):
     """A one-sided power spectral density over `frequency` (m,) [Hz], its columns `density` (m, any) [unit^2/Hz].
 
     Between the rows straight lines in logarithms of both, or in the numbers themselves where one end is 0; outside of
@@ -29,9 +30,13 @@ class Spectrum(Frozen):
     """
 
     derived: ClassVar[tuple[str, ...]] = ("frequency", "density")
-    spectrum: str | None = None
-    frequency: Annotated[Series, Measure("frequency")]
-    density: Annotated[Densities, Measure("force spectrum", "torque spectrum")]
+    spectrum: Annotated[str | None, Key("CSV file, relative to this file")] = None
+    frequency: Annotated[Series, Quantity("frequency")]
+    density: Annotated[Densities, Quantity("force spectrum", "torque spectrum")]
+
+    def told(self) -> dict[str, object]:
+        """All that it has to say in a file."""
+        return {"spectrum": self.spectrum or "table.csv"}
 
     @model_validator(mode="after")
     def _table(self) -> Spectrum:
@@ -39,18 +44,26 @@ class Spectrum(Frozen):
         return self
 
 
-class Floor(Frozen):
+class Floor(Table):
     """Motion of the floor along x, y, z, each by itself: a `curve`, which all third-octave bands reach, or a spectrum.
 
     `of`: what `density` (m, 3) is the spectrum of [m/s^2, m/s or m, squared, per Hz]; the rest as of `Spectrum`.
     """
 
     derived: ClassVar[tuple[str, ...]] = ("frequency", "density")
-    curve: Curve | None = None
-    spectrum: str | None = None
-    of: Literal["acceleration", "velocity", "displacement"] = "acceleration"
-    frequency: Annotated[Series, Measure("frequency")]
-    density: Annotated[Densities, Measure("acceleration spectrum", "velocity spectrum", "displacement spectrum")]
+    curve: Annotated[Curve | None, Key("generic vibration criterion")] = None
+    spectrum: Annotated[str | None, Key("CSV file, relative to this file")] = None
+    of: Annotated[Literal["acceleration", "velocity", "displacement"], Key("what `spectrum` is the density of")] = (
+        "acceleration"
+    )
+    frequency: Annotated[Series, Quantity("frequency")]
+    density: Annotated[Densities, Quantity("acceleration spectrum", "velocity spectrum", "displacement spectrum")]
+
+    def told(self) -> dict[str, object]:
+        """All that it has to say in a file."""
+        if self.curve is not None:
+            return {"curve": self.curve}
+        return {"spectrum": self.spectrum or "table.csv", "of": self.of}
 
     @model_validator(mode="after")
     def _table(self) -> Floor:
@@ -73,16 +86,20 @@ class Floor(Frozen):
         return cls(curve=curve, of="velocity", frequency=f, density=density)  # type: ignore[arg-type]
 
 
-class Disturbance(Frozen):
+class Disturbance(Table):
     """What shakes a robot: floor, wrench at the tool, forces of drives.
 
     `wrench`: columns Fx Fy Fz [N^2/Hz], Mx My Mz [(N m)^2/Hz], world axes; `force_noise` of the drives [N^2/Hz, of
     cranks (N m)^2/Hz]: a column for all or one for each leg.
     """
 
-    floor: Floor | None = None
-    wrench: Spectrum | None = None
-    force_noise: Spectrum | None = None
+    floor: Annotated[
+        Floor | None, Key("motion of the floor: a table, VC-A to VC-G, or a CSV file of accelerations", short="text")
+    ] = None
+    wrench: Annotated[Spectrum | None, Key("force and moment at the tool: a table, or a CSV file", short="text")] = None
+    force_noise: Annotated[
+        Spectrum | None, Key("forces of the drives, each by itself: a table, or a CSV file", short="text")
+    ] = None
 
     def check(self, legs: int) -> None:
         """Raise InputError if a table has not the columns of a robot with so many legs."""

@@ -9,10 +9,11 @@ from pydantic import model_validator
 from flexapod.errors import InputError
 from flexapod.model.friction import StrokeFriction
 from flexapod.model.motion import check_times
-from flexapod.schema.base import Frozen, Measure, NonNegative, Number, Positive, Series
+from flexapod.schema.base import Key, Quantity, Series
+from flexapod.schema.table import Table
 
 
-class PrescribedDrive(Frozen):
+class PrescribedDrive(Table):
     """The stroke follows the command exactly; its force is a result.
 
     `backlash`: free travel [m], of a crank [rad]. `friction` of the stroke. Of every drive: `holds`, whether it keeps
@@ -21,12 +22,24 @@ class PrescribedDrive(Frozen):
 
     holds: ClassVar[bool] = True
     pushes: ClassVar[bool] = False
-    type: Literal["prescribed"] = "prescribed"
-    backlash: Annotated[NonNegative, Measure("length", "angle")] | None = None
-    friction: StrokeFriction | None = None
+    type: Annotated[Literal["prescribed"], Key("kind of drive")] = "prescribed"
+    backlash: Annotated[
+        float | None,
+        Quantity(
+            "length",
+            "angle",
+            least=0,
+            why="free travel of what it drives, from one end to the other; of a crank an angle: for "
+            "`flexapod.accuracy`",
+            usual="none",
+        ),
+    ] = None
+    friction: Annotated[
+        StrokeFriction | None, Key("table: friction of the stroke, of a screw at its nut", usual="none")
+    ] = None
 
 
-class ServoDrive(Frozen):
+class ServoDrive(Table):
     """A spring [N/m] and a damper [N s/m] between command and stroke; of a crank [N m/rad, N m s/rad].
 
     `backlash`: free travel [m], of a crank [rad]. `friction` of the stroke.
@@ -34,21 +47,33 @@ class ServoDrive(Frozen):
 
     holds: ClassVar[bool] = False
     pushes: ClassVar[bool] = False
-    type: Literal["servo"] = "servo"
-    stiffness: Annotated[Positive, Measure("stiffness", "rotational stiffness")]
-    damping: Annotated[NonNegative, Measure("damping", "rotational damping")] = 0.0
-    backlash: Annotated[NonNegative, Measure("length", "angle")] | None = None
-    friction: StrokeFriction | None = None
+    type: Annotated[Literal["servo"], Key("kind of drive")] = "servo"
+    stiffness: Annotated[float, Quantity("stiffness", "rotational stiffness", above=0, why="of the spring")]
+    damping: Annotated[float, Quantity("damping", "rotational damping", least=0, why="of the damper")] = 0.0
+    backlash: Annotated[
+        float | None,
+        Quantity(
+            "length",
+            "angle",
+            least=0,
+            why="free travel of what it drives, from one end to the other; of a crank an angle: for "
+            "`flexapod.accuracy`",
+            usual="none",
+        ),
+    ] = None
+    friction: Annotated[
+        StrokeFriction | None, Key("table: friction of the stroke, of a screw at its nut", usual="none")
+    ] = None
 
 
-class Feedback(Frozen):
+class Feedback(Table):
     """Correction of a force drive: gain on stroke [N/m] and on stroke rate [N s/m]."""
 
-    stiffness: Annotated[NonNegative, Measure("stiffness", "rotational stiffness")]
-    damping: Annotated[NonNegative, Measure("damping", "rotational damping")] = 0.0
+    stiffness: Annotated[float, Quantity("stiffness", "rotational stiffness", least=0)]
+    damping: Annotated[float, Quantity("damping", "rotational damping", least=0)] = 0.0
 
 
-class ForceDrive(Frozen):
+class ForceDrive(Table):
     """A force along the leg, of a crank a torque; the stroke is a result.
 
     ``law = "rigid"`` replays the force that the rigid robot needs, ``law = "constant"`` is `value` [N, N m],
@@ -59,14 +84,23 @@ class ForceDrive(Frozen):
 
     derived: ClassVar[tuple[str, ...]] = ("time", "force")
     holds: ClassVar[bool] = False
-    type: Literal["force"] = "force"
-    law: Literal["rigid", "constant", "csv"] = "rigid"
-    file: str | None = None
-    time: Annotated[Series, Measure("time")] | None = None
-    force: Annotated[Series, Measure("force", "torque")] | None = None
-    value: Annotated[Number, Measure("force", "torque")] | None = None
-    feedback: Feedback | None = None
-    friction: StrokeFriction | None = None
+    type: Annotated[Literal["force"], Key("kind of drive")] = "force"
+    law: Annotated[
+        Literal["rigid", "constant", "csv"], Key("where the force or the torque comes from", usual="rigid")
+    ] = "rigid"
+    file: Annotated[str | None, Key('CSV file of the forces or torques, for law "csv"')] = None
+    time: Annotated[Series | None, Quantity("time")] = None
+    force: Annotated[Series | None, Quantity("force", "torque")] = None
+    value: Annotated[
+        float | None,
+        Quantity(
+            "force", "torque", why='the force or the torque, for law "constant"', usual="required by law constant"
+        ),
+    ] = None
+    feedback: Annotated[Feedback | None, Key("table: correction by the stroke's error")] = None
+    friction: Annotated[
+        StrokeFriction | None, Key("table: friction of the stroke, of a screw at its nut", usual="none")
+    ] = None
 
     @property
     def pushes(self) -> bool:

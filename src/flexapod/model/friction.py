@@ -7,32 +7,32 @@ from typing import Annotated
 from pydantic import model_validator
 
 from flexapod.errors import InputError
-from flexapod.schema.base import Frozen, Measure, NonNegative, Positive
+from flexapod.schema.base import Key, Quantity
+from flexapod.schema.table import Table
 from flexapod.words import number
 
 __all__ = ["JointFriction", "ScrewFriction", "StrokeFriction"]
 
-DampingTime = Annotated[NonNegative, Measure("time")]
-Viscous = Annotated[NonNegative, Measure("rotational damping")]
+
 SHORTEST, LEAST = 1e-10, 1e-8  # m, less than an atom; rad, that on a radius of 10 mm
 STICKIEST = 2.0  # coefficient of friction: plain joints have 0.02 to 0.25
 
 
-class TurningStribeck(Frozen):
+class TurningStribeck(Table):
     """More friction at low rates: the `moment` [N m] of breaking away, and the `rate` [rad/s] at which it is lost."""
 
-    moment: Annotated[Positive, Measure("torque")]
-    rate: Annotated[Positive, Measure("angular rate")]
+    moment: Annotated[float, Quantity("torque", above=0)]
+    rate: Annotated[float, Quantity("angular rate", above=0, why="at which more than half of the excess is lost")]
 
 
-class SlidingStribeck(Frozen):
+class SlidingStribeck(Table):
     """More friction at low rates: the `force` [N] of breaking away, and the `rate` [m/s] at which it is lost."""
 
-    force: Annotated[Positive, Measure("force")]
-    rate: Annotated[Positive, Measure("velocity")]
+    force: Annotated[float, Quantity("force", above=0, why="to break away, at least that of sliding")]
+    rate: Annotated[float, Quantity("velocity", above=0, why="at which more than half of the excess is lost")]
 
 
-class JointFriction(Frozen):
+class JointFriction(Table):
     """Friction in a joint, about each of its axes; of a ball about that about which it turns.
 
     `moment` [N m]; or `mu`, the coefficient of a plain joint of mean `diameter` [m]; or of a rolling one `M0` [N m]
@@ -40,15 +40,32 @@ class JointFriction(Frozen):
     `damping_time` [s]: damping over stiffness of what bends before it slides.
     """
 
-    moment: Annotated[Positive, Measure("torque")] | None = None
-    mu: Annotated[Positive, Measure("number")] | None = None
-    M0: Annotated[NonNegative, Measure("torque")] | None = None
-    f1: Annotated[NonNegative, Measure("number")] | None = None
-    diameter: Annotated[Positive, Measure("length")] | None = None
-    viscous: Viscous = 0.0
-    stribeck: TurningStribeck | None = None
-    presliding: Annotated[Positive, Measure("angle")] = 1e-3  # defaults: see T19
-    damping_time: DampingTime = 0.0
+    moment: Annotated[
+        float | None, Quantity("torque", above=0, why="about each axis, whatever the load", usual="given by mu or M0")
+    ] = None
+    mu: Annotated[
+        float | None,
+        Quantity(
+            "number", above=0, why="coefficient of friction of a plain joint, with diameter", usual="given by moment"
+        ),
+    ] = None
+    M0: Annotated[
+        float | None, Quantity("torque", least=0, why="moment of a rolling joint without load", usual="given by moment")
+    ] = None
+    f1: Annotated[
+        float | None, Quantity("number", least=0, why="moment of a rolling joint over load and diameter", usual="0")
+    ] = None
+    diameter: Annotated[
+        float | None, Quantity("length", above=0, why="mean diameter at which it rubs or rolls", usual="none")
+    ] = None
+    viscous: Annotated[float, Quantity("rotational damping", least=0, why="moment by rate")] = 0.0
+    stribeck: Annotated[TurningStribeck | None, Key("table: more friction at low rates", usual="none")] = None
+    presliding: Annotated[
+        float, Quantity("angle", above=0, why="angle over which friction builds up before anything slides")
+    ] = 1e-3  # defaults: see T19
+    damping_time: Annotated[
+        float, Quantity("time", least=0, why="damping over stiffness of what bends before it slides")
+    ] = 0.0
 
     @model_validator(mode="after")
     def _one_law(self) -> JointFriction:
@@ -96,17 +113,24 @@ class JointFriction(Frozen):
         return _numbers(self, self.constant, self.arm, self.stribeck and self.stribeck.moment)
 
 
-class ScrewFriction(Frozen):
+class ScrewFriction(Table):
     """Friction of a screw at its nut, by the screw's angle, whatever the thrust: preload, seals, bearing.
 
     `torque` [N m]; `viscous` [N m s/rad]; `presliding` [rad]; `damping_time` [s] as of a joint.
     """
 
-    torque: Annotated[Positive, Measure("torque")]
-    viscous: Viscous = 0.0
-    stribeck: TurningStribeck | None = None
-    presliding: Annotated[Positive, Measure("angle")] = 0.01
-    damping_time: DampingTime = 0.0
+    torque: Annotated[float, Quantity("torque", above=0, why="of a screw, at its nut, whatever the thrust")]
+    viscous: Annotated[float, Quantity("rotational damping", least=0, why="by rate")] = 0.0
+    stribeck: Annotated[TurningStribeck | None, Key("table: more friction at low rates", usual="none")] = None
+    presliding: Annotated[
+        float,
+        Quantity(
+            "angle", above=0, why="angle of the screw, or travel, over which friction builds up before anything slides"
+        ),
+    ] = 0.01
+    damping_time: Annotated[
+        float, Quantity("time", least=0, why="damping over stiffness of what bends before it slides")
+    ] = 0.0
 
     @model_validator(mode="after")
     def _sensible(self) -> ScrewFriction:
@@ -125,17 +149,24 @@ class ScrewFriction(Frozen):
         return self.torque if self.stribeck is None else self.stribeck.moment
 
 
-class StrokeFriction(Frozen):
+class StrokeFriction(Table):
     """Friction of a stroke, along it: seals, guide.
 
     `force` [N]; `viscous` [N s/m]; `presliding` [m]; `damping_time` [s] as of a joint.
     """
 
-    force: Annotated[Positive, Measure("force")]
-    viscous: Annotated[NonNegative, Measure("damping")] = 0.0
-    stribeck: SlidingStribeck | None = None
-    presliding: Annotated[Positive, Measure("length")] = 1e-5
-    damping_time: DampingTime = 0.0
+    force: Annotated[float, Quantity("force", above=0, why="along the stroke")]
+    viscous: Annotated[float, Quantity("damping", least=0, why="by rate")] = 0.0
+    stribeck: Annotated[SlidingStribeck | None, Key("table: more friction at low rates", usual="none")] = None
+    presliding: Annotated[
+        float,
+        Quantity(
+            "length", above=0, why="angle of the screw, or travel, over which friction builds up before anything slides"
+        ),
+    ] = 1e-5
+    damping_time: Annotated[
+        float, Quantity("time", least=0, why="damping over stiffness of what bends before it slides")
+    ] = 0.0
 
     @model_validator(mode="after")
     def _sensible(self) -> StrokeFriction:

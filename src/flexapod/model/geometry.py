@@ -8,7 +8,8 @@ import numpy as np
 from pydantic import PlainSerializer, PlainValidator
 
 from flexapod.errors import InputError
-from flexapod.schema.base import Frozen, Joints, Measure, array_of
+from flexapod.schema.base import Joints, Quantity, array_of
+from flexapod.schema.table import Table
 from flexapod.typing import Array
 
 __all__ = ["Geometry", "PerLeg", "check_legs"]
@@ -22,7 +23,12 @@ def _per_leg(value: object) -> Array:
 PerLeg = Annotated[Array, PlainValidator(_per_leg), PlainSerializer(lambda array: array.tolist())]
 
 
-class Geometry(Frozen):
+def one_for_all(value: object) -> object:
+    """What is the same for all legs as one number."""
+    return value.item() if isinstance(value, np.ndarray) and value.shape == (1,) else value
+
+
+class Geometry(Table):
     """What differs from the drawing, the same at all times; what is left out is as drawn.
 
     `base_joints` (n, 3) [m] in world axes, `platform_joints` (n, 3) [m] in platform axes: real less drawn place of
@@ -31,10 +37,39 @@ class Geometry(Frozen):
     slider. The last two for all legs or for each.
     """
 
-    base_joints: Annotated[Joints, Measure("length")] | None = None
-    platform_joints: Annotated[Joints, Measure("length")] | None = None
-    leg_offset: Annotated[PerLeg, Measure("length")] | None = None
-    lead: Annotated[PerLeg, Measure("number")] | None = None
+    base_joints: Annotated[
+        Joints | None,
+        Quantity(
+            "length",
+            why="real less drawn place of the joints on the base, of a carriage of its rail or shaft, world "
+            "axes, leg by leg",
+            usual="as drawn",
+        ),
+    ] = None
+    platform_joints: Annotated[
+        Joints | None,
+        Quantity(
+            "length",
+            why="real less drawn place of the joints on the platform, platform axes, leg by leg",
+            usual="as drawn",
+        ),
+    ] = None
+    leg_offset: Annotated[
+        PerLeg | None,
+        Quantity(
+            "length",
+            why="real less commanded length of a leg at home, of a strut its length; one number or one for each leg",
+            usual="as drawn",
+        ),
+    ] = None
+    lead: Annotated[
+        PerLeg | None,
+        Quantity(
+            "number",
+            why="real over called travel of a stroke or slider, less 1, from home on; one number or one for each leg",
+            usual="as drawn",
+        ),
+    ] = None
 
     def check(self, count: int, normal: Array | None) -> None:
         """Refuse what does not fit a robot of `count` legs, and what leaves the plane of this normal."""
@@ -57,6 +92,10 @@ class Geometry(Frozen):
                 )
         for name in ("leg_offset", "lead"):
             check_legs(getattr(self, name), f"geometry.{name}", count)
+
+    def told(self) -> dict[str, object]:
+        """All that it has to say in a file: what is the same for all legs as one number."""
+        return {name: one_for_all(value) for name, value in super().told().items()}
 
 
 def check_legs(values: Array | None, key: str, count: int) -> None:

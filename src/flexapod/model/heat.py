@@ -5,12 +5,13 @@ from __future__ import annotations
 from typing import Annotated, ClassVar
 
 import numpy as np
-from pydantic import Field, PlainSerializer, PlainValidator, model_validator
+from pydantic import PlainSerializer, PlainValidator, model_validator
 
 from flexapod.errors import InputError
-from flexapod.model.geometry import PerLeg, check_legs
+from flexapod.model.geometry import PerLeg, check_legs, one_for_all
 from flexapod.model.motion import check_times
-from flexapod.schema.base import Frozen, Measure, Number, Series, array_of
+from flexapod.schema.base import Key, Quantity, Series, array_of
+from flexapod.schema.table import Table
 from flexapod.typing import Array
 
 __all__ = ["HEAT_PARTS", "LEG_PARTS", "Expansion", "Gradient", "Heat"]
@@ -20,26 +21,36 @@ HEAT_PARTS = ("base", "platform", *LEG_PARTS)
 COLDEST = -273.15
 
 _Rows = Annotated[Array, PlainValidator(array_of((None, None))), PlainSerializer(lambda rows: rows.tolist())]
-Warm = Annotated[Number, Field(ge=COLDEST), Measure("temperature")]
 
 
-class Expansion(Frozen):
+class Expansion(Table):
     """Thermal expansion of parts [1/K] in place of that of their material, or of steel where none is known."""
 
-    base: Annotated[Number, Measure("expansion")] | None = None
-    platform: Annotated[Number, Measure("expansion")] | None = None
-    piston: Annotated[Number, Measure("expansion")] | None = None
-    cylinder: Annotated[Number, Measure("expansion")] | None = None
-    screw: Annotated[Number, Measure("expansion")] | None = None
+    base: Annotated[float | None, Quantity("expansion", why="of the base", usual="11.8e-06")] = None
+    platform: Annotated[float | None, Quantity("expansion", why="of the platform", usual="11.8e-06")] = None
+    piston: Annotated[float | None, Quantity("expansion", why="of pistons and struts", usual="of leg.piston")] = None
+    cylinder: Annotated[float | None, Quantity("expansion", why="of cylinders", usual="11.8e-06")] = None
+    screw: Annotated[float | None, Quantity("expansion", why="of screws", usual="of leg.drive")] = None
 
 
-class Gradient(Frozen):
+class Gradient(Table):
     """Temperature differences across parts [K]: of `piston` (or strut), for all legs or for each."""
 
-    piston: Annotated[PerLeg, Measure("temperature difference")] | None = None
+    piston: Annotated[
+        PerLeg | None,
+        Quantity(
+            "temperature difference",
+            why="across pistons and struts; one number or one for each leg: for `flexapod.accuracy`",
+            usual="none",
+        ),
+    ] = None
+
+    def told(self) -> dict[str, object]:
+        """All that it has to say in a file: what is the same for all legs as one number."""
+        return {name: one_for_all(value) for name, value in super().told().items()}
 
 
-class Heat(Frozen):
+class Heat(Table):
     """Temperatures [degC]: those at which lengths are as drawn, `reference`, and of parts, where they differ.
 
     `base`, `platform`: the plates between the joints; `piston` (or strut), `cylinder`, `screw`: for all legs or for
@@ -49,18 +60,49 @@ class Heat(Frozen):
 
     derived: ClassVar[tuple[str, ...]] = ("time", "columns", "table")
 
-    reference: Warm = 20.0
-    base: Warm | None = None
-    platform: Warm | None = None
-    piston: Annotated[PerLeg, Measure("temperature")] | None = None
-    cylinder: Annotated[PerLeg, Measure("temperature")] | None = None
-    screw: Annotated[PerLeg, Measure("temperature")] | None = None
-    expansion: Expansion | None = None
-    gradient: Gradient | None = None
-    file: str | None = None
-    time: Annotated[Series, Measure("time")] | None = None
+    reference: Annotated[
+        float, Quantity("temperature", least=COLDEST, why="temperature at which lengths are as drawn")
+    ] = 20.0
+    base: Annotated[
+        float | None,
+        Quantity(
+            "temperature",
+            least=COLDEST,
+            why="temperature of the plate between the joints of the base",
+            usual="reference",
+        ),
+    ] = None
+    platform: Annotated[
+        float | None,
+        Quantity(
+            "temperature",
+            least=COLDEST,
+            why="temperature of the plate between the joints of the platform",
+            usual="reference",
+        ),
+    ] = None
+    piston: Annotated[
+        PerLeg | None,
+        Quantity(
+            "temperature", why="temperature of pistons and struts; one number or one for each leg", usual="reference"
+        ),
+    ] = None
+    cylinder: Annotated[
+        PerLeg | None,
+        Quantity("temperature", why="temperature of cylinders; one number or one for each leg", usual="reference"),
+    ] = None
+    screw: Annotated[
+        PerLeg | None,
+        Quantity(
+            "temperature", why="temperature of the screws of drives; one number or one for each leg", usual="reference"
+        ),
+    ] = None
+    expansion: Annotated[Expansion | None, Key("table: thermal expansion of parts", usual="those of materials")] = None
+    gradient: Annotated[Gradient | None, Key("table: temperature differences across parts", usual="none")] = None
+    file: Annotated[str | None, Key("CSV with temperatures over time", usual="constant")] = None
+    time: Annotated[Series | None, Quantity("time")] = None
     columns: tuple[str, ...] = ()
-    table: Annotated[_Rows, Measure("temperature")] | None = None
+    table: Annotated[_Rows | None, Quantity("temperature")] = None
 
     @model_validator(mode="after")
     def _sensible(self) -> Heat:
@@ -97,3 +139,7 @@ class Heat(Frozen):
             if what == part:
                 found[:, slice(None) if not leg else int(leg) - 1] = values[:, None] if not leg else values
         return found
+
+    def told(self) -> dict[str, object]:
+        """All that it has to say in a file: what is the same for all legs as one number."""
+        return {name: one_for_all(value) for name, value in super().told().items()}

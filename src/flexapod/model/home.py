@@ -10,11 +10,12 @@ from pydantic import Field, model_validator
 
 from flexapod.model.joint import Carriage
 from flexapod.schema.axes import within_a_turn
-from flexapod.schema.base import Frozen, Measure, Vec3
+from flexapod.schema.base import Quantity, Vec3
+from flexapod.schema.table import Table
 from flexapod.typing import Array
 
 
-class Home(Frozen):
+class Home(Table):
     """Pose of the platform frame at home: `position` (3,) [m], `rotation` (3,) [rad], world axes.
 
     `rotation`: roll, pitch, yaw about world x, y, z: R = Rz(yaw) Ry(pitch) Rx(roll).
@@ -22,8 +23,16 @@ class Home(Frozen):
 
     placed: ClassVar[tuple[str, ...]] = ("rotation",)
 
-    position: Annotated[Vec3, Measure("length")]
-    rotation: Annotated[Vec3, Measure("angle")] = Field(default=(0.0, 0.0, 0.0), validate_default=True)
+    position: Annotated[Vec3, Quantity("length", why="of its origin")]
+    rotation: Annotated[
+        Vec3,
+        Quantity(
+            "angle",
+            why="roll, pitch, yaw about world x, y, z: R = Rz(yaw) Ry(pitch) Rx(roll)",
+            usual="parallel to the world",
+            short="number",
+        ),
+    ] = Field(default=(0.0, 0.0, 0.0), validate_default=True)
 
     @model_validator(mode="after")
     def _within_a_turn(self) -> Home:

@@ -10,7 +10,8 @@ from pydantic import PlainSerializer, PlainValidator, model_validator
 
 from flexapod.errors import InputError
 from flexapod.model.friction import StrokeFriction
-from flexapod.schema.base import Frozen, Measure, NonNegative, Positive, array_of
+from flexapod.schema.base import Key, Quantity, array_of
+from flexapod.schema.table import Table
 from flexapod.typing import Array
 from flexapod.words import text
 
@@ -30,14 +31,14 @@ def _pair(value: object) -> Array:
 Pair = Annotated[Array, PlainValidator(_pair), PlainSerializer(lambda pair: pair.tolist())]
 
 
-class HydraulicLimits(Frozen):
+class HydraulicLimits(Table):
     """What the supply gives: `pressure` [Pa] over that of the return, `flow` [m^3/s] into one cylinder."""
 
-    pressure: Annotated[Positive, Measure("stress")] | None = None
-    flow: Annotated[Positive, Measure("flow")] | None = None
+    pressure: Annotated[float | None, Quantity("stress", above=0, why="of the supply, over that of the return")] = None
+    flow: Annotated[float | None, Quantity("flow", above=0, why="into one cylinder")] = None
 
 
-class HydraulicDrive(Frozen):
+class HydraulicDrive(Table):
     """A double-acting cylinder; the piston's inner end is its head, and the closed valve holds its place.
 
     `bore` of the cylinder and diameter of the `rod` [m]; `double_ended`: the rod leaves at both ends, and both areas
@@ -49,17 +50,28 @@ class HydraulicDrive(Frozen):
 
     holds: ClassVar[bool] = True
     pushes: ClassVar[bool] = False
-    type: Literal["hydraulic"] = "hydraulic"
-    bore: Annotated[Positive, Measure("length")]
-    rod: Annotated[Positive, Measure("length")]
-    stroke: Annotated[Positive, Measure("length")]
-    bottom: Annotated[NonNegative, Measure("length")] | None = None
-    dead_volume: Annotated[Pair, Measure("volume")] = array_of((2,))([0.0, 0.0])
-    bulk_modulus: Annotated[Positive, Measure("stress")]
-    leakage: Annotated[NonNegative, Measure("leakage")] = 0.0
-    double_ended: bool = False
-    friction: StrokeFriction | None = None
-    limits: HydraulicLimits = HydraulicLimits()
+    type: Annotated[Literal["hydraulic"], Key("kind of drive")] = "hydraulic"
+    bore: Annotated[float, Quantity("length", above=0, why="of the hydraulic cylinder")]
+    rod: Annotated[float, Quantity("length", above=0, why="diameter of its rod")]
+    stroke: Annotated[float, Quantity("length", above=0, why="of its piston, from end to end")]
+    bottom: Annotated[
+        float | None,
+        Quantity(
+            "length",
+            least=0,
+            why="where it begins, along the cylinder from the base joint; default: with the leg at stroke.min",
+        ),
+    ] = None
+    dead_volume: Annotated[
+        Pair, Quantity("volume", why="oil beyond the stroke: one volume, or that at the bottom and that at the rod")
+    ] = array_of((2,))([0.0, 0.0])
+    bulk_modulus: Annotated[float, Quantity("stress", above=0, why="of the oil, with its air and hoses")]
+    leakage: Annotated[float, Quantity("leakage", least=0, why="flow past the piston by pressure")] = 0.0
+    double_ended: Annotated[bool, Key("whether the rod leaves at both ends")] = False
+    friction: Annotated[
+        StrokeFriction | None, Key("table: friction of the stroke, of a screw at its nut", usual="none")
+    ] = None
+    limits: Annotated[HydraulicLimits, Key("table: what the drive is made for")] = HydraulicLimits()
 
     @model_validator(mode="after")
     def _rod_in_bore(self) -> HydraulicDrive:

@@ -12,12 +12,13 @@ from flexapod.errors import InputError
 from flexapod.model.friction import JointFriction
 from flexapod.model.rolling import RollingLaw
 from flexapod.schema.axes import within_a_turn
-from flexapod.schema.base import Frozen, Loss, Matrix6, Measure, NonNegative, Number, Positive, Vec3
+from flexapod.schema.base import Key, Loss, Matrix6, Quantity, Vec3
+from flexapod.schema.table import Table
 
 NO_DIRECTION = 1e-9  # length of a vector below which it is none
 
 
-class Joint(Frozen):
+class Joint(Table):
     """A joint at an end of a leg.
 
     `axis` (3,): of a revolute joint its axis, of a universal joint the direction of the axis that is fixed to the base
@@ -41,18 +42,56 @@ class Joint(Frozen):
         "stiffness": ("stiffness", "leg_axes", "stiffness_damping", "stiffness_loss", "rolling")
     }
 
-    axis: Annotated[Vec3, Measure("number")] | None = None
-    bending: Annotated[NonNegative, Measure("rotational stiffness")] | None = None
-    torsion: Annotated[NonNegative, Measure("rotational stiffness")] | None = None
-    stiffness: Annotated[Matrix6, Measure("stiffness", "force", "rotational stiffness")] | None = None
-    damping: Annotated[NonNegative, Measure("rotational damping")] | None = None
-    loss: Loss | None = None
+    axis: Annotated[Vec3 | None, Quantity("number")] = None
+    bending: Annotated[
+        float | None, Quantity("rotational stiffness", least=0, why="spring across the leg", usual="free; of F rigid")
+    ] = None
+    torsion: Annotated[
+        float | None, Quantity("rotational stiffness", least=0, why="spring about the leg", usual="free; of F rigid")
+    ] = None
+    stiffness: Annotated[
+        Matrix6 | None,
+        Quantity(
+            "stiffness",
+            "force",
+            "rotational stiffness",
+            why="springs along the axes: a number, a table, three or six rows",
+            usual="rigid",
+        ),
+    ] = None
+    damping: Annotated[float | None, Quantity("rotational damping", least=0, why="of `bending` and `torsion`")] = None
+    loss: Annotated[
+        Loss | None,
+        Key(
+            "loss factor of all springs of the joint, in place of `damping`; made viscous at the first frequency "
+            "at home"
+        ),
+    ] = None
     leg_axes: bool = False
-    friction: JointFriction | None = None
-    play: Annotated[NonNegative, Measure("length")] | None = None
-    eccentricity: Annotated[NonNegative, Measure("length")] | None = None
-    max_angle: Annotated[Positive, Measure("angle")] | None = None
-    stiffness_damping: Annotated[NonNegative, Measure("damping")] | None = None
+    friction: Annotated[JointFriction | None, Key("table: friction of the joint", usual="none")] = None
+    play: Annotated[
+        float | None,
+        Quantity(
+            "length",
+            least=0,
+            why="free travel along the leg, from one end to the other: for `flexapod.accuracy` and `flexapod.play`",
+            usual="none",
+        ),
+    ] = None
+    eccentricity: Annotated[
+        float | None,
+        Quantity(
+            "length",
+            least=0,
+            why="distance of its centre from the axis of the leg: for `flexapod.accuracy`",
+            usual="none",
+        ),
+    ] = None
+    max_angle: Annotated[
+        float | None,
+        Quantity("angle", above=0, why="largest angle of the leg there from its direction at home", usual="no limit"),
+    ] = None
+    stiffness_damping: Annotated[float | None, Quantity("damping", least=0)] = None
     stiffness_loss: Loss | None = None
     rolling: RollingLaw | None = None
 
@@ -133,11 +172,11 @@ class Joint(Frozen):
         return self.stiffness is not None and self.across_and_along is None
 
 
-class Travel(Frozen):
+class Travel(Table):
     """Allowed positions of a carriage [m, of a crank rad]."""
 
-    min: Annotated[Number, Measure("length", "angle")]
-    max: Annotated[Number, Measure("length", "angle")]
+    min: Annotated[float, Quantity("length", "angle", why="smallest position")]
+    max: Annotated[float, Quantity("length", "angle", why="largest position, above the smallest")]
 
     @model_validator(mode="after")
     def _ordered(self) -> Travel:
@@ -146,7 +185,7 @@ class Travel(Frozen):
         return self
 
 
-class Carriage(Frozen):
+class Carriage(Table):
     """What moves the foot of a leg: a slider along `axis`, or a crank about it.
 
     `axis` (3,), world axes; `arm` (3,) [m], of a crank: from its axis to the base joint at angle 0, world axes;
@@ -161,14 +200,31 @@ class Carriage(Frozen):
     placed: ClassVar[tuple[str, ...]] = ("slider", "crank", "arm", "radius")
 
     kind: Literal["slider", "crank"]
-    axis: Annotated[Vec3, Measure("number")]
-    arm: Annotated[Vec3, Measure("length")] | None = None
-    mass: Annotated[NonNegative, Measure("mass")] = 0.0
-    inertia: Annotated[NonNegative, Measure("inertia")] = 0.0
-    com: Annotated[Number, Measure("length")] | None = None
-    home: Annotated[Number, Measure("length", "angle")] | None = None
-    side: Literal[1, -1] | None = None
-    stroke: Travel | None = None
+    axis: Annotated[Vec3, Quantity("number")]
+    arm: Annotated[
+        Vec3 | None,
+        Quantity(
+            "length", why="from the crank's axis to the base joint at angle 0, world axes", usual="given by radius"
+        ),
+    ] = None
+    mass: Annotated[float, Quantity("mass", least=0, why="of a slider or a crank")] = 0.0
+    inertia: Annotated[float, Quantity("inertia", least=0, why="of a crank, about its axis")] = 0.0
+    com: Annotated[
+        float | None,
+        Quantity(
+            "length", why="centre of mass of a crank, from its axis towards the base joint; behind the axis below 0"
+        ),
+    ] = None
+    home: Annotated[
+        float | None, Quantity("length", "angle", why="position near which it stands at home", usual="0")
+    ] = None
+    side: Annotated[
+        Literal[1, -1] | None,
+        Key(
+            "1: of its two positions at home the larger one; -1: the smaller one", usual="the position nearest to home"
+        ),
+    ] = None
+    stroke: Annotated[Travel | None, Key("table: allowed positions", usual="no limits")] = None
 
     @model_validator(mode="after")
     def _complete(self) -> Carriage:

@@ -7,45 +7,46 @@ from typing import Annotated, ClassVar, Literal
 from pydantic import Field, model_validator
 
 from flexapod.model.motion import Profile, check_times
-from flexapod.schema.base import Frozen, Measure, NonNegative, Number, Positive, Series, Series6, Vec6
+from flexapod.schema.base import Key, Quantity, Series, Series6, Vec6
+from flexapod.schema.table import Table
 
-_AMPLITUDE = Measure("angle", "length", "torque", "force")
+_AMPLITUDE = ("angle", "length", "torque", "force")
 
 
-class RateLaw(Frozen):
+class RateLaw(Table):
     """Constant `rate` [rad/s or m/s] from t = 0 on."""
 
-    law: Literal["rate"] = "rate"
-    rate: Annotated[Number, Measure("angular rate", "velocity")]
+    law: Annotated[Literal["rate"], Key("law over time", usual="rate")] = "rate"
+    rate: Annotated[float, Quantity("angular rate", "velocity", why="rate")]
 
 
-class ProfileLaw(Frozen):
+class ProfileLaw(Table):
     """From 0 to `amplitude` [rad, m, N m or N] in `duration` [s], then constant."""
 
-    law: Profile
-    amplitude: Annotated[Number, _AMPLITUDE]
-    duration: Annotated[Positive, Measure("time")]
+    law: Annotated[Profile, Key("law over time")]
+    amplitude: Annotated[float, Quantity(*_AMPLITUDE)]
+    duration: Annotated[float, Quantity("time", above=0, why="time to get there")]
 
 
-class SpinUpLaw(Frozen):
+class SpinUpLaw(Table):
     """From rest to `rate` [rad/s or m/s] in `duration` [s] with a smooth acceleration, then constant rate."""
 
-    law: Literal["spin-up"] = "spin-up"
-    rate: Annotated[Number, Measure("angular rate", "velocity")]
-    duration: Annotated[Positive, Measure("time")]
+    law: Annotated[Literal["spin-up"], Key("law over time", usual="rate")] = "spin-up"
+    rate: Annotated[float, Quantity("angular rate", "velocity", why="rate")]
+    duration: Annotated[float, Quantity("time", above=0, why="time to get there")]
 
 
-class CsvLaw(Frozen):
+class CsvLaw(Table):
     """A table: `value` (n,) [rad, m, N m or N] at `time` (n,) [s], from 0, read from `file`.
 
     A torque or force is linear between the rows and jumps where two rows stand at one instant; a motion is smooth.
     """
 
     derived: ClassVar[tuple[str, ...]] = ("time", "value")
-    law: Literal["csv"] = "csv"
+    law: Annotated[Literal["csv"], Key("law over time")] = "csv"
     file: str | None = None
-    time: Annotated[Series, Measure("time")]
-    value: Annotated[Series, _AMPLITUDE]
+    time: Annotated[Series, Quantity("time", why="instant of the step")]
+    value: Annotated[Series, Quantity(*_AMPLITUDE)]
 
     @model_validator(mode="after")
     def _table(self) -> CsvLaw:
@@ -53,69 +54,69 @@ class CsvLaw(Frozen):
         return self
 
 
-class ConstantLaw(Frozen):
+class ConstantLaw(Table):
     """A constant `value` [N m or N]."""
 
-    law: Literal["constant"] = "constant"
-    value: Annotated[Number, Measure("torque", "force")]
+    law: Annotated[Literal["constant"], Key("law over time")] = "constant"
+    value: Annotated[float, Quantity("torque", "force")]
 
 
-class SineLaw(Frozen):
+class SineLaw(Table):
     """amplitude [N m or N] times sin(2 pi frequency t + phase); frequency [Hz], phase [rad]."""
 
-    law: Literal["sine"] = "sine"
-    amplitude: Annotated[Number, _AMPLITUDE]
-    frequency: Annotated[Positive, Measure("frequency")]
-    phase: Annotated[Number, Measure("angle")] = 0.0
+    law: Annotated[Literal["sine"], Key("law over time")] = "sine"
+    amplitude: Annotated[float, Quantity(*_AMPLITUDE)]
+    frequency: Annotated[float, Quantity("frequency", above=0, why="frequency")]
+    phase: Annotated[float, Quantity("angle", why="phase at t = 0")] = 0.0
 
 
-class StepLaw(Frozen):
+class StepLaw(Table):
     """Zero before `time` [s], `amplitude` [N m or N] from then on."""
 
-    law: Literal["step"] = "step"
-    amplitude: Annotated[Number, _AMPLITUDE]
-    time: Annotated[NonNegative, Measure("time")] = 0.0
+    law: Annotated[Literal["step"], Key("law over time")] = "step"
+    amplitude: Annotated[float, Quantity(*_AMPLITUDE)]
+    time: Annotated[float, Quantity("time", least=0, why="instant of the step")] = 0.0
 
 
 MotionLaw = Annotated[RateLaw | ProfileLaw | SpinUpLaw | CsvLaw, Field(discriminator="law")]
 LoadLaw = Annotated[ConstantLaw | ProfileLaw | SineLaw | StepLaw | CsvLaw, Field(discriminator="law")]
 
 
-class ConstantWrench(Frozen):
+class ConstantWrench(Table):
     """`value` (6,): Fx Fy Fz [N], Mx My Mz [N m], at the tool, world axes, at all times."""
 
-    law: Literal["constant"] = "constant"
-    value: Annotated[Vec6, Measure("force", "torque")]
+    law: Annotated[Literal["constant"], Key("law over time")] = "constant"
+    value: Annotated[Vec6, Quantity("force", "torque", why="Fx, Fy, Fz, Mx, My, Mz")]
 
 
-class SineWrench(Frozen):
+class SineWrench(Table):
     """amplitude (6,) [N, N m] times sin(2 pi frequency t + phase); frequency [Hz], phase [rad]."""
 
-    law: Literal["sine"] = "sine"
-    amplitude: Annotated[Vec6, Measure("force", "torque")]
-    frequency: Annotated[Positive, Measure("frequency")]
-    phase: Annotated[Number, Measure("angle")] = 0.0
+    law: Annotated[Literal["sine"], Key("law over time")] = "sine"
+    amplitude: Annotated[Vec6, Quantity("force", "torque", why="Fx, Fy, Fz, Mx, My, Mz")]
+    frequency: Annotated[float, Quantity("frequency", above=0, why="frequency")]
+    phase: Annotated[float, Quantity("angle", why="phase at t = 0")] = 0.0
 
 
-class StepWrench(Frozen):
+class StepWrench(Table):
     """Zero before `time` [s], `amplitude` (6,) [N, N m] from then on."""
 
-    law: Literal["step"] = "step"
-    amplitude: Annotated[Vec6, Measure("force", "torque")]
-    time: Annotated[NonNegative, Measure("time")] = 0.0
+    law: Annotated[Literal["step"], Key("law over time")] = "step"
+    amplitude: Annotated[Vec6, Quantity("force", "torque", why="Fx, Fy, Fz, Mx, My, Mz")]
+    time: Annotated[float, Quantity("time", least=0, why="instant of the step")] = 0.0
 
 
-class CsvWrench(Frozen):
+class CsvWrench(Table):
     """A table: `time` (n,) [s], from 0, and `wrench` (n, 6) [N, N m], read from `file`.
 
     The wrench is linear between the rows, jumps where two rows stand at one instant and keeps its last value.
     """
 
     derived: ClassVar[tuple[str, ...]] = ("time", "wrench")
-    law: Literal["csv"] = "csv"
-    file: str | None = None
-    time: Annotated[Series, Measure("time")]
-    wrench: Annotated[Series6, Measure("force", "torque")]
+    law: Annotated[Literal["csv"], Key("law over time")] = "csv"
+    file: Annotated[str | None, Key("CSV file of the wrench")] = None
+    time: Annotated[Series, Quantity("time", why="instant of the step")]
+    wrench: Annotated[Series6, Quantity("force", "torque")]
 
     @model_validator(mode="after")
     def _table(self) -> CsvWrench:
@@ -126,7 +127,7 @@ class CsvWrench(Frozen):
 Wrench = Annotated[ConstantWrench | SineWrench | StepWrench | CsvWrench, Field(discriminator="law")]
 
 
-class Load(Frozen):
+class Load(Table):
     """External load of a robot: `wrench` at the tool, world axes, or none."""
 
-    wrench: Wrench | None = None
+    wrench: Annotated[Wrench | None, Key("Fx, Fy, Fz, Mx, My, Mz, or a table: a law over time")] = None

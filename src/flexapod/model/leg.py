@@ -9,24 +9,27 @@ from pydantic import Field, InstanceOf, SerializeAsAny, model_validator
 from flexapod.elements.element import Element
 from flexapod.errors import InputError
 from flexapod.model.chain import Chain, chain_of
+from flexapod.model.cylinder import Cylinder
 from flexapod.model.damping import BodyDamping, damping_parts
 from flexapod.model.drive import ForceDrive, PrescribedDrive
+from flexapod.model.guide import Guide
 from flexapod.model.hydraulic import HydraulicDrive
 from flexapod.model.joint import Carriage, Joint
-from flexapod.model.piston import Cylinder, Guide, Piston, Strut
+from flexapod.model.piston import Piston, Strut
 from flexapod.model.screw import Drive, ScrewDrive
 from flexapod.model.spring import AxialSpring
-from flexapod.schema.base import Frozen, Measure, NonNegative, Positive, Vec3
+from flexapod.schema.base import Key, Quantity, Vec3
+from flexapod.schema.table import Table
 from flexapod.words import number, text
 
 NOTHING = Cylinder(mass=0.0, mouth=0.0)  # in place of the cylinder that a strut does not have
 
 
-class Stroke(Frozen):
+class Stroke(Table):
     """Allowed joint-to-joint length [m]."""
 
-    min: Annotated[NonNegative, Measure("length")]
-    max: Annotated[Positive, Measure("length")]
+    min: Annotated[float, Quantity("length", least=0, why="shortest length")]
+    max: Annotated[float, Quantity("length", above=0, why="longest length, above the shortest")]
 
     @model_validator(mode="after")
     def _ordered(self) -> Stroke:
@@ -41,7 +44,7 @@ class Stroke(Frozen):
         return self
 
 
-class Leg(Frozen):
+class Leg(Table):
     """A leg between base and platform: a chain of joints, of letters "UPS" unless others are given (`model.chain`).
 
     `cylinder` and `piston` of a leg with a stroke, or `strut` of fixed length (then `piston` is the strut, `cylinder`
@@ -56,20 +59,24 @@ class Leg(Frozen):
     derived: ClassVar[tuple[str, ...]] = ("elements",)
     placed: ClassVar[tuple[str, ...]] = ("base_joint", "platform_joint", "carriage", "u_axis", "count", "chain")
 
-    chain: str = "UPS"
-    passive: bool = False
-    cylinder: Cylinder = NOTHING
-    piston: Piston
-    strut: Strut | None = None
-    guide: Guide | None = None
-    carriage: Carriage | None = None
-    base_joint: Joint = Joint()
-    platform_joint: Joint = Joint()
-    springs: tuple[AxialSpring, ...] = ()
-    stroke: Stroke | None = None
-    damping: BodyDamping = 0.0
-    drive: Drive = PrescribedDrive()
-    axial_modes: int = Field(default=2, strict=True, ge=0, le=4)
+    chain: Annotated[str, Key("letters of the leg, as `robot.type` has them", usual="that of robot.type")] = "UPS"
+    passive: Annotated[
+        bool, Key("nothing drives it", usual="false; required where the leg is fixed to the platform")
+    ] = False
+    cylinder: Annotated[Cylinder, Key("table: the lower part")] = NOTHING
+    piston: Annotated[Piston, Key("table: the upper part")]
+    strut: Annotated[Strut | None, Key("table: a rod of fixed length in place of cylinder and piston")] = None
+    guide: Annotated[Guide | None, Key("table: two bushings that hold the piston across")] = None
+    carriage: Annotated[Carriage | None, Key("table: what moves the foot")] = None
+    base_joint: Annotated[Joint, Key("table: the joint at the base", usual="free as its letter says")] = Joint()
+    platform_joint: Annotated[Joint, Key("table: the joint at the platform", usual="free as its letter says")] = Joint()
+    springs: Annotated[tuple[AxialSpring, ...], Key("table: springs along the leg, by name")] = ()
+    stroke: Annotated[Stroke | None, Key("table: limits of the length", usual="no limits")] = None
+    damping: Annotated[BodyDamping, Key("damping ratio of the piston's modes, or a table")] = 0.0
+    drive: Annotated[Drive, Key("table: what moves the piston", usual="prescribed")] = PrescribedDrive()
+    axial_modes: Annotated[int, Key("shapes of the piston's stretch, the static one first")] = Field(
+        default=2, strict=True, ge=0, le=4
+    )
     elements: tuple[SerializeAsAny[InstanceOf[Element]], ...] = ()
 
     def __init__(self, **fields: Any) -> None:

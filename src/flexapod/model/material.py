@@ -4,30 +4,33 @@ from __future__ import annotations
 
 import math
 from types import MappingProxyType
-from typing import Annotated
+from typing import Annotated, ClassVar
 
 from pydantic import Field, model_validator
 
 from flexapod.errors import InputError
-from flexapod.schema.base import Frozen, Measure, Number, Positive
+from flexapod.schema.base import Quantity
+from flexapod.schema.table import Table
 
 POISSON = 0.3  # where no other is given
 #: Keys of a table of which a material is made.
 SPELLS = {key: ("material",) for key in ("E", "density", "yield_stress", "poisson", "expansion")}
 
 
-class Material(Frozen):
+class Material(Table):
     """Material of a beam.
 
     `E` [Pa], `density` [kg/m^3], `yield_stress` [Pa], `poisson`'s ratio and thermal `expansion` [1/K]; None: not known.
     """
 
+    silent: ClassVar[tuple[str, ...]] = ("poisson",)
+
     name: str
-    E: Annotated[Positive, Measure("stress")]
-    density: Annotated[Positive, Measure("density")]
-    yield_stress: Annotated[Positive, Measure("stress")] | None = None
+    E: Annotated[float, Quantity("stress", above=0)]
+    density: Annotated[float, Quantity("density", above=0)]
+    yield_stress: Annotated[float | None, Quantity("stress", above=0)] = None
     poisson: float = Field(default=POISSON, strict=True, ge=-0.5, le=0.5)
-    expansion: Annotated[Number, Measure("expansion")] | None = None
+    expansion: Annotated[float | None, Quantity("expansion")] = None
 
 
 # E and density of steel: Table 3 of the paper. The others are handbook values at room temperature
@@ -45,11 +48,11 @@ _TABLE = (
 MATERIALS = MappingProxyType({material.name: material for material in _TABLE})
 
 
-class Tube(Frozen):
+class Tube(Table):
     """Round section, full or hollow: outer and inner diameter [m]."""
 
-    diameter: Annotated[Positive, Measure("length")]
-    inner_diameter: Annotated[Positive, Measure("length")] | None = None
+    diameter: Annotated[float, Quantity("length", above=0)]
+    inner_diameter: Annotated[float | None, Quantity("length", above=0)] = None
 
     @model_validator(mode="after")
     def _hollow_inside(self) -> Tube:
@@ -85,11 +88,11 @@ class Tube(Frozen):
         return 6 * (1 + poisson) * m / ((7 + 6 * poisson) * m + (20 + 12 * poisson) * hollow**2)  # (T8.19)
 
 
-class Rectangle(Frozen):
+class Rectangle(Table):
     """Rectangular section: width across and height along the direction of bending [m]."""
 
-    width: Annotated[Positive, Measure("length")]
-    height: Annotated[Positive, Measure("length")]
+    width: Annotated[float, Quantity("length", above=0, why="across the plane of bending")]
+    height: Annotated[float, Quantity("length", above=0, why="in the plane of bending")]
 
     @property
     def area(self) -> float:
@@ -109,3 +112,13 @@ class Rectangle(Frozen):
     def cowper(self, poisson: float) -> float:
         """Shear coefficient (Cowper 1966)."""
         return 10 * (1 + poisson) / (12 + 11 * poisson)  # (T8.19)
+
+
+def spelled(material: Material) -> dict[str, object]:
+    """Its name and what differs from that material, where it is one; else its values."""
+    own = {name: getattr(material, name) for name in ("yield_stress", "poisson", "expansion")}
+    known = MATERIALS.get(material.name)
+    if known is None or None in own.values() or known.replace(**own) != material:
+        return {name: value for name, value in material.told().items() if name != "name"}
+    named: dict[str, object] = {"material": known.name}
+    return named | {name: value for name, value in own.items() if value != getattr(known, name)}

@@ -9,8 +9,9 @@ import numpy as np
 from pydantic import AfterValidator, Field, model_validator
 
 from flexapod.errors import InputError
-from flexapod.schema.base import Frozen, Measure, NonNegative, Number, Positive, Series, Series6, Vec3
+from flexapod.schema.base import Key, Quantity, Series, Series6, Vec3
 from flexapod.schema.csv_tables import wrong_instant
+from flexapod.schema.table import Table
 from flexapod.typing import Array
 from flexapod.units import DIMENSIONS
 from flexapod.words import number, text
@@ -32,20 +33,32 @@ def _distinct(axes: tuple[str, ...]) -> tuple[str, ...]:
 Independent = Annotated[tuple[Axis, ...], AfterValidator(_distinct)]
 
 
-class AxisMotion(Frozen):
+class AxisMotion(Table):
     """From home to `amplitude` [m or rad] along or about one world axis, in `duration` [s], then `hold` [s].
 
     Turns are about `pivot` (3,) [m], a point given in the platform frame.
     """
 
     placed: ClassVar[tuple[str, ...]] = ("pivot",)
-    type: Axis
-    amplitude: Annotated[Number, Measure("length", "angle")]
-    duration: Annotated[Positive, Measure("time")]
-    hold: Annotated[NonNegative, Measure("time")] = 0.0
-    profile: Profile = "quintic"
-    pivot: Annotated[Vec3, Measure("length")] = Field(default=_ORIGIN, validate_default=True)
-    independent: Independent | None = None
+    type: Annotated[Axis, Key("kind of motion: an axis, several, points, a table")]
+    amplitude: Annotated[
+        float,
+        Quantity(
+            "length",
+            "angle",
+            why="pose reached, in m for surge, sway, heave and in rad for roll, pitch, yaw (up to half a turn)",
+        ),
+    ]
+    duration: Annotated[float, Quantity("time", above=0, why="time to get there")]
+    hold: Annotated[float, Quantity("time", least=0, why="rest after it")] = 0.0
+    profile: Annotated[Profile, Key("law of the way over time")] = "quintic"
+    pivot: Annotated[Vec3, Quantity("length", why="point that turns are about, in the platform frame")] = Field(
+        default=_ORIGIN, validate_default=True
+    )
+    independent: Annotated[
+        Independent | None,
+        Key("axes that are commanded, of a robot with fewer than six motions", usual="all that the robot has"),
+    ] = None
 
     def _shown(self) -> dict[str, str]:
         return _in_words(self.target, self.duration, self.hold, self.profile)
@@ -71,17 +84,24 @@ class AxisMotion(Frozen):
         return (self.duration,) if self.profile == "linear" else ()
 
 
-class CombinedMotion(Frozen):
+class CombinedMotion(Table):
     """Several axes at once with one profile: `amplitudes` by axis name [m or rad]."""
 
     placed: ClassVar[tuple[str, ...]] = ("pivot",)
-    type: Literal["combined"] = "combined"
-    amplitudes: dict[Axis, Annotated[Number, Measure("length", "angle")]]
-    duration: Annotated[Positive, Measure("time")]
-    hold: Annotated[NonNegative, Measure("time")] = 0.0
-    profile: Profile = "quintic"
-    pivot: Annotated[Vec3, Measure("length")] = Field(default=_ORIGIN, validate_default=True)
-    independent: Independent | None = None
+    type: Annotated[Literal["combined"], Key("kind of motion: an axis, several, points, a table")] = "combined"
+    amplitudes: Annotated[
+        dict[Axis, Annotated[float, Quantity("length", "angle")]], Key("table: poses reached, by axis")
+    ]
+    duration: Annotated[float, Quantity("time", above=0, why="time to get there")]
+    hold: Annotated[float, Quantity("time", least=0, why="rest after it")] = 0.0
+    profile: Annotated[Profile, Key("law of the way over time")] = "quintic"
+    pivot: Annotated[Vec3, Quantity("length", why="point that turns are about, in the platform frame")] = Field(
+        default=_ORIGIN, validate_default=True
+    )
+    independent: Annotated[
+        Independent | None,
+        Key("axes that are commanded, of a robot with fewer than six motions", usual="all that the robot has"),
+    ] = None
 
     def _shown(self) -> dict[str, str]:
         return _in_words(self.target, self.duration, self.hold, self.profile)
@@ -109,16 +129,16 @@ class CombinedMotion(Frozen):
         return (self.duration,) if self.profile == "linear" else ()
 
 
-class Waypoint(Frozen):
+class Waypoint(Table):
     """A pose relative to home at `time` [s]: surge, sway, heave [m], roll, pitch, yaw [rad]."""
 
-    time: Annotated[NonNegative, Measure("time")]
-    surge: Annotated[Number, Measure("length")] = 0.0
-    sway: Annotated[Number, Measure("length")] = 0.0
-    heave: Annotated[Number, Measure("length")] = 0.0
-    roll: Annotated[Number, Measure("angle")] = 0.0
-    pitch: Annotated[Number, Measure("angle")] = 0.0
-    yaw: Annotated[Number, Measure("angle")] = 0.0
+    time: Annotated[float, Quantity("time", least=0, why="instant, above that of the point before")]
+    surge: Annotated[float, Quantity("length", why="along x")] = 0.0
+    sway: Annotated[float, Quantity("length", why="along y")] = 0.0
+    heave: Annotated[float, Quantity("length", why="along z")] = 0.0
+    roll: Annotated[float, Quantity("angle", why="about x")] = 0.0
+    pitch: Annotated[float, Quantity("angle", why="about y")] = 0.0
+    yaw: Annotated[float, Quantity("angle", why="about z")] = 0.0
 
     @model_validator(mode="after")
     def _angles(self) -> Waypoint:
@@ -132,16 +152,21 @@ class Waypoint(Frozen):
         return np.array([getattr(self, axis) for axis in AXES])
 
 
-class WaypointMotion(Frozen):
+class WaypointMotion(Table):
     """From point to point, at rest at each; from home at t = 0 if the first point is later."""
 
     placed: ClassVar[tuple[str, ...]] = ("pivot",)
-    type: Literal["waypoints"] = "waypoints"
-    points: tuple[Waypoint, ...]
-    hold: Annotated[NonNegative, Measure("time")] = 0.0
-    profile: Profile = "quintic"
-    pivot: Annotated[Vec3, Measure("length")] = Field(default=_ORIGIN, validate_default=True)
-    independent: Independent | None = None
+    type: Annotated[Literal["waypoints"], Key("kind of motion: an axis, several, points, a table")] = "waypoints"
+    points: Annotated[tuple[Waypoint, ...], Key("list of tables: the poses")]
+    hold: Annotated[float, Quantity("time", least=0, why="rest after it")] = 0.0
+    profile: Annotated[Profile, Key("law of the way over time")] = "quintic"
+    pivot: Annotated[Vec3, Quantity("length", why="point that turns are about, in the platform frame")] = Field(
+        default=_ORIGIN, validate_default=True
+    )
+    independent: Annotated[
+        Independent | None,
+        Key("axes that are commanded, of a robot with fewer than six motions", usual="all that the robot has"),
+    ] = None
 
     def _shown(self) -> dict[str, str]:
         return {"to": f"{len(self.points)} points", "in": f"{number(self.end_time, 4)} s", "profile": self.profile}
@@ -183,7 +208,7 @@ class WaypointMotion(Frozen):
         return tuple(self.times[1:].tolist()) if self.profile == "linear" else ()
 
 
-class CsvMotion(Frozen):
+class CsvMotion(Table):
     """A table of poses: `time` (n,) [s], from 0, and `pose` (n, 6) relative to home, read from `file`.
 
     Columns of `pose`: surge, sway, heave [m], roll, pitch, yaw [rad].
@@ -191,13 +216,18 @@ class CsvMotion(Frozen):
 
     derived: ClassVar[tuple[str, ...]] = ("time", "pose")
     placed: ClassVar[tuple[str, ...]] = ("pivot",)
-    type: Literal["csv"] = "csv"
-    file: str | None = None
-    time: Annotated[Series, Measure("time")]
-    pose: Annotated[Series6, Measure("length", "angle")]
-    hold: Annotated[NonNegative, Measure("time")] = 0.0
-    pivot: Annotated[Vec3, Measure("length")] = Field(default=_ORIGIN, validate_default=True)
-    independent: Independent | None = None
+    type: Annotated[Literal["csv"], Key("kind of motion: an axis, several, points, a table")] = "csv"
+    file: Annotated[str | None, Key("CSV file of the poses")] = None
+    time: Annotated[Series, Quantity("time")]
+    pose: Annotated[Series6, Quantity("length", "angle")]
+    hold: Annotated[float, Quantity("time", least=0, why="rest after it")] = 0.0
+    pivot: Annotated[Vec3, Quantity("length", why="point that turns are about, in the platform frame")] = Field(
+        default=_ORIGIN, validate_default=True
+    )
+    independent: Annotated[
+        Independent | None,
+        Key("axes that are commanded, of a robot with fewer than six motions", usual="all that the robot has"),
+    ] = None
 
     def _shown(self) -> dict[str, str]:
         return {"table": f"{self.file or 'given'}, {len(self.time)} rows", "in": f"{number(self.end_time, 4)} s"}

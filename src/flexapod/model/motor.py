@@ -8,34 +8,36 @@ from pydantic import Field, model_validator
 
 from flexapod.errors import InputError
 from flexapod.model.drive import Feedback
-from flexapod.schema.base import Frozen, Measure, NonNegative, Positive, Series, array_of
+from flexapod.schema.base import Key, Quantity, Series, array_of
+from flexapod.schema.table import Table
 from flexapod.words import number
 
 __all__ = ["HARMONICS", "Brake", "Encoder", "Limits", "Loop", "Motor", "Ripple", "Rotor", "summing"]
 
 HARMONICS = 4  # of a ripple, at most
 
-Force = Annotated[Positive, Measure("force")] | None
-Torque = Annotated[Positive, Measure("torque")] | None
 
-
-class Rotor(Frozen):
+class Rotor(Table):
     """What turns with the motor: `inertia` [kg m^2] at the motor, which turns `ratio` times as fast as the screw."""
 
-    inertia: Annotated[NonNegative, Measure("inertia")] = 0.0
-    ratio: Annotated[Positive, Measure("number")] = 1.0
+    inertia: Annotated[float, Quantity("inertia", least=0, why="at the motor, with brake and coupling")] = 0.0
+    ratio: Annotated[float, Quantity("number", above=0, why="turns of the motor in a turn of the screw")] = 1.0
 
 
-class Ripple(Frozen):
+class Ripple(Table):
     """What a motor's torque changes by as it turns: cogging and ripple, `torque` [N m] times `harmonics`.
 
     `per_turn`: how often the first of these returns in a turn of the motor; `harmonics`: sizes of the first one and of
     its multiples, up to four.
     """
 
-    torque: Annotated[Positive, Measure("torque")]
-    per_turn: Annotated[int, Field(strict=True, ge=1, le=1000)]
-    harmonics: Annotated[Series, Measure("number")] = array_of((None,))([1.0])
+    torque: Annotated[float, Quantity("torque", above=0, why="amplitude, times harmonics")]
+    per_turn: Annotated[
+        int, Field(strict=True, ge=1, le=1000), Key("how often the first harmonic returns in a turn of the motor")
+    ]
+    harmonics: Annotated[Series, Quantity("number", why="sizes of the first one and its multiples, at most four")] = (
+        array_of((None,))([1.0])
+    )
 
     @model_validator(mode="after")
     def _few(self) -> Ripple:
@@ -46,24 +48,30 @@ class Ripple(Frozen):
         return self
 
 
-class Motor(Frozen):
+class Motor(Table):
     """The motor: its `torque_constant` [N m/A], the `bandwidth` [Hz] of its current's loop, and its `ripple`."""
 
-    torque_constant: Annotated[Positive, Measure("torque constant")] | None = None
-    bandwidth: Annotated[Positive, Measure("frequency")] | None = None
-    ripple: Ripple | None = None
+    torque_constant: Annotated[float | None, Quantity("torque constant", above=0, why="torque by current")] = None
+    bandwidth: Annotated[
+        float | None,
+        Quantity("frequency", above=0, why="of the current's loop: the torque is that of a lag of first order"),
+    ] = None
+    ripple: Annotated[Ripple | None, Key("table: a torque that returns with its turns")] = None
 
 
-class Limits(Frozen):
+class Limits(Table):
     """What the drive is made for.
 
     `force` [N] on the screw; `speed` [rad/s], `torque` and `rms_torque` [N m] of the motor.
     """
 
-    force: Force = None
-    speed: Annotated[Positive, Measure("angular rate")] | None = None
-    torque: Torque = None
-    rms_torque: Torque = None
+    force: Annotated[float | None, Quantity("force", above=0, why="thrust on screw and bearing")] = None
+    speed: Annotated[float | None, Quantity("angular rate", above=0, why="of the motor")] = None
+    torque: Annotated[float | None, Quantity("torque", above=0, why="of the motor, for a moment")] = None
+    rms_torque: Annotated[
+        float | None,
+        Quantity("torque", above=0, why="of the motor, without end: root mean square over the study's duration"),
+    ] = None
 
     @model_validator(mode="after")
     def _ordered(self) -> Limits:
@@ -78,28 +86,34 @@ class Limits(Frozen):
         return self
 
 
-class Brake(Frozen):
+class Brake(Table):
     """A brake at the motor: the `torque` [N m] that it holds."""
 
-    torque: Annotated[Positive, Measure("torque")]
+    torque: Annotated[float, Quantity("torque", above=0, why="that it holds")]
 
 
-class Encoder(Frozen):
+class Encoder(Table):
     """Where the position is measured: the motor's angle, the stroke, or the distance of both joints of the leg.
 
     `resolution`: what it tells apart [m], of the motor's angle [rad]. `rate` "rotor": a loop about another place takes
     the rate, which its damping acts on, from the motor's angle.
     """
 
-    at: Literal["rotor", "stroke", "joint-to-joint"] = "rotor"
-    resolution: Annotated[Positive, Measure("length", "angle")] | None = None
-    rate: Literal["same", "rotor"] = "same"
+    at: Annotated[Literal["rotor", "stroke", "joint-to-joint"], Key("where")] = "rotor"
+    resolution: Annotated[
+        float | None,
+        Quantity("length", "angle", above=0, why="what it tells apart: a length, at the rotor an angle of the motor"),
+    ] = None
+    rate: Annotated[
+        Literal["same", "rotor"],
+        Key("what the damping of a loop about another place acts on: the rate there, or the rotor's"),
+    ] = "same"
 
 
 class Loop(Feedback):
     """A loop about what the encoder measures, that also sums its error: gain of the `integral` [N m/(rad s)]."""
 
-    integral: Annotated[NonNegative, Measure("integral gain")] = 0.0
+    integral: Annotated[float, Quantity("integral gain", least=0, why="torque by the error summed over time")] = 0.0
 
 
 def summing(loop: object) -> object:

@@ -10,7 +10,8 @@ from pydantic import Field, model_validator
 from flexapod.errors import InputError
 from flexapod.model.motion import check_times
 from flexapod.model.spring import check_lossy
-from flexapod.schema.base import Frozen, Loss, Matrix3, Matrix6, Measure, NonNegative, Series, Series6, Vec3
+from flexapod.schema.base import Key, Loss, Matrix3, Matrix6, Quantity, Series, Series6, Vec3
+from flexapod.schema.table import Table
 
 __all__ = ["BaseMotion", "Mount"]
 
@@ -18,7 +19,7 @@ ORIGIN = np.zeros(3)
 LEVEL = 1e-9  # of the largest number of a matrix, by which it may miss being one of a spring
 
 
-class Mount(Frozen):
+class Mount(Table):
     """Springs between a plate and what it stands on, along and about the axes through a point.
 
     `at` (3,) [m]: of the base from the origin of the world, of the platform from that of the platform frame; there is
@@ -29,12 +30,19 @@ class Mount(Frozen):
 
     placed: ClassVar[tuple[str, ...]] = ("at",)
 
-    at: Annotated[Vec3, Measure("length")] = Field(default=ORIGIN, validate_default=True)
-    stiffness: Annotated[Matrix6, Measure("stiffness", "force", "rotational stiffness")]
-    damping: Annotated[Matrix6, Measure("damping", "rotational damping")] | None = None
-    loss: Loss | None = None
-    mass: Annotated[NonNegative, Measure("mass")] = 0.0
-    inertia: Annotated[Matrix3, Measure("inertia")] = Field(default=np.zeros((3, 3)), validate_default=True)
+    at: Annotated[Vec3, Quantity("length")] = Field(default=ORIGIN, validate_default=True)
+    stiffness: Annotated[Matrix6, Quantity("stiffness", "force", "rotational stiffness")]
+    damping: Annotated[
+        Matrix6 | None,
+        Quantity("damping", "rotational damping", why="dampers beside the springs, likewise", usual="none"),
+    ] = None
+    loss: Annotated[
+        Loss | None, Key("loss factor, in place of damping; made viscous at the first frequency at home", usual="none")
+    ] = None
+    mass: Annotated[float, Quantity("mass", least=0)] = 0.0
+    inertia: Annotated[
+        Matrix3, Quantity("inertia", why="of that plate about `at`: three numbers, or three rows", usual="none")
+    ] = Field(default=np.zeros((3, 3)), validate_default=True)
 
     @model_validator(mode="after")
     def _sensible(self) -> Mount:
@@ -70,7 +78,7 @@ def _of_a_spring(matrix: Matrix6, key: str, least: float, words: str) -> None:
         )
 
 
-class BaseMotion(Frozen):
+class BaseMotion(Table):
     """How the base, or the floor under its mount, is moved from t = 0 on: a table from `file`.
 
     `time` (n,) [s], from 0; `values` (n, 6): along x, y, z of the world and roll, pitch, yaw about them through the
@@ -80,11 +88,13 @@ class BaseMotion(Frozen):
     derived: ClassVar[tuple[str, ...]] = ("time", "values")
     placed: ClassVar[tuple[str, ...]] = ("at",)
 
-    file: str | None = None
-    of: Literal["acceleration", "displacement"] = "acceleration"
-    at: Annotated[Vec3, Measure("length")] = Field(default=ORIGIN, validate_default=True)
-    time: Annotated[Series, Measure("time")]
-    values: Annotated[Series6, Measure("acceleration", "length", "angle")]
+    file: Annotated[str | None, Key("CSV file over time, relative to this file")] = None
+    of: Annotated[Literal["acceleration", "displacement"], Key("what the table holds")] = "acceleration"
+    at: Annotated[Vec3, Quantity("length", why="point about which roll, pitch and yaw turn the base, world axes")] = (
+        Field(default=ORIGIN, validate_default=True)
+    )
+    time: Annotated[Series, Quantity("time")]
+    values: Annotated[Series6, Quantity("acceleration", "length", "angle")]
 
     @model_validator(mode="after")
     def _table(self) -> BaseMotion:

@@ -16,6 +16,7 @@ from flexapod.model.fields import Field, Notes, listened
 from flexapod.model.material import MATERIALS
 from flexapod.model.read_disturbance import FLOOR, FORCE_NOISE, WRENCH_NOISE
 from flexapod.model.read_mount import BASE_ACCELERATION
+from flexapod.schema.columns import Column
 from flexapod.schema.csv_tables import POSE, WRENCH, forces, header
 from flexapod.schema.reference import Entry, plain_path, reference
 from flexapod.units import COMMON_UNITS, DIMENSIONS
@@ -116,9 +117,9 @@ def _rows(entry: Entry, folder: Path) -> Iterator[Row]:
     if error is not None:
         raise ValueError(f"the example of {entry.table} {entry.title!r} in keys.toml is refused: {error}")
     fields = {f.name: f for f in notes.fields.values() if plain_path(f.table) == entry.table}
-    words = reference().words.get(entry.table, {})
+    words = words_of(notes, entry.table)
     for name in sorted({*fields, *entry.data} - set(words)):
-        raise ValueError(f'{entry.table}.{name} has no words: add them to [words."{entry.table}"] in keys.toml')
+        raise ValueError(f"{entry.table}.{name} has no words: add them to the field of its class, as Key or Quantity")
     for name in (name for name in words if name in fields or name in entry.data):
         field = fields.get(name)
         yield Row(
@@ -128,6 +129,16 @@ def _rows(entry: Entry, folder: Path) -> Iterator[Row]:
             default=_default(entry, name, data, folder, notes),
             allowed="" if field is None else ", ".join(field.choices or ()) or field.bounds.words,
         )
+
+
+def words_of(notes: Notes, table: str) -> dict[str, str]:
+    """What the keys of a table are, in words: of the classes that it fills, and of keys that are no fields."""
+    columns = _columns(notes, table)
+    return {name: column.why for name, column in columns.items() if column.why} | dict(reference().words.get(table, {}))
+
+
+def _columns(notes: Notes, table: str) -> dict[str, Column]:
+    return {name: x for path, found in notes.columns.items() if plain_path(path) == table for name, x in found.items()}
 
 
 def _unit(words: str, field: Field | None) -> str:
@@ -149,7 +160,8 @@ def _default(entry: Entry, name: str, data: dict[str, Any], folder: Path, notes:
         if error is not None and error.what == "is missing":
             return "required"
         notes = notes if error is not None else less
-    if (words := reference().defaults.get(key)) is not None:
+    column = _columns(notes, entry.table).get(name)
+    if words := reference().defaults.get(key) or (column.usual if column else ""):
         return words
     found = [f for f in notes.fields.values() if plain_path(f.key) == key]
     if error is not None:  # refused without it for another reason: what the model takes, if anything

@@ -8,22 +8,36 @@ import numpy as np
 from pydantic import field_validator, model_validator
 
 from flexapod.errors import InputError
-from flexapod.schema.base import Frozen, Matrix3, Measure, Positive, Vec3
+from flexapod.schema.base import Matrix3, Quantity, Vec3
+from flexapod.schema.table import Table
 from flexapod.typing import Array
 from flexapod.words import number
 
 
-class Payload(Frozen):
+class Payload(Table):
     """Platform and everything on it, as one rigid body.
 
     `mass` [kg]; `inertia` (3, 3) [kg m^2] about the centre of mass in platform axes, products with tensor sign;
     `com` and `tool` (3,) [m] from the platform frame's origin in platform axes (`tool` defaults to `com`).
     """
 
-    mass: Annotated[Positive, Measure("mass")]
-    inertia: Annotated[Matrix3, Measure("inertia")]
-    com: Annotated[Vec3, Measure("length")]
-    tool: Annotated[Vec3, Measure("length")]
+    mass: Annotated[float, Quantity("mass", above=0, why="mass, the platform included")]
+    inertia: Annotated[
+        Matrix3,
+        Quantity(
+            "inertia",
+            why="principal moments, or three rows, about the centre of mass in platform axes; a body's: "
+            "positive, none above the sum of the others",
+            short="number",
+        ),
+    ]
+    com: Annotated[Vec3, Quantity("length", why="centre of mass, from the platform frame's origin")]
+    tool: Annotated[
+        Vec3,
+        Quantity(
+            "length", why="the point you care about, from the platform frame's origin", usual="the centre of mass"
+        ),
+    ]
 
     def __init__(self, **fields: object) -> None:
         if fields.get("tool") is None and "com" in fields:

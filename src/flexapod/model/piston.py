@@ -1,135 +1,21 @@
-"""Bodies of a leg: cylinder, piston, strut."""
+"""What bends in a leg: its piston, or a strut in its place."""
 
 from __future__ import annotations
 
-from collections.abc import Mapping, Sequence
+from collections.abc import Sequence
 from typing import Annotated, ClassVar, Self
 
 from pydantic import Field, model_validator
 
 from flexapod.errors import InputError
-from flexapod.model.material import POISSON, SPELLS, Material, Rectangle, Tube
+from flexapod.model.cylinder import check_axial
+from flexapod.model.material import POISSON, Material, Rectangle, Tube
 from flexapod.model.sections import SHARES, PistonSection, Step
-from flexapod.model.spring import check_lossy
-from flexapod.schema.base import Frozen, Loss, Measure, NonNegative, Number, Positive
-
-SAME = 1e-9  # relative; rounding leaves less
+from flexapod.schema.base import Key, Quantity
+from flexapod.schema.table import Table
 
 
-class Mounted(Frozen):
-    """A body on a cylinder: `mass` [kg], `com` [m] from the base joint, transverse `inertia` [kg m^2] about it."""
-
-    mass: Annotated[NonNegative, Measure("mass")]
-    com: Annotated[Number, Measure("length")] = 0.0
-    inertia: Annotated[NonNegative, Measure("inertia")] = 0.0
-
-
-class Cylinder(Frozen):
-    """The lower part of a leg, rigid unless its section is known.
-
-    `mass` [kg]; `com` [m], centre of mass from the universal joint along the axis; `inertia` [kg m^2], transverse,
-    about that centre; `mouth` [m], where the piston comes out, from the universal joint; `axial_inertia` [kg m^2].
-    A tube of `diameter`, `inner_diameter` [m] and `material` from the joint to the mouth bends and stretches; with
-    what is mounted on it, `body`, it has the masses above.
-    """
-
-    spells: ClassVar[Mapping[str, tuple[str, ...]]] = SPELLS
-
-    mass: Annotated[NonNegative, Measure("mass")]
-    com: Annotated[Number, Measure("length")] = 0.0
-    inertia: Annotated[NonNegative, Measure("inertia")] = 0.0
-    mouth: Annotated[NonNegative, Measure("length")]
-    axial_inertia: Annotated[NonNegative, Measure("inertia")] = 0.0
-    diameter: Annotated[Positive, Measure("length")] | None = None
-    inner_diameter: Annotated[Positive, Measure("length")] | None = None
-    material: Material | None = None
-    body: Mounted | None = None
-
-    @model_validator(mode="after")
-    def _real_body(self) -> Cylinder:
-        _check_axial(self.axial_inertia, self.inertia, "inertia")
-        if (self.diameter is None) != (self.material is None) or (self.body is not None and self.diameter is None):
-            missing = "diameter" if self.diameter is None else "material"
-            raise InputError("is missing", key=missing, next_step=f"Add {missing}, or mass, com and inertia alone")
-        if self.diameter is not None and self.diameter >= self.mouth:
-            raise InputError(
-                "makes the cylinder wider than long: it is not a beam",
-                key="diameter",
-                value=self.diameter,
-                allowed=f"below its length of {self.mouth:g} m, from the base joint to the mouth",
-                next_step="Leave the section out for a rigid cylinder",
-            )
-        if self.section is not None and self.material is not None:
-            found = _tube_masses(self.mouth, self.section, self.material, self.body)
-            for key, value in found.items():
-                if abs(getattr(self, key) - value) > SAME * abs(value):
-                    raise InputError(
-                        "is not that of the section, with what is mounted on it",
-                        key=key,
-                        value=getattr(self, key),
-                        allowed=f"{value:g}",
-                        next_step="Make it by Cylinder.tube(mouth=, section=, material=, body=)",
-                    )
-        return self
-
-    @classmethod
-    def tube(cls, *, mouth: float, section: Tube, material: Material, body: Mounted | None = None) -> Cylinder:
-        """A cylinder that bends and stretches: its masses follow from section, material and what is mounted on it."""
-        mouth = cls(mass=0.0, mouth=mouth).mouth  # within its bounds: it is squared here
-        return cls(
-            **_tube_masses(mouth, section, material, body),
-            mouth=mouth,
-            diameter=section.diameter,
-            inner_diameter=section.inner_diameter,
-            material=material,
-            body=body,
-        )
-
-    @property
-    def section(self) -> Tube | None:
-        """Of one that bends."""
-        return None if self.diameter is None else Tube(diameter=self.diameter, inner_diameter=self.inner_diameter)
-
-    @property
-    def beam(self) -> tuple[float, float, float]:
-        """EI [N m^2], EA [N], rhoA [kg/m] of one that bends; zeros of a rigid one."""
-        section, material = self.section, self.material
-        if section is None or material is None:
-            return 0.0, 0.0, 0.0
-        return material.E * section.second_moment, material.E * section.area, material.density * section.area
-
-
-def _tube_masses(mouth: float, section: Tube, material: Material, body: Mounted | None) -> dict[str, float]:
-    """Mass, its centre and inertias of a tube and what is mounted on it, Eq. (T25.13)."""
-    on = body or Mounted(mass=0.0)
-    own = material.density * section.area * mouth
-    mass = own + on.mass
-    com = (own * mouth / 2 + on.mass * on.com) / mass
-    about = section.second_moment / section.area
-    inertia = own * (mouth**2 / 12 + about + (mouth / 2 - com) ** 2) + on.inertia + on.mass * (on.com - com) ** 2
-    return {"mass": mass, "com": com, "inertia": inertia, "axial_inertia": 2 * own * about}
-
-
-class Guide(Frozen):
-    """Two bushings in which a piston slides: in the cylinder's mouth (`gland`), on the piston's inner end (`head`).
-
-    Stiffness [N/m] of each across the leg, with a damper [N s/m] or a loss factor for both; `clearance` [m]: the free
-    travel across, of each.
-    """
-
-    gland: Annotated[Positive, Measure("stiffness")]
-    head: Annotated[Positive, Measure("stiffness")]
-    clearance: Annotated[NonNegative, Measure("length")] | None = None
-    damping: Annotated[NonNegative, Measure("damping")] | None = None
-    loss: Loss | None = None
-
-    @model_validator(mode="after")
-    def _sensible(self) -> Guide:
-        check_lossy(self)
-        return self
-
-
-class Piston(Frozen):
+class Piston(Table):
     """The upper, flexible part of a leg: a uniform Euler-Bernoulli beam.
 
     `length` [m], whole piston; `EA` [N]; `EI` [N m^2]; `rhoA` [kg/m], 0 for a spring without mass; `diameter`,
@@ -141,23 +27,77 @@ class Piston(Frozen):
     have rotary inertia (Timoshenko's beam).
     """
 
-    length: Annotated[Positive, Measure("length")]
-    EA: Annotated[Positive, Measure("axial stiffness")]
-    EI: Annotated[Positive, Measure("bending stiffness")]
-    rhoA: Annotated[NonNegative, Measure("line density")]
-    diameter: Annotated[Positive, Measure("length")] | None = None
-    inner_diameter: Annotated[Positive, Measure("length")] | None = None
-    E: Annotated[Positive, Measure("stress")] | None = None
-    density: Annotated[Positive, Measure("density")] | None = None
-    yield_stress: Annotated[Positive, Measure("stress")] | None = None
-    axial_inertia: Annotated[NonNegative, Measure("inertia")] = 0.0
-    poisson: float = Field(default=POISSON, strict=True, ge=-0.5, le=0.5)
-    GJ: Annotated[Positive, Measure("bending stiffness")] | None = None
-    expansion: Annotated[Number, Measure("expansion")] | None = None
-    bow: Annotated[NonNegative, Measure("length")] | None = None
-    sections: tuple[PistonSection, ...] = ()
-    keyed: bool = True
-    shear: bool = False
+    silent: ClassVar[tuple[str, ...]] = ("poisson", "keyed", "sections", "shear")
+
+    length: Annotated[float, Quantity("length", above=0)]
+    EA: Annotated[float, Quantity("axial stiffness", above=0, why="axial stiffness")]
+    EI: Annotated[float, Quantity("bending stiffness", above=0, why="bending stiffness")]
+    rhoA: Annotated[float, Quantity("line density", least=0, why="mass per length")]
+    diameter: Annotated[float | None, Quantity("length", above=0, why="outer diameter, below the length")] = None
+    inner_diameter: Annotated[
+        float | None,
+        Quantity("length", above=0, why="inner diameter of a tube, below the outer one", usual="a full bar"),
+    ] = None
+    E: Annotated[float | None, Quantity("stress", above=0, why="elastic modulus")] = None
+    density: Annotated[float | None, Quantity("density", above=0, why="density")] = None
+    yield_stress: Annotated[
+        float | None, Quantity("stress", above=0, why="for the remarks on stresses", usual="that of the material")
+    ] = None
+    axial_inertia: Annotated[
+        float,
+        Quantity(
+            "inertia",
+            least=0,
+            why="moment of inertia about the axis; 0 counts as left out",
+            usual="0; of a round section where the leg twists, or nothing holds its turn",
+        ),
+    ] = 0.0
+    poisson: Annotated[
+        float,
+        Key(
+            "Poisson's ratio of a round section: its torsion, where a joint holds it",
+            usual="that of the material, or 0.3",
+        ),
+    ] = Field(default=POISSON, strict=True, ge=-0.5, le=0.5)
+    GJ: Annotated[
+        float | None,
+        Quantity(
+            "bending stiffness",
+            above=0,
+            why="torsional stiffness; left out: that of a round section",
+            usual="EI / (1 + poisson)",
+        ),
+    ] = None
+    expansion: Annotated[
+        float | None, Quantity("expansion", why="thermal expansion, for [heat]", usual="that of the material")
+    ] = None
+    bow: Annotated[
+        float | None,
+        Quantity(
+            "length",
+            least=0,
+            why="largest distance of the axis from the line of its ends, without load: for `flexapod.accuracy`",
+            usual="straight",
+        ),
+    ] = None
+    sections: Annotated[
+        tuple[PistonSection, ...],
+        Key("list of tables: sections of one that is not uniform, from the driven end to the tip", usual="uniform"),
+    ] = ()
+    keyed: Annotated[
+        bool,
+        Key(
+            "false: it turns in its cylinder (chains with C) and takes the nut of its screw along, which changes "
+            "the length"
+        ),
+    ] = True
+    shear: Annotated[
+        bool,
+        Key(
+            "whether it shears and its sections have rotary inertia: for pistons shorter than ten diameters",
+            usual="false",
+        ),
+    ] = False
 
     @model_validator(mode="after")
     def _sensible(self) -> Self:
@@ -176,7 +116,7 @@ class Piston(Frozen):
                     value=self.diameter,
                     allowed=f"below a tenth of the length of {self.length:g} m for an accurate beam",
                 )
-        _check_axial(self.axial_inertia, self.rhoA * self.length**3 / 12, "transverse inertia, rhoA length^3 / 12,")
+        check_axial(self.axial_inertia, self.rhoA * self.length**3 / 12, "transverse inertia, rhoA length^3 / 12,")
         return self
 
     @classmethod
@@ -297,12 +237,38 @@ class Piston(Frozen):
         """Size in the direction of bending [m]; None where no section is given."""
         return self.diameter
 
+    def told(self) -> dict[str, object]:
+        """All that it has to say in a file: section and material, where the rest follows from them."""
+        fields = super().told()
+        if self.sections:
+            kept = ("sections", "bow", "axial_inertia", "shear")
+            return {name: value for name, value in fields.items() if (name in kept and value) or name == "keyed"}
+        made_of = {name: fields.pop(name, None) for name in ("E", "density")}
+        if self._made_again() != self.replace(bow=None, keyed=True, shear=False):
+            return fields
+        computed = ("EA", "EI", "rhoA", *(() if self.diameter else ("axial_inertia",)))
+        return {name: value for name, value in fields.items() if name not in computed} | made_of
 
-class Strip(Frozen):
+    def _made_again(self) -> Self | None:
+        """One of its section and material; None where it has none."""
+        if self.E is None or self.density is None or self.diameter is None:
+            return None
+        section = Tube(diameter=self.diameter, inner_diameter=self.inner_diameter)
+        return type(self).round(
+            length=self.length, section=section, material=self._material, axial_inertia=self.axial_inertia
+        )
+
+    @property
+    def _material(self) -> Material:
+        own = {name: getattr(self, name) for name in ("E", "density", "yield_stress", "poisson", "expansion")}
+        return Material(name="given", **own)
+
+
+class Strip(Table):
     """Section of a strip that bends across its thickness: `width`, `thickness` [m]."""
 
-    width: Annotated[Positive, Measure("length")]
-    thickness: Annotated[Positive, Measure("length")]
+    width: Annotated[float, Quantity("length", above=0, why="across the plane")]
+    thickness: Annotated[float, Quantity("length", above=0, why="in the plane")]
 
 
 class Strut(Piston):
@@ -313,15 +279,20 @@ class Strut(Piston):
 
     derived: ClassVar[tuple[str, ...]] = ("keyed",)  # of pistons alone
 
-    section: Strip | None = None
+    section: Annotated[Strip | None, Key("table: of a strip, in a planar robot")] = None
 
     @property
     def depth(self) -> float | None:
         """Size in the direction of bending [m], of a strip its thickness."""
         return self.diameter if self.section is None else self.section.thickness
 
+    def _made_again(self) -> Self | None:
+        if self.section is None or self.E is None or self.density is None:
+            return super()._made_again()
+        return self.strip(length=self.length, section=self.section, material=self._material)
+
     @classmethod
-    def strip(cls, *, length: float, section: Strip, material: Material, bow: float | None = None) -> Strut:
+    def strip(cls, *, length: float, section: Strip, material: Material, bow: float | None = None) -> Self:
         """A strip: EA, EI across its thickness and rhoA follow from section and material."""
         size = Rectangle(width=section.width, height=section.thickness)
         return cls(
@@ -335,15 +306,4 @@ class Strut(Piston):
             expansion=material.expansion,
             section=section,
             bow=bow,
-        )
-
-
-def _check_axial(axial: float, transverse: float, name: str) -> None:
-    # Principal moments of a body of revolution (I, I, Ia): Ia <= 2 I, equal for a flat disc.
-    if axial > 2 * transverse * (1 + 1e-9):
-        raise InputError(
-            "belongs to no body",
-            key="axial_inertia",
-            value=axial,
-            allowed=f"at most twice the {name} of {transverse:g} kg m^2",
         )

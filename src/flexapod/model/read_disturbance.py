@@ -9,14 +9,14 @@ import numpy as np
 from flexapod.errors import InputError
 from flexapod.model.disturbance import CURVES, Disturbance, Floor, Spectrum, check_density
 from flexapod.model.robot import Robot
-from flexapod.schema.base import Frozen
 from flexapod.schema.csv_tables import WRENCH
 from flexapod.schema.section import Section
+from flexapod.schema.table import Table
 from flexapod.typing import Array
 
 __all__ = ["FLOOR", "FORCE_NOISE", "WRENCH_NOISE", "read_disturbance"]
 
-M = TypeVar("M", bound=Frozen)
+M = TypeVar("M", bound=Table)
 KINDS = ("acceleration", "velocity", "displacement")
 FLOOR = {kind: dict.fromkeys("xyz", f"{kind} spectrum") for kind in KINDS}
 WRENCH_NOISE = {name: f"{dimension} spectrum" for name, dimension in WRENCH.items()}

@@ -11,12 +11,14 @@ from flexapod.elements.element import Element, registered
 from flexapod.elements.known import element_at
 from flexapod.errors import InputError
 from flexapod.model.chain import chain_of
+from flexapod.model.cylinder import Cylinder, Mounted
 from flexapod.model.drive import ForceDrive, PrescribedDrive, ServoDrive
 from flexapod.model.hydraulic import HydraulicDrive
 from flexapod.model.joint import NO_DIRECTION, Carriage, Joint
+from flexapod.model.joint_stiffness import AlongLeg, InRows
 from flexapod.model.leg import Leg
 from flexapod.model.material import MATERIALS, Material, Tube
-from flexapod.model.piston import Cylinder, Mounted, Piston, Strip, Strut
+from flexapod.model.piston import Piston, Strip, Strut
 from flexapod.model.rolling import RollingLaw
 from flexapod.model.screw import Drive, Encoder, Motor, Ripple, ScrewDrive
 from flexapod.model.sections import PistonSection
@@ -115,21 +117,25 @@ def _stiffness(section: Section) -> dict[str, object]:
         inner = section.child(value, "stiffness")
         if "law" in inner:
             return {"rolling": inner.read(RollingLaw)}
-        rows = "rows" in inner
-        inner.only(*(("rows",) if rows else ("axial", "radial")), "damping", "loss")
-        if "damping" in inner and "loss" in inner:
-            raise inner.error("is given together with loss", "damping", allowed="either of the two")
-        own = {
-            "stiffness_damping": inner.number("damping", "damping"),
-            "stiffness_loss": inner.number("loss", "number"),
-        }
-        if rows:
-            return {"stiffness": _rows(inner, "rows"), **own}
-        inner.need("axial", "radial")
-        axial, radial = (_above_zero(inner, name) for name in ("axial", "radial"))
-        return {"stiffness": np.diag([radial, radial, axial, 0, 0, 0]), "leg_axes": True, **own}
+        form, springs = (InRows, _in_rows) if "rows" in inner else (AlongLeg, _along_leg)
+        return inner.read(form, then=lambda s: _damped(s) | springs(s)).of_joint
     number = _above_zero(section, "stiffness") if "stiffness" in section else section.number("stiffness", "stiffness")
     return {} if number is None else {"stiffness": np.diag([number] * 3 + [0.0] * 3)}
+
+
+def _damped(section: Section) -> dict[str, object]:
+    if "damping" in section and "loss" in section:
+        raise section.error("is given together with loss", "damping", allowed="either of the two")
+    return {"damping": section.number("damping", "damping"), "loss": section.number("loss", "number")}
+
+
+def _along_leg(section: Section) -> dict[str, object]:
+    section.need("axial", "radial")
+    return {name: _above_zero(section, name) for name in ("axial", "radial")}
+
+
+def _in_rows(section: Section) -> dict[str, object]:
+    return {"rows": _rows(section, "rows")}
 
 
 def _rows(section: Section, name: str) -> Array:
@@ -360,7 +366,7 @@ def _springs(section: Section | None) -> tuple[AxialSpring, ...] | None:
     """Springs along a leg by name: a number, or a table."""
     if section is None:
         return None
-    section.only(*section.data)
+    section.any_names()
     found = []
     for name, value in section.data.items():
         spring = section.child(value if isinstance(value, Mapping) else {}, name)

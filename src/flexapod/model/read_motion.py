@@ -60,7 +60,7 @@ def read_load(section: Section | None) -> Load:
         return Load()
     section.only("wrench")
     section.need("wrench")
-    return Load(wrench=read_wrench(section)).keep(section.written)
+    return section.build(Load, wrench=read_wrench(section)).keep(section.written)
 
 
 def read_wrench(section: Section) -> Wrench:

@@ -142,7 +142,7 @@ def _angles(section: Section, count: int) -> dict[str, object]:
         )
     if "angles" not in section:
         section.need("radius", "half_angle" if count == 6 and not section.plane else "angles")
-        return {}
+        return {"angles": None}
     if "half_angle" in section:
         raise section.error("is given together with angles", "half_angle", allowed="one of the two")
     return {"angles": section.vector("angles", *("angle",) * count)}

@@ -28,7 +28,8 @@ from flexapod.model.robot_checks import (
 )
 from flexapod.model.tolerances import Tolerances
 from flexapod.schema.axes import Plane, axis_of, normal_of
-from flexapod.schema.base import Frozen, Joints, Measure, Vec3
+from flexapod.schema.base import Joints, Quantity, Vec3
+from flexapod.schema.table import Table
 from flexapod.typing import Array
 from flexapod.words import number, text
 
@@ -36,7 +37,7 @@ _NUMBERS = "none one two three four five six seven eight nine ten eleven twelve"
 _OR_NONE = WrapValidator(lambda value, check: None if value is None else check(value))
 
 
-class Robot(Frozen):
+class Robot(Table):
     """A platform on legs; six of "UPS" unless `type` names others: "3-RPS", "3-UPS+UP".
 
     `base_joints` (n, 3) [m] in world axes, for a leg with a carriage where that is at 0 (slider) or its axis (crank);
@@ -57,10 +58,10 @@ class Robot(Frozen):
     }
 
     type: str = "6-UPS"
-    base_joints: Annotated[Joints, Measure("length")]
-    platform_joints: Annotated[Joints, Measure("length")]
+    base_joints: Annotated[Joints, Quantity("length")]
+    platform_joints: Annotated[Joints, Quantity("length")]
     home: Home
-    gravity: Annotated[Vec3, Measure("acceleration")]
+    gravity: Annotated[Vec3, Quantity("acceleration")]
     payload: Annotated[Payload, _OR_NONE] = Field(default=cast(Payload, None))
     legs: tuple[Leg, ...]
     plane: Plane | None = None

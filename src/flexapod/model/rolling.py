@@ -7,7 +7,8 @@ from typing import Annotated, Literal
 from pydantic import Field, model_validator
 
 from flexapod.errors import InputError
-from flexapod.schema.base import Frozen, Loss, Measure, NonNegative, Positive
+from flexapod.schema.base import Key, Loss, Quantity
+from flexapod.schema.table import Table
 
 __all__ = ["AXIAL", "RollingLaw"]
 
@@ -25,7 +26,7 @@ AXIAL = ("K811", "K812", "K893", "K894")  # thrust bearings: one carries the who
 LARGEST = 1.0  # bore [m] beyond which no such bearing is made
 
 
-class RollingLaw(Frozen):
+class RollingLaw(Table):
     """Bearings of a `series` and a `bore` [m] in the yokes of a joint, under the `load` [N] along the leg.
 
     `yokes`: in series along the leg, 2 of a cross; in each of them two radial bearings share the load, or a thrust
@@ -35,18 +36,25 @@ class RollingLaw(Frozen):
     leg; left out: as along it. `damping` [N s/m] or a `loss` factor.
     """
 
-    law: Literal["rolling"] = "rolling"
-    series: Series
-    bore: Annotated[float, Field(strict=True, gt=0, le=LARGEST), Measure("length")]
-    load: Annotated[NonNegative, Measure("force")]
-    width: Annotated[Positive, Measure("length")] | None = None
-    preload: Annotated[NonNegative, Measure("force")] | None = None
-    clearance: Annotated[NonNegative, Measure("length")] | None = None
-    of: Literal["tangent", "secant"] = "tangent"
-    yokes: Annotated[int, Field(strict=True, ge=1, le=10)] | None = None
-    radial: Annotated[Positive, Measure("stiffness")] | None = None
-    damping: Annotated[NonNegative, Measure("damping")] | None = None
-    loss: Loss | None = None
+    law: Annotated[Literal["rolling"], Key("rolling: of rolling bearings, in place of axial and radial")] = "rolling"
+    series: Annotated[Series, Key("of the bearings")]
+    bore: Annotated[float, Quantity("length", above=0, most=LARGEST, why="of the bearings")]
+    load: Annotated[float, Quantity("force", least=0, why="along the leg, about which the joint gives way")]
+    width: Annotated[
+        float | None, Quantity("length", above=0, why="of the bearing, of series whose stiffness depends on it")
+    ] = None
+    preload: Annotated[float | None, Quantity("force", least=0, why="of thrust bearings")] = None
+    clearance: Annotated[
+        float | None, Quantity("length", least=0, why="of radial bearings in operation; counts for the secant")
+    ] = None
+    of: Annotated[
+        Literal["tangent", "secant"],
+        Key("tangent: what small motions about the load feel; secant: load over displacement"),
+    ] = "tangent"
+    yokes: Annotated[Annotated[int, Field(strict=True, ge=1, le=10)] | None, Key("in series along the leg")] = None
+    radial: Annotated[float | None, Quantity("stiffness", above=0, why="across the leg")] = None
+    damping: Annotated[float | None, Quantity("damping", least=0, why="along and across the leg")] = None
+    loss: Annotated[Loss | None, Key("loss factor, in place of `damping`; left out: that of the joint")] = None
 
     @model_validator(mode="after")
     def _complete(self) -> RollingLaw:

@@ -13,11 +13,12 @@ from flexapod.errors import InputError
 from flexapod.model.drive import ForceDrive, PrescribedDrive, ServoDrive
 from flexapod.model.friction import ScrewFriction
 from flexapod.model.hydraulic import HydraulicDrive
-from flexapod.model.material import SPELLS, Material
+from flexapod.model.material import SPELLS, Material, spelled
 from flexapod.model.motion import check_times
 from flexapod.model.motor import HARMONICS, Brake, Encoder, Limits, Loop, Motor, Ripple, Rotor, summing
 from flexapod.model.spring import check_lossy
-from flexapod.schema.base import Frozen, Loss, Measure, NonNegative, Number, Positive, Series
+from flexapod.schema.base import Key, Loss, Quantity, Series
+from flexapod.schema.table import Table
 from flexapod.typing import Array
 from flexapod.words import number
 
@@ -27,26 +28,31 @@ UNLOADS = 2 * math.sqrt(2)  # thrust over preload beyond which one half of a pre
 HIGHEST = 0.1  # preload over dynamic load rating of a double nut, at most (HIWIN 3.6)
 UM = 1e6  # N/m of an N/um
 
-Damping = Annotated[NonNegative, Measure("damping")] | None
-Stiffness = Annotated[Positive, Measure("stiffness")] | None
-Force = Annotated[Positive, Measure("force")] | None
 
-
-class Nut(Frozen):
+class Nut(Table):
     """The nut: its `stiffness` [N/m], or the catalogue's.
 
     `rigidity` [N/m] at a preload of a tenth of the `dynamic_load` [N], and the `preload` [N]. `dynamic_load` and
     `static_load` [N]: load ratings, for life and safety. `backlash`: free travel [m].
     """
 
-    stiffness: Stiffness = None
-    rigidity: Stiffness = None
-    preload: Force = None
-    dynamic_load: Force = None
-    static_load: Force = None
-    damping: Damping = None
-    loss: Loss | None = None
-    backlash: Annotated[NonNegative, Measure("length")] | None = None
+    stiffness: Annotated[float | None, Quantity("stiffness", above=0, why="along the screw")] = None
+    rigidity: Annotated[
+        float | None, Quantity("stiffness", above=0, why="of the catalogue, at a preload of a tenth of dynamic_load")
+    ] = None
+    preload: Annotated[float | None, Quantity("force", above=0, why="of the nut, at most a tenth of dynamic_load")] = (
+        None
+    )
+    dynamic_load: Annotated[
+        float | None, Quantity("force", above=0, why="dynamic load rating: for life, and for the law of the rigidity")
+    ] = None
+    static_load: Annotated[float | None, Quantity("force", above=0, why="static load rating: for safety")] = None
+    damping: Annotated[float | None, Quantity("damping", least=0, why="damper beside it")] = None
+    loss: Annotated[Loss | None, Key("loss factor, in place of damping")] = None
+    backlash: Annotated[
+        float | None,
+        Quantity("length", least=0, why="free travel of the nut, from one end to the other: for `flexapod.accuracy`"),
+    ] = None
 
     @model_validator(mode="after")
     def _one_law(self) -> Nut:
@@ -89,22 +95,25 @@ class Nut(Frozen):
         return math.inf if self.preload is None else UNLOADS * self.preload
 
 
-class Bearing(Frozen):
+class Bearing(Table):
     """The thrust bearing of a screw, at `position` [m] along the cylinder from the base joint.
 
     Its `stiffness` [N/m], or with ``model = "angular-contact"`` that of a preloaded pair: `preload` [N], number of
     `balls`, `ball_diameter` [m], `contact_angle` [rad].
     """
 
-    position: Annotated[NonNegative, Measure("length")]
-    stiffness: Stiffness = None
-    model: Literal["given", "angular-contact"] = "given"
-    preload: Force = None
-    balls: Annotated[int, Field(strict=True, ge=3, le=1000)] | None = None
-    ball_diameter: Annotated[Positive, Measure("length")] | None = None
-    contact_angle: Annotated[float, Field(strict=True, gt=0, le=math.pi / 2), Measure("angle")] | None = None
-    damping: Damping = None
-    loss: Loss | None = None
+    position: Annotated[float, Quantity("length", least=0, why="along the cylinder from the base joint")]
+    stiffness: Annotated[float | None, Quantity("stiffness", above=0, why="along the screw")] = None
+    model: Annotated[Literal["given", "angular-contact"], Key("where the stiffness comes from")] = "given"
+    preload: Annotated[float | None, Quantity("force", above=0, why="of the pair")] = None
+    balls: Annotated[Annotated[int, Field(strict=True, ge=3, le=1000)] | None, Key("how many in a row")] = None
+    ball_diameter: Annotated[float | None, Quantity("length", above=0, why="of a ball")] = None
+    contact_angle: Annotated[
+        float | None,
+        Quantity("angle", above=0, most=math.pi / 2, why="between the line of contact and the radial plane"),
+    ] = None
+    damping: Annotated[float | None, Quantity("damping", least=0, why="damper beside it")] = None
+    loss: Annotated[Loss | None, Key("loss factor, in place of damping")] = None
 
     @model_validator(mode="after")
     def _one_law(self) -> Bearing:
@@ -125,7 +134,7 @@ class Bearing(Frozen):
         return 3 * preload / approach * UM
 
 
-class ScrewDrive(Frozen):
+class ScrewDrive(Table):
     """A screw that the motor turns in a thrust bearing in the cylinder; its nut is the piston's inner end.
 
     `lead` [m] a turn; the shaft between bearing and nut by its `root_diameter` [m], `length` [m] from the bearing and
@@ -140,28 +149,42 @@ class ScrewDrive(Frozen):
     derived: ClassVar[tuple[str, ...]] = ("time", "torque")
     spells: ClassVar[Mapping[str, tuple[str, ...]]] = SPELLS
 
-    type: Literal["screw"] = "screw"
-    lead: Annotated[Positive, Measure("length")]
-    root_diameter: Annotated[Positive, Measure("length")]
-    length: Annotated[Positive, Measure("length")]
-    material: Material
-    efficiency: Annotated[float, Field(strict=True, gt=0, le=1), Measure("number")] = 0.9
-    mounting: Literal["fixed-free", "fixed-supported", "fixed-fixed"] = "fixed-free"
-    bearing: Bearing
-    nut: Nut
-    rotor: Rotor = Rotor()
-    motor: Motor = Motor()
-    command: Literal["position", "servo", "torque"] = "position"
-    law: Literal["rigid", "constant", "csv"] = "rigid"
-    value: Annotated[Number, Measure("torque")] | None = None
-    file: str | None = None
-    time: Annotated[Series, Measure("time")] | None = None
-    torque: Annotated[Series, Measure("torque")] | None = None
-    loop: Annotated[Loop | None, BeforeValidator(summing)] = None
-    encoder: Encoder = Encoder()
-    limits: Limits = Limits()
-    brake: Brake | None = None
-    friction: ScrewFriction | None = None
+    type: Annotated[Literal["screw"], Key("kind of drive")] = "screw"
+    lead: Annotated[float, Quantity("length", above=0, why="travel of the nut in a turn of the screw")]
+    root_diameter: Annotated[float, Quantity("length", above=0, why="of the shaft, without its threads")]
+    length: Annotated[float, Quantity("length", above=0, why="of the shaft, from the bearing")]
+    material: Annotated[Material, Key("of the shaft")]
+    efficiency: Annotated[
+        float, Quantity("number", above=0, most=1, why="thrust times lead over work of the screw")
+    ] = 0.9
+    mounting: Annotated[
+        Literal["fixed-free", "fixed-supported", "fixed-fixed"],
+        Key("of the shaft's far end: with fixed-fixed both ends take the thrust"),
+    ] = "fixed-free"
+    bearing: Annotated[Bearing, Key("table: the thrust bearing")]
+    nut: Annotated[Nut, Key("table: the nut")]
+    rotor: Annotated[Rotor, Key("table: what turns with the motor")] = Rotor()
+    motor: Annotated[Motor, Key("table: torque constant, bandwidth and ripple of the motor")] = Motor()
+    command: Annotated[
+        Literal["position", "servo", "torque"], Key("what the motor keeps: the measured place, a servo loop, a torque")
+    ] = "position"
+    law: Annotated[
+        Literal["rigid", "constant", "csv"], Key("where the force or the torque comes from", usual="rigid")
+    ] = "rigid"
+    value: Annotated[
+        float | None,
+        Quantity("torque", why='the force or the torque, for law "constant"', usual="required by law constant"),
+    ] = None
+    file: Annotated[str | None, Key('CSV file of the forces or torques, for law "csv"')] = None
+    time: Annotated[Series | None, Quantity("time")] = None
+    torque: Annotated[Series | None, Quantity("torque")] = None
+    loop: Annotated[Loop | None, BeforeValidator(summing), Key("table: spring and damper of the loop")] = None
+    encoder: Annotated[Encoder, Key("table: where the position is measured")] = Encoder()
+    limits: Annotated[Limits, Key("table: what the drive is made for")] = Limits()
+    brake: Annotated[Brake | None, Key("table: a brake at the motor")] = None
+    friction: Annotated[
+        ScrewFriction | None, Key("table: friction of the stroke, of a screw at its nut", usual="none")
+    ] = None
 
     @model_validator(mode="after")
     def _sensible(self) -> ScrewDrive:
@@ -322,11 +345,15 @@ class ScrewDrive(Frozen):
         turns = self.per_turn / self.rotor.ratio if self.encoder.at == "rotor" else 1.0
         return (self.encoder.resolution or 0.0) * turns
 
+    def told(self) -> dict[str, object]:
+        """All that it has to say in a file, with the keys of its material."""
+        return {name: x for name, x in super().told().items() if name != "material"} | spelled(self.material)
+
 
 Drive = Annotated[PrescribedDrive | ServoDrive | ForceDrive | ScrewDrive | HydraulicDrive, Field(discriminator="type")]
 
 
-def _one_of(part: Frozen, given: str, law: tuple[str, ...]) -> None:
+def _one_of(part: Table, given: str, law: tuple[str, ...]) -> None:
     """Raise InputError unless a part has either its stiffness or all numbers of a catalogue's law."""
     has = [name for name in law if getattr(part, name) is not None]
     if getattr(part, given) is not None and has:

@@ -3,13 +3,14 @@
 from __future__ import annotations
 
 from collections.abc import Iterable, Iterator, Sequence
-from typing import Annotated, NamedTuple
+from typing import Annotated, ClassVar, NamedTuple
 
 from pydantic import Field, model_validator
 
 from flexapod.errors import InputError
 from flexapod.model.material import POISSON, Rectangle, Tube
-from flexapod.schema.base import Frozen, Measure, Number, Positive
+from flexapod.schema.base import Key, Quantity
+from flexapod.schema.table import Table
 
 STEPS = 64  # uniform pieces in place of a taper where formulas know no tapers, in pairs
 SHARES = (0.0, 0.25, 0.5, 0.75, 1.0)  # of a length: they tell EI of a taper, which is of fourth order
@@ -29,7 +30,7 @@ class Step(NamedTuple):
     round: bool
 
 
-class PistonSection(Frozen):
+class PistonSection(Table):
     """A section of a piston: round, full or hollow, or a strip; of one material.
 
     `length`; `diameter`, `tip_diameter` where it tapers towards the tip, `inner_diameter`, or `width` along the axis x
@@ -37,17 +38,36 @@ class PistonSection(Frozen):
     `yield_stress` [Pa], `poisson`, `expansion` [1/K].
     """
 
-    length: Annotated[Positive, Measure("length")]
-    diameter: Annotated[Positive, Measure("length")] | None = None
-    tip_diameter: Annotated[Positive, Measure("length")] | None = None
-    inner_diameter: Annotated[Positive, Measure("length")] | None = None
-    width: Annotated[Positive, Measure("length")] | None = None
-    thickness: Annotated[Positive, Measure("length")] | None = None
-    E: Annotated[Positive, Measure("stress")]
-    density: Annotated[Positive, Measure("density")]
-    yield_stress: Annotated[Positive, Measure("stress")] | None = None
-    poisson: float = Field(default=POISSON, strict=True, ge=-0.5, le=0.5)
-    expansion: Annotated[Number, Measure("expansion")] | None = None
+    silent: ClassVar[tuple[str, ...]] = ("poisson",)
+
+    length: Annotated[float, Quantity("length", above=0, why="of this section")]
+    diameter: Annotated[
+        float | None, Quantity("length", above=0, why="outer diameter; at the end nearer to the drive where it tapers")
+    ] = None
+    tip_diameter: Annotated[
+        float | None, Quantity("length", above=0, why="outer diameter at the end nearer to the tip", usual="no taper")
+    ] = None
+    inner_diameter: Annotated[
+        float | None, Quantity("length", above=0, why="inner diameter of a tube", usual="a full bar")
+    ] = None
+    width: Annotated[
+        float | None,
+        Quantity("length", above=0, why="of a strip, along the first axis of the base joint (x of the leg)"),
+    ] = None
+    thickness: Annotated[
+        float | None, Quantity("length", above=0, why="of a strip, across that axis (y of the leg)")
+    ] = None
+    E: Annotated[float, Quantity("stress", above=0, why="elastic modulus")]
+    density: Annotated[float, Quantity("density", above=0, why="density")]
+    yield_stress: Annotated[
+        float | None, Quantity("stress", above=0, why="for the remarks on stresses", usual="that of the material")
+    ] = None
+    poisson: Annotated[float, Key("Poisson's ratio: torsion and shear", usual="that of the material, or 0.3")] = Field(
+        default=POISSON, strict=True, ge=-0.5, le=0.5
+    )
+    expansion: Annotated[
+        float | None, Quantity("expansion", why="thermal expansion, for [heat]", usual="that of the material")
+    ] = None
 
     @model_validator(mode="after")
     def _round_or_strip(self) -> PistonSection:

@@ -8,7 +8,8 @@ from typing import Annotated, ClassVar, Literal, Self
 from pydantic import Field, model_validator
 
 from flexapod.errors import InputError, closest
-from flexapod.schema.base import Frozen, Measure, Positive
+from flexapod.schema.base import Key, Quantity
+from flexapod.schema.table import Table
 from flexapod.words import number, text
 
 FIDELITIES = ("rigid", "lumped", "finite-segment", "assumed-modes", "beam-fem", "solid-fem")
@@ -21,13 +22,13 @@ MOST_SHAPES = 12  # of a lateral plane; higher ones follow no excitation that a 
 MOST_ELEMENT_SHAPES = 24  # of `beam-fem`: twelve elements, for differences of 0.1 % in long runs
 
 
-class Initial(Frozen):
+class Initial(Table):
     """Start of a robot: `equilibrium` (static, at rest), `straight` (undeformed) or `moving` (rigid velocity field)."""
 
-    start: Literal["equilibrium", "straight", "moving"] = "equilibrium"
+    start: Annotated[Literal["equilibrium", "straight", "moving"], Key("how the robot starts")] = "equilibrium"
 
 
-class Simulation(Frozen):
+class Simulation(Table):
     """Settings of a simulation.
 
     `fidelity`; `basis` of `assumed-modes`; `modes`, the lateral shapes per plane (of `finite-segment` one per segment,
@@ -39,17 +40,45 @@ class Simulation(Frozen):
     """
 
     placed: ClassVar[tuple[str, ...]] = ("basis",)
+    silent: ClassVar[tuple[str, ...]] = ("friction",)
 
-    fidelity: str = "assumed-modes"
-    basis: Literal["tip-load", "clamped-free", "tip-mass"] = "tip-load"
-    modes: int = Field(default=3, strict=True, ge=0, le=MOST_ELEMENT_SHAPES)
-    duration: Annotated[Positive, Measure("time")] | None = None
-    tolerance: Annotated[Positive, Field(lt=1), Measure("number")] | None = None
-    step: Annotated[Positive, Measure("time")] | None = None
-    output_step: Annotated[Positive, Measure("time")] = 1e-3
-    rho_inf: float = Field(default=0.9, strict=True, ge=0, le=1)
-    friction: Literal["sliding", "stuck"] = "sliding"
-    play: Literal["static", "gap"] = "static"
+    fidelity: Annotated[str, Key("what the legs can do: docs/ladder.md")] = "assumed-modes"
+    basis: Annotated[Literal["tip-load", "clamped-free", "tip-mass"], Key("shapes of assumed-modes")] = "tip-load"
+    modes: Annotated[int, Key("lateral shapes a plane; of beam-fem two an element")] = Field(
+        default=3, strict=True, ge=0, le=MOST_ELEMENT_SHAPES
+    )
+    duration: Annotated[
+        float | None, Quantity("time", above=0, why="simulated time", usual="the motion with its hold")
+    ] = None
+    tolerance: Annotated[
+        float | None,
+        Quantity(
+            "number",
+            above=0,
+            below=1,
+            why="relative error of the deviation by the step control; forces have an estimate of their own",
+        ),
+    ] = None
+    step: Annotated[float | None, Quantity("time", above=0, why="fixed time step", usual="chosen by tolerance")] = None
+    output_step: Annotated[float, Quantity("time", above=0, why="time between stored results")] = 1e-3
+    rho_inf: Annotated[
+        float,
+        Key(
+            "spectral radius of the integrator of fixed steps at infinite frequency: 1 damps nothing, 0 most; "
+            "not used within a tolerance"
+        ),
+    ] = Field(default=0.9, strict=True, ge=0, le=1)
+    friction: Annotated[
+        Literal["sliding", "stuck"],
+        Key("what modes and stiffness take joints and drives with friction to do: slide, or stick as springs"),
+    ] = "sliding"
+    play: Annotated[
+        Literal["static", "gap"],
+        Key(
+            "static: play is left to `flexapod.play` and the budget; gap: in motions it is a gap with rounded "
+            "edges in the springs before the piston, that of both joints and of the drive together"
+        ),
+    ] = "static"
 
     def __init__(self, **fields: object) -> None:
         if fields.get("tolerance") is None and fields.get("step") is None:
@@ -162,6 +191,11 @@ class Simulation(Frozen):
     def outputs(self, duration: float) -> int:
         """Number of intervals between stored results in `duration` [s]; a rest shorter than one is left out."""
         return math.floor(duration / self.stored_step + 1e-6)
+
+    def told(self) -> dict[str, object]:
+        """All that it has to say in a file: no basis that its fidelity does not use."""
+        unused = ("basis",) if self.fidelity in OWN_BASIS else ()
+        return {name: value for name, value in super().told().items() if name not in unused}
 
 
 def own_fidelity(basis: object) -> str | None:

@@ -9,7 +9,8 @@ from pydantic import model_validator
 
 from flexapod.errors import InputError
 from flexapod.model.heat import HEAT_PARTS
-from flexapod.schema.base import Frozen, Loss, Measure, NonNegative, Positive
+from flexapod.schema.base import Key, Loss, Quantity
+from flexapod.schema.table import Table
 
 __all__ = ["RESERVED", "AxialSpring", "check_lossy"]
 
@@ -22,7 +23,7 @@ RESERVED = (
 )  # fmt: skip
 
 
-class AxialSpring(Frozen):
+class AxialSpring(Table):
     """A named spring [N/m] along a leg, with a damper [N s/m] or a loss factor.
 
     `at`: where it is, between base joint and cylinder ("base"), between nut or drive and piston ("nut"), or between
@@ -32,10 +33,13 @@ class AxialSpring(Frozen):
     derived: ClassVar[tuple[str, ...]] = ("name",)
 
     name: str
-    stiffness: Annotated[Positive, Measure("stiffness")]
-    at: Literal["nut", "base", "platform"] = "nut"
-    damping: Annotated[NonNegative, Measure("damping")] | None = None
-    loss: Loss | None = None
+    stiffness: Annotated[float, Quantity("stiffness", above=0, why="along the leg")]
+    at: Annotated[
+        Literal["nut", "base", "platform"],
+        Key("between base joint and cylinder, drive and piston, or piston and platform joint"),
+    ] = "nut"
+    damping: Annotated[float | None, Quantity("damping", least=0, why="damper beside it")] = None
+    loss: Annotated[Loss | None, Key("loss factor, in place of damping")] = None
 
     @model_validator(mode="after")
     def _sensible(self) -> AxialSpring:

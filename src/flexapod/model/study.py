@@ -17,7 +17,7 @@ from flexapod.model.robot import Robot
 from flexapod.model.simulation import FIDELITIES, OWN_BASIS, SOLID, STRAIGHT, Initial, Simulation
 from flexapod.model.write import to_toml
 from flexapod.schema.axes import plane_order
-from flexapod.schema.base import Frozen
+from flexapod.schema.table import Table
 
 #: The load that drives a motion of the single actuator where no law does.
 DRIVEN_BY = {"rotation": "torque", "extension": "force", "elevation": "elevation_torque"}
@@ -31,7 +31,7 @@ _OUT_OF_PLANE = {
 _ANEW = "-"  # for the text of a study that is to be written
 
 
-class _Documented(Frozen):
+class _Documented(Table):
     """Keeps `source_text` true: it is written anew when content is changed or the study was not read from text."""
 
     untold: ClassVar[tuple[str, ...]] = ("source_text", "path", "notes")

@@ -4,10 +4,11 @@ from __future__ import annotations
 
 from typing import Annotated, Any, TypeVar
 
-from pydantic import BeforeValidator, Field, model_validator
+from pydantic import BeforeValidator, model_validator
 
 from flexapod.errors import InputError
-from flexapod.schema.base import Frozen, Measure, NonNegative
+from flexapod.schema.base import Key, Quantity
+from flexapod.schema.table import Table
 
 __all__ = ["CLASSES", "LengthSpread", "RatioSpread", "Spread", "Tolerances"]
 
@@ -16,22 +17,28 @@ __all__ = ["CLASSES", "LengthSpread", "RatioSpread", "Spread", "Tolerances"]
 CLASSES = {"C5": 0.018 / 300, "C7": 0.05 / 300, "C10": 0.21 / 300}
 
 
-class LengthSpread(Frozen):
+class LengthSpread(Table):
     """Spread of a length: its standard deviation `sigma` [m], or up to `box` [m] on either side of the drawing."""
 
-    sigma: Annotated[NonNegative, Measure("length")] | None = None
-    box: Annotated[NonNegative, Measure("length")] | None = None
+    sigma: Annotated[float | None, Quantity("length", least=0, why="standard deviation", usual="given by box")] = None
+    box: Annotated[
+        float | None, Quantity("length", least=0, why="largest error on either side", usual="given by sigma")
+    ] = None
 
     @model_validator(mode="after")
     def _either(self) -> LengthSpread:
         return _either(self)
 
 
-class RatioSpread(Frozen):
+class RatioSpread(Table):
     """A ratio: standard deviation `sigma`, or up to `box` on either side; of EA, EI and density relative to them."""
 
-    sigma: Annotated[NonNegative, Field(le=1.0)] | None = None
-    box: Annotated[NonNegative, Field(le=1.0)] | None = None
+    sigma: Annotated[
+        float | None, Quantity("number", least=0, most=1, why="standard deviation", usual="given by box")
+    ] = None
+    box: Annotated[
+        float | None, Quantity("number", least=0, most=1, why="largest error on either side", usual="given by sigma")
+    ] = None
 
     @model_validator(mode="after")
     def _either(self) -> RatioSpread:
@@ -57,18 +64,48 @@ def _spread(value: Any) -> Any:
     return {"sigma": value} if isinstance(value, int | float) and not isinstance(value, bool) else value
 
 
-class Tolerances(Frozen):
+class Tolerances(Table):
     """Independent errors of single parts, those of joints along each axis; what is left out has none.
 
     `base_joints`, `platform_joints`, `leg_offset` and `lead` as of `Geometry`; `EA`, `EI` and `density` of pistons and
     struts, relative; `bow` of them, on either side of that which is given.
     """
 
-    base_joints: Annotated[LengthSpread | None, BeforeValidator(_spread)] = None
-    platform_joints: Annotated[LengthSpread | None, BeforeValidator(_spread)] = None
-    leg_offset: Annotated[LengthSpread | None, BeforeValidator(_spread)] = None
-    lead: Annotated[RatioSpread | None, BeforeValidator(_spread)] = None
-    EA: Annotated[RatioSpread | None, BeforeValidator(_spread)] = None
-    EI: Annotated[RatioSpread | None, BeforeValidator(_spread)] = None
-    density: Annotated[RatioSpread | None, BeforeValidator(_spread)] = None
-    bow: Annotated[LengthSpread | None, BeforeValidator(_spread)] = None
+    base_joints: Annotated[
+        LengthSpread | None,
+        BeforeValidator(_spread),
+        Key("of the joints on the base, along each axis; a number, or a table with `sigma` or `box`", usual="exact"),
+    ] = None
+    platform_joints: Annotated[
+        LengthSpread | None,
+        BeforeValidator(_spread),
+        Key("of the joints on the platform, along each axis; as base_joints", usual="exact"),
+    ] = None
+    leg_offset: Annotated[
+        LengthSpread | None, BeforeValidator(_spread), Key("of the lengths of the legs; as base_joints", usual="exact")
+    ] = None
+    lead: Annotated[
+        RatioSpread | None,
+        BeforeValidator(_spread),
+        Key("of the travels, as a ratio; as base_joints, or an accuracy class of screws: C5, C7, C10", usual="exact"),
+    ] = None
+    EA: Annotated[
+        RatioSpread | None,
+        BeforeValidator(_spread),
+        Key("of the axial stiffness of pistons and struts, relative; as lead, without classes", usual="exact"),
+    ] = None
+    EI: Annotated[
+        RatioSpread | None,
+        BeforeValidator(_spread),
+        Key("of their bending stiffness, relative: counts for legs that are not straight; as EA", usual="exact"),
+    ] = None
+    density: Annotated[
+        RatioSpread | None,
+        BeforeValidator(_spread),
+        Key("of their density, relative: their weight; as EA", usual="exact"),
+    ] = None
+    bow: Annotated[
+        LengthSpread | None,
+        BeforeValidator(_spread),
+        Key("of their bow, on either side of `piston.bow`; as base_joints", usual="exact"),
+    ] = None

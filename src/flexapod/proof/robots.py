@@ -10,10 +10,11 @@ from numpy.typing import ArrayLike
 
 from flexapod import model
 from flexapod.model import Robot
+from flexapod.model.cylinder import Cylinder
 from flexapod.model.joint import Carriage, Joint
 from flexapod.model.leg import Leg
 from flexapod.model.payload import Payload
-from flexapod.model.piston import Cylinder, Piston, Strut
+from flexapod.model.piston import Piston, Strut
 from flexapod.typing import Array
 
 THREE, FOUR = np.arange(3) * 120.0, np.arange(4) * 90.0

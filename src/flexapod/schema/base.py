@@ -1,4 +1,4 @@
-"""What all model classes share: frozen, SI floats, read-only arrays, errors in the user's words."""
+"""What all model classes share: frozen, SI floats with limits, read-only arrays, errors in the user's words."""
 
 from __future__ import annotations
 
@@ -7,7 +7,7 @@ import re
 from collections.abc import Callable, Mapping
 from html import escape
 from threading import RLock
-from typing import Annotated, Any, ClassVar, Self
+from typing import Annotated, Any, Self
 
 import numpy as np
 from pydantic import (
@@ -23,19 +23,14 @@ from pydantic import (
 from pydantic_core import CoreSchema, PydanticCustomError, core_schema
 
 from flexapod.errors import InputError, closest
-from flexapod.schema.written import Written
 from flexapod.typing import Array
 from flexapod.units import DIMENSIONS
 from flexapod.words import number
 
-Number = Annotated[float, Field(strict=True, allow_inf_nan=False)]
-Positive = Annotated[float, Field(strict=True, gt=0, allow_inf_nan=False)]
-NonNegative = Annotated[float, Field(strict=True, ge=0, allow_inf_nan=False)]
 #: A loss factor; metals have 1e-4 to 0.01, joints 0.01 to 0.1, layers made for damping up to about 1.
 Loss = Annotated[float, Field(strict=True, ge=0, le=2, allow_inf_nan=False)]
 
 _HASH = "hash"  # where an object keeps its hash; no field can have this name, which would hide the built-in
-_WRITTEN = "written"  # where it keeps the table that it was read from
 
 _building = RLock()  # classes need those of their fields
 
@@ -47,32 +42,62 @@ _LIMIT_WORDS = {
 }
 
 
-class Measure:
-    """What the number or the array of a field measures: its size lies in the range of that dimension.
+class Key:
+    """What a key of a table is, for the reference: `why`, in words.
 
-    ``Annotated[Positive, Measure("length")]``; of several dimensions, where another field decides which, the widest
-    range counts. The lower end concerns numbers that cannot be 0: what may be 0 may be next to it as well.
+    `usual`: what holds where it is left out, in words, where its default does not say it. `short`: "number" or "text"
+    where one may stand for the value.
     """
 
-    def __init__(self, *dimensions: str) -> None:
+    def __init__(self, why: str = "", *, usual: str = "", short: str = "") -> None:
+        self.why, self.usual, self.short = why, usual, short
+
+
+class Quantity(Key):
+    """What the number or the array of a field measures: its size lies in the range of that dimension.
+
+    ``Annotated[float | None, Quantity("length", above=0, why="of the screw")]``; of several dimensions, where another
+    field decides which, the widest range counts. The lower end concerns numbers that cannot be 0: what may be 0 may be
+    next to it as well. `above`, `least`, `most`, `below`: limits of a number.
+    """
+
+    def __init__(
+        self,
+        *dimensions: str,
+        above: float | None = None,
+        least: float | None = None,
+        most: float | None = None,
+        below: float | None = None,
+        why: str = "",
+        usual: str = "",
+        short: str = "",
+    ) -> None:
+        super().__init__(why, usual=usual, short=short)
         self.dimensions = dimensions
-        self.least = min(DIMENSIONS[name].least for name in dimensions)
-        self.most = max(DIMENSIONS[name].most for name in dimensions)
+        limits = {"gt": above, "ge": least, "le": most, "lt": below}
+        self.limits = {name: float(limit) for name, limit in limits.items() if limit is not None}
+        self.smallest = min(DIMENSIONS[name].least for name in dimensions) if above == 0 else 0.0
+        self.largest = max(DIMENSIONS[name].most for name in dimensions)
 
     def __get_pydantic_core_schema__(self, source: Any, handler: GetCoreSchemaHandler) -> CoreSchema:
-        inner = handler(source)
-        least = self.least if inner.get("gt") == 0 else 0.0
+        return self._limited(handler(source))
+
+    def _limited(self, schema: Any) -> CoreSchema:
+        if schema["type"] == "nullable":
+            return schema | {"schema": self._limited(schema["schema"])}
+        if schema["type"] == "float":
+            schema = schema | {"strict": True, "allow_inf_nan": False, **self.limits}
         unit = DIMENSIONS[self.dimensions[0]].unit if len(self.dimensions) == 1 else ""
-        most = f"{self.most:g} {unit}".rstrip()
-        allowed = f"{least:g} to {most}" if least else f"at most {most} in size"
+        most = f"{self.largest:g} {unit}".rstrip()
+        allowed = f"{self.smallest:g} to {most}" if self.smallest else f"at most {most} in size"
 
         def within(value: Any) -> Any:
             size = np.abs(value).max(initial=0.0) if isinstance(value, np.ndarray) else abs(value)
-            if not least <= size <= self.most:
+            if not self.smallest <= size <= self.largest:
                 raise PydanticCustomError("size", "is out of range", {"allowed": allowed})
             return value
 
-        return core_schema.no_info_after_validator_function(within, inner)
+        return core_schema.no_info_after_validator_function(within, schema)
 
 
 def array_of(shape: tuple[int | None, ...]) -> Callable[[object], Array]:
@@ -117,14 +142,6 @@ Series6 = Annotated[Array, PlainValidator(array_of((None, 6))), PlainSerializer(
 class Frozen(BaseModel):
     """Base of the model: immutable, SI, unknown fields refused, `InputError` on bad values."""
 
-    #: Fields that are no keys of a study file: a table in a file of its own has them, or they follow from the others
-    derived: ClassVar[tuple[str, ...]] = ()
-    #: Fields that a key stands for, where that is not the one of its name alone
-    spells: ClassVar[Mapping[str, tuple[str, ...]]] = {}
-    #: Keys that say something else in another place: directions in words, vectors in a plane
-    placed: ClassVar[tuple[str, ...]] = ()
-    #: Fields that are in no text
-    untold: ClassVar[tuple[str, ...]] = ()
     model_config = ConfigDict(
         frozen=True, extra="forbid", arbitrary_types_allowed=True, hide_input_in_errors=True, defer_build=True
     )  # what checks a class is built with its first object: most studies have few of the tables
@@ -147,42 +164,14 @@ class Frozen(BaseModel):
             If a field does not exist or the new value is not allowed.
         """
         fields = {name: getattr(self, name) for name in type(self).model_fields}
-        return self._kept_in(type(self)(**(fields | changes)))
-
-    @property
-    def written(self) -> Written | None:
-        """The table that it was read from, or what of that still holds; None of an object made in Python."""
-        return vars(self).get(_WRITTEN)
-
-    def keep(self, written: Written) -> Self:
-        """Itself, with the table that says the same."""
-        vars(self)[_WRITTEN] = written
-        return self
-
-    @property
-    def unchanged(self) -> bool:
-        """Whether the table that it was read from says all of it."""
-        return self.written is not None and not self.written.changed
-
-    def _kept_in(self, changed: Self) -> Self:
-        """A changed object with what still holds of the table of this one."""
-        if self.written is None:
-            return changed
-        told = (name for name in type(self).model_fields if name not in self.untold)
-        names = {name for name in told if not _same(getattr(self, name), getattr(changed, name))}
-        return changed.keep(Written(self.written.data, self.written.changed | names))
-
-    def still_says(self, key: str) -> bool:
-        """Whether what was written under a key still says what the object has."""
-        return self.written is not None and self.written.changed.isdisjoint(self.spells.get(key, (key,)))
+        return type(self)(**(fields | changes))
 
     def __deepcopy__(self, memo: dict[int, Any] | None = None) -> Self:
         return self  # nothing in it can change
 
     def __copy__(self) -> Self:
         copy = super().__copy__()
-        for name in (_HASH, _WRITTEN):  # pydantic copies before it changes fields
-            vars(copy).pop(name, None)
+        vars(copy).pop(_HASH, None)  # pydantic copies before it changes fields
         return copy
 
     def __setstate__(self, state: dict[Any, Any]) -> None:
@@ -229,9 +218,7 @@ class Frozen(BaseModel):
 
 
 # Names that work, and that nobody who completes a name is looking for
-_OF_PYDANTIC = {name for name in dir(BaseModel) if not name.startswith("__")} | {
-    "model_config", _HASH, _WRITTEN, "keep", "still_says", "unchanged", "spells", "placed", "untold",
-}  # fmt: skip
+_OF_PYDANTIC = {name for name in dir(BaseModel) if not name.startswith("__")} | {"model_config", _HASH}
 
 
 def _brief(value: object) -> str:
@@ -242,7 +229,8 @@ def _brief(value: object) -> str:
     return str(value)
 
 
-def _same(one: object, other: object) -> bool:
+def same(one: object, other: object) -> bool:
+    """Whether two values of a field are the same."""
     return one is other or _comparable(one) == _comparable(other)
 
 

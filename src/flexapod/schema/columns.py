@@ -11,9 +11,13 @@ import numpy as np
 from annotated_types import Ge, Gt, Le, Lt
 from pydantic.fields import FieldInfo
 
-from flexapod.schema.base import Frozen, Measure
+from flexapod.schema.base import Key, Quantity
+from flexapod.schema.table import Table
 
 Kind = Literal["number", "vector", "rows", "whole", "text", "words", "flag", "table", "other"]
+
+
+_LIMITS = {"gt": "above", "ge": "at least", "le": "at most", "lt": "below"}
 
 
 @dataclass(frozen=True, kw_only=True)
@@ -34,7 +38,8 @@ class Column:
 
     `kind` of its value; `dimensions` that a number may have, another key deciding which; `size`: numbers of a vector;
     `choices` of a text; `models`: classes of a table, of which the text under `type` or `law` names one; a number may
-    stand in place of a table where both are possible; `default` where it is a number.
+    stand in place of a table where both are possible; `default` where it is a number; `why`, `usual`: its words and
+    those of its default, where it has some; `short`: "number" or "text" that may stand for it.
     """
 
     name: str
@@ -42,13 +47,16 @@ class Column:
     dimensions: tuple[str, ...] = ()
     size: int = 0
     choices: tuple[str, ...] | None = None
-    models: tuple[type[Frozen], ...] = ()
+    models: tuple[type[Table], ...] = ()
     bounds: Bounds = NO_BOUNDS
     default: float | None = None
+    why: str = ""
+    usual: str = ""
+    short: str = ""
 
 
 @cache
-def columns_of(model: type[Frozen]) -> dict[str, Column]:
+def columns_of(model: type[Table]) -> dict[str, Column]:
     """The keys of a table that fills a class, in their order."""
     return {name: _column(name, info) for name, info in model.model_fields.items()}
 
@@ -56,12 +64,16 @@ def columns_of(model: type[Frozen]) -> dict[str, Column]:
 def _column(name: str, info: FieldInfo) -> Column:
     parts = list(_flat([info.annotation, *info.metadata]))
     kinds = [part for part in parts if isinstance(part, type)]
-    measure = next((part for part in parts if isinstance(part, Measure)), None)
-    dimensions = ("number",) if measure is None else measure.dimensions
-    found: dict[str, Any] = {"name": name, "bounds": _bounds(parts)}
+    quantity = next((part for part in parts if isinstance(part, Quantity)), None)
+    dimensions = ("number",) if quantity is None else quantity.dimensions
+    keys = [part for part in parts if isinstance(part, Key)]
+    said = {
+        word: next((getattr(key, word) for key in keys if getattr(key, word)), "") for word in ("why", "usual", "short")
+    }
+    found: dict[str, Any] = {"name": name, "bounds": _bounds(parts), **said}
     if isinstance(info.default, int | float) and not isinstance(info.default, bool):
         found["default"] = info.default
-    models = tuple(kind for kind in kinds if issubclass(kind, Frozen))
+    models = tuple(kind for kind in kinds if issubclass(kind, Table))
     shape = next((part.shape for part in parts if hasattr(part, "shape") and not isinstance(part, type)), None)
     choices = [part for part in parts if isinstance(part, str)]
     if models:
@@ -94,14 +106,9 @@ def _flat(parts: list[Any]) -> Any:
 
 
 def _bounds(parts: list[Any]) -> Bounds:
-    least: float | None = None
-    most: float | None = None
-    words: list[str] = []
-    for limit in parts:
-        if isinstance(limit, Gt | Ge):
-            least = float(limit.gt if isinstance(limit, Gt) else limit.ge)  # type: ignore[arg-type]
-            words.append(f"{'above' if isinstance(limit, Gt) else 'at least'} {least:g}")
-        elif isinstance(limit, Lt | Le):
-            most = float(limit.lt if isinstance(limit, Lt) else limit.le)  # type: ignore[arg-type]
-            words.append(f"{'below' if isinstance(limit, Lt) else 'at most'} {most:g}")
+    limits = {name: limit for part in parts if isinstance(part, Quantity) for name, limit in part.limits.items()}
+    kinds = {Gt: "gt", Ge: "ge", Le: "le", Lt: "lt"}
+    limits |= {kinds[type(part)]: float(getattr(part, kinds[type(part)])) for part in parts if type(part) in kinds}
+    words = [f"{_LIMITS[name]} {limit:g}" for name, limit in limits.items()]
+    least, most = limits.get("gt", limits.get("ge")), limits.get("lt", limits.get("le"))
     return Bounds(least=least, most=most, words=", ".join(words))

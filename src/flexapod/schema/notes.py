@@ -6,8 +6,8 @@ from collections.abc import Callable, Iterator, Mapping
 from dataclasses import dataclass, field, replace
 from typing import Any
 
-from flexapod.schema.base import Frozen
-from flexapod.schema.columns import NO_BOUNDS, Bounds, Kind, columns_of
+from flexapod.schema.columns import NO_BOUNDS, Bounds, Column, Kind, columns_of
+from flexapod.schema.table import Table
 
 
 @dataclass(frozen=True, kw_only=True)
@@ -51,11 +51,16 @@ class Field:
 
 @dataclass
 class Notes:
-    """`fields` by key; `allowed`: keys by path of their table; `given`: fields of the model that were filled."""
+    """`fields` by key; `allowed`: keys by path of their table; `given`: fields of the model that were filled.
+
+    `columns`: of the classes that a table fills, by its path; `named`: tables whose keys are names.
+    """
 
     fields: dict[str, Field] = field(default_factory=dict)
     allowed: dict[str, set[str]] = field(default_factory=dict)
     given: set[tuple[str, str]] = field(default_factory=set)
+    columns: dict[str, dict[str, Column]] = field(default_factory=dict)
+    named: set[str] = field(default_factory=set)
 
     def allow(self, table: str, names: tuple[str, ...]) -> None:
         """A table may have these keys."""
@@ -71,15 +76,16 @@ class Notes:
     def fill(self, table: str, model: Callable[..., Any], values: Mapping[str, object]) -> None:
         """An object of the model is made of the values of a table."""
         cls = model if isinstance(model, type) else getattr(model, "__self__", None)
-        if not (isinstance(cls, type) and issubclass(cls, Frozen)):
+        if not (isinstance(cls, type) and issubclass(cls, Table)):
             return
         self.given |= {(cls.__name__, name) for name in values}
+        self.columns.setdefault(table, {}).update(columns_of(cls))
         for name, column in columns_of(cls).items():
             known = self.fields.get(_path(table, name))
             if known is not None and known.kind in ("number", "whole"):
                 self.fields[known.key] = replace(known, bounds=column.bounds, default=column.default)
 
-    def taken(self, table: str, built: Frozen) -> None:
+    def taken(self, table: str, built: Table) -> None:
         """The object was made: what it has for keys that are absent."""
         for name in type(built).model_fields:
             known = self.fields.get(_path(table, name))

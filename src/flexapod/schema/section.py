@@ -8,13 +8,13 @@ from typing import Any, TypeVar
 import numpy as np
 
 from flexapod.schema.axes import WORDS, axis_of
-from flexapod.schema.base import Frozen
 from flexapod.schema.columns import Column, columns_of
 from flexapod.schema.csv_tables import Unreadable, read_table
+from flexapod.schema.table import Table
 from flexapod.schema.values import Values
 from flexapod.typing import Array
 
-M = TypeVar("M", bound=Frozen)
+M = TypeVar("M", bound=Table)
 _KINDS = ("type", "law")  # keys that say which of several tables it is
 
 
@@ -43,8 +43,8 @@ class Section(Values):
             Gives the fields that are not read key by key; asked once the keys are known to be right.
         """
         columns = [column for name, column in columns_of(model).items() if name not in model.derived]
-        self.only(*(column.name for column in columns), *also)
-        others = {} if then is None else then(self)
+        self.only(*(column.name for column in columns), *model.also, *also)
+        others = {**model.resolved(self), **({} if then is None else then(self))}
         values = {column.name: self._value(column, among) for column in columns if column.name not in others}
         return self.build(model, **values, **others).keep(self.written)
 
@@ -54,6 +54,9 @@ class Section(Values):
             return self.number(name, next((kind for kind in among if kind in column.dimensions), column.dimensions[0]))
         if column.kind == "vector" and column.size:
             return self.vector(name, *np.repeat(column.dimensions, column.size // len(column.dimensions)).tolist())
+        if column.kind == "vector":  # of any length
+            given = self.data.get(name)
+            return self.vector(name, *column.dimensions * (len(given) if isinstance(given, list) else 1))
         if column.kind == "text":
             return self.text(name, column.choices)
         if column.kind == "whole":
@@ -87,7 +90,7 @@ class Section(Values):
             kinds = {kind: one for one in models for kind in columns_of(one)[key].choices or ()}
             model = kinds.get(str(self.text(key, tuple(kinds))), default or model)
         reader = (readers or {}).get(model)
-        return self.read(model, among=among) if reader is None else reader(self)
+        return model.from_table(self, among) if reader is None else reader(self)
 
     def direction(self, name: str, place: Array, normal: Array) -> Array | None:
         """A vector, or a word for one as seen from a joint (`schema.axes`); None if absent."""

@@ -9,14 +9,14 @@ from typing import Any, Self, TypeVar
 
 from flexapod.errors import InputError, Malformed, closest
 from flexapod.schema.axes import plane_order
-from flexapod.schema.base import Frozen
 from flexapod.schema.columns import Kind
 from flexapod.schema.notes import Notes
 from flexapod.schema.reference import advice, example_line
+from flexapod.schema.table import Table
 from flexapod.schema.written import Written
 from flexapod.units import to_si
 
-M = TypeVar("M", bound=Frozen)
+M = TypeVar("M", bound=Table)
 
 
 class Values:
@@ -94,6 +94,12 @@ class Values:
                     allowed=", ".join(names),
                     next_step=advice(self.path, name, names, self.data),
                 )
+
+    def any_names(self) -> None:
+        """Take every key: they are names."""
+        self.only(*self.data)
+        if self.notes is not None:
+            self.notes.named.add(self.path)
 
     def need(self, *names: str) -> None:
         """Refuse a section without these keys."""

@@ -9,10 +9,11 @@ import numpy as np
 
 from flexapod import model, rigid
 from flexapod.model import AxisMotion, CombinedMotion, Home, Robot, ServoDrive, Study
+from flexapod.model.cylinder import Cylinder
 from flexapod.model.joint import Carriage
 from flexapod.model.leg import Leg
 from flexapod.model.payload import Payload
-from flexapod.model.piston import Cylinder, Piston, Strut
+from flexapod.model.piston import Piston, Strut
 from flexapod.proof.case import Check, case, checks
 from flexapod.proof.cases.integration import balance
 from flexapod.proof.robots import (

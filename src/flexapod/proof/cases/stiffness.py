@@ -11,9 +11,10 @@ from scipy.spatial.transform import Rotation
 from scipy.special import spherical_jn
 
 from flexapod.model import CombinedMotion, Robot, Simulation
+from flexapod.model.cylinder import Cylinder
 from flexapod.model.joint import Joint
 from flexapod.model.payload import Payload
-from flexapod.model.piston import Cylinder, Piston
+from flexapod.model.piston import Piston
 from flexapod.proof.case import Case, Check, case, checks
 from flexapod.proof.robots import CYLINDER, PISTON, eight_legs, hexapod, table, tripod, without_gravity
 from flexapod.rigid import Poses, poses, rigid_limbs
