@@ -17,7 +17,7 @@ if TYPE_CHECKING:
     from flexapod.errors import ComputationError, FlexapodError, InputError
     from flexapod.model import ActuatorStudy, Study, load, loads, open_values, preset
     from flexapod.paper.study import replicate
-    from flexapod.schema.base import Measure
+    from flexapod.schema.base import Key, Quantity
     from flexapod.study import (
         accuracy,
         budget,
@@ -44,7 +44,7 @@ if TYPE_CHECKING:
 _HOMES = {
     "flexapod.elements.element": ("Contribution", "Element", "Output"),
     "flexapod.elements.frame": ("Energies",),
-    "flexapod.schema.base": ("Measure",),
+    "flexapod.schema.base": ("Key", "Quantity"),
     "flexapod.errors": ("ComputationError", "FlexapodError", "InputError"),
     "flexapod.citations": ("cite",),
     "flexapod.model": ("ActuatorStudy", "Study", "load", "loads", "open_values", "preset"),
@@ -83,8 +83,9 @@ __all__ = [
     "Energies",
     "FlexapodError",
     "InputError",
-    "Measure",
+    "Key",
     "Output",
+    "Quantity",
     "Study",
     "__version__",
     "accuracy",

@@ -11,6 +11,7 @@ import scipy.interpolate
 from tests.trial_element.maxwell import Maxwell
 
 import flexapod as fx
+from flexapod.elements.element import registered
 from flexapod.exchange.export import abaqus_deck
 from flexapod.model import ServoDrive, preset_text, to_toml
 from flexapod.solve.at_poses import robot_modes
@@ -28,6 +29,16 @@ def study(table=TABLE, **leg):
     found = fx.loads(text(table))
     legs = tuple(one.replace(**leg) for one in found.robot.legs)
     return found.replace(robot=found.robot.replace(legs=legs))
+
+
+@pytest.fixture(autouse=True)
+def known(monkeypatch):
+    """Elements that a test makes known are so no longer than it."""
+    for name in [name for name in registered if name != "maxwell"]:
+        monkeypatch.delitem(registered, name)
+    yield
+    for name in [name for name in registered if name != "maxwell"]:
+        del registered[name]
 
 
 @pytest.fixture(scope="module")

@@ -17,9 +17,9 @@ class Maxwell(fx.Element):
     coordinates: ClassVar = (("z", 1),)  # m, how far the damper has given way
     parameters: ClassVar = (("k", 1), ("c", 1), ("m", 1), ("home", 1))
 
-    stiffness: Annotated[float, fx.Measure("stiffness")]
-    relaxation: Annotated[float, fx.Measure("time")]
-    play: Annotated[float, fx.Measure("length")] = 0.0
+    stiffness: Annotated[float, fx.Quantity("stiffness", above=0, why="of the spring")]
+    relaxation: Annotated[float, fx.Quantity("time", above=0, why="damping over stiffness")]
+    play: Annotated[float, fx.Quantity("length", least=0, why="free travel of its seat")] = 0.0
 
     def numbers(self, leg, standing):
         """Stiffness, damping, the light mass, and the length at which nothing is stretched."""

@@ -15,7 +15,7 @@ from typing import TYPE_CHECKING, Any, ClassVar, Literal, NamedTuple, Self
 
 from flexapod.elements.frame import Energies
 from flexapod.errors import InputError
-from flexapod.schema.base import Frozen
+from flexapod.schema.table import Table
 from flexapod.symbolic.vocabulary import dot, sqrt
 
 if TYPE_CHECKING:
@@ -122,6 +122,8 @@ class Physics:
 
     Attributes
     ----------
+    at : str
+        NAME of its table in a leg; none of what is in other tables.
     coordinates, parameters : tuple of (name, size)
         What it adds to the coordinates of a leg, and to the numbers that its equations read, in SI.
     absent : mapping
@@ -132,6 +134,7 @@ class Physics:
         Its results.
     """
 
+    at: ClassVar[str] = ""
     coordinates: ClassVar[Named] = ()
     parameters: ClassVar[Named] = ()
     absent: ClassVar[Mapping[str, Any]] = {}
@@ -163,7 +166,7 @@ class Physics:
         return ()
 
     @classmethod
-    def held(cls, own: Self | None, leg: Leg, *, at_rest: bool) -> Sequence[str]:
+    def held(cls, own: Any, leg: Leg, *, at_rest: bool) -> Sequence[str]:
         """Coordinates that follow a table in one leg: by default those of an element that the leg does not have."""
         return () if own is not None else tuple(name for name, _ in cls.coordinates)
 
@@ -210,26 +213,19 @@ class Physics:
         return None
 
 
-class Element(Physics, Frozen):
+class Element(Physics, Table):
     """An element with a table of its own in a leg, ``[leg.NAME]``, or several, ``[[leg.NAME]]``; base of users' ones.
 
-    Fields are keys of the table: ``stiffness: Annotated[float, fx.Measure("stiffness")]``. Names of coordinates,
-    parameters and results are its own; beside those of others NAME stands before them. What it has and can do is in
-    `Physics`. It is known once its module is imported, or by an entry point NAME of its package in the group
+    Fields are keys of the table: ``stiffness: Annotated[float, fx.Quantity("stiffness", above=0)]``. Names of
+    coordinates, parameters and results are its own; beside those of others NAME stands before them. What it has and can
+    do is in `Physics`. It is known once its module is imported, or by an entry point NAME of its package in the group
     ``flexapod.elements``.
-
-    Attributes
-    ----------
-    at : str
-        NAME of its table.
 
     Raises
     ------
     InputError
         A class that comes from no file, or whose names are taken.
     """
-
-    at: ClassVar[str] = ""
 
     def __init_subclass__(cls, **options: Any) -> None:
         super().__init_subclass__(**options)

@@ -29,7 +29,7 @@ class Slot:
     @property
     def prefix(self) -> str:
         """What stands before its names: nothing of an element without a table of its own."""
-        at = getattr(self.kind, "at", "")
+        at = self.kind.at
         return at and f"{at}{'' if self.number == 1 else f'_{self.number}'}_"
 
     def of(self, leg: Leg) -> Physics | None:

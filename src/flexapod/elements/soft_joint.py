@@ -32,7 +32,7 @@ class SoftJoint(Physics):
         return cls(getattr(leg, f"{cls.end}_joint"), along) if along else None
 
     @classmethod
-    def held(cls, own: Self | None, leg: Leg, *, at_rest: bool) -> Sequence[str]:
+    def held(cls, own: Any, leg: Leg, *, at_rest: bool) -> Sequence[str]:
         """None by itself: a flexure has the same coordinates (`solve.robot_system`)."""
         return ()
 

@@ -34,7 +34,7 @@ class SummedError(Physics):
         return {"rotor_integral": self.gain}
 
     @classmethod
-    def held(cls, own: Self | None, leg: Leg, *, at_rest: bool) -> Sequence[str]:
+    def held(cls, own: Any, leg: Leg, *, at_rest: bool) -> Sequence[str]:
         """At rest it has left no error: then the rotor is where it is to be, and there is nothing to sum."""
         if own is None:
             return ("w",)
