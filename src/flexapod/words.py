@@ -131,9 +131,14 @@ def columns(unit: str, *values: ArrayLike, digits: int = 4) -> list[Any]:
     return [name, *(flat[end - len(part) : end] for part, end in zip(parts, ends, strict=True))]
 
 
+def capital(words: str) -> str:
+    """Words with a capital letter."""
+    return f"{words[0].upper()}{words[1:]}"
+
+
 def sentence(words: str) -> str:
     """Words with a capital letter and a full stop."""
-    return f"{words[0].upper()}{words[1:]}."
+    return f"{capital(words)}."
 
 
 def cleared(values: ArrayLike, largest: float) -> Array:

@@ -11,9 +11,16 @@ import scipy.interpolate
 from tests.trial_element.maxwell import Maxwell
 
 import flexapod as fx
+from flexapod.app.view.charts import charts
+from flexapod.document.parts import Bullets
+from flexapod.document.study import study_items
 from flexapod.elements.element import registered
 from flexapod.exchange.export import abaqus_deck
 from flexapod.model import ServoDrive, preset_text, to_toml
+from flexapod.proof.engines import exudyn_robot
+from flexapod.proof.engines.exudyn_integration import Integration
+from flexapod.proof.engines.mujoco_model import mjcf
+from flexapod.report import figures
 from flexapod.solve.at_poses import robot_modes
 
 STIFFNESS, RELAXATION = 2e4, 0.1
@@ -164,13 +171,30 @@ def test_its_table_is_refused_as_others_are(table, words):
         fx.loads(text(table))
 
 
-@pytest.mark.parametrize("reader", [fx.inverse_dynamics, abaqus_deck])
+@pytest.mark.parametrize("reader", [fx.inverse_dynamics, abaqus_deck, lambda study: mjcf(study.robot)])
 def test_who_does_not_know_it_says_so(reader):
     with pytest.raises(fx.InputError, match=r"leg\.maxwell: is not known to"):
         reader(study())
 
 
 CONSOLE = 'import flexapod as fx\nclass Typed(fx.Element):\n    at = "typed"\n'
+
+
+def test_another_engine_says_so():
+    given, at = study(), Integration(duration=0.1, step=1e-3)
+    with pytest.raises(fx.InputError, match="maxwell: is not modelled in Exudyn"):
+        exudyn_robot.simulate_robot(given.robot, given.motion, at)
+
+
+def test_report_and_page_show_it(moved):
+    said = [line for part in study_items(fx.loads(text()), None) if isinstance(part, Bullets) for line in part.lines]
+    assert "[leg.maxwell]: stiffness 20 kN/m, relaxation 0.1 s." in said
+    chart = charts(moved)["maxwell_force"]
+    assert chart.unit == "N" and len(chart.names) == 6 and chart.title.startswith("Force of the Maxwell element")
+    titles = {name: title for name, title, _ in figures._robot(moved)}
+    assert titles["maxwell-force"] == "Force of the Maxwell element along the leg"
+    drawn = fx.plot.by_leg(moved, "maxwell_force").axes[0]
+    assert len(drawn.lines) >= 6 and drawn.get_ylabel() == "maxwell force [N]"
 
 
 def test_a_class_without_a_file_is_refused():

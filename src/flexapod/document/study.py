@@ -81,7 +81,19 @@ def _parts(study: Study) -> list[str]:
     for title, table in tables.items():
         names = [] if table is None else type(table).model_fields
         listed[title] = [name.replace("_", " ") for name in names if getattr(table, name) is not None]
-    return [f"{title}: {', '.join(words)}." for title, words in listed.items() if words]
+    return [f"{title}: {', '.join(words)}." for title, words in listed.items() if words] + _elements(study.robot)
+
+
+def _elements(robot: Robot) -> list[str]:
+    """Elements with tables of their own; of legs alike once."""
+    told: dict[str, list[int]] = {}
+    for leg, one in enumerate(robot.legs, start=1):
+        for element in one.elements:
+            said = element.written.data if element.written is not None else element._shown()
+            words = ", ".join(f"{name} {value}" for name, value in said.items())
+            told.setdefault(f"[leg.{element.at}]: {words}", []).append(leg)
+    legs = {words: "" if len(which) == robot.count else f" (legs {which})" for words, which in told.items()}
+    return [f"{words}{which}." for words, which in legs.items()]
 
 
 def _carried(robot: Robot) -> list[str]:

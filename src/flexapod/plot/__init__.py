@@ -9,7 +9,7 @@ from flexapod.plot.actuator import actuator_modes, actuator_path, actuator_respo
 from flexapod.plot.budget import budget
 from flexapod.plot.convergence import convergence, ladder
 from flexapod.plot.elements import sliding_mesh, solid_comparison, solid_meshes
-from flexapod.plot.legs import actuator_forces, leg_lengths, tip_deflections
+from flexapod.plot.legs import actuator_forces, by_leg, leg_lengths, tip_deflections
 from flexapod.plot.maps import workspace_map
 from flexapod.plot.payload import com_path, deviation_by_cause, energies, motion_law
 from flexapod.plot.style import save
@@ -25,6 +25,7 @@ __all__ = [
     "actuator_path",
     "actuator_response",
     "budget",
+    "by_leg",
     "com_path",
     "convergence",
     "deviation_by_cause",

@@ -187,3 +187,26 @@ def _leg_line(axes: Axes, data: xr.Dataset, values: np.ndarray, i: int) -> None:
 def _leg_legend(fig: Figure, axes: Axes) -> None:
     lines, words = axes.get_legend_handles_labels()
     fig.legend(lines, words, loc="outside upper center", ncols=columns(len(words)), handlelength=2.6)
+
+
+@styled
+def by_leg(data: xr.Dataset, name: str) -> Figure:
+    """A result of an element over time, a line for each leg that has it.
+
+    Parameters
+    ----------
+    data : xarray.Dataset
+        Result of a simulation.
+    name : str
+        Of a variable (time, leg).
+    """
+    values = data[name]
+    unit, fig = scale(values, values.attrs["units"]), figure(PAGE, 3.0)
+    axes = fig.subplots()
+    for i, leg in enumerate(data.leg.values):
+        if values.sel(leg=leg).notnull().any():
+            _leg_line(axes, data, unit(values.sel(leg=leg)), i)
+    axes.set(xlabel="time [s]", ylabel=f"{name.replace('_', ' ')} [{unit.name}]")
+    mark_end(axes, motion_end(data), "motion ends")
+    _leg_legend(fig, axes)
+    return fig

@@ -94,6 +94,8 @@ def _robot(data: Dataset) -> Iterator[_Plan]:
     from flexapod.scene.drives import drives
     from flexapod.study.after.summary import tool_apart
     from flexapod.study.attributes import robot_of
+    from flexapod.study.names import of_elements
+    from flexapod.words import capital
 
     found = drives(data)
     elastic = bool(np.abs(data.com_deviation).max() > 0)
@@ -117,6 +119,8 @@ def _robot(data: Dataset) -> Iterator[_Plan]:
     yield "leg-lengths", words, lambda: plot.leg_lengths(data)
     if np.abs(data.tip_deflection).max() > 0:
         yield "tip-deflections", "Deflection of the tips across the legs", lambda: plot.tip_deflections(data)
+    for own in of_elements(data):
+        yield own.replace("_", "-"), capital(data[own].attrs["long_name"]), lambda own=own: plot.by_leg(data, own)
     if not held:
         yield "motion", "Commanded motion", lambda: plot.motion_law(data)
     yield "energies", "Energies and their balance", lambda: plot.energies(data)

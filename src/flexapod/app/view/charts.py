@@ -15,8 +15,9 @@ from flexapod.scene.colours import AXIS_COLORS, ENERGIES, colors_of_legs
 from flexapod.scene.drives import drives
 from flexapod.scene.geometry import nearest
 from flexapod.study.after.summary import POINT_WORDS, tip_size
+from flexapod.study.names import of_elements
 from flexapod.typing import Array
-from flexapod.words import NOTHING, cleared_lines, number, scale
+from flexapod.words import NOTHING, capital, cleared_lines, number, scale
 
 if TYPE_CHECKING:
     from xarray import DataArray, Dataset
@@ -81,6 +82,7 @@ def charts(data: Dataset, point: str = "com") -> dict[str, Chart]:
                 _legs(data),
                 colors,
             ),
+            **{name: _of_element(data, name, colors) for name in of_elements(data)},
             "energies": _energies(data),
         }
     return {
@@ -92,6 +94,13 @@ def charts(data: Dataset, point: str = "com") -> dict[str, Chart]:
         "force": _chart(data, "Axial force on the beam", data.force, "N", ["force"], _OTHERS),
         "energies": _energies(data),
     }
+
+
+def _of_element(data: Dataset, name: str, colors: tuple[str, ...]) -> Chart:
+    values = data[name]
+    there = values.notnull().any("time").values
+    own, title = values[:, there], capital(str(values.attrs["long_name"]))
+    return _chart(data, title, own, str(values.attrs["units"]), _legs(own), tuple(np.array(colors)[there]))
 
 
 def _legs(data: Dataset | DataArray) -> list[str]:

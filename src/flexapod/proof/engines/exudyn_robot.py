@@ -93,6 +93,7 @@ def _refused(key: str, allowed: str, **more: Any) -> InputError:
 def _lacking(leg: Leg) -> Iterator[tuple[str, object, str]]:
     """What the model of a leg's joints, springs and drive does not have: key, whether it is there, what is allowed."""
     screw, straight = leg.screw, "a piston clamped in the mouth of a rigid cylinder"
+    yield from ((element.at, True, "legs without it") for element in leg.elements)
     yield "guide", leg.guide is not None, straight
     yield "cylinder.diameter", leg.cylinder.section is not None, straight
     yield "drive.motor.ripple", screw and screw.motor.ripple is not None, "a motor without"

@@ -5,6 +5,7 @@ from __future__ import annotations
 import numpy as np
 
 from flexapod import rigid
+from flexapod.elements.known import refuse_tables
 from flexapod.model import Robot
 from flexapod.rigid.rotations import exponential, quaternion
 from flexapod.typing import Array
@@ -35,6 +36,7 @@ def mjcf(robot: Robot) -> str:
     ----------
     E. Todorov, T. Erez, Y. Tassa, "MuJoCo: a physics engine for model-based control", IROS (2012) 5026-5033.
     """
+    refuse_tables(robot.legs, "MuJoCo")
     limbs, load = rigid.rigid_limbs(robot), robot.payload
     full = [load.inertia[i, j] for i, j in ((0, 0), (1, 1), (2, 2), (0, 1), (0, 2), (1, 2))]
     pose = f'pos="{_numbers(robot.home_position)}" quat="{_numbers(quaternion(robot.home_rotation))}"'
