@@ -58,24 +58,21 @@ def earlier(tmp_path):
     """A store as it was before SQLite: four points, of which one was written and not yet marked."""
     header = {"flexapod_sweep_format": 2, "flexapod_version": "0.1.0", "study_hash": "1f", "axes": "[]"}
     names = {"coordinates": "a.b c", "varied": "a.b c", "kept": "x by s r", "complete": "x by r"}
-    group = zarr.create_group(tmp_path / "a.zarr", attributes=header | names)
-    nan = np.nan
-    for name, dims, values in (
-        ("a.b", ["point"], np.array([1.0, 2.0, 3.0, 4.0])), ("c", ["point"], ["u", "v", "w", "u"]),
-        ("axis", ["axis"], ["x", "y", "z"]), ("time", ["time"], np.array([0.0, 0.1])),
-        ("x", ["point"], np.array([5.0, nan, 6.0, 7.0])), ("by", ["point", "axis"], np.arange(12.0).reshape(4, 3)),
-        ("s", ["point"], np.array([nan, nan, 1.0, 2.0])), ("r", ["point", "time"], np.arange(8.0).reshape(4, 2)),
-        ("status", ["point"], np.array([1, 2, 0, 1], dtype=np.int8)),
-        ("message", ["point"], ["", "no", "", ""]), ("remarks", ["point"], ["hm", "", "early", ""]),
-    ):  # fmt: skip
-        attributes = {"long_name": f"the {name}", "flag_values": [0, 1, 2]} if name == "status" else {"long_name": name}
-        kind = values.dtype if isinstance(values, np.ndarray) else str
-        array = group.create_array(
-            name, shape=np.shape(values), dtype=kind, dimension_names=dims, attributes=attributes,
-            compressors=zarr.codecs.ZstdCodec(checksum=True), config={"write_empty_chunks": True},
-        )  # fmt: skip
-        array[...] = values if kind is not str else np.array(values, dtype=object)
-    return tmp_path / "a.zarr"
+    nan, path = np.nan, tmp_path / "a.zarr"
+    variables = {
+        "a.b": ("point", [1.0, 2.0, 3.0, 4.0]), "c": ("point", ["u", "v", "w", "u"]), "axis": ["x", "y", "z"],
+        "time": [0.0, 0.1], "x": ("point", [5.0, nan, 6.0, 7.0]), "s": ("point", [nan, nan, 1.0, 2.0]),
+        "by": (("point", "axis"), np.arange(12.0).reshape(4, 3)),
+        "r": (("point", "time"), np.arange(8.0).reshape(4, 2)), "status": ("point", np.array([1, 2, 0, 1], dtype=np.int8)),
+        "message": ("point", ["", "no", "", ""]), "remarks": ("point", ["hm", "", "early", ""]),
+    }  # fmt: skip
+    stored = xr.Dataset(variables, attrs=header | names)
+    for name in stored.variables:
+        stored[name].attrs = {"long_name": name}
+        stored[name] = stored[name].astype(object if stored[name].dtype.kind == "U" else stored[name].dtype)
+    checked = {name: {"compressors": zarr.codecs.ZstdCodec(checksum=True)} for name in stored.variables}
+    stored.to_zarr(path, encoding=checked, consolidated=False)
+    return path
 
 
 def test_an_earlier_store_is_read(earlier):
