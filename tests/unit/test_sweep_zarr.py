@@ -63,7 +63,8 @@ def earlier(tmp_path):
         "a.b": ("point", [1.0, 2.0, 3.0, 4.0]), "c": ("point", ["u", "v", "w", "u"]), "axis": ["x", "y", "z"],
         "time": [0.0, 0.1], "x": ("point", [5.0, nan, 6.0, 7.0]), "s": ("point", [nan, nan, 1.0, 2.0]),
         "by": (("point", "axis"), np.arange(12.0).reshape(4, 3)),
-        "r": (("point", "time"), np.arange(8.0).reshape(4, 2)), "status": ("point", np.array([1, 2, 0, 1], dtype=np.int8)),
+        "r": (("point", "time"), np.arange(8.0).reshape(4, 2)),
+        "status": ("point", np.array([1, 2, 0, 1], dtype=np.int8)),
         "message": ("point", ["", "no", "", ""]), "remarks": ("point", ["hm", "", "early", ""]),
     }  # fmt: skip
     stored = xr.Dataset(variables, attrs=header | names)
