@@ -95,13 +95,14 @@ def test_nothing_but_failures(flexapod, files, folder):
 
 
 def test_json(flexapod, files, folder):
-    run = flexapod("sweep", *files(), "--workers", "0", "--json", "--out", "there")
+    run = flexapod("sweep", *files(), "--workers", "0", "--zarr", "--json", "--out", "there")
     assert run.exit_code == 0, run.stderr
     found = json.loads(run.stdout)
     assert (found["points"], found["computed"], found["failed"], found["pending"]) == (3, 3, 0, 0)
     smallest = found["scalars"]["com_deviation_peak"]["smallest_at"]
     assert smallest == {"point": 2, "leg.piston.diameter": 0.03}
-    assert found["files"][0] == "there/sweep.sqlite"
+    assert found["files"][:2] == ["there/sweep.sqlite", "there/sweep.zarr"]
+    assert all((folder / file).exists() for file in found["files"])
 
 
 def test_bad_input(flexapod, files, folder):

@@ -14,7 +14,6 @@ from tests.sweeps import KEY, diameters, quick, quick_text, start
 
 import flexapod as fx
 from flexapod import version
-from flexapod import version as identity
 from flexapod.errors import ComputationError, InputError
 from flexapod.model import loads
 from flexapod.schema import csv_tables
@@ -22,7 +21,7 @@ from flexapod.surveys.sweeps import SweepStopped, batch, open_sweep, run, store,
 from flexapod.surveys.sweeps.batch import compute_batch
 from flexapod.surveys.sweeps.plan import read_plan
 from flexapod.surveys.sweeps.points import Points
-from flexapod.surveys.sweeps.store import Known, StoredArray, SweepStore, locked
+from flexapod.surveys.sweeps.store import Known, StoredArray, SweepStore
 
 
 @pytest.fixture
@@ -65,6 +64,9 @@ def test_what_is_stored(path):
     for other in (open_sweep(path), sweep(None)):
         xr.testing.assert_identical(other, made)
     assert os.listdir(path.parent) == ["sweep.sqlite"]
+    made.to_netcdf(path.with_suffix(".nc"))
+    with xr.open_dataset(path.with_suffix(".nc")) as read:
+        assert read[KEY].values.tolist() == made[KEY].values.tolist()
     with sqlite3.connect(path) as plain:  # a row a point: eight bytes a number, four of a checksum
         rows = plain.execute("SELECT point, state, words, scalars FROM points").fetchall()
     plain.close()
@@ -72,13 +74,6 @@ def test_what_is_stored(path):
     numbers = np.array([np.frombuffer(row[3][:-4], "<f8") for row in rows])
     assert (numbers[:, 0] == made.com_deviation_peak.values).all()
     assert (numbers[:, 1:] == made.com_deviation_peak_by_axis.values).all()
-
-
-def test_netcdf(path, tmp_path):
-    made = sweep(path)
-    made.to_netcdf(tmp_path / "sweep.nc")
-    with xr.open_dataset(tmp_path / "sweep.nc") as read:
-        assert read[KEY].values.tolist() == made[KEY].values.tolist()
 
 
 def test_a_finished_sweep_computes_nothing(path, monkeypatch):
@@ -159,6 +154,7 @@ def test_another_study_sweep_or_version_is_refused(path, monkeypatch):
         fx.sweep(heavier, diameters(4), store=path, workers=0)
     with pytest.raises(InputError, match=r"holds another sweep of this study"):
         sweep(path, 5)
+    fx.sweep(loads(quick_text() + "\n# a comment\n"), diameters(4), store=path, workers=0)  # no other study
     monkeypatch.setattr(version, "__version__", "9.9")
     with pytest.raises(InputError, match=r"flexapod_version = .*was made by another version.*Allowed: 9.9"):
         sweep(path)
@@ -167,18 +163,13 @@ def test_another_study_sweep_or_version_is_refused(path, monkeypatch):
 def test_other_sources_are_refused(path, monkeypatch):
     """Changed code under an unchanged version once went on with an old store."""
     sweep(path)
-    monkeypatch.setattr(identity, "_KINDS", (".py",))
-    identity.sources.cache_clear()
+    monkeypatch.setattr(version, "_KINDS", (".py",))
+    version.sources.cache_clear()
     with pytest.raises(InputError, match=r"flexapod_sources = .*was made by other sources of flexapod"):
         sweep(path)
     monkeypatch.undo()
-    identity.sources.cache_clear()
+    version.sources.cache_clear()
     sweep(path)
-
-
-def test_a_comment_in_the_study_is_no_other_study(path):
-    sweep(path)
-    fx.sweep(loads(quick_text() + "\n# a comment\n"), diameters(4), store=path, workers=0)
 
 
 def test_what_is_no_store_is_refused_and_left_alone(tmp_path):
@@ -189,14 +180,9 @@ def test_what_is_no_store_is_refused_and_left_alone(tmp_path):
     assert (tmp_path / "notes.txt").read_text(encoding="utf-8") == "mine"
 
 
-def test_two_sweeps_on_one_store(path):
-    with locked(path), pytest.raises(ComputationError, match="in use by another sweep"):
-        sweep(path)
-    assert sweep(path).status.values.tolist() == ["computed"] * 4
-
-
 @pytest.mark.skipif(sys.platform == "win32", reason="SIGKILL")
-def test_the_lock_of_a_killed_process_is_no_hindrance(path):
+def test_two_sweeps_on_one_store(path):
+    """The second is refused; the lock of a process that was killed is no hindrance."""
     code = "import sys, pathlib; from flexapod.surveys.sweeps.store import locked\n"
     code += "with locked(pathlib.Path(sys.argv[1])): print('held', flush=True); sys.stdin.read()"
     holder = start("-c", code, path, stdin=-1)

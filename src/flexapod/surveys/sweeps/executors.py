@@ -13,7 +13,7 @@ import warnings
 from collections.abc import Iterator, Sequence
 from contextlib import ExitStack, contextmanager, suppress
 from multiprocessing import resource_tracker
-from typing import TYPE_CHECKING, Any, Protocol
+from typing import TYPE_CHECKING, Any
 
 from flexapod.errors import ComputationError, InputError
 from flexapod.surveys.sweeps import batch
@@ -50,31 +50,6 @@ class WorkerDied(Exception):
         super().__init__(str(points))
 
 
-class Executor(Protocol):
-    """Batches go in, results come out in any order."""
-
-    @property
-    def threads(self) -> int:
-        """Batches that are computed at the same time."""
-        ...
-
-    def submit(self, kept: Kept, points: Sequence[int], packed: Sequence[bytes]) -> None:
-        """Hand over a batch: numbers of points, and their pickled studies."""
-        ...
-
-    def result(self) -> BatchResult:
-        """Wait for any batch.
-
-        Raises
-        ------
-        WorkerDied
-            Its workers ended, more than once.
-        ComputationError
-            Scheduler or workers are lost, or run another version.
-        """
-        ...
-
-
 class InProcess:
     """One batch after the other in this process, without Dask."""
 
@@ -85,7 +60,7 @@ class InProcess:
         self._waiting: list[tuple[Kept, Sequence[int], Sequence[bytes]]] = []
 
     def submit(self, kept: Kept, points: Sequence[int], packed: Sequence[bytes]) -> None:
-        """Hand over a batch; it is computed when its result is asked for."""
+        """Hand over a batch, points and their pickled studies; it is computed when its result is asked for."""
         self._waiting.append((kept, points, packed))
 
     def result(self) -> BatchResult:
@@ -136,7 +111,15 @@ class DaskExecutor:
         future.add_done_callback(self._done.put)
 
     def result(self) -> BatchResult:
-        """Wait for any batch."""
+        """Wait for any batch.
+
+        Raises
+        ------
+        WorkerDied
+            Its workers ended, more than once.
+        ComputationError
+            Scheduler or workers are lost, or run another version.
+        """
         from distributed import KilledWorker
 
         future = self._next()
@@ -158,6 +141,9 @@ class DaskExecutor:
                 raise ComputationError(f"there has been no worker for {PATIENCE:g} s", next_step=LOST)
             if self._client.status in ("closed", "closing"):
                 raise _lost(ConnectionError("the connection to the scheduler is closed"))
+
+
+Executor = InProcess | DaskExecutor  # batches go in, results come out in any order
 
 
 def _lost(error: BaseException) -> ComputationError:

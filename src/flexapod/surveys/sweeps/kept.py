@@ -38,7 +38,7 @@ _SHAPES = ("shape", "axial_shape", "mode")  # dimensions whose size is a setting
 
 @dataclass(frozen=True, kw_only=True)
 class Kept:
-    """Names, in order, with their dimensions beside `point`, units and meaning; sizes of those dimensions.
+    """Names, in order, and what the store holds of them.
 
     ``every``: stored instants between two that records keep; ``times`` (T,) of records [s]. ``absent``: why some
     scalars have no value at some computed points.
@@ -46,15 +46,10 @@ class Kept:
 
     scalars: tuple[str, ...]
     records: tuple[str, ...]
-    variables: Mapping[str, Variable]
-    sizes: Mapping[str, int]
+    arrays: Mapping[str, StoredArray]
     every: int
     times: Array
     absent: Mapping[str, str]
-
-    def shape(self, name: str) -> tuple[int, ...]:
-        """Shape of a value of one point."""
-        return tuple(self.sizes[dim] for dim in self.variables[name].dims)
 
 
 def _tip(data: Dataset) -> Array:
@@ -111,9 +106,12 @@ def kept(keep: Keep, study: Study | ActuatorStudy, resolved: Resolved) -> Kept:
         every, times = _instants(keep, resolved)
         sizes |= {"time": len(times), **_shape_sizes(resolved, variables)}
     absent = {name: table[name].absent for name in names if table[name].absent}
-    return Kept(
-        scalars=names, records=keep.records, variables=variables, sizes=sizes, every=every, times=times, absent=absent
-    )
+    arrays = {}
+    for name, (dims, units, long_name) in variables.items():
+        comment = {"comment": f"NaN at a computed point: {absent[name]}"} if name in absent else {}
+        shape = (len(resolved.first), *(sizes[dim] for dim in dims))
+        arrays[name] = StoredArray(("point", *dims), shape, {"units": units, "long_name": long_name, **comment})
+    return Kept(scalars=names, records=keep.records, arrays=arrays, every=every, times=times, absent=absent)
 
 
 def _robot_scalars(study: Study) -> Mapping[str, Scalar]:
@@ -250,14 +248,9 @@ def columns(points: Points, kept: Kept, resolved: Resolved) -> dict[str, StoredA
     given = _varied(points)
     drawn = _scattered(points, resolved)
     varied = given | {f"{name}{DRAWN}" if name in given else name: column for name, column in drawn.items()}
-    results: dict[str, StoredArray] = {}
-    for name, (dims, units, long_name) in kept.variables.items():
-        shape = (len(points), *kept.shape(name))
-        comment = {"comment": f"NaN at a computed point: {kept.absent[name]}"} if name in kept.absent else {}
-        results[name] = StoredArray(("point", *dims), shape, {"units": units, "long_name": long_name, **comment})
     used = {
         dim: size
-        for column in (*varied.values(), *results.values())
+        for column in (*varied.values(), *kept.arrays.values())
         for dim, size in zip(column.dims, column.shape, strict=True)
     }
     robot = getattr(points.nominal, "robot", None)
@@ -267,7 +260,7 @@ def columns(points: Points, kept: Kept, resolved: Resolved) -> dict[str, StoredA
         varied[dim] = StoredArray((dim,), values.shape, {"long_name": words}, values)
     if "time" in used:
         varied["time"] = StoredArray(("time",), kept.times.shape, {"units": "s", "long_name": "time"}, kept.times)
-    return varied | results
+    return varied | dict(kept.arrays)
 
 
 def _varied(points: Points) -> dict[str, StoredArray]:

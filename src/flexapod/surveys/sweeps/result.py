@@ -3,7 +3,6 @@
 from __future__ import annotations
 
 import json
-from collections.abc import Iterator, Sequence
 from math import prod
 from pathlib import Path
 from typing import TYPE_CHECKING, Any
@@ -12,7 +11,7 @@ import numpy as np
 
 from flexapod.files import replacing
 from flexapod.surveys.sweeps.refusals import other_format
-from flexapod.surveys.sweeps.store import COMPUTED, FAILED, FLOAT, FORMAT, PENDING, Known, StoredPoint, SweepStore
+from flexapod.surveys.sweeps.store import COMPUTED, FAILED, FLOAT, FORMAT, PENDING, SweepStore
 from flexapod.surveys.sweeps.zarr_folder import read_zarr
 
 if TYPE_CHECKING:
@@ -55,39 +54,31 @@ def as_dataset(store: SweepStore) -> Dataset:
 
     from flexapod.surveys.sweeps.records import lazy
 
-    known, rows = store.known, store.points()
-    at = {state: [row.point for row in rows if row.state == state] for state in (COMPUTED, FAILED)}
-    made: dict[str, Any] = dict(_scalars(known, rows, at[COMPUTED]))
+    known = store.known
+    made: dict[str, Any] = {}
+    states = np.full(known.size, PENDING, dtype="U8")
+    words = {state: np.full(known.size, "", dtype=object) for state in (FAILED, COMPUTED)}
+    scalars = known.kept(records=False)
+    ends = np.cumsum([0, *(prod(array.shape[1:]) for array in scalars.values())])
+    numbers = np.full((known.size, ends[-1]), np.nan)
+    for row in store.points():
+        states[row.point], words[row.state][row.point] = row.state, row.words
+        if row.state == COMPUTED:
+            numbers[row.point] = np.frombuffer(row.scalars, FLOAT)
+    for (name, (dims, shape, attributes, _)), begin, end in zip(scalars.items(), ends[:-1], ends[1:], strict=True):
+        made[name] = (dims, np.ascontiguousarray(numbers[:, begin:end]).reshape(shape), attributes)
     for name, (dims, shape, attributes, _) in known.kept(records=True).items():
         values = lazy(store.path, name, shape) if store.path else store.record(name, range(known.size), shape[1:])
         made[name] = (dims, values, attributes)
-    states = np.full(known.size, PENDING, dtype="U8")
     made["status"] = ("point", states, {"long_name": "state of the point"})
-    for name, state, words in (
-        ("message", FAILED, "why there is no result"),
-        ("remarks", COMPUTED, "remarks on the result, a line each"),
-    ):
-        states[at[state]] = state
-        texts = np.full(known.size, "", dtype=object)
-        texts[at[state]] = [row.words for row in rows if row.state == state]
-        made[name] = ("point", texts, {"long_name": words})
+    made["message"] = ("point", words[FAILED], {"long_name": "why there is no result"})
+    made["remarks"] = ("point", words[COMPUTED], {"long_name": "remarks on the result, a line each"})
     coordinates = {
         name: (dims, values.astype(object) if values.dtype.kind == "U" else values, attributes)
         for name, (dims, _, attributes, values) in known.arrays.items()
         if values is not None
     }
     return xr.Dataset(made, coords=coordinates, attrs=known.header)
-
-
-def _scalars(known: Known, rows: Sequence[StoredPoint], computed: Sequence[int]) -> Iterator[tuple[str, Any]]:
-    """What is kept of every point beside records; not a number where nothing is computed."""
-    arrays = known.kept(records=False)
-    widths = [prod(array.shape[1:]) for array in arrays.values()]
-    numbers = np.frombuffer(b"".join(row.scalars for row in rows), FLOAT).reshape(len(computed), sum(widths))
-    for (name, (dims, shape, attributes, _)), end, width in zip(arrays.items(), np.cumsum(widths), widths, strict=True):
-        values = np.full(shape, np.nan)
-        values[computed] = numbers[:, end - width : end].reshape(-1, *shape[1:])
-        yield name, (dims, values, attributes)
 
 
 def unstacked(data: Dataset) -> Dataset:

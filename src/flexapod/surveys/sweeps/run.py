@@ -161,9 +161,8 @@ def _check_room(points: Points, resolved: Resolved, keep: Kept, path: Path | Non
         check_memory(points.study(resolved.largest), max(1, min(workers, len(points))))
     except InputError as error:
         raise error.located(file=points.nominal.path) from None
-    size = sum(8.0 * math.prod(keep.shape(name)) for name in keep.variables)
     check_room(
-        len(points) * size,
+        sum(8.0 * math.prod(array.shape) for array in keep.arrays.values()),
         None if path is None else path.parent,
         file=points.plan.file,
         key="keep",

@@ -134,15 +134,13 @@ class SweepStore:
             {name: StoredArray(tuple(a[0]), tuple(a[1]), a[2], values.get(name)) for name, a in arrays.items()},
         )
 
-    def points(self) -> list[StoredPoint]:
+    def points(self) -> Iterator[StoredPoint]:
         """Rows by number, without their records."""
-        found = []
         for point, state, words, blob in self._all("SELECT point, state, words, scalars FROM points ORDER BY point"):
             scalars = _unsealed(blob, point, state, words)
             if scalars is None:
                 raise unreadable(self.path, f"point {point}")
-            found.append(StoredPoint(point, state, words, scalars))
-        return found
+            yield StoredPoint(point, state, words, scalars)
 
     def record(self, name: str, points: range, shape: tuple[int, ...]) -> Array:
         """A record of some points, (n, *shape); not a number where there is none."""

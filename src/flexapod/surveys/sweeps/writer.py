@@ -70,4 +70,4 @@ class Writer:
         return StoredPoint(point, COMPUTED, result.remarks, scalars, records)
 
     def _blob(self, name: str, result: PointResult) -> bytes:
-        return np.broadcast_to(result.values[name], self._kept.shape(name)).astype(FLOAT).tobytes()
+        return np.broadcast_to(result.values[name], self._kept.arrays[name].shape[1:]).astype(FLOAT).tobytes()
