@@ -129,7 +129,7 @@ def test_absent_engine_is_refused_before_anything_is_touched(flexapod, folder, m
 PROGRAM = """
 import os, signal, subprocess, sys
 from contextlib import contextmanager
-from flexapod.app import cli, terminal
+from flexapod.app import cli, commands_proof
 from flexapod.paper import study
 
 started, told = [], []
@@ -146,7 +146,7 @@ def bar(*, quiet):
             os.kill(os.getpid(), signal.SIGINT)
     yield report
 
-subprocess.Popen, terminal.progress_bar, study.STEPS = Popen, bar, ()
+subprocess.Popen, commands_proof.terminal.progress_bar, study.STEPS = Popen, bar, ()
 study.ENGINE_STEPS = study.ENGINE_STEPS[-1:]
 sys.argv = ["flexapod", "replicate", "--engines", "--out", sys.argv[1]]
 try:

@@ -2,7 +2,9 @@
 
 from __future__ import annotations
 
-from collections.abc import Mapping
+from collections.abc import Callable, Mapping
+from functools import partial
+from typing import Any
 
 import numpy as np
 from xarray import Dataset
@@ -24,16 +26,6 @@ from flexapod.study.record import Share
 from flexapod.study.simulation import simulate
 
 TRIAL_STEP = 5e-4  # s; peaks change by less than 1 % from 1 ms to 0.25 ms
-#: Columns of a table of trials and their units; `verdict` is text.
-COLUMNS = {
-    "deviation_peak": "m",
-    "tip_peak": "m",
-    "force_peak": "N",
-    "load_share": "1",
-    "travel": "m",
-    "apart": "m",
-    "stretch_stiffness": "N m-1",
-}
 
 
 def opened(study: model.Study) -> model.Study:
@@ -59,6 +51,29 @@ def load_share(data: Dataset) -> float:
     return max(float(share.max()) for share in shares)
 
 
+def _spread(data: Dataset, dim: str) -> float:
+    """Largest less smallest commanded length along a dimension [m], where it is largest."""
+    command = data.leg_length_command
+    return float((command.max(dim) - command.min(dim)).max())
+
+
+def _stretch_stiffness(data: Dataset) -> float:
+    piston = robot_study(data).robot.legs[0].piston
+    return piston.EA / piston.length
+
+
+#: Numbers of a trial by name: unit, and what each is of a result.
+NUMBERS: dict[str, tuple[str, Callable[[Dataset], Any]]] = {
+    "deviation_peak": ("m", largest),
+    "tip_peak": ("m", lambda data: float(np.abs(data.tip_deflection).max())),
+    "force_peak": ("N", lambda data: float(np.abs(data.actuator_force).max())),
+    "load_share": ("1", load_share),
+    "travel": ("m", partial(_spread, dim="time")),
+    "apart": ("m", partial(_spread, dim="leg")),
+    "stretch_stiffness": ("N m-1", _stretch_stiffness),
+}
+
+
 def system_of(study: model.Study) -> System:
     """The equations of a study's robot."""
     return robot_system(study.robot, study.simulation, per_loss(study.robot, study.simulation))
@@ -74,31 +89,21 @@ def resting(study: model.Study, system: System, path: rigid.Poses, state: State 
 
 
 def trial(study: model.Study) -> dict[str, object]:
-    """Largest values of a simulation by name, as in `COLUMNS`; `verdict` says in words why they are not to be trusted.
+    """Largest values of a simulation by name, as in `NUMBERS`; `verdict` says in words why they are not to be trusted.
 
     The verdict is empty where they are. Where nothing could be computed all values are NaN.
     """
-    piston = study.robot.legs[0].piston
     try:
         data = simulate(study, step=TRIAL_STEP)
     except (InputError, ComputationError) as error:
-        nothing = {**dict.fromkeys(COLUMNS, np.nan), "deviation_peak": np.full(3, np.nan)}
+        nothing = {**dict.fromkeys(NUMBERS, np.nan), "deviation_peak": np.full(3, np.nan)}
         return {**nothing, "verdict": error.what.split(":")[0]}
-    share, command, verdict = load_share(data), data.leg_length_command, ""
+    found, verdict = {name: number(data) for name, (_, number) in NUMBERS.items()}, ""
     if data.attrs["partial"]:
         verdict = str(data.attrs["failure"])
-    elif share >= 1:
-        verdict = f"collapse: a leg bears {100 * share:.0f} % of its Euler load"
-    return {
-        "deviation_peak": largest(data),
-        "tip_peak": float(np.abs(data.tip_deflection).max()),
-        "force_peak": float(np.abs(data.actuator_force).max()),
-        "load_share": share,
-        "travel": float((command.max("time") - command.min("time")).max()),
-        "apart": float((command.max("leg") - command.min("leg")).max()),
-        "stretch_stiffness": piston.EA / piston.length,
-        "verdict": verdict,
-    }
+    elif found["load_share"] >= 1:
+        verdict = f"collapse: a leg bears {100 * found['load_share']:.0f} % of its Euler load"
+    return {**found, "verdict": verdict}
 
 
 def trials(studies: Mapping[str, model.Study], report: Share) -> Dataset:
@@ -116,7 +121,8 @@ def trials(studies: Mapping[str, model.Study], report: Share) -> Dataset:
         rows.append(trial(study))
         report((i + 1) / len(studies))
     first = next(iter(studies.values()))
-    return table(rows, ("reading", list(studies), {}), COLUMNS, attributes(first) | {"step": TRIAL_STEP})
+    columns = {name: unit for name, (unit, _) in NUMBERS.items()}
+    return table(rows, ("reading", list(studies), {}), columns, attributes(first) | {"step": TRIAL_STEP})
 
 
 def table(
