@@ -6,11 +6,11 @@ from pathlib import Path
 import pytest
 
 from flexapod.document import html
-from flexapod.document.parts import Bullets, Lines, Remarks, Section, Table, Text
+from flexapod.document.parts import Bullets, Chapter, Lines, Remarks, Text, TextTable
 from flexapod.document.terminal import show, tell
 from flexapod.words import columns, sentence
 
-LEGS = Table(["force [N]", "kind"], [["1", "2.50", "strut"], ["10", "12.00", "<piston>"]], left=(0, 2), of="leg")
+LEGS = TextTable(["force [N]", "kind"], [["1", "2.50", "strut"], ["10", "12.00", "<piston>"]], left=(0, 2), of="leg")
 
 
 def printed(capsys, *items, **more):
@@ -19,7 +19,7 @@ def printed(capsys, *items, **more):
 
 
 def test_a_table_in_a_section_is_set_in_and_names_its_rows(capsys):
-    assert printed(capsys, "Before.", Section("Legs", [LEGS, "After."])) == [
+    assert printed(capsys, "Before.", Chapter("Legs", [LEGS, "After."])) == [
         "Before.",
         "",
         "Legs",
@@ -31,8 +31,8 @@ def test_a_table_in_a_section_is_set_in_and_names_its_rows(capsys):
 
 
 def test_a_section_with_nothing_in_it_is_left_out_unless_its_title_says_something(capsys):
-    assert printed(capsys, Section("Nothing", iter(())), Section("5 of 5 poses.", [], close=True)) == ["5 of 5 poses."]
-    assert html.parts([Section("Nothing", iter(()))]) == ""
+    assert printed(capsys, Chapter("Nothing", iter(())), Chapter("5 of 5 poses.", [], close=True)) == ["5 of 5 poses."]
+    assert html.parts([Chapter("Nothing", iter(()))]) == ""
 
 
 @pytest.mark.parametrize(("verbose", "lines"), [
@@ -47,7 +47,7 @@ def test_remarks_say_the_rest_when_it_is_asked_for(capsys, verbose, lines):
 
 
 def test_lines_of_a_file_and_lists(capsys):
-    assert printed(capsys, Section("File", [Lines("a = 1\n\nb = 2")]), Bullets(["One.", "Two."])) == [
+    assert printed(capsys, Chapter("File", [Lines("a = 1\n\nb = 2")]), Bullets(["One.", "Two."])) == [
         "", "File", "    a = 1", "", "    b = 2", "One.", "Two.",
     ]  # fmt: skip
     folded = html.parts([Lines("a < 1", "File")])
@@ -55,14 +55,14 @@ def test_lines_of_a_file_and_lists(capsys):
 
 
 def test_a_page_escapes_all_but_its_own_markup():
-    page = html.parts(["1 < 2", Text("beside", "soft"), LEGS, Table((), [("a", "b")]), html.Html("<nav></nav>")])
+    page = html.parts(["1 < 2", Text("beside", "soft"), LEGS, TextTable((), [("a", "b")]), html.Html("<nav></nav>")])
     assert page.startswith('<p>1 &lt; 2</p>\n<p class="soft">beside</p>\n<table><thead><tr><th>Leg</th>')
     assert '<td data-label="kind">&lt;piston&gt;</td>' in page
     assert "<tr><td>a</td><td>b</td></tr>" in page and page.endswith("<nav></nav>")
 
 
 def test_marks_are_styles_of_cells():
-    page = html.parts([Table(("Case", "Verdict"), [("one", "pass")], marks={"pass": "good"})])
+    page = html.parts([TextTable(("Case", "Verdict"), [("one", "pass")], marks={"pass": "good"})])
     assert '<td data-label="Verdict" class="good">pass</td>' in page
 
 

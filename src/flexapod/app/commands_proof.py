@@ -12,7 +12,7 @@ import typer
 from flexapod.app.failures import guarded
 from flexapod.app.options import Json, NoFigures, Quiet, check_writable
 from flexapod.document import terminal
-from flexapod.document.parts import Bullets, Item, Section, Table
+from flexapod.document.parts import Bullets, Chapter, Item, TextTable
 from flexapod.files import write_text
 
 if TYPE_CHECKING:
@@ -49,11 +49,11 @@ def replicate(
     told = [f"{claim.where}: {claim.says}: {claim.verdict} ({claim.ours})" for claim in table]
     items = [
         found.sentence,
-        Section("The paper prints about 5 mm in Y and 10 mm in Z. Its claims one by one:", told, close=True),
+        Chapter("The paper prints about 5 mm in Y and 10 mm in Z. Its claims one by one:", told, close=True),
     ]
     if agreed:
         theirs = [f"{row.quantity}: {row.words}" for row in agreed]
-        items += [Section("Exudyn, an independent engine, against us (largest values):", theirs, close=True)]
+        items += [Chapter("Exudyn, an independent engine, against us (largest values):", theirs, close=True)]
     figures = "" if no_figures else "figures/ "
     items += ["", f"In {out}: report.html (open it in a browser), claims.md, {figures}and data/."]
     terminal.tell(items, data, json=json)
@@ -108,7 +108,7 @@ def _verified(outcomes: list[Outcome]) -> Iterator[Item]:
     """The table of the cases, sources of their references, how many agree."""
     from flexapod.proof import page
 
-    yield Table(page.HEAD, page.rows(outcomes), left=(0, 1))
+    yield TextTable(page.HEAD, page.rows(outcomes), left=(0, 1))
     yield ""
     yield "Sources of the references"
     for o in outcomes:
@@ -131,15 +131,15 @@ def _write(outcomes: list[Outcome], html: Path | None, markdown: Path | None) ->
             section(o.case.name, o.case.name, [f"{o.case.statement}.", Bullets(page.notes(o)), _checks(o)])
             for o in outcomes
         ]
-        table = Table(page.HEAD, page.rows(outcomes), marks=marks)
+        table = TextTable(page.HEAD, page.rows(outcomes), marks=marks)
         write_text(html, whole("flexapod: verification", page.sentence(outcomes), [table, *cases]))
 
 
-def _checks(outcome: Outcome) -> Table:
+def _checks(outcome: Outcome) -> TextTable:
     head = ("What", "Reference", "Ours", "Error", "Tolerance", "Verdict")
     rows = [
         (c.what, f"{c.reference:.10g}", f"{c.ours:.10g}", f"{c.error:.2g}", f"{c.tolerance:.2g}",
          "reference at fault" if c.fault else "pass" if c.passed else "fail")
         for c in outcome.checks
     ]  # fmt: skip
-    return Table(head, rows, marks={"pass": "good", "fail": "bad"})
+    return TextTable(head, rows, marks={"pass": "good", "fail": "bad"})

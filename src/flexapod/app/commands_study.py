@@ -117,17 +117,17 @@ def keys(table: Table = None, markdown: Markdown = None, schema: Schema = None, 
     found = page.listed(table)
     files = " and ".join(str(file) for file in (markdown, schema) if file is not None)
     written = [f"{files} written."] if files else None
-    told = (_key_section(item, page.HEAD, alone=table is not None) for item in found)
+    told = (_key_chapter(item, page.HEAD, alone=table is not None) for item in found)
     tell(written or told, lambda: [asdict(item) for item in found], json=json)
 
 
-def _key_section(found: Listed, head: Sequence[str], *, alone: bool) -> parts.Section:
+def _key_chapter(found: Listed, head: Sequence[str], *, alone: bool) -> parts.Chapter:
     """A table of a study file: its words, its keys, an example."""
     entry = found.entry
     title = f"[{entry.table}] {entry.title}".rstrip() + ("" if alone else f" ({entry.study})")
     rows = [[row.key, row.what, row.unit, row.default, row.allowed] for row in found.rows]
-    keys = [parts.Table(head, rows, left=range(len(head)))] if rows else []
-    return parts.Section(
+    keys = [parts.TextTable(head, rows, left=range(len(head)))] if rows else []
+    return parts.Chapter(
         title, [parts.Text(entry.words), *keys, "", parts.Lines(entry.example.strip()), ""], close=True
     )
 

@@ -9,7 +9,7 @@ from typing import TYPE_CHECKING
 import numpy as np
 
 from flexapod import model, rigid
-from flexapod.document.parts import Item, Remarks, Table, Text, warnings_of
+from flexapod.document.parts import Item, Remarks, Text, TextTable, warnings_of
 from flexapod.errors import FlexapodError
 from flexapod.scene.robot import carried_study
 from flexapod.study.budgets.sentences import table
@@ -55,7 +55,7 @@ def budget_items(data: Dataset, also: Sequence[str | None]) -> Iterator[Item]:
     yield first
     yield ""
     if data.sizes["part"]:
-        yield Table(*table(data), left=(0, 1))
+        yield TextTable(*table(data), left=(0, 1))
         yield ""
     yield from filter(None, [*further, *also])
     yield Remarks(warnings_of(data), "Warning: ")
@@ -64,7 +64,7 @@ def budget_items(data: Dataset, also: Sequence[str | None]) -> Iterator[Item]:
 def peak_items(found: Dataset) -> Iterator[Item]:
     """What `peak_budget` found."""
     yield from found.attrs["summary"].splitlines()
-    yield Table(*table(found))
+    yield TextTable(*table(found))
     yield Text(
         f"At rest, at the pose of t = {found.attrs['pose_time']:.4g} s, where the tool deviates most; world axes. "
         "The command flexapod budget FILE --motion adds what is dynamic.",

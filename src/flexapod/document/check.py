@@ -8,7 +8,7 @@ from typing import TYPE_CHECKING
 
 import numpy as np
 
-from flexapod.document.parts import Item, Remarks, Section, Table
+from flexapod.document.parts import Chapter, Item, Remarks, TextTable
 from flexapod.study.after.inside import bushing_words
 from flexapod.study.before.describe.hydraulic import hydraulic_table
 from flexapod.study.before.describe.screw import screw_table
@@ -33,24 +33,24 @@ def _robot(found: RobotDescription) -> Iterator[Item]:
         f"The path keeps all limits. The motion takes {found.motion_end:.4g} s, the simulation {found.duration:.4g} s "
         f"({found.fidelity}). Estimates from the rigid path:"
     )
-    yield Section("Motions of the rigid robot", map(sentence, found.motions))
-    yield Section("Lengths, joint to joint", _lengths(found))
+    yield Chapter("Motions of the rigid robot", map(sentence, found.motions))
+    yield Chapter("Lengths, joint to joint", _lengths(found))
     turn = any(leg.carriage is not None and leg.carriage.kind == "crank" for leg in found.legs)
-    yield Section("Cranks" if turn else "Carriages", _carriages(found))
-    yield Section("Largest angles (limit 85 deg)", _angles(found))
-    yield Section("Joints and room between legs", _bodies(found))
-    yield Section("Distance to a singularity (scaled Jacobian)", _singularity(found))
-    yield Section("Loads (+ pushes)", _loads(found))
+    yield Chapter("Cranks" if turn else "Carriages", _carriages(found))
+    yield Chapter("Largest angles (limit 85 deg)", _angles(found))
+    yield Chapter("Joints and room between legs", _bodies(found))
+    yield Chapter("Distance to a singularity (scaled Jacobian)", _singularity(found))
+    yield Chapter("Loads (+ pushes)", _loads(found))
     yield screws(found)
     yield hydraulics(found)
-    yield Section("Loss factors, made viscous at home", map("{}.".format, found.losses))
+    yield Chapter("Loss factors, made viscous at home", map("{}.".format, found.losses))
     for pose in found.poses:
-        yield Section(f"{found.held}, {pose.name} (t = {pose.time:.3f} s)", _pose(pose))
-    yield Section("Vibration to expect after the motion, at the tool", [_vibration(found.vibration)])
-    yield Section("The machine as built", map(sentence, found.accuracy))
-    yield Section("Disturbances", map(sentence, found.disturbances))
+        yield Chapter(f"{found.held}, {pose.name} (t = {pose.time:.3f} s)", _pose(pose))
+    yield Chapter("Vibration to expect after the motion, at the tool", [_vibration(found.vibration)])
+    yield Chapter("The machine as built", map(sentence, found.accuracy))
+    yield Chapter("Disturbances", map(sentence, found.disturbances))
     ideal = [found.ideal] if found.ideal else []
-    yield Section("Remarks", [*ideal, Remarks(found.remarks or (() if ideal else ("None.",)))])
+    yield Chapter("Remarks", [*ideal, Remarks(found.remarks or (() if ideal else ("None.",)))])
 
 
 def _lengths(found: RobotDescription) -> Iterator[Item]:
@@ -66,7 +66,7 @@ def _lengths(found: RobotDescription) -> Iterator[Item]:
         for leg in found.legs
     ]
     head = ["shortest [mm]", "longest [mm]", "stroke left [mm]", "in cylinder [mm]", "free length / width"]
-    yield Table(head, rows, of="leg")
+    yield TextTable(head, rows, of="leg")
     limited = [(leg.stroke_margin.value, leg) for leg in found.legs if leg.stroke_margin is not None]
     if limited:
         margin, leg = most(limited, key=lambda entry: -entry[0])
@@ -82,7 +82,7 @@ def _carriages(found: RobotDescription) -> Iterator[Item]:
     if ways:
         unit, factor = ("deg", 180 / math.pi) if ways[0][1].kind == "crank" else ("mm", 1e3)
         rows = [[str(leg), *(_at(e, factor) for e in (way.low, way.high, way.margin))] for leg, way in ways]
-        yield Table([f"least [{unit}]", f"largest [{unit}]", f"travel left [{unit}]"], rows, of="leg")
+        yield TextTable([f"least [{unit}]", f"largest [{unit}]", f"travel left [{unit}]"], rows, of="leg")
 
 
 def _angles(found: RobotDescription) -> Iterator[Item]:
@@ -144,7 +144,7 @@ def _loads(found: RobotDescription) -> Iterator[Item]:
     head = [f"least [{unit}]", f"largest [{unit}]", "of Euler load [%]"]
     head += [f"{name} [{pressure}]" for name in ("axial", "bending", "together")]
     numbers = [str(leg.leg) for leg in legs]
-    yield Table(head, list(zip(numbers, *forces, pushed, *stresses, strict=True)), of="leg")
+    yield TextTable(head, list(zip(numbers, *forces, pushed, *stresses, strict=True)), of="leg")
     near = most(legs, key=lambda leg: leg.euler_share.value)
     if near.euler_share.value > 0:
         yield (
@@ -161,16 +161,18 @@ def _loads(found: RobotDescription) -> Iterator[Item]:
         yield "No stresses: the section or the material of the legs is not given."
 
 
-def screws(found: RobotDescription) -> Section:
+def screws(found: RobotDescription) -> Chapter:
     """What the path asks of screws, and what happens with their motors off."""
-    items = [Table(*screw_table(found.screws), of="leg"), sentence(found.back)] if found.screws else []
-    return Section("Screws, largest values on the path", items)
+    items = [TextTable(*screw_table(found.screws), of="leg"), sentence(found.back)] if found.screws else []
+    return Chapter("Screws, largest values on the path", items)
 
 
-def hydraulics(found: RobotDescription) -> Section:
+def hydraulics(found: RobotDescription) -> Chapter:
     """What the path asks of hydraulic cylinders."""
-    items = [Table(*hydraulic_table(found.hydraulics), of="leg"), *map(sentence, found.oil)] if found.hydraulics else []
-    return Section("Hydraulic cylinders, on the path", items)
+    items = (
+        [TextTable(*hydraulic_table(found.hydraulics), of="leg"), *map(sentence, found.oil)] if found.hydraulics else []
+    )
+    return Chapter("Hydraulic cylinders, on the path", items)
 
 
 def _pose(pose: PoseDescription) -> Iterator[Item]:
@@ -196,7 +198,7 @@ def _pose(pose: PoseDescription) -> Iterator[Item]:
     if pose.modes:
         _, frequencies = column([m.frequency for m in pose.modes], "Hz")
         rows = [[f, f"{100 * m.damping_ratio:.2g}", m.kind] for f, m in zip(frequencies, pose.modes, strict=True)]
-        yield Table(["frequency [Hz]", "damping [%]", "what moves"], rows, left=(2,))
+        yield TextTable(["frequency [Hz]", "damping [%]", "what moves"], rows, left=(2,))
 
 
 def _parts(parts: Mapping[str, tuple[float, ...]]) -> Iterator[Item]:
@@ -209,7 +211,7 @@ def _parts(parts: Mapping[str, tuple[float, ...]]) -> Iterator[Item]:
     rows = [[name, *(_stiffness_and_share(k, all_) for k, all_ in zip(parts[name], whole, strict=True))]
             for name in (names[i] for i in softest)]  # fmt: skip
     rows.append(["all in series", *("-" if math.isinf(k) else number(k / 1e6, 4) for k in whole)])
-    yield Table(["", *(f"leg {i}" for i in range(1, len(whole) + 1))], rows)
+    yield TextTable(["", *(f"leg {i}" for i in range(1, len(whole) + 1))], rows)
     if any(math.isinf(k) for values in parts.values() for k in values):
         yield "-: a part that the leg does not have, or that its encoder makes up for."
 
@@ -238,7 +240,7 @@ def _vibration(found: VibrationToExpect | None) -> str:
 
 def _actuator(found: ActuatorDescription) -> Iterator[Item]:
     yield f"The beam stays in its hub. A single actuator over {found.duration:.4g} s ({found.fidelity})."
-    yield Section("Motion", _actuator_motion(found))
+    yield Chapter("Motion", _actuator_motion(found))
     unit, sags = column([beam.sag or math.nan for beam in found.beam], "m")
     length, lengths = column([beam.free_length for beam in found.beam], "m")
     rows = [
@@ -248,8 +250,8 @@ def _actuator(found: ActuatorDescription) -> Iterator[Item]:
     ]
     head = ["", f"free length [{length}]", "frequencies [Hz]", "damping [%]", "free length / depth"]
     problems = [f"{beam.name}: {beam.problem}" for beam in found.beam if beam.problem]
-    yield Section("Beam, hub and extension held", [Table([*head, f"sag if level [{unit}]"], rows), *problems])
-    yield Section("Remarks", [Remarks(found.remarks or ("None.",))])
+    yield Chapter("Beam, hub and extension held", [TextTable([*head, f"sag if level [{unit}]"], rows), *problems])
+    yield Chapter("Remarks", [Remarks(found.remarks or ("None.",))])
 
 
 def _actuator_motion(found: ActuatorDescription) -> Iterator[str]:

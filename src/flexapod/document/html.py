@@ -12,7 +12,7 @@ from functools import cache
 from importlib.resources import files
 from itertools import repeat
 
-from flexapod.document.parts import Bullets, Item, Lines, Remarks, Section, Table, Text
+from flexapod.document.parts import Bullets, Chapter, Item, Lines, Remarks, Text, TextTable
 from flexapod.words import brief
 
 # What a browser may do with a page: run and show what is in it, and fetch nothing.
@@ -73,7 +73,7 @@ def _part(item: Item) -> str:
             return f"<p>{escape(item)}</p>"
         case Text():
             return f'<p class="{item.kind}">{escape(item.words)}</p>'
-        case Table():
+        case TextTable():
             return _table(item)
         case Bullets():
             return "<ul>" + "".join(f"<li>{escape(text)}</li>" for text in item.lines) + "</ul>"
@@ -81,7 +81,7 @@ def _part(item: Item) -> str:
             return "<ul>" + "".join(map(_remark, item.lines)) + "</ul>"
         case Lines():
             return _lines(item)
-        case Section():
+        case Chapter():
             inner = parts(item.items)
             return f"<h3>{escape(item.title)}</h3>\n{inner}" if inner else ""
 
@@ -104,7 +104,7 @@ def _lines(lines: Lines) -> str:
     return f"<details><summary>{title}</summary>{block}</details>" if title else block
 
 
-def _table(table: Table) -> str:
+def _table(table: TextTable) -> str:
     head = [table.of.capitalize(), *table.head] if table.of else table.head
     top = "".join(f"<th>{escape(name)}</th>" for name in head)
     labels = [f' data-label="{escape(name)}"' for name in head] or [""] * max(map(len, table.rows), default=0)

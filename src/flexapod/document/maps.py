@@ -6,7 +6,7 @@ import math
 from collections.abc import Iterator
 from typing import TYPE_CHECKING
 
-from flexapod.document.parts import Item, Section, Table, warnings_of
+from flexapod.document.parts import Chapter, Item, TextTable, warnings_of
 from flexapod.study.poses import coordinate_words
 from flexapod.surveys.workspace.findings import Finding, MapFindings, axis_words
 from flexapod.words import column, text
@@ -21,14 +21,14 @@ def map_items(data: Dataset, found: MapFindings) -> Iterator[Item]:
     """A map in sentences and as a table."""
     share = f"{found.reached} of {found.poses} poses are reached ({100 * found.reached / found.poses:.3g} %)"
     reasons = sorted(found.reasons.items(), key=lambda item: -item[1])
-    yield Section(f"{share}: {axis_words(data)}.", [f"{count}: {words}" for words, count in reasons], close=True)
+    yield Chapter(f"{share}: {axis_words(data)}.", [f"{count}: {words}" for words, count in reasons], close=True)
     if not found.quantities:
         yield "Nothing to map: choose other ranges or fixed coordinates."
     yield from (_sentence(quantity) for name in FIRST for quantity in found.quantities if quantity.name == name)
     yield ""
     if found.quantities:
         head = ["", "unit", "least", "at", "largest", "at", "home"]
-        yield Table(head, list(map(_row, found.quantities)), left=(0, 1, 3, 5))
+        yield TextTable(head, list(map(_row, found.quantities)), left=(0, 1, 3, 5))
     yield from map("Warning: {}".format, warnings_of(data))
 
 

@@ -7,7 +7,7 @@ from pathlib import Path
 from typing import TYPE_CHECKING
 
 from flexapod import model
-from flexapod.document.parts import Item, Table, warnings_of
+from flexapod.document.parts import Item, TextTable, warnings_of
 from flexapod.study.ideal import held
 from flexapod.words import column, sentence, signed
 
@@ -31,7 +31,7 @@ def modes_items(
         head += ["of the payload [%]", "of the legs [%]"]
         columns += [_per_cent(shown.payload_share.values), _per_cent(shown.leg_share.values.sum(axis=-1))]
     rows = zip(map(str, shown.mode.values), *columns, map(str, shown.kind.values), strict=True)
-    yield Table([*head, "what moves most, by its kinetic energy"], list(rows), left=(len(head),))
+    yield TextTable([*head, "what moves most, by its kinetic energy"], list(rows), left=(len(head),))
     if data.sizes["mode"] > count:
         yield f"The lowest {count} of {data.sizes['mode']} modes; more with --count."
     yield from map(sentence, shaken)

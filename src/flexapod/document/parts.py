@@ -12,7 +12,7 @@ from typing import TYPE_CHECKING
 if TYPE_CHECKING:
     from xarray import Dataset
 
-__all__ = ["Bullets", "Item", "Lines", "Remarks", "Section", "Table", "Text", "warnings_of"]
+__all__ = ["Bullets", "Chapter", "Item", "Lines", "Remarks", "Text", "TextTable", "warnings_of"]
 
 
 @dataclass(frozen=True)
@@ -24,7 +24,7 @@ class Text:
 
 
 @dataclass(frozen=True)
-class Table:
+class TextTable:
     """Rows of texts under those of a head, if it has one; columns `left` are words, the others numbers.
 
     `of`: what the rows are, "leg"; their numbers are then a first column, which the head leaves out. `marks`: what
@@ -62,7 +62,7 @@ class Lines:
 
 
 @dataclass(frozen=True)
-class Section:
+class Chapter:
     """What stands together below a title; one with nothing in it is left out.
 
     `close`: the title is a sentence of what stands before, and there in any case.
@@ -73,7 +73,7 @@ class Section:
     close: bool = False
 
 
-Item = str | Text | Table | Bullets | Remarks | Lines | Section
+Item = str | Text | TextTable | Bullets | Remarks | Lines | Chapter
 
 
 def warnings_of(data: Dataset) -> list[str]:

@@ -5,7 +5,7 @@ from __future__ import annotations
 from collections.abc import Iterator
 from typing import TYPE_CHECKING
 
-from flexapod.document.parts import Item, Remarks, Table, warnings_of
+from flexapod.document.parts import Item, Remarks, TextTable, warnings_of
 from flexapod.model import ActuatorStudy, Study
 from flexapod.study.after.summary import POINT_WORDS, RobotSummary, summaries, summary
 from flexapod.study.bodies import bodies_words
@@ -34,7 +34,7 @@ def run_items(study: Study | ActuatorStudy, data: Dataset) -> Iterator[Item]:
     yield Remarks(warnings_of(data), "Warning: ")
 
 
-def axes_table(found: RobotSummary) -> Table:
+def axes_table(found: RobotSummary) -> TextTable:
     """Deviation by axis, in columns of one unit."""
     axes = found.shown_axes
     length, peaks, rms = columns("m", [a.peak for a in axes], [a.rms for a in axes])
@@ -43,10 +43,10 @@ def axes_table(found: RobotSummary) -> Table:
     shares = ["n/a" if a.per_cent is None else number(a.per_cent, 2) for a in axes]
     head = [POINT_WORDS[found.point], f"peak [{length}]", "at [s]", f"rms [{length}]"]
     head += [f"rigid travel [{travel_unit}]", "peak / travel [%]"]
-    return Table(head, list(zip((a.axis for a in axes), peaks, times, rms, travels, shares, strict=True)))
+    return TextTable(head, list(zip((a.axis for a in axes), peaks, times, rms, travels, shares, strict=True)))
 
 
-def distances_table(found: RobotSummary) -> Table:
+def distances_table(found: RobotSummary) -> TextTable:
     """Deviation by axis and its distance, each number in the unit in which it reads well."""
     rows = [
         (
@@ -60,7 +60,7 @@ def distances_table(found: RobotSummary) -> Table:
         for a in found.shown_axes
     ]
     rows.append(("Distance", text(found.peak, "m"), f"{found.time:.3f} s", text(found.rms, "m"), "", ""))
-    return Table(("Axis", "Largest", "at", "rms", "Rigid travel", "Per cent of the travel"), rows)
+    return TextTable(("Axis", "Largest", "at", "rms", "Rigid travel", "Per cent of the travel"), rows)
 
 
 def run_as_dict(study: Study | ActuatorStudy, data: Dataset) -> dict[str, object]:

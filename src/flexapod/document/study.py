@@ -11,7 +11,7 @@ import numpy as np
 from flexapod import model
 from flexapod.document import check, html
 from flexapod.document.html import Html
-from flexapod.document.parts import Bullets, Item, Section, Table, Text
+from flexapod.document.parts import Bullets, Chapter, Item, Text, TextTable
 from flexapod.solve.lost_motion import places_with_friction
 from flexapod.study.after.causes import cause_names
 from flexapod.study.cause_words import CAUSES, cause_in_words
@@ -47,7 +47,7 @@ def study_items(study: Study | ActuatorStudy, found: RobotDescription | Actuator
         return
     yield Bullets(_robot(study))
     if found is not None and found.kind == "robot":
-        yield Section("What the path asks of the legs", _path(found))  # type: ignore[arg-type]
+        yield Chapter("What the path asks of the legs", _path(found))  # type: ignore[arg-type]
         yield check.screws(found)  # type: ignore[arg-type]
         yield check.hydraulics(found)  # type: ignore[arg-type]
 
@@ -239,7 +239,7 @@ def _path(found: RobotDescription) -> Iterator[Item]:
         kind, ("Length", "Stroke left")
     )
     force = "Drive torque" if crank else "Drive force"
-    yield Table((place, left, force, "Of Euler load", "Largest stress"), rows, of="leg")
+    yield TextTable((place, left, force, "Of Euler load", "Largest stress"), rows, of="leg")
     words = "Estimates from the rigid path, as `flexapod check` gives them."
     if (s := found.singularity) is not None:
         words += (
@@ -328,7 +328,7 @@ def modes_section(
     return [html.section("modes", "Modes", [Text(words, "soft"), *map(_pose, found.poses)])]  # type: ignore[union-attr]
 
 
-def _pose(pose: PoseDescription) -> Section:
+def _pose(pose: PoseDescription) -> Chapter:
     told: list[Item] = [] if not pose.problem else [Text(pose.problem, "bad")]
     if pose.modes:
         told.append(modes_table((mode.frequency, mode.damping_ratio, mode.kind) for mode in pose.modes))
@@ -340,14 +340,14 @@ def _pose(pose: PoseDescription) -> Section:
         rows = [
             (name, *("-" if math.isinf(k) else f"{k / 1e6:.4g}" for k in values)) for name, values in pose.parts.items()
         ]
-        told.append(Table(("Stiffness along the leg [N/µm]", *map("leg {}".format, legs)), rows))
-    return Section(f"{pose.name[0].upper()}{pose.name[1:]}, t = {pose.time:.3f} s", told)
+        told.append(TextTable(("Stiffness along the leg [N/µm]", *map("leg {}".format, legs)), rows))
+    return Chapter(f"{pose.name[0].upper()}{pose.name[1:]}, t = {pose.time:.3f} s", told)
 
 
-def modes_table(modes: Iterable[tuple[float, float, str]]) -> Table:
+def modes_table(modes: Iterable[tuple[float, float, str]]) -> TextTable:
     """Modes from the lowest on: frequency [Hz], damping ratio, kind."""
     rows = [(f"{i}", f"{f:.4g} Hz", f"{100 * d:.2g} %", kind) for i, (f, d, kind) in enumerate(modes, start=1)]
-    return Table(("Frequency", "Damping", "What moves most"), rows, of="mode")
+    return TextTable(("Frequency", "Damping", "What moves most"), rows, of="mode")
 
 
 def _beam(found: ActuatorDescription) -> list[Item]:
@@ -357,4 +357,4 @@ def _beam(found: ActuatorDescription) -> list[Item]:
         for numbers in beam.by_kind or [("n/a", beam.problem or "n/a", "n/a")]
     ]
     head = ("Beam", "Free length", "What moves", "Frequencies [Hz]", "Damping [%]")
-    return [Text("Hub and extension held, about the straight beam at rest.", "soft"), Table(head, rows)]
+    return [Text("Hub and extension held, about the straight beam at rest.", "soft"), TextTable(head, rows)]

@@ -9,7 +9,7 @@ from typing import TYPE_CHECKING, Any
 
 import numpy as np
 
-from flexapod.document.parts import Item, Lines, Table
+from flexapod.document.parts import Item, Lines, TextTable
 from flexapod.ties import first_largest, first_least
 from flexapod.words import column, text
 
@@ -54,7 +54,7 @@ def sweep_items(data: Dataset) -> Iterator[Item]:
         shown, values = column([extremes[key] for key in EXTREMES], "" if unit == "1" else unit)
         rows.append([name, shown, *values])
     yield ""
-    yield Table(["scalar", "unit", *EXTREMES], rows, left=(0, 1))
+    yield TextTable(["scalar", "unit", *EXTREMES], rows, left=(0, 1))
     main = next(iter(scalars))
     for key in EXTREMES[1:]:
         at = scalars[main][f"{key}_at"]
@@ -151,7 +151,7 @@ def ladder_items(data: Dataset) -> Iterator[Item]:
         [row["fidelity"], row["label"], *(_error(row[f"error_{q}"]) for q in names), *times, row["failure"]]
         for row, *times in zip(found, each, times, strict=True)
     ]
-    yield Table(head, rows, left=(0, 1, len(head) - 1))
+    yield TextTable(head, rows, left=(0, 1, len(head) - 1))
     if data.attrs["notes"]:
         yield f"Note: {data.attrs['notes']}"
 
@@ -171,7 +171,7 @@ def convergence_as_dict(data: Dataset) -> dict[str, object]:
     return {**facts, "partial": bool(data.attrs["partial"]), **lines, "families": groups, "settings": rows}
 
 
-def _table(data: Dataset, family: str, *, orders: bool) -> Table:
+def _table(data: Dataset, family: str, *, orders: bool) -> TextTable:
     """Rows of a family; without orders where the error falls with no power or not steadily."""
     names, rows = _quantities(data), _rows(data, family)
     columns = [(family, [row["label"].removeprefix("step ") for row in rows])]
@@ -184,7 +184,7 @@ def _table(data: Dataset, family: str, *, orders: bool) -> Table:
     columns += [("steps", [str(row["steps"]) for row in rows]), (f"time [{unit}]", times)]
     columns += [("", [row["failure"] for row in rows])]
     head, values = zip(*columns, strict=True)
-    return Table(head, list(zip(*values, strict=True)), left=(0, len(head) - 1))
+    return TextTable(head, list(zip(*values, strict=True)), left=(0, len(head) - 1))
 
 
 def _conclusion(data: Dataset) -> Iterator[Item]:

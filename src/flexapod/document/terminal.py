@@ -9,7 +9,7 @@ from contextlib import contextmanager
 from pathlib import Path
 from typing import TYPE_CHECKING
 
-from flexapod.document.parts import Bullets, Item, Lines, Remarks, Section, Table, Text
+from flexapod.document.parts import Bullets, Chapter, Item, Lines, Remarks, Text, TextTable
 
 if TYPE_CHECKING:
     from flexapod.study.record import Report
@@ -31,7 +31,7 @@ def show(told: Iterable[Item], *, verbose: bool = False, indent: int = 0) -> Non
                 print_text(item, indent=indent if item else 0)
             case Text():
                 print_text(item.words, indent=indent)
-            case Table():
+            case TextTable():
                 print_table(item, indent=indent)
             case Bullets():
                 show(item.lines, indent=indent)
@@ -40,17 +40,17 @@ def show(told: Iterable[Item], *, verbose: bool = False, indent: int = 0) -> Non
             case Lines():
                 for line in item.text.splitlines():
                     print_text(line, indent=4)
-            case Section():
-                _print_section(item, verbose=verbose)
+            case Chapter():
+                _print_chapter(item, verbose=verbose)
 
 
-def _print_section(section: Section, *, verbose: bool) -> None:
-    items = list(section.items)
-    if not section.close:
+def _print_chapter(chapter: Chapter, *, verbose: bool) -> None:
+    items = list(chapter.items)
+    if not chapter.close:
         if not items:
             return
         print_text()
-    print_text(section.title)
+    print_text(chapter.title)
     show(items, verbose=verbose, indent=2)
 
 
@@ -92,7 +92,7 @@ def _print_remarks(remarks: Remarks, *, verbose: bool, indent: int) -> None:
         print_text("More about these remarks: --verbose.", indent=indent)
 
 
-def print_table(table: Table, *, indent: int = 0) -> None:
+def print_table(table: TextTable, *, indent: int = 0) -> None:
     """A table; columns of words are aligned to the left, the others, of numbers, to the right."""
     from rich import table as tables
     from rich.console import Console

@@ -11,7 +11,7 @@ from flexapod import model
 from flexapod.citations import CITATIONS
 from flexapod.document import html
 from flexapod.document.html import Html
-from flexapod.document.parts import Item, Lines, Section, Table, Text
+from flexapod.document.parts import Chapter, Item, Lines, Text, TextTable
 from flexapod.document.study import modes_table
 from flexapod.paper.claim import (
     BREAKS,
@@ -87,7 +87,7 @@ def paper_page(result: PaperStudy, claims: Sequence[Claim], groups: Mapping[str,
         warnings_section(robot),
         _studies(),
         html.section(
-            "solver", "Solver", [Section(words, [solver_table(result[name])]) for name, words in _SHOWN.items()]
+            "solver", "Solver", [Chapter(words, [solver_table(result[name])]) for name, words in _SHOWN.items()]
         ),
         repeat_section("Everything on this page, with data as NetCDF and CSV:", _command(result)),
     ]
@@ -141,7 +141,7 @@ def _engine(result: PaperStudy, figures: Sequence[Drawn]) -> Html:
     told: list[Item] = [
         *(Text(f"Not computed: {words}", "bad") for words in failures),
         *(Text(words, "soft") for words in _engine_words(result)),
-        *([Table(head, rows)] if rows else []),
+        *([TextTable(head, rows)] if rows else []),
         *(html.figure(figure.title, figure.picture, figure.plot) for figure in figures),
         "To repeat this:",
         Lines(f"{EXUDYN.install}\n{_command(result)}"),
@@ -183,11 +183,11 @@ def _claims(claims: Sequence[Claim]) -> Html:
     rows = [(c.where, c.says, c.ours, c.verdict, c.reason) for c in claims]
     words = (
         "What the paper says, what we get, and why. Deviations are the largest of the centre of mass along each axis. "
-        "From Section 2, assumption 3 on, rows read the paper in other ways and vary what it leaves open. The paper "
+        "From Chapter 2, assumption 3 on, rows read the paper in other ways and vary what it leaves open. The paper "
         "was at hand as a text made from its pages, without its figures: what that copy may have lost is said to stand "
         f"'{COPY}', what is so in any reading is said to be, and rows on figures say that these were not seen."
     )
-    return html.section("claims", "Claims", [Text(words, "soft"), Table(CLAIM_HEAD, rows, marks=_MARKS)])
+    return html.section("claims", "Claims", [Text(words, "soft"), TextTable(CLAIM_HEAD, rows, marks=_MARKS)])
 
 
 def _open_values() -> Html:
@@ -195,7 +195,7 @@ def _open_values() -> Html:
     told: list[Item] = [Text("The paper does not give these values. Each is ours, for the reason beside it.", "soft")]
     for name in model.PAPER_PRESETS:
         rows = [(value.key, value.value, value.reason) for value in model.open_values(name)]
-        told.append(Section(name, [Table(("Value", "Ours", "Reason"), rows)]))
+        told.append(Chapter(name, [TextTable(("Value", "Ours", "Reason"), rows)]))
     return html.section("open", "Values that the paper leaves open", told)
 
 

@@ -10,7 +10,7 @@ from typing import TYPE_CHECKING
 
 from flexapod.document import html
 from flexapod.document.html import Html
-from flexapod.document.parts import Item, Lines, Remarks, Section, Table, Text, warnings_of
+from flexapod.document.parts import Chapter, Item, Lines, Remarks, Text, TextTable, warnings_of
 from flexapod.errors import FlexapodError
 from flexapod.files import scratch, write_text
 from flexapod.report.figures import Drawn
@@ -153,7 +153,7 @@ def by_axis(data: Dataset) -> Html:
     from flexapod.study.after.summary import POINT_WORDS, RobotSummary, summaries
 
     tables = {x.point: distances_table(x) for x in summaries(data) if isinstance(x, RobotSummary)}
-    several = [Section(POINT_WORDS[point].capitalize(), [table]) for point, table in tables.items()]
+    several = [Chapter(POINT_WORDS[point].capitalize(), [table]) for point, table in tables.items()]
     note = "Flexible minus rigid at the same instant, world axes; it contains the sag at rest. Per cent of the travel: "
     note += "largest deviation over the rigid point's peak-to-peak travel, n/a where that is below 1 µm."
     told = several if len(several) > 1 else tables.values()
@@ -170,7 +170,7 @@ def _actuator_numbers(found: ActuatorSummary) -> Html:
         ("At the end", text(found.end, "m")),
         ("Free length", f"{start} at the start, {end} at the end"),
     ]
-    return html.section("deflection", "Deflection of the tip", [Table((), rows)])
+    return html.section("deflection", "Deflection of the tip", [TextTable((), rows)])
 
 
 def _partial(data: Dataset) -> list[Item]:
@@ -192,10 +192,10 @@ def figures_section(name: str, title: str, figures: Sequence[Drawn], *, first: b
     return [html.section(name, title, [*read, *parts])] if parts else []
 
 
-def solver_table(data: Dataset) -> Table:
+def solver_table(data: Dataset) -> TextTable:
     """Settings and counters of the time integration."""
     attrs: Mapping[object, object] = data.attrs
-    return Table((), [(words, _shown(attrs[key], key)) for key, words in SOLVER.items() if key in attrs])
+    return TextTable((), [(words, _shown(attrs[key], key)) for key, words in SOLVER.items() if key in attrs])
 
 
 def _shown(value: object, key: str) -> str:
