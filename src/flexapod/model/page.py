@@ -278,5 +278,8 @@ A study is one TOML file: what is analysed, how it moves, how it is computed. `f
 writes one to start from, `flexapod check NAME.toml` reads and describes it. Keys that are not named here are
 refused, with the right form.
 
+`flexapod keys --schema study.schema.json` writes the same for editors: with `#:schema study.schema.json` as its first
+line a file is completed and marked as you type, by those that know JSON schemas for TOML.
+
 This page is written by `flexapod keys --markdown docs/study-file.md` from the readers, the model and
 `src/flexapod/schema/keys.toml`; `flexapod keys leg.drive` shows a part of it in the terminal. All examples load."""

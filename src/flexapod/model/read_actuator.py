@@ -7,8 +7,7 @@ from typing import Any
 
 from flexapod.model.actuator import Actuator, ActuatorInitial, ActuatorLoad, ActuatorMotion
 from flexapod.model.laws import ConstantLaw, CsvLaw, RateLaw
-from flexapod.model.material import Rectangle, Tube
-from flexapod.model.read_leg import read_material
+from flexapod.model.material import Rectangle, Tube, read_material
 from flexapod.model.read_motion import read_wrench
 from flexapod.schema.columns import columns_of
 from flexapod.schema.section import Section
