@@ -12,10 +12,10 @@ from typing import Any
 
 import numpy as np
 
+from flexapod.model.disturbance import FLOOR, FORCE_NOISE, WRENCH_NOISE
 from flexapod.model.fields import Field, Notes, listened
 from flexapod.model.material import MATERIALS
-from flexapod.model.read_disturbance import FLOOR, FORCE_NOISE, WRENCH_NOISE
-from flexapod.model.read_mount import BASE_ACCELERATION
+from flexapod.model.mount import BASE_ACCELERATION
 from flexapod.schema.columns import Column
 from flexapod.schema.csv_tables import POSE, WRENCH, forces, header
 from flexapod.schema.reference import Entry, plain_path, reference
