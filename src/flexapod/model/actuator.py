@@ -3,23 +3,34 @@
 from __future__ import annotations
 
 from collections.abc import Mapping
-from typing import Annotated, Any, ClassVar
+from typing import TYPE_CHECKING, Annotated, Any, ClassVar, Self
 
 from pydantic import Field, model_validator
 
 from flexapod.errors import InputError
 from flexapod.model.damping import BodyDamping
-from flexapod.model.laws import CsvLaw, LoadLaw, MotionLaw, RateLaw, Wrench
-from flexapod.model.material import SPELLS, Material, Rectangle, Tube, spelled
+from flexapod.model.laws import ConstantLaw, CsvLaw, LoadLaw, MotionLaw, RateLaw, Wrench, read_wrench
+from flexapod.model.material import OF_MATERIAL, SPELLS, Material, Rectangle, Tube, read_material, spelled
 from flexapod.model.motion import check_times
 from flexapod.schema.base import Key, Quantity
+from flexapod.schema.columns import columns_of
 from flexapod.schema.table import Table
 from flexapod.words import number, text
+
+if TYPE_CHECKING:
+    from flexapod.schema.section import Section
 
 #: Fields that only an actuator in space has.
 IN_SPACE = (
     "elevation", "EA", "GJ", "axial_inertia", "tip_axial_inertia", "hub_axial_inertia", "axial_modes",
 )  # fmt: skip
+
+_STIFFNESS = ("rhoA", "EI")
+_DRIVEN = {  # what a load drives: the load and its dimension, the dimensions of the motion
+    "rotation": ("torque", "torque", ("angle", "angular rate")),
+    "extension": ("force", "force", ("length", "velocity")),
+    "elevation": ("elevation_torque", "torque", ("angle", "angular rate")),
+}
 
 
 class Actuator(Table):
@@ -63,6 +74,30 @@ class Actuator(Table):
     tip_axial_inertia: Annotated[float, Quantity("inertia", least=0, why="of the tip's body about the beam")] = 0.0
     hub_axial_inertia: Annotated[float, Quantity("inertia", least=0, why="of the hub about the beam")] = 0.0
     axial_modes: Annotated[int, Key("axial shapes")] = Field(default=2, strict=True, ge=1, le=6)
+
+    @classmethod
+    def from_table(cls, section: Section, among: tuple[str, ...] = ()) -> Self:
+        """A beam by its stiffness, or by its section and material."""
+        section.only(*columns_of(cls), *OF_MATERIAL)
+        if "section" not in section:
+            section.need(*_STIFFNESS)
+            for name in ("section", "material", *OF_MATERIAL):
+                if name in section:
+                    raise section.error("needs a section", name, allowed="rhoA and EI, or section and material")
+            return section.read(cls, also=OF_MATERIAL)
+        for name in _STIFFNESS:
+            if name in section:
+                allowed = "rhoA and EI, or section and material"
+                raise section.error("is given together with section", name, allowed=allowed)
+        return section.read(cls, also=OF_MATERIAL, then=cls._of_section)
+
+    @classmethod
+    def _of_section(cls, section: Section) -> Mapping[str, object]:
+        inner = section.child(section.data["section"], "section")
+        model = Rectangle if "width" in inner or "height" in inner else Tube
+        shape = inner.read(model, also=("width", "height") if model is Tube else ())
+        material = read_material(section)
+        return {"section": shape, "material": material, **cls.stiffness(shape, material)}
 
     def _shown(self) -> dict[str, str]:
         tip = {"tip": f"{number(self.tip_mass, 4)} kg"} if self.tip_mass else {}
@@ -229,3 +264,46 @@ class ActuatorInitial(Table):
 
     def _shown(self) -> Mapping[str, str]:
         return {name: words for name, words in super()._shown().items() if getattr(self, name)}
+
+
+def read_drives(top: Section) -> tuple[ActuatorMotion, ActuatorLoad]:
+    """What moves the actuator: a prescribed coordinate or a load on it; a coordinate with neither is held."""
+    motion, load = top.section("motion"), top.section("load")
+    laws: dict[str, Any] = {}
+    loads: dict[str, Any] = {}
+    if load is not None:
+        load.only(*columns_of(ActuatorLoad))
+        if "wrench" in load:
+            loads["wrench"] = read_wrench(load)
+        if "follow" in load:
+            loads["follow"] = load.flag("follow")
+    if motion is not None:
+        motion.only(*_DRIVEN)
+    for name, (drive, dimension, moved) in _DRIVEN.items():
+        if load is not None and drive in load:
+            loads[drive], laws[name] = _load_law(load, drive, dimension), None
+            if motion is not None and name in motion:
+                raise motion.error(f"is prescribed and driven by load.{drive}", name, allowed="one of the two")
+        elif motion is not None and name in motion:
+            laws[name] = _law(motion.child(motion.data[name], name), ActuatorMotion, name, moved)
+    moved = ActuatorMotion(**laws) if motion is None else ActuatorMotion(**laws).keep(motion.written)
+    return moved, ActuatorLoad() if load is None else load.build(ActuatorLoad, **loads).keep(load.written)
+
+
+def _load_law(load: Section, name: str, dimension: str) -> object:
+    if not isinstance(load.data[name], Mapping):
+        return load.build(ConstantLaw, value=load.number(name, dimension))
+    return _law(load.child(load.data[name], name), ActuatorLoad, name, (dimension,))
+
+
+def _law(section: Section, model: type[ActuatorMotion | ActuatorLoad], name: str, among: tuple[str, ...]) -> object:
+    def table(section: Section) -> dict[str, object]:
+        found = section.table({"value": among[0]}, needed=True, jumps=model is ActuatorLoad)
+        return {"time": found["time"], "value": found["value"]}
+
+    return section.one_of(
+        columns_of(model)[name].models,
+        among=among,
+        default=RateLaw if model is ActuatorMotion else None,
+        readers={CsvLaw: lambda s: s.read(CsvLaw, then=table)},
+    )

@@ -3,14 +3,18 @@
 from __future__ import annotations
 
 from collections.abc import Mapping
-from typing import Annotated, ClassVar
+from typing import TYPE_CHECKING, Annotated, ClassVar, Self
 
 from pydantic import model_validator
 
 from flexapod.errors import InputError
-from flexapod.model.material import SPELLS, Material, Tube, spelled
+from flexapod.model.material import OF_MATERIAL, SPELLS, Material, Tube, read_material, read_tube, spelled
 from flexapod.schema.base import Key, Quantity
+from flexapod.schema.columns import columns_of
 from flexapod.schema.table import Table
+
+if TYPE_CHECKING:
+    from flexapod.schema.section import Section
 
 SAME = 1e-9  # relative; rounding leaves less
 
@@ -59,6 +63,28 @@ class Cylinder(Table):
     material: Annotated[Material | None, Key("what the tube is made of")] = None
     body: Annotated[Mounted | None, Key("table: what is mounted on it")] = None
 
+    @classmethod
+    def from_table(cls, section: Section, among: tuple[str, ...] = ()) -> Self:
+        """A rigid cylinder, or one whose section is given."""
+        section.only(*columns_of(cls), *OF_MATERIAL)
+        tube: dict[str, object] = {name: None for name in ("diameter", "inner_diameter", "material", "body")}
+        if not any(name in section for name in (*tube, *OF_MATERIAL)):
+            return section.read(cls, also=OF_MATERIAL, then=lambda _: tube)
+        for name in ("mass", "com", "inertia", "axial_inertia"):
+            if name in section:
+                raise section.error(
+                    "follows from section and material of the cylinder", name, allowed="body, for what is mounted on it"
+                )
+        section.need("mouth", "diameter")
+        body = section.section("body")
+        return section.build(
+            cls.tube,
+            mouth=section.number("mouth", "length"),
+            section=read_tube(section),
+            material=read_material(section),
+            body=None if body is None else body.read(Mounted),
+        ).keep(section.written)
+
     @model_validator(mode="after")
     def _real_body(self) -> Cylinder:
         check_axial(self.axial_inertia, self.inertia, "inertia")
@@ -87,7 +113,7 @@ class Cylinder(Table):
         return self
 
     @classmethod
-    def tube(cls, *, mouth: float, section: Tube, material: Material, body: Mounted | None = None) -> Cylinder:
+    def tube(cls, *, mouth: float, section: Tube, material: Material, body: Mounted | None = None) -> Self:
         """A cylinder that bends and stretches: its masses follow from section, material and what is mounted on it."""
         mouth = cls(mass=0.0, mouth=mouth).mouth  # within its bounds: it is squared here
         return cls(

@@ -2,7 +2,8 @@
 
 from __future__ import annotations
 
-from typing import Annotated, ClassVar, Literal
+from collections.abc import Mapping
+from typing import TYPE_CHECKING, Annotated, ClassVar, Literal, Self
 
 from pydantic import model_validator
 
@@ -10,7 +11,20 @@ from flexapod.errors import InputError
 from flexapod.model.friction import StrokeFriction
 from flexapod.model.motion import check_times
 from flexapod.schema.base import Key, Quantity, Series
+from flexapod.schema.csv_tables import forces
 from flexapod.schema.table import Table
+
+if TYPE_CHECKING:
+    from flexapod.schema.section import Section
+
+
+def read_columns(section: Section, dimension: str) -> Mapping[str, object]:
+    """Instants, and the force or the torque of the leg whose drive it is, by ``law = "csv"``."""
+    if section.data.get("law") != "csv" or "file" not in section:
+        return {}
+    number, count = section.leg
+    found = section.table(forces(count, dimension), needed=True, jumps=True)
+    return {"time": found["time"], dimension: found[f"leg {number}"]}
 
 
 class PrescribedDrive(Table):
@@ -101,6 +115,17 @@ class ForceDrive(Table):
     friction: Annotated[
         StrokeFriction | None, Key("table: friction of the stroke, of a screw at its nut", usual="none")
     ] = None
+
+    @classmethod
+    def from_table(cls, section: Section, among: tuple[str, ...] = ()) -> Self:
+        """What a table says, with its table of forces, of a crank of torques."""
+        dimension = "torque" if "torque" in among else "force"
+
+        def columns(section: Section) -> Mapping[str, object]:
+            found = dict(read_columns(section, dimension))
+            return found | ({"force": found.pop(dimension)} if found else {})
+
+        return section.read(cls, among=among, then=columns)
 
     @property
     def pushes(self) -> bool:

@@ -7,22 +7,24 @@ import tomllib
 from dataclasses import dataclass
 from importlib.resources import files
 from pathlib import Path
-from typing import Literal, overload
+from typing import Literal, TypeVar, overload
 
 from flexapod.errors import InputError, closest
 from flexapod.files import LARGEST_TEXT, check_name, read_text
-from flexapod.model.motion import AxisMotion
+from flexapod.model.actuator import Actuator, ActuatorInitial, read_drives
+from flexapod.model.disturbance import read_disturbance
+from flexapod.model.laws import Load
+from flexapod.model.motion import AxisMotion, CombinedMotion, CsvMotion, Motion, WaypointMotion
 from flexapod.model.plausible import size_remarks
-from flexapod.model.read_actuator import read_actuator, read_drives, read_release
-from flexapod.model.read_disturbance import read_disturbance
-from flexapod.model.read_motion import read_initial, read_load, read_motion, read_simulation, unused_settings
 from flexapod.model.read_robot import platform_fixed, read_robot
 from flexapod.model.robot import Robot
-from flexapod.model.simulation import STRAIGHT, Simulation
+from flexapod.model.simulation import STRAIGHT, Initial, Simulation, read_simulation, unused_settings
 from flexapod.model.study import ActuatorStudy, Study
 from flexapod.schema.section import Section
+from flexapod.schema.table import Table
 from flexapod.schema.toml import parsed
 
+T = TypeVar("T", bound=Table)
 PAPER_PRESETS = ("paper-robot", "paper-robot-radii", "paper-actuator")
 PRESETS = (*PAPER_PRESETS, "tripod", "flight-simulator", "machine-hexapod", "small-hexapod", "nano-hexapod",
            "motion-base")  # fmt: skip
@@ -218,9 +220,9 @@ def _study(top: Section, text: str) -> Study:
     study = top.build(
         Study,
         robot=robot,
-        motion=read_motion(top.child(top.data["motion"], "motion")) if "motion" in top else AT_REST,
-        load=read_load(top.section("load")),
-        initial=read_initial(top.section("initial")),
+        motion=_motion(top.child(top.data["motion"], "motion")) if "motion" in top else AT_REST,
+        load=_given(top.section("load"), Load),
+        initial=_given(top.section("initial"), Initial),
         simulation=simulation,
         disturbance=read_disturbance(top, robot),
         source_text=text,
@@ -228,6 +230,14 @@ def _study(top: Section, text: str) -> Study:
         notes=(*unused_settings(settings, simulation), *_unused_axial_modes(top, simulation)),
     )
     return study.keep(top.written)
+
+
+def _motion(section: Section) -> Motion:
+    return section.one_of((AxisMotion, CombinedMotion, WaypointMotion, CsvMotion))  # type: ignore[return-value]
+
+
+def _given(section: Section | None, kind: type[T]) -> T:
+    return kind() if section is None else kind.from_table(section)
 
 
 def _unused_axial_modes(top: Section, simulation: Simulation) -> tuple[str, ...]:
@@ -246,10 +256,10 @@ def _actuator_study(top: Section, text: str) -> ActuatorStudy:
     motion, load = read_drives(top)
     study = top.build(
         ActuatorStudy,
-        actuator=read_actuator(top.child(top.data["actuator"], "actuator")),
+        actuator=Actuator.from_table(top.child(top.data["actuator"], "actuator")),
         motion=motion,
         load=load,
-        initial=read_release(top.section("initial")),
+        initial=_given(top.section("initial"), ActuatorInitial),
         simulation=simulation,
         source_text=text,
         path=top.file,

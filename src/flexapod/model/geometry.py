@@ -2,7 +2,8 @@
 
 from __future__ import annotations
 
-from typing import Annotated
+from collections.abc import Mapping
+from typing import TYPE_CHECKING, Annotated
 
 import numpy as np
 from pydantic import PlainSerializer, PlainValidator
@@ -11,6 +12,9 @@ from flexapod.errors import InputError
 from flexapod.schema.base import Joints, Quantity, array_of
 from flexapod.schema.table import Table
 from flexapod.typing import Array
+
+if TYPE_CHECKING:
+    from flexapod.schema.section import Section
 
 __all__ = ["Geometry", "PerLeg", "check_legs"]
 
@@ -93,6 +97,16 @@ class Geometry(Table):
         for name in ("leg_offset", "lead"):
             check_legs(getattr(self, name), f"geometry.{name}", count)
 
+    @classmethod
+    def resolved(cls, section: Section) -> Mapping[str, object]:
+        """Places of joints leg by leg, and numbers for all legs or for each."""
+        joints = {
+            name: section.rows(name, *(("length",) * 3,) * section.leg[1]) if name in section else None
+            for name in ("base_joints", "platform_joints")
+        }
+        numbers = {"leg_offset": "length", "lead": "number"}
+        return joints | {name: read_each(section, name, dimension) for name, dimension in numbers.items()}
+
     def told(self) -> dict[str, object]:
         """All that it has to say in a file: what is the same for all legs as one number."""
         return {name: one_for_all(value) for name, value in super().told().items()}
@@ -107,3 +121,10 @@ def check_legs(values: Array | None, key: str, count: int) -> None:
             value=values.tolist(),
             allowed=f"one number, or one for each of {count} legs",
         )
+
+
+def read_each(section: Section, name: str, dimension: str) -> object:
+    """A number, or one for each leg."""
+    if not isinstance(section.data.get(name), list):
+        return section.number(name, dimension)
+    return section.vector(name, *(dimension,) * section.leg[1])

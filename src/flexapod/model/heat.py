@@ -2,17 +2,21 @@
 
 from __future__ import annotations
 
-from typing import Annotated, ClassVar
+from collections.abc import Mapping
+from typing import TYPE_CHECKING, Annotated, ClassVar
 
 import numpy as np
 from pydantic import PlainSerializer, PlainValidator, model_validator
 
 from flexapod.errors import InputError
-from flexapod.model.geometry import PerLeg, check_legs, one_for_all
+from flexapod.model.geometry import PerLeg, check_legs, one_for_all, read_each
 from flexapod.model.motion import check_times
 from flexapod.schema.base import Key, Quantity, Series, array_of
 from flexapod.schema.table import Table
 from flexapod.typing import Array
+
+if TYPE_CHECKING:
+    from flexapod.schema.section import Section
 
 __all__ = ["HEAT_PARTS", "LEG_PARTS", "Expansion", "Gradient", "Heat"]
 
@@ -44,6 +48,11 @@ class Gradient(Table):
             usual="none",
         ),
     ] = None
+
+    @classmethod
+    def resolved(cls, section: Section) -> Mapping[str, object]:
+        """A number for all legs, or for each."""
+        return {"piston": read_each(section, "piston", "temperature difference")}
 
     def told(self) -> dict[str, object]:
         """All that it has to say in a file: what is the same for all legs as one number."""
@@ -104,6 +113,17 @@ class Heat(Table):
     columns: tuple[str, ...] = ()
     table: Annotated[_Rows | None, Quantity("temperature")] = None
 
+    @classmethod
+    def resolved(cls, section: Section) -> Mapping[str, object]:
+        """Temperatures for all legs or for each, tables in it, and the table over time."""
+        expansion, gradient = section.section("expansion"), section.section("gradient")
+        return {
+            **{name: read_each(section, name, "temperature") for name in LEG_PARTS},
+            "expansion": expansion and expansion.read(Expansion),
+            "gradient": gradient and gradient.read(Gradient),
+            **(_over_time(section, section.leg[1]) if "file" in section else {}),
+        }
+
     @model_validator(mode="after")
     def _sensible(self) -> Heat:
         for name in (*LEG_PARTS, "table"):
@@ -143,3 +163,22 @@ class Heat(Table):
     def told(self) -> dict[str, object]:
         """All that it has to say in a file: what is the same for all legs as one number."""
         return {name: one_for_all(value) for name, value in super().told().items()}
+
+
+def _over_time(section: Section, count: int) -> dict[str, object]:
+    names = [*HEAT_PARTS, *(f"{part} {leg}" for part in LEG_PARTS for leg in range(1, count + 1))]
+    found = section.table(dict.fromkeys(names, "temperature"))
+    time = found.pop("time")
+    for name in found:
+        part, _, leg = name.partition(" ")
+        if leg and part in found:
+            raise InputError(
+                f"has the columns {part!r} and {name!r}",
+                file=section.file,
+                key=section.key("file"),
+                value=section.data["file"],
+                allowed="a part for all legs, or a column for each of its legs",
+            )
+        if part in section:
+            raise section.error("is given together with its column in heat.file", part, allowed="one of the two")
+    return {"time": time, "columns": tuple(found), "table": [list(row) for row in zip(*found.values(), strict=True)]}

@@ -3,7 +3,8 @@
 from __future__ import annotations
 
 import math
-from typing import Annotated, ClassVar, Literal
+from collections.abc import Mapping
+from typing import TYPE_CHECKING, Annotated, ClassVar, Literal
 
 import numpy as np
 from pydantic import PlainSerializer, PlainValidator, model_validator
@@ -14,6 +15,9 @@ from flexapod.schema.base import Key, Quantity, array_of
 from flexapod.schema.table import Table
 from flexapod.typing import Array
 from flexapod.words import text
+
+if TYPE_CHECKING:
+    from flexapod.schema.section import Section
 
 __all__ = ["HydraulicDrive", "HydraulicLimits"]
 
@@ -72,6 +76,13 @@ class HydraulicDrive(Table):
         StrokeFriction | None, Key("table: friction of the stroke, of a screw at its nut", usual="none")
     ] = None
     limits: Annotated[HydraulicLimits, Key("table: what the drive is made for")] = HydraulicLimits()
+
+    @classmethod
+    def resolved(cls, section: Section) -> Mapping[str, object]:
+        """One dead volume for both sides, or two."""
+        both = isinstance(section.data.get("dead_volume"), list)
+        value = section.vector("dead_volume", "volume", "volume") if both else section.number("dead_volume", "volume")
+        return {"dead_volume": value}
 
     @model_validator(mode="after")
     def _rod_in_bore(self) -> HydraulicDrive:

@@ -3,17 +3,22 @@
 from __future__ import annotations
 
 from collections.abc import Mapping
-from typing import Annotated, Any, ClassVar, Literal
+from typing import TYPE_CHECKING, Annotated, Any, ClassVar, Literal
 
 import numpy as np
 from pydantic import model_validator
 
 from flexapod.errors import InputError
 from flexapod.model.friction import JointFriction
+from flexapod.model.joint_stiffness import read_stiffness
 from flexapod.model.rolling import RollingLaw
-from flexapod.schema.axes import within_a_turn
+from flexapod.schema.axes import axis_of, within_a_turn
 from flexapod.schema.base import Key, Loss, Matrix6, Quantity, Vec3
 from flexapod.schema.table import Table
+from flexapod.typing import Array
+
+if TYPE_CHECKING:
+    from flexapod.schema.section import Section
 
 NO_DIRECTION = 1e-9  # length of a vector below which it is none
 
@@ -260,3 +265,58 @@ class Carriage(Table):
 def _check_direction(axis: Vec3 | None, key: str) -> None:
     if axis is not None and np.abs(axis).max() < NO_DIRECTION:
         raise InputError("has no direction", key=key, value=axis.tolist(), allowed="a non-zero vector")
+
+
+def read_joint(leg: Section, name: str, place: Array, normal: Array) -> Joint | None:
+    """The joint of a table [leg] under `name`, at its place (3,) [m]; None where it says nothing of it."""
+    axis = leg.vector("u_axis", "number", "number", "number") if name == "base_joint" else None
+    if axis is not None and np.abs(axis).max() < NO_DIRECTION:
+        raise leg.error("has no direction", "u_axis", allowed="a non-zero vector")
+    section = leg.section(name)
+    if section is None:
+        return None if axis is None else Joint(axis=np.array(axis))
+    if axis is not None and "axis" in section:
+        raise leg.error("is given together with base_joint.axis", "u_axis", allowed="one of the two: they are the same")
+
+    def parts(section: Section) -> dict[str, object]:
+        return {"axis": axis or section.direction("axis", place, normal), **read_stiffness(section)}
+
+    return section.read(Joint, also=("at",), then=parts)
+
+
+def read_carriage(section: Section, base: Array, normal: Array) -> Carriage:
+    """What moves the foot of a leg, from its table; `base` (3,) [m]: where it is at 0."""
+
+    def parts(section: Section) -> dict[str, object]:
+        if kind not in section:
+            section.need("slider")
+        if "crank" in section and "slider" in section:
+            raise section.error("is given together with slider", "crank", allowed="one of the two")
+        axis = section.direction(kind, base, normal)
+        arm = section.vector("arm", "length", "length", "length")
+        radius = section.number("radius", "length")
+        if radius is not None:
+            if arm is not None or axis is None or kind == "slider":
+                raise section.error("does not fit here", "radius", allowed="of a crank, in place of arm")
+            arm = _arm(section, radius, axis, base, normal)
+        return {"kind": kind, "axis": axis, "arm": arm}
+
+    kind = "crank" if "crank" in section else "slider"
+    among = ("length",) if kind == "slider" else ("angle",)
+    try:
+        return section.read(Carriage, among=among, also=("slider", "crank", "radius"), then=parts)
+    except InputError as error:
+        if error.key != section.key("axis"):
+            raise
+        raise section.error(error.what, kind, allowed=error.allowed) from None
+
+
+def _arm(section: Section, radius: float, axis: Array, base: Array, normal: Array) -> Array:
+    """Arm of a crank at angle 0: radial as far as the axis lets it, else tangential."""
+    unit = axis / np.linalg.norm(axis)
+    for word in ("radial", "tangential"):
+        if (direction := axis_of(word, base, normal)) is not None:
+            across = direction - (direction @ unit) * unit
+            if (size := float(np.linalg.norm(across))) > 1e-6:
+                return radius * across / size
+    raise section.error("has no direction to begin in", "radius", allowed="arm = [x, y, z] for this crank")

@@ -2,14 +2,23 @@
 
 from __future__ import annotations
 
-from typing import Annotated
+from collections.abc import Mapping
+from typing import TYPE_CHECKING, Annotated
 
 import numpy as np
 
+from flexapod.model.rolling import RollingLaw
+from flexapod.model.spring import read_spring
 from flexapod.schema.base import Key, Loss, Matrix6, Quantity
 from flexapod.schema.table import Table
+from flexapod.typing import Array
 
-__all__ = ["AlongLeg", "InRows"]
+if TYPE_CHECKING:
+    from flexapod.schema.section import Section
+
+__all__ = ["AlongLeg", "InRows", "read_stiffness"]
+
+_TRANSLATIONS, _FORCES = ("stiffness",) * 3, ("force",) * 3
 
 
 class AlongLeg(Table):
@@ -19,6 +28,13 @@ class AlongLeg(Table):
     radial: Annotated[float, Quantity("stiffness", above=0, why="across the leg")]
     damping: Annotated[float | None, Quantity("damping", least=0, why="along and across the leg")] = None
     loss: Annotated[Loss | None, Key("loss factor, in place of `damping`; left out: that of the joint")] = None
+
+    @classmethod
+    def resolved(cls, section: Section) -> Mapping[str, object]:
+        """Dampers, then springs, each above zero."""
+        dampers = _dampers(section)
+        section.need("axial", "radial")
+        return dampers | {name: read_spring(section, name) for name in ("axial", "radial")}
 
     @property
     def of_joint(self) -> dict[str, object]:
@@ -34,6 +50,11 @@ class InRows(Table):
     damping: Annotated[float | None, Quantity("damping", least=0, why="along and across the leg")] = None
     loss: Annotated[Loss | None, Key("loss factor, in place of `damping`; left out: that of the joint")] = None
 
+    @classmethod
+    def resolved(cls, section: Section) -> Mapping[str, object]:
+        """Dampers, then rows."""
+        return _dampers(section) | {"rows": _rows(section, "rows")}
+
     @property
     def of_joint(self) -> dict[str, object]:
         """What a joint has of it."""
@@ -42,3 +63,33 @@ class InRows(Table):
 
 def _damped(spring: AlongLeg | InRows) -> dict[str, object]:
     return {"stiffness_damping": spring.damping, "stiffness_loss": spring.loss}
+
+
+def read_stiffness(section: Section) -> dict[str, object]:
+    """A number, along and across the leg, a law, three or six rows; the latter with dampers as a table."""
+    value = section.data.get("stiffness")
+    if isinstance(value, list):
+        return {"stiffness": _rows(section, "stiffness")}
+    if isinstance(value, Mapping):
+        inner = section.child(value, "stiffness")
+        if "law" in inner:
+            return {"rolling": inner.read(RollingLaw)}
+        return inner.read(InRows if "rows" in inner else AlongLeg).of_joint
+    number = read_spring(section, "stiffness") if "stiffness" in section else section.number("stiffness", "stiffness")
+    return {} if number is None else {"stiffness": np.diag([number] * 3 + [0.0] * 3)}
+
+
+def _dampers(section: Section) -> dict[str, object]:
+    if "damping" in section and "loss" in section:
+        raise section.error("is given together with loss", "damping", allowed="either of the two")
+    return {"damping": section.number("damping", "damping"), "loss": section.number("loss", "number")}
+
+
+def _rows(section: Section, name: str) -> Array:
+    """Three or six rows of a stiffness, (6, 6)."""
+    value, found = section.data.get(name), np.zeros((6, 6))
+    if isinstance(value, list) and len(value) == 6:
+        mixed = (*_FORCES, *("rotational stiffness",) * 3)
+        return np.array(section.rows(name, *((*_TRANSLATIONS, *_FORCES),) * 3, *(mixed,) * 3))
+    found[:3, :3] = section.rows(name, *(_TRANSLATIONS,) * 3)
+    return found

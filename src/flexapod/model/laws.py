@@ -2,13 +2,18 @@
 
 from __future__ import annotations
 
-from typing import Annotated, ClassVar, Literal
+from collections.abc import Mapping
+from typing import TYPE_CHECKING, Annotated, ClassVar, Literal
 
 from pydantic import Field, model_validator
 
 from flexapod.model.motion import Profile, check_times
 from flexapod.schema.base import Key, Quantity, Series, Series6, Vec6
+from flexapod.schema.csv_tables import WRENCH, beside
 from flexapod.schema.table import Table
+
+if TYPE_CHECKING:
+    from flexapod.schema.section import Section
 
 _AMPLITUDE = ("angle", "length", "torque", "force")
 
@@ -118,6 +123,12 @@ class CsvWrench(Table):
     time: Annotated[Series, Quantity("time", why="instant of the step")]
     wrench: Annotated[Series6, Quantity("force", "torque")]
 
+    @classmethod
+    def resolved(cls, section: Section) -> Mapping[str, object]:
+        """Its table."""
+        table = section.table(WRENCH, jumps=True)
+        return {"time": table["time"], "wrench": beside(table, WRENCH)}
+
     @model_validator(mode="after")
     def _table(self) -> CsvWrench:
         check_times(self.time, len(self.wrench), jumps=True)
@@ -131,3 +142,19 @@ class Load(Table):
     """External load of a robot: `wrench` at the tool, world axes, or none."""
 
     wrench: Annotated[Wrench | None, Key("Fx, Fy, Fz, Mx, My, Mz, or a table: a law over time")] = None
+
+    @classmethod
+    def from_table(cls, section: Section, among: tuple[str, ...] = ()) -> Load:
+        """What a table says: a wrench, six numbers or a law."""
+        section.only("wrench")
+        section.need("wrench")
+        return section.build(cls, wrench=read_wrench(section)).keep(section.written)
+
+
+def read_wrench(section: Section) -> Wrench:
+    """The key `wrench` of a table [load]: six numbers, or a law."""
+    value = section.data["wrench"]
+    if isinstance(value, list):
+        return section.build(ConstantWrench, value=section.vector("wrench", *WRENCH.values()))
+    kinds = (ConstantWrench, SineWrench, StepWrench, CsvWrench)
+    return section.child(value, "wrench").one_of(kinds)

@@ -2,11 +2,12 @@
 
 from __future__ import annotations
 
-from typing import Annotated, Any, ClassVar
+from typing import TYPE_CHECKING, Annotated, Any, ClassVar
 
 from pydantic import Field, InstanceOf, SerializeAsAny, model_validator
 
-from flexapod.elements.element import Element
+from flexapod.elements.element import Element, registered
+from flexapod.elements.known import element_at
 from flexapod.errors import InputError
 from flexapod.model.chain import Chain, chain_of
 from flexapod.model.cylinder import Cylinder
@@ -14,14 +15,21 @@ from flexapod.model.damping import BodyDamping, damping_parts
 from flexapod.model.drive import ForceDrive, PrescribedDrive
 from flexapod.model.guide import Guide
 from flexapod.model.hydraulic import HydraulicDrive
-from flexapod.model.joint import Carriage, Joint
+from flexapod.model.joint import Carriage, Joint, read_carriage, read_joint
 from flexapod.model.piston import Piston, Strut
-from flexapod.model.screw import Drive, ScrewDrive
-from flexapod.model.spring import AxialSpring
+from flexapod.model.screw import TURNING, Drive, ScrewDrive
+from flexapod.model.spring import AxialSpring, read_springs
 from flexapod.schema.base import Key, Quantity, Vec3
+from flexapod.schema.columns import columns_of
 from flexapod.schema.table import Table
+from flexapod.typing import Array
 from flexapod.words import number, text
 
+if TYPE_CHECKING:
+    from flexapod.schema.section import Section
+
+SLIDING = ("stiffness", "damping", "force", "length")
+IDLE = {"type": "prescribed"}
 NOTHING = Cylinder(mass=0.0, mouth=0.0)  # in place of the cylinder that a strut does not have
 
 
@@ -311,3 +319,65 @@ def _damped(damping: BodyDamping) -> str:
 
 def _span(low: float, high: float) -> str:
     return f"{text(low, 'm', 4)} to {text(high, 'm', 4)} joint to joint"
+
+
+def read_leg(section: Section, number: int, count: int, chain: str, places: tuple[Array, Array, Array]) -> Leg:
+    """Leg `number` of `count`, whose letters are `chain`; `places`: its base and platform joint, the normal."""
+    base, platform, normal = places
+    section.leg = (number, count)
+
+    def parts(section: Section) -> dict[str, object]:
+        if section.text("chain") not in (None, chain):
+            raise section.error("is not the chain of this leg", "chain", allowed=f"{chain}, as robot.type says")
+        letters = chain_of(chain)
+        if letters.stroke and not letters.platform and "passive" not in section:
+            raise InputError(
+                f"must be said for {chain}, a leg that is fixed to the platform",
+                file=section.file,
+                key=section.key("passive"),
+                allowed="true if nothing drives it, false if its stroke is driven",
+                next_step=f"Add {section.key('passive')} = true",
+            )
+        written = section.data.get("drive", IDLE)  # files of earlier versions have the drive of all legs there
+        if section.data.get("passive") is True and written != IDLE:
+            raise section.error(
+                f"drives a passive leg (chain {chain})",
+                "drive",
+                allowed="a drive, or passive = true",
+                next_step="Leave it out",
+            )
+        section.need(*(("cylinder", "piston") if letters.stroke else ("strut",)))
+        strut, carriage = section.section("strut"), section.section("carriage")
+        cylinder = section.section("cylinder")
+        return {
+            "chain": chain,
+            "cylinder": None if cylinder is None else Cylinder.from_table(cylinder),
+            "piston": _piston(section.section("piston")),
+            "strut": None if strut is None else Strut.from_table(strut),
+            "carriage": None if carriage is None else read_carriage(carriage, base, normal),
+            "base_joint": read_joint(section, "base_joint", base, normal),
+            "platform_joint": read_joint(section, "platform_joint", platform, normal),
+            "springs": read_springs(section.section("springs")),
+            "drive": _drive(section.section("drive"), TURNING if letters.turning else SLIDING),
+            "elements": tuple(element for kind in kinds.values() for element in _elements(section, kind)),
+        }
+
+    own = {*columns_of(Leg), "count", "u_axis"} - {*Leg.derived}
+    kinds = {name: kind for name in section.data if name not in own and (kind := element_at(name)) is not None}
+    return section.read(Leg, also=("count", "u_axis", *registered), then=parts)
+
+
+def _elements(section: Section, kind: type[Element]) -> list[Element]:
+    """Elements of a kind: one table, or a list of tables."""
+    given = section.data[kind.at]
+    if not isinstance(given, list):
+        return [section.child(given, kind.at).read(kind)]
+    return [section.child(table, f"{kind.at}[{k}]").read(kind) for k, table in enumerate(given, start=1)]
+
+
+def _piston(section: Section | None) -> Piston | None:
+    return None if section is None else Piston.from_table(section)
+
+
+def _drive(section: Section | None, among: tuple[str, ...]) -> Drive | None:
+    return None if section is None else section.one_of(columns_of(Leg)["drive"].models, among=among)  # type: ignore

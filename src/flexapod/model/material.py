@@ -4,7 +4,7 @@ from __future__ import annotations
 
 import math
 from types import MappingProxyType
-from typing import Annotated, ClassVar
+from typing import TYPE_CHECKING, Annotated, ClassVar
 
 from pydantic import Field, model_validator
 
@@ -12,9 +12,13 @@ from flexapod.errors import InputError
 from flexapod.schema.base import Quantity
 from flexapod.schema.table import Table
 
+if TYPE_CHECKING:
+    from flexapod.schema.section import Section
+
 POISSON = 0.3  # where no other is given
 #: Keys of a table of which a material is made.
-SPELLS = {key: ("material",) for key in ("E", "density", "yield_stress", "poisson", "expansion")}
+OF_MATERIAL = ("E", "density", "yield_stress", "poisson", "expansion")
+SPELLS = dict.fromkeys(OF_MATERIAL, ("material",))
 
 
 class Material(Table):
@@ -88,6 +92,11 @@ class Tube(Table):
         return 6 * (1 + poisson) * m / ((7 + 6 * poisson) * m + (20 + 12 * poisson) * hollow**2)  # (T8.19)
 
 
+def read_tube(section: Section) -> Tube:
+    """Round section of a table with its diameters."""
+    return section.build(Tube, **{name: section.number(name, "length") for name in ("diameter", "inner_diameter")})
+
+
 class Rectangle(Table):
     """Rectangular section: width across and height along the direction of bending [m]."""
 
@@ -122,3 +131,30 @@ def spelled(material: Material) -> dict[str, object]:
         return {name: value for name, value in material.told().items() if name != "name"}
     named: dict[str, object] = {"material": known.name}
     return named | {name: value for name, value in own.items() if value != getattr(known, name)}
+
+
+def read_material(section: Section) -> Material:
+    """Material of a section that has `material`, or `E` and `density`; the others may be set in both cases."""
+    own = {
+        "yield_stress": section.number("yield_stress", "stress"),
+        "poisson": section.number("poisson", "number"),
+        "expansion": section.number("expansion", "expansion"),
+    }
+    if "material" in section:
+        for name in ("E", "density"):
+            if name in section:
+                raise section.error("is given together with material", name, allowed="material, or E and density")
+        material = MATERIALS[str(section.text("material", tuple(MATERIALS)))]
+        given = {key: value for key, value in own.items() if value is not None}
+        return section.build(material.replace, **given) if given else material
+    if "E" not in section and "density" not in section:
+        raise InputError(
+            "is missing",
+            file=section.file,
+            key=section.key("material"),
+            allowed=f"material ({', '.join(MATERIALS)}), or E and density",
+            next_step=f"Add {section.key('material')}",
+        )
+    section.need("E", "density")
+    modulus, density = section.number("E", "stress"), section.number("density", "density")
+    return section.build(Material, name="given", E=modulus, density=density, **own)

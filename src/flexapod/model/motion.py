@@ -3,18 +3,22 @@
 from __future__ import annotations
 
 import math
-from typing import Annotated, ClassVar, Literal, get_args
+from collections.abc import Mapping
+from typing import TYPE_CHECKING, Annotated, ClassVar, Literal, get_args
 
 import numpy as np
 from pydantic import AfterValidator, Field, model_validator
 
 from flexapod.errors import InputError
 from flexapod.schema.base import Key, Quantity, Series, Series6, Vec3
-from flexapod.schema.csv_tables import wrong_instant
+from flexapod.schema.csv_tables import POSE, beside, wrong_instant
 from flexapod.schema.table import Table
 from flexapod.typing import Array
 from flexapod.units import DIMENSIONS
 from flexapod.words import number, text
+
+if TYPE_CHECKING:
+    from flexapod.schema.section import Section
 
 Axis = Literal["surge", "sway", "heave", "roll", "pitch", "yaw"]
 Profile = Literal["quintic", "cycloidal", "s-curve", "trapezoid", "smooth", "linear"]
@@ -60,6 +64,16 @@ class AxisMotion(Table):
         Key("axes that are commanded, of a robot with fewer than six motions", usual="all that the robot has"),
     ] = None
 
+    @classmethod
+    def measuring(cls, section: Section, among: tuple[str, ...]) -> tuple[str, ...]:
+        """Lengths along an axis, angles about one."""
+        return (POSE[str(section.text("type"))],)
+
+    @classmethod
+    def resolved(cls, section: Section) -> Mapping[str, object]:
+        """Its axes that are commanded."""
+        return {"independent": section.words("independent", AXES)}
+
     def _shown(self) -> dict[str, str]:
         return _in_words(self.target, self.duration, self.hold, self.profile)
 
@@ -102,6 +116,15 @@ class CombinedMotion(Table):
         Independent | None,
         Key("axes that are commanded, of a robot with fewer than six motions", usual="all that the robot has"),
     ] = None
+
+    @classmethod
+    def resolved(cls, section: Section) -> Mapping[str, object]:
+        """Amplitudes by axis, and its axes that are commanded."""
+        inner, found = section.section("amplitudes"), {}
+        if inner is not None:
+            inner.only(*AXES)
+            found = {"amplitudes": {axis: inner.number(axis, POSE[axis]) for axis in AXES if axis in inner}}
+        return {**found, "independent": section.words("independent", AXES)}
 
     def _shown(self) -> dict[str, str]:
         return _in_words(self.target, self.duration, self.hold, self.profile)
@@ -168,6 +191,16 @@ class WaypointMotion(Table):
         Key("axes that are commanded, of a robot with fewer than six motions", usual="all that the robot has"),
     ] = None
 
+    @classmethod
+    def resolved(cls, section: Section) -> Mapping[str, object]:
+        """Its points, and its axes that are commanded."""
+        value = section.data.get("points")
+        if value is not None and (not isinstance(value, list) or not value):
+            raise section.error("is not a list of points", "points", allowed="[{ time = .., roll = .. }, ...]")
+        points = (section.child(item, f"points[{i}]") for i, item in enumerate(value or (), start=1))
+        found = {} if value is None else {"points": tuple(point.read(Waypoint) for point in points)}
+        return {**found, "independent": section.words("independent", AXES)}
+
     def _shown(self) -> dict[str, str]:
         return {"to": f"{len(self.points)} points", "in": f"{number(self.end_time, 4)} s", "profile": self.profile}
 
@@ -228,6 +261,13 @@ class CsvMotion(Table):
         Independent | None,
         Key("axes that are commanded, of a robot with fewer than six motions", usual="all that the robot has"),
     ] = None
+
+    @classmethod
+    def resolved(cls, section: Section) -> Mapping[str, object]:
+        """Its table, and its axes that are commanded."""
+        table = section.table(POSE)
+        poses = {"time": table["time"], "pose": beside(table, AXES)}
+        return {**poses, "independent": section.words("independent", AXES)}
 
     def _shown(self) -> dict[str, str]:
         return {"table": f"{self.file or 'given'}, {len(self.time)} rows", "in": f"{number(self.end_time, 4)} s"}

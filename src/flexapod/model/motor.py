@@ -2,7 +2,7 @@
 
 from __future__ import annotations
 
-from typing import Annotated, Literal
+from typing import TYPE_CHECKING, Annotated, Literal
 
 from pydantic import Field, model_validator
 
@@ -11,6 +11,9 @@ from flexapod.model.drive import Feedback
 from flexapod.schema.base import Key, Quantity, Series, array_of
 from flexapod.schema.table import Table
 from flexapod.words import number
+
+if TYPE_CHECKING:
+    from flexapod.schema.section import Section
 
 __all__ = ["HARMONICS", "Brake", "Encoder", "Limits", "Loop", "Motor", "Ripple", "Rotor", "summing"]
 
@@ -108,6 +111,11 @@ class Encoder(Table):
         Literal["same", "rotor"],
         Key("what the damping of a loop about another place acts on: the rate there, or the rotor's"),
     ] = "same"
+
+    @classmethod
+    def measuring(cls, section: Section, among: tuple[str, ...]) -> tuple[str, ...]:
+        """Angles at the rotor, lengths elsewhere."""
+        return ("angle",) if section.data.get("at", "rotor") == "rotor" else ("length",)
 
 
 class Loop(Feedback):

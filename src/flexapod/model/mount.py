@@ -2,7 +2,8 @@
 
 from __future__ import annotations
 
-from typing import Annotated, ClassVar, Literal
+from collections.abc import Mapping
+from typing import TYPE_CHECKING, Annotated, ClassVar, Literal
 
 import numpy as np
 from pydantic import Field, model_validator
@@ -11,9 +12,22 @@ from flexapod.errors import InputError
 from flexapod.model.motion import check_times
 from flexapod.model.spring import check_lossy
 from flexapod.schema.base import Key, Loss, Matrix3, Matrix6, Quantity, Series, Series6, Vec3
+from flexapod.schema.csv_tables import POSE
 from flexapod.schema.table import Table
 
-__all__ = ["BaseMotion", "Mount"]
+if TYPE_CHECKING:
+    from flexapod.schema.section import Section
+
+__all__ = ["BASE_ACCELERATION", "BaseMotion", "Mount"]
+
+BASE_ACCELERATION = {
+    axis: "acceleration" if dimension == "length" else "angular acceleration" for axis, dimension in POSE.items()
+}
+_UNITS = {
+    "stiffness": ("stiffness", "force", "rotational stiffness"),
+    "damping": ("damping", "impulse", "rotational damping"),
+}
+_INERTIAS = ("inertia",) * 3
 
 ORIGIN = np.zeros(3)
 LEVEL = 1e-9  # of the largest number of a matrix, by which it may miss being one of a spring
@@ -43,6 +57,15 @@ class Mount(Table):
     inertia: Annotated[
         Matrix3, Quantity("inertia", why="of that plate about `at`: three numbers, or three rows", usual="none")
     ] = Field(default=np.zeros((3, 3)), validate_default=True)
+
+    @classmethod
+    def resolved(cls, section: Section) -> Mapping[str, object]:
+        """Springs, dampers and inertia by six or three numbers, or by rows."""
+        section.need("stiffness")
+        found: dict[str, object] = {name: _matrix(section, name) for name in _UNITS if name in section}
+        if not _has_rows(section, "inertia"):
+            return found | {"inertia": np.diag(section.vector("inertia", *_INERTIAS) or (0.0,) * 3)}
+        return found | {"inertia": section.rows("inertia", *(_INERTIAS,) * 3)}
 
     @model_validator(mode="after")
     def _sensible(self) -> Mount:
@@ -96,6 +119,14 @@ class BaseMotion(Table):
     time: Annotated[Series, Quantity("time")]
     values: Annotated[Series6, Quantity("acceleration", "length", "angle")]
 
+    @classmethod
+    def resolved(cls, section: Section) -> Mapping[str, object]:
+        """Its table."""
+        of = section.text("of", ("acceleration", "displacement")) or "acceleration"
+        found = section.table(BASE_ACCELERATION if of == "acceleration" else POSE, jumps=of == "acceleration")
+        none = np.zeros(len(found["time"]))
+        return {"of": of, "time": found["time"], "values": np.stack([found.get(axis, none) for axis in POSE], axis=1)}
+
     @model_validator(mode="after")
     def _table(self) -> BaseMotion:
         check_times(self.time, len(self.values), jumps=self.of == "acceleration")
@@ -108,3 +139,17 @@ class BaseMotion(Table):
                 next_step="Subtract the first row from all",
             )
         return self
+
+
+def _has_rows(section: Section, name: str) -> bool:
+    value = section.data.get(name)
+    return isinstance(value, list) and any(isinstance(row, list) for row in value)
+
+
+def _matrix(section: Section, name: str) -> object:
+    """Six numbers, or six rows."""
+    along, mixed, about = _UNITS[name]
+    if _has_rows(section, name):
+        upper, lower = (along,) * 3 + (mixed,) * 3, (mixed,) * 3 + (about,) * 3
+        return section.rows(name, *(upper,) * 3, *(lower,) * 3)
+    return np.diag(section.vector(name, *(along,) * 3, *(about,) * 3) or ())

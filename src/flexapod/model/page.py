@@ -12,10 +12,10 @@ from typing import Any
 
 import numpy as np
 
+from flexapod.model.disturbance import FLOOR, FORCE_NOISE, WRENCH_NOISE
 from flexapod.model.fields import Field, Notes, listened
 from flexapod.model.material import MATERIALS
-from flexapod.model.read_disturbance import FLOOR, FORCE_NOISE, WRENCH_NOISE
-from flexapod.model.read_mount import BASE_ACCELERATION
+from flexapod.model.mount import BASE_ACCELERATION
 from flexapod.schema.columns import Column
 from flexapod.schema.csv_tables import POSE, WRENCH, forces, header
 from flexapod.schema.reference import Entry, plain_path, reference
@@ -277,6 +277,9 @@ _INTRODUCTION = """# The study file
 A study is one TOML file: what is analysed, how it moves, how it is computed. `flexapod new NAME.toml`
 writes one to start from, `flexapod check NAME.toml` reads and describes it. Keys that are not named here are
 refused, with the right form.
+
+`flexapod keys --schema study.schema.json` writes the same for editors: with `#:schema study.schema.json` as its first
+line a file is completed and marked as you type, by those that know JSON schemas for TOML.
 
 This page is written by `flexapod keys --markdown docs/study-file.md` from the readers, the model and
 `src/flexapod/schema/keys.toml`; `flexapod keys leg.drive` shows a part of it in the terminal. All examples load."""

@@ -3,16 +3,22 @@
 from __future__ import annotations
 
 from collections.abc import Sequence
-from typing import Annotated, ClassVar, Self
+from typing import TYPE_CHECKING, Annotated, Any, ClassVar, Self
 
 from pydantic import Field, model_validator
 
 from flexapod.errors import InputError
 from flexapod.model.cylinder import check_axial
-from flexapod.model.material import POISSON, Material, Rectangle, Tube
+from flexapod.model.material import POISSON, Material, Rectangle, Tube, read_material, read_tube
 from flexapod.model.sections import SHARES, PistonSection, Step
 from flexapod.schema.base import Key, Quantity
+from flexapod.schema.columns import columns_of
 from flexapod.schema.table import Table
+
+if TYPE_CHECKING:
+    from flexapod.schema.section import Section
+
+STIFFNESS = ("EI", "EA", "rhoA")
 
 
 class Piston(Table):
@@ -98,6 +104,53 @@ class Piston(Table):
             usual="false",
         ),
     ] = False
+
+    @classmethod
+    def from_table(cls, section: Section, among: tuple[str, ...] = ()) -> Self:
+        """One of several sections, of a stiffness, or of a round section and a material."""
+        keyed = None if "keyed" in cls.derived else section.flag("keyed")
+        section.only(*(name for name in columns_of(cls) if name not in cls.derived), "material")
+        if "sections" in section:
+            found = cls._of_sections(section)
+        elif any(name in section for name in (*STIFFNESS, "GJ")):
+            found = cls._of_stiffness(section)
+        else:
+            found = cls._of_section(section)
+        return (found if keyed is None else found.replace(keyed=keyed)).keep(section.written)
+
+    @classmethod
+    def _of_sections(cls, section: Section) -> Self:
+        for name in section.data:
+            if name not in ("sections", "axial_inertia", "bow", "keyed", "shear"):
+                raise section.error(
+                    "is given together with sections", name, allowed="in a section, or without sections"
+                )
+        given = section.data["sections"]
+        if not isinstance(given, list):
+            raise section.malformed("is not a list", "sections", allowed="[{ length, diameter, material }, ...]")
+        tables = [section.child(data, f"sections[{k}]") for k, data in enumerate(given, start=1)]
+        pieces = [table.read(PistonSection) for table in tables]
+        return section.build(cls.stepped, sections=pieces, **cls._besides(section))
+
+    @classmethod
+    def _of_stiffness(cls, section: Section) -> Self:
+        section.need("length", *STIFFNESS)
+        for name in ("material", "E", "density"):
+            if name in section:
+                raise section.error("is given together with EI, EA, rhoA", name, allowed="either of the two")
+        return section.read(cls, also=("material",))
+
+    @classmethod
+    def _of_section(cls, section: Section) -> Self:
+        section.need("length", "diameter")
+        length = section.number("length", "length")
+        tube, material = read_tube(section), read_material(section)
+        return section.build(cls.round, length=length, section=tube, material=material, **cls._besides(section))
+
+    @classmethod
+    def _besides(cls, section: Section) -> dict[str, Any]:
+        axial, bow = section.number("axial_inertia", "inertia"), section.number("bow", "length")
+        return {"axial_inertia": axial, "bow": bow, "shear": section.flag("shear")}
 
     @model_validator(mode="after")
     def _sensible(self) -> Self:
@@ -280,6 +333,18 @@ class Strut(Piston):
     derived: ClassVar[tuple[str, ...]] = ("keyed",)  # of pistons alone
 
     section: Annotated[Strip | None, Key("table: of a strip, in a planar robot")] = None
+
+    @classmethod
+    def _of_section(cls, section: Section) -> Self:
+        section.need("length")
+        length, strip = section.number("length", "length"), section.section("section")
+        if strip is None:
+            return super()._of_section(section)
+        for name in ("diameter", "inner_diameter", "axial_inertia"):
+            if name in section:
+                raise section.error("is given together with section", name, allowed="either of the two")
+        shape, material, bow = strip.read(Strip), read_material(section), section.number("bow", "length")
+        return section.build(cls.strip, length=length, section=shape, material=material, bow=bow)
 
     @property
     def depth(self) -> float | None:

@@ -10,23 +10,26 @@ import numpy as np
 from flexapod.errors import InputError
 from flexapod.model.chain import chains_of
 from flexapod.model.circle import Circle
+from flexapod.model.geometry import Geometry
+from flexapod.model.heat import Heat
 from flexapod.model.home import Home
-from flexapod.model.leg import Leg
+from flexapod.model.leg import Leg, read_leg
+from flexapod.model.mount import BaseMotion, Mount
 from flexapod.model.payload import Payload
-from flexapod.model.read_built import read_built
-from flexapod.model.read_leg import read_leg
-from flexapod.model.read_mount import read_mounts
 from flexapod.model.robot import Robot
+from flexapod.model.tolerances import Tolerances
 from flexapod.schema.axes import Plane, normal_of
 from flexapod.schema.section import Section
+from flexapod.schema.table import Table
 from flexapod.schema.written import Written
 from flexapod.typing import Array
 
 _LENGTHS = ("length", "length", "length")
 _INERTIAS = ("inertia", "inertia", "inertia")
 _ENDS = ("base", "platform")
-_BESIDE = ("payload", "leg", "geometry", "heat", "tolerances")
-_MOUNTS = ("base_mount", "platform_mount", "base_motion")
+_BUILT: Mapping[str, type[Table]] = {"geometry": Geometry, "heat": Heat, "tolerances": Tolerances}
+_MOUNTS: Mapping[str, type[Table]] = {"base_mount": Mount, "platform_mount": Mount, "base_motion": BaseMotion}
+_BESIDE = ("payload", "leg", *_BUILT)
 
 
 def read_robot(top: Section) -> Robot:
@@ -43,6 +46,7 @@ def read_robot(top: Section) -> Robot:
         chains = chains_of(kind)
     except InputError as error:
         raise error.located(file=top.file, prefix="robot.type") from None
+    top.leg = (1, len(chains))
     tables = _leg_tables(top, chains, kind)
     base, platform = (_places(section, end, tables, kind) for end in _ENDS)
     legs: list[Leg] = []
@@ -62,8 +66,8 @@ def read_robot(top: Section) -> Robot:
         legs=tuple(legs),
         plane=cast("Plane | None", plane),
         platform_fixed=fixed,
-        **read_built(top, len(chains)),
-        **read_mounts(section),
+        **_tables(top, _BUILT),
+        **_tables(section, _MOUNTS),
     )
     beside = {name: top.data[name] for name in _BESIDE if name in top}
     return robot.keep(Written({**section.data, **beside}))
@@ -146,6 +150,11 @@ def _angles(section: Section, count: int) -> dict[str, object]:
     if "half_angle" in section:
         raise section.error("is given together with angles", "half_angle", allowed="one of the two")
     return {"angles": section.vector("angles", *("angle",) * count)}
+
+
+def _tables(section: Section, kinds: Mapping[str, type[Table]]) -> dict[str, Table | None]:
+    found = {name: section.section(name) for name in kinds}
+    return {name: None if table is None else kinds[name].from_table(table) for name, table in found.items()}
 
 
 def _home(robot: Section, fixed: bool) -> Home:

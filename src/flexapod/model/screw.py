@@ -4,16 +4,16 @@ from __future__ import annotations
 
 import math
 from collections.abc import Mapping
-from typing import Annotated, ClassVar, Literal
+from typing import TYPE_CHECKING, Annotated, ClassVar, Literal
 
 import numpy as np
 from pydantic import BeforeValidator, Field, model_validator
 
 from flexapod.errors import InputError
-from flexapod.model.drive import ForceDrive, PrescribedDrive, ServoDrive
+from flexapod.model.drive import ForceDrive, PrescribedDrive, ServoDrive, read_columns
 from flexapod.model.friction import ScrewFriction
 from flexapod.model.hydraulic import HydraulicDrive
-from flexapod.model.material import SPELLS, Material, spelled
+from flexapod.model.material import OF_MATERIAL, SPELLS, Material, read_material, spelled
 from flexapod.model.motion import check_times
 from flexapod.model.motor import HARMONICS, Brake, Encoder, Limits, Loop, Motor, Ripple, Rotor, summing
 from flexapod.model.spring import check_lossy
@@ -22,10 +22,14 @@ from flexapod.schema.table import Table
 from flexapod.typing import Array
 from flexapod.words import number
 
+if TYPE_CHECKING:
+    from flexapod.schema.section import Section
+
 __all__ = ["Bearing", "Brake", "Drive", "Encoder", "Limits", "Loop", "Motor", "Nut", "Ripple", "Rotor", "ScrewDrive"]
 
 UNLOADS = 2 * math.sqrt(2)  # thrust over preload beyond which one half of a preloaded nut carries nothing
 HIGHEST = 0.1  # preload over dynamic load rating of a double nut, at most (HIWIN 3.6)
+TURNING = ("rotational stiffness", "rotational damping", "torque", "angle")
 UM = 1e6  # N/m of an N/um
 
 
@@ -147,6 +151,7 @@ class ScrewDrive(Table):
     """
 
     derived: ClassVar[tuple[str, ...]] = ("time", "torque")
+    also: ClassVar[tuple[str, ...]] = OF_MATERIAL
     spells: ClassVar[Mapping[str, tuple[str, ...]]] = SPELLS
 
     type: Annotated[Literal["screw"], Key("kind of drive")] = "screw"
@@ -185,6 +190,16 @@ class ScrewDrive(Table):
     friction: Annotated[
         ScrewFriction | None, Key("table: friction of the stroke, of a screw at its nut", usual="none")
     ] = None
+
+    @classmethod
+    def measuring(cls, section: Section, among: tuple[str, ...]) -> tuple[str, ...]:
+        """All its numbers are of what turns."""
+        return TURNING
+
+    @classmethod
+    def resolved(cls, section: Section) -> Mapping[str, object]:
+        """Its material, and torques over time."""
+        return {"material": read_material(section), **read_columns(section, "torque")}
 
     @model_validator(mode="after")
     def _sensible(self) -> ScrewDrive:

@@ -2,15 +2,18 @@
 
 from __future__ import annotations
 
-from collections.abc import Iterable, Iterator, Sequence
-from typing import Annotated, ClassVar, NamedTuple
+from collections.abc import Iterable, Iterator, Mapping, Sequence
+from typing import TYPE_CHECKING, Annotated, ClassVar, NamedTuple
 
 from pydantic import Field, model_validator
 
 from flexapod.errors import InputError
-from flexapod.model.material import POISSON, Rectangle, Tube
+from flexapod.model.material import OF_MATERIAL, POISSON, Rectangle, Tube, read_material
 from flexapod.schema.base import Key, Quantity
 from flexapod.schema.table import Table
+
+if TYPE_CHECKING:
+    from flexapod.schema.section import Section
 
 STEPS = 64  # uniform pieces in place of a taper where formulas know no tapers, in pairs
 SHARES = (0.0, 0.25, 0.5, 0.75, 1.0)  # of a length: they tell EI of a taper, which is of fourth order
@@ -38,6 +41,7 @@ class PistonSection(Table):
     `yield_stress` [Pa], `poisson`, `expansion` [1/K].
     """
 
+    also: ClassVar[tuple[str, ...]] = ("material",)
     silent: ClassVar[tuple[str, ...]] = ("poisson",)
 
     length: Annotated[float, Quantity("length", above=0, why="of this section")]
@@ -68,6 +72,12 @@ class PistonSection(Table):
     expansion: Annotated[
         float | None, Quantity("expansion", why="thermal expansion, for [heat]", usual="that of the material")
     ] = None
+
+    @classmethod
+    def resolved(cls, section: Section) -> Mapping[str, object]:
+        """What it is made of."""
+        material = read_material(section)
+        return {name: getattr(material, name) for name in OF_MATERIAL}
 
     @model_validator(mode="after")
     def _round_or_strip(self) -> PistonSection:

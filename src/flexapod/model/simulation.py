@@ -3,7 +3,7 @@
 from __future__ import annotations
 
 import math
-from typing import Annotated, ClassVar, Literal, Self
+from typing import TYPE_CHECKING, Annotated, ClassVar, Literal, Self
 
 from pydantic import Field, model_validator
 
@@ -11,6 +11,9 @@ from flexapod.errors import InputError, closest
 from flexapod.schema.base import Key, Quantity
 from flexapod.schema.table import Table
 from flexapod.words import number, text
+
+if TYPE_CHECKING:
+    from flexapod.schema.section import Section
 
 FIDELITIES = ("rigid", "lumped", "finite-segment", "assumed-modes", "beam-fem", "solid-fem")
 SOLID = "solid-fem"  # the fidelity that needs a section
@@ -214,3 +217,35 @@ def check_fidelity(fidelity: str) -> None:
             allowed=", ".join(FIDELITIES),
             next_step=closest(fidelity, FIDELITIES),
         )
+
+
+def read_simulation(section: Section | None, *, basis: str, bases: tuple[str, ...]) -> Simulation:
+    """The simulation settings; `basis` is the default and `bases` are the allowed ones."""
+    if section is None:
+        return Simulation(basis=basis)
+
+    def choices(section: Section) -> dict[str, object]:
+        fidelity = section.text("fidelity", FIDELITIES)
+        return {
+            "fidelity": fidelity,
+            "basis": _basis(section, bases) or (None if fidelity in OWN_BASIS else basis),
+        }
+
+    return section.read(Simulation, then=choices)
+
+
+def _basis(section: Section, bases: tuple[str, ...]) -> str | None:
+    if hint := own_fidelity(section.data.get("basis")):
+        raise section.error("is the basis of a fidelity", "basis", allowed=", ".join(bases), next_step=hint)
+    return section.text("basis", bases)
+
+
+def unused_settings(section: Section | None, simulation: Simulation) -> tuple[str, ...]:
+    """Notes on settings of the file that the chosen fidelity does not use."""
+    if section is None or simulation.fidelity not in STRAIGHT:
+        return ()
+    return tuple(
+        f"simulation.{name} = {section.data[name]!r} has no effect with fidelity {simulation.fidelity!r}"
+        for name in ("modes", "basis")
+        if name in section
+    )

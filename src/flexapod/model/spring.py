@@ -3,7 +3,8 @@
 from __future__ import annotations
 
 import re
-from typing import Annotated, Any, ClassVar, Literal
+from collections.abc import Mapping
+from typing import TYPE_CHECKING, Annotated, Any, ClassVar, Literal
 
 from pydantic import model_validator
 
@@ -12,7 +13,12 @@ from flexapod.model.heat import HEAT_PARTS
 from flexapod.schema.base import Key, Loss, Quantity
 from flexapod.schema.table import Table
 
-__all__ = ["RESERVED", "AxialSpring", "check_lossy"]
+if TYPE_CHECKING:
+    from flexapod.schema.section import Section
+
+__all__ = ["RESERVED", "AxialSpring", "check_lossy", "read_spring", "read_springs"]
+
+LEAST = 1e-9  # N/m, as of other springs
 
 #: Names of other parts, and of other causes and rows of a budget.
 RESERVED = (
@@ -57,3 +63,30 @@ def check_lossy(spring: Any) -> None:
     """Raise InputError if a spring has a damper and a loss factor."""
     if spring.damping is not None and spring.loss is not None:
         raise InputError("is given together with damping", key="loss", value=spring.loss, allowed="either of the two")
+
+
+def read_spring(section: Section, name: str) -> float:
+    """A stiffness [N/m], refused in words where it is none."""
+    value = section.number(name, "stiffness")
+    if value is None or not value > 0:
+        raise section.error(
+            "is not above zero: such a spring holds nothing", name, allowed="above 0 N/m; a joint without it is rigid"
+        )
+    if value < LEAST:
+        raise section.error("is out of range", name, allowed=f"{LEAST:g} to 1e+18 N/m")
+    return value
+
+
+def read_springs(section: Section | None) -> tuple[AxialSpring, ...] | None:
+    """Springs along a leg by name: a number, or a table."""
+    if section is None:
+        return None
+    section.any_names()
+    found = []
+    for name, value in section.data.items():
+        spring = section.child(value if isinstance(value, Mapping) else {}, name)
+        if isinstance(value, Mapping):
+            found.append(spring.read(AxialSpring, then=lambda _, name=name: {"name": name}))
+        else:
+            found.append(spring.build(AxialSpring, name=name, stiffness=read_spring(section, name)))
+    return tuple(found)

@@ -2,7 +2,8 @@
 
 from __future__ import annotations
 
-from typing import Annotated, Any, TypeVar
+from collections.abc import Mapping
+from typing import TYPE_CHECKING, Annotated, Any, TypeVar
 
 from pydantic import BeforeValidator, model_validator
 
@@ -10,11 +11,15 @@ from flexapod.errors import InputError
 from flexapod.schema.base import Key, Quantity
 from flexapod.schema.table import Table
 
+if TYPE_CHECKING:
+    from flexapod.schema.section import Section
+
 __all__ = ["CLASSES", "LengthSpread", "RatioSpread", "Spread", "Tolerances"]
 
 #: Accuracy classes of screws: largest error of the travel over the travel. THK, Ball screw, point of selection:
 #: 0.018, 0.05 and 0.21 mm in 300 mm.
 CLASSES = {"C5": 0.018 / 300, "C7": 0.05 / 300, "C10": 0.21 / 300}
+_RATIOS = ("lead", "EA", "EI", "density")
 
 
 class LengthSpread(Table):
@@ -109,3 +114,33 @@ class Tolerances(Table):
         BeforeValidator(_spread),
         Key("of their bow, on either side of `piston.bow`; as base_joints", usual="exact"),
     ] = None
+
+    @classmethod
+    def resolved(cls, section: Section) -> Mapping[str, object]:
+        """Spreads by a number or a table, the lead by its class as well."""
+        lengths = {
+            name: _read_spread(section, name, LengthSpread, "length")
+            for name in ("base_joints", "platform_joints", "leg_offset", "bow")
+        }
+        named = _class(section)
+        ratios = {name: _read_spread(section, name, RatioSpread, "number") for name in _RATIOS if name not in named}
+        return lengths | ratios | named
+
+
+def _class(section: Section) -> dict[str, object]:
+    """The lead by an accuracy class."""
+    grade = section.data.get("lead")
+    if not (isinstance(grade, str) and grade[:1].isalpha()):
+        return {}
+    return {"lead": RatioSpread(box=CLASSES[str(section.text("lead", tuple(CLASSES)))])}
+
+
+def _read_spread(section: Section, name: str, model: type[LengthSpread] | type[RatioSpread], dimension: str) -> object:
+    """A standard deviation, or a table with `sigma` or `box`."""
+    if isinstance(section.data.get(name), Mapping):
+        return section.child(section.data[name], name).read(model)
+    number = section.number(name, dimension)
+    try:
+        return None if number is None else model(sigma=number)
+    except InputError as error:
+        raise section.error(error.what, name, allowed=error.allowed) from None

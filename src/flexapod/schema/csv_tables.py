@@ -6,7 +6,7 @@ import csv
 import io
 import math
 import re
-from collections.abc import Mapping
+from collections.abc import Iterable, Mapping
 from functools import lru_cache
 from pathlib import Path
 
@@ -195,3 +195,8 @@ def forces(count: int, dimension: str = "force") -> dict[str, str]:
 def header(columns: Mapping[str, str], along: str = "time") -> str:
     """First line of a table with these columns, in SI units."""
     return ", ".join(f"{name} [{DIMENSIONS[dimension].unit}]" for name, dimension in {along: along, **columns}.items())
+
+
+def beside(table: Mapping[str, Array], names: Iterable[str]) -> Array:
+    """Columns of a table side by side; 0 where there is none."""
+    return np.column_stack([table.get(name, np.zeros_like(table["time"])) for name in names])

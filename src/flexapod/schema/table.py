@@ -136,4 +136,6 @@ def plain(value: object) -> Any:
 
 
 def _is(value: object, usual: object) -> bool:
+    if isinstance(value, np.ndarray):
+        return isinstance(usual, np.ndarray | tuple) and np.array_equal(value, usual)
     return type(value) is type(usual) and isinstance(value, Frozen | float | int | str) and value == usual

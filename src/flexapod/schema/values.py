@@ -36,6 +36,8 @@ class Values:
         Takes down what is asked.
     plane : {"xy", "yz", "zx"}, optional
         Vectors may have two numbers, along the axes of this plane.
+    leg : tuple of int
+        Number of the leg whose table it is, of how many.
     """
 
     def __init__(
@@ -46,8 +48,9 @@ class Values:
         folder: Path,
         notes: Notes | None = None,
         plane: str | None = None,
+        leg: tuple[int, int] = (1, 1),
     ) -> None:
-        self.path, self.file, self.folder, self.notes, self.plane = path, file, folder, notes, plane
+        self.path, self.file, self.folder, self.notes, self.plane, self.leg = path, file, folder, notes, plane, leg
         if not isinstance(data, Mapping):
             table, _, name = path.rpartition(".")
             raise Malformed(
@@ -178,7 +181,7 @@ class Values:
 
     def child(self, data: object, name: str) -> Self:
         """A section for `data` found under `name`."""
-        return type(self)(data, self.key(name), self.file, self.folder, self.notes, self.plane)
+        return type(self)(data, self.key(name), self.file, self.folder, self.notes, self.plane, self.leg)
 
     def build(self, model: Callable[..., M], /, **fields: object) -> M:
         """A model from this section's values; absent ones (None) take the model's default."""
