@@ -6,6 +6,8 @@ import numpy as np
 
 from flexapod.bases import axial_basis, lateral_basis
 from flexapod.elements.drive_train import DriveTrain
+from flexapod.elements.mount import BaseMounting, MovedBase, PlatformMounting
+from flexapod.elements.slot import Slot
 from flexapod.elements.soft_joint import SoftBase, SoftPlatform
 from flexapod.mechanics.assembly import leg_functions
 from flexapod.mechanics.layout import Shapes, leg_parameters
@@ -24,19 +26,19 @@ KINDS = {
     "pose on a slider": EVERYTHING | {"carriage": "slider"},
     "pose on a crank": EVERYTHING | {"carriage": "crank"},
     "flexures on a crank": EVERYTHING | {"carriage": "crank", "flexure": True},
-    "point between soft joints": {"elements": (SoftBase, SoftPlatform)},
-    "pose between soft joints": EVERYTHING | {"elements": (SoftBase, SoftPlatform)},
-    "soft joints and flexures": {"closure": "pose", "flexure": True, "elements": (SoftBase, SoftPlatform)},
-    "point behind a screw": {"elements": (DriveTrain,)},
-    "pose behind a screw": EVERYTHING | {"elements": (SoftBase, DriveTrain)},
-    "point on frames that move": {"base_motion": True, "base_mount": True, "platform_mount": True},
-    "slider on a base that moves": {"base_motion": True, "carriage": "slider"},
+    "point between soft joints": {"elements": (Slot(SoftBase), Slot(SoftPlatform))},
+    "pose between soft joints": EVERYTHING | {"elements": (Slot(SoftBase), Slot(SoftPlatform))},
+    "soft joints and flexures": {"closure": "pose", "flexure": True, "elements": (Slot(SoftBase), Slot(SoftPlatform))},
+    "point behind a screw": {"elements": (Slot(DriveTrain),)},
+    "pose behind a screw": EVERYTHING | {"elements": (Slot(SoftBase), Slot(DriveTrain))},
+    "point on frames that move": {"elements": tuple(map(Slot, (MovedBase, BaseMounting, PlatformMounting)))},
+    "slider on a base that moves": {"elements": (Slot(MovedBase),), "carriage": "slider"},
     "pose on a crank on frames that move": EVERYTHING
-    | {"carriage": "crank", "base_mount": True, "platform_mount": True},
+    | {"carriage": "crank", "elements": (Slot(BaseMounting), Slot(PlatformMounting))},
     "point in a guide": {"guide": GUIDE},
     "point in a cylinder that bends": {"cylinder": CYLINDER},
     "point in a guide of a cylinder": {"guide": GUIDE, "cylinder": CYLINDER},
-    "pose in a guide of a cylinder": EVERYTHING | {"guide": GUIDE, "cylinder": CYLINDER, "elements": (SoftBase,)},
+    "pose in a guide of a cylinder": EVERYTHING | {"guide": GUIDE, "cylinder": CYLINDER, "elements": (Slot(SoftBase),)},
     "tip body": {"closure": "none", "torsion": True, "tip_body": True},
     "planar": {"closure": "none", "planar": True, "tip_body": True},
 }

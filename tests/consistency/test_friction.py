@@ -16,7 +16,8 @@ from tests.runs import balance, run_robot
 import flexapod as fx
 from flexapod import rigid
 from flexapod.bases import lateral_basis
-from flexapod.elements.friction import rubbing, turning
+from flexapod.elements.friction import BaseFriction, DriveFriction, PlatformFriction, rubbing, turning
+from flexapod.elements.slot import Slot
 from flexapod.elements.springs import springs_along
 from flexapod.mechanics.layout import columns, leg_parameters
 from flexapod.mechanics.sliding import friction_functions
@@ -381,9 +382,7 @@ def test_a_ball_turns_as_its_axes_do():
 def test_forces_do_the_power_and_grow_with_the_rates(together):
     ours = dataclasses.replace(
         legs_of_all_kinds.shapes("pose with spin and twist"),
-        base_friction=True,
-        platform_friction=True,
-        drive_friction=True,
+        elements=(Slot(BaseFriction), Slot(PlatformFriction), Slot(DriveFriction)),
     )
     force, matrix, _ = (Interpreted(x) for x in friction_functions(ours))
     rng, b = np.random.default_rng(6), ours.bristles

@@ -9,6 +9,7 @@ from tests.machines import SCREW, machine, study
 import flexapod as fx
 from flexapod.elements.drive_train import DriveTrain
 from flexapod.elements.gap import Gap, past_gap, touching
+from flexapod.elements.slot import Slot
 from flexapod.errors import InputError
 from flexapod.model import AxialSpring, Load, SineWrench, to_toml
 from flexapod.model.joint import Joint
@@ -47,7 +48,8 @@ def test_a_rotor_that_is_free_in_its_gap_loses_nothing():
                         series_damping=damping, half_play=w, rotor_mass=0.0)  # fmt: skip
     there = np.array([0.0, -0.3, 0.3, 4.0, -4.0]) * w
     found = [
-        DriveTrain.energy(p, SimpleNamespace(r=0.7 + x, l=0.7), SimpleNamespace(r=rate, l=0.0), [Gap]) for x in there
+        DriveTrain.energy_among([Slot(Gap)], p, SimpleNamespace(r=0.7 + x, l=0.7), SimpleNamespace(r=rate, l=0.0))
+        for x in there
     ]
     lost = np.array([one.dissipation for one in found]) / (0.5 * damping * rate**2)
     stored = np.array([one.strain for one in found]) / (0.5 * stiffness * w**2)

@@ -12,6 +12,8 @@ from tests.runs import balance, run_robot
 
 import flexapod as fx
 from flexapod.bases import axial_basis, lateral_basis
+from flexapod.elements.mount import PlatformMounting
+from flexapod.elements.slot import Slot
 from flexapod.errors import InputError
 from flexapod.exchange.export import abaqus_deck, left_out
 from flexapod.mechanics.assembly import payload_functions
@@ -224,7 +226,10 @@ def test_frames_do_not_leave_the_plane_of_a_robot():
 @pytest.mark.parametrize("seed", range(3))
 def test_the_plate_below_the_payload_keeps_the_balance_of_power(seed):
     # d(T + V)/dt is the power of what is left of the balances; differences of fourth order leave 1e-9.
-    ours, rng = Shapes(a=NONE, b=NONE, axial=axial_basis(0), platform_mount=True), np.random.default_rng(seed)
+    ours, rng = (
+        Shapes(a=NONE, b=NONE, axial=axial_basis(0), elements=(Slot(PlatformMounting),)),
+        np.random.default_rng(seed),
+    )
     residual, _, energies = (Interpreted(f) for f in payload_functions(ours))
     J = rng.normal(size=(2, 3, 3))
     p = np.concatenate([[7.0], (J[0] @ J[0].T).ravel(), [1, 2, -9], [0.1, 0.2, 0.3], [3.0], [2.0],
@@ -246,7 +251,10 @@ def test_the_plate_below_the_payload_keeps_the_balance_of_power(seed):
 @pytest.mark.parametrize("seed", range(3))
 def test_a_plate_that_holds_still_under_the_payload_is_one_body_with_it(seed):
     """Newton and Euler of both bodies by hand; the power alone does not see what is square in the rate of turning."""
-    ours, rng = Shapes(a=NONE, b=NONE, axial=axial_basis(0), platform_mount=True), np.random.default_rng(seed)
+    ours, rng = (
+        Shapes(a=NONE, b=NONE, axial=axial_basis(0), elements=(Slot(PlatformMounting),)),
+        np.random.default_rng(seed),
+    )
     residual = Interpreted(payload_functions(ours)[0])
     J, J_plate = (x @ x.T for x in rng.normal(size=(2, 3, 3)))
     mass, plate, weighs, gravity, at = 7.0, 3.0, 2.0, np.array([1.0, 2.0, -9.0]), np.array([0.1, -0.2, 0.3])

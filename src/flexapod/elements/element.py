@@ -20,7 +20,7 @@ from flexapod.symbolic.vocabulary import dot, sqrt
 
 if TYPE_CHECKING:
     from flexapod.elements.slot import Slot
-    from flexapod.model import Leg, Simulation
+    from flexapod.model import Leg, Robot, Simulation
     from flexapod.symbolic.vocabulary import SX
 
 __all__ = [
@@ -45,12 +45,13 @@ class Standing(NamedTuple):
     """How a leg stands whose numbers are asked for.
 
     ``length`` [m]: joint to joint, at home; ``per_loss`` [s]: viscous damping over stiffness of a spring of loss factor
-    1; ``at_rest``: loops that sum their errors have left none.
+    1; ``at_rest``: loops that sum their errors have left none; ``robot``: the one whose leg it is.
     """
 
     length: float
     per_loss: float
     at_rest: bool
+    robot: Robot
 
 
 @dataclass(frozen=True)
@@ -153,9 +154,9 @@ class Physics:
         return () if own is None else (own,)
 
     @classmethod
-    def among(cls, legs: Sequence[Leg], simulation: Simulation) -> bool:
-        """Whether a kernel for these legs knows of it."""
-        return any(cls.all_of(leg) for leg in legs)
+    def among(cls, robot: Robot, simulation: Simulation) -> bool:
+        """Whether a kernel for the legs of a robot knows of it."""
+        return any(cls.all_of(leg) for leg in robot.legs)
 
     def numbers(self, leg: Leg, standing: Standing) -> Mapping[str, Any]:
         """Its parameters in one leg, by name."""
@@ -181,6 +182,16 @@ class Physics:
     ) -> Energies:
         """The same where others of the kernel change them."""
         return cls.energy(p, q, v)
+
+    @classmethod
+    def slides(cls, p: SimpleNamespace, q: SimpleNamespace, v: SimpleNamespace) -> SX:
+        """How fast it slides where it has friction, in each of the directions that `bristles` counts."""
+        raise NotImplementedError
+
+    @classmethod
+    def bristles(cls, has: Callable[[str], bool]) -> int:
+        """In how many directions it slides with friction, in legs that have some coordinates; 0 without."""
+        return 0
 
     @classmethod
     def in_series(cls, s: Series, p: SimpleNamespace, q: SimpleNamespace, v: SimpleNamespace) -> Series:

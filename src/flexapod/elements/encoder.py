@@ -9,7 +9,7 @@ from typing import TYPE_CHECKING, Self
 from flexapod.elements.element import Contribution, Physics
 
 if TYPE_CHECKING:
-    from flexapod.model import Leg, Simulation
+    from flexapod.model import Leg, Robot, Simulation
 
 
 @dataclass(frozen=True)
@@ -24,7 +24,7 @@ class Resolution(Physics):
         return cls(leg.screw.increment) if leg.screw is not None and leg.screw.increment else None
 
     @classmethod
-    def among(cls, legs: Sequence[Leg], simulation: Simulation) -> bool:
+    def among(cls, robot: Robot, simulation: Simulation) -> bool:
         """In no kernel: motions do not see it."""
         return False
 

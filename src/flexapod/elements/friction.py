@@ -2,17 +2,135 @@
 
 from __future__ import annotations
 
+from collections.abc import Callable
 from dataclasses import dataclass
-from typing import TYPE_CHECKING
+from types import SimpleNamespace
+from typing import TYPE_CHECKING, Any, ClassVar, Self
 
+import numpy as np
+
+from flexapod.elements.drive_train import twisting
+from flexapod.elements.element import Named, Physics, Standing
+from flexapod.elements.springs import twist_with_length
 from flexapod.symbolic.vocabulary import cos, dot, exp, sin, sqrt, vertcat
 
 if TYPE_CHECKING:
+    from flexapod.model import Leg, Robot, Simulation
     from flexapod.symbolic.vocabulary import SX
 
-__all__ = ["Rubbing", "forgetting", "rubbing", "turning"]
+__all__ = ["BaseFriction", "DriveFriction", "PlatformFriction", "Rubbing", "forgetting", "rubbing", "turning"]
+
+#: Of a place without friction: nothing rubs, and what could bend is a unit long.
+NO_FRICTION = (0.0, 0.0, 1.0, 0.0, 0.0, 0.0, 0.0)
 
 STILL = 1e-60  # added to squares: a root has no slope at zero
+
+
+class _OfJoint(Physics):
+    """Friction of a joint about its angles, see `rubbing`; legs without it have a force of none."""
+
+    end: ClassVar[str]
+
+    @classmethod
+    def of(cls, leg: Leg) -> Self | None:
+        """Of every leg: what rubs in one slides in all."""
+        return cls()
+
+    @classmethod
+    def among(cls, robot: Robot, simulation: Simulation) -> bool:
+        """Where it rubs in some leg."""
+        return any(getattr(leg, f"{cls.end}_joint").friction is not None for leg in robot.legs)
+
+    def numbers(self, leg: Leg, standing: Standing) -> dict[str, Any]:
+        """Its numbers, and 1 where directions slide together."""
+        joint, letter = getattr(leg, f"{self.end}_joint"), getattr(leg.letters, self.end)
+        numbers = NO_FRICTION if joint.friction is None else joint.friction.numbers
+        return {f"{self.end}_friction": (*numbers, float(letter == "S"))}
+
+
+class BaseFriction(_OfJoint):
+    """At the base."""
+
+    end = "base"
+    parameters: ClassVar[Named] = (("base_friction", 8),)
+
+    @classmethod
+    def bristles(cls, has: Callable[[str], bool]) -> int:
+        """Of two angles, or of three."""
+        return 3 if has("spin") else 2
+
+    @classmethod
+    def slides(cls, p: SimpleNamespace, q: SimpleNamespace, v: SimpleNamespace) -> SX:
+        """Rates of its angles, of a ball its angular velocity."""
+        if not hasattr(q, "spin"):
+            return vertcat(v.alpha, v.beta)
+        rates = vertcat(v.alpha, v.beta, p.cylinder_spins * v.spin)  # else the piston spins in its cylinder
+        return turning(vertcat(q.alpha, q.beta, q.spin), rates, p.base_friction[7])
+
+
+class PlatformFriction(_OfJoint):
+    """At the platform."""
+
+    end = "platform"
+    parameters: ClassVar[Named] = (("platform_friction", 8),)
+
+    @classmethod
+    def bristles(cls, has: Callable[[str], bool]) -> int:
+        """Of three angles."""
+        return 3
+
+    @classmethod
+    def slides(cls, p: SimpleNamespace, q: SimpleNamespace, v: SimpleNamespace) -> SX:
+        """Rates of its angles, of a ball its angular velocity."""
+        angles, rates = (vertcat(x.gamma1, x.gamma2, x.gamma3) for x in (q, v))
+        return turning(angles, rates, p.platform_friction[7])
+
+
+class DriveFriction(Physics):
+    """Of a drive along its travel."""
+
+    parameters: ClassVar[Named] = (
+        ("drive_friction", 8),
+        ("drive_friction_at_stroke", 1),  # 1 where it acts on the stroke, else, of a rotor,
+        ("drive_friction_twist", 2),  # its shaft's share in what springs before the stroke give; by length [1/m]
+    )
+
+    @classmethod
+    def of(cls, leg: Leg) -> Self | None:
+        """Of every leg, as friction of joints."""
+        return cls()
+
+    @classmethod
+    def among(cls, robot: Robot, simulation: Simulation) -> bool:
+        """Where a drive rubs in some leg."""
+        return any(leg.drive.friction is not None for leg in robot.legs)
+
+    def numbers(self, leg: Leg, standing: Standing) -> dict[str, Any]:
+        """Its numbers; those of a screw by the nut's travel, Eq. (T19.12)."""
+        drive, screw, twist = leg.drive.friction, leg.screw, (0.0, 0.0)
+        numbers = NO_FRICTION if drive is None else drive.numbers
+        if screw is not None:
+            turn = screw.per_turn
+            numbers = tuple(np.array(numbers) * np.array([1 / turn, 0.0, turn, 1.0, 1 / turn, turn**-2, 1.0]))
+            twist = twist_with_length(leg, standing.length)
+        return {
+            "drive_friction": (*numbers, 0.0),
+            "drive_friction_at_stroke": float(screw is None),
+            "drive_friction_twist": twist,
+        }
+
+    @classmethod
+    def bristles(cls, has: Callable[[str], bool]) -> int:
+        """One."""
+        return 1
+
+    @classmethod
+    def slides(cls, p: SimpleNamespace, q: SimpleNamespace, v: SimpleNamespace) -> SX:
+        """Rate of the stroke, or of the rotor and what its shaft's twist leaves of it."""
+        if not hasattr(q, "r"):
+            return v.l
+        at_stroke = p.drive_friction_at_stroke + twisting(p, q.l)
+        return at_stroke * v.l + (1 - at_stroke) * v.r
 
 
 @dataclass(frozen=True, kw_only=True)

@@ -2,7 +2,6 @@
 
 from __future__ import annotations
 
-from collections.abc import Sequence
 from dataclasses import dataclass
 from types import SimpleNamespace
 from typing import TYPE_CHECKING, Any, ClassVar, Self, TypeVar
@@ -10,7 +9,7 @@ from typing import TYPE_CHECKING, Any, ClassVar, Self, TypeVar
 from flexapod.elements.element import Named, Physics, Standing
 
 if TYPE_CHECKING:
-    from flexapod.model import Leg, Simulation
+    from flexapod.model import Leg, Robot, Simulation
     from flexapod.symbolic.vocabulary import SX
 
 ROUNDED = 0.2  # width over half of the play within which the gap's edges are rounded
@@ -33,9 +32,9 @@ class Gap(Physics):
         return cls(leg.half_play) if leg.half_play and leg.gives else None
 
     @classmethod
-    def among(cls, legs: Sequence[Leg], simulation: Simulation) -> bool:
+    def among(cls, robot: Robot, simulation: Simulation) -> bool:
         """Where the simulation takes play for a gap."""
-        return simulation.play == "gap" and super().among(legs, simulation)
+        return simulation.play == "gap" and super().among(robot, simulation)
 
     def numbers(self, leg: Leg, standing: Standing) -> dict[str, Any]:
         """Half of the play."""

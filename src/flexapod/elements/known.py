@@ -8,8 +8,10 @@ from typing import TYPE_CHECKING
 from flexapod.elements.drive_train import DriveTrain
 from flexapod.elements.element import Element, Physics, registered
 from flexapod.elements.encoder import Resolution
+from flexapod.elements.friction import BaseFriction, DriveFriction, PlatformFriction
 from flexapod.elements.gap import Gap
 from flexapod.elements.motor_loop import MotorLoop
+from flexapod.elements.mount import BaseMounting, MovedBase, PlatformMounting
 from flexapod.elements.oil import Oil
 from flexapod.elements.ripple import Rippling
 from flexapod.elements.slot import Slot
@@ -19,13 +21,14 @@ from flexapod.elements.turning_nut import TurningNut
 from flexapod.errors import InputError
 
 if TYPE_CHECKING:
-    from flexapod.model import Leg, Simulation
+    from flexapod.model import Leg, Robot, Simulation
 
 __all__ = ["element_at", "elements_of", "kinds_of", "refuse_tables"]
 
 GROUP = "flexapod.elements"
 OURS: tuple[type[Physics], ...] = (
     SoftBase, SoftPlatform, DriveTrain, TurningNut, Gap, Rippling, SummedError, MotorLoop, Oil, Resolution,
+    BaseFriction, PlatformFriction, DriveFriction, MovedBase, BaseMounting, PlatformMounting,
 )  # fmt: skip
 
 
@@ -35,10 +38,10 @@ def kinds_of(legs: Sequence[Leg]) -> tuple[type[Physics], ...]:
     return (*OURS, *sorted(tables, key=lambda kind: kind.at))
 
 
-def elements_of(legs: Sequence[Leg], simulation: Simulation) -> tuple[Slot, ...]:
-    """Those that a kernel for some legs knows of, two alike in a leg after each other."""
-    there = (kind for kind in kinds_of(legs) if kind.among(legs, simulation))
-    most = ((kind, max(len(kind.all_of(leg)) for leg in legs)) for kind in there)
+def elements_of(robot: Robot, simulation: Simulation) -> tuple[Slot, ...]:
+    """Those that a kernel for the legs of a robot knows of, two alike in a leg after each other."""
+    there = (kind for kind in kinds_of(robot.legs) if kind.among(robot, simulation))
+    most = ((kind, max(len(kind.all_of(leg)) for leg in robot.legs)) for kind in there)
     return tuple(Slot(kind, number) for kind, count in most for number in range(1, count + 1))
 
 

@@ -19,7 +19,7 @@ class MotorLoop(Physics):
     """A motor that lags, or whose loop is closed about another place than its rotor: j is its impulse."""
 
     screw: ScrewDrive
-    at: str  # the other place, see `model.Leg.closed_about`
+    about: str  # the other place, see `model.Leg.closed_about`
 
     coordinates: ClassVar[Named] = (("j", 1),)
     parameters: ClassVar[Named] = (
@@ -39,8 +39,8 @@ class MotorLoop(Physics):
 
     def numbers(self, leg: Leg, standing: Standing) -> dict[str, Any]:
         """The loop; at rest, about another place, it is a spring of the drive there, Eq. (T23.55)."""
-        screw, found = self.screw, {"loop_at": [float(self.at == place) for place in ("stroke", "joint-to-joint")]}
-        if standing.at_rest and not self.at:
+        screw, found = self.screw, {"loop_at": [float(self.about == place) for place in ("stroke", "joint-to-joint")]}
+        if standing.at_rest and not self.about:
             return found
         found |= {"rotor_stiffness": 0.0, "rotor_damping": 0.0}
         if standing.at_rest:
@@ -58,7 +58,7 @@ class MotorLoop(Physics):
         """The impulse of a force that comes at once; at rest what the loop leaves to its place, Eq. (T23.55)."""
         if own is None or not at_rest:
             return () if own is not None and own.screw.lag else ("j",)
-        return ("j", *(("r",) if own.at else ()), *(("l",) if own.at and own.screw.rests else ()))
+        return ("j", *(("r",) if own.about else ()), *(("l",) if own.about and own.screw.rests else ()))
 
     @classmethod
     def place(cls, x: Moving) -> SX:

@@ -2,17 +2,127 @@
 
 from __future__ import annotations
 
-from typing import TYPE_CHECKING
+from typing import TYPE_CHECKING, Any, ClassVar, Self
 
+import numpy as np
+
+from flexapod.elements.element import Named, Physics, Standing
 from flexapod.elements.flexure import flexure
 from flexapod.elements.frame import Energies, Frame
 from flexapod.elements.rotations import about_x, about_y, about_z
+from flexapod.elements.springs import viscous
 from flexapod.symbolic.vocabulary import dot, identity, matrix33, vertcat, zeros
+from flexapod.typing import Array
 
 if TYPE_CHECKING:
+    from flexapod.model import Leg, Robot, Simulation
+    from flexapod.model.mount import Mount
     from flexapod.symbolic.vocabulary import SX
 
-__all__ = ["displaced", "mount", "plate", "turn", "world"]
+__all__ = ["BaseMounting", "MovedBase", "PlatformMounting", "displaced", "mount", "plate", "turn", "world"]
+
+
+#: Mass of a plate in motion, over that of the payload, at least: between springs nothing else says how it moves
+LIGHT = 1e-6
+
+
+class MovedBase(Physics):
+    """A base that is moved: displacement and angles g about a point, which follow a table."""
+
+    coordinates: ClassVar[Named] = (("g", 6),)
+    parameters: ClassVar[Named] = (("base_motion_at", 3),)  # m
+
+    @classmethod
+    def of(cls, leg: Leg) -> Self | None:
+        """Of every leg."""
+        return cls()
+
+    @classmethod
+    def among(cls, robot: Robot, simulation: Simulation) -> bool:
+        """Of a robot with a motion of its base."""
+        return robot.base_motion is not None
+
+    def numbers(self, leg: Leg, standing: Standing) -> dict[str, Any]:
+        """The point."""
+        return {"base_motion_at": standing.robot.base_motion.at}  # type: ignore[union-attr]
+
+    @classmethod
+    def held(cls, own: Any, leg: Leg, *, at_rest: bool) -> tuple[str, ...]:
+        """All of it."""
+        return ("g",)
+
+
+class _Mounting(Physics):
+    """Springs and dampers on which a plate stands, and its displacement and angles; a leg has its share of them."""
+
+    end: ClassVar[str]
+
+    @classmethod
+    def of(cls, leg: Leg) -> Self | None:
+        """Of every leg: all share the plate."""
+        return cls()
+
+    @classmethod
+    def among(cls, robot: Robot, simulation: Simulation) -> bool:
+        """Of a robot with such a mount."""
+        return getattr(robot, f"{cls.end}_mount") is not None
+
+    def numbers(self, leg: Leg, standing: Standing) -> dict[str, Any]:
+        """A leg's share."""
+        robot, end = standing.robot, self.end
+        given = getattr(robot, f"{end}_mount")
+        damping = viscous(given.stiffness, given.damping, given.loss, standing.per_loss)
+        return {
+            f"{end}_mount_at": given.at - (robot.com if end == "platform" else 0.0),
+            f"{end}_mount_stiffness": given.stiffness / robot.count,
+            f"{end}_mount_damping": damping / robot.count,
+        }
+
+
+class BaseMounting(_Mounting):
+    """Of the base plate, whose mass and inertia the legs share, too."""
+
+    end = "base"
+    coordinates: ClassVar[Named] = (("f", 6),)
+    parameters: ClassVar[Named] = (
+        ("base_mount_at", 3),  # m, world axes: where springs and the plate's centre of mass are
+        ("base_mount_stiffness", 36),  # N/m, N m/rad, column by column, displacements first
+        ("base_mount_damping", 36),
+        ("base_plate_mass", 1),  # kg
+        ("base_plate_weighs", 1),  # kg, of it
+        ("base_plate_inertia", 9),  # kg m^2, about that point
+    )
+
+    def numbers(self, leg: Leg, standing: Standing) -> dict[str, Any]:
+        """A leg's share."""
+        robot = standing.robot
+        mass, inertia = plate_mass(robot, robot.base_mount, at_rest=standing.at_rest)  # type: ignore[arg-type]
+        weighs = robot.base_mount.mass  # type: ignore[union-attr]
+        share = {"base_plate_mass": mass, "base_plate_inertia": inertia, "base_plate_weighs": weighs}
+        return super().numbers(leg, standing) | {name: value / robot.count for name, value in share.items()}
+
+
+class PlatformMounting(_Mounting):
+    """Of the payload, on the plate with the platform joints."""
+
+    end = "platform"
+    coordinates: ClassVar[Named] = (("m", 6),)
+    parameters: ClassVar[Named] = (
+        ("platform_mount_at", 3),  # m, from the CoM in platform axes
+        ("platform_mount_stiffness", 36),
+        ("platform_mount_damping", 36),
+    )
+
+
+def plate_mass(robot: Robot, given: Mount, *, at_rest: bool) -> tuple[float, Array]:
+    """Mass [kg] and inertia (3, 3) of a plate; in motion none has nothing, Eq. (T24.12)."""
+    load = robot.payload
+    mass, size = (1.0, 1.0) if load is None else (load.mass, float(np.trace(load.inertia)) / 3)
+    if at_rest:
+        return given.mass, given.inertia
+    least = LIGHT * size
+    more = least * np.eye(3) if np.linalg.eigvalsh(given.inertia)[0] < least else 0.0
+    return max(given.mass, LIGHT * mass), given.inertia + more
 
 
 def world() -> Frame:

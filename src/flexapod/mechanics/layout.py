@@ -72,34 +72,6 @@ FLEXURE_PARAMETERS: tuple[tuple[str, int], ...] = (
     ("platform_flexure_damping", 36),
 )
 
-#: ... of joints with friction, see `elements.friction`.
-BASE_FRICTION: tuple[tuple[str, int], ...] = (("base_friction", 8),)
-PLATFORM_FRICTION: tuple[tuple[str, int], ...] = (("platform_friction", 8),)
-#: Of drives with friction along their travel; 1 where it acts on the stroke, else, of a rotor, the share of its shaft's
-#: twist in what springs before the stroke give way, at home, and what a longer leg adds [1/m].
-DRIVE_FRICTION: tuple[tuple[str, int], ...] = (
-    ("drive_friction", 8),
-    ("drive_friction_at_stroke", 1),
-    ("drive_friction_twist", 2),
-)
-
-#: ... of legs whose base is moved: the point about which it turns.
-BASE_MOTION_PARAMETERS: tuple[tuple[str, int], ...] = (("base_motion_at", 3),)  # m
-#: ... of legs whose base stands on a mount; mass and springs are a leg's share of them.
-BASE_MOUNT_PARAMETERS: tuple[tuple[str, int], ...] = (
-    ("base_mount_at", 3),  # m, world axes: where springs and the plate's centre of mass are
-    ("base_mount_stiffness", 36),  # N/m, N m/rad, column by column, displacements first
-    ("base_mount_damping", 36),
-    ("base_plate_mass", 1),  # kg
-    ("base_plate_weighs", 1),  # kg, of it
-    ("base_plate_inertia", 9),  # kg m^2, about that point
-)
-#: ... of legs that carry a plate on which the payload stands on a mount; springs as above.
-PLATFORM_MOUNT_PARAMETERS: tuple[tuple[str, int], ...] = (
-    ("platform_mount_at", 3),  # m, from the CoM in platform axes
-    ("platform_mount_stiffness", 36),
-    ("platform_mount_damping", 36),
-)
 PLATFORM_JOINT: tuple[tuple[str, int], ...] = (("joint", 3),)  # of legs with a ball, as in `POSE_PARAMETERS`
 
 #: Physical parameters of the payload in kernel order (name, size); tool from the CoM, in platform axes.
@@ -119,6 +91,8 @@ PLATE_PARAMETERS: tuple[tuple[str, int], ...] = (
 
 #: Coordinates of elements that stand beside those of the drive, in this order; of others behind all but frames'.
 DRIVE = ("r", "w", "j")
+#: ... and of frames that move, last.
+FRAMES = ("g", "m", "f")
 
 #: Commands that the spring of a drive reads: place and rate.
 COMMAND_SIZE = 2
@@ -167,11 +141,6 @@ class Shapes:
         Sections of theirs may taper.
     shear : bool
         They shear, and their sections have rotary inertia.
-    base_friction, platform_friction, drive_friction : bool
-        What slides and has bristles: angles at the base joint, those at the platform joint (pose closures), a drive.
-    base_motion, base_mount, platform_mount : bool
-        Displacement and angles g of a base that is moved, f of a base plate on a mount, m of the plate with the
-        platform joints below the payload, on a mount. All legs share f and m.
     guide : LateralBasis, optional
         Shapes of the piston between two bushings, which give way across the leg; None: clamped at the mouth.
     cylinder : LateralBasis, optional
@@ -194,9 +163,6 @@ class Shapes:
     strips: bool = False
     tapers: bool = False
     shear: bool = False
-    base_friction: bool = False
-    platform_friction: bool = False
-    drive_friction: bool = False
 
     @property
     def sheared(self) -> LateralBasis | None:
@@ -208,9 +174,6 @@ class Shapes:
         """Directions in which sections have a bending stiffness of their own."""
         return ("a", "b") if self.strips and self.a.count else ("b",)
 
-    base_motion: bool = False
-    base_mount: bool = False
-    platform_mount: bool = False
     guide: LateralBasis | None = None
     cylinder: LateralBasis | None = None
 
@@ -224,13 +187,13 @@ class Shapes:
         own = {name: size for element in self.elements for name, size in element.coordinates}
         ends = {f"{end}{k}": 1 for end in "ue" for k in (1, 2, 3) if self.flexure or f"{end}{k}" in own}
         drive = tuple((name, own[name]) for name in DRIVE if name in own)
-        others = tuple((name, size) for name, size in own.items() if name not in (*DRIVE, *ends))
+        others = tuple((name, size) for name, size in own.items() if name not in (*DRIVE, *ends, *FRAMES))
         sheared = (("shear_a", self.shear * self.a.count), ("shear_b", self.shear * self.b.count))
-        frames = (("g", self.base_motion), ("m", self.platform_mount), ("f", self.base_mount))
+        frames = tuple((name, own[name]) for name in FRAMES if name in own)
         first = (*((name, 1) for name in (*angles, "l")), *amplitudes, *((name, 1) for name, has in there if has))
         thick = (part for part in sheared if part[1])
         inside = (*((name, 1) for name in gamma), *ends.items(), *thick, *self._inside)
-        return (*first, *drive, *inside, *others, *((name, 6) for name, has in frames if has))
+        return (*first, *drive, *inside, *others, *frames)
 
     @property
     def _inside(self) -> tuple[tuple[str, int], ...]:
@@ -253,18 +216,17 @@ class Shapes:
     @property
     def shared(self) -> tuple[int, ...]:
         """Positions of the coordinates that all legs share: those of the plates on mounts, the payload's first."""
-        names = (name for name, has in (("m", self.platform_mount), ("f", self.base_mount)) if has)
-        return tuple(self.index(name) + k for name in names for k in range(6))
+        return tuple(self.index(name) + k for name in ("m", "f") if self.has(name) for k in range(6))
 
     @property
     def plate(self) -> int:
         """How many of them the payload's functions know."""
-        return 6 * self.platform_mount
+        return 6 * self.has("m")
 
     @property
     def posed(self) -> bool:
         """Whether the functions of a leg read the payload's pose; otherwise those of a ball on the payload do."""
-        return self.closure == "pose" or self.platform_mount
+        return self.closure == "pose" or self.has("m")
 
     @cached_property
     def pivots(self) -> tuple[int, ...]:
@@ -290,12 +252,15 @@ class Shapes:
         return self.closure == "none" and not self.planar
 
     @property
+    def rubbing(self) -> tuple[tuple[Slot, int], ...]:
+        """Elements with friction, and in how many directions they slide: a bristle for each."""
+        found = ((slot, slot.kind.bristles(self.has)) for slot in self.elements)
+        return tuple((slot, count) for slot, count in found if count)
+
+    @property
     def sliding(self) -> tuple[tuple[str, int], ...]:
-        """Where there is friction, and the number of bristles there: one for each direction in which it slides."""
-        base = ("base_friction", 3 if self.spin else 2, self.base_friction)
-        platform = ("platform_friction", 3, self.platform_friction)
-        places = (base, platform, ("drive_friction", 1, self.drive_friction))
-        return tuple((name, count) for name, count, has in places if has)
+        """The same by the name of their parameters."""
+        return tuple((slot.parameters[0][0], count) for slot, count in self.rubbing)
 
     @cached_property
     def bristles(self) -> int:
@@ -344,13 +309,7 @@ def leg_parameters(shapes: Shapes) -> tuple[tuple[str, int], ...]:
         (shapes.flexure, FLEXURE_PARAMETERS),
         *((True, element.parameters) for element in shapes.elements),
         (shapes.sections > 0, _of_sections(shapes)),
-        (shapes.base_friction, BASE_FRICTION),
-        (shapes.platform_friction, PLATFORM_FRICTION),
-        (shapes.drive_friction, DRIVE_FRICTION),
-        (shapes.base_motion, BASE_MOTION_PARAMETERS),
-        (shapes.base_mount, BASE_MOUNT_PARAMETERS),
-        (shapes.platform_mount, PLATFORM_MOUNT_PARAMETERS),
-        (shapes.platform_mount and shapes.closure == "point", PLATFORM_JOINT),
+        (shapes.has("m") and shapes.closure == "point", PLATFORM_JOINT),
         (shapes.guide is not None, GUIDE_PARAMETERS),
         (shapes.cylinder is not None, CYLINDER_PARAMETERS),
     )
@@ -359,4 +318,4 @@ def leg_parameters(shapes: Shapes) -> tuple[tuple[str, int], ...]:
 
 def payload_parameters(shapes: Shapes) -> tuple[tuple[str, int], ...]:
     """Physical parameters of the payload in kernel order (name, size)."""
-    return PAYLOAD_PARAMETERS + PLATE_PARAMETERS * shapes.platform_mount
+    return PAYLOAD_PARAMETERS + PLATE_PARAMETERS * shapes.has("m")

@@ -121,13 +121,13 @@ def leg(shapes: Shapes, p: SimpleNamespace, q: SX, v: SX, qs: SimpleNamespace, v
 def _ground(shapes: Shapes, p: SimpleNamespace, qs: SimpleNamespace, vs: SimpleNamespace) -> tuple[Frame, Energies]:
     """Frame in which the base joint stands; energies of what carries it, with the leg's share of mounts and plate."""
     base, e = None, Energies()
-    if shapes.base_motion:
+    if shapes.has("g"):
         base = displaced(world(), p.base_motion_at, qs.g, vs.g)
-    if shapes.base_mount:
+    if shapes.has("f"):
         base = displaced(base or world(), p.base_mount_at, qs.f, vs.f)
         e += mount(p.base_mount_stiffness, p.base_mount_damping, qs.f, vs.f)
         e += plate(base, p.base_mount_at, p.base_plate_mass, p.base_plate_inertia, p.base_plate_weighs * p.gravity)
-    if shapes.platform_mount:
+    if shapes.has("m"):
         e += mount(p.platform_mount_stiffness, p.platform_mount_damping, qs.m, vs.m)
     ground, carried = carriage(shapes.carriage, p, qs, vs, base)
     return ground, carried + e

@@ -1,9 +1,6 @@
 """What slides with friction in a leg, and the named functions of it, Eqs. (T19.7)-(T19.8)."""
 
-from types import SimpleNamespace
-
-from flexapod.elements.drive_train import twisting
-from flexapod.elements.friction import Rubbing, forgetting, rubbing, turning
+from flexapod.elements.friction import Rubbing, forgetting, rubbing
 from flexapod.mechanics.layout import Shapes, leg_parameters
 from flexapod.symbolic.functions import NamedFunction
 from flexapod.symbolic.vocabulary import SX, dot, jacobian, split, sqrt, symbol, symbols, vertcat, zeros
@@ -20,7 +17,7 @@ def friction_functions(shapes: Shapes) -> list[NamedFunction]:
     v, vs = symbols(shapes.layout, "v")
     lam, h, begin = symbol("lam", shapes.rows), symbol("h"), symbol("begin", 2 * shapes.bristles)
     z, before = (split(part, shapes.sliding) for part in (begin[: shapes.bristles], begin[shapes.bristles :]))
-    rates = _rates(shapes, p, qs, vs)
+    rates = {slot.parameters[0][0]: slot.kind.slides(p, qs, vs) for slot, _ in shapes.rubbing}
     load = sqrt(dot(lam[:3], lam[:3]) + FORCELESS) if shapes.rows else zeros(1)
     found = {
         name: rubbing(getattr(p, name), load, rate, getattr(before, name), getattr(z, name), h)
@@ -46,22 +43,3 @@ def friction_functions(shapes: Shapes) -> list[NamedFunction]:
 
 def _all(found: dict[str, Rubbing], name: str) -> SX:
     return vertcat(*(getattr(x, name) for x in found.values()))
-
-
-def _rates(shapes: Shapes, p: SimpleNamespace, qs: SimpleNamespace, vs: SimpleNamespace) -> dict[str, SX]:
-    """How fast what slides does so, by place."""
-    found = {}
-    for name, count in shapes.sliding:
-        if name == "drive_friction":
-            at_stroke = p.drive_friction_at_stroke + (twisting(p, qs.l) if shapes.has("r") else 0.0)
-            found[name] = at_stroke * vs.l + (1 - at_stroke) * vs.r if shapes.has("r") else vs.l
-        elif name == "platform_friction":
-            angles, rates = (vertcat(x.gamma1, x.gamma2, x.gamma3) for x in (qs, vs))
-            found[name] = turning(angles, rates, p.platform_friction[7])
-        elif count == 2:
-            found[name] = vertcat(vs.alpha, vs.beta)
-        else:
-            angles = vertcat(qs.alpha, qs.beta, qs.spin)
-            rates = vertcat(vs.alpha, vs.beta, p.cylinder_spins * vs.spin)  # else the piston spins in its cylinder
-            found[name] = turning(angles, rates, p.base_friction[7])
-    return found

@@ -5,6 +5,7 @@ from __future__ import annotations
 import numpy as np
 
 from flexapod import rigid
+from flexapod.mechanics.layout import FRAMES
 from flexapod.model import Robot
 from flexapod.rigid.rotations import matrix
 from flexapod.solve.system import System
@@ -74,4 +75,4 @@ def in_world(system: System, robot: Robot, q: Array, vectors: Array) -> Array:
 
 def _moves(system: System) -> bool:
     shapes = system.kernel.shapes
-    return shapes.base_motion or shapes.base_mount or shapes.platform_mount
+    return any(shapes.has(name) for name in FRAMES)

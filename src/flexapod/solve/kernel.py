@@ -108,7 +108,7 @@ def sizes(shapes: Shapes, leg_p: int = 0, joint: int = 3) -> str:
     places = sorted(range(n), key=order.__getitem__)
     values = {"N": n, "ROWS": shapes.rows, "LEG_P": leg_p, "JOINT": joint, "COMMAND": shapes.commands}
     values |= {"COMMON": len(shapes.shared), "PLATE": shapes.plate, "POSED": int(shapes.posed)}
-    values["FLOOR"] = shapes.index("g") if shapes.base_motion else n
+    values["FLOOR"] = shapes.index("g") if shapes.has("g") else n
     lists = (f"{name}[] = {{{', '.join(map(str, x))}}}" for name, x in (("ORDER", order), ("PLACE", places)))
     constants = ", ".join(f"{name} = {value}" for name, value in values.items())
     friction = f"#define BRISTLES {shapes.bristles}\n" if shapes.bristles else ""

@@ -205,7 +205,7 @@ def _mass_factor(system: System, bases: list[LegBases], m: RestMatrices) -> tupl
     still = (
         system.held[:, :, None] | system.held[:, None, :]
     )  # masses of what does not move: indefinite where legs bend far
-    carried = system.kernel.shapes.base_mount
+    carried = system.kernel.shapes.has("f")
     of_legs, real = mass_factor(np.where(still, np.eye(n), m.M), carried=carried)
     payload, real_payload = mass_factor(m.payload_M)
     moving = (of_legs @ motion[:, : legs * n].reshape(p, legs, n, size)).reshape(p, legs * n, size)

@@ -3,21 +3,16 @@
 import numpy as np
 
 from flexapod.elements.element import Standing
-from flexapod.elements.springs import twist_with_length, viscous
+from flexapod.elements.mount import plate_mass
+from flexapod.elements.springs import viscous
 from flexapod.mechanics import layout
 from flexapod.mechanics.layout import LEG_PARAMETERS, PAYLOAD_PARAMETERS, Shapes
 from flexapod.model import Actuator, ForceDrive, Joint, Leg, Mounted, Robot, ServoDrive, damping_parts
-from flexapod.model.mount import Mount
 from flexapod.rigid.limbs import COORDINATES, FREE, Limbs
 from flexapod.solve.sections import section_parameters
 from flexapod.typing import Array
 
-#: Of a place without friction: nothing rubs, and what could bend is a unit long.
-NO_FRICTION = (0.0, 0.0, 1.0, 0.0, 0.0, 0.0, 0.0)
 ENDLESS = 1e4  # m, beyond the reach of any leg
-
-#: Mass of a plate in motion, over that of the payload, at least: between springs nothing else says how it moves
-LIGHT = 1e-6
 
 
 def _pack(layout: tuple[tuple[str, int], ...], values: dict[str, object]) -> Array:
@@ -54,16 +49,13 @@ def leg_parameters(robot: Robot, legs: Limbs, shapes: Shapes, per_loss: float = 
     names = ("base_flexure", "platform_flexure", "base_flexure_damping", "platform_flexure_damping")
     of_ends = np.concatenate([flexures(robot, legs), flexures(robot, legs, per_loss)], axis=1)
     ends = [dict(zip(names, x, strict=True)) for x in of_ends]
-    frames = _frames(robot, per_loss, at_rest=at_rest)
     rows = (
         _leg(leg, at_rest=at_rest)
         | _place(robot, legs, i)
         | _joints(leg, legs, i, per_loss)
         | ends[i]
         | (section_parameters(leg, shapes, legs.home[i, COORDINATES.index("l")]) if shapes.sections else {})
-        | _friction(leg, float(legs.home[i, COORDINATES.index("l")]))
-        | _of_elements(leg, shapes, Standing(float(legs.home[i, COORDINATES.index("l")]), per_loss, at_rest))
-        | frames
+        | _of_elements(leg, shapes, Standing(float(legs.home[i, COORDINATES.index("l")]), per_loss, at_rest, robot))
         | _inside(leg, per_loss)
         for i, leg in enumerate(robot.legs)
     )
@@ -138,26 +130,6 @@ def _crank_com(leg: Leg, arm: Array) -> Array:
     return leg.carriage.com / np.linalg.norm(arm) * arm
 
 
-def _frames(robot: Robot, per_loss: float, *, at_rest: bool) -> dict[str, object]:
-    """A leg's share of the mounts, and of the base plate."""
-    found: dict[str, object] = {}
-    for end, mount in (("base", robot.base_mount), ("platform", robot.platform_mount)):
-        if mount is not None:
-            damping = viscous(mount.stiffness, mount.damping, mount.loss, per_loss)
-            found |= {
-                f"{end}_mount_at": mount.at - (robot.com if end == "platform" else 0.0),
-                f"{end}_mount_stiffness": mount.stiffness / robot.count,
-                f"{end}_mount_damping": damping / robot.count,
-            }
-    if robot.base_mount is not None:
-        mass, inertia = _plate(robot, robot.base_mount, at_rest=at_rest)
-        found |= {"base_plate_mass": mass / robot.count, "base_plate_inertia": inertia / robot.count}
-        found["base_plate_weighs"] = robot.base_mount.mass / robot.count
-    if robot.base_motion is not None:
-        found["base_motion_at"] = robot.base_motion.at
-    return found
-
-
 def _joints(leg: Leg, legs: Limbs, i: int, per_loss: float) -> dict[str, object]:
     """Springs at the joints of a leg, where they are slack (at home), and their dampers."""
     home = dict(zip(COORDINATES, legs.home[i], strict=True))
@@ -180,27 +152,6 @@ def _of_elements(leg: Leg, shapes: Shapes, standing: Standing) -> dict[str, obje
     for element in shapes.elements:
         found |= element.numbers(leg, standing)
     return found
-
-
-def _friction(leg: Leg, length: float) -> dict[str, object]:
-    """Friction of joints and drive; that of a screw by the nut's travel, Eq. (T19.12)."""
-    found: dict[str, object] = {}
-    for name, joint, letter in (
-        ("base", leg.base_joint, leg.letters.base),
-        ("platform", leg.platform_joint, leg.letters.platform),
-    ):
-        numbers = NO_FRICTION if joint.friction is None else joint.friction.numbers
-        found[f"{name}_friction"] = (*numbers, float(letter == "S"))
-    drive, screw = leg.drive.friction, leg.screw
-    numbers, twist = NO_FRICTION if drive is None else drive.numbers, (0.0, 0.0)
-    if screw is not None:
-        per_turn = np.array([1 / screw.per_turn, 0.0, screw.per_turn, 1.0, 1 / screw.per_turn, screw.per_turn**-2, 1.0])
-        numbers, twist = tuple(numbers * per_turn), twist_with_length(leg, length)
-    return found | {
-        "drive_friction": (*numbers, 0.0),
-        "drive_friction_at_stroke": float(screw is None),
-        "drive_friction_twist": twist,
-    }
 
 
 def _inside(leg: Leg, per_loss: float) -> dict[str, object]:
@@ -254,21 +205,10 @@ def _damping(joint: Joint, per_loss: float) -> Array:
     return viscous(stiffness, given, joint.loss_of_stiffness, per_loss)
 
 
-def _plate(robot: Robot, mount: Mount, *, at_rest: bool) -> tuple[float, Array]:
-    """Mass [kg] and inertia (3, 3) of a plate; in motion none has nothing, Eq. (T24.12)."""
-    load = robot.payload
-    mass, size = (1.0, 1.0) if load is None else (load.mass, float(np.trace(load.inertia)) / 3)
-    if at_rest:
-        return mount.mass, mount.inertia
-    least = LIGHT * size
-    more = least * np.eye(3) if np.linalg.eigvalsh(mount.inertia)[0] < least else 0.0
-    return max(mount.mass, LIGHT * mass), mount.inertia + more
-
-
 def payload_parameters(robot: Robot, shapes: Shapes, *, at_rest: bool = False) -> Array:
     """Parameters of the payload, and of the plate below it where it stands on a mount; tool from its CoM."""
     load, below = robot.payload, robot.platform_mount
-    mass, inertia = (0.0, np.zeros((3, 3))) if below is None else _plate(robot, below, at_rest=at_rest)
+    mass, inertia = (0.0, np.zeros((3, 3))) if below is None else plate_mass(robot, below, at_rest=at_rest)
     if load is None:  # a fixed platform: without weight, and what does not move needs no mass
         mass = {"mass": 1.0, "inertia": np.eye(3), "gravity": np.zeros(3), "tool": np.zeros(3)}
         return _pack(PAYLOAD_PARAMETERS, mass)

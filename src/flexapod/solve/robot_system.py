@@ -71,8 +71,6 @@ def _held(robot: Robot, legs: Limbs, shapes: Shapes, *, at_rest: bool) -> Mask:
     for name, size in shapes.layout:
         if name in ("c", "u3", "e3") and ends.any():
             held[ends, shapes.index(name) : shapes.index(name) + size] = True
-    if shapes.base_motion:
-        held[:, shapes.index("g") :][:, :6] = True
     if shapes.torsion:  # a ball does not twist its leg
         held[:, shapes.index("t")] = ~legs.pose_closure
     return held | _held_joints(robot, legs, shapes) | _held_inside(robot, shapes)

@@ -131,7 +131,7 @@ class System:
     def floor(self) -> Mask:
         """Ports that move the base."""
         shapes = self.kernel.shapes
-        return self.ports >= (shapes.index("g") if shapes.base_motion else self.n)
+        return self.ports >= (shapes.index("g") if shapes.has("g") else self.n)
 
     @cached_property
     def shared(self) -> Index:

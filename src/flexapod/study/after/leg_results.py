@@ -7,6 +7,7 @@ from dataclasses import replace
 import numpy as np
 from numpy.typing import ArrayLike
 
+from flexapod.elements.friction import BaseFriction, DriveFriction
 from flexapod.elements.springs import twist_share
 from flexapod.mechanics.layout import columns, leg_parameters
 from flexapod.model import Robot
@@ -145,7 +146,7 @@ def slides(system: System) -> list[str]:
 def _by_angle(robot: Robot, system: System) -> Array:
     """Factors (legs, bristles) by which friction is that of the study file: of screws by their angle."""
     found = np.ones((robot.count, system.kernel.shapes.bristles))
-    if system.kernel.shapes.drive_friction:
+    if system.kernel.shapes.holds(DriveFriction):
         found[:, -1] = [1.0 if leg.screw is None else leg.screw.per_turn for leg in robot.legs]
     return found
 
@@ -263,7 +264,7 @@ def _base_moments(
     shapes = system.kernel.shapes
     turn, axes = _turned_by_cranks(found, system, q), []
     about = np.zeros((*q.shape[:2], 3))
-    on_angles = None if rubs is None or not shapes.base_friction else _on_coordinates(system, q, rubs)
+    on_angles = None if rubs is None or not shapes.holds(BaseFriction) else _on_coordinates(system, q, rubs)
     for k, (name, unit) in enumerate(zip(_BASE_ANGLES, np.eye(3), strict=True)):
         axes.append((turn @ unit[:, None])[..., 0])
         if not shapes.has(name):

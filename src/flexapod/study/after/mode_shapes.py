@@ -58,7 +58,7 @@ def _named(found: RobotModes) -> tuple[list[str], Array, Array]:
 def _base_plate(found: RobotModes, legs: Array) -> Array:
     """Kinetic energy of the base plate in each mode, (m,), of those with unit mass twice that."""
     shapes, p = found.system.kernel.shapes, found.system.leg_p
-    if not shapes.base_mount:
+    if not shapes.has("f"):
         return np.zeros(len(legs))
     layout, first = leg_parameters(shapes), shapes.index("f")
     mass, inertia = (p[:, columns(layout, f"base_plate_{name}")].sum(axis=0) for name in ("mass", "inertia"))
