@@ -10,9 +10,10 @@ from flexapod.errors import InputError
 from flexapod.mechanics.layout import LEG_PARAMETERS, columns
 from flexapod.model import Actuator, ActuatorMotion, ActuatorStudy, Damping, Simulation, loads, override, to_toml
 from flexapod.model.fields import read_fields
+from flexapod.model.key_paths import put, value_at
+from flexapod.schema.key_paths import parse_key
 from flexapod.solve.actuator_modes import actuator_modes
 from flexapod.solve.robot_march import prepare
-from flexapod.surveys.sweeps.keys import parse_key, put, value_at
 
 BEAM = {"length": 1.0, "rhoA": 1.0, "EI": 1.0, "free_length": 1.0}
 BETA = np.array([1.875104068711961, 4.694091132974174, 7.854757438237613])  # roots of cos b cosh b = -1

@@ -18,10 +18,9 @@ from flexapod.errors import InputError
 from flexapod.exchange.export import abaqus_deck, left_out
 from flexapod.mechanics.assembly import payload_functions
 from flexapod.mechanics.layout import Shapes
-from flexapod.model import AxialSpring, loads, preset
+from flexapod.model import AxialSpring, loads, preset, to_toml
 from flexapod.model.joint import Joint
 from flexapod.model.mount import BaseMotion, Mount
-from flexapod.model.write import to_toml
 from flexapod.report.replay import replay
 from flexapod.rigid.rotations import quaternion, turned
 from flexapod.scene.geometry import RobotMotion

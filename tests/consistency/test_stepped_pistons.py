@@ -167,7 +167,8 @@ def test_bad_sections_are_refused(piston, words):
 def test_sections_go_through_a_file_and_a_sweep():
     of = study(40)
     assert fx.loads(fx.model.to_toml(of)).robot == of.robot
-    from flexapod.surveys.sweeps.keys import parse_key, put
+    from flexapod.model.key_paths import put
+    from flexapod.schema.key_paths import parse_key
 
     data = {"leg": {"piston": {"sections": [{"diameter": 0.04}, {"diameter": 0.027}]}}}
     put(data, parse_key("leg.piston.sections[2].diameter", what="key"), 0.03)

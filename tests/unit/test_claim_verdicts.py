@@ -9,8 +9,7 @@ from tests.paper_parts import study_parts
 
 from flexapod import model
 from flexapod.errors import InputError
-from flexapod.model import preset
-from flexapod.model.write import to_toml
+from flexapod.model import preset, to_toml
 from flexapod.paper import claims_actuator, claims_rigid, claims_robot, claims_variants, readings
 from flexapod.paper import variants as statics
 from flexapod.paper.claim import BREAKS, HERE, HOLDS, IN_PART, MISPRINT, NOT, OPEN, REACHES, Claim, judged, size

@@ -62,9 +62,8 @@ from flexapod.model.screw import Bearing, Brake, Drive, Encoder, Limits, Loop, M
 from flexapod.model.sections import PistonSection
 from flexapod.model.simulation import DEFAULT_TOLERANCE, FIDELITIES, Initial, Simulation
 from flexapod.model.spring import AxialSpring
-from flexapod.model.study import DRIVEN_BY, ActuatorStudy, Study, override
+from flexapod.model.study import DRIVEN_BY, ActuatorStudy, Study, override, to_toml
 from flexapod.model.tolerances import LengthSpread, RatioSpread, Spread, Tolerances
-from flexapod.model.write import to_toml
 
 __all__ = [
     "AXES",

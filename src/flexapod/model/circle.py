@@ -3,7 +3,7 @@
 from __future__ import annotations
 
 import math
-from typing import Annotated
+from typing import TYPE_CHECKING, Annotated
 
 import numpy as np
 from pydantic import model_validator
@@ -13,6 +13,9 @@ from flexapod.schema.axes import plane_order, within_a_turn
 from flexapod.schema.base import Quantity, Series
 from flexapod.schema.table import Table
 from flexapod.typing import Array
+
+if TYPE_CHECKING:
+    from flexapod.schema.section import Section
 
 _LOWER = ((0, -1), (0, 1), (120, -1), (120, 1), (240, -1), (240, 1))
 _UPPER = ((-60, 1), (60, -1), (60, 1), (180, -1), (180, 1), (300, -1))
@@ -91,3 +94,45 @@ def platform_circle(radius: float, half_angle: float) -> Array:
 def _circle(radius: float, half_angle: float, places: tuple[tuple[int, int], ...]) -> Array:
     angles = np.array([np.deg2rad(centre) + side * half_angle for centre, side in places])
     return radius * np.column_stack([np.cos(angles), np.sin(angles), np.zeros(6)])
+
+
+def read_places(robot: Section, end: str, tables: list[Section], kind: str) -> Array:
+    """Joints of all legs at one end, (n, 3); a leg may have its own place, the others share a circle or rows."""
+    joints = [table.section(f"{end}_joint") for table in tables]
+    own = [None if joint is None else joint.vector("at", *("length",) * 3) for joint in joints]
+    shared = iter(_shared(robot.child(robot.data[end], end), end, own.count(None), kind))
+    return np.array([next(shared) if place is None else place for place in own])
+
+
+def _shared(section: Section, end: str, count: int, kind: str) -> Array | list[list[float]]:
+    fixed = ("fixed",) if end == "platform" else ()
+    for name, what in (("joints", "rows"), ("angles", "angles")):
+        given = section.data.get(name)
+        if isinstance(given, list) and len(given) != count:
+            raise section.malformed(
+                f"places {len(given)} joint{'s' * (len(given) != 1)}",
+                name,
+                allowed=f"{count} {what}, one for each leg of {kind} that has no {end}_joint.at",
+            )
+    if "joints" in section:
+        section.only("joints", *fixed)
+        return section.rows("joints", *(("length",) * 3,) * count)
+    circle = section.read(Circle, also=("joints", *fixed), then=lambda s: _angles(s, count))
+    return circle.joints(end, section.plane)
+
+
+def _angles(section: Section, count: int) -> dict[str, object]:
+    if "half_angle" in section and (count != 6 or section.plane):
+        odd = "an odd number of joints has no pairs" if count % 2 else "pairs at 0, 120 and 240 deg are six joints"
+        raise section.error(
+            f"does not place {count} joints{f' in the plane {section.plane}' if section.plane else ''}: {odd}",
+            "half_angle",
+            allowed=f"angles, a list of {count}",
+            next_step=f"For example: angles = {[f'{360 * i // max(count, 1)} deg' for i in range(count)]}",
+        )
+    if "angles" not in section:
+        section.need("radius", "half_angle" if count == 6 and not section.plane else "angles")
+        return {"angles": None}
+    if "half_angle" in section:
+        raise section.error("is given together with angles", "half_angle", allowed="one of the two")
+    return {"angles": section.vector("angles", *("angle",) * count)}

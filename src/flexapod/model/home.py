@@ -3,16 +3,21 @@
 from __future__ import annotations
 
 import math
-from typing import Annotated, ClassVar
+from collections.abc import Mapping
+from typing import TYPE_CHECKING, Annotated, ClassVar
 
 import numpy as np
 from pydantic import Field, model_validator
 
+from flexapod.errors import InputError
 from flexapod.model.joint import Carriage
-from flexapod.schema.axes import within_a_turn
+from flexapod.schema.axes import normal_of, within_a_turn
 from flexapod.schema.base import Quantity, Vec3
 from flexapod.schema.table import Table
 from flexapod.typing import Array
+
+if TYPE_CHECKING:
+    from flexapod.schema.section import Section
 
 
 class Home(Table):
@@ -33,6 +38,14 @@ class Home(Table):
             short="number",
         ),
     ] = Field(default=(0.0, 0.0, 0.0), validate_default=True)
+
+    @classmethod
+    def resolved(cls, section: Section) -> Mapping[str, object]:
+        """Rotation of a planar robot: a number, about the normal."""
+        if section.plane is None or isinstance(section.data.get("rotation"), list):
+            return {}
+        angle = section.number("rotation", "angle")
+        return {} if angle is None else {"rotation": angle * normal_of(section.plane)}
 
     @model_validator(mode="after")
     def _within_a_turn(self) -> Home:
@@ -95,3 +108,19 @@ def _parts(carriage: Carriage) -> tuple[Array, Array, Array]:
 def _turn(angle: float) -> float:
     """The angle within half a turn of 0."""
     return math.remainder(angle, 2 * math.pi)
+
+
+def read_home(robot: Section, fixed: bool) -> Home:
+    """Where the platform is at home, of a table [robot]; `fixed`: at 0 unless that is given."""
+    home = robot.section("home")
+    if home is None:
+        height = robot.number("home_height", "length")
+        if height is None and not (robot.plane or fixed):
+            robot.need("home_height")
+        try:
+            return Home(position=np.array([0.0, 0.0, height or 0.0]))
+        except InputError as error:
+            raise robot.locate(InputError(error.what, key="home_height", allowed=error.allowed)) from None
+    if "home_height" in robot:
+        raise robot.error("is given together with home", "home_height", allowed="one of the two")
+    return home.read(Home)

@@ -12,7 +12,7 @@ from flexapod.errors import InputError
 from flexapod.model.friction import JointFriction
 from flexapod.model.joint_stiffness import read_stiffness
 from flexapod.model.rolling import RollingLaw
-from flexapod.schema.axes import axis_of, within_a_turn
+from flexapod.schema.axes import axis_of, within_a_turn, word_of
 from flexapod.schema.base import Key, Loss, Matrix6, Quantity, Vec3
 from flexapod.schema.table import Table
 from flexapod.typing import Array
@@ -176,6 +176,25 @@ class Joint(Table):
         """Whether its place gives way in axes of base or platform, or together with its angles."""
         return self.stiffness is not None and self.across_and_along is None
 
+    def told_at(self, place: Array, normal: Array) -> dict[str, object]:
+        """Its keys at its place (3,) [m], directions in words."""
+        fields = self.told()
+        if self.axis is not None:
+            fields["axis"] = word_of(self.axis, place, normal) or self.axis
+        given = {"damping": self.stiffness_damping, "loss": self.stiffness_loss}
+        own = {name: value for name, value in given.items() if value}
+        if self.rolling is not None:
+            fields["stiffness"] = self.rolling
+        elif self.leg_axes and self.stiffness is not None:
+            along, across = float(self.stiffness[2, 2]), float(self.stiffness[0, 0])
+            fields["stiffness"] = {"axial": along, "radial": across, **own}
+        elif self.stiffness is not None and own:
+            turns = self.stiffness[3:].any()
+            fields["stiffness"] = {"rows": self.stiffness if turns else self.stiffness[:3, :3], **own}
+        elif self.across_and_along is not None:
+            fields["stiffness"] = self.across_and_along[0]
+        return self.data(fields)
+
 
 class Travel(Table):
     """Allowed positions of a carriage [m, of a crank rad]."""
@@ -260,6 +279,12 @@ class Carriage(Table):
     def unit(self) -> Vec3:
         """Unit vector of the axis, (3,)."""
         return self.axis / np.linalg.norm(self.axis)
+
+    def told_at(self, place: Array, normal: Array) -> dict[str, object]:
+        """Its keys at its place (3,) [m], directions in words."""
+        unused = "mass" if self.kind == "crank" else "inertia"
+        fields = {name: value for name, value in self.told().items() if name != unused or value}
+        return self.data({self.kind: word_of(self.axis, place, normal) or self.axis, **fields})
 
 
 def _check_direction(axis: Vec3 | None, key: str) -> None:

@@ -307,6 +307,31 @@ class Leg(Table):
             )
         return self
 
+    def told_at(self, base: Array, platform: Array, normal: Array) -> dict[str, object]:
+        """Its keys with its joints at their places (3,) [m]."""
+        fields = self.told()
+        del fields["chain"]  # the robot's type has it
+        if self.letters.platform and not self.passive:
+            del fields["passive"]
+        if self.passive:
+            del fields["drive"]
+        for name, place in (("base_joint", base), ("platform_joint", platform)):
+            fields[name] = getattr(self, name).told_at(place, normal)
+            if not fields[name]:
+                del fields[name]
+        del fields["springs"]
+        if self.springs:
+            fields["springs"] = {spring.name: spring for spring in self.springs}
+        for kind in dict.fromkeys(type(element) for element in self.elements):
+            own = kind.all_of(self)
+            fields[kind.at] = own[0] if len(own) == 1 else list(own)
+        if self.carriage is not None:
+            fields["carriage"] = self.carriage.told_at(base, normal)
+        if self.strut is None:
+            return self.data(fields)
+        del fields["cylinder"], fields["piston"]
+        return self.data(fields)
+
 
 def _misfit(chain: str, key: str, what: str, allowed: str | None = None, next_step: str | None = None) -> InputError:
     return InputError(f"{what} (chain {chain})", key=key, allowed=allowed, next_step=next_step)

@@ -3,6 +3,7 @@
 from __future__ import annotations
 
 import math
+from collections.abc import Mapping
 from types import MappingProxyType
 from typing import TYPE_CHECKING, Annotated, ClassVar
 
@@ -18,7 +19,7 @@ if TYPE_CHECKING:
 POISSON = 0.3  # where no other is given
 #: Keys of a table of which a material is made.
 OF_MATERIAL = ("E", "density", "yield_stress", "poisson", "expansion")
-SPELLS = dict.fromkeys(OF_MATERIAL, ("material",))
+SPELLS: Mapping[str, tuple[str, ...]] = {key: ("material",) for key in OF_MATERIAL}
 
 
 class Material(Table):

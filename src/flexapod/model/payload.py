@@ -2,16 +2,21 @@
 
 from __future__ import annotations
 
-from typing import Annotated
+from collections.abc import Mapping
+from typing import TYPE_CHECKING, Annotated
 
 import numpy as np
 from pydantic import field_validator, model_validator
 
 from flexapod.errors import InputError
+from flexapod.schema.axes import diagonal, normal_of
 from flexapod.schema.base import Matrix3, Quantity, Vec3
 from flexapod.schema.table import Table
 from flexapod.typing import Array
 from flexapod.words import number
+
+if TYPE_CHECKING:
+    from flexapod.schema.section import Section
 
 
 class Payload(Table):
@@ -43,6 +48,17 @@ class Payload(Table):
         if fields.get("tool") is None and "com" in fields:
             fields = fields | {"tool": fields["com"]}
         super().__init__(**fields)
+
+    @classmethod
+    def resolved(cls, section: Section) -> Mapping[str, object]:
+        """Inertia by principal moments, by rows, or in a plane by a number."""
+        value = section.data.get("inertia")
+        if isinstance(value, list) and any(isinstance(row, list) for row in value):
+            return {"inertia": section.rows("inertia", *(("inertia",) * 3,) * 3)}
+        if section.plane is None or isinstance(value, list):
+            return {"inertia": section.vector("inertia", *("inertia",) * 3)}
+        number = section.number("inertia", "inertia")  # of a flat plate in that plane
+        return {} if number is None else {"inertia": number * (1 + normal_of(section.plane)) / 2}
 
     @field_validator("inertia", mode="before")
     @classmethod
@@ -76,6 +92,10 @@ class Payload(Table):
                 f"(these are {small:.6g}, {middle:.6g}, {large:.6g} kg m^2)",
             )
         return self
+
+    def told(self) -> dict[str, object]:
+        """All that it has to say in a file: principal moments, where the axes are those of the platform."""
+        return super().told() | {"inertia": diagonal(self.inertia)}
 
 
 def millimetres(point: Array) -> str:

@@ -3,7 +3,7 @@
 from __future__ import annotations
 
 import math
-from collections.abc import Mapping
+from collections.abc import Iterator, Mapping
 from typing import Annotated, Any, ClassVar, cast
 
 import numpy as np
@@ -27,9 +27,9 @@ from flexapod.model.robot_checks import (
     check_tolerances,
 )
 from flexapod.model.tolerances import Tolerances
-from flexapod.schema.axes import Plane, axis_of, normal_of
+from flexapod.schema.axes import Plane, axis_of, diagonal, normal_of
 from flexapod.schema.base import Joints, Quantity, Vec3
-from flexapod.schema.table import Table
+from flexapod.schema.table import Table, plain
 from flexapod.typing import Array
 from flexapod.words import number, text
 
@@ -192,6 +192,31 @@ class Robot(Table):
         """Axis z, or the normal of the plane of a planar robot, (3,)."""
         return normal_of(self.plane)
 
+    def tables(self) -> dict[str, Any]:
+        """Its tables as they stand in a file, by name: as they were written where that still holds, else in SI."""
+        home, fixed = self.home, {"fixed": True} if self.platform_fixed else {}
+        above = not (home.rotation.any() or home.position[:2].any())
+        places = zip(self.legs, self.base_joints, self.platform_joints, strict=True)
+        legs = [plain(leg.told_at(base, platform, self.normal)) for leg, base, platform in places]
+        alike = all(leg == legs[0] for leg in legs) and len({leg.chain for leg in self.legs}) == 1
+        geometry = {
+            "type": self.type,
+            **({"plane": self.plane} if self.plane else {}),
+            "base": {"joints": self.base_joints},
+            "platform": {"joints": self.platform_joints, **fixed},
+            **({"home_height": self.home_height} if above else {"home": home}),
+            "gravity": self.gravity,
+            **{name: mount for name, mount in _told_mounts(self)},
+        }
+        beside = {
+            "payload": self.payload and self.payload.data(),
+            "leg": legs[0] if alike else legs,
+            **{name: part for name in ("geometry", "heat", "tolerances") if (part := getattr(self, name)) is not None},
+        }
+        found = self.data(geometry | {name: part for name, part in beside.items() if part is not None})
+        tables = {name: plain(found[name]) for name in found if name in beside}
+        return {"robot": plain({name: found[name] for name in found if name not in beside}), **tables}
+
 
 def _at_height(height: Any, home: Home | None) -> Home:
     """Home at a height, else as it was: parallel to the world above the origin if there was none."""
@@ -228,3 +253,13 @@ def _seen(vector: Array, place: Array, normal: Array) -> Array:
     if radial is None:
         return vector
     return np.round(np.array([radial, np.cross(normal, radial), normal]) @ vector, 12)
+
+
+def _told_mounts(robot: Robot) -> Iterator[tuple[str, object]]:
+    for name in ("base_mount", "platform_mount"):
+        if (mount := getattr(robot, name)) is not None:
+            short = {key: diagonal(value) for key, value in mount.told().items()}
+            given = {key: value for key, value in short.items() if key == "loss" or np.asarray(value).any()}
+            yield name, mount.data(given)
+    if robot.base_motion is not None:
+        yield "base_motion", robot.base_motion

@@ -15,9 +15,9 @@ from flexapod.model.motion import AXES, Motion, moved_axes
 from flexapod.model.remarks import actuator_remarks, robot_remarks, settings_remarks
 from flexapod.model.robot import Robot
 from flexapod.model.simulation import FIDELITIES, OWN_BASIS, SOLID, STRAIGHT, Initial, Simulation
-from flexapod.model.write import to_toml
 from flexapod.schema.axes import plane_order
-from flexapod.schema.table import Table
+from flexapod.schema.table import Table, plain
+from flexapod.schema.toml import toml_text
 
 #: The load that drives a motion of the single actuator where no law does.
 DRIVEN_BY = {"rotation": "torque", "extension": "force", "elevation": "elevation_torque"}
@@ -342,3 +342,34 @@ def _refuse_unused(fidelity: str, changes: dict[str, object], axial_modes: int |
             value=changes.get(given[0], axial_modes),
             next_step=f"Leave {given[0]} out, or choose fidelity='assumed-modes'",
         )
+
+
+def to_toml(study: Table) -> str:
+    """The study as TOML text; read again, it is the same study.
+
+    What was read from a text and not changed since stands there as it was written, key by key; all else in SI units,
+    numbers to the last digit. Tables stay in the CSV files they came from; one given from Python is named ``table.csv``
+    and must be saved there by whoever wants to read the text again.
+
+    Parameters
+    ----------
+    study : Study or ActuatorStudy
+        The study.
+
+    Returns
+    -------
+    str
+        The text, its tables one after the other.
+    """
+    return "# Written by flexapod\n" + toml_text(_tables(study))
+
+
+def _tables(study: Table) -> dict[str, Any]:
+    if study.written is not None and not study.written.changed:
+        return dict(study.written.data)
+    found: dict[str, object] = {}
+    for name in type(study).model_fields:
+        part = getattr(study, name)
+        found |= part.tables() if isinstance(part, Robot) else {name: part} if isinstance(part, Table) else {}
+    tables = {name: plain(part) for name, part in study.data(found).items()}
+    return {name: table for name, table in tables.items() if table}

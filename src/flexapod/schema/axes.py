@@ -68,3 +68,10 @@ def within_a_turn(angles: Array | float, key: str) -> None:
             allowed="-2 pi to 2 pi rad",
             next_step='A number without a unit is in rad; write degrees as "120 deg"',
         )
+
+
+def diagonal(value: object) -> object:
+    """A diagonal matrix as its diagonal."""
+    if not isinstance(value, np.ndarray) or value.ndim != 2:
+        return value
+    return np.diag(value) if not (value - np.diag(np.diag(value))).any() else value

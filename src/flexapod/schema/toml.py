@@ -99,7 +99,7 @@ def refuse_excess(data: dict[str, Any], file: str | None) -> None:
             raise InputError("has too many digits", file=file, key=path, allowed=f"at most {MOST_DIGITS}")
 
 
-def toml_text(tables: Mapping[str, object]) -> str:
+def toml_text(tables: Mapping[str, Any]) -> str:
     """The text of a study file: its tables, or lists of tables, one after the other."""
     lines: list[str] = []
     for name, table in tables.items():

@@ -16,9 +16,10 @@ import numpy as np
 
 from flexapod.errors import InputError
 from flexapod.files import LARGEST_TEXT, check_name, read_text
+from flexapod.model.key_paths import overlap
+from flexapod.schema.key_paths import Step, key_text, parse_key
 from flexapod.schema.section import Section
 from flexapod.schema.toml import parsed, refuse_excess
-from flexapod.surveys.sweeps.keys import Step, key_text, overlap, parse_key
 
 _PER_CENT = re.compile(r"\s*(\d+\.?\d*(?:[eE][-+]?\d+)?|\.\d+)\s*%\s*")
 MOST_POINTS = 10_000_000  # more is a mistake in a grid: their hashes alone would fill the memory

@@ -15,10 +15,11 @@ import numpy as np
 
 from flexapod.errors import InputError, Malformed
 from flexapod.model import ActuatorStudy, Study
+from flexapod.model.key_paths import leg_count, put, value_at
 from flexapod.schema.base import SHORT
+from flexapod.schema.key_paths import Step, copied, key_text, leaves, similar_key
 from flexapod.study.after.causes import cause_names
 from flexapod.study.before.room import check_outputs, check_room, result_bytes
-from flexapod.surveys.sweeps.keys import Step, copied, key_text, leaves, leg_count, put, similar_key, value_at
 from flexapod.surveys.sweeps.plan import SweepPlan, Tolerance
 from flexapod.surveys.sweeps.reading import (
     dimension_of,

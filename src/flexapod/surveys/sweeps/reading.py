@@ -11,9 +11,9 @@ import numpy as np
 from flexapod.errors import InputError
 from flexapod.model import ActuatorStudy, Study
 from flexapod.model.files import read_study
+from flexapod.schema.key_paths import Step, key_text
 from flexapod.schema.notes import Notes
 from flexapod.schema.section import Section
-from flexapod.surveys.sweeps.keys import Step, key_text
 from flexapod.surveys.sweeps.plan import Draws, Hypercube, Spaced
 from flexapod.typing import Array
 from flexapod.units import to_si

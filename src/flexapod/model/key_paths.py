@@ -1,18 +1,19 @@
-"""Key paths of a study file: ``leg[3].piston.diameter``; what stands there, and putting a value there."""
+"""What stands at a key path of a study file, and putting a value there; short forms are spelled out on the way."""
 
 from __future__ import annotations
 
 import re
-from collections.abc import Iterator, Mapping
+from collections.abc import Mapping
 from typing import Any
 
-from flexapod.errors import InputError, closest
-from flexapod.model import MATERIALS
+from flexapod.errors import InputError
 from flexapod.model.circle import Circle
+from flexapod.model.material import MATERIALS
+from flexapod.schema.key_paths import Step, copied, key_text, similar_key
 from flexapod.units import to_si
 
-Step = str | int
-_NAME = re.compile(r"([A-Za-z_][\w-]*)((?:\[\d+\])*)")
+__all__ = ["leg_count", "overlap", "put", "value_at"]
+
 _SHORT = [
     {"joints", "radius"},
     {"joints", "half_angle"},
@@ -21,30 +22,6 @@ _SHORT = [
     {"material", "density"},
 ]
 _ENDS = ("base", "platform")
-
-
-def parse_key(key: object, *, what: str) -> tuple[Step, ...]:
-    """Steps of a key path: names, and numbers of list items counted from 1.
-
-    Raises
-    ------
-    InputError
-        It is not a key path; `what` is the entry of the sweep file that holds it.
-    """
-    steps: list[Step] = []
-    for part in key.split(".") if isinstance(key, str) else [""]:
-        match = _NAME.fullmatch(part.strip())
-        if match is None:
-            raise InputError(
-                "is not a key path", key=what, value=key, allowed="names of the study file, e.g. leg[3].piston.diameter"
-            )
-        steps += [match[1], *(int(number) for number in re.findall(r"\d+", match[2]))]
-    return tuple(steps)
-
-
-def key_text(steps: tuple[Step, ...]) -> str:
-    """The key path as text."""
-    return "".join(f"[{step}]" if isinstance(step, int) else f".{step}" for step in steps).lstrip(".")
 
 
 def overlap(one: tuple[Step, ...], other: tuple[Step, ...]) -> bool:
@@ -61,13 +38,6 @@ def _of_leg(steps: tuple[Step, ...]) -> tuple[Step, ...]:
     """The key with number 0 for all legs, where it gives none."""
     every = steps[0] == "leg" and len(steps) > 1 and isinstance(steps[1], str)
     return ("leg", 0, *steps[1:]) if every else steps
-
-
-def copied(data: Any) -> Any:
-    """A copy of tables and lists, all the way down; several times faster than `copy.deepcopy`."""
-    if isinstance(data, dict):
-        return {name: copied(value) for name, value in data.items()}
-    return [copied(value) for value in data] if isinstance(data, list) else data
 
 
 def put(data: dict[str, Any], steps: tuple[Step, ...], value: object) -> None:
@@ -192,30 +162,3 @@ def value_at(data: dict[str, Any], steps: tuple[Step, ...]) -> object:
             next_step=f"{similar} Otherwise add it to the study file" if similar else "Add it to the study file",
         )
     return found
-
-
-def leaves(value: object, steps: tuple[Step, ...]) -> Iterator[tuple[tuple[Step, ...], object]]:
-    """Path and value of every single number in a value that may be a list, or a list of rows."""
-    if isinstance(value, list):
-        for number, item in enumerate(value, start=1):
-            yield from leaves(item, (*steps, number))
-    else:
-        yield steps, value
-
-
-def similar_key(data: Mapping[str, Any], steps: tuple[Step, ...]) -> str | None:
-    """The key of the file that the user may have meant, as a question, or None."""
-    wanted = key_text(steps)
-    known = list(_all_keys(data, ""))
-    ends = [key for key in known if key.endswith(f".{wanted}")]
-    return f"Did you mean {ends[0]!r}?" if ends else closest(wanted, known)
-
-
-def _all_keys(data: object, path: str) -> Iterator[str]:
-    if isinstance(data, Mapping):
-        for name, value in data.items():
-            inner = f"{path}.{name}" if path else str(name)
-            yield inner
-            yield from _all_keys(value, inner)
-    elif isinstance(data, list) and data and isinstance(data[0], Mapping):
-        yield from _all_keys(data[0], path)
