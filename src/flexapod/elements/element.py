@@ -16,7 +16,7 @@ from typing import TYPE_CHECKING, Any, ClassVar, Literal, NamedTuple, Self
 from flexapod.elements.frame import Energies
 from flexapod.errors import InputError
 from flexapod.schema.table import Table
-from flexapod.symbolic.vocabulary import dot, sqrt
+from flexapod.symbolic.vocabulary import dot, sqrt, vertcat
 
 if TYPE_CHECKING:
     from flexapod.elements.slot import Slot
@@ -145,7 +145,7 @@ class Physics:
     @classmethod
     def of(cls, leg: Leg) -> Self | None:
         """The part in one leg; None of a leg without it."""
-        raise NotImplementedError
+        return None
 
     @classmethod
     def all_of(cls, leg: Leg) -> tuple[Self, ...]:
@@ -186,7 +186,7 @@ class Physics:
     @classmethod
     def slides(cls, p: SimpleNamespace, q: SimpleNamespace, v: SimpleNamespace) -> SX:
         """How fast it slides where it has friction, in each of the directions that `bristles` counts."""
-        raise NotImplementedError
+        return vertcat()
 
     @classmethod
     def bristles(cls, has: Callable[[str], bool]) -> int:

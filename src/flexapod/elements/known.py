@@ -2,8 +2,8 @@
 
 from __future__ import annotations
 
-from collections.abc import Sequence
-from typing import TYPE_CHECKING
+from collections.abc import Collection, Sequence
+from typing import TYPE_CHECKING, Any
 
 from flexapod.elements.drive_train import DriveTrain
 from flexapod.elements.element import Element, Physics, registered
@@ -22,8 +22,9 @@ from flexapod.errors import InputError
 
 if TYPE_CHECKING:
     from flexapod.model import Leg, Robot, Simulation
+    from flexapod.schema.section import Section
 
-__all__ = ["element_at", "elements_of", "kinds_of", "refuse_tables"]
+__all__ = ["element_at", "elements_of", "kinds_of", "read_elements", "refuse_tables", "told_elements"]
 
 GROUP = "flexapod.elements"
 OURS: tuple[type[Physics], ...] = (
@@ -56,6 +57,30 @@ def refuse_tables(legs: Sequence[Leg], reader: str, *, known: Sequence[type[Elem
                     allowed="legs without it",
                     next_step=f"Leave [leg.{element.at}] out for this",
                 )
+
+
+def read_elements(section: Section, own: Collection[str]) -> tuple[Element, ...]:
+    """Elements in the table of a leg; keys but its ``own`` may be names of theirs, with one table or a list of them."""
+    found: list[Element] = []
+    for name in section.data:
+        kind = None if name in own else element_at(name)
+        if kind is not None:
+            given = section.data[name]
+            tables = [(name, given)] if not isinstance(given, list) else _numbered(name, given)
+            found += [section.child(table, path).read(kind) for path, table in tables]
+    return tuple(found)
+
+
+def _numbered(name: str, tables: list[Any]) -> list[tuple[str, Any]]:
+    return [(f"{name}[{number}]", table) for number, table in enumerate(tables, start=1)]
+
+
+def told_elements(elements: Sequence[Element]) -> dict[str, object]:
+    """What they have to say in the table of their leg."""
+    found: dict[str, list[Element]] = {}
+    for element in elements:
+        found.setdefault(element.at, []).append(element)
+    return {name: tables[0] if len(tables) == 1 else tables for name, tables in found.items()}
 
 
 def element_at(name: str) -> type[Element] | None:

@@ -7,7 +7,7 @@ from typing import TYPE_CHECKING, Annotated, Any, ClassVar
 from pydantic import Field, InstanceOf, SerializeAsAny, model_validator
 
 from flexapod.elements.element import Element, registered
-from flexapod.elements.known import element_at
+from flexapod.elements.known import read_elements, told_elements
 from flexapod.errors import InputError
 from flexapod.model.chain import Chain, chain_of
 from flexapod.model.cylinder import Cylinder
@@ -322,9 +322,7 @@ class Leg(Table):
         del fields["springs"]
         if self.springs:
             fields["springs"] = {spring.name: spring for spring in self.springs}
-        for kind in dict.fromkeys(type(element) for element in self.elements):
-            own = kind.all_of(self)
-            fields[kind.at] = own[0] if len(own) == 1 else list(own)
+        fields |= told_elements(self.elements)
         if self.carriage is not None:
             fields["carriage"] = self.carriage.told_at(base, normal)
         if self.strut is None:
@@ -384,20 +382,11 @@ def read_leg(section: Section, number: int, count: int, chain: str, places: tupl
             "platform_joint": read_joint(section, "platform_joint", platform, normal),
             "springs": read_springs(section.section("springs")),
             "drive": _drive(section.section("drive"), TURNING if letters.turning else SLIDING),
-            "elements": tuple(element for kind in kinds.values() for element in _elements(section, kind)),
+            "elements": elements,
         }
 
-    own = {*columns_of(Leg), "count", "u_axis"} - {*Leg.derived}
-    kinds = {name: kind for name in section.data if name not in own and (kind := element_at(name)) is not None}
+    elements = read_elements(section, {*columns_of(Leg), "count", "u_axis"} - {*Leg.derived})
     return section.read(Leg, also=("count", "u_axis", *registered), then=parts)
-
-
-def _elements(section: Section, kind: type[Element]) -> list[Element]:
-    """Elements of a kind: one table, or a list of tables."""
-    given = section.data[kind.at]
-    if not isinstance(given, list):
-        return [section.child(given, kind.at).read(kind)]
-    return [section.child(table, f"{kind.at}[{k}]").read(kind) for k, table in enumerate(given, start=1)]
 
 
 def _piston(section: Section | None) -> Piston | None:

@@ -92,9 +92,9 @@ def _robot(data: Dataset) -> Iterator[_Plan]:
     from flexapod import plot
     from flexapod.document.budget import peak_budget
     from flexapod.scene.drives import drives
+    from flexapod.study.after.of_elements import of_elements
     from flexapod.study.after.summary import tool_apart
     from flexapod.study.attributes import robot_of
-    from flexapod.study.names import of_elements
     from flexapod.words import capital
 
     found = drives(data)

@@ -322,11 +322,6 @@ def fixed_labels(sizes: Mapping[str, int]) -> dict[str, tuple[object, str]]:
     return {"leg": (np.arange(1, sizes["leg"] + 1), "leg"), **found} if "leg" in sizes else found
 
 
-def of_elements(data: Dataset) -> tuple[str, ...]:
-    """Names of the results that elements of the legs have, see `flexapod.Element`."""
-    return tuple(str(name) for name in data.data_vars if name not in VARIABLES and data[name].dims == ("time", "leg"))
-
-
 def dataset(
     values: Mapping[str, ArrayLike],
     coords: Mapping[str, ArrayLike] | None = None,

@@ -14,8 +14,8 @@ from numpy.typing import NDArray
 from flexapod.scene.colours import AXIS_COLORS, ENERGIES, colors_of_legs
 from flexapod.scene.drives import drives
 from flexapod.scene.geometry import nearest
+from flexapod.study.after.of_elements import of_elements
 from flexapod.study.after.summary import POINT_WORDS, tip_size
-from flexapod.study.names import of_elements
 from flexapod.typing import Array
 from flexapod.words import NOTHING, capital, cleared_lines, number, scale
 

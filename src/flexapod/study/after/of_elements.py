@@ -3,6 +3,7 @@
 from __future__ import annotations
 
 from types import SimpleNamespace
+from typing import TYPE_CHECKING
 
 import numpy as np
 
@@ -11,10 +12,13 @@ from flexapod.elements.slot import Slot
 from flexapod.mechanics.layout import leg_parameters
 from flexapod.model import Robot
 from flexapod.solve.system import System
-from flexapod.study.names import Variable
+from flexapod.study.names import VARIABLES, Variable
 from flexapod.typing import Array
 
-__all__ = ["element_forms", "element_results"]
+if TYPE_CHECKING:
+    from xarray import Dataset
+
+__all__ = ["element_forms", "element_results", "of_elements"]
 
 
 def element_forms(robot: Robot) -> dict[str, Variable]:
@@ -41,6 +45,11 @@ def element_results(robot: Robot, system: System, q: Array) -> dict[str, Array]:
             values = np.broadcast_to(output.of(slot.seen(p), slot.seen(coordinates)), q.shape[:-1])
             found[f"{slot.prefix}{output.name}"] = np.where(has, values, np.nan)
     return found
+
+
+def of_elements(data: Dataset) -> tuple[str, ...]:
+    """Names of the results that elements of the legs have, see `flexapod.Element`."""
+    return tuple(str(name) for name in data.data_vars if name not in VARIABLES and data[name].dims == ("time", "leg"))
 
 
 def _named(rows: Array, layout: tuple[tuple[str, int], ...]) -> SimpleNamespace:
