@@ -69,9 +69,9 @@ def test_row_of_the_budget_is_the_spread_over_phases():
     # A rotor anywhere in a period, under the loop: (0.02 * 2 * 12 / 2000)^2, 6e-8, is what first order leaves out.
     phase = np.random.default_rng(3).uniform(0, 2 * np.pi / 12, 40_000)
     moved = torque(phase, small) / LOOP.stiffness * drive.per_turn
-    assert drive.rippled == pytest.approx(np.std(moved), rel=0.02)
+    assert small.spread(drive) == pytest.approx(np.std(moved), rel=0.02)
     # Of one leg at the tool, by the encoder's row of the same size.
-    encoder = model.Encoder(resolution=drive.rippled * np.sqrt(12) / drive.per_turn * 2)
+    encoder = model.Encoder(resolution=small.spread(drive) * np.sqrt(12) / drive.per_turn * 2)
     other = fx.budget(study(machine(drive=drive.replace(motor=Motor(), encoder=encoder)), fidelity="lumped"))
     np.testing.assert_allclose(
         found.budget.sel(part="ripple", kind="random"), other.budget.sel(part="encoder", kind="random"), rtol=1e-9
@@ -84,7 +84,7 @@ def test_row_of_the_budget_is_the_spread_over_phases():
     plain = machine(drive=drive.replace(motor=Motor()))
     np.testing.assert_array_equal(fx.modes(robot).frequency, fx.modes(plain).frequency)
     for change in ({"command": "position", "loop": None}, {"loop": LOOP.replace(integral=1e3)}):
-        assert drive.replace(**change).rippled == 0
+        assert small.spread(drive.replace(**change)) == 0
 
 
 def test_currents_are_in_check(capsys):

@@ -13,7 +13,7 @@ from flexapod.elements.gap import Gap
 from flexapod.elements.motor_loop import MotorLoop
 from flexapod.elements.mount import BaseMounting, MovedBase, PlatformMounting
 from flexapod.elements.oil import Oil
-from flexapod.elements.ripple import Rippling
+from flexapod.elements.ripple import Ripple
 from flexapod.elements.slot import Slot
 from flexapod.elements.soft_joint import SoftBase, SoftPlatform
 from flexapod.elements.summed_error import SummedError
@@ -28,7 +28,7 @@ __all__ = ["element_at", "elements_of", "kinds_of", "read_elements", "refuse_tab
 
 GROUP = "flexapod.elements"
 OURS: tuple[type[Physics], ...] = (
-    SoftBase, SoftPlatform, DriveTrain, TurningNut, Gap, Rippling, SummedError, MotorLoop, Oil, Resolution,
+    SoftBase, SoftPlatform, DriveTrain, TurningNut, Gap, Ripple, SummedError, MotorLoop, Oil, Resolution,
     BaseFriction, PlatformFriction, DriveFriction, MovedBase, BaseMounting, PlatformMounting,
 )  # fmt: skip
 

@@ -2,43 +2,75 @@
 
 from __future__ import annotations
 
-from dataclasses import dataclass
+from collections.abc import Sequence
 from types import SimpleNamespace
-from typing import TYPE_CHECKING, Any, ClassVar, Self
+from typing import TYPE_CHECKING, Annotated, Any, ClassVar, Self
 
 import numpy as np
+from pydantic import Field, model_validator
 
 from flexapod.elements.element import Contribution, Named, Physics, Standing
 from flexapod.elements.frame import Energies
+from flexapod.errors import InputError
+from flexapod.schema.base import Key, Quantity, Series, array_of
+from flexapod.schema.table import Table
 from flexapod.symbolic.vocabulary import cos, dot, vertcat
-from flexapod.typing import Array
 
 if TYPE_CHECKING:
-    from collections.abc import Sequence
-
-    from flexapod.model import Leg
+    from flexapod.model import Leg, ScrewDrive
+    from flexapod.typing import Array
 
 HARMONICS = 4  # at most
 
 
-@dataclass(frozen=True)
-class Rippling(Physics):
-    """The ripple of a motor by the travel that it drives: angle of the first harmonic [rad/m], amplitudes (4,) [N]."""
+class Ripple(Physics, Table):
+    """What a motor's torque changes by as it turns: cogging and ripple, `torque` [N m] times `harmonics`.
 
-    wave: float
-    amplitudes: Array
+    `per_turn`: how often the first of these returns in a turn of the motor; `harmonics`: sizes of the first one and of
+    its multiples, up to four.
+    """
 
+    torque: Annotated[float, Quantity("torque", above=0, why="amplitude, times harmonics")]
+    per_turn: Annotated[
+        int, Field(strict=True, ge=1, le=1000), Key("how often the first harmonic returns in a turn of the motor")
+    ]
+    harmonics: Annotated[Series, Quantity("number", why="sizes of the first one and its multiples, at most four")] = (
+        array_of((None,))([1.0])
+    )
+
+    #: Angle of the first harmonic by the nut's travel [rad/m], and the energies of all [J].
     parameters: ClassVar[Named] = (("ripple_wave", 1), ("ripple", HARMONICS))
+
+    @model_validator(mode="after")
+    def _few(self) -> Self:
+        if not 1 <= len(self.harmonics) <= HARMONICS:
+            raise InputError(
+                "has too many or none", key="harmonics", value=len(self.harmonics), allowed=f"1 to {HARMONICS} numbers"
+            )
+        return self
 
     @classmethod
     def of(cls, leg: Leg) -> Self | None:
-        """Of a leg with a screw whose motor has a ripple."""
-        screw = leg.screw
-        return None if screw is None or not screw.wave else cls(screw.wave, screw.rippling)
+        """Of the motor of a screw."""
+        return None if leg.screw is None else leg.screw.motor.ripple  # type: ignore[return-value]
+
+    def amplitudes(self, screw: ScrewDrive) -> Array:
+        """Of the harmonics of the force by the nut's travel, (4,) [N], Eq. (T23.21)."""
+        found = np.zeros(HARMONICS)
+        found[: len(self.harmonics)] = self.torque * self.harmonics * screw.rotor.ratio / screw.per_turn
+        return found
+
+    def spread(self, screw: ScrewDrive) -> float:
+        """Standard deviation of the rotor's travel at rest [m]: none where that is held, Eq. (T23.22)."""
+        if screw.rests or not screw.loop_spring[0]:
+            return 0.0
+        return float(np.sqrt(0.5 * (self.amplitudes(screw) ** 2).sum()) / screw.loop_spring[0])
 
     def numbers(self, leg: Leg, standing: Standing) -> dict[str, Any]:
-        """Its wave, and the energies [J] of its harmonics."""
-        return {"ripple_wave": self.wave, "ripple": self.amplitudes / (self.wave * np.arange(1, HARMONICS + 1))}
+        """Its wave, and the energies of its harmonics."""
+        screw: Any = leg.screw
+        wave = self.per_turn * screw.rotor.ratio / screw.per_turn
+        return {"ripple_wave": wave, "ripple": self.amplitudes(screw) / (wave * np.arange(1, HARMONICS + 1))}
 
     @classmethod
     def energy(cls, p: SimpleNamespace, q: SimpleNamespace, v: SimpleNamespace) -> Energies:
@@ -47,9 +79,7 @@ class Rippling(Physics):
         return Energies(strain=dot(p.ripple, vertcat(*(1 - cos(k * angle) for k in range(1, HARMONICS + 1)))))
 
     def errors(self, leg: Leg) -> Sequence[Contribution]:
-        """What it moves the rotor by at rest, against the spring of its loop, Eq. (T23.22)."""
-        screw = leg.screw
-        if screw is None or not screw.rippled:
-            return ()
+        """What it moves the rotor by at rest, against the spring of its loop."""
+        spread = self.spread(leg.screw)  # type: ignore[arg-type]
         how = "standard deviation over a period, against the loop's stiffness, legs independent"
-        return (Contribution("ripple", "random", screw.rippled, how, stands=True),)
+        return (Contribution("ripple", "random", spread, how, stands=True),) if spread else ()

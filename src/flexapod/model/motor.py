@@ -4,20 +4,19 @@ from __future__ import annotations
 
 from typing import TYPE_CHECKING, Annotated, Literal
 
-from pydantic import Field, model_validator
+from pydantic import model_validator
 
+from flexapod.elements.ripple import Ripple
 from flexapod.errors import InputError
 from flexapod.model.drive import Feedback
-from flexapod.schema.base import Key, Quantity, Series, array_of
+from flexapod.schema.base import Key, Quantity
 from flexapod.schema.table import Table
 from flexapod.words import number
 
 if TYPE_CHECKING:
     from flexapod.schema.section import Section
 
-__all__ = ["HARMONICS", "Brake", "Encoder", "Limits", "Loop", "Motor", "Ripple", "Rotor", "summing"]
-
-HARMONICS = 4  # of a ripple, at most
+__all__ = ["Brake", "Encoder", "Limits", "Loop", "Motor", "Ripple", "Rotor", "summing"]
 
 
 class Rotor(Table):
@@ -25,30 +24,6 @@ class Rotor(Table):
 
     inertia: Annotated[float, Quantity("inertia", least=0, why="at the motor, with brake and coupling")] = 0.0
     ratio: Annotated[float, Quantity("number", above=0, why="turns of the motor in a turn of the screw")] = 1.0
-
-
-class Ripple(Table):
-    """What a motor's torque changes by as it turns: cogging and ripple, `torque` [N m] times `harmonics`.
-
-    `per_turn`: how often the first of these returns in a turn of the motor; `harmonics`: sizes of the first one and of
-    its multiples, up to four.
-    """
-
-    torque: Annotated[float, Quantity("torque", above=0, why="amplitude, times harmonics")]
-    per_turn: Annotated[
-        int, Field(strict=True, ge=1, le=1000), Key("how often the first harmonic returns in a turn of the motor")
-    ]
-    harmonics: Annotated[Series, Quantity("number", why="sizes of the first one and its multiples, at most four")] = (
-        array_of((None,))([1.0])
-    )
-
-    @model_validator(mode="after")
-    def _few(self) -> Ripple:
-        if not 1 <= len(self.harmonics) <= HARMONICS:
-            raise InputError(
-                "has too many or none", key="harmonics", value=len(self.harmonics), allowed=f"1 to {HARMONICS} numbers"
-            )
-        return self
 
 
 class Motor(Table):

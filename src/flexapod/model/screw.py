@@ -6,7 +6,6 @@ import math
 from collections.abc import Mapping
 from typing import TYPE_CHECKING, Annotated, ClassVar, Literal
 
-import numpy as np
 from pydantic import BeforeValidator, Field, model_validator
 
 from flexapod.errors import InputError
@@ -15,11 +14,10 @@ from flexapod.model.friction import ScrewFriction
 from flexapod.model.hydraulic import HydraulicDrive
 from flexapod.model.material import OF_MATERIAL, SPELLS, Material, read_material, spelled
 from flexapod.model.motion import check_times
-from flexapod.model.motor import HARMONICS, Brake, Encoder, Limits, Loop, Motor, Ripple, Rotor, summing
+from flexapod.model.motor import Brake, Encoder, Limits, Loop, Motor, Ripple, Rotor, summing
 from flexapod.model.spring import check_lossy
 from flexapod.schema.base import Key, Loss, Quantity, Series
 from flexapod.schema.table import Table
-from flexapod.typing import Array
 from flexapod.words import number
 
 if TYPE_CHECKING:
@@ -292,27 +290,6 @@ class ScrewDrive(Table):
         if self.loop is None:
             return 0.0, 0.0
         return self.loop.stiffness / self.per_turn**2, self.loop.damping / self.per_turn**2
-
-    @property
-    def wave(self) -> float:
-        """Angle of the first harmonic of its ripple by the nut's travel [rad/m]; 0 without one."""
-        ripple = self.motor.ripple
-        return 0.0 if ripple is None else ripple.per_turn * self.rotor.ratio / self.per_turn
-
-    @property
-    def rippling(self) -> Array:
-        """Amplitudes of the harmonics of its ripple, by the nut's travel, (4,) [N], Eq. (T23.21)."""
-        found, ripple = np.zeros(HARMONICS), self.motor.ripple
-        if ripple is not None:
-            found[: len(ripple.harmonics)] = ripple.torque * ripple.harmonics * self.rotor.ratio / self.per_turn
-        return found
-
-    @property
-    def rippled(self) -> float:
-        """Standard deviation of the rotor's travel at rest by its ripple [m]: none where that is held, Eq. (T23.22)."""
-        if self.rests or not self.loop_spring[0]:
-            return 0.0
-        return float(np.sqrt(0.5 * (self.rippling**2).sum()) / self.loop_spring[0])
 
     @property
     def integral(self) -> float:

@@ -3,6 +3,7 @@
 import numpy as np
 
 from flexapod import rigid
+from flexapod.elements.ripple import Ripple
 from flexapod.elements.springs import springs_along
 from flexapod.mechanics.layout import Shapes
 from flexapod.model import Robot, Simulation
@@ -50,7 +51,7 @@ def robot_system(
 
 def smooth(robot: Robot) -> Robot:
     """The robot without ripple of its motors: where in a period it rests is not known."""
-    if not any(leg.screw is not None and leg.screw.wave for leg in robot.legs):
+    if all(Ripple.of(leg) is None for leg in robot.legs):
         return robot
     screws = [leg.screw and leg.screw.replace(motor=leg.screw.motor.replace(ripple=None)) for leg in robot.legs]
     pairs = zip(robot.legs, screws, strict=True)
