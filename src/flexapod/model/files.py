@@ -16,8 +16,7 @@ from flexapod.model.disturbance import read_disturbance
 from flexapod.model.laws import Load
 from flexapod.model.motion import AxisMotion, CombinedMotion, CsvMotion, Motion, WaypointMotion
 from flexapod.model.plausible import size_remarks
-from flexapod.model.read_robot import platform_fixed, read_robot
-from flexapod.model.robot import Robot
+from flexapod.model.robot import Robot, platform_fixed, read_robot
 from flexapod.model.simulation import STRAIGHT, Initial, Simulation, read_simulation, unused_settings
 from flexapod.model.study import ActuatorStudy, Study
 from flexapod.schema.section import Section
