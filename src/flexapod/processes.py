@@ -7,7 +7,7 @@ import signal
 import subprocess
 import sys
 import threading
-from collections.abc import Callable, Iterator, Mapping, Sequence
+from collections.abc import Callable, Iterable, Iterator, Mapping, Sequence
 from contextlib import contextmanager, suppress
 from functools import cache
 from pathlib import Path
@@ -21,6 +21,7 @@ __all__ = ["call", "started"]
 
 T = TypeVar("T")
 R = TypeVar("R")
+ENDINGS = [signal.Signals[name] for name in ("SIGINT", "SIGTERM", "SIGHUP") if hasattr(signal, name)]
 GENTLE = 2.0  # seconds that a copy has to put its files away before it is killed
 
 
@@ -107,6 +108,16 @@ def _follow() -> None:
 
 
 @contextmanager
+def _later(signals: Iterable[int]) -> Iterator[None]:
+    """Signals wait while a copy is made: one that comes right then ends neither half a start nor half a copy."""
+    before = signal.pthread_sigmask(signal.SIG_BLOCK, signals)
+    try:
+        yield
+    finally:
+        signal.pthread_sigmask(signal.SIG_SETMASK, before)
+
+
+@contextmanager
 def started(make: Callable[[T], R], given: Sequence[T], processes: int) -> Iterator[Callable[[], list[R]]]:
     """Begin with `make` of each of `given`, in copies of this process, each taking what comes next.
 
@@ -143,6 +154,7 @@ def started(make: Callable[[T], R], given: Sequence[T], processes: int) -> Itera
 
     def told(pipe: Connection) -> None:
         with suppress(BaseException):  # the pipe ends without a word
+            signal.pthread_sigmask(signal.SIG_UNBLOCK, ENDINGS)  # only what happens here ends it
             _follow()
             pipe.send(work())
         os._exit(0)  # nothing that this process has open is closed twice
@@ -157,7 +169,8 @@ def started(make: Callable[[T], R], given: Sequence[T], processes: int) -> Itera
     copies = [context.Process(target=told, args=(send,), daemon=True) for _, send in pipes]
     try:
         for copy, (_, send) in zip(copies, pipes, strict=True):
-            copy.start()
+            with _later(ENDINGS):
+                copy.start()
             send.close()
         yield joined
     finally:

@@ -79,7 +79,8 @@ def test_interrupted_run_as_json(study, folder):
 #: The command in a process that sends itself SIGINT when the simulation is under way.
 PROGRAM = """
 import os, signal, sys
-from flexapod.app import cli, terminal
+from flexapod.app import cli
+from flexapod.document import terminal
 from contextlib import contextmanager
 
 calls = []

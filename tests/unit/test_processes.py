@@ -2,6 +2,7 @@
 
 import os
 import signal
+import subprocess
 import sys
 import time
 from multiprocessing import active_children
@@ -106,6 +107,24 @@ def test_a_copy_that_ends_by_itself_puts_its_files_away(tmp_path):
     finally:
         signal.signal(signal.SIGTERM, before)
     assert list(tmp_path.iterdir()) == []
+
+
+AT_ONCE = """
+import signal
+from flexapod.processes import started
+for kind in (signal.SIGTERM, signal.SIGINT):
+    signal.signal(kind, signal.default_int_handler)  # as in commands
+for _ in range(300):
+    with started(lambda x: x, range(2), 2):
+        pass
+"""
+
+
+@pytest.mark.skipif(sys.platform == "win32", reason="signals")
+def test_a_copy_that_is_ended_while_it_is_made_says_nothing():
+    """What a signal raised among the first lines of a copy was printed as an exception that was ignored."""
+    done = subprocess.run([sys.executable, "-c", AT_ONCE], capture_output=True, text=True, timeout=300)
+    assert (done.returncode, done.stderr) == (0, "")
 
 
 KILLED = {

@@ -106,16 +106,21 @@ class DriveFriction(Physics):
         return any(leg.drive.friction is not None for leg in robot.legs)
 
     def numbers(self, leg: Leg, standing: Standing) -> dict[str, Any]:
-        """Its numbers; those of a screw by the nut's travel, Eq. (T19.12)."""
+        """Its numbers; those of a screw by the nut's travel, Eq. (T19.12).
+
+        At rest a loop about another place than the rotor is one spring there, Eq. (T23.55): friction slides with it.
+        """
         drive, screw, twist = leg.drive.friction, leg.screw, (0.0, 0.0)
+        at_rotor = screw is not None and not (standing.at_rest and leg.closed_about)
         numbers = NO_FRICTION if drive is None else drive.numbers
         if screw is not None:
             turn = screw.per_turn
             numbers = tuple(np.array(numbers) * np.array([1 / turn, 0.0, turn, 1.0, 1 / turn, turn**-2, 1.0]))
+        if at_rotor:
             twist = twist_with_length(leg, standing.length)
         return {
             "drive_friction": (*numbers, 0.0),
-            "drive_friction_at_stroke": float(screw is None),
+            "drive_friction_at_stroke": float(not at_rotor),
             "drive_friction_twist": twist,
         }
 

@@ -44,11 +44,7 @@ class MotorLoop(Physics):
             return found
         found |= {"rotor_stiffness": 0.0, "rotor_damping": 0.0}
         if standing.at_rest:
-            return found | {
-                "series_stiffness": 0.0,
-                "drive_friction_at_stroke": 1.0,
-                "drive_friction_twist": (0.0, 0.0),
-            }
+            return found | {"series_stiffness": 0.0}
         found |= {"loop_stiffness": screw.loop_spring[0], "loop_damping": screw.loop_spring[1]}
         found["loop_rate_at_rotor"] = float(screw.encoder.rate == "rotor")
         return found | ({"loop_lag": screw.lag, "loop_at_once": 0.0} if screw.lag else {})

@@ -19,7 +19,11 @@
     page.fit = fit;
     page.watch = new ResizeObserver(fit);
     page.watch.observe(window.__viserMutable.canvas);
-    document.addEventListener("pointerup", () => setTimeout(fit, 300)); // the panel may have been moved
+    let rests = 0;
+    page.moves = new MutationObserver(() => { // the panel gets its place late, and users move it
+      clearTimeout(rests);
+      rests = setTimeout(fit, 100);
+    });
     if (document.getElementById("webgl-software-rendering")) notice();
   }
 
@@ -28,7 +32,11 @@
     const panel = document.querySelector("[role=tablist]")?.closest(".mantine-Paper-root") || null;
     if (panel !== page.panel) {
       if (page.panel) page.watch.unobserve(page.panel);
-      if (panel) page.watch.observe(panel);
+      page.moves.disconnect();
+      if (panel) {
+        page.watch.observe(panel);
+        page.moves.observe(panel, { attributes: true, attributeFilter: ["style", "class"] });
+      }
       page.panel = panel;
     }
     const all = window.__viserMutable.canvas.getBoundingClientRect();
