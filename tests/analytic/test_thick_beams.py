@@ -6,7 +6,7 @@ from scipy.linalg import expm
 from scipy.optimize import brentq
 
 from flexapod.model import MATERIALS, Actuator, Piston, Rectangle, Tube
-from flexapod.study.before.estimates import Section, beam_section, bending_errors, piston_section
+from flexapod.study.before.estimates import BendingSection, beam_section, bending_errors, piston_section
 
 KAPPAS = [0.4, 0.886, 1.0]
 SLENDER = [0.004, 0.025, 0.1]  # radius of gyration over length; the last of a bar 2.5 times as long as wide
@@ -24,7 +24,7 @@ def transfer(r, e, W):
 def test_against_the_transfer_matrix(kappa, r):
     """Rounding of expm and brentq, 1e-10, over the smallest error, 1e-4."""
     e = 2.6 / kappa
-    deflection, frequency, inertia = bending_errors(Section(gyration=r, kappa=kappa), 1.0)
+    deflection, frequency, inertia = bending_errors(BendingSection(gyration=r, kappa=kappa), 1.0)
     T = transfer(r, e, 0.0)  # clamped at 0: w = psi = 0; M = 0, Q = 1 at 1
     M, Q = np.linalg.solve(T[2:, 2:], [0.0, 1.0])
     assert abs(T[0, 2:] @ [M, Q]) * 3 - 1 == pytest.approx(deflection, rel=1e-6)
@@ -61,5 +61,5 @@ def test_pistons_given_by_stiffness_are_round_bars():
 
 
 def test_ten_widths_are_where_it_begins_to_count():
-    deflection, frequency, inertia = bending_errors(Section(gyration=0.25, kappa=0.886), 10.0)
+    deflection, frequency, inertia = bending_errors(BendingSection(gyration=0.25, kappa=0.886), 10.0)
     assert (deflection, frequency, inertia) == pytest.approx((0.0055, 0.0121, 0.0031), rel=0.02)

@@ -9,7 +9,7 @@ from tests.runs import paper_robot
 import flexapod as fx
 from flexapod.errors import InputError
 from flexapod.model import AxisMotion, Geometry, Heat, Joint, Nut, PrescribedDrive, ServoDrive, Tolerances
-from flexapod.study.accuracy.rows import Row
+from flexapod.study.accuracy.rows import ErrorRow
 from flexapod.study.budgets.rules import Budget
 
 SERVO = ServoDrive(stiffness=2e7, damping=2e4)
@@ -143,7 +143,7 @@ def test_rules_of_addition_by_hand():
     def row(part, kind, nature, *values, stands=False):
         by_leg = np.zeros((2, 6))
         by_leg[:, 0] = values
-        return Row(part, kind, nature, by_leg, "by hand", stands)
+        return ErrorRow(part, kind, nature, by_leg, "by hand", stands)
 
     found = Budget(
         rows=[
@@ -177,7 +177,7 @@ def test_the_repeatability_of_a_distance_is_that_of_many_approaches_at_most():
     for scale in ([1.0, 0, 0], [1.0, 1, 1], [1.0, 0.5, 0.1]):
         by_leg = np.zeros((1, 6))
         by_leg[0, :3] = sigma * np.array(scale)
-        found = Budget(rows=[Row("noise", "random", "", by_leg, "")], whole={}).repeatability
+        found = Budget(rows=[ErrorRow("noise", "random", "", by_leg, "")], whole={}).repeatability
         size = np.linalg.norm(rng.normal(size=(200_000, 3)) * by_leg[0, :3], axis=1)
         drawn = size.mean() + 3 * size.std()
         assert drawn < 1.01 * found

@@ -116,7 +116,7 @@ def test_results_are_drawn_with_the_shapes_they_were_computed_with():
 
 def test_the_beam_of_the_actuator_ends_where_the_result_says():
     study, data = actuator_run()
-    motion = geometry.ActuatorMotion(study, data)
+    motion = geometry.DrawnMotion(study, data)
     i, bent, straight = motion.at(0.7, 1.0)
     X, Y = data.tip_position.values[i]
     # The drawn beam is not foreshortened: (3/5) v^2 / L of a static shape, about 1e-5 m here.

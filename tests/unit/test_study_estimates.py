@@ -20,7 +20,13 @@ from flexapod.solve.kernel import kernel
 from flexapod.solve.robot_system import robot_system
 from flexapod.solve.shapes import space_shapes
 from flexapod.study.before.describe.robot import vibration_to_expect
-from flexapod.study.before.estimates import Vibration, bending_moments, buckling_load, residual_vibration, section_width
+from flexapod.study.before.estimates import (
+    VibrationEstimate,
+    bending_moments,
+    buckling_load,
+    residual_vibration,
+    section_width,
+)
 from flexapod.study.path import RigidPath
 
 LEG = paper_robot().robot.legs[0]
@@ -221,7 +227,7 @@ def test_estimate_bounds_and_meets_the_simulated_vibration():
 
 
 def vibration(amplitude, ratio, frequency=(10.0, 20.0), band=1e-6):
-    return Vibration(
+    return VibrationEstimate(
         frequency=np.array(frequency), damping_ratio=np.array(ratio), amplitude=np.array(amplitude),
         settling=np.zeros(2), band=band,
     )  # fmt: skip

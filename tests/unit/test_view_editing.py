@@ -4,7 +4,7 @@ import tomllib
 
 import pytest
 
-from flexapod.app.view.document import Document, Quantity, chosen, edited, first_value, quantity, read
+from flexapod.app.view.document import Document, TypedQuantity, chosen, edited, first_value, quantity, read
 from flexapod.app.view.uploads import LARGEST, read_upload, store_table
 from flexapod.errors import InputError
 from flexapod.model import PRESETS, preset_text
@@ -82,13 +82,13 @@ def test_another_choice_takes_out_what_belonged_to_the_one_before():
 )
 def test_quantities_are_written_as_they_were_read(written, number, unit, again):
     found = quantity(written)
-    assert found == Quantity(number, unit)
+    assert found == TypedQuantity(number, unit)
     assert found.written() == again and type(found.written()) is type(again)
 
 
 def test_quantities_in_another_unit():
-    assert Quantity(0.0, "").in_unit("mm", "length") == Quantity(0.0, "mm")
-    assert Quantity(2.0, "m").in_unit("mm", "length").number == pytest.approx(2000.0, rel=1e-15)
+    assert TypedQuantity(0.0, "").in_unit("mm", "length") == TypedQuantity(0.0, "mm")
+    assert TypedQuantity(2.0, "m").in_unit("mm", "length").number == pytest.approx(2000.0, rel=1e-15)
     assert quantity("steel") is None and quantity(True) is None
 
 

@@ -11,7 +11,7 @@ from tests.texts import replaced
 from flexapod.app.commands_proof import _write
 from flexapod.app.view.document import Document
 from flexapod.app.view.network import free_port
-from flexapod.app.view.opening import Source, open_source
+from flexapod.app.view.opening import StudySource, open_source
 from flexapod.app.view.server import GONE, View
 from flexapod.app.view.session import Session
 from flexapod.model import loads, preset_text
@@ -165,7 +165,7 @@ def show(table, desk, tmp_path) -> Iterator[Callable[..., tuple[object, Session]
         page.set_viewport_size({"width": 900, "height": 700} | size)
         path = str(tmp_path / "study.toml")
         before = page.get_by_role("tab", name="Study").element_handle()
-        found.open(Source(document=Document(text, path), study=loads(text, path=path)))
+        found.open(StudySource(document=Document(text, path), study=loads(text, path=path)))
         before.wait_for_element_state("hidden")
         page.get_by_role("tab", name="Study").wait_for()
         return page, found

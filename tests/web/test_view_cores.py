@@ -12,7 +12,7 @@ from tests.web.guests import guest, said, until
 import flexapod as fx
 from flexapod.app.view import running
 from flexapod.app.view.document import Document
-from flexapod.app.view.opening import Source
+from flexapod.app.view.opening import StudySource
 from flexapod.app.view.running import Cores, Turn
 
 
@@ -85,7 +85,7 @@ def test_six_long_studies_do_not_keep_a_seventh_user_waiting(view):
             open_pages.enter_context(guest(server))
             until(lambda count=i + 1: len(server.sessions) == count and all(s.busy for s in server.sessions))
         six = server.sessions
-        server._source = Source(document=Document(study_text(*SHORT), None), study=fx.loads(study_text(*SHORT)))
+        server._source = StudySource(document=Document(study_text(*SHORT), None), study=fx.loads(study_text(*SHORT)))
         open_pages.enter_context(guest(server))
         seventh = until(lambda: [s for s in server.sessions if s not in six])[0]
         until(lambda: seventh.data is not None)

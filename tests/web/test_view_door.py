@@ -20,7 +20,7 @@ from websockets.sync.client import connect
 from flexapod.app.view import door, logs, visitor
 from flexapod.app.view.document import Document
 from flexapod.app.view.network import has_place, is_expected, is_same_site, whose
-from flexapod.app.view.opening import Source
+from flexapod.app.view.opening import StudySource
 from flexapod.app.view.server import View
 from flexapod.model import loads
 
@@ -43,7 +43,7 @@ EMPTY_LISTS = b"\xdd" + (1_900_000).to_bytes(4, "big") + b"\x90" * 1_900_000
 @pytest.fixture(scope="module")
 def server():
     text = study_text(*SHORT)
-    running = View(Source(document=Document(text, None), study=loads(text)), "127.0.0.1", 0)
+    running = View(StudySource(document=Document(text, None), study=loads(text)), "127.0.0.1", 0)
     yield running
     running.stop()
 
@@ -294,7 +294,7 @@ def test_one_address_does_not_keep_all_others_out(server, monkeypatch):
 def test_who_comes_through_a_proxy_is_counted_by_the_address_that_it_tells(monkeypatch):
     """A proxy on this machine that `--name` speaks of; nobody else is believed."""
     text = study_text(*SHORT)
-    source = Source(document=Document(text, None), study=loads(text))
+    source = StudySource(document=Document(text, None), study=loads(text))
     monkeypatch.setattr(door, "MOST_VISITORS", 4)
     for name in ("robots.example", None):
         server = View(source, "127.0.0.1", 0, name)

@@ -16,7 +16,7 @@ from viser import GuiButtonHandle, GuiSliderHandle, GuiTextHandle
 
 from flexapod.app.view import logs, memory
 from flexapod.app.view.document import Document
-from flexapod.app.view.opening import Source
+from flexapod.app.view.opening import StudySource
 from flexapod.app.view.server import View
 from flexapod.model import loads
 
@@ -39,7 +39,7 @@ def all_entries(monkeypatch):
 @pytest.fixture(scope="module")
 def server():
     text = study_text(*SHORT)
-    running = View(Source(document=Document(text, None), study=loads(text)), "127.0.0.1", 0)
+    running = View(StudySource(document=Document(text, None), study=loads(text)), "127.0.0.1", 0)
     yield running
     running.stop()
 
@@ -285,13 +285,13 @@ POOLS = """
 import ctypes, sys, threading
 from flexapod.app.view import memory, server
 from flexapod.app.view.document import Document
-from flexapod.app.view.opening import Source
+from flexapod.app.view.opening import StudySource
 from flexapod.model import loads, preset_text
 
 if sys.argv[1] == "as before":
     server.few_arenas = lambda: None
 text = preset_text("paper-robot")
-view = server.View(Source(document=Document(text, None), study=loads(text)), "127.0.0.1", 0)
+view = server.View(StudySource(document=Document(text, None), study=loads(text)), "127.0.0.1", 0)
 here = threading.Barrier(13)
 def take():
     kept = bytearray(100_000)  # from the pool of this thread

@@ -13,7 +13,7 @@ from flexapod import model
 from flexapod.app.view import quick
 from flexapod.app.view import session as sessions
 from flexapod.app.view.document import Document
-from flexapod.app.view.opening import Source, open_source
+from flexapod.app.view.opening import StudySource, open_source
 from flexapod.app.view.running import Turn
 from flexapod.errors import InputError
 from flexapod.model import preset
@@ -222,7 +222,7 @@ def test_a_result_with_one_instant_is_shown(visit, tmp_path):
     study = fx.loads(study_text(*SHORT))
     data = fx.simulate(study).isel(time=[0])
     session = visit(study_text(*SHORT))
-    session.open(Source(document=Document(study.source_text, None), study=study, data=data))
+    session.open(StudySource(document=Document(study.source_text, None), study=study, data=data))
     assert "a single instant" in session.time_panel._hint.content
     assert "misses its rigid path" in said(session) or "stays on" in said(session)
     assert session.time_panel._play.disabled and session.scene.drawn == ""

@@ -18,7 +18,7 @@ import flexapod as fx
 from flexapod import study as studies
 from flexapod.app.view import files_panel, player, running, time_panel
 from flexapod.app.view.document import Document, read
-from flexapod.app.view.opening import Source
+from flexapod.app.view.opening import StudySource
 from flexapod.app.view.running import Cores, Turn
 from flexapod.app.view.structure import offers
 from flexapod.scene import robot as robots
@@ -366,7 +366,7 @@ def test_a_change_of_a_row_that_has_gone_is_dropped(session):
 def test_an_edit_that_was_being_read_while_another_study_was_opened_is_dropped(session):
     text = study_text(*SHORT, ('"100 kg"', '"80 kg"'))
     before = session.study_panel
-    session.open(Source(document=Document(text, None), study=fx.loads(text)))
+    session.open(StudySource(document=Document(text, None), study=fx.loads(text)))
     before._on_edit(read(before.document.changed("payload.mass", "90 kg")))
     assert session.study.source_text == session.study_panel.document.text == text
 

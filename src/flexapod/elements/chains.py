@@ -10,7 +10,7 @@ from typing import Any
 import numpy as np
 
 from flexapod.bases import LateralBasis
-from flexapod.elements.steps import Nodes, Piece, nodes, on_pieces, pieces_of
+from flexapod.elements.steps import Piece, StepNodes, nodes, on_pieces, pieces_of
 
 __all__ = ["chain", "is_chain"]
 
@@ -31,7 +31,7 @@ def _moment(basis: LateralBasis) -> bool:
 
 
 def chain(
-    basis: LateralBasis, at: Nodes, places: Sequence[Any], loads: Rows, gives: Rows, hub: Any
+    basis: LateralBasis, at: StepNodes, places: Sequence[Any], loads: Rows, gives: Rows, hub: Any
 ) -> list[Piece]:  # fmt: skip
     """Pieces from tip to mouth; arguments as `steps.pieces`, but the loads at the nodes.
 
@@ -49,7 +49,7 @@ def chain(
 
 
 def _members(
-    count: int, moment: bool, at: Nodes, places: Sequence[Any], loads: Rows, gives: Rows, hub: Any
+    count: int, moment: bool, at: StepNodes, places: Sequence[Any], loads: Rows, gives: Rows, hub: Any
 ) -> list[tuple[Rows, Rows]]:  # fmt: skip
     """Moments and shear forces under a tip force (a tip moment), and under the loads, that of a thrust last."""
     x = on_pieces(at, places)
@@ -84,7 +84,7 @@ def _members(
 
 
 def _orthogonal(
-    at: Nodes, places: Sequence[Any], gives: Rows, members: list[tuple[Rows, Rows]]
+    at: StepNodes, places: Sequence[Any], gives: Rows, members: list[tuple[Rows, Rows]]
 ) -> list[tuple[Rows, Rows]]:  # fmt: skip
     """The same less those before them, in bending energy."""
     done: list[tuple[Rows, Rows, Rows, Any]] = []
@@ -97,7 +97,7 @@ def _orthogonal(
     return [(moments, shears) for moments, shears, _, _ in done]
 
 
-def _energy(at: Nodes, places: Sequence[Any], moments: Rows, bends: Rows) -> Any:
+def _energy(at: StepNodes, places: Sequence[Any], moments: Rows, bends: Rows) -> Any:
     works = [at.whole(row) for row in _each(lambda a, b: a * b, moments, bends)]
     return sum((end - start) * work for (start, end), work in zip(pairwise(places), works, strict=True))
 
@@ -106,7 +106,7 @@ def _each(of: Callable[..., Any], *rows: Rows) -> Rows:
     return [[of(*values) for values in zip(*piece, strict=True)] for piece in zip(*rows, strict=True)]
 
 
-def _carried(at: Nodes, places: Sequence[Any], load: Rows) -> tuple[Rows, Rows]:
+def _carried(at: StepNodes, places: Sequence[Any], load: Rows) -> tuple[Rows, Rows]:
     """Moments and shear forces of a beam that bears a load and is free at the tip."""
     moments, shears, M, S = [], [], 0.0, 0.0
     for (start, end), f in zip(pairwise(places), load, strict=True):
@@ -119,7 +119,7 @@ def _carried(at: Nodes, places: Sequence[Any], load: Rows) -> tuple[Rows, Rows]:
     return moments, shears
 
 
-def _deflected(at: Nodes, places: Sequence[Any], bends: Rows) -> tuple[Rows, Any]:
+def _deflected(at: StepNodes, places: Sequence[Any], bends: Rows) -> tuple[Rows, Any]:
     """Deflections, and that of the tip."""
     rows: Rows = []
     value = slope = 0.0 * bends[0][0]

@@ -25,7 +25,7 @@ def _none() -> SX:
 
 
 @dataclass(frozen=True, kw_only=True)
-class Field:
+class PistonField:
     """Coefficients of a field on (1, X, phi, (1 - zeta) phi', psi); empty where absent."""
 
     one: SX = field(default_factory=_none)
@@ -57,18 +57,18 @@ class Distribution:
     short: SX
     short_X: SX
 
-    def integral(self, f: Field) -> SX:
+    def integral(self, f: PistonField) -> SX:
         """Int f dm."""
         return _combine(self.first, f)
 
-    def square(self, f: Field) -> SX:
+    def square(self, f: PistonField) -> SX:
         """Int f^2 dm."""
         total = zeros(1)
         if f.one.numel():
-            rest = Field(X=f.X, phi=f.phi, sliding=f.sliding, psi=f.psi)
+            rest = PistonField(X=f.X, phi=f.phi, sliding=f.sliding, psi=f.psi)
             total += f.one * (f.one * self.first.one + 2 * _combine(self.first, rest))
         if f.X.numel():
-            rest = Field(phi=f.phi, sliding=f.sliding, psi=f.psi)
+            rest = PistonField(phi=f.phi, sliding=f.sliding, psi=f.psi)
             total += f.X * (f.X * self.moment.X + 2 * _combine(self.moment, rest))
         total += self.lateral_mass * (
             quadratic(f.phi, self.phi_phi)
@@ -79,7 +79,7 @@ class Distribution:
         return total + 2 * (bilinear(f.phi, self.phi_psi, f.psi) + bilinear(f.sliding, self.sliding_psi, f.psi))
 
 
-def _combine(moments: SimpleNamespace, f: Field) -> SX:
+def _combine(moments: SimpleNamespace, f: PistonField) -> SX:
     pairs = (
         (moments.one, f.one),
         (moments.X, f.X),
@@ -156,7 +156,7 @@ class Line:
 
 
 @dataclass(frozen=True, kw_only=True)
-class Motion:
+class PistonMotion:
     """A bending leg: its bases, the frame of its cylinder, free length s and coordinates, and the fields they make.
 
     ``a``, ``b``: `LateralBasis`, or what has its names for the present length (`stepped_piston.SteppedShapes`).
@@ -177,32 +177,32 @@ class Motion:
         """Time derivative."""
         return time_derivative(expression, (self.q, self.v))
 
-    def velocity(self) -> tuple[Field, Field, Field]:
+    def velocity(self) -> tuple[PistonField, PistonField, PistonField]:
         """Velocity r_dot + omega x r in leg coordinates, without foreshortening, Eqs. (T3.7)-(T3.8), (T13.5)."""
         return self.bending(self.qs.a, self.qs.b, self.vs.a, self.vs.b, self.vs.l / self.s)
 
-    def bending(self, a: SX, b: SX, a_rate: SX, b_rate: SX, r: SX) -> tuple[Field, Field, Field]:
+    def bending(self, a: SX, b: SX, a_rate: SX, b_rate: SX, r: SX) -> tuple[PistonField, PistonField, PistonField]:
         """The same of a part of the piston with amplitudes of its own, whose length grows at the rate ``r`` [1/s]."""
         q, v, u, line = self.qs, self.vs, self.frame.velocity, self.line
         w1, w2, w3 = self.frame.omega[0], self.frame.omega[1], self.frame.omega[2]
         foot, slope, tilt = line.foot(), line.slope, line.slope_rate
         moved, has_b = line.foot_rate(v.l), bool(b.numel())
         return (
-            Field(
+            PistonField(
                 one=u[0] + moved[0] - w3 * foot[1],
                 X=w2 + tilt[0] - w3 * slope[1],
                 phi=a_rate - w3 * b if has_b else a_rate,
                 sliding=r * a,
                 psi=w2 * q.c,
             ),
-            Field(
+            PistonField(
                 one=u[1] + moved[1] + w3 * foot[0],
                 X=-w1 + tilt[1] + w3 * slope[0],
                 phi=b_rate + w3 * a if has_b else b_rate,
                 sliding=r * b,
                 psi=-w1 * q.c,
             ),
-            Field(
+            PistonField(
                 one=v.l + u[2] + w1 * foot[1] - w2 * foot[0],
                 X=w1 * slope[1] - w2 * slope[0],
                 phi=w1 * b - w2 * a if has_b else -w2 * a,
@@ -215,26 +215,26 @@ class Motion:
         return -0.5 * (quadratic(self.qs.a, getattr(self.a, kind)) + quadratic(self.qs.b, getattr(self.b, kind)))
 
 
-def kinetic_energy(f: Motion, body: Distribution) -> SX:
+def kinetic_energy(f: PistonMotion, body: Distribution) -> SX:
     """Kinetic energy to second order in the amplitudes, Eqs. (T3.10) and (T13.5)."""
     square = sum((body.square(component) for component in f.velocity()), zeros(1))
     return 0.5 * square + shortening_energy(f, f.vs.l, body.short, body.short_X)
 
 
-def shortening_energy(f: Motion, along: SX, short: SX, short_X: SX) -> SX:
+def shortening_energy(f: PistonMotion, along: SX, short: SX, short_X: SX) -> SX:
     """Part of a foreshortening, int e dm and int X e dm, in the kinetic energy of mass that slides out at a rate."""
     w, u = f.frame.omega, f.frame.velocity
     turning = (w[0] ** 2 + w[1] ** 2) * short_X + (w[1] * u[0] - w[0] * u[1]) * short
     return turning + (along + u[2]) * f.rate(short)
 
 
-def gravity_energy(f: Motion, body: Distribution, gravity: SX) -> SX:
+def gravity_energy(f: PistonMotion, body: Distribution, gravity: SX) -> SX:
     """- int g . r dm with the foreshortening's fall, Eq. (T3.14)."""
-    height = body.integral(Field(X=SX(1), psi=f.qs.c)) + body.short
+    height = body.integral(PistonField(X=SX(1), psi=f.qs.c)) + body.short
     foot, slope = f.line.foot(), f.line.slope
     moment = vertcat(
-        body.integral(Field(one=foot[0], X=slope[0], phi=f.qs.a)),
-        body.integral(Field(one=foot[1], X=slope[1], phi=f.qs.b)),
+        body.integral(PistonField(one=foot[0], X=slope[0], phi=f.qs.a)),
+        body.integral(PistonField(one=foot[1], X=slope[1], phi=f.qs.b)),
         height,
     )
     return f.frame.weight(gravity, body.first.one, moment)

@@ -7,7 +7,7 @@ from dataclasses import dataclass
 from types import SimpleNamespace
 from typing import TYPE_CHECKING, Any, ClassVar, Self
 
-from flexapod.elements.element import Named, Physics, Series, Standing
+from flexapod.elements.element import Named, Physics, SeriesSprings, Standing
 from flexapod.elements.frame import Energies
 from flexapod.elements.springs import Spring, before_stroke, in_series, softening
 
@@ -60,7 +60,7 @@ class DriveTrain(Physics):
         cls, elements: Sequence[Slot], p: SimpleNamespace, q: SimpleNamespace, v: SimpleNamespace
     ) -> Energies:
         """The compliance of the springs is a polynomial in l, as that of a shaft goes with the nut's place."""
-        s = Series(stretching(p, q.l), q.l, v.l)
+        s = SeriesSprings(stretching(p, q.l), q.l, v.l)
         for element in elements:
             s = element.in_series(s, p, q, v)
         stiffness = p.series_stiffness / s.softer  # (T15.5)

@@ -30,7 +30,7 @@ __all__ = [
     "Named",
     "Output",
     "Physics",
-    "Series",
+    "SeriesSprings",
     "Standing",
     "asked_beside",
     "register",
@@ -55,7 +55,7 @@ class Standing(NamedTuple):
 
 
 @dataclass(frozen=True)
-class Series:
+class SeriesSprings:
     """Springs in series between a rotor and a stroke, as elements change them.
 
     ``softer``: their compliance over that at home; ``nut`` and ``rate``: where they end, and how fast that moves.
@@ -194,7 +194,7 @@ class Physics:
         return 0
 
     @classmethod
-    def in_series(cls, s: Series, p: SimpleNamespace, q: SimpleNamespace, v: SimpleNamespace) -> Series:
+    def in_series(cls, s: SeriesSprings, p: SimpleNamespace, q: SimpleNamespace, v: SimpleNamespace) -> SeriesSprings:
         """What it changes in the springs between rotor and stroke."""
         return s
 

@@ -14,9 +14,9 @@ import numpy as np
 from flexapod.bases import LateralBasis, axial_basis
 from flexapod.elements.distribution import (
     Distribution,
-    Field,
     Line,
-    Motion,
+    PistonField,
+    PistonMotion,
     bending_mass,
     gravity_energy,
     shortening_energy,
@@ -138,7 +138,7 @@ def head(basis: LateralBasis, p: SimpleNamespace, l: SX) -> Head:  # noqa: E741
     return Head(eta=near[0], table=SimpleNamespace(**dict(zip(at, near[1:], strict=True))), present=present)
 
 
-def hole(basis: LateralBasis, p: SimpleNamespace, f: Motion, at: Head) -> SX:
+def hole(basis: LateralBasis, p: SimpleNamespace, f: PistonMotion, at: Head) -> SX:
     """Displacement of the cylinder at the head (a, b)."""
     n = basis.count
     smooth = _bend(basis, p, f.qs.ka[:n], f.qs.kb[:n]).place(at.eta * p.cylinder_length)
@@ -160,7 +160,7 @@ def _positive(x: SX) -> SX:
     return (x + sqrt(x**2 + _TINY)) / 2
 
 
-def flexible_cylinder(f: Motion, basis: LateralBasis, p: SimpleNamespace, at: Head | None) -> tuple[Energies, SX]:
+def flexible_cylinder(f: PistonMotion, basis: LateralBasis, p: SimpleNamespace, at: Head | None) -> tuple[Energies, SX]:
     """Energies of the bending and of its masses, and how far the cylinder is drawn back at the head.
 
     ``f``: motion of the piston; ``at``: where its head presses, if it has one.
@@ -236,16 +236,16 @@ def _both(x: SimpleNamespace, matrix: SX) -> SX:
     return quadratic(x.a, matrix) + quadratic(x.b, matrix)
 
 
-def _turning(f: Motion, turning: Distribution, rate: SX) -> SX:
+def _turning(f: PistonMotion, turning: Distribution, rate: SX) -> SX:
     """Of sections that turn with the slope, beyond those of a straight body, Eq. (T25.21)."""
     w, q, v = f.frame.omega, f.qs, f.vs
-    about_a = Field(one=w[0], phi=-v.b - w[2] * q.a, sliding=-rate * q.b)
-    about_b = Field(one=w[1], phi=v.a - w[2] * q.b, sliding=rate * q.a)
-    along = Field(phi=w[0] * q.a + w[1] * q.b)
+    about_a = PistonField(one=w[0], phi=-v.b - w[2] * q.a, sliding=-rate * q.b)
+    about_b = PistonField(one=w[1], phi=v.a - w[2] * q.b, sliding=rate * q.a)
+    along = PistonField(phi=w[0] * q.a + w[1] * q.b)
     return 0.5 * (turning.square(about_a) + turning.square(about_b) - turning.square(along))
 
 
-def _mounted(f: Motion, p: SimpleNamespace, now: Bend | Kinked) -> Energies:
+def _mounted(f: PistonMotion, p: SimpleNamespace, now: Bend | Kinked) -> Energies:
     """What the bending adds to a body on the cylinder: its centre is displaced, and it turns with the slope there."""
     m, J, X = p.mounted_mass, p.mounted_inertia, p.mounted_com
     w, u = f.frame.omega, f.frame.velocity

@@ -10,14 +10,21 @@ from types import SimpleNamespace
 from typing import Any
 
 from flexapod.bases import LateralBasis
-from flexapod.elements.distribution import Distribution, Field, Motion, bending_mass, bent_part, shortening_energy
+from flexapod.elements.distribution import (
+    Distribution,
+    PistonField,
+    PistonMotion,
+    bending_mass,
+    bent_part,
+    shortening_energy,
+)
 from flexapod.elements.frame import Energies
 from flexapod.elements.sliding_piston import coupling
 from flexapod.elements.stepped_piston import SteppedShapes
 from flexapod.symbolic.vocabulary import SX, bilinear, constant, dot, quadratic, reshape, sqrt, vertcat, zeros
 
 
-def shortening(f: Motion, p: SimpleNamespace, inner: LateralBasis | None, from_base: SX) -> tuple[SX, SX, SX]:
+def shortening(f: PistonMotion, p: SimpleNamespace, inner: LateralBasis | None, from_base: SX) -> tuple[SX, SX, SX]:
     """What a line that leans, the inner part and the cylinder add to the foreshortening e, Eq. (T25.5).
 
     ``from_base``: of the cylinder up to the head. Returns e of the tip, int e dm, int X e dm over the whole piston.
@@ -45,7 +52,9 @@ def shortening(f: Motion, p: SimpleNamespace, inner: LateralBasis | None, from_b
     return at_gland + at_tip, p.rhoA * whole, p.rhoA * whole_X
 
 
-def stepped_shortening(f: Motion, p: SimpleNamespace, inner: SteppedShapes | None, from_base: SX) -> tuple[SX, SX, SX]:
+def stepped_shortening(
+    f: PistonMotion, p: SimpleNamespace, inner: SteppedShapes | None, from_base: SX
+) -> tuple[SX, SX, SX]:
     """`shortening` of a piston of several sections, by its moments and those of its shapes, Eq. (T25.18)."""
     slope, head, mass = f.line.slope, f.qs.l - p.Lp, p.rhoA * p.Lp
     first, second, square = mass * p.piston_moments[0], mass * p.piston_moments[1], dot(slope, slope)
@@ -63,7 +72,7 @@ def stepped_shortening(f: Motion, p: SimpleNamespace, inner: SteppedShapes | Non
     return tip, short, short_X
 
 
-def lean(f: Motion, p: SimpleNamespace, short: SX, short_X: SX) -> Energies:
+def lean(f: PistonMotion, p: SimpleNamespace, short: SX, short_X: SX) -> Energies:
     """Energies of the foreshortening of `shortening`; the piston's mass on the line is with the piston."""
     return Energies(
         kinetic=shortening_energy(f, f.vs.l, short, short_X),
@@ -71,7 +80,7 @@ def lean(f: Motion, p: SimpleNamespace, short: SX, short_X: SX) -> Energies:
     )
 
 
-def inner_part(f: Motion, p: SimpleNamespace, basis: LateralBasis) -> Energies:
+def inner_part(f: PistonMotion, p: SimpleNamespace, basis: LateralBasis) -> Energies:
     """Energies of the bending of the piston between head and gland."""
     if not basis.count:
         return Energies()
@@ -88,7 +97,7 @@ def inner_part(f: Motion, p: SimpleNamespace, basis: LateralBasis) -> Energies:
     )
 
 
-def stepped_inner_part(f: Motion, p: SimpleNamespace, shapes: SteppedShapes) -> Energies:
+def stepped_inner_part(f: PistonMotion, p: SimpleNamespace, shapes: SteppedShapes) -> Energies:
     """The same of several sections."""
     if not shapes.count:
         return Energies()
@@ -100,17 +109,17 @@ def stepped_inner_part(f: Motion, p: SimpleNamespace, shapes: SteppedShapes) -> 
     )
 
 
-def _moving(f: Motion, p: SimpleNamespace, body: Distribution, D: SX) -> Energies:
+def _moving(f: PistonMotion, p: SimpleNamespace, body: Distribution, D: SX) -> Energies:
     q, v = f.qs, f.vs
     moving = f.bending(q.ha, q.hb, v.ha, v.hb, -v.l / D)  # (T25.3)
-    sideways = vertcat(body.integral(Field(phi=q.ha)), body.integral(Field(phi=q.hb)), zeros(1))
+    sideways = vertcat(body.integral(PistonField(phi=q.ha)), body.integral(PistonField(phi=q.hb)), zeros(1))
     return Energies(
         kinetic=0.5 * sum((body.square(component) for component in moving), zeros(1)),
         gravity=f.frame.weight(p.gravity, zeros(1), sideways),
     )
 
 
-def bushings(f: Motion, p: SimpleNamespace, head: SX, head_rate: SX) -> Energies:
+def bushings(f: PistonMotion, p: SimpleNamespace, head: SX, head_rate: SX) -> Energies:
     """Springs and dampers of gland and head; ``head``: the piston's inner end from the cylinder there (a, b)."""
     gland, gland_rate = (vertcat(x.ga[0], x.gb[0]) for x in (f.qs, f.vs))
     k, c = p.guide_stiffness, p.guide_damping
@@ -120,13 +129,13 @@ def bushings(f: Motion, p: SimpleNamespace, head: SX, head_rate: SX) -> Energies
     )
 
 
-def inner_end(f: Motion, p: SimpleNamespace, basis: LateralBasis | SteppedShapes) -> SX:
+def inner_end(f: PistonMotion, p: SimpleNamespace, basis: LateralBasis | SteppedShapes) -> SX:
     """Place of the piston's inner end across the leg (a, b), Eq. (T25.1)."""
     bent = [dot(constant(basis.tip).T, x) if basis.count else zeros(1) for x in (f.qs.ha, f.qs.hb)]
     return f.line.place - (p.guide_reach - f.qs.l) * f.line.slope + vertcat(*bent)
 
 
-def inner_turn(f: Motion, p: SimpleNamespace, basis: LateralBasis | SteppedShapes) -> SX:
+def inner_turn(f: PistonMotion, p: SimpleNamespace, basis: LateralBasis | SteppedShapes) -> SX:
     """How far the inner part's bending in two planes turns the tip about the leg, Eq. (T25.7)."""
     if not basis.count:
         return zeros(1)
@@ -135,11 +144,11 @@ def inner_turn(f: Motion, p: SimpleNamespace, basis: LateralBasis | SteppedShape
     return 0.5 * (slope[0] * w - slope[1] * v) - bilinear(f.qs.ha, basis.turn, f.qs.hb) / (2 * D**2)
 
 
-def _both(f: Motion, slope: SX, values: Any) -> SX:
+def _both(f: PistonMotion, slope: SX, values: Any) -> SX:
     return _dots(slope, values, f.qs.a, f.qs.b)
 
 
-def _along(f: Motion, slope: SX, values: Any) -> SX:
+def _along(f: PistonMotion, slope: SX, values: Any) -> SX:
     return _dots(slope, values, f.qs.ha, f.qs.hb)
 
 
@@ -153,6 +162,6 @@ def _column(values: Any) -> SX:
     return values if isinstance(values, SX) else constant(values).T
 
 
-def _bent(f: Motion, matrix: object, rates: bool = False) -> SX:
+def _bent(f: PistonMotion, matrix: object, rates: bool = False) -> SX:
     x = f.vs if rates else f.qs
     return quadratic(x.ha, matrix) + quadratic(x.hb, matrix)  # type: ignore[arg-type]

@@ -6,7 +6,7 @@ from dataclasses import dataclass
 from types import SimpleNamespace
 from typing import TYPE_CHECKING, Any, ClassVar, Self
 
-from flexapod.elements.element import Named, Physics, Series, Standing
+from flexapod.elements.element import Named, Physics, SeriesSprings, Standing
 from flexapod.elements.springs import before_stroke, oil_shares
 
 if TYPE_CHECKING:
@@ -33,9 +33,9 @@ class Oil(Physics):
         return {"oil": oil_shares(before_stroke(leg), standing.length)}
 
     @classmethod
-    def in_series(cls, s: Series, p: SimpleNamespace, q: SimpleNamespace, v: SimpleNamespace) -> Series:
+    def in_series(cls, s: SeriesSprings, p: SimpleNamespace, q: SimpleNamespace, v: SimpleNamespace) -> SeriesSprings:
         """What the compliance of the oil adds to that at home, over that of all springs there."""
         away = q.l - p.series_home
         share, push, longer, shorter = (p.oil[k] for k in range(4))
         more = share * (1 / (push / (1 + away * longer) + (1 - push) / (1 - away * shorter)) - 1)
-        return Series(s.softer + more, s.nut, s.rate)
+        return SeriesSprings(s.softer + more, s.nut, s.rate)

@@ -6,12 +6,12 @@ from types import SimpleNamespace
 
 import numpy as np
 
-from flexapod.elements.distribution import Distribution, Motion, gravity_energy, kinetic_energy
+from flexapod.elements.distribution import Distribution, PistonMotion, gravity_energy, kinetic_energy
 from flexapod.elements.frame import Energies
 from flexapod.symbolic.vocabulary import SX, bilinear, constant, dot, quadratic, sqrt, vertcat, zeros
 
 
-def sliding_piston(f: Motion, p: SimpleNamespace) -> Energies:
+def sliding_piston(f: PistonMotion, p: SimpleNamespace) -> Energies:
     """Energies of the piston: its mass, its spin about the leg, bending and stretch."""
     body = _mass(f, p)
     spin = 0.5 * p.piston_axial_inertia * f.frame.omega[2] ** 2  # (T3.12)
@@ -24,13 +24,13 @@ def sliding_piston(f: Motion, p: SimpleNamespace) -> Energies:
     )
 
 
-def _strain_energy(f: Motion, p: SimpleNamespace, qs: SimpleNamespace) -> SX:
+def _strain_energy(f: PistonMotion, p: SimpleNamespace, qs: SimpleNamespace) -> SX:
     """Bending of the free length and stretch of the whole piston, Eq. (T3.15); quadratic in the amplitudes ``qs``."""
     bending = quadratic(qs.a, f.a.stiffness) + quadratic(qs.b, f.b.stiffness)
     return 0.5 * p.EI / f.s**3 * bending + 0.5 * p.EA / p.Lp * quadratic(qs.c, f.axial.stiffness)
 
 
-def _modal_damping(f: Motion, p: SimpleNamespace) -> SX:
+def _modal_damping(f: PistonMotion, p: SimpleNamespace) -> SX:
     """Equal damping ratio for every mode of the bare piston: Rayleigh function at fixed zeta, Eq. (T5.1)."""
     lateral = 2 * p.zeta * sqrt(p.EI * p.rhoA) / f.s  # (T5.3)
     axial = 2 * p.zeta * sqrt(p.EA * p.rhoA)  # (T5.3)
@@ -38,7 +38,7 @@ def _modal_damping(f: Motion, p: SimpleNamespace) -> SX:
     return 0.5 * lateral * bending + 0.5 * axial * quadratic(f.vs.c, f.axial.damping)
 
 
-def tip_place(f: Motion) -> SX:
+def tip_place(f: PistonMotion) -> SX:
     """Tip (v(1), w(1), l + c_0 + e(1)) in leg coordinates, Eqs. (T3.11), (T25.1)."""
     straight = f.line.place + f.s * f.line.slope
     v, w = straight[0] + _at_tip(f.a.tip, f.qs.a), straight[1] + _at_tip(f.b.tip, f.qs.b)
@@ -46,7 +46,7 @@ def tip_place(f: Motion) -> SX:
     return vertcat(v, w, f.qs.l + stretch + f.foreshortening("slope_tip") / f.s)
 
 
-def tip_turn(f: Motion) -> SX:
+def tip_turn(f: PistonMotion) -> SX:
     """Rotation vector of the tip in leg coordinates to second order in the amplitudes, Eqs. (T13.10), (T25.7)."""
     v, w = _at_tip(f.a.tip_slope, f.qs.a) / f.s, _at_tip(f.b.tip_slope, f.qs.b) / f.s
     twist = f.qs.t if hasattr(f.qs, "t") else zeros(1)
@@ -62,7 +62,7 @@ def _at_tip(values: np.ndarray | SX, amplitudes: SX) -> SX:
     return dot(constant(values).T, amplitudes) if len(values) else zeros(1)
 
 
-def _mass(f: Motion, p: SimpleNamespace) -> Distribution:
+def _mass(f: PistonMotion, p: SimpleNamespace) -> Distribution:
     """Uniform piston of length Lp whose outer part s bends, Eqs. (T3.9)-(T3.10)."""
     basis, axial, s, l, k = f.a, f.axial, f.s, f.qs.l, f.a.count  # noqa: E741
     inner, m = l - p.Lp, p.rhoA

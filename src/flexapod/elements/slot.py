@@ -9,7 +9,7 @@ from typing import TYPE_CHECKING, Any
 
 import numpy as np
 
-from flexapod.elements.element import Moving, Named, Physics, Series, Standing
+from flexapod.elements.element import Moving, Named, Physics, SeriesSprings, Standing
 
 if TYPE_CHECKING:
     from flexapod.elements.frame import Energies
@@ -66,7 +66,7 @@ class Slot:
         """Energies of a leg with some elements."""
         return self.kind.energy_among(elements, self.seen(p), self.seen(q), self.seen(v))
 
-    def in_series(self, s: Series, p: SimpleNamespace, q: SimpleNamespace, v: SimpleNamespace) -> Series:
+    def in_series(self, s: SeriesSprings, p: SimpleNamespace, q: SimpleNamespace, v: SimpleNamespace) -> SeriesSprings:
         """Springs between rotor and stroke with what the element changes in them."""
         return self.kind.in_series(s, self.seen(p), self.seen(q), self.seen(v))
 

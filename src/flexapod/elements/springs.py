@@ -32,7 +32,7 @@ Place = Literal["base", "nut", "platform"]
 T = TypeVar("T", float, Array)
 
 
-class Column(NamedTuple):
+class OilColumn(NamedTuple):
     """A column of oil: its compliance [m/N] at a length l of the leg is ``fixed`` + ``slope`` l; `area` [m^2]."""
 
     fixed: float
@@ -56,7 +56,7 @@ class Spring:
     compliance: tuple[float, float, float]
     damping: float | None = None
     loss: float | None = None
-    columns: tuple[Column, ...] = ()
+    columns: tuple[OilColumn, ...] = ()
     leakage: float = 0.0
 
     def at_length(self, length: Array) -> Array:
@@ -146,7 +146,7 @@ def _of_oil(drive: HydraulicDrive, begin: float) -> Spring:
     for area, at_bottom, way in zip(drive.areas, drive.volumes(np.array(0.0)), (1, -1), strict=True):
         per_volume = 1 / (drive.bulk_modulus * area**2)  # (T23.2)
         slope = way * area * per_volume
-        columns.append(Column(fixed=float(at_bottom) * per_volume - slope * begin, slope=slope, area=area))
+        columns.append(OilColumn(fixed=float(at_bottom) * per_volume - slope * begin, slope=slope, area=area))
     return Spring(name="oil", at="nut", compliance=(0.0, 0.0, 0.0), columns=tuple(columns), leakage=drive.leakage)
 
 

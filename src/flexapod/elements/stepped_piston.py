@@ -17,10 +17,10 @@ import numpy as np
 
 from flexapod.bases import AxialBasis, LateralBasis
 from flexapod.elements.chains import chain, is_chain
-from flexapod.elements.distribution import Distribution, Motion, gravity_energy, kinetic_energy
+from flexapod.elements.distribution import Distribution, PistonMotion, gravity_energy, kinetic_energy
 from flexapod.elements.frame import Energies
 from flexapod.elements.shear import rotary_energy, shear_energy
-from flexapod.elements.steps import Nodes, Piece, Uniform, held, law, nodes, pieces, sheared
+from flexapod.elements.steps import Piece, StepNodes, Uniform, held, law, nodes, pieces, sheared
 from flexapod.symbolic.vocabulary import SX, diagcat, horzcat, jtimes, quadratic, reshape, sin, sqrt, vertcat, zeros
 
 _MORE = 3  # Gauss points of a piece beyond its shapes: exact for the moment of the foreshortening, the highest power
@@ -196,7 +196,7 @@ class _Beam:
     """The stepped beam of one plane, at its Gauss points."""
 
     part: Part
-    nodes: Nodes
+    nodes: StepNodes
     basis: LateralBasis
     shear: LateralBasis | None
     plane: str
@@ -329,7 +329,7 @@ def of_planes(planes: Sequence[str], x: SimpleNamespace) -> SimpleNamespace:
     return SimpleNamespace(**vars(x) | found)
 
 
-def stepped_piston(f: Motion, p: SimpleNamespace) -> Energies:
+def stepped_piston(f: PistonMotion, p: SimpleNamespace) -> Energies:
     """Energies of the piston: its mass, its spin about the leg, bending and stretch."""
     body = _mass(f, p)
     spin = 0.5 * p.piston_axial_inertia * f.frame.omega[2] ** 2  # (T3.12)
@@ -343,7 +343,7 @@ def stepped_piston(f: Motion, p: SimpleNamespace) -> Energies:
     )
 
 
-def _strain_energy(f: Motion, p: SimpleNamespace, qs: SimpleNamespace) -> SX:
+def _strain_energy(f: PistonMotion, p: SimpleNamespace, qs: SimpleNamespace) -> SX:
     """Bending of the free length and stretch of the whole piston, Eq. (T3.21)."""
     bending = quadratic(qs.a, f.a.stiffness) + quadratic(qs.b, f.a.stiffness)
     if f.a.shear_stiffness is not None:
@@ -351,7 +351,7 @@ def _strain_energy(f: Motion, p: SimpleNamespace, qs: SimpleNamespace) -> SX:
     return 0.5 / f.s**3 * bending + 0.5 * p.EA / p.Lp * quadratic(qs.c, f.axial.stiffness)
 
 
-def _modal_damping(f: Motion, p: SimpleNamespace) -> SX:
+def _modal_damping(f: PistonMotion, p: SimpleNamespace) -> SX:
     """Equal damping ratio for every mode of the bare piston at home; falls with the free length, Eq. (T3.22)."""
     k = f.a.count
     lateral = reshape(p.lateral_damping, k, k)
@@ -359,7 +359,7 @@ def _modal_damping(f: Motion, p: SimpleNamespace) -> SX:
     return 0.5 / f.s * bending + 0.5 * quadratic(f.vs.c, reshape(p.axial_damping, f.axial.count, f.axial.count))
 
 
-def _mass(f: Motion, p: SimpleNamespace) -> Distribution:
+def _mass(f: PistonMotion, p: SimpleNamespace) -> Distribution:
     """Whole piston along the leg; what its outer part does across it, Eqs. (T3.19)-(T3.20)."""
     b, m, n = f.a, p.rhoA * p.Lp, f.axial.count
     inner, com, second = f.qs.l - p.Lp, p.piston_moments[0], p.piston_moments[1]

@@ -20,7 +20,7 @@ from flexapod.bases import LateralBasis
 from flexapod.bases.beam_functions import gauss_unit
 from flexapod.typing import Array
 
-__all__ = ["Nodes", "Piece", "Uniform", "held", "law", "nodes", "on_pieces", "pieces", "pieces_of", "sheared"]
+__all__ = ["Piece", "StepNodes", "Uniform", "held", "law", "nodes", "on_pieces", "pieces", "pieces_of", "sheared"]
 
 
 @dataclass(frozen=True, kw_only=True)
@@ -53,7 +53,7 @@ def _rows(series: Sequence[Chebyshev]) -> Array:
 
 
 @dataclass(frozen=True, kw_only=True)
-class Nodes:
+class StepNodes:
     """Gauss points on [0, 1] and integrals of what is known there; `beyond[n]`: weights of that from point n to 1."""
 
     t: Array
@@ -87,12 +87,12 @@ class Nodes:
 
 
 @cache
-def nodes(count: int) -> Nodes:
+def nodes(count: int) -> StepNodes:
     """Some Gauss points."""
     t, w = gauss_unit(count)
     legendre = np.array([(2 * n + 1) * Legendre.basis(n)(2 * t - 1) * w for n in range(count)])
     rest = np.array([Legendre.basis(n).integ(lbnd=1.0)(2 * t - 1) / -2 for n in range(count)])
-    return Nodes(t=t, w=w, beyond=rest.T @ legendre, legendre=legendre)
+    return StepNodes(t=t, w=w, beyond=rest.T @ legendre, legendre=legendre)
 
 
 def law(coefficients: Sequence[Any], offset: Any) -> Any:
@@ -110,7 +110,7 @@ class Piece:
     `values`: deflections; `slopes`, `bends`: their derivatives by x; `shears`: dM/dx; of what shears `bends` are none.
     """
 
-    nodes: Nodes
+    nodes: StepNodes
     start: Any
     end: Any
     x: list[Any]
@@ -129,14 +129,14 @@ class Piece:
 
 
 def pieces(
-    uniform: Uniform, at: Nodes, places: Sequence[Any], loads: Sequence[Any], gives: Sequence[Sequence[Any]]
+    uniform: Uniform, at: StepNodes, places: Sequence[Any], loads: Sequence[Any], gives: Sequence[Sequence[Any]]
 ) -> list[Piece]:
     """Pieces from tip to mouth.
 
     Parameters
     ----------
     uniform : Uniform
-    at : Nodes
+    at : StepNodes
         Of every piece.
     places : sequence
         Ends of the pieces: 0, the cuts, 1.
@@ -167,17 +167,17 @@ def sheared(bent: Sequence[Piece], softs: Sequence[Sequence[Any]]) -> list[Piece
     return pieces_of(bent[0].nodes, places, [one.shears for one in bent], None, slopes)
 
 
-def _places(at: Nodes, start: Any, end: Any) -> list[Any]:
+def _places(at: StepNodes, start: Any, end: Any) -> list[Any]:
     return [start + (end - start) * t for t in at.t.tolist()]
 
 
-def on_pieces(at: Nodes, places: Sequence[Any]) -> list[list[Any]]:
+def on_pieces(at: StepNodes, places: Sequence[Any]) -> list[list[Any]]:
     """Places of the nodes of every piece between ends."""
     return [_places(at, start, end) for start, end in pairwise(places)]
 
 
 def pieces_of(
-    at: Nodes, places: Sequence[Any], shears: list[Any], bends: list[Any] | None, slopes: list[Any] | None = None
+    at: StepNodes, places: Sequence[Any], shears: list[Any], bends: list[Any] | None, slopes: list[Any] | None = None
 ) -> list[Piece]:
     """Pieces of given curvatures, or slopes: the mouth holds place and slope."""
     value = slope = 0.0 * shears[0][0]

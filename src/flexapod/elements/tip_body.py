@@ -6,13 +6,13 @@ from types import SimpleNamespace
 
 import numpy as np
 
-from flexapod.elements.distribution import Distribution, Motion, gravity_energy, kinetic_energy
+from flexapod.elements.distribution import Distribution, PistonMotion, gravity_energy, kinetic_energy
 from flexapod.elements.frame import Energies
 from flexapod.elements.sliding_piston import tip_turn
 from flexapod.symbolic.vocabulary import SX, constant, cross, dot, zeros
 
 
-def tip_body(f: Motion, p: SimpleNamespace, planar: bool) -> Energies:
+def tip_body(f: PistonMotion, p: SimpleNamespace, planar: bool) -> Energies:
     """Energies of a point mass at the tip with the piston's slope, in space also of its turn about the leg."""
     body, theta = _mass(f, p), tip_turn(f)
     if planar:
@@ -24,7 +24,7 @@ def tip_body(f: Motion, p: SimpleNamespace, planar: bool) -> Energies:
     return Energies(kinetic=kinetic_energy(f, body) + 0.5 * turning, gravity=gravity_energy(f, body, p.gravity))
 
 
-def _mass(f: Motion, p: SimpleNamespace) -> Distribution:
+def _mass(f: PistonMotion, p: SimpleNamespace) -> Distribution:
     """Point mass at the tip: the same functions at zeta = eta = 1, Eq. (T3.10)."""
     basis, axial, l, k = f.a, f.axial, f.qs.l, f.a.count  # noqa: E741
     m, at_tip, stretch = p.tip_mass, basis.tip, np.eye(axial.count, 1)

@@ -6,7 +6,7 @@ from dataclasses import dataclass
 from types import SimpleNamespace
 from typing import TYPE_CHECKING, Any, ClassVar, Self
 
-from flexapod.elements.element import Named, Physics, Series, Standing
+from flexapod.elements.element import Named, Physics, SeriesSprings, Standing
 
 if TYPE_CHECKING:
     from flexapod.model import Leg
@@ -30,6 +30,6 @@ class TurningNut(Physics):
         return {"series_turn": self.travel}
 
     @classmethod
-    def in_series(cls, s: Series, p: SimpleNamespace, q: SimpleNamespace, v: SimpleNamespace) -> Series:
+    def in_series(cls, s: SeriesSprings, p: SimpleNamespace, q: SimpleNamespace, v: SimpleNamespace) -> SeriesSprings:
         """The springs end at the nut, which is on its way along the piston."""
-        return Series(s.softer, s.nut - p.series_turn * q.spin, s.rate - p.series_turn * v.spin)
+        return SeriesSprings(s.softer, s.nut - p.series_turn * q.spin, s.rate - p.series_turn * v.spin)

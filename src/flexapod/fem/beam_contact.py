@@ -8,7 +8,7 @@ import numpy as np
 from scipy.linalg import LinAlgError, cholesky, eigh, solveh_banded
 
 from flexapod.errors import ComputationError
-from flexapod.fem.beam_guide import Guide, Springs
+from flexapod.fem.beam_guide import GuideContact, Springs
 from flexapod.fem.beam_mesh import HALF_BAND, BeamMesh, band_product
 from flexapod.typing import Array, Mask
 
@@ -93,12 +93,12 @@ def band_solve(band: Array, load: Array) -> Array:
         ) from error
 
 
-def contact_at(mesh: BeamMesh, guide: Guide, length: float) -> Contact:
+def contact_at(mesh: BeamMesh, guide: GuideContact, length: float) -> Contact:
     """Contact when ``length`` [m] of the beam is outside."""
     return Contact.between(mesh, guide.springs(mesh, mesh.beam.length - length), guide.gap)
 
 
-def static_shape(mesh: BeamMesh, guide: Guide, length: float, tip: float) -> Array:
+def static_shape(mesh: BeamMesh, guide: GuideContact, length: float, tip: float) -> Array:
     """Static shape (2 n + 2,) of the bare beam whose tip a force holds at ``tip`` [m]."""
     contact = contact_at(mesh, guide, length)
     tight = replace(contact, gap=0.0)
@@ -114,7 +114,7 @@ def static_shape(mesh: BeamMesh, guide: Guide, length: float, tip: float) -> Arr
     return settle(contact, held, force, shape)
 
 
-def frozen_frequencies(mesh: BeamMesh, guide: Guide, length: float, count: int = 3) -> Array:
+def frozen_frequencies(mesh: BeamMesh, guide: GuideContact, length: float, count: int = 3) -> Array:
     """Lowest frequencies [Hz] of the beam at rest with ``length`` [m] outside a guide without gap, (count,)."""
     K = mesh.bending + contact_at(mesh, guide, length).matrix()
     # Largest values of the flexibility: the small ones of the stiffness drown in the rounding of its stiff springs.

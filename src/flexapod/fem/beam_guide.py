@@ -27,7 +27,7 @@ class Springs:
     stiffness: Array
 
 
-class Guide(ABC):
+class GuideContact(ABC):
     """A guide from the inner end of the beam to the mouth; it pushes where the beam is farther off than `gap` [m]."""
 
     gap: float = 0.0
@@ -45,7 +45,7 @@ class Guide(ABC):
 
 
 @dataclass(frozen=True, kw_only=True)
-class ElementContact(Guide):
+class ElementContact(GuideContact):
     """A slot that touches every point of an element: stiffness per length [N/m^2] and gap [m], Eq. (T11.5)."""
 
     stiffness: float = 1e16
@@ -78,7 +78,7 @@ class ElementContact(Guide):
 
 
 @dataclass(frozen=True, kw_only=True)
-class NodeContact(Guide):
+class NodeContact(GuideContact):
     """A slot that touches nodes only: stiffness per node [N/m] and gap [m], Eq. (T11.5)."""
 
     stiffness: float = 1e14
@@ -104,7 +104,7 @@ class NodeContact(Guide):
 
 
 @dataclass(frozen=True, kw_only=True)
-class InterpolatedClamp(Guide):
+class InterpolatedClamp(GuideContact):
     """Deflection and slope held at the mouth, inside whatever element it is; elements farther in held by their nodes.
 
     `stiffness` [N/m] of deflections, `turning` [N m/rad] of slopes.
@@ -135,7 +135,7 @@ class InterpolatedClamp(Guide):
 
 
 @dataclass(frozen=True, kw_only=True)
-class Rollers(Guide):
+class Rollers(GuideContact):
     """Points fixed in the hub, ``spacing`` [m] apart from the mouth inwards, that hold the deflection: [N/m]."""
 
     spacing: float

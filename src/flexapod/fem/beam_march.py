@@ -10,7 +10,7 @@ import numpy as np
 from flexapod import rigid
 from flexapod.errors import InputError
 from flexapod.fem.beam_contact import Contact, band_solve, contact_at, settle, static_shape
-from flexapod.fem.beam_guide import Guide
+from flexapod.fem.beam_guide import GuideContact
 from flexapod.fem.beam_mesh import BeamMesh, band_product, beam_mesh
 from flexapod.integration import GeneralizedAlpha
 from flexapod.model import ActuatorStudy
@@ -49,7 +49,7 @@ class _Path:
 def march_sliding_beam(
     study: ActuatorStudy,
     elements: int,
-    guide: Guide,
+    guide: GuideContact,
     *,
     step: float,
     duration: float | None = None,
@@ -129,7 +129,7 @@ class _Steps:
     J. Chung, G. M. Hulbert, J. Appl. Mech. 60 (1993) 371-375, in the form of M. Arnold, O. Bruls (2007), as in T6.
     """
 
-    def __init__(self, mesh: BeamMesh, guide: Guide, path: _Path, step: float) -> None:
+    def __init__(self, mesh: BeamMesh, guide: GuideContact, path: _Path, step: float) -> None:
         self.mesh, self.guide, self.path, self.step = mesh, guide, path, step
 
     def run(self, study: ActuatorStudy, every: int, progress: Callable[[float, float], None] | None) -> SlidingBeam:

@@ -5,12 +5,14 @@ from types import SimpleNamespace
 from flexapod.elements.mount import turn
 from flexapod.elements.platform_joint import gimbal
 from flexapod.elements.rotations import hat
-from flexapod.mechanics.leg import Leg
+from flexapod.mechanics.leg import LegEquations
 from flexapod.mechanics.payload import displaced_pose, joint_point, joint_wrench
 from flexapod.symbolic.vocabulary import SX, Through, dot, matrix33, substitute, symbol, trace, vertcat
 
 
-def pose_closure(body: Leg, qs: SimpleNamespace, p: SimpleNamespace, lam: SX, pose: SX, step: SX) -> tuple[SX, SX]:
+def pose_closure(
+    body: LegEquations, qs: SimpleNamespace, p: SimpleNamespace, lam: SX, pose: SX, step: SX
+) -> tuple[SX, SX]:
     """Gap between the leg's tip and the joint of the payload (6) [m], and the wrench of ``lam`` on the payload (6).
 
     ``step`` displaces the payload from ``pose``. The wrench is the force in the world and the moment about the CoM in
@@ -31,7 +33,9 @@ def pose_closure(body: Leg, qs: SimpleNamespace, p: SimpleNamespace, lam: SX, po
     return gap, wrench
 
 
-def ball_closure(body: Leg, qs: SimpleNamespace, p: SimpleNamespace, lam: SX, pose: SX, step: SX) -> tuple[SX, SX]:
+def ball_closure(
+    body: LegEquations, qs: SimpleNamespace, p: SimpleNamespace, lam: SX, pose: SX, step: SX
+) -> tuple[SX, SX]:
     """Of a ball on a plate below the payload, on a mount: gap (3) and wrench (6) as of `pose_closure`."""
     x, R = displaced_pose(pose, step)
     joint = _joint(qs, p)
@@ -50,7 +54,7 @@ def _skew(Q: SX) -> SX:
     return vertcat(Q[2, 1] - Q[1, 2], Q[0, 2] - Q[2, 0], Q[1, 0] - Q[0, 1])
 
 
-def load_force(body: Leg, by_q: Through, load: SX) -> SX:
+def load_force(body: LegEquations, by_q: Through, load: SX) -> SX:
     """Generalised force of a load on the tip, Eq. (T13.16).
 
     ``load`` (12): force and moment in the world's axes, then force and moment that follow the tip's axes.

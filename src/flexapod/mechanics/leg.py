@@ -10,7 +10,7 @@ import numpy as np
 from flexapod.bases import LateralBasis
 from flexapod.elements.carriage import carriage
 from flexapod.elements.cylinder import cylinder
-from flexapod.elements.distribution import Line, Motion
+from flexapod.elements.distribution import Line, PistonMotion
 from flexapod.elements.flexible_cylinder import flexible_cylinder, head, hole, mouth
 from flexapod.elements.flexure import flexure, springs
 from flexapod.elements.frame import Energies, Frame
@@ -42,7 +42,7 @@ ALONG = constant(np.array([[0.0], [0.0], [1.0]]))  # a leg's own direction
 
 
 @dataclass(frozen=True, kw_only=True)
-class Leg:
+class LegEquations:
     """One leg as expressions: energies, place of the tip in the world, rotation from the tip's axes to the world.
 
     ``foot``: place of the base joint, as the base carries it. ``elements``: energies of each, which are in the sums.
@@ -63,7 +63,7 @@ class Leg:
     foot: SX
 
 
-def leg(shapes: Shapes, p: SimpleNamespace, q: SX, v: SX, qs: SimpleNamespace, vs: SimpleNamespace) -> Leg:
+def leg(shapes: Shapes, p: SimpleNamespace, q: SX, v: SX, qs: SimpleNamespace, vs: SimpleNamespace) -> LegEquations:
     """Energies and tip of one leg from its coordinates; ``qs`` and ``vs`` are the named pieces of q and v."""
     ground, e = _ground(shapes, p, qs, vs)
     foot = ground.origin
@@ -84,7 +84,7 @@ def leg(shapes: Shapes, p: SimpleNamespace, q: SX, v: SX, qs: SimpleNamespace, v
         a, inner, present = _of_sections(shapes, p, s, qs.l)
         b = a
     line = _line(shapes, p, qs, vs)
-    motion = Motion(a=a, b=b, axial=shapes.axial, frame=frame, line=line, s=s, q=q, v=v, qs=qs, vs=vs)
+    motion = PistonMotion(a=a, b=b, axial=shapes.axial, frame=frame, line=line, s=s, q=q, v=v, qs=qs, vs=vs)
     e += cylinder(frame, p, vs) + (stepped_piston if shapes.sections else sliding_piston)(motion, p)
     inside, shift, turn, by_head = _inside(shapes, motion, p, inner)
     e += inside
@@ -104,7 +104,7 @@ def leg(shapes: Shapes, p: SimpleNamespace, q: SX, v: SX, qs: SimpleNamespace, v
         place = place if shapes.flexure else place + _three(qs, "e")
     theta = symbol("theta", 3)
     lagrangian = Lagrangian(q=q, v=v, kinetic=e.kinetic, potential=e.gravity + e.strain, dissipation=e.dissipation)
-    return Leg(
+    return LegEquations(
         lagrangian=lagrangian,
         gravity=e.gravity,
         strain=e.strain,
@@ -181,7 +181,7 @@ def _line(shapes: Shapes, p: SimpleNamespace, qs: SimpleNamespace, vs: SimpleNam
 
 
 def _inside(
-    shapes: Shapes, f: Motion, p: SimpleNamespace, inner: LateralBasis | SteppedShapes | None
+    shapes: Shapes, f: PistonMotion, p: SimpleNamespace, inner: LateralBasis | SteppedShapes | None
 ) -> tuple[Energies, SX, SX, tuple[SX, SX]]:
     """What is inside of a mouth that gives way: energies, shift and turn of the tip beyond those of the piston.
 

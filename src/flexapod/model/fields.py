@@ -9,11 +9,11 @@ from typing import Any
 
 from flexapod.errors import InputError
 from flexapod.model.files import read_study
-from flexapod.schema.notes import Field, Notes
+from flexapod.schema.notes import NotedField, Notes
 from flexapod.schema.section import Section
 
 
-def read_fields(text: str, path: str | Path | None) -> list[Field]:
+def read_fields(text: str, path: str | Path | None) -> list[NotedField]:
     """Fields of a study text in the order of reading, absent optional ones included.
 
     A text that is refused gives the fields up to the refusal; one that is not TOML gives none.

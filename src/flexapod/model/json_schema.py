@@ -14,7 +14,7 @@ from dataclasses import dataclass, field
 from pathlib import Path
 from typing import Any
 
-from flexapod.model.fields import Field, Notes, listened
+from flexapod.model.fields import NotedField, Notes, listened
 from flexapod.model.page import study_data, words_of
 from flexapod.schema.columns import Column
 from flexapod.schema.reference import plain_path, reference
@@ -78,7 +78,7 @@ def _take(top: _Node, notes: Notes) -> None:
             node.at(name).words = node.at(name).words or words.get(name, "")
 
 
-def _forms(asked: Field) -> Iterator[dict[str, Any]]:
+def _forms(asked: NotedField) -> Iterator[dict[str, Any]]:
     """What may stand where a value is read."""
     if asked.kind == "number":
         units = {DIMENSIONS[dimension].unit for dimension in asked.dimensions} - {""}

@@ -13,7 +13,7 @@ from typing import Any
 import numpy as np
 
 from flexapod.model.disturbance import FLOOR, FORCE_NOISE, WRENCH_NOISE
-from flexapod.model.fields import Field, Notes, listened
+from flexapod.model.fields import NotedField, Notes, listened
 from flexapod.model.material import MATERIALS
 from flexapod.model.mount import BASE_ACCELERATION
 from flexapod.schema.columns import Column
@@ -49,7 +49,7 @@ _TABLES = {
 
 
 @dataclass(frozen=True)
-class Row:
+class PageRow:
     """A key in words."""
 
     key: str
@@ -64,7 +64,7 @@ class Listed:
     """An entry with its rows; `besides`: its keys that an entry of the same table before it has listed already."""
 
     entry: Entry
-    rows: tuple[Row, ...]
+    rows: tuple[PageRow, ...]
     besides: tuple[str, ...]
 
 
@@ -96,7 +96,7 @@ def listed(table: str | None = None) -> list[Listed]:
     ValueError
         A key without words, or an example that cannot be read.
     """
-    seen: dict[tuple[str, str], set[Row]] = {}
+    seen: dict[tuple[str, str], set[PageRow]] = {}
     found = []
     with tempfile.TemporaryDirectory() as name:
         for file, text in reference().files.items():
@@ -111,7 +111,7 @@ def listed(table: str | None = None) -> list[Listed]:
     return found
 
 
-def _rows(entry: Entry, folder: Path) -> Iterator[Row]:
+def _rows(entry: Entry, folder: Path) -> Iterator[PageRow]:
     data = study_data(entry)
     notes, error = listened(data, folder)
     if error is not None:
@@ -122,7 +122,7 @@ def _rows(entry: Entry, folder: Path) -> Iterator[Row]:
         raise ValueError(f"{entry.table}.{name} has no words: add them to the field of its class, as Key or Quantity")
     for name in (name for name in words if name in fields or name in entry.data):
         field = fields.get(name)
-        yield Row(
+        yield PageRow(
             key=name,
             what=words[name].removeprefix("table: "),
             unit=_unit(words[name], field),
@@ -141,7 +141,7 @@ def _columns(notes: Notes, table: str) -> dict[str, Column]:
     return {name: x for path, found in notes.columns.items() if plain_path(path) == table for name, x in found.items()}
 
 
-def _unit(words: str, field: Field | None) -> str:
+def _unit(words: str, field: NotedField | None) -> str:
     if field is None or words.startswith(("table", "list")):
         return "tables" if words.startswith("list") else "table"
     if field.kind in ("text", "whole"):

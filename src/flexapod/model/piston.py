@@ -10,7 +10,7 @@ from pydantic import Field, model_validator
 from flexapod.errors import InputError
 from flexapod.model.cylinder import check_axial
 from flexapod.model.material import POISSON, Material, Rectangle, Tube, read_material, read_tube
-from flexapod.model.sections import SHARES, PistonSection, Step
+from flexapod.model.sections import SHARES, PistonSection, PistonStep
 from flexapod.schema.base import Key, Quantity
 from flexapod.schema.columns import columns_of
 from flexapod.schema.table import Table
@@ -238,18 +238,18 @@ class Piston(Table):
         )
 
     @property
-    def steps(self) -> tuple[Step, ...]:
+    def steps(self) -> tuple[PistonStep, ...]:
         """Its uniform pieces, from the driven end to the tip; none of a uniform piston."""
         return tuple(step for section in self.sections for step in section.steps)
 
     @property
-    def parts(self) -> tuple[tuple[float, tuple[Step, ...]], ...]:
+    def parts(self) -> tuple[tuple[float, tuple[PistonStep, ...]], ...]:
         """Length of its sections, or of all, from the driven end to the tip, and what they are at `sections.SHARES`."""
         found = tuple((section.length, section.samples) for section in self.sections)
         return found or ((self.length, self.steps_or_one * len(SHARES)),)
 
     @property
-    def steps_or_one(self) -> tuple[Step, ...]:
+    def steps_or_one(self) -> tuple[PistonStep, ...]:
         """`steps`, of a uniform piston one; its depth is 0 where it is not known."""
         depth = self.depth or 0.0
         if self.diameter is not None and self.E is not None:
@@ -257,7 +257,7 @@ class Piston(Table):
             shear = tube.cowper(self.poisson) * self.EA / (2 * (1 + self.poisson))
         else:
             shear = self.EA  # never read
-        one = Step(
+        one = PistonStep(
             length=self.length,
             EA=self.EA,
             EI=(self.EI, self.EI),

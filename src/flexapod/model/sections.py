@@ -19,7 +19,7 @@ STEPS = 64  # uniform pieces in place of a taper where formulas know no tapers, 
 SHARES = (0.0, 0.25, 0.5, 0.75, 1.0)  # of a length: they tell EI of a taper, which is of fourth order
 
 
-class Step(NamedTuple):
+class PistonStep(NamedTuple):
     """A uniform piece of a piston, SI; `EI` and `depth` for bending along leg x and y, `shear`: kappa G A."""
 
     length: float
@@ -111,12 +111,12 @@ class PistonSection(Table):
         return self.tip_diameter not in (None, self.diameter)
 
     @property
-    def samples(self) -> tuple[Step, ...]:
+    def samples(self) -> tuple[PistonStep, ...]:
         """The section at `SHARES` of its length from the driven end."""
         return tuple(self._step(self.length, self._diameter(share)) for share in SHARES)
 
     @property
-    def steps(self) -> Iterator[Step]:
+    def steps(self) -> Iterator[PistonStep]:
         """Uniform pieces, from the driven end: one, or `STEPS` of a taper.
 
         Each pair has mass and compliance of its piece of the taper, and their first moments: what is left is of the
@@ -137,7 +137,7 @@ class PistonSection(Table):
             return self.diameter
         return self.diameter + share * (self.tip_diameter - self.diameter)
 
-    def _step(self, length: float, diameter: float | None) -> Step:
+    def _step(self, length: float, diameter: float | None) -> PistonStep:
         if diameter is not None:
             tube = Tube(diameter=diameter, inner_diameter=self.inner_diameter)
             area, second, depth = tube.area, (tube.second_moment, tube.second_moment), (diameter, diameter)
@@ -154,7 +154,7 @@ class PistonSection(Table):
             a, b = max(x, y) / 2, min(x, y) / 2
             twist = a * b**3 * (16 / 3 - 3.36 * b / a * (1 - (b / a) ** 4 / 12))  # Roark, table 10.1
         G = self.E / (2 * (1 + self.poisson))
-        return Step(
+        return PistonStep(
             length=length,
             EA=self.E * area,
             EI=(self.E * second[0], self.E * second[1]),
@@ -167,7 +167,7 @@ class PistonSection(Table):
         )
 
 
-def _mean(steps: Sequence[Step], weights: Sequence[float]) -> Step:
+def _mean(steps: Sequence[PistonStep], weights: Sequence[float]) -> PistonStep:
     """A step with the weighted mass and compliances of some."""
 
     def soft(values: Iterable[float]) -> float:

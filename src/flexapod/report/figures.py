@@ -141,9 +141,9 @@ def _actuator(data: Dataset) -> Iterator[_Plan]:
 def _seen(data: Dataset) -> tuple[float, float] | None:
     """Radius of the hub [m] and the factor of the replay; None where the study cannot be read any more."""
     from flexapod import model
-    from flexapod.scene.geometry import ActuatorMotion
+    from flexapod.scene.geometry import DrawnMotion
 
     study = carried_study(data)
     if not isinstance(study, model.ActuatorStudy):
         return None
-    return study.actuator.hub_radius, ActuatorMotion(study, data).automatic_scale()
+    return study.actuator.hub_radius, DrawnMotion(study, data).automatic_scale()

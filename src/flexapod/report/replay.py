@@ -13,7 +13,7 @@ from flexapod.errors import FlexapodError
 from flexapod.plot.style import FLEXIBLE, RIGID
 from flexapod.report.interactive import packed
 from flexapod.scene.colours import colors_of_legs
-from flexapod.scene.geometry import ActuatorMotion, RobotMotion
+from flexapod.scene.geometry import DrawnMotion, RobotMotion
 from flexapod.scene.robot import mode_scene
 from flexapod.scene.skeleton import STATIONS, Scene, Skeleton, around
 from flexapod.study.after.summary import POINT_WORDS, tool_apart
@@ -198,7 +198,7 @@ def _paths(frames: Array, name: str) -> Traces:
 
 
 def _actuator(study: ActuatorStudy, data: Dataset) -> dict[str, Any]:
-    motion = ActuatorMotion(study, data)
+    motion = DrawnMotion(study, data)
     chosen, factor = _chosen(len(motion.time)), motion.automatic_scale()
     times = motion.time[chosen]
     shown = [motion.at(time, factor)[1:] for time in times]

@@ -275,7 +275,7 @@ def _newton(
     return q, x, gap
 
 
-class Motion(NamedTuple):
+class ClosureMotion(NamedTuple):
     """Legs at T instants: coordinates (T, n, 8) with their rates and accelerations; the platform's, (T, 6)."""
 
     q: Array
@@ -284,7 +284,7 @@ class Motion(NamedTuple):
     platform: Law
 
 
-def move(limbs: Limbs, task: Task, found: Closed, given: Law | Poses) -> Motion:
+def move(limbs: Limbs, task: Task, found: Closed, given: Law | Poses) -> ClosureMotion:
     """Rates and accelerations of a solution, by the matrix of its last Newton step, Eqs. (T14.9)-(T14.10).
 
     Parameters
@@ -302,7 +302,7 @@ def move(limbs: Limbs, task: Task, found: Closed, given: Law | Poses) -> Motion:
     q_dot, q_ddot, *rates = (np.concatenate(part) for part in zip(*parts, strict=True))
     for part in (q_dot, q_ddot, *rates):
         part[lost] = np.nan
-    return Motion(found.q, q_dot, q_ddot, Law(found.x, *rates))
+    return ClosureMotion(found.q, q_dot, q_ddot, Law(found.x, *rates))
 
 
 def _move(limbs: Limbs, task: Task, found: Closed, given: Law | Poses, where: slice) -> tuple[Array, ...]:

@@ -9,7 +9,7 @@ import numpy as np
 from numpy.typing import NDArray
 
 from flexapod.errors import ComputationError, InputError
-from flexapod.rigid.closures import Closed, Motion, Task, close, move
+from flexapod.rigid.closures import Closed, ClosureMotion, Task, close, move
 from flexapod.rigid.kinematics import BETA_LIMIT, NO_LENGTH, LegState
 from flexapod.rigid.laws import Law
 from flexapod.rigid.limbs import ABSENT, COORDINATES, DRIVEN, FREE, Limbs
@@ -182,7 +182,7 @@ def _tiled(limbs: Limbs, count: int) -> Array:
     return np.tile(limbs.home, (count, 1, 1))
 
 
-def _as_state(limbs: Limbs, moved: Motion) -> LegState:
+def _as_state(limbs: Limbs, moved: ClosureMotion) -> LegState:
     parts = zip(("", "_dot", "_ddot"), moved[:3], strict=True)
     values: dict[str, Array] = {}
     for end, q in parts:

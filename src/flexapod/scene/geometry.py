@@ -133,7 +133,7 @@ def _plate(data: Dataset, end: str, robot: model.Robot) -> Array:
     return np.concatenate([moved, turn], axis=1)
 
 
-class ActuatorMotion:
+class DrawnMotion:
     """The beam of a single actuator's result over time, as `beam_frame` places it."""
 
     def __init__(self, study: model.ActuatorStudy, data: Dataset) -> None:

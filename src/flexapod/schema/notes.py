@@ -11,7 +11,7 @@ from flexapod.schema.table import Table
 
 
 @dataclass(frozen=True, kw_only=True)
-class Field:
+class NotedField:
     """One value of a study file.
 
     `key`: path, ``leg.piston.diameter``; `kind`; `dimensions`: of a number, or of each component of a vector or of a
@@ -56,7 +56,7 @@ class Notes:
     `columns`: of the classes that a table fills, by its path; `named`: tables whose keys are names.
     """
 
-    fields: dict[str, Field] = field(default_factory=dict)
+    fields: dict[str, NotedField] = field(default_factory=dict)
     allowed: dict[str, set[str]] = field(default_factory=dict)
     given: set[tuple[str, str]] = field(default_factory=set)
     columns: dict[str, dict[str, Column]] = field(default_factory=dict)
@@ -71,7 +71,7 @@ class Notes:
     ) -> None:
         """A value is read."""
         if key not in self.fields:
-            self.fields[key] = Field(key=key, kind=kind, dimensions=dimensions, choices=choices, value=value)
+            self.fields[key] = NotedField(key=key, kind=kind, dimensions=dimensions, choices=choices, value=value)
 
     def fill(self, table: str, model: Callable[..., Any], values: Mapping[str, object]) -> None:
         """An object of the model is made of the values of a table."""

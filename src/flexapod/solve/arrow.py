@@ -12,11 +12,11 @@ from flexapod.solve.reduction import of_border, reduced
 from flexapod.solve.system import System
 from flexapod.typing import Array
 
-__all__ = ["Step", "arrow_solve"]
+__all__ = ["ArrowStep", "arrow_solve"]
 
 
 @dataclass(frozen=True, kw_only=True)
-class Step:
+class ArrowStep:
     """Change of P states: ``dq`` (P, legs, n), ``dy`` (P, 6), ``dlam`` (P, legs, rows) and ``drive`` (P, legs, ports).
 
     ``drive`` are forces of held coordinates, ``dlam`` those of the closures.
@@ -46,7 +46,7 @@ class _Group:
     by_force: Array
 
 
-def arrow_solve(system: System, m: RestMatrices, r: Array, r_payload: Array, g: Array, gap: Array) -> Step:
+def arrow_solve(system: System, m: RestMatrices, r: Array, r_payload: Array, g: Array, gap: Array) -> ArrowStep:
     """Solve Eq. (T7.1) at P poses; NaN where the stiffness is singular.
 
     Parameters
@@ -78,7 +78,7 @@ def arrow_solve(system: System, m: RestMatrices, r: Array, r_payload: Array, g: 
         left[..., b.border] -= f
         dlam[:, b.legs] = -(b.inverse.swapaxes(-1, -2) @ left[..., b.pivot, None])[..., 0]
     force = balance + (m.J.swapaxes(-1, -2) @ dlam[..., None])[..., 0]  # (T6.9)  of what is held
-    return Step(dq=dq, dy=dy, dlam=dlam, drive=np.where(system.held, force, 0.0)[..., system.ports])
+    return ArrowStep(dq=dq, dy=dy, dlam=dlam, drive=np.where(system.held, force, 0.0)[..., system.ports])
 
 
 def _eliminated(

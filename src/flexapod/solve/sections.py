@@ -12,11 +12,11 @@ from flexapod.bases import LateralBasis
 from flexapod.bases.beam_functions import gauss_unit
 from flexapod.bases.lateral import proportional_damping
 from flexapod.elements.chains import chain, is_chain
-from flexapod.elements.steps import Nodes, Piece, Uniform, held, law, nodes, on_pieces, pieces, sheared
+from flexapod.elements.steps import Piece, StepNodes, Uniform, held, law, nodes, on_pieces, pieces, sheared
 from flexapod.mechanics.layout import Shapes
 from flexapod.mechanics.section_layout import POWERS
 from flexapod.model import Leg, damping_parts
-from flexapod.model.sections import SHARES, Step
+from flexapod.model.sections import SHARES, PistonStep
 from flexapod.typing import Array
 
 _GLAND = 0.01  # of the piston's length: within which the mouth takes a cut up
@@ -172,7 +172,7 @@ def _pieces(laws: Laws, basis: LateralBasis, free: Any, name: str) -> list[Piece
     return chain(basis, at, places, at_points, gives, laws.mouth / free)
 
 
-def _gives(laws: Laws, at: Nodes, places: list[Any], name: str, free: Any) -> list[list[Any]]:
+def _gives(laws: Laws, at: StepNodes, places: list[Any], name: str, free: Any) -> list[list[Any]]:
     points = [(a, [a + (b - a) * t for t in at.t.tolist()]) for a, b in pairwise(places)]
     return [laws.over(name, x, start, j, free) for j, (start, x) in enumerate(points)]
 
@@ -296,6 +296,6 @@ def _diagonal(parts: list[Array]) -> Array:
     return found.reshape(n * size, n * size)
 
 
-def turning(step: Step, direction: int) -> float:
+def turning(step: PistonStep, direction: int) -> float:
     """Rotary inertia of a homogeneous section, rho I [kg m]."""
     return step.rhoA * step.EI[direction] / step.EA

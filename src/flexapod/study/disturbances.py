@@ -15,7 +15,7 @@ from flexapod.solve.linear import LinearRobot, linear_robot
 from flexapod.solve.locked import LockedPoses
 from flexapod.solve.modes import the_modes
 from flexapod.solve.random_vibration import Source, random_vibration, sources_of
-from flexapod.study.accuracy.rows import Row
+from flexapod.study.accuracy.rows import ErrorRow
 from flexapod.study.after.mode_shapes import mode_values
 from flexapod.study.arguments import PoseLike, RobotLike, as_pose, at_pose
 from flexapod.study.attributes import attributes
@@ -117,14 +117,14 @@ def _beyond(study: Study, frequency: Array) -> list[str]:
     ]
 
 
-def vibration_rows(study: Study, locked: LockedPoses) -> list[Row]:
+def vibration_rows(study: Study, locked: LockedPoses) -> list[ErrorRow]:
     """Rows of an error budget at one pose; none without disturbances. Raises as `vibration`."""
     if study.disturbance is None:
         return []
     found = random_vibration(*_linear(study, locked))
     each = zip(found.sources, found.by_input, found.by_source, strict=True)
     return [
-        Row(name, "random", "", by_input if name == "force noise" else whole[None], HOW)
+        ErrorRow(name, "random", "", by_input if name == "force noise" else whole[None], HOW)
         for name, by_input, whole in each
     ]
 

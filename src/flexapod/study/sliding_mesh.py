@@ -10,7 +10,7 @@ from numpy.typing import ArrayLike
 
 from flexapod import model
 from flexapod.fem.beam_contact import frozen_frequencies
-from flexapod.fem.beam_guide import ElementContact, Guide, InterpolatedClamp, NodeContact
+from flexapod.fem.beam_guide import ElementContact, GuideContact, InterpolatedClamp, NodeContact
 from flexapod.fem.beam_march import march_sliding_beam
 from flexapod.fem.beam_mesh import beam_mesh
 from flexapod.study.actuator import simulate_actuator
@@ -22,7 +22,7 @@ if TYPE_CHECKING:
     from xarray import Dataset
 
 #: Guides that are compared, stiff enough to count as rigid at the meshes of the study, without gap.
-GUIDES: Mapping[str, Guide] = {
+GUIDES: Mapping[str, GuideContact] = {
     "nodes": NodeContact(stiffness=1e14),
     "elements": ElementContact(stiffness=1e24),
     "clamp": InterpolatedClamp(stiffness=1e14, turning=1e11),
@@ -146,7 +146,7 @@ class _Runs:
         self.study, self.end, self.reference, self.count, self.progress = study, end, reference, count, progress
         self.done = 0
 
-    def tip(self, elements: int, guide: Guide) -> Array:
+    def tip(self, elements: int, guide: GuideContact) -> Array:
         """Deflection of the tip (T,) [m] with a mesh fixed to the beam."""
         run = march_sliding_beam(self.study, elements, guide, step=STEP, duration=self.end, output_step=OUTPUT_STEP)
         self.done += 1
@@ -166,7 +166,7 @@ def _free_length_tip(study: model.ActuatorStudy, elements: int, end: float) -> A
     return np.asarray(run.tip_deflection.values)
 
 
-def _clamp_shifts(study: model.ActuatorStudy, elements: int, guide: Guide) -> tuple[Array, Array]:
+def _clamp_shifts(study: model.ActuatorStudy, elements: int, guide: GuideContact) -> tuple[Array, Array]:
     """Shift of the clamp by an element's length: from the first frequency, Eq. (T11.7), and by its law."""
     bare = study.actuator.replace(tip_mass=0.0, tip_inertia=0.0)
     mesh = beam_mesh(bare, elements)

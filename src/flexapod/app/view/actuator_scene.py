@@ -10,11 +10,11 @@ import viser
 from flexapod import model, rigid
 from flexapod.app.view.legend import LEGEND_STYLE, rgb
 from flexapod.app.view.robot_parts import add_grid
-from flexapod.app.view.scene import OF_RESULTS, STRAIGHT, Scene, mode_note
+from flexapod.app.view.scene import OF_RESULTS, STRAIGHT, PageScene, mode_note
 from flexapod.model.laws import MotionLaw
 from flexapod.scene.geometry import (
     BEAM_POINTS,
-    ActuatorMotion,
+    DrawnMotion,
     beam_frame,
     disc,
     straight_beam,
@@ -39,18 +39,18 @@ _HERE = (0.0, 0.0, 0.0)
 _NOTHING = np.zeros((1, 2, 3))
 
 
-class ActuatorScene(Scene):
+class ActuatorScene(PageScene):
     """One user's view of a single actuator; a plane of motion X, Y stands upright, as world x, z."""
 
     def __init__(self, client: viser.ClientHandle) -> None:
         super().__init__(client)
         self._study: model.ActuatorStudy | None = None
         self._actuator: model.Actuator
-        self._motion: ActuatorMotion | None = None
+        self._motion: DrawnMotion | None = None
         self._nodes: dict[str, Any] = {}
 
     def show_study(self, study: model.ActuatorStudy) -> None:
-        """As `Scene.show_study`."""
+        """As `PageScene.show_study`."""
         with self.lock:
             if self._closed:
                 return
@@ -66,7 +66,7 @@ class ActuatorScene(Scene):
                 self._look(np.array([0.5, -1.4, 0.7] if actuator.space else [0.0, -1.6, 0.2]))
 
     def show_pose(self, pose: float) -> None:
-        """As `Scene.show_pose`; a length outside the hub [m], the hub as at t = 0."""
+        """As `PageScene.show_pose`; a length outside the hub [m], the hub as at t = 0."""
         with self.lock:
             if self._study is None:
                 return
@@ -77,7 +77,7 @@ class ActuatorScene(Scene):
                 self._draws(f"the straight beam, {text(pose, 'm', 4)} outside the hub", STRAIGHT)
 
     def set_time(self, time: float) -> None:
-        """As `Scene.set_time`."""
+        """As `PageScene.set_time`."""
         with self.lock:
             if self._motion is None:
                 return
@@ -92,7 +92,7 @@ class ActuatorScene(Scene):
                 self._draws("")
 
     def show_mode(self, modes: BeamModes, mode: int, amplitude: float, phase: float, where: str = "") -> None:
-        """As `Scene.show_mode`; the size is the free length, and what twists turns by ten times the share [rad]."""
+        """As `PageScene.show_mode`; the size is the free length, and what twists turns by ten times the share [rad]."""
         with self.lock:
             if self._study is None:
                 return
@@ -108,7 +108,7 @@ class ActuatorScene(Scene):
                 self._draws(f"mode {mode}, {modes.kind[mode - 1]}{where and f' at {where}'}", note)
 
     def _whole(self) -> tuple[Array, Array]:
-        """As `Scene._whole`: both ends of the beam at instants; an axis that is free may turn to any angle."""
+        """As `PageScene._whole`: both ends of the beam at instants; an axis that is free may turn to any angle."""
         if self._study is None:
             return _NOTHING[0, :0], _NOTHING[0, :0]
         study, actuator = self._study, self._actuator
@@ -136,7 +136,7 @@ class ActuatorScene(Scene):
         return 1 - (1 - np.linspace(0.0, 1.0, BEAM_POINTS)) * length / self._actuator.length
 
     def legend(self) -> str:
-        """As `Scene.legend`."""
+        """As `PageScene.legend`."""
         space = self._study is not None and self._study.actuator.space
         title = "<b>The beam</b> (Z up)" if space else "<b>The beam in its plane of motion</b> (X to the right, Y up)"
         return (
@@ -145,7 +145,7 @@ class ActuatorScene(Scene):
         )
 
     def close(self) -> None:
-        """As `Scene.close`."""
+        """As `PageScene.close`."""
         with self.lock:
             super().close()
             self._study = self._motion = None
@@ -218,8 +218,8 @@ class ActuatorScene(Scene):
         self._nodes["words"].text = f"deflection {text(deflection, 'm')}"
         self._nodes["words"].position = end
 
-    def _take(self, data: Dataset | None) -> ActuatorMotion | None:
-        self._motion = None if data is None or self._study is None else ActuatorMotion(self._study, data)
+    def _take(self, data: Dataset | None) -> DrawnMotion | None:
+        self._motion = None if data is None or self._study is None else DrawnMotion(self._study, data)
         return self._motion
 
     def _redraw_paths(self) -> None:

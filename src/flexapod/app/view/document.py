@@ -15,7 +15,7 @@ from tomlkit.items import AoT, Table, Whitespace
 from flexapod import model
 from flexapod.app.view.typed import plain
 from flexapod.errors import InputError
-from flexapod.model.fields import Field
+from flexapod.model.fields import NotedField
 from flexapod.units import DIMENSIONS, number_and_unit, to_si
 
 _STEP = re.compile(r"([^.\[\]]+)|\[(\d+)\]")
@@ -53,7 +53,7 @@ class Document:
 
 
 @dataclass(frozen=True)
-class Quantity:
+class TypedQuantity:
     """A number as written in a study file: `number` in `unit`; the unit is "" where none is written (SI)."""
 
     number: float
@@ -63,12 +63,12 @@ class Quantity:
         """The unit to show beside the number."""
         return (self.unit or DIMENSIONS[dimension].unit).replace("^2", "²").replace("^3", "³").replace("um", "µm")
 
-    def in_unit(self, unit: str, dimension: str) -> Quantity:
+    def in_unit(self, unit: str, dimension: str) -> TypedQuantity:
         """The same in another unit."""
         if unit == self.unit:
             return self
         here, there = (to_si(f"1 {u}", dimension) if u else 1.0 for u in (self.unit, unit))
-        return Quantity(self.number * here / there, unit)
+        return TypedQuantity(self.number * here / there, unit)
 
     def written(self) -> object:
         """What to write into the file: a number, or a text with the unit."""
@@ -78,14 +78,14 @@ class Quantity:
         return int(text) if re.fullmatch(r"[-+]?\d+", text) else float(text)
 
 
-def quantity(value: object) -> Quantity | None:
+def quantity(value: object) -> TypedQuantity | None:
     """The number and unit of a written value; None where it is neither a number nor a text that is read as one."""
     if isinstance(value, bool):
         return None
     if isinstance(value, int | float):
-        return Quantity(float(value), "")
+        return TypedQuantity(float(value), "")
     read = number_and_unit(value) if isinstance(value, str) else None
-    return Quantity(float(read[0]), read[1]) if read else None
+    return TypedQuantity(float(read[0]), read[1]) if read else None
 
 
 def _value(data: Any, key: str) -> object:
@@ -204,7 +204,7 @@ def edited(document: Document, changes: Mapping[str, object]) -> Edit:
     return read(document)
 
 
-def chosen(document: Document, field: Field, value: str) -> Edit:
+def chosen(document: Document, field: NotedField, value: str) -> Edit:
     """The document with another choice; keys of the same table that belonged to the choice before are taken out."""
     found, removed = read(document.changed(field.key, value)), []
     while (key := _refused(found, field.table)) is not None:
@@ -213,7 +213,7 @@ def chosen(document: Document, field: Field, value: str) -> Edit:
     return found
 
 
-def first_value(field: Field) -> object:
+def first_value(field: NotedField) -> object:
     """A value to start from where an absent one is wanted: the model's default, else an example."""
     if field.kind == "text":
         return field.choices[0] if field.choices else ""

@@ -11,7 +11,7 @@ from viser import ClientHandle, Icon
 from flexapod.app.view import markup
 
 if TYPE_CHECKING:
-    from flexapod.app.view.scene import Scene
+    from flexapod.app.view.scene import PageScene
 
 
 class Header:
@@ -79,7 +79,7 @@ class Picture:
         )
         self._back.on_click(lambda _: back())
 
-    def tell(self, scene: Scene) -> None:
+    def tell(self, scene: PageScene) -> None:
         """Say what a scene shows now."""
         html = markup.block(f"Picture: {scene.picture_words()}.", "soft")
         if self._words.content != html:

@@ -10,9 +10,9 @@ from viser import ClientHandle, GuiDropdownHandle, GuiSliderHandle
 
 from flexapod.app.view import markup
 from flexapod.app.view.background import Threads
-from flexapod.app.view.document import Quantity, quantity
+from flexapod.app.view.document import TypedQuantity, quantity
 from flexapod.app.view.typed import TypedText, by_user, plain, written
-from flexapod.model.fields import Field
+from flexapod.model.fields import NotedField
 
 FIRST = ("leg.piston.diameter", "payload.mass", "actuator.EI")
 PARTS = 200  # steps of the slider
@@ -35,7 +35,7 @@ class Knob:
         entered: Callable[[str, object], None],
         left: Callable[[str, bool], None],
     ) -> None:
-        self._gui, self._slid, self._fields = client.gui, turned, dict[str, Field]()
+        self._gui, self._slid, self._fields = client.gui, turned, dict[str, NotedField]()
         self._entered, self._field_left, self._typing = entered, left, False
         self._lock = threading.RLock()  # numbers are chosen in one thread and turned in another
         self._slider: GuiSliderHandle[float] | None = None
@@ -48,7 +48,7 @@ class Knob:
             self._words = client.gui.add_html("", order=3)
         self._choice.on_update(lambda _: self._chosen())
 
-    def show(self, fields: Sequence[Field], aim: bool) -> None:
+    def show(self, fields: Sequence[NotedField], aim: bool) -> None:
         """Offer the numbers of `fields` that are not zero, and show the value of the chosen one if `aim`."""
         with self._lock:
             kept = self._choice.value
@@ -79,7 +79,7 @@ class Knob:
                 self._make(field)
                 self._tell()
 
-    def _aim(self, field: Field) -> None:
+    def _aim(self, field: NotedField) -> None:
         """Bring the slider to its number, which was changed elsewhere."""
         now, slider = quantity(field.value), self._slider
         if now is None or (slider is not None and now.number == slider.value):
@@ -89,7 +89,7 @@ class Knob:
         else:
             self._make(field)
 
-    def _make(self, field: Field) -> None:
+    def _make(self, field: NotedField) -> None:
         """A slider of this number's own: what is still coming from the one before is not taken for this number."""
         now = quantity(field.value)
         if now is None:
@@ -117,7 +117,7 @@ class Knob:
         field, self._typing = self._fields.get(key), False
         now = quantity(field.value) if field is not None else None
         if now is not None:
-            self._slid(key, Quantity(float(f"{number:.{DIGITS}g}"), now.unit).written())
+            self._slid(key, TypedQuantity(float(f"{number:.{DIGITS}g}"), now.unit).written())
 
     def _typed(self, text: str, left: bool) -> None:
         field = self._fields.get(self._choice.value)
@@ -138,6 +138,6 @@ class Knob:
             self._text.show(plain(now.number), _label(field, now))
 
 
-def _label(field: Field, now: Quantity) -> str:
+def _label(field: NotedField, now: TypedQuantity) -> str:
     unit = now.shown_unit(field.dimensions[0])
     return f"value [{unit}]" if unit else "value"

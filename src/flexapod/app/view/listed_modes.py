@@ -15,7 +15,7 @@ from viser import Icon
 from flexapod.app.view import markup
 from flexapod.app.view.background import Latest, Threads
 from flexapod.app.view.player import Player
-from flexapod.app.view.scene import Scene
+from flexapod.app.view.scene import PageScene
 from flexapod.app.view.typed import Dial, by_user
 from flexapod.errors import FlexapodError
 from flexapod.words import text
@@ -32,7 +32,12 @@ class ModeShow:
     """
 
     def __init__(
-        self, gui: viser.GuiApi, scene: Scene, threads: Threads, draw: Callable[[int, float, float], None], size: str
+        self,
+        gui: viser.GuiApi,
+        scene: PageScene,
+        threads: Threads,
+        draw: Callable[[int, float, float], None],
+        size: str,
     ) -> None:
         self._scene, self._draw, self._some = scene, draw, False
         self._begin, self.lock = 0.0, threading.RLock()
@@ -112,7 +117,7 @@ CHANGED = 0.3  # after a change of the study, before its modes are computed [s]
 Study = TypeVar("Study")
 
 
-class Listed(NamedTuple):
+class ToldModes(NamedTuple):
     """Modes: what the scene draws, their names in the choice, their table as HTML.
 
     `where` they are taken, in words; `length` [m] that amplitudes are a share of.
@@ -131,7 +136,7 @@ class ListedModes(ABC, Generic[Study]):
     size: str
     """What amplitudes are a share of."""
 
-    def __init__(self, client: viser.ClientHandle, scene: Scene, threads: Threads) -> None:
+    def __init__(self, client: viser.ClientHandle, scene: PageScene, threads: Threads) -> None:
         self.client, self.scene = client, scene
         self._study: Study | None = None
         self._modes: Any = None
@@ -151,7 +156,7 @@ class ListedModes(ABC, Generic[Study]):
         """Bring those inputs to another study."""
 
     @abstractmethod
-    def _listed(self, study: Study) -> Listed:
+    def _listed(self, study: Study) -> ToldModes:
         """The modes of a study with these inputs."""
 
     @abstractmethod
@@ -195,7 +200,7 @@ class ListedModes(ABC, Generic[Study]):
         study = self._study
         if study is None:
             return
-        found, said = Listed(None, [], ""), ""
+        found, said = ToldModes(None, [], ""), ""
         try:
             found = self._listed(study)
         except FlexapodError as error:

@@ -13,9 +13,9 @@ from viser import Icon
 from flexapod import model, rigid
 from flexapod.app.view import markup
 from flexapod.app.view.background import Threads
-from flexapod.app.view.listed_modes import Listed, ListedModes
+from flexapod.app.view.listed_modes import ListedModes, ToldModes
 from flexapod.app.view.robot_scene import pose_words
-from flexapod.app.view.scene import Scene
+from flexapod.app.view.scene import PageScene
 from flexapod.app.view.typed import Dial
 from flexapod.scene.geometry import BEAM_POINTS
 from flexapod.scene.skeleton import Skeleton
@@ -29,7 +29,7 @@ if TYPE_CHECKING:
 LISTED = 24  # modes in the list
 
 
-class RobotModes(ListedModes[model.Study]):
+class ShownRobotModes(ListedModes[model.Study]):
     """Controls of a robot's modes for one user."""
 
     size = "the robot's size"
@@ -61,7 +61,7 @@ class RobotModes(ListedModes[model.Study]):
             self._pose[name].disabled = not moves
             self._pose[name].value *= moves
 
-    def _listed(self, study: model.Study) -> Listed:
+    def _listed(self, study: model.Study) -> ToldModes:
         from flexapod import study as fx
 
         pose = self._at()
@@ -78,7 +78,7 @@ class RobotModes(ListedModes[model.Study]):
             + markup.block(f"{held(study.robot)}, about the static equilibrium at the pose above.", "soft")
         )
         names = [f"{m}: {f} Hz, {kind}" for m, f, _, kind in rows]
-        return Listed(found, names, table, pose_words(pose), Skeleton(study.robot).size)
+        return ToldModes(found, names, table, pose_words(pose), Skeleton(study.robot).size)
 
     def _preview(self, study: model.Study) -> None:
         self.scene.show_pose(self._at())
@@ -98,7 +98,7 @@ MOVED = 0.1  # after the slider has moved, before the modes are computed [s]
 MOST = 12  # shapes
 
 
-class BeamModes(ListedModes[model.ActuatorStudy]):
+class ShownBeamModes(ListedModes[model.ActuatorStudy]):
     """Length and number of shapes of a beam, and the modes they give, for one user."""
 
     size = "the free length"
@@ -118,7 +118,7 @@ class BeamModes(ListedModes[model.ActuatorStudy]):
         self._length.value = actuator.free_length
         self._count.value = min(MOST, max(1, study.simulation.modes))
 
-    def _listed(self, study: model.ActuatorStudy) -> Listed:
+    def _listed(self, study: model.ActuatorStudy) -> ToldModes:
         from flexapod.scene.robot import beam_modes
 
         still = _still(study, self._length.value, int(self._count.value))
@@ -127,7 +127,7 @@ class BeamModes(ListedModes[model.ActuatorStudy]):
         names = [
             f"{i}: {number(f, 4)} Hz{kind}" for i, (f, kind) in enumerate(zip(found.frequency, kinds, strict=True), 1)
         ]
-        return Listed(
+        return ToldModes(
             found,
             names,
             _beam_table(found, still),
@@ -166,15 +166,15 @@ def _beam_table(modes: Shapes, study: model.ActuatorStudy) -> str:
 class ModesPanel:
     """Modes for one user; made inside the tab that holds them, with what `ListedModes` takes."""
 
-    def __init__(self, client: viser.ClientHandle, scene: Scene, threads: Threads) -> None:
+    def __init__(self, client: viser.ClientHandle, scene: PageScene, threads: Threads) -> None:
         self.client, self.scene, self._threads = client, scene, threads
         self._place = client.gui.add_folder(None)
         self._lock = threading.Lock()
-        self._inside: RobotModes | BeamModes | None = None
+        self._inside: ShownRobotModes | ShownBeamModes | None = None
 
     def show_study(self, study: model.Study | model.ActuatorStudy) -> None:
         """List the modes of another study; computed in the background."""
-        kind = RobotModes if isinstance(study, model.Study) else BeamModes
+        kind = ShownRobotModes if isinstance(study, model.Study) else ShownBeamModes
         with self._lock:
             if not isinstance(self._inside, kind):
                 self._leave()

@@ -17,7 +17,7 @@ if TYPE_CHECKING:
 
 
 @dataclass(frozen=True, kw_only=True)
-class Source:
+class StudySource:
     """What everybody begins with: a study file, its study, and results if there are any."""
 
     document: Document
@@ -28,14 +28,14 @@ class Source:
 _RESULTS = (".nc", ".nc4", ".netcdf")
 
 
-def open_source(file: Path) -> Source:
+def open_source(file: Path) -> StudySource:
     """What a study file or results on disk begin with.
 
     InputError as of `flexapod.load`, or where the file is not a result of a simulation.
     """
     if file.suffix.lower() not in _RESULTS:
         study = model.load(file)
-        return Source(document=Document(study.source_text, str(file)), study=study)
+        return StudySource(document=Document(study.source_text, str(file)), study=study)
     from flexapod.study.store import open_results
     from flexapod.study.stored_run import check_run
 
@@ -50,7 +50,7 @@ def open_source(file: Path) -> Source:
         study = _without_tables(data, text, str(file))
         text, path = study.source_text, str(file)
     _check_kind(study, data, str(file))
-    return Source(document=Document(text, str(path)), study=study, data=data)
+    return StudySource(document=Document(text, str(path)), study=study, data=data)
 
 
 def _check_kind(study: model.Study | model.ActuatorStudy, data: Dataset, file: str) -> None:

@@ -7,7 +7,7 @@ import time
 from collections.abc import Callable
 
 from flexapod.app.view.background import Threads
-from flexapod.app.view.scene import Scene
+from flexapod.app.view.scene import PageScene
 
 FRAME = 1 / 25  # time between two steps [s]
 
@@ -21,7 +21,7 @@ class Player:
 
     def __init__(
         self,
-        scene: Scene,
+        scene: PageScene,
         threads: Threads,
         lock: threading.RLock,
         step: Callable[[float], bool],

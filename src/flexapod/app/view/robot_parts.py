@@ -20,7 +20,7 @@ from flexapod.typing import Array
 from flexapod.words import number, text
 
 
-class Nodes:
+class SceneNodes:
     """A scene that remembers the names of what is added to it by ``add_...``."""
 
     def __init__(self, scene: viser.SceneApi) -> None:
@@ -54,7 +54,7 @@ _HERE = (0.0, 0.0, 0.0)
 _NOTHING = np.zeros((1, 2, 3))
 
 
-def add_grid(scene: Nodes | viser.SceneApi, width: float, plane: Literal["xy", "xz"], position: Array) -> Any:
+def add_grid(scene: SceneNodes | viser.SceneApi, width: float, plane: Literal["xy", "xz"], position: Array) -> Any:
     """A square grid whose lines are 10, 20, 50 mm ... apart."""
     cell = 1e-3 * round_down(1e3 * width / 30)
     return scene.add_grid(
@@ -73,7 +73,7 @@ def add_grid(scene: Nodes | viser.SceneApi, width: float, plane: Literal["xy", "
 class RobotParts:
     """Base, rails and cranks, legs, platform with its payload, frames and labels."""
 
-    def __init__(self, scene: Nodes, add: Add, skeleton: Skeleton) -> None:
+    def __init__(self, scene: SceneNodes, add: Add, skeleton: Skeleton) -> None:
         self._skeleton, robot = skeleton, skeleton.robot
         self._colors: Array = np.zeros((len(robot.legs), 3), dtype=int)
         self._mouth = np.array([[leg.cylinder.mouth] for leg in robot.legs])
@@ -118,7 +118,7 @@ class RobotParts:
             if handle is not None:
                 handle.points = _floats(lines)
 
-    def _make_base(self, scene: Nodes, add: Add) -> list[Any]:
+    def _make_base(self, scene: SceneNodes, add: Add) -> list[Any]:
         robot, size, joints = self._skeleton.robot, self._skeleton.size, []
         floor = float(robot.base_joints[:, 2].min()) - 0.03 * size
         vertices, faces = plate(robot.base_joints - [0.0, 0.0, 0.02 * size], 0.012 * size)
@@ -134,7 +134,7 @@ class RobotParts:
             add("labels", scene.add_label(f"/leg_{i + 1}", f"leg {i + 1}", position=outward, anchor="top-center"))
         return joints
 
-    def _make_platform(self, scene: Nodes, add: Add) -> Any:
+    def _make_platform(self, scene: SceneNodes, add: Add) -> Any:
         robot, size, load = self._skeleton.robot, self._skeleton.size, self._skeleton.robot.payload
         frame = scene.add_frame("/platform", show_axes=False)
         vertices, faces = plate(robot.platform_joints, 0.012 * size)
@@ -160,7 +160,7 @@ class RobotParts:
             add("labels", scene.add_label("/platform/tool_name", "tool", position=load.tool, anchor="top-left"))
         return frame
 
-    def _make_legs(self, scene: Nodes) -> tuple[list[Any], list[Any]]:
+    def _make_legs(self, scene: SceneNodes) -> tuple[list[Any], list[Any]]:
         cylinders, pistons, faces = [], [], tube_faces(STATIONS)
         robot, home = self._skeleton.robot, self._skeleton.home
         for i, (leg, color) in enumerate(zip(robot.legs, colors_of_legs(robot.count), strict=True)):
@@ -177,7 +177,7 @@ class RobotParts:
         return cylinders, pistons
 
 
-def _joint(scene: Nodes, name: str, letter: str, radius: float, color: tuple[int, int, int]) -> Any:
+def _joint(scene: SceneNodes, name: str, letter: str, radius: float, color: tuple[int, int, int]) -> Any:
     """A joint by its letter: a ball, a block where it is fixed; of a hinge, whose axis is drawn too, a small ball."""
     if letter == "F":
         return scene.add_box(name, color, (2 * radius, 2 * radius, 2 * radius))
@@ -204,7 +204,7 @@ def _thickened(vertices: Array, lines: Array, radius: Array) -> Array:
 class Ghost:
     """The rigid robot in pale lines."""
 
-    def __init__(self, scene: Nodes, add: Add, skeleton: Skeleton) -> None:
+    def __init__(self, scene: SceneNodes, add: Add, skeleton: Skeleton) -> None:
         joints, size = skeleton.robot.platform_joints, skeleton.size
         vertices, faces = plate(joints, 0.004 * size)
         self._frame = scene.add_frame("/ghost", show_axes=False)
@@ -228,7 +228,7 @@ class Ghost:
 class Deviation:
     """Both paths of the centre of mass or the tool, and its deviation as an arrow with its length."""
 
-    def __init__(self, scene: Nodes, add: Add, size: float) -> None:
+    def __init__(self, scene: SceneNodes, add: Add, size: float) -> None:
         self.size = size
         self._rigid = scene.add_line_segments("/path_rigid", _NOTHING, _RIGID, thickness=2.0, thickness_units="screen")
         self._bent = scene.add_line_segments(

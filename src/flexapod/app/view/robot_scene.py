@@ -12,8 +12,8 @@ import viser
 
 from flexapod import model, rigid
 from flexapod.app.view.legend import QUANTITIES, LegColors, leg_colors, plain_legend, rgb
-from flexapod.app.view.robot_parts import LABELS, Deviation, Ghost, Nodes, RobotParts
-from flexapod.app.view.scene import OF_RESULTS, STRAIGHT, Scene, mode_note
+from flexapod.app.view.robot_parts import LABELS, Deviation, Ghost, RobotParts, SceneNodes
+from flexapod.app.view.scene import OF_RESULTS, STRAIGHT, PageScene, mode_note
 from flexapod.scene.colours import colors_of_legs
 from flexapod.scene.geometry import RobotMotion
 from flexapod.scene.robot import mode_scene
@@ -43,7 +43,7 @@ class _Drawn:
     deviation: Deviation
 
 
-class RobotScene(Scene):
+class RobotScene(PageScene):
     """One user's view of a robot."""
 
     quantities = QUANTITIES
@@ -58,7 +58,7 @@ class RobotScene(Scene):
 
     @property
     def points(self) -> tuple[str, ...]:
-        """As `Scene.points`."""
+        """As `PageScene.points`."""
         return ("tool", "com") if self._motion is not None and self._motion.tool_apart else ("com",)
 
     @property
@@ -68,7 +68,7 @@ class RobotScene(Scene):
         return np.array([rgb(color) for color in colors_of_legs(count)])
 
     def show_study(self, study: model.Study) -> None:
-        """As `Scene.show_study`."""
+        """As `PageScene.show_study`."""
         with self.lock:
             if self._closed:
                 return
@@ -78,7 +78,7 @@ class RobotScene(Scene):
                 if first:
                     self._light()
                 self._begin()
-                api = Nodes(self.client.scene)
+                api = SceneNodes(self.client.scene)
                 robot = Skeleton(study.robot)
                 drawn = self._drawn = _Drawn(
                     study=study,
@@ -96,7 +96,7 @@ class RobotScene(Scene):
                 self._look(np.array(_EYES[study.robot.plane]))
 
     def show_pose(self, pose: PoseLike) -> None:
-        """As `Scene.show_pose`; a pose as for `flexapod.modes`, in reach or not; InputError where it is not a pose."""
+        """As `PageScene.show_pose`; a pose as for `flexapod.modes`, in reach or not; InputError for no pose."""
         with self.lock:
             if self._drawn is None:
                 return
@@ -108,7 +108,7 @@ class RobotScene(Scene):
                 self._draws(f"the undeformed robot at {pose_words(pose)}", STRAIGHT)
 
     def set_time(self, time: float) -> None:
-        """As `Scene.set_time`."""
+        """As `PageScene.set_time`."""
         with self.lock:
             if self._drawn is None or self._motion is None:
                 return
@@ -123,7 +123,7 @@ class RobotScene(Scene):
                 self._draws("")
 
     def show_mode(self, modes: Dataset, mode: int, amplitude: float, phase: float, where: str = "") -> None:
-        """As `Scene.show_mode`."""
+        """As `PageScene.show_mode`."""
         with self.lock:
             if self._drawn is None:
                 return
@@ -137,7 +137,7 @@ class RobotScene(Scene):
                 self._draws(f"mode {mode}{where and f' at {where}'}", mode_note(size))
 
     def legend(self) -> str:
-        """As `Scene.legend`, with the values at the time that is shown."""
+        """As `PageScene.legend`, with the values at the time that is shown."""
         with self.lock:
             if self._motion is None or self.drawn:
                 return plain_legend(len(self._plain))
@@ -146,13 +146,13 @@ class RobotScene(Scene):
             return plain_legend(len(self._plain)) if self._colors is None else self._colors.html(index)
 
     def colour_by(self, quantity: str) -> None:
-        """As `Scene.colour_by`."""
+        """As `PageScene.colour_by`."""
         with self.lock:
             self._colors = None
             super().colour_by(quantity)
 
     def close(self) -> None:
-        """As `Scene.close`."""
+        """As `PageScene.close`."""
         with self.lock:
             super().close()
             self._motion = self._colors = self._at_rest = self._drawn = None
@@ -176,7 +176,7 @@ class RobotScene(Scene):
             self._drawn.deviation.paths(*self._motion.paths(self.scale, self.point))
 
     def _whole(self) -> tuple[Array, Array]:
-        """As `Scene._whole`: at home and at instants of the motion; payload and tool have labels."""
+        """As `PageScene._whole`: at home and at instants of the motion; payload and tool have labels."""
         if self._drawn is None:
             return _NOWHERE, _NOWHERE
         study, skeleton = self._drawn.study, self._drawn.skeleton

@@ -17,7 +17,7 @@ from flexapod.words import number, text
 if TYPE_CHECKING:
     from xarray import Dataset
 
-    from flexapod.scene.geometry import ActuatorMotion, RobotMotion
+    from flexapod.scene.geometry import DrawnMotion, RobotMotion
 
 STRAIGHT = "Drawn without deflections."
 
@@ -29,7 +29,7 @@ PARTS = {"rigid ghost": True, "paths": True, "deviation arrow": True, "labels": 
 OF_RESULTS = ("rigid ghost", "paths", "deviation arrow")
 
 
-class Scene(ABC):
+class PageScene(ABC):
     """One user's scene. Every method may be called from any thread.
 
     `data`: the result that is shown over time, or None; `scale`: factor on deflections; `driver`: who moves the scene
@@ -188,7 +188,7 @@ class Scene(ABC):
         scene.add_light_hemisphere("/light_around", ground_color=(150, 150, 150), intensity=1.6)
 
     @abstractmethod
-    def _take(self, data: Dataset | None) -> RobotMotion | ActuatorMotion | None:
+    def _take(self, data: Dataset | None) -> RobotMotion | DrawnMotion | None:
         """Take the arrays of a result, or none, in place of those before."""
 
     @abstractmethod

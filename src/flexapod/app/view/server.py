@@ -21,7 +21,7 @@ from flexapod.app.view.visitor import Pool
 from flexapod.loading import loaded
 
 if TYPE_CHECKING:
-    from flexapod.app.view.opening import Source
+    from flexapod.app.view.opening import StudySource
     from flexapod.app.view.session import Session
     from flexapod.app.view.visitor import Visitor
 
@@ -41,7 +41,7 @@ class View:
     through a proxy.
     """
 
-    def __init__(self, source: Source, host: str, port: int, name: str | None = None) -> None:
+    def __init__(self, source: StudySource, host: str, port: int, name: str | None = None) -> None:
         for remark in (GONE, GARBLED):
             warnings.filterwarnings("ignore", message=remark)
         few_arenas()

@@ -18,7 +18,7 @@ from flexapod.app.view.files_panel import FilesPanel
 from flexapod.app.view.header import Header, Picture
 from flexapod.app.view.inputs import limit_inputs
 from flexapod.app.view.logs import LOG
-from flexapod.app.view.opening import Source
+from flexapod.app.view.opening import StudySource
 from flexapod.app.view.quick import coarse, is_quick, preview_words
 from flexapod.app.view.robot_scene import RobotScene
 from flexapod.app.view.running import Cores, Run
@@ -40,7 +40,7 @@ class Session:
     `study`: the last valid one; `data`: results of it, or None.
     """
 
-    def __init__(self, client: ClientHandle, source: Source, cores: Cores) -> None:
+    def __init__(self, client: ClientHandle, source: StudySource, cores: Cores) -> None:
         self.client, self._cores = client, cores
         self._threads, self._sent = Threads(self.fault), Sent()
         self.study, self.data = source.study, source.data
@@ -50,7 +50,7 @@ class Session:
         self._unsettled = False
         self._valid = True
         self._panels: list[Any] = []
-        self._source: Source | None = source
+        self._source: StudySource | None = source
         self.header: Header | None = None
 
     def start(self) -> None:
@@ -65,7 +65,7 @@ class Session:
         """Whether a simulation is running."""
         return self._run is not None
 
-    def open(self, source: Source) -> None:
+    def open(self, source: StudySource) -> None:
         """Begin anew with another study."""
         with self._lock:
             if self._closed:
@@ -254,7 +254,7 @@ class Session:
     def _uploaded(self, document: Document) -> None:
         found = read(document)
         if found.study is not None:
-            self.open(Source(document=document, study=found.study))
+            self.open(StudySource(document=document, study=found.study))
 
     def _show_study(self) -> None:
         self.scene.show_study(self.study)

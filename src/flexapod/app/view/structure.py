@@ -10,8 +10,8 @@ from typing import Any
 
 import tomlkit
 
-from flexapod.app.view.document import Document, Quantity, bare, blocks, checked, quantity, renamed, replaced
-from flexapod.model.fields import Field
+from flexapod.app.view.document import Document, TypedQuantity, bare, blocks, checked, quantity, renamed, replaced
+from flexapod.model.fields import NotedField
 
 STARTS: dict[str, dict[str, object]] = {"load": {"wrench": [0] * 6}, "initial": {"start": "equilibrium"}}
 """Tables that a robot's study may leave out, as they are added: they change nothing yet."""
@@ -166,7 +166,7 @@ def _later(points: list[dict[str, object]]) -> object:
         return "1 s"
     before = quantity(points[-2].get("time")) if len(points) > 1 else None
     step = last.number - before.in_unit(last.unit, "time").number if before is not None else last.number
-    return Quantity(last.number + (step if step > 0 else 1.0), last.unit).written()
+    return TypedQuantity(last.number + (step if step > 0 else 1.0), last.unit).written()
 
 
 def _each_leg(document: Document) -> Document:
@@ -200,7 +200,7 @@ MOST_ROWS = 20  # rows of a list that are shown
 _ROW = re.compile(r"(.*?)\[(\d+)\]")
 
 
-def parted(fields: Sequence[Field]) -> tuple[list[Field], dict[str, int]]:
+def parted(fields: Sequence[NotedField]) -> tuple[list[NotedField], dict[str, int]]:
     """Fields but for those of lists with more than `MOST_ROWS` rows, and by key of such a list how many rows it has."""
     rows: dict[str, int] = {}
     for field in fields:

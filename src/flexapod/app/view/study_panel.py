@@ -17,7 +17,7 @@ from flexapod.app.view.quick import preview_html
 from flexapod.app.view.structure import Offer, offers, parted, without_rows
 from flexapod.app.view.widgets import Setter, add_widget, signature
 from flexapod.errors import InputError
-from flexapod.model.fields import Field, read_fields
+from flexapod.model.fields import NotedField, read_fields
 
 OPEN = ("[motion]",)
 _NOTHING = "add a value ..."
@@ -34,7 +34,7 @@ class StudyPanel:
         self._lock, self._waiting, self._busy = threading.Lock(), dict[str, tuple[object, str]](), False
         self._before: list[Document] = []
         self._taking = threading.RLock()  # each click comes in a thread of its own: one change after the other
-        self._fields: dict[str, Field] = {}
+        self._fields: dict[str, NotedField] = {}
         self._long: dict[str, int] = {}
         self._setters: dict[str, Setter] = {}
         self._folders: dict[str, Any] = {}
@@ -157,7 +157,7 @@ class StudyPanel:
         self._words.content = self._said(found)
         self._point_at(found.error)
 
-    def _readable(self, found: Edit) -> list[Field]:
+    def _readable(self, found: Edit) -> list[NotedField]:
         """Fields of the document in its order; where reading stopped, those known before stay as they were."""
         fields = {field.key: field for field in read_fields(found.document.text, found.document.path)}
         if found.error is not None:
@@ -177,12 +177,12 @@ class StudyPanel:
         remarks = "".join(markup.block(remark, "warning") for remark in found.study.warnings)
         return html + preview_html(found.study) + remarks
 
-    def _fit_folders(self, fields: list[Field], long: dict[str, int]) -> None:
+    def _fit_folders(self, fields: list[NotedField], long: dict[str, int]) -> None:
         """A folder for each table of the file; one is made anew where its inputs are others than before.
 
         `long`: rows of the lists that are too long to show.
         """
-        tables: dict[str, list[Field]] = {}
+        tables: dict[str, list[NotedField]] = {}
         for field in fields:
             if field.value is not None or field.kind != "text" or field.choices:
                 tables.setdefault(_top(field.key), []).append(field)
@@ -229,7 +229,9 @@ class StudyPanel:
             if handle.content != content:
                 handle.content = content
 
-    def _make_folder(self, name: str, fields: list[Field], found: list[Offer], remarks: list[str], place: int) -> None:
+    def _make_folder(
+        self, name: str, fields: list[NotedField], found: list[Offer], remarks: list[str], place: int
+    ) -> None:
         known = name in self._folders
         if known:
             self._folders.pop(name).remove()
@@ -242,8 +244,8 @@ class StudyPanel:
             for remark in remarks:
                 self._gui.add_html(markup.block(remark, "soft"))
 
-    def _fill(self, fields: list[Field], found: list[Offer]) -> None:
-        inner: dict[str, list[Field]] = {}
+    def _fill(self, fields: list[NotedField], found: list[Offer]) -> None:
+        inner: dict[str, list[NotedField]] = {}
         present, absent = _parted(fields)
         for field in present:
             inner.setdefault(_inside(field), []).append(field)
@@ -258,13 +260,13 @@ class StudyPanel:
         if absent:
             self._offer(absent)
 
-    def _add(self, fields: list[Field]) -> None:
+    def _add(self, fields: list[NotedField]) -> None:
         """The inputs of one table, and a place for words."""
         for field in fields:
             self._setters[field.key] = add_widget(self._gui, self._threads, field, self._typed, self._left)
         self._beside[fields[0].table] = self._gui.add_html("")
 
-    def _offer(self, absent: list[Field]) -> None:
+    def _offer(self, absent: list[NotedField]) -> None:
         names = {field.key: field for field in absent}
         handle = self._gui.add_dropdown("more", (_NOTHING, *names), initial_value=_NOTHING)
 
@@ -275,7 +277,7 @@ class StudyPanel:
         handle.on_update(add)
 
 
-def _parted(fields: list[Field]) -> tuple[list[Field], list[Field]]:
+def _parted(fields: list[NotedField]) -> tuple[list[NotedField], list[NotedField]]:
     """Fields that the file gives, and those that it leaves out."""
     return [f for f in fields if f.value is not None], [f for f in fields if f.value is None]
 
@@ -292,7 +294,7 @@ def _top(key: str) -> str:
     return f"[[{name}]] {index.rstrip(']')}" if bracket else f"[{name}]"
 
 
-def _inside(field: Field) -> str:
+def _inside(field: NotedField) -> str:
     """Path of the inner table within its top one."""
     return field.table.partition(".")[2]
 

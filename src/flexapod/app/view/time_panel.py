@@ -13,7 +13,7 @@ from flexapod.app.view import markup
 from flexapod.app.view.background import Threads
 from flexapod.app.view.charts import Chart, ChartView, charts
 from flexapod.app.view.player import Player
-from flexapod.app.view.scene import PARTS, Scene
+from flexapod.app.view.scene import PARTS, PageScene
 from flexapod.app.view.typed import Dial, TypedText, by_user, in_unit, plain
 from flexapod.errors import InputError
 from flexapod.scene.geometry import nearest
@@ -37,7 +37,7 @@ class TimePanel:
     """
 
     def __init__(
-        self, client: viser.ClientHandle, scene: Scene, threads: Threads, told_point: Callable[[], None]
+        self, client: viser.ClientHandle, scene: PageScene, threads: Threads, told_point: Callable[[], None]
     ) -> None:
         self.client, self.scene, self._told_point = client, scene, told_point
         self._data: Dataset | None = None

@@ -7,10 +7,10 @@ from typing import TYPE_CHECKING, NamedTuple
 
 from viser import GuiApi
 
-from flexapod.app.view.document import Quantity, quantity
+from flexapod.app.view.document import TypedQuantity, quantity
 from flexapod.app.view.typed import TypedText, by_user, plain, written
 from flexapod.errors import InputError
-from flexapod.model.fields import Field
+from flexapod.model.fields import NotedField
 from flexapod.units import DIMENSIONS, to_si
 
 if TYPE_CHECKING:
@@ -28,12 +28,12 @@ LETTERS = ("type", "chain")  # texts that say which joints a robot or a leg has
 EMPTY = "a number, or one with a unit; an emptied field gets its value back"
 
 
-def signature(field: Field) -> tuple[object, ...]:
+def signature(field: NotedField) -> tuple[object, ...]:
     """What a field's input depends on besides the value: where it differs, another input is needed."""
     return field.key, field.kind, field.dimensions, field.choices, _rows(field)
 
 
-def add_widget(gui: GuiApi, threads: Threads, field: Field, changed: Changed, left: Left) -> Setter:
+def add_widget(gui: GuiApi, threads: Threads, field: NotedField, changed: Changed, left: Left) -> Setter:
     """Add the input of a field that has a value."""
     if field.kind == "text":
         if field.choices:
@@ -50,7 +50,7 @@ def add_widget(gui: GuiApi, threads: Threads, field: Field, changed: Changed, le
     return _written(gui, threads, field, changed, left)
 
 
-def _number(gui: GuiApi, threads: Threads, field: Field, changed: Changed, left: Left) -> Setter:
+def _number(gui: GuiApi, threads: Threads, field: NotedField, changed: Changed, left: Left) -> Setter:
     dimension = field.dimensions[0]
     first, unit = _shown(field.value, "", dimension)
 
@@ -77,7 +77,7 @@ def _shown(value: object, unit: str, dimension: str) -> tuple[str, str]:
     return (str(value), unit) if found is None else (plain(found.number), found.unit)
 
 
-def _readable(value: object, dimension: str) -> Quantity | None:
+def _readable(value: object, dimension: str) -> TypedQuantity | None:
     """A value as the readers of study files take it; None where they do not."""
     try:
         to_si(value, dimension)
@@ -87,11 +87,11 @@ def _readable(value: object, dimension: str) -> Quantity | None:
 
 
 def _label(name: str, unit: str, dimension: str) -> str:
-    shown = Quantity(0.0, unit).shown_unit(dimension)
+    shown = TypedQuantity(0.0, unit).shown_unit(dimension)
     return f"{name} [{shown}]" if shown else name
 
 
-def _choice(gui: GuiApi, field: Field, changed: Changed) -> Setter:
+def _choice(gui: GuiApi, field: NotedField, changed: Changed) -> Setter:
     options = tuple(field.choices or ())
     if field.value not in options:
         options = (*options, str(field.value))
@@ -105,7 +105,7 @@ def _choice(gui: GuiApi, field: Field, changed: Changed) -> Setter:
     return show
 
 
-def _flag(gui: GuiApi, field: Field, changed: Changed) -> Setter:
+def _flag(gui: GuiApi, field: NotedField, changed: Changed) -> Setter:
     handle = gui.add_checkbox(field.name, field.value is True)
     handle.on_update(by_user(lambda: changed(field.key, handle.value, True)))
 
@@ -115,13 +115,13 @@ def _flag(gui: GuiApi, field: Field, changed: Changed) -> Setter:
     return show
 
 
-def _fixed(gui: GuiApi, _threads: Threads, field: Field, _changed: Changed, _left: Left) -> Setter:
+def _fixed(gui: GuiApi, _threads: Threads, field: NotedField, _changed: Changed, _left: Left) -> Setter:
     """A text that names a file of the person who started the server, or a list of texts: shown, not changed."""
     gui.add_text(field.name, str(field.value), disabled=True)
     return lambda value: None
 
 
-def _written(gui: GuiApi, threads: Threads, field: Field, changed: Changed, left: Left) -> Setter:
+def _written(gui: GuiApi, threads: Threads, field: NotedField, changed: Changed, left: Left) -> Setter:
     """Letters of a mechanism, or a list that is none of the numbers that are asked for, as text."""
 
     def taken(text: str, done: bool) -> None:
@@ -132,7 +132,7 @@ def _written(gui: GuiApi, threads: Threads, field: Field, changed: Changed, left
     return lambda value: box.show(str(value))
 
 
-def _vectors(gui: GuiApi, threads: Threads, field: Field, changed: Changed, left: Left) -> Setter:
+def _vectors(gui: GuiApi, threads: Threads, field: NotedField, changed: Changed, left: Left) -> Setter:
     """Inputs for a vector, one a row for rows, two for a wrench; of angles one for each leg."""
     setters = [(part, _components(gui, threads, field, part, changed, left)) for part in _parts(field)]
 
@@ -152,7 +152,7 @@ class _Part(NamedTuple):
     names: Sequence[str]
 
 
-def _parts(field: Field) -> list[_Part]:
+def _parts(field: NotedField) -> list[_Part]:
     count = len(field.dimensions)
     if field.kind == "rows":
         rows = len(field.value) if isinstance(field.value, list) else 0
@@ -171,7 +171,7 @@ def _at(value: object, part: _Part) -> list[object]:
     return listed[part.start : part.start + len(part.names)]
 
 
-def _components(gui: GuiApi, threads: Threads, field: Field, part: _Part, changed: Changed, left: Left) -> Setter:
+def _components(gui: GuiApi, threads: Threads, field: NotedField, part: _Part, changed: Changed, left: Left) -> Setter:
     """Numbers in one unit, that of the first which has one."""
     label, key, start, names = part
     dimension, unit = field.dimensions[start], ""
@@ -210,7 +210,7 @@ def _components(gui: GuiApi, threads: Threads, field: Field, part: _Part, change
     return show
 
 
-def _rows(field: Field) -> int:
+def _rows(field: NotedField) -> int:
     """How many lists of numbers a field has; 0 where they are not as long as they are asked for."""
     if field.kind not in ("vector", "rows") or not isinstance(field.value, list):
         return 0
@@ -218,7 +218,7 @@ def _rows(field: Field) -> int:
     return len(rows) * all(isinstance(row, list) and len(row) == len(field.dimensions) for row in rows)
 
 
-def _hint(field: Field, unit: str) -> str:
+def _hint(field: NotedField, unit: str) -> str:
     dimension = field.dimensions[0] if field.dimensions else "number"
     parts = [field.key, "whole number" if field.kind == "whole" else DIMENSIONS[dimension].unit and dimension]
     if field.bounds.words:

@@ -8,7 +8,7 @@ from functools import partial
 import numpy as np
 
 from flexapod import model
-from flexapod.fem.beam_guide import ElementContact, Guide, InterpolatedClamp, NodeContact
+from flexapod.fem.beam_guide import ElementContact, GuideContact, InterpolatedClamp, NodeContact
 from flexapod.fem.beam_march import march_sliding_beam
 from flexapod.proof.case import Case, Check, case, checks
 from flexapod.proof.cases.bending import ROOTS
@@ -153,7 +153,7 @@ MESHES, MESH_STEP = (100, 200, 400), 1e-3
 MESH_DURATION = 1.83
 OF_ORDER, OF_SIZE = 0.15, 0.2  # tolerances
 #: Mean of the shift of the clamp over the places of the mouth in an element, by its length, Eq. (T11.8).
-GUIDES: dict[str, tuple[Guide, float]] = {
+GUIDES: dict[str, tuple[GuideContact, float]] = {
     "whole elements": (ElementContact(stiffness=1e24), 0.5),
     "nodes": (NodeContact(), 0.5 + 1 / 12**0.5),
     "clamp": (InterpolatedClamp(), 0.0824),

@@ -14,10 +14,10 @@ from flexapod.study.accuracy.at_pose import AtPose
 from flexapod.study.accuracy.play import PLACES, guide_play
 from flexapod.typing import Array
 
-__all__ = ["Row", "rows"]
+__all__ = ["ErrorRow", "rows"]
 
 
-class Row(NamedTuple):
+class ErrorRow(NamedTuple):
     """One part: its `kind` of error (systematic, hysteretic, random, dynamic), and its `nature`.
 
     `nature`: of a systematic one calibratable, repeatable or drifting; empty of others. `stands`: of a random one, that
@@ -35,27 +35,29 @@ class Row(NamedTuple):
     stands: bool = False
 
 
-def rows(study: Study, pose: rigid.Poses) -> list[Row]:
+def rows(study: Study, pose: rigid.Poses) -> list[ErrorRow]:
     """Rows of geometry, heat, bent legs, tolerances and play at one pose; of what the study does not name none."""
     at = AtPose(study, pose)
-    found = [Row(name, "systematic", _nature(name), by_leg, "first order") for name, by_leg in at.parts.items()]
+    found = [ErrorRow(name, "systematic", _nature(name), by_leg, "first order") for name, by_leg in at.parts.items()]
     found += [
-        Row(f"{one.name} tolerance", "random", "", one.sigma, "first order, errors independent", stands=True)
+        ErrorRow(f"{one.name} tolerance", "random", "", one.sigma, "first order, errors independent", stands=True)
         for one in at.spreading
     ]
     found += _of_elements(study, at)
     if (shorter := guide_play(study.robot, at.sensitivity.q[0, :, COORDINATES.index("l")])).any():
         by_leg = np.abs(shorter[:, None] * at.sensitivity.coordinate[0, :, COORDINATES.index("l")])
-        found.append(Row("guide play", "hysteretic", "", by_leg, "second order in the kink: legs that lean or do not"))
+        found.append(
+            ErrorRow("guide play", "hysteretic", "", by_leg, "second order in the kink: legs that lean or do not")
+        )
     if at.is_loose:
         effect = np.abs(at.play.effect[0])
         how = "first order, whichever way the play is pressed"
         table = zip(PLACES, effect, strict=True)
-        found += [Row(f"{place} play", "hysteretic", "", by_leg, how) for place, by_leg in table if by_leg.any()]
+        found += [ErrorRow(f"{place} play", "hysteretic", "", by_leg, how) for place, by_leg in table if by_leg.any()]
     return found
 
 
-def _of_elements(study: Study, at: AtPose) -> list[Row]:
+def _of_elements(study: Study, at: AtPose) -> list[ErrorRow]:
     """Rows of what elements make the strokes err by; alike ones of all legs are a row."""
     legs, found = study.robot.legs, {}
     for i, leg in enumerate(legs):
@@ -66,7 +68,7 @@ def _of_elements(study: Study, at: AtPose) -> list[Row]:
     moves = at.sensitivity.coordinate[0, :, COORDINATES.index("l")]
     by_leg = {error: sizes[:, None] * moves for error, sizes in found.items()}
     return [
-        Row(error.name, error.kind, "", x if error.kind == "random" else np.abs(x), error.how, error.stands)
+        ErrorRow(error.name, error.kind, "", x if error.kind == "random" else np.abs(x), error.how, error.stands)
         for error, x in by_leg.items()
     ]
 

@@ -19,7 +19,7 @@ from flexapod.solve.sections import leg_values, stepped_stress
 from flexapod.solve.system import System
 from flexapod.study.after.legs import base_points, bending, bending_basis
 from flexapod.study.before.estimates import (
-    Section,
+    BendingSection,
     beam_section,
     bending_errors,
     buckling_load,
@@ -205,13 +205,13 @@ def _slender(leg: Leg, basis: LateralBasis, free: Array, when: _When) -> list[_R
     return [_slender_remark(free[k], width, piston_section(leg.piston), basis, when[k])]
 
 
-def _slender_remark(free: float, width: float, section: Section, basis: LateralBasis, when: str) -> _Remark:
+def _slender_remark(free: float, width: float, section: BendingSection, basis: LateralBasis, when: str) -> _Remark:
     ratio = free / width
     words = f"the free length is only {ratio:.3g} times the width{when}: "
     return ("slenderness", SLENDERNESS / ratio, words + thick_words(section, free, solid=basis.name == SOLID))
 
 
-def thick_words(section: Section, free: float, *, solid: bool) -> str:
+def thick_words(section: BendingSection, free: float, *, solid: bool) -> str:
     """What a leg that is not slender has and the shapes of a beam, or those reduced from the solid, leave out."""
     deflection, frequency, inertia = bending_errors(section, free)
     if solid:

@@ -24,29 +24,29 @@ POISSON = 0.3  # of metals; materials give none
 
 
 @dataclass(frozen=True, kw_only=True)
-class Section:
+class BendingSection:
     """What shear asks of a section: radius of gyration [m], Cowper's coefficient kappa."""
 
     gyration: float
     kappa: float
 
 
-def piston_section(piston: Piston) -> Section:
+def piston_section(piston: Piston) -> BendingSection:
     """Section of a piston: a tube where its bore is known, else the full round bar with its EI and EA."""
     tube = Tube(diameter=piston.diameter or 1.0, inner_diameter=piston.inner_diameter)
-    return Section(gyration=math.sqrt(piston.EI / piston.EA), kappa=tube.cowper(POISSON))
+    return BendingSection(gyration=math.sqrt(piston.EI / piston.EA), kappa=tube.cowper(POISSON))
 
 
-def beam_section(actuator: Actuator) -> Section | None:
+def beam_section(actuator: Actuator) -> BendingSection | None:
     """Section of an actuator's beam, where it is known."""
     section = actuator.section
     if section is None:
         return None
     gyration = math.sqrt(section.second_moment / section.area)
-    return Section(gyration=gyration, kappa=section.cowper(POISSON))
+    return BendingSection(gyration=gyration, kappa=section.cowper(POISSON))
 
 
-def bending_errors(section: Section, free: float) -> tuple[float, float, float]:
+def bending_errors(section: BendingSection, free: float) -> tuple[float, float, float]:
     """Relative errors of an Euler-Bernoulli beam of a free length [m].
 
     Returns
@@ -191,7 +191,7 @@ def bending_moments(path: RigidPath) -> Array:
 
 
 @dataclass(frozen=True, kw_only=True)
-class Vibration:
+class VibrationEstimate:
     """Residual vibration after a motion, mode by mode.
 
     ``frequency`` (m,) [Hz]; ``damping_ratio`` (m,); ``amplitude`` (m,) of the tool [m] at the end of the motion;
@@ -229,7 +229,7 @@ class Vibration:
 
 def residual_vibration(
     robot: Robot, modes: RobotModes, t: Array, path: rigid.Poses, band: float = 1e-6, *, from_rest: bool = True
-) -> Vibration:
+) -> VibrationEstimate:
     """Residual vibration of the tool after a motion, Eqs. (T8.14)-(T8.17).
 
     A single-mode estimate: each mode of the end pose with ten instants a period or more answers by itself to the
@@ -267,7 +267,9 @@ def residual_vibration(
     amplitude = answer * _tool_amplitudes(robot, modes, shapes)  # (T8.16)
     with np.errstate(divide="ignore", invalid="ignore"):
         settling = np.where(amplitude > band, np.log(amplitude / band) / (ratio * omega), 0.0)  # (T8.17)
-    return Vibration(frequency=frequency, damping_ratio=ratio, amplitude=amplitude, settling=settling, band=band)
+    return VibrationEstimate(
+        frequency=frequency, damping_ratio=ratio, amplitude=amplitude, settling=settling, band=band
+    )
 
 
 def _rigid_rates(robot: Robot, modes: RobotModes, path: rigid.Poses) -> Array:

@@ -10,7 +10,7 @@ from flexapod import rigid
 from flexapod.model import Robot, Study
 from flexapod.rigid.limbs import COORDINATES
 from flexapod.solve.system import Index, System
-from flexapod.study.accuracy.rows import Row
+from flexapod.study.accuracy.rows import ErrorRow
 from flexapod.study.accuracy.sensitivity import sensitivity
 from flexapod.study.after.causes import cause_names
 from flexapod.study.after.elongations import in_gap
@@ -88,7 +88,7 @@ def _static(study: Study, path: RigidPath) -> Moved:
     return Moved(whole, by_leg.reshape(len(t), *found.by_leg.shape[1:]))
 
 
-def _dynamic_rows(study: Study, dynamic: Moved, at: Index) -> tuple[list[Row], dict[str, Array]]:
+def _dynamic_rows(study: Study, dynamic: Moved, at: Index) -> tuple[list[ErrorRow], dict[str, Array]]:
     """Rows at the instants of the whole's peak, and shares of its rms, Eqs. (T17.14)-(T17.15)."""
     each = np.arange(6)
     peak = dynamic.by_leg[at, :, :, each]  # (6, causes, legs)
@@ -104,6 +104,6 @@ def _dynamic_rows(study: Study, dynamic: Moved, at: Index) -> tuple[list[Row], d
     found = [
         row
         for kind, values in parts.items()
-        for row in without_rounding([Row(n, kind, "", x, how[kind]) for n, x in zip(names, values, strict=True)])
+        for row in without_rounding([ErrorRow(n, kind, "", x, how[kind]) for n, x in zip(names, values, strict=True)])
     ]
     return found, {"dynamic_peak": dynamic.whole[at, each], "dynamic_rms": size}

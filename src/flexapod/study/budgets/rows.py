@@ -20,7 +20,7 @@ from flexapod.solve.lost_motion import places_with_friction, reversal
 from flexapod.solve.many import RestStates
 from flexapod.solve.random_vibration import SOURCES
 from flexapod.solve.system import System
-from flexapod.study.accuracy.rows import Row
+from flexapod.study.accuracy.rows import ErrorRow
 from flexapod.study.accuracy.rows import rows as built_rows
 from flexapod.study.accuracy.sensitivity import sensitivity
 from flexapod.study.after.causes import cause_names, errors_of
@@ -93,7 +93,7 @@ def _rest(study: Study, locked: LockedPoses, poses: rigid.Poses) -> Moved:
     return moved(study.robot, locked.system, path, locked.equilibria.states)
 
 
-def rows(study: Study, pose: rigid.Poses) -> tuple[list[Row], Array, list[str]]:
+def rows(study: Study, pose: rigid.Poses) -> tuple[list[ErrorRow], Array, list[str]]:
     """Rows at one pose, what the systematic ones add up to (6,), and why a row is missing.
 
     That is the static deviation of the tool, and what simulations leave out: legs that are not straight.
@@ -124,7 +124,7 @@ def names_of_rows(study: Study) -> tuple[str, ...]:
     return tuple(dict.fromkeys([*elastic_causes(study.robot), *built, *rubs, *shaken]))
 
 
-def rows_of_poses(study: Study, locked: LockedPoses) -> Iterator[tuple[list[Row], Array]]:
+def rows_of_poses(study: Study, locked: LockedPoses) -> Iterator[tuple[list[ErrorRow], Array]]:
     """Rows of each pose whose equilibrium was found, and what the systematic ones add up to."""
     poses = poses_of(locked.path, locked.at)
     path = RigidPath(study, np.zeros(len(poses)), poses)
@@ -139,23 +139,23 @@ def rows_of_poses(study: Study, locked: LockedPoses) -> Iterator[tuple[list[Row]
         yield [*table, *_friction_rows(rubs, k)], systematic
 
 
-def _friction_rows(found: Mapping[str, Array], k: int) -> list[Row]:
+def _friction_rows(found: Mapping[str, Array], k: int) -> list[ErrorRow]:
     """What friction leaves open at one of some poses."""
     how = "friction at its limits on the flexible robot at rest, whichever way things slide"
-    return [Row(f"{place} friction", "hysteretic", "", by_leg[k], how) for place, by_leg in found.items()]
+    return [ErrorRow(f"{place} friction", "hysteretic", "", by_leg[k], how) for place, by_leg in found.items()]
 
 
-def _with_built(study: Study, pose: rigid.Poses, whole: Array, by_leg: Array) -> tuple[list[Row], Array]:
+def _with_built(study: Study, pose: rigid.Poses, whole: Array, by_leg: Array) -> tuple[list[ErrorRow], Array]:
     """Rows of what gives way and of what differs from the drawing, and what the systematic ones add up to."""
     how = "static equilibrium under gravity and the load at t = 0; of each leg to first order"
     shares = dict(zip(cause_names(study.robot), by_leg, strict=True))
-    table = [Row(name, "systematic", "repeatable", shares[name], how) for name in elastic_causes(study.robot)]
+    table = [ErrorRow(name, "systematic", "repeatable", shares[name], how) for name in elastic_causes(study.robot)]
     built, simulated = built_rows(study, pose), {part.name for part in rigid.built_parts(study.robot)}
     beside = [row.by_leg.sum(axis=0) for row in built if row.kind == "systematic" and row.part not in simulated]
     return [*table, *built], whole + np.sum([np.zeros(6), *beside], axis=0)
 
 
-def without_rounding(table: list[Row]) -> list[Row]:
+def without_rounding(table: list[ErrorRow]) -> list[ErrorRow]:
     """The rows that are more than rounding."""
     sizes = np.array([[np.abs(row.by_leg[..., k]).max() for k in (slice(3), slice(3, 6))] for row in table])
     kept = (sizes > np.maximum(ROUNDING * sizes.max(axis=0), NOTHING)).any(axis=1) if table else []

@@ -8,7 +8,7 @@ from functools import cached_property
 
 import numpy as np
 
-from flexapod.study.accuracy.rows import Row
+from flexapod.study.accuracy.rows import ErrorRow
 from flexapod.ties import most
 from flexapod.typing import Array
 
@@ -31,7 +31,7 @@ def combined(kind: str, parts: Array) -> Array:
 class Budget:
     """Rows of n legs, and of kinds whose rows have signs the ``whole`` (6,) that they add up to but for a residual."""
 
-    rows: list[Row]
+    rows: list[ErrorRow]
     whole: dict[str, Array]
 
     @property
@@ -44,7 +44,7 @@ class Budget:
         """At a resting pose nothing is dynamic."""
         return KINDS if "dynamic_peak" in self.whole else KINDS[:3]
 
-    def rule(self, kind: str, chosen: Callable[[Row], bool] = lambda row: True) -> Array:
+    def rule(self, kind: str, chosen: Callable[[ErrorRow], bool] = lambda row: True) -> Array:
         """Sum (6,) of the rows of a kind, or of some of them, by its rule; without what is left out of first order."""
         found = [combined(kind, row.by_leg) for row in self.rows if row.kind == kind and chosen(row)]
         return combined(kind, np.array([np.zeros(6), *found]))

@@ -18,7 +18,7 @@ from flexapod.study.before.screws import critical_speed
 from flexapod.study.first import sizes
 from flexapod.study.first.catalogue import MOTORS, SCREWS, Screw, speed_limit
 from flexapod.study.first.electric import OUTER, TUBE, Electric, electric_leg, longest_stroke
-from flexapod.study.first.sizes import OPTION, Joints, Leg, Request
+from flexapod.study.first.sizes import OPTION, Joints, Request, SizedLeg
 from flexapod.study.first.written import Plan, written
 from flexapod.study.path import RigidPath
 from flexapod.words import text
@@ -100,7 +100,7 @@ def _diameters(request: Request, joints: Joints, screw: Screw) -> list[float]:
     return [d for d in rods if TUBE * screw.nominal <= d <= most]
 
 
-def _legs(request: Request, joints: Joints, stroke: float, screw: Screw) -> Iterator[Leg]:
+def _legs(request: Request, joints: Joints, stroke: float, screw: Screw) -> Iterator[SizedLeg]:
     """Legs to try, with stout pistons; where none is stout, the stoutest."""
     legs = [electric_leg(joints, stroke, screw, d) for d in _diameters(request, joints, screw)]
     there = [leg for leg in legs if leg is not None]
@@ -108,7 +108,7 @@ def _legs(request: Request, joints: Joints, stroke: float, screw: Screw) -> Iter
     yield from stout or there[-1:]
 
 
-def _tried(ideal: Plan, screw: Screw, leg: Leg) -> Tried:
+def _tried(ideal: Plan, screw: Screw, leg: SizedLeg) -> Tried:
     """The robot with a screw and a leg: preload by the thrust, duration by the speed, then the motor by its torque."""
     parts = Electric(screw=screw, torque=MOTORS[0], preload=PRELOAD * screw.dynamic_load, load=1.0, leg_=leg)
     plan = _slowed(replace(ideal, leg=leg, parts=parts))

@@ -13,7 +13,7 @@ from flexapod.study.before.estimates import buckling_load
 from flexapod.study.first import sizes
 from flexapod.study.first.choice import electric
 from flexapod.study.first.hydraulic import hydraulic
-from flexapod.study.first.sizes import OPTION, Body, Joints, Leg, Request
+from flexapod.study.first.sizes import OPTION, Body, Joints, Request, SizedLeg
 from flexapod.study.first.written import Plan, written
 from flexapod.study.path import RigidPath
 from flexapod.words import text
@@ -100,7 +100,7 @@ def _slender(joints: Joints, stroke: float, diameter: float) -> bool:
     return leg is None or leg.longest - leg.mouth <= sizes.SLENDER * diameter
 
 
-def _plan(request: Request, joints: Joints, body: Body, leg: Leg) -> Plan:
+def _plan(request: Request, joints: Joints, body: Body, leg: SizedLeg) -> Plan:
     """The robot with this leg, and a motion that it can follow."""
     still = Plan(request=request, joints=joints, body=body, leg=leg, amplitude=0.0, duration=1.0)
     amplitude = _amplitude(request, model.loads(written(still)), leg)  # type: ignore[arg-type]
@@ -110,7 +110,7 @@ def _plan(request: Request, joints: Joints, body: Body, leg: Leg) -> Plan:
     return Plan(request=request, joints=joints, body=body, leg=leg, amplitude=amplitude, duration=duration)
 
 
-def _amplitude(request: Request, study: model.Study, leg: Leg) -> float:
+def _amplitude(request: Request, study: model.Study, leg: SizedLeg) -> float:
     """How far from home the motion goes: `SHARE` of the half stroke, well away from singular poses."""
     robot, axis = study.robot, model.AXES.index(request.motion)
     turning = axis >= 3

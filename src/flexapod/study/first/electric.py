@@ -8,7 +8,7 @@ from dataclasses import dataclass
 from flexapod.model import MATERIALS
 from flexapod.study.first import sizes
 from flexapod.study.first.catalogue import BORE, FASTEST, Screw, joint_stiffness, motor_inertia, motor_mass
-from flexapod.study.first.sizes import Joints, Leg
+from flexapod.study.first.sizes import Joints, SizedLeg
 from flexapod.study.first.warm import tables
 from flexapod.study.first.written import Plan, given, length, material_words, words
 from flexapod.words import number
@@ -30,7 +30,7 @@ def longest_stroke(joints: Joints, screw: Screw, diameter: float) -> float:
     return (joints.length - (GUIDED + FREE) * diameter - (POSITION + NUT) * screw.nominal) / 1.5
 
 
-def electric_leg(joints: Joints, stroke: float, screw: Screw, diameter: float) -> Leg | None:
+def electric_leg(joints: Joints, stroke: float, screw: Screw, diameter: float) -> SizedLeg | None:
     """Lengths of a leg for a stroke about home; None if it does not fit.
 
     Drawn in, bearing and nut are before the piston in the cylinder; drawn out, one width of it is guided.
@@ -43,7 +43,7 @@ def electric_leg(joints: Joints, stroke: float, screw: Screw, diameter: float) -
     least = longest - shortest + GUIDED * diameter + (POSITION + NUT) * screw.nominal
     mouth = sizes.down(max(min(sizes.MOUTH * joints.length, shortest - FREE * diameter), least), digit)
     piston = sizes.up(longest - mouth + GUIDED * diameter, digit)
-    return Leg(shortest=shortest, longest=longest, mouth=mouth, piston=piston, diameter=diameter)
+    return SizedLeg(shortest=shortest, longest=longest, mouth=mouth, piston=piston, diameter=diameter)
 
 
 @dataclass(frozen=True, kw_only=True)
@@ -57,7 +57,7 @@ class Electric:
     torque: float
     preload: float
     load: float
-    leg_: Leg
+    leg_: SizedLeg
 
     @property
     def sources(self) -> tuple[str, ...]:

@@ -15,7 +15,7 @@ from flexapod.study.before.describe.robot import describe_legs
 from flexapod.study.first import sizes
 from flexapod.study.first.catalogue import CYLINDERS
 from flexapod.study.first.electric import SLENDER, joint_lines, plate_lines
-from flexapod.study.first.sizes import OPTION, Leg
+from flexapod.study.first.sizes import OPTION, SizedLeg
 from flexapod.study.first.warm import tables
 from flexapod.study.first.written import Plan, given, length, material_words, words, written
 from flexapod.study.path import RigidPath
@@ -37,7 +37,7 @@ class Hydraulic:
     """A cylinder of a `bore` [m] with its leg; `load`: thrust at rest [N]."""
 
     bore: float
-    leg_: Leg
+    leg_: SizedLeg
     load: float = 1.0
     sources: tuple[str, ...] = (
         "The legs are hydraulic cylinders of usual bores and rods; what is chosen besides is in proportion to the "
@@ -97,7 +97,7 @@ def hydraulic(ideal: Plan) -> Plan:
     raise _unfit(ideal, worst)
 
 
-def _tried(ideal: Plan, leg: Leg, bore: float) -> tuple[Plan, dict[str, float]]:
+def _tried(ideal: Plan, leg: SizedLeg, bore: float) -> tuple[Plan, dict[str, float]]:
     """The robot with a cylinder, and what its path asks for over what it bears, by kind."""
     plan = _slowed(replace(ideal, leg=leg, parts=Hydraulic(bore=bore, leg_=leg)))
     path = _path(plan)

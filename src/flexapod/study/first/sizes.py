@@ -155,7 +155,7 @@ class Body:
 
 
 @dataclass(frozen=True, kw_only=True)
-class Leg:
+class SizedLeg:
     """Lengths of a leg [m]: shortest, longest; mouth, piston's length and diameter."""
 
     shortest: float
@@ -214,7 +214,7 @@ def longest_stroke(joints: Joints, diameter: float) -> float:
     return (joints.length - (GUIDED + SPARE + FREE) * diameter) / 1.5
 
 
-def leg_of(joints: Joints, stroke: float, diameter: float) -> Leg | None:
+def leg_of(joints: Joints, stroke: float, diameter: float) -> SizedLeg | None:
     """Lengths of a leg for a stroke about home; None if it does not fit."""
     if stroke > longest_stroke(joints, diameter):
         return None
@@ -224,7 +224,7 @@ def leg_of(joints: Joints, stroke: float, diameter: float) -> Leg | None:
     least, most = longest - shortest + (GUIDED + SPARE) * diameter, shortest - FREE * diameter
     mouth = down(max(min(MOUTH * joints.length, most), least), digit)
     piston = up(longest - mouth + GUIDED * diameter, digit)
-    return Leg(shortest=shortest, longest=longest, mouth=mouth, piston=piston, diameter=diameter)
+    return SizedLeg(shortest=shortest, longest=longest, mouth=mouth, piston=piston, diameter=diameter)
 
 
 def stroke_of(request: Request) -> float:
@@ -232,7 +232,7 @@ def stroke_of(request: Request) -> float:
     return request.stroke or rounded(STROKE * request.home)
 
 
-def cylinder_of(leg: Leg, density: float) -> tuple[float, float, float]:
+def cylinder_of(leg: SizedLeg, density: float) -> tuple[float, float, float]:
     """Mass [kg], centre of mass [m] and transverse inertia [kg m^2] of a tube from the base joint to the mouth."""
     outer, bore = OUTER * leg.diameter / 2, BORE * leg.diameter / 2
     mass = density * math.pi * (outer**2 - bore**2) * leg.mouth

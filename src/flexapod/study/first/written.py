@@ -10,7 +10,7 @@ from typing import Protocol
 from flexapod import model
 from flexapod.model import MATERIALS
 from flexapod.study.first import sizes
-from flexapod.study.first.sizes import Body, Joints, Leg, Request
+from flexapod.study.first.sizes import Body, Joints, Request, SizedLeg
 
 WIDTH = 110  # of a comment
 
@@ -39,7 +39,7 @@ class Plan:
     request: Request
     joints: Joints
     body: Body
-    leg: Leg
+    leg: SizedLeg
     amplitude: float
     duration: float
     parts: Parts | None = None

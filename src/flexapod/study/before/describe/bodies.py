@@ -14,11 +14,11 @@ from flexapod.study.bodies import clearance, largest_turns, turns
 from flexapod.study.path import RigidPath
 from flexapod.ties import first_largest, first_least
 
-__all__ = ["Clearance", "JointTurn", "StrokeEnd", "joint_turns", "leg_clearance", "stroke_ends"]
+__all__ = ["Clearance", "StrokeEnd", "TurnedJoint", "joint_turns", "leg_clearance", "stroke_ends"]
 
 
 @dataclass(frozen=True, kw_only=True)
-class JointTurn:
+class TurnedJoint:
     """Of the joints at an `end` of the legs that which has least left of its `limit` [rad], or turns farthest.
 
     `largest`: its largest turn since home [rad]; `limit` None: none of them has one.
@@ -82,7 +82,7 @@ def stroke_ends(robot: Robot) -> tuple[StrokeEnd, ...]:
     return tuple(found)
 
 
-def joint_turns(path: RigidPath) -> tuple[JointTurn, ...]:
+def joint_turns(path: RigidPath) -> tuple[TurnedJoint, ...]:
     """Angles of the joints at base and platform on a path."""
     found, limits = turns(path.robot, path.axes, path.poses.rotation), largest_turns(path.robot)
     lines = []
@@ -92,7 +92,7 @@ def joint_turns(path: RigidPath) -> tuple[JointTurn, ...]:
         k, leg = np.unravel_index(first_largest(over), over.shape)
         extreme = Extreme(value=float(found[k, leg, end]), time=float(path.time[k]))
         limit = float(limits[leg, end]) if limited.any() else None
-        lines.append(JointTurn(end=name, leg=int(leg) + 1, largest=extreme, limit=limit))
+        lines.append(TurnedJoint(end=name, leg=int(leg) + 1, largest=extreme, limit=limit))
     return tuple(lines)
 
 

@@ -25,8 +25,8 @@ from flexapod.study.before.checks import check_path
 from flexapod.study.before.describe.actuator import ActuatorDescription, describe_actuator
 from flexapod.study.before.describe.bodies import (
     Clearance,
-    JointTurn,
     StrokeEnd,
+    TurnedJoint,
     joint_turns,
     leg_clearance,
     stroke_ends,
@@ -258,7 +258,7 @@ class RobotDescription:
     hydraulics: tuple[HydraulicDescription, ...]
     oil: tuple[str, ...]
     angles: tuple[JointAngle, ...]
-    turns: tuple[JointTurn, ...]
+    turns: tuple[TurnedJoint, ...]
     stroke_ends: tuple[StrokeEnd, ...]
     clearance: Clearance | None  # None where no two legs could meet but at a joint
     singularity: Singularity | None  # None of a platform that is fixed
