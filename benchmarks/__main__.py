@@ -14,7 +14,7 @@ from time import perf_counter
 
 from benchmarks.machine import machine, one_core, peak
 from benchmarks.report import Section
-from flexapod.threads import one_thread
+from flexapod.runtime.threads import one_thread
 
 PAGE = Path(__file__).with_name("RESULTS.md")
 

@@ -7,13 +7,13 @@ from dataclasses import dataclass
 
 import numpy as np
 
-from flexapod import rigid
+from flexapod import kinematics
+from flexapod.arrays import Array
 from flexapod.model import ActuatorStudy, Study, override, preset
 from flexapod.solve.actuator_march import prepare_actuator
 from flexapod.solve.recording import Counters
 from flexapod.solve.robot_march import prepare
 from flexapod.solve.shapes import actuator_shapes
-from flexapod.typing import Array
 
 __all__ = ["GRID", "Curve", "Marched", "error", "marched", "reference", "rigid_centre", "roll", "undamped"]
 
@@ -51,7 +51,7 @@ def undamped(study: Study) -> Study:
 
 def rigid_centre(study: Study, t: Array) -> Array:
     """Centre of mass of the payload with rigid legs at instants (T,), (T, 3) [m]."""
-    path = rigid.poses(study.robot, study.motion, t)
+    path = kinematics.poses(study.robot, study.motion, t)
     return path.position + np.einsum("tij,j->ti", path.rotation, study.robot.payload.com)
 
 

@@ -9,11 +9,11 @@ from __future__ import annotations
 
 import time
 
-from flexapod.proof.engines import exudyn_robot
-from flexapod.proof.engines.exudyn_builder import Builder
-from flexapod.proof.engines.exudyn_integration import Integration
-from flexapod.proof.engines.exudyn_robot import RobotProblem, RobotResult
-from flexapod.typing import Array
+from flexapod.arrays import Array
+from flexapod.verify.engines import exudyn_robot
+from flexapod.verify.engines.exudyn_builder import Builder
+from flexapod.verify.engines.exudyn_integration import Integration
+from flexapod.verify.engines.exudyn_robot import RobotProblem, RobotResult
 
 __all__ = ["solve"]
 

@@ -9,7 +9,7 @@ import numpy as np
 
 from benchmarks.report import Section, goal
 from benchmarks.timing import interleaved
-from flexapod import rigid
+from flexapod import kinematics
 from flexapod.model import preset
 from flexapod.study import budget, modes
 from flexapod.surveys.workspace import workspace_map
@@ -26,7 +26,7 @@ def many_poses() -> list[Section]:
     robot = study.robot
     reach = np.array([0.04, 0.04, 0.04, 0.15, 0.15, 0.15])  # m, rad: well inside the strokes
     some = np.random.default_rng(1).uniform(-reach, reach, size=(POSES, 6))
-    path = rigid.poses(robot, study.motion, np.linspace(0.0, 1.0, RIGID_POSES))
+    path = kinematics.poses(robot, study.motion, np.linspace(0.0, 1.0, RIGID_POSES))
     machine = preset("machine-hexapod").robot
     slice_ = {"surge": np.linspace(-0.02, 0.02, 40), "heave": np.linspace(-0.02, 0.02, POSES // 40)}
     budget(machine)  # compiles
@@ -34,9 +34,11 @@ def many_poses() -> list[Section]:
         "modes": lambda: modes(robot, some),
         "budget": lambda: budget(machine),
         "map": lambda: workspace_map(machine, slice_, budget=True),
-        "lengths": lambda: rigid.leg_lengths(robot.base_joints, robot.platform_joints, path.position, path.rotation),
-        "state": lambda: rigid.inverse_kinematics(robot, path),
-        "forces": lambda: rigid.inverse_dynamics(robot, path),
+        "lengths": lambda: kinematics.leg_lengths(
+            robot.base_joints, robot.platform_joints, path.position, path.rotation
+        ),
+        "state": lambda: kinematics.inverse_kinematics(robot, path),
+        "forces": lambda: kinematics.inverse_dynamics(robot, path),
     }
     times = interleaved({name: (lambda a=a: _seconds(a)) for name, a in actions.items()}, REPEATS)
     middle = {name: spread.median for name, spread in times.items()}

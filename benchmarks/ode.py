@@ -17,7 +17,8 @@ import numpy as np
 from scipy.integrate import solve_ivp
 
 from benchmarks.deviation import Curve, deflection, rigid_centre
-from flexapod import elements, mechanics, rigid, symbolic
+from flexapod import elements, kinematics, mechanics, symbolic
+from flexapod.arrays import Array
 from flexapod.mechanics.assembly import payload_functions
 from flexapod.mechanics.layout import Shapes, leg_parameters
 from flexapod.mechanics.leg import leg
@@ -29,7 +30,6 @@ from flexapod.symbolic.compiler import compiled_library, compiler
 from flexapod.symbolic.functions import NamedFunction
 from flexapod.symbolic.lagrange import inverse_dynamics, mass_matrix
 from flexapod.symbolic.vocabulary import jacobian, symbols, time_derivative, zeros
-from flexapod.typing import Array
 
 __all__ = ["METHODS", "Ode", "ode"]
 
@@ -155,15 +155,17 @@ def ode(study: Study | ActuatorStudy) -> Ode:
     t = np.arange(round(study.duration / SPACING) + 2) * SPACING
     guess = np.zeros(0)
     if isinstance(study, Study):
-        table = robot_law(system, study.robot, study.load, lambda t: rigid.poses(study.robot, study.motion, t))(t)[0]
-        legs = rigid.inverse_kinematics(study.robot, rigid.poses(study.robot, study.motion, t))
+        table = robot_law(system, study.robot, study.load, lambda t: kinematics.poses(study.robot, study.motion, t))(t)[
+            0
+        ]
+        legs = kinematics.inverse_kinematics(study.robot, kinematics.poses(study.robot, study.motion, t))
         third = legs.length if last == shapes.l_index else np.zeros_like(legs.length)
         guess = np.ascontiguousarray(np.stack([legs.alpha, legs.beta, third], axis=-1))
         unit, frequency, places = 1e-5, 1e3, len(free) * system.legs + 7  # 10 um of deviation
     else:
         table = np.zeros((len(t), 1, system.ports.size, 4))
         for k, (name, begin) in enumerate(home(study.actuator).items()):
-            x = rigid.motion_law(getattr(study.motion, name), t)
+            x = kinematics.motion_law(getattr(study.motion, name), t)
             table[:, 0, k, :3] = np.stack([x.position + begin, x.rate, x.acceleration], axis=-1)
         unit, frequency, places = study.initial.tip_displacement, 10.0, len(free)
     ports = [list(system.ports).index(k) for k in held]

@@ -1,4 +1,4 @@
-"""A robot of the model as chains for the oracles: what is read are its own numbers, nothing of `rigid`."""
+"""A robot of the model as chains for the oracles: what is read are its own numbers, nothing of `kinematics`."""
 
 import numpy as np
 from tests.oracles.mechanisms import HEAVE, PITCH, ROLL, SURGE, SWAY, YAW, Mechanism, chain, platform

@@ -22,11 +22,11 @@ from pathlib import Path
 
 import numpy as np
 
+from flexapod.description.robot import describe
 from flexapod.errors import ComputationError, InputError
 from flexapod.model import Study, load, loads, to_toml
 from flexapod.schema.base import Frozen
 from flexapod.study import simulate, simulate_actuator
-from flexapod.study.before.describe.robot import describe
 from flexapod.surveys.sweeps.kept import columns, kept
 from flexapod.surveys.sweeps.plan import read_plan
 from flexapod.surveys.sweeps.points import Points

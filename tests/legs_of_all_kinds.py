@@ -9,9 +9,9 @@ from flexapod.elements.drive_train import DriveTrain
 from flexapod.elements.mount import BaseMounting, MovedBase, PlatformMounting
 from flexapod.elements.slot import Slot
 from flexapod.elements.soft_joint import SoftBase, SoftPlatform
+from flexapod.kinematics.rotations import quaternion
 from flexapod.mechanics.assembly import leg_functions
 from flexapod.mechanics.layout import Shapes, leg_parameters
-from flexapod.rigid.rotations import quaternion
 from flexapod.symbolic.functions import Interpreted
 
 GUIDE, CYLINDER = lateral_basis("tip-load", 2), lateral_basis("tip-load", 3, moment=True)

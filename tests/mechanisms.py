@@ -8,7 +8,7 @@ from flexapod.model import Robot
 from flexapod.model.cylinder import Cylinder
 from flexapod.model.joint import Carriage
 from flexapod.model.payload import Payload
-from flexapod.proof.robots import CYLINDER, LOWER, PISTON, THREE, UPPER, leg, rod, tangents
+from flexapod.verify.robots import CYLINDER, LOWER, PISTON, THREE, UPPER, leg, rod, tangents
 
 __all__ = ["CYLINDER", "LOWER", "PISTON", "ROBOTS", "THREE", "UPPER", "built", "leg", "ring", "rod", "tangents"]
 

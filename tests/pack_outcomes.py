@@ -6,8 +6,8 @@ tested in `tests/cli/test_verify.py`.
 
 from functools import cache
 
-from flexapod.proof.cases import CASES
-from flexapod.proof.pack import verify
+from flexapod.verify.cases import CASES
+from flexapod.verify.pack import verify
 
 
 @cache

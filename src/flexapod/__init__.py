@@ -7,10 +7,10 @@ from __future__ import annotations
 
 from typing import TYPE_CHECKING
 
-from flexapod.loading import loaded
+from flexapod.runtime.loading import loaded
 
 if TYPE_CHECKING:
-    from flexapod import model, plot, rigid, study
+    from flexapod import kinematics, model, plot, study
     from flexapod.citations import cite
     from flexapod.elements.element import Contribution, Element, Output
     from flexapod.elements.frame import Energies
@@ -73,7 +73,8 @@ _HOMES = {
     "flexapod.version": ("__version__",),
 }
 _NAMES = {name: module for module, names in _HOMES.items() for name in names}
-_PACKAGES = ("model", "plot", "rigid", "study")
+_FORMER = {"rigid": "kinematics"}  # names of the release before
+_PACKAGES = ("kinematics", "model", "plot", "study")
 
 __all__ = [
     "ActuatorStudy",
@@ -95,6 +96,7 @@ __all__ = [
     "forward_kinematics",
     "inverse_dynamics",
     "inverse_kinematics",
+    "kinematics",
     "ladder",
     "load",
     "loads",
@@ -107,7 +109,6 @@ __all__ = [
     "plot",
     "preset",
     "replicate",
-    "rigid",
     "run",
     "simulate",
     "simulate_actuator",
@@ -125,6 +126,11 @@ def __getattr__(name: str) -> object:
         value = getattr(loaded(_NAMES[name]), name)
     elif name in _PACKAGES:
         value = loaded(f"flexapod.{name}")
+    elif name in _FORMER:
+        import warnings
+
+        warnings.warn(f"flexapod.{name} is flexapod.{_FORMER[name]} now", FutureWarning, stacklevel=2)
+        return loaded(f"flexapod.{_FORMER[name]}")
     else:
         raise AttributeError(f"module 'flexapod' has no attribute {name!r}")
     globals()[name] = value

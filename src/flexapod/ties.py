@@ -8,7 +8,7 @@ from typing import TypeVar
 import numpy as np
 from numpy.typing import NDArray
 
-from flexapod.typing import Array, Mask
+from flexapod.arrays import Array, Mask
 
 __all__ = ["EQUALS", "alike", "first_largest", "first_least", "most", "ranked"]
 

@@ -7,7 +7,7 @@ from pathlib import Path
 
 __version__ = "0.1.0"
 
-_WITHOUT_NUMBERS = ("app", "exchange", "paper", "plot", "proof", "report")
+_WITHOUT_NUMBERS = ("cli", "exchange", "page", "paper", "plot", "report", "verify")
 _KINDS = (".py", ".c", ".h", ".toml")
 
 

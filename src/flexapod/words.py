@@ -8,7 +8,7 @@ from typing import Any
 import numpy as np
 from numpy.typing import ArrayLike
 
-from flexapod.typing import Array
+from flexapod.arrays import Array
 
 _SENTENCE = re.compile(r"\. (?=[A-Z])")
 NOTHING = 1e-12  # length that is rounding [m]

@@ -6,7 +6,7 @@ from scipy.linalg import eigh, null_space
 from tests.oracles import beams
 from tests.runs import leg_vector, paper_robot, uncompiled, with_legs
 
-from flexapod import rigid
+from flexapod import kinematics
 from flexapod.solve.at_poses import robot_modes
 
 PISTON = beams.round_section(0.027, 200e9, 7800.0)
@@ -110,7 +110,7 @@ def test_axial_vibration_with_a_free_tip():
 def test_legs_of_a_robot_whose_platform_cannot_move(modes, tolerance):
     # A platform of 1e12 kg holds the tips; twelve equal lateral modes remain above its own six.
     study = paper_robot()
-    home = rigid.inverse_kinematics(study.robot, rigid.home_pose(study.robot)).length[0, 0]
+    home = kinematics.inverse_kinematics(study.robot, kinematics.home_pose(study.robot)).length[0, 0]
     mouth = float(home - 0.6)
 
     def plain(leg):

@@ -7,9 +7,9 @@ from tests.mechanisms import built, leg, ring
 from tests.runs import paper_robot, with_legs
 
 import flexapod as fx
+from flexapod.description.robot import describe
 from flexapod.errors import ComputationError, InputError
 from flexapod.model import Cylinder, Piston, ServoDrive
-from flexapod.study.before.describe.robot import describe
 
 FOUR = np.arange(4) * 90.0
 SERVO = ServoDrive(stiffness=4e7, damping=1e4)
@@ -27,8 +27,8 @@ def robot_study(rhoA, *, EA=1e8, servo=False, cylinders=False, gravity=0.0, **si
 def struts(study, *, servo):
     """Frequencies [Hz] of the payload on springs along the legs."""
     robot, piston = study.robot, study.robot.legs[0].piston
-    home, com = fx.rigid.home_pose(robot), robot.payload.com
-    J = fx.rigid.length_jacobian(
+    home, com = fx.kinematics.home_pose(robot), robot.payload.com
+    J = fx.kinematics.length_jacobian(
         robot.base_joints, robot.platform_joints - com, home.position[0] + com, np.eye(3), np.zeros(3)
     )
     k = 1 / (piston.length / piston.EA + (1 / SERVO.stiffness if servo else 0.0))

@@ -4,11 +4,11 @@ import numpy as np
 import pytest
 from tests.oracles.stewart_cases import base_circle, platform_circle
 
-from flexapod.rigid.dynamics import LegBodies, PayloadBody, inverse_dynamics
-from flexapod.rigid.jacobian import length_jacobian
-from flexapod.rigid.kinematics import leg_frames, leg_lengths, leg_state
-from flexapod.rigid.laws import Law
-from flexapod.rigid.trajectory import Poses, poses_from_coordinates, rotation_matrix
+from flexapod.kinematics.dynamics import LegBodies, PayloadBody, inverse_dynamics
+from flexapod.kinematics.inverse import leg_frames, leg_lengths, leg_state
+from flexapod.kinematics.jacobian import length_jacobian
+from flexapod.kinematics.laws import Law
+from flexapod.kinematics.trajectory import Poses, poses_from_coordinates, rotation_matrix
 
 BASE, PLATFORM, HOME, G = base_circle(0.25, 10), platform_circle(0.15, 10), 0.9, 9.81
 FRAMES = leg_frames(BASE, PLATFORM + np.array([0, 0, HOME]))

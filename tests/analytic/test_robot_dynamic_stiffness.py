@@ -1,6 +1,6 @@
 """Frequencies of the locked 6-UPS robot against exact dynamic stiffness and a count that misses none.
 
-First the oracle (`proof/dynamic_stiffness.py`) against closed forms and a count by finite elements, then `modes`
+First the oracle (`verify/dynamic_stiffness.py`) against closed forms and a count by finite elements, then `modes`
 against the oracle. Both are about the undeformed pose: gravity is zero.
 """
 
@@ -14,9 +14,9 @@ from tests.oracles import beams
 
 from flexapod import modes
 from flexapod.model import ServoDrive, preset
-from flexapod.proof import dynamic_stiffness, locked_robot
-from flexapod.proof.locked_robot import legs_and_body
-from flexapod.proof.robots import unlike_legs, without_cylinders, without_gravity
+from flexapod.verify import dynamic_stiffness, locked_robot
+from flexapod.verify.locked_robot import legs_and_body
+from flexapod.verify.robots import unlike_legs, without_cylinders, without_gravity
 
 PISTON = beams.round_section(0.027, 200e9, 7800.0)
 HOME = (0.0,) * 6

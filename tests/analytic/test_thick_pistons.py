@@ -16,8 +16,8 @@ from tests.stepped import (
 )
 
 from flexapod.elements.steps import held
+from flexapod.review.estimates import bending_errors, piston_section
 from flexapod.solve.sections import numeric_pieces, turning
-from flexapod.study.before.estimates import bending_errors, piston_section
 
 
 def spectra(n, length, step):

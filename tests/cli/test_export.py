@@ -6,8 +6,8 @@ import pytest
 
 from flexapod import load, modes
 from flexapod.exchange.export import ELEMENTS, MODES
-from flexapod.proof.engines import calculix
-from flexapod.proof.engines.engine import CALCULIX
+from flexapod.verify.engines import calculix
+from flexapod.verify.engines.engine import CALCULIX
 
 
 def test_writes_a_deck_named_after_the_study(flexapod, study, folder):

@@ -12,10 +12,10 @@ import pytest
 from tests.cli.conftest import SHORT
 from tests.cli.test_interrupt import heed_interrupts
 
-from flexapod.app import failures, options
-from flexapod.app.failures import guarded
+from flexapod.cli import failures, options
+from flexapod.cli.failures import guarded
+from flexapod.review import room
 from flexapod.study import open_results, store
-from flexapod.study.before import room
 
 posix = pytest.mark.skipif(not Path("/dev/full").exists(), reason="needs /dev/full")
 
@@ -111,7 +111,7 @@ def test_a_disk_that_fills_while_modes_are_written(flexapod, study, folder, monk
     def say(path, size):
         raise OSError(28, "No space left on device")
 
-    monkeypatch.setattr("flexapod.study.netcdf.write", full)
+    monkeypatch.setattr("flexapod.results.netcdf.write", full)
     monkeypatch.setattr(store, "_fill", say)
     for arguments in (["modes", study(*SHORT), "--out", "m"], ["run", study(*SHORT), "--out", "m"]):
         done = flexapod(*arguments)
@@ -121,7 +121,7 @@ def test_a_disk_that_fills_while_modes_are_written(flexapod, study, folder, monk
 
 
 def test_a_page_of_verify_that_could_not_be_written_is_refused_first(flexapod, folder, monkeypatch):
-    monkeypatch.setattr("flexapod.proof.pack.verify", lambda *_, **__: pytest.fail("computed"))
+    monkeypatch.setattr("flexapod.verify.pack.verify", lambda *_, **__: pytest.fail("computed"))
     (folder / "file").touch()
     for key in ("--html", "--markdown"):
         done = flexapod("verify", key, "file/page")
@@ -133,7 +133,7 @@ def test_a_page_of_verify_that_could_not_be_written_is_refused_first(flexapod, f
 #: `flexapod run` in a process that gets a signal while results.nc is half written.
 WRITING = """
 import os, signal, sys
-from flexapod.app import cli
+from flexapod.cli import cli
 from flexapod.study import netcdf
 
 whole = netcdf.write
@@ -170,7 +170,7 @@ def test_a_signal_after_the_last_step_loses_nothing(study, folder, module, name)
     """The results were made and written once, and gone with a signal that came meanwhile."""
     *cls, function = name.split(".")
     code = (
-        f"import os, signal, sys\nfrom flexapod.app import cli\nimport flexapod.{module} as owner\n"
+        f"import os, signal, sys\nfrom flexapod.cli import cli\nimport flexapod.{module} as owner\n"
         + "".join(f"owner = owner.{part}\n" for part in cls)
         + f"whole, count = owner.{function}, []\n"
         "def once(*a, **k):\n    count.append(1)\n    len(count) == 1 and os.kill(os.getpid(), signal.SIGTERM)\n"
@@ -189,7 +189,7 @@ def test_sigterm_keeps_what_was_computed(study, folder):
     changes = [('duration = "2 s" ', 'duration = "1000 s" '), ('hold = "1 s" ', 'hold = "999 s" ')]
     file = study(*changes, ("tolerance = 1e-4", 'step = "0.5 ms"\noutput_step = "10 ms"'))
     code = (
-        "import os, signal, sys\nfrom flexapod.study import record\nfrom flexapod.app import cli\n"
+        "import os, signal, sys\nfrom flexapod.study import record\nfrom flexapod.cli import cli\n"
         "kept = record._kept\ncount = []\n"
         "def some(*a):\n    count.append(1)\n    len(count) == 3 and os.kill(os.getpid(), signal.SIGTERM)\n"
         "    return kept(*a)\nrecord._kept = some\nsys.argv = ['flexapod', 'run', sys.argv[1]]\ncli.main()"
@@ -228,7 +228,7 @@ import os, signal, sys
 signal.signal(signal.SIGINT, signal.default_int_handler)
 from multiprocessing import popen_spawn_posix
 import distributed
-from flexapod.app import cli
+from flexapod.cli import cli
 
 launch = popen_spawn_posix.Popen._launch
 def announce(self, process):

@@ -10,8 +10,8 @@ import time
 import pytest
 import typer
 
-from flexapod.app import cli
-from flexapod.app.failures import guarded
+from flexapod.cli import cli
+from flexapod.cli.failures import guarded
 from flexapod.study import open_results
 
 LONG = [
@@ -79,7 +79,7 @@ def test_interrupted_run_as_json(study, folder):
 #: The command in a process that sends itself SIGINT when the simulation is under way.
 PROGRAM = """
 import os, signal, sys
-from flexapod.app import cli
+from flexapod.cli import cli
 from flexapod.document import terminal
 from contextlib import contextmanager
 

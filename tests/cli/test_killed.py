@@ -9,14 +9,14 @@ import pytest
 from tests.cli.conftest import SHORT
 from tests.started import none_left, started_by
 
-from flexapod import files
+from flexapod.runtime import files
 
 pytestmark = pytest.mark.skipif(sys.platform != "linux", reason="processes are found in /proc")
 #: A command that says when it is at a certain place, and stays there.
 STAYING = """
 import sys, time
 from pathlib import Path
-from flexapod.app import cli
+from flexapod.cli import cli
 
 def stay(*_, **__):
     print("<here>", flush=True)
@@ -56,7 +56,7 @@ def unfinished(folder):
 def test_a_run_that_is_killed_while_it_draws(study, folder):
     """A copy that draws slept for ever in its pipe, 210 MB each."""
     file = study(*SHORT)
-    place = "from flexapod.app import options\noptions.PROCESSES = 3\noptions.write_data = stay"
+    place = "from flexapod.cli import options\noptions.PROCESSES = 3\noptions.write_data = stay"
     killed(place, "run", file, "--quiet", others=2)
 
 

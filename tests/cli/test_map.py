@@ -4,8 +4,8 @@ import json
 
 import pytest
 
+from flexapod.review import room
 from flexapod.study import open_results
-from flexapod.study.before import room
 from flexapod.surveys.workspace.findings import SCALARS
 
 LUMPED = ('fidelity = "assumed-modes"', 'fidelity = "lumped"')

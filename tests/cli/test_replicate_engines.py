@@ -18,8 +18,8 @@ from flexapod.paper import figures as paper_figures
 from flexapod.paper.outputs import replicate
 from flexapod.paper.report import paper_page
 from flexapod.paper.study import PaperStudy
-from flexapod.proof.engines.engine import EXUDYN
 from flexapod.study import modes, simulate, simulate_actuator
+from flexapod.verify.engines.engine import EXUDYN
 
 ASKED = {
     "engine": "Exudyn", "engine_version": "1.2.3", "elements": [30, 60], "guide": [0.01, 0.005], "step": 2.5e-4,
@@ -129,7 +129,7 @@ def test_absent_engine_is_refused_before_anything_is_touched(flexapod, folder, m
 PROGRAM = """
 import os, signal, subprocess, sys
 from contextlib import contextmanager
-from flexapod.app import cli, commands_proof
+from flexapod.cli import cli, commands_proof
 from flexapod.paper import study
 
 started, told = [], []

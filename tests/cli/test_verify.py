@@ -8,10 +8,10 @@ import pytest
 from tests.pack_outcomes import outcomes
 
 from flexapod.errors import ComputationError
-from flexapod.proof import pack
-from flexapod.proof.case import Case, Check, checks
-from flexapod.proof.engines.engine import CALCULIX, EXUDYN, MUJOCO, Engine
-from flexapod.proof.page import markdown, notes
+from flexapod.verify import pack
+from flexapod.verify.case import Case, Check, checks
+from flexapod.verify.engines.engine import CALCULIX, EXUDYN, MUJOCO, Engine
+from flexapod.verify.page import markdown, notes
 
 pytestmark = pytest.mark.xdist_group("pack")  # one process computes the pack
 PAGE = Path(__file__).parents[2] / "docs" / "verification.md"

@@ -19,11 +19,11 @@ from tests.web.guests import CAMERA, until
 from websockets.sync.client import connect
 
 import flexapod as fx
-from flexapod.app.view import network
-from flexapod.app.view.logs import CONNECTIONS
-from flexapod.app.view.network import address, free_port, is_local
-from flexapod.app.view.opening import open_source
 from flexapod.errors import InputError
+from flexapod.page import network
+from flexapod.page.logs import CONNECTIONS
+from flexapod.page.network import address, free_port, is_local
+from flexapod.page.opening import open_source
 from flexapod.study import save
 
 
@@ -60,7 +60,7 @@ def test_a_missing_package_is_named_with_the_line_that_installs_it(flexapod, stu
 def test_other_commands_do_without_the_page_and_the_engines(study, command):
     """In a process of its own, where none of their packages can be imported."""
     absent = ("msgspec", "tomlkit", "viser", "websockets", "exudyn", "mujoco")
-    code = f"import sys; sys.modules.update(dict.fromkeys({absent})); from flexapod.app.cli import main; main()"
+    code = f"import sys; sys.modules.update(dict.fromkeys({absent})); from flexapod.cli.cli import main; main()"
     words = [command, str(study())] if command == "check" else [command, "leg"]
     run = subprocess.run([sys.executable, "-c", code, *words], capture_output=True, text=True, check=False)
     assert run.returncode == 0, run.stderr

@@ -6,7 +6,7 @@ import numpy as np
 import pytest
 from tests.runs import balance, paper_robot, run_actuator, run_robot, with_legs
 
-from flexapod import rigid
+from flexapod import kinematics
 from flexapod.model import ServoDrive, override, preset
 from flexapod.solve.actuator_march import actuator_system
 from flexapod.solve.at_poses import robot_modes
@@ -93,7 +93,7 @@ def test_momentum_of_a_payload_pulled_by_free_legs():
         robot=study.robot.replace(gravity=[0, 0, 0]), motion=study.motion.replace(profile="smooth", duration=1.0)
     )
     study = override(study, fidelity="lumped", step=5e-4, duration=0.05)
-    path = rigid.poses(study.robot, study.motion, np.array([0.5]))
+    path = kinematics.poses(study.robot, study.motion, np.array([0.5]))
     from flexapod.solve.rigid_motion import rigid_state
     from flexapod.solve.robot_system import robot_system
 

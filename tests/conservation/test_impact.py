@@ -3,7 +3,7 @@
 import numpy as np
 from tests.runs import balance, collect, paper_robot, run_actuator
 
-from flexapod import rigid
+from flexapod import kinematics
 from flexapod.model import override, preset
 from flexapod.solve.robot_march import prepare
 
@@ -17,7 +17,7 @@ def test_rigid_robot_takes_the_whole_impact():
     # Rigid legs leave the payload no choice: kinetic energy jumps to that of the commanded velocity field.
     march, run = first_instant("rigid")
     study = paper_robot(profile="linear")
-    kinetic, _ = rigid.energies(study.robot, rigid.poses(study.robot, study.motion, np.zeros(1)))
+    kinetic, _ = kinematics.energies(study.robot, kinematics.poses(study.robot, study.motion, np.zeros(1)))
     np.testing.assert_allclose([march.impact, run["energy"][0, 0]], kinetic[0], rtol=1e-8)
 
 

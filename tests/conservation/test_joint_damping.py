@@ -9,12 +9,12 @@ from tests.mechanisms import built, leg
 from tests.runs import balance, collect
 
 import flexapod as fx
+from flexapod.kinematics.limbs import limbs
 from flexapod.model import AxisMotion, Joint, Payload, Simulation, loads, override, preset, preset_text, to_toml
 from flexapod.model.cylinder import Cylinder
 from flexapod.model.piston import Piston
-from flexapod.rigid.limbs import limbs
 from flexapod.solve import parameters
-from flexapod.solve.losses import loss_frequency, loss_words
+from flexapod.solve.loss_factor import loss_frequency, loss_words
 from flexapod.solve.robot_march import prepare
 
 LENGTH, STIFF = 0.5, 300.0

@@ -9,16 +9,16 @@ from tests import machines, mechanisms
 from tests.runs import paper_robot, with_legs
 
 import flexapod as fx
-from flexapod import rigid
+from flexapod import kinematics
 from flexapod.errors import ComputationError, InputError
 from flexapod.model import Geometry, Gradient, Heat, Joint, LengthSpread, RatioSpread, Tolerances
-from flexapod.study.accuracy.imperfect import bent
-from flexapod.study.accuracy.play import half_play
-from flexapod.study.accuracy.rows import rows
-from flexapod.study.accuracy.sensitivity import sensitivity
-from flexapod.study.accuracy.spread import spreading
-from flexapod.study.before.estimates import buckling_load
-from flexapod.study.path import RigidPath
+from flexapod.pose_errors.imperfect import bent
+from flexapod.pose_errors.play import half_play
+from flexapod.pose_errors.rows import rows
+from flexapod.pose_errors.sensitivity import sensitivity
+from flexapod.pose_errors.spread import spreading
+from flexapod.results.path import RigidPath
+from flexapod.review.estimates import buckling_load
 
 POSE = {"surge": 0.02, "heave": 0.03, "roll": 0.1, "yaw": -0.15}
 ROBOTS = {
@@ -60,7 +60,7 @@ def test_parts_add_up_and_rows_of_a_budget_are_theirs():
     assert list(found.error.values) == ["leg_offset", "lead", "heat_base", "heat_piston"]
     whole = found.pose_error_by_part.sum(("error", "leg"))
     np.testing.assert_allclose(whole, found.pose_error_first_order, atol=1e-18)
-    path = rigid.poses_from_home(robot, np.array([[0.02, 0, 0.03, 0.1, 0, -0.15]]))
+    path = kinematics.poses_from_home(robot, np.array([[0.02, 0, 0.03, 0.1, 0, -0.15]]))
     table = rows(study, path)
     kinds = [(row.part, row.kind, row.nature) for row in table]
     assert kinds == [
@@ -114,7 +114,7 @@ def test_the_covariance_is_that_of_machines_drawn(kind):
 def test_the_worst_case_is_attained_in_a_corner_of_the_box():
     robot = paper_robot().robot.replace(tolerances=Tolerances(leg_offset=LengthSpread(box=1e-5), base_joints=2e-5))
     found = fx.accuracy(robot, POSE)
-    at = sensitivity(robot, rigid.poses_from_home(robot, np.array([[0.02, 0, 0.03, 0.1, 0, -0.15]])))
+    at = sensitivity(robot, kinematics.poses_from_home(robot, np.array([[0.02, 0, 0.03, 0.1, 0, -0.15]])))
     effect = next(one for one in spreading(robot, at, np.zeros(6), lambda: np.zeros((6, 6))) if one.boxed).effect[:, 0]
     corners = np.array([np.array(signs) @ effect for signs in itertools.product((-1, 1), repeat=6)])
     np.testing.assert_allclose(np.abs(corners).max(axis=0), found.pose_worst, rtol=1e-12)
@@ -159,7 +159,7 @@ def test_a_change_of_sign_conserves_the_play():
     path = RigidPath(study, data.jump_time.values)
     for k in range(data.sizes["jump"]):
         # Lengths change by the whole play, 10 um, of that leg alone.
-        J = rigid.drive_jacobian(study.robot, path.poses.part(slice(k, k + 1)), study.robot.tool)[0]
+        J = kinematics.drive_jacobian(study.robot, path.poses.part(slice(k, k + 1)), study.robot.tool)[0]
         lengths = J @ data.jump_size.values[k]
         expected = np.zeros(6)
         expected[int(data.jump_leg[k]) - 1] = 1e-5
@@ -181,7 +181,7 @@ def test_backlash_of_a_slider_counts_along_its_way():
     robot = mechanisms.sliders("PUS")
     found = fx.accuracy(loose(robot, backlash=1e-5), {"surge": 0.02})
     sign = np.sign(found.pressing_force.sel(place="drive"))
-    at = sensitivity(robot, rigid.poses_from_home(robot, np.array([[0.02, 0, 0, 0, 0, 0]])))
+    at = sensitivity(robot, kinematics.poses_from_home(robot, np.array([[0.02, 0, 0, 0, 0, 0]])))
     np.testing.assert_allclose(found.play_error, -(sign.values * 5e-6) @ at.coordinate[0, :, 0], atol=1e-19)
 
 
@@ -200,7 +200,7 @@ def crooked(robot, bow=None, eccentricity=None, **piston):
 def test_bent_legs_grow_and_shorten_as_the_beam_column_does():
     # y'' EI + P (y + y0) = 0 outside of the mouth by differences, the rigid part turning with the slope there.
     robot = crooked(mechanisms.hexapod(), bow=1e-3)
-    leg, at = robot.legs[0], sensitivity(robot, rigid.home_pose(robot))
+    leg, at = robot.legs[0], sensitivity(robot, kinematics.home_pose(robot))
     m, s, EI = leg.cylinder.mouth, robot.home_lengths[0] - leg.cylinder.mouth, leg.piston.EI
     euler = buckling_load(leg, np.array([s]))[0]
     push = 0.3 * euler
@@ -231,7 +231,7 @@ def test_eccentric_ends_bend_a_bar_by_the_secant_formula():
         for leg in robot.legs
     )  # fmt: skip
     robot = robot.replace(legs=tuple(leg.replace(piston=leg.piston.replace(length=2.0)) for leg in legs))
-    at = sensitivity(robot, rigid.home_pose(robot))
+    at = sensitivity(robot, kinematics.home_pose(robot))
     euler = np.pi**2 * robot.legs[0].piston.EI / robot.home_lengths**2
     for share in (0.05, 0.3, 0.6):
         found = bent(robot, at, share * euler)
@@ -248,7 +248,7 @@ def test_a_piston_that_is_warmer_on_one_side_is_bent():
     robot = paper_robot().robot.replace(heat=Heat(gradient=Gradient(piston=1.0)))
     legs = tuple(leg.replace(cylinder=leg.cylinder.replace(mouth=0.0, com=0.0)) for leg in robot.legs)
     free = robot.replace(legs=tuple(leg.replace(piston=leg.piston.replace(length=2.0)) for leg in legs))
-    at = sensitivity(free, rigid.home_pose(free))
+    at = sensitivity(free, kinematics.home_pose(free))
     sag = 11.8e-6 / 0.027 * free.home_lengths**2 / 8
     found = bent(free, at, np.zeros(6))
     np.testing.assert_allclose(found.deflection, sag, rtol=1e-12)

@@ -8,9 +8,9 @@ from tests.runs import run_robot
 
 import flexapod as fx
 from flexapod.errors import InputError
+from flexapod.kinematics import base_law, base_placed
 from flexapod.model import Initial, ServoDrive, loads, preset_text
 from flexapod.model.mount import BaseMotion, Mount
-from flexapod.rigid import base_law, base_placed
 
 A = np.array([0.7, -0.4, 1.1])
 MOUNT = Mount(at=[0, 0, -0.1], stiffness=np.diag([3e8, 2e8, 5e8, 3e7, 2e7, 4e7]), mass=150.0, inertia=np.eye(3) * 8,
@@ -95,7 +95,7 @@ def test_the_force_on_the_base_is_the_weight_and_what_all_masses_take(shaken):
 def test_a_small_shake_in_modes():
     # Linear model about rest, forced by the base's acceleration (T18.4), against the march. A step of 0.25 ms at 60 Hz
     # turns phases by (omega h)^2 / 12 of a period's angle: 1e-3; shapes are of the first order in the sag.
-    from flexapod.rigid import home_pose
+    from flexapod.kinematics import home_pose
     from flexapod.solve.at_poses import locked_poses
     from flexapod.solve.linear import linear_robot
 

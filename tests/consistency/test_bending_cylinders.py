@@ -9,7 +9,7 @@ from tests.machines import machine
 from tests.oracles.two_beams import TwoBeams
 from tests.stepped import function, vector
 
-from flexapod import rigid
+from flexapod import kinematics
 from flexapod.bases import axial_basis
 from flexapod.model import MATERIALS, Cylinder, Guide, Mounted, Piston, PistonSection, Simulation
 from flexapod.model.material import Tube
@@ -51,7 +51,7 @@ class Ours:
 
     def __init__(self, robot, free, modes):
         self.leg = robot.legs[0]
-        shapes = robot_shapes(robot, Simulation(modes=modes), rigid.robot_limbs(robot))
+        shapes = robot_shapes(robot, Simulation(modes=modes), kinematics.robot_limbs(robot))
         self.shapes = replace(shapes, axial=axial_basis(0))
         self.length = self.leg.cylinder.mouth + free
 

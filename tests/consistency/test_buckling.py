@@ -6,9 +6,9 @@ from tests.mechanisms import planar
 from tests.stepped import section
 
 import flexapod as fx
+from flexapod.description.robot import describe
 from flexapod.model import AxisMotion, ConstantWrench, Guide, Load, Piston, Simulation, StepWrench, Study
 from flexapod.solve.kernel import kernel
-from flexapod.study.before.describe.robot import describe
 
 
 @pytest.fixture
@@ -40,7 +40,7 @@ def test_check_modes_and_march_have_one_buckling_load(interpreted):
     still = AxisMotion(type="yaw", amplitude=0.0, duration=0.1)
     study = Study(robot=robot, motion=still, simulation=Simulation(duration=0.1))
     checked = [leg.euler_load for leg in describe(study).legs]
-    limbs = fx.rigid.rigid_limbs(robot)
+    limbs = fx.kinematics.rigid_limbs(robot)
     along = limbs.platform[0] - limbs.base[0]
     arm = np.cross(limbs.platform[0], along / np.linalg.norm(along))[2]
 

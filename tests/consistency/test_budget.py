@@ -7,10 +7,10 @@ from tests.machines import SCREW, SOFT, machine, study, symmetric
 from tests.runs import paper_robot
 
 import flexapod as fx
+from flexapod.error_budget.rules import Budget
 from flexapod.errors import InputError
 from flexapod.model import AxisMotion, Geometry, Heat, Joint, Nut, PrescribedDrive, ServoDrive, Tolerances
-from flexapod.study.accuracy.rows import ErrorRow
-from flexapod.study.budgets.rules import Budget
+from flexapod.pose_errors.rows import ErrorRow
 
 SERVO = ServoDrive(stiffness=2e7, damping=2e4)
 OFFSETS = Geometry(leg_offset=[2e-5, 0, 0, -1e-5, 0, 0], lead=3e-5)
@@ -129,8 +129,8 @@ def test_along_a_motion_dynamic_rows_add_exactly_and_with_the_static_ones_make_t
         np.testing.assert_allclose(rows + left, found.budget_total.sel(kind=kind), atol=1e-18)
         assert np.abs(left).max() < 2e-3 * np.abs(found.budget_total.sel(kind=kind)).max()
     time = float(found.peak_time.sel(component="z"))
-    pose = fx.rigid.poses(s.robot, s.motion, np.array([time]))
-    static = fx.budget(s, fx.rigid.Poses.at_rest(pose.position, pose.rotation))
+    pose = fx.kinematics.poses(s.robot, s.motion, np.array([time]))
+    static = fx.budget(s, fx.kinematics.Poses.at_rest(pose.position, pose.rotation))
     whole = static.budget_total.sel(kind="systematic") + found.budget_total.sel(kind="dynamic_peak")
     # The spline through poses at rest is exact at its knots: here at all instants.
     assert float(whole.sel(component="z")) == pytest.approx(

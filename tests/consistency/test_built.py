@@ -6,10 +6,10 @@ from tests import machines, mechanisms
 from tests.runs import paper_robot
 
 import flexapod as fx
-from flexapod import rigid
+from flexapod import kinematics
 from flexapod.errors import ComputationError, InputError
+from flexapod.kinematics.built import built_parts
 from flexapod.model import MATERIALS, Expansion, Geometry, Heat
-from flexapod.rigid.built import built_parts
 from flexapod.solve.robot_march import prepare
 
 RNG = np.random.default_rng(7)
@@ -23,8 +23,8 @@ ERRORS = {
 
 
 def displaced(robot, pose=POSE):
-    path = rigid.poses_from_home(robot, pose)
-    found = rigid.built_poses(robot, path)
+    path = kinematics.poses_from_home(robot, pose)
+    found = kinematics.built_poses(robot, path)
     return found.position - path.position, found.rotation @ path.rotation.swapaxes(1, 2), path
 
 
@@ -82,8 +82,8 @@ def test_a_machine_with_screws_runs_and_blames_the_heat():
     robot = machines.machine(drive=machines.SCREW)
     warm = robot.replace(heat=Heat(screw=25.0), geometry=Geometry(lead=1e-4, leg_offset=ERRORS["leg_offset"]))
     drawn, hot = (fx.simulate(machines.study(x), fidelity="lumped", duration=0.03, step=1e-3) for x in (robot, warm))
-    path = rigid.poses(warm, machines.study(warm).motion, hot.time.values)
-    com = rigid.built_poses(warm, path).place(warm.com) - path.place(warm.com)
+    path = kinematics.poses(warm, machines.study(warm).motion, hot.time.values)
+    com = kinematics.built_poses(warm, path).place(warm.com) - path.place(warm.com)
     # Beside the vibration, which the same command excites alike: errors of 1e-4 of a leg change it by as much.
     sag = np.abs(drawn.com_deviation).max().item()
     np.testing.assert_allclose(hot.com_deviation - drawn.com_deviation, com, atol=5e-3 * sag)
@@ -93,11 +93,11 @@ def test_a_machine_with_screws_runs_and_blames_the_heat():
 
 
 def test_lead_and_offset_lengthen_a_leg_as_they_say():
-    robot, path = hexapod(), rigid.poses_from_home(hexapod(), POSE)
-    lengths = rigid.inverse_kinematics(robot, path).length
+    robot, path = hexapod(), kinematics.poses_from_home(hexapod(), POSE)
+    lengths = kinematics.inverse_kinematics(robot, path).length
     expected = lengths + ERRORS["leg_offset"] + ERRORS["lead"] * (lengths - robot.home_lengths)
     own = robot.replace(geometry=Geometry(leg_offset=ERRORS["leg_offset"], lead=ERRORS["lead"]))
-    found = rigid.inverse_kinematics(robot, rigid.built_poses(own, path)).length
+    found = kinematics.inverse_kinematics(robot, kinematics.built_poses(own, path)).length
     np.testing.assert_allclose(found, expected, atol=1e-15)
 
 
@@ -109,10 +109,10 @@ def test_temperatures_over_time_are_those_of_the_table():
     rise = np.array([0, 4, 6, 6])[:, None] * np.ones(6)
     np.testing.assert_allclose(piston.size(t).position, MATERIALS["steel"].expansion * rise, atol=1e-18)
     assert not np.delete(cylinder.size(t).position, 2, axis=1).any()
-    found = rigid.built_poses(robot, rigid.poses_from_home(robot, np.repeat(POSE, 4, axis=0)), t)
+    found = kinematics.built_poses(robot, kinematics.poses_from_home(robot, np.repeat(POSE, 4, axis=0)), t)
     still = hexapod().replace(heat=Heat(piston=26.0, cylinder=[20, 20, 23, 20, 20, 20]))
     np.testing.assert_allclose(
-        found.position[3], rigid.built_poses(still, rigid.poses_from_home(still, POSE)).position[0]
+        found.position[3], kinematics.built_poses(still, kinematics.poses_from_home(still, POSE)).position[0]
     )
 
 
@@ -122,8 +122,8 @@ def warming(heat):
     robot = study.robot.replace(heat=heat)
     study = study.replace(robot=robot, motion=study.motion.replace(duration=0.1, hold=0.0))
     data = fx.simulate(study, duration=0.12, step=1e-3)
-    path = rigid.poses(robot, study.motion, data.time.values)
-    return robot, data, path, rigid.built_poses(robot, path, data.time.values).place(robot.com)
+    path = kinematics.poses(robot, study.motion, data.time.values)
+    return robot, data, path, kinematics.built_poses(robot, path, data.time.values).place(robot.com)
 
 
 def test_legs_that_warm_up_while_they_move_take_the_rates_along():
@@ -160,7 +160,9 @@ def test_growth_of_plates_has_the_rates_of_its_values():
     heat = Heat(time=[0.0, 0.04, 0.1], columns=("base", "platform"), table=[[23, 20], [26, 22], [25, 30]])
     robot, t, h = study.robot.replace(heat=heat), np.array([0.02, 0.05, 0.09]), 1e-5
     for part in built_parts(robot):
-        at = [rigid.plate_grows(part, x, rigid.poses(robot, study.motion, x), robot) for x in (t - h, t, t + h)]
+        at = [
+            kinematics.plate_grows(part, x, kinematics.poses(robot, study.motion, x), robot) for x in (t - h, t, t + h)
+        ]
         # Central differences leave h^2 of the third derivative, 1e-7 of values, and rounding of 1e-20 m over h^2.
         np.testing.assert_allclose((at[2].position - at[0].position) / (2 * h), at[1].rate, rtol=1e-5, atol=1e-12)
         np.testing.assert_allclose((at[2].rate - at[0].rate) / (2 * h), at[1].acceleration, rtol=1e-4, atol=1e-9)
@@ -184,7 +186,7 @@ def run(**built):
     study = paper_robot(fidelity="lumped")
     study = study.replace(motion=study.motion.replace(duration=0.1, hold=0.0), robot=study.robot.replace(**built))
     data = fx.simulate(study, duration=0.1, step=1e-3)
-    path = rigid.poses(study.robot, study.motion, data.time.values)
+    path = kinematics.poses(study.robot, study.motion, data.time.values)
     return data, path, study.robot
 
 
@@ -194,8 +196,8 @@ def test_a_rigid_machine_runs_where_forward_kinematics_says(start):
     robot = study.robot.replace(geometry=Geometry(**ERRORS), heat=Heat(piston=24.0, base=22.0))
     study = study.replace(robot=robot, motion=study.motion.replace(duration=0.05, hold=0.0))
     data = fx.simulate(study, duration=0.05, step=1e-3)
-    path = rigid.poses(robot, study.motion, data.time.values)
-    com = rigid.built_poses(robot, path).place(robot.com)
+    path = kinematics.poses(robot, study.motion, data.time.values)
+    com = kinematics.built_poses(robot, path).place(robot.com)
     # The legs follow the commands as built exactly; closures leave rounding, through J^-1.
     np.testing.assert_allclose(data.com_position, com, atol=1e-12)
     assert np.abs(data.com_deviation).max() > 1e-4
@@ -203,8 +205,8 @@ def test_a_rigid_machine_runs_where_forward_kinematics_says(start):
 
 def test_an_elastic_machine_differs_from_it_by_the_sag():
     drawn, built = (fx.modes(robot, POSE[0], fidelity="lumped") for robot in (hexapod(), with_errors()))
-    path = rigid.poses_from_home(hexapod(), POSE)
-    com = rigid.built_poses(with_errors(), path).place(hexapod().com) - path.place(hexapod().com)
+    path = kinematics.poses_from_home(hexapod(), POSE)
+    com = kinematics.built_poses(with_errors(), path).place(hexapod().com) - path.place(hexapod().com)
     sag = np.abs(drawn.com_sag).max().item()
     # The load stands beside the drawn pose by the error, in parts of the platform's radius: so much the sag changes.
     atol = 2 * sag * np.linalg.norm(com) / 0.15
@@ -221,7 +223,7 @@ def test_causes_of_the_machine_as_built_add_up():
     assert np.abs(data.deviation_residual).max() < 10 * deviation**2 / robot.home_lengths.min()  # second order
     share = data.deviation_by_cause.sel(cause="geometry").sum("leg").values
     only = robot.replace(heat=None)
-    exact = rigid.built_poses(only, path).place(robot.com) - path.place(robot.com)
+    exact = kinematics.built_poses(only, path).place(robot.com) - path.place(robot.com)
     np.testing.assert_allclose(share, exact, atol=10 * deviation**2 / robot.home_lengths.min())
     for cause in ("bending", "drive"):
         assert np.abs(data.deviation_by_cause.sel(cause=cause)).max() < 1e-12
@@ -231,7 +233,7 @@ def test_modes_and_maps_see_the_machine_as_built():
     robot = hexapod()
     longer = robot.replace(geometry=Geometry(leg_offset=2e-3))
     found, drawn = fx.modes(longer, fidelity="lumped"), fx.modes(robot, fidelity="lumped")
-    up = rigid.built_poses(longer, rigid.home_pose(longer)).position[0, 2] - robot.home_height
+    up = kinematics.built_poses(longer, kinematics.home_pose(longer)).position[0, 2] - robot.home_height
     assert found.platform_position[2] - drawn.platform_position[2] == pytest.approx(up, rel=1e-3)
     many = fx.modes(longer, np.zeros((2, 6)), fidelity="lumped")
     np.testing.assert_allclose(many.frequency[0], found.frequency, rtol=1e-9)
@@ -242,8 +244,8 @@ def test_three_hinged_legs_as_built_stand_where_kinematics_says():
     rng = np.random.default_rng(5)
     errors = Geometry(**{f"{end}_joints": 1e-4 * rng.normal(size=(3, 3)) for end in ("base", "platform")})
     drawn, built = (fx.modes(x, fidelity="lumped").com_sag for x in (robot, robot.replace(geometry=errors)))
-    home = rigid.home_pose(robot)
-    com = rigid.built_poses(robot.replace(geometry=errors), home).place(robot.com) - home.place(robot.com)
+    home = kinematics.home_pose(robot)
+    com = kinematics.built_poses(robot.replace(geometry=errors), home).place(robot.com) - home.place(robot.com)
     atol = 2 * np.abs(drawn).max().item() * np.linalg.norm(com) / 0.2  # as above; the platform's radius
     np.testing.assert_allclose(built - drawn, com[0], atol=atol)
 
@@ -262,4 +264,4 @@ def test_joints_that_hold_too_much_are_said_not_to_fit():
     robot = mechanisms.eight()
     spread = Geometry(leg_offset=[1e-4, *[0.0] * 7])
     with pytest.raises(ComputationError, match="do not fit together without strain"):
-        rigid.built_poses(robot.replace(geometry=spread), rigid.home_pose(robot))
+        kinematics.built_poses(robot.replace(geometry=spread), kinematics.home_pose(robot))

@@ -7,8 +7,8 @@ from tests.mechanisms import ROBOTS
 import flexapod as fx
 from flexapod.exchange.export import abaqus_deck
 from flexapod.model import AxialSpring
-from flexapod.proof.engines import calculix
-from flexapod.proof.engines.engine import CALCULIX
+from flexapod.verify.engines import calculix
+from flexapod.verify.engines.engine import CALCULIX
 
 pytestmark = pytest.mark.skipif(not CALCULIX.found(), reason="needs CalculiX")
 

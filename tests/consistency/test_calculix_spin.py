@@ -3,12 +3,12 @@
 import numpy as np
 import pytest
 
-from flexapod import modes, rigid
+from flexapod import kinematics, modes
 from flexapod.exchange.export import abaqus_deck
 from flexapod.model import Study, preset
-from flexapod.proof.engines import calculix
-from flexapod.proof.engines.engine import CALCULIX
-from flexapod.study.arguments import as_pose
+from flexapod.results.arguments import as_pose
+from flexapod.verify.engines import calculix
+from flexapod.verify.engines.engine import CALCULIX
 
 POSE = (0.35, 0.1, -0.05, 0.0, 0.0, 0.3)
 
@@ -28,7 +28,7 @@ def turned_robot(axial_inertia):
 def test_axial_inertia_shifts_frequencies_alike():
     """What it shifts hardly depends on mesh and shear, which themselves are below 1e-3 of a frequency."""
     robots = [turned_robot(inertia) for inertia in (0.0, 0.1)]
-    beta = rigid.inverse_kinematics(robots[0], as_pose(robots[0], POSE)).beta
+    beta = kinematics.inverse_kinematics(robots[0], as_pose(robots[0], POSE)).beta
     assert np.abs(beta).max() > np.deg2rad(15.0)
     ours = [modes(robot, POSE, modes=5).frequency.values[:12] for robot in robots]
     theirs = [calculix.run(abaqus_deck(robot, POSE, elements=12, modes=14)).frequencies()[:12] for robot in robots]

@@ -27,11 +27,11 @@ def heavy(robot, mass=MASS):
 
 def test_the_drives_carry_it():
     """Torque about the shaft: m g times the horizontal distance of the centre of mass, across the shaft."""
-    path = [fx.rigid.poses_from_home(six_rus(), np.array([[0, 0, z, 0, 0, 0]])) for z in (0.0, 0.03)]
+    path = [fx.kinematics.poses_from_home(six_rus(), np.array([[0, 0, z, 0, 0, 0]])) for z in (0.0, 0.03)]
     for pose in path:
         robots = six_rus(), heavy(six_rus())
         none, with_mass = (rigid_forces(robot, pose, np.zeros(6)).drive_force[0] for robot in robots)
-        chi = fx.rigid.inverse_kinematics(six_rus(), pose).coordinate("chi")[0][0] + six_rus().home_carriages
+        chi = fx.kinematics.inverse_kinematics(six_rus(), pose).coordinate("chi")[0][0] + six_rus().home_carriages
         for i, leg in enumerate(six_rus().legs):
             arm = Rotation.from_rotvec(chi[i] * leg.carriage.unit).apply(np.array(leg.carriage.arm))
             centre = COM * arm / np.linalg.norm(arm)

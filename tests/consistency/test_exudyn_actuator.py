@@ -5,10 +5,10 @@ import pytest
 
 from flexapod import model
 from flexapod.errors import InputError
-from flexapod.proof.engines.engine import EXUDYN
-from flexapod.proof.engines.exudyn_actuator import simulate_actuator as exudyn_actuator
-from flexapod.proof.engines.exudyn_integration import Integration, extrapolated
 from flexapod.study.actuator import simulate_actuator
+from flexapod.verify.engines.engine import EXUDYN
+from flexapod.verify.engines.exudyn_actuator import simulate_actuator as exudyn_actuator
+from flexapod.verify.engines.exudyn_integration import Integration, extrapolated
 
 pytestmark = pytest.mark.skipif(not EXUDYN.found(), reason="needs Exudyn")
 

@@ -7,11 +7,11 @@ from flexapod import model
 from flexapod.errors import InputError
 from flexapod.model.joint import Joint
 from flexapod.model.spring import AxialSpring
-from flexapod.proof.cases.exudyn_parts import LOOP, MOTION, damped
-from flexapod.proof.engines.engine import EXUDYN
-from flexapod.proof.engines.exudyn_integration import Integration
-from flexapod.proof.engines.exudyn_robot import simulate_robot
 from flexapod.study.simulation import simulate
+from flexapod.verify.cases.exudyn_parts import LOOP, MOTION, damped
+from flexapod.verify.engines.engine import EXUDYN
+from flexapod.verify.engines.exudyn_integration import Integration
+from flexapod.verify.engines.exudyn_robot import simulate_robot
 
 pytestmark = pytest.mark.skipif(not EXUDYN.found(), reason="needs Exudyn")
 

@@ -3,12 +3,12 @@
 import numpy as np
 import pytest
 
-from flexapod import model, rigid
+from flexapod import kinematics, model
 from flexapod.errors import InputError
-from flexapod.proof.engines.engine import EXUDYN
-from flexapod.proof.engines.exudyn_integration import Integration, extrapolated
-from flexapod.proof.engines.exudyn_robot import simulate_robot
 from flexapod.study.simulation import simulate
+from flexapod.verify.engines.engine import EXUDYN
+from flexapod.verify.engines.exudyn_integration import Integration, extrapolated
+from flexapod.verify.engines.exudyn_robot import simulate_robot
 
 pytestmark = pytest.mark.skipif(not EXUDYN.found(), reason="needs Exudyn")
 
@@ -31,7 +31,7 @@ def test_rigid_drive_forces_of_a_combined_motion():
     errors = []
     for step in (1e-3, 5e-4):
         theirs = simulate_robot(robot, motion, Integration(duration=0.2, step=step, tolerance=1e-8), elements=0)
-        ours = rigid.inverse_dynamics(robot, rigid.poses(robot, motion, theirs.time)).actuator_force
+        ours = kinematics.inverse_dynamics(robot, kinematics.poses(robot, motion, theirs.time)).actuator_force
         errors.append(np.abs(theirs.actuator_force - ours).max() / np.abs(ours).max())
         assert np.abs(theirs.com_deviation).max() < 1e-10  # strokes fit the path: constraints to Newton's tolerance
     # Their multipliers are of second order in the step.

@@ -9,13 +9,13 @@ import pytest
 from tests.mechanisms import ROBOTS
 from tests.moving import moving
 
-from flexapod import rigid
+from flexapod import kinematics
 from flexapod.errors import ComputationError
-from flexapod.rigid.closures import Closed, Task, close, gaps
-from flexapod.rigid.limbs import COORDINATES, limbs
-from flexapod.rigid.screws import screws
-from flexapod.solve.fallen import fallen, refuse_fallen
-from flexapod.solve.many import RestStates
+from flexapod.kinematics.closures import Closed, Task, close, gaps
+from flexapod.kinematics.limbs import COORDINATES, limbs
+from flexapod.kinematics.screws import screws
+from flexapod.solve.batch import RestStates
+from flexapod.solve.branch import fallen, refuse_fallen
 from flexapod.solve.rigid_motion import rigid_state
 from flexapod.solve.robot_march import _Range, prepare
 from flexapod.solve.robot_system import robot_system
@@ -27,7 +27,7 @@ def test_rigid_legs_are_not_closed_there():
     legs = limbs(ROBOTS["6-UCU"](), rigid=True)
     turned = legs.home.copy()
     turned[2, SPIN] += np.pi  # the cross at the platform stands upside down
-    pose = rigid.Poses.at_rest(legs.position, legs.rotation)
+    pose = kinematics.Poses.at_rest(legs.position, legs.rotation)
     assert np.abs(gaps(legs, screws(legs, turned[None]), pose)).max() < 1e-12
     task = Task(legs.unknown, np.zeros(6, dtype=bool), np.zeros(3))
     there = Closed(q=turned[None], x=np.zeros((1, 6)), gap=np.zeros((1, 6)))
@@ -40,7 +40,7 @@ def turned():
     """A study, its system, and the state at its start with a leg half a turn off."""
     study = moving("6-UCU", fidelity="rigid", modes=None, duration=0.004)
     system = robot_system(study.robot, study.simulation, 0.0)
-    state = rigid_state(system, study.robot, rigid.poses(study.robot, study.motion, np.zeros(1)))
+    state = rigid_state(system, study.robot, kinematics.poses(study.robot, study.motion, np.zeros(1)))
     q = state.q.copy()
     q[2, system.kernel.shapes.index("spin")] += np.pi
     return study, system, state, replace(state, q=q)

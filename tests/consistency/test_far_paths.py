@@ -7,8 +7,8 @@ import pytest
 from tests.mechanisms import ROBOTS
 
 import flexapod as fx
+from flexapod.kinematics import closures
 from flexapod.model import AxisMotion
-from flexapod.rigid import closures
 
 SAMPLES = Path(__file__).parents[2] / "examples" / "mechanisms"
 

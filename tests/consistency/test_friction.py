@@ -14,22 +14,22 @@ from tests.mechanisms import ROBOTS
 from tests.runs import balance, run_robot
 
 import flexapod as fx
-from flexapod import rigid
+from flexapod import kinematics
 from flexapod.bases import lateral_basis
 from flexapod.elements.friction import BaseFriction, DriveFriction, PlatformFriction, rubbing, turning
 from flexapod.elements.slot import Slot
 from flexapod.elements.springs import springs_along
+from flexapod.error_budget.sentences import part_words
+from flexapod.kinematics.rotations import exponential
 from flexapod.mechanics.layout import columns, leg_parameters
 from flexapod.mechanics.sliding import friction_functions
 from flexapod.model import Feedback, Joint, JointFriction, ScrewFriction, ServoDrive, StrokeFriction, override
-from flexapod.rigid.rotations import exponential
+from flexapod.review.sliding import steady_friction
 from flexapod.solve.at_poses import locked_poses
 from flexapod.solve.friction import numbers, sliding
 from flexapod.solve.kernel import kernel
 from flexapod.solve.lost_motion import lost_motion, reversal
 from flexapod.solve.stiffness import displacement, tool_motion
-from flexapod.study.before.sliding import steady_friction
-from flexapod.study.budgets.sentences import part_words
 from flexapod.symbolic.functions import Interpreted
 from flexapod.symbolic.vocabulary import constant, symbol, zeros
 
@@ -258,7 +258,7 @@ def test_a_servo_lags_by_the_friction_of_its_stroke():
 
 def locked(robot, **simulation):
     one = override(study(robot), **simulation)
-    return locked_poses(robot, one.simulation, rigid.home_pose(robot))
+    return locked_poses(robot, one.simulation, kinematics.home_pose(robot))
 
 
 def test_lost_motion_is_what_a_slow_approach_shows():

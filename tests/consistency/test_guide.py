@@ -18,25 +18,25 @@ from tests.runs import balance, run_robot
 
 import flexapod as fx
 from flexapod.bases import axial_basis, lateral_basis
+from flexapod.description.robot import describe
 from flexapod.elements.guide import inner_turn
+from flexapod.error_budget.sentences import part_words
 from flexapod.errors import InputError
 from flexapod.exchange.export import abaqus_deck
+from flexapod.kinematics.rotations import exponential, quaternion, rotation_vector
 from flexapod.mechanics.layout import Shapes
 from flexapod.model import MATERIALS, Cylinder, ForceDrive, Guide, Mounted, PrescribedDrive, ServoDrive
 from flexapod.model.material import Tube
 from flexapod.model.spring import AxialSpring
-from flexapod.proof.engines import calculix
-from flexapod.proof.engines.engine import CALCULIX
-from flexapod.proof.engines.exudyn_robot import RobotProblem
+from flexapod.pose_errors.play import guide_play
 from flexapod.report.replay import replay
-from flexapod.rigid.rotations import exponential, quaternion, rotation_vector
+from flexapod.results.bodies import bodies_words
+from flexapod.review.estimates import buckling_load
 from flexapod.scene.geometry import RobotMotion
 from flexapod.solve.buckling import leg_loads
-from flexapod.study.accuracy.play import guide_play
-from flexapod.study.before.describe.robot import describe
-from flexapod.study.before.estimates import buckling_load
-from flexapod.study.bodies import bodies_words
-from flexapod.study.budgets.sentences import part_words
+from flexapod.verify.engines import calculix
+from flexapod.verify.engines.engine import CALCULIX
+from flexapod.verify.engines.exudyn_robot import RobotProblem
 
 L_P, MOUTH, LENGTH = 0.75, 0.315, 0.91
 TUBE = 4.0
@@ -298,10 +298,10 @@ def test_forces_of_the_bushings_balance_the_piston():
     d, EI = float(data.guide_overlap[0]), robot.legs[0].piston.EI
     assert turning == pytest.approx(1 / (d / (3 * EI) + 2 / 2e8 / d**2), rel=1e-3)  # the leg sags by some micrometres
     piston, length = robot.legs[0].piston, data.leg_length.values
-    limbs = fx.rigid.rigid_limbs(robot)
+    limbs = fx.kinematics.rigid_limbs(robot)
     for i in range(6):
         base, tip = limbs.base[i], limbs.platform[i]
-        R = fx.rigid.rotations.matrix(data.platform_quaternion.values)
+        R = fx.kinematics.rotations.matrix(data.platform_quaternion.values)
         centre = data.com_position.values - R @ robot.com
         axis = centre + R @ tip - base
         axis /= np.linalg.norm(axis)

@@ -8,16 +8,16 @@ from tests.mechanisms import LOWER, UPPER, built, leg, ring, rod, sliders
 from tests.moving import KINDS, SOFT, moving
 from tests.runs import run_robot
 
-from flexapod import rigid
+from flexapod import kinematics
 from flexapod.bases import lateral_basis
 from flexapod.integration import GeneralizedAlpha
+from flexapod.kinematics.limbs import limbs
 from flexapod.mechanics.layout import PAYLOAD_PARAMETERS, columns, leg_parameters
 from flexapod.model import AxisMotion, Cylinder, Load, Piston, Study, override, preset
-from flexapod.rigid.limbs import limbs
 from flexapod.solve import interpreted, native, parameters, robot_system
+from flexapod.solve.batch import RestStates
 from flexapod.solve.equilibrium import equilibria
 from flexapod.solve.kernel import kernel
-from flexapod.solve.many import RestStates
 from flexapod.solve.recording import Counters
 from flexapod.solve.rigid_motion import rigid_state
 from flexapod.solve.robot_march import prepare
@@ -31,7 +31,7 @@ PUSH = [50.0, -30, 20, 4, 5, -6]
 
 
 def law_of(system, study):
-    return robot_law(system, study.robot, study.load, lambda t: rigid.poses(study.robot, study.motion, t))
+    return robot_law(system, study.robot, study.load, lambda t: kinematics.poses(study.robot, study.motion, t))
 
 
 def marched(system, law, state, steps, twin=native, h=H):
@@ -48,7 +48,7 @@ def marched(system, law, state, steps, twin=native, h=H):
 def test_elimination_equals_the_dense_system(kind):
     study = moving(kind, SOFT if kind == "6-FPF" else None)
     system, law = prepare(study).system, law_of(prepare(study).system, study)
-    start = rigid_state(system, study.robot, rigid.poses(study.robot, study.motion, np.zeros(1)))
+    start = rigid_state(system, study.robot, kinematics.poses(study.robot, study.motion, np.zeros(1)))
     fast, slow = (marched(system, law, start, 10, twin) for twin in (native, interpreted))
     # Both end their Newton iterations at rounding; gaps of 1e-16 m make forces of M / (beta h^2) times that, 2e-7 N for
     # 100 kg, a hundred times more where legs are nearly parallel to what they hold.
@@ -61,7 +61,7 @@ def test_a_held_angle_is_the_limit_of_a_stiff_spring():
     study = moving("3-UPU")
     system = prepare(study).system
     layout, beta = leg_parameters(system.kernel.shapes), system.kernel.shapes.index("beta")
-    start = rigid_state(system, study.robot, rigid.poses(study.robot, study.motion, np.zeros(1)))
+    start = rigid_state(system, study.robot, kinematics.poses(study.robot, study.motion, np.zeros(1)))
 
     def pose(system):
         x = RestStates.of(replace(start, drive=np.zeros((3, system.ports.size))))
@@ -112,7 +112,7 @@ def test_carriages_that_accelerate_together_are_gravity():
     study, steps, a = moving("6-PUS"), 100, 3.0
     system = prepare(study).system
     shapes = system.kernel.shapes
-    start = rigid_state(system, study.robot, rigid.poses(study.robot, study.motion, np.zeros(1)))
+    start = rigid_state(system, study.robot, kinematics.poses(study.robot, study.motion, np.zeros(1)))
     start = replace(start, v=np.zeros(system.size), v_dot=np.zeros(system.size))
     rest = law_of(system, study)(np.zeros(1))[0]
     chi = list(system.ports).index(shapes.index("chi"))
@@ -145,7 +145,7 @@ def test_the_order_of_the_legs_does_not_matter(kind):
     study = moving(kind)
     system = prepare(study).system
     order, law = np.random.default_rng(3).permutation(system.legs), law_of(system, study)
-    start = rigid_state(system, study.robot, rigid.poses(study.robot, study.motion, np.zeros(1)))
+    start = rigid_state(system, study.robot, kinematics.poses(study.robot, study.motion, np.zeros(1)))
     other = replace(system, leg_p=system.leg_p[order], joint_p=system.joint_p[order], held=system.held[order])
     legs, payload = system.by_leg(start.v), start.v[-6:]
     turned = replace(start, q=start.q[order], v=np.concatenate([legs[order].ravel(), payload]))
@@ -165,7 +165,7 @@ def test_a_closed_attitude_with_free_angles_is_a_ball():
         leg_p=parameters.leg_parameters(robot, legs, shapes),
         held=robot_system._held(robot, legs, shapes, at_rest=False),
     )
-    path = rigid.poses(robot, study.motion, np.zeros(1))
+    path = kinematics.poses(robot, study.motion, np.zeros(1))
     ball, angles = (
         marched(system, law_of(system, study), rigid_state(system, robot, path), 100) for system in (plain, posed)
     )

@@ -11,6 +11,8 @@ from tests.texts import replaced
 
 import flexapod as fx
 from flexapod import model
+from flexapod.description.hydraulic import describe_hydraulics, hydraulic_remarks, oil_frequency
+from flexapod.description.robot import describe
 from flexapod.document import html
 from flexapod.document.check import check_items
 from flexapod.document.study import study_items
@@ -18,10 +20,8 @@ from flexapod.document.terminal import show
 from flexapod.elements.springs import springs_along
 from flexapod.errors import InputError
 from flexapod.model import AxialSpring, HydraulicDrive, HydraulicLimits
-from flexapod.solve.losses import loss_frequency
-from flexapod.study.before.describe.hydraulic import describe_hydraulics, hydraulic_remarks, oil_frequency
-from flexapod.study.before.describe.robot import describe
-from flexapod.study.path import RigidPath
+from flexapod.results.path import RigidPath
+from flexapod.solve.loss_factor import loss_frequency
 
 OIL = HydraulicDrive(
     bore=0.08, rod=0.056, stroke=0.5, bottom=0.05, dead_volume=[1e-4, 3e-4], bulk_modulus=1.2e9, leakage=1e-12

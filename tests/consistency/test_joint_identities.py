@@ -11,12 +11,12 @@ from tests.runs import uncompiled_kernel
 from tests.systems import ring as circle
 from tests.systems import robot, tangents
 
-from flexapod import rigid
+from flexapod import kinematics
 from flexapod.model import Simulation
 from flexapod.model.joint import Carriage, Joint
+from flexapod.results.poses import from_home
 from flexapod.solve.released import rigid_forces
 from flexapod.solve.stiffness import robot_stiffness
-from flexapod.study.poses import from_home
 
 FLEXIBLE = Simulation(fidelity="assumed-modes", modes=2)
 
@@ -63,9 +63,9 @@ def test_a_passive_leg_without_mass_carries_nothing_along_itself():
         cylinder=found.legs[3].cylinder.replace(mass=0, com=0, inertia=0), piston=found.legs[3].piston.replace(rhoA=0.0)
     )
     found = found.replace(legs=(*found.legs[:3], light))
-    path = rigid.home_pose(found)
+    path = kinematics.home_pose(found)
     forces = rigid_forces(found, path, np.array([30.0, -20, -100, 5, 4, 3]))
-    axes = rigid.leg_axes(found, path, rigid.inverse_kinematics(found, path))
+    axes = kinematics.leg_axes(found, path, kinematics.inverse_kinematics(found, path))
     along = (forces.joint_force[:, 3] * axes[:, 3]).sum(axis=-1)
     assert np.abs(along).max() < 1e-12 * np.abs(forces.joint_force).max()
     assert forces.drive_force[0, 3] == 0

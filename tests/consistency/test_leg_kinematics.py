@@ -5,7 +5,7 @@ import pytest
 from tests import legs_of_all_kinds as legs
 from tests.oracles import chains
 
-from flexapod.rigid.rotations import quaternion
+from flexapod.kinematics.rotations import quaternion
 
 MOVING = ["slider", "crank", "pose with spin and twist", "pose on a slider", "pose on a crank", "flexures on a crank"]
 SLIDER = ("carriage_mass", "carriage_axis")

@@ -10,8 +10,8 @@ from tests.texts import replaced
 
 import flexapod as fx
 from flexapod import model
-from flexapod.study.before.describe.robot import describe
-from flexapod.study.ideal import held
+from flexapod.description.robot import describe
+from flexapod.results.ideal import held
 
 
 def shares(name):

@@ -9,20 +9,20 @@ from scipy.linalg import eigh, null_space
 from tests.runs import paper_robot, with_legs
 
 import flexapod as fx
-from flexapod import rigid
+from flexapod import kinematics
 from flexapod.model import ConstantWrench, Cylinder, Load, ServoDrive, Waypoint, WaypointMotion, override
+from flexapod.results.poses import from_home
 from flexapod.solve.arrow import arrow_solve
 from flexapod.solve.at_poses import locked_poses, robot_modes
+from flexapod.solve.batch import RestStates, matrices_at_rest, residual_at_rest
 from flexapod.solve.elimination import solve_each
 from flexapod.solve.equilibrium import equilibria
 from flexapod.solve.kernel import interpreted_kernel
-from flexapod.solve.many import RestStates, matrices_at_rest, residual_at_rest
 from flexapod.solve.modes import modes_of
-from flexapod.solve.rest import rest_commands
 from flexapod.solve.rigid_motion import rigid_rest
 from flexapod.solve.saddle import saddle_solve
+from flexapod.solve.static_loads import rest_commands
 from flexapod.solve.stiffness import robot_stiffness, stiffness_of, tool_motion
-from flexapod.study.poses import from_home
 
 WRENCH = np.array([50.0, -30.0, -200.0, 5.0, 4.0, -3.0])
 LOAD = Load(wrench=ConstantWrench(value=WRENCH))
@@ -208,7 +208,7 @@ def test_public_call_takes_many_poses():
     np.testing.assert_allclose(data.pose_from_home, poses, atol=1e-15)
     named = fx.modes(study, {"heave": [0.0, 0.08], "pitch": [0.0, 0.2]})
     np.testing.assert_allclose(named.frequency, data.frequency[[0, 3]], rtol=1e-12)
-    given = rigid.Poses.at_rest(
+    given = kinematics.Poses.at_rest(
         *(x[:5] for x in (from_home(study.robot, poses).position, from_home(study.robot, poses).rotation))
     )
     np.testing.assert_array_equal(fx.modes(study, given).frequency, data.frequency[:5])

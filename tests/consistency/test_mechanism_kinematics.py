@@ -6,10 +6,10 @@ from tests.chains import NAMED, PLANES, as_mechanism
 from tests.mechanisms import ROBOTS, THREE, built, leg, ring
 from tests.oracles import virtual_power
 
-from flexapod import rigid
+from flexapod import kinematics
+from flexapod.kinematics.limbs import limbs
+from flexapod.kinematics.mobility import mobility
 from flexapod.model import CombinedMotion
-from flexapod.rigid.limbs import limbs
-from flexapod.rigid.mobility import mobility
 
 AMPLITUDES = {"surge": 0.03, "sway": -0.02, "heave": 0.04, "roll": 0.15, "pitch": -0.12, "yaw": 0.2}
 TILTS, SHIFTS = ("heave", "roll", "pitch"), ("surge", "sway", "heave")
@@ -36,8 +36,8 @@ def test_legs_follow_the_platform(name):
     pivot = [0.01, -0.02, 0.03] if own == tuple(NAMED) else [0, 0, 0]
     motion = CombinedMotion(amplitudes={axis: AMPLITUDES[axis] for axis in own}, duration=DURATION, pivot=pivot)
     t = np.array([0.12, 0.3])
-    path = rigid.poses(robot, motion, t)
-    legs = rigid.inverse_kinematics(robot, path)
+    path = kinematics.poses(robot, motion, t)
+    legs = kinematics.inverse_kinematics(robot, path)
     mechanism, found = as_mechanism(robot, own, pivot), None
     for i, instant in enumerate(t):
         law = np.array([quintic(AMPLITUDES[axis], instant) for axis in own]).T
@@ -97,7 +97,7 @@ def test_rates_about_a_pivot_that_is_not_the_origin():
     )  # fmt: skip
     h = 1e-3
     t = np.array([0.3, 0.6])[:, None] + h * np.arange(-2, 3)
-    path = rigid.poses(robot, motion, t.ravel())
+    path = kinematics.poses(robot, motion, t.ravel())
 
     def slope(values):
         x = values.reshape(2, 5, *values.shape[1:])

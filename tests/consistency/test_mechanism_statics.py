@@ -9,13 +9,13 @@ from scipy.linalg import block_diag, eigh, null_space
 from tests.mechanisms import ROBOTS as KINDS
 from tests.systems import of_robot, ring, robot, tangents
 
-from flexapod import rigid
+from flexapod import kinematics
+from flexapod.kinematics.rotations import turned
 from flexapod.model.payload import Payload
-from flexapod.rigid.rotations import turned
 from flexapod.solve.arrow import arrow_solve
+from flexapod.solve.batch import matrices_at_rest, residual_at_rest
 from flexapod.solve.elimination import closed, leg_bases
 from flexapod.solve.equilibrium import _Acts, _loaded_slowly, equilibria
-from flexapod.solve.many import matrices_at_rest, residual_at_rest
 from flexapod.solve.reduction import expanded, null_space_of_borders, reduced
 from flexapod.solve.rigid_motion import rigid_rest
 
@@ -68,7 +68,7 @@ def of_kind(name, **simulation):
     """A robot of another kind, moved away from home a little, its payload light enough for soft joints."""
     model = KINDS[name]().replace(payload=Payload(mass=10.0, inertia=[0.4, 0.5, 0.6], com=[0.02, 0.01, 0.05]))
     system = of_robot(model, **{"fidelity": "assumed-modes", "modes": 2} | simulation)
-    return system, rigid_rest(system, model, rigid.home_pose(model))
+    return system, rigid_rest(system, model, kinematics.home_pose(model))
 
 
 for kind in ("6-UCU", "6-FPF", "3-UPS+UP", "3-PUU", "6-RUS", "planar 3-PRR"):

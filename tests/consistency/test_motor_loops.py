@@ -12,20 +12,20 @@ from tests.machines import NUT, SCREW, machine, study, symmetric
 from tests.runs import balance, run_robot
 
 import flexapod as fx
-from flexapod import model, rigid
+from flexapod import kinematics, model
+from flexapod.description.robot import describe
 from flexapod.errors import InputError
 from flexapod.exchange.export import abaqus_deck
 from flexapod.integration import GeneralizedAlpha
 from flexapod.model import Encoder, Loop, Motor, Ripple, Rotor
-from flexapod.proof.engines.exudyn_robot import RobotProblem
 from flexapod.solve import interpreted, native
 from flexapod.solve.at_poses import locked_poses
 from flexapod.solve.linear import linear_robot
-from flexapod.solve.losses import loss_frequency
+from flexapod.solve.loss_factor import loss_frequency
 from flexapod.solve.recording import Counters
 from flexapod.solve.robot_march import prepare
 from flexapod.solve.tables import robot_law
-from flexapod.study.before.describe.robot import describe
+from flexapod.verify.engines.exudyn_robot import RobotProblem
 
 LOOP = Loop(stiffness=50.0, damping=0.5)
 STEEL = SCREW.material.replace(E=1e15, density=1e-3)
@@ -133,7 +133,7 @@ def test_loops_unstable_at_some_poses_alone_are_said_with_the_pose_or_the_instan
 def test_response_to_a_force_is_that_of_two_masses():
     hand = Hand(with_loop(stiffness=10.0), gravity=[0, 0, 0])
     given = study(hand.robot, fidelity="rigid")
-    ours = linear_robot(locked_poses(given.robot, given.simulation, rigid.home_pose(given.robot)))
+    ours = linear_robot(locked_poses(given.robot, given.simulation, kinematics.home_pose(given.robot)))
     f = np.array([0.3, 10.0, 50.0, 200.0])
     answer = ours.tool[2] @ ours.amplitudes(f, ours.inputs["wrench"][:, 2:3])[..., 0].T
     force = np.eye(6)[2] / hand.M
@@ -346,7 +346,7 @@ class TestFiles:
 def test_elimination_without_symmetry_equals_the_dense_system():
     given = study(mixed(), fidelity="lumped", step=1e-3, duration=0.02)
     prepared = prepare(given)
-    law = robot_law(prepared.system, given.robot, given.load, partial(rigid.poses, given.robot, given.motion))
+    law = robot_law(prepared.system, given.robot, given.load, partial(kinematics.poses, given.robot, given.motion))
     tables, method = law(np.arange(9) * 1e-3), GeneralizedAlpha(given.simulation.rho_inf)
     flow, _ = native.first_record(prepared.system, prepared.start, *tables)
     ours, theirs = (

@@ -16,16 +16,16 @@ from flexapod.elements.mount import PlatformMounting
 from flexapod.elements.slot import Slot
 from flexapod.errors import InputError
 from flexapod.exchange.export import abaqus_deck, left_out
+from flexapod.kinematics.rotations import quaternion, turned
 from flexapod.mechanics.assembly import payload_functions
 from flexapod.mechanics.layout import Shapes
 from flexapod.model import AxialSpring, loads, preset, to_toml
 from flexapod.model.joint import Joint
 from flexapod.model.mount import BaseMotion, Mount
 from flexapod.report.replay import replay
-from flexapod.rigid.rotations import quaternion, turned
+from flexapod.results.attributes import study_of
 from flexapod.scene.geometry import RobotMotion
 from flexapod.solve.buckling import leg_loads
-from flexapod.study.attributes import study_of
 from flexapod.symbolic.functions import Interpreted
 
 NONE = lateral_basis("clamped-free", 0)

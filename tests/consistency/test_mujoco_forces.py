@@ -4,13 +4,13 @@ import numpy as np
 import pytest
 from tests.pack_outcomes import outcome
 
-from flexapod import rigid
+from flexapod import kinematics
 from flexapod.errors import ComputationError
 from flexapod.model import AxisMotion, preset
-from flexapod.proof.cases import mujoco_forces as case
-from flexapod.proof.engines import mujoco_forces
-from flexapod.proof.engines.mujoco_model import mjcf
-from flexapod.proof.robots import unlike_legs, without_cylinders
+from flexapod.verify.cases import mujoco_forces as case
+from flexapod.verify.engines import mujoco_forces
+from flexapod.verify.engines.mujoco_model import mjcf
+from flexapod.verify.robots import unlike_legs, without_cylinders
 
 pytestmark = pytest.mark.xdist_group("pack")  # one process computes its cases
 mujoco = pytest.importorskip("mujoco")
@@ -19,7 +19,7 @@ ROLL = AxisMotion(type="roll", amplitude=0.3, duration=0.4, pivot=[0.02, 0.01, 0
 
 
 def path(robot, motion=ROLL, duration=0.4):
-    return rigid.poses(robot, motion, duration * np.linspace(0.05, 0.95, 9))
+    return kinematics.poses(robot, motion, duration * np.linspace(0.05, 0.95, 9))
 
 
 @pytest.fixture(scope="module")
@@ -38,7 +38,7 @@ def test_the_chains_close_where_our_kinematics_says(change):
     robot = change(ROBOT)
     found, ours = (
         mujoco_forces.inverse_dynamics(robot, path(robot)),
-        rigid.inverse_kinematics(robot, path(robot)),
+        kinematics.inverse_kinematics(robot, path(robot)),
     )
     np.testing.assert_allclose(found.leg_length, ours.length, rtol=0, atol=1e-12)  # closed to 1e-13 m
     np.testing.assert_allclose(found.leg_angle, np.stack([ours.alpha, ours.beta], axis=-1), rtol=0, atol=1e-12)
@@ -46,7 +46,7 @@ def test_the_chains_close_where_our_kinematics_says(change):
 
 def test_legs_without_cylinder():
     robot = without_cylinders(ROBOT)
-    found, ours = (f(robot, path(robot)) for f in (mujoco_forces.inverse_dynamics, rigid.inverse_dynamics))
+    found, ours = (f(robot, path(robot)) for f in (mujoco_forces.inverse_dynamics, kinematics.inverse_dynamics))
     scale = np.abs(ours.actuator_force).max()
     # MuJoCo's least mass and moments, 1e-12 of a leg's, bound the rest
     np.testing.assert_allclose(found.actuator_force, ours.actuator_force, rtol=0, atol=1e-11 * scale)
@@ -76,7 +76,7 @@ def test_every_mass_is_in_the_model():
     # at home every chain points to its joint of the payload
     tips = data.xpos[[model.body(f"piston_{i}").id for i in range(1, 7)]]
     np.testing.assert_allclose(tips, robot.platform_joints + np.array([0, 0, robot.home_height]), rtol=0, atol=1e-14)
-    T, V = rigid.energies(robot, rigid.home_pose(robot))
+    T, V = kinematics.energies(robot, kinematics.home_pose(robot))
     mujoco.mj_energyPos(model, data)
     assert T[0] == 0
     assert data.energy[0] == pytest.approx(V[0], rel=1e-12)
@@ -89,6 +89,6 @@ def test_without_the_engine(monkeypatch):
 
 
 def test_a_pose_that_the_chains_cannot_follow():
-    far = rigid.Poses.at_rest([[0.0, 0.0, 0.9], [np.nan, 0.0, 0.9]], np.eye(3))
+    far = kinematics.Poses.at_rest([[0.0, 0.0, 0.9], [np.nan, 0.0, 0.9]], np.eye(3))
     with pytest.raises(ComputationError, match="do not close at pose 2"):
         mujoco_forces.inverse_dynamics(ROBOT, far)

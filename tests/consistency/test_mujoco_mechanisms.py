@@ -6,12 +6,12 @@ from tests.chains import NAMED
 from tests.consistency.test_mechanism_kinematics import AMPLITUDES, DURATION, MOVING, OWN
 from tests.mechanisms import ROBOTS
 
-from flexapod import rigid
+from flexapod import kinematics
 from flexapod.model import CombinedMotion, Simulation
-from flexapod.proof.engines import mujoco_forces
 from flexapod.solve.rigid_forces import joint_forces
 from flexapod.solve.rigid_motion import rigid_motion
 from flexapod.solve.robot_system import robot_system
+from flexapod.verify.engines import mujoco_forces
 
 pytest.importorskip("mujoco")
 
@@ -26,7 +26,7 @@ def test_forces_are_those_of_mujoco(name):
     pivot = [0.01, -0.02, 0.03] if own == tuple(NAMED) else [0, 0, 0]
     motion = CombinedMotion(amplitudes={axis: AMPLITUDES[axis] for axis in own}, duration=DURATION, pivot=pivot)
     wrench = WRENCH * ([1, 1, 0, 0, 0, 1] if robot.plane else [1] * 6)
-    path = rigid.poses(robot, motion, np.linspace(0.2, 0.8, 3) * DURATION)
+    path = kinematics.poses(robot, motion, np.linspace(0.2, 0.8, 3) * DURATION)
     theirs = mujoco_forces.inverse_dynamics(robot, path, wrench)
     system = robot_system(robot, Simulation(fidelity="rigid"), 0.0)
     ours = joint_forces(system, *rigid_motion(system, robot, path), wrench)

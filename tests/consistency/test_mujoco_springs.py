@@ -8,11 +8,11 @@ from scipy.linalg import eigh, null_space
 from tests.machines import SOFT, machine, study
 
 import flexapod as fx
+from flexapod.kinematics.rotations import matrix
 from flexapod.model import AxialSpring
-from flexapod.proof.engines.mujoco_model import LEAST, mjcf
-from flexapod.rigid.rotations import matrix
+from flexapod.results.arguments import as_pose
 from flexapod.solve.at_poses import locked_poses
-from flexapod.study.arguments import as_pose
+from flexapod.verify.engines.mujoco_model import LEAST, mjcf
 
 mujoco = pytest.importorskip("mujoco")
 
@@ -51,7 +51,7 @@ def placed(model, found, states):
     for i in range(n):
         for name in COORDINATES:
             data.joint(f"{name}_{i + 1}").qpos[0] = states.q[0, i, shapes.index(name)]
-        data.joint(f"beta_{i + 1}").qpos[0] -= fx.rigid.rigid_limbs(robot).home[i, 2]
+        data.joint(f"beta_{i + 1}").qpos[0] -= fx.kinematics.rigid_limbs(robot).home[i, 2]
     R = matrix(states.pose[:, 3:])[0]
     data.joint("payload").qpos[:] = [*(states.pose[0, :3] - R @ robot.payload.com), *states.pose[0, 3:]]
     mujoco.mj_forward(model, data)

@@ -4,7 +4,7 @@ import numpy as np
 import pytest
 from tests.runs import paper_robot, run_robot
 
-from flexapod import rigid
+from flexapod import kinematics
 from flexapod.model import AxisMotion
 from flexapod.solve.rigid_motion import rigid_state
 from flexapod.solve.robot_system import robot_system
@@ -17,14 +17,14 @@ def test_forces_at_the_rigid_path(kind):
     motion = AxisMotion(type=kind, amplitude=amplitude, duration=0.4, profile="quintic", pivot=[0.02, 0.01, 0.1])
     system, wrench = robot_system(study.robot, study.simulation, 0.0), np.array([30.0, -20, 10, 5, -4, 3])
     for t in (0.0, 0.11, 0.23):
-        path = rigid.poses(study.robot, motion, np.array([t]))
+        path = kinematics.poses(study.robot, motion, np.array([t]))
         x = rigid_state(system, study.robot, path)
         r, g, _ = system.residual(x, np.zeros((6, 1, 4)), wrench)
         assert np.abs(g).max() < 1e-15  # metres of order one, to rounding
         # KKT: G^T (lam, -f) = -r, as many equations as the 24 multipliers once the payload's are included.
         G = np.vstack([system.matrices(x, wrench).G, np.eye(system.size)[system.fixed]])
         multipliers, *_ = np.linalg.lstsq(G.T, -r, rcond=None)
-        forces = rigid.inverse_dynamics(study.robot, path, wrench)
+        forces = kinematics.inverse_dynamics(study.robot, path, wrench)
         scale = np.abs(forces.actuator_force).max()
         np.testing.assert_allclose(-multipliers[18:], forces.actuator_force[0], rtol=0, atol=1e-12 * scale)  # 5e-15
         np.testing.assert_allclose(multipliers[:18].reshape(6, 3), forces.joint_force[0], rtol=0, atol=1e-12 * scale)
@@ -33,7 +33,9 @@ def test_forces_at_the_rigid_path(kind):
 def march_error(profile, h, duration=1.2):
     study = paper_robot(profile=profile, fidelity="rigid", step=h, output_step=4e-3, duration=duration)
     run = run_robot(study)
-    forces = rigid.inverse_dynamics(study.robot, rigid.poses(study.robot, study.motion, run["time"])).actuator_force
+    forces = kinematics.inverse_dynamics(
+        study.robot, kinematics.poses(study.robot, study.motion, run["time"])
+    ).actuator_force
     return run["time"], np.abs(run["drive"][:, :, 0] - forces) / np.abs(forces).max()
 
 

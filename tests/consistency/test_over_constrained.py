@@ -29,7 +29,7 @@ def exechon(fidelity, tilt=0.0):
 def test_rigid_legs_share_what_is_open():
     study = exechon("rigid")
     data = fx.run(study)
-    forces = rigid_forces(study.robot, fx.rigid.poses(study.robot, study.motion, data.time.values), np.zeros(6))
+    forces = rigid_forces(study.robot, fx.kinematics.poses(study.robot, study.motion, data.time.values), np.zeros(6))
     assert forces.open_forces == 2
     assert "rigid statics leaves 2 forces open" in data.attrs["warnings"]
     # second order in 4000 steps of a motion, when the integrator's own start, 1e-3 of the forces, has died away
@@ -51,7 +51,7 @@ def test_axes_that_miss_being_parallel_leave_fewer_motions(fidelity):
 
 def test_a_missing_motion_of_an_ordinary_robot_has_no_such_cause():
     with pytest.raises(fx.InputError) as caught:
-        fx.rigid.poses(ROBOTS["3-UPU"](), AxisMotion(type="roll", amplitude=0.05, duration=1.0), [0.0, 1.0])
+        fx.kinematics.poses(ROBOTS["3-UPU"](), AxisMotion(type="roll", amplitude=0.05, duration=1.0), [0.0, 1.0])
     assert "nearly" not in str(caught.value)
 
 

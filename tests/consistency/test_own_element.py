@@ -11,17 +11,17 @@ import scipy.interpolate
 from tests.trial_element.maxwell import Maxwell
 
 import flexapod as fx
-from flexapod.app.view.charts import charts
 from flexapod.document.parts import Bullets
 from flexapod.document.study import study_items
 from flexapod.elements.element import registered
 from flexapod.exchange.export import abaqus_deck
 from flexapod.model import ServoDrive, preset_text, to_toml
-from flexapod.proof.engines import exudyn_robot
-from flexapod.proof.engines.exudyn_integration import Integration
-from flexapod.proof.engines.mujoco_model import mjcf
+from flexapod.page.charts import charts
 from flexapod.report import figures
 from flexapod.solve.at_poses import robot_modes
+from flexapod.verify.engines import exudyn_robot
+from flexapod.verify.engines.exudyn_integration import Integration
+from flexapod.verify.engines.mujoco_model import mjcf
 
 STIFFNESS, RELAXATION = 2e4, 0.1
 TABLE = '[leg.maxwell]\nstiffness = "20 kN/m"\nrelaxation = "0.1 s"\n'

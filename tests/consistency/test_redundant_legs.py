@@ -8,7 +8,7 @@ from tests.moving import moving
 from tests.runs import balance, run_robot
 
 import flexapod as fx
-from flexapod import rigid
+from flexapod import kinematics
 from flexapod.errors import ComputationError
 from flexapod.solve.released import rigid_forces
 
@@ -20,7 +20,7 @@ def test_forces_of_eight_rigid_legs_are_those_of_the_rigid_robot():
         study = moving("8-UPS", fidelity="rigid", modes=None, step=h)
         study = study.replace(initial=study.initial.replace(start="moving"))
         run = run_robot(study)
-        path = rigid.poses(study.robot, study.motion, run["time"])
+        path = kinematics.poses(study.robot, study.motion, run["time"])
         forces = rigid_forces(study.robot, path, np.zeros(6))
         assert forces.open_forces == 2
         scale = np.abs(forces.drive_force).max()
@@ -41,7 +41,7 @@ def test_a_welded_robot_of_rigid_legs_cannot_move():
 def test_drives_with_a_force_of_their_own_have_it():
     """Gas springs of 500 N were shown with the 114 N of stiffnesses that share; now no force is left open."""
     study = fx.load(Path(__file__).parents[2] / "examples" / "mechanisms" / "eight-legs.toml")
-    home = rigid.home_pose(study.robot)
+    home = kinematics.home_pose(study.robot)
     forces = rigid_forces(study.robot, home, np.zeros(6))
     np.testing.assert_allclose(forces.drive_force[0, 6:], 500.0, rtol=1e-12)
     assert forces.open_forces == 0

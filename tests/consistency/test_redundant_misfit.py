@@ -6,8 +6,8 @@ from scipy.spatial.transform import Rotation
 from tests.mechanisms import eight
 from tests.runs import uncompiled_kernel
 
+from flexapod.kinematics import Poses
 from flexapod.model import Simulation
-from flexapod.rigid import Poses
 from flexapod.solve.at_poses import locked_poses
 from flexapod.solve.equilibrium import equilibria
 

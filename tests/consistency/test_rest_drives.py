@@ -7,14 +7,14 @@ import pytest
 from tests.mechanisms import hexapod, sliders, three_rps
 from tests.runs import uncompiled_kernel
 
-from flexapod import rigid
+from flexapod import kinematics
+from flexapod.kinematics.limbs import DRIVEN
 from flexapod.model import Feedback, ForceDrive, Simulation
 from flexapod.model.drive import ServoDrive
-from flexapod.rigid.limbs import DRIVEN
 from flexapod.solve.at_poses import locked_poses
-from flexapod.solve.many import port_forces
+from flexapod.solve.batch import port_forces
 from flexapod.solve.released import rigid_forces
-from flexapod.solve.rest import at_drives
+from flexapod.solve.static_loads import at_drives
 
 ROBOTS = {"stroke": hexapod, "carriage": lambda: sliders("PUS"), "hinges": three_rps}
 SPRING = Feedback(stiffness=3e6, damping=1e3)
@@ -32,7 +32,7 @@ def driven(model, drive):
 
 
 def at_rest(model, simulation):
-    locked = locked_poses(model, simulation, rigid.home_pose(model))
+    locked = locked_poses(model, simulation, kinematics.home_pose(model))
     assert locked.equilibria.code == 0
     states = locked.equilibria.states
     forces = port_forces(locked.system, states, locked.command, locked.acts.force)
@@ -43,7 +43,7 @@ def at_rest(model, simulation):
 @pytest.mark.parametrize("simulation", [RIGID, LUMPED], ids=["rigid", "lumped"])
 def test_prescribed_drives_hold_what_the_rigid_robot_needs(what, simulation):
     model = ROBOTS[what]()
-    needed = rigid_forces(model, rigid.home_pose(model), np.zeros(6)).drive_force[0]
+    needed = rigid_forces(model, kinematics.home_pose(model), np.zeros(6)).drive_force[0]
     _, states, force = at_rest(model, simulation)
     # Rigid legs: the same statics twice. Lumped ones sag by some micrometres of half a metre.
     np.testing.assert_allclose(force, needed, rtol=1e-10 if simulation is RIGID else 1e-3)
@@ -63,9 +63,9 @@ def test_drives_that_push_with_the_rigid_force_do_not_sag(what):
 def test_servos_give_way_by_their_force_over_their_stiffness(what):
     model = driven(ROBOTS[what](), ServoDrive(stiffness=4e7))
     locked, states, force = at_rest(model, RIGID)
-    there = rigid.robot_limbs(model).state == DRIVEN
+    there = kinematics.robot_limbs(model).state == DRIVEN
     name = "chi" if there[0, 0] else "l"
     k = locked.system.kernel.shapes.index(name)
     np.testing.assert_allclose(4e7 * (locked.start.q - states.q)[0, :, k], force, rtol=1e-6)
-    needed = rigid_forces(model, rigid.home_pose(model), np.zeros(6)).drive_force[0]
+    needed = rigid_forces(model, kinematics.home_pose(model), np.zeros(6)).drive_force[0]
     np.testing.assert_allclose(force, needed, rtol=1e-3)

@@ -4,10 +4,10 @@ import casadi as ca
 import numpy as np
 import pytest
 
-from flexapod.rigid.dynamics import LegBodies, PayloadBody, energies, inverse_dynamics
-from flexapod.rigid.kinematics import leg_frames, leg_state
-from flexapod.rigid.laws import Law
-from flexapod.rigid.trajectory import Poses, poses_from_coordinates
+from flexapod.kinematics.dynamics import LegBodies, PayloadBody, energies, inverse_dynamics
+from flexapod.kinematics.inverse import leg_frames, leg_state
+from flexapod.kinematics.laws import Law
+from flexapod.kinematics.trajectory import Poses, poses_from_coordinates
 
 HOME = 0.9
 PIVOT = np.array([0.03, -0.05, 0.2])

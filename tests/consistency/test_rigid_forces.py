@@ -7,12 +7,12 @@ import pytest
 from tests.consistency.test_mechanism_statics import hexapod, hold, octopod, tripod
 from tests.runs import paper_robot
 
-from flexapod import rigid
+from flexapod import kinematics
 from flexapod.errors import ComputationError
+from flexapod.kinematics.jacobian import length_jacobian
 from flexapod.model import override
-from flexapod.rigid.jacobian import length_jacobian
+from flexapod.solve.batch import Rates, matrices_at_rest, residual
 from flexapod.solve.equilibrium import equilibria
-from flexapod.solve.many import Rates, matrices_at_rest, residual
 from flexapod.solve.rigid_forces import displacement_by_error, joint_forces
 from flexapod.solve.rigid_motion import rigid_motion
 from flexapod.solve.robot_system import robot_system
@@ -24,14 +24,14 @@ WRENCH = np.array([50.0, -30.0, -200.0, 5.0, 4.0, -3.0])
 def moving(instants=7):
     study = override(paper_robot(), fidelity="rigid")
     robot = study.robot.replace(payload=study.robot.payload.replace(com=[0.02, -0.03, 0.1], tool=[0.1, 0.0, 0.2]))
-    path = rigid.poses(robot, study.motion, np.linspace(0.05, 0.9 * study.duration, instants))
+    path = kinematics.poses(robot, study.motion, np.linspace(0.05, 0.9 * study.duration, instants))
     system = robot_system(robot, study.simulation, 0.0)
     return robot, path, system, *rigid_motion(system, robot, path)
 
 
 def test_six_legs_need_what_newton_and_euler_say():
     robot, path, system, x, rates = moving()
-    found, expected = joint_forces(system, x, rates, WRENCH), rigid.inverse_dynamics(robot, path, WRENCH)
+    found, expected = joint_forces(system, x, rates, WRENCH), kinematics.inverse_dynamics(robot, path, WRENCH)
     size = np.abs(expected.joint_force).max()
     assert found.open_forces == 0
     np.testing.assert_allclose(found.held[..., 2], expected.actuator_force, atol=1e-10 * size)

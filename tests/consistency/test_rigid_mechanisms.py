@@ -7,14 +7,14 @@ import numpy as np
 import pytest
 from tests.mechanisms import ROBOTS, THREE, built, hexapod, leg, ring, sliders, tangents, three_rps
 
-from flexapod import rigid
+from flexapod import kinematics
 from flexapod.errors import ComputationError, InputError
+from flexapod.kinematics import mechanism
+from flexapod.kinematics.jacobian import length_jacobian
+from flexapod.kinematics.limbs import COORDINATES, DRIVEN, limbs
+from flexapod.kinematics.mobility import drive_jacobian, holding
+from flexapod.kinematics.screws import screws
 from flexapod.model.motion import AxisMotion, CombinedMotion
-from flexapod.rigid import mechanism
-from flexapod.rigid.jacobian import length_jacobian
-from flexapod.rigid.limbs import COORDINATES, DRIVEN, limbs
-from flexapod.rigid.mobility import drive_jacobian, holding
-from flexapod.rigid.screws import screws
 
 SIX = {"surge": 0.03, "sway": 0.02, "heave": 0.04, "roll": 0.15, "pitch": -0.1, "yaw": 0.12}
 TILTS, SHIFTS, FLAT = ("heave", "roll", "pitch"), ("surge", "sway", "heave"), ("surge", "sway", "yaw")
@@ -29,8 +29,8 @@ def motion(name):
 
 def moved(name, t):
     robot = ROBOTS[name]()
-    path = rigid.poses(robot, motion(name), t)
-    return robot, path, rigid.inverse_kinematics(robot, path)
+    path = kinematics.poses(robot, motion(name), t)
+    return robot, path, kinematics.inverse_kinematics(robot, path)
 
 
 def test_screws_are_derivatives_of_tips_and_frames():
@@ -98,7 +98,7 @@ def test_tripod_has_its_known_parasitic_motions():
     """3-RPS: x = h/2 (R11 - R22), y = -h R21, and no torsion, R12 = R21 (Carretero et al. 2000, J. Mech. Des. 122)."""
     robot, radius = three_rps(), 0.2
     asked = CombinedMotion(amplitudes={"heave": 0.05, "roll": 0.35, "pitch": -0.3}, duration=1.0)
-    path = rigid.poses(robot, asked, np.linspace(0.0, 1.0, 21))
+    path = kinematics.poses(robot, asked, np.linspace(0.0, 1.0, 21))
     R, place = path.rotation, path.position - robot.home_position
     np.testing.assert_allclose(place[:, 0], radius / 2 * (R[:, 0, 0] - R[:, 1, 1]), rtol=0, atol=1e-15)
     np.testing.assert_allclose(place[:, 1], -radius * R[:, 1, 0], rtol=0, atol=1e-15)
@@ -109,17 +109,19 @@ def test_tripod_has_its_known_parasitic_motions():
 @pytest.mark.parametrize("name", MOVING)
 def test_drives_lead_back_to_the_pose(name):
     robot, path, legs = moved(name, np.linspace(0.0, 1.0, 6))
-    drives = rigid.drive_positions(robot, path)
-    back = rigid.forward_kinematics(robot, drives)
+    drives = kinematics.drive_positions(robot, path)
+    back = kinematics.forward_kinematics(robot, drives)
     np.testing.assert_allclose(back.position, path.position, rtol=0, atol=1e-12)
     np.testing.assert_allclose(back.rotation, path.rotation, rtol=0, atol=1e-12)
-    again = rigid.forward_kinematics(robot, drives[-1], rigid.Poses.at_rest(path.position[3], path.rotation[3]))
+    again = kinematics.forward_kinematics(
+        robot, drives[-1], kinematics.Poses.at_rest(path.position[3], path.rotation[3])
+    )
     np.testing.assert_allclose(again.position[0], path.position[-1], rtol=0, atol=1e-12)
     rates = np.concatenate([legs.coordinate(c)[1][:, :, None] for c in COORDINATES], axis=-1)
     rates = rates[:, limbs(robot, rigid=True).state == DRIVEN]
     twist = np.concatenate([path.velocity, path.omega], axis=1)
     np.testing.assert_allclose(
-        (rigid.drive_jacobian(robot, path) @ twist[..., None])[..., 0], rates, rtol=0, atol=1e-13
+        (kinematics.drive_jacobian(robot, path) @ twist[..., None])[..., 0], rates, rtol=0, atol=1e-13
     )
 
 
@@ -131,7 +133,7 @@ def test_wrenches_of_legs_UPS_are_rows_of_the_length_jacobian():
     np.testing.assert_allclose(holding(legs, q, path, point), expected, rtol=0, atol=1e-14)
     np.testing.assert_allclose(drive_jacobian(legs, q, path, point), expected, rtol=0, atol=1e-14)
     crossed = ROBOTS["6-UCU"]()
-    ours, theirs = rigid.singularity(crossed, path), rigid.singularity(robot, path)
+    ours, theirs = kinematics.singularity(crossed, path), kinematics.singularity(robot, path)
     np.testing.assert_allclose(ours.smallest_singular_value, theirs.smallest_singular_value, rtol=1e-12)
     np.testing.assert_allclose(ours.determinant, theirs.determinant, rtol=1e-12)
 
@@ -139,10 +141,10 @@ def test_wrenches_of_legs_UPS_are_rows_of_the_length_jacobian():
 def test_a_singular_pose_of_a_tripod_is_found():
     """Legs RPS that lie in the plane of the platform's joints cannot carry it."""
     robot = built("3-RPS", ring(0.5, THREE), ring(0.2, THREE), 1e-9, [leg("RPS", a) for a in tangents(THREE)])
-    flat = rigid.nearest_singularity(robot, rigid.home_pose(robot))
+    flat = kinematics.nearest_singularity(robot, kinematics.home_pose(robot))
     assert flat.smallest_singular_value < 1e-8
-    crossing = rigid.Poses.at_rest([[0, 0, 0.1], [0, 0, -0.1]], np.eye(3))
-    assert rigid.singularity(robot, crossing).sign_changes.tolist() == [0]
+    crossing = kinematics.Poses.at_rest([[0, 0, 0.1], [0, 0, -0.1]], np.eye(3))
+    assert kinematics.singularity(robot, crossing).sign_changes.tolist() == [0]
 
 
 def test_a_carriage_keeps_its_side():
@@ -151,44 +153,46 @@ def test_a_carriage_keeps_its_side():
     start = limbs(robot, rigid=True)
     assert np.all(mechanism.sides(start, start.home[None]) > 0.5)
     with pytest.raises(InputError, match=r"leg \d meets its carriage at 8\d\.\d deg|does not reach"):
-        path = rigid.poses(robot, AxisMotion(type="surge", amplitude=0.3, duration=1.0), np.linspace(0, 1, 101))
-        rigid.inverse_kinematics(robot, path)
+        path = kinematics.poses(robot, AxisMotion(type="surge", amplitude=0.3, duration=1.0), np.linspace(0, 1, 101))
+        kinematics.inverse_kinematics(robot, path)
 
 
 def test_poses_out_of_reach_are_refused_with_leg_and_instant():
     robot = sliders("PUS", length=0.45)
-    path = rigid.poses(robot, AxisMotion(type="surge", amplitude=0.6, duration=1.0), np.linspace(0, 1, 11))
+    path = kinematics.poses(robot, AxisMotion(type="surge", amplitude=0.6, duration=1.0), np.linspace(0, 1, 11))
     with pytest.raises(InputError, match=r"leg \d, PUS, does not reach its platform joint .*sample \d+ of 11"):
-        rigid.inverse_kinematics(robot, path)
+        kinematics.inverse_kinematics(robot, path)
     with pytest.raises(InputError, match=r"leg \d, RPS, does not reach"):
-        rigid.inverse_kinematics(three_rps(), rigid.Poses.at_rest([0.05, 0, 0.6], np.eye(3)))
+        kinematics.inverse_kinematics(three_rps(), kinematics.Poses.at_rest([0.05, 0, 0.6], np.eye(3)))
 
 
 def test_joints_that_fold_are_refused():
     robot = hexapod("UCU", height=0.35)
     with pytest.raises(InputError, match=r"(base|platform) joint of leg \d folds to 8\d\.\d deg"):
-        path = rigid.poses(robot, AxisMotion(type="roll", amplitude=2.2, duration=1.0), np.linspace(0, 1, 201))
-        rigid.inverse_kinematics(robot, path)
+        path = kinematics.poses(robot, AxisMotion(type="roll", amplitude=2.2, duration=1.0), np.linspace(0, 1, 201))
+        kinematics.inverse_kinematics(robot, path)
 
 
 def test_drives_that_no_pose_fits_are_refused():
     robot = three_rps()
     with pytest.raises(InputError, match=r"\(3,\) or \(T, 3\)"):
-        rigid.forward_kinematics(robot, np.ones(6))
+        kinematics.forward_kinematics(robot, np.ones(6))
     with pytest.raises(ComputationError, match="No pose fits the drives of sample 1"):
-        rigid.forward_kinematics(robot, [0.05, 1.0, 0.05])
+        kinematics.forward_kinematics(robot, [0.05, 1.0, 0.05])
 
 
 def test_all_postures_are_for_six_legs_ups():
     with pytest.raises(InputError, match="six legs UPS"):
-        rigid.postures(three_rps(), [0.6, 0.6, 0.6])
+        kinematics.postures(three_rps(), [0.6, 0.6, 0.6])
 
 
 def test_mirrored_tripod_mirrors():
     robot = three_rps()
     t = np.linspace(0.0, 1.0, 5)
     one, other = (
-        rigid.poses(robot, CombinedMotion(amplitudes={"heave": 0.02, "roll": s * 0.3, "pitch": 0.2}, duration=1.0), t)
+        kinematics.poses(
+            robot, CombinedMotion(amplitudes={"heave": 0.02, "roll": s * 0.3, "pitch": 0.2}, duration=1.0), t
+        )
         for s in (1, -1)
     )
     np.testing.assert_allclose(one.position * [1, -1, 1], other.position, rtol=0, atol=1e-15)
@@ -197,7 +201,7 @@ def test_mirrored_tripod_mirrors():
 def test_home_and_general_poses_of_the_base():
     """The same robot turned and moved as a whole: lengths and drives do not know."""
     robot = ROBOTS["3-UPS+UP"]()
-    turn, shift = rigid.rotation_matrix([0.3, -0.2, 0.5]), np.array([1.0, -2.0, 0.5])
+    turn, shift = kinematics.rotation_matrix([0.3, -0.2, 0.5]), np.array([1.0, -2.0, 0.5])
     legs = [
         one.replace(base_joint=one.base_joint.replace(axis=turn @ one.base_joint.axis))
         if one.base_joint.axis is not None
@@ -209,10 +213,10 @@ def test_home_and_general_poses_of_the_base():
         home={"position": turn @ robot.home_position + shift, "rotation": [0.3, -0.2, 0.5]},
         legs=tuple(legs),
     )
-    path = rigid.poses(robot, motion("3-UPS+UP"), np.linspace(0, 1, 5))
-    moved_path = rigid.Poses.at_rest(path.position @ turn.T + shift, turn @ path.rotation)
+    path = kinematics.poses(robot, motion("3-UPS+UP"), np.linspace(0, 1, 5))
+    moved_path = kinematics.Poses.at_rest(path.position @ turn.T + shift, turn @ path.rotation)
     np.testing.assert_allclose(
-        rigid.drive_positions(there, moved_path), rigid.drive_positions(robot, path), rtol=0, atol=1e-13
+        kinematics.drive_positions(there, moved_path), kinematics.drive_positions(robot, path), rtol=0, atol=1e-13
     )
 
 
@@ -221,15 +225,15 @@ def test_a_motion_turns_on_top_of_home():
     robot = ROBOTS["6-UPS"]().replace(home={"position": [0.02, -0.03, 0.8], "rotation": [0.1, -0.05, 0.2]})
     pivot = np.array([0.05, 0.1, 0.2])
     asked = CombinedMotion(amplitudes={"surge": 0.03, "pitch": 0.2}, duration=1.0, pivot=pivot)
-    start, end = (rigid.poses(robot, asked, [t]) for t in (0.0, 1.0))
+    start, end = (kinematics.poses(robot, asked, [t]) for t in (0.0, 1.0))
     np.testing.assert_allclose(start.position[0], robot.home_position, rtol=0, atol=1e-15)
     np.testing.assert_allclose(start.rotation[0], robot.home_rotation, rtol=0, atol=1e-15)
-    turn = rigid.rotation_matrix([0, 0.2, 0])
+    turn = kinematics.rotation_matrix([0, 0.2, 0])
     np.testing.assert_allclose(end.rotation[0], turn @ robot.home_rotation, rtol=0, atol=1e-15)
     np.testing.assert_allclose(
         end.place(pivot)[0], robot.home_position + robot.home_rotation @ pivot + [0.03, 0, 0], rtol=0, atol=1e-15
     )
-    by_name = rigid.poses_from_home(robot, np.array([[0.03, 0, 0, 0, 0.2, 0]]))
+    by_name = kinematics.poses_from_home(robot, np.array([[0.03, 0, 0, 0, 0.2, 0]]))
     np.testing.assert_allclose(by_name.rotation, end.rotation, rtol=0, atol=1e-15)
 
 
@@ -242,14 +246,14 @@ def test_planes_are_the_same_plane_seen_otherwise(plane, axes, third):
     robot = built("3-PRR", flat.base_joints @ turn.T, flat.platform_joints @ turn.T, 0.0, legs, plane=plane)
     sizes = (0.02, 0.03, 0.2)
     first, other = (
-        rigid.drive_positions(
-            r, rigid.poses(r, CombinedMotion(amplitudes=dict(zip(names, sizes, strict=True)), duration=1.0), t)
+        kinematics.drive_positions(
+            r, kinematics.poses(r, CombinedMotion(amplitudes=dict(zip(names, sizes, strict=True)), duration=1.0), t)
         )
         for r, names in ((flat, FLAT), (robot, axes))
     )
     np.testing.assert_allclose(other, first, rtol=0, atol=1e-14)
     with pytest.raises(InputError, match=f"asks for {third} of a robot with 3 motions"):
-        rigid.poses(robot, AxisMotion(type=third, amplitude=0.1, duration=1.0), t)
+        kinematics.poses(robot, AxisMotion(type=third, amplitude=0.1, duration=1.0), t)
 
 
 def test_limbs_of_the_flexible_robot_keep_what_the_rigid_path_releases():

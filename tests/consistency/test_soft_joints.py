@@ -6,7 +6,7 @@ from tests.machines import SOFT, machine, study, symmetric
 from tests.runs import balance, run_robot
 
 import flexapod as fx
-from flexapod import rigid
+from flexapod import kinematics
 from flexapod.errors import InputError
 from flexapod.model import AxialSpring
 from flexapod.model.joint import Joint
@@ -147,7 +147,7 @@ def test_displacements_move_with_the_legs():
         given = study(machine(**ends(joint(2e8))), fidelity="lumped", step=step).replace(motion=motion)
         other = given.replace(robot=machine(**ends(Joint(stiffness=whole))))
         ours, theirs = run_robot(given), run_robot(other)
-        miss = ours["pose"][:, :3] - rigid.poses(given.robot, motion, ours["time"]).place(given.robot.com)
+        miss = ours["pose"][:, :3] - kinematics.poses(given.robot, motion, ours["time"]).place(given.robot.com)
         found.append(np.abs(ours["pose"] - theirs["pose"]).max() / np.abs(miss).max())
     assert found[1] < 1e-3
     assert found[0] / found[1] == pytest.approx(4, rel=0.5)

@@ -4,7 +4,7 @@ import numpy as np
 import pytest
 
 import flexapod as fx
-from flexapod.study.after.vibration import local_vibration
+from flexapod.results.vibration import local_vibration
 from flexapod.study.solid import simulate_solid
 
 STUDY = fx.preset("paper-actuator")

@@ -5,7 +5,7 @@ import pytest
 from tests.pack_outcomes import outcome
 
 from flexapod import model
-from flexapod.proof.cases import sliding as beam_fem
+from flexapod.verify.cases import sliding as beam_fem
 
 pytestmark = pytest.mark.xdist_group("pack")  # one process computes its cases
 

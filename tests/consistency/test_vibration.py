@@ -7,19 +7,19 @@ from tests.machines import machine
 from tests.machines import study as heaved
 
 import flexapod as fx
-from flexapod import model, rigid
+from flexapod import kinematics, model
+from flexapod.description.robot import describe
+from flexapod.error_budget.sentences import part_words
+from flexapod.kinematics.rotations import difference, matrix, quaternion
 from flexapod.model.mount import BaseMotion, Mount
-from flexapod.rigid.rotations import difference, matrix, quaternion
+from flexapod.pose_errors.disturbances import vibration_rows, vibration_words
+from flexapod.pose_errors.sensitivity import sensitivity
+from flexapod.results.arguments import as_pose
 from flexapod.solve.at_poses import locked_poses
 from flexapod.solve.damped import poles
 from flexapod.solve.linear import FAR, LinearRobot, linear_robot
 from flexapod.solve.locked import LockedPoses
 from flexapod.solve.random_vibration import Source, panels, random_vibration
-from flexapod.study.accuracy.sensitivity import sensitivity
-from flexapod.study.arguments import as_pose
-from flexapod.study.before.describe.robot import describe
-from flexapod.study.budgets.sentences import part_words
-from flexapod.study.disturbances import vibration_rows, vibration_words
 
 WHITE = np.array([1e-3, 1e5])
 TILTED = {"surge": 0.03, "heave": -0.02, "roll": 0.1, "yaw": 0.05}
@@ -40,7 +40,7 @@ def on_servos(robot: model.Robot, **servo: float) -> model.Robot:
 
 
 def locked(study: model.Study, pose: dict | None = None) -> LockedPoses:
-    path = rigid.home_pose(study.robot) if pose is None else as_pose(study.robot, pose)
+    path = kinematics.home_pose(study.robot) if pose is None else as_pose(study.robot, pose)
     return locked_poses(study.robot, study.simulation, path, study.load)
 
 
@@ -61,7 +61,7 @@ def shaken() -> model.Study:
     return lumped(disturbance=given)
 
 
-def tool_at_rest(study: model.Study, gravity: np.ndarray, path: rigid.Poses) -> tuple[np.ndarray, np.ndarray]:
+def tool_at_rest(study: model.Study, gravity: np.ndarray, path: kinematics.Poses) -> tuple[np.ndarray, np.ndarray]:
     robot = study.robot.replace(gravity=gravity)
     pose = locked_poses(robot, study.simulation, path, study.load).equilibria.states.pose[0]
     R = matrix(pose[None, 3:])[0]
@@ -97,7 +97,7 @@ def test_a_force_of_a_drive_works_against_its_servo(study):
     robot = linear(study, TILTED)
     slow = (robot.tool @ robot.amplitudes(np.array([1e-5]), robot.inputs["drive"])[0]).real
     path = as_pose(study.robot, TILTED)
-    commanded = sensitivity(study.robot, path).coordinate[0, :, rigid.COORDINATES.index("l")].T
+    commanded = sensitivity(study.robot, path).coordinate[0, :, kinematics.COORDINATES.index("l")].T
     assert 60e6 * slow == pytest.approx(commanded, rel=2e-2, abs=2e-3 * np.abs(commanded).max())  # sag turns the legs
 
 
@@ -151,7 +151,7 @@ def test_the_budget_has_rows_of_them(shaken):
 
 def test_one_pose_of_many_is_that_pose(shaken):
     """A map computed each of its poses a second time."""
-    poses = rigid.poses(shaken.robot, shaken.motion, np.linspace(0.0, shaken.duration, 4))
+    poses = kinematics.poses(shaken.robot, shaken.motion, np.linspace(0.0, shaken.duration, 4))
     many = locked_poses(shaken.robot, shaken.simulation, poses, shaken.load)
     for k in (1, 3):
         alone = locked_poses(shaken.robot, shaken.simulation, poses.part(slice(k, k + 1)), shaken.load)

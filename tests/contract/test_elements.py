@@ -6,7 +6,7 @@ import numpy as np
 import pytest
 from tests import legs_of_all_kinds as legs
 
-from flexapod.rigid.rotations import matrix, quaternion, turned
+from flexapod.kinematics.rotations import matrix, quaternion, turned
 
 ROOT = Path(__file__).parents[2]
 KINDS = list(legs.KINDS)

@@ -10,11 +10,11 @@ from scipy.spatial.transform import Rotation
 from typer.testing import CliRunner
 
 import flexapod as fx
-from flexapod.app.cli import app
+from flexapod.cli.cli import app
 from flexapod.model import chains_of, override
-from flexapod.study.names import ANGLES, VARIABLES
+from flexapod.results.names import ANGLES, VARIABLES
+from flexapod.results.stored_run import check_run
 from flexapod.study.store import save
-from flexapod.study.stored_run import check_run
 
 FILES = sorted((Path(__file__).parents[2] / "examples" / "mechanisms").glob("*.toml"))
 SAMPLES = [path.stem for path in FILES]

@@ -7,6 +7,7 @@ import pytest
 from tests.runs import paper_robot
 
 import flexapod as fx
+from flexapod.description.robot import describe_pose
 from flexapod.model import (
     ConstantWrench,
     CsvWrench,
@@ -20,7 +21,6 @@ from flexapod.model import (
     Waypoint,
     WaypointMotion,
 )
-from flexapod.study.before.describe.robot import describe_pose
 from flexapod.surveys.sweeps.scalars import ROBOT_SCALARS, RobotRun
 
 WRENCH = np.array([50.0, -30.0, -200.0, 5.0, 4.0, -3.0])
@@ -98,7 +98,7 @@ def test_statics_are_the_first_instant_of_a_run(drive, load, fidelity):
 
 
 def _turned(start, vector):
-    return fx.rigid.rotations.matrix(start.platform_quaternion.values) @ vector
+    return fx.kinematics.rotations.matrix(start.platform_quaternion.values) @ vector
 
 
 @pytest.mark.parametrize("drive", ["force, rigid", "force, csv"])

@@ -6,7 +6,7 @@ import numpy as np
 import pytest
 from tests.runs import collect, paper_robot, run_robot
 
-from flexapod import rigid
+from flexapod import kinematics
 from flexapod.model import override
 from flexapod.solve.robot_march import prepare
 
@@ -49,7 +49,7 @@ def test_tolerance_is_kept():
     # The tolerance bounds the true error (measured against a fine fixed step).
     study = paper_robot(duration=0.5, modes=2)
     reference = run_robot(override(study, step=2e-5, output_step=1e-3))
-    path = rigid.poses(study.robot, study.motion, reference["time"])
+    path = kinematics.poses(study.robot, study.motion, reference["time"])
     com = path.position + path.rotation @ study.robot.payload.com
     peak = np.abs(reference["pose"][:, :3] - com).max()
     for tolerance in (1e-2, 1e-3, 1e-4):
@@ -65,7 +65,7 @@ def test_a_step_may_span_many_outputs():
     run, reference = collect(chunks), run_robot(override(study, step=2e-5))
     assert max(chunk.step for chunk in chunks[1:]) > 5 * 2e-4
     np.testing.assert_allclose(run["time"], reference["time"], atol=1e-12)
-    path = rigid.poses(study.robot, study.motion, reference["time"])
+    path = kinematics.poses(study.robot, study.motion, reference["time"])
     com = path.position + path.rotation @ study.robot.payload.com
     peak = np.abs(reference["pose"][:, :3] - com).max()
     assert np.abs(run["pose"][:, :3] - reference["pose"][:, :3]).max() < 0.5 * peak

@@ -9,7 +9,7 @@ from tests.runs import paper_robot, run_actuator, run_robot, with_legs
 
 from flexapod import simulate
 from flexapod.model import CsvWrench, Load, StepWrench, override, preset
-from flexapod.solve import within
+from flexapod.solve import radau
 from flexapod.solve.robot_march import prepare
 
 
@@ -25,11 +25,11 @@ def test_orders_of_a_platform_that_tumbles(monkeypatch):
     study = stretching(paper_robot(fidelity="lumped", duration=0.4, output_step=8e-3, tolerance=0.9), 1e-3, 0.05)
     turns = {"roll": 0.3, "pitch": 0.3, "yaw": 0.3}
     study = study.replace(motion={"type": "combined", "amplitudes": turns, "duration": 0.4, "profile": "smooth"})
-    monkeypatch.setattr(within, "UNSOLVED", 1e-13)
+    monkeypatch.setattr(radau, "UNSOLVED", 1e-13)
 
     def run(h, **how):
-        monkeypatch.setattr(within, "FIRST", h)
-        monkeypatch.setattr(within, "LONGEST", h)
+        monkeypatch.setattr(radau, "FIRST", h)
+        monkeypatch.setattr(radau, "LONGEST", h)
         return run_robot(override(study, **how))
 
     runs = [run(h) for h in (8e-3, 4e-3, 2e-3, 1e-3)]

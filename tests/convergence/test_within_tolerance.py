@@ -9,11 +9,11 @@ from tests.machines import study as moved_machine
 from tests.runs import balance, paper_robot, run_actuator, run_robot, with_legs
 
 import flexapod as fx
-from flexapod import rigid
+from flexapod import kinematics
+from flexapod.kinematics.rotations import matrix
 from flexapod.model import Feedback, Joint, JointFriction, ScrewFriction, override, preset
 from flexapod.model.mount import BaseMotion, Mount
-from flexapod.rigid.rotations import matrix
-from flexapod.solve import within
+from flexapod.solve import radau
 from flexapod.solve.robot_march import prepare
 
 TOLERANCES = (1e-2, 1e-3, 1e-4, 1e-5, 1e-6)
@@ -44,7 +44,7 @@ STUDIES = {
 
 def deviation(study, run):
     """Deviation of the payload (T, 6) [m]: of its centre of mass, and of its turning at the joints' radius."""
-    path = rigid.poses(study.robot, study.motion, run["time"])
+    path = kinematics.poses(study.robot, study.motion, run["time"])
     turn = path.rotation.swapaxes(1, 2) @ matrix(run["pose"][:, 3:])
     skew = np.stack([turn[:, 2, 1] - turn[:, 1, 2], turn[:, 0, 2] - turn[:, 2, 0], turn[:, 1, 0] - turn[:, 0, 1]], 1)
     radius = np.linalg.norm(study.robot.platform_joints, axis=1).max()
@@ -162,7 +162,7 @@ def test_errors_fall_with_more_than_the_fourth_power_of_the_step(monkeypatch):
     study, found = moved(amplitude=np.radians(5.0), duration=0.1), []
     true = deviation(study, run_robot(override(study, tolerance=1e-9)))
     for tolerance, longest in ((1e-3, 1e-3), (1e-7, 2e-4)):  # tolerances that ask for longer steps
-        monkeypatch.setattr(within, "LONGEST", longest)
+        monkeypatch.setattr(radau, "LONGEST", longest)
         found.append(np.abs(deviation(study, run_robot(override(study, tolerance=tolerance))) - true).max())
     assert np.log(found[0] / found[1]) / np.log(5) > 4.0
 
@@ -180,7 +180,7 @@ def test_a_vibration_without_damping_keeps_its_phase():
 
 def test_closures_and_balance_do_not_drift(monkeypatch):
     """Over 1e5 steps; a step between outputs, where records are put back onto the closures, included."""
-    monkeypatch.setattr(within, "LONGEST", 9e-6)
+    monkeypatch.setattr(radau, "LONGEST", 9e-6)
     march = prepare(paper_robot(duration=1.0, tolerance=1e-4, output_step=7e-4, modes=1))
     parts = [chunk.recording for chunk in march.chunks]
     run = {key: np.concatenate([getattr(r, key) for r in parts]) for key in ("closure", "energy", "sums")}
@@ -233,7 +233,7 @@ def test_a_platform_that_tumbles():
 
 def test_stiff_pistons_do_not_shorten_the_steps(monkeypatch):
     """Pistons ten thousand times as stiff along their axis vibrate at 350 kHz: steps pass over that."""
-    monkeypatch.setattr(within, "LONGEST", 1e-3)
+    monkeypatch.setattr(radau, "LONGEST", 1e-3)
     runs = []
     for factor in (1e3, 1e4):
         stiff = with_legs(

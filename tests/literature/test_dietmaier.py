@@ -3,10 +3,10 @@
 import numpy as np
 import pytest
 
-from flexapod.proof.cases.hexapods import BASE, LENGTHS, PLATFORM
-from flexapod.rigid.forward import all_postures
-from flexapod.rigid.jacobian import length_jacobian
-from flexapod.rigid.kinematics import leg_lengths
+from flexapod.kinematics.forward import all_postures
+from flexapod.kinematics.inverse import leg_lengths
+from flexapod.kinematics.jacobian import length_jacobian
+from flexapod.verify.cases.hexapods import BASE, LENGTHS, PLATFORM
 
 
 @pytest.fixture(scope="module")

@@ -4,8 +4,8 @@ import numpy as np
 import pytest
 
 from flexapod.errors import ComputationError
-from flexapod.proof import mechanism
-from flexapod.proof.cases import slider_crank, squeezer
+from flexapod.verify import mechanism
+from flexapod.verify.cases import slider_crank, squeezer
 
 
 def test_squeezer_of_second_order():

@@ -8,7 +8,7 @@ from tests.runs import run_actuator
 import flexapod as fx
 from flexapod.bases import lateral_basis
 from flexapod.model import override, preset
-from flexapod.proof.cases.sliding import TIP_MM
+from flexapod.verify.cases.sliding import TIP_MM
 
 LENGTH, FEED, TURN = 1.83, 0.1, 0.785
 MOTION = sliding.uniform_motion(LENGTH, FEED, TURN)

@@ -4,8 +4,8 @@ import numpy as np
 import pytest
 from tests.oracles.stewart_cases import base_circle, platform_circle
 
-from flexapod.rigid.jacobian import characteristic_length, length_jacobian, scaled
-from flexapod.rigid.trajectory import rotation_matrix
+from flexapod.kinematics.jacobian import characteristic_length, length_jacobian, scaled
+from flexapod.kinematics.trajectory import rotation_matrix
 
 RNG = np.random.default_rng(1991)
 POSITIONS = RNG.uniform([-0.2, -0.2, 0.6], [0.2, 0.2, 1.1], (2000, 3))

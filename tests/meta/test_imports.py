@@ -9,8 +9,8 @@ from pathlib import Path
 import pytest
 
 import flexapod
-from flexapod.app.commands_view import PACKAGES
-from flexapod.proof.engines.engine import EXUDYN, MUJOCO
+from flexapod.cli.commands_view import PACKAGES
+from flexapod.verify.engines.engine import EXUDYN, MUJOCO
 
 HEAVY = ("casadi", "matplotlib", "netCDF4", "pint", "pydantic", "rich", "scipy", "typer", "xarray")
 
@@ -24,8 +24,8 @@ def test_import_is_light():
 
 
 def test_the_command_loads_neither_page_nor_proof_nor_paper():
-    own = ("flexapod.app.view", "flexapod.paper", "flexapod.proof")
-    code = "import sys, flexapod.app.cli; print([m for m in sys.modules if m.startswith({names})])"
+    own = ("flexapod.page", "flexapod.paper", "flexapod.verify")
+    code = "import sys, flexapod.cli.cli; print([m for m in sys.modules if m.startswith({names})])"
     assert python(code.format(names=own)) == "[]"
     engines = ("exudyn", "mujoco")  # loaded by what is computed, not by the tables of cases and claims
     code = "import sys, flexapod.{part}; print([m for m in {names} if m in sys.modules])"

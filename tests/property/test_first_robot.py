@@ -9,13 +9,13 @@ import numpy as np
 import pytest
 
 import flexapod as fx
-from flexapod import model, rigid
+from flexapod import kinematics, model
+from flexapod.description.robot import describe
+from flexapod.design import Request, first_robot, parse_request, sizes
 from flexapod.document.first import first_words
 from flexapod.errors import InputError
-from flexapod.study.before.checks import check_path
-from flexapod.study.before.describe.robot import describe
-from flexapod.study.before.estimates import buckling_load
-from flexapod.study.first import Request, first_robot, parse_request, sizes
+from flexapod.review.checks import check_path
+from flexapod.review.estimates import buckling_load
 from flexapod.units import to_si
 
 RANDOM = np.random.default_rng(20240614)
@@ -51,15 +51,15 @@ def assert_fits(study, stroke):
     assert ends[1] - ends[0] <= stroke + 3e-4 * ends[1]  # rounded outwards to a ten-thousandth of the leg at both ends
     assert abs(ends.mean() - robot.home_lengths[0]) < 2e-4 * ends[1]
     length = np.repeat(ends[:, None], 6, axis=1)
-    assert rigid.pull_out(robot, np.arange(2.0), length) == []  # not even a remark
+    assert kinematics.pull_out(robot, np.arange(2.0), length) == []  # not even a remark
     assert leg.piston.length - (ends[1] - leg.cylinder.mouth) >= 1.9 * leg.piston.diameter
     assert ends[0] - leg.cylinder.mouth >= 1.9 * leg.piston.diameter
     assert check_path(study) == []
     t = np.linspace(0.0, study.duration, 201)
-    path = rigid.poses(robot, study.motion, t)
-    used = np.abs(rigid.reach(robot, path).length - robot.home_lengths).max() / (stroke / 2)
+    path = kinematics.poses(robot, study.motion, t)
+    used = np.abs(kinematics.reach(robot, path).length - robot.home_lengths).max() / (stroke / 2)
     assert used <= 0.82
-    forces = rigid.inverse_dynamics(robot, path).actuator_force
+    forces = kinematics.inverse_dynamics(robot, path).actuator_force
     assert 4.99 * forces.max() <= buckling_load(leg, ends[1:] - leg.cylinder.mouth)[0]
 
 
@@ -117,7 +117,7 @@ def test_motions_use_the_stroke(motion):
     study = designed(f"home=300 mm, payload=20 kg, stroke=20 mm, motion={motion}")
     assert study.motion.type == motion
     t = np.array([study.motion.duration])
-    length = rigid.reach(study.robot, rigid.poses(study.robot, study.motion, t)).length
+    length = kinematics.reach(study.robot, kinematics.poses(study.robot, study.motion, t)).length
     assert (
         0.75 < np.abs(length - study.robot.home_lengths).max() / 10e-3 < 0.801
     )  # the stroke itself is rounded outwards
@@ -251,9 +251,9 @@ def test_screws_bear_thrust_and_speed_by_hand(text):
     robot, leg = study.robot, study.robot.legs[0]
     screw, nut = leg.drive, leg.drive.nut
     t = np.linspace(0.0, study.duration, 2001)
-    path = rigid.poses(robot, study.motion, t)
-    thrust = np.abs(rigid.inverse_dynamics(robot, path).actuator_force).max()
-    length = rigid.inverse_kinematics(robot, path)
+    path = kinematics.poses(robot, study.motion, t)
+    thrust = np.abs(kinematics.inverse_dynamics(robot, path).actuator_force).max()
+    length = kinematics.inverse_kinematics(robot, path)
     d, along = screw.root_diameter, length.length.max() - leg.piston.length - screw.bearing.position
     assert thrust <= 0.5 * math.pi**3 * 200e9 * d**4 / 64 / (4 * along**2)  # half of Euler's load, one end free
     turns = np.abs(length.rate).max() / screw.lead  # per second

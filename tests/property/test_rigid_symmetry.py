@@ -4,9 +4,9 @@ import numpy as np
 import pytest
 from tests.oracles.stewart_cases import base_circle, platform_circle
 
-from flexapod.rigid.dynamics import LegBodies, PayloadBody, inverse_dynamics
-from flexapod.rigid.kinematics import leg_frames, leg_state
-from flexapod.rigid.trajectory import Poses, rotation_matrix
+from flexapod.kinematics.dynamics import LegBodies, PayloadBody, inverse_dynamics
+from flexapod.kinematics.inverse import leg_frames, leg_state
+from flexapod.kinematics.trajectory import Poses, rotation_matrix
 
 BASE, PLATFORM, HOME = base_circle(0.25, 10), platform_circle(0.15, 10), 0.9
 FRAMES = leg_frames(BASE, PLATFORM + np.array([0, 0, HOME]))

@@ -6,10 +6,10 @@ import numpy as np
 import pytest
 
 import flexapod as fx
-from flexapod import rigid
-from flexapod.rigid.laws import Law
-from flexapod.rigid.trajectory import poses_from_coordinates
-from flexapod.rigid.vectors import BLOCK
+from flexapod import kinematics
+from flexapod.kinematics.laws import Law
+from flexapod.kinematics.trajectory import poses_from_coordinates
+from flexapod.kinematics.vectors import BLOCK
 
 ROBOT = fx.preset("paper-robot").robot
 COUNT = 2 * BLOCK + 37
@@ -25,7 +25,7 @@ def path():
     numbers = np.random.default_rng(5)
     size = np.array([0.05, 0.05, 0.05, 0.3, 0.3, 0.3])
     law = Law(*(scale * size * numbers.uniform(-1, 1, (COUNT, 6)) for scale in (1, 3, 10)))
-    return poses_from_coordinates(rigid.home_pose(ROBOT), law, (0.02, 0.1, 0.3))
+    return poses_from_coordinates(kinematics.home_pose(ROBOT), law, (0.02, 0.1, 0.3))
 
 
 def one_by_one(path, function):
@@ -36,25 +36,25 @@ def agree(whole, single, tolerance):
     assert np.abs(whole[list(LOOKED_AT)] - single).max() <= tolerance * np.abs(whole).max()
 
 
-@pytest.mark.parametrize("name", [f.name for f in fields(rigid.LegState) if f.default is not None])
+@pytest.mark.parametrize("name", [f.name for f in fields(kinematics.LegState) if f.default is not None])
 def test_legs(path, name):
-    whole = getattr(rigid.inverse_kinematics(ROBOT, path), name)
+    whole = getattr(kinematics.inverse_kinematics(ROBOT, path), name)
     assert whole.shape == (COUNT, 6) and whole.flags.c_contiguous
-    agree(whole, one_by_one(path, lambda k, pose: getattr(rigid.inverse_kinematics(ROBOT, pose), name)), LENGTHS)
+    agree(whole, one_by_one(path, lambda k, pose: getattr(kinematics.inverse_kinematics(ROBOT, pose), name)), LENGTHS)
 
 
-@pytest.mark.parametrize("name", [f.name for f in fields(rigid.RigidForces)])
+@pytest.mark.parametrize("name", [f.name for f in fields(kinematics.RigidForces)])
 def test_forces(path, name):
     wrench = np.random.default_rng(6).normal(size=(COUNT, 6)) * 100
-    whole = getattr(rigid.inverse_dynamics(ROBOT, path, wrench), name)
+    whole = getattr(kinematics.inverse_dynamics(ROBOT, path, wrench), name)
     assert whole.flags.c_contiguous
-    single = one_by_one(path, lambda k, pose: getattr(rigid.inverse_dynamics(ROBOT, pose, wrench[k]), name))
+    single = one_by_one(path, lambda k, pose: getattr(kinematics.inverse_dynamics(ROBOT, pose, wrench[k]), name))
     agree(whole, single, FORCES)
 
 
 def test_known_legs_change_nothing(path):
-    plain = rigid.inverse_dynamics(ROBOT, path)
-    given = rigid.inverse_dynamics(ROBOT, path, legs=rigid.inverse_kinematics(ROBOT, path))
+    plain = kinematics.inverse_dynamics(ROBOT, path)
+    given = kinematics.inverse_dynamics(ROBOT, path, legs=kinematics.inverse_kinematics(ROBOT, path))
     np.testing.assert_array_equal(given.actuator_force, plain.actuator_force)
 
 
@@ -67,15 +67,17 @@ def test_points(path, local):
 
 def test_jacobian(path):
     joints = ROBOT.base_joints, ROBOT.platform_joints
-    whole = rigid.length_jacobian(*joints, path.position, path.rotation)
+    whole = kinematics.length_jacobian(*joints, path.position, path.rotation)
     agree(
-        whole, one_by_one(path, lambda _, pose: rigid.length_jacobian(*joints, pose.position, pose.rotation)), LENGTHS
+        whole,
+        one_by_one(path, lambda _, pose: kinematics.length_jacobian(*joints, pose.position, pose.rotation)),
+        LENGTHS,
     )
 
 
 def test_directions_are_those_of_the_legs(path):
-    legs = rigid.inverse_kinematics(ROBOT, path)
-    found = rigid.reach(ROBOT, path)
+    legs = kinematics.inverse_kinematics(ROBOT, path)
+    found = kinematics.reach(ROBOT, path)
     np.testing.assert_allclose(found.length, legs.length, rtol=0, atol=LENGTHS)
     np.testing.assert_allclose(found.angles["universal joint"], np.abs(legs.beta), rtol=0, atol=LENGTHS)
 
@@ -84,10 +86,10 @@ def test_a_folded_joint_is_named_with_its_sample_beyond_the_first_block(path):
     rotation = np.array(path.rotation)
     position = np.array(path.position)
     k = BLOCK + 5
-    first_axis = rigid.home_frames(ROBOT)[2, :, 0]  # leg 3 along the first axis of its universal joint
+    first_axis = kinematics.home_frames(ROBOT)[2, :, 0]  # leg 3 along the first axis of its universal joint
     rotation[k], position[k] = np.eye(3), ROBOT.base_joints[2] + 0.9 * first_axis - ROBOT.platform_joints[2]
     with pytest.raises(fx.InputError, match=rf"leg 3 folds to beta = 90.0 deg \(sample {k + 1} of {COUNT}\)"):
-        rigid.inverse_kinematics(ROBOT, rigid.Poses.at_rest(position, rotation))
+        kinematics.inverse_kinematics(ROBOT, kinematics.Poses.at_rest(position, rotation))
 
 
 @pytest.mark.parametrize(
@@ -95,8 +97,8 @@ def test_a_folded_joint_is_named_with_its_sample_beyond_the_first_block(path):
 )
 def test_the_pose_nearest_to_a_singularity_is_that_of_the_whole_path(kind, amplitude):
     motion = fx.model.AxisMotion(type=kind, amplitude=amplitude, duration=1.0)
-    poses = rigid.poses(ROBOT, motion, np.linspace(0.0, 1.5, 1501))
-    whole, found = rigid.singularity(ROBOT, poses), rigid.nearest_singularity(ROBOT, poses)
+    poses = kinematics.poses(ROBOT, motion, np.linspace(0.0, 1.5, 1501))
+    whole, found = kinematics.singularity(ROBOT, poses), kinematics.nearest_singularity(ROBOT, poses)
     # The same matrices go through the same LAPACK routine: equal to the last digit, the index up to exact ties.
     assert found.smallest_singular_value == whole.smallest_singular_value.min()
     assert whole.smallest_singular_value[found.worst] == found.smallest_singular_value
@@ -106,9 +108,9 @@ def test_the_pose_nearest_to_a_singularity_is_that_of_the_whole_path(kind, ampli
 
 
 def test_one_wild_pose_between_two_looks_is_found():
-    home = rigid.home_pose(ROBOT)
+    home = kinematics.home_pose(ROBOT)
     position, rotation = np.tile(home.position, (500, 1)), np.tile(home.rotation, (500, 1, 1))
-    turn = rigid.rotation_matrix([0.0, 0.0, np.deg2rad(89.9)])  # a yaw of 90 deg is singular
+    turn = kinematics.rotation_matrix([0.0, 0.0, np.deg2rad(89.9)])  # a yaw of 90 deg is singular
     rotation[237] = turn
-    poses = rigid.Poses.at_rest(position, rotation)
-    assert rigid.nearest_singularity(ROBOT, poses).worst == 237
+    poses = kinematics.Poses.at_rest(position, rotation)
+    assert kinematics.nearest_singularity(ROBOT, poses).worst == 237

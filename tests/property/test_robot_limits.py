@@ -4,13 +4,13 @@ import numpy as np
 import pytest
 from tests.runs import paper_robot, run_robot, with_legs
 
-from flexapod import rigid
+from flexapod import kinematics
 from flexapod.model import override
 
 
 def deviation(study):
     run = run_robot(study)
-    path = rigid.poses(study.robot, study.motion, run["time"])
+    path = kinematics.poses(study.robot, study.motion, run["time"])
     return run["pose"][:, :3] - path.position - path.rotation @ study.robot.payload.com
 
 

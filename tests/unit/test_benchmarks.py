@@ -20,8 +20,8 @@ from benchmarks.timing import Spread, interleaved
 from benchmarks.tolerances import at_error
 
 from flexapod.model import load, loads, preset
+from flexapod.results.causes import cause_names
 from flexapod.solve.robot_march import prepare
-from flexapod.study.after.causes import cause_names
 
 needs_cpp = pytest.mark.skipif(shutil.which("c++") is None, reason="there is no C++ compiler")
 

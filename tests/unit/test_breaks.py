@@ -8,7 +8,8 @@ import pytest
 from tests.runs import FIELDS, paper_robot, run_robot, with_legs
 
 import flexapod as fx
-from flexapod import rigid
+from flexapod import kinematics
+from flexapod.kinematics import Breaks
 from flexapod.model import (
     ActuatorMotion,
     CsvLaw,
@@ -20,7 +21,6 @@ from flexapod.model import (
     WaypointMotion,
     override,
 )
-from flexapod.rigid import Breaks
 from flexapod.schema.csv_tables import WRENCH as COLUMNS
 from flexapod.schema.csv_tables import read_table
 from flexapod.solve.stops import Stop, Stops
@@ -51,7 +51,7 @@ def loaded(wrench, **simulation):
     ],
 )
 def test_breaks_of_a_wrench(wrench, jumps, corners):
-    assert rigid.robot_breaks(loaded(wrench)) == Breaks(jumps=jumps, corners=corners)
+    assert kinematics.robot_breaks(loaded(wrench)) == Breaks(jumps=jumps, corners=corners)
 
 
 def test_breaks_of_motions_and_drives():
@@ -61,9 +61,9 @@ def test_breaks_of_motions_and_drives():
         ("linear", (1, 3)), ("trapezoid", (0.25, 0.75, 1, 1.5, 2.5, 3)), ("quintic", ()), ("s-curve", ()),
     ):  # fmt: skip
         motion = WaypointMotion(points=points, profile=profile)
-        assert rigid.robot_breaks(study.replace(motion=motion)) == Breaks(jumps=jumps)
+        assert kinematics.robot_breaks(study.replace(motion=motion)) == Breaks(jumps=jumps)
     drive = ForceDrive(law="csv", time=[0, 0.5, 0.5, 2], force=[1, 1, 2, 2], feedback={"stiffness": 1e6})
-    assert rigid.robot_breaks(with_legs(study, lambda leg: leg.replace(drive=drive))) == Breaks(jumps=(0.5,))
+    assert kinematics.robot_breaks(with_legs(study, lambda leg: leg.replace(drive=drive))) == Breaks(jumps=(0.5,))
 
 
 def test_breaks_of_an_actuator():
@@ -73,7 +73,7 @@ def test_breaks_of_an_actuator():
         motion=ActuatorMotion(rotation=trapezoid, extension=None),
         load={"force": {"law": "linear", "amplitude": 1.0, "duration": 0.7}},
     )
-    assert rigid.actuator_breaks(study) == Breaks(jumps=(0.5, 1.5, 2), corners=(0.7,))
+    assert kinematics.actuator_breaks(study) == Breaks(jumps=(0.5, 1.5, 2), corners=(0.7,))
 
 
 def test_stops_on_outputs_and_between_them():
@@ -100,7 +100,7 @@ def test_a_ramp_shorter_than_a_microsecond_is_a_jump():
 def test_a_table_is_the_law_that_it_describes():
     law, rows = StepWrench(amplitude=WRENCH, time=0.02), table([0, 0.02, 0.02, 1], [0, 0, 1, 1])
     for t in (0.0199, 0.02, 0.03, 2.0):
-        np.testing.assert_array_equal(*(rigid.wrench(Load(wrench=x), t) for x in (law, rows)))
+        np.testing.assert_array_equal(*(kinematics.wrench(Load(wrench=x), t) for x in (law, rows)))
     one, other = (run_robot(loaded(x)) for x in (law, rows))
     for name in FIELDS:
         np.testing.assert_array_equal(one[name], other[name])
@@ -114,7 +114,10 @@ def test_rows_that_change_nothing_change_nothing():
     plain = run_robot(loaded(table([0, 0.01, 0.03, 1], [0, 0, 1, 1])))
     more = run_robot(loaded(table([0, 0.01, 0.0141, 0.03, 1], [0, 0, 0.205, 1, 1])))
     np.testing.assert_allclose(more["pose"], plain["pose"], atol=1e-15)  # 0.205 is not exact
-    assert rigid.robot_breaks(loaded(table([0, 0.01, 0.0141, 0.03, 1], [0, 0, 0.205, 1, 1]))).corners == (0.01, 0.03)
+    assert kinematics.robot_breaks(loaded(table([0, 0.01, 0.0141, 0.03, 1], [0, 0, 0.205, 1, 1]))).corners == (
+        0.01,
+        0.03,
+    )
 
 
 def test_what_is_stored_at_a_jump_is_what_follows_it():
@@ -176,7 +179,7 @@ def test_tables_of_study_files_may_jump(tmp_path, name):
         whole += text
     (tmp_path / name).write_text(whole)
     study = fx.load(tmp_path / name)
-    breaks = rigid.actuator_breaks if name == "actuator.toml" else rigid.robot_breaks
+    breaks = kinematics.actuator_breaks if name == "actuator.toml" else kinematics.robot_breaks
     assert breaks(study).jumps == (1.0,)
 
 

@@ -14,8 +14,8 @@ import numpy as np
 import pytest
 
 from flexapod.errors import ComputationError, InputError
+from flexapod.kinematics.robot import home_pose
 from flexapod.model import preset
-from flexapod.rigid.robot import home_pose
 from flexapod.solve.at_poses import locked_poses
 from flexapod.solve.robot_system import robot_system
 from flexapod.symbolic import cache, compiler

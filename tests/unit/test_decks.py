@@ -11,8 +11,8 @@ from flexapod.exchange.decks import Deck, Tie, cross_matrix, solved
 from flexapod.exchange.decks_legs import legs_at_pose
 from flexapod.exchange.decks_robot import point_masses
 from flexapod.exchange.export import abaqus_deck, left_out
+from flexapod.kinematics import home_pose
 from flexapod.model import ConstantWrench, Cylinder, ForceDrive, Joint, Load, ServoDrive, Study, preset
-from flexapod.rigid import home_pose
 
 SHARED = {
     "HEADING", "NODE", "ELEMENT", "MASS", "MATERIAL", "ELASTIC", "DENSITY", "SOLID SECTION", "SPRING", "BOUNDARY",

@@ -7,6 +7,8 @@ import pytest
 from tests.runs import paper_robot, with_legs
 
 import flexapod as fx
+from flexapod.description.leg import _stress
+from flexapod.description.robot import describe
 from flexapod.model import (
     AxisMotion,
     ConstantLaw,
@@ -19,9 +21,7 @@ from flexapod.model import (
     Tube,
     override,
 )
-from flexapod.study.before.describe.leg import _stress
-from flexapod.study.before.describe.robot import describe
-from flexapod.study.ideal import held
+from flexapod.results.ideal import held
 
 
 def rolling(duration, amplitude=0.4643, profile="quintic", hold=0.25, **settings):

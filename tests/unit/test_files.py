@@ -9,10 +9,11 @@ from pathlib import Path
 
 import pytest
 
-from flexapod import files, model
+from flexapod import model
 from flexapod.errors import InputError
-from flexapod.files import read_bytes, read_text, replacing, whole
 from flexapod.model import preset_text
+from flexapod.runtime import files
+from flexapod.runtime.files import read_bytes, read_text, replacing, whole
 from flexapod.schema import csv_tables
 from flexapod.surveys.sweeps.plan import read_plan
 from flexapod.symbolic import cache

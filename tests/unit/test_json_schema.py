@@ -10,7 +10,7 @@ from tests.damaged import WHOLE
 from tests.property.test_written import respelled
 from typer.testing import CliRunner
 
-from flexapod.app.cli import app
+from flexapod.cli.cli import app
 from flexapod.model import PRESETS, preset_text
 from flexapod.model.json_schema import json_schema
 from flexapod.model.page import study_data

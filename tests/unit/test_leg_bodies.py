@@ -8,18 +8,18 @@ from tests.mechanisms import built, ring
 from typer.testing import CliRunner
 
 import flexapod as fx
-from flexapod import rigid
-from flexapod.app.cli import app
+from flexapod import kinematics
+from flexapod.cli.cli import app
+from flexapod.description.bodies import stroke_ends
+from flexapod.description.robot import describe
 from flexapod.errors import InputError
+from flexapod.kinematics import bodies
+from flexapod.kinematics.rotations import exponential
 from flexapod.model import Home, to_toml
 from flexapod.model.joint import Joint
 from flexapod.model.leg import Stroke
-from flexapod.rigid import bodies
-from flexapod.rigid.rotations import exponential
-from flexapod.study.before.describe.bodies import stroke_ends
-from flexapod.study.before.describe.robot import describe
-from flexapod.study.bodies import CYLINDER, bodies_words, clearance, pairs_of_legs, turns
-from flexapod.study.path import RigidPath
+from flexapod.results.bodies import CYLINDER, bodies_words, clearance, pairs_of_legs, turns
+from flexapod.results.path import RigidPath
 from flexapod.ties import first_least
 
 LIMITED = {"base_joint": Joint(max_angle=0.2), "platform_joint": Joint(max_angle=0.1)}
@@ -31,9 +31,11 @@ def test_the_distance_of_two_legs_is_that_of_their_axes_less_the_radii():
     tips = np.array([[[1, 0, 0], [0.5, 0.5, 0.3], [2.0, 0.5, 0]]], dtype=float)
     radii, mouth = np.full((3, 2), 0.01), np.zeros(3)
     for pair, gap in (((0, 1), 0.28), ((0, 2), 0.98), ((1, 2), np.hypot(1.5, 0.3) - 0.02)):
-        found = rigid.nearest_legs(feet, tips, mouth, radii, np.array([pair]))
+        found = kinematics.nearest_legs(feet, tips, mouth, radii, np.array([pair]))
         assert found.gap == pytest.approx([gap], abs=1e-12)
-    assert rigid.nearest_legs(feet, tips, mouth, radii, np.array([(0, 1), (0, 2), (1, 2)])).legs.tolist() == [[0, 1]]
+    assert kinematics.nearest_legs(feet, tips, mouth, radii, np.array([(0, 1), (0, 2), (1, 2)])).legs.tolist() == [
+        [0, 1]
+    ]
 
 
 def test_of_legs_equally_near_the_first_two_are_named():
@@ -42,7 +44,9 @@ def test_of_legs_equally_near_the_first_two_are_named():
     feet = np.zeros((40, 3, 3))
     feet[..., :2] = corners + 1e-13 * np.random.default_rng(7).normal(size=(40, 3, 2))
     pairs = np.array([(0, 1), (0, 2), (1, 2)])
-    found = rigid.nearest_legs(feet, feet + np.array([0.0, 0.0, 1.0]), np.full(3, 0.4), np.full((3, 2), 0.01), pairs)
+    found = kinematics.nearest_legs(
+        feet, feet + np.array([0.0, 0.0, 1.0]), np.full(3, 0.4), np.full((3, 2), 0.01), pairs
+    )
     np.testing.assert_allclose(found.gap, 0.3 * 3**0.5 - 0.02, rtol=0, atol=1e-12)
     assert (found.legs == [0, 1]).all()
 
@@ -52,7 +56,7 @@ def test_distances_are_those_of_a_search():
     rng = np.random.default_rng(5)
     feet, tips = rng.normal(size=(2, 40, 2, 3))
     mouth, radii = np.array([0.4, 0.0]), np.array([[0.05, 0.03], [0.02, 0.02]])
-    ours = rigid.nearest_legs(feet, tips, mouth, radii, np.array([(0, 1)])).gap
+    ours = kinematics.nearest_legs(feet, tips, mouth, radii, np.array([(0, 1)])).gap
     for foot, tip, gap in zip(feet, tips, ours, strict=True):
         share = mouth[0] / np.linalg.norm(tip[0] - foot[0])
         least = np.inf
@@ -166,10 +170,10 @@ def test_the_two_legs_that_a_map_names_are_those_that_stand_together():
 
 
 def _gap(robot, surge):
-    pose = rigid.home_pose(robot)
-    pose = rigid.Poses.at_rest(pose.position + np.array([surge, 0, 0]), pose.rotation)
-    legs = rigid.inverse_kinematics(robot, pose)
-    return clearance(robot, pose.place(robot.platform_joints), rigid.leg_axes(robot, pose), legs.length).gap[0]
+    pose = kinematics.home_pose(robot)
+    pose = kinematics.Poses.at_rest(pose.position + np.array([surge, 0, 0]), pose.rotation)
+    legs = kinematics.inverse_kinematics(robot, pose)
+    return clearance(robot, pose.place(robot.platform_joints), kinematics.leg_axes(robot, pose), legs.length).gap[0]
 
 
 def test_all_legs_at_the_ends_of_their_strokes():

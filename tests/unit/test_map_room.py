@@ -5,7 +5,7 @@ import pytest
 
 import flexapod as fx
 from flexapod.errors import InputError
-from flexapod.study.before import room
+from flexapod.review import room
 
 
 def test_maps_beyond_the_memory_are_refused(monkeypatch):

@@ -6,8 +6,8 @@ from tests.mechanisms import ROBOTS, THREE, built, leg, ring, sliders, tangents
 
 import flexapod as fx
 from flexapod.model.motion import AxisMotion
-from flexapod.study.before.checks import check_geometry
-from flexapod.study.before.reach import REASONS, rigid_codes
+from flexapod.review.checks import check_geometry
+from flexapod.review.reach import REASONS, rigid_codes
 from flexapod.surveys.workspace.grid import usual_axes
 
 
@@ -15,7 +15,7 @@ def codes(robot, **values):
     columns = np.zeros((len(next(iter(values.values()))), 6))
     for name, column in values.items():
         columns[:, ["surge", "sway", "heave", "roll", "pitch", "yaw"].index(name)] = column
-    path = fx.rigid.poses_from_home(robot, columns)
+    path = fx.kinematics.poses_from_home(robot, columns)
     return [REASONS[code].flag for code in rigid_codes(robot, path, from_home=True)]
 
 
@@ -36,7 +36,7 @@ def test_codes_say_what_stops_a_delta():
     # 0.05 m up all three carriages rise by 0.05 m; 0.09 m is beyond their 0.08 m; far out no rod reaches
     assert found == ["reached", "carriage_stops", "carriage_stops", "out_of_reach"]
     values = np.array([[0, 0, 0.05, 0, 0, 0], [0.02, 0, 0.09, 0, 0, 0], [0.9, 0, 0, 0, 0, 0.0]])
-    assert fx.rigid.reachable(robot, fx.rigid.poses_from_home(robot, values)).tolist() == [True, False, False]
+    assert fx.kinematics.reachable(robot, fx.kinematics.poses_from_home(robot, values)).tolist() == [True, False, False]
 
 
 def test_margins_of_a_map_are_those_of_the_sliders():

@@ -340,7 +340,7 @@ def test_what_only_python_can_give():
 
 
 def test_the_help_of_new_names_every_preset():
-    text = (Path(__file__).parents[2] / "src/flexapod/app/commands_study.py").read_text(encoding="utf-8")
+    text = (Path(__file__).parents[2] / "src/flexapod/cli/commands_study.py").read_text(encoding="utf-8")
     assert all(name in text for name in model.PRESETS)
 
 

@@ -9,9 +9,9 @@ import pytest
 import xarray as xr
 
 import flexapod as fx
-from flexapod import rigid
-from flexapod.rigid import robot as of_robot
-from flexapod.study.names import COORDINATES, VARIABLES, dataset
+from flexapod import kinematics
+from flexapod.kinematics import robot as of_robot
+from flexapod.results.names import COORDINATES, VARIABLES, dataset
 
 
 def test_home_frames_are_computed_once_for_equal_robots(monkeypatch):
@@ -19,18 +19,18 @@ def test_home_frames_are_computed_once_for_equal_robots(monkeypatch):
     plain = of_robot.limbs
     monkeypatch.setattr(of_robot, "limbs", lambda *given, **more: calls.append(1) or plain(*given, **more))
     robot = fx.preset("paper-robot").robot.replace(home_height=0.8871)
-    path = rigid.home_pose(robot)
+    path = kinematics.home_pose(robot)
     for subject in (robot, robot, pickle.loads(pickle.dumps(robot)), robot.replace(home_height=0.8871)):
-        rigid.home_frames(subject)
-        rigid.inverse_dynamics(subject, path)
+        kinematics.home_frames(subject)
+        kinematics.inverse_dynamics(subject, path)
     assert len(calls) == 1
-    rigid.home_frames(robot.replace(home_height=0.8872))
+    kinematics.home_frames(robot.replace(home_height=0.8872))
     assert len(calls) == 2
 
 
 def test_nobody_can_change_frames_that_others_use():
     with pytest.raises(ValueError, match="read-only"):
-        rigid.home_frames(fx.preset("paper-robot").robot)[0, 0, 0] = 2.0
+        kinematics.home_frames(fx.preset("paper-robot").robot)[0, 0, 0] = 2.0
 
 
 def test_a_copy_with_another_value_has_its_own_hash():
@@ -78,7 +78,7 @@ def test_a_first_dataset_needs_neither_units_nor_clusters():
     """Loading pint and dask took a third of the time from a cold start to a finished simulation."""
     code = (
         "import sys, numpy as np, flexapod as fx; fx.preset('paper-robot'); fx.simulate; "
-        "from flexapod.study.names import dataset; "
+        "from flexapod.results.names import dataset; "
         "dataset({'com_position': np.zeros((2, 3))}, {'time': np.arange(2.0)}); "
         "print([m for m in ('pint', 'dask', 'scipy.optimize', 'matplotlib', 'casadi', 'skfem') if m in sys.modules])"
     )

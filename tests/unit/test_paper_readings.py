@@ -5,9 +5,9 @@ import pytest
 from tests.paper_parts import part
 
 from flexapod import model
+from flexapod.kinematics import dynamics
+from flexapod.kinematics.inverse import JointTurn
 from flexapod.paper import cost, readings, trials
-from flexapod.rigid import dynamics
-from flexapod.rigid.kinematics import JointTurn
 
 pytestmark = pytest.mark.xdist_group("claims")  # one process computes the parts
 

@@ -6,9 +6,9 @@ import numpy as np
 import pytest
 from tests.mechanisms import three_rps
 
-from flexapod import rigid
+from flexapod import kinematics
+from flexapod.kinematics.laws import PROFILES
 from flexapod.model import CombinedMotion, CsvMotion, Load, Simulation, Waypoint, WaypointMotion
-from flexapod.rigid.laws import PROFILES
 from flexapod.solve.pieces import ENOUGH, NODES, Pieces
 from flexapod.solve.robot_system import robot_system
 from flexapod.solve.tables import robot_law
@@ -75,8 +75,8 @@ MOTIONS = {
 def test_commands_are_those_of_the_rigid_path(name):
     robot, motion = three_rps(), MOTIONS[name]
     system = robot_system(robot, Simulation(fidelity="rigid"), 0.0, march=False)
-    poses = Counted(partial(rigid.poses, robot, motion))
-    knots = rigid.path_knots(motion, 0.5)
+    poses = Counted(partial(kinematics.poses, robot, motion))
+    knots = kinematics.path_knots(motion, 0.5)
     exact, tabulated = (robot_law(system, robot, Load(), poses, x) for x in (None, knots))
     t = np.linspace(0, 0.5, 4001)
     (expected, _), (found, _) = exact(t), tabulated(t)

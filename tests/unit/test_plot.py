@@ -15,9 +15,9 @@ from matplotlib.legend import Legend
 from matplotlib.text import Text
 
 from flexapod import plot
-from flexapod.app.view.charts import charts
 from flexapod.errors import InputError
 from flexapod.model import load, preset
+from flexapod.page.charts import charts
 from flexapod.plot.narrow import narrowed
 from flexapod.plot.style import figure as page_figure
 from flexapod.plot.style import ink

@@ -8,9 +8,10 @@ from tests.machines import BEARING, NUT, SCREW, SOFT, machine, study, symmetric
 from typer.testing import CliRunner
 
 import flexapod as fx
-from flexapod import rigid
-from flexapod.app.cli import app
+from flexapod import kinematics
+from flexapod.cli.cli import app
 from flexapod.elements.springs import in_series, softening, springs_along
+from flexapod.error_budget.rows import names_of_rows
 from flexapod.errors import InputError
 from flexapod.exchange.decks_legs import legs_at_pose
 from flexapod.model import (
@@ -29,9 +30,8 @@ from flexapod.model.guide import Guide
 from flexapod.model.heat import HEAT_PARTS
 from flexapod.model.material import Tube
 from flexapod.model.mount import Mount
+from flexapod.results.causes import cause_names
 from flexapod.solve.parts import part_stiffness
-from flexapod.study.after.causes import cause_names
-from flexapod.study.budgets.rows import names_of_rows
 
 UM = 1e6  # N/m
 STUDY = """
@@ -280,22 +280,22 @@ def test_decks_refuse_what_they_do_not_have(key):
     tube = Cylinder.tube(mouth=0.6, section=Tube(diameter=0.09, inner_diameter=0.07), material=MATERIALS["steel"])
     parts = {"guide": Guide(gland=2e8, head=2e8), "cylinder": tube}
     with pytest.raises(InputError, match=r"not written in decks.*Leave it out for the deck"):
-        legs_at_pose(machine(**{key: parts[key]}), rigid.home_pose(machine()), np.zeros(6))
+        legs_at_pose(machine(**{key: parts[key]}), kinematics.home_pose(machine()), np.zeros(6))
 
 
 def test_a_deck_has_the_springs_before_the_piston():
     robot = machine(drive=SCREW, springs=(AxialSpring(name="bracket", stiffness=5e8),))
-    found = legs_at_pose(robot, rigid.home_pose(robot), np.zeros(6))[0]
+    found = legs_at_pose(robot, kinematics.home_pose(robot), np.zeros(6))[0]
     parts = fx.parts(robot).isel(leg=0)
     expected = 1 / (1 / parts.part_stiffness).sel(part=["screw", "twist", "nut", "bearing", "bracket"]).sum()
     assert found.drive_spring == pytest.approx(float(expected), rel=1e-12)
     ends = tuple(AxialSpring(name=at, stiffness=5e8, at=at) for at in ("base", "platform"))
-    leg = legs_at_pose(machine(springs=ends, base_joint=SOFT), rigid.home_pose(robot), np.zeros(6))[0]
+    leg = legs_at_pose(machine(springs=ends, base_joint=SOFT), kinematics.home_pose(robot), np.zeros(6))[0]
     np.testing.assert_allclose(leg.base_springs, [150e6, 150e6, 1 / (1 / 200e6 + 1 / 5e8)])
     np.testing.assert_allclose(leg.base_gives, leg.axes.T)
     np.testing.assert_allclose((*leg.tip_springs, *leg.tip_gives[0]), (5e8, *leg.axes[:, 2]))
     with pytest.raises(InputError, match=r"leg.drive.type.*not written in decks"):
-        legs_at_pose(machine(base_joint=SOFT, drive=fx.model.ForceDrive()), rigid.home_pose(robot), np.ones(6))
+        legs_at_pose(machine(base_joint=SOFT, drive=fx.model.ForceDrive()), kinematics.home_pose(robot), np.ones(6))
 
 
 def test_sweeps_vary_parts():

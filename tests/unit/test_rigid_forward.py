@@ -6,12 +6,12 @@ from scipy.spatial.transform import Rotation
 from tests.oracles.stewart_cases import base_circle, platform_circle
 
 from flexapod.errors import ComputationError, InputError
-from flexapod.rigid.forward import all_postures, newton, newton_path
-from flexapod.rigid.homotopy import Platform, quadrics
-from flexapod.rigid.jacobian import length_jacobian
-from flexapod.rigid.kinematics import leg_lengths
-from flexapod.rigid.rotations import exponential
-from flexapod.rigid.trajectory import Poses, rotation_matrix
+from flexapod.kinematics.forward import all_postures, newton, newton_path
+from flexapod.kinematics.homotopy import Platform, quadrics
+from flexapod.kinematics.inverse import leg_lengths
+from flexapod.kinematics.jacobian import length_jacobian
+from flexapod.kinematics.rotations import exponential
+from flexapod.kinematics.trajectory import Poses, rotation_matrix
 
 BASE, PLATFORM, HOME = base_circle(0.25, 10), platform_circle(0.15, 10), np.array([0, 0, 0.9])
 RNG = np.random.default_rng(5)

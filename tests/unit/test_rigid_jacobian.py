@@ -3,9 +3,16 @@
 import numpy as np
 from tests.oracles.stewart_cases import base_circle, platform_circle
 
-from flexapod.rigid.jacobian import along_path, characteristic_length, length_jacobian, scaled, scaled_path, stiffness
-from flexapod.rigid.kinematics import leg_frames, leg_state
-from flexapod.rigid.trajectory import Poses, rotation_matrix
+from flexapod.kinematics.inverse import leg_frames, leg_state
+from flexapod.kinematics.jacobian import (
+    along_path,
+    characteristic_length,
+    length_jacobian,
+    scaled,
+    scaled_path,
+    stiffness,
+)
+from flexapod.kinematics.trajectory import Poses, rotation_matrix
 
 BASE, PLATFORM, HOME = base_circle(0.25, 10), platform_circle(0.15, 10), 0.9
 RNG = np.random.default_rng(11)

@@ -5,9 +5,9 @@ import pytest
 from tests.oracles.stewart_cases import base_circle, central_difference, platform_circle
 
 from flexapod.errors import InputError
-from flexapod.rigid.kinematics import joint_angles, leg_frames, leg_lengths, leg_rotations, leg_state
-from flexapod.rigid.laws import Law
-from flexapod.rigid.trajectory import Poses, poses_from_coordinates
+from flexapod.kinematics.inverse import joint_angles, leg_frames, leg_lengths, leg_rotations, leg_state
+from flexapod.kinematics.laws import Law
+from flexapod.kinematics.trajectory import Poses, poses_from_coordinates
 
 BASE, PLATFORM, HOME = base_circle(0.25, 10), platform_circle(0.15, 10), 0.9
 FRAMES = leg_frames(BASE, PLATFORM + np.array([0, 0, HOME]))

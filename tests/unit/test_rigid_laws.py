@@ -5,7 +5,7 @@ import pytest
 from tests.oracles.stewart_cases import central_difference
 
 from flexapod.errors import InputError
-from flexapod.rigid import laws
+from flexapod.kinematics import laws
 
 KNOTS = {"s-curve": np.cumsum((0, *laws.S_CURVE_FRACTIONS)), "trapezoid": np.cumsum((0, *laws.TRAPEZOID_FRACTIONS))}
 RNG = np.random.default_rng(7)

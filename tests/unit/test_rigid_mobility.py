@@ -6,10 +6,10 @@ import numpy as np
 import pytest
 from tests.mechanisms import LOWER, ROBOTS, THREE, built, hexapod, leg, ring, tangents
 
-from flexapod import rigid
+from flexapod import kinematics
 from flexapod.errors import InputError
+from flexapod.kinematics.limbs import FREE, HELD, limbs
 from flexapod.model.motion import AxisMotion, CombinedMotion
-from flexapod.rigid.limbs import FREE, HELD, limbs
 
 
 def loosened(legs, base=(), platform=()):
@@ -87,13 +87,13 @@ HELD_NEXT = {"3-UPU radial": 0, "similar hexagons": 1}  # similar hexagons stay 
 def test_table_of_mobility(name):
     make, *expected = TABLE[name]
     legs = make()
-    found = rigid.mobility(legs)
+    found = kinematics.mobility(legs)
     counts = [found.freedoms, found.gruebler, found.mobility, found.redundant, found.locked, found.self_stress]
     assert counts == expected
-    next_to = rigid.displaced(legs)
+    next_to = kinematics.displaced(legs)
     assert len(next_to) == 2
     for posture in next_to:
-        near = rigid.mobility(legs, posture)
+        near = kinematics.mobility(legs, posture)
         assert near.mobility == INSTANTANEOUS.get(name, expected[2])
         assert near.locked == HELD_NEXT.get(name, expected[4])
 
@@ -110,55 +110,57 @@ WORDS = {
 
 @pytest.mark.parametrize("name", WORDS)
 def test_motions_have_names(name):
-    assert rigid.mobility_words(limbs(ROBOTS[name](), rigid=True))[0] == WORDS[name]
+    assert kinematics.mobility_words(limbs(ROBOTS[name](), rigid=True))[0] == WORDS[name]
 
 
 def test_what_else_is_worth_saying():
-    assert "two drives more than motions: forces are shared by stiffness" in rigid.mobility_words(TABLE["8-UPS"][0]())
-    loose = rigid.mobility_words(radial_upu())
+    assert "two drives more than motions: forces are shared by stiffness" in kinematics.mobility_words(
+        TABLE["8-UPS"][0]()
+    )
+    loose = kinematics.mobility_words(radial_upu())
     assert "next to home it has 3 motions only" in loose
     assert any(s.startswith("with all drives locked it still has 2 motions: ") for s in loose)
     assert any(s.endswith(": singular at home") for s in loose)
-    assert any("legs 1, 2, 3, 4, 5 and 6 can turn about" in s for s in rigid.mobility_words(TABLE["6-SPS"][0]()))
-    assert any(s.startswith("over-constrained: 2 conditions") for s in rigid.mobility_words(exechon()))
+    assert any("legs 1, 2, 3, 4, 5 and 6 can turn about" in s for s in kinematics.mobility_words(TABLE["6-SPS"][0]()))
+    assert any(s.startswith("over-constrained: 2 conditions") for s in kinematics.mobility_words(exechon()))
 
 
 def test_a_robot_that_its_drives_do_not_hold_is_refused():
-    rigid.refuse_loose(TABLE["3-RPS"][0]())
+    kinematics.refuse_loose(TABLE["3-RPS"][0]())
     with pytest.raises(InputError, match="with all drives locked it still has 2 motions"):
-        rigid.refuse_loose(radial_upu())
+        kinematics.refuse_loose(radial_upu())
 
 
 @pytest.mark.parametrize(("name", "axis"), [("3-RPS", "surge"), ("3-RPS", "yaw"), ("3-UPU", "roll")])
 def test_a_motion_that_the_robot_does_not_have_is_refused(name, axis):
     motion = AxisMotion(type=axis, amplitude=0.05, duration=1.0)
     with pytest.raises(InputError, match=f"asks for {axis} of a robot with 3 motions: "):
-        rigid.poses(ROBOTS[name](), motion, [0.0, 1.0])
+        kinematics.poses(ROBOTS[name](), motion, [0.0, 1.0])
 
 
 def test_more_axes_than_motions_are_refused():
     motion = CombinedMotion(amplitudes={"surge": 0.01, "heave": 0.01, "roll": 0.1, "pitch": 0.1}, duration=1.0)
     with pytest.raises(InputError, match=r"motions: move along z, turn about base x, turn about base y"):
-        rigid.poses(ROBOTS["3-UPS+UP"](), motion, [0.0, 1.0])
+        kinematics.poses(ROBOTS["3-UPS+UP"](), motion, [0.0, 1.0])
 
 
 def test_a_motion_must_not_command_what_it_leaves_to_follow():
     named = {"duration": 1.0, "independent": ["heave", "roll", "pitch"]}
     motion = CombinedMotion(amplitudes={"heave": 0.01, "yaw": 0.1}, **named)
     with pytest.raises(InputError, match="leaves yaw to follow, which the motion commands"):
-        rigid.poses(ROBOTS["3-RPS"](), motion, [0.0, 1.0])
-    path = rigid.poses(ROBOTS["3-RPS"](), CombinedMotion(amplitudes={"heave": 0.01}, **named), [0.0, 1.0])
+        kinematics.poses(ROBOTS["3-RPS"](), motion, [0.0, 1.0])
+    path = kinematics.poses(ROBOTS["3-RPS"](), CombinedMotion(amplitudes={"heave": 0.01}, **named), [0.0, 1.0])
     np.testing.assert_allclose(path.position[1], [0, 0, 0.61], atol=1e-15)
 
 
 def test_coordinates_of_a_motion_are_completed():
     tricept = limbs(ROBOTS["3-UPS+UP"](), rigid=True)
-    chosen = rigid.independent_axes(tricept, np.eye(6, dtype=bool)[3], np.zeros(3))
+    chosen = kinematics.independent_axes(tricept, np.eye(6, dtype=bool)[3], np.zeros(3))
     assert chosen[3] and chosen.sum() == 3
-    named = rigid.independent_axes(tricept, np.zeros(6, dtype=bool), np.zeros(3), ["surge", "sway", "heave"])
+    named = kinematics.independent_axes(tricept, np.zeros(6, dtype=bool), np.zeros(3), ["surge", "sway", "heave"])
     assert named.tolist() == [True] * 3 + [False] * 3
     with pytest.raises(InputError, match="independently"):
-        rigid.independent_axes(tricept, np.zeros(6, dtype=bool), np.zeros(3), ["surge", "pitch", "heave"])
+        kinematics.independent_axes(tricept, np.zeros(6, dtype=bool), np.zeros(3), ["surge", "pitch", "heave"])
 
 
 def test_tangential_axes_differ_from_radial_ones():
@@ -166,4 +168,4 @@ def test_tangential_axes_differ_from_radial_ones():
     out, along = ring(1.0, THREE), tangents(THREE)
     for axes, motions in ((out, 5), (along, 3)):
         legs = hinges("3-RPR", ring(0.35, THREE), ring(0.2, THREE), 0.6, axes, axes)
-        assert rigid.mobility(loosened(legs, range(3), range(3))).mobility == motions
+        assert kinematics.mobility(loosened(legs, range(3), range(3))).mobility == motions

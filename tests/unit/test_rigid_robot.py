@@ -4,7 +4,7 @@ import numpy as np
 import pytest
 from tests.oracles.stewart_cases import base_circle, central_difference, platform_circle
 
-from flexapod import rigid
+from flexapod import kinematics
 from flexapod.model import (
     AxisMotion,
     Cylinder,
@@ -41,7 +41,7 @@ ROBOT = make()
 
 
 def legs(robot, motion, t):
-    return rigid.inverse_kinematics(robot, rigid.poses(robot, motion, t))
+    return kinematics.inverse_kinematics(robot, kinematics.poses(robot, motion, t))
 
 
 def test_strokes_start_at_home_and_have_exact_derivatives():
@@ -55,32 +55,33 @@ def test_strokes_start_at_home_and_have_exact_derivatives():
 
 
 def test_forward_kinematics_returns_the_path():
-    path = rigid.poses(ROBOT, ROLL, T)
-    found = rigid.forward_kinematics(ROBOT, rigid.inverse_kinematics(ROBOT, path).length)
+    path = kinematics.poses(ROBOT, ROLL, T)
+    found = kinematics.forward_kinematics(ROBOT, kinematics.inverse_kinematics(ROBOT, path).length)
     np.testing.assert_allclose(found.position, path.position, atol=1e-11)
     np.testing.assert_allclose(found.rotation, path.rotation, atol=1e-11)
 
 
 def test_home_is_among_the_postures():
-    found = rigid.postures(ROBOT, ROBOT.home_lengths)
+    found = kinematics.postures(ROBOT, ROBOT.home_lengths)
     assert np.min(np.linalg.norm(found.poses.position - [0, 0, 0.9], axis=1)) < 1e-11
 
 
 def test_power_balance_of_the_roll_closes():
     """Drive power is the change of energy, to 1e-8 of its peak."""
     t = T[3:20]
-    path = rigid.poses(ROBOT, ROLL, t)
+    path = kinematics.poses(ROBOT, ROLL, t)
     power = np.sum(
-        rigid.inverse_dynamics(ROBOT, path).actuator_force * rigid.inverse_kinematics(ROBOT, path).rate, axis=1
+        kinematics.inverse_dynamics(ROBOT, path).actuator_force * kinematics.inverse_kinematics(ROBOT, path).rate,
+        axis=1,
     )
-    change = central_difference(lambda x: sum(rigid.energies(ROBOT, rigid.poses(ROBOT, ROLL, x))), t, h=2e-4)
+    change = central_difference(lambda x: sum(kinematics.energies(ROBOT, kinematics.poses(ROBOT, ROLL, x))), t, h=2e-4)
     assert np.max(np.abs(power - change)) < 1e-8 * np.max(np.abs(power))
 
 
 def test_wrench_is_carried_besides_the_weight():
-    home = rigid.home_pose(ROBOT)
-    plain = rigid.inverse_dynamics(ROBOT, home)
-    pushed = rigid.inverse_dynamics(ROBOT, home, [0, 0, 60, 0, 0, 0])
+    home = kinematics.home_pose(ROBOT)
+    plain = kinematics.inverse_dynamics(ROBOT, home)
+    pushed = kinematics.inverse_dynamics(ROBOT, home, [0, 0, 60, 0, 0, 0])
     np.testing.assert_allclose(
         pushed.joint_force.sum(axis=1) - plain.joint_force.sum(axis=1), [[0, 0, -60]], atol=1e-10
     )
@@ -89,18 +90,18 @@ def test_wrench_is_carried_besides_the_weight():
 def test_strokes_and_pull_out_of_a_path():
     robot = make(stroke=Stroke(min=0.7, max=1.1))
     length = legs(robot, HEAVE, T).length
-    found = rigid.strokes(robot, T, length)
+    found = kinematics.strokes(robot, T, length)
     assert [e.leg for e in found] == [1, 2, 3, 4, 5, 6]
     assert found[0].value == pytest.approx(np.hypot(1.2, np.linalg.norm(robot.home_vectors[0, :2])))
-    assert [e.kind for e in rigid.pull_out(robot, T, length)] == ["is pulled out of its cylinder"] * 6
+    assert [e.kind for e in kinematics.pull_out(robot, T, length)] == ["is pulled out of its cylinder"] * 6
     np.testing.assert_array_equal(
-        rigid.reachable(robot, rigid.poses(robot, HEAVE, T)), np.all(length <= 0.31518 + 0.75, axis=1)
+        kinematics.reachable(robot, kinematics.poses(robot, HEAVE, T)), np.all(length <= 0.31518 + 0.75, axis=1)
     )
-    assert rigid.strokes(ROBOT, T, length) == []  # no stroke given: no limit
+    assert kinematics.strokes(ROBOT, T, length) == []  # no stroke given: no limit
 
 
 def test_singularity_of_the_roll_is_far():
-    found = rigid.singularity(ROBOT, rigid.poses(ROBOT, ROLL, T))
+    found = kinematics.singularity(ROBOT, kinematics.poses(ROBOT, ROLL, T))
     assert found.smallest_singular_value.shape == T.shape
     assert np.min(found.smallest_singular_value) > 0.1
     assert len(found.sign_changes) == 0
@@ -108,8 +109,8 @@ def test_singularity_of_the_roll_is_far():
 
 def test_forces_do_not_depend_on_the_universal_joint_without_axial_inertia():
     """A slender leg without axial inertia does not feel how the joint turns it about its axis."""
-    path = rigid.poses(ROBOT, ROLL, T)
-    turned = rigid.inverse_dynamics(make(u_axis=[1.0, 0.2, 0.0]), path)
-    plain = rigid.inverse_dynamics(ROBOT, path)
+    path = kinematics.poses(ROBOT, ROLL, T)
+    turned = kinematics.inverse_dynamics(make(u_axis=[1.0, 0.2, 0.0]), path)
+    plain = kinematics.inverse_dynamics(ROBOT, path)
     np.testing.assert_allclose(turned.actuator_force, plain.actuator_force, rtol=1e-11)
     np.testing.assert_allclose(turned.joint_force, plain.joint_force, atol=1e-9)

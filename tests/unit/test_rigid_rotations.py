@@ -4,7 +4,7 @@ import numpy as np
 from numpy.testing import assert_allclose
 from scipy.spatial.transform import Rotation
 
-from flexapod.rigid.rotations import difference, exponential, matrix, product, quaternion, rotation_vector, turned
+from flexapod.kinematics.rotations import difference, exponential, matrix, product, quaternion, rotation_vector, turned
 
 RNG = np.random.default_rng(4)
 AXES = np.concatenate([np.eye(3), -np.eye(3), RNG.normal(size=(20, 3))])

@@ -3,6 +3,8 @@
 import numpy as np
 import pytest
 
+from flexapod.kinematics import laws
+from flexapod.kinematics.schedule import load_law, motion_law, wrench
 from flexapod.model import (
     ConstantLaw,
     ConstantWrench,
@@ -17,8 +19,6 @@ from flexapod.model import (
     StepLaw,
     StepWrench,
 )
-from flexapod.rigid import laws
-from flexapod.rigid.schedule import load_law, motion_law, wrench
 
 T = np.array([0.0, 0.25, 0.5, 1.0, 3.0])
 SIX = np.arange(1.0, 7.0)

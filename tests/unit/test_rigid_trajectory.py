@@ -6,10 +6,10 @@ from scipy.spatial.transform import Rotation
 from tests.oracles.stewart_cases import central_difference
 
 from flexapod.errors import InputError
+from flexapod.kinematics.laws import PROFILES
+from flexapod.kinematics.trajectory import Poses, coordinates, rotation_matrix, sample
 from flexapod.model import PROFILES as MODEL_PROFILES
 from flexapod.model import AxisMotion, CombinedMotion, CsvMotion, Waypoint, WaypointMotion
-from flexapod.rigid.laws import PROFILES
-from flexapod.rigid.trajectory import Poses, coordinates, rotation_matrix, sample
 
 HOME = 0.9
 AT_HOME = Poses.at_rest([0.0, 0.0, HOME], np.eye(3))

@@ -5,8 +5,8 @@ import pytest
 from tests.oracles.stewart_cases import base_circle, platform_circle
 
 from flexapod.errors import InputError
-from flexapod.rigid import workspace
-from flexapod.rigid.workspace import piston_excess, reachable, reachable_map, stroke_excess
+from flexapod.kinematics import workspace
+from flexapod.kinematics.workspace import piston_excess, reachable, reachable_map, stroke_excess
 
 T = np.linspace(0, 1, 11)
 LENGTH = np.stack([0.9 + 0.1 * T, 0.9 - 0.1 * T, np.full_like(T, 0.9)], axis=1)

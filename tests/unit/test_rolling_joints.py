@@ -7,10 +7,10 @@ import pytest
 from tests.machines import machine, study
 
 import flexapod as fx
+from flexapod.description.robot import describe
 from flexapod.errors import InputError
 from flexapod.model import RollingLaw, rolling, to_toml
 from flexapod.model.joint import Joint
-from flexapod.study.before.describe.robot import describe
 
 UM = 1e6
 

@@ -8,9 +8,9 @@ from tests.runs import paper_robot, with_legs
 
 import flexapod as fx
 from flexapod import plot
-from flexapod.app.view.charts import Chart, _readout, charts
-from flexapod.study.after.summary import summary
-from flexapod.study.before.estimates import buckling_load
+from flexapod.page.charts import Chart, _readout, charts
+from flexapod.results.summary import summary
+from flexapod.review.estimates import buckling_load
 from flexapod.words import length, rounded_up
 
 

@@ -6,7 +6,7 @@ from tests.mechanisms import ROBOTS
 
 import flexapod as fx
 from flexapod import model, plot
-from flexapod.app.view import charts, legend
+from flexapod.page import charts, legend
 from flexapod.scene.drives import drives
 
 KINDS = {

@@ -7,10 +7,10 @@ import pytest
 from tests.mechanisms import ROBOTS
 
 import flexapod as fx
-from flexapod import bases, model, rigid
-from flexapod.app.view import charts as view_charts
-from flexapod.app.view import legend
+from flexapod import bases, kinematics, model
 from flexapod.model import CombinedMotion, Guide, Piston, PistonSection, preset
+from flexapod.page import charts as view_charts
+from flexapod.page import legend
 from flexapod.scene import geometry, skeleton
 from flexapod.scene.colours import LEG_COLORS, colors_of_legs
 from flexapod.scene.skeleton import STATIONS, Skeleton
@@ -66,7 +66,7 @@ def test_the_drawn_centre_line_is_the_bent_piston(settings):
     at, robot, zeta = data.isel(time=i), study.robot, np.linspace(0, 1, STATIONS)
     simulation = study.simulation
     phi = bases.lateral_basis(simulation.lateral_basis, simulation.lateral_shapes).values(zeta)
-    frames = rigid.home_frames(robot)
+    frames = kinematics.home_frames(robot)
     largest = float(np.abs(at.tip_deflection).max())
     for leg in range(6):
         alpha, beta = at.leg_angle.values[leg]
@@ -270,9 +270,11 @@ def test_a_rigid_mechanism_at_home_is_drawn_where_its_joints_are(name):
 @pytest.mark.parametrize("name", ["6-PUS", "6-RUS", "3-PUU", "planar 3-PRR", "3-UPS+UP"])
 def test_struts_keep_their_length_where_the_platform_moves(name):
     robot = ROBOTS[name]()
-    path = rigid.poses(robot, CombinedMotion(amplitudes={"yaw" if robot.plane else "heave": 0.03}, duration=1.0), [0.7])
+    path = kinematics.poses(
+        robot, CombinedMotion(amplitudes={"yaw" if robot.plane else "heave": 0.03}, duration=1.0), [0.7]
+    )
     drawn = skeleton.Skeleton(robot).at(path.position[0], path.rotation[0])
-    legs = rigid.inverse_kinematics(robot, path)
+    legs = kinematics.inverse_kinematics(robot, path)
     lengths = np.linalg.norm(drawn.platform - drawn.base, axis=1)
     np.testing.assert_allclose(lengths, legs.length[0], rtol=0, atol=1e-9)  # gap of a guided pose
 

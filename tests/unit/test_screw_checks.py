@@ -5,15 +5,16 @@ import pytest
 from tests.texts import replaced
 
 from flexapod import model
+from flexapod.description.robot import describe
+from flexapod.description.screw import back_words, describe_screw, describe_screws, screw_remarks
 from flexapod.document import html
 from flexapod.document.check import check_items
 from flexapod.document.study import study_items
 from flexapod.document.terminal import show
 from flexapod.errors import InputError
 from flexapod.model import MATERIALS, Bearing, Nut, ScrewDrive
-from flexapod.study.before.describe.robot import describe
-from flexapod.study.before.describe.screw import back_words, describe_screw, describe_screws, screw_remarks
-from flexapod.study.before.screws import (
+from flexapod.results.path import RigidPath
+from flexapod.review.screws import (
     back_efficiency,
     buckling_thrust,
     critical_speed,
@@ -23,7 +24,6 @@ from flexapod.study.before.screws import (
     motor_torque,
     turns_of_life,
 )
-from flexapod.study.path import RigidPath
 
 STEEL = MATERIALS["steel"].replace(E=206e9, density=7850.0)  # of THK's catalogue
 NUT = 'rigidity = "1130 N/um", preload = "1540 N", dynamic_load = "30.8 kN"'

@@ -8,14 +8,14 @@ import pytest
 from typer.testing import CliRunner
 
 import flexapod as fx
-from flexapod.app.cli import app
+from flexapod.cli.cli import app
+from flexapod.description.robot import describe
 from flexapod.document import html
+from flexapod.error_budget.counted import budget_counts, run_counts
 from flexapod.model import ActuatorStudy, override
 from flexapod.report.page import warnings_section
+from flexapod.results.ideal import MACHINES, ideal_words
 from flexapod.solve.parts import part_stiffness
-from flexapod.study.before.describe.robot import describe
-from flexapod.study.counted import budget_counts, run_counts
-from flexapod.study.ideal import MACHINES, ideal_words
 from flexapod.words import along_axes, brief
 
 RUN = CliRunner()

@@ -13,8 +13,8 @@ from flexapod.fem.section_mesh import section_averages, section_mesh
 from flexapod.fem.sliding import HubMotion, SlidingBeam, slide
 from flexapod.model import Rectangle, Tube
 from flexapod.plot.elements import solid_comparison, solid_meshes
-from flexapod.study.after.vibration import local_vibration
-from flexapod.study.record import Interrupted
+from flexapod.results.record import Interrupted
+from flexapod.results.vibration import local_vibration
 from flexapod.study.solid import simulate_solid
 
 FLAT = Rectangle(width=0.1524, height=0.0095)

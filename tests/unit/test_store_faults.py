@@ -8,10 +8,11 @@ import xarray as xr
 from tests.sweeps import quick
 
 import flexapod as fx
+from flexapod.description.robot import describe
 from flexapod.errors import InputError
-from flexapod.study import netcdf, open_results, save, store
-from flexapod.study.before import room
-from flexapod.study.before.describe.robot import describe
+from flexapod.results import netcdf
+from flexapod.review import room
+from flexapod.study import open_results, save, store
 
 resource = pytest.importorskip("resource")
 

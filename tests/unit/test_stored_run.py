@@ -6,7 +6,7 @@ import pytest
 import xarray as xr
 
 import flexapod as fx
-from flexapod.app.view.opening import open_source
+from flexapod.page.opening import open_source
 from flexapod.study import open_results, save
 
 

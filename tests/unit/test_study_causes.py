@@ -7,10 +7,10 @@ from tests.runs import paper_robot, with_legs
 
 import flexapod as fx
 from flexapod import model
+from flexapod.kinematics import COORDINATES
 from flexapod.model import AxisMotion, ForceDrive, Payload, ServoDrive
-from flexapod.rigid import COORDINATES
-from flexapod.study.after.causes import Errors, L, deviation_by_cause, errors_of
-from flexapod.study.path import RigidPath
+from flexapod.results.causes import Errors, L, deviation_by_cause, errors_of
+from flexapod.results.path import RigidPath
 from flexapod.study.simulation import simulated
 
 STILL = AxisMotion(type="roll", amplitude=0.0, duration=1.0)
@@ -70,11 +70,11 @@ def test_the_residual_is_of_second_order():
 def test_shares_against_a_pose_moved_by_hand():
     # Length errors made by moving the platform, not by a solver: the shares must give the move back.
     study = paper_robot()
-    robot, path = study.robot, fx.rigid.poses(study.robot, study.motion, np.array([0.7]))
+    robot, path = study.robot, fx.kinematics.poses(study.robot, study.motion, np.array([0.7]))
     com, shift, turn = robot.payload.com, 1e-7 * np.array([3.0, -2, 1]), 1e-7 * np.array([-2.0, 1, 4])
     R = Rotation.from_rotvec(turn).as_matrix() @ path.rotation[0]
     position = path.point(com)[0][0] + shift - R @ com
-    before, after = (fx.rigid.leg_lengths(robot.base_joints, robot.platform_joints, x, A)
+    before, after = (fx.kinematics.leg_lengths(robot.base_joints, robot.platform_joints, x, A)
                      for x, A in ((path.position[0], path.rotation[0]), (position, R)))  # fmt: skip
     bent = np.zeros((1, 6, len(COORDINATES)))
     bent[..., L] = after - before
@@ -89,8 +89,8 @@ def test_a_servo_gives_by_force_over_stiffness():
     rest = data.isel(time=0)
     np.testing.assert_allclose(rest.leg_stroke - rest.leg_length_command, -rest.actuator_force / 2e7, rtol=1e-9)
     share = rest.deviation_by_cause.sel(cause="drive")
-    robot, path = paper_robot().robot, fx.rigid.home_pose(paper_robot().robot)
-    jacobian = fx.rigid.length_jacobian(
+    robot, path = paper_robot().robot, fx.kinematics.home_pose(paper_robot().robot)
+    jacobian = fx.kinematics.length_jacobian(
         robot.base_joints, robot.platform_joints, path.position[0], path.rotation[0], robot.payload.com
     )
     expected = np.linalg.inv(jacobian)[:3].T * (-rest.actuator_force.values / 2e7)[:, None]

@@ -8,8 +8,8 @@ from tests.runs import paper_robot, with_legs
 
 import flexapod as fx
 from flexapod.model import AxisMotion, ForceDrive, base_circle, loads, platform_circle
-from flexapod.study.before.checks import check_path
-from flexapod.study.path import path_instants
+from flexapod.results.path import path_instants
+from flexapod.review.checks import check_path
 
 SAMPLES = Path(__file__).parents[2] / "examples" / "mechanisms"
 
@@ -47,7 +47,7 @@ def test_stroke_excess_names_leg_amount_and_time(side, amplitude, limit):
     study = moving("heave", amplitude)
     error = refusal(study)
     assert error.key == f"leg.stroke.{side}"
-    length = fx.rigid.leg_lengths(
+    length = fx.kinematics.leg_lengths(
         study.robot.base_joints, study.robot.platform_joints, np.array([0, 0, 0.9 + amplitude]), np.eye(3)
     )
     beyond = 1e3 * np.abs(length - limit).max()
@@ -60,8 +60,8 @@ def test_stroke_excess_names_leg_amount_and_time(side, amplitude, limit):
 def test_the_worst_leg_is_named():
     study = moving("roll", np.deg2rad(45), pivot=[0, 0, 0])
     study = with_legs(study, lambda leg: leg.replace(stroke={"min": 0.7, "max": 0.97}))
-    path = fx.rigid.poses(study.robot, study.motion, np.array([1.0]))
-    length = fx.rigid.leg_lengths(
+    path = fx.kinematics.poses(study.robot, study.motion, np.array([1.0]))
+    length = fx.kinematics.leg_lengths(
         study.robot.base_joints, study.robot.platform_joints, path.position, path.rotation
     )[0]  # fmt: skip
     beyond = np.maximum(length - 0.97, 0.7 - length)
@@ -138,9 +138,9 @@ def test_folding_on_the_way_names_leg_and_time():
     study = with_legs(moving("sway", 20.0), lambda leg: leg.replace(
         stroke=None, piston=leg.piston.replace(length=25.0), u_axis=[0, 1, 0]))  # fmt: skip
     t = path_instants(study)
-    path = fx.rigid.poses(study.robot, study.motion, t)
+    path = fx.kinematics.poses(study.robot, study.motion, t)
     vectors = path.point(study.robot.platform_joints)[0] - study.robot.base_joints
-    first_axes = fx.rigid.home_frames(study.robot)[:, :, 0]
+    first_axes = fx.kinematics.home_frames(study.robot)[:, :, 0]
     beta = np.rad2deg(np.arcsin(np.einsum("tli,li->tl", vectors, first_axes) / np.linalg.norm(vectors, axis=-1)))
     k, leg = np.unravel_index(np.abs(beta).argmax(), beta.shape)
     first = t[np.argmax(np.abs(beta[:, leg]) > 85)]

@@ -11,23 +11,22 @@ from tests.mechanisms import ROBOTS
 from tests.runs import paper_robot, with_legs
 
 import flexapod as fx
-from flexapod import rigid
+from flexapod import kinematics
 from flexapod.bases import lateral_basis
+from flexapod.description.robot import vibration_to_expect
 from flexapod.mechanics.layout import LEG_PARAMETERS, columns
 from flexapod.model import AxisMotion, Feedback, ForceDrive, Payload, ServoDrive, Simulation, Study
-from flexapod.solve.at_poses import robot_modes
-from flexapod.solve.kernel import kernel
-from flexapod.solve.robot_system import robot_system
-from flexapod.solve.shapes import space_shapes
-from flexapod.study.before.describe.robot import vibration_to_expect
-from flexapod.study.before.estimates import (
+from flexapod.results.path import RigidPath
+from flexapod.review.estimates import (
     VibrationEstimate,
     bending_moments,
     buckling_load,
     residual_vibration,
-    section_width,
 )
-from flexapod.study.path import RigidPath
+from flexapod.solve.at_poses import robot_modes
+from flexapod.solve.kernel import kernel
+from flexapod.solve.robot_system import robot_system
+from flexapod.solve.shapes import space_shapes
 
 LEG = paper_robot().robot.legs[0]
 EI = LEG.piston.EI
@@ -111,9 +110,9 @@ def test_ends_on_springs_count_as_pinned():
 
 
 def test_width_of_a_piston_without_section():
-    assert section_width(LEG.piston) == 0.027
+    assert LEG.piston.width == 0.027
     bare = LEG.piston.replace(diameter=None, E=None, density=None)
-    assert section_width(bare) == pytest.approx(0.027, rel=1e-12)
+    assert bare.width == pytest.approx(0.027, rel=1e-12)
 
 
 def moments(study, t):
@@ -163,8 +162,8 @@ def single_mode(T, height=1e-3, damping=0.0, profile="quintic"):
     study = study.replace(robot=robot, motion=AxisMotion(type="heave", amplitude=height, duration=T, profile=profile))
     simulation = study.simulation.replace(fidelity="lumped")
     t = np.linspace(0.0, T, 4001)
-    path = rigid.poses(robot, study.motion, t)
-    end = rigid.Poses.at_rest(path.position[-1], path.rotation[-1])
+    path = kinematics.poses(robot, study.motion, t)
+    end = kinematics.Poses.at_rest(path.position[-1], path.rotation[-1])
     return robot, robot_modes(robot, simulation, end), t, path
 
 
@@ -217,10 +216,12 @@ def test_estimate_bounds_and_meets_the_simulated_vibration():
     data = fx.simulate(study, step=2e-4, duration=T + 0.1, fidelity="lumped")
     after = data.com_deviation.sel(time=slice(T, None)).values
     found_modes = robot_modes(
-        study.robot, study.simulation.replace(fidelity="lumped"), rigid.poses(study.robot, study.motion, np.array([T]))
+        study.robot,
+        study.simulation.replace(fidelity="lumped"),
+        kinematics.poses(study.robot, study.motion, np.array([T])),
     )
     t = np.linspace(0, T, 4001)
-    estimate = residual_vibration(study.robot, found_modes, t, rigid.poses(study.robot, study.motion, t))
+    estimate = residual_vibration(study.robot, found_modes, t, kinematics.poses(study.robot, study.motion, t))
     simulated = np.linalg.norm(after - after.mean(axis=0), axis=1).max()
     # All modes in phase is an upper bound; frozen directions over 0.1 rad and no gyroscopic terms cost some per cent.
     assert 0.5 * estimate.total < simulated < 1.1 * estimate.total

@@ -53,7 +53,7 @@ def test_forward_kinematics_of_six_lengths():
     assert "time" not in data.dims
     np.testing.assert_allclose(data.platform_position, [0, 0, 0.9], atol=1e-12)
     # A guess leads to the posture near it: the mirror image below the base.
-    below = fx.rigid.Poses.at_rest([0, 0, -0.9], np.eye(3))
+    below = fx.kinematics.Poses.at_rest([0, 0, -0.9], np.eye(3))
     mirrored = fx.forward_kinematics(robot, robot.home_lengths, below)
     np.testing.assert_allclose(mirrored.platform_position, [0, 0, -0.9], atol=1e-12)
 
@@ -78,7 +78,7 @@ def test_instants_must_fit_the_lengths():
 def test_inverse_dynamics_keeps_newtons_law_for_the_payload():
     robot, force = paper_robot().robot, np.array([30.0, -20, 50])
     data = fx.inverse_dynamics(robot, MOTION, load=[*force, 0, 0, 0], output_step=1e-3)
-    path = fx.rigid.poses(robot, MOTION, data.time.values)
+    path = fx.kinematics.poses(robot, MOTION, data.time.values)
     accel = path.point(robot.payload.com)[2]
     expected = robot.payload.mass * (accel - robot.gravity) - force
     np.testing.assert_allclose(data.joint_force_rigid.sum("leg"), expected, atol=1e-9)
@@ -102,8 +102,8 @@ def test_forces_move_the_robot_with_the_power_they_give():
     data = fx.inverse_dynamics(robot, MOTION, output_step=1e-3)
     power = (data.actuator_force_rigid * data.leg_length_rate).sum("leg").values
     work = np.sum(0.5 * (power[1:] + power[:-1])) * 1e-3
-    path = fx.rigid.poses(robot, MOTION, data.time.values[[0, -1]])
-    kinetic, potential = fx.rigid.energies(robot, path)
+    path = fx.kinematics.poses(robot, MOTION, data.time.values[[0, -1]])
+    kinetic, potential = fx.kinematics.energies(robot, path)
     assert work == pytest.approx(np.diff(potential)[0] + np.diff(kinetic)[0], rel=1e-5)  # trapezoids over 1 ms
 
 
@@ -132,7 +132,7 @@ def test_forward_kinematics_from_the_drives_of_any_robot(name):
     ours = fx.inverse_kinematics(robot, motion, output_step=0.25)
     places = ours.drive_command.values[:, [bool(leg.driven) for leg in robot.legs]]
     data = fx.forward_kinematics(robot, places, time=ours.time)
-    path = fx.rigid.poses(robot, motion, ours.time.values)
+    path = fx.kinematics.poses(robot, motion, ours.time.values)
     np.testing.assert_allclose(data.platform_position, path.position, rtol=0, atol=1e-12)
     np.testing.assert_allclose(
         data.drive_command if "drive_command" in data else data.leg_length_command,

@@ -22,7 +22,7 @@ def test_mobility_at_a_pose_names_what_goes_together():
     assert any("roll with" in name for name in data.motions.values)
     twist = data.motion_twist.values
     # the hinges stay shut: no joint on the platform moves along the hinge of its leg
-    pose = fx.rigid.poses_from_home(robot, np.array([[0, 0, 0.02, 0.2, 0, 0.0]]))
+    pose = fx.kinematics.poses_from_home(robot, np.array([[0, 0, 0.02, 0.2, 0, 0.0]]))
     arms = robot.platform_joints @ pose.rotation[0].T
     velocity = twist[:, None, :3] + np.cross(twist[:, None, 3:], arms)
     along = np.einsum("mlk,lk->ml", velocity, np.array([leg.base_joint.axis for leg in robot.legs]))

@@ -9,15 +9,16 @@ from tests.runs import paper_robot, with_legs
 from tests.stepped import STEEL, leg_of, section
 
 import flexapod as fx
-from flexapod import rigid
+from flexapod import kinematics
 from flexapod.bases import lateral_basis
+from flexapod.description.leg import _stress
 from flexapod.model import AxisMotion, Rectangle, Tube
 from flexapod.model.material import MATERIALS
+from flexapod.results.bodies import flexible_axes
+from flexapod.review.estimates import STATIONS, buckling_load
+from flexapod.review.plausibility import leg_stress
 from flexapod.solve.at_poses import locked_poses
 from flexapod.solve.sections import leg_values
-from flexapod.study.after.plausibility import flexible_axes, leg_stress
-from flexapod.study.before.describe.leg import _stress
-from flexapod.study.before.estimates import STATIONS, buckling_load
 
 STILL = AxisMotion(type="heave", amplitude=0.0, duration=1.0)
 SHORT = {"duration": 0.02, "step": 1e-3}
@@ -174,7 +175,7 @@ def test_axes_of_legs_are_lines_between_their_joints_where_the_platform_is_turne
     robot, angles = study.robot, np.array([0.35, -0.2, 0.3])
     place = np.array([0.03, -0.02, robot.home_height + 0.04])
     turn = Rotation.from_rotvec(angles)
-    pose = rigid.Poses.at_rest(place[None], turn.as_matrix()[None])
+    pose = kinematics.Poses.at_rest(place[None], turn.as_matrix()[None])
     here = locked_poses(robot, study.simulation, pose)
     found = flexible_axes(robot, here.system, here.equilibria.states[here.at])[0]
     lines = place + robot.platform_joints @ turn.as_matrix().T - robot.base_joints

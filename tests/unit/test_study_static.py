@@ -72,8 +72,8 @@ def test_stiffness_without_load_is_that_of_springs():
     study = light(still())
     study = study.replace(robot=study.robot.replace(gravity=[0, 0, 0]))
     robot = study.robot
-    pose = fx.rigid.poses(robot, AxisMotion(type="roll", amplitude=0.3, duration=1.0), np.array([1.0]))
-    J = fx.rigid.length_jacobian(
+    pose = fx.kinematics.poses(robot, AxisMotion(type="roll", amplitude=0.3, duration=1.0), np.array([1.0]))
+    J = fx.kinematics.length_jacobian(
         robot.base_joints, robot.platform_joints, pose.position[0], pose.rotation[0], robot.payload.tool
     )
     piston = robot.legs[0].piston
@@ -88,7 +88,7 @@ def test_modes_of_light_legs_are_those_of_the_payload_on_its_stiffness():
     study = study.replace(robot=study.robot.replace(payload=study.robot.payload.replace(tool=study.robot.payload.com)))
     found = fx.modes(study, POSE, fidelity="lumped")
     K = fx.stiffness(study, POSE, fidelity="lumped").stiffness.values
-    R = fx.rigid.rotation_matrix(np.array([POSE["roll"], 0, 0]))
+    R = fx.kinematics.rotation_matrix(np.array([POSE["roll"], 0, 0]))
     payload = study.robot.payload
     M = np.zeros((6, 6))
     M[:3, :3], M[3:, 3:] = payload.mass * np.eye(3), R @ payload.inertia @ R.T
@@ -133,7 +133,7 @@ def test_modes_say_how_much_of_them_is_the_payload(roll):
     # Shapes have unit mass: the payload's part is m v^2 + w J w of its own, whatever the legs do.
     study = paper_robot()
     data = fx.modes(study, {"roll": roll})
-    payload, R = study.robot.payload, fx.rigid.rotation_matrix(np.array([roll, 0, 0]))
+    payload, R = study.robot.payload, fx.kinematics.rotation_matrix(np.array([roll, 0, 0]))
     v, w = np.split(data.platform_shape.values, 2, axis=1)
     expected = payload.mass * (v**2).sum(axis=1) + np.einsum("mi,ij,mj->m", w, R @ payload.inertia @ R.T, w)
     # The platform sags by 2e-5 rad, and so turns its inertia by that.
@@ -185,8 +185,8 @@ def test_sag_is_the_deviation_at_the_start():
 def test_forms_of_a_pose():
     robot = paper_robot().robot
     values = [0, 0.03, 0.02, 0.2, 0, 0]
-    home = fx.rigid.home_pose(robot)
-    pose = fx.rigid.Poses.at_rest(home.position + values[:3], fx.rigid.rotation_matrix(np.array(values[3:])))
+    home = fx.kinematics.home_pose(robot)
+    pose = fx.kinematics.Poses.at_rest(home.position + values[:3], fx.kinematics.rotation_matrix(np.array(values[3:])))
     by_name, by_numbers, by_pose = (fx.modes(robot, p, fidelity="lumped") for p in (POSE, values, pose))
     np.testing.assert_array_equal(by_name.frequency, by_numbers.frequency)
     np.testing.assert_array_equal(by_name.frequency, by_pose.frequency)

@@ -8,8 +8,8 @@ from tests.sweeps import KEY, diameters, quick
 
 from flexapod.errors import InputError
 from flexapod.model import loads, preset_text
+from flexapod.review import room
 from flexapod.solve.kernel import kernel
-from flexapod.study.before import room
 from flexapod.surveys.sweeps.plan import read_plan
 from flexapod.surveys.sweeps.points import Points
 

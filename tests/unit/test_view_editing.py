@@ -4,11 +4,11 @@ import tomllib
 
 import pytest
 
-from flexapod.app.view.document import Document, TypedQuantity, chosen, edited, first_value, quantity, read
-from flexapod.app.view.uploads import LARGEST, read_upload, store_table
 from flexapod.errors import InputError
 from flexapod.model import PRESETS, preset_text
 from flexapod.model.fields import read_fields
+from flexapod.page.document import Document, TypedQuantity, chosen, edited, first_value, quantity, read
+from flexapod.page.uploads import LARGEST, read_upload, store_table
 
 TEXT = preset_text("paper-robot")
 

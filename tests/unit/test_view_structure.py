@@ -4,10 +4,10 @@ import tomllib
 
 import pytest
 
-from flexapod.app.view.document import Document, read
-from flexapod.app.view.structure import offers
 from flexapod.errors import InputError
 from flexapod.model import PRESETS, preset_text
+from flexapod.page.document import Document, read
+from flexapod.page.structure import offers
 
 TEXT = preset_text("paper-robot")
 HEAD = TEXT.split("[motion]")[0]

@@ -7,12 +7,12 @@ import pytest
 import viser
 
 from flexapod import model
-from flexapod.app.view.background import Threads
-from flexapod.app.view.document import Document
-from flexapod.app.view.study_panel import StudyPanel
-from flexapod.app.view.typed import LEFT, Dial, in_unit, plain, written
 from flexapod.errors import InputError
 from flexapod.model import loads
+from flexapod.page.background import Threads
+from flexapod.page.document import Document
+from flexapod.page.study_panel import StudyPanel
+from flexapod.page.typed import LEFT, Dial, in_unit, plain, written
 
 TEXT = model.preset_text("paper-robot")
 THREADS = Threads(lambda error: None)

@@ -4,12 +4,12 @@ import xarray as xr
 from tests.mechanisms import ROBOTS
 
 import flexapod as fx
+from flexapod.description.robot import Singularity, describe_legs
 from flexapod.document import html
 from flexapod.document.study import _path
 from flexapod.model import AxisMotion, Study
-from flexapod.study.before.describe.robot import Singularity, describe_legs
-from flexapod.study.cause_words import cause_words
-from flexapod.study.path import RigidPath
+from flexapod.results.cause_words import cause_words
+from flexapod.results.path import RigidPath
 from flexapod.surveys.sweeps.kept import _records, _robot_scalars
 
 

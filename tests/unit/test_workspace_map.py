@@ -5,12 +5,12 @@ import pytest
 from tests.runs import paper_robot, with_legs
 
 import flexapod as fx
-from flexapod import rigid
+from flexapod import kinematics
+from flexapod.kinematics.inverse import BETA_LIMIT
+from flexapod.kinematics.workspace import LONGEST, NO_FREE_LENGTH, PULLED_OUT, SHORTEST
 from flexapod.model.motion import Waypoint, WaypointMotion
-from flexapod.rigid.kinematics import BETA_LIMIT
-from flexapod.rigid.workspace import LONGEST, NO_FREE_LENGTH, PULLED_OUT, SHORTEST
-from flexapod.study.before.reach import REASONS, rigid_codes
-from flexapod.study.poses import coordinates_of, from_home
+from flexapod.results.poses import coordinates_of, from_home
+from flexapod.review.reach import REASONS, rigid_codes
 from flexapod.surveys.workspace.findings import GRID_VARIABLES, SCALARS, axis_words, map_findings
 from flexapod.surveys.workspace.grid import Range, grid
 
@@ -41,8 +41,8 @@ def test_values_are_those_of_single_poses(study, slice_):
     assert here.stiffness_least.item() == pytest.approx(1 / (soft @ C @ soft), rel=1e-9)
     assert here.stiffness_least <= here.stiffness
     at = from_home(study.robot, np.array([[0, 0.02, 0.05, pose["roll"], 0.05, 0]]))
-    assert here.condition.item() == pytest.approx(rigid.singularity(study.robot, at).condition[0], rel=1e-12)
-    length = rigid.inverse_kinematics(study.robot, at).length[0]
+    assert here.condition.item() == pytest.approx(kinematics.singularity(study.robot, at).condition[0], rel=1e-12)
+    length = kinematics.inverse_kinematics(study.robot, at).length[0]
     stroke = study.robot.legs[0].stroke
     assert here.stroke_margin.item() == pytest.approx(min(length.min() - stroke.min, stroke.max - length.max()))
     start = fx.simulate(study.replace(motion=_still(pose)), duration=1e-3, step=1e-3).isel(time=0)
@@ -87,14 +87,14 @@ def test_dynamic_deviation_is_that_of_rigid_leg_forces_on_springs(study):
     robot, a = light.robot, np.array([1.0, -2.0, 3.0])
     still = from_home(robot, np.array([[0.0, 0.0, 0.03, 0.2, 0.0, 0.1]]))
     zero = np.zeros((1, 3))
-    moving = rigid.Poses(
+    moving = kinematics.Poses(
         position=still.position, rotation=still.rotation, velocity=zero, omega=zero, acceleration=a[None], alpha=zero
     )
     at = {"roll": 0.2, "yaw": 0.1}
-    J = rigid.length_jacobian(
+    J = kinematics.length_jacobian(
         robot.base_joints, robot.platform_joints, still.position[0], still.rotation[0], robot.payload.tool
     )
-    thrust = (rigid.inverse_dynamics(robot, moving).joint_force[0] * J[:, :3]).sum(axis=1)
+    thrust = (kinematics.inverse_dynamics(robot, moving).joint_force[0] * J[:, :3]).sum(axis=1)
     piston = robot.legs[0].piston
     expected = np.linalg.solve(J, -thrust * piston.length / piston.EA)[:3]
     found = fx.workspace_map(light, {"heave": [0.03]}, at=at, acceleration=a, fidelity="lumped").dynamic_deviation
@@ -112,12 +112,14 @@ def test_reasons_are_those_of_the_rigid_robot(study):
     path = from_home(robot, values)
     code = rigid_codes(robot, path, from_home=False)
     folded = np.array([FLAG[c] == "joint_folds" for c in code])
-    np.testing.assert_array_equal((code == 0) | folded, rigid.reachable(robot, path))
+    np.testing.assert_array_equal((code == 0) | folded, kinematics.reachable(robot, path))
     kinds = {"leg_too_short": SHORTEST, "leg_too_long": LONGEST, "no_free_length": NO_FREE_LENGTH,
              "pulled_out": PULLED_OUT}  # fmt: skip
     for k, c in enumerate(code):
-        length = rigid.leg_lengths(robot.base_joints, robot.platform_joints, path.position[k], path.rotation[k])[None]
-        strokes, pistons = rigid.strokes(robot, [0.0], length), rigid.pull_out(robot, [0.0], length)
+        length = kinematics.leg_lengths(robot.base_joints, robot.platform_joints, path.position[k], path.rotation[k])[
+            None
+        ]
+        strokes, pistons = kinematics.strokes(robot, [0.0], length), kinematics.pull_out(robot, [0.0], length)
         first = strokes or [e for e in pistons if e.fatal]  # the stroke counts before the piston
         worst = max(first, key=lambda e: abs(e.value - e.limit), default=None)
         assert kinds.get(FLAG[c]) == (worst.kind if worst else None)
@@ -133,7 +135,9 @@ def test_folded_joints_and_singularities(study):
     values[:, 0] = 3.0, 30.0
     path = from_home(robot, values)
     tips = path.point(robot.platform_joints)[0] - robot.base_joints
-    _, beta = rigid.joint_angles(rigid.home_frames(robot), tips / np.linalg.norm(tips, axis=-1, keepdims=True))
+    _, beta = kinematics.joint_angles(
+        kinematics.home_frames(robot), tips / np.linalg.norm(tips, axis=-1, keepdims=True)
+    )
     assert (np.abs(beta).max(axis=1) > BETA_LIMIT).tolist() == [False, True]
     assert [FLAG[c] for c in rigid_codes(robot, path, from_home=False)] == ["reached", "joint_folds"]
     turned = np.zeros((3, 6))
@@ -226,7 +230,9 @@ def test_margins_are_those_of_the_legs_that_have_limits(study):
     def no_cylinder(leg):
         return leg.replace(cylinder=leg.cylinder.replace(mouth=0.0))
 
-    length = rigid.inverse_kinematics(study.robot, from_home(study.robot, np.array([[0, 0, 0, 0.1, 0, 0]]))).length[0]
+    length = kinematics.inverse_kinematics(
+        study.robot, from_home(study.robot, np.array([[0, 0, 0, 0.1, 0, 0]]))
+    ).length[0]
     stroke, mouth, piston = legs[0].stroke, legs[0].cylinder.mouth, legs[0].piston.length
     margin = np.minimum(length - stroke.min, stroke.max - length)
     guided = np.minimum(piston, mouth + piston - length)

@@ -8,20 +8,20 @@ from pathlib import Path
 import pytest
 from tests.texts import replaced
 
-from flexapod.app.commands_proof import _write
-from flexapod.app.view.document import Document
-from flexapod.app.view.network import free_port
-from flexapod.app.view.opening import StudySource, open_source
-from flexapod.app.view.server import GONE, View
-from flexapod.app.view.session import Session
+from flexapod.cli.commands_proof import _write
 from flexapod.model import loads, preset_text
+from flexapod.page.document import Document
+from flexapod.page.network import free_port
+from flexapod.page.opening import StudySource, open_source
+from flexapod.page.server import GONE, View
+from flexapod.page.session import Session
 from flexapod.paper.claim import BREAKS, HOLDS, IN_PART, MISPRINT, NOT, OPEN, REACHES, Claim
 from flexapod.paper.report import paper_page
 from flexapod.paper.study import PaperStudy
-from flexapod.proof.pack import verify
 from flexapod.report.figures import draw
 from flexapod.report.page import robot_report
 from flexapod.study import modes, run
+from flexapod.verify.pack import verify
 
 HOST = "127.0.0.1"
 ARGUMENTS = ["--no-sandbox", "--use-gl=angle", "--use-angle=swiftshader", "--enable-unsafe-swiftshader"]

@@ -17,12 +17,12 @@ from tests.web.guests import CAMERA, guest, said, until
 from websockets.exceptions import ConnectionClosed, InvalidStatus
 from websockets.sync.client import connect
 
-from flexapod.app.view import door, logs, visitor
-from flexapod.app.view.document import Document
-from flexapod.app.view.network import has_place, is_expected, is_same_site, whose
-from flexapod.app.view.opening import StudySource
-from flexapod.app.view.server import View
 from flexapod.model import loads
+from flexapod.page import door, logs, visitor
+from flexapod.page.document import Document
+from flexapod.page.network import has_place, is_expected, is_same_site, whose
+from flexapod.page.opening import StudySource
+from flexapod.page.server import View
 
 VERSIONS = [f"viser-v{viser.__version__}"]
 HANDSHAKE = (

@@ -14,11 +14,11 @@ from tests.web.conftest import SHORT, study_text
 from tests.web.guests import CAMERA, guest, said, until
 from viser import GuiButtonHandle, GuiSliderHandle, GuiTextHandle
 
-from flexapod.app.view import logs, memory
-from flexapod.app.view.document import Document
-from flexapod.app.view.opening import StudySource
-from flexapod.app.view.server import View
 from flexapod.model import loads
+from flexapod.page import logs, memory
+from flexapod.page.document import Document
+from flexapod.page.opening import StudySource
+from flexapod.page.server import View
 
 NO_NUMBERS = (math.nan, math.inf, -math.inf)
 HUGE = (1e308, -1e308, 1e-320, 2**63 - 1, -(2**63), 0, -1, 0.5)
@@ -283,9 +283,9 @@ def test_of_hostile_visitors_nothing_stays(server):
 
 POOLS = """
 import ctypes, sys, threading
-from flexapod.app.view import memory, server
-from flexapod.app.view.document import Document
-from flexapod.app.view.opening import StudySource
+from flexapod.page import memory, server
+from flexapod.page.document import Document
+from flexapod.page.opening import StudySource
 from flexapod.model import loads, preset_text
 
 if sys.argv[1] == "as before":

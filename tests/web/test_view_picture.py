@@ -10,14 +10,14 @@ from tests.web.guests import guest, said, until
 
 import flexapod as fx
 from flexapod import model
-from flexapod.app.view import quick
-from flexapod.app.view import session as sessions
-from flexapod.app.view.document import Document
-from flexapod.app.view.opening import StudySource, open_source
-from flexapod.app.view.running import Turn
 from flexapod.errors import InputError
 from flexapod.model import preset
-from flexapod.study.after.summary import summary
+from flexapod.page import quick
+from flexapod.page import session as sessions
+from flexapod.page.document import Document
+from flexapod.page.opening import StudySource, open_source
+from flexapod.page.running import Turn
+from flexapod.results.summary import summary
 from flexapod.study.store import save
 
 TOOL = ('com = [0, "373 mm", 0] ', 'tool = [0, 0, "300 mm"]\ncom = [0, "373 mm", 0] ')

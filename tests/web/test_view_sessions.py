@@ -16,11 +16,11 @@ from viser import _messages
 
 import flexapod as fx
 from flexapod import study as studies
-from flexapod.app.view import files_panel, player, running, time_panel
-from flexapod.app.view.document import Document, read
-from flexapod.app.view.opening import StudySource
-from flexapod.app.view.running import Cores, Turn
-from flexapod.app.view.structure import offers
+from flexapod.page import files_panel, player, running, time_panel
+from flexapod.page.document import Document, read
+from flexapod.page.opening import StudySource
+from flexapod.page.running import Cores, Turn
+from flexapod.page.structure import offers
 from flexapod.scene import robot as robots
 
 BEAM = study_text(('duration = "10 s"', 'duration = "0.5 s"'), preset="paper-actuator")

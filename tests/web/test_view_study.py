@@ -10,11 +10,11 @@ from tests.web.conftest import LONG, SHORT, study_text
 from tests.web.guests import until
 
 import flexapod as fx
-from flexapod.app.failures import lines_of, parts_of
-from flexapod.app.view import files_panel
-from flexapod.app.view.running import Turn
-from flexapod.app.view.uploads import LARGEST
+from flexapod.document.refusal import lines_of, parts_of
 from flexapod.errors import InputError
+from flexapod.page import files_panel
+from flexapod.page.running import Turn
+from flexapod.page.uploads import LARGEST
 from flexapod.report import figures
 from flexapod.study import open_results, summary
 

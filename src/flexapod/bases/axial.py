@@ -6,8 +6,8 @@ from functools import lru_cache
 import numpy as np
 from numpy.polynomial import Chebyshev, Polynomial
 
+from flexapod.arrays import Array
 from flexapod.bases.lateral import MOMENTS, proportional_damping
-from flexapod.typing import Array
 
 
 @dataclass(frozen=True, kw_only=True, eq=False)

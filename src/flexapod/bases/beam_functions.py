@@ -8,7 +8,7 @@ from dataclasses import dataclass
 
 import numpy as np
 
-from flexapod.typing import Array
+from flexapod.arrays import Array
 
 
 @dataclass(frozen=True, kw_only=True)

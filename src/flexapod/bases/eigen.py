@@ -7,8 +7,8 @@ from __future__ import annotations
 
 import numpy as np
 
+from flexapod.arrays import Array
 from flexapod.errors import ComputationError
-from flexapod.typing import Array
 
 __all__ = ["eigh", "finite"]
 

@@ -5,7 +5,7 @@ from dataclasses import dataclass
 import numpy as np
 from numpy.polynomial import Polynomial
 
-from flexapod.typing import Array
+from flexapod.arrays import Array
 
 #: Displacement, and slope times element length, of an element's right and left node in u in [0, 1].
 RISING = (Polynomial([0.0, 0.0, 3.0, -2.0]), Polynomial([0.0, 0.0, -1.0, 1.0]))

@@ -5,9 +5,9 @@ from dataclasses import dataclass
 
 import numpy as np
 
+from flexapod.arrays import Array
 from flexapod.bases.beam_functions import gauss_pieces
 from flexapod.bases.eigen import eigh
-from flexapod.typing import Array
 
 Shape = Callable[..., Array]
 

@@ -5,9 +5,9 @@ from __future__ import annotations
 import numpy as np
 from numpy.polynomial import Legendre
 
+from flexapod.arrays import Array
 from flexapod.bases.beam_functions import gauss_unit
 from flexapod.bases.polynomials import PolynomialShape
-from flexapod.typing import Array
 
 __all__ = ["load_shapes"]
 

@@ -6,9 +6,9 @@ from functools import cached_property
 import numpy as np
 from numpy.polynomial import Legendre
 
+from flexapod.arrays import Array
 from flexapod.bases.beam_functions import gauss_unit
 from flexapod.bases.eigen import eigh
-from flexapod.typing import Array
 
 
 @dataclass(frozen=True, kw_only=True)

@@ -5,7 +5,7 @@ from functools import cached_property
 
 import numpy as np
 
-from flexapod.typing import Array
+from flexapod.arrays import Array
 
 
 @dataclass(frozen=True, kw_only=True)

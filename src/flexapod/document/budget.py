@@ -8,11 +8,11 @@ from typing import TYPE_CHECKING
 
 import numpy as np
 
-from flexapod import model, rigid
+from flexapod import kinematics, model
 from flexapod.document.parts import Item, Remarks, Text, TextTable, warnings_of
+from flexapod.error_budget.sentences import table
 from flexapod.errors import FlexapodError
 from flexapod.scene.robot import carried_study
-from flexapod.study.budgets.sentences import table
 from flexapod.ties import first_largest
 
 if TYPE_CHECKING:
@@ -26,10 +26,10 @@ def peak_budget(data: Dataset) -> Dataset | None:
 
     None also where there is none: the study cannot be read any more, the platform is fixed, drives are pure forces.
     """
+    from flexapod.pose_errors.at_home import is_real
+    from flexapod.results.cause_words import CAUSES
+    from flexapod.results.causes import cause_names
     from flexapod.study import budget
-    from flexapod.study.accuracy.at_home import is_real
-    from flexapod.study.after.causes import cause_names
-    from flexapod.study.cause_words import CAUSES
 
     study = carried_study(data)
     if not isinstance(study, model.Study) or study.robot.platform_fixed:
@@ -39,9 +39,9 @@ def peak_budget(data: Dataset) -> Dataset | None:
         return None
     size = np.linalg.norm(data.tool_deviation.values, axis=1)
     t = data.time.values[[first_largest(size)]]
-    path = rigid.poses(study.robot, study.motion, t)
+    path = kinematics.poses(study.robot, study.motion, t)
     try:
-        found = budget(study, rigid.Poses.at_rest(path.position, path.rotation))
+        found = budget(study, kinematics.Poses.at_rest(path.position, path.rotation))
     except FlexapodError:
         return None
     where = f"at the pose of t = {t[0]:.4g} s"

@@ -8,17 +8,17 @@ from typing import TYPE_CHECKING
 
 import numpy as np
 
+from flexapod.description.hydraulic import hydraulic_table
+from flexapod.description.screw import screw_table
 from flexapod.document.parts import Chapter, Item, Remarks, TextTable
-from flexapod.study.after.inside import bushing_words
-from flexapod.study.before.describe.hydraulic import hydraulic_table
-from flexapod.study.before.describe.screw import screw_table
+from flexapod.results.inside import bushing_words
 from flexapod.ties import most, ranked
 from flexapod.words import column, columns, number, scale, sentence, text
 
 if TYPE_CHECKING:
-    from flexapod.study.before.describe.actuator import ActuatorDescription, BeamDescription
-    from flexapod.study.before.describe.leg import Extreme
-    from flexapod.study.before.describe.robot import PoseDescription, RobotDescription, VibrationToExpect
+    from flexapod.description.actuator import ActuatorDescription, BeamDescription
+    from flexapod.description.leg import Extreme
+    from flexapod.description.robot import PoseDescription, RobotDescription, VibrationToExpect
 
 SHOWN_ANGLE = math.radians(60)
 

@@ -3,7 +3,7 @@
 from __future__ import annotations
 
 from flexapod import model
-from flexapod.study.before.describe.robot import RobotDescription, describe
+from flexapod.description.robot import RobotDescription, describe
 from flexapod.words import number, text
 
 HEAVY = 1.0  # mass of the legs over that of the payload above which it is remarked on

@@ -7,7 +7,7 @@ from collections.abc import Iterator
 from typing import TYPE_CHECKING
 
 from flexapod.document.parts import Chapter, Item, TextTable, warnings_of
-from flexapod.study.poses import coordinate_words
+from flexapod.results.poses import coordinate_words
 from flexapod.surveys.workspace.findings import Finding, MapFindings, axis_words
 from flexapod.words import column, text
 

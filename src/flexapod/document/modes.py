@@ -8,13 +8,13 @@ from typing import TYPE_CHECKING
 
 from flexapod import model
 from flexapod.document.parts import Item, TextTable, warnings_of
-from flexapod.study.ideal import held
+from flexapod.results.ideal import held
 from flexapod.words import column, sentence, signed
 
 if TYPE_CHECKING:
     from xarray import Dataset
 
-    from flexapod.typing import Array
+    from flexapod.arrays import Array
 
 
 def modes_items(

@@ -6,11 +6,11 @@ from collections.abc import Iterator
 from typing import TYPE_CHECKING
 
 from flexapod.document.parts import Item, Remarks, TextTable, warnings_of
+from flexapod.error_budget.counted import run_counts
 from flexapod.model import ActuatorStudy, Study
-from flexapod.study.after.summary import POINT_WORDS, RobotSummary, summaries, summary
-from flexapod.study.bodies import bodies_words
-from flexapod.study.counted import run_counts
-from flexapod.study.ideal import ideal_words
+from flexapod.results.bodies import bodies_words
+from flexapod.results.ideal import ideal_words
+from flexapod.results.summary import POINT_WORDS, RobotSummary, summaries, summary
 from flexapod.words import column, columns, number, text
 
 if TYPE_CHECKING:

@@ -12,18 +12,18 @@ from flexapod import model
 from flexapod.document import check, html
 from flexapod.document.html import Html
 from flexapod.document.parts import Bullets, Chapter, Item, Text, TextTable
+from flexapod.results.cause_words import CAUSES, cause_in_words
+from flexapod.results.causes import cause_names
+from flexapod.results.ideal import held
 from flexapod.solve.lost_motion import places_with_friction
-from flexapod.study.after.causes import cause_names
-from flexapod.study.cause_words import CAUSES, cause_in_words
-from flexapod.study.ideal import held
 from flexapod.words import number, text
 
 if TYPE_CHECKING:
+    from flexapod.arrays import Array
+    from flexapod.description.actuator import ActuatorDescription
+    from flexapod.description.leg import LegDescription
+    from flexapod.description.robot import PoseDescription, RobotDescription
     from flexapod.model import ActuatorStudy, Robot, Study
-    from flexapod.study.before.describe.actuator import ActuatorDescription
-    from flexapod.study.before.describe.leg import LegDescription
-    from flexapod.study.before.describe.robot import PoseDescription, RobotDescription
-    from flexapod.typing import Array
 
 _LEGS = {
     "rigid": "rigid",

@@ -12,7 +12,7 @@ from typing import TYPE_CHECKING
 from flexapod.document.parts import Bullets, Chapter, Item, Lines, Remarks, Text, TextTable
 
 if TYPE_CHECKING:
-    from flexapod.study.record import Report
+    from flexapod.results.record import Report
 
 
 def tell(items: Iterable[Item], data: Callable[[], object], *, json: bool, verbose: bool = False) -> None:

@@ -12,9 +12,9 @@ from functools import lru_cache
 import numpy as np
 from numpy.polynomial import Polynomial, chebyshev
 
+from flexapod.arrays import Array
 from flexapod.bases import LateralBasis
 from flexapod.bases.beam_functions import gauss_unit
-from flexapod.typing import Array
 
 __all__ = ["LEAST", "Powers", "kink", "polynomials"]
 

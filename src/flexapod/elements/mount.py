@@ -6,13 +6,13 @@ from typing import TYPE_CHECKING, Any, ClassVar, Self
 
 import numpy as np
 
+from flexapod.arrays import Array
 from flexapod.elements.element import Named, Physics, Standing
 from flexapod.elements.flexure import flexure
 from flexapod.elements.frame import Energies, Frame
 from flexapod.elements.rotations import about_x, about_y, about_z
 from flexapod.elements.springs import viscous
 from flexapod.symbolic.vocabulary import dot, identity, matrix33, vertcat, zeros
-from flexapod.typing import Array
 
 if TYPE_CHECKING:
     from flexapod.model import Leg, Robot, Simulation

@@ -17,8 +17,8 @@ from flexapod.schema.table import Table
 from flexapod.symbolic.vocabulary import cos, dot, vertcat
 
 if TYPE_CHECKING:
+    from flexapod.arrays import Array
     from flexapod.model import Leg, ScrewDrive
-    from flexapod.typing import Array
 
 HARMONICS = 4  # at most
 

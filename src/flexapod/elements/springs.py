@@ -8,7 +8,7 @@ from typing import TYPE_CHECKING, Literal, NamedTuple, TypeVar
 
 import numpy as np
 
-from flexapod.typing import Array
+from flexapod.arrays import Array
 
 if TYPE_CHECKING:
     from flexapod.model import HydraulicDrive, Joint, Leg, ScrewDrive

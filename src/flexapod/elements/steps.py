@@ -16,9 +16,9 @@ from typing import Any
 import numpy as np
 from numpy.polynomial import Chebyshev, Legendre
 
+from flexapod.arrays import Array
 from flexapod.bases import LateralBasis
 from flexapod.bases.beam_functions import gauss_unit
-from flexapod.typing import Array
 
 __all__ = ["Piece", "StepNodes", "Uniform", "held", "law", "nodes", "on_pieces", "pieces", "pieces_of", "sheared"]
 

@@ -14,7 +14,7 @@ import numpy as np
 from numpy.typing import NDArray
 from scipy.linalg import null_space, qr
 
-from flexapod.typing import Array
+from flexapod.arrays import Array
 
 Numbers = NDArray[np.int64]
 """Numbers of nodes or elements."""

@@ -6,13 +6,13 @@ from dataclasses import dataclass
 
 import numpy as np
 
-from flexapod import model, rigid
+from flexapod import kinematics, model
+from flexapod.arrays import Array
 from flexapod.elements.springs import Place, before_piston, in_series, springs_along
 from flexapod.errors import InputError
-from flexapod.rigid.limbs import FREE, Limbs, limbs
-from flexapod.rigid.mechanism import legs_at
-from flexapod.rigid.screws import screws
-from flexapod.typing import Array
+from flexapod.kinematics.limbs import FREE, Limbs, limbs
+from flexapod.kinematics.mechanism import legs_at
+from flexapod.kinematics.screws import screws
 
 _STIFF = 1e5  # of a locked drive, in EA / l: adds 1e-5 of a leg's compliance
 _NAMES: tuple[str, ...] = ("chi", "alpha", "beta", "spin", "l", "gamma1", "gamma2", "gamma3")
@@ -113,12 +113,12 @@ def axial_inertia(leg: model.Leg) -> float:
     return whole if leg.cylinder.mass and whole <= 2 * leg.cylinder.inertia else leg.cylinder.axial_inertia
 
 
-def legs_at_pose(robot: model.Robot, path: rigid.Poses, force: Array) -> list[LegAtPose]:
+def legs_at_pose(robot: model.Robot, path: kinematics.Poses, force: Array) -> list[LegAtPose]:
     """The legs at one pose; `force` (legs,) [N] of force drives.
 
     InputError: a leg that solid elements and point masses cannot stand for, or joints with springs away from home.
     """
-    real, chains = limbs(robot), rigid.rigid_limbs(robot)
+    real, chains = limbs(robot), kinematics.rigid_limbs(robot)
     q = legs_at(chains, path).q
     if (real.state != chains.state).any():
         if np.abs(q - real.home).max() > _HOME:

@@ -14,12 +14,12 @@ import numpy as np
 from numpy.typing import NDArray
 from scipy.linalg import qr
 
+from flexapod.arrays import Array
 from flexapod.exchange.decks import Deck, Term, Tie, cross_matrix, number, solved
 from flexapod.exchange.decks_legs import LegAtPose, PayloadAtPose
 from flexapod.fem.mesh import extruded
 from flexapod.fem.section_mesh import section_mesh
 from flexapod.model import Rectangle
-from flexapod.typing import Array
 
 Carriers = dict[Term, Array]
 """The displacements in which the payload is free, each with the motion (6,) that it causes, see `write_payload`."""

@@ -4,17 +4,17 @@ from __future__ import annotations
 
 import numpy as np
 
-from flexapod import model, rigid
+from flexapod import kinematics, model
+from flexapod.arrays import Array
 from flexapod.elements.known import refuse_tables
 from flexapod.errors import InputError
 from flexapod.exchange.decks import Deck, number
 from flexapod.exchange.decks_legs import LegAtPose, PayloadAtPose, axial_inertia, legs_at_pose
 from flexapod.exchange.decks_robot import Carriers, drive_shift, write_leg, write_payload
+from flexapod.results.arguments import LoadLike, PoseLike, RobotLike, as_pose, at_pose
 from flexapod.solve.at_poses import locked_poses
 from flexapod.solve.locked import the_equilibrium
-from flexapod.solve.rest import at_drives
-from flexapod.study.arguments import LoadLike, PoseLike, RobotLike, as_pose, at_pose
-from flexapod.typing import Array
+from flexapod.solve.static_loads import at_drives
 
 FORMATS = ("abaqus",)
 """What a robot can be written as; CalculiX reads the same deck."""
@@ -91,7 +91,7 @@ def _written(study: model.Study, pose: PoseLike, elements: int, modes: int, titl
     )
     deck = Deck(title)
     deck.say(*_explanation(robot, path, elements))
-    carriers = write_payload(deck, payload, rigid.rigid_limbs(robot).hub_held)
+    carriers = write_payload(deck, payload, kinematics.rigid_limbs(robot).hub_held)
     for i, leg in enumerate(legs, start=1):
         write_leg(deck, leg, f"LEG{i}", elements, payload, carriers)
     wrench = locked.acts.wrench.copy()
@@ -129,7 +129,7 @@ def _check_count(key: str, value: int, least: int, most: int) -> None:
         raise InputError("is out of range", key=key, value=value, allowed=f"a whole number from {least} to {most}")
 
 
-def _explanation(robot: model.Robot, path: rigid.Poses, elements: int) -> list[str]:
+def _explanation(robot: model.Robot, path: kinematics.Poses, elements: int) -> list[str]:
     shift, angles = path.position[0] - robot.home_position, _roll_pitch_yaw(path.rotation[0] @ robot.home_rotation.T)
     moved = [f"{1e3 * x + 0.0:.6g} mm" for x in shift] + [f"{np.rad2deg(x) + 0.0:.6g} deg" for x in angles]
     words = ", ".join(f"{name} {value}" for name, value in zip(model.AXES, moved, strict=True))

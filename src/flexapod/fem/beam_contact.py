@@ -7,10 +7,10 @@ from dataclasses import dataclass, field, replace
 import numpy as np
 from scipy.linalg import LinAlgError, cholesky, eigh, solveh_banded
 
+from flexapod.arrays import Array, Mask
 from flexapod.errors import ComputationError
 from flexapod.fem.beam_guide import GuideContact, Springs
 from flexapod.fem.beam_mesh import HALF_BAND, BeamMesh, band_product
-from flexapod.typing import Array, Mask
 
 #: Newton's steps for one equilibrium, and halvings of one of them, after which it is given up.
 MOST_STEPS, MOST_HALVINGS = 200, 40

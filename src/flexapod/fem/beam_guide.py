@@ -8,9 +8,9 @@ from dataclasses import dataclass
 
 import numpy as np
 
+from flexapod.arrays import Array
 from flexapod.errors import InputError
 from flexapod.fem.beam_mesh import BeamMesh, Indices, gauss
-from flexapod.typing import Array
 
 
 @dataclass(frozen=True, kw_only=True)

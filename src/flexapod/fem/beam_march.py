@@ -7,14 +7,14 @@ from dataclasses import dataclass, field
 
 import numpy as np
 
-from flexapod import rigid
+from flexapod import kinematics
+from flexapod.arrays import Array
 from flexapod.errors import InputError
 from flexapod.fem.beam_contact import Contact, band_solve, contact_at, settle, static_shape
 from flexapod.fem.beam_guide import GuideContact
 from flexapod.fem.beam_mesh import BeamMesh, band_product, beam_mesh
 from flexapod.integration import GeneralizedAlpha
 from flexapod.model import ActuatorStudy
-from flexapod.typing import Array
 
 #: With a spectral radius below one: the element that leaves the guide strikes vibrations of its own length.
 METHOD = GeneralizedAlpha(rho=0.8)
@@ -98,7 +98,7 @@ def _path(study: ActuatorStudy, time: Array) -> _Path:
             key="motion.extension" if motion.extension is None else "motion.rotation",
             allowed="a law of time",
         )
-    turn, slide = rigid.motion_law(motion.rotation, time), rigid.motion_law(motion.extension, time)
+    turn, slide = kinematics.motion_law(motion.rotation, time), kinematics.motion_law(motion.extension, time)
     length, angle = actuator.free_length + slide.position, actuator.angle + turn.position
     reach = actuator.hub_radius + length
     return _Path(
@@ -177,7 +177,7 @@ class _Steps:
     def _start(self, study: ActuatorStudy) -> tuple[Array, Array]:
         """Static shape at the given tip displacement, and its rate when the beam slides slowly, Eq. (T11.6)."""
         tip, length = study.initial.tip_displacement, self.path.length[0]
-        rate = rigid.motion_law(study.motion.extension, np.zeros(1)).rate[0]  # type: ignore[arg-type]
+        rate = kinematics.motion_law(study.motion.extension, np.zeros(1)).rate[0]  # type: ignore[arg-type]
         shape = static_shape(self.mesh, self.guide, length, tip)
         if not rate:
             return shape, np.zeros_like(shape)

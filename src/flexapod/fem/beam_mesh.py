@@ -8,10 +8,10 @@ import numpy as np
 from numpy.polynomial.legendre import leggauss
 from numpy.typing import NDArray
 
+from flexapod.arrays import Array
 from flexapod.bases.hermite import FALLING, RISING
 from flexapod.errors import InputError
 from flexapod.model import Actuator
-from flexapod.typing import Array
 
 Indices = NDArray[np.int_]
 

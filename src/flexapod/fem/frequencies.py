@@ -7,11 +7,11 @@ from collections.abc import Callable
 import numpy as np
 from scipy.sparse import csr_array
 
+from flexapod.arrays import Array
 from flexapod.errors import ComputationError, InputError
 from flexapod.fem.hexahedra import integrals, mass, stiffness
 from flexapod.fem.mesh import SolidMesh
 from flexapod.fem.section_mesh import free_unknowns
-from flexapod.typing import Array
 
 
 def banded_solver(matrix: csr_array) -> Callable[[Array], Array]:

@@ -8,9 +8,9 @@ from dataclasses import dataclass
 import numpy as np
 from scipy.sparse import csr_array
 
+from flexapod.arrays import Array
 from flexapod.errors import InputError
 from flexapod.fem.mesh import SolidMesh
-from flexapod.typing import Array
 
 _HOURGLASS = 0.005  # share of the shear modulus that holds the patterns which reduced integration does not see
 # Corners of the reference cube in the order of Abaqus; middles of edges follow as pairs of corners.

@@ -7,11 +7,11 @@ from dataclasses import replace
 
 import numpy as np
 
+from flexapod.arrays import Array
 from flexapod.bases.lateral import LateralBasis, integrate, proportional_damping
 from flexapod.errors import InputError
 from flexapod.fem.reduction import StationModel, reduced_beam
 from flexapod.model import Rectangle, Tube
-from flexapod.typing import Array
 
 _INTERVALS = 24
 

@@ -6,10 +6,10 @@ from dataclasses import dataclass
 
 import numpy as np
 
+from flexapod.arrays import Array
 from flexapod.errors import InputError
 from flexapod.fem.section_mesh import Indices, SectionMesh, section_mesh
 from flexapod.model import Rectangle, Tube
-from flexapod.typing import Array
 
 MOST = 1_000_000  # elements: some 10 million unknowns
 

@@ -6,8 +6,8 @@ from dataclasses import dataclass
 
 import numpy as np
 
+from flexapod.arrays import Array
 from flexapod.fem.reduction import StationModel
-from flexapod.typing import Array
 
 
 @dataclass(frozen=True, kw_only=True)

@@ -11,13 +11,13 @@ from dataclasses import dataclass
 import numpy as np
 from scipy.sparse import csc_array, csr_array
 
+from flexapod.arrays import Array
 from flexapod.errors import InputError
 from flexapod.fem.frequencies import check_material
 from flexapod.fem.hexahedra import field_load, integrals, mass, slope_stiffness, stiffness
 from flexapod.fem.mesh import SolidMesh, check_count, extruded
 from flexapod.fem.section_mesh import SectionAverages, free_unknowns, section_averages, section_mesh
 from flexapod.model import Rectangle, Tube
-from flexapod.typing import Array
 
 MOST = 20_000  # elements of an interval: its condensation is dense, one or two gigabytes there
 

@@ -8,9 +8,9 @@ from dataclasses import dataclass, replace
 import numpy as np
 from numpy.typing import NDArray
 
+from flexapod.arrays import Array, Mask
 from flexapod.errors import InputError
 from flexapod.model import Rectangle, Tube
-from flexapod.typing import Array, Mask
 
 #: An array of whole numbers.
 Indices = NDArray[np.int_]

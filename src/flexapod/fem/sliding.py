@@ -8,10 +8,10 @@ from itertools import pairwise
 
 import numpy as np
 
+from flexapod.arrays import Array
 from flexapod.errors import ComputationError
 from flexapod.fem.mouth import Mouth, mouth_of
 from flexapod.fem.reduction import StationModel
-from flexapod.typing import Array
 
 _ROOT = np.sqrt(3.0) / 6
 _NODES = np.array([0.5 - _ROOT, 0.5 + _ROOT])

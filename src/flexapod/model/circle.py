@@ -8,11 +8,11 @@ from typing import TYPE_CHECKING, Annotated
 import numpy as np
 from pydantic import model_validator
 
+from flexapod.arrays import Array
 from flexapod.errors import InputError
 from flexapod.schema.axes import plane_order, within_a_turn
 from flexapod.schema.base import Quantity, Series
 from flexapod.schema.table import Table
-from flexapod.typing import Array
 
 if TYPE_CHECKING:
     from flexapod.schema.section import Section

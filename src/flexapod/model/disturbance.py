@@ -7,11 +7,11 @@ from typing import TYPE_CHECKING, Annotated, Any, ClassVar, Literal, TypeVar
 import numpy as np
 from pydantic import PlainSerializer, PlainValidator, model_validator
 
+from flexapod.arrays import Array
 from flexapod.errors import InputError
 from flexapod.schema.base import Key, Quantity, Series, array_of
 from flexapod.schema.csv_tables import WRENCH
 from flexapod.schema.table import Table
-from flexapod.typing import Array
 
 if TYPE_CHECKING:
     from flexapod.model.robot import Robot

@@ -10,7 +10,6 @@ from pathlib import Path
 from typing import Literal, TypeVar, overload
 
 from flexapod.errors import InputError, closest
-from flexapod.files import LARGEST_TEXT, check_name, read_text
 from flexapod.model.actuator import Actuator, ActuatorInitial, read_drives
 from flexapod.model.disturbance import read_disturbance
 from flexapod.model.laws import Load
@@ -19,6 +18,7 @@ from flexapod.model.plausible import size_remarks
 from flexapod.model.robot import Robot, platform_fixed, read_robot
 from flexapod.model.simulation import STRAIGHT, Initial, Simulation, read_simulation, unused_settings
 from flexapod.model.study import ActuatorStudy, Study
+from flexapod.runtime.files import LARGEST_TEXT, check_name, read_text
 from flexapod.schema.section import Section
 from flexapod.schema.table import Table
 from flexapod.schema.toml import parsed

@@ -8,10 +8,10 @@ from typing import TYPE_CHECKING, Annotated
 import numpy as np
 from pydantic import PlainSerializer, PlainValidator
 
+from flexapod.arrays import Array
 from flexapod.errors import InputError
 from flexapod.schema.base import Joints, Quantity, array_of
 from flexapod.schema.table import Table
-from flexapod.typing import Array
 
 if TYPE_CHECKING:
     from flexapod.schema.section import Section

@@ -8,12 +8,12 @@ from typing import TYPE_CHECKING, Annotated, ClassVar
 import numpy as np
 from pydantic import PlainSerializer, PlainValidator, model_validator
 
+from flexapod.arrays import Array
 from flexapod.errors import InputError
 from flexapod.model.geometry import PerLeg, check_legs, one_for_all, read_each
 from flexapod.model.motion import check_times
 from flexapod.schema.base import Key, Quantity, Series, array_of
 from flexapod.schema.table import Table
-from flexapod.typing import Array
 
 if TYPE_CHECKING:
     from flexapod.schema.section import Section

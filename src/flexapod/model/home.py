@@ -9,12 +9,12 @@ from typing import TYPE_CHECKING, Annotated, ClassVar
 import numpy as np
 from pydantic import Field, model_validator
 
+from flexapod.arrays import Array
 from flexapod.errors import InputError
 from flexapod.model.joint import Carriage
 from flexapod.schema.axes import normal_of, within_a_turn
 from flexapod.schema.base import Quantity, Vec3
 from flexapod.schema.table import Table
-from flexapod.typing import Array
 
 if TYPE_CHECKING:
     from flexapod.schema.section import Section

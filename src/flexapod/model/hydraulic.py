@@ -9,11 +9,11 @@ from typing import TYPE_CHECKING, Annotated, ClassVar, Literal
 import numpy as np
 from pydantic import PlainSerializer, PlainValidator, model_validator
 
+from flexapod.arrays import Array
 from flexapod.errors import InputError
 from flexapod.model.friction import StrokeFriction
 from flexapod.schema.base import Key, Quantity, array_of
 from flexapod.schema.table import Table
-from flexapod.typing import Array
 from flexapod.words import text
 
 if TYPE_CHECKING:

@@ -8,6 +8,7 @@ from typing import TYPE_CHECKING, Annotated, Any, ClassVar, Literal
 import numpy as np
 from pydantic import model_validator
 
+from flexapod.arrays import Array
 from flexapod.errors import InputError
 from flexapod.model.friction import JointFriction
 from flexapod.model.joint_stiffness import read_stiffness
@@ -15,7 +16,6 @@ from flexapod.model.rolling import RollingLaw
 from flexapod.schema.axes import axis_of, within_a_turn, word_of
 from flexapod.schema.base import Key, Loss, Matrix6, Quantity, Vec3
 from flexapod.schema.table import Table
-from flexapod.typing import Array
 
 if TYPE_CHECKING:
     from flexapod.schema.section import Section

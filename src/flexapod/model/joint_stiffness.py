@@ -7,11 +7,11 @@ from typing import TYPE_CHECKING, Annotated
 
 import numpy as np
 
+from flexapod.arrays import Array
 from flexapod.model.rolling import RollingLaw
 from flexapod.model.spring import read_spring
 from flexapod.schema.base import Key, Loss, Matrix6, Quantity
 from flexapod.schema.table import Table
-from flexapod.typing import Array
 
 if TYPE_CHECKING:
     from flexapod.schema.section import Section

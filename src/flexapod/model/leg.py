@@ -6,6 +6,7 @@ from typing import TYPE_CHECKING, Annotated, Any, ClassVar
 
 from pydantic import Field, InstanceOf, SerializeAsAny, model_validator
 
+from flexapod.arrays import Array
 from flexapod.elements.element import Element, registered
 from flexapod.elements.known import read_elements, told_elements
 from flexapod.errors import InputError
@@ -22,7 +23,6 @@ from flexapod.model.spring import AxialSpring, read_springs
 from flexapod.schema.base import Key, Quantity, Vec3
 from flexapod.schema.columns import columns_of
 from flexapod.schema.table import Table
-from flexapod.typing import Array
 from flexapod.words import number, text
 
 if TYPE_CHECKING:

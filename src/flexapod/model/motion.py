@@ -9,11 +9,11 @@ from typing import TYPE_CHECKING, Annotated, ClassVar, Literal, get_args
 import numpy as np
 from pydantic import AfterValidator, Field, model_validator
 
+from flexapod.arrays import Array
 from flexapod.errors import InputError
 from flexapod.schema.base import Key, Quantity, Series, Series6, Vec3
 from flexapod.schema.csv_tables import POSE, beside, wrong_instant
 from flexapod.schema.table import Table
-from flexapod.typing import Array
 from flexapod.units import DIMENSIONS
 from flexapod.words import number, text
 

@@ -8,11 +8,11 @@ from typing import TYPE_CHECKING, Annotated
 import numpy as np
 from pydantic import field_validator, model_validator
 
+from flexapod.arrays import Array
 from flexapod.errors import InputError
 from flexapod.schema.axes import diagonal, normal_of
 from flexapod.schema.base import Matrix3, Quantity, Vec3
 from flexapod.schema.table import Table
-from flexapod.typing import Array
 from flexapod.words import number
 
 if TYPE_CHECKING:

@@ -249,6 +249,13 @@ class Piston(Table):
         return found or ((self.length, self.steps_or_one * len(SHARES)),)
 
     @property
+    def width(self) -> float:
+        """The largest diameter [m], or that of a full round bar with its EI and EA, 4 sqrt(EI / EA)."""
+        if self.sections:
+            return max(max(at.depth) for _, samples in self.parts for at in samples)
+        return self.diameter if self.diameter is not None else 4.0 * (self.EI / self.EA) ** 0.5
+
+    @property
     def steps_or_one(self) -> tuple[PistonStep, ...]:
         """`steps`, of a uniform piston one; its depth is 0 where it is not known."""
         depth = self.depth or 0.0

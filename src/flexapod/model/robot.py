@@ -9,6 +9,7 @@ from typing import TYPE_CHECKING, Annotated, Any, ClassVar, cast
 import numpy as np
 from pydantic import Field, WrapValidator, computed_field, model_validator
 
+from flexapod.arrays import Array
 from flexapod.errors import InputError
 from flexapod.model.chain import chains_of
 from flexapod.model.circle import read_places
@@ -33,7 +34,6 @@ from flexapod.schema.axes import Plane, axis_of, diagonal, normal_of
 from flexapod.schema.base import Joints, Quantity, Vec3
 from flexapod.schema.table import Table, plain
 from flexapod.schema.written import Written
-from flexapod.typing import Array
 from flexapod.words import number, text
 
 if TYPE_CHECKING:

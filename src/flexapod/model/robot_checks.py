@@ -8,10 +8,10 @@ from typing import TYPE_CHECKING
 
 import numpy as np
 
+from flexapod.arrays import Array
 from flexapod.errors import InputError
 from flexapod.model.chain import chains_of
 from flexapod.schema.axes import plane_order
-from flexapod.typing import Array
 from flexapod.units import DIMENSIONS
 
 if TYPE_CHECKING:

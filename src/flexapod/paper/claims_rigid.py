@@ -7,7 +7,7 @@ import math
 import numpy as np
 from xarray import Dataset
 
-from flexapod import rigid
+from flexapod import kinematics
 from flexapod.paper.claim import (
     AWAY,
     ELASTIC_LENGTH,
@@ -26,7 +26,6 @@ from flexapod.paper.cost import FORMULATIONS
 from flexapod.paper.readings import TRAVELS
 from flexapod.paper.rows import Said, row
 from flexapod.scene.robot import robot_study
-from flexapod.study.before.estimates import section_width
 from flexapod.words import number, text
 
 TRAVEL, TRAVEL_ROUNDED = 0.26, 0.005  # of a piston, Fig. 7; printed to 10 mm [m]
@@ -36,7 +35,7 @@ ROUNDING = 1e-9  # of a path computed in double precision, relative
 
 @row("Section 3", "Diameter below a tenth of the length: Euler-Bernoulli theory is valid", "robot")
 def _slender(robot: Dataset) -> Said:
-    diameter = section_width(robot_study(robot).robot.legs[0].piston)
+    diameter = robot_study(robot).robot.legs[0].piston.width
     ratio = diameter / ELASTIC_LENGTH
     lower = _lowered(ratio)
     verdict = judged(ratio < 0.1 and lower < 0.01, ratio < 0.1)
@@ -137,7 +136,7 @@ def _figure8(rigid_legs: Dataset) -> Said:
 @row("Eqs. 11-12", "Rigid path of the centre of mass: Y = d cos(theta), Z = d sin(theta)", "robot", expected=IN_PART)
 def _equations_11_12(robot: Dataset) -> Said:
     study, (_, arm) = robot_study(robot), roll_and_arm(robot)
-    R = rigid.poses(study.robot, study.motion, robot.time.values).rotation
+    R = kinematics.poses(study.robot, study.motion, robot.time.values).rotation
     roll = np.arctan2(R[:, 2, 1], R[:, 2, 2])
     rest = robot.com_position_rigid.values[:, 1:] - arm * np.stack([np.cos(roll), np.sin(roll)], axis=1)
     printed, off = (float(np.abs(rest - [0.0, height]).max()) for height in (0.0, study.robot.home_height))

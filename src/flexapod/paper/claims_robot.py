@@ -23,8 +23,8 @@ from flexapod.paper.claim import (
 )
 from flexapod.paper.rows import Said, row
 from flexapod.paper.trials import load_share
+from flexapod.results.summary import AxisSummary, RobotSummary, summary
 from flexapod.scene.robot import robot_study
-from flexapod.study.after.summary import AxisSummary, RobotSummary, summary
 from flexapod.words import text
 
 PER_CENT = 6.0  # Abstract

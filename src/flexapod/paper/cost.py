@@ -12,16 +12,16 @@ import numpy as np
 from xarray import Dataset
 
 from flexapod import bases, model
+from flexapod.arrays import Array
+from flexapod.kinematics import dynamics
+from flexapod.kinematics.inverse import JointTurn
+from flexapod.kinematics.vectors import turned
 from flexapod.mechanics.layout import LEG_PARAMETERS, Shapes
 from flexapod.mechanics.leg import leg
-from flexapod.rigid import dynamics
-from flexapod.rigid.kinematics import JointTurn
-from flexapod.rigid.vectors import turned
-from flexapod.study.attributes import attributes
+from flexapod.results.attributes import attributes
 from flexapod.symbolic.functions import NamedFunction, operations
 from flexapod.symbolic.lagrange import inverse_dynamics
 from flexapod.symbolic.vocabulary import symbol, symbols
-from flexapod.typing import Array
 
 FORMULATIONS = ("Newton-Euler", "Lagrange")
 

@@ -10,6 +10,7 @@ from dataclasses import dataclass
 from typing import Any
 
 from flexapod import bases
+from flexapod.arrays import Array
 from flexapod.paper.readings import actuator_preset
 from flexapod.symbolic.functions import NamedFunction
 from flexapod.symbolic.lagrange import Lagrangian, inverse_dynamics
@@ -25,7 +26,6 @@ from flexapod.symbolic.vocabulary import (
     vertcat,
     zeros,
 )
-from flexapod.typing import Array
 
 SHAPES = 3  # of the paper
 TIP_MASS = 0.5  # kg, ours: with Table 2's beam alone the lines about the tip mass would cost nothing

@@ -12,17 +12,17 @@ from importlib.metadata import version
 import numpy as np
 from xarray import Dataset
 
-from flexapod import model, rigid
+from flexapod import kinematics, model
+from flexapod.arrays import Array
 from flexapod.errors import InputError
-from flexapod.proof.engines.engine import EXUDYN
-from flexapod.proof.engines.exudyn_integration import Integration, extrapolated
-from flexapod.proof.engines.exudyn_robot import MESHES, STEP, RobotResult, simulate_robot
+from flexapod.results.attributes import attributes
+from flexapod.results.names import dataset
+from flexapod.results.record import Share
 from flexapod.scene.robot import motion_end
-from flexapod.study.attributes import attributes
-from flexapod.study.names import dataset
-from flexapod.study.record import Share
 from flexapod.study.simulation import simulate
-from flexapod.typing import Array
+from flexapod.verify.engines.engine import EXUDYN
+from flexapod.verify.engines.exudyn_integration import Integration, extrapolated
+from flexapod.verify.engines.exudyn_robot import MESHES, STEP, RobotResult, simulate_robot
 from flexapod.words import scale, text
 
 NO_GUIDE = 0.0  # m; of rigid pistons
@@ -165,9 +165,9 @@ def _settings(tolerance: float) -> dict[str, object]:
 
 def _dataset(study: model.Study, instants: Array, values: Mapping[str, Array], attrs: Mapping[str, object]) -> Dataset:
     """Their results with our rigid path and rigid forces at the same instants."""
-    path = rigid.poses(study.robot, study.motion, instants)
+    path = kinematics.poses(study.robot, study.motion, instants)
     centre, _, _ = path.point(study.robot.payload.com)
-    forces = rigid.inverse_dynamics(study.robot, path).actuator_force
+    forces = kinematics.inverse_dynamics(study.robot, path).actuator_force
     known = {"com_position_rigid": centre, "com_position": centre + values["com_deviation"]}
     own = {**attributes(study), "title": "Exudyn: parallel robot", "rho_inf": study.simulation.rho_inf}
     return dataset({**known, **values, "actuator_force_rigid": forces}, {"time": instants}, {**own, **attrs})

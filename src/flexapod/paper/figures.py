@@ -14,7 +14,7 @@ from flexapod.paper.claims_actuator import LINEAR
 from flexapod.paper.readings import actuator_preset, robot_preset
 from flexapod.paper.study import PaperStudy
 from flexapod.report.figures import Drawn, store
-from flexapod.study.record import Report
+from flexapod.results.record import Report
 from flexapod.words import text
 
 _Plan = tuple[str, str, str, Callable[[], Figure]]

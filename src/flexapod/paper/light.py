@@ -9,8 +9,8 @@ from flexapod import model
 from flexapod.paper.claim import after_motion, largest
 from flexapod.paper.readings import robot_preset, with_legs
 from flexapod.paper.trials import table
-from flexapod.study.attributes import attributes
-from flexapod.study.record import Share
+from flexapod.results.attributes import attributes
+from flexapod.results.record import Share
 from flexapod.study.simulation import simulate
 from flexapod.study.static import modes
 

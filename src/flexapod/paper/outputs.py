@@ -8,14 +8,14 @@ from pathlib import Path
 from xarray import Dataset
 
 from flexapod.errors import InputError
-from flexapod.files import replacing, write_text
 from flexapod.paper.claims import claims, markdown
 from flexapod.paper.engines import check_engine
 from flexapod.paper.figures import paper_figures
 from flexapod.paper.report import paper_page
 from flexapod.paper.study import PaperStudy
 from flexapod.paper.study import replicate as compute
-from flexapod.study.record import Report
+from flexapod.results.record import Report
+from flexapod.runtime.files import replacing, write_text
 from flexapod.study.store import save, save_csv
 
 

@@ -14,12 +14,12 @@ import numpy as np
 from xarray import Dataset
 
 from flexapod import bases
+from flexapod.arrays import Array
 from flexapod.bases.beam_functions import clamped_free
 from flexapod.paper.energies import SHAPES, TIP_MASS, Change, Point, along, beam_with, matrices, square
 from flexapod.paper.readings import actuator_preset
-from flexapod.study.attributes import attributes
-from flexapod.study.record import Share
-from flexapod.typing import Array
+from flexapod.results.attributes import attributes
+from flexapod.results.record import Share
 
 GRAVITY = 9.81  # m/s^2, in the cases that are upright
 STEP, OUTPUT, DURATION = 5e-4, 1e-2, 10.0  # s; RK4 errs by (omega h)^4 / 120 a radian: 2e-6 for 40 Hz

@@ -7,10 +7,10 @@ from collections.abc import Callable
 import numpy as np
 
 from flexapod import model
+from flexapod.arrays import Array
 from flexapod.errors import InputError
 from flexapod.paper.claim import ELASTIC_LENGTH, HEIGHT, axis_motion
 from flexapod.paper.trials import opened
-from flexapod.typing import Array
 
 MODULI = (20.0, 4.0, 3.5, 3.1)  # GPa; of 200 a digit lost, then towards and past the load under which legs buckle
 CUBE = "com-cube"

@@ -31,7 +31,6 @@ from flexapod.paper.claims import CLAIM_HEAD
 from flexapod.paper.engines import agreements
 from flexapod.paper.figures import ENGINE
 from flexapod.paper.study import PaperStudy
-from flexapod.proof.engines.engine import EXUDYN
 from flexapod.report.figures import Drawn
 from flexapod.report.page import (
     by_axis,
@@ -42,8 +41,9 @@ from flexapod.report.page import (
     warnings_section,
 )
 from flexapod.report.replay import replay
+from flexapod.results.summary import summary
 from flexapod.scene.robot import robot_study
-from flexapod.study.after.summary import summary
+from flexapod.verify.engines.engine import EXUDYN
 from flexapod.words import number, scale, text
 
 _MARKS = {

@@ -27,8 +27,8 @@ from flexapod.paper.variants import (
     with_half_angle,
 )
 from flexapod.paper.welded import welded_map
+from flexapod.results.record import Report, Share
 from flexapod.study.actuator import simulate_actuator
-from flexapod.study.record import Report, Share
 from flexapod.study.simulation import simulate
 from flexapod.study.solid import simulate_solid
 from flexapod.study.static import modes

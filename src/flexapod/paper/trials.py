@@ -9,20 +9,20 @@ from typing import Any
 import numpy as np
 from xarray import Dataset
 
-from flexapod import model, rigid
+from flexapod import kinematics, model
 from flexapod.errors import ComputationError, InputError
 from flexapod.paper.claim import largest
+from flexapod.results.attributes import attributes
+from flexapod.results.path import path_instants
+from flexapod.results.record import Share
+from flexapod.review.estimates import buckling_load
 from flexapod.scene.robot import robot_study
 from flexapod.solve.equilibrium import Equilibrium, equilibrium
-from flexapod.solve.losses import per_loss
-from flexapod.solve.rest import rest_commands, rest_load
+from flexapod.solve.loss_factor import per_loss
 from flexapod.solve.rigid_motion import rigid_rest, rigid_state
 from flexapod.solve.robot_system import robot_system
+from flexapod.solve.static_loads import rest_commands, rest_load
 from flexapod.solve.system import State, System
-from flexapod.study.attributes import attributes
-from flexapod.study.before.estimates import buckling_load
-from flexapod.study.path import path_instants
-from flexapod.study.record import Share
 from flexapod.study.simulation import simulate
 
 TRIAL_STEP = 5e-4  # s; peaks change by less than 1 % from 1 ms to 0.25 ms
@@ -31,8 +31,8 @@ TRIAL_STEP = 5e-4  # s; peaks change by less than 1 % from 1 ms to 0.25 ms
 def opened(study: model.Study) -> model.Study:
     """The same robot with mouths and strokes moved just so far that no piston leaves its cylinder on the path."""
     robot = study.robot
-    path = rigid.poses(robot, study.motion, path_instants(study))
-    lengths = rigid.leg_lengths(robot.base_joints, robot.platform_joints, path.position, path.rotation)
+    path = kinematics.poses(robot, study.motion, path_instants(study))
+    lengths = kinematics.leg_lengths(robot.base_joints, robot.platform_joints, path.position, path.rotation)
     legs = tuple(_opened(leg, float(lengths.max())) for leg in robot.legs)
     return study.replace(robot=robot.replace(legs=legs))
 
@@ -79,7 +79,7 @@ def system_of(study: model.Study) -> System:
     return robot_system(study.robot, study.simulation, per_loss(study.robot, study.simulation))
 
 
-def resting(study: model.Study, system: System, path: rigid.Poses, state: State | None) -> Equilibrium:
+def resting(study: model.Study, system: System, path: kinematics.Poses, state: State | None) -> Equilibrium:
     """Equilibrium with the drives locked at a rigid pose, sought from a state; None: from the rigid pose."""
     robot = study.robot
     start = rigid_state(system, robot, path) if state is None else state

@@ -8,20 +8,20 @@ from dataclasses import dataclass, replace
 import numpy as np
 from xarray import Dataset
 
-from flexapod import model, rigid
+from flexapod import kinematics, model
+from flexapod.arrays import Array
 from flexapod.errors import ComputationError
+from flexapod.kinematics.rotations import quaternion, rotation_vector
 from flexapod.paper.claim import axis_motion, largest, roll_error
 from flexapod.paper.trials import TRIAL_STEP, opened, resting, system_of, table, trial
-from flexapod.rigid.rotations import quaternion, rotation_vector
+from flexapod.results.arguments import as_pose
+from flexapod.results.attributes import attributes
+from flexapod.results.path import path_instants
+from flexapod.results.record import Share
 from flexapod.solve.equilibrium import Equilibrium
 from flexapod.solve.system import State, System
-from flexapod.study.arguments import as_pose
-from flexapod.study.attributes import attributes
-from flexapod.study.path import path_instants
-from flexapod.study.record import Share
 from flexapod.study.simulation import simulate
 from flexapod.study.static import modes
-from flexapod.typing import Array
 
 POSES = 11  # every tenth of the motion: sag and frequency change steadily along it, their extremes are at its ends
 FINEST = 2.0**-8 / (POSES - 1)  # share of the motion to which the end of the equilibrium is found: 0.01 deg of 30 deg
@@ -47,8 +47,8 @@ def singular_turn(study: model.Study) -> float | None:
 
     There the determinant of the scaled Jacobian changes its sign, a fact of the joints' places and the path alone.
     """
-    path = rigid.poses(study.robot, study.motion, path_instants(study))
-    changes = rigid.singularity(study.robot, path).sign_changes
+    path = kinematics.poses(study.robot, study.motion, path_instants(study))
+    changes = kinematics.singularity(study.robot, path).sign_changes
     if not len(changes):
         return None
     return float(np.rad2deg(np.linalg.norm(rotation_vector(quaternion(path.rotation[int(changes[0])])))))
@@ -212,10 +212,13 @@ def _with_servo(study: model.Study, stiffness: float) -> model.Study:
 def _needed_errors(study: model.Study) -> Array:
     """Leg-length errors (n,) [m] that move the CoM by the paper's deviation."""
     robot, roll = study.robot, axis_motion(study).target[3]
-    home = rigid.home_pose(robot)
+    home = kinematics.home_pose(robot)
     off, there = (
-        rigid.leg_lengths(
-            robot.base_joints, robot.platform_joints, home.position, rigid.rotation_matrix(np.array([[x, 0.0, 0.0]]))[0]
+        kinematics.leg_lengths(
+            robot.base_joints,
+            robot.platform_joints,
+            home.position,
+            kinematics.rotation_matrix(np.array([[x, 0.0, 0.0]]))[0],
         )[0]
         for x in (roll + roll_error(float(np.linalg.norm(robot.payload.com))), roll)
     )

@@ -7,14 +7,14 @@ from collections.abc import Iterator, Sequence
 import numpy as np
 from xarray import Dataset
 
-from flexapod import model, rigid
+from flexapod import kinematics, model
+from flexapod.arrays import Array
 from flexapod.mechanics.layout import Shapes
 from flexapod.paper.readings import robot_preset
 from flexapod.paper.trials import opened, resting, system_of
+from flexapod.results.attributes import attributes
+from flexapod.results.record import Share
 from flexapod.solve.system import State
-from flexapod.study.attributes import attributes
-from flexapod.study.record import Share
-from flexapod.typing import Array
 
 #: Robots of the map: preset and how many legs are welded to the platform.
 READINGS = {
@@ -51,8 +51,8 @@ def _walk(study: model.Study, rolls: Sequence[float]) -> Iterator[dict[str, obje
     """What the equilibrium at each roll [deg] is, from home on; ends where none continues the one before."""
     system, state = system_of(study), None
     for roll in rolls:
-        R = rigid.rotation_matrix(np.array([[np.deg2rad(roll), 0.0, 0.0]]))[0]
-        path = rigid.Poses.at_rest(rigid.home_pose(study.robot).position[0], R)
+        R = kinematics.rotation_matrix(np.array([[np.deg2rad(roll), 0.0, 0.0]]))[0]
+        path = kinematics.Poses.at_rest(kinematics.home_pose(study.robot).position[0], R)
         found = resting(study, system, path, state)
         if not found.found:
             return
@@ -60,7 +60,7 @@ def _walk(study: model.Study, rolls: Sequence[float]) -> Iterator[dict[str, obje
         yield _values(study.robot, system.kernel.shapes, path, state)
 
 
-def _values(robot: model.Robot, shapes: Shapes, path: rigid.Poses, x: State) -> dict[str, object]:
+def _values(robot: model.Robot, shapes: Shapes, path: kinematics.Poses, x: State) -> dict[str, object]:
     first = shapes.index("a")
     lateral = x.q[:, first : first + 2 * shapes.a.count].reshape(len(x.q), 2, -1)
     free = x.q[:, shapes.index("l")] - np.array([leg.cylinder.mouth for leg in robot.legs])

@@ -4,7 +4,6 @@ from __future__ import annotations
 
 from typing import TYPE_CHECKING
 
-from flexapod.loading import loaded
 from flexapod.plot.actuator import actuator_modes, actuator_path, actuator_response
 from flexapod.plot.budget import budget
 from flexapod.plot.convergence import convergence, ladder
@@ -15,6 +14,7 @@ from flexapod.plot.payload import com_path, deviation_by_cause, energies, motion
 from flexapod.plot.style import save
 from flexapod.plot.sweep import sweep
 from flexapod.plot.vibration import vibration
+from flexapod.runtime.loading import loaded
 
 if TYPE_CHECKING:
     from flexapod.plot.robot3d import modes_3d, robot_3d

@@ -10,10 +10,10 @@ from matplotlib.axes import Axes
 from matplotlib.figure import Figure
 from matplotlib.patches import Patch
 
+from flexapod.arrays import Array
+from flexapod.error_budget.sentences import Bar, bars
 from flexapod.plot.style import NOTE, PAGE, SMALL, TEXT, figure, needs, styled
 from flexapod.scene.colours import ERRORS
-from flexapod.study.budgets.sentences import Bar, bars
-from flexapod.typing import Array
 from flexapod.words import scale
 
 __all__ = ["budget"]

@@ -15,11 +15,12 @@ from matplotlib.lines import Line2D
 from matplotlib.patches import Patch
 from matplotlib.ticker import LogLocator, MaxNLocator
 
+from flexapod.arrays import Array
 from flexapod.errors import InputError
 from flexapod.model import AXES
 from flexapod.plot.style import COLORS, NOTE, PAGE, SMALL, TEXT, edges_of, figure, needs, styled
-from flexapod.study.before.reach import REACHED, REASONS
-from flexapod.study.poses import coordinate_words
+from flexapod.results.poses import coordinate_words
+from flexapod.review.reach import REACHED, REASONS
 from flexapod.surveys.workspace.findings import (
     SIDES,
     drawn,
@@ -31,7 +32,6 @@ from flexapod.surveys.workspace.findings import (
 )
 from flexapod.surveys.workspace.grid import UNITS
 from flexapod.ties import first_largest, first_least
-from flexapod.typing import Array
 from flexapod.words import Scale, number, scale
 
 # Ground and hatching of what is not reached, by code; codes that rarely meet share one.

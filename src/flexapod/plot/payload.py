@@ -22,10 +22,10 @@ from flexapod.plot.style import (
     needs,
     styled,
 )
+from flexapod.results.cause_words import cause_words
+from flexapod.results.summary import POINT_WORDS
 from flexapod.scene.colours import AXIS_COLORS, ENERGIES, LEG_COLORS
 from flexapod.scene.robot import motion_coordinates, motion_end
-from flexapod.study.after.summary import POINT_WORDS
-from flexapod.study.cause_words import cause_words
 from flexapod.ties import first_largest, ranked
 from flexapod.words import NOTHING, Scale, cleared, scale
 

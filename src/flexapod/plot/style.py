@@ -21,10 +21,10 @@ from matplotlib.colors import to_hex, to_rgb
 from matplotlib.figure import Figure
 from matplotlib.layout_engine import ConstrainedLayoutEngine
 
+from flexapod.arrays import Array
 from flexapod.errors import InputError
-from flexapod.files import replacing
 from flexapod.plot.narrow import narrowed
-from flexapod.typing import Array
+from flexapod.runtime.files import replacing
 
 P = ParamSpec("P")
 

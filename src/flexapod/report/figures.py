@@ -47,7 +47,7 @@ def drawing(
     data: Dataset, folder: str | Path, formats: Sequence[str], processes: int
 ) -> AbstractContextManager[Callable[[], list[Drawn]]]:
     """The same begun in copies of this process; what the block is given takes part, and waits for them."""
-    from flexapod.processes import started
+    from flexapod.runtime.processes import started
 
     plans = list(_robot(data) if "com_deviation" in data else _actuator(data))
 
@@ -61,8 +61,8 @@ def drawing(
 def store(figure: Figure, title: str, stem: Path, formats: Sequence[str] = ("png", "svg")) -> Drawn:
     """Write a figure as ``stem.png``, ``stem.svg``, ``stem.pdf``, as asked for."""
     from flexapod import plot
-    from flexapod.files import scratch
     from flexapod.report.interactive import interactive
+    from flexapod.runtime.files import scratch
 
     files = plot.save(figure, stem, formats=formats)
     png = next((path for path in files if path.suffix == ".png"), None)
@@ -91,10 +91,10 @@ def _robot(data: Dataset) -> Iterator[_Plan]:
 
     from flexapod import plot
     from flexapod.document.budget import peak_budget
+    from flexapod.results.attributes import robot_of
+    from flexapod.results.of_elements import of_elements
+    from flexapod.results.summary import tool_apart
     from flexapod.scene.drives import drives
-    from flexapod.study.after.of_elements import of_elements
-    from flexapod.study.after.summary import tool_apart
-    from flexapod.study.attributes import robot_of
     from flexapod.words import capital
 
     found = drives(data)

@@ -19,7 +19,7 @@ from matplotlib.patches import Rectangle
 from matplotlib.text import Annotation
 from matplotlib.ticker import FixedLocator
 
-from flexapod.typing import Array
+from flexapod.arrays import Array
 
 if TYPE_CHECKING:
     from matplotlib.axes import Axes

@@ -12,18 +12,18 @@ from flexapod.document import html
 from flexapod.document.html import Html
 from flexapod.document.parts import Chapter, Item, Lines, Remarks, Text, TextTable, warnings_of
 from flexapod.errors import FlexapodError
-from flexapod.files import scratch, write_text
 from flexapod.report.figures import Drawn
 from flexapod.report.interactive import MOST_POINTS
+from flexapod.runtime.files import scratch, write_text
 from flexapod.scene.robot import carried_study
 
 if TYPE_CHECKING:
     from xarray import Dataset
 
+    from flexapod.description.actuator import ActuatorDescription
+    from flexapod.description.robot import RobotDescription
     from flexapod.model import ActuatorStudy, Study
-    from flexapod.study.after.summary import ActuatorSummary
-    from flexapod.study.before.describe.actuator import ActuatorDescription
-    from flexapod.study.before.describe.robot import RobotDescription
+    from flexapod.results.summary import ActuatorSummary
 
 SOLVER = {
     "integrator": "Time integration",
@@ -75,8 +75,8 @@ def _page(study: Study | ActuatorStudy | None, data: Dataset, figures: Callable[
     from flexapod.document.budget import peak_budget, peak_items
     from flexapod.document.run import told_of
     from flexapod.document.study import modes_section, study_items
-    from flexapod.study.after.summary import RobotSummary, summaries
-    from flexapod.study.bodies import bodies_words
+    from flexapod.results.bodies import bodies_words
+    from flexapod.results.summary import RobotSummary, summaries
 
     first, *further = summaries(data)
     described = _described(study)
@@ -116,7 +116,7 @@ def _page(study: Study | ActuatorStudy | None, data: Dataset, figures: Callable[
 
 def _described(study: Study | ActuatorStudy | None) -> RobotDescription | ActuatorDescription | None:
     """The study as `flexapod check` describes it; None where it cannot be."""
-    from flexapod.study.before.describe.robot import describe
+    from flexapod.description.robot import describe
 
     try:
         return None if study is None else describe(study)
@@ -150,7 +150,7 @@ def replay_section(data: Dataset, told: Mapping[str, object], still: Drawn | Non
 def by_axis(data: Dataset) -> Html:
     """Largest and rms deviation along each axis, of the centre of mass and of a tool elsewhere."""
     from flexapod.document.run import distances_table
-    from flexapod.study.after.summary import POINT_WORDS, RobotSummary, summaries
+    from flexapod.results.summary import POINT_WORDS, RobotSummary, summaries
 
     tables = {x.point: distances_table(x) for x in summaries(data) if isinstance(x, RobotSummary)}
     several = [Chapter(POINT_WORDS[point].capitalize(), [table]) for point, table in tables.items()]

@@ -9,16 +9,16 @@ import numpy as np
 from numpy.typing import NDArray
 
 from flexapod import model
+from flexapod.arrays import Array
 from flexapod.errors import FlexapodError
 from flexapod.plot.style import FLEXIBLE, RIGID
 from flexapod.report.interactive import packed
+from flexapod.results.summary import POINT_WORDS, tool_apart
+from flexapod.runtime.threads import one_thread
 from flexapod.scene.colours import colors_of_legs
 from flexapod.scene.geometry import DrawnMotion, RobotMotion
 from flexapod.scene.robot import mode_scene
 from flexapod.scene.skeleton import STATIONS, Scene, Skeleton, around
-from flexapod.study.after.summary import POINT_WORDS, tool_apart
-from flexapod.threads import one_thread
-from flexapod.typing import Array
 from flexapod.words import cleared_lines, number, scale
 
 if TYPE_CHECKING:

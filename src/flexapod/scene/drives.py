@@ -8,7 +8,7 @@ from typing import TYPE_CHECKING
 import numpy as np
 
 from flexapod.errors import InputError
-from flexapod.study.attributes import robot_of
+from flexapod.results.attributes import robot_of
 
 if TYPE_CHECKING:
     from xarray import DataArray, Dataset

@@ -8,12 +8,12 @@ from typing import TYPE_CHECKING, TypeVar
 import numpy as np
 from numpy.typing import NDArray
 
-from flexapod import model, rigid
-from flexapod.rigid.rotations import exponential, matrix
+from flexapod import kinematics, model
+from flexapod.arrays import Array
+from flexapod.kinematics.rotations import exponential, matrix
+from flexapod.results.summary import tip_size, tool_apart
 from flexapod.scene.robot import beam_values, leg_lines
 from flexapod.scene.skeleton import STATIONS, Scene, Skeleton, around
-from flexapod.study.after.summary import tip_size, tool_apart
-from flexapod.typing import Array
 
 if TYPE_CHECKING:
     from xarray import Dataset
@@ -67,7 +67,7 @@ class RobotMotion:
         """Draw all as it is seen from a base that is moved."""
         moved = np.concatenate([data.base_motion_displacement.values, data.base_motion_rotation.values], axis=1)
         given = self.skeleton.robot.base_motion
-        base = rigid.placed(moved, np.zeros(3) if given is None else given.at)
+        base = kinematics.placed(moved, np.zeros(3) if given is None else given.at)
         self._com, self._rotation = base.seen(self._com, self._rotation)
         back = base.rotation.swapaxes(1, 2)
         self._deviation, self._tool_deviation, self._turn = (

@@ -9,11 +9,11 @@ from typing import TYPE_CHECKING
 import numpy as np
 
 from flexapod import model
+from flexapod.arrays import Array
 from flexapod.errors import FlexapodError, InputError
-from flexapod.rigid.rotations import exponential, matrix
+from flexapod.kinematics.rotations import exponential, matrix
+from flexapod.results.attributes import robot_of, study_of
 from flexapod.scene.skeleton import STATIONS, Scene, Skeleton
-from flexapod.study.attributes import robot_of, study_of
-from flexapod.typing import Array
 
 if TYPE_CHECKING:
     from xarray import Dataset

@@ -11,11 +11,11 @@ from functools import cached_property
 import numpy as np
 from numpy.typing import NDArray
 
-from flexapod import model, rigid
+from flexapod import kinematics, model
+from flexapod.arrays import Array
+from flexapod.kinematics.limbs import limbs
+from flexapod.kinematics.rotations import exponential
 from flexapod.model.home import carriage_home, foot
-from flexapod.rigid.limbs import limbs
-from flexapod.rigid.rotations import exponential
-from flexapod.typing import Array
 
 STATIONS = 25  # points of a drawn piston
 RAIL = 0.35  # of a strut's length: how far a rail without ends is drawn to either side of home
@@ -100,7 +100,7 @@ class Skeleton:
         return self.at(self.robot.home_position, self.robot.home_rotation)
 
     @cached_property
-    def _limbs(self) -> rigid.Limbs:
+    def _limbs(self) -> kinematics.Limbs:
         return limbs(self.robot)
 
     @cached_property
@@ -174,7 +174,7 @@ class Skeleton:
         lines = base[:, None] + self.along(length)[:, :, None] * axis[:, None]
         frames = self._frames(carriages)
         if offset is not None:
-            turned = rigid.leg_rotations(frames, *rigid.joint_angles(frames, axis[None]))[0]
+            turned = kinematics.leg_rotations(frames, *kinematics.joint_angles(frames, axis[None]))[0]
             lines = lines + np.einsum("ixd,idn->inx", turned[:, :, :2], offset)
         return Scene(
             skeleton=self,

@@ -6,8 +6,8 @@ from typing import Literal
 
 import numpy as np
 
+from flexapod.arrays import Array
 from flexapod.errors import InputError
-from flexapod.typing import Array
 
 Plane = Literal["xy", "yz", "zx"]
 WORDS = ("tangential", "radial", "vertical")

@@ -22,8 +22,8 @@ from pydantic import (
 )
 from pydantic_core import CoreSchema, PydanticCustomError, core_schema
 
+from flexapod.arrays import Array
 from flexapod.errors import InputError, closest
-from flexapod.typing import Array
 from flexapod.units import DIMENSIONS
 from flexapod.words import number
 

@@ -12,9 +12,9 @@ from pathlib import Path
 
 import numpy as np
 
+from flexapod.arrays import Array
 from flexapod.errors import InputError, closest
-from flexapod.files import LARGEST_TABLE, read_text
-from flexapod.typing import Array
+from flexapod.runtime.files import LARGEST_TABLE, read_text
 from flexapod.units import DIMENSIONS, to_si
 
 POSE = {"surge": "length", "sway": "length", "heave": "length", "roll": "angle", "pitch": "angle", "yaw": "angle"}

@@ -7,12 +7,12 @@ from typing import Any, TypeVar
 
 import numpy as np
 
+from flexapod.arrays import Array
 from flexapod.schema.axes import WORDS, axis_of
 from flexapod.schema.columns import Column, columns_of
 from flexapod.schema.csv_tables import Unreadable, read_table
 from flexapod.schema.table import Table
 from flexapod.schema.values import Values
-from flexapod.typing import Array
 
 M = TypeVar("M", bound=Table)
 _KINDS = ("type", "law")  # keys that say which of several tables it is

@@ -5,7 +5,8 @@ from dataclasses import dataclass, field
 
 import numpy as np
 
-from flexapod import rigid
+from flexapod import kinematics
+from flexapod.arrays import Array
 from flexapod.errors import ComputationError
 from flexapod.integration import GeneralizedAlpha
 from flexapod.mechanics.layout import Shapes, columns
@@ -21,7 +22,6 @@ from flexapod.solve.start import consistent_start
 from flexapod.solve.stops import Stops
 from flexapod.solve.system import COLUMNS, Flow, State, System
 from flexapod.solve.tables import Law
-from flexapod.typing import Array
 
 SPACE_NAMES = {"extension": "l", "rotation": "alpha", "elevation": "beta"}
 SHORT = 0.1  # of the beam: its frequencies are then a hundred times those of the whole
@@ -99,7 +99,7 @@ def prepare_actuator(
         outputs=outputs,
         measure=lambda recording: _measure(system, study.actuator, recording),
         restart=lambda flow, t, h: after_impact(system, flow, law, t, method, h),
-        stops=Stops.of(rigid.actuator_breaks(study, far), output_step, simulation.step, outputs),
+        stops=Stops.of(kinematics.actuator_breaks(study, far), output_step, simulation.step, outputs),
         check=lambda recording: _check(system, study.actuator, recording),
         tolerance=simulation.tolerance,
         weights=_weights(system, study.actuator),
@@ -153,11 +153,11 @@ def _tables(study: ActuatorStudy) -> Law:
         table = np.zeros((len(t), 1, len(commands), COLUMNS))
         for k, (path, begin, push) in enumerate(commands):
             if path is not None:
-                x = rigid.motion_law(path, t)
+                x = kinematics.motion_law(path, t)
                 table[:, 0, k, :3] = np.stack([x.position + begin, x.rate, x.acceleration], axis=-1)
             if push is not None:
-                table[:, 0, k, 3] = rigid.load_law(push, t)
-        wrench, none = rigid.wrench(load, t), np.zeros((len(t), 6))
+                table[:, 0, k, 3] = kinematics.load_law(push, t)
+        wrench, none = kinematics.wrench(load, t), np.zeros((len(t), 6))
         if load.follow:
             return table, np.hstack([none, wrench @ np.kron(np.eye(2), SPACE)])
         return table, np.hstack([wrench, none])

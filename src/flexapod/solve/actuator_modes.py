@@ -5,6 +5,7 @@ from functools import lru_cache
 
 import numpy as np
 
+from flexapod.arrays import Array
 from flexapod.bases.eigen import eigh
 from flexapod.errors import ComputationError, InputError
 from flexapod.mechanics.layout import COMMAND_SIZE, LOAD_SIZE, Shapes, columns
@@ -14,7 +15,6 @@ from flexapod.solve.damped import damping_ratios
 from flexapod.solve.kernel import Function
 from flexapod.solve.parameters import actuator_parameters
 from flexapod.solve.shapes import actuator_shapes
-from flexapod.typing import Array
 
 STEPS = 3  # of Newton to the steady stretch: the equations of the straight beam are linear in it
 #: What amplitudes of an actuator in space are called where they vibrate by themselves.

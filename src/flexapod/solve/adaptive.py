@@ -7,15 +7,15 @@ from itertools import pairwise
 
 import numpy as np
 
+from flexapod.arrays import Array
 from flexapod.errors import ComputationError
 from flexapod.solve import native
+from flexapod.solve.chebyshev import Series
 from flexapod.solve.problem import ADVICE, CAUSES, Chunk, Problem
+from flexapod.solve.radau import MOST, OUT_OF_REACH, SHORTEST, Advanced, Within
 from flexapod.solve.recording import Counters, Recording, unpack
-from flexapod.solve.series import Series
 from flexapod.solve.stops import NEAR, Stop, after
 from flexapod.solve.system import Flow
-from flexapod.solve.within import MOST, OUT_OF_REACH, SHORTEST, Advanced, Within
-from flexapod.typing import Array
 
 __all__ = ["adaptive_march"]
 

@@ -6,11 +6,11 @@ from dataclasses import dataclass
 
 import numpy as np
 
+from flexapod.arrays import Array
+from flexapod.solve.batch import RestMatrices
 from flexapod.solve.elimination import LegBases, leg_bases, open_borders, solve_each
-from flexapod.solve.many import RestMatrices
 from flexapod.solve.reduction import of_border, reduced
 from flexapod.solve.system import System
-from flexapod.typing import Array
 
 __all__ = ["ArrowStep", "arrow_solve"]
 

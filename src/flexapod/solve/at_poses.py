@@ -1,16 +1,16 @@
 """A robot with locked drives at poses, springs with what they lose: equilibria and modes."""
 
-from flexapod import rigid
+from flexapod import kinematics
 from flexapod.model import Load, Robot, Simulation
 from flexapod.solve.locked import LockedPoses, lock
-from flexapod.solve.losses import per_loss
+from flexapod.solve.loss_factor import per_loss
 from flexapod.solve.modes import RobotModes, the_modes
 
 __all__ = ["locked_poses", "robot_modes"]
 
 
 def locked_poses(
-    robot: Robot, simulation: Simulation, path: rigid.Poses, load: Load | None = None, time: float = 0.0
+    robot: Robot, simulation: Simulation, path: kinematics.Poses, load: Load | None = None, time: float = 0.0
 ) -> LockedPoses:
     """Static equilibria with the drives locked at the lengths of each of P rigid poses.
 
@@ -27,7 +27,7 @@ def locked_poses(
 def robot_modes(
     robot: Robot,
     simulation: Simulation,
-    path: rigid.Poses | None = None,
+    path: kinematics.Poses | None = None,
     load: Load | None = None,
     time: float = 0.0,
 ) -> RobotModes:
@@ -40,4 +40,4 @@ def robot_modes(
     ComputationError
         No equilibrium at this pose, masses that no body can have, or a number that is not finite.
     """
-    return the_modes(locked_poses(robot, simulation, rigid.home_pose(robot) if path is None else path, load, time))
+    return the_modes(locked_poses(robot, simulation, kinematics.home_pose(robot) if path is None else path, load, time))

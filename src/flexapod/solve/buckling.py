@@ -4,15 +4,15 @@ from __future__ import annotations
 
 import numpy as np
 
-from flexapod import rigid
+from flexapod import kinematics
+from flexapod.arrays import Array
+from flexapod.kinematics.limbs import COORDINATES, Limbs
+from flexapod.kinematics.rotations import quaternion
 from flexapod.mechanics.layout import columns, leg_parameters
 from flexapod.model import Robot, Simulation
-from flexapod.rigid.limbs import COORDINATES, Limbs
-from flexapod.rigid.rotations import quaternion
 from flexapod.solve.kernel import evaluate
 from flexapod.solve.robot_system import robot_system
 from flexapod.solve.system import System
-from flexapod.typing import Array
 
 __all__ = ["leg_loads"]
 
@@ -32,7 +32,7 @@ def leg_loads(robot: Robot, length: Array, system: System | None = None) -> Arra
         Whose shapes count; default assumed modes.
     """
     system = robot_system(robot, Simulation(), 0.0, march=False) if system is None else system
-    found = rigid.built_limbs(robot, rigid.robot_limbs(robot))
+    found = kinematics.built_limbs(robot, kinematics.robot_limbs(robot))
     if len(length) <= LENGTHS:
         return np.array([_loads(system, found, row) for row in length])
     grid = np.linspace(length.min(axis=0), length.max(axis=0), LENGTHS)

@@ -11,9 +11,9 @@ from dataclasses import dataclass, replace
 
 import numpy as np
 
-from flexapod.solve.many import RestMatrices
+from flexapod.arrays import Array, Mask
+from flexapod.solve.batch import RestMatrices
 from flexapod.solve.system import Index, System
-from flexapod.typing import Array, Mask
 
 __all__ = ["LegBases", "closed", "leg_bases", "open_borders", "solve_each"]
 

@@ -4,15 +4,15 @@ from dataclasses import dataclass, replace
 
 import numpy as np
 
+from flexapod.arrays import Array, Mask
 from flexapod.mechanics.layout import LEG_PARAMETERS, PAYLOAD_PARAMETERS, columns
 from flexapod.solve.arrow import arrow_solve
+from flexapod.solve.batch import RestMatrices, RestStates, matrices_at_rest, residual_at_rest
 from flexapod.solve.elimination import closed, leg_bases, open_borders, solve_each
 from flexapod.solve.frequencies import cholesky_each
-from flexapod.solve.many import RestMatrices, RestStates, matrices_at_rest, residual_at_rest
 from flexapod.solve.reduction import null_space_of_borders, reduced
 from flexapod.solve.shared import least_energy
 from flexapod.solve.system import Index, State, System
-from flexapod.typing import Array, Mask
 
 FOUND, SINGULAR, GIVES_WAY, NOT_SETTLED, UNSTABLE = range(5)
 REASONS = (

@@ -4,12 +4,12 @@ from __future__ import annotations
 
 import numpy as np
 
-from flexapod import rigid
+from flexapod import kinematics
+from flexapod.arrays import Array
+from flexapod.kinematics.rotations import matrix
 from flexapod.mechanics.layout import FRAMES
 from flexapod.model import Robot
-from flexapod.rigid.rotations import matrix
 from flexapod.solve.system import System
-from flexapod.typing import Array
 
 __all__ = ["as_drawn", "base_on_mount", "floor", "in_world", "of_platform", "on_plates", "shared_by_legs"]
 
@@ -22,16 +22,16 @@ def shared_by_legs(system: System, q: Array, name: str) -> Array:
     return q[..., 0, first : first + 6]
 
 
-def floor(system: System, robot: Robot, q: Array) -> rigid.Placed:
+def floor(system: System, robot: Robot, q: Array) -> kinematics.Placed:
     """Where a base that is moved stands, without its mount."""
     at = np.zeros(3) if robot.base_motion is None else robot.base_motion.at
-    return rigid.placed(shared_by_legs(system, q, "g"), at)
+    return kinematics.placed(shared_by_legs(system, q, "g"), at)
 
 
-def base_on_mount(system: System, robot: Robot, q: Array) -> rigid.Placed:
+def base_on_mount(system: System, robot: Robot, q: Array) -> kinematics.Placed:
     """Where the base plate stands on its mount, as seen from the floor."""
     at = np.zeros(3) if robot.base_mount is None else robot.base_mount.at
-    return rigid.placed(shared_by_legs(system, q, "f"), at)
+    return kinematics.placed(shared_by_legs(system, q, "f"), at)
 
 
 def of_platform(robot: Robot, pose: Array) -> tuple[Array, Array]:
@@ -48,8 +48,8 @@ def on_plates(system: System, robot: Robot, q: Array, pose: Array) -> list[tuple
     place, R = floor(system, robot, q).seen(*of_platform(robot, pose))
     found = [("", place, R)]
     if robot.platform_mount is not None:
-        below = rigid.placed(shared_by_legs(system, q, "m"), robot.platform_mount.at)
-        place, R = rigid.Placed(place, R).carried(*below)
+        below = kinematics.placed(shared_by_legs(system, q, "m"), robot.platform_mount.at)
+        place, R = kinematics.Placed(place, R).carried(*below)
         found.append(("platform_mount", place, R))
     if robot.base_mount is not None:
         place, R = base_on_mount(system, robot, q).seen(place, R)

@@ -4,8 +4,8 @@ from __future__ import annotations
 
 import numpy as np
 
+from flexapod.arrays import Array, Mask
 from flexapod.bases.eigen import finite
-from flexapod.typing import Array, Mask
 
 __all__ = ["cholesky_each", "count_real", "mass_factor", "natural"]
 

@@ -6,11 +6,11 @@ from dataclasses import replace
 
 import numpy as np
 
+from flexapod.arrays import Array
 from flexapod.mechanics.layout import columns, leg_parameters
+from flexapod.solve.batch import RestMatrices, RestStates
 from flexapod.solve.kernel import evaluate
-from flexapod.solve.many import RestMatrices, RestStates
 from flexapod.solve.system import System
-from flexapod.typing import Array
 
 __all__ = ["numbers", "sliding", "with_friction"]
 

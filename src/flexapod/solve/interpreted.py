@@ -4,14 +4,14 @@ from dataclasses import replace
 
 import numpy as np
 
+from flexapod.arrays import Array
 from flexapod.errors import ComputationError
 from flexapod.integration import GeneralizedAlpha
-from flexapod.rigid.rotations import turned
+from flexapod.kinematics.rotations import turned
 from flexapod.solve.native import MAX_ITERATIONS, TOL_CLOSURE, TOL_FORCE, Advance
 from flexapod.solve.recording import Counters
 from flexapod.solve.start import constrained, normal_velocity
 from flexapod.solve.system import Flow, System
-from flexapod.typing import Array
 
 
 def _row(system: System, x: Flow, table: Array, wrench: Array) -> Array:

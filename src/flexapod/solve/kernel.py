@@ -12,10 +12,10 @@ from weakref import WeakValueDictionary
 import numpy as np
 
 from flexapod import elements, mechanics, symbolic
+from flexapod.arrays import Array
 from flexapod.elements.element import source_of
 from flexapod.mechanics.layout import Shapes, leg_parameters
 from flexapod.symbolic.compiler import CompiledFunction, compiled_library, compiler
-from flexapod.typing import Array
 
 if TYPE_CHECKING:
     from flexapod.symbolic.functions import NamedFunction

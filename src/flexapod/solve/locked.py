@@ -5,22 +5,22 @@ from functools import cached_property
 
 import numpy as np
 
-from flexapod import rigid
+from flexapod import kinematics
+from flexapod.arrays import Array, Mask
 from flexapod.elements.springs import springs_along
 from flexapod.errors import ComputationError, InputError
+from flexapod.kinematics.limbs import DRIVEN, FREE
 from flexapod.model import Load, Robot, Simulation
-from flexapod.rigid.limbs import DRIVEN, FREE
+from flexapod.solve.batch import RestMatrices, RestStates, matrices_at_rest
+from flexapod.solve.branch import refuse_fallen
 from flexapod.solve.elimination import LegBases, closed, leg_bases
 from flexapod.solve.equilibrium import FOUND, Equilibria, Equilibrium, equilibria
-from flexapod.solve.fallen import refuse_fallen
 from flexapod.solve.friction import with_friction
-from flexapod.solve.loops import at_rotors
-from flexapod.solve.many import RestMatrices, RestStates, matrices_at_rest
-from flexapod.solve.rest import RestLoad, rest_commands, rest_load
+from flexapod.solve.motor_lag import at_rotors
 from flexapod.solve.rigid_motion import rigid_rest
 from flexapod.solve.robot_system import robot_system, smooth
+from flexapod.solve.static_loads import RestLoad, rest_commands, rest_load
 from flexapod.solve.system import Index, System
-from flexapod.typing import Array, Mask
 
 __all__ = ["LockedPoses", "lock", "refuse_pure_force", "refuse_taut", "the_equilibrium"]
 
@@ -34,7 +34,7 @@ class LockedPoses:
     """
 
     robot: Robot
-    path: rigid.Poses
+    path: kinematics.Poses
     system: System
     simulation: Simulation
     per_loss: float
@@ -115,16 +115,16 @@ def refuse_taut(robot: Robot, simulation: Simulation) -> None:
 
 def _held_by_others(robot: Robot, pure: Mask) -> bool:
     """Whether the drives that hold a position leave the platform no motion at home."""
-    legs = rigid.rigid_limbs(robot)
+    legs = kinematics.rigid_limbs(robot)
     loose = pure[:, None] & (legs.state == DRIVEN)
     others = replace(legs, state=np.where(loose, FREE, legs.state).astype(legs.state.dtype))
-    return rigid.mobility(others).locked_platform.shape[1] == 0
+    return kinematics.mobility(others).locked_platform.shape[1] == 0
 
 
 def lock(
     robot: Robot,
     simulation: Simulation,
-    path: rigid.Poses,
+    path: kinematics.Poses,
     load: Load | None = None,
     time: float = 0.0,
     *,

@@ -6,13 +6,13 @@ from dataclasses import replace
 
 import numpy as np
 
+from flexapod.arrays import Array
 from flexapod.elements.springs import before_piston, twist_share
 from flexapod.model import ForceDrive, Leg, Robot
+from flexapod.solve.batch import matrices_at_rest
 from flexapod.solve.friction import numbers, sliding
 from flexapod.solve.locked import LockedPoses
-from flexapod.solve.many import matrices_at_rest
 from flexapod.solve.stiffness import displacement, tool_motion
-from flexapod.typing import Array
 
 __all__ = ["PLACES", "before_friction", "lost_motion", "places_with_friction", "reversal"]
 

@@ -6,6 +6,7 @@ from types import ModuleType
 
 import numpy as np
 
+from flexapod.arrays import Array
 from flexapod.errors import ComputationError
 from flexapod.solve import interpreted, native
 from flexapod.solve.adaptive import adaptive_march
@@ -13,7 +14,6 @@ from flexapod.solve.problem import ADVICE, CAUSES, Chunk, Problem
 from flexapod.solve.recording import Counters, Recording, unpack
 from flexapod.solve.stops import Stop, after, before
 from flexapod.solve.system import Flow, System
-from flexapod.typing import Array
 
 CHUNK = 100  # output intervals between looks at the tolerance, or at progress where steps are slow
 CHUNK_STEPS = 2000  # steps in a chunk of several intervals: tables of fine steps must not outgrow the output

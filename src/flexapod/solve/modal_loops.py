@@ -7,9 +7,9 @@ from dataclasses import dataclass
 import numpy as np
 from numpy.typing import NDArray
 
+from flexapod.arrays import Array
 from flexapod.bases.eigen import finite
 from flexapod.solve.damped import reacting
-from flexapod.typing import Array
 from flexapod.words import text
 
 __all__ = ["ModalLoops", "growth", "unstable_words"]

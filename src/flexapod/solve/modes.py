@@ -4,20 +4,20 @@ from dataclasses import dataclass
 
 import numpy as np
 
+from flexapod.arrays import Array, Mask
 from flexapod.bases.eigen import finite
 from flexapod.errors import ComputationError, InputError
 from flexapod.mechanics.layout import LEG_PARAMETERS, columns, leg_parameters
+from flexapod.solve.batch import RestMatrices
 from flexapod.solve.damped import OSCILLATES, damping_ratios
 from flexapod.solve.elimination import LegBases
 from flexapod.solve.equilibrium import Equilibrium
 from flexapod.solve.frequencies import count_real, mass_factor, natural
 from flexapod.solve.locked import LockedPoses, the_equilibrium
-from flexapod.solve.loops import modal_loops
-from flexapod.solve.many import RestMatrices
 from flexapod.solve.modal_loops import ModalLoops, growth
+from flexapod.solve.motor_lag import modal_loops
 from flexapod.solve.reduction import expanded, hub_motion, null_space_of_borders, reduced
 from flexapod.solve.system import System
-from flexapod.typing import Array, Mask
 
 
 @dataclass(frozen=True, kw_only=True)

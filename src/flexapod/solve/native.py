@@ -6,11 +6,11 @@ from dataclasses import dataclass
 
 import numpy as np
 
+from flexapod.arrays import Array
 from flexapod.errors import ComputationError
 from flexapod.integration import GeneralizedAlpha
 from flexapod.solve.recording import Counters, record_width
 from flexapod.solve.system import Flow, System
-from flexapod.typing import Array
 
 PORTS = 24  # as in system.h
 TOL_CLOSURE, TOL_FORCE = 1e-14, 1e-10  # m; relative to the largest force: rounding floors of metres and kilonewtons

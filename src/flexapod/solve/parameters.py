@@ -2,15 +2,15 @@
 
 import numpy as np
 
+from flexapod.arrays import Array
 from flexapod.elements.element import Standing
 from flexapod.elements.mount import plate_mass
 from flexapod.elements.springs import viscous
+from flexapod.kinematics.limbs import COORDINATES, FREE, Limbs
 from flexapod.mechanics import layout
 from flexapod.mechanics.layout import LEG_PARAMETERS, PAYLOAD_PARAMETERS, Shapes
 from flexapod.model import Actuator, ForceDrive, Joint, Leg, Mounted, Robot, ServoDrive, damping_parts
-from flexapod.rigid.limbs import COORDINATES, FREE, Limbs
 from flexapod.solve.sections import section_parameters
-from flexapod.typing import Array
 
 ENDLESS = 1e4  # m, beyond the reach of any leg
 

@@ -4,10 +4,10 @@ from __future__ import annotations
 
 import numpy as np
 
-from flexapod import rigid
+from flexapod import kinematics
+from flexapod.arrays import Array
 from flexapod.elements.springs import Spring, before_piston, of_servo, springs_along
 from flexapod.model import ForceDrive, Leg, Robot
-from flexapod.typing import Array
 
 __all__ = ["guide_turning", "mount_stiffness", "part_stiffness"]
 
@@ -39,10 +39,10 @@ def _inside(leg: Leg, spring: Spring) -> bool:
     return leg.measured == "joint-to-joint" or (spring.at == "nut" and spring.name != "piston")
 
 
-def mount_stiffness(robot: Robot, path: rigid.Poses) -> dict[str, Array]:
+def mount_stiffness(robot: Robot, path: kinematics.Poses) -> dict[str, Array]:
     """Stiffness of the mounts against a force along each leg alone at its joint, (T, legs) [N/m], Eq. (T24.11)."""
-    legs = rigid.inverse_kinematics(robot, path)
-    axes, found = rigid.leg_axes(robot, path, legs), {}
+    legs = kinematics.inverse_kinematics(robot, path)
+    axes, found = kinematics.leg_axes(robot, path, legs), {}
     tips = path.position[:, None] + np.einsum("tij,kj->tki", path.rotation, robot.platform_joints)
     if (mount := robot.platform_mount) is not None:
         inverse = path.rotation[:, None].swapaxes(-1, -2)

@@ -6,7 +6,7 @@ import numpy as np
 from numpy.polynomial.chebyshev import chebvander
 from numpy.typing import NDArray
 
-from flexapod.typing import Array
+from flexapod.arrays import Array
 
 __all__ = ["ENOUGH", "NODES", "Groups", "Pieces", "instants", "series_of"]
 

@@ -5,12 +5,12 @@ from dataclasses import dataclass, field
 
 import numpy as np
 
+from flexapod.arrays import Array
 from flexapod.integration import GeneralizedAlpha
 from flexapod.solve.recording import Recording
 from flexapod.solve.stops import Stops
 from flexapod.solve.system import Flow, System
 from flexapod.solve.tables import Law
-from flexapod.typing import Array
 
 __all__ = ["ADVICE", "CAUSES", "Chunk", "Measure", "Problem", "Weight"]
 

@@ -8,10 +8,10 @@ from dataclasses import dataclass
 import numpy as np
 from numpy.typing import NDArray
 
+from flexapod.arrays import Array
 from flexapod.errors import InputError
 from flexapod.model import Disturbance, Floor, Spectrum
 from flexapod.solve.linear import Complex, LinearRobot
-from flexapod.typing import Array
 
 __all__ = ["RandomVibration", "Source", "density_at", "random_vibration", "sources_of"]
 

@@ -5,8 +5,8 @@ from dataclasses import dataclass, fields, replace
 
 import numpy as np
 
+from flexapod.arrays import Array
 from flexapod.solve.system import System
-from flexapod.typing import Array
 
 __all__ = ["Counters", "Recording", "record_width", "unpack"]
 

@@ -6,10 +6,10 @@ from dataclasses import dataclass
 
 import numpy as np
 
+from flexapod.arrays import Array
+from flexapod.solve.batch import RestMatrices
 from flexapod.solve.elimination import LegBases
-from flexapod.solve.many import RestMatrices
 from flexapod.solve.system import System
-from flexapod.typing import Array
 
 __all__ = ["Reduced", "expanded", "hub_motion", "null_space_of_borders", "of_border", "reduced", "reduced_legs"]
 

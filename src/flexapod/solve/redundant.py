@@ -6,12 +6,12 @@ from dataclasses import replace
 
 import numpy as np
 
+from flexapod.arrays import Array
 from flexapod.errors import ComputationError
-from flexapod.solve.many import RestStates, matrices_at_rest
+from flexapod.solve.batch import RestStates, matrices_at_rest
 from flexapod.solve.recording import Recording
 from flexapod.solve.shared import least_energy
 from flexapod.solve.system import State, System
-from flexapod.typing import Array
 
 __all__ = ["independent", "shared"]
 

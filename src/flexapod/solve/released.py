@@ -6,17 +6,17 @@ from dataclasses import dataclass, replace
 
 import numpy as np
 
-from flexapod import rigid
+from flexapod import kinematics
+from flexapod.arrays import Array, Mask
+from flexapod.kinematics.limbs import COORDINATES, DRIVEN
+from flexapod.kinematics.robot import once
 from flexapod.model import ForceDrive, Leg, PrescribedDrive, Robot, Simulation
-from flexapod.rigid.limbs import COORDINATES, DRIVEN
-from flexapod.rigid.robot import once
-from flexapod.solve.many import RestStates
+from flexapod.solve.batch import RestStates
 from flexapod.solve.rigid_forces import displacement_by_error, joint_forces
 from flexapod.solve.rigid_motion import rigid_motion
 from flexapod.solve.robot_system import robot_system
 from flexapod.solve.shared import open_forces
 from flexapod.solve.system import System
-from flexapod.typing import Array, Mask
 
 __all__ = ["RobotForces", "is_hexapod", "released", "rigid_errors", "rigid_forces", "rigid_system"]
 
@@ -91,7 +91,9 @@ class RobotForces:
     open_forces: int = 0
 
 
-def rigid_forces(robot: Robot, path: rigid.Poses, wrench: Array, legs: rigid.LegState | None = None) -> RobotForces:
+def rigid_forces(
+    robot: Robot, path: kinematics.Poses, wrench: Array, legs: kinematics.LegState | None = None
+) -> RobotForces:
     """Forces of drives and joints of the robot of the rigid path.
 
     Six legs UPS by Newton and Euler (T2.26)-(T2.36), others by their equations of motion (T7.24). Drives with a
@@ -112,7 +114,7 @@ def rigid_forces(robot: Robot, path: rigid.Poses, wrench: Array, legs: rigid.Leg
         A pose is singular.
     """
     if is_hexapod(robot):
-        found = rigid.inverse_dynamics(robot, path, wrench, legs)
+        found = kinematics.inverse_dynamics(robot, path, wrench, legs)
         return RobotForces(
             drive_force=found.actuator_force,
             joint_force=found.joint_force,
@@ -141,7 +143,7 @@ def rigid_forces(robot: Robot, path: rigid.Poses, wrench: Array, legs: rigid.Leg
 
 def _constant(robot: Robot, system: System) -> tuple[Array, Mask]:
     """Constant forces of drives (legs, n), and which coordinates nothing but these drives."""
-    legs, force = rigid.rigid_limbs(robot), np.zeros(system.held.shape)
+    legs, force = kinematics.rigid_limbs(robot), np.zeros(system.held.shape)
     loose = np.zeros(system.held.shape, dtype=bool)
     for i, leg in enumerate(robot.legs):
         drive = leg.drive
@@ -153,14 +155,14 @@ def _constant(robot: Robot, system: System) -> tuple[Array, Mask]:
 
 def is_hexapod(robot: Robot) -> bool:
     """Whether a robot has six driven legs UPS, ball joints being ideal or released."""
-    legs = rigid.rigid_limbs(robot)
+    legs = kinematics.rigid_limbs(robot)
     driven = (legs.state[:, COORDINATES.index("l")] == DRIVEN).all()
     return legs.plain and len(legs) == 6 and bool(driven) and not legs.hub_held.any()
 
 
 def _of_drives(robot: Robot, held: Array) -> Array:
     """Of all held coordinates (T, legs, n) those that drives hold, (T, legs)."""
-    shapes, legs = rigid_system(robot).kernel.shapes, rigid.rigid_limbs(robot)
+    shapes, legs = rigid_system(robot).kernel.shapes, kinematics.rigid_limbs(robot)
     found = np.zeros(held.shape[:2])
     for k, name in enumerate(COORDINATES):
         if shapes.has(name):
@@ -169,7 +171,7 @@ def _of_drives(robot: Robot, held: Array) -> Array:
     return found
 
 
-def rigid_errors(robot: Robot, path: rigid.Poses) -> Array:
+def rigid_errors(robot: Robot, path: kinematics.Poses) -> Array:
     """Displacement of the payload for unit errors of each of `COORDINATES`, (T, legs, 8, 6); see T7.27."""
     system = rigid_system(robot)
     states = rigid_motion(system, released(robot), path)[0]

@@ -6,12 +6,12 @@ from dataclasses import dataclass
 
 import numpy as np
 
+from flexapod.arrays import Array
 from flexapod.errors import ComputationError
-from flexapod.rigid.rotations import matrix
-from flexapod.solve.many import Rates, RestStates, matrices_at_rest, residual
+from flexapod.kinematics.rotations import matrix
+from flexapod.solve.batch import Rates, RestStates, matrices_at_rest, residual
 from flexapod.solve.shared import closure_forces, open_forces
 from flexapod.solve.system import System
-from flexapod.typing import Array
 
 __all__ = ["JointForces", "displacement_by_error", "joint_forces"]
 

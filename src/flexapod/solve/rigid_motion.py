@@ -6,16 +6,16 @@ from dataclasses import replace
 
 import numpy as np
 
-from flexapod import rigid
+from flexapod import kinematics
+from flexapod.arrays import Array
+from flexapod.kinematics.limbs import COORDINATES, HELD, Limbs
+from flexapod.kinematics.mechanism import leg_state
+from flexapod.kinematics.rotations import quaternion
+from flexapod.kinematics.screws import screws
 from flexapod.mechanics.layout import Shapes
 from flexapod.model import Robot
-from flexapod.rigid.limbs import COORDINATES, HELD, Limbs
-from flexapod.rigid.mechanism import leg_state
-from flexapod.rigid.rotations import quaternion
-from flexapod.rigid.screws import screws
-from flexapod.solve.many import Rates, RestStates
+from flexapod.solve.batch import Rates, RestStates
 from flexapod.solve.system import Index, State, System
-from flexapod.typing import Array
 
 __all__ = ["built_state", "leg_coordinates", "rigid_motion", "rigid_rest", "rigid_state"]
 
@@ -29,13 +29,13 @@ def leg_coordinates(shapes: Shapes) -> tuple[Index, Index]:
 
 
 def rigid_motion(
-    system: System, robot: Robot, path: rigid.Poses, legs: rigid.LegState | None = None
+    system: System, robot: Robot, path: kinematics.Poses, legs: kinematics.LegState | None = None
 ) -> tuple[RestStates, Rates]:
     """Configurations of the undeformed robot at the instants of a path, without forces, and their rates.
 
     `legs`: at these poses, of a robot that is not as drawn.
     """
-    legs = rigid.inverse_kinematics(robot, path) if legs is None else legs
+    legs = kinematics.inverse_kinematics(robot, path) if legs is None else legs
     T, (q, v, v_dot) = len(path), _undeformed(system, robot, path, legs)
     R, w, w_dot = path.rotation, path.omega, path.alpha
     arm, inverse = R @ robot.com, R.swapaxes(1, 2)
@@ -54,24 +54,24 @@ def rigid_motion(
     return states, Rates(v=v, v_dot=v_dot, u=u, u_dot=u_dot)
 
 
-def rigid_rest(system: System, robot: Robot, path: rigid.Poses) -> RestStates:
+def rigid_rest(system: System, robot: Robot, path: kinematics.Poses) -> RestStates:
     """States of the undeformed robot at the poses of a path, without forces."""
     return rigid_motion(system, robot, path)[0]
 
 
-def rigid_state(system: System, robot: Robot, path: rigid.Poses) -> State:
+def rigid_state(system: System, robot: Robot, path: kinematics.Poses) -> State:
     """State of the undeformed robot on the commanded path (one sample), with its rates and accelerations; no forces."""
     return _with_rates(rigid_motion(system, robot, path))
 
 
-def built_state(system: System, robot: Robot, path: rigid.Poses) -> State:
+def built_state(system: System, robot: Robot, path: kinematics.Poses) -> State:
     """State of the undeformed robot as built, its drives told to follow the rigid path (one sample), with rates.
 
     The platform's rates are those of the path; a start makes them fit.
     """
-    at = rigid.built_poses(robot, path)
+    at = kinematics.built_poses(robot, path)
     at = replace(path, position=at.position, rotation=at.rotation)
-    legs = leg_state(rigid.built_limbs(robot, rigid.rigid_limbs(robot)), at)
+    legs = leg_state(kinematics.built_limbs(robot, kinematics.rigid_limbs(robot)), at)
     return _with_rates(rigid_motion(system, robot, at, legs))
 
 
@@ -81,9 +81,9 @@ def _with_rates(motion: tuple[RestStates, Rates]) -> State:
     return replace(states.state(0), v=v, v_dot=v_dot)
 
 
-def _undeformed(system: System, robot: Robot, path: rigid.Poses, found: rigid.LegState) -> Array:
+def _undeformed(system: System, robot: Robot, path: kinematics.Poses, found: kinematics.LegState) -> Array:
     """Coordinates of the undeformed legs on a path of T poses, rates and accelerations, (3, T, legs, n)."""
-    legs, shapes = rigid.built_limbs(robot, rigid.robot_limbs(robot)), system.kernel.shapes
+    legs, shapes = kinematics.built_limbs(robot, kinematics.robot_limbs(robot)), system.kernel.shapes
     x = np.stack([np.stack(found.coordinate(name)) for name in COORDINATES], axis=-1)
     held = legs.state == HELD  # welds, which the rigid path releases, too
     x[:, :, held] = 0.0
@@ -100,7 +100,7 @@ def _undeformed(system: System, robot: Robot, path: rigid.Poses, found: rigid.Le
     return q
 
 
-def _turn_balls(legs: Limbs, x: Array, path: rigid.Poses) -> None:
+def _turn_balls(legs: Limbs, x: Array, path: kinematics.Poses) -> None:
     """Angles of ideal balls beside joints of other kinds: what turns the end of the leg into the platform."""
     balls = np.flatnonzero(~legs.pose_closure)
     left = screws(legs, x[0]).frame.swapaxes(-1, -2) @ path.rotation[:, None] @ legs.platform_frames

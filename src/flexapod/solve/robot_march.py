@@ -5,34 +5,34 @@ from dataclasses import dataclass, field, replace
 
 import numpy as np
 
-from flexapod import rigid
+from flexapod import kinematics
+from flexapod.arrays import Array
 from flexapod.elements.springs import springs_along
 from flexapod.errors import ComputationError, InputError
 from flexapod.integration import GeneralizedAlpha
+from flexapod.kinematics.inverse import BETA_LIMIT
+from flexapod.kinematics.rotations import matrix
 from flexapod.mechanics.layout import columns
 from flexapod.model import ForceDrive, Robot, Study
-from flexapod.rigid.kinematics import BETA_LIMIT
-from flexapod.rigid.rotations import matrix
+from flexapod.solve.batch import RestStates
+from flexapod.solve.branch import flipped, refuse_fallen, refuse_flipped
 from flexapod.solve.equilibrium import equilibrium
-from flexapod.solve.fallen import flipped, refuse_fallen, refuse_flipped
 from flexapod.solve.frames import floor
 from flexapod.solve.locked import refuse_pure_force
-from flexapod.solve.loops import settled
-from flexapod.solve.losses import per_loss
-from flexapod.solve.many import RestStates
+from flexapod.solve.loss_factor import per_loss
 from flexapod.solve.march import initial_step, march
+from flexapod.solve.motor_lag import settled
 from flexapod.solve.pieces import Pieces
 from flexapod.solve.problem import Chunk, Problem, Weight
 from flexapod.solve.recording import Counters, Recording
 from flexapod.solve.redundant import independent, shared
-from flexapod.solve.rest import rest_commands, rest_load
 from flexapod.solve.rigid_motion import built_state, rigid_state
 from flexapod.solve.robot_system import robot_system
 from flexapod.solve.start import consistent_start
+from flexapod.solve.static_loads import rest_commands, rest_load
 from flexapod.solve.stops import Stops
 from flexapod.solve.system import Flow, State, System
 from flexapod.solve.tables import Law, robot_law
-from flexapod.typing import Array
 
 AHEAD = 2000  # outputs whose rigid places are made at once
 ROUNDING = 1e-12  # of the sum of what rounding makes along the legs [m]
@@ -100,7 +100,7 @@ def prepare(study: Study, state: State | None = None) -> RobotMarch:
         weights=measure.weights(),
         knots=path.knots,
         restart=lambda flow, t, h: after_impact(system, flow, law, t, method, h),
-        stops=Stops.of(rigid.robot_breaks(study, far), output_step, simulation.step, outputs),
+        stops=Stops.of(kinematics.robot_breaks(study, far), output_step, simulation.step, outputs),
         check=_Range(study, system),
         tolerance=simulation.tolerance,
     )
@@ -147,7 +147,7 @@ def refuse_gaps(study: Study) -> None:
 def refuse_growing_plates(study: Study) -> None:
     """Raise InputError if plates grow during a simulation under legs that cannot take that as a length."""
     heat, legs = study.robot.heat, study.robot.legs
-    follows = rigid.rigid_limbs(study.robot).plain and not any(isinstance(leg.drive, ForceDrive) for leg in legs)
+    follows = kinematics.rigid_limbs(study.robot).plain and not any(isinstance(leg.drive, ForceDrive) for leg in legs)
     for plate in ("base", "platform"):
         if heat is not None and plate in heat.columns and not follows:
             raise InputError(
@@ -163,8 +163,8 @@ def refuse_growing_plates(study: Study) -> None:
 
 def _configuration(study: Study, system: System) -> State:
     """Configuration and velocities before the impact projection, by the kind of start and what acts until then."""
-    path = rigid.poses(study.robot, study.motion, np.zeros(1))
-    built = bool(rigid.built_parts(study.robot)) and study.initial.start != "equilibrium"
+    path = kinematics.poses(study.robot, study.motion, np.zeros(1))
+    built = bool(kinematics.built_parts(study.robot)) and study.initial.start != "equilibrium"
     straight = (built_state if built else rigid_state)(system, study.robot, path)
     if study.initial.start == "moving":
         return straight
@@ -202,16 +202,16 @@ class _Path:
 
     def __init__(self, study: Study) -> None:
         self.robot, self.motion = study.robot, study.motion
-        self.knots = rigid.path_knots(study.motion, study.duration)
+        self.knots = kinematics.path_knots(study.motion, study.duration)
         self.time, self.last = np.zeros(0), None
-        self.guided = Pieces(self._centre, self.knots) if rigid.rigid_limbs(study.robot).guides else None
+        self.guided = Pieces(self._centre, self.knots) if kinematics.rigid_limbs(study.robot).guides else None
         self.output_step, self.outputs = study.simulation.stored_step, study.simulation.outputs(study.duration)
         self.stored, self.centres = np.zeros(0), (np.zeros((0, 3)), np.zeros((0, 3, 3)))
 
-    def poses(self, t: Array) -> rigid.Poses:
+    def poses(self, t: Array) -> kinematics.Poses:
         """Poses with rates at instants (T,), ascending."""
         if self.last is None or not np.array_equal(t, self.time):
-            self.time, self.last = t, rigid.poses(self.robot, self.motion, t)
+            self.time, self.last = t, kinematics.poses(self.robot, self.motion, t)
         return self.last
 
     def centre(self, t: Array) -> tuple[Array, Array]:
@@ -230,7 +230,7 @@ class _Path:
         return place[at], rotation[at]
 
     def _centre(self, t: Array) -> tuple[Array, Array]:
-        place, rotation = rigid.places(self.robot, self.motion, t)
+        place, rotation = kinematics.places(self.robot, self.motion, t)
         return place + rotation @ self.robot.com, rotation
 
 

@@ -2,12 +2,13 @@
 
 import numpy as np
 
-from flexapod import rigid
+from flexapod import kinematics
+from flexapod.arrays import Mask
 from flexapod.elements.ripple import Ripple
 from flexapod.elements.springs import springs_along
+from flexapod.kinematics.limbs import ABSENT, COORDINATES, DRIVEN, HELD, Limbs
 from flexapod.mechanics.layout import Shapes
 from flexapod.model import Robot, Simulation
-from flexapod.rigid.limbs import ABSENT, COORDINATES, DRIVEN, HELD, Limbs
 from flexapod.solve.kernel import kernel, kernel_at_hand
 from flexapod.solve.parameters import (
     flexures,
@@ -16,7 +17,6 @@ from flexapod.solve.parameters import (
 )
 from flexapod.solve.shapes import robot_shapes
 from flexapod.solve.system import System
-from flexapod.typing import Mask
 
 __all__ = ["robot_system", "smooth"]
 
@@ -37,7 +37,7 @@ def robot_system(
     ``within``: with steps that follow a tolerance, too. ``evaluated``: not to be integrated, see `kernel_at_hand`.
     ``at_rest``: loops that sum their errors have left none, Eq. (T23.16).
     """
-    legs = rigid.built_limbs(robot, rigid.robot_limbs(robot))
+    legs = kinematics.built_limbs(robot, kinematics.robot_limbs(robot))
     shapes = robot_shapes(robot, simulation, legs)
     return System(
         kernel=kernel_at_hand(shapes) if evaluated else kernel(shapes, march, within),

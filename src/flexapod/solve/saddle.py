@@ -2,9 +2,9 @@
 
 import numpy as np
 
+from flexapod.arrays import Array
 from flexapod.bases.eigen import finite
 from flexapod.errors import ComputationError
-from flexapod.typing import Array
 
 __all__ = ["saddle_solve"]
 

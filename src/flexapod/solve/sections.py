@@ -8,6 +8,7 @@ from typing import Any
 
 import numpy as np
 
+from flexapod.arrays import Array
 from flexapod.bases import LateralBasis
 from flexapod.bases.beam_functions import gauss_unit
 from flexapod.bases.lateral import proportional_damping
@@ -17,7 +18,6 @@ from flexapod.mechanics.layout import Shapes
 from flexapod.mechanics.section_layout import POWERS
 from flexapod.model import Leg, damping_parts
 from flexapod.model.sections import SHARES, PistonStep
-from flexapod.typing import Array
 
 _GLAND = 0.01  # of the piston's length: within which the mouth takes a cut up
 _MORE = 7  # points on a section more than shapes; kernels have fewer

@@ -7,12 +7,12 @@ from typing import Any
 
 import numpy as np
 
-from flexapod import bases, rigid
+from flexapod import bases, kinematics
 from flexapod.bases.lateral import LateralBasis
 from flexapod.elements.known import elements_of
+from flexapod.kinematics.limbs import ABSENT, COORDINATES, FREE, HELD, Limbs
 from flexapod.mechanics.layout import Shapes
 from flexapod.model import Actuator, Rectangle, Robot, Simulation, Tube
-from flexapod.rigid.limbs import ABSENT, COORDINATES, FREE, HELD, Limbs
 
 __all__ = ["actuator_shapes", "beam_shapes", "leg_shapes", "planar_shapes", "robot_shapes", "space_shapes"]
 
@@ -97,11 +97,11 @@ def leg_shapes(robot: Robot, simulation: Simulation) -> LateralBasis:
     Where a platform joint takes a moment, static answers to one are among them, Eq. (T1.18).
     """
     name, count = simulation.lateral_basis, simulation.lateral_shapes
-    moment = bool(rigid.robot_limbs(robot).pose_closure.any())
+    moment = bool(kinematics.robot_limbs(robot).pose_closure.any())
     if name != SOLID:
         return bases.lateral_basis(name, count, moment=moment)
     piston = robot.legs[0].piston
-    home = rigid.inverse_kinematics(robot, rigid.home_pose(robot)).length[0]
+    home = kinematics.inverse_kinematics(robot, kinematics.home_pose(robot)).length[0]
     free = float(np.mean(home - [leg.cylinder.mouth for leg in robot.legs]))
     return _solid(Tube(diameter=piston.diameter, inner_diameter=piston.inner_diameter), free, count, moment)  # type: ignore[arg-type]
 

@@ -6,12 +6,12 @@ from dataclasses import replace
 
 import numpy as np
 
+from flexapod.arrays import Array
+from flexapod.kinematics.rotations import matrix
 from flexapod.mechanics.layout import columns, leg_parameters
-from flexapod.rigid.rotations import matrix
+from flexapod.solve.batch import RestMatrices, RestStates
 from flexapod.solve.elimination import solve_each
-from flexapod.solve.many import RestMatrices, RestStates
 from flexapod.solve.system import System
-from flexapod.typing import Array
 
 __all__ = ["closure_forces", "least_energy", "open_forces"]
 

@@ -4,12 +4,12 @@ from dataclasses import replace
 
 import numpy as np
 
+from flexapod.arrays import Array
 from flexapod.integration import GeneralizedAlpha
-from flexapod.solve.many import RestStates, matrices_at_rest
+from flexapod.solve.batch import RestStates, matrices_at_rest
 from flexapod.solve.saddle import saddle_solve
 from flexapod.solve.system import Flow, Matrices, State, System
 from flexapod.solve.tables import Law
-from flexapod.typing import Array
 
 __all__ = ["accelerations", "consistent_start", "normal_velocity"]
 

@@ -4,18 +4,18 @@ from dataclasses import dataclass
 
 import numpy as np
 
-from flexapod import rigid
+from flexapod import kinematics
+from flexapod.arrays import Array
 from flexapod.bases.eigen import finite
 from flexapod.errors import InputError
+from flexapod.kinematics.rotations import matrix
 from flexapod.model import Load, Robot, Simulation
-from flexapod.rigid.rotations import matrix
 from flexapod.solve.at_poses import locked_poses
 from flexapod.solve.elimination import solve_each
 from flexapod.solve.equilibrium import Equilibrium
 from flexapod.solve.locked import LockedPoses, the_equilibrium
 from flexapod.solve.reduction import reduced_legs
 from flexapod.solve.system import System
-from flexapod.typing import Array
 
 
 @dataclass(frozen=True, kw_only=True)
@@ -40,7 +40,7 @@ class PoseStiffness(Stiffness):
 
 
 def robot_stiffness(
-    robot: Robot, simulation: Simulation, path: rigid.Poses | None = None, load: Load | None = None
+    robot: Robot, simulation: Simulation, path: kinematics.Poses | None = None, load: Load | None = None
 ) -> PoseStiffness:
     """Stiffness against a wrench at the tool, drives locked, about the static equilibrium at a pose (default: home).
 
@@ -53,7 +53,7 @@ def robot_stiffness(
     ComputationError
         No equilibrium at this pose.
     """
-    locked = locked_poses(robot, simulation, rigid.home_pose(robot) if path is None else path, load)
+    locked = locked_poses(robot, simulation, kinematics.home_pose(robot) if path is None else path, load)
     rest, found = the_equilibrium(locked), stiffness_of(robot, locked)
     return PoseStiffness(
         total=found.total[0], legs=found.legs[0], load=found.load[0], equilibrium=rest, system=locked.system

@@ -5,7 +5,7 @@ from collections.abc import Sequence
 from dataclasses import dataclass, field
 from functools import cached_property
 
-from flexapod.rigid import Breaks
+from flexapod.kinematics import Breaks
 
 __all__ = ["NEAR", "Stop", "Stops", "after", "before"]
 

@@ -7,10 +7,10 @@ from typing import NamedTuple
 import numpy as np
 from numpy.typing import NDArray
 
+from flexapod.arrays import Array, Mask
+from flexapod.kinematics.rotations import turned
 from flexapod.mechanics.layout import LOAD_SIZE, columns, leg_parameters
-from flexapod.rigid.rotations import turned
 from flexapod.solve.kernel import Kernel, evaluate
-from flexapod.typing import Array, Mask
 
 __all__ = ["COLUMNS", "Flow", "Friction", "Index", "Matrices", "State", "System"]
 

@@ -4,13 +4,13 @@ from collections.abc import Callable
 
 import numpy as np
 
-from flexapod import rigid
+from flexapod import kinematics
+from flexapod.arrays import Array, Mask
+from flexapod.kinematics.limbs import COORDINATES, DRIVEN
 from flexapod.model import Drive, ForceDrive, Load, Robot, ScrewDrive
-from flexapod.rigid.limbs import COORDINATES, DRIVEN
 from flexapod.solve.pieces import Groups, Pieces
 from flexapod.solve.released import rigid_forces
 from flexapod.solve.system import COLUMNS, Index, System
-from flexapod.typing import Array, Mask
 
 __all__ = ["Law", "feed_forward", "force_ports", "push_ports", "robot_law"]
 
@@ -20,7 +20,7 @@ Law = Callable[[Array], tuple[Array, Array]]
 
 
 def robot_law(
-    system: System, robot: Robot, load: Load, poses: Callable[[Array], rigid.Poses], knots: Array | None = None
+    system: System, robot: Robot, load: Load, poses: Callable[[Array], kinematics.Poses], knots: Array | None = None
 ) -> Law:
     """Return what a robot is commanded as a function of time; ``poses`` is the rigid path.
 
@@ -28,7 +28,7 @@ def robot_law(
     comes what the robot as built adds (T16.5). With the ``knots`` (n,) between which the path is smooth, legs without
     a closed form are computed at few instants: `pieces`.
     """
-    chains, shapes = rigid.robot_limbs(robot), system.kernel.shapes
+    chains, shapes = kinematics.robot_limbs(robot), system.kernel.shapes
     names = {shapes.index(name): name for name in COORDINATES if shapes.has(name)}
     driven, home = np.zeros((2, system.legs, system.ports.size))
     for k, port in enumerate(system.ports):
@@ -45,7 +45,7 @@ def robot_law(
     pushed = system.ports == force_ports(system, robot)[:, None]
 
     def commanded(t: Array) -> list[Array]:
-        legs = rigid.inverse_kinematics(robot, poses(t))
+        legs = kinematics.inverse_kinematics(robot, poses(t))
         parts = np.zeros((3, len(t), system.legs, system.ports.size))
         parts[0] = home
         for k in np.flatnonzero(driven.any(axis=0)):
@@ -56,20 +56,20 @@ def robot_law(
             _as_built(robot, t, legs, poses, parts, places)
         return list(parts)
 
-    built = rigid.built_parts(robot)
+    built = kinematics.built_parts(robot)
     forces = any(isinstance(leg.drive, ForceDrive) or _turned(leg.drive) for leg in robot.legs)
     coordinates: Groups = commanded
     changing = any(part.time is not None for part in built)
-    if knots is not None and not (rigid.rigid_limbs(robot).plain or forces or changing):
+    if knots is not None and not (kinematics.rigid_limbs(robot).plain or forces or changing):
         coordinates = Pieces(commanded, knots)
 
     def law(t: Array) -> tuple[Array, Array]:
-        wrench = rigid.wrench(load, t)
+        wrench = kinematics.wrench(load, t)
         table = np.zeros((len(t), system.legs, system.ports.size, COLUMNS))
         for column, part in enumerate(coordinates(t)):
             table[..., column] = part
         if system.floor.any():
-            for column, part in enumerate(rigid.base_law(robot, t)):
+            for column, part in enumerate(kinematics.base_law(robot, t)):
                 table[:, :, system.floor, column] = part[:, None]
         if forces:
             table[:, pushed, 3] = feed_forward(robot, t, poses(t), wrench)[:, pushed.any(axis=1)]
@@ -81,8 +81,8 @@ def robot_law(
 def _as_built(
     robot: Robot,
     t: Array,
-    legs: rigid.LegState,
-    poses: Callable[[Array], rigid.Poses],
+    legs: kinematics.LegState,
+    poses: Callable[[Array], kinematics.Poses],
     parts: Array,
     ports: dict[int, tuple[int, Mask]],
 ) -> None:
@@ -90,10 +90,10 @@ def _as_built(
 
     ``ports``: of each port the coordinate that it follows, and in which legs.
     """
-    q = rigid.Law(*np.stack([legs.coordinate(name) for name in COORDINATES], axis=-1))
-    added = rigid.added_by_all(robot, t, q)
-    for part in filter(rigid.is_plate, rigid.built_parts(robot)):
-        for more, longer in zip(added, rigid.plate_grows(part, t, poses(t), robot), strict=True):
+    q = kinematics.Law(*np.stack([legs.coordinate(name) for name in COORDINATES], axis=-1))
+    added = kinematics.added_by_all(robot, t, q)
+    for part in filter(kinematics.is_plate, kinematics.built_parts(robot)):
+        for more, longer in zip(added, kinematics.plate_grows(part, t, poses(t), robot), strict=True):
             more[..., COORDINATES.index("l")] += longer
     for column, more in enumerate(added):
         for port, (place, legs_there) in ports.items():
@@ -102,7 +102,7 @@ def _as_built(
 
 def push_ports(system: System, robot: Robot) -> Index:
     """Coordinate on which the drive of each leg acts, (legs,): its rotor, where it has one; -1 of passive legs."""
-    state, shapes = rigid.robot_limbs(robot).state, system.kernel.shapes
+    state, shapes = kinematics.robot_limbs(robot).state, system.kernel.shapes
     found = np.full(system.legs, -1)
     for name in ("l", "chi"):
         if shapes.has(name):
@@ -127,7 +127,7 @@ def force_ports(system: System, robot: Robot) -> Index:
     return found
 
 
-def feed_forward(robot: Robot, t: Array, path: rigid.Poses, wrench: Array) -> Array:
+def feed_forward(robot: Robot, t: Array, path: kinematics.Poses, wrench: Array) -> Array:
     """Feed-forward forces of drives on the rigid path at instants (T,), (T, legs) [N]; zero for those that have none.
 
     A torque of a screw is what the rigid robot and the rotor need, Eq. (T15.13), or the motor's by its law,
@@ -139,7 +139,7 @@ def feed_forward(robot: Robot, t: Array, path: rigid.Poses, wrench: Array) -> Ar
     replay = [_turned(d) and getattr(d, "law", "") == "rigid" for d in drives]
     if any((isinstance(d, ForceDrive) and d.law == "rigid") for d in drives) or any(replay):
         rigid_force = rigid_forces(robot, path, wrench).drive_force
-    change = rigid.inverse_kinematics(robot, path).accel if any(replay) else force
+    change = kinematics.inverse_kinematics(robot, path).accel if any(replay) else force
     for i, drive in enumerate(drives):
         if isinstance(drive, ScrewDrive) and _turned(drive):
             force[:, i] = rigid_force[:, i] + drive.inertia / drive.per_turn**2 * change[:, i]

@@ -5,33 +5,33 @@ from __future__ import annotations
 from importlib import import_module
 from typing import TYPE_CHECKING
 
-from flexapod.study.accuracy import accuracy, play
+from flexapod.pose_errors import accuracy, play
+from flexapod.results.record import Interrupted
+from flexapod.review.checks import check_path
 from flexapod.study.actuator import simulate_actuator
-from flexapod.study.before.checks import check_path
 from flexapod.study.parts import parts
-from flexapod.study.record import Interrupted
 from flexapod.study.simulation import run, simulate
 from flexapod.study.store import open_results, save
 
 if TYPE_CHECKING:
-    from flexapod.study.after.summary import summary
-    from flexapod.study.budgets import budget
-    from flexapod.study.disturbances import vibration
+    from flexapod.error_budget import budget
+    from flexapod.pose_errors.disturbances import vibration
+    from flexapod.results.summary import summary
     from flexapod.study.kinematics import forward_kinematics, inverse_dynamics, inverse_kinematics, mobility
     from flexapod.study.solid import simulate_solid
     from flexapod.study.static import modes, stiffness
 
 _LATER = {  # what simulations do without loads on first use
-    "budget": "budgets",
-    "forward_kinematics": "kinematics",
-    "inverse_dynamics": "kinematics",
-    "inverse_kinematics": "kinematics",
-    "mobility": "kinematics",
-    "modes": "static",
-    "simulate_solid": "solid",
-    "stiffness": "static",
-    "summary": "after.summary",
-    "vibration": "disturbances",
+    "budget": "error_budget",
+    "forward_kinematics": "study.kinematics",
+    "inverse_dynamics": "study.kinematics",
+    "inverse_kinematics": "study.kinematics",
+    "mobility": "study.kinematics",
+    "modes": "study.static",
+    "simulate_solid": "study.solid",
+    "stiffness": "study.static",
+    "summary": "results.summary",
+    "vibration": "pose_errors.disturbances",
 }
 
 __all__ = [
@@ -61,7 +61,7 @@ __all__ = [
 def __getattr__(name: str) -> object:
     if name not in _LATER:
         raise AttributeError(f"module 'flexapod.study' has no attribute {name!r}")
-    value = globals()[name] = getattr(import_module(f"flexapod.study.{_LATER[name]}"), name)
+    value = globals()[name] = getattr(import_module(f"flexapod.{_LATER[name]}"), name)
     return value
 
 

@@ -8,18 +8,18 @@ import numpy as np
 from numpy.typing import ArrayLike
 
 from flexapod import model
+from flexapod.arrays import Array
 from flexapod.errors import InputError
+from flexapod.results.arguments import FileLike, read
+from flexapod.results.attributes import attributes, march_attributes
+from flexapod.results.names import ACTUATOR_FORMS, DIRECTIONS, SPACE_FORMS, dataset
+from flexapod.results.record import Progress, Record, collect, finished
+from flexapod.results.robot import energy_results
+from flexapod.review.checks import check_actuator_path
+from flexapod.review.plausibility import actuator_warnings
+from flexapod.runtime.threads import one_thread
 from flexapod.solve.actuator_march import ActuatorMarch, amplitudes, lateral_signs, places, prepare_actuator
-from flexapod.solve.many import tips
-from flexapod.study.after.plausibility import actuator_warnings
-from flexapod.study.after.results import energy_results
-from flexapod.study.arguments import FileLike, read
-from flexapod.study.attributes import attributes, march_attributes
-from flexapod.study.before.checks import check_actuator_path
-from flexapod.study.names import ACTUATOR_FORMS, DIRECTIONS, SPACE_FORMS, dataset
-from flexapod.study.record import Progress, Record, collect, finished
-from flexapod.threads import one_thread
-from flexapod.typing import Array
+from flexapod.solve.batch import tips
 
 if TYPE_CHECKING:
     from xarray import Dataset

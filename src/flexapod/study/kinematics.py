@@ -7,19 +7,19 @@ from typing import TYPE_CHECKING
 import numpy as np
 from numpy.typing import ArrayLike
 
-from flexapod import model, rigid
+from flexapod import kinematics, model
+from flexapod.arrays import Array
 from flexapod.elements.known import refuse_tables
 from flexapod.errors import InputError
-from flexapod.rigid.rotations import quaternion
-from flexapod.study.after.leg_results import drive_forms, leg_labels, rigid_leg_results, rigid_reactions
-from flexapod.study.after.results import rigid_force_results
-from flexapod.study.arguments import LoadLike, PoseLike, RobotLike, as_pose, as_study, at_pose
-from flexapod.study.attributes import attributes
-from flexapod.study.before.checks import check_geometry
-from flexapod.study.names import dataset
-from flexapod.study.path import RigidPath, open_force_words
-from flexapod.threads import one_thread
-from flexapod.typing import Array
+from flexapod.kinematics.rotations import quaternion
+from flexapod.results.arguments import LoadLike, PoseLike, RobotLike, as_pose, as_study, at_pose
+from flexapod.results.attributes import attributes
+from flexapod.results.leg_results import drive_forms, leg_labels, rigid_leg_results, rigid_reactions
+from flexapod.results.names import dataset
+from flexapod.results.path import RigidPath, open_force_words
+from flexapod.results.robot import rigid_force_results
+from flexapod.review.checks import check_geometry
+from flexapod.runtime.threads import one_thread
 
 if TYPE_CHECKING:
     from xarray import Dataset
@@ -49,9 +49,12 @@ def mobility(robot: RobotLike, pose: PoseLike = None) -> Dataset:
         A pose that the legs do not reach.
     """
     study = at_pose(robot)
-    legs = rigid.rigid_limbs(study.robot)
-    at = None if pose is None else rigid.posture(study.robot, as_pose(study.robot, pose, check=False))
-    found, near = rigid.mobility(legs, at), [rigid.mobility(legs, there) for there in rigid.displaced(legs, at)]
+    legs = kinematics.rigid_limbs(study.robot)
+    at = None if pose is None else kinematics.posture(study.robot, as_pose(study.robot, pose, check=False))
+    found, near = (
+        kinematics.mobility(legs, at),
+        [kinematics.mobility(legs, there) for there in kinematics.displaced(legs, at)],
+    )
     lengths = np.array([legs.L_c] * 3 + [1.0] * 3)
     values = {
         "mobility": found.mobility,
@@ -60,12 +63,12 @@ def mobility(robot: RobotLike, pose: PoseLike = None) -> Dataset:
         "self_stress": found.self_stress,
         "freedoms": found.freedoms,
         "gruebler": found.gruebler,
-        "motions": np.array(rigid.motion_names(legs, found.platform, at), dtype=str),
+        "motions": np.array(kinematics.motion_names(legs, found.platform, at), dtype=str),
         "motion_twist": found.platform.T * lengths,
         "mobility_nearby": [m.mobility for m in near],
         "locked_nearby": [m.locked for m in near],
     }
-    attrs = attributes(study, study.warnings) | {"words": "\n".join(rigid.mobility_words(legs, at))}
+    attrs = attributes(study, study.warnings) | {"words": "\n".join(kinematics.mobility_words(legs, at))}
     return dataset(values, attrs=attrs)
 
 
@@ -158,7 +161,7 @@ def forward_kinematics(
         Joint-to-joint lengths [m] of the driven legs, in their order; of a driven carriage its place as the study file
         counts it [m, of a crank rad]. One of each gives a single pose.
     guess : pose, optional
-        Near the first one, as for `modes`; default home. All postures of six legs UPS: `flexapod.rigid.postures`.
+        Near the first one, as for `modes`; default home. All postures of six legs UPS: `flexapod.kinematics.postures`.
     time : array_like, shape (T,), optional
         Instants of the lengths [s]; default 0, 1, 2, ...
 
@@ -178,7 +181,7 @@ def forward_kinematics(
     study = at_pose(robot)
     given = _numbers(lengths, "lengths", "lengths [m] or places of carriages [m, rad], one for each drive")
     single = given.ndim == 1
-    found = rigid.forward_kinematics(study.robot, given, as_pose(study.robot, guess, check=False))
+    found = kinematics.forward_kinematics(study.robot, given, as_pose(study.robot, guess, check=False))
     given = np.atleast_2d(given)
     t = np.arange(len(found), dtype=float) if time is None else _numbers(time, "time", "instants [s], (T,)")
     if single and time is not None:
@@ -192,15 +195,15 @@ def forward_kinematics(
         "com_position": found.place(study.robot.com),
         "tool_position": found.place(study.robot.tool),
     }
-    length, place, *_ = rigid.reach(study.robot, found)
-    excess = [*rigid.strokes(study.robot, t, length), *rigid.pull_out(study.robot, t, length)]
-    excess += rigid.carriages(study.robot, t, place)
+    length, place, *_ = kinematics.reach(study.robot, found)
+    excess = [*kinematics.strokes(study.robot, t, length), *kinematics.pull_out(study.robot, t, length)]
+    excess += kinematics.carriages(study.robot, t, place)
     remarks = [*study.warnings, *(e.message for e in excess)]
     result = dataset(values, {"time": t}, attributes(study, remarks), drive_forms(study.robot))
     return result.isel(time=0, drop=True) if single else result
 
 
-def _drives(study: model.Study, t: Array, found: rigid.Poses, given: Array) -> dict[str, Array]:
+def _drives(study: model.Study, t: Array, found: kinematics.Poses, given: Array) -> dict[str, Array]:
     """Lengths of all legs as given, or where legs are not all driven along their strokes places of drives as well."""
     if all(leg.driven == "stroke" for leg in study.robot.legs):
         return {"leg_length_command": given}

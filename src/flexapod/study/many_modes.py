@@ -7,16 +7,13 @@ from typing import TYPE_CHECKING
 
 import numpy as np
 
-from flexapod import model, rigid
-from flexapod.rigid.rotations import quaternion
-from flexapod.solve.at_poses import locked_poses
-from flexapod.solve.fallen import fallen, platform_poses
-from flexapod.solve.frequencies import count_real
-from flexapod.solve.locked import LockedPoses
-from flexapod.solve.modes import ManyModes, RobotModes, modes_of
-from flexapod.study.after.mode_shapes import STATIONS, mode_values
-from flexapod.study.before.loops import unstable_at
-from flexapod.study.before.reach import (
+from flexapod import kinematics, model
+from flexapod.arrays import Array, Mask
+from flexapod.kinematics.rotations import quaternion
+from flexapod.results.mode_shapes import STATIONS, mode_values
+from flexapod.results.names import COORDINATES, VARIABLES, Variable, dataset
+from flexapod.results.poses import batches, coordinates_of
+from flexapod.review.reach import (
     CUT_OFF,
     FALLS_THROUGH,
     NO_MASS,
@@ -26,9 +23,12 @@ from flexapod.study.before.reach import (
     flags,
     rigid_codes,
 )
-from flexapod.study.names import COORDINATES, VARIABLES, Variable, dataset
-from flexapod.study.poses import batches, coordinates_of
-from flexapod.typing import Array, Mask
+from flexapod.review.unstable_loops import unstable_at
+from flexapod.solve.at_poses import locked_poses
+from flexapod.solve.branch import fallen, platform_poses
+from flexapod.solve.frequencies import count_real
+from flexapod.solve.locked import LockedPoses
+from flexapod.solve.modes import ManyModes, RobotModes, modes_of
 
 if TYPE_CHECKING:
     from xarray import Dataset
@@ -46,7 +46,7 @@ FORMS = {
 OF_POSES = ("pose_from_home", "reason", "cut_off")  # whatever comes of the search for an equilibrium
 
 
-def modes_at_poses(study: model.Study, path: rigid.Poses, *, shapes: bool, attrs: Mapping[str, object]) -> Dataset:
+def modes_at_poses(study: model.Study, path: kinematics.Poses, *, shapes: bool, attrs: Mapping[str, object]) -> Dataset:
     """Modes at P poses; see `flexapod.modes`.
 
     A pose that a singularity cuts off from home is out of reach to a map, but has modes of its own: they are computed,
@@ -88,9 +88,9 @@ def modes_at_poses(study: model.Study, path: rigid.Poses, *, shapes: bool, attrs
     return data
 
 
-def poses_of(path: rigid.Poses, chosen: np.ndarray) -> rigid.Poses:
+def poses_of(path: kinematics.Poses, chosen: np.ndarray) -> kinematics.Poses:
     """Some poses of a path, at rest."""
-    return rigid.Poses.at_rest(path.position[chosen], path.rotation[chosen])
+    return kinematics.Poses.at_rest(path.position[chosen], path.rotation[chosen])
 
 
 def codes_at_rest(locked: LockedPoses, modes: ManyModes) -> Codes:
@@ -109,7 +109,9 @@ def _empty(row: Array, count: int) -> Array:
     return np.full((count, *row.shape[1:]), np.nan)
 
 
-def _rows(robot: model.Robot, locked: LockedPoses, modes: ManyModes, path: rigid.Poses, kept: Mask) -> dict[str, Array]:
+def _rows(
+    robot: model.Robot, locked: LockedPoses, modes: ManyModes, path: kinematics.Poses, kept: Mask
+) -> dict[str, Array]:
     """Frequencies and places of the poses that have modes."""
     at, com = locked.at[kept], robot.com
     pose = locked.equilibria.states.pose[at]
@@ -123,7 +125,7 @@ def _rows(robot: model.Robot, locked: LockedPoses, modes: ManyModes, path: rigid
 
 
 def _shape_rows(
-    robot: model.Robot, locked: LockedPoses, modes: ManyModes, path: rigid.Poses, kept: Mask
+    robot: model.Robot, locked: LockedPoses, modes: ManyModes, path: kinematics.Poses, kept: Mask
 ) -> dict[str, Array]:
     """Everything, pose by pose."""
     found = []

@@ -6,15 +6,15 @@ from typing import TYPE_CHECKING
 
 import numpy as np
 
-from flexapod import rigid
+from flexapod import kinematics
+from flexapod.results.arguments import PoseLike, RobotLike, as_pose, at_pose
+from flexapod.results.attributes import attributes
+from flexapod.results.inside import is_guided
+from flexapod.results.names import dataset
+from flexapod.review.checks import path_remarks
+from flexapod.runtime.threads import one_thread
 from flexapod.solve.lost_motion import lost_motion, places_with_friction
 from flexapod.solve.parts import guide_turning, mount_stiffness, part_stiffness
-from flexapod.study.after.inside import is_guided
-from flexapod.study.arguments import PoseLike, RobotLike, as_pose, at_pose
-from flexapod.study.attributes import attributes
-from flexapod.study.before.checks import path_remarks
-from flexapod.study.names import dataset
-from flexapod.threads import one_thread
 
 if TYPE_CHECKING:
     from xarray import Dataset
@@ -51,7 +51,7 @@ def parts(robot: RobotLike, pose: PoseLike = None) -> Dataset:
     study = at_pose(robot)
     path = as_pose(study.robot, pose)
     remarks = path_remarks(study.robot, np.zeros(1), path)
-    length = rigid.inverse_kinematics(study.robot, path).length[0]
+    length = kinematics.inverse_kinematics(study.robot, path).length[0]
     found = part_stiffness(study.robot, length)
     softness = np.sum([1.0 / x for x in found.values()], axis=0)
     whole = np.divide(1.0, softness, out=np.full_like(softness, np.inf), where=softness > 0)

@@ -6,24 +6,24 @@ from dataclasses import dataclass
 from typing import TYPE_CHECKING
 
 from flexapod import model
+from flexapod.arrays import Array
+from flexapod.description.limits import drive_warnings
+from flexapod.results.arguments import LoadLike, RobotLike, StartLike, as_study, read
+from flexapod.results.attributes import attributes, march_attributes
+from flexapod.results.forces import force_error, force_warnings
+from flexapod.results.leg_results import damped_angles, drive_forms
+from flexapod.results.names import dataset
+from flexapod.results.of_elements import element_forms
+from flexapod.results.path import RigidPath
+from flexapod.results.record import Progress, Record, collect, finished
+from flexapod.results.robot import payload_results, rigid_force_results, robot_coords, robot_results
+from flexapod.review.checks import check_path
+from flexapod.review.fixed_steps import step_warnings
+from flexapod.review.plausibility import robot_warnings
+from flexapod.review.unstable_loops import loop_remarks
+from flexapod.runtime.threads import one_thread
 from flexapod.solve.robot_march import RobotMarch, prepare
 from flexapod.study.actuator import simulate_actuator
-from flexapod.study.after.forces import force_error, force_warnings
-from flexapod.study.after.leg_results import damped_angles, drive_forms
-from flexapod.study.after.limits import drive_warnings
-from flexapod.study.after.of_elements import element_forms
-from flexapod.study.after.plausibility import robot_warnings
-from flexapod.study.after.results import payload_results, rigid_force_results, robot_coords, robot_results
-from flexapod.study.after.steps import step_warnings
-from flexapod.study.arguments import LoadLike, RobotLike, StartLike, as_study, read
-from flexapod.study.attributes import attributes, march_attributes
-from flexapod.study.before.checks import check_path
-from flexapod.study.before.loops import loop_remarks
-from flexapod.study.names import dataset
-from flexapod.study.path import RigidPath
-from flexapod.study.record import Progress, Record, collect, finished
-from flexapod.threads import one_thread
-from flexapod.typing import Array
 
 if TYPE_CHECKING:
     from xarray import Dataset

@@ -9,14 +9,14 @@ import numpy as np
 from numpy.typing import ArrayLike
 
 from flexapod import model
+from flexapod.arrays import Array
 from flexapod.fem.beam_contact import frozen_frequencies
 from flexapod.fem.beam_guide import ElementContact, GuideContact, InterpolatedClamp, NodeContact
 from flexapod.fem.beam_march import march_sliding_beam
 from flexapod.fem.beam_mesh import beam_mesh
+from flexapod.results.attributes import attributes
+from flexapod.results.names import Variable, dataset
 from flexapod.study.actuator import simulate_actuator
-from flexapod.study.attributes import attributes
-from flexapod.study.names import Variable, dataset
-from flexapod.typing import Array
 
 if TYPE_CHECKING:
     from xarray import Dataset

@@ -8,17 +8,17 @@ from typing import TYPE_CHECKING, NamedTuple
 
 import numpy as np
 
-from flexapod import model, rigid
+from flexapod import kinematics, model
+from flexapod.arrays import Array
 from flexapod.errors import InputError
 from flexapod.fem.reduction import StationModel, reduced_beam
 from flexapod.fem.sliding import HubMotion, SlidingBeam, slide
-from flexapod.study.arguments import FileLike, read
-from flexapod.study.attributes import attributes
-from flexapod.study.before.checks import check_actuator_path
-from flexapod.study.names import ACTUATOR_FORMS, Variable, dataset
-from flexapod.study.path import path_instants
-from flexapod.study.record import Interrupted, Progress
-from flexapod.typing import Array
+from flexapod.results.arguments import FileLike, read
+from flexapod.results.attributes import attributes
+from flexapod.results.names import ACTUATOR_FORMS, Variable, dataset
+from flexapod.results.path import path_instants
+from flexapod.results.record import Interrupted, Progress
+from flexapod.review.checks import check_actuator_path
 
 if TYPE_CHECKING:
     from xarray import Dataset
@@ -196,7 +196,7 @@ def _stays_held(study: model.ActuatorStudy, reduced: StationModel) -> None:
     """Refuse a motion at whose ends less than two stations are free or held."""
     free = study.actuator.free_length
     if study.motion.extension is not None:
-        free = free + rigid.motion_law(study.motion.extension, path_instants(study)).position
+        free = free + kinematics.motion_law(study.motion.extension, path_instants(study)).position
     low, high = 2 * reduced.spacing, reduced.length - 2 * reduced.spacing
     if np.min(free) < low or np.max(free) > high:
         raise InputError(
@@ -224,7 +224,7 @@ def _motion(study: model.ActuatorStudy) -> Callable[[float], HubMotion]:
     actuator, laws = study.actuator, _laws(study)
 
     def motion(t: float) -> HubMotion:
-        turn, feed = (rigid.motion_law(law, np.array([t])) for law in laws)
+        turn, feed = (kinematics.motion_law(law, np.array([t])) for law in laws)
         return HubMotion(
             length=actuator.free_length + float(feed.position[0]),
             length_rate=float(feed.rate[0]),

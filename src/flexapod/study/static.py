@@ -7,23 +7,23 @@ from typing import TYPE_CHECKING
 
 import numpy as np
 
-from flexapod import model, rigid
+from flexapod import kinematics, model
 from flexapod.errors import InputError
+from flexapod.results.arguments import LoadLike, PoseLike, RobotLike, as_pose, at_pose, read
+from flexapod.results.attributes import attributes
+from flexapod.results.mode_shapes import STATIONS, mode_values
+from flexapod.results.names import ONE_POSE_FORMS, dataset
+from flexapod.results.poses import as_many, is_many
+from flexapod.review.checks import path_remarks
+from flexapod.review.plausibility import rest_warnings
+from flexapod.runtime.threads import one_thread
 from flexapod.solve.actuator_modes import actuator_modes
 from flexapod.solve.at_poses import robot_modes
-from flexapod.solve.many import RestStates
+from flexapod.solve.batch import RestStates
 from flexapod.solve.modal_loops import unstable_words
 from flexapod.solve.stiffness import robot_stiffness
 from flexapod.solve.system import State, System
-from flexapod.study.after.mode_shapes import STATIONS, mode_values
-from flexapod.study.after.plausibility import rest_warnings
-from flexapod.study.arguments import LoadLike, PoseLike, RobotLike, as_pose, at_pose, read
-from flexapod.study.attributes import attributes
-from flexapod.study.before.checks import path_remarks
 from flexapod.study.many_modes import modes_at_poses
-from flexapod.study.names import ONE_POSE_FORMS, dataset
-from flexapod.study.poses import as_many, is_many
-from flexapod.threads import one_thread
 
 if TYPE_CHECKING:
     from xarray import Dataset
@@ -149,13 +149,13 @@ def stiffness(
 
 def _problem(
     robot: RobotLike, pose: PoseLike, load: LoadLike, settings: dict[str, object]
-) -> tuple[model.Study, rigid.Poses]:
+) -> tuple[model.Study, kinematics.Poses]:
     study = model.override(at_pose(robot, load), **settings)  # type: ignore[arg-type]
     return study, as_pose(study.robot, pose)
 
 
 def _attributes(
-    study: model.Study, path: rigid.Poses, system: System, state: State, loops: Iterable[str] = ()
+    study: model.Study, path: kinematics.Poses, system: System, state: State, loops: Iterable[str] = ()
 ) -> dict[str, object]:
     remarks = [
         *loops,

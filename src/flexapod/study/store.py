@@ -11,10 +11,10 @@ from typing import TYPE_CHECKING
 
 import numpy as np
 
+from flexapod.arrays import Array
 from flexapod.errors import InputError
-from flexapod.files import check_regular, replacing
-from flexapod.study.before.room import available_memory
-from flexapod.typing import Array
+from flexapod.review.room import available_memory
+from flexapod.runtime.files import check_regular, replacing
 
 if TYPE_CHECKING:
     from xarray import DataArray, Dataset, Variable
@@ -37,7 +37,7 @@ def save(data: Dataset, path: str | Path) -> Path:
     InputError
         The folder cannot be written to, or the disk is full.
     """
-    from flexapod.study.netcdf import write
+    from flexapod.results.netcdf import write
 
     with replacing(path) as temporary:
         try:

@@ -15,7 +15,7 @@ from dataclasses import dataclass
 from pathlib import Path
 
 from flexapod.errors import ComputationError, InputError
-from flexapod.files import UNFINISHED, read_bytes, whole
+from flexapod.runtime.files import UNFINISHED, read_bytes, whole
 
 __all__ = [
     "CacheContent",

@@ -20,11 +20,11 @@ from pathlib import Path
 
 import numpy as np
 
+from flexapod.arrays import Array
 from flexapod.errors import ComputationError
-from flexapod.files import scratch
-from flexapod.processes import call
+from flexapod.runtime.files import scratch
+from flexapod.runtime.processes import call
 from flexapod.symbolic.cache import intact_libraries, open_cache, store_library, warn_unused
-from flexapod.typing import Array
 
 #: C text that every generated function needs before it.
 PRELUDE = Path(__file__).parent / "lanes.h"

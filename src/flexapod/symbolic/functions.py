@@ -7,7 +7,7 @@ import casadi
 import numpy as np
 from casadi import SX
 
-from flexapod.typing import Array
+from flexapod.arrays import Array
 
 
 @dataclass(frozen=True)

@@ -10,7 +10,7 @@ from typing import TYPE_CHECKING, Any
 import numpy as np
 from numpy.typing import ArrayLike
 
-from flexapod.loading import lazy
+from flexapod.runtime.loading import lazy
 
 if TYPE_CHECKING:
     import casadi

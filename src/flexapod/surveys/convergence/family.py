@@ -7,8 +7,8 @@ from dataclasses import dataclass, field
 
 import numpy as np
 
+from flexapod.arrays import Array
 from flexapod.surveys.convergence.trials import Trial
-from flexapod.typing import Array
 
 HIGHEST = 40.0  # orders beyond it are not orders
 

@@ -9,9 +9,9 @@ import numpy as np
 
 from flexapod.errors import InputError
 from flexapod.model import ActuatorStudy, Study
-from flexapod.study.arguments import FileLike
-from flexapod.study.attributes import attributes
-from flexapod.study.record import Report
+from flexapod.results.arguments import FileLike
+from flexapod.results.attributes import attributes
+from flexapod.results.record import Report
 from flexapod.surveys.convergence.family import relative_difference
 from flexapod.surveys.convergence.plan import checked_trials
 from flexapod.surveys.convergence.search import ConvergenceStopped

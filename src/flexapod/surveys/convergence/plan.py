@@ -8,9 +8,9 @@ from dataclasses import replace
 from flexapod.errors import InputError
 from flexapod.model import ActuatorStudy, Study
 from flexapod.model.simulation import SOLID
-from flexapod.study.arguments import FileLike, read
-from flexapod.study.before.checks import check_actuator_path, check_path
-from flexapod.study.record import Report
+from flexapod.results.arguments import FileLike, read
+from flexapod.results.record import Report
+from flexapod.review.checks import check_actuator_path, check_path
 from flexapod.surveys.convergence.trials import Setting, Trials, setting_of
 
 COUNTS = {"shapes": (1, 2, 3, 4, 6, 8, 12), "elements": (1, 2, 3, 4, 6), "segments": (1, 2, 4, 8)}

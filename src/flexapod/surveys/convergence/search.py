@@ -8,8 +8,8 @@ from typing import TYPE_CHECKING
 
 from flexapod.errors import ComputationError, InputError
 from flexapod.model import ActuatorStudy, Study
-from flexapod.study.arguments import FileLike
-from flexapod.study.record import Report
+from flexapod.results.arguments import FileLike
+from flexapod.results.record import Report
 from flexapod.surveys.convergence.family import ABOVE, FAMILIES, Findings
 from flexapod.surveys.convergence.plan import (
     base_setting,

@@ -10,9 +10,9 @@ from typing import TYPE_CHECKING
 
 import numpy as np
 
-from flexapod.files import replacing
 from flexapod.model import ActuatorStudy, Study
-from flexapod.study.attributes import attributes
+from flexapod.results.attributes import attributes
+from flexapod.runtime.files import replacing
 from flexapod.surveys.convergence.family import FAMILIES, Family, Findings
 from flexapod.surveys.convergence.trials import QUANTITIES, Setting, Trial
 

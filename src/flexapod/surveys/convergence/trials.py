@@ -11,12 +11,12 @@ from typing import TYPE_CHECKING
 
 import numpy as np
 
+from flexapod.arrays import Array
 from flexapod.errors import FlexapodError
 from flexapod.model import ActuatorStudy, Study
 from flexapod.model.simulation import OWN_BASIS, STRAIGHT
-from flexapod.study.record import Report
+from flexapod.results.record import Report
 from flexapod.study.simulation import run
-from flexapod.typing import Array
 from flexapod.words import text
 
 if TYPE_CHECKING:

@@ -10,19 +10,19 @@ from typing import Any
 
 import numpy as np
 
+from flexapod.arrays import Array
 from flexapod.errors import ComputationError, FlexapodError
 from flexapod.model import ActuatorStudy, Study
+from flexapod.results.leg_results import damped_angles
+from flexapod.results.path import RigidPath
+from flexapod.results.record import Record, collect
+from flexapod.results.robot import rigid_force_results, robot_results
+from flexapod.review.checks import check_path
+from flexapod.review.plausibility import robot_warnings
 from flexapod.solve.robot_march import prepare
 from flexapod.study.actuator import simulate_actuator
-from flexapod.study.after.leg_results import damped_angles
-from flexapod.study.after.plausibility import robot_warnings
-from flexapod.study.after.results import rigid_force_results, robot_results
-from flexapod.study.before.checks import check_path
-from flexapod.study.path import RigidPath
-from flexapod.study.record import Record, collect
 from flexapod.surveys.sweeps.kept import ACTUATOR_SCALARS, Kept
 from flexapod.surveys.sweeps.scalars import ROBOT_SCALARS, RobotRun
-from flexapod.typing import Array
 from flexapod.version import this_version
 
 

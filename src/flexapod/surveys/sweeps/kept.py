@@ -10,21 +10,21 @@ from typing import TYPE_CHECKING, Any
 import numpy as np
 
 from flexapod import version
+from flexapod.arrays import Array
 from flexapod.errors import InputError, closest
 from flexapod.model import ActuatorStudy, Study
+from flexapod.results.attributes import attributes
+from flexapod.results.causes import cause_names
+from flexapod.results.leg_results import absent, drive_forms, leg_labels
+from flexapod.results.names import ACTUATOR_FORMS, SPACE_FORMS, VARIABLES, Variable, fixed_labels
+from flexapod.results.of_elements import element_forms
+from flexapod.results.summary import tip_size
 from flexapod.schema.key_paths import Step, key_text
-from flexapod.study.after.causes import cause_names
-from flexapod.study.after.leg_results import absent, drive_forms, leg_labels
-from flexapod.study.after.of_elements import element_forms
-from flexapod.study.after.summary import tip_size
-from flexapod.study.attributes import attributes
-from flexapod.study.names import ACTUATOR_FORMS, SPACE_FORMS, VARIABLES, Variable, fixed_labels
 from flexapod.surveys.sweeps.plan import Keep
 from flexapod.surveys.sweeps.points import Points, Resolved
 from flexapod.surveys.sweeps.reading import dimension_of, number
 from flexapod.surveys.sweeps.scalars import ROBOT_DEFAULTS, ROBOT_SCALARS, Scalar
 from flexapod.surveys.sweeps.store import FORMAT, Known, StoredArray, Values
-from flexapod.typing import Array
 from flexapod.units import DIMENSIONS
 
 if TYPE_CHECKING:

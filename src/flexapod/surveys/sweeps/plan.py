@@ -15,8 +15,8 @@ from typing import Any
 import numpy as np
 
 from flexapod.errors import InputError
-from flexapod.files import LARGEST_TEXT, check_name, read_text
 from flexapod.model.key_paths import overlap
+from flexapod.runtime.files import LARGEST_TEXT, check_name, read_text
 from flexapod.schema.key_paths import Step, key_text, parse_key
 from flexapod.schema.section import Section
 from flexapod.schema.toml import parsed, refuse_excess

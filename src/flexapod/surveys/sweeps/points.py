@@ -13,13 +13,14 @@ from typing import Any, NamedTuple
 
 import numpy as np
 
+from flexapod.arrays import Array
 from flexapod.errors import InputError, Malformed
 from flexapod.model import ActuatorStudy, Study
 from flexapod.model.key_paths import leg_count, put, value_at
+from flexapod.results.causes import cause_names
+from flexapod.review.room import check_outputs, check_room, result_bytes
 from flexapod.schema.base import SHORT
 from flexapod.schema.key_paths import Step, copied, key_text, leaves, similar_key
-from flexapod.study.after.causes import cause_names
-from flexapod.study.before.room import check_outputs, check_room, result_bytes
 from flexapod.surveys.sweeps.plan import SweepPlan, Tolerance
 from flexapod.surveys.sweeps.reading import (
     dimension_of,
@@ -30,7 +31,6 @@ from flexapod.surveys.sweeps.reading import (
     standard_draws,
     study_of,
 )
-from flexapod.typing import Array
 
 MEMORY = 64 << 20  # of studies that were read and wait to be computed; others are read again
 POINT = 200  # byte kept of each point while points are read: its hash, its number, their places in lists

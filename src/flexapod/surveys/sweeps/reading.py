@@ -8,6 +8,7 @@ from typing import Any
 
 import numpy as np
 
+from flexapod.arrays import Array
 from flexapod.errors import InputError
 from flexapod.model import ActuatorStudy, Study
 from flexapod.model.files import read_study
@@ -15,7 +16,6 @@ from flexapod.schema.key_paths import Step, key_text
 from flexapod.schema.notes import Notes
 from flexapod.schema.section import Section
 from flexapod.surveys.sweeps.plan import Draws, Hypercube, Spaced
-from flexapod.typing import Array
 from flexapod.units import to_si
 
 

@@ -9,7 +9,7 @@ from typing import TYPE_CHECKING, Any
 
 import numpy as np
 
-from flexapod.files import replacing
+from flexapod.runtime.files import replacing
 from flexapod.surveys.sweeps.refusals import other_format
 from flexapod.surveys.sweeps.store import COMPUTED, FAILED, FLOAT, FORMAT, PENDING, SweepStore
 from flexapod.surveys.sweeps.zarr_folder import read_zarr

@@ -18,11 +18,11 @@ import numpy as np
 
 from flexapod.errors import ComputationError, InputError
 from flexapod.model import ActuatorStudy, Study
+from flexapod.results.arguments import read
+from flexapod.results.record import Report
+from flexapod.review.room import check_memory, check_room
 from flexapod.solve.actuator_march import prepare_actuator
 from flexapod.solve.robot_system import robot_system
-from flexapod.study.arguments import read
-from flexapod.study.before.room import check_memory, check_room
-from flexapod.study.record import Report
 from flexapod.surveys.sweeps.batch import BatchResult, PointResult
 from flexapod.surveys.sweeps.executors import check_place, executor, local_cores
 from flexapod.surveys.sweeps.kept import Kept, kept, known

@@ -9,22 +9,23 @@ from typing import NamedTuple
 
 import numpy as np
 
-from flexapod import rigid
+from flexapod import kinematics
+from flexapod.arrays import Array
 from flexapod.errors import InputError
+from flexapod.kinematics.rotations import difference, matrix, quaternion
 from flexapod.model import Study
-from flexapod.rigid.rotations import difference, matrix, quaternion
+from flexapod.results.bodies import flexible_axes
+from flexapod.results.causes import cause_names
+from flexapod.results.leg_results import drive_forces
+from flexapod.results.legs import bending, bending_basis, lateral
+from flexapod.results.path import RigidPath
+from flexapod.results.record import Record
+from flexapod.results.robot import robot_results
+from flexapod.review.plausibility import leg_stress
 from flexapod.solve.at_poses import robot_modes
 from flexapod.solve.recording import Counters
 from flexapod.solve.system import System
-from flexapod.study.after.causes import cause_names
-from flexapod.study.after.leg_results import drive_forces
-from flexapod.study.after.legs import bending, bending_basis, lateral
-from flexapod.study.after.plausibility import flexible_axes, leg_stress
-from flexapod.study.after.results import robot_results
-from flexapod.study.path import RigidPath
-from flexapod.study.record import Record
 from flexapod.ties import first_largest
-from flexapod.typing import Array
 
 
 class Scalar(NamedTuple):
@@ -126,7 +127,7 @@ class RobotRun:
     @property
     def first_frequency(self) -> float:
         """Lowest frequency at home, loads just before t = 0, commands of the drives held [Hz]; NaN if there is none."""
-        home = rigid.home_pose(self.study.robot)
+        home = kinematics.home_pose(self.study.robot)
         try:
             return float(robot_modes(self.study.robot, self.study.simulation, home, self.study.load).frequency[0])
         except InputError:  # nothing can move, or a drive that cannot be locked

@@ -16,10 +16,10 @@ from typing import Any, NamedTuple, Self
 import numpy as np
 from numpy.typing import NDArray
 
+from flexapod.arrays import Array
 from flexapod.errors import InputError
-from flexapod.files import check_regular, scratch, settle
+from flexapod.runtime.files import check_regular, scratch, settle
 from flexapod.surveys.sweeps.refusals import damaged, no_store, not_locked, of_sqlite, unreadable
-from flexapod.typing import Array
 
 FORMAT = 3
 Values = NDArray[Any]  # numbers of any kind, or texts

@@ -6,10 +6,10 @@ from time import perf_counter
 
 import numpy as np
 
+from flexapod.arrays import Array
 from flexapod.surveys.sweeps.batch import BatchResult, PointResult
 from flexapod.surveys.sweeps.kept import Kept
 from flexapod.surveys.sweeps.store import COMPUTED, FAILED, FLOAT, StoredPoint, SweepStore
-from flexapod.typing import Array
 
 OFTEN = 2.0  # seconds between two looks at the disk at least
 SELDOM = 30.0  # at most, on however slow a disk

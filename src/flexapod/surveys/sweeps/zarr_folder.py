@@ -9,7 +9,7 @@ from typing import TYPE_CHECKING, Any
 import numpy as np
 
 from flexapod.errors import InputError
-from flexapod.files import check_regular, scratch
+from flexapod.runtime.files import check_regular, scratch
 from flexapod.surveys.sweeps.refusals import damaged, no_store, other_format
 from flexapod.surveys.sweeps.store import COMPUTED, FAILED, FORMAT, PENDING
 

@@ -7,15 +7,15 @@ from typing import TYPE_CHECKING
 
 import numpy as np
 
-from flexapod import rigid
+from flexapod import kinematics
+from flexapod.arrays import Array
 from flexapod.errors import InputError
 from flexapod.model import AXES
+from flexapod.results.names import Variable
+from flexapod.results.poses import coordinate_words, coordinates_of, in_shown_unit
+from flexapod.review.reach import REACHED, REASONS
 from flexapod.scene.robot import robot_study
-from flexapod.study.before.reach import REACHED, REASONS
-from flexapod.study.names import Variable
-from flexapod.study.poses import coordinate_words, coordinates_of, in_shown_unit
 from flexapod.ties import first_largest, first_least
-from flexapod.typing import Array
 
 if TYPE_CHECKING:
     from xarray import DataArray, Dataset
@@ -95,7 +95,7 @@ def motion_path(data: Dataset) -> Array | None:
     except InputError:
         return None
     t = np.linspace(0.0, study.motion.end_time, POINTS)
-    path = coordinates_of(study.robot, rigid.poses(study.robot, study.motion, t))
+    path = coordinates_of(study.robot, kinematics.poses(study.robot, study.motion, t))
     return path if np.ptp(path, axis=0).max() > 1e-9 else None
 
 

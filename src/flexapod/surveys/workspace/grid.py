@@ -8,12 +8,12 @@ from dataclasses import dataclass
 import numpy as np
 from numpy.typing import ArrayLike
 
-from flexapod import model, rigid
+from flexapod import kinematics, model
+from flexapod.arrays import Array
 from flexapod.errors import InputError, closest
 from flexapod.model import AXES
-from flexapod.study.before.reach import REACHED, rigid_codes
-from flexapod.study.poses import from_home
-from flexapod.typing import Array
+from flexapod.results.poses import from_home
+from flexapod.review.reach import REACHED, rigid_codes
 
 COUNT = {1: 201, 2: 41, 3: 21}  # points of an axis by number of axes, where none are given
 SLICES = 5  # of the third axis
@@ -104,8 +104,8 @@ def grid(robot: model.Robot, axes: Axes | None, at: Mapping[str, float] | None) 
 
 def usual_axes(robot: model.Robot) -> list[str]:
     """Coordinates that a map varies unless told: surge and heave, or the first two that the robot can do."""
-    limbs = rigid.rigid_limbs(robot)
-    free = rigid.independent_axes(limbs, np.zeros(6, dtype=bool), np.zeros(3)) if limbs.guides else ~limbs.hub_held
+    limbs = kinematics.rigid_limbs(robot)
+    free = kinematics.independent_axes(limbs, np.zeros(6, dtype=bool), np.zeros(3)) if limbs.guides else ~limbs.hub_held
     return [name for name in USUAL if free[AXES.index(name)]][:2]
 
 

@@ -11,26 +11,26 @@ import numpy as np
 from numpy.typing import ArrayLike
 
 from flexapod import model
+from flexapod.arrays import Array
+from flexapod.error_budget.rows import names_of_rows
 from flexapod.errors import InputError
+from flexapod.results.arguments import LoadLike, RobotLike, at_pose
+from flexapod.results.attributes import attributes
+from flexapod.results.names import dataset
+from flexapod.results.poses import batches, from_home
+from flexapod.review.reach import flags
+from flexapod.review.room import check_map
+from flexapod.review.unstable_loops import unstable_at
+from flexapod.runtime.threads import one_thread
 from flexapod.solve.frequencies import count_real
-from flexapod.study.arguments import LoadLike, RobotLike, at_pose
-from flexapod.study.attributes import attributes
-from flexapod.study.before.loops import unstable_at
-from flexapod.study.before.reach import flags
-from flexapod.study.before.room import check_map
-from flexapod.study.budgets.rows import names_of_rows
-from flexapod.study.names import dataset
-from flexapod.study.poses import batches, from_home
 from flexapod.surveys.workspace.findings import forms
 from flexapod.surveys.workspace.grid import UNITS, Axes, Grid, grid
 from flexapod.surveys.workspace.quantities import Wanted, batch_values
-from flexapod.threads import one_thread
-from flexapod.typing import Array
 
 if TYPE_CHECKING:
     from xarray import Dataset
 
-    from flexapod.study.record import Report
+    from flexapod.results.record import Report
 
 DIRECTIONS = {"x": (1.0, 0.0, 0.0), "y": (0.0, 1.0, 0.0), "z": (0.0, 0.0, 1.0)}
 FREQUENCIES = 6

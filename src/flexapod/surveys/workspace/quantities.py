@@ -6,23 +6,23 @@ from dataclasses import dataclass
 
 import numpy as np
 
-from flexapod import model, rigid
-from flexapod.rigid.rotations import matrix
+from flexapod import kinematics, model
+from flexapod.arrays import Array, Mask
+from flexapod.error_budget.rows import names_of_rows, rows_of_poses
+from flexapod.error_budget.rules import Budget
+from flexapod.kinematics.rotations import matrix
+from flexapod.results.bodies import clearance, largest_turns, turns
+from flexapod.review.estimates import buckling_loads
+from flexapod.review.reach import REACHED, Codes, leg_limits, rigid_codes, slider_limits
 from flexapod.solve.at_poses import locked_poses
+from flexapod.solve.batch import port_forces
 from flexapod.solve.locked import LockedPoses
-from flexapod.solve.many import port_forces
 from flexapod.solve.modes import modes_of
-from flexapod.solve.rest import at_drives
 from flexapod.solve.rigid_motion import rigid_motion
+from flexapod.solve.static_loads import at_drives
 from flexapod.solve.stiffness import compliance, displacement, stiffness_of, tool_motion
-from flexapod.study.before.estimates import buckling_loads
-from flexapod.study.before.reach import REACHED, Codes, leg_limits, rigid_codes, slider_limits
-from flexapod.study.bodies import clearance, largest_turns, turns
-from flexapod.study.budgets.rows import names_of_rows, rows_of_poses
-from flexapod.study.budgets.rules import Budget
 from flexapod.study.many_modes import codes_at_rest, poses_of
 from flexapod.ties import EQUALS, alike
-from flexapod.typing import Array, Mask
 
 Values = dict[str, Array]
 
@@ -42,7 +42,7 @@ class Wanted:
     budget: bool = False
 
 
-def batch_values(study: model.Study, path: rigid.Poses, wanted: Wanted) -> tuple[Codes, Values]:
+def batch_values(study: model.Study, path: kinematics.Poses, wanted: Wanted) -> tuple[Codes, Values]:
     """Codes (P,) and, of each variable, the values (P, ...) at the poses of a batch; NaN out of reach.
 
     Raises
@@ -52,7 +52,9 @@ def batch_values(study: model.Study, path: rigid.Poses, wanted: Wanted) -> tuple
     """
     code = rigid_codes(study.robot, path, from_home=True)
     within = np.flatnonzero(code == REACHED)
-    some = poses_of(path, within) if within.size else rigid.home_pose(study.robot)  # for what it refuses, and shapes
+    some = (
+        poses_of(path, within) if within.size else kinematics.home_pose(study.robot)
+    )  # for what it refuses, and shapes
     locked = locked_poses(study.robot, study.simulation, some, study.load)
     modes = modes_of(locked)
     values = {
@@ -74,15 +76,15 @@ def batch_values(study: model.Study, path: rigid.Poses, wanted: Wanted) -> tuple
     return code, result
 
 
-def _rigid(robot: model.Robot, path: rigid.Poses) -> Values:
+def _rigid(robot: model.Robot, path: kinematics.Poses) -> Values:
     """Margins of strokes, pistons and joints, and distance to a singularity, (P,)."""
-    found, (length, place, *_) = rigid.singularity(robot, path), rigid.reach(robot, path)
+    found, (length, place, *_) = kinematics.singularity(robot, path), kinematics.reach(robot, path)
     limits, mouth, piston = leg_limits(robot)
     ways = slider_limits(robot)
     stroke = np.minimum(length - limits[:, 0], limits[:, 1] - length)
     stroke = np.minimum(stroke, np.minimum(place - ways[:, 0], ways[:, 1] - place))
     inside = np.minimum(piston, mouth + piston - length)
-    axes, largest = rigid.leg_axes(robot, path), largest_turns(robot)
+    axes, largest = kinematics.leg_axes(robot, path), largest_turns(robot)
     turned = turns(robot, axes, path.rotation)
     nearest = clearance(robot, path.place(robot.platform_joints), axes, length)
     limited = np.isfinite(largest)
@@ -104,7 +106,7 @@ def _least_where(legs: Mask, values: Array) -> Array:
     return values[:, legs].min(axis=1) if legs.any() else np.full(len(values), np.nan)
 
 
-def _elastic(robot: model.Robot, path: rigid.Poses, locked: LockedPoses, wanted: Wanted) -> Values:
+def _elastic(robot: model.Robot, path: kinematics.Poses, locked: LockedPoses, wanted: Wanted) -> Values:
     """Stiffness, deviations and forces about the equilibria that were found, (p, ...)."""
     rigid_pose, states = poses_of(path, locked.at), locked.equilibria.states[locked.at]
     give = compliance(stiffness_of(robot, locked).total)[:, :3, :3]
@@ -150,15 +152,17 @@ def _drive_forces(robot: model.Robot, locked: LockedPoses) -> Array:
     return at_drives(locked.system, robot, port_forces(locked.system, *part))
 
 
-def _euler_share(robot: model.Robot, path: rigid.Poses, locked: LockedPoses, force: Array) -> Array:
+def _euler_share(robot: model.Robot, path: kinematics.Poses, locked: LockedPoses, force: Array) -> Array:
     """Largest thrust of a leg over its Euler load (T8.11), (p,); 0 where no leg is pushed."""
-    thrust = np.einsum("pli,pli->pl", locked.equilibria.states.lam[locked.at][..., :3], rigid.leg_axes(robot, path))
+    thrust = np.einsum(
+        "pli,pli->pl", locked.equilibria.states.lam[locked.at][..., :3], kinematics.leg_axes(robot, path)
+    )
     along = np.array([leg.driven == "stroke" for leg in robot.legs])
-    pushed, length = np.where(along, np.maximum(force, thrust), thrust), rigid.reach(robot, path).length
+    pushed, length = np.where(along, np.maximum(force, thrust), thrust), kinematics.reach(robot, path).length
     return np.maximum(pushed / buckling_loads(robot, length), 0.0).max(axis=1)
 
 
-def _dynamic(robot: model.Robot, path: rigid.Poses, locked: LockedPoses, acceleration: Array | None) -> Array:
+def _dynamic(robot: model.Robot, path: kinematics.Poses, locked: LockedPoses, acceleration: Array | None) -> Array:
     """Deviation of the tool under the inertial forces of payload and legs, (p,) [m], Eq. (T7.19)."""
     answer = _answer(robot, path, locked)  # of the tool, per m/s^2 along each axis
     if acceleration is None:
@@ -166,12 +170,12 @@ def _dynamic(robot: model.Robot, path: rigid.Poses, locked: LockedPoses, acceler
     return np.linalg.norm(answer @ acceleration, axis=1)
 
 
-def _answer(robot: model.Robot, path: rigid.Poses, locked: LockedPoses) -> Array:
+def _answer(robot: model.Robot, path: kinematics.Poses, locked: LockedPoses) -> Array:
     """Displacement of the tool while the platform accelerates along x, y, z without turning, from rest, (p, 3, 3)."""
     zero, m = np.zeros((len(path), 3)), locked.m
     inertia, payload = [], []
     for unit in np.eye(3):
-        moving = rigid.Poses(
+        moving = kinematics.Poses(
             position=path.position, rotation=path.rotation, velocity=zero, omega=zero, alpha=zero,
             acceleration=np.broadcast_to(unit, zero.shape),
         )  # fmt: skip

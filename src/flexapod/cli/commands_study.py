@@ -1,0 +1,143 @@
+"""Commands about study files: `new` writes one, `keys` says what it may contain, `check` describes it in words."""
+
+from __future__ import annotations
+
+from collections.abc import Sequence
+from dataclasses import replace
+from pathlib import Path
+from typing import TYPE_CHECKING, Annotated
+
+import typer
+
+from flexapod.cli.failures import guarded
+from flexapod.cli.options import Force, Json, StudyFile, Verbose, as_options, refuse_existing
+from flexapod.document import parts
+from flexapod.document.terminal import tell
+from flexapod.errors import InputError
+from flexapod.runtime.files import write_text
+
+if TYPE_CHECKING:
+    from flexapod.model.page import Listed
+
+Name = Annotated[Path, typer.Argument(metavar="NAME.toml", help="File to write.")]
+Preset = Annotated[
+    str | None,
+    typer.Option(
+        "--preset",
+        metavar="P",
+        help="paper-robot (the default), paper-robot-radii, paper-actuator, tripod, flight-simulator, "
+        "machine-hexapod, small-hexapod, nano-hexapod or motion-base.",
+    ),
+]
+From = Annotated[
+    str | None,
+    typer.Option(
+        "--from",
+        metavar='"home=300 mm, payload=20 kg, stroke=60 mm"',
+        help="A first robot of catalogue parts that fit: electric cylinders, or drive=hydraulic; also base, platform "
+        "(radii), diameter (of pistons), material, motion (surge to yaw), duration.",
+    ),
+]
+Ideal = Annotated[
+    bool,
+    typer.Option("--ideal", help="With --from: joints and drives that do not give way, pistons that stretch and bend."),
+]
+
+
+@guarded
+def new(
+    name: Name, preset: Preset = None, request: From = None, ideal: Ideal = False, force: Force = False,
+    json: Json = False,
+) -> None:  # fmt: skip
+    """Write a commented study file to edit."""
+    path = name if name.suffix or name.is_dir() else name.with_suffix(".toml")
+    if path.is_dir():
+        raise InputError("is a folder", file=path, next_step="Give the name of a file")
+    refuse_existing(path, force)
+    if ideal and request is None:
+        raise InputError("is given without --from", key="--ideal", next_step='Add --from "home=300 mm, payload=20 kg"')
+    if request is None:
+        text, source, remarks = _preset(preset or "paper-robot")
+    else:
+        text, source, remarks = _first_robot(request, preset, ideal=ideal)
+    write_text(path, text)
+    words = f", from the preset {source['preset']}" if "preset" in source else ""
+    data = {"file": path, **source, **({} if request is None else {"remarks": remarks})}
+    tell([*remarks, f"{path} written{words}. Edit it, then: flexapod check {path}"], lambda: data, json=json)
+
+
+def _preset(name: str) -> tuple[str, dict[str, object], list[str]]:
+    from flexapod.model import preset_text
+
+    with as_options(preset="--preset"):
+        return preset_text(name), {"preset": name}, []
+
+
+def _first_robot(request: str, preset: str | None, *, ideal: bool) -> tuple[str, dict[str, object], list[str]]:
+    """Text of a first robot, what it is from, and what there is to say about it."""
+    from flexapod.design import IDEAL, first_robot, parse_request
+    from flexapod.document.first import first_words
+
+    if preset is not None:
+        raise InputError("is given together with --from", key="--preset", value=preset, allowed="one of the two")
+    wanted = parse_request(request)
+    if ideal and wanted.texts.get("drive", IDEAL) != IDEAL:
+        raise InputError(
+            "is given together with --from drive", key="--ideal", value=wanted.drive, allowed="one of the two"
+        )
+    text = first_robot(replace(wanted, drive=IDEAL) if ideal else wanted)
+    return text, {"from": request}, first_words(text)
+
+
+Table = Annotated[str | None, typer.Argument(metavar="[TABLE]", help="Only this table and those in it: leg.drive")]
+Markdown = Annotated[Path | None, typer.Option("--markdown", metavar="FILE", help="Write the whole page as Markdown.")]
+
+Schema = Annotated[
+    Path | None, typer.Option("--schema", metavar="FILE", help="Write a JSON schema of study files, for editors.")
+]
+
+
+@guarded
+def keys(table: Table = None, markdown: Markdown = None, schema: Schema = None, json: Json = False) -> None:
+    """Show every key of a study file: what it is, unit, what it is if left out, what is allowed, an example."""
+    from dataclasses import asdict
+
+    from flexapod.cli.key_names import check_table
+
+    if table is not None:
+        check_table(table)
+    from flexapod.model import page
+
+    if markdown is not None:
+        write_text(markdown, page.markdown())
+    if schema is not None:
+        from flexapod.model.json_schema import json_schema
+
+        write_text(schema, json_schema())
+    found = page.listed(table)
+    files = " and ".join(str(file) for file in (markdown, schema) if file is not None)
+    written = [f"{files} written."] if files else None
+    told = (_key_chapter(item, page.HEAD, alone=table is not None) for item in found)
+    tell(written or told, lambda: [asdict(item) for item in found], json=json)
+
+
+def _key_chapter(found: Listed, head: Sequence[str], *, alone: bool) -> parts.Chapter:
+    """A table of a study file: its words, its keys, an example."""
+    entry = found.entry
+    title = f"[{entry.table}] {entry.title}".rstrip() + ("" if alone else f" ({entry.study})")
+    rows = [[row.key, row.what, row.unit, row.default, row.allowed] for row in found.rows]
+    keys = [parts.TextTable(head, rows, left=range(len(head)))] if rows else []
+    return parts.Chapter(
+        title, [parts.Text(entry.words), *keys, "", parts.Lines(entry.example.strip()), ""], close=True
+    )
+
+
+@guarded
+def check(file: StudyFile, verbose: Verbose = False, json: Json = False) -> None:
+    """Validate a study and say in words what it asks of its legs: lengths, strokes, loads, stiffness, frequencies."""
+    from flexapod.description.robot import describe
+    from flexapod.document.check import check_items
+    from flexapod.model import load
+
+    found = describe(load(file))
+    tell(check_items(found), found.as_dict, json=json, verbose=verbose)

@@ -1,0 +1,130 @@
+"""How the rows of an error budget add up, Eqs. (T17.3)-(T17.11)."""
+
+from __future__ import annotations
+
+from collections.abc import Callable
+from dataclasses import dataclass, replace
+from functools import cached_property
+
+import numpy as np
+
+from flexapod.arrays import Array
+from flexapod.pose_errors.rows import ErrorRow
+from flexapod.ties import most
+
+__all__ = ["KINDS", "Budget", "combined"]
+
+KINDS = ("systematic", "hysteretic", "random", "dynamic_peak", "dynamic_rms")
+SIGMAS = 3.0  # of random rows, in the worst case and in accuracies
+RP = np.sqrt(2 / np.pi) + 3 * np.sqrt(1 - 2 / np.pi)  # mean and 3 standard deviations of |x|, x normal, sigma 1
+PLACE = slice(3)
+
+
+def combined(kind: str, parts: Array) -> Array:
+    """Sum over the first axis by the rule of a kind: with signs, of sizes, of squares, Eqs. (T17.3)-(T17.5)."""
+    if kind == "hysteretic":
+        return np.abs(parts).sum(axis=0)
+    return np.sqrt((parts**2).sum(axis=0)) if kind == "random" else parts.sum(axis=0)
+
+
+@dataclass(frozen=True, kw_only=True)
+class Budget:
+    """Rows of n legs, and of kinds whose rows have signs the ``whole`` (6,) that they add up to but for a residual."""
+
+    rows: list[ErrorRow]
+    whole: dict[str, Array]
+
+    @property
+    def parts(self) -> tuple[str, ...]:
+        """Names of the parts, in the order of their rows."""
+        return tuple(dict.fromkeys(row.part for row in self.rows))
+
+    @property
+    def kinds(self) -> tuple[str, ...]:
+        """At a resting pose nothing is dynamic."""
+        return KINDS if "dynamic_peak" in self.whole else KINDS[:3]
+
+    def rule(self, kind: str, chosen: Callable[[ErrorRow], bool] = lambda row: True) -> Array:
+        """Sum (6,) of the rows of a kind, or of some of them, by its rule; without what is left out of first order."""
+        found = [combined(kind, row.by_leg) for row in self.rows if row.kind == kind and chosen(row)]
+        return combined(kind, np.array([np.zeros(6), *found]))
+
+    def of(self, part: str, kind: str) -> Array:
+        """What a part adds to a kind, (6,)."""
+        return self.rule(kind, lambda row: row.part == part)
+
+    def total(self, kind: str) -> Array:
+        """The whole of a kind, (6,)."""
+        return self.whole.get(kind, self.rule(kind))
+
+    def residual(self, kind: str) -> Array:
+        """What the rows of a kind leave of its whole, (6,), Eq. (T17.2)."""
+        return self.total(kind) - self.rule(kind)
+
+    @property
+    def worst(self) -> Array:
+        """Largest size of each component if all kinds are at their worst at once, (6,), Eq. (T17.6)."""
+        most = np.abs(self.total("systematic")) + self.rule("hysteretic") + SIGMAS * self.rule("random")
+        return most + (np.abs(self.total("dynamic_peak")) if "dynamic_peak" in self.kinds else 0.0)
+
+    @property
+    def rss(self) -> Array:
+        """Root of the sum of the squares of all kinds, (6,), Eq. (T17.7)."""
+        kinds = [kind for kind in self.kinds if kind != "dynamic_peak"]
+        return np.sqrt(np.sum([self.total(kind) ** 2 for kind in kinds], axis=0))
+
+    @cached_property
+    def sizes(self) -> dict[str, float]:
+        """Size of the worst that each part does to the tool's place [m]."""
+        return {part: float(np.linalg.norm(self._only(part).worst[PLACE])) for part in self.parts}
+
+    @property
+    def shares(self) -> dict[str, float]:
+        """Sizes of the parts over the sum of all sizes, Eq. (T17.8)."""
+        return {part: size / (sum(self.sizes.values()) or 1.0) for part, size in self.sizes.items()}
+
+    @property
+    def largest(self) -> str:
+        """The part with the largest share."""
+        return most(self.parts, key=lambda part: self.sizes[part])
+
+    @property
+    def calibrated(self) -> Budget:
+        """The budget of a machine whose constant errors are known and taken out, at rest."""
+        return Budget(rows=[row for row in self.rows if row.nature != "calibratable" and not row.stands], whole={})
+
+    def _only(self, part: str) -> Budget:
+        rows = [row for row in self.rows if row.part == part]
+        return Budget(rows=rows, whole={k: self.of(part, k) for k in self.whole})
+
+    def with_half(self, part: str) -> Budget:
+        """The budget if every error of a part were half as large."""
+        rows = [row._replace(by_leg=0.5 * row.by_leg) if row.part == part else row for row in self.rows]
+        return replace(self, rows=rows, whole={k: x - 0.5 * self.of(part, k) for k, x in self.whole.items()})
+
+    def accuracy(self, *, calibrated: bool) -> Array:
+        """Systematic error and 3 standard deviations of what is fixed in a machine but unknown, (6,), Eq. (T17.9)."""
+        known = self.rule("systematic", lambda row: row.nature == "calibratable")
+        fixed = self.rule("random", lambda row: row.stands)
+        whole = self.total("systematic")
+        return np.abs(whole - known) if calibrated else np.abs(whole) + SIGMAS * fixed
+
+    @property
+    def cycles(self) -> Array:
+        """Standard deviation from one approach to the next, (6,)."""
+        return self.rule("random", lambda row: not row.stands)
+
+    @property
+    def unidirectional(self) -> Array:
+        """Repeatability of approaches from one side, (6,): 4 standard deviations (ISO 230-2), Eq. (T17.10)."""
+        return 4 * self.cycles
+
+    @property
+    def bidirectional(self) -> Array:
+        """The same with the reversal value, twice the bound of play and friction, (6,), Eq. (T17.11)."""
+        return self.unidirectional + 2 * self.rule("hysteretic")
+
+    @property
+    def repeatability(self) -> float:
+        """Pose repeatability RP (ISO 9283), mean distance and 3 standard deviations, at most [m], Eq. (T17.12)."""
+        return float(RP * np.linalg.norm(self.cycles[PLACE]))

@@ -1,0 +1,79 @@
+"""What the accuracy of a pose adds to an error budget: a row for each part."""
+
+from __future__ import annotations
+
+from typing import NamedTuple
+
+import numpy as np
+
+from flexapod import kinematics
+from flexapod.arrays import Array
+from flexapod.elements.known import kinds_of
+from flexapod.kinematics.limbs import COORDINATES
+from flexapod.model import Study
+from flexapod.pose_errors.at_pose import AtPose
+from flexapod.pose_errors.play import PLACES, guide_play
+
+__all__ = ["ErrorRow", "rows"]
+
+
+class ErrorRow(NamedTuple):
+    """One part: its `kind` of error (systematic, hysteretic, random, dynamic), and its `nature`.
+
+    `nature`: of a systematic one calibratable, repeatable or drifting; empty of others. `stands`: of a random one, that
+    it is the same at each approach of one machine.
+
+    `by_leg` (n, 6): displacement [m] and rotation [rad] of the tool, world axes; of a random one standard
+    deviations, of a hysteretic one bounds; (1, 6) of what acts on all legs at once. `how` it was computed, in words.
+    """
+
+    part: str
+    kind: str
+    nature: str
+    by_leg: Array
+    how: str
+    stands: bool = False
+
+
+def rows(study: Study, pose: kinematics.Poses) -> list[ErrorRow]:
+    """Rows of geometry, heat, bent legs, tolerances and play at one pose; of what the study does not name none."""
+    at = AtPose(study, pose)
+    found = [ErrorRow(name, "systematic", _nature(name), by_leg, "first order") for name, by_leg in at.parts.items()]
+    found += [
+        ErrorRow(f"{one.name} tolerance", "random", "", one.sigma, "first order, errors independent", stands=True)
+        for one in at.spreading
+    ]
+    found += _of_elements(study, at)
+    if (shorter := guide_play(study.robot, at.sensitivity.q[0, :, COORDINATES.index("l")])).any():
+        by_leg = np.abs(shorter[:, None] * at.sensitivity.coordinate[0, :, COORDINATES.index("l")])
+        found.append(
+            ErrorRow("guide play", "hysteretic", "", by_leg, "second order in the kink: legs that lean or do not")
+        )
+    if at.is_loose:
+        effect = np.abs(at.play.effect[0])
+        how = "first order, whichever way the play is pressed"
+        table = zip(PLACES, effect, strict=True)
+        found += [ErrorRow(f"{place} play", "hysteretic", "", by_leg, how) for place, by_leg in table if by_leg.any()]
+    return found
+
+
+def _of_elements(study: Study, at: AtPose) -> list[ErrorRow]:
+    """Rows of what elements make the strokes err by; alike ones of all legs are a row."""
+    legs, found = study.robot.legs, {}
+    for i, leg in enumerate(legs):
+        for kind in kinds_of(legs):
+            for error in (error for own in kind.all_of(leg) for error in own.errors(leg)):
+                sizes = found.setdefault(error._replace(size=0.0), np.zeros(len(legs)))
+                sizes[i] = np.hypot(sizes[i], error.size) if error.kind == "random" else sizes[i] + error.size
+    moves = at.sensitivity.coordinate[0, :, COORDINATES.index("l")]
+    by_leg = {error: sizes[:, None] * moves for error, sizes in found.items()}
+    return [
+        ErrorRow(error.name, error.kind, "", x if error.kind == "random" else np.abs(x), error.how, error.stands)
+        for error, x in by_leg.items()
+    ]
+
+
+def _nature(part: str) -> str:
+    if part.startswith("heat"):
+        return "drifting"
+    return "repeatable" if part == "bent_legs" else "calibratable"

@@ -1,0 +1,118 @@
+"""Attributes of Datasets: version, the whole study, solver settings, what it cost, warnings; and the study back."""
+
+from __future__ import annotations
+
+import hashlib
+import logging
+from collections import OrderedDict
+from collections.abc import Iterable
+from typing import TYPE_CHECKING
+
+from flexapod import model, version
+from flexapod.results.record import Record
+from flexapod.solve.recording import Counters
+
+if TYPE_CHECKING:
+    from xarray import Dataset
+
+KEPT = 16  # of the last studies, so that their results need not be read as text again
+_log = logging.getLogger("flexapod")
+_known: OrderedDict[str, model.Study | model.ActuatorStudy] = OrderedDict()
+
+
+def attributes(study: model.Study | model.ActuatorStudy, warnings: Iterable[str] = ()) -> dict[str, object]:
+    """Attributes that every Dataset of a study carries; warnings as lines of text."""
+    content = study.model_dump_json(exclude={"source_text", "path", "notes"})  # with the tables that the text names
+    found, digest = list(dict.fromkeys(warnings)), hashlib.sha256(content.encode()).hexdigest()[:16]
+    _remember(digest, study)
+    return {
+        "title": "flexapod: single actuator" if isinstance(study, model.ActuatorStudy) else "flexapod: parallel robot",
+        "flexapod_version": version.__version__,
+        "study": study.source_text,
+        "study_file": study.path or "",
+        "study_hash": digest,
+        "warnings": "\n".join(found),
+    }
+
+
+def _remember(digest: str, study: model.Study | model.ActuatorStudy) -> None:
+    _known[digest] = study
+    while len(_known) > KEPT:
+        _known.popitem(last=False)
+
+
+def study_of(data: Dataset) -> model.Study | model.ActuatorStudy:
+    """The study that a result carries: the one it was computed of while that is known, else read from its text.
+
+    Raises
+    ------
+    InputError
+        It cannot be read any more, as when a table is gone.
+    """
+    known = _recalled(data)
+    if known is None:
+        known = model.loads(data.attrs["study"], path=data.attrs.get("study_file") or None)
+        _remember(str(data.attrs.get("study_hash")), known)
+    return known
+
+
+def _recalled(data: Dataset) -> model.Study | model.ActuatorStudy | None:
+    known = _known.get(str(data.attrs.get("study_hash")))
+    if known is None or (known.source_text, known.path or "") != (data.attrs["study"], data.attrs.get("study_file")):
+        return None
+    return known
+
+
+def robot_of(data: Dataset) -> model.Robot:
+    """The robot of a result, whether or not the tables of its motion and load are still there."""
+    known = _recalled(data)
+    if isinstance(known, model.Study):
+        return known.robot
+    return model.loads_robot(data.attrs["study"], path=data.attrs.get("study_file") or None)
+
+
+def march_attributes(
+    study: model.Study | model.ActuatorStudy, counters: Counters, record: Record, *, compiled: bool
+) -> dict[str, object]:
+    """Solver settings and counters of a time integration, and whether it reached its end."""
+    s = study.simulation
+    error = {} if s.tolerance is None else {"tolerance": s.tolerance, "estimated_error": record.largest_error}
+    method = {"integrator": "generalized-alpha, index-3 constraints", "rho_inf": s.rho_inf}
+    if s.tolerance is not None and compiled:
+        method = {"integrator": "Radau IIA of order 5, rates of the constraints"}
+    settings: dict[str, object] = {
+        **method,
+        "fidelity": s.fidelity,
+        "basis": s.lateral_basis if s.lateral_shapes else "none",
+        "modes": s.lateral_shapes,
+        "compiled": int(compiled),
+        "output_step": s.output_step,
+        "step": record.smallest_step,
+        **error,
+    }
+    if isinstance(study, model.Study):
+        axial = s.axial_shapes(study.robot.legs[0].axial_modes)
+        settings |= {"axial_modes": axial, "start": study.initial.start}
+    return settings | _cost(counters, record) | _ending(record, study.duration)
+
+
+def _cost(counters: Counters, record: Record) -> dict[str, object]:
+    return {
+        "steps": counters.steps,
+        "newton_iterations": counters.iterations,
+        "factorisations": counters.factorisations,
+        "rejected_steps": counters.rejected,
+        "wall_time": record.wall_time,
+    }
+
+
+def _ending(record: Record, duration: float) -> dict[str, object]:
+    if record.failure is None and not record.interrupted:
+        return {"partial": 0}
+    reason = "stopped by the user" if record.failure is None else str(record.failure)
+    reached = float(record.time[-1])
+    if reached < duration * (1 - 1e-9):
+        _log.warning("Only %.6g s of %.6g s were computed: %s", reached, duration, reason)
+    else:
+        _log.warning("All %.6g s were computed, but not as exactly as was asked: %s", duration, reason)
+    return {"partial": 1, "failure": reason, "time_reached": reached}

@@ -1,6 +1,0 @@
-"""A first robot from a few numbers: parts that fit each other, as a commented study file."""
-
-from flexapod.study.first.design import first_robot
-from flexapod.study.first.sizes import IDEAL, Request, parse_request
-
-__all__ = ["IDEAL", "Request", "first_robot", "parse_request"]

@@ -1,0 +1,55 @@
+"""The cases, from the parts to the whole, then the independent engines and what is left out."""
+
+from collections.abc import Iterator
+from types import ModuleType
+
+from flexapod.verify.case import Case
+from flexapod.verify.cases import (
+    bending,
+    bricard,
+    calculix_beams,
+    calculix_robots,
+    exudyn,
+    exudyn_parts,
+    four_bar,
+    frequencies,
+    hexapods,
+    integration,
+    machines,
+    mechanisms,
+    mujoco_forces,
+    real_parts,
+    slider_crank,
+    sliding,
+    solids,
+    squeezer,
+    stiffness,
+    turning,
+)
+
+__all__ = ["CASES"]
+
+_SUBJECTS = (
+    bending, solids, turning, sliding, integration, hexapods, frequencies, stiffness, mechanisms,
+    slider_crank, squeezer, four_bar, bricard, real_parts, machines,
+    mujoco_forces, calculix_beams, calculix_robots, exudyn,
+    exudyn_parts,
+)  # fmt: skip
+
+NOT_MODELLED = Case(
+    name="not-modelled",
+    statement="Impulses and insensitivity of the shapers ZV, ZVD, ZVDD and EI; damping by integral force feedback",
+    source="Singer & Seering 1990, Singhose et al. 1994; Preumont et al. 2007",
+    argument="half a unit of the printed digits",
+    compute=list,
+    not_run="the software has neither shapers nor force feedback",
+)
+
+
+def _rows(module: ModuleType) -> Iterator[Case]:
+    """The cases of a subject in the order in which they are written, alone or as a list."""
+    for value in vars(module).values():
+        yield from (case for case in (value if isinstance(value, list) else [value]) if isinstance(case, Case))
+
+
+CASES = (*(case for module in _SUBJECTS for case in _rows(module)), NOT_MODELLED)
