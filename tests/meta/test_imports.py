@@ -29,7 +29,7 @@ def test_the_command_loads_neither_page_nor_proof_nor_paper():
     assert python(code.format(names=own)) == "[]"
     engines = ("exudyn", "mujoco")  # loaded by what is computed, not by the tables of cases and claims
     code = "import sys, flexapod.{part}; print([m for m in {names} if m in sys.modules])"
-    assert python(code.format(part="proof.pack", names=engines)) == "[]"
+    assert python(code.format(part="verify.pack", names=engines)) == "[]"
     assert python(code.format(part="paper.claims", names=engines)) == "[]"
 
 

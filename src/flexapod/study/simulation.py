@@ -128,7 +128,7 @@ def simulate(
     Returns
     -------
     xarray.Dataset
-        The variables of the table `study.names`, SI units. ``partial = 1`` in the attributes if the integration
+        The variables of the table `results.names`, SI units. ``partial = 1`` in the attributes if the integration
         stopped before its end; ``failure`` then says why.
 
     Raises
