@@ -23,7 +23,7 @@ GAMMA = slice(COORDINATES.index("gamma1"), None)
 
 
 def leg_coordinates(shapes: Shapes) -> tuple[Index, Index]:
-    """Which of `rigid.limbs.COORDINATES` a leg of these shapes has, and where in q."""
+    """Which of `kinematics.limbs.COORDINATES` a leg of these shapes has, and where in q."""
     there = [k for k, name in enumerate(COORDINATES) if shapes.has(name)]
     return np.array(there), np.array([shapes.index(COORDINATES[k]) for k in there])
 

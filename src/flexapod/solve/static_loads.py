@@ -62,7 +62,7 @@ def at_drives(system: System, robot: Robot, values: Array) -> Array:
 
 
 def _ports(system: System) -> Iterator[tuple[int, int]]:
-    """Which of `rigid.limbs.COORDINATES` are ports, and which ones."""
+    """Which of `kinematics.limbs.COORDINATES` are ports, and which ones."""
     for k, at in zip(*leg_coordinates(system.kernel.shapes), strict=True):
         yield from ((k, int(port)) for port in np.flatnonzero(system.ports == at))
 

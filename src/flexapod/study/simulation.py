@@ -40,7 +40,7 @@ class Simulated:
     remarks: list[str]
 
     def values(self) -> dict[str, Array]:
-        """The variables of the Dataset as plain arrays; single groups of them are functions of `study.results`."""
+        """The variables of the Dataset as plain arrays; single groups of them are functions of `results`."""
         path = self.path.at(self.record.time)
         return robot_results(self.study, self.march.system, self.record, path) | rigid_force_results(path)
 
