@@ -5,7 +5,7 @@ By hand, it takes an hour or two (seeds give other faults; what is in the file o
     .venv/bin/python -m tests.faults 100 [--seed 1] [--results build/faults]    try faults, list survivors
     .venv/bin/python -m tests.faults --list 100                                 show them, try none
     .venv/bin/python -m tests.faults --again                                    survivors of the results once more
-    .venv/bin/python -m tests.faults --again kinematics/laws --tests tests/unit/test_rigid_laws.py    some, by these tests
+    .venv/bin/python -m tests.faults --again kinematics/laws --tests tests/unit/test_rigid_laws.py   by these
 
 A fault is one operator, number, index, function, default or sign. One that changes words alone is none: docstrings,
 messages, annotations, figures. Each is tried in one process of low priority, on tests that are near (they call the

@@ -61,7 +61,7 @@ def as_many(robot: model.Robot, pose: PoseLike) -> kinematics.Poses:
 
 
 def from_home(robot: model.Robot, values: Array) -> kinematics.Poses:
-    """Poses at rest from surge, sway, heave [m], roll, pitch, yaw [rad], shape (P, 6); see `kinematics.poses_from_home`."""
+    """Poses at rest from surge, sway, heave [m], roll, pitch, yaw [rad], (P, 6); see `kinematics.poses_from_home`."""
     return kinematics.poses_from_home(robot, values)
 
 
