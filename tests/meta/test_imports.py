@@ -102,3 +102,8 @@ def test_garbage_is_looked_for_as_before():
         "print(gc.isenabled(), gc.get_freeze_count(), [ring() for ring in seen])"
     )
     assert python(code) == "True 0 [None, None]"
+
+
+def test_a_former_name_answers_and_says_the_new_one():
+    with pytest.warns(FutureWarning, match=r"flexapod\.rigid is flexapod\.kinematics now"):
+        assert flexapod.rigid is flexapod.kinematics
