@@ -20,5 +20,5 @@ def run_script(client: ClientHandle, name: str, argument: Any) -> None:
 
 @cache
 def _function(name: str) -> str:
-    text = files("flexapod.cli").joinpath("assets", f"{name}.js").read_text(encoding="utf-8")
+    text = files("flexapod.page").joinpath("assets", f"{name}.js").read_text(encoding="utf-8")
     return text[text.index("\n(") + 1 :].rstrip().rstrip(";")
