@@ -3,6 +3,7 @@
 from functools import cache
 
 import numpy as np
+from tests.layouts import layout
 
 from flexapod.bases import axial_basis, lateral_basis
 from flexapod.elements.drive_train import DriveTrain
@@ -11,7 +12,7 @@ from flexapod.elements.slot import Slot
 from flexapod.elements.soft_joint import SoftBase, SoftPlatform
 from flexapod.kinematics.rotations import quaternion
 from flexapod.mechanics.assembly import leg_functions
-from flexapod.mechanics.layout import Shapes, leg_parameters
+from flexapod.mechanics.layout import leg_parameters
 from flexapod.symbolic.functions import Interpreted
 
 GUIDE, CYLINDER = lateral_basis("tip-load", 2), lateral_basis("tip-load", 3, moment=True)
@@ -98,7 +99,7 @@ PHYSICS |= {
 def shapes(kind, *, modes=3, axial=2, basis="tip-load"):
     lateral, switches = lateral_basis(basis, modes), KINDS[kind]
     other = lateral_basis(basis, 0) if switches.get("planar") else lateral
-    return Shapes(a=lateral, b=other, axial=axial_basis(axial), **switches)
+    return layout(a=lateral, b=other, axial=axial_basis(axial), **switches)
 
 
 @cache

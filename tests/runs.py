@@ -3,9 +3,10 @@
 from functools import cache
 
 import numpy as np
+from tests.layouts import layout
 
 from flexapod.bases import axial_basis, lateral_basis
-from flexapod.mechanics.layout import LEG_PARAMETERS, Shapes
+from flexapod.mechanics.layout import LEG_PARAMETERS
 from flexapod.model import override, preset
 from flexapod.solve.actuator_march import prepare_actuator
 from flexapod.solve.kernel import interpreted_kernel
@@ -58,7 +59,7 @@ def uncompiled(basis, modes, axial_modes, *, planar=False):
     lateral = lateral_basis(basis, modes)
     other = lateral_basis(basis, 0) if planar else lateral
     meeting = {"planar": True, "closure": "none", "tip_body": True} if planar else {}
-    return interpreted_kernel(Shapes(a=lateral, b=other, axial=axial_basis(axial_modes), **meeting))
+    return interpreted_kernel(layout(a=lateral, b=other, axial=axial_basis(axial_modes), **meeting))
 
 
 @cache

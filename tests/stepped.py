@@ -5,10 +5,11 @@ from functools import cache
 import numpy as np
 from scipy.linalg import eigh, expm, null_space
 from scipy.optimize import brentq
+from tests.layouts import layout
 
 from flexapod.bases import axial_basis, lateral_basis
 from flexapod.mechanics.assembly import leg_functions
-from flexapod.mechanics.layout import Shapes, leg_parameters
+from flexapod.mechanics.layout import leg_parameters
 from flexapod.model import Cylinder, Leg, Piston, PistonSection
 from flexapod.solve.parameters import _inside, _leg
 from flexapod.solve.sections import section_parameters
@@ -40,7 +41,7 @@ def vector(leg, shapes, home):
 
 def shapes_of(modes, axial, sections, **others):
     lateral = lateral_basis("tip-load", modes)
-    return Shapes(a=lateral, b=lateral, axial=axial_basis(axial), sections=sections, **others)
+    return layout(a=lateral, b=lateral, axial=axial_basis(axial), sections=sections, **others)
 
 
 @cache

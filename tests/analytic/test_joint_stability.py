@@ -4,9 +4,9 @@ import numpy as np
 import pytest
 from scipy.linalg import eig, null_space
 from tests import legs_of_all_kinds as legs
+from tests.layouts import layout
 
 from flexapod.bases import axial_basis, lateral_basis
-from flexapod.mechanics.layout import Shapes
 
 EI, LENGTH = 5217.4, 0.435
 HOME = dict.fromkeys(("base_stiffness", "gamma_stiffness", "gravity", "joint", "base", "gamma_home"), np.zeros(3))
@@ -16,7 +16,7 @@ FRAMES = dict.fromkeys(("R0", "platform_frame", "leg_frame"), np.eye(3))
 def leg(closure, modes, axial=0, **switches):
     lateral = lateral_basis("tip-load", modes, moment=closure != "point")
     more = switches | ({"tip_body": True} if closure == "none" else {})
-    return Shapes(a=lateral, b=lateral, axial=axial_basis(axial), closure=closure, torsion=closure != "point", **more)
+    return layout(a=lateral, b=lateral, axial=axial_basis(axial), closure=closure, torsion=closure != "point", **more)
 
 
 def matrices(ours, lam=(), load=(), moving=("a", "b", "c", "t"), **changed):

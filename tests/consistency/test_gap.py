@@ -48,7 +48,11 @@ def test_a_rotor_that_is_free_in_its_gap_loses_nothing():
                         series_damping=damping, half_play=w, rotor_mass=0.0)  # fmt: skip
     there = np.array([0.0, -0.3, 0.3, 4.0, -4.0]) * w
     found = [
-        DriveTrain.energy_among([Slot(Gap)], p, SimpleNamespace(r=0.7 + x, l=0.7), SimpleNamespace(r=rate, l=0.0))
+        DriveTrain.energy_along(
+            SimpleNamespace(
+                p=p, q=SimpleNamespace(r=0.7 + x, l=0.7), v=SimpleNamespace(r=rate, l=0.0), elements=[Slot(Gap)]
+            )
+        )
         for x in there
     ]
     lost = np.array([one.dissipation for one in found]) / (0.5 * damping * rate**2)

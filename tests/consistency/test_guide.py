@@ -11,6 +11,7 @@ from casadi import DM
 from scipy.linalg import eigh
 from scipy.optimize import brentq
 from tests import legs_of_all_kinds as legs
+from tests.layouts import layout
 from tests.machines import SCREW, machine, study
 from tests.mechanisms import planar, three_rps
 from tests.oracles.guided import Guided
@@ -24,7 +25,6 @@ from flexapod.error_budget.sentences import part_words
 from flexapod.errors import InputError
 from flexapod.exchange.export import abaqus_deck
 from flexapod.kinematics.rotations import exponential, quaternion, rotation_vector
-from flexapod.mechanics.layout import Shapes
 from flexapod.model import MATERIALS, Cylinder, ForceDrive, Guide, Mounted, PrescribedDrive, ServoDrive
 from flexapod.model.material import Tube
 from flexapod.model.spring import AxialSpring
@@ -114,7 +114,7 @@ def leg_of(overlap, modes=6, **more):
     length = MOUTH + s
     given = bare(Lp=s + overlap, guide_reach=length + overlap, gravity=np.zeros(3), guide_stiffness=[GLAND, HEAD],
                  EI=EI, guide_EI=EI, rhoA=RHO, guide_rhoA=RHO, **more)  # fmt: skip
-    ours = Shapes(a=lateral_basis("tip-load", modes), b=lateral_basis("tip-load", modes), axial=axial_basis(0),
+    ours = layout(a=lateral_basis("tip-load", modes), b=lateral_basis("tip-load", modes), axial=axial_basis(0),
                   guide=lateral_basis("tip-load", modes // 2))  # fmt: skip
     return ours, given, length
 
@@ -228,7 +228,7 @@ def test_stiff_bushings_of_a_stiff_rod_between_them_are_the_clamp():
     # d / (3 EI) of a rod 1e7 times as stiff is 1e-7 of what the rod outside gives.
     ours, given, length = leg_of(0.12, 4)
     stiff = given | {"guide_EI": 1e7 * EI, "guide_stiffness": [1e14, 1e14]}
-    clamped = Shapes(a=ours.a, b=ours.b, axial=ours.axial)
+    clamped = layout(a=ours.a, b=ours.b, axial=ours.axial)
     found, theirs = (
         np.sqrt(eigh(*pinned(shapes, x, length)[::-1], eigvals_only=True))
         for shapes, x in ((ours, stiff), (clamped, given))
@@ -468,7 +468,7 @@ def test_a_cylinder_that_bends_by_calculix(overlap):
         cylinder_inertia=mass * MOUTH**2 / 12,
     )  # fmt: skip
     lateral, tube = lateral_basis("tip-load", 6), lateral_basis("tip-load", 4, moment=True)
-    ours = Shapes(a=lateral, b=lateral, axial=axial_basis(0), guide=lateral_basis("tip-load", 3), cylinder=tube)
+    ours = layout(a=lateral, b=lateral, axial=axial_basis(0), guide=lateral_basis("tip-load", 3), cylinder=tube)
     found = np.sqrt(eigh(*pinned(ours, given, length)[::-1], eigvals_only=True)[::2][:4]) / (2 * np.pi)
     np.testing.assert_allclose(found, calculix.run(deck(given, length, 60)).frequencies()[:4], rtol=1e-3)
 

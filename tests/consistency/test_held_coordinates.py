@@ -10,9 +10,13 @@ from tests.runs import run_robot
 
 from flexapod import kinematics
 from flexapod.bases import lateral_basis
+from flexapod.elements.slot import Slot
+from flexapod.elements.tip_body import TipBody
+from flexapod.elements.torsion import Torsion
 from flexapod.integration import GeneralizedAlpha
 from flexapod.kinematics.limbs import limbs
 from flexapod.mechanics.layout import PAYLOAD_PARAMETERS, columns, leg_parameters
+from flexapod.mechanics.leg_chain import LegChain
 from flexapod.model import AxisMotion, Cylinder, Load, Piston, Study, override, preset
 from flexapod.solve import interpreted, native, parameters, robot_system
 from flexapod.solve.batch import RestStates
@@ -158,7 +162,7 @@ def test_the_order_of_the_legs_does_not_matter(kind):
 def test_a_closed_attitude_with_free_angles_is_a_ball():
     study = moving("6-UPS")
     robot, plain = study.robot, prepare(study).system
-    legs, shapes = limbs(robot), replace(plain.kernel.shapes, closure="pose")
+    legs, shapes = limbs(robot), replace(plain.kernel.shapes, chain=LegChain(closure="pose"))
     posed = replace(
         plain,
         kernel=kernel(shapes),
@@ -181,7 +185,10 @@ def test_a_closed_attitude_with_free_angles_is_a_ball():
 def test_a_leg_without_payload_swings_as_the_dense_equations_say(carriage):
     """In space, with a body and a load at its tip, on a carriage that a spring drives or on none; its stroke held."""
     shapes = space_shapes(
-        lateral_basis("tip-load", 2), 1, closure="none", tip_body=True, spin=True, torsion=True, carriage=carriage
+        lateral_basis("tip-load", 2),
+        1,
+        LegChain(closure="none", spin=True, carriage=carriage),
+        elements=(Slot(Torsion), Slot(TipBody)),
     )
     layout = leg_parameters(shapes)
     given = {

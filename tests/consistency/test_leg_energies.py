@@ -2,6 +2,7 @@
 
 import numpy as np
 import pytest
+from tests.layouts import layout
 from tests.oracles import nonlinear
 
 from flexapod.bases import axial_basis, lateral_basis
@@ -61,4 +62,4 @@ def test_the_axial_sine_coupling_is_exact():
 
 def test_bases_share_the_kernel_layout():
     lateral, axial = lateral_basis("tip-load", 2), axial_basis(2)
-    assert Shapes(a=lateral, b=lateral, axial=axial).size == 9
+    assert layout(a=lateral, b=lateral, axial=axial).size == 9

@@ -5,6 +5,7 @@ import base64
 import numpy as np
 import pytest
 from scipy.linalg import eigh
+from tests.layouts import layout
 from tests.legs_of_all_kinds import rotation
 from tests.machines import SOFT, machine, study
 from tests.mechanisms import ROBOTS
@@ -18,7 +19,6 @@ from flexapod.errors import InputError
 from flexapod.exchange.export import abaqus_deck, left_out
 from flexapod.kinematics.rotations import quaternion, turned
 from flexapod.mechanics.assembly import payload_functions
-from flexapod.mechanics.layout import Shapes
 from flexapod.model import AxialSpring, loads, preset, to_toml
 from flexapod.model.joint import Joint
 from flexapod.model.mount import BaseMotion, Mount
@@ -226,7 +226,7 @@ def test_frames_do_not_leave_the_plane_of_a_robot():
 def test_the_plate_below_the_payload_keeps_the_balance_of_power(seed):
     # d(T + V)/dt is the power of what is left of the balances; differences of fourth order leave 1e-9.
     ours, rng = (
-        Shapes(a=NONE, b=NONE, axial=axial_basis(0), elements=(Slot(PlatformMounting),)),
+        layout(a=NONE, b=NONE, axial=axial_basis(0), elements=(Slot(PlatformMounting),)),
         np.random.default_rng(seed),
     )
     residual, _, energies = (Interpreted(f) for f in payload_functions(ours))
@@ -251,7 +251,7 @@ def test_the_plate_below_the_payload_keeps_the_balance_of_power(seed):
 def test_a_plate_that_holds_still_under_the_payload_is_one_body_with_it(seed):
     """Newton and Euler of both bodies by hand; the power alone does not see what is square in the rate of turning."""
     ours, rng = (
-        Shapes(a=NONE, b=NONE, axial=axial_basis(0), elements=(Slot(PlatformMounting),)),
+        layout(a=NONE, b=NONE, axial=axial_basis(0), elements=(Slot(PlatformMounting),)),
         np.random.default_rng(seed),
     )
     residual = Interpreted(payload_functions(ours)[0])

@@ -5,11 +5,12 @@ from dataclasses import replace
 import numpy as np
 import pytest
 from tests.consistency.test_mechanism_statics import frequencies, hexapod, solved
+from tests.layouts import layout
 from tests.oracles import beams
 from tests.systems import CYLINDER, PISTON, packed, robot
 
 from flexapod.bases import axial_basis, lateral_basis
-from flexapod.mechanics.layout import Shapes, leg_parameters
+from flexapod.mechanics.layout import leg_parameters
 from flexapod.solve.batch import RestStates, matrices_at_rest
 from flexapod.solve.equilibrium import equilibria
 from flexapod.solve.kernel import interpreted_kernel
@@ -66,7 +67,7 @@ def test_one_leg_between_two_fixed_points_is_a_beam():
 def test_a_leg_without_payload_is_a_cantilever():
     """Its joint and stroke held, a force at its tip: F s^3 / 3EI across, F Lp / EA along."""
     lateral, s, force = lateral_basis("tip-load", 3), 0.5, 20.0
-    shapes = Shapes(a=lateral, b=lateral, axial=axial_basis(1), closure="none")
+    shapes = layout(a=lateral, b=lateral, axial=axial_basis(1), closure="none")
     values = PISTON | {"R0": np.eye(3).ravel()}
     system = System(
         kernel=interpreted_kernel(shapes), leg_p=packed(leg_parameters(shapes), values)[None], joint_p=np.zeros((1, 0)),

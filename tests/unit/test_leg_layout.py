@@ -1,14 +1,15 @@
 """Order of coordinates and parameters in the kernels of a leg."""
 
 import pytest
+from tests.layouts import layout
 
 from flexapod.bases import axial_basis, lateral_basis
-from flexapod.mechanics.layout import LEG_PARAMETERS, Shapes, leg_parameters
+from flexapod.mechanics.layout import LEG_PARAMETERS, leg_parameters
 
 
 def shapes(**switches):
     lateral = lateral_basis("tip-load", 2)
-    return Shapes(a=lateral, b=lateral, axial=axial_basis(1), **switches)
+    return layout(a=lateral, b=lateral, axial=axial_basis(1), **switches)
 
 
 FLEXURES = ["u1", "u2", "u3", "e1", "e2", "e3"]

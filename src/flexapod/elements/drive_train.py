@@ -7,12 +7,11 @@ from dataclasses import dataclass
 from types import SimpleNamespace
 from typing import TYPE_CHECKING, Any, ClassVar, Self
 
-from flexapod.elements.element import Named, Physics, SeriesSprings, Standing
+from flexapod.elements.element import Along, Named, Physics, SeriesSprings, Standing
 from flexapod.elements.frame import Energies
 from flexapod.elements.springs import Spring, before_stroke, in_series, softening
 
 if TYPE_CHECKING:
-    from flexapod.elements.slot import Slot
     from flexapod.model import Leg
     from flexapod.symbolic.vocabulary import SX
 
@@ -56,20 +55,19 @@ class DriveTrain(Physics):
         return ("r",) if leg.drive.holds or leg.screw is None else ()
 
     @classmethod
-    def energy_among(
-        cls, elements: Sequence[Slot], p: SimpleNamespace, q: SimpleNamespace, v: SimpleNamespace
-    ) -> Energies:
+    def energy_along(cls, x: Along) -> Energies:
         """The compliance of the springs is a polynomial in l, as that of a shaft goes with the nut's place."""
+        p, q, v = x.p, x.q, x.v
         s = SeriesSprings(stretching(p, q.l), q.l, v.l)
-        for element in elements:
+        for element in x.elements:
             s = element.in_series(s, p, q, v)
         stiffness = p.series_stiffness / s.softer  # (T15.5)
-        x, rate = q.r - s.nut, v.r - s.rate
-        for element in elements:
-            x, rate = element.past(x, rate, p)
+        stretch, rate = q.r - s.nut, v.r - s.rate
+        for element in x.elements:
+            stretch, rate = element.past(stretch, rate, p)
         return Energies(
             kinetic=0.5 * p.rotor_mass * v.r**2,  # (T15.12)
-            strain=0.5 * stiffness * x**2,  # (T15.11)
+            strain=0.5 * stiffness * stretch**2,  # (T15.11)
             dissipation=0.5 * p.series_damping * rate**2,
         )
 

@@ -19,11 +19,14 @@ from flexapod.schema.table import Table
 from flexapod.symbolic.vocabulary import dot, sqrt, vertcat
 
 if TYPE_CHECKING:
+    from flexapod.elements.distribution import PistonMotion
+    from flexapod.elements.frame import Frame
     from flexapod.elements.slot import Slot
     from flexapod.model import Leg, Robot, Simulation
     from flexapod.symbolic.vocabulary import SX
 
 __all__ = [
+    "Along",
     "Contribution",
     "Element",
     "Moving",
@@ -90,6 +93,27 @@ class Contribution(NamedTuple):
     size: float
     how: str
     stands: bool = False
+
+
+@dataclass(frozen=True, kw_only=True)
+class Along:
+    """A leg along its chain, for energies that need more than its coordinates.
+
+    ``p``, ``q``, ``v``: its parameters, coordinates and rates by name; ``elements``: all those of the kernel; ``foot``
+    and ``cylinder``: frames before and behind the base joint; ``piston``: its fields and what moves them.
+    """
+
+    p: SimpleNamespace
+    q: SimpleNamespace
+    v: SimpleNamespace
+    elements: Sequence[Slot]
+    foot: Frame
+    cylinder: Frame
+    piston: PistonMotion
+
+    def holds(self, kind: type[Physics]) -> bool:
+        """Whether an element of a kind is among them."""
+        return any(element.kind is kind for element in self.elements)
 
 
 @dataclass(frozen=True, kw_only=True)
@@ -177,11 +201,9 @@ class Physics:
         return Energies()
 
     @classmethod
-    def energy_among(
-        cls, elements: Sequence[Slot], p: SimpleNamespace, q: SimpleNamespace, v: SimpleNamespace
-    ) -> Energies:
-        """The same where others of the kernel change them."""
-        return cls.energy(p, q, v)
+    def energy_along(cls, x: Along) -> Energies:
+        """The same of what asks for frames, or for the other elements."""
+        return cls.energy(x.p, x.q, x.v)
 
     @classmethod
     def slides(cls, p: SimpleNamespace, q: SimpleNamespace, v: SimpleNamespace) -> SX:

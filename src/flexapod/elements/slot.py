@@ -2,14 +2,14 @@
 
 from __future__ import annotations
 
-from collections.abc import Mapping, Sequence
+from collections.abc import Mapping
 from dataclasses import dataclass, replace
 from types import SimpleNamespace
 from typing import TYPE_CHECKING, Any
 
 import numpy as np
 
-from flexapod.elements.element import Moving, Named, Physics, SeriesSprings, Standing
+from flexapod.elements.element import Along, Moving, Named, Physics, SeriesSprings, Standing
 
 if TYPE_CHECKING:
     from flexapod.elements.frame import Energies
@@ -62,9 +62,9 @@ class Slot:
         """Coordinates that follow a table in one leg."""
         return list(self._prefixed(dict.fromkeys(self.kind.held(self.of(leg), leg, at_rest=at_rest))))
 
-    def energy(self, elements: Sequence[Slot], p: SimpleNamespace, q: SimpleNamespace, v: SimpleNamespace) -> Energies:
-        """Energies of a leg with some elements."""
-        return self.kind.energy_among(elements, self.seen(p), self.seen(q), self.seen(v))
+    def energy(self, x: Along) -> Energies:
+        """Energies where it stands in a leg."""
+        return self.kind.energy_along(replace(x, p=self.seen(x.p), q=self.seen(x.q), v=self.seen(x.v)))
 
     def in_series(self, s: SeriesSprings, p: SimpleNamespace, q: SimpleNamespace, v: SimpleNamespace) -> SeriesSprings:
         """Springs between rotor and stroke with what the element changes in them."""

@@ -3,25 +3,45 @@
 from __future__ import annotations
 
 from types import SimpleNamespace
+from typing import ClassVar
 
 import numpy as np
 
 from flexapod.elements.distribution import Distribution, PistonMotion, gravity_energy, kinetic_energy
+from flexapod.elements.element import Along, Named, Physics
 from flexapod.elements.frame import Energies
 from flexapod.elements.sliding_piston import tip_turn
 from flexapod.symbolic.vocabulary import SX, constant, cross, dot, zeros
 
 
-def tip_body(f: PistonMotion, p: SimpleNamespace, planar: bool) -> Energies:
-    """Energies of a point mass at the tip with the piston's slope, in space also of its turn about the leg."""
-    body, theta = _mass(f, p), tip_turn(f)
-    if planar:
-        turning = p.tip_inertia * (f.frame.omega[1] + f.rate(theta[1])) ** 2  # (T3.13)
-    else:
+class PlanarTipBody(Physics):
+    """Of the single actuator in its plane: a mass and an inertia with the piston's slope."""
+
+    @classmethod
+    def energy_along(cls, x: Along) -> Energies:
+        """Of a point mass, and of its turn."""
+        body = _mass(x.piston, x.p)
+        kinetic = kinetic_energy(x.piston, body) + 0.5 * cls.turning(x.piston, x.p)
+        return Energies(kinetic=kinetic, gravity=gravity_energy(x.piston, body, x.p.gravity))
+
+    @classmethod
+    def turning(cls, f: PistonMotion, p: SimpleNamespace) -> SX:
+        """Twice the kinetic energy of its turn about itself."""
+        return p.tip_inertia * (f.frame.omega[1] + f.rate(tip_turn(f)[1])) ** 2  # (T3.13)
+
+
+class TipBody(PlanarTipBody):
+    """The same in space, also about the leg."""
+
+    parameters: ClassVar[Named] = (("tip_axial_inertia", 1),)  # kg m^2
+
+    @classmethod
+    def turning(cls, f: PistonMotion, p: SimpleNamespace) -> SX:
+        """Twice the kinetic energy of its turn about itself."""
+        theta = tip_turn(f)
         w, rate = f.frame.omega, f.rate(theta)
         w = w - cross(theta, w - 0.5 * cross(theta, w)) + rate - 0.5 * cross(theta, rate)  # (T13.11)
-        turning = p.tip_inertia * dot(w[:2], w[:2]) + p.tip_axial_inertia * w[2] ** 2
-    return Energies(kinetic=kinetic_energy(f, body) + 0.5 * turning, gravity=gravity_energy(f, body, p.gravity))
+        return p.tip_inertia * dot(w[:2], w[:2]) + p.tip_axial_inertia * w[2] ** 2
 
 
 def _mass(f: PistonMotion, p: SimpleNamespace) -> Distribution:

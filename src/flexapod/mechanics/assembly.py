@@ -132,7 +132,7 @@ class _Leg:
 
     def closed(self, step: SX) -> tuple[SX, SX]:
         """What the closure asks to vanish (of a point closure: the tip), and the wrench of ``lam`` on the payload."""
-        if self.shapes.closure == "pose":
+        if self.shapes.has("gamma1"):
             return pose_closure(self.body, self.qs, self.p, self.lam, self.pose, step)
         if self.shapes.posed:
             return ball_closure(self.body, self.qs, self.p, self.lam, self.pose, step)

@@ -2,12 +2,12 @@
 
 from dataclasses import dataclass
 from functools import cached_property
-from typing import Literal
 
 from flexapod.bases import AxialBasis, LateralBasis, lateral_basis
 from flexapod.elements.element import Physics
 from flexapod.elements.slot import Slot
 from flexapod.mechanics.guide_layout import CYLINDER_PARAMETERS, GUIDE_PARAMETERS
+from flexapod.mechanics.leg_chain import POSE_PARAMETERS, LegChain
 from flexapod.mechanics.section_layout import inner_parameters, section_parameters
 
 #: Physical parameters of one leg, in the order in which kernels read them (name, size). SI; vectors in the world frame.
@@ -33,38 +33,7 @@ LEG_PARAMETERS: tuple[tuple[str, int], ...] = (
     ("tip_inertia", 1),  # kg m^2, transverse
 )
 
-#: Further parameters of legs with a carriage; axis and arms in the world frame, where chi = 0.
-CARRIAGE_PARAMETERS: tuple[tuple[str, int], ...] = (
-    ("carriage_mass", 1),  # kg
-    ("carriage_axis", 3),  # unit vector along a slider's rail or a crank's shaft
-    ("carriage_stiffness", 1),  # N/m or N m/rad, between command and chi
-    ("carriage_damping", 1),  # N s/m or N m s/rad
-)
-#: ... of a crank.
-CRANK_PARAMETERS: tuple[tuple[str, int], ...] = (
-    ("carriage_inertia", 1),  # kg m^2 about the shaft
-    ("carriage_com", 3),  # m, from the shaft
-    ("carriage_arm", 3),  # m, from the shaft to the base joint; `base` is the base joint
-)
-#: ... of legs that turn about their axis at the base joint; 1: with the cylinder (S, F), 0: the piston alone (C).
-SPIN_PARAMETERS: tuple[tuple[str, int], ...] = (("cylinder_spins", 1),)
-#: ... of pistons that twist: from the driven end to the tip, as they stretch.
-TORSION_PARAMETERS: tuple[tuple[str, int], ...] = (("GJ", 1),)  # N m^2
-#: ... of a leg in space with a body at its tip, beside mass and transverse inertia.
-TIP_BODY_PARAMETERS: tuple[tuple[str, int], ...] = (("tip_axial_inertia", 1),)  # kg m^2
-#: ... of legs that meet the payload with place and attitude, Q = F_P^T R^T R_tip F_L Gamma = 1.
-POSE_PARAMETERS: tuple[tuple[str, int], ...] = (
-    ("joint", 3),  # m, platform joint from the payload's CoM, platform axes
-    ("platform_frame", 9),  # F_P, joint frame in platform axes, column by column
-    ("leg_frame", 9),  # F_L, joint frame in the axes of the leg's tip, column by column
-    ("L_c", 1),  # m, length that makes rotations comparable with displacements
-    ("base_stiffness", 3),  # N m/rad, springs on alpha, beta, spin
-    ("base_home", 3),  # rad, where they are slack
-    ("gamma_stiffness", 3),  # N m/rad, springs on gamma1..3
-    ("gamma_home", 3),  # rad
-    ("base_damping", 3),  # N m s/rad, dampers beside these springs
-    ("gamma_damping", 3),  # N m s/rad
-)  #: ... of joints that give way along and about all axes: 6x6 stiffness, displacements [m] first, angles [rad] last.
+#: Of joints that give way along and about all axes: 6x6 stiffness, displacements [m] first, angles [rad] last.
 FLEXURE_PARAMETERS: tuple[tuple[str, int], ...] = (
     ("base_flexure", 36),  # u1..3 and alpha, beta, spin less `base_home`, in the axes R0
     ("platform_flexure", 36),  # e1..3 and gamma1..3 less `gamma_home`, in the axes of the joint in the leg
@@ -89,10 +58,13 @@ PLATE_PARAMETERS: tuple[tuple[str, int], ...] = (
     ("plate_at", 3),  # m, this point, where the mount is, from the payload's CoM
 )
 
-#: Coordinates of elements that stand beside those of the drive, in this order; of others behind all but frames'.
-DRIVE = ("r", "w", "j")
+#: Coordinates of elements that stand beside those of piston and drive, in this order; of others behind all but frames'.
+DRIVE = ("t", "r", "w", "j")
 #: ... and of frames that move, last.
 FRAMES = ("g", "m", "f")
+
+#: Parameters of elements that stand before those of the joint at the payload.
+PISTON = ("GJ", "tip_axial_inertia")
 
 #: Commands that the spring of a drive reads: place and rate.
 COMMAND_SIZE = 2
@@ -117,22 +89,12 @@ class Shapes:
     a, b : LateralBasis
         Shapes along leg x and y; a planar leg bends in a only.
     axial : AxialBasis
-    planar : bool
-        The single actuator in its plane: beta alone, no direction b, a body at the tip.
+    chain : LegChain
+        Joints of a leg.
     elements : tuple of Slot
         What else its legs have, see `elements.known`.
-    closure : {"none", "point", "pose"}
-        What the payload fixes at the tip: nothing, its place (an ideal ball) or its place and attitude.
-    carriage : {"", "slider", "crank"}
-        What moves the base joint.
-    spin, torsion : bool
-        Rotation about the leg's axis at the base joint; twist of the piston.
-    tip_body : bool
-        A body at the tip of a leg without payload.
     flexure : bool
         Displacements of the base joint and of the platform joint (pose closures).
-    pivot_spin : bool
-        A free spin takes the place of gamma3 among the coordinates that the closure determines.
     sections : int
         Of the pistons; 0: all are uniform.
     strips : bool
@@ -150,15 +112,9 @@ class Shapes:
     a: LateralBasis
     b: LateralBasis
     axial: AxialBasis
+    chain: LegChain
     elements: tuple[Slot, ...] = ()
-    planar: bool = False
-    closure: Literal["none", "point", "pose"] = "point"
-    carriage: Literal["", "slider", "crank"] = ""
-    spin: bool = False
-    torsion: bool = False
-    tip_body: bool = False
     flexure: bool = False
-    pivot_spin: bool = False
     sections: int = 0
     strips: bool = False
     tapers: bool = False
@@ -180,19 +136,17 @@ class Shapes:
     @cached_property
     def layout(self) -> tuple[tuple[str, int], ...]:
         """Coordinates q of the leg (name, size); a planar leg has no alpha and no direction b."""
-        angles = ("beta",) if self.planar else ("alpha", "beta")
         amplitudes = (("c", self.axial.count), ("a", self.a.count), ("b", self.b.count))
-        gamma = ("gamma1", "gamma2", "gamma3") if self.closure == "pose" else ()
-        there = (("chi", bool(self.carriage)), ("spin", self.spin), ("t", self.torsion))
         own = {name: size for element in self.elements for name, size in element.coordinates}
         ends = {f"{end}{k}": 1 for end in "ue" for k in (1, 2, 3) if self.flexure or f"{end}{k}" in own}
         drive = tuple((name, own[name]) for name in DRIVE if name in own)
         others = tuple((name, size) for name, size in own.items() if name not in (*DRIVE, *ends, *FRAMES))
         sheared = (("shear_a", self.shear * self.a.count), ("shear_b", self.shear * self.b.count))
         frames = tuple((name, own[name]) for name in FRAMES if name in own)
-        first = (*((name, 1) for name in (*angles, "l")), *amplitudes, *((name, 1) for name, has in there if has))
+        base, more, platform = (_one_each(names) for names in (self.chain.base, self.chain.more, self.chain.platform))
+        first = (*base, *amplitudes, *more)
         thick = (part for part in sheared if part[1])
-        inside = (*((name, 1) for name in gamma), *ends.items(), *thick, *self._inside)
+        inside = (*platform, *ends.items(), *thick, *self._inside)
         return (*first, *drive, *inside, *others, *frames)
 
     @property
@@ -208,10 +162,10 @@ class Shapes:
         """Number of coordinates of the leg."""
         return sum(size for _, size in self.layout)
 
-    @cached_property
+    @property
     def rows(self) -> int:
         """Rows of the closure: 0, 3 or 6."""
-        return {"none": 0, "point": 3, "pose": 6}[self.closure]
+        return self.chain.rows
 
     @property
     def shared(self) -> tuple[int, ...]:
@@ -226,19 +180,17 @@ class Shapes:
     @property
     def posed(self) -> bool:
         """Whether the functions of a leg read the payload's pose; otherwise those of a ball on the payload do."""
-        return self.closure == "pose" or self.has("m")
+        return self.has("gamma1") or self.has("m")
 
     @cached_property
     def pivots(self) -> tuple[int, ...]:
         """Positions of the coordinates that the closure determines, one for each of its rows."""
-        last = "spin" if self.pivot_spin else "gamma3"
-        names = {"none": (), "point": ("alpha", "beta", "l"), "pose": ("alpha", "beta", "l", "gamma1", "gamma2", last)}
-        return tuple(self.index(name) for name in names[self.closure])
+        return tuple(self.index(name) for name in self.chain.pivots)
 
     @property
     def drives(self) -> tuple[tuple[str, str], ...]:
         """Coordinates on which drives have springs, and how their parameters are called."""
-        more = (("chi", "carriage", bool(self.carriage)), ("r", "rotor", self.has("r")))
+        more = (("chi", "carriage", self.has("chi")), ("r", "rotor", self.has("r")))
         return (("l", "drive"), *((name, called) for name, called, there in more if there))
 
     @property
@@ -249,7 +201,7 @@ class Shapes:
     @property
     def loaded(self) -> bool:
         """Whether a load acts on the tip, in space without a payload."""
-        return self.closure == "none" and not self.planar
+        return self.chain.loaded
 
     @property
     def rubbing(self) -> tuple[tuple[Slot, int], ...]:
@@ -289,6 +241,10 @@ class Shapes:
         return {name: columns(self.layout, name).start for name, _ in self.layout}
 
 
+def _one_each(names: tuple[str, ...]) -> tuple[tuple[str, int], ...]:
+    return tuple((name, 1) for name in names)
+
+
 def _of_sections(shapes: Shapes) -> tuple[tuple[str, int], ...]:
     sizes = shapes.sections, shapes.planes, shapes.b.count, shapes.axial.count
     own, tapers = section_parameters(*sizes, shear=shapes.shear, tapers=shapes.tapers), shapes.tapers
@@ -298,18 +254,16 @@ def _of_sections(shapes: Shapes) -> tuple[tuple[str, int], ...]:
 
 def leg_parameters(shapes: Shapes) -> tuple[tuple[str, int], ...]:
     """Physical parameters of one leg in kernel order (name, size)."""
+    own = [item for element in shapes.elements for item in element.parameters]
     parts = (
         (True, LEG_PARAMETERS),
-        (bool(shapes.carriage), CARRIAGE_PARAMETERS),
-        (shapes.carriage == "crank", CRANK_PARAMETERS),
-        (shapes.spin, SPIN_PARAMETERS),
-        (shapes.torsion, TORSION_PARAMETERS),
-        (shapes.tip_body and not shapes.planar, TIP_BODY_PARAMETERS),
-        (shapes.closure == "pose", POSE_PARAMETERS),
+        (True, shapes.chain.parameters),
+        (True, tuple(item for item in own if item[0] in PISTON)),
+        (shapes.has("gamma1"), POSE_PARAMETERS),
         (shapes.flexure, FLEXURE_PARAMETERS),
-        *((True, element.parameters) for element in shapes.elements),
+        (True, tuple(item for item in own if item[0] not in PISTON)),
         (shapes.sections > 0, _of_sections(shapes)),
-        (shapes.has("m") and shapes.closure == "point", PLATFORM_JOINT),
+        (shapes.has("m") and not shapes.has("gamma1"), PLATFORM_JOINT),
         (shapes.guide is not None, GUIDE_PARAMETERS),
         (shapes.cylinder is not None, CYLINDER_PARAMETERS),
     )

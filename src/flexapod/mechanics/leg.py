@@ -11,6 +11,7 @@ from flexapod.bases import LateralBasis
 from flexapod.elements.carriage import carriage
 from flexapod.elements.cylinder import cylinder
 from flexapod.elements.distribution import Line, PistonMotion
+from flexapod.elements.element import Along
 from flexapod.elements.flexible_cylinder import flexible_cylinder, head, hole, mouth
 from flexapod.elements.flexure import flexure, springs
 from flexapod.elements.frame import Energies, Frame
@@ -30,8 +31,6 @@ from flexapod.elements.sliding_piston import sliding_piston, tip_place, tip_turn
 from flexapod.elements.slot import Slot
 from flexapod.elements.soft_joint import SoftBase, SoftPlatform, soft_joint
 from flexapod.elements.stepped_piston import Part, SteppedShapes, of_planes, stepped_piston, stepped_shapes, straight
-from flexapod.elements.tip_body import tip_body
-from flexapod.elements.torsion import torsion
 from flexapod.elements.universal import universal
 from flexapod.mechanics.layout import Shapes
 from flexapod.symbolic.lagrange import Lagrangian
@@ -88,14 +87,11 @@ def leg(shapes: Shapes, p: SimpleNamespace, q: SX, v: SX, qs: SimpleNamespace, v
     e += cylinder(frame, p, vs) + (stepped_piston if shapes.sections else sliding_piston)(motion, p)
     inside, shift, turn, by_head = _inside(shapes, motion, p, inner)
     e += inside
-    if shapes.torsion:
-        e += torsion(frame, p, qs, vs)
-    of_elements = {one: one.energy(shapes.elements, p, qs, vs) for one in shapes.elements}
+    x = Along(p=p, q=qs, v=vs, elements=shapes.elements, foot=ground, cylinder=frame, piston=motion)
+    of_elements = {one: one.energy(x) for one in shapes.elements}
     for energies in of_elements.values():
         e += energies
-    if shapes.tip_body:
-        e += tip_body(motion, p, shapes.planar)
-    if shapes.closure == "pose":
+    if shapes.has("gamma1"):
         e += _joints(shapes, p, qs, vs)
     place = tip_place(motion) + shift
     if shapes.holds(SoftPlatform):
@@ -129,7 +125,7 @@ def _ground(shapes: Shapes, p: SimpleNamespace, qs: SimpleNamespace, vs: SimpleN
         e += plate(base, p.base_mount_at, p.base_plate_mass, p.base_plate_inertia, p.base_plate_weighs * p.gravity)
     if shapes.has("m"):
         e += mount(p.platform_mount_stiffness, p.platform_mount_damping, qs.m, vs.m)
-    ground, carried = carriage(shapes.carriage, p, qs, vs, base)
+    ground, carried = carriage(shapes.chain.carriage, p, qs, vs, base)
     return ground, carried + e
 
 
@@ -211,7 +207,7 @@ def _inside(
 
 def _joints(shapes: Shapes, p: SimpleNamespace, qs: SimpleNamespace, vs: SimpleNamespace) -> Energies:
     """Springs and dampers of the joints at both ends."""
-    base, base_rate = (vertcat(x.alpha, x.beta, x.spin if shapes.spin else zeros(1)) for x in (qs, vs))
+    base, base_rate = (vertcat(x.alpha, x.beta, x.spin if shapes.has("spin") else zeros(1)) for x in (qs, vs))
     end, end_rate = (vertcat(x.gamma1, x.gamma2, x.gamma3) for x in (qs, vs))
     base, end = base - p.base_home, end - p.gamma_home
     e = springs(p.base_stiffness, p.base_damping, base, base_rate)

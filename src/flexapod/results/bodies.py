@@ -137,5 +137,5 @@ def axes_as_drawn(robot: Robot, system: System, record: Record | RestStates) -> 
     """Unit vectors from base to platform joint in the axes of the base, (T, legs, 3)."""
     (place, R), legs, shapes = as_drawn(system, robot, record.q, record.pose), rigid_limbs(robot), system.kernel.shapes
     tips = place[:, None] + (robot.platform_joints - robot.com) @ R.swapaxes(1, 2)
-    vectors = tips - base_points(legs, record.q[..., shapes.index("chi")] if shapes.carriage else None)
+    vectors = tips - base_points(legs, record.q[..., shapes.index("chi")] if shapes.has("chi") else None)
     return vectors / np.linalg.norm(vectors, axis=-1, keepdims=True)

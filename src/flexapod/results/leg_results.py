@@ -223,7 +223,7 @@ def flexible_lengths(robot: Robot, system: System, record: Record) -> Array:
 
 def _carriages(system: System, q: Array) -> Array | None:
     shapes = system.kernel.shapes
-    return q[..., shapes.index("chi")] if shapes.carriage else None
+    return q[..., shapes.index("chi")] if shapes.has("chi") else None
 
 
 def _bears_moments(found: Limbs) -> bool:
@@ -252,7 +252,7 @@ def _joint_moments(robot: Robot, found: Limbs, system: System, record: Record | 
 def damped_angles(system: System) -> list[int]:
     """Coordinates of a leg, angles at its base joint, whose springs are damped in some leg."""
     shapes = system.kernel.shapes
-    if shapes.closure != "pose" or not _of_base(system, "damping").any():
+    if not shapes.has("gamma1") or not _of_base(system, "damping").any():
         return []
     return [shapes.index(name) for name in _BASE_ANGLES if shapes.has(name)]
 
@@ -296,7 +296,7 @@ def _turned_by_cranks(found: Limbs, system: System, q: Array) -> Array:
 
 def _springs(system: System, k: int, angle: Array, rate: Array | float) -> Array:
     """Moment with which spring and damper of a base joint's angle resist, (T, legs)."""
-    if system.kernel.shapes.closure != "pose":
+    if not system.kernel.shapes.has("gamma1"):
         return np.zeros_like(angle)
     stiffness, home, damping = (_of_base(system, name)[:, k] for name in ("stiffness", "home", "damping"))
     return stiffness * (angle - home) + damping * rate

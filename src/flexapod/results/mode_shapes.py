@@ -80,7 +80,7 @@ def _groups(shapes: Shapes) -> dict[str, list[int]]:
         kind: [shapes.index(name) + k for name in group if name in sizes for k in range(sizes[name])]
         for kind, group in names.items()
     }
-    if shapes.closure != "pose":
+    if not shapes.has("gamma1"):
         del found["turning"]  # no springs
     return {kind: chosen for kind, chosen in found.items() if chosen}
 

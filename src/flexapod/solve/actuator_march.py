@@ -57,7 +57,7 @@ def actuator_system(
 
 def places(shapes: Shapes) -> dict[str, int]:
     """Positions of the coordinates that motions and loads drive, in the order of the ports, by name of the motion."""
-    names = {"extension": "l", "rotation": "beta"} if shapes.planar else SPACE_NAMES
+    names = {"extension": "l", "rotation": "beta"} if shapes.chain.planar else SPACE_NAMES
     return {motion: shapes.index(name) for motion, name in names.items()}
 
 
@@ -188,7 +188,7 @@ def _state(study: ActuatorStudy, system: System, law: Law, amplitudes: Array | N
 
 def lateral_signs(shapes: Shapes, along: float, up: float) -> list[tuple[str, float]]:
     """Amplitudes by name, and their parts of a deflection ``along`` the rotation and ``up`` the elevation, (T9.9)."""
-    return [("a", along)] if shapes.planar else [("b", -along), ("a", up)]
+    return [("a", along)] if shapes.chain.planar else [("b", -along), ("a", up)]
 
 
 def _measure(system: System, actuator: Actuator, recording: Recording) -> list[Array]:

@@ -144,7 +144,7 @@ def residual(
             arguments,
             [(system.n,), (3,), (2 + shapes.loaded,), drive],
         )
-    if shapes.closure == "point" and not shapes.posed:
+    if shapes.rows and not shapes.posed:
         points, net = evaluate(system.kernel, "joint_residual", legs * P, [pose, x.lam, system.joint_p], [(3,), (6,)])
         g = g - points
     payload = np.zeros((P, 0))
@@ -194,7 +194,7 @@ def matrices_at_rest(system: System, x: RestStates, wrench: Array) -> RestMatric
         X = X.reshape(P, legs, n, 6)
     else:
         M, D, K, J = evaluate(system.kernel, "leg_matrices", legs * P, arguments, outputs)
-    if system.kernel.shapes.closure == "point" and not system.kernel.shapes.posed:
+    if system.kernel.shapes.rows and not system.kernel.shapes.posed:
         joints = [pose, x.lam, system.joint_p]
         moving, H = evaluate(system.kernel, "joint_matrices", legs * P, joints, [(3, 6), (6, 6)])
     hub, plate = 6 if system.hub else 0, system.kernel.shapes.plate

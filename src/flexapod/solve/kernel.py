@@ -143,7 +143,7 @@ def _fingerprint(shapes: Shapes) -> list[object]:
     sources = {source_of(one.kind) for one in shapes.elements}
     texts += [path.read_bytes() for path in sorted(path for path in sources if path is not None)]
     switches = [x for x in (getattr(shapes, field.name) for field in fields(shapes)) if isinstance(x, (bool, int, str))]
-    return [*texts, *arrays, shapes.layout, [str(one) for one in shapes.elements], switches]
+    return [*texts, *arrays, shapes.layout, shapes.chain, [str(one) for one in shapes.elements], switches]
 
 
 def evaluate(

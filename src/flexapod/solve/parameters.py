@@ -60,7 +60,7 @@ def leg_parameters(robot: Robot, legs: Limbs, shapes: Shapes, per_loss: float = 
         for i, leg in enumerate(robot.legs)
     )
     turns = [COORDINATES.index(name) for name in ("spin", "gamma3")]
-    loose = legs.pose_closure & (shapes.torsion | (legs.state[:, turns] == FREE).all(axis=1))
+    loose = legs.pose_closure & (shapes.has("t") | (legs.state[:, turns] == FREE).all(axis=1))
     # what twists, or turns between two springs, has an inertia: that of a round section where none is given
     with_inertia = zip(rows, robot.legs, loose, strict=True)
     rows = (row | {"piston_axial_inertia": axial_inertia(leg)} if own else row for row, leg, own in with_inertia)
@@ -77,7 +77,6 @@ def _leg(leg: Leg, *, at_rest: bool) -> dict[str, object]:
         "rhoA": leg.piston.rhoA,
         "EI": leg.piston.EI,
         "EA": leg.piston.EA,
-        "GJ": leg.piston.torsional_stiffness,
         "Lp": leg.piston.length,
         "mouth": leg.cylinder.mouth,
         "piston_axial_inertia": leg.piston.axial_inertia,

@@ -88,7 +88,7 @@ def _undeformed(system: System, robot: Robot, path: kinematics.Poses, found: kin
     held = legs.state == HELD  # welds, which the rigid path releases, too
     x[:, :, held] = 0.0
     x[0] += np.where(held, legs.home, 0.0)
-    if shapes.closure == "pose":
+    if shapes.has("gamma1"):
         _turn_balls(legs, x, path)
     q = np.zeros((*x.shape[:3], system.n))
     there, at = leg_coordinates(shapes)

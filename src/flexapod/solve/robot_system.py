@@ -72,7 +72,7 @@ def _held(robot: Robot, legs: Limbs, shapes: Shapes, *, at_rest: bool) -> Mask:
     for name, size in shapes.layout:
         if name in ("c", "u3", "e3") and ends.any():
             held[ends, shapes.index(name) : shapes.index(name) + size] = True
-    if shapes.torsion:  # a ball does not twist its leg
+    if shapes.has("t"):  # a ball does not twist its leg
         held[:, shapes.index("t")] = ~legs.pose_closure
     return held | _held_joints(robot, legs, shapes) | _held_inside(robot, shapes)
 

@@ -10,8 +10,12 @@ import numpy as np
 from flexapod import bases, kinematics
 from flexapod.bases.lateral import LateralBasis
 from flexapod.elements.known import elements_of
+from flexapod.elements.slot import Slot
+from flexapod.elements.tip_body import PlanarTipBody, TipBody
+from flexapod.elements.torsion import Torsion
 from flexapod.kinematics.limbs import ABSENT, COORDINATES, FREE, HELD, Limbs
 from flexapod.mechanics.layout import Shapes
+from flexapod.mechanics.leg_chain import LegChain
 from flexapod.model import Actuator, Rectangle, Robot, Simulation, Tube
 
 __all__ = ["actuator_shapes", "beam_shapes", "leg_shapes", "planar_shapes", "robot_shapes", "space_shapes"]
@@ -29,13 +33,14 @@ def robot_shapes(robot: Robot, simulation: Simulation, legs: Limbs) -> Shapes:
         a=bases.lateral_basis("clamped-free", 0) if robot.plane else lateral,  # across the plane nothing bends
         b=lateral,
         axial=bases.axial_basis(simulation.axial_shapes(robot.legs[0].axial_modes)),
-        elements=elements_of(robot, simulation),
-        closure="pose" if pose else "point",
-        carriage=legs.carriage,
-        spin=bool((spin != ABSENT).any()),
-        torsion=pose and simulation.lateral_shapes > 0,
+        elements=(Slot(Torsion),) * (pose and simulation.lateral_shapes > 0) + elements_of(robot, simulation),
+        chain=LegChain(
+            closure="pose" if pose else "point",
+            carriage=legs.carriage,
+            spin=bool((spin != ABSENT).any()),
+            pivot_spin=bool(((spin == FREE) & (gamma3 == HELD)).any()),
+        ),
         flexure=any(x.flexes for leg in robot.legs for x in (leg.base_joint, leg.platform_joint)),
-        pivot_spin=bool(((spin == FREE) & (gamma3 == HELD)).any()),
         sections=max(len(leg.piston.sections) for leg in robot.legs) or int(shear),
         tapers=any(section.tapered for leg in robot.legs for section in leg.piston.sections),
         shear=shear,
@@ -66,16 +71,16 @@ def _cylinder(count: int, robot: Robot) -> LateralBasis | None:
     return bases.lateral_basis("tip-load", min((count + 1) // 2 + 1, 5), moment=True)
 
 
-def space_shapes(lateral: LateralBasis, axial_modes: int, **joints: Any) -> Shapes:
-    """Shapes of a leg that bends alike in both planes; ``joints`` as `Shapes` has them, by default of a leg UPS."""
-    return Shapes(a=lateral, b=lateral, axial=bases.axial_basis(axial_modes), **joints)
+def space_shapes(lateral: LateralBasis, axial_modes: int, chain: LegChain | None = None, **others: Any) -> Shapes:
+    """Shapes of a leg that bends alike in both planes, by default of a leg UPS; ``others`` as `Shapes` has them."""
+    return Shapes(a=lateral, b=lateral, axial=bases.axial_basis(axial_modes), chain=chain or LegChain(), **others)
 
 
 def planar_shapes(lateral: LateralBasis) -> Shapes:
     """Shapes of the single actuator in its plane."""
     none = bases.lateral_basis("clamped-free", 0)
-    axial = bases.axial_basis(0)
-    return Shapes(a=lateral, b=none, axial=axial, planar=True, closure="none", tip_body=True)
+    chain, body = LegChain(planar=True, closure="none"), (Slot(PlanarTipBody),)
+    return Shapes(a=lateral, b=none, axial=bases.axial_basis(0), chain=chain, elements=body)
 
 
 def actuator_shapes(actuator: Actuator, simulation: Simulation, rate: float = 0.0) -> Shapes:
@@ -87,8 +92,8 @@ def actuator_shapes(actuator: Actuator, simulation: Simulation, rate: float = 0.
     if not actuator.space:
         return planar_shapes(lateral)
     axial = simulation.axial_shapes(actuator.axial_modes) if actuator.EA is not None else 0
-    torsion = actuator.GJ is not None and simulation.lateral_shapes > 0
-    return space_shapes(lateral, axial, closure="none", torsion=torsion, tip_body=True)
+    torsion = (Slot(Torsion),) * (actuator.GJ is not None and simulation.lateral_shapes > 0)
+    return space_shapes(lateral, axial, LegChain(closure="none"), elements=(*torsion, Slot(TipBody)))
 
 
 def leg_shapes(robot: Robot, simulation: Simulation) -> LateralBasis:

@@ -95,7 +95,7 @@ def _compliance(system: System, x: RestStates, m: RestMatrices) -> Array:
     """How far the legs' tips give way to closure forces, stroke and joints held, (T, legs, rows, rows), Eq. (T7.25)."""
     layout = leg_parameters(system.kernel.shapes)
     EA, EI, Lp, mouth = (system.leg_p[:, columns(layout, name)][..., 0] for name in ("EA", "EI", "Lp", "mouth"))
-    GJ = system.leg_p[:, columns(layout, "GJ")][..., 0] if system.kernel.shapes.torsion else EI / 1.3
+    GJ = system.leg_p[:, columns(layout, "GJ")][..., 0] if system.kernel.shapes.has("t") else EI / 1.3
     l_index = system.kernel.shapes.l_index
     s = np.maximum(x.q[..., l_index] - mouth, 1e-3 * Lp)[..., None, None]
     z = m.J[..., :3, l_index]

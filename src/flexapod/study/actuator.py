@@ -142,14 +142,14 @@ def _results(study: model.ActuatorStudy, march: ActuatorMarch, record: Record) -
     """All variables of a simulation; deflections towards larger angles, in space also towards elevations, (T9.9)."""
     shapes, q, hub = march.system.kernel.shapes, record.q[:, 0], study.actuator.hub_radius
     bent = np.stack([sign * amplitudes(shapes, q, name) for name, sign in lateral_signs(shapes, 1.0, 1.0)], axis=1)
-    if shapes.planar:
+    if shapes.chain.planar:
         bent = bent[:, 0]
     at = places(shapes)
     results = {"tip_deflection": bent @ shapes.a.tip} | {_DRIVEN[motion]: q[:, i] for motion, i in at.items()}
     results |= {f"{_DRIVEN[motion]}_rate": record.rate[:, 0, shapes.l_index - i] for motion, i in at.items()}
     if shapes.a.count:
         results["mode_amplitude"] = bent
-    if shapes.planar:
+    if shapes.chain.planar:
         place = _tip(results["angle"], results["length"], results["tip_deflection"], bent, shapes.a.slope_tip, hub)
         results["tip_position"] = place
     else:

@@ -1,0 +1,20 @@
+"""Layouts of legs from the bases of their beam, and what else they have by name."""
+
+from dataclasses import fields
+
+from flexapod.elements.slot import Slot
+from flexapod.elements.tip_body import PlanarTipBody, TipBody
+from flexapod.elements.torsion import Torsion
+from flexapod.mechanics.layout import Shapes
+from flexapod.mechanics.leg_chain import LegChain
+
+CHAIN = {field.name for field in fields(LegChain)}
+
+
+def layout(a, b, axial, *, elements=(), torsion=False, tip_body=False, **given):
+    """Shapes of a leg; ``given``: what `LegChain` has, and the rest of `Shapes`."""
+    chain = LegChain(**{name: value for name, value in given.items() if name in CHAIN})
+    others = {name: value for name, value in given.items() if name not in CHAIN}
+    body = PlanarTipBody if chain.planar else TipBody
+    own = (*(Slot(Torsion),) * torsion, *(Slot(body),) * tip_body)
+    return Shapes(a=a, b=b, axial=axial, chain=chain, elements=(*own, *elements), **others)
