@@ -2,6 +2,7 @@
 
 from dataclasses import fields
 
+from flexapod.elements.flexure import Flexures
 from flexapod.elements.slot import Slot
 from flexapod.elements.tip_body import PlanarTipBody, TipBody
 from flexapod.elements.torsion import Torsion
@@ -11,10 +12,10 @@ from flexapod.mechanics.leg_chain import LegChain
 CHAIN = {field.name for field in fields(LegChain)}
 
 
-def layout(a, b, axial, *, elements=(), torsion=False, tip_body=False, **given):
+def layout(a, b, axial, *, elements=(), torsion=False, tip_body=False, flexure=False, **given):
     """Shapes of a leg; ``given``: what `LegChain` has, and the rest of `Shapes`."""
     chain = LegChain(**{name: value for name, value in given.items() if name in CHAIN})
     others = {name: value for name, value in given.items() if name not in CHAIN}
     body = PlanarTipBody if chain.planar else TipBody
-    own = (*(Slot(Torsion),) * torsion, *(Slot(body),) * tip_body)
+    own = (*(Slot(Torsion),) * torsion, *(Slot(body),) * tip_body, *(Slot(Flexures),) * flexure)
     return Shapes(a=a, b=b, axial=axial, chain=chain, elements=(*own, *elements), **others)

@@ -9,6 +9,7 @@ from tests.mechanisms import built, leg
 from tests.runs import balance, collect
 
 import flexapod as fx
+from flexapod.elements.flexure import Flexures
 from flexapod.kinematics.limbs import limbs
 from flexapod.model import AxisMotion, Joint, Payload, Simulation, loads, override, preset, preset_text, to_toml
 from flexapod.model.cylinder import Cylinder
@@ -162,5 +163,6 @@ def test_rows_of_a_stiffness_have_dampers_of_their_own(count, own):
 
 def flexures_of(robot):
     """Stiffness and damping of the first base joint, per_loss 1 ms."""
-    legs = limbs(robot)
-    return parameters.flexures(robot, legs)[0, 0], parameters.flexures(robot, legs, 1e-3)[0, 0]
+    standing = parameters.standings(robot, limbs(robot), 1e-3, at_rest=False)[0]
+    found = Flexures().numbers(robot.legs[0], standing)
+    return found["base_flexure"], found["base_flexure_damping"]

@@ -50,7 +50,7 @@ class DriveTrain(Physics):
         return found
 
     @classmethod
-    def held(cls, own: Any, leg: Leg, *, at_rest: bool) -> Sequence[str]:
+    def held(cls, own: Any, leg: Leg, standing: Standing) -> Sequence[str]:
         """The travel of what has no rotor, a servo's spring being in series with these, and of a held rotor."""
         return ("r",) if leg.drive.holds or leg.screw is None else ()
 

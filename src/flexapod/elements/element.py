@@ -19,6 +19,7 @@ from flexapod.schema.table import Table
 from flexapod.symbolic.vocabulary import dot, sqrt, vertcat
 
 if TYPE_CHECKING:
+    from flexapod.arrays import Array
     from flexapod.elements.distribution import PistonMotion
     from flexapod.elements.frame import Frame
     from flexapod.elements.slot import Slot
@@ -48,13 +49,17 @@ class Standing(NamedTuple):
     """How a leg stands whose numbers are asked for.
 
     ``length`` [m]: joint to joint, at home; ``per_loss`` [s]: viscous damping over stiffness of a spring of loss factor
-    1; ``at_rest``: loops that sum their errors have left none; ``robot``: the one whose leg it is.
+    1; ``at_rest``: loops that sum their errors have left none; ``robot``: the one whose leg it is; ``attitude``: the
+    payload fixes the attitude of its tip, not the place alone; ``axes``: of its joints ("base", "platform"), rotations
+    to the axes in which they give way from those of what they stand on, and from those of the leg.
     """
 
     length: float
     per_loss: float
     at_rest: bool
     robot: Robot
+    attitude: bool
+    axes: Mapping[str, tuple[Array, Array]]
 
 
 @dataclass(frozen=True)
@@ -99,14 +104,16 @@ class Contribution(NamedTuple):
 class Along:
     """A leg along its chain, for energies that need more than its coordinates.
 
-    ``p``, ``q``, ``v``: its parameters, coordinates and rates by name; ``elements``: all those of the kernel; ``foot``
-    and ``cylinder``: frames before and behind the base joint; ``piston``: its fields and what moves them.
+    ``p``, ``q``, ``v``: its parameters, coordinates and rates by name; ``elements``: all those of the kernel; ``base``:
+    frame of a base that moves, at the origin while it is where it is drawn; ``foot`` and ``cylinder``: frames before
+    and behind the base joint; ``piston``: its fields and what moves them.
     """
 
     p: SimpleNamespace
     q: SimpleNamespace
     v: SimpleNamespace
     elements: Sequence[Slot]
+    base: Frame | None
     foot: Frame
     cylinder: Frame
     piston: PistonMotion
@@ -149,6 +156,8 @@ class Physics:
     ----------
     at : str
         NAME of its table in a leg; none of what is in other tables.
+    end : {"base", "", "platform"}
+        Of a leg where it stands; none of what is between. Energies are summed from base to platform.
     coordinates, parameters : tuple of (name, size)
         What it adds to the coordinates of a leg, and to the numbers that its equations read, in SI.
     absent : mapping
@@ -160,6 +169,7 @@ class Physics:
     """
 
     at: ClassVar[str] = ""
+    end: ClassVar[Literal["base", "", "platform"]] = ""
     coordinates: ClassVar[Named] = ()
     parameters: ClassVar[Named] = ()
     absent: ClassVar[Mapping[str, Any]] = {}
@@ -191,8 +201,11 @@ class Physics:
         return ()
 
     @classmethod
-    def held(cls, own: Any, leg: Leg, *, at_rest: bool) -> Sequence[str]:
-        """Coordinates that follow a table in one leg: by default those of an element that the leg does not have."""
+    def held(cls, own: Any, leg: Leg, standing: Standing) -> Sequence[str]:
+        """Coordinates that follow a table in one leg: by default those of an element that the leg does not have.
+
+        Of a coordinate that several elements have all have to say so.
+        """
         return () if own is not None else tuple(name for name, _ in cls.coordinates)
 
     @classmethod
@@ -204,6 +217,11 @@ class Physics:
     def energy_along(cls, x: Along) -> Energies:
         """The same of what asks for frames, or for the other elements."""
         return cls.energy(x.p, x.q, x.v)
+
+    @classmethod
+    def carries(cls, base: Frame | None, p: SimpleNamespace, q: SimpleNamespace, v: SimpleNamespace) -> Frame | None:
+        """Frame of the base as it carries it, by that of what it stands on itself; None: it stands still."""
+        return base
 
     @classmethod
     def slides(cls, p: SimpleNamespace, q: SimpleNamespace, v: SimpleNamespace) -> SX:

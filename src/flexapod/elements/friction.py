@@ -29,8 +29,6 @@ STILL = 1e-60  # added to squares: a root has no slope at zero
 class _OfJoint(Physics):
     """Friction of a joint about its angles, see `rubbing`; legs without it have a force of none."""
 
-    end: ClassVar[str]
-
     @classmethod
     def of(cls, leg: Leg) -> Self | None:
         """Of every leg: what rubs in one slides in all."""

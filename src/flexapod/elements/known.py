@@ -8,6 +8,7 @@ from typing import TYPE_CHECKING, Any
 from flexapod.elements.drive_train import DriveTrain
 from flexapod.elements.element import Element, Physics, registered
 from flexapod.elements.encoder import Resolution
+from flexapod.elements.flexure import Flexures
 from flexapod.elements.friction import BaseFriction, DriveFriction, PlatformFriction
 from flexapod.elements.gap import Gap
 from flexapod.elements.motor_loop import MotorLoop
@@ -28,7 +29,7 @@ __all__ = ["element_at", "elements_of", "kinds_of", "read_elements", "refuse_tab
 
 GROUP = "flexapod.elements"
 OURS: tuple[type[Physics], ...] = (
-    SoftBase, SoftPlatform, DriveTrain, TurningNut, Gap, Ripple, SummedError, MotorLoop, Oil, Resolution,
+    Flexures, SoftBase, SoftPlatform, DriveTrain, TurningNut, Gap, Ripple, SummedError, MotorLoop, Oil, Resolution,
     BaseFriction, PlatformFriction, DriveFriction, MovedBase, BaseMounting, PlatformMounting,
 )  # fmt: skip
 

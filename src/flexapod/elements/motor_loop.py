@@ -50,9 +50,9 @@ class MotorLoop(Physics):
         return found | ({"loop_lag": screw.lag, "loop_at_once": 0.0} if screw.lag else {})
 
     @classmethod
-    def held(cls, own: Any, leg: Leg, *, at_rest: bool) -> Sequence[str]:
+    def held(cls, own: Any, leg: Leg, standing: Standing) -> Sequence[str]:
         """The impulse of a force that comes at once; at rest what the loop leaves to its place, Eq. (T23.55)."""
-        if own is None or not at_rest:
+        if own is None or not standing.at_rest:
             return () if own is not None and own.screw.lag else ("j",)
         return ("j", *(("r",) if own.about else ()), *(("l",) if own.about and own.screw.rests else ()))
 

@@ -2,12 +2,13 @@
 
 from __future__ import annotations
 
+from types import SimpleNamespace
 from typing import TYPE_CHECKING, Any, ClassVar, Self
 
 import numpy as np
 
 from flexapod.arrays import Array
-from flexapod.elements.element import Named, Physics, Standing
+from flexapod.elements.element import Along, Named, Physics, Standing
 from flexapod.elements.flexure import flexure
 from flexapod.elements.frame import Energies, Frame
 from flexapod.elements.rotations import about_x, about_y, about_z
@@ -47,15 +48,18 @@ class MovedBase(Physics):
         return {"base_motion_at": standing.robot.base_motion.at}  # type: ignore[union-attr]
 
     @classmethod
-    def held(cls, own: Any, leg: Leg, *, at_rest: bool) -> tuple[str, ...]:
+    def held(cls, own: Any, leg: Leg, standing: Standing) -> tuple[str, ...]:
         """All of it."""
         return ("g",)
+
+    @classmethod
+    def carries(cls, base: Frame | None, p: SimpleNamespace, q: SimpleNamespace, v: SimpleNamespace) -> Frame:
+        """All that stands on it."""
+        return displaced(base or world(), p.base_motion_at, q.g, v.g)
 
 
 class _Mounting(Physics):
     """Springs and dampers on which a plate stands, and its displacement and angles; a leg has its share of them."""
-
-    end: ClassVar[str]
 
     @classmethod
     def of(cls, leg: Leg) -> Self | None:
@@ -101,6 +105,20 @@ class BaseMounting(_Mounting):
         share = {"base_plate_mass": mass, "base_plate_inertia": inertia, "base_plate_weighs": weighs}
         return super().numbers(leg, standing) | {name: value / robot.count for name, value in share.items()}
 
+    @classmethod
+    def carries(cls, base: Frame | None, p: SimpleNamespace, q: SimpleNamespace, v: SimpleNamespace) -> Frame:
+        """The plate."""
+        return displaced(base or world(), p.base_mount_at, q.f, v.f)
+
+    @classmethod
+    def energy_along(cls, x: Along) -> Energies:
+        """Its springs and dampers, and the plate."""
+        p = x.p
+        e = mount(p.base_mount_stiffness, p.base_mount_damping, x.q.f, x.v.f)
+        return e + plate(
+            x.base, p.base_mount_at, p.base_plate_mass, p.base_plate_inertia, p.base_plate_weighs * p.gravity
+        )
+
 
 class PlatformMounting(_Mounting):
     """Of the payload, on the plate with the platform joints."""
@@ -112,6 +130,11 @@ class PlatformMounting(_Mounting):
         ("platform_mount_stiffness", 36),
         ("platform_mount_damping", 36),
     )
+
+    @classmethod
+    def energy(cls, p: SimpleNamespace, q: SimpleNamespace, v: SimpleNamespace) -> Energies:
+        """Its springs and dampers; the plate moves with the payload (`mechanics.payload`)."""
+        return mount(p.platform_mount_stiffness, p.platform_mount_damping, q.m, v.m)
 
 
 def plate_mass(robot: Robot, given: Mount, *, at_rest: bool) -> tuple[float, Array]:

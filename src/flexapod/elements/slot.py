@@ -12,7 +12,7 @@ import numpy as np
 from flexapod.elements.element import Along, Moving, Named, Physics, SeriesSprings, Standing
 
 if TYPE_CHECKING:
-    from flexapod.elements.frame import Energies
+    from flexapod.elements.frame import Energies, Frame
     from flexapod.model import Leg
     from flexapod.symbolic.vocabulary import SX
 
@@ -58,13 +58,17 @@ class Slot:
         absent = {name: self.kind.absent.get(name, np.zeros(size)) for name, size in self.kind.parameters}
         return self._prefixed(absent if own is None else absent | dict(own.numbers(leg, standing)))
 
-    def held(self, leg: Leg, *, at_rest: bool) -> list[str]:
+    def held(self, leg: Leg, standing: Standing) -> list[str]:
         """Coordinates that follow a table in one leg."""
-        return list(self._prefixed(dict.fromkeys(self.kind.held(self.of(leg), leg, at_rest=at_rest))))
+        return list(self._prefixed(dict.fromkeys(self.kind.held(self.of(leg), leg, standing))))
 
     def energy(self, x: Along) -> Energies:
         """Energies where it stands in a leg."""
         return self.kind.energy_along(replace(x, p=self.seen(x.p), q=self.seen(x.q), v=self.seen(x.v)))
+
+    def carries(self, base: Frame | None, p: SimpleNamespace, q: SimpleNamespace, v: SimpleNamespace) -> Frame | None:
+        """Frame of the base as it carries it."""
+        return self.kind.carries(base, self.seen(p), self.seen(q), self.seen(v))
 
     def in_series(self, s: SeriesSprings, p: SimpleNamespace, q: SimpleNamespace, v: SimpleNamespace) -> SeriesSprings:
         """Springs between rotor and stroke with what the element changes in them."""

@@ -4,16 +4,21 @@ from __future__ import annotations
 
 from collections.abc import Sequence
 from dataclasses import dataclass
-from typing import TYPE_CHECKING, Any, ClassVar, Literal, Self
+from typing import TYPE_CHECKING, Any, ClassVar, Self
 
-from flexapod.elements.element import Named, Physics, Standing
+import numpy as np
+
+from flexapod.elements.element import Along, Named, Physics, Standing
+from flexapod.elements.flexure import Flexures, displaced
 from flexapod.elements.frame import Energies
 from flexapod.elements.springs import Spring, in_series, springs_along, viscous
-from flexapod.symbolic.vocabulary import dot
+from flexapod.symbolic.vocabulary import constant, dot, matrix33
 
 if TYPE_CHECKING:
     from flexapod.model import Joint, Leg
     from flexapod.symbolic.vocabulary import SX
+
+ALONG = constant(np.array([[0.0], [0.0], [1.0]]))  # a leg's own direction
 
 
 @dataclass(frozen=True)
@@ -23,8 +28,6 @@ class SoftJoint(Physics):
     joint: Joint
     along: Sequence[Spring]
 
-    end: ClassVar[Literal["base", "platform"]]
-
     @classmethod
     def of(cls, leg: Leg) -> Self | None:
         """Of a leg with a spring along it at this end."""
@@ -32,9 +35,12 @@ class SoftJoint(Physics):
         return cls(getattr(leg, f"{cls.end}_joint"), along) if along else None
 
     @classmethod
-    def held(cls, own: Any, leg: Leg, *, at_rest: bool) -> Sequence[str]:
-        """None by itself: a flexure has the same coordinates (`solve.robot_system`)."""
-        return ()
+    def held(cls, own: Any, leg: Leg, standing: Standing) -> Sequence[str]:
+        """Displacements in directions in which it has no stiffness."""
+        letter = cls.coordinates[0][0][0]
+        if own is None:
+            return tuple(name for name, _ in cls.coordinates)
+        return () if own.joint.across_and_along is not None else (f"{letter}1", f"{letter}2")
 
     def numbers(self, leg: Leg, standing: Standing) -> dict[str, Any]:
         """Stiffness and damping (across, along) [N/m, N s/m]."""
@@ -51,6 +57,12 @@ class SoftBase(SoftJoint):
     coordinates: ClassVar[Named] = (("u1", 1), ("u2", 1), ("u3", 1))
     parameters: ClassVar[Named] = (("base_soft", 2), ("base_soft_damping", 2))
 
+    @classmethod
+    def energy_along(cls, x: Along) -> Energies:
+        """Of its displacement, in axes of the leg; of a flexure those of what it stands on."""
+        along = x.foot.axes.T @ x.cylinder.axes[:, 2] if x.holds(Flexures) else ALONG
+        return soft_joint(x.p.base_soft, x.p.base_soft_damping, displaced(x.q, "u"), displaced(x.v, "u"), along)
+
 
 class SoftPlatform(SoftJoint):
     """At the platform, between the piston's tip and it."""
@@ -58,6 +70,13 @@ class SoftPlatform(SoftJoint):
     end = "platform"
     coordinates: ClassVar[Named] = (("e1", 1), ("e2", 1), ("e3", 1))
     parameters: ClassVar[Named] = (("platform_soft", 2), ("platform_soft_damping", 2))
+
+    @classmethod
+    def energy_along(cls, x: Along) -> Energies:
+        """Of its displacement, in axes of the leg; of a flexure those of the joint in the leg."""
+        along = matrix33(x.p.leg_frame).T @ ALONG if x.holds(Flexures) else ALONG
+        p, moved, rate = x.p, displaced(x.q, "e"), displaced(x.v, "e")
+        return soft_joint(p.platform_soft, p.platform_soft_damping, moved, rate, along)
 
 
 def soft_joint(stiffness: SX, damping: SX, moved: SX, rate: SX, along: SX) -> Energies:

@@ -34,11 +34,11 @@ class SummedError(Physics):
         return {"rotor_integral": self.gain}
 
     @classmethod
-    def held(cls, own: Any, leg: Leg, *, at_rest: bool) -> Sequence[str]:
+    def held(cls, own: Any, leg: Leg, standing: Standing) -> Sequence[str]:
         """At rest it has left no error: then the rotor is where it is to be, and there is nothing to sum."""
         if own is None:
             return ("w",)
-        return ("w", "r") if at_rest else ()
+        return ("w", "r") if standing.at_rest else ()
 
     @classmethod
     def asked(cls, p: SimpleNamespace, q: SimpleNamespace) -> SX:

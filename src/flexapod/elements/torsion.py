@@ -21,7 +21,7 @@ class Torsion(Physics):
 
     @classmethod
     def of(cls, leg: Leg) -> Self | None:
-        """Of every leg; a ball does not twist its leg, whose t is then held (`solve.robot_system`)."""
+        """Of every leg."""
         return cls()
 
     @classmethod
@@ -30,9 +30,9 @@ class Torsion(Physics):
         return False
 
     @classmethod
-    def held(cls, own: Any, leg: Leg, *, at_rest: bool) -> Sequence[str]:
-        """None by itself."""
-        return ()
+    def held(cls, own: Any, leg: Leg, standing: Standing) -> Sequence[str]:
+        """Of a leg that a ball does not twist."""
+        return () if standing.attitude else ("t",)
 
     def numbers(self, leg: Leg, standing: Standing) -> dict[str, Any]:
         """Stiffness of a section."""

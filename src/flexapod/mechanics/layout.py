@@ -33,14 +33,6 @@ LEG_PARAMETERS: tuple[tuple[str, int], ...] = (
     ("tip_inertia", 1),  # kg m^2, transverse
 )
 
-#: Of joints that give way along and about all axes: 6x6 stiffness, displacements [m] first, angles [rad] last.
-FLEXURE_PARAMETERS: tuple[tuple[str, int], ...] = (
-    ("base_flexure", 36),  # u1..3 and alpha, beta, spin less `base_home`, in the axes R0
-    ("platform_flexure", 36),  # e1..3 and gamma1..3 less `gamma_home`, in the axes of the joint in the leg
-    ("base_flexure_damping", 36),  # dampers beside them
-    ("platform_flexure_damping", 36),
-)
-
 PLATFORM_JOINT: tuple[tuple[str, int], ...] = (("joint", 3),)  # of legs with a ball, as in `POSE_PARAMETERS`
 
 #: Physical parameters of the payload in kernel order (name, size); tool from the CoM, in platform axes.
@@ -93,8 +85,6 @@ class Shapes:
         Joints of a leg.
     elements : tuple of Slot
         What else its legs have, see `elements.known`.
-    flexure : bool
-        Displacements of the base joint and of the platform joint (pose closures).
     sections : int
         Of the pistons; 0: all are uniform.
     strips : bool
@@ -114,7 +104,6 @@ class Shapes:
     axial: AxialBasis
     chain: LegChain
     elements: tuple[Slot, ...] = ()
-    flexure: bool = False
     sections: int = 0
     strips: bool = False
     tapers: bool = False
@@ -138,7 +127,7 @@ class Shapes:
         """Coordinates q of the leg (name, size); a planar leg has no alpha and no direction b."""
         amplitudes = (("c", self.axial.count), ("a", self.a.count), ("b", self.b.count))
         own = {name: size for element in self.elements for name, size in element.coordinates}
-        ends = {f"{end}{k}": 1 for end in "ue" for k in (1, 2, 3) if self.flexure or f"{end}{k}" in own}
+        ends = {f"{end}{k}": 1 for end in "ue" for k in (1, 2, 3) if f"{end}{k}" in own}
         drive = tuple((name, own[name]) for name in DRIVE if name in own)
         others = tuple((name, size) for name, size in own.items() if name not in (*DRIVE, *ends, *FRAMES))
         sheared = (("shear_a", self.shear * self.a.count), ("shear_b", self.shear * self.b.count))
@@ -260,7 +249,6 @@ def leg_parameters(shapes: Shapes) -> tuple[tuple[str, int], ...]:
         (True, shapes.chain.parameters),
         (True, tuple(item for item in own if item[0] in PISTON)),
         (shapes.has("gamma1"), POSE_PARAMETERS),
-        (shapes.flexure, FLEXURE_PARAMETERS),
         (True, tuple(item for item in own if item[0] not in PISTON)),
         (shapes.sections > 0, _of_sections(shapes)),
         (shapes.has("m") and not shapes.has("gamma1"), PLATFORM_JOINT),

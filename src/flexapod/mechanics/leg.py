@@ -13,8 +13,9 @@ from flexapod.elements.cylinder import cylinder
 from flexapod.elements.distribution import Line, PistonMotion
 from flexapod.elements.element import Along
 from flexapod.elements.flexible_cylinder import flexible_cylinder, head, hole, mouth
-from flexapod.elements.flexure import flexure, springs
-from flexapod.elements.frame import Energies, Frame
+from flexapod.elements.flexure import Flexures, base_angles, platform_angles, springs
+from flexapod.elements.flexure import displaced as three
+from flexapod.elements.frame import Energies
 from flexapod.elements.guide import (
     bushings,
     inner_end,
@@ -25,19 +26,16 @@ from flexapod.elements.guide import (
     stepped_inner_part,
     stepped_shortening,
 )
-from flexapod.elements.mount import displaced, mount, plate, world
 from flexapod.elements.rotations import small_rotation
 from flexapod.elements.sliding_piston import sliding_piston, tip_place, tip_turn
 from flexapod.elements.slot import Slot
-from flexapod.elements.soft_joint import SoftBase, SoftPlatform, soft_joint
 from flexapod.elements.stepped_piston import Part, SteppedShapes, of_planes, stepped_piston, stepped_shapes, straight
 from flexapod.elements.universal import universal
 from flexapod.mechanics.layout import Shapes
 from flexapod.symbolic.lagrange import Lagrangian
-from flexapod.symbolic.vocabulary import SX, constant, expanded, matrix33, symbol, vertcat, zeros
+from flexapod.symbolic.vocabulary import SX, expanded, symbol, vertcat, zeros
 
 INNER = ("cuts", "rhoA", "load", "place", "shrink")
-ALONG = constant(np.array([[0.0], [0.0], [1.0]]))  # a leg's own direction
 
 
 @dataclass(frozen=True, kw_only=True)
@@ -64,15 +62,16 @@ class LegEquations:
 
 def leg(shapes: Shapes, p: SimpleNamespace, q: SX, v: SX, qs: SimpleNamespace, vs: SimpleNamespace) -> LegEquations:
     """Energies and tip of one leg from its coordinates; ``qs`` and ``vs`` are the named pieces of q and v."""
-    ground, e = _ground(shapes, p, qs, vs)
-    foot = ground.origin
-    if shapes.flexure:
-        ground = ground.moved(_three(qs, "u"), _three(vs, "u"))
+    base = None
+    for one in shapes.elements:
+        base = one.carries(base, p, qs, vs)
+    ground, carried = carriage(shapes.chain.carriage, p, qs, vs, base)
+    foot, flexes = ground.origin, shapes.holds(Flexures)  # a flexure gives way in axes that do not turn with the leg
+    if flexes:
+        ground = ground.moved(three(qs, "u"), three(vs, "u"))
     frame = universal(ground, qs, vs)
-    if shapes.holds(SoftBase):
-        along = ground.axes.T @ frame.axes[:, 2] if shapes.flexure else ALONG
-        e += soft_joint(p.base_soft, p.base_soft_damping, _three(qs, "u"), _three(vs, "u"), along)
-        frame = frame if shapes.flexure else frame.moved(_three(qs, "u"), _three(vs, "u"))
+    if shapes.has("u1") and not flexes:
+        frame = frame.moved(three(qs, "u"), three(vs, "u"))
     if shapes.b.count and not shapes.a.count:  # a planar robot's leg does not bend across the plane
         qs, vs = (SimpleNamespace(**vars(part) | {"a": zeros(shapes.b.count)}) for part in (qs, vs))
     s = qs.l - p.mouth  # (T3.6)  free length outside the cylinder
@@ -84,20 +83,16 @@ def leg(shapes: Shapes, p: SimpleNamespace, q: SX, v: SX, qs: SimpleNamespace, v
         b = a
     line = _line(shapes, p, qs, vs)
     motion = PistonMotion(a=a, b=b, axial=shapes.axial, frame=frame, line=line, s=s, q=q, v=v, qs=qs, vs=vs)
-    e += cylinder(frame, p, vs) + (stepped_piston if shapes.sections else sliding_piston)(motion, p)
+    bodies = cylinder(frame, p, vs) + (stepped_piston if shapes.sections else sliding_piston)(motion, p)
     inside, shift, turn, by_head = _inside(shapes, motion, p, inner)
-    e += inside
-    x = Along(p=p, q=qs, v=vs, elements=shapes.elements, foot=ground, cylinder=frame, piston=motion)
+    x = Along(p=p, q=qs, v=vs, elements=shapes.elements, base=base, foot=ground, cylinder=frame, piston=motion)
     of_elements = {one: one.energy(x) for one in shapes.elements}
-    for energies in of_elements.values():
-        e += energies
-    if shapes.has("gamma1"):
-        e += _joints(shapes, p, qs, vs)
+    joints = _joints(p, qs, vs) if shapes.has("gamma1") else Energies()
+    at = {end: [e for one, e in of_elements.items() if one.kind.end == end] for end in ("base", "", "platform")}
+    e = sum([*at["base"], bodies, inside, *at[""], joints, *at["platform"]], carried)
     place = tip_place(motion) + shift
-    if shapes.holds(SoftPlatform):
-        along = matrix33(p.leg_frame).T @ ALONG if shapes.flexure else ALONG
-        e += soft_joint(p.platform_soft, p.platform_soft_damping, _three(qs, "e"), _three(vs, "e"), along)
-        place = place if shapes.flexure else place + _three(qs, "e")
+    if shapes.has("e1") and not flexes:
+        place += three(qs, "e")
     theta = symbol("theta", 3)
     lagrangian = Lagrangian(q=q, v=v, kinetic=e.kinetic, potential=e.gravity + e.strain, dissipation=e.dissipation)
     return LegEquations(
@@ -112,21 +107,6 @@ def leg(shapes: Shapes, p: SimpleNamespace, q: SX, v: SX, qs: SimpleNamespace, v
         present=(vertcat(present[0], by_head[0]), vertcat(present[1], by_head[1])),
         foot=foot,
     )
-
-
-def _ground(shapes: Shapes, p: SimpleNamespace, qs: SimpleNamespace, vs: SimpleNamespace) -> tuple[Frame, Energies]:
-    """Frame in which the base joint stands; energies of what carries it, with the leg's share of mounts and plate."""
-    base, e = None, Energies()
-    if shapes.has("g"):
-        base = displaced(world(), p.base_motion_at, qs.g, vs.g)
-    if shapes.has("f"):
-        base = displaced(base or world(), p.base_mount_at, qs.f, vs.f)
-        e += mount(p.base_mount_stiffness, p.base_mount_damping, qs.f, vs.f)
-        e += plate(base, p.base_mount_at, p.base_plate_mass, p.base_plate_inertia, p.base_plate_weighs * p.gravity)
-    if shapes.has("m"):
-        e += mount(p.platform_mount_stiffness, p.platform_mount_damping, qs.m, vs.m)
-    ground, carried = carriage(shapes.chain.carriage, p, qs, vs, base)
-    return ground, carried + e
 
 
 def _of_sections(
@@ -205,21 +185,7 @@ def _inside(
     return e + lean(f, p, short, short_X), vertcat(0, 0, at_tip), vertcat(0, 0, turn), present
 
 
-def _joints(shapes: Shapes, p: SimpleNamespace, qs: SimpleNamespace, vs: SimpleNamespace) -> Energies:
+def _joints(p: SimpleNamespace, qs: SimpleNamespace, vs: SimpleNamespace) -> Energies:
     """Springs and dampers of the joints at both ends."""
-    base, base_rate = (vertcat(x.alpha, x.beta, x.spin if shapes.has("spin") else zeros(1)) for x in (qs, vs))
-    end, end_rate = (vertcat(x.gamma1, x.gamma2, x.gamma3) for x in (qs, vs))
-    base, end = base - p.base_home, end - p.gamma_home
-    e = springs(p.base_stiffness, p.base_damping, base, base_rate)
-    e += springs(p.gamma_stiffness, p.gamma_damping, end, end_rate)
-    if shapes.flexure:
-        moved, rate = vertcat(_three(qs, "u"), base), vertcat(_three(vs, "u"), base_rate)
-        e += flexure(p.base_flexure, p.base_flexure_damping, moved, rate)
-        moved, rate = vertcat(_three(qs, "e"), end), vertcat(_three(vs, "e"), end_rate)
-        e += flexure(p.platform_flexure, p.platform_flexure_damping, moved, rate)
-    return e
-
-
-def _three(of: SimpleNamespace, name: str) -> SX:
-    """Displacement of a joint, or its rate."""
-    return vertcat(*(getattr(of, f"{name}{k}") for k in (1, 2, 3)))
+    e = springs(p.base_stiffness, p.base_damping, base_angles(qs) - p.base_home, base_angles(vs))
+    return e + springs(p.gamma_stiffness, p.gamma_damping, platform_angles(qs) - p.gamma_home, platform_angles(vs))

@@ -7,6 +7,7 @@ from collections.abc import Sequence
 import numpy as np
 
 from flexapod.arrays import Array
+from flexapod.elements.flexure import Flexures
 from flexapod.elements.gap import Gap, past_gap
 from flexapod.elements.springs import Place, Spring, of_servo, springs_along
 from flexapod.elements.turning_nut import TurningNut
@@ -72,7 +73,7 @@ def in_gap(robot: Robot, system: System, q: Array) -> Array:
 def _gives(system: System, q: Array) -> dict[Place, Array]:
     """What the springs at the three places add to a leg's length, (...,) [m], by place."""
     shapes = system.kernel.shapes
-    places: dict[Place, str] = {} if shapes.flexure else {"base": "u3", "platform": "e3"}
+    places: dict[Place, str] = {} if shapes.holds(Flexures) else {"base": "u3", "platform": "e3"}
     found: dict[Place, Array] = {at: q[..., shapes.index(name)] for at, name in places.items() if shapes.has(name)}
     if shapes.has("r"):
         found["nut"] = q[..., shapes.l_index] - q[..., shapes.index("r")]

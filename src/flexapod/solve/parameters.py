@@ -9,7 +9,7 @@ from flexapod.elements.springs import viscous
 from flexapod.kinematics.limbs import COORDINATES, FREE, Limbs
 from flexapod.mechanics import layout
 from flexapod.mechanics.layout import LEG_PARAMETERS, PAYLOAD_PARAMETERS, Shapes
-from flexapod.model import Actuator, ForceDrive, Joint, Leg, Mounted, Robot, ServoDrive, damping_parts
+from flexapod.model import Actuator, ForceDrive, Leg, Mounted, Robot, ServoDrive, damping_parts
 from flexapod.solve.sections import section_parameters
 
 ENDLESS = 1e4  # m, beyond the reach of any leg
@@ -46,16 +46,13 @@ def leg_parameters(robot: Robot, legs: Limbs, shapes: Shapes, per_loss: float = 
     ``per_loss`` [s]: viscous damping over stiffness of a spring of loss factor 1, see `losses`.
     """
     layout_of_legs = layout.leg_parameters(shapes)
-    names = ("base_flexure", "platform_flexure", "base_flexure_damping", "platform_flexure_damping")
-    of_ends = np.concatenate([flexures(robot, legs), flexures(robot, legs, per_loss)], axis=1)
-    ends = [dict(zip(names, x, strict=True)) for x in of_ends]
+    standing = standings(robot, legs, per_loss, at_rest=at_rest)
     rows = (
         _leg(leg, at_rest=at_rest)
         | _place(robot, legs, i)
         | _joints(leg, legs, i, per_loss)
-        | ends[i]
         | (section_parameters(leg, shapes, legs.home[i, COORDINATES.index("l")]) if shapes.sections else {})
-        | _of_elements(leg, shapes, Standing(float(legs.home[i, COORDINATES.index("l")]), per_loss, at_rest, robot))
+        | _of_elements(leg, shapes, standing[i])
         | _inside(leg, per_loss)
         for i, leg in enumerate(robot.legs)
     )
@@ -65,6 +62,21 @@ def leg_parameters(robot: Robot, legs: Limbs, shapes: Shapes, per_loss: float = 
     with_inertia = zip(rows, robot.legs, loose, strict=True)
     rows = (row | {"piston_axial_inertia": axial_inertia(leg)} if own else row for row, leg, own in with_inertia)
     return np.array([_pack(layout_of_legs, values) for values in rows])
+
+
+def standings(robot: Robot, legs: Limbs, per_loss: float, *, at_rest: bool) -> list[Standing]:
+    """How the legs stand, for their elements."""
+    found = []
+    for i in range(len(legs)):
+        beta = legs.home[i, COORDINATES.index("beta")]
+        along = np.array([[np.cos(beta), 0, np.sin(beta)], [0, 1, 0], [-np.sin(beta), 0, np.cos(beta)]])
+        axes = {
+            "base": (legs.frames[i].T, along),
+            "platform": (legs.platform_frames[i].T, legs.leg_frames[i].T),
+        }
+        length = float(legs.home[i, COORDINATES.index("l")])
+        found.append(Standing(length, per_loss, at_rest, robot, bool(legs.pose_closure[i]), axes))
+    return found
 
 
 def _leg(leg: Leg, *, at_rest: bool) -> dict[str, object]:
@@ -175,33 +187,6 @@ def _inside(leg: Leg, per_loss: float) -> dict[str, object]:
         "mounted_com": body.com,
         "mounted_inertia": body.inertia,
     }
-
-
-def flexures(robot: Robot, legs: Limbs, per_loss: float | None = None) -> Array:
-    """Stiffness of the joints at both ends of the legs, in the axes in which they give way, (legs, 2, 6, 6).
-
-    With ``per_loss`` [s], see `leg_parameters`, their damping.
-    """
-    found = np.zeros((len(legs), 2, 6, 6))
-    for i, leg in enumerate(robot.legs):
-        beta = legs.home[i, COORDINATES.index("beta")]
-        along = np.array([[np.cos(beta), 0, np.sin(beta)], [0, 1, 0], [-np.sin(beta), 0, np.cos(beta)]])
-        ends = (
-            (leg.base_joint, legs.frames[i].T, along),
-            (leg.platform_joint, legs.platform_frames[i].T, legs.leg_frames[i].T),
-        )
-        for k, (joint, given, leg_axes) in enumerate(ends):
-            if joint.stiffness is not None and joint.flexes:
-                turn = np.kron(np.eye(2), leg_axes if joint.leg_axes else given)
-                found[i, k] = turn @ (joint.stiffness if per_loss is None else _damping(joint, per_loss)) @ turn.T
-    return found
-
-
-def _damping(joint: Joint, per_loss: float) -> Array:
-    """Damping of the stiffness of a flexure, (6, 6)."""
-    stiffness = np.zeros((6, 6)) if joint.stiffness is None else joint.stiffness
-    given = np.diag([joint.stiffness_damping or 0.0] * 3 + [0.0] * 3)
-    return viscous(stiffness, given, joint.loss_of_stiffness, per_loss)
 
 
 def payload_parameters(robot: Robot, shapes: Shapes, *, at_rest: bool = False) -> Array:

@@ -1,20 +1,18 @@
 """The equations of a robot."""
 
+from collections.abc import Sequence
+
 import numpy as np
 
 from flexapod import kinematics
 from flexapod.arrays import Mask
+from flexapod.elements.element import Standing
 from flexapod.elements.ripple import Ripple
-from flexapod.elements.springs import springs_along
 from flexapod.kinematics.limbs import ABSENT, COORDINATES, DRIVEN, HELD, Limbs
 from flexapod.mechanics.layout import Shapes
 from flexapod.model import Robot, Simulation
 from flexapod.solve.kernel import kernel, kernel_at_hand
-from flexapod.solve.parameters import (
-    flexures,
-    leg_parameters,
-    payload_parameters,
-)
+from flexapod.solve.parameters import leg_parameters, payload_parameters, standings
 from flexapod.solve.shapes import robot_shapes
 from flexapod.solve.system import System
 
@@ -39,12 +37,13 @@ def robot_system(
     """
     legs = kinematics.built_limbs(robot, kinematics.robot_limbs(robot))
     shapes = robot_shapes(robot, simulation, legs)
+    standing = standings(robot, legs, per_loss, at_rest=at_rest)
     return System(
         kernel=kernel_at_hand(shapes) if evaluated else kernel(shapes, march, within),
         leg_p=leg_parameters(robot, legs, shapes, per_loss, at_rest=at_rest),
         joint_p=np.ascontiguousarray(legs.platform - robot.com),
         payload_p=payload_parameters(robot, shapes, at_rest=at_rest),
-        held=_held(robot, legs, shapes, at_rest=at_rest) | _held_by_elements(robot, shapes, at_rest=at_rest),
+        held=_held(robot, legs, shapes, at_rest=at_rest) | _held_by_elements(robot, shapes, standing),
         hub_held=legs.hub_held,
     )
 
@@ -72,9 +71,7 @@ def _held(robot: Robot, legs: Limbs, shapes: Shapes, *, at_rest: bool) -> Mask:
     for name, size in shapes.layout:
         if name in ("c", "u3", "e3") and ends.any():
             held[ends, shapes.index(name) : shapes.index(name) + size] = True
-    if shapes.has("t"):  # a ball does not twist its leg
-        held[:, shapes.index("t")] = ~legs.pose_closure
-    return held | _held_joints(robot, legs, shapes) | _held_inside(robot, shapes)
+    return held | _held_inside(robot, shapes)
 
 
 def _held_inside(robot: Robot, shapes: Shapes) -> Mask:
@@ -89,25 +86,15 @@ def _held_inside(robot: Robot, shapes: Shapes) -> Mask:
     return held
 
 
-def _held_by_elements(robot: Robot, shapes: Shapes, *, at_rest: bool) -> Mask:
-    """Coordinates that elements let follow a table, their own and others."""
+def _held_by_elements(robot: Robot, shapes: Shapes, standing: Sequence[Standing]) -> Mask:
+    """Coordinates that elements let follow a table: one of their own if all that have it do, others if any does."""
     held: Mask = np.zeros((len(robot.legs), shapes.size), dtype=bool)
     sizes = dict(shapes.layout)
     for i, leg in enumerate(robot.legs):
-        for element in shapes.elements:
-            for name in element.held(leg, at_rest=at_rest):
-                held[i, shapes.index(name) : shapes.index(name) + sizes[name]] = True
-    return held
-
-
-def _held_joints(robot: Robot, legs: Limbs, shapes: Shapes) -> Mask:
-    """Displacements of joints in directions in which they have no stiffness: they do not give way."""
-    held: Mask = np.zeros((len(legs), shapes.size), dtype=bool)
-    ways: Mask = (flexures(robot, legs)[:, :, :3] != 0).any(axis=-1)
-    for i, leg in enumerate(robot.legs):
-        soft = {spring.at for spring in springs_along(leg)}
-        for k, (name, end, joint) in enumerate((("base", "u", leg.base_joint), ("platform", "e", leg.platform_joint))):
-            if shapes.has(f"{end}1"):
-                at, across = shapes.index(f"{end}1"), joint.across_and_along is not None
-                held[i, at : at + 3] = np.logical_not(ways[i, k] | [across, across, name in soft])
+        holds = [(dict(element.coordinates), element.held(leg, standing[i])) for element in shapes.elements]
+        for name in {name for _, names in holds for name in names}:
+            own = [name in names for has, names in holds if name in has]
+            other = any(name in names for has, names in holds if name not in has)
+            at = shapes.index(name)
+            held[i, at : at + sizes[name]] = other or (bool(own) and all(own))
     return held

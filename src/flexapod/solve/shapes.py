@@ -40,7 +40,6 @@ def robot_shapes(robot: Robot, simulation: Simulation, legs: Limbs) -> Shapes:
             spin=bool((spin != ABSENT).any()),
             pivot_spin=bool(((spin == FREE) & (gamma3 == HELD)).any()),
         ),
-        flexure=any(x.flexes for leg in robot.legs for x in (leg.base_joint, leg.platform_joint)),
         sections=max(len(leg.piston.sections) for leg in robot.legs) or int(shear),
         tapers=any(section.tapered for leg in robot.legs for section in leg.piston.sections),
         shear=shear,
