@@ -8,14 +8,15 @@ from flexapod.elements.tip_body import PlanarTipBody, TipBody
 from flexapod.elements.torsion import Torsion
 from flexapod.mechanics.layout import Shapes
 from flexapod.mechanics.leg_chain import LegChain
+from flexapod.mechanics.section_layout import LegBeam
 
 CHAIN = {field.name for field in fields(LegChain)}
 
 
 def layout(a, b, axial, *, elements=(), torsion=False, tip_body=False, flexure=False, **given):
-    """Shapes of a leg; ``given``: what `LegChain` has, and the rest of `Shapes`."""
+    """Shapes of a leg; ``given``: what `LegChain` has, and the rest of `LegBeam`."""
     chain = LegChain(**{name: value for name, value in given.items() if name in CHAIN})
-    others = {name: value for name, value in given.items() if name not in CHAIN}
+    beam = LegBeam(a=a, b=b, axial=axial, **{name: value for name, value in given.items() if name not in CHAIN})
     body = PlanarTipBody if chain.planar else TipBody
     own = (*(Slot(Torsion),) * torsion, *(Slot(body),) * tip_body, *(Slot(Flexures),) * flexure)
-    return Shapes(a=a, b=b, axial=axial, chain=chain, elements=(*own, *elements), **others)
+    return Shapes(beam=beam, chain=chain, elements=(*own, *elements))

@@ -32,9 +32,9 @@ def vector(leg, shapes, home):
     """Its parameters as kernels read them; length at home [m]."""
     values = {"R0": np.eye(3).ravel(), "gravity": np.zeros(3), "base": np.zeros(3)}
     values |= (
-        (_inside(leg, 0.0) if shapes.guide or shapes.cylinder else {})
+        (_inside(leg, 0.0) if shapes.beam.guide or shapes.beam.cylinder else {})
         | _leg(leg, at_rest=False)
-        | (section_parameters(leg, shapes, home) if shapes.sections else {})
+        | (section_parameters(leg, shapes.beam, home) if shapes.beam.sections else {})
     )
     return np.concatenate([np.ravel(values[name]) for name, _ in leg_parameters(shapes)])
 

@@ -18,7 +18,7 @@ def tip_under_inertia_forces(beam, rates, *, basis="tip-load", modes=3):
     q[:2], v[:2] = (beam.angle, beam.hub_radius + beam.free_length), rates
     r = system.kernel.leg_residual(q, v, np.zeros(system.n), np.zeros(0), np.zeros(2), system.leg_p[0])[0]
     stiffness = turning_matrices(beam.replace(gravity=0.0), simulation, 0.0)[2]
-    return -system.kernel.shapes.a.tip @ np.linalg.solve(stiffness, r[2:])
+    return -system.kernel.shapes.beam.a.tip @ np.linalg.solve(stiffness, r[2:])
 
 
 @pytest.mark.parametrize("modes", [2, 6])
@@ -59,7 +59,7 @@ def test_coriolis_sag(length, table):
 @pytest.mark.parametrize("modes", [1, 3, 6])
 def test_start_is_the_static_shape_with_the_given_tip(basis, modes):
     system = actuator_system(BEAM, Simulation(basis=basis, modes=modes))
-    b, z = system.kernel.shapes.a, np.linspace(0, 1, 21)
+    b, z = system.kernel.shapes.beam.a, np.linspace(0, 1, 21)
     a = static_shape(system, 5e-3)
     assert b.tip @ a == pytest.approx(5e-3, rel=1e-14)
     exact = 5e-3 * (3 * z**2 - z**3) / 2

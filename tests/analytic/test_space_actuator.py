@@ -164,7 +164,7 @@ def stiffness_under(push, follow):
     shapes, load = march.system.kernel.shapes, np.zeros(12)
     load[6 * follow + (2 if follow else 0)] = -push
     m = march.system.matrices(march.start, load)
-    k = slice(shapes.index("b"), shapes.index("b") + shapes.b.count)
+    k = slice(shapes.index("b"), shapes.index("b") + shapes.beam.b.count)
     return np.sort_complex(eigvals(m.K[k, k], m.M[k, k]))
 
 

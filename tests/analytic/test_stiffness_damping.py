@@ -83,10 +83,12 @@ def test_robot_loses_what_its_pistons_rates_say():
     shapes, leg = prepare(study).system.kernel.shapes, study.robot.legs[0]
     n = shapes.size
     rates, length = run["v"][:, : 6 * n].reshape(-1, 6, n)[:, :, 3:], run["q"][:, :, 2] - leg.cylinder.mouth
-    m, k = shapes.axial.count, shapes.a.count
+    m, k = shapes.beam.axial.count, shapes.beam.a.count
     parts = rates[:, :, :m], rates[:, :, m : m + k], rates[:, :, m + k :]
-    stretch = leg.piston.EA / leg.piston.length * np.einsum("tli,ij,tlj->t", parts[0], shapes.axial.stiffness, parts[0])
-    bend = [np.einsum("tl,tli,ij,tlj->t", leg.piston.EI / length**3, x, shapes.a.stiffness, x) for x in parts[1:]]
+    stretch = (
+        leg.piston.EA / leg.piston.length * np.einsum("tli,ij,tlj->t", parts[0], shapes.beam.axial.stiffness, parts[0])
+    )
+    bend = [np.einsum("tl,tli,ij,tlj->t", leg.piston.EI / length**3, x, shapes.beam.a.stiffness, x) for x in parts[1:]]
     power = 3e-5 * (stretch + sum(bend))
     work = 2e-5 * np.concatenate([[0], np.cumsum(0.5 * (power[1:] + power[:-1]))])
     np.testing.assert_allclose(run["sums"][:, 0], work, rtol=1e-7)  # velocities stored before the last correction

@@ -30,7 +30,7 @@ def test_free_vibration_of_the_actuator(mode):
         motion=study.motion.replace(rotation={"law": "rate", "rate": 0.0}, extension={"law": "rate", "rate": 0.0})
     )
     system = actuator_system(study.actuator, study.simulation)
-    basis, p = system.kernel.shapes.a, study.actuator
+    basis, p = system.kernel.shapes.beam.a, study.actuator
     omega = basis.shapes[mode].eps ** 2 * np.sqrt(p.EI / p.rhoA) / p.free_length**2
     period = 2 * np.pi / omega
     still = override(still, step=period / STEPS, output_step=period, duration=PERIODS * period)

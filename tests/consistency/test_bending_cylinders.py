@@ -52,7 +52,7 @@ class Ours:
     def __init__(self, robot, free, modes):
         self.leg = robot.legs[0]
         shapes = robot_shapes(robot, Simulation(modes=modes), kinematics.robot_limbs(robot))
-        self.shapes = replace(shapes, axial=axial_basis(0))
+        self.shapes = replace(shapes, beam=replace(shapes.beam, axial=axial_basis(0)))
         self.length = self.leg.cylinder.mouth + free
 
     def matrices(self, thrust=0.0):

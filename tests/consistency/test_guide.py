@@ -64,7 +64,7 @@ def test_energies_are_right_to_second_order(place):
     com = (TUBE * MOUTH**2 / 2 + mass * place) / whole
     given |= {"cylinder_mass": whole, "cylinder_com": com, "cylinder_inertia": about - whole * com**2}
     ours = legs.shapes("point in a guide of a cylinder")
-    exact = Guided(ours.layout, given, ours.a.values, ours.guide.values, ours.cylinder.values)
+    exact = Guided(ours.layout, given, ours.beam.a.values, ours.beam.guide.values, ours.beam.cylinder.values)
     rng = np.random.default_rng(3)
     gaps = []
     for amplitude in (1e-3, 1e-4):
@@ -228,7 +228,7 @@ def test_stiff_bushings_of_a_stiff_rod_between_them_are_the_clamp():
     # d / (3 EI) of a rod 1e7 times as stiff is 1e-7 of what the rod outside gives.
     ours, given, length = leg_of(0.12, 4)
     stiff = given | {"guide_EI": 1e7 * EI, "guide_stiffness": [1e14, 1e14]}
-    clamped = layout(a=ours.a, b=ours.b, axial=ours.axial)
+    clamped = layout(a=ours.beam.a, b=ours.beam.b, axial=ours.beam.axial)
     found, theirs = (
         np.sqrt(eigh(*pinned(shapes, x, length)[::-1], eigvals_only=True))
         for shapes, x in ((ours, stiff), (clamped, given))

@@ -10,7 +10,6 @@ from tests.runs import run_robot
 
 from flexapod import kinematics
 from flexapod.bases import lateral_basis
-from flexapod.elements.slot import Slot
 from flexapod.elements.tip_body import TipBody
 from flexapod.elements.torsion import Torsion
 from flexapod.integration import GeneralizedAlpha
@@ -185,10 +184,7 @@ def test_a_closed_attitude_with_free_angles_is_a_ball():
 def test_a_leg_without_payload_swings_as_the_dense_equations_say(carriage):
     """In space, with a body and a load at its tip, on a carriage that a spring drives or on none; its stroke held."""
     shapes = space_shapes(
-        lateral_basis("tip-load", 2),
-        1,
-        LegChain(closure="none", spin=True, carriage=carriage),
-        elements=(Slot(Torsion), Slot(TipBody)),
+        lateral_basis("tip-load", 2), 1, Torsion, TipBody, closure="none", spin=True, carriage=carriage
     )
     layout = leg_parameters(shapes)
     given = {

@@ -45,7 +45,7 @@ def test_kinetic_energy_is_right_to_second_order(basis, modes, axial_modes):
     gaps = []
     for amplitude in (3e-4, 3e-5):  # above, fourth order mixes in; below, rounding of 1e-15 J
         q, v = state(k.shapes, amplitude, seed=axial_modes)
-        T, V_g, V_s = nonlinear.energies(q, v, ORACLE, lambda z, order: k.shapes.a.values(z, order))
+        T, V_g, V_s = nonlinear.energies(q, v, ORACLE, lambda z, order: k.shapes.beam.a.values(z, order))
         ours = k.leg_energies(q, v, np.zeros(2), parameters())[0]
         gaps.append(abs(ours[0] - T))
         # Gravity and strain energies are exact in these kinematics: rounding only.

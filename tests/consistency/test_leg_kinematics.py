@@ -50,7 +50,10 @@ def test_energies_are_right_to_second_order(kind, spins):
     for amplitude in (3e-4, 3e-5):
         x = legs.state(ours, 3, amplitude, given)
         T, Vg, Vs = chains.energies(
-            legs.pieces(ours, x["q"]), legs.pieces(ours, x["v"]), oracle_numbers(ours, given), complex_shapes(ours.a)
+            legs.pieces(ours, x["q"]),
+            legs.pieces(ours, x["v"]),
+            oracle_numbers(ours, given),
+            complex_shapes(ours.beam.a),
         )
         found = legs.call(ours, "leg_energies", x)["energies"]
         gaps.append(abs(found[0] - T))
@@ -74,8 +77,8 @@ def test_the_tip_turns_as_a_frame_carried_along_the_line(kind, basis):
             if ours.has(name):
                 x["q"][ours.index(name)] = 0.0
         numbers = oracle_numbers(ours, given)
-        axes = chains.cylinder_frame(q, numbers)[1] @ chains.tip_axes(q, numbers, ours.a.values)
-        tip = np.real(chains.place(q, 0.0, numbers, complex_shapes(ours.a)))
+        axes = chains.cylinder_frame(q, numbers)[1] @ chains.tip_axes(q, numbers, ours.beam.a.values)
+        tip = np.real(chains.place(q, 0.0, numbers, complex_shapes(ours.beam.a)))
         x["pose"] = np.concatenate([tip, quaternion(axes)])
         gap = legs.call(ours, "leg_residual", x)["gap"]
         if basis == "tip-load":  # the quadrature of the place knows smooth shapes only

@@ -46,11 +46,11 @@ def test_a_tip_body_moves_as_a_rigid_body_to_second_order():
 
         def axes(h, q=q, v=v, given=given):
             now = chains.moved(q, v, h)
-            return rotation(now["alpha"], now["beta"]) @ chains.tip_axes(now, given, ours.a.values)
+            return rotation(now["alpha"], now["beta"]) @ chains.tip_axes(now, given, ours.beam.a.values)
 
         def place(h, q=q, v=v, given=given):
             numbers = {name: given[name] for name in ("base", "R0", "mouth", "Lp")}
-            return np.real(chains.place(chains.moved(q, v, h), 0.0, numbers, ours.a.values))
+            return np.real(chains.place(chains.moved(q, v, h), 0.0, numbers, ours.beam.a.values))
 
         h = 1e-3
         W = axes(0.0).T @ (8 * (axes(h) - axes(-h)) - axes(2 * h) + axes(-2 * h)) / (12 * h)

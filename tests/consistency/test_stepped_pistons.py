@@ -41,13 +41,13 @@ def along_piston(leg, points=20001):
 
 def place(leg, shapes, q, xi):
     """Material points at distances xi from the tip, in the leg's home frame (n, 3)."""
-    k, m = shapes.b.count, shapes.axial.count
+    k, m = shapes.beam.b.count, shapes.beam.axial.count
     (alpha, beta, length), c, amplitudes = q[:3], q[3 : 3 + m], q[3 + m :].reshape(2, k)
     s = length - leg.cylinder.mouth
     x, across, short = xi / s, np.zeros((2, xi.size)), np.zeros(xi.size)
     for direction, a in enumerate(amplitudes):
         beyond = 0.0
-        parts = numeric_pieces(leg, shapes.b, s, direction)
+        parts = numeric_pieces(leg, shapes.beam.b, s, direction)
         a = a - np.eye(k)[0] * (held(parts[0].value_start)[:, 0] @ a)
         for piece in reversed(parts):
             for i in np.flatnonzero((x > piece.start) & (x <= piece.end)):
@@ -58,7 +58,7 @@ def place(leg, shapes, q, xi):
             beyond += w @ (a @ piece.value(at, 1)) ** 2
     grid, areas = along_piston(leg)
     soft = np.cumsum([0.0, *(np.diff(grid) * 2 / (areas[1:] + areas[:-1]))])
-    along = length - xi + short + c @ shapes.axial.values(1 - np.interp(xi, grid, soft) / soft[-1])
+    along = length - xi + short + c @ shapes.beam.axial.values(1 - np.interp(xi, grid, soft) / soft[-1])
     (ca, sa), (cb, sb) = ((np.cos(angle), np.sin(angle)) for angle in (alpha, beta))
     R = np.array([[cb, 0, sb], [sa * sb, ca, -sa * cb], [-ca * sb, sa, ca * cb]])
     return (R @ np.array([*across, along])).T

@@ -11,13 +11,16 @@ from __future__ import annotations
 
 from dataclasses import dataclass, field
 from types import SimpleNamespace
-from typing import Any
+from typing import TYPE_CHECKING, Any
 
 import numpy as np
 
 from flexapod.bases import AxialBasis, LateralBasis
 from flexapod.elements.frame import Frame
-from flexapod.symbolic.vocabulary import SX, bilinear, constant, quadratic, time_derivative, vertcat, zeros
+from flexapod.symbolic.vocabulary import bilinear, constant, quadratic, time_derivative, vertcat, zeros
+
+if TYPE_CHECKING:
+    from flexapod.symbolic.vocabulary import SX
 
 
 def _none() -> SX:
@@ -120,7 +123,7 @@ def bending_mass(b: Any, axial: int) -> Distribution:
     return Distribution(
         first=SimpleNamespace(one=none, X=none, phi=b.phi, sliding=b.sliding, psi=still),
         moment=SimpleNamespace(one=none, X=none, phi=b.phi_X, sliding=b.sliding_X, psi=still),
-        lateral_mass=SX(1.0),
+        lateral_mass=constant(1.0),
         phi_phi=b.phi_phi,
         phi_sliding=b.phi_sliding,
         sliding_sliding=b.sliding_sliding,
@@ -230,7 +233,7 @@ def shortening_energy(f: PistonMotion, along: SX, short: SX, short_X: SX) -> SX:
 
 def gravity_energy(f: PistonMotion, body: Distribution, gravity: SX) -> SX:
     """- int g . r dm with the foreshortening's fall, Eq. (T3.14)."""
-    height = body.integral(PistonField(X=SX(1), psi=f.qs.c)) + body.short
+    height = body.integral(PistonField(X=constant(1), psi=f.qs.c)) + body.short
     foot, slope = f.line.foot(), f.line.slope
     moment = vertcat(
         body.integral(PistonField(one=foot[0], X=slope[0], phi=f.qs.a)),

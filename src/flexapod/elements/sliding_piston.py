@@ -3,12 +3,16 @@
 from __future__ import annotations
 
 from types import SimpleNamespace
+from typing import TYPE_CHECKING
 
 import numpy as np
 
 from flexapod.elements.distribution import Distribution, PistonMotion, gravity_energy, kinetic_energy
 from flexapod.elements.frame import Energies
-from flexapod.symbolic.vocabulary import SX, bilinear, constant, dot, quadratic, sqrt, vertcat, zeros
+from flexapod.symbolic.vocabulary import bilinear, constant, dot, quadratic, sqrt, vertcat, zeros
+
+if TYPE_CHECKING:
+    from flexapod.symbolic.vocabulary import SX
 
 
 def sliding_piston(f: PistonMotion, p: SimpleNamespace) -> Energies:
@@ -57,7 +61,7 @@ def tip_turn(f: PistonMotion) -> SX:
 
 
 def _at_tip(values: np.ndarray | SX, amplitudes: SX) -> SX:
-    if isinstance(values, SX):
+    if not isinstance(values, np.ndarray):
         return dot(values, amplitudes)
     return dot(constant(values).T, amplitudes) if len(values) else zeros(1)
 

@@ -6,19 +6,15 @@ from collections.abc import Sequence
 from dataclasses import dataclass
 from typing import TYPE_CHECKING, Any, ClassVar, Self
 
-import numpy as np
-
 from flexapod.elements.element import Along, Named, Physics, Standing
 from flexapod.elements.flexure import Flexures, displaced
 from flexapod.elements.frame import Energies
 from flexapod.elements.springs import Spring, in_series, springs_along, viscous
-from flexapod.symbolic.vocabulary import constant, dot, matrix33
+from flexapod.symbolic.vocabulary import dot, matrix33, vertcat
 
 if TYPE_CHECKING:
     from flexapod.model import Joint, Leg
     from flexapod.symbolic.vocabulary import SX
-
-ALONG = constant(np.array([[0.0], [0.0], [1.0]]))  # a leg's own direction
 
 
 @dataclass(frozen=True)
@@ -60,7 +56,8 @@ class SoftBase(SoftJoint):
     @classmethod
     def energy_along(cls, x: Along) -> Energies:
         """Of its displacement, in axes of the leg; of a flexure those of what it stands on."""
-        along = x.foot.axes.T @ x.cylinder.axes[:, 2] if x.holds(Flexures) else ALONG
+        own = vertcat(0, 0, 1)
+        along = x.foot.axes.T @ x.cylinder.axes[:, 2] if x.holds(Flexures) else own
         return soft_joint(x.p.base_soft, x.p.base_soft_damping, displaced(x.q, "u"), displaced(x.v, "u"), along)
 
 
@@ -74,7 +71,8 @@ class SoftPlatform(SoftJoint):
     @classmethod
     def energy_along(cls, x: Along) -> Energies:
         """Of its displacement, in axes of the leg; of a flexure those of the joint in the leg."""
-        along = matrix33(x.p.leg_frame).T @ ALONG if x.holds(Flexures) else ALONG
+        own = vertcat(0, 0, 1)
+        along = matrix33(x.p.leg_frame).T @ own if x.holds(Flexures) else own
         p, moved, rate = x.p, displaced(x.q, "e"), displaced(x.v, "e")
         return soft_joint(p.platform_soft, p.platform_soft_damping, moved, rate, along)
 

@@ -3,7 +3,7 @@
 from __future__ import annotations
 
 from types import SimpleNamespace
-from typing import ClassVar
+from typing import TYPE_CHECKING, ClassVar
 
 import numpy as np
 
@@ -11,7 +11,10 @@ from flexapod.elements.distribution import Distribution, PistonMotion, gravity_e
 from flexapod.elements.element import Along, Named, Physics
 from flexapod.elements.frame import Energies
 from flexapod.elements.sliding_piston import tip_turn
-from flexapod.symbolic.vocabulary import SX, constant, cross, dot, zeros
+from flexapod.symbolic.vocabulary import constant, cross, dot, zeros
+
+if TYPE_CHECKING:
+    from flexapod.symbolic.vocabulary import SX
 
 
 class PlanarTipBody(Physics):
@@ -50,7 +53,7 @@ def _mass(f: PistonMotion, p: SimpleNamespace) -> Distribution:
     m, at_tip, stretch = p.tip_mass, basis.tip, np.eye(axial.count, 1)
     none, still = np.zeros((k, k)), zeros(k)
     phi = constant(at_tip).T if k else zeros(0)
-    psi = SX(stretch) if axial.count else zeros(0)
+    psi = constant(stretch) if axial.count else zeros(0)
     short = m * f.foreshortening("slope_tip") / f.s
     return Distribution(
         first=SimpleNamespace(one=m, X=m * l, phi=m * phi, sliding=still, psi=m * psi),

@@ -3,12 +3,10 @@
 from dataclasses import dataclass
 from functools import cached_property
 
-from flexapod.bases import AxialBasis, LateralBasis, lateral_basis
 from flexapod.elements.element import Physics
 from flexapod.elements.slot import Slot
-from flexapod.mechanics.guide_layout import CYLINDER_PARAMETERS, GUIDE_PARAMETERS
 from flexapod.mechanics.leg_chain import POSE_PARAMETERS, LegChain
-from flexapod.mechanics.section_layout import inner_parameters, section_parameters
+from flexapod.mechanics.section_layout import LegBeam
 
 #: Physical parameters of one leg, in the order in which kernels read them (name, size). SI; vectors in the world frame.
 LEG_PARAMETERS: tuple[tuple[str, int], ...] = (
@@ -74,77 +72,33 @@ def columns(layout: tuple[tuple[str, int], ...], name: str) -> slice:
 
 @dataclass(frozen=True, kw_only=True)
 class Shapes:
-    """What one kernel is made of: the bases of a leg, the joints it has room for, and how it meets the payload.
+    """What one kernel is made of: the beam, the joints and the elements of a leg.
 
     Attributes
     ----------
-    a, b : LateralBasis
-        Shapes along leg x and y; a planar leg bends in a only.
-    axial : AxialBasis
+    beam : LegBeam
+        Its bases, and what its piston is made of.
     chain : LegChain
         Joints of a leg.
     elements : tuple of Slot
         What else its legs have, see `elements.known`.
-    sections : int
-        Of the pistons; 0: all are uniform.
-    strips : bool
-        Their two bending stiffnesses are different.
-    tapers : bool
-        Sections of theirs may taper.
-    shear : bool
-        They shear, and their sections have rotary inertia.
-    guide : LateralBasis, optional
-        Shapes of the piston between two bushings, which give way across the leg; None: clamped at the mouth.
-    cylinder : LateralBasis, optional
-        Shapes of a cylinder that bends; with a guide there is one more, with a kink at the head.
     """
 
-    a: LateralBasis
-    b: LateralBasis
-    axial: AxialBasis
+    beam: LegBeam
     chain: LegChain
     elements: tuple[Slot, ...] = ()
-    sections: int = 0
-    strips: bool = False
-    tapers: bool = False
-    shear: bool = False
-
-    @property
-    def sheared(self) -> LateralBasis | None:
-        """Shapes by whose forces pistons shear: those without a moment at the tip, whose forces are independent."""
-        return lateral_basis("tip-load", self.b.count) if self.shear else None
-
-    @property
-    def planes(self) -> tuple[str, ...]:
-        """Directions in which sections have a bending stiffness of their own."""
-        return ("a", "b") if self.strips and self.a.count else ("b",)
-
-    guide: LateralBasis | None = None
-    cylinder: LateralBasis | None = None
 
     @cached_property
     def layout(self) -> tuple[tuple[str, int], ...]:
         """Coordinates q of the leg (name, size); a planar leg has no alpha and no direction b."""
-        amplitudes = (("c", self.axial.count), ("a", self.a.count), ("b", self.b.count))
         own = {name: size for element in self.elements for name, size in element.coordinates}
         ends = {f"{end}{k}": 1 for end in "ue" for k in (1, 2, 3) if f"{end}{k}" in own}
         drive = tuple((name, own[name]) for name in DRIVE if name in own)
         others = tuple((name, size) for name, size in own.items() if name not in (*DRIVE, *ends, *FRAMES))
-        sheared = (("shear_a", self.shear * self.a.count), ("shear_b", self.shear * self.b.count))
         frames = tuple((name, own[name]) for name in FRAMES if name in own)
         base, more, platform = (_one_each(names) for names in (self.chain.base, self.chain.more, self.chain.platform))
-        first = (*base, *amplitudes, *more)
-        thick = (part for part in sheared if part[1])
-        inside = (*platform, *ends.items(), *thick, *self._inside)
-        return (*first, *drive, *inside, *others, *frames)
-
-    @property
-    def _inside(self) -> tuple[tuple[str, int], ...]:
-        """Coordinates at the mouth and inwards of it: displacement and slope there, inner part, cylinder."""
-        guide = () if self.guide is None else (("g", 2), ("h", self.guide.count))
-        kinked = self.guide is not None  # one shape more, by the head's force
-        bend = () if self.cylinder is None else (("k", self.cylinder.count + kinked),)
-        return tuple((f"{name}{way}", size) for name, size in (*guide, *bend) for way in "ab")
+        first = (*base, *self.beam.amplitudes, *more)
+        return (*first, *drive, *platform, *ends.items(), *self.beam.inside, *others, *frames)
 
     @cached_property
     def size(self) -> int:
@@ -234,13 +188,6 @@ def _one_each(names: tuple[str, ...]) -> tuple[tuple[str, int], ...]:
     return tuple((name, 1) for name in names)
 
 
-def _of_sections(shapes: Shapes) -> tuple[tuple[str, int], ...]:
-    sizes = shapes.sections, shapes.planes, shapes.b.count, shapes.axial.count
-    own, tapers = section_parameters(*sizes, shear=shapes.shear, tapers=shapes.tapers), shapes.tapers
-    guide = shapes.guide
-    return own if guide is None else own + inner_parameters(*sizes[:2], guide.count, tapers=tapers)
-
-
 def leg_parameters(shapes: Shapes) -> tuple[tuple[str, int], ...]:
     """Physical parameters of one leg in kernel order (name, size)."""
     own = [item for element in shapes.elements for item in element.parameters]
@@ -250,10 +197,9 @@ def leg_parameters(shapes: Shapes) -> tuple[tuple[str, int], ...]:
         (True, tuple(item for item in own if item[0] in PISTON)),
         (shapes.has("gamma1"), POSE_PARAMETERS),
         (True, tuple(item for item in own if item[0] not in PISTON)),
-        (shapes.sections > 0, _of_sections(shapes)),
+        (True, shapes.beam.section_parameters),
         (shapes.has("m") and not shapes.has("gamma1"), PLATFORM_JOINT),
-        (shapes.guide is not None, GUIDE_PARAMETERS),
-        (shapes.cylinder is not None, CYLINDER_PARAMETERS),
+        (True, shapes.beam.guide_parameters),
     )
     return tuple(item for there, table in parts if there for item in table)
 

@@ -32,6 +32,7 @@ from flexapod.elements.slot import Slot
 from flexapod.elements.stepped_piston import Part, SteppedShapes, of_planes, stepped_piston, stepped_shapes, straight
 from flexapod.elements.universal import universal
 from flexapod.mechanics.layout import Shapes
+from flexapod.mechanics.section_layout import LegBeam
 from flexapod.symbolic.lagrange import Lagrangian
 from flexapod.symbolic.vocabulary import SX, expanded, symbol, vertcat, zeros
 
@@ -72,19 +73,20 @@ def leg(shapes: Shapes, p: SimpleNamespace, q: SX, v: SX, qs: SimpleNamespace, v
     frame = universal(ground, qs, vs)
     if shapes.has("u1") and not flexes:
         frame = frame.moved(three(qs, "u"), three(vs, "u"))
-    if shapes.b.count and not shapes.a.count:  # a planar robot's leg does not bend across the plane
-        qs, vs = (SimpleNamespace(**vars(part) | {"a": zeros(shapes.b.count)}) for part in (qs, vs))
+    beam = shapes.beam
+    if beam.b.count and not beam.a.count:  # a planar robot's leg does not bend across the plane
+        qs, vs = (SimpleNamespace(**vars(part) | {"a": zeros(beam.b.count)}) for part in (qs, vs))
     s = qs.l - p.mouth  # (T3.6)  free length outside the cylinder
-    a, b, present = shapes.a if shapes.a.count else shapes.b, shapes.b, (zeros(0), zeros(0))
-    inner: LateralBasis | SteppedShapes | None = shapes.guide
-    if shapes.sections:
-        qs, vs = (of_planes(shapes.planes, part) for part in (qs, vs))
-        a, inner, present = _of_sections(shapes, p, s, qs.l)
+    a, b, present = beam.a if beam.a.count else beam.b, beam.b, (zeros(0), zeros(0))
+    inner: LateralBasis | SteppedShapes | None = beam.guide
+    if beam.sections:
+        qs, vs = (of_planes(beam.planes, part) for part in (qs, vs))
+        a, inner, present = _of_sections(beam, p, s, qs.l)
         b = a
-    line = _line(shapes, p, qs, vs)
-    motion = PistonMotion(a=a, b=b, axial=shapes.axial, frame=frame, line=line, s=s, q=q, v=v, qs=qs, vs=vs)
-    bodies = cylinder(frame, p, vs) + (stepped_piston if shapes.sections else sliding_piston)(motion, p)
-    inside, shift, turn, by_head = _inside(shapes, motion, p, inner)
+    line = _line(beam, p, qs, vs)
+    motion = PistonMotion(a=a, b=b, axial=beam.axial, frame=frame, line=line, s=s, q=q, v=v, qs=qs, vs=vs)
+    bodies = cylinder(frame, p, vs) + (stepped_piston if beam.sections else sliding_piston)(motion, p)
+    inside, shift, turn, by_head = _inside(beam, motion, p, inner)
     x = Along(p=p, q=qs, v=vs, elements=shapes.elements, base=base, foot=ground, cylinder=frame, piston=motion)
     of_elements = {one: one.energy(x) for one in shapes.elements}
     joints = _joints(p, qs, vs) if shapes.has("gamma1") else Energies()
@@ -110,7 +112,7 @@ def leg(shapes: Shapes, p: SimpleNamespace, q: SX, v: SX, qs: SimpleNamespace, v
 
 
 def _of_sections(
-    shapes: Shapes,
+    beam: LegBeam,
     p: SimpleNamespace,
     s: SX,
     l: SX,  # noqa: E741
@@ -119,25 +121,25 @@ def _of_sections(
 
     Returned are also the symbols for what depends on that length, and what to put for them.
     """
-    of_plane = np.concatenate([shapes.b.tip, np.zeros(shapes.shear * shapes.b.count)])
-    tip = np.tile(of_plane, len(shapes.planes))
+    of_plane = np.concatenate([beam.b.tip, np.zeros(beam.shear * beam.b.count)])
+    tip = np.tile(of_plane, len(beam.planes))
     if not tip.size:
-        none = straight(shapes.axial.count)
-        return none, None if shapes.guide is None else none, (zeros(0), zeros(0))
-    part = Part(p=p, s=s, l=l, end=l, tapers=shapes.tapers)
-    integrals = stepped_shapes(part, shapes.b, shapes.sheared, shapes.axial, shapes.planes)
-    if shapes.guide is None:
+        none = straight(beam.axial.count)
+        return none, None if beam.guide is None else none, (zeros(0), zeros(0))
+    part = Part(p=p, s=s, l=l, end=l, tapers=beam.tapers)
+    integrals = stepped_shapes(part, beam.b, beam.sheared, beam.axial, beam.planes)
+    if beam.guide is None:
         near, present = expanded(list(integrals.values()), l)
         return SteppedShapes(count=tip.size, tip=tip, **dict(zip(integrals, near, strict=True))), None, present
-    own = {f"section_{name}": getattr(p, f"inner_{name}") for name in (*INNER, *(f"EI_{k}" for k in shapes.planes))}
+    own = {f"section_{name}": getattr(p, f"inner_{name}") for name in (*INNER, *(f"EI_{k}" for k in beam.planes))}
     within = Part(
         p=SimpleNamespace(gland=p.gland, **own), s=p.guide_reach - l, l=l, end=l - p.Lp, way=-1,
-        tapers=shapes.tapers, there=p.inner_there,
+        tapers=beam.tapers, there=p.inner_there,
     )  # fmt: skip
-    inside = stepped_shapes(within, shapes.guide, None, shapes.axial, shapes.planes)
+    inside = stepped_shapes(within, beam.guide, None, beam.axial, beam.planes)
     near, present = expanded([*integrals.values(), *inside.values()], l)
     outer, inner = near[: len(integrals)], near[len(integrals) :]
-    head = np.tile(shapes.guide.tip, len(shapes.planes))
+    head = np.tile(beam.guide.tip, len(beam.planes))
     return (
         SteppedShapes(count=tip.size, tip=tip, **dict(zip(integrals, outer, strict=True))),
         SteppedShapes(count=head.size, tip=head, **dict(zip(inside, inner, strict=True))),
@@ -145,25 +147,25 @@ def _of_sections(
     )
 
 
-def _line(shapes: Shapes, p: SimpleNamespace, qs: SimpleNamespace, vs: SimpleNamespace) -> Line:
+def _line(beam: LegBeam, p: SimpleNamespace, qs: SimpleNamespace, vs: SimpleNamespace) -> Line:
     """Line of the piston through the mouth: that of a cylinder that bends, and what the gland gives way to it."""
     place, slope, place_rate, slope_rate = (zeros(2) for _ in range(4))
-    if shapes.cylinder is not None:
-        (place, slope), (place_rate, slope_rate) = (mouth(shapes.cylinder, p, x) for x in (qs, vs))
-    if shapes.guide is not None:
+    if beam.cylinder is not None:
+        (place, slope), (place_rate, slope_rate) = (mouth(beam.cylinder, p, x) for x in (qs, vs))
+    if beam.guide is not None:
         place, slope = (x + vertcat(qs.ga[i], qs.gb[i]) for i, x in enumerate((place, slope)))
         place_rate, slope_rate = (x + vertcat(vs.ga[i], vs.gb[i]) for i, x in enumerate((place_rate, slope_rate)))
     return Line(mouth=p.mouth, place=place, slope=slope, place_rate=place_rate, slope_rate=slope_rate)
 
 
 def _inside(
-    shapes: Shapes, f: PistonMotion, p: SimpleNamespace, inner: LateralBasis | SteppedShapes | None
+    beam: LegBeam, f: PistonMotion, p: SimpleNamespace, inner: LateralBasis | SteppedShapes | None
 ) -> tuple[Energies, SX, SX, tuple[SX, SX]]:
     """What is inside of a mouth that gives way: energies, shift and turn of the tip beyond those of the piston.
 
     Returned are also the symbols for what depends on the stroke alone, and what to put for them.
     """
-    e, from_base, turn, at, tube = Energies(), zeros(1), zeros(1), None, shapes.cylinder
+    e, from_base, turn, at, tube = Energies(), zeros(1), zeros(1), None, beam.cylinder
     if inner is None and tube is None:
         return e, zeros(3), zeros(3), (zeros(0), zeros(0))
     if inner is not None:

@@ -19,6 +19,7 @@ from flexapod.kinematics.vectors import turned
 from flexapod.mechanics.layout import LEG_PARAMETERS, Shapes
 from flexapod.mechanics.leg import leg
 from flexapod.mechanics.leg_chain import LegChain
+from flexapod.mechanics.section_layout import LegBeam
 from flexapod.results.attributes import attributes
 from flexapod.symbolic.functions import NamedFunction, operations
 from flexapod.symbolic.lagrange import inverse_dynamics
@@ -108,7 +109,7 @@ def _numbers(shape: tuple[int, ...], tally: list[int]) -> Array:
 def lagrange_leg() -> NamedFunction:
     """The same leg by Lagrange's equations, differentiated symbolically, Eqs. (T3.1)-(T3.2): M v_dot + h of 3 rows."""
     none = bases.lateral_basis("clamped-free", 0)
-    shapes = Shapes(a=none, b=none, axial=bases.axial_basis(0), chain=LegChain())
+    shapes = Shapes(beam=LegBeam(a=none, b=none, axial=bases.axial_basis(0)), chain=LegChain())
     p_vector, p = symbols(LEG_PARAMETERS, "p")
     q, qs = symbols(shapes.layout, "q")
     v, vs = symbols(shapes.layout, "v")

@@ -62,15 +62,15 @@ def _walk(study: model.Study, rolls: Sequence[float]) -> Iterator[dict[str, obje
 
 def _values(robot: model.Robot, shapes: Shapes, path: kinematics.Poses, x: State) -> dict[str, object]:
     first = shapes.index("a")
-    lateral = x.q[:, first : first + 2 * shapes.a.count].reshape(len(x.q), 2, -1)
+    lateral = x.q[:, first : first + 2 * shapes.beam.a.count].reshape(len(x.q), 2, -1)
     free = x.q[:, shapes.index("l")] - np.array([leg.cylinder.mouth for leg in robot.legs])
-    slope = lateral @ shapes.a.tip_slope / free[:, None]
-    short = 0.5 * np.einsum("idk,kj,idj->i", lateral, shapes.a.slope_tip, lateral) / free
-    curvature = lateral @ shapes.a.values(STATIONS, 2) / free[:, None, None] ** 2
+    slope = lateral @ shapes.beam.a.tip_slope / free[:, None]
+    short = 0.5 * np.einsum("idk,kj,idj->i", lateral, shapes.beam.a.slope_tip, lateral) / free
+    curvature = lateral @ shapes.beam.a.values(STATIONS, 2) / free[:, None, None] ** 2
     thrust = np.abs(x.drive[:, 0])
     return {
         "deviation": np.abs(x.pose[:3] - path.point(robot.payload.com)[0][0]),
-        "off_axis": np.linalg.norm(lateral @ shapes.a.tip, axis=1).max(),
+        "off_axis": np.linalg.norm(lateral @ shapes.beam.a.tip, axis=1).max(),
         "slope": np.linalg.norm(slope, axis=1).max(),
         "shortening": short.max(),
         "leg_force": thrust.max(),

@@ -47,7 +47,7 @@ def _lengths(robot: Robot) -> Array:
 
 def _tube(robot: Robot, system: System, q: Array, at: Array, derivative: int = 0) -> Array:
     """Displacement or slope by the cylinders' shapes at places ``at`` [m] from their joints, (..., legs, 2)."""
-    basis = system.kernel.shapes.cylinder
+    basis = system.kernel.shapes.beam.cylinder
     if basis is None:
         return np.zeros((*q.shape[:-1], 2))
     length = _lengths(robot)
@@ -58,8 +58,8 @@ def _tube(robot: Robot, system: System, q: Array, at: Array, derivative: int = 0
 
 def _bent(robot: Robot, system: System, q: Array, at: Array) -> Array:
     """Displacement of the cylinders, with the kink that the heads make, Eq. (T25.19)."""
-    found, basis = _tube(robot, system, q, np.maximum(at, 0.0)), system.kernel.shapes.cylinder
-    if basis is None or system.kernel.shapes.guide is None:
+    found, basis = _tube(robot, system, q, np.maximum(at, 0.0)), system.kernel.shapes.beam.cylinder
+    if basis is None or system.kernel.shapes.beam.guide is None:
         return found
     at, length, amplitude = np.maximum(at, 0.0), _lengths(robot), _pair(system, q, "k")[..., -1]
     eta = np.clip((_mouths(robot) - _overlaps(robot, system, q)) / length, LEAST, 1 - LEAST)
@@ -79,14 +79,14 @@ def tip_moves(robot: Robot, system: System, q: Array) -> dict[str, tuple[Array, 
     free = (q[..., shapes.l_index] - mouth)[..., None]
     place, tangent = (_tube(robot, system, q, mouth, derivative) for derivative in (0, 1))
     slope = tangent
-    if shapes.guide is not None:
+    if shapes.beam.guide is not None:
         overlap = _overlaps(robot, system, q)
         through = (place - _bent(robot, system, q, mouth - overlap)) / overlap[..., None]
         slope = np.where(np.array([leg.guide is not None for leg in robot.legs])[:, None], through, tangent)
         lean = _pair(system, q, "g")
         own = tangent + lean[..., 1] - slope
         found["guide"] = lean[..., 0] + free * own, own
-    if shapes.cylinder is not None:
+    if shapes.beam.cylinder is not None:
         found["cylinder"] = place + free * slope, slope
     return found
 
@@ -103,11 +103,11 @@ def off_axis(robot: Robot, system: System, q: Array, length: Array, stations: Ar
     ``length`` (legs,) of the legs, ``stations`` as shares of it; q (..., legs, n).
     """
     shapes, found = system.kernel.shapes, np.zeros((*q.shape[:-1], 2, stations.size))
-    if shapes.guide is None and shapes.cylinder is None:
+    if shapes.beam.guide is None and shapes.beam.cylinder is None:
         return found
     mouth = _mouths(robot)
     place, slope = (_tube(robot, system, q, mouth, derivative) for derivative in (0, 1))
-    if shapes.guide is not None:
+    if shapes.beam.guide is not None:
         lean = _pair(system, q, "g")
         place, slope = place + lean[..., 0], slope + lean[..., 1]
     for k, station in enumerate(stations):
@@ -119,7 +119,7 @@ def off_axis(robot: Robot, system: System, q: Array, length: Array, stations: Ar
 
 def guide_results(robot: Robot, system: System, q: Array) -> dict[str, Array]:
     """Forces of the bushings' springs on the pistons, across the legs, and their overlap; of guided legs."""
-    shapes, inner = system.kernel.shapes, system.kernel.shapes.guide
+    shapes, inner = system.kernel.shapes, system.kernel.shapes.beam.guide
     if inner is None:
         return {}
     guided, mouth = np.array([leg.guide is not None for leg in robot.legs]), _mouths(robot)

@@ -67,8 +67,8 @@ def leg_results(robot: Robot, system: System, path: RigidPath, record: Record) -
     if bent.shape[-1]:
         results["lateral_amplitude"] = bent
     results |= element_results(robot, system, q)
-    if shapes.axial.count:
-        results["axial_amplitude"] = q[..., shapes.index("c") :][..., : shapes.axial.count]
+    if shapes.beam.axial.count:
+        results["axial_amplitude"] = q[..., shapes.index("c") :][..., : shapes.beam.axial.count]
     return results
 
 

@@ -17,14 +17,14 @@ from flexapod.solve.sections import bending_amplitudes
 
 def bending_basis(shapes: Shapes) -> LateralBasis:
     """Shapes in which the legs bend; a planar robot's legs bend across one of their axes only."""
-    return shapes.a if shapes.a.count else shapes.b
+    return shapes.beam.a if shapes.beam.a.count else shapes.beam.b
 
 
 def lateral(shapes: Shapes, q: Array) -> Array:
     """Lateral amplitudes (..., 2, k) [m] out of coordinates (..., n); zero across an axis about which none bends."""
     k = bending_basis(shapes).count
     found = np.zeros((*q.shape[:-1], 2, k))
-    for direction, (name, basis) in enumerate((("a", shapes.a), ("b", shapes.b))):
+    for direction, (name, basis) in enumerate((("a", shapes.beam.a), ("b", shapes.beam.b))):
         if basis.count:
             at = shapes.index(name)
             found[..., direction, :] = q[..., at : at + k]
@@ -33,12 +33,12 @@ def lateral(shapes: Shapes, q: Array) -> Array:
 
 def bending(leg: Leg, shapes: Shapes, q: Array) -> Array:
     """Lateral amplitudes of a leg, (T, 2, k) [m], out of its coordinates (T, n): those of bending without shear."""
-    return bending_amplitudes(leg, shapes, q) if shapes.shear else lateral(shapes, q)
+    return bending_amplitudes(leg, shapes, q) if shapes.beam.shear else lateral(shapes, q)
 
 
 def stretch(shapes: Shapes, q: Array) -> Array:
     """Stretch of the pistons at their tips (...,) [m]: the amplitude of the static axial shape."""
-    return q[..., shapes.index("c")] if shapes.axial.count else np.zeros(q.shape[:-1])
+    return q[..., shapes.index("c")] if shapes.beam.axial.count else np.zeros(q.shape[:-1])
 
 
 def angle_names(limbs: Limbs) -> dict[str, str]:

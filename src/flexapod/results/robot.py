@@ -40,8 +40,8 @@ def robot_coords(robot: Robot, system: System, record: Record) -> dict[str, Arra
         labels["shape"] = np.arange(1, count + 1)
     if shapes.bristles:
         labels["slide"] = slides(system)
-    if shapes.axial.count:
-        labels["axial_shape"] = np.arange(shapes.axial.count)
+    if shapes.beam.axial.count:
+        labels["axial_shape"] = np.arange(shapes.beam.axial.count)
     return labels
 
 

@@ -63,7 +63,7 @@ def _leg_warnings(robot: Robot, system: System, record: Record | RestStates, whe
     compression = np.einsum("tli,tli->tl", record.lam[..., :3], axes)
     shapes, basis, found = system.kernel.shapes, bending_basis(system.kernel.shapes), []
     inside = gives_inside(robot)
-    own = system if shapes.a.count or shapes.b.count else None
+    own = system if shapes.beam.a.count or shapes.beam.b.count else None
     loads = buckling_loads(robot, record.q[..., shapes.l_index], own) if inside.any() else None
     for i, leg in enumerate(robot.legs):
         length = record.q[:, i, shapes.l_index]
@@ -84,7 +84,7 @@ def _leg_warnings(robot: Robot, system: System, record: Record | RestStates, whe
 
 def actuator_warnings(actuator: Actuator, shapes: Shapes, record: Record) -> list[str]:
     """Remarks on a simulation of a single actuator."""
-    basis, free = shapes.a, record.q[:, 0, shapes.l_index] - actuator.hub_radius
+    basis, free = shapes.beam.a, record.q[:, 0, shapes.l_index] - actuator.hub_radius
     lateral = np.stack([amplitudes(shapes, record.q[:, 0], name) for name, _ in lateral_signs(shapes, 1, 1)], axis=1)
     when = _When(record.time)
     found = _slope(basis.tip_slope[None, :, None] / free, lateral, when)

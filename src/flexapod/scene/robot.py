@@ -150,8 +150,8 @@ def beam_modes(study: model.ActuatorStudy, points: int) -> BeamModes:
     found, zeta = actuator_modes(actuator, simulation), np.linspace(0.0, 1.0, points)
     eta = 1 - (1 - zeta) * actuator.free_length / actuator.length
     shapes = actuator_shapes(actuator, simulation)
-    lateral = shapes.a.values(zeta)
-    values = {"c": (0, shapes.axial.values(eta)), "b": (1, -lateral), "a": (2, lateral), "t": (3, eta[None])}
+    lateral = shapes.beam.a.values(zeta)
+    values = {"c": (0, shapes.beam.axial.values(eta)), "b": (1, -lateral), "a": (2, lateral), "t": (3, eta[None])}
     moved = np.zeros((len(found.kind), points, 4))
     for name, at in amplitude_groups(shapes).items():
         k, shape = values[name]

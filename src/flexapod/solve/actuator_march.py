@@ -135,7 +135,7 @@ def _retracting(system: System, actuator: Actuator, chunks: Iterator[Chunk]) -> 
 
 def static_shape(system: System, displacement: float) -> Array:
     """Amplitudes (k,) of the static shape under a tip force, scaled to a tip displacement [m], Eq. (T9.3)."""
-    basis = system.kernel.shapes.a
+    basis = system.kernel.shapes.beam.a
     if not basis.count:
         return np.zeros(0)
     shape = np.linalg.solve(basis.stiffness, basis.tip)
@@ -178,7 +178,7 @@ def _state(study: ActuatorStudy, system: System, law: Law, amplitudes: Array | N
             q[0, i], v[i] = table[k, :2]
     if amplitudes is None:
         for name, displacement in lateral_signs(shapes, initial.tip_displacement, initial.elevation_displacement):
-            q[0, shapes.index(name) :][: shapes.a.count] = static_shape(system, displacement)
+            q[0, shapes.index(name) :][: shapes.beam.a.count] = static_shape(system, displacement)
     else:
         q[0, len(at) :] = amplitudes
     v[len(at) :] = 0.0 if rates is None else rates
@@ -197,7 +197,7 @@ def _measure(system: System, actuator: Actuator, recording: Recording) -> list[A
     Stretch, and twist times the length of the beam, count as far as they do beside the deflection (T9.11).
     """
     shapes, q = system.kernel.shapes, recording.q[:, 0]
-    moved = [amplitudes(shapes, q, name) @ shapes.a.tip for name, _ in lateral_signs(shapes, 0, 0)]
+    moved = [amplitudes(shapes, q, name) @ shapes.beam.a.tip for name, _ in lateral_signs(shapes, 0, 0)]
     there = dict(shapes.layout)
     beside = [("c", 1.0), ("t", actuator.length)]
     moved += [size * q[:, shapes.index(name)] for name, size in beside if there.get(name)]
@@ -209,7 +209,8 @@ def _weights(system: System, actuator: Actuator) -> tuple[Weight, ...]:
     shapes, n = system.kernel.shapes, system.n
     there, none = dict(shapes.layout), np.zeros(6)
     tip = np.zeros(n)
-    for name, size in (("a", np.abs(shapes.a.tip)), ("b", np.abs(shapes.a.tip)), ("c", 1.0), ("t", actuator.length)):
+    bent = np.abs(shapes.beam.a.tip)
+    for name, size in (("a", bent), ("b", bent), ("c", 1.0), ("t", actuator.length)):
         if there.get(name):
             tip[columns(shapes.layout, name)] = size
     free = [j for j in sorted(places(shapes).values()) if not system.held[0, j]]

@@ -116,7 +116,7 @@ def turning_matrices(actuator: Actuator, simulation: Simulation, rate: float) ->
     v[at["rotation"]] = rate
     arguments = (v, still, none, np.zeros(COMMAND_SIZE), p, *load)
     c = columns(shapes.layout, "c")
-    for _ in range(STEPS if shapes.axial.count else 0):
+    for _ in range(STEPS if shapes.beam.axial.count else 0):
         q[c] -= np.linalg.solve(tangents(q, *arguments)[0][c, c], residual(q, *arguments)[0][c])
     M = matrices(q, none, p, *load)[0]
     K, D = tangents(q, *arguments)  # (T9.6)

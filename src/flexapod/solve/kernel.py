@@ -137,13 +137,11 @@ def _fingerprint(shapes: Shapes) -> list[object]:
         for package in (elements, mechanics, symbolic)
         for path in sorted(Path(str(package.__file__)).parent.glob("*.py"))
     ]
-    bases = [x for x in (shapes.a, shapes.b, shapes.axial, shapes.guide, shapes.cylinder) if x is not None]
-    numbers = [getattr(basis, field.name) for basis in bases for field in fields(basis)]
+    numbers = [getattr(basis, field.name) for basis in shapes.beam.bases for field in fields(basis)]
     arrays = [np.ascontiguousarray(x).tobytes() for x in numbers if isinstance(x, np.ndarray)]
     sources = {source_of(one.kind) for one in shapes.elements}
     texts += [path.read_bytes() for path in sorted(path for path in sources if path is not None)]
-    switches = [x for x in (getattr(shapes, field.name) for field in fields(shapes)) if isinstance(x, (bool, int, str))]
-    return [*texts, *arrays, shapes.layout, shapes.chain, [str(one) for one in shapes.elements], switches]
+    return [*texts, *arrays, shapes.layout, shapes.beam.made_of, shapes.chain, [str(one) for one in shapes.elements]]
 
 
 def evaluate(

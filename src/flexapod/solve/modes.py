@@ -106,7 +106,7 @@ def no_mass(system: System, q: Array) -> ComputationError:
 
 def _turns_for_nothing(system: System) -> Mask:
     """Legs (n,) whose cylinder has no inertia about its joint, and a piston that only bushings take along."""
-    if system.kernel.shapes.guide is None:
+    if system.kernel.shapes.beam.guide is None:
         return np.zeros(system.legs, dtype=bool)
     layout = leg_parameters(system.kernel.shapes)
     names = ("cylinder_mass", "cylinder_com", "cylinder_inertia", "guide_stiffness")
@@ -187,7 +187,7 @@ def unit_modes(locked: LockedPoses, *, shapes: bool) -> UnitModes:
             "leaves nothing that could vibrate with the drives locked",
             key="simulation.fidelity",
             value=locked.simulation.fidelity,
-            allowed=("" if system.kernel.shapes.axial.count else "lumped, ")
+            allowed=("" if system.kernel.shapes.beam.axial.count else "lumped, ")
             + "finite-segment, assumed-modes, beam-fem, solid-fem",
         )
     omega, z, stable = natural(U, K, shapes=shapes)

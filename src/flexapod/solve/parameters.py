@@ -51,7 +51,7 @@ def leg_parameters(robot: Robot, legs: Limbs, shapes: Shapes, per_loss: float = 
         _leg(leg, at_rest=at_rest)
         | _place(robot, legs, i)
         | _joints(leg, legs, i, per_loss)
-        | (section_parameters(leg, shapes, legs.home[i, COORDINATES.index("l")]) if shapes.sections else {})
+        | (section_parameters(leg, shapes.beam, legs.home[i, COORDINATES.index("l")]) if shapes.beam.sections else {})
         | _of_elements(leg, shapes, standing[i])
         | _inside(leg, per_loss)
         for i, leg in enumerate(robot.legs)

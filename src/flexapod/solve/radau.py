@@ -131,6 +131,6 @@ class Within:
 def _along(system: System) -> tuple[int, int]:
     """Coordinates whose springs carry the force along a leg, first and number: of its stretch, else its stroke."""
     shapes = system.kernel.shapes
-    if shapes.axial.count:
-        return shapes.index("c"), shapes.axial.count
+    if shapes.beam.axial.count:
+        return shapes.index("c"), shapes.beam.axial.count
     return shapes.l_index, int(not system.held[:, shapes.l_index].any())

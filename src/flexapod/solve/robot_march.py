@@ -244,8 +244,8 @@ class _Measure:
         shapes = system.kernel.shapes
         first = shapes.index("a")
         self.system, self.robot = system, study.robot
-        self.path, self.lateral = path, slice(first, first + shapes.a.count + shapes.b.count)
-        self.along = columns(shapes.layout, "c") if shapes.axial.count else slice(0)
+        self.path, self.lateral = path, slice(first, first + shapes.beam.a.count + shapes.beam.b.count)
+        self.along = columns(shapes.layout, "c") if shapes.beam.axial.count else slice(0)
         self.radius = np.linalg.norm(study.robot.platform_joints, axis=1).max()
         self.fixed = bool(system.hub_held.all())
         self.least = ROUNDING / (study.simulation.tolerance or 1.0)  # what is smaller along a leg does not count

@@ -15,7 +15,7 @@ from flexapod.bases.lateral import proportional_damping
 from flexapod.elements.chains import chain, is_chain
 from flexapod.elements.steps import Piece, StepNodes, Uniform, held, law, nodes, on_pieces, pieces, sheared
 from flexapod.mechanics.layout import Shapes
-from flexapod.mechanics.section_layout import POWERS
+from flexapod.mechanics.section_layout import POWERS, LegBeam
 from flexapod.model import Leg, damping_parts
 from flexapod.model.sections import SHARES, PistonStep
 
@@ -81,11 +81,11 @@ def _powers(length: float, values: list[float]) -> Array:
     return np.linalg.solve(np.vander(SHARES, POWERS, increasing=True), values) / length ** np.arange(POWERS)
 
 
-def section_parameters(leg: Leg, shapes: Shapes, home: float) -> dict[str, object]:
+def section_parameters(leg: Leg, beam: LegBeam, home: float) -> dict[str, object]:
     """Parameters of the sections of a leg whose length at home is given [m], by name."""
-    piston, n, m, zeta = leg.piston, shapes.sections, shapes.axial.count, damping_parts(leg.damping)[0]
+    piston, n, m, zeta = leg.piston, beam.sections, beam.axial.count, damping_parts(leg.damping)[0]
     laws = laws_of(leg, n)
-    length, powers = laws.length, POWERS if shapes.tapers else 1
+    length, powers = laws.length, POWERS if beam.tapers else 1
     ends = np.concatenate([[0.0], np.cumsum(length)])
     offset = length[:, None] * _POINTS
     at = {name: np.array([law(c, x) for c, x in zip(laws.values[name], offset, strict=True)]) for name in _ALONG}
@@ -94,17 +94,17 @@ def section_parameters(leg: Leg, shapes: Shapes, home: float) -> dict[str, objec
     up_to = (_WEIGHTS - nodes(len(_POINTS)).beyond).T  # of a row: integrals from 0 to the points
     tau = 1 - (before[:-1, None] + soft @ up_to) / whole
     dm = at["rhoA"] * length[:, None] * _WEIGHTS
-    psi = shapes.axial.values(tau.ravel())
+    psi = beam.axial.values(tau.ravel())
     along, dm = piston.length - (ends[:-1, None] + offset).ravel(), dm.ravel()
     mass, whole_mass = (psi * dm) @ psi.T, dm.sum()
     free = home - leg.cylinder.mouth
-    lateral = _diagonal([_damping(laws_of(leg), shapes.b, shapes.sheared, free, way) for way in shapes.planes])
-    inner = {} if shapes.guide is None else _inner(leg, shapes, shapes.guide, home)
+    lateral = _diagonal([_damping(laws_of(leg), beam.b, beam.sheared, free, way) for way in beam.planes])
+    inner = {} if beam.guide is None else _inner(leg, beam, beam.guide, home)
     return inner | {
         **{f"section_{name}": laws.values[name][:, :powers] for name in laws.values},
         "section_cuts": ends[1:-1],
         "gland": piston.length * (_GLAND if leg.cylinder.mouth > 0 else 1e-6),
-        "section_load": loads(laws, of_points=is_chain(shapes.b))[:, :powers],
+        "section_load": loads(laws, of_points=is_chain(beam.b))[:, :powers],
         "piston_turning": np.array([(at[f"turning_{way}"] @ _WEIGHTS) @ length for way in "ab"]),
         "section_place": 1 - before[:-1] / whole,
         "section_shrink": 1 / (laws.values["EA"][:, 0] * whole),
@@ -112,29 +112,27 @@ def section_parameters(leg: Leg, shapes: Shapes, home: float) -> dict[str, objec
         "axial_first": psi @ dm,
         "axial_moment": psi @ (dm * along),
         "axial_mass": mass,
-        "axial_damping": 2 * zeta * proportional_damping(mass, piston.EA / piston.length * shapes.axial.stiffness)
+        "axial_damping": 2 * zeta * proportional_damping(mass, piston.EA / piston.length * beam.axial.stiffness)
         if whole_mass
         else np.zeros((m, m)),
         "lateral_damping": 2 * zeta * free * lateral,
     }
 
 
-def _inner(leg: Leg, shapes: Shapes, basis: LateralBasis, home: float) -> dict[str, object]:
+def _inner(leg: Leg, beam: LegBeam, basis: LateralBasis, home: float) -> dict[str, object]:
     """The same for the part inside of the mouth."""
-    laws, powers, overlap = laws_of(leg, shapes.sections, inwards=True), POWERS if shapes.tapers else 1, 0.0
+    laws, powers, overlap = laws_of(leg, beam.sections, inwards=True), POWERS if beam.tapers else 1, 0.0
     at = {name: np.array([law(c, x) for c, x in zip(laws.values[name], laws.length[:, None] * _POINTS, strict=True)])
           for name in ("EA", "rhoA")}  # fmt: skip
     soft = laws.length * ((1 / at["EA"]) @ _WEIGHTS)
     if leg.guide is not None:
         overlap = leg.overlap(home)
-    damping = np.zeros((len(shapes.planes) * basis.count,) * 2)
+    damping = np.zeros((len(beam.planes) * basis.count,) * 2)
     if overlap > 0:
         own = laws_of(leg, inwards=True)
-        damping = _diagonal([_damping(own, basis, None, overlap, way) for way in shapes.planes])
+        damping = _diagonal([_damping(own, basis, None, overlap, way) for way in beam.planes])
     return {
-        **{
-            f"inner_{name}": laws.values[name][:, :powers] for name in ("rhoA", *(f"EI_{way}" for way in shapes.planes))
-        },
+        **{f"inner_{name}": laws.values[name][:, :powers] for name in ("rhoA", *(f"EI_{way}" for way in beam.planes))},
         "inner_there": float(leg.guide is not None),
         "inner_cuts": np.cumsum(laws.length)[:-1],
         "inner_load": loads(laws)[:, 0],
@@ -217,15 +215,15 @@ def _along(parts: list[Piece], zeta: Array, derivative: int) -> Array:
     return values - held(parts[0].value_start)[:, None] * values[:1]
 
 
-def shear_tips(leg: Leg, shapes: Shapes, free: Array) -> Array:
+def shear_tips(leg: Leg, beam: LegBeam, free: Array) -> Array:
     """Deflections at the tip of the shapes of shear before (T1.22), at free lengths (N,), (k, N)."""
-    return _thick(laws_of(leg), shapes.sheared or shapes.b, free, "EI_b")[0].value_start
+    return _thick(laws_of(leg), beam.sheared or beam.b, free, "EI_b")[0].value_start
 
 
 def bending_amplitudes(leg: Leg, shapes: Shapes, q: Array) -> Array:
     """Amplitudes of bending alone out of coordinates (T, n) of a leg whose piston shears, (T, 2, k) [m]."""
-    k, free = shapes.b.count, q[:, shapes.l_index] - leg.cylinder.mouth
-    found, tips = np.zeros((len(q), 2, k)), shear_tips(leg, shapes, free)
+    k, free = shapes.beam.b.count, q[:, shapes.l_index] - leg.cylinder.mouth
+    found, tips = np.zeros((len(q), 2, k)), shear_tips(leg, shapes.beam, free)
     for direction, name in enumerate(("a", "b")):
         if shapes.has(f"shear_{name}"):
             own, by_shear = (q[:, shapes.index(x) :][:, :k] for x in (name, f"shear_{name}"))

@@ -9,6 +9,7 @@ import numpy as np
 
 from flexapod import bases, kinematics
 from flexapod.bases.lateral import LateralBasis
+from flexapod.elements.element import Physics
 from flexapod.elements.known import elements_of
 from flexapod.elements.slot import Slot
 from flexapod.elements.tip_body import PlanarTipBody, TipBody
@@ -16,6 +17,7 @@ from flexapod.elements.torsion import Torsion
 from flexapod.kinematics.limbs import ABSENT, COORDINATES, FREE, HELD, Limbs
 from flexapod.mechanics.layout import Shapes
 from flexapod.mechanics.leg_chain import LegChain
+from flexapod.mechanics.section_layout import LegBeam
 from flexapod.model import Actuator, Rectangle, Robot, Simulation, Tube
 
 __all__ = ["actuator_shapes", "beam_shapes", "leg_shapes", "planar_shapes", "robot_shapes", "space_shapes"]
@@ -29,24 +31,25 @@ def robot_shapes(robot: Robot, simulation: Simulation, legs: Limbs) -> Shapes:
     pose = bool(legs.pose_closure.any())
     lateral = leg_shapes(robot, simulation)
     shear = simulation.lateral_shapes > 0 and any(leg.piston.shear for leg in robot.legs)
-    return Shapes(
+    beam = LegBeam(
         a=bases.lateral_basis("clamped-free", 0) if robot.plane else lateral,  # across the plane nothing bends
         b=lateral,
         axial=bases.axial_basis(simulation.axial_shapes(robot.legs[0].axial_modes)),
-        elements=(Slot(Torsion),) * (pose and simulation.lateral_shapes > 0) + elements_of(robot, simulation),
-        chain=LegChain(
-            closure="pose" if pose else "point",
-            carriage=legs.carriage,
-            spin=bool((spin != ABSENT).any()),
-            pivot_spin=bool(((spin == FREE) & (gamma3 == HELD)).any()),
-        ),
-        sections=max(len(leg.piston.sections) for leg in robot.legs) or int(shear),
-        tapers=any(section.tapered for leg in robot.legs for section in leg.piston.sections),
-        shear=shear,
-        strips=any(section.width != section.thickness for leg in robot.legs for section in leg.piston.sections),
         guide=_inner(simulation.lateral_shapes, robot),
         cylinder=_cylinder(simulation.lateral_shapes, robot),
+        sections=max(len(leg.piston.sections) for leg in robot.legs) or int(shear),
+        strips=any(section.width != section.thickness for leg in robot.legs for section in leg.piston.sections),
+        tapers=any(section.tapered for leg in robot.legs for section in leg.piston.sections),
+        shear=shear,
     )
+    chain = LegChain(
+        carriage=legs.carriage,
+        spin=bool((spin != ABSENT).any()),
+        closure="pose" if pose else "point",
+        pivot_spin=bool(((spin == FREE) & (gamma3 == HELD)).any()),
+    )
+    torsion = (Slot(Torsion),) * (pose and simulation.lateral_shapes > 0)
+    return Shapes(beam=beam, chain=chain, elements=torsion + elements_of(robot, simulation))
 
 
 def _bends(robot: Robot) -> bool:
@@ -70,16 +73,17 @@ def _cylinder(count: int, robot: Robot) -> LateralBasis | None:
     return bases.lateral_basis("tip-load", min((count + 1) // 2 + 1, 5), moment=True)
 
 
-def space_shapes(lateral: LateralBasis, axial_modes: int, chain: LegChain | None = None, **others: Any) -> Shapes:
-    """Shapes of a leg that bends alike in both planes, by default of a leg UPS; ``others`` as `Shapes` has them."""
-    return Shapes(a=lateral, b=lateral, axial=bases.axial_basis(axial_modes), chain=chain or LegChain(), **others)
+def space_shapes(lateral: LateralBasis, axial_modes: int, *elements: type[Physics], **joints: Any) -> Shapes:
+    """Shapes of a leg that bends alike in both planes; ``joints`` as `LegChain` has them, by default of a leg UPS."""
+    beam = LegBeam(a=lateral, b=lateral, axial=bases.axial_basis(axial_modes))
+    return Shapes(beam=beam, chain=LegChain(**joints), elements=tuple(map(Slot, elements)))
 
 
 def planar_shapes(lateral: LateralBasis) -> Shapes:
     """Shapes of the single actuator in its plane."""
     none = bases.lateral_basis("clamped-free", 0)
-    chain, body = LegChain(planar=True, closure="none"), (Slot(PlanarTipBody),)
-    return Shapes(a=lateral, b=none, axial=bases.axial_basis(0), chain=chain, elements=body)
+    beam, chain = LegBeam(a=lateral, b=none, axial=bases.axial_basis(0)), LegChain(planar=True, closure="none")
+    return Shapes(beam=beam, chain=chain, elements=(Slot(PlanarTipBody),))
 
 
 def actuator_shapes(actuator: Actuator, simulation: Simulation, rate: float = 0.0) -> Shapes:
@@ -91,8 +95,8 @@ def actuator_shapes(actuator: Actuator, simulation: Simulation, rate: float = 0.
     if not actuator.space:
         return planar_shapes(lateral)
     axial = simulation.axial_shapes(actuator.axial_modes) if actuator.EA is not None else 0
-    torsion = (Slot(Torsion),) * (actuator.GJ is not None and simulation.lateral_shapes > 0)
-    return space_shapes(lateral, axial, LegChain(closure="none"), elements=(*torsion, Slot(TipBody)))
+    torsion = (Torsion,) * (actuator.GJ is not None and simulation.lateral_shapes > 0)
+    return space_shapes(lateral, axial, *torsion, TipBody, closure="none")
 
 
 def leg_shapes(robot: Robot, simulation: Simulation) -> LateralBasis:

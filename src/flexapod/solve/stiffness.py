@@ -108,7 +108,7 @@ def _refuse_rigid(locked: LockedPoses) -> None:
         )
     shapes, held = locked.system.kernel.shapes, locked.system.held
     rigid = [shapes.l_index, *(shapes.index(name) for name in ("u3", "e3") if shapes.has(name))]
-    cannot_stretch = shapes.axial.count == 0 and bool(held[:, rigid].all(axis=1).any())
+    cannot_stretch = shapes.beam.axial.count == 0 and bool(held[:, rigid].all(axis=1).any())
     if cannot_stretch or any(b.border.size for b in locked.bases):
         raise InputError(
             "makes the robot infinitely stiff" + ("" if cannot_stretch else ", across its hinges at least"),

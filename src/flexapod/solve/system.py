@@ -203,7 +203,7 @@ class System:
         """Rounding of the stiffest spring's force [N]: what a residual cannot fall below at lengths of a metre."""
         layout = leg_parameters(self.kernel.shapes)
         EA, Lp = (self.leg_p[:, columns(layout, name)] for name in ("EA", "Lp"))
-        stiffest = [(EA / Lp).max() * (self.kernel.shapes.axial.count > 0)]
+        stiffest = [(EA / Lp).max() * (self.kernel.shapes.beam.axial.count > 0)]
         ends = (f"{x}_{y}" for x in ENDS for y in ("flexure", "soft"))
         springs = ("drive_stiffness", "carriage_stiffness", "series_stiffness", "rotor_stiffness", *ends)
         springs += ("guide_stiffness", "loop_stiffness")

@@ -101,7 +101,7 @@ def _dataset(study: model.ActuatorStudy, march: ActuatorMarch, record: Record, r
         **attributes(study, warnings),
         **march_attributes(study, march.counters, record, compiled=march.system.kernel.library is not None),
     }
-    count = march.system.kernel.shapes.a.count
+    count = march.system.kernel.shapes.beam.a.count
     coords: dict[str, ArrayLike] = {"time": record.time}
     if count:
         coords["mode"] = np.arange(1, count + 1)
@@ -145,12 +145,12 @@ def _results(study: model.ActuatorStudy, march: ActuatorMarch, record: Record) -
     if shapes.chain.planar:
         bent = bent[:, 0]
     at = places(shapes)
-    results = {"tip_deflection": bent @ shapes.a.tip} | {_DRIVEN[motion]: q[:, i] for motion, i in at.items()}
+    results = {"tip_deflection": bent @ shapes.beam.a.tip} | {_DRIVEN[motion]: q[:, i] for motion, i in at.items()}
     results |= {f"{_DRIVEN[motion]}_rate": record.rate[:, 0, shapes.l_index - i] for motion, i in at.items()}
-    if shapes.a.count:
+    if shapes.beam.a.count:
         results["mode_amplitude"] = bent
     if shapes.chain.planar:
-        place = _tip(results["angle"], results["length"], results["tip_deflection"], bent, shapes.a.slope_tip, hub)
+        place = _tip(results["angle"], results["length"], results["tip_deflection"], bent, shapes.beam.a.slope_tip, hub)
         results["tip_position"] = place
     else:
         results["tip_position"] = tips(march.system, record.q)[:, 0]

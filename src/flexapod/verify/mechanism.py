@@ -18,6 +18,7 @@ from flexapod.errors import ComputationError
 from flexapod.integration import GeneralizedAlpha
 from flexapod.mechanics.layout import COMMAND_SIZE, LEG_PARAMETERS, Shapes, columns
 from flexapod.mechanics.leg_chain import LegChain
+from flexapod.mechanics.section_layout import LegBeam
 from flexapod.solve.kernel import NAMES, SOURCES, Kernel, sizes
 from flexapod.solve.march import march
 from flexapod.solve.problem import Problem
@@ -151,7 +152,7 @@ def _law(drive: Drive, branches: int) -> Law:
 
 def _system(mechanism: Mechanism) -> System:
     lateral = lateral_basis("tip-load", mechanism.shapes)  # for its number of shapes only
-    shapes = Shapes(a=lateral, b=lateral, axial=axial_basis(0), chain=LegChain())
+    shapes = Shapes(beam=LegBeam(a=lateral, b=lateral, axial=axial_basis(0)), chain=LegChain())
     general = np.zeros(
         (len(mechanism.parameters), sum(size for _, size in LEG_PARAMETERS))
     )  # what the loop itself asks of a leg

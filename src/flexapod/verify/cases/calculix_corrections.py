@@ -50,7 +50,7 @@ def robot_thick(robot: model.Robot, found: RobotModes, shear: float) -> Array:
     zeta, weight = gauss_unit()
     state = found.equilibrium.state
     legs = found.shapes[:, : 6 * n].reshape(-1, 6, n)
-    first, k = 3 + shapes.axial.count, shapes.a.count
+    first, k = 3 + shapes.beam.axial.count, shapes.beam.a.count
     inertia, give = np.zeros(len(legs)), np.zeros(len(legs))
     for i, leg in enumerate(robot.legs):
         s, piston = state.q[i, shapes.l_index] - leg.cylinder.mouth, leg.piston
@@ -58,8 +58,8 @@ def robot_thick(robot: model.Robot, found: RobotModes, shear: float) -> Array:
         turns = (legs[:, i, 1], -legs[:, i, 0] * np.cos(state.q[i, 1]))  # of the cylinder, in directions a and b
         for turn, start in zip(turns, (first, first + k), strict=True):
             amplitudes = legs[:, i, start : start + k]
-            slope = turn[:, None] + amplitudes @ shapes.a.values(zeta, 1) / s
-            third = amplitudes @ shapes.a.values(zeta, 3) / s**3
+            slope = turn[:, None] + amplitudes @ shapes.beam.a.values(zeta, 1) / s
+            third = amplitudes @ shapes.beam.a.values(zeta, 3) / s**3
             inertia += piston.rhoA * square * s * (slope**2 @ weight)
             give += piston.EI * square * shear * s * (third**2 @ weight)
     return _thick(found.frequency, inertia, give)

@@ -86,7 +86,7 @@ def _sliding_beam() -> list[Check]:
     first = 2.5e-3 * np.eye(3)[0]  # phi_1(1) = 2; the table starts from the first mode with sqrt(rhoA L) a at rest
     march = prepare_actuator(study, first, -FEED / (2 * study.actuator.free_length) * first)
     record = collect(march.chunks, (), study.duration, None)
-    tip = 1e3 * record.q[:, 0, 2:] @ march.system.kernel.shapes.a.tip
+    tip = 1e3 * record.q[:, 0, 2:] @ march.system.kernel.shapes.beam.a.tip
     names = [*(f"tip at {t} s" for t in range(11)), "largest deflection"]
     return checks(names, [*TIP_MM, LARGEST_MM], [*tip[::100], np.abs(tip).max()], 4e-3, "mm", absolute=True)
 
