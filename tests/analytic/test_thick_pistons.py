@@ -101,7 +101,7 @@ def test_kinetic_energy_of_turning_sections():
 
     def slope(q, xi, a):
         s = q[2] - leg.cylinder.mouth
-        parts = numeric_pieces(leg, thin.b, np.array([s]), 0)
+        parts = numeric_pieces(leg, thin.beam.b, np.array([s]), 0)
         piece = next(part for part in parts if xi / s <= part.end[0])
         shapes = piece.value(np.array([xi / s]), 1)
         return -a @ (shapes - held(parts[0].value_start) * shapes[:1])[:, 0] / s

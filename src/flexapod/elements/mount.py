@@ -113,10 +113,10 @@ class BaseMounting(_Mounting):
     @classmethod
     def energy_along(cls, x: Along) -> Energies:
         """Its springs and dampers, and the plate."""
-        p = x.p
+        p, base = x.p, x.base or world()
         e = mount(p.base_mount_stiffness, p.base_mount_damping, x.q.f, x.v.f)
         return e + plate(
-            x.base, p.base_mount_at, p.base_plate_mass, p.base_plate_inertia, p.base_plate_weighs * p.gravity
+            base, p.base_mount_at, p.base_plate_mass, p.base_plate_inertia, p.base_plate_weighs * p.gravity
         )
 
 
