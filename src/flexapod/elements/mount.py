@@ -115,9 +115,8 @@ class BaseMounting(_Mounting):
         """Its springs and dampers, and the plate."""
         p, base = x.p, x.base or world()
         e = mount(p.base_mount_stiffness, p.base_mount_damping, x.q.f, x.v.f)
-        return e + plate(
-            base, p.base_mount_at, p.base_plate_mass, p.base_plate_inertia, p.base_plate_weighs * p.gravity
-        )
+        body = p.base_plate_mass, p.base_plate_inertia, p.base_plate_weighs * p.gravity
+        return e + plate(base, p.base_mount_at, *body)
 
 
 class PlatformMounting(_Mounting):
