@@ -29,8 +29,8 @@ def oracle_numbers(ours, given):
         for name in legs.PHYSICS
         if not name.startswith(("carriage", "GJ", "base_", "gamma_", "platform_"))
     }
-    bare |= {"R0": given["R0"]} | {name: given[name] for name in ORACLE.get(ours.carriage, ())}
-    return bare | ({"GJ": given["GJ"]} if ours.torsion else {})
+    bare |= {"R0": given["R0"]} | {name: given[name] for name in ORACLE.get(ours.chain.carriage, ())}
+    return bare | ({"GJ": given["GJ"]} if ours.has("t") else {})
 
 
 @pytest.mark.parametrize(("kind", "spins"), [*((kind, 1.0) for kind in MOVING), ("pose on a slider", 0.0)])
@@ -71,7 +71,7 @@ def test_the_tip_turns_as_a_frame_carried_along_the_line(kind, basis):
         given = legs.numbers(5, platform_frame=np.eye(3), leg_frame=np.eye(3), joint=np.zeros(3))
         x = legs.state(ours, 5, amplitude, given)
         q = legs.pieces(ours, x["q"]) | {"gamma1": 0.0, "gamma2": 0.0, "gamma3": 0.0}
-        if ours.torsion:
+        if ours.has("t"):
             x["q"][ours.index("t")] = q["t"] = 8 * amplitude
         for name in ("gamma1", "gamma2", "gamma3", "e1", "e2", "e3"):
             if ours.has(name):

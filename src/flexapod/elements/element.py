@@ -164,6 +164,8 @@ class Physics:
         Its parameters in a leg without it, beside one that has it; 0 if they are not named here.
     follows : mapping
         Its coordinates that are as others are in a leg that carries nothing: own name -> the other's.
+    place : str
+        Where it rubs, as results name it; by default NAME.
     outputs : tuple of Output
         Its results.
     """
@@ -174,6 +176,7 @@ class Physics:
     parameters: ClassVar[Named] = ()
     absent: ClassVar[Mapping[str, Any]] = {}
     follows: ClassVar[Mapping[str, str]] = {}
+    place: ClassVar[str] = ""
     outputs: ClassVar[tuple[Output, ...]] = ()
 
     @classmethod
@@ -195,6 +198,10 @@ class Physics:
     def numbers(self, leg: Leg, standing: Standing) -> Mapping[str, Any]:
         """Its parameters in one leg, by name."""
         return {}
+
+    def smoothed(self, leg: Leg) -> Leg:
+        """The leg without what has a period in which it rests nobody knows where, as ripple."""
+        return leg
 
     def errors(self, leg: Leg) -> Sequence[Contribution]:
         """What it makes the stroke of one leg err by."""
@@ -225,13 +232,26 @@ class Physics:
 
     @classmethod
     def slides(cls, p: SimpleNamespace, q: SimpleNamespace, v: SimpleNamespace) -> SX:
-        """How fast it slides where it has friction, in each of the directions that `bristles` counts."""
+        """How fast it slides where it has friction, in each of its `ways`.
+
+        Its first parameter then is what `friction.rubbing` reads.
+        """
         return vertcat()
 
     @classmethod
-    def bristles(cls, has: Callable[[str], bool]) -> int:
-        """In how many directions it slides with friction, in legs that have some coordinates; 0 without."""
-        return 0
+    def ways(cls, has: Callable[[str], bool]) -> Sequence[str]:
+        """Directions in which it slides with friction, in legs that have some coordinates, as results name them."""
+        return ()
+
+    @classmethod
+    def rubs(cls, leg: Leg) -> bool:
+        """Whether it has friction in one leg."""
+        return bool(cls.all_of(leg)) and bool(cls.ways(lambda name: True))
+
+    @classmethod
+    def friction_unit(cls, leg: Leg) -> float:
+        """Friction as its table has it, by what the equations have."""
+        return 1.0
 
     @classmethod
     def in_series(cls, s: SeriesSprings, p: SimpleNamespace, q: SimpleNamespace, v: SimpleNamespace) -> SeriesSprings:

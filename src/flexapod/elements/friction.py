@@ -37,7 +37,12 @@ class _OfJoint(Physics):
     @classmethod
     def among(cls, robot: Robot, simulation: Simulation) -> bool:
         """Where it rubs in some leg."""
-        return any(getattr(leg, f"{cls.end}_joint").friction is not None for leg in robot.legs)
+        return any(map(cls.rubs, robot.legs))
+
+    @classmethod
+    def rubs(cls, leg: Leg) -> bool:
+        """A joint with friction."""
+        return getattr(leg, cls.place).friction is not None
 
     def numbers(self, leg: Leg, standing: Standing) -> dict[str, Any]:
         """Its numbers, and 1 where directions slide together."""
@@ -49,13 +54,13 @@ class _OfJoint(Physics):
 class BaseFriction(_OfJoint):
     """At the base."""
 
-    end = "base"
+    end, place = "base", "base_joint"
     parameters: ClassVar[Named] = (("base_friction", 8),)
 
     @classmethod
-    def bristles(cls, has: Callable[[str], bool]) -> int:
-        """Of two angles, or of three."""
-        return 3 if has("spin") else 2
+    def ways(cls, has: Callable[[str], bool]) -> tuple[str, ...]:
+        """Two angles, or three."""
+        return ("alpha", "beta", "spin") if has("spin") else ("alpha", "beta")
 
     @classmethod
     def slides(cls, p: SimpleNamespace, q: SimpleNamespace, v: SimpleNamespace) -> SX:
@@ -69,13 +74,13 @@ class BaseFriction(_OfJoint):
 class PlatformFriction(_OfJoint):
     """At the platform."""
 
-    end = "platform"
+    end, place = "platform", "platform_joint"
     parameters: ClassVar[Named] = (("platform_friction", 8),)
 
     @classmethod
-    def bristles(cls, has: Callable[[str], bool]) -> int:
-        """Of three angles."""
-        return 3
+    def ways(cls, has: Callable[[str], bool]) -> tuple[str, ...]:
+        """Three angles."""
+        return ("gamma1", "gamma2", "gamma3")
 
     @classmethod
     def slides(cls, p: SimpleNamespace, q: SimpleNamespace, v: SimpleNamespace) -> SX:
@@ -86,6 +91,8 @@ class PlatformFriction(_OfJoint):
 
 class DriveFriction(Physics):
     """Of a drive along its travel."""
+
+    place = "drive"
 
     parameters: ClassVar[Named] = (
         ("drive_friction", 8),
@@ -101,7 +108,12 @@ class DriveFriction(Physics):
     @classmethod
     def among(cls, robot: Robot, simulation: Simulation) -> bool:
         """Where a drive rubs in some leg."""
-        return any(leg.drive.friction is not None for leg in robot.legs)
+        return any(map(cls.rubs, robot.legs))
+
+    @classmethod
+    def rubs(cls, leg: Leg) -> bool:
+        """A drive with friction."""
+        return leg.drive.friction is not None
 
     def numbers(self, leg: Leg, standing: Standing) -> dict[str, Any]:
         """Its numbers; those of a screw by the nut's travel, Eq. (T19.12).
@@ -123,9 +135,14 @@ class DriveFriction(Physics):
         }
 
     @classmethod
-    def bristles(cls, has: Callable[[str], bool]) -> int:
-        """One."""
-        return 1
+    def ways(cls, has: Callable[[str], bool]) -> tuple[str, ...]:
+        """Its travel."""
+        return ("",)
+
+    @classmethod
+    def friction_unit(cls, leg: Leg) -> float:
+        """Of screws by their angle."""
+        return 1.0 if leg.screw is None else leg.screw.per_turn
 
     @classmethod
     def slides(cls, p: SimpleNamespace, q: SimpleNamespace, v: SimpleNamespace) -> SX:

@@ -25,7 +25,7 @@ if TYPE_CHECKING:
     from flexapod.model import Leg, Robot, Simulation
     from flexapod.schema.section import Section
 
-__all__ = ["element_at", "elements_of", "kinds_of", "read_elements", "refuse_tables", "told_elements"]
+__all__ = ["element_at", "elements_of", "kinds_of", "read_elements", "refuse_tables", "slots_of", "told_elements"]
 
 GROUP = "flexapod.elements"
 OURS: tuple[type[Physics], ...] = (
@@ -43,8 +43,13 @@ def kinds_of(legs: Sequence[Leg]) -> tuple[type[Physics], ...]:
 def elements_of(robot: Robot, simulation: Simulation) -> tuple[Slot, ...]:
     """Those that a kernel for the legs of a robot knows of, two alike in a leg after each other."""
     there = (kind for kind in kinds_of(robot.legs) if kind.among(robot, simulation))
-    most = ((kind, max(len(kind.all_of(leg)) for leg in robot.legs)) for kind in there)
-    return tuple(Slot(kind, number) for kind, count in most for number in range(1, count + 1))
+    return tuple(slot for kind in there for slot in slots_of(kind, robot.legs))
+
+
+def slots_of(kind: type[Physics], legs: Sequence[Leg]) -> tuple[Slot, ...]:
+    """Those of one kind, as many as the leg with the most of them has."""
+    most = max(len(kind.all_of(leg)) for leg in legs)
+    return tuple(Slot(kind, number) for number in range(1, most + 1))
 
 
 def refuse_tables(legs: Sequence[Leg], reader: str, *, known: Sequence[type[Element]] = ()) -> None:

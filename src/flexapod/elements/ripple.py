@@ -78,6 +78,11 @@ class Ripple(Physics, Table):
         angle = p.ripple_wave * q.r
         return Energies(strain=dot(p.ripple, vertcat(*(1 - cos(k * angle) for k in range(1, HARMONICS + 1)))))
 
+    def smoothed(self, leg: Leg) -> Leg:
+        """Of a motor without it."""
+        screw: Any = leg.screw
+        return leg.replace(drive=screw.replace(motor=screw.motor.replace(ripple=None)))
+
     def errors(self, leg: Leg) -> Sequence[Contribution]:
         """What it moves the rotor by at rest, against the spring of its loop."""
         spread = self.spread(leg.screw)  # type: ignore[arg-type]

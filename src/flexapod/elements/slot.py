@@ -32,6 +32,11 @@ class Slot:
         at = self.kind.at
         return at and f"{at}{'' if self.number == 1 else f'_{self.number}'}_"
 
+    @property
+    def place(self) -> str:
+        """Where it rubs, as results name it."""
+        return self.kind.place or self.prefix[:-1]
+
     def of(self, leg: Leg) -> Physics | None:
         """The element in one leg; None of a leg without it."""
         found = self.kind.all_of(leg)

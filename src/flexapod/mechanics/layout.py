@@ -149,7 +149,7 @@ class Shapes:
     @property
     def rubbing(self) -> tuple[tuple[Slot, int], ...]:
         """Elements with friction, and in how many directions they slide: a bristle for each."""
-        found = ((slot, slot.kind.bristles(self.has)) for slot in self.elements)
+        found = ((slot, len(slot.kind.ways(self.has))) for slot in self.elements)
         return tuple((slot, count) for slot, count in found if count)
 
     @property

@@ -10,7 +10,6 @@ from flexapod.arrays import Array
 from flexapod.elements.flexure import Flexures
 from flexapod.elements.gap import Gap, past_gap
 from flexapod.elements.springs import Place, Spring, of_servo, springs_along
-from flexapod.elements.turning_nut import TurningNut
 from flexapod.model import Robot, ServoDrive
 from flexapod.results.inside import part_names_inside
 from flexapod.solve.system import System
@@ -65,7 +64,7 @@ def in_gap(robot: Robot, system: System, q: Array) -> Array:
     if not shapes.holds(Gap):
         return np.zeros(q.shape[:-1])
     apart = q[..., shapes.l_index] - q[..., shapes.index("r")]
-    if shapes.holds(TurningNut):
+    if any(leg.turning for leg in robot.legs):
         apart = apart - np.array([leg.turning for leg in robot.legs]) * q[..., shapes.index("spin")]
     return apart - past_gap(apart, np.array([leg.half_play for leg in robot.legs]))
 

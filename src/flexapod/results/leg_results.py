@@ -8,7 +8,6 @@ import numpy as np
 from numpy.typing import ArrayLike
 
 from flexapod.arrays import Array
-from flexapod.elements.friction import BaseFriction, DriveFriction
 from flexapod.elements.springs import twist_share
 from flexapod.kinematics.built import built_limbs
 from flexapod.kinematics.limbs import COORDINATES, HELD, Limbs
@@ -28,7 +27,7 @@ from flexapod.results.record import Record
 from flexapod.solve.batch import RestStates
 from flexapod.solve.frames import as_drawn, in_world
 from flexapod.solve.friction import sliding
-from flexapod.solve.lost_motion import PLACES, places_with_friction
+from flexapod.solve.lost_motion import places_with_friction
 from flexapod.solve.released import RobotForces, released, rigid_system
 from flexapod.solve.system import System
 
@@ -136,18 +135,15 @@ def _motor_forces(robot: Robot, system: System, forces: Array) -> Array:
 def slides(system: System) -> list[str]:
     """What slides in a leg, in words: joints about their angles or, balls, axes; the drive."""
     shapes, found = system.kernel.shapes, []
-    for name, count in shapes.sliding:
-        ends = {"base_friction": ("alpha", "beta", "spin"), "platform_friction": ("gamma1", "gamma2", "gamma3")}
-        found += [f"{PLACES[name]} {angle}" for angle in ends[name][:count]] if name in ends else [PLACES[name]]
+    for slot, _ in shapes.rubbing:
+        found += [f"{slot.place} {way}".strip() for way in slot.kind.ways(shapes.has)]
     return found
 
 
 def _by_angle(robot: Robot, system: System) -> Array:
     """Factors (legs, bristles) by which friction is that of the study file: of screws by their angle."""
-    found = np.ones((robot.count, system.kernel.shapes.bristles))
-    if system.kernel.shapes.holds(DriveFriction):
-        found[:, -1] = [1.0 if leg.screw is None else leg.screw.per_turn for leg in robot.legs]
-    return found
+    kinds = [slot.kind for slot, count in system.kernel.shapes.rubbing for _ in range(count)]
+    return np.array([[kind.friction_unit(leg) for kind in kinds] for leg in robot.legs])
 
 
 def drive_forces(robot: Robot, system: System, record: Record) -> Array:
@@ -263,7 +259,7 @@ def _base_moments(
     shapes = system.kernel.shapes
     turn, axes = _turned_by_cranks(found, system, q), []
     about = np.zeros((*q.shape[:2], 3))
-    on_angles = None if rubs is None or not shapes.holds(BaseFriction) else _on_coordinates(system, q, rubs)
+    on_angles = None if rubs is None else _on_coordinates(system, q, rubs)
     for k, (name, unit) in enumerate(zip(_BASE_ANGLES, np.eye(3), strict=True)):
         axes.append((turn @ unit[:, None])[..., 0])
         if not shapes.has(name):

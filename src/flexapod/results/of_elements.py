@@ -8,8 +8,7 @@ from typing import TYPE_CHECKING
 import numpy as np
 
 from flexapod.arrays import Array
-from flexapod.elements.known import kinds_of
-from flexapod.elements.slot import Slot
+from flexapod.elements.known import kinds_of, slots_of
 from flexapod.mechanics.layout import leg_parameters
 from flexapod.model import Robot
 from flexapod.results.names import VARIABLES, Variable
@@ -25,11 +24,9 @@ def element_forms(robot: Robot) -> dict[str, Variable]:
     """Results of the elements of a robot: dimensions, unit, meaning."""
     found = {}
     for kind in kinds_of(robot.legs):
-        most = max(len(kind.all_of(leg)) for leg in robot.legs) if kind.outputs else 0
-        for number in range(1, most + 1):
+        for slot in slots_of(kind, robot.legs) if kind.outputs else ():
             for output in kind.outputs:
-                name = f"{Slot(kind, number).prefix}{output.name}"
-                found[name] = Variable(("time", "leg"), output.units, output.long_name)
+                found[f"{slot.prefix}{output.name}"] = Variable(("time", "leg"), output.units, output.long_name)
     return found
 
 

@@ -7,6 +7,7 @@ from dataclasses import replace
 import numpy as np
 
 from flexapod.arrays import Array
+from flexapod.elements.known import kinds_of, slots_of
 from flexapod.elements.springs import before_piston, twist_share
 from flexapod.model import ForceDrive, Leg, Robot
 from flexapod.solve.batch import matrices_at_rest
@@ -14,9 +15,7 @@ from flexapod.solve.friction import numbers, sliding
 from flexapod.solve.locked import LockedPoses
 from flexapod.solve.stiffness import displacement, tool_motion
 
-__all__ = ["PLACES", "before_friction", "lost_motion", "places_with_friction", "reversal"]
-
-PLACES = {"base_friction": "base_joint", "platform_friction": "platform_joint", "drive_friction": "drive"}
+__all__ = ["before_friction", "lost_motion", "places_with_friction", "reversal"]
 
 
 def reversal(locked: LockedPoses) -> dict[str, Array]:
@@ -32,7 +31,7 @@ def reversal(locked: LockedPoses) -> dict[str, Array]:
         locked = replace(locked, m=matrices_at_rest(system, at, locked.acts.wrench))
     tool, rates, (p, force) = tool_motion(locked.robot, at.pose), sliding(system, at.q), numbers(system, at.lam)
     limit, first = force * (1 + p[..., 3]), 0  # (T19.13)
-    for name, count in shapes.sliding:
+    for slot, count in shapes.rubbing:
         here = slice(first, first + count)
         loads = np.zeros((*at.q.shape, legs, count))
         for i in range(legs):
@@ -41,19 +40,15 @@ def reversal(locked: LockedPoses) -> dict[str, Array]:
         moved = tool @ displacement(locked, loads.reshape(*at.q.shape, columns), np.zeros((len(tool), 6, columns)))
         each = np.moveaxis(moved.reshape(len(tool), 6, legs, count), 1, 2)
         together = p[:, here, 7][:, :1] > 0  # (T19.14)
-        found[PLACES[name]] = np.where(together, np.sqrt((each**2).sum(axis=-1)), np.abs(each).sum(axis=-1))
+        found[slot.place] = np.where(together, np.sqrt((each**2).sum(axis=-1)), np.abs(each).sum(axis=-1))
         first += count
     return found
 
 
 def places_with_friction(robot: Robot) -> tuple[str, ...]:
     """Where something rubs in a robot, in the order of `reversal`."""
-    parts = {
-        "base_joint": [leg.base_joint.friction for leg in robot.legs],
-        "platform_joint": [leg.platform_joint.friction for leg in robot.legs],
-        "drive": [leg.drive.friction for leg in robot.legs],
-    }
-    return tuple(name for name, found in parts.items() if any(x is not None for x in found))
+    kinds = (kind for kind in kinds_of(robot.legs) if any(map(kind.rubs, robot.legs)))
+    return tuple(slot.place for kind in kinds for slot in slots_of(kind, robot.legs))
 
 
 def before_friction(leg: Leg, length: Array) -> dict[str, Array]:

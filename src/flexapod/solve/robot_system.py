@@ -7,7 +7,7 @@ import numpy as np
 from flexapod import kinematics
 from flexapod.arrays import Mask
 from flexapod.elements.element import Standing
-from flexapod.elements.ripple import Ripple
+from flexapod.elements.known import kinds_of
 from flexapod.kinematics.limbs import ABSENT, COORDINATES, DRIVEN, HELD, Limbs
 from flexapod.mechanics.layout import Shapes
 from flexapod.model import Robot, Simulation
@@ -49,12 +49,14 @@ def robot_system(
 
 
 def smooth(robot: Robot) -> Robot:
-    """The robot without ripple of its motors: where in a period it rests is not known."""
-    if all(Ripple.of(leg) is None for leg in robot.legs):
-        return robot
-    screws = [leg.screw and leg.screw.replace(motor=leg.screw.motor.replace(ripple=None)) for leg in robot.legs]
-    pairs = zip(robot.legs, screws, strict=True)
-    return robot.replace(legs=tuple(leg.replace(drive=screw or leg.drive) for leg, screw in pairs))
+    """The robot without ripple of its motors and the like: where in a period it rests is not known."""
+    legs = list(robot.legs)
+    for kind in kinds_of(legs):
+        for i, leg in enumerate(robot.legs):
+            for own in kind.all_of(leg):
+                legs[i] = own.smoothed(legs[i])
+    same = all(now is before for now, before in zip(legs, robot.legs, strict=True))
+    return robot if same else robot.replace(legs=tuple(legs))
 
 
 def _held(robot: Robot, legs: Limbs, shapes: Shapes, *, at_rest: bool) -> Mask:
