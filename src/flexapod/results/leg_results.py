@@ -259,7 +259,7 @@ def _base_moments(
     shapes = system.kernel.shapes
     turn, axes = _turned_by_cranks(found, system, q), []
     about = np.zeros((*q.shape[:2], 3))
-    on_angles = None if rubs is None else _on_coordinates(system, q, rubs)
+    on_angles = None if rubs is None or not shapes.bristles else _on_coordinates(system, q, rubs)
     for k, (name, unit) in enumerate(zip(_BASE_ANGLES, np.eye(3), strict=True)):
         axes.append((turn @ unit[:, None])[..., 0])
         if not shapes.has(name):
