@@ -69,9 +69,9 @@ class SeriesSprings:
     ``softer``: their compliance over that at home; ``nut`` and ``rate``: where they end, and how fast that moves.
     """
 
-    softer: SX
+    softer: SX | float
     nut: SX
-    rate: SX
+    rate: SX | float
 
 
 class Output(NamedTuple):
@@ -89,13 +89,13 @@ class Output(NamedTuple):
 class Contribution(NamedTuple):
     """What an element makes a stroke err by, for an error budget.
 
-    ``size`` [m]: a standard deviation of ``kind`` "random", half of the width of "hysteretic"; ``how`` it is computed;
-    ``stands``: a random one is the same at each approach of one machine.
+    ``size`` [m], or what gives it by the length of the leg [m]: a standard deviation of ``kind`` "random", half of the
+    width of "hysteretic"; ``how`` it is computed; ``stands``: a random one is the same at each approach of one machine.
     """
 
     name: str
     kind: Literal["random", "hysteretic"]
-    size: float
+    size: float | Callable[[float], float]
     how: str
     stands: bool = False
 
@@ -164,7 +164,7 @@ class Physics:
         Its parameters in a leg without it, beside one that has it; 0 if they are not named here.
     follows : mapping
         Its coordinates that are as others are in a leg that carries nothing: own name -> the other's.
-    place : str
+    rubs_at : str
         Where it rubs, as results name it; by default NAME.
     outputs : tuple of Output
         Its results.
@@ -176,7 +176,7 @@ class Physics:
     parameters: ClassVar[Named] = ()
     absent: ClassVar[Mapping[str, Any]] = {}
     follows: ClassVar[Mapping[str, str]] = {}
-    place: ClassVar[str] = ""
+    rubs_at: ClassVar[str] = ""
     outputs: ClassVar[tuple[Output, ...]] = ()
 
     @classmethod

@@ -42,7 +42,7 @@ class _OfJoint(Physics):
     @classmethod
     def rubs(cls, leg: Leg) -> bool:
         """A joint with friction."""
-        return getattr(leg, cls.place).friction is not None
+        return getattr(leg, cls.rubs_at).friction is not None
 
     def numbers(self, leg: Leg, standing: Standing) -> dict[str, Any]:
         """Its numbers, and 1 where directions slide together."""
@@ -54,7 +54,7 @@ class _OfJoint(Physics):
 class BaseFriction(_OfJoint):
     """At the base."""
 
-    end, place = "base", "base_joint"
+    end, rubs_at = "base", "base_joint"
     parameters: ClassVar[Named] = (("base_friction", 8),)
 
     @classmethod
@@ -74,7 +74,7 @@ class BaseFriction(_OfJoint):
 class PlatformFriction(_OfJoint):
     """At the platform."""
 
-    end, place = "platform", "platform_joint"
+    end, rubs_at = "platform", "platform_joint"
     parameters: ClassVar[Named] = (("platform_friction", 8),)
 
     @classmethod
@@ -92,7 +92,7 @@ class PlatformFriction(_OfJoint):
 class DriveFriction(Physics):
     """Of a drive along its travel."""
 
-    place = "drive"
+    rubs_at = "drive"
 
     parameters: ClassVar[Named] = (
         ("drive_friction", 8),

@@ -5,6 +5,7 @@ from __future__ import annotations
 from collections.abc import Collection, Sequence
 from typing import TYPE_CHECKING, Any
 
+from flexapod.elements.clearance import Clearance
 from flexapod.elements.drive_train import DriveTrain
 from flexapod.elements.element import Element, Physics, registered
 from flexapod.elements.encoder import Resolution
@@ -31,6 +32,7 @@ GROUP = "flexapod.elements"
 OURS: tuple[type[Physics], ...] = (
     Flexures, SoftBase, SoftPlatform, DriveTrain, TurningNut, Gap, Ripple, SummedError, MotorLoop, Oil, Resolution,
     BaseFriction, PlatformFriction, DriveFriction, MovedBase, BaseMounting, PlatformMounting,
+    Clearance,
 )  # fmt: skip
 
 

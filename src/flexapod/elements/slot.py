@@ -33,9 +33,9 @@ class Slot:
         return at and f"{at}{'' if self.number == 1 else f'_{self.number}'}_"
 
     @property
-    def place(self) -> str:
+    def rubs_at(self) -> str:
         """Where it rubs, as results name it."""
-        return self.kind.place or self.prefix[:-1]
+        return self.kind.rubs_at or self.prefix[:-1]
 
     def of(self, leg: Leg) -> Physics | None:
         """The element in one leg; None of a leg without it."""

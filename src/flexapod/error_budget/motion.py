@@ -66,7 +66,7 @@ def along_motion(study: Study, progress: Progress | None = None) -> AlongMotion:
 
 def _without_play(robot: Robot, system: System, path: RigidPath, record: Record) -> Moved:
     """The tool at the instants of a simulation but for the play that is a gap in it, which has rows of its own."""
-    found, played = moved(robot, system, path, record), in_gap(robot, system, record.q)
+    found, played = moved(robot, system, path, record), in_gap(system, record.q)
     if played.any():
         shift = played[..., None] * sensitivity(robot, path.poses).coordinate[:, :, COORDINATES.index("l")]
         found.by_leg[:, cause_names(robot).index("drive")] -= shift

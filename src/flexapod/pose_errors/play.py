@@ -12,7 +12,7 @@ from flexapod.model import Robot
 from flexapod.pose_errors.sensitivity import Sensitivity, sensitivity
 from flexapod.results.path import RigidPath
 
-__all__ = ["PLACES", "Jumps", "Play", "guide_play", "half_play", "jumps", "play_along"]
+__all__ = ["PLACES", "Jumps", "Play", "half_play", "jumps", "play_along"]
 
 PLACES = ("base_joint", "drive", "platform_joint")
 
@@ -57,20 +57,6 @@ def half_play(robot: Robot) -> Array:
         for leg in robot.legs
     ]
     return 0.5 * (np.array(play) * outside).T
-
-
-def guide_play(robot: Robot, length: Array) -> Array:
-    """How much legs of lengths (n,) change by leaning in the clearance of their bushings, (n,) [m], Eq. (T25.17).
-
-    A pinned leg bears no moment: it leans one way or another, without a force, and is at most by this shorter.
-    """
-    found = np.zeros(robot.count)
-    for i, leg in enumerate(robot.legs):
-        if leg.guide is not None and leg.guide.clearance:
-            d, s = leg.overlap(length[i]), length[i] - leg.cylinder.mouth
-            kink = leg.guide.clearance / d
-            found[i] = 0.5 * kink**2 * abs((s + d / 2) ** 2 / length[i] - leg.piston.length)
-    return found
 
 
 def play_along(path: RigidPath, at: Sensitivity | None = None) -> Play:

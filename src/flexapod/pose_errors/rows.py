@@ -12,7 +12,7 @@ from flexapod.elements.known import kinds_of
 from flexapod.kinematics.limbs import COORDINATES
 from flexapod.model import Study
 from flexapod.pose_errors.at_pose import AtPose
-from flexapod.pose_errors.play import PLACES, guide_play
+from flexapod.pose_errors.play import PLACES
 
 __all__ = ["ErrorRow", "rows"]
 
@@ -44,11 +44,6 @@ def rows(study: Study, pose: kinematics.Poses) -> list[ErrorRow]:
         for one in at.spreading
     ]
     found += _of_elements(study, at)
-    if (shorter := guide_play(study.robot, at.sensitivity.q[0, :, COORDINATES.index("l")])).any():
-        by_leg = np.abs(shorter[:, None] * at.sensitivity.coordinate[0, :, COORDINATES.index("l")])
-        found.append(
-            ErrorRow("guide play", "hysteretic", "", by_leg, "second order in the kink: legs that lean or do not")
-        )
     if at.is_loose:
         effect = np.abs(at.play.effect[0])
         how = "first order, whichever way the play is pressed"
@@ -60,11 +55,12 @@ def rows(study: Study, pose: kinematics.Poses) -> list[ErrorRow]:
 def _of_elements(study: Study, at: AtPose) -> list[ErrorRow]:
     """Rows of what elements make the strokes err by; alike ones of all legs are a row."""
     legs, found = study.robot.legs, {}
-    for i, leg in enumerate(legs):
+    for i, (leg, length) in enumerate(zip(legs, at.sensitivity.q[0, :, COORDINATES.index("l")], strict=True)):
         for kind in kinds_of(legs):
             for error in (error for own in kind.all_of(leg) for error in own.errors(leg)):
                 sizes = found.setdefault(error._replace(size=0.0), np.zeros(len(legs)))
-                sizes[i] = np.hypot(sizes[i], error.size) if error.kind == "random" else sizes[i] + error.size
+                size = error.size(length) if callable(error.size) else error.size
+                sizes[i] = np.hypot(sizes[i], size) if error.kind == "random" else sizes[i] + size
     moves = at.sensitivity.coordinate[0, :, COORDINATES.index("l")]
     by_leg = {error: sizes[:, None] * moves for error, sizes in found.items()}
     return [

@@ -11,7 +11,6 @@ from numpy.typing import NDArray
 from flexapod import kinematics
 from flexapod.arrays import Array
 from flexapod.elements.flexure import Flexures
-from flexapod.elements.soft_joint import SoftBase, SoftPlatform
 from flexapod.elements.springs import Place
 from flexapod.errors import ComputationError
 from flexapod.kinematics.closures import Task, close
@@ -142,8 +141,8 @@ def _across(robot: Robot, found: Limbs, system: System, record: Record | RestSta
     """
     shapes, errors = system.kernel.shapes, {}
     moves = tip_moves(robot, system, record.q)
-    for name, end, soft in (("base_joint", "u", SoftBase), ("platform_joint", "e", SoftPlatform)):
-        if shapes.holds(soft) and not shapes.holds(Flexures):
+    for name, end in (("base_joint", "u"), ("platform_joint", "e")):
+        if shapes.has(f"{end}1") and not shapes.holds(Flexures):
             at = shapes.index(f"{end}1")
             moves[name] = record.q[..., at : at + 2], np.zeros((*record.q.shape[:-1], 2))
     if found.plain or not moves:

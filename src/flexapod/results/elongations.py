@@ -7,11 +7,13 @@ from collections.abc import Sequence
 import numpy as np
 
 from flexapod.arrays import Array
+from flexapod.elements.element import SeriesSprings
 from flexapod.elements.flexure import Flexures
-from flexapod.elements.gap import Gap, past_gap
 from flexapod.elements.springs import Place, Spring, of_servo, springs_along
+from flexapod.mechanics.layout import leg_parameters
 from flexapod.model import Robot, ServoDrive
 from flexapod.results.inside import part_names_inside
+from flexapod.results.of_elements import by_name
 from flexapod.solve.system import System
 
 __all__ = ["elongations", "frame_names", "in_gap", "part_names"]
@@ -39,7 +41,7 @@ def elongations(
     """
     shapes = system.kernel.shapes
     found = {name: np.zeros(q.shape[:-1]) for name in part_names(robot)}
-    length, played = q[..., shapes.l_index], in_gap(robot, system, q)
+    length, played = q[..., shapes.l_index], in_gap(system, q)
     for i, leg in enumerate(robot.legs):
         springs = springs_along(leg)
         if leg.gives and isinstance(leg.drive, ServoDrive):
@@ -48,7 +50,7 @@ def elongations(
         if leg.turning and "nut" in places:  # (T23.41)
             found["unkeyed"][..., i] = leg.turning * q[..., i, shapes.index("spin")]
             gives["nut"] = gives["nut"] - found["unkeyed"][..., i]
-        if shapes.holds(Gap):
+        if "nut" in gives:
             gives["nut"] = gives["nut"] - played[..., i]
         for at, give in gives.items():
             here = [spring for spring in springs if spring.at == at and at in places]
@@ -58,15 +60,19 @@ def elongations(
     return found
 
 
-def in_gap(robot: Robot, system: System, q: Array) -> Array:
+def in_gap(system: System, q: Array) -> Array:
     """How far the play of legs that is a gap has let them go, (..., legs) [m], at most half of it; Eq. (T16.26)."""
     shapes = system.kernel.shapes
-    if not shapes.holds(Gap):
+    if not shapes.has("r"):
         return np.zeros(q.shape[:-1])
-    apart = q[..., shapes.l_index] - q[..., shapes.index("r")]
-    if any(leg.turning for leg in robot.legs):
-        apart = apart - np.array([leg.turning for leg in robot.legs]) * q[..., shapes.index("spin")]
-    return apart - past_gap(apart, np.array([leg.half_play for leg in robot.legs]))
+    p, now = by_name(system.leg_p, leg_parameters(shapes)), by_name(q, shapes.layout)
+    still, springs = by_name(np.zeros_like(q), shapes.layout), SeriesSprings(1.0, now.l, 0.0)
+    for element in shapes.elements:
+        springs = element.in_series(springs, p, now, still)
+    apart = past = now.r - springs.nut
+    for element in shapes.elements:
+        past, _ = element.past(past, still.r, p)
+    return past - apart
 
 
 def _gives(system: System, q: Array) -> dict[Place, Array]:

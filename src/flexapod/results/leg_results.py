@@ -117,7 +117,7 @@ def _drive_positions(robot: Robot, system: System, record: Record) -> Array:
     found = by_name.of_drives(robot_limbs(robot), shapes, q)
     gives = elongations(robot, system, q, ("nut",))
     give = np.sum(list(gives.values()), axis=0)
-    give = give + in_gap(robot, system, q)
+    give = give + in_gap(system, q)
     return found - give if shapes.has("r") else found
 
 
@@ -136,7 +136,7 @@ def slides(system: System) -> list[str]:
     """What slides in a leg, in words: joints about their angles or, balls, axes; the drive."""
     shapes, found = system.kernel.shapes, []
     for slot, _ in shapes.rubbing:
-        found += [f"{slot.place} {way}".strip() for way in slot.kind.ways(shapes.has)]
+        found += [f"{slot.rubs_at} {way}".strip() for way in slot.kind.ways(shapes.has)]
     return found
 
 

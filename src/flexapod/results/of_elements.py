@@ -17,7 +17,7 @@ from flexapod.solve.system import System
 if TYPE_CHECKING:
     from xarray import Dataset
 
-__all__ = ["element_forms", "element_results", "of_elements"]
+__all__ = ["by_name", "element_forms", "element_results", "of_elements"]
 
 
 def element_forms(robot: Robot) -> dict[str, Variable]:
@@ -35,7 +35,7 @@ def element_results(robot: Robot, system: System, q: Array) -> dict[str, Array]:
     shapes, found = system.kernel.shapes, {}
     if not any(slot.kind.outputs for slot in shapes.elements):
         return found
-    p, coordinates = _named(system.leg_p, leg_parameters(shapes)), _named(q, shapes.layout)
+    p, coordinates = by_name(system.leg_p, leg_parameters(shapes)), by_name(q, shapes.layout)
     for slot in shapes.elements:
         has = np.array([slot.of(leg) is not None for leg in robot.legs])
         for output in slot.kind.outputs:
@@ -49,7 +49,7 @@ def of_elements(data: Dataset) -> tuple[str, ...]:
     return tuple(str(name) for name in data.data_vars if name not in VARIABLES and data[name].dims == ("time", "leg"))
 
 
-def _named(rows: Array, layout: tuple[tuple[str, int], ...]) -> SimpleNamespace:
+def by_name(rows: Array, layout: tuple[tuple[str, int], ...]) -> SimpleNamespace:
     """Columns of rows by name; of more than one number the first axis counts them."""
     found, start = {}, 0
     for name, size in layout:

@@ -40,7 +40,7 @@ def reversal(locked: LockedPoses) -> dict[str, Array]:
         moved = tool @ displacement(locked, loads.reshape(*at.q.shape, columns), np.zeros((len(tool), 6, columns)))
         each = np.moveaxis(moved.reshape(len(tool), 6, legs, count), 1, 2)
         together = p[:, here, 7][:, :1] > 0  # (T19.14)
-        found[slot.place] = np.where(together, np.sqrt((each**2).sum(axis=-1)), np.abs(each).sum(axis=-1))
+        found[slot.rubs_at] = np.where(together, np.sqrt((each**2).sum(axis=-1)), np.abs(each).sum(axis=-1))
         first += count
     return found
 
@@ -48,7 +48,7 @@ def reversal(locked: LockedPoses) -> dict[str, Array]:
 def places_with_friction(robot: Robot) -> tuple[str, ...]:
     """Where something rubs in a robot, in the order of `reversal`."""
     kinds = (kind for kind in kinds_of(robot.legs) if any(map(kind.rubs, robot.legs)))
-    return tuple(slot.place for kind in kinds for slot in slots_of(kind, robot.legs))
+    return tuple(slot.rubs_at for kind in kinds for slot in slots_of(kind, robot.legs))
 
 
 def before_friction(leg: Leg, length: Array) -> dict[str, Array]:
