@@ -9,13 +9,14 @@ import numpy as np
 import pytest
 import scipy.interpolate
 from tests.trial_element.maxwell import Maxwell
+from tests.trial_element.seal import Seal
 
 import flexapod as fx
 from flexapod.document.parts import Bullets
 from flexapod.document.study import study_items
 from flexapod.elements.element import registered
 from flexapod.exchange.export import abaqus_deck
-from flexapod.model import ServoDrive, preset_text, to_toml
+from flexapod.model import ServoDrive, StrokeFriction, preset_text, to_toml
 from flexapod.page.charts import charts
 from flexapod.report import figures
 from flexapod.solve.at_poses import robot_modes
@@ -238,3 +239,17 @@ def test_an_entry_point_makes_it_known(tmp_path, monkeypatch):
 def test_a_tutorial_shows_this_element():
     page = (Path(__file__).parents[2] / "docs" / "an-element-of-your-own.md").read_text(encoding="utf-8")
     assert Path(sys.modules[Maxwell.__module__].__file__).read_text(encoding="utf-8") in page
+
+
+def test_friction_of_an_element_is_that_of_a_drive(monkeypatch):
+    # The same equation at the same place: kernels differ by the order of sums. Results of stiff legs magnify that.
+    monkeypatch.setitem(registered, "seal", Seal)
+    servo = ServoDrive(stiffness=1e6, damping=2e3)
+    own = study('[leg.seal]\nforce = "50 N"\n', drive=servo)
+    plain = study("", drive=servo.replace(friction=StrokeFriction(force=50.0)))
+    found, drive = (fx.simulate(x, fidelity="lumped", duration=0.1) for x in (own, plain))
+    assert list(found.slide.values) == ["seal"] and list(drive.slide.values) == ["drive"]
+    np.testing.assert_allclose(found.friction.values, drive.friction.values, atol=1e-6 * 50)
+    assert np.abs(found.friction.values).max() > 40
+    rows = fx.budget(own).budget.sel(part="seal friction"), fx.budget(plain).budget.sel(part="drive friction")
+    np.testing.assert_allclose(rows[0].values, rows[1].values, rtol=1e-6, atol=1e-12)
