@@ -101,22 +101,13 @@ class Contribution(NamedTuple):
 
 
 @dataclass(frozen=True, kw_only=True)
-class Along:
-    """A leg along its chain, for energies that need more than its coordinates.
-
-    ``p``, ``q``, ``v``: its parameters, coordinates and rates by name; ``elements``: all those of the kernel; ``base``:
-    frame of a base that moves, at the origin while it is where it is drawn; ``foot`` and ``cylinder``: frames before
-    and behind the base joint; ``piston``: its fields and what moves them.
-    """
+class _InLeg:
+    """A leg: parameters, coordinates, rates by name (``p``, ``q``, ``v``), and all ``elements`` of the kernel."""
 
     p: SimpleNamespace
     q: SimpleNamespace
     v: SimpleNamespace
     elements: Sequence[Slot]
-    base: Frame | None
-    foot: Frame
-    cylinder: Frame
-    piston: PistonMotion
 
     def holds(self, kind: type[Physics]) -> bool:
         """Whether an element of a kind is among them."""
@@ -124,22 +115,32 @@ class Along:
 
 
 @dataclass(frozen=True, kw_only=True)
-class Moving:
-    """A leg in motion, for those that need more than its coordinates.
+class Along(_InLeg):
+    """A leg along its chain, for energies that need more than its coordinates.
 
-    ``p``, ``q``, ``v``: its parameters, coordinates and rates by name; ``q_cmd`` and ``v_cmd``: what is commanded to
-    its rotor, if it has one; ``foot`` and ``tip``: places of its joints in the world; ``elements``: all those of the
-    kernel; ``rate``: gives the rate of an expression.
+    ``p``, ``q``, ``v``, ``elements`` by name. ``base``: frame of a base that moves, at the origin while it is where it
+    is drawn; ``foot`` and ``cylinder``: frames before and behind the base joint; ``piston``: its fields and what moves
+    them.
     """
 
-    p: SimpleNamespace
-    q: SimpleNamespace
-    v: SimpleNamespace
+    base: Frame | None
+    foot: Frame
+    cylinder: Frame
+    piston: PistonMotion
+
+
+@dataclass(frozen=True, kw_only=True)
+class Moving(_InLeg):
+    """A leg in motion, for those that need more than its coordinates.
+
+    ``p``, ``q``, ``v``, ``elements`` by name. ``q_cmd`` and ``v_cmd``: what is commanded to its rotor, if it has one;
+    ``foot`` and ``tip``: places of its joints in the world; ``rate``: gives the rate of an expression.
+    """
+
     q_cmd: SX
     v_cmd: SX
     foot: SX
     tip: SX
-    elements: Sequence[Slot]
     rate: Callable[[SX], SX]
 
     @property

@@ -5,7 +5,7 @@ from __future__ import annotations
 from collections.abc import Mapping
 from dataclasses import dataclass, replace
 from types import SimpleNamespace
-from typing import TYPE_CHECKING, Any
+from typing import TYPE_CHECKING, Any, TypeVar
 
 import numpy as np
 
@@ -17,6 +17,8 @@ if TYPE_CHECKING:
     from flexapod.symbolic.vocabulary import SX
 
 __all__ = ["Slot"]
+
+T = TypeVar("T", Along, Moving)
 
 
 @dataclass(frozen=True)
@@ -69,7 +71,7 @@ class Slot:
 
     def energy(self, x: Along) -> Energies:
         """Energies where it stands in a leg."""
-        return self.kind.energy_along(replace(x, p=self.seen(x.p), q=self.seen(x.q), v=self.seen(x.v)))
+        return self.kind.energy_along(self._seen_in(x))
 
     def carries(self, base: Frame | None, p: SimpleNamespace, q: SimpleNamespace, v: SimpleNamespace) -> Frame | None:
         """Frame of the base as it carries it."""
@@ -89,7 +91,7 @@ class Slot:
 
     def pushes(self, x: Moving) -> dict[str, SX]:
         """What is added to the balance without an energy."""
-        return self._prefixed(self.kind.pushes(self._seen_moving(x)))
+        return self._prefixed(self.kind.pushes(self._seen_in(x)))
 
     def inertia(self, p: SimpleNamespace) -> dict[str, tuple[SX | float, SX | float]]:
         """Mass and damper without an energy."""
@@ -97,7 +99,7 @@ class Slot:
 
     def given(self, x: Moving) -> SX | None:
         """Power that comes in."""
-        return self.kind.given(self._seen_moving(x))
+        return self.kind.given(self._seen_in(x))
 
     def seen(self, names: SimpleNamespace) -> SimpleNamespace:
         """Names as the element has them: its own without what stands before them."""
@@ -106,7 +108,7 @@ class Slot:
         own = {name: getattr(names, f"{self.prefix}{name}", None) for name in self._own}
         return SimpleNamespace(**vars(names) | {name: value for name, value in own.items() if value is not None})
 
-    def _seen_moving(self, x: Moving) -> Moving:
+    def _seen_in(self, x: T) -> T:
         return replace(x, p=self.seen(x.p), q=self.seen(x.q), v=self.seen(x.v)) if self.prefix else x
 
     @property

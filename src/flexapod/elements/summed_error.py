@@ -48,9 +48,7 @@ class SummedError(Physics):
     @classmethod
     def pushes(cls, x: Moving) -> Mapping[str, SX]:
         """The error is the rate of the sum, Eq. (T23.16)."""
-        return {
-            "w": (x.rate(MotorLoop.place(x)) if any(one.kind is MotorLoop for one in x.elements) else x.v.r) - x.v_cmd
-        }
+        return {"w": (x.rate(MotorLoop.place(x)) if x.holds(MotorLoop) else x.v.r) - x.v_cmd}
 
     @classmethod
     def inertia(cls, p: SimpleNamespace) -> Mapping[str, tuple[SX | float, SX | float]]:
