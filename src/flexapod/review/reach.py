@@ -42,6 +42,7 @@ REASONS = (
     Reason("out_of_reach", "a leg does not reach its platform joint"),
     Reason("carriage_stops", "a carriage leaves its stroke"),
     Reason("joint_stops", "a joint turns farther than its largest angle"),
+    Reason("far_from_home", "too far from home for the motions that are told apart there"),
 )
 """Reasons by code."""
 
@@ -54,6 +55,7 @@ _OF_EQUILIBRIUM = {
     equilibrium.GIVES_WAY: "gives_way",
     equilibrium.NOT_SETTLED: "not_settled",
     equilibrium.UNSTABLE: "unstable",
+    equilibrium.TOO_FAR: "far_from_home",
 }
 
 

@@ -8,7 +8,7 @@ import numpy as np
 
 from flexapod.arrays import Array
 from flexapod.solve.batch import RestMatrices
-from flexapod.solve.elimination import LegBases, leg_bases, open_borders, solve_each
+from flexapod.solve.elimination import LegBases, leg_bases, solve_each
 from flexapod.solve.reduction import of_border, reduced
 from flexapod.solve.system import System
 
@@ -65,7 +65,8 @@ def arrow_solve(system: System, m: RestMatrices, r: Array, r_payload: Array, g: 
     bases = leg_bases(system, m)
     A = reduced(system, bases, m)
     groups = [_eliminated(system, b, A.B[k], A.C[k], m, r, g, gap) for k, b in enumerate(bases)]
-    y, forces = _border(groups, A.S, np.pad(r_payload, ((0, 0), (0, system.shared.size)))[:, system.border], gap)
+    r_border = np.pad(r_payload, ((0, 0), (0, system.shared.size)))[:, system.border]
+    y, forces = _border(groups, A.S, r_border, gap, open_forces=system.open)
     dq, dlam, balance, dy = np.zeros_like(r), np.zeros_like(g), r.copy(), np.zeros((len(r), m.P.shape[-1]))
     dy[:, system.hub_free] = y[:, : system.hub_free.size]
     for group, f in zip(groups, forces, strict=True):
@@ -107,7 +108,9 @@ def _given(system: System, b: LegBases, m: RestMatrices, g: Array, gap: Array) -
     return q
 
 
-def _border(groups: list[_Group], S: Array, r_payload: Array, gap: Array) -> tuple[Array, list[Array]]:
+def _border(
+    groups: list[_Group], S: Array, r_payload: Array, gap: Array, *, open_forces: bool
+) -> tuple[Array, list[Array]]:
     """Payload step y (P, f) and the forces (P, g, h) on the held pivots of each group, Eq. (T6.8)."""
     f, at, places = S.shape[-1], S.shape[-1], []
     size = f + sum(group.bases.legs.size * group.bases.border.size for group in groups)
@@ -127,7 +130,7 @@ def _border(groups: list[_Group], S: Array, r_payload: Array, gap: Array) -> tup
         full[:, rows, :f] = Y - D @ group.by_payload
         full[:, rows[:, :, None], rows[:, None, :]] = D @ group.by_force
         side[:, rows] = -gap[:, b.legs][..., b.border] - group.given[..., b.border] - (D @ group.free)[..., 0]
-    if open_borders([group.bases for group in groups]):
+    if open_forces:
         x = _least_forces(full, side[..., None], f)[..., 0]
     else:
         x = solve_each(full, side[..., None])[..., 0]

@@ -2,7 +2,7 @@
 
 The readable twin of ``native/arrow.c`` with the pose as first axis. Every leg is pivoted by the coordinates that its
 closure determines; a pivot that is held stays as a row of the border. Where independent motions are wanted, shapes of
-the leg take the place of its held pivots (`closed`).
+the leg take the place of its held pivots (`closed`), the same ones at every pose (`substitutes`).
 """
 
 from __future__ import annotations
@@ -15,20 +15,18 @@ from flexapod.arrays import Array, Mask
 from flexapod.solve.batch import RestMatrices
 from flexapod.solve.system import Index, System
 
-__all__ = ["LegBases", "closed", "leg_bases", "open_borders", "solve_each"]
-
-YIELDS = 0.01  # what a shape must move a held pivot by, for what the payload does, to take its place
-SAME = 1e-9  # share below which what legs hold of the payload counts as the same
+__all__ = ["LegBases", "closed", "leg_bases", "solve_each"]
 
 
 @dataclass(frozen=True, kw_only=True)
 class LegBases:
     """Admissible motions of legs that hold the same coordinates, dq = N z + Y y, Eq. (T7.16).
 
-    ``legs`` (g,): which; ``pivot`` (rows,): coordinates found from the closure; ``rest`` (m,): those kept in z;
+    ``legs`` (g,): which; ``pivot`` (rows,): coordinates found from the closure; ``rest`` (g, m): those kept in z;
     ``border`` (h,): pivots that are held but free here, so that each leg has h rows q_k = 0 more; ``inverse``
     (P, g, rows, rows): of the pivots' columns of J; ``N`` (P, g, n, m); ``Y`` (P, g, n, f) for the f coordinates of
-    the payload that are not held and those that all legs share.
+    the payload that are not held and those that all legs share; ``most`` (P,): by how much a shape that stands for a
+    held pivot moves while another coordinate moves by one, at most.
     """
 
     legs: Index
@@ -38,6 +36,7 @@ class LegBases:
     inverse: Array
     N: Array
     Y: Array
+    most: Array
 
 
 def leg_bases(system: System, m: RestMatrices) -> list[LegBases]:
@@ -55,65 +54,37 @@ def _bases(system: System, m: RestMatrices, legs: Index, held: Mask, rest: Index
     N[..., rest, np.arange(rest.size)] = 1.0
     Y[..., pivot, :] = inverse @ P
     Y[..., system.shared, P.shape[-1] - system.shared.size + np.arange(system.shared.size)] = 1.0
-    return LegBases(legs=legs, pivot=pivot, rest=rest, border=pivot[held[pivot]], inverse=inverse, N=N, Y=Y)
+    each, border, most = np.tile(rest, (legs.size, 1)), pivot[held[pivot]], np.zeros(len(J))
+    return LegBases(legs=legs, pivot=pivot, rest=each, border=border, inverse=inverse, N=N, Y=Y, most=most)
 
 
-def closed(bases: list[LegBases]) -> list[LegBases]:
-    """Bases whose legs keep their held pivots, as far as legs can give way; the others have their borders still."""
-    return [_closed(b) if b.border.size else b for b in bases]
+def closed(system: System, bases: list[LegBases]) -> list[LegBases]:
+    """Bases whose legs keep their held pivots, as far as legs can give way; the others have their borders still.
+
+    ``system`` with `substitutes`.
+    """
+    of = system.substitutes
+    return [_closed(b, of[b.legs[:, None], b.border], system.n) if b.border.size else b for b in bases]
 
 
-def _closed(b: LegBases) -> LegBases:
-    """Take one shape for each held pivot out of z: N_s z_s = - N_r z_r - Y y on the rows of the border."""
-    D, Y = b.N[..., b.border, :], b.Y[..., b.border, :]
-    chosen, share = _substitutes(D, Y)
-    if chosen is None or not share > YIELDS:
+def _closed(b: LegBases, by: Index, n: int) -> LegBases:
+    """Take the shapes ``by`` (g, h) for held pivots out of z: N_s z_s = - N_r z_r - Y y on the rows of the border."""
+    if not (by // n == b.legs[:, None]).all():
         return b
-    out = np.zeros((*D.shape[:2], b.rest.size), dtype=bool)
+    chosen = (b.rest[:, None] == (by % n)[..., None]).argmax(axis=-1)
+    out = np.zeros(b.rest.shape, dtype=bool)
     np.put_along_axis(out, chosen, True, axis=-1)
-    kept = np.argsort(out, axis=-1, kind="stable")[..., : b.rest.size - b.border.size]
-    shapes, others = (np.take_along_axis(b.N, k[..., None, :], axis=-1) for k in (chosen, kept))
+    kept = np.argsort(out, axis=-1, kind="stable")[:, : b.rest.shape[1] - b.border.size]
+    shapes, others = (np.take_along_axis(b.N, k[None, :, None], axis=-1) for k in (chosen, kept))
     given = np.concatenate([others, b.Y], axis=-1)
-    moved = given - shapes @ solve_each(shapes[..., b.border, :], given[..., b.border, :])
+    moves = solve_each(shapes[..., b.border, :], given[..., b.border, :])
+    moved = given - shapes @ moves
     moved[..., b.border, :] = 0.0
-    width = kept.shape[-1]
-    return replace(b, border=b.border[:0], rest=b.rest[:width], N=moved[..., :width], Y=moved[..., width:])
-
-
-def _substitutes(D: Array, Y: Array) -> tuple[Index | None, float]:
-    """Shape for each row of D (P, g, h, m), (P, g, h), and the least pivot over what the payload moves by the row."""
-    if D.shape[-1] < D.shape[-2]:
-        return None, 0.0
-    left, size = D.copy(), np.maximum(np.abs(D).max(axis=-1), np.abs(Y).max(axis=-1, initial=0.0))
-    chosen, share = np.zeros(D.shape[:-1], dtype=np.intp), np.inf
-    for k in range(D.shape[-2]):
-        column = np.abs(left[..., k, :]).argmax(axis=-1)[..., None]
-        chosen[..., k : k + 1] = column
-        pivot = np.take_along_axis(left[..., k, :], column, axis=-1)
-        share = min(share, float((np.abs(pivot[..., 0]) / size[..., k]).min(initial=np.inf)))
-        if not share > YIELDS:
-            return None, 0.0
-        below = np.take_along_axis(left[..., k + 1 :, :], column[..., None, :], axis=-1)
-        left[..., k + 1 :, :] -= below / pivot[..., None] * left[..., k : k + 1, :]
-    return chosen, share
-
-
-def open_borders(bases: list[LegBases]) -> bool:
-    """Whether legs hold the payload against each other in ways in which none of them gives way, at the first pose."""
-    rows = []
-    for b in bases:
-        if not len(b.N) or not b.border.size:
-            continue
-        D, Y = b.N[0][..., b.border, :], b.Y[0][..., b.border, :]
-        size = np.maximum(np.abs(D).max(axis=-1, initial=0.0), np.abs(Y).max(axis=-1, initial=0.0))[..., None]
-        if not np.isfinite(size).all():
-            continue
-        size = np.where(size > 0, size, 1.0)  # a pivot that nothing moves: the strut of a fixed platform
-        left, share, _ = np.linalg.svd(D / size)
-        rank = (share > YIELDS).sum(axis=-1)
-        rows += [u[:, k:].T @ (y / s) for u, k, y, s in zip(left, rank, Y, size, strict=True)]
-    rigid = np.concatenate(rows) if rows else np.zeros((0, 0))
-    return len(rigid) > np.linalg.matrix_rank(rigid, tol=SAME) if rigid.size else len(rigid) > 0
+    width = kept.shape[1]
+    return replace(
+        b, border=b.border[:0], rest=np.take_along_axis(b.rest, kept, axis=1), N=moved[..., :width],
+        Y=moved[..., width:], most=np.abs(moves).max(axis=(1, 2, 3), initial=0.0),
+    )  # fmt: skip
 
 
 def solve_each(A: Array, b: Array) -> Array:

@@ -8,19 +8,23 @@ from flexapod.arrays import Array, Mask
 from flexapod.mechanics.layout import LEG_PARAMETERS, PAYLOAD_PARAMETERS, columns
 from flexapod.solve.arrow import arrow_solve
 from flexapod.solve.batch import RestMatrices, RestStates, matrices_at_rest, residual_at_rest
-from flexapod.solve.elimination import closed, leg_bases, open_borders, solve_each
+from flexapod.solve.elimination import solve_each
 from flexapod.solve.frequencies import cholesky_each
-from flexapod.solve.reduction import null_space_of_borders, reduced
+from flexapod.solve.reduction import Motions, independent, reduced
 from flexapod.solve.shared import least_energy
+from flexapod.solve.substitutes import with_substitutes
 from flexapod.solve.system import Index, State, System
 
-FOUND, SINGULAR, GIVES_WAY, NOT_SETTLED, UNSTABLE = range(5)
+FOUND, SINGULAR, GIVES_WAY, NOT_SETTLED, UNSTABLE, TOO_FAR = range(6)
+FARTHEST = 100.0  # what stands for a held pivot may move by while another coordinate moves by one, [m] and [rad]
 REASONS = (
     "",
     "the stiffness of the robot is singular",
     "the legs give way (the payload would move by half a metre)",
     "Newton's method does not settle; the robot is close to buckling",
     "the balanced pose is unstable, the robot buckles under its load",
+    "too far from home: the shape or step that stands there for what a joint or drive holds moves by {most:.3g} here "
+    f"where another coordinate moves by 1 (at most {FARTHEST:g})",
 )
 
 
@@ -37,17 +41,18 @@ class Equilibrium:
 class Equilibria:
     """Results of P searches: the states, and for each `FOUND` or why it is none, an index into `REASONS`.
 
-    ``m``: matrices at those found.
+    ``m``: matrices at those found; ``most`` (P,): as of `reduction.Motions`, NaN without a search that settled.
     """
 
     states: RestStates
     code: np.ndarray
     m: RestMatrices
+    most: Array
 
     def one(self, k: int) -> Equilibrium:
         """One of them, with its reason in words."""
         code = int(self.code[k])
-        reason = f"no equilibrium: {REASONS[code]}" if code else ""
+        reason = f"no equilibrium: {REASONS[code].format(most=self.most[k])}" if code else ""
         return Equilibrium(state=self.states.state(k), found=code == FOUND, reason=reason)
 
 
@@ -76,6 +81,8 @@ def equilibria(system: System, start: RestStates, command: Array, force: Array, 
     wrench : ndarray, shape (6,)
         At the tool.
     """
+    if not system.substitutes.size:
+        system = with_substitutes(system, start[:1])
     acts = _Acts(command=command, force=force, wrench=wrench, kept=np.zeros_like(start.lam))
     states, code = _newton(system, start, acts)
     lost = np.flatnonzero(code)
@@ -84,12 +91,14 @@ def equilibria(system: System, start: RestStates, command: Array, force: Array, 
         states, code[lost] = states.with_(lost, part), codes
     found = np.flatnonzero(code == FOUND)
     m = matrices_at_rest(system, states[found], wrench)
-    if open_borders(leg_bases(system, m)):
+    if system.open and found.size:
         states = states.with_(found, least_energy(system, states[found], m))
         m = matrices_at_rest(system, states[found], wrench)
-    stable = _stable(system, m)
-    code[found[~stable]] = UNSTABLE
-    return Equilibria(states=states, code=code, m=m[np.flatnonzero(stable)])
+    motions, most = independent(system, m), np.full(len(start), np.nan)
+    most[found], near = motions.most, motions.most <= FARTHEST
+    stable = _stable(system, m, motions)
+    code[found[~stable]], code[found[~near]] = UNSTABLE, TOO_FAR
+    return Equilibria(states=states, code=code, m=m[np.flatnonzero(stable & near)], most=most)
 
 
 @dataclass(frozen=True, kw_only=True)
@@ -168,16 +177,15 @@ def _newton_step(system: System, x: RestStates, acts: _Acts) -> tuple[RestStates
     return replace(moved, lam=x.lam + step.dlam, drive=x.drive + step.drive), largest
 
 
-def _stable(system: System, m: RestMatrices) -> Mask:
+def _stable(system: System, m: RestMatrices, motions: Motions) -> Mask:
     """Whether the stiffness on the constraints is positive, (P,).
 
     By Sylvester's law of inertia it is where B of every leg and the payload's Schur complement are. Factors tell, not
     eigenvalues: their sign does not depend on how much stiffer another part is.
     """
-    bases = closed(leg_bases(system, m))
-    A, N = reduced(system, bases, m), null_space_of_borders(bases)
-    if N is not None:
-        return cholesky_each(N.swapaxes(1, 2) @ A.dense() @ N)[1]
+    if motions.N is not None:
+        return cholesky_each(motions.stiffness(system, m))[1]
+    A = reduced(system, motions.bases, m)
     rest, stable = A.S, np.ones(len(A.S), dtype=bool)
     for B, C in zip(A.B, A.C, strict=True):
         if B.shape[-1]:

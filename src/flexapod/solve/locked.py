@@ -13,13 +13,14 @@ from flexapod.kinematics.limbs import DRIVEN, FREE
 from flexapod.model import Load, Robot, Simulation
 from flexapod.solve.batch import RestMatrices, RestStates, matrices_at_rest
 from flexapod.solve.branch import refuse_fallen
-from flexapod.solve.elimination import LegBases, closed, leg_bases
 from flexapod.solve.equilibrium import FOUND, Equilibria, Equilibrium, equilibria
 from flexapod.solve.friction import with_friction
 from flexapod.solve.motor_lag import at_rotors
+from flexapod.solve.reduction import Motions, independent
 from flexapod.solve.rigid_motion import rigid_rest
 from flexapod.solve.robot_system import robot_system, smooth
 from flexapod.solve.static_loads import RestLoad, rest_commands, rest_load
+from flexapod.solve.substitutes import with_substitutes
 from flexapod.solve.system import Index, System
 
 __all__ = ["LockedPoses", "lock", "refuse_pure_force", "refuse_taut", "the_equilibrium"]
@@ -50,6 +51,7 @@ class LockedPoses:
         """The same about which to vibrate: a rotor whose loop sums its error is at rest, and has its spring beside."""
         if self.system.kernel.shapes.has("j"):
             system = at_rotors(smooth(self.robot), self.simulation.replace(play="static"), self.per_loss)
+            system = replace(system, substitutes=self.system.substitutes)
             at, stuck = self.equilibria.states[self.at], self.simulation.friction == "stuck"
             m = with_friction(system, at, matrices_at_rest(system, at, self.acts.wrench), stuck=stuck)
             return replace(self, system=system, m=m)
@@ -63,7 +65,7 @@ class LockedPoses:
     def one(self, k: int) -> "LockedPoses":
         """The k-th pose of those whose equilibrium was found, by itself."""
         at, found = self.at[k : k + 1], self.equilibria
-        alone = Equilibria(states=found.states[at], code=found.code[at], m=found.m[np.array([k])])
+        alone = Equilibria(states=found.states[at], code=found.code[at], m=found.m[np.array([k])], most=found.most[at])
         return replace(
             self,
             path=self.path.part(slice(at[0], at[0] + 1)),
@@ -76,9 +78,9 @@ class LockedPoses:
         )
 
     @cached_property
-    def bases(self) -> list[LegBases]:
-        """Independent motions about the equilibria, as far as legs can give way."""
-        return closed(leg_bases(self.system, self.m))
+    def motions(self) -> Motions:
+        """Independent motions about the equilibria."""
+        return independent(self.system, self.m)
 
 
 def refuse_pure_force(robot: Robot, what: str) -> None:
@@ -144,6 +146,7 @@ def lock(
     refuse_taut(robot, simulation)
     robot = robot if robot.base_motion is None else robot.replace(base_motion=None)  # poses are those of a base at rest
     system = robot_system(smooth(robot), simulation.replace(play="static"), per_loss, at_rest=True, evaluated=True)
+    system = with_substitutes(system, rigid_rest(system, robot, kinematics.home_pose(robot)))
     start, acts = rigid_rest(system, robot, path), rest_load(system, robot, path, load, time)
     command = rest_commands(system, robot, start.q, time)
     found = equilibria(system, start, command, acts.force, acts.wrench)

@@ -25,7 +25,7 @@ def reversal(locked: LockedPoses) -> dict[str, Array]:
     """
     system, at = locked.system, locked.equilibria.states[locked.at]
     shapes, legs, found = system.kernel.shapes, system.legs, {}
-    if not shapes.sliding or any(basis.border.size for basis in locked.bases):
+    if not shapes.sliding or any(basis.border.size for basis in locked.motions.bases):
         return found
     if locked.simulation.friction == "stuck":
         locked = replace(locked, m=matrices_at_rest(system, at, locked.acts.wrench))

@@ -10,13 +10,12 @@ from flexapod.errors import ComputationError, InputError
 from flexapod.mechanics.layout import LEG_PARAMETERS, columns, leg_parameters
 from flexapod.solve.batch import RestMatrices
 from flexapod.solve.damped import OSCILLATES, damping_ratios
-from flexapod.solve.elimination import LegBases
 from flexapod.solve.equilibrium import Equilibrium
 from flexapod.solve.frequencies import count_real, mass_factor, natural
 from flexapod.solve.locked import LockedPoses, the_equilibrium
 from flexapod.solve.modal_loops import ModalLoops, growth
 from flexapod.solve.motor_lag import modal_loops
-from flexapod.solve.reduction import expanded, hub_motion, null_space_of_borders, reduced
+from flexapod.solve.reduction import Motions, hub_motion
 from flexapod.solve.system import System
 
 
@@ -175,13 +174,9 @@ def loops_of(locked: LockedPoses) -> list[ModalLoops]:
 def unit_modes(locked: LockedPoses, *, shapes: bool) -> UnitModes:
     """All undamped modes of unit stiffness; raises as `modes_of`."""
     locked = locked.shaken
-    system, m = locked.system, locked.m
-    bases = locked.bases
-    N = null_space_of_borders(bases)
-    K = reduced(system, bases, m).dense()
-    U, positive = _mass_factor(system, bases, m)
-    if N is not None:
-        K, U = N.swapaxes(1, 2) @ K @ N, U @ N
+    system, m, motions = locked.system, locked.m, locked.motions
+    K = motions.stiffness(system, m)
+    U, positive = _mass_factor(system, motions, m)
     if not K.shape[-1]:
         raise InputError(
             "leaves nothing that could vibrate with the drives locked",
@@ -193,15 +188,15 @@ def unit_modes(locked: LockedPoses, *, shapes: bool) -> UnitModes:
     omega, z, stable = natural(U, K, shapes=shapes)
     positive = positive & stable
     omega = np.where(positive[:, None], omega, np.nan)
-    flat = expanded(system, bases, z if N is None else N @ z) if shapes else np.zeros((len(omega), system.size, 0))
+    flat = motions.flat(system, z) if shapes else np.zeros((len(omega), system.size, 0))
     return UnitModes(omega=omega, flat=flat, positive=positive)
 
 
-def _mass_factor(system: System, bases: list[LegBases], m: RestMatrices) -> tuple[Array, Mask]:
-    """Factor U (p, size, r) of the mass matrix on admissible motions, body by body, and where it is positive."""
+def _mass_factor(system: System, motions: Motions, m: RestMatrices) -> tuple[Array, Mask]:
+    """Factor U (p, size, d) of the mass matrix on independent motions, body by body, and where it is positive."""
     p, legs, n, _ = m.M.shape
-    size = sum(b.legs.size * b.rest.size for b in bases) + system.border.size
-    motion = expanded(system, bases, np.broadcast_to(np.eye(size), (p, size, size)))
+    size = motions.columns.size
+    motion = motions.flat(system, np.broadcast_to(np.eye(size), (p, size, size)))
     still = (
         system.held[:, :, None] | system.held[:, None, :]
     )  # masses of what does not move: indefinite where legs bend far

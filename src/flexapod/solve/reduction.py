@@ -8,10 +8,48 @@ import numpy as np
 
 from flexapod.arrays import Array
 from flexapod.solve.batch import RestMatrices
-from flexapod.solve.elimination import LegBases
-from flexapod.solve.system import System
+from flexapod.solve.elimination import LegBases, closed, leg_bases, solve_each
+from flexapod.solve.system import Index, System
 
-__all__ = ["Reduced", "expanded", "hub_motion", "null_space_of_borders", "of_border", "reduced", "reduced_legs"]
+__all__ = [
+    "Motions",
+    "Reduced",
+    "border_rows",
+    "expanded",
+    "flat_columns",
+    "hub_motion",
+    "independent",
+    "of_border",
+    "reduced",
+    "reduced_legs",
+]
+
+
+DEPENDENT = 1e-6  # by how much a row that others imply at home may miss what they imply elsewhere: elastic turns
+
+
+@dataclass(frozen=True, kw_only=True)
+class Motions:
+    """Independent motions of a robot at P poses, the same ones at all of them.
+
+    ``bases``: of the legs; ``N`` (P, r, d): the d motions by the r of `Reduced`, None where they are these; ``columns``
+    (d,): which coordinate each of them is, as `flat_columns` counts; ``most`` (P,): by how much what stands for a held
+    pivot moves while one of them moves by one, at most; infinite where other rows are held than at home.
+    """
+
+    bases: list[LegBases]
+    columns: Index
+    N: Array | None
+    most: Array
+
+    def stiffness(self, system: System, m: RestMatrices) -> Array:
+        """The whole stiffness on them, (P, d, d), Eq. (T7.17)."""
+        K = reduced(system, self.bases, m).dense()
+        return K if self.N is None else self.N.swapaxes(1, 2) @ K @ self.N
+
+    def flat(self, system: System, vectors: Array) -> Array:
+        """Flat coordinates (P, size, any) of motions (P, d, any)."""
+        return expanded(system, self.bases, vectors if self.N is None else self.N @ vectors)
 
 
 @dataclass(frozen=True, kw_only=True)
@@ -82,30 +120,47 @@ def expanded(system: System, bases: list[LegBases], vectors: Array) -> Array:
     y, at = vectors[:, vectors.shape[1] - system.border.size :], 0
     flat[:, system.legs * system.n + system.hub_free] = y[:, : system.hub_free.size]
     for b in bases:
-        width = b.legs.size * b.rest.size
-        z = vectors[:, at : at + width].reshape(P, b.legs.size, b.rest.size, count)
+        width = b.rest.size
+        z = vectors[:, at : at + width].reshape(P, *b.rest.shape, count)
         legs[:, b.legs] = b.N @ z + b.Y @ y[:, None]
         at += width
     return flat
 
 
-def null_space_of_borders(bases: list[LegBases]) -> Array | None:
-    """Basis (P, r, r - b) of the admissible motions that keep held pivots; None where the bases do already."""
-    width, f = sum(b.legs.size * b.rest.size for b in bases), bases[0].Y.shape[-1]
-    rows, at = [], 0
+def independent(system: System, m: RestMatrices) -> Motions:
+    """Independent motions of a whole robot with `substitutes`, Eqs. (T7.16), (T7.28)."""
+    bases = closed(system, leg_bases(system, m))
+    most = np.max([b.most for b in bases], axis=0)
+    G, of = border_rows(bases), system.substitutes
+    by = np.concatenate([of[b.legs[:, None], b.border].ravel() for b in bases])
+    kept, columns = by >= 0, flat_columns(system, bases)  # a row that follows from the others is not kept
+    if not kept.any():
+        return Motions(bases=bases, columns=columns, N=None, most=most)
+    place = (columns == by[kept][:, None]).argmax(axis=1)
+    free = np.setdiff1d(np.arange(columns.size), place)
+    moves = -solve_each(G[:, kept][..., place], G[:, kept][..., free])
+    N = np.zeros((len(G), columns.size, free.size))
+    N[:, free, np.arange(free.size)], N[:, place] = 1.0, moves
+    most = np.maximum(most, np.abs(moves).max(axis=(1, 2), initial=0.0))
+    if not kept.all():  # at home the other rows follow from these
+        most = np.where(np.abs(G[:, ~kept] @ N).max(axis=(1, 2), initial=0.0) > DEPENDENT, np.inf, most)
+    return Motions(bases=bases, columns=columns[free], N=N, most=most)
+
+
+def flat_columns(system: System, bases: list[LegBases]) -> Index:
+    """Which coordinate each of (z, y) is, (r,): of the legs as in flat coordinates, then as `System.border` counts."""
+    of_legs = [(b.legs[:, None] * system.n + b.rest).ravel() for b in bases]
+    return np.concatenate([*of_legs, system.legs * system.n + system.border])
+
+
+def border_rows(bases: list[LegBases]) -> Array:
+    """Held pivots by the admissible motions of legs that keep them as rows, (P, rows, r)."""
+    width, f = sum(b.rest.size for b in bases), bases[0].Y.shape[-1]
+    G, row, at = np.zeros((len(bases[0].N), sum(b.legs.size * b.border.size for b in bases), width + f)), 0, 0
     for b in bases:
+        m, h = b.rest.shape[1], b.border.size
         for i in range(b.legs.size):
-            for k in b.border:
-                row = np.zeros((len(b.N), width + f))
-                row[:, at : at + b.rest.size] = b.N[:, i, k]
-                row[:, width:] = b.Y[:, i, k]
-                rows.append(row)
-            at += b.rest.size
-    if not rows:
-        return None
-    G = np.stack(rows, axis=1)
-    length = np.linalg.norm(G, axis=-1, keepdims=True)
-    G = G / np.where(length > 0, length, 1.0)  # a pivot that nothing moves needs no row
-    _, size, right = np.linalg.svd(G, full_matrices=True)
-    rank = int((size > 1e-9).sum(axis=-1).max(initial=0))
-    return np.asarray(right[:, rank:].swapaxes(1, 2), dtype=np.float64)
+            G[:, row : row + h, at : at + m] = b.N[:, i, b.border]
+            G[:, row : row + h, width:] = b.Y[:, i, b.border]
+            row, at = row + h, at + m
+    return G

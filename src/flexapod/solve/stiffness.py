@@ -72,7 +72,7 @@ def stiffness_of(robot: Robot, locked: LockedPoses) -> Stiffness:
     _refuse_rigid(locked)
     border = system.border
     legs = np.zeros((len(locked.at), system.legs, 6 + system.shared.size, 6 + system.shared.size))
-    for b in locked.bases:  # (T7.6)  joint forces that a unit step of the payload meets, legs eliminated
+    for b in locked.motions.bases:  # (T7.6)  joint forces that a unit step of the payload meets, legs eliminated
         B, C, own = reduced_legs(system, b, m)
         legs[:, b.legs[:, None, None], border[:, None], border] = own - C.swapaxes(-1, -2) @ solve_each(B, C)
     motion = tool_motion(robot, locked.equilibria.states[locked.at].pose)
@@ -109,7 +109,7 @@ def _refuse_rigid(locked: LockedPoses) -> None:
     shapes, held = locked.system.kernel.shapes, locked.system.held
     rigid = [shapes.l_index, *(shapes.index(name) for name in ("u3", "e3") if shapes.has(name))]
     cannot_stretch = shapes.beam.axial.count == 0 and bool(held[:, rigid].all(axis=1).any())
-    if cannot_stretch or any(b.border.size for b in locked.bases):
+    if cannot_stretch or any(b.border.size for b in locked.motions.bases):
         raise InputError(
             "makes the robot infinitely stiff" + ("" if cannot_stretch else ", across its hinges at least"),
             key="simulation.fidelity",
@@ -128,7 +128,7 @@ def displacement(locked: LockedPoses, loads: Array, on_payload: Array) -> Array:
     system, m, free = locked.system, locked.m, locked.system.border
     S = m.payload_K[:, free[:, None], free]
     side = np.pad(on_payload, ((0, 0), (0, 6 + system.shared.size - on_payload.shape[1]), (0, 0)))[:, free]
-    for b in locked.bases:
+    for b in locked.motions.bases:
         B, C, own = reduced_legs(system, b, m)
         f, width = loads[:, b.legs], C.shape[-1]
         z = solve_each(B, np.concatenate([C, b.N.swapaxes(-1, -2) @ f], axis=-1))

@@ -86,7 +86,8 @@ class System:
     ``leg_p``, (legs, any): parameters of the legs; ``joint_p``, (legs, 3 or 0): their joints on the platform, from the
     CoM; ``payload_p``: none (size 0) for a leg alone; ``held``, (legs, n): coordinates that follow their table;
     ``hub_held``, (6,): coordinates of the payload that stay what they are; ``slack``, (legs, n): held coordinates that
-    the closures determine anyway, see `redundant.independent`.
+    the closures determine anyway, see `redundant.independent`; ``substitutes``, (legs, n): which coordinate stands for
+    each held pivot in statics, as `reduction.flat_columns` counts, -1 for none, see `substitutes.with_substitutes`.
     """
 
     kernel: Kernel
@@ -96,6 +97,7 @@ class System:
     held: Mask
     hub_held: Mask = field(default_factory=lambda: np.zeros(6, dtype=bool))
     slack: Mask | None = None
+    substitutes: Index = field(default_factory=lambda: np.zeros((0, 0), dtype=np.intp))
 
     @property
     def legs(self) -> int:
@@ -171,6 +173,12 @@ class System:
         gone = [*self.kernel.shapes.pivots, *self.shared]
         rest = (np.setdiff1d(np.flatnonzero(~held), gone) for held in kinds)
         return [(np.flatnonzero(of.ravel() == k), *kind) for k, kind in enumerate(zip(kinds, rest, strict=True))]
+
+    @cached_property
+    def open(self) -> bool:
+        """Whether legs hold the payload against each other in ways in which none of them gives way."""
+        pivots = list(self.kernel.shapes.pivots)
+        return bool(self.substitutes.size and (self.held[:, pivots] & (self.substitutes[:, pivots] < 0)).any())
 
     @cached_property
     def hub_free(self) -> Index:
