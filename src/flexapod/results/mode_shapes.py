@@ -12,7 +12,7 @@ from flexapod.results.inside import off_axis
 from flexapod.results.legs import base_points, bending_basis, lateral
 from flexapod.solve.modes import RobotModes
 from flexapod.solve.sections import leg_values
-from flexapod.ties import EQUALS, first_largest, most
+from flexapod.ties import EQUALS, alike
 
 MOSTLY = 0.5  # share of an energy from which a part names the mode
 
@@ -33,26 +33,15 @@ def mode_kinds(found: RobotModes) -> list[str]:
 
 def _named(found: RobotModes) -> tuple[list[str], Array, Array]:
     """Names of the modes, and the shares of the payload (m,) and of the legs (m, legs) in their kinetic energy."""
-    system, state = found.system, found.equilibrium.state
-    matrices, n = system.matrices(state, found.wrench), system.n
-    legs = found.shapes[:, :-6].reshape(len(found.shapes), -1, n)
-    blocks = [slice(i * n, (i + 1) * n) for i in range(legs.shape[1])]
+    system, n = found.system, found.system.n
+    M, K, legs = found.m.M[0], found.m.K[0], found.shapes[:, :-6].reshape(len(found.shapes), -1, n)
     own = [k for k in range(n) if k not in system.plate]  # the plate below the payload counts with it
-    kinetic = np.stack(
-        [_form(legs[:, i, own], matrices.M[at, at][np.ix_(own, own)]) for i, at in enumerate(blocks)], axis=1
-    )
     plate = _base_plate(found, legs)
-    kinetic = kinetic - plate[:, None] / len(blocks)
+    kinetic = _forms(legs, M, own) - plate[:, None] / legs.shape[1]
     payload = 1.0 - plate - kinetic.sum(axis=1)
-    energies = {}
-    for name, chosen in _groups(system.kernel.shapes).items():
-        parts = [_form(legs[:, i, chosen], matrices.K[at, at][np.ix_(chosen, chosen)]) for i, at in enumerate(blocks)]
-        energies[name] = np.sum(parts, axis=0)
-    names = [
-        "base" if plate[k] > MOSTLY else _kind(row, {name: of[k] for name, of in energies.items()}, payload[k])
-        for k, row in enumerate(kinetic)
-    ]
-    return names, payload, kinetic
+    energies = {name: _forms(legs, K, chosen).sum(axis=1) for name, chosen in _groups(system.kernel.shapes).items()}
+    names = np.where(plate > MOSTLY, "base", _kinds(kinetic, energies, payload))
+    return names.tolist(), payload, kinetic
 
 
 def _base_plate(found: RobotModes, legs: Array) -> Array:
@@ -89,15 +78,21 @@ def _form(vectors: Array, matrix: Array) -> Array:
     return np.einsum("mi,ij,mj->m", vectors, matrix, vectors)
 
 
-def _kind(kinetic: Array, energies: dict[str, float], payload: float) -> str:
-    whole = float(kinetic.sum())  # of a mass-normalised mode: 1 with the payload's
-    if np.isnan(whole):
-        return ""
-    if whole < MOSTLY:
-        return "payload"
-    first = first_largest(kinetic, EQUALS)
-    name = f"leg {first + 1}" if kinetic[first] > max(MOSTLY * whole, payload) else "legs"
-    return f"{name} {most(energies, key=energies.__getitem__)}"
+def _forms(legs: Array, matrices: Array, chosen: list[int]) -> Array:
+    """Quadratic forms of each leg (m, legs) in some of its coordinates, of vectors (m, legs, n)."""
+    part = legs[..., chosen]
+    return np.einsum("mli,lij,mlj->ml", part, matrices[:, chosen][..., chosen], part, optimize=True)
+
+
+def _kinds(kinetic: Array, energies: dict[str, Array], payload: Array) -> Array:
+    """Names (m,) from kinetic energies (m, legs), strain energies (m,) by name, and the payload's share (m,)."""
+    whole = kinetic.sum(axis=1)  # of a mass-normalised mode: 1 with the payload's
+    first = alike(kinetic, axis=1, same=EQUALS).argmax(axis=1)
+    largest = np.take_along_axis(kinetic, first[:, None], axis=1)[:, 0]
+    which = np.where(largest > np.maximum(MOSTLY * whole, payload), [f"leg {k + 1}" for k in first], "legs")
+    how = np.array([*energies])[alike(np.stack([*energies.values()]), axis=0, same=EQUALS).argmax(axis=0)]
+    names = np.char.add(np.char.add(which, " "), how)
+    return np.where(np.isnan(whole), "", np.where(whole < MOSTLY, "payload", names))
 
 
 STATIONS = np.linspace(0.0, 1.0, 41)

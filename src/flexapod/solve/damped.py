@@ -83,11 +83,13 @@ def damping_ratios(omega: Array, D: Array) -> Array:
     oscillating = np.imag(values) < -OSCILLATES * np.abs(values)
     values, share = values[oscillating], modes.slowness.T @ np.abs(shapes[: len(modes.D), oscillating])
     share /= np.linalg.norm(share, axis=0)
-    at = np.flatnonzero(mass)
-    while share.size and share.max() > 0.5:  # the clearest pair first
-        mode, column = np.unravel_index(share.argmax(), share.shape)
-        ratio[at[mode]] = -np.real(values[column]) / np.abs(values[column])
-        share[mode, :] = share[:, column] = 0
+    at, named, taken = np.flatnonzero(mass), set(), set()
+    pairs = np.argwhere(share > 0.5)
+    for mode, column in pairs[np.argsort(-share[tuple(pairs.T)], kind="stable")].tolist():  # the clearest pair first
+        if mode not in named and column not in taken:
+            ratio[at[mode]] = -np.real(values[column]) / np.abs(values[column])
+            named.add(mode)
+            taken.add(column)
     return ratio
 
 

@@ -1,7 +1,9 @@
 """Robots with locked drives at poses: static equilibria, and what is computed about them, Eqs. (T7.1), (T7.20)."""
 
+from collections.abc import Callable
 from dataclasses import dataclass, replace
-from functools import cached_property
+from functools import cached_property, lru_cache
+from typing import cast
 
 import numpy as np
 
@@ -15,6 +17,7 @@ from flexapod.solve.batch import RestMatrices, RestStates, matrices_at_rest
 from flexapod.solve.branch import refuse_fallen
 from flexapod.solve.equilibrium import FOUND, Equilibria, Equilibrium, equilibria
 from flexapod.solve.friction import with_friction
+from flexapod.solve.kernel import kernel_at_hand
 from flexapod.solve.motor_lag import at_rotors
 from flexapod.solve.reduction import Motions, independent
 from flexapod.solve.rigid_motion import rigid_rest
@@ -144,9 +147,9 @@ def lock(
     """
     refuse_pure_force(robot, "a static equilibrium")
     refuse_taut(robot, simulation)
-    robot = robot if robot.base_motion is None else robot.replace(base_motion=None)  # poses are those of a base at rest
-    system = robot_system(smooth(robot), simulation.replace(play="static"), per_loss, at_rest=True, evaluated=True)
-    system = with_substitutes(system, rigid_rest(system, robot, kinematics.home_pose(robot)))
+    robot, system = _at_rest(robot, simulation, per_loss)
+    if system.kernel is not (hand := kernel_at_hand(system.kernel.shapes)):
+        system = replace(system, kernel=hand)
     start, acts = rigid_rest(system, robot, path), rest_load(system, robot, path, load, time)
     command = rest_commands(system, robot, start.q, time)
     found = equilibria(system, start, command, acts.force, acts.wrench)
@@ -164,6 +167,16 @@ def lock(
         at=at,
         m=with_friction(system, found.states[at], found.m, stuck=simulation.friction == "stuck"),
     )
+
+
+def _model(robot: Robot, simulation: Simulation, per_loss: float) -> tuple[Robot, System]:
+    """The robot without a motion of its base, and its equations at rest with what stands for held pivots."""
+    robot = robot if robot.base_motion is None else robot.replace(base_motion=None)  # poses are those of a base at rest
+    system = robot_system(smooth(robot), simulation.replace(play="static"), per_loss, at_rest=True, evaluated=True)
+    return robot, with_substitutes(system, rigid_rest(system, robot, kinematics.home_pose(robot)))
+
+
+_at_rest = cast("Callable[[Robot, Simulation, float], tuple[Robot, System]]", lru_cache(maxsize=64)(_model))
 
 
 def the_equilibrium(locked: LockedPoses) -> Equilibrium:

@@ -24,8 +24,8 @@ class RobotModes:
     """Modes about an equilibrium, ascending.
 
     ``frequency`` (m,) [Hz] undamped; ``damping_ratio`` (m,) of the damped modes; ``shapes`` (m, N), mass-normalised, in
-    the flat coordinates of `system.System` (legs, then CoM in the world frame and rotation in platform axes);
-    ``wrench`` (6,) at the tool; ``growth``: rate at which the fastest of them grows, if any does [1/s].
+    the flat coordinates of `system.System` (legs, then CoM in the world frame and rotation in platform axes); ``m``:
+    matrices at the equilibrium, of one pose; ``growth``: rate at which the fastest of them grows, if any does [1/s].
     """
 
     frequency: Array
@@ -33,7 +33,7 @@ class RobotModes:
     shapes: Array
     equilibrium: Equilibrium
     system: System
-    wrench: Array
+    m: RestMatrices
     growth: float = 0.0
 
 
@@ -51,6 +51,18 @@ class ManyModes:
     damping_ratio: Array
     shapes: Array
     growth: Array | None = None
+
+    def one(self, locked: LockedPoses, k: int, count: int | None = None) -> RobotModes:
+        """The first modes, all if no ``count`` is given, at the k-th equilibrium; ``self`` with shapes."""
+        return RobotModes(
+            frequency=self.frequency[k, :count],
+            damping_ratio=self.damping_ratio[k, :count],
+            shapes=self.shapes[k, :count],
+            equilibrium=locked.equilibria.one(int(locked.at[k])),
+            system=locked.system,
+            m=locked.equilibria.m[np.array([k])],
+            growth=0.0 if self.growth is None else float(self.growth[k]),
+        )
 
 
 @dataclass(frozen=True, kw_only=True)
@@ -73,16 +85,7 @@ def the_modes(locked: LockedPoses, *, loops: bool = True) -> RobotModes:
     modes = modes_of(locked, shapes=True, loops=loops)
     if not modes.positive[0]:
         raise no_mass(locked.system, found.state.q)
-    count = count_real(modes.frequency)
-    return RobotModes(
-        frequency=modes.frequency[0, :count],
-        damping_ratio=modes.damping_ratio[0, :count],
-        shapes=modes.shapes[0, :count],
-        equilibrium=found,
-        system=locked.system,
-        wrench=locked.acts.wrench,
-        growth=0.0 if modes.growth is None else float(modes.growth[0]),
-    )
+    return modes.one(locked, 0, count_real(modes.frequency))
 
 
 def no_mass(system: System, q: Array) -> ComputationError:

@@ -28,7 +28,7 @@ from flexapod.solve.at_poses import locked_poses
 from flexapod.solve.branch import fallen, platform_poses
 from flexapod.solve.frequencies import count_real
 from flexapod.solve.locked import LockedPoses
-from flexapod.solve.modes import ManyModes, RobotModes, modes_of
+from flexapod.solve.modes import ManyModes, modes_of
 
 if TYPE_CHECKING:
     from xarray import Dataset
@@ -129,18 +129,8 @@ def _shape_rows(
 ) -> dict[str, Array]:
     """Everything, pose by pose."""
     found = []
-    for k, at in enumerate(locked.at):
-        if not kept[k]:
-            continue
-        one = RobotModes(
-            frequency=modes.frequency[k],
-            damping_ratio=modes.damping_ratio[k],
-            shapes=modes.shapes[k],
-            equilibrium=locked.equilibria.one(int(at)),
-            system=locked.system,
-            wrench=locked.acts.wrench,
-        )
-        found.append(mode_values(robot, one, poses_of(path, np.array([at]))))
+    for k in np.flatnonzero(kept):
+        found.append(mode_values(robot, modes.one(locked, k), poses_of(path, locked.at[k : k + 1])))
     if not found:
         return _no_rows(modes.frequency.shape[1], len(robot.legs))
     return {name: np.stack([values[name] for values in found]) for name in found[0]}
