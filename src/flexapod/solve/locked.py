@@ -15,7 +15,7 @@ from flexapod.kinematics.limbs import DRIVEN, FREE
 from flexapod.model import Load, Robot, Simulation
 from flexapod.solve.batch import RestMatrices, RestStates, matrices_at_rest
 from flexapod.solve.branch import refuse_fallen
-from flexapod.solve.equilibrium import FOUND, Equilibria, Equilibrium, equilibria
+from flexapod.solve.equilibrium import FOUND, TOO_FAR, Equilibria, Equilibrium, equilibria
 from flexapod.solve.friction import with_friction
 from flexapod.solve.kernel import kernel_at_hand
 from flexapod.solve.motor_lag import at_rotors
@@ -183,6 +183,8 @@ def the_equilibrium(locked: LockedPoses) -> Equilibrium:
     """The equilibrium of a single pose; ComputationError if there is none."""
     found = locked.equilibria.one(0)
     if not found.found:
-        raise ComputationError(found.reason, next_step="Check the pose for a singularity and the load of the legs.")
+        far = locked.equilibria.code[0] == TOO_FAR
+        singular = "Check the pose for a singularity and the load of the legs."
+        raise ComputationError(found.reason, next_step="Give the robot a home nearer to the pose." if far else singular)
     refuse_fallen(locked.system, locked.robot, locked.start, locked.equilibria.states)
     return found
