@@ -15,10 +15,10 @@ from flexapod.results.legs import base_motion, of_drives
 from flexapod.results.path import RigidPath
 from flexapod.review.columns import stepped_buckling
 from flexapod.solve.buckling import leg_loads
+from flexapod.solve.drive_forces import feed_forward
 from flexapod.solve.modes import RobotModes
 from flexapod.solve.rigid_motion import rigid_motion
 from flexapod.solve.system import System
-from flexapod.solve.tables import feed_forward
 
 POISSON = 0.3  # of metals; materials give none
 

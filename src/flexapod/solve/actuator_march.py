@@ -17,13 +17,12 @@ from flexapod.solve.parameters import SPACE, actuator_parameters
 from flexapod.solve.problem import Chunk, Problem, Weight
 from flexapod.solve.recording import Counters, Recording
 from flexapod.solve.robot_march import after_impact
-from flexapod.solve.shapes import actuator_shapes
+from flexapod.solve.shapes import SPACE_NAMES, actuator_shapes, home, places
 from flexapod.solve.start import consistent_start
 from flexapod.solve.stops import Stops
 from flexapod.solve.system import COLUMNS, Flow, State, System
 from flexapod.solve.tables import Law
 
-SPACE_NAMES = {"extension": "l", "rotation": "alpha", "elevation": "beta"}
 SHORT = 0.1  # of the beam: its frequencies are then a hundred times those of the whole
 
 
@@ -53,18 +52,6 @@ def actuator_system(
         held[0, at] = given[name]
     p, none = actuator_parameters(actuator, functions.shapes), np.zeros(0)
     return System(kernel=functions, leg_p=p, joint_p=none[None], payload_p=none, held=held)
-
-
-def places(shapes: Shapes) -> dict[str, int]:
-    """Positions of the coordinates that motions and loads drive, in the order of the ports, by name of the motion."""
-    names = {"extension": "l", "rotation": "beta"} if shapes.chain.planar else SPACE_NAMES
-    return {motion: shapes.index(name) for motion, name in names.items()}
-
-
-def home(actuator: Actuator) -> dict[str, float]:
-    """Where an actuator stands at t = 0 [rad, m], by the names of `places`; the extension from the pivot."""
-    begin = {"extension": actuator.hub_radius + actuator.free_length, "rotation": actuator.angle}
-    return begin | ({"elevation": actuator.elevation} if actuator.space else {})
 
 
 def prepare_actuator(

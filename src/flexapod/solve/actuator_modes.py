@@ -10,11 +10,10 @@ from flexapod.bases.eigen import eigh
 from flexapod.errors import ComputationError, InputError
 from flexapod.mechanics.layout import COMMAND_SIZE, LOAD_SIZE, Shapes, columns
 from flexapod.model import Actuator, Simulation
-from flexapod.solve.actuator_march import home, places
 from flexapod.solve.damped import damping_ratios
 from flexapod.solve.kernel import Function
 from flexapod.solve.parameters import actuator_parameters
-from flexapod.solve.shapes import actuator_shapes
+from flexapod.solve.shapes import actuator_shapes, home, places
 
 STEPS = 3  # of Newton to the steady stretch: the equations of the straight beam are linear in it
 #: What amplitudes of an actuator in space are called where they vibrate by themselves.

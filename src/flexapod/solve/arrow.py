@@ -8,8 +8,9 @@ import numpy as np
 
 from flexapod.arrays import Array
 from flexapod.solve.batch import RestMatrices
-from flexapod.solve.elimination import LegBases, leg_bases, solve_each
+from flexapod.solve.elimination import LegBases, leg_bases
 from flexapod.solve.reduction import of_border, reduced
+from flexapod.solve.saddle import solve_each
 from flexapod.solve.system import System
 
 __all__ = ["ArrowStep", "arrow_solve"]

@@ -13,9 +13,10 @@ import numpy as np
 
 from flexapod.arrays import Array, Mask
 from flexapod.solve.batch import RestMatrices
+from flexapod.solve.saddle import solve_each
 from flexapod.solve.system import Index, System
 
-__all__ = ["LegBases", "closed", "leg_bases", "solve_each"]
+__all__ = ["LegBases", "closed", "leg_bases"]
 
 
 @dataclass(frozen=True, kw_only=True)
@@ -85,14 +86,3 @@ def _closed(b: LegBases, by: Index, n: int) -> LegBases:
         b, border=b.border[:0], rest=np.take_along_axis(b.rest, kept, axis=1), N=moved[..., :width],
         Y=moved[..., width:], most=np.abs(moves).max(axis=(1, 2, 3), initial=0.0),
     )  # fmt: skip
-
-
-def solve_each(A: Array, b: Array) -> Array:
-    """Solve A x = b for stacked matrices; NaN where a matrix is singular."""
-    try:
-        return np.asarray(np.linalg.solve(A, b), dtype=np.float64)
-    except np.linalg.LinAlgError:
-        if len(A) == 1:
-            return np.full(b.shape, np.nan)
-        half = len(A) // 2
-        return np.concatenate([solve_each(A[:half], b[:half]), solve_each(A[half:], b[half:])])

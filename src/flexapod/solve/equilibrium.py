@@ -8,9 +8,8 @@ from flexapod.arrays import Array, Mask
 from flexapod.mechanics.layout import LEG_PARAMETERS, PAYLOAD_PARAMETERS, columns
 from flexapod.solve.arrow import arrow_solve
 from flexapod.solve.batch import RestMatrices, RestStates, matrices_at_rest, residual_at_rest
-from flexapod.solve.elimination import solve_each
-from flexapod.solve.frequencies import cholesky_each
 from flexapod.solve.reduction import Motions, independent, reduced
+from flexapod.solve.saddle import cholesky_each, solve_each
 from flexapod.solve.shared import least_energy
 from flexapod.solve.substitutes import with_substitutes
 from flexapod.solve.system import Index, State, System

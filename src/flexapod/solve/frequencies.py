@@ -6,24 +6,14 @@ import numpy as np
 
 from flexapod.arrays import Array, Mask
 from flexapod.bases.eigen import finite
+from flexapod.solve.saddle import cholesky_each
 
-__all__ = ["cholesky_each", "count_real", "mass_factor", "natural"]
+__all__ = ["count_real", "mass_factor", "natural"]
 
 ROUNDED = 1e-10  # eigenvalue of a mass matrix with a unit diagonal that may be rounding
 NO_MASS = 1e-12  # share of its mass that what others do leaves of a coordinate: less is rounding
 LIGHTEST = 1e-10  # root of a mass over that of what moves with it: less is rounding
 SLOW = 1e-6  # lowest frequency over the highest: above, all modes have mass
-
-
-def cholesky_each(A: Array) -> tuple[Array, Mask]:
-    """Lower factors (..., r, r) of symmetric matrices, and which of these are positive; NaN for the others."""
-    try:
-        return np.asarray(np.linalg.cholesky(A), dtype=np.float64), np.ones(A.shape[:-2], dtype=bool)
-    except np.linalg.LinAlgError:  # does not say of which matrix
-        if A.ndim == 2:
-            return np.full(A.shape, np.nan), np.zeros((), dtype=bool)
-    found = [cholesky_each(part) for part in A]
-    return np.stack([root for root, _ in found]), np.stack([positive for _, positive in found])
 
 
 def mass_factor(M: Array, *, carried: bool = False) -> tuple[Array, Mask]:

@@ -13,12 +13,12 @@ from flexapod.errors import InputError
 from flexapod.mechanics.layout import LEG_PARAMETERS, PAYLOAD_PARAMETERS, columns
 from flexapod.solve.batch import RestStates, residual
 from flexapod.solve.damped import poles
+from flexapod.solve.drive_forces import push_ports
 from flexapod.solve.locked import LockedPoses, the_equilibrium
 from flexapod.solve.modal_loops import ModalLoops, growth, unstable_words
 from flexapod.solve.modes import loops_of, modal_damping, no_mass, unit_modes
 from flexapod.solve.stiffness import tool_motion
 from flexapod.solve.system import System
-from flexapod.solve.tables import push_ports
 
 __all__ = ["LinearRobot", "linear_robot"]
 

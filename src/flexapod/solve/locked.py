@@ -18,10 +18,9 @@ from flexapod.solve.branch import refuse_fallen
 from flexapod.solve.equilibrium import FOUND, TOO_FAR, Equilibria, Equilibrium, equilibria
 from flexapod.solve.friction import with_friction
 from flexapod.solve.kernel import kernel_at_hand
-from flexapod.solve.motor_lag import at_rotors
 from flexapod.solve.reduction import Motions, independent
 from flexapod.solve.rigid_motion import rigid_rest
-from flexapod.solve.robot_system import robot_system, smooth
+from flexapod.solve.robot_system import at_rotors, robot_system, smooth
 from flexapod.solve.static_loads import RestLoad, rest_commands, rest_load
 from flexapod.solve.substitutes import with_substitutes
 from flexapod.solve.system import Index, System

@@ -9,10 +9,14 @@ from numpy.typing import NDArray
 
 from flexapod.arrays import Array
 from flexapod.bases.eigen import finite
+from flexapod.model import Robot
+from flexapod.solve.batch import RestStates
 from flexapod.solve.damped import reacting
+from flexapod.solve.kernel import evaluate
+from flexapod.solve.system import System
 from flexapod.words import text
 
-__all__ = ["ModalLoops", "growth", "unstable_words"]
+__all__ = ["ModalLoops", "growth", "loops_in_modes", "unstable_words"]
 
 Complex = NDArray[np.complex128]
 GROWS = 1e-9  # real part over size of an eigenvalue: less is rounding
@@ -82,3 +86,21 @@ def unstable_words(rate: float, where: str = "") -> list[str]:
         f"the loops of the drives are unstable{where}: deviations grow by a factor of 2.7 in {text(1 / rate, 's')}; "
         'smaller gains, a motor of more bandwidth, or damping by the rotor\'s rate (encoder.rate = "rotor") may help'
     ]
+
+
+def loops_in_modes(robot: Robot, system: System, x: RestStates, flat: Array) -> list[ModalLoops]:
+    """The loops of a robot at each of p states, by its modes there in flat coordinates (p, N, r)."""
+    n, legs, r = system.n, system.legs, system.kernel.shapes.index("r")
+    sizes = [(n, n), (n, n), (1,), (n,)]
+    *_, slope = evaluate(system.kernel, "leg_loop", len(x) * legs, [x.q, system.leg_p], sizes)
+    which = [i for i, leg in enumerate(robot.legs) if leg.screw is not None and leg.screw.loops]
+    screws = [leg.screw for leg in robot.legs if leg.screw is not None and leg.screw.loops]
+    by_leg = flat[:, : legs * n].reshape(len(x), legs, n, -1)
+    measured = (slope.reshape(len(x), legs, n, 1) * by_leg).sum(axis=2)[:, which]
+    rotor = by_leg[:, which, r]
+    turns = np.array([screw.encoder.rate == "rotor" for screw in screws])[:, None]
+    damped = np.where(turns, rotor, measured)
+    gains = np.array([(*screw.loop_spring, screw.integral, screw.lag) for screw in screws]).T
+    names = dict(zip(("stiffness", "damping", "integral", "lag"), gains, strict=True))
+    parts = zip(rotor, measured, damped, strict=True)
+    return [ModalLoops(rotor=b.T, measured=mu.T, damped=nu.T, **names) for b, mu, nu in parts]

@@ -13,8 +13,7 @@ from flexapod.solve.damped import OSCILLATES, damping_ratios
 from flexapod.solve.equilibrium import Equilibrium
 from flexapod.solve.frequencies import count_real, mass_factor, natural
 from flexapod.solve.locked import LockedPoses, the_equilibrium
-from flexapod.solve.modal_loops import ModalLoops, growth
-from flexapod.solve.motor_lag import modal_loops
+from flexapod.solve.modal_loops import ModalLoops, growth, loops_in_modes
 from flexapod.solve.reduction import Motions, hub_motion
 from flexapod.solve.system import System
 
@@ -171,7 +170,7 @@ def loops_of(locked: LockedPoses) -> list[ModalLoops]:
     if not locked.system.kernel.shapes.has("j"):
         return []
     found = unit_modes(locked, shapes=True)
-    return modal_loops(locked.robot, locked.shaken.system, locked.equilibria.states[locked.at], found.flat)
+    return loops_in_modes(locked.robot, locked.shaken.system, locked.equilibria.states[locked.at], found.flat)
 
 
 def unit_modes(locked: LockedPoses, *, shapes: bool) -> UnitModes:

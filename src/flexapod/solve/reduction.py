@@ -8,7 +8,8 @@ import numpy as np
 
 from flexapod.arrays import Array
 from flexapod.solve.batch import RestMatrices
-from flexapod.solve.elimination import LegBases, closed, leg_bases, solve_each
+from flexapod.solve.elimination import LegBases, closed, leg_bases
+from flexapod.solve.saddle import solve_each
 from flexapod.solve.system import Index, System
 
 __all__ = [

@@ -1,6 +1,7 @@
 """The equations of a robot."""
 
 from collections.abc import Sequence
+from dataclasses import replace
 
 import numpy as np
 
@@ -9,14 +10,15 @@ from flexapod.arrays import Mask
 from flexapod.elements.element import Standing
 from flexapod.elements.known import kinds_of
 from flexapod.kinematics.limbs import ABSENT, COORDINATES, DRIVEN, HELD, Limbs
-from flexapod.mechanics.layout import Shapes
+from flexapod.mechanics.layout import Shapes, columns
+from flexapod.mechanics.layout import leg_parameters as leg_layout
 from flexapod.model import Robot, Simulation
 from flexapod.solve.kernel import kernel, kernel_at_hand
 from flexapod.solve.parameters import leg_parameters, payload_parameters, standings
 from flexapod.solve.shapes import robot_shapes
 from flexapod.solve.system import System
 
-__all__ = ["robot_system", "smooth"]
+__all__ = ["at_rotors", "robot_system", "smooth"]
 
 
 def robot_system(
@@ -100,3 +102,20 @@ def _held_by_elements(robot: Robot, shapes: Shapes, standing: Sequence[Standing]
             at = shapes.index(name)
             held[i, at : at + sizes[name]] = other or (bool(own) and all(own))
     return held
+
+
+def at_rotors(robot: Robot, simulation: Simulation, per_loss: float) -> System:
+    """The robot's equations in motion with loops as springs and dampers on their rotors, which act at once.
+
+    ``per_loss``: as of `robot_system`.
+    """
+    system = robot_system(robot, simulation, per_loss, evaluated=True)
+    layout, leg_p, held = leg_layout(system.kernel.shapes), system.leg_p.copy(), system.held.copy()
+    for i, leg in enumerate(robot.legs):
+        if leg.screw is not None and leg.screw.loops:
+            for name, value in zip(("rotor_stiffness", "rotor_damping"), leg.screw.loop_spring, strict=True):
+                leg_p[i, columns(layout, name)] = value
+    for name in ("j", "w"):
+        if system.kernel.shapes.has(name):
+            held[:, system.kernel.shapes.index(name)] = True
+    return replace(system, leg_p=leg_p, held=held)

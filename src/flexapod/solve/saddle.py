@@ -1,12 +1,12 @@
-"""Linear equations with constraints, dense."""
+"""Dense linear equations: with constraints, and many small ones at once."""
 
 import numpy as np
 
-from flexapod.arrays import Array
+from flexapod.arrays import Array, Mask
 from flexapod.bases.eigen import finite
 from flexapod.errors import ComputationError
 
-__all__ = ["saddle_solve"]
+__all__ = ["cholesky_each", "saddle_solve", "solve_each"]
 
 
 def saddle_solve(A: Array, G: Array, r: Array, g: Array) -> tuple[Array, Array]:
@@ -33,3 +33,25 @@ def saddle_solve(A: Array, G: Array, r: Array, g: Array) -> tuple[Array, Array]:
             next_step="Check rhoA of the pistons, mass and inertia of the cylinders, and the pose.",
         ) from None
     return solution[:size], solution[size:]
+
+
+def solve_each(A: Array, b: Array) -> Array:
+    """Solve A x = b for stacked matrices; NaN where a matrix is singular."""
+    try:
+        return np.asarray(np.linalg.solve(A, b), dtype=np.float64)
+    except np.linalg.LinAlgError:
+        if len(A) == 1:
+            return np.full(b.shape, np.nan)
+        half = len(A) // 2
+        return np.concatenate([solve_each(A[:half], b[:half]), solve_each(A[half:], b[half:])])
+
+
+def cholesky_each(A: Array) -> tuple[Array, Mask]:
+    """Lower factors (..., r, r) of symmetric matrices, and which of these are positive; NaN for the others."""
+    try:
+        return np.asarray(np.linalg.cholesky(A), dtype=np.float64), np.ones(A.shape[:-2], dtype=bool)
+    except np.linalg.LinAlgError:  # does not say of which matrix
+        if A.ndim == 2:
+            return np.full(A.shape, np.nan), np.zeros((), dtype=bool)
+    found = [cholesky_each(part) for part in A]
+    return np.stack([root for root, _ in found]), np.stack([positive for _, positive in found])

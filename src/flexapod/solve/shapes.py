@@ -1,4 +1,4 @@
-"""The lateral shapes of a study: a basis by name, or reduced from the solid piston."""
+"""The coordinates of a study: its shapes, by name or reduced from the solid piston, and where those of a beam stand."""
 
 from __future__ import annotations
 
@@ -20,9 +20,21 @@ from flexapod.mechanics.leg_chain import LegChain
 from flexapod.mechanics.section_layout import LegBeam
 from flexapod.model import Actuator, Rectangle, Robot, Simulation, Tube
 
-__all__ = ["actuator_shapes", "beam_shapes", "leg_shapes", "planar_shapes", "robot_shapes", "space_shapes"]
+__all__ = [
+    "SPACE_NAMES",
+    "actuator_shapes",
+    "beam_shapes",
+    "home",
+    "leg_shapes",
+    "places",
+    "planar_shapes",
+    "robot_shapes",
+    "space_shapes",
+]
 
 SOLID = "solid"
+#: Coordinates of an actuator in space by the motions that drive them.
+SPACE_NAMES = {"extension": "l", "rotation": "alpha", "elevation": "beta"}
 
 
 def robot_shapes(robot: Robot, simulation: Simulation, legs: Limbs) -> Shapes:
@@ -145,3 +157,15 @@ def _solid(section: Tube | Rectangle, length: float, count: int, moment: bool = 
     from flexapod.fem.leg_shapes import solid_leg_shapes  # scikit-fem loads on use
 
     return solid_leg_shapes(section, length, count, moment=moment)
+
+
+def places(shapes: Shapes) -> dict[str, int]:
+    """Positions of the coordinates that motions and loads drive, in the order of the ports, by name of the motion."""
+    names = {"extension": "l", "rotation": "beta"} if shapes.planar else SPACE_NAMES
+    return {motion: shapes.index(name) for motion, name in names.items()}
+
+
+def home(actuator: Actuator) -> dict[str, float]:
+    """Where an actuator stands at t = 0 [rad, m], by the names of `places`; the extension from the pivot."""
+    begin = {"extension": actuator.hub_radius + actuator.free_length, "rotation": actuator.angle}
+    return begin | ({"elevation": actuator.elevation} if actuator.space else {})

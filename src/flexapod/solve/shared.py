@@ -10,7 +10,7 @@ from flexapod.arrays import Array
 from flexapod.kinematics.rotations import matrix
 from flexapod.mechanics.layout import columns, leg_parameters
 from flexapod.solve.batch import RestMatrices, RestStates
-from flexapod.solve.elimination import solve_each
+from flexapod.solve.saddle import solve_each
 from flexapod.solve.system import System
 
 __all__ = ["closure_forces", "least_energy", "open_forces"]

@@ -11,9 +11,9 @@ from flexapod import kinematics
 from flexapod.arrays import Array
 from flexapod.kinematics.limbs import COORDINATES, DRIVEN, HELD
 from flexapod.model import Load, Robot
+from flexapod.solve.drive_forces import feed_forward, force_ports, push_ports
 from flexapod.solve.rigid_motion import leg_coordinates
 from flexapod.solve.system import System
-from flexapod.solve.tables import feed_forward, force_ports, push_ports
 
 __all__ = ["RestLoad", "at_drives", "rest_commands", "rest_load"]
 

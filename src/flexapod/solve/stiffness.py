@@ -4,17 +4,15 @@ from dataclasses import dataclass
 
 import numpy as np
 
-from flexapod import kinematics
 from flexapod.arrays import Array
 from flexapod.bases.eigen import finite
 from flexapod.errors import InputError
 from flexapod.kinematics.rotations import matrix
-from flexapod.model import Load, Robot, Simulation
-from flexapod.solve.at_poses import locked_poses
-from flexapod.solve.elimination import solve_each
+from flexapod.model import Robot
 from flexapod.solve.equilibrium import Equilibrium
-from flexapod.solve.locked import LockedPoses, the_equilibrium
+from flexapod.solve.locked import LockedPoses
 from flexapod.solve.reduction import reduced_legs
+from flexapod.solve.saddle import solve_each
 from flexapod.solve.system import System
 
 
@@ -37,27 +35,6 @@ class PoseStiffness(Stiffness):
 
     equilibrium: Equilibrium
     system: System
-
-
-def robot_stiffness(
-    robot: Robot, simulation: Simulation, path: kinematics.Poses | None = None, load: Load | None = None
-) -> PoseStiffness:
-    """Stiffness against a wrench at the tool, drives locked, about the static equilibrium at a pose (default: home).
-
-    Loads as of `at_poses.locked_poses`.
-
-    Raises
-    ------
-    InputError
-        Rigid legs on prescribed strokes (no compliance), or a pure force drive.
-    ComputationError
-        No equilibrium at this pose.
-    """
-    locked = locked_poses(robot, simulation, kinematics.home_pose(robot) if path is None else path, load)
-    rest, found = the_equilibrium(locked), stiffness_of(robot, locked)
-    return PoseStiffness(
-        total=found.total[0], legs=found.legs[0], load=found.load[0], equilibrium=rest, system=locked.system
-    )
 
 
 def stiffness_of(robot: Robot, locked: LockedPoses) -> Stiffness:

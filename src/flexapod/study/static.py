@@ -18,10 +18,9 @@ from flexapod.review.checks import path_remarks
 from flexapod.review.plausibility import rest_warnings
 from flexapod.runtime.threads import one_thread
 from flexapod.solve.actuator_modes import actuator_modes
-from flexapod.solve.at_poses import robot_modes
+from flexapod.solve.at_poses import robot_modes, robot_stiffness
 from flexapod.solve.batch import RestStates
 from flexapod.solve.modal_loops import unstable_words
-from flexapod.solve.stiffness import robot_stiffness
 from flexapod.solve.system import State, System
 from flexapod.study.many_modes import modes_at_poses
 
