@@ -3,7 +3,6 @@
 from __future__ import annotations
 
 from collections.abc import Iterator, Mapping
-from contextlib import suppress
 from typing import NamedTuple
 
 import numpy as np
@@ -16,7 +15,7 @@ from flexapod.model import Robot, Study
 from flexapod.pose_errors.disturbances import vibration_rows
 from flexapod.pose_errors.rows import ErrorRow
 from flexapod.pose_errors.rows import rows as built_rows
-from flexapod.pose_errors.sensitivity import sensitivity
+from flexapod.pose_errors.sensitivity import Sensitivity, sensitivity
 from flexapod.results.causes import cause_names, errors_of
 from flexapod.results.path import RigidPath
 from flexapod.results.poses import batches
@@ -53,10 +52,15 @@ def elastic_causes(robot: Robot) -> tuple[str, ...]:
     return tuple(name for name in cause_names(robot) if name not in built)
 
 
-def moved(robot: Robot, system: System, path: RigidPath, states: Record | RestStates) -> Moved:
-    """Displacement of the tool at the instants of a path, and the causes' shares to first order, Eq. (T17.1)."""
+def moved(
+    robot: Robot, system: System, path: RigidPath, states: Record | RestStates, known: Sensitivity | None = None
+) -> Moved:
+    """Displacement of the tool at the instants of a path, and the causes' shares to first order, Eq. (T17.1).
+
+    `known`: the sensitivity there, where it is.
+    """
     errors = errors_of(robot, system, path, states)
-    columns = sensitivity(robot, path.poses).coordinate
+    columns = (known or sensitivity(robot, path.poses)).coordinate
     R = matrix(states.pose[:, 3:])
     tool = states.pose[:, :3] + R @ (robot.tool - robot.com)
     if robot.base_motion is not None:  # as seen from the base that is moved
@@ -107,12 +111,8 @@ def rows(study: Study, pose: kinematics.Poses) -> tuple[list[ErrorRow], Array, l
     """
     locked = locked_poses(study.robot, study.simulation, pose, study.load)
     the_equilibrium(locked)
-    found, whole = _with_built(study, pose, *(part[0] for part in _rest(study, locked, pose)))
-    try:
-        shaken, remarks = vibration_rows(study, locked), []
-    except InputError as error:  # without damping no size, of drives that hold no noise: the rest is as before
-        shaken, remarks = [], [f"vibration by disturbances has no row: {error}"]
-    return without_rounding([*found, *_friction_rows(reversal(locked), 0), *shaken]), whole, remarks
+    ((table, whole, remarks),) = rows_of_poses(study, locked)
+    return without_rounding(table), whole, remarks
 
 
 def names_of_rows(study: Study) -> tuple[str, ...]:
@@ -124,19 +124,22 @@ def names_of_rows(study: Study) -> tuple[str, ...]:
     return tuple(dict.fromkeys([*elastic_causes(study.robot), *built, *rubs, *shaken]))
 
 
-def rows_of_poses(study: Study, locked: LockedPoses) -> Iterator[tuple[list[ErrorRow], Array]]:
-    """Rows of each pose whose equilibrium was found, and what the systematic ones add up to."""
+def rows_of_poses(study: Study, locked: LockedPoses) -> Iterator[tuple[list[ErrorRow], Array, list[str]]]:
+    """Rows of each pose whose equilibrium was found, what the systematic ones add up to, and why a row is missing."""
     poses = poses_of(locked.path, locked.at)
-    path = RigidPath(study, np.zeros(len(poses)), poses)
-    found = moved(study.robot, locked.system, path, locked.equilibria.states[locked.at])
+    path, known = RigidPath(study, np.zeros(len(poses)), poses), sensitivity(study.robot, poses)
+    found = moved(study.robot, locked.system, path, locked.equilibria.states[locked.at], known)
     rubs = reversal(locked)
     for k, (whole, by_leg) in enumerate(zip(*found, strict=True)):
-        pose = poses.part(slice(k, k + 1))
-        table, systematic = _with_built(study, pose, whole, by_leg)
+        here, remarks = slice(k, k + 1), []
+        table, systematic = _with_built(study, poses.part(here), known.part(here), whole, by_leg)
+        table += _friction_rows(rubs, k)
         if study.disturbance is not None:
-            with suppress(InputError):  # vibration without a size
+            try:
                 table += vibration_rows(study, locked.one(k))
-        yield [*table, *_friction_rows(rubs, k)], systematic
+            except InputError as error:  # without damping no size, of drives that hold no noise: the rest is as before
+                remarks.append(f"vibration by disturbances has no row: {error}")
+        yield table, systematic, remarks
 
 
 def _friction_rows(found: Mapping[str, Array], k: int) -> list[ErrorRow]:
@@ -145,12 +148,14 @@ def _friction_rows(found: Mapping[str, Array], k: int) -> list[ErrorRow]:
     return [ErrorRow(f"{place} friction", "hysteretic", "", by_leg[k], how) for place, by_leg in found.items()]
 
 
-def _with_built(study: Study, pose: kinematics.Poses, whole: Array, by_leg: Array) -> tuple[list[ErrorRow], Array]:
+def _with_built(
+    study: Study, pose: kinematics.Poses, known: Sensitivity, whole: Array, by_leg: Array
+) -> tuple[list[ErrorRow], Array]:
     """Rows of what gives way and of what differs from the drawing, and what the systematic ones add up to."""
     how = "static equilibrium under gravity and the load at t = 0; of each leg to first order"
     shares = dict(zip(cause_names(study.robot), by_leg, strict=True))
     table = [ErrorRow(name, "systematic", "repeatable", shares[name], how) for name in elastic_causes(study.robot)]
-    built, simulated = built_rows(study, pose), {part.name for part in kinematics.built_parts(study.robot)}
+    built, simulated = built_rows(study, pose, known), {part.name for part in kinematics.built_parts(study.robot)}
     beside = [row.by_leg.sum(axis=0) for row in built if row.kind == "systematic" and row.part not in simulated]
     return [*table, *built], whole + np.sum([np.zeros(6), *beside], axis=0)
 

@@ -21,7 +21,7 @@ __all__ = ["AtPose"]
 
 
 class AtPose:
-    """A study's robot at rest at a pose, under gravity and the load at t = 0.
+    """A study's robot at rest at a pose, under gravity and the load at t = 0; `known`: its sensitivity there.
 
     Raises
     ------
@@ -29,13 +29,13 @@ class AtPose:
         The platform is fixed.
     """
 
-    def __init__(self, study: Study, pose: kinematics.Poses) -> None:
+    def __init__(self, study: Study, pose: kinematics.Poses, known: Sensitivity | None = None) -> None:
         if study.robot.platform_fixed:
             raise InputError(
                 "leaves no pose that could be wrong", key="robot.platform.fixed", value=True,
                 next_step="Use `flexapod modes`, or `flexapod check`",
             )  # fmt: skip
-        self.study, self.robot = study, study.robot
+        self.study, self.robot, self._known = study, study.robot, known
         self.pose = kinematics.Poses.at_rest(pose.position, pose.rotation)
 
     @cached_property
@@ -46,7 +46,7 @@ class AtPose:
     @cached_property
     def sensitivity(self) -> Sensitivity:
         """What errors do to the tool."""
-        return sensitivity(self.robot, self.pose)
+        return self._known or sensitivity(self.robot, self.pose)
 
     @cached_property
     def play(self) -> Play:

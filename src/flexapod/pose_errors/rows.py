@@ -8,11 +8,14 @@ import numpy as np
 
 from flexapod import kinematics
 from flexapod.arrays import Array
+from flexapod.elements.element import Contribution
 from flexapod.elements.known import kinds_of
 from flexapod.kinematics.limbs import COORDINATES
-from flexapod.model import Study
+from flexapod.kinematics.robot import once
+from flexapod.model import Robot, Study
 from flexapod.pose_errors.at_pose import AtPose
 from flexapod.pose_errors.play import PLACES
+from flexapod.pose_errors.sensitivity import Sensitivity
 
 __all__ = ["ErrorRow", "rows"]
 
@@ -35,9 +38,12 @@ class ErrorRow(NamedTuple):
     stands: bool = False
 
 
-def rows(study: Study, pose: kinematics.Poses) -> list[ErrorRow]:
-    """Rows of geometry, heat, bent legs, tolerances and play at one pose; of what the study does not name none."""
-    at = AtPose(study, pose)
+def rows(study: Study, pose: kinematics.Poses, known: Sensitivity | None = None) -> list[ErrorRow]:
+    """Rows of geometry, heat, bent legs, tolerances and play at one pose; of what the study does not name none.
+
+    `known`: the sensitivity there, where it is.
+    """
+    at = AtPose(study, pose, known)
     found = [ErrorRow(name, "systematic", _nature(name), by_leg, "first order") for name, by_leg in at.parts.items()]
     found += [
         ErrorRow(f"{one.name} tolerance", "random", "", one.sigma, "first order, errors independent", stands=True)
@@ -54,18 +60,29 @@ def rows(study: Study, pose: kinematics.Poses) -> list[ErrorRow]:
 
 def _of_elements(study: Study, at: AtPose) -> list[ErrorRow]:
     """Rows of what elements make the strokes err by; alike ones of all legs are a row."""
-    legs, found = study.robot.legs, {}
-    for i, (leg, length) in enumerate(zip(legs, at.sensitivity.q[0, :, COORDINATES.index("l")], strict=True)):
-        for kind in kinds_of(legs):
-            for error in (error for own in kind.all_of(leg) for error in own.errors(leg)):
-                sizes = found.setdefault(error._replace(size=0.0), np.zeros(len(legs)))
-                size = error.size(length) if callable(error.size) else error.size
-                sizes[i] = np.hypot(sizes[i], size) if error.kind == "random" else sizes[i] + size
+    lengths, found = at.sensitivity.q[0, :, COORDINATES.index("l")], {}
+    for i, error in _errors(study.robot):
+        sizes = found.setdefault(error._replace(size=0.0), np.zeros(len(lengths)))
+        size = error.size(lengths[i]) if callable(error.size) else error.size
+        sizes[i] = np.hypot(sizes[i], size) if error.kind == "random" else sizes[i] + size
     moves = at.sensitivity.coordinate[0, :, COORDINATES.index("l")]
     by_leg = {error: sizes[:, None] * moves for error, sizes in found.items()}
     return [
         ErrorRow(error.name, error.kind, "", x if error.kind == "random" else np.abs(x), error.how, error.stands)
         for error, x in by_leg.items()
+    ]
+
+
+@once
+def _errors(robot: Robot) -> list[tuple[int, Contribution]]:
+    """The errors that elements of the legs make, each with the index of its leg."""
+    legs = robot.legs
+    return [
+        (i, error)
+        for i, leg in enumerate(legs)
+        for kind in kinds_of(legs)
+        for own in kind.all_of(leg)
+        for error in own.errors(leg)
     ]
 
 

@@ -33,6 +33,12 @@ class Sensitivity:
     platform: Array
     q: Array
 
+    def part(self, which: slice) -> Sensitivity:
+        """That at some of the poses."""
+        return Sensitivity(
+            coordinate=self.coordinate[which], base=self.base[which], platform=self.platform[which], q=self.q[which]
+        )
+
 
 def sensitivity(robot: Robot, path: kinematics.Poses) -> Sensitivity:
     """First-order effect of errors at the poses of a path.

@@ -15,6 +15,7 @@ from flexapod.elements.springs import Place
 from flexapod.errors import ComputationError
 from flexapod.kinematics.closures import Task, close
 from flexapod.kinematics.limbs import COORDINATES, DRIVEN, FREE, HELD, Limbs
+from flexapod.kinematics.robot import once
 from flexapod.kinematics.screws import screws
 from flexapod.model import Robot
 from flexapod.results.cause_words import CAUSES
@@ -53,6 +54,7 @@ class Errors:
         return np.stack(list(self.by_cause.values()), axis=1)
 
 
+@once
 def cause_names(robot: Robot) -> tuple[str, ...]:
     """What may be to blame in a robot: its pistons and drives, every part that gives way, what is not as drawn."""
     rubs = ("friction",) * ("drive" in places_with_friction(robot))

@@ -136,7 +136,7 @@ def _elastic(robot: model.Robot, path: kinematics.Poses, locked: LockedPoses, wa
 
 def _budgets(study: model.Study, locked: LockedPoses) -> Values:
     """Worst case of the tool's place, and what each part does to it, (p, ...) [m], Eqs. (T17.6) and (T17.8)."""
-    found = [Budget(rows=table, whole={"systematic": whole}) for table, whole in rows_of_poses(study, locked)]
+    found = [Budget(rows=table, whole={"systematic": whole}) for table, whole, _ in rows_of_poses(study, locked)]
     parts = names_of_rows(study)
     return {
         "error_worst": np.array([float(np.linalg.norm(one.worst[:3])) for one in found]),
