@@ -34,9 +34,8 @@ def fallen(system: System, robot: Robot, start: RestStates, states: RestStates) 
     if not len(start):
         return np.zeros(0, dtype=bool)
     if kinematics.rigid_limbs(robot).plain and system.legs == system.hub_free.size == 6:
-        before, after = (
-            kinematics.singularity(robot, platform_poses(robot, x.pose)).determinant for x in (start, states)
-        )
+        both = platform_poses(robot, np.concatenate([start.pose, states.pose]))
+        before, after = np.split(kinematics.singularity(robot, both).determinant, 2)
     else:
         before, after = (_determinant(system, robot, x) for x in (start, states))
     return (np.sign(before) != np.sign(after)) | flipped(system, robot, states.q, states.pose).any(axis=1)

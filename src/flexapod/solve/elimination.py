@@ -39,6 +39,10 @@ class LegBases:
     Y: Array
     most: Array
 
+    def __getitem__(self, chosen: Index) -> LegBases:
+        """Those at some of the poses."""
+        return replace(self, **{name: getattr(self, name)[chosen] for name in ("inverse", "N", "Y", "most")})
+
 
 def leg_bases(system: System, m: RestMatrices) -> list[LegBases]:
     """Bases of all legs at P poses, grouped by what they hold."""

@@ -40,12 +40,14 @@ class Equilibrium:
 class Equilibria:
     """Results of P searches: the states, and for each `FOUND` or why it is none, an index into `REASONS`.
 
-    ``m``: matrices at those found; ``most`` (P,): as of `reduction.Motions`, NaN without a search that settled.
+    ``m``, ``motions``: matrices and independent motions at those found; ``most`` (P,): as of `reduction.Motions`, NaN
+    without a search that settled.
     """
 
     states: RestStates
     code: np.ndarray
     m: RestMatrices
+    motions: Motions
     most: Array
 
     def one(self, k: int) -> Equilibrium:
@@ -97,7 +99,9 @@ def equilibria(system: System, start: RestStates, command: Array, force: Array, 
     most[found], near = motions.most, motions.most <= FARTHEST
     stable = _stable(system, m, motions)
     code[found[~stable]], code[found[~near]] = UNSTABLE, TOO_FAR
-    return Equilibria(states=states, code=code, m=m[np.flatnonzero(stable & near)], most=most)
+    if not (stable & near).all():
+        m, motions = (x[np.flatnonzero(stable & near)] for x in (m, motions))
+    return Equilibria(states=states, code=code, m=m, motions=motions, most=most)
 
 
 @dataclass(frozen=True, kw_only=True)
@@ -149,12 +153,13 @@ def _newton(system: System, x: RestStates, acts: _Acts) -> tuple[RestStates, np.
     code, best = np.full(len(x), NOT_SETTLED), np.full(len(x), np.inf)
     on = np.arange(len(x))
     for _ in range(40):
-        new, largest = _newton_step(system, x[on], acts[on])
+        every = on.size == len(x)
+        new, largest = _newton_step(system, *((x, acts) if every else (x[on], acts[on])))
         singular = ~np.isfinite(largest)
         away = ~singular & (largest > 0.5)  # half a radian or half a metre is not an elastic deformation
         code[on[singular]], code[on[away]] = SINGULAR, GIVES_WAY
         good = ~singular & ~away
-        x = x.with_(on[good], new[np.flatnonzero(good)])
+        x = new if every and good.all() else x.with_(on[good], new[np.flatnonzero(good)])
         done = good & ((largest < 1e-13) | ((largest < 1e-10) & (largest >= best[on])))
         code[on[done]] = FOUND
         best[on] = largest

@@ -32,8 +32,8 @@ __all__ = ["LockedPoses", "lock", "refuse_pure_force", "refuse_taut", "the_equil
 class LockedPoses:
     """A robot with drives locked at the ``command`` (P, legs, ports) of a rigid ``path`` of P poses.
 
-    Its undeformed states ``start``, what ``acts`` on it, equilibria, and the matrices ``m`` of those found, ``at``;
-    ``per_loss`` [s]: as of `robot_system`.
+    Its undeformed states ``start``, what ``acts`` on it, equilibria, and matrices ``m`` and independent ``motions`` of
+    those found, ``at``; ``per_loss`` [s]: as of `robot_system`.
     """
 
     robot: Robot
@@ -47,6 +47,7 @@ class LockedPoses:
     equilibria: Equilibria
     at: Index
     m: RestMatrices
+    motions: Motions
 
     @cached_property
     def shaken(self) -> "LockedPoses":
@@ -56,18 +57,26 @@ class LockedPoses:
             system = replace(system, substitutes=self.system.substitutes)
             at, stuck = self.equilibria.states[self.at], self.simulation.friction == "stuck"
             m = with_friction(system, at, matrices_at_rest(system, at, self.acts.wrench), stuck=stuck)
-            return replace(self, system=system, m=m)
+            return replace(self, system=system, m=m, motions=independent(system, m))
         if not self.system.kernel.shapes.has("w"):
             return self
         held, shapes = self.system.held.copy(), self.system.kernel.shapes
         rests = [leg.screw is not None and leg.screw.rests and not leg.screw.holds for leg in self.robot.legs]
         held[rests, shapes.index("r")] = False
-        return replace(self, system=replace(self.system, held=held))
+        system = replace(self.system, held=held)
+        return replace(self, system=system, motions=independent(system, self.m))
 
     def one(self, k: int) -> "LockedPoses":
         """The k-th pose of those whose equilibrium was found, by itself."""
         at, found = self.at[k : k + 1], self.equilibria
-        alone = Equilibria(states=found.states[at], code=found.code[at], m=found.m[np.array([k])], most=found.most[at])
+        here = np.array([k])
+        alone = Equilibria(
+            states=found.states[at],
+            code=found.code[at],
+            m=found.m[here],
+            motions=found.motions[here],
+            most=found.most[at],
+        )
         return replace(
             self,
             path=self.path.part(slice(at[0], at[0] + 1)),
@@ -76,13 +85,9 @@ class LockedPoses:
             acts=replace(self.acts, force=self.acts.force[at]),
             equilibria=alone,
             at=np.zeros(1, dtype=np.intp),
-            m=self.m[np.array([k])],
+            m=self.m[here],
+            motions=self.motions[here],
         )
-
-    @cached_property
-    def motions(self) -> Motions:
-        """Independent motions about the equilibria."""
-        return independent(self.system, self.m)
 
 
 def refuse_pure_force(robot: Robot, what: str) -> None:
@@ -165,6 +170,7 @@ def lock(
         equilibria=found,
         at=at,
         m=with_friction(system, found.states[at], found.m, stuck=simulation.friction == "stuck"),
+        motions=found.motions,
     )
 
 

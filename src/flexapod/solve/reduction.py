@@ -2,7 +2,7 @@
 
 from __future__ import annotations
 
-from dataclasses import dataclass
+from dataclasses import dataclass, replace
 
 import numpy as np
 
@@ -42,6 +42,11 @@ class Motions:
     columns: Index
     N: Array | None
     most: Array
+
+    def __getitem__(self, chosen: Index) -> Motions:
+        """Those at some of the poses."""
+        N = None if self.N is None else self.N[chosen]
+        return replace(self, bases=[b[chosen] for b in self.bases], N=N, most=self.most[chosen])
 
     def stiffness(self, system: System, m: RestMatrices) -> Array:
         """The whole stiffness on them, (P, d, d), Eq. (T7.17)."""
