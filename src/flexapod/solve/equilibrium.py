@@ -99,8 +99,9 @@ def equilibria(system: System, start: RestStates, command: Array, force: Array, 
     most[found], near = motions.most, motions.most <= FARTHEST
     stable = _stable(system, m, motions)
     code[found[~stable]], code[found[~near]] = UNSTABLE, TOO_FAR
-    if not (stable & near).all():
-        m, motions = (x[np.flatnonzero(stable & near)] for x in (m, motions))
+    kept = np.flatnonzero(stable & near)
+    if kept.size < found.size:
+        m, motions = m[kept], motions[kept]
     return Equilibria(states=states, code=code, m=m, motions=motions, most=most)
 
 

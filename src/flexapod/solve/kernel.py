@@ -5,6 +5,7 @@ import logging
 from collections.abc import Callable, Sequence
 from dataclasses import dataclass, fields
 from functools import cache, lru_cache
+from math import prod
 from pathlib import Path
 from typing import TYPE_CHECKING
 from weakref import WeakValueDictionary
@@ -169,7 +170,7 @@ def evaluate(
     ValueError
         Sizes are not those of the function.
     """
-    rows = [np.ascontiguousarray(x, dtype=float).reshape(int(np.prod(x.shape[:-1])), x.shape[-1]) for x in inputs]
+    rows = [np.ascontiguousarray(x, dtype=float).reshape(prod(x.shape[:-1]), x.shape[-1]) for x in inputs]
     if kernel.library is None:
         return _one_by_one(kernel, name, count, rows, shapes)
     out = getattr(kernel, name).each(count, rows, shapes)  # the kernels write column by column
