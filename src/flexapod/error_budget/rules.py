@@ -37,7 +37,14 @@ class Budget:
     @property
     def parts(self) -> tuple[str, ...]:
         """Names of the parts, in the order of their rows."""
-        return tuple(dict.fromkeys(row.part for row in self.rows))
+        return tuple(self._by_part)
+
+    @cached_property
+    def _by_part(self) -> dict[str, list[ErrorRow]]:
+        found: dict[str, list[ErrorRow]] = {}
+        for row in self.rows:
+            found.setdefault(row.part, []).append(row)
+        return found
 
     @property
     def kinds(self) -> tuple[str, ...]:
@@ -55,7 +62,7 @@ class Budget:
 
     def total(self, kind: str) -> Array:
         """The whole of a kind, (6,)."""
-        return self.whole.get(kind, self.rule(kind))
+        return self.whole[kind] if kind in self.whole else self.rule(kind)
 
     def residual(self, kind: str) -> Array:
         """What the rows of a kind leave of its whole, (6,), Eq. (T17.2)."""
@@ -94,8 +101,8 @@ class Budget:
         return Budget(rows=[row for row in self.rows if row.nature != "calibratable" and not row.stands], whole={})
 
     def _only(self, part: str) -> Budget:
-        rows = [row for row in self.rows if row.part == part]
-        return Budget(rows=rows, whole={k: self.of(part, k) for k in self.whole})
+        alone = Budget(rows=self._by_part[part], whole={})
+        return replace(alone, whole={kind: alone.rule(kind) for kind in self.whole})
 
     def with_half(self, part: str) -> Budget:
         """The budget if every error of a part were half as large."""
