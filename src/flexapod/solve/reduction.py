@@ -141,16 +141,19 @@ def independent(system: System, m: RestMatrices) -> Motions:
     by = np.concatenate([of[b.legs[:, None], b.border].ravel() for b in bases])
     kept, columns = by >= 0, flat_columns(system, bases)  # a row that follows from the others is not kept
     if not kept.any():
-        return Motions(bases=bases, columns=columns, N=None, most=most)
+        return Motions(bases=bases, columns=columns, N=None, most=_not_implied(G, most))
     place = (columns == by[kept][:, None]).argmax(axis=1)
     free = np.setdiff1d(np.arange(columns.size), place)
     moves = -solve_each(G[:, kept][..., place], G[:, kept][..., free])
     N = np.zeros((len(G), columns.size, free.size))
     N[:, free, np.arange(free.size)], N[:, place] = 1.0, moves
     most = np.maximum(most, np.abs(moves).max(axis=(1, 2), initial=0.0))
-    if not kept.all():  # at home the other rows follow from these
-        most = np.where(np.abs(G[:, ~kept] @ N).max(axis=(1, 2), initial=0.0) > DEPENDENT, np.inf, most)
-    return Motions(bases=bases, columns=columns[free], N=N, most=most)
+    return Motions(bases=bases, columns=columns[free], N=N, most=_not_implied(G[:, ~kept] @ N, most))
+
+
+def _not_implied(rows: Array, most: Array) -> Array:
+    """Infinite where rows (P, any, d) that others imply at home hold a motion here; else as it was, (P,)."""
+    return np.where(np.abs(rows).max(axis=(1, 2), initial=0.0) > DEPENDENT, np.inf, most)
 
 
 def flat_columns(system: System, bases: list[LegBases]) -> Index:
