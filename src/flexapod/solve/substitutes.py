@@ -26,7 +26,7 @@ def with_substitutes(system: System, home: RestStates) -> System:
     of the payload. Among equals the first: legs that are alike choose alike.
     """
     n, found = system.n, np.full(system.held.shape, -1, dtype=np.intp)
-    bases = leg_bases(system, matrices_at_rest(system, home, np.zeros(6)))
+    bases = leg_bases(system, matrices_at_rest(system, home, np.zeros(system.load_size)))
     for b in bases:
         by = _shapes(b)
         if by is not None:
