@@ -161,7 +161,7 @@ def _solid(section: Tube | Rectangle, length: float, count: int, moment: bool = 
 
 def places(shapes: Shapes) -> dict[str, int]:
     """Positions of the coordinates that motions and loads drive, in the order of the ports, by name of the motion."""
-    names = {"extension": "l", "rotation": "beta"} if shapes.planar else SPACE_NAMES
+    names = {"extension": "l", "rotation": "beta"} if shapes.chain.planar else SPACE_NAMES
     return {motion: shapes.index(name) for motion, name in names.items()}
 
 
